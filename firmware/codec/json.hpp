@@ -1,0 +1,21 @@
+#pragma once
+
+#include <expected>
+#include <string>
+#include <string_view>
+
+#include "codec/value.hpp"
+
+namespace adit::codec {
+
+/// A whole JSON document (RFC 8259, strictly, nesting up to 64), or why it is none, with the byte it is
+/// about.
+std::expected<Value, std::string> parse_json(std::string_view text);
+
+/// True for one well-formed JSON document and nothing else.
+bool is_json(std::string_view text);
+
+/// The value on one line; Bytes and SplitOut as null.
+std::string write_json(const Value& value);
+
+}  // namespace adit::codec

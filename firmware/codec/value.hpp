@@ -1,0 +1,31 @@
+#pragma once
+
+#include <cstdint>
+#include <string>
+#include <utility>
+#include <variant>
+#include <vector>
+
+namespace adit::codec {
+
+/// A parsed document without its bulk data: what JSON (RFC 8259) and CBOR (RFC 8949) have in common.
+/// Members keep their order and their duplicates, so that a reader can refuse a member that is given twice.
+struct Value {
+  struct Bytes {  // a CBOR byte string
+    std::vector<std::uint8_t> bytes;
+  };
+  /// Stands where the map's `data` was split out (Document::data holds it).
+  struct SplitOut {};
+  using Array = std::vector<Value>;
+  using Member = std::pair<std::string, Value>;  // CBOR keys that are not text are left out
+  using Object = std::vector<Member>;
+
+  std::variant<std::nullptr_t, bool, std::int64_t, std::uint64_t, double, std::string, Bytes, SplitOut, Array,
+               Object>
+      is = nullptr;
+
+  /// "a string", "a whole number", "null", ...: for sentences.
+  const char* kind() const;
+};
+
+}  // namespace adit::codec

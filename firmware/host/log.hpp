@@ -1,0 +1,22 @@
+#pragma once
+
+#include <initializer_list>
+#include <string>
+#include <string_view>
+#include <utility>
+
+namespace adit::host {
+
+enum class Level : int { Error = 3, Warning = 4, Notice = 5, Info = 6, Debug = 7 };  // syslog's (RFC 5424)
+
+/// A field of a log record: name in lower_case ("report", "status"), value as text. Never a token.
+using Field = std::pair<std::string_view, std::string>;
+
+/// The one logger. Under journald (its stream is stderr, $JOURNAL_STREAM) a structured record, each field as
+/// ADIT_<NAME>; else one plain line on stderr: time, level, message, fields.
+void log(Level level, std::string_view message, std::initializer_list<Field> fields = {});
+
+/// Records less important than this are left out; Info at first.
+void set_least(Level level);
+
+}  // namespace adit::host

@@ -1,0 +1,26 @@
+#pragma once
+
+#include <array>
+#include <string>
+#include <string_view>
+
+#include "icd/geometry.hpp"
+
+namespace adit::icd {
+
+/// The ten artifact types of the final event (ICD 5.2); letter case does not matter.
+inline constexpr std::array<std::string_view, 10> kArtifactTypes = {
+    "Survivor", "Cell Phone", "Backpack", "Drill", "Fire Extinguisher",
+    "Gas",      "Vent",       "Helmet",   "Rope",  "Cube"};
+
+/// The ICD's own spelling of a type, or nothing ("") where it is none of the ten.
+std::string_view artifact_type(std::string_view text);
+
+/// The body of POST /api/artifact_reports (ICD 5.2). `type` is kept as its sender wrote it.
+struct ArtifactReport {
+  std::string type;
+  Point position;
+  friend bool operator==(const ArtifactReport&, const ArtifactReport&) = default;
+};
+
+}  // namespace adit::icd

@@ -1,0 +1,31 @@
+#pragma once
+
+#include <optional>
+#include <string>
+#include <string_view>
+
+namespace adit::icd {
+
+/// A bearer token (ICD 4, RFC 6750). It has no stream operator and no conversion: reveal() is the one way
+/// out, and whoever calls it must not print what it gives.
+class BearerToken {
+ public:
+  /// Nothing unless `text` is 1 to 256 visible ASCII characters (0x21 to 0x7e).
+  static std::optional<BearerToken> parse(std::string_view text);
+
+  /// The token's characters, for the Authorization header alone.
+  const std::string& reveal() const { return text_; }
+
+  /// Takes the same time wherever the two differ.
+  bool matches(std::string_view presented) const;
+
+ private:
+  explicit BearerToken(std::string text) : text_(std::move(text)) {}
+  std::string text_;
+};
+
+/// The token in an Authorization header's value: `Bearer <token>`, the scheme in any letter case (RFC
+/// 9110 11.1). Empty where there is none.
+std::string_view token_in(std::string_view authorization);
+
+}  // namespace adit::icd

@@ -1,0 +1,53 @@
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <memory>
+#include <span>
+#include <string>
+#include <vector>
+
+namespace adit::icd {
+
+/// Bulk bytes in chunks of at most kChunk that are shared and never changed once written, so that a map is
+/// queued, merged with another, sent and sent again without a second copy.
+///
+/// Copying a ChunkedBytes shares its chunks. Not for use by two threads at once, though chunks may be shared
+/// across threads.
+class ChunkedBytes {
+ public:
+  static constexpr std::size_t kChunk = 64 * 1024;
+  using Chunk = std::shared_ptr<const std::vector<std::uint8_t>>;
+
+  ChunkedBytes() = default;
+  explicit ChunkedBytes(std::span<const std::uint8_t> bytes) { append(bytes); }
+
+  /// Copies `bytes` to the end.
+  void append(std::span<const std::uint8_t> bytes);
+  /// Shares the chunks of `other` at the end.
+  void append(const ChunkedBytes& other);
+  /// Takes a whole chunk over, without a copy.
+  void append(std::vector<std::uint8_t>&& chunk);
+
+  /// All bytes, in order; no chunk is empty.
+  const std::vector<Chunk>& chunks() const { return chunks_; }
+  std::size_t size() const { return size_; }
+  bool empty() const { return size_ == 0; }
+
+  /// Takes the first chunk out, so that what has been worked on can be freed. Requires !empty().
+  Chunk pop_front();
+
+  /// One contiguous copy: for small bodies and for tests.
+  std::vector<std::uint8_t> to_vector() const;
+  std::string to_string() const;
+
+  /// Equal bytes, however they are cut into chunks.
+  friend bool operator==(const ChunkedBytes& a, const ChunkedBytes& b);
+
+ private:
+  std::vector<Chunk> chunks_;
+  std::shared_ptr<std::vector<std::uint8_t>> open_;  // the last chunk, while it may still grow
+  std::size_t size_ = 0;
+};
+
+}  // namespace adit::icd

@@ -1,0 +1,19 @@
+#pragma once
+
+#include <optional>
+
+namespace adit::icd {
+
+/// Seconds, on the clock of whoever made the message; finite and not negative (ICD 6.2).
+using Stamp = double;
+
+/// The frame that every message is in (ICD 6.1). A message that exists has passed that check, so a Header
+/// does not hold it.
+inline constexpr const char* kFrame = "darpa";
+
+struct Header {
+  std::optional<Stamp> stamp;
+  friend bool operator==(const Header&, const Header&) = default;
+};
+
+}  // namespace adit::icd

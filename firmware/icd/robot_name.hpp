@@ -1,0 +1,26 @@
+#pragma once
+
+#include <compare>
+#include <optional>
+#include <string>
+#include <string_view>
+
+namespace adit::icd {
+
+/// A robot's name: 1 to 10 letters, digits and underscores (ICD 2), the same in maps and telemetry.
+class RobotName {
+ public:
+  static constexpr std::size_t kLongest = 10;
+
+  /// Nothing where `text` is no robot's name.
+  static std::optional<RobotName> parse(std::string_view text);
+
+  const std::string& text() const { return text_; }
+  friend auto operator<=>(const RobotName&, const RobotName&) = default;
+
+ private:
+  explicit RobotName(std::string text) : text_(std::move(text)) {}
+  std::string text_;
+};
+
+}  // namespace adit::icd

@@ -1,0 +1,37 @@
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <string_view>
+
+#include "icd/map_update.hpp"
+#include "icd/status.hpp"
+
+namespace adit::icd {
+
+/// Where a team may bend the ICD's rules, by its settings.
+struct Rules {
+  bool rewrite_frame_id = false;       // take any frame_id and send "darpa" (else 422)
+  bool forward_unknown_types = false;  // send artifact types that are none of the ten (else 422)
+  std::size_t map_bytes = 256u << 20;  // largest `data` of a map once inflated
+};
+
+/// Rules over several fields of a map, once each field has its type. Each names the field by its path in the
+/// body, as in "msg.point_step: expected at least 1, got 0".
+
+/// ICD 6.3.1: resolution, width and height; and that width * height is within rules.map_bytes.
+Checked<void> check(const OccupancyGrid& grid, const Rules& rules);
+/// ICD 6.3.1: "msg.info.width: expected 80 x 60 = 4800 bytes of data, got 4799".
+Checked<void> check_size(const OccupancyGrid& grid, std::size_t bytes);
+/// ICD 6.3.1: cell values are 0 to 100 or 255. `first` is the index of cells.front() in the grid.
+Checked<void> check_cells(std::span<const std::uint8_t> cells, std::size_t first);
+
+/// ICD 6.3.2 and what kills a server: point_step, the fields' places, x y z present and of one float type.
+Checked<void> check(const PointCloud2& cloud, const Rules& rules);
+/// ICD 6.3.2: the data is a whole number of points.
+Checked<void> check_size(const PointCloud2& cloud, std::size_t bytes);
+
+/// ICD 6.1, at `path` ("msg.header.frame_id").
+Checked<void> check_frame_id(std::string_view frame_id, std::string_view path, const Rules& rules);
+
+}  // namespace adit::icd

@@ -1,0 +1,39 @@
+#pragma once
+
+#include <cstdint>
+#include <expected>
+#include <string>
+
+namespace adit::icd {
+
+/// HTTP status codes: those of the ICD's section 4.1, and the few that HTTP (RFC 9110) needs beside them.
+enum class Status : std::uint16_t {
+  Ok = 200,
+  Created = 201,
+  NoContent = 204,
+  BadRequest = 400,
+  Unauthorized = 401,
+  NotFound = 404,
+  MethodNotAllowed = 405,
+  RequestTimeout = 408,
+  ContentTooLarge = 413,
+  UnprocessableEntity = 422,
+  TooManyRequests = 429,
+  InternalServerError = 500,
+  BadGateway = 502,
+  ServiceUnavailable = 503,
+  GatewayTimeout = 504,
+};
+
+/// Why a message was not taken: the status its sender gets, and a sentence that names the field by its path,
+/// says what was expected and what was found ("msg.info.width: expected a whole number, got a string").
+struct Refusal {
+  Status status = Status::UnprocessableEntity;
+  std::string sentence;
+  friend bool operator==(const Refusal&, const Refusal&) = default;
+};
+
+template <class T>
+using Checked = std::expected<T, Refusal>;
+
+}  // namespace adit::icd

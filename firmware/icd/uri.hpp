@@ -1,0 +1,24 @@
+#pragma once
+
+#include <cstdint>
+#include <optional>
+#include <string_view>
+
+namespace adit::icd {
+
+/// The five functions of the Command Post (ICD 5 and 6).
+enum class Uri : std::uint8_t { Status, ArtifactReports, MapUpdate, StateUpdate, MarkersUpdate };
+
+inline constexpr Uri kUris[] = {Uri::Status, Uri::ArtifactReports, Uri::MapUpdate, Uri::StateUpdate,
+                                Uri::MarkersUpdate};
+
+/// "/api/status", "/map/update", ... without a trailing slash.
+std::string_view path_of(Uri uri);
+
+/// "GET" for Status, "POST" for the others.
+std::string_view method_of(Uri uri);
+
+/// Which function a request's path names; trailing slashes are tolerated.
+std::optional<Uri> uri_of(std::string_view path);
+
+}  // namespace adit::icd

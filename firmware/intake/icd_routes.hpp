@@ -1,0 +1,49 @@
+#pragma once
+
+#include <memory>
+#include <vector>
+
+#include "icd/bearer_token.hpp"
+#include "icd/rules.hpp"
+#include "intake/desk.hpp"
+#include "intake/server.hpp"
+#include "loop/workers.hpp"
+
+namespace adit::intake {
+
+/// What the team's side of the ICD is served with.
+struct IcdOptions {
+  std::vector<icd::BearerToken> tokens;  // any of them is good; empty: none is asked for
+  icd::Rules rules;
+};
+
+/// The ICD's five URIs for the team: tokens, methods, content types, CORS, decoding (maps on a worker, chunk
+/// by chunk with back-pressure; the rest on the loop), and the answer. Any other path goes to `other`.
+///
+/// Every error is a JSON string. CORS preflights (OPTIONS) are answered 204 without a token; every answer of
+/// an ICD URI carries Access-Control-Allow-Origin.
+class IcdRoutes final : public Handler {
+ public:
+  IcdRoutes(IcdOptions options, Desk& desk, loop::Workers& workers, Handler& other);
+
+  std::unique_ptr<Exchange> open(const RequestHead& head, std::shared_ptr<Responder> responder,
+                                 std::shared_ptr<Flow> flow) override;
+
+ private:
+  IcdOptions options_;
+  Desk& desk_;
+  loop::Workers& workers_;
+  Handler& other_;
+};
+
+/// An error answer of this gateway: `sentence` as a JSON string.
+Answer error_answer(icd::Status status, std::string_view sentence);
+
+/// Answers 404 to everything: for where nothing else is served.
+class NotFound final : public Handler {
+ public:
+  std::unique_ptr<Exchange> open(const RequestHead& head, std::shared_ptr<Responder> responder,
+                                 std::shared_ptr<Flow> flow) override;
+};
+
+}  // namespace adit::intake

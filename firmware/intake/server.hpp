@@ -1,0 +1,125 @@
+#pragma once
+
+#include <cstdint>
+#include <expected>
+#include <functional>
+#include <memory>
+#include <optional>
+#include <span>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "icd/status.hpp"
+#include "loop/loop.hpp"
+
+namespace adit::intake {
+
+/// Where and how the server listens.
+struct Listen {
+  std::string address;
+  std::uint16_t port = 0;  // 0: any free port, see Server::port()
+  std::string interface;   // SO_BINDTODEVICE; "": not bound
+  std::uint32_t connections = 64, connections_per_address = 16;
+  std::chrono::milliseconds headers_within{
+      10000};  // from connecting, or from the last answer's first byte since
+  std::chrono::milliseconds body_silence{15000};  // without a byte of the body
+  std::chrono::milliseconds idle{60000};          // between requests
+};
+
+/// The head of one request. Valid until the request ends.
+class RequestHead {
+ public:
+  virtual ~RequestHead() = default;
+  virtual std::string_view method() const = 0;
+  virtual std::string_view path() const = 0;                         // decoded, without the query
+  virtual std::string_view query(std::string_view name) const = 0;   // "" where absent
+  virtual std::string_view header(std::string_view name) const = 0;  // "" where absent; any letter case
+  virtual std::optional<std::uint64_t> content_length() const = 0;   // absent where chunked
+  virtual const std::string& peer() const = 0;                       // "10.0.0.5"
+};
+
+struct Header {
+  std::string name, value;
+};
+
+struct Answer {
+  icd::Status status = icd::Status::Ok;
+  std::string content_type = "application/json";
+  std::string body;
+  std::vector<Header> headers;
+};
+
+/// Sends pieces of one long answer (server-sent events) as they come. Dropping it ends the answer.
+class Stream {
+ public:
+  virtual ~Stream() = default;
+  /// Queues bytes; false once the client has gone, or has fallen `kLag` bytes behind (then it is cut off).
+  virtual bool send(std::string_view bytes) = 0;
+  static constexpr std::size_t kLag = 1u << 20;
+};
+
+/// Answers one request, now or later, from the loop; exactly one of the calls, once. Does nothing where the
+/// client has gone. Copies stand for the same request.
+class Responder {
+ public:
+  virtual ~Responder() = default;
+  virtual void answer(Answer answer) = 0;
+  virtual std::shared_ptr<Stream> stream(std::string_view content_type) = 0;
+  virtual bool client_gone() const = 0;
+};
+
+/// Takes the body of one request.
+class Exchange {
+ public:
+  virtual ~Exchange() = default;
+  /// A piece of the body, valid during the call. False: take no more for now (back-pressure: the connection
+  /// is suspended until Flow::resume()). The piece itself has been taken either way.
+  virtual bool on_body(std::span<const std::uint8_t> piece) = 0;
+  /// The body is whole. Answer now or later.
+  virtual void on_end() = 0;
+  /// The client went away, or was too slow, before it was answered.
+  virtual void on_gone() {}
+};
+
+/// Lets a suspended request's body flow again.
+class Flow {
+ public:
+  virtual ~Flow() = default;
+  virtual void resume() = 0;
+};
+
+/// What a request is given to.
+class Handler {
+ public:
+  virtual ~Handler() = default;
+  /// Called when the headers are whole. May answer at once (a refusal: the body is then read away up to a
+  /// limit, or the connection closed). Returning nothing is allowed only after answering.
+  virtual std::unique_ptr<Exchange> open(const RequestHead& head, std::shared_ptr<Responder> responder,
+                                         std::shared_ptr<Flow> flow) = 0;
+};
+
+/// An HTTP/1.1 server by libmicrohttpd on the loop, for one listening address.
+///
+/// Limits connections in all and per address, gives each connection's headers a deadline of its own (a slow
+/// writer of headers is closed), and keeps a body's bytes nowhere: a slow receiver is back-pressure.
+class Server {
+ public:
+  static std::expected<std::unique_ptr<Server>, std::string> start(loop::Loop& loop, const Listen& listen,
+                                                                   Handler& handler);
+  ~Server();
+  Server(const Server&) = delete;
+  Server& operator=(const Server&) = delete;
+
+  std::uint16_t port() const;
+  std::size_t connections() const;
+  /// Takes no new connections; requests under way go on.
+  void stop_listening();
+
+ private:
+  class Impl;
+  explicit Server(std::unique_ptr<Impl> impl);
+  std::unique_ptr<Impl> impl_;
+};
+
+}  // namespace adit::intake

@@ -1,0 +1,67 @@
+#pragma once
+
+#include <chrono>
+#include <cstddef>
+#include <cstdint>
+#include <deque>
+#include <optional>
+#include <vector>
+
+#include "icd/map_update.hpp"
+
+namespace adit::lanes {
+
+using Instant = std::chrono::steady_clock::time_point;
+
+/// ICD 6.3.1 and promise 2: whether `newer` says all that `older` said, so that `older` need not be sent: the
+/// same lattice (resolution, orientation and height alike, origins a whole number of cells apart) and older's
+/// extent within newer's.
+bool covers(const icd::OccupancyGrid& newer, const icd::OccupancyGrid& older);
+
+/// Whether the points of both can stand in one message: fields, point_step, byte order and origin alike.
+bool mergeable(const icd::PointCloud2& a, const icd::PointCloud2& b);
+
+/// Older's points and then newer's, in one update with newer's header. Requires mergeable clouds of one name
+/// with uncompressed data. Shares their bytes.
+icd::MapUpdate merge(icd::MapUpdate older, const icd::MapUpdate& newer);
+
+/// A map that waits, and which accepted updates it stands for (itself, what it replaced, what was merged into
+/// it).
+struct WaitingMap {
+  icd::MapUpdate map;
+  Instant accepted;                    // when the oldest news in it was accepted
+  std::vector<std::uint64_t> updates;  // their numbers, oldest first
+};
+
+/// The maps that wait for the Command Post, oldest news first.
+///
+/// A grid is replaced by a newer one of the same name that covers it, and keeps its place. Clouds are kept in
+/// order; take() merges those of one name that follow each other while more than one wait. Nothing else is
+/// ever dropped.
+class MapLane {
+ public:
+  /// Most bytes of points that take() merges into one message.
+  explicit MapLane(std::size_t merge_bytes) : merge_bytes_(merge_bytes) {}
+
+  /// The numbers of the updates that `map` replaced; they are now part of it.
+  std::vector<std::uint64_t> add(std::uint64_t number, icd::MapUpdate map, Instant now);
+
+  /// The next to be sent, taken out of the lane.
+  std::optional<WaitingMap> take();
+
+  /// Puts back what could not be sent: first in line, unless a newer grid that covers it came meanwhile (then
+  /// that one takes its updates and its age).
+  void put_back(WaitingMap map);
+
+  std::size_t count() const { return waiting_.size(); }
+  std::size_t bytes() const { return bytes_; }  // held by all that wait
+  std::optional<Instant> oldest() const;
+  const std::deque<WaitingMap>& waiting() const { return waiting_; }
+
+ private:
+  std::deque<WaitingMap> waiting_;
+  std::size_t merge_bytes_;
+  std::size_t bytes_ = 0;
+};
+
+}  // namespace adit::lanes

@@ -1,0 +1,46 @@
+#pragma once
+
+#include <chrono>
+#include <cstdint>
+#include <map>
+#include <optional>
+#include <vector>
+
+#include "icd/state_update.hpp"
+#include "lanes/map_lane.hpp"
+
+namespace adit::lanes {
+
+/// A /state/update to be sent and the accepted updates it answers for.
+struct WaitingState {
+  icd::StateUpdate update;             // every robot known, by name; header.stamp: the newest of them
+  Instant accepted;                    // of the oldest news in it
+  std::vector<std::uint64_t> updates;  // oldest first
+};
+
+/// Robots' newest poses (ICD 6.5): each robot may post alone, all go out together, also those without news.
+class StateLane {
+ public:
+  /// `update.header.stamp` is on the gateway's clock. A robot's pose is replaced unless the one held has a
+  /// newer stamp.
+  void add(std::uint64_t number, const icd::StateUpdate& update, Instant now);
+
+  /// All robots' newest poses; nothing where no news came since the last take().
+  std::optional<WaitingState> take();
+  /// What could not be sent is news again; newer poses that came meanwhile stay.
+  void put_back(const WaitingState& state);
+
+  std::optional<Instant> oldest() const { return oldest_; }
+  bool empty() const { return !oldest_; }
+
+ private:
+  struct Held {
+    icd::Pose pose;
+    std::optional<icd::Stamp> stamp;
+  };
+  std::map<icd::RobotName, Held> robots_;
+  std::optional<Instant> oldest_;
+  std::vector<std::uint64_t> updates_;
+};
+
+}  // namespace adit::lanes

@@ -1,0 +1,76 @@
+#pragma once
+
+#include <chrono>
+#include <cstdint>
+#include <functional>
+#include <memory>
+
+struct sd_event;
+struct sd_event_source;
+
+namespace adit::loop {
+
+using Instant = std::chrono::steady_clock::time_point;
+using Duration = std::chrono::nanoseconds;
+
+/// A thing the loop watches; destroying it ends the watch, also from within its own callback.
+class Source {
+ public:
+  Source() = default;
+  Source(Source&&) noexcept;
+  Source& operator=(Source&&) noexcept;
+  ~Source();
+
+  /// For watch(): the EPOLL* events to wait for from now on.
+  void wait_for(std::uint32_t events);
+  /// For timer(): calls once at `when`; an earlier setting is forgotten.
+  void call_at(Instant when);
+  /// For timer(): no call until the next call_at().
+  void cancel();
+  explicit operator bool() const { return state_ != nullptr; }
+
+ private:
+  friend class Loop;
+  struct State;
+  explicit Source(std::unique_ptr<State> state);
+  std::unique_ptr<State> state_;
+};
+
+/// The one event loop (sd-event). Everything but post() is for the loop's own thread.
+class Loop {
+ public:
+  Loop();
+  ~Loop();
+  Loop(const Loop&) = delete;
+  Loop& operator=(const Loop&) = delete;
+
+  /// The one way to take the time for policy: monotonic.
+  Instant now() const;
+  /// The gateway's clock for stamps: seconds since 1970 as of start, carried on by the monotonic clock, so
+  /// that it never steps.
+  double stamp_now() const;
+
+  /// Calls `ready` with the EPOLL* events that came on `fd`, which stays the caller's.
+  Source watch(int fd, std::uint32_t events, std::function<void(std::uint32_t)> ready);
+  /// A timer, not yet set.
+  Source timer(std::function<void()> expired);
+  /// Blocks the signal for the process (call before starting threads) and calls `came` for it.
+  Source signal(int number, std::function<void()> came);
+  /// Runs `task` on the loop's thread, soon. Thread-safe.
+  void post(std::function<void()> task);
+
+  /// Feeds systemd's watchdog from this loop where $WATCHDOG_USEC asks for it; true where it does.
+  bool feed_watchdog();
+
+  /// Until stop().
+  void run();
+  void stop();
+  /// One turn, waiting at most `most`; for tests.
+  void turn(Duration most);
+
+ private:
+  class Impl;
+  std::unique_ptr<Impl> impl_;
+};
+
+}  // namespace adit::loop

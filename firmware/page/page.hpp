@@ -1,0 +1,121 @@
+#pragma once
+
+#include <cstdint>
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "icd/geometry.hpp"
+#include "icd/run_status.hpp"
+#include "intake/server.hpp"
+#include "loop/loop.hpp"
+
+namespace adit::page {
+
+/// Times are seconds since 1970 on the gateway's clock.
+using Time = double;
+
+/// One artifact report and where it is in its life.
+struct ReportRow {
+  std::int64_t number = 0;
+  std::string type;
+  icd::Point position;
+  std::string sender;
+  Time received = 0, changed = 0;
+  std::string state;  // dispatch::name_of(State): "waiting", "sending", "in doubt", "answered", ...
+  int status = 0;     // the Command Post's; 0: none yet
+  std::string report_status;
+  std::optional<std::int64_t> score_change;
+  std::string note;
+};
+
+/// One robot's (or, with no name, the merged) traffic of one kind.
+struct ActivityRow {
+  std::string kind;   // "grid", "cloud", "state", "markers"
+  std::string robot;  // "" for merged maps and for markers
+  std::uint64_t accepted = 0, forwarded = 0, replaced = 0, merged = 0, throttled = 0, failed = 0,
+                refused_upstream = 0;
+  std::uint64_t waiting = 0;
+  std::optional<Time> last_accepted, last_forwarded;
+  std::size_t bytes_received = 0, bytes_sent = 0;  // of the last of each
+  int last_status = 0;                             // the Command Post's last answer; 0: none yet
+  std::string last_sentence;                       // what it said, or why nothing came
+};
+
+/// What was refused to its sender.
+struct RefusalRow {
+  Time at = 0;
+  std::string uri, sender;
+  int status = 0;
+  std::string sentence;
+};
+
+struct EndpointRow {
+  std::string name;     // "scoring", "mapping"
+  std::string address;  // "10.100.1.200:8000"
+  bool connected = false;
+  std::string trouble;  // "" where there is none
+  int last_status = 0;
+  std::optional<double> answer_ms;  // of the last request
+};
+
+struct LightRow {
+  std::string name, pattern;  // panel::name_of
+};
+
+/// All that the page, `adit status` and tests read.
+struct RunView {
+  Time now = 0;
+  std::string version;
+  std::optional<icd::RunStatus> run;  // as last heard
+  std::optional<Time> run_heard;
+  std::vector<EndpointRow> endpoints;
+  std::vector<ReportRow> reports;  // newest first
+  std::vector<ActivityRow> activities;
+  std::vector<RefusalRow> refusals;  // newest first, the last 50
+  std::vector<LightRow> lights;
+  double budget_mbit = 0;
+  double sent_mbit = 0;  // over the last seconds, to both endpoints
+  std::size_t queued_bytes = 0;
+  std::vector<std::string> attention;  // sentences for the operator, most urgent first
+};
+
+/// The JSON of /adit/run; each member is named as in RunView, absent optionals are null.
+std::string write_run_view(const RunView& view);
+
+/// Where the page gets what it shows.
+class Source {
+ public:
+  virtual ~Source() = default;
+  virtual RunView view() const = 0;
+};
+
+/// The local web page, on the team's side:
+///   GET /            the page and its files (embedded in the program)
+///   GET /adit/run    RunView as JSON
+///   GET /adit/events the same as server-sent events: one at once, then at most `kEventsPerSecond` as things
+///   change,
+///                    and one at least every 5 s
+/// Anything else is 404 with a JSON string. Every answer carries a Content-Security-Policy of `default-src
+/// 'none'` with what the page needs, X-Content-Type-Options and Referrer-Policy.
+class Page final : public intake::Handler {
+ public:
+  static constexpr int kEventsPerSecond = 4;
+
+  Page(loop::Loop& loop, const Source& source);
+  ~Page() override;
+
+  std::unique_ptr<intake::Exchange> open(const intake::RequestHead& head,
+                                         std::shared_ptr<intake::Responder> responder,
+                                         std::shared_ptr<intake::Flow> flow) override;
+
+  /// Something that the page shows has changed.
+  void changed();
+
+ private:
+  class Impl;
+  std::unique_ptr<Impl> impl_;
+};
+
+}  // namespace adit::page

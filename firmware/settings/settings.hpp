@@ -1,0 +1,85 @@
+#pragma once
+
+#include <chrono>
+#include <cstdint>
+#include <expected>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "icd/rules.hpp"
+
+namespace adit::settings {
+
+/// An IPv4 or IPv6 address in its text form, and a port from 1 to 65535 (0 in team.listen: any free port).
+struct Address {
+  std::string address;
+  std::uint16_t port = 0;
+  friend bool operator==(const Address&, const Address&) = default;
+};
+
+/// Requests a second, each above 0 and at most 1000.
+struct Rates {
+  double reports_hz = 1, status_hz = 1, map_hz = 1, state_hz = 1, markers_hz = 1;
+};
+
+struct Timeouts {
+  std::chrono::milliseconds connect{3000};
+  std::chrono::milliseconds scoring_answer{10000};  // from the last byte sent to the last byte of the answer
+  std::chrono::milliseconds mapping_answer{30000};
+};
+
+struct CommandPost {
+  Address scoring, mapping;
+  std::string interface;     // "" : none (loopback); else at most 15 characters
+  double budget_mbit = 100;  // of the link, over both endpoints (ICD 3)
+  Rates rates;
+  Timeouts timeouts;
+};
+
+struct Team {
+  std::vector<Address> listen;  // at least one
+  std::string interface;
+  bool require_token = true;
+  std::uint32_t connections = 64, connections_per_address = 16;
+};
+
+struct Reports {
+  std::chrono::milliseconds answer_within{20000};  // a client that waits longer gets a truthful 503
+};
+
+struct Queues {
+  std::size_t map_bytes = 256u << 20;  // maps that may wait, in bytes held; above it: 429
+  std::size_t merge_bytes = 8u << 20;  // points merged into one cloud at most
+  std::size_t markers_per_message = 2000;
+};
+
+/// GPIO lines of the four lights, by name; an empty chip: a simulated panel.
+struct Panel {
+  std::string chip;  // "gpiochip0" or "/dev/gpiochip0"
+  std::string health, scoring, mapping, attention;
+  bool active_low = false;
+};
+
+/// The settings file, version 1. Everything but the addresses has a default. Tokens are never in it.
+struct Settings {
+  CommandPost command_post;
+  Team team;
+  Reports reports;
+  Queues queues;
+  icd::Rules rules;
+  Panel panel;
+};
+
+struct Error {
+  std::string path;  // "command_post.scoring.port"; "" for the document itself
+  std::string what;  // "expected 1 to 65535, got 99999"
+  std::string sentence() const { return path.empty() ? what : path + ": " + what; }
+};
+
+/// All errors at once, in the order of the file; an unknown key is an error that names it and the keys there
+/// are.
+std::expected<Settings, std::vector<Error>> parse(std::string_view json);
+
+}  // namespace adit::settings

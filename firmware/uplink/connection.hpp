@@ -1,0 +1,87 @@
+#pragma once
+
+#include <chrono>
+#include <cstdint>
+#include <functional>
+#include <memory>
+#include <optional>
+#include <string>
+#include <variant>
+
+#include "icd/bearer_token.hpp"
+#include "icd/chunked_bytes.hpp"
+#include "loop/loop.hpp"
+
+namespace adit::uplink {
+
+/// Where a connection goes and how.
+struct Endpoint {
+  std::string address;  // IPv4 or IPv6, numeric
+  std::uint16_t port = 0;
+  std::string interface;               // SO_BINDTODEVICE; "": not bound
+  std::uint64_t bytes_per_second = 0;  // SO_MAX_PACING_RATE; 0: not paced
+  std::chrono::milliseconds connect_within{3000};
+};
+
+struct Request {
+  std::string method;        // "GET", "POST"
+  std::string target;        // "/map/update"
+  std::string content_type;  // "" without a body
+  icd::ChunkedBytes body;
+  std::chrono::milliseconds answer_within{
+      10000};  // of silence from the peer, reading neither our bytes nor answering
+};
+
+/// A whole HTTP answer came. Its body may be anything.
+struct Answered {
+  int status = 0;
+  std::string content_type;
+  std::string body;
+  std::optional<std::chrono::seconds> retry_after;
+};
+/// No byte of the request was given to the kernel: it is safe to send it again.
+struct NeverSent {
+  std::string why;  // "connecting to 10.100.1.200:8000: Connection refused"
+};
+/// Bytes may have left and no whole answer came: nobody here knows what became of it.
+struct InDoubt {
+  std::string why;
+};
+using Outcome = std::variant<Answered, NeverSent, InDoubt>;
+
+/// One HTTP/1.1 connection (RFC 9112) to the Command Post, one request at a time, kept alive between
+/// requests.
+///
+/// It connects ahead of need (warm()), gives up an idle connection before the Command Post does, drops the
+/// connection after any answer of 400 or more (the measured server promises keep-alive and closes), after an
+/// answer that says close and after anything odd, and never sends `Expect`.
+class Connection {
+ public:
+  static constexpr std::chrono::seconds kIdle{25};         // a server closes after 60
+  static constexpr std::size_t kLongestAnswer = 1u << 20;  // bytes; more is InDoubt
+
+  Connection(loop::Loop& loop, Endpoint endpoint, icd::BearerToken token);
+  ~Connection();
+  Connection(const Connection&) = delete;
+  Connection& operator=(const Connection&) = delete;
+
+  /// Connects now and again after each close, so that a request finds the connection open.
+  void keep_warm();
+
+  /// Requires !busy(). `done` is called once, from the loop, never from within send().
+  void send(Request request, std::function<void(Outcome)> done);
+  bool busy() const;
+  bool connected() const;
+  /// Why the last connecting failed, or "".
+  const std::string& trouble() const;
+
+  /// Bytes of the request that the kernel has taken so far, and all of them: for progress.
+  std::size_t sent_bytes() const;
+  std::size_t total_bytes() const;
+
+ private:
+  class Impl;
+  std::shared_ptr<Impl> impl_;
+};
+
+}  // namespace adit::uplink

@@ -1,0 +1,10 @@
+# The libraries of Debian that the rooms link, each an imported target; which room may use which is said in its CMakeLists.txt.
+find_package(PkgConfig REQUIRED)
+find_package(ZLIB REQUIRED)
+find_package(Threads REQUIRED)
+pkg_check_modules(microhttpd REQUIRED IMPORTED_TARGET libmicrohttpd>=0.9.75)
+pkg_check_modules(cjson REQUIRED IMPORTED_TARGET libcjson)
+pkg_check_modules(cbor REQUIRED IMPORTED_TARGET libcbor)
+pkg_check_modules(systemd REQUIRED IMPORTED_TARGET libsystemd)
+pkg_check_modules(gpiod REQUIRED IMPORTED_TARGET libgpiod)
+pkg_check_modules(sqlite3 REQUIRED IMPORTED_TARGET sqlite3)

@@ -1,0 +1,18 @@
+# What every target is compiled with: warnings are errors, and the hardening that Debian's own packages have.
+add_library(adit_options INTERFACE)
+target_compile_options(adit_options INTERFACE
+  -Wall -Wextra -Wpedantic -Wshadow -Wconversion -Wno-sign-conversion -Wnon-virtual-dtor
+  -Woverloaded-virtual -Wimplicit-fallthrough -Werror
+  -fstack-protector-strong -fstack-clash-protection)
+target_compile_definitions(adit_options INTERFACE
+  _GLIBCXX_ASSERTIONS $<$<AND:$<CONFIG:Release>,$<NOT:$<BOOL:${ADIT_SANITIZE}>>>:_FORTIFY_SOURCE=2>)
+target_link_options(adit_options INTERFACE -Wl,-z,relro,-z,now -Wl,--gc-sections)
+set(CMAKE_POSITION_INDEPENDENT_CODE ON)
+include(CheckPIESupported)
+check_pie_supported()
+
+set(ADIT_SANITIZE "" CACHE STRING "Sanitizers to build with, as -fsanitize takes them (address,undefined or thread)")
+if(ADIT_SANITIZE)
+  target_compile_options(adit_options INTERFACE -fsanitize=${ADIT_SANITIZE} -fno-sanitize-recover=all -fno-omit-frame-pointer)
+  target_link_options(adit_options INTERFACE -fsanitize=${ADIT_SANITIZE})
+endif()

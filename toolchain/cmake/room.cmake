@@ -1,0 +1,31 @@
+# A room: one folder of firmware/, one static library adit_<name>, one namespace adit::<name>.
+#   adit_room(codec SOURCES json.cpp cbor.cpp ROOMS icd LIBRARIES PkgConfig::cbor)
+# ROOMS are the rooms whose headers it includes, all of them named before it in firmware/CMakeLists.txt.
+function(adit_room name)
+  cmake_parse_arguments(ROOM "" "" "SOURCES;ROOMS;LIBRARIES" ${ARGN})
+  list(TRANSFORM ROOM_ROOMS PREPEND adit_)
+  if(ROOM_SOURCES)
+    add_library(adit_${name} STATIC ${ROOM_SOURCES})
+    set(scope PUBLIC)
+    target_link_libraries(adit_${name} PRIVATE adit_options)
+  else()
+    add_library(adit_${name} INTERFACE)
+    set(scope INTERFACE)
+  endif()
+  target_include_directories(adit_${name} ${scope} ${PROJECT_SOURCE_DIR}/firmware)
+  target_link_libraries(adit_${name} ${scope} ${ROOM_ROOMS} ${ROOM_LIBRARIES})
+endfunction()
+
+# The tests of a room: tests/<name>/*.cpp become the one program adit_<name>_test.
+#   adit_room_test(codec SOURCES json_test.cpp LIBRARIES nlohmann_json::nlohmann_json)
+function(adit_room_test name)
+  cmake_parse_arguments(TEST "" "" "SOURCES;ROOMS;LIBRARIES" ${ARGN})
+  list(TRANSFORM TEST_ROOMS PREPEND adit_)
+  add_executable(adit_${name}_test ${TEST_SOURCES})
+  target_include_directories(adit_${name}_test PRIVATE ${PROJECT_SOURCE_DIR}/tests)
+  target_compile_definitions(adit_${name}_test PRIVATE ADIT_SOURCE_DIR="${PROJECT_SOURCE_DIR}")
+  target_link_libraries(adit_${name}_test PRIVATE
+    adit_options adit_${name} ${TEST_ROOMS} ${TEST_LIBRARIES} GTest::gmock GTest::gtest_main)
+  gtest_discover_tests(adit_${name}_test TEST_PREFIX "${name}: " DISCOVERY_TIMEOUT 60
+    PROPERTIES TIMEOUT 120 LABELS ${name})
+endfunction()

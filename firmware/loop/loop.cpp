@@ -1,0 +1,222 @@
+#include "loop/loop.hpp"
+
+#include <sys/epoll.h>
+#include <sys/eventfd.h>
+#include <systemd/sd-event.h>
+
+#include <algorithm>
+#include <csignal>
+#include <cstdio>
+#include <cstdlib>
+#include <cstring>
+#include <mutex>
+#include <utility>
+#include <vector>
+
+#include "loop/file_descriptor.hpp"
+
+namespace adit::loop {
+namespace {
+
+/// Timers fire at most this late. sd-event's own default, 250 ms, is for saving batteries.
+constexpr std::uint64_t kAccuracyUsec = 1000;
+constexpr std::uint64_t kNever = UINT64_MAX;
+
+/// Without its loop the process is nothing: where sd-event fails (out of memory, or a descriptor that cannot
+/// be watched) the process ends, and systemd starts it anew.
+void must(int result, const char* doing) {
+  if (result >= 0) return;
+  std::fprintf(stderr, "event loop: %s: %s\n", doing, std::strerror(-result));
+  std::abort();
+}
+
+/// Rounded up, so that a timer never fires early.
+std::uint64_t to_usec(Instant when) {
+  const auto since_boot = std::chrono::ceil<std::chrono::microseconds>(when.time_since_epoch()).count();
+  return static_cast<std::uint64_t>(std::max<std::int64_t>(since_boot, 0));
+}
+
+}  // namespace
+
+struct Source::State : std::enable_shared_from_this<Source::State> {
+  std::function<void(std::uint32_t)> call;
+  sd_event_source* source = nullptr;
+
+  State() = default;
+  State(const State&) = delete;
+  State& operator=(const State&) = delete;
+  ~State() { end(); }
+
+  void end() { source = sd_event_source_disable_unref(source); }
+
+  /// Holds the callback while it runs, for it may destroy its own Source.
+  static int run(void* userdata, std::uint32_t events) noexcept {
+    const auto alive = static_cast<State*>(userdata)->shared_from_this();
+    alive->call(events);
+    return 0;
+  }
+  static int ready(sd_event_source*, int, std::uint32_t events, void* userdata) {
+    return run(userdata, events);
+  }
+  static int expired(sd_event_source*, std::uint64_t, void* userdata) { return run(userdata, 0); }
+  static int came(sd_event_source*, const signalfd_siginfo*, void* userdata) { return run(userdata, 0); }
+};
+
+Source::Source(std::shared_ptr<State> state) : state_(std::move(state)) {}
+Source::Source(Source&&) noexcept = default;
+
+Source& Source::operator=(Source&& other) noexcept {
+  Source ended(std::move(other));
+  std::swap(state_, ended.state_);
+  return *this;
+}
+
+Source::~Source() {
+  if (state_) state_->end();
+}
+
+void Source::wait_for(std::uint32_t events) {
+  must(sd_event_source_set_io_events(state_->source, events), "wait_for");
+  must(sd_event_source_set_enabled(state_->source, events == 0 ? SD_EVENT_OFF : SD_EVENT_ON), "wait_for");
+}
+
+void Source::call_at(Instant when) {
+  must(sd_event_source_set_time(state_->source, to_usec(when)), "call_at");
+  must(sd_event_source_set_enabled(state_->source, SD_EVENT_ONESHOT), "call_at");
+}
+
+void Source::cancel() {
+  must(sd_event_source_set_enabled(state_->source, SD_EVENT_OFF), "cancel");
+}
+
+class Loop::Impl {
+ public:
+  Impl() : wake_(::eventfd(0, EFD_CLOEXEC | EFD_NONBLOCK)) {
+    must(wake_ ? 0 : -errno, "eventfd");
+    must(sd_event_new(&event_), "sd_event_new");
+    must(sd_event_add_io(event_, nullptr, wake_.get(), EPOLLIN, &Impl::woken, this), "watching posts");
+  }
+  ~Impl() { sd_event_unref(event_); }
+  Impl(const Impl&) = delete;
+  Impl& operator=(const Impl&) = delete;
+
+  sd_event* event() const { return event_; }
+  double stamp_at(Instant instant) const {
+    return stamp_at_start_ + std::chrono::duration<double>(instant - started_).count();
+  }
+
+  void post(std::function<void()> task) {
+    bool first = false;
+    {
+      const std::lock_guard lock(mutex_);
+      first = posted_.empty();
+      posted_.push_back(std::move(task));
+    }
+    if (first) ::eventfd_write(wake_.get(), 1);  // cannot fail: the counter is far from its end
+  }
+
+  void run() {
+    while (!stopping_) turn(kNever);
+    stopping_ = false;
+  }
+  void stop() { stopping_ = true; }
+
+  void turn(std::uint64_t most_usec) {
+    const int result = sd_event_run(event_, most_usec);
+    if (result != -EINTR) must(result, "sd_event_run");
+  }
+
+ private:
+  static int woken(sd_event_source*, int fd, std::uint32_t, void* userdata) {
+    eventfd_t count = 0;
+    ::eventfd_read(fd, &count);
+    static_cast<Impl*>(userdata)->run_posted();
+    return 0;
+  }
+
+  void run_posted() noexcept {
+    std::vector<std::function<void()>> tasks;
+    {
+      const std::lock_guard lock(mutex_);
+      tasks.swap(posted_);
+    }
+    for (auto& task : tasks) {
+      task();
+      task = nullptr;  // what it holds is freed before the next one runs
+    }
+  }
+
+  const Instant started_ = std::chrono::steady_clock::now();
+  const double stamp_at_start_ =
+      std::chrono::duration<double>(std::chrono::system_clock::now().time_since_epoch()).count();
+  FileDescriptor wake_;
+  sd_event* event_ = nullptr;
+  bool stopping_ = false;
+  std::mutex mutex_;
+  std::vector<std::function<void()>> posted_;
+};
+
+Loop::Loop() : impl_(std::make_unique<Impl>()) {}
+Loop::~Loop() = default;
+
+Instant Loop::now() const {
+  return std::chrono::steady_clock::now();
+}
+double Loop::stamp_now() const {
+  return impl_->stamp_at(now());
+}
+
+Source Loop::watch(int fd, std::uint32_t events, std::function<void(std::uint32_t)> ready) {
+  auto state = std::make_shared<Source::State>();
+  state->call = std::move(ready);
+  must(sd_event_add_io(impl_->event(), &state->source, fd, events, &Source::State::ready, state.get()),
+       "watching a descriptor");
+  if (events == 0) must(sd_event_source_set_enabled(state->source, SD_EVENT_OFF), "watching a descriptor");
+  return Source(std::move(state));
+}
+
+Source Loop::timer(std::function<void()> expired) {
+  auto state = std::make_shared<Source::State>();
+  state->call = [call = std::move(expired)](std::uint32_t) { call(); };
+  must(sd_event_add_time(impl_->event(), &state->source, CLOCK_MONOTONIC, kNever, kAccuracyUsec,
+                         &Source::State::expired, state.get()),
+       "making a timer");
+  must(sd_event_source_set_enabled(state->source, SD_EVENT_OFF), "making a timer");
+  return Source(std::move(state));
+}
+
+Source Loop::signal(int number, std::function<void()> came) {
+  sigset_t set;
+  sigemptyset(&set);
+  sigaddset(&set, number);
+  must(-pthread_sigmask(SIG_BLOCK, &set, nullptr), "blocking a signal");
+  auto state = std::make_shared<Source::State>();
+  state->call = [call = std::move(came)](std::uint32_t) { call(); };
+  must(sd_event_add_signal(impl_->event(), &state->source, number, &Source::State::came, state.get()),
+       "watching a signal");
+  return Source(std::move(state));
+}
+
+void Loop::post(std::function<void()> task) {
+  impl_->post(std::move(task));
+}
+
+bool Loop::feed_watchdog() {
+  const int result = sd_event_set_watchdog(impl_->event(), 1);
+  must(result, "feeding the watchdog");
+  return result > 0;
+}
+
+void Loop::run() {
+  impl_->run();
+}
+void Loop::stop() {
+  impl_->stop();
+}
+
+void Loop::turn(Duration most) {
+  const auto usec = std::chrono::ceil<std::chrono::microseconds>(most).count();
+  impl_->turn(static_cast<std::uint64_t>(std::max<std::int64_t>(usec, 0)));
+}
+
+}  // namespace adit::loop

@@ -5,15 +5,13 @@
 #include <functional>
 #include <memory>
 
-struct sd_event;
-struct sd_event_source;
-
 namespace adit::loop {
 
 using Instant = std::chrono::steady_clock::time_point;
 using Duration = std::chrono::nanoseconds;
 
-/// A thing the loop watches; destroying it ends the watch, also from within its own callback.
+/// A thing the loop watches; destroying it ends the watch, also from within its own callback. A callback may
+/// not throw. For watch(): destroy the Source before closing its file descriptor.
 class Source {
  public:
   Source() = default;
@@ -21,7 +19,7 @@ class Source {
   Source& operator=(Source&&) noexcept;
   ~Source();
 
-  /// For watch(): the EPOLL* events to wait for from now on.
+  /// For watch(): the EPOLL* events to wait for from now on; 0: none at all, not even EPOLLHUP.
   void wait_for(std::uint32_t events);
   /// For timer(): calls once at `when`; an earlier setting is forgotten.
   void call_at(Instant when);
@@ -32,8 +30,8 @@ class Source {
  private:
   friend class Loop;
   struct State;
-  explicit Source(std::unique_ptr<State> state);
-  std::unique_ptr<State> state_;
+  explicit Source(std::shared_ptr<State> state);
+  std::shared_ptr<State> state_;  // shared with the callback while that runs
 };
 
 /// The one event loop (sd-event). Everything but post() is for the loop's own thread.
@@ -56,13 +54,14 @@ class Loop {
   Source timer(std::function<void()> expired);
   /// Blocks the signal for the process (call before starting threads) and calls `came` for it.
   Source signal(int number, std::function<void()> came);
-  /// Runs `task` on the loop's thread, soon. Thread-safe.
+  /// Runs `task` on the loop's thread, soon, in the order of posting. Thread-safe. What a task posts runs in
+  /// a later turn, so that tasks never keep the loop from its sockets.
   void post(std::function<void()> task);
 
   /// Feeds systemd's watchdog from this loop where $WATCHDOG_USEC asks for it; true where it does.
   bool feed_watchdog();
 
-  /// Until stop().
+  /// Until stop(), which may also have been called before.
   void run();
   void stop();
   /// One turn, waiting at most `most`; for tests.

@@ -1,0 +1,264 @@
+#include "loop/loop.hpp"
+
+#include <gtest/gtest.h>
+#include <sys/epoll.h>
+#include <sys/socket.h>
+#include <sys/un.h>
+#include <unistd.h>
+
+#include <csignal>
+#include <cstddef>
+#include <cstdlib>
+#include <optional>
+#include <string>
+#include <thread>
+#include <vector>
+
+#include "loop/file_descriptor.hpp"
+
+namespace adit::loop {
+namespace {
+
+using std::chrono::milliseconds;
+
+struct SocketPair {
+  FileDescriptor ours, theirs;
+  SocketPair() {
+    int fds[2] = {-1, -1};
+    EXPECT_EQ(::socketpair(AF_UNIX, SOCK_STREAM | SOCK_NONBLOCK, 0, fds), 0);
+    ours = FileDescriptor(fds[0]);
+    theirs = FileDescriptor(fds[1]);
+  }
+  void tell() const { EXPECT_EQ(::write(theirs.get(), "x", 1), 1); }
+};
+
+/// Turns the loop until `done`, at most five seconds.
+template <class Done>
+bool turn_until(Loop& loop, Done done) {
+  const Instant end = loop.now() + std::chrono::seconds(5);
+  while (!done() && loop.now() < end) loop.turn(milliseconds(10));
+  return done();
+}
+
+TEST(Loop, CallsAWatchWhenBytesCome) {
+  Loop loop;
+  const SocketPair pair;
+  std::uint32_t events = 0;
+  const Source source = loop.watch(pair.ours.get(), EPOLLIN, [&](std::uint32_t came) { events = came; });
+  loop.turn(milliseconds(0));
+  EXPECT_EQ(events, 0u);
+  pair.tell();
+  EXPECT_TRUE(turn_until(loop, [&] { return events == EPOLLIN; }));
+}
+
+TEST(Loop, WaitsForTheEventsLastAskedFor) {
+  Loop loop;
+  const SocketPair pair;
+  std::uint32_t events = 0;
+  Source source = loop.watch(pair.ours.get(), EPOLLIN, [&](std::uint32_t came) { events = came; });
+  source.wait_for(EPOLLOUT);
+  EXPECT_TRUE(turn_until(loop, [&] { return events == EPOLLOUT; }));
+}
+
+TEST(Loop, ReportsNotEvenAHangUpWhereNothingIsWaitedFor) {
+  Loop loop;
+  SocketPair pair;
+  int calls = 0;
+  Source source = loop.watch(pair.ours.get(), 0, [&](std::uint32_t) { ++calls; });
+  pair.theirs = FileDescriptor();
+  for (int i = 0; i < 5; ++i) loop.turn(milliseconds(1));
+  EXPECT_EQ(calls, 0);
+  source.wait_for(EPOLLIN);
+  EXPECT_TRUE(turn_until(loop, [&] { return calls > 0; }));
+}
+
+TEST(Loop, LetsACallbackDestroyItsOwnSource) {
+  Loop loop;
+  const SocketPair pair;
+  std::optional<Source> source;
+  int calls = 0;
+  source = loop.watch(pair.ours.get(), EPOLLIN, [&, kept = std::vector<int>(100, 7)](std::uint32_t) {
+    source.reset();
+    calls += kept.at(99);  // the callback itself still lives
+  });
+  pair.tell();
+  for (int i = 0; i < 5; ++i) loop.turn(milliseconds(1));
+  EXPECT_EQ(calls, 7);
+}
+
+TEST(Loop, LetsOneCallbackDestroyAnotherThatIsReadyToo) {
+  Loop loop;
+  const SocketPair first, second;
+  std::optional<Source> a, b;
+  int calls = 0;
+  a = loop.watch(first.ours.get(), EPOLLIN, [&](std::uint32_t) { ++calls, a.reset(), b.reset(); });
+  b = loop.watch(second.ours.get(), EPOLLIN, [&](std::uint32_t) { ++calls, a.reset(), b.reset(); });
+  first.tell();
+  second.tell();
+  for (int i = 0; i < 5; ++i) loop.turn(milliseconds(1));
+  EXPECT_EQ(calls, 1);
+}
+
+TEST(Loop, LetsASourceOutliveIt) {
+  std::optional<Source> source;
+  const SocketPair pair;
+  {
+    Loop loop;
+    source = loop.watch(pair.ours.get(), EPOLLIN, [](std::uint32_t) {});
+  }
+  source.reset();
+}
+
+TEST(Loop, EndsTheOldWatchWhenASourceIsAssigned) {
+  Loop loop;
+  const SocketPair pair;
+  int old_calls = 0, new_calls = 0;
+  Source source = loop.watch(pair.ours.get(), EPOLLIN, [&](std::uint32_t) { ++old_calls; });
+  source = Source();
+  EXPECT_FALSE(source);
+  source = loop.watch(pair.ours.get(), EPOLLIN, [&](std::uint32_t) { ++new_calls; });
+  pair.tell();
+  EXPECT_TRUE(turn_until(loop, [&] { return new_calls > 0; }));
+  EXPECT_EQ(old_calls, 0);
+}
+
+TEST(Loop, FiresATimerOnceAndNeverEarly) {
+  Loop loop;
+  int calls = 0;
+  const Instant when = loop.now() + milliseconds(20);
+  Instant fired;
+  Source timer = loop.timer([&] { ++calls, fired = loop.now(); });
+  loop.turn(milliseconds(1));
+  EXPECT_EQ(calls, 0) << "a timer that was not set fired";
+  timer.call_at(when);
+  EXPECT_TRUE(turn_until(loop, [&] { return calls > 0; }));
+  EXPECT_GE(fired, when);
+  loop.turn(milliseconds(5));
+  EXPECT_EQ(calls, 1);
+}
+
+TEST(Loop, KeepsOnlyTheLastSettingOfATimer) {
+  Loop loop;
+  int calls = 0;
+  Source timer = loop.timer([&] { ++calls; });
+  timer.call_at(loop.now());
+  timer.call_at(loop.now() + std::chrono::hours(1));
+  loop.turn(milliseconds(10));
+  EXPECT_EQ(calls, 0);
+  timer.call_at(loop.now());
+  timer.cancel();
+  loop.turn(milliseconds(10));
+  EXPECT_EQ(calls, 0);
+  timer.call_at(Instant());  // the distant past
+  EXPECT_TRUE(turn_until(loop, [&] { return calls == 1; }));
+}
+
+TEST(Loop, LetsATimerSetItselfAgain) {
+  Loop loop;
+  int calls = 0;
+  Source timer;
+  timer = loop.timer([&] {
+    if (++calls < 3) timer.call_at(loop.now() + milliseconds(1));
+  });
+  timer.call_at(loop.now());
+  EXPECT_TRUE(turn_until(loop, [&] { return calls == 3; }));
+}
+
+TEST(Loop, RunsPostedTasksInOrder) {
+  Loop loop;
+  std::vector<int> order;
+  for (int i = 0; i < 5; ++i) loop.post([&order, i] { order.push_back(i); });
+  EXPECT_TRUE(order.empty());
+  loop.turn(milliseconds(0));
+  EXPECT_EQ(order, (std::vector{0, 1, 2, 3, 4}));
+}
+
+TEST(Loop, ServesSocketsWhileTasksPostTasksForEver) {
+  Loop loop;
+  const SocketPair pair;
+  bool read = false;
+  const Source source = loop.watch(pair.ours.get(), EPOLLIN, [&](std::uint32_t) { read = true; });
+  std::function<void()> again = [&] { loop.post(again); };
+  loop.post(again);
+  pair.tell();
+  for (int i = 0; i < 5; ++i) loop.turn(milliseconds(10));
+  EXPECT_TRUE(read);
+}
+
+TEST(Loop, TakesTasksFromManyThreads) {
+  Loop loop;
+  constexpr int kThreads = 4, kTasks = 2000;
+  int ran = 0;  // touched by the loop's thread alone
+  std::vector<std::thread> threads;
+  for (int t = 0; t < kThreads; ++t)
+    threads.emplace_back([&] {
+      for (int i = 0; i < kTasks; ++i)
+        loop.post([&] {
+          if (++ran == kThreads * kTasks) loop.stop();
+        });
+    });
+  loop.run();
+  for (auto& thread : threads) thread.join();
+  EXPECT_EQ(ran, kThreads * kTasks);
+}
+
+TEST(Loop, ReturnsFromRunAtOnceWhenItWasStoppedBefore) {
+  Loop loop;
+  loop.stop();
+  loop.run();
+  bool ran = false;
+  loop.post([&] { ran = true, loop.stop(); });
+  loop.run();  // and can be run again
+  EXPECT_TRUE(ran);
+}
+
+TEST(Loop, TurnsASignalIntoACall) {
+  Loop loop;
+  int calls = 0;
+  const Source source = loop.signal(SIGUSR1, [&] { ++calls, loop.stop(); });
+  ::kill(::getpid(), SIGUSR1);
+  loop.run();
+  EXPECT_EQ(calls, 1);
+}
+
+TEST(Loop, CarriesTheStampOnWithTheMonotonicClock) {
+  const Loop loop;
+  const double wall =
+      std::chrono::duration<double>(std::chrono::system_clock::now().time_since_epoch()).count();
+  const double first = loop.stamp_now();
+  EXPECT_NEAR(first, wall, 1.0);
+  std::this_thread::sleep_for(milliseconds(2));
+  EXPECT_GE(loop.stamp_now() - first, 0.002);
+}
+
+TEST(Loop, FeedsTheWatchdogOnlyWhereSystemdAsksForIt) {
+  ::unsetenv("WATCHDOG_USEC");
+  EXPECT_FALSE(Loop().feed_watchdog());
+
+  // systemd's end of $NOTIFY_SOCKET, in the abstract namespace
+  const std::string name = "adit-loop-test-" + std::to_string(::getpid());
+  const FileDescriptor listener(::socket(AF_UNIX, SOCK_DGRAM | SOCK_NONBLOCK, 0));
+  sockaddr_un address{};
+  address.sun_family = AF_UNIX;
+  name.copy(address.sun_path + 1, name.size());
+  const auto size = static_cast<socklen_t>(offsetof(sockaddr_un, sun_path) + 1 + name.size());
+  ASSERT_EQ(::bind(listener.get(), reinterpret_cast<const sockaddr*>(&address), size), 0);
+  ::setenv("NOTIFY_SOCKET", ("@" + name).c_str(), 1);
+  ::setenv("WATCHDOG_USEC", "40000", 1);
+  ::setenv("WATCHDOG_PID", std::to_string(::getpid()).c_str(), 1);
+
+  Loop loop;
+  EXPECT_TRUE(loop.feed_watchdog());
+  std::string told;
+  EXPECT_TRUE(turn_until(loop, [&] {
+    char text[64];
+    const auto got = ::recv(listener.get(), text, sizeof text, 0);
+    if (got > 0) told.assign(text, static_cast<std::size_t>(got));
+    return !told.empty();
+  }));
+  EXPECT_EQ(told, "WATCHDOG=1");
+  for (const char* variable : {"NOTIFY_SOCKET", "WATCHDOG_USEC", "WATCHDOG_PID"}) ::unsetenv(variable);
+}
+
+}  // namespace
+}  // namespace adit::loop

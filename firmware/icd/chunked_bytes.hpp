@@ -20,17 +20,25 @@ class ChunkedBytes {
   using Chunk = std::shared_ptr<const std::vector<std::uint8_t>>;
 
   ChunkedBytes() = default;
+  ChunkedBytes(const ChunkedBytes&) = default;
+  /// Leaves `other` empty.
+  ChunkedBytes(ChunkedBytes&& other) noexcept { swap(other); }
+  ChunkedBytes& operator=(ChunkedBytes other) noexcept {
+    swap(other);
+    return *this;
+  }
+  ~ChunkedBytes() = default;
   explicit ChunkedBytes(std::span<const std::uint8_t> bytes) { append(bytes); }
 
   /// Copies `bytes` to the end.
   void append(std::span<const std::uint8_t> bytes);
   /// Shares the chunks of `other` at the end.
   void append(const ChunkedBytes& other);
-  /// Takes a whole chunk over, without a copy.
+  /// Takes a whole chunk over, without a copy where it is no larger than kChunk.
   void append(std::vector<std::uint8_t>&& chunk);
 
   /// All bytes, in order; no chunk is empty.
-  const std::vector<Chunk>& chunks() const { return chunks_; }
+  std::span<const Chunk> chunks() const { return std::span(chunks_).subspan(first_); }
   std::size_t size() const { return size_; }
   bool empty() const { return size_ == 0; }
 
@@ -45,7 +53,11 @@ class ChunkedBytes {
   friend bool operator==(const ChunkedBytes& a, const ChunkedBytes& b);
 
  private:
+  void swap(ChunkedBytes& other) noexcept;
+  std::vector<std::uint8_t>& open_chunk();
+
   std::vector<Chunk> chunks_;
+  std::size_t first_ = 0;                            // of chunks_ that has not been popped
   std::shared_ptr<std::vector<std::uint8_t>> open_;  // the last chunk, while it may still grow
   std::size_t size_ = 0;
 };

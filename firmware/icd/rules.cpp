@@ -1,0 +1,124 @@
+#include "icd/rules.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <string>
+
+#include "icd/sentence.hpp"
+
+namespace adit::icd {
+namespace {
+
+Checked<void> check_side(const char* path, std::uint32_t cells) {
+  if (cells >= 1 && cells <= kMostCellsASide) return {};
+  return unprocessable(path, ": expected a whole number from 1 to ", kMostCellsASide, ", got ", cells);
+}
+
+/// ICD 6.3.2: where a field lies in its point.
+Checked<void> check_place(const FieldSchema& field, std::size_t index, std::uint32_t point_step) {
+  if (field.count < 1) return unprocessable("msg.fields[", index, "].count: expected at least 1, got 0");
+  const std::size_t size = size_of(field.datatype);
+  const std::uint64_t end = field.offset + std::uint64_t{size} * field.count;
+  if (end <= point_step) return {};
+  return unprocessable("msg.fields[", index, "].offset: expected the field to end within point_step ",
+                       point_step, ", got ", field.offset, " + ", size, " x ", field.count, " = ", end);
+}
+
+/// The index of the one field of that name.
+Checked<std::size_t> find_once(const std::vector<FieldSchema>& fields, std::string_view name) {
+  const auto count = std::ranges::count(fields, name, &FieldSchema::name);
+  if (count == 1) {
+    return static_cast<std::size_t>(std::ranges::find(fields, name, &FieldSchema::name) - fields.begin());
+  }
+  if (count == 0) return unprocessable("msg.fields: expected a field ", quoted(name), ", got none");
+  return unprocessable("msg.fields: expected one field ", quoted(name), ", got ", count);
+}
+
+/// What kills a server, or makes it drop the cloud: x, y, z not there once each, or not of one float type.
+Checked<void> check_coordinates(const std::vector<FieldSchema>& fields) {
+  static constexpr std::array<std::string_view, 3> kCoordinates = {"x", "y", "z"};
+  Datatype datatype{};
+  for (const std::string_view name : kCoordinates) {
+    const auto index = find_once(fields, name);
+    if (!index) return std::unexpected(index.error());
+    const FieldSchema& field = fields[*index];
+    const auto given = static_cast<int>(field.datatype);
+    if (field.datatype != Datatype::Float32 && field.datatype != Datatype::Float64) {
+      return unprocessable("msg.fields[", *index, "].datatype: expected 7 or 8 for ", quoted(name), ", got ",
+                           given);
+    }
+    if (name == "x") datatype = field.datatype;
+    if (field.datatype != datatype) {
+      return unprocessable("msg.fields[", *index, "].datatype: expected ", static_cast<int>(datatype),
+                           " as for \"x\", got ", given);
+    }
+    if (field.count != 1) {
+      return unprocessable("msg.fields[", *index, "].count: expected 1 for ", quoted(name), ", got ",
+                           field.count);
+    }
+  }
+  return {};
+}
+
+bool is_cell(std::uint8_t cell) {
+  return cell <= kMostOccupied || cell == kUnknownCell;
+}
+
+}  // namespace
+
+Checked<void> check(const OccupancyGrid& grid, const Rules& rules) {
+  if (!std::isfinite(grid.resolution) || grid.resolution <= 0) {
+    return unprocessable("msg.info.resolution: expected a number above 0, got ", grid.resolution);
+  }
+  if (auto checked = check_side("msg.info.width", grid.width); !checked) return checked;
+  if (auto checked = check_side("msg.info.height", grid.height); !checked) return checked;
+  const std::uint64_t cells = std::uint64_t{grid.width} * grid.height;
+  if (cells <= rules.map_bytes) return {};
+  return unprocessable("msg.info.width: expected at most ", rules.map_bytes, " cells, got ", grid.width,
+                       " x ", grid.height, " = ", cells);
+}
+
+Checked<void> check_size(const OccupancyGrid& grid, std::size_t bytes) {
+  const std::size_t cells = cells_of(grid);
+  if (bytes == cells) return {};
+  return unprocessable("msg.info.width: expected ", grid.width, " x ", grid.height, " = ", cells,
+                       " bytes of data, got ", bytes);
+}
+
+Checked<void> check_cells(std::span<const std::uint8_t> cells, std::size_t first) {
+  unsigned bad = 0;  // the loop without a way out of it is the one that compilers vectorize
+  for (const std::uint8_t cell : cells) bad |= is_cell(cell) ? 0U : 1U;
+  if (bad == 0) return {};
+  const auto found = std::ranges::find_if_not(cells, is_cell);
+  const std::size_t index = first + static_cast<std::size_t>(found - cells.begin());
+  return unprocessable("msg.data[", index, "]: expected 0 to 100 or 255, got ", +*found);
+}
+
+Checked<void> check(const PointCloud2& cloud, const Rules& /*rules*/) {
+  if (cloud.point_step < 1 || cloud.point_step > kLargestPoint) {
+    return unprocessable("msg.point_step: expected a whole number from 1 to ", kLargestPoint, ", got ",
+                         cloud.point_step);
+  }
+  if (cloud.fields.empty()) return unprocessable("msg.fields: expected at least x, y and z, got none");
+  if (cloud.fields.size() > kMostFields) {
+    return unprocessable("msg.fields: expected at most ", kMostFields, " fields, got ", cloud.fields.size());
+  }
+  for (std::size_t i = 0; i < cloud.fields.size(); ++i) {
+    if (auto checked = check_place(cloud.fields[i], i, cloud.point_step); !checked) return checked;
+  }
+  return check_coordinates(cloud.fields);
+}
+
+Checked<void> check_size(const PointCloud2& cloud, std::size_t bytes) {
+  if (bytes % cloud.point_step == 0) return {};
+  return unprocessable("msg.data: expected a multiple of point_step ", cloud.point_step, ", got ", bytes,
+                       " bytes");
+}
+
+Checked<void> check_frame_id(std::string_view frame_id, std::string_view path, const Rules& rules) {
+  if (frame_id == kFrame || rules.rewrite_frame_id) return {};
+  return unprocessable(path, ": expected \"", kFrame, "\", got ", quoted(frame_id));
+}
+
+}  // namespace adit::icd

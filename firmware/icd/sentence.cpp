@@ -1,0 +1,40 @@
+#include "icd/sentence.hpp"
+
+#include <array>
+#include <charconv>
+#include <cstdint>
+
+namespace adit::icd {
+namespace {
+
+constexpr std::size_t kMostQuoted = 40;
+
+bool continues_a_character(char byte) {
+  return (static_cast<std::uint8_t>(byte) & 0xc0U) == 0x80U;
+}
+
+}  // namespace
+
+std::string number_text(double number) {
+  std::array<char, 32> digits{};
+  const auto end = std::to_chars(digits.data(), digits.data() + digits.size(), number).ptr;
+  return {digits.data(), end};
+}
+
+std::string quoted(std::string_view text) {
+  const bool cut = text.size() > kMostQuoted;
+  if (cut) {
+    std::size_t end = kMostQuoted;
+    while (end > 0 && continues_a_character(text[end])) --end;  // never half a UTF-8 character
+    text = text.substr(0, end);
+  }
+  std::string quote = "\"";
+  for (const char byte : text) {
+    const auto code = static_cast<std::uint8_t>(byte);
+    quote += code < 0x20 || code == 0x7f ? '?' : byte;
+  }
+  quote += cut ? "...\"" : "\"";
+  return quote;
+}
+
+}  // namespace adit::icd

@@ -12,8 +12,10 @@ enum class Level : int { Error = 3, Warning = 4, Notice = 5, Info = 6, Debug = 7
 /// A field of a log record: name in lower_case ("report", "status"), value as text. Never a token.
 using Field = std::pair<std::string_view, std::string>;
 
-/// The one logger. Under journald (its stream is stderr, $JOURNAL_STREAM) a structured record, each field as
-/// ADIT_<NAME>; else one plain line on stderr: time, level, message, fields.
+/// The one logger. Thread-safe. Message and fields make one line, `message name=value ...`, with everything
+/// escaped that could forge another. Under journald (stderr is the stream that $JOURNAL_STREAM names) each
+/// field is also recorded by itself, unescaped, as ADIT_<NAME>; elsewhere the line goes to stderr after the
+/// time and the level.
 void log(Level level, std::string_view message, std::initializer_list<Field> fields = {});
 
 /// Records less important than this are left out; Info at first.

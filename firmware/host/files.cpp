@@ -1,0 +1,84 @@
+#include "host/files.hpp"
+
+#include <fcntl.h>
+#include <unistd.h>
+
+#include <cerrno>
+#include <system_error>
+
+#include "host/service.hpp"
+#include "loop/file_descriptor.hpp"
+
+namespace adit::host {
+namespace {
+
+using loop::FileDescriptor;
+
+bool write_all(int fd, std::string_view text) {
+  while (!text.empty()) {
+    const ssize_t count = write(fd, text.data(), text.size());
+    if (count < 0 && errno == EINTR) continue;
+    if (count < 0) return false;
+    text.remove_prefix(static_cast<std::size_t>(count));
+  }
+  return true;
+}
+
+std::string folder_of(const std::string& path) {
+  const auto slash = path.rfind('/');
+  if (slash == std::string::npos) return ".";
+  return slash == 0 ? "/" : path.substr(0, slash);
+}
+
+/// A rename outlives a power cut only once its folder is on the disk.
+bool sync_folder(const std::string& path) {
+  const FileDescriptor folder(open(folder_of(path).c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC));
+  return folder && fsync(folder.get()) == 0;
+}
+
+bool fill(int fd, const std::string& text, int mode) {
+  return fchmod(fd, static_cast<mode_t>(mode)) == 0 && write_all(fd, text) && fsync(fd) == 0;
+}
+
+}  // namespace
+
+std::string trouble(const std::string& path, int error) {
+  return path + ": " + std::system_category().message(error);
+}
+
+std::expected<File, int> slurp(const std::string& path) {
+  const FileDescriptor fd(open(path.c_str(), O_RDONLY | O_CLOEXEC));
+  if (!fd) return std::unexpected(errno);
+  File file{};
+  if (fstat(fd.get(), &file.status) != 0) return std::unexpected(errno);
+  char buffer[16384];
+  while (true) {
+    const ssize_t count = read(fd.get(), buffer, sizeof buffer);
+    if (count < 0 && errno == EINTR) continue;
+    if (count < 0) return std::unexpected(errno);
+    if (count == 0) return file;
+    file.text.append(buffer, static_cast<std::size_t>(count));
+    if (file.text.size() > kLargestFile) return std::unexpected(EFBIG);
+  }
+}
+
+std::expected<std::string, std::string> read_file(const std::string& path) {
+  auto file = slurp(path);
+  if (!file) return std::unexpected(trouble(path, file.error()));
+  return std::move(file->text);
+}
+
+std::expected<void, std::string> write_file(const std::string& path, const std::string& text, int mode) {
+  std::string temporary = path + ".XXXXXX";
+  const FileDescriptor fd(mkostemp(temporary.data(), O_CLOEXEC));
+  if (!fd) return std::unexpected(trouble(path, errno));
+  if (!fill(fd.get(), text, mode) || rename(temporary.c_str(), path.c_str()) != 0) {
+    const int error = errno;
+    unlink(temporary.c_str());
+    return std::unexpected(trouble(path, error));
+  }
+  if (!sync_folder(path)) return std::unexpected(trouble(folder_of(path), errno));
+  return {};
+}
+
+}  // namespace adit::host

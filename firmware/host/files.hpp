@@ -1,0 +1,24 @@
+#pragma once
+
+#include <sys/stat.h>
+
+#include <cstddef>
+#include <expected>
+#include <string>
+
+namespace adit::host {
+
+inline constexpr std::size_t kLargestFile = 1u << 20;
+
+struct File {
+  std::string text;
+  struct stat status;  // of the very file that was read
+};
+
+/// The text, or the errno; EFBIG above kLargestFile.
+std::expected<File, int> slurp(const std::string& path);
+
+/// "PATH: No such file or directory"
+std::string trouble(const std::string& path, int error);
+
+}  // namespace adit::host

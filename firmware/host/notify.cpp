@@ -1,0 +1,28 @@
+#include <systemd/sd-daemon.h>
+
+#include "host/record.hpp"
+#include "host/service.hpp"
+
+namespace adit::host {
+namespace {
+
+/// Escaped, because a line end in `status` would begin another assignment (sd_notify(3)).
+std::string assignment(const std::string& status) {
+  return "STATUS=" + escaped(status);
+}
+
+}  // namespace
+
+void notify_ready(const std::string& status) {
+  sd_notify(0, ("READY=1\n" + assignment(status)).c_str());
+}
+
+void notify_status(const std::string& status) {
+  sd_notify(0, assignment(status).c_str());
+}
+
+void notify_stopping() {
+  sd_notify(0, "STOPPING=1");
+}
+
+}  // namespace adit::host

@@ -1,0 +1,95 @@
+#include "host/record.hpp"
+
+#include <sys/stat.h>
+
+#include <cstdint>
+
+namespace adit::host {
+namespace {
+
+std::string_view name_of(Level level) {
+  switch (level) {
+    case Level::Error:
+      return "error";
+    case Level::Warning:
+      return "warning";
+    case Level::Notice:
+      return "notice";
+    case Level::Info:
+      return "info";
+    case Level::Debug:
+      return "debug";
+  }
+  return "unknown";
+}
+
+std::string quoted_where_needed(std::string_view value) {
+  if (!value.empty() && value.find_first_of(" \"=") == std::string_view::npos) return escaped(value);
+  std::string text = "\"";
+  for (const char c : escaped(value)) {
+    if (c == '"') text += '\\';
+    text += c;
+  }
+  return text + '"';
+}
+
+/// Field names of the journal are upper case letters, digits and underscores.
+std::string journal_name(std::string_view name) {
+  std::string text = "ADIT_";
+  for (const char c : name) {
+    const bool lower = c >= 'a' && c <= 'z';
+    const bool as_is = (c >= 'A' && c <= 'Z') || (c >= '0' && c <= '9');
+    text += lower ? static_cast<char>(c - 'a' + 'A') : as_is ? c : '_';
+  }
+  return text;
+}
+
+}  // namespace
+
+std::string escaped(std::string_view text) {
+  static constexpr std::string_view kDigits = "0123456789abcdef";
+  std::string safe;
+  safe.reserve(text.size());
+  for (const char c : text) {
+    const auto byte = static_cast<std::uint8_t>(c);
+    if (c == '\\') {
+      safe += "\\\\";
+    } else if (byte >= 0x20 && byte < 0x7f) {
+      safe += c;
+    } else {
+      safe += "\\x";
+      safe += kDigits[byte >> 4];
+      safe += kDigits[byte & 15];
+    }
+  }
+  return safe;
+}
+
+std::string sentence(std::string_view message, std::span<const Field> fields) {
+  std::string text = escaped(message);
+  for (const auto& [name, value] : fields) {
+    text.append(" ").append(name).append("=").append(quoted_where_needed(value));
+  }
+  return text;
+}
+
+std::string plain_line(std::string_view time, Level level, std::string_view message,
+                       std::span<const Field> fields) {
+  return std::string(time).append(" ").append(name_of(level)).append(": ").append(sentence(message, fields));
+}
+
+std::vector<std::string> journal_entry(Level level, std::string_view message, std::span<const Field> fields) {
+  std::vector<std::string> entry = {"MESSAGE=" + sentence(message, fields),
+                                    "PRIORITY=" + std::to_string(static_cast<int>(level)),
+                                    "SYSLOG_IDENTIFIER=aditd"};
+  for (const auto& [name, value] : fields) entry.push_back(journal_name(name) + "=" + value);
+  return entry;
+}
+
+bool is_journal(int fd, const char* journal_stream) {
+  struct stat file{};
+  if (journal_stream == nullptr || fstat(fd, &file) != 0) return false;
+  return std::to_string(file.st_dev) + ":" + std::to_string(file.st_ino) == journal_stream;
+}
+
+}  // namespace adit::host

@@ -1,0 +1,68 @@
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include "host/folder.hpp"
+#include "host/service.hpp"
+
+namespace adit::host {
+namespace {
+
+using testing::HasSubstr;
+
+TEST(ReadFile, GivesTheText) {
+  const Folder folder;
+  EXPECT_EQ(read_file(folder.put("a", std::string("x\0y\n", 4))).value(), std::string("x\0y\n", 4));
+  EXPECT_EQ(read_file(folder.put("empty", "")).value(), "");
+}
+
+TEST(ReadFile, NamesTheFileAndTheReason) {
+  const Folder folder;
+  EXPECT_EQ(read_file(folder / "none").error(), (folder / "none") + ": No such file or directory");
+  EXPECT_EQ(read_file(folder.path()).error(), folder.path() + ": Is a directory");
+}
+
+TEST(ReadFile, TakesAMebibyteAndNoByteMore) {
+  const Folder folder;
+  EXPECT_TRUE(read_file(folder.put("most", std::string(1u << 20, 'x'))).has_value());
+  EXPECT_THAT(read_file(folder.put("more", std::string((1u << 20) + 1, 'x'))).error(),
+              HasSubstr("too large"));
+  EXPECT_THAT(read_file("/dev/zero").error(), HasSubstr("too large"));
+}
+
+TEST(WriteFile, MakesANewFileOfTheModeAskedFor) {
+  const Folder folder;
+  ASSERT_TRUE(write_file(folder / "new", "text", 0640).has_value());
+  EXPECT_EQ(read_file(folder / "new").value(), "text");
+  struct stat status{};
+  stat((folder / "new").c_str(), &status);
+  EXPECT_EQ(status.st_mode & 07777, 0640u);
+}
+
+TEST(WriteFile, ReplacesTheFileRatherThanWritingIntoIt) {
+  const Folder folder;
+  folder.put("settings", "old");
+  std::ifstream reader(folder / "settings");
+  ASSERT_TRUE(write_file(folder / "settings", "new", 0600).has_value());
+  std::string seen;
+  reader >> seen;
+  EXPECT_EQ(seen, "old") << "a reader that has it open keeps the old file whole";
+  EXPECT_EQ(read_file(folder / "settings").value(), "new");
+}
+
+TEST(WriteFile, LeavesNothingBehindWhenItFails) {
+  const Folder folder;
+  std::filesystem::create_directory(folder / "taken");
+  const auto written = write_file(folder / "taken", "text", 0600);
+  ASSERT_FALSE(written.has_value());
+  EXPECT_THAT(written.error(), HasSubstr(folder / "taken"));
+  EXPECT_EQ(std::distance(std::filesystem::directory_iterator(folder.path()), {}), 1);
+}
+
+TEST(WriteFile, SaysThatThereIsNoFolder) {
+  const Folder folder;
+  EXPECT_EQ(write_file(folder / "no/file", "text", 0600).error(),
+            (folder / "no/file") + ": No such file or directory");
+}
+
+}  // namespace
+}  // namespace adit::host

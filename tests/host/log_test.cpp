@@ -1,0 +1,94 @@
+#include "host/log.hpp"
+
+#include <fcntl.h>
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+#include <sys/stat.h>
+#include <unistd.h>
+
+#include <vector>
+
+#include "host/record.hpp"
+
+namespace adit::host {
+namespace {
+
+using testing::ElementsAre;
+using testing::HasSubstr;
+using testing::IsEmpty;
+using testing::MatchesRegex;
+using testing::Not;
+
+const std::vector<Field> kFields = {{"report", "7"}, {"note", "run not started"}};
+
+TEST(PlainLine, HoldsTimeLevelMessageAndFields) {
+  EXPECT_EQ(plain_line("2026-01-31T12:00:00Z", Level::Warning, "report answered", kFields),
+            "2026-01-31T12:00:00Z warning: report answered report=7 note=\"run not started\"");
+}
+
+TEST(PlainLine, QuotesWhatWouldReadAsAnotherField) {
+  const std::vector<Field> fields = {{"a", ""}, {"b", "x=y"}, {"c", "say \"no\""}, {"d", "C:\\"}};
+  EXPECT_EQ(sentence("m", fields), R"(m a="" b="x=y" c="say \"no\"" d=C:\\)");
+}
+
+TEST(PlainLine, CannotBeForgedByWhatAClientSent) {
+  const std::vector<Field> fields = {{"robot", "r1\n2026-01-31T12:00:00Z info: all is well\r"}};
+  const std::string line = plain_line("T", Level::Info, "from \x1b[2J a client\n", fields);
+  for (const char c : line) EXPECT_TRUE(c >= 0x20 && c < 0x7f) << line;
+  EXPECT_THAT(line, HasSubstr(R"(from \x1b[2J a client\x0a)"));
+  EXPECT_THAT(line, HasSubstr(R"(r1\x0a2026)"));
+}
+
+TEST(PlainLine, ShowsBytesThatAreNotAsciiAsTheyAre) {
+  EXPECT_EQ(escaped("\xc2\x9b\xff"), R"(\xc2\x9b\xff)");
+}
+
+TEST(JournalEntry, RecordsEachFieldByItself) {
+  EXPECT_THAT(journal_entry(Level::Error, "report answered", kFields),
+              ElementsAre("MESSAGE=report answered report=7 note=\"run not started\"", "PRIORITY=3",
+                          "SYSLOG_IDENTIFIER=aditd", "ADIT_REPORT=7", "ADIT_NOTE=run not started"));
+}
+
+TEST(JournalEntry, KeepsFieldNamesWithinTheJournalsRules) {
+  const std::vector<Field> fields = {{"answer ms", "3"}};
+  EXPECT_EQ(journal_entry(Level::Info, "m", fields).back(), "ADIT_ANSWER_MS=3");
+}
+
+TEST(IsJournal, ComparesDeviceAndInodeOfTheStream) {
+  int ends[2];
+  ASSERT_EQ(pipe2(ends, O_CLOEXEC), 0);
+  struct stat status{};
+  fstat(ends[1], &status);
+  const std::string stream = std::to_string(status.st_dev) + ":" + std::to_string(status.st_ino);
+  EXPECT_TRUE(is_journal(ends[1], stream.c_str()));
+  EXPECT_FALSE(is_journal(ends[1], (stream + "0").c_str()));
+  EXPECT_FALSE(is_journal(ends[1], ""));
+  EXPECT_FALSE(is_journal(ends[1], nullptr));
+  EXPECT_FALSE(is_journal(-1, stream.c_str()));
+  close(ends[0]);
+  close(ends[1]);
+}
+
+TEST(Log, WritesOneLineToStderr) {
+  testing::internal::CaptureStderr();
+  log(Level::Notice, "listening", {{"address", "10.0.0.1:8000"}});
+  EXPECT_THAT(testing::internal::GetCapturedStderr(),
+              MatchesRegex("....-..-..T..:..:..Z notice: listening address=10.0.0.1:8000\n"));
+}
+
+TEST(Log, LeavesOutWhatIsLessImportantThanAskedFor) {
+  testing::internal::CaptureStderr();
+  log(Level::Debug, "too fine");
+  EXPECT_THAT(testing::internal::GetCapturedStderr(), IsEmpty());
+  set_least(Level::Warning);
+  testing::internal::CaptureStderr();
+  log(Level::Info, "info");
+  log(Level::Warning, "warning");
+  const std::string written = testing::internal::GetCapturedStderr();
+  EXPECT_THAT(written, Not(HasSubstr("info")));
+  EXPECT_THAT(written, HasSubstr("warning"));
+  set_least(Level::Info);
+}
+
+}  // namespace
+}  // namespace adit::host

@@ -31,8 +31,8 @@ Checked<std::size_t> find_once(const std::vector<FieldSchema>& fields, std::stri
   if (count == 1) {
     return static_cast<std::size_t>(std::ranges::find(fields, name, &FieldSchema::name) - fields.begin());
   }
-  if (count == 0) return unprocessable("msg.fields: expected a field ", quoted(name), ", got none");
-  return unprocessable("msg.fields: expected one field ", quoted(name), ", got ", count);
+  if (count == 0) return unprocessable("msg.fields: expected a field ", in_quotes(name), ", got none");
+  return unprocessable("msg.fields: expected one field ", in_quotes(name), ", got ", count);
 }
 
 /// What kills a server, or makes it drop the cloud: x, y, z not there once each, or not of one float type.
@@ -45,8 +45,8 @@ Checked<void> check_coordinates(const std::vector<FieldSchema>& fields) {
     const FieldSchema& field = fields[*index];
     const auto given = static_cast<int>(field.datatype);
     if (field.datatype != Datatype::Float32 && field.datatype != Datatype::Float64) {
-      return unprocessable("msg.fields[", *index, "].datatype: expected 7 or 8 for ", quoted(name), ", got ",
-                           given);
+      return unprocessable("msg.fields[", *index, "].datatype: expected 7 or 8 for ", in_quotes(name),
+                           ", got ", given);
     }
     if (name == "x") datatype = field.datatype;
     if (field.datatype != datatype) {
@@ -54,7 +54,7 @@ Checked<void> check_coordinates(const std::vector<FieldSchema>& fields) {
                            " as for \"x\", got ", given);
     }
     if (field.count != 1) {
-      return unprocessable("msg.fields[", *index, "].count: expected 1 for ", quoted(name), ", got ",
+      return unprocessable("msg.fields[", *index, "].count: expected 1 for ", in_quotes(name), ", got ",
                            field.count);
     }
   }
@@ -118,7 +118,7 @@ Checked<void> check_size(const PointCloud2& cloud, std::size_t bytes) {
 
 Checked<void> check_frame_id(std::string_view frame_id, std::string_view path, const Rules& rules) {
   if (frame_id == kFrame || rules.rewrite_frame_id) return {};
-  return unprocessable(path, ": expected \"", kFrame, "\", got ", quoted(frame_id));
+  return unprocessable(path, ": expected \"", kFrame, "\", got ", in_quotes(frame_id));
 }
 
 }  // namespace adit::icd

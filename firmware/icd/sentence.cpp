@@ -21,7 +21,7 @@ std::string number_text(double number) {
   return {digits.data(), end};
 }
 
-std::string quoted(std::string_view text) {
+std::string in_quotes(std::string_view text) {
   const bool cut = text.size() > kMostQuoted;
   if (cut) {
     std::size_t end = kMostQuoted;

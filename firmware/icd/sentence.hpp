@@ -13,7 +13,7 @@ namespace adit::icd {
 std::string number_text(double number);
 
 /// What a sender wrote, for a sentence: in quotation marks, on one line, at most 40 bytes of it.
-std::string quoted(std::string_view text);
+std::string in_quotes(std::string_view text);
 
 inline void append_part(std::string& sentence, std::string_view part) {
   sentence += part;

@@ -1,0 +1,148 @@
+#include "icd/chunked_bytes.hpp"
+
+#include <gtest/gtest.h>
+
+#include <random>
+#include <type_traits>
+
+namespace adit::icd {
+namespace {
+
+using Bytes = std::vector<std::uint8_t>;
+
+Bytes counted(std::size_t size, std::uint8_t first = 0) {
+  Bytes bytes(size);
+  for (std::size_t i = 0; i < size; ++i) bytes[i] = static_cast<std::uint8_t>(first + i * 7);
+  return bytes;
+}
+
+TEST(ChunkedBytes, GiveBackWhatWasAppendedWhateverThePieces) {
+  std::mt19937_64 random(1);
+  for (int round = 0; round < 50; ++round) {
+    Bytes expected;
+    ChunkedBytes bytes;
+    while (expected.size() < 200'000) {
+      const Bytes piece = counted(random() % 90'000, static_cast<std::uint8_t>(random()));
+      expected.insert(expected.end(), piece.begin(), piece.end());
+      if (random() % 2 == 0) {
+        bytes.append(piece);
+      } else {
+        bytes.append(Bytes(piece));
+      }
+    }
+    EXPECT_EQ(bytes.to_vector(), expected);
+    EXPECT_EQ(bytes.to_string(), std::string(expected.begin(), expected.end()));
+    EXPECT_EQ(bytes.size(), expected.size());
+    EXPECT_EQ(bytes, ChunkedBytes(expected));
+    for (const auto& chunk : bytes.chunks()) {
+      EXPECT_FALSE(chunk->empty());
+      EXPECT_LE(chunk->size(), ChunkedBytes::kChunk);
+    }
+  }
+}
+
+TEST(ChunkedBytes, FillAChunkBeforeTheyStartAnother) {
+  ChunkedBytes bytes;
+  for (int i = 0; i < 1000; ++i) bytes.append(counted(100));
+  EXPECT_EQ(bytes.chunks().size(), 2U);
+}
+
+TEST(ChunkedBytes, ShareTheirChunksWithACopy) {
+  const ChunkedBytes original(counted(100'000));
+  const ChunkedBytes copy =
+      original;  // NOLINT(performance-unnecessary-copy-initialization): the copy is the test
+  EXPECT_EQ(copy.chunks()[0].get(), original.chunks()[0].get());
+  EXPECT_EQ(copy.chunks()[1].get(), original.chunks()[1].get());
+}
+
+TEST(ChunkedBytes, NeverChangeAChunkThatSomebodyElseCanSee) {
+  ChunkedBytes original(counted(10));
+  ChunkedBytes copy = original;
+  const ChunkedBytes::Chunk held = original.chunks()[0];
+  original.append(counted(5, 1));
+  copy.append(counted(3, 2));
+  EXPECT_EQ(*held, counted(10));
+  EXPECT_EQ(original.size(), 15U);
+  EXPECT_EQ(original.to_vector().size(), 15U);
+  EXPECT_EQ(copy.to_vector().size(), 13U);
+  EXPECT_EQ(copy.to_vector().back(), counted(3, 2).back());
+}
+
+TEST(ChunkedBytes, TakeAChunkOverWithoutACopy) {
+  Bytes chunk = counted(1000);
+  const auto* where = chunk.data();
+  ChunkedBytes bytes;
+  bytes.append(std::move(chunk));
+  EXPECT_EQ(bytes.chunks()[0]->data(), where);
+}
+
+TEST(ChunkedBytes, CutAChunkThatIsTooLargeToBeTakenOver) {
+  ChunkedBytes bytes;
+  bytes.append(counted(ChunkedBytes::kChunk + 1));
+  EXPECT_EQ(bytes.chunks().size(), 2U);
+  EXPECT_EQ(bytes.to_vector(), counted(ChunkedBytes::kChunk + 1));
+}
+
+TEST(ChunkedBytes, ShareTheChunksOfAnother) {
+  ChunkedBytes first(counted(10));
+  const ChunkedBytes second(counted(20));
+  first.append(second);
+  EXPECT_EQ(first.chunks()[1].get(), second.chunks()[0].get());
+  first.append(counted(1));
+  EXPECT_EQ(second.to_vector(), counted(20));
+  EXPECT_EQ(first.size(), 31U);
+}
+
+TEST(ChunkedBytes, CanBeAppendedToThemselves) {
+  ChunkedBytes bytes(counted(10));
+  bytes.append(bytes);
+  Bytes twice = counted(10);
+  const Bytes once = counted(10);
+  twice.insert(twice.end(), once.begin(), once.end());
+  EXPECT_EQ(bytes.to_vector(), twice);
+}
+
+TEST(ChunkedBytes, ArePoppedChunkByChunkFromTheFront) {
+  const Bytes all = counted(3 * ChunkedBytes::kChunk + 5);
+  ChunkedBytes bytes(all);
+  Bytes popped;
+  while (!bytes.empty()) {
+    const std::size_t before = bytes.size();
+    const ChunkedBytes::Chunk chunk = bytes.pop_front();
+    popped.insert(popped.end(), chunk->begin(), chunk->end());
+    EXPECT_EQ(bytes.size(), before - chunk->size());
+    EXPECT_EQ(bytes.to_vector().size(), bytes.size());
+  }
+  EXPECT_EQ(popped, all);
+  bytes.append(counted(4));
+  EXPECT_EQ(bytes.to_vector(), counted(4));
+}
+
+TEST(ChunkedBytes, FreeAPoppedChunkOnceNobodyHoldsIt) {
+  ChunkedBytes bytes(counted(2 * ChunkedBytes::kChunk));
+  const std::weak_ptr<const Bytes> first = bytes.chunks()[0];
+  bytes.pop_front();
+  EXPECT_TRUE(first.expired());
+}
+
+TEST(ChunkedBytes, AreEqualWhereTheirBytesAreHoweverTheyAreCut) {
+  ChunkedBytes cut;
+  cut.append(Bytes{1, 2});
+  cut.append(Bytes{3});
+  EXPECT_EQ(cut, ChunkedBytes(Bytes{1, 2, 3}));
+  EXPECT_NE(cut, ChunkedBytes(Bytes{1, 2, 4}));
+  EXPECT_NE(cut, ChunkedBytes(Bytes{1, 2}));
+  EXPECT_EQ(ChunkedBytes(), ChunkedBytes(Bytes{}));
+}
+
+TEST(ChunkedBytes, AreEmptyOnceMovedFrom) {
+  static_assert(std::is_nothrow_move_constructible_v<ChunkedBytes>);
+  ChunkedBytes from(counted(10));
+  const ChunkedBytes into = std::move(from);
+  EXPECT_EQ(into.size(), 10U);
+  EXPECT_TRUE(from.empty());  // NOLINT(bugprone-use-after-move): the header promises it
+  EXPECT_TRUE(from.chunks().empty());
+}
+
+}  // namespace
+}  // namespace adit::icd

@@ -1,0 +1,45 @@
+#include "icd/sentence.hpp"
+
+#include <gtest/gtest.h>
+
+#include <limits>
+
+namespace adit::icd {
+namespace {
+
+TEST(Sentence, JoinsStringsAndNumbers) {
+  EXPECT_EQ(sentence("fields[", std::size_t{2}, "]: expected ", 0.5, ", got ", -3, std::string("!")),
+            "fields[2]: expected 0.5, got -3!");
+}
+
+TEST(Sentence, ShowsNumbersInTheFewestDigits) {
+  EXPECT_EQ(number_text(0.1), "0.1");
+  EXPECT_EQ(number_text(2), "2");
+  EXPECT_EQ(number_text(-1e300), "-1e+300");
+  EXPECT_EQ(number_text(std::numeric_limits<double>::quiet_NaN()), "nan");
+  EXPECT_EQ(number_text(std::numeric_limits<double>::infinity()), "inf");
+  EXPECT_EQ(number_text(-2.2250738585072014e-308), "-2.2250738585072014e-308");
+}
+
+TEST(InQuotes, KeepsASendersTextOnOneLineAndShort) {
+  EXPECT_EQ(in_quotes("map"), "\"map\"");
+  EXPECT_EQ(in_quotes(""), "\"\"");
+  EXPECT_EQ(in_quotes("a\nb\x7f\x1b[2J"), "\"a?b??[2J\"");
+  EXPECT_EQ(in_quotes(std::string(40, 'a')), "\"" + std::string(40, 'a') + "\"");
+  EXPECT_EQ(in_quotes(std::string(4000, 'a')), "\"" + std::string(40, 'a') + "...\"");
+}
+
+TEST(InQuotes, NeverCutsACharacterInTwo) {
+  const std::string text = std::string(39, 'a') + "\xc3\xa9\xc3\xa9";
+  EXPECT_EQ(in_quotes(text), "\"" + std::string(39, 'a') + "...\"");
+  EXPECT_EQ(in_quotes(std::string(100, '\x80')), "\"...\"");
+}
+
+TEST(Unprocessable, Is422) {
+  const Checked<void> refused = unprocessable("a", 1);
+  ASSERT_FALSE(refused.has_value());
+  EXPECT_EQ(refused.error(), (Refusal{Status::UnprocessableEntity, "a1"}));
+}
+
+}  // namespace
+}  // namespace adit::icd

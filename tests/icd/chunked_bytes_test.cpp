@@ -43,7 +43,8 @@ TEST(ChunkedBytes, GiveBackWhatWasAppendedWhateverThePieces) {
 
 TEST(ChunkedBytes, FillAChunkBeforeTheyStartAnother) {
   ChunkedBytes bytes;
-  for (int i = 0; i < 1000; ++i) bytes.append(counted(100));
+  const Bytes piece = counted(100);
+  for (int i = 0; i < 1000; ++i) bytes.append(piece);
   EXPECT_EQ(bytes.chunks().size(), 2U);
 }
 
@@ -59,13 +60,28 @@ TEST(ChunkedBytes, NeverChangeAChunkThatSomebodyElseCanSee) {
   ChunkedBytes original(counted(10));
   ChunkedBytes copy = original;
   const ChunkedBytes::Chunk held = original.chunks()[0];
-  original.append(counted(5, 1));
-  copy.append(counted(3, 2));
+  const Bytes five = counted(5, 1);
+  const Bytes three = counted(3, 2);
+  original.append(five);
+  copy.append(three);
   EXPECT_EQ(*held, counted(10));
   EXPECT_EQ(original.size(), 15U);
   EXPECT_EQ(original.to_vector().size(), 15U);
   EXPECT_EQ(copy.to_vector().size(), 13U);
-  EXPECT_EQ(copy.to_vector().back(), counted(3, 2).back());
+  EXPECT_EQ(copy.to_vector().back(), three.back());
+}
+
+TEST(ChunkedBytes, GrowTheirLastChunkAgainOnceTheyAreAloneWithIt) {
+  const Bytes piece = counted(10);
+  ChunkedBytes bytes(piece);
+  {
+    const ChunkedBytes copy = bytes;
+    bytes.append(piece);
+    EXPECT_EQ(copy.to_vector(), piece);
+  }
+  bytes.append(piece);
+  EXPECT_EQ(bytes.chunks().size(), 2U);
+  EXPECT_EQ(bytes.size(), 30U);
 }
 
 TEST(ChunkedBytes, TakeAChunkOverWithoutACopy) {
@@ -88,7 +104,8 @@ TEST(ChunkedBytes, ShareTheChunksOfAnother) {
   const ChunkedBytes second(counted(20));
   first.append(second);
   EXPECT_EQ(first.chunks()[1].get(), second.chunks()[0].get());
-  first.append(counted(1));
+  const Bytes one = counted(1);
+  first.append(one);
   EXPECT_EQ(second.to_vector(), counted(20));
   EXPECT_EQ(first.size(), 31U);
 }
@@ -114,8 +131,9 @@ TEST(ChunkedBytes, ArePoppedChunkByChunkFromTheFront) {
     EXPECT_EQ(bytes.to_vector().size(), bytes.size());
   }
   EXPECT_EQ(popped, all);
-  bytes.append(counted(4));
-  EXPECT_EQ(bytes.to_vector(), counted(4));
+  const Bytes four = counted(4);
+  bytes.append(four);
+  EXPECT_EQ(bytes.to_vector(), four);
 }
 
 TEST(ChunkedBytes, FreeAPoppedChunkOnceNobodyHoldsIt) {

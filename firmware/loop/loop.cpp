@@ -51,7 +51,7 @@ struct Source::State : std::enable_shared_from_this<Source::State> {
 
   /// Holds the callback while it runs, for it may destroy its own Source.
   static int run(void* userdata, std::uint32_t events) noexcept {
-    const auto alive = static_cast<State*>(userdata)->shared_from_this();
+    const auto alive = static_cast<State*>(userdata)->weak_from_this().lock();
     alive->call(events);
     return 0;
   }

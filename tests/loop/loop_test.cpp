@@ -189,14 +189,15 @@ TEST(Loop, TakesTasksFromManyThreads) {
   Loop loop;
   constexpr int kThreads = 4, kTasks = 2000;
   int ran = 0;  // touched by the loop's thread alone
-  std::vector<std::thread> threads;
-  for (int t = 0; t < kThreads; ++t)
-    threads.emplace_back([&] {
-      for (int i = 0; i < kTasks; ++i)
-        loop.post([&] {
-          if (++ran == kThreads * kTasks) loop.stop();
-        });
-    });
+  const auto post_many = [&] {
+    for (int i = 0; i < kTasks; ++i) {
+      loop.post([&] {
+        if (++ran == kThreads * kTasks) loop.stop();
+      });
+    }
+  };
+  std::vector<std::thread> threads(kThreads);
+  for (auto& thread : threads) thread = std::thread(post_many);
   loop.run();
   for (auto& thread : threads) thread.join();
   EXPECT_EQ(ran, kThreads * kTasks);

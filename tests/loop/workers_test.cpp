@@ -30,12 +30,13 @@ TEST(Workers, BeginJobsInTheOrderOfSubmission) {
   Loop loop;
   Workers workers(loop, 1);
   std::vector<int> begun, finished;
-  for (int i = 0; i < 100; ++i)
+  for (int i = 0; i < 100; ++i) {
     workers.submit([&begun, i] { begun.push_back(i); },
                    [&, i] {
                      finished.push_back(i);
                      if (i == 99) loop.stop();
                    });
+  }
   loop.run();
   std::vector<int> expected(100);
   std::iota(expected.begin(), expected.end(), 0);

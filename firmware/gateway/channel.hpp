@@ -1,0 +1,56 @@
+#pragma once
+
+#include <functional>
+#include <optional>
+#include <string>
+
+#include "icd/uri.hpp"
+#include "loop/loop.hpp"
+#include "settings/settings.hpp"
+#include "uplink/connection.hpp"
+
+namespace adit::gateway {
+
+/// One connection to the Command Post, and what there is to say of it.
+class Channel {
+ public:
+  Channel(loop::Loop& loop, uplink::Endpoint endpoint, icd::BearerToken token,
+          std::chrono::milliseconds answer_within);
+
+  /// Requires !busy(). `content_type` is empty without a body.
+  void send(icd::Uri uri, std::string_view content_type, icd::ChunkedBytes body,
+            std::function<void(uplink::Outcome)> done);
+  bool busy() const { return connection_.busy(); }
+  bool connected() const { return connection_.connected(); }
+  void keep_warm() { connection_.keep_warm(); }
+
+  /// Why the last request failed or was refused, or why there is no connection; "" where all is well.
+  std::string trouble() const;
+  int last_status() const { return last_status_; }
+  std::optional<double> answer_ms() const { return answer_ms_; }
+  /// When last_status() was heard.
+  loop::Instant heard() const { return heard_; }
+  /// All bytes of bodies that were handed to the kernel, those under way included.
+  std::uint64_t bytes_sent() const { return finished_bytes_ + connection_.sent_bytes(); }
+
+ private:
+  void note(const uplink::Outcome& outcome);
+
+  loop::Loop& loop_;
+  uplink::Connection connection_;
+  std::chrono::milliseconds answer_within_;
+  loop::Instant sent_at_{}, heard_{};
+  std::uint64_t finished_bytes_ = 0;
+  int last_status_ = 0;
+  std::optional<double> answer_ms_;
+  std::string trouble_;
+};
+
+/// Where the settings say an endpoint is; maps are paced within the link's budget.
+uplink::Endpoint endpoint_of(const settings::CommandPost& command_post, const settings::Address& address,
+                             std::uint64_t bytes_per_second);
+
+/// Why an outcome is no answer, or what the Command Post said in it.
+std::string sentence_of(const uplink::Outcome& outcome);
+
+}  // namespace adit::gateway

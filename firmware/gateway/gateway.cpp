@@ -1,0 +1,251 @@
+#include "gateway/gateway.hpp"
+
+#include "gateway/version.hpp"
+#include "host/log.hpp"
+
+namespace adit::gateway {
+namespace {
+
+constexpr std::chrono::milliseconds kDrainStep{10};
+
+std::string text(const settings::Address& address) {
+  return address.address + ":" + std::to_string(address.port);
+}
+
+}  // namespace
+
+Gateway::Gateway(loop::Loop& loop, Parts parts)
+    : loop_(loop),
+      parts_(std::move(parts)),
+      random_(std::random_device{}()),
+      workers_(loop, 0),
+      record_([this] { changed(); }),
+      scoring_(loop, parts_.ledger, parts_.settings, *parts_.secrets.scoring, record_, random_),
+      maps_(loop, workers_, parts_.settings, *parts_.secrets.mapping, record_, random_),
+      news_(loop, parts_.settings, *parts_.secrets.mapping, record_, random_),
+      lights_(loop, std::move(parts_.lines)),
+      page_(loop, *this),
+      routes_(icd_options(), *this, workers_, page_),
+      second_(loop.timer([this] { every_second(); })),
+      drained_(loop.timer([this] { drain(); })) {}
+
+Gateway::~Gateway() = default;
+
+intake::IcdOptions Gateway::icd_options() const {
+  intake::IcdOptions options;
+  options.rules = parts_.settings.rules;
+  if (!parts_.settings.team.require_token) return options;
+  for (const auto& token : {parts_.secrets.team, parts_.secrets.scoring, parts_.secrets.mapping}) {
+    if (token) options.tokens.push_back(*token);
+  }
+  return options;
+}
+
+std::expected<void, std::string> Gateway::start() {
+  if (auto started = scoring_.start(); !started) return started;
+  news_.start();
+  restore();
+  if (auto listening = listen(); !listening) return listening;
+  every_second();
+  return {};
+}
+
+std::expected<void, std::string> Gateway::listen() {
+  const settings::Team& team = parts_.settings.team;
+  for (const settings::Address& address : team.listen) {
+    auto server = intake::Server::start(loop_,
+                                        {.address = address.address,
+                                         .port = address.port,
+                                         .interface = team.interface,
+                                         .connections = team.connections,
+                                         .connections_per_address = team.connections_per_address},
+                                        routes_);
+    if (!server) return std::unexpected(server.error());
+    host::log(host::Level::Notice, "listening",
+              {{"address", address.address}, {"port", std::to_string((*server)->port())}});
+    servers_.push_back(std::move(*server));
+  }
+  return {};
+}
+
+void Gateway::restore() {
+  Unsent unsent = Spool(parts_.spool_folder).take(parts_.settings.rules);
+  for (icd::MapUpdate& map : unsent.maps) {
+    const std::size_t bytes = map.data.bytes.size();
+    if (!maps_.take(std::move(map), bytes))
+      host::log(host::Level::Error, "a kept map found the queue full and is lost");
+  }
+  if (!unsent.state.poses.empty()) news_.take(unsent.state, 0);
+  if (!unsent.markers.markers.empty()) news_.take(unsent.markers, 0);
+}
+
+void Gateway::stop() {
+  if (stop_by_) return;
+  host::notify_stopping();
+  host::log(host::Level::Notice, "stopping");
+  stop_by_ = loop_.now() + kDrain;
+  for (const auto& server : servers_) server->stop_listening();
+  drain();
+}
+
+void Gateway::drain() {
+  const bool scoring = scoring_.stop(), maps = maps_.stop(), news = news_.stop();
+  if ((scoring && maps && news) || loop_.now() >= *stop_by_) return finish();
+  drained_.call_at(loop_.now() + kDrainStep);
+}
+
+void Gateway::finish() {
+  Spool(parts_.spool_folder)
+      .save({.maps = maps_.unsent(), .state = news_.unsent_state(), .markers = news_.unsent_markers()});
+  loop_.post([this] { loop_.stop(); });  // answers that were just given still leave
+}
+
+icd::Checked<void> Gateway::take(icd::MapUpdate update, const intake::Sender& sender) {
+  const std::string clock = sender.address + "/map/" + (update.name ? update.name->text() : "");
+  update.header().stamp = stamps_.shift(clock, update.header().stamp, loop_.stamp_now());
+  return maps_.take(std::move(update), sender.bytes);
+}
+
+icd::Checked<void> Gateway::take(const icd::StateUpdate& update, const intake::Sender& sender) {
+  const std::string robot = update.poses.size() == 1 ? update.poses.front().name.text() : "";
+  icd::StateUpdate shifted = update;
+  shifted.header.stamp =
+      stamps_.shift(sender.address + "/state/" + robot, update.header.stamp, loop_.stamp_now());
+  news_.take(shifted, sender.bytes);
+  return {};
+}
+
+icd::Checked<void> Gateway::take(const icd::MarkersUpdate& update, const intake::Sender& sender) {
+  icd::MarkersUpdate shifted = update;
+  for (icd::Marker& marker : shifted.markers) {
+    marker.header.stamp =
+        stamps_.shift(sender.address + "/markers/" + marker.ns, marker.header.stamp, loop_.stamp_now());
+  }
+  news_.take(shifted, sender.bytes);
+  return {};
+}
+
+void Gateway::take(const icd::ArtifactReport& report, const intake::Sender& sender,
+                   std::shared_ptr<intake::Responder> responder) {
+  scoring_.take(report, sender, std::move(responder));
+}
+
+void Gateway::status(const intake::Sender&, std::shared_ptr<intake::Responder> responder) {
+  scoring_.status(std::move(responder));
+}
+
+void Gateway::refused(icd::Uri uri, const intake::Sender& sender, const icd::Refusal& refusal) {
+  host::log(host::Level::Info, "refused",
+            {{"uri", std::string(icd::path_of(uri))},
+             {"sender", sender.address},
+             {"status", std::to_string(static_cast<int>(refusal.status))},
+             {"why", refusal.sentence}});
+  record_.refused(uri, sender, refusal, loop_.stamp_now());
+}
+
+void Gateway::changed() {
+  page_.changed();
+}
+
+void Gateway::every_second() {
+  const std::uint64_t bytes =
+      scoring_.channel().bytes_sent() + maps_.channel().bytes_sent() + news_.channel().bytes_sent();
+  sent_mbit_ = static_cast<double>(bytes - bytes_before_) * 8 / 1e6;
+  bytes_before_ = bytes;
+  lights_.show(condition());
+  if (std::string line = status_line(); line != notified_) {
+    host::notify_status(line);
+    notified_ = std::move(line);
+  }
+  second_.call_at(loop_.now() + std::chrono::seconds(1));
+}
+
+panel::Condition Gateway::condition() const {
+  const Channel& scoring = scoring_.channel();
+  return {.serving = !servers_.empty() && scoring_.ledger_trouble().empty(),
+          .scoring_connected = scoring.connected(),
+          .scoring_failing = !scoring.trouble().empty(),
+          .mapping_connected = news_.channel().connected(),
+          .mapping_failing = !news_.channel().trouble().empty() || !maps_.channel().trouble().empty(),
+          .report_waiting = scoring_.waiting() > 0,
+          .needs_operator = !attention().empty()};
+}
+
+std::vector<std::string> Gateway::attention() const {
+  std::vector<std::string> sentences;
+  if (const std::size_t doubts = scoring_.in_doubt(); doubts > 0) {
+    sentences.push_back(std::to_string(doubts) + (doubts == 1 ? " report is" : " reports are") +
+                        " in doubt: the answer was lost");
+  }
+  if (!scoring_.ledger_trouble().empty())
+    sentences.push_back("the ledger cannot be written: " + scoring_.ledger_trouble());
+  if (!parts_.ledger.damage().empty()) sentences.push_back(parts_.ledger.damage());
+  const auto token_refused = [&](const Channel& channel, const char* name) {
+    if (channel.last_status() == 401) {
+      sentences.push_back(std::string("the Command Post refuses the ") + name + " token");
+    }
+  };
+  token_refused(scoring_.channel(), "scoring");
+  token_refused(maps_.channel().last_status() == 401 ? maps_.channel() : news_.channel(), "mapping");
+  if (maps_.nearly_full()) sentences.emplace_back("the queue of maps is nearly full");
+  return sentences;
+}
+
+std::vector<page::EndpointRow> Gateway::endpoints() const {
+  const Channel& scoring = scoring_.channel();
+  const Channel& maps = maps_.channel();
+  const Channel& news = news_.channel();
+  const Channel& latest = maps.heard() > news.heard() ? maps : news;
+  const settings::CommandPost& command_post = parts_.settings.command_post;
+  return {{.name = "scoring",
+           .address = text(command_post.scoring),
+           .connected = scoring.connected(),
+           .trouble = scoring.trouble(),
+           .last_status = scoring.last_status(),
+           .answer_ms = scoring.answer_ms()},
+          {.name = "mapping",
+           .address = text(command_post.mapping),
+           .connected = maps.connected() || news.connected(),
+           .trouble = maps.trouble().empty() ? news.trouble() : maps.trouble(),
+           .last_status = latest.last_status(),
+           .answer_ms = latest.answer_ms()}};
+}
+
+page::RunView Gateway::view() const {
+  page::RunView view{.now = loop_.stamp_now(),
+                     .version = kVersion,
+                     .run = scoring_.run(),
+                     .run_heard = scoring_.run_heard(),
+                     .endpoints = endpoints(),
+                     .reports = scoring_.rows(),
+                     .activities = record_.activities(),
+                     .refusals = record_.refusals(),
+                     .lights = {},
+                     .budget_mbit = parts_.settings.command_post.budget_mbit,
+                     .sent_mbit = sent_mbit_,
+                     .queued_bytes = maps_.queued_bytes(),
+                     .attention = attention()};
+  for (page::ActivityRow& row : view.activities) {
+    if (row.kind == "state") row.waiting = news_.waiting(Kind::State);
+    if (row.kind == "markers") row.waiting = news_.waiting(Kind::Markers);
+    if (row.kind == "grid") row.waiting = maps_.waiting({Kind::Grid, row.robot});
+    if (row.kind == "cloud") row.waiting = maps_.waiting({Kind::Cloud, row.robot});
+  }
+  for (const panel::Light light : panel::kLights) {
+    view.lights.push_back(
+        {.name = std::string(panel::name_of(light)),
+         .pattern = std::string(panel::name_of(lights_.shown()[static_cast<std::size_t>(light)]))});
+  }
+  return view;
+}
+
+std::string Gateway::status_line() const {
+  std::string line = scoring_.run() ? "score " + std::to_string(scoring_.run()->score) + ", " +
+                                          std::to_string(scoring_.run()->remaining_reports) + " reports left"
+                                    : "no word from the Command Post yet";
+  if (scoring_.waiting() > 0) line += ", " + std::to_string(scoring_.waiting()) + " reports waiting";
+  if (const auto sentences = attention(); !sentences.empty()) line += "; " + sentences.front();
+  return line;
+}
+
+}  // namespace adit::gateway

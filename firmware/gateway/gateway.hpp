@@ -1,0 +1,93 @@
+#pragma once
+
+#include <expected>
+#include <memory>
+#include <random>
+#include <string>
+#include <vector>
+
+#include "gateway/lights.hpp"
+#include "gateway/maps.hpp"
+#include "gateway/news.hpp"
+#include "gateway/record.hpp"
+#include "gateway/scoring.hpp"
+#include "gateway/spool.hpp"
+#include "host/service.hpp"
+#include "intake/icd_routes.hpp"
+#include "lanes/stamps.hpp"
+#include "ledger/ledger.hpp"
+#include "loop/loop.hpp"
+#include "loop/workers.hpp"
+#include "page/page.hpp"
+#include "panel/panel.hpp"
+#include "settings/settings.hpp"
+
+namespace adit::gateway {
+
+/// What the gateway is made of: all of it has passed its checks.
+struct Parts {
+  settings::Settings settings;
+  host::Secrets secrets;  // scoring and mapping are there
+  ledger::Ledger ledger;
+  std::unique_ptr<panel::Lines> lines;
+  std::string spool_folder;
+};
+
+/// The whole of Adit at work: the team's messages come in by Desk and leave by Scoring, Maps and News.
+class Gateway final : public intake::Desk, public page::Source {
+ public:
+  static constexpr std::chrono::milliseconds kDrain{800};  // how long stop() waits for answers under way
+
+  Gateway(loop::Loop& loop, Parts parts);
+  ~Gateway() override;
+
+  /// Listens and connects. An error says what could not be done.
+  std::expected<void, std::string> start();
+  /// Takes nothing new, waits for the answers under way, keeps what waits, and stops the loop.
+  void stop();
+  /// What systemd shows: one line.
+  std::string status_line() const;
+
+  icd::Checked<void> take(icd::MapUpdate update, const intake::Sender& sender) override;
+  icd::Checked<void> take(const icd::StateUpdate& update, const intake::Sender& sender) override;
+  icd::Checked<void> take(const icd::MarkersUpdate& update, const intake::Sender& sender) override;
+  void take(const icd::ArtifactReport& report, const intake::Sender& sender,
+            std::shared_ptr<intake::Responder> responder) override;
+  void status(const intake::Sender& sender, std::shared_ptr<intake::Responder> responder) override;
+  void refused(icd::Uri uri, const intake::Sender& sender, const icd::Refusal& refusal) override;
+
+  page::RunView view() const override;
+
+ private:
+  void restore();
+  void drain();
+  void finish();
+  void changed();
+  void every_second();
+  std::expected<void, std::string> listen();
+  intake::IcdOptions icd_options() const;
+  panel::Condition condition() const;
+  std::vector<std::string> attention() const;
+  std::vector<page::EndpointRow> endpoints() const;
+
+  loop::Loop& loop_;
+  Parts parts_;
+  std::mt19937_64 random_;
+  loop::Workers workers_;
+  Record record_;
+  lanes::StampShift stamps_;
+  Scoring scoring_;
+  Maps maps_;
+  News news_;
+  Lights lights_;
+  page::Page page_;
+  intake::IcdRoutes routes_;
+  std::vector<std::unique_ptr<intake::Server>> servers_;
+  loop::Source second_, drained_;
+  std::uint64_t bytes_before_ = 0;
+  double sent_mbit_ = 0;
+  std::string notified_;
+  std::optional<loop::Instant> stop_by_;
+};
+
+}  // namespace adit::gateway

@@ -1,0 +1,98 @@
+/// aditd: the only place that knows all rooms.
+
+#include <csignal>
+#include <cstdio>
+#include <cstdlib>
+#include <span>
+
+#include "gateway/gateway.hpp"
+#include "gateway/options.hpp"
+#include "gateway/version.hpp"
+#include "host/log.hpp"
+
+namespace {
+
+using adit::gateway::Gateway;
+using adit::gateway::Options;
+using adit::gateway::Parts;
+
+std::string spool_folder(const Options& options) {
+  const char* const runtime =
+      std::getenv("RUNTIME_DIRECTORY");  // NOLINT(concurrency-mt-unsafe): before any thread
+  return (runtime != nullptr ? std::string(runtime) : options.state) + "/waiting";
+}
+
+std::expected<adit::settings::Settings, std::string> read_settings(const std::string& file) {
+  const auto text = adit::host::read_file(file);
+  if (!text) return std::unexpected(text.error());
+  auto settings = adit::settings::parse(*text);
+  if (settings) return std::move(*settings);
+  std::string sentences;
+  for (const auto& error : settings.error()) sentences += (sentences.empty() ? "" : "; ") + error.sentence();
+  return std::unexpected(file + ": " + sentences);
+}
+
+std::unique_ptr<adit::panel::Lines> open_panel(const adit::settings::Panel& settings,
+                                               const std::string& state) {
+  if (!settings.chip.empty()) {
+    auto lines = adit::panel::open_gpio(settings);
+    if (lines) return std::move(*lines);
+    adit::host::log(adit::host::Level::Error, "the panel is simulated: its lines cannot be had",
+                    {{"why", lines.error()}});
+  }
+  return adit::panel::simulated(state + "/panel");
+}
+
+std::expected<Parts, std::string> gather(const Options& options) {
+  auto settings = read_settings(options.settings);
+  if (!settings) return std::unexpected(settings.error());
+  auto secrets = adit::host::read_secrets(options.secrets);
+  if (!secrets) return std::unexpected(secrets.error());
+  auto ledger = adit::ledger::Ledger::open(options.state);
+  if (!ledger) return std::unexpected(ledger.error().what);
+  auto lines = open_panel(settings->panel, options.state);
+  return Parts{.settings = std::move(*settings),
+               .secrets = std::move(*secrets),
+               .ledger = std::move(*ledger),
+               .lines = std::move(lines),
+               .spool_folder = spool_folder(options)};
+}
+
+int fail(const std::string& why) {
+  adit::host::log(adit::host::Level::Error, "cannot start", {{"why", why}});
+  return 1;
+}
+
+int run(const Options& options) {
+  auto parts = gather(options);
+  if (!parts) return fail(parts.error());
+  adit::loop::Loop loop;
+  Gateway* running = nullptr;
+  const auto stop = [&running] {
+    if (running != nullptr) running->stop();
+  };
+  const auto terminated = loop.signal(SIGTERM, stop);
+  const auto interrupted = loop.signal(SIGINT, stop);
+  Gateway gateway(loop, std::move(*parts));
+  running = &gateway;
+  if (const auto started = gateway.start(); !started) return fail(started.error());
+  loop.feed_watchdog();
+  adit::host::notify_ready(gateway.status_line());
+  loop.run();
+  adit::host::log(adit::host::Level::Notice, "stopped");
+  return 0;
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  const auto options =
+      adit::gateway::parse_options(std::span<char* const>(argv + 1, static_cast<std::size_t>(argc - 1)));
+  if (!options) {
+    std::fprintf(stderr, "aditd: %s\n%s", options.error().c_str(), adit::gateway::kUsage);
+    return 2;
+  }
+  if (options->help) return std::fputs(adit::gateway::kUsage, stdout) < 0 ? 1 : 0;
+  if (options->version) return std::printf("aditd %s\n", adit::gateway::kVersion) < 0 ? 1 : 0;
+  return run(*options);
+}

@@ -1,0 +1,62 @@
+#pragma once
+
+#include <random>
+#include <string>
+#include <vector>
+
+#include "gateway/channel.hpp"
+#include "gateway/record.hpp"
+#include "gateway/uri_pace.hpp"
+#include "lanes/marker_lane.hpp"
+#include "lanes/stamps.hpp"
+#include "lanes/state_lane.hpp"
+
+namespace adit::gateway {
+
+/// Robots' states and markers on their way to the mapping endpoint, on one connection of their own, whichever
+/// has the older news first.
+class News {
+ public:
+  News(loop::Loop& loop, const settings::Settings& settings, icd::BearerToken token, Record& record,
+       std::mt19937_64& random);
+
+  void start() { channel_.keep_warm(); }
+  /// Stamps are on the gateway's clock.
+  void take(const icd::StateUpdate& update, std::size_t bytes_received);
+  void take(const icd::MarkersUpdate& update, std::size_t bytes_received);
+
+  /// Sends nothing more. False while an answer is still awaited.
+  bool stop();
+  /// What has not been taken by the Command Post; empty lists where nothing waits.
+  icd::StateUpdate unsent_state() const;
+  icd::MarkersUpdate unsent_markers() const;
+
+  const Channel& channel() const { return channel_; }
+  std::size_t waiting(Kind kind) const;
+
+ private:
+  void pump();
+  void send_state();
+  void send_markers();
+  template <class Waiting>
+  void answered(Kind kind, UriPace& pace, Waiting sent, std::size_t bytes, const uplink::Outcome& outcome);
+  std::vector<Traffic> traffic_of(const lanes::WaitingState& state) const;
+  std::vector<Traffic> traffic_of(const lanes::WaitingMarkers& markers) const;
+  void put_back(const lanes::WaitingState& state) { state_.put_back(state); }
+  void put_back(const lanes::WaitingMarkers& markers) { markers_.put_back(markers); }
+
+  loop::Loop& loop_;
+  Record& record_;
+  Channel channel_;
+  UriPace state_pace_, markers_pace_;
+  loop::Source wake_;
+  lanes::StateLane state_;
+  lanes::MarkerLane markers_;
+  lanes::StampOrder state_stamps_, marker_stamps_;
+  std::uint64_t numbers_ = 0;
+  icd::StateUpdate state_under_way_;
+  icd::MarkersUpdate markers_under_way_;
+  bool stopping_ = false;
+};
+
+}  // namespace adit::gateway

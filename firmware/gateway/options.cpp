@@ -1,0 +1,50 @@
+#include "gateway/options.hpp"
+
+#include <string_view>
+
+namespace adit::gateway {
+
+const char* const kUsage =
+    "Usage: aditd --settings FILE --secrets DIR --state DIR\n"
+    "\n"
+    "Adit's gateway between a robot team and the Command Post.\n"
+    "\n"
+    "  --settings FILE  the settings (JSON, version 1); `adit check FILE` explains what is wrong with one\n"
+    "  --secrets DIR    holds scoring.token, mapping.token and, if wanted, team.token, readable by nobody "
+    "else\n"
+    "  --state DIR      where the ledger of reports is kept; must exist\n"
+    "  --version        prints the version\n"
+    "  --help           prints this\n"
+    "\n"
+    "Waiting maps are kept across a restart in $RUNTIME_DIRECTORY, or in the state folder where that is not "
+    "set.\n"
+    "Exits 0 after SIGTERM or SIGINT, 1 where it cannot start (and says why), 2 on a wrong command line.\n";
+
+std::expected<Options, std::string> parse_options(std::span<char* const> arguments) {
+  Options options;
+  for (std::size_t i = 0; i < arguments.size(); ++i) {
+    const std::string_view word = arguments[i];
+    if (word == "--help") {
+      options.help = true;
+      continue;
+    }
+    if (word == "--version") {
+      options.version = true;
+      continue;
+    }
+    std::string* const value = word == "--settings"  ? &options.settings
+                               : word == "--secrets" ? &options.secrets
+                               : word == "--state"   ? &options.state
+                                                     : nullptr;
+    if (value == nullptr) return std::unexpected("unknown word '" + std::string(word) + "'");
+    if (++i == arguments.size()) return std::unexpected(std::string(word) + " wants a value");
+    *value = arguments[i];
+  }
+  if (options.help || options.version) return options;
+  if (options.settings.empty()) return std::unexpected("--settings FILE is missing");
+  if (options.secrets.empty()) return std::unexpected("--secrets DIR is missing");
+  if (options.state.empty()) return std::unexpected("--state DIR is missing");
+  return options;
+}
+
+}  // namespace adit::gateway

@@ -1,0 +1,20 @@
+#pragma once
+
+#include <expected>
+#include <span>
+#include <string>
+
+namespace adit::gateway {
+
+/// aditd's command line.
+struct Options {
+  std::string settings, secrets, state;
+  bool help = false, version = false;
+};
+
+extern const char* const kUsage;
+
+/// What is wrong names the word it is about.
+std::expected<Options, std::string> parse_options(std::span<char* const> arguments);
+
+}  // namespace adit::gateway

@@ -1,0 +1,102 @@
+#include "gateway/record.hpp"
+
+namespace adit::gateway {
+namespace {
+
+const char* name_of(Kind kind) {
+  switch (kind) {
+    case Kind::Grid:
+      return "grid";
+    case Kind::Cloud:
+      return "cloud";
+    case Kind::State:
+      return "state";
+    case Kind::Markers:
+      return "markers";
+  }
+  return "";
+}
+
+}  // namespace
+
+Traffic traffic_of(const icd::MapUpdate& update) {
+  return {update.is_grid() ? Kind::Grid : Kind::Cloud, update.name ? update.name->text() : ""};
+}
+
+page::ActivityRow& Record::row(const Traffic& traffic) {
+  const auto known = rows_.find(traffic);
+  if (known != rows_.end()) return known->second;
+  const bool full = rows_.size() >= kMostRows;
+  page::ActivityRow& made = rows_[full ? Traffic{traffic.kind, "(others)"} : traffic];
+  made.kind = name_of(traffic.kind);
+  made.robot = full ? "(others)" : traffic.robot;
+  return made;
+}
+
+void Record::accepted(const Traffic& traffic, std::size_t bytes, page::Time now) {
+  page::ActivityRow& activity = row(traffic);
+  ++activity.accepted;
+  activity.last_accepted = now;
+  activity.bytes_received = bytes;
+  changed_();
+}
+
+void Record::replaced(const Traffic& traffic, std::size_t updates) {
+  row(traffic).replaced += updates;
+}
+
+void Record::forwarded(const Traffic& traffic, std::size_t updates, std::size_t bytes, int status,
+                       page::Time now) {
+  page::ActivityRow& activity = row(traffic);
+  ++activity.forwarded;
+  if (traffic.kind == Kind::Cloud && updates > 1) activity.merged += updates - 1;
+  activity.last_forwarded = now;
+  activity.bytes_sent = bytes;
+  activity.last_status = status;
+  activity.last_sentence.clear();
+  changed_();
+}
+
+void Record::throttled(const Traffic& traffic, int status, const std::string& sentence) {
+  page::ActivityRow& activity = row(traffic);
+  ++activity.throttled;
+  activity.last_status = status;
+  activity.last_sentence = sentence;
+  changed_();
+}
+
+void Record::failed(const Traffic& traffic, int status, const std::string& sentence) {
+  page::ActivityRow& activity = row(traffic);
+  ++activity.failed;
+  activity.last_status = status;
+  activity.last_sentence = sentence;
+  changed_();
+}
+
+void Record::refused_upstream(const Traffic& traffic, int status, const std::string& sentence) {
+  page::ActivityRow& activity = row(traffic);
+  ++activity.refused_upstream;
+  activity.last_status = status;
+  activity.last_sentence = sentence;
+  changed_();
+}
+
+void Record::refused(icd::Uri uri, const intake::Sender& sender, const icd::Refusal& refusal,
+                     page::Time now) {
+  refusals_.push_front({.at = now,
+                        .uri = std::string(icd::path_of(uri)),
+                        .sender = sender.address,
+                        .status = static_cast<int>(refusal.status),
+                        .sentence = refusal.sentence});
+  if (refusals_.size() > kMostRefusals) refusals_.pop_back();
+  changed_();
+}
+
+std::vector<page::ActivityRow> Record::activities() const {
+  std::vector<page::ActivityRow> all;
+  all.reserve(rows_.size());
+  for (const auto& [traffic, activity] : rows_) all.push_back(activity);
+  return all;
+}
+
+}  // namespace adit::gateway

@@ -1,0 +1,102 @@
+#pragma once
+
+#include <deque>
+#include <map>
+#include <memory>
+#include <optional>
+#include <random>
+#include <string>
+#include <vector>
+
+#include "dispatch/report_life.hpp"
+#include "gateway/channel.hpp"
+#include "gateway/record.hpp"
+#include "gateway/uri_pace.hpp"
+#include "icd/artifact_report.hpp"
+#include "icd/run_status.hpp"
+#include "intake/desk.hpp"
+#include "ledger/ledger.hpp"
+#include "loop/loop.hpp"
+#include "page/page.hpp"
+#include "settings/settings.hpp"
+
+namespace adit::gateway {
+
+/// The scoring endpoint: reports, one at a time, each on disk before anything else happens to it (promise 1),
+/// and the run's status, never asked for ahead of a waiting report.
+class Scoring {
+ public:
+  static constexpr std::chrono::seconds kFresh{1};      // how long a status is good as an answer
+  static constexpr std::chrono::seconds kAskEvery{10};  // the status is asked for at least this often
+  static constexpr std::size_t kMostWaiting = 1000;     // reports
+  static constexpr std::size_t kMostRows = 500;
+
+  Scoring(loop::Loop& loop, ledger::Ledger& ledger, const settings::Settings& settings,
+          icd::BearerToken token, Record& record, std::mt19937_64& random);
+
+  /// Takes up what the ledger holds from before, and connects. An error: the ledger cannot be read.
+  std::expected<void, std::string> start();
+
+  void take(const icd::ArtifactReport& report, const intake::Sender& sender,
+            std::shared_ptr<intake::Responder> responder);
+  void status(std::shared_ptr<intake::Responder> responder);
+
+  /// Sends nothing more; clients that wait are told so. False while an answer is still awaited.
+  bool stop();
+
+  const Channel& channel() const { return channel_; }
+  const std::optional<icd::RunStatus>& run() const { return run_; }
+  std::optional<page::Time> run_heard() const { return run_heard_; }
+  std::vector<page::ReportRow> rows() const;  // newest first
+  std::size_t waiting() const { return queue_.size(); }
+  std::size_t in_doubt() const;
+  /// Why the ledger cannot be written, or "".
+  const std::string& ledger_trouble() const { return ledger_trouble_; }
+
+ private:
+  struct Client {
+    std::shared_ptr<intake::Responder> responder;
+    loop::Instant deadline;
+  };
+  /// Somebody who asked for the status; no responder: Adit itself.
+  struct Asker {
+    std::shared_ptr<intake::Responder> responder;
+    loop::Instant since;
+  };
+
+  void pump();
+  void send_report();
+  void report_answered(std::int64_t number, uplink::Outcome outcome);
+  void ask_status();
+  void status_answered(uplink::Outcome outcome);
+  void answer_askers(const intake::Answer& answer);
+  bool move(std::int64_t number, dispatch::ReportEvent event, const std::string& note);
+  void answer_client(std::int64_t number, intake::Answer answer);
+  void watch_deadlines();
+  loop::Instant asker_deadline() const;
+  void answer_late_clients();
+  intake::Answer fresh_status() const;
+
+  loop::Loop& loop_;
+  ledger::Ledger& ledger_;
+  const settings::Settings& settings_;
+  Record& record_;
+  Channel channel_;
+  UriPace report_pace_, status_pace_;
+  loop::Source wake_, poll_, deadline_;
+
+  std::map<std::int64_t, ledger::Entry> entries_;
+  std::deque<std::int64_t> queue_;
+  std::optional<std::int64_t> sending_;
+  std::map<std::int64_t, Client> clients_;
+  std::deque<Asker> askers_;
+
+  std::optional<icd::RunStatus> run_;
+  std::optional<page::Time> run_heard_;
+  std::optional<loop::Instant> status_fresh_until_;
+  std::string status_body_;
+  std::string ledger_trouble_;
+  bool stopping_ = false;
+};
+
+}  // namespace adit::gateway

@@ -1,0 +1,17 @@
+#pragma once
+
+#include "intake/server.hpp"
+#include "uplink/connection.hpp"
+
+namespace adit::gateway {
+
+/// What a client is told of the Command Post's answer: its own status and bytes where these are JSON (ICD 4),
+/// else the status with a JSON string that says what came instead (facts: 404 and 500 may be HTML, 501 is
+/// empty). An answer of 2xx that is no JSON becomes 502.
+intake::Answer client_answer(const uplink::Answered& answered);
+
+/// What the Command Post said, for people: a JSON string without its quotation marks, `detail` of an object,
+/// else the status alone. At most 300 bytes.
+std::string sentence_of(const uplink::Answered& answered);
+
+}  // namespace adit::gateway

@@ -1,8 +1,12 @@
 #pragma once
 
 #include <cstddef>
+#include <cstdint>
 #include <functional>
+#include <memory>
 #include <span>
+#include <string_view>
+#include <vector>
 
 #include "icd/chunked_bytes.hpp"
 #include "icd/status.hpp"
@@ -14,14 +18,38 @@ enum class GzipStrategy : std::uint8_t {
   Runs,     // zlib level 6 with Z_RLE: for grids, two to five times faster and mostly smaller
 };
 
-/// One gzip member (RFC 1952) with nothing after it. `bytes` is consumed chunk by chunk.
+/// Makes one gzip member (RFC 1952) of what it is fed, with nothing after it. The same bytes give the same
+/// member, however they are cut: its header holds no time and no name.
+class Gzipper {
+ public:
+  explicit Gzipper(GzipStrategy strategy);
+  ~Gzipper();
+  Gzipper(Gzipper&&) noexcept;
+  Gzipper& operator=(Gzipper&&) noexcept;
+
+  void feed(std::span<const std::uint8_t> bytes);
+  /// The whole member, once, after the last feed.
+  icd::ChunkedBytes finish();
+
+ private:
+  struct Stream;
+  void deflate_with(int flush);
+
+  std::unique_ptr<Stream> stream_;
+  std::vector<std::uint8_t> piece_;  // what comes out, until it is a whole chunk
+  icd::ChunkedBytes member_;
+};
+
+/// One gzip member with nothing after it. `bytes` is consumed chunk by chunk.
 icd::ChunkedBytes gzip(icd::ChunkedBytes bytes, GzipStrategy strategy);
 
-/// Inflates exactly one gzip member, giving each piece of output to `sink` (which may refuse), consuming
-/// `bytes`. Refuses, with 422 about the field at `path`: what is no gzip, is cut short, has a bad checksum,
-/// has anything after its end, or grows over `most` bytes.
-icd::Checked<std::size_t> gunzip(
-    icd::ChunkedBytes bytes, std::size_t most, std::string_view path,
-    const std::function<icd::Checked<void>(std::span<const std::uint8_t>)>& sink);
+/// Takes what was inflated, piece by piece, and may refuse it.
+using Sink = std::function<icd::Checked<void>(std::span<const std::uint8_t>)>;
+
+/// Inflates exactly one gzip member into `sink` and returns the size of what came out, consuming `bytes`.
+/// Refuses, with 422 about the field at `path`: what is no gzip, is cut short, has a bad checksum, has
+/// anything after its end (which hangs a Command Post), or grows over `most` bytes.
+icd::Checked<std::size_t> gunzip(icd::ChunkedBytes bytes, std::size_t most, std::string_view path,
+                                 const Sink& sink);
 
 }  // namespace adit::codec

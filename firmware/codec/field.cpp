@@ -1,0 +1,151 @@
+#include "codec/field.hpp"
+
+#include <cmath>
+
+namespace adit::codec {
+namespace {
+
+/// The whole number that a value is, if int64 holds it.
+std::optional<std::int64_t> whole_of(const Value& value) {
+  if (const auto* given = std::get_if<std::int64_t>(&value.is)) return *given;
+  if (const auto* given = std::get_if<std::uint64_t>(&value.is)) {
+    if (*given > std::uint64_t{std::numeric_limits<std::int64_t>::max()}) return std::nullopt;
+    return static_cast<std::int64_t>(*given);
+  }
+  const auto* given = std::get_if<double>(&value.is);
+  constexpr double kEnd = 0x1p63;
+  if (!given || !(*given >= -kEnd && *given < kEnd) || std::trunc(*given) != *given) return std::nullopt;
+  return static_cast<std::int64_t>(*given);
+}
+
+std::optional<double> number_of(const Value& value) {
+  if (const auto* given = std::get_if<double>(&value.is)) return *given;
+  if (const auto* given = std::get_if<std::int64_t>(&value.is)) return static_cast<double>(*given);
+  if (const auto* given = std::get_if<std::uint64_t>(&value.is)) return static_cast<double>(*given);
+  return std::nullopt;
+}
+
+/// A value as a sentence says what was got: the number itself, else its kind.
+std::string got(const Value& value) {
+  if (const auto* given = std::get_if<std::int64_t>(&value.is)) return std::to_string(*given);
+  if (const auto* given = std::get_if<std::uint64_t>(&value.is)) return std::to_string(*given);
+  if (const auto* given = std::get_if<double>(&value.is)) return icd::number_text(*given);
+  return value.kind();
+}
+
+std::string limits(double least, double most) {
+  if (std::isinf(least)) return "a finite number";
+  if (std::isinf(most)) return icd::sentence("a finite number of at least ", least);
+  return icd::sentence("a number from ", least, " to ", most);
+}
+
+}  // namespace
+
+const Value::Object* Field::object() const {
+  if (is<Value::Object>()) return &std::get<Value::Object>(value_->is);
+  refuse_kind("an object");
+  return nullptr;
+}
+
+Field Field::member(std::string_view name) const& {
+  const Value* found = nullptr;
+  if (const auto* members = object()) {
+    for (const auto& [key, value] : *members) {
+      if (key != name) continue;
+      if (found) {
+        Field(found, this, name, 0, reading_).refuse("given twice");
+        break;
+      }
+      found = &value;
+    }
+  }
+  return {found, this, name, 0, reading_};
+}
+
+std::size_t Field::size() const {
+  if (is<Value::Array>()) return std::get<Value::Array>(value_->is).size();
+  refuse_kind("an array");
+  return 0;
+}
+
+Field Field::element(std::size_t index) const& {
+  return {&std::get<Value::Array>(value_->is)[index], this, {}, index, reading_};
+}
+
+bool Field::is_absent() const {
+  return !value_ || is<std::nullptr_t>();
+}
+
+double Field::number(double least, double most) const {
+  const auto given = value_ ? number_of(*value_) : std::nullopt;
+  if (!given) {
+    refuse_kind(least == -kNoLimit ? "a number" : limits(least, most));
+    return 0;
+  }
+  if (std::isfinite(*given) && *given >= least && *given <= most) return *given;
+  refuse("expected ", limits(least, most), ", got ", *given);
+  return 0;
+}
+
+std::int64_t Field::whole_number(std::int64_t least, std::int64_t most) const {
+  if (!value_ || !number_of(*value_)) {
+    refuse_kind("a whole number");
+    return least;
+  }
+  const auto given = whole_of(*value_);
+  if (given && *given >= least && *given <= most) return *given;
+  refuse("expected a whole number from ", least, " to ", most, ", got ", got(*value_));
+  return least;
+}
+
+std::string_view Field::text() const {
+  const auto* given = value_ ? std::get_if<std::string>(&value_->is) : nullptr;
+  if (!given) {
+    refuse_kind("a string");
+    return {};
+  }
+  if (!given->contains('\0')) return *given;
+  refuse("expected a string without NUL characters, got one with them");
+  return {};
+}
+
+bool Field::truth() const {
+  if (is<bool>()) return std::get<bool>(value_->is);
+  const auto given = value_ ? whole_of(*value_) : std::nullopt;
+  if (given && (*given == 0 || *given == 1)) return *given == 1;
+  if (value_ && number_of(*value_)) {
+    refuse("expected true or false, got ", got(*value_));
+  } else {
+    refuse_kind("true or false");
+  }
+  return false;
+}
+
+double Field::seconds() const {
+  if (value_ && number_of(*value_)) return number(0);
+  if (!is<Value::Object>()) {
+    refuse_kind("a number or {secs, nsecs}");
+    return 0;
+  }
+  constexpr std::uint32_t kLastNanosecond = 999'999'999;
+  const auto secs = member("secs").whole<std::uint32_t>();
+  const auto nsecs = member("nsecs").whole<std::uint32_t>(0, kLastNanosecond);
+  return secs + nsecs * 1e-9;
+}
+
+void Field::refuse_kind(std::string_view expected) const {
+  if (value_) {
+    refuse("expected ", expected, ", got ", value_->kind());
+  } else {
+    refuse("missing");
+  }
+}
+
+std::string Field::path() const {
+  if (!parent_) return "the body";
+  if (name_.empty()) return icd::sentence(parent_->path(), "[", index_, "]");
+  if (!parent_->parent_) return std::string(name_);
+  return icd::sentence(parent_->path(), ".", name_);
+}
+
+}  // namespace adit::codec

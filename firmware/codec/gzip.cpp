@@ -1,0 +1,135 @@
+#include "codec/gzip.hpp"
+
+#include <zlib.h>
+
+#include <new>
+
+#include "icd/sentence.hpp"
+
+namespace adit::codec {
+namespace {
+
+constexpr std::size_t kPiece = icd::ChunkedBytes::kChunk;
+constexpr int kLevel = 6;
+constexpr int kGzip = MAX_WBITS + 16;  // zlib: a gzip wrapper, and no other
+constexpr int kMemoryLevel = 8;        // zlib's default
+
+/// zlib reads through a pointer to what it does not change.
+Bytef* in_zlibs_hands(std::span<const std::uint8_t> bytes) {
+  return const_cast<Bytef*>(bytes.data());
+}
+
+/// zlib can fail to start for want of memory alone, and then fails as `new` does.
+void require_started(int code) {
+  if (code != Z_OK) throw std::bad_alloc();
+}
+
+class Inflater {
+ public:
+  Inflater() { require_started(inflateInit2(&stream_, kGzip)); }
+  ~Inflater() { inflateEnd(&stream_); }
+  Inflater(const Inflater&) = delete;
+  Inflater& operator=(const Inflater&) = delete;
+
+  z_stream& stream() { return stream_; }
+
+ private:
+  z_stream stream_{};
+};
+
+icd::Refusal damaged(std::string_view path, const char* why) {
+  return icd::unprocessable(path, ": expected one gzip member, got ", why ? why : "damaged data").error();
+}
+
+}  // namespace
+
+struct Gzipper::Stream {
+  explicit Stream(int strategy) {
+    require_started(deflateInit2(&zlib, kLevel, Z_DEFLATED, kGzip, kMemoryLevel, strategy));
+  }
+  ~Stream() { deflateEnd(&zlib); }
+  Stream(const Stream&) = delete;
+  Stream& operator=(const Stream&) = delete;
+
+  z_stream zlib{};
+};
+
+Gzipper::Gzipper(GzipStrategy strategy)
+    : stream_(std::make_unique<Stream>(strategy == GzipStrategy::Runs ? Z_RLE : Z_DEFAULT_STRATEGY)) {}
+Gzipper::~Gzipper() = default;
+Gzipper::Gzipper(Gzipper&&) noexcept = default;
+Gzipper& Gzipper::operator=(Gzipper&&) noexcept = default;
+
+void Gzipper::deflate_with(int flush) {
+  z_stream& zlib = stream_->zlib;
+  bool full = true;
+  while (full) {
+    const std::size_t before = piece_.size();
+    piece_.resize(kPiece);
+    zlib.next_out = piece_.data() + before;
+    zlib.avail_out = static_cast<uInt>(kPiece - before);
+    deflate(&zlib, flush);  // cannot fail: the stream is sound and there is room for output
+    full = zlib.avail_out == 0;
+    piece_.resize(kPiece - zlib.avail_out);
+    if (full) {
+      member_.append(std::move(piece_));
+      piece_ = {};
+    }
+  }
+}
+
+void Gzipper::feed(std::span<const std::uint8_t> bytes) {
+  constexpr std::size_t kMostAtOnce = 1U << 30;  // zlib counts in 32 bits
+  while (!bytes.empty()) {
+    const auto part = bytes.first(std::min(bytes.size(), kMostAtOnce));
+    stream_->zlib.next_in = in_zlibs_hands(part);
+    stream_->zlib.avail_in = static_cast<uInt>(part.size());
+    deflate_with(Z_NO_FLUSH);
+    bytes = bytes.subspan(part.size());
+  }
+}
+
+icd::ChunkedBytes Gzipper::finish() {
+  deflate_with(Z_FINISH);
+  member_.append(std::span<const std::uint8_t>(piece_));  // a copy, so that a small member is small in memory
+  return std::move(member_);
+}
+
+icd::ChunkedBytes gzip(icd::ChunkedBytes bytes, GzipStrategy strategy) {
+  Gzipper gzipper(strategy);
+  while (!bytes.empty()) gzipper.feed(*bytes.pop_front());
+  return gzipper.finish();
+}
+
+icd::Checked<std::size_t> gunzip(icd::ChunkedBytes bytes, std::size_t most, std::string_view path,
+                                 const Sink& sink) {
+  Inflater inflater;
+  z_stream& zlib = inflater.stream();
+  std::vector<std::uint8_t> piece(kPiece);
+  std::size_t size = 0;
+  bool ended = false;
+  while (!bytes.empty() && !ended) {
+    const auto chunk = bytes.pop_front();
+    zlib.next_in = in_zlibs_hands(*chunk);
+    zlib.avail_in = static_cast<uInt>(chunk->size());
+    do {
+      zlib.next_out = piece.data();
+      zlib.avail_out = static_cast<uInt>(piece.size());
+      const int code = inflate(&zlib, Z_NO_FLUSH);
+      ended = code == Z_STREAM_END;
+      if (code != Z_OK && code != Z_BUF_ERROR && !ended) return std::unexpected(damaged(path, zlib.msg));
+      const std::size_t made = piece.size() - zlib.avail_out;
+      size += made;
+      if (size > most) return icd::unprocessable(path, ": expected at most ", most, " bytes, got more");
+      if (made == 0) continue;
+      if (auto taken = sink({piece.data(), made}); !taken) return std::unexpected(taken.error());
+    } while (zlib.avail_out == 0 && !ended);
+  }
+  if (!ended) return std::unexpected(damaged(path, "one that is cut short"));
+  const std::size_t after = zlib.avail_in + bytes.size();
+  if (after == 0) return size;
+  return icd::unprocessable(path, ": expected one gzip member and nothing after it, got ", after,
+                            " bytes more");
+}
+
+}  // namespace adit::codec

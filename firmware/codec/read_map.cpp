@@ -1,0 +1,103 @@
+// POST /map/update (ICD 6.3, 6.4).
+#include "codec/read.hpp"
+#include "codec/read_map_data.hpp"
+#include "codec/read_parts.hpp"
+
+namespace adit::codec {
+namespace {
+
+std::optional<icd::RobotName> read_map_name(const Field& name) {
+  if (name.is_absent() || (name.is<std::string>() && name.text().empty())) return std::nullopt;  // merged
+  return read_robot_name(name);
+}
+
+icd::Compression read_compression(const Field& field, DataForm form) {
+  if (field.is_absent()) return icd::Compression::None;
+  const std::string_view scheme = field.text();
+  if (scheme == "none") return icd::Compression::None;
+  if (scheme != "gzip") field.refuse("expected \"none\" or \"gzip\", got ", icd::in_quotes(scheme));
+  if (form == DataForm::Integers) field.refuse("expected \"none\" with data as an array, got \"gzip\"");
+  return icd::Compression::Gzip;
+}
+
+void check_data_is_there(const Field& data) {
+  if (!data.is<Value::SplitOut>()) data.refuse_kind("a base64 string (JSON) or a byte string (CBOR)");
+}
+
+icd::OccupancyGrid read_grid(const Field& msg, const icd::Rules& rules) {
+  icd::OccupancyGrid grid;
+  grid.header = read_header(msg, rules);
+  const Field info = msg.member("info");
+  grid.resolution = info.member("resolution").number();
+  grid.width = info.member("width").whole<std::uint32_t>(1, icd::kMostCellsASide);
+  grid.height = info.member("height").whole<std::uint32_t>(1, icd::kMostCellsASide);
+  grid.origin = read_pose(info.member("origin"));
+  if (!msg.reading().refused()) msg.reading().keep(icd::check(grid, rules));
+  return grid;
+}
+
+icd::FieldSchema read_schema(const Field& field) {
+  return {.name = std::string(field.member("name").text()),
+          .offset = field.member("offset").whole<std::uint32_t>(),
+          .datatype = static_cast<icd::Datatype>(field.member("datatype").whole<std::uint8_t>(1, 8)),
+          .count = field.member("count").whole<std::uint32_t>(1)};
+}
+
+icd::PointCloud2 read_cloud(const Field& msg, const icd::Rules& rules) {
+  icd::PointCloud2 cloud;
+  cloud.header = read_header(msg, rules);
+  if (const Field origin = msg.member("origin"); !origin.is_absent()) cloud.origin = read_pose(origin);
+  const Field fields = msg.member("fields");
+  const std::size_t count = fields.size();
+  if (count > icd::kMostFields) {
+    fields.refuse("expected at most ", icd::kMostFields, " fields, got ", count);
+  }
+  for (std::size_t i = 0; i < count && !msg.reading().refused(); ++i) {
+    cloud.fields.push_back(read_schema(fields.element(i)));
+  }
+  const Field is_bigendian = msg.member("is_bigendian");
+  cloud.is_bigendian = !is_bigendian.is_absent() && is_bigendian.truth();
+  cloud.point_step = msg.member("point_step").whole<std::uint32_t>(1, icd::kLargestPoint);
+  if (!msg.reading().refused()) msg.reading().keep(icd::check(cloud, rules));
+  return cloud;
+}
+
+/// Everything but the data; what its `compression` is goes to `compression`.
+icd::Checked<icd::MapUpdate> read_structure(const Document& document, const icd::Rules& rules,
+                                            icd::Compression& compression) {
+  Reading reading;
+  icd::MapUpdate update;
+  const Field body(document.root, reading);
+  const Field type = body.member("type");
+  const std::string_view kind = type.text();
+  if (kind != "OccupancyGrid" && kind != "PointCloud2") {
+    type.refuse("expected \"OccupancyGrid\" or \"PointCloud2\", got ", icd::in_quotes(kind));
+  }
+  update.name = read_map_name(body.member("name"));
+  const Field msg = body.member("msg");
+  if (kind == "PointCloud2") {
+    update.msg = read_cloud(msg, rules);
+  } else {
+    update.msg = read_grid(msg, rules);
+  }
+  check_data_is_there(msg.member("data"));
+  compression = read_compression(msg.member("compression"), document.data_form);
+  return reading.outcome(std::move(update));
+}
+
+}  // namespace
+
+icd::Checked<icd::MapUpdate> read_map_update(Document document, const icd::Rules& rules) {
+  auto compression = icd::Compression::None;
+  auto update = read_structure(document, rules, compression);
+  if (!update) return update;
+  auto data = update->is_grid() ? read_cells(std::get<icd::OccupancyGrid>(update->msg),
+                                             std::move(document.data), compression, rules)
+                                : read_points(std::get<icd::PointCloud2>(update->msg),
+                                              std::move(document.data), compression, rules);
+  if (!data) return std::unexpected(std::move(data.error()));
+  update->data = *std::move(data);
+  return update;
+}
+
+}  // namespace adit::codec

@@ -1,0 +1,99 @@
+// The scoring endpoint's messages (ICD 5).
+#include <algorithm>
+
+#include "codec/field.hpp"
+#include "codec/json.hpp"
+#include "codec/read.hpp"
+
+namespace adit::codec {
+namespace {
+
+constexpr std::size_t kLongestUnknownType = 64;
+
+/// A type that is none of the ICD's ten, where the settings forward those.
+bool is_forwardable(std::string_view type) {
+  const auto printable = [](char letter) { return letter >= 0x20 && letter < 0x7f; };
+  return !type.empty() && type.size() <= kLongestUnknownType && std::ranges::all_of(type, printable);
+}
+
+std::string_view read_type(const Field& field, const icd::Rules& rules) {
+  const std::string_view type = field.text();
+  if (!icd::artifact_type(type).empty()) return type;
+  if (!rules.forward_unknown_types) {
+    std::string ten;
+    for (const auto known : icd::kArtifactTypes) ten += icd::sentence(known, ", ");
+    field.refuse("expected one of ", ten, "got ", icd::in_quotes(type));
+  } else if (!is_forwardable(type)) {
+    field.refuse("expected 1 to ", kLongestUnknownType, " printable ASCII characters, got ",
+                 icd::in_quotes(type));
+  }
+  return type;
+}
+
+/// What `read` makes of a reply's fields, or the sentence why not.
+template <class Message>
+std::expected<Message, std::string> read_reply(std::string_view json, Message (*read)(const Field&)) {
+  const auto root = parse_json(json);
+  if (!root) return std::unexpected(root.error());
+  Reading reading;
+  auto message = reading.outcome(read(Field(*root, reading)));
+  if (!message) return std::unexpected(std::move(message.error().sentence));
+  return *std::move(message);
+}
+
+/// A string, or a number as text; else nothing.
+std::string read_name(const Field& field) {
+  if (field.is<std::string>()) return std::string(field.text());
+  if (field.is<std::int64_t>()) return std::to_string(field.whole<std::int64_t>());
+  if (field.is<double>()) return icd::number_text(field.number());
+  return {};
+}
+
+/// Whether a field that Adit can do without is a number.
+bool has_number(const Field& field) {
+  return field.is<double>() || field.is<std::int64_t>() || field.is<std::uint64_t>();
+}
+
+icd::RunStatus status_of(const Field& body) {
+  icd::RunStatus status;
+  status.score = body.member("score").whole<std::int64_t>();
+  const Field run_clock = body.member("run_clock");
+  const Field clock = body.member("clock");
+  status.run_clock = run_clock.is_absent() && !clock.is_absent() ? clock.number() : run_clock.number();
+  status.remaining_reports = body.member("remaining_reports").whole<std::int64_t>();
+  status.current_team = read_name(body.member("current_team"));
+  return status;
+}
+
+icd::ReportReply reply_of(const Field& body) {
+  icd::ReportReply reply;
+  if (const Field id = body.member("id"); id.is<std::int64_t>()) reply.id = id.whole<std::int64_t>();
+  reply.run = read_name(body.member("run"));
+  reply.team = read_name(body.member("team"));
+  if (const Field clock = body.member("run_clock"); has_number(clock)) reply.run_clock = clock.number();
+  reply.report_status = body.member("report_status").text();
+  reply.score_change = body.member("score_change").whole<std::int64_t>();
+  return reply;
+}
+
+}  // namespace
+
+icd::Checked<icd::ArtifactReport> read_artifact_report(const Document& document, const icd::Rules& rules) {
+  Reading reading;
+  icd::ArtifactReport report;
+  const Field body(document.root, reading);
+  report.position = {
+      .x = body.member("x").number(), .y = body.member("y").number(), .z = body.member("z").number()};
+  report.type = read_type(body.member("type"), rules);
+  return reading.outcome(std::move(report));
+}
+
+std::expected<icd::RunStatus, std::string> read_run_status(std::string_view json) {
+  return read_reply(json, status_of);
+}
+
+std::expected<icd::ReportReply, std::string> read_report_reply(std::string_view json) {
+  return read_reply(json, reply_of);
+}
+
+}  // namespace adit::codec

@@ -1,0 +1,77 @@
+// The scoring endpoint's messages (ICD 5), and JSON strings for error replies (ICD 4).
+#include <algorithm>
+#include <cmath>
+
+#include "codec/utf8.hpp"
+#include "codec/write.hpp"
+#include "icd/sentence.hpp"
+
+namespace adit::codec {
+namespace {
+
+/// In the fewest digits that give the same double back. No message holds NaN or an infinity; if one did, null
+/// is what JSON has for it, and a server refuses it where the field matters.
+std::string json_number(double number) {
+  return std::isfinite(number) ? icd::number_text(number) : "null";
+}
+
+/// Bytes of the UTF-8 character at the front of `text`; 0 where there is none.
+std::size_t character_size(std::string_view text) {
+  Utf8Checker checker;
+  for (std::size_t i = 0; i < text.size() && checker.next(static_cast<std::uint8_t>(text[i])); ++i) {
+    if (checker.complete()) return i + 1;
+  }
+  return 0;
+}
+
+void append_escaped(std::string& out, char control) {
+  constexpr std::string_view kHex = "0123456789abcdef";
+  const auto code = static_cast<std::uint8_t>(control);
+  switch (control) {
+    case '\n':
+      out += "\\n";
+      return;
+    case '\r':
+      out += "\\r";
+      return;
+    case '\t':
+      out += "\\t";
+      return;
+    default:
+      out += icd::sentence("\\u00", kHex.substr(code >> 4U, 1), kHex.substr(code & 0xfU, 1));
+  }
+}
+
+}  // namespace
+
+std::string write_artifact_report(const icd::ArtifactReport& report) {
+  return icd::sentence(
+      "{\"x\": ", json_number(report.position.x), ", \"y\": ", json_number(report.position.y),
+      ", \"z\": ", json_number(report.position.z), ", \"type\": ", json_string(report.type), "}");
+}
+
+std::string write_run_status(const icd::RunStatus& status) {
+  return icd::sentence("{\"score\": ", status.score, ", \"run_clock\": ", json_number(status.run_clock),
+                       ", \"remaining_reports\": ", status.remaining_reports,
+                       ", \"current_team\": ", json_string(status.current_team), "}");
+}
+
+std::string json_string(std::string_view text) {
+  std::string out = "\"";
+  while (!text.empty()) {
+    const std::size_t size = character_size(text);
+    if (size == 0) {
+      out += "\xef\xbf\xbd";  // U+FFFD
+    } else if (static_cast<std::uint8_t>(text[0]) < 0x20 || text[0] == 0x7f) {
+      append_escaped(out, text[0]);
+    } else {
+      if (text[0] == '"' || text[0] == '\\') out += '\\';
+      out += text.substr(0, size);
+    }
+    text.remove_prefix(std::max<std::size_t>(size, 1));
+  }
+  out += '"';
+  return out;
+}
+
+}  // namespace adit::codec

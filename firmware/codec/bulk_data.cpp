@@ -1,0 +1,57 @@
+#include "codec/bulk_data.hpp"
+
+#include <cmath>
+#include <utility>
+
+#include "icd/sentence.hpp"
+
+namespace adit::codec {
+
+icd::Checked<void> BulkData::appear() {
+  if (std::exchange(appeared_, true)) {
+    return icd::unprocessable("msg.data: given twice");
+  }
+  return {};
+}
+
+icd::Checked<void> BulkData::append(std::span<const std::uint8_t> bytes) {
+  if (bytes.size() > most_ - bytes_.size()) {
+    return std::unexpected(icd::Refusal{icd::Status::ContentTooLarge,
+                                        icd::sentence("msg.data: larger than the ", most_, " bytes taken")});
+  }
+  bytes_.append(bytes);
+  return {};
+}
+
+icd::Checked<void> BulkData::append_element(double value, std::string_view text) {
+  if (!(value >= -1 && value <= 255) || value != std::floor(value)) {
+    return std::unexpected(bad_element(text));
+  }
+  return append_element(value < 0 ? std::uint8_t{255} : static_cast<std::uint8_t>(value));
+}
+
+icd::Checked<void> BulkData::append_element(std::uint8_t byte) {
+  if (waiting_ == elements_.size()) {
+    if (auto flushed = flush(); !flushed) return flushed;
+  }
+  elements_[waiting_++] = byte;
+  return {};
+}
+
+icd::Refusal BulkData::bad_element(std::string_view got) const {
+  constexpr std::size_t kLongest = 32;
+  return {icd::Status::UnprocessableEntity,
+          icd::sentence("msg.data[", bytes_.size() + waiting_, "]: expected an integer from -1 to 255, got ",
+                        got.substr(0, kLongest), got.size() > kLongest ? "..." : "")};
+}
+
+icd::Checked<void> BulkData::flush() {
+  return append(std::span(elements_).first(std::exchange(waiting_, 0)));
+}
+
+icd::Checked<icd::ChunkedBytes> BulkData::take() {
+  if (auto flushed = flush(); !flushed) return std::unexpected(flushed.error());
+  return std::move(bytes_);
+}
+
+}  // namespace adit::codec

@@ -1,0 +1,49 @@
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <span>
+#include <string_view>
+
+#include "codec/body_decoder.hpp"
+#include "icd/chunked_bytes.hpp"
+#include "icd/status.hpp"
+
+namespace adit::codec {
+
+/// Where the value at "msg.data" goes while the rest of the body is still arriving. Its refusals are 422
+/// about msg.data, or 413 over the limit.
+class BulkData {
+ public:
+  explicit BulkData(std::size_t most) : most_(most) {}
+
+  /// A value at "msg.data" begins, of any kind: the first is taken, a second is refused.
+  icd::Checked<void> appear();
+  /// That value is bulk data of this form.
+  void begin(DataForm form) { form_ = form; }
+
+  icd::Checked<void> append(std::span<const std::uint8_t> bytes);
+
+  /// One element of an array: a whole number from -1 (as 255) to 255. `text` is how it stood in the body.
+  icd::Checked<void> append_element(double value, std::string_view text);
+  icd::Checked<void> append_element(std::uint8_t byte);
+  /// An element that is no number.
+  icd::Refusal bad_element(std::string_view got) const;
+
+  DataForm form() const { return form_; }
+  /// All of it, once, at the end.
+  icd::Checked<icd::ChunkedBytes> take();
+
+ private:
+  icd::Checked<void> flush();
+
+  std::size_t most_;
+  bool appeared_ = false;
+  DataForm form_ = DataForm::Absent;
+  icd::ChunkedBytes bytes_;
+  std::array<std::uint8_t, 4096> elements_{};  // those that are not in bytes_ yet
+  std::size_t waiting_ = 0;
+};
+
+}  // namespace adit::codec

@@ -1,0 +1,52 @@
+#include "codec/cbor_head.hpp"
+
+#include <bit>
+#include <cmath>
+#include <limits>
+
+namespace adit::codec {
+namespace {
+
+/// RFC 8949 appendix D.
+double half(std::uint16_t bits) {
+  const int exponent = (bits >> 10) & 0x1F;
+  const int mantissa = bits & 0x3FF;
+  double value = 0;
+  if (exponent == 0) {
+    value = std::ldexp(mantissa, -24);
+  } else if (exponent != 31) {
+    value = std::ldexp(mantissa + 1024, exponent - 25);
+  } else {
+    value =
+        mantissa == 0 ? std::numeric_limits<double>::infinity() : std::numeric_limits<double>::quiet_NaN();
+  }
+  return (bits & 0x8000) != 0 ? -value : value;
+}
+
+}  // namespace
+
+std::size_t CborHead::next(std::string_view in) {
+  std::size_t taken = 0;
+  while (taken < in.size() && !complete()) bytes_[size_++] = static_cast<std::uint8_t>(in[taken++]);
+  return taken;
+}
+
+std::uint64_t CborHead::argument() const {
+  if (info() < 24) return info();
+  std::uint64_t value = 0;
+  for (std::size_t i = 1; i < size_; ++i) value = value << 8 | bytes_[i];
+  return value;
+}
+
+double CborHead::number() const {
+  switch (info()) {
+    case 25:
+      return half(static_cast<std::uint16_t>(argument()));
+    case 26:
+      return static_cast<double>(std::bit_cast<float>(static_cast<std::uint32_t>(argument())));
+    default:
+      return std::bit_cast<double>(argument());
+  }
+}
+
+}  // namespace adit::codec

@@ -1,0 +1,46 @@
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <string_view>
+
+namespace adit::codec {
+
+/// RFC 8949 3.1.
+enum class Major : std::uint8_t { Unsigned, Negative, Bytes, Text, Array, Map, Tag, Simple };
+
+/// The head of one CBOR item (RFC 8949 section 3): its first byte and the argument after it, given in pieces
+/// of any size.
+class CborHead {
+ public:
+  /// How many bytes of `in` belong to the head. Requires !complete().
+  std::size_t next(std::string_view in);
+
+  bool empty() const { return size_ == 0; }
+  bool complete() const { return size_ > 0 && size_ == length(); }
+  /// Begins the next one.
+  void clear() { size_ = 0; }
+
+  // Of a complete head:
+  Major major() const { return static_cast<Major>(bytes_[0] >> 5); }
+  std::uint8_t info() const { return bytes_[0] & 0x1F; }
+  bool indefinite() const { return info() == 31; }
+  bool is_break() const { return bytes_[0] == 0xFF; }
+  /// Additional information that RFC 8949 keeps for later.
+  bool reserved() const { return info() >= 28 && info() <= 30; }
+  std::uint64_t argument() const;
+  /// Of a floating-point number (major type 7, info 25 to 27).
+  double number() const;
+  std::string_view raw() const { return {reinterpret_cast<const char*>(bytes_.data()), size_}; }
+
+ private:
+  std::size_t length() const {
+    return info() >= 24 && info() <= 27 ? 1 + (std::size_t{1} << (info() - 24)) : 1;
+  }
+
+  std::array<std::uint8_t, 9> bytes_{};
+  std::size_t size_ = 0;
+};
+
+}  // namespace adit::codec

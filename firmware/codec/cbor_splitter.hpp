@@ -1,0 +1,91 @@
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "codec/bulk_data.hpp"
+#include "codec/cbor_head.hpp"
+#include "codec/data_path.hpp"
+#include "codec/splitter.hpp"
+#include "codec/utf8.hpp"
+
+namespace adit::codec {
+
+/// CBOR (RFC 8949): checks that it is well-formed (section 5.3.1), that texts are UTF-8, and that nesting,
+/// tags included, is not too deep. No length is believed before its bytes are there.
+class CborSplitter final : public Splitter {
+ public:
+  /// `data` must outlive this.
+  CborSplitter(Split split, std::size_t most_text, BulkData& data);
+
+  icd::Checked<void> feed(std::string_view bytes) override;
+  icd::Checked<Value> finish() override;
+
+ private:
+  struct Nest {
+    Major kind = Major::Array;  // Array, Map or Tag
+    bool indefinite = false;
+    std::uint64_t left = 0;  // elements or pairs to come
+    bool key_next = false;   // of a Map
+  };
+  /// Where the bytes of a string go.
+  enum class Into : std::uint8_t { Rest, Key, Data };
+
+  /// Each takes some of `in` (not empty) and says how much.
+  icd::Checked<std::size_t> head(std::string_view in);
+  icd::Checked<std::size_t> string(std::string_view in);
+
+  icd::Checked<void> item();
+  icd::Checked<void> check_head() const;
+  icd::Checked<void> begin_string(Into into);
+  icd::Checked<void> chunk_of_string();
+  icd::Checked<void> begin_piece();
+  icd::Checked<void> end_of_piece();
+  void string_ended();
+  icd::Checked<void> nest(Major kind);
+  icd::Checked<void> simple();
+  icd::Checked<void> end_of_nest();
+  void item_ended();
+
+  icd::Checked<void> divert();
+  icd::Checked<void> element();
+  bool elements() const { return elements_of_ > 0; }
+  void keep(std::string_view raw) {
+    if (!elements()) rest_ += raw;
+  }
+  /// The array or map that the next item is in; nullptr at the top.
+  const Nest* container() const;
+  bool at_key() const;
+
+  icd::Refusal fault(std::string_view what) const { return fault_at(head_at_, what); }
+  static icd::Refusal fault_at(std::size_t at, std::string_view what);
+
+  std::size_t most_text_;
+  BulkData& data_;
+  DataPath path_;
+
+  std::size_t at_ = 0;       // bytes taken so far
+  std::size_t head_at_ = 0;  // where the head began
+  std::vector<Nest> nests_;
+  bool whole_ = false;
+  CborHead head_;
+
+  std::optional<Major> string_;   // the string we are in: Bytes or Text
+  bool chunked_ = false;          // it is of indefinite length
+  std::uint64_t piece_left_ = 0;  // bytes of it before the next head
+  Into into_ = Into::Rest;
+  Utf8Checker utf8_;
+  std::string key_;  // its first characters
+
+  std::size_t elements_of_ = 0;  // how many nests there are in the map's data, when it is an array
+
+  /// The document with null for the map's data, and undefined for the simple values that libcbor does not
+  /// know.
+  std::string rest_;
+};
+
+}  // namespace adit::codec

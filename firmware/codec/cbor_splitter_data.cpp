@@ -1,0 +1,131 @@
+// The CBOR splitter's strings, and the values that it diverts from the rest: the map's data.
+#include <algorithm>
+
+#include "codec/cbor_splitter.hpp"
+#include "icd/sentence.hpp"
+
+namespace adit::codec {
+namespace {
+
+std::string_view kind_of(const CborHead& head) {
+  switch (head.major()) {
+    case Major::Bytes:
+      return "a byte string";
+    case Major::Text:
+      return "a string";
+    case Major::Array:
+      return "an array";
+    case Major::Map:
+      return "an object";
+    default:
+      break;
+  }
+  const bool boolean = head.major() == Major::Simple && (head.info() == 20 || head.info() == 21);
+  return boolean ? "true or false" : "null";
+}
+
+std::span<const std::uint8_t> bytes_of(std::string_view run) {
+  return {reinterpret_cast<const std::uint8_t*>(run.data()), run.size()};
+}
+
+}  // namespace
+
+icd::Checked<void> CborSplitter::divert() {
+  if (auto only = data_.appear(); !only) return only;
+  switch (head_.major()) {
+    case Major::Bytes:
+      rest_ += '\xF6';
+      data_.begin(DataForm::ByteString);
+      break;
+    case Major::Array:
+      rest_ += '\xF6';
+      data_.begin(DataForm::Integers);
+      elements_of_ = nests_.size() + 1;
+      break;
+    case Major::Text:  // ICD 6.3 (b): refused here, because it may be too long for the rest
+      return std::unexpected(bad_data("expected a byte string, got a string"));
+    default:
+      break;  // the reader refuses it
+  }
+  return {};
+}
+
+icd::Checked<void> CborSplitter::element() {
+  const Major major = head_.major();
+  if (major == Major::Unsigned && head_.argument() <= 255) {
+    return data_.append_element(static_cast<std::uint8_t>(head_.argument()));
+  }
+  if (major == Major::Unsigned) {
+    return std::unexpected(data_.bad_element(std::to_string(head_.argument())));
+  }
+  if (major == Major::Negative) {
+    const double value = -1 - static_cast<double>(head_.argument());
+    return data_.append_element(value, icd::number_text(value));
+  }
+  if (major == Major::Simple && head_.info() >= 25 && head_.info() <= 27) {
+    return data_.append_element(head_.number(), icd::number_text(head_.number()));
+  }
+  if (major == Major::Tag) return {};
+  return std::unexpected(data_.bad_element(kind_of(head_)));
+}
+
+icd::Checked<void> CborSplitter::begin_string(Into into) {
+  string_ = head_.major();
+  chunked_ = head_.indefinite();
+  into_ = into;
+  key_.clear();
+  if (into_ != Into::Data) rest_ += head_.raw();
+  return chunked_ ? icd::Checked<void>{} : begin_piece();
+}
+
+icd::Checked<void> CborSplitter::chunk_of_string() {
+  if (!head_.is_break() && (head_.indefinite() || head_.major() != *string_)) {
+    return std::unexpected(fault("a string in chunks holds something else"));
+  }
+  if (into_ != Into::Data) rest_ += head_.raw();
+  if (!head_.is_break()) return begin_piece();
+  string_ended();
+  return {};
+}
+
+icd::Checked<void> CborSplitter::begin_piece() {
+  piece_left_ = head_.argument();
+  return piece_left_ == 0 ? end_of_piece() : icd::Checked<void>{};
+}
+
+icd::Checked<std::size_t> CborSplitter::string(std::string_view in) {
+  const std::string_view run = in.substr(0, std::min<std::uint64_t>(piece_left_, in.size()));
+  if (string_ == Major::Text) {
+    if (const auto bad = utf8_.feed(run)) {
+      return std::unexpected(fault_at(at_ + *bad, "a text that is not UTF-8"));
+    }
+  }
+  if (into_ == Into::Data) {
+    if (auto taken = data_.append(bytes_of(run)); !taken) return std::unexpected(taken.error());
+  } else {
+    rest_ += run;
+  }
+  if (into_ == Into::Key && key_.size() < DataPath::kLongestKey) {
+    key_ += run.substr(0, DataPath::kLongestKey);
+  }
+  piece_left_ -= run.size();
+  if (piece_left_ == 0) {
+    if (auto ended = end_of_piece(); !ended) return std::unexpected(ended.error());
+  }
+  return run.size();
+}
+
+icd::Checked<void> CborSplitter::end_of_piece() {
+  // RFC 8949 3.2.3: no character may be cut in two by the chunks.
+  if (!utf8_.complete()) return std::unexpected(fault("a text that ends within a character"));
+  if (!chunked_) string_ended();
+  return {};
+}
+
+void CborSplitter::string_ended() {
+  if (into_ == Into::Key && string_ == Major::Text) path_.key(key_);
+  string_.reset();
+  item_ended();
+}
+
+}  // namespace adit::codec

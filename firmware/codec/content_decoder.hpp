@@ -1,0 +1,45 @@
+#pragma once
+
+#include <cstddef>
+#include <functional>
+#include <memory>
+#include <string>
+#include <string_view>
+
+#include "codec/body_decoder.hpp"
+#include "icd/status.hpp"
+
+struct z_stream_s;
+
+namespace adit::codec {
+
+/// Undoes a Content-Encoding (RFC 9110 8.4.1) as the bytes arrive: one gzip member, or one deflate stream
+/// with or without zlib's wrapping, and nothing after it. Refusals are 400, or 413 over the limit.
+class ContentDecoder {
+ public:
+  using Sink = std::function<icd::Checked<void>(std::string_view)>;
+
+  /// Gives `sink` at most `most` bytes in all.
+  ContentDecoder(ContentCoding coding, std::size_t most, Sink sink);
+
+  icd::Checked<void> feed(std::string_view bytes);
+  icd::Checked<void> finish();
+
+ private:
+  struct End {
+    void operator()(z_stream_s* stream) const;
+  };
+  icd::Checked<void> begin(int window_bits);
+  icd::Checked<void> inflate(std::string_view bytes);
+  icd::Checked<void> give(std::string_view bytes);
+  icd::Refusal bad(std::string_view why) const;
+
+  ContentCoding coding_;
+  std::size_t most_;
+  Sink sink_;
+  std::string head_;  // of a deflate body, until it tells which kind it is
+  std::unique_ptr<z_stream_s, End> stream_;
+  bool ended_ = false;
+};
+
+}  // namespace adit::codec

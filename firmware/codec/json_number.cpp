@@ -1,0 +1,45 @@
+#include "codec/json_number.hpp"
+
+namespace adit::codec {
+
+std::size_t JsonNumber::next(std::string_view in) {
+  std::size_t n = 0;
+  while (n < in.size() && accept(in[n])) ++n;
+  return n;
+}
+
+bool JsonNumber::accept(char c) {
+  const bool digit = c >= '0' && c <= '9';
+  const auto go = [this](Place place) {
+    place_ = place;
+    return true;
+  };
+  switch (place_) {
+    case Place::Start:
+      if (c == '-') return go(Place::Minus);
+      [[fallthrough]];
+    case Place::Minus:
+      if (c == '0') return go(Place::Zero);
+      return digit && go(Place::Integer);
+    case Place::Integer:
+      if (digit) return true;
+      [[fallthrough]];
+    case Place::Zero:
+      if (c == '.') return go(Place::Point);
+      return (c == 'e' || c == 'E') && go(Place::E);
+    case Place::Fraction:
+      if (c == 'e' || c == 'E') return go(Place::E);
+      [[fallthrough]];
+    case Place::Point:
+      return digit && go(Place::Fraction);
+    case Place::E:
+      if (c == '+' || c == '-') return go(Place::Sign);
+      [[fallthrough]];
+    case Place::Sign:
+    case Place::Exponent:
+      return digit && go(Place::Exponent);
+  }
+  return false;
+}
+
+}  // namespace adit::codec

@@ -1,0 +1,222 @@
+#include "codec/json_splitter.hpp"
+
+#include <algorithm>
+
+#include "codec/byte_name.hpp"
+#include "codec/json_value.hpp"
+#include "icd/sentence.hpp"
+
+namespace adit::codec {
+namespace {
+
+constexpr std::string_view kBlanks = " \t\n\r";
+
+bool starts_number(char c) {
+  return c == '-' || (c >= '0' && c <= '9');
+}
+
+}  // namespace
+
+JsonSplitter::JsonSplitter(Split split, std::size_t most_text, BulkData& data)
+    : most_text_(most_text), data_(data), path_(split) {}
+
+icd::Checked<void> JsonSplitter::feed(std::string_view bytes) {
+  while (!bytes.empty()) {
+    const auto taken = step(bytes);
+    if (!taken) return std::unexpected(taken.error());
+    bytes.remove_prefix(*taken);
+    at_ += *taken;
+    if (rest_.size() + number_.size() > most_text_) return std::unexpected(text_too_large(most_text_));
+  }
+  return {};
+}
+
+icd::Checked<void> JsonSplitter::end() {
+  if (token_ == Token::Number) {
+    if (auto ended = number_ended(std::nullopt); !ended) return ended;
+  }
+  if (at_ == 0) return std::unexpected(fault("an empty document"));
+  if (depth_ > 0 || token_ != Token::None || expect_ != Expect::Separator) {
+    return std::unexpected(fault("the document is cut short"));
+  }
+  return {};
+}
+
+icd::Checked<Value> JsonSplitter::finish() {
+  if (auto whole = end(); !whole) return std::unexpected(whole.error());
+  auto root = json_value(rest_);
+  if (root && data_.form() != DataForm::Absent) mark_split_out(*root);
+  return root;
+}
+
+icd::Checked<std::size_t> JsonSplitter::step(std::string_view in) {
+  switch (token_) {
+    case Token::None:
+      return structure(in);
+    case Token::Key:
+    case Token::String:
+      return string(in);
+    case Token::Number:
+      return number(in);
+    case Token::Literal:
+      break;
+  }
+  return literal(in);
+}
+
+icd::Checked<std::size_t> JsonSplitter::structure(std::string_view in) {
+  if (kBlanks.find(in[0]) != std::string_view::npos) {
+    return std::min(in.find_first_not_of(kBlanks), in.size());
+  }
+  const char c = in[0];
+  switch (expect_) {
+    case Expect::Separator:
+      return separator(c);
+    case Expect::Colon:
+      if (c != ':') return std::unexpected(expected("':'", c));
+      keep(":");
+      expect_ = Expect::Value;
+      return 1;
+    case Expect::FirstKey:
+      if (c == '}') return close(c);
+      [[fallthrough]];
+    case Expect::Key:
+      if (c != '"') return std::unexpected(expected("a member's name", c));
+      keep("\"");
+      key_.clear();
+      token_ = Token::Key;
+      return 1;
+    case Expect::FirstElement:
+      if (c == ']') return close(c);
+      break;
+    case Expect::Value:
+      break;
+  }
+  return value(c);
+}
+
+icd::Checked<std::size_t> JsonSplitter::separator(char c) {
+  if (depth_ == 0) return std::unexpected(expected("nothing after the document", c));
+  if (c == (in_object() ? '}' : ']')) return close(c);
+  if (c != ',') return std::unexpected(expected(in_object() ? "',' or '}'" : "',' or ']'", c));
+  keep(",");
+  expect_ = in_object() ? Expect::Key : Expect::Value;
+  return 1;
+}
+
+icd::Checked<std::size_t> JsonSplitter::value(char first) {
+  if (path_.at_data() || diverted_ == Diverted::Elements) {
+    if (auto diverted = divert(first); !diverted) return std::unexpected(diverted.error());
+  }
+  if (starts_number(first)) {
+    number_grammar_ = {};
+    number_at_ = at_;
+    token_ = Token::Number;
+    return 0;
+  }
+  switch (first) {
+    case '"':
+      keep("\"");
+      token_ = Token::String;
+      return 1;
+    case '{':
+    case '[':
+      return open(first);
+    case 't':
+      return begin_literal("true");
+    case 'f':
+      return begin_literal("false");
+    case 'n':
+      return begin_literal("null");
+    default:
+      return std::unexpected(expected("a value", first));
+  }
+}
+
+icd::Checked<std::size_t> JsonSplitter::open(char bracket) {
+  if (depth_ == objects_.size()) {
+    return std::unexpected(fault(icd::sentence("nested deeper than ", BodyDecoder::kDeepest)));
+  }
+  const bool object = bracket == '{';
+  keep(object ? "{" : "[");
+  objects_[depth_++] = object;
+  path_.open();
+  expect_ = object ? Expect::FirstKey : Expect::FirstElement;
+  return 1;
+}
+
+icd::Checked<std::size_t> JsonSplitter::close(char bracket) {
+  keep(bracket == '}' ? "}" : "]");
+  --depth_;
+  path_.close();
+  diverted_ = Diverted::No;  // no brackets are taken among the elements, so these were theirs
+  value_ended();
+  return 1;
+}
+
+icd::Checked<std::size_t> JsonSplitter::begin_literal(std::string_view word) {
+  keep(word);
+  token_ = Token::Literal;
+  word_ = word;
+  return 0;
+}
+
+icd::Checked<std::size_t> JsonSplitter::literal(std::string_view in) {
+  if (in[0] != word_[0]) return std::unexpected(expected("true, false or null", in[0]));
+  word_.remove_prefix(1);
+  if (word_.empty()) value_ended();
+  return 1;
+}
+
+icd::Checked<std::size_t> JsonSplitter::string(std::string_view in) {
+  const auto piece = string_.next(in);
+  if (!piece) return std::unexpected(fault_at(at_ + piece.error().at, piece.error().what));
+  if (diverted_ == Diverted::Base64) {
+    if (auto decoded = decode(piece->text); !decoded) return std::unexpected(decoded.error());
+  } else {
+    keep(piece->text == std::string_view("\0", 1) ? "\\uFFFF" : piece->raw);
+  }
+  if (token_ == Token::Key && key_.size() < DataPath::kLongestKey) {
+    key_ += piece->text.substr(0, DataPath::kLongestKey);
+  }
+  if (piece->ended) {
+    if (auto ended = string_ended(); !ended) return std::unexpected(ended.error());
+  }
+  return piece->taken;
+}
+
+icd::Checked<void> JsonSplitter::string_ended() {
+  if (diverted_ == Diverted::Base64) {
+    std::array<std::uint8_t, 2> last{};
+    const auto size = base64_.finish(last);
+    if (!size) return std::unexpected(bad_data(size.error()));
+    if (auto taken = data_.append(std::span(last).first(*size)); !taken) return taken;
+    diverted_ = Diverted::No;
+    value_ended();
+    return {};
+  }
+  keep("\"");
+  if (token_ == Token::Key) {
+    path_.key(key_);
+    token_ = Token::None;
+    expect_ = Expect::Colon;
+  } else {
+    value_ended();
+  }
+  return {};
+}
+
+void JsonSplitter::value_ended() {
+  token_ = Token::None;
+  expect_ = Expect::Separator;
+}
+
+icd::Refusal JsonSplitter::fault_at(std::size_t at, std::string_view what) {
+  return {icd::Status::BadRequest, icd::sentence("not well-formed JSON at byte ", at, ": ", what)};
+}
+
+icd::Refusal JsonSplitter::expected(std::string_view what, char got) const {
+  return fault(icd::sentence("expected ", what, ", got ", byte_name(got)));
+}
+
+}  // namespace adit::codec

@@ -1,0 +1,88 @@
+#pragma once
+
+#include <bitset>
+#include <cstddef>
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <string_view>
+
+#include "codec/base64.hpp"
+#include "codec/bulk_data.hpp"
+#include "codec/data_path.hpp"
+#include "codec/json_number.hpp"
+#include "codec/json_string.hpp"
+#include "codec/splitter.hpp"
+
+namespace adit::codec {
+
+/// JSON (RFC 8259) as a pushdown automaton. What it lets through is stricter than what cJSON takes, and free
+/// of what cJSON does not keep: see rest_.
+class JsonSplitter final : public Splitter {
+ public:
+  /// `data` must outlive this.
+  JsonSplitter(Split split, std::size_t most_text, BulkData& data);
+
+  icd::Checked<void> feed(std::string_view bytes) override;
+  icd::Checked<Value> finish() override;
+  /// After the last feed: is the document whole?
+  icd::Checked<void> end();
+
+ private:
+  enum class Expect : std::uint8_t { Value, FirstElement, FirstKey, Key, Colon, Separator };
+  enum class Token : std::uint8_t { None, Key, String, Number, Literal };
+  enum class Diverted : std::uint8_t { No, Base64, Elements };
+
+  /// Each takes some of `in` (not empty) and says how much.
+  icd::Checked<std::size_t> step(std::string_view in);
+  icd::Checked<std::size_t> structure(std::string_view in);
+  icd::Checked<std::size_t> value(char first);
+  icd::Checked<std::size_t> separator(char c);
+  icd::Checked<std::size_t> string(std::string_view in);
+  icd::Checked<std::size_t> number(std::string_view in);
+  icd::Checked<std::size_t> literal(std::string_view in);
+
+  icd::Checked<std::size_t> open(char bracket);
+  icd::Checked<std::size_t> close(char bracket);
+  icd::Checked<std::size_t> begin_literal(std::string_view word);
+  icd::Checked<void> divert(char first);
+  icd::Checked<void> decode(std::string_view base64);
+  icd::Checked<void> string_ended();
+  icd::Checked<void> number_ended(std::optional<char> next);
+  icd::Checked<void> keep_number();
+  icd::Checked<void> divert_number();
+  void value_ended();
+  void keep(std::string_view raw) {
+    if (diverted_ == Diverted::No) rest_ += raw;
+  }
+  bool in_object() const { return depth_ > 0 && objects_[depth_ - 1]; }
+
+  icd::Refusal fault(std::string_view what) const { return fault_at(at_, what); }
+  static icd::Refusal fault_at(std::size_t at, std::string_view what);
+  icd::Refusal expected(std::string_view what, char got) const;
+
+  std::size_t most_text_;
+  BulkData& data_;
+  DataPath path_;
+
+  Expect expect_ = Expect::Value;
+  Token token_ = Token::None;
+  Diverted diverted_ = Diverted::No;
+  std::size_t depth_ = 0;
+  std::bitset<BodyDecoder::kDeepest> objects_;  // of the open brackets, which are braces
+  std::size_t at_ = 0;                          // bytes taken so far
+
+  JsonString string_;
+  std::string key_;  // its first characters
+  JsonNumber number_grammar_;
+  std::string number_;
+  std::size_t number_at_ = 0;
+  std::string_view word_;  // the part of the literal that must follow
+  Base64Decoder base64_;
+
+  /// The document without white space, with null for the map's data, with U+FFFF for the escape \u0000 (where
+  /// cJSON would end the string) and with numbers of at most 63 characters (cJSON cuts them there).
+  std::string rest_;
+};
+
+}  // namespace adit::codec

@@ -1,0 +1,90 @@
+// The JSON splitter's numbers, and the values that it diverts from the rest: the map's data.
+#include <charconv>
+#include <cmath>
+#include <cstdio>
+#include <cstdlib>
+
+#include "codec/json_splitter.hpp"
+
+namespace adit::codec {
+
+icd::Checked<void> JsonSplitter::divert(char first) {
+  if (diverted_ == Diverted::Elements) {
+    const auto bad = [&](std::string_view got) { return std::unexpected(data_.bad_element(got)); };
+    if (first == '"') return bad("a string");
+    if (first == '{') return bad("an object");
+    if (first == '[') return bad("an array");
+    if (first == 't' || first == 'f') return bad("true or false");
+    if (first == 'n') return bad("null");
+    return {};
+  }
+  if (auto only = data_.appear(); !only) return only;
+  if (first == '"' || first == '[') {
+    keep("null");
+    diverted_ = first == '"' ? Diverted::Base64 : Diverted::Elements;
+    data_.begin(first == '"' ? DataForm::Base64 : DataForm::Integers);
+  }
+  return {};
+}
+
+icd::Checked<void> JsonSplitter::decode(std::string_view base64) {
+  std::array<std::uint8_t, 6144> bytes;  // not cleared: this is the hot path
+  while (!base64.empty()) {
+    const auto size = base64_.decode(base64, bytes);
+    if (!size) return std::unexpected(bad_data(size.error()));
+    if (auto taken = data_.append(std::span(bytes).first(*size)); !taken) return taken;
+  }
+  return {};
+}
+
+icd::Checked<std::size_t> JsonSplitter::number(std::string_view in) {
+  const std::size_t taken = number_grammar_.next(in);
+  number_ += in.substr(0, taken);
+  if (taken < in.size()) {
+    if (auto ended = number_ended(in[taken]); !ended) return std::unexpected(ended.error());
+  }
+  return taken;
+}
+
+icd::Checked<void> JsonSplitter::number_ended(std::optional<char> next) {
+  if (!number_grammar_.complete()) return std::unexpected(fault_at(number_at_, "a number that is cut short"));
+  if (number_grammar_.zero() && next >= '0' && next <= '9') {
+    return std::unexpected(fault_at(number_at_, "a number with a leading zero"));
+  }
+  if (auto taken = diverted_ == Diverted::No ? keep_number() : divert_number(); !taken) return taken;
+  number_.clear();
+  value_ended();
+  return {};
+}
+
+icd::Checked<void> JsonSplitter::keep_number() {
+  constexpr std::size_t kSurelySmall = 15;  // characters: with an exponent looked for apart
+  constexpr std::size_t kMostOfCjson = 63;
+  if (number_.size() > kSurelySmall || number_.find_first_of("eE") != std::string::npos) {
+    const double value = std::strtod(number_.c_str(), nullptr);  // as cJSON will
+    if (std::isinf(value)) return std::unexpected(fault_at(number_at_, "a number too large for a double"));
+    if (number_.size() > kMostOfCjson) {
+      std::array<char, 32> text{};
+      std::snprintf(text.data(), text.size(), "%.17g", value);
+      number_ = text.data();
+    }
+  }
+  keep(number_);
+  return {};
+}
+
+icd::Checked<void> JsonSplitter::divert_number() {
+  const char* const first = number_.data();
+  const char* const last = first + number_.size();
+  int whole = 0;
+  if (const auto [end, error] = std::from_chars(first, last, whole); error == std::errc{} && end == last) {
+    return data_.append_element(whole, number_);
+  }
+  double value = 0;
+  if (const auto [end, error] = std::from_chars(first, last, value); error == std::errc{} && end == last) {
+    return data_.append_element(value, number_);
+  }
+  return std::unexpected(data_.bad_element(number_));  // neither fits: far out of range
+}
+
+}  // namespace adit::codec

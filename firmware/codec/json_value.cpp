@@ -1,0 +1,63 @@
+#include "codec/json_value.hpp"
+
+#include <cjson/cJSON.h>
+
+#include <cmath>
+#include <memory>
+#include <string_view>
+
+namespace adit::codec {
+namespace {
+
+std::string text_of(const char* text) {
+  constexpr std::string_view kStandsForNul = "\xEF\xBF\xBF";  // see JsonSplitter::rest_
+  std::string result(text);
+  for (std::size_t at = 0; (at = result.find(kStandsForNul, at)) != std::string::npos; ++at) {
+    result.replace(at, kStandsForNul.size(), 1, '\0');
+  }
+  return result;
+}
+
+Value number_of(double number) {
+  constexpr double kWholeUpTo = 9007199254740992;  // 2^53: a double holds every integer up to there
+  const bool whole = std::abs(number) <= kWholeUpTo && number == std::floor(number);
+  const bool negative_zero = number == 0 && std::signbit(number);
+  if (whole && !negative_zero) return {static_cast<std::int64_t>(number)};
+  return {number};
+}
+
+/// Recursion ends at BodyDecoder::kDeepest.
+Value value_of(const cJSON& item) {
+  if (cJSON_IsBool(&item)) return {static_cast<bool>(cJSON_IsTrue(&item))};
+  if (cJSON_IsNumber(&item)) return number_of(item.valuedouble);
+  if (cJSON_IsString(&item)) return {text_of(item.valuestring)};
+  if (cJSON_IsArray(&item)) {
+    Value::Array array;
+    for (const cJSON* element = item.child; element != nullptr; element = element->next) {
+      array.push_back(value_of(*element));
+    }
+    return {std::move(array)};
+  }
+  if (cJSON_IsObject(&item)) {
+    Value::Object object;
+    for (const cJSON* member = item.child; member != nullptr; member = member->next) {
+      object.emplace_back(text_of(member->string), value_of(*member));
+    }
+    return {std::move(object)};
+  }
+  return {};
+}
+
+}  // namespace
+
+icd::Checked<Value> json_value(const std::string& text) {
+  const std::unique_ptr<cJSON, decltype(&cJSON_Delete)> root(
+      cJSON_ParseWithLength(text.c_str(), text.size() + 1), &cJSON_Delete);
+  if (root == nullptr) {  // only for want of memory: the text is known to be well-formed
+    return std::unexpected(
+        icd::Refusal{icd::Status::InternalServerError, "the JSON document could not be parsed"});
+  }
+  return value_of(*root);
+}
+
+}  // namespace adit::codec

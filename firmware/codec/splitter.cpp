@@ -1,0 +1,35 @@
+#include "codec/splitter.hpp"
+
+#include "icd/sentence.hpp"
+
+namespace adit::codec {
+namespace {
+
+/// Gives each member of that name to `visit`; nothing where `value` is no object.
+template <class Visit>
+void each_member(Value& value, std::string_view name, const Visit& visit) {
+  auto* const object = std::get_if<Value::Object>(&value.is);
+  if (object == nullptr) return;
+  for (auto& [key, member] : *object) {
+    if (key == name) visit(member);
+  }
+}
+
+}  // namespace
+
+icd::Refusal bad_data(std::string_view why) {
+  return {icd::Status::UnprocessableEntity, icd::sentence("msg.data: ", why)};
+}
+
+icd::Refusal text_too_large(std::size_t most) {
+  return {icd::Status::ContentTooLarge,
+          icd::sentence("the document without its bulk data is larger than the ", most, " bytes taken")};
+}
+
+void mark_split_out(Value& root) {
+  // A body with a second "msg.data" has been refused, so that at most one is found.
+  each_member(root, "msg",
+              [](Value& msg) { each_member(msg, "data", [](Value& data) { data.is = Value::SplitOut{}; }); });
+}
+
+}  // namespace adit::codec

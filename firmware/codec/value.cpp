@@ -1,0 +1,15 @@
+#include "codec/value.hpp"
+
+#include <array>
+
+namespace adit::codec {
+
+const char* Value::kind() const {
+  constexpr std::array<const char*, 10> kKinds = {
+      "null",     "true or false", "a whole number",  "a whole number", "a number",
+      "a string", "a byte string", "split-out bytes", "an array",       "an object"};
+  static_assert(kKinds.size() == std::variant_size_v<decltype(is)>);
+  return kKinds[is.index()];
+}
+
+}  // namespace adit::codec

@@ -1,0 +1,164 @@
+#include "settings/settings.hpp"
+
+#include <algorithm>
+
+#include "codec/json.hpp"
+#include "settings/consistency.hpp"
+#include "settings/keys.hpp"
+#include "settings/nearest.hpp"
+
+namespace adit::settings {
+namespace {
+
+using codec::Value;
+
+/// What may stand under a name in an object of the settings file.
+struct Child {
+  std::string_view name;
+  const Key* key = nullptr;  // nothing for an object or a list
+  bool list = false;
+};
+
+/// The children of the object at `prefix` ("team.listen[]."), as the table of keys has them.
+std::vector<Child> children_of(std::string_view prefix) {
+  std::vector<Child> children;
+  for (const Key& key : keys()) {
+    if (!key.path.starts_with(prefix)) continue;
+    const std::string_view rest = key.path.substr(prefix.size());
+    const std::string_view name = rest.substr(0, rest.find_first_of(".["));
+    if (!children.empty() && children.back().name == name) continue;
+    children.push_back(
+        {name, rest == name ? &key : nullptr, rest.size() > name.size() && rest[name.size()] == '['});
+  }
+  return children;
+}
+
+/// A member's name for a path: as it is, or as a JSON string where it is no plain word.
+std::string shown_name(const std::string& name) {
+  const bool plain = !name.empty() && name.size() <= 48 && std::ranges::all_of(name, [](char c) {
+    return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || (c >= '0' && c <= '9') || c == '_' || c == '-';
+  });
+  return plain ? name : shown(Value{name});
+}
+
+class Reader {
+ public:
+  void read_object(const Value& value, const std::string& pattern, const std::string& path);
+
+  Settings settings;
+  std::vector<Error> errors;
+
+ private:
+  void read_child(const Child& child, const Value& value, const std::string& pattern,
+                  const std::string& path);
+  void read_list(const Value& value, const std::string& pattern, const std::string& path);
+  void tell_unknown(const std::string& name, const std::vector<Child>& children, const std::string& path);
+  void tell_missing(const Child& child, const std::string& pattern, const std::string& path);
+};
+
+std::string joined(const std::string& path, std::string_view name) {
+  return path.empty() ? std::string(name) : path + "." + std::string(name);
+}
+
+/// `pattern` is the path as the table writes it, "team.listen[]"; `path` as it is in the file,
+/// "team.listen[0]".
+void Reader::read_object(const Value& value, const std::string& pattern, const std::string& path) {
+  const auto* members = std::get_if<Value::Object>(&value.is);
+  if (members == nullptr) {
+    errors.push_back({path, "expected an object, got " + shown(value)});
+    return;
+  }
+  const auto children = children_of(pattern.empty() ? "" : pattern + ".");
+  std::vector<std::string_view> seen;
+  for (const auto& [name, member] : *members) {
+    const auto child = std::ranges::find(children, name, &Child::name);
+    if (child == children.end()) {
+      tell_unknown(name, children, path);
+    } else if (std::ranges::find(seen, child->name) != seen.end()) {
+      errors.push_back({joined(path, name), "given twice"});
+    } else {
+      seen.push_back(child->name);
+      read_child(*child, member, joined(pattern, name), joined(path, name));
+    }
+  }
+  for (const Child& child : children) {
+    if (std::ranges::find(seen, child.name) == seen.end()) {
+      tell_missing(child, joined(pattern, child.name), joined(path, child.name));
+    }
+  }
+}
+
+void Reader::read_child(const Child& child, const Value& value, const std::string& pattern,
+                        const std::string& path) {
+  if (child.list) {
+    read_list(value, pattern + "[]", path);
+  } else if (child.key == nullptr) {
+    read_object(value, pattern, path);
+  } else if (const auto done = put(child.key->kind, value, settings); !done) {
+    errors.push_back({path, done.error()});
+  }
+}
+
+/// team.listen is the only list there is.
+void Reader::read_list(const Value& value, const std::string& pattern, const std::string& path) {
+  static constexpr std::size_t kMost = 16;
+  const auto* items = std::get_if<Value::Array>(&value.is);
+  if (items == nullptr || items->empty() || items->size() > kMost) {
+    const std::string got = items == nullptr ? shown(value) : std::to_string(items->size());
+    errors.push_back({path, "expected a list of 1 to " + std::to_string(kMost) + " items, got " + got});
+    return;
+  }
+  for (std::size_t i = 0; i < items->size(); ++i) {
+    settings.team.listen.emplace_back();
+    read_object((*items)[i], pattern, path + "[" + std::to_string(i) + "]");
+  }
+}
+
+void Reader::tell_unknown(const std::string& name, const std::vector<Child>& children,
+                          const std::string& path) {
+  std::vector<std::string_view> known;
+  std::string list;
+  for (const Child& child : children) {
+    known.push_back(child.name);
+    list.append(list.empty() ? "" : ", ").append(child.name);
+  }
+  std::string what = "no such key";
+  if (const auto meant = nearest(name, known)) what.append("; did you mean ").append(*meant).append("?");
+  errors.push_back({joined(path, shown_name(name)), what + " (keys here: " + list + ")"});
+}
+
+/// Names each required key, so that one look tells all that is to be written.
+void Reader::tell_missing(const Child& child, const std::string& pattern, const std::string& path) {
+  if (child.list) {
+    errors.push_back({path, "missing; expected a list of at least one item"});
+  } else if (child.key == nullptr) {
+    read_object(Value{Value::Object{}}, pattern, path);
+  } else if (child.key->required) {
+    errors.push_back({path, "missing; expected " + range_of(child.key->kind)});
+  }
+}
+
+/// Where the file is of another version, nothing else that this one would say of it is worth reading.
+bool only_the_version(const std::vector<Error>& errors, const Value& root) {
+  const auto* members = std::get_if<Value::Object>(&root.is);
+  const auto is_version = [](const std::string& name) { return name == "version"; };
+  return members != nullptr && std::ranges::any_of(*members, is_version, &Value::Member::first) &&
+         std::ranges::any_of(errors, is_version, &Error::path);
+}
+
+}  // namespace
+
+std::expected<Settings, std::vector<Error>> parse(std::string_view json) {
+  const auto root = codec::parse_json(json);
+  if (!root) return std::unexpected(std::vector<Error>{{"", "not JSON: " + root.error()}});
+  Reader reader;
+  reader.read_object(*root, "", "");
+  if (only_the_version(reader.errors, *root)) {
+    std::erase_if(reader.errors, [](const Error& error) { return error.path != "version"; });
+  }
+  if (reader.errors.empty()) reader.errors = contradictions(reader.settings);
+  if (!reader.errors.empty()) return std::unexpected(std::move(reader.errors));
+  return std::move(reader.settings);
+}
+
+}  // namespace adit::settings

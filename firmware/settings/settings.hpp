@@ -19,7 +19,7 @@ struct Address {
   friend bool operator==(const Address&, const Address&) = default;
 };
 
-/// Requests a second, each above 0 and at most 1000.
+/// Requests a second, each from 0.001 to 1000.
 struct Rates {
   double reports_hz = 1, status_hz = 1, map_hz = 1, state_hz = 1, markers_hz = 1;
 };

@@ -1,0 +1,104 @@
+#include "settings/keys.hpp"
+
+namespace adit::settings {
+namespace {
+
+// Names a member of Settings, whether const or not.
+#define MEMBER(path) [](auto& s) -> auto& { return s.path; }
+
+constexpr bool kRequired = true;
+constexpr std::uint64_t kMiB = 1u << 20;
+
+const Key kKeys[] = {
+    {"version", "The layout of this file.", Version{}, kRequired},
+
+    {"command_post.scoring.address", "The scoring endpoint, as posted in the Base Station area (ICD 3).",
+     text<MEMBER(command_post.scoring.address)>(Form::Address), kRequired},
+    {"command_post.scoring.port", "Its port.", whole<MEMBER(command_post.scoring.port)>(1, 65535), kRequired},
+    {"command_post.mapping.address", "The mapping endpoint.",
+     text<MEMBER(command_post.mapping.address)>(Form::Address), kRequired},
+    {"command_post.mapping.port", "Its port.", whole<MEMBER(command_post.mapping.port)>(1, 65535), kRequired},
+    {"command_post.interface",
+     "The network interface to the Command Post (darpa0). Nothing else is used to reach it; empty: whichever "
+     "the routes say.",
+     text<MEMBER(command_post.interface)>(Form::Interface)},
+    {"command_post.budget_mbit",
+     "Megabits a second for both endpoints together (ICD 3). Maps are paced within it, so that a report "
+     "never "
+     "waits behind one.",
+     real<MEMBER(command_post.budget_mbit)>(0.1, 100000)},
+    {"command_post.rates.reports_hz", "Artifact reports sent a second, at most (ICD 4.1).",
+     real<MEMBER(command_post.rates.reports_hz)>(0.001, 1000)},
+    {"command_post.rates.status_hz", "Times a second that the run's status is asked for, at most.",
+     real<MEMBER(command_post.rates.status_hz)>(0.001, 1000)},
+    {"command_post.rates.map_hz", "Maps sent a second, at most.",
+     real<MEMBER(command_post.rates.map_hz)>(0.001, 1000)},
+    {"command_post.rates.state_hz", "State updates sent a second, at most; each holds all robots.",
+     real<MEMBER(command_post.rates.state_hz)>(0.001, 1000)},
+    {"command_post.rates.markers_hz", "Markers updates sent a second, at most.",
+     real<MEMBER(command_post.rates.markers_hz)>(0.001, 1000)},
+    {"command_post.timeouts.connect_ms", "How long connecting may take.",
+     whole<MEMBER(command_post.timeouts.connect)>(100, 60000)},
+    {"command_post.timeouts.scoring_answer_ms",
+     "How long the scoring endpoint may be silent before a report counts as in doubt.",
+     whole<MEMBER(command_post.timeouts.scoring_answer)>(100, 600000)},
+    {"command_post.timeouts.mapping_answer_ms",
+     "How long the mapping endpoint may be silent before an update is sent again.",
+     whole<MEMBER(command_post.timeouts.mapping_answer)>(100, 600000)},
+
+    {"team.listen[].address",
+     "Where the team's robots and stations reach Adit; 0.0.0.0: every address of team.interface.",
+     text<MEMBER(team.listen.back().address)>(Form::Address), kRequired},
+    {"team.listen[].port", "Its port; 0: any free one.", whole<MEMBER(team.listen.back().port)>(0, 65535),
+     kRequired},
+    {"team.interface",
+     "The network interface to the team (team0). Nothing that comes by another is answered; empty: any.",
+     text<MEMBER(team.interface)>(Form::Interface)},
+    {"team.require_token",
+     "Whether a client must present the team's token or one of the Command Post's; if not, any client of the "
+     "team's network is served.",
+     flag<MEMBER(team.require_token)>()},
+    {"team.connections", "Connections of the team at once, at most.",
+     whole<MEMBER(team.connections)>(1, 1024)},
+    {"team.connections_per_address", "Connections from one address at once, at most.",
+     whole<MEMBER(team.connections_per_address)>(1, 1024)},
+
+    {"reports.answer_within_ms",
+     "How long a client waits for the answer to its report, at most; then it is told 503 and that the report "
+     "is kept.",
+     whole<MEMBER(reports.answer_within)>(100, 600000)},
+
+    {"queues.map_bytes", "Maps that may wait, in bytes; above it a map is refused with 429.",
+     whole<MEMBER(queues.map_bytes)>(kMiB, 16384 * kMiB)},
+    {"queues.merge_bytes", "Points that waiting clouds are merged into, at most, in bytes; 0: never merged.",
+     whole<MEMBER(queues.merge_bytes)>(0, 256 * kMiB)},
+    {"queues.markers_per_message", "Markers in one update, at most.",
+     whole<MEMBER(queues.markers_per_message)>(1, 100000)},
+
+    {"rules.rewrite_frame_id", "Take any frame_id and send \"darpa\"; if not, others are refused with 422.",
+     flag<MEMBER(rules.rewrite_frame_id)>()},
+    {"rules.forward_unknown_types",
+     "Send artifact types that are none of the ICD's ten; if not, they are refused with 422.",
+     flag<MEMBER(rules.forward_unknown_types)>()},
+    {"rules.map_bytes", "The largest data of one map once inflated, in bytes; above it 413.",
+     whole<MEMBER(rules.map_bytes)>(1024, 1024 * kMiB)},
+
+    {"panel.chip", "The GPIO chip of the lights (gpiochip0); empty: a simulated panel.",
+     text<MEMBER(panel.chip)>(Form::Chip)},
+    {"panel.health", "The line of the health light; empty: there is none.",
+     text<MEMBER(panel.health)>(Form::Line)},
+    {"panel.scoring", "The line of the scoring light.", text<MEMBER(panel.scoring)>(Form::Line)},
+    {"panel.mapping", "The line of the mapping light.", text<MEMBER(panel.mapping)>(Form::Line)},
+    {"panel.attention", "The line of the attention light.", text<MEMBER(panel.attention)>(Form::Line)},
+    {"panel.active_low", "Whether a light is lit by driving its line low.", flag<MEMBER(panel.active_low)>()},
+};
+
+#undef MEMBER
+
+}  // namespace
+
+std::span<const Key> keys() {
+  return kKeys;
+}
+
+}  // namespace adit::settings

@@ -1,0 +1,168 @@
+#include "settings/kinds.hpp"
+
+#include <arpa/inet.h>
+
+#include <charconv>
+#include <cmath>
+#include <optional>
+
+#include "codec/json.hpp"
+
+namespace adit::settings {
+namespace {
+
+template <class... Cases>
+struct Each : Cases... {
+  using Cases::operator()...;
+};
+
+std::optional<std::uint64_t> whole_number(const codec::Value& value) {
+  if (const auto* number = std::get_if<std::uint64_t>(&value.is)) return *number;
+  if (const auto* number = std::get_if<std::int64_t>(&value.is)) {
+    return *number < 0 ? std::nullopt : std::optional(static_cast<std::uint64_t>(*number));
+  }
+  if (const auto* number = std::get_if<double>(&value.is)) {  // 8000.0 and 8e3 are whole, too
+    const bool exact = *number >= 0 && *number <= 0x1p53 && std::trunc(*number) == *number;
+    return exact ? std::optional(static_cast<std::uint64_t>(*number)) : std::nullopt;
+  }
+  return std::nullopt;
+}
+
+std::optional<double> real_number(const codec::Value& value) {
+  if (const auto* number = std::get_if<double>(&value.is)) return *number;
+  if (const auto* number = std::get_if<std::int64_t>(&value.is)) return static_cast<double>(*number);
+  if (const auto* number = std::get_if<std::uint64_t>(&value.is)) return static_cast<double>(*number);
+  return std::nullopt;
+}
+
+bool is_address(const std::string& text) {
+  if (text.find('\0') != std::string::npos) return false;
+  in6_addr parsed{};
+  return inet_pton(AF_INET, text.c_str(), &parsed) == 1 || inet_pton(AF_INET6, text.c_str(), &parsed) == 1;
+}
+
+/// At most `most` visible ASCII characters and none of `without`.
+bool is_name(const std::string& text, std::size_t most, std::string_view without = "") {
+  if (text.size() > most || text.find_first_of(without) != std::string::npos) return false;
+  for (const char c : text) {
+    if (c < '!' || c > '~') return false;
+  }
+  return true;
+}
+
+bool fits(Form form, const std::string& text) {
+  switch (form) {
+    case Form::Address:
+      return is_address(text);
+    case Form::Interface:
+      return is_name(text, 15, "/:") && text != "." && text != "..";  // the kernel's dev_valid_name()
+    case Form::Chip:
+      return is_name(text, 64);
+    case Form::Line:
+      return is_name(text, 31);  // GPIO_MAX_NAME_SIZE in linux/gpio.h, less its NUL
+  }
+  return false;
+}
+
+std::string range_of(Form form) {
+  switch (form) {
+    case Form::Address:
+      return "an IPv4 or IPv6 address";
+    case Form::Interface:
+      return "an interface's name of at most 15 characters, or \"\"";
+    case Form::Chip:
+      return "a GPIO chip's name or path, or \"\"";
+    case Form::Line:
+      return "a GPIO line's name of at most 31 characters, or \"\"";
+  }
+  return "";
+}
+
+std::string digits(double number) {
+  char text[400];  // the longest double in fixed notation has 309 digits before its point
+  return {text, std::to_chars(text, text + sizeof text, number, std::chars_format::fixed).ptr};
+}
+
+std::unexpected<std::string> expected_but(const std::string& expected, const codec::Value& value) {
+  return std::unexpected("expected " + expected + ", got " + shown(value));
+}
+
+}  // namespace
+
+std::string shown(const codec::Value& value) {
+  static constexpr std::size_t kLongest = 48;
+  if (std::holds_alternative<codec::Value::Array>(value.is) ||
+      std::holds_alternative<codec::Value::Object>(value.is)) {
+    return value.kind();
+  }
+  std::string text = codec::write_json(value);
+  if (text.size() > kLongest) text = text.substr(0, kLongest) + "...";
+  return text;
+}
+
+std::string range_of(const Kind& kind) {
+  return std::visit(
+      Each{[](const Flag&) { return std::string("true or false"); },
+           [](const Whole& k) { return std::to_string(k.least) + " to " + std::to_string(k.most); },
+           [](const Real& k) { return digits(k.least) + " to " + digits(k.most); },
+           [](const Text& k) { return range_of(k.form); }, [](const Version&) { return std::string("1"); }},
+      kind);
+}
+
+std::string written(const Kind& kind, const Settings& settings) {
+  return std::visit(Each{[&](const Flag& k) { return std::string(k.get(settings) ? "true" : "false"); },
+                         [&](const Whole& k) { return std::to_string(k.get(settings)); },
+                         [&](const Real& k) { return digits(k.get(settings)); },
+                         [&](const Text& k) { return codec::write_json({k.get(settings)}); },
+                         [](const Version&) { return std::string("1"); }},
+                    kind);
+}
+
+namespace {
+
+using Put = std::expected<void, std::string>;
+
+Put put_one(const Flag& kind, const codec::Value& value, Settings& settings) {
+  const auto* flag = std::get_if<bool>(&value.is);
+  if (flag == nullptr) return expected_but("true or false", value);
+  kind.put(settings, *flag);
+  return {};
+}
+
+Put put_one(const Whole& kind, const codec::Value& value, Settings& settings) {
+  const auto number = whole_number(value);
+  if (!number || *number < kind.least || *number > kind.most) {
+    return expected_but("a whole number from " + range_of(kind), value);
+  }
+  kind.put(settings, *number);
+  return {};
+}
+
+Put put_one(const Real& kind, const codec::Value& value, Settings& settings) {
+  const auto number = real_number(value);
+  if (!number || *number < kind.least || *number > kind.most) {
+    return expected_but("a number from " + range_of(kind), value);
+  }
+  kind.put(settings, *number);
+  return {};
+}
+
+Put put_one(const Text& kind, const codec::Value& value, Settings& settings) {
+  const auto* text = std::get_if<std::string>(&value.is);
+  if (text == nullptr || !fits(kind.form, *text)) return expected_but(range_of(kind.form), value);
+  kind.put(settings, *text);
+  return {};
+}
+
+Put put_one(const Version& kind, const codec::Value& value, Settings&) {
+  if (whole_number(value) != 1u) return expected_but(range_of(kind), value);
+  return {};
+}
+
+}  // namespace
+
+std::expected<void, std::string> put(const Kind& kind, const codec::Value& value, Settings& settings) {
+  return std::visit([&](const auto& k) { return put_one(k, value, settings); }, kind);
+}
+
+}  // namespace adit::settings

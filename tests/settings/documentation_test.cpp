@@ -1,0 +1,61 @@
+#include <gtest/gtest.h>
+
+#include <fstream>
+#include <iterator>
+#include <string>
+
+#include "codec/json.hpp"
+#include "settings/keys.hpp"
+#include "settings/reference.hpp"
+#include "settings/settings.hpp"
+
+namespace adit::settings {
+namespace {
+
+std::string text_of(const std::string& file) {
+  std::ifstream stream(ADIT_SOURCE_DIR "/firmware/settings/" + file);
+  EXPECT_TRUE(stream.is_open()) << file;
+  return {std::istreambuf_iterator<char>(stream), {}};
+}
+
+TEST(SettingsReadme, HoldsTheTableOfAllKeysAsTheParserHasThem) {
+  EXPECT_NE(text_of("README.md").find(reference()), std::string::npos)
+      << "put this table into firmware/settings/README.md:\n"
+      << reference();
+}
+
+TEST(SettingsReadme, ShowsAnExampleThatWorks) {
+  const std::string text = text_of("README.md");
+  const auto begin = text.find("```json\n") + 8;
+  ASSERT_TRUE(parse(text.substr(begin, text.find("```", begin) - begin)).has_value());
+}
+
+TEST(SettingsExample, Works) {
+  const auto settings = parse(text_of("example.json"));
+  ASSERT_TRUE(settings.has_value()) << settings.error().front().sentence();
+  EXPECT_EQ(settings->command_post.interface, "darpa0");
+}
+
+/// {"command_post": {"rates": {"map_hz": 1}}} for "command_post.rates.map_hz".
+codec::Value nested(std::string_view path, codec::Value value) {
+  const auto dot = path.rfind('.');
+  const bool last = dot == std::string_view::npos;
+  codec::Value object{
+      codec::Value::Object{{std::string(last ? path : path.substr(dot + 1)), std::move(value)}}};
+  return last ? object : nested(path.substr(0, dot), std::move(object));
+}
+
+TEST(SettingsKeys, EachTakeTheirOwnDefault) {
+  const Settings defaults;
+  for (const Key& key : keys()) {
+    if (key.required) continue;
+    const auto value = codec::parse_json(written(key.kind, defaults));
+    ASSERT_TRUE(value.has_value()) << key.path;
+    const auto settings = parse(codec::write_json(nested(key.path, *value)));
+    ASSERT_FALSE(settings.has_value());  // version and addresses are missing
+    for (const Error& error : settings.error()) EXPECT_NE(error.path, key.path) << error.sentence();
+  }
+}
+
+}  // namespace
+}  // namespace adit::settings

@@ -1,0 +1,180 @@
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <span>
+
+#include "settings/sample.hpp"
+#include "settings/settings.hpp"
+
+namespace adit::settings {
+namespace {
+
+using testing::AllOf;
+using testing::ElementsAre;
+using testing::HasSubstr;
+using testing::SizeIs;
+
+std::vector<std::string> errors_of(const std::string& json) {
+  const auto settings = parse(json);
+  std::vector<std::string> sentences;
+  if (settings) return sentences;
+  for (const Error& error : settings.error()) sentences.push_back(error.sentence());
+  return sentences;
+}
+
+std::string scoring(const std::string& address, const std::string& port) {
+  return R"({"version": 1, "command_post": {"scoring": {"address": )" + address + R"(, "port": )" + port +
+         R"(}, "mapping": {"address": "10.100.1.201", "port": 8000}},)"
+         R"("team": {"listen": [{"address": "0.0.0.0", "port": 8000}]}})";
+}
+
+struct Case {
+  std::string json;
+  std::string sentence;
+};
+
+const Case kValues[] = {
+    {scoring(R"("10.100.1.200")", "99999"),
+     "command_post.scoring.port: expected a whole number from 1 to 65535, got 99999"},
+    {scoring(R"("10.100.1.200")", "0"),
+     "command_post.scoring.port: expected a whole number from 1 to 65535, got 0"},
+    {scoring(R"("10.100.1.200")", "-1"),
+     "command_post.scoring.port: expected a whole number from 1 to 65535, got -1"},
+    {scoring(R"("10.100.1.200")", "80.5"),
+     "command_post.scoring.port: expected a whole number from 1 to 65535, got 80.5"},
+    {scoring(R"("10.100.1.200")", R"("8000")"),
+     "command_post.scoring.port: expected a whole number from 1 to 65535, got \"8000\""},
+    {scoring(R"("10.100.1")", "8000"),
+     "command_post.scoring.address: expected an IPv4 or IPv6 address, got \"10.100.1\""},
+    {scoring(R"("10.100.1.200\u0000x")", "8000"),
+     "command_post.scoring.address: expected an IPv4 or IPv6 address, got \"10.100.1.200\\u0000x\""},
+    {scoring(R"("scoring.example")", "8000"),
+     "command_post.scoring.address: expected an IPv4 or IPv6 address, got \"scoring.example\""},
+    {scoring("null", "8000"), "command_post.scoring.address: expected an IPv4 or IPv6 address, got null"},
+    {sample(R"(, "budget_mbit": 0)"),
+     "command_post.budget_mbit: expected a number from 0.1 to 100000, got 0"},
+    {sample(R"(, "rates": {"map_hz": 0})"),
+     "command_post.rates.map_hz: expected a number from 0.001 to 1000, got 0"},
+    {sample(R"(, "rates": {"map_hz": [1]})"),
+     "command_post.rates.map_hz: expected a number from 0.001 to 1000, got an array"},
+    {sample(R"(, "rates": 1)"), "command_post.rates: expected an object, got 1"},
+    {sample(R"(, "interface": "sixteen_letters_")"),
+     "command_post.interface: expected an interface's name of at most 15 characters, or \"\", got "
+     "\"sixteen_letters_\""},
+    {sample(R"(, "interface": "../x")"),
+     "command_post.interface: expected an interface's name of at most 15 characters, or \"\", got "
+     "\"../x\""},
+    {sample("", R"(, "require_token": "no")"), "team.require_token: expected true or false, got \"no\""},
+    {sample("", "", R"(, "panel": {"chip": "gpiochip0", "health": "a line"})"),
+     "panel.health: expected a GPIO line's name of at most 31 characters, or \"\", got \"a line\""}};
+
+const Case kKeys[] = {
+    {sample(R"(, "intrface": "darpa0")"),
+     "command_post.intrface: no such key; did you mean interface? (keys here: scoring, mapping, "
+     "interface, budget_mbit, rates, timeouts)"},
+    {sample(R"(, "timeouts": {"connect": 5})"),
+     "command_post.timeouts.connect: no such key; did you mean connect_ms? (keys here: connect_ms, "
+     "scoring_answer_ms, mapping_answer_ms)"},
+    {sample("", "", R"(, "rules": {"zzz": 1})"),
+     "rules.zzz: no such key (keys here: rewrite_frame_id, forward_unknown_types, map_bytes)"},
+    {sample("", "", R"(, "rules": {"a\u001b[2Jb": 1})"),
+     "rules.\"a\\u001b[2Jb\": no such key (keys here: rewrite_frame_id, forward_unknown_types, "
+     "map_bytes)"},
+    {sample("", R"(, "connections": 1, "connections": 2)"), "team.connections: given twice"},
+    {sample("", R"(, "listen": [{"address": "::", "port": 1}])"), "team.listen: given twice"}};
+
+const Case kContradictions[] = {
+    {sample("", R"(, "connections": 8)"),
+     "team.connections_per_address: expected at most team.connections, 8, got 16"},
+    {sample("", "", R"(, "panel": {"health": "H"})"),
+     "panel.health: names a line, but panel.chip names no chip"},
+    {sample("", "", R"(, "panel": {"chip": "gpiochip0"})"),
+     "panel.chip: names a chip, but no light has a line"},
+    {sample("", "", R"(, "panel": {"chip": "gpiochip0", "health": "H", "mapping": "H"})"),
+     "panel.mapping: the same line as panel.health"}};
+
+void expect(std::span<const Case> cases) {
+  for (const Case& row : cases) EXPECT_THAT(errors_of(row.json), ElementsAre(row.sentence));
+}
+
+TEST(SettingsErrors, NameTheKeyWhatWasExpectedAndWhatCame) {
+  expect(kValues);
+}
+TEST(SettingsErrors, NameAKeyThatIsNoneOrIsGivenTwice) {
+  expect(kKeys);
+}
+TEST(SettingsErrors, NameSettingsThatContradictOthers) {
+  expect(kContradictions);
+}
+
+TEST(SettingsErrors, ComeAllAtOnceInTheOrderOfTheFile) {
+  EXPECT_THAT(errors_of(R"({
+      "version": 1,
+      "panel": {"active_low": 1},
+      "team": {"listen": [{"address": "here", "port": 8000}, {"address": "::", "prt": 8000}]},
+      "command_post": {"scoring": {"port": 0}}})"),
+              ElementsAre("panel.active_low: expected true or false, got 1",
+                          "team.listen[0].address: expected an IPv4 or IPv6 address, got \"here\"",
+                          "team.listen[1].prt: no such key; did you mean port? (keys here: address, port)",
+                          "team.listen[1].port: missing; expected 0 to 65535",
+                          "command_post.scoring.port: expected a whole number from 1 to 65535, got 0",
+                          "command_post.scoring.address: missing; expected an IPv4 or IPv6 address",
+                          "command_post.mapping.address: missing; expected an IPv4 or IPv6 address",
+                          "command_post.mapping.port: missing; expected 1 to 65535"));
+}
+
+TEST(SettingsErrors, NameEveryRequiredKeyOfAnEmptyFile) {
+  EXPECT_THAT(errors_of("{}"),
+              ElementsAre("version: missing; expected 1", HasSubstr("command_post.scoring.address"),
+                          HasSubstr("command_post.scoring.port"), HasSubstr("command_post.mapping.address"),
+                          HasSubstr("command_post.mapping.port"), HasSubstr("team.listen")));
+}
+
+TEST(SettingsErrors, OfAnotherVersionAreThatAlone) {
+  EXPECT_THAT(errors_of(R"({"version": 2, "profiles": []})"), ElementsAre("version: expected 1, got 2"));
+  EXPECT_THAT(errors_of(R"({"profiles": [], "version": "1"})"),
+              ElementsAre("version: expected 1, got \"1\""));
+}
+
+TEST(SettingsErrors, WithoutAVersionAreToldBesideIt) {
+  EXPECT_THAT(errors_of(R"({"profiles": []})"), SizeIs(testing::Gt(2)));
+}
+
+TEST(SettingsErrors, OfWhatIsNoJsonSayWhereItEnds) {
+  for (const std::string json :
+       {"", "{", "{\"version\": 01}", "{} x", "\xef\xbb\xbf{}", "{\"version\": 1,}"}) {
+    EXPECT_THAT(errors_of(json), ElementsAre(HasSubstr("not JSON: "))) << json;
+  }
+  EXPECT_THAT(errors_of("[]"), ElementsAre("expected an object, got an array"));
+}
+
+TEST(SettingsErrors, RefuseAListOfNoneAndOfTooMany) {
+  const std::string before = R"({"version": 1, "command_post": {"scoring": {"address": "::1", "port": 1},)"
+                             R"("mapping": {"address": "::1", "port": 2}}, "team": {"listen": )";
+  EXPECT_THAT(errors_of(before + "[]}}"),
+              ElementsAre("team.listen: expected a list of 1 to 16 items, got 0"));
+  EXPECT_THAT(errors_of(before + "{}}}"),
+              ElementsAre("team.listen: expected a list of 1 to 16 items, got an object"));
+  std::string items = R"([{"address": "::2", "port": 0})";
+  for (int i = 0; i < 16; ++i) items += R"(, {"address": "::2", "port": 0})";
+  EXPECT_THAT(errors_of(before + items + "]}}"),
+              ElementsAre("team.listen: expected a list of 1 to 16 items, got 17"));
+}
+
+TEST(SettingsErrors, RefuseToListenTwiceAtOneAddress) {
+  const std::string before = R"({"version": 1, "command_post": {"scoring": {"address": "::1", "port": 1},)"
+                             R"("mapping": {"address": "::1", "port": 2}}, "team": {"listen": )";
+  EXPECT_THAT(errors_of(before + R"([{"address": "::2", "port": 9}, {"address": "::2", "port": 9}]}})"),
+              ElementsAre("team.listen[1]: the same as team.listen[0]"));
+  EXPECT_THAT(errors_of(before + R"([{"address": "::1", "port": 2}]}})"),
+              ElementsAre(HasSubstr("team.listen[0]: the same as an endpoint of the Command Post")));
+}
+
+TEST(SettingsErrors, NeverShowMoreOfAValueThanALine) {
+  const auto errors = errors_of(sample(R"(, "interface": ")" + std::string(100000, 'x') + "\""));
+  ASSERT_THAT(errors, SizeIs(1));
+  EXPECT_THAT(errors[0], AllOf(HasSubstr("xxx..."), SizeIs(testing::Lt(200))));
+}
+
+}  // namespace
+}  // namespace adit::settings

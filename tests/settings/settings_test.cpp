@@ -1,0 +1,95 @@
+#include "settings/settings.hpp"
+
+#include <gtest/gtest.h>
+
+#include "settings/sample.hpp"
+
+namespace adit::settings {
+namespace {
+
+using std::chrono::milliseconds;
+
+Settings parsed(const std::string& json) {
+  auto settings = parse(json);
+  if (!settings) {
+    for (const Error& error : settings.error()) ADD_FAILURE() << error.sentence();
+    return {};
+  }
+  return *settings;
+}
+
+TEST(Settings, NeedOnlyTheAddresses) {
+  const Settings settings = parsed(sample());
+  EXPECT_EQ(settings.command_post.scoring, (Address{"10.100.1.200", 8000}));
+  EXPECT_EQ(settings.command_post.mapping, (Address{"10.100.1.201", 8001}));
+  EXPECT_EQ(settings.team.listen, (std::vector<Address>{{"0.0.0.0", 8000}}));
+  EXPECT_EQ(settings.command_post.interface, "");
+  EXPECT_EQ(settings.command_post.budget_mbit, 100);
+  EXPECT_EQ(settings.command_post.rates.map_hz, 1);
+  EXPECT_EQ(settings.team.require_token, true);
+  EXPECT_EQ(settings.panel.chip, "");
+}
+
+TEST(Settings, SetEveryMemberByItsKey) {
+  const Settings settings = parsed(R"({
+    "version": 1,
+    "command_post": {
+      "scoring": {"address": "fd00::1", "port": 1}, "mapping": {"address": "::1", "port": 65535},
+      "interface": "darpa0", "budget_mbit": 12.5,
+      "rates": {"reports_hz": 2, "status_hz": 3, "map_hz": 0.5, "state_hz": 5, "markers_hz": 6},
+      "timeouts": {"connect_ms": 101, "scoring_answer_ms": 102, "mapping_answer_ms": 103}},
+    "team": {
+      "listen": [{"address": "10.0.0.1", "port": 80}, {"address": "fd00::2", "port": 0}],
+      "interface": "team0", "require_token": false, "connections": 40, "connections_per_address": 4},
+    "reports": {"answer_within_ms": 5000},
+    "queues": {"map_bytes": 2000000, "merge_bytes": 0, "markers_per_message": 7},
+    "rules": {"rewrite_frame_id": true, "forward_unknown_types": true, "map_bytes": 4096},
+    "panel": {"chip": "/dev/gpiochip1", "health": "H", "scoring": "S", "mapping": "M", "attention": "A",
+              "active_low": true}})");
+  const CommandPost& post = settings.command_post;
+  EXPECT_EQ(post.scoring, (Address{"fd00::1", 1}));
+  EXPECT_EQ(post.mapping, (Address{"::1", 65535}));
+  EXPECT_EQ(post.interface, "darpa0");
+  EXPECT_EQ(post.budget_mbit, 12.5);
+  EXPECT_EQ(post.rates.reports_hz, 2);
+  EXPECT_EQ(post.rates.status_hz, 3);
+  EXPECT_EQ(post.rates.map_hz, 0.5);
+  EXPECT_EQ(post.rates.state_hz, 5);
+  EXPECT_EQ(post.rates.markers_hz, 6);
+  EXPECT_EQ(post.timeouts.connect, milliseconds(101));
+  EXPECT_EQ(post.timeouts.scoring_answer, milliseconds(102));
+  EXPECT_EQ(post.timeouts.mapping_answer, milliseconds(103));
+  EXPECT_EQ(settings.team.listen, (std::vector<Address>{{"10.0.0.1", 80}, {"fd00::2", 0}}));
+  EXPECT_EQ(settings.team.interface, "team0");
+  EXPECT_FALSE(settings.team.require_token);
+  EXPECT_EQ(settings.team.connections, 40u);
+  EXPECT_EQ(settings.team.connections_per_address, 4u);
+  EXPECT_EQ(settings.reports.answer_within, milliseconds(5000));
+  EXPECT_EQ(settings.queues.map_bytes, 2000000u);
+  EXPECT_EQ(settings.queues.merge_bytes, 0u);
+  EXPECT_EQ(settings.queues.markers_per_message, 7u);
+  EXPECT_TRUE(settings.rules.rewrite_frame_id);
+  EXPECT_TRUE(settings.rules.forward_unknown_types);
+  EXPECT_EQ(settings.rules.map_bytes, 4096u);
+  EXPECT_EQ(settings.panel.chip, "/dev/gpiochip1");
+  EXPECT_EQ(settings.panel.health, "H");
+  EXPECT_EQ(settings.panel.scoring, "S");
+  EXPECT_EQ(settings.panel.mapping, "M");
+  EXPECT_EQ(settings.panel.attention, "A");
+  EXPECT_TRUE(settings.panel.active_low);
+}
+
+TEST(Settings, TakeAWholeNumberHoweverItIsWritten) {
+  for (const std::string number : {"40", "40.0", "4e1", "4.0E+1"}) {
+    EXPECT_EQ(parsed(sample("", R"(, "connections": )" + number)).team.connections, 40u) << number;
+  }
+}
+
+TEST(Settings, TakeTheEndsOfEveryRange) {
+  EXPECT_EQ(parsed(sample(R"(, "rates": {"map_hz": 0.001})")).command_post.rates.map_hz, 0.001);
+  EXPECT_EQ(parsed(sample(R"(, "rates": {"map_hz": 1000})")).command_post.rates.map_hz, 1000);
+  EXPECT_EQ(parsed(sample(R"(, "interface": "exactly15chars_")")).command_post.interface, "exactly15chars_");
+}
+
+}  // namespace
+}  // namespace adit::settings

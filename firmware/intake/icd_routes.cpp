@@ -1,0 +1,130 @@
+#include "intake/icd_routes.hpp"
+
+#include <algorithm>
+#include <string>
+#include <utility>
+
+#include "codec/body_decoder.hpp"
+#include "icd/sentence.hpp"
+#include "intake/map_upload.hpp"
+#include "intake/small_upload.hpp"
+#include "intake/visit.hpp"
+
+namespace adit::intake {
+namespace {
+
+constexpr std::size_t kSmallBody = codec::Limits{}.text_bytes;
+
+/// A field's value for a sentence.
+std::string shown(std::string_view text) {
+  return text.empty() ? "none" : icd::in_quotes(text);
+}
+
+/// GET /api/status. A body, which means nothing there, is read away.
+class StatusVisit final : public Exchange {
+ public:
+  explicit StatusVisit(Visit visit) : visit_(std::move(visit)) {}
+  bool on_body(std::span<const std::uint8_t>) override { return true; }
+  void on_end() override { visit_.desk.status(visit_.sender, visit_.responder); }
+
+ private:
+  Visit visit_;
+};
+
+/// ICD 4: JSON or CBOR for mapping, JSON alone for scoring.
+icd::Checked<codec::BodyKind> kind_of(icd::Uri uri, const RequestHead& head) {
+  const std::string_view type = head.header("Content-Type");
+  const auto format = codec::format_of(type);
+  const bool scoring = uri == icd::Uri::ArtifactReports;
+  if (!format || (scoring && *format != codec::Format::Json)) {
+    const std::string_view expected = scoring ? "application/json" : "application/json or application/cbor";
+    return icd::unprocessable("Content-Type: expected ", expected, ", got ", shown(type));
+  }
+  const std::string_view encoding = head.header("Content-Encoding");
+  const auto coding = codec::coding_of(encoding);
+  if (!coding) {
+    return icd::unprocessable("Content-Encoding: expected gzip, deflate or none, got ", shown(encoding));
+  }
+  return codec::BodyKind{.format = *format, .coding = *coding};
+}
+
+}  // namespace
+
+IcdRoutes::IcdRoutes(IcdOptions options, Desk& desk, loop::Workers& workers, Handler& other)
+    : options_(std::move(options)),
+      desk_(desk),
+      workers_(workers),
+      other_(other),
+      budget_(std::make_shared<UploadBudget>(options_.upload_bytes)) {}
+
+bool IcdRoutes::may_enter(const RequestHead& head) const {
+  const std::string_view presented = icd::token_in(head.header("Authorization"));
+  bool known = options_.tokens.empty();
+  for (const icd::BearerToken& token : options_.tokens) {
+    if (token.matches(presented)) known = true;  // no early end: the time must not tell which
+  }
+  return known;
+}
+
+std::size_t IcdRoutes::most_bytes(icd::Uri uri) const {
+  if (uri != icd::Uri::MapUpdate) return kSmallBody;
+  return options_.rules.map_bytes / 3 * 4 + kSmallBody;  // base64
+}
+
+std::unique_ptr<Exchange> IcdRoutes::open(const RequestHead& head, std::shared_ptr<Responder> responder,
+                                          std::shared_ptr<Flow> flow) {
+  const auto uri = icd::uri_of(head.path());
+  if (!uri) return other_.open(head, std::move(responder), std::move(flow));
+
+  const auto length = head.content_length();
+  Visit visit{.desk = desk_,
+              .uri = *uri,
+              .sender = {.address = head.peer(), .bytes = static_cast<std::size_t>(length.value_or(0))},
+              .responder = with_cors(std::move(responder))};
+  if (head.method() == "OPTIONS") {
+    visit.responder->answer(preflight_answer(*uri, head.header("Access-Control-Request-Headers")));
+    return nullptr;
+  }
+  if (!may_enter(head)) {
+    visit.refuse({icd::Status::Unauthorized, "Authorization: expected Bearer and the team's token"});
+    return nullptr;
+  }
+  if (head.method() != icd::method_of(*uri)) {
+    visit.refuse({icd::Status::MethodNotAllowed, icd::sentence("method: expected ", icd::method_of(*uri))},
+                 {{"Allow", allowed_methods(*uri)}});
+    return nullptr;
+  }
+  if (*uri == icd::Uri::Status) {
+    return std::make_unique<StatusVisit>(std::move(visit));
+  }
+  return take_in(std::move(visit), head, std::move(flow));
+}
+
+std::unique_ptr<Exchange> IcdRoutes::take_in(Visit visit, const RequestHead& head,
+                                             std::shared_ptr<Flow> flow) {
+  const auto kind = kind_of(visit.uri, head);
+  if (!kind) {
+    visit.refuse(kind.error());
+    return nullptr;
+  }
+  const std::size_t most = most_bytes(visit.uri);
+  if (const auto length = head.content_length(); length && *length > most) {
+    visit.refuse({icd::Status::ContentTooLarge,
+                  icd::sentence("Content-Length: expected at most ", most, ", got ", *length)});
+    return nullptr;
+  }
+  if (visit.uri != icd::Uri::MapUpdate) {
+    return std::make_unique<SmallUpload>(std::move(visit), *kind, options_.rules);
+  }
+  return std::make_unique<MapUpload>(
+      std::move(visit), MapUploadOptions{.kind = *kind, .rules = options_.rules, .most_bytes = most},
+      std::move(flow), workers_, budget_);
+}
+
+std::unique_ptr<Exchange> NotFound::open(const RequestHead&, std::shared_ptr<Responder> responder,
+                                         std::shared_ptr<Flow>) {
+  responder->answer(error_answer(icd::Status::NotFound, "there is nothing here"));
+  return nullptr;
+}
+
+}  // namespace adit::intake

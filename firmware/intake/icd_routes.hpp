@@ -1,6 +1,9 @@
 #pragma once
 
+#include <cstddef>
 #include <memory>
+#include <optional>
+#include <string_view>
 #include <vector>
 
 #include "icd/bearer_token.hpp"
@@ -11,10 +14,14 @@
 
 namespace adit::intake {
 
+class UploadBudget;
+struct Visit;
+
 /// What the team's side of the ICD is served with.
 struct IcdOptions {
   std::vector<icd::BearerToken> tokens;  // any of them is good; empty: none is asked for
   icd::Rules rules;
+  std::size_t upload_bytes = 512u << 20;  // most that all maps under way together may have brought
 };
 
 /// The ICD's five URIs for the team: tokens, methods, content types, CORS, decoding (maps on a worker, chunk
@@ -22,6 +29,8 @@ struct IcdOptions {
 ///
 /// Every error is a JSON string. CORS preflights (OPTIONS) are answered 204 without a token; every answer of
 /// an ICD URI carries Access-Control-Allow-Origin.
+///
+/// `desk`, `workers` and `other` outlive every Server that this serves.
 class IcdRoutes final : public Handler {
  public:
   IcdRoutes(IcdOptions options, Desk& desk, loop::Workers& workers, Handler& other);
@@ -30,10 +39,16 @@ class IcdRoutes final : public Handler {
                                  std::shared_ptr<Flow> flow) override;
 
  private:
+  std::unique_ptr<Exchange> take_in(Visit visit, const RequestHead& head, std::shared_ptr<Flow> flow);
+  bool may_enter(const RequestHead& head) const;
+  /// The most that a body sent to `uri` may have.
+  std::size_t most_bytes(icd::Uri uri) const;
+
   IcdOptions options_;
   Desk& desk_;
   loop::Workers& workers_;
   Handler& other_;
+  std::shared_ptr<UploadBudget> budget_;
 };
 
 /// An error answer of this gateway: `sentence` as a JSON string.

@@ -1,0 +1,250 @@
+#include "intake/server.hpp"
+
+#include <microhttpd.h>
+#include <sys/epoll.h>
+
+#include <algorithm>
+#include <unordered_map>
+#include <utility>
+
+#include "intake/client.hpp"
+#include "intake/head.hpp"
+#include "intake/listen_socket.hpp"
+#include "intake/request.hpp"
+#include "intake/target.hpp"
+
+namespace adit::intake {
+namespace {
+
+/// libmicrohttpd's memory for one connection, of which a body piece gets about half. Its pages are touched
+/// only as they are used.
+constexpr std::size_t kConnectionMemory = 128 * 1024;
+
+/// A connection that has sent nothing of a request for this long gives way where none is left for others.
+constexpr std::chrono::milliseconds kGivesWayAfter(250);
+
+}  // namespace
+
+class Server::Impl final : public Engine {
+ public:
+  Impl(loop::Loop& loop, Listen listen, Handler& handler)
+      : loop_(loop), listen_(std::move(listen)), handler_(handler) {}
+  Impl(const Impl&) = delete;
+  Impl& operator=(const Impl&) = delete;
+  ~Impl() override;
+
+  std::expected<void, std::string> start();
+  void stop_listening();
+  std::uint16_t port() const { return port_; }
+  std::size_t connections() const { return clients_.size(); }
+
+  loop::Instant now() const override { return loop_.now(); }
+  const Listen& listen() const override { return listen_; }
+  void run_soon() override;
+  void look_at(loop::Instant when) override;
+
+ private:
+  static MHD_Result request_came(void* cls, MHD_Connection* connection, const char* url, const char* method,
+                                 const char* version, const char* upload, std::size_t* upload_size,
+                                 void** request_cls);
+  static void request_completed(void* cls, MHD_Connection* connection, void** request_cls,
+                                MHD_RequestTerminationCode why);
+  static void connection_changed(void* cls, MHD_Connection* connection, void** client_cls,
+                                 MHD_ConnectionNotificationCode what);
+  static void* head_begun(void* cls, const char* target, MHD_Connection* connection);
+  /// Targets are decoded by parse_target(), once; libmicrohttpd is to leave them as they are.
+  static std::size_t leave_escaped(void* cls, MHD_Connection* connection, char* text);
+  static void say_nothing(void*, const char*, va_list) {}
+
+  Next first_call(Client& client, std::string_view method);
+  void connected(MHD_Connection* connection, void** client_cls);
+  void make_room();
+  void run();
+  void look_at_deadlines();
+
+  loop::Loop& loop_;
+  const Listen listen_;
+  Handler& handler_;
+  MHD_Daemon* daemon_ = nullptr;
+  std::uint16_t port_ = 0;
+  bool stopping_ = false;
+  bool run_is_due_ = false;
+  std::unordered_map<Client*, std::unique_ptr<Client>> clients_;
+  loop::Instant look_due_ = loop::Instant::max();
+  loop::Source readable_, run_timer_, deadline_timer_;
+};
+
+std::expected<void, std::string> Server::Impl::start() {
+  auto socket = open_listen_socket(listen_);
+  if (!socket) return std::unexpected(std::move(socket.error()));
+  port_ = port_of(socket->get());
+  daemon_ = MHD_start_daemon(
+      MHD_USE_EPOLL | MHD_ALLOW_SUSPEND_RESUME | MHD_USE_ERROR_LOG, 0, nullptr, nullptr, &Impl::request_came,
+      this, MHD_OPTION_EXTERNAL_LOGGER, &Impl::say_nothing, nullptr, MHD_OPTION_LISTEN_SOCKET, socket->get(),
+      MHD_OPTION_CONNECTION_LIMIT, listen_.connections, MHD_OPTION_PER_IP_CONNECTION_LIMIT,
+      listen_.connections_per_address, MHD_OPTION_CONNECTION_TIMEOUT, 0u, MHD_OPTION_CONNECTION_MEMORY_LIMIT,
+      kConnectionMemory, MHD_OPTION_NOTIFY_CONNECTION, &Impl::connection_changed, this,
+      MHD_OPTION_NOTIFY_COMPLETED, &Impl::request_completed, this, MHD_OPTION_URI_LOG_CALLBACK,
+      &Impl::head_begun, this, MHD_OPTION_UNESCAPE_CALLBACK, &Impl::leave_escaped, nullptr, MHD_OPTION_END);
+  if (daemon_ == nullptr) return std::unexpected("the HTTP server did not start");
+  socket->release();  // NOLINT(bugprone-unused-return-value): libmicrohttpd closes it
+
+  const MHD_DaemonInfo* info = MHD_get_daemon_info(daemon_, MHD_DAEMON_INFO_EPOLL_FD);
+  if (info == nullptr || info->epoll_fd < 0)
+    return std::unexpected("the HTTP server has no epoll descriptor");
+  run_timer_ = loop_.timer([this] { run(); });
+  deadline_timer_ = loop_.timer([this] { look_at_deadlines(); });
+  readable_ = loop_.watch(info->epoll_fd, EPOLLIN, [this](std::uint32_t) { run(); });
+  return {};
+}
+
+Server::Impl::~Impl() {
+  if (daemon_ == nullptr) return;
+  stopping_ = true;
+  readable_ = {};
+  for (const auto& [client, owned] : clients_) client->resume();  // else libmicrohttpd aborts
+  MHD_stop_daemon(daemon_);
+}
+
+void Server::Impl::stop_listening() {
+  const MHD_socket socket = MHD_quiesce_daemon(daemon_);
+  if (socket != MHD_INVALID_SOCKET) ::close(socket);
+}
+
+void Server::Impl::run_soon() {
+  if (stopping_ || std::exchange(run_is_due_, true)) return;
+  run_timer_.call_at(loop_.now());
+}
+
+void Server::Impl::run() {
+  if (std::exchange(run_is_due_, false)) run_timer_.cancel();
+  MHD_run(daemon_);
+  MHD_UNSIGNED_LONG_LONG wait_ms = 0;
+  if (MHD_get_timeout(daemon_, &wait_ms) == MHD_YES && wait_ms == 0) run_soon();
+}
+
+void Server::Impl::look_at(loop::Instant when) {
+  if (stopping_ || when >= look_due_) return;
+  look_due_ = when;
+  deadline_timer_.call_at(when);
+}
+
+void Server::Impl::look_at_deadlines() {
+  look_due_ = loop::Instant::max();
+  const loop::Instant now = loop_.now();
+  for (const auto& [client, owned] : clients_) {
+    if (client->deadline() <= now) client->late();
+  }
+  loop::Instant next = loop::Instant::max();
+  for (const auto& [client, owned] : clients_) next = std::min(next, client->deadline());
+  if (next != loop::Instant::max()) look_at(next);
+}
+
+void Server::Impl::connected(MHD_Connection* connection, void** client_cls) {
+  const auto* address = MHD_get_connection_info(connection, MHD_CONNECTION_INFO_CLIENT_ADDRESS);
+  const auto* socket = MHD_get_connection_info(connection, MHD_CONNECTION_INFO_CONNECTION_FD);
+  auto client = std::make_unique<Client>(*this, loop_, connection, socket->connect_fd,
+                                         address_text(address->client_addr));
+  *client_cls = client.get();
+  clients_.emplace(client.get(), std::move(client));
+  if (clients_.size() >= listen_.connections) make_room();
+}
+
+/// At the limit libmicrohttpd takes nobody in: the connection that has asked for nothing for longest ends.
+void Server::Impl::make_room() {
+  Client* longest = nullptr;
+  for (const auto& [client, owned] : clients_) {
+    if (client->phase() == Client::Phase::Request) continue;
+    if (longest == nullptr || client->since() < longest->since()) longest = client;
+  }
+  if (longest != nullptr && loop_.now() - longest->since() >= kGivesWayAfter) longest->cut();
+}
+
+Next Server::Impl::first_call(Client& client, std::string_view method) {
+  auto request = std::make_shared<Request>(client, method);
+  client.request_begun(request);
+  const Framing framing = framing_of(client.connection());
+  if (!framing.trouble.empty()) return request->refuse_head(framing.trouble);
+  auto target = parse_target(client.target());
+  if (!target) return request->refuse_head("request target: expected a path of UTF-8, percent-encoded");
+  return request->open(handler_, method, std::move(*target), framing);
+}
+
+namespace {
+
+Client* client_of(MHD_Connection* connection) {
+  const auto* info = MHD_get_connection_info(connection, MHD_CONNECTION_INFO_SOCKET_CONTEXT);
+  return info == nullptr ? nullptr : static_cast<Client*>(info->socket_context);
+}
+
+}  // namespace
+
+MHD_Result Server::Impl::request_came(void* cls, MHD_Connection* connection, const char*, const char* method,
+                                      const char*, const char* upload, std::size_t* upload_size,
+                                      void** request_cls) {
+  auto& server = *static_cast<Impl*>(cls);
+  Client* client = client_of(connection);
+  if (client == nullptr || server.stopping_) return MHD_NO;
+  Next next = Next::GoOn;
+  if (*request_cls == nullptr) {
+    *request_cls = client;
+    next = server.first_call(*client, method);
+  } else if (*upload_size > 0) {
+    next = client->request()->body({reinterpret_cast<const std::uint8_t*>(upload), *upload_size});
+    *upload_size = 0;
+  } else {
+    next = client->request()->end();
+  }
+  return next == Next::GoOn ? MHD_YES : MHD_NO;
+}
+
+void Server::Impl::request_completed(void*, MHD_Connection* connection, void** request_cls,
+                                     MHD_RequestTerminationCode) {
+  Client* client = client_of(connection);
+  if (*request_cls == nullptr || client == nullptr || !client->request()) return;
+  *request_cls = nullptr;
+  const std::shared_ptr<Request> request = client->request();
+  client->request_over();
+  request->completed();
+}
+
+void Server::Impl::connection_changed(void* cls, MHD_Connection* connection, void** client_cls,
+                                      MHD_ConnectionNotificationCode what) {
+  auto& server = *static_cast<Impl*>(cls);
+  if (what == MHD_CONNECTION_NOTIFY_STARTED) {
+    server.connected(connection, client_cls);
+  } else if (auto* client = static_cast<Client*>(std::exchange(*client_cls, nullptr)); client != nullptr) {
+    server.clients_.erase(client);
+  }
+}
+
+void* Server::Impl::head_begun(void*, const char* target, MHD_Connection* connection) {
+  if (Client* client = client_of(connection); client != nullptr) client->head_begun(target);
+  return nullptr;
+}
+
+std::size_t Server::Impl::leave_escaped(void*, MHD_Connection*, char* text) {
+  return std::char_traits<char>::length(text);
+}
+
+Server::Server(std::unique_ptr<Impl> impl) : impl_(std::move(impl)) {}
+Server::~Server() = default;
+
+std::expected<std::unique_ptr<Server>, std::string> Server::start(loop::Loop& loop, const Listen& listen,
+                                                                  Handler& handler) {
+  auto impl = std::make_unique<Impl>(loop, listen, handler);
+  if (auto started = impl->start(); !started) return std::unexpected(std::move(started.error()));
+  return std::unique_ptr<Server>(new Server(std::move(impl)));
+}
+
+std::uint16_t Server::port() const {
+  return impl_->port();
+}
+std::size_t Server::connections() const {
+  return impl_->connections();
+}
+void Server::stop_listening() {
+  impl_->stop_listening();
+}
+
+}  // namespace adit::intake

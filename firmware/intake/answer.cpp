@@ -1,0 +1,62 @@
+#include "intake/answer.hpp"
+
+#include <microhttpd.h>
+
+#include <algorithm>
+
+#include "codec/write.hpp"
+#include "intake/icd_routes.hpp"
+
+namespace adit::intake {
+namespace {
+
+void add_header(MHD_Response* response, const char* name, const std::string& value) {
+  if (is_field_value(value)) MHD_add_response_header(response, name, value.c_str());
+}
+
+void append_field(std::string& text, std::string_view name, std::string_view value) {
+  if (!is_field_value(value)) return;
+  text.append(name).append(": ").append(value).append("\r\n");
+}
+
+bool may_have_body(const Answer& answer) {
+  return answer.status != icd::Status::NoContent;
+}
+
+}  // namespace
+
+Answer error_answer(icd::Status status, std::string_view sentence) {
+  return {.status = status, .body = codec::json_string(sentence), .headers = {}};
+}
+
+bool is_field_value(std::string_view text) {
+  return !text.empty() && std::ranges::all_of(text, [](char letter) {
+    const auto byte = static_cast<unsigned char>(letter);
+    return byte == '\t' || (byte >= 0x20 && byte != 0x7f);
+  });
+}
+
+MHD_Response* make_response(const Answer& answer) {
+  MHD_Response* response = MHD_create_response_from_buffer(
+      answer.body.size(), const_cast<char*>(answer.body.data()), MHD_RESPMEM_MUST_COPY);
+  if (response == nullptr) return nullptr;
+  if (may_have_body(answer)) add_header(response, MHD_HTTP_HEADER_CONTENT_TYPE, answer.content_type);
+  for (const Header& header : answer.headers) add_header(response, header.name.c_str(), header.value);
+  return response;
+}
+
+std::string last_answer_text(const Answer& answer, bool with_body) {
+  const auto code = static_cast<unsigned>(answer.status);
+  std::string text = "HTTP/1.1 " + std::to_string(code) + " " + MHD_get_reason_phrase_for(code) + "\r\n";
+  append_field(text, MHD_HTTP_HEADER_CONNECTION, "close");
+  if (may_have_body(answer)) {
+    append_field(text, MHD_HTTP_HEADER_CONTENT_TYPE, answer.content_type);
+    append_field(text, MHD_HTTP_HEADER_CONTENT_LENGTH, std::to_string(answer.body.size()));
+  }
+  for (const Header& header : answer.headers) append_field(text, header.name, header.value);
+  text += "\r\n";
+  if (with_body && may_have_body(answer)) text += answer.body;
+  return text;
+}
+
+}  // namespace adit::intake

@@ -1,0 +1,113 @@
+#include "intake/client.hpp"
+
+#include <microhttpd.h>
+#include <netinet/in.h>
+#include <netinet/tcp.h>
+#include <sys/epoll.h>
+#include <sys/socket.h>
+
+#include <utility>
+
+#include "intake/answer.hpp"
+#include "intake/icd_routes.hpp"
+#include "intake/request.hpp"
+
+namespace adit::intake {
+
+Client::Client(Engine& engine, loop::Loop& loop, MHD_Connection* connection, int fd, std::string peer)
+    : engine_(engine), connection_(connection), fd_(fd), peer_(std::move(peer)) {
+  // libmicrohttpd does not look at the sockets of suspended connections. Edge-triggered, because a client
+  // that has ended its direction alone would be reported over and over.
+  hang_up_ = loop.watch(fd, EPOLLRDHUP | EPOLLET, [this](std::uint32_t events) {
+    if ((events & (EPOLLHUP | EPOLLERR)) == 0) return;
+    hung_up_ = true;
+    resume();
+  });
+  enter(Phase::Head);
+  expect_within(engine_.listen().headers_within);
+}
+
+void Client::enter(Phase phase) {
+  phase_ = phase;
+  since_ = engine_.now();
+}
+
+void Client::head_begun(std::string_view target) {
+  target_ = target;
+  if (phase_ != Phase::Idle) return;
+  enter(Phase::Head);
+  expect_within(engine_.listen().headers_within);
+}
+
+void Client::request_begun(std::shared_ptr<Request> request) {
+  request_ = std::move(request);
+  enter(Phase::Request);
+  expect_nothing();
+}
+
+void Client::request_over() {
+  request_ = nullptr;
+  enter(Phase::Idle);
+  expect_within(engine_.listen().idle);
+}
+
+void Client::expect_within(std::chrono::milliseconds within) {
+  deadline_ = engine_.now() + within;
+  engine_.look_at(deadline_);
+}
+
+bool Client::heard_since(loop::Instant when) const {
+  tcp_info info{};
+  socklen_t size = sizeof info;
+  if (::getsockopt(fd_, IPPROTO_TCP, TCP_INFO, &info, &size) != 0) return false;
+  constexpr std::chrono::milliseconds kTick(10);  // the kernel's clock for this is coarse
+  return engine_.now() - std::chrono::milliseconds(info.tcpi_last_data_recv) > when + kTick;
+}
+
+void Client::late() {
+  expect_nothing();
+  switch (phase_) {
+    case Phase::Request:
+      request_->late();
+      return;
+    case Phase::Idle:
+      if (heard_since(since_)) {  // a head has begun, but not its first line ended
+        enter(Phase::Head);
+        expect_within(engine_.listen().headers_within);
+      } else {
+        cut();
+      }
+      return;
+    case Phase::Head:
+      say_last(last_answer_text(
+          error_answer(icd::Status::RequestTimeout, "the head of the request took too long"), true));
+      cut();
+      return;
+  }
+}
+
+void Client::suspend() {
+  if (std::exchange(suspended_, true)) return;
+  MHD_suspend_connection(connection_);
+}
+
+void Client::resume() {
+  if (!std::exchange(suspended_, false)) return;
+  MHD_resume_connection(connection_);
+  engine_.run_soon();
+}
+
+void Client::say_last(std::string_view text) {
+  // A few hundred bytes into an empty send buffer: what does not fit at once is for a client that does not
+  // read, and is lost to it.
+  ::send(fd_, text.data(), text.size(), MSG_DONTWAIT | MSG_NOSIGNAL);
+  ::shutdown(fd_, SHUT_WR);
+}
+
+void Client::cut() {
+  ::shutdown(fd_, SHUT_RDWR);
+  resume();
+  engine_.run_soon();
+}
+
+}  // namespace adit::intake

@@ -1,0 +1,91 @@
+#pragma once
+
+#include <cstdint>
+#include <memory>
+#include <string>
+
+#include "intake/server.hpp"
+#include "loop/loop.hpp"
+
+struct MHD_Connection;
+
+namespace adit::intake {
+
+class Request;
+
+/// What a client's connection asks of its server.
+class Engine {
+ public:
+  virtual ~Engine() = default;
+  virtual loop::Instant now() const = 0;
+  virtual const Listen& listen() const = 0;
+  /// Runs libmicrohttpd soon, from the loop: after anything that it cannot see by itself.
+  virtual void run_soon() = 0;
+  /// The server looks at its clients' deadlines no later than this.
+  virtual void look_at(loop::Instant when) = 0;
+};
+
+/// One client's connection, from accept to close. Lives exactly as long as libmicrohttpd's own.
+class Client {
+ public:
+  /// What the client is waited for; each with its own deadline.
+  enum class Phase : std::uint8_t {
+    Head,     // of a request that has begun, or of the first
+    Idle,     // between requests
+    Request,  // Request sets the deadlines
+  };
+
+  Client(Engine& engine, loop::Loop& loop, MHD_Connection* connection, int fd, std::string peer);
+  Client(const Client&) = delete;
+  Client& operator=(const Client&) = delete;
+
+  MHD_Connection* connection() const { return connection_; }
+  const std::string& peer() const { return peer_; }
+  Engine& engine() const { return engine_; }
+  Phase phase() const { return phase_; }
+  loop::Instant since() const { return since_; }  // when the phase began
+  /// Both directions are over, or the connection was reset. A client that only ends its own direction is not
+  /// gone: it may still read.
+  bool hung_up() const { return hung_up_; }
+
+  void head_begun(std::string_view target);
+  const std::string& target() const { return target_; }
+  void request_begun(std::shared_ptr<Request> request);
+  void request_over();
+  const std::shared_ptr<Request>& request() const { return request_; }
+
+  void expect_within(std::chrono::milliseconds within);
+  void expect_nothing() { deadline_ = loop::Instant::max(); }
+  loop::Instant deadline() const { return deadline_; }
+  /// The deadline has passed.
+  void late();
+
+  /// Both do nothing where it is so already; suspend() only from within libmicrohttpd's callbacks.
+  void suspend();
+  void resume();
+  bool suspended() const { return suspended_; }
+
+  /// Writes past libmicrohttpd, which must have nothing of its own to write, and says that nothing follows.
+  void say_last(std::string_view text);
+  /// Ends the connection in both directions; libmicrohttpd finds that out in its next run.
+  void cut();
+
+ private:
+  void enter(Phase phase);
+  bool heard_since(loop::Instant when) const;
+
+  Engine& engine_;
+  MHD_Connection* connection_;
+  int fd_;
+  std::string peer_;
+  std::string target_;
+  Phase phase_ = Phase::Head;
+  loop::Instant since_;
+  loop::Instant deadline_ = loop::Instant::max();
+  bool suspended_ = false;
+  bool hung_up_ = false;
+  std::shared_ptr<Request> request_;
+  loop::Source hang_up_;
+};
+
+}  // namespace adit::intake

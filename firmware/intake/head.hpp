@@ -1,0 +1,45 @@
+#pragma once
+
+#include <optional>
+#include <string>
+
+#include "intake/server.hpp"
+#include "intake/target.hpp"
+
+struct MHD_Connection;
+
+namespace adit::intake {
+
+/// How a request's body ends (RFC 9112 6).
+struct Framing {
+  bool has_body = false;
+  bool expects_continue = false;        // RFC 9110 10.1.1
+  std::optional<std::uint64_t> length;  // absent where chunked
+  std::string trouble;  // why two readers could see two different bodies; "" where they cannot
+};
+
+Framing framing_of(MHD_Connection* connection);
+
+/// The head of a request as libmicrohttpd keeps it.
+class Head final : public RequestHead {
+ public:
+  Head(MHD_Connection* connection, std::string_view method, Target target, const std::string& peer,
+       std::optional<std::uint64_t> length)
+      : connection_(connection), method_(method), target_(std::move(target)), peer_(peer), length_(length) {}
+
+  std::string_view method() const override { return method_; }
+  std::string_view path() const override { return target_.path; }
+  std::string_view query(std::string_view name) const override;
+  std::string_view header(std::string_view name) const override;
+  std::optional<std::uint64_t> content_length() const override { return length_; }
+  const std::string& peer() const override { return peer_; }
+
+ private:
+  MHD_Connection* connection_;
+  std::string method_;
+  Target target_;
+  const std::string& peer_;
+  std::optional<std::uint64_t> length_;
+};
+
+}  // namespace adit::intake

@@ -1,0 +1,25 @@
+#pragma once
+
+#include <cstdint>
+#include <expected>
+#include <string>
+
+#include "intake/server.hpp"
+#include "loop/file_descriptor.hpp"
+
+struct sockaddr;
+
+namespace adit::intake {
+
+/// A non-blocking socket that listens as `listen` asks, or a sentence that says what failed. Connections
+/// accepted from it are closed by the kernel where the other side stops answering for `listen.idle` (a pulled
+/// cable sends no FIN).
+std::expected<loop::FileDescriptor, std::string> open_listen_socket(const Listen& listen);
+
+/// The port that a bound socket has.
+std::uint16_t port_of(int fd);
+
+/// The address without its port; an IPv4 address mapped into IPv6 (RFC 4291 2.5.5.2) is shown as IPv4.
+std::string address_text(const sockaddr* address);
+
+}  // namespace adit::intake

@@ -1,0 +1,179 @@
+#include "intake/request.hpp"
+
+#include <microhttpd.h>
+
+#include <utility>
+
+#include "intake/answer.hpp"
+#include "intake/client.hpp"
+#include "intake/icd_routes.hpp"
+
+namespace adit::intake {
+namespace {
+
+/// A body that is answered before it is whole is read away where this is all that is left of it and it comes
+/// soon, so that the connection can be kept. Otherwise the answer goes out at once, and then up to kLinger is
+/// thrown away, because closing a socket with bytes unread resets it, and the client might lose the answer.
+constexpr std::size_t kReadAway = 64 * 1024;
+constexpr std::chrono::milliseconds kReadAwayWithin(1000);
+constexpr std::size_t kLinger = 256 * 1024;
+constexpr std::chrono::milliseconds kLingerWithin(2000);
+
+}  // namespace
+
+Request::Request(Client& client, std::string_view method) : client_(&client), is_head_(method == "HEAD") {}
+
+Next Request::open(Handler& handler, std::string_view method, Target target, const Framing& framing) {
+  left_ = framing.length;
+  expects_continue_ = framing.has_body && framing.expects_continue;
+  head_.emplace(client_->connection(), method, std::move(target), client_->peer(), framing.length);
+  in_call_ = true;
+  exchange_ = handler.open(*head_, shared_from_this(), shared_from_this());
+  in_call_ = false;
+  stage_ = Stage::Body;
+  if (!exchange_ && !answered()) answer_ = error_answer(icd::Status::InternalServerError, "no answer");
+  if (answered()) return framing.has_body ? turn_away() : Next::GoOn;
+  if (framing.has_body) client_->expect_within(client_->engine().listen().body_silence);
+  return Next::GoOn;
+}
+
+Next Request::refuse_head(std::string_view sentence) {
+  answer_ = error_answer(icd::Status::BadRequest, sentence);
+  refuse(*answer_);
+  return Next::GoOn;
+}
+
+Next Request::body(std::span<const std::uint8_t> piece) {
+  if (stage_ == Stage::Refusing) {
+    thrown_away_ += piece.size();
+    return thrown_away_ > kLinger ? Next::Close : Next::GoOn;
+  }
+  expects_continue_ = false;
+  if (left_) *left_ -= std::min<std::uint64_t>(piece.size(), *left_);
+  if (answered()) return Next::GoOn;  // being read away
+
+  resumed_ = false;
+  in_call_ = true;
+  const bool more = exchange_->on_body(piece);
+  in_call_ = false;
+  if (answered()) return turn_away();
+  if (more || resumed_) {
+    client_->expect_within(client_->engine().listen().body_silence);
+  } else {
+    client_->expect_nothing();
+    client_->suspend();
+  }
+  return Next::GoOn;
+}
+
+Next Request::end() {
+  if (stage_ == Stage::Refusing) return Next::Close;
+  if (stage_ == Stage::Body) {
+    stage_ = Stage::Whole;
+    client_->expect_nothing();
+    if (!answered()) {
+      in_call_ = true;
+      exchange_->on_end();
+      in_call_ = false;
+    }
+  }
+  if (answered()) return hand_over();
+  if (client_->hung_up()) return Next::Close;
+  client_->suspend();
+  return Next::GoOn;
+}
+
+Next Request::turn_away() {
+  if (expects_continue_) return hand_over();  // the client waits for this before it sends anything
+  if (stream_) {
+    client_->cut();  // a stream in the middle of a body: not for such requests
+  } else if (left_ && *left_ <= kReadAway) {
+    client_->expect_within(kReadAwayWithin);
+    client_->resume();
+  } else {
+    refuse(*answer_);
+  }
+  return Next::GoOn;
+}
+
+void Request::refuse(const Answer& answer) {
+  client_->say_last(last_answer_text(answer, !is_head_));
+  stage_ = Stage::Refusing;
+  client_->expect_within(kLingerWithin);
+  client_->resume();
+}
+
+Next Request::hand_over() {
+  MHD_Response* response = stream_ ? ReplyStream::make_response(stream_) : make_response(*answer_);
+  if (response == nullptr) return Next::Close;
+  const unsigned status = stream_ ? MHD_HTTP_OK : static_cast<unsigned>(answer_->status);
+  const MHD_Result queued = MHD_queue_response(client_->connection(), status, response);
+  MHD_destroy_response(response);
+  if (queued != MHD_YES) return Next::Close;
+  stage_ = Stage::Answering;
+  if (stream_) {
+    client_->expect_nothing();
+  } else {
+    client_->expect_within(client_->engine().listen().idle);
+  }
+  return Next::GoOn;
+}
+
+void Request::late() {
+  if (stage_ == Stage::Body && answer_) {
+    refuse(*answer_);
+    return;
+  }
+  if (stage_ == Stage::Body) {
+    refuse(error_answer(icd::Status::RequestTimeout, "the body of the request took too long"));
+  }
+  client_->cut();
+}
+
+void Request::completed() {
+  if (stage_ == Stage::Over) return;
+  stage_ = Stage::Over;
+  client_ = nullptr;
+  if (stream_) stream_->detach();
+  const std::unique_ptr<Exchange> exchange = std::move(exchange_);
+  if (exchange && !answered()) exchange->on_gone();
+  head_.reset();
+}
+
+void Request::answer(Answer answer) {
+  if (answered() || client_gone()) return;
+  answer_ = std::move(answer);
+  answer_came();
+}
+
+std::shared_ptr<Stream> Request::stream(std::string_view content_type) {
+  auto stream = std::make_shared<ReplyStream>();
+  if (!answered() && !client_gone()) {
+    stream->attach(*client_, content_type);
+    stream_ = stream;
+    answer_came();
+  }
+  return std::make_shared<ReplyStreamEnd>(std::move(stream));
+}
+
+void Request::answer_came() {
+  if (in_call_) return;  // the call under way sees to it
+  if (stage_ == Stage::Body) {
+    turn_away();
+  } else {
+    client_->resume();
+  }
+}
+
+bool Request::client_gone() const {
+  return stage_ == Stage::Over || client_->hung_up() || (stage_ == Stage::Refusing && !answered());
+}
+
+void Request::resume() {
+  resumed_ = true;
+  if (stage_ != Stage::Body || !client_->suspended()) return;
+  client_->expect_within(client_->engine().listen().body_silence);
+  client_->resume();
+}
+
+}  // namespace adit::intake

@@ -1,0 +1,72 @@
+#pragma once
+
+#include <memory>
+#include <optional>
+#include <span>
+
+#include "intake/head.hpp"
+#include "intake/reply_stream.hpp"
+#include "intake/server.hpp"
+
+namespace adit::intake {
+
+class Client;
+
+/// What is to become of the connection after one of libmicrohttpd's callbacks.
+enum class Next : std::uint8_t { GoOn, Close };
+
+/// The life of one request: driven by libmicrohttpd's callbacks on one side, and by whoever holds it as a
+/// Responder or a Flow on the other. Outlives its connection for as long as they do.
+class Request final : public Responder, public Flow, public std::enable_shared_from_this<Request> {
+ public:
+  Request(Client& client, std::string_view method);
+
+  /// The connection's side.
+  Next open(Handler& handler, std::string_view method, Target target, const Framing& framing);
+  /// Answers 400 without asking a handler, and ends the connection.
+  Next refuse_head(std::string_view sentence);
+  Next body(std::span<const std::uint8_t> piece);
+  /// The body is whole; called again each time that the connection has been resumed.
+  Next end();
+  void late();
+  /// libmicrohttpd is done with it, in whatever way.
+  void completed();
+
+  /// The handler's side.
+  void answer(Answer answer) override;
+  std::shared_ptr<Stream> stream(std::string_view content_type) override;
+  bool client_gone() const override;
+  void resume() override;
+
+ private:
+  enum class Stage : std::uint8_t {
+    Head,       // in Handler::open
+    Body,       // more of it is to come
+    Whole,      // the body has been taken; the handler answers now or later
+    Answering,  // libmicrohttpd has the answer
+    Refusing,   // answered past libmicrohttpd, in the middle of the body; the rest is thrown away
+    Over,
+  };
+
+  bool answered() const { return answer_ || stream_; }
+  /// The answer is there before the body is.
+  Next turn_away();
+  void refuse(const Answer& answer);
+  Next hand_over();
+  void answer_came();
+
+  Client* client_;  // null once over
+  std::optional<Head> head_;
+  std::unique_ptr<Exchange> exchange_;
+  std::optional<Answer> answer_;
+  std::shared_ptr<ReplyStream> stream_;
+  Stage stage_ = Stage::Head;
+  bool is_head_;  // the method HEAD
+  bool expects_continue_ = false;
+  bool in_call_ = false;               // of the handler
+  bool resumed_ = false;               // since the last piece
+  std::optional<std::uint64_t> left_;  // of the body; absent where chunked
+  std::size_t thrown_away_ = 0;
+};
+
+}  // namespace adit::intake

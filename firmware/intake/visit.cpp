@@ -1,0 +1,72 @@
+#include "intake/visit.hpp"
+
+#include <algorithm>
+
+#include "intake/icd_routes.hpp"
+
+namespace adit::intake {
+namespace {
+
+constexpr std::string_view kHeadersOfClients = "authorization, content-type, content-encoding";
+constexpr std::size_t kLongestHeaderList = 512;
+
+class CorsResponder final : public Responder {
+ public:
+  explicit CorsResponder(std::shared_ptr<Responder> inner) : inner_(std::move(inner)) {}
+  void answer(Answer answer) override {
+    answer.headers.push_back({"Access-Control-Allow-Origin", "*"});
+    inner_->answer(std::move(answer));
+  }
+  std::shared_ptr<Stream> stream(std::string_view content_type) override {
+    return inner_->stream(content_type);
+  }
+  bool client_gone() const override { return inner_->client_gone(); }
+
+ private:
+  std::shared_ptr<Responder> inner_;
+};
+
+/// Field names (RFC 9110 5.6.2 tokens) with commas and blanks between them.
+bool is_token_list(std::string_view text) {
+  return !text.empty() && text.size() <= kLongestHeaderList && std::ranges::all_of(text, [](char letter) {
+    constexpr std::string_view kOthers = "!#$%&'*+-.^_`|~, \t";
+    return (letter >= '0' && letter <= '9') || (letter >= 'A' && letter <= 'Z') ||
+           (letter >= 'a' && letter <= 'z') || kOthers.find(letter) != std::string_view::npos;
+  });
+}
+
+}  // namespace
+
+void Visit::refuse(const icd::Refusal& refusal, std::vector<Header> headers) const {
+  Answer answer = error_answer(refusal.status, refusal.sentence);
+  answer.headers = std::move(headers);
+  responder->answer(std::move(answer));
+  desk.refused(uri, sender, refusal);
+}
+
+void Visit::answer(const icd::Checked<void>& taken) const {
+  if (!taken) {
+    refuse(taken.error());
+  } else {
+    responder->answer({.body = "null", .headers = {}});
+  }
+}
+
+std::shared_ptr<Responder> with_cors(std::shared_ptr<Responder> responder) {
+  return std::make_shared<CorsResponder>(std::move(responder));
+}
+
+std::string allowed_methods(icd::Uri uri) {
+  return std::string(icd::method_of(uri)) + ", OPTIONS";
+}
+
+Answer preflight_answer(icd::Uri uri, std::string_view asked_headers) {
+  const std::string_view headers = is_token_list(asked_headers) ? asked_headers : kHeadersOfClients;
+  return {.status = icd::Status::NoContent,
+          .body = {},
+          .headers = {{"Access-Control-Allow-Methods", allowed_methods(uri)},
+                      {"Access-Control-Allow-Headers", std::string(headers)},
+                      {"Access-Control-Max-Age", "86400"}}};
+}
+
+}  // namespace adit::intake

@@ -1,0 +1,32 @@
+#pragma once
+
+#include <memory>
+#include <utility>
+
+#include "intake/desk.hpp"
+#include "intake/server.hpp"
+
+namespace adit::intake {
+
+/// One request to one of the ICD's URIs: who asks, and where the answer goes.
+struct Visit {
+  Desk& desk;
+  icd::Uri uri;
+  Sender sender;
+  std::shared_ptr<Responder> responder;
+
+  void refuse(const icd::Refusal& refusal, std::vector<Header> headers = {}) const;
+  /// 200 `null`, or the refusal.
+  void answer(const icd::Checked<void>& taken) const;
+};
+
+/// Passes answers on with Access-Control-Allow-Origin, and nothing else, added.
+std::shared_ptr<Responder> with_cors(std::shared_ptr<Responder> responder);
+
+/// What a CORS preflight is answered (Fetch, CORS protocol): the methods of `uri`, and the headers asked for.
+Answer preflight_answer(icd::Uri uri, std::string_view asked_headers);
+
+/// "GET, OPTIONS"
+std::string allowed_methods(icd::Uri uri);
+
+}  // namespace adit::intake

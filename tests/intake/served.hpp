@@ -1,0 +1,86 @@
+#pragma once
+
+#include <future>
+#include <memory>
+#include <string>
+#include <thread>
+#include <type_traits>
+
+#include "intake/server.hpp"
+#include "loop/loop.hpp"
+
+namespace adit::intake {
+
+/// A Server on a Loop of its own thread; the test is the client.
+class Served {
+ public:
+  explicit Served(Handler& handler, Listen listen = {}) {
+    if (listen.address.empty()) listen.address = "127.0.0.1";
+    std::promise<void> started;
+    thread_ = std::thread([this, &started, &handler, listen] {
+      loop_ = std::make_unique<loop::Loop>();
+      auto server = Server::start(*loop_, listen, handler);
+      if (server) {
+        server_ = std::move(*server);
+        port_ = server_->port();
+      } else {
+        error_ = server.error();
+      }
+      started.set_value();
+      loop_->run();
+      server_ = nullptr;
+    });
+    started.get_future().wait();
+  }
+  Served(const Served&) = delete;
+  Served& operator=(const Served&) = delete;
+  ~Served() { stop(); }
+
+  void stop() {
+    if (!thread_.joinable()) return;
+    loop_->post([this] { loop_->stop(); });
+    thread_.join();
+  }
+
+  /// Runs `task` on the loop's thread and gives what it returns.
+  template <class Task>
+  auto on_loop(Task task) {
+    std::promise<std::invoke_result_t<Task>> done;
+    loop_->post([&] {
+      if constexpr (std::is_void_v<std::invoke_result_t<Task>>) {
+        task();
+        done.set_value();
+      } else {
+        done.set_value(task());
+      }
+    });
+    return done.get_future().get();
+  }
+
+  /// Waits until `condition`, asked on the loop, holds.
+  template <class Condition>
+  bool eventually(Condition condition, std::chrono::milliseconds within = std::chrono::seconds(10)) {
+    const auto until = std::chrono::steady_clock::now() + within;
+    while (!on_loop(condition)) {
+      if (std::chrono::steady_clock::now() > until) return false;
+      std::this_thread::sleep_for(std::chrono::milliseconds(2));
+    }
+    return true;
+  }
+
+  std::uint16_t port() const { return port_; }
+  const std::string& error() const { return error_; }
+  loop::Loop& loop() { return *loop_; }
+  Server& server() { return *server_; }
+  /// On the loop.
+  void destroy_server() { server_ = nullptr; }
+
+ private:
+  std::unique_ptr<loop::Loop> loop_;
+  std::unique_ptr<Server> server_;
+  std::uint16_t port_ = 0;
+  std::string error_;
+  std::thread thread_;
+};
+
+}  // namespace adit::intake

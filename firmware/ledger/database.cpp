@@ -1,0 +1,126 @@
+#include "ledger/database.hpp"
+
+#include <cerrno>
+#include <cstring>
+
+namespace adit::ledger {
+namespace {
+
+/// SQLite reports a full disk as SQLITE_FULL where a write met it, and as an I/O error elsewhere (a quota, a
+/// limit of the file's size, growing a file).
+bool is_full(int code, int system_error) {
+  if (code == SQLITE_FULL) return true;
+  return code == SQLITE_IOERR && (system_error == ENOSPC || system_error == EDQUOT || system_error == EFBIG);
+}
+
+/// The errno behind an I/O error. A COMMIT does not hand it up, so the write-ahead log, which is what a
+/// COMMIT writes, is asked for its own.
+int errno_behind(sqlite3* database) {
+  if (const int code = sqlite3_system_errno(database); code != 0) return code;
+  sqlite3_file* log = nullptr;
+  sqlite3_file_control(database, "main", SQLITE_FCNTL_JOURNAL_POINTER, static_cast<void*>(&log));
+  if (log == nullptr || log->pMethods == nullptr) return 0;
+  int code = 0;
+  log->pMethods->xFileControl(log, SQLITE_FCNTL_LAST_ERRNO, &code);
+  return code;
+}
+
+}  // namespace
+
+Attempt<Database> Database::open(const std::string& path) {
+  Database database;
+  sqlite3* handle = nullptr;
+  const int result = sqlite3_open_v2(path.c_str(), &handle, SQLITE_OPEN_READWRITE, nullptr);
+  database.handle_.reset(handle);  // there to be closed also where opening failed
+  if (result != SQLITE_OK) return std::unexpected(database.error("opening " + path));
+  return database;
+}
+
+Attempt<void> Database::execute(const char* sql) {
+  if (sqlite3_exec(get(), sql, nullptr, nullptr, nullptr) == SQLITE_OK) return {};
+  return std::unexpected(error(sql));
+}
+
+Attempt<std::int64_t> Database::number(const char* sql) {
+  const auto statement = Statement::prepare(*this, sql);
+  if (!statement) return std::unexpected(statement.error());
+  Run run(*statement);
+  if (run.step() != SQLITE_ROW) return std::unexpected(error(sql));
+  return run.number(0);
+}
+
+Attempt<std::string> Database::text(const char* sql) {
+  const auto statement = Statement::prepare(*this, sql);
+  if (!statement) return std::unexpected(statement.error());
+  Run run(*statement);
+  if (run.step() != SQLITE_ROW) return std::unexpected(error(sql));
+  return run.bytes(0);
+}
+
+Failure Database::error(std::string_view doing) const {
+  if (get() == nullptr) return {{std::string(doing) + ": out of memory", false}};
+  const int code = sqlite3_errcode(get()) & 0xff;
+  std::string what = std::string(doing) + ": " + sqlite3_errmsg(get());
+  if (code == SQLITE_BUSY) what += ": another process has the ledger open";
+  const int system_error = code == SQLITE_IOERR || code == SQLITE_CANTOPEN ? errno_behind(get()) : 0;
+  if (system_error != 0) what += std::string(" (") + std::strerror(system_error) + ")";
+  return {{what, is_full(code, system_error)}, code == SQLITE_CORRUPT || code == SQLITE_NOTADB};
+}
+
+Attempt<Statement> Statement::prepare(const Database& database, const char* sql) {
+  Statement statement;
+  sqlite3_stmt* handle = nullptr;
+  const int result = sqlite3_prepare_v3(database.get(), sql, -1, SQLITE_PREPARE_PERSISTENT, &handle, nullptr);
+  statement.handle_.reset(handle);
+  if (result != SQLITE_OK) return std::unexpected(database.error(sql));
+  return statement;
+}
+
+Run::~Run() {
+  sqlite3_reset(statement_);
+  sqlite3_clear_bindings(statement_);
+}
+
+void Run::keep(int result) {
+  if (failed_ == SQLITE_OK) failed_ = result;
+}
+
+Run& Run::bind(std::int64_t value) {
+  keep(sqlite3_bind_int64(statement_, ++bound_, value));
+  return *this;
+}
+
+Run& Run::bind(double value) {
+  keep(sqlite3_bind_double(statement_, ++bound_, value));
+  return *this;
+}
+
+Run& Run::bind(std::string_view text) {
+  // A null pointer would bind NULL.
+  keep(sqlite3_bind_text64(statement_, ++bound_, text.empty() ? "" : text.data(), text.size(),
+                           SQLITE_TRANSIENT, SQLITE_UTF8));
+  return *this;
+}
+
+Run& Run::bind_blob(std::string_view bytes) {
+  keep(sqlite3_bind_blob64(statement_, ++bound_, bytes.empty() ? "" : bytes.data(), bytes.size(),
+                           SQLITE_TRANSIENT));
+  return *this;
+}
+
+int Run::step() {
+  return failed_ != SQLITE_OK ? failed_ : sqlite3_step(statement_);
+}
+
+std::string Run::bytes(int column) const {
+  const void* data = sqlite3_column_blob(statement_, column);
+  const auto size = static_cast<std::size_t>(sqlite3_column_bytes(statement_, column));
+  return size == 0 ? std::string() : std::string(static_cast<const char*>(data), size);
+}
+
+Transaction::~Transaction() {
+  const bool open = sqlite3_get_autocommit(database_.get()) == 0;
+  if (open) sqlite3_exec(database_.get(), "ROLLBACK", nullptr, nullptr, nullptr);
+}
+
+}  // namespace adit::ledger

@@ -1,0 +1,164 @@
+#include "ledger/opening.hpp"
+
+#include <fcntl.h>
+#include <sys/stat.h>
+#include <unistd.h>
+
+#include <cerrno>
+#include <cstdio>
+#include <cstring>
+#include <optional>
+#include <utility>
+
+#include "loop/file_descriptor.hpp"
+
+namespace adit::ledger {
+namespace {
+
+constexpr std::int64_t kApplicationId = 0x41444954;  // "ADIT", in SQLite's file header
+constexpr std::int64_t kVersion = 1;                 // of the tables below, in user_version
+
+/// `report` is each report as it is now, `step` is how it came there.
+constexpr const char* kTables = R"(
+  CREATE TABLE report(
+    number INTEGER PRIMARY KEY AUTOINCREMENT,
+    type TEXT NOT NULL, x REAL NOT NULL, y REAL NOT NULL, z REAL NOT NULL,
+    sender TEXT NOT NULL, received REAL NOT NULL, changed REAL NOT NULL,
+    state TEXT NOT NULL, status INTEGER NOT NULL, content_type TEXT NOT NULL,
+    answer BLOB NOT NULL, note TEXT NOT NULL) STRICT;
+  CREATE TABLE step(
+    report INTEGER NOT NULL REFERENCES report(number),
+    at REAL NOT NULL, state TEXT NOT NULL, note TEXT NOT NULL) STRICT;
+  PRAGMA application_id = 0x41444954;
+  PRAGMA user_version = 1;
+)";
+
+/// One process owns the ledger, so its lock is exclusive; that also keeps WAL's index out of a shared file.
+constexpr const char* kPragmas = R"(
+  PRAGMA locking_mode = EXCLUSIVE;
+  PRAGMA cell_size_check = ON;
+  PRAGMA trusted_schema = OFF;
+  PRAGMA foreign_keys = ON;
+  PRAGMA synchronous = FULL;
+  PRAGMA journal_size_limit = 4194304;
+)";
+
+/// quick_check reads the whole file. A ledger is some kilobytes; one past this is not checked, so that
+/// start-up stays short.
+constexpr std::int64_t kMostChecked = 64 << 20;
+
+Failure system_error(const std::string& doing) {
+  const int code = errno;
+  return {{doing + ": " + std::strerror(code), code == ENOSPC || code == EDQUOT}};
+}
+
+/// Makes an empty file of mode 0600 where there is none; SQLite gives its -wal the same mode.
+Attempt<void> make_file(const std::string& path) {
+  const loop::FileDescriptor made(::open(path.c_str(), O_CREAT | O_EXCL | O_WRONLY | O_CLOEXEC, 0600));
+  if (!made && errno != EEXIST) return std::unexpected(system_error("making " + path));
+  if (!made && ::chmod(path.c_str(), 0600) != 0) return std::unexpected(system_error("chmod 0600 " + path));
+  return {};
+}
+
+/// A new or renamed file outlives a power cut only once its folder is on disk too.
+Attempt<void> sync_folder(const std::string& folder) {
+  const loop::FileDescriptor opened(::open(folder.c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC));
+  if (!opened || ::fsync(opened.get()) != 0) return std::unexpected(system_error("syncing " + folder));
+  return {};
+}
+
+std::unexpected<Failure> no_ledger(std::string why) {
+  return std::unexpected(Failure{{std::move(why)}, true});
+}
+
+Attempt<void> check_pages(Database& database) {
+  const auto pages = database.number("PRAGMA page_count");
+  if (!pages) return std::unexpected(pages.error());
+  const auto page_size = database.number("PRAGMA page_size");
+  if (!page_size) return std::unexpected(page_size.error());
+  if (*pages * *page_size > kMostChecked) return {};
+  const auto verdict = database.text("PRAGMA quick_check(1)");
+  if (!verdict) return std::unexpected(verdict.error());
+  if (*verdict != "ok") return no_ledger(*verdict);
+  return {};
+}
+
+Attempt<void> make_tables(Database& database) {
+  Transaction transaction(database);
+  if (auto begun = transaction.begin(); !begun) return begun;
+  if (auto made = database.execute(kTables); !made) return made;
+  return transaction.commit();
+}
+
+/// That this is a ledger of a version that we know; an empty file becomes one.
+Attempt<void> check_tables(Database& database) {
+  const auto tables = database.number("SELECT count(*) FROM sqlite_schema");
+  if (!tables) return std::unexpected(tables.error());
+  if (*tables == 0) return make_tables(database);
+  const auto application = database.number("PRAGMA application_id");
+  const auto version = database.number("PRAGMA user_version");
+  if (!application) return std::unexpected(application.error());
+  if (!version) return std::unexpected(version.error());
+  if (*application != kApplicationId) return no_ledger("it is another program's database");
+  if (*version != kVersion) return no_ledger("it has version " + std::to_string(*version) + ", not 1");
+  return {};
+}
+
+Attempt<void> set_up(Database& database) {
+  if (auto set = database.execute(kPragmas); !set) return set;
+  const auto mode = database.text("PRAGMA journal_mode = WAL");
+  if (!mode) return std::unexpected(mode.error());
+  if (*mode != "wal") return std::unexpected(Failure{{"the ledger's file system has no WAL: " + *mode}});
+  if (auto pages = check_pages(database); !pages) return pages;
+  return check_tables(database);
+}
+
+/// Renames the file and what SQLite keeps beside it to the first `damaged-<n>` that is free.
+Attempt<std::string> set_aside(const std::string& folder, const std::string& path) {
+  for (int n = 1;; ++n) {
+    std::string aside = path + ".damaged-" + std::to_string(n);
+    if (::renameat2(AT_FDCWD, path.c_str(), AT_FDCWD, aside.c_str(), RENAME_NOREPLACE) != 0) {
+      if (errno == EEXIST) continue;
+      return std::unexpected(system_error("setting aside " + path));
+    }
+    for (const char* suffix : {"-wal", "-shm", "-journal"}) {
+      const bool moved = ::rename((path + suffix).c_str(), (aside + suffix).c_str()) == 0;
+      // One left behind would be taken for the new file's.
+      if (!moved && errno != ENOENT) return std::unexpected(system_error("setting aside " + path + suffix));
+    }
+    if (auto synced = sync_folder(folder); !synced) return std::unexpected(synced.error());
+    return aside;
+  }
+}
+
+Attempt<Database> open_file(const std::string& path) {
+  if (const auto made = make_file(path); !made) return std::unexpected(made.error());
+  auto database = Database::open(path);
+  if (!database) return std::unexpected(database.error());
+  if (auto ready = set_up(*database); !ready) {
+    // The damaged file stays as it was found, for whoever looks into it.
+    sqlite3_db_config(database->get(), SQLITE_DBCONFIG_NO_CKPT_ON_CLOSE, 1, nullptr);
+    return std::unexpected(std::move(ready.error()));
+  }
+  return std::move(*database);
+}
+
+}  // namespace
+
+Attempt<Opened> open_database(const std::string& folder) {
+  const std::string path = folder + "/ledger.sqlite";
+  std::string damage;
+  auto database = open_file(path);
+  if (!database && database.error().damaged) {
+    const auto aside = set_aside(folder, path);
+    if (!aside) return std::unexpected(aside.error());
+    damage = "The ledger could not be read (" + database.error().what + ") and was set aside as " + *aside +
+             "; reports recorded in it are not shown.";
+    database = open_file(path);
+  }
+  if (!database) return std::unexpected(std::move(database.error()));
+  if (auto synced = sync_folder(folder); !synced) return std::unexpected(synced.error());
+  return Opened{std::move(*database), std::move(damage)};
+}
+
+}  // namespace adit::ledger

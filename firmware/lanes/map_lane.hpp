@@ -14,8 +14,8 @@ namespace adit::lanes {
 using Instant = std::chrono::steady_clock::time_point;
 
 /// ICD 6.3.1 and promise 2: whether `newer` says all that `older` said, so that `older` need not be sent: the
-/// same lattice (resolution, orientation and height alike, origins a whole number of cells apart) and older's
-/// extent within newer's.
+/// same lattice (resolution, orientation and height alike, origins a whole number of cells apart, to a
+/// thousandth of a cell) and older's extent within newer's. Reflexive and transitive.
 bool covers(const icd::OccupancyGrid& newer, const icd::OccupancyGrid& older);
 
 /// Whether the points of both can stand in one message: fields, point_step, byte order and origin alike.
@@ -33,17 +33,19 @@ struct WaitingMap {
   std::vector<std::uint64_t> updates;  // their numbers, oldest first
 };
 
-/// The maps that wait for the Command Post, oldest news first.
+/// The maps that wait for the Command Post.
 ///
-/// A grid is replaced by a newer one of the same name that covers it, and keeps its place. Clouds are kept in
-/// order; take() merges those of one name that follow each other while more than one wait. Nothing else is
-/// ever dropped.
+/// The oldest news goes first. A grid is replaced by a newer one of the same name that covers it, which
+/// inherits its age; what waits of that name and is not covered still goes ahead of it, so that old cells are
+/// never sent after newer ones. Clouds are kept in order; take() merges those of one name that follow each
+/// other while more than one wait. Nothing else is ever dropped.
 class MapLane {
  public:
   /// Most bytes of points that take() merges into one message.
   explicit MapLane(std::size_t merge_bytes) : merge_bytes_(merge_bytes) {}
 
-  /// The numbers of the updates that `map` replaced; they are now part of it.
+  /// The numbers of the updates whose maps `map` replaced; it stands for them from now on. No number is given
+  /// twice.
   std::vector<std::uint64_t> add(std::uint64_t number, icd::MapUpdate map, Instant now);
 
   /// The next to be sent, taken out of the lane.
@@ -54,11 +56,13 @@ class MapLane {
   void put_back(WaitingMap map);
 
   std::size_t count() const { return waiting_.size(); }
-  std::size_t bytes() const { return bytes_; }  // held by all that wait
+  std::size_t bytes() const { return bytes_; }  // of memory held by all that wait
   std::optional<Instant> oldest() const;
-  const std::deque<WaitingMap>& waiting() const { return waiting_; }
+  const std::deque<WaitingMap>& waiting() const { return waiting_; }  // in the order they were made
 
  private:
+  void merge_followers(WaitingMap& next);
+
   std::deque<WaitingMap> waiting_;
   std::size_t merge_bytes_;
   std::size_t bytes_ = 0;

@@ -1,0 +1,32 @@
+#include "lanes/stamps.hpp"
+
+#include <algorithm>
+
+namespace adit::lanes {
+
+icd::Stamp StampShift::shift(const std::string& sender, std::optional<icd::Stamp> stamp, double now) {
+  if (!stamp || *stamp == 0) return now;
+  const auto [found, is_new] = senders_.try_emplace(sender);
+  Clock& clock = found->second;
+  clock.used = ++uses_;
+  // A difference is taken first: a stamp far from the gateway's would lose its fractions in a sum.
+  icd::Stamp shifted = clock.ours + (*stamp - clock.theirs);
+  if (is_new || *stamp < clock.latest - kJump || shifted > now + kJump) {
+    clock.theirs = clock.latest = *stamp;
+    clock.ours = shifted = now;
+  }
+  clock.latest = std::max(clock.latest, *stamp);
+  if (senders_.size() > kMostSenders) forget_the_most_silent();
+  return std::max(shifted, 0.0);  // ICD 6.2: a stamp is never negative
+}
+
+void StampShift::forget_the_most_silent() {
+  senders_.erase(
+      std::ranges::min_element(senders_, {}, [](const auto& sender) { return sender.second.used; }));
+}
+
+icd::Stamp StampOrder::next(icd::Stamp stamp) {
+  return last_ = std::max(last_, stamp);
+}
+
+}  // namespace adit::lanes

@@ -1,5 +1,7 @@
 #pragma once
 
+#include <cstddef>
+#include <cstdint>
 #include <map>
 #include <optional>
 #include <string>
@@ -13,20 +15,26 @@ namespace adit::lanes {
 ///
 /// A sender's first stamp is taken as now; from then on its offset is kept, so that two messages it stamped
 /// 0.3 s apart stay 0.3 s apart however late they came. A sender whose clock jumped (backward by more than
-/// kJump, or to more than kJump after now) starts anew. A message without a stamp is stamped now.
+/// kJump, or to more than kJump after now) starts anew. A message without a stamp is stamped now. Of more
+/// than kMostSenders, the one that was silent longest is forgotten.
 class StampShift {
  public:
   static constexpr double kJump = 5.0;  // seconds
+  static constexpr std::size_t kMostSenders = 1024;
 
   /// `now`: the gateway's clock, seconds since 1970. `sender`: any key that stands for one clock.
   icd::Stamp shift(const std::string& sender, std::optional<icd::Stamp> stamp, double now);
 
  private:
   struct Clock {
-    double offset = 0;    // gateway - sender
-    icd::Stamp last = 0;  // the sender's own
+    icd::Stamp theirs = 0, ours = 0;  // one moment, by both clocks
+    icd::Stamp latest = 0;            // the sender's own
+    std::uint64_t used = 0;           // the higher, the later
   };
+  void forget_the_most_silent();
+
   std::map<std::string, Clock> senders_;
+  std::uint64_t uses_ = 0;
 };
 
 /// The stamps that go upstream for one URI: never backward.

@@ -21,6 +21,10 @@ struct WaitingState {
 /// Robots' newest poses (ICD 6.5): each robot may post alone, all go out together, also those without news.
 class StateLane {
  public:
+  /// What the lane holds at most, so that no sender can fill the memory while the Command Post is away.
+  static constexpr std::size_t kMostRobots = 1000, kMostUpdates = 100'000;
+  bool has_room_for(const icd::StateUpdate& update) const;
+
   /// `update.header.stamp` is on the gateway's clock. A robot's pose is replaced unless the one held has a
   /// newer stamp.
   void add(std::uint64_t number, const icd::StateUpdate& update, Instant now);
@@ -31,10 +35,12 @@ class StateLane {
   void put_back(const WaitingState& state);
 
   std::optional<Instant> oldest() const { return oldest_; }
-  bool empty() const { return !oldest_; }
+  bool empty() const { return !oldest_; }  // no news
 
  private:
   struct Held {
+    bool older_than(std::optional<icd::Stamp> other) const { return !stamp || !other || *stamp <= *other; }
+
     icd::Pose pose;
     std::optional<icd::Stamp> stamp;
   };

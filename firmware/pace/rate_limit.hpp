@@ -14,6 +14,7 @@ using Duration = std::chrono::nanoseconds;
 class RateLimit {
  public:
   static constexpr double kSlowest = 1.0 / 30;  // hertz
+  static constexpr std::chrono::seconds kLongestPause{30};
 
   /// hertz > 0.
   explicit RateLimit(double hertz) : allowed_(hertz), learned_(hertz) {}
@@ -26,7 +27,8 @@ class RateLimit {
   /// The request sent last was answered: spacing counts from the later of the two for a server that measures
   /// at its own end.
   void taken(Instant now);
-  /// 429; `retry_after` as the server gave it.
+  /// 429; `retry_after` as the server gave it, heeded up to kLongestPause: more is no use in a run of half an
+  /// hour.
   void throttled(Instant now, std::optional<std::chrono::seconds> retry_after);
 
   double hertz() const { return learned_; }

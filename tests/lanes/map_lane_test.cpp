@@ -1,0 +1,200 @@
+#include "lanes/map_lane.hpp"
+
+#include <gmock/gmock.h>
+
+#include "lanes/maps.hpp"
+
+namespace adit::lanes {
+namespace {
+
+using testing::ElementsAre;
+using testing::IsEmpty;
+using testing::Optional;
+
+constexpr std::size_t kPlenty = 1u << 20;
+
+const auto kSmall = grid(0, 0, 10, 10);
+const auto kLarge = grid(-1, -1, 80, 80);
+const auto kElsewhere = grid(100, 100, 10, 10);
+
+TEST(MapLane, GivesOutTheOldestNewsFirst) {
+  MapLane lane{kPlenty};
+  lane.add(1, grid_update("R1", kSmall), at(1));
+  lane.add(2, cloud_update("R2", {1}), at(2));
+  lane.add(3, grid_update("", kSmall), at(3));
+  EXPECT_EQ(lane.oldest(), at(1));
+  EXPECT_THAT(lane.take()->updates, ElementsAre(1));
+  EXPECT_THAT(lane.take()->updates, ElementsAre(2));
+  EXPECT_THAT(lane.take()->updates, ElementsAre(3));
+  EXPECT_FALSE(lane.take());
+  EXPECT_FALSE(lane.oldest());
+}
+
+TEST(MapLane, ReplacesAGridByANewerOneThatCoversItWhichKeepsItsPlaceAndAge) {
+  MapLane lane{kPlenty};
+  lane.add(1, grid_update("R1", kSmall), at(1));
+  lane.add(2, grid_update("R2", kSmall), at(2));
+  EXPECT_THAT(lane.add(3, grid_update("R1", kLarge), at(3)), ElementsAre(1));
+  EXPECT_EQ(lane.count(), 2);
+  const auto first = lane.take();
+  EXPECT_THAT(first->updates, ElementsAre(1, 3));
+  EXPECT_EQ(std::get<icd::OccupancyGrid>(first->map.msg), kLarge);
+  EXPECT_EQ(first->accepted, at(1));
+}
+
+TEST(MapLane, SaysOfEachUpdateOnlyOnceThatItWasReplaced) {
+  MapLane lane{kPlenty};
+  EXPECT_THAT(lane.add(1, grid_update("R1", kSmall), at(1)), IsEmpty());
+  EXPECT_THAT(lane.add(2, grid_update("R1", kSmall), at(2)), ElementsAre(1));
+  EXPECT_THAT(lane.add(3, grid_update("R1", kSmall), at(3)), ElementsAre(2));
+  EXPECT_THAT(lane.take()->updates, ElementsAre(1, 2, 3));
+}
+
+TEST(MapLane, KeepsAGridThatTheNewerDoesNotCover) {
+  MapLane lane{kPlenty};
+  lane.add(1, grid_update("R1", kElsewhere), at(1));
+  EXPECT_THAT(lane.add(2, grid_update("R1", kLarge), at(2)), IsEmpty());
+  EXPECT_EQ(lane.count(), 2);
+}
+
+TEST(MapLane, KeepsAGridOfAnotherRobot) {
+  MapLane lane{kPlenty};
+  lane.add(1, grid_update("R1", kSmall), at(1));
+  EXPECT_THAT(lane.add(2, grid_update("R2", kLarge), at(2)), IsEmpty());
+  EXPECT_THAT(lane.add(3, grid_update("", kLarge), at(3)), IsEmpty());
+  EXPECT_EQ(lane.count(), 3);
+}
+
+TEST(MapLane, ReplacesAllThatANewGridCovers) {
+  MapLane lane{kPlenty};
+  lane.add(1, grid_update("R1", kSmall), at(1));
+  lane.add(2, grid_update("R1", grid(1, 1, 10, 10)), at(2));
+  EXPECT_THAT(lane.add(3, grid_update("R1", kLarge), at(3)), ElementsAre(1, 2));
+  EXPECT_THAT(lane.take()->updates, ElementsAre(1, 2, 3));
+}
+
+TEST(MapLane, NeverSendsOldCellsAfterNewerOnes) {
+  MapLane lane{kPlenty};
+  lane.add(1, grid_update("R1", kSmall), at(1));
+  lane.add(2, grid_update("R2", kSmall), at(2));
+  lane.add(3, grid_update("R1", grid(0.2, 0.2, 200, 200)), at(3));  // overlaps the next, and is not covered
+  lane.add(4, grid_update("R1", kLarge), at(4));
+  EXPECT_THAT(lane.take()->updates, ElementsAre(3));
+  EXPECT_THAT(lane.take()->updates, ElementsAre(1, 4));
+  EXPECT_THAT(lane.take()->updates, ElementsAre(2));
+}
+
+TEST(MapLane, MergesCloudsThatFollowEachOtherWhileMoreThanOneWait) {
+  MapLane lane{kPlenty};
+  lane.add(1, cloud_update("R1", {1, 2}), at(1));
+  lane.add(2, grid_update("R2", kSmall), at(2));
+  lane.add(3, cloud_update("R1", {3}), at(3));
+  const auto merged = lane.take();
+  EXPECT_THAT(merged->updates, ElementsAre(1, 3));
+  EXPECT_THAT(points_of(merged->map), ElementsAre(1, 2, 3));
+  EXPECT_EQ(merged->map.data.raw_size, 36);
+  EXPECT_EQ(merged->accepted, at(1));
+  EXPECT_EQ(lane.count(), 1);
+}
+
+TEST(MapLane, MergedCloudsHaveTheNewersHeader) {
+  auto older = cloud_update("R1", {1}), newer = cloud_update("R1", {2});
+  older.header().stamp = 10;
+  newer.header().stamp = 11;
+  EXPECT_THAT(merge(older, newer).header().stamp, Optional(11.0));
+}
+
+TEST(MapLane, MergesWithinItsLimitAndInOrder) {
+  MapLane lane{3 * 12};
+  lane.add(1, cloud_update("R1", {1, 2}), at(1));
+  lane.add(2, cloud_update("R1", {3, 4}), at(2));
+  lane.add(3, cloud_update("R1", {5}), at(3));  // would fit, but must not go ahead of 2
+  EXPECT_THAT(lane.take()->updates, ElementsAre(1));
+  EXPECT_THAT(lane.take()->updates, ElementsAre(2, 3));
+}
+
+TEST(MapLane, MergesNoCloudsPastOneThatDoesNotFit) {
+  auto other = xyz();
+  other.is_bigendian = true;
+  MapLane lane{kPlenty};
+  lane.add(1, cloud_update("R1", {1}), at(1));
+  lane.add(2, cloud_update("R1", {2}, other), at(2));
+  lane.add(3, cloud_update("R1", {3}), at(3));
+  EXPECT_THAT(lane.take()->updates, ElementsAre(1));
+  EXPECT_THAT(lane.take()->updates, ElementsAre(2));
+  EXPECT_THAT(lane.take()->updates, ElementsAre(3));
+}
+
+TEST(MapLane, MergesNoPackedCloud) {
+  auto packed = cloud_update("R1", {2});
+  packed.data.compression = icd::Compression::Gzip;
+  MapLane lane{kPlenty};
+  lane.add(1, cloud_update("R1", {1}), at(1));
+  lane.put_back({packed, at(0), {0}});
+  lane.add(2, cloud_update("R1", {3}), at(2));
+  EXPECT_THAT(lane.take()->updates, ElementsAre(0));
+  EXPECT_THAT(lane.take()->updates, ElementsAre(1, 2));
+}
+
+TEST(MapLane, SaysWhichCloudsCanBeMerged) {
+  const auto plain = xyz();
+  auto step = plain, fields = plain, bytes = plain, moved = plain, still = plain;
+  step.point_step = 16;
+  fields.fields[2].name = "Z";
+  bytes.is_bigendian = true;
+  moved.origin = icd::Pose{{1, 0, 0}, {}};
+  still.origin = icd::Pose{};  // ICD 6.3.2: the same as none
+  EXPECT_TRUE(mergeable(plain, plain));
+  EXPECT_TRUE(mergeable(plain, still));
+  EXPECT_FALSE(mergeable(plain, step));
+  EXPECT_FALSE(mergeable(plain, fields));
+  EXPECT_FALSE(mergeable(plain, bytes));
+  EXPECT_FALSE(mergeable(plain, moved));
+}
+
+TEST(MapLane, PutsBackWhatCouldNotBeSentFirstInLine) {
+  MapLane lane{kPlenty};
+  lane.add(1, grid_update("R1", kSmall), at(1));
+  lane.add(2, cloud_update("R2", {1}), at(2));
+  auto failed = *lane.take();
+  lane.add(3, grid_update("R1", kElsewhere), at(3));
+  lane.put_back(failed);
+  EXPECT_THAT(lane.take()->updates, ElementsAre(1));
+}
+
+TEST(MapLane, PutsBackNoGridThatANewerOneCovers) {
+  MapLane lane{kPlenty};
+  lane.add(1, grid_update("R1", kSmall), at(1));
+  auto failed = *lane.take();
+  lane.add(2, cloud_update("R2", {1}), at(2));
+  lane.add(3, grid_update("R1", kLarge), at(3));
+  lane.put_back(failed);
+  EXPECT_EQ(lane.count(), 2);
+  const auto heir = lane.take();
+  EXPECT_THAT(heir->updates, ElementsAre(1, 3));
+  EXPECT_EQ(heir->accepted, at(1));
+  EXPECT_EQ(std::get<icd::OccupancyGrid>(heir->map.msg), kLarge);
+}
+
+TEST(MapLane, CountsTheMemoryThatIsHeld) {
+  MapLane lane{kPlenty};
+  EXPECT_EQ(lane.bytes(), 0);
+  lane.add(1, cloud_update("R1", {1, 2, 3}), at(1));
+  EXPECT_GE(lane.bytes(), 36);
+  lane.add(2, grid_update("R1", kSmall), at(2));
+  lane.add(3, grid_update("R1", kSmall), at(3));
+  auto taken = *lane.take();
+  lane.put_back(taken);
+  while (lane.take()) {
+  }
+  EXPECT_EQ(lane.bytes(), 0);
+}
+
+TEST(MapLane, IsNotSlowedDownByAFloodOfTinyClouds) {
+  MapLane lane{kPlenty};
+  for (std::uint64_t i = 0; i < 100'000; ++i) lane.add(i, cloud_update("R1", {1}), at(1));
+  EXPECT_EQ(lane.take()->updates.size(), kPlenty / 12);
+}
+
+}  // namespace
+}  // namespace adit::lanes

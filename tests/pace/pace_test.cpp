@@ -1,0 +1,143 @@
+#include <gmock/gmock.h>
+
+#include <limits>
+#include <random>
+
+#include "pace/backoff.hpp"
+#include "pace/budget.hpp"
+#include "pace/rate_limit.hpp"
+
+namespace adit::pace {
+namespace {
+
+using std::chrono::milliseconds;
+using std::chrono::seconds;
+using testing::DoubleNear;
+
+Instant at(double s) {
+  return Instant{std::chrono::duration_cast<Duration>(std::chrono::duration<double>{s})};
+}
+
+TEST(RateLimit, IsReadyAtOnceAndThenAfterItsSpacing) {
+  RateLimit limit{2};
+  EXPECT_TRUE(limit.ready(at(0)));
+  limit.sent(at(10));
+  EXPECT_FALSE(limit.ready(at(10.49)));
+  EXPECT_TRUE(limit.ready(at(10.5)));
+}
+
+TEST(RateLimit, MeasuresFromTheAnswerToTheNextRequest) {
+  RateLimit limit{1};
+  limit.sent(at(10));
+  limit.taken(at(10.7));
+  EXPECT_EQ(limit.next(), at(11.7));
+}
+
+TEST(RateLimit, IsHalvedByA429AndComesBackByATenthWithEachRequestTaken) {
+  RateLimit limit{1};
+  limit.sent(at(0));
+  limit.throttled(at(0.1), {});
+  EXPECT_EQ(limit.hertz(), 0.5);
+  EXPECT_EQ(limit.next(), at(2.1));
+  limit.taken(at(3));
+  EXPECT_THAT(limit.hertz(), DoubleNear(0.55, 1e-12));
+  for (int i = 0; i < 8; ++i) limit.taken(at(4 + i));
+  EXPECT_EQ(limit.hertz(), 1);
+}
+
+TEST(RateLimit, HeedsRetryAfterUpToItsLongestPause) {
+  struct Case {
+    seconds retry_after;
+    double next;
+  };
+  const Case cases[] = {{seconds{7}, 7},     {seconds{0}, 2},      {seconds{-5}, 2},
+                        {seconds{3600}, 30}, {seconds::max(), 30}, {seconds::min(), 2}};
+  for (const auto& [retry_after, next] : cases) {
+    RateLimit limit{1};
+    limit.throttled(at(0), retry_after);
+    EXPECT_EQ(limit.next(), at(next)) << retry_after.count();
+  }
+}
+
+TEST(RateLimit, NeverStopsForEver) {
+  RateLimit limit{1};
+  for (int i = 0; i < 100; ++i) limit.throttled(at(i), {});
+  EXPECT_EQ(limit.hertz(), RateLimit::kSlowest);
+  EXPECT_LE(limit.next(), at(99 + 30.1));
+}
+
+TEST(RateLimit, StaysBelowARateThatIsSlowByItself) {
+  RateLimit limit{0.01};
+  limit.throttled(at(0), {});
+  EXPECT_EQ(limit.hertz(), 0.01);
+  RateLimit slowest{std::numeric_limits<double>::denorm_min()};
+  slowest.sent(at(0));
+  EXPECT_FALSE(slowest.ready(at(3600)));
+}
+
+TEST(RateLimit, NoTwoRequestsAreCloserThanAllowedWhateverTheAnswers) {
+  std::mt19937_64 random{1};
+  std::uniform_real_distribution<double> any{0, 1};
+  for (const double hertz : {0.5, 1.0, 10.0}) {
+    RateLimit limit{hertz};
+    auto now = at(0);
+    auto last = at(-100);
+    for (int i = 0; i < 2000; ++i) {
+      now += std::chrono::duration_cast<Duration>(std::chrono::duration<double>{any(random) * 0.3});
+      if (!limit.ready(now)) continue;
+      const std::chrono::duration<double> apart = now - last;
+      ASSERT_GE(apart.count(), 1 / hertz - 1e-9);
+      last = now;
+      limit.sent(now);
+      now += milliseconds{20};
+      const double answer = any(random);
+      if (answer < 0.2) limit.throttled(now, {});
+      if (answer > 0.4) limit.taken(now);  // else it failed
+      ASSERT_LE(limit.hertz(), hertz);
+      ASSERT_GE(limit.hertz(), std::min(hertz, RateLimit::kSlowest));
+    }
+  }
+}
+
+TEST(Backoff, DoublesFromFirstToMostAndStartsAgainAfterSuccess) {
+  Backoff backoff{milliseconds{500}, milliseconds{3000}};
+  for (const int wait : {500, 1000, 2000, 3000, 3000}) EXPECT_EQ(backoff.failed(0), milliseconds{wait});
+  backoff.succeeded();
+  EXPECT_EQ(backoff.failed(0), milliseconds{500});
+}
+
+TEST(Backoff, AddsUpToAQuarterByChance) {
+  Backoff backoff{milliseconds{1000}, milliseconds{1000}};
+  EXPECT_EQ(backoff.failed(0.5), milliseconds{1125});
+  std::mt19937_64 random{1};
+  std::uniform_real_distribution<double> any{0, 1};
+  for (int i = 0; i < 1000; ++i) {
+    const auto wait = backoff.failed(any(random));
+    ASSERT_GE(wait, milliseconds{1000});
+    ASSERT_LT(wait, milliseconds{1250});
+  }
+}
+
+TEST(Backoff, NeverOverflowsNorExceedsItsMost) {
+  Backoff backoff{milliseconds{7}, std::chrono::hours{24 * 365}};
+  for (int i = 0; i < 200; ++i) EXPECT_LE(backoff.failed(0), std::chrono::hours{24 * 365});
+  Backoff turned_round{milliseconds{500}, milliseconds{100}};
+  EXPECT_EQ(turned_round.failed(0), milliseconds{100});
+}
+
+TEST(Budget, KeepsMapsWithinTheLinkWithRoomForReports) {
+  EXPECT_THAT(static_cast<double>(map_bytes_per_second(100)), DoubleNear(11.5e6, 0.05e6));
+  for (const double megabit : {0.5, 10.0, 100.0, 1000.0}) {
+    const double on_the_wire = static_cast<double>(map_bytes_per_second(megabit)) * 8 * 1538 / 1448;
+    EXPECT_LT(on_the_wire, megabit * 1e6 * 0.985);
+    EXPECT_GT(on_the_wire, megabit * 1e6 * 0.95);
+  }
+}
+
+TEST(Budget, IsNeverZero) {
+  EXPECT_GE(map_bytes_per_second(1e-12), 1) << "0 would mean no pacing at all";
+  EXPECT_GT(map_bytes_per_second(std::numeric_limits<double>::max()), 0);
+}
+
+}  // namespace
+}  // namespace adit::pace

@@ -18,6 +18,10 @@ using Field = std::pair<std::string_view, std::string>;
 /// time and the level.
 void log(Level level, std::string_view message, std::initializer_list<Field> fields = {});
 
+/// Bytes that are not visible ASCII or a space as \xNN, and a backslash as two: so that what a client sent
+/// can neither forge a line nor steer a terminal.
+std::string escaped(std::string_view text);
+
 /// Records less important than this are left out; Info at first.
 void set_least(Level level);
 

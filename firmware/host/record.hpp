@@ -9,10 +9,6 @@
 
 namespace adit::host {
 
-/// Bytes that are not visible ASCII or a space as \xNN, and a backslash as two: so that what a client sent
-/// can neither forge a line of the log nor steer a terminal.
-std::string escaped(std::string_view text);
-
 /// `message key=value ...`; a value that is empty or holds a space, a quote or "=" stands in quotes.
 std::string sentence(std::string_view message, std::span<const Field> fields);
 

@@ -1,0 +1,27 @@
+#include "cli/command.hpp"
+
+#include "cli/ask.hpp"
+#include "cli/check.hpp"
+#include "cli/help.hpp"
+#include "cli/options.hpp"
+#include "host/log.hpp"
+
+namespace adit::cli {
+
+Outcome run(std::span<const std::string_view> words, bool colour) {
+  const auto options = parse_options(words);
+  if (!options) return {Exit::Unable, "", "adit: " + host::escaped(options.error()) + '\n' + kSeeHelp};
+  switch (options->command) {
+    case Command::Status:
+      return status(*options, colour);
+    case Command::Reports:
+      return reports(*options, colour);
+    case Command::Check:
+      return check(*options, colour);
+    case Command::Help:
+      break;
+  }
+  return {Exit::Fine, help_about(options->about), ""};
+}
+
+}  // namespace adit::cli

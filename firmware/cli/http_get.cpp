@@ -1,0 +1,145 @@
+#include "cli/http_get.hpp"
+
+#include <arpa/inet.h>
+#include <netinet/in.h>
+#include <poll.h>
+#include <sys/socket.h>
+
+#include <boost/beast/http/parser.hpp>
+#include <boost/beast/http/string_body.hpp>
+#include <cerrno>
+#include <system_error>
+
+#include "cli/where.hpp"
+#include "loop/file_descriptor.hpp"
+
+namespace adit::cli {
+namespace {
+
+namespace http = boost::beast::http;
+using Clock = std::chrono::steady_clock;
+
+std::string reason(int error) {
+  return std::system_category().message(error);
+}
+
+/// 0, or the errno; ETIMEDOUT past the deadline.
+int wait_for(int fd, short events, Clock::time_point deadline) {
+  while (true) {
+    const auto left = std::chrono::ceil<std::chrono::milliseconds>(deadline - Clock::now()).count();
+    if (left <= 0) return ETIMEDOUT;
+    pollfd entry{fd, events, 0};
+    const int ready = poll(&entry, 1, static_cast<int>(left));
+    if (ready > 0) return 0;
+    if (ready < 0 && errno != EINTR) return errno;
+  }
+}
+
+socklen_t fill(const settings::Address& address, sockaddr_storage& name) {
+  auto& ipv4 = reinterpret_cast<sockaddr_in&>(name);
+  if (inet_pton(AF_INET, address.address.c_str(), &ipv4.sin_addr) == 1) {
+    ipv4.sin_family = AF_INET;
+    ipv4.sin_port = htons(address.port);
+    return sizeof ipv4;
+  }
+  auto& ipv6 = reinterpret_cast<sockaddr_in6&>(name);
+  inet_pton(AF_INET6, address.address.c_str(), &ipv6.sin6_addr);
+  ipv6.sin6_family = AF_INET6;
+  ipv6.sin6_port = htons(address.port);
+  return sizeof ipv6;
+}
+
+std::expected<loop::FileDescriptor, int> connected(const settings::Address& address,
+                                                   Clock::time_point deadline) {
+  sockaddr_storage name{};
+  const socklen_t size = fill(address, name);
+  loop::FileDescriptor fd(socket(name.ss_family, SOCK_STREAM | SOCK_NONBLOCK | SOCK_CLOEXEC, 0));
+  if (!fd) return std::unexpected(errno);
+  if (connect(fd.get(), reinterpret_cast<const sockaddr*>(&name), size) == 0) return fd;
+  if (errno != EINPROGRESS) return std::unexpected(errno);
+  if (const int error = wait_for(fd.get(), POLLOUT, deadline); error != 0) return std::unexpected(error);
+  int error = 0;
+  socklen_t length = sizeof error;
+  getsockopt(fd.get(), SOL_SOCKET, SO_ERROR, &error, &length);
+  if (error != 0) return std::unexpected(error);
+  return fd;
+}
+
+int send_all(int fd, std::string_view text, Clock::time_point deadline) {
+  while (!text.empty()) {
+    const ssize_t count = send(fd, text.data(), text.size(), MSG_NOSIGNAL);
+    if (count >= 0) {
+      text.remove_prefix(static_cast<std::size_t>(count));
+    } else if (errno == EAGAIN) {
+      if (const int error = wait_for(fd, POLLOUT, deadline); error != 0) return error;
+    } else if (errno != EINTR) {
+      return errno;
+    }
+  }
+  return 0;
+}
+
+using Parser = http::response_parser<http::string_body>;
+
+/// Feeds what came to the parser, and keeps what it left for the next time. False: no HTTP.
+bool feed(Parser& parser, std::string& waiting, std::string& trouble) {
+  while (!waiting.empty() && !parser.is_done()) {
+    boost::system::error_code error;
+    const std::size_t used = parser.put(boost::asio::buffer(waiting), error);
+    waiting.erase(0, used);
+    if (error == http::error::need_more) return true;
+    if (error) {
+      trouble = "its answer is no HTTP, or too long: " + error.message();
+      return false;
+    }
+  }
+  return true;
+}
+
+/// The whole answer, or a sentence.
+std::string receive(int fd, Parser& parser, Clock::time_point deadline) {
+  std::string waiting, trouble;
+  char buffer[65536];
+  while (!parser.is_done()) {
+    const ssize_t count = recv(fd, buffer, sizeof buffer, 0);
+    if (count > 0) {
+      waiting.append(buffer, static_cast<std::size_t>(count));
+      if (!feed(parser, waiting, trouble)) return trouble;
+    } else if (count == 0) {
+      boost::system::error_code error;
+      parser.put_eof(error);
+      return parser.is_done() ? "" : "it closed the connection in the middle of its answer";
+    } else if (errno == EAGAIN) {
+      if (const int error = wait_for(fd, POLLIN, deadline); error != 0) return reason(error);
+    } else if (errno != EINTR) {
+      return reason(errno);
+    }
+  }
+  return "";
+}
+
+}  // namespace
+
+std::expected<std::string, std::string> http_get(const settings::Address& address, const std::string& target,
+                                                 std::chrono::milliseconds within) {
+  const auto deadline = Clock::now() + within;
+  const std::string host = written(address);
+  const auto fail = [&host](const std::string& why) {
+    return std::unexpected("Adit at " + host + " cannot be asked: " + why);
+  };
+  const auto fd = connected(address, deadline);
+  if (!fd) return fail(reason(fd.error()));
+  const std::string request = "GET " + target + " HTTP/1.1\r\nHost: " + host +
+                              "\r\nAccept: application/json\r\nConnection: close\r\n\r\n";
+  if (const int error = send_all(fd->get(), request, deadline); error != 0) return fail(reason(error));
+  Parser parser;
+  parser.body_limit(kLargestBody);
+  if (const std::string trouble = receive(fd->get(), parser, deadline); !trouble.empty())
+    return fail(trouble);
+  if (const unsigned status = parser.get().result_int(); status != 200) {
+    return fail("it answered " + std::to_string(status) + " (is that Adit?)");
+  }
+  return std::move(parser.get().body());
+}
+
+}  // namespace adit::cli

@@ -1,0 +1,167 @@
+#include "cli/status_text.hpp"
+
+#include <map>
+
+#include "cli/table.hpp"
+#include "cli/words.hpp"
+#include "host/log.hpp"
+
+namespace adit::cli {
+namespace {
+
+using page::RunView;
+using Align = Table::Align;
+
+std::string attention_lines(const RunView& view, bool colour) {
+  std::string text;
+  for (const std::string& sentence : view.attention) {
+    text += painted("ATTENTION  " + host::escaped(sentence), Tone::Bad, colour) + '\n';
+  }
+  return text.empty() ? text : text + '\n';
+}
+
+std::string run_line(const RunView& view, bool colour) {
+  if (!view.run) return painted("Run   no word from the Command Post yet", Tone::Warning, colour) + '\n';
+  const icd::RunStatus& run = *view.run;
+  std::string text = "Run   " + painted(clock(run.run_clock), Tone::Strong, colour) + "   score " +
+                     painted(std::to_string(run.score), Tone::Strong, colour) + "   " +
+                     painted(std::to_string(run.remaining_reports), Tone::Strong, colour) + " reports left";
+  if (!run.current_team.empty()) text += "   team " + host::escaped(run.current_team);
+  if (view.run_heard) {
+    text += painted("   (heard " + duration(view.now - *view.run_heard) + " ago)", Tone::Faint, colour);
+  }
+  return text + '\n';
+}
+
+std::string link_line(const RunView& view) {
+  return "Link  " + decimal(view.sent_mbit, 1) + " of " + decimal(view.budget_mbit, 1) + " Mbit/s   " +
+         size(view.queued_bytes) + " of maps wait\n";
+}
+
+std::string reports_line(const RunView& view, bool colour) {
+  std::map<std::string, int> states;
+  for (const page::ReportRow& report : view.reports) ++states[report.state];
+  std::string text = "Reports";
+  if (states.empty()) text += "  none so far";
+  for (const auto& [state, number] : states) {
+    const std::string words = host::escaped(state) + " " + std::to_string(number);
+    text += "  " + painted(words, state == "in doubt" ? Tone::Bad : Tone::Plain, colour);
+  }
+  return text + '\n';
+}
+
+std::string last_answer(const page::EndpointRow& endpoint) {
+  if (endpoint.last_status == 0) return "";
+  std::string text = "last answer " + std::to_string(endpoint.last_status);
+  if (endpoint.answer_ms)
+    text += " in " + decimal(*endpoint.answer_ms, *endpoint.answer_ms < 10 ? 1 : 0) + " ms";
+  return text;
+}
+
+std::string endpoints_table(const RunView& view, bool colour) {
+  Table table({{}, {}, {}, {}, {}});
+  for (const page::EndpointRow& endpoint : view.endpoints) {
+    const bool well = endpoint.connected && endpoint.trouble.empty();
+    table.add({{endpoint.name, Tone::Strong},
+               {endpoint.address},
+               {endpoint.connected ? "connected" : "not connected", well ? Tone::Good : Tone::Bad},
+               {last_answer(endpoint)},
+               {endpoint.trouble, Tone::Bad}});
+  }
+  return table.empty() ? "" : "\nCommand Post\n" + table.written(colour);
+}
+
+Cell arrival_cell(Arrival arrival) {
+  switch (arrival) {
+    case Arrival::Yes:
+      return {"yes", Tone::Good};
+    case Arrival::Late:
+      return {"late", Tone::Warning};
+    case Arrival::No:
+      return {"NO", Tone::Bad};
+    case Arrival::Silent:
+      return {"silent", Tone::Warning};
+    case Arrival::NotYet:
+      break;
+  }
+  return {"not yet", Tone::Faint};
+}
+
+std::string ago(const std::optional<page::Time>& time, page::Time now) {
+  return time ? duration(now - *time) + " ago" : "never";
+}
+
+std::string sent_size(const page::ActivityRow& row) {
+  if (!row.last_forwarded) return "";
+  return size(row.bytes_received) + " > " + size(row.bytes_sent);
+}
+
+std::string said(const page::ActivityRow& row) {
+  const std::string status = row.last_status == 0 ? "" : std::to_string(row.last_status);
+  if (row.last_sentence.empty()) return status;
+  return status.empty() ? row.last_sentence : status + ": " + row.last_sentence;
+}
+
+std::string activities_table(const RunView& view, bool colour) {
+  Table table({{"robot"},
+               {"kind"},
+               {"arriving"},
+               {"accepted", Align::Right},
+               {"sent", Align::Right},
+               {"waiting", Align::Right},
+               {"last sent", Align::Right},
+               {"size", Align::Right},
+               {"the Command Post said"}});
+  for (const page::ActivityRow& row : view.activities) {
+    const Arrival arrival = arrival_of(row, view.now);
+    table.add({{row.robot.empty() ? "(all)" : row.robot, Tone::Strong},
+               {row.kind},
+               arrival_cell(arrival),
+               {std::to_string(row.accepted)},
+               {std::to_string(row.forwarded)},
+               {std::to_string(row.waiting)},
+               {ago(row.last_forwarded, view.now)},
+               {sent_size(row)},
+               {said(row), arrival == Arrival::No ? Tone::Bad : Tone::Plain}});
+  }
+  return table.empty() ? "" : "\nIs my map arriving?\n" + table.written(colour);
+}
+
+std::string refusals_table(const RunView& view, bool colour) {
+  static constexpr std::size_t kShown = 5;
+  Table table({{}, {}, {}, {}, {}});
+  for (std::size_t i = 0; i < view.refusals.size() && i < kShown; ++i) {
+    const page::RefusalRow& refusal = view.refusals[i];
+    table.add({{ago(refusal.at, view.now), Tone::Faint},
+               {refusal.sender},
+               {refusal.uri},
+               {std::to_string(refusal.status), Tone::Warning},
+               {refusal.sentence}});
+  }
+  return table.empty() ? "" : "\nRefused to the team, the latest\n" + table.written(colour);
+}
+
+}  // namespace
+
+Arrival arrival_of(const page::ActivityRow& row, page::Time now) {
+  const bool answered = row.last_status != 0;
+  const bool taken = row.last_status >= 200 && row.last_status < 300;
+  if (answered ? !taken : !row.last_sentence.empty()) return Arrival::No;
+  const auto older = [now](const std::optional<page::Time>& time, double seconds) {
+    return time && now - *time > seconds;
+  };
+  if (row.waiting > 0) {
+    const bool late = older(row.last_forwarded ? row.last_forwarded : row.last_accepted, kLateAfter);
+    return late ? Arrival::Late : row.last_forwarded ? Arrival::Yes : Arrival::NotYet;
+  }
+  if (!row.last_forwarded) return Arrival::NotYet;
+  return older(row.last_accepted, kSilentAfter) ? Arrival::Silent : Arrival::Yes;
+}
+
+std::string status_text(const RunView& view, bool colour) {
+  return attention_lines(view, colour) + run_line(view, colour) + link_line(view) +
+         reports_line(view, colour) + endpoints_table(view, colour) + activities_table(view, colour) +
+         refusals_table(view, colour);
+}
+
+}  // namespace adit::cli

@@ -1,0 +1,50 @@
+#include "cli/table.hpp"
+
+#include <algorithm>
+#include <utility>
+
+#include "host/log.hpp"
+
+namespace adit::cli {
+namespace {
+
+std::string line(const std::vector<Cell>& cells, const std::vector<Table::Column>& columns,
+                 const std::vector<std::size_t>& widths, bool colour) {
+  std::string text;
+  std::size_t owed = 0;  // spaces, written only before something that shows: lines do not end in any
+  for (std::size_t i = 0; i < cells.size(); ++i) {
+    const std::size_t spare = widths[i] - cells[i].text.size();
+    const bool right = columns[i].align == Table::Align::Right;
+    owed += 2 + (right ? spare : 0);
+    if (!cells[i].text.empty()) {
+      text.append(std::exchange(owed, 0), ' ').append(painted(cells[i].text, cells[i].tone, colour));
+    }
+    owed += right ? 0 : spare;
+  }
+  return text + '\n';
+}
+
+}  // namespace
+
+void Table::add(std::vector<Cell> cells) {
+  for (Cell& cell : cells) cell.text = host::escaped(cell.text);
+  rows_.push_back(std::move(cells));
+}
+
+std::string Table::written(bool colour) const {
+  std::vector<Cell> names;
+  std::vector<std::size_t> widths;
+  for (const Column& column : columns_) {
+    names.push_back({column.name, Tone::Faint});
+    widths.push_back(column.name.size());
+  }
+  for (const auto& row : rows_) {
+    for (std::size_t i = 0; i < row.size(); ++i) widths[i] = std::max(widths[i], row[i].text.size());
+  }
+  const bool named = std::ranges::any_of(columns_, [](const Column& column) { return !column.name.empty(); });
+  std::string text = named ? line(names, columns_, widths, colour) : "";
+  for (const auto& row : rows_) text += line(row, columns_, widths, colour);
+  return text;
+}
+
+}  // namespace adit::cli

@@ -1,0 +1,74 @@
+#include "cli/words.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <cstdio>
+
+namespace adit::cli {
+namespace {
+
+const char* code_of(Tone tone) {  // ECMA-48 8.3.117, SGR
+  switch (tone) {
+    case Tone::Plain:
+      return "";
+    case Tone::Faint:
+      return "\033[2m";
+    case Tone::Strong:
+      return "\033[1m";
+    case Tone::Good:
+      return "\033[32m";
+    case Tone::Warning:
+      return "\033[33m";
+    case Tone::Bad:
+      return "\033[1;31m";
+  }
+  return "";
+}
+
+constexpr double kLongestTime = 1e9;  // seconds; above it a peer talks nonsense
+
+}  // namespace
+
+std::string painted(const std::string& text, Tone tone, bool colour) {
+  if (!colour || tone == Tone::Plain || text.empty()) return text;
+  return code_of(tone) + text + "\033[0m";
+}
+
+std::string duration(double seconds) {
+  const double time = std::clamp(seconds, 0.0, kLongestTime);
+  if (time < 9.95) return decimal(time, 1) + " s";
+  if (time < 99.5) return decimal(time, 0) + " s";
+  if (time < 5970) return decimal(time / 60, 0) + " min";
+  return decimal(time / 3600, 0) + " h";
+}
+
+std::string clock(double seconds) {
+  const auto whole = static_cast<long>(std::clamp(seconds, 0.0, kLongestTime));
+  char text[32];
+  if (whole < 3600) {
+    std::snprintf(text, sizeof text, "%ld:%02ld", whole / 60, whole % 60);
+  } else {
+    std::snprintf(text, sizeof text, "%ld:%02ld:%02ld", whole / 3600, whole / 60 % 60, whole % 60);
+  }
+  return text;
+}
+
+std::string size(std::uint64_t bytes) {
+  const auto number = static_cast<double>(bytes);
+  if (bytes < 1000) return std::to_string(bytes) + " B";
+  if (number < 999.5e3) return decimal(number / 1e3, 0) + " kB";
+  return decimal(number / 1e6, 1) + " MB";
+}
+
+std::string decimal(double number, int digits) {
+  char text[400];
+  std::snprintf(text, sizeof text, "%.*f", digits, number);
+  std::string written = text;
+  if (written.find('.') != std::string::npos) {
+    written.erase(written.find_last_not_of('0') + 1);
+    if (written.ends_with('.')) written.pop_back();
+  }
+  return written == "-0" ? "0" : written;
+}
+
+}  // namespace adit::cli

@@ -1,0 +1,23 @@
+#pragma once
+
+#include <cstdint>
+#include <string>
+
+namespace adit::cli {
+
+/// How a piece of text is to be taken. What it says never hangs on the colour alone.
+enum class Tone : std::uint8_t { Plain, Faint, Strong, Good, Warning, Bad };
+
+/// In the tone's colour where there is colour.
+std::string painted(const std::string& text, Tone tone, bool colour);
+
+/// "0.4 s", "12 s", "3 min", "2 h"
+std::string duration(double seconds);
+/// As a run clock shows it: "1:02:03", "12:34"
+std::string clock(double seconds);
+/// "812 B", "64 kB", "3.4 MB"
+std::string size(std::uint64_t bytes);
+/// With at most `digits` after the point, and none that are zero at the end.
+std::string decimal(double number, int digits);
+
+}  // namespace adit::cli

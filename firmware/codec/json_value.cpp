@@ -19,8 +19,8 @@ std::string text_of(const char* text) {
 }
 
 Value number_of(double number) {
-  constexpr double kWholeUpTo = 9007199254740992;  // 2^53: a double holds every integer up to there
-  const bool whole = std::abs(number) <= kWholeUpTo && number == std::floor(number);
+  constexpr double kWholeBelow = 9007199254740992;  // 2^53: from there on it may stand for another integer
+  const bool whole = std::abs(number) < kWholeBelow && number == std::floor(number);
   const bool negative_zero = number == 0 && std::signbit(number);
   if (whole && !negative_zero) return {static_cast<std::int64_t>(number)};
   return {number};

@@ -6,7 +6,7 @@
 #include <random>
 #include <vector>
 
-namespace adit::codec {
+namespace adit::codec::test {
 namespace {
 
 std::expected<std::string, std::string> decoded(std::string_view text, std::size_t run = 1000,
@@ -90,4 +90,4 @@ TEST(Base64, GivesTheSameBytesHoweverTextAndRoomAreCut) {
 }
 
 }  // namespace
-}  // namespace adit::codec
+}  // namespace adit::codec::test

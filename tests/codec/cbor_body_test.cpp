@@ -1,0 +1,307 @@
+// RFC 8949: which documents are taken and which are refused, whole and in chunks of any size.
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <limits>
+
+#include "codec/documents.hpp"
+
+namespace adit::codec::test {
+namespace {
+
+icd::Checked<Document> decode_hex(std::string_view hex, std::size_t size = 1000000,
+                                  Split split = Split::Nothing) {
+  return decode_in_chunks(kCborBody, split, from_hex(hex), size);
+}
+
+/// RFC 8949 appendix A, and what it means in JSON: without tags, with null for undefined and for simple
+/// values, and without members whose keys are no text.
+const std::vector<std::pair<std::string, std::string>> kGood = {
+    {"00", "0"},
+    {"01", "1"},
+    {"0a", "10"},
+    {"17", "23"},
+    {"1818", "24"},
+    {"1819", "25"},
+    {"1864", "100"},
+    {"1903e8", "1000"},
+    {"1a000f4240", "1000000"},
+    {"1b000000e8d4a51000", "1000000000000"},
+    {"1bffffffffffffffff", "18446744073709551615"},
+    {"3bffffffffffffffff", "-18446744073709551616"},
+    {"1b7fffffffffffffff", "9223372036854775807"},
+    {"1b8000000000000000", "9223372036854775808"},
+    {"3b7fffffffffffffff", "-9223372036854775808"},
+    {"3b8000000000000000", "-9223372036854775809"},
+    {"20", "-1"},
+    {"29", "-10"},
+    {"3863", "-100"},
+    {"3903e7", "-1000"},
+    // Lengths longer than they need be are well-formed (4.1 only prefers others).
+    {"1800", "0"},
+    {"1b0000000000000001", "1"},
+    {"3a00000000", "-1"},
+    {"9a0000000101", "[1]"},
+    {"f90000", "0.0"},
+    {"f98000", "-0.0"},
+    {"f93c00", "1.0"},
+    {"fb3ff199999999999a", "1.1"},
+    {"f93e00", "1.5"},
+    {"f97bff", "65504.0"},
+    {"fa47c35000", "100000.0"},
+    {"fa7f7fffff", "3.4028234663852886e+38"},
+    {"fb7e37e43c8800759c", "1.0e+300"},
+    {"f90001", "5.960464477539063e-8"},
+    {"f90400", "0.00006103515625"},
+    {"f9c400", "-4.0"},
+    {"fbc010666666666666", "-4.1"},
+    {"f4", "false"},
+    {"f5", "true"},
+    {"f6", "null"},
+    {"f7", "null"},
+    {"f0", "null"},
+    {"e0", "null"},
+    {"f820", "null"},
+    {"f8ff", "null"},
+    {"c074323031332d30332d32315432303a30343a30305a", "\"2013-03-21T20:04:00Z\""},
+    {"c11a514b67b0", "1363896240"},
+    {"c1fb41d452d9ec200000", "1363896240.5"},
+    {"d9d9f7 83010203", "[1,2,3]"},
+    {"c0c1c2d82000", "0"},
+    {"60", "\"\""},
+    {"6161", "\"a\""},
+    {"6449455446", "\"IETF\""},
+    {"62225c", R"("\"\\")"},
+    {"62c3bc", "\"\u00fc\""},
+    {"63e6b0b4", "\"\u6c34\""},
+    {"64f0908591", "\"\U00010151\""},
+    {"80", "[]"},
+    {"83010203", "[1,2,3]"},
+    {"8301820203820405", "[1,[2,3],[4,5]]"},
+    {"98190102030405060708090a0b0c0d0e0f101112131415161718181819",
+     "[1,2,3,4,5,6,7,8,9,10,11,12,13,14,15,16,17,18,19,20,21,22,23,24,25]"},
+    {"a0", "{}"},
+    {"a201020304", "{}"},
+    {"a26161016162820203", R"({"a":1,"b":[2,3]})"},
+    {"826161a161626163", R"(["a",{"b":"c"}])"},
+    {"a56161614161626142616361436164614461656145", R"({"a":"A","b":"B","c":"C","d":"D","e":"E"})"},
+    {"7f657374726561646d696e67ff", "\"streaming\""},
+    {"7fff", "\"\""},
+    {"7f60ff", "\"\""},
+    {"9fff", "[]"},
+    {"9f018202039f0405ffff", "[1,[2,3],[4,5]]"},
+    {"9f01820203820405ff", "[1,[2,3],[4,5]]"},
+    {"83018202039f0405ff", "[1,[2,3],[4,5]]"},
+    {"83019f0203ff820405", "[1,[2,3],[4,5]]"},
+    {"bf61610161629f0203ffff", R"({"a":1,"b":[2,3]})"},
+    {"826161bf61626163ff", R"(["a",{"b":"c"}])"},
+    {"bf6346756ef563416d7421ff", R"({"Fun":true,"Amt":-2})"},
+    {"bfff", "{}"},
+    // Keys: in chunks, tagged, and those that are no text
+    {"a17f61616162ff01", R"({"ab":1})"},
+    {"a1c0616101", R"({"a":1})"},
+    {"a24101026161f6", R"({"a":null})"},
+    {"a2 8161 61 02 6162 03", R"({"b":3})"},
+    {"a2 f6 02 6162 01", R"({"b":1})"},
+    {"bf a1 6161 01 02 6162 03 ff", R"({"b":3})"},
+};
+
+TEST(CborBody, OfEachExampleOfTheRfcIsTakenAndMeansWhatItSays) {
+  for (const auto& [hex, meaning] : kGood) {
+    for (const std::size_t size : {1, 2, 7, 1000000}) {
+      for (const Split split : {Split::Nothing, Split::MapData}) {
+        const auto document = decode_hex(hex, size, split);
+        ASSERT_TRUE(document) << hex << ": " << document.error().sentence;
+        EXPECT_TRUE(says(document->root, nlohmann::ordered_json::parse(meaning))) << hex;
+      }
+    }
+  }
+}
+
+TEST(CborBody, KeepsByteStringsAsBytes) {
+  const std::vector<std::pair<std::string, std::string>> cases = {{"40", ""},
+                                                                  {"4401020304", "\1\2\3\4"},
+                                                                  {"5f42010243030405ff", "\1\2\3\4\5"},
+                                                                  {"5fff", ""},
+                                                                  {"5f4040ff", ""},
+                                                                  {"d74401020304", "\1\2\3\4"},
+                                                                  {"d818456449455446", "dIETF"},
+                                                                  {"c2 41 07", "\7"}};
+  for (const auto& [hex, bytes] : cases) {
+    const auto document = decode_hex(hex);
+    ASSERT_TRUE(document) << hex;
+    const auto& read = std::get<Value::Bytes>(document->root.is).bytes;
+    EXPECT_EQ(std::string(read.begin(), read.end()), bytes);
+  }
+}
+
+TEST(CborBody, KeepsNumbersThatAreNoneForTheReaderToRefuse) {
+  constexpr double kInfinity = std::numeric_limits<double>::infinity();
+  for (const std::string_view hex : {"f97c00", "fa7f800000", "fb7ff0000000000000"}) {
+    EXPECT_EQ(std::get<double>(decode_hex(hex)->root.is), kInfinity) << hex;
+  }
+  for (const std::string_view hex : {"f9fc00", "faff800000", "fbfff0000000000000"}) {
+    EXPECT_EQ(std::get<double>(decode_hex(hex)->root.is), -kInfinity) << hex;
+  }
+  for (const std::string_view hex : {"f97e00", "fa7fc00000", "fb7ff8000000000000"}) {
+    EXPECT_TRUE(std::isnan(std::get<double>(decode_hex(hex)->root.is))) << hex;
+  }
+}
+
+/// RFC 8949 appendix F, and more of each kind.
+const std::vector<std::pair<std::string, std::string>> kBad = {
+    {"", "0: an empty document"},
+    // The end comes too early in a head
+    {"18", "1: the document is cut short"},
+    {"19", "1: the document is cut short"},
+    {"1a", "1: the document is cut short"},
+    {"1b", "1: the document is cut short"},
+    {"1901", "2: the document is cut short"},
+    {"1a0102", "3: the document is cut short"},
+    {"1b01020304050607", "8: the document is cut short"},
+    {"38", "1: the document is cut short"},
+    {"58", "1: the document is cut short"},
+    {"78", "1: the document is cut short"},
+    {"98", "1: the document is cut short"},
+    {"9a01ff00", "4: the document is cut short"},
+    {"b8", "1: the document is cut short"},
+    {"d8", "1: the document is cut short"},
+    {"f8", "1: the document is cut short"},
+    {"f900", "2: the document is cut short"},
+    {"fa0000", "3: the document is cut short"},
+    {"fb000000", "4: the document is cut short"},
+    // In a definite string, also one that claims more than there can be
+    {"41", "1: the document is cut short"},
+    {"61", "1: the document is cut short"},
+    {"5affffffff00", "6: the document is cut short"},
+    {"5bffffffffffffffff010203", "12: the document is cut short"},
+    {"7affffffff00", "6: the document is cut short"},
+    {"7b7fffffffffffffff010203", "12: the document is cut short"},
+    // In definite containers, also those that claim more than there can be
+    {"81", "1: the document is cut short"},
+    {"818181818181818181", "9: the document is cut short"},
+    {"8200", "2: the document is cut short"},
+    {"a1", "1: the document is cut short"},
+    {"a20102", "3: the document is cut short"},
+    {"a100", "2: the document is cut short"},
+    {"a2000000", "4: the document is cut short"},
+    {"9bffffffffffffffff00", "10: the document is cut short"},
+    {"bbffffffffffffffff0000", "11: the document is cut short"},
+    {"c0", "1: the document is cut short"},
+    // In indefinite ones
+    {"5f4100", "3: the document is cut short"},
+    {"7f6100", "3: the document is cut short"},
+    {"9f", "1: the document is cut short"},
+    {"9f0102", "3: the document is cut short"},
+    {"bf", "1: the document is cut short"},
+    {"bf01020102", "5: the document is cut short"},
+    {"819f", "2: the document is cut short"},
+    {"9f8000", "3: the document is cut short"},
+    {"9f9f9f9f9fffffffff", "9: the document is cut short"},
+    {"9f819f819f9fffffff", "9: the document is cut short"},
+    // More after the end
+    {"0000", "1: bytes after the document"},
+    {"a000", "1: bytes after the document"},
+    {"9fff00", "2: bytes after the document"},
+    {"6161ff", "2: bytes after the document"},
+    // Reserved additional information
+    {"1c", "0: reserved additional information"},
+    {"1d", "0: reserved additional information"},
+    {"1e", "0: reserved additional information"},
+    {"3c", "0: reserved additional information"},
+    {"5d", "0: reserved additional information"},
+    {"7e", "0: reserved additional information"},
+    {"9c", "0: reserved additional information"},
+    {"bd", "0: reserved additional information"},
+    {"de", "0: reserved additional information"},
+    {"fc", "0: reserved additional information"},
+    {"81fd", "1: reserved additional information"},
+    {"fe", "0: reserved additional information"},
+    // Simple values in two bytes that have one
+    {"f800", "0: a simple value below 32 in two bytes"},
+    {"f801", "0: a simple value below 32 in two bytes"},
+    {"f818", "0: a simple value below 32 in two bytes"},
+    {"81f81f", "1: a simple value below 32 in two bytes"},
+    // Strings in chunks of something else
+    {"5f00ff", "1: a string in chunks holds something else"},
+    {"5f21ff", "1: a string in chunks holds something else"},
+    {"5f6100ff", "1: a string in chunks holds something else"},
+    {"5f80ff", "1: a string in chunks holds something else"},
+    {"5fa0ff", "1: a string in chunks holds something else"},
+    {"5fc000ff", "1: a string in chunks holds something else"},
+    {"5fe0ff", "1: a string in chunks holds something else"},
+    {"7f4100ff", "1: a string in chunks holds something else"},
+    {"5f5f4100ffff", "1: a string in chunks holds something else"},
+    {"7f7f6100ffff", "1: a string in chunks holds something else"},
+    // Break where none belongs
+    {"ff", "0: a break where none belongs"},
+    {"81ff", "1: a break where none belongs"},
+    {"8200ff", "2: a break where none belongs"},
+    {"a1ff", "1: a break where none belongs"},
+    {"a1ff00", "1: a break where none belongs"},
+    {"a100ff", "2: a break where none belongs"},
+    {"a20000ff", "3: a break where none belongs"},
+    {"9f81ff", "2: a break where none belongs"},
+    {"9f829f819f9fffffffff", "9: a break where none belongs"},
+    {"c0ff", "1: a break where none belongs"},
+    {"9fc0ff", "2: a break where none belongs"},
+    {"bf00ff", "2: a key without its value"},
+    {"bf000000ff", "4: a key without its value"},
+    // Indefinite lengths where there are none
+    {"1f", "0: an indefinite length where there is none"},
+    {"3f", "0: an indefinite length where there is none"},
+    {"df", "0: an indefinite length where there is none"},
+    // Texts that are not UTF-8 (3.1), also when only their chunks are not (3.2.3)
+    {"61ff", "1: a text that is not UTF-8"},
+    {"62c328", "2: a text that is not UTF-8"},
+    {"63eda080", "2: a text that is not UTF-8"},
+    {"61c3", "0: a text that ends within a character"},
+    {"7f61c361bcff", "1: a text that ends within a character"},
+    {"a161ff00", "2: a text that is not UTF-8"},
+};
+
+TEST(CborBody, ThatIsNotWellFormedIsRefusedWith400AndTheByteItIsAbout) {
+  for (const auto& [hex, why] : kBad) {
+    for (const std::size_t size : {1, 2, 7, 1000000}) {
+      for (const Split split : {Split::Nothing, Split::MapData}) {
+        const auto document = decode_hex(hex, size, split);
+        ASSERT_FALSE(document) << hex << " in chunks of " << size;
+        EXPECT_EQ(document.error(),
+                  (icd::Refusal{icd::Status::BadRequest, "not well-formed CBOR at byte " + why}))
+            << hex;
+      }
+    }
+  }
+}
+
+TEST(CborBody, IsTakenNestedAsDeepAsIsAllowedAndNoDeeper) {
+  for (const std::string_view open : {"81", "9f", "a16161", "bf6161", "c0"}) {
+    std::string hex;
+    for (int depth = 0; depth < BodyDecoder::kDeepest; ++depth) hex += open;
+    std::string end = "01";
+    if (open == "9f" || open.starts_with("bf")) {
+      for (int depth = 0; depth < BodyDecoder::kDeepest; ++depth) end += "ff";
+    }
+    EXPECT_TRUE(decode_hex(hex + end)) << open;
+    const auto deeper = decode_hex(hex + std::string(open));
+    ASSERT_FALSE(deeper) << open;
+    EXPECT_EQ(deeper.error().status, icd::Status::BadRequest);
+    EXPECT_THAT(deeper.error().sentence, testing::HasSubstr("nested deeper than 64"));
+  }
+}
+
+TEST(CborBody, OverItsLimitIsRefusedWith413) {
+  const Limits limits{.text_bytes = 100, .data_bytes = 1000};
+  const auto text_of = [](int size) {
+    std::string text = "\x78";
+    text += static_cast<char>(size);
+    return text.append(static_cast<std::size_t>(size), 'x');
+  };
+  EXPECT_TRUE(decode(kCborBody, Split::MapData, text_of(98), limits));
+  const auto over = decode(kCborBody, Split::MapData, text_of(99), limits);
+  ASSERT_FALSE(over);
+  EXPECT_EQ(over.error().status, icd::Status::ContentTooLarge);
+}
+
+}  // namespace
+}  // namespace adit::codec::test

@@ -1,0 +1,106 @@
+#pragma once
+
+#include <zlib.h>
+
+#include <algorithm>
+#include <cmath>
+#include <nlohmann/json.hpp>
+#include <string>
+#include <string_view>
+
+#include "codec/body_decoder.hpp"
+
+/// For the tests of the byte level: bodies in chunks, and documents compared with what nlohmann-json read.
+namespace adit::codec::test {
+
+inline constexpr BodyKind kJsonBody{Format::Json, ContentCoding::Identity};
+inline constexpr BodyKind kCborBody{Format::Cbor, ContentCoding::Identity};
+
+/// The body as a server would give it: in chunks of `size` bytes.
+inline icd::Checked<Document> decode_in_chunks(BodyKind kind, Split split, std::string_view body,
+                                               std::size_t size, const Limits& limits = {}) {
+  BodyDecoder decoder(kind, split, limits);
+  for (; !body.empty(); body.remove_prefix(std::min(size, body.size()))) {
+    const std::string_view chunk = body.substr(0, size);
+    const auto fed = decoder.feed({reinterpret_cast<const std::uint8_t*>(chunk.data()), chunk.size()});
+    if (!fed) return std::unexpected(fed.error());
+  }
+  return decoder.finish();
+}
+
+/// Bytes written as "83 01 ff".
+inline std::string from_hex(std::string_view digits) {
+  std::string bytes;
+  std::string pair;
+  for (const char c : digits) {
+    if (c != ' ') pair += c;
+    if (pair.size() < 2) continue;
+    bytes += static_cast<char>(std::stoi(pair, nullptr, 16));
+    pair.clear();
+  }
+  return bytes;
+}
+
+/// Window bits as zlib counts them: 31 gzip, 15 zlib, -15 raw deflate.
+inline std::string deflated(std::string_view bytes, int window_bits) {
+  z_stream stream{};
+  deflateInit2(&stream, 6, Z_DEFLATED, window_bits, 8, Z_DEFAULT_STRATEGY);
+  std::string out(deflateBound(&stream, bytes.size()) + 64, '\0');
+  stream.next_in = reinterpret_cast<Bytef*>(const_cast<char*>(bytes.data()));
+  stream.avail_in = static_cast<uInt>(bytes.size());
+  stream.next_out = reinterpret_cast<Bytef*>(out.data());
+  stream.avail_out = static_cast<uInt>(out.size());
+  deflate(&stream, Z_FINISH);
+  out.resize(stream.total_out);
+  deflateEnd(&stream);
+  return out;
+}
+
+/// Whether `value` says what `json` says: the same members in the same order, and numbers of the same value.
+inline bool says(const Value& value, const nlohmann::ordered_json& json) {
+  if (const auto* whole = std::get_if<std::int64_t>(&value.is)) {
+    return json.is_number() && json.get<double>() == static_cast<double>(*whole) &&
+           (json.is_number_float() || json.get<std::int64_t>() == *whole);
+  }
+  if (const auto* whole = std::get_if<std::uint64_t>(&value.is)) {
+    return json.is_number_unsigned() && json.get<std::uint64_t>() == *whole;
+  }
+  if (const auto* number = std::get_if<double>(&value.is)) {
+    return json.is_number() && json.get<double>() == *number;
+  }
+  if (const auto* text = std::get_if<std::string>(&value.is)) {
+    return json.is_string() && json.get_ref<const std::string&>() == *text;
+  }
+  if (const auto* boolean = std::get_if<bool>(&value.is)) return json.is_boolean() && json == *boolean;
+  if (const auto* bytes = std::get_if<Value::Bytes>(&value.is)) {
+    return json.is_binary() && std::ranges::equal(json.get_binary(), bytes->bytes);
+  }
+  if (const auto* array = std::get_if<Value::Array>(&value.is)) {
+    return json.is_array() && std::equal(array->begin(), array->end(), json.begin(), json.end(), says);
+  }
+  if (const auto* object = std::get_if<Value::Object>(&value.is)) {
+    if (!json.is_object() || json.size() != object->size()) return false;
+    auto member = object->begin();
+    for (const auto& [key, child] : json.items()) {
+      if (member->first != key || !says(member->second, child)) return false;
+      ++member;
+    }
+    return true;
+  }
+  return std::holds_alternative<std::nullptr_t>(value.is) && json.is_null();
+}
+
+/// The value at root.msg.data; nullptr where there is none.
+inline const Value* msg_data(const Value& root) {
+  const Value* at = &root;
+  for (const std::string_view name : {"msg", "data"}) {
+    const auto* object = std::get_if<Value::Object>(&at->is);
+    if (object == nullptr) return nullptr;
+    const auto found = std::ranges::find(*object, name, &Value::Member::first);
+    if (found == object->end()) return nullptr;
+    at = &found->second;
+  }
+  return at;
+}
+
+}  // namespace adit::codec::test

@@ -1,0 +1,130 @@
+// The map's data in JSON: split from the rest as it arrives, base64 (ICD 6.3) or an array of integers.
+#include <gtest/gtest.h>
+
+#include "codec/documents.hpp"
+
+namespace adit::codec::test {
+namespace {
+
+struct Case {
+  std::string body;
+  std::string data;
+  DataForm form = DataForm::Base64;
+};
+
+const std::vector<Case> kGood = {
+    Case{R"({"msg":{"data":"Zm9vYmFy"}})", "foobar"},
+    Case{R"({"msg":{"data":""}})", ""},
+    Case{R"({"a":[1,{"msg":3}],"msg":{"b":{"data":7},"data":"Zg==","c":"d"},"e":0})", "f"},
+    Case{R"({"msg":{"data":"Zg"}})", "f"},                   // no padding
+    Case{R"({"msg":{"data":"\/\/\/\/"}})", "\xff\xff\xff"},  // as some escape slashes
+    Case{R"({"msg":{"data":"\u002B\u002bAAZg\u003d\u003d"}})",
+         std::string("\xfb\xe0\0f", 4)},  // as Gson does
+    Case{R"({"\u006Dsg":{"d\u0061ta":"Zm8="}})", "fo"},
+    Case{"\n{ \"msg\" : { \"data\" : \"Zm9v\" , \"x\" : 1 } }\n", "foo"},
+    Case{R"({"msg":{"data":[]}})", "", DataForm::Integers},
+    Case{R"({"msg":{"data":[0,100,-1,255,97]}})",
+         std::string("\0d\xff\xff"
+                     "a",
+                     5),
+         DataForm::Integers},
+    Case{"{\"msg\":{\"data\": [ 97 ,\n98\t, 99 ] , \"x\":[300]}}", "abc", DataForm::Integers},
+    Case{R"({"msg":{"data":[97.0,9.8e1,-1.0,-0,0.99E2]}})", std::string("ab\xff\0c", 5), DataForm::Integers}};
+
+TEST(JsonData, OfEachFormIsGivenApartAndTheRestHasAMarkInItsPlace) {
+  for (const auto& [body, data, form] : kGood) {
+    for (const std::size_t size : {1, 2, 7, 1000000}) {
+      const auto document = decode_in_chunks(kJsonBody, Split::MapData, body, size);
+      ASSERT_TRUE(document) << document.error().sentence << " in " << body;
+      EXPECT_EQ(document->data.to_string(), data) << body;
+      EXPECT_EQ(document->data_form, form);
+      const Value* const mark = msg_data(document->root);
+      ASSERT_NE(mark, nullptr);
+      EXPECT_TRUE(std::holds_alternative<Value::SplitOut>(mark->is));
+    }
+  }
+}
+
+TEST(JsonData, StaysInTheRestWhenNothingIsToBeSplit) {
+  const auto document = decode(kJsonBody, Split::Nothing, R"({"msg":{"data":"Zm9v"}})");
+  ASSERT_TRUE(document);
+  EXPECT_EQ(document->data_form, DataForm::Absent);
+  EXPECT_EQ(std::get<std::string>(msg_data(document->root)->is), "Zm9v");
+}
+
+TEST(JsonData, MarksTheMemberThatHeldItWhenMsgIsGivenTwice) {
+  const auto document = decode(kJsonBody, Split::MapData, R"({"msg":{"a":null},"msg":{"data":"Zm9v"}})");
+  ASSERT_TRUE(document);
+  const auto& second = std::get<Value::Object>(document->root.is)[1].second;
+  EXPECT_TRUE(std::holds_alternative<Value::SplitOut>(std::get<Value::Object>(second.is)[0].second.is));
+}
+
+const std::vector<std::pair<std::string, std::string>> kBad = {
+    {R"("Zm9v YmFy")", ": character 4: a space is not of the base64 alphabet"},
+    {R"("Zm9v\nYmFy")", ": character 4: byte 0x0a is not of the base64 alphabet"},
+    {R"("Zm9-")", ": character 3: '-' is not of the base64 alphabet"},
+    {R"("Zm9vé")", ": character 4: byte 0xc3 is not of the base64 alphabet"},
+    {R"("Zg=")", ": the base64 padding is cut short"},
+    {R"("Z")", ": the base64 text is cut short"},
+    {R"("Zg==Zg==")", ": character 4: something after the padding"},
+    {"[1,256]", "[1]: expected an integer from -1 to 255, got 256"},
+    {"[-2]", "[0]: expected an integer from -1 to 255, got -2"},
+    {"[0,0,1.5]", "[2]: expected an integer from -1 to 255, got 1.5"},
+    {"[1e999]", "[0]: expected an integer from -1 to 255, got 1e999"},
+    {"[99999999999999999999999999999999999999]",
+     "[0]: expected an integer from -1 to 255, got 99999999999999999999999999999999..."},
+    {"[1,\"1\"]", "[1]: expected an integer from -1 to 255, got a string"},
+    {"[[1]]", "[0]: expected an integer from -1 to 255, got an array"},
+    {"[{}]", "[0]: expected an integer from -1 to 255, got an object"},
+    {"[null]", "[0]: expected an integer from -1 to 255, got null"},
+    {"[true]", "[0]: expected an integer from -1 to 255, got true or false"},
+    {R"("Zm9v","data":"Zm9v")", ": given twice"},
+    {R"("Zm9v","d\u0061ta":[1])", ": given twice"},
+    {R"(null,"data":"Zm9v")", ": given twice"},
+    {R"("Zm9v"},"msg":{"data":null)", ": given twice"},
+};
+
+TEST(JsonData, OfAnotherKindIsRefusedWith422AndTheElementItIsAbout) {
+  for (const auto& [data, why] : kBad) {
+    for (const std::size_t size : {1, 2, 7, 1000000}) {
+      const auto document =
+          decode_in_chunks(kJsonBody, Split::MapData, R"({"msg":{"data":)" + data + "}}", size);
+      ASSERT_FALSE(document) << data;
+      EXPECT_EQ(document.error().status, icd::Status::UnprocessableEntity);
+      EXPECT_EQ(document.error().sentence, "msg.data" + why);
+    }
+  }
+}
+
+TEST(JsonData, ThatIsNotWellFormedIsRefusedWith400) {
+  for (const std::string data :
+       {"[1,]", "[,]", "[01]", "[1", "[1 2]", "[1}", "[-]", "\"Zm9v\n\"", "\"Zm9v\\q\"", "\"Zm9v\xff\""}) {
+    const auto document = decode(kJsonBody, Split::MapData, R"({"msg":{"data":)" + data + "}}");
+    ASSERT_FALSE(document) << data;
+    EXPECT_EQ(document.error().status, icd::Status::BadRequest) << data;
+  }
+}
+
+TEST(JsonData, OverItsLimitIsRefusedWith413WhileTheRestHasItsOwn) {
+  const Limits limits{.text_bytes = 40, .data_bytes = 6000};
+  const auto body = [](const std::string& data) { return R"({"msg":{"data":)" + data + "}}"; };
+  const auto integers = [](std::size_t count) {
+    std::string text = "[0";
+    for (std::size_t i = 1; i < count; ++i) text += ",0";
+    return text + "]";
+  };
+  EXPECT_TRUE(decode(kJsonBody, Split::MapData, body('"' + std::string(8000, 'A') + '"'), limits));
+  EXPECT_TRUE(decode(kJsonBody, Split::MapData, body(integers(6000)), limits));
+  for (const std::string& data : {'"' + std::string(8004, 'A') + '"', integers(6001)}) {
+    const auto document = decode(kJsonBody, Split::MapData, body(data), limits);
+    ASSERT_FALSE(document);
+    EXPECT_EQ(document.error(),
+              (icd::Refusal{icd::Status::ContentTooLarge, "msg.data: larger than the 6000 bytes taken"}));
+  }
+  const auto blanks = decode(kJsonBody, Split::MapData, body(std::string(30000, ' ') + "[]"), limits);
+  ASSERT_FALSE(blanks);
+  EXPECT_EQ(blanks.error().status, icd::Status::ContentTooLarge);
+}
+
+}  // namespace
+}  // namespace adit::codec::test

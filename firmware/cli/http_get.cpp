@@ -107,8 +107,9 @@ std::string receive(int fd, Parser& parser, Clock::time_point deadline) {
       if (!feed(parser, waiting, trouble)) return trouble;
     } else if (count == 0) {
       boost::system::error_code error;
+      const bool began = parser.got_some();  // put_eof() takes nothing at all for a whole message
       parser.put_eof(error);
-      return parser.is_done() ? "" : "it closed the connection in the middle of its answer";
+      return began && !error ? "" : "it closed the connection in the middle of its answer";
     } else if (errno == EAGAIN) {
       if (const int error = wait_for(fd, POLLIN, deadline); error != 0) return reason(error);
     } else if (errno != EINTR) {

@@ -26,7 +26,7 @@ std::string_view trimmed(std::string_view text) {
 
 using Token = std::optional<icd::BearerToken>;
 
-/// Nothing where there is no such file. No sentence shows what is in it.
+/// Nothing where there is no such file, or nothing in it. No sentence shows what is in it.
 std::expected<Token, std::string> read_token(const std::string& path, bool credential) {
   const auto file = slurp(path);
   if (!file && file.error() == ENOENT) return Token();
@@ -34,14 +34,16 @@ std::expected<Token, std::string> read_token(const std::string& path, bool crede
   if (!credential && (file->status.st_mode & 077) != 0) {
     return std::unexpected(path + ": others may read or write it; run: chmod 600 " + path);
   }
-  auto token = icd::BearerToken::parse(trimmed(file->text));
+  const std::string_view text = trimmed(file->text);
+  if (text.empty()) return Token();
+  auto token = icd::BearerToken::parse(text);
   if (!token) return std::unexpected(path + ": expected one token of 1 to 256 visible ASCII characters");
   return token;
 }
 
 std::expected<Token, std::string> read_required_token(const std::string& path, bool credential) {
   auto token = read_token(path, credential);
-  if (token && !*token) return std::unexpected(trouble(path, ENOENT));
+  if (token && !*token) return std::unexpected(path + ": there is no token");
   return token;
 }
 

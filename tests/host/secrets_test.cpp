@@ -32,17 +32,21 @@ TEST_F(ReadSecrets, GivesEachTokenWithoutTheSpaceAroundIt) {
 }
 
 TEST_F(ReadSecrets, DoesWithoutATeamToken) {
+  for (const std::string empty : {"", "\n"}) {  // systemd's stand-in for a credential that is not there
+    folder_.put("team.token", empty);
+    EXPECT_FALSE(read_secrets(folder_.path()).value().team.has_value());
+  }
   std::filesystem::remove(folder_ / "team.token");
-  const auto secrets = read_secrets(folder_.path());
-  ASSERT_TRUE(secrets.has_value()) << secrets.error();
-  EXPECT_FALSE(secrets->team.has_value());
+  EXPECT_FALSE(read_secrets(folder_.path()).value().team.has_value());
 }
 
 TEST_F(ReadSecrets, NeedsBothTokensOfTheCommandPost) {
   for (const std::string name : {"scoring.token", "mapping.token"}) {
     const std::string path = folder_ / name;
     std::filesystem::rename(path, folder_ / "aside");
-    EXPECT_EQ(read_secrets(folder_.path()).error(), path + ": No such file or directory");
+    EXPECT_EQ(read_secrets(folder_.path()).error(), path + ": there is no token");
+    folder_.put(name, " \n");
+    EXPECT_EQ(read_secrets(folder_.path()).error(), path + ": there is no token");
     std::filesystem::rename(folder_ / "aside", path);
   }
 }
@@ -69,10 +73,10 @@ TEST_F(ReadSecrets, TrustsTheModesOfSystemdsCredentials) {
 }
 
 TEST_F(ReadSecrets, NamesTheFileAndNeverWhatIsInIt) {
-  for (const std::string& text : {std::string("secret one\nsecret two"), std::string(300, 's'), std::string(),
-                                  std::string("secret\0", 7),
-                                  std::string("s\xc3\xa9"
-                                              "cret")}) {
+  for (const std::string& text :
+       {std::string("secret one\nsecret two"), std::string(300, 's'), std::string("secret\0", 7),
+        std::string("s\xc3\xa9"
+                    "cret")}) {
     folder_.put("team.token", text);
     const auto secrets = read_secrets(folder_.path());
     ASSERT_FALSE(secrets.has_value()) << text;
@@ -83,7 +87,7 @@ TEST_F(ReadSecrets, NamesTheFileAndNeverWhatIsInIt) {
 }
 
 TEST_F(ReadSecrets, SaysThatThereIsNoFolder) {
-  EXPECT_THAT(read_secrets(folder_ / "none").error(), HasSubstr("No such file or directory"));
+  EXPECT_THAT(read_secrets(folder_ / "none").error(), HasSubstr("scoring.token: there is no token"));
 }
 
 }  // namespace

@@ -130,7 +130,7 @@ double Field::seconds() const {
   constexpr std::uint32_t kLastNanosecond = 999'999'999;
   const auto secs = member("secs").whole<std::uint32_t>();
   const auto nsecs = member("nsecs").whole<std::uint32_t>(0, kLastNanosecond);
-  return secs + nsecs * 1e-9;
+  return secs + nsecs / 1e9;
 }
 
 void Field::refuse_kind(std::string_view expected) const {

@@ -1,0 +1,59 @@
+#pragma once
+
+#include <cstdint>
+#include <nlohmann/json.hpp>
+#include <ostream>
+#include <random>
+#include <string>
+#include <vector>
+
+#include "codec/body_decoder.hpp"
+#include "icd/map_update.hpp"
+#include "icd/markers_update.hpp"
+#include "icd/state_update.hpp"
+#include "icd/status.hpp"
+
+/// Request bodies and messages for the tests of the message level. Bodies are made by nlohmann-json and zlib
+/// alone, so that they owe nothing to the code under test.
+namespace adit::codec::test {
+
+using nlohmann::json;
+using Bytes = std::vector<std::uint8_t>;
+using Random = std::mt19937_64;
+
+/// Good messages, each with every member that the ICD lists; a map's data is binary.
+json good_grid();   // 4 x 3 cells
+json good_cloud();  // 2 points of x, y, z, rgba
+json good_state();
+json good_markers();
+json good_report();
+
+std::string base64(const Bytes& bytes);
+/// With every binary as a base64 string.
+std::string as_json(const json& message);
+std::string as_cbor(const json& message);
+
+/// By zlib. `window` is deflateInit2's: 31 gzip, 15 zlib, -15 raw deflate.
+Bytes compressed(const Bytes& bytes, int window = 31);
+/// The one gzip member that `bytes` is; fails the test where it is none, or where anything follows it.
+Bytes only_member(const Bytes& bytes);
+
+/// The sentence of a refusal, which must be 422; "taken" for none.
+template <class T>
+std::string sentence_of(const icd::Checked<T>& checked) {
+  if (checked) return "taken";
+  if (checked.error().status != icd::Status::UnprocessableEntity)
+    return "not 422: " + checked.error().sentence;
+  return checked.error().sentence;
+}
+
+/// Equal in everything but in how the data is held: its bytes are compared before compression.
+void expect_same(const icd::MapUpdate& map, const icd::MapUpdate& expected);
+Bytes raw_data(const icd::MapData& data);
+
+icd::MapUpdate random_grid(Random& random);
+icd::MapUpdate random_cloud(Random& random);
+icd::StateUpdate random_state(Random& random);
+icd::MarkersUpdate random_markers(Random& random);
+
+}  // namespace adit::codec::test

@@ -1,0 +1,236 @@
+// A row for each rule of the ICD about POST /state/update and POST /markers/update, as JSON and as CBOR.
+#include <gtest/gtest.h>
+
+#include <functional>
+#include <limits>
+
+#include "codec/messages.hpp"
+#include "codec/read.hpp"
+
+namespace adit::codec {
+namespace {
+
+using test::json;
+
+constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
+
+template <class Message>
+using Reader = icd::Checked<Message> (*)(const Document&, const icd::Rules&);
+
+template <class Message>
+icd::Checked<Message> read(Reader<Message> reader, Format format, const std::string& body,
+                           const icd::Rules& rules = {}) {
+  const auto document = decode({.format = format}, Split::Nothing, body);
+  if (!document) return std::unexpected(document.error());
+  return reader(*document, rules);
+}
+
+struct Row {
+  const char* section;
+  std::function<void(json&)> change;
+  const char* sentence;
+};
+
+template <class Message>
+void expect_answers(Reader<Message> reader, std::span<const Row> rows, const json& good,
+                    const icd::Rules& rules = {}) {
+  for (const Row& row : rows) {
+    json message = good;
+    row.change(message);
+    EXPECT_EQ(test::sentence_of(read(reader, Format::Cbor, test::as_cbor(message), rules)), row.sentence)
+        << "ICD " << row.section << ", CBOR";
+    if (std::string(row.sentence).ends_with("nan")) continue;  // JSON has none
+    EXPECT_EQ(test::sentence_of(read(reader, Format::Json, test::as_json(message), rules)), row.sentence)
+        << "ICD " << row.section << ", JSON";
+  }
+}
+
+TEST(ReadStateUpdate, RefusesWhatTheIcdForbids) {
+  const Row rows[] = {
+      {"6.5", [](json&) {}, "taken"},
+      {"6.5", [](json& m) { m["poses"] = json::array(); }, "taken"},
+      {"6.5", [](json& m) { m.erase("header"); }, "taken"},
+      {"6.5", [](json& m) { m["header"] = nullptr; }, "taken"},
+      {"6.5", [](json& m) { m["extra"] = {1, 2}; }, "taken"},
+      {"6.5", [](json& m) { m = nullptr; }, "the body: expected an object, got null"},
+      {"6.5", [](json& m) { m["header"] = json::array(); }, "header: expected an object, got an array"},
+      {"6.1", [](json& m) { m["header"]["frame_id"] = "odom"; },
+       "header.frame_id: expected \"darpa\", got \"odom\""},
+      {"6.2", [](json& m) { m["header"]["stamp"] = -1; },
+       "header.stamp: expected a finite number of at least 0, got -1"},
+      {"6.2", [](json& m) { m["header"]["stamp"] = kNan; },
+       "header.stamp: expected a finite number of at least 0, got nan"},
+      {"6.5", [](json& m) { m.erase("poses"); }, "poses: missing"},
+      {"6.5", [](json& m) { m["poses"] = nullptr; }, "poses: expected an array, got null"},
+      {"6.5", [](json& m) { m["poses"] = json::object(); }, "poses: expected an array, got an object"},
+      {"6.5", [](json& m) { m["poses"][1] = 1; }, "poses[1]: expected an object, got a whole number"},
+      {"6.5", [](json& m) { m["poses"][1].erase("name"); }, "poses[1].name: missing"},
+      {"6.5", [](json& m) { m["poses"][1]["name"] = nullptr; }, "poses[1].name: expected a string, got null"},
+      {"2, 6.5", [](json& m) { m["poses"][1]["name"] = ""; },
+       "poses[1].name: expected 1 to 10 letters, digits and underscores, got \"\""},
+      {"2, 6.5", [](json& m) { m["poses"][1]["name"] = "drone 2"; },
+       "poses[1].name: expected 1 to 10 letters, digits and underscores, got \"drone 2\""},
+      {"6.5", [](json& m) { m["poses"][0].erase("position"); }, "poses[0].position: missing"},
+      {"6.5", [](json& m) { m["poses"][0]["position"]["y"] = "1"; },
+       "poses[0].position.y: expected a number, got a string"},
+      {"6.5", [](json& m) { m["poses"][0]["position"]["y"] = kNan; },
+       "poses[0].position.y: expected a finite number, got nan"},
+      {"6.5", [](json& m) { m["poses"][0].erase("orientation"); }, "poses[0].orientation: missing"},
+      {"6.5", [](json& m) { m["poses"][0]["orientation"].erase("w"); }, "poses[0].orientation.w: missing"},
+      {"6.5", [](json& m) { m["poses"][0]["orientation"]["w"] = true; },
+       "poses[0].orientation.w: expected a number, got true or false"},
+  };
+  expect_answers(read_state_update, rows, test::good_state());
+}
+
+TEST(ReadStateUpdate, KeepsWhatItSays) {
+  const auto state = read(read_state_update, Format::Json, test::as_json(test::good_state()));
+  ASSERT_TRUE(state.has_value());
+  EXPECT_EQ(state->header.stamp, 721.4);
+  ASSERT_EQ(state->poses.size(), 2U);
+  EXPECT_EQ(state->poses[1].name.text(), "drone_02");
+  EXPECT_EQ(state->poses[1].pose, (icd::Pose{{2, -2.5, 0.25}, {0, 0, 0.6, 0.8}}));
+}
+
+TEST(ReadStateUpdate, CountsTheLastPoseOfARobotThatIsNamedTwice) {
+  json message = test::good_state();
+  message["poses"].push_back(message["poses"][0]);
+  message["poses"][2]["position"]["x"] = 9;
+  const auto state = read(read_state_update, Format::Json, test::as_json(message));
+  ASSERT_TRUE(state.has_value());
+  ASSERT_EQ(state->poses.size(), 2U);
+  EXPECT_EQ(state->poses[0].name.text(), "husky_01");
+  EXPECT_EQ(state->poses[0].pose.position.x, 9);
+}
+
+TEST(ReadStateUpdate, MakesAnAllZeroQuaternionTheIdentity) {
+  json message = test::good_state();
+  message["poses"][0]["orientation"] = {{"x", 0}, {"y", 0}, {"z", 0}, {"w", 0}};
+  const auto state = read(read_state_update, Format::Cbor, test::as_cbor(message));
+  ASSERT_TRUE(state.has_value());
+  EXPECT_EQ(state->poses[0].pose.orientation, icd::Quaternion{});
+}
+
+TEST(ReadStateUpdate, AddsSecondsAndNanoseconds) {  // as ROS has its stamps
+  json message = test::good_state();
+  message["header"]["stamp"] = {{"secs", 1617235200}, {"nsecs", 250'000'000.0}};
+  const auto state = read(read_state_update, Format::Json, test::as_json(message));
+  ASSERT_TRUE(state.has_value());
+  EXPECT_EQ(state->header.stamp, 1617235200.25);
+}
+
+TEST(ReadStateUpdate, RefusesAMemberGivenTwiceInAnyObjectThatItReads) {
+  const std::string position = R"({"x":1,"y":2,"z":3})";
+  const std::string orientation = R"({"x":0,"y":0,"z":0,"w":1})";
+  const auto answer = [&](const std::string& members) {
+    const std::string body = R"({"poses":[{"name":"a","position":)" + position + R"(,"orientation":)" +
+                             orientation + members + "}]}";
+    return test::sentence_of(read(read_state_update, Format::Json, body));
+  };
+  EXPECT_EQ(answer(""), "taken");
+  EXPECT_EQ(answer(R"(,"name":"a")"), "poses[0].name: given twice");
+  EXPECT_EQ(answer(R"(,"position":)" + position), "poses[0].position: given twice");
+  EXPECT_EQ(answer(R"(,"covariance":1,"covariance":1)"), "taken");
+  EXPECT_EQ(test::sentence_of(read(read_state_update, Format::Json, R"({"poses":[],"poses":[]})")),
+            "poses: given twice");
+}
+
+TEST(ReadMarkersUpdate, RefusesWhatTheIcdForbids) {
+  const Row rows[] = {
+      {"6.6", [](json&) {}, "taken"},
+      {"6.6", [](json& m) { m["markers"] = json::array(); }, "taken"},
+      {"6.6", [](json& m) { m.erase("markers"); }, "markers: missing"},
+      {"6.6", [](json& m) { m["markers"] = 1; }, "markers: expected an array, got a whole number"},
+      {"6.6", [](json& m) { m["markers"][0] = nullptr; }, "markers[0]: expected an object, got null"},
+      {"6.1", [](json& m) { m["markers"][0]["header"]["frame_id"] = "map"; },
+       "markers[0].header.frame_id: expected \"darpa\", got \"map\""},
+      {"6.2", [](json& m) { m["markers"][0]["header"]["stamp"] = -2; },
+       "markers[0].header.stamp: expected a finite number of at least 0, got -2"},
+      {"6.6", [](json& m) { m["markers"][0].erase("ns"); }, "taken"},
+      {"6.6", [](json& m) { m["markers"][0]["ns"] = nullptr; }, "taken"},
+      {"6.6", [](json& m) { m["markers"][0]["ns"] = 5; },
+       "markers[0].ns: expected a string, got a whole number"},
+      {"6.6", [](json& m) { m["markers"][0].erase("id"); }, "taken"},
+      {"6.6", [](json& m) { m["markers"][0]["id"] = 7.0; }, "taken"},
+      {"6.6", [](json& m) { m["markers"][0]["id"] = -2147483648; }, "taken"},
+      {"6.6", [](json& m) { m["markers"][0]["id"] = 2147483648; },
+       "markers[0].id: expected a whole number from -2147483648 to 2147483647, got 2147483648"},
+      {"6.6", [](json& m) { m["markers"][0]["id"] = "7"; },
+       "markers[0].id: expected a whole number, got a string"},
+      {"6.6", [](json& m) { m["markers"][0].erase("type"); }, "markers[0].type: missing"},
+      {"6.6", [](json& m) { m["markers"][0]["type"] = 11; }, "taken"},
+      {"6.6", [](json& m) { m["markers"][0]["type"] = 12; },
+       "markers[0].type: expected a whole number from 0 to 11, got 12"},
+      {"6.6", [](json& m) { m["markers"][0]["type"] = -1; },
+       "markers[0].type: expected a whole number from 0 to 11, got -1"},
+      {"6.6", [](json& m) { m["markers"][0].erase("action"); }, "markers[0].action: missing"},
+      {"6.6", [](json& m) { m["markers"][0]["action"] = 1; },
+       "markers[0].action: expected 0 (add), 2 (delete) or 3 (delete all), got 1"},
+      {"6.6", [](json& m) { m["markers"][0]["action"] = 256; },
+       "markers[0].action: expected 0 (add), 2 (delete) or 3 (delete all), got 256"},
+      {"6.6", [](json& m) { m["markers"][0]["action"] = "add"; },
+       "markers[0].action: expected a whole number, got a string"},
+      {"6.6", [](json& m) { m["markers"][0].erase("pose"); }, "markers[0].pose: missing"},
+      {"6.6", [](json& m) { m["markers"][0]["pose"].erase("orientation"); },
+       "markers[0].pose.orientation: missing"},
+      {"6.6", [](json& m) { m["markers"][0].erase("scale"); }, "markers[0].scale: missing"},
+      {"6.6", [](json& m) { m["markers"][0]["scale"]["z"] = kNan; },
+       "markers[0].scale.z: expected a finite number, got nan"},
+      {"6.6", [](json& m) { m["markers"][0].erase("color"); }, "markers[0].color: missing"},
+      {"6.6", [](json& m) { m["markers"][0]["color"].erase("a"); }, "markers[0].color.a: missing"},
+      {"6.6", [](json& m) { m["markers"][0]["color"]["a"] = 2; },
+       "markers[0].color.a: expected a number from 0 to 1, got 2"},
+      {"6.6", [](json& m) { m["markers"][0]["color"]["r"] = -0.5; },
+       "markers[0].color.r: expected a number from 0 to 1, got -0.5"},
+      {"6.6", [](json& m) { m["markers"][0]["color"]["g"] = kNan; },
+       "markers[0].color.g: expected a number from 0 to 1, got nan"},
+      {"6.6", [](json& m) { m["markers"][0]["color"]["b"] = "1"; },
+       "markers[0].color.b: expected a number from 0 to 1, got a string"},
+      {"6.6", [](json& m) { m["markers"][0].erase("lifetime"); }, "taken"},
+      {"6.6", [](json& m) { m["markers"][0]["lifetime"] = nullptr; }, "taken"},
+      {"6.6", [](json& m) { m["markers"][0]["lifetime"] = {{"secs", 5}, {"nsecs", 0}}; }, "taken"},
+      {"6.6", [](json& m) { m["markers"][0]["lifetime"] = -1; },
+       "markers[0].lifetime: expected a finite number of at least 0, got -1"},
+      {"6.6", [](json& m) { m["markers"][0]["lifetime"] = {{"secs", 5}, {"nsecs", -1}}; },
+       "markers[0].lifetime.nsecs: expected a whole number from 0 to 999999999, got -1"},
+      {"6.6", [](json& m) { m["markers"][0].erase("text"); }, "taken"},
+      {"6.6", [](json& m) { m["markers"][0]["text"] = 1; },
+       "markers[0].text: expected a string, got a whole number"},
+      {"6.6", [](json& m) { m["markers"][1] = {{"action", 3}}; }, "taken"},
+      {"6.6", [](json& m) { m["markers"][1]["pose"] = 1; },
+       "markers[1].pose: expected an object, got a whole number"},
+      {"6.6", [](json& m) { m["markers"][1].erase("action"); }, "markers[1].action: missing"},
+  };
+  expect_answers(read_markers_update, rows, test::good_markers());
+}
+
+TEST(ReadMarkersUpdate, KeepsWhatItSays) {
+  const auto update = read(read_markers_update, Format::Cbor, test::as_cbor(test::good_markers()));
+  ASSERT_TRUE(update.has_value());
+  ASSERT_EQ(update->markers.size(), 2U);
+  EXPECT_EQ(update->markers[0], (icd::Marker{.header = {721.4},
+                                             .ns = "artifacts",
+                                             .id = 7,
+                                             .type = 2,
+                                             .action = icd::MarkerAction::Add,
+                                             .pose = {{3, -2.5, 0.25}, {0, 0, 0.6, 0.8}},
+                                             .scale = {1, 1, 1},
+                                             .color = {1, 0.5, 0, 1},
+                                             .lifetime = 10.5,
+                                             .text = "Backpack"}));
+  icd::Marker deleted;
+  deleted.ns = "artifacts";
+  deleted.id = 8;
+  deleted.action = icd::MarkerAction::Delete;
+  EXPECT_EQ(update->markers[1], deleted);
+}
+
+TEST(ReadMarkersUpdate, RewritesTheFrameOfEachMarkerWhereTheSettingsSaySo) {
+  icd::Rules rules;
+  rules.rewrite_frame_id = true;
+  const Row rows[] = {{"6.1", [](json& m) { m["markers"][0]["header"]["frame_id"] = "map"; }, "taken"}};
+  expect_answers(read_markers_update, rows, test::good_markers(), rules);
+}
+
+}  // namespace
+}  // namespace adit::codec

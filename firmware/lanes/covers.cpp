@@ -40,8 +40,10 @@ std::optional<Corner> corner_of(const icd::OccupancyGrid& grid) {
   const icd::Point p = turned_back(grid.origin.orientation, grid.origin.position);
   const double scale = static_cast<double>(kStepsPerCell) / grid.resolution;
   const double x = p.x * scale, y = p.y * scale, z = p.z * scale;
-  // Written so that what is not a number does not pass.
-  if (!(std::abs(x) < kMostSteps && std::abs(y) < kMostSteps && std::abs(z) < kMostSteps)) return {};
+  const auto tellable = [](double steps) {
+    return std::abs(steps) < kMostSteps;
+  };  // false for what is no number
+  if (!tellable(x) || !tellable(y) || !tellable(z)) return {};
   return Corner{std::llround(x), std::llround(y), std::llround(z)};
 }
 

@@ -7,7 +7,8 @@
 
 namespace adit::lanes {
 
-std::vector<icd::Marker> merge(std::vector<icd::Marker> pending, const std::vector<icd::Marker>& newer) {
+std::vector<icd::Marker> merge(const std::vector<icd::Marker>& pending,
+                               const std::vector<icd::Marker>& newer) {
   MarkerChanges changes;
   for (const icd::Marker& marker : pending) changes.apply(marker);
   for (const icd::Marker& marker : newer) changes.apply(marker);
@@ -21,9 +22,10 @@ void MarkerLane::add(std::uint64_t number, const icd::MarkersUpdate& update, Ins
 }
 
 std::optional<WaitingMarkers> MarkerLane::take() {
-  if (empty()) return {};
+  const auto accepted = oldest();
+  if (!accepted) return {};
   WaitingMarkers taken;
-  taken.accepted = *oldest();
+  taken.accepted = *accepted;
   taken.update.markers = changes_.take(most_);
   const auto still_waits = [&](const Update& update) {
     return !changes_.empty() && update.last >= changes_.in_order().begin()->first;
@@ -34,12 +36,13 @@ std::optional<WaitingMarkers> MarkerLane::take() {
   return taken;
 }
 
-void MarkerLane::put_back(WaitingMarkers markers) {
+void MarkerLane::put_back(const WaitingMarkers& markers) {
   MarkerChanges all;
   auto last = kNowhere;
   for (const icd::Marker& marker : markers.update.markers) last = std::max(last, all.apply(marker));
 
   std::vector<Update> updates;
+  updates.reserve(markers.updates.size() + updates_.size());
   for (const std::uint64_t number : markers.updates) updates.push_back({number, markers.accepted, last});
   // An update ends where the last of the changes up to its end has gone to.
   std::map<MarkerChanges::Place, MarkerChanges::Place> moved{{kNowhere, last}};

@@ -17,7 +17,8 @@ namespace adit::lanes {
 /// `newer`, where a newer change of the same ns and id takes the place of an older one, DeleteAll takes the
 /// place of all before it, and nothing is deleted that a DeleteAll before it has deleted. Law: replaying the
 /// result on any scene gives what replaying both in order gives.
-std::vector<icd::Marker> merge(std::vector<icd::Marker> pending, const std::vector<icd::Marker>& newer);
+std::vector<icd::Marker> merge(const std::vector<icd::Marker>& pending,
+                               const std::vector<icd::Marker>& newer);
 
 struct WaitingMarkers {
   icd::MarkersUpdate update;
@@ -43,7 +44,7 @@ class MarkerLane {
   /// markers.
   std::optional<WaitingMarkers> take();
   /// What take() gave last and could not be sent goes before what came meanwhile, merged with it.
-  void put_back(WaitingMarkers markers);
+  void put_back(const WaitingMarkers& markers);
 
   std::size_t count() const { return changes_.count(); }  // of markers
   std::optional<Instant> oldest() const;

@@ -23,9 +23,10 @@ void StateLane::add(std::uint64_t number, const icd::StateUpdate& update, Instan
 }
 
 std::optional<WaitingState> StateLane::take() {
-  if (empty()) return {};
+  const auto accepted = std::exchange(oldest_, std::nullopt);
+  if (!accepted) return {};
   WaitingState taken;
-  taken.accepted = *std::exchange(oldest_, std::nullopt);
+  taken.accepted = *accepted;
   taken.updates = std::exchange(updates_, {});
   for (const auto& [name, held] : robots_) {
     taken.update.poses.push_back({name, held.pose});

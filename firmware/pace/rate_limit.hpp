@@ -36,7 +36,7 @@ class RateLimit {
  private:
   double allowed_;
   double learned_;
-  Instant next_{};
+  Instant next_;
 };
 
 }  // namespace adit::pace

@@ -6,9 +6,9 @@
 
 namespace adit::pack {
 
-/// A map as small as it can be made without loss, ready to be written: grids are already one gzip member; a
-/// cloud loses the points that are not finite (ICD 6.3.2 takes clouds to be dense) and is gzipped where that
-/// is smaller. CPU-bound in the size of the map: meant for a worker.
+/// A map as small as it can be made without loss, ready to be written: a cloud loses the points that are not
+/// finite (ICD 6.3.2 takes clouds to be dense), and what is not compressed yet is gzipped where that is
+/// smaller. CPU-bound in the size of the map: meant for a worker.
 icd::MapUpdate pack(icd::MapUpdate map);
 
 /// `data` without the points whose x, y or z is not finite; how many went is put to `dropped`. `data` must be

@@ -12,7 +12,7 @@
 namespace adit::lanes {
 namespace {
 
-constexpr std::size_t kMergeBytes = 5 * 12;
+constexpr std::size_t kMergeBytes = 60;  // five points
 
 /// Drives a lane as a gateway does, with whatever it likes, and remembers all that went in and came out.
 class Course {

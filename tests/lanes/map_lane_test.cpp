@@ -105,7 +105,7 @@ TEST(MapLane, MergedCloudsHaveTheNewersHeader) {
 }
 
 TEST(MapLane, MergesWithinItsLimitAndInOrder) {
-  MapLane lane{3 * 12};
+  MapLane lane{36};  // three points
   lane.add(1, cloud_update("R1", {1, 2}), at(1));
   lane.add(2, cloud_update("R1", {3, 4}), at(2));
   lane.add(3, cloud_update("R1", {5}), at(3));  // would fit, but must not go ahead of 2

@@ -62,7 +62,8 @@ TEST(StampShift, IsNeverNegativeNorFarAheadOfNow) {
   std::mt19937_64 random{1};
   std::uniform_real_distribution<double> any{0, 60};
   StampShift shift;
-  for (double now = 0; now < 200; now += 0.1) {
+  for (int i = 0; i < 2000; ++i) {
+    const double now = i * 0.1;
     const auto stamp = shift.shift("R1", any(random), now);
     ASSERT_GE(stamp, 0);
     ASSERT_LE(stamp, now + StampShift::kJump);

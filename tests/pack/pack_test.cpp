@@ -1,0 +1,202 @@
+#include "pack/pack.hpp"
+
+#include <gmock/gmock.h>
+
+#include <algorithm>
+#include <bit>
+#include <cstring>
+#include <limits>
+#include <random>
+
+#include "codec/gzip.hpp"
+
+namespace adit::pack {
+namespace {
+
+using Bytes = std::vector<std::uint8_t>;
+
+constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
+constexpr double kInfinity = std::numeric_limits<double>::infinity();
+
+/// A way to lay out a point: x, y and z anywhere within it, one byte "tag" at its end.
+struct Layout {
+  const char* what;
+  icd::Datatype datatype;
+  bool big_endian;
+  std::uint32_t x, y, z, step;
+};
+
+constexpr Layout kLayouts[] = {
+    {"plain float32", icd::Datatype::Float32, false, 0, 4, 8, 13},
+    {"float32, big-endian", icd::Datatype::Float32, true, 0, 4, 8, 13},
+    {"float64", icd::Datatype::Float64, false, 0, 8, 16, 25},
+    {"float64, big-endian", icd::Datatype::Float64, true, 0, 8, 16, 25},
+    {"padded, in another order, unaligned", icd::Datatype::Float32, false, 17, 1, 9, 40},
+    {"float64, padded, in another order", icd::Datatype::Float64, true, 32, 5, 16, 48},
+    {"larger than a chunk", icd::Datatype::Float32, false, 0, 70'000, 140'000, 200'001},
+};
+
+icd::PointCloud2 cloud_of(const Layout& layout) {
+  icd::PointCloud2 cloud;
+  cloud.fields = {{"tag", layout.step - 1, icd::Datatype::Uint8, 1},
+                  {"z", layout.z, layout.datatype, 1},
+                  {"x", layout.x, layout.datatype, 1},
+                  {"y", layout.y, layout.datatype, 1}};
+  cloud.is_bigendian = layout.big_endian;
+  cloud.point_step = layout.step;
+  return cloud;
+}
+
+template <class Float>
+void put(Bytes& point, std::uint32_t offset, Float value, bool big_endian) {
+  auto* to = point.data() + offset;
+  std::memcpy(to, &value, sizeof value);
+  if (big_endian) std::reverse(to, to + sizeof value);
+}
+
+Bytes point_of(const Layout& layout, double x, double y, double z, std::uint8_t tag) {
+  Bytes point(layout.step, 0xff);  // padding that would be no number
+  for (const auto& [offset, value] : {std::pair{layout.x, x}, {layout.y, y}, {layout.z, z}}) {
+    if (layout.datatype == icd::Datatype::Float32) {
+      put(point, offset, static_cast<float>(value), layout.big_endian);
+    } else {
+      put(point, offset, value, layout.big_endian);
+    }
+  }
+  point.back() = tag;
+  return point;
+}
+
+/// The same bytes in chunks of random sizes.
+icd::MapData cut_up(const Bytes& bytes, std::mt19937_64& random) {
+  icd::MapData data;
+  data.raw_size = bytes.size();
+  for (std::size_t at = 0; at < bytes.size();) {
+    const std::size_t longest = std::min<std::size_t>(bytes.size() - at, icd::ChunkedBytes::kChunk);
+    const auto size = std::uniform_int_distribution<std::size_t>{1, longest}(random);
+    data.bytes.append(Bytes(bytes.begin() + static_cast<std::ptrdiff_t>(at),
+                            bytes.begin() + static_cast<std::ptrdiff_t>(at + size)));
+    at += size;
+  }
+  return data;
+}
+
+TEST(WithoutInvalidPoints, DropsWhatIsNotFiniteWhateverTheLayoutAndTheChunks) {
+  std::mt19937_64 random{1};
+  for (const Layout& layout : kLayouts) {
+    const double largest = layout.datatype == icd::Datatype::Float32
+                               ? static_cast<double>(std::numeric_limits<float>::max())
+                               : std::numeric_limits<double>::max();
+    const double values[] = {0, -0.0, 1.5, -1e-30, largest, -largest, kNan, kInfinity, -kInfinity, 65504};
+    const auto any = [&] {
+      // Mostly finite, so that points survive.
+      return values[std::uniform_int_distribution{0, random() % 3 == 0 ? 9 : 5}(random)];
+    };
+    for (int round = 0; round < 20; ++round) {
+      Bytes all, valid;
+      std::size_t invalid = 0;
+      const int count = std::uniform_int_distribution{0, layout.step > 1000 ? 4 : 300}(random);
+      for (int i = 0; i < count; ++i) {
+        const double x = any(), y = any(), z = any();
+        const Bytes point = point_of(layout, x, y, z, static_cast<std::uint8_t>(i));
+        all.insert(all.end(), point.begin(), point.end());
+        if (std::isfinite(x) && std::isfinite(y) && std::isfinite(z)) {
+          valid.insert(valid.end(), point.begin(), point.end());
+        } else {
+          ++invalid;
+        }
+      }
+      std::size_t dropped = 77;
+      const auto kept = without_invalid_points(cloud_of(layout), cut_up(all, random), dropped);
+      EXPECT_EQ(dropped, invalid) << layout.what;
+      ASSERT_EQ(kept.bytes.to_vector(), valid) << layout.what;
+      EXPECT_EQ(kept.raw_size, valid.size()) << layout.what;
+      EXPECT_EQ(kept.compression, icd::Compression::None);
+    }
+  }
+}
+
+TEST(WithoutInvalidPoints, CopiesNothingWhereAllPointsAreFinite) {
+  const Layout& layout = kLayouts[0];
+  std::mt19937_64 random{2};
+  Bytes all;
+  for (int i = 0; i < 1000; ++i) {
+    const Bytes point = point_of(layout, i, 0, 0, 0);
+    all.insert(all.end(), point.begin(), point.end());
+  }
+  const auto data = cut_up(all, random);
+  std::size_t dropped = 0;
+  const auto kept = without_invalid_points(cloud_of(layout), data, dropped);
+  ASSERT_EQ(kept.bytes.chunks().size(), data.bytes.chunks().size());
+  for (std::size_t i = 0; i < data.bytes.chunks().size(); ++i) {
+    EXPECT_EQ(kept.bytes.chunks()[i], data.bytes.chunks()[i]) << "shared";
+  }
+}
+
+Bytes inflated(const icd::MapData& data) {
+  Bytes out;
+  const auto size = codec::gunzip(data.bytes, 1u << 30, "data", [&](std::span<const std::uint8_t> piece) {
+    out.insert(out.end(), piece.begin(), piece.end());
+    return icd::Checked<void>{};
+  });
+  EXPECT_TRUE(size);
+  return out;
+}
+
+icd::MapUpdate cloud_update(const Layout& layout, const Bytes& bytes) {
+  return {{}, cloud_of(layout), {icd::ChunkedBytes{bytes}, icd::Compression::None, bytes.size()}};
+}
+
+TEST(Pack, GzipsACloudsFinitePoints) {
+  const Layout& layout = kLayouts[0];
+  Bytes all, valid;
+  for (int i = 0; i < 20'000; ++i) {
+    const Bytes point = point_of(layout, i % 100, i % 7 == 0 ? kNan : 1, 2, 3);
+    all.insert(all.end(), point.begin(), point.end());
+    if (i % 7 != 0) valid.insert(valid.end(), point.begin(), point.end());
+  }
+  const auto packed = pack(cloud_update(layout, all));
+  EXPECT_EQ(packed.data.compression, icd::Compression::Gzip);
+  EXPECT_LT(packed.data.bytes.size(), valid.size() / 4);
+  EXPECT_EQ(packed.data.raw_size, valid.size());
+  EXPECT_EQ(inflated(packed.data), valid);
+}
+
+TEST(Pack, LeavesACloudThatGzipDoesNotMakeSmaller) {
+  const Layout& layout = kLayouts[0];
+  const Bytes one = point_of(layout, 1, 2, 3, 4);
+  for (const Bytes& bytes : {one, Bytes{}}) {
+    const auto packed = pack(cloud_update(layout, bytes));
+    EXPECT_EQ(packed.data.compression, icd::Compression::None);
+    EXPECT_EQ(packed.data.bytes.to_vector(), bytes);
+  }
+}
+
+TEST(Pack, MakesAnEmptyCloudOfOneWithoutAnyValidPoint) {
+  const Layout& layout = kLayouts[0];
+  const auto packed = pack(cloud_update(layout, point_of(layout, kNan, 0, 0, 0)));
+  EXPECT_TRUE(packed.data.bytes.empty());
+  EXPECT_EQ(packed.data.raw_size, 0);
+  EXPECT_EQ(packed.data.compression, icd::Compression::None);
+}
+
+TEST(Pack, LeavesWhatIsCompressedAsItIs) {
+  icd::MapUpdate grid{{}, icd::OccupancyGrid{}, {}};
+  grid.data = {icd::ChunkedBytes{Bytes{1, 2, 3}}, icd::Compression::Gzip, 4800};
+  EXPECT_EQ(pack(grid), grid);
+  auto cloud = cloud_update(kLayouts[0], Bytes{1, 2, 3});
+  cloud.data.compression = icd::Compression::Gzip;
+  EXPECT_EQ(pack(cloud), cloud);
+}
+
+TEST(Pack, GzipsAGridThatIsNot) {
+  icd::MapUpdate grid{{}, icd::OccupancyGrid{}, {}};
+  const Bytes cells(4800, icd::kUnknownCell);
+  grid.data = {icd::ChunkedBytes{cells}, icd::Compression::None, cells.size()};
+  const auto packed = pack(grid);
+  EXPECT_EQ(packed.data.compression, icd::Compression::Gzip);
+  EXPECT_EQ(inflated(packed.data), cells);
+}
+
+}  // namespace
+}  // namespace adit::pack

@@ -1,0 +1,294 @@
+#include "uplink/connection.hpp"
+
+#include <sys/epoll.h>
+
+#include <algorithm>
+#include <cstring>
+#include <utility>
+
+#include "loop/file_descriptor.hpp"
+#include "uplink/exchange.hpp"
+#include "uplink/socket.hpp"
+
+namespace adit::uplink {
+namespace {
+
+/// A connection that is kept warm is begun at most this often, and less often while it fails.
+constexpr std::chrono::seconds kFirstPause{1}, kLongestPause{5};
+
+constexpr std::uint32_t kComing = EPOLLIN | EPOLLRDHUP;
+
+}  // namespace
+
+/// Callbacks hold the Impl while they run: `done` may destroy the Connection.
+class Connection::Impl : public std::enable_shared_from_this<Impl> {
+ public:
+  Impl(loop::Loop& loop, Endpoint endpoint, icd::BearerToken token)
+      : loop_(loop), endpoint_(std::move(endpoint)), token_(std::move(token)) {
+    timer_ = loop_.timer([this] {
+      const auto alive = shared_from_this();
+      time_came();
+    });
+  }
+
+  void keep_warm() {
+    warm_ = true;
+    if (phase_ == Phase::Closed) connect_in_time();
+  }
+
+  void send(Request request, std::function<void(Outcome)> done) {
+    exchange_.emplace(endpoint_, token_, std::move(request));
+    done_ = std::move(done);
+    sent_ = 0;
+    total_ = exchange_->total();
+    within_send_ = true;
+    if (phase_ == Phase::Closed) connect();
+    if (phase_ == Phase::Open && exchange_) begin();
+    within_send_ = false;
+  }
+
+  /// The Connection is gone, though a callback may still hold this.
+  void abandon() {
+    warm_ = false;
+    done_ = nullptr;
+    exchange_.reset();
+    timer_ = {};
+    close();
+  }
+
+  bool busy() const { return done_ != nullptr; }
+  bool connected() const { return phase_ == Phase::Open; }
+  const std::string& trouble() const { return trouble_; }
+  std::size_t sent_bytes() const { return exchange_ ? exchange_->sent() : sent_; }
+  std::size_t total_bytes() const { return total_; }
+
+ private:
+  enum class Phase : std::uint8_t { Closed, Connecting, Open };
+
+  // What the socket and the timer call.
+
+  void ready() {
+    if (phase_ == Phase::Connecting) return connecting_ended(connect_error(fd_.get()));
+    if (!exchange_) return idle_ended();
+    if (answer_came()) return;
+    if (exchange_->wants_to_write()) write();
+  }
+
+  void time_came() {
+    if (phase_ == Phase::Closed) return connect();
+    if (phase_ == Phase::Connecting) return connecting_failed("no answer in time");
+    if (!exchange_) return idle_ended();
+    exchange_->listen(fd_.get(), loop_.now());
+    if (exchange_->is_silent_at(loop_.now()))
+      return in_doubt(exchange_->sentence("the peer was silent for too long"));
+    listen_again();
+  }
+
+  // Connecting.
+
+  void connect() {
+    began_ = loop_.now();
+    auto fd = begin_connect(endpoint_);
+    if (!fd) return connecting_failed(fd.error());
+    fd_ = std::move(*fd);
+    phase_ = Phase::Connecting;
+    watched_ = EPOLLOUT;
+    source_ = loop_.watch(fd_.get(), watched_, [this](std::uint32_t) {
+      const auto alive = shared_from_this();
+      ready();
+    });
+    timer_.call_at(began_ + endpoint_.connect_within);
+  }
+
+  /// Now, or when the pause since the last time is over.
+  void connect_in_time() {
+    const loop::Instant when = began_ + pause_;
+    if (when <= loop_.now()) return connect();
+    timer_.call_at(when);
+  }
+
+  void connecting_ended(int error) {
+    if (error != 0) return connecting_failed(std::strerror(error));
+    phase_ = Phase::Open;
+    trouble_.clear();
+    pause_ = kFirstPause;
+    fresh_ = exchange_.has_value();
+    if (exchange_) return begin();
+    rest();
+  }
+
+  void connecting_failed(const std::string& why) {
+    trouble_ = "connecting to " + authority_of(endpoint_) +
+               (endpoint_.interface.empty() ? "" : " by " + endpoint_.interface) + ": " + why;
+    close();
+    const auto pause = std::exchange(pause_, std::min<std::chrono::seconds>(pause_ * 2, kLongestPause));
+    if (warm_) timer_.call_at(began_ + pause);
+    if (exchange_) deliver(NeverSent{trouble_});
+  }
+
+  // Idle.
+
+  /// Waits for the next request: an idle connection is given up before the peer does.
+  void rest() {
+    watch(kComing);
+    timer_.call_at(loop_.now() + kIdle);
+  }
+
+  /// It has been idle for long enough, or the peer closed it, or sent what nobody asked for. The old
+  /// connection goes before the new one comes, for the sake of servers that serve one connection at a time.
+  void idle_ended() {
+    close();
+    if (warm_) connect_in_time();
+  }
+
+  // A request and its answer.
+
+  void begin() {
+    // A kept connection may have been closed meanwhile. Nothing of this request has been sent, so that it may
+    // have a new one.
+    if (!fresh_ && !is_quiet(fd_.get())) return begin_anew();
+    give_up_after(fd_.get(), exchange_->answer_within());
+    exchange_->begin(loop_.now());
+    listen_again();
+    write();
+  }
+
+  void begin_anew() {
+    close();
+    connect();
+  }
+
+  void write() {
+    const int error = exchange_->write(fd_.get());
+    if (error == 0) return watch(exchange_->wants_to_write() ? kComing | EPOLLOUT : kComing);
+    if (exchange_->sent() == 0) return fresh_ ? never_sent(error) : begin_anew();
+    if (!answer_came()) watch(kComing);
+  }
+
+  /// Reads; true where that ended the exchange.
+  bool answer_came() {
+    switch (exchange_->read(fd_.get())) {
+      case Exchange::Answer::Waiting:
+        return false;
+      case Exchange::Answer::Lost:
+        in_doubt(exchange_->fault());
+        return true;
+      case Exchange::Answer::Whole:
+        answered();
+        return true;
+    }
+    return false;
+  }
+
+  void listen_again() { timer_.call_at(exchange_->next_listening(loop_.now())); }
+
+  void answered() {
+    Answered answer = exchange_->take_answer();
+    // The measured mapping server promises keep-alive with a 4xx and closes all the same.
+    const bool keep = exchange_->may_keep_alive() && answer.status < 400;
+    if (keep) {
+      fresh_ = false;
+      rest();
+    } else {
+      drop();
+    }
+    deliver(std::move(answer));
+  }
+
+  void in_doubt(std::string why) {
+    drop();
+    deliver(InDoubt{std::move(why)});
+  }
+
+  void never_sent(int error) {
+    std::string why = exchange_->sentence(std::strerror(error));
+    drop();
+    deliver(NeverSent{std::move(why)});
+  }
+
+  // Ends.
+
+  /// Ends the exchange. `done` is called last, for it may send the next request or destroy all this.
+  void deliver(Outcome outcome) {
+    sent_ = exchange_->sent();
+    exchange_.reset();
+    if (within_send_) {
+      loop_.post([weak = weak_from_this(), outcome = std::move(outcome)]() mutable {
+        if (const auto alive = weak.lock()) alive->call_done(std::move(outcome));
+      });
+      return;
+    }
+    call_done(std::move(outcome));
+  }
+
+  void call_done(Outcome outcome) {
+    if (const auto done = std::exchange(done_, nullptr)) done(std::move(outcome));
+  }
+
+  void drop() {
+    close();
+    if (warm_) timer_.call_at(std::max(loop_.now(), began_ + pause_));
+  }
+
+  void close() {
+    source_ = {};
+    fd_ = {};
+    phase_ = Phase::Closed;
+    if (timer_) timer_.cancel();
+  }
+
+  void watch(std::uint32_t events) {
+    if (std::exchange(watched_, events) != events) source_.wait_for(events);
+  }
+
+  loop::Loop& loop_;
+  const Endpoint endpoint_;
+  const icd::BearerToken token_;
+
+  Phase phase_ = Phase::Closed;
+  loop::FileDescriptor fd_;
+  loop::Source source_;  // of fd_; ends before it
+  std::uint32_t watched_ = 0;
+  loop::Source timer_;  // the end of the phase: a pause, connecting, resting, the peer's silence
+  bool warm_ = false;
+  bool fresh_ = false;   // connected for the very request that is under way
+  loop::Instant began_;  // to connect, last
+  std::chrono::seconds pause_ = kFirstPause;
+  std::string trouble_;
+
+  std::optional<Exchange> exchange_;
+  std::function<void(Outcome)> done_;
+  bool within_send_ = false;
+  std::size_t sent_ = 0;
+  std::size_t total_ = 0;
+};
+
+Connection::Connection(loop::Loop& loop, Endpoint endpoint, icd::BearerToken token)
+    : impl_(std::make_shared<Impl>(loop, std::move(endpoint), std::move(token))) {}
+Connection::~Connection() {
+  impl_->abandon();
+}
+
+void Connection::keep_warm() {
+  impl_->keep_warm();
+}
+void Connection::send(Request request, std::function<void(Outcome)> done) {
+  impl_->send(std::move(request), std::move(done));
+}
+bool Connection::busy() const {
+  return impl_->busy();
+}
+bool Connection::connected() const {
+  return impl_->connected();
+}
+const std::string& Connection::trouble() const {
+  return impl_->trouble();
+}
+std::size_t Connection::sent_bytes() const {
+  return impl_->sent_bytes();
+}
+std::size_t Connection::total_bytes() const {
+  return impl_->total_bytes();
+}
+
+}  // namespace adit::uplink

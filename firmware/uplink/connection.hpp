@@ -28,8 +28,9 @@ struct Request {
   std::string target;        // "/map/update"
   std::string content_type;  // "" without a body
   icd::ChunkedBytes body;
-  std::chrono::milliseconds answer_within{
-      10000};  // of silence from the peer, reading neither our bytes nor answering
+  /// How long the peer's TCP may acknowledge no more of the request, and then how long the whole answer may
+  /// take. Halves of an answer do not make it longer.
+  std::chrono::milliseconds answer_within{10000};
 };
 
 /// A whole HTTP answer came. Its body may be anything.
@@ -52,9 +53,9 @@ using Outcome = std::variant<Answered, NeverSent, InDoubt>;
 /// One HTTP/1.1 connection (RFC 9112) to the Command Post, one request at a time, kept alive between
 /// requests.
 ///
-/// It connects ahead of need (warm()), gives up an idle connection before the Command Post does, drops the
-/// connection after any answer of 400 or more (the measured server promises keep-alive and closes), after an
-/// answer that says close and after anything odd, and never sends `Expect`.
+/// It connects ahead of need (keep_warm()), gives up an idle connection before the Command Post does, drops
+/// the connection after any answer of 400 or more (the measured server promises keep-alive and closes), after
+/// an answer that says close and after anything odd, and never sends `Expect`.
 class Connection {
  public:
   static constexpr std::chrono::seconds kIdle{25};         // a server closes after 60
@@ -68,14 +69,16 @@ class Connection {
   /// Connects now and again after each close, so that a request finds the connection open.
   void keep_warm();
 
-  /// Requires !busy(). `done` is called once, from the loop, never from within send().
+  /// Requires !busy(). `done` is called once, from the loop, never from within send(); it may send the next
+  /// request and may destroy this connection. Destroyed while busy, the connection never calls it.
   void send(Request request, std::function<void(Outcome)> done);
   bool busy() const;
   bool connected() const;
   /// Why the last connecting failed, or "".
   const std::string& trouble() const;
 
-  /// Bytes of the request that the kernel has taken so far, and all of them: for progress.
+  /// Bytes of the request under way, or of the last one, that the kernel has taken so far, and all of them,
+  /// head included: for progress.
   std::size_t sent_bytes() const;
   std::size_t total_bytes() const;
 

@@ -1,0 +1,116 @@
+#include "uplink/exchange.hpp"
+
+#include <sys/socket.h>
+#include <sys/uio.h>
+
+#include <algorithm>
+#include <array>
+#include <cerrno>
+#include <cstring>
+#include <utility>
+
+#include "uplink/socket.hpp"
+
+namespace adit::uplink {
+namespace {
+
+/// Chunks given to the kernel at once: about a megabyte, so that the loop stays quick for others.
+constexpr std::size_t kChunksAtOnce = 16;
+/// An exchange listens for acknowledgements eight times before it calls the peer silent.
+constexpr int kListenings = 8;
+
+/// RFC 9112 2.1. No Expect (the measured mapping server never answers it) and no chunking: the length is
+/// known. The measured servers want a canonical `Bearer` and a content type without parameters.
+std::string head_of(const std::string& authority, const icd::BearerToken& token, const Request& request) {
+  std::string head = request.method + " " + request.target + " HTTP/1.1\r\n";
+  head += "Host: " + authority + "\r\n";
+  head += "Authorization: Bearer " + token.reveal() + "\r\n";
+  head += "User-Agent: adit/" ADIT_VERSION "\r\n";
+  head += "Accept: application/json\r\n";
+  if (!request.content_type.empty()) head += "Content-Type: " + request.content_type + "\r\n";
+  if (request.method != "GET") head += "Content-Length: " + std::to_string(request.body.size()) + "\r\n";
+  return head + "\r\n";
+}
+
+iovec piece(const void* data, std::size_t size) {
+  return {const_cast<void*>(data), size};
+}
+
+}  // namespace
+
+Exchange::Exchange(const Endpoint& endpoint, const icd::BearerToken& token, Request request)
+    : authority_(authority_of(endpoint)),
+      request_(std::move(request)),
+      head_(head_of(authority_, token, request_)),
+      total_(head_.size() + request_.body.size()) {}
+
+int Exchange::write(int fd) {
+  std::array<iovec, kChunksAtOnce + 1> pieces{};
+  std::size_t count = 0;
+  if (sent_ < head_.size()) pieces[count++] = piece(head_.data() + sent_, head_.size() - sent_);
+  const auto& chunks = request_.body.chunks();
+  for (std::size_t i = chunk_; i < chunks.size() && count < pieces.size(); ++i) {
+    const std::size_t skip = i == chunk_ ? within_chunk_ : 0;
+    pieces[count++] = piece(chunks[i]->data() + skip, chunks[i]->size() - skip);
+  }
+  msghdr message{};
+  message.msg_iov = pieces.data();
+  message.msg_iovlen = count;
+  const ssize_t taken = ::sendmsg(fd, &message, MSG_NOSIGNAL | MSG_DONTWAIT);
+  if (taken >= 0) {
+    advance(static_cast<std::size_t>(taken));
+    return 0;
+  }
+  if (errno == EAGAIN || errno == EWOULDBLOCK || errno == EINTR) return 0;
+  write_broken_ = true;
+  return errno;
+}
+
+void Exchange::advance(std::size_t bytes) {
+  const std::size_t of_head = std::min(bytes, head_.size() - std::min(sent_, head_.size()));
+  sent_ += bytes;
+  const auto& chunks = request_.body.chunks();
+  within_chunk_ += bytes - of_head;
+  while (chunk_ < chunks.size() && within_chunk_ >= chunks[chunk_]->size())
+    within_chunk_ -= chunks[chunk_++]->size();
+}
+
+Exchange::Answer Exchange::lost(std::string why) {
+  fault_ = sentence(why);
+  return Answer::Lost;
+}
+
+Exchange::Answer Exchange::read(int fd) {
+  std::array<char, 16384> bytes;  // NOLINT(cppcoreguidelines-pro-type-member-init): recv fills it
+  while (true) {
+    const ssize_t got = ::recv(fd, bytes.data(), bytes.size(), MSG_DONTWAIT);
+    if (got < 0 && errno == EINTR) continue;
+    if (got < 0 && (errno == EAGAIN || errno == EWOULDBLOCK)) return Answer::Waiting;
+    if (got < 0) return lost(std::strerror(errno));
+    // The failed write has taken the connection's error with it, so that this end may be a reset, and no
+    // honest end of an answer without a length.
+    if (got == 0 && write_broken_) return lost("the peer closed the connection while the request was sent");
+    const auto state =
+        got == 0 ? parser_.feed_end() : parser_.feed({bytes.data(), static_cast<std::size_t>(got)});
+    if (state == AnswerParser::State::Whole) return Answer::Whole;
+    if (state == AnswerParser::State::Malformed) return lost(parser_.fault());
+  }
+}
+
+void Exchange::listen(int fd, loop::Instant now) {
+  const std::size_t acknowledged = sent_ - std::min(sent_, unacknowledged_bytes(fd));
+  if (acknowledged <= acknowledged_) return;
+  acknowledged_ = acknowledged;
+  heard_ = now;
+}
+
+loop::Instant Exchange::next_listening(loop::Instant now) const {
+  return std::min<loop::Instant>(now + request_.answer_within / kListenings, silent_at());
+}
+
+std::string Exchange::sentence(const std::string& what) const {
+  return request_.method + " " + request_.target + " to " + authority_ + ": " + what + " (" +
+         std::to_string(sent_) + " of " + std::to_string(total_) + " bytes sent)";
+}
+
+}  // namespace adit::uplink

@@ -1,0 +1,68 @@
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <string>
+
+#include "loop/loop.hpp"
+#include "uplink/answer_parser.hpp"
+#include "uplink/connection.hpp"
+
+namespace adit::uplink {
+
+/// One request on its way, its answer, and how long the peer has been silent. The socket is the caller's.
+class Exchange {
+ public:
+  Exchange(const Endpoint& endpoint, const icd::BearerToken& token, Request request);
+
+  /// Gives the kernel one portion of what is left, as much as it takes; 0 or an errno. A failure ends the
+  /// writing for good.
+  int write(int fd);
+  bool wants_to_write() const { return !write_broken_ && sent_ < total_; }
+
+  enum class Answer : std::uint8_t { Waiting, Whole, Lost };
+  /// Reads all that has come, also where writing has failed: a peer that refuses a request early answers and
+  /// closes, and its answer is there to be read.
+  Answer read(int fd);
+  /// For Whole.
+  Answered take_answer() { return parser_.take(); }
+  bool may_keep_alive() const { return sent_ == total_ && parser_.may_keep_alive(); }
+  /// For Lost.
+  const std::string& fault() const { return fault_; }
+
+  /// The clock of the peer's silence starts.
+  void begin(loop::Instant now) { heard_ = now; }
+  /// The peer's TCP has acknowledged more bytes since the last call, or it has been silent until `now`. Bytes
+  /// that come in do not count: a peer that dribbles an answer for ever would hold the connection for ever,
+  /// so that the whole answer must come within answer_within of the last acknowledgement.
+  void listen(int fd, loop::Instant now);
+  bool is_silent_at(loop::Instant now) const { return now >= silent_at(); }
+  /// When to listen next.
+  loop::Instant next_listening(loop::Instant now) const;
+  std::chrono::milliseconds answer_within() const { return request_.answer_within; }
+
+  std::size_t sent() const { return sent_; }
+  std::size_t total() const { return total_; }
+  /// "POST /map/update to 10.100.1.201:8000: `what` (120 of 4711 bytes sent)".
+  std::string sentence(const std::string& what) const;
+
+ private:
+  loop::Instant silent_at() const { return heard_ + request_.answer_within; }
+  Answer lost(std::string why);
+  void advance(std::size_t bytes);
+
+  std::string authority_;
+  Request request_;
+  std::string head_;
+  std::size_t total_ = 0;
+  std::size_t sent_ = 0;
+  std::size_t chunk_ = 0;         // the first of the body's that is not wholly sent
+  std::size_t within_chunk_ = 0;  // bytes of it that are
+  bool write_broken_ = false;
+  std::size_t acknowledged_ = 0;
+  loop::Instant heard_;
+  AnswerParser parser_;
+  std::string fault_;
+};
+
+}  // namespace adit::uplink

@@ -1,0 +1,32 @@
+#pragma once
+
+#include <chrono>
+#include <cstddef>
+#include <expected>
+#include <string>
+
+#include "loop/file_descriptor.hpp"
+#include "uplink/connection.hpp"
+
+namespace adit::uplink {
+
+/// "10.100.1.200:8000" or "[fd00::1]:8000": for the Host header (RFC 9110 7.2) and for sentences.
+std::string authority_of(const Endpoint& endpoint);
+
+/// A non-blocking TCP socket of the endpoint's settings that has begun to connect, or why there is none:
+/// "Connection refused", "binding to interface darpa0: No such device".
+std::expected<loop::FileDescriptor, std::string> begin_connect(const Endpoint& endpoint);
+
+/// How connecting ended: 0 or an errno.
+int connect_error(int fd);
+
+/// TCP_USER_TIMEOUT: how long bytes may stay without the peer's acknowledgement.
+void give_up_after(int fd, std::chrono::milliseconds silence);
+
+/// Whether an idle connection is still there: neither closed, nor has anything come that nobody asked for.
+bool is_quiet(int fd);
+
+/// Bytes that the kernel holds and the peer has not acknowledged.
+std::size_t unacknowledged_bytes(int fd);
+
+}  // namespace adit::uplink

@@ -5,7 +5,7 @@
 namespace adit::lanes {
 
 icd::Stamp StampShift::shift(const std::string& sender, std::optional<icd::Stamp> stamp, double now) {
-  if (!stamp || *stamp == 0) return now;
+  if (!stamp || *stamp == 0) return std::max(now, latest_of(sender));
   const auto [found, is_new] = senders_.try_emplace(sender);
   Clock& clock = found->second;
   clock.used = ++uses_;
@@ -18,6 +18,13 @@ icd::Stamp StampShift::shift(const std::string& sender, std::optional<icd::Stamp
   clock.latest = std::max(clock.latest, *stamp);
   if (senders_.size() > kMostSenders) forget_the_most_silent();
   return std::max(shifted, 0.0);  // ICD 6.2: a stamp is never negative
+}
+
+icd::Stamp StampShift::latest_of(const std::string& sender) const {
+  const auto known = senders_.find(sender);
+  if (known == senders_.end()) return 0;
+  const Clock& clock = known->second;
+  return clock.ours + (clock.latest - clock.theirs);
 }
 
 void StampShift::forget_the_most_silent() {

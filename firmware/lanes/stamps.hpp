@@ -15,8 +15,9 @@ namespace adit::lanes {
 ///
 /// A sender's first stamp is taken as now; from then on its offset is kept, so that two messages it stamped
 /// 0.3 s apart stay 0.3 s apart however late they came. A sender whose clock jumped (backward by more than
-/// kJump, or to more than kJump after now) starts anew. A message without a stamp is stamped now. Of more
-/// than kMostSenders, the one that was silent longest is forgotten.
+/// kJump, or to more than kJump after now) starts anew. A message without a stamp (or with
+/// 0, ROS's word for none) is stamped now, or with the latest stamp of its sender where that is later. Of
+/// more than kMostSenders, the one that was silent longest is forgotten.
 class StampShift {
  public:
   static constexpr double kJump = 5.0;  // seconds
@@ -31,6 +32,7 @@ class StampShift {
     icd::Stamp latest = 0;            // the sender's own
     std::uint64_t used = 0;           // the higher, the later
   };
+  icd::Stamp latest_of(const std::string& sender) const;
   void forget_the_most_silent();
 
   std::map<std::string, Clock> senders_;

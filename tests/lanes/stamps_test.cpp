@@ -27,6 +27,14 @@ TEST(StampShift, StampsWhatHasNoStampWithNow) {
   EXPECT_EQ(shift.shift("R1", 100.0, kNow + 2), kNow + 2) << "the first that it gave";
 }
 
+TEST(StampShift, PutsWhatHasNoStampNotBeforeWhatItsSenderStampedLast) {
+  StampShift shift;
+  shift.shift("R1", 100.0, kNow);
+  const icd::Stamp ahead = shift.shift("R1", 104.0, kNow + 1);
+  EXPECT_EQ(shift.shift("R1", {}, kNow + 1), ahead);
+  EXPECT_EQ(shift.shift("R1", {}, kNow + 9), kNow + 9);
+}
+
 TEST(StampShift, KeepsSendersApart) {
   StampShift shift;
   EXPECT_EQ(shift.shift("R1", 100.0, kNow), kNow);

@@ -1,0 +1,82 @@
+#include "cli/ask.hpp"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include "cli/command.hpp"
+#include "cli/server.hpp"
+#include "cli/status_text.hpp"
+#include "cli/view.hpp"
+
+namespace adit::cli {
+namespace {
+
+using testing::HasSubstr;
+
+Outcome asked(const std::string& json, const std::vector<std::string_view>& words) {
+  const Server server(Server::ok(json));
+  const std::string at = server.at();
+  std::vector<std::string_view> all = words;
+  all.insert(all.end(), {"--at", at});
+  return run(all, false);
+}
+
+TEST(Status, ShowsWhatAditAnswers) {
+  const Outcome outcome = asked(page::write_run_view(sample_view()), {"status"});
+  EXPECT_EQ(outcome.err, "");
+  EXPECT_EQ(outcome.exit, Exit::Fine);
+  EXPECT_EQ(outcome.out, status_text(sample_view(), false));
+}
+
+TEST(Status, ReadsEveryMemberThatThePageWrites) {
+  page::RunView view = sample_view();
+  view.refusals = {{.at = 998,
+                    .uri = "/map/update",
+                    .sender = "10.0.0.7",
+                    .status = 422,
+                    .sentence = "msg: expected an object"}};
+  view.attention = {"1 report is in doubt: the answer was lost"};
+  view.activities[0].waiting = 2;
+  view.activities[0].last_sentence = "Cloud updates too frequent. Reduce to <1Hz.";
+  const Outcome outcome = asked(page::write_run_view(view), {"status"});
+  EXPECT_EQ(outcome.exit, Exit::Attention);
+  EXPECT_EQ(outcome.out, status_text(view, false));
+}
+
+TEST(Status, GivesScriptsWhatAditSaid) {
+  const std::string json = page::write_run_view(sample_view());
+  EXPECT_EQ(asked(json, {"status", "--json"}).out, json + "\n");
+}
+
+TEST(Reports, AreAListForScripts) {
+  const Outcome outcome = asked(page::write_run_view(sample_view()), {"reports", "--json"});
+  EXPECT_EQ(outcome.exit, Exit::Fine);
+  EXPECT_THAT(outcome.out, testing::StartsWith("[{\"number\":3,"));
+  EXPECT_THAT(outcome.out, testing::EndsWith("}]\n"));
+}
+
+TEST(Reports, InDoubtNeedTheOperator) {
+  page::RunView view = sample_view();
+  view.reports[0].state = "in doubt";
+  EXPECT_EQ(asked(page::write_run_view(view), {"reports"}).exit, Exit::Attention);
+}
+
+TEST(Ask, SaysThatTheAnswerIsNotAdits) {
+  for (const std::string answer : {"", "hello", "[]", "{}", R"({"now": "noon"})"}) {
+    const Outcome outcome = asked(answer, {"status"});
+    EXPECT_EQ(outcome.exit, Exit::Unable) << answer;
+    EXPECT_EQ(outcome.out, "");
+    EXPECT_THAT(outcome.err, HasSubstr("cannot be understood")) << answer;
+  }
+}
+
+TEST(Ask, SaysThatItDoesNotKnowWhereAditIs) {
+  const Outcome outcome = run(std::vector<std::string_view>{"status", "--settings", "/none.json"}, false);
+  EXPECT_EQ(outcome.exit, Exit::Unable);
+  EXPECT_EQ(outcome.err,
+            "adit: /none.json: No such file or directory (say where Adit listens by --at ADDR:PORT)\n");
+  EXPECT_EQ(run(std::vector<std::string_view>{"status", "--at", "nowhere"}, false).exit, Exit::Unable);
+}
+
+}  // namespace
+}  // namespace adit::cli

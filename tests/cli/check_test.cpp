@@ -1,0 +1,89 @@
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <cstdlib>
+#include <filesystem>
+#include <fstream>
+#include <vector>
+
+#include "cli/command.hpp"
+
+namespace adit::cli {
+namespace {
+
+using testing::AllOf;
+using testing::HasSubstr;
+using testing::Not;
+
+class Check : public testing::Test {
+ protected:
+  Check() {
+    std::string name = (std::filesystem::temp_directory_path() / "adit-check-XXXXXX").string();
+    folder_ = mkdtemp(name.data());
+  }
+  ~Check() override { std::filesystem::remove_all(folder_); }
+  Outcome check(const std::string& json, const std::vector<std::string_view>& more = {}) const {
+    const std::string file = folder_ / "settings.json";
+    std::ofstream(file) << json;
+    std::vector<std::string_view> words = {"check", file};
+    words.insert(words.end(), more.begin(), more.end());
+    return run(words, false);
+  }
+  std::filesystem::path folder_;
+};
+
+constexpr const char* kWrong = R"({"version": 1,
+  "command_post": {"scoring": {"adress": "10.100.1.200", "port": 99999},
+                   "mapping": {"address": "10.100.1.201", "port": 8000}},
+  "team": {"listen": [{"address": "0.0.0.0", "port": 8000}]}})";
+
+TEST_F(Check, TellsEveryErrorByItsPath) {
+  const Outcome outcome = check(kWrong);
+  EXPECT_EQ(outcome.exit, Exit::Attention);
+  EXPECT_EQ(
+      outcome.out,
+      (folder_ / "settings.json").string() +
+          ": 3 errors\n"
+          "  command_post.scoring.adress: no such key; did you mean address? (keys here: address, port)\n"
+          "  command_post.scoring.port: expected a whole number from 1 to 65535, got 99999\n"
+          "  command_post.scoring.address: missing; expected an IPv4 or IPv6 address\n");
+}
+
+TEST_F(Check, SaysWhatGoodSettingsComeTo) {
+  const Outcome outcome =
+      run(std::vector<std::string_view>{"check", ADIT_SOURCE_DIR "/firmware/settings/example.json"}, false);
+  EXPECT_EQ(outcome.exit, Exit::Fine);
+  EXPECT_EQ(outcome.out, ADIT_SOURCE_DIR
+            "/firmware/settings/example.json: good\n"
+            "  scoring  10.100.1.200:8000  by darpa0 alone\n"
+            "  mapping  10.100.1.201:8000  by darpa0 alone\n"
+            "  team     0.0.0.0:8000       by team0 alone\n"
+            "  link     100 Mbit/s\n"
+            "  panel    gpiochip0          ADIT_HEALTH, ADIT_SCORING, ADIT_MAPPING, ADIT_ATTENTION\n");
+}
+
+TEST_F(Check, SaysTheSameToScripts) {
+  const Outcome wrong = check(R"({"version": 2})", {"--json"});
+  EXPECT_EQ(wrong.exit, Exit::Attention);
+  EXPECT_EQ(wrong.out,
+            "{\"good\":false,\"errors\":[{\"path\":\"version\",\"what\":\"expected 1, got 2\"}]}\n");
+  const Outcome good =
+      run(std::vector<std::string_view>{"check", ADIT_SOURCE_DIR "/firmware/settings/example.json", "--json"},
+          false);
+  EXPECT_EQ(good.exit, Exit::Fine);
+  EXPECT_EQ(good.out, "{\"good\":true,\"errors\":[]}\n");
+}
+
+TEST_F(Check, SaysThatItCannotReadTheFile) {
+  const Outcome outcome = run(std::vector<std::string_view>{"check", "/none.json"}, false);
+  EXPECT_EQ(outcome.exit, Exit::Unable);
+  EXPECT_EQ(outcome.err, "adit: /none.json: No such file or directory\n");
+}
+
+TEST_F(Check, NeverLetsTheFileSteerTheTerminal) {
+  const Outcome outcome = check("{\"version\": 1, \"\x1b]0;owned\x07\": 1}");
+  EXPECT_THAT(outcome.out, AllOf(Not(HasSubstr("\x1b")), HasSubstr("not JSON")));
+}
+
+}  // namespace
+}  // namespace adit::cli

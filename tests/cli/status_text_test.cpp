@@ -1,0 +1,104 @@
+#include "cli/status_text.hpp"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include "cli/view.hpp"
+
+namespace adit::cli {
+namespace {
+
+using testing::HasSubstr;
+using testing::Not;
+using testing::StartsWith;
+
+TEST(StatusText, TellsAGoodRunOnOneScreen) {
+  EXPECT_EQ(
+      status_text(sample_view(), false),
+      "Run   12:34   score 7   18 reports left   team cave_club   (heard 0.4 s ago)\n"
+      "Link  12.3 of 100 Mbit/s   3.4 MB of maps wait\n"
+      "Reports  answered 1\n"
+      "\n"
+      "Command Post\n"
+      "  scoring  10.100.1.200:8000  connected  last answer 201 in 3.4 ms\n"
+      "  mapping  10.100.1.201:8000  connected  last answer 200 in 42 ms\n"
+      "\n"
+      "Is my map arriving?\n"
+      "  robot  kind  arriving  accepted  sent  waiting  last sent          size  the Command Post said\n"
+      "  r1     grid  yes             12    11        0  0.5 s ago  64 kB > 4 kB  200\n");
+}
+
+TEST(StatusText, BeginsWithWhatNeedsTheOperator) {
+  page::RunView view = sample_view();
+  view.attention = {"1 report is in doubt: the answer was lost",
+                    "the Command Post refuses the mapping token"};
+  view.reports[0].state = "in doubt";
+  const std::string text = status_text(view, false);
+  EXPECT_THAT(text, StartsWith("ATTENTION  1 report is in doubt: the answer was lost\n"
+                               "ATTENTION  the Command Post refuses the mapping token\n\n"));
+  EXPECT_THAT(text, HasSubstr("Reports  in doubt 1\n"));
+}
+
+TEST(StatusText, SaysWhyAnEndpointIsNotConnected) {
+  page::RunView view = sample_view();
+  view.endpoints[1] = {.name = "mapping",
+                       .address = "10.100.1.201:8000",
+                       .connected = false,
+                       .trouble = "connecting to 10.100.1.201:8000: Connection refused",
+                       .last_status = 0,
+                       .answer_ms = {}};
+  EXPECT_THAT(status_text(view, false), HasSubstr("not connected"));
+  EXPECT_THAT(status_text(view, false), HasSubstr("connecting to 10.100.1.201:8000: Connection refused\n"));
+}
+
+TEST(StatusText, OfAnAditThatHasHeardNothingIsStillWhole) {
+  EXPECT_EQ(status_text({}, false),
+            "Run   no word from the Command Post yet\nLink  0 of 0 Mbit/s   0 B of maps wait\nReports  none "
+            "so far\n");
+}
+
+TEST(StatusText, ShowsTheLatestRefusals) {
+  page::RunView view = sample_view();
+  view.refusals = {{.at = 998,
+                    .uri = "/map/update",
+                    .sender = "10.0.0.7",
+                    .status = 422,
+                    .sentence = "msg.info.width: expected 80 x 60 = 4800 bytes of data, got 4799"}};
+  EXPECT_THAT(
+      status_text(view, false),
+      HasSubstr("Refused to the team, the latest\n  2 s ago  10.0.0.7  /map/update  422  msg.info.width: "));
+}
+
+TEST(StatusText, NeverLetsOthersSteerTheTerminal) {
+  page::RunView view = sample_view();
+  view.run->current_team = "\x1b]0;a\x07";
+  view.activities[0].robot = "\x1b[2J";
+  view.activities[0].last_sentence = "\x1b[2J\nRun   99:99";
+  view.attention = {"\x1b[2J"};
+  view.endpoints[0].trouble = "\x1b[2J";
+  view.reports[0].state = "\x1b[2J";
+  view.refusals = {{.at = 0, .uri = "\x1b[2J", .sender = "\x1b[2J", .status = 422, .sentence = "\x1b[2J"}};
+  EXPECT_THAT(status_text(view, false), Not(HasSubstr("\x1b")));
+}
+
+TEST(Arrival, IsWhatTheOperatorAsks) {
+  const auto row = [](void (*change)(page::ActivityRow&)) {
+    page::ActivityRow activity = sample_view().activities[0];
+    change(activity);
+    return arrival_of(activity, 1000);
+  };
+  using Row = page::ActivityRow;
+  EXPECT_EQ(row([](Row&) {}), Arrival::Yes);
+  EXPECT_EQ(row([](Row& r) { r.waiting = 1; }), Arrival::Yes) << "the next one waits for its turn";
+  EXPECT_EQ(row([](Row& r) { r.waiting = 1, r.last_forwarded = 980; }), Arrival::Late);
+  EXPECT_EQ(
+      row([](Row& r) { r.waiting = 1, r.last_accepted = 980, r.last_forwarded = {}, r.last_status = 0; }),
+      Arrival::Late);
+  EXPECT_EQ(row([](Row& r) { r.waiting = 1, r.last_forwarded = {}, r.last_status = 0; }), Arrival::NotYet);
+  EXPECT_EQ(row([](Row& r) { r.last_status = 422; }), Arrival::No);
+  EXPECT_EQ(row([](Row& r) { r.last_status = 0, r.last_sentence = "connecting: refused"; }), Arrival::No);
+  EXPECT_EQ(row([](Row& r) { r.last_accepted = 960, r.last_forwarded = 961; }), Arrival::Silent);
+}
+
+}  // namespace
+}  // namespace adit::cli

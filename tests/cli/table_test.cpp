@@ -1,0 +1,44 @@
+#include "cli/table.hpp"
+
+#include <gtest/gtest.h>
+
+namespace adit::cli {
+namespace {
+
+using Align = Table::Align;
+
+TEST(Table, AlignsItsColumns) {
+  Table table({{"robot"}, {"sent", Align::Right}, {"said"}});
+  table.add({{"r1"}, {"7"}, {"200"}});
+  table.add({{"robot_long"}, {"12345"}, {"422: no"}});
+  EXPECT_EQ(table.written(false),
+            "  robot        sent  said\n"
+            "  r1              7  200\n"
+            "  robot_long  12345  422: no\n");
+}
+
+TEST(Table, LeavesNoSpaceAtTheEndOfALine) {
+  Table table({{"a"}, {"b", Align::Right}, {"c"}});
+  table.add({{"x"}, {""}, {""}});
+  table.add({{""}, {"22"}, {"z"}});
+  EXPECT_EQ(table.written(false),
+            "  a   b  c\n"
+            "  x\n"
+            "     22  z\n");
+}
+
+TEST(Table, KeepsItsColumnsWhereTextIsPainted) {
+  Table table({{}, {}});
+  table.add({{"NO", Tone::Bad}, {"x"}});
+  table.add({{"late"}, {"y"}});
+  EXPECT_EQ(table.written(true), "  \033[1;31mNO\033[0m    x\n  late  y\n");
+}
+
+TEST(Table, ShowsWhatOthersWroteEscaped) {
+  Table table(std::vector<Table::Column>(1));
+  table.add({{"\033[2Jr1\n"}});
+  EXPECT_EQ(table.written(true), "  \\x1b[2Jr1\\x0a\n");
+}
+
+}  // namespace
+}  // namespace adit::cli

@@ -1,0 +1,55 @@
+#pragma once
+
+#include "page/page.hpp"
+
+namespace adit::cli {
+
+/// A run as it might stand at 1000 s of the gateway's clock, with nothing that needs the operator.
+inline page::RunView sample_view() {
+  page::RunView view;
+  view.now = 1000;
+  view.version = "0.1.0";
+  view.run = {.score = 7, .run_clock = 754.5, .remaining_reports = 18, .current_team = "cave_club"};
+  view.run_heard = 999.6;
+  view.budget_mbit = 100;
+  view.sent_mbit = 12.34;
+  view.queued_bytes = 3400000;
+  view.endpoints = {{.name = "scoring",
+                     .address = "10.100.1.200:8000",
+                     .connected = true,
+                     .trouble = "",
+                     .last_status = 201,
+                     .answer_ms = 3.42},
+                    {.name = "mapping",
+                     .address = "10.100.1.201:8000",
+                     .connected = true,
+                     .trouble = "",
+                     .last_status = 200,
+                     .answer_ms = 42.1}};
+  page::ReportRow report;
+  report.number = 3;
+  report.type = "Survivor";
+  report.position = {12.125, -3, 0.5};
+  report.sender = "10.0.0.7";
+  report.received = 940;
+  report.changed = 941;
+  report.state = "answered";
+  report.status = 201;
+  report.report_status = "scored";
+  report.score_change = 1;
+  view.reports = {report};
+  page::ActivityRow grid;
+  grid.kind = "grid";
+  grid.robot = "r1";
+  grid.accepted = 12;
+  grid.forwarded = 11;
+  grid.last_accepted = 999;
+  grid.last_forwarded = 999.5;
+  grid.bytes_received = 64000;
+  grid.bytes_sent = 4000;
+  grid.last_status = 200;
+  view.activities = {grid};
+  return view;
+}
+
+}  // namespace adit::cli

@@ -1,0 +1,61 @@
+#include "cli/where.hpp"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+namespace adit::cli {
+namespace {
+
+using settings::Address;
+using testing::HasSubstr;
+
+settings::Team team(const Address& address, const std::string& interface) {
+  settings::Team team;
+  team.listen = {address};
+  team.interface = interface;
+  return team;
+}
+
+TEST(ParseAddress, TakesBothFamilies) {
+  EXPECT_EQ(parse_address("10.0.0.1:8000").value(), (Address{"10.0.0.1", 8000}));
+  EXPECT_EQ(parse_address("[fd00::1]:65535").value(), (Address{"fd00::1", 65535}));
+}
+
+TEST(ParseAddress, RefusesWhatIsNone) {
+  for (const std::string text :
+       {"", ":", "8000", "10.0.0.1", "10.0.0.1:", "10.0.0.1:0", "10.0.0.1:65536", "10.0.0.1:+1", "10.0.0:80",
+        "host:80", "fd00::1:80", "[10.0.0.1]:80", "[fd00::1]", "10.0.0.1:80 "}) {
+    const auto address = parse_address(text);
+    ASSERT_FALSE(address.has_value()) << text;
+    EXPECT_THAT(address.error(), HasSubstr("got '" + text + "'"));
+  }
+}
+
+TEST(ParseAddress, ReadsBackWhatIsWritten) {
+  for (const Address& address : {Address{"10.0.0.1", 1}, Address{"fd00::1", 8000}}) {
+    EXPECT_EQ(parse_address(written(address)).value(), address);
+  }
+}
+
+TEST(Reach, IsTheAddressThatAditListensAt) {
+  EXPECT_EQ(reach(team({"10.0.0.1", 8000}, "team0")).value(), (Address{"10.0.0.1", 8000}));
+}
+
+TEST(Reach, IsLoopbackWhereAditListensEverywhere) {
+  EXPECT_EQ(reach(team({"0.0.0.0", 8000}, "")).value(), (Address{"127.0.0.1", 8000}));
+  EXPECT_EQ(reach(team({"::", 8000}, "")).value(), (Address{"::1", 8000}));
+  EXPECT_EQ(reach(team({"0:0::0", 8000}, "")).value(), (Address{"::1", 8000}));
+}
+
+TEST(Reach, IsAnAddressOfTheInterfaceThatAditIsBoundTo) {
+  EXPECT_EQ(reach(team({"0.0.0.0", 8000}, "lo")).value(), (Address{"127.0.0.1", 8000}));
+  EXPECT_EQ(reach(team({"0.0.0.0", 8000}, "nosuch0")).error(),
+            "interface nosuch0 (team.interface) has no address");
+}
+
+TEST(Reach, CannotBeToldOfAnyFreePort) {
+  EXPECT_THAT(reach(team({"0.0.0.0", 0}, "")).error(), HasSubstr("--at ADDR:PORT"));
+}
+
+}  // namespace
+}  // namespace adit::cli

@@ -1,0 +1,113 @@
+#include "rehearsal/robots/explorer.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <numbers>
+#include <utility>
+
+#include "rehearsal/robots/pause.hpp"
+
+namespace adit::robots {
+namespace {
+
+using namespace std::chrono_literals;
+using std::chrono::milliseconds;
+
+constexpr milliseconds kTick = 100ms;
+constexpr std::array<milliseconds, 3> kCloudEvery = {1000ms, 500ms, 2000ms};
+constexpr double kReportNoise = 0.05;  // metres
+constexpr double kWrongReports = 0.15;
+
+/// Something that is done every so often; what was missed is not made up for.
+class Every {
+ public:
+  Every(milliseconds period, std::chrono::steady_clock::time_point first) : period_(period), next_(first) {}
+  bool due(std::chrono::steady_clock::time_point now) {
+    if (now < next_) return false;
+    next_ = std::max(next_ + period_, now);
+    return true;
+  }
+
+ private:
+  milliseconds period_;
+  std::chrono::steady_clock::time_point next_;
+};
+
+/// Most robots keep the time of day, more or less; every third counts from its boot.
+double clock_of(std::size_t index, Random& random) {
+  if (index % 3 == 2) return random.between(60, 600);
+  const std::chrono::duration<double> now = std::chrono::system_clock::now().time_since_epoch();
+  return now.count() + random.between(-3, 3);
+}
+
+}  // namespace
+
+Explorer::Explorer(const Cave& cave, std::uint64_t seed, std::size_t index, std::string name,
+                   const Style& style, Client& client, OperatorDesk& desk)
+    : cave_(cave),
+      index_(index),
+      name_(std::move(name)),
+      style_(style),
+      client_(client),
+      desk_(desk),
+      random_(seed * 7'919 + index),
+      robot_(cave, seed, index),
+      scene_(name_),
+      clock_at_start_(clock_of(index, random_)),
+      start_(Clock::now()) {}
+
+double Explorer::stamp(Clock::time_point now) const {
+  return clock_at_start_ + std::chrono::duration<double>(now - start_).count();
+}
+
+/// The first robot that sees an artifact reports it, some centimetres off; now and then it takes a rock for
+/// another one.
+void Explorer::report_sightings(double seconds) {
+  for (const std::size_t artifact : robot_.take_sightings()) {
+    const Artifact& seen = cave_.artifacts()[artifact];
+    scene_.candidate(seen.type, seen.position, seconds);
+    if (!desk_.is_news(artifact)) continue;
+    Report report = seen;
+    report.position.x += random_.noise(kReportNoise);
+    report.position.y += random_.noise(kReportNoise);
+    report.position.z += random_.noise(kReportNoise);
+    desk_.submit({name_, &style_, report});
+    if (!random_.chance(kWrongReports)) continue;
+    const double direction = random_.between(0, 2 * std::numbers::pi), far = random_.between(20, 30);
+    report.position.x += far * std::cos(direction);
+    report.position.y += far * std::sin(direction);
+    desk_.submit({name_, &style_, report});
+  }
+}
+
+void Explorer::work(double metres_per_second, const std::stop_token& finish) {
+  Every state(index_ % 2 == 0 ? kTick : 2 * kTick, start_);
+  Every grid(1000ms, start_ + 50ms);
+  Every cloud(kCloudEvery[index_ % kCloudEvery.size()], start_ + 150ms);
+  Every markers(2000ms, start_ + 250ms);
+  Clock::time_point before = start_;
+  while (!finish.stop_requested()) {
+    const Clock::time_point now = Clock::now();
+    const double seconds = std::chrono::duration<double>(now - start_).count();
+    // A robot that waited long for an answer does not fly through the cave.
+    robot_.advance(metres_per_second * std::min(std::chrono::duration<double>(now - before).count(), 1.0));
+    before = now;
+    scene_.pass(robot_.pose().position, robot_.walked(), seconds);
+    report_sightings(seconds);
+
+    if (state.due(now)) client_.send(State{stamp(now), name_, robot_.pose()});
+    if (grid.due(now)) client_.send(robot_.map().grid(stamp(now)));
+    if (cloud.due(now)) {
+      if (Cloud points = robot_.map().take_new_points(stamp(now)); !points.data.empty())
+        client_.send(std::move(points));
+    }
+    if (markers.due(now)) {
+      if (Markers changed{stamp(now), scene_.take_changes()}; !changed.markers.empty())
+        client_.send(std::move(changed));
+    }
+    pause_until(now + kTick, finish);
+  }
+}
+
+}  // namespace adit::robots

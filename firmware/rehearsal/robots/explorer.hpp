@@ -1,0 +1,44 @@
+#pragma once
+
+#include <chrono>
+#include <cstdint>
+#include <stop_token>
+#include <string>
+
+#include "rehearsal/robots/client.hpp"
+#include "rehearsal/robots/desk.hpp"
+#include "rehearsal/robots/robot.hpp"
+#include "rehearsal/robots/scene.hpp"
+
+namespace adit::robots {
+
+/// A robot and the software on it: walks, and posts what it knows at the rates of the field. Poses 5 or 10
+/// times a second, a grid every second, a differential cloud every 0.5 to 2 s, markers every 2 s.
+class Explorer {
+ public:
+  /// `cave`, `style`, `client` and `desk` outlive the explorer.
+  Explorer(const Cave& cave, std::uint64_t seed, std::size_t index, std::string name, const Style& style,
+           Client& client, OperatorDesk& desk);
+
+  void work(double metres_per_second, const std::stop_token& finish);
+
+ private:
+  using Clock = std::chrono::steady_clock;
+
+  double stamp(Clock::time_point now) const;
+  void report_sightings(double seconds);
+
+  const Cave& cave_;
+  std::size_t index_;
+  std::string name_;
+  const Style& style_;
+  Client& client_;
+  OperatorDesk& desk_;
+  Random random_;
+  Robot robot_;
+  MarkerScene scene_;
+  double clock_at_start_;  // what this robot's own clock says, which is nobody else's
+  Clock::time_point start_;
+};
+
+}  // namespace adit::robots

@@ -1,0 +1,39 @@
+#pragma once
+
+#include <chrono>
+#include <cstdint>
+#include <expected>
+#include <filesystem>
+#include <optional>
+#include <span>
+#include <string>
+
+#include "rehearsal/robots/http.hpp"
+#include "rehearsal/robots/style.hpp"
+
+namespace adit::robots {
+
+extern const char* const kUsage;
+
+/// The command line of adit-robots.
+struct Options {
+  std::optional<Endpoint> post;
+  std::optional<Endpoint> scoring;
+  std::filesystem::path secrets;
+  std::size_t robots = 3;
+  TeamStyle style = *TeamStyle::parse("mixed");
+  std::filesystem::path maps;   // empty: none
+  std::filesystem::path truth;  // empty: not written
+  std::optional<std::chrono::duration<double>> run_for;
+  std::uint64_t seed = 1;
+  double speed = 1;
+  bool quiet = false, stop_when_posted = false, generate_only = false, help = false;
+};
+
+/// Or a sentence that names the argument.
+std::expected<Options, std::string> parse_options(std::span<const char* const> arguments);
+
+/// What DIR/team.token holds, without the line's end.
+std::expected<std::string, std::string> read_team_token(const std::filesystem::path& secrets);
+
+}  // namespace adit::robots

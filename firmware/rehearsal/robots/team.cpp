@@ -1,0 +1,73 @@
+#include "rehearsal/robots/team.hpp"
+
+#include <exception>
+#include <utility>
+
+#include "rehearsal/robots/explorer.hpp"
+#include "rehearsal/robots/replay.hpp"
+
+namespace adit::robots {
+
+Team::Team(TeamPlan plan, const Cave& cave, Tally& tally, Console& console)
+    : plan_(std::move(plan)),
+      cave_(cave),
+      tally_(tally),
+      console_(console),
+      desk_(plan_.post, plan_.style.of(0), tally,
+            [&console](const std::string& line) { console.say(line); }) {}
+
+Team::~Team() {
+  stop(std::chrono::milliseconds(0));
+}
+
+template <class Work>
+void Team::run(Work work) {
+  ++working_;
+  threads_.emplace_back([this, work = std::move(work)] {
+    try {
+      work();
+    } catch (const std::exception& error) {  // memory, or a socket that cannot even be made
+      tally_.failed(error.what());
+    }
+    --working_;
+  });
+}
+
+void Team::start() {
+  for (std::size_t index = 0; index < plan_.robots; ++index) run([this, index] { explore(index); });
+  if (plan_.robots > 0) run([this] { desk_.work(finish_.get_token(), abort_.get_token()); });
+  run([this] { replay(); });
+}
+
+void Team::explore(std::size_t index) {
+  const std::string name = std::string("r").append(std::to_string(index + 1));
+  const Style& style = plan_.style.of(index);
+  Client client(plan_.post, name, style, tally_, abort_.get_token());
+  Explorer explorer(cave_, plan_.seed, index, name, style, client, desk_);
+  explorer.work(plan_.metres_per_second, finish_.get_token());
+}
+
+void Team::replay() {
+  for (std::size_t i = 0; i < plan_.maps.size(); ++i) {
+    Client client(plan_.post, "replay", plan_.style.of(i), tally_, abort_.get_token());
+    if (auto said = replay_file(plan_.maps[i], client, finish_.get_token()); said) {
+      console_.say(*said);
+    } else {
+      tally_.failed(said.error());
+      console_.say(said.error());
+    }
+  }
+  replay_done_ = !finish_.stop_requested();
+}
+
+void Team::stop(std::chrono::milliseconds grace) {
+  finish_.request_stop();
+  const auto until = std::chrono::steady_clock::now() + grace;
+  while (working_ > 0 && std::chrono::steady_clock::now() < until) {
+    std::this_thread::sleep_for(std::chrono::milliseconds(10));
+  }
+  abort_.request_stop();
+  threads_.clear();  // joins
+}
+
+}  // namespace adit::robots

@@ -1,0 +1,60 @@
+#pragma once
+
+#include <atomic>
+#include <cstdint>
+#include <filesystem>
+#include <stop_token>
+#include <thread>
+#include <vector>
+
+#include "rehearsal/robots/cave.hpp"
+#include "rehearsal/robots/client.hpp"
+#include "rehearsal/robots/console.hpp"
+#include "rehearsal/robots/desk.hpp"
+
+namespace adit::robots {
+
+struct TeamPlan {
+  Post post;
+  TeamStyle style;
+  std::size_t robots = 3;
+  std::uint64_t seed = 1;
+  double metres_per_second = 2;
+  std::vector<std::filesystem::path> maps;  // files that the robot `replay` posts
+};
+
+/// The team at work: a thread for each robot, one for the operator, one that replays map files.
+class Team {
+ public:
+  /// `cave`, `tally` and `console` outlive the team.
+  Team(TeamPlan plan, const Cave& cave, Tally& tally, Console& console);
+  ~Team();
+  Team(const Team&) = delete;
+  Team& operator=(const Team&) = delete;
+
+  void start();
+
+  /// Whether every map file has been posted.
+  bool replay_done() const { return replay_done_; }
+
+  /// Ends the run: answers on their way are waited for up to `grace`, then given up.
+  void stop(std::chrono::milliseconds grace);
+
+ private:
+  template <class Work>
+  void run(Work work);
+  void explore(std::size_t index);
+  void replay();
+
+  TeamPlan plan_;
+  const Cave& cave_;
+  Tally& tally_;
+  Console& console_;
+  OperatorDesk desk_;
+  std::stop_source finish_, abort_;
+  std::atomic<int> working_ = 0;
+  std::atomic<bool> replay_done_ = false;
+  std::vector<std::jthread> threads_;
+};
+
+}  // namespace adit::robots

@@ -1,0 +1,97 @@
+#include <gtest/gtest.h>
+
+#include <chrono>
+#include <filesystem>
+#include <fstream>
+#include <thread>
+
+#include "program.hpp"
+#include "rehearsal/robots/cave.hpp"
+
+namespace adit::robots {
+namespace {
+
+namespace fs = std::filesystem;
+using namespace std::chrono_literals;
+using Clock = std::chrono::steady_clock;
+
+class Programs : public testing::Test {
+ protected:
+  Programs() : folder_(fs::path(testing::TempDir()) / ("adit_robots_" + std::to_string(getpid()))) {
+    fs::create_directories(folder_);
+    for (const char* name : {"team.token", "scoring.token", "mapping.token"}) {
+      std::ofstream(folder_ / name) << "flux230{showroom\n";
+    }
+  }
+  ~Programs() override { fs::remove_all(folder_); }
+
+  std::vector<std::string> robots(std::vector<std::string> more) const {
+    std::vector<std::string> arguments = {ADIT_ROBOTS, "--secrets", folder_.string()};
+    arguments.insert(arguments.end(), more.begin(), more.end());
+    return arguments;
+  }
+
+  fs::path folder_;
+};
+
+TEST_F(Programs, TheTruthIsWrittenWithoutARun) {
+  const fs::path csv = folder_ / "truth.csv";
+  Program program({ADIT_ROBOTS, "--generate-only", "--seed", "12", "--truth", csv.string()});
+  EXPECT_EQ(program.wait(), 0);
+  std::ifstream stream(csv);
+  const std::string text{std::istreambuf_iterator<char>(stream), {}};
+  EXPECT_EQ(text, Cave::generate(12).truth_csv());
+}
+
+TEST_F(Programs, ATeamThatNobodyAnswersStopsWithinASecondAndSaysSo) {
+  Program program(robots({"--post", "http://127.0.0.1:1", "--quiet"}));
+  std::this_thread::sleep_for(500ms);
+  const Clock::time_point start = Clock::now();
+  program.signal(SIGTERM);
+  const std::string summary = program.rest();
+  EXPECT_EQ(program.wait(), 1);
+  EXPECT_LT(Clock::now() - start, 1s);
+  EXPECT_NE(summary.find("state: Connection refused"), std::string::npos) << summary;
+  EXPECT_NE(summary.find("no grid was accepted"), std::string::npos) << summary;
+}
+
+#ifdef ADIT_REHEARSAL
+
+/// "adit-rehearsal: scoring 127.0.0.1:41234 mapping 127.0.0.1:41235"
+std::string url_after(const std::string& line, const std::string& word) {
+  const std::size_t at = line.find(word + " ") + word.size() + 1;
+  return "http://" + line.substr(at, line.find(' ', at) - at);
+}
+
+TEST_F(Programs, ATeamGetsOnWithACommandPostAsMeasured) {
+  const fs::path csv = folder_ / "truth.csv";
+  ASSERT_EQ(Program({ADIT_ROBOTS, "--generate-only", "--seed", "2", "--truth", csv.string()}).wait(), 0);
+  Program post({ADIT_REHEARSAL, "--scoring", "127.0.0.1:0", "--mapping", "127.0.0.1:0", "--secrets",
+                folder_.string(), "--artifacts", csv.string(), "--as-measured"});
+  const std::string line = post.line();
+  ASSERT_NE(line.find("mapping"), std::string::npos) << line;
+  Program team(robots({"--post", url_after(line, "mapping"), "--scoring", url_after(line, "scoring"),
+                       "--style", "cbor", "--seed", "2", "--for", "5"}));
+  const std::string said = team.rest();
+  EXPECT_EQ(team.wait(), 0) << said;
+  EXPECT_NE(said.find("reports: scored +1"), std::string::npos) << said;
+  EXPECT_EQ(said.find("refused:"), std::string::npos) << said;
+  post.signal(SIGTERM);
+  EXPECT_EQ(post.wait(), 0);
+}
+
+TEST_F(Programs, ATeamStopsWhenAllIsPosted) {
+  Program post({ADIT_REHEARSAL, "--scoring", "127.0.0.1:0", "--mapping", "127.0.0.1:0", "--secrets",
+                folder_.string(), "--as-measured"});
+  const std::string line = post.line();
+  ASSERT_NE(line.find("mapping"), std::string::npos) << line;
+  Program team(robots({"--post", url_after(line, "mapping"), "--scoring", url_after(line, "scoring"),
+                       "--style", "json-base64", "--robots", "1", "--stop-when-posted"}));
+  const std::string said = team.rest();
+  EXPECT_EQ(team.wait(), 0) << said;
+}
+
+#endif
+
+}  // namespace
+}  // namespace adit::robots

@@ -1,0 +1,175 @@
+#include "rehearsal/robots/http.hpp"
+
+#include <arpa/inet.h>
+#include <gtest/gtest.h>
+#include <netinet/in.h>
+#include <sys/socket.h>
+#include <unistd.h>
+
+#include <atomic>
+#include <functional>
+#include <thread>
+
+namespace adit::robots {
+namespace {
+
+using namespace std::chrono_literals;
+
+/// A server on loopback that does with each connection what its test says.
+class Server {
+ public:
+  explicit Server(std::function<void(int connection, int number)> serve)
+      : listener_(socket(AF_INET, SOCK_STREAM, 0)) {
+    sockaddr_in address{};
+    address.sin_family = AF_INET;
+    address.sin_addr.s_addr = htonl(INADDR_LOOPBACK);
+    socklen_t size = sizeof address;
+    EXPECT_EQ(bind(listener_, reinterpret_cast<sockaddr*>(&address), size), 0);
+    EXPECT_EQ(listen(listener_, 8), 0);
+    EXPECT_EQ(getsockname(listener_, reinterpret_cast<sockaddr*>(&address), &size), 0);
+    port_ = ntohs(address.sin_port);
+    thread_ = std::jthread([this, serve = std::move(serve)] {
+      for (int number = 0;; ++number) {
+        const int connection = accept(listener_, nullptr, nullptr);
+        if (connection < 0) return;
+        serve(connection, number);
+        close(connection);
+      }
+    });
+  }
+  ~Server() {
+    shutdown(listener_, SHUT_RDWR);
+    thread_.join();
+    close(listener_);
+  }
+  Server(const Server&) = delete;
+  Server& operator=(const Server&) = delete;
+
+  Endpoint endpoint() const { return {.address = "127.0.0.1", .port = port_}; }
+
+ private:
+  int listener_;
+  std::uint16_t port_ = 0;
+  std::jthread thread_;
+};
+
+/// Reads one request's head (the tests' requests have no body); empty where the client has gone.
+std::string read_head(int connection) {
+  std::string head;
+  char c = 0;
+  while (!head.ends_with("\r\n\r\n") && recv(connection, &c, 1, 0) == 1) head += c;
+  return head;
+}
+
+void answer(int connection, const std::string& reply) {
+  (void)send(connection, reply.data(), reply.size(), MSG_NOSIGNAL);
+}
+
+constexpr const char* kNull =
+    "HTTP/1.1 200 OK\r\nContent-Type: application/json\r\nContent-Length: 4\r\n\r\nnull";
+
+const HttpRequest kRequest{
+    .method = "GET", .target = "/api/status", .fields = {{"Authorization", "Bearer t"}}, .body = {}};
+
+TEST(Connection, SendsTheRequestAndReadsTheReply) {
+  std::string head;
+  const Server server([&](int connection, int) {
+    head = read_head(connection);
+    answer(connection, kNull);
+  });
+  Connection connection(server.endpoint(), {});
+  const auto reply = connection.exchange(kRequest, 5s);
+  ASSERT_TRUE(reply) << reply.error();
+  EXPECT_EQ(reply->status, 200);
+  EXPECT_EQ(reply->body, "null");
+  EXPECT_TRUE(head.starts_with("GET /api/status HTTP/1.1\r\n"));
+  EXPECT_NE(head.find("Authorization: Bearer t\r\n"), std::string::npos);
+  EXPECT_NE(head.find("Host: 127.0.0.1:"), std::string::npos);
+}
+
+TEST(Connection, IsKeptBetweenRequests) {
+  std::atomic<int> connections = 0;
+  const Server server([&](int connection, int) {
+    ++connections;
+    while (!read_head(connection).empty()) answer(connection, kNull);
+  });
+  Connection connection(server.endpoint(), {});
+  for (int i = 0; i < 5; ++i) ASSERT_TRUE(connection.exchange(kRequest, 5s));
+  EXPECT_EQ(connections, 1);
+}
+
+/// As the mapping server does after a 4xx.
+TEST(Connection, OpensAgainWhereTheServerPromisedKeepAliveAndClosed) {
+  const Server server([](int connection, int) {
+    read_head(connection);
+    answer(connection, kNull);
+  });
+  Connection connection(server.endpoint(), {});
+  for (int i = 0; i < 5; ++i) {
+    const auto reply = connection.exchange(kRequest, 5s);
+    ASSERT_TRUE(reply) << reply.error();
+  }
+}
+
+TEST(Connection, DoesNotSendAgainWhatMayBeSentOnceOnly) {
+  std::atomic<int> requests = 0;
+  const Server server([&](int connection, int) {
+    if (!read_head(connection).empty()) ++requests;
+    answer(connection, kNull);
+    if (!read_head(connection).empty()) ++requests;  // and closes without an answer
+  });
+  Connection connection(server.endpoint(), {});
+  ASSERT_TRUE(connection.exchange(kRequest, 5s));
+  EXPECT_FALSE(connection.exchange(kRequest, 5s, /*send_once=*/true));
+  EXPECT_EQ(requests, 2);
+}
+
+TEST(Connection, GivesUpAtTheDeadline) {
+  const Server server([](int connection, int) {
+    read_head(connection);
+    read_head(connection);  // until the client goes
+  });
+  Connection connection(server.endpoint(), {});
+  const auto start = std::chrono::steady_clock::now();
+  const auto reply = connection.exchange(kRequest, 200ms);
+  ASSERT_FALSE(reply);
+  EXPECT_EQ(reply.error(), "no answer within 200 ms");
+  EXPECT_LT(std::chrono::steady_clock::now() - start, 2s);
+}
+
+TEST(Connection, StopsAtOnceWhenAsked) {
+  const Server server([](int connection, int) {
+    read_head(connection);
+    read_head(connection);
+  });
+  std::stop_source stop;
+  Connection connection(server.endpoint(), stop.get_token());
+  const std::jthread stopper([&] {
+    std::this_thread::sleep_for(100ms);
+    stop.request_stop();
+  });
+  const auto start = std::chrono::steady_clock::now();
+  const auto reply = connection.exchange(kRequest, 30s);
+  ASSERT_FALSE(reply);
+  EXPECT_EQ(reply.error(), "stopped before the answer came");
+  EXPECT_LT(std::chrono::steady_clock::now() - start, 1s);
+}
+
+TEST(Connection, SaysWhyThereIsNoAnswer) {
+  const Server garbage([](int connection, int) {
+    read_head(connection);
+    answer(connection, "SSH-2.0-OpenSSH\r\n\r\n");
+  });
+  EXPECT_FALSE(Connection(garbage.endpoint(), {}).exchange(kRequest, 5s));
+  const Server large([](int connection, int) {
+    read_head(connection);
+    answer(connection, "HTTP/1.1 200 OK\r\nContent-Length: 999999999\r\n\r\n");
+  });
+  EXPECT_FALSE(Connection(large.endpoint(), {}).exchange(kRequest, 5s));
+  const auto nobody = Connection({.address = "127.0.0.1", .port = 1}, {}).exchange(kRequest, 5s);
+  ASSERT_FALSE(nobody);
+  EXPECT_EQ(nobody.error(), "Connection refused");
+}
+
+}  // namespace
+}  // namespace adit::robots

@@ -1,0 +1,81 @@
+#include "rehearsal/robots/options.hpp"
+
+#include <gtest/gtest.h>
+
+#include <filesystem>
+#include <fstream>
+
+namespace adit::robots {
+namespace {
+
+std::expected<Options, std::string> parsed(std::vector<const char*> arguments) {
+  return parse_options(arguments);
+}
+
+TEST(Options, TakeTheContractsCommandLine) {
+  const auto options = parsed({"--post", "http://127.0.0.1:8080", "--secrets", "/tmp", "--robots", "5",
+                               "--style", "ros", "--maps", "/maps", "--for", "30"});
+  ASSERT_TRUE(options) << options.error();
+  EXPECT_EQ(options->post->address, "127.0.0.1");
+  EXPECT_EQ(options->post->port, 8080);
+  EXPECT_EQ(options->robots, 5u);
+  EXPECT_EQ(options->style.of(3).name, "ros");
+  EXPECT_EQ(options->run_for->count(), 30);
+}
+
+TEST(Options, HaveThreeRobotsOfMixedStyleWhereNothingIsSaid) {
+  const auto options = parsed({"--post", "http://[::1]:80/", "--secrets", "/tmp"});
+  ASSERT_TRUE(options) << options.error();
+  EXPECT_EQ(options->post->address, "::1");
+  EXPECT_EQ(options->robots, 3u);
+  EXPECT_EQ(options->style.of(1).name, "cbor-body-gzip");
+  EXPECT_FALSE(options->run_for);
+}
+
+TEST(Options, NameTheArgumentThatIsWrong) {
+  const std::pair<std::vector<const char*>, const char*> cases[] = {
+      {{}, "--post"},
+      {{"--post", "http://127.0.0.1:80"}, "--secrets"},
+      {{"--post"}, "--post: needs a value"},
+      {{"--post", "127.0.0.1:80"}, "does not start with http://"},
+      {{"--post", "http://127.0.0.1"}, "no port"},
+      {{"--post", "http://127.0.0.1:0"}, "1 to 65535"},
+      {{"--post", "http://127.0.0.1:65536"}, "1 to 65535"},
+      {{"--post", "http://cave:80"}, "no IP address"},
+      {{"--robots", "-1"}, "--robots: expected a whole number"},
+      {{"--robots", "31"}, "--robots"},
+      {{"--for", "nan"}, "--for: expected a number"},
+      {{"--speed", "0"}, "--speed"},
+      {{"--style", "morse"}, "no style is named 'morse'"},
+      {{"--frobnicate", "1"}, "--frobnicate: no such option"},
+      {{"--generate-only"}, "needs --truth"},
+  };
+  for (const auto& [arguments, sentence] : cases) {
+    const auto options = parsed(arguments);
+    ASSERT_FALSE(options) << sentence;
+    EXPECT_NE(options.error().find(sentence), std::string::npos) << options.error();
+  }
+}
+
+TEST(TeamToken, IsTheFilesOneLine) {
+  const std::filesystem::path folder = testing::TempDir() + "adit_robots_token";
+  std::filesystem::create_directories(folder);
+  const std::pair<const char*, bool> cases[] = {{"flux230{showroom", true},
+                                                {"flux230{showroom\r\n", true},
+                                                {"", false},
+                                                {"\n", false},
+                                                {"two words", false}};
+  for (const auto& [text, good] : cases) {
+    std::ofstream(folder / "team.token") << text << std::flush;
+    const auto token = read_team_token(folder);
+    EXPECT_EQ(token.has_value(), good) << text;
+    if (good) {
+      EXPECT_EQ(*token, "flux230{showroom");
+    }
+  }
+  std::filesystem::remove_all(folder);
+  EXPECT_FALSE(read_team_token(folder));
+}
+
+}  // namespace
+}  // namespace adit::robots

@@ -99,8 +99,9 @@ AnswerParser::State AnswerParser::feed(std::string_view bytes) {
 AnswerParser::State AnswerParser::feed_end() {
   if (!has_begun()) return impl_->malformed("the peer closed the connection and did not answer");
   boost::beast::error_code error;
-  impl_->parser->put_eof(error);
-  if (error || !impl_->parser->is_done() || !impl_->unread.empty())
+  // A parser that has seen nothing since an interim answer would take the end for a whole 200.
+  if (impl_->parser->is_header_done()) impl_->parser->put_eof(error);
+  if (error || !impl_->parser->is_done())
     return impl_->malformed("the peer closed the connection in the middle of its answer");
   return impl_->head_and_body_done();
 }

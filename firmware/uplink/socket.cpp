@@ -1,5 +1,6 @@
 #include "uplink/socket.hpp"
 
+#include <arpa/inet.h>
 #include <linux/sockios.h>
 #include <netdb.h>
 #include <netinet/in.h>
@@ -30,8 +31,12 @@ struct FreeAddresses {
 };
 using Addresses = std::unique_ptr<addrinfo, FreeAddresses>;
 
-/// Numeric addresses alone: no name is ever looked up.
+/// Numeric addresses alone: no name is ever looked up. getaddrinfo() knows zones ("fe80::1%darpa0"), but
+/// would take "10.100.1" for 10.100.0.1, too.
 Addresses parse(const Endpoint& endpoint) {
+  in_addr ipv4{};
+  const bool is_ipv6 = endpoint.address.find(':') != std::string::npos;
+  if (!is_ipv6 && ::inet_pton(AF_INET, endpoint.address.c_str(), &ipv4) != 1) return nullptr;
   addrinfo hints{};
   hints.ai_flags = AI_NUMERICHOST | AI_NUMERICSERV;
   hints.ai_socktype = SOCK_STREAM;

@@ -1,0 +1,159 @@
+#include "uplink/answer_parser.hpp"
+
+#include <gmock/gmock.h>
+
+#include <string>
+
+namespace adit::uplink {
+namespace {
+
+using State = AnswerParser::State;
+using testing::HasSubstr;
+
+struct Case {
+  const char* name;
+  std::string bytes;
+  bool end;  // the peer closes after them
+  State state;
+  int status = 0;
+  const char* body = "";
+  bool keeps_alive = false;
+};
+void PrintTo(const Case& c, std::ostream* out) {
+  *out << c.name;
+}
+
+const Case kCases[] = {
+    {"a length", "HTTP/1.1 200 OK\r\nContent-Length: 4\r\n\r\nnull", false, State::Whole, 200, "null", true},
+    {"201", "HTTP/1.1 201 Created\r\nContent-Length: 2\r\n\r\n{}", false, State::Whole, 201, "{}", true},
+    {"no reason phrase", "HTTP/1.1 200 \r\nContent-Length: 0\r\n\r\n", false, State::Whole, 200, "", true},
+    {"chunked", "HTTP/1.1 200 OK\r\nTransfer-Encoding: chunked\r\n\r\n3\r\nabc\r\n2;x=y\r\nde\r\n0\r\n\r\n",
+     false, State::Whole, 200, "abcde", true},
+    {"204 without a length", "HTTP/1.1 204 No Content\r\n\r\n", false, State::Whole, 204, "", true},
+    {"says close", "HTTP/1.1 200 OK\r\nConnection: close\r\nContent-Length: 2\r\n\r\nhi", false, State::Whole,
+     200, "hi", false},
+    {"HTTP/1.0", "HTTP/1.0 200 OK\r\nContent-Length: 2\r\n\r\nhi", false, State::Whole, 200, "hi", false},
+    {"HTTP/1.0 that keeps alive", "HTTP/1.0 200 OK\r\nConnection: keep-alive\r\nContent-Length: 2\r\n\r\nhi",
+     false, State::Whole, 200, "hi", true},
+    {"a body until the end", "HTTP/1.0 500 Oops\r\n\r\n<html>", true, State::Whole, 500, "<html>", false},
+    {"bytes beyond the answer", "HTTP/1.1 200 OK\r\nContent-Length: 2\r\n\r\nhiHTTP/1.1", false, State::Whole,
+     200, "hi", false},
+    {"1xx first",
+     "HTTP/1.1 100 Continue\r\n\r\nHTTP/1.1 103 Early Hints\r\nA: b\r\n\r\nHTTP/1.1 200 "
+     "OK\r\nContent-Length: "
+     "2\r\n\r\nhi",
+     false, State::Whole, 200, "hi", true},
+    {"only 1xx", "HTTP/1.1 102 Processing\r\n\r\n", false, State::Incomplete},
+    {"half a head", "HTTP/1.1 200 OK\r\nContent-Le", false, State::Incomplete},
+    {"half a body", "HTTP/1.1 200 OK\r\nContent-Length: 4\r\n\r\nnu", false, State::Incomplete},
+    {"a body without end yet", "HTTP/1.1 200 OK\r\n\r\nnull", false, State::Incomplete},
+
+    {"nothing", "", true, State::Malformed},
+    {"only 1xx, and the end", "HTTP/1.1 100 Continue\r\n\r\n", true, State::Malformed},
+    {"half a head, and the end", "HTTP/1.1 200 OK\r\nContent-Le", true, State::Malformed},
+    {"half a body, and the end", "HTTP/1.1 200 OK\r\nContent-Length: 4\r\n\r\nnu", true, State::Malformed},
+    {"half a chunked body, and the end", "HTTP/1.1 200 OK\r\nTransfer-Encoding: chunked\r\n\r\n3\r\nabc\r\n",
+     true, State::Malformed},
+    {"garbage", "220 smtp.example.org ESMTP\r\n\r\n", false, State::Malformed},
+    {"binary garbage", std::string("\0\1\2\3\xff\xfe", 6), true, State::Malformed},
+    {"TLS", std::string("\x15\x03\x01\x00\x02\x02\x46", 7), true, State::Malformed},
+    {"HTTP/2", "HTTP/2.0 200 OK\r\n\r\n", false, State::Malformed},
+    {"a negative length", "HTTP/1.1 200 OK\r\nContent-Length: -1\r\n\r\n", false, State::Malformed},
+    {"two lengths", "HTTP/1.1 200 OK\r\nContent-Length: 1\r\nContent-Length: 2\r\n\r\n", false,
+     State::Malformed},
+    {"a length of 2^64", "HTTP/1.1 200 OK\r\nContent-Length: 18446744073709551616\r\n\r\n", false,
+     State::Malformed},
+    {"a length of 5 GB", "HTTP/1.1 200 OK\r\nContent-Length: 5000000000\r\n\r\n", false, State::Malformed},
+    {"a chunk of no size", "HTTP/1.1 200 OK\r\nTransfer-Encoding: chunked\r\n\r\nxyz\r\n", false,
+     State::Malformed},
+    {"101", "HTTP/1.1 101 Switching Protocols\r\nUpgrade: x\r\n\r\n", false, State::Malformed},
+    {"status 099", "HTTP/1.1 099 Low\r\nContent-Length: 0\r\n\r\n", false, State::Malformed},
+    {"status 600", "HTTP/1.1 600 High\r\nContent-Length: 0\r\n\r\n", false, State::Malformed},
+};
+
+class AnswerParserCases : public testing::TestWithParam<Case> {};
+
+/// Feeds the bytes in portions of `portion`.
+State feed(AnswerParser& parser, const Case& c, std::size_t portion) {
+  State state = State::Incomplete;
+  for (std::size_t at = 0; at < c.bytes.size() && state == State::Incomplete; at += portion)
+    state = parser.feed(std::string_view(c.bytes).substr(at, portion));
+  if (state == State::Incomplete && c.end) state = parser.feed_end();
+  return state;
+}
+
+TEST_P(AnswerParserCases, AreReadAlikeHoweverTheyAreCut) {
+  const Case& c = GetParam();
+  for (std::size_t portion = 1; portion <= c.bytes.size() + 1; ++portion) {
+    SCOPED_TRACE(portion);
+    AnswerParser parser;
+    ASSERT_EQ(feed(parser, c, portion), c.state) << parser.fault();
+    if (c.state == State::Malformed) {
+      EXPECT_NE(parser.fault(), "");
+    }
+    if (c.state != State::Whole) continue;
+    // Cut right behind the answer, what is beyond it has not been seen yet.
+    const bool saw_all = portion > c.bytes.size();
+    if (saw_all || c.keeps_alive) {
+      EXPECT_EQ(parser.may_keep_alive(), c.keeps_alive);
+    }
+    const Answered answered = parser.take();
+    EXPECT_EQ(answered.status, c.status);
+    EXPECT_EQ(answered.body, c.body);
+  }
+}
+
+INSTANTIATE_TEST_SUITE_P(, AnswerParserCases, testing::ValuesIn(kCases));
+
+std::optional<std::chrono::seconds> retry_after(const std::string& value) {
+  AnswerParser parser;
+  EXPECT_EQ(parser.feed("HTTP/1.1 429 Slow\r\nContent-Length: 0\r\nRetry-After: " + value + "\r\n\r\n"),
+            State::Whole);
+  return parser.take().retry_after;
+}
+
+TEST(AnswerParser, ReadsRetryAfterInSecondsAndIgnoresDates) {
+  EXPECT_EQ(retry_after("0"), std::chrono::seconds(0));
+  EXPECT_EQ(retry_after("120"), std::chrono::seconds(120));
+  for (const char* none :
+       {"", "-1", "1.5", "soon", "12 s", "99999999999999999999", "Fri, 31 Dec 1999 23:59:59 GMT"})
+    EXPECT_EQ(retry_after(none), std::nullopt) << none;
+}
+
+TEST(AnswerParser, GivesTheContentTypeAsItCame) {
+  AnswerParser parser;
+  ASSERT_EQ(
+      parser.feed("HTTP/1.1 500 Oops\r\ncontent-TYPE: text/html; charset=utf-8\r\nContent-Length: 0\r\n\r\n"),
+      State::Whole);
+  EXPECT_EQ(parser.take().content_type, "text/html; charset=utf-8");
+}
+
+TEST(AnswerParser, TakesAnAnswerThatIsLongButNotTooLong) {
+  const std::string body((1u << 20) - 100, 'x');
+  AnswerParser parser;
+  EXPECT_EQ(
+      parser.feed("HTTP/1.1 200 OK\r\nContent-Length: " + std::to_string(body.size()) + "\r\n\r\n" + body),
+      State::Whole);
+  EXPECT_EQ(parser.take().body, body);
+}
+
+TEST(AnswerParser, RefusesAnswersThatNeverEnd) {
+  const std::pair<std::string, std::string> endless[] = {
+      {"", "HTTP/1.1 100 Continue\r\n\r\n"},                                    // interim answers
+      {"HTTP/1.1 200 OK\r\n", "X-Field: 0123456789\r\n"},                       // a head
+      {"HTTP/1.1 200 OK\r\n\r\n", std::string(1000, 'x')},                      // a body without length
+      {"HTTP/1.1 200 OK\r\nTransfer-Encoding: chunked\r\n\r\n", "1\r\nx\r\n"},  // chunks
+      {"HTTP/1.1 200 OK\r\nTransfer-Encoding: chunked\r\n\r\n1;", "extension"}};
+  for (const auto& [begin, more] : endless) {
+    SCOPED_TRACE(begin + more.substr(0, 30));
+    AnswerParser parser;
+    State state = parser.feed(begin.empty() ? more : begin);
+    std::size_t fed = begin.size();
+    for (; state == State::Incomplete && fed < (2u << 20); fed += more.size()) state = parser.feed(more);
+    EXPECT_EQ(state, State::Malformed);
+    EXPECT_THAT(parser.fault(), HasSubstr("too long"));
+  }
+}
+
+}  // namespace
+}  // namespace adit::uplink

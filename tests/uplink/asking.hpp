@@ -1,0 +1,85 @@
+#pragma once
+
+#include <gmock/gmock.h>
+
+#include <optional>
+#include <string>
+#include <utility>
+
+#include "peer.hpp"
+#include "uplink/connection.hpp"
+
+namespace adit::uplink {
+
+inline constexpr const char* kToken = "s3cret-Token.0123456789";
+
+inline icd::BearerToken token() {
+  const auto parsed = icd::BearerToken::parse(kToken);
+  if (!parsed) throw std::runtime_error("the test's token is none");
+  return *parsed;
+}
+
+/// A loop, and what a test does with connections on it.
+class Asking : public testing::Test {
+ protected:
+  template <class Done>
+  bool turn_until(Done done) {
+    const loop::Instant end = loop_.now() + std::chrono::seconds(8);
+    while (!done() && loop_.now() < end) loop_.turn(std::chrono::milliseconds(5));
+    return done();
+  }
+
+  /// Sends and waits for the outcome, which never comes from within send() and never tells the token.
+  Outcome ask(Connection& connection, Request request) {
+    std::optional<Outcome> outcome;
+    connection.send(std::move(request), [&](Outcome came) { outcome = std::move(came); });
+    EXPECT_FALSE(outcome) << "done was called from within send()";
+    EXPECT_TRUE(connection.busy());
+    if (!turn_until([&] { return outcome.has_value(); })) throw std::runtime_error("there is no outcome");
+    EXPECT_FALSE(connection.busy());
+    EXPECT_THAT(why(outcome.value()), testing::Not(testing::HasSubstr(kToken)));
+    return std::move(outcome.value());
+  }
+  Outcome ask(const Endpoint& endpoint, Request request) {
+    Connection connection(loop_, endpoint, token());
+    return ask(connection, std::move(request));
+  }
+
+  static std::string why(const Outcome& outcome) {
+    if (const auto* never = std::get_if<NeverSent>(&outcome)) return never->why;
+    if (const auto* doubt = std::get_if<InDoubt>(&outcome)) return doubt->why;
+    return "";
+  }
+
+  /// As an Answered; where it is none, a status of 0 and the sentence as its body.
+  static Answered answered(const Outcome& outcome) {
+    if (const auto* answer = std::get_if<Answered>(&outcome)) return *answer;
+    return {.status = 0, .content_type = "", .body = why(outcome), .retry_after = std::nullopt};
+  }
+
+  static Request get(std::string target = "/api/status") {
+    Request request;
+    request.method = "GET";
+    request.target = std::move(target);
+    request.answer_within = std::chrono::milliseconds(3000);
+    return request;
+  }
+  static Request post(const std::string& body) {
+    Request request;
+    request.method = "POST";
+    request.target = "/map/update";
+    request.content_type = "application/cbor";
+    request.body.append({reinterpret_cast<const std::uint8_t*>(body.data()), body.size()});
+    request.answer_within = std::chrono::milliseconds(3000);
+    return request;
+  }
+  static std::string megabytes(std::size_t count) {
+    std::string body(count << 20, '\0');
+    for (std::size_t i = 0; i < body.size(); ++i) body[i] = static_cast<char>(i * 131 >> 3);
+    return body;
+  }
+
+  loop::Loop loop_;
+};
+
+}  // namespace adit::uplink

@@ -1,0 +1,306 @@
+#include <gmock/gmock.h>
+#include <netinet/in.h>
+#include <sys/socket.h>
+
+#include <string>
+#include <thread>
+
+#include "asking.hpp"
+
+namespace adit::uplink {
+namespace {
+
+using std::chrono::milliseconds;
+using testing::AllOf;
+using testing::HasSubstr;
+
+// Answered: a whole answer came, whatever it says.
+
+class AnsweredRequests : public Asking {};
+
+TEST_F(AnsweredRequests, AreThoseRefusedWhileTheirBodyIsStillOnItsWay) {
+  const std::string body = megabytes(20);
+  for (int round = 0; round < 10; ++round) {
+    const ListeningPeer peer([](Wire& wire) {
+      wire.read_head();
+      wire.write(answer("429 Too Many Requests", "\"Reduce to <1Hz.\"", "Retry-After: 2\r\n"));
+    });  // and it closes, with a reset, for most of the body is unread
+    Connection connection(loop_, peer.endpoint(), token());
+    const Answered got = answered(ask(connection, post(body)));
+    EXPECT_EQ(got.status, 429) << got.body;
+    EXPECT_EQ(got.body, "\"Reduce to <1Hz.\"");
+    EXPECT_EQ(got.retry_after, std::chrono::seconds(2));
+    EXPECT_LT(connection.sent_bytes(), connection.total_bytes());
+    EXPECT_FALSE(connection.connected()) << "half a request has been sent on it";
+  }
+}
+
+TEST_F(AnsweredRequests, AreThoseRefusedEarlyByAPeerThatStaysAndReadsNoMore) {
+  const ListeningPeer peer([](Wire& wire) {
+    wire.read_head();
+    wire.write(answer("413 Content Too Large", "\"too large\""));
+    std::this_thread::sleep_for(milliseconds(100));
+  });
+  EXPECT_EQ(answered(ask(peer.endpoint(), post(megabytes(20)))).status, 413);
+}
+
+TEST_F(AnsweredRequests, AreThoseWhosePeerReadsSlowlyButReads) {
+  const ListeningPeer peer([](Wire& wire) {
+    wire.read_slowly(milliseconds(10));
+    wire.read_request();
+    wire.write(answer("200 OK", "null"));
+  });
+  Request request = post(megabytes(20));
+  request.answer_within = milliseconds(200);  // and the whole takes longer
+  const Outcome outcome = ask(peer.endpoint(), std::move(request));
+  EXPECT_EQ(answered(outcome).status, 200) << why(outcome);
+}
+
+TEST_F(AnsweredRequests, KeepAnAnswerThatIsNoJson) {
+  const ListeningPeer peer(
+      always(answer("500 Internal Server Error", "<html>Oops</html>", "Content-Type: text/html\r\n")));
+  const Answered got = answered(ask(peer.endpoint(), get()));
+  EXPECT_EQ(got.status, 500);
+  EXPECT_EQ(got.content_type, "text/html");
+  EXPECT_EQ(got.body, "<html>Oops</html>");
+}
+
+TEST_F(AnsweredRequests, WaitBehindInterimAnswers) {
+  const ListeningPeer peer([](Wire& wire) {
+    wire.read_request();
+    wire.write("HTTP/1.1 102 Processing\r\n\r\n");
+    std::this_thread::sleep_for(milliseconds(20));
+    wire.write("HTTP/1.1 103 Early Hints\r\n\r\n" + answer("201 Created", "{}"));
+  });
+  EXPECT_EQ(answered(ask(peer.endpoint(), post("x"))).status, 201);
+}
+
+TEST_F(AnsweredRequests, TakeAChunkedAnswer) {
+  const ListeningPeer peer(
+      always("HTTP/1.1 200 OK\r\nTransfer-Encoding: chunked\r\n\r\n2\r\nnu\r\n2\r\nll\r\n0\r\n\r\n"));
+  EXPECT_EQ(answered(ask(peer.endpoint(), post("x"))).body, "null");
+}
+
+TEST_F(AnsweredRequests, GetANewConnectionWhereTheKeptOneWasClosedMeanwhile) {
+  const std::function<void(Wire&)> ways_to_close[] = {
+      [](Wire& wire) { wire.close(); }, [](Wire& wire) { wire.reset(); },
+      [](Wire& wire) { wire.write(answer("408 Request Timeout", "\"too slow\"", "Connection: close\r\n")); }};
+  for (const auto& close : ways_to_close) {
+    const ListeningPeer peer({[&](Wire& wire) {
+                                wire.read_request();
+                                wire.write(answer("200 OK", "\"first\""));
+                                // its keep-alive promise is broken once the answer has been read
+                                std::this_thread::sleep_for(milliseconds(20));
+                                close(wire);
+                              },
+                              always(answer("200 OK", "\"second\""))});
+    Connection connection(loop_, peer.endpoint(), token());
+    EXPECT_EQ(answered(ask(connection, get())).body, "\"first\"");
+    while (peer.ended() == 0)
+      std::this_thread::sleep_for(milliseconds(1));  // the loop does not get to see it
+    EXPECT_TRUE(connection.connected());
+    EXPECT_EQ(answered(ask(connection, get())).body, "\"second\"");
+    EXPECT_EQ(peer.begun(), 2);
+  }
+}
+
+// NeverSent: no byte of the request was given to the kernel.
+
+class UnsentRequests : public Asking {
+ protected:
+  std::string never_sent(const Endpoint& endpoint) {
+    const Outcome outcome = ask(endpoint, post("x"));
+    EXPECT_TRUE(std::holds_alternative<NeverSent>(outcome)) << why(outcome) << answered(outcome).status;
+    return why(outcome);
+  }
+};
+
+TEST_F(UnsentRequests, AreThoseOfARefusedConnection) {
+  const Peer peer({});  // bound, but it does not listen
+  const auto port = std::to_string(peer.endpoint().port);
+  EXPECT_EQ(never_sent(peer.endpoint()), "connecting to 127.0.0.1:" + port + ": Connection refused");
+}
+
+TEST_F(UnsentRequests, AreThoseOfAnAbsentInterfaceWhichIsNamed) {
+  const ListeningPeer peer(always(answer("200 OK", "null")));
+  Endpoint endpoint = peer.endpoint();
+  endpoint.interface = "absent0";
+  EXPECT_THAT(never_sent(endpoint), AllOf(HasSubstr("interface absent0"), HasSubstr("No such device")));
+  EXPECT_EQ(peer.begun(), 0);
+}
+
+TEST_F(UnsentRequests, AreThoseToWhatIsNoAddress) {
+  for (const char* address : {"", "command-post.example", "10.100.1", "10.100.1.300", "::g"}) {
+    Endpoint endpoint;
+    endpoint.address = address;
+    endpoint.port = 80;
+    EXPECT_THAT(never_sent(endpoint), HasSubstr("is no IP address")) << address;
+  }
+}
+
+TEST_F(UnsentRequests, AreThoseThatFoundNobodyInTime) {
+  // A full backlog: the kernel ignores further connections.
+  const loop::FileDescriptor listener(::socket(AF_INET, SOCK_STREAM, 0));
+  ASSERT_EQ(::listen(listener.get(), 0), 0);
+  sockaddr_in address{};
+  socklen_t size = sizeof address;
+  ::getsockname(listener.get(), reinterpret_cast<sockaddr*>(&address), &size);
+  address.sin_addr.s_addr = htonl(INADDR_LOOPBACK);
+  std::vector<loop::FileDescriptor> before;
+  for (int i = 0; i < 3; ++i) {
+    before.emplace_back(::socket(AF_INET, SOCK_STREAM | SOCK_NONBLOCK, 0));
+    ::connect(before.back().get(), reinterpret_cast<const sockaddr*>(&address), size);
+  }
+  Endpoint endpoint;
+  endpoint.address = "127.0.0.1";
+  endpoint.port = ntohs(address.sin_port);
+  endpoint.connect_within = milliseconds(100);
+  EXPECT_THAT(never_sent(endpoint), HasSubstr("no answer in time"));
+}
+
+TEST_F(UnsentRequests, AreThoseWhoseKeptConnectionIsGoneAndNoNewOneIsToBeHad) {
+  auto peer = std::make_unique<ListeningPeer>([](Wire& wire) {
+    wire.read_request();
+    wire.write(answer("200 OK", "null"));
+  });
+  Connection connection(loop_, peer->endpoint(), token());
+  EXPECT_EQ(answered(ask(connection, get())).status, 200);
+  peer.reset();  // closed, and the port too
+  const Outcome outcome = ask(connection, get());
+  EXPECT_TRUE(std::holds_alternative<NeverSent>(outcome)) << why(outcome);
+  EXPECT_THAT(connection.trouble(), HasSubstr("Connection refused"));
+}
+
+// InDoubt: bytes left, and no whole answer came.
+
+struct Doubt {
+  const char* name;
+  Peer::Script script;
+  const char* sentence;
+};
+void PrintTo(const Doubt& doubt, std::ostream* out) {
+  *out << doubt.name;
+}
+
+void dribble(Wire& wire) {
+  wire.read_request();
+  wire.write("HTTP/1.1 200 OK\r\nX: ");
+  while (wire.write("x")) std::this_thread::sleep_for(milliseconds(5));
+}
+
+void answer_of_5_megabytes(Wire& wire) {
+  wire.read_request();
+  wire.write("HTTP/1.1 200 OK\r\n\r\n" + std::string(5u << 20, 'x'));
+}
+
+const Doubt kDoubts[] = {
+    {"silence", [](Wire& wire) { wire.wait_for_close(); }, "silent for too long"},
+    {"dribble", dribble, "silent for too long"},
+    {"half",
+     [](Wire& wire) { wire.read_request(), wire.write("HTTP/1.1 200 OK\r\nContent-Length: 9\r\n\r\nhalf"); },
+     "in the middle of its answer"},
+    {"half_and_silence",
+     [](Wire& wire) { wire.read_request(), wire.write("HTTP/1.1 200 OK\r\n"), wire.wait_for_close(); },
+     "silent for too long"},
+    {"no_answer", [](Wire& wire) { wire.read_request(); }, "did not answer"},
+    {"no_answer_and_nothing_read",
+     [](Wire& wire) { std::this_thread::sleep_for(milliseconds(20)), wire.close(); }, "Connection reset"},
+    {"reset", [](Wire& wire) { wire.read_request(), wire.reset(); }, "Connection reset"},
+    {"half_and_reset",
+     [](Wire& wire) {
+       wire.read_request(), wire.write("HTTP/1.1 200 OK\r\n\r\nwithout length");
+       std::this_thread::sleep_for(milliseconds(20));
+       wire.reset();
+     },
+     "Connection reset"},
+    {"garbage",
+     [](Wire& wire) { wire.read_request(), wire.write("\x16\x03\x01 what?\r\n\r\n"), wire.wait_for_close(); },
+     "no HTTP"},
+    {"only_interim", [](Wire& wire) { wire.read_request(), wire.write("HTTP/1.1 100 Continue\r\n\r\n"); },
+     "closed the connection"},
+    {"too_long", answer_of_5_megabytes, "too long"},
+    {"too_long_by_its_own_word",
+     [](Wire& wire) {
+       wire.read_request(), wire.write("HTTP/1.1 200 OK\r\nContent-Length: 5000000\r\n\r\n");
+     },
+     "too long"},
+};
+
+class RequestsInDoubt : public Asking, public testing::WithParamInterface<Doubt> {};
+
+TEST_P(RequestsInDoubt, AreSentOnceAndSayWhy) {
+  std::string request = "POST /map/update to 127.0.0.1:";
+  const ListeningPeer peer(GetParam().script);
+  Connection connection(loop_, peer.endpoint(), token());
+  Request impatient = post("x");
+  impatient.answer_within = milliseconds(150);
+  const Outcome outcome = ask(connection, std::move(impatient));
+  EXPECT_TRUE(std::holds_alternative<InDoubt>(outcome)) << answered(outcome).status;
+  EXPECT_THAT(why(outcome), AllOf(HasSubstr(request), HasSubstr(GetParam().sentence)));
+  EXPECT_FALSE(connection.connected());
+  for (int i = 0; i < 5; ++i) loop_.turn(milliseconds(2));
+  EXPECT_EQ(peer.begun(), 1) << "it was sent again";
+}
+
+INSTANTIATE_TEST_SUITE_P(, RequestsInDoubt, testing::ValuesIn(kDoubts),
+                         [](const auto& doubt) { return std::string(doubt.param.name); });
+
+class DoubtfulRequests : public Asking {
+ protected:
+  void expect_doubt(const Peer& peer, const char* sentence) {
+    Connection connection(loop_, peer.endpoint(), token());
+    Request request = post(megabytes(20));
+    request.answer_within = milliseconds(200);
+    const Outcome outcome = ask(connection, std::move(request));
+    EXPECT_TRUE(std::holds_alternative<InDoubt>(outcome)) << answered(outcome).status;
+    EXPECT_THAT(why(outcome), HasSubstr(sentence));
+    EXPECT_LT(connection.sent_bytes(), connection.total_bytes());
+  }
+};
+
+TEST_F(DoubtfulRequests, AreThoseWhosePeerNeverReads) {
+  const ListeningPeer peer([](Wire&) { std::this_thread::sleep_for(milliseconds(600)); });
+  expect_doubt(peer, "silent for too long");
+}
+
+TEST_F(DoubtfulRequests, AreThoseWhosePeerReadsNothingAndDribbles) {
+  const ListeningPeer peer([](Wire& wire) {
+    for (int i = 0; i < 200 && wire.write("H"); ++i) std::this_thread::sleep_for(milliseconds(5));
+  });
+  Connection connection(loop_, peer.endpoint(), token());
+  Request request = post(megabytes(20));
+  request.answer_within = milliseconds(200);
+  EXPECT_TRUE(std::holds_alternative<InDoubt>(ask(connection, std::move(request))));
+}
+
+TEST_F(DoubtfulRequests, AreThoseResetHalfWay) {
+  const ListeningPeer peer([](Wire& wire) { wire.read_some(1 << 16), wire.reset(); });
+  expect_doubt(peer, "");
+}
+
+TEST_F(DoubtfulRequests, AreThoseWhoseEarlyAnswerEndsInAReset) {
+  const ListeningPeer peer([](Wire& wire) {
+    wire.read_head();
+    wire.write("HTTP/1.1 400 Bad Request\r\n\r\nthis has no length, and its end ");
+    std::this_thread::sleep_for(milliseconds(20));
+    wire.reset();
+  });
+  expect_doubt(peer, "");
+}
+
+TEST_F(DoubtfulRequests, AreThoseOnAKeptConnectionThatClosesWithoutAnAnswer) {
+  const ListeningPeer peer([](Wire& wire) {
+    wire.read_request();
+    wire.write(answer("200 OK", "null"));
+    wire.read_request();  // it has come; what becomes of it nobody knows
+  });
+  Connection connection(loop_, peer.endpoint(), token());
+  EXPECT_EQ(answered(ask(connection, get())).status, 200);
+  const Outcome outcome = ask(connection, post("a report"));
+  EXPECT_TRUE(std::holds_alternative<InDoubt>(outcome)) << why(outcome);
+  for (int i = 0; i < 5; ++i) loop_.turn(milliseconds(2));
+  EXPECT_EQ(peer.begun(), 1) << "it was sent again";
+}
+
+}  // namespace
+}  // namespace adit::uplink

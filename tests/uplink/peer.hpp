@@ -1,0 +1,89 @@
+#pragma once
+
+#include <atomic>
+#include <chrono>
+#include <functional>
+#include <string>
+#include <string_view>
+#include <thread>
+#include <vector>
+
+#include "loop/file_descriptor.hpp"
+#include "uplink/connection.hpp"
+
+namespace adit::uplink {
+
+/// The peer's end of one connection: raw, blocking, for five seconds at most.
+class Wire {
+ public:
+  explicit Wire(loop::FileDescriptor fd);
+
+  /// The head of the next request, or "" where the other side has closed. Its body may follow unread.
+  std::string read_head();
+  /// The next request whole: head and as much body as Content-Length says.
+  std::string read_request();
+  /// Up to `most` bytes of what comes; 0 where the other side has closed.
+  std::size_t read_some(std::size_t most);
+  /// From now on, each reading pauses first.
+  void read_slowly(std::chrono::milliseconds pause) { pause_ = pause; }
+  /// False where the other side is gone.
+  bool write(std::string_view bytes);
+  void wait_for_close();
+  /// Closes; with a reset where bytes are unread, as TCP does.
+  void close() { fd_ = {}; }
+  /// Closes with a reset in any case.
+  void reset();
+
+ private:
+  loop::FileDescriptor fd_;
+  std::string unread_;
+  std::chrono::milliseconds pause_{0};
+};
+
+/// A scripted Command Post in a thread of its own. It serves one connection after the other: the first by the
+/// first script, and so on, and all further ones by the last script. A connection is closed when its script
+/// returns.
+class Peer {
+ public:
+  using Script = std::function<void(Wire&)>;
+
+  explicit Peer(std::vector<Script> scripts, const char* address = "127.0.0.1");
+  ~Peer();
+  Peer(const Peer&) = delete;
+  Peer& operator=(const Peer&) = delete;
+
+  /// Refuses connections until now.
+  void listen();
+
+  Endpoint endpoint() const;
+  /// How many scripts have begun and ended.
+  int begun() const { return begun_; }
+  int ended() const { return ended_; }
+
+ private:
+  void serve();
+
+  std::vector<Script> scripts_;
+  std::string address_;
+  loop::FileDescriptor listener_;
+  std::atomic<int> begun_ = 0, ended_ = 0;
+  std::thread thread_;
+};
+
+/// A Peer that listens from the start.
+class ListeningPeer : public Peer {
+ public:
+  explicit ListeningPeer(std::vector<Script> scripts, const char* address = "127.0.0.1")
+      : Peer(std::move(scripts), address) {
+    listen();
+  }
+  explicit ListeningPeer(Script script) : ListeningPeer(std::vector<Script>{std::move(script)}) {}
+};
+
+/// A whole answer with a length.
+std::string answer(std::string_view status, std::string_view body, std::string_view fields = "");
+
+/// Answers each request on the connection with the same bytes until the other side closes.
+Peer::Script always(std::string bytes);
+
+}  // namespace adit::uplink

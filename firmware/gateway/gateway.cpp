@@ -70,13 +70,15 @@ std::expected<void, std::string> Gateway::listen() {
 
 void Gateway::restore() {
   Unsent unsent = Spool(parts_.spool_folder).take(parts_.settings.rules);
+  const auto restored = [](const icd::Checked<void>& taken) {
+    if (!taken) host::log(host::Level::Error, "a kept message is lost", {{"why", taken.error().sentence}});
+  };
   for (icd::MapUpdate& map : unsent.maps) {
     const std::size_t bytes = map.data.bytes.size();
-    if (!maps_.take(std::move(map), bytes))
-      host::log(host::Level::Error, "a kept map found the queue full and is lost");
+    restored(maps_.take(std::move(map), bytes));
   }
-  if (!unsent.state.poses.empty()) news_.take(unsent.state, 0);
-  if (!unsent.markers.markers.empty()) news_.take(unsent.markers, 0);
+  if (!unsent.state.poses.empty()) restored(news_.take(unsent.state, 0));
+  if (!unsent.markers.markers.empty()) restored(news_.take(unsent.markers, 0));
 }
 
 void Gateway::stop() {
@@ -111,8 +113,7 @@ icd::Checked<void> Gateway::take(const icd::StateUpdate& update, const intake::S
   icd::StateUpdate shifted = update;
   shifted.header.stamp =
       stamps_.shift(sender.address + "/state/" + robot, update.header.stamp, loop_.stamp_now());
-  news_.take(shifted, sender.bytes);
-  return {};
+  return news_.take(shifted, sender.bytes);
 }
 
 icd::Checked<void> Gateway::take(const icd::MarkersUpdate& update, const intake::Sender& sender) {
@@ -121,8 +122,7 @@ icd::Checked<void> Gateway::take(const icd::MarkersUpdate& update, const intake:
     marker.header.stamp =
         stamps_.shift(sender.address + "/markers/" + marker.ns, marker.header.stamp, loop_.stamp_now());
   }
-  news_.take(shifted, sender.bytes);
-  return {};
+  return news_.take(shifted, sender.bytes);
 }
 
 void Gateway::take(const icd::ArtifactReport& report, const intake::Sender& sender,

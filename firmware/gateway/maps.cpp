@@ -148,6 +148,8 @@ std::vector<icd::MapUpdate> Maps::unsent() const {
   std::vector<icd::MapUpdate> maps;
   if (prepared_) maps.push_back(prepared_->waiting.map);
   for (const lanes::WaitingMap& waiting : lane_.waiting()) maps.push_back(waiting.map);
+  lanes::StampOrder stamps = stamps_;  // whoever sends them must not run backward either
+  for (icd::MapUpdate& map : maps) map.header().stamp = stamps.next(map.header().stamp.value_or(0));
   return maps;
 }
 

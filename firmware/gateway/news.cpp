@@ -11,6 +11,22 @@ namespace adit::gateway {
 
 using dispatch::MappingVerdict;
 
+namespace {
+
+std::unexpected<icd::Refusal> full(const char* of) {
+  return std::unexpected(
+      icd::Refusal{icd::Status::TooManyRequests, std::string("not taken: ") + of + "; send it again later"});
+}
+
+std::size_t updates_in(const lanes::WaitingState& state) {
+  return state.updates;
+}
+std::size_t updates_in(const lanes::WaitingMarkers& markers) {
+  return markers.updates.size();
+}
+
+}  // namespace
+
 News::News(loop::Loop& loop, const settings::Settings& settings, icd::BearerToken token, Record& record,
            std::mt19937_64& random)
     : loop_(loop),
@@ -22,18 +38,22 @@ News::News(loop::Loop& loop, const settings::Settings& settings, icd::BearerToke
       wake_(loop.timer([this] { pump(); })),
       markers_(settings.queues.markers_per_message) {}
 
-void News::take(const icd::StateUpdate& update, std::size_t bytes_received) {
+icd::Checked<void> News::take(const icd::StateUpdate& update, std::size_t bytes_received) {
+  if (!state_.has_room_for(update)) return full("more robots than can be kept apart");
   for (const icd::NamedPose& pose : update.poses) {
     record_.accepted({Kind::State, pose.name.text()}, bytes_received, loop_.stamp_now());
   }
-  state_.add(++numbers_, update, loop_.now());
+  state_.add(update, loop_.now());
   pump();
+  return {};
 }
 
-void News::take(const icd::MarkersUpdate& update, std::size_t bytes_received) {
+icd::Checked<void> News::take(const icd::MarkersUpdate& update, std::size_t bytes_received) {
+  if (!markers_.has_room_for(update)) return full("more markers than can wait");
   record_.accepted({Kind::Markers, ""}, bytes_received, loop_.stamp_now());
   markers_.add(++numbers_, update, loop_.now());
   pump();
+  return {};
 }
 
 void News::pump() {
@@ -86,7 +106,7 @@ void News::answered(Kind kind, UriPace& pace, Waiting sent, std::size_t bytes,
   const std::string sentence = verdict == MappingVerdict::Taken ? "" : sentence_of(outcome);
   for (const Traffic& traffic : traffic_of(sent)) {
     if (verdict == MappingVerdict::Taken) {
-      record_.forwarded(traffic, sent.updates.size(), bytes, status, loop_.stamp_now());
+      record_.forwarded(traffic, updates_in(sent), bytes, status, loop_.stamp_now());
     }
     if (verdict == MappingVerdict::Throttled) record_.throttled(traffic, status, sentence);
     if (verdict == MappingVerdict::Failing) record_.failed(traffic, status, sentence);

@@ -7,6 +7,7 @@
 #include "gateway/channel.hpp"
 #include "gateway/record.hpp"
 #include "gateway/uri_pace.hpp"
+#include "icd/status.hpp"
 #include "lanes/marker_lane.hpp"
 #include "lanes/stamps.hpp"
 #include "lanes/state_lane.hpp"
@@ -21,9 +22,9 @@ class News {
        std::mt19937_64& random);
 
   void start() { channel_.keep_warm(); }
-  /// Stamps are on the gateway's clock.
-  void take(const icd::StateUpdate& update, std::size_t bytes_received);
-  void take(const icd::MarkersUpdate& update, std::size_t bytes_received);
+  /// Stamps are on the gateway's clock. Refused with 429 where the lane is full.
+  icd::Checked<void> take(const icd::StateUpdate& update, std::size_t bytes_received);
+  icd::Checked<void> take(const icd::MarkersUpdate& update, std::size_t bytes_received);
 
   /// Sends nothing more. False while an answer is still awaited.
   bool stop();

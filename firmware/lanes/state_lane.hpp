@@ -4,30 +4,29 @@
 #include <cstdint>
 #include <map>
 #include <optional>
-#include <vector>
 
 #include "icd/state_update.hpp"
 #include "lanes/map_lane.hpp"
 
 namespace adit::lanes {
 
-/// A /state/update to be sent and the accepted updates it answers for.
+/// A /state/update to be sent, and how many accepted updates it answers for.
 struct WaitingState {
-  icd::StateUpdate update;             // every robot known, by name; header.stamp: the newest of them
-  Instant accepted;                    // of the oldest news in it
-  std::vector<std::uint64_t> updates;  // oldest first
+  icd::StateUpdate update;    // every robot known, by name; header.stamp: the newest of them
+  Instant accepted;           // of the oldest news in it
+  std::uint64_t updates = 0;  // at least 1
 };
 
 /// Robots' newest poses (ICD 6.5): each robot may post alone, all go out together, also those without news.
 class StateLane {
  public:
-  /// What the lane holds at most, so that no sender can fill the memory while the Command Post is away.
-  static constexpr std::size_t kMostRobots = 1000, kMostUpdates = 100'000;
+  /// What the lane holds at most, so that no sender can fill the memory.
+  static constexpr std::size_t kMostRobots = 1000;
   bool has_room_for(const icd::StateUpdate& update) const;
 
   /// `update.header.stamp` is on the gateway's clock. A robot's pose is replaced unless the one held has a
   /// newer stamp.
-  void add(std::uint64_t number, const icd::StateUpdate& update, Instant now);
+  void add(const icd::StateUpdate& update, Instant now);
 
   /// All robots' newest poses; nothing where no news came since the last take().
   std::optional<WaitingState> take();
@@ -46,7 +45,7 @@ class StateLane {
   };
   std::map<icd::RobotName, Held> robots_;
   std::optional<Instant> oldest_;
-  std::vector<std::uint64_t> updates_;
+  std::uint64_t updates_ = 0;
 };
 
 }  // namespace adit::lanes

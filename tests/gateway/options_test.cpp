@@ -1,0 +1,38 @@
+#include "gateway/options.hpp"
+
+#include <gtest/gtest.h>
+
+#include <vector>
+
+namespace adit::gateway {
+namespace {
+
+std::expected<Options, std::string> parse(std::vector<std::string> words) {
+  std::vector<char*> arguments;
+  arguments.reserve(words.size());
+  for (std::string& word : words) arguments.push_back(word.data());
+  return parse_options(arguments);
+}
+
+TEST(Options, AreTheThreeThatTheServiceNeeds) {
+  const auto options = parse({"--settings", "a.json", "--secrets", "b", "--state", "c"});
+  ASSERT_TRUE(options);
+  EXPECT_EQ(options->settings, "a.json");
+  EXPECT_EQ(options->secrets, "b");
+  EXPECT_EQ(options->state, "c");
+}
+
+TEST(Options, NameWhatIsMissingOrUnknown) {
+  EXPECT_EQ(parse({"--settings", "a"}).error(), "--secrets DIR is missing");
+  EXPECT_EQ(parse({"--settings"}).error(), "--settings wants a value");
+  EXPECT_EQ(parse({"--setings", "a"}).error(), "unknown word '--setings'");
+  EXPECT_EQ(parse({}).error(), "--settings FILE is missing");
+}
+
+TEST(Options, HelpAndVersionNeedNothingElse) {
+  EXPECT_TRUE(parse({"--help"})->help);
+  EXPECT_TRUE(parse({"--version"})->version);
+}
+
+}  // namespace
+}  // namespace adit::gateway

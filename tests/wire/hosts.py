@@ -1,0 +1,90 @@
+"""Three hosts in network namespaces: the team, the box with its two interfaces, and the Command Post.
+
+    team eth0 ---- team0 (box) darpa0 ---- eth0 Command Post (two addresses)
+
+The test itself moves into the team's namespace, so that its sockets are a team's.
+"""
+
+import ctypes
+import os
+import subprocess
+import unittest
+
+CLONE_NEWNET = 0x40000000
+
+SCORING = "10.100.1.200"
+MAPPING = "10.100.1.201"
+BOX_DARPA = "10.100.1.10"
+
+
+class Network:
+    """`team_net` is the team's /24 by its first three numbers; "10.100.1" overlaps the Command Post's."""
+
+    def __init__(self, team_net="192.168.7"):
+        prefix = f"adit{os.getpid()}"
+        self.team, self.box, self.post = (f"{prefix}{letter}" for letter in "tbc")
+        self.box_address = f"{team_net}.11"
+        self.team_address = f"{team_net}.12"
+        self.home = os.open("/proc/self/ns/net", os.O_RDONLY)
+
+    def __enter__(self):
+        try:
+            self._make()
+        except BaseException:
+            self.__exit__()
+            raise
+        return self
+
+    def _make(self):
+        for name in (self.team, self.box, self.post):
+            ip("netns", "add", name)
+            ip("-n", name, "link", "set", "lo", "up")
+        self._cable(self.team, "eth0", [self.team_address], self.box, "team0", [self.box_address])
+        self._cable(self.post, "eth0", [SCORING, MAPPING], self.box, "darpa0", [BOX_DARPA])
+        enter(f"/run/netns/{self.team}")
+
+    @staticmethod
+    def _cable(left, left_port, left_addresses, right, right_port, right_addresses):
+        ip("-n", left, "link", "add", left_port, "type", "veth", "peer", "name", right_port, "netns", right)
+        for host, port, addresses in ((left, left_port, left_addresses), (right, right_port, right_addresses)):
+            for address in addresses:
+                ip("-n", host, "address", "add", f"{address}/24", "dev", port)
+            ip("-n", host, "link", "set", port, "up")
+
+    def pull_cable(self, pulled=True):
+        """Takes the Command Post's cable out, or puts it back."""
+        ip("-n", self.post, "link", "set", "eth0", "down" if pulled else "up")
+
+    def start(self, host, *command, **options):
+        return subprocess.Popen(["ip", "netns", "exec", host, *map(str, command)], **options)
+
+    def __exit__(self, *_):
+        enter(f"/proc/self/fd/{self.home}")
+        for name in (self.team, self.box, self.post):
+            subprocess.run(["ip", "netns", "delete", name], stderr=subprocess.DEVNULL, check=False)
+        os.close(self.home)
+
+
+def ip(*words):
+    subprocess.run(["ip", *words], check=True)
+
+
+def enter(path):
+    libc = ctypes.CDLL(None, use_errno=True)
+    namespace = os.open(path, os.O_RDONLY)
+    try:
+        if libc.setns(namespace, CLONE_NEWNET) != 0:
+            raise OSError(ctypes.get_errno(), f"setns {path}")
+    finally:
+        os.close(namespace)
+
+
+def needs_namespaces():
+    """Skips where this machine lets nobody make network namespaces."""
+    if os.geteuid() != 0:
+        raise unittest.SkipTest("network namespaces need root")
+    probe = f"aditprobe{os.getpid()}"
+    made = subprocess.run(["ip", "netns", "add", probe], capture_output=True, check=False)
+    if made.returncode != 0:
+        raise unittest.SkipTest("network namespaces cannot be made here: " + made.stderr.decode().strip())
+    subprocess.run(["ip", "netns", "delete", probe], check=True)

@@ -1,0 +1,169 @@
+"""The released programs under test: aditd on the box, adit-rehearsal at the Command Post."""
+
+import json
+import os
+import pathlib
+import re
+import signal
+import socket
+import subprocess
+import tempfile
+import time
+
+import hosts
+
+BIN = pathlib.Path(os.environ["ADIT_BIN"])
+SCORING_TOKEN = "flux230{showroom"
+MAPPING_TOKEN = "rust871}backdoor"
+TEAM_TOKEN = "team-own-token-1"
+PORT = 8000
+
+
+def wait_until(condition, what, within=20.0):
+    """The first true value of `condition()`; an error that says `what` after `within` seconds."""
+    end = time.monotonic() + within
+    while time.monotonic() < end:
+        value = condition()
+        if value:
+            return value
+        time.sleep(0.01)
+    raise AssertionError(f"waited {within:g} s in vain for {what}")
+
+
+def secrets_folder(folder):
+    folder.mkdir(mode=0o700)
+    for name, token in (("scoring", SCORING_TOKEN), ("mapping", MAPPING_TOKEN), ("team", TEAM_TOKEN)):
+        path = folder / f"{name}.token"
+        path.write_text(token + "\n")
+        path.chmod(0o600)
+    return folder
+
+
+class Program:
+    """A process in a namespace, its log kept for when a test fails."""
+
+    def __init__(self, network, host, log, command):
+        self.log = log
+        with open(log, "ab") as output:
+            self.process = network.start(host, *command, stdout=output, stderr=output)
+
+    def stop(self, number=signal.SIGTERM, within=3.0):
+        """Exit status and how long it took, in seconds."""
+        began = time.monotonic()
+        if self.process.poll() is None:
+            self.process.send_signal(number)
+        try:
+            status = self.process.wait(within)
+        except subprocess.TimeoutExpired:
+            self.process.kill()
+            self.process.wait()
+            raise AssertionError(f"did not stop within {within:g} s:\n{self.said()}") from None
+        return status, time.monotonic() - began
+
+    def said(self):
+        return pathlib.Path(self.log).read_text(errors="replace")
+
+
+class CommandPost(Program):
+    """adit-rehearsal on both of its addresses; what it received is in requests()."""
+
+    def __init__(self, network, folder, *options):
+        self.transcript = folder / "transcript"
+        command = [BIN / "adit-rehearsal", "--scoring", f"{hosts.SCORING}:{PORT}", "--mapping",
+                   f"{hosts.MAPPING}:{PORT}", "--secrets", folder / "secrets", "--transcript", self.transcript, *options]
+        super().__init__(network, network.post, folder / "rehearsal.log", command)
+        wait_until(lambda: "adit-rehearsal: scoring" in self.said(), "adit-rehearsal to listen")
+
+    def requests(self, uri=None):
+        path = self.transcript / "requests.jsonl"
+        if not path.exists():
+            return []
+        lines = path.read_text().split("\n")[:-1]
+        found = [json.loads(line) for line in lines]
+        return [request for request in found if uri is None or request["uri"] == uri]
+
+    def violations(self):
+        return [(request["uri"], request["violations"]) for request in self.requests() if request["violations"]]
+
+
+class Box(Program):
+    """aditd between the two."""
+
+    def __init__(self, network, folder, **overrides):
+        self.network, self.folder = network, folder
+        self.state = folder / "state"
+        self.state.mkdir(exist_ok=True)
+        self.settings = folder / "settings.json"
+        self.settings.write_text(json.dumps(settings(network, overrides)))
+        command = [BIN / "aditd", "--settings", self.settings, "--secrets", folder / "secrets", "--state", self.state]
+        super().__init__(network, network.box, folder / "aditd.log", command)
+        wait_until(self._answers, "aditd to listen")
+
+    @property
+    def url(self):
+        return f"http://{self.network.box_address}:{PORT}"
+
+    def _answers(self):
+        if self.process.poll() is not None:
+            raise AssertionError(f"aditd ended with {self.process.returncode}:\n{self.said()}")
+        try:
+            socket.create_connection((self.network.box_address, PORT), 0.2).close()
+        except OSError:
+            return False
+        return True
+
+
+def settings(network, overrides):
+    """Fast rates, so that tests do not wait for the ICD's one request a second; `overrides` by dotted path."""
+    rates = {f"{kind}_hz": 200 for kind in ("reports", "status", "map", "state", "markers")}
+    document = {
+        "version": 1,
+        "command_post": {
+            "scoring": {"address": hosts.SCORING, "port": PORT},
+            "mapping": {"address": hosts.MAPPING, "port": PORT},
+            "interface": "darpa0",
+            "rates": rates,
+        },
+        "team": {"interface": "team0", "listen": [{"address": network.box_address, "port": PORT}]},
+    }
+    for path, value in overrides.items():
+        at = document
+        *folders, last = re.split(r"__", path)
+        for name in folders:
+            at = at.setdefault(name, {})
+        at[last] = value
+    return document
+
+
+class Stage:
+    """Network, Command Post and box together, and a folder for their files."""
+
+    def __init__(self, team_net="192.168.7", post_options=("--rate", "0"), **overrides):
+        self.network = hosts.Network(team_net)
+        self.post_options, self.overrides = post_options, overrides
+        self.temporary = tempfile.TemporaryDirectory(prefix="adit-wire-")
+        self.folder = pathlib.Path(self.temporary.name)
+        self.post = self.box = None
+
+    def __enter__(self):
+        secrets_folder(self.folder / "secrets")
+        self.network.__enter__()
+        try:
+            if self.post_options is not None:
+                self.post = CommandPost(self.network, self.folder, *self.post_options)
+            self.box = Box(self.network, self.folder, **self.overrides)
+        except BaseException:
+            self.__exit__()
+            raise
+        return self
+
+    def restart_box(self, **overrides):
+        self.box = Box(self.network, self.folder, **{**self.overrides, **overrides})
+
+    def __exit__(self, *_):
+        for program in (self.box, self.post):
+            if program is not None and program.process.poll() is None:
+                program.process.kill()
+                program.process.wait()
+        self.network.__exit__()
+        self.temporary.cleanup()

@@ -1,0 +1,12 @@
+"""Runs one module of tests; exit status 77 where all of it was skipped, as ctest is told."""
+
+import sys
+import unittest
+
+if __name__ == "__main__":
+    result = unittest.TextTestRunner(verbosity=2).run(unittest.defaultTestLoader.loadTestsFromName(sys.argv[1]))
+    skipped_all = result.testsRun > 0 and len(result.skipped) >= result.testsRun
+    nothing_ran = result.testsRun == 0 and bool(result.skipped)
+    if not result.wasSuccessful():
+        sys.exit(1)
+    sys.exit(77 if skipped_all or nothing_ran else 0)

@@ -1,0 +1,165 @@
+"""Every URI x format x compression x client style reaches the Command Post, and means there what its sender meant."""
+
+import time
+import unittest
+import zlib
+
+import requests
+
+import hosts
+import maps
+import messages
+import programs
+from messages import Style
+from programs import Stage, wait_until
+
+POSITION = {"x": 1.25, "y": -2.5, "z": 0.125}
+TURNED = {"x": 0.0, "y": 0.0, "z": 0.6, "w": 0.8}
+
+
+def setUpModule():
+    hosts.needs_namespaces()
+
+
+def data_sent(data):
+    return {"bytes": len(data), "crc32": zlib.crc32(data)}
+
+
+class Matrix(unittest.TestCase):
+    """Against a Command Post that is strict; MatrixAsMeasured repeats it against one that behaves as the real ones do."""
+
+    post_options = ("--rate", "0")
+
+    @classmethod
+    def setUpClass(cls):
+        cls.stage = cls.enterClassContext(Stage(post_options=cls.post_options))
+        cls.session = requests.Session()
+        cls.seconds = time.time()
+
+    def tearDown(self):
+        self.assertEqual(self.stage.post.violations(), [])
+
+    def deliver(self, uri, message, style):
+        """Posts it and gives the one request that reached the Command Post for it."""
+        before = len(self.stage.post.requests(uri))
+        self.seconds += 0.5
+        answer = messages.post(self.session, self.stage.box.url, uri, message, style)
+        self.assertEqual((answer.status_code, answer.text), (200, "null"))
+        self.assertEqual(answer.headers["Access-Control-Allow-Origin"], "*")
+        arrived = wait_until(lambda: self.stage.post.requests(uri)[before:], f"{style} to arrive", 30)
+        self.assertEqual(len(arrived), 1)
+        self.check_canonical(arrived[0])
+        return arrived[0]["message"]
+
+    def check_canonical(self, request):
+        self.assertEqual(request["status"], 200, request["answer"])
+        self.assertEqual(request["content_type"], "application/cbor")
+        self.assertIsNone(request["content_encoding"])
+        self.assertFalse(request["expect"])
+
+    def check_map(self, source, style, name):
+        update = messages.map_update(source, name, self.seconds, style)
+        arrived = self.deliver("/map/update", update, style)
+        self.assertEqual((arrived["type"], arrived["name"]), (source.type, name or ""))
+        message = arrived["msg"]
+        expected = data_sent(source.data)
+        self.assertEqual({key: message["data"][key] for key in expected}, expected)
+        self.assertEqual(message["header"]["frame_id"], "darpa")
+        self.assertIsInstance(message["header"]["stamp"], float)
+        for key, value in source.head().items():
+            if key != "info":
+                self.assertEqual(message[key], value, key)
+                continue
+            orientation = message["info"]["origin"]["orientation"]
+            self.assertEqual(orientation, maps.IDENTITY, "zeros have become the identity")
+            self.assertEqual(message["info"] | {"origin": None}, value | {"origin": None})
+            self.assertEqual(message["info"]["origin"]["position"], value["origin"]["position"])
+
+    def test_maps_in_every_style(self):
+        sources = [maps.made_grid(80, 60), maps.made_cloud(500, padding=4)]
+        for number, style in enumerate(messages.styles()):
+            for source in sources:
+                name = (None, "", f"r{number}")[number % 3]
+                with self.subTest(style=str(style), map=source.label, name=name):
+                    self.check_map(source, style, name)
+
+    def test_generated_maps(self):
+        for source in maps.made():
+            for style in (Style(), Style("cbor", "gzip")):
+                with self.subTest(style=str(style), map=source.label):
+                    self.check_map(source, style, "r1")
+
+    def test_recorded_maps(self):
+        found = maps.recorded()
+        if not found:
+            self.skipTest(f"{maps.DATA} is absent")
+        for source in found:
+            for style in (Style(), Style("json", "gzip"), Style("cbor"), Style("cbor", "gzip"),
+                          Style("cbor", body="gzip", ros=True)):
+                with self.subTest(style=str(style), map=source.label):
+                    self.check_map(source, style, "replay")
+
+    def test_states_in_every_style(self):
+        for style in messages.text_styles():
+            with self.subTest(style=str(style)):
+                orientation = dict.fromkeys("xyzw", 0) if style.ros else TURNED
+                update = {"header": messages.header(self.seconds, style),
+                          "poses": [{"name": "r1", "position": POSITION, "orientation": orientation}]}
+                if style.browser:
+                    del update["header"]
+                arrived = self.deliver("/state/update", update, style)
+                self.assertEqual(arrived["header"]["frame_id"], "darpa")
+                self.assertEqual(arrived["poses"], [{"name": "r1", "position": POSITION,
+                                                     "orientation": maps.IDENTITY if style.ros else TURNED}])
+
+    def test_markers_in_every_style(self):
+        for number, style in enumerate(messages.text_styles()):
+            with self.subTest(style=str(style)):
+                marker = {"header": messages.header(self.seconds, style), "ns": "comms", "id": number, "type": 2,
+                          "action": 0, "pose": {"position": POSITION, "orientation": TURNED},
+                          "scale": {"x": 1, "y": 2, "z": 3}, "color": {"r": 1, "g": 0.5, "b": 0, "a": 1},
+                          "lifetime": {"secs": 2, "nsecs": 500000000} if style.ros else 2.5, "text": "n\u00f6de \u2714"}
+                arrived = self.deliver("/markers/update", {"markers": [marker]}, style)["markers"][0]
+                del arrived["header"]
+                self.assertEqual(arrived, {key: value for key, value in marker.items() if key != "header"}
+                                 | {"lifetime": 2.5})
+
+    def test_markers_with_nothing_but_what_the_icd_asks_for(self):
+        bare = {"type": 1, "action": 0, "pose": {"position": POSITION, "orientation": TURNED},
+                "scale": {"x": 1, "y": 1, "z": 1}, "color": {"r": 0, "g": 0, "b": 1, "a": 1}}
+        arrived = self.deliver("/markers/update", {"markers": [bare, {"action": 2, "ns": "a", "id": 3}]}, Style())
+        first, second = arrived["markers"]
+        self.assertEqual((first["ns"], first["id"], first["lifetime"], first["text"]), ("", 0, 0, ""))
+        self.assertEqual((second["action"], second["ns"], second["id"]), (2, "a", 3))
+        self.assertIn("pose", second)
+
+    def test_reports_and_status_in_every_style(self):
+        for number, style in enumerate(style for style in messages.text_styles() if style.format == "json"):
+            with self.subTest(style=str(style)):
+                report = {"x": 1011.242 + number, "y": -244.433, "z": 1e-7, "type": "Fire Extinguisher", "name": "r1"}
+                answer = messages.post(self.session, self.stage.box.url, "/api/artifact_reports", report, style)
+                self.assertEqual(answer.status_code, 201, answer.text)
+                made = answer.json()
+                for key in ("x", "y", "z", "type"):
+                    self.assertEqual(made[key], report[key])
+                self.assertEqual(made["report_status"], "scored")
+                sent = self.stage.post.requests("/api/artifact_reports")[-1]
+                self.assertEqual(sent["content_type"], "application/json")
+                status = self.session.get(self.stage.box.url + "/api/status" + ("/" if style.browser else ""),
+                                          headers=messages.headers(style), timeout=10)
+                self.assertEqual(status.status_code, 200)
+                self.assertIn("remaining_reports", status.json())
+
+    def test_any_of_the_teams_tokens_is_good(self):
+        for token in (programs.TEAM_TOKEN, programs.SCORING_TOKEN, programs.MAPPING_TOKEN):
+            update = {"poses": [{"name": "r1", "position": POSITION, "orientation": TURNED}]}
+            answer = messages.post(self.session, self.stage.box.url, "/state/update", update, Style(), token)
+            self.assertEqual(answer.status_code, 200)
+
+
+class MatrixAsMeasured(Matrix):
+    post_options = ("--rate", "0", "--as-measured")
+
+
+if __name__ == "__main__":
+    unittest.main()

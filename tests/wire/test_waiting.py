@@ -1,0 +1,229 @@
+"""What waits loses nothing: throttling, full links, pulled cables, restarts, networks that overlap."""
+
+import random
+import signal
+import subprocess
+import time
+import unittest
+
+import requests
+
+import hosts
+import maps
+import messages
+import programs
+from messages import Style
+from programs import Stage, wait_until
+
+CBOR = Style("cbor")
+TURNED = {"x": 0.0, "y": 0.0, "z": 0.6, "w": 0.8}
+
+
+def setUpModule():
+    hosts.needs_namespaces()
+
+
+def pose(name, x):
+    return {"poses": [{"name": name, "position": {"x": x, "y": 0.0, "z": 0.0}, "orientation": TURNED}]}
+
+
+class Waiting(unittest.TestCase):
+    def stage(self, **overrides):
+        stage = self.enterContext(Stage(**overrides))
+        self.addCleanup(lambda: self.assertEqual(stage.post.violations() if stage.post else [], []))
+        self.session = requests.Session()
+        return stage
+
+    def post(self, stage, uri, message):
+        answer = messages.post(self.session, stage.box.url, uri, message, CBOR)
+        self.assertEqual((answer.status_code, answer.text), (200, "null"))
+
+    def post_map(self, stage, source, name, seconds=None):
+        self.post(stage, "/map/update", messages.map_update(source, name, seconds or time.time(), CBOR))
+
+    def taken(self, stage, uri):
+        return [request for request in stage.post.requests(uri) if request["status"] == 200]
+
+    def cloud_bytes(self, stage, name):
+        return sum(request["message"]["msg"]["data"]["bytes"] for request in self.taken(stage, "/map/update")
+                   if request["message"]["name"] == name)
+
+    def test_clouds_ten_times_too_often_all_arrive_within_the_rate(self):
+        stage = self.stage(post_options=("--rate", "1"), command_post__rates__map_hz=1)
+        sent = {"r1": 0, "r2": 0}
+        for number in range(30):
+            for name in sent:
+                cloud = maps.made_cloud(200 + number, seed=number)
+                self.post_map(stage, cloud, name)
+                sent[name] += len(cloud.data)
+            time.sleep(0.05)
+        for name, size in sent.items():
+            wait_until(lambda name=name, size=size: self.cloud_bytes(stage, name) == size, f"all clouds of {name}")
+        self.assertEqual([request["status"] for request in stage.post.requests("/map/update")].count(429), 0)
+        self.assertLess(len(stage.post.requests("/map/update")), 20, "clouds that waited were merged")
+
+    def test_a_grid_that_covers_replaces_and_one_that_does_not_is_sent_beside(self):
+        stage = self.stage(command_post__rates__map_hz=1)
+        first = maps.made_grid(20, 20, seed=1)
+        self.post_map(stage, first, "r1")
+        wait_until(lambda: self.taken(stage, "/map/update"), "the first grid")
+        aside = maps.made_grid(20, 20, seed=2)
+        aside.origin = (first.origin[0] + 10, *first.origin[1:])
+        small, large = maps.made_grid(30, 30, seed=3), maps.made_grid(40, 40, seed=4)
+        small.origin = large.origin = first.origin
+        for grid in (small, aside, large):
+            self.post_map(stage, grid, "r1")
+        wait_until(lambda: len(self.taken(stage, "/map/update")) == 3, "the grids that are left")
+        time.sleep(1.5)
+        arrived = [(request["message"]["msg"]["info"]["width"]) for request in self.taken(stage, "/map/update")]
+        self.assertEqual(arrived, [20, 20, 40], "in the order in which they were made")
+
+    def test_robots_that_post_alone_are_sent_together_at_one_a_second(self):
+        stage = self.stage(post_options=("--rate", "1"), command_post__rates__state_hz=1)
+        for step in range(25):
+            for name in ("r1", "r2", "r3"):
+                self.post(stage, "/state/update", pose(name, float(step)))
+            time.sleep(0.1)
+        wait_until(lambda: {item["position"]["x"] for item in self.taken(stage, "/state/update")[-1]["message"]["poses"]}
+                   == {24.0}, "the last poses")
+        last = self.taken(stage, "/state/update")[-1]["message"]["poses"]
+        self.assertEqual([item["name"] for item in last], ["r1", "r2", "r3"])
+        self.assertLess(len(stage.post.requests("/state/update")), 7)
+        self.assertEqual(len(self.taken(stage, "/state/update")), len(stage.post.requests("/state/update")))
+
+    def test_markers_merge_by_ns_and_id_with_their_deletes_in_order(self):
+        stage = self.stage(command_post__rates__markers_hz=1)
+        chance, scene = random.Random(5), {}
+        for step in range(60):
+            key = (chance.choice("ab"), chance.randint(0, 9))
+            action = 3 if step == 30 else chance.choice((0, 0, 0, 2))
+            marker = {"ns": key[0], "id": key[1], "type": 2, "action": action,
+                      "pose": {"position": {"x": float(step), "y": 0.0, "z": 0.0}, "orientation": TURNED},
+                      "scale": {"x": 1, "y": 1, "z": 1}, "color": {"r": 1, "g": 1, "b": 1, "a": 1}}
+            replay(scene, [marker])
+            self.post(stage, "/markers/update", {"markers": [marker]})
+            time.sleep(0.02)
+
+        def arrived():
+            shown = {}
+            for request in self.taken(stage, "/markers/update"):
+                replay(shown, request["message"]["markers"])
+            return shown
+
+        wait_until(lambda: arrived() == scene, "the same scene")
+        self.assertLess(len(stage.post.requests("/markers/update")), 6)
+
+    def test_throttled_maps_are_sent_again_until_they_are_taken(self):
+        stage = self.stage(post_options=("--rate", "2"))
+        sent = 0
+        for number in range(5):
+            cloud = maps.made_cloud(100, seed=number, padding=4 * number)  # other fields: never merged
+            cloud.fields = [dict(item, name=item["name"]) for item in cloud.fields]
+            self.post_map(stage, cloud, "r1")
+            sent += len(cloud.data)
+        wait_until(lambda: self.cloud_bytes(stage, "r1") == sent, "all of them", 40)
+        view = requests.get(stage.box.url + "/adit/run", timeout=5).json()
+        row = next(row for row in view["activities"] if row["kind"] == "cloud")
+        self.assertEqual((row["accepted"], row["waiting"]), (5, 0))
+
+    def test_a_pulled_cable_delays_and_loses_nothing(self):
+        stage = self.stage(command_post__timeouts__mapping_answer_ms=2000, command_post__timeouts__connect_ms=500)
+        self.post_map(stage, maps.made_cloud(100), "r1")
+        wait_until(lambda: self.cloud_bytes(stage, "r1") == 1200, "the first cloud")
+        stage.network.pull_cable()
+        for number in range(3):
+            self.post_map(stage, maps.made_cloud(100, seed=number), "r1")
+            self.post(stage, "/state/update", pose("r1", float(number)))
+        time.sleep(3)
+        stage.network.pull_cable(False)
+        wait_until(lambda: self.cloud_bytes(stage, "r1") >= 4800, "what came while the cable was out", 40)
+        wait_until(lambda: any(item["position"]["x"] == 2.0 for request in self.taken(stage, "/state/update")
+                               for item in request["message"]["poses"]), "the last pose", 40)
+
+    def test_what_waits_outlives_a_restart_of_the_service(self):
+        stage = self.stage(post_options=None)
+        grid, cloud = maps.made_grid(64, 48), maps.made_cloud(300)
+        self.post_map(stage, grid, "r1")
+        self.post_map(stage, cloud, "r2")
+        self.post(stage, "/state/update", pose("r3", 4.0))
+        self.post(stage, "/markers/update", {"markers": [{"action": 2, "ns": "a", "id": 1}]})
+        status, took = stage.box.stop()
+        self.assertEqual(status, 0, stage.box.said())
+        self.assertLess(took, 1.5)
+        stage.post = programs.CommandPost(stage.network, stage.folder, "--rate", "0")
+        stage.restart_box()
+        wait_until(lambda: len(self.taken(stage, "/map/update")) == 2, "both maps")
+        wait_until(lambda: self.taken(stage, "/state/update") and self.taken(stage, "/markers/update"), "the rest")
+        sizes = {request["message"]["name"]: request["message"]["msg"]["data"]["bytes"]
+                 for request in self.taken(stage, "/map/update")}
+        self.assertEqual(sizes, {"r1": len(grid.data), "r2": len(cloud.data)})
+
+    def test_senders_with_clocks_of_their_own_never_run_upstream_backward(self):
+        stage = self.stage()
+        clocks = {"r1": 1000.0, "r2": 1700000000.0, "r3": 5.0}
+        chance = random.Random(3)
+        for _ in range(40):
+            name = chance.choice(list(clocks))
+            clocks[name] += 0.05 if chance.random() < 0.9 else -3.0
+            self.post(stage, "/state/update", {"header": {"stamp": clocks[name]}, **pose(name, 1.0)})
+            self.post_map(stage, maps.made_cloud(3), name, clocks[name])
+            time.sleep(0.02)
+        wait_until(lambda: len(self.taken(stage, "/map/update")) > 10, "maps")
+        for uri, at in (("/map/update", lambda message: message["msg"]), ("/state/update", lambda message: message)):
+            stamps = [at(request["message"])["header"]["stamp"] for request in stage.post.requests(uri)]
+            self.assertEqual(stamps, sorted(stamps))
+
+    def test_a_full_queue_is_told_to_the_sender(self):
+        stage = self.stage(post_options=None, queues__map_bytes=1 << 20)
+        refused = None
+        for number in range(20):
+            update = messages.map_update(maps.made_cloud(10000, seed=number), "r1", time.time(), CBOR)
+            refused = messages.post(self.session, stage.box.url, "/map/update", update, CBOR)
+            if refused.status_code != 200:
+                break
+        self.assertEqual(refused.status_code, 429)
+        self.assertIn("wait already", refused.json())
+
+    def test_networks_that_overlap_do_not_touch(self):
+        stage = self.stage(team_net="10.100.1")
+        self.post_map(stage, maps.made_grid(10, 10), "r1")
+        wait_until(lambda: self.taken(stage, "/map/update"), "the map")
+        answer = requests.get(stage.box.url + "/api/status", timeout=5, headers=messages.headers(Style()))
+        self.assertEqual(answer.status_code, 200)
+
+    def test_nothing_listens_towards_the_command_post(self):
+        stage = self.stage()
+        for address in (hosts.BOX_DARPA, stage.network.box_address):
+            stage.network.start(stage.network.post, "ip", "route", "replace", "default", "via", hosts.BOX_DARPA).wait()
+            knock = f"import socket; socket.create_connection(('{address}', {programs.PORT}), 2)"
+            tried = stage.network.start(stage.network.post, "/usr/bin/python3", "-c", knock, stderr=subprocess.PIPE)
+            said = tried.communicate()[1].decode()
+            self.assertNotEqual(tried.returncode, 0)
+            self.assertRegex(said, "refused|timed out")
+
+    def test_silent_command_post_does_not_stop_the_teams_side(self):
+        stage = self.stage()
+        stage.post.process.send_signal(signal.SIGSTOP)
+        began = time.monotonic()
+        for number in range(20):
+            self.post(stage, "/state/update", pose("r1", float(number)))
+            self.post_map(stage, maps.made_grid(20, 20), "r1")
+        self.assertLess(time.monotonic() - began, 5)
+        stage.post.process.send_signal(signal.SIGCONT)
+        wait_until(lambda: self.taken(stage, "/map/update") and self.taken(stage, "/state/update"), "them to arrive")
+
+
+def replay(scene, markers):
+    """ROS's meaning of a list of markers, applied to a scene {(ns, id): x}."""
+    for marker in markers:
+        key = (marker["ns"], marker["id"])
+        if marker["action"] == 3:
+            scene.clear()
+        elif marker["action"] == 2:
+            scene.pop(key, None)
+        else:
+            scene[key] = marker["pose"]["position"]["x"]
+
+
+if __name__ == "__main__":
+    unittest.main()

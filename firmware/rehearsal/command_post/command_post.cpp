@@ -1,0 +1,154 @@
+#include "rehearsal/command_post/command_post.hpp"
+
+#include <cstdio>
+#include <exception>
+
+#include "rehearsal/command_post/gate.hpp"
+#include "rehearsal/command_post/mapping.hpp"
+#include "rehearsal/command_post/scoring.hpp"
+
+namespace adit::rehearsal {
+namespace {
+
+std::unique_ptr<Endpoint> scoring_of(const Options& options, const Secrets& secrets, Run& run) {
+  if (options.manner == Manner::Strict) {
+    return std::make_unique<StrictScoring>(secrets.scoring, options.rate.value_or(1), run);
+  }
+  return std::make_unique<MeasuredScoring>(secrets.scoring, options.rate.value_or(0), run);
+}
+
+std::unique_ptr<Endpoint> mapping_of(const Options& options, const Secrets& secrets) {
+  if (options.manner == Manner::Strict) {
+    return std::make_unique<StrictMapping>(secrets.mapping, options.rate.value_or(1));
+  }
+  return std::make_unique<MeasuredMapping>(secrets.mapping, options.rate.value_or(1));
+}
+
+/// What is no HTTP request is refused alike by all. One that its sender broke off, or that came too slowly,
+/// is written down, but breaks no rule of the ICD.
+Judgement judge_fault(const HttpFault& fault) {
+  constexpr int timeout = 408;
+  Judgement judgement;
+  if (fault.status != 0 && fault.status != timeout) {
+    judgement.findings.breaks(fault.sentence, Measured::Refuses, fault.status);
+  }
+  judgement.outcome = refused(fault.status, fault.sentence);
+  judgement.outcome.after = After::Close;
+  return judgement;
+}
+
+/// A judge never falls, whatever it reads: memory that runs out is answered, too.
+Judgement judge_safely(Endpoint& endpoint, const Request& request) {
+  try {
+    return endpoint.judge(request);
+  } catch (const std::exception& error) {
+    std::fprintf(stderr, "adit-rehearsal: a request could not be judged: %s\n", error.what());
+    Judgement judgement;
+    judgement.outcome = refused(500, "The request could not be judged");
+    judgement.outcome.after = After::Close;
+    return judgement;
+  }
+}
+
+/// Takes out of a document what is too long to look at in a line.
+void shorten(Json& value) {
+  constexpr std::size_t longest_text = 4096;
+  constexpr std::size_t longest_list = 10'000;
+  if (value.is_binary()) {
+    value = {{"bytes", value.get_binary().size()}};
+  } else if (value.is_string() && value.get_ref<const std::string&>().size() > longest_text) {
+    value = {{"characters", value.get_ref<const std::string&>().size()}};
+  } else if (value.is_structured() && value.size() > longest_list) {
+    value = {{"elements", value.size()}};
+  } else if (value.is_structured()) {
+    for (Json& element : value) shorten(element);
+  }
+}
+
+OrderedJson text_or_null(const std::optional<std::string>& text) {
+  return text ? OrderedJson(*text) : nullptr;
+}
+
+}  // namespace
+
+CommandPost::CommandPost(const Options& options, const Secrets& secrets, std::vector<Artifact> artifacts,
+                         std::unique_ptr<Transcript> transcript)
+    : verbose_(options.verbose),
+      run_(options.run, std::move(artifacts)),
+      record_(options.manner),
+      scoring_(scoring_of(options, secrets, run_)),
+      mapping_(mapping_of(options, secrets)),
+      transcript_(std::move(transcript)),
+      number_(transcript_ ? transcript_->requests() : 0) {
+  if (!options.not_started) run_.start(launched_);
+}
+
+Outcome CommandPost::receive(Endpoint& endpoint, const char* name, const Request& request) {
+  Judgement judgement = request.fault ? judge_fault(*request.fault) : judge_safely(endpoint, request);
+  std::uint64_t number = 0;
+  {
+    const std::lock_guard lock(number_mutex_);
+    number = ++number_;
+  }
+  if (transcript_) write_down(number, name, request, judgement);
+  record_.note(number, judgement);
+  if (verbose_) show(number, request, judgement);
+  if (judgement.outcome.kind == Outcome::Kind::Dies) {
+    std::fprintf(stderr, "adit-rehearsal: mapping killed by %s\n", record_.killed_by().c_str());
+  }
+  return std::move(judgement.outcome);
+}
+
+void CommandPost::write_down(std::uint64_t number, const char* endpoint, const Request& request,
+                             Judgement& judgement) {
+  constexpr std::size_t longest_message = std::size_t{1} << 20;
+  OrderedJson message;
+  if (judgement.message) {
+    if (judgement.map) {
+      const auto picture = transcript_->picture(number, *judgement.map);
+      (*judgement.message)["msg"]["data"]["file"] = picture ? Json(*picture) : Json(nullptr);
+    }
+    shorten(*judgement.message);
+    message = *judgement.message;
+    const std::size_t length = line_of(message).size();
+    if (length > longest_message) message = {{"characters", length}};
+  }
+  const Outcome& outcome = judgement.outcome;
+  const bool answered = outcome.kind == Outcome::Kind::Answered && outcome.answer.status != 0;
+  OrderedJson line = {{"number", number},
+                      {"at", std::chrono::duration<double>(request.at - launched_).count()},
+                      {"endpoint", endpoint},
+                      {"method", request.method},
+                      {"uri", request.target},
+                      {"content_type", text_or_null(request.content_type)},
+                      {"content_encoding", text_or_null(request.content_encoding)},
+                      {"expect", request.expects_continue},
+                      {"authorization", request.authorization.has_value()},
+                      {"body_bytes", request.body.size()},
+                      {"status", answered ? OrderedJson(outcome.answer.status) : OrderedJson(nullptr)},
+                      {"answer", answered ? OrderedJson(outcome.answer.body) : OrderedJson(nullptr)},
+                      {"message", std::move(message)},
+                      {"fault", request.fault ? OrderedJson(request.fault->sentence) : OrderedJson(nullptr)},
+                      {"violations", judgement.findings.violations()}};
+  transcript_->request(line);
+  if (judgement.report) transcript_->report(*judgement.report);
+}
+
+void CommandPost::show(std::uint64_t number, const Request& request, const Judgement& judgement) const {
+  const Outcome& outcome = judgement.outcome;
+  const std::string status =
+      outcome.kind == Outcome::Kind::Answered ? std::to_string(outcome.answer.status) : "no answer";
+  const std::string parts = judgement.accepted.empty() ? ""
+                                                       : " " + judgement.accepted.front().kind + " " +
+                                                             judgement.accepted.front().robot;
+  // As JSON, so that nothing from the wire steers the terminal.
+  const std::string what = line_of(Json(request.method + " " + request.target.substr(0, 200) + parts));
+  std::string more;
+  for (const std::string& sentence : judgement.findings.violations())
+    more.append(" ").append(line_of(Json(sentence)));
+  std::printf("%6llu %s: %s%s\n", static_cast<unsigned long long>(number), what.c_str(), status.c_str(),
+              more.c_str());
+  std::fflush(stdout);
+}
+
+}  // namespace adit::rehearsal

@@ -1,0 +1,178 @@
+#include "rehearsal/command_post/connection.hpp"
+
+#include <poll.h>
+#include <sys/socket.h>
+
+#include <array>
+#include <boost/asio/buffer.hpp>
+#include <boost/beast/http/parser.hpp>
+#include <boost/beast/http/string_body.hpp>
+#include <cerrno>
+
+#include "rehearsal/command_post/sockets.hpp"
+
+namespace adit::rehearsal {
+namespace {
+
+namespace http = boost::beast::http;
+using Parser = http::request_parser<http::string_body>;
+
+constexpr std::uint32_t kMostHeader = 16 * 1024;
+constexpr std::size_t kPiece = 64 * 1024;
+
+std::optional<std::string> field(const http::fields& fields, http::field name) {
+  const auto found = fields.find(name);
+  if (found == fields.end()) return std::nullopt;
+  return std::string(found->value());
+}
+
+HttpFault fault_of(const boost::system::error_code& error) {
+  if (error == http::error::body_limit) return {413, "The body is larger than this Command Post takes"};
+  if (error == http::error::header_limit) return {431, "The header is larger than this Command Post takes"};
+  return {400, "Not an HTTP/1.1 request: " + error.message()};
+}
+
+void take_header(const Parser& parser, Request& request) {
+  const auto& message = parser.get();
+  request.method = std::string(message.method_string());
+  request.target = std::string(message.target());
+  request.authorization = field(message, http::field::authorization);
+  request.content_type = field(message, http::field::content_type);
+  request.content_encoding = field(message, http::field::content_encoding);
+  request.origin = field(message, http::field::origin);
+  request.expects_continue = field(message, http::field::expect).has_value();
+  request.keep_alive = message.keep_alive();
+}
+
+/// Feeds what was received to the parser and takes it out. Gives whether the parser needs more.
+bool feed(Parser& parser, std::string& received, boost::system::error_code& error) {
+  std::size_t used = 0;
+  while (used < received.size() && !parser.is_done() && !error) {
+    const bool had_header = parser.is_header_done();
+    const std::size_t more =
+        parser.put(boost::asio::buffer(received.data() + used, received.size() - used), error);
+    used += more;
+    // The parser stops behind the header, so that Expect can be answered before the body is waited for.
+    if (more == 0 || had_header != parser.is_header_done()) break;
+  }
+  received.erase(0, used);
+  if (error == http::error::need_more) error = {};
+  return !parser.is_done();
+}
+
+}  // namespace
+
+Connection::Arrival Connection::receive() {
+  const auto patience = std::chrono::duration_cast<std::chrono::milliseconds>(manner_.patience);
+  std::array<pollfd, 2> waited = {pollfd{stop_event_, POLLIN, 0}, pollfd{socket_.get(), POLLIN, 0}};
+  const int ready = poll_again(waited, static_cast<int>(patience.count()));
+  if (ready <= 0) return Arrival::Late;
+  if (waited[0].revents != 0) return Arrival::Stopped;
+  std::array<char, kPiece> piece;
+  const ssize_t got = ::recv(socket_.get(), piece.data(), piece.size(), 0);
+  if (got <= 0) return Arrival::Closed;
+  received_.append(piece.data(), static_cast<std::size_t>(got));
+  return Arrival::Bytes;
+}
+
+std::optional<Request> Connection::read_request() {
+  Parser parser;
+  parser.eager(false);
+  parser.header_limit(kMostHeader);
+  parser.body_limit(manner_.most_body);
+  Request request;
+  request.local_address = local_address();
+  boost::system::error_code error;
+  bool begun = !received_.empty();
+  bool header_taken = false;
+  while (feed(parser, received_, error)) {
+    if (parser.is_header_done() && !header_taken && !error) {
+      header_taken = true;
+      request.at = Clock::now();
+      take_header(parser, request);
+      parser.eager(true);
+      if (request.expects_continue && manner_.answers_expect && !write("HTTP/1.1 100 Continue\r\n\r\n"))
+        break;
+      continue;
+    }
+    if (error) break;
+    const Arrival arrival = receive();
+    begun = begun || arrival == Arrival::Bytes;
+    if (arrival == Arrival::Bytes) continue;
+    if (!begun || arrival == Arrival::Stopped) return std::nullopt;
+    if (!header_taken) request.at = Clock::now();
+    request.fault = arrival == Arrival::Late ? HttpFault{408, "The request did not come to its end"}
+                                             : HttpFault{0, "The connection was closed within a request"};
+    return request;
+  }
+  if (!header_taken) {
+    request.at = Clock::now();
+    if (!error) take_header(parser, request);
+  }
+  if (error) request.fault = fault_of(error);
+  request.body = std::move(parser.get().body());
+  return request;
+}
+
+bool Connection::write(const std::string& bytes) {
+  constexpr int patience_ms = 10'000;
+  std::size_t written = 0;
+  while (written < bytes.size()) {
+    std::array<pollfd, 2> waited = {pollfd{stop_event_, POLLIN, 0}, pollfd{socket_.get(), POLLOUT, 0}};
+    if (poll_again(waited, patience_ms) <= 0 || waited[0].revents != 0) return false;
+    const ssize_t sent =
+        ::send(socket_.get(), bytes.data() + written, bytes.size() - written, MSG_NOSIGNAL | MSG_DONTWAIT);
+    if (sent < 0 && (errno == EAGAIN || errno == EINTR)) continue;
+    if (sent <= 0) return false;
+    written += static_cast<std::size_t>(sent);
+  }
+  return true;
+}
+
+void Connection::wait_for_stop() const {
+  std::array<pollfd, 1> waited = {pollfd{stop_event_, POLLIN, 0}};
+  poll_again(waited, -1);
+}
+
+/// Reads on for a moment after the last answer: closing with bytes unread would send a reset, and the client
+/// might never read what it was answered.
+void Connection::close_gently() {
+  constexpr int patience_ms = 500;
+  ::shutdown(socket_.get(), SHUT_WR);
+  const auto until = Clock::now() + std::chrono::milliseconds(patience_ms);
+  std::array<char, kPiece> piece;
+  while (Clock::now() < until) {
+    std::array<pollfd, 2> waited = {pollfd{stop_event_, POLLIN, 0}, pollfd{socket_.get(), POLLIN, 0}};
+    if (poll_again(waited, patience_ms) <= 0 || waited[0].revents != 0) return;
+    if (::recv(socket_.get(), piece.data(), piece.size(), 0) <= 0) return;
+  }
+}
+
+std::string Connection::local_address() const {
+  const auto address = local_address_of(socket_.get());
+  return address ? address->text() : "";
+}
+
+Connection::End Connection::serve() {
+  while (auto request = read_request()) {
+    Outcome outcome = decide_(*request);
+    if (!request->keep_alive && outcome.after == After::KeepOpen) outcome.after = After::Close;
+    switch (outcome.kind) {
+      case Outcome::Kind::Dies:
+        return End::EndpointDies;
+      case Outcome::Kind::Hangs:
+        wait_for_stop();
+        return End::Closed;
+      case Outcome::Kind::Answered:
+        break;
+    }
+    if (outcome.answer.status == 0) return End::Closed;
+    if (!write(bytes_of(outcome, request->method == "HEAD"))) return End::Closed;
+    if (outcome.after == After::KeepOpen) continue;
+    close_gently();
+    return End::Closed;
+  }
+  return End::Closed;
+}
+
+}  // namespace adit::rehearsal

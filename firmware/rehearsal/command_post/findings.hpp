@@ -1,0 +1,68 @@
+#pragma once
+
+#include <cstddef>
+#include <string>
+#include <vector>
+
+namespace adit::rehearsal {
+
+/// Which Command Post is played: the ICD's, to the letter, or the measured test servers.
+enum class Manner { Strict, AsMeasured };
+
+/// What the measured mapping server does about something that a strict one refuses.
+enum class Measured { Takes, Refuses, Dies, Hangs };
+
+/// One thing found in a message: a row of the table 'what the ICD says, what the server does'.
+struct Finding {
+  std::string sentence;    // names the field by its path
+  int status = 422;        // of the refusal, in either manner
+  bool breaks_icd = true;  // else only the measured server minds
+  Measured measured = Measured::Refuses;
+};
+
+/// What was found in one message, in the order of reading. Only the first kMost are kept.
+class Findings {
+ public:
+  static constexpr std::size_t kMost = 20;
+  static constexpr std::size_t kLongest = 400;
+
+  /// The ICD forbids it.
+  void breaks(std::string sentence, Measured measured = Measured::Refuses, int status = 422) {
+    add({std::move(sentence), status, true, measured});
+  }
+  /// The ICD allows it, the measured server does not.
+  void displeases(std::string sentence) { add({std::move(sentence), 422, false, Measured::Refuses}); }
+
+  const std::vector<Finding>& all() const { return all_; }
+
+  /// The first that a Command Post of that manner does not take; null: it takes the message.
+  const Finding* decisive(Manner manner) const {
+    for (const Finding& finding : all_) {
+      if (manner == Manner::Strict ? finding.breaks_icd : finding.measured != Measured::Takes)
+        return &finding;
+    }
+    return nullptr;
+  }
+
+  /// The sentences of those that break the ICD.
+  std::vector<std::string> violations() const {
+    std::vector<std::string> sentences;
+    for (const Finding& finding : all_) {
+      if (finding.breaks_icd) sentences.push_back(finding.sentence);
+    }
+    return sentences;
+  }
+
+ private:
+  void add(Finding finding) {
+    if (finding.sentence.size() > kLongest) finding.sentence.resize(kLongest);  // it may quote the sender
+    // A finding that decides must not be lost behind many that do not.
+    if (all_.size() < kMost ||
+        (finding.measured != Measured::Takes && decisive(Manner::AsMeasured) == nullptr)) {
+      all_.push_back(std::move(finding));
+    }
+  }
+  std::vector<Finding> all_;
+};
+
+}  // namespace adit::rehearsal

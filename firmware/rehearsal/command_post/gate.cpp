@@ -1,0 +1,42 @@
+#include "rehearsal/command_post/gate.hpp"
+
+#include <algorithm>
+
+#include "rehearsal/command_post/judgement.hpp"
+
+namespace adit::rehearsal {
+
+void check_entry(const Request& request, std::span<const Function> functions, const std::string& token,
+                 Findings& findings) {
+  const std::string_view path = path_of(request.target);
+  const bool known = std::ranges::any_of(functions, [&](const Function& function) {
+    return function.method == request.method && function.uri == path;
+  });
+  if (!known) {
+    findings.breaks("URI is not recognized: " + request.method + " " + std::string(path.substr(0, 200)),
+                    Measured::Refuses, 404);
+  } else if (!request.authorization) {
+    findings.breaks("No authentication token was provided", Measured::Refuses, 401);
+  } else if (*request.authorization != "Bearer " + token) {
+    findings.breaks("Authentication token does not match expected token for this run", Measured::Refuses,
+                    401);
+  }
+}
+
+void check_content(const Request& request, bool cbor_too, Findings& findings) {
+  if (request.content_encoding) {
+    findings.breaks("Content-Encoding: the ICD has none for a whole body", Measured::Takes);
+  }
+  const bool known =
+      request.content_type == "application/json" || (cbor_too && request.content_type == "application/cbor");
+  if (!known) {
+    findings.breaks(std::string("Content-Type: expected application/json") +
+                    (cbor_too ? " or application/cbor" : "") + ", nothing more");
+  }
+}
+
+Outcome refused(int status, std::string_view sentence) {
+  return answered(status, Json(sentence));
+}
+
+}  // namespace adit::rehearsal

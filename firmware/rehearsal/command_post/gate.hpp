@@ -1,0 +1,43 @@
+#pragma once
+
+#include <optional>
+#include <span>
+#include <string_view>
+
+#include "rehearsal/command_post/findings.hpp"
+#include "rehearsal/command_post/http.hpp"
+#include "rehearsal/command_post/json.hpp"
+
+namespace adit::rehearsal {
+
+inline constexpr std::string_view kStatusUri = "/api/status";
+inline constexpr std::string_view kReportsUri = "/api/artifact_reports";
+inline constexpr std::string_view kMapUri = "/map/update";
+inline constexpr std::string_view kStateUri = "/state/update";
+inline constexpr std::string_view kMarkersUri = "/markers/update";
+
+/// A function of an endpoint: the method and the URI of one of ICD 5.1 to 6.6.
+struct Function {
+  std::string_view method;
+  std::string_view uri;
+};
+
+inline constexpr Function kScoringFunctions[] = {{"GET", kStatusUri}, {"POST", kReportsUri}};
+inline constexpr Function kMappingFunctions[] = {
+    {"POST", kMapUri}, {"POST", kStateUri}, {"POST", kMarkersUri}};
+
+/// What a strict Command Post checks before it reads a body: that the URI is known (404), that the token is
+/// right (401). The findings hold at most one, which decides.
+void check_entry(const Request& request, std::span<const Function> functions, const std::string& token,
+                 Findings& findings);
+
+/// That the body is in a format that the ICD has for this endpoint, and not compressed as a whole.
+void check_content(const Request& request, bool cbor_too, Findings& findings);
+
+/// A refusal as a JSON string (ICD 4.1).
+Outcome refused(int status, std::string_view sentence);
+inline Outcome refused(const Finding& finding) {
+  return refused(finding.status, finding.sentence);
+}
+
+}  // namespace adit::rehearsal

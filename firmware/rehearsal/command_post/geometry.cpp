@@ -1,0 +1,62 @@
+#include "rehearsal/command_post/geometry.hpp"
+
+namespace adit::rehearsal {
+namespace {
+
+std::optional<double> number_in(const Field& parent, const char* name) {
+  const auto field = parent.member(name);
+  return field ? field->number() : std::nullopt;
+}
+
+std::optional<Quaternion> read_quaternion(const Field& quaternion) {
+  const auto x = number_in(quaternion, "x");
+  const auto y = number_in(quaternion, "y");
+  const auto z = number_in(quaternion, "z");
+  const auto w = number_in(quaternion, "w");
+  if (!x || !y || !z || !w) return std::nullopt;
+  if (*x == 0 && *y == 0 && *z == 0 && *w == 0) {
+    quaternion.breaks("expected a rotation, got a quaternion of all zeros", Measured::Takes);
+  }
+  return Quaternion{*x, *y, *z, *w};
+}
+
+}  // namespace
+
+std::optional<Point> read_point(const Field& point) {
+  const auto x = number_in(point, "x");
+  const auto y = number_in(point, "y");
+  const auto z = number_in(point, "z");
+  if (!x || !y || !z) return std::nullopt;
+  return Point{*x, *y, *z};
+}
+
+std::optional<Pose> read_pose(const Field& pose) {
+  const auto position = pose.member("position");
+  const auto orientation = pose.member("orientation");
+  if (!position || !orientation) return std::nullopt;
+  const auto point = read_point(*position);
+  const auto quaternion = read_quaternion(*orientation);
+  if (!point || !quaternion) return std::nullopt;
+  return Pose{*point, *quaternion};
+}
+
+void read_header(const Field& message, std::vector<Stamp>& stamps) {
+  const auto header = message.optional_member("header");
+  if (!header || !header->is_object()) return;
+  if (const auto frame_id = header->optional_member("frame_id")) {
+    const auto text = frame_id->text();
+    // The measured server writes "darpa" over any other, saying nothing.
+    if (text && *text != "darpa") frame_id->breaks("expected \"darpa\" (ICD 6.1)", Measured::Takes);
+  }
+  if (const auto stamp = header->optional_member("stamp")) {
+    const auto seconds = stamp->number();
+    if (!seconds) return;
+    if (*seconds < 0) {
+      stamp->breaks("expected seconds from 0");
+    } else {
+      stamps.push_back({*seconds, stamp->path()});
+    }
+  }
+}
+
+}  // namespace adit::rehearsal

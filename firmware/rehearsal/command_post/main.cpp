@@ -1,0 +1,134 @@
+// adit-rehearsal: a Command Post to rehearse against.
+
+#include <unistd.h>
+
+#include <array>
+#include <csignal>
+#include <cstdio>
+#include <cstdlib>
+#include <memory>
+#include <span>
+
+#include "rehearsal/command_post/command_post.hpp"
+#include "rehearsal/command_post/control.hpp"
+#include "rehearsal/command_post/options.hpp"
+#include "rehearsal/command_post/server.hpp"
+
+namespace adit::rehearsal {
+namespace {
+
+constexpr int kWrongUse = 2;
+constexpr int kKilled = 3;  // the mapping server as measured died of a message
+
+int complain(const std::string& why) {
+  std::fprintf(stderr, "adit-rehearsal: %s\n", why.c_str());
+  return kWrongUse;
+}
+
+std::expected<std::unique_ptr<CommandPost>, std::string> build(const Options& options) {
+  const auto secrets = read_secrets(options.secrets);
+  if (!secrets) return std::unexpected(secrets.error());
+  std::vector<Artifact> artifacts;
+  if (!options.artifacts.empty()) {
+    auto read = read_artifacts(options.artifacts);
+    if (!read) return std::unexpected(read.error());
+    artifacts = std::move(*read);
+  }
+  std::unique_ptr<Transcript> transcript;
+  if (!options.transcript.empty()) {
+    auto opened = Transcript::open(options.transcript, options.transcript_bytes);
+    if (!opened) return std::unexpected(opened.error());
+    transcript = std::move(*opened);
+  }
+  return std::make_unique<CommandPost>(options, *secrets, std::move(artifacts), std::move(transcript));
+}
+
+/// The signals that main waits for; blocked before the first thread starts.
+sigset_t awaited_signals() {
+  sigset_t signals;
+  sigemptyset(&signals);
+  for (const int signal : {SIGINT, SIGTERM, SIGUSR1}) sigaddset(&signals, signal);
+  pthread_sigmask(SIG_BLOCK, &signals, nullptr);
+  return signals;
+}
+
+void print(const std::string& text) {
+  std::fputs(text.c_str(), stdout);
+  std::fflush(stdout);
+}
+
+struct Servers {
+  std::unique_ptr<Server> scoring, mapping, control;
+};
+
+std::expected<Servers, std::string> listen(const Options& options, CommandPost& post) {
+  const bool strict = options.manner == Manner::Strict;
+  Servers servers;
+  auto scoring = Server::listen(options.scoring, {.most_body = std::size_t{1} << 20},
+                                [&post](const Request& request) { return post.scoring(request); });
+  if (!scoring) return std::unexpected("scoring: " + scoring.error());
+  servers.scoring = std::move(*scoring);
+  auto mapping = Server::listen(options.mapping, {.answers_expect = strict},
+                                [&post](const Request& request) { return post.mapping(request); });
+  if (!mapping) return std::unexpected("mapping: " + mapping.error());
+  servers.mapping = std::move(*mapping);
+  if (!options.control) return servers;
+  auto controlled = Server::listen(*options.control, {.most_body = std::size_t{1} << 20},
+                                   [&post](const Request& request) { return control(post, request); });
+  if (!controlled) return std::unexpected("control: " + controlled.error());
+  servers.control = std::move(*controlled);
+  return servers;
+}
+
+std::string first_line(const Servers& servers) {
+  std::string line = "adit-rehearsal: scoring " + servers.scoring->address().text() + " mapping " +
+                     servers.mapping->address().text();
+  if (servers.control) line += " control " + servers.control->address().text();
+  return line + "\n";
+}
+
+/// Whoever is in the middle of a large map has this long; then the process ends all the same.
+bool stop_all(const Servers& servers) {
+  constexpr std::chrono::milliseconds patience{250};
+  const std::array<Server*, 3> all = {servers.scoring.get(), servers.mapping.get(), servers.control.get()};
+  for (Server* const server : all) {
+    if (server != nullptr) server->stop();
+  }
+  bool drained = true;
+  for (Server* const server : all) drained = (server == nullptr || server->drained(patience)) && drained;
+  return drained;
+}
+
+int run(const Options& options) {
+  const sigset_t signals = awaited_signals();
+  auto post = build(options);
+  if (!post) return complain(post.error());
+  const auto servers = listen(options, **post);
+  if (!servers) return complain(servers.error());
+  print(first_line(*servers));
+  for (int signal = SIGUSR1; signal == SIGUSR1;) {
+    if (sigwait(&signals, &signal) != 0) break;
+    if (signal == SIGUSR1) print((*post)->summary());
+  }
+  const bool drained = stop_all(*servers);
+  print((*post)->summary());
+  const int code = (*post)->killed_by().empty() ? EXIT_SUCCESS : kKilled;
+  if (!drained) std::_Exit(code);  // a thread still works on what they share
+  return code;
+}
+
+}  // namespace
+}  // namespace adit::rehearsal
+
+int main(int count, char** arguments) {
+  using namespace adit::rehearsal;
+  auto options =
+      read_options(std::span<const char* const>(arguments, static_cast<std::size_t>(count)).subspan(1));
+  if (!options) return complain(options.error() + "\n\n" + kUsage);
+  if (options->help) {
+    print(kUsage);
+    return EXIT_SUCCESS;
+  }
+  options->verbose = options->verbose || ::isatty(STDOUT_FILENO) == 1;
+  return run(*options);
+}

@@ -1,0 +1,50 @@
+#include "rehearsal/command_post/mapping.hpp"
+
+#include "rehearsal/command_post/gate.hpp"
+
+namespace adit::rehearsal {
+
+bool StrictMapping::too_many(const std::string& uri, Clock::time_point at) {
+  const std::lock_guard lock(mutex_);
+  RateLimit& limit = limits_.try_emplace(uri, hz_).first->second;
+  if (limit.too_soon(at)) return true;
+  limit.count(at);
+  return false;
+}
+
+Judgement StrictMapping::judge(const Request& request) {
+  Judgement judgement;
+  check_entry(request, kMappingFunctions, token_, judgement.findings);
+  const Finding* const finding = judgement.findings.decisive(Manner::Strict);
+  if (finding == nullptr || finding->status != 404) judgement.uri = path_of(request.target);
+  if (finding != nullptr) {
+    judgement.outcome = refused(*finding);
+  } else if (too_many(judgement.uri, request.at)) {
+    judgement.outcome = refused(429, "Too many requests: limited to approximately 1 per second");
+  } else {
+    judge_body(request, judgement);
+  }
+  return judgement;
+}
+
+void StrictMapping::judge_body(const Request& request, Judgement& judgement) {
+  Findings& findings = judgement.findings;
+  check_content(request, true, findings);
+  std::optional<MappingMessage> message;
+  if (findings.decisive(Manner::Strict) == nullptr) {
+    const Format format = request.content_type == "application/cbor" ? Format::CborBytes : Format::JsonText;
+    message = read_mapping(request.body, format, judgement);
+  }
+  if (message && findings.decisive(Manner::Strict) == nullptr) {
+    stamps_.check(judgement.uri, message->stamps, false, findings);
+  }
+  if (const Finding* const finding = findings.decisive(Manner::Strict)) {
+    judgement.outcome = refused(*finding);
+  } else {
+    judgement.outcome = answered(200, Json(nullptr));
+    judgement.accepted = std::move(message->parts);
+    judgement.map = std::move(message->map);
+  }
+}
+
+}  // namespace adit::rehearsal

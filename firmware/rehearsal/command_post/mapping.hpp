@@ -1,0 +1,58 @@
+#pragma once
+
+#include <map>
+#include <mutex>
+#include <string>
+
+#include "rehearsal/command_post/judgement.hpp"
+#include "rehearsal/command_post/rate_limit.hpp"
+#include "rehearsal/command_post/stamp_order.hpp"
+
+namespace adit::rehearsal {
+
+/// The mapping endpoint of the ICD's section 6, to the letter. At most `hz` requests a second for each URI.
+class StrictMapping : public Endpoint {
+ public:
+  StrictMapping(std::string token, double hz) : token_(std::move(token)), hz_(hz) {}
+  Judgement judge(const Request& request) override;
+
+ private:
+  bool too_many(const std::string& uri, Clock::time_point at);
+  void judge_body(const Request& request, Judgement& judgement);
+
+  const std::string token_;
+  const double hz_;
+  StampOrder stamps_;
+  std::mutex mutex_;
+  std::map<std::string, RateLimit> limits_;
+};
+
+/// The public test server for mapping, as measured: see each rule in its source. At most `hz` clouds a
+/// second, of all robots together.
+class MeasuredMapping : public Endpoint {
+ public:
+  MeasuredMapping(std::string token, double hz) : token_(std::move(token)), cloud_limit_(hz) {}
+  Judgement judge(const Request& request) override;
+
+ private:
+  void judge_body(const Request& request, Judgement& judgement);
+  bool cloud_too_soon(Clock::time_point at);
+
+  const std::string token_;
+  StampOrder stamps_;
+  std::mutex mutex_;
+  RateLimit cloud_limit_;
+};
+
+/// A body for one of the mapping URIs, read.
+struct MappingMessage {
+  std::vector<Stamp> stamps;
+  std::vector<Accepted> parts;
+  std::optional<MapMessage> map;
+};
+
+/// Reads the body of `judgement.uri` and writes down what is found. Leaves the document in judgement.message,
+/// a map's data in it described, not kept. Nothing where there is no message.
+std::optional<MappingMessage> read_mapping(const std::string& body, Format format, Judgement& judgement);
+
+}  // namespace adit::rehearsal

@@ -1,0 +1,85 @@
+#include <cstdint>
+
+#include "rehearsal/command_post/messages.hpp"
+
+namespace adit::rehearsal {
+namespace {
+
+constexpr std::int64_t kLastType = 11;  // TRIANGLE_LIST of visualization_msgs/Marker
+
+bool read_color(const Field& color) {
+  for (const char* const name : {"r", "g", "b", "a"}) {
+    const auto component = color.member(name);
+    const auto value = component ? component->number() : std::nullopt;
+    if (!value) return false;
+    if (*value < 0 || *value > 1) component->breaks("expected 0 to 1 (ICD 6.6)", Measured::Takes);
+  }
+  return true;
+}
+
+/// A duration is a number of seconds or, as ROS writes it, {secs, nsecs}. The measured server reads neither.
+void check_lifetime(const Field& lifetime) {
+  const Json& value = lifetime.value();
+  if (value.is_object()) {
+    for (const char* const name : {"secs", "nsecs"}) {
+      const auto part = lifetime.optional_member(name);
+      if (!part || !part->value().is_number_integer() || part->value().get<double>() < 0) {
+        lifetime.breaks("expected integers secs and nsecs", Measured::Takes);
+        return;
+      }
+    }
+  } else if (!value.is_number() || !(value.get<double>() >= 0)) {
+    lifetime.breaks("expected seconds from 0", Measured::Takes);
+  }
+}
+
+/// ns and id, optional by the ICD; the measured server wants both.
+std::optional<std::string> read_identity(const Field& marker) {
+  const auto ns = marker.optional_member("ns");
+  const auto id = marker.optional_member("id");
+  if (!ns) marker.findings().displeases("Missing field '" + marker.path() + ".ns'");
+  if (!id) marker.findings().displeases("Missing field '" + marker.path() + ".id'");
+  if (id && !id->integer(INT32_MIN, INT32_MAX)) return std::nullopt;
+  return ns ? ns->text() : std::string();
+}
+
+/// Members that the ICD wants in each marker and the measured server does not miss.
+void check_looks(const Field& marker) {
+  if (const auto scale = marker.member("scale", Measured::Takes)) read_point(*scale);
+  if (const auto color = marker.member("color", Measured::Takes)) read_color(*color);
+  if (const auto lifetime = marker.optional_member("lifetime")) check_lifetime(*lifetime);
+  if (const auto text = marker.optional_member("text")) text->text();
+}
+
+bool read_marker(const Field& marker, MarkersMessage& message) {
+  if (!marker.is_object()) return false;
+  read_header(marker, message.stamps);
+  const auto ns = read_identity(marker);
+  const auto type = marker.member("type");
+  const auto action = marker.member("action");
+  const auto pose = marker.member("pose");
+  if (!ns || !type || !action || !pose) return false;
+  if (!type->integer(0, kLastType)) return false;
+  const auto deed = action->integer(0, 3);
+  if (!deed || !read_pose(*pose)) return false;
+  if (*deed == 1) action->breaks("expected 0, 2 or 3 (ICD 6.6)", Measured::Takes);
+  check_looks(marker);
+  message.namespaces.push_back(*ns);
+  return true;
+}
+
+}  // namespace
+
+std::optional<MarkersMessage> read_markers(const Json& document, Findings& findings) {
+  const Field body(document, "", findings);
+  const auto markers = body.member("markers");
+  const auto elements = markers ? markers->elements() : std::nullopt;
+  if (!elements) return std::nullopt;
+  MarkersMessage message;
+  for (const Field& marker : *elements) {
+    if (!read_marker(marker, message)) return std::nullopt;
+  }
+  return message;
+}
+
+}  // namespace adit::rehearsal

@@ -1,0 +1,37 @@
+#pragma once
+
+#include <cstdint>
+#include <expected>
+#include <optional>
+#include <span>
+#include <string>
+
+#include "rehearsal/command_post/address.hpp"
+#include "rehearsal/command_post/findings.hpp"
+#include "rehearsal/command_post/run.hpp"
+
+namespace adit::rehearsal {
+
+/// What the command line says.
+struct Options {
+  Address scoring;
+  Address mapping;
+  std::optional<Address> control;
+  std::string secrets;
+  std::string artifacts;   // "": none
+  std::string transcript;  // "": none
+  std::uint64_t transcript_bytes = std::uint64_t{2048} << 20;
+  Manner manner = Manner::Strict;
+  RunPlan run;
+  std::optional<double> rate;  // Hz; absent: as the manner has it
+  bool not_started = false;
+  bool verbose = false;
+  bool help = false;
+};
+
+extern const char* const kUsage;
+
+/// `arguments` without the program's name. An error is a sentence for the terminal.
+std::expected<Options, std::string> read_options(std::span<const char* const> arguments);
+
+}  // namespace adit::rehearsal

@@ -1,0 +1,56 @@
+#pragma once
+
+#include <cstdint>
+#include <deque>
+#include <map>
+#include <mutex>
+#include <string>
+#include <tuple>
+#include <vector>
+
+#include "rehearsal/command_post/judgement.hpp"
+#include "rehearsal/command_post/run.hpp"
+
+namespace adit::rehearsal {
+
+/// What a run came to: counts, reports, violations of the ICD. Bounded, whatever a peer sends. Safe for use
+/// by several threads.
+class Record {
+ public:
+  explicit Record(Manner manner) : manner_(manner) {}
+
+  void note(std::uint64_t number, const Judgement& judgement);
+
+  /// Why the measured mapping server died, or "".
+  std::string killed_by() const;
+
+  /// The record as GET /record gives it.
+  OrderedJson json(const RunPlan& plan, const Run::Standing& standing) const;
+
+  /// The same for a person to read.
+  std::string summary(const RunPlan& plan, const Run::Standing& standing) const;
+
+ private:
+  using UriAndStatus = std::pair<std::string, int>;                // status 0: not answered
+  using Part = std::tuple<std::string, std::string, std::string>;  // uri, kind, robot
+
+  struct Violation {
+    std::uint64_t number = 0;
+    std::string uri;
+    std::string sentence;
+  };
+
+  void note_part(const std::string& uri, const Accepted& part);
+
+  const Manner manner_;
+  mutable std::mutex mutex_;
+  std::map<UriAndStatus, std::uint64_t> requests_;
+  std::map<Part, std::uint64_t> accepted_;
+  std::deque<OrderedJson> reports_;
+  std::uint64_t report_count_ = 0;
+  std::vector<Violation> violations_;
+  std::uint64_t violation_count_ = 0;
+  std::string killed_by_;
+};
+
+}  // namespace adit::rehearsal

@@ -1,0 +1,96 @@
+#include "rehearsal/command_post/run.hpp"
+
+#include <cmath>
+
+namespace adit::rehearsal {
+
+Run::State Run::state_at(Clock::time_point now) const {
+  if (ended_) return State::Ended;
+  if (!started_) return State::NotStarted;
+  if (now - *started_ > plan_.length) return State::Ended;
+  return stopped_ ? State::AdminStop : State::Running;
+}
+
+double Run::clock_at(Clock::time_point now) const {
+  if (!started_) return 0;
+  const double seconds = std::chrono::duration<double>(now - *started_).count();
+  return std::round(seconds * 1000) / 1000;
+}
+
+bool Run::start(Clock::time_point now) {
+  const std::lock_guard lock(mutex_);
+  if (state_at(now) != State::NotStarted) return false;
+  started_ = now;
+  return true;
+}
+
+bool Run::admin_stop(Clock::time_point now) {
+  const std::lock_guard lock(mutex_);
+  if (state_at(now) != State::Running) return false;
+  stopped_ = true;
+  return true;
+}
+
+bool Run::resume(Clock::time_point now) {
+  const std::lock_guard lock(mutex_);
+  if (state_at(now) != State::AdminStop) return false;
+  stopped_ = false;
+  return true;
+}
+
+bool Run::end(Clock::time_point now) {
+  const std::lock_guard lock(mutex_);
+  if (state_at(now) == State::Ended) return false;
+  ended_ = true;
+  return true;
+}
+
+Run::Standing Run::standing(Clock::time_point now) const {
+  const std::lock_guard lock(mutex_);
+  Standing standing{"running", clock_at(now), score_, plan_.reports - used_};
+  switch (state_at(now)) {
+    case State::NotStarted:
+      standing.state = "not started";
+      break;
+    case State::Running:
+      break;
+    case State::AdminStop:
+      standing.state = "admin stop";
+      break;
+    case State::Ended:
+      standing.state = "ended";
+      break;
+  }
+  return standing;
+}
+
+Run::Ruling Run::submit(const std::string& type, const std::optional<Point>& position,
+                        Clock::time_point now) {
+  const std::lock_guard lock(mutex_);
+  Ruling ruling{++last_id_, clock_at(now), "scored", 0};
+  switch (state_at(now)) {
+    case State::NotStarted:
+      ruling.status = "run not started";
+      return ruling;
+    case State::Ended:
+      ruling.status = "time limit exceeded";
+      return ruling;
+    case State::AdminStop:
+      ruling.status = "admin stop";
+      return ruling;
+    case State::Running:
+      break;
+  }
+  if (used_ >= plan_.reports) {
+    ruling.status = "report limit exceeded";
+    return ruling;
+  }
+  ++used_;
+  if (position && claim(artifacts_, type, *position)) {
+    ruling.score_change = 1;
+    ++score_;
+  }
+  return ruling;
+}
+
+}  // namespace adit::rehearsal

@@ -1,0 +1,72 @@
+#pragma once
+
+#include <chrono>
+#include <cstdint>
+#include <mutex>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "rehearsal/command_post/artifacts.hpp"
+#include "rehearsal/command_post/http.hpp"
+
+namespace adit::rehearsal {
+
+struct RunPlan {
+  std::string team = "adit";
+  std::string id = "1";
+  std::chrono::duration<double> length{3600};
+  std::int64_t reports = 45;  // the allotment
+};
+
+/// One run: its clock, its score and what becomes of each report (ICD 5). Safe for use by several threads.
+class Run {
+ public:
+  struct Standing {
+    std::string state;  // "not started", "running", "admin stop", "ended"
+    double clock = 0;   // seconds since the start; goes on after the end
+    std::int64_t score = 0;
+    std::int64_t remaining_reports = 0;
+  };
+
+  struct Ruling {
+    std::int64_t id = 0;
+    double clock = 0;
+    std::string status;  // report_status, one of ICD 5.2's
+    std::int64_t score_change = 0;
+  };
+
+  Run(RunPlan plan, std::vector<Artifact> artifacts)
+      : plan_(std::move(plan)), artifacts_(std::move(artifacts)) {}
+
+  const RunPlan& plan() const { return plan_; }
+
+  /// Each gives false where the run's state does not allow it.
+  bool start(Clock::time_point now);
+  bool admin_stop(Clock::time_point now);
+  bool resume(Clock::time_point now);
+  bool end(Clock::time_point now);
+
+  Standing standing(Clock::time_point now) const;
+
+  /// Rules on a report, and takes one of the allotment where it is scored. Without a position (the measured
+  /// server takes coordinates that are no numbers) it scores nothing.
+  Ruling submit(const std::string& type, const std::optional<Point>& position, Clock::time_point now);
+
+ private:
+  enum class State { NotStarted, Running, AdminStop, Ended };
+  State state_at(Clock::time_point now) const;
+  double clock_at(Clock::time_point now) const;
+
+  const RunPlan plan_;
+  mutable std::mutex mutex_;
+  std::vector<Artifact> artifacts_;
+  std::optional<Clock::time_point> started_;
+  bool stopped_ = false;
+  bool ended_ = false;
+  std::int64_t score_ = 0;
+  std::int64_t used_ = 0;
+  std::int64_t last_id_ = 0;
+};
+
+}  // namespace adit::rehearsal

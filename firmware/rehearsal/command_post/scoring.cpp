@@ -1,0 +1,127 @@
+#include "rehearsal/command_post/scoring.hpp"
+
+#include <algorithm>
+#include <cstdio>
+#include <ctime>
+
+#include "rehearsal/command_post/document.hpp"
+#include "rehearsal/command_post/fields.hpp"
+#include "rehearsal/command_post/gate.hpp"
+
+namespace adit::rehearsal {
+namespace {
+
+/// ISO 8601, combined date and time, in UTC.
+std::string date_and_time() {
+  const auto since = std::chrono::system_clock::now().time_since_epoch();
+  const auto micros = std::chrono::duration_cast<std::chrono::microseconds>(since).count();
+  const std::time_t seconds = micros / 1'000'000;
+  std::tm parts{};
+  gmtime_r(&seconds, &parts);
+  char date[32];
+  std::strftime(date, sizeof date, "%Y-%m-%dT%H:%M:%S", &parts);
+  char text[64];
+  std::snprintf(text, sizeof text, "%s.%06d+00:00", date, static_cast<int>(micros % 1'000'000));
+  return text;
+}
+
+/// "current_team is a lowercase string" (ICD 5.1).
+std::string lower(std::string text) {
+  std::ranges::transform(text, text.begin(),
+                         [](char c) { return c >= 'A' && c <= 'Z' ? static_cast<char>(c - 'A' + 'a') : c; });
+  return text;
+}
+
+struct Sent {
+  std::string type;
+  Point position;
+};
+
+std::optional<Sent> read_report(const Json& document, Findings& findings) {
+  const Field body(document, "", findings);
+  const auto position = read_point(body);
+  const auto type = body.member("type");
+  const auto text = type ? type->text() : std::nullopt;
+  if (text && !is_artifact_type(*text)) type->breaks("no artifact type of the final event (ICD 5.2)");
+  if (!position || !text) return std::nullopt;
+  return Sent{*text, *position};
+}
+
+}  // namespace
+
+OrderedJson status_body(const Run& run, Clock::time_point now) {
+  const Run::Standing standing = run.standing(now);
+  return {{"score", standing.score},
+          {"run_clock", standing.clock},
+          {"remaining_reports", standing.remaining_reports},
+          {"current_team", lower(run.plan().team)}};
+}
+
+OrderedJson report_body(const Run& run, const Run::Ruling& ruling, const Json& sent,
+                        const std::string& authority) {
+  const std::string path = std::string(kReportsUri) + "/" + std::to_string(ruling.id);
+  return {{"url", "http://" + authority + path},
+          {"id", ruling.id},
+          {"x", sent["x"]},
+          {"y", sent["y"]},
+          {"z", sent["z"]},
+          {"type", sent["type"]},
+          {"submitted_datetime", date_and_time()},
+          {"run_clock", ruling.clock},
+          {"team", lower(run.plan().team)},
+          {"run", run.plan().id},
+          {"report_status", ruling.status},
+          {"score_change", ruling.score_change}};
+}
+
+StrictScoring::StrictScoring(std::string token, double hz, Run& run)
+    : token_(std::move(token)), run_(run), status_limit_(hz), report_limit_(hz) {}
+
+bool StrictScoring::too_many(const Request& request) {
+  const std::lock_guard lock(mutex_);
+  RateLimit& limit = path_of(request.target) == kStatusUri ? status_limit_ : report_limit_;
+  if (limit.too_soon(request.at)) return true;
+  limit.count(request.at);
+  return false;
+}
+
+Judgement StrictScoring::judge(const Request& request) {
+  Judgement judgement;
+  check_entry(request, kScoringFunctions, token_, judgement.findings);
+  const Finding* const finding = judgement.findings.decisive(Manner::Strict);
+  if (finding == nullptr || finding->status != 404) judgement.uri = path_of(request.target);
+  if (finding != nullptr) {
+    judgement.outcome = refused(*finding);
+  } else if (too_many(request)) {
+    judgement.outcome = refused(429, "Too many requests: limited to approximately 1 per second");
+  } else if (judgement.uri == kStatusUri) {
+    judgement.outcome = answered(200, status_body(run_, Clock::now()));
+  } else {
+    judge_report(request, judgement);
+  }
+  return judgement;
+}
+
+void StrictScoring::judge_report(const Request& request, Judgement& judgement) {
+  Findings& findings = judgement.findings;
+  check_content(request, false, findings);
+  auto document = read_document(request.body, Format::JsonText);
+  std::optional<Sent> sent;
+  if (!document) {
+    findings.breaks("JSON parsing failed: " + document.error(), Measured::Refuses, 400);
+  } else {
+    if (document->repeated) findings.breaks("'" + *document->repeated + "' is given twice");
+    sent = read_report(document->value, findings);
+    judgement.message = document->value;
+  }
+  if (const Finding* const finding = findings.decisive(Manner::Strict)) {
+    judgement.outcome = refused(*finding);
+    return;
+  }
+  const Run::Ruling ruling = run_.submit(sent->type, sent->position, Clock::now());
+  judgement.report = report_body(run_, ruling, document->value, request.local_address);
+  judgement.outcome = answered(201, *judgement.report);
+  judgement.accepted.push_back({"report", ""});
+}
+
+}  // namespace adit::rehearsal

@@ -1,0 +1,236 @@
+"""The mapping endpoint of a strict Command Post: ICD 4 and 6."""
+
+import base64
+import gzip
+import struct
+import time
+import unittest
+
+import cbor2
+
+from command_post import (DROP, MAPPING_TOKEN, POINTS, CommandPost, changed, cloud, fields, grid, marker, state)
+
+CBOR = {"Content-Type": "application/cbor"}
+
+
+class Taken(unittest.TestCase):
+    def setUp(self):
+        self.post = self.enterContext(CommandPost())
+
+    def expect_taken(self, path, message):
+        for headers, body in (({}, message), (CBOR, cbor2.dumps(message))):
+            answer = self.post.mapping_request("POST", path, body, headers)
+            self.assertEqual((answer.status_code, answer.text), (200, "null"))
+
+    def test_both_map_types_in_both_formats_with_and_without_compression(self):
+        for make in (grid, cloud):
+            for compression in ("none", "gzip"):
+                with self.subTest(make=make.__name__, compression=compression):
+                    self.assertEqual(self.post.map(make(compression=compression)).status_code, 200)
+                    self.assertEqual(self.post.map_cbor(make(cbor=True, compression=compression)).status_code, 200)
+        taken = {(part["kind"], part["robot"]): part["count"] for part in self.post.record()["accepted"]}
+        self.assertEqual(taken, {("grid", "X1"): 4, ("cloud", "X2"): 4})
+
+    def test_what_the_icd_makes_optional_may_be_absent(self):
+        for body in (changed(grid(), name=DROP), changed(grid(), name=""), changed(grid(), msg__header=DROP),
+                     changed(grid(), msg__compression=DROP), changed(grid(), msg__header__stamp=DROP),
+                     changed(cloud(), msg__origin=DROP), changed(cloud(), msg__is_bigendian=DROP)):
+            self.assertEqual(self.post.map(body).status_code, 200)
+        self.expect_taken("/state/update", changed(state("X1"), header=DROP))
+        for name in ("header", "ns", "id", "lifetime", "text"):
+            self.expect_taken("/markers/update", marker(**{name: DROP}))
+
+    def test_members_that_the_icd_does_not_have_are_let_be(self):
+        body = changed(cloud(), msg__height=1, msg__is_dense=True, msg__header__seq=4)
+        self.assertEqual(self.post.map(body).status_code, 200)
+
+    def test_state_and_markers_of_all_kinds(self):
+        self.expect_taken("/state/update", state("X1", "X2", "A_long_one"))
+        self.expect_taken("/state/update", state())
+        for action in (0, 2, 3):
+            self.expect_taken("/markers/update", marker(action=action))
+        self.expect_taken("/markers/update", marker(lifetime={"secs": 3, "nsecs": 500}))
+        self.expect_taken("/markers/update", {"markers": []})
+        taken = {(part["kind"], part["robot"]): part["count"] for part in self.post.record()["accepted"]}
+        self.assertEqual(taken, {("pose", "X1"): 2, ("pose", "X2"): 2, ("pose", "A_long_one"): 2,
+                                 ("marker", "artifacts"): 8})
+
+    def test_cbor_in_any_of_its_lengths(self):
+        # An indefinite map, a half float, a byte string in two chunks (RFC 8949 3.2, 3.3).
+        body = cbor2.dumps(grid(cbor=True))
+        data = bytes([0, 100, 255, 50, 19, 20])
+        chunked = body.replace(cbor2.dumps(data), b"\x5f" + cbor2.dumps(data[:2]) + cbor2.dumps(data[2:]) + b"\xff")
+        half = chunked.replace(b"\xfb" + struct.pack(">d", 1.0), b"\xf9\x3c\x00")
+        indefinite = b"\xbf" + half[1:] + b"\xff"
+        self.assertEqual(half[:1], b"\xa3")
+        self.assertEqual(self.post.map(indefinite, **CBOR).text, "null")
+
+    def test_equal_stamps_are_no_step_backward(self):
+        for stamp in (5, 5, 5.5):
+            self.assertEqual(self.post.map(changed(grid(), msg__header__stamp=stamp)).status_code, 200)
+
+
+def grid_refusals():
+    info = {f"msg__info__{name}": DROP for name in ("resolution", "width", "height", "origin")}
+    for path in ("type", "msg", "msg__info", "msg__data", *info):
+        yield changed(grid(), **{path: DROP})
+    for changes in ({"type": "Octomap"}, {"type": 5}, {"msg": []}, {"name": "elevenchars"}, {"name": "X 1"},
+                    {"name": None}, {"msg__info__width": 4}, {"msg__info__width": 3.0}, {"msg__info__width": -3},
+                    {"msg__info__width": 2**32}, {"msg__info__width": 0}, {"msg__info__height": "2"},
+                    {"msg__info__resolution": 0}, {"msg__info__resolution": "0.2"},
+                    {"msg__info__origin__orientation__w": 0}, {"msg__info__origin__position__z": DROP},
+                    {"msg__header__frame_id": "map"}, {"msg__header__frame_id": 1}, {"msg__header": 3},
+                    {"msg__header__stamp": -1}, {"msg__header__stamp": {"secs": 1, "nsecs": 2}},
+                    {"msg__compression": "bz2"}, {"msg__compression": True}, {"msg__compression": "gzip"},
+                    {"msg__data": [0, 100, 255, 50, 19, 20]}, {"msg__data": "AGT_MhMU"}, {"msg__data": "AGT/MhMU="},
+                    {"msg__data": " AGT/MhMU"}):
+        yield changed(grid(), **changes)
+    yield grid(cells=bytes([0, 100, 255, 50, 19]))
+    yield grid(cells=bytes([0, 101, 255, 50, 19, 20]))
+    yield grid(cells=bytes(2_000_000), compression="gzip")
+    yield grid(width=2**16, height=2**16)
+    packed = gzip.compress(bytes(6))
+    for data in (packed[:-1], packed + b"\0", packed + packed, packed[:-8] + bytes(8), b"", bytes(6)):
+        yield changed(grid(compression="gzip"), msg__data=base64.b64encode(data).decode())
+
+
+def cloud_refusals():
+    for path in ("msg__fields", "msg__point_step", "msg__data", "msg__fields__0__name", "msg__fields__1__offset"):
+        yield changed(cloud(), **{path: DROP})
+    for changes in ({"msg__point_step": 0}, {"msg__point_step": 11}, {"msg__point_step": -12},
+                    {"msg__point_step": 12.0}, {"msg__fields__2__offset": 9}, {"msg__fields__2__offset": 2**32 - 1},
+                    {"msg__fields__2__count": 2**32 - 1}, {"msg__fields__2__count": 0},
+                    {"msg__fields__0__datatype": 0}, {"msg__fields__0__datatype": 9},
+                    {"msg__fields__0__datatype": 6}, {"msg__fields__0__name": "y"},
+                    {"msg__fields__0__name": "intensity"}, {"msg__fields": []}, {"msg__fields": {}},
+                    {"msg__is_bigendian": 1}, {"msg__origin": None}, {"msg__origin__orientation": DROP}):
+        yield changed(cloud(), **changes)
+    yield cloud(data=POINTS[:-1])
+    mixed = fields()[:2] + [{"name": "z", "offset": 8, "datatype": 8, "count": 1}]
+    yield cloud(schema=mixed, point_step=16, data=bytes(32))
+
+
+def marker_refusals():
+    for name in ("type", "action", "pose", "scale", "color"):
+        yield marker(**{name: DROP})
+    for changes in ({"type": 12}, {"type": -1}, {"type": "2"}, {"action": 1}, {"action": 4}, {"action": 0.0},
+                    {"id": 2**31}, {"id": "7"}, {"ns": 3}, {"color__a": 1.5}, {"color__r": -0.1},
+                    {"color__g": DROP}, {"scale__x": None}, {"pose__position__x": "1"}, {"lifetime": -1},
+                    {"lifetime": "1"}, {"lifetime": {"secs": 1}}, {"text": 4}, {"header__frame_id": "odom"},
+                    {"pose__orientation__w": 0}):
+        yield marker(**changes)
+    yield from ({}, {"markers": {}}, {"markers": [3]}, [])
+
+
+def state_refusals():
+    yield from ({}, [], {"poses": {}}, {"poses": [1]}, state(""), state("elevenchars"), state("a-b"), state(7))
+    for path in ("name", "position", "orientation", "position__x", "orientation__w"):
+        yield changed(state("X1"), **{"poses__0__" + path: DROP})
+    yield changed(state("X1"), header__frame_id="world")
+    yield changed(state("X1"), header__stamp="1")
+
+
+class Refused(unittest.TestCase):
+    def test_each_rule_broken_is_422_and_a_violation(self):
+        with CommandPost() as post:
+            count = 0
+            for path, bodies in (("/map/update", [*grid_refusals(), *cloud_refusals()]),
+                                 ("/state/update", list(state_refusals())),
+                                 ("/markers/update", list(marker_refusals()))):
+                for body in bodies:
+                    with self.subTest(path=path, body=str(body)[:300]):
+                        answer = post.mapping_request("POST", path, body)
+                        self.assertEqual((answer.status_code, answer.headers["Content-Type"]),
+                                         (422, "application/json"))
+                        self.assertIsInstance(answer.json(), str)
+                        count += 1
+                        self.assertLessEqual(count, post.record()["violation_count"])
+            self.assertEqual(post.record()["accepted"], [])
+
+    def test_sentences_name_the_field(self):
+        table = [
+            ("Missing field 'msg.info.width'", changed(grid(), msg__info__width=DROP)),
+            ("msg.data: expected 4 x 2 = 8 bytes, got 6", grid(width=4)),
+            ("msg.data[1]: expected 0 to 100 or 255, got 101", grid(cells=bytes([0, 101, 255, 50, 19, 20]))),
+            ("msg.header.frame_id: expected \"darpa\" (ICD 6.1)", changed(grid(), msg__header__frame_id="map")),
+            ("msg.data: bytes after the end of the one gzip member",
+             changed(grid(), msg__compression="gzip",
+                     msg__data=base64.b64encode(gzip.compress(bytes(6)) * 2).decode())),
+            ("msg.point_step: expected at least 1, got 0", cloud(point_step=0)),
+            ("msg.fields[2]: ends at byte 13 of a point of 12", changed(cloud(), msg__fields__2__offset=9)),
+        ]
+        with CommandPost() as post:
+            for sentence, body in table:
+                self.assertEqual(post.map(body).json(), sentence)
+
+    def test_cbor_is_strict(self):
+        good = cbor2.dumps(grid(cbor=True))
+        data = cbor2.dumps(bytes([0, 100, 255, 50, 19, 20]))
+        table = [
+            (400, good[:-1]), (400, good + b"\0"), (400, b""), (400, b"\xff"), (400, b"\x81" * 65 + b"\x80"),
+            (400, b"\x81" * 1_000_000), (400, b"\x9f" * 1_000_000), (400, b"\xa1\x01\x02"),
+            (400, b"\x5b" + b"\xff" * 8), (400, b"\x9b" + b"\xff" * 8), (400, b"\xbb" + b"\x7f" * 8),
+            (400, good.replace(b"bX1", b"b\xff\xfe")),
+            (422, good.replace(data, cbor2.dumps("AGT/MhMU"))),
+            (422, good.replace(b"\xfb" + struct.pack(">d", 1.0), b"\xf9\x7e\x00")),  # NaN
+            (422, good.replace(b"\xfb" + struct.pack(">d", 1.0), b"\xf9\x7c\x00")),  # infinity
+            (422, b"\xa4" + cbor2.dumps("name") + cbor2.dumps("X9") + good[1:]),
+        ]
+        with CommandPost() as post:
+            for status, body in table:
+                with self.subTest(body=body[:40]):
+                    self.assertNotEqual(body, good)
+                    answer = post.map(body, **CBOR)
+                    self.assertEqual(answer.status_code, status)
+                    self.assertIsInstance(answer.json(), str)
+
+    def test_front_door(self):
+        bearer = f"Bearer {MAPPING_TOKEN}"
+        table = [
+            (404, "POST", "/", {}), (404, "POST", "/map/update/", {}), (404, "GET", "/map/update", {}),
+            (404, "OPTIONS", "/map/update", {}), (404, "POST", "/api/artifact_reports", {}),
+            (401, "POST", "/map/update", {"Authorization": None}),
+            (401, "POST", "/map/update", {"Authorization": bearer.replace("B", "b")}),
+            (401, "POST", "/map/update", {"Authorization": "Bearer  " + MAPPING_TOKEN}),
+            (422, "POST", "/map/update", {"Content-Type": "application/json; charset=utf-8"}),
+            (422, "POST", "/map/update", {"Content-Type": "text/plain"}),
+            (422, "POST", "/map/update", {"Content-Encoding": "gzip"}),
+            (422, "POST", "/map/update", {"Content-Encoding": "deflate"}),
+        ]
+        with CommandPost() as post:
+            for status, method, path, headers in table:
+                with self.subTest(method=method, path=path, headers=headers):
+                    answer = post.mapping_request(method, path, grid(), headers)
+                    self.assertEqual((answer.status_code, answer.headers["Content-Type"]),
+                                     (status, "application/json"))
+                    self.assertNotIn("WWW-Authenticate", answer.headers)
+
+    def test_stamps_that_run_backward_are_refused_per_uri(self):
+        with CommandPost() as post:
+            def stamped(stamp):
+                return post.map(changed(grid(), msg__header__stamp=stamp))
+            self.assertEqual(stamped(100.5).status_code, 200)
+            self.assertEqual(stamped(100.25).json(),
+                             "msg.header.stamp: runs backward, 100.25 after 100.5 (ICD 6.2)")
+            self.assertEqual(stamped(100.5).status_code, 200)
+            self.assertEqual(post.mapping_request("POST", "/state/update", state("X1")).status_code, 200)
+            two = {"markers": [*marker(header__stamp=9)["markers"], *marker(header__stamp=8)["markers"]]}
+            self.assertEqual(post.mapping_request("POST", "/markers/update", two).status_code, 422)
+            self.assertEqual(post.mapping_request("POST", "/markers/update", marker()).status_code, 200,
+                             "what was refused does not count")
+            self.assertEqual(post.record()["violation_count"], 2)
+
+    def test_more_than_one_a_second_for_a_uri_is_429(self):
+        with CommandPost(rate=None) as post:
+            def statuses():
+                return [post.mapping_request("POST", path, body).status_code
+                        for path, body in (("/map/update", grid()), ("/state/update", state("X1")),
+                                           ("/markers/update", marker()))]
+            self.assertEqual(statuses(), [200] * 3)
+            self.assertEqual(statuses(), [429] * 3)
+            time.sleep(1)
+            self.assertEqual(statuses(), [200] * 3)
+
+
+if __name__ == "__main__":
+    unittest.main()

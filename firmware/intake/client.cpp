@@ -4,8 +4,10 @@
 #include <netinet/in.h>
 #include <netinet/tcp.h>
 #include <sys/epoll.h>
+#include <sys/ioctl.h>
 #include <sys/socket.h>
 
+#include <algorithm>
 #include <utility>
 
 #include "intake/answer.hpp"
@@ -13,18 +15,29 @@
 #include "intake/request.hpp"
 
 namespace adit::intake {
+namespace {
+
+/// How long libmicrohttpd has for the last bytes of a client that sends no more.
+constexpr std::chrono::milliseconds kAfterEnd(100);
+
+}  // namespace
 
 Client::Client(Engine& engine, loop::Loop& loop, MHD_Connection* connection, int fd, std::string peer)
     : engine_(engine), connection_(connection), fd_(fd), peer_(std::move(peer)) {
-  // libmicrohttpd does not look at the sockets of suspended connections. Edge-triggered, because a client
-  // that has ended its direction alone would be reported over and over.
-  hang_up_ = loop.watch(fd, EPOLLRDHUP | EPOLLET, [this](std::uint32_t events) {
-    if ((events & (EPOLLHUP | EPOLLERR)) == 0) return;
+  // libmicrohttpd does not look at the sockets of suspended connections, and misses an end that comes
+  // together with the last bytes. Edge-triggered, because an ended direction would be reported over and over.
+  hang_up_ = loop.watch(fd, EPOLLRDHUP | EPOLLET, [this](std::uint32_t events) { happened(events); });
+  enter(Phase::Head);
+  expect_bytes(engine_.listen().headers_within);
+}
+
+void Client::happened(std::uint32_t events) {
+  if ((events & (EPOLLHUP | EPOLLERR)) != 0) {
     hung_up_ = true;
     resume();
-  });
-  enter(Phase::Head);
-  expect_within(engine_.listen().headers_within);
+  } else if (!std::exchange(ended_, true) && bytes_expected_) {
+    expect_bytes(kAfterEnd);
+  }
 }
 
 void Client::enter(Phase phase) {
@@ -36,7 +49,7 @@ void Client::head_begun(std::string_view target) {
   target_ = target;
   if (phase_ != Phase::Idle) return;
   enter(Phase::Head);
-  expect_within(engine_.listen().headers_within);
+  expect_bytes(engine_.listen().headers_within);
 }
 
 void Client::request_begun(std::shared_ptr<Request> request) {
@@ -48,12 +61,32 @@ void Client::request_begun(std::shared_ptr<Request> request) {
 void Client::request_over() {
   request_ = nullptr;
   enter(Phase::Idle);
-  expect_within(engine_.listen().idle);
+  expect_bytes(engine_.listen().idle);
 }
 
-void Client::expect_within(std::chrono::milliseconds within) {
+void Client::expect_bytes(std::chrono::milliseconds within) {
+  bytes_expected_ = true;
+  set_deadline(ended_ ? std::min(within, kAfterEnd) : within);
+}
+
+void Client::expect_reading(std::chrono::milliseconds within) {
+  bytes_expected_ = false;
+  set_deadline(within);
+}
+
+void Client::expect_nothing() {
+  bytes_expected_ = false;
+  deadline_ = loop::Instant::max();
+}
+
+void Client::set_deadline(std::chrono::milliseconds within) {
   deadline_ = engine_.now() + within;
   engine_.look_at(deadline_);
+}
+
+bool Client::has_said_all() const {
+  int unread = 0;
+  return ended_ && (::ioctl(fd_, FIONREAD, &unread) != 0 || unread == 0);
 }
 
 bool Client::heard_since(loop::Instant when) const {
@@ -65,15 +98,20 @@ bool Client::heard_since(loop::Instant when) const {
 }
 
 void Client::late() {
+  if (bytes_expected_ && ended_ && !has_said_all()) {
+    expect_bytes(kAfterEnd);
+    return;
+  }
+  const bool said_all = bytes_expected_ && ended_;
   expect_nothing();
   switch (phase_) {
     case Phase::Request:
       request_->late();
       return;
     case Phase::Idle:
-      if (heard_since(since_)) {  // a head has begun, but not its first line ended
+      if (!said_all && heard_since(since_)) {  // a head has begun, but not its first line ended
         enter(Phase::Head);
-        expect_within(engine_.listen().headers_within);
+        expect_bytes(engine_.listen().headers_within);
       } else {
         cut();
       }

@@ -54,8 +54,10 @@ class Client {
   void request_over();
   const std::shared_ptr<Request>& request() const { return request_; }
 
-  void expect_within(std::chrono::milliseconds within);
-  void expect_nothing() { deadline_ = loop::Instant::max(); }
+  /// The client is to send something, or to take what it is sent, within that time.
+  void expect_bytes(std::chrono::milliseconds within);
+  void expect_reading(std::chrono::milliseconds within);
+  void expect_nothing();
   loop::Instant deadline() const { return deadline_; }
   /// The deadline has passed.
   void late();
@@ -72,6 +74,10 @@ class Client {
 
  private:
   void enter(Phase phase);
+  void happened(std::uint32_t events);
+  void set_deadline(std::chrono::milliseconds within);
+  /// The client has ended its direction, and all that it sent has been read.
+  bool has_said_all() const;
   bool heard_since(loop::Instant when) const;
 
   Engine& engine_;
@@ -82,6 +88,8 @@ class Client {
   Phase phase_ = Phase::Head;
   loop::Instant since_;
   loop::Instant deadline_ = loop::Instant::max();
+  bool bytes_expected_ = false;  // rather than reading
+  bool ended_ = false;           // the client's direction
   bool suspended_ = false;
   bool hung_up_ = false;
   std::shared_ptr<Request> request_;

@@ -33,7 +33,7 @@ Next Request::open(Handler& handler, std::string_view method, Target target, con
   stage_ = Stage::Body;
   if (!exchange_ && !answered()) answer_ = error_answer(icd::Status::InternalServerError, "no answer");
   if (answered()) return framing.has_body ? turn_away() : Next::GoOn;
-  if (framing.has_body) client_->expect_within(client_->engine().listen().body_silence);
+  if (framing.has_body) client_->expect_bytes(client_->engine().listen().body_silence);
   return Next::GoOn;
 }
 
@@ -58,7 +58,7 @@ Next Request::body(std::span<const std::uint8_t> piece) {
   in_call_ = false;
   if (answered()) return turn_away();
   if (more || resumed_) {
-    client_->expect_within(client_->engine().listen().body_silence);
+    client_->expect_bytes(client_->engine().listen().body_silence);
   } else {
     client_->expect_nothing();
     client_->suspend();
@@ -88,7 +88,7 @@ Next Request::turn_away() {
   if (stream_) {
     client_->cut();  // a stream in the middle of a body: not for such requests
   } else if (left_ && *left_ <= kReadAway) {
-    client_->expect_within(kReadAwayWithin);
+    client_->expect_bytes(kReadAwayWithin);
     client_->resume();
   } else {
     refuse(*answer_);
@@ -99,7 +99,7 @@ Next Request::turn_away() {
 void Request::refuse(const Answer& answer) {
   client_->say_last(last_answer_text(answer, !is_head_));
   stage_ = Stage::Refusing;
-  client_->expect_within(kLingerWithin);
+  client_->expect_reading(kLingerWithin);
   client_->resume();
 }
 
@@ -114,7 +114,7 @@ Next Request::hand_over() {
   if (stream_) {
     client_->expect_nothing();
   } else {
-    client_->expect_within(client_->engine().listen().idle);
+    client_->expect_reading(client_->engine().listen().idle);
   }
   return Next::GoOn;
 }
@@ -172,7 +172,7 @@ bool Request::client_gone() const {
 void Request::resume() {
   resumed_ = true;
   if (stage_ != Stage::Body || !client_->suspended()) return;
-  client_->expect_within(client_->engine().listen().body_silence);
+  client_->expect_bytes(client_->engine().listen().body_silence);
   client_->resume();
 }
 

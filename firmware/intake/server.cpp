@@ -138,6 +138,7 @@ void Server::Impl::look_at_deadlines() {
   loop::Instant next = loop::Instant::max();
   for (const auto& [client, owned] : clients_) next = std::min(next, client->deadline());
   if (next != loop::Instant::max()) look_at(next);
+  make_room();
 }
 
 void Server::Impl::connected(MHD_Connection* connection, void** client_cls) {
@@ -147,17 +148,24 @@ void Server::Impl::connected(MHD_Connection* connection, void** client_cls) {
                                          address_text(address->client_addr));
   *client_cls = client.get();
   clients_.emplace(client.get(), std::move(client));
-  if (clients_.size() >= listen_.connections) make_room();
+  make_room();
 }
 
 /// At the limit libmicrohttpd takes nobody in: the connection that has asked for nothing for longest ends.
 void Server::Impl::make_room() {
+  if (clients_.size() < listen_.connections) return;
   Client* longest = nullptr;
   for (const auto& [client, owned] : clients_) {
     if (client->phase() == Client::Phase::Request) continue;
     if (longest == nullptr || client->since() < longest->since()) longest = client;
   }
-  if (longest != nullptr && loop_.now() - longest->since() >= kGivesWayAfter) longest->cut();
+  if (longest == nullptr) return;
+  const loop::Instant gives_way = longest->since() + kGivesWayAfter;
+  if (loop_.now() >= gives_way) {
+    longest->cut();
+  } else {
+    look_at(gives_way);
+  }
 }
 
 Next Server::Impl::first_call(Client& client, std::string_view method) {
@@ -215,6 +223,7 @@ void Server::Impl::connection_changed(void* cls, MHD_Connection* connection, voi
     server.connected(connection, client_cls);
   } else if (auto* client = static_cast<Client*>(std::exchange(*client_cls, nullptr)); client != nullptr) {
     server.clients_.erase(client);
+    server.run_soon();  // libmicrohttpd looks only then whether there is room for another connection
   }
 }
 

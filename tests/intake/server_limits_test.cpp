@@ -1,0 +1,196 @@
+#include <gtest/gtest.h>
+
+#include <nlohmann/json.hpp>
+#include <random>
+
+#include "intake/raw_client.hpp"
+#include "intake/scripted_handler.hpp"
+#include "intake/served.hpp"
+
+namespace adit::intake {
+namespace {
+
+using std::chrono::milliseconds;
+using std::chrono::seconds;
+
+/// What libmicrohttpd answers by itself, before it asks anybody: no JSON (ICD 4), but no more than these.
+bool is_libmicrohttpds_own(const Reply& reply) {
+  const bool status = reply.status == 400 || reply.status == 413 || reply.status == 414 ||
+                      reply.status == 431 || reply.status == 505;
+  return status && reply.body.find("<html>") != std::string::npos;
+}
+
+bool answers(std::uint16_t port, const std::string& source, milliseconds within = seconds(2)) {
+  RawClient client(port, source);
+  client.send(request("POST", "/echo", {}, "x"));
+  const auto reply = client.reply(within);
+  return reply && reply->status == 200;
+}
+
+TEST(ServerLimits, LeaveOthersServedThoughOneAddressOpensThousandsOfConnections) {
+  ScriptedHandler handler;
+  Served served(handler);
+  std::vector<std::unique_ptr<RawClient>> flood;
+  for (int i = 0; i < 1500; ++i) {
+    flood.push_back(std::make_unique<RawClient>(served.port(), "127.0.0.2"));
+    flood.back()->send("GET /echo HTTP/1.1\r\nX-Slow: ");
+    if (i % 250 == 249) {
+      EXPECT_TRUE(answers(served.port(), "127.0.0.1")) << i;
+      EXPECT_LE(served.on_loop([&] { return served.server().connections(); }), 17u);
+    }
+  }
+}
+
+TEST(ServerLimits, MakeRoomWhereManyAddressesFillAllConnections) {
+  ScriptedHandler handler;
+  Served served(handler);
+  std::vector<std::unique_ptr<RawClient>> flood;
+  for (int i = 0; i < 300; ++i) {
+    flood.push_back(std::make_unique<RawClient>(served.port(), "127.0.1." + std::to_string(1 + i % 200)));
+    flood.back()->send("GET /echo HTTP/1.1\r\nX-Slow: ");
+  }
+  std::this_thread::sleep_for(milliseconds(300));
+  EXPECT_TRUE(answers(served.port(), "127.0.0.1", seconds(15)));
+  EXPECT_LE(served.on_loop([&] { return served.server().connections(); }), 64u);
+}
+
+TEST(ServerLimits, DoNotEndARequestUnderWayToMakeRoom) {
+  ScriptedHandler handler;
+  Served served(handler, {.address = "127.0.0.1", .interface = {}, .connections = 4});
+  RawClient waiting(served.port());
+  waiting.send(request("GET", "/later"));
+  ASSERT_TRUE(served.eventually([&] { return handler.responders.size() == 1; }));
+  std::vector<std::unique_ptr<RawClient>> idle;
+  for (int i = 0; i < 3; ++i) {
+    idle.push_back(std::make_unique<RawClient>(served.port()));
+    std::this_thread::sleep_for(milliseconds(300));
+  }
+  EXPECT_TRUE(answers(served.port(), "127.0.0.1"));
+  EXPECT_TRUE(idle[0]->closed_within(seconds(1)));
+  served.on_loop([&] { handler.responders[0]->answer({.body = "1", .headers = {}}); });
+  EXPECT_EQ(waiting.reply()->body, "1");
+}
+
+TEST(ServerLimits, RefuseABodyThatTwoReadersCouldSeeDifferently) {
+  ScriptedHandler handler;
+  Served served(handler);
+  const std::string_view framings[] = {
+      "Content-Length: 4\r\nTransfer-Encoding: chunked\r\n",
+      "Transfer-Encoding: chunked\r\nContent-Length: 4\r\n",
+      "Content-Length: 4\r\nContent-Length: 5\r\n",
+      "Content-Length: 4\r\nContent-Length: 4\r\n",
+      "Transfer-Encoding: gzip\r\n",
+      "Transfer-Encoding: gzip, chunked\r\n",
+      "Transfer-Encoding: chunked\r\nTransfer-Encoding: chunked\r\n",
+      "Transfer-Encoding: identity\r\n",
+      "Transfer-Encoding: xchunked\r\n",
+      "Content-Length: -1\r\n",
+      "Content-Length: +4\r\n",
+      "Content-Length: 0x4\r\n",
+      "Content-Length: 4, 4\r\n",
+      "Content-Length: 99999999999999999999999\r\n",
+      "Content-Length:\r\n",
+  };
+  for (const std::string_view framing : framings) {
+    RawClient client(served.port());
+    client.send(request("POST", "/echo", framing) + "0\r\n\r\nGET /smuggled HTTP/1.1\r\nHost: adit\r\n\r\n");
+    const auto reply = client.reply(seconds(2));
+    if (reply && !is_libmicrohttpds_own(*reply)) {
+      EXPECT_EQ(reply->status, 400) << framing;
+      EXPECT_TRUE(reply->body.starts_with('"')) << framing << reply->body;
+    }
+    const auto rest = client.rest(seconds(3));
+    ASSERT_TRUE(rest) << framing;
+    EXPECT_EQ(rest->find("smuggled"), std::string::npos) << framing;
+    EXPECT_EQ(rest->find("HTTP/1.1 200"), std::string::npos) << framing;
+  }
+  EXPECT_EQ(handler.ends, 0);
+}
+
+TEST(ServerLimits, SurviveGarbage) {
+  ScriptedHandler handler;
+  Served served(handler);
+  const std::string nul("GET /\0 HTTP/1.1\r\n\r\n", 19);
+  const std::string requests[] = {
+      "\r\n\r\n\r\n",
+      "GET\r\n\r\n",
+      "GET /echo\r\n\r\n",
+      "GET /echo HTTP/0.9\r\n\r\n",
+      "GET /echo HTTP/9.9\r\n\r\n",
+      "GET  /echo  HTTP/1.1\r\n\r\n",
+      nul,
+      "GET /echo HTTP/1.1\r\nno colon\r\n\r\n",
+      "GET /echo HTTP/1.1\r\n: no name\r\n\r\n",
+      "GET /echo HTTP/1.1\r\n folded: x\r\n\r\n",
+      "GET /echo HTTP/1.1\nHost: x\n\n",
+      "PRI * HTTP/2.0\r\n\r\nSM\r\n\r\n",
+      "\x16\x03\x01\x02\x00\x01\x00\x01\xfc\x03\x03",
+      std::string(100000, 'A'),
+      "GET /" + std::string(200000, 'a') + " HTTP/1.1\r\n\r\n",
+      "GET /echo HTTP/1.1\r\nX: " + std::string(300000, 'a') + "\r\n\r\n",
+      request("POST", "/echo", "Transfer-Encoding: chunked\r\n") + "zz\r\n",
+      request("POST", "/echo", "Transfer-Encoding: chunked\r\n") + "-5\r\nhello\r\n",
+      request("POST", "/echo", "Transfer-Encoding: chunked\r\n") + "ffffffffffffffffff\r\n",
+      request("POST", "/echo", "Transfer-Encoding: chunked\r\n") + "5\r\nhelloXX",
+  };
+  for (const std::string& each : requests) {
+    RawClient client(served.port());
+    client.send(each);
+    client.half_close();
+    while (const auto reply = client.reply(seconds(2))) {
+      EXPECT_TRUE(reply->status == 200 || reply->body.starts_with('"') || is_libmicrohttpds_own(*reply))
+          << each.substr(0, 80) << " -> " << reply->status << " " << reply->body;
+    }
+    EXPECT_TRUE(answers(served.port(), "127.0.0.1")) << each.substr(0, 80);
+  }
+  EXPECT_TRUE(served.eventually([&] { return served.server().connections() == 0; }));
+  EXPECT_EQ(handler.exchanges, 0);
+}
+
+TEST(ServerLimits, SurviveRequestsChangedAtRandom) {
+  ScriptedHandler handler;
+  Served served(handler);
+  std::mt19937_64 random(20210401);
+  const auto any = [&](std::size_t below) {
+    return std::uniform_int_distribution<std::size_t>(0, below - 1)(random);
+  };
+  const std::string originals[] = {
+      request("POST", "/echo", "Content-Type: application/json\r\n", "{\"x\": 1}"),
+      request("GET", "/echo?q=%20"),
+      request("POST", "/echo", "Transfer-Encoding: chunked\r\n") + "5\r\nhello\r\n0\r\n\r\n",
+      request("POST", "/refuse", "Expect: 100-continue\r\n", std::string(100, 'x')),
+  };
+  for (int round = 0; round < 200; ++round) {
+    std::string text = originals[any(std::size(originals))];
+    for (std::size_t changes = 1 + any(4); changes > 0 && !text.empty(); --changes) {
+      const std::size_t at = any(text.size());
+      switch (any(4)) {
+        case 0:
+          text[at] = static_cast<char>(any(256));
+          break;
+        case 1:
+          text.erase(at, 1 + any(8));
+          break;
+        case 2:
+          text.insert(at, text.substr(any(text.size()), any(20)));
+          break;
+        default:
+          text.resize(at);
+      }
+    }
+    RawClient client(served.port(), "127.0.0." + std::to_string(2 + round % 100));
+    client.send(text);
+    client.half_close();
+    while (const auto reply = client.reply(seconds(3))) {
+      if (reply->status == 100 || reply->status == 200 || is_libmicrohttpds_own(*reply)) continue;
+      EXPECT_TRUE(nlohmann::json::parse(reply->body, nullptr, false).is_string())
+          << text << " -> " << reply->status << " " << reply->body;
+    }
+  }
+  EXPECT_TRUE(answers(served.port(), "127.0.0.1"));
+  EXPECT_TRUE(served.eventually([&] { return served.server().connections() == 0; }));
+  EXPECT_EQ(handler.exchanges, 0);
+}
+
+}  // namespace
+}  // namespace adit::intake

@@ -1,0 +1,212 @@
+#include <gtest/gtest.h>
+
+#include "intake/raw_client.hpp"
+#include "intake/scripted_handler.hpp"
+#include "intake/served.hpp"
+
+/// Who may end before whom: client, request, responder, stream, server. Most of what is tested here shows
+/// under the address sanitizer alone.
+namespace adit::intake {
+namespace {
+
+using std::chrono::milliseconds;
+using std::chrono::seconds;
+
+class ServerLives : public testing::Test {
+ protected:
+  ScriptedHandler handler;
+  Served served{handler};
+  RawClient client{served.port()};
+
+  bool no_connections() {
+    return served.eventually([&] { return served.server().connections() == 0; });
+  }
+};
+
+TEST_F(ServerLives, ClientResetsWhileItsAnswerIsAwaited) {
+  client.send(request("POST", "/later", {}, "x"));
+  ASSERT_TRUE(served.eventually([&] { return handler.responders.size() == 1; }));
+  client.reset();
+  EXPECT_TRUE(served.eventually([&] { return handler.responders[0]->client_gone(); }));
+  EXPECT_TRUE(no_connections());
+  EXPECT_EQ(handler.gone, 1);
+  EXPECT_EQ(handler.exchanges, 0);
+  served.on_loop([&] {
+    handler.responders[0]->answer({.body = "1", .headers = {}});
+    EXPECT_FALSE(handler.responders[0]->stream("text/plain")->send("x"));
+  });
+}
+
+TEST_F(ServerLives, ClientResetsInTheMiddleOfItsHead) {
+  client.send("GET /echo HT");
+  ASSERT_TRUE(served.eventually([&] { return served.server().connections() == 1; }));
+  client.reset();
+  EXPECT_TRUE(no_connections());
+}
+
+TEST_F(ServerLives, ClientResetsInTheMiddleOfItsBody) {
+  client.send("POST /echo HTTP/1.1\r\nHost: adit\r\nContent-Length: 100\r\n\r\nbegun");
+  ASSERT_TRUE(served.eventually([&] { return handler.body_bytes == 5; }));
+  client.reset();
+  EXPECT_TRUE(no_connections());
+  EXPECT_EQ(handler.gone, 1);
+  EXPECT_EQ(handler.ends, 0);
+}
+
+TEST_F(ServerLives, ClientClosesInTheMiddleOfItsBody) {
+  client.send("POST /echo HTTP/1.1\r\nHost: adit\r\nContent-Length: 100\r\n\r\nbegun");
+  ASSERT_TRUE(served.eventually([&] { return handler.body_bytes == 5; }));
+  client.close();
+  EXPECT_TRUE(no_connections());
+  EXPECT_EQ(handler.gone, 1);
+}
+
+TEST_F(ServerLives, ClientClosesRightBehindItsLastBytes) {
+  for (const std::string text : {"GET /echo HT", "POST /echo HTTP/1.1\r\nContent-Length: 100\r\n\r\nbegun"}) {
+    RawClient brief(served.port());
+    brief.send(text);
+    brief.close();
+  }
+  client.close();
+  EXPECT_TRUE(served.eventually([&] { return served.server().connections() == 0; }, seconds(2)));
+  EXPECT_EQ(handler.exchanges, 0);
+}
+
+TEST_F(ServerLives, ClientResetsWhileItsBodyIsHeldBack) {
+  client.send("POST /held HTTP/1.1\r\nHost: adit\r\nContent-Length: 100\r\n\r\nbegun");
+  ASSERT_TRUE(served.eventually([&] { return handler.flows.size() == 1; }));
+  client.reset();
+  EXPECT_TRUE(no_connections());
+  EXPECT_EQ(handler.gone, 1);
+  served.on_loop([&] { handler.flows[0]->resume(); });
+}
+
+TEST_F(ServerLives, ClientResetsAStream) {
+  client.send(request("GET", "/stream"));
+  ASSERT_TRUE(served.eventually([&] { return handler.streams.size() == 1; }));
+  served.on_loop([&] { EXPECT_TRUE(handler.streams[0]->send("x")); });
+  ASSERT_TRUE(client.wait_for("x"));
+  client.reset();
+  EXPECT_TRUE(served.eventually([&] { return !handler.streams[0]->send("y"); }));
+  EXPECT_TRUE(no_connections());
+}
+
+TEST_F(ServerLives, ClientClosesAStreamAndIsFoundOutByTheNextPieces) {
+  client.send(request("GET", "/stream"));
+  ASSERT_TRUE(served.eventually([&] { return handler.streams.size() == 1; }));
+  client.close();
+  EXPECT_TRUE(served.eventually([&] { return !handler.streams[0]->send("y"); }));
+  EXPECT_TRUE(no_connections());
+}
+
+TEST_F(ServerLives, ClientResetsAfterItWasRefusedInTheMiddle) {
+  client.send("POST /midway HTTP/1.1\r\nHost: adit\r\nContent-Length: 5000000\r\n\r\nbegun");
+  ASSERT_TRUE(client.reply());
+  client.reset();
+  EXPECT_TRUE(no_connections());
+  EXPECT_EQ(handler.gone, 0);
+}
+
+TEST_F(ServerLives, ResponderIsAnsweredAsTheClientResets) {
+  for (int i = 0; i < 50; ++i) {
+    RawClient racing(served.port());
+    racing.send(request("GET", "/later"));
+    ASSERT_TRUE(served.eventually([&] { return handler.responders.size() == 1; }));
+    served.loop().post([&] {
+      for (auto& responder : std::exchange(handler.responders, {})) {
+        responder->answer({.body = "1", .headers = {}});
+      }
+    });
+    racing.reset();
+  }
+  client.close();
+  EXPECT_TRUE(no_connections());
+}
+
+TEST_F(ServerLives, ServerEndsWithARequestInEachPhase) {
+  std::vector<std::unique_ptr<RawClient>> clients;
+  const std::string unfinished = " HTTP/1.1\r\nHost: adit\r\nContent-Length: 5000000\r\n\r\nbegun";
+  for (const std::string& text :
+       {std::string("GET /echo HT"), "POST /echo" + unfinished, "POST /held" + unfinished,
+        "POST /midway" + unfinished, "POST /eager" + unfinished, request("GET", "/later"),
+        request("GET", "/stream"), request("GET", "/echo"),
+        std::string("POST /refuse HTTP/1.1\r\nContent-Length: 10\r\n\r\n")}) {
+    clients.push_back(std::make_unique<RawClient>(served.port()));
+    clients.back()->send(text);
+  }
+  ASSERT_TRUE(served.eventually([&] {
+    return handler.responders.size() == 2 && handler.streams.size() == 1 && handler.flows.size() == 1;
+  }));
+  served.on_loop([&] {
+    handler.streams[0]->send("x");
+    served.destroy_server();
+    EXPECT_EQ(handler.exchanges, 0);
+    EXPECT_EQ(handler.gone, 4);
+    for (auto& responder : handler.responders) {
+      EXPECT_TRUE(responder->client_gone());
+      responder->answer({.body = "late", .headers = {}});
+    }
+    for (auto& flow : handler.flows) flow->resume();
+    EXPECT_FALSE(handler.streams[0]->send("late"));
+    handler.streams.clear();
+    handler.responders.clear();
+    handler.flows.clear();
+  });
+  for (auto& each : clients) EXPECT_TRUE(each->closed_within(seconds(2)));
+}
+
+TEST_F(ServerLives, ServerEndsWithAnswersOnTheirWay) {
+  for (int i = 0; i < 5; ++i) client.send(request("GET", "/later"));
+  ASSERT_TRUE(served.eventually([&] { return handler.responders.size() == 1; }));
+  served.on_loop([&] {
+    handler.responders[0]->answer({.body = "1", .headers = {}});  // not yet sent
+    served.destroy_server();
+  });
+  EXPECT_TRUE(client.closed_within(seconds(2)));
+}
+
+TEST_F(ServerLives, ResponderIsDroppedWithoutAnAnswer) {
+  client.send(request("GET", "/later"));
+  ASSERT_TRUE(served.eventually([&] { return handler.responders.size() == 1; }));
+  served.on_loop([&] { handler.responders.clear(); });
+  client.close();
+  served.on_loop([&] { served.destroy_server(); });
+  EXPECT_EQ(handler.exchanges, 0);
+}
+
+TEST_F(ServerLives, ManyClientsDoAllOfThisAtOnce) {
+  std::vector<std::thread> crowd;
+  for (int who = 0; who < 8; ++who) {
+    crowd.emplace_back([this, who] {
+      const std::string source = "127.0.2." + std::to_string(who + 1);
+      for (int i = 0; i < 30; ++i) {
+        RawClient one(served.port(), source);
+        const std::string paths[] = {"/echo", "/later", "/held", "/midway", "/stream", "/refuse"};
+        const std::string& path = paths[static_cast<std::size_t>(i * 7 + who) % std::size(paths)];
+        one.send(request(path == "/stream" ? "GET" : "POST", path, {}, std::string(1000, 'x')));
+        if (i % 3 == 0) one.reply(milliseconds(5));
+        if (i % 2 == 0) one.reset();
+      }
+    });
+  }
+  std::atomic<bool> over = false;
+  std::thread answering([&] {
+    while (!over) {
+      served.on_loop([&] {
+        for (auto& each : std::exchange(handler.responders, {})) each->answer({.body = "1", .headers = {}});
+        for (auto& each : std::exchange(handler.flows, {})) each->resume();
+        for (auto& each : std::exchange(handler.streams, {})) each->send("x");
+      });
+      std::this_thread::sleep_for(milliseconds(1));
+    }
+  });
+  for (auto& each : crowd) each.join();
+  client.close();
+  EXPECT_TRUE(no_connections());
+  over = true;
+  answering.join();
+  EXPECT_EQ(handler.exchanges, 0);
+}
+
+}  // namespace
+}  // namespace adit::intake

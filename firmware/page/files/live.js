@@ -1,0 +1,37 @@
+// The line to the box: server-sent events, and a watchdog that notices when they stop.
+
+const SILENCE = 5500;  // ms; the box says something every 4 s
+const RETRY = 2000;
+
+/** Calls `heard(view)` for each view that comes, and `lost(true or false)` as the line goes and comes back. */
+export function listen(url, heard, lost) {
+  let source = null, last = performance.now(), isLost = false;
+
+  const set = (value) => {
+    if (isLost !== value) lost((isLost = value));
+  };
+  const open = () => {
+    source?.close();
+    source = new EventSource(url);
+    source.onmessage = (event) => {
+      last = performance.now();
+      set(false);
+      heard(JSON.parse(event.data));
+    };
+    source.onerror = () => set(true);
+  };
+
+  // EventSource comes back by itself after a closed connection, but neither after an error answer nor from a
+  // connection that has gone silent.
+  let tried = last;
+  setInterval(() => {
+    const now = performance.now();
+    if (now - last > SILENCE) set(true);
+    const dead = source.readyState === EventSource.CLOSED || now - last > SILENCE;
+    if (dead && now - tried > RETRY) {
+      tried = now;
+      open();
+    }
+  }, 250);
+  open();
+}

@@ -1,0 +1,53 @@
+// The Command Post: its two endpoints, what goes to them, and what waits.
+import { badge, list, make, mark, say } from "./dom.js";
+import { endpoint } from "./verdict.js";
+import { bytes, mbit } from "./words.js";
+
+const at = (id) => document.getElementById(id);
+
+function createEndpoint() {
+  return make("li", make("span.name"), make("span.badge"), make("span.answer"), make("span.address"), make("span.trouble"));
+}
+
+function updateEndpoint(node, row, lost) {
+  const { level, word } = lost ? { level: "quiet", word: "unknown" } : endpoint(row);
+  const [name, verdict, answer, address, trouble] = node.children;
+  mark(node, "level", level);
+  say(name, row.name);
+  badge(verdict, level, word);
+  const status = row.last_status ? `last answer ${row.last_status}` : "no answer yet";
+  say(answer, row.answer_ms === null ? status : `${status} in ${row.answer_ms < 10 ? row.answer_ms.toFixed(1) : row.answer_ms.toFixed(0)} ms`);
+  say(address, row.address);
+  say(trouble, row.trouble);
+}
+
+// The last two minutes, a value a second.
+const SPAN = 120, HEIGHT = 32;
+const samples = [];
+
+export function sample(value) {
+  samples.push(value);
+  if (samples.length > SPAN) samples.shift();
+}
+
+function drawSpark() {
+  const most = Math.max(1, ...samples);
+  const y = (value) => (HEIGHT - 1 - (value / most) * (HEIGHT - 3)).toFixed(1);
+  const from = SPAN - samples.length;
+  const line = samples.map((value, i) => `${from + i} ${y(value)}`).join("L");
+  const [area, stroke] = at("spark").children;
+  stroke.setAttribute("d", line && `M${line}`);
+  area.setAttribute("d", line && `M${from} ${HEIGHT}L${line}L${SPAN - 1} ${HEIGHT}Z`);
+}
+
+export function showPost(view, lost) {
+  list(document.querySelector("#post .endpoints"), view.endpoints, (row) => row.name, createEndpoint, (node, row) =>
+    updateEndpoint(node, row, lost));
+  const share = view.budget_mbit > 0 ? Math.min(100, (100 * view.sent_mbit) / view.budget_mbit) : 0;
+  say(at("sent"), lost ? "–" : `${mbit(view.sent_mbit)} Mbit/s`);
+  say(at("budget"), `of ${mbit(view.budget_mbit)}`);
+  at("bar").setAttribute("aria-valuenow", share.toFixed(0));
+  at("bar").firstElementChild.style.inlineSize = `${share}%`;
+  say(at("queue"), view.queued_bytes ? `${bytes(view.queued_bytes)} wait` : "empty");
+  drawSpark();
+}

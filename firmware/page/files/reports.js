@@ -1,0 +1,34 @@
+// Artifact reports, newest first, each with where it is in its life and what the Command Post said.
+import { badge, list, make, mark, say } from "./dom.js";
+import { life } from "./verdict.js";
+import { ago, count, metres } from "./words.js";
+
+const section = document.getElementById("reports");
+
+function create() {
+  return make("li", make("span.badge"), make("span.what"), make("span.where"), make("span.since"), make("span.more"));
+}
+
+/** What else there is to know: the Command Post's words, or why it is where it is. */
+function more(report) {
+  const said = report.report_status && report.report_status !== "scored" ? report.report_status : "";
+  return [said, report.note, report.status >= 400 ? `status ${report.status}` : ""].filter(Boolean).join(" · ");
+}
+
+export function showReports(reports, now) {
+  const open = reports.filter((report) => ["waiting", "sending", "in doubt"].includes(report.state)).length;
+  say(section.querySelector(".count"), reports.length ? `${reports.length}${open ? `, ${count(open, "open")}`.replace("opens", "open") : ""}` : "");
+  section.querySelector(".rows").hidden = reports.length === 0;
+  section.querySelector(".empty").hidden = reports.length > 0;
+  list(section.querySelector(".rows"), reports, (report) => report.number, create, (node, report) => {
+    const { level, word } = life(report);
+    const [verdict, what, where, since, rest] = node.children;
+    mark(node, "level", level);
+    badge(verdict, level, word);
+    say(what, report.type);
+    const { x, y, z } = report.position;
+    say(where, `${metres(x)}, ${metres(y)}, ${metres(z)} m`);
+    say(since, `#${report.number} · ${ago(now - report.received)}`);
+    say(rest, more(report));
+  });
+}

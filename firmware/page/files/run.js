@@ -1,0 +1,54 @@
+// What stands in large figures, what needs the operator, and the lights as they are on the box.
+import { badge, list, make, mark, say } from "./dom.js";
+import { ago, clock } from "./words.js";
+
+const at = (id) => document.getElementById(id);
+
+// A run clock that was heard to move goes on between two answers; one that stands still stays where it is.
+let heard = null, ticking = false;
+
+function runClock(view, now) {
+  const { run_clock } = view.run;
+  if (!heard || heard.at !== view.run_heard) {
+    if (heard && run_clock !== heard.clock) ticking = run_clock > heard.clock;
+    else if (heard && view.run_heard - heard.at > 1.5) ticking = false;
+    heard = { at: view.run_heard, clock: run_clock };
+  }
+  return ticking ? run_clock + Math.max(0, now - view.run_heard) : run_clock;
+}
+
+export function showRun(view, now, lost) {
+  const { run } = view;
+  const since = view.run_heard === null ? Infinity : now - view.run_heard;
+  const stale = !run || since > 15 || lost;
+  mark(at("run"), "stale", String(stale));
+  say(at("clock"), run ? clock(stale ? run.run_clock : runClock(view, now)) : "–");
+  say(at("score"), run ? String(run.score) : "–");
+  say(at("remaining"), run ? String(run.remaining_reports) : "–");
+  const team = run?.current_team ? `${run.current_team} · ` : "";
+  if (!run) say(at("run-note"), "No word from the Command Post yet");
+  else if (stale) say(at("run-note"), `${team}as the Command Post said ${ago(since)}`);
+  else say(at("run-note"), `${team}heard ${ago(since)}`);
+}
+
+export function showAttention(sentences, lost, silent) {
+  const all = lost
+    ? [{ key: "lost", text: silent ? `The box does not answer. What is shown is old (${silent}).` : "The box does not answer." }]
+    : [];
+  for (const text of sentences) all.push({ key: `said ${text}`, text });
+  const create = () => make("p.alarm");
+  list(at("attention"), all, (one) => one.key, create, (node, one) => badge(node, "bad", one.text));
+}
+
+const PATTERNS = { off: "off", on: "on", slow: "blinks slowly", fast: "blinks fast" };
+
+export function showLights(lights) {
+  const create = () => make("li", make("span.led"), make("span.name"), make("span.spoken"));
+  list(at("lights"), lights, (light) => light.name, create, (node, light) => {
+    mark(node, "pattern", light.pattern);
+    const [, name, pattern] = node.children;
+    say(name, light.name);
+    say(pattern, `: ${PATTERNS[light.pattern] ?? light.pattern}`);
+    node.title = `${light.name}: ${PATTERNS[light.pattern] ?? light.pattern}`;
+  });
+}

@@ -1,0 +1,83 @@
+// What the figures mean: for each thing a level (its shape and colour), a word, and a sentence where one helps.
+//   good: as it should be   wait: late, or about to be decided   bad: it does not work   quiet: nothing to tell
+import { age, signed } from "./words.js";
+
+// Seconds. One map a second goes out for all robots together, so that each waits for its turn.
+const FAILING = 10, LATE = 30, STUCK = 90, QUIET = 60;
+
+const KINDS = { grid: "grid", cloud: "cloud", state: "pose", markers: "markers" };
+export const kindOf = (row) => KINDS[row.kind] ?? row.kind;
+export const robotOf = (row) => row.robot || (row.kind === "markers" ? "All robots" : "Merged map");
+
+// Since when something of a row has waited while nothing of it was forwarded.
+const waits = new Map();
+
+function overdueOf(row, now) {
+  const key = `${row.kind} ${row.robot}`;
+  if (!row.waiting) {
+    waits.delete(key);
+    return 0;
+  }
+  const known = waits.get(key);
+  if (known?.forwarded === row.last_forwarded) return now - known.from;
+  const from = known ? now : row.last_accepted ?? now;
+  waits.set(key, { forwarded: row.last_forwarded, from });
+  return now - from;
+}
+
+/** Whether what a robot sends of one kind reaches the Command Post. */
+export function arrival(row, now) {
+  const overdue = overdueOf(row, now);
+  const since = row.last_forwarded === null ? Infinity : now - row.last_forwarded;
+  const throttled = row.last_status === 429;
+  if (row.last_status >= 400 && row.last_status < 500 && !throttled) return { level: "bad", word: "refused" };
+  if (overdue > STUCK) return { level: "bad", word: "not arriving" };
+  if (throttled) return { level: "wait", word: "throttled" };
+  if (row.last_sentence && overdue > FAILING) return { level: "bad", word: "not arriving" };
+  if (row.last_sentence) return { level: "wait", word: "failing" };
+  if (overdue > LATE) return { level: "wait", word: "late" };
+  if (since === Infinity) return { level: "wait", word: "waiting" };
+  if (since > QUIET) return { level: "quiet", word: "quiet" };
+  return { level: "good", word: "arriving" };
+}
+
+const RANK = ["quiet", "good", "wait", "bad"];
+export const worst = (verdicts) =>
+  verdicts.reduce((a, b) => (RANK.indexOf(b.level) > RANK.indexOf(a.level) ? b : a), { level: "quiet" });
+
+/** One sentence over all maps: is my map arriving? */
+export function overall(activities, now) {
+  const maps = activities.filter((row) => row.kind === "grid" || row.kind === "cloud");
+  if (maps.length === 0) return { level: "quiet", word: "No robot has sent a map yet" };
+  const verdicts = maps.map((row) => ({ ...arrival(row, now), row }));
+  const { level } = worst(verdicts);
+  const those = verdicts.filter((verdict) => verdict.level === level);
+  const names = [...new Set(those.map(({ row }) => `${robotOf(row)} ${kindOf(row)}`))];
+  const who = names.length > 3 ? `${names.slice(0, 2).join(", ")} and ${names.length - 2} more` : names.join(", ");
+  if (level === "bad") return { level, word: `No: ${who}` };
+  if (level === "wait") return { level, word: `Not all: ${who}` };
+  if (level === "good") return { level, word: "Yes, all that was sent" };
+  const last = Math.min(...maps.map((row) => now - (row.last_forwarded ?? -Infinity)));
+  return { level, word: `All arrived; nothing new for ${age(last - (last % 30))}` };
+}
+
+/** Where a report is in its life. */
+export function life(report) {
+  switch (report.state) {
+    case "waiting": return { level: "wait", word: "waiting" };
+    case "sending": return { level: "wait", word: "sending" };
+    case "in doubt": return { level: "bad", word: "in doubt" };
+    case "refused": return { level: "bad", word: "refused" };
+    case "answered":
+      if (report.score_change === null) return { level: "quiet", word: report.report_status || "answered" };
+      if (report.score_change > 0) return { level: "good", word: `scored ${signed(report.score_change)}` };
+      return { level: "quiet", word: `${signed(report.score_change)} points` };
+    default: return { level: "quiet", word: report.state };
+  }
+}
+
+export function endpoint(row) {
+  if (row.trouble) return { level: "bad", word: row.connected ? "failing" : "not connected" };
+  if (!row.connected) return { level: "wait", word: "not connected" };
+  return row.last_status >= 400 ? { level: "wait", word: "connected" } : { level: "good", word: "connected" };
+}

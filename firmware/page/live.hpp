@@ -1,0 +1,40 @@
+#pragma once
+
+#include <memory>
+#include <vector>
+
+#include "intake/server.hpp"
+#include "loop/loop.hpp"
+#include "page/page.hpp"
+
+namespace adit::page {
+
+/// The pages that are open, each fed by server-sent events (HTML Living Standard 9.2): one at once, then one
+/// whenever something changed, though at most Page::kEventsPerSecond, and a heartbeat by which a page knows
+/// that it has not lost the box.
+class Live {
+ public:
+  static constexpr std::chrono::milliseconds kHeartbeat{4000};  // a page gives up after 6 s of silence
+  /// Pages at once, so that forgotten ones leave the robots their connections.
+  static constexpr std::size_t kMostPages = 24;
+
+  Live(loop::Loop& loop, const Source& source);
+
+  /// Answers with a stream of events, or 503 where kMostPages are open.
+  void open(intake::Responder& responder);
+  void changed();
+
+ private:
+  std::string event() const;
+  void send_to_all();
+  void drop_the_gone(std::string_view bytes);
+
+  loop::Loop& loop_;
+  const Source& source_;
+  std::vector<std::shared_ptr<intake::Stream>> pages_;
+  loop::Source timer_;
+  loop::Instant sent_;
+  bool dirty_ = false;
+};
+
+}  // namespace adit::page

@@ -1,0 +1,126 @@
+#include <concepts>
+
+#include "codec/json.hpp"
+#include "page/page.hpp"
+
+namespace adit::page {
+namespace {
+
+using codec::Value;
+
+Value json(const std::string& text) {
+  return {text};
+}
+Value json(bool value) {
+  return {value};
+}
+Value json(double value) {
+  return {value};
+}
+template <std::signed_integral Whole>
+Value json(Whole value) {
+  return {std::int64_t{value}};
+}
+template <std::unsigned_integral Whole>
+  requires(!std::same_as<Whole, bool>)
+Value json(Whole value) {
+  return {std::uint64_t{value}};
+}
+
+Value json(const icd::Point& point) {
+  return {Value::Object{{"x", json(point.x)}, {"y", json(point.y)}, {"z", json(point.z)}}};
+}
+
+Value json(const icd::RunStatus& run) {
+  return {Value::Object{{"score", json(run.score)},
+                        {"run_clock", json(run.run_clock)},
+                        {"remaining_reports", json(run.remaining_reports)},
+                        {"current_team", json(run.current_team)}}};
+}
+
+template <class T>
+Value json(const std::optional<T>& value) {
+  return value ? json(*value) : Value{};
+}
+
+Value json(const EndpointRow& row) {
+  return {Value::Object{{"name", json(row.name)},
+                        {"address", json(row.address)},
+                        {"connected", json(row.connected)},
+                        {"trouble", json(row.trouble)},
+                        {"last_status", json(row.last_status)},
+                        {"answer_ms", json(row.answer_ms)}}};
+}
+
+Value json(const ReportRow& row) {
+  return {Value::Object{{"number", json(row.number)},
+                        {"type", json(row.type)},
+                        {"position", json(row.position)},
+                        {"sender", json(row.sender)},
+                        {"received", json(row.received)},
+                        {"changed", json(row.changed)},
+                        {"state", json(row.state)},
+                        {"status", json(row.status)},
+                        {"report_status", json(row.report_status)},
+                        {"score_change", json(row.score_change)},
+                        {"note", json(row.note)}}};
+}
+
+Value json(const ActivityRow& row) {
+  return {Value::Object{{"kind", json(row.kind)},
+                        {"robot", json(row.robot)},
+                        {"accepted", json(row.accepted)},
+                        {"forwarded", json(row.forwarded)},
+                        {"replaced", json(row.replaced)},
+                        {"merged", json(row.merged)},
+                        {"throttled", json(row.throttled)},
+                        {"failed", json(row.failed)},
+                        {"refused_upstream", json(row.refused_upstream)},
+                        {"waiting", json(row.waiting)},
+                        {"last_accepted", json(row.last_accepted)},
+                        {"last_forwarded", json(row.last_forwarded)},
+                        {"bytes_received", json(row.bytes_received)},
+                        {"bytes_sent", json(row.bytes_sent)},
+                        {"last_status", json(row.last_status)},
+                        {"last_sentence", json(row.last_sentence)}}};
+}
+
+Value json(const RefusalRow& row) {
+  return {Value::Object{{"at", json(row.at)},
+                        {"uri", json(row.uri)},
+                        {"sender", json(row.sender)},
+                        {"status", json(row.status)},
+                        {"sentence", json(row.sentence)}}};
+}
+
+Value json(const LightRow& row) {
+  return {Value::Object{{"name", json(row.name)}, {"pattern", json(row.pattern)}}};
+}
+
+template <class Row>
+Value json(const std::vector<Row>& rows) {
+  Value::Array array;
+  array.reserve(rows.size());
+  for (const Row& row : rows) array.push_back(json(row));
+  return {std::move(array)};
+}
+
+}  // namespace
+
+std::string write_run_view(const RunView& view) {
+  return codec::write_json({Value::Object{{"now", json(view.now)},
+                                          {"version", json(view.version)},
+                                          {"run", json(view.run)},
+                                          {"run_heard", json(view.run_heard)},
+                                          {"endpoints", json(view.endpoints)},
+                                          {"reports", json(view.reports)},
+                                          {"activities", json(view.activities)},
+                                          {"refusals", json(view.refusals)},
+                                          {"lights", json(view.lights)},
+                                          {"budget_mbit", json(view.budget_mbit)},
+                                          {"sent_mbit", json(view.sent_mbit)},
+                                          {"queued_bytes", json(view.queued_bytes)},
+                                          {"attention", json(view.attention)}}});
+}
+
+}  // namespace adit::page

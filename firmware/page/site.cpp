@@ -1,0 +1,31 @@
+#include "page/site.hpp"
+
+#include <algorithm>
+#include <utility>
+
+namespace adit::page {
+namespace {
+
+constexpr std::pair<std::string_view, std::string_view> kContentTypes[] = {
+    {".html", "text/html; charset=utf-8"},
+    {".css", "text/css; charset=utf-8"},
+    {".js", "text/javascript; charset=utf-8"},
+    {".svg", "image/svg+xml"},
+};
+
+}  // namespace
+
+const File* file_at(std::string_view path) {
+  const auto files = embedded_files();
+  const auto found = std::ranges::find(files, path == "/" ? "/index.html" : path, &File::path);
+  return found == files.end() ? nullptr : &*found;
+}
+
+std::string_view content_type_of(const File& file) {
+  for (const auto& [ending, type] : kContentTypes) {
+    if (file.path.ends_with(ending)) return type;
+  }
+  return "application/octet-stream";
+}
+
+}  // namespace adit::page

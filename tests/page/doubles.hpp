@@ -1,0 +1,79 @@
+#pragma once
+
+#include <fstream>
+#include <iterator>
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "intake/server.hpp"
+#include "page/page.hpp"
+
+namespace adit::page {
+
+struct FakeSource final : Source {
+  RunView view() const override {
+    ++asked;
+    return now;
+  }
+  RunView now;
+  mutable int asked = 0;
+};
+
+class FakeHead final : public intake::RequestHead {
+ public:
+  FakeHead(std::string method, std::string path, std::string if_none_match = "")
+      : method_(std::move(method)), path_(std::move(path)), if_none_match_(std::move(if_none_match)) {}
+  std::string_view method() const override { return method_; }
+  std::string_view path() const override { return path_; }
+  std::string_view query(std::string_view) const override { return ""; }
+  std::string_view header(std::string_view name) const override {
+    return name == "If-None-Match" ? if_none_match_ : std::string_view{};
+  }
+  std::optional<std::uint64_t> content_length() const override { return 0; }
+  const std::string& peer() const override { return peer_; }
+
+ private:
+  std::string method_, path_, if_none_match_, peer_ = "10.0.0.5";
+};
+
+struct FakeStream final : intake::Stream {
+  bool send(std::string_view bytes) override {
+    if (!gone) sent.emplace_back(bytes);
+    return !gone;
+  }
+  std::vector<std::string> sent;
+  bool gone = false;
+};
+
+struct FakeResponder final : intake::Responder {
+  void answer(intake::Answer answer) override { answered = std::move(answer); }
+  std::shared_ptr<intake::Stream> stream(std::string_view content_type) override {
+    stream_type = content_type;
+    return streaming = std::make_shared<FakeStream>();
+  }
+  bool client_gone() const override { return false; }
+
+  std::optional<intake::Answer> answered;
+  std::shared_ptr<FakeStream> streaming;
+  std::string stream_type;
+};
+
+/// Hands requests on to a handler that is made later.
+struct Forward final : intake::Handler {
+  std::unique_ptr<intake::Exchange> open(const intake::RequestHead& head,
+                                         std::shared_ptr<intake::Responder> responder,
+                                         std::shared_ptr<intake::Flow> flow) override {
+    return to->open(head, std::move(responder), std::move(flow));
+  }
+  intake::Handler* to = nullptr;
+};
+
+inline std::string file_on_disk(std::string_view path) {
+  std::ifstream file(std::string(ADIT_SOURCE_DIR "/firmware/page/files") + std::string(path),
+                     std::ios::binary);
+  return {std::istreambuf_iterator<char>(file), {}};
+}
+
+}  // namespace adit::page

@@ -1,0 +1,145 @@
+#include "page/page.hpp"
+
+#include <gmock/gmock.h>
+
+#include <nlohmann/json.hpp>
+
+#include "intake/raw_client.hpp"
+#include "intake/served.hpp"
+#include "page/doubles.hpp"
+#include "page/scenes.hpp"
+#include "page/site.hpp"
+
+namespace adit::page {
+namespace {
+
+using testing::HasSubstr;
+using testing::StartsWith;
+
+class PageTest : public testing::Test {
+ protected:
+  intake::Answer get(std::string path, std::string if_none_match = "", std::string method = "GET") {
+    auto responder = std::make_shared<FakeResponder>();
+    EXPECT_EQ(
+        page.open(FakeHead{std::move(method), std::move(path), std::move(if_none_match)}, responder, {}),
+        nullptr);
+    EXPECT_TRUE(responder->answered) << "a page answers at once";
+    return responder->answered.value_or(intake::Answer{});
+  }
+
+  loop::Loop loop;
+  FakeSource source;
+  Page page{loop, source};
+};
+
+std::string header(const intake::Answer& answer, std::string_view name) {
+  const auto found = std::ranges::find(answer.headers, name, &intake::Header::name);
+  return found == answer.headers.end() ? "" : found->value;
+}
+
+TEST_F(PageTest, ServesItsFilesWithTheirTypes) {
+  EXPECT_EQ(get("/").content_type, "text/html; charset=utf-8");
+  EXPECT_THAT(get("/").body, StartsWith("<!doctype html>"));
+  EXPECT_EQ(get("/page.css").content_type, "text/css; charset=utf-8");
+  EXPECT_EQ(get("/page.js").content_type, "text/javascript; charset=utf-8");
+  EXPECT_EQ(get("/icon.svg").content_type, "image/svg+xml");
+}
+
+TEST_F(PageTest, EmbedsItsFilesByteForByte) {
+  for (const File& file : embedded_files()) {
+    EXPECT_EQ(file.body, file_on_disk(file.path)) << file.path;
+    EXPECT_NE(content_type_of(file), "application/octet-stream") << file.path;
+  }
+}
+
+TEST_F(PageTest, SendsAFileAgainOnlyWhereItChanged) {
+  const auto first = get("/page.css");
+  EXPECT_EQ(header(first, "Cache-Control"), "no-cache");
+  const auto again = get("/page.css", header(first, "ETag"));
+  EXPECT_EQ(static_cast<int>(again.status), 304);
+  EXPECT_EQ(again.body, "");
+  EXPECT_EQ(header(again, "ETag"), header(first, "ETag"));
+  EXPECT_EQ(get("/page.css", "W/\"old\", " + header(first, "ETag")).body, "");
+  EXPECT_EQ(get("/page.css", "\"old\"").body, first.body);
+}
+
+TEST_F(PageTest, EveryAnswerKeepsTheBrowserFromLoadingAnythingElse) {
+  for (const char* path : {"/", "/page.js", "/adit/run", "/nothing"}) {
+    const auto answer = get(path);
+    EXPECT_THAT(header(answer, "Content-Security-Policy"), StartsWith("default-src 'none'")) << path;
+    EXPECT_EQ(header(answer, "Content-Security-Policy").find("unsafe"), std::string::npos);
+    EXPECT_EQ(header(answer, "X-Content-Type-Options"), "nosniff") << path;
+    EXPECT_EQ(header(answer, "Referrer-Policy"), "no-referrer") << path;
+  }
+}
+
+TEST_F(PageTest, HasNoScriptAndNoStyleThatItsPolicyWouldForbid) {
+  const std::string html = get("/").body;
+  EXPECT_EQ(html.find("<style"), std::string::npos);
+  EXPECT_EQ(html.find(" style="), std::string::npos);
+  EXPECT_EQ(html.find("<script>"), std::string::npos);
+  EXPECT_EQ(html.find("http"), std::string::npos) << "every byte is served by the box itself";
+}
+
+TEST_F(PageTest, AnswersAnythingElseWithAJsonString) {
+  for (const char* path :
+       {"/nothing", "/page", "/../page.css", "/files/page.css", "/adit/", "/adit/run/", ""}) {
+    const auto answer = get(path);
+    EXPECT_EQ(answer.status, icd::Status::NotFound) << path;
+    EXPECT_EQ(answer.content_type, "application/json");
+    EXPECT_TRUE(nlohmann::json::parse(answer.body).is_string());
+  }
+}
+
+TEST_F(PageTest, TakesNothingButGet) {
+  for (const char* path : {"/", "/adit/run", "/adit/events"}) {
+    for (const char* method : {"POST", "DELETE", "OPTIONS"}) {
+      const auto answer = get(path, "", method);
+      EXPECT_EQ(answer.status, icd::Status::MethodNotAllowed) << method << ' ' << path;
+      EXPECT_EQ(header(answer, "Allow"), "GET, HEAD");
+    }
+  }
+}
+
+TEST_F(PageTest, GivesTheRunAsJsonThatNobodyKeeps) {
+  source.now = *scene("calm", 1000, 0);
+  const auto answer = get("/adit/run");
+  EXPECT_EQ(answer.content_type, "application/json");
+  EXPECT_EQ(header(answer, "Cache-Control"), "no-store");
+  EXPECT_EQ(answer.body, write_run_view(source.now));
+}
+
+TEST(PageOnAServer, ServesABrowser) {
+  std::unique_ptr<Page> page;
+  Forward forward;
+  intake::Served served{forward};
+  FakeSource source;
+  source.now = *scene("calm", 1000, 0);
+  served.on_loop([&] { forward.to = (page = std::make_unique<Page>(served.loop(), source)).get(); });
+
+  intake::RawClient client{served.port()};
+  client.send(intake::request("GET", "/page.css"));
+  const auto style = client.reply();
+  ASSERT_TRUE(style);
+  EXPECT_EQ(style->status, 200);
+  EXPECT_EQ(style->body, file_on_disk("/page.css"));
+  client.send(intake::request("GET", "/page.css", "If-None-Match: " + style->header("etag") + "\r\n"));
+  const auto again = client.reply();
+  ASSERT_TRUE(again);
+  EXPECT_EQ(again->status, 304);
+  EXPECT_EQ(again->body, "");
+
+  client.send(intake::request("GET", "/adit/events"));
+  EXPECT_TRUE(client.wait_for("text/event-stream"));
+  EXPECT_TRUE(client.wait_for("\"score\":7"));
+  served.on_loop([&] {
+    source.now.run->score = 8;
+    page->changed();
+  });
+  EXPECT_TRUE(client.wait_for("\"score\":8", std::chrono::seconds{2}));
+  served.on_loop([&] { forward.to = nullptr, page.reset(); });
+  EXPECT_TRUE(client.wait_for("\r\n0\r\n\r\n", std::chrono::seconds{2})) << "the stream ends with the page";
+}
+
+}  // namespace
+}  // namespace adit::page

@@ -1,0 +1,71 @@
+// Serves the page with a scene of scenes.hpp, for a browser: `adit_page_scenes PORT [SCENE]`. Each line on
+// standard input is the name of the next scene; its end ends the program.
+#include <sys/epoll.h>
+#include <unistd.h>
+
+#include <cstdio>
+#include <cstdlib>
+#include <string>
+#include <utility>
+
+#include "page/scenes.hpp"
+
+namespace adit::page {
+namespace {
+
+class Stage final : public Source {
+ public:
+  Stage(loop::Loop& loop, std::string name) : loop_(loop), began_(loop.stamp_now()), name_(std::move(name)) {}
+
+  RunView view() const override {
+    const Time now = loop_.stamp_now();
+    return *scene(name_, now, now - began_);
+  }
+
+  bool change_to(const std::string& name) {
+    const bool known = scene(name, 0, 0).has_value();
+    if (known) name_ = name;
+    return known;
+  }
+
+ private:
+  loop::Loop& loop_;
+  Time began_;
+  std::string name_;
+};
+
+int serve(std::uint16_t port, const std::string& first) {
+  loop::Loop loop;
+  Stage stage{loop, "empty"};
+  if (!stage.change_to(first)) return std::fprintf(stderr, "no such scene: %s\n", first.c_str()), 2;
+  Page page{loop, stage};
+  auto server = intake::Server::start(loop, {.address = "127.0.0.1", .port = port, .interface = {}}, page);
+  if (!server) return std::fprintf(stderr, "%s\n", server.error().c_str()), 1;
+  std::printf("%d\n", (*server)->port());
+  std::fflush(stdout);
+
+  loop::Source second;
+  second = loop.timer([&] {
+    page.changed();
+    second.call_at(loop.now() + std::chrono::seconds{1});
+  });
+  second.call_at(loop.now());
+  std::string line;
+  const auto input = loop.watch(STDIN_FILENO, EPOLLIN, [&](std::uint32_t) {
+    char byte = 0;
+    if (::read(STDIN_FILENO, &byte, 1) != 1) return loop.stop();
+    if (byte != '\n') return line.push_back(byte);
+    if (stage.change_to(std::exchange(line, {}))) page.changed();
+  });
+  loop.run();
+  return 0;
+}
+
+}  // namespace
+}  // namespace adit::page
+
+int main(int count, char** arguments) {
+  const int port =
+      count > 1 ? std::atoi(arguments[1]) : 0;  // NOLINT(cert-err34-c): 0, any port, is right then
+  return adit::page::serve(static_cast<std::uint16_t>(port), count > 2 ? arguments[2] : "calm");
+}

@@ -1,0 +1,52 @@
+# Puts files into a program: a C++ source that defines `std::span<const File> embedded_files()` in NAMESPACE,
+# where HEADER declares it and `struct File {std::string_view path, etag, body;}`.
+#   adit_embed(page_files.cpp HEADER page/site.hpp NAMESPACE adit::page FOLDER files FILES index.html page.css)
+# This file is also the script that writes that source at build time, whenever one of the files has changed.
+if(NOT CMAKE_SCRIPT_MODE_FILE)
+  function(adit_embed output)
+    cmake_parse_arguments(EMBED "" "HEADER;NAMESPACE;FOLDER" "FILES" ${ARGN})
+    set(script ${PROJECT_SOURCE_DIR}/toolchain/cmake/embed.cmake)
+    list(TRANSFORM EMBED_FILES PREPEND ${EMBED_FOLDER}/ OUTPUT_VARIABLE paths)
+    string(REPLACE ";" "," names "${EMBED_FILES}")
+    add_custom_command(
+      OUTPUT ${output}
+      COMMAND ${CMAKE_COMMAND} -DOUTPUT=${output} -DHEADER=${EMBED_HEADER} -DNAMESPACE=${EMBED_NAMESPACE}
+              -DFOLDER=${EMBED_FOLDER} -DFILES=${names} -P ${script}
+      DEPENDS ${script} ${paths}
+      COMMENT "Embedding ${EMBED_FOLDER}"
+      VERBATIM)
+  endfunction()
+  return()
+endif()
+
+string(REPLACE "," ";" FILES "${FILES}")
+set(bodies "")
+set(table "")
+foreach(name IN LISTS FILES)
+  string(MAKE_C_IDENTIFIER "${name}" identifier)
+  file(READ ${FOLDER}/${name} bytes HEX)
+  file(SHA256 ${FOLDER}/${name} hash)
+  string(SUBSTRING ${hash} 0 16 etag)
+  string(REGEX REPLACE "(..)" "\\\\x\\1" bytes "${bytes}")
+  # A literal may be no longer than 65,535 characters (C++ [implimits]): in pieces, which the compiler joins.
+  string(REGEX REPLACE "((\\\\x..)(\\\\x..)?(\\\\x..)?(\\\\x..)?(\\\\x..)?(\\\\x..)?(\\\\x..)?(\\\\x..)?)" "\"\\1\"\n" bytes "${bytes}")
+  string(APPEND bodies "constexpr char k_${identifier}[] =\n${bytes};\n")
+  string(APPEND table
+    "    {\"/${name}\", \"\\\"${etag}\\\"\", {k_${identifier}, sizeof k_${identifier} - 1}},\n")
+endforeach()
+file(WRITE ${OUTPUT} "// Written by toolchain/cmake/embed.cmake.
+#include \"${HEADER}\"
+
+namespace ${NAMESPACE} {
+namespace {
+
+${bodies}
+constexpr File kFiles[] = {
+${table}};
+
+}  // namespace
+
+std::span<const File> embedded_files() { return kFiles; }
+
+}  // namespace ${NAMESPACE}
+")

@@ -1,0 +1,209 @@
+#include <gtest/gtest.h>
+#include <zlib.h>
+
+#include "intake/team.hpp"
+
+namespace adit::intake {
+namespace {
+
+using std::chrono::milliseconds;
+using std::chrono::seconds;
+
+std::string cbor_of(std::string_view json) {
+  std::string bytes;
+  nlohmann::json::to_cbor(nlohmann::json::parse(json), bytes);
+  return bytes;
+}
+
+std::string gzipped(std::string_view bytes) {
+  z_stream stream{};
+  deflateInit2(&stream, 6, Z_DEFLATED, 31, 8, Z_DEFAULT_STRATEGY);
+  std::string out(deflateBound(&stream, bytes.size()), '\0');
+  stream.next_in = reinterpret_cast<Bytef*>(const_cast<char*>(bytes.data()));
+  stream.avail_in = static_cast<uInt>(bytes.size());
+  stream.next_out = reinterpret_cast<Bytef*>(out.data());
+  stream.avail_out = static_cast<uInt>(out.size());
+  deflate(&stream, Z_FINISH);
+  out.resize(stream.total_out);
+  deflateEnd(&stream);
+  return out;
+}
+
+const std::string kGzip = "Content-Encoding: gzip\r\n";
+
+TEST(IcdBodies, OfStateAndMarkersAreTakenInEveryForm) {
+  Team team;
+  const std::pair<std::string_view, std::string_view> posts[] = {{"/state/update", kStateBody},
+                                                                 {"/markers/update", kMarkersBody}};
+  for (const auto& [path, json] : posts) {
+    const std::string cbor = cbor_of(json);
+    for (const std::string& text :
+         {authorized("POST", path, kJsonType, json), authorized("POST", path, kCborType, cbor),
+          authorized("POST", path, std::string(kJsonType) + kGzip, gzipped(json)),
+          authorized("POST", path, std::string(kCborType) + kGzip, gzipped(cbor))}) {
+      const auto reply = team.ask(text);
+      ASSERT_TRUE(reply);
+      EXPECT_EQ(reply->status, 200) << reply->body;
+      EXPECT_EQ(reply->body, "null");
+      EXPECT_EQ(reply->header("content-type"), "application/json");
+      EXPECT_EQ(reply->header("access-control-allow-origin"), "*");
+    }
+  }
+  team.served.on_loop([&] {
+    EXPECT_EQ(team.desk.states.size(), 4u);
+    EXPECT_EQ(team.desk.markers.size(), 4u);
+    EXPECT_EQ(team.desk.states.at(0).poses.at(0).name.text(), "r1");
+    EXPECT_EQ(team.desk.senders.at(0).bytes, kStateBody.size());
+    EXPECT_EQ(team.desk.senders.at(0).address, "127.0.0.1");
+  });
+}
+
+TEST(IcdBodies, InChunksOfAnySizeAreTheSame) {
+  Team team;
+  for (const std::size_t size : {1u, 7u, 64u}) {
+    RawClient client(team.served.port());
+    client.send(
+        authorized("POST", "/state/update", std::string(kJsonType) + "Transfer-Encoding: chunked\r\n"));
+    for (std::string_view rest = kStateBody; !rest.empty(); rest.remove_prefix(std::min(size, rest.size()))) {
+      const std::string_view chunk = rest.substr(0, size);
+      std::array<char, 16> head{};
+      std::snprintf(head.data(), head.size(), "%zx\r\n", chunk.size());
+      client.send(head.data() + std::string(chunk) + "\r\n");
+    }
+    client.send("0\r\n\r\n");
+    EXPECT_EQ(client.reply()->status, 200);
+  }
+}
+
+TEST(IcdBodies, OfReportsAreAnsweredByTheDesk) {
+  Team team;
+  for (const auto& [headers, body] : {std::pair(std::string(kJsonType), std::string(kReportBody)),
+                                      std::pair(std::string(kJsonType) + kGzip, gzipped(kReportBody))}) {
+    RawClient client(team.served.port());
+    client.send(authorized("POST", "/api/artifact_reports", headers, body));
+    ASSERT_TRUE(team.served.eventually([&] { return team.desk.responders.size() == 1; }));
+    EXPECT_FALSE(client.reply(milliseconds(20)));
+    team.served.on_loop([&] {
+      EXPECT_EQ(team.desk.reports.back(), (icd::ArtifactReport{"Backpack", {1.5, -2, 0}}));
+      team.desk.responders[0]->answer(
+          {.status = icd::Status::Created, .body = R"({"id": 1})", .headers = {{"X-Post", "1"}}});
+      team.desk.responders.clear();
+    });
+    const auto reply = client.reply();
+    ASSERT_TRUE(reply);
+    EXPECT_EQ(reply->status, 201);
+    EXPECT_EQ(reply->body, R"({"id": 1})");
+    EXPECT_EQ(reply->header("x-post"), "1");
+    EXPECT_EQ(reply->header("access-control-allow-origin"), "*");
+  }
+}
+
+TEST(IcdBodies, AreNotAskedForByStatus) {
+  Team team;
+  RawClient client(team.served.port());
+  for (const std::string_view body : {"", "ignored"}) {
+    client.send(authorized("GET", "/api/status", {}, body));
+    ASSERT_TRUE(team.served.eventually([&] { return team.desk.responders.size() == 1; }));
+    team.served.on_loop([&] {
+      team.desk.responders[0]->answer({.body = R"({"score": 1})", .headers = {}});
+      team.desk.responders.clear();
+    });
+    EXPECT_EQ(client.reply()->body, R"({"score": 1})");
+  }
+}
+
+TEST(IcdBodies, ThatAreWrongAreRefusedWithASentence) {
+  Team team;
+  struct Case {
+    std::string_view path, body;
+    int status;
+    std::string_view names;
+  };
+  const Case cases[] = {
+      {"/state/update", "", 400, ""},
+      {"/state/update", "{", 400, ""},
+      {"/state/update", "{} x", 400, ""},
+      {"/state/update", "{}", 422, "poses"},
+      {"/state/update", "[]", 422, ""},
+      {"/markers/update", R"({"markers": 1})", 422, "markers"},
+      {"/api/artifact_reports", R"({"x": 1, "y": 2, "type": "Rope"})", 422, "z"},
+      {"/api/artifact_reports", R"({"x": 1, "y": 2, "z": 3, "type": "Rop"})", 422, "type"},
+      {"/map/update", "{}", 422, ""},
+      {"/map/update", "nul", 400, ""},
+      {"/map/update", "", 400, ""},
+      {"/map/update", R"({"type": "Octree", "msg": {}})", 422, "type"},
+  };
+  for (const Case& c : cases) {
+    const auto reply = team.ask(authorized("POST", c.path, kJsonType, c.body));
+    ASSERT_TRUE(reply) << c.path << c.body;
+    EXPECT_EQ(reply->status, c.status) << c.body << reply->body;
+    EXPECT_TRUE(is_json_string(reply->body)) << reply->body;
+    EXPECT_NE(reply->body.find(c.names), std::string::npos) << reply->body;
+    EXPECT_EQ(reply->header("access-control-allow-origin"), "*");
+  }
+  team.served.on_loop([&] {
+    EXPECT_EQ(team.desk.refusals.size(), std::size(cases));
+    EXPECT_TRUE(team.desk.states.empty() && team.desk.markers.empty() && team.desk.reports.empty() &&
+                team.desk.maps.empty());
+  });
+}
+
+TEST(IcdBodies, AreRefusedAsSoonAsTheyAreWrong) {
+  Team team;
+  for (const std::string_view path : {"/state/update", "/map/update"}) {
+    RawClient client(team.served.port());
+    client.send(authorized("POST", path, std::string(kJsonType) + "Content-Length: 1000000\r\n") + "{]");
+    const auto reply = client.reply(seconds(2));
+    ASSERT_TRUE(reply) << path;
+    EXPECT_EQ(reply->status, 400) << path;
+  }
+}
+
+TEST(IcdBodies, ThatGrowOverAMegabyteAreRefused) {
+  Team team;
+  const std::string bomb = gzipped("{\"poses\": [" + std::string(3u << 20, ' ') + "]}");
+  const auto reply = team.ask(authorized("POST", "/state/update", std::string(kJsonType) + kGzip, bomb));
+  ASSERT_TRUE(reply);
+  EXPECT_EQ(reply->status, 413);
+}
+
+TEST(IcdBodies, AreRefusedWhereTheDeskIsFull) {
+  Team team;
+  team.served.on_loop([&] { team.desk.full = {icd::Status::TooManyRequests, "the queue is full"}; });
+  for (const auto& [path, body] :
+       {std::pair("/state/update", std::string(kStateBody)),
+        std::pair("/markers/update", std::string(kMarkersBody)), std::pair("/map/update", grid_body(4, 4))}) {
+    const auto reply = team.ask(authorized("POST", path, kJsonType, body));
+    ASSERT_TRUE(reply);
+    EXPECT_EQ(reply->status, 429);
+    EXPECT_EQ(reply->body, "\"the queue is full\"");
+  }
+}
+
+TEST(IcdBodies, OfSeveralRequestsAreTakenOnOneConnection) {
+  Team team;
+  RawClient client(team.served.port());
+  const std::string state = authorized("POST", "/state/update", kJsonType, kStateBody);
+  const std::string map = authorized("POST", "/map/update", kJsonType, grid_body(30, 20));
+  client.send(state + map + authorized("POST", "/state/update", kJsonType, "{}") + map + state);
+  for (const int status : {200, 200, 422, 200, 200}) {
+    const auto reply = client.reply();
+    ASSERT_TRUE(reply);
+    EXPECT_EQ(reply->status, status);
+  }
+}
+
+TEST(IcdBodies, ReachTheDeskOnlyWhole) {
+  Team team;
+  const std::string whole = authorized("POST", "/state/update", kJsonType, kStateBody);
+  for (const std::size_t cut : {std::size_t{10}, whole.size() - kStateBody.size(), whole.size() - 1}) {
+    RawClient client(team.served.port());
+    client.send(whole.substr(0, cut));
+    if (cut % 2 == 0) client.reset();
+  }
+  EXPECT_TRUE(team.served.eventually([&] { return team.served.server().connections() == 0; }));
+  team.served.on_loop([&] { EXPECT_TRUE(team.desk.states.empty()); });
+}
+
+}  // namespace
+}  // namespace adit::intake

@@ -1,0 +1,221 @@
+#include "intake/icd_routes.hpp"
+
+#include <gtest/gtest.h>
+
+#include "intake/team.hpp"
+
+namespace adit::intake {
+namespace {
+
+using std::chrono::milliseconds;
+using std::chrono::seconds;
+
+struct Post {
+  std::string_view path, body;
+};
+constexpr Post kPosts[] = {{"/api/artifact_reports", kReportBody},
+                           {"/state/update", kStateBody},
+                           {"/markers/update", kMarkersBody},
+                           {"/map/update", "{}"}};
+
+TEST(IcdRoutes, AskForATokenBeforeAnythingElse) {
+  Team team;
+  const std::string_view wrong[] = {
+      "",
+      "Authorization: \r\n",
+      "Authorization: Bearer\r\n",
+      "Authorization: Bearer wrong\r\n",
+      "Authorization: Bearer flux230{showroo\r\n",
+      "Authorization: Bearer flux230{showroomm\r\n",
+      "Authorization: Bearer FLUX230{SHOWROOM\r\n",
+      "Authorization: flux230{showroom\r\n",
+      "Authorization: Basic flux230{showroom\r\n",
+      "Authorization: Bearer flux230{showroom the-posts-own-token\r\n",
+      "X-Authorization: Bearer flux230{showroom\r\n",
+  };
+  for (const std::string_view header : wrong) {
+    for (const icd::Uri uri : icd::kUris) {
+      for (const std::string_view method : {"GET", "POST", "DELETE"}) {
+        const auto reply = team.ask(request(method, icd::path_of(uri), header, "not even JSON"));
+        ASSERT_TRUE(reply) << header;
+        EXPECT_EQ(reply->status, 401) << header;
+        EXPECT_EQ(reply->body, "\"Authorization: expected Bearer and the team's token\"");
+        EXPECT_EQ(reply->header("content-type"), "application/json");
+        EXPECT_EQ(reply->header("access-control-allow-origin"), "*");
+        EXPECT_FALSE(reply->headers.contains("www-authenticate"));  // ICD 4
+      }
+    }
+  }
+  EXPECT_EQ(team.served.on_loop([&] { return team.desk.refusals.size(); }), std::size(wrong) * 5 * 3);
+}
+
+TEST(IcdRoutes, TakeEveryKnownTokenUnderBearerInAnyCase) {
+  Team team;
+  for (const std::string_view scheme : {"Bearer", "bearer", "BEARER", "bEaReR"}) {
+    for (const std::string_view token : {kToken, kOtherToken}) {
+      const std::string header = "Authorization: " + std::string(scheme) + " " + std::string(token) + "\r\n";
+      const auto reply =
+          team.ask(request("POST", "/state/update", header + std::string(kJsonType), kStateBody));
+      ASSERT_TRUE(reply);
+      EXPECT_EQ(reply->status, 200) << header;
+    }
+  }
+}
+
+TEST(IcdRoutes, AskForNoTokenWhereThereIsNone) {
+  Team team{IcdOptions{}};
+  EXPECT_EQ(team.ask(request("POST", "/state/update", kJsonType, kStateBody))->status, 200);
+  EXPECT_EQ(team.ask(request("POST", "/state/update",
+                             "Authorization: Bearer any\r\n" + std::string(kJsonType), kStateBody))
+                ->status,
+            200);
+}
+
+TEST(IcdRoutes, RefuseOtherMethodsAndSayWhichAreAllowed) {
+  Team team;
+  for (const icd::Uri uri : icd::kUris) {
+    for (const std::string_view method : {"GET", "POST", "PUT", "DELETE", "PATCH", "get", "BREW"}) {
+      if (method == icd::method_of(uri)) continue;
+      const auto reply = team.ask(authorized(method, icd::path_of(uri)));
+      ASSERT_TRUE(reply);
+      EXPECT_EQ(reply->status, 405) << method << icd::path_of(uri);
+      EXPECT_EQ(reply->header("allow"), std::string(icd::method_of(uri)) + ", OPTIONS");
+      EXPECT_TRUE(is_json_string(reply->body)) << reply->body;
+      EXPECT_EQ(reply->header("access-control-allow-origin"), "*");
+    }
+  }
+}
+
+TEST(IcdRoutes, AnswerPreflightsWithoutAToken) {
+  Team team;
+  for (const icd::Uri uri : icd::kUris) {
+    const auto reply = team.ask(request("OPTIONS", icd::path_of(uri),
+                                        "Origin: http://base\r\nAccess-Control-Request-Method: POST\r\n"
+                                        "Access-Control-Request-Headers: authorization, x-team\r\n"));
+    ASSERT_TRUE(reply);
+    EXPECT_EQ(reply->status, 204);
+    EXPECT_EQ(reply->body, "");
+    EXPECT_EQ(reply->header("access-control-allow-origin"), "*");
+    EXPECT_EQ(reply->header("access-control-allow-methods"), std::string(icd::method_of(uri)) + ", OPTIONS");
+    EXPECT_EQ(reply->header("access-control-allow-headers"), "authorization, x-team");
+    EXPECT_FALSE(reply->header("access-control-max-age").empty());
+    EXPECT_TRUE(team.served.on_loop([&] { return team.desk.refusals.empty(); }));
+  }
+}
+
+TEST(IcdRoutes, EchoNoHeaderNamesThatAreNone) {
+  Team team;
+  for (const std::string& asked : {std::string("a\"b"), std::string("<script>"), std::string("a:b"),
+                                   std::string("x\x01"), std::string(2000, 'a'), std::string()}) {
+    const auto reply =
+        team.ask(request("OPTIONS", "/map/update", "Access-Control-Request-Headers: " + asked + "\r\n"));
+    ASSERT_TRUE(reply);
+    EXPECT_EQ(reply->header("access-control-allow-headers"), "authorization, content-type, content-encoding");
+  }
+}
+
+TEST(IcdRoutes, LeaveOtherPathsToTheOtherHandler) {
+  Team team;
+  for (const std::string_view path : {"/", "/api", "/api/status2", "/map", "/map/update/x", "/MAP/UPDATE",
+                                      "//map/update", "/x/../map/update", "/index.html", "/%2e/map/update"}) {
+    const auto reply = team.ask(authorized("POST", path, kJsonType, "{}"));
+    ASSERT_TRUE(reply) << path;
+    EXPECT_EQ(reply->status, 404) << path;
+    EXPECT_TRUE(is_json_string(reply->body)) << path;
+    EXPECT_FALSE(reply->headers.contains("access-control-allow-origin")) << path;
+  }
+}
+
+TEST(IcdRoutes, TakePathsWithATrailingSlashOrInPercents) {
+  Team team;
+  for (const std::string_view path :
+       {"/state/update", "/state/update/", "/state/update?x=1", "/%73tate/update"}) {
+    EXPECT_EQ(team.ask(authorized("POST", path, kJsonType, kStateBody))->status, 200) << path;
+  }
+}
+
+TEST(IcdRoutes, TakeTheICDsContentTypesAlone) {
+  Team team;
+  struct Case {
+    std::string_view path, type;
+    int status;  // of a body that is no JSON and no CBOR
+  };
+  const Case cases[] = {
+      {"/state/update", "application/json", 400},
+      {"/state/update", "application/json; charset=utf-8", 400},
+      {"/state/update", "APPLICATION/JSON;charset=UTF-8", 400},
+      {"/state/update", "application/cbor", 400},
+      {"/markers/update", "application/cbor", 400},
+      {"/map/update", "application/cbor", 400},
+      {"/api/artifact_reports", "application/json", 400},
+      {"/api/artifact_reports", "application/cbor", 422},  // ICD 4
+      {"/state/update", "", 422},
+      {"/state/update", "text/json", 422},
+      {"/state/update", "application/jsonx", 422},
+      {"/map/update", "multipart/form-data", 422},
+      {"/map/update", "application/x-www-form-urlencoded", 422},
+  };
+  for (const Case& c : cases) {
+    const std::string header =
+        c.type.empty() ? std::string() : "Content-Type: " + std::string(c.type) + "\r\n";
+    const auto reply = team.ask(authorized("POST", c.path, header, "\xff\xff"));
+    ASSERT_TRUE(reply);
+    EXPECT_EQ(reply->status, c.status) << c.path << c.type;
+    EXPECT_TRUE(is_json_string(reply->body)) << reply->body;
+    EXPECT_EQ(reply->body.starts_with("\"Content-Type: "), c.status == 422) << reply->body;
+  }
+}
+
+TEST(IcdRoutes, NameAContentEncodingThatIsNotKnown) {
+  Team team;
+  for (const Post& post : kPosts) {
+    const auto reply = team.ask(
+        authorized("POST", post.path, std::string(kJsonType) + "Content-Encoding: br\r\n", post.body));
+    ASSERT_TRUE(reply);
+    EXPECT_EQ(reply->status, 422);
+    EXPECT_EQ(reply->body, "\"Content-Encoding: expected gzip, deflate or none, got \\\"br\\\"\"");
+  }
+}
+
+TEST(IcdRoutes, RefuseABodyThatIsTooLargeByItsLengthAlone) {
+  Team team;
+  for (const Post& post : kPosts) {
+    RawClient client(team.served.port());
+    client.send(authorized("POST", post.path, std::string(kJsonType) + "Content-Length: 99999999999\r\n"));
+    const auto reply = client.reply(seconds(1));
+    ASSERT_TRUE(reply) << post.path;
+    EXPECT_EQ(reply->status, 413) << post.path;
+    EXPECT_TRUE(reply->body.starts_with("\"Content-Length: expected at most ")) << reply->body;
+    EXPECT_EQ(reply->header("access-control-allow-origin"), "*");
+  }
+}
+
+TEST(IcdRoutes, TurnAwayA50MegabyteBodyWithoutATokenAtOnce) {
+  Team team;
+  RawClient client(team.served.port());
+  const std::string body(50u << 20, 'x');
+  client.send(
+      "POST /map/update HTTP/1.1\r\nHost: adit\r\nContent-Type: application/cbor\r\nContent-Length: " +
+      std::to_string(body.size()) + "\r\n\r\n");
+  const auto before = std::chrono::steady_clock::now();
+  client.send_until_stalled(body, milliseconds(300));
+  const auto reply = client.reply();
+  ASSERT_TRUE(reply) << "lost to a reset";
+  EXPECT_EQ(reply->status, 401);
+  EXPECT_LT(std::chrono::steady_clock::now() - before, seconds(3));
+}
+
+TEST(IcdRoutes, TellTheDeskOfEachRefusal) {
+  Team team;
+  team.ask(authorized("POST", "/state/update", kJsonType, "{"));
+  team.served.on_loop([&] {
+    ASSERT_EQ(team.desk.refusals.size(), 1u);
+    EXPECT_EQ(team.desk.refusals[0].first, icd::Uri::StateUpdate);
+    EXPECT_EQ(team.desk.refusals[0].second.status, icd::Status::BadRequest);
+    EXPECT_FALSE(team.desk.refusals[0].second.sentence.empty());
+    EXPECT_EQ(team.desk.senders[0].address, "127.0.0.1");
+  });
+}
+
+}  // namespace
+}  // namespace adit::intake

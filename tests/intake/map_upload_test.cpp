@@ -1,0 +1,196 @@
+#include "intake/map_upload.hpp"
+
+#include <gtest/gtest.h>
+
+#include "codec/gzip.hpp"
+#include "intake/team.hpp"
+
+namespace adit::intake {
+namespace {
+
+using std::chrono::milliseconds;
+using std::chrono::seconds;
+
+std::string gzipped(const std::string& bytes) {
+  const std::span raw(reinterpret_cast<const std::uint8_t*>(bytes.data()), bytes.size());
+  return codec::gzip(icd::ChunkedBytes(raw), codec::GzipStrategy::Default).to_string();
+}
+
+std::string head_of(const std::string& body, std::string_view more = {}) {
+  return authorized(
+      "POST", "/map/update",
+      std::string(kJsonType) + std::string(more) + "Content-Length: " + std::to_string(body.size()) + "\r\n");
+}
+
+TEST(MapUpload, ReachesTheDeskDecoded) {
+  Team team;
+  const auto reply = team.ask(authorized("POST", "/map/update", kJsonType, grid_body(640, 480)));
+  ASSERT_TRUE(reply);
+  EXPECT_EQ(reply->status, 200) << reply->body;
+  EXPECT_EQ(reply->body, "null");
+  team.served.on_loop([&] {
+    ASSERT_EQ(team.desk.maps.size(), 1u);
+    const icd::MapUpdate& map = team.desk.maps[0];
+    ASSERT_TRUE(map.is_grid());
+    EXPECT_EQ(std::get<icd::OccupancyGrid>(map.msg).width, 640u);
+    EXPECT_EQ(map.data.raw_size, 640u * 480u);
+    EXPECT_EQ(map.name->text(), "r1");
+    EXPECT_EQ(team.desk.senders.at(0).bytes, grid_body(640, 480).size());
+  });
+}
+
+TEST(MapUpload, TakesAWholeBodyThatIsCompressed) {
+  Team team;
+  const std::string body = gzipped(grid_body(1000, 1000));
+  const auto reply = team.ask(
+      authorized("POST", "/map/update", std::string(kJsonType) + "Content-Encoding: gzip\r\n", body));
+  ASSERT_TRUE(reply);
+  EXPECT_EQ(reply->status, 200) << reply->body;
+  EXPECT_EQ(team.served.on_loop([&] { return team.desk.maps.at(0).data.raw_size; }), 1000u * 1000u);
+}
+
+TEST(MapUpload, MakesTheClientWaitWhileTheWorkerIsBusy) {
+  Team team;
+  Team::Busy busy(team);
+  const std::string body = grid_body(6000, 6000);
+  RawClient client(team.served.port());
+  client.send(head_of(body));
+  const std::size_t sent = client.send_until_stalled(body, milliseconds(500));
+  EXPECT_LT(sent, body.size()) << "taken into memory though nobody works on it";
+  EXPECT_EQ(team.ask(authorized("POST", "/state/update", kJsonType, kStateBody))->status, 200)
+      << "the loop waits for the worker";
+  busy.end();
+  client.send(std::string_view(body).substr(sent));
+  const auto reply = client.reply(seconds(30));
+  ASSERT_TRUE(reply);
+  EXPECT_EQ(reply->status, 200) << reply->body;
+}
+
+TEST(MapUpload, IsNotTakenOnceItsClientIsGone) {
+  Team team;
+  const std::string body = grid_body(300, 300);
+  {
+    Team::Busy busy(team);
+    RawClient whole(team.served.port());
+    whole.send(head_of(body) + body);
+    RawClient half(team.served.port());
+    half.send(head_of(body) + body.substr(0, body.size() / 2));
+    ASSERT_TRUE(team.served.eventually([&] { return team.served.server().connections() == 2; }));
+    std::this_thread::sleep_for(milliseconds(50));
+    whole.reset();
+    half.reset();
+    EXPECT_TRUE(team.served.eventually([&] { return team.served.server().connections() == 0; }));
+  }
+  EXPECT_EQ(team.ask(authorized("POST", "/map/update", kJsonType, body))->status, 200);
+  team.served.on_loop([&] {
+    EXPECT_EQ(team.desk.maps.size(), 1u);
+    EXPECT_TRUE(team.desk.refusals.empty());
+  });
+}
+
+TEST(MapUpload, IsTakenWhereItsClientHasOnlyEndedItsOwnDirection) {
+  Team team;
+  const std::string body = grid_body(300, 300);
+  Team::Busy busy(team);
+  RawClient client(team.served.port());
+  client.send(head_of(body) + body);
+  client.half_close();
+  std::this_thread::sleep_for(milliseconds(200));
+  busy.end();
+  EXPECT_EQ(client.reply()->status, 200);
+}
+
+TEST(MapUpload, IsRefusedOverTheBudgetOfAll) {
+  IcdOptions options = Team::with_tokens();
+  options.upload_bytes = 200'000;
+  Team team(options);
+  const std::string body = grid_body(300, 300);
+  {
+    Team::Busy busy(team);
+    RawClient first(team.served.port());
+    first.send(head_of(body) + body);
+    std::this_thread::sleep_for(milliseconds(100));
+    const auto reply = team.ask(head_of(body) + body);
+    ASSERT_TRUE(reply);
+    EXPECT_EQ(reply->status, 429);
+    EXPECT_TRUE(is_json_string(reply->body));
+    busy.end();
+    EXPECT_EQ(first.reply()->status, 200);
+  }
+  for (int i = 0; i < 5; ++i) EXPECT_EQ(team.ask(head_of(body) + body)->status, 200) << "not given back";
+}
+
+TEST(MapUpload, GivesItsBudgetBackWhenItIsRefusedOrLost) {
+  IcdOptions options = Team::with_tokens();
+  options.upload_bytes = 200'000;
+  Team team(options);
+  const std::string body = grid_body(300, 300);
+  for (int i = 0; i < 10; ++i) {
+    EXPECT_EQ(team.ask(head_of(body) + "{]" + body.substr(2))->status, 400);
+    RawClient lost(team.served.port());
+    lost.send(head_of(body) + body.substr(0, 100'000));
+    lost.reset();
+  }
+  EXPECT_TRUE(team.served.eventually([&] { return team.served.server().connections() == 0; }));
+  EXPECT_EQ(team.ask(head_of(body) + body)->status, 200);
+}
+
+TEST(MapUpload, HoldsACompressedBodyByTheBudgetToo) {
+  IcdOptions options = Team::with_tokens();
+  options.upload_bytes = 50'000;
+  Team team(options);
+  const std::string small = gzipped(grid_body(1000, 1000));
+  ASSERT_LT(small.size(), 50'000u);
+  EXPECT_EQ(team.ask(head_of(small, "Content-Encoding: gzip\r\n") + small)->status, 200);
+  std::string noise(60'000, '\0');
+  for (std::size_t i = 0; i < noise.size(); ++i) noise[i] = static_cast<char>(i * 2654435761u >> 13);
+  EXPECT_EQ(team.ask(head_of(noise, "Content-Encoding: gzip\r\n") + noise)->status, 429);
+}
+
+TEST(MapUpload, RefusesAMapThatGrowsOverTheLimit) {
+  IcdOptions options = Team::with_tokens();
+  options.rules.map_bytes = 100'000;
+  Team team(options);
+  const std::string bomb = gzipped(grid_body(2000, 2000));
+  const auto reply = team.ask(head_of(bomb, "Content-Encoding: gzip\r\n") + bomb);
+  ASSERT_TRUE(reply);
+  EXPECT_TRUE(reply->status == 413 || reply->status == 422) << reply->status;
+  const std::string large = grid_body(400, 400);
+  const auto other = team.ask(head_of(large) + large);
+  ASSERT_TRUE(other);
+  EXPECT_TRUE(other->status == 413 || other->status == 422) << other->status;
+  EXPECT_TRUE(team.served.on_loop([&] { return team.desk.maps.empty(); }));
+}
+
+TEST(MapUpload, EndsWithTheServerInEveryPhase) {
+  Team team;
+  const std::string body = grid_body(3000, 3000);
+  Team::Busy busy(team);
+  std::vector<std::unique_ptr<RawClient>> clients;
+  for (const std::size_t size : {std::size_t{0}, std::size_t{10}, std::size_t{500'000}, body.size() / 2}) {
+    clients.push_back(std::make_unique<RawClient>(team.served.port()));
+    clients.back()->send(head_of(body));
+    clients.back()->send_until_stalled(std::string_view(body).substr(0, size), milliseconds(50));
+  }
+  team.served.on_loop([&] { team.served.destroy_server(); });
+  for (auto& client : clients) EXPECT_TRUE(client->closed_within(seconds(2)));
+  busy.end();
+  std::this_thread::sleep_for(milliseconds(50));
+  team.served.on_loop([&] { EXPECT_TRUE(team.desk.maps.empty()); });
+}
+
+TEST(MapUpload, EndsWithTheWorkersWhileOneIsAtWork) {
+  Team team;
+  const std::string body = grid_body(3000, 3000);
+  RawClient client(team.served.port());
+  client.send(head_of(body));
+  client.send_until_stalled(body, milliseconds(20));
+  team.served.on_loop([&] {
+    team.front.workers = nullptr;  // waits for the one at work
+    team.served.destroy_server();
+    EXPECT_TRUE(team.desk.maps.empty());
+  });
+}
+
+}  // namespace
+}  // namespace adit::intake

@@ -1,0 +1,169 @@
+#pragma once
+
+#include <nlohmann/json.hpp>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "intake/desk.hpp"
+#include "intake/icd_routes.hpp"
+#include "intake/raw_client.hpp"
+#include "intake/served.hpp"
+#include "loop/workers.hpp"
+
+namespace adit::intake {
+
+inline constexpr std::string_view kToken = "flux230{showroom";
+inline constexpr std::string_view kOtherToken = "the-posts-own-token";
+
+/// Keeps what it is given. Its members are for the loop's thread.
+class FakeDesk final : public Desk {
+ public:
+  std::vector<icd::MapUpdate> maps;
+  std::vector<icd::StateUpdate> states;
+  std::vector<icd::MarkersUpdate> markers;
+  std::vector<icd::ArtifactReport> reports;
+  std::vector<Sender> senders;
+  std::vector<std::shared_ptr<Responder>> responders;  // of reports and status
+  std::vector<std::pair<icd::Uri, icd::Refusal>> refusals;
+  std::optional<icd::Refusal> full;  // what take() says
+
+  icd::Checked<void> take(icd::MapUpdate update, const Sender& sender) override {
+    return keep(maps, std::move(update), sender);
+  }
+  icd::Checked<void> take(const icd::StateUpdate& update, const Sender& sender) override {
+    return keep(states, update, sender);
+  }
+  icd::Checked<void> take(const icd::MarkersUpdate& update, const Sender& sender) override {
+    return keep(markers, update, sender);
+  }
+  void take(const icd::ArtifactReport& report, const Sender& sender,
+            std::shared_ptr<Responder> responder) override {
+    reports.push_back(report);
+    senders.push_back(sender);
+    responders.push_back(std::move(responder));
+  }
+  void status(const Sender& sender, std::shared_ptr<Responder> responder) override {
+    senders.push_back(sender);
+    responders.push_back(std::move(responder));
+  }
+  void refused(icd::Uri uri, const Sender& sender, const icd::Refusal& refusal) override {
+    senders.push_back(sender);
+    refusals.emplace_back(uri, refusal);
+  }
+
+ private:
+  template <class Message>
+  icd::Checked<void> keep(std::vector<Message>& kept, Message message, const Sender& sender) {
+    if (full) return std::unexpected(*full);
+    kept.push_back(std::move(message));
+    senders.push_back(sender);
+    return {};
+  }
+};
+
+/// The routes over a FakeDesk on a loop, with one worker.
+class Team {
+ public:
+  explicit Team(IcdOptions options = with_tokens()) : options_(std::move(options)) {}
+  ~Team() {
+    served.on_loop([this] { served.destroy_server(), front.routes = nullptr, front.workers = nullptr; });
+  }
+  Team(const Team&) = delete;
+  Team& operator=(const Team&) = delete;
+
+  static IcdOptions with_tokens() {
+    IcdOptions options;
+    options.tokens = {*icd::BearerToken::parse(kToken), *icd::BearerToken::parse(kOtherToken)};
+    return options;
+  }
+
+  /// Sends it on a connection of its own and gives the answer.
+  std::optional<Reply> ask(const std::string& text) {
+    RawClient client(served.port());
+    client.send(text);
+    return client.reply();
+  }
+
+  /// Keeps the worker busy until the guard ends.
+  class Busy {
+   public:
+    explicit Busy(Team& team) : held_(std::make_shared<std::promise<void>>()) {
+      auto until = std::make_shared<std::shared_future<void>>(held_->get_future());
+      team.served.on_loop([&] { team.front.workers->submit([until] { until->wait(); }, [] {}); });
+    }
+    Busy(const Busy&) = delete;
+    Busy& operator=(const Busy&) = delete;
+    ~Busy() { end(); }
+    void end() {
+      if (held_) held_->set_value();
+      held_ = nullptr;
+    }
+
+   private:
+    std::shared_ptr<std::promise<void>> held_;
+  };
+
+ private:
+  /// Makes workers and routes on the loop, at the first request.
+  struct Front final : Handler {
+    explicit Front(Team& owner) : team(owner) {}
+    std::unique_ptr<Exchange> open(const RequestHead& head, std::shared_ptr<Responder> responder,
+                                   std::shared_ptr<Flow> flow) override {
+      return routes->open(head, std::move(responder), std::move(flow));
+    }
+    Team& team;
+    std::unique_ptr<loop::Workers> workers;
+    std::unique_ptr<IcdRoutes> routes;
+  };
+  IcdOptions options_;
+  NotFound not_found_;
+
+ public:
+  FakeDesk desk;
+  Front front{*this};
+  Served served{front};
+
+ private:
+  const bool ready_ = served.on_loop([this] {
+    front.workers = std::make_unique<loop::Workers>(served.loop(), 1);
+    front.routes = std::make_unique<IcdRoutes>(options_, desk, *front.workers, not_found_);
+    return true;
+  });
+};
+
+/// A request with the team's token.
+inline std::string authorized(std::string_view method, std::string_view path, std::string_view headers = {},
+                              std::string_view body = {}) {
+  return request(method, path, "Authorization: Bearer " + std::string(kToken) + "\r\n" + std::string(headers),
+                 body);
+}
+
+inline constexpr std::string_view kJsonType = "Content-Type: application/json\r\n";
+inline constexpr std::string_view kCborType = "Content-Type: application/cbor\r\n";
+
+inline constexpr std::string_view kReportBody = R"({"x": 1.5, "y": -2, "z": 0, "type": "Backpack"})";
+inline constexpr std::string_view kStateBody =
+    R"({"poses": [{"name": "r1", "position": {"x": 1, "y": 2, "z": 3},
+        "orientation": {"x": 0, "y": 0, "z": 0, "w": 1}}]})";
+inline constexpr std::string_view kMarkersBody = R"({"markers": [{"ns": "a", "id": 1, "action": 2}]})";
+
+/// An OccupancyGrid of width x height cells, all unknown, as the ICD's clients write it in JSON.
+inline std::string grid_body(std::uint32_t width, std::uint32_t height) {
+  const std::size_t cells = static_cast<std::size_t>(width) * height;
+  std::string data(cells / 3 * 4, '/');
+  if (cells % 3 == 1) data += "/w==";
+  if (cells % 3 == 2) data += "//8=";
+  return R"({"type": "OccupancyGrid", "name": "r1", "msg": {"info": {"resolution": 0.1, "width": )" +
+         std::to_string(width) + R"(, "height": )" + std::to_string(height) +
+         R"(, "origin": {"position": {"x": 0, "y": 0, "z": 0}, "orientation": {"x": 0, "y": 0, "z": 0, "w": 1}}},
+         "data": ")" +
+         data + R"("}})";
+}
+
+/// True for a JSON string and nothing else: the body of every refusal (ICD 4).
+inline bool is_json_string(const std::string& body) {
+  return nlohmann::json::parse(body, nullptr, false).is_string();
+}
+
+}  // namespace adit::intake

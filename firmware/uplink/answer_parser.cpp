@@ -31,7 +31,7 @@ std::string to_string(boost::beast::string_view text) {
 }  // namespace
 
 struct AnswerParser::Impl {
-  std::optional<Parser> parser;
+  std::unique_ptr<Parser> parser;
   std::string unread;  // what the parser has not consumed
   std::size_t read = 0;
   std::string fault;
@@ -39,7 +39,7 @@ struct AnswerParser::Impl {
   Impl() { begin(); }
 
   void begin() {
-    parser.emplace();
+    parser = std::make_unique<Parser>();
     parser->eager(true);
     parser->header_limit(kLongestHead);
     parser->body_limit(Connection::kLongestAnswer);

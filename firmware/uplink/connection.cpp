@@ -37,7 +37,7 @@ class Connection::Impl : public std::enable_shared_from_this<Impl> {
   }
 
   void send(Request request, std::function<void(Outcome)> done) {
-    exchange_.emplace(endpoint_, token_, std::move(request));
+    exchange_ = std::make_unique<Exchange>(endpoint_, token_, std::move(request));
     done_ = std::move(done);
     sent_ = 0;
     total_ = exchange_->total();
@@ -112,7 +112,7 @@ class Connection::Impl : public std::enable_shared_from_this<Impl> {
     phase_ = Phase::Open;
     trouble_.clear();
     pause_ = kFirstPause;
-    fresh_ = exchange_.has_value();
+    fresh_ = exchange_ != nullptr;
     if (exchange_) return begin();
     rest();
   }
@@ -256,7 +256,7 @@ class Connection::Impl : public std::enable_shared_from_this<Impl> {
   std::chrono::seconds pause_ = kFirstPause;
   std::string trouble_;
 
-  std::optional<Exchange> exchange_;
+  std::unique_ptr<Exchange> exchange_;
   std::function<void(Outcome)> done_;
   bool within_send_ = false;
   std::size_t sent_ = 0;

@@ -75,7 +75,7 @@ void Exchange::advance(std::size_t bytes) {
     within_chunk_ -= chunks[chunk_++]->size();
 }
 
-Exchange::Answer Exchange::lost(std::string why) {
+Exchange::Answer Exchange::lost(const std::string& why) {
   fault_ = sentence(why);
   return Answer::Lost;
 }

@@ -48,7 +48,7 @@ class Exchange {
 
  private:
   loop::Instant silent_at() const { return heard_ + request_.answer_within; }
-  Answer lost(std::string why);
+  Answer lost(const std::string& why);
   void advance(std::size_t bytes);
 
   std::string authority_;

@@ -22,7 +22,7 @@ constexpr int kKeepAliveIdle = 5, kKeepAliveInterval = 2, kKeepAliveProbes = 3;
 
 /// What the kernel may hold beyond what is on its way, so that progress is true and a report that follows on
 /// the same link finds no long queue.
-constexpr std::uint64_t kMostUnsent = 64 * 1024;
+constexpr std::uint64_t kMostUnsent = 65536;
 /// Of a paced connection: enough for 100 Mbit/s at 20 ms.
 constexpr int kPacedSendBuffer = 256 * 1024;
 

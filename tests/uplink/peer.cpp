@@ -48,7 +48,7 @@ std::string Wire::read_head() {
 }
 
 std::string Wire::read_request() {
-  std::string head = read_head();
+  const std::string head = read_head();
   const std::size_t length = length_in(head);
   while (unread_.size() < length)
     if (read_some(1 << 20) == 0) return "";
@@ -84,6 +84,7 @@ Peer::Peer(std::vector<Script> scripts, const char* address)
   addrinfo* found = nullptr;
   if (::getaddrinfo(address, "0", &hints, &found) != 0) throw std::runtime_error("bad address");
   listener_ = loop::FileDescriptor(::socket(found->ai_family, SOCK_STREAM | SOCK_CLOEXEC, 0));
+  if (!listener_) throw std::runtime_error("the test's peer has no socket");
   const int small = 256 * 1024;  // so that a body soon fills it
   ::setsockopt(listener_.get(), SOL_SOCKET, SO_RCVBUF, &small, sizeof small);
   const int bound = ::bind(listener_.get(), found->ai_addr, found->ai_addrlen);

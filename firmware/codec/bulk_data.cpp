@@ -24,9 +24,8 @@ icd::Checked<void> BulkData::append(std::span<const std::uint8_t> bytes) {
 }
 
 icd::Checked<void> BulkData::append_element(double value, std::string_view text) {
-  if (!(value >= -1 && value <= 255) || value != std::floor(value)) {
-    return std::unexpected(bad_element(text));
-  }
+  const bool fits = value >= -1 && value <= 255 && value == std::floor(value);
+  if (!fits) return std::unexpected(bad_element(text));
   return append_element(value < 0 ? std::uint8_t{255} : static_cast<std::uint8_t>(value));
 }
 

@@ -79,7 +79,7 @@ icd::Checked<void> CborSplitter::begin_string(Into into) {
 }
 
 icd::Checked<void> CborSplitter::chunk_of_string() {
-  if (!head_.is_break() && (head_.indefinite() || head_.major() != *string_)) {
+  if (!head_.is_break() && (head_.indefinite() || string_ != head_.major())) {
     return std::unexpected(fault("a string in chunks holds something else"));
   }
   if (into_ != Into::Data) rest_ += head_.raw();

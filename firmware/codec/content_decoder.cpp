@@ -12,7 +12,7 @@
 namespace adit::codec {
 namespace {
 
-constexpr std::size_t kPiece = 32 * 1024;
+constexpr std::size_t kPiece = 32UL * 1024;
 
 /// RFC 1950 2.2: method deflate, a window of at most 32 KiB, and a check of both bytes. No raw deflate that a
 /// compressor writes begins so.

@@ -38,7 +38,7 @@ std::expected<JsonString::Piece, Fault> JsonString::next(std::string_view in) {
   if (!escape_.empty()) return escape(in);
   auto run = plain(in);
   if (!run || run->taken > 0) return run;
-  if (in[0] == '"') return Piece{.taken = 1, .ended = true};
+  if (in[0] == '"') return Piece{.taken = 1, .raw = {}, .text = {}, .ended = true};
   if (in[0] == '\\') return escape(in);
   return std::unexpected(Fault{0, "a raw control character in a string (" + byte_name(in[0]) + ")"});
 }
@@ -69,7 +69,7 @@ std::expected<JsonString::Piece, Fault> JsonString::escape(std::string_view in) 
     escape_.clear();
     return Piece{.taken = n + 1, .raw = finished_, .text = meaning_};
   }
-  return Piece{.taken = in.size()};
+  return Piece{.taken = in.size(), .raw = {}, .text = {}};
 }
 
 std::expected<bool, const char*> JsonString::escape_ends_with(char c) {

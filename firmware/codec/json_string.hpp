@@ -21,10 +21,10 @@ struct Fault {
 class JsonString {
  public:
   struct Piece {
-    std::size_t taken = 0;    // bytes used up of what was given
-    std::string_view raw{};   // characters as they stand in the document...
-    std::string_view text{};  // ...and what they mean, in UTF-8
-    bool ended = false;       // that was the closing quotation mark
+    std::size_t taken = 0;  // bytes used up of what was given
+    std::string_view raw;   // characters as they stand in the document...
+    std::string_view text;  // ...and what they mean, in UTF-8
+    bool ended = false;     // that was the closing quotation mark
   };
 
   /// The next run of characters, or the next escape. Requires !in.empty(). The views live until the next

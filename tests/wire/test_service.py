@@ -1,0 +1,127 @@
+"""aditd as systemd sees it: readiness, watchdog, status, how it refuses to start, how it stops. On loopback."""
+
+import json
+import os
+import pathlib
+import signal
+import socket
+import subprocess
+import tempfile
+import time
+import unittest
+
+import programs
+
+NOBODY = {"address": "127.0.0.1", "port": 9}  # discard: nobody listens there
+
+
+class Service(unittest.TestCase):
+    def setUp(self):
+        self.folder = pathlib.Path(self.enterContext(tempfile.TemporaryDirectory(prefix="adit-service-")))
+        (self.folder / "state").mkdir()
+        programs.secrets_folder(self.folder / "secrets")
+        self.write_settings()
+        self.notify = socket.socket(socket.AF_UNIX, socket.SOCK_DGRAM)
+        self.addCleanup(self.notify.close)
+        self.notify.bind(str(self.folder / "notify"))
+        self.notify.settimeout(5)
+
+    def write_settings(self, **changes):
+        document = {"version": 1, "command_post": {"scoring": NOBODY, "mapping": NOBODY},
+                    "team": {"listen": [{"address": "127.0.0.1", "port": 0}]}, **changes}
+        (self.folder / "settings.json").write_text(json.dumps(document))
+
+    def start(self, **environment):
+        process = subprocess.Popen(
+            [programs.BIN / "aditd", "--settings", self.folder / "settings.json", "--secrets", self.folder / "secrets",
+             "--state", self.folder / "state"], stderr=subprocess.PIPE, text=True,
+            env={**os.environ, "NOTIFY_SOCKET": str(self.folder / "notify"), **environment})
+        self.addCleanup(process.communicate)
+        self.addCleanup(process.kill)
+        return process
+
+    def heard(self, word):
+        """Waits for a notification that holds `word`."""
+        while True:
+            said = self.notify.recv(4096).decode()
+            if word in said:
+                return said
+
+    def refuses(self, *words):
+        process = self.start()
+        _, said = process.communicate(timeout=5)
+        self.assertEqual(process.returncode, 1, said)
+        for word in words:
+            self.assertIn(word, said)
+
+    def test_says_ready_how_it_is_and_when_it_stops(self):
+        process = self.start()
+        self.assertIn("STATUS=", self.heard("READY=1"))
+        process.send_signal(signal.SIGTERM)
+        self.heard("STOPPING=1")
+        self.assertEqual(process.wait(2), 0)
+
+    def test_feeds_the_watchdog_only_while_its_loop_turns(self):
+        process = self.start(WATCHDOG_USEC="400000")
+        self.heard("READY=1")
+        for _ in range(3):
+            self.heard("WATCHDOG=1")
+        process.send_signal(signal.SIGSTOP)
+        time.sleep(0.1)
+        self.notify.settimeout(0.01)
+        with self.assertRaises(TimeoutError):
+            while True:
+                self.notify.recv(4096)
+        self.notify.settimeout(0.8)
+        with self.assertRaises(TimeoutError):
+            self.heard("WATCHDOG=1")
+        process.send_signal(signal.SIGCONT)
+        self.notify.settimeout(5)
+        self.heard("WATCHDOG=1")
+
+    def test_stops_within_a_second_and_starts_again(self):
+        for number in (signal.SIGTERM, signal.SIGINT):
+            process = self.start()
+            self.heard("READY=1")
+            began = time.monotonic()
+            process.send_signal(number)
+            self.assertEqual(process.wait(5), 0)
+            self.assertLess(time.monotonic() - began, 1.5)
+
+    def test_names_every_fault_of_its_settings(self):
+        self.write_settings(comand_post={}, team={"listen": [{"address": "nowhere", "port": 70000}]})
+        self.refuses("comand_post", "team.listen[0].address", "team.listen[0].port")
+
+    def test_names_the_secret_that_is_missing_or_open_to_others(self):
+        (self.folder / "secrets" / "scoring.token").chmod(0o644)
+        self.refuses("scoring.token")
+        (self.folder / "secrets" / "scoring.token").unlink()
+        self.refuses("scoring.token")
+
+    def test_says_which_address_it_cannot_listen_on(self):
+        taken = socket.create_server(("127.0.0.1", 0))
+        self.addCleanup(taken.close)
+        port = taken.getsockname()[1]
+        self.write_settings(team={"listen": [{"address": "127.0.0.1", "port": port}]})
+        self.refuses("127.0.0.1", str(port), "Address already in use")
+
+    def test_keeps_its_ledger_to_itself(self):
+        self.start()
+        self.heard("READY=1")
+        self.refuses("ledger")
+
+    def test_sets_a_damaged_ledger_aside_and_shows_it(self):
+        (self.folder / "state" / "ledger.sqlite").write_bytes(b"no ledger at all" * 100)
+        self.start()
+        self.assertIn("damaged", self.heard("READY=1"))
+        self.assertTrue(list((self.folder / "state").glob("ledger.sqlite.damaged*")))
+
+    def test_shows_its_lights_where_there_are_none(self):
+        self.start()
+        self.heard("READY=1")
+        panel = self.folder / "state" / "panel"
+        programs.wait_until(lambda: panel.exists() and "health on" in panel.read_text(), "the simulated panel")
+
+
+if __name__ == "__main__":
+    unittest.main()

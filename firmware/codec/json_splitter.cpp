@@ -155,7 +155,6 @@ icd::Checked<std::size_t> JsonSplitter::close(char bracket) {
 }
 
 icd::Checked<std::size_t> JsonSplitter::begin_literal(std::string_view word) {
-  keep(word);
   token_ = Token::Literal;
   word_ = word;
   return 0;
@@ -163,6 +162,7 @@ icd::Checked<std::size_t> JsonSplitter::begin_literal(std::string_view word) {
 
 icd::Checked<std::size_t> JsonSplitter::literal(std::string_view in) {
   if (in[0] != word_[0]) return std::unexpected(expected("true, false or null", in[0]));
+  keep(word_.substr(0, 1));
   word_.remove_prefix(1);
   if (word_.empty()) value_ended();
   return 1;

@@ -87,8 +87,8 @@ TEST(CompressedBody, ThatIsDamagedIsRefusedWith400) {
 }
 
 TEST(CompressedBody, OfABombIsRefusedWith413LongBeforeItsEnd) {
-  const std::string blanks = deflated(std::string(50'000'000, ' '), kGzip);
-  const std::string data = deflated(R"({"msg":{"data":")" + std::string(50'000'000, 'A'), kGzip);
+  const std::string blanks = deflated(std::string().append(50'000'000, ' '), kGzip);
+  const std::string data = deflated(std::string(R"({"msg":{"data":")").append(50'000'000, 'A'), kGzip);
   const Limits limits{.text_bytes = 10'000, .data_bytes = 100'000};
   for (const std::string& bomb : {blanks, data}) {
     ASSERT_LT(bomb.size(), 60'000U);

@@ -12,6 +12,7 @@ TEST(Json, IsParsedOrSaidWhyNot) {
   ASSERT_TRUE(value);
   EXPECT_TRUE(says(*value, nlohmann::ordered_json::parse(R"({"a":[1,2.5,"x",null,true]})")));
   EXPECT_EQ(parse_json("[1,]").error(), "not well-formed JSON at byte 3: expected a value, got ']'");
+  EXPECT_EQ(parse_json("nul").error(), "not well-formed JSON at byte 3: the document is cut short");
   EXPECT_EQ(parse_json("").error(), "not well-formed JSON at byte 0: an empty document");
 }
 

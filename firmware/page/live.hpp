@@ -14,7 +14,7 @@ namespace adit::page {
 /// that it has not lost the box.
 class Live {
  public:
-  static constexpr std::chrono::milliseconds kHeartbeat{4000};  // a page gives up after 6 s of silence
+  static constexpr std::chrono::milliseconds kHeartbeat{2000};  // a page takes 4.5 s of silence for a loss
   /// Pages at once, so that forgotten ones leave the robots their connections.
   static constexpr std::size_t kMostPages = 24;
 

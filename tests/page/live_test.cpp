@@ -106,6 +106,7 @@ TEST_F(LiveTest, AsksOnceForAllPages) {
 
 TEST_F(LiveTest, LeavesTheRobotsTheirConnections) {
   std::vector<std::shared_ptr<FakeStream>> pages;
+  pages.reserve(Live::kMostPages);
   for (std::size_t i = 0; i < Live::kMostPages; ++i) pages.push_back(open());
   EXPECT_THAT(pages, Each(testing::NotNull()));
   EXPECT_EQ(open(), nullptr);

@@ -51,6 +51,7 @@ ReportRow report(std::int64_t number, std::string type, Time received, std::stri
 RunView calm(Time now, double elapsed) {
   RunView view = empty(now);
   const double heard = std::floor(elapsed);
+  const Time began = now - elapsed;
   view.run = icd::RunStatus{7, 754 + heard, 18, "Cerberus"};
   view.run_heard = now - (elapsed - heard);
   view.endpoints[0].connected = view.endpoints[1].connected = true;
@@ -67,20 +68,21 @@ RunView calm(Time now, double elapsed) {
       traffic("state", "ANYmal1", now, 0.4, 710, 230),   traffic("state", "ANYmal2", now, 0.4, 710, 230),
       traffic("state", "Scout", now, 0.4, 709, 230),     traffic("markers", "", now, 21, 12, 1'900)};
   view.activities[2].merged = 96;
-  view.reports = {report(7, "Survivor", now - 14, "answered", 201, 1),
-                  report(6, "Gas", now - 95, "answered", 201, 0),
-                  report(5, "Fire Extinguisher", now - 188, "answered", 201, 1),
-                  report(4, "Backpack", now - 260, "answered", 201, 1),
-                  report(3, "Drill", now - 415, "answered", 201, 1),
-                  report(2, "Rope", now - 520, "answered", 201, 0),
-                  report(1, "Cell Phone", now - 610, "answered", 201, 1)};
-  view.refusals = {{now - 130, "/map/update", "10.0.0.7", 422,
+  view.reports = {report(7, "Survivor", began - 14, "answered", 201, 1),
+                  report(6, "Gas", began - 95, "answered", 201, 0),
+                  report(5, "Fire Extinguisher", began - 188, "answered", 201, 1),
+                  report(4, "Backpack", began - 260, "answered", 201, 1),
+                  report(3, "Drill", began - 415, "answered", 201, 1),
+                  report(2, "Rope", began - 520, "answered", 201, 0),
+                  report(1, "Cell Phone", began - 610, "answered", 201, 1)};
+  view.refusals = {{began - 130, "/map/update", "10.0.0.7", 422,
                     "msg.info.width: expected 80 x 60 = 4800 bytes of data, got 4799"}};
   return view;
 }
 
 RunView trouble(Time now, double elapsed) {
   RunView view = calm(now, elapsed);
+  const Time began = now - elapsed;
   view.endpoints[1] = {.name = "mapping",
                        .address = "10.100.1.201:8000",
                        .connected = false,
@@ -94,16 +96,16 @@ RunView trouble(Time now, double elapsed) {
     ActivityRow& row = view.activities[stuck];
     row.waiting = 12;
     row.failed = 9;
-    row.last_accepted = now - 110;
-    row.last_forwarded = now - 130;
+    row.last_accepted = began - 110;
+    row.last_forwarded = began - 130;
     row.last_status = 0;
     row.last_sentence = "connecting to 10.100.1.201:8000: Connection refused";
   }
   view.activities[4].last_status = 429;
   view.activities[4].throttled = 3;
   view.activities[4].last_sentence = "\"Cloud updates too frequent. Reduce to <1Hz.\"";
-  view.activities[5].last_forwarded = now - 200;
-  view.activities[5].last_accepted = now - 201;
+  view.activities[5].last_forwarded = began - 200;
+  view.activities[5].last_accepted = began - 201;
   view.activities[9].refused_upstream = 2;
   view.activities[9].last_status = 422;
   view.activities[9].last_sentence = "\"Missing field: 'pose'\"";

@@ -1,6 +1,6 @@
 // The line to the box: server-sent events, and a watchdog that notices when they stop.
 
-const SILENCE = 5500;  // ms; the box says something every 4 s
+const SILENCE = 4500;  // ms; the box says something every 2 s
 const RETRY = 2000;
 
 /** Calls `heard(view)` for each view that comes, and `lost(true or false)` as the line goes and comes back. */

@@ -6,7 +6,7 @@ import { showRefusals } from "./refusals.js";
 import { showReports } from "./reports.js";
 import { showRobots } from "./robots.js";
 import { showAttention, showLights, showRun } from "./run.js";
-import { age, timeOfDay } from "./words.js";
+import { clip, timeOfDay } from "./words.js";
 
 let view = null, heardAt = 0, lost = false;
 
@@ -22,16 +22,16 @@ function showLink() {
 
 function show() {
   showLink();
-  if (!view) return showAttention([], lost, null);
+  if (!view) return showAttention([], lost ? "The box does not answer." : "");
   const time = now();
-  showAttention(view.attention, lost, age(Math.floor((performance.now() - heardAt) / 10000) * 10));
+  showAttention(view.attention, lost ? `The box does not answer: all below is as it was at ${timeOfDay(view.now)}.` : "");
   showRun(view, time, lost);
   showLights(view.lights);
   showRobots(view.activities, time, lost);
   showReports(view.reports, time);
   showPost(view, lost);
   showRefusals(view.refusals, time);
-  say(document.getElementById("about"), `Adit ${view.version} · the box's clock ${timeOfDay(time)}`);
+  say(document.getElementById("about"), `Adit ${clip(view.version, 40)} · the box's clock ${timeOfDay(time)}`);
   const title = lost ? "Box lost – Adit" : view.attention.length ? `(${view.attention.length}) Adit` : "Adit";
   if (document.title !== title) document.title = title;
 }

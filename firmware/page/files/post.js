@@ -1,28 +1,28 @@
 // The Command Post: its two endpoints, what goes to them, and what waits.
 import { badge, list, make, mark, say } from "./dom.js";
 import { endpoint } from "./verdict.js";
-import { bytes, mbit } from "./words.js";
+import { bytes, clip, mbit } from "./words.js";
 
 const at = (id) => document.getElementById(id);
 
 function createEndpoint() {
-  return make("li", make("span.name"), make("span.badge"), make("span.answer"), make("span.address"), make("span.trouble"));
+  return make("li", make("span.name"), make("span.badge"), make("span.address"), make("span.answer"), make("span.trouble"));
 }
 
 function updateEndpoint(node, row, lost) {
   const { level, word } = lost ? { level: "quiet", word: "unknown" } : endpoint(row);
-  const [name, verdict, answer, address, trouble] = node.children;
+  const [name, verdict, address, answer, trouble] = node.children;
   mark(node, "level", level);
   say(name, row.name);
   badge(verdict, level, word);
-  const status = row.last_status ? `last answer ${row.last_status}` : "no answer yet";
-  say(answer, row.answer_ms === null ? status : `${status} in ${row.answer_ms < 10 ? row.answer_ms.toFixed(1) : row.answer_ms.toFixed(0)} ms`);
-  say(address, row.address);
-  say(trouble, row.trouble);
+  const status = row.last_status ? `${row.last_status}` : "no answer yet";
+  say(answer, row.answer_ms === null ? status : `${status} in ${row.answer_ms.toFixed(row.answer_ms < 10 ? 1 : 0)} ms`);
+  say(address, clip(row.address, 60));
+  say(trouble, clip(row.trouble));
 }
 
-// The last two minutes, a value a second.
-const SPAN = 120, HEIGHT = 32;
+// The last minute, a value a second.
+const SPAN = 60, HEIGHT = 32;
 const samples = [];
 
 export function sample(value) {
@@ -48,6 +48,6 @@ export function showPost(view, lost) {
   say(at("budget"), `of ${mbit(view.budget_mbit)}`);
   at("bar").setAttribute("aria-valuenow", share.toFixed(0));
   at("bar").firstElementChild.style.inlineSize = `${share}%`;
-  say(at("queue"), view.queued_bytes ? `${bytes(view.queued_bytes)} wait` : "empty");
+  say(at("queue"), view.queued_bytes ? bytes(view.queued_bytes) : "empty");
   drawSpark();
 }

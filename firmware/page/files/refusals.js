@@ -1,6 +1,6 @@
 // What this box refused to its senders, newest first, with the sentence that they got.
 import { list, make, say } from "./dom.js";
-import { ago } from "./words.js";
+import { ago, clip } from "./words.js";
 
 const section = document.getElementById("refusals");
 
@@ -19,8 +19,8 @@ export function showRefusals(refusals, now) {
   list(section.querySelector(".rows"), refusals, key, create, (node, row) => {
     const [status, sentence, who, since] = node.children;
     say(status, String(row.status));
-    say(sentence, row.sentence);
-    say(who, `${row.uri} from ${row.sender}`);
+    say(sentence, clip(row.sentence));
+    say(who, `${clip(row.uri, 60)} from ${clip(row.sender, 60)}`);
     say(since, ago(now - row.at));
   });
 }

@@ -1,7 +1,7 @@
 // Artifact reports, newest first, each with where it is in its life and what the Command Post said.
 import { badge, list, make, mark, say } from "./dom.js";
 import { life } from "./verdict.js";
-import { ago, count, metres } from "./words.js";
+import { ago, clip, metres } from "./words.js";
 
 const section = document.getElementById("reports");
 
@@ -17,18 +17,18 @@ function more(report) {
 
 export function showReports(reports, now) {
   const open = reports.filter((report) => ["waiting", "sending", "in doubt"].includes(report.state)).length;
-  say(section.querySelector(".count"), reports.length ? `${reports.length}${open ? `, ${count(open, "open")}`.replace("opens", "open") : ""}` : "");
+  say(section.querySelector(".count"), !reports.length ? "" : open ? `${reports.length}, ${open} open` : `${reports.length}`);
   section.querySelector(".rows").hidden = reports.length === 0;
   section.querySelector(".empty").hidden = reports.length > 0;
   list(section.querySelector(".rows"), reports, (report) => report.number, create, (node, report) => {
     const { level, word } = life(report);
     const [verdict, what, where, since, rest] = node.children;
     mark(node, "level", level);
-    badge(verdict, level, word);
-    say(what, report.type);
+    badge(verdict, level, clip(word, 40));
+    say(what, clip(report.type, 40));
     const { x, y, z } = report.position;
     say(where, `${metres(x)}, ${metres(y)}, ${metres(z)} m`);
     say(since, `#${report.number} · ${ago(now - report.received)}`);
-    say(rest, more(report));
+    say(rest, clip(more(report)));
   });
 }

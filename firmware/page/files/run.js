@@ -1,6 +1,6 @@
 // What stands in large figures, what needs the operator, and the lights as they are on the box.
 import { badge, list, make, mark, say } from "./dom.js";
-import { ago, clock } from "./words.js";
+import { ago, clip, clock } from "./words.js";
 
 const at = (id) => document.getElementById(id);
 
@@ -25,30 +25,29 @@ export function showRun(view, now, lost) {
   say(at("clock"), run ? clock(stale ? run.run_clock : runClock(view, now)) : "–");
   say(at("score"), run ? String(run.score) : "–");
   say(at("remaining"), run ? String(run.remaining_reports) : "–");
-  const team = run?.current_team ? `${run.current_team} · ` : "";
+  const team = run?.current_team ? `${clip(run.current_team, 40)} · ` : "";
   if (!run) say(at("run-note"), "No word from the Command Post yet");
   else if (stale) say(at("run-note"), `${team}as the Command Post said ${ago(since)}`);
   else say(at("run-note"), `${team}heard ${ago(since)}`);
 }
 
-export function showAttention(sentences, lost, silent) {
-  const all = lost
-    ? [{ key: "lost", text: silent ? `The box does not answer. What is shown is old (${silent}).` : "The box does not answer." }]
-    : [];
+/** `lost`: what to say of a box that does not answer, or "". */
+export function showAttention(sentences, lost) {
+  const all = lost ? [{ key: "lost", text: lost }] : [];
   for (const text of sentences) all.push({ key: `said ${text}`, text });
   const create = () => make("p.alarm");
-  list(at("attention"), all, (one) => one.key, create, (node, one) => badge(node, "bad", one.text));
+  list(at("attention"), all, (one) => one.key, create, (node, one) => badge(node, "bad", clip(one.text)));
 }
 
-const PATTERNS = { off: "off", on: "on", slow: "blinks slowly", fast: "blinks fast" };
+// On and off show by themselves, as filled and hollow: their words are for those who do not see them.
+const PATTERNS = { off: "off", on: "on", slow: "blinks", fast: "blinks fast" };
 
 export function showLights(lights) {
-  const create = () => make("li", make("span.led"), make("span.name"), make("span.spoken"));
+  const create = () => make("li", make("span.led"), make("span.name"), make("span.pattern"));
   list(at("lights"), lights, (light) => light.name, create, (node, light) => {
     mark(node, "pattern", light.pattern);
     const [, name, pattern] = node.children;
-    say(name, light.name);
-    say(pattern, `: ${PATTERNS[light.pattern] ?? light.pattern}`);
-    node.title = `${light.name}: ${PATTERNS[light.pattern] ?? light.pattern}`;
+    say(name, clip(light.name, 20));
+    say(pattern, clip(PATTERNS[light.pattern] ?? light.pattern, 20));
   });
 }

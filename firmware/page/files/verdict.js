@@ -7,7 +7,7 @@ const FAILING = 10, LATE = 30, STUCK = 90, QUIET = 60;
 
 const KINDS = { grid: "grid", cloud: "cloud", state: "pose", markers: "markers" };
 export const kindOf = (row) => KINDS[row.kind] ?? row.kind;
-export const robotOf = (row) => row.robot || (row.kind === "markers" ? "All robots" : "Merged map");
+export const robotOf = (row) => row.robot || "Merged map";
 
 // Since when something of a row has waited while nothing of it was forwarded.
 const waits = new Map();
@@ -56,9 +56,9 @@ export function overall(activities, now) {
   const who = names.length > 3 ? `${names.slice(0, 2).join(", ")} and ${names.length - 2} more` : names.join(", ");
   if (level === "bad") return { level, word: `No: ${who}` };
   if (level === "wait") return { level, word: `Not all: ${who}` };
-  if (level === "good") return { level, word: "Yes, all that was sent" };
+  if (level === "good") return { level, word: "Yes, every map arrives" };
   const last = Math.min(...maps.map((row) => now - (row.last_forwarded ?? -Infinity)));
-  return { level, word: `All arrived; nothing new for ${age(last - (last % 30))}` };
+  return { level, word: `All arrived; nothing new for ${age(last)}` };
 }
 
 /** Where a report is in its life. */
@@ -71,7 +71,7 @@ export function life(report) {
     case "answered":
       if (report.score_change === null) return { level: "quiet", word: report.report_status || "answered" };
       if (report.score_change > 0) return { level: "good", word: `scored ${signed(report.score_change)}` };
-      return { level: "quiet", word: `${signed(report.score_change)} points` };
+      return { level: "quiet", word: report.score_change === 0 ? "no points" : `scored ${signed(report.score_change)}` };
     default: return { level: "quiet", word: report.state };
   }
 }

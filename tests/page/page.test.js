@@ -1,0 +1,151 @@
+import assert from "node:assert/strict";
+import { createRequire } from "node:module";
+import { after, before, test } from "node:test";
+import { launch, look, serve } from "./stage.js";
+
+const axe = createRequire(import.meta.url).resolve("axe-core/axe.min.js");
+
+const SIZES = [[390, 844], [768, 1024], [1280, 720], [1920, 1080], [3840, 2160]];
+
+let browser;
+before(async () => (browser = await launch()));
+after(() => browser?.close());
+
+const text = (page, selector) => page.textContent(selector);
+const said = (page, words) => page.waitForFunction((words) => document.body.innerText.includes(words), words);
+
+/** A page that looks at a scene, for the length of one test. */
+async function watch(t, scene, options) {
+  const stage = await serve(scene);
+  t.after(() => stage.end());
+  const page = await look(browser, stage.url, options);
+  t.after(() => page.context().close());
+  return { stage, page };
+}
+
+test("shows how the run stands, and that every map arrives", async (t) => {
+  const { page } = await watch(t, "calm");
+  assert.match(await text(page, "#clock"), /^12:3\d$/);
+  assert.equal(await text(page, "#score"), "7");
+  assert.equal(await text(page, "#remaining"), "18");
+  assert.match(await text(page, "#verdict"), /Yes, every map arrives/);
+  assert.equal(await page.getByRole("row", { name: /ANYmal2/ }).count(), 1);
+  assert.match(await page.getByRole("row", { name: /ANYmal2/ }).textContent(), /7 s.*arriving/);
+  assert.match(await text(page, "#reports .rows li:first-child"), /scored \+1.*Survivor.*85\.8, −4\.5/);
+  assert.match(await text(page, "#refusals .rows"), /422.*got 4799/);
+  assert.deepEqual(page.complaints, []);
+});
+
+test("follows what changes, and says so to those who only listen", async (t) => {
+  const { stage, page } = await watch(t, "calm");
+  const alert = page.locator("#attention");
+  assert.equal(await alert.getAttribute("aria-live"), "assertive");
+  assert.equal(await alert.textContent(), "");
+  stage.play("trouble");
+  await said(page, "1 report is in doubt");
+  assert.match(await text(page, "#verdict"), /No: ANYmal1 grid, ANYmal1 cloud/);
+  assert.match(await text(page, "#sayings"), /ANYmal2 cloud: 429 "Cloud updates too frequent/);
+  assert.match(await text(page, "#post"), /not connected.*Connection refused/);
+  assert.match(await text(page, "#reports .rows"), /waiting.*Helmet.*sending.*Cube.*in doubt.*Vent/);
+  stage.play("calm");
+  await page.waitForFunction(() => document.getElementById("attention").textContent === "");
+  assert.match(await text(page, "#verdict"), /Yes/);
+});
+
+test("tells every state by a shape and a word, not by colour alone", async (t) => {
+  const { page } = await watch(t, "trouble");
+  const shapes = await page.$$eval(".glyph", (glyphs) => {
+    const shape = (glyph) => {
+      const style = getComputedStyle(glyph);
+      return [style.clipPath, style.borderRadius, style.borderTopStyle].join(" ");
+    };
+    return glyphs.map((glyph) => [glyph.dataset.level, shape(glyph)]);
+  });
+  const byLevel = new Map(shapes);
+  assert.deepEqual([...byLevel.keys()].sort(), ["bad", "good", "quiet", "wait"]);
+  assert.equal(new Set(byLevel.values()).size, 4, "four levels, four shapes");
+  for (const badge of await page.$$eval("td[data-empty=false]", (cells) => cells.map((cell) => cell.innerText))) {
+    assert.match(badge, /arriving|throttled|quiet/);
+  }
+});
+
+test("puts in anybody's text as text", async (t) => {
+  const { page } = await watch(t, "hostile");
+  await said(page, "<script>window.pwned=1</script>");
+  assert.equal(await page.evaluate(() => window.pwned), undefined);
+  assert.equal(await page.locator("main img, main script").count(), 0);
+  assert.deepEqual(page.complaints, []);
+});
+
+test("fits every screen from a phone to 4K, whatever it shows", async (t) => {
+  for (const scene of ["empty", "calm", "trouble", "hostile"]) {
+    const { page } = await watch(t, scene);
+    for (const [width, height] of SIZES) {
+      await page.setViewportSize({ width, height });
+      const wide = await page.evaluate(() => document.documentElement.scrollWidth);
+      assert.ok(wide <= width, `${scene} is ${wide} wide on ${width}`);
+    }
+  }
+});
+
+test("shows its large figures large enough for two metres", async (t) => {
+  const { page } = await watch(t, "calm");
+  for (const [width, height] of SIZES.slice(2)) {
+    await page.setViewportSize({ width, height });
+    const size = await page.$eval("#clock", (clock) => parseFloat(getComputedStyle(clock).fontSize));
+    assert.ok(size >= height / 12, `${size}px of ${height}`);
+  }
+});
+
+test("has nothing that axe finds wrong, in the dark and by day", async (t) => {
+  for (const colorScheme of ["dark", "light"]) {
+    for (const scene of ["calm", "trouble", "empty"]) {
+      const { page } = await watch(t, scene, { colorScheme, bypassCSP: true });
+      await page.addScriptTag({ path: axe });
+      const { violations } = await page.evaluate(() => globalThis.axe.run());
+      const found = violations.map(({ id, nodes }) => `${id}: ${nodes.map((node) => node.html).join(" ")}`);
+      assert.deepEqual(found, [], `${scene}, ${colorScheme}`);
+    }
+  }
+});
+
+test("can be walked through by keyboard", async (t) => {
+  const { page } = await watch(t, "calm");
+  await page.keyboard.press("Tab");
+  assert.equal(await page.evaluate(() => document.activeElement.textContent), "Skip to the run");
+  await page.keyboard.press("Enter");
+  assert.equal(await page.evaluate(() => document.activeElement.id), "main");
+  await page.keyboard.press("Tab");
+  assert.equal(await page.evaluate(() => document.activeElement.closest("section").id), "reports");
+});
+
+test("loads nothing from anywhere but the box, and little of that", async (t) => {
+  const { stage, page } = await watch(t, "calm");
+  for (const url of page.requests) assert.ok(url.startsWith(stage.url), url);
+  const bytes = await page.evaluate(() => performance.getEntriesByType("resource").reduce((sum, file) => sum + file.decodedBodySize, 0));
+  assert.ok(bytes > 5_000 && bytes < 80_000, `${bytes} bytes`);
+});
+
+test("says within six seconds that a silent box is lost, and recovers by itself", async (t) => {
+  const { stage, page } = await watch(t, "calm");
+  stage.freeze();
+  await page.waitForSelector("body[data-link=lost]", { timeout: 6000 });
+  await said(page, "The box does not answer");
+  assert.match(await text(page, "#link"), /Box lost/);
+  assert.match(await text(page, "#verdict"), /Unknown/);
+  assert.match(await page.title(), /lost/);
+  stage.thaw();
+  await page.waitForSelector("body[data-link=live]", { timeout: 6000 });
+  assert.equal(await text(page, "#attention"), "");
+  assert.match(await text(page, "#verdict"), /Yes/);
+});
+
+test("says at once that a box that stopped is lost, and finds the next one at its address", async (t) => {
+  const { stage, page } = await watch(t, "calm");
+  await stage.end();
+  await page.waitForSelector("body[data-link=lost]", { timeout: 1500 });
+  const next = await serve("trouble", stage.port);
+  t.after(() => next.end());
+  await page.waitForSelector("body[data-link=live]", { timeout: 8000 });
+  await said(page, "1 report is in doubt");
+});

@@ -1,0 +1,47 @@
+// The stage for a test: a program that serves the page with a scene, and a browser that looks at it.
+import { spawn } from "node:child_process";
+import { once } from "node:events";
+import { createInterface } from "node:readline";
+import { chromium } from "playwright-core";
+
+/** Serves `scene` on `port` (0: any free one). */
+export async function serve(scene, port = 0) {
+  const program = spawn(process.env.SCENE_SERVER, [String(port), scene], { stdio: ["pipe", "pipe", "inherit"] });
+  const [line] = await once(createInterface({ input: program.stdout }), "line");
+  return {
+    port: Number(line),
+    url: `http://127.0.0.1:${line}/`,
+    play: (next) => program.stdin.write(`${next}\n`),
+    freeze: () => program.kill("SIGSTOP"),
+    thaw: () => program.kill("SIGCONT"),
+    async end() {
+      if (program.exitCode !== null || program.signalCode !== null) return;
+      program.kill("SIGKILL");
+      await once(program, "exit");
+    },
+  };
+}
+
+export const launch = () =>
+  chromium.launch({
+    executablePath: process.env.CHROMIUM ?? "/usr/bin/chromium",
+    args: ["--disable-gpu", "--no-first-run", "--disable-background-networking", "--disable-component-update", "--disable-sync"]
+      .concat(process.getuid() === 0 ? ["--no-sandbox"] : []),
+  });
+
+/** Opens the page; what it complained of and where it went is in `page.complaints` and `page.requests`. */
+export async function look(browser, url, options = {}) {
+  const context = await browser.newContext({ viewport: { width: 1280, height: 720 }, ...options });
+  const page = await context.newPage();
+  page.complaints = [];
+  page.requests = [];
+  page.on("console", (message) => {
+    if (["error", "warning"].includes(message.type())) page.complaints.push(message.text());
+  });
+  page.on("pageerror", (error) => page.complaints.push(String(error)));
+  page.on("dialog", (dialog) => page.complaints.push(`dialog: ${dialog.message()}`) && dialog.dismiss());
+  page.on("request", (request) => page.requests.push(request.url()));
+  await page.goto(url);
+  await page.waitForSelector("body[data-link=live]");
+  return page;
+}

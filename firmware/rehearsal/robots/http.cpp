@@ -75,13 +75,13 @@ struct Connection::Wire {
       return error;
     }
     error_code ignored;  // latency alone
-    socket.set_option(tcp::no_delay(true), ignored);
+    (void)socket.set_option(tcp::no_delay(true), ignored);
     return error;
   }
 
   void close() {
     error_code ignored;  // nothing to be done about a socket that does not close
-    socket.close(ignored);
+    (void)socket.close(ignored);
   }
 
   error_code transfer(http::request<http::string_body>& message,

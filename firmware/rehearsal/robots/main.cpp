@@ -56,6 +56,7 @@ std::vector<Kind> kinds_to_post(const Options& options, const std::vector<std::f
     return {Kind::Grid, Kind::Cloud, Kind::State, Kind::Markers, Kind::Report, Kind::Status};
   }
   std::vector<Kind> kinds;
+  kinds.reserve(maps.size());
   for (const auto& map : maps) kinds.push_back(map.extension() == ".pgm" ? Kind::Grid : Kind::Cloud);
   return kinds;
 }
@@ -98,9 +99,7 @@ int run(const Options& options, const Cave& cave) {
   const std::vector<Kind> kinds = kinds_to_post(options, maps);
   Tally tally;
   Console console(options.quiet);
-  Team team({.post = {.mapping = *options.post,
-                      .scoring = options.scoring.value_or(*options.post),
-                      .token = *token},
+  Team team({.post = {.mapping = options.post, .scoring = options.scoring, .token = *token},
              .style = options.style,
              .robots = options.robots,
              .seed = options.seed,

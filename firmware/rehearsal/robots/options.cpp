@@ -1,6 +1,7 @@
 #include "rehearsal/robots/options.hpp"
 
 #include <algorithm>
+#include <cmath>
 #include <string_view>
 
 #include "rehearsal/robots/maps/bytes.hpp"
@@ -37,7 +38,7 @@ using Taken = std::expected<void, std::string>;
 
 Taken take_number(std::string_view text, double low, double high, double& into) {
   const auto number = parse_number<double>(text);
-  if (!number || !(*number >= low && *number <= high)) {
+  if (!number || !std::isfinite(*number) || *number < low || *number > high) {
     return std::unexpected("expected a number from " + std::to_string(low) + " to " + std::to_string(high) +
                            ", got '" + std::string(text) + "'");
   }
@@ -55,7 +56,7 @@ Taken take_whole(std::string_view text, std::uint64_t most, std::uint64_t& into)
   return {};
 }
 
-Taken take_url(std::string_view text, std::optional<Endpoint>& into) {
+Taken take_url(std::string_view text, Endpoint& into) {
   auto endpoint = parse_url(text);
   if (!endpoint) return std::unexpected(endpoint.error());
   into = *std::move(endpoint);
@@ -111,10 +112,11 @@ std::expected<Options, std::string> complete(Options options) {
     if (options.truth.empty()) return std::unexpected("--generate-only: needs --truth CSV");
     return options;
   }
-  if (!options.post) return std::unexpected("--post http://ADDR:PORT: is needed");
+  if (options.post.port == 0) return std::unexpected("--post http://ADDR:PORT: is needed");
   if (options.secrets.empty()) return std::unexpected("--secrets DIR: is needed");
   if (options.robots == 0 && options.maps.empty())
     return std::unexpected("--robots 0: has nothing to post without --maps");
+  if (options.scoring.port == 0) options.scoring = options.post;
   return options;
 }
 

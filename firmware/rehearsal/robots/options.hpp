@@ -17,11 +17,11 @@ extern const char* const kUsage;
 
 /// The command line of adit-robots.
 struct Options {
-  std::optional<Endpoint> post;
-  std::optional<Endpoint> scoring;
+  Endpoint post;
+  Endpoint scoring;  // the same as `post` unless it is given
   std::filesystem::path secrets;
   std::size_t robots = 3;
-  TeamStyle style = *TeamStyle::parse("mixed");
+  TeamStyle style;
   std::filesystem::path maps;   // empty: none
   std::filesystem::path truth;  // empty: not written
   std::optional<std::chrono::duration<double>> run_for;

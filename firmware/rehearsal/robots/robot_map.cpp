@@ -53,7 +53,9 @@ void RobotMap::see_floor(const Cave& cave, Cell cell, Random& random) {
 
 void RobotMap::see_rock(Cell cell, double floor, double ceiling, Random& random) {
   if (!is_known(cell)) {
-    for (double z = floor; z <= ceiling; z += lattice().resolution) {
+    const int points = static_cast<int>((ceiling - floor) / lattice().resolution) + 1;
+    for (int i = 0; i < points; ++i) {
+      const double z = floor + i * lattice().resolution;
       see_point(lattice().centre_x(cell), lattice().centre_y(cell), z, 80 + 40 * random.between(0, 1),
                 random);
     }
@@ -67,9 +69,11 @@ void RobotMap::sweep(const Cave& cave, const Vector3& from, Random& random) {
   const double step = lattice().resolution / 2;
   for (int ray = 0; ray < kRays; ++ray) {
     const double angle = 2 * std::numbers::pi * ray / kRays;
+    const double along_x = std::cos(angle), along_y = std::sin(angle);
     Cell last = lattice().cell_at(from.x, from.y);
-    for (double range = 0; range <= kRange; range += step) {
-      const Cell cell = lattice().cell_at(from.x + range * std::cos(angle), from.y + range * std::sin(angle));
+    for (int i = 0; i <= static_cast<int>(kRange / step); ++i) {
+      const double range = i * step;
+      const Cell cell = lattice().cell_at(from.x + range * along_x, from.y + range * along_y);
       if (!lattice().contains(cell)) break;
       const bool rock = !cave.is_open(cell);
       if (std::exchange(seen[cell], std::uint8_t{1}) == 0) {

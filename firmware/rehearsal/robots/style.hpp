@@ -38,13 +38,16 @@ inline constexpr std::array kStyles = {
 /// What a team speaks: one style, or all in turn (`mixed`).
 class TeamStyle {
  public:
+  /// Mixed.
+  TeamStyle() = default;
+
   /// Nothing where no style has that name.
   static std::optional<TeamStyle> parse(std::string_view name);
 
   const Style& of(std::size_t robot) const { return kStyles[one_.value_or(robot % kStyles.size())]; }
 
  private:
-  explicit TeamStyle(std::optional<std::size_t> one) : one_(one) {}
+  explicit TeamStyle(std::size_t one) : one_(one) {}
   std::optional<std::size_t> one_;  // index in kStyles
 };
 

@@ -16,8 +16,9 @@ TEST(Options, TakeTheContractsCommandLine) {
   const auto options = parsed({"--post", "http://127.0.0.1:8080", "--secrets", "/tmp", "--robots", "5",
                                "--style", "ros", "--maps", "/maps", "--for", "30"});
   ASSERT_TRUE(options) << options.error();
-  EXPECT_EQ(options->post->address, "127.0.0.1");
-  EXPECT_EQ(options->post->port, 8080);
+  EXPECT_EQ(options->post.address, "127.0.0.1");
+  EXPECT_EQ(options->post.port, 8080);
+  EXPECT_EQ(options->scoring.port, 8080) << "one address for all";
   EXPECT_EQ(options->robots, 5u);
   EXPECT_EQ(options->style.of(3).name, "ros");
   EXPECT_EQ(options->run_for->count(), 30);
@@ -26,7 +27,7 @@ TEST(Options, TakeTheContractsCommandLine) {
 TEST(Options, HaveThreeRobotsOfMixedStyleWhereNothingIsSaid) {
   const auto options = parsed({"--post", "http://[::1]:80/", "--secrets", "/tmp"});
   ASSERT_TRUE(options) << options.error();
-  EXPECT_EQ(options->post->address, "::1");
+  EXPECT_EQ(options->post.address, "::1");
   EXPECT_EQ(options->robots, 3u);
   EXPECT_EQ(options->style.of(1).name, "cbor-body-gzip");
   EXPECT_FALSE(options->run_for);

@@ -79,10 +79,11 @@ std::expected<Cloud, std::string> parse_ply(std::string_view bytes) {
   std::string_view rest = bytes;
   const auto header = take_header(rest);
   if (!header) return std::unexpected(header.error());
-  if (!header->vertices) return std::unexpected("no element vertex");
+  const auto vertices = header->vertices;
+  if (!vertices) return std::unexpected("no element vertex");
   if (const auto checked = header->table.check(); !checked) return std::unexpected(checked.error());
-  if (header->format == "ascii") return header->table.from_ascii(rest, *header->vertices, header->lines + 1);
-  if (header->format == "binary_little_endian") return header->table.from_binary(rest, *header->vertices);
+  if (header->format == "ascii") return header->table.from_ascii(rest, *vertices, header->lines + 1);
+  if (header->format == "binary_little_endian") return header->table.from_binary(rest, *vertices);
   return std::unexpected("format: expected ascii or binary_little_endian, got '" + header->format + "'");
 }
 

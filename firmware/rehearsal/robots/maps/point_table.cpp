@@ -126,7 +126,9 @@ std::expected<Cloud, std::string> PointTable::from_ascii(std::string_view text, 
     auto word = words.begin();
     for (const CloudField& field : fields_) {
       for (std::uint32_t i = 0; i < field.count; ++i, ++word) {
-        if (put(field.datatype, *word, point.data() + field.offset + i * bytes_of(field.datatype))) continue;
+        if (put(field.datatype, *word,
+                point.data() + field.offset + std::size_t{i} * bytes_of(field.datatype)))
+          continue;
         return std::unexpected(
             in_line(line, "no value of " + field.name + ": '" + std::string(word->substr(0, 20)) + "'"));
       }

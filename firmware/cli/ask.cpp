@@ -49,6 +49,11 @@ Outcome unable(const std::string& why) {
   return {Exit::Unable, "", "adit: " + host::escaped(why) + '\n'};
 }
 
+bool all_is_well(const page::RunView& view) {
+  return view.attention.empty() &&
+         std::ranges::all_of(view.endpoints, &std::string::empty, &page::EndpointRow::trouble);
+}
+
 /// Only the reports, as Adit wrote them. The document has been read before, so that it has them.
 std::string reports_alone(const std::string& json) {
   const auto root = codec::parse_json(json);
@@ -62,7 +67,7 @@ std::string reports_alone(const std::string& json) {
 Outcome status(const Options& options, bool colour) {
   const auto answer = ask(options);
   if (!answer) return unable(answer.error());
-  const Exit exit = answer->view.attention.empty() ? Exit::Fine : Exit::Attention;
+  const Exit exit = all_is_well(answer->view) ? Exit::Fine : Exit::Attention;
   return {exit, options.json ? answer->json + '\n' : status_text(answer->view, colour), ""};
 }
 

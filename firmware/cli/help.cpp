@@ -24,7 +24,7 @@ OPTIONS
 
 EXIT STATUS
   0  all is well
-  1  the operator must act, or the settings are wrong
+  1  something needs the operator, or the settings are wrong
   2  Adit cannot be reached, a file cannot be read, or the command line is wrong
 
 ENVIRONMENT
@@ -51,7 +51,7 @@ WHAT IT SHOWS
 
 EXIT STATUS
   0  nothing needs the operator
-  1  something does
+  1  something does, or an endpoint cannot be reached or refuses
   2  Adit cannot be reached, or the command line is wrong
 
 EXAMPLES

@@ -43,6 +43,12 @@ TEST(Status, ReadsEveryMemberThatThePageWrites) {
   EXPECT_EQ(outcome.out, status_text(view, false));
 }
 
+TEST(Status, IsNotFineWhereAnEndpointIsInTrouble) {
+  page::RunView view = sample_view();
+  view.endpoints[0].trouble = "connecting to 10.100.1.200:8000: Connection refused";
+  EXPECT_EQ(asked(page::write_run_view(view), {"status"}).exit, Exit::Attention);
+}
+
 TEST(Status, GivesScriptsWhatAditSaid) {
   const std::string json = page::write_run_view(sample_view());
   EXPECT_EQ(asked(json, {"status", "--json"}).out, json + "\n");

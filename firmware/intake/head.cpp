@@ -17,7 +17,6 @@ bool same_word(std::string_view a, std::string_view b) {
 struct FramingFields {
   int lengths = 0, codings = 0;
   std::string_view length, coding;
-  bool expects_continue = false;
 };
 
 MHD_Result collect(void* cls, MHD_ValueKind, const char* key, size_t key_size, const char* value,
@@ -31,8 +30,6 @@ MHD_Result collect(void* cls, MHD_ValueKind, const char* key, size_t key_size, c
   } else if (same_word(name, "Transfer-Encoding")) {
     ++fields.codings;
     fields.coding = text;
-  } else if (same_word(name, "Expect")) {
-    fields.expects_continue = same_word(text, "100-continue");
   }
   return MHD_YES;
 }
@@ -50,7 +47,6 @@ Framing framing_of(MHD_Connection* connection) {
   FramingFields fields;
   MHD_get_connection_values_n(connection, MHD_HEADER_KIND, &collect, &fields);
   Framing framing;
-  framing.expects_continue = fields.expects_continue;
   if (fields.codings > 0) {
     framing.has_body = true;
     if (fields.lengths > 0) {

@@ -13,7 +13,6 @@ namespace adit::intake {
 /// How a request's body ends (RFC 9112 6).
 struct Framing {
   bool has_body = false;
-  bool expects_continue = false;        // RFC 9110 10.1.1
   std::optional<std::uint64_t> length;  // absent where chunked
   std::string trouble;  // why two readers could see two different bodies; "" where they cannot
 };

@@ -23,24 +23,25 @@ constexpr std::chrono::milliseconds kLingerWithin(2000);
 
 Request::Request(Client& client, std::string_view method) : client_(&client), is_head_(method == "HEAD") {}
 
-Next Request::open(Handler& handler, std::string_view method, Target target, const Framing& framing) {
+void Request::open(Handler& handler, std::string_view method, Target target, const Framing& framing) {
   left_ = framing.length;
-  expects_continue_ = framing.has_body && framing.expects_continue;
   head_.emplace(client_->connection(), method, std::move(target), client_->peer(), framing.length);
   in_call_ = true;
   exchange_ = handler.open(*head_, shared_from_this(), shared_from_this());
   in_call_ = false;
   stage_ = Stage::Body;
   if (!exchange_ && !answered()) answer_ = error_answer(icd::Status::InternalServerError, "no answer");
-  if (answered()) return framing.has_body ? turn_away() : Next::GoOn;
-  if (framing.has_body) client_->expect_bytes(client_->engine().listen().body_silence);
-  return Next::GoOn;
+  if (!framing.has_body) return;
+  if (answered()) {
+    turn_away();
+  } else {
+    client_->expect_bytes(client_->engine().listen().body_silence);
+  }
 }
 
-Next Request::refuse_head(std::string_view sentence) {
+void Request::refuse_head(std::string_view sentence) {
   answer_ = error_answer(icd::Status::BadRequest, sentence);
   refuse(*answer_);
-  return Next::GoOn;
 }
 
 Next Request::body(std::span<const std::uint8_t> piece) {
@@ -48,7 +49,6 @@ Next Request::body(std::span<const std::uint8_t> piece) {
     thrown_away_ += piece.size();
     return thrown_away_ > kLinger ? Next::Close : Next::GoOn;
   }
-  expects_continue_ = false;
   if (left_) *left_ -= std::min<std::uint64_t>(piece.size(), *left_);
   if (answered()) return Next::GoOn;  // being read away
 
@@ -56,7 +56,10 @@ Next Request::body(std::span<const std::uint8_t> piece) {
   in_call_ = true;
   const bool more = exchange_->on_body(piece);
   in_call_ = false;
-  if (answered()) return turn_away();
+  if (answered()) {
+    turn_away();
+    return Next::GoOn;
+  }
   if (more || resumed_) {
     client_->expect_bytes(client_->engine().listen().body_silence);
   } else {
@@ -83,8 +86,7 @@ Next Request::end() {
   return Next::GoOn;
 }
 
-Next Request::turn_away() {
-  if (expects_continue_) return hand_over();  // the client waits for this before it sends anything
+void Request::turn_away() {
   if (stream_) {
     client_->cut();  // a stream in the middle of a body: not for such requests
   } else if (left_ && *left_ <= kReadAway) {
@@ -93,7 +95,6 @@ Next Request::turn_away() {
   } else {
     refuse(*answer_);
   }
-  return Next::GoOn;
 }
 
 void Request::refuse(const Answer& answer) {

@@ -22,9 +22,9 @@ class Request final : public Responder, public Flow, public std::enable_shared_f
   Request(Client& client, std::string_view method);
 
   /// The connection's side.
-  Next open(Handler& handler, std::string_view method, Target target, const Framing& framing);
+  void open(Handler& handler, std::string_view method, Target target, const Framing& framing);
   /// Answers 400 without asking a handler, and ends the connection.
-  Next refuse_head(std::string_view sentence);
+  void refuse_head(std::string_view sentence);
   Next body(std::span<const std::uint8_t> piece);
   /// The body is whole; called again each time that the connection has been resumed.
   Next end();
@@ -50,7 +50,7 @@ class Request final : public Responder, public Flow, public std::enable_shared_f
 
   bool answered() const { return answer_ || stream_; }
   /// The answer is there before the body is.
-  Next turn_away();
+  void turn_away();
   void refuse(const Answer& answer);
   Next hand_over();
   void answer_came();
@@ -61,8 +61,7 @@ class Request final : public Responder, public Flow, public std::enable_shared_f
   std::optional<Answer> answer_;
   std::shared_ptr<ReplyStream> stream_;
   Stage stage_ = Stage::Head;
-  bool is_head_;  // the method HEAD
-  bool expects_continue_ = false;
+  bool is_head_;                       // the method HEAD
   bool in_call_ = false;               // of the handler
   bool resumed_ = false;               // since the last piece
   std::optional<std::uint64_t> left_;  // of the body; absent where chunked

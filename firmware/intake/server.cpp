@@ -56,7 +56,7 @@ class Server::Impl final : public Engine {
   static std::size_t leave_escaped(void* cls, MHD_Connection* connection, char* text);
   static void say_nothing(void*, const char*, va_list) {}
 
-  Next first_call(Client& client, std::string_view method);
+  void first_call(Client& client, std::string_view method);
   void connected(MHD_Connection* connection, void** client_cls);
   void make_room();
   void run();
@@ -168,14 +168,18 @@ void Server::Impl::make_room() {
   }
 }
 
-Next Server::Impl::first_call(Client& client, std::string_view method) {
+void Server::Impl::first_call(Client& client, std::string_view method) {
   auto request = std::make_shared<Request>(client, method);
   client.request_begun(request);
   const Framing framing = framing_of(client.connection());
-  if (!framing.trouble.empty()) return request->refuse_head(framing.trouble);
   auto target = parse_target(client.target());
-  if (!target) return request->refuse_head("request target: expected a path of UTF-8, percent-encoded");
-  return request->open(handler_, method, std::move(*target), framing);
+  if (!framing.trouble.empty()) {
+    request->refuse_head(framing.trouble);
+  } else if (!target) {
+    request->refuse_head("request target: expected a path of UTF-8, percent-encoded");
+  } else {
+    request->open(handler_, method, std::move(*target), framing);
+  }
 }
 
 namespace {
@@ -196,7 +200,7 @@ MHD_Result Server::Impl::request_came(void* cls, MHD_Connection* connection, con
   Next next = Next::GoOn;
   if (*request_cls == nullptr) {
     *request_cls = client;
-    next = server.first_call(*client, method);
+    server.first_call(*client, method);
   } else if (*upload_size > 0) {
     next = client->request()->body({reinterpret_cast<const std::uint8_t*>(upload), *upload_size});
     *upload_size = 0;

@@ -69,12 +69,17 @@ TEST_F(ServerTest, SendsContinueToAClientThatWaitsForIt) {
 }
 
 TEST_F(ServerTest, RefusesAWaitingClientInsteadOfSendingContinue) {
-  client.send(
-      "POST /refuse HTTP/1.1\r\nHost: adit\r\nExpect: 100-continue\r\nContent-Length: 90000000\r\n\r\n");
-  const auto reply = client.reply();
-  ASSERT_TRUE(reply);
-  EXPECT_EQ(reply->status, 401);
-  EXPECT_EQ(reply->body, "\"no\"");
+  for (const std::string method : {"POST", "PUT", "DELETE"}) {
+    RawClient waiting(served.port());
+    waiting.send(
+        method +
+        " /refuse HTTP/1.1\r\nHost: adit\r\nExpect: 100-continue\r\nContent-Length: 90000000\r\n\r\n");
+    const auto reply = waiting.reply(seconds(1));
+    ASSERT_TRUE(reply) << method;
+    EXPECT_EQ(reply->status, 401) << method;
+    EXPECT_EQ(reply->body, "\"no\"");
+    EXPECT_EQ(waiting.rest(seconds(3)), "") << method;
+  }
 }
 
 TEST_F(ServerTest, KeepsTheConnectionAfterRefusingASmallBody) {

@@ -56,14 +56,13 @@ class Parser {
   }
 
   void take_plain(std::string_view word) {
-    if (!commanded_) {
-      const auto command = command_named(word);
-      if (!command) return refuse("no such command: ", word);
+    const auto command = command_named(word);
+    const bool asks_about = help_ && options_.command == Command::Help;
+    if (!commanded_ && !command) return refuse("no such command: ", word);
+    if (command && (!commanded_ || asks_about)) {
+      help_ = help_ || *command == Command::Help;
       commanded_ = true;
       options_.command = *command;
-      help_ = *command == Command::Help;
-    } else if (help_ && options_.command == Command::Help && command_named(word)) {
-      options_.command = *command_named(word);
     } else if (options_.command == Command::Check && !filed_) {
       filed_ = true;
       options_.settings = word;

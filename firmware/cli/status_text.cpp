@@ -97,7 +97,7 @@ std::string sent_size(const page::ActivityRow& row) {
 }
 
 std::string said(const page::ActivityRow& row) {
-  const std::string status = row.last_status == 0 ? "" : std::to_string(row.last_status);
+  std::string status = row.last_status == 0 ? "" : std::to_string(row.last_status);
   if (row.last_sentence.empty()) return status;
   return status.empty() ? row.last_sentence : status + ": " + row.last_sentence;
 }

@@ -4,6 +4,7 @@ namespace adit::settings {
 namespace {
 
 // Names a member of Settings, whether const or not.
+// NOLINTNEXTLINE(bugprone-macro-parentheses): parentheses would make it no member
 #define MEMBER(path) [](auto& s) -> auto& { return s.path; }
 
 constexpr bool kRequired = true;

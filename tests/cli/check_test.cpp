@@ -16,12 +16,14 @@ using testing::HasSubstr;
 using testing::Not;
 
 class Check : public testing::Test {
+ public:
+  ~Check() override { std::filesystem::remove_all(folder_); }
+
  protected:
   Check() {
     std::string name = (std::filesystem::temp_directory_path() / "adit-check-XXXXXX").string();
     folder_ = mkdtemp(name.data());
   }
-  ~Check() override { std::filesystem::remove_all(folder_); }
   Outcome check(const std::string& json, const std::vector<std::string_view>& more = {}) const {
     const std::string file = folder_ / "settings.json";
     std::ofstream(file) << json;

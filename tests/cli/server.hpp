@@ -7,6 +7,7 @@
 #include <unistd.h>
 
 #include <atomic>
+#include <cstdlib>
 #include <string>
 #include <thread>
 
@@ -24,9 +25,10 @@ class Server {
     name.sin_family = AF_INET;
     name.sin_addr.s_addr = htonl(INADDR_LOOPBACK);
     socklen_t size = sizeof name;
-    bind(fd_, reinterpret_cast<const sockaddr*>(&name), size);
-    listen(fd_, 4);
-    getsockname(fd_, reinterpret_cast<sockaddr*>(&name), &size);
+    const bool listens = bind(fd_, reinterpret_cast<const sockaddr*>(&name), size) == 0 &&
+                         listen(fd_, 4) == 0 &&
+                         getsockname(fd_, reinterpret_cast<sockaddr*>(&name), &size) == 0;
+    if (!listens) std::abort();
     port_ = ntohs(name.sin_port);
     thread_ = std::thread([this] { serve(); });
   }

@@ -4,8 +4,7 @@ target_compile_options(adit_options INTERFACE
   -Wall -Wextra -Wpedantic -Wshadow -Wconversion -Wno-sign-conversion -Wnon-virtual-dtor
   -Woverloaded-virtual -Wimplicit-fallthrough -Werror
   -fstack-protector-strong -fstack-clash-protection)
-target_compile_definitions(adit_options INTERFACE
-  _GLIBCXX_ASSERTIONS $<$<AND:$<CONFIG:Release>,$<NOT:$<BOOL:${ADIT_SANITIZE}>>>:_FORTIFY_SOURCE=2>)
+target_compile_definitions(adit_options INTERFACE _GLIBCXX_ASSERTIONS)
 target_link_options(adit_options INTERFACE -Wl,-z,relro,-z,now -Wl,--gc-sections)
 set(CMAKE_POSITION_INDEPENDENT_CODE ON)
 include(CheckPIESupported)
@@ -15,4 +14,6 @@ set(ADIT_SANITIZE "" CACHE STRING "Sanitizers to build with, as -fsanitize takes
 if(ADIT_SANITIZE)
   target_compile_options(adit_options INTERFACE -fsanitize=${ADIT_SANITIZE} -fno-sanitize-recover=all -fno-omit-frame-pointer)
   target_link_options(adit_options INTERFACE -fsanitize=${ADIT_SANITIZE})
+else()
+  target_compile_definitions(adit_options INTERFACE $<$<CONFIG:Release>:_FORTIFY_SOURCE=2>)
 endif()

@@ -54,11 +54,12 @@ class CommandPost:
         return self
 
     def __exit__(self, *_):
-        if self.process.poll() is None:
-            self.stop()
+        err = self.stop()[2] if self.process.poll() is None else ""
         self.process.stdout.close()
         self.process.stderr.close()
         self.folder.cleanup()
+        if self.process.returncode not in (0, 3):  # 3: killed by a message, as the measured server is
+            raise AssertionError(f"exit code {self.process.returncode}: {err}")
 
     def stop(self, how=signal.SIGTERM):
         """Gives the exit code and what was printed."""

@@ -62,7 +62,7 @@ void append_field(std::string& out, const char* point, const CloudField& field, 
 }  // namespace
 
 bool write_cloud_picture(const Cloud& cloud, const std::string& data, const std::string& stem) {
-  constexpr std::size_t flush_at = 256 * 1024;
+  constexpr std::size_t flush_at = std::size_t{256} << 10;
   const std::size_t points = data.size() / cloud.point_step;
   std::ofstream file(stem + ".pcd", std::ios::binary);
   write_header(file, cloud, points);

@@ -115,21 +115,22 @@ void CommandPost::write_down(std::uint64_t number, const char* endpoint, const R
   }
   const Outcome& outcome = judgement.outcome;
   const bool answered = outcome.kind == Outcome::Kind::Answered && outcome.answer.status != 0;
-  OrderedJson line = {{"number", number},
-                      {"at", std::chrono::duration<double>(request.at - launched_).count()},
-                      {"endpoint", endpoint},
-                      {"method", request.method},
-                      {"uri", request.target},
-                      {"content_type", text_or_null(request.content_type)},
-                      {"content_encoding", text_or_null(request.content_encoding)},
-                      {"expect", request.expects_continue},
-                      {"authorization", request.authorization.has_value()},
-                      {"body_bytes", request.body.size()},
-                      {"status", answered ? OrderedJson(outcome.answer.status) : OrderedJson(nullptr)},
-                      {"answer", answered ? OrderedJson(outcome.answer.body) : OrderedJson(nullptr)},
-                      {"message", std::move(message)},
-                      {"fault", request.fault ? OrderedJson(request.fault->sentence) : OrderedJson(nullptr)},
-                      {"violations", judgement.findings.violations()}};
+  const OrderedJson line = {
+      {"number", number},
+      {"at", std::chrono::duration<double>(request.at - launched_).count()},
+      {"endpoint", endpoint},
+      {"method", request.method},
+      {"uri", request.target},
+      {"content_type", text_or_null(request.content_type)},
+      {"content_encoding", text_or_null(request.content_encoding)},
+      {"expect", request.expects_continue},
+      {"authorization", request.authorization.has_value()},
+      {"body_bytes", request.body.size()},
+      {"status", answered ? OrderedJson(outcome.answer.status) : OrderedJson(nullptr)},
+      {"answer", answered ? OrderedJson(outcome.answer.body) : OrderedJson(nullptr)},
+      {"message", std::move(message)},
+      {"fault", request.fault ? OrderedJson(request.fault->sentence) : OrderedJson(nullptr)},
+      {"violations", judgement.findings.violations()}};
   transcript_->request(line);
   if (judgement.report) transcript_->report(*judgement.report);
 }

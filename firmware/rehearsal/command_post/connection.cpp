@@ -18,7 +18,7 @@ namespace http = boost::beast::http;
 using Parser = http::request_parser<http::string_body>;
 
 constexpr std::uint32_t kMostHeader = 16 * 1024;
-constexpr std::size_t kPiece = 64 * 1024;
+constexpr std::size_t kPiece = std::size_t{64} << 10;
 
 std::optional<std::string> field(const http::fields& fields, http::field name) {
   const auto found = fields.find(name);
@@ -91,8 +91,10 @@ std::optional<Request> Connection::read_request() {
       request.at = Clock::now();
       take_header(parser, request);
       parser.eager(true);
-      if (request.expects_continue && manner_.answers_expect && !write("HTTP/1.1 100 Continue\r\n\r\n"))
-        break;
+      if (request.expects_continue && manner_.answers_expect && !write("HTTP/1.1 100 Continue\r\n\r\n")) {
+        request.fault = HttpFault{0, "The connection was closed before its body was asked for"};
+        return request;
+      }
       continue;
     }
     if (error) break;

@@ -48,7 +48,7 @@ class Builder : public nlohmann::json_sax<Json> {
   std::string reason;
 
  private:
-  bool fail(std::string why) {
+  bool fail(const std::string& why) {
     if (reason.empty()) reason = why.substr(0, kLongestReason);
     return false;
   }

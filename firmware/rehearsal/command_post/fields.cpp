@@ -127,11 +127,12 @@ std::optional<std::string> Field::text() const {
   return value_->get<std::string>();
 }
 
+bool is_word_character(char c) {
+  return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || (c >= '0' && c <= '9') || c == '_';
+}
+
 bool is_robot_name(std::string_view name) {
-  const auto allowed = [](char c) {
-    return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || (c >= '0' && c <= '9') || c == '_';
-  };
-  return !name.empty() && name.size() <= 10 && std::ranges::all_of(name, allowed);
+  return !name.empty() && name.size() <= 10 && std::ranges::all_of(name, is_word_character);
 }
 
 }  // namespace adit::rehearsal

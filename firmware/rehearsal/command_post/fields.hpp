@@ -47,6 +47,9 @@ class Field {
   Findings* findings_;
 };
 
+/// A letter, a digit or an underscore, of ASCII.
+bool is_word_character(char c);
+
 /// Whether `name` is one that a robot may have: 1 to 10 letters, digits and underscores (ICD 2).
 bool is_robot_name(std::string_view name);
 

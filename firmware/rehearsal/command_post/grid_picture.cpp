@@ -2,6 +2,7 @@
 #include <charconv>
 #include <cmath>
 #include <fstream>
+#include <functional>
 
 #include "rehearsal/command_post/pictures.hpp"
 
@@ -59,12 +60,7 @@ bool write_grid_picture(const Grid& grid, const std::string& cells, const std::s
 std::string tame(std::string_view text) {
   constexpr std::size_t longest = 32;
   std::string tamed(text.substr(0, longest));
-  std::ranges::replace_if(
-      tamed,
-      [](char c) {
-        return !((c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || (c >= '0' && c <= '9') || c == '_');
-      },
-      '_');
+  std::ranges::replace_if(tamed, std::not_fn(is_word_character), '_');
   return tamed;
 }
 

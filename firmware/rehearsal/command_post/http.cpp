@@ -57,7 +57,8 @@ std::string bytes_of(const Outcome& outcome, bool head) {
       "HTTP/1.1 " + std::to_string(answer.status) + " " + std::string(reason_of(answer.status));
   bytes += "\r\nContent-Length: " + std::to_string(answer.body.size());
   if (!answer.content_type.empty()) bytes += "\r\nContent-Type: " + answer.content_type;
-  for (const auto& [name, value] : answer.headers) bytes += "\r\n" + name + ": " + value;
+  for (const auto& [name, value] : answer.headers)
+    bytes.append("\r\n").append(name).append(": ").append(value);
   bytes += outcome.after == After::Close ? "\r\nConnection: close" : "\r\nConnection: keep-alive";
   bytes += "\r\n\r\n";
   if (!head) bytes += answer.body;

@@ -11,7 +11,7 @@ namespace {
 constexpr int kGzip = 15 + 16;
 constexpr int kZlib = 15;
 constexpr int kBare = -15;
-constexpr std::size_t kPiece = 256 * 1024;
+constexpr std::size_t kPiece = std::size_t{256} << 10;
 
 /// `window` as inflateInit2 takes it. Bodies are below 4 GiB, so that zlib's counters hold them.
 std::expected<std::string, InflateFault> inflate_one(std::string_view bytes, int window, std::size_t most) {

@@ -40,10 +40,12 @@ void StrictMapping::judge_body(const Request& request, Judgement& judgement) {
   }
   if (const Finding* const finding = findings.decisive(Manner::Strict)) {
     judgement.outcome = refused(*finding);
-  } else {
+  } else if (message) {
     judgement.outcome = answered(200, Json(nullptr));
     judgement.accepted = std::move(message->parts);
     judgement.map = std::move(message->map);
+  } else {
+    judgement.outcome = refused(422, kUnreadable);
   }
 }
 

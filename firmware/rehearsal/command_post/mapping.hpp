@@ -44,6 +44,9 @@ class MeasuredMapping : public Endpoint {
   RateLimit cloud_limit_;
 };
 
+/// Said where a message could not be read and no finding tells why.
+inline constexpr const char* kUnreadable = "The message could not be read";
+
 /// A body for one of the mapping URIs, read.
 struct MappingMessage {
   std::vector<Stamp> stamps;

@@ -80,6 +80,10 @@ void MeasuredMapping::judge_body(const Request& request, Judgement& judgement) {
     judgement.outcome = outcome_of(*finding);
     return;
   }
+  if (!message) {
+    judgement.outcome = closing(refused(422, kUnreadable));
+    return;
+  }
   stamps_.check(judgement.uri, message->stamps, true, findings);
   judgement.outcome = answered(200, Json(nullptr));
   // Too many clouds are told off and taken all the same.

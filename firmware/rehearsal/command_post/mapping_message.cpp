@@ -49,7 +49,9 @@ std::optional<MappingMessage> read_mapping(const std::string& body, Format forma
     findings.breaks(name + " parsing failed: " + read.error(), Measured::Refuses, 400);
     return std::nullopt;
   }
-  if (read->repeated) findings.breaks("'" + *read->repeated + "' is given twice", Measured::Takes);
+  if (const auto& repeated = read->repeated) {
+    findings.breaks("'" + *repeated + "' is given twice", Measured::Takes);
+  }
   Json& document = judgement.message.emplace(std::move(read->value));
   if (judgement.uri == kMapUri) {
     auto map = read_map(document, format, findings);

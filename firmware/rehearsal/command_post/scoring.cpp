@@ -105,23 +105,26 @@ Judgement StrictScoring::judge(const Request& request) {
 void StrictScoring::judge_report(const Request& request, Judgement& judgement) {
   Findings& findings = judgement.findings;
   check_content(request, false, findings);
-  auto document = read_document(request.body, Format::JsonText);
+  const auto document = read_document(request.body, Format::JsonText);
   std::optional<Sent> sent;
-  if (!document) {
-    findings.breaks("JSON parsing failed: " + document.error(), Measured::Refuses, 400);
-  } else {
-    if (document->repeated) findings.breaks("'" + *document->repeated + "' is given twice");
-    sent = read_report(document->value, findings);
+  if (document) {
     judgement.message = document->value;
+    if (const auto& repeated = document->repeated) findings.breaks("'" + *repeated + "' is given twice");
+    sent = read_report(document->value, findings);
+  } else {
+    findings.breaks("JSON parsing failed: " + document.error(), Measured::Refuses, 400);
   }
   if (const Finding* const finding = findings.decisive(Manner::Strict)) {
     judgement.outcome = refused(*finding);
-    return;
+  } else if (sent) {
+    const Run::Ruling ruling = run_.submit(sent->type, sent->position, Clock::now());
+    const auto& body =
+        judgement.report.emplace(report_body(run_, ruling, document->value, request.local_address));
+    judgement.outcome = answered(201, body);
+    judgement.accepted.push_back({"report", ""});
+  } else {
+    judgement.outcome = refused(422, "The report could not be read");
   }
-  const Run::Ruling ruling = run_.submit(sent->type, sent->position, Clock::now());
-  judgement.report = report_body(run_, ruling, document->value, request.local_address);
-  judgement.outcome = answered(201, *judgement.report);
-  judgement.accepted.push_back({"report", ""});
 }
 
 }  // namespace adit::rehearsal

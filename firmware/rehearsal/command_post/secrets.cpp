@@ -14,7 +14,7 @@ std::expected<std::string, std::string> read_token(const std::string& path) {
   constexpr const char* space = " \t\r\n";
   const auto first = text.find_first_not_of(space);
   const auto last = text.find_last_not_of(space);
-  const std::string token = first == std::string::npos ? "" : text.substr(first, last - first + 1);
+  std::string token = first == std::string::npos ? "" : text.substr(first, last - first + 1);
   const bool visible = std::ranges::all_of(token, [](char c) { return c > 0x20 && c < 0x7f; });
   if (token.empty() || !visible)
     return std::unexpected(path + ": expected one token of visible ASCII characters");

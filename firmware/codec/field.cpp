@@ -14,7 +14,8 @@ std::optional<std::int64_t> whole_of(const Value& value) {
   }
   const auto* given = std::get_if<double>(&value.is);
   constexpr double kEnd = 0x1p63;
-  if (!given || !(*given >= -kEnd && *given < kEnd) || std::trunc(*given) != *given) return std::nullopt;
+  if (!given || std::trunc(*given) != *given) return std::nullopt;  // NaN is unlike itself
+  if (*given < -kEnd || *given >= kEnd) return std::nullopt;
   return static_cast<std::int64_t>(*given);
 }
 

@@ -18,8 +18,8 @@ enum class GzipStrategy : std::uint8_t {
   Runs,     // zlib level 6 with Z_RLE: for grids, two to five times faster and mostly smaller
 };
 
-/// Makes one gzip member (RFC 1952) of what it is fed, with nothing after it. The same bytes give the same
-/// member, however they are cut: its header holds no time and no name.
+/// Makes one gzip member (RFC 1952) of what it is fed, with nothing after it, and no time or name in its
+/// header.
 class Gzipper {
  public:
   explicit Gzipper(GzipStrategy strategy);

@@ -9,10 +9,11 @@ namespace {
 
 icd::MarkerAction read_action(const Field& field) {
   const auto action = field.whole<std::int64_t>();
-  if (action != 0 && action != 2 && action != 3) {
-    field.refuse("expected 0 (add), 2 (delete) or 3 (delete all), got ", action);
+  for (const auto known : {icd::MarkerAction::Add, icd::MarkerAction::Delete, icd::MarkerAction::DeleteAll}) {
+    if (action == static_cast<std::int64_t>(known)) return known;
   }
-  return static_cast<icd::MarkerAction>(action);
+  field.refuse("expected 0 (add), 2 (delete) or 3 (delete all), got ", action);
+  return icd::MarkerAction::Add;
 }
 
 icd::Color read_color(const Field& field) {

@@ -16,7 +16,7 @@ namespace adit::icd {
 /// across threads.
 class ChunkedBytes {
  public:
-  static constexpr std::size_t kChunk = 64 * 1024;
+  static constexpr std::size_t kChunk = std::size_t{64} * 1024;
   using Chunk = std::shared_ptr<const std::vector<std::uint8_t>>;
 
   ChunkedBytes() = default;

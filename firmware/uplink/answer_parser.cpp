@@ -1,11 +1,20 @@
 // The one place that includes Boost.Beast, whose headers take seconds to compile.
 #include "uplink/answer_parser.hpp"
 
-#include <boost/beast/http/parser.hpp>
-#include <boost/beast/http/string_body.hpp>
 #include <charconv>
 #include <optional>
 #include <utility>
+
+// GCC 12 sees boost::optional as uninitialised where the sanitizers keep it from inlining.
+#if defined(__GNUC__) && !defined(__clang__)
+#pragma GCC diagnostic push
+#pragma GCC diagnostic ignored "-Wmaybe-uninitialized"
+#endif
+#include <boost/beast/http/parser.hpp>
+#include <boost/beast/http/string_body.hpp>
+#if defined(__GNUC__) && !defined(__clang__)
+#pragma GCC diagnostic pop
+#endif
 
 namespace adit::uplink {
 namespace {

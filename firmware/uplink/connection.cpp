@@ -144,9 +144,10 @@ class Connection::Impl : public std::enable_shared_from_this<Impl> {
   // A request and its answer.
 
   void begin() {
-    // A kept connection may have been closed meanwhile. Nothing of this request has been sent, so that it may
-    // have a new one.
-    if (!fresh_ && !is_quiet(fd_.get())) return begin_anew();
+    // The peer may have closed a kept connection meanwhile, or a new one at once. Nothing of this request has
+    // been sent, so that it is still safe to say so, or to try once more.
+    if (!is_quiet(fd_.get()))
+      return fresh_ ? never_sent("the peer closed the new connection, or spoke first") : begin_anew();
     give_up_after(fd_.get(), exchange_->answer_within());
     exchange_->begin(loop_.now());
     listen_again();
@@ -161,7 +162,7 @@ class Connection::Impl : public std::enable_shared_from_this<Impl> {
   void write() {
     const int error = exchange_->write(fd_.get());
     if (error == 0) return watch(exchange_->wants_to_write() ? kComing | EPOLLOUT : kComing);
-    if (exchange_->sent() == 0) return fresh_ ? never_sent(error) : begin_anew();
+    if (exchange_->sent() == 0) return fresh_ ? never_sent(std::strerror(error)) : begin_anew();
     if (!answer_came()) watch(kComing);
   }
 
@@ -200,8 +201,8 @@ class Connection::Impl : public std::enable_shared_from_this<Impl> {
     deliver(InDoubt{std::move(why)});
   }
 
-  void never_sent(int error) {
-    std::string why = exchange_->sentence(std::strerror(error));
+  void never_sent(const std::string& reason) {
+    std::string why = exchange_->sentence(reason);
     drop();
     deliver(NeverSent{std::move(why)});
   }

@@ -162,6 +162,20 @@ TEST_F(UnsentRequests, AreThoseThatFoundNobodyInTime) {
   EXPECT_THAT(never_sent(endpoint), HasSubstr("no answer in time"));
 }
 
+TEST_F(UnsentRequests, AreThoseWhosePeerClosesTheNewConnectionAtOnce) {
+  const ListeningPeer peer([](Wire&) {});
+  Connection connection(loop_, peer.endpoint(), token());
+  std::string sentence;
+  connection.send(post("x"), [&](const Outcome& outcome) {
+    EXPECT_TRUE(std::holds_alternative<NeverSent>(outcome));
+    sentence = why(outcome);
+  });
+  while (peer.ended() == 0)
+    std::this_thread::sleep_for(milliseconds(1));  // before the loop sees it connected
+  EXPECT_TRUE(turn_until([&] { return !connection.busy(); }));
+  EXPECT_THAT(sentence, AllOf(HasSubstr("closed the new connection"), HasSubstr("(0 of ")));
+}
+
 TEST_F(UnsentRequests, AreThoseWhoseKeptConnectionIsGoneAndNoNewOneIsToBeHad) {
   auto peer = std::make_unique<ListeningPeer>([](Wire& wire) {
     wire.read_request();
@@ -268,6 +282,7 @@ TEST_F(DoubtfulRequests, AreThoseWhosePeerNeverReads) {
 
 TEST_F(DoubtfulRequests, AreThoseWhosePeerReadsNothingAndDribbles) {
   const ListeningPeer peer([](Wire& wire) {
+    wire.read_some(1);
     for (int i = 0; i < 200 && wire.write("H"); ++i) std::this_thread::sleep_for(milliseconds(5));
   });
   Connection connection(loop_, peer.endpoint(), token());

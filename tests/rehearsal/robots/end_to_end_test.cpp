@@ -3,10 +3,12 @@
 #include <chrono>
 #include <filesystem>
 #include <fstream>
-#include <thread>
+#include <future>
+#include <utility>
 
 #include "program.hpp"
 #include "rehearsal/robots/cave.hpp"
+#include "server.hpp"
 
 namespace adit::robots {
 namespace {
@@ -43,16 +45,31 @@ TEST_F(Programs, TheTruthIsWrittenWithoutARun) {
   EXPECT_EQ(text, Cave::generate(12).truth_csv());
 }
 
+/// A second is promised; the rest is for a busy machine.
 TEST_F(Programs, ATeamThatNobodyAnswersStopsWithinASecondAndSaysSo) {
-  Program program(robots({"--post", "http://127.0.0.1:1", "--quiet"}));
-  std::this_thread::sleep_for(500ms);
+  std::promise<void> arrived;
+  const Server silent([&, first = true](int connection) mutable {
+    if (std::exchange(first, false)) arrived.set_value();
+    char byte = 0;
+    while (recv(connection, &byte, 1, 0) == 1) continue;  // until the client goes
+  });
+  Program program(
+      robots({"--post", "http://127.0.0.1:" + std::to_string(silent.endpoint().port), "--quiet"}));
+  ASSERT_EQ(arrived.get_future().wait_for(20s), std::future_status::ready);
   const Clock::time_point start = Clock::now();
   program.signal(SIGTERM);
   const std::string summary = program.rest();
   EXPECT_EQ(program.wait(), 1);
-  EXPECT_LT(Clock::now() - start, 1s);
-  EXPECT_NE(summary.find("state: Connection refused"), std::string::npos) << summary;
+  EXPECT_LT(Clock::now() - start, 3s);
+  EXPECT_NE(summary.find("stopped before the answer came"), std::string::npos) << summary;
   EXPECT_NE(summary.find("no grid was accepted"), std::string::npos) << summary;
+}
+
+TEST_F(Programs, ATeamThatCannotConnectFailsAndSaysWhy) {
+  Program program(robots({"--post", "http://127.0.0.1:1", "--for", "1", "--quiet"}));
+  const std::string summary = program.rest();
+  EXPECT_EQ(program.wait(), 1);
+  EXPECT_NE(summary.find("state: Connection refused"), std::string::npos) << summary;
 }
 
 #ifdef ADIT_REHEARSAL

@@ -1,57 +1,17 @@
 #include "rehearsal/robots/http.hpp"
 
-#include <arpa/inet.h>
 #include <gtest/gtest.h>
-#include <netinet/in.h>
 #include <sys/socket.h>
-#include <unistd.h>
 
 #include <atomic>
-#include <functional>
 #include <thread>
+
+#include "server.hpp"
 
 namespace adit::robots {
 namespace {
 
 using namespace std::chrono_literals;
-
-/// A server on loopback that does with each connection what its test says.
-class Server {
- public:
-  explicit Server(std::function<void(int connection, int number)> serve)
-      : listener_(socket(AF_INET, SOCK_STREAM, 0)) {
-    sockaddr_in address{};
-    address.sin_family = AF_INET;
-    address.sin_addr.s_addr = htonl(INADDR_LOOPBACK);
-    socklen_t size = sizeof address;
-    EXPECT_EQ(bind(listener_, reinterpret_cast<sockaddr*>(&address), size), 0);
-    EXPECT_EQ(listen(listener_, 8), 0);
-    EXPECT_EQ(getsockname(listener_, reinterpret_cast<sockaddr*>(&address), &size), 0);
-    port_ = ntohs(address.sin_port);
-    thread_ = std::jthread([this, serve = std::move(serve)] {
-      for (int number = 0;; ++number) {
-        const int connection = accept(listener_, nullptr, nullptr);
-        if (connection < 0) return;
-        serve(connection, number);
-        close(connection);
-      }
-    });
-  }
-  ~Server() {
-    shutdown(listener_, SHUT_RDWR);
-    thread_.join();
-    close(listener_);
-  }
-  Server(const Server&) = delete;
-  Server& operator=(const Server&) = delete;
-
-  Endpoint endpoint() const { return {.address = "127.0.0.1", .port = port_}; }
-
- private:
-  int listener_;
-  std::uint16_t port_ = 0;
-  std::jthread thread_;
-};
 
 /// Reads one request's head (the tests' requests have no body); empty where the client has gone.
 std::string read_head(int connection) {
@@ -73,7 +33,7 @@ const HttpRequest kRequest{
 
 TEST(Connection, SendsTheRequestAndReadsTheReply) {
   std::string head;
-  const Server server([&](int connection, int) {
+  const Server server([&](int connection) {
     head = read_head(connection);
     answer(connection, kNull);
   });
@@ -89,7 +49,7 @@ TEST(Connection, SendsTheRequestAndReadsTheReply) {
 
 TEST(Connection, IsKeptBetweenRequests) {
   std::atomic<int> connections = 0;
-  const Server server([&](int connection, int) {
+  const Server server([&](int connection) {
     ++connections;
     while (!read_head(connection).empty()) answer(connection, kNull);
   });
@@ -100,7 +60,7 @@ TEST(Connection, IsKeptBetweenRequests) {
 
 /// As the mapping server does after a 4xx.
 TEST(Connection, OpensAgainWhereTheServerPromisedKeepAliveAndClosed) {
-  const Server server([](int connection, int) {
+  const Server server([](int connection) {
     read_head(connection);
     answer(connection, kNull);
   });
@@ -113,7 +73,7 @@ TEST(Connection, OpensAgainWhereTheServerPromisedKeepAliveAndClosed) {
 
 TEST(Connection, DoesNotSendAgainWhatMayBeSentOnceOnly) {
   std::atomic<int> requests = 0;
-  const Server server([&](int connection, int) {
+  const Server server([&](int connection) {
     if (!read_head(connection).empty()) ++requests;
     answer(connection, kNull);
     if (!read_head(connection).empty()) ++requests;  // and closes without an answer
@@ -125,7 +85,7 @@ TEST(Connection, DoesNotSendAgainWhatMayBeSentOnceOnly) {
 }
 
 TEST(Connection, GivesUpAtTheDeadline) {
-  const Server server([](int connection, int) {
+  const Server server([](int connection) {
     read_head(connection);
     read_head(connection);  // until the client goes
   });
@@ -138,7 +98,7 @@ TEST(Connection, GivesUpAtTheDeadline) {
 }
 
 TEST(Connection, StopsAtOnceWhenAsked) {
-  const Server server([](int connection, int) {
+  const Server server([](int connection) {
     read_head(connection);
     read_head(connection);
   });
@@ -156,12 +116,12 @@ TEST(Connection, StopsAtOnceWhenAsked) {
 }
 
 TEST(Connection, SaysWhyThereIsNoAnswer) {
-  const Server garbage([](int connection, int) {
+  const Server garbage([](int connection) {
     read_head(connection);
     answer(connection, "SSH-2.0-OpenSSH\r\n\r\n");
   });
   EXPECT_FALSE(Connection(garbage.endpoint(), {}).exchange(kRequest, 5s));
-  const Server large([](int connection, int) {
+  const Server large([](int connection) {
     read_head(connection);
     answer(connection, "HTTP/1.1 200 OK\r\nContent-Length: 999999999\r\n\r\n");
   });

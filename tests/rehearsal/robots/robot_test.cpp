@@ -39,20 +39,20 @@ TEST(Robot, WalksTheSameWayForTheSameSeed) {
 TEST(Robot, StaysOutOfTheRockAndWalksOn) {
   for (std::size_t index = 0; index < 3; ++index) {
     Robot robot(cave(), 5, index);
-    for (int i = 0; i < 600; ++i) {
-      robot.advance(0.5);
+    for (int i = 0; i < 200; ++i) {
+      robot.advance(1);
       const Vector3 at = robot.pose().position;
       ASSERT_TRUE(cave().is_open(cave().lattice().cell_at(at.x, at.y))) << at.x << " " << at.y;
     }
-    EXPECT_GT(robot.walked(), 250) << index;
+    EXPECT_GT(robot.walked(), 180) << index;
   }
 }
 
 TEST(Robot, FindsMostArtifactsWhenItWalksLongEnoughAndEachOnce) {
   Robot robot(cave(), 5, 0);
   std::vector<int> found(cave().artifacts().size(), 0);
-  for (int i = 0; i < 1500; ++i) {
-    robot.advance(0.5);
+  for (int i = 0; i < 400; ++i) {
+    robot.advance(1.5);
     for (const std::size_t artifact : robot.take_sightings()) ++found[artifact];
   }
   EXPECT_GE(std::count(found.begin(), found.end(), 1), 15);

@@ -1,0 +1,147 @@
+#include <gmock/gmock.h>
+
+#include <string>
+#include <thread>
+
+#include "asking.hpp"
+
+namespace adit::uplink {
+namespace {
+
+using std::chrono::milliseconds;
+using testing::AllOf;
+using testing::HasSubstr;
+
+// InDoubt: bytes left, and no whole answer came.
+
+struct Doubt {
+  const char* name;
+  Peer::Script script;
+  const char* sentence;
+};
+void PrintTo(const Doubt& doubt, std::ostream* out) {
+  *out << doubt.name;
+}
+
+void dribble(Wire& wire) {
+  wire.read_request();
+  wire.write("HTTP/1.1 200 OK\r\nX: ");
+  while (wire.write("x")) std::this_thread::sleep_for(milliseconds(5));
+}
+
+void answer_of_5_megabytes(Wire& wire) {
+  wire.read_request();
+  wire.write("HTTP/1.1 200 OK\r\n\r\n" + std::string(5u << 20, 'x'));
+}
+
+const Doubt kDoubts[] = {
+    {"silence", [](Wire& wire) { wire.wait_for_close(); }, "silent for too long"},
+    {"dribble", dribble, "silent for too long"},
+    {"half",
+     [](Wire& wire) { wire.read_request(), wire.write("HTTP/1.1 200 OK\r\nContent-Length: 9\r\n\r\nhalf"); },
+     "in the middle of its answer"},
+    {"half_and_silence",
+     [](Wire& wire) { wire.read_request(), wire.write("HTTP/1.1 200 OK\r\n"), wire.wait_for_close(); },
+     "silent for too long"},
+    {"no_answer", [](Wire& wire) { wire.read_request(); }, "did not answer"},
+    {"no_answer_and_not_all_read", [](Wire& wire) { wire.read_some(1); }, "Connection reset"},
+    {"reset", [](Wire& wire) { wire.read_request(), wire.reset(); }, "Connection reset"},
+    {"half_and_reset",
+     [](Wire& wire) {
+       wire.read_request(), wire.write("HTTP/1.1 200 OK\r\n\r\nwithout length");
+       std::this_thread::sleep_for(milliseconds(20));
+       wire.reset();
+     },
+     "Connection reset"},
+    {"garbage",
+     [](Wire& wire) { wire.read_request(), wire.write("\x16\x03\x01 what?\r\n\r\n"), wire.wait_for_close(); },
+     "no HTTP"},
+    {"only_interim", [](Wire& wire) { wire.read_request(), wire.write("HTTP/1.1 100 Continue\r\n\r\n"); },
+     "closed the connection"},
+    {"too_long", answer_of_5_megabytes, "too long"},
+    {"too_long_by_its_own_word",
+     [](Wire& wire) {
+       wire.read_request(), wire.write("HTTP/1.1 200 OK\r\nContent-Length: 5000000\r\n\r\n");
+     },
+     "too long"},
+};
+
+class RequestsInDoubt : public Asking, public testing::WithParamInterface<Doubt> {};
+
+TEST_P(RequestsInDoubt, AreSentOnceAndSayWhy) {
+  const ListeningPeer peer(GetParam().script);
+  Connection connection(loop_, peer.endpoint(), token());
+  Request impatient = post("x");
+  impatient.answer_within = milliseconds(150);
+  const Outcome outcome = ask(connection, std::move(impatient));
+  EXPECT_TRUE(std::holds_alternative<InDoubt>(outcome)) << answered(outcome).status;
+  EXPECT_THAT(why(outcome),
+              AllOf(HasSubstr("POST /map/update to 127.0.0.1:"), HasSubstr(GetParam().sentence)));
+  EXPECT_FALSE(connection.connected());
+  for (int i = 0; i < 5; ++i) loop_.turn(milliseconds(2));
+  EXPECT_EQ(peer.begun(), 1) << "it was sent again";
+}
+
+INSTANTIATE_TEST_SUITE_P(, RequestsInDoubt, testing::ValuesIn(kDoubts),
+                         [](const auto& doubt) { return std::string(doubt.param.name); });
+
+class DoubtfulRequests : public Asking {
+ protected:
+  void expect_doubt(const Peer& peer, const char* sentence) {
+    Connection connection(loop_, peer.endpoint(), token());
+    Request request = post(megabytes(20));
+    request.answer_within = milliseconds(200);
+    const Outcome outcome = ask(connection, std::move(request));
+    EXPECT_TRUE(std::holds_alternative<InDoubt>(outcome)) << answered(outcome).status;
+    EXPECT_THAT(why(outcome), HasSubstr(sentence));
+    EXPECT_LT(connection.sent_bytes(), connection.total_bytes());
+  }
+};
+
+TEST_F(DoubtfulRequests, AreThoseWhosePeerNeverReads) {
+  const ListeningPeer peer([](Wire&) { std::this_thread::sleep_for(milliseconds(600)); });
+  expect_doubt(peer, "silent for too long");
+}
+
+TEST_F(DoubtfulRequests, AreThoseWhosePeerReadsNothingAndDribbles) {
+  const ListeningPeer peer([](Wire& wire) {
+    wire.read_some(1);
+    for (int i = 0; i < 200 && wire.write("H"); ++i) std::this_thread::sleep_for(milliseconds(5));
+  });
+  Connection connection(loop_, peer.endpoint(), token());
+  Request request = post(megabytes(20));
+  request.answer_within = milliseconds(200);
+  EXPECT_TRUE(std::holds_alternative<InDoubt>(ask(connection, std::move(request))));
+}
+
+TEST_F(DoubtfulRequests, AreThoseResetHalfWay) {
+  const ListeningPeer peer([](Wire& wire) { wire.read_some(1 << 16), wire.reset(); });
+  expect_doubt(peer, "");
+}
+
+TEST_F(DoubtfulRequests, AreThoseWhoseEarlyAnswerEndsInAReset) {
+  const ListeningPeer peer([](Wire& wire) {
+    wire.read_head();
+    wire.write("HTTP/1.1 400 Bad Request\r\n\r\nthis has no length, and its end ");
+    std::this_thread::sleep_for(milliseconds(20));
+    wire.reset();
+  });
+  expect_doubt(peer, "");
+}
+
+TEST_F(DoubtfulRequests, AreThoseOnAKeptConnectionThatClosesWithoutAnAnswer) {
+  const ListeningPeer peer([](Wire& wire) {
+    wire.read_request();
+    wire.write(answer("200 OK", "null"));
+    wire.read_request();  // it has come; what becomes of it nobody knows
+  });
+  Connection connection(loop_, peer.endpoint(), token());
+  EXPECT_EQ(answered(ask(connection, get())).status, 200);
+  const Outcome outcome = ask(connection, post("a report"));
+  EXPECT_TRUE(std::holds_alternative<InDoubt>(outcome)) << why(outcome);
+  for (int i = 0; i < 5; ++i) loop_.turn(milliseconds(2));
+  EXPECT_EQ(peer.begun(), 1) << "it was sent again";
+}
+
+}  // namespace
+}  // namespace adit::uplink

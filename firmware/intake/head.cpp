@@ -1,16 +1,17 @@
 #include "intake/head.hpp"
 
 #include <microhttpd.h>
-#include <strings.h>
 
 #include <algorithm>
+#include <cctype>
 #include <charconv>
 
 namespace adit::intake {
 namespace {
 
 bool same_word(std::string_view a, std::string_view b) {
-  return a.size() == b.size() && ::strncasecmp(a.data(), b.data(), a.size()) == 0;
+  return std::ranges::equal(
+      a, b, [](unsigned char x, unsigned char y) { return std::tolower(x) == std::tolower(y); });
 }
 
 /// The fields that say where the body ends, as they stand in the head.

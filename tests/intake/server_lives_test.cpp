@@ -176,6 +176,7 @@ TEST_F(ServerLives, ResponderIsDroppedWithoutAnAnswer) {
 
 TEST_F(ServerLives, ManyClientsDoAllOfThisAtOnce) {
   std::vector<std::thread> crowd;
+  crowd.reserve(8);
   for (int who = 0; who < 8; ++who) {
     crowd.emplace_back([this, who] {
       const std::string source = "127.0.2." + std::to_string(who + 1);

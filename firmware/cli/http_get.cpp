@@ -106,10 +106,9 @@ std::string receive(int fd, Parser& parser, Clock::time_point deadline) {
       waiting.append(buffer, static_cast<std::size_t>(count));
       if (!feed(parser, waiting, trouble)) return trouble;
     } else if (count == 0) {
-      boost::system::error_code error;
-      const bool began = parser.got_some();  // put_eof() takes nothing at all for a whole message
-      parser.put_eof(error);
-      return began && !error ? "" : "it closed the connection in the middle of its answer";
+      boost::system::error_code error = http::error::end_of_stream;
+      if (parser.got_some()) parser.put_eof(error);
+      return error ? "it closed the connection in the middle of its answer" : "";
     } else if (errno == EAGAIN) {
       if (const int error = wait_for(fd, POLLIN, deadline); error != 0) return reason(error);
     } else if (errno != EINTR) {

@@ -12,7 +12,8 @@ check_pie_supported()
 
 set(ADIT_SANITIZE "" CACHE STRING "Sanitizers to build with, as -fsanitize takes them (address,undefined or thread)")
 if(ADIT_SANITIZE)
-  target_compile_options(adit_options INTERFACE -fsanitize=${ADIT_SANITIZE} -fno-sanitize-recover=all -fno-omit-frame-pointer)
+  target_compile_options(adit_options INTERFACE -fsanitize=${ADIT_SANITIZE} -fno-sanitize-recover=all -fno-omit-frame-pointer
+    $<$<CXX_COMPILER_ID:GNU>:-Wno-maybe-uninitialized>)  # GCC's own manual: false alarms beside -fsanitize
   target_link_options(adit_options INTERFACE -fsanitize=${ADIT_SANITIZE})
 else()
   target_compile_definitions(adit_options INTERFACE $<$<CONFIG:Release>:_FORTIFY_SOURCE=2>)

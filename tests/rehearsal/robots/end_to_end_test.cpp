@@ -17,8 +17,7 @@ namespace fs = std::filesystem;
 using namespace std::chrono_literals;
 using Clock = std::chrono::steady_clock;
 
-class Programs : public testing::Test {
- protected:
+struct Programs : testing::Test {
   Programs() : folder_(fs::path(testing::TempDir()) / ("adit_robots_" + std::to_string(getpid()))) {
     fs::create_directories(folder_);
     for (const char* name : {"team.token", "scoring.token", "mapping.token"}) {

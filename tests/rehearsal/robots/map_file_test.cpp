@@ -44,8 +44,7 @@ float float_at(const Cloud& cloud, std::size_t at) {
   return value;
 }
 
-class Folder : public testing::Test {
- protected:
+struct Folder : testing::Test {
   Folder()
       : path_(fs::path(testing::TempDir()) /
               ("adit_robots_" + std::string(testing::UnitTest::GetInstance()->current_test_info()->name()))) {

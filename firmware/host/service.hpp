@@ -28,8 +28,8 @@ struct Secrets {
 
 /// `scoring.token`, `mapping.token` and `team.token` in `folder` (a folder of systemd credentials, or one of
 /// mode 0700 with files of mode 0600); white space around a token is cut. An error names the file, never what
-/// is in it. A missing or empty scoring or mapping token is an error, a missing or empty team token is none. A
-/// file that others may read is an error.
+/// is in it. A missing or empty scoring or mapping token is an error, a missing or empty team token is none.
+/// A file that others may read is an error.
 std::expected<Secrets, std::string> read_secrets(const std::string& folder);
 
 /// Whether `interface` has a carrier: nothing where there is no such interface; "" is always true.

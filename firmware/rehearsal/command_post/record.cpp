@@ -113,9 +113,10 @@ std::string Record::summary(const RunPlan& plan, const Run::Standing& standing) 
         << report["report_status"].get<std::string>() << ", " << report["score_change"] << "\n";
   }
   out << "violations of the ICD: " << violation_count_ << "\n";
-  for (std::size_t i = 0; i < violations_.size() && i < most_lines; ++i) {
-    out << "  request " << violations_[i].number << ", " << violations_[i].uri << ": "
-        << printable(violations_[i].sentence) << "\n";
+  std::map<std::pair<std::string, std::string>, std::uint64_t> alike;
+  for (const Violation& violation : violations_) ++alike[{violation.uri, violation.sentence}];
+  for (const auto& [what, count] : alike) {
+    out << "  " << what.first << ": " << printable(what.second) << " (" << count << " times)\n";
   }
   if (!killed_by_.empty()) out << "killed by " << printable(killed_by_) << "\n";
   return out.str();

@@ -162,7 +162,7 @@ void Gateway::every_second() {
 
 panel::Condition Gateway::condition() const {
   const Channel& scoring = scoring_.channel();
-  return {.serving = !servers_.empty() && scoring_.ledger_trouble().empty(),
+  return {.serving = !servers_.empty() && scoring_.book().trouble().empty(),
           .scoring_connected = scoring.connected(),
           .scoring_failing = !scoring.trouble().empty(),
           .mapping_connected = news_.channel().connected(),
@@ -173,12 +173,12 @@ panel::Condition Gateway::condition() const {
 
 std::vector<std::string> Gateway::attention() const {
   std::vector<std::string> sentences;
-  if (const std::size_t doubts = scoring_.in_doubt(); doubts > 0) {
+  if (const std::size_t doubts = scoring_.book().in_doubt(); doubts > 0) {
     sentences.push_back(std::to_string(doubts) + (doubts == 1 ? " report is" : " reports are") +
                         " in doubt: the answer was lost");
   }
-  if (!scoring_.ledger_trouble().empty())
-    sentences.push_back("the ledger cannot be written: " + scoring_.ledger_trouble());
+  if (!scoring_.book().trouble().empty())
+    sentences.push_back("the ledger cannot be written: " + scoring_.book().trouble());
   if (!parts_.ledger.damage().empty()) sentences.push_back(parts_.ledger.damage());
   const auto token_refused = [&](const Channel& channel, const char* name) {
     if (channel.last_status() == 401) {
@@ -217,7 +217,7 @@ page::RunView Gateway::view() const {
                      .run = scoring_.run(),
                      .run_heard = scoring_.run_heard(),
                      .endpoints = endpoints(),
-                     .reports = scoring_.rows(),
+                     .reports = scoring_.book().rows(),
                      .activities = record_.activities(),
                      .refusals = record_.refusals(),
                      .lights = {},

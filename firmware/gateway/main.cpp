@@ -3,6 +3,7 @@
 #include <csignal>
 #include <cstdio>
 #include <cstdlib>
+#include <filesystem>
 #include <span>
 
 #include "gateway/gateway.hpp"
@@ -32,6 +33,16 @@ std::expected<adit::settings::Settings, std::string> read_settings(const std::st
   return std::unexpected(file + ": " + sentences);
 }
 
+/// The state folder, made where it is not there yet, for this user alone.
+std::expected<void, std::string> make_folder(const std::string& folder) {
+  std::error_code error;
+  if (std::filesystem::create_directories(folder, error)) {
+    std::filesystem::permissions(folder, std::filesystem::perms::owner_all, error);
+  }
+  if (error) return std::unexpected(folder + ": " + error.message());
+  return {};
+}
+
 std::unique_ptr<adit::panel::Lines> open_panel(const adit::settings::Panel& settings,
                                                const std::string& state) {
   if (!settings.chip.empty()) {
@@ -48,6 +59,7 @@ std::expected<Parts, std::string> gather(const Options& options) {
   if (!settings) return std::unexpected(settings.error());
   auto secrets = adit::host::read_secrets(options.secrets);
   if (!secrets) return std::unexpected(secrets.error());
+  if (auto made = make_folder(options.state); !made) return std::unexpected(made.error());
   auto ledger = adit::ledger::Ledger::open(options.state);
   if (!ledger) return std::unexpected(ledger.error().what);
   auto lines = open_panel(settings->panel, options.state);

@@ -136,6 +136,7 @@ void News::answered(Kind kind, UriPace& pace, Waiting sent, std::size_t bytes,
 
 std::vector<Traffic> News::traffic_of(const lanes::WaitingState& state) const {
   std::vector<Traffic> all;
+  all.reserve(state.update.poses.size());
   for (const icd::NamedPose& pose : state.update.poses) all.push_back({Kind::State, pose.name.text()});
   return all;
 }
@@ -158,8 +159,7 @@ icd::StateUpdate News::unsent_state() const {
 icd::MarkersUpdate News::unsent_markers() const {
   lanes::MarkerLane lane = markers_;
   icd::MarkersUpdate unsent = markers_under_way_;
-  while (auto waiting = lane.take())
-    unsent.markers = lanes::merge(std::move(unsent.markers), waiting->update.markers);
+  while (auto waiting = lane.take()) unsent.markers = lanes::merge(unsent.markers, waiting->update.markers);
   return unsent;
 }
 

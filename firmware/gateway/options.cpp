@@ -12,7 +12,7 @@ const char* const kUsage =
     "  --settings FILE  the settings (JSON, version 1); `adit check FILE` explains what is wrong with one\n"
     "  --secrets DIR    holds scoring.token, mapping.token and, if wanted, team.token, readable by nobody "
     "else\n"
-    "  --state DIR      where the ledger of reports is kept; must exist\n"
+    "  --state DIR      where the ledger of reports is kept; made where it is absent\n"
     "  --version        prints the version\n"
     "  --help           prints this\n"
     "\n"

@@ -14,15 +14,6 @@ namespace adit::gateway {
 namespace {
 
 using dispatch::ReportEvent;
-using dispatch::ReportState;
-
-std::string words(ReportState state) {
-  return std::string(dispatch::name_of(state));
-}
-
-ReportState state_of(const ledger::Entry& entry) {
-  return dispatch::state_named(entry.state).value_or(ReportState::InDoubt);
-}
 
 ReportEvent event_of(const uplink::Outcome& outcome) {
   if (std::holds_alternative<uplink::NeverSent>(outcome)) return ReportEvent::NeverLeft;
@@ -41,33 +32,14 @@ intake::Answer in_doubt_answer(std::int64_t number, const std::string& why) {
           " is in doubt: it may or may not have been recorded, do not send it again (" + why + ")");
 }
 
-page::ReportRow row_of(const ledger::Entry& entry) {
-  page::ReportRow row{.number = entry.number,
-                      .type = entry.report.type,
-                      .position = entry.report.position,
-                      .sender = entry.sender,
-                      .received = entry.received,
-                      .changed = entry.changed,
-                      .state = entry.state,
-                      .status = entry.status,
-                      .report_status = "",
-                      .score_change = std::nullopt,
-                      .note = entry.note};
-  if (const auto reply = codec::read_report_reply(entry.answer)) {
-    row.report_status = reply->report_status;
-    row.score_change = reply->score_change;
-  }
-  return row;
-}
-
 }  // namespace
 
 Scoring::Scoring(loop::Loop& loop, ledger::Ledger& ledger, const settings::Settings& settings,
                  icd::BearerToken token, Record& record, std::mt19937_64& random)
     : loop_(loop),
-      ledger_(ledger),
       settings_(settings),
       record_(record),
+      book_(loop, ledger),
       channel_(loop, endpoint_of(settings.command_post, settings.command_post.scoring, 0), std::move(token),
                settings.command_post.timeouts.scoring_answer),
       report_pace_(settings.command_post.rates.reports_hz, random),
@@ -77,18 +49,9 @@ Scoring::Scoring(loop::Loop& loop, ledger::Ledger& ledger, const settings::Setti
       deadline_(loop.timer([this] { answer_late_clients(); })) {}
 
 std::expected<void, std::string> Scoring::start() {
-  auto all = ledger_.all();
-  if (!all) return std::unexpected(all.error().what);
-  for (ledger::Entry& entry : *all) {
-    const std::int64_t number = entry.number;
-    entries_.emplace(number, std::move(entry));
-    const ReportState before = state_of(entries_.at(number));
-    if (dispatch::next(before, ReportEvent::Restarted) != before &&
-        !move(number, ReportEvent::Restarted, "the gateway stopped while it was being sent")) {
-      return std::unexpected(ledger_trouble_);
-    }
-    if (state_of(entries_.at(number)) == ReportState::Waiting) queue_.push_back(number);
-  }
+  const auto waiting = book_.open();
+  if (!waiting) return std::unexpected(waiting.error());
+  queue_.assign(waiting->begin(), waiting->end());
   channel_.keep_warm();
   status(nullptr);
   return {};
@@ -102,34 +65,17 @@ void Scoring::take(const icd::ArtifactReport& report, const intake::Sender& send
                              std::to_string(kMostWaiting) + " reports wait already; this one was not taken"));
     return;
   }
-  const double now = loop_.stamp_now();
-  const auto number = ledger_.add(report, sender.address, words(ReportState::Waiting), now);
+  const auto number = book_.add(report, sender.address);
   if (!number) {
-    ledger_trouble_ = number.error().what;
-    host::log(host::Level::Error, "a report could not be written down and was not taken",
-              {{"why", ledger_trouble_}});
     responder->answer(
         intake::error_answer(icd::Status::ServiceUnavailable,
-                             "the report could not be written down and was not taken: " + ledger_trouble_));
+                             "the report could not be written down and was not taken: " + number.error()));
     record_.changed();
     return;
   }
-  ledger_trouble_.clear();
-  entries_[*number] = {.number = *number,
-                       .report = report,
-                       .sender = sender.address,
-                       .received = now,
-                       .changed = now,
-                       .state = words(ReportState::Waiting),
-                       .status = 0,
-                       .content_type = "",
-                       .answer = "",
-                       .note = ""};
   queue_.push_back(*number);
   clients_[*number] = {std::move(responder), loop_.now() + settings_.reports.answer_within};
   watch_deadlines();
-  host::log(host::Level::Notice, "report received",
-            {{"report", std::to_string(*number)}, {"type", report.type}, {"sender", sender.address}});
   record_.changed();
   pump();
 }
@@ -169,7 +115,7 @@ void Scoring::pump() {
 
 void Scoring::send_report() {
   const std::int64_t number = queue_.front();
-  if (!move(number, ReportEvent::Chosen, "")) {  // not on disk: it must not leave
+  if (!book_.move(number, ReportEvent::Chosen, "")) {  // not on disk: it must not leave
     report_pace_.failed(loop_.now());
     wake_.call_at(report_pace_.ready());
     return;
@@ -177,7 +123,7 @@ void Scoring::send_report() {
   queue_.pop_front();
   sending_ = number;
   report_pace_.sent(loop_.now());
-  const std::string body = codec::write_artifact_report(entries_.at(number).report);
+  const std::string body = codec::write_artifact_report(book_.entry(number).report);
   channel_.send(icd::Uri::ArtifactReports, codec::kJson,
                 icd::ChunkedBytes({reinterpret_cast<const std::uint8_t*>(body.data()), body.size()}),
                 [this, number](uplink::Outcome outcome) { report_answered(number, std::move(outcome)); });
@@ -187,17 +133,12 @@ void Scoring::report_answered(std::int64_t number, uplink::Outcome outcome) {
   sending_.reset();
   const ReportEvent event = event_of(outcome);
   const auto* answered = std::get_if<uplink::Answered>(&outcome);
-  ledger::Entry& entry = entries_.at(number);
-  if (answered != nullptr) {
-    entry.status = answered->status;
-    entry.content_type = answered->content_type;
-    entry.answer = answered->body;
-  }
+  if (answered != nullptr) book_.set_answer(number, *answered);
   const std::string why = event == ReportEvent::Recorded ? "" : sentence_of(outcome);
   const loop::Instant now = loop_.now();
   // If this step cannot be written, the ledger still says "sending", and after a restart it is in doubt: the
   // safe side.
-  move(number, event, why);
+  book_.move(number, event, why);
   status_fresh_until_.reset();  // score and remaining reports have changed, or may have
   switch (event) {
     case ReportEvent::Recorded:
@@ -221,33 +162,6 @@ void Scoring::report_answered(std::int64_t number, uplink::Outcome outcome) {
   if (!stopping_) status(nullptr);
   record_.changed();
   pump();
-}
-
-bool Scoring::move(std::int64_t number, ReportEvent event, const std::string& note) {
-  ledger::Entry& entry = entries_.at(number);
-  const auto to = dispatch::next(state_of(entry), event);
-  if (!to) {
-    host::log(host::Level::Error, "a report's life took a step that does not exist",
-              {{"report", std::to_string(number)}, {"state", entry.state}});
-    return false;
-  }
-  ledger::Entry after = entry;
-  after.state = words(*to);
-  after.note = note;
-  after.changed = loop_.stamp_now();
-  const auto written = ledger_.change(after, after.changed);
-  entry = std::move(after);
-  if (!written) {
-    if (*to == ReportState::Sending) entry.state = words(ReportState::Waiting);
-    ledger_trouble_ = written.error().what;
-    host::log(host::Level::Error, "a report's step could not be written down",
-              {{"report", std::to_string(number)}, {"why", ledger_trouble_}});
-    return false;
-  }
-  ledger_trouble_.clear();
-  host::log(*to == ReportState::InDoubt ? host::Level::Warning : host::Level::Notice, "report " + words(*to),
-            {{"report", std::to_string(number)}, {"status", std::to_string(entry.status)}, {"why", note}});
-  return true;
 }
 
 void Scoring::answer_client(std::int64_t number, intake::Answer answer) {
@@ -276,7 +190,7 @@ void Scoring::answer_late_clients() {
   }
   while (!clients_.empty() && clients_.begin()->second.deadline <= now) {
     const std::int64_t number = clients_.begin()->first;
-    const ledger::Entry& entry = entries_.at(number);
+    const ledger::Entry& entry = book_.entry(number);
     const std::string why = entry.note.empty() ? "" : ": " + entry.note;
     answer_client(number,
                   intake::error_answer(
@@ -334,19 +248,6 @@ bool Scoring::stop() {
     }
   }
   return !sending_;
-}
-
-std::size_t Scoring::in_doubt() const {
-  return static_cast<std::size_t>(std::ranges::count_if(
-      entries_, [](const auto& item) { return state_of(item.second) == ReportState::InDoubt; }));
-}
-
-std::vector<page::ReportRow> Scoring::rows() const {
-  std::vector<page::ReportRow> rows;
-  for (auto entry = entries_.rbegin(); entry != entries_.rend() && rows.size() < kMostRows; ++entry) {
-    rows.push_back(row_of(entry->second));
-  }
-  return rows;
 }
 
 }  // namespace adit::gateway

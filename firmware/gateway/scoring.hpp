@@ -8,9 +8,9 @@
 #include <string>
 #include <vector>
 
-#include "dispatch/report_life.hpp"
 #include "gateway/channel.hpp"
 #include "gateway/record.hpp"
+#include "gateway/report_book.hpp"
 #include "gateway/uri_pace.hpp"
 #include "icd/artifact_report.hpp"
 #include "icd/run_status.hpp"
@@ -29,7 +29,6 @@ class Scoring {
   static constexpr std::chrono::seconds kFresh{1};      // how long a status is good as an answer
   static constexpr std::chrono::seconds kAskEvery{10};  // the status is asked for at least this often
   static constexpr std::size_t kMostWaiting = 1000;     // reports
-  static constexpr std::size_t kMostRows = 500;
 
   Scoring(loop::Loop& loop, ledger::Ledger& ledger, const settings::Settings& settings,
           icd::BearerToken token, Record& record, std::mt19937_64& random);
@@ -47,11 +46,8 @@ class Scoring {
   const Channel& channel() const { return channel_; }
   const std::optional<icd::RunStatus>& run() const { return run_; }
   std::optional<page::Time> run_heard() const { return run_heard_; }
-  std::vector<page::ReportRow> rows() const;  // newest first
+  const ReportBook& book() const { return book_; }
   std::size_t waiting() const { return queue_.size(); }
-  std::size_t in_doubt() const;
-  /// Why the ledger cannot be written, or "".
-  const std::string& ledger_trouble() const { return ledger_trouble_; }
 
  private:
   struct Client {
@@ -70,7 +66,6 @@ class Scoring {
   void ask_status();
   void status_answered(uplink::Outcome outcome);
   void answer_askers(const intake::Answer& answer);
-  bool move(std::int64_t number, dispatch::ReportEvent event, const std::string& note);
   void answer_client(std::int64_t number, intake::Answer answer);
   void watch_deadlines();
   loop::Instant asker_deadline() const;
@@ -78,14 +73,13 @@ class Scoring {
   intake::Answer fresh_status() const;
 
   loop::Loop& loop_;
-  ledger::Ledger& ledger_;
   const settings::Settings& settings_;
   Record& record_;
+  ReportBook book_;
   Channel channel_;
   UriPace report_pace_, status_pace_;
   loop::Source wake_, poll_, deadline_;
 
-  std::map<std::int64_t, ledger::Entry> entries_;
   std::deque<std::int64_t> queue_;
   std::optional<std::int64_t> sending_;
   std::map<std::int64_t, Client> clients_;
@@ -95,7 +89,6 @@ class Scoring {
   std::optional<page::Time> run_heard_;
   std::optional<loop::Instant> status_fresh_until_;
   std::string status_body_;
-  std::string ledger_trouble_;
   bool stopping_ = false;
 };
 

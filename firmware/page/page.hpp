@@ -97,8 +97,8 @@ class Source {
 ///   GET /adit/events the same as server-sent events: one at once, then at most `kEventsPerSecond` as things
 ///   change,
 ///                    and one at least every 5 s
-/// Anything else is 404 with a JSON string. Every answer carries a Content-Security-Policy of `default-src
-/// 'none'` with what the page needs, X-Content-Type-Options and Referrer-Policy.
+/// Anything else is 404 with a JSON string. Every answer but the events carries a Content-Security-Policy of
+/// `default-src 'none'` with what the page needs, X-Content-Type-Options and Referrer-Policy.
 class Page final : public intake::Handler {
  public:
   static constexpr int kEventsPerSecond = 4;

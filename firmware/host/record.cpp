@@ -24,7 +24,7 @@ std::string_view name_of(Level level) {
 }
 
 std::string quoted_where_needed(std::string_view value) {
-  if (!value.empty() && value.find_first_of(" \"=") == std::string_view::npos) return escaped(value);
+  if (value.find_first_of(" \"=") == std::string_view::npos) return escaped(value);
   std::string text = "\"";
   for (const char c : escaped(value)) {
     if (c == '"') text += '\\';
@@ -68,6 +68,7 @@ std::string escaped(std::string_view text) {
 std::string sentence(std::string_view message, std::span<const Field> fields) {
   std::string text = escaped(message);
   for (const auto& [name, value] : fields) {
+    if (value.empty()) continue;
     text.append(" ").append(name).append("=").append(quoted_where_needed(value));
   }
   return text;
@@ -82,7 +83,9 @@ std::vector<std::string> journal_entry(Level level, std::string_view message, st
   std::vector<std::string> entry = {"MESSAGE=" + sentence(message, fields),
                                     "PRIORITY=" + std::to_string(static_cast<int>(level)),
                                     "SYSLOG_IDENTIFIER=aditd"};
-  for (const auto& [name, value] : fields) entry.push_back(journal_name(name) + "=" + value);
+  for (const auto& [name, value] : fields) {
+    if (!value.empty()) entry.push_back(journal_name(name) + "=" + value);
+  }
   return entry;
 }
 

@@ -28,7 +28,13 @@ TEST(PlainLine, HoldsTimeLevelMessageAndFields) {
 
 TEST(PlainLine, QuotesWhatWouldReadAsAnotherField) {
   const std::vector<Field> fields = {{"a", ""}, {"b", "x=y"}, {"c", "say \"no\""}, {"d", "C:\\"}};
-  EXPECT_EQ(sentence("m", fields), R"(m a="" b="x=y" c="say \"no\"" d=C:\\)");
+  EXPECT_EQ(sentence("m", fields), R"(m b="x=y" c="say \"no\"" d=C:\\)");
+}
+
+TEST(PlainLine, LeavesOutWhatThereIsNothingToSayOf) {
+  const std::vector<Field> fields = {{"status", ""}, {"why", "late"}};
+  EXPECT_EQ(sentence("m", fields), "m why=late");
+  EXPECT_EQ(journal_entry(Level::Info, "m", fields).size(), 4);
 }
 
 TEST(PlainLine, CannotBeForgedByWhatAClientSent) {

@@ -3,7 +3,7 @@ add_library(adit_options INTERFACE)
 target_compile_options(adit_options INTERFACE
   -Wall -Wextra -Wpedantic -Wshadow -Wconversion -Wno-sign-conversion -Wnon-virtual-dtor
   -Woverloaded-virtual -Wimplicit-fallthrough -Werror
-  -fstack-protector-strong -fstack-clash-protection)
+  -fstack-protector-strong -fstack-clash-protection -ffunction-sections -fdata-sections)
 target_compile_definitions(adit_options INTERFACE _GLIBCXX_ASSERTIONS)
 target_link_options(adit_options INTERFACE -Wl,-z,relro,-z,now -Wl,--gc-sections)
 set(CMAKE_POSITION_INDEPENDENT_CODE ON)

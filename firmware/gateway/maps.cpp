@@ -90,7 +90,7 @@ void Maps::answered(uplink::Outcome outcome) {
     verdict(*answer);
   } else {
     pace_.failed(loop_.now());
-    record_.failed(traffic_of(prepared_->waiting.map), 0, sentence_of(outcome));
+    record_.not_taken(traffic_of(prepared_->waiting.map), NotTaken::Failed, 0, sentence_of(outcome));
     again();
   }
   pump();
@@ -108,14 +108,14 @@ void Maps::verdict(const uplink::Answered& answered) {
       return;
     case MappingVerdict::Throttled:
       pace_.throttled(now, answered.retry_after);
-      record_.throttled(traffic, answered.status, sentence_of(answered));
+      record_.not_taken(traffic, NotTaken::Throttled, answered.status, sentence_of(answered));
       return again();
     case MappingVerdict::Refused:
       pace_.taken(now);
       return give_up(answered.status, sentence_of(answered));
     case MappingVerdict::Failing:
       pace_.failed(now);
-      record_.failed(traffic, answered.status, sentence_of(answered));
+      record_.not_taken(traffic, NotTaken::Failed, answered.status, sentence_of(answered));
       const std::uint64_t number = prepared_->waiting.updates.back();
       tries_ = std::exchange(tried_, number) == number ? tries_ + 1 : 1;
       if (answered.status >= 500 && tries_ >= kMostTries) {
@@ -135,7 +135,7 @@ void Maps::give_up(int status, const std::string& sentence) {
   const Traffic traffic = traffic_of(prepared_->waiting.map);
   host::log(host::Level::Warning, "the Command Post refused a map",
             {{"robot", traffic.robot}, {"status", std::to_string(status)}, {"why", sentence}});
-  record_.refused_upstream(traffic, status, sentence);
+  record_.not_taken(traffic, NotTaken::Refused, status, sentence);
   prepared_.reset();
 }
 

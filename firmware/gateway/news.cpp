@@ -18,6 +18,12 @@ std::unexpected<icd::Refusal> full(const char* of) {
       icd::Refusal{icd::Status::TooManyRequests, std::string("not taken: ") + of + "; send it again later"});
 }
 
+/// For a verdict that is not Taken.
+NotTaken why_not(MappingVerdict verdict) {
+  if (verdict == MappingVerdict::Throttled) return NotTaken::Throttled;
+  return verdict == MappingVerdict::Refused ? NotTaken::Refused : NotTaken::Failed;
+}
+
 std::size_t updates_in(const lanes::WaitingState& state) {
   return state.updates;
 }
@@ -107,10 +113,9 @@ void News::answered(Kind kind, UriPace& pace, Waiting sent, std::size_t bytes,
   for (const Traffic& traffic : traffic_of(sent)) {
     if (verdict == MappingVerdict::Taken) {
       record_.forwarded(traffic, updates_in(sent), bytes, status, loop_.stamp_now());
+    } else {
+      record_.not_taken(traffic, why_not(verdict), status, sentence);
     }
-    if (verdict == MappingVerdict::Throttled) record_.throttled(traffic, status, sentence);
-    if (verdict == MappingVerdict::Failing) record_.failed(traffic, status, sentence);
-    if (verdict == MappingVerdict::Refused) record_.refused_upstream(traffic, status, sentence);
   }
   switch (verdict) {
     case MappingVerdict::Taken:

@@ -57,25 +57,11 @@ void Record::forwarded(const Traffic& traffic, std::size_t updates, std::size_t 
   changed_();
 }
 
-void Record::throttled(const Traffic& traffic, int status, const std::string& sentence) {
+void Record::not_taken(const Traffic& traffic, NotTaken how, int status, const std::string& sentence) {
   page::ActivityRow& activity = row(traffic);
-  ++activity.throttled;
-  activity.last_status = status;
-  activity.last_sentence = sentence;
-  changed_();
-}
-
-void Record::failed(const Traffic& traffic, int status, const std::string& sentence) {
-  page::ActivityRow& activity = row(traffic);
-  ++activity.failed;
-  activity.last_status = status;
-  activity.last_sentence = sentence;
-  changed_();
-}
-
-void Record::refused_upstream(const Traffic& traffic, int status, const std::string& sentence) {
-  page::ActivityRow& activity = row(traffic);
-  ++activity.refused_upstream;
+  ++(how == NotTaken::Throttled ? activity.throttled
+     : how == NotTaken::Failed  ? activity.failed
+                                : activity.refused_upstream);
   activity.last_status = status;
   activity.last_sentence = sentence;
   changed_();

@@ -17,6 +17,9 @@ namespace adit::gateway {
 
 enum class Kind : std::uint8_t { Grid, Cloud, State, Markers };
 
+/// Why a message was not taken upstream: sent too often, failed (both are sent again), or refused for good.
+enum class NotTaken : std::uint8_t { Throttled, Failed, Refused };
+
 /// Whose messages of which kind: "" is a merged map, or markers.
 struct Traffic {
   Kind kind = Kind::Grid;
@@ -38,10 +41,8 @@ class Record {
   void replaced(const Traffic& traffic, std::size_t updates);
   /// The Command Post took a message of `bytes` that stands for `updates` accepted ones.
   void forwarded(const Traffic& traffic, std::size_t updates, std::size_t bytes, int status, page::Time now);
-  void throttled(const Traffic& traffic, int status, const std::string& sentence);
-  void failed(const Traffic& traffic, int status, const std::string& sentence);
-  /// The Command Post will never take it.
-  void refused_upstream(const Traffic& traffic, int status, const std::string& sentence);
+  /// The Command Post did not take it; 0: no status came.
+  void not_taken(const Traffic& traffic, NotTaken how, int status, const std::string& sentence);
 
   void refused(icd::Uri uri, const intake::Sender& sender, const icd::Refusal& refusal, page::Time now);
 

@@ -14,7 +14,7 @@ TEST(Record, TellsWhatBecameOfEachRobotsMaps) {
   record.accepted(kCloudOfR1, 1100, 11.0);
   record.forwarded(kCloudOfR1, 2, 900, 200, 12.0);
   record.accepted({Kind::Grid, "r1"}, 5, 13.0);
-  record.throttled({Kind::Grid, "r1"}, 429, "too frequent");
+  record.not_taken({Kind::Grid, "r1"}, NotTaken::Throttled, 429, "too frequent");
 
   const auto rows = record.activities();
   ASSERT_EQ(rows.size(), 2u);
@@ -35,7 +35,7 @@ TEST(Record, TellsWhatBecameOfEachRobotsMaps) {
 
 TEST(Record, ForgetsAnOldSentenceOnceAMessageIsTaken) {
   Record record([] {});
-  record.failed(kCloudOfR1, 0, "connection reset");
+  record.not_taken(kCloudOfR1, NotTaken::Failed, 0, "connection reset");
   record.forwarded(kCloudOfR1, 1, 10, 200, 1.0);
   EXPECT_EQ(record.activities().front().last_sentence, "");
   EXPECT_EQ(record.activities().front().failed, 1u);

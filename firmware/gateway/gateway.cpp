@@ -7,6 +7,7 @@ namespace adit::gateway {
 namespace {
 
 constexpr std::chrono::milliseconds kDrainStep{10};
+constexpr std::size_t kMeterSeconds = 5;
 
 std::string text(const settings::Address& address) {
   return address.address + ":" + std::to_string(address.port);
@@ -148,16 +149,21 @@ void Gateway::changed() {
 }
 
 void Gateway::every_second() {
-  const std::uint64_t bytes =
-      scoring_.channel().bytes_sent() + maps_.channel().bytes_sent() + news_.channel().bytes_sent();
-  sent_mbit_ = static_cast<double>(bytes - bytes_before_) * 8 / 1e6;
-  bytes_before_ = bytes;
+  bytes_sent_.push_back(scoring_.channel().bytes_sent() + maps_.channel().bytes_sent() +
+                        news_.channel().bytes_sent());
+  if (bytes_sent_.size() > kMeterSeconds + 1) bytes_sent_.pop_front();
   lights_.show(condition());
   if (std::string line = status_line(); line != notified_) {
     host::notify_status(line);
     notified_ = std::move(line);
   }
   second_.call_at(loop_.now() + std::chrono::seconds(1));
+}
+
+double Gateway::sent_mbit() const {
+  if (bytes_sent_.size() < 2) return 0;
+  const auto bytes = static_cast<double>(bytes_sent_.back() - bytes_sent_.front());
+  return bytes * 8 / 1e6 / static_cast<double>(bytes_sent_.size() - 1);
 }
 
 panel::Condition Gateway::condition() const {
@@ -222,7 +228,7 @@ page::RunView Gateway::view() const {
                      .refusals = record_.refusals(),
                      .lights = {},
                      .budget_mbit = parts_.settings.command_post.budget_mbit,
-                     .sent_mbit = sent_mbit_,
+                     .sent_mbit = sent_mbit(),
                      .queued_bytes = maps_.queued_bytes(),
                      .attention = attention()};
   for (page::ActivityRow& row : view.activities) {

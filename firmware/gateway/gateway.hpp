@@ -1,5 +1,6 @@
 #pragma once
 
+#include <deque>
 #include <expected>
 #include <memory>
 #include <random>
@@ -64,6 +65,7 @@ class Gateway final : public intake::Desk, public page::Source {
   void finish();
   void changed();
   void every_second();
+  double sent_mbit() const;
   std::expected<void, std::string> listen();
   intake::IcdOptions icd_options() const;
   panel::Condition condition() const;
@@ -84,8 +86,7 @@ class Gateway final : public intake::Desk, public page::Source {
   intake::IcdRoutes routes_;
   std::vector<std::unique_ptr<intake::Server>> servers_;
   loop::Source second_, drained_;
-  std::uint64_t bytes_before_ = 0;
-  double sent_mbit_ = 0;
+  std::deque<std::uint64_t> bytes_sent_;  // in all, at each of the last seconds
   std::string notified_;
   std::optional<loop::Instant> stop_by_;
 };

@@ -7,6 +7,7 @@ namespace adit::gateway {
 namespace {
 
 constexpr std::chrono::milliseconds kDrainStep{10};
+constexpr std::chrono::milliseconds kFlush{50};  // in which the answers just given to the team leave
 constexpr std::size_t kMeterSeconds = 5;
 
 std::string text(const settings::Address& address) {
@@ -93,14 +94,15 @@ void Gateway::stop() {
 
 void Gateway::drain() {
   const bool scoring = scoring_.stop(), maps = maps_.stop(), news = news_.stop();
-  if ((scoring && maps && news) || loop_.now() >= *stop_by_) return finish();
+  const bool idle = scoring && maps && news && loop_.now() >= *stop_by_ - kDrain + kFlush;
+  if (idle || loop_.now() >= *stop_by_) return finish();
   drained_.call_at(loop_.now() + kDrainStep);
 }
 
 void Gateway::finish() {
   Spool(parts_.spool_folder)
       .save({.maps = maps_.unsent(), .state = news_.unsent_state(), .markers = news_.unsent_markers()});
-  loop_.post([this] { loop_.stop(); });  // answers that were just given still leave
+  loop_.stop();
 }
 
 icd::Checked<void> Gateway::take(icd::MapUpdate update, const intake::Sender& sender) {

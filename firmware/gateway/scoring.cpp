@@ -183,10 +183,9 @@ loop::Instant Scoring::asker_deadline() const {
 void Scoring::answer_late_clients() {
   const loop::Instant now = loop_.now();
   if (!askers_.empty() && asker_deadline() <= now) {
-    answer_askers(
-        intake::error_answer(icd::Status::ServiceUnavailable,
-                             "the Command Post was not asked: a report goes first and cannot leave" +
-                                 (channel_.trouble().empty() ? "" : ": " + channel_.trouble())));
+    answer_askers(intake::error_answer(icd::Status::ServiceUnavailable,
+                                       "the Command Post could not be asked in time" +
+                                           (channel_.trouble().empty() ? "" : ": " + channel_.trouble())));
   }
   while (!clients_.empty() && clients_.begin()->second.deadline <= now) {
     const std::int64_t number = clients_.begin()->first;

@@ -161,6 +161,15 @@ class Reports(unittest.TestCase):
         self.assertEqual(status, 0)
         self.assertLess(took, 1.5)
 
+    def test_a_client_that_waits_is_told_when_the_service_stops(self):
+        stage = self.stage()
+        with concurrent.futures.ThreadPoolExecutor(1) as client:
+            waiting = client.submit(submit, stage)
+            wait_until(lambda: states(stage) == ["waiting"], "the report to be on disk")
+            self.assertEqual(stage.box.stop()[0], 0)
+        self.assertEqual(waiting.result().status_code, 503)
+        self.assertIn("is kept", waiting.result().json())
+
     def test_status_is_answered_from_what_is_known_for_a_second(self):
         stage = self.stage("ok")
         url = stage.box.url + "/api/status"

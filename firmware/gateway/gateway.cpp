@@ -21,9 +21,10 @@ Gateway::Gateway(loop::Loop& loop, Parts parts)
       parts_(std::move(parts)),
       random_(std::random_device{}()),
       workers_(loop, 0),
+      spool_(parts_.spool_folder),
       record_([this] { changed(); }),
       scoring_(loop, parts_.ledger, parts_.settings, *parts_.secrets.scoring, record_, random_),
-      maps_(loop, workers_, parts_.settings, *parts_.secrets.mapping, record_, random_),
+      maps_(loop, workers_, spool_, parts_.settings, *parts_.secrets.mapping, record_, random_),
       news_(loop, parts_.settings, *parts_.secrets.mapping, record_, random_),
       lights_(loop, std::move(parts_.lines)),
       page_(loop, *this),
@@ -70,17 +71,28 @@ std::expected<void, std::string> Gateway::listen() {
   return {};
 }
 
+/// What an earlier service left, stamped anew: what it sent last is not known, and stamps must not run
+/// backward.
 void Gateway::restore() {
-  Unsent unsent = Spool(parts_.spool_folder).take(parts_.settings.rules);
-  const auto restored = [](const icd::Checked<void>& taken) {
-    if (!taken) host::log(host::Level::Error, "a kept message is lost", {{"why", taken.error().sentence}});
-  };
-  for (icd::MapUpdate& map : unsent.maps) {
-    const std::size_t bytes = map.data.bytes.size();
-    restored(maps_.take(std::move(map), bytes));
+  Spool::Kept kept = spool_.read(parts_.settings.rules);
+  const double now = loop_.stamp_now();
+  for (auto& [number, map] : kept.maps) {
+    map.header().stamp = now;
+    maps_.restore(number, std::move(map));
   }
-  if (!unsent.state.poses.empty()) restored(news_.take(unsent.state, 0));
-  if (!unsent.markers.markers.empty()) restored(news_.take(unsent.markers, 0));
+  kept.state.header.stamp = now;
+  for (icd::Marker& marker : kept.markers.markers) marker.header.stamp = now;
+  if (!kept.state.poses.empty()) (void)news_.take(kept.state, 0);  // the lanes are empty: there is room
+  if (!kept.markers.markers.empty()) (void)news_.take(kept.markers, 0);
+  news_kept_ = true;
+}
+
+void Gateway::keep_news() {
+  const icd::StateUpdate state = news_.unsent_state();
+  const icd::MarkersUpdate markers = news_.unsent_markers();
+  const bool waits = !state.poses.empty() || !markers.markers.empty();
+  if (waits || news_kept_) spool_.keep(state, markers);
+  news_kept_ = waits;
 }
 
 void Gateway::stop() {
@@ -100,8 +112,7 @@ void Gateway::drain() {
 }
 
 void Gateway::finish() {
-  Spool(parts_.spool_folder)
-      .save({.maps = maps_.unsent(), .state = news_.unsent_state(), .markers = news_.unsent_markers()});
+  keep_news();
   loop_.stop();
 }
 
@@ -155,6 +166,7 @@ void Gateway::every_second() {
                         news_.channel().bytes_sent());
   if (bytes_sent_.size() > kMeterSeconds + 1) bytes_sent_.pop_front();
   lights_.show(condition());
+  keep_news();
   if (std::string line = status_line(); line != notified_) {
     host::notify_status(line);
     notified_ = std::move(line);

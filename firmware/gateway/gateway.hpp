@@ -63,6 +63,7 @@ class Gateway final : public intake::Desk, public page::Source {
   void restore();
   void drain();
   void finish();
+  void keep_news();
   void changed();
   void every_second();
   double sent_mbit() const;
@@ -76,6 +77,7 @@ class Gateway final : public intake::Desk, public page::Source {
   Parts parts_;
   std::mt19937_64 random_;
   loop::Workers workers_;
+  Spool spool_;
   Record record_;
   lanes::StampShift stamps_;
   Scoring scoring_;
@@ -87,6 +89,7 @@ class Gateway final : public intake::Desk, public page::Source {
   std::vector<std::unique_ptr<intake::Server>> servers_;
   loop::Source second_, drained_;
   std::deque<std::uint64_t> bytes_sent_;  // in all, at each of the last seconds
+  bool news_kept_ = false;
   std::string notified_;
   std::optional<loop::Instant> stop_by_;
 };

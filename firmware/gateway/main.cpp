@@ -17,10 +17,10 @@ using adit::gateway::Gateway;
 using adit::gateway::Options;
 using adit::gateway::Parts;
 
-std::string spool_folder(const Options& options) {
-  const char* const runtime =
-      std::getenv("RUNTIME_DIRECTORY");  // NOLINT(concurrency-mt-unsafe): before any thread
-  return (runtime != nullptr ? std::string(runtime) : options.state) + "/waiting";
+/// Where what need not outlive the box is kept.
+std::string runtime_folder(const Options& options) {
+  const char* const runtime = std::getenv("RUNTIME_DIRECTORY");
+  return runtime != nullptr ? runtime : options.state;
 }
 
 std::expected<adit::settings::Settings, std::string> read_settings(const std::string& file) {
@@ -44,14 +44,14 @@ std::expected<void, std::string> make_folder(const std::string& folder) {
 }
 
 std::unique_ptr<adit::panel::Lines> open_panel(const adit::settings::Panel& settings,
-                                               const std::string& state) {
+                                               const std::string& folder) {
   if (!settings.chip.empty()) {
     auto lines = adit::panel::open_gpio(settings);
     if (lines) return std::move(*lines);
     adit::host::log(adit::host::Level::Error, "the panel is simulated: its lines cannot be had",
                     {{"why", lines.error()}});
   }
-  return adit::panel::simulated(state + "/panel");
+  return adit::panel::simulated(folder + "/panel");
 }
 
 std::expected<Parts, std::string> gather(const Options& options) {
@@ -62,12 +62,12 @@ std::expected<Parts, std::string> gather(const Options& options) {
   if (auto made = make_folder(options.state); !made) return std::unexpected(made.error());
   auto ledger = adit::ledger::Ledger::open(options.state);
   if (!ledger) return std::unexpected(ledger.error().what);
-  auto lines = open_panel(settings->panel, options.state);
+  auto lines = open_panel(settings->panel, runtime_folder(options));
   return Parts{.settings = std::move(*settings),
                .secrets = std::move(*secrets),
                .ledger = std::move(*ledger),
                .lines = std::move(lines),
-               .spool_folder = spool_folder(options)};
+               .spool_folder = runtime_folder(options) + "/waiting"};
 }
 
 int fail(const std::string& why) {

@@ -20,10 +20,11 @@ constexpr std::chrono::milliseconds kLongestLead{500};
 
 }  // namespace
 
-Maps::Maps(loop::Loop& loop, loop::Workers& workers, const settings::Settings& settings,
+Maps::Maps(loop::Loop& loop, loop::Workers& workers, const Spool& spool, const settings::Settings& settings,
            icd::BearerToken token, Record& record, std::mt19937_64& random)
     : loop_(loop),
       workers_(workers),
+      spool_(spool),
       settings_(settings),
       record_(record),
       channel_(loop,
@@ -41,12 +42,51 @@ icd::Checked<void> Maps::take(icd::MapUpdate update, std::size_t bytes_received)
                                           std::to_string(lane_.bytes() >> 20) +
                                           " MiB wait already; this one was not taken, send it again later"});
   }
-  const Traffic traffic = traffic_of(update);
-  record_.accepted(traffic, bytes_received, loop_.stamp_now());
-  const auto replaced = lane_.add(++numbers_, std::move(update), loop_.now());
-  record_.replaced(traffic, replaced.size());
+  record_.accepted(traffic_of(update), bytes_received, loop_.stamp_now());
+  const std::uint64_t number = ++numbers_;
+  keep(number, update, add(number, update));
   pump();
   return {};
+}
+
+void Maps::restore(std::uint64_t number, icd::MapUpdate update) {
+  numbers_ = std::max(numbers_, number);
+  record_.accepted(traffic_of(update), update.data.bytes.size(), loop_.stamp_now());
+  forget(add(number, std::move(update)));
+  pump();
+}
+
+/// The numbers of the maps that this one replaced.
+std::vector<std::uint64_t> Maps::add(std::uint64_t number, icd::MapUpdate update) {
+  const Traffic traffic = traffic_of(update);
+  needed_.insert(number);
+  auto replaced = lane_.add(number, std::move(update), loop_.now());
+  record_.replaced(traffic, replaced.size());
+  return replaced;
+}
+
+/// What it replaced is forgotten once it is kept itself.
+void Maps::keep(std::uint64_t number, const icd::MapUpdate& update, std::vector<std::uint64_t> replaced) {
+  ++being_kept_;
+  workers_.submit([&spool = spool_, number, update] { spool.keep(number, update); },
+                  [this, number, replaced = std::move(replaced)] {
+                    --being_kept_;
+                    if (!needed_.contains(number)) spool_.forget(number);
+                    forget(replaced);
+                  });
+}
+
+void Maps::forget(const std::vector<std::uint64_t>& numbers) {
+  for (const std::uint64_t number : numbers) {
+    needed_.erase(number);
+    spool_.forget(number);
+  }
+}
+
+/// The map under way needs no more care.
+void Maps::done() {
+  forget(prepared_->waiting.updates);
+  prepared_.reset();
 }
 
 void Maps::pump() {
@@ -104,8 +144,7 @@ void Maps::verdict(const uplink::Answered& answered) {
       pace_.taken(now);
       record_.forwarded(traffic, prepared_->waiting.updates.size(), prepared_->body.size(), answered.status,
                         loop_.stamp_now());
-      prepared_.reset();
-      return;
+      return done();
     case MappingVerdict::Throttled:
       pace_.throttled(now, answered.retry_after);
       record_.not_taken(traffic, NotTaken::Throttled, answered.status, sentence_of(answered));
@@ -136,21 +175,12 @@ void Maps::give_up(int status, const std::string& sentence) {
   host::log(host::Level::Warning, "the Command Post refused a map",
             {{"robot", traffic.robot}, {"status", std::to_string(status)}, {"why", sentence}});
   record_.not_taken(traffic, NotTaken::Refused, status, sentence);
-  prepared_.reset();
+  done();
 }
 
 bool Maps::stop() {
   stopping_ = true;
-  return !channel_.busy();
-}
-
-std::vector<icd::MapUpdate> Maps::unsent() const {
-  std::vector<icd::MapUpdate> maps;
-  if (prepared_) maps.push_back(prepared_->waiting.map);
-  for (const lanes::WaitingMap& waiting : lane_.waiting()) maps.push_back(waiting.map);
-  lanes::StampOrder stamps = stamps_;  // whoever sends them must not run backward either
-  for (icd::MapUpdate& map : maps) map.header().stamp = stamps.next(map.header().stamp.value_or(0));
-  return maps;
+  return !channel_.busy() && being_kept_ == 0;
 }
 
 std::size_t Maps::waiting(const Traffic& traffic) const {

@@ -3,10 +3,12 @@
 #include <memory>
 #include <optional>
 #include <random>
+#include <set>
 #include <vector>
 
 #include "gateway/channel.hpp"
 #include "gateway/record.hpp"
+#include "gateway/spool.hpp"
 #include "gateway/uri_pace.hpp"
 #include "icd/map_update.hpp"
 #include "icd/status.hpp"
@@ -22,16 +24,17 @@ class Maps {
  public:
   static constexpr int kMostTries = 5;  // of a map that the Command Post answers with 5xx
 
-  Maps(loop::Loop& loop, loop::Workers& workers, const settings::Settings& settings, icd::BearerToken token,
-       Record& record, std::mt19937_64& random);
+  Maps(loop::Loop& loop, loop::Workers& workers, const Spool& spool, const settings::Settings& settings,
+       icd::BearerToken token, Record& record, std::mt19937_64& random);
+
+  /// A map that the spool kept under this number.
+  void restore(std::uint64_t number, icd::MapUpdate update);
 
   /// `update`'s stamp is on the gateway's clock. Refused with 429 where the queue is full.
   icd::Checked<void> take(icd::MapUpdate update, std::size_t bytes_received);
 
-  /// Sends nothing more. False while an answer is still awaited.
+  /// Sends nothing more. False while an answer is awaited or a map is not yet kept.
   bool stop();
-  /// All that has not been taken by the Command Post, oldest news first, one under way included.
-  std::vector<icd::MapUpdate> unsent() const;
 
   const Channel& channel() const { return channel_; }
   std::size_t queued_bytes() const { return lane_.bytes(); }
@@ -45,6 +48,10 @@ class Maps {
     icd::ChunkedBytes body;
   };
 
+  std::vector<std::uint64_t> add(std::uint64_t number, icd::MapUpdate update);
+  void keep(std::uint64_t number, const icd::MapUpdate& update, std::vector<std::uint64_t> replaced);
+  void forget(const std::vector<std::uint64_t>& numbers);
+  void done();
   void pump();
   void prepare();
   void send();
@@ -55,6 +62,7 @@ class Maps {
 
   loop::Loop& loop_;
   loop::Workers& workers_;
+  const Spool& spool_;
   const settings::Settings& settings_;
   Record& record_;
   Channel channel_;
@@ -64,6 +72,8 @@ class Maps {
   lanes::MapLane lane_;
   lanes::StampOrder stamps_;
   std::uint64_t numbers_ = 0;
+  std::set<std::uint64_t> needed_;  // maps that must be kept until they are taken
+  int being_kept_ = 0;
   bool preparing_ = false;
   loop::Duration packing_took_{0};
   std::shared_ptr<Prepared> prepared_;  // while it is packed, waits for its time, or is under way

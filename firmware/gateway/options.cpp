@@ -16,8 +16,7 @@ const char* const kUsage =
     "  --version        prints the version\n"
     "  --help           prints this\n"
     "\n"
-    "Waiting maps are kept across a restart in $RUNTIME_DIRECTORY, or in the state folder where that is not "
-    "set.\n"
+    "What waits is kept across a restart in $RUNTIME_DIRECTORY, or else in the state folder.\n"
     "Exits 0 after SIGTERM or SIGINT, 1 where it cannot start (and says why), 2 on a wrong command line.\n";
 
 std::expected<Options, std::string> parse_options(std::span<char* const> arguments) {

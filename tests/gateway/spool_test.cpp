@@ -36,27 +36,44 @@ icd::MapUpdate grid(const char* name, std::uint8_t value) {
   return codec::read_map_update(std::move(*document), {}).value();
 }
 
-TEST_F(SpoolTest, GivesBackWhatWaitedInItsOrderAndOnce) {
-  const Spool spool(folder_ / "waiting");
-  Unsent unsent;
-  for (std::uint8_t i = 0; i < 12; ++i) unsent.maps.push_back(grid("r1", i));
-  unsent.state = {.header = {.stamp = 7.5}, .poses = {{*icd::RobotName::parse("r2"), {}}}};
+icd::StateUpdate state() {
+  return {.header = {.stamp = 7.5}, .poses = {{*icd::RobotName::parse("r2"), {}}}};
+}
+
+icd::MarkersUpdate markers() {
   icd::Marker marker;
   marker.ns = "path";
   marker.color.a = 1;
-  unsent.markers.markers.push_back(marker);
-  spool.save(unsent);
+  return {.markers = {marker}};
+}
 
-  const Unsent found = spool.take({});
-  EXPECT_EQ(found.maps, unsent.maps);
-  EXPECT_EQ(found.state, unsent.state);
-  EXPECT_EQ(found.markers, unsent.markers);
-  EXPECT_TRUE(spool.take({}).maps.empty());
-  EXPECT_TRUE(spool.take({}).state.poses.empty());
+TEST_F(SpoolTest, GivesBackWhatItKeptByNumberUntilItIsForgotten) {
+  const Spool spool(folder_ / "waiting");
+  for (const std::uint64_t number : {9, 100'000'000, 10})
+    spool.keep(number, grid("r1", static_cast<std::uint8_t>(number % 100)));
+  spool.forget(10);
+  spool.forget(11);
+  const auto kept = Spool(folder_ / "waiting").read({});
+  ASSERT_EQ(kept.maps.size(), 2u);
+  EXPECT_EQ(kept.maps[0].first, 9u);
+  EXPECT_EQ(kept.maps[0].second, grid("r1", 9));
+  EXPECT_EQ(kept.maps[1].first, 100'000'000u);
+}
+
+TEST_F(SpoolTest, KeepsTheLastStateAndMarkersAndForgetsEmptyOnes) {
+  const Spool spool(folder_);
+  spool.keep(state(), markers());
+  EXPECT_EQ(spool.read({}).state, state());
+  EXPECT_EQ(spool.read({}).markers, markers());
+  spool.keep({}, markers());
+  EXPECT_TRUE(spool.read({}).state.poses.empty());
+  EXPECT_EQ(spool.read({}).markers, markers());
+  spool.keep(icd::StateUpdate{}, icd::MarkersUpdate{});
+  EXPECT_TRUE(spool.read({}).markers.markers.empty());
 }
 
 TEST_F(SpoolTest, IsReadableByNobodyElse) {
-  Spool(folder_ / "waiting").save({.maps = {grid("r1", 1)}, .state = {}, .markers = {}});
+  const Spool spool(folder_ / "waiting");
   struct stat status{};
   ASSERT_EQ(::stat((folder_ / "waiting").c_str(), &status), 0);
   EXPECT_EQ(status.st_mode & 0777, 0700u);
@@ -64,16 +81,27 @@ TEST_F(SpoolTest, IsReadableByNobodyElse) {
 
 TEST_F(SpoolTest, SetsAsideWhatItCannotReadAndGoesOn) {
   const Spool spool(folder_);
-  spool.save({.maps = {grid("r1", 1), grid("r2", 2)}, .state = {}, .markers = {}});
-  std::ofstream(folder_ / "map-00000000.cbor") << "not a map";
-  const Unsent found = spool.take({});
-  ASSERT_EQ(found.maps.size(), 1u);
-  EXPECT_EQ(found.maps[0].name->text(), "r2");
-  EXPECT_TRUE(fs::exists(folder_ / "map-00000000.cbor.damaged"));
+  spool.keep(1, grid("r1", 1));
+  spool.keep(2, grid("r2", 2));
+  std::ofstream(folder_ / "map-00000001.cbor") << "not a map";
+  const auto kept = spool.read({});
+  ASSERT_EQ(kept.maps.size(), 1u);
+  EXPECT_EQ(kept.maps[0].second.name->text(), "r2");
+  EXPECT_TRUE(fs::exists(folder_ / "map-00000001.cbor.damaged"));
 }
 
-TEST_F(SpoolTest, FindsNothingWhereThereIsNoFolder) {
-  EXPECT_TRUE(Spool(folder_ / "absent").take({}).maps.empty());
+TEST_F(SpoolTest, TakesNothingForAMapThatWasNotWrittenToItsEnd) {
+  const Spool spool(folder_);
+  std::ofstream(folder_ / "map-00000003.cbor.part") << "half";
+  std::ofstream(folder_ / "map-x.cbor") << "no number";
+  EXPECT_TRUE(spool.read({}).maps.empty());
+}
+
+TEST_F(SpoolTest, GoesOnWhereItsFolderCannotBeWritten) {
+  std::ofstream(folder_ / "file") << "";
+  const Spool spool(folder_ / "file" / "waiting");
+  spool.keep(1, grid("r1", 1));
+  EXPECT_TRUE(spool.read({}).maps.empty());
 }
 
 }  // namespace

@@ -140,15 +140,22 @@ class Waiting(unittest.TestCase):
         wait_until(lambda: any(item["position"]["x"] == 2.0 for request in self.taken(stage, "/state/update")
                                for item in request["message"]["poses"]), "the last pose", 40)
 
-    def test_what_waits_outlives_a_restart_of_the_service(self):
-        stage = self.stage(post_options=None)
+    def test_what_waits_outlives_the_end_of_the_service(self):
+        for number in (signal.SIGTERM, signal.SIGKILL):
+            with self.subTest(number.name), Stage(post_options=None) as stage:
+                self.session = requests.Session()
+                self.outlives(stage, number)
+
+    def outlives(self, stage, number):
         grid, cloud = maps.made_grid(64, 48), maps.made_cloud(300)
-        self.post_map(stage, grid, "r1")
+        for _ in range(3):  # each replaces the one before
+            self.post_map(stage, grid, "r1")
         self.post_map(stage, cloud, "r2")
         self.post(stage, "/state/update", pose("r3", 4.0))
         self.post(stage, "/markers/update", {"markers": [{"action": 2, "ns": "a", "id": 1}]})
-        status, took = stage.box.stop()
-        self.assertEqual(status, 0, stage.box.said())
+        kept = stage.box.state / "waiting"
+        wait_until(lambda: len(list(kept.glob("*.cbor"))) == 4, "what waits to be kept")
+        _, took = stage.box.stop(number)
         self.assertLess(took, 1.5)
         stage.post = programs.CommandPost(stage.network, stage.folder, "--rate", "0")
         stage.restart_box()
@@ -157,6 +164,8 @@ class Waiting(unittest.TestCase):
         sizes = {request["message"]["name"]: request["message"]["msg"]["data"]["bytes"]
                  for request in self.taken(stage, "/map/update")}
         self.assertEqual(sizes, {"r1": len(grid.data), "r2": len(cloud.data)})
+        wait_until(lambda: not list(kept.glob("*.cbor")), "what was taken to be forgotten")
+        self.assertEqual(stage.post.violations(), [])
 
     def test_senders_with_clocks_of_their_own_never_run_upstream_backward(self):
         stage = self.stage()

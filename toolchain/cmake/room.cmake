@@ -26,6 +26,6 @@ function(adit_room_test name)
   target_compile_definitions(adit_${name}_test PRIVATE ADIT_SOURCE_DIR="${PROJECT_SOURCE_DIR}")
   target_link_libraries(adit_${name}_test PRIVATE
     adit_options adit_${name} ${TEST_ROOMS} ${TEST_LIBRARIES} GTest::gmock GTest::gtest_main)
-  gtest_discover_tests(adit_${name}_test TEST_PREFIX "${name}: " DISCOVERY_TIMEOUT 60
+  gtest_discover_tests(adit_${name}_test TEST_PREFIX "${name}: " NO_PRETTY_VALUES DISCOVERY_TIMEOUT 60
     PROPERTIES TIMEOUT 120 LABELS ${name})
 endfunction()

@@ -84,7 +84,7 @@ def needs_namespaces():
     if os.geteuid() != 0:
         raise unittest.SkipTest("network namespaces need root")
     probe = f"aditprobe{os.getpid()}"
-    made = subprocess.run(["ip", "netns", "add", probe], capture_output=True, check=False)
+    made = subprocess.run(f"ip netns add {probe} && ip netns exec {probe} true", shell=True, capture_output=True, check=False)
+    subprocess.run(["ip", "netns", "delete", probe], stderr=subprocess.DEVNULL, check=False)
     if made.returncode != 0:
-        raise unittest.SkipTest("network namespaces cannot be made here: " + made.stderr.decode().strip())
-    subprocess.run(["ip", "netns", "delete", probe], check=True)
+        raise unittest.SkipTest("network namespaces cannot be used here: " + made.stderr.decode().strip())

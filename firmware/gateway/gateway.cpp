@@ -84,15 +84,15 @@ void Gateway::restore() {
   for (icd::Marker& marker : kept.markers.markers) marker.header.stamp = now;
   if (!kept.state.poses.empty()) (void)news_.take(kept.state, 0);  // the lanes are empty: there is room
   if (!kept.markers.markers.empty()) (void)news_.take(kept.markers, 0);
-  news_kept_ = true;
 }
 
+/// On a worker, and one at a time: there may be many markers.
 void Gateway::keep_news() {
-  const icd::StateUpdate state = news_.unsent_state();
-  const icd::MarkersUpdate markers = news_.unsent_markers();
-  const bool waits = !state.poses.empty() || !markers.markers.empty();
-  if (waits || news_kept_) spool_.keep(state, markers);
-  news_kept_ = waits;
+  if (keeping_news_ || !news_.changed_since_asked()) return;
+  keeping_news_ = true;
+  workers_.submit([&spool = spool_, state = news_.unsent_state(),
+                   markers = news_.unsent_markers()] { spool.keep(state, markers); },
+                  [this] { keeping_news_ = false; });
 }
 
 void Gateway::stop() {
@@ -105,14 +105,15 @@ void Gateway::stop() {
 }
 
 void Gateway::drain() {
+  if (dismissed_) return finish();
   const bool scoring = scoring_.stop(), maps = maps_.stop(), news = news_.stop();
-  const bool idle = scoring && maps && news && loop_.now() >= *stop_by_ - kDrain + kFlush;
-  if (idle || loop_.now() >= *stop_by_) return finish();
-  drained_.call_at(loop_.now() + kDrainStep);
+  dismissed_ = (scoring && maps && news && !keeping_news_) || loop_.now() >= *stop_by_;
+  if (dismissed_) scoring_.dismiss();
+  drained_.call_at(loop_.now() + (dismissed_ ? kFlush : kDrainStep));
 }
 
 void Gateway::finish() {
-  keep_news();
+  if (!keeping_news_) spool_.keep(news_.unsent_state(), news_.unsent_markers());
   loop_.stop();
 }
 

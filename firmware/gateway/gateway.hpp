@@ -89,7 +89,8 @@ class Gateway final : public intake::Desk, public page::Source {
   std::vector<std::unique_ptr<intake::Server>> servers_;
   loop::Source second_, drained_;
   std::deque<std::uint64_t> bytes_sent_;  // in all, at each of the last seconds
-  bool news_kept_ = false;
+  bool keeping_news_ = false;
+  bool dismissed_ = false;  // all clients have been told; only their answers have to leave
   std::string notified_;
   std::optional<loop::Instant> stop_by_;
 };

@@ -14,6 +14,10 @@ namespace {
 
 using dispatch::MappingVerdict;
 
+/// What a Command Post answers whose handler fails at a message (others of 5xx come from something in
+/// between, and pass).
+constexpr int kBrokenByIt = 500;
+
 /// Packing begins early by what it took last time, but not so early that much newer data could not replace
 /// it.
 constexpr std::chrono::milliseconds kLongestLead{500};
@@ -36,7 +40,7 @@ Maps::Maps(loop::Loop& loop, loop::Workers& workers, const Spool& spool, const s
       lane_(settings.queues.merge_bytes) {}
 
 icd::Checked<void> Maps::take(icd::MapUpdate update, std::size_t bytes_received) {
-  if (lane_.bytes() + update.data.bytes.size() > settings_.queues.map_bytes) {
+  if (lane_.count() > 0 && lane_.bytes() + update.data.bytes.size() > settings_.queues.map_bytes) {
     return std::unexpected(icd::Refusal{
         icd::Status::TooManyRequests, std::to_string(lane_.count()) + " maps of " +
                                           std::to_string(lane_.bytes() >> 20) +
@@ -155,13 +159,13 @@ void Maps::verdict(const uplink::Answered& answered) {
     case MappingVerdict::Failing:
       pace_.failed(now);
       record_.not_taken(traffic, NotTaken::Failed, answered.status, sentence_of(answered));
-      const std::uint64_t number = prepared_->waiting.updates.back();
+      if (answered.status != kBrokenByIt) return again();
+      const std::uint64_t number = prepared_->waiting.updates.front();
       tries_ = std::exchange(tried_, number) == number ? tries_ + 1 : 1;
-      if (answered.status >= 500 && tries_ >= kMostTries) {
-        return give_up(answered.status,
-                       sentence_of(answered) + " (given up after " + std::to_string(tries_) + " tries)");
-      }
-      return again();
+      if (tries_ < kMostTries) return again();
+      tries_ = 0;
+      return give_up(answered.status,
+                     sentence_of(answered) + " (given up after " + std::to_string(kMostTries) + " tries)");
   }
 }
 
@@ -170,12 +174,15 @@ void Maps::again() {
   prepared_.reset();
 }
 
+/// A map that will not be taken; of a merged cloud each part is tried by itself.
 void Maps::give_up(int status, const std::string& sentence) {
   const Traffic traffic = traffic_of(prepared_->waiting.map);
   host::log(host::Level::Warning, "the Command Post refused a map",
             {{"robot", traffic.robot}, {"status", std::to_string(status)}, {"why", sentence}});
   record_.not_taken(traffic, NotTaken::Refused, status, sentence);
-  done();
+  if (prepared_->waiting.parts.empty()) return done();
+  lane_.put_back_apart(std::move(prepared_->waiting));
+  prepared_.reset();
 }
 
 bool Maps::stop() {

@@ -50,6 +50,7 @@ icd::Checked<void> News::take(const icd::StateUpdate& update, std::size_t bytes_
     record_.accepted({Kind::State, pose.name.text()}, bytes_received, loop_.stamp_now());
   }
   state_.add(update, loop_.now());
+  changed_ = true;
   pump();
   return {};
 }
@@ -58,6 +59,7 @@ icd::Checked<void> News::take(const icd::MarkersUpdate& update, std::size_t byte
   if (!markers_.has_room_for(update)) return full("more markers than can wait");
   record_.accepted({Kind::Markers, ""}, bytes_received, loop_.stamp_now());
   markers_.add(++numbers_, update, loop_.now());
+  changed_ = true;
   pump();
   return {};
 }
@@ -105,6 +107,7 @@ void News::send_markers() {
 template <class Waiting>
 void News::answered(Kind kind, UriPace& pace, Waiting sent, std::size_t bytes,
                     const uplink::Outcome& outcome) {
+  changed_ = true;
   const loop::Instant now = loop_.now();
   const auto* answer = std::get_if<uplink::Answered>(&outcome);
   const int status = answer != nullptr ? answer->status : 0;
@@ -162,10 +165,7 @@ icd::StateUpdate News::unsent_state() const {
 }
 
 icd::MarkersUpdate News::unsent_markers() const {
-  lanes::MarkerLane lane = markers_;
-  icd::MarkersUpdate unsent = markers_under_way_;
-  while (auto waiting = lane.take()) unsent.markers = lanes::merge(unsent.markers, waiting->update.markers);
-  return unsent;
+  return {.markers = lanes::merge(markers_under_way_.markers, markers_.pending())};
 }
 
 std::size_t News::waiting(Kind kind) const {

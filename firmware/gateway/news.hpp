@@ -2,6 +2,7 @@
 
 #include <random>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "gateway/channel.hpp"
@@ -32,6 +33,9 @@ class News {
   icd::StateUpdate unsent_state() const;
   icd::MarkersUpdate unsent_markers() const;
 
+  /// Whether what is unsent may have changed since this was last asked.
+  bool changed_since_asked() { return std::exchange(changed_, false); }
+
   const Channel& channel() const { return channel_; }
   std::size_t waiting(Kind kind) const;
 
@@ -57,6 +61,7 @@ class News {
   std::uint64_t numbers_ = 0;
   icd::StateUpdate state_under_way_;
   icd::MarkersUpdate markers_under_way_;
+  bool changed_ = true;
   bool stopping_ = false;
 };
 

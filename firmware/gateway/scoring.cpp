@@ -45,7 +45,7 @@ Scoring::Scoring(loop::Loop& loop, ledger::Ledger& ledger, const settings::Setti
       report_pace_(settings.command_post.rates.reports_hz, random),
       status_pace_(settings.command_post.rates.status_hz, random),
       wake_(loop.timer([this] { pump(); })),
-      poll_(loop.timer([this] { status(nullptr); })),
+      poll_(loop.timer([this] { poll(); })),
       deadline_(loop.timer([this] { answer_late_clients(); })) {}
 
 std::expected<void, std::string> Scoring::start() {
@@ -53,12 +53,17 @@ std::expected<void, std::string> Scoring::start() {
   if (!waiting) return std::unexpected(waiting.error());
   queue_.assign(waiting->begin(), waiting->end());
   channel_.keep_warm();
-  status(nullptr);
+  poll();
   return {};
 }
 
 void Scoring::take(const icd::ArtifactReport& report, const intake::Sender& sender,
                    std::shared_ptr<intake::Responder> responder) {
+  if (stopping_) {
+    responder->answer(intake::error_answer(
+        icd::Status::ServiceUnavailable, "the gateway is stopping; the report was not taken, send it again"));
+    return;
+  }
   if (queue_.size() >= kMostWaiting) {
     responder->answer(
         intake::error_answer(icd::Status::TooManyRequests,
@@ -82,16 +87,20 @@ void Scoring::take(const icd::ArtifactReport& report, const intake::Sender& send
 
 void Scoring::status(std::shared_ptr<intake::Responder> responder) {
   if (stopping_) {
-    if (responder)
-      responder->answer(intake::error_answer(icd::Status::ServiceUnavailable, "the gateway is stopping"));
+    responder->answer(intake::error_answer(icd::Status::ServiceUnavailable, "the gateway is stopping"));
     return;
   }
-  if (responder && status_fresh_until_ && loop_.now() < *status_fresh_until_) {
+  if (status_fresh_until_ && loop_.now() < *status_fresh_until_) {
     responder->answer(fresh_status());
     return;
   }
   askers_.push_back({std::move(responder), loop_.now()});
   watch_deadlines();
+  pump();
+}
+
+void Scoring::poll() {
+  poll_due_ = true;
   pump();
 }
 
@@ -106,7 +115,7 @@ void Scoring::pump() {
   if (stopping_ || channel_.busy()) return;
   std::array<dispatch::Candidate, 2> candidates;
   if (!queue_.empty()) candidates[0] = {loop_.now(), report_pace_.ready()};
-  if (!askers_.empty()) candidates[1] = {askers_.front().since, status_pace_.ready()};
+  if (!askers_.empty() || poll_due_) candidates[1] = {loop_.now(), status_pace_.ready()};
   const dispatch::Turn turn = dispatch::in_order(candidates, loop_.now());
   if (turn.wake) wake_.call_at(*turn.wake);
   if (turn.candidate == 0) send_report();
@@ -159,7 +168,7 @@ void Scoring::report_answered(std::int64_t number, uplink::Outcome outcome) {
       answer_client(number, answered != nullptr && answered->status >= 500 ? client_answer(*answered)
                                                                            : in_doubt_answer(number, why));
   }
-  if (!stopping_) status(nullptr);
+  if (!stopping_) poll();
   record_.changed();
   pump();
 }
@@ -182,10 +191,10 @@ loop::Instant Scoring::asker_deadline() const {
 
 void Scoring::answer_late_clients() {
   const loop::Instant now = loop_.now();
-  if (!askers_.empty() && asker_deadline() <= now) {
-    answer_askers(intake::error_answer(icd::Status::ServiceUnavailable,
-                                       "the Command Post could not be asked in time" +
-                                           (channel_.trouble().empty() ? "" : ": " + channel_.trouble())));
+  while (!askers_.empty() && asker_deadline() <= now) {
+    askers_.front().responder->answer(intake::error_answer(
+        icd::Status::ServiceUnavailable, "the Command Post could not be asked in time: reports go first"));
+    askers_.pop_front();
   }
   while (!clients_.empty() && clients_.begin()->second.deadline <= now) {
     const std::int64_t number = clients_.begin()->first;
@@ -201,6 +210,7 @@ void Scoring::answer_late_clients() {
 }
 
 void Scoring::ask_status() {
+  poll_due_ = false;
   status_pace_.sent(loop_.now());
   channel_.send(icd::Uri::Status, "", {},
                 [this](uplink::Outcome outcome) { status_answered(std::move(outcome)); });
@@ -231,22 +241,25 @@ void Scoring::status_answered(uplink::Outcome outcome) {
 }
 
 void Scoring::answer_askers(const intake::Answer& answer) {
-  for (const Asker& asker : std::exchange(askers_, {})) {
-    if (asker.responder) asker.responder->answer(answer);
-  }
+  for (const Asker& asker : std::exchange(askers_, {})) asker.responder->answer(answer);
 }
 
 bool Scoring::stop() {
-  if (!std::exchange(stopping_, true)) {
-    answer_askers(intake::error_answer(icd::Status::ServiceUnavailable, "the gateway is stopping"));
-    for (const std::int64_t number : queue_) {
-      answer_client(
-          number, intake::error_answer(icd::Status::ServiceUnavailable,
+  stopping_ = true;
+  answer_askers(intake::error_answer(icd::Status::ServiceUnavailable, "the gateway is stopping"));
+  for (const std::int64_t number : queue_) {
+    answer_client(number,
+                  intake::error_answer(icd::Status::ServiceUnavailable,
                                        "the gateway is stopping; report " + std::to_string(number) +
                                            " is kept and goes out when it runs again, do not send it again"));
-    }
   }
   return !sending_;
+}
+
+void Scoring::dismiss() {
+  stop();
+  if (sending_)
+    answer_client(*sending_, in_doubt_answer(*sending_, "the gateway stops while it is being sent"));
 }
 
 }  // namespace adit::gateway

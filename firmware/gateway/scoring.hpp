@@ -40,8 +40,11 @@ class Scoring {
             std::shared_ptr<intake::Responder> responder);
   void status(std::shared_ptr<intake::Responder> responder);
 
-  /// Sends nothing more; clients that wait are told so. False while an answer is still awaited.
+  /// Sends and takes nothing more; clients whose reports wait are told so. False while an answer is still
+  /// awaited. Called again until it is true or there is no more time.
   bool stop();
+  /// Tells the client whose report is still under way, too.
+  void dismiss();
 
   const Channel& channel() const { return channel_; }
   const std::optional<icd::RunStatus>& run() const { return run_; }
@@ -54,12 +57,13 @@ class Scoring {
     std::shared_ptr<intake::Responder> responder;
     loop::Instant deadline;
   };
-  /// Somebody who asked for the status; no responder: Adit itself.
+  /// Somebody who asked for the status.
   struct Asker {
     std::shared_ptr<intake::Responder> responder;
     loop::Instant since;
   };
 
+  void poll();
   void pump();
   void send_report();
   void report_answered(std::int64_t number, uplink::Outcome outcome);
@@ -84,6 +88,7 @@ class Scoring {
   std::optional<std::int64_t> sending_;
   std::map<std::int64_t, Client> clients_;
   std::deque<Asker> askers_;
+  bool poll_due_ = false;  // Adit itself wants to know the status
 
   std::optional<icd::RunStatus> run_;
   std::optional<page::Time> run_heard_;

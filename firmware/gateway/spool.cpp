@@ -20,7 +20,7 @@ namespace {
 namespace fs = std::filesystem;
 
 constexpr std::string_view kState = "/state.cbor", kMarkers = "/markers.cbor";
-constexpr std::string_view kMap = "map-", kEnding = ".cbor";
+constexpr std::string_view kMap = "map-", kEnding = ".cbor", kPart = ".part";
 
 /// The number in "map-00000012.cbor"; nothing for another file.
 std::optional<std::uint64_t> number_in(std::string_view name) {
@@ -34,7 +34,7 @@ std::optional<std::uint64_t> number_in(std::string_view name) {
 }
 
 void write(const std::string& path, const icd::ChunkedBytes& bytes) {
-  const std::string part = path + ".part";
+  const std::string part = path + std::string(kPart);
   std::ofstream file(part, std::ios::binary);
   for (const auto& chunk : bytes.chunks()) {
     file.write(reinterpret_cast<const char*>(chunk->data()), static_cast<std::streamsize>(chunk->size()));
@@ -114,6 +114,7 @@ Spool::Kept Spool::read(const icd::Rules& rules) const {
   std::error_code error;
   for (const auto& file : fs::directory_iterator(folder_, error)) {
     if (const auto number = number_in(file.path().filename().string())) numbers.push_back(*number);
+    if (file.path().extension() == kPart) fs::remove(file.path(), error);  // a kill came while it was written
   }
   std::ranges::sort(numbers);
   Kept kept;

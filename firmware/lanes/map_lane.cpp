@@ -32,6 +32,16 @@ bool replaces(const WaitingMap& newer, const WaitingMap& older) {
   return new_grid && old_grid && newer.map.name == older.map.name && covers(*new_grid, *old_grid);
 }
 
+/// What is merged keeps what it was merged of: the bytes are shared, so that this costs next to nothing.
+void join_parts(WaitingMap& to, const WaitingMap& from) {
+  if (to.parts.empty()) to.parts.push_back(to.map);
+  if (from.parts.empty()) {
+    to.parts.push_back(from.map);
+  } else {
+    to.parts.insert(to.parts.end(), from.parts.begin(), from.parts.end());
+  }
+}
+
 /// `from` is older news: its updates become `to`'s as well, and its age counts.
 void take_over(WaitingMap& to, WaitingMap from) {
   const auto middle = static_cast<std::ptrdiff_t>(from.updates.size());
@@ -56,7 +66,7 @@ icd::MapUpdate merge(icd::MapUpdate older, const icd::MapUpdate& newer) {
 }
 
 std::vector<std::uint64_t> MapLane::add(std::uint64_t number, icd::MapUpdate map, Instant now) {
-  WaitingMap added{std::move(map), now, {number}};
+  WaitingMap added{std::move(map), now, {number}, {}, false};
   const auto stays = [&](const WaitingMap& waiting) { return !replaces(added, waiting); };
   const auto first = added.map.is_grid() ? std::ranges::find_if_not(waiting_, stays) : waiting_.end();
   const auto gone = std::stable_partition(first, waiting_.end(), stays);
@@ -90,14 +100,15 @@ std::optional<WaitingMap> MapLane::take() {
 
 void MapLane::merge_followers(WaitingMap& next) {
   const icd::PointCloud2* first = loose_cloud_in(next.map);
-  bool open = first != nullptr;
+  bool open = first != nullptr && !next.alone;
   std::erase_if(waiting_, [&](const WaitingMap& other) {
     if (!open || other.map.is_grid() || other.map.name != next.map.name) return false;
     const icd::PointCloud2* cloud = loose_cloud_in(other.map);
-    open = cloud && mergeable(*first, *cloud) &&
+    open = cloud && !other.alone && mergeable(*first, *cloud) &&
            next.map.data.raw_size + other.map.data.raw_size <= merge_bytes_;
     if (!open) return false;
     bytes_ -= bytes_held(other);
+    join_parts(next, other);
     next.map = merge(std::move(next.map), other.map);
     first = loose_cloud_in(next.map);
     next.updates.insert(next.updates.end(), other.updates.begin(), other.updates.end());
@@ -117,6 +128,14 @@ void MapLane::put_back(WaitingMap map) {
   bytes_ -= bytes_held(*newer);
   take_over(*newer, std::move(map));
   bytes_ += bytes_held(*newer);
+}
+
+void MapLane::put_back_apart(WaitingMap map) {
+  for (std::size_t i = map.parts.size(); i-- > 0;) {
+    WaitingMap part{std::move(map.parts[i]), map.accepted, {map.updates[i]}, {}, true};
+    bytes_ += bytes_held(part);
+    waiting_.push_front(std::move(part));
+  }
 }
 
 std::optional<Instant> MapLane::oldest() const {

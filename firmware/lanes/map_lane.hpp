@@ -31,6 +31,9 @@ struct WaitingMap {
   icd::MapUpdate map;
   Instant accepted;                    // when the oldest news in it was accepted
   std::vector<std::uint64_t> updates;  // their numbers, oldest first
+  std::vector<icd::MapUpdate>
+      parts{};         // the clouds that were merged into it, one for each update; else empty
+  bool alone = false;  // not to be merged with others
 };
 
 /// The maps that wait for the Command Post.
@@ -54,6 +57,10 @@ class MapLane {
   /// Puts back what could not be sent: first in line, unless a newer grid that covers it came meanwhile (then
   /// that one takes its updates and its age).
   void put_back(WaitingMap map);
+
+  /// Puts back the parts of a merged cloud, first in line and never to be merged again, so that the one that
+  /// the Command Post cannot take is found and the others arrive. Requires parts.
+  void put_back_apart(WaitingMap map);
 
   std::size_t count() const { return waiting_.size(); }
   std::size_t bytes() const { return bytes_; }  // of memory held by all that wait

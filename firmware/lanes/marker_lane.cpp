@@ -57,6 +57,13 @@ void MarkerLane::put_back(const WaitingMarkers& markers) {
   updates_ = std::move(updates);
 }
 
+std::vector<icd::Marker> MarkerLane::pending() const {
+  std::vector<icd::Marker> all;
+  all.reserve(count());
+  for (const auto& [place, marker] : changes_.in_order()) all.push_back(marker);
+  return all;
+}
+
 std::optional<Instant> MarkerLane::oldest() const {
   if (updates_.empty()) return {};
   return std::ranges::min_element(updates_, {}, &Update::accepted)->accepted;

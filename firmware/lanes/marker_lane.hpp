@@ -47,6 +47,8 @@ class MarkerLane {
   void put_back(const WaitingMarkers& markers);
 
   std::size_t count() const { return changes_.count(); }  // of markers
+  /// All that wait, in order.
+  std::vector<icd::Marker> pending() const;
   std::optional<Instant> oldest() const;
   bool empty() const { return updates_.empty(); }
 

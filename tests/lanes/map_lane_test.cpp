@@ -97,6 +97,27 @@ TEST(MapLane, MergesCloudsThatFollowEachOtherWhileMoreThanOneWait) {
   EXPECT_EQ(lane.count(), 1);
 }
 
+TEST(MapLane, TakesMergedCloudsApartAgainAndSendsEachByItself) {
+  MapLane lane{kPlenty};
+  lane.add(1, cloud_update("R1", {1}), at(1));
+  lane.add(2, cloud_update("R1", {2}), at(2));
+  auto merged = *lane.take();
+  lane.add(3, cloud_update("R1", {3}), at(3));
+  lane.put_back(std::move(merged));
+  merged = *lane.take();
+  EXPECT_THAT(merged.updates, ElementsAre(1, 2, 3));
+  lane.put_back_apart(std::move(merged));
+  lane.add(4, cloud_update("R1", {4}), at(4));
+  lane.add(5, cloud_update("R1", {5}), at(5));
+  for (const float point : {1.0F, 2.0F, 3.0F}) {
+    const auto part = lane.take();
+    EXPECT_THAT(part->updates, ElementsAre(static_cast<std::uint64_t>(point)));
+    EXPECT_THAT(points_of(part->map), ElementsAre(point));
+  }
+  EXPECT_THAT(lane.take()->updates, ElementsAre(4, 5)) << "those that came later are merged as ever";
+  EXPECT_EQ(lane.bytes(), 0);
+}
+
 TEST(MapLane, MergedCloudsHaveTheNewersHeader) {
   auto older = cloud_update("R1", {1}), newer = cloud_update("R1", {2});
   older.header().stamp = 10;

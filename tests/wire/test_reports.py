@@ -170,6 +170,25 @@ class Reports(unittest.TestCase):
         self.assertEqual(waiting.result().status_code, 503)
         self.assertIn("is kept", waiting.result().json())
 
+    def test_a_report_that_comes_while_the_service_stops_is_refused_and_never_sent(self):
+        stage = self.stage("slow0.6")
+        with requests.Session() as kept, concurrent.futures.ThreadPoolExecutor(2) as clients:
+            kept.get(stage.box.url + "/api/status", headers=HEADERS, timeout=5)  # a connection that stays
+            under_way = clients.submit(submit, stage, {**REPORT, "x": 1})
+            wait_until(stage.scripted.reports, "the first report to arrive")
+            waiting = clients.submit(submit, stage, {**REPORT, "x": 2})
+            wait_until(lambda: len(states(stage)) == 2, "the second to be on disk")
+            stage.box.process.send_signal(signal.SIGTERM)
+            time.sleep(0.1)
+            late = kept.post(stage.box.url + "/api/artifact_reports", data=json.dumps({**REPORT, "x": 3}),
+                             headers=HEADERS, timeout=5)
+            self.assertEqual((late.status_code, under_way.result().status_code, waiting.result().status_code),
+                             (503, 201, 503))
+            self.assertIn("was not taken", late.json())
+            self.assertIn("is kept", waiting.result().json())
+        self.assertEqual(stage.box.stop()[0], 0)
+        self.assertEqual(states(stage), ["answered", "waiting"])
+
     def test_status_is_answered_from_what_is_known_for_a_second(self):
         stage = self.stage("ok")
         url = stage.box.url + "/api/status"

@@ -38,4 +38,10 @@ enum class MappingVerdict {
 };
 MappingVerdict mapping_verdict(int status);
 
+/// What a Command Post answers whose handler fails at a message; other 5xx come from something in between,
+/// and pass.
+inline constexpr int kHandlerFailed = 500;
+/// How often a message is sent that is answered kHandlerFailed.
+inline constexpr int kMostTries = 5;
+
 }  // namespace adit::dispatch

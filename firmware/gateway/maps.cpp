@@ -14,10 +14,6 @@ namespace {
 
 using dispatch::MappingVerdict;
 
-/// What a Command Post answers whose handler fails at a message (others of 5xx come from something in
-/// between, and pass).
-constexpr int kBrokenByIt = 500;
-
 /// Packing begins early by what it took last time, but not so early that much newer data could not replace
 /// it.
 constexpr std::chrono::milliseconds kLongestLead{500};
@@ -159,13 +155,13 @@ void Maps::verdict(const uplink::Answered& answered) {
     case MappingVerdict::Failing:
       pace_.failed(now);
       record_.not_taken(traffic, NotTaken::Failed, answered.status, sentence_of(answered));
-      if (answered.status != kBrokenByIt) return again();
+      if (answered.status != dispatch::kHandlerFailed) return again();
       const std::uint64_t number = prepared_->waiting.updates.front();
       tries_ = std::exchange(tried_, number) == number ? tries_ + 1 : 1;
-      if (tries_ < kMostTries) return again();
+      if (tries_ < dispatch::kMostTries) return again();
       tries_ = 0;
-      return give_up(answered.status,
-                     sentence_of(answered) + " (given up after " + std::to_string(kMostTries) + " tries)");
+      return give_up(answered.status, sentence_of(answered) + " (given up after " +
+                                          std::to_string(dispatch::kMostTries) + " tries)");
   }
 }
 

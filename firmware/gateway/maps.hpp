@@ -22,8 +22,6 @@ namespace adit::gateway {
 /// time on a connection of their own, paced within the link's budget.
 class Maps {
  public:
-  static constexpr int kMostTries = 5;  // of a map that the Command Post answers with 500
-
   Maps(loop::Loop& loop, loop::Workers& workers, const Spool& spool, const settings::Settings& settings,
        icd::BearerToken token, Record& record, std::mt19937_64& random);
 

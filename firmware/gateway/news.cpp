@@ -111,7 +111,13 @@ void News::answered(Kind kind, UriPace& pace, Waiting sent, std::size_t bytes,
   const loop::Instant now = loop_.now();
   const auto* answer = std::get_if<uplink::Answered>(&outcome);
   const int status = answer != nullptr ? answer->status : 0;
-  const auto verdict = answer != nullptr ? dispatch::mapping_verdict(status) : MappingVerdict::Failing;
+  auto verdict = answer != nullptr ? dispatch::mapping_verdict(status) : MappingVerdict::Failing;
+  int& failed = kind == Kind::State ? state_failed_ : markers_failed_;
+  failed = status == dispatch::kHandlerFailed ? failed + 1 : 0;
+  if (failed >= dispatch::kMostTries) {
+    verdict = MappingVerdict::Refused;
+    failed = 0;
+  }
   const std::string sentence = verdict == MappingVerdict::Taken ? "" : sentence_of(outcome);
   for (const Traffic& traffic : traffic_of(sent)) {
     if (verdict == MappingVerdict::Taken) {

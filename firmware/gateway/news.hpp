@@ -61,6 +61,7 @@ class News {
   std::uint64_t numbers_ = 0;
   icd::StateUpdate state_under_way_;
   icd::MarkersUpdate markers_under_way_;
+  int state_failed_ = 0, markers_failed_ = 0;  // answers in a row of a handler that failed
   bool changed_ = true;
   bool stopping_ = false;
 };

@@ -1,8 +1,12 @@
 """What waits loses nothing: throttling, full links, pulled cables, restarts, networks that overlap."""
 
+import json
+import pathlib
 import random
 import signal
+import struct
 import subprocess
+import sys
 import time
 import unittest
 
@@ -181,6 +185,24 @@ class Waiting(unittest.TestCase):
         for uri, at in (("/map/update", lambda message: message["msg"]), ("/state/update", lambda message: message)):
             stamps = [at(request["message"])["header"]["stamp"] for request in stage.post.requests(uri)]
             self.assertEqual(stamps, sorted(stamps))
+
+    def test_one_cloud_that_is_refused_takes_no_other_with_it(self):
+        stage = self.stage(post_options=None, command_post__rates__map_hz=4)
+        log = stage.folder / "picky.jsonl"
+        picky = programs.Program(stage.network, stage.network.post, stage.folder / "picky.log",
+                                 [sys.executable, "-B", pathlib.Path(__file__).with_name("picky_post.py"),
+                                  f"{hosts.MAPPING}:{programs.PORT}", log, 422])
+        self.addCleanup(picky.stop, signal.SIGKILL)
+        wait_until(lambda: "listening" in picky.said(), "the picky Command Post")
+        for number in range(1, 31):
+            self.post_map(stage, maps.Cloud("one", maps.XYZ, 12, struct.pack("<3f", number, 0, 0)), "r1")
+
+        def arrived():
+            lines = [json.loads(line) for line in log.read_text().splitlines()] if log.exists() else []
+            return sorted(point for status, points in lines if status == 200 for point in points)
+
+        wait_until(lambda: len(arrived()) == 29, "all clouds but one")
+        self.assertEqual(arrived(), [float(number) for number in range(1, 31) if number != 13])
 
     def test_a_full_queue_is_told_to_the_sender(self):
         stage = self.stage(post_options=None, queues__map_bytes=1 << 20)

@@ -3,6 +3,7 @@
 
 #include <random>
 
+#include "codec/deflated.hpp"
 #include "codec/documents.hpp"
 
 namespace adit::codec::test {

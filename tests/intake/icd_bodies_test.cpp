@@ -1,11 +1,12 @@
 #include <gtest/gtest.h>
-#include <zlib.h>
 
+#include "codec/deflated.hpp"
 #include "intake/team.hpp"
 
 namespace adit::intake {
 namespace {
 
+using codec::test::gzipped;
 using std::chrono::milliseconds;
 using std::chrono::seconds;
 
@@ -13,20 +14,6 @@ std::string cbor_of(std::string_view json) {
   std::string bytes;
   nlohmann::json::to_cbor(nlohmann::json::parse(json), bytes);
   return bytes;
-}
-
-std::string gzipped(std::string_view bytes) {
-  z_stream stream{};
-  deflateInit2(&stream, 6, Z_DEFLATED, 31, 8, Z_DEFAULT_STRATEGY);
-  std::string out(deflateBound(&stream, bytes.size()), '\0');
-  stream.next_in = reinterpret_cast<Bytef*>(const_cast<char*>(bytes.data()));
-  stream.avail_in = static_cast<uInt>(bytes.size());
-  stream.next_out = reinterpret_cast<Bytef*>(out.data());
-  stream.avail_out = static_cast<uInt>(out.size());
-  deflate(&stream, Z_FINISH);
-  out.resize(stream.total_out);
-  deflateEnd(&stream);
-  return out;
 }
 
 const std::string kGzip = "Content-Encoding: gzip\r\n";

@@ -2,19 +2,15 @@
 
 #include <gtest/gtest.h>
 
-#include "codec/gzip.hpp"
+#include "codec/deflated.hpp"
 #include "intake/team.hpp"
 
 namespace adit::intake {
 namespace {
 
+using codec::test::gzipped;
 using std::chrono::milliseconds;
 using std::chrono::seconds;
-
-std::string gzipped(const std::string& bytes) {
-  const std::span raw(reinterpret_cast<const std::uint8_t*>(bytes.data()), bytes.size());
-  return codec::gzip(icd::ChunkedBytes(raw), codec::GzipStrategy::Default).to_string();
-}
 
 std::string head_of(const std::string& body, std::string_view more = {}) {
   return authorized(

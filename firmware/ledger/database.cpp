@@ -2,6 +2,7 @@
 
 #include <cerrno>
 #include <cstring>
+#include <utility>
 
 namespace adit::ledger {
 namespace {
@@ -13,13 +14,18 @@ bool is_full(int code, int system_error) {
   return code == SQLITE_IOERR && (system_error == ENOSPC || system_error == EDQUOT || system_error == EFBIG);
 }
 
+sqlite3_file* log_of(sqlite3* database) {
+  sqlite3_file* log = nullptr;
+  sqlite3_file_control(database, "main", SQLITE_FCNTL_JOURNAL_POINTER, static_cast<void*>(&log));
+  return log != nullptr && log->pMethods != nullptr ? log : nullptr;
+}
+
 /// The errno behind an I/O error. A COMMIT does not hand it up, so the write-ahead log, which is what a
 /// COMMIT writes, is asked for its own.
 int errno_behind(sqlite3* database) {
   if (const int code = sqlite3_system_errno(database); code != 0) return code;
-  sqlite3_file* log = nullptr;
-  sqlite3_file_control(database, "main", SQLITE_FCNTL_JOURNAL_POINTER, static_cast<void*>(&log));
-  if (log == nullptr || log->pMethods == nullptr) return 0;
+  sqlite3_file* const log = log_of(database);
+  if (log == nullptr) return 0;
   int code = 0;
   log->pMethods->xFileControl(log, SQLITE_FCNTL_LAST_ERRNO, &code);
   return code;
@@ -44,17 +50,17 @@ Attempt<void> Database::execute(const char* sql) {
 Attempt<std::int64_t> Database::number(const char* sql) {
   const auto statement = Statement::prepare(*this, sql);
   if (!statement) return std::unexpected(statement.error());
-  Run run(*statement);
-  if (run.step() != SQLITE_ROW) return std::unexpected(error(sql));
-  return run.number(0);
+  Query query(*statement);
+  if (query.step() != SQLITE_ROW) return std::unexpected(error(sql));
+  return query.number(0);
 }
 
 Attempt<std::string> Database::text(const char* sql) {
   const auto statement = Statement::prepare(*this, sql);
   if (!statement) return std::unexpected(statement.error());
-  Run run(*statement);
-  if (run.step() != SQLITE_ROW) return std::unexpected(error(sql));
-  return run.bytes(0);
+  Query query(*statement);
+  if (query.step() != SQLITE_ROW) return std::unexpected(error(sql));
+  return query.bytes(0);
 }
 
 Failure Database::error(std::string_view doing) const {
@@ -67,6 +73,10 @@ Failure Database::error(std::string_view doing) const {
   return {{what, is_full(code, system_error)}, code == SQLITE_CORRUPT || code == SQLITE_NOTADB};
 }
 
+sqlite3_file* Database::log() const {
+  return log_of(get());
+}
+
 Attempt<Statement> Statement::prepare(const Database& database, const char* sql) {
   Statement statement;
   sqlite3_stmt* handle = nullptr;
@@ -76,43 +86,48 @@ Attempt<Statement> Statement::prepare(const Database& database, const char* sql)
   return statement;
 }
 
-Run::~Run() {
+Query::~Query() {
   sqlite3_reset(statement_);
   sqlite3_clear_bindings(statement_);
 }
 
-void Run::keep(int result) {
+void Query::keep(int result) {
   if (failed_ == SQLITE_OK) failed_ = result;
 }
 
-Run& Run::bind(std::int64_t value) {
+Query& Query::bind(std::int64_t value) {
   keep(sqlite3_bind_int64(statement_, ++bound_, value));
   return *this;
 }
 
-Run& Run::bind(double value) {
+Query& Query::bind(double value) {
   keep(sqlite3_bind_double(statement_, ++bound_, value));
   return *this;
 }
 
-Run& Run::bind(std::string_view text) {
+Query& Query::bind(std::string_view text) {
   // A null pointer would bind NULL.
   keep(sqlite3_bind_text64(statement_, ++bound_, text.empty() ? "" : text.data(), text.size(),
                            SQLITE_TRANSIENT, SQLITE_UTF8));
   return *this;
 }
 
-Run& Run::bind_blob(std::string_view bytes) {
+Query& Query::bind_blob(std::string_view bytes) {
   keep(sqlite3_bind_blob64(statement_, ++bound_, bytes.empty() ? "" : bytes.data(), bytes.size(),
                            SQLITE_TRANSIENT));
   return *this;
 }
 
-int Run::step() {
+Query& Query::bind_null() {
+  keep(sqlite3_bind_null(statement_, ++bound_));
+  return *this;
+}
+
+int Query::step() {
   return failed_ != SQLITE_OK ? failed_ : sqlite3_step(statement_);
 }
 
-std::string Run::bytes(int column) const {
+std::string Query::bytes(int column) const {
   const void* data = sqlite3_column_blob(statement_, column);
   const auto size = static_cast<std::size_t>(sqlite3_column_bytes(statement_, column));
   return size == 0 ? std::string() : std::string(static_cast<const char*>(data), size);
@@ -121,6 +136,17 @@ std::string Run::bytes(int column) const {
 Transaction::~Transaction() {
   const bool open = sqlite3_get_autocommit(database_.get()) == 0;
   if (open) sqlite3_exec(database_.get(), "ROLLBACK", nullptr, nullptr, nullptr);
+}
+
+Attempt<void> Transaction::run(Statement& statement, const char* sql) {
+  if (statement.get() == nullptr) {
+    auto prepared = Statement::prepare(database_, sql);
+    if (!prepared) return std::unexpected(std::move(prepared.error()));
+    statement = std::move(*prepared);
+  }
+  Query query(statement);
+  if (query.step() != SQLITE_DONE) return std::unexpected(database_.error(sql));
+  return {};
 }
 
 }  // namespace adit::ledger

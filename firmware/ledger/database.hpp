@@ -25,6 +25,16 @@ struct FinalizeStatement {
   void operator()(sqlite3_stmt* statement) const { sqlite3_finalize(statement); }
 };
 
+/// A prepared statement, kept for the life of its database. Use it through a Query.
+class Statement {
+ public:
+  static Attempt<Statement> prepare(const class Database& database, const char* sql);
+  sqlite3_stmt* get() const { return handle_.get(); }
+
+ private:
+  std::unique_ptr<sqlite3_stmt, FinalizeStatement> handle_;
+};
+
 /// A SQLite connection whose failures are sentences.
 class Database {
  public:
@@ -39,38 +49,34 @@ class Database {
   /// What the last call failed with; `doing` begins its sentence ("recording a report").
   Failure error(std::string_view doing) const;
   sqlite3* get() const { return handle_.get(); }
+  /// The write-ahead log, once something was read from or written to the database; else null.
+  sqlite3_file* log() const;
 
  private:
+  friend class Transaction;
   std::unique_ptr<sqlite3, CloseDatabase> handle_;
-};
-
-/// A prepared statement, kept for the life of the ledger. Use it through a Run.
-class Statement {
- public:
-  static Attempt<Statement> prepare(const Database& database, const char* sql);
-  sqlite3_stmt* get() const { return handle_.get(); }
-
- private:
-  std::unique_ptr<sqlite3_stmt, FinalizeStatement> handle_;
+  Statement begin_, commit_;  // after the handle, which outlives them
 };
 
 /// One run of a statement: bind its parameters in order, step, read columns from 0. Its end resets the
 /// statement. A binding that failed makes the first step() fail.
-class Run {
+class Query {
  public:
-  explicit Run(const Statement& statement) : statement_(statement.get()) {}
-  ~Run();
-  Run(const Run&) = delete;
-  Run& operator=(const Run&) = delete;
+  explicit Query(const Statement& statement) : statement_(statement.get()) {}
+  ~Query();
+  Query(const Query&) = delete;
+  Query& operator=(const Query&) = delete;
 
-  Run& bind(std::int64_t value);
-  Run& bind(double value);
-  Run& bind(std::string_view text);
-  Run& bind_blob(std::string_view bytes);
+  Query& bind(std::int64_t value);
+  Query& bind(double value);
+  Query& bind(std::string_view text);
+  Query& bind_blob(std::string_view bytes);
+  Query& bind_null();
 
   /// SQLITE_ROW, SQLITE_DONE, or an error code.
   int step();
 
+  bool is_null(int column) const { return sqlite3_column_type(statement_, column) == SQLITE_NULL; }
   std::int64_t number(int column) const { return sqlite3_column_int64(statement_, column); }
   double real(int column) const { return sqlite3_column_double(statement_, column); }
   /// Text or blob, byte for byte.
@@ -92,10 +98,12 @@ class Transaction {
   Transaction(const Transaction&) = delete;
   Transaction& operator=(const Transaction&) = delete;
 
-  Attempt<void> begin() { return database_.execute("BEGIN IMMEDIATE"); }
-  Attempt<void> commit() { return database_.execute("COMMIT"); }
+  Attempt<void> begin() { return run(database_.begin_, "BEGIN IMMEDIATE"); }
+  Attempt<void> commit() { return run(database_.commit_, "COMMIT"); }
 
  private:
+  Attempt<void> run(Statement& statement, const char* sql);
+
   Database& database_;
 };
 

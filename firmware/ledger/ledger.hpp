@@ -4,26 +4,13 @@
 #include <expected>
 #include <memory>
 #include <optional>
+#include <span>
 #include <string>
 #include <vector>
 
-#include "icd/artifact_report.hpp"
+#include "dispatch/report.hpp"
 
 namespace adit::ledger {
-
-/// One report as it is on disk. `state` is the dispatch room's word for where it is in its life.
-struct Entry {
-  std::int64_t number = 0;  // Adit's own, from 1, never used twice
-  icd::ArtifactReport report;
-  std::string sender;   // address of who posted it
-  double received = 0;  // seconds since 1970
-  double changed = 0;
-  std::string state;
-  int status = 0;            // the Command Post's answer; 0: none yet
-  std::string content_type;  // of that answer
-  std::string answer;        // its body, byte for byte
-  std::string note;          // a sentence for the operator: why it is where it is
-};
 
 struct Error {
   std::string what;
@@ -33,26 +20,41 @@ struct Error {
 template <class T>
 using Result = std::expected<T, Error>;
 
-/// What must survive: every artifact report and every step of its life (SQLite, WAL, synchronous=FULL). When
-/// a call has returned without an error, what it wrote is on disk.
+/// What must survive: every artifact report and every step of its life, and the runs (SQLite, WAL,
+/// synchronous=FULL; the format is in README.md). When a call has returned without an error, what it wrote is
+/// on disk; when it has returned one, nothing of it is.
 class Ledger {
  public:
   /// Opens or makes `folder`/ledger.sqlite, mode 0600. A file that is no ledger, or damaged, is set aside as
-  /// ledger.sqlite.damaged-<n>, a new one is begun, and damage() says so.
+  /// ledger.sqlite.damaged-<n>, a new one is begun, and damage() says so. A ledger of an earlier version is
+  /// brought up to this one; one of a later version is an error, and stays as it is.
   static Result<Ledger> open(const std::string& folder);
   Ledger(Ledger&&) noexcept;
   Ledger& operator=(Ledger&&) noexcept;
   ~Ledger();
 
-  /// Records a new report and gives its number.
-  Result<std::int64_t> add(const icd::ArtifactReport& report, const std::string& sender,
-                           const std::string& state, double now);
-  /// Records a step: `entry.state`, status, content_type, answer and note of the report `entry.number`.
-  Result<void> change(const Entry& entry, double now);
+  /// Writes all steps, in order, as one transaction with one flush: each report as it then is, and a row of
+  /// its history. What makes a report what it is (its type, position and time of receipt) never changes: a
+  /// step that has others under a number that is in use is an error.
+  Result<void> write(std::span<const dispatch::Report> steps);
+  /// Writes the run as it now is, with one flush.
+  Result<void> write(const dispatch::Run& run);
 
-  /// All reports, oldest first.
-  Result<std::vector<Entry>> all() const;
-  Result<std::optional<Entry>> find(std::int64_t number) const;
+  /// All reports, oldest first. A state that this version does not know is read as InDoubt: only the operator
+  /// can judge it.
+  Result<std::vector<dispatch::Report>> reports() const;
+  /// The run with the highest number.
+  Result<std::optional<dispatch::Run>> last_run() const;
+
+  /// One step of a report's life. `state` is as it was written, whatever wrote it.
+  struct Step {
+    std::int64_t report = 0;
+    double at = 0;  // seconds since 1970
+    std::string state, note;
+    friend bool operator==(const Step&, const Step&) = default;
+  };
+  /// All steps of one report, oldest first.
+  Result<std::vector<Step>> history(std::int64_t number) const;
 
   /// A sentence about a ledger that was set aside at open(), or "".
   const std::string& damage() const;

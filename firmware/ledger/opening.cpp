@@ -4,34 +4,18 @@
 #include <sys/stat.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <cerrno>
 #include <cstdio>
 #include <cstring>
-#include <optional>
 #include <utility>
+#include <vector>
 
+#include "ledger/tables.hpp"
 #include "loop/file_descriptor.hpp"
 
 namespace adit::ledger {
 namespace {
-
-constexpr std::int64_t kApplicationId = 0x41444954;  // "ADIT", in SQLite's file header
-constexpr std::int64_t kVersion = 1;                 // of the tables below, in user_version
-
-/// `report` is each report as it is now, `step` is how it came there.
-constexpr const char* kTables = R"(
-  CREATE TABLE report(
-    number INTEGER PRIMARY KEY AUTOINCREMENT,
-    type TEXT NOT NULL, x REAL NOT NULL, y REAL NOT NULL, z REAL NOT NULL,
-    sender TEXT NOT NULL, received REAL NOT NULL, changed REAL NOT NULL,
-    state TEXT NOT NULL, status INTEGER NOT NULL, content_type TEXT NOT NULL,
-    answer BLOB NOT NULL, note TEXT NOT NULL) STRICT;
-  CREATE TABLE step(
-    report INTEGER NOT NULL REFERENCES report(number),
-    at REAL NOT NULL, state TEXT NOT NULL, note TEXT NOT NULL) STRICT;
-  PRAGMA application_id = 0x41444954;
-  PRAGMA user_version = 1;
-)";
 
 /// One process owns the ledger, so its lock is exclusive; that also keeps WAL's index out of a shared file.
 constexpr const char* kPragmas = R"(
@@ -40,8 +24,15 @@ constexpr const char* kPragmas = R"(
   PRAGMA trusted_schema = OFF;
   PRAGMA foreign_keys = ON;
   PRAGMA synchronous = FULL;
+  PRAGMA wal_autocheckpoint = 960;
   PRAGMA journal_size_limit = 4194304;
 )";
+
+/// The write-ahead log's size from the start (journal_size_limit is the same). A flush of bytes that are
+/// there already is one write to the disk; where a file grows, its file system's journal is another. 960
+/// pages, with the last transaction's, are within it, so that it is overwritten and never grows: a
+/// transaction has two or three pages of 4,120 bytes each.
+constexpr sqlite3_int64 kLogSize = 4 << 20;
 
 /// quick_check reads the whole file. A ledger is some kilobytes; one past this is not checked, so that
 /// start-up stays short.
@@ -67,10 +58,6 @@ Attempt<void> sync_folder(const std::string& folder) {
   return {};
 }
 
-std::unexpected<Failure> no_ledger(std::string why) {
-  return std::unexpected(Failure{{std::move(why)}, true});
-}
-
 Attempt<void> check_pages(Database& database) {
   const auto pages = database.number("PRAGMA page_count");
   if (!pages) return std::unexpected(pages.error());
@@ -79,38 +66,34 @@ Attempt<void> check_pages(Database& database) {
   if (*pages * *page_size > kMostChecked) return {};
   const auto verdict = database.text("PRAGMA quick_check(1)");
   if (!verdict) return std::unexpected(verdict.error());
-  if (*verdict != "ok") return no_ledger(*verdict);
+  if (*verdict != "ok") return std::unexpected(Failure{{*verdict}, true});
   return {};
 }
 
-Attempt<void> make_tables(Database& database) {
-  Transaction transaction(database);
-  if (auto begun = transaction.begin(); !begun) return begun;
-  if (auto made = database.execute(kTables); !made) return made;
-  return transaction.commit();
-}
-
-/// That this is a ledger of a version that we know; an empty file becomes one.
-Attempt<void> check_tables(Database& database) {
-  const auto tables = database.number("SELECT count(*) FROM sqlite_schema");
-  if (!tables) return std::unexpected(tables.error());
-  if (*tables == 0) return make_tables(database);
-  const auto application = database.number("PRAGMA application_id");
-  const auto version = database.number("PRAGMA user_version");
-  if (!application) return std::unexpected(application.error());
-  if (!version) return std::unexpected(version.error());
-  if (*application != kApplicationId) return no_ledger("it is another program's database");
-  if (*version != kVersion) return no_ledger("it has version " + std::to_string(*version) + ", not 1");
-  return {};
+/// Fills the write-ahead log up with zeros, which SQLite takes for its end. Where there is no room for that
+/// it grows as it is written.
+void reserve_log(Database& database) {
+  sqlite3_file* const log = database.log();
+  sqlite3_int64 size = 0;
+  if (log == nullptr || log->pMethods->xFileSize(log, &size) != SQLITE_OK) return;
+  const std::vector<char> zeros(64 << 10);
+  for (; size < kLogSize; size += static_cast<sqlite3_int64>(zeros.size())) {
+    const auto length = std::min<sqlite3_int64>(kLogSize - size, static_cast<sqlite3_int64>(zeros.size()));
+    if (log->pMethods->xWrite(log, zeros.data(), static_cast<int>(length), size) != SQLITE_OK) break;
+  }
+  log->pMethods->xSync(log, SQLITE_SYNC_NORMAL);
 }
 
 Attempt<void> set_up(Database& database) {
   if (auto set = database.execute(kPragmas); !set) return set;
+  if (auto known = check_version(database); !known) return known;
   const auto mode = database.text("PRAGMA journal_mode = WAL");
   if (!mode) return std::unexpected(mode.error());
   if (*mode != "wal") return std::unexpected(Failure{{"the ledger's file system has no WAL: " + *mode}});
   if (auto pages = check_pages(database); !pages) return pages;
-  return check_tables(database);
+  if (auto made = make_tables(database); !made) return made;
+  reserve_log(database);
+  return {};
 }
 
 /// Renames the file and what SQLite keeps beside it to the first `damaged-<n>` that is free.

@@ -1,5 +1,4 @@
 #include <gmock/gmock.h>
-#include <sqlite3.h>
 
 #include <fstream>
 #include <iterator>
@@ -18,7 +17,7 @@ std::string bytes_of(const std::filesystem::path& path) {
   return {std::istreambuf_iterator<char>(file), {}};
 }
 
-void write(const std::filesystem::path& path, const std::string& bytes) {
+void save(const std::filesystem::path& path, const std::string& bytes) {
   std::ofstream(path, std::ios::binary) << bytes;
 }
 
@@ -27,7 +26,7 @@ std::string healthy_bytes() {
   const Folder folder;
   {
     auto ledger = open_or_fail(folder);
-    for (int i = 0; i < 200; ++i) EXPECT_TRUE(ledger.add(backpack(i), "10.0.0.7", "received", i));
+    for (int number = 1; number <= 200; ++number) EXPECT_TRUE(write(ledger, backpack(number)));
   }
   return bytes_of(folder.file());
 }
@@ -37,8 +36,8 @@ void expect_set_aside(const Folder& folder, const std::string& bytes) {
   auto ledger = open_or_fail(folder);
   EXPECT_THAT(ledger.damage(), HasSubstr(folder.file() + ".damaged-1"));
   EXPECT_EQ(bytes_of(folder.file() + ".damaged-1"), bytes);
-  EXPECT_TRUE(ledger.all()->empty());
-  EXPECT_EQ(ledger.add(backpack(), "", "received", 1), 1);
+  EXPECT_TRUE(ledger.reports()->empty());
+  EXPECT_TRUE(write(ledger, backpack(1)));
 }
 
 TEST(DamagedLedger, IsSetAsideWhenItIsRandomBytes) {
@@ -46,7 +45,7 @@ TEST(DamagedLedger, IsSetAsideWhenItIsRandomBytes) {
   std::string bytes(20000, '\0');
   for (char& byte : bytes) byte = static_cast<char>(random());
   const Folder folder;
-  write(folder.file(), bytes);
+  save(folder.file(), bytes);
   expect_set_aside(folder, bytes);
 }
 
@@ -55,7 +54,7 @@ TEST(DamagedLedger, IsSetAsideWhenItIsTruncated) {
   for (const std::size_t size :
        {std::size_t{50}, std::size_t{4096}, healthy.size() / 2, healthy.size() - 4096}) {
     const Folder folder;
-    write(folder.file(), healthy.substr(0, size));
+    save(folder.file(), healthy.substr(0, size));
     SCOPED_TRACE(size);
     expect_set_aside(folder, healthy.substr(0, size));
   }
@@ -67,38 +66,32 @@ TEST(DamagedLedger, IsSetAsideWhenAPageIsOverwritten) {
   ASSERT_GT(bytes.size(), 3 * kPage);
   for (std::size_t i = kPage; i < 3 * kPage; ++i) bytes[i] = '\xa5';
   const Folder folder;
-  write(folder.file(), bytes);
+  save(folder.file(), bytes);
   expect_set_aside(folder, bytes);
 }
 
 TEST(DamagedLedger, IsSetAsideWhenItIsAnotherProgramsDatabase) {
   const Folder folder;
-  sqlite3* other = nullptr;
-  ASSERT_EQ(sqlite3_open(folder.file().c_str(), &other), SQLITE_OK);
-  ASSERT_EQ(sqlite3_exec(other, "CREATE TABLE report(number INTEGER)", nullptr, nullptr, nullptr), SQLITE_OK);
-  sqlite3_close(other);
+  by_hand(folder, "CREATE TABLE report(number INTEGER); PRAGMA user_version = 9");
   auto ledger = open_or_fail(folder);
   EXPECT_THAT(ledger.damage(), HasSubstr("another program's"));
-  EXPECT_TRUE(ledger.all()->empty());
+  EXPECT_TRUE(ledger.reports()->empty());
 }
 
-TEST(DamagedLedger, IsSetAsideWhenALaterVersionWroteIt) {
+TEST(DamagedLedger, IsSetAsideWhenItHasAVersionThatNeverWas) {
   const Folder folder;
   {
     open_or_fail(folder);
   }
-  sqlite3* later = nullptr;
-  ASSERT_EQ(sqlite3_open(folder.file().c_str(), &later), SQLITE_OK);
-  ASSERT_EQ(sqlite3_exec(later, "PRAGMA user_version = 2", nullptr, nullptr, nullptr), SQLITE_OK);
-  sqlite3_close(later);
-  EXPECT_THAT(open_or_fail(folder).damage(), HasSubstr("version 2"));
+  by_hand(folder, "PRAGMA user_version = 0");
+  EXPECT_THAT(open_or_fail(folder).damage(), HasSubstr("version 0"));
 }
 
 TEST(DamagedLedger, TakesItsWriteAheadLogAlong) {
   const Folder folder;
-  write(folder.file(), std::string(5000, 'x'));
-  write(folder.file() + "-wal", "old wal");
-  write(folder.file() + "-shm", "old shm");
+  save(folder.file(), std::string(5000, 'x'));
+  save(folder.file() + "-wal", "old wal");
+  save(folder.file() + "-shm", "old shm");
   {
     EXPECT_NE(open_or_fail(folder).damage(), "");
   }
@@ -109,7 +102,7 @@ TEST(DamagedLedger, TakesItsWriteAheadLogAlong) {
 TEST(DamagedLedger, NeverReplacesAnEarlierOne) {
   const Folder folder;
   for (const char* content : {"first, no ledger", "second, no ledger"}) {
-    write(folder.file(), content);
+    save(folder.file(), content);
     open_or_fail(folder);
   }
   EXPECT_EQ(bytes_of(folder.file() + ".damaged-1"), "first, no ledger");
@@ -118,7 +111,7 @@ TEST(DamagedLedger, NeverReplacesAnEarlierOne) {
 
 TEST(DamagedLedger, IsForgottenAtTheNextOpening) {
   const Folder folder;
-  write(folder.file(), "no ledger");
+  save(folder.file(), "no ledger");
   {
     EXPECT_NE(open_or_fail(folder).damage(), "");
   }
@@ -127,10 +120,10 @@ TEST(DamagedLedger, IsForgottenAtTheNextOpening) {
 
 TEST(Ledger, BeginsInAnEmptyFile) {
   const Folder folder;
-  write(folder.file(), "");  // made, and then the power went
+  save(folder.file(), "");  // made, and then the power went
   auto ledger = open_or_fail(folder);
   EXPECT_EQ(ledger.damage(), "");
-  EXPECT_EQ(ledger.add(backpack(), "", "received", 1), 1);
+  EXPECT_TRUE(write(ledger, backpack(1)));
 }
 
 }  // namespace

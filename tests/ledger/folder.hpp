@@ -1,11 +1,14 @@
 #pragma once
 
 #include <gtest/gtest.h>
+#include <sqlite3.h>
 
 #include <cstdlib>
 #include <filesystem>
+#include <span>
 #include <stdexcept>
 #include <string>
+#include <vector>
 
 #include "ledger/ledger.hpp"
 
@@ -40,14 +43,42 @@ inline Ledger open_or_fail(const Folder& folder) {
   return std::move(*ledger);
 }
 
-inline Entry find_or_fail(const Ledger& ledger, std::int64_t number) {
-  const std::optional<Entry> found = ledger.find(number).value_or(std::nullopt);
-  if (!found) throw std::runtime_error("no report " + std::to_string(number));
-  return *found;
+/// A new report, received at second 10.
+inline dispatch::Report backpack(std::int64_t number, double x = 1.5) {
+  dispatch::Report report;
+  report.number = number;
+  report.report = {"Backpack", {x, -2.25, 0.125}};
+  report.sender = "10.0.0.7";
+  report.received = report.changed = 10;
+  return report;
 }
 
-inline icd::ArtifactReport backpack(double x = 1.5) {
-  return {"Backpack", {x, -2.25, 0.125}};
+inline Result<void> write(Ledger& ledger, const dispatch::Report& report) {
+  return ledger.write(std::span(&report, 1));
+}
+
+inline dispatch::Report find_or_fail(const Ledger& ledger, std::int64_t number) {
+  const auto reports = ledger.reports();
+  if (!reports) throw std::runtime_error(reports.error().what);
+  for (const dispatch::Report& report : *reports) {
+    if (report.number == number) return report;
+  }
+  throw std::runtime_error("no report " + std::to_string(number));
+}
+
+/// A connection of the test's own to a ledger that is closed. The first column of each row that `sql` gives.
+inline std::vector<std::string> by_hand(const Folder& folder, const std::string& sql) {
+  sqlite3* database = nullptr;
+  EXPECT_EQ(sqlite3_open(folder.file().c_str(), &database), SQLITE_OK);
+  std::vector<std::string> rows;
+  const auto collect = [](void* out, int, char** values, char**) {
+    static_cast<std::vector<std::string>*>(out)->emplace_back(values[0] != nullptr ? values[0] : "NULL");
+    return 0;
+  };
+  EXPECT_EQ(sqlite3_exec(database, sql.c_str(), collect, &rows, nullptr), SQLITE_OK)
+      << sqlite3_errmsg(database);
+  sqlite3_close(database);
+  return rows;
 }
 
 }  // namespace adit::ledger

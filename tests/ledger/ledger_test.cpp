@@ -1,10 +1,10 @@
 #include "ledger/ledger.hpp"
 
 #include <gmock/gmock.h>
-#include <sqlite3.h>
 #include <sys/stat.h>
 
 #include <cmath>
+#include <limits>
 #include <string>
 #include <vector>
 
@@ -13,135 +13,176 @@
 namespace adit::ledger {
 namespace {
 
+using dispatch::ReportState;
 using testing::ElementsAre;
 using testing::HasSubstr;
 
-/// The first column of each row, read by a connection of the test's own; the ledger must be closed.
-std::vector<std::string> read(const Folder& folder, const std::string& sql) {
-  sqlite3* database = nullptr;
-  EXPECT_EQ(sqlite3_open(folder.file().c_str(), &database), SQLITE_OK);
-  std::vector<std::string> rows;
-  const auto collect = [](void* out, int, char** values, char**) {
-    static_cast<std::vector<std::string>*>(out)->emplace_back(values[0] != nullptr ? values[0] : "NULL");
-    return 0;
-  };
-  EXPECT_EQ(sqlite3_exec(database, sql.c_str(), collect, &rows, nullptr), SQLITE_OK);
-  sqlite3_close(database);
-  return rows;
+/// A report with something in every member.
+dispatch::Report answered(std::int64_t number) {
+  dispatch::Report report = backpack(number);
+  report.changed = 12.5;
+  report.state = ReportState::Answered;
+  report.note = "scored";
+  report.run = 3;
+  report.asked = true;
+  report.same_as = 2;
+  report.tries = 4;
+  report.sending = 17;
+  report.sent = 12.25;
+  report.before = icd::RunStatus{-5, 831.5, 19, "adit"};
+  report.status = 201;
+  report.content_type = "application/json";
+  report.answer = R"({"score_change":1})";
+  report.reconciled = true;
+  return report;
 }
 
-TEST(Ledger, GivesBackWhatItWasGiven) {
-  const Folder folder;
-  auto ledger = open_or_fail(folder);
-  EXPECT_EQ(ledger.add(backpack(), "10.0.0.7", "received", 1700000000.25), 1);
-  const Entry entry = find_or_fail(ledger, 1);
-  EXPECT_EQ(entry.number, 1);
-  EXPECT_EQ(entry.report, backpack());
-  EXPECT_EQ(entry.sender, "10.0.0.7");
-  EXPECT_EQ(entry.received, 1700000000.25);
-  EXPECT_EQ(entry.changed, 1700000000.25);
-  EXPECT_EQ(entry.state, "received");
-  EXPECT_EQ(entry.status, 0);
-  EXPECT_EQ(entry.content_type, "");
-  EXPECT_EQ(entry.answer, "");
-  EXPECT_EQ(entry.note, "");
-}
-
-TEST(Ledger, FindsNothingUnderANumberItNeverGave) {
-  const Folder folder;
-  const auto found = open_or_fail(folder).find(7);
-  ASSERT_TRUE(found);
-  EXPECT_FALSE(*found);
-}
-
-TEST(Ledger, ListsReportsOldestFirst) {
-  const Folder folder;
-  auto ledger = open_or_fail(folder);
-  for (int i = 0; i < 12; ++i) ASSERT_TRUE(ledger.add(backpack(i), "", "received", 100 - i));
-  const auto all = ledger.all();
-  ASSERT_TRUE(all);
-  ASSERT_EQ(all->size(), 12u);
-  for (int i = 0; i < 12; ++i) EXPECT_EQ(all->at(i).report.position.x, i);
-}
-
-TEST(Ledger, KeepsAStepAcrossReopening) {
+TEST(Ledger, GivesBackAReportAsItWasGiven) {
   const Folder folder;
   {
     auto ledger = open_or_fail(folder);
-    ASSERT_TRUE(ledger.add(backpack(), "10.0.0.7", "received", 10));
-    Entry entry = find_or_fail(ledger, 1);
-    entry.state = "answered";
-    entry.status = 201;
-    entry.content_type = "application/json";
-    entry.answer = R"({"score_change":1})";
-    entry.note = "scored";
-    ASSERT_TRUE(ledger.change(entry, 12.5));
+    ASSERT_TRUE(write(ledger, backpack(1)));
+    ASSERT_TRUE(write(ledger, answered(2)));
+    EXPECT_THAT(*ledger.reports(), ElementsAre(backpack(1), answered(2)));
   }
   const auto ledger = open_or_fail(folder);
   EXPECT_EQ(ledger.damage(), "");
-  const Entry entry = find_or_fail(ledger, 1);
-  EXPECT_EQ(entry.state, "answered");
-  EXPECT_EQ(entry.status, 201);
-  EXPECT_EQ(entry.content_type, "application/json");
-  EXPECT_EQ(entry.answer, R"({"score_change":1})");
-  EXPECT_EQ(entry.note, "scored");
-  EXPECT_EQ(entry.received, 10);
-  EXPECT_EQ(entry.changed, 12.5);
+  EXPECT_THAT(*ledger.reports(), ElementsAre(backpack(1), answered(2)));
 }
 
-TEST(Ledger, ChangesOnlyTheStepAndNeverTheReportItself) {
+TEST(Ledger, ReplacesAReportByItsLaterStep) {
   const Folder folder;
   auto ledger = open_or_fail(folder);
-  ASSERT_TRUE(ledger.add(backpack(), "10.0.0.7", "received", 10));
-  Entry entry = find_or_fail(ledger, 1);
-  entry.report = {"Drill", {9, 9, 9}};
-  entry.sender = "someone else";
-  entry.received = 99;
-  ASSERT_TRUE(ledger.change(entry, 11));
-  const Entry kept = find_or_fail(ledger, 1);
-  EXPECT_EQ(kept.report, backpack());
-  EXPECT_EQ(kept.sender, "10.0.0.7");
-  EXPECT_EQ(kept.received, 10);
+  ASSERT_TRUE(write(ledger, backpack(1)));
+  ASSERT_TRUE(write(ledger, answered(1)));
+  EXPECT_THAT(*ledger.reports(), ElementsAre(answered(1)));
+  dispatch::Report unknown = answered(1);
+  unknown.before.reset();
+  ASSERT_TRUE(write(ledger, unknown));
+  EXPECT_THAT(*ledger.reports(), ElementsAre(unknown));
 }
 
-TEST(Ledger, KeepsTheHistoryOfEachReport) {
+TEST(Ledger, ListsReportsOldestFirstWhateverTheOrderTheyWereWrittenIn) {
+  const Folder folder;
+  auto ledger = open_or_fail(folder);
+  for (const int number : {11, 2, 1, 12, 3}) ASSERT_TRUE(write(ledger, backpack(number)));
+  std::vector<std::int64_t> numbers;
+  const auto reports = ledger.reports();
+  ASSERT_TRUE(reports);
+  for (const auto& report : *reports) numbers.push_back(report.number);
+  EXPECT_THAT(numbers, ElementsAre(1, 2, 3, 11, 12));
+}
+
+TEST(Ledger, KeepsEveryStepOfAReportInOrder) {
   const Folder folder;
   {
     auto ledger = open_or_fail(folder);
-    ASSERT_TRUE(ledger.add(backpack(), "", "received", 10));
-    Entry entry = find_or_fail(ledger, 1);
-    for (const char* state : {"sending", "in doubt", "settled"}) {
-      entry.state = state;
-      entry.note = std::string("note of ") + state;
-      ASSERT_TRUE(ledger.change(entry, entry.changed + 1));
+    ASSERT_TRUE(write(ledger, backpack(1)));
+    dispatch::Report report = backpack(2);
+    std::vector<dispatch::Report> steps{report};
+    for (const ReportState state : {ReportState::Sending, ReportState::InDoubt, ReportState::Settled}) {
+      report.state = state;
+      report.note = "now " + std::string(dispatch::name_of(state));
+      report.changed -= 1;  // a clock that was set back does not change the order
+      steps.push_back(report);
     }
+    ASSERT_TRUE(ledger.write(steps)) << "several steps of one report in one transaction";
+    EXPECT_EQ(find_or_fail(ledger, 2), steps.back());
   }
-  EXPECT_THAT(read(folder, "SELECT report || ' ' || state || ': ' || note FROM step ORDER BY rowid"),
-              ElementsAre("1 received: ", "1 sending: note of sending", "1 in doubt: note of in doubt",
-                          "1 settled: note of settled"));
+  const auto ledger = open_or_fail(folder);
+  EXPECT_THAT(*ledger.history(2),
+              ElementsAre(Ledger::Step{2, 10, "waiting", ""}, Ledger::Step{2, 9, "sending", "now sending"},
+                          Ledger::Step{2, 8, "in doubt", "now in doubt"},
+                          Ledger::Step{2, 7, "settled", "now settled"}));
+  EXPECT_TRUE(ledger.history(7)->empty());
 }
 
-TEST(Ledger, RefusesAStepOfAReportItDoesNotHaveAndLeavesNoTraceOfIt) {
+TEST(Ledger, KeepsEveryStateThereIs) {
+  const Folder folder;
+  auto ledger = open_or_fail(folder);
+  for (auto state = ReportState::Received;; state = static_cast<ReportState>(static_cast<int>(state) + 1)) {
+    dispatch::Report report = backpack(1);
+    report.state = state;
+    ASSERT_TRUE(write(ledger, report));
+    EXPECT_EQ(find_or_fail(ledger, 1).state, state);
+    if (state == ReportState::Withdrawn) break;
+  }
+}
+
+TEST(Ledger, ReadsAStateItDoesNotKnowAsInDoubtAndShowsItsWordInTheHistory) {
   const Folder folder;
   {
     auto ledger = open_or_fail(folder);
-    Entry entry;
-    entry.number = 3;
-    const auto changed = ledger.change(entry, 1);
-    ASSERT_FALSE(changed);
-    EXPECT_THAT(changed.error().what, HasSubstr("report 3"));
-    EXPECT_FALSE(changed.error().full);
-    EXPECT_EQ(ledger.add(backpack(), "", "received", 1), 1) << "the failed step still holds its transaction";
+    ASSERT_TRUE(write(ledger, backpack(1)));
   }
-  EXPECT_THAT(read(folder, "SELECT count(*) FROM step"), ElementsAre("1"));
+  by_hand(folder, "UPDATE report SET state = 'promised'; UPDATE step SET state = 'promised'");
+  const auto ledger = open_or_fail(folder);
+  EXPECT_EQ(find_or_fail(ledger, 1).state, ReportState::InDoubt);
+  EXPECT_EQ(ledger.history(1)->at(0).state, "promised");
 }
 
-TEST(Ledger, NeverUsesANumberTwiceEvenWhenARowWasDeletedByHand) {
+TEST(Ledger, WritesAllStepsOrNone) {
   const Folder folder;
-  for (int number = 1; number <= 3; ++number) {
-    EXPECT_EQ(open_or_fail(folder).add(backpack(), "", "received", 1), number);
-    read(folder, "DELETE FROM step; DELETE FROM report");
+  auto ledger = open_or_fail(folder);
+  ASSERT_TRUE(write(ledger, backpack(1)));
+  const std::vector<dispatch::Report> steps{backpack(2), answered(1), backpack(0), backpack(3)};
+  const auto written = ledger.write(steps);
+  ASSERT_FALSE(written);
+  EXPECT_THAT(written.error().what, HasSubstr("report 0"));
+  EXPECT_FALSE(written.error().full);
+  EXPECT_THAT(*ledger.reports(), ElementsAre(backpack(1)));
+  EXPECT_EQ(ledger.history(1)->size(), 1u);
+  EXPECT_TRUE(write(ledger, backpack(2))) << "the failed steps still hold their transaction";
+}
+
+TEST(Ledger, WritesNothingWhereThereIsNothingToWrite) {
+  const Folder folder;
+  auto ledger = open_or_fail(folder);
+  EXPECT_TRUE(ledger.write(std::span<const dispatch::Report>()));
+  EXPECT_TRUE(ledger.reports()->empty());
+}
+
+TEST(Ledger, NeverPutsAReportInThePlaceOfAnother) {
+  const Folder folder;
+  auto ledger = open_or_fail(folder);
+  ASSERT_TRUE(write(ledger, backpack(1)));
+  dispatch::Report drill = backpack(1), elsewhere = backpack(1, 7), later = backpack(1);
+  drill.report.type = "Drill";
+  later.received = 11;
+  for (const auto& other : {drill, elsewhere, later}) {
+    const auto written = write(ledger, other);
+    ASSERT_FALSE(written);
+    EXPECT_THAT(written.error().what, HasSubstr("another report's"));
   }
+  EXPECT_THAT(*ledger.reports(), ElementsAre(backpack(1)));
+  EXPECT_EQ(ledger.history(1)->size(), 1u);
+}
+
+TEST(Ledger, KeepsTheLastRunAndWhatWasHeardInIt) {
+  const Folder folder;
+  dispatch::Run first{1, "", 5, "the first status", std::nullopt, 0, ""};
+  dispatch::Run second{2,
+                       "1.5.2",
+                       900,
+                       "its clock ran backward",
+                       icd::RunStatus{7, 0.5, 25, "adit"},
+                       901,
+                       "somebody else reports too"};
+  {
+    auto ledger = open_or_fail(folder);
+    EXPECT_EQ(*ledger.last_run(), std::nullopt);
+    ASSERT_TRUE(ledger.write(first));
+    EXPECT_EQ(*ledger.last_run(), first);
+    ASSERT_TRUE(ledger.write(second));
+    first.id = "1";
+    ASSERT_TRUE(ledger.write(first)) << "also an earlier one may change";
+    EXPECT_EQ(*ledger.last_run(), second);
+  }
+  auto ledger = open_or_fail(folder);
+  EXPECT_EQ(*ledger.last_run(), second);
+  second.last.reset();
+  ASSERT_TRUE(ledger.write(second));
+  EXPECT_EQ(*ledger.last_run(), second);
 }
 
 TEST(Ledger, KeepsHostileTextByteForByte) {
@@ -154,29 +195,33 @@ TEST(Ledger, KeepsHostileTextByteForByte) {
                                  std::string(70000, 'x')};
   const Folder folder;
   auto ledger = open_or_fail(folder);
+  std::int64_t number = 0;
   for (const auto& text : hostile) {
-    const auto number = ledger.add({text, {0, -0.0, 1e308}}, text, text, 1);
-    ASSERT_TRUE(number) << number.error().what;
-    Entry entry = find_or_fail(ledger, *number);
-    EXPECT_EQ(entry.report.type, text);
-    EXPECT_EQ(entry.sender, text);
-    EXPECT_EQ(entry.state, text);
-    EXPECT_EQ(entry.report.position.z, 1e308);
-    entry.answer = entry.note = entry.content_type = text;
-    ASSERT_TRUE(ledger.change(entry, 2));
-    entry = find_or_fail(ledger, *number);
-    EXPECT_EQ(entry.answer, text);
-    EXPECT_EQ(entry.note, text);
-    EXPECT_EQ(entry.content_type, text);
+    dispatch::Report report = backpack(++number);
+    report.report = {text, {0, -0.0, 1e308}};
+    report.sender = report.note = report.content_type = report.answer = text;
+    report.before = icd::RunStatus{std::numeric_limits<std::int64_t>::min(), -1e308,
+                                   std::numeric_limits<std::int64_t>::max(), text};
+    ASSERT_TRUE(write(ledger, report));
+    EXPECT_EQ(find_or_fail(ledger, number), report);
+    EXPECT_EQ(ledger.history(number)->at(0).note, text);
+    const dispatch::Run run{number, text, 0, text, report.before, 0, text};
+    ASSERT_TRUE(ledger.write(run));
+    EXPECT_EQ(*ledger.last_run(), run);
   }
-  EXPECT_EQ(ledger.all()->size(), std::size(hostile));
 }
 
-TEST(Ledger, RefusesAPositionThatIsNoNumber) {
+TEST(Ledger, RefusesWhatIsNoNumber) {
   const Folder folder;
   auto ledger = open_or_fail(folder);
-  EXPECT_FALSE(ledger.add({"Drill", {std::nan(""), 0, 0}}, "", "received", 1));
-  EXPECT_TRUE(ledger.all()->empty());
+  dispatch::Report report = backpack(1);
+  report.before = icd::RunStatus{0, std::nan(""), 0, ""};
+  EXPECT_FALSE(write(ledger, report)) << "a status without its clock is not one";
+  EXPECT_FALSE(write(ledger, backpack(1, std::nan(""))));
+  EXPECT_FALSE(ledger.write(dispatch::Run{1, "", 0, "", icd::RunStatus{0, std::nan(""), 0, ""}, 0, ""}));
+  EXPECT_FALSE(ledger.write(dispatch::Run{.number = 0}));
+  EXPECT_TRUE(ledger.reports()->empty());
+  EXPECT_EQ(*ledger.last_run(), std::nullopt);
 }
 
 TEST(Ledger, IsReadableByItsOwnerAlone) {
@@ -184,7 +229,7 @@ TEST(Ledger, IsReadableByItsOwnerAlone) {
   const mode_t before = ::umask(0);
   auto ledger = open_or_fail(folder);
   ::umask(before);
-  ASSERT_TRUE(ledger.add(backpack(), "", "received", 1));
+  ASSERT_TRUE(write(ledger, backpack(1)));
   int files = 0;
   for (const auto& file : std::filesystem::directory_iterator(folder.text())) {
     struct stat status{};
@@ -205,15 +250,6 @@ TEST(Ledger, TightensTheModeOfAFileItFinds) {
   struct stat status{};
   ASSERT_EQ(::stat(folder.file().c_str(), &status), 0);
   EXPECT_EQ(status.st_mode & 0777, 0600u);
-}
-
-TEST(Ledger, WritesEachStepThroughToTheDisk) {
-  const Folder folder;
-  {
-    open_or_fail(folder);
-  }
-  EXPECT_THAT(read(folder, "PRAGMA journal_mode"), ElementsAre("wal"));
-  EXPECT_THAT(read(folder, "PRAGMA user_version"), ElementsAre("1"));
 }
 
 TEST(Ledger, SaysWhichFolderIsMissing) {

@@ -1,0 +1,153 @@
+#include "ledger/rows.hpp"
+
+#include <optional>
+
+namespace adit::ledger {
+
+// The order of the columns in a statement is that of the bindings, and of the readings, below it.
+
+const char* const kWriteReport = R"(
+  INSERT INTO report(number, type, x, y, z, sender, received, changed, state, note, run, asked, same_as,
+    tries, sending, sent, before_score, before_run_clock, before_remaining_reports, before_current_team,
+    status, content_type, answer, reconciled)
+  VALUES(?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?)
+  ON CONFLICT(number) DO UPDATE SET
+    sender = excluded.sender, changed = excluded.changed, state = excluded.state, note = excluded.note,
+    run = excluded.run, asked = excluded.asked, same_as = excluded.same_as, tries = excluded.tries,
+    sending = excluded.sending, sent = excluded.sent, before_score = excluded.before_score,
+    before_run_clock = excluded.before_run_clock,
+    before_remaining_reports = excluded.before_remaining_reports,
+    before_current_team = excluded.before_current_team, status = excluded.status,
+    content_type = excluded.content_type, answer = excluded.answer, reconciled = excluded.reconciled
+  WHERE type = excluded.type AND x = excluded.x AND y = excluded.y AND z = excluded.z
+    AND received = excluded.received)";
+
+const char* const kReadReports = R"(
+  SELECT number, type, x, y, z, sender, received, changed, state, note, run, asked, same_as,
+    tries, sending, sent, before_score, before_run_clock, before_remaining_reports, before_current_team,
+    status, content_type, answer, reconciled
+  FROM report ORDER BY number)";
+
+const char* const kWriteStep = "INSERT INTO step(report, at, state, note) VALUES(?, ?, ?, ?)";
+
+const char* const kReadSteps = "SELECT report, at, state, note FROM step WHERE report = ? ORDER BY rowid";
+
+const char* const kWriteRun = R"(
+  INSERT INTO run(number, id, began, why, score, run_clock, remaining_reports, current_team, heard, unreliable)
+  VALUES(?, ?, ?, ?, ?, ?, ?, ?, ?, ?)
+  ON CONFLICT(number) DO UPDATE SET
+    id = excluded.id, began = excluded.began, why = excluded.why, score = excluded.score,
+    run_clock = excluded.run_clock, remaining_reports = excluded.remaining_reports,
+    current_team = excluded.current_team, heard = excluded.heard, unreliable = excluded.unreliable)";
+
+const char* const kReadLastRun = R"(
+  SELECT number, id, began, why, score, run_clock, remaining_reports, current_team, heard, unreliable
+  FROM run ORDER BY number DESC LIMIT 1)";
+
+namespace {
+
+/// The columns of a row, one after the other.
+class Columns {
+ public:
+  explicit Columns(const Query& row) : row_(row) {}
+
+  std::int64_t number() { return row_.number(next_++); }
+  double real() { return row_.real(next_++); }
+  std::string bytes() { return row_.bytes(next_++); }
+  bool flag() { return number() != 0; }
+
+  /// The four columns of a status; all of them are NULL where there is none.
+  std::optional<icd::RunStatus> status() {
+    const bool none = row_.is_null(next_);
+    icd::RunStatus status;
+    status.score = number();
+    status.run_clock = real();
+    status.remaining_reports = number();
+    status.current_team = bytes();
+    if (none) return std::nullopt;
+    return status;
+  }
+
+ private:
+  const Query& row_;
+  int next_ = 0;
+};
+
+void bind_status(Query& query, const std::optional<icd::RunStatus>& status) {
+  if (status) {
+    query.bind(status->score).bind(status->run_clock).bind(status->remaining_reports);
+    query.bind(status->current_team);
+  } else {
+    query.bind_null().bind_null().bind_null().bind_null();
+  }
+}
+
+}  // namespace
+
+void bind_report(Query& query, const dispatch::Report& report) {
+  const icd::Point& position = report.report.position;
+  query.bind(report.number).bind(report.report.type).bind(position.x).bind(position.y).bind(position.z);
+  query.bind(report.sender).bind(report.received).bind(report.changed);
+  query.bind(dispatch::name_of(report.state)).bind(report.note);
+  query.bind(report.run).bind(std::int64_t{report.asked}).bind(report.same_as);
+  query.bind(report.tries).bind(report.sending).bind(report.sent);
+  bind_status(query, report.before);
+  query.bind(std::int64_t{report.status}).bind(report.content_type).bind_blob(report.answer);
+  query.bind(std::int64_t{report.reconciled});
+}
+
+dispatch::Report report_of(const Query& row) {
+  Columns column(row);
+  dispatch::Report report;
+  report.number = column.number();
+  report.report.type = column.bytes();
+  report.report.position.x = column.real();
+  report.report.position.y = column.real();
+  report.report.position.z = column.real();
+  report.sender = column.bytes();
+  report.received = column.real();
+  report.changed = column.real();
+  report.state = dispatch::state_named(column.bytes()).value_or(dispatch::ReportState::InDoubt);
+  report.note = column.bytes();
+  report.run = column.number();
+  report.asked = column.flag();
+  report.same_as = column.number();
+  report.tries = column.number();
+  report.sending = column.number();
+  report.sent = column.real();
+  report.before = column.status();
+  report.status = static_cast<int>(column.number());
+  report.content_type = column.bytes();
+  report.answer = column.bytes();
+  report.reconciled = column.flag();
+  return report;
+}
+
+void bind_step(Query& query, const dispatch::Report& report) {
+  query.bind(report.number).bind(report.changed).bind(dispatch::name_of(report.state)).bind(report.note);
+}
+
+Ledger::Step step_of(const Query& row) {
+  return {row.number(0), row.real(1), row.bytes(2), row.bytes(3)};
+}
+
+void bind_run(Query& query, const dispatch::Run& run) {
+  query.bind(run.number).bind(run.id).bind(run.began).bind(run.why);
+  bind_status(query, run.last);
+  query.bind(run.heard).bind(run.unreliable);
+}
+
+dispatch::Run run_of(const Query& row) {
+  Columns column(row);
+  dispatch::Run run;
+  run.number = column.number();
+  run.id = column.bytes();
+  run.began = column.real();
+  run.why = column.bytes();
+  run.last = column.status();
+  run.heard = column.real();
+  run.unreliable = column.bytes();
+  return run;
+}
+
+}  // namespace adit::ledger

@@ -1,0 +1,97 @@
+#include <dlfcn.h>
+#include <gtest/gtest.h>
+#include <unistd.h>
+
+#include <filesystem>
+#include <vector>
+
+#include "ledger/folder.hpp"
+
+namespace {
+int flushes = 0;
+
+int count_and_call(const char* name, int file) {
+  ++flushes;
+  return reinterpret_cast<int (*)(int)>(::dlsym(RTLD_NEXT, name))(file);
+}
+}  // namespace
+
+// SQLite is a shared library: these stand before the C library's own for all of this program.
+extern "C" {
+int fdatasync(int file) {
+  return count_and_call("fdatasync", file);
+}
+int fsync(int file) {
+  return count_and_call("fsync", file);
+}
+}
+
+namespace adit::ledger {
+namespace {
+
+/// How many flushes `write` makes.
+template <class Write>
+int flushes_of(Write write) {
+  flushes = 0;
+  EXPECT_TRUE(write());
+  return flushes;
+}
+
+std::uintmax_t log_size(const Folder& folder) {
+  return std::filesystem::file_size(folder.file() + "-wal");
+}
+
+TEST(LedgerFlushes, OnceForEachWrite) {
+  const Folder folder;
+  auto ledger = open_or_fail(folder);
+  const std::vector<dispatch::Report> several{backpack(2), backpack(3), backpack(2)};
+  dispatch::Run run{.number = 1};
+  ASSERT_TRUE(write(ledger, backpack(1))) << "the first one begins the log, which is a flush more";
+  for (int again = 0; again < 20; ++again) {
+    EXPECT_EQ(flushes_of([&] { return write(ledger, backpack(1)); }), 1);
+    EXPECT_EQ(flushes_of([&] { return ledger.write(several); }), 1);
+    run.heard += 1;
+    EXPECT_EQ(flushes_of([&] { return ledger.write(run); }), 1);
+  }
+  EXPECT_EQ(flushes_of([&] { return ledger.write(std::span<const dispatch::Report>()); }), 0);
+  EXPECT_EQ(flushes_of([&] { return ledger.reports(); }), 0);
+}
+
+TEST(LedgerFlushes, MoreThanOnceOnlyWhereTheLogBeginsAnew) {
+  const Folder folder;
+  auto ledger = open_or_fail(folder);
+  constexpr int kWrites = 3000;
+  int more_than_one = 0, most = 0;
+  for (int number = 1; number <= kWrites; ++number) {
+    const int made = flushes_of([&] { return write(ledger, backpack(number)); });
+    if (made > 1) ++more_than_one;
+    most = std::max(most, made);
+  }
+  EXPECT_LE(more_than_one, kWrites / 100);
+  EXPECT_LE(most, 3);
+}
+
+TEST(LedgerLog, IsOverwrittenInPlaceAndNeverGrowsOrShrinks) {
+  const Folder folder;
+  auto ledger = open_or_fail(folder);
+  const std::uintmax_t size = log_size(folder);
+  EXPECT_EQ(size, 4u << 20);
+  for (int number = 1; number <= 3000; ++number) {
+    ASSERT_TRUE(write(ledger, backpack(number)));
+    ASSERT_EQ(log_size(folder), size) << "at report " << number;
+  }
+  EXPECT_LT(std::filesystem::file_size(folder.file()), size) << "3,000 reports are that small";
+}
+
+TEST(LedgerLog, IsGoneAfterAnOrderlyEnd) {
+  const Folder folder;
+  {
+    auto ledger = open_or_fail(folder);
+    ASSERT_TRUE(write(ledger, backpack(1)));
+  }
+  EXPECT_FALSE(std::filesystem::exists(folder.file() + "-wal"));
+  EXPECT_EQ(by_hand(folder, "SELECT count(*) FROM report"), std::vector<std::string>{"1"});
+}
+
+}  // namespace
+}  // namespace adit::ledger

@@ -1,0 +1,150 @@
+#include "ledger/full_disk.hpp"
+
+#include <gmock/gmock.h>
+#include <sys/mount.h>
+
+#include <cerrno>
+#include <cstring>
+#include <fstream>
+#include <vector>
+
+#include "ledger/folder.hpp"
+
+namespace adit::ledger {
+namespace {
+
+using testing::ElementsAreArray;
+
+/// Writes new reports until one fails, and gives its error; those that did not go to `reports`.
+Error fill(Ledger& ledger, std::vector<dispatch::Report>& reports) {
+  while (reports.size() < 10000) {
+    const auto next = backpack(static_cast<std::int64_t>(reports.size()) + 1);
+    const auto written = write(ledger, next);
+    if (!written) return written.error();
+    reports.push_back(next);
+  }
+  return {"it never failed", false};
+}
+
+TEST(FullDiskOfALedger, IsSaidAndEndsByItself) {
+  const Folder folder;
+  std::vector<dispatch::Report> reports;
+  {
+    auto ledger = open_or_fail(folder);
+    {
+      const FullDisk full(100000);
+      const Error error = fill(ledger, reports);
+      EXPECT_TRUE(error.full) << error.what;
+      EXPECT_GT(reports.size(), 3u);
+      EXPECT_FALSE(write(ledger, backpack(20000))) << "it is still full";
+      dispatch::Report step = reports[0];
+      step.answer.assign(50000, 'x');
+      const auto written = write(ledger, step);
+      ASSERT_FALSE(written);
+      EXPECT_TRUE(written.error().full) << written.error().what;
+      const auto heard = ledger.write(dispatch::Run{.number = 1});
+      ASSERT_FALSE(heard);
+      EXPECT_TRUE(heard.error().full) << heard.error().what;
+      EXPECT_THAT(*ledger.reports(), ElementsAreArray(reports)) << "what was written can still be read";
+    }
+    reports.push_back(backpack(30000));
+    ASSERT_TRUE(write(ledger, reports.back())) << "there is space again";
+  }
+  const auto ledger = open_or_fail(folder);
+  EXPECT_EQ(ledger.damage(), "");
+  EXPECT_THAT(*ledger.reports(), ElementsAreArray(reports));
+  EXPECT_EQ(*ledger.last_run(), std::nullopt);
+}
+
+TEST(FullDiskOfALedger, LeavesNothingHalfWritten) {
+  const Folder folder;
+  auto ledger = open_or_fail(folder);
+  ASSERT_TRUE(write(ledger, backpack(1)));
+  dispatch::Report answered = backpack(1);
+  answered.state = dispatch::ReportState::Answered;
+  dispatch::Report large = backpack(2);
+  large.answer.assign(300000, 'x');
+  {
+    const FullDisk full(100000);
+    ASSERT_FALSE(ledger.write(std::vector{answered, large}));
+  }
+  EXPECT_THAT(*ledger.reports(), testing::ElementsAre(backpack(1)));
+  EXPECT_EQ(ledger.history(1)->size(), 1u);
+}
+
+TEST(FullDiskOfALedger, DoesNotKeepItFromBeingOpened) {
+  const Folder folder;
+  {
+    auto ledger = open_or_fail(folder);
+    ASSERT_TRUE(write(ledger, backpack(1)));
+  }
+  {
+    const FullDisk full(0);
+    auto ledger = open_or_fail(folder);
+    EXPECT_EQ(ledger.reports()->size(), 1u);
+    const auto written = write(ledger, backpack(2));
+    ASSERT_FALSE(written);
+    EXPECT_TRUE(written.error().full) << written.error().what;
+  }
+  EXPECT_EQ(open_or_fail(folder).reports()->size(), 1u);
+}
+
+TEST(FullDiskOfALedger, IsSaidWhereThereIsNoLedgerYet) {
+  const Folder folder;
+  {
+    const FullDisk full(0);
+    const auto ledger = Ledger::open(folder.text());
+    ASSERT_FALSE(ledger);
+    EXPECT_TRUE(ledger.error().full) << ledger.error().what;
+  }
+  EXPECT_EQ(open_or_fail(folder).damage(), "");
+}
+
+/// A file system of its own, of 6 MiB. Needs the right to mount.
+class SmallDisk {
+ public:
+  explicit SmallDisk(const Folder& folder) : path_(folder.text()) {
+    mounted_ = ::mount("adit-test", path_.c_str(), "tmpfs", 0, "size=6m") == 0;
+  }
+  ~SmallDisk() {
+    if (mounted_) ::umount2(path_.c_str(), MNT_DETACH);
+  }
+  SmallDisk(const SmallDisk&) = delete;
+  SmallDisk& operator=(const SmallDisk&) = delete;
+
+  bool mounted() const { return mounted_; }
+  std::string filler() const { return path_ + "/filler"; }
+
+  /// Takes all room that is left.
+  void fill_up() const {
+    std::ofstream file(filler(), std::ios::binary);
+    const std::string block(4096, 'x');
+    while (file.write(block.data(), static_cast<std::streamsize>(block.size())).flush()) continue;
+  }
+
+ private:
+  std::string path_;
+  bool mounted_ = false;
+};
+
+TEST(FullDiskOfALedger, LeavesTheRoomThatItReservedForReportsUnderWay) {
+  const Folder folder;
+  const SmallDisk disk(folder);
+  if (!disk.mounted()) GTEST_SKIP() << "this needs the right to mount: " << std::strerror(errno);
+  std::vector<dispatch::Report> reports;
+  {
+    auto ledger = open_or_fail(folder);
+    disk.fill_up();
+    const Error error = fill(ledger, reports);
+    EXPECT_TRUE(error.full) << error.what;
+    EXPECT_GT(reports.size(), 300u) << "one run has 45";
+    EXPECT_THAT(*ledger.reports(), ElementsAreArray(reports));
+    ASSERT_TRUE(std::filesystem::remove(disk.filler()));
+    reports.push_back(backpack(30000));
+    ASSERT_TRUE(write(ledger, reports.back())) << "there is space again";
+  }
+  EXPECT_THAT(*open_or_fail(folder).reports(), ElementsAreArray(reports));
+}
+
+}  // namespace
+}  // namespace adit::ledger

@@ -1,0 +1,134 @@
+#include <gmock/gmock.h>
+
+#include <filesystem>
+#include <fstream>
+#include <iterator>
+#include <string>
+
+#include "ledger/folder.hpp"
+#include "ledger/full_disk.hpp"
+
+namespace adit::ledger {
+namespace {
+
+using dispatch::ReportState;
+using testing::ElementsAre;
+using testing::HasSubstr;
+
+/// What version 1 made, with three reports in it.
+constexpr const char* kVersion1 = R"(
+  PRAGMA journal_mode = WAL;
+  CREATE TABLE report(
+    number INTEGER PRIMARY KEY AUTOINCREMENT,
+    type TEXT NOT NULL, x REAL NOT NULL, y REAL NOT NULL, z REAL NOT NULL,
+    sender TEXT NOT NULL, received REAL NOT NULL, changed REAL NOT NULL,
+    state TEXT NOT NULL, status INTEGER NOT NULL, content_type TEXT NOT NULL,
+    answer BLOB NOT NULL, note TEXT NOT NULL) STRICT;
+  CREATE TABLE step(
+    report INTEGER NOT NULL REFERENCES report(number),
+    at REAL NOT NULL, state TEXT NOT NULL, note TEXT NOT NULL) STRICT;
+  PRAGMA application_id = 0x41444954;
+  PRAGMA user_version = 1;
+  INSERT INTO report VALUES
+    (1, 'Backpack', 1.5, -2.25, 0.125, '10.0.0.7', 10, 12, 'answered', 201, 'application/json', x'7b00ff', ''),
+    (2, 'Backpack', 2.5, -2.25, 0.125, '10.0.0.7', 10, 11, 'in doubt', 0, '', x'', 'no answer came'),
+    (5, 'Backpack', 5.5, -2.25, 0.125, '10.0.0.7', 10, 10, 'waiting', 0, '', x'', '');
+  INSERT INTO step VALUES
+    (1, 10, 'waiting', ''), (2, 10, 'waiting', ''), (1, 11, 'sending', ''), (2, 10.5, 'sending', ''),
+    (1, 12, 'answered', ''), (2, 11, 'in doubt', 'no answer came'), (5, 10, 'waiting', '');
+)";
+
+void expect_the_three_reports(const Ledger& ledger) {
+  dispatch::Report first = backpack(1), second = backpack(2, 2.5);
+  first.changed = 12;
+  first.state = ReportState::Answered;
+  first.status = 201;
+  first.content_type = "application/json";
+  first.answer = std::string("{\0\xff", 3);
+  second.changed = 11;
+  second.state = ReportState::InDoubt;
+  second.note = "no answer came";
+  EXPECT_THAT(*ledger.reports(), ElementsAre(first, second, backpack(5, 5.5)));
+  EXPECT_THAT(*ledger.history(2),
+              ElementsAre(Ledger::Step{2, 10, "waiting", ""}, Ledger::Step{2, 10.5, "sending", ""},
+                          Ledger::Step{2, 11, "in doubt", "no answer came"}));
+  EXPECT_EQ(*ledger.last_run(), std::nullopt);
+}
+
+TEST(LedgerOfVersion1, IsBroughtUpToThisOneWithAllThatIsInIt) {
+  const Folder folder;
+  by_hand(folder, kVersion1);
+  for (int opening = 1; opening <= 2; ++opening) {
+    SCOPED_TRACE(opening);
+    const auto ledger = open_or_fail(folder);
+    EXPECT_EQ(ledger.damage(), "");
+    expect_the_three_reports(ledger);
+  }
+  EXPECT_THAT(by_hand(folder, "PRAGMA user_version"), ElementsAre("2"));
+  EXPECT_THAT(by_hand(folder, "PRAGMA foreign_key_check"), ElementsAre());
+  EXPECT_THAT(by_hand(folder, "SELECT name FROM sqlite_schema WHERE name LIKE '%\\_1' ESCAPE '\\'"),
+              ElementsAre());
+}
+
+TEST(LedgerOfVersion1, TakesNewStepsOnceItWasBroughtUp) {
+  const Folder folder;
+  by_hand(folder, kVersion1);
+  auto ledger = open_or_fail(folder);
+  dispatch::Report waiting = find_or_fail(ledger, 5);
+  waiting.state = ReportState::Sending;
+  waiting.run = 1;
+  waiting.before = icd::RunStatus{1, 2, 3, "adit"};
+  ASSERT_TRUE(write(ledger, waiting));
+  ASSERT_TRUE(write(ledger, backpack(6)));
+  EXPECT_EQ(find_or_fail(ledger, 5), waiting);
+  EXPECT_EQ(ledger.history(5)->size(), 2u);
+}
+
+TEST(LedgerOfVersion1, HasTheSameTablesAfterwardsAsANewOne) {
+  const Folder old, fresh;
+  by_hand(old, kVersion1);
+  open_or_fail(old);
+  open_or_fail(fresh);
+  const char* tables = "SELECT sql FROM sqlite_schema WHERE name NOT LIKE 'sqlite_%' ORDER BY name";
+  EXPECT_EQ(by_hand(old, tables), by_hand(fresh, tables));
+  EXPECT_EQ(by_hand(fresh, tables).size(), 3u);
+}
+
+TEST(LedgerOfVersion1, StaysAsItIsWhereThereIsNoRoomToBringItUp) {
+  const Folder folder;
+  by_hand(folder, kVersion1);
+  {
+    const FullDisk full(20000);
+    const auto ledger = Ledger::open(folder.text());
+    ASSERT_FALSE(ledger);
+    EXPECT_TRUE(ledger.error().full) << ledger.error().what;
+  }
+  EXPECT_THAT(by_hand(folder, "PRAGMA user_version"), ElementsAre("1"));
+  const auto ledger = open_or_fail(folder);
+  EXPECT_EQ(ledger.damage(), "");
+  expect_the_three_reports(ledger);
+}
+
+TEST(LedgerOfALaterVersion, IsRefusedWithASentenceAndStaysAsItIs) {
+  const Folder folder;
+  {
+    auto ledger = open_or_fail(folder);
+    ASSERT_TRUE(write(ledger, backpack(1)));
+  }
+  // A table that this version's SQLite, too, would understand, so that the number alone decides.
+  by_hand(folder, "CREATE TABLE crew(name TEXT) STRICT; DROP TABLE step; PRAGMA user_version = 3");
+  const auto bytes = [&folder] {
+    std::ifstream file(folder.file(), std::ios::binary);
+    return std::string(std::istreambuf_iterator<char>(file), {});
+  };
+  const std::string before = bytes();
+  const auto ledger = Ledger::open(folder.text());
+  ASSERT_FALSE(ledger);
+  EXPECT_THAT(ledger.error().what, HasSubstr("a later Adit wrote this ledger (version 3"));
+  EXPECT_FALSE(ledger.error().full);
+  EXPECT_EQ(bytes(), before);
+  EXPECT_FALSE(std::filesystem::exists(folder.file() + ".damaged-1"));
+}
+
+}  // namespace
+}  // namespace adit::ledger

@@ -5,69 +5,153 @@
 namespace adit::dispatch {
 namespace {
 
-struct Transition {
-  ReportState from;
-  ReportEvent event;
-  ReportState to;
+using enum ReportState;
+using Event = ReportEvent;
+using Action = ReportAction;
+
+constexpr std::array kLife = {
+    ReportTransition{Waiting, Event::Chosen, Sending, Action::Send},
+    ReportTransition{Waiting, Event::Held, Received, Action::Nothing},
+    ReportTransition{Waiting, Event::Joined, Withdrawn, Action::Nothing},
+    ReportTransition{Waiting, Event::Withdrawn, Withdrawn, Action::TellClients},
+    ReportTransition{Waiting, Event::Released, Waiting, Action::Nothing},
+    ReportTransition{Waiting, Event::Restarted, Waiting, Action::Nothing},
+
+    ReportTransition{Received, Event::Released, Waiting, Action::Nothing},
+    ReportTransition{Received, Event::Withdrawn, Withdrawn, Action::TellClients},
+    ReportTransition{Received, Event::Held, Received, Action::Nothing},
+    ReportTransition{Received, Event::Restarted, Received, Action::Nothing},
+
+    ReportTransition{Sending, Event::Recorded, Answered, Action::AnswerClients},
+    ReportTransition{Sending, Event::Refused, Refused, Action::AnswerClients},
+    ReportTransition{Sending, Event::Throttled, Waiting, Action::Nothing},
+    ReportTransition{Sending, Event::Barred, Waiting, Action::TellClients},
+    ReportTransition{Sending, Event::NeverLeft, Waiting, Action::Nothing},
+    ReportTransition{Sending, Event::Lost, InDoubt, Action::Ask},
+    ReportTransition{Sending, Event::Restarted, InDoubt, Action::Ask},
+
+    ReportTransition{InDoubt, Event::Found, Settled, Action::AnswerClients},
+    ReportTransition{InDoubt, Event::Missing, Waiting, Action::Nothing},
+    ReportTransition{InDoubt, Event::Held, Received, Action::TellClients},
+    ReportTransition{InDoubt, Event::Released, Waiting, Action::Nothing},
+    ReportTransition{InDoubt, Event::CalledDone, Settled, Action::TellClients},
+    ReportTransition{InDoubt, Event::Restarted, InDoubt, Action::Ask},
+
+    ReportTransition{Refused, Event::Released, Waiting, Action::Nothing},
+    ReportTransition{Refused, Event::Restarted, Refused, Action::Nothing},
+    ReportTransition{Withdrawn, Event::Released, Waiting, Action::Nothing},
+    ReportTransition{Withdrawn, Event::Restarted, Withdrawn, Action::Nothing},
+    ReportTransition{Answered, Event::Restarted, Answered, Action::Nothing},
+    ReportTransition{Settled, Event::Restarted, Settled, Action::Nothing},
 };
 
-constexpr std::array kTransitions = {
-    Transition{ReportState::Waiting, ReportEvent::Chosen, ReportState::Sending},
-    Transition{ReportState::Waiting, ReportEvent::Restarted, ReportState::Waiting},
-    Transition{ReportState::Sending, ReportEvent::Recorded, ReportState::Answered},
-    Transition{ReportState::Sending, ReportEvent::Refused, ReportState::Refused},
-    Transition{ReportState::Sending, ReportEvent::Throttled, ReportState::Waiting},
-    Transition{ReportState::Sending, ReportEvent::NeverLeft, ReportState::Waiting},
-    Transition{ReportState::Sending, ReportEvent::Lost, ReportState::InDoubt},
-    Transition{ReportState::Sending, ReportEvent::Restarted, ReportState::InDoubt},
-    Transition{ReportState::Answered, ReportEvent::Restarted, ReportState::Answered},
-    Transition{ReportState::Refused, ReportEvent::Restarted, ReportState::Refused},
-    Transition{ReportState::InDoubt, ReportEvent::Restarted, ReportState::InDoubt},
-};
-
-struct Name {
+struct StateName {
   ReportState state;
   std::string_view text;
 };
 
-constexpr std::array kNames = {
-    Name{ReportState::Waiting, "waiting"},   Name{ReportState::Sending, "sending"},
-    Name{ReportState::Answered, "answered"}, Name{ReportState::Refused, "refused"},
-    Name{ReportState::InDoubt, "in doubt"},
+constexpr std::array kStates = {
+    StateName{Received, "received"}, StateName{Waiting, "waiting"},     StateName{Sending, "sending"},
+    StateName{Answered, "answered"}, StateName{Refused, "refused"},     StateName{InDoubt, "in doubt"},
+    StateName{Settled, "settled"},   StateName{Withdrawn, "withdrawn"},
 };
+
+/// What an event is called in the diagram.
+std::string_view words(ReportEvent event) {
+  switch (event) {
+    case Event::Held:
+      return "held for the operator";
+    case Event::Released:
+      return "operator: send";
+    case Event::Chosen:
+      return "its turn";
+    case Event::Recorded:
+      return "2xx";
+    case Event::Refused:
+      return "4xx";
+    case Event::Throttled:
+      return "429";
+    case Event::Barred:
+      return "401, 403, 404, 405, 407";
+    case Event::NeverLeft:
+      return "no byte left";
+    case Event::Lost:
+      return "no answer, 3xx, 408, 5xx";
+    case Event::Found:
+      return "status: recorded";
+    case Event::Missing:
+      return "status: not recorded";
+    case Event::CalledDone:
+      return "operator: done";
+    case Event::Withdrawn:
+      return "operator: withdraw";
+    case Event::Joined:
+      return "same as an earlier one";
+    case Event::Restarted:
+      return "restart";
+  }
+  return "";
+}
+
+std::string_view words(ReportAction action) {
+  switch (action) {
+    case Action::Nothing:
+      return "";
+    case Action::Send:
+      return " / send";
+    case Action::AnswerClients:
+      return " / answer its clients";
+    case Action::TellClients:
+      return " / tell its clients";
+    case Action::Ask:
+      return " / ask the status";
+  }
+  return "";
+}
 
 }  // namespace
 
-std::optional<ReportState> next(ReportState state, ReportEvent event) {
-  for (const Transition& transition : kTransitions) {
-    if (transition.from == state && transition.event == event) return transition.to;
-  }
-  return std::nullopt;
+std::span<const ReportTransition> report_life() {
+  return kLife;
 }
 
-ReportEvent event_of(int status) {
-  if (status >= 200 && status < 300) return ReportEvent::Recorded;
-  if (status == 429) return ReportEvent::Throttled;
-  if (status >= 400 && status < 500) return ReportEvent::Refused;
-  return ReportEvent::Lost;
+const ReportTransition* transition(ReportState state, ReportEvent event) {
+  for (const ReportTransition& row : kLife) {
+    if (row.from == state && row.event == event) return &row;
+  }
+  return nullptr;
 }
 
 bool is_final(ReportState state) {
-  return state == ReportState::Answered || state == ReportState::Refused;
+  return state == Answered || state == Refused || state == Settled || state == Withdrawn;
 }
 
 std::string_view name_of(ReportState state) {
-  for (const Name& name : kNames) {
+  for (const StateName& name : kStates) {
     if (name.state == state) return name.text;
   }
   return "";
 }
 
 std::optional<ReportState> state_named(std::string_view text) {
-  for (const Name& name : kNames) {
+  for (const StateName& name : kStates) {
     if (name.text == text) return name.state;
   }
   return std::nullopt;
+}
+
+std::string report_life_diagram() {
+  std::string text = "stateDiagram-v2\n  state \"in doubt\" as in_doubt\n  [*] --> waiting: posted\n";
+  const auto id = [](ReportState state) { return state == InDoubt ? "in_doubt" : name_of(state); };
+  for (const ReportTransition& row : kLife) {
+    if (row.from == row.to) continue;  // nothing to see
+    text.append("  ").append(id(row.from)).append(" --> ").append(id(row.to)).append(": ");
+    text.append(words(row.event)).append(words(row.action)).append("\n");
+  }
+  for (const StateName& name : kStates) {
+    if (is_final(name.state)) text.append("  ").append(id(name.state)).append(" --> [*]\n");
+  }
+  return text;
 }
 
 }  // namespace adit::dispatch

@@ -2,39 +2,70 @@
 
 #include <cstdint>
 #include <optional>
+#include <span>
+#include <string>
 #include <string_view>
 
 namespace adit::dispatch {
 
 /// Where an artifact report is in its life (promise 1). The words of name_of() are what the ledger holds.
 enum class ReportState : std::uint8_t {
-  Waiting,   // on disk; to be sent when its turn comes
-  Sending,   // the next thing that happens is that its bytes leave
-  Answered,  // the Command Post recorded it and said so
-  Refused,   // the Command Post said that it did not record it, and that asking again is no use
-  InDoubt,   // its bytes may have left and no answer is known; only evidence or the operator moves it on
+  Received,   // on disk, and held: only the operator's word lets it go
+  Waiting,    // to be sent when its turn comes
+  Sending,    // the next thing that happens is that its bytes leave
+  Answered,   // the Command Post recorded it and said so
+  Refused,    // the Command Post said that it did not record it, and that asking again is no use
+  InDoubt,    // its bytes may have left and no answer is known; only evidence or the operator moves it on
+  Settled,    // no answer came, but it is known, or the operator says, that there is nothing left to do
+  Withdrawn,  // the operator took it back before it was sent, or it turned out to be another one again
 };
 
 enum class ReportEvent : std::uint8_t {
+  Held,       // the review, a new run or too many failures want the operator's word first
+  Released,   // the operator says send, and takes it on himself
   Chosen,     // its turn has come
   Recorded,   // answered 2xx
   Refused,    // answered 4xx: the Command Post will not have it
   Throttled,  // answered 429: not recorded, may be sent again
-  NeverLeft,  // no byte of it was given to the kernel
-  Lost,       // bytes may have left, and no answer that means anything came
-  Restarted,  // this program began anew and found it so
+  Barred,  // answered 401, 403, 404, 405 or 407: nothing is wrong with it, but with the token or the address
+  NeverLeft,   // no byte of it was given to the kernel
+  Lost,        // bytes may have left, and no answer that means anything came
+  Found,       // the run's status shows that it was recorded
+  Missing,     // the run's status shows that it was not recorded
+  CalledDone,  // the operator says that nothing is left to do
+  Withdrawn,   // the operator takes it back
+  Joined,      // it is the same as an earlier one, whose answer it gets
+  Restarted,   // this program began anew and found it so
 };
 
-/// The one table of a report's life; nothing where the event cannot happen in that state.
-std::optional<ReportState> next(ReportState state, ReportEvent event);
+/// What is done once the step is on disk.
+enum class ReportAction : std::uint8_t {
+  Nothing,
+  Send,           // its bytes go to the Command Post
+  AnswerClients,  // those that wait for it get its answer
+  TellClients,    // those that wait for it are told how it stands, and that it is kept
+  Ask,            // the run's status is asked for, to find out what became of it
+};
 
-/// What an HTTP status says of a report. A 5xx may come from something in between: it is Lost.
-ReportEvent event_of(int status);
+struct ReportTransition {
+  ReportState from;
+  ReportEvent event;
+  ReportState to;
+  ReportAction action;
+};
 
-/// Nothing more will happen to it by itself.
+/// The one table of a report's life. An event that is not in it for a state cannot happen there.
+std::span<const ReportTransition> report_life();
+/// The row for `event` in `state`; nothing where there is none.
+const ReportTransition* transition(ReportState state, ReportEvent event);
+
+/// Nothing more will happen to it by itself, nor is anything left to do.
 bool is_final(ReportState state);
 
 std::string_view name_of(ReportState state);
 std::optional<ReportState> state_named(std::string_view name);
+
+/// The table as a Mermaid state diagram, for the docs.
+std::string report_life_diagram();
 
 }  // namespace adit::dispatch

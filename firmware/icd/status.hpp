@@ -16,6 +16,7 @@ enum class Status : std::uint16_t {
   NotFound = 404,
   MethodNotAllowed = 405,
   RequestTimeout = 408,
+  Conflict = 409,
   ContentTooLarge = 413,
   UnprocessableEntity = 422,
   TooManyRequests = 429,

@@ -1,44 +1,69 @@
 #include "dispatch/report_life.hpp"
 
-#include <gtest/gtest.h>
+#include <gmock/gmock.h>
 
 #include <array>
+#include <fstream>
+#include <set>
+#include <sstream>
 
 namespace adit::dispatch {
 namespace {
 
-constexpr std::array kStates = {ReportState::Waiting, ReportState::Sending, ReportState::Answered,
-                                ReportState::Refused, ReportState::InDoubt};
-constexpr std::array kEvents = {ReportEvent::Chosen,    ReportEvent::Recorded,  ReportEvent::Refused,
-                                ReportEvent::Throttled, ReportEvent::NeverLeft, ReportEvent::Lost,
-                                ReportEvent::Restarted};
+using enum ReportState;
+using Event = ReportEvent;
+
+constexpr std::array kStates = {Received, Waiting, Sending, Answered, Refused, InDoubt, Settled, Withdrawn};
+
+std::set<Event> events_between(ReportState from, ReportState to) {
+  std::set<Event> events;
+  for (const ReportTransition& row : report_life()) {
+    if (row.from == from && row.to == to) events.insert(row.event);
+  }
+  return events;
+}
 
 TEST(ReportLife, IsSentOnlyFromWaiting) {
   for (const ReportState state : kStates) {
-    EXPECT_EQ(next(state, ReportEvent::Chosen).has_value(), state == ReportState::Waiting) << name_of(state);
+    EXPECT_EQ(transition(state, Event::Chosen) != nullptr, state == Waiting) << name_of(state);
   }
 }
 
-TEST(ReportLife, IsSentAgainOnlyWhereTheCommandPostCannotHaveRecordedIt) {
-  for (const ReportEvent event : kEvents) {
-    const bool again = next(ReportState::Sending, event) == ReportState::Waiting;
-    EXPECT_EQ(again, event == ReportEvent::Throttled || event == ReportEvent::NeverLeft) << int(event);
-  }
+TEST(ReportLife, IsSentAgainByItselfOnlyWhereTheCommandPostCannotHaveRecordedIt) {
+  EXPECT_EQ(events_between(Sending, Waiting), (std::set{Event::Throttled, Event::Barred, Event::NeverLeft}));
 }
 
-TEST(ReportLife, StaysInDoubtWhateverHappensByItself) {
-  for (const ReportEvent event : kEvents) {
-    EXPECT_EQ(next(ReportState::InDoubt, event).value_or(ReportState::InDoubt), ReportState::InDoubt);
+TEST(ReportLife, LeavesDoubtOnlyByEvidenceOrTheOperator) {
+  std::set<Event> out;
+  for (const ReportTransition& row : report_life()) {
+    if (row.from == InDoubt && row.to != InDoubt) out.insert(row.event);
   }
+  EXPECT_EQ(out, (std::set{Event::Found, Event::Missing, Event::Held, Event::Released, Event::CalledDone}));
 }
 
 TEST(ReportLife, IsInDoubtAfterACrashWhileSending) {
-  EXPECT_EQ(next(ReportState::Sending, ReportEvent::Restarted), ReportState::InDoubt);
-  EXPECT_EQ(next(ReportState::Waiting, ReportEvent::Restarted), ReportState::Waiting);
+  EXPECT_EQ(transition(Sending, Event::Restarted)->to, InDoubt);
 }
 
-TEST(ReportLife, KnowsEveryStateAfterARestart) {
-  for (const ReportState state : kStates) EXPECT_TRUE(next(state, ReportEvent::Restarted)) << name_of(state);
+TEST(ReportLife, IsAsWeLeftItAfterACrashInAnyOtherState) {
+  for (const ReportState state : kStates) {
+    if (state == Sending) continue;
+    const ReportTransition* const row = transition(state, Event::Restarted);
+    ASSERT_NE(row, nullptr) << name_of(state);
+    EXPECT_EQ(row->to, state);
+  }
+}
+
+TEST(ReportLife, AnswersAClientOnlyWhereAnAnswerIsKnown) {
+  for (const ReportTransition& row : report_life()) {
+    if (row.action != ReportAction::AnswerClients) continue;
+    EXPECT_TRUE(row.to == Answered || row.to == Refused || row.to == Settled) << name_of(row.to);
+  }
+}
+
+TEST(ReportLife, NamesEachEventOnceForAState) {
+  std::set<std::pair<ReportState, Event>> seen;
+  for (const ReportTransition& row : report_life()) EXPECT_TRUE(seen.emplace(row.from, row.event).second);
 }
 
 TEST(ReportLife, NamesEachStateOnceAndFindsItByItsName) {
@@ -46,17 +71,11 @@ TEST(ReportLife, NamesEachStateOnceAndFindsItByItsName) {
   EXPECT_EQ(state_named("elsewhere"), std::nullopt);
 }
 
-TEST(ReportLife, ReadsTheCommandPostsStatus) {
-  struct Row {
-    int status;
-    ReportEvent event;
-  };
-  for (const Row& row :
-       {Row{200, ReportEvent::Recorded}, Row{201, ReportEvent::Recorded}, Row{400, ReportEvent::Refused},
-        Row{401, ReportEvent::Refused}, Row{422, ReportEvent::Refused}, Row{429, ReportEvent::Throttled},
-        Row{500, ReportEvent::Lost}, Row{502, ReportEvent::Lost}, Row{302, ReportEvent::Lost}}) {
-    EXPECT_EQ(event_of(row.status), row.event) << row.status;
-  }
+TEST(ReportLife, IsDrawnInTheDocsAsItIs) {
+  std::ifstream file(ADIT_SOURCE_DIR "/firmware/dispatch/README.md");
+  std::stringstream text;
+  text << file.rdbuf();
+  EXPECT_THAT(text.str(), testing::HasSubstr("```mermaid\n" + report_life_diagram() + "```\n"));
 }
 
 }  // namespace

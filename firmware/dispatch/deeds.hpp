@@ -1,0 +1,37 @@
+#pragma once
+
+#include <cstdint>
+#include <span>
+#include <string>
+
+#include "dispatch/report.hpp"
+#include "icd/status.hpp"
+
+namespace adit::dispatch {
+
+/// A client that waits for a report's answer; given by whoever holds its connection, never 0.
+using ClientId = std::uint64_t;
+
+/// What a client is told.
+struct ClientAnswer {
+  std::int64_t number = 0;  // of the report; 0: it was not taken
+  /// A sentence of Adit's with its status; "": the stored answer of the report.
+  icd::Status status = icd::Status::ServiceUnavailable;
+  std::string sentence = "";
+};
+
+/// What the rules of reports want done: the seam between them and the disk, the clients and the log.
+class Deeds {
+ public:
+  virtual ~Deeds() = default;
+
+  /// Writes all of these steps, in their order, as one transaction: after true they are on disk (a report
+  /// may be there more than once, with one step each). After false none is, and nothing may follow.
+  virtual bool write(std::span<const Report> steps) = 0;
+  virtual bool write(const Run& run) = 0;
+
+  /// `report` is as it now is. Does nothing where the client has gone.
+  virtual void tell(ClientId client, const ClientAnswer& answer, const Report& report) = 0;
+};
+
+}  // namespace adit::dispatch

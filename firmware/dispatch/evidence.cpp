@@ -1,0 +1,39 @@
+#include "dispatch/evidence.hpp"
+
+#include "icd/sentence.hpp"
+
+namespace adit::dispatch {
+namespace {
+
+/// "remaining_reports went from 20 to 19 and the score from 3 to 4, 1 report in doubt"
+std::string figures(const icd::RunStatus& before, std::int64_t doubts, const SentSince& since,
+                    const icd::RunStatus& now) {
+  std::string text =
+      icd::sentence("remaining_reports went from ", before.remaining_reports, " to ", now.remaining_reports,
+                    " and the score from ", before.score, " to ", now.score);
+  if (since.scored > 0) text += icd::sentence(", ", since.scored, " of it by reports sent since");
+  if (doubts > 1) text += icd::sentence(", with ", doubts, " reports in doubt");
+  return text;
+}
+
+}  // namespace
+
+Evidence weigh(const icd::RunStatus& before, std::int64_t doubts, const SentSince& since,
+               const icd::RunStatus& now) {
+  const std::int64_t used = before.remaining_reports - since.scored - now.remaining_reports;
+  const std::int64_t points = now.score - before.score - since.points;
+  const std::string seen = figures(before, doubts, since, now);
+  if (used < 0 || used > doubts || points < 0 || points > used) {
+    return {Finding::Contradicts, seen + ": does somebody else report with this token?", {}};
+  }
+  // With nothing left of the allotment, or a clock at 0, a record would not show.
+  if (used == 0 && (before.remaining_reports - since.scored <= 0 || now.run_clock <= 0)) {
+    return {Finding::Silent, seen + ": reports are not being scored, so that a record would not show", {}};
+  }
+  if (used == 0) return {Finding::NotRecorded, seen, {}};
+  if (used < doubts) return {Finding::Silent, seen + ": which of them was recorded does not show", {}};
+  const bool alike = points == 0 || points == doubts;
+  return {Finding::Recorded, seen, alike ? std::optional(points / doubts) : std::nullopt};
+}
+
+}  // namespace adit::dispatch

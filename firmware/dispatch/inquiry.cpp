@@ -1,0 +1,40 @@
+#include "dispatch/inquiry.hpp"
+
+namespace adit::dispatch {
+
+Finding Inquiry::hear(const Evidence& evidence, double run_clock, Instant now) {
+  Finding finding = evidence.finding;
+  if (finding == Finding::NotRecorded && stands_still(run_clock, now)) finding = Finding::Silent;
+  if (!first_heard_) {
+    first_heard_ = now;
+    first_clock_ = run_clock;
+  }
+  last_heard_ = now;
+  agreeing_ = finding == finding_ ? agreeing_ + 1 : 1;
+  finding_ = finding;
+  if (finding == Finding::Recorded && agreeing_ < kRecordedAsks) return Finding::Silent;
+  const bool late_enough = now - lost_ >= patience_.doubt_for && agreeing_ >= patience_.asks;
+  if (finding == Finding::NotRecorded && !late_enough) return Finding::Silent;
+  return finding;
+}
+
+/// A run clock that stands still is an administrative stop, in which reports are recorded unscored (ICD 5.2):
+/// the count would not show them.
+bool Inquiry::stands_still(double run_clock, Instant now) const {
+  if (!first_heard_) return false;
+  const double elapsed = std::chrono::duration<double>(now - *first_heard_).count();
+  return elapsed > 0.2 && run_clock - first_clock_ < elapsed / 4;
+}
+
+Inquiry::Instant Inquiry::next_ask(Instant now) const {
+  if (!asked_) return now;
+  return *asked_ + (is_pending(now) ? patience_.doubt_for / 10 : patience_.doubt_for);
+}
+
+bool Inquiry::is_pending(Instant now) const {
+  if (now < lost_ + patience_.doubt_for * 3 / 2) return true;
+  const bool speaks = finding_ == Finding::Recorded || finding_ == Finding::NotRecorded;
+  return speaks && now < *last_heard_ + patience_.doubt_for / 2;
+}
+
+}  // namespace adit::dispatch

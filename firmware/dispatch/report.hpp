@@ -1,0 +1,58 @@
+#pragma once
+
+#include <chrono>
+#include <cstdint>
+#include <optional>
+#include <string>
+
+#include "dispatch/report_life.hpp"
+#include "icd/artifact_report.hpp"
+#include "icd/run_status.hpp"
+
+namespace adit::dispatch {
+
+/// The time in both of the ways that rules need it: for waiting, and for writing down.
+struct Time {
+  std::chrono::steady_clock::time_point now;
+  double stamp = 0;  // seconds since 1970
+};
+
+/// One artifact report and all that is known of it: what the ledger holds.
+struct Report {
+  std::int64_t number = 0;  // Adit's own, from 1, never used twice
+  icd::ArtifactReport report = {};
+  std::string sender = "";  // address of who posted it, or "operator"
+  double received = 0;      // seconds since 1970
+  double changed = 0;
+  ReportState state = ReportState::Waiting;
+  std::string note = "";  // a sentence for the operator: why it is where it is
+
+  std::int64_t run = 0;      // Run::number of the run that it belongs to
+  bool asked = false;        // sent on purpose: neither a repeat, a near one nor an old run holds it back
+  std::int64_t same_as = 0;  // the earlier report that it turned out to be; 0: none
+  std::int64_t tries = 0;    // how often it was sent and no answer came
+  std::int64_t sending = 0;  // its place among all sendings, the last time; 0: never sent
+  double sent = 0;           // when, the last time; seconds since 1970
+  /// What /api/status would have answered just before it was sent; nothing: that was not known for certain.
+  std::optional<icd::RunStatus> before = std::nullopt;
+
+  int status = 0;                 // of its answer; 0: none yet
+  std::string content_type = "";  // of that answer
+  std::string answer = "";        // its body, byte for byte
+  bool reconciled = false;        // the answer is Adit's, found out from the run's status
+  friend bool operator==(const Report&, const Report&) = default;
+};
+
+/// One run of the Command Post, as far as it is known.
+struct Run {
+  std::int64_t number = 1;                            // Adit's own, from 1
+  std::string id = "";                                // the Command Post's (ICD 5.2 `run`); "": not heard yet
+  double began = 0;                                   // when it was noticed; seconds since 1970
+  std::string why = "";                               // how it was noticed: a sentence
+  std::optional<icd::RunStatus> last = std::nullopt;  // the last status heard in it
+  double heard = 0;                                   // when; seconds since 1970
+  std::string unreliable = "";  // why its count of reports proves nothing (another sender...); "": it does
+  friend bool operator==(const Run&, const Run&) = default;
+};
+
+}  // namespace adit::dispatch

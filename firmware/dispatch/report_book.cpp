@@ -1,0 +1,122 @@
+#include "dispatch/report_book.hpp"
+
+#include <algorithm>
+
+namespace adit::dispatch {
+namespace {
+
+/// What the Command Post, or the way there, has done cannot be taken back; and what a restart finds is what
+/// the ledger has already.
+bool has_happened(ReportEvent event) {
+  switch (event) {
+    case ReportEvent::Recorded:
+    case ReportEvent::Refused:
+    case ReportEvent::Throttled:
+    case ReportEvent::Barred:
+    case ReportEvent::NeverLeft:
+    case ReportEvent::Lost:
+    case ReportEvent::Restarted:
+      return true;
+    default:
+      return false;
+  }
+}
+
+}  // namespace
+
+void ReportBook::open(std::vector<Report> all) {
+  for (Report& report : all) put(report);
+}
+
+std::int64_t ReportBook::add(Report report, std::span<const ReportEvent> events, const std::string& note,
+                             const Edit& edit) {
+  report.number = reports_.empty() ? 1 : reports_.rbegin()->first + 1;
+  report.state = ReportState::Waiting;
+  std::vector<Report> steps{report};
+  for (const ReportEvent event : events) {
+    report.state = transition(report.state, event)->to;
+    report.note = note;
+    if (edit) edit(report);
+    steps.push_back(report);
+  }
+  return write(steps, false) ? report.number : 0;
+}
+
+bool ReportBook::move(std::int64_t number, ReportEvent event, const std::string& note, double stamp,
+                      const Edit& edit) {
+  Report report = reports_.at(number);
+  const ReportTransition* const step = transition(report.state, event);
+  if (step == nullptr) return false;
+  report.state = step->to;
+  report.note = note;
+  report.changed = stamp;
+  if (edit) edit(report);
+  return write({&report, 1}, has_happened(event));
+}
+
+bool ReportBook::note(std::int64_t number, const std::string& note, double stamp, const Edit& edit) {
+  Report report = reports_.at(number);
+  report.note = note;
+  report.changed = stamp;
+  if (edit) edit(report);
+  return report == reports_.at(number) || write({&report, 1}, false);
+}
+
+bool ReportBook::catch_up() {
+  return unwritten_.empty() || write({}, false);
+}
+
+/// What is still unwritten goes first, so that the ledger never has a later step without an earlier one.
+bool ReportBook::write(std::span<const Report> steps, bool happened) {
+  bool written = false;
+  if (unwritten_.empty()) {
+    written = deeds_.write(steps);
+  } else {
+    std::vector<Report> all;
+    for (const std::int64_t number : unwritten_) all.push_back(reports_.at(number));
+    all.insert(all.end(), steps.begin(), steps.end());
+    written = deeds_.write(all);
+  }
+  if (written) unwritten_.clear();
+  if (!written && !happened) return false;
+  for (const Report& report : steps) {
+    put(report);
+    if (!written) unwritten_.insert(report.number);
+  }
+  return true;
+}
+
+void ReportBook::put(const Report& report) {
+  reports_[report.number] = report;
+  const auto keep = [&report](std::set<std::int64_t>& numbers, ReportState state) {
+    if (report.state == state) {
+      numbers.insert(report.number);
+    } else {
+      numbers.erase(report.number);
+    }
+  };
+  keep(waiting_, ReportState::Waiting);
+  keep(in_doubt_, ReportState::InDoubt);
+}
+
+const Report* ReportBook::find(std::int64_t number) const {
+  const auto found = reports_.find(number);
+  return found == reports_.end() ? nullptr : &found->second;
+}
+
+std::size_t ReportBook::count(ReportState state) const {
+  return static_cast<std::size_t>(
+      std::ranges::count_if(reports_, [state](const auto& item) { return item.second.state == state; }));
+}
+
+std::vector<const Report*> ReportBook::doubts(std::int64_t run) const {
+  std::vector<const Report*> found;
+  for (const std::int64_t number : in_doubt_) {
+    const Report& report = reports_.at(number);
+    if (report.run == run) found.push_back(&report);
+  }
+  std::ranges::sort(found, {}, &Report::sending);
+  return found;
+}
+
+}  // namespace adit::dispatch

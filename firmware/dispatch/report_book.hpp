@@ -1,0 +1,63 @@
+#pragma once
+
+#include <cstdint>
+#include <functional>
+#include <map>
+#include <set>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "dispatch/deeds.hpp"
+#include "dispatch/report.hpp"
+
+namespace adit::dispatch {
+
+/// All reports and where each is in its life: in memory to be read, by Deeds on disk before anything follows
+/// from a step.
+class ReportBook {
+ public:
+  /// What changes beside the state.
+  using Edit = std::function<void(Report&)>;
+
+  /// `deeds` outlives this.
+  explicit ReportBook(Deeds& deeds) : deeds_(deeds) {}
+
+  void open(std::vector<Report> all);
+
+  /// A new report that waits, and the events that happen to it at once, all in one write; `edit` is
+  /// done after each of them. Its number; 0: the disk refused, and there is no such report.
+  std::int64_t add(Report report, std::span<const ReportEvent> events, const std::string& note,
+                   const Edit& edit = nullptr);
+
+  /// Takes the step that the table has for `event`, with a note for the operator. What the Command Post did
+  /// has happened even if the disk refuses: then the step is written later, and until then the ledger has the
+  /// safe side of it ("sending", which a restart reads as in doubt). Any other step is not taken: false.
+  bool move(std::int64_t number, ReportEvent event, const std::string& note, double stamp,
+            const Edit& edit = nullptr);
+  /// Changes what is known of a report, but not its state.
+  bool note(std::int64_t number, const std::string& note, double stamp, const Edit& edit = nullptr);
+  /// Tries again to write what could not be written. True: nothing is left.
+  bool catch_up();
+
+  const Report& at(std::int64_t number) const { return reports_.at(number); }
+  const Report* find(std::int64_t number) const;
+  const std::map<std::int64_t, Report>& all() const { return reports_; }
+  /// Those in state Waiting, oldest first.
+  const std::set<std::int64_t>& waiting() const { return waiting_; }
+  std::size_t count(ReportState state) const;
+  /// Those in doubt in `run`, in the order in which they were sent.
+  std::vector<const Report*> doubts(std::int64_t run) const;
+
+ private:
+  bool write(std::span<const Report> steps, bool happened);
+  void put(const Report& report);
+
+  Deeds& deeds_;
+  std::map<std::int64_t, Report> reports_;
+  std::set<std::int64_t> waiting_;
+  std::set<std::int64_t> in_doubt_;
+  std::set<std::int64_t> unwritten_;  // their last step has happened, but is not on disk
+};
+
+}  // namespace adit::dispatch

@@ -1,0 +1,40 @@
+#include "dispatch/report_verdict.hpp"
+
+#include "codec/read.hpp"
+
+namespace adit::dispatch {
+
+ReportEvent event_of(int status, std::string_view body) {
+  if (status >= 200 && status < 300) {
+    return codec::read_report_reply(body) ? ReportEvent::Recorded : ReportEvent::Lost;
+  }
+  switch (status) {
+    case 401:
+    case 403:
+    case 404:
+    case 405:
+    case 407:
+      return ReportEvent::Barred;
+    case 408:
+      return ReportEvent::Lost;
+    case 429:
+      return ReportEvent::Throttled;
+    default:
+      return status >= 400 && status < 500 ? ReportEvent::Refused : ReportEvent::Lost;
+  }
+}
+
+Effect effect_of(const icd::ReportReply& reply) {
+  return {.scored = reply.report_status == "scored",
+          .again = reply.report_status == "admin stop" || reply.report_status == "run not started",
+          .points = reply.score_change};
+}
+
+Effect effect_of(const Report& report) {
+  const bool found = report.state == ReportState::Settled && report.reconciled;
+  if (report.state != ReportState::Answered && !found) return {};
+  const auto reply = codec::read_report_reply(report.answer);
+  return reply ? effect_of(*reply) : Effect{.scored = found};
+}
+
+}  // namespace adit::dispatch

@@ -1,0 +1,166 @@
+// The life of reports towards the Command Post: choosing, sending, answers.
+#include "dispatch/reports.hpp"
+
+#include <algorithm>
+#include <utility>
+
+#include "codec/read.hpp"
+#include "dispatch/report_verdict.hpp"
+#include "dispatch/said.hpp"
+#include "icd/sentence.hpp"
+
+namespace adit::dispatch {
+
+Reports::Reports(const ReportRules& rules, Deeds& deeds)
+    : rules_(rules), book_(deeds), account_(deeds), deeds_(deeds) {}
+
+void Reports::open(std::vector<Report> all, std::optional<Run> last_run, Time time) {
+  account_.open(std::move(last_run));
+  book_.open(std::move(all));
+  std::vector<std::int64_t> sending;
+  for (const auto& [number, report] : book_.all()) {
+    last_sending_ = std::max(last_sending_, report.sending);
+    if (report.state == ReportState::Sending) sending.push_back(number);
+  }
+  for (const std::int64_t number : sending) {
+    step(number, ReportEvent::Restarted, "the gateway stopped while it was being sent", time,
+         [this](Report& report) {
+           if (report.run == run().number) return;
+           report.run = run().number;  // a new run was noticed just then: it may have been recorded in either
+           report.before.reset();
+         });
+  }
+  unchecked_.insert(book_.waiting().begin(), book_.waiting().end());
+  doubt_began(time.now);
+}
+
+/// Takes a step, and does what the table says follows from it. False: it is not on disk, and not taken.
+bool Reports::step(std::int64_t number, ReportEvent event, const std::string& note, Time time,
+                   const ReportBook::Edit& edit) {
+  const ReportTransition* const row = transition(book_.at(number).state, event);
+  if (row == nullptr || !book_.move(number, event, note, time.stamp, edit)) return false;
+  switch (row->action) {
+    case ReportAction::Nothing:
+      break;
+    case ReportAction::Send:
+      sending_ = number;
+      break;
+    case ReportAction::AnswerClients:
+    case ReportAction::TellClients:
+      for (const ClientId client : clients_.take(number)) tell_how_it_stands(client, book_.at(number));
+      break;
+    case ReportAction::Ask:
+      account_.lose();
+      doubt_began(time.now);
+      break;
+  }
+  return true;
+}
+
+bool Reports::is_young(const Report& report, Instant now) const {
+  const auto taken = taken_at_.find(report.number);
+  return taken != taken_at_.end() && now - taken->second < kYoung;
+}
+
+/// It is sure to be meant for the run that is on now; or that cannot be found out, and it was asked for just
+/// now.
+bool Reports::may_go(const Report& report, Instant now) const {
+  if (barred_) return false;
+  if (inquiry_ && inquiry_->is_pending(now)) return false;
+  if (account_.is_fresh(now)) return true;
+  return account_.is_dumb(now) && (report.asked || is_young(report, now));
+}
+
+/// The first of those that wait that may go; nothing: none may.
+std::optional<std::int64_t> Reports::next(Instant now) const {
+  for (const std::int64_t number : book_.waiting()) {
+    if (may_go(book_.at(number), now)) return number;
+  }
+  return std::nullopt;
+}
+
+Wish Reports::wish(Time time) const {
+  if (sending_) return {};
+  Wish wish;
+  if (inquiry_) wish.status = inquiry_->next_ask(time.now);
+  if (book_.waiting().empty()) return wish;
+  wish.report = next(time.now).has_value();
+  if (barred_ || !account_.is_fresh(time.now)) wish.status = time.now;
+  return wish;
+}
+
+const Report* Reports::choose(Time time) {
+  while (const auto number = next(time.now)) {
+    if (check(*number, time)) {
+      const bool chosen =
+          step(*number, ReportEvent::Chosen, "", time, [&](Report& report) { prepare(report, time); });
+      return chosen ? &book_.at(*number) : nullptr;
+    }
+    if (book_.at(*number).state == ReportState::Waiting) return nullptr;  // the disk refuses
+  }
+  return nullptr;
+}
+
+/// What is written down with the step to Sending, so that its fate can be found out even after a crash.
+void Reports::prepare(Report& report, Time time) {
+  report.run = run().number;
+  report.tries += 1;
+  report.sending = ++last_sending_;
+  report.sent = time.stamp;
+  report.before = book_.doubts(run().number).empty() ? account_.expected(time.now) : std::nullopt;
+  report.status = 0;
+  report.content_type.clear();
+  report.answer.clear();
+}
+
+/// The step of the report that was under way.
+void Reports::ended(ReportEvent event, const std::string& note, Time time, const ReportBook::Edit& edit) {
+  const std::int64_t number = *std::exchange(sending_, std::nullopt);
+  step(number, event, note, time, [&](Report& report) {
+    if (event == ReportEvent::Lost) ++report.tries;
+    if (edit) edit(report);
+  });
+}
+
+void Reports::answered(const HttpAnswer& answer, Time time) {
+  const ReportEvent event = event_of(answer.status, answer.body);
+  const auto keep = [&](Report& report) {
+    report.status = answer.status;
+    report.content_type = answer.content_type;
+    report.answer = answer.body;
+  };
+  barred_ = event == ReportEvent::Barred;
+  if (event == ReportEvent::Recorded) return recorded(keep, *codec::read_report_reply(answer.body), time);
+  ended(event, said(answer.status, answer.body), time, keep);
+}
+
+void Reports::recorded(const ReportBook::Edit& keep, const icd::ReportReply& reply, Time time) {
+  // It was recorded in the run that is on by now, whichever it was meant for.
+  if (const std::string why = account_.another(reply); !why.empty()) begin_run(why, time);
+  const Effect effect = effect_of(reply);
+  const std::string note =
+      effect.again ? "not scored (" + reply.report_status + "): post it again once the run goes on" : "";
+  ended(ReportEvent::Recorded, note, time, [&](Report& report) {
+    keep(report);
+    report.run = run().number;
+  });
+  account_.answered(reply, time);
+}
+
+void Reports::never_left(const std::string& why, Time time) {
+  ended(ReportEvent::NeverLeft, why, time);
+}
+
+void Reports::lost(const std::string& why, Time time) {
+  ended(ReportEvent::Lost, why, time);
+}
+
+void Reports::tick(Time time) {
+  book_.catch_up();
+  for (const auto& [client, number] : clients_.take_late(time.now)) {
+    tell_how_it_stands(client, book_.at(number));
+  }
+  std::erase_if(taken_at_, [&](const auto& item) { return time.now - item.second > kYoung; });
+}
+
+}  // namespace adit::dispatch

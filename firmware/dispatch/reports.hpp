@@ -1,0 +1,153 @@
+#pragma once
+
+#include <chrono>
+#include <cstdint>
+#include <expected>
+#include <map>
+#include <optional>
+#include <set>
+#include <string>
+#include <vector>
+
+#include "dispatch/deeds.hpp"
+#include "dispatch/inquiry.hpp"
+#include "dispatch/report_book.hpp"
+#include "dispatch/run_account.hpp"
+#include "dispatch/waiting_clients.hpp"
+
+namespace adit::dispatch {
+
+/// What is held for the operator's word before it is sent.
+enum class Review : std::uint8_t { Off, Duplicates, All };
+
+struct ReportRules {
+  std::chrono::milliseconds answer_within{20000};  // a client that waits longer is told how its report stands
+  Review review = Review::Off;
+  double near_metres = 5;  // a report of the same type within this distance is a near duplicate
+  Patience patience;
+  std::size_t most_waiting = 1000;
+};
+
+/// What a client posts.
+struct Posted {
+  icd::ArtifactReport report;
+  std::string sender;     // its address
+  bool resubmit = false;  // as a new report, though it be the same as one that is finished
+};
+
+/// A whole answer of the Command Post's.
+struct HttpAnswer {
+  int status = 0;
+  std::string content_type;
+  std::string body;
+};
+
+/// What is to be asked of the Command Post next.
+struct Wish {
+  bool report = false;  // the first of those that wait may be sent
+  /// From when on the run's status is needed; nothing: it is not.
+  std::optional<std::chrono::steady_clock::time_point> status;
+};
+
+/// Every report's life, and every rule of it (promise 1): no I/O and no clock. Each step is on disk, by
+/// Deeds, before what follows from it.
+///
+/// One request is under way at a time: after choose(), or a take() that gives true, comes exactly one of
+/// answered(), never_left() and lost() before anything else is sent or asked; a status that was asked for
+/// ends in status_heard() or status_failed().
+class Reports {
+ public:
+  using Instant = std::chrono::steady_clock::time_point;
+  using Outcome = std::expected<std::int64_t, std::string>;  // a report's number, or why not
+
+  static constexpr std::chrono::seconds kYoung{10};  // how long a report is surely meant for the present run
+  static constexpr std::int64_t kMostTries = 5;      // sent so often and never recorded, it is held
+
+  /// `deeds` outlives this.
+  Reports(const ReportRules& rules, Deeds& deeds);
+
+  /// Takes up what the ledger holds.
+  void open(std::vector<Report> all, std::optional<Run> last_run, Time time);
+
+  /// A client posts a report; it is told by Deeds, at once or later. `may_send`: nothing is under way and
+  /// the rate allows it. True: it is on disk as sending(): send it.
+  bool take(const Posted& posted, ClientId client, bool may_send, Time time);
+
+  Wish wish(Time time) const;
+  /// The first of those that wait, on disk as sending(). Nothing: none may go, or the disk refuses.
+  const Report* choose(Time time);
+  void answered(const HttpAnswer& answer, Time time);
+  void never_left(const std::string& why, Time time);
+  void lost(const std::string& why, Time time);
+  void status_heard(const icd::RunStatus& status, Time time);
+  /// `reached`: the Command Post answered, but nothing that helps.
+  void status_failed(bool reached, Time time);
+
+  /// Tells clients whose time is up, and writes what could not be written. Called at next_deadline() at the
+  /// latest, and now and then.
+  void tick(Time time);
+  std::optional<Instant> next_deadline() const { return clients_.next_deadline(); }
+  /// The gateway stops: tells all clients but those whose report is under way; if `all`, those too.
+  void dismiss(bool all);
+
+  /// The operator's word. Each gives the number of the report that it moved, or a sentence why not.
+  Outcome send(std::int64_t number, Time time);
+  Outcome withdraw(std::int64_t number, Time time);
+  Outcome call_done(std::int64_t number, Time time);
+  /// The same once more, as a new report.
+  Outcome resubmit(std::int64_t number, Time time);
+  /// A new run begins, the operator says. Gives its number.
+  std::int64_t declare_new_run(Time time);
+
+  const ReportBook& book() const { return book_; }
+  const Run& run() const { return account_.run(); }
+  const Report* sending() const { return sending_ ? &book_.at(*sending_) : nullptr; }
+  /// It is in doubt, and Adit can find out by itself.
+  bool is_asking(const Report& report) const;
+  /// What the operator must know or decide, a sentence each.
+  std::vector<std::string> attention() const;
+
+ private:
+  // Clients.
+  void tell_how_it_stands(ClientId client, const Report& report);
+  void join(ClientId client, const Report& earlier, Time time);
+
+  // Taking and choosing.
+  const Report* earlier(const Report& report) const;
+  std::string reason_to_hold(const Report& report) const;
+  bool check(std::int64_t number, Time time);
+  bool is_young(const Report& report, Instant now) const;
+  bool may_go(const Report& report, Instant now) const;
+  std::optional<std::int64_t> next(Instant now) const;
+  void recorded(const ReportBook::Edit& keep, const icd::ReportReply& reply, Time time);
+  bool take_new(Report report, const std::string& hold, ClientId client, bool may_send, Time time);
+  void prepare(Report& report, Time time);
+  bool step(std::int64_t number, ReportEvent event, const std::string& note, Time time,
+            const ReportBook::Edit& edit = nullptr);
+  void ended(ReportEvent event, const std::string& note, Time time, const ReportBook::Edit& edit = nullptr);
+
+  // Doubts and runs.
+  void doubt_began(Instant now);
+  void inquire(const icd::RunStatus& status, Time time);
+  SentSince sent_since(const Report& doubt) const;
+  void settle(const std::vector<const Report*>& doubts, const Evidence& evidence, Time time);
+  void send_again(const std::vector<const Report*>& doubts, const Evidence& evidence, Time time);
+  void explain(const std::vector<const Report*>& doubts, const std::string& why, Time time);
+  void blur_doubts(std::int64_t judged, Time time);
+  void begin_run(const std::string& why, Time time);
+
+  const ReportRules rules_;
+  ReportBook book_;
+  RunAccount account_;
+  WaitingClients clients_;
+  std::map<std::int64_t, Instant> taken_at_;  // those taken since this program began
+  std::set<std::int64_t> unchecked_;          // not yet compared with earlier ones: the run was not known
+  std::optional<std::int64_t> sending_;
+  std::int64_t last_sending_ = 0;  // Report::sending of the last one sent
+  std::optional<Inquiry> inquiry_;
+  bool barred_ = false;    // nothing is sent before a status is answered
+  bool stopping_ = false;  // for what clients are told
+  Deeds& deeds_;
+};
+
+}  // namespace adit::dispatch

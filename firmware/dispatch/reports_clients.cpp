@@ -1,0 +1,179 @@
+// The life of reports towards the team: taking them, joining the same one again, telling how they stand.
+#include "dispatch/report_verdict.hpp"
+#include "dispatch/reports.hpp"
+#include "dispatch/same_report.hpp"
+#include "icd/sentence.hpp"
+
+namespace adit::dispatch {
+namespace {
+
+constexpr const char* kAskAgain = "; posting the same report again asks after it and never sends it twice";
+
+std::string metres(double distance) {
+  return icd::number_text(static_cast<double>(static_cast<std::int64_t>(distance * 10 + 0.5)) / 10) + " m";
+}
+
+/// A report in this state stands for all that are the same: they get its answer, or wait for it with it.
+bool stands_for_others(const Report& report) {
+  if (report.state == ReportState::Refused) return false;  // not recorded: asking again costs nothing
+  return !effect_of(report).again;
+}
+
+}  // namespace
+
+bool Reports::take(const Posted& posted, ClientId client, bool may_send, Time time) {
+  Report report{
+      .report = posted.report, .sender = posted.sender, .received = time.stamp, .changed = time.stamp};
+  report.run = run().number;
+  report.asked = posted.resubmit;
+  const bool fresh = account_.is_fresh(time.now);
+  const Report* const same = earlier(report);
+  // What is finished may be of a run that has ended unnoticed: then it is compared later (check()).
+  const bool repeats = same != nullptr && (fresh || !is_final(same->state));
+  if (repeats && (!report.asked || (same->asked && !is_final(same->state)))) {
+    join(client, *same, time);
+    return false;
+  }
+  if (book_.waiting().size() >= rules_.most_waiting) {
+    deeds_.tell(
+        client,
+        {.status = icd::Status::TooManyRequests,
+         .sentence = icd::sentence(rules_.most_waiting, " reports wait already; this one was not taken")},
+        report);
+    return false;
+  }
+  return take_new(std::move(report), fresh ? reason_to_hold(report) : "", client, may_send, time);
+}
+
+bool Reports::take_new(Report report, const std::string& hold, ClientId client, bool may_send, Time time) {
+  const bool fresh = account_.is_fresh(time.now);
+  // Received and chosen in one write: the disk is flushed once before it leaves.
+  const bool now =
+      may_send && hold.empty() && fresh && !sending_ && book_.waiting().empty() && may_go(report, time.now);
+  std::vector<ReportEvent> events;
+  if (!hold.empty()) events.push_back(ReportEvent::Held);
+  if (now) events.push_back(ReportEvent::Chosen);
+  const std::int64_t number = book_.add(report, events, hold, [&](Report& chosen) {
+    if (chosen.state == ReportState::Sending) prepare(chosen, time);
+  });
+  if (number == 0) {
+    deeds_.tell(client, {.sentence = "the report could not be written down and was not taken; post it again"},
+                report);
+    return false;
+  }
+  taken_at_[number] = time.now;
+  clients_.add(client, number, time.now + rules_.answer_within);
+  if (now) sending_ = number;
+  if (!fresh) unchecked_.insert(number);
+  return now;
+}
+
+/// The latest report before this one, of its run, that it would be a repeat of.
+const Report* Reports::earlier(const Report& report) const {
+  for (auto item = book_.all().rbegin(); item != book_.all().rend(); ++item) {
+    const Report& other = item->second;
+    if (report.number != 0 && other.number >= report.number) continue;
+    if (other.run != run().number || !is_same(other.report, report.report) || !stands_for_others(other))
+      continue;
+    const Report* const original = book_.find(other.same_as);
+    return original != nullptr ? original : &other;
+  }
+  return nullptr;
+}
+
+/// Why it must not go without the operator's word, or "".
+std::string Reports::reason_to_hold(const Report& report) const {
+  if (report.asked || rules_.review == Review::Off) return "";
+  for (const auto& [number, other] : book_.all()) {
+    const bool counts =
+        other.run == run().number && other.number != report.number && other.state != ReportState::Withdrawn;
+    if (counts && is_near(other.report, report.report, rules_.near_metres) && stands_for_others(other)) {
+      return icd::sentence("held: the same type as report ", number, ", ",
+                           metres(distance(other.report, report.report)), " from it");
+    }
+  }
+  return rules_.review == Review::All ? "held: every report is reviewed" : "";
+}
+
+/// What take() could not do because the run was not known. False: it is not to be sent (or not yet).
+bool Reports::check(std::int64_t number, Time time) {
+  const Report report = book_.at(number);
+  if (report.run != run().number && !report.asked && !is_young(report, time.now)) {
+    step(number, ReportEvent::Held, "held: a new run began (" + run().why + ")", time);
+    return false;
+  }
+  if (!unchecked_.contains(number)) return true;
+  const Report* const same = report.asked ? nullptr : earlier(report);
+  if (same != nullptr) {
+    const std::int64_t original = same->number;
+    const bool joined = step(number, ReportEvent::Joined, icd::sentence("the same as report ", original),
+                             time, [original](Report& moved) { moved.same_as = original; });
+    if (joined) {
+      unchecked_.erase(number);
+      for (const ClientId client : clients_.take(number)) join(client, book_.at(original), time);
+    }
+    return false;
+  }
+  if (const std::string reason = reason_to_hold(report); !reason.empty()) {
+    if (step(number, ReportEvent::Held, reason, time)) unchecked_.erase(number);
+    return false;
+  }
+  unchecked_.erase(number);
+  return true;
+}
+
+void Reports::join(ClientId client, const Report& earlier, Time time) {
+  if (is_final(earlier.state)) return tell_how_it_stands(client, earlier);
+  if (taken_at_.contains(earlier.number) || earlier.state == ReportState::Waiting) {
+    taken_at_[earlier.number] = time.now;  // it was meant for the present run just now
+  }
+  clients_.add(client, earlier.number, time.now + rules_.answer_within);
+}
+
+/// Its answer, or the truth about it.
+void Reports::tell_how_it_stands(ClientId client, const Report& report) {
+  const std::string name = icd::sentence("report ", report.number);
+  const std::string why = report.note.empty() ? "" : " (" + report.note + ")";
+  ClientAnswer answer{.number = report.number};
+  switch (report.state) {
+    case ReportState::Answered:
+    case ReportState::Refused:
+      break;  // the Command Post's own answer
+    case ReportState::Settled:
+      if (report.reconciled) break;
+      answer.status = icd::Status::Conflict;
+      answer.sentence = name + " was called done by the operator; its answer is not known" + why +
+                        "; to send it once more, post it with the header Adit-Resubmit: yes";
+      break;
+    case ReportState::Withdrawn:
+      answer.status = icd::Status::Conflict;
+      answer.sentence = name + " was withdrawn by the operator and not sent" + why +
+                        "; to send it, post it with the header Adit-Resubmit: yes";
+      break;
+    case ReportState::Received:
+      answer.sentence = name + " is kept, and waits for the operator's word" + why + kAskAgain;
+      break;
+    case ReportState::InDoubt:
+      answer.status = icd::Status::GatewayTimeout;
+      answer.sentence = name + " is in doubt: it may or may not have been recorded" + why + kAskAgain;
+      break;
+    case ReportState::Waiting:
+      answer.sentence =
+          (stopping_ ? "the gateway is stopping; " : "") + name + " is kept and waiting" + why + kAskAgain;
+      break;
+    case ReportState::Sending:
+      answer.status = icd::Status::GatewayTimeout;
+      answer.sentence = name + " is on its way, and may or may not have been recorded yet" + kAskAgain;
+      break;
+  }
+  deeds_.tell(client, answer, report);
+}
+
+void Reports::dismiss(bool all) {
+  stopping_ = true;
+  for (const auto& [client, number] : clients_.take_but(all ? std::nullopt : sending_)) {
+    tell_how_it_stands(client, book_.at(number));
+  }
+}
+
+}  // namespace adit::dispatch

@@ -1,0 +1,166 @@
+// The life of reports whose answer was lost, and the run that all belong to.
+#include "codec/write.hpp"
+#include "dispatch/reconciled_answer.hpp"
+#include "dispatch/report_verdict.hpp"
+#include "dispatch/reports.hpp"
+#include "icd/sentence.hpp"
+
+namespace adit::dispatch {
+namespace {
+
+/// Why the run's status cannot say what became of it, or "".
+std::string undecidable(const Report& report, const Run& run) {
+  if (report.run != run.number) return "a new run began before it was clear whether it had been recorded";
+  if (!run.unreliable.empty()) return run.unreliable;
+  if (!report.before) return "what the Command Post counted before it was sent is not known for certain";
+  return "";
+}
+
+constexpr const char* kOperator = "; the operator decides: send it, or call it done";
+
+}  // namespace
+
+bool Reports::is_asking(const Report& report) const {
+  return inquiry_ && report.state == ReportState::InDoubt && report.run == run().number;
+}
+
+/// Also when another is in doubt already: from now on both are asked for.
+void Reports::doubt_began(Instant now) {
+  inquiry_.reset();
+  const auto doubts = book_.doubts(run().number);
+  if (!doubts.empty() && undecidable(*doubts.front(), run()).empty()) inquiry_.emplace(rules_.patience, now);
+}
+
+/// What Adit sent after a report in doubt, and how that was answered.
+SentSince Reports::sent_since(const Report& doubt) const {
+  SentSince since;
+  for (const auto& [number, report] : book_.all()) {
+    if (report.run != doubt.run || report.sending <= doubt.sending) continue;
+    const Effect effect = effect_of(report);
+    since.scored += effect.scored ? 1 : 0;
+    since.points += effect.points;
+  }
+  return since;
+}
+
+void Reports::status_heard(const icd::RunStatus& status, Time time) {
+  if (const std::string why = account_.another(status, time.stamp); !why.empty()) begin_run(why, time);
+  account_.heard(status, time);
+  barred_ = false;
+  if (inquiry_) inquiry_->asked(time.now);
+  if (book_.doubts(run().number).empty()) {
+    account_.settle(status, time);
+  } else {
+    inquire(status, time);
+  }
+}
+
+void Reports::status_failed(bool reached, Time time) {
+  if (reached) account_.dumb(time.now);
+  if (inquiry_) inquiry_->asked(time.now);
+}
+
+void Reports::inquire(const icd::RunStatus& status, Time time) {
+  const auto doubts = book_.doubts(run().number);
+  if (!inquiry_) return explain(doubts, "", time);
+  const Report& first = *doubts.front();
+  const Evidence evidence =
+      weigh(*first.before, static_cast<std::int64_t>(doubts.size()), sent_since(first), status);
+  switch (inquiry_->hear(evidence, status.run_clock, time.now)) {
+    case Finding::Recorded:
+      settle(doubts, evidence, time);
+      break;
+    case Finding::NotRecorded:
+      send_again(doubts, evidence, time);
+      break;
+    case Finding::Contradicts:
+      account_.distrust(evidence.why, time.stamp);
+      inquiry_.reset();
+      return explain(doubts, "", time);
+    case Finding::Silent:
+      return explain(doubts, evidence.why, time);
+  }
+  if (!book_.doubts(run().number).empty()) return;  // the disk refused: it is asked again
+  inquiry_.reset();
+  account_.settle(status, time);
+}
+
+void Reports::settle(const std::vector<const Report*>& doubts, const Evidence& evidence, Time time) {
+  for (const Report* const doubt : doubts) {
+    const std::string answer = reconciled_answer(*doubt, run(), evidence.points_each, evidence.why);
+    step(doubt->number, ReportEvent::Found, "found recorded: " + evidence.why, time, [&](Report& report) {
+      report.status = static_cast<int>(icd::Status::Created);
+      report.content_type = codec::kJson;
+      report.answer = answer;
+      report.reconciled = true;
+    });
+  }
+}
+
+void Reports::send_again(const std::vector<const Report*>& doubts, const Evidence& evidence, Time time) {
+  for (const Report* const doubt : doubts) {
+    if (doubt->tries < kMostTries) {
+      step(doubt->number, ReportEvent::Missing, "not recorded: " + evidence.why, time);
+    } else {
+      step(doubt->number, ReportEvent::Held,
+           icd::sentence("held: sent ", doubt->tries, " times without an answer, and never recorded"), time);
+    }
+  }
+}
+
+/// Says at each report in doubt how it stands.
+void Reports::explain(const std::vector<const Report*>& doubts, const std::string& seen, Time time) {
+  for (const Report* const doubt : doubts) {
+    const std::string note = is_asking(*doubt) ? "asking for the run's status: " + seen
+                                               : undecidable(*doubts.front(), run()) + kOperator;
+    if (doubt->note != note) book_.note(doubt->number, note, time.stamp);
+  }
+}
+
+/// Of the reports sent around one that the operator has judged it can no longer be told which was recorded.
+void Reports::blur_doubts(std::int64_t judged, Time time) {
+  for (const Report* const doubt : book_.doubts(run().number)) {
+    if (doubt->number == judged || !doubt->before) continue;
+    book_.note(doubt->number, doubt->note, time.stamp, [](Report& report) { report.before.reset(); });
+  }
+  account_.lose();
+  doubt_began(time.now);
+  explain(book_.doubts(run().number), "", time);
+}
+
+/// What waits was meant for the run before, but for what was posted just now. What is in doubt and was sent
+/// since shortly before the old run was last heard of may have been recorded in either: from now on it stands
+/// for the same report in the new one. The run itself is written down last: a crash before that does all this
+/// once more.
+void Reports::begin_run(const std::string& why, Time time) {
+  const std::int64_t number = run().number + 1;
+  const std::chrono::duration<double> late = rules_.patience.doubt_for + kYoung;
+  const double last_word = run().heard - late.count();
+  const auto enters = [number](Report& report) {
+    report.run = number;
+    report.before.reset();
+  };
+  const auto doubts = book_.doubts(run().number);
+  for (const Report* const doubt : doubts) {
+    if (doubt->sent >= last_word) book_.note(doubt->number, doubt->note, time.stamp, enters);
+  }
+  const std::vector<std::int64_t> waiting(book_.waiting().begin(), book_.waiting().end());
+  for (const std::int64_t waits : waiting) {
+    const Report& report = book_.at(waits);
+    if (is_young(report, time.now)) {
+      book_.note(report.number, report.note, time.stamp, enters);
+    } else {
+      step(report.number, ReportEvent::Held, "held: a new run began (" + why + ")", time);
+    }
+  }
+  inquiry_.reset();
+  account_.begin(why, time);
+  explain(doubts, "", time);
+}
+
+std::int64_t Reports::declare_new_run(Time time) {
+  begin_run("the operator says so", time);
+  return run().number;
+}
+
+}  // namespace adit::dispatch

@@ -1,0 +1,91 @@
+// The operator's word on a report.
+#include "dispatch/reports.hpp"
+#include "icd/sentence.hpp"
+
+namespace adit::dispatch {
+namespace {
+
+constexpr const char* kDisk = "the step could not be written down, so it was not taken; try again";
+
+std::unexpected<std::string> no_such(std::int64_t number) {
+  return std::unexpected(icd::sentence("there is no report ", number));
+}
+
+/// "report 7 is answered: ..."
+std::unexpected<std::string> cannot(const Report& report, const std::string& what) {
+  return std::unexpected(icd::sentence("report ", report.number, " is ", name_of(report.state), ": ", what));
+}
+
+}  // namespace
+
+Reports::Outcome Reports::send(std::int64_t number, Time time) {
+  const Report* const report = book_.find(number);
+  if (report == nullptr) return no_such(number);
+  if (transition(report->state, ReportEvent::Released) == nullptr) {
+    return cannot(*report, "to send it once more, resubmit it");
+  }
+  const bool judged = report->state == ReportState::InDoubt;
+  const bool moved = step(number, ReportEvent::Released, "the operator sends it", time, [&](Report& sent) {
+    sent.asked = true;
+    sent.same_as = 0;
+    sent.tries = 0;
+    sent.run = run().number;
+  });
+  if (!moved) return std::unexpected(kDisk);
+  if (judged) blur_doubts(number, time);
+  return number;
+}
+
+Reports::Outcome Reports::withdraw(std::int64_t number, Time time) {
+  const Report* const report = book_.find(number);
+  if (report == nullptr) return no_such(number);
+  if (transition(report->state, ReportEvent::Withdrawn) == nullptr) {
+    return cannot(*report, is_final(report->state)
+                               ? "there is nothing to withdraw"
+                               : "it may have been recorded; it can be sent, or called done");
+  }
+  if (!step(number, ReportEvent::Withdrawn, "", time)) return std::unexpected(kDisk);
+  unchecked_.erase(number);
+  return number;
+}
+
+Reports::Outcome Reports::call_done(std::int64_t number, Time time) {
+  const Report* const report = book_.find(number);
+  if (report == nullptr) return no_such(number);
+  if (transition(report->state, ReportEvent::CalledDone) == nullptr) {
+    return cannot(*report, "only a report in doubt can be called done");
+  }
+  if (!step(number, ReportEvent::CalledDone, "the operator calls it done", time)) {
+    return std::unexpected(kDisk);
+  }
+  blur_doubts(number, time);
+  return number;
+}
+
+Reports::Outcome Reports::resubmit(std::int64_t number, Time time) {
+  const Report* const report = book_.find(number);
+  if (report == nullptr) return no_such(number);
+  if (!is_final(report->state)) return cannot(*report, "it is not finished yet");
+  Report again{.report = report->report, .sender = "operator", .received = time.stamp, .changed = time.stamp};
+  again.note = icd::sentence("report ", number, " once more");
+  again.run = run().number;
+  again.asked = true;
+  const std::int64_t made = book_.add(std::move(again), {}, "");
+  if (made == 0) return std::unexpected(kDisk);
+  taken_at_[made] = time.now;
+  return made;
+}
+
+std::vector<std::string> Reports::attention() const {
+  std::vector<std::string> sentences;
+  for (const auto& [number, report] : book_.all()) {
+    if (report.state == ReportState::Received || report.state == ReportState::InDoubt) {
+      sentences.push_back(icd::sentence(
+          "report ", number, " is ", report.state == ReportState::InDoubt ? "in doubt: " : "", report.note));
+    }
+  }
+  if (!run().unreliable.empty()) sentences.push_back(run().unreliable);
+  return sentences;
+}
+
+}  // namespace adit::dispatch

@@ -1,0 +1,70 @@
+#pragma once
+
+#include <chrono>
+#include <optional>
+#include <string>
+
+#include "dispatch/deeds.hpp"
+#include "dispatch/evidence.hpp"
+#include "dispatch/report.hpp"
+#include "dispatch/report_verdict.hpp"
+
+namespace adit::dispatch {
+
+/// The present run, and what /api/status would answer now: the last status, less what Adit's own reports
+/// have changed since.
+class RunAccount {
+ public:
+  using Instant = std::chrono::steady_clock::time_point;
+  static constexpr std::chrono::seconds kFresh{15};  // how long a status vouches for the run
+  static constexpr double kWriteEvery = 30;          // seconds between writes of the run clock alone
+
+  explicit RunAccount(Deeds& deeds) : deeds_(deeds) {}
+
+  void open(std::optional<Run> run);
+
+  const Run& run() const { return run_; }
+  /// The run was heard of less than kFresh ago.
+  bool is_fresh(Instant now) const { return heard_ && now - *heard_ <= kFresh; }
+  /// The Command Post was asked less than kFresh ago, and answered nothing that helps.
+  bool is_dumb(Instant now) const { return !is_fresh(now) && dumb_at_ && now - *dumb_at_ <= kFresh; }
+  /// What /api/status would answer; nothing: it is not known for certain, or proves nothing.
+  std::optional<icd::RunStatus> expected(Instant now) const;
+
+  /// Why this status is one of another run, or "".
+  std::string another(const icd::RunStatus& status, double stamp) const;
+  std::string another(const icd::ReportReply& reply) const;
+  /// Another run begins.
+  void begin(const std::string& why, Time time);
+
+  /// A status of this run.
+  void heard(const icd::RunStatus& status, Time time);
+  /// An answer to a report, of this run.
+  void answered(const icd::ReportReply& reply, Time time);
+  void dumb(Instant now) { dumb_at_ = now; }
+  /// A report came into doubt: what follows from the last status is not certain.
+  void lose() { known_.reset(); }
+  /// Compares a status with what was expected, when nothing is in doubt, and starts from it.
+  void settle(const icd::RunStatus& status, Time time);
+  /// From now on, and until the next run, the count of reports proves nothing.
+  void distrust(const std::string& why, double stamp);
+
+ private:
+  struct Known {
+    icd::RunStatus status;
+    Instant heard;
+    SentSince since;
+  };
+  void write_down(double stamp);
+
+  Deeds& deeds_;
+  Run run_;
+  double written_ = 0;            // Run::heard as it is on disk
+  std::optional<Instant> heard_;  // the last word of the run, by a status or an answer
+  std::optional<Instant> dumb_at_;
+  std::optional<Known> known_;
+  bool odd_ = false;       // the last status was not as expected
+  bool unscored_ = false;  // the last answer says that reports are not being scored
+};
+
+}  // namespace adit::dispatch

@@ -1,0 +1,32 @@
+#include "dispatch/same_report.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+namespace adit::dispatch {
+namespace {
+
+char lower(char letter) {
+  return letter >= 'A' && letter <= 'Z' ? static_cast<char>(letter - 'A' + 'a') : letter;
+}
+
+bool is_one_type(const std::string& one, const std::string& other) {
+  return std::ranges::equal(one, other, {}, lower, lower);
+}
+
+}  // namespace
+
+bool is_same(const icd::ArtifactReport& one, const icd::ArtifactReport& other) {
+  return one.position == other.position && is_one_type(one.type, other.type);
+}
+
+double distance(const icd::ArtifactReport& one, const icd::ArtifactReport& other) {
+  return std::hypot(one.position.x - other.position.x, one.position.y - other.position.y,
+                    one.position.z - other.position.z);
+}
+
+bool is_near(const icd::ArtifactReport& one, const icd::ArtifactReport& other, double metres) {
+  return is_one_type(one.type, other.type) && distance(one, other) <= metres;
+}
+
+}  // namespace adit::dispatch

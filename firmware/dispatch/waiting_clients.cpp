@@ -1,0 +1,38 @@
+#include "dispatch/waiting_clients.hpp"
+
+namespace adit::dispatch {
+
+template <class Which>
+std::vector<std::pair<ClientId, std::int64_t>> WaitingClients::take_those(Which which) {
+  std::vector<std::pair<ClientId, std::int64_t>> taken;
+  std::erase_if(clients_, [&](const auto& item) {
+    const bool out = which(item.second);
+    if (out) taken.emplace_back(item.first, item.second.number);
+    return out;
+  });
+  return taken;
+}
+
+std::vector<ClientId> WaitingClients::take(std::int64_t number) {
+  std::vector<ClientId> taken;
+  for (const auto& [client, of] :
+       take_those([number](const Client& client) { return client.number == number; })) {
+    taken.push_back(client);
+  }
+  return taken;
+}
+
+std::vector<std::pair<ClientId, std::int64_t>> WaitingClients::take_but(std::optional<std::int64_t> number) {
+  return take_those([number](const Client& client) { return client.number != number; });
+}
+
+std::vector<std::pair<ClientId, std::int64_t>> WaitingClients::take_late(Instant now) {
+  return take_those([now](const Client& client) { return client.deadline <= now; });
+}
+
+std::optional<WaitingClients::Instant> WaitingClients::next_deadline() const {
+  if (clients_.empty()) return std::nullopt;
+  return clients_.begin()->second.deadline;
+}
+
+}  // namespace adit::dispatch

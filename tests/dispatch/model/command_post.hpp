@@ -1,0 +1,47 @@
+#pragma once
+
+#include <cstdint>
+#include <string>
+#include <vector>
+
+#include "dispatch/reports.hpp"
+
+namespace adit::dispatch::model {
+
+/// Seconds of simulated time.
+using Seconds = double;
+
+/// What one Command Post has recorded, and how.
+struct Recorded {
+  double key = 0;  // the report's x, which stands for the report; negative: another sender's
+  std::int64_t run = 0;
+  bool scored = false;
+  std::int64_t points = 0;
+  Seconds run_began = 0, at = 0;
+};
+
+/// The Command Post by the letter of the ICD's section 5: it records whatever reaches it, scores it where the
+/// run goes on and something is left, and cannot tell a report from the same one again.
+class CommandPost {
+ public:
+  enum class Phase { NotStarted, Running, AdminStop };
+
+  HttpAnswer record(const icd::ArtifactReport& report, Seconds now);
+  icd::RunStatus status(Seconds now) const;
+  void other_sender(Seconds now) { record({"rope", {-1, 0, 0}}, now); }
+  void new_run(Seconds now);
+  void set(Phase phase) { phase_ = phase; }
+
+  Seconds run_began() const { return started_; }
+  std::int64_t run() const { return run_; }
+  const std::vector<Recorded>& recorded() const { return recorded_; }
+
+ private:
+  Phase phase_ = Phase::Running;
+  std::int64_t run_ = 1;
+  Seconds started_ = 0;
+  std::int64_t remaining_ = 25, score_ = 0;
+  std::vector<Recorded> recorded_;
+};
+
+}  // namespace adit::dispatch::model

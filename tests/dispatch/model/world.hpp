@@ -1,0 +1,135 @@
+#pragma once
+
+#include <cstdint>
+#include <functional>
+#include <map>
+#include <memory>
+#include <queue>
+#include <random>
+#include <set>
+#include <string>
+#include <vector>
+
+#include "dispatch/model/command_post.hpp"
+#include "dispatch/model/disk.hpp"
+#include "dispatch/reports.hpp"
+
+namespace adit::dispatch::model {
+
+/// How often what goes wrong, as probabilities for each chance there is.
+struct Trouble {
+  double answer_lost = 0;   // recorded, and its answer lost
+  double request_lost = 0;  // never recorded, and no answer
+  double late = 0;          // recorded only after Adit has given up waiting
+  double never_left = 0, throttled = 0, barred = 0, refused = 0;
+  double server_error = 0;  // half of them after recording
+  double status_fails = 0;
+  double power_cut = 0;  // at each write, before or after it; and as often at any other event
+  double disk_full = 0;  // for some seconds
+  bool other_sender = false, admin_stops = false, new_runs = false;
+  bool operator_acts = false;
+  Review review = Review::Off;
+};
+
+/// What the product does, for tests that must not be vacuous.
+struct Tally {
+  std::int64_t steps = 0, posts = 0, acknowledged = 0, recorded = 0, settled = 0, sent_again = 0,
+               power_cuts = 0, undecided = 0, held = 0;
+};
+
+/// Adit's rules, clients, a Command Post and what lies between, on simulated time. Everything comes from the
+/// seed.
+class World final : public Deeds {
+ public:
+  World(const Trouble& trouble, std::uint64_t seed);
+  ~World() override;
+
+  /// Ten minutes of trouble, and then enough of calm for all to end.
+  void live();
+  /// What broke promise 1, a sentence each.
+  std::vector<std::string> broken_promises() const;
+  const Tally& tally() const { return tally_; }
+  /// The story so far, where ADIT_MODEL_STORY is set.
+  const std::string& story() const { return story_; }
+
+ private:
+  struct Event {
+    Seconds at = 0;
+    std::uint64_t order = 0;
+    std::int64_t life = 0;  // of the process that it belongs to; 0: to nobody's
+    std::function<void()> happen;
+    bool operator<(const Event& other) const { return at != other.at ? at > other.at : order > other.order; }
+  };
+  struct Client {
+    double key = 0;
+    Seconds patience = 20, pause = 1;
+    std::int64_t tries_left = 20;
+    ClientId waiting = 0;  // the post under way
+    bool done = false, acknowledged = false;
+    std::vector<Seconds> posted_at;
+  };
+
+  // Deeds.
+  bool write(std::span<const Report> steps) override;
+  bool write(const Run& run) override;
+  void tell(ClientId client, const ClientAnswer& answer, const Report& report) override;
+
+  // Time.
+  void later(Seconds delay, std::function<void()> happen, bool of_process = true);
+  void run_until(Seconds end);
+  Time time() const;
+  double chance() { return std::uniform_real_distribution<double>(0, 1)(random_); }
+  double between(double low, double high) {
+    return std::uniform_real_distribution<double>(low, high)(random_);
+  }
+  void tell_story(const std::string& sentence);
+
+  // The box.
+  void start();
+  void cut_power();
+  void pump();
+  void transmit(const Report& report);
+  void ask();
+  void take_operators_word();
+
+  // What is outside.
+  void post(std::size_t client);
+  void heard(std::size_t client, bool done, bool acknowledged);
+  void make_trouble();
+  void record_later(Seconds delay, const icd::ArtifactReport& report, std::function<void(HttpAnswer)> then);
+
+  const Trouble trouble_;
+  std::mt19937_64 random_;
+  bool calm_ = false;
+  Seconds now_ = 1;
+  std::uint64_t order_ = 0;
+  std::priority_queue<Event> events_;
+
+  Disk disk_;
+  CommandPost post_;
+  std::unique_ptr<Reports> reports_;
+  std::int64_t life_ = 0;
+  bool busy_ = false;
+  Seconds report_ready_ = 0, status_ready_ = 0, poll_at_ = 0;
+
+  /// A request that the Command Post has read, and will record; shared with its event.
+  struct Pending {
+    icd::ArtifactReport report;
+    Seconds at = 0;
+    std::function<void(HttpAnswer)> then;
+    bool done = false;
+  };
+  std::vector<std::shared_ptr<Pending>> pending_;
+  void record_at(const std::shared_ptr<Pending>& pending);
+
+  std::vector<Client> clients_;
+  std::map<ClientId, std::size_t> posts_;
+  ClientId last_post_ = 0;
+  std::set<double> touched_;     // the operator has said something of it
+  std::vector<Seconds> others_;  // when another sender reported
+  Tally tally_;
+  std::string story_;
+  bool tells_ = false;
+};
+
+}  // namespace adit::dispatch::model

@@ -62,13 +62,13 @@ __attribute__((constructor)) static void read_plan(void) {
 
 static void say(const char* line) {
   char whole[PATH_MAX];
-  const int length = snprintf(whole, sizeof whole, "%s\n", line);
+  const int length = snprintf(whole, sizeof whole, "%ld %s\n", points, line);
   if (syscall(SYS_write, plan.trace, whole, (size_t)length) != length) abort();
 }
 
 static void die(const char* when) {
   char line[64];
-  snprintf(line, sizeof line, "%ld killed %s", points, when);
+  snprintf(line, sizeof line, "killed %s", when);
   say(line);
   if (plan.tear) tear(plan.seed, say);
   syscall(SYS_kill, getpid(), SIGKILL);
@@ -113,7 +113,7 @@ static void watch_for_report(int file) {
 static void count(struct Point* point, const char* place, long long size, long long offset) {
   point->number = ++points;
   char line[PATH_MAX];
-  snprintf(line, sizeof line, "%ld %s %s %lld@%lld", points, point->call, place, size, offset);
+  snprintf(line, sizeof line, "%s %s %lld@%lld", point->call, place, size, offset);
   say(line);
   if (points == plan.kill && !plan.after) die("before");
 }

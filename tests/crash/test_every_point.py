@@ -53,6 +53,9 @@ def points_of(first=None):
     return live(play)
 
 
+Life = collections.namedtuple("Life", "killed_at torn problem")
+
+
 def kind_of(line):
     """The call and where it goes: "pwrite64 ledger.sqlite-wal"."""
     return " ".join(line.split()[:2])
@@ -90,7 +93,7 @@ class EveryPoint(unittest.TestCase):
         self.assertEqual((stage.post.recorded(), stage.box.states()), ([], []), "a report that never was on disk")
 
     def one_life(self, what, client, first, faults):
-        """The line of the point at which the box was killed, and a sentence where a promise was broken."""
+        """What happened: the point at which the box was killed, what was torn, and a sentence where a promise was broken."""
         def play(stage):
             try:
                 stage.box.start(**{"from": first_life(stage, first)}, **faults)
@@ -98,9 +101,9 @@ class EveryPoint(unittest.TestCase):
                 problem = ""
             except AssertionError as error:
                 problem = f"{what}: {error}\n{stage.box.said()}"
-            points = stage.box.points()
-            killed = next((number for number, line in enumerate(points) if line.startswith("killed")), 0)
-            return points[killed - 1] if killed else "", problem
+            lines = stage.box.points()
+            killed = next((number for number, line in enumerate(lines) if line.startswith("killed")), 0)
+            return Life(lines[killed - 1] if killed else "", lines[killed + 1:] if killed else [], problem)
         return live(play)
 
     def at_every_point(self, client, torn, first=None):
@@ -113,12 +116,16 @@ class EveryPoint(unittest.TestCase):
                 for when in ("before", "after"):
                     faults = {"kill": number, "when": when} | ({"tear": 2 * number + (when == "after")} if torn else {})
                     lives.append(pool.submit(self.one_life, f"{faults} ({line})", client, first, faults))
-        ended = [life.result() for life in lives]
-        reached = collections.Counter(kind_of(line) for line, _ in ended if line)
-        print(f"\n{len(ended)} lives, {reached.total()} ended at their point:", dict(sorted(reached.items())), flush=True)
-        problems = [problem for _, problem in ended if problem]
-        self.assertEqual(problems, [], f"{len(problems)} lives broke a promise:\n" + "\n".join(problems))
-        self.assertGreaterEqual(reached.total(), 0.9 * len(ended), "lives that ended at their point")
+        lives = [life.result() for life in lives]
+        reached = collections.Counter(kind_of(life.killed_at) for life in lives if life.killed_at)
+        torn_ones = sum(bool(life.torn) for life in lives)
+        print(f"\n{len(lives)} lives, {reached.total()} ended at their point, {torn_ones} of them torn:",
+              dict(sorted(reached.items())), flush=True)
+        problems = [life.problem for life in lives if life.problem]
+        if problems:
+            self.fail(f"{len(problems)} lives broke a promise:\n" + "\n".join(problems))
+        self.assertGreaterEqual(reached.total(), 0.9 * len(lives), "lives that ended at their point")
+        self.assertEqual(torn_ones > 0, torn, "something unsynced was lost")
 
     def test_a_client_that_comes_back(self):
         self.at_every_point(self.comes_back, torn=False)

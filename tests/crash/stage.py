@@ -1,5 +1,5 @@
-"""One Command Post (adit-rehearsal), one box (aditd) and one client on this host, and what each of them says became of the
-client's report."""
+"""One Command Post (adit-rehearsal), one box (aditd) and one client on this host, and what each says became of the client's
+report."""
 
 import contextlib
 import http.client

@@ -1,4 +1,4 @@
-"""A report's life, with the box killed at every write, sync, send and receive of it: nothing is lost, nothing is doubled."""
+"""A report's life, with the box killed at every write, sync, send and receive of it: nothing lost, nothing doubled."""
 
 import collections
 import concurrent.futures
@@ -93,7 +93,7 @@ class EveryPoint(unittest.TestCase):
         self.assertEqual((stage.post.recorded(), stage.box.states()), ([], []), "a report that never was on disk")
 
     def one_life(self, what, client, first, faults):
-        """What happened: the point at which the box was killed, what was torn, and a sentence where a promise was broken."""
+        """The point at which the box was killed, what was torn, and a sentence where a promise was broken."""
         def play(stage):
             try:
                 stage.box.start(**{"from": first_life(stage, first)}, **faults)

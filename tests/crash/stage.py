@@ -1,4 +1,4 @@
-"""One Command Post (adit-rehearsal), one box (aditd) and one client on this host, and what each says became of the client's
+"""One Command Post (adit-rehearsal), one box (aditd) and one client on this host, and what each says became of a
 report."""
 
 import contextlib

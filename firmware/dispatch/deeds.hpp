@@ -25,10 +25,10 @@ class Deeds {
  public:
   virtual ~Deeds() = default;
 
-  /// Writes all of these steps, in their order, as one transaction: after true they are on disk (a report
-  /// may be there more than once, with one step each). After false none is, and nothing may follow.
-  virtual bool write(std::span<const Report> steps) = 0;
-  virtual bool write(const Run& run) = 0;
+  /// Writes all of these steps, in their order, and the run if there is one, as one transaction: after true
+  /// they are on disk (a report may be there more than once, with one step each). After false none is, and
+  /// nothing may follow.
+  virtual bool write(std::span<const Report> steps, const Run* run) = 0;
 
   /// `report` is as it now is. Does nothing where the client has gone.
   virtual void tell(ClientId client, const ClientAnswer& answer, const Report& report) = 0;

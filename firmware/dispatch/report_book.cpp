@@ -63,21 +63,30 @@ bool ReportBook::note(std::int64_t number, const std::string& note, double stamp
 }
 
 bool ReportBook::catch_up() {
-  return unwritten_.empty() || write({}, false);
+  return (unwritten_.empty() && !unwritten_run_) || write({}, false);
+}
+
+void ReportBook::change(std::span<const Report> steps, const Run& run) {
+  unwritten_run_ = run;
+  write(steps, true);
 }
 
 /// What is still unwritten goes first, so that the ledger never has a later step without an earlier one.
 bool ReportBook::write(std::span<const Report> steps, bool happened) {
+  const Run* const run = unwritten_run_ ? &*unwritten_run_ : nullptr;
   bool written = false;
   if (unwritten_.empty()) {
-    written = deeds_.write(steps);
+    written = deeds_.write(steps, run);
   } else {
     std::vector<Report> all;
     for (const std::int64_t number : unwritten_) all.push_back(reports_.at(number));
     all.insert(all.end(), steps.begin(), steps.end());
-    written = deeds_.write(all);
+    written = deeds_.write(all, run);
   }
-  if (written) unwritten_.clear();
+  if (written) {
+    unwritten_.clear();
+    unwritten_run_.reset();
+  }
   if (!written && !happened) return false;
   for (const Report& report : steps) {
     put(report);

@@ -3,6 +3,7 @@
 #include <cstdint>
 #include <functional>
 #include <map>
+#include <optional>
 #include <set>
 #include <span>
 #include <string>
@@ -37,6 +38,9 @@ class ReportBook {
             const Edit& edit = nullptr);
   /// Changes what is known of a report, but not its state.
   bool note(std::int64_t number, const std::string& note, double stamp, const Edit& edit = nullptr);
+  /// All that follows for the reports from what happened to the run, and the run, in one write.
+  void change(std::span<const Report> steps, const Run& run);
+  void write(const Run& run) { change({}, run); }
   /// Tries again to write what could not be written. True: nothing is left.
   bool catch_up();
 
@@ -58,6 +62,7 @@ class ReportBook {
   std::set<std::int64_t> waiting_;
   std::set<std::int64_t> in_doubt_;
   std::set<std::int64_t> unwritten_;  // their last step has happened, but is not on disk
+  std::optional<Run> unwritten_run_;
 };
 
 }  // namespace adit::dispatch

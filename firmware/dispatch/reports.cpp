@@ -12,16 +12,18 @@
 namespace adit::dispatch {
 
 Reports::Reports(const ReportRules& rules, Deeds& deeds)
-    : rules_(rules), book_(deeds), account_(deeds), deeds_(deeds) {}
+    : rules_(rules), book_(deeds), account_(book_), deeds_(deeds) {}
 
 void Reports::open(std::vector<Report> all, std::optional<Run> last_run, Time time) {
-  account_.open(std::move(last_run));
   book_.open(std::move(all));
+  std::int64_t latest_run = 1;
   std::vector<std::int64_t> sending;
   for (const auto& [number, report] : book_.all()) {
     last_sending_ = std::max(last_sending_, report.sending);
+    latest_run = std::max(latest_run, report.run);
     if (report.state == ReportState::Sending) sending.push_back(number);
   }
+  account_.open(std::move(last_run), latest_run);
   for (const std::int64_t number : sending) {
     step(number, ReportEvent::Restarted, "the gateway stopped while it was being sent", time,
          [this](Report& report) {
@@ -136,7 +138,11 @@ void Reports::answered(const HttpAnswer& answer, Time time) {
 
 void Reports::recorded(const ReportBook::Edit& keep, const icd::ReportReply& reply, Time time) {
   // It was recorded in the run that is on by now, whichever it was meant for.
-  if (const std::string why = account_.another(reply); !why.empty()) begin_run(why, time);
+  if (const std::string why = account_.another(reply, time.stamp); !why.empty()) {
+    icd::RunStatus status = run().last.value_or(icd::RunStatus{});  // its counts are never looked at
+    status.run_clock = reply.run_clock;
+    begin_run(why, run().last ? std::optional(status) : std::nullopt, time);
+  }
   const Effect effect = effect_of(reply);
   const std::string note =
       effect.again ? "not scored (" + reply.report_status + "): post it again once the run goes on" : "";

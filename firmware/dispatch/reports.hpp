@@ -134,7 +134,7 @@ class Reports {
   void send_again(const std::vector<const Report*>& doubts, const Evidence& evidence, Time time);
   void explain(const std::vector<const Report*>& doubts, const std::string& why, Time time);
   void blur_doubts(std::int64_t judged, Time time);
-  void begin_run(const std::string& why, Time time);
+  void begin_run(const std::string& why, const std::optional<icd::RunStatus>& status, Time time);
 
   const ReportRules rules_;
   ReportBook book_;

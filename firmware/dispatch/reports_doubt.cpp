@@ -44,7 +44,9 @@ SentSince Reports::sent_since(const Report& doubt) const {
 }
 
 void Reports::status_heard(const icd::RunStatus& status, Time time) {
-  if (const std::string why = account_.another(status, time.stamp); !why.empty()) begin_run(why, time);
+  if (const std::string why = account_.another(status, time.stamp); !why.empty()) {
+    begin_run(why, status, time);
+  }
   account_.heard(status, time);
   barred_ = false;
   if (inquiry_) inquiry_->asked(time.now);
@@ -130,36 +132,38 @@ void Reports::blur_doubts(std::int64_t judged, Time time) {
 
 /// What waits was meant for the run before, but for what was posted just now. What is in doubt and was sent
 /// since shortly before the old run was last heard of may have been recorded in either: from now on it stands
-/// for the same report in the new one. The run itself is written down last: a crash before that does all this
-/// once more.
-void Reports::begin_run(const std::string& why, Time time) {
-  const std::int64_t number = run().number + 1;
+/// for the same report in the new one.
+void Reports::begin_run(const std::string& why, const std::optional<icd::RunStatus>& status, Time time) {
   const std::chrono::duration<double> late = rules_.patience.doubt_for + kYoung;
   const double last_word = run().heard - late.count();
-  const auto enters = [number](Report& report) {
-    report.run = number;
-    report.before.reset();
+  std::vector<Report> steps;
+  const auto step_of = [&](const Report& report, bool enters) {
+    Report& changed = steps.emplace_back(report);
+    changed.changed = time.stamp;
+    if (enters) {
+      changed.run = run().number + 1;
+      changed.before.reset();
+    } else {
+      changed.state = transition(report.state, ReportEvent::Held)->to;
+      changed.note = "held: a new run began (" + why + ")";
+    }
   };
   const auto doubts = book_.doubts(run().number);
   for (const Report* const doubt : doubts) {
-    if (doubt->sent >= last_word) book_.note(doubt->number, doubt->note, time.stamp, enters);
+    if (doubt->sent >= last_word) step_of(*doubt, true);
   }
-  const std::vector<std::int64_t> waiting(book_.waiting().begin(), book_.waiting().end());
-  for (const std::int64_t waits : waiting) {
-    const Report& report = book_.at(waits);
-    if (is_young(report, time.now)) {
-      book_.note(report.number, report.note, time.stamp, enters);
-    } else {
-      step(report.number, ReportEvent::Held, "held: a new run began (" + why + ")", time);
-    }
+  for (const std::int64_t number : book_.waiting()) {
+    const bool enters = is_young(book_.at(number), time.now);
+    step_of(book_.at(number), enters);
+    if (enters) unchecked_.insert(number);
   }
   inquiry_.reset();
-  account_.begin(why, time);
+  account_.begin(why, status, steps, time);
   explain(doubts, "", time);
 }
 
 std::int64_t Reports::declare_new_run(Time time) {
-  begin_run("the operator says so", time);
+  begin_run("the operator says so", std::nullopt, time);
   return run().number;
 }
 

@@ -5,8 +5,9 @@
 
 namespace adit::dispatch {
 
-void RunAccount::open(std::optional<Run> run) {
+void RunAccount::open(std::optional<Run> run, std::int64_t latest) {
   if (run) run_ = *std::move(run);
+  if (run_.number < latest) run_ = {.number = latest, .last = std::nullopt};
   written_ = run_.heard;
 }
 
@@ -23,15 +24,17 @@ std::string RunAccount::another(const icd::RunStatus& status, double stamp) cons
   return another_run(run_, status, stamp);
 }
 
-std::string RunAccount::another(const icd::ReportReply& reply) const {
-  return another_run(run_, reply);
+std::string RunAccount::another(const icd::ReportReply& reply, double stamp) const {
+  return another_run(run_, reply, stamp);
 }
 
-void RunAccount::begin(const std::string& why, Time time) {
-  run_ = {.number = run_.number + 1, .began = time.stamp, .why = why, .last = std::nullopt};
+void RunAccount::begin(const std::string& why, const std::optional<icd::RunStatus>& status,
+                       std::span<const Report> steps, Time time) {
+  run_ = {.number = run_.number + 1, .began = time.stamp, .why = why, .last = status, .heard = time.stamp};
   known_.reset();
   odd_ = unscored_ = false;
-  write_down(time.stamp);
+  book_.change(steps, run_);
+  written_ = time.stamp;
 }
 
 void RunAccount::heard(const icd::RunStatus& status, Time time) {
@@ -87,7 +90,8 @@ void RunAccount::distrust(const std::string& why, double stamp) {
 }
 
 void RunAccount::write_down(double stamp) {
-  if (deeds_.write(run_)) written_ = stamp;
+  book_.write(run_);
+  written_ = stamp;
 }
 
 }  // namespace adit::dispatch

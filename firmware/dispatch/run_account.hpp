@@ -4,9 +4,9 @@
 #include <optional>
 #include <string>
 
-#include "dispatch/deeds.hpp"
 #include "dispatch/evidence.hpp"
 #include "dispatch/report.hpp"
+#include "dispatch/report_book.hpp"
 #include "dispatch/report_verdict.hpp"
 
 namespace adit::dispatch {
@@ -19,9 +19,11 @@ class RunAccount {
   static constexpr std::chrono::seconds kFresh{15};  // how long a status vouches for the run
   static constexpr double kWriteEvery = 30;          // seconds between writes of the run clock alone
 
-  explicit RunAccount(Deeds& deeds) : deeds_(deeds) {}
+  /// `book` outlives this.
+  explicit RunAccount(ReportBook& book) : book_(book) {}
 
-  void open(std::optional<Run> run);
+  /// `latest`: the highest run that a report belongs to; it may have been written down before its run was.
+  void open(std::optional<Run> run, std::int64_t latest);
 
   const Run& run() const { return run_; }
   /// The run was heard of less than kFresh ago.
@@ -33,9 +35,11 @@ class RunAccount {
 
   /// Why this status is one of another run, or "".
   std::string another(const icd::RunStatus& status, double stamp) const;
-  std::string another(const icd::ReportReply& reply) const;
-  /// Another run begins.
-  void begin(const std::string& why, Time time);
+  std::string another(const icd::ReportReply& reply, double stamp) const;
+  /// Another run begins, with this status if one was heard; what that does to the reports is written down
+  /// with it.
+  void begin(const std::string& why, const std::optional<icd::RunStatus>& status,
+             std::span<const Report> steps, Time time);
 
   /// A status of this run.
   void heard(const icd::RunStatus& status, Time time);
@@ -57,7 +61,7 @@ class RunAccount {
   };
   void write_down(double stamp);
 
-  Deeds& deeds_;
+  ReportBook& book_;
   Run run_;
   double written_ = 0;            // Run::heard as it is on disk
   std::optional<Instant> heard_;  // the last word of the run, by a status or an answer

@@ -5,9 +5,20 @@
 namespace adit::dispatch {
 namespace {
 
-std::string backward(double before, double now) {
-  if (now >= before - kClockJitter) return "";
-  return icd::sentence("the run clock went back from ", before, " s to ", now, " s");
+/// Why a run clock that shows `clock` at `stamp` is not the one of `run`, or "".
+std::string clock_of_another(const Run& run, double clock, double stamp) {
+  const double before = run.last->run_clock;
+  if (clock < before - kClockJitter) {
+    return icd::sentence("the run clock went back from ", before, " s to ", clock, " s");
+  }
+  const double silence = stamp - run.heard;
+  // A clock at 0 belongs to a run that has not started: it may stay there for as long as it likes.
+  if (before > 0 && silence > kShortSilence && clock - before < silence / 2) {
+    return icd::sentence("after ", static_cast<std::int64_t>(silence),
+                         " s without word the run clock had gone on by only ",
+                         static_cast<std::int64_t>(clock - before), " s");
+  }
+  return "";
 }
 
 }  // namespace
@@ -18,25 +29,16 @@ std::string another_run(const Run& run, const icd::RunStatus& status, double sta
     return icd::sentence("the team is ", icd::in_quotes(status.current_team), ", it was ",
                          icd::in_quotes(run.last->current_team));
   }
-  if (std::string why = backward(run.last->run_clock, status.run_clock); !why.empty()) return why;
-  const double advanced = status.run_clock - run.last->run_clock;
-  const double silence = stamp - run.heard;
-  // A clock at 0 belongs to a run that has not started: it may stay there for as long as it likes.
-  if (run.last->run_clock > 0 && silence > kShortSilence && advanced < silence / 2) {
-    return icd::sentence("after ", static_cast<std::int64_t>(silence),
-                         " s without word the run clock had gone on by only ",
-                         static_cast<std::int64_t>(advanced), " s");
-  }
-  return "";
+  return clock_of_another(run, status.run_clock, stamp);
 }
 
-std::string another_run(const Run& run, const icd::ReportReply& reply) {
+std::string another_run(const Run& run, const icd::ReportReply& reply, double stamp) {
   if (!run.id.empty() && !reply.run.empty() && run.id != reply.run) {
     return icd::sentence("the Command Post calls it run ", icd::in_quotes(reply.run), ", it was ",
                          icd::in_quotes(run.id));
   }
   const bool has_clock = reply.run_clock > 0;
-  return has_clock && run.last ? backward(run.last->run_clock, reply.run_clock) : "";
+  return has_clock && run.last ? clock_of_another(run, reply.run_clock, stamp) : "";
 }
 
 }  // namespace adit::dispatch

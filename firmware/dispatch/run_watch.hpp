@@ -16,6 +16,6 @@ inline constexpr double kShortSilence = 30.0;  // seconds
 std::string another_run(const Run& run, const icd::RunStatus& status, double stamp);
 
 /// The same of an answer to a report, by its `run` and its run_clock (ICD 5.2).
-std::string another_run(const Run& run, const icd::ReportReply& reply);
+std::string another_run(const Run& run, const icd::ReportReply& reply, double stamp);
 
 }  // namespace adit::dispatch

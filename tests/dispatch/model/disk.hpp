@@ -16,17 +16,11 @@ struct PowerCut {};
 /// A ledger that keeps what was written over every power cut, and nothing else.
 class Disk {
  public:
-  bool write(std::span<const Report> steps) {
+  bool write(std::span<const Report> steps, const Run* run) {
     if (full) return false;
     cut();
     for (const Report& report : steps) reports[report.number] = report;
-    cut();
-    return true;
-  }
-  bool write(const Run& run) {
-    if (full) return false;
-    cut();
-    last_run = run;
+    if (run != nullptr) last_run = *run;
     cut();
     return true;
   }

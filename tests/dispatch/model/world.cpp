@@ -90,20 +90,17 @@ void World::tell_story(const std::string& sentence) {
 
 // Deeds.
 
-bool World::write(std::span<const Report> steps) {
-  if (!disk_.write(steps)) return false;
+bool World::write(std::span<const Report> steps, const Run* run) {
+  if (!disk_.write(steps, run)) return false;
+  if (run != nullptr) tell_story(icd::sentence("run ", run->number, " ", run->why));
   for (const Report& report : steps) {
     tell_story(icd::sentence("report ", report.number, " of ", report.report.position.x, " ",
-                             name_of(report.state), " ", report.note));
+                             name_of(report.state), " in run ", report.run, ": ", report.note));
     tally_.settled += report.reconciled ? 1 : 0;
     tally_.sent_again +=
         report.state == ReportState::Waiting && report.note.starts_with("not recorded") ? 1 : 0;
   }
   return true;
-}
-
-bool World::write(const Run& run) {
-  return disk_.write(run);
 }
 
 void World::tell(ClientId client, const ClientAnswer& answer, const Report& report) {
@@ -379,18 +376,23 @@ std::vector<std::string> World::broken_promises() const {
     const std::string name = icd::sentence("report ", number, " of ", key, " is ", name_of(report.state));
     const bool claimed =
         report.state == ReportState::Answered || (report.state == ReportState::Settled && report.reconciled);
-    // Another sender's record at that very moment looks the same; nobody could tell.
-    const bool blurred = std::ranges::any_of(
-        others_, [&](Seconds at) { return at > report.sent - kEpoch - 60 && at < report.changed - kEpoch; });
+    // What somebody else recorded at that very moment looks the same, be it another sender, or what the
+    // operator judged; nobody could tell.
+    const bool blurred = std::ranges::any_of(post_.recorded(), [&](const Recorded& record) {
+      const bool ours = record.key >= 0 && !touched_.contains(record.key);
+      return !ours && record.at > report.sent - kEpoch - 60 && record.at < report.changed - kEpoch;
+    });
     if (claimed && !recorded(key) && !blurred) broken.push_back(name + " and was never recorded");
     if (report.state == ReportState::Waiting || report.state == ReportState::Sending) {
       broken.push_back(name + " though nothing was in its way");
     }
-    if (report.reconciled && !blurred && recorded(key)) {
-      const auto reply = codec::read_report_reply(report.answer);
-      const auto& truth = std::prev(records.upper_bound({key, post_.run()}))->second.back();
-      if (reply && reply->score_change != truth.points)
-        broken.push_back(name + " with a score that is not true");
+    const auto reply =
+        report.reconciled ? codec::read_report_reply(report.answer) : std::unexpected<std::string>("");
+    const auto is_true = [&](const Recorded& record) {
+      return record.key == key && record.scored && record.points == reply->score_change;
+    };
+    if (reply && !blurred && std::ranges::none_of(post_.recorded(), is_true)) {
+      broken.push_back(name + " with a score that is not true");
     }
   }
   for (const Client& client : clients_) {

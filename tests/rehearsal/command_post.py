@@ -100,8 +100,17 @@ class CommandPost:
             return session.request(method, f"http://{where}{path}", data=data, headers=headers, timeout=30)
 
     # The control port
-    def tell(self, deed):
-        return self.request(self.control, "POST", "/" + deed, None, {})
+    def tell(self, deed, body=None):
+        return self.request(self.control, "POST", "/" + deed, body, {})
+
+    def faults(self, **queues):
+        """post.faults(reports=["record-then-drop", "ok"], status=["500"])"""
+        answer = self.tell("faults", queues)
+        if answer.status_code != 200:
+            raise AssertionError(answer.text)
+
+    def faults_left(self):
+        return self.request(self.control, "GET", "/faults", None, {}).json()
 
     def record(self):
         return self.request(self.control, "GET", "/record", None, {}).json()

@@ -50,7 +50,8 @@ class Transcript(unittest.TestCase):
                          {"number": 1, "at": 0, "endpoint": "mapping", "method": "POST", "uri": "/map/update",
                           "content_type": "application/json", "content_encoding": None, "expect": False,
                           "authorization": True, "body_bytes": 0, "status": 200, "answer": "null",
-                          "message": None, "fault": None, "violations": []})
+                          "message": None, "fault": None, "rehearsed_fault": None,
+                          "violations": []})
         cells = bytes([0, 100, 255, 50, 19, 20])
         self.assertEqual(taken["message"],
                          changed(grid(compression="gzip"), msg__data={

@@ -5,6 +5,7 @@
 
 #include "rehearsal/command_post/gate.hpp"
 #include "rehearsal/command_post/mapping.hpp"
+#include "rehearsal/command_post/misbehave.hpp"
 #include "rehearsal/command_post/scoring.hpp"
 
 namespace adit::rehearsal {
@@ -73,30 +74,80 @@ OrderedJson text_or_null(const std::optional<std::string>& text) {
 
 CommandPost::CommandPost(const Options& options, const Secrets& secrets, std::vector<Artifact> artifacts,
                          std::unique_ptr<Transcript> transcript)
-    : verbose_(options.verbose),
+    : manner_(options.manner),
+      verbose_(options.verbose),
       run_(options.run, std::move(artifacts)),
       record_(options.manner),
-      scoring_(scoring_of(options, secrets, run_)),
-      mapping_(mapping_of(options, secrets)),
+      faults_(options.seed),
+      scoring_{scoring_of(options, secrets, run_), "scoring"},
+      mapping_{mapping_of(options, secrets), "mapping"},
       transcript_(std::move(transcript)),
       number_(transcript_ ? transcript_->requests() : 0) {
   if (!options.not_started) run_.start(launched_);
 }
 
-Outcome CommandPost::receive(Endpoint& endpoint, const char* name, const Request& request) {
-  Judgement judgement = request.fault ? judge_fault(*request.fault) : judge_safely(endpoint, request);
+Outcome CommandPost::scoring(const Request& request) {
+  return receive(scoring_, scoring_aim(request, manner_), request);
+}
+
+Outcome CommandPost::mapping(const Request& request) {
+  return receive(mapping_, mapping_aim(request), request);
+}
+
+Outcome CommandPost::receive(Side& side, std::optional<Aim> aim, const Request& request) {
+  const Fault fault = aim ? faults_.next(*aim) : Fault{};
+  if (!fault.record_after) return decide(side, aim, fault, request);
+  return later(*fault.record_after, [this, &side, aim, fault, &request] {
+    Request late = request;
+    late.at = Clock::now();  // it counts from when it is judged
+    return decide(side, aim, fault, late);
+  });
+}
+
+Judgement CommandPost::judge(Side& side, std::optional<Aim> aim, const Fault& fault, const Request& request) {
+  if (request.fault) return judge_fault(*request.fault);
+  if (fault.other_sender) other_sender(std::nullopt);
+  Judgement judgement = aim && !fault.records() ? unjudged(fault, *aim, request, manner_)
+                                                : judge_safely(*side.endpoint, request);
+  spoil(fault, request, judgement);
+  if (const std::string words = words_of(fault); words != words_of({})) judgement.fault = words;
+  return judgement;
+}
+
+Outcome CommandPost::decide(Side& side, std::optional<Aim> aim, const Fault& fault, const Request& request) {
+  Judgement judgement = judge(side, aim, fault, request);
   std::uint64_t number = 0;
   {
     const std::lock_guard lock(number_mutex_);
     number = ++number_;
   }
-  if (transcript_) write_down(number, name, request, judgement);
+  if (transcript_) write_down(number, side.name, request, judgement);
   record_.note(number, judgement);
+  if (judgement.report) keep(std::move(*judgement.report), kByClient, number);
   if (verbose_) show(number, request, judgement);
   if (judgement.outcome.kind == Outcome::Kind::Dies) {
     std::fprintf(stderr, "adit-rehearsal: mapping killed by %s\n", record_.killed_by().c_str());
   }
-  return std::move(judgement.outcome);
+  if (!fault.answer_after) return std::move(judgement.outcome);
+  return later(*fault.answer_after, [outcome = std::move(judgement.outcome)] { return outcome; });
+}
+
+void CommandPost::keep(OrderedJson report, const char* by, const OrderedJson& request) {
+  report["by"] = by;
+  report["request"] = request;
+  if (transcript_) transcript_->report(report);
+  record_.note_report(report);
+}
+
+OrderedJson CommandPost::other_sender(const std::optional<Json>& sent) {
+  constexpr double far = 100'000;  // metres: no artifact is there, and no two of its reports are alike
+  const Json report =
+      sent ? *sent : Json{{"x", far}, {"y", far + ++by_others_}, {"z", 0.0}, {"type", "Rope"}};
+  const Point position{report["x"].get<double>(), report["y"].get<double>(), report["z"].get<double>()};
+  const Run::Ruling ruling = run_.submit(report["type"].get<std::string>(), position, Clock::now());
+  OrderedJson body = report_body(ruling, report, kNoAuthority);
+  keep(body, kByOther, nullptr);
+  return body;
 }
 
 void CommandPost::write_down(std::uint64_t number, const char* endpoint, const Request& request,
@@ -130,9 +181,9 @@ void CommandPost::write_down(std::uint64_t number, const char* endpoint, const R
       {"answer", answered ? OrderedJson(outcome.answer.body) : OrderedJson(nullptr)},
       {"message", std::move(message)},
       {"fault", request.fault ? OrderedJson(request.fault->sentence) : OrderedJson(nullptr)},
+      {"rehearsed_fault", judgement.fault.empty() ? OrderedJson(nullptr) : OrderedJson(judgement.fault)},
       {"violations", judgement.findings.violations()}};
   transcript_->request(line);
-  if (judgement.report) transcript_->report(*judgement.report);
 }
 
 void CommandPost::show(std::uint64_t number, const Request& request, const Judgement& judgement) const {
@@ -144,7 +195,7 @@ void CommandPost::show(std::uint64_t number, const Request& request, const Judge
                                                              judgement.accepted.front().robot;
   // As JSON, so that nothing from the wire steers the terminal.
   const std::string what = line_of(Json(request.method + " " + request.target.substr(0, 200) + parts));
-  std::string more;
+  std::string more = judgement.fault.empty() ? "" : " [" + judgement.fault + "]";
   for (const std::string& sentence : judgement.findings.violations())
     more.append(" ").append(line_of(Json(sentence)));
   std::printf("%6llu %s: %s%s\n", static_cast<unsigned long long>(number), what.c_str(), status.c_str(),

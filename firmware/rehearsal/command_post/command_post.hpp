@@ -1,11 +1,12 @@
 #pragma once
 
+#include <atomic>
 #include <cstdint>
-#include <functional>
 #include <memory>
 #include <mutex>
 #include <string>
 
+#include "rehearsal/command_post/faults.hpp"
 #include "rehearsal/command_post/judgement.hpp"
 #include "rehearsal/command_post/options.hpp"
 #include "rehearsal/command_post/record.hpp"
@@ -24,28 +25,45 @@ class CommandPost {
               std::unique_ptr<Transcript> transcript);
 
   /// Each decides what is done about a request to that endpoint and writes it down, before anything is sent.
-  Outcome scoring(const Request& request) { return receive(*scoring_, "scoring", request); }
-  Outcome mapping(const Request& request) { return receive(*mapping_, "mapping", request); }
+  /// The request has to outlive the outcome, which may be decided later.
+  Outcome scoring(const Request& request);
+  Outcome mapping(const Request& request);
+
+  /// Another sender on the same token submits a report; where `sent` holds nothing, one that no artifact is
+  /// near. `sent`: numbers x, y, z and a text type. Gives the report as it was recorded.
+  OrderedJson other_sender(const std::optional<Json>& sent);
 
   Run& run() { return run_; }
-  OrderedJson record() const { return record_.json(run_.plan(), run_.standing(Clock::now())); }
-  std::string summary() const { return record_.summary(run_.plan(), run_.standing(Clock::now())); }
+  Faults& faults() { return faults_; }
+  OrderedJson record() const { return record_.json(run_.standing(Clock::now())); }
+  std::string summary() const { return record_.summary(run_.standing(Clock::now())); }
   std::string killed_by() const { return record_.killed_by(); }
 
  private:
-  Outcome receive(Endpoint& endpoint, const char* name, const Request& request);
+  struct Side {
+    std::unique_ptr<Endpoint> endpoint;
+    const char* name;
+  };
+
+  Outcome receive(Side& side, std::optional<Aim> aim, const Request& request);
+  Judgement judge(Side& side, std::optional<Aim> aim, const Fault& fault, const Request& request);
+  Outcome decide(Side& side, std::optional<Aim> aim, const Fault& fault, const Request& request);
   void write_down(std::uint64_t number, const char* endpoint, const Request& request, Judgement& judgement);
+  void keep(OrderedJson report, const char* by, const OrderedJson& request);
   void show(std::uint64_t number, const Request& request, const Judgement& judgement) const;
 
   const Clock::time_point launched_ = Clock::now();
+  const Manner manner_;
   const bool verbose_;
   Run run_;
   Record record_;
-  std::unique_ptr<Endpoint> scoring_;
-  std::unique_ptr<Endpoint> mapping_;
+  Faults faults_;
+  Side scoring_;
+  Side mapping_;
   std::unique_ptr<Transcript> transcript_;
   std::mutex number_mutex_;
   std::uint64_t number_;
+  std::atomic<int> by_others_ = 0;
 };
 
 }  // namespace adit::rehearsal

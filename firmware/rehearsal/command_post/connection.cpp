@@ -131,9 +131,23 @@ bool Connection::write(const std::string& bytes) {
   return true;
 }
 
-void Connection::wait_for_stop() const {
+bool Connection::stopped_within(std::optional<std::chrono::milliseconds> patience) const {
   std::array<pollfd, 1> waited = {pollfd{stop_event_, POLLIN, 0}};
-  poll_again(waited, -1);
+  return poll_again(waited, patience ? static_cast<int>(patience->count()) : -1) != 0;
+}
+
+void Connection::end(After after) {
+  if (after == After::Reset) {
+    reset();
+  } else {
+    close_gently();
+  }
+}
+
+/// Closing sends a RST from now on, and nothing of what still waits to be sent.
+void Connection::reset() {
+  const linger at_once{.l_onoff = 1, .l_linger = 0};
+  ::setsockopt(socket_.get(), SOL_SOCKET, SO_LINGER, &at_once, sizeof at_once);
 }
 
 /// Reads on for a moment after the last answer: closing with bytes unread would send a reset, and the client
@@ -158,20 +172,28 @@ std::string Connection::local_address() const {
 Connection::End Connection::serve() {
   while (auto request = read_request()) {
     Outcome outcome = decide_(*request);
+    while (outcome.kind == Outcome::Kind::Later) {
+      if (stopped_within(outcome.delay)) return End::Closed;
+      outcome = outcome.then();
+    }
     if (!request->keep_alive && outcome.after == After::KeepOpen) outcome.after = After::Close;
     switch (outcome.kind) {
       case Outcome::Kind::Dies:
         return End::EndpointDies;
       case Outcome::Kind::Hangs:
-        wait_for_stop();
+        stopped_within(std::nullopt);
+        return End::Closed;
+      case Outcome::Kind::Breaks:
+        if (write(outcome.bytes)) end(outcome.after);
         return End::Closed;
       case Outcome::Kind::Answered:
+      case Outcome::Kind::Later:
         break;
     }
     if (outcome.answer.status == 0) return End::Closed;
     if (!write(bytes_of(outcome, request->method == "HEAD"))) return End::Closed;
     if (outcome.after == After::KeepOpen) continue;
-    close_gently();
+    end(outcome.after);
     return End::Closed;
   }
   return End::Closed;

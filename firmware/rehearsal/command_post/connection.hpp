@@ -1,5 +1,6 @@
 #pragma once
 
+#include <chrono>
 #include <optional>
 #include <string>
 
@@ -30,7 +31,10 @@ class Connection {
   std::optional<Request> read_request();
   bool write(const std::string& bytes);
   Arrival receive();
-  void wait_for_stop() const;
+  /// Waits for so long, for ever without `patience`; gives whether the connection is to end instead.
+  bool stopped_within(std::optional<std::chrono::milliseconds> patience) const;
+  void end(After after);
+  void reset();
   void close_gently();
   std::string local_address() const;
 

@@ -1,32 +1,115 @@
 #include "rehearsal/command_post/control.hpp"
 
-#include <map>
-#include <string_view>
+#include <expected>
+#include <optional>
+#include <string>
 
+#include "rehearsal/command_post/document.hpp"
 #include "rehearsal/command_post/gate.hpp"
 
 namespace adit::rehearsal {
+namespace {
+
+/// What a body says; nothing where it is empty.
+std::expected<std::optional<Json>, std::string> body_of(const Request& request) {
+  if (request.body.empty()) return std::nullopt;
+  auto document = read_document(request.body, Format::JsonText);
+  if (!document) return std::unexpected("the body is no JSON: " + document.error());
+  if (document->repeated) return std::unexpected("'" + *document->repeated + "' is given twice");
+  return std::move(document->value);
+}
+
+Outcome change_state(CommandPost& post, bool (Run::*deed)(Clock::time_point)) {
+  const auto now = Clock::now();
+  const bool done = (post.run().*deed)(now);
+  const std::string state = post.run().standing(now).state;
+  if (!done) return refused(409, "the run is: " + state);
+  return answered(200, OrderedJson{{"state", state}});
+}
+
+std::expected<NewRun, std::string> read_new_run(const Json& wanted) {
+  if (!wanted.is_object()) return std::unexpected(R"(expected an object, as in {"run": "2"})");
+  NewRun run;
+  for (const auto& [name, value] : wanted.items()) {
+    const bool text = value.is_string() && !value.get_ref<const std::string&>().empty();
+    if ((name == "run" || name == "team") && !text) return std::unexpected(name + ": expected a text");
+    if (name == "run") {
+      run.id = value.get<std::string>();
+    } else if (name == "team") {
+      run.team = value.get<std::string>();
+    } else if (name != "started") {
+      return std::unexpected("no such member: '" + name.substr(0, 80) + "'; there are run, team, started");
+    } else if (!value.is_boolean()) {
+      return std::unexpected("started: expected true or false");
+    } else {
+      run.started = value.get<bool>();
+    }
+  }
+  return run;
+}
+
+Outcome begin_new_run(CommandPost& post, const std::optional<Json>& wanted) {
+  const auto run = wanted ? read_new_run(*wanted) : NewRun{};
+  if (!run) return refused(422, run.error());
+  const auto now = Clock::now();
+  post.run().begin_anew(*run, now);
+  const Run::Standing standing = post.run().standing(now);
+  return answered(200,
+                  OrderedJson{{"state", standing.state}, {"run", standing.run}, {"team", standing.team}});
+}
+
+bool is_report(const Json& sent) {
+  const auto has = [&sent](const char* name, auto kind) {
+    const auto found = sent.find(name);
+    return found != sent.end() && ((*found).*kind)();
+  };
+  return sent.is_object() && has("x", &Json::is_number) && has("y", &Json::is_number) &&
+         has("z", &Json::is_number) && has("type", &Json::is_string);
+}
+
+Outcome submit_by_other(CommandPost& post, const std::optional<Json>& sent) {
+  if (sent && !is_report(*sent)) {
+    return refused(422, R"(expected a report, as in {"x": 1, "y": 2, "z": 3, "type": "Drill"})");
+  }
+  return answered(201, post.other_sender(sent));
+}
+
+Outcome tell_faults(CommandPost& post, const std::optional<Json>& told) {
+  if (const auto taken = post.faults().tell_all(told.value_or(Json())); !taken) {
+    return refused(422, taken.error());
+  }
+  return answered(200, post.faults().left());
+}
+
+Outcome clear_faults(CommandPost& post) {
+  post.faults().clear();
+  return answered(200, post.faults().left());
+}
+
+}  // namespace
 
 Outcome control(CommandPost& post, const Request& request) {
-  using Deed = bool (Run::*)(Clock::time_point);
-  static const std::map<std::string_view, Deed> deeds = {
-      {"/start", &Run::start}, {"/stop", &Run::admin_stop}, {"/resume", &Run::resume}, {"/end", &Run::end}};
   if (request.fault) {
     Outcome outcome = refused(request.fault->status, request.fault->sentence);
     outcome.after = After::Close;
     return outcome;
   }
-  const std::string_view path = path_of(request.target);
-  if (request.method == "GET" && path == "/record") return answered(200, post.record());
-  const auto deed = deeds.find(path);
-  if (request.method != "POST" || deed == deeds.end()) {
-    return refused(404, "POST /start, /stop, /resume, /end or GET /record");
-  }
-  const auto now = Clock::now();
-  const bool done = (post.run().*deed->second)(now);
-  const std::string state = post.run().standing(now).state;
-  if (!done) return refused(409, "the run is: " + state);
-  return answered(200, OrderedJson{{"state", state}});
+  const std::string deed = request.method + " " + std::string(path_of(request.target));
+  const auto body = body_of(request);
+  if (!body) return refused(400, body.error());
+  if (deed == "GET /record") return answered(200, post.record());
+  if (deed == "GET /faults") return answered(200, post.faults().left());
+  if (deed == "POST /faults") return tell_faults(post, *body);
+  if (deed == "DELETE /faults") return clear_faults(post);
+  if (deed == "POST /new-run") return begin_new_run(post, *body);
+  if (deed == "POST /other-sender") return submit_by_other(post, *body);
+  if (deed == "POST /start") return change_state(post, &Run::start);
+  if (deed == "POST /stop") return change_state(post, &Run::admin_stop);
+  if (deed == "POST /resume") return change_state(post, &Run::resume);
+  if (deed == "POST /end") return change_state(post, &Run::end);
+  return refused(404,
+                 "POST /start, /stop, /resume, /end, /new-run or /other-sender, GET /record, "
+                 "GET, POST or DELETE /faults");
 }
 
 }  // namespace adit::rehearsal

@@ -18,8 +18,7 @@ void check_entry(const Request& request, std::span<const Function> functions, co
   } else if (!request.authorization) {
     findings.breaks("No authentication token was provided", Measured::Refuses, 401);
   } else if (*request.authorization != "Bearer " + token) {
-    findings.breaks("Authentication token does not match expected token for this run", Measured::Refuses,
-                    401);
+    findings.breaks(std::string(kWrongToken), Measured::Refuses, 401);
   }
 }
 
@@ -33,6 +32,24 @@ void check_content(const Request& request, bool cbor_too, Findings& findings) {
     findings.breaks(std::string("Content-Type: expected application/json") +
                     (cbor_too ? " or application/cbor" : "") + ", nothing more");
   }
+}
+
+std::string_view without_slash(std::string_view path) {
+  while (path.size() > 1 && path.ends_with('/')) path.remove_suffix(1);
+  return path;
+}
+
+Outcome detailed(int status, std::string_view detail) {
+  return answered(status, OrderedJson{{"detail", detail}});
+}
+
+Outcome page(int status, std::string_view title) {
+  Outcome outcome;
+  outcome.answer.status = status;
+  outcome.answer.content_type = "text/html";
+  outcome.answer.body = "<!doctype html>\n<html lang=\"en\"><head><title>" + std::string(title) +
+                        "</title></head><body><h1>" + std::string(title) + "</h1></body></html>\n";
+  return outcome;
 }
 
 Outcome refused(int status, std::string_view sentence) {

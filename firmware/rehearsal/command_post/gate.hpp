@@ -34,6 +34,24 @@ void check_entry(const Request& request, std::span<const Function> functions, co
 /// That the body is in a format that the ICD has for this endpoint, and not compressed as a whole.
 void check_content(const Request& request, bool cbor_too, Findings& findings);
 
+// What is said of a token that is wrong and of requests that come too fast, by the ICD and as measured.
+inline constexpr std::string_view kWrongToken =
+    "Authentication token does not match expected token for this run";
+inline constexpr std::string_view kTooManyRequests =
+    "Too many requests: limited to approximately 1 per second";
+inline constexpr std::string_view kInvalidToken = "Invalid token.";
+inline constexpr std::string_view kThrottled = "Request was throttled. Expected available in 1 second.";
+inline constexpr std::string_view kTooManyClouds = "Cloud updates too frequent. Reduce to <1Hz.";
+
+/// The measured scoring server takes a path with and without a trailing slash.
+std::string_view without_slash(std::string_view path);
+
+/// An object for a body, as the measured scoring server has it for 400, 401, 405, 415 and 429.
+Outcome detailed(int status, std::string_view detail);
+
+/// HTML, as it has it for 404 and 500.
+Outcome page(int status, std::string_view title);
+
 /// A refusal as a JSON string (ICD 4.1).
 Outcome refused(int status, std::string_view sentence);
 inline Outcome refused(const Finding& finding) {

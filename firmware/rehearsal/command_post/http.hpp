@@ -1,6 +1,7 @@
 #pragma once
 
 #include <chrono>
+#include <functional>
 #include <optional>
 #include <string>
 #include <string_view>
@@ -46,20 +47,26 @@ struct Answer {
 /// What becomes of the connection once the answer, if any, is written.
 enum class After {
   KeepOpen,
-  Close,                   // saying so (Connection: close)
-  CloseThoughPromisingNot  // as the measured mapping server does after a 4xx
+  Close,                    // saying so (Connection: close)
+  CloseThoughPromisingNot,  // as the measured mapping server does after a 4xx
+  Reset,                    // with a RST, and what was not yet sent is lost
 };
 
 /// What is done about a request, decided before any byte of it is written.
 struct Outcome {
   enum class Kind {
     Answered,
-    Hangs,  // no answer, ever; the connection stays open
-    Dies,   // no answer; the endpoint stops listening and drops all its connections
+    Hangs,   // no answer, ever; the connection stays open
+    Dies,    // no answer; the endpoint stops listening and drops all its connections
+    Breaks,  // `bytes` in place of an answer, and the connection ends
+    Later,   // nothing for `delay`; then `then` decides, whether the client is still there or not
   };
   Kind kind = Kind::Answered;
   Answer answer;
   After after = After::KeepOpen;
+  std::string bytes;
+  std::chrono::milliseconds delay{0};
+  std::function<Outcome()> then;  // called while the request still is
 };
 
 /// The answer's bytes as they go to the socket; without its body for a HEAD request.

@@ -25,6 +25,16 @@ int complain(const std::string& why) {
   return kWrongUse;
 }
 
+Faults::Told tell_faults(const Options& options, Faults& faults) {
+  for (const std::string& text : options.faults) {
+    if (auto told = faults.tell(text); !told) return std::unexpected("--fault: " + told.error());
+  }
+  for (const std::string& text : options.fault_rates) {
+    if (auto told = faults.tell_rate(text); !told) return std::unexpected("--fault-rate: " + told.error());
+  }
+  return {};
+}
+
 std::expected<std::unique_ptr<CommandPost>, std::string> build(const Options& options) {
   const auto secrets = read_secrets(options.secrets);
   if (!secrets) return std::unexpected(secrets.error());
@@ -40,7 +50,9 @@ std::expected<std::unique_ptr<CommandPost>, std::string> build(const Options& op
     if (!opened) return std::unexpected(opened.error());
     transcript = std::move(*opened);
   }
-  return std::make_unique<CommandPost>(options, *secrets, std::move(artifacts), std::move(transcript));
+  auto post = std::make_unique<CommandPost>(options, *secrets, std::move(artifacts), std::move(transcript));
+  if (auto told = tell_faults(options, post->faults()); !told) return std::unexpected(told.error());
+  return post;
 }
 
 /// The signals that main waits for; blocked before the first thread starts.

@@ -20,7 +20,7 @@ Judgement StrictMapping::judge(const Request& request) {
   if (finding != nullptr) {
     judgement.outcome = refused(*finding);
   } else if (too_many(judgement.uri, request.at)) {
-    judgement.outcome = refused(429, "Too many requests: limited to approximately 1 per second");
+    judgement.outcome = refused(429, kTooManyRequests);
   } else {
     judge_body(request, judgement);
   }

@@ -88,7 +88,7 @@ void MeasuredMapping::judge_body(const Request& request, Judgement& judgement) {
   judgement.outcome = answered(200, Json(nullptr));
   // Too many clouds are told off and taken all the same.
   if (message->map && std::holds_alternative<Cloud>(message->map->msg) && cloud_too_soon(request.at)) {
-    judgement.outcome = closing(refused(429, "Cloud updates too frequent. Reduce to <1Hz."));
+    judgement.outcome = closing(refused(429, kTooManyClouds));
   }
   judgement.accepted = std::move(message->parts);
   judgement.map = std::move(message->map);

@@ -23,8 +23,21 @@ const char* const kUsage =
     "  [--reports N]           allotment of artifact reports (45)\n"
     "  [--rate HZ]             429 above it, for each URI (1; 0: no limit)\n"
     "  [--not-started]         the run waits for POST /start on the control port\n"
-    "  [--control ADDR:PORT]   POST /start /stop /resume /end, GET /record\n"
-    "  [--verbose]             a line for each request, also where stdout is no terminal\n";
+    "  [--fault AIM:FAULT]     what goes wrong with the next request of an aim; may be given often\n"
+    "  [--fault-rate AIM:FAULT=RATE]  what goes wrong with that part of them (0 to 1), at random\n"
+    "  [--seed N]              of that randomness (1)\n"
+    "  [--control ADDR:PORT]   POST /start /stop /resume /end /new-run /other-sender, GET /record,\n"
+    "                          GET, POST and DELETE /faults\n"
+    "  [--verbose]             a line for each request, also where stdout is no terminal\n"
+    "\n"
+    "AIM: reports, status, mapping. FAULT: ok, or words with a comma between them:\n"
+    "  drop, reset-unrecorded, 401, 429[=COUNT], 500     not recorded\n"
+    "  record-then-drop, reset, half-answer, garbage, 500-recorded\n"
+    "                                                    recorded, and the answer is lost\n"
+    "  record-after=SECONDS, answer-after=SECONDS        late\n"
+    "  other-sender                                      another sender's report comes just before\n"
+    "  remaining=+N, remaining=-N                        remaining_reports is wrong from then on\n"
+    "  retry-after=SECONDS                               in a header\n";
 
 namespace {
 
@@ -58,6 +71,12 @@ std::map<std::string, Setter, std::less<>> setters(Options& options) {
       return !value.empty();
     };
   };
+  const auto listed = [](std::vector<std::string>& list) {
+    return [&list](const std::string& value) {
+      list.push_back(value);
+      return true;
+    };
+  };
   return {
       {"--scoring", [&](const auto& value) { return read_address(value, options.scoring); }},
       {"--mapping", [&](const auto& value) { return read_address(value, options.mapping); }},
@@ -72,6 +91,9 @@ std::map<std::string, Setter, std::less<>> setters(Options& options) {
          return read_number(value, options.run.reports) && options.run.reports >= 0;
        }},
       {"--rate", [&](const auto& value) { return read_not_negative(value, options.rate.emplace()); }},
+      {"--fault", listed(options.faults)},
+      {"--fault-rate", listed(options.fault_rates)},
+      {"--seed", [&](const auto& value) { return read_number(value, options.seed); }},
       {"--duration",
        [&](const auto& value) {
          double seconds = 0;

@@ -5,6 +5,7 @@
 #include <optional>
 #include <span>
 #include <string>
+#include <vector>
 
 #include "rehearsal/command_post/address.hpp"
 #include "rehearsal/command_post/findings.hpp"
@@ -23,7 +24,10 @@ struct Options {
   std::uint64_t transcript_bytes = std::uint64_t{2048} << 20;
   Manner manner = Manner::Strict;
   RunPlan run;
-  std::optional<double> rate;  // Hz; absent: as the manner has it
+  std::optional<double> rate;            // Hz; absent: as the manner has it
+  std::vector<std::string> faults;       // "reports:record-then-drop", not yet understood
+  std::vector<std::string> fault_rates;  // "reports:record-then-drop=0.1", not yet understood
+  std::uint64_t seed = 1;                // of what happens at random
   bool not_started = false;
   bool verbose = false;
   bool help = false;

@@ -1,11 +1,13 @@
 #include "rehearsal/command_post/record.hpp"
 
+#include <iterator>
 #include <sstream>
 
 namespace adit::rehearsal {
 namespace {
 
 constexpr std::size_t kMostParts = 1000;
+constexpr std::size_t kMostFaults = 1000;
 constexpr std::size_t kMostReports = 10'000;
 constexpr std::size_t kMostViolations = 200;
 constexpr std::size_t kLongest = 200;  // characters of a name or sentence
@@ -34,10 +36,10 @@ void Record::note(std::uint64_t number, const Judgement& judgement) {
   const std::string uri = judgement.uri.empty() ? kOthers : judgement.uri;
   ++requests_[{uri, answered ? judgement.outcome.answer.status : 0}];
   for (const Accepted& part : judgement.accepted) note_part(uri, part);
-  if (judgement.report) {
-    ++report_count_;
-    reports_.push_back(*judgement.report);
-    if (reports_.size() > kMostReports) reports_.pop_front();
+  if (!judgement.fault.empty()) {
+    const std::pair key{uri, judgement.fault};
+    const bool room = faults_.size() < kMostFaults || faults_.contains(key);
+    ++faults_[room ? key : UriAndFault{uri, kOthers}];
   }
   for (std::string& sentence : judgement.findings.violations()) {
     ++violation_count_;
@@ -48,13 +50,22 @@ void Record::note(std::uint64_t number, const Judgement& judgement) {
   }
 }
 
+void Record::note_report(const OrderedJson& report) {
+  const auto id_of = [](const OrderedJson& one) { return one["id"].get<std::int64_t>(); };
+  const std::lock_guard lock(mutex_);
+  ++report_count_;
+  auto place = reports_.end();
+  while (place != reports_.begin() && id_of(*std::prev(place)) > id_of(report)) --place;
+  reports_.insert(place, report);
+  if (reports_.size() > kMostReports) reports_.pop_front();
+}
+
 std::string Record::killed_by() const {
   const std::lock_guard lock(mutex_);
   return killed_by_;
 }
 
-OrderedJson Record::json(const RunPlan& plan, const Run::Standing& standing) const {
-  const std::lock_guard lock(mutex_);
+OrderedJson Record::counts() const {
   OrderedJson requests = OrderedJson::array();
   for (const auto& [key, count] : requests_) {
     requests.push_back({{"uri", key.first}, {"status", key.second}, {"count", count}});
@@ -64,6 +75,15 @@ OrderedJson Record::json(const RunPlan& plan, const Run::Standing& standing) con
     const auto& [uri, kind, robot] = part;
     accepted.push_back({{"uri", uri}, {"kind", kind}, {"robot", robot}, {"count", count}});
   }
+  OrderedJson faults = OrderedJson::array();
+  for (const auto& [key, count] : faults_) {
+    faults.push_back({{"uri", key.first}, {"fault", key.second}, {"count", count}});
+  }
+  return {{"requests", requests}, {"accepted", accepted}, {"faults", faults}};
+}
+
+OrderedJson Record::json(const Run::Standing& standing) const {
+  const std::lock_guard lock(mutex_);
   OrderedJson first = OrderedJson::array();
   for (const Violation& violation : violations_) {
     first.push_back(
@@ -71,28 +91,28 @@ OrderedJson Record::json(const RunPlan& plan, const Run::Standing& standing) con
   }
   OrderedJson killed;
   if (!killed_by_.empty()) killed = killed_by_;
-  return {{"manner", manner_ == Manner::Strict ? "strict" : "as measured"},
-          {"team", plan.team},
-          {"run", plan.id},
-          {"state", standing.state},
-          {"run_clock", standing.clock},
-          {"score", standing.score},
-          {"remaining_reports", standing.remaining_reports},
-          {"requests", requests},
-          {"accepted", accepted},
-          {"report_count", report_count_},
-          {"reports", reports_},
-          {"violation_count", violation_count_},
-          {"violations", first},
-          {"killed_by", killed}};
+  OrderedJson record = {{"manner", manner_ == Manner::Strict ? "strict" : "as measured"},
+                        {"team", standing.team},
+                        {"run", standing.run},
+                        {"state", standing.state},
+                        {"run_clock", standing.clock},
+                        {"score", standing.score},
+                        {"remaining_reports", standing.remaining_reports}};
+  record.update(counts());
+  record.update({{"report_count", report_count_},
+                 {"reports", reports_},
+                 {"violation_count", violation_count_},
+                 {"violations", first},
+                 {"killed_by", killed}});
+  return record;
 }
 
-std::string Record::summary(const RunPlan& plan, const Run::Standing& standing) const {
+std::string Record::summary(const Run::Standing& standing) const {
   constexpr std::size_t most_lines = 50;
   const std::lock_guard lock(mutex_);
   std::ostringstream out;
-  out << "summary: team " << plan.team << ", run " << plan.id << ", " << standing.state << ", run clock "
-      << standing.clock << " s\n";
+  out << "summary: team " << standing.team << ", run " << standing.run << ", " << standing.state
+      << ", run clock " << standing.clock << " s\n";
   for (const auto& [key, count] : requests_) {
     out << "  " << key.first << ": " << (key.second == 0 ? "not answered" : std::to_string(key.second))
         << " x " << count << "\n";
@@ -110,7 +130,12 @@ std::string Record::summary(const RunPlan& plan, const Run::Standing& standing) 
     out << "  #" << report["id"] << " at " << report["run_clock"]
         << " s: " << printable(line_of(report["type"])) << " (" << printable(line_of(report["x"])) << ", "
         << printable(line_of(report["y"])) << ", " << printable(line_of(report["z"])) << ") "
-        << report["report_status"].get<std::string>() << ", " << report["score_change"] << "\n";
+        << report["report_status"].get<std::string>() << ", " << report["score_change"]
+        << (report["by"] == kByOther ? ", by another sender\n" : "\n");
+  }
+  if (!faults_.empty()) out << "faults that were asked for\n";
+  for (const auto& [key, count] : faults_) {
+    out << "  " << key.first << ": " << key.second << " (" << count << " times)\n";
   }
   out << "violations of the ICD: " << violation_count_ << "\n";
   std::map<std::pair<std::string, std::string>, std::uint64_t> alike;

@@ -3,6 +3,23 @@
 #include <cmath>
 
 namespace adit::rehearsal {
+namespace {
+
+/// "1" is followed by "2", "1.5.9" by "1.5.10", "practice" by "practice-2".
+std::string id_after(std::string id) {
+  const std::size_t at = id.find_last_not_of("0123456789") + 1;  // npos + 1 is 0
+  if (at == id.size()) return id + "-2";
+  for (std::size_t digit = id.size(); digit-- > at;) {
+    if (id[digit] != '9') {
+      ++id[digit];
+      return id;
+    }
+    id[digit] = '0';
+  }
+  return id.insert(at, 1, '1');
+}
+
+}  // namespace
 
 Run::State Run::state_at(Clock::time_point now) const {
   if (ended_) return State::Ended;
@@ -45,9 +62,22 @@ bool Run::end(Clock::time_point now) {
   return true;
 }
 
+void Run::begin_anew(const NewRun& wanted, Clock::time_point now) {
+  const std::lock_guard lock(mutex_);
+  plan_.id = wanted.id ? *wanted.id : id_after(plan_.id);
+  if (wanted.team) plan_.team = *wanted.team;
+  started_.reset();
+  if (wanted.started) started_ = now;
+  stopped_ = false;
+  ended_ = false;
+  score_ = 0;
+  used_ = 0;
+  for (Artifact& artifact : artifacts_) artifact.claimed = false;
+}
+
 Run::Standing Run::standing(Clock::time_point now) const {
   const std::lock_guard lock(mutex_);
-  Standing standing{"running", clock_at(now), score_, plan_.reports - used_};
+  Standing standing{plan_.team, plan_.id, "running", clock_at(now), score_, plan_.reports - used_};
   switch (state_at(now)) {
     case State::NotStarted:
       standing.state = "not started";
@@ -67,7 +97,7 @@ Run::Standing Run::standing(Clock::time_point now) const {
 Run::Ruling Run::submit(const std::string& type, const std::optional<Point>& position,
                         Clock::time_point now) {
   const std::lock_guard lock(mutex_);
-  Ruling ruling{++last_id_, clock_at(now), "scored", 0};
+  Ruling ruling{++last_id_, plan_.team, plan_.id, clock_at(now), "scored", 0};
   switch (state_at(now)) {
     case State::NotStarted:
       ruling.status = "run not started";

@@ -19,10 +19,20 @@ struct RunPlan {
   std::int64_t reports = 45;  // the allotment
 };
 
-/// One run: its clock, its score and what becomes of each report (ICD 5). Safe for use by several threads.
+/// What is different in a new run; what is not said stays, but for the run's id, which counts up.
+struct NewRun {
+  std::optional<std::string> id;
+  std::optional<std::string> team;
+  bool started = true;
+};
+
+/// The run, and those after it: the clock, the score and what becomes of each report (ICD 5). Reports are
+/// numbered through all of them. Safe for use by several threads.
 class Run {
  public:
   struct Standing {
+    std::string team;
+    std::string run;    // its id
     std::string state;  // "not started", "running", "admin stop", "ended"
     double clock = 0;   // seconds since the start; goes on after the end
     std::int64_t score = 0;
@@ -31,6 +41,8 @@ class Run {
 
   struct Ruling {
     std::int64_t id = 0;
+    std::string team;
+    std::string run;
     double clock = 0;
     std::string status;  // report_status, one of ICD 5.2's
     std::int64_t score_change = 0;
@@ -39,13 +51,14 @@ class Run {
   Run(RunPlan plan, std::vector<Artifact> artifacts)
       : plan_(std::move(plan)), artifacts_(std::move(artifacts)) {}
 
-  const RunPlan& plan() const { return plan_; }
-
   /// Each gives false where the run's state does not allow it.
   bool start(Clock::time_point now);
   bool admin_stop(Clock::time_point now);
   bool resume(Clock::time_point now);
   bool end(Clock::time_point now);
+
+  /// Whatever became of the last run: the clock and the score at 0, no report used, no artifact found.
+  void begin_anew(const NewRun& wanted, Clock::time_point now);
 
   Standing standing(Clock::time_point now) const;
 
@@ -58,8 +71,8 @@ class Run {
   State state_at(Clock::time_point now) const;
   double clock_at(Clock::time_point now) const;
 
-  const RunPlan plan_;
   mutable std::mutex mutex_;
+  RunPlan plan_;
   std::vector<Artifact> artifacts_;
   std::optional<Clock::time_point> started_;
   bool stopped_ = false;

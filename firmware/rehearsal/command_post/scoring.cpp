@@ -54,11 +54,10 @@ OrderedJson status_body(const Run& run, Clock::time_point now) {
   return {{"score", standing.score},
           {"run_clock", standing.clock},
           {"remaining_reports", standing.remaining_reports},
-          {"current_team", lower(run.plan().team)}};
+          {"current_team", lower(standing.team)}};
 }
 
-OrderedJson report_body(const Run& run, const Run::Ruling& ruling, const Json& sent,
-                        const std::string& authority) {
+OrderedJson report_body(const Run::Ruling& ruling, const Json& sent, const std::string& authority) {
   const std::string path = std::string(kReportsUri) + "/" + std::to_string(ruling.id);
   return {{"url", "http://" + authority + path},
           {"id", ruling.id},
@@ -68,8 +67,8 @@ OrderedJson report_body(const Run& run, const Run::Ruling& ruling, const Json& s
           {"type", sent["type"]},
           {"submitted_datetime", date_and_time()},
           {"run_clock", ruling.clock},
-          {"team", lower(run.plan().team)},
-          {"run", run.plan().id},
+          {"team", lower(ruling.team)},
+          {"run", ruling.run},
           {"report_status", ruling.status},
           {"score_change", ruling.score_change}};
 }
@@ -93,7 +92,7 @@ Judgement StrictScoring::judge(const Request& request) {
   if (finding != nullptr) {
     judgement.outcome = refused(*finding);
   } else if (too_many(request)) {
-    judgement.outcome = refused(429, "Too many requests: limited to approximately 1 per second");
+    judgement.outcome = refused(429, kTooManyRequests);
   } else if (judgement.uri == kStatusUri) {
     judgement.outcome = answered(200, status_body(run_, Clock::now()));
   } else {
@@ -118,8 +117,7 @@ void StrictScoring::judge_report(const Request& request, Judgement& judgement) {
     judgement.outcome = refused(*finding);
   } else if (sent) {
     const Run::Ruling ruling = run_.submit(sent->type, sent->position, Clock::now());
-    const auto& body =
-        judgement.report.emplace(report_body(run_, ruling, document->value, request.local_address));
+    const auto& body = judgement.report.emplace(report_body(ruling, document->value, request.local_address));
     judgement.outcome = answered(201, body);
     judgement.accepted.push_back({"report", ""});
   } else {

@@ -50,7 +50,9 @@ OrderedJson status_body(const Run& run, Clock::time_point now);
 
 /// The body of an answer to POST /api/artifact_reports (ICD 5.2). x, y, z and type are given back as they
 /// came; `authority`: the address and port in its url.
-OrderedJson report_body(const Run& run, const Run::Ruling& ruling, const Json& sent,
-                        const std::string& authority);
+OrderedJson report_body(const Run::Ruling& ruling, const Json& sent, const std::string& authority);
+
+/// Where no address is known, or as the measured server has it.
+inline constexpr const char* kNoAuthority = "<ipaddress>:<port>";
 
 }  // namespace adit::rehearsal

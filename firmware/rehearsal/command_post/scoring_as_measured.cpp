@@ -7,27 +7,6 @@
 namespace adit::rehearsal {
 namespace {
 
-/// The server takes a path with and without a trailing slash.
-std::string_view without_slash(std::string_view path) {
-  while (path.size() > 1 && path.ends_with('/')) path.remove_suffix(1);
-  return path;
-}
-
-/// 400, 401, 405, 415 and 429 have an object for a body.
-Outcome detailed(int status, std::string_view detail) {
-  return answered(status, OrderedJson{{"detail", detail}});
-}
-
-/// 404 and 500 are HTML.
-Outcome page(int status, std::string_view title) {
-  Outcome outcome;
-  outcome.answer.status = status;
-  outcome.answer.content_type = "text/html";
-  outcome.answer.body = "<!doctype html>\n<html lang=\"en\"><head><title>" + std::string(title) +
-                        "</title></head><body><h1>" + std::string(title) + "</h1></body></html>\n";
-  return outcome;
-}
-
 Outcome preflight() {
   Outcome outcome;
   outcome.answer.content_type = "text/html; charset=utf-8";
@@ -85,10 +64,10 @@ Judgement MeasuredScoring::judge(const Request& request) {
 void MeasuredScoring::judge_known(const Request& request, Judgement& judgement) {
   if (!shows(request.authorization, token_)) {
     judgement.outcome = detailed(
-        401, request.authorization ? "Invalid token." : "Authentication credentials were not provided.");
+        401, request.authorization ? kInvalidToken : "Authentication credentials were not provided.");
     judgement.outcome.answer.headers.emplace_back("WWW-Authenticate", "Bearer");
   } else if (too_many(request)) {
-    judgement.outcome = detailed(429, "Request was throttled. Expected available in 1 second.");
+    judgement.outcome = detailed(429, kThrottled);
   } else if (request.method != (judgement.uri == kStatusUri ? "GET" : "POST")) {
     judgement.outcome = detailed(405, "Method \"" + request.method + "\" not allowed.");
   } else if (judgement.uri == kStatusUri) {
@@ -136,7 +115,7 @@ void MeasuredScoring::judge_report(const Request& request, Judgement& judgement)
     judgement.findings.breaks("type: no artifact type of the final event (ICD 5.2)", Measured::Takes);
   }
   const Run::Ruling ruling = run_.submit(type, position, Clock::now());
-  judgement.report = report_body(run_, ruling, sent, "<ipaddress>:<port>");
+  judgement.report = report_body(ruling, sent, kNoAuthority);
   judgement.outcome = answered(201, *judgement.report);
   judgement.accepted.push_back({"report", ""});
 }

@@ -1,0 +1,49 @@
+#pragma once
+
+#include <array>
+#include <chrono>
+#include <cstdint>
+#include <expected>
+#include <optional>
+#include <string>
+#include <string_view>
+
+namespace adit::rehearsal {
+
+/// What is wrong with one request's answer, on purpose. One deed at most, and what may go with any.
+struct Fault {
+  enum class Deed : std::uint8_t {
+    Behave,
+    Drop,
+    RecordThenDrop,
+    HalfAnswer,
+    Reset,
+    ResetUnrecorded,
+    Garbage,
+    Unauthorized,
+    TooMany,
+    Fail,
+    RecordThenFail
+  };
+  using Seconds = std::chrono::duration<double>;
+
+  Deed deed = Deed::Behave;
+  int times = 1;  // that many requests, one after the other (429=COUNT)
+  bool other_sender = false;
+  std::optional<std::int64_t> remaining;  // added to remaining_reports, from then on
+  std::optional<Seconds> record_after;
+  std::optional<Seconds> answer_after;
+  std::optional<int> retry_after;  // seconds, in a header of the answer
+
+  /// Whether the request is judged at all.
+  bool records() const;
+};
+
+/// Reads "record-then-drop", "429=3,retry-after=2", "ok": words with a comma between them. An error is a
+/// sentence that names the word.
+std::expected<Fault, std::string> read_fault(std::string_view words);
+
+/// The words again, in one order; "ok" where there is nothing wrong.
+std::string words_of(const Fault& fault);
+
+}  // namespace adit::rehearsal

@@ -1,0 +1,38 @@
+#pragma once
+
+#include <sys/types.h>
+
+#include <chrono>
+#include <cstdint>
+#include <expected>
+#include <span>
+#include <string>
+#include <vector>
+
+namespace adit::bench {
+
+/// One way to the Command Post: `name=port`, and `:pid` of the program in between.
+struct Way {
+  std::string name;
+  std::uint16_t port = 0;
+  pid_t process = 0;
+};
+
+struct Options {
+  std::size_t reports = 2000;  // on each way
+  std::chrono::seconds most{600};
+  std::chrono::milliseconds pace{5};  // from the start of one report to the start of the next
+  std::size_t block = 20;             // reports on one way before the next has its turn
+  std::string flush;                  // the ledger's folder
+  std::string token;
+  std::vector<Way> ways;  // the first without anything in between
+};
+
+inline constexpr const char* kUsage =
+    "Usage: adit_bench_load --flush FOLDER --token TOKEN [--reports N] [--seconds S] [--pace MS] [--block "
+    "N]\n"
+    "                       direct=PORT NAME=PORT:PID...\n";
+
+std::expected<Options, std::string> parse_options(std::span<char* const> arguments);
+
+}  // namespace adit::bench

@@ -9,6 +9,7 @@ namespace {
 
 constexpr bool kRequired = true;
 constexpr std::uint64_t kMiB = 1u << 20;
+constexpr std::string_view kReviews[] = {"off", "duplicates", "all"};  // as dispatch::Review
 
 const Key kKeys[] = {
     {"version", "The layout of this file.", Version{}, kRequired},
@@ -68,6 +69,21 @@ const Key kKeys[] = {
      "How long a client waits for the answer to its report, at most; then it is told 503 and that the report "
      "is kept.",
      whole<MEMBER(reports.answer_within)>(100, 600000)},
+    {"reports.doubt_for_ms",
+     "How late a Command Post may still record what it has read: a report whose answer was lost is sent "
+     "again "
+     "only where the run's status says, this long after, that it was not recorded.",
+     whole<MEMBER(reports.doubt_for)>(100, 600000)},
+    {"reports.doubt_asks",
+     "How often in a row the run's status must say so before such a report is sent again.",
+     whole<MEMBER(reports.doubt_asks)>(1, 100)},
+    {"reports.review",
+     "What is held until the operator lets it go: nothing, near duplicates (see reports.near_metres), or "
+     "every report.",
+     choice<MEMBER(reports.review)>(kReviews)},
+    {"reports.near_metres",
+     "A report of the same type within this distance of another of the run is its near duplicate.",
+     real<MEMBER(reports.near_metres)>(0, 1000)},
 
     {"queues.map_bytes", "Maps that may wait, in bytes; above it a map is refused with 429.",
      whole<MEMBER(queues.map_bytes)>(kMiB, 16384 * kMiB)},

@@ -2,6 +2,7 @@
 
 #include <arpa/inet.h>
 
+#include <algorithm>
 #include <charconv>
 #include <cmath>
 #include <optional>
@@ -78,6 +79,16 @@ std::string range_of(Form form) {
   return "";
 }
 
+/// "off", "duplicates" or "all"
+std::string range_of(std::span<const std::string_view> words) {
+  std::string text;
+  for (const std::string_view& word : words) {
+    if (!text.empty()) text.append(&word == &words.back() ? " or " : ", ");
+    text.append("\"").append(word).append("\"");
+  }
+  return text;
+}
+
 std::string digits(double number) {
   char text[400];  // the longest double in fixed notation has 309 digits before its point
   return {text, std::to_chars(text, text + sizeof text, number, std::chars_format::fixed).ptr};
@@ -105,17 +116,20 @@ std::string range_of(const Kind& kind) {
       Each{[](const Flag&) { return std::string("true or false"); },
            [](const Whole& k) { return std::to_string(k.least) + " to " + std::to_string(k.most); },
            [](const Real& k) { return digits(k.least) + " to " + digits(k.most); },
-           [](const Text& k) { return range_of(k.form); }, [](const Version&) { return std::string("1"); }},
+           [](const Text& k) { return range_of(k.form); }, [](const Choice& k) { return range_of(k.words); },
+           [](const Version&) { return std::string("1"); }},
       kind);
 }
 
 std::string written(const Kind& kind, const Settings& settings) {
-  return std::visit(Each{[&](const Flag& k) { return std::string(k.get(settings) ? "true" : "false"); },
-                         [&](const Whole& k) { return std::to_string(k.get(settings)); },
-                         [&](const Real& k) { return digits(k.get(settings)); },
-                         [&](const Text& k) { return codec::write_json({k.get(settings)}); },
-                         [](const Version&) { return std::string("1"); }},
-                    kind);
+  return std::visit(
+      Each{[&](const Flag& k) { return std::string(k.get(settings) ? "true" : "false"); },
+           [&](const Whole& k) { return std::to_string(k.get(settings)); },
+           [&](const Real& k) { return digits(k.get(settings)); },
+           [&](const Text& k) { return codec::write_json({k.get(settings)}); },
+           [&](const Choice& k) { return codec::write_json({std::string(k.words[k.get(settings)])}); },
+           [](const Version&) { return std::string("1"); }},
+      kind);
 }
 
 namespace {
@@ -151,6 +165,15 @@ Put put_one(const Text& kind, const codec::Value& value, Settings& settings) {
   const auto* text = std::get_if<std::string>(&value.is);
   if (text == nullptr || !fits(kind.form, *text)) return expected_but(range_of(kind.form), value);
   kind.put(settings, *text);
+  return {};
+}
+
+Put put_one(const Choice& kind, const codec::Value& value, Settings& settings) {
+  const auto* text = std::get_if<std::string>(&value.is);
+  const auto found =
+      text == nullptr ? kind.words.end() : std::ranges::find(kind.words, std::string_view(*text));
+  if (found == kind.words.end()) return expected_but(range_of(kind.words), value);
+  kind.put(settings, static_cast<std::size_t>(found - kind.words.begin()));
   return {};
 }
 

@@ -3,7 +3,9 @@
 #include <chrono>
 #include <cstdint>
 #include <expected>
+#include <span>
 #include <string>
+#include <string_view>
 #include <type_traits>
 #include <utility>
 #include <variant>
@@ -40,10 +42,17 @@ struct Text {
   Form form;
 };
 
+/// One of a few words, in the order of the enumeration that they stand for.
+struct Choice {
+  void (*put)(Settings&, std::size_t);
+  std::size_t (*get)(const Settings&);
+  std::span<const std::string_view> words;
+};
+
 /// Sets nothing: the number of the file's layout.
 struct Version {};
 
-using Kind = std::variant<Flag, Whole, Real, Text, Version>;
+using Kind = std::variant<Flag, Whole, Real, Text, Choice, Version>;
 
 /// Sets the member to `value`, or says what was expected and what was found.
 std::expected<void, std::string> put(const Kind& kind, const codec::Value& value, Settings& settings);
@@ -86,6 +95,13 @@ template <auto member>
 constexpr Text text(Form form) {
   return {[](Settings& s, std::string value) { member(s) = std::move(value); },
           [](const Settings& s) -> const std::string& { return member(s); }, form};
+}
+
+template <auto member>
+constexpr Choice choice(std::span<const std::string_view> words) {
+  using Member = std::remove_cvref_t<decltype(member(std::declval<Settings&>()))>;
+  return {[](Settings& s, std::size_t value) { member(s) = static_cast<Member>(value); },
+          [](const Settings& s) { return static_cast<std::size_t>(member(s)); }, words};
 }
 
 }  // namespace adit::settings

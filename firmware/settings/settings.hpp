@@ -8,6 +8,7 @@
 #include <string_view>
 #include <vector>
 
+#include "dispatch/reports.hpp"
 #include "icd/rules.hpp"
 
 namespace adit::settings {
@@ -47,6 +48,10 @@ struct Team {
 
 struct Reports {
   std::chrono::milliseconds answer_within{20000};  // a client that waits longer gets a truthful 503
+  std::chrono::milliseconds doubt_for{10000};      // dispatch::Patience
+  std::int64_t doubt_asks = 3;
+  dispatch::Review review = dispatch::Review::Off;
+  double near_metres = 5;
 };
 
 struct Queues {

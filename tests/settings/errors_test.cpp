@@ -64,6 +64,10 @@ const Case kValues[] = {
     {sample(R"(, "interface": "../x")"),
      "command_post.interface: expected an interface's name of at most 15 characters, or \"\", got "
      "\"../x\""},
+    {sample("", "", R"(, "reports": {"review": "Off"})"),
+     "reports.review: expected \"off\", \"duplicates\" or \"all\", got \"Off\""},
+    {sample("", "", R"(, "reports": {"review": true})"),
+     "reports.review: expected \"off\", \"duplicates\" or \"all\", got true"},
     {sample("", R"(, "require_token": "no")"), "team.require_token: expected true or false, got \"no\""},
     {sample("", "", R"(, "panel": {"chip": "gpiochip0", "health": "a line"})"),
      "panel.health: expected a GPIO line's name of at most 31 characters, or \"\", got \"a line\""}};

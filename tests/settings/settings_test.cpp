@@ -41,7 +41,8 @@ TEST(Settings, SetEveryMemberByItsKey) {
     "team": {
       "listen": [{"address": "10.0.0.1", "port": 80}, {"address": "fd00::2", "port": 0}],
       "interface": "team0", "require_token": false, "connections": 40, "connections_per_address": 4},
-    "reports": {"answer_within_ms": 5000},
+    "reports": {"answer_within_ms": 5000, "doubt_for_ms": 100, "doubt_asks": 100, "review": "duplicates",
+                "near_metres": 0.5},
     "queues": {"map_bytes": 2000000, "merge_bytes": 0, "markers_per_message": 7},
     "rules": {"rewrite_frame_id": true, "forward_unknown_types": true, "map_bytes": 4096},
     "panel": {"chip": "/dev/gpiochip1", "health": "H", "scoring": "S", "mapping": "M", "attention": "A",
@@ -65,6 +66,10 @@ TEST(Settings, SetEveryMemberByItsKey) {
   EXPECT_EQ(settings.team.connections, 40u);
   EXPECT_EQ(settings.team.connections_per_address, 4u);
   EXPECT_EQ(settings.reports.answer_within, milliseconds(5000));
+  EXPECT_EQ(settings.reports.doubt_for, milliseconds(100));
+  EXPECT_EQ(settings.reports.doubt_asks, 100);
+  EXPECT_EQ(settings.reports.review, dispatch::Review::Duplicates);
+  EXPECT_EQ(settings.reports.near_metres, 0.5);
   EXPECT_EQ(settings.queues.map_bytes, 2000000u);
   EXPECT_EQ(settings.queues.merge_bytes, 0u);
   EXPECT_EQ(settings.queues.markers_per_message, 7u);
@@ -83,6 +88,25 @@ TEST(Settings, TakeAWholeNumberHoweverItIsWritten) {
   for (const std::string number : {"40", "40.0", "4e1", "4.0E+1"}) {
     EXPECT_EQ(parsed(sample("", R"(, "connections": )" + number)).team.connections, 40u) << number;
   }
+}
+
+TEST(Settings, AreAsPatientWithReportsAsTheRulesOfReportsByThemselves) {
+  const dispatch::ReportRules rules;
+  const Reports reports = parsed(sample()).reports;
+  EXPECT_EQ(reports.answer_within, rules.answer_within);
+  EXPECT_EQ(reports.doubt_for, rules.patience.doubt_for);
+  EXPECT_EQ(reports.doubt_asks, rules.patience.asks);
+  EXPECT_EQ(reports.review, rules.review);
+  EXPECT_EQ(reports.near_metres, rules.near_metres);
+}
+
+TEST(Settings, TakeEachWordOfAChoice) {
+  const auto review = [](const std::string& word) {
+    return parsed(sample("", "", R"(, "reports": {"review": ")" + word + "\"}")).reports.review;
+  };
+  EXPECT_EQ(review("off"), dispatch::Review::Off);
+  EXPECT_EQ(review("duplicates"), dispatch::Review::Duplicates);
+  EXPECT_EQ(review("all"), dispatch::Review::All);
 }
 
 TEST(Settings, TakeTheEndsOfEveryRange) {

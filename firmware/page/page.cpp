@@ -47,7 +47,8 @@ intake::Answer refusal(icd::Status status, std::string_view sentence) {
 
 class Page::Impl {
  public:
-  Impl(loop::Loop& loop, const Source& source) : source_(source), live_(loop, source) {}
+  Impl(loop::Loop& loop, const Source& source, Operator& judge, std::vector<icd::BearerToken> tokens)
+      : source_(source), judge_(judge), tokens_(std::move(tokens)), live_(loop, source) {}
 
   void serve(const intake::RequestHead& head, intake::Responder& responder) {
     const auto* file = file_at(head.path());
@@ -69,10 +70,13 @@ class Page::Impl {
 
  private:
   const Source& source_;
+  [[maybe_unused]] Operator& judge_;
+  std::vector<icd::BearerToken> tokens_;
   Live live_;
 };
 
-Page::Page(loop::Loop& loop, const Source& source) : impl_(std::make_unique<Impl>(loop, source)) {}
+Page::Page(loop::Loop& loop, const Source& source, Operator& judge, std::vector<icd::BearerToken> tokens)
+    : impl_(std::make_unique<Impl>(loop, source, judge, std::move(tokens))) {}
 Page::~Page() = default;
 
 std::unique_ptr<intake::Exchange> Page::open(const intake::RequestHead& head,

@@ -1,11 +1,13 @@
 #pragma once
 
 #include <cstdint>
+#include <expected>
 #include <memory>
 #include <optional>
 #include <string>
 #include <vector>
 
+#include "icd/bearer_token.hpp"
 #include "icd/geometry.hpp"
 #include "icd/run_status.hpp"
 #include "intake/server.hpp"
@@ -23,11 +25,27 @@ struct ReportRow {
   icd::Point position;
   std::string sender;
   Time received = 0, changed = 0;
-  std::string state;  // dispatch::name_of(State): "waiting", "sending", "in doubt", "answered", ...
+  std::string state;  // dispatch::name_of(ReportState): "received", "waiting", "in doubt", "settled", ...
   int status = 0;     // the Command Post's; 0: none yet
   std::string report_status;
   std::optional<std::int64_t> score_change;
   std::string note;
+  std::int64_t run = 1;      // dispatch::Run::number of the run that it belongs to
+  bool asking = false;       // in doubt, and Adit is finding out
+  bool reconciled = false;   // its answer was found out from the run's status
+  std::int64_t same_as = 0;  // the earlier report that it turned out to be; 0: none
+};
+
+/// One step of a report's life.
+struct ReportStep {
+  Time at = 0;
+  std::string state, note;
+};
+
+struct ReportDetail {
+  ReportRow row;
+  std::vector<ReportStep> history;  // oldest first
+  std::string answer;               // the stored answer's body, byte for byte
 };
 
 /// One robot's (or, with no name, the merged) traffic of one kind.
@@ -70,6 +88,8 @@ struct RunView {
   std::string version;
   std::optional<icd::RunStatus> run;  // as last heard
   std::optional<Time> run_heard;
+  std::int64_t run_number = 1;  // dispatch::Run
+  std::string run_id;           // the Command Post's; "": it names none
   std::vector<EndpointRow> endpoints;
   std::vector<ReportRow> reports;  // newest first
   std::vector<ActivityRow> activities;
@@ -89,21 +109,33 @@ class Source {
  public:
   virtual ~Source() = default;
   virtual RunView view() const = 0;
+  virtual std::vector<ReportRow> reports() const = 0;  // of all runs, oldest first
+  virtual std::optional<ReportDetail> report(std::int64_t number) const = 0;
 };
 
-/// The local web page, on the team's side:
-///   GET /            the page and its files (embedded in the program)
-///   GET /adit/run    RunView as JSON
-///   GET /adit/events the same as server-sent events: one at once, then at most `kEventsPerSecond` as things
-///   change,
-///                    and one at least every 5 s
-/// Anything else is 404 with a JSON string. Every answer but the events carries a Content-Security-Policy of
-/// `default-src 'none'` with what the page needs, X-Content-Type-Options and Referrer-Policy.
+/// The operator's word on a report: see dispatch::Reports.
+enum class Deed : std::uint8_t { Send, Withdraw, CallDone, Resubmit };
+
+/// What does as the operator says.
+class Operator {
+ public:
+  virtual ~Operator() = default;
+  /// Gives the number of the report that it moved, or a sentence why not.
+  virtual std::expected<std::int64_t, std::string> judge(std::int64_t number, Deed deed) = 0;
+  /// Gives the new run's number.
+  virtual std::int64_t begin_run() = 0;
+};
+
+/// The local web page, on the team's side, and the operator's word on reports: README.md has its routes.
+///
+/// Every answer but the events carries a Content-Security-Policy of `default-src 'none'` with what the page
+/// needs, X-Content-Type-Options and Referrer-Policy; every error is a JSON string.
 class Page final : public intake::Handler {
  public:
   static constexpr int kEventsPerSecond = 4;
 
-  Page(loop::Loop& loop, const Source& source);
+  /// `tokens`: any of them lets a deed in; empty: none is asked for. All others outlive this.
+  Page(loop::Loop& loop, const Source& source, Operator& judge, std::vector<icd::BearerToken> tokens);
   ~Page() override;
 
   std::unique_ptr<intake::Exchange> open(const intake::RequestHead& head,

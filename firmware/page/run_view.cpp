@@ -63,7 +63,11 @@ Value json(const ReportRow& row) {
                         {"status", json(row.status)},
                         {"report_status", json(row.report_status)},
                         {"score_change", json(row.score_change)},
-                        {"note", json(row.note)}}};
+                        {"note", json(row.note)},
+                        {"run", json(row.run)},
+                        {"asking", json(row.asking)},
+                        {"reconciled", json(row.reconciled)},
+                        {"same_as", json(row.same_as)}}};
 }
 
 Value json(const ActivityRow& row) {
@@ -112,6 +116,8 @@ std::string write_run_view(const RunView& view) {
                                           {"version", json(view.version)},
                                           {"run", json(view.run)},
                                           {"run_heard", json(view.run_heard)},
+                                          {"run_number", json(view.run_number)},
+                                          {"run_id", json(view.run_id)},
                                           {"endpoints", json(view.endpoints)},
                                           {"reports", json(view.reports)},
                                           {"activities", json(view.activities)},

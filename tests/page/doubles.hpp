@@ -2,9 +2,11 @@
 
 #include <fstream>
 #include <iterator>
+#include <map>
 #include <memory>
 #include <optional>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "intake/server.hpp"
@@ -17,8 +19,33 @@ struct FakeSource final : Source {
     ++asked;
     return now;
   }
+  std::vector<ReportRow> reports() const override {
+    std::vector<ReportRow> rows;
+    for (const auto& [number, detail] : details) rows.push_back(detail.row);
+    return rows;
+  }
+  std::optional<ReportDetail> report(std::int64_t number) const override {
+    const auto found = details.find(number);
+    return found == details.end() ? std::nullopt : std::optional(found->second);
+  }
+
   RunView now;
+  std::map<std::int64_t, ReportDetail> details;
   mutable int asked = 0;
+};
+
+/// Does as it is told, and remembers what it was.
+struct FakeOperator final : Operator {
+  std::expected<std::int64_t, std::string> judge(std::int64_t number, Deed deed) override {
+    judged.emplace_back(number, deed);
+    return outcome ? *outcome : number;
+  }
+  std::int64_t begin_run() override { return ++run; }
+
+  std::vector<std::pair<std::int64_t, Deed>> judged;
+  std::optional<std::expected<std::int64_t, std::string>>
+      outcome;  // of judge(), where it is not the same number
+  std::int64_t run = 1;
 };
 
 class FakeHead final : public intake::RequestHead {

@@ -29,7 +29,8 @@ class PageTest : public testing::Test {
 
   loop::Loop loop;
   FakeSource source;
-  Page page{loop, source};
+  FakeOperator judge;
+  Page page{loop, source, judge, {}};
 };
 
 std::string header(const intake::Answer& answer, std::string_view name) {
@@ -112,10 +113,14 @@ TEST_F(PageTest, GivesTheRunAsJsonThatNobodyKeeps) {
 TEST(PageOnAServer, ServesABrowser) {
   std::unique_ptr<Page> page;
   Forward forward;
+  FakeOperator judge;
   intake::Served served{forward};
   FakeSource source;
   source.now = *scene("calm", 1000, 0);
-  served.on_loop([&] { forward.to = (page = std::make_unique<Page>(served.loop(), source)).get(); });
+  served.on_loop([&] {
+    forward.to =
+        (page = std::make_unique<Page>(served.loop(), source, judge, std::vector<icd::BearerToken>{})).get();
+  });
 
   intake::RawClient client{served.port()};
   client.send(intake::request("GET", "/page.css"));

@@ -13,7 +13,7 @@
 namespace adit::page {
 namespace {
 
-class Stage final : public Source {
+class Stage final : public Source, public Operator {
  public:
   Stage(loop::Loop& loop, std::string name) : loop_(loop), began_(loop.stamp_now()), name_(std::move(name)) {}
 
@@ -21,6 +21,16 @@ class Stage final : public Source {
     const Time now = loop_.stamp_now();
     return *scene(name_, now, now - began_);
   }
+
+  std::vector<ReportRow> reports() const override {
+    auto rows = view().reports;
+    return {rows.rbegin(), rows.rend()};
+  }
+  std::optional<ReportDetail> report(std::int64_t) const override { return {}; }
+  std::expected<std::int64_t, std::string> judge(std::int64_t, Deed) override {
+    return std::unexpected("this is a scene");
+  }
+  std::int64_t begin_run() override { return 1; }
 
   bool change_to(const std::string& name) {
     const bool known = scene(name, 0, 0).has_value();
@@ -38,7 +48,7 @@ int serve(std::uint16_t port, const std::string& first) {
   loop::Loop loop;
   Stage stage{loop, "empty"};
   if (!stage.change_to(first)) return std::fprintf(stderr, "no such scene: %s\n", first.c_str()), 2;
-  Page page{loop, stage};
+  Page page{loop, stage, stage, {}};
   auto server = intake::Server::start(loop, {.address = "127.0.0.1", .port = port, .interface = {}}, page);
   if (!server) return std::fprintf(stderr, "%s\n", server.error().c_str()), 1;
   std::printf("%d\n", (*server)->port());

@@ -1,46 +1,15 @@
-#include <concepts>
-
 #include "codec/json.hpp"
+#include "page/as_json.hpp"
 #include "page/page.hpp"
 
 namespace adit::page {
-namespace {
-
 using codec::Value;
-
-Value json(const std::string& text) {
-  return {text};
-}
-Value json(bool value) {
-  return {value};
-}
-Value json(double value) {
-  return {value};
-}
-template <std::signed_integral Whole>
-Value json(Whole value) {
-  return {std::int64_t{value}};
-}
-template <std::unsigned_integral Whole>
-  requires(!std::same_as<Whole, bool>)
-Value json(Whole value) {
-  return {std::uint64_t{value}};
-}
-
-Value json(const icd::Point& point) {
-  return {Value::Object{{"x", json(point.x)}, {"y", json(point.y)}, {"z", json(point.z)}}};
-}
 
 Value json(const icd::RunStatus& run) {
   return {Value::Object{{"score", json(run.score)},
                         {"run_clock", json(run.run_clock)},
                         {"remaining_reports", json(run.remaining_reports)},
                         {"current_team", json(run.current_team)}}};
-}
-
-template <class T>
-Value json(const std::optional<T>& value) {
-  return value ? json(*value) : Value{};
 }
 
 Value json(const EndpointRow& row) {
@@ -50,24 +19,6 @@ Value json(const EndpointRow& row) {
                         {"trouble", json(row.trouble)},
                         {"last_status", json(row.last_status)},
                         {"answer_ms", json(row.answer_ms)}}};
-}
-
-Value json(const ReportRow& row) {
-  return {Value::Object{{"number", json(row.number)},
-                        {"type", json(row.type)},
-                        {"position", json(row.position)},
-                        {"sender", json(row.sender)},
-                        {"received", json(row.received)},
-                        {"changed", json(row.changed)},
-                        {"state", json(row.state)},
-                        {"status", json(row.status)},
-                        {"report_status", json(row.report_status)},
-                        {"score_change", json(row.score_change)},
-                        {"note", json(row.note)},
-                        {"run", json(row.run)},
-                        {"asking", json(row.asking)},
-                        {"reconciled", json(row.reconciled)},
-                        {"same_as", json(row.same_as)}}};
 }
 
 Value json(const ActivityRow& row) {
@@ -100,16 +51,6 @@ Value json(const RefusalRow& row) {
 Value json(const LightRow& row) {
   return {Value::Object{{"name", json(row.name)}, {"pattern", json(row.pattern)}}};
 }
-
-template <class Row>
-Value json(const std::vector<Row>& rows) {
-  Value::Array array;
-  array.reserve(rows.size());
-  for (const Row& row : rows) array.push_back(json(row));
-  return {std::move(array)};
-}
-
-}  // namespace
 
 std::string write_run_view(const RunView& view) {
   return codec::write_json({Value::Object{{"now", json(view.now)},

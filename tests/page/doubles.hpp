@@ -1,5 +1,6 @@
 #pragma once
 
+#include <algorithm>
 #include <fstream>
 #include <iterator>
 #include <map>
@@ -50,19 +51,23 @@ struct FakeOperator final : Operator {
 
 class FakeHead final : public intake::RequestHead {
  public:
-  FakeHead(std::string method, std::string path, std::string if_none_match = "")
-      : method_(std::move(method)), path_(std::move(path)), if_none_match_(std::move(if_none_match)) {}
+  FakeHead(std::string method, std::string path, std::vector<intake::Header> headers = {},
+           std::optional<std::uint64_t> length = 0)
+      : method_(std::move(method)), path_(std::move(path)), headers_(std::move(headers)), length_(length) {}
   std::string_view method() const override { return method_; }
   std::string_view path() const override { return path_; }
   std::string_view query(std::string_view) const override { return ""; }
   std::string_view header(std::string_view name) const override {
-    return name == "If-None-Match" ? if_none_match_ : std::string_view{};
+    const auto found = std::ranges::find(headers_, name, &intake::Header::name);
+    return found == headers_.end() ? std::string_view{} : found->value;
   }
-  std::optional<std::uint64_t> content_length() const override { return 0; }
+  std::optional<std::uint64_t> content_length() const override { return length_; }
   const std::string& peer() const override { return peer_; }
 
  private:
-  std::string method_, path_, if_none_match_, peer_ = "10.0.0.5";
+  std::string method_, path_, peer_ = "10.0.0.5";
+  std::vector<intake::Header> headers_;
+  std::optional<std::uint64_t> length_;
 };
 
 struct FakeStream final : intake::Stream {
@@ -86,6 +91,11 @@ struct FakeResponder final : intake::Responder {
   std::shared_ptr<FakeStream> streaming;
   std::string stream_type;
 };
+
+inline std::string header(const intake::Answer& answer, std::string_view name) {
+  const auto found = std::ranges::find(answer.headers, name, &intake::Header::name);
+  return found == answer.headers.end() ? "" : found->value;
+}
 
 /// Hands requests on to a handler that is made later.
 struct Forward final : intake::Handler {

@@ -62,11 +62,36 @@ test("tells every state by a shape and a word, not by colour alone", async (t) =
     return glyphs.map((glyph) => [glyph.dataset.level, shape(glyph)]);
   });
   const byLevel = new Map(shapes);
-  assert.deepEqual([...byLevel.keys()].sort(), ["bad", "good", "quiet", "wait"]);
-  assert.equal(new Set(byLevel.values()).size, 4, "four levels, four shapes");
+  assert.deepEqual([...byLevel.keys()].sort(), ["ask", "bad", "good", "quiet", "wait"]);
+  assert.equal(new Set(byLevel.values()).size, 5, "five levels, five shapes");
   for (const badge of await page.$$eval("td[data-empty=false]", (cells) => cells.map((cell) => cell.innerText))) {
     assert.match(badge, /arriving|throttled|quiet/);
   }
+});
+
+test("tells where each report is in its life, and what waits for the operator's word", async (t) => {
+  const { page } = await watch(t, "reports");
+  const rows = await page.$$eval("#reports .rows li", (items) => items.map((item) => [item.dataset.level, item.innerText.replace(/\s+/g, " ")]));
+  const expected = [
+    ["wait", /^waiting Drill/],
+    ["wait", /^sending Cube/],
+    ["wait", /^in doubt, asking Vent.*is being asked$/],
+    ["ask", /^in doubt Gas.*another client reports, too · adit reports send 25, or done 25$/],
+    ["ask", /^held Rope.*2\.1 m from here · adit reports send 24, or withdraw 24$/],
+    ["good", /^scored \+1 Helmet.*found out from the run’s status$/],
+    ["quiet", /^called done Helmet.*the operator calls it done$/],
+    ["quiet", /^same as #17 Backpack/],
+    ["quiet", /^withdrawn Backpack/],
+    ["bad", /^refused Survivor.*status 422$/],
+    ["good", /^scored \+1 Survivor.*#18 · 15 min ago · run 1$/],
+  ];
+  assert.equal(rows.length, expected.length);
+  expected.forEach(([level, words], i) => {
+    assert.equal(rows[i][0], level, rows[i][1]);
+    assert.match(rows[i][1], words);
+  });
+  assert.match(await text(page, "#reports .count"), /^11, 5 open$/);
+  assert.deepEqual(page.complaints, []);
 });
 
 test("puts in anybody's text as text", async (t) => {
@@ -78,7 +103,7 @@ test("puts in anybody's text as text", async (t) => {
 });
 
 test("fits every screen from a phone to 4K, whatever it shows", async (t) => {
-  for (const scene of ["empty", "calm", "trouble", "hostile"]) {
+  for (const scene of ["empty", "calm", "trouble", "reports", "hostile"]) {
     const { page } = await watch(t, scene);
     for (const [width, height] of SIZES) {
       await page.setViewportSize({ width, height });
@@ -99,7 +124,7 @@ test("shows its large figures large enough for two metres", async (t) => {
 
 test("has nothing that axe finds wrong, in the dark and by day", async (t) => {
   for (const colorScheme of ["dark", "light"]) {
-    for (const scene of ["calm", "trouble", "empty"]) {
+    for (const scene of ["calm", "trouble", "reports", "empty"]) {
       const { page } = await watch(t, scene, { colorScheme, bypassCSP: true });
       await page.addScriptTag({ path: axe });
       const { violations } = await page.evaluate(() => globalThis.axe.run());

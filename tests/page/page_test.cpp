@@ -21,7 +21,8 @@ class PageTest : public testing::Test {
   intake::Answer get(std::string path, std::string if_none_match = "", std::string method = "GET") {
     auto responder = std::make_shared<FakeResponder>();
     EXPECT_EQ(
-        page.open(FakeHead{std::move(method), std::move(path), std::move(if_none_match)}, responder, {}),
+        page.open(FakeHead{std::move(method), std::move(path), {{"If-None-Match", std::move(if_none_match)}}},
+                  responder, {}),
         nullptr);
     EXPECT_TRUE(responder->answered) << "a page answers at once";
     return responder->answered.value_or(intake::Answer{});
@@ -32,11 +33,6 @@ class PageTest : public testing::Test {
   FakeOperator judge;
   Page page{loop, source, judge, {}};
 };
-
-std::string header(const intake::Answer& answer, std::string_view name) {
-  const auto found = std::ranges::find(answer.headers, name, &intake::Header::name);
-  return found == answer.headers.end() ? "" : found->value;
-}
 
 TEST_F(PageTest, ServesItsFilesWithTheirTypes) {
   EXPECT_EQ(get("/").content_type, "text/html; charset=utf-8");

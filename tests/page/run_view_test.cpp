@@ -31,8 +31,21 @@ TEST(RunViewJson, NamesEachMemberAsTheViewDoes) {
   EXPECT_EQ(parsed["refusals"][0]["status"], 422);
   EXPECT_EQ(parsed["lights"][3], (json{{"name", "attention"}, {"pattern", "fast"}}));
   EXPECT_EQ(parsed["budget_mbit"], 100.0);
+  EXPECT_EQ(parsed["run_number"], 1);
+  EXPECT_EQ(parsed["run_id"], "");
   EXPECT_EQ(parsed["queued_bytes"], 214'000'000);
   EXPECT_EQ(parsed["attention"].size(), 2);
+}
+
+TEST(RunViewJson, TellsOfEachReportWhoseWordItWaitsFor) {
+  const json parsed = json::parse(write_run_view(*scene("reports", 1000, 0)));
+  EXPECT_EQ(parsed["run_number"], 2);
+  EXPECT_EQ(parsed["run_id"], "cave-2");
+  EXPECT_EQ(parsed["reports"][2]["asking"], true);
+  EXPECT_EQ(parsed["reports"][3]["asking"], false);
+  EXPECT_EQ(parsed["reports"][5]["reconciled"], true);
+  EXPECT_EQ(parsed["reports"][7]["same_as"], 17);
+  EXPECT_EQ(parsed["reports"][10]["run"], 1);
 }
 
 TEST(RunViewJson, WritesWhatIsAbsentAsNull) {

@@ -117,6 +117,35 @@ RunView trouble(Time now, double elapsed) {
   return view;
 }
 
+/// A report in every state that there is, after a new run began.
+RunView reports(Time now, double elapsed) {
+  RunView view = calm(now, elapsed);
+  view.run_number = 2;
+  view.run_id = "cave-2";
+  view.reports = {report(28, "Drill", now - 1, "waiting", 0, {}),
+                  report(27, "Cube", now - 2, "sending", 0, {}),
+                  report(26, "Vent", now - 12, "in doubt", 0, {}),
+                  report(25, "Gas", now - 60, "in doubt", 0, {}),
+                  report(24, "Rope", now - 80, "received", 0, {}),
+                  report(23, "Helmet", now - 90, "settled", 201, 1),
+                  report(22, "Helmet", now - 95, "settled", 0, {}),
+                  report(21, "Backpack", now - 100, "withdrawn", 0, {}),
+                  report(20, "Backpack", now - 110, "withdrawn", 0, {}),
+                  report(19, "Survivor", now - 120, "refused", 422, {}),
+                  report(18, "Survivor", now - 900, "answered", 201, 1)};
+  for (ReportRow& row : view.reports) row.run = row.number == 18 ? 1 : 2;
+  view.reports[2].asking = true;
+  view.reports[2].note = "the connection was lost before an answer came; the run's status is being asked";
+  view.reports[3].note = "no answer came, and the run's status shows that another client reports, too";
+  view.reports[4].note = "another Rope was reported 2.1 m from here";
+  view.reports[5].reconciled = true;
+  view.reports[6].note = "the operator calls it done";
+  view.reports[7].same_as = 17;
+  view.attention = {"report 25 is in doubt: no answer came",
+                    "report 24 is held: another Rope was reported near"};
+  return view;
+}
+
 RunView hostile(Time now, double elapsed) {
   RunView view = calm(now, elapsed);
   const std::string script = "<img src=x onerror=\"window.pwned=1\"><script>window.pwned=1</script>";
@@ -149,6 +178,7 @@ std::optional<RunView> scene(std::string_view name, Time now, double elapsed) {
   if (name == "empty") return empty(now);
   if (name == "calm") return calm(now, elapsed);
   if (name == "trouble") return trouble(now, elapsed);
+  if (name == "reports") return reports(now, elapsed);
   if (name == "hostile") return hostile(now, elapsed);
   return {};
 }

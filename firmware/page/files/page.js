@@ -28,7 +28,7 @@ function show() {
   showRun(view, time, lost);
   showLights(view.lights);
   showRobots(view.activities, time, lost);
-  showReports(view.reports, time);
+  showReports(view, time);
   showPost(view, lost);
   showRefusals(view.refusals, time);
   say(document.getElementById("about"), `Adit ${clip(view.version, 40)} · the box's clock ${timeOfDay(time)}`);

@@ -9,14 +9,21 @@ function create() {
   return make("li", make("span.badge"), make("span.what"), make("span.where"), make("span.since"), make("span.more"));
 }
 
+/** How the operator decides; until the page can, by the shell. */
+function choice(report) {
+  if (life(report).level !== "ask") return "";
+  return `adit reports send ${report.number}, or ${report.state === "in doubt" ? "done" : "withdraw"} ${report.number}`;
+}
+
 /** What else there is to know: the Command Post's words, or why it is where it is. */
 function more(report) {
   const said = report.report_status && report.report_status !== "scored" ? report.report_status : "";
-  return [said, report.note, report.status >= 400 ? `status ${report.status}` : ""].filter(Boolean).join(" · ");
+  const found = report.reconciled ? "found out from the run’s status" : "";
+  return [said, found, report.note, report.status >= 400 ? `status ${report.status}` : "", choice(report)].filter(Boolean).join(" · ");
 }
 
-export function showReports(reports, now) {
-  const open = reports.filter((report) => ["waiting", "sending", "in doubt"].includes(report.state)).length;
+export function showReports({ reports, run_number }, now) {
+  const open = reports.filter((report) => ["received", "waiting", "sending", "in doubt"].includes(report.state)).length;
   say(section.querySelector(".count"), !reports.length ? "" : open ? `${reports.length}, ${open} open` : `${reports.length}`);
   section.querySelector(".rows").hidden = reports.length === 0;
   section.querySelector(".empty").hidden = reports.length > 0;
@@ -28,7 +35,8 @@ export function showReports(reports, now) {
     say(what, clip(report.type, 40));
     const { x, y, z } = report.position;
     say(where, `${metres(x)}, ${metres(y)}, ${metres(z)} m`);
-    say(since, `#${report.number} · ${ago(now - report.received)}`);
+    const earlier = report.run === run_number ? "" : ` · run ${report.run}`;
+    say(since, `#${report.number} · ${ago(now - report.received)}${earlier}`);
     say(rest, clip(more(report)));
   });
 }

@@ -1,5 +1,6 @@
 // What the figures mean: for each thing a level (its shape and colour), a word, and a sentence where one helps.
 //   good: as it should be   wait: late, or about to be decided   bad: it does not work   quiet: nothing to tell
+//   ask: it waits for the operator's word
 import { age, signed } from "./words.js";
 
 // Seconds. One map a second goes out for all robots together, so that each waits for its turn.
@@ -61,17 +62,23 @@ export function overall(activities, now) {
   return { level, word: `All arrived; nothing new for ${age(last)}` };
 }
 
+function gained({ score_change, report_status }) {
+  if (score_change === null) return { level: "quiet", word: report_status || "answered" };
+  if (score_change > 0) return { level: "good", word: `scored ${signed(score_change)}` };
+  return { level: "quiet", word: score_change === 0 ? "no points" : `scored ${signed(score_change)}` };
+}
+
 /** Where a report is in its life. */
 export function life(report) {
   switch (report.state) {
+    case "received": return { level: "ask", word: "held" };
     case "waiting": return { level: "wait", word: "waiting" };
     case "sending": return { level: "wait", word: "sending" };
-    case "in doubt": return { level: "bad", word: "in doubt" };
+    case "in doubt": return report.asking ? { level: "wait", word: "in doubt, asking" } : { level: "ask", word: "in doubt" };
     case "refused": return { level: "bad", word: "refused" };
-    case "answered":
-      if (report.score_change === null) return { level: "quiet", word: report.report_status || "answered" };
-      if (report.score_change > 0) return { level: "good", word: `scored ${signed(report.score_change)}` };
-      return { level: "quiet", word: report.score_change === 0 ? "no points" : `scored ${signed(report.score_change)}` };
+    case "answered": return gained(report);
+    case "settled": return report.reconciled ? gained(report) : { level: "quiet", word: "called done" };
+    case "withdrawn": return { level: "quiet", word: report.same_as ? `same as #${report.same_as}` : "withdrawn" };
     default: return { level: "quiet", word: report.state };
   }
 }

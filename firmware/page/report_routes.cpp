@@ -1,0 +1,153 @@
+#include "page/report_routes.hpp"
+
+#include <charconv>
+#include <optional>
+#include <utility>
+
+#include "codec/body_decoder.hpp"
+#include "icd/sentence.hpp"
+#include "page/answers.hpp"
+#include "page/reports_csv.hpp"
+#include "page/reports_json.hpp"
+
+namespace adit::page {
+namespace {
+
+constexpr std::string_view kReports = "/adit/reports", kCsv = "/adit/reports.csv", kOne = "/adit/reports/",
+                           kRuns = "/adit/runs";
+constexpr std::size_t kMostBody = 65536;  // of a deed, which needs none
+
+struct DeedName {
+  std::string_view name;
+  Deed deed;
+};
+constexpr DeedName kDeeds[] = {{"send", Deed::Send},
+                               {"withdraw", Deed::Withdraw},
+                               {"done", Deed::CallDone},
+                               {"resubmit", Deed::Resubmit}};
+
+std::optional<Deed> deed_named(std::string_view name) {
+  for (const DeedName& each : kDeeds) {
+    if (each.name == name) return each.deed;
+  }
+  return std::nullopt;
+}
+
+std::optional<std::int64_t> number_in(std::string_view text) {
+  std::int64_t number = 0;
+  const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), number);
+  return error == std::errc() && end == text.data() + text.size() ? std::optional(number) : std::nullopt;
+}
+
+/// The path of a deed: "/adit/reports/7/send", or kRuns.
+struct DeedPath {
+  std::int64_t number = 0;
+  std::optional<Deed> deed;  // nothing: a new run
+};
+
+std::optional<DeedPath> deed_at(std::string_view path) {
+  if (path == kRuns) return DeedPath{};
+  const auto slash = path.rfind('/');
+  if (!path.starts_with(kOne) || slash < kOne.size()) return std::nullopt;
+  const auto number = number_in(path.substr(kOne.size(), slash - kOne.size()));
+  const auto deed = deed_named(path.substr(slash + 1));
+  if (!number || !deed) return std::nullopt;
+  return DeedPath{*number, deed};
+}
+
+intake::Answer no_such(std::int64_t number) {
+  return refusal(icd::Status::NotFound, icd::sentence("there is no report ", number));
+}
+
+intake::Answer too_long() {
+  return refusal(icd::Status::ContentTooLarge,
+                 icd::sentence("expected a body of at most ", kMostBody, " bytes"));
+}
+
+/// Reads the body away, and does the deed once it is whole.
+class DeedVisit final : public intake::Exchange {
+ public:
+  DeedVisit(std::shared_ptr<intake::Responder> responder, std::function<intake::Answer()> deed)
+      : responder_(std::move(responder)), deed_(std::move(deed)) {}
+  bool on_body(std::span<const std::uint8_t> piece) override {
+    size_ += piece.size();
+    if (size_ > kMostBody) responder_->answer(too_long());
+    return true;
+  }
+  void on_end() override { responder_->answer(deed_()); }
+
+ private:
+  std::shared_ptr<intake::Responder> responder_;
+  std::function<intake::Answer()> deed_;
+  std::size_t size_ = 0;
+};
+
+}  // namespace
+
+ReportRoutes::ReportRoutes(const Source& source, Operator& judge, std::vector<icd::BearerToken> tokens,
+                           std::function<void()> changed)
+    : source_(source), operator_(judge), tokens_(std::move(tokens)), changed_(std::move(changed)) {}
+
+bool ReportRoutes::has(std::string_view path) {
+  return path == kReports || path == kCsv || path == kRuns || path.starts_with(kOne);
+}
+
+std::unique_ptr<intake::Exchange> ReportRoutes::open(const intake::RequestHead& head,
+                                                     std::shared_ptr<intake::Responder> responder) {
+  const auto refuse = [&responder](intake::Answer answer) {
+    responder->answer(std::move(answer));
+    return nullptr;
+  };
+  const auto path = deed_at(head.path());
+  if (!path) return refuse(only_reads(head) ? shown(head.path()) : wrong_method(kReading));
+  if (head.method() != "POST") return refuse(wrong_method("POST"));
+  if (!may_enter(head)) {
+    auto answer = refusal(icd::Status::Unauthorized, "Authorization: expected Bearer and the team's token");
+    answer.headers.push_back({"WWW-Authenticate", "Bearer"});
+    return refuse(std::move(answer));
+  }
+  if (codec::format_of(head.header("Content-Type")) != codec::Format::Json) {
+    return refuse(refusal(icd::Status::UnprocessableEntity, "Content-Type: expected application/json"));
+  }
+  if (head.content_length().value_or(0) > kMostBody) return refuse(too_long());
+  return std::make_unique<DeedVisit>(std::move(responder), [this, path = *path] {
+    auto answer = path.deed ? judge(path.number, *path.deed) : begin_run();
+    changed_();
+    return answer;
+  });
+}
+
+bool ReportRoutes::may_enter(const intake::RequestHead& head) const {
+  const std::string_view presented = icd::token_in(head.header("Authorization"));
+  bool known = tokens_.empty();
+  for (const icd::BearerToken& token : tokens_) {
+    if (token.matches(presented)) known = true;  // no early end: the time must not tell which
+  }
+  return known;
+}
+
+intake::Answer ReportRoutes::shown(std::string_view path) const {
+  if (path == kReports) return fresh("application/json", write_reports(source_.reports()));
+  if (path == kCsv) {
+    auto answer = fresh("text/csv; charset=utf-8; header=present", write_reports_csv(source_.reports()));
+    answer.headers.push_back({"Content-Disposition", "attachment; filename=\"adit-reports.csv\""});
+    return answer;
+  }
+  const auto number = number_in(path.substr(kOne.size()));
+  if (!number) return nothing_here();
+  const auto report = source_.report(*number);
+  return report ? fresh("application/json", write_report(*report)) : no_such(*number);
+}
+
+intake::Answer ReportRoutes::judge(std::int64_t number, Deed deed) {
+  if (!source_.report(number)) return no_such(number);
+  const auto moved = operator_.judge(number, deed);
+  if (!moved) return refusal(icd::Status::Conflict, moved.error());
+  return fresh("application/json", "{\"report\":" + std::to_string(*moved) + "}");
+}
+
+intake::Answer ReportRoutes::begin_run() {
+  return fresh("application/json", "{\"run\":" + std::to_string(operator_.begin_run()) + "}");
+}
+
+}  // namespace adit::page

@@ -1,0 +1,242 @@
+#include "page/report_routes.hpp"
+
+#include <gmock/gmock.h>
+
+#include <array>
+#include <nlohmann/json.hpp>
+
+#include "intake/raw_client.hpp"
+#include "intake/served.hpp"
+#include "page/doubles.hpp"
+#include "page/reports_csv.hpp"
+
+namespace adit::page {
+namespace {
+
+using nlohmann::json;
+using testing::ElementsAre;
+using testing::IsEmpty;
+using testing::Pair;
+
+icd::BearerToken token(std::string_view text) {
+  return *icd::BearerToken::parse(text);
+}
+
+const std::vector<intake::Header> kGood = {{"Authorization", "Bearer team-1"},
+                                           {"Content-Type", "application/json"}};
+
+class ReportRoutesTest : public testing::Test {
+ protected:
+  ReportRoutesTest() {
+    for (const std::int64_t number : {7, 12}) {
+      ReportDetail detail;
+      detail.row.number = number;
+      detail.row.type = "Survivor";
+      detail.row.run = 2;
+      detail.history = {{1000, "waiting", ""}, {1001.5, "in doubt", "the connection was lost"}};
+      detail.answer = "{\"score_change\": 1}";
+      source.details[number] = detail;
+    }
+  }
+
+  intake::Answer ask(const std::string& method, const std::string& path,
+                     std::vector<intake::Header> headers = {}, std::size_t body = 0) {
+    auto responder = std::make_shared<FakeResponder>();
+    const auto exchange = page.open(FakeHead{method, path, std::move(headers), body}, responder, {});
+    EXPECT_EQ(exchange == nullptr, responder->answered.has_value());
+    if (exchange) {
+      const std::vector<std::uint8_t> bytes(body);
+      exchange->on_body(bytes);
+      exchange->on_end();
+    }
+    EXPECT_TRUE(responder->answered);
+    return responder->answered.value_or(intake::Answer{});
+  }
+  intake::Answer post(const std::string& path, std::vector<intake::Header> headers = kGood,
+                      std::size_t body = 0) {
+    return ask("POST", path, std::move(headers), body);
+  }
+
+  loop::Loop loop;
+  FakeSource source;
+  FakeOperator judge;
+  Page page{loop, source, judge, {token("team-1"), token("scoring-1")}};
+};
+
+TEST_F(ReportRoutesTest, GiveAllReportsAsJsonThatNobodyKeeps) {
+  const auto answer = ask("GET", "/adit/reports");
+  EXPECT_EQ(answer.status, icd::Status::Ok);
+  EXPECT_EQ(answer.content_type, "application/json");
+  EXPECT_EQ(header(answer, "Cache-Control"), "no-store");
+  const json reports = json::parse(answer.body);
+  ASSERT_EQ(reports.size(), 2u);
+  EXPECT_EQ(reports[0]["number"], 7);
+  EXPECT_EQ(reports[1]["number"], 12);
+  EXPECT_EQ(reports[1]["run"], 2);
+  EXPECT_EQ(reports[1]["asking"], false);
+  EXPECT_EQ(reports[1]["reconciled"], false);
+  EXPECT_EQ(reports[1]["same_as"], 0);
+}
+
+TEST_F(ReportRoutesTest, GiveAllReportsAsAFileForSpreadsheets) {
+  const auto answer = ask("GET", "/adit/reports.csv");
+  EXPECT_EQ(answer.content_type, "text/csv; charset=utf-8; header=present");
+  EXPECT_EQ(header(answer, "Content-Disposition"), "attachment; filename=\"adit-reports.csv\"");
+  EXPECT_EQ(header(answer, "X-Content-Type-Options"), "nosniff");
+  EXPECT_EQ(answer.body, write_reports_csv(source.reports()));
+}
+
+TEST_F(ReportRoutesTest, GiveAReportWithItsHistoryAndItsAnswer) {
+  const json report = json::parse(ask("GET", "/adit/reports/12").body);
+  EXPECT_EQ(report["number"], 12);
+  EXPECT_EQ(report["history"],
+            (json{{{"at", 1000.0}, {"state", "waiting"}, {"note", ""}},
+                  {{"at", 1001.5}, {"state", "in doubt"}, {"note", "the connection was lost"}}}));
+  EXPECT_EQ(report["answer"], "{\"score_change\": 1}");
+}
+
+TEST_F(ReportRoutesTest, PassOnTheOperatorsWord) {
+  EXPECT_EQ(post("/adit/reports/7/send").body, "{\"report\":7}");
+  post("/adit/reports/12/withdraw");
+  post("/adit/reports/7/done");
+  EXPECT_THAT(judge.judged,
+              ElementsAre(Pair(7, Deed::Send), Pair(12, Deed::Withdraw), Pair(7, Deed::CallDone)));
+  judge.outcome = 13;
+  const auto answer = post("/adit/reports/7/resubmit");
+  EXPECT_EQ(answer.status, icd::Status::Ok);
+  EXPECT_EQ(answer.body, "{\"report\":13}");
+  EXPECT_THAT(judge.judged.back(), Pair(7, Deed::Resubmit));
+}
+
+TEST_F(ReportRoutesTest, DeclareANewRun) {
+  EXPECT_EQ(post("/adit/runs").body, "{\"run\":2}");
+  EXPECT_EQ(judge.run, 2);
+}
+
+TEST_F(ReportRoutesTest, SayWhyADeedCannotBe) {
+  judge.outcome = std::unexpected("report 7 is answered: there is nothing to withdraw");
+  const auto answer = post("/adit/reports/7/withdraw");
+  EXPECT_EQ(answer.status, icd::Status::Conflict);
+  EXPECT_EQ(json::parse(answer.body), "report 7 is answered: there is nothing to withdraw");
+}
+
+TEST_F(ReportRoutesTest, KnowNoOtherReportsAndNoOtherDeeds) {
+  for (const auto& answer : {ask("GET", "/adit/reports/8"), post("/adit/reports/8/send")}) {
+    EXPECT_EQ(answer.status, icd::Status::NotFound);
+    EXPECT_EQ(json::parse(answer.body), "there is no report 8");
+  }
+  for (const char* path :
+       {"/adit/reports/", "/adit/reports/7/", "/adit/reports/x", "/adit/reports/7x",
+        "/adit/reports/7/history", "/adit/reports/99999999999999999999", "/adit/reports/7/send/"}) {
+    EXPECT_EQ(ask("GET", path).status, icd::Status::NotFound) << path;
+    EXPECT_EQ(post(path).status, icd::Status::MethodNotAllowed) << path;
+  }
+  EXPECT_THAT(judge.judged, IsEmpty());
+}
+
+TEST_F(ReportRoutesTest, DoNothingWithoutAToken) {
+  for (const char* authorization :
+       {"", "Bearer", "Bearer wrong", "Bearer team-", "Basic team-1", "Bearer team-1x"}) {
+    for (const char* path : {"/adit/reports/7/send", "/adit/runs"}) {
+      const auto answer =
+          post(path, {{"Authorization", authorization}, {"Content-Type", "application/json"}});
+      EXPECT_EQ(answer.status, icd::Status::Unauthorized) << authorization;
+      EXPECT_EQ(header(answer, "WWW-Authenticate"), "Bearer");
+    }
+  }
+  EXPECT_THAT(judge.judged, IsEmpty());
+  EXPECT_EQ(judge.run, 1);
+}
+
+TEST_F(ReportRoutesTest, TakeAnyOfTheTokensAndNoneWhereNoneIsAskedFor) {
+  EXPECT_EQ(post("/adit/runs", {{"Authorization", "bearer scoring-1"}, {"Content-Type", "application/json"}})
+                .status,
+            icd::Status::Ok);
+  Page open{loop, source, judge, {}};
+  auto responder = std::make_shared<FakeResponder>();
+  const auto exchange =
+      open.open(FakeHead{"POST", "/adit/runs", {{"Content-Type", "application/json"}}}, responder, {});
+  ASSERT_NE(exchange, nullptr);
+  exchange->on_end();
+  EXPECT_EQ(responder->answered->status, icd::Status::Ok);
+}
+
+/// What a form or a script of another web page can send without being asked (Fetch, CORS-safelisted).
+TEST_F(ReportRoutesTest, LetNoOtherWebPageDoADeed) {
+  for (const char* type :
+       {"", "text/plain", "application/x-www-form-urlencoded", "multipart/form-data; boundary=x"}) {
+    const auto answer = post("/adit/runs", {{"Authorization", "Bearer team-1"}, {"Content-Type", type}});
+    EXPECT_EQ(answer.status, icd::Status::UnprocessableEntity) << type;
+  }
+  const auto preflight = ask("OPTIONS", "/adit/reports/7/send",
+                             {{"Origin", "http://evil.example"}, {"Access-Control-Request-Method", "POST"}});
+  EXPECT_EQ(preflight.status, icd::Status::MethodNotAllowed);
+  EXPECT_EQ(header(preflight, "Allow"), "POST");
+  for (const auto& answer : {preflight, post("/adit/runs"), ask("GET", "/adit/reports")}) {
+    for (const auto& [name, value] : answer.headers) EXPECT_FALSE(name.starts_with("Access-Control")) << name;
+  }
+  EXPECT_THAT(judge.judged, IsEmpty());
+  EXPECT_EQ(judge.run, 2);
+}
+
+TEST_F(ReportRoutesTest, TakeAnyBodyButAnEndlessOne) {
+  EXPECT_EQ(post("/adit/reports/7/send", kGood, 65536).status, icd::Status::Ok);
+  EXPECT_EQ(post("/adit/reports/7/send", kGood, 65537).status, icd::Status::ContentTooLarge);
+
+  auto responder = std::make_shared<FakeResponder>();
+  const auto chunked =
+      page.open(FakeHead{"POST", "/adit/reports/7/send", kGood, std::nullopt}, responder, {});
+  ASSERT_NE(chunked, nullptr);
+  const std::array<std::uint8_t, 40000> piece{};
+  chunked->on_body(piece);
+  EXPECT_FALSE(responder->answered);
+  chunked->on_body(piece);
+  ASSERT_TRUE(responder->answered);
+  EXPECT_EQ(responder->answered->status, icd::Status::ContentTooLarge);
+  EXPECT_EQ(judge.judged.size(), 1u);
+}
+
+TEST_F(ReportRoutesTest, OnlyReadWhereTheyShow) {
+  for (const char* path : {"/adit/reports", "/adit/reports.csv", "/adit/reports/7"}) {
+    for (const char* method : {"POST", "PUT", "DELETE", "OPTIONS"}) {
+      const auto answer = ask(method, path, kGood);
+      EXPECT_EQ(answer.status, icd::Status::MethodNotAllowed) << method << ' ' << path;
+      EXPECT_EQ(header(answer, "Allow"), "GET, HEAD");
+    }
+  }
+  for (const char* method : {"GET", "HEAD", "PUT", "DELETE"}) {
+    EXPECT_EQ(header(ask(method, "/adit/runs", kGood), "Allow"), "POST") << method;
+  }
+}
+
+TEST(ReportRoutesOnAServer, DoADeedAndShowIt) {
+  std::unique_ptr<Page> page;
+  Forward forward;
+  FakeOperator judge;
+  FakeSource source;
+  source.details[7].row.number = 7;
+  intake::Served served{forward};
+  served.on_loop([&] {
+    page = std::make_unique<Page>(served.loop(), source, judge, std::vector{token("team-1")});
+    forward.to = page.get();
+  });
+  intake::RawClient client{served.port()};
+  const std::string good = "Authorization: Bearer team-1\r\nContent-Type: application/json\r\n";
+  client.send(intake::request("POST", "/adit/reports/7/send", good));
+  auto reply = client.reply();
+  ASSERT_TRUE(reply);
+  EXPECT_EQ(reply->status, 200);
+  EXPECT_EQ(reply->body, "{\"report\":7}");
+  client.send(intake::request("POST", "/adit/runs", good, "{}"));
+  reply = client.reply();
+  ASSERT_TRUE(reply);
+  EXPECT_EQ(reply->body, "{\"run\":2}");
+  client.send(intake::request("POST", "/adit/runs"));
+  reply = client.reply();
+  ASSERT_TRUE(reply);
+  EXPECT_EQ(reply->status, 401);
+  served.on_loop([&] { forward.to = nullptr, page.reset(); });
+}
+
+}  // namespace
+}  // namespace adit::page

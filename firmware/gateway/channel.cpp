@@ -1,6 +1,6 @@
 #include "gateway/channel.hpp"
 
-#include "gateway/upstream_answer.hpp"
+#include "dispatch/said.hpp"
 
 namespace adit::gateway {
 
@@ -28,7 +28,7 @@ void Channel::note(const uplink::Outcome& outcome) {
   if (const auto* answered = std::get_if<uplink::Answered>(&outcome)) {
     last_status_ = answered->status;
     answer_ms_ = std::chrono::duration<double, std::milli>(heard_ - sent_at_).count();
-    trouble_ = answered->status < 400 ? "" : gateway::sentence_of(*answered);
+    trouble_ = answered->status < 400 ? "" : dispatch::said(answered->status, answered->body);
   } else {
     last_status_ = 0;
     trouble_ = gateway::sentence_of(outcome);
@@ -52,7 +52,8 @@ uplink::Endpoint endpoint_of(const settings::CommandPost& command_post, const se
 std::string sentence_of(const uplink::Outcome& outcome) {
   if (const auto* never = std::get_if<uplink::NeverSent>(&outcome)) return never->why;
   if (const auto* doubt = std::get_if<uplink::InDoubt>(&outcome)) return doubt->why;
-  return sentence_of(std::get<uplink::Answered>(outcome));
+  const auto& answered = std::get<uplink::Answered>(outcome);
+  return dispatch::said(answered.status, answered.body);
 }
 
 }  // namespace adit::gateway

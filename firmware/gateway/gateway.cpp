@@ -1,5 +1,6 @@
 #include "gateway/gateway.hpp"
 
+#include "gateway/report_rows.hpp"
 #include "gateway/version.hpp"
 #include "host/log.hpp"
 
@@ -9,6 +10,7 @@ namespace {
 constexpr std::chrono::milliseconds kDrainStep{10};
 constexpr std::chrono::milliseconds kFlush{50};  // in which the answers just given to the team leave
 constexpr std::size_t kMeterSeconds = 5;
+constexpr std::size_t kMostReportRows = 200;
 
 std::string text(const settings::Address& address) {
   return address.address + ":" + std::to_string(address.port);
@@ -27,7 +29,7 @@ Gateway::Gateway(loop::Loop& loop, Parts parts)
       maps_(loop, workers_, spool_, parts_.settings, *parts_.secrets.mapping, record_, random_),
       news_(loop, parts_.settings, *parts_.secrets.mapping, record_, random_),
       lights_(loop, std::move(parts_.lines)),
-      page_(loop, *this),
+      page_(loop, *this, *this, team_tokens()),
       routes_(icd_options(), *this, workers_, page_),
       second_(loop.timer([this] { every_second(); })),
       drained_(loop.timer([this] { drain(); })) {}
@@ -37,11 +39,18 @@ Gateway::~Gateway() = default;
 intake::IcdOptions Gateway::icd_options() const {
   intake::IcdOptions options;
   options.rules = parts_.settings.rules;
-  if (!parts_.settings.team.require_token) return options;
-  for (const auto& token : {parts_.secrets.team, parts_.secrets.scoring, parts_.secrets.mapping}) {
-    if (token) options.tokens.push_back(*token);
-  }
+  options.tokens = team_tokens();
   return options;
+}
+
+/// Any of them lets a client of the team in; empty: none is asked for.
+std::vector<icd::BearerToken> Gateway::team_tokens() const {
+  std::vector<icd::BearerToken> tokens;
+  if (!parts_.settings.team.require_token) return tokens;
+  for (const auto& token : {parts_.secrets.team, parts_.secrets.scoring, parts_.secrets.mapping}) {
+    if (token) tokens.push_back(*token);
+  }
+  return tokens;
 }
 
 std::expected<void, std::string> Gateway::start() {
@@ -158,6 +167,22 @@ void Gateway::refused(icd::Uri uri, const intake::Sender& sender, const icd::Ref
   record_.refused(uri, sender, refusal, loop_.stamp_now());
 }
 
+std::vector<page::ReportRow> Gateway::reports() const {
+  return all_rows(scoring_.reports());
+}
+
+std::optional<page::ReportDetail> Gateway::report(std::int64_t number) const {
+  return detail_of(scoring_.reports(), parts_.ledger, number);
+}
+
+std::expected<std::int64_t, std::string> Gateway::judge(std::int64_t number, page::Deed deed) {
+  return scoring_.judge(number, deed);
+}
+
+std::int64_t Gateway::begin_run() {
+  return scoring_.begin_run();
+}
+
 void Gateway::changed() {
   page_.changed();
 }
@@ -166,6 +191,7 @@ void Gateway::every_second() {
   bytes_sent_.push_back(scoring_.channel().bytes_sent() + maps_.channel().bytes_sent() +
                         news_.channel().bytes_sent());
   if (bytes_sent_.size() > kMeterSeconds + 1) bytes_sent_.pop_front();
+  scoring_.tick();
   lights_.show(condition());
   keep_news();
   if (std::string line = status_line(); line != notified_) {
@@ -183,23 +209,20 @@ double Gateway::sent_mbit() const {
 
 panel::Condition Gateway::condition() const {
   const Channel& scoring = scoring_.channel();
-  return {.serving = !servers_.empty() && scoring_.book().trouble().empty(),
+  return {.serving = !servers_.empty() && scoring_.trouble().empty(),
           .scoring_connected = scoring.connected(),
           .scoring_failing = !scoring.trouble().empty(),
           .mapping_connected = news_.channel().connected(),
           .mapping_failing = !news_.channel().trouble().empty() || !maps_.channel().trouble().empty(),
-          .report_waiting = scoring_.waiting() > 0,
+          .report_waiting = !scoring_.reports().book().waiting().empty(),
           .needs_operator = !attention().empty()};
 }
 
 std::vector<std::string> Gateway::attention() const {
-  std::vector<std::string> sentences;
-  if (const std::size_t doubts = scoring_.book().in_doubt(); doubts > 0) {
-    sentences.push_back(std::to_string(doubts) + (doubts == 1 ? " report is" : " reports are") +
-                        " in doubt: the answer was lost");
+  std::vector<std::string> sentences = scoring_.reports().attention();
+  if (!scoring_.trouble().empty()) {
+    sentences.push_back("no report is taken, the ledger cannot be written: " + scoring_.trouble());
   }
-  if (!scoring_.book().trouble().empty())
-    sentences.push_back("the ledger cannot be written: " + scoring_.book().trouble());
   if (!parts_.ledger.damage().empty()) sentences.push_back(parts_.ledger.damage());
   const auto token_refused = [&](const Channel& channel, const char* name) {
     if (channel.last_status() == 401) {
@@ -237,8 +260,10 @@ page::RunView Gateway::view() const {
                      .version = kVersion,
                      .run = scoring_.run(),
                      .run_heard = scoring_.run_heard(),
+                     .run_number = scoring_.reports().run().number,
+                     .run_id = scoring_.reports().run().id,
                      .endpoints = endpoints(),
-                     .reports = scoring_.book().rows(),
+                     .reports = latest_rows(scoring_.reports(), kMostReportRows),
                      .activities = record_.activities(),
                      .refusals = record_.refusals(),
                      .lights = {},
@@ -264,7 +289,9 @@ std::string Gateway::status_line() const {
   std::string line = scoring_.run() ? "score " + std::to_string(scoring_.run()->score) + ", " +
                                           std::to_string(scoring_.run()->remaining_reports) + " reports left"
                                     : "no word from the Command Post yet";
-  if (scoring_.waiting() > 0) line += ", " + std::to_string(scoring_.waiting()) + " reports waiting";
+  if (const std::size_t waiting = scoring_.reports().book().waiting().size(); waiting > 0) {
+    line += ", " + std::to_string(waiting) + " reports waiting";
+  }
   if (const auto sentences = attention(); !sentences.empty()) line += "; " + sentences.front();
   return line;
 }

@@ -35,7 +35,7 @@ struct Parts {
 };
 
 /// The whole of Adit at work: the team's messages come in by Desk and leave by Scoring, Maps and News.
-class Gateway final : public intake::Desk, public page::Source {
+class Gateway final : public intake::Desk, public page::Source, public page::Operator {
  public:
   static constexpr std::chrono::milliseconds kDrain{800};  // how long stop() waits for answers under way
 
@@ -58,6 +58,10 @@ class Gateway final : public intake::Desk, public page::Source {
   void refused(icd::Uri uri, const intake::Sender& sender, const icd::Refusal& refusal) override;
 
   page::RunView view() const override;
+  std::vector<page::ReportRow> reports() const override;
+  std::optional<page::ReportDetail> report(std::int64_t number) const override;
+  std::expected<std::int64_t, std::string> judge(std::int64_t number, page::Deed deed) override;
+  std::int64_t begin_run() override;
 
  private:
   void restore();
@@ -69,6 +73,7 @@ class Gateway final : public intake::Desk, public page::Source {
   double sent_mbit() const;
   std::expected<void, std::string> listen();
   intake::IcdOptions icd_options() const;
+  std::vector<icd::BearerToken> team_tokens() const;
   panel::Condition condition() const;
   std::vector<std::string> attention() const;
   std::vector<page::EndpointRow> endpoints() const;

@@ -2,34 +2,23 @@
 
 #include <algorithm>
 #include <array>
+#include <utility>
 
 #include "codec/read.hpp"
 #include "codec/write.hpp"
+#include "dispatch/report_verdict.hpp"
 #include "dispatch/turn.hpp"
 #include "gateway/upstream_answer.hpp"
-#include "host/log.hpp"
 #include "intake/icd_routes.hpp"
 
 namespace adit::gateway {
 namespace {
 
-using dispatch::ReportEvent;
-
-ReportEvent event_of(const uplink::Outcome& outcome) {
-  if (std::holds_alternative<uplink::NeverSent>(outcome)) return ReportEvent::NeverLeft;
-  if (std::holds_alternative<uplink::InDoubt>(outcome)) return ReportEvent::Lost;
-  const auto& answered = std::get<uplink::Answered>(outcome);
-  const ReportEvent event = dispatch::event_of(answered.status);
-  // A 2xx whose body says nothing of the report may be anybody's (a captive portal's, a proxy's).
-  const bool meaningless = event == ReportEvent::Recorded && !codec::read_report_reply(answered.body);
-  return meaningless ? ReportEvent::Lost : event;
-}
-
-intake::Answer in_doubt_answer(std::int64_t number, const std::string& why) {
-  return intake::error_answer(
-      icd::Status::GatewayTimeout,
-      "report " + std::to_string(number) +
-          " is in doubt: it may or may not have been recorded, do not send it again (" + why + ")");
+dispatch::ReportRules rules_of(const settings::Reports& reports) {
+  return {.answer_within = reports.answer_within,
+          .review = reports.review,
+          .near_metres = reports.near_metres,
+          .patience = {.doubt_for = reports.doubt_for, .asks = reports.doubt_asks}};
 }
 
 }  // namespace
@@ -37,21 +26,25 @@ intake::Answer in_doubt_answer(std::int64_t number, const std::string& why) {
 Scoring::Scoring(loop::Loop& loop, ledger::Ledger& ledger, const settings::Settings& settings,
                  icd::BearerToken token, Record& record, std::mt19937_64& random)
     : loop_(loop),
+      ledger_(ledger),
       settings_(settings),
       record_(record),
-      book_(loop, ledger),
+      deeds_(ledger),
+      reports_(rules_of(settings.reports), deeds_),
       channel_(loop, endpoint_of(settings.command_post, settings.command_post.scoring, 0), std::move(token),
                settings.command_post.timeouts.scoring_answer),
       report_pace_(settings.command_post.rates.reports_hz, random),
       status_pace_(settings.command_post.rates.status_hz, random),
       wake_(loop.timer([this] { pump(); })),
       poll_(loop.timer([this] { poll(); })),
-      deadline_(loop.timer([this] { answer_late_clients(); })) {}
+      deadline_(loop.timer([this] { deadline_came(); })) {}
 
 std::expected<void, std::string> Scoring::start() {
-  const auto waiting = book_.open();
-  if (!waiting) return std::unexpected(waiting.error());
-  queue_.assign(waiting->begin(), waiting->end());
+  auto all = ledger_.reports();
+  if (!all) return std::unexpected(all.error().what);
+  auto run = ledger_.last_run();
+  if (!run) return std::unexpected(run.error().what);
+  reports_.open(std::move(*all), std::move(*run), time());
   channel_.keep_warm();
   poll();
   return {};
@@ -64,22 +57,11 @@ void Scoring::take(const icd::ArtifactReport& report, const intake::Sender& send
         icd::Status::ServiceUnavailable, "the gateway is stopping; the report was not taken, send it again"));
     return;
   }
-  if (queue_.size() >= kMostWaiting) {
-    responder->answer(
-        intake::error_answer(icd::Status::TooManyRequests,
-                             std::to_string(kMostWaiting) + " reports wait already; this one was not taken"));
-    return;
-  }
-  const auto number = book_.add(report, sender.address);
-  if (!number) {
-    responder->answer(
-        intake::error_answer(icd::Status::ServiceUnavailable,
-                             "the report could not be written down and was not taken: " + number.error()));
-    record_.changed();
-    return;
-  }
-  queue_.push_back(*number);
-  clients_[*number] = {std::move(responder), loop_.now() + settings_.reports.answer_within};
+  const bool may_send = !channel_.busy() && channel_.connected() && report_pace_.ready() <= loop_.now();
+  const bool chosen =
+      reports_.take({.report = report, .sender = sender.address, .resubmit = sender.resubmits},
+                    deeds_.add(std::move(responder)), may_send, time());
+  if (chosen) send(*reports_.sending());
   watch_deadlines();
   record_.changed();
   pump();
@@ -113,74 +95,64 @@ intake::Answer Scoring::fresh_status() const {
 
 void Scoring::pump() {
   if (stopping_ || channel_.busy()) return;
+  const loop::Instant now = loop_.now();
+  const dispatch::Wish wish = reports_.wish(time());
   std::array<dispatch::Candidate, 2> candidates;
-  if (!queue_.empty()) candidates[0] = {loop_.now(), report_pace_.ready()};
-  if (!askers_.empty() || poll_due_) candidates[1] = {loop_.now(), status_pace_.ready()};
-  const dispatch::Turn turn = dispatch::in_order(candidates, loop_.now());
+  if (wish.report) candidates[0] = {now, report_pace_.ready()};
+  if (!askers_.empty() || poll_due_) {
+    candidates[1] = {now, status_pace_.ready()};
+  } else if (wish.status) {
+    candidates[1] = {now, std::max(status_pace_.ready(), *wish.status)};
+  }
+  const dispatch::Turn turn = dispatch::in_order(candidates, now);
   if (turn.wake) wake_.call_at(*turn.wake);
-  if (turn.candidate == 0) send_report();
+  if (turn.candidate == 0) send_next();
   if (turn.candidate == 1) ask_status();
 }
 
-void Scoring::send_report() {
-  const std::int64_t number = queue_.front();
-  if (!book_.move(number, ReportEvent::Chosen, "")) {  // not on disk: it must not leave
-    report_pace_.failed(loop_.now());
-    wake_.call_at(report_pace_.ready());
-    return;
-  }
-  queue_.pop_front();
-  sending_ = number;
-  report_pace_.sent(loop_.now());
-  const std::string body = codec::write_artifact_report(book_.entry(number).report);
-  channel_.send(icd::Uri::ArtifactReports, codec::kJson,
-                icd::ChunkedBytes({reinterpret_cast<const std::uint8_t*>(body.data()), body.size()}),
-                [this, number](uplink::Outcome outcome) { report_answered(number, std::move(outcome)); });
+void Scoring::send_next() {
+  if (const dispatch::Report* const chosen = reports_.choose(time())) return send(*chosen);
+  // The disk refused it (or it was the same as another one): it must not leave.
+  if (!trouble().empty()) report_pace_.failed(loop_.now());
+  wake_.call_at(std::max(report_pace_.ready(), loop_.now()));
 }
 
-void Scoring::report_answered(std::int64_t number, uplink::Outcome outcome) {
-  sending_.reset();
-  const ReportEvent event = event_of(outcome);
-  const auto* answered = std::get_if<uplink::Answered>(&outcome);
-  if (answered != nullptr) book_.set_answer(number, *answered);
-  const std::string why = event == ReportEvent::Recorded ? "" : sentence_of(outcome);
+void Scoring::send(const dispatch::Report& report) {
+  report_pace_.sent(loop_.now());
+  const std::string body = codec::write_artifact_report(report.report);
+  channel_.send(icd::Uri::ArtifactReports, codec::kJson,
+                icd::ChunkedBytes({reinterpret_cast<const std::uint8_t*>(body.data()), body.size()}),
+                [this](uplink::Outcome outcome) { report_answered(std::move(outcome)); });
+}
+
+void Scoring::report_answered(uplink::Outcome outcome) {
   const loop::Instant now = loop_.now();
-  // If this step cannot be written, the ledger still says "sending", and after a restart it is in doubt: the
-  // safe side.
-  book_.move(number, event, why);
-  status_fresh_until_.reset();  // score and remaining reports have changed, or may have
-  switch (event) {
-    case ReportEvent::Recorded:
-    case ReportEvent::Refused:
-      report_pace_.taken(now);
-      answer_client(number, client_answer(*answered));
-      break;
-    case ReportEvent::Throttled:
+  if (const auto* answered = std::get_if<uplink::Answered>(&outcome)) {
+    reports_.answered(
+        {.status = answered->status, .content_type = answered->content_type, .body = answered->body}, time());
+    if (answered->status == 429) {
       report_pace_.throttled(now, answered->retry_after);
-      queue_.push_front(number);
-      break;
-    case ReportEvent::NeverLeft:
+    } else if (dispatch::event_of(answered->status, answered->body) == dispatch::ReportEvent::Barred) {
       report_pace_.failed(now);
-      queue_.push_front(number);
-      break;
-    default:
+    } else {
       report_pace_.taken(now);
-      answer_client(number, answered != nullptr && answered->status >= 500 ? client_answer(*answered)
-                                                                           : in_doubt_answer(number, why));
+    }
+  } else if (const auto* never = std::get_if<uplink::NeverSent>(&outcome)) {
+    reports_.never_left(never->why, time());
+    report_pace_.failed(now);
+  } else {
+    reports_.lost(sentence_of(outcome), time());
+    report_pace_.taken(now);
   }
-  if (!stopping_) poll();
+  status_fresh_until_.reset();  // score and remaining reports have changed, or may have
+  poll_.call_at(now + kAskAfterReport);
+  watch_deadlines();
   record_.changed();
   pump();
 }
 
-void Scoring::answer_client(std::int64_t number, intake::Answer answer) {
-  const auto client = clients_.extract(number);
-  if (client) client.mapped().responder->answer(std::move(answer));
-}
-
 void Scoring::watch_deadlines() {
-  std::optional<loop::Instant> first;
-  if (!clients_.empty()) first = clients_.begin()->second.deadline;
+  std::optional<loop::Instant> first = reports_.next_deadline();
   if (!askers_.empty()) first = std::min(first.value_or(asker_deadline()), asker_deadline());
   if (first) deadline_.call_at(*first);
 }
@@ -189,24 +161,19 @@ loop::Instant Scoring::asker_deadline() const {
   return askers_.front().since + settings_.command_post.timeouts.scoring_answer;
 }
 
-void Scoring::answer_late_clients() {
-  const loop::Instant now = loop_.now();
-  while (!askers_.empty() && asker_deadline() <= now) {
+void Scoring::deadline_came() {
+  while (!askers_.empty() && asker_deadline() <= loop_.now()) {
     askers_.front().responder->answer(intake::error_answer(
         icd::Status::ServiceUnavailable, "the Command Post could not be asked in time: reports go first"));
     askers_.pop_front();
   }
-  while (!clients_.empty() && clients_.begin()->second.deadline <= now) {
-    const std::int64_t number = clients_.begin()->first;
-    const ledger::Entry& entry = book_.entry(number);
-    const std::string why = entry.note.empty() ? "" : ": " + entry.note;
-    answer_client(number,
-                  intake::error_answer(
-                      icd::Status::ServiceUnavailable,
-                      "report " + std::to_string(number) + " is kept and " + entry.state +
-                          "; it goes out as soon as the Command Post takes it, do not send it again" + why));
-  }
+  reports_.tick(time());
   watch_deadlines();
+}
+
+void Scoring::tick() {
+  reports_.tick(time());
+  pump();
 }
 
 void Scoring::ask_status() {
@@ -228,14 +195,21 @@ void Scoring::status_answered(uplink::Outcome outcome) {
     answer_askers(client_answer(*answered));
   } else {
     status_pace_.taken(now);
-    if (const auto run = codec::read_run_status(answered->body); answered->status == 200 && run) {
-      run_ = *run;
-      run_heard_ = loop_.stamp_now();
-      status_body_ = answered->body;
-      status_fresh_until_ = now + kFresh;
-    }
     answer_askers(client_answer(*answered));
   }
+  const auto run = answered != nullptr && answered->status == 200
+                       ? codec::read_run_status(answered->body)
+                       : std::unexpected<std::string>("");
+  if (run) {
+    run_ = *run;
+    run_heard_ = loop_.stamp_now();
+    status_body_ = answered->body;
+    status_fresh_until_ = now + kFresh;
+    reports_.status_heard(*run, time());
+  } else {
+    reports_.status_failed(!std::holds_alternative<uplink::NeverSent>(outcome), time());
+  }
+  watch_deadlines();
   record_.changed();
   pump();
 }
@@ -244,22 +218,34 @@ void Scoring::answer_askers(const intake::Answer& answer) {
   for (const Asker& asker : std::exchange(askers_, {})) asker.responder->answer(answer);
 }
 
+dispatch::Reports::Outcome Scoring::judge(std::int64_t number, page::Deed deed) {
+  const dispatch::Reports::Outcome outcome =
+      deed == page::Deed::Send       ? reports_.send(number, time())
+      : deed == page::Deed::Withdraw ? reports_.withdraw(number, time())
+      : deed == page::Deed::CallDone ? reports_.call_done(number, time())
+                                     : reports_.resubmit(number, time());
+  record_.changed();
+  pump();
+  return outcome;
+}
+
+std::int64_t Scoring::begin_run() {
+  const std::int64_t number = reports_.declare_new_run(time());
+  record_.changed();
+  poll();
+  return number;
+}
+
 bool Scoring::stop() {
   stopping_ = true;
   answer_askers(intake::error_answer(icd::Status::ServiceUnavailable, "the gateway is stopping"));
-  for (const std::int64_t number : queue_) {
-    answer_client(number,
-                  intake::error_answer(icd::Status::ServiceUnavailable,
-                                       "the gateway is stopping; report " + std::to_string(number) +
-                                           " is kept and goes out when it runs again, do not send it again"));
-  }
-  return !sending_;
+  reports_.dismiss(false);
+  return reports_.sending() == nullptr;
 }
 
 void Scoring::dismiss() {
   stop();
-  if (sending_)
-    answer_client(*sending_, in_doubt_answer(*sending_, "the gateway stops while it is being sent"));
+  reports_.dismiss(true);
 }
 
 }  // namespace adit::gateway

@@ -1,16 +1,15 @@
 #pragma once
 
 #include <deque>
-#include <map>
 #include <memory>
 #include <optional>
 #include <random>
 #include <string>
-#include <vector>
 
+#include "dispatch/reports.hpp"
 #include "gateway/channel.hpp"
 #include "gateway/record.hpp"
-#include "gateway/report_book.hpp"
+#include "gateway/report_deeds.hpp"
 #include "gateway/uri_pace.hpp"
 #include "icd/artifact_report.hpp"
 #include "icd/run_status.hpp"
@@ -22,13 +21,14 @@
 
 namespace adit::gateway {
 
-/// The scoring endpoint: reports, one at a time, each on disk before anything else happens to it (promise 1),
-/// and the run's status, never asked for ahead of a waiting report.
+/// The scoring endpoint: reports, one at a time, by the rules of dispatch::Reports (promise 1), and the run's
+/// status, never asked for ahead of a report that may go.
 class Scoring {
  public:
   static constexpr std::chrono::seconds kFresh{1};      // how long a status is good as an answer
   static constexpr std::chrono::seconds kAskEvery{10};  // the status is asked for at least this often
-  static constexpr std::size_t kMostWaiting = 1000;     // reports
+  /// After a report the status is asked for once its client has been answered.
+  static constexpr std::chrono::milliseconds kAskAfterReport{50};
 
   Scoring(loop::Loop& loop, ledger::Ledger& ledger, const settings::Settings& settings,
           icd::BearerToken token, Record& record, std::mt19937_64& random);
@@ -39,6 +39,12 @@ class Scoring {
   void take(const icd::ArtifactReport& report, const intake::Sender& sender,
             std::shared_ptr<intake::Responder> responder);
   void status(std::shared_ptr<intake::Responder> responder);
+  /// Once a second.
+  void tick();
+
+  /// The operator's word on a report; gives the number of the report that it moved, or a sentence why not.
+  dispatch::Reports::Outcome judge(std::int64_t number, page::Deed deed);
+  std::int64_t begin_run();
 
   /// Sends and takes nothing more; clients whose reports wait are told so. False while an answer is still
   /// awaited. Called again until it is true or there is no more time.
@@ -49,44 +55,41 @@ class Scoring {
   const Channel& channel() const { return channel_; }
   const std::optional<icd::RunStatus>& run() const { return run_; }
   std::optional<page::Time> run_heard() const { return run_heard_; }
-  const ReportBook& book() const { return book_; }
-  std::size_t waiting() const { return queue_.size(); }
+  const dispatch::Reports& reports() const { return reports_; }
+  /// Why the ledger cannot be written, or "".
+  const std::string& trouble() const { return deeds_.trouble(); }
 
  private:
-  struct Client {
-    std::shared_ptr<intake::Responder> responder;
-    loop::Instant deadline;
-  };
   /// Somebody who asked for the status.
   struct Asker {
     std::shared_ptr<intake::Responder> responder;
     loop::Instant since;
   };
 
+  dispatch::Time time() const { return {loop_.now(), loop_.stamp_now()}; }
   void poll();
   void pump();
-  void send_report();
-  void report_answered(std::int64_t number, uplink::Outcome outcome);
+  void send(const dispatch::Report& report);
+  void send_next();
+  void report_answered(uplink::Outcome outcome);
   void ask_status();
   void status_answered(uplink::Outcome outcome);
   void answer_askers(const intake::Answer& answer);
-  void answer_client(std::int64_t number, intake::Answer answer);
   void watch_deadlines();
   loop::Instant asker_deadline() const;
-  void answer_late_clients();
+  void deadline_came();
   intake::Answer fresh_status() const;
 
   loop::Loop& loop_;
+  ledger::Ledger& ledger_;
   const settings::Settings& settings_;
   Record& record_;
-  ReportBook book_;
+  ReportDeeds deeds_;
+  dispatch::Reports reports_;
   Channel channel_;
   UriPace report_pace_, status_pace_;
   loop::Source wake_, poll_, deadline_;
 
-  std::deque<std::int64_t> queue_;
-  std::optional<std::int64_t> sending_;
-  std::map<std::int64_t, Client> clients_;
   std::deque<Asker> askers_;
   bool poll_due_ = false;  // Adit itself wants to know the status
 

@@ -10,8 +10,4 @@ namespace adit::gateway {
 /// empty). An answer of 2xx that is no JSON becomes 502.
 intake::Answer client_answer(const uplink::Answered& answered);
 
-/// What the Command Post said, for people: a JSON string without its quotation marks, `detail` of an object,
-/// else the status alone. At most 300 bytes.
-std::string sentence_of(const uplink::Answered& answered);
-
 }  // namespace adit::gateway

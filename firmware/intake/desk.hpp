@@ -18,6 +18,7 @@ namespace adit::intake {
 struct Sender {
   std::string address;
   std::size_t bytes = 0;  // of the body as received
+  bool resubmits = false;  // a report: to be sent as a new one, though it be the same as an earlier one
 };
 
 /// What the team's messages are handed to once they have passed every check. Called on the loop.

@@ -48,6 +48,15 @@ icd::Checked<codec::BodyKind> kind_of(icd::Uri uri, const RequestHead& head) {
   return codec::BodyKind{.format = *format, .coding = *coding};
 }
 
+/// Adit-Resubmit: yes, in any letter case, or absent.
+icd::Checked<bool> resubmits_of(const RequestHead& head) {
+  const std::string_view word = head.header("Adit-Resubmit");
+  if (word.empty()) return false;
+  const auto is = [](char one, char other) { return (one | 0x20) == other; };
+  if (std::ranges::equal(word, std::string_view("yes"), is)) return true;
+  return icd::unprocessable("Adit-Resubmit: expected yes or no such header, got ", icd::in_quotes(word));
+}
+
 }  // namespace
 
 IcdRoutes::IcdRoutes(IcdOptions options, Desk& desk, loop::Workers& workers, Handler& other)
@@ -77,9 +86,12 @@ std::unique_ptr<Exchange> IcdRoutes::open(const RequestHead& head, std::shared_p
   if (!uri) return other_.open(head, std::move(responder), std::move(flow));
 
   const auto length = head.content_length();
+  Sender sender;
+  sender.address = head.peer();
+  sender.bytes = static_cast<std::size_t>(length.value_or(0));
   Visit visit{.desk = desk_,
               .uri = *uri,
-              .sender = {.address = head.peer(), .bytes = static_cast<std::size_t>(length.value_or(0))},
+              .sender = std::move(sender),
               .responder = with_cors(std::move(responder))};
   if (head.method() == "OPTIONS") {
     visit.responder->answer(preflight_answer(*uri, head.header("Access-Control-Request-Headers")));
@@ -106,6 +118,14 @@ std::unique_ptr<Exchange> IcdRoutes::take_in(Visit visit, const RequestHead& hea
   if (!kind) {
     visit.refuse(kind.error());
     return nullptr;
+  }
+  if (visit.uri == icd::Uri::ArtifactReports) {
+    const auto resubmits = resubmits_of(head);
+    if (!resubmits) {
+      visit.refuse(resubmits.error());
+      return nullptr;
+    }
+    visit.sender.resubmits = *resubmits;
   }
   const std::size_t most = most_bytes(visit.uri);
   if (const auto length = head.content_length(); length && *length > most) {

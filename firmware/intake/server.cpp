@@ -71,7 +71,8 @@ class Server::Impl final : public Engine {
   bool run_is_due_ = false;
   std::unordered_map<Client*, std::unique_ptr<Client>> clients_;
   loop::Instant look_due_ = loop::Instant::max();
-  loop::Source readable_, run_timer_, deadline_timer_;
+  loop::Source readable_, deadline_timer_;
+  const std::shared_ptr<Impl*> alive_ = std::make_shared<Impl*>(this);  // for what is posted
 };
 
 std::expected<void, std::string> Server::Impl::start() {
@@ -92,7 +93,6 @@ std::expected<void, std::string> Server::Impl::start() {
   const MHD_DaemonInfo* info = MHD_get_daemon_info(daemon_, MHD_DAEMON_INFO_EPOLL_FD);
   if (info == nullptr || info->epoll_fd < 0)
     return std::unexpected("the HTTP server has no epoll descriptor");
-  run_timer_ = loop_.timer([this] { run(); });
   deadline_timer_ = loop_.timer([this] { look_at_deadlines(); });
   readable_ = loop_.watch(info->epoll_fd, EPOLLIN, [this](std::uint32_t) { run(); });
   return {};
@@ -113,11 +113,14 @@ void Server::Impl::stop_listening() {
 
 void Server::Impl::run_soon() {
   if (stopping_ || std::exchange(run_is_due_, true)) return;
-  run_timer_.call_at(loop_.now());
+  // Not by a timer: it would be late by what the loop allows itself to gather timers.
+  loop_.post([weak = std::weak_ptr(alive_)] {
+    if (const auto alive = weak.lock(); alive && (*alive)->run_is_due_) (*alive)->run();
+  });
 }
 
 void Server::Impl::run() {
-  if (std::exchange(run_is_due_, false)) run_timer_.cancel();
+  run_is_due_ = false;
   MHD_run(daemon_);
   MHD_UNSIGNED_LONG_LONG wait_ms = 0;
   if (MHD_get_timeout(daemon_, &wait_ms) == MHD_YES && wait_ms == 0) run_soon();

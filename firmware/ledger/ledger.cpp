@@ -40,22 +40,18 @@ class Ledger::Impl {
 
   explicit Impl(Opened opened) : database_(std::move(opened.database)), damage_(std::move(opened.damage)) {}
 
-  Result<void> write(std::span<const dispatch::Report> steps) {
-    if (steps.empty()) return {};
+  Result<void> write(std::span<const dispatch::Report> steps, const dispatch::Run* run) {
+    if (steps.empty() && run == nullptr) return {};
     Transaction transaction(database_);
     if (auto begun = transaction.begin(); !begun) return std::unexpected(begun.error());
     for (const dispatch::Report& report : steps) {
       if (auto written = write_one(report); !written) return written;
     }
+    if (run != nullptr) {
+      if (auto written = write_one(*run); !written) return written;
+    }
     if (auto committed = transaction.commit(); !committed) return std::unexpected(committed.error());
     return {};
-  }
-
-  Result<void> write(const dispatch::Run& run) {
-    Query query(write_run_);
-    bind_run(query, run);
-    if (query.step() == SQLITE_DONE) return {};
-    return std::unexpected(database_.error("recording run " + std::to_string(run.number)));
   }
 
   Result<std::vector<dispatch::Report>> reports() {
@@ -80,6 +76,13 @@ class Ledger::Impl {
   const std::string& damage() const { return damage_; }
 
  private:
+  Result<void> write_one(const dispatch::Run& run) {
+    Query query(write_run_);
+    bind_run(query, run);
+    if (query.step() == SQLITE_DONE) return {};
+    return std::unexpected(database_.error("recording run " + std::to_string(run.number)));
+  }
+
   Result<void> write_one(const dispatch::Report& report) {
     const std::string doing = "recording a step of report " + std::to_string(report.number);
     Query row(write_report_);
@@ -111,11 +114,8 @@ Result<Ledger> Ledger::open(const std::string& folder) {
   return Ledger(std::move(*impl));
 }
 
-Result<void> Ledger::write(std::span<const dispatch::Report> steps) {
-  return impl_->write(steps);
-}
-Result<void> Ledger::write(const dispatch::Run& run) {
-  return impl_->write(run);
+Result<void> Ledger::write(std::span<const dispatch::Report> steps, const dispatch::Run* run) {
+  return impl_->write(steps, run);
 }
 Result<std::vector<dispatch::Report>> Ledger::reports() const {
   return impl_->reports();

@@ -36,9 +36,9 @@ class Ledger {
   /// Writes all steps, in order, as one transaction with one flush: each report as it then is, and a row of
   /// its history. What makes a report what it is (its type, position and time of receipt) never changes: a
   /// step that has others under a number that is in use is an error.
-  Result<void> write(std::span<const dispatch::Report> steps);
-  /// Writes the run as it now is, with one flush.
-  Result<void> write(const dispatch::Run& run);
+  /// `run`, where there is one, is written with them, as it now is.
+  Result<void> write(std::span<const dispatch::Report> steps, const dispatch::Run* run = nullptr);
+  Result<void> write(const dispatch::Run& run) { return write({}, &run); }
 
   /// All reports, oldest first. A state that this version does not know is read as InDoubt: only the operator
   /// can judge it.

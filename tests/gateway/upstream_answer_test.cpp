@@ -52,20 +52,5 @@ TEST(ClientAnswer, IsAJsonStringWhateverElseCame) {
   }
 }
 
-TEST(SentenceOf, IsWhatTheCommandPostSaid) {
-  EXPECT_EQ(sentence_of(answered(422, "", R"("Missing field: 'y'")")), "Missing field: 'y'");
-  EXPECT_EQ(sentence_of(answered(401, "", R"({"detail": "Invalid token."})")), "Invalid token.");
-  EXPECT_EQ(sentence_of(answered(500, "", "<html>")), "the Command Post answered 500");
-  EXPECT_EQ(sentence_of(answered(200, "", "null")), "the Command Post answered 200");
-}
-
-TEST(SentenceOf, IsCutBetweenCharacters) {
-  std::string text = "x";
-  for (int i = 0; i < 400; ++i) text += "\xC3\xA9";
-  const std::string sentence = sentence_of(answered(422, "", "\"" + text + "\""));
-  EXPECT_EQ(sentence.size(), 299 + 3);
-  EXPECT_EQ(sentence.substr(sentence.size() - 5), "\xC3\xA9...");
-}
-
 }  // namespace
 }  // namespace adit::gateway

@@ -1,0 +1,65 @@
+#include "gateway/report_deeds.hpp"
+
+#include <utility>
+
+#include "gateway/upstream_answer.hpp"
+#include "host/log.hpp"
+#include "intake/icd_routes.hpp"
+
+namespace adit::gateway {
+namespace {
+
+using dispatch::ReportState;
+
+void log(const dispatch::Report& report) {
+  const bool for_the_operator = report.state == ReportState::InDoubt || report.state == ReportState::Received;
+  host::log(for_the_operator ? host::Level::Warning : host::Level::Notice,
+            "report " + std::string(dispatch::name_of(report.state)),
+            {{"report", std::to_string(report.number)},
+             {"type", report.report.type},
+             {"sender", report.sender},
+             {"status", report.status != 0 ? std::to_string(report.status) : ""},
+             {"why", report.note}});
+}
+
+intake::Answer answer_of(const dispatch::ClientAnswer& answer, const dispatch::Report& report) {
+  if (!answer.sentence.empty()) return intake::error_answer(answer.status, answer.sentence);
+  return client_answer({.status = report.status,
+                        .content_type = report.content_type,
+                        .body = report.answer,
+                        .retry_after = std::nullopt});
+}
+
+}  // namespace
+
+dispatch::ClientId ReportDeeds::add(std::shared_ptr<intake::Responder> responder) {
+  clients_[++last_client_] = std::move(responder);
+  return last_client_;
+}
+
+bool ReportDeeds::write(std::span<const dispatch::Report> steps, const dispatch::Run* run) {
+  const auto written = ledger_.write(steps, run);
+  if (!written) {
+    if (trouble_ != written.error().what) {
+      host::log(host::Level::Error, "the ledger cannot be written", {{"why", written.error().what}});
+    }
+    trouble_ = written.error().what;
+    return false;
+  }
+  if (!trouble_.empty()) host::log(host::Level::Notice, "the ledger can be written again");
+  trouble_.clear();
+  for (const dispatch::Report& report : steps) log(report);
+  return true;
+}
+
+void ReportDeeds::tell(dispatch::ClientId client, const dispatch::ClientAnswer& answer,
+                       const dispatch::Report& report) {
+  const auto waiting = clients_.extract(client);
+  if (!waiting) return;
+  intake::Answer told = answer_of(answer, report);
+  if (answer.number != 0) told.headers.push_back({"Adit-Report", std::to_string(answer.number)});
+  if (answer.sentence.empty() && report.reconciled) told.headers.push_back({"Adit-Reconciled", "yes"});
+  waiting.mapped()->answer(std::move(told));
+}
+
+}  // namespace adit::gateway

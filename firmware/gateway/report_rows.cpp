@@ -1,0 +1,60 @@
+#include "gateway/report_rows.hpp"
+
+#include <algorithm>
+
+#include "codec/read.hpp"
+
+namespace adit::gateway {
+
+page::ReportRow row_of(const dispatch::Reports& reports, const dispatch::Report& report) {
+  page::ReportRow row{.number = report.number,
+                      .type = report.report.type,
+                      .position = report.report.position,
+                      .sender = report.sender,
+                      .received = report.received,
+                      .changed = report.changed,
+                      .state = std::string(dispatch::name_of(report.state)),
+                      .status = report.status,
+                      .report_status = "",
+                      .score_change = std::nullopt,
+                      .note = report.note,
+                      .run = report.run,
+                      .asking = reports.is_asking(report),
+                      .reconciled = report.reconciled,
+                      .same_as = report.same_as};
+  if (report.answer.empty()) return row;
+  if (const auto reply = codec::read_report_reply(report.answer)) {
+    row.report_status = reply->report_status;
+    row.score_change = reply->score_change;
+  }
+  return row;
+}
+
+std::vector<page::ReportRow> all_rows(const dispatch::Reports& reports) {
+  std::vector<page::ReportRow> rows;
+  for (const auto& [number, report] : reports.book().all()) rows.push_back(row_of(reports, report));
+  return rows;
+}
+
+std::vector<page::ReportRow> latest_rows(const dispatch::Reports& reports, std::size_t most) {
+  const auto& all = reports.book().all();
+  std::vector<page::ReportRow> rows;
+  rows.reserve(std::min(all.size(), most));
+  for (auto item = all.rbegin(); item != all.rend() && rows.size() < most; ++item) {
+    rows.push_back(row_of(reports, item->second));
+  }
+  return rows;
+}
+
+std::optional<page::ReportDetail> detail_of(const dispatch::Reports& reports, const ledger::Ledger& ledger,
+                                            std::int64_t number) {
+  const dispatch::Report* const report = reports.book().find(number);
+  if (report == nullptr) return std::nullopt;
+  page::ReportDetail detail{.row = row_of(reports, *report), .history = {}, .answer = report->answer};
+  if (const auto history = ledger.history(number)) {
+    for (const auto& step : *history) detail.history.push_back({step.at, step.state, step.note});
+  }
+  return detail;
+}
+
+}  // namespace adit::gateway

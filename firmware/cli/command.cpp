@@ -2,8 +2,10 @@
 
 #include "cli/ask.hpp"
 #include "cli/check.hpp"
+#include "cli/deeds.hpp"
 #include "cli/help.hpp"
 #include "cli/options.hpp"
+#include "cli/reports.hpp"
 #include "host/log.hpp"
 
 namespace adit::cli {
@@ -16,6 +18,8 @@ Outcome run(std::span<const std::string_view> words, bool colour) {
       return status(*options, colour);
     case Command::Reports:
       return reports(*options, colour);
+    case Command::Run:
+      return begin_run(*options);
     case Command::Check:
       return check(*options, colour);
     case Command::Help:

@@ -7,18 +7,22 @@ constexpr const char* kAll = R"(adit - what the gateway is doing, for a shell an
 
 USAGE
   adit status  [--json] [--at ADDR:PORT | --settings FILE]
-  adit reports [--json] [--at ADDR:PORT | --settings FILE]
+  adit reports [show|send|withdraw|done|resubmit|export] [NUMBER...]
+  adit run new
   adit check   [--json] [SETTINGS]
   adit help [COMMAND]
 
 COMMANDS
   status   the run, the Command Post, each robot's maps, and what the operator must do
-  reports  every artifact report and what became of it
+  reports  every artifact report and what became of it; and your word on those that wait for it
+  run      tells Adit that a new run begins
   check    all that is wrong with a settings file, at once
 
 OPTIONS
   --at ADDR:PORT   where Adit listens for the team: 10.0.0.1:8000 or [fd00::1]:8000
   --settings FILE  the settings to find that in; /etc/adit/settings.json if not given
+  --token-file FILE  of what changes something: a file that holds the team's token or the scoring token. If not
+                   given, the first of team.token and scoring.token in /etc/adit/secrets that can be read
   --json           for scripts: what Adit itself says, as JSON
   --help           this, or more about a command
 
@@ -63,26 +67,75 @@ EXAMPLES
 constexpr const char* kReports = R"(adit reports - every artifact report and what became of it
 
 USAGE
-  adit reports [--json] [--at ADDR:PORT | --settings FILE]
+  adit reports [--run N|all] [--json]
+  adit reports show NUMBER [--json]
+  adit reports send NUMBER...
+  adit reports withdraw NUMBER...
+  adit reports done NUMBER...
+  adit reports resubmit NUMBER
+  adit reports export [--csv | --json]
+  All take --at ADDR:PORT or --settings FILE; those that change something take --token-file FILE and --json.
 
 WHAT IT SHOWS
-  A row for each report, the newest first: its number, type and position, its state, the points it gained, what
-  the Command Post said, and who sent it how long ago. The states:
+  A row for each report of the present run, and for those of earlier runs that are not finished, the newest
+  first; with --run those of one run or of all. 'show' tells all of one report: its history, the answer that is
+  kept, and what you can do. 'export' writes all reports of all runs, as CSV for a spreadsheet or as JSON.
 
-    waiting   kept on disk; it is sent when its turn comes
-    sending   on its way
-    answered  the Command Post recorded it
-    refused   the Command Post did not record it, and asking again is no use
-    in doubt  it may have arrived, but its answer was lost. Adit will not send it again by itself
+THE STATES (as the JSON and the CSV name them, where that is another word)
+  held              waits for your word before it is sent; the row says why: a near duplicate, the review of all
+                    reports, a new run, or too many failures (received)
+  waiting           kept on disk; it is sent when its turn comes
+  sending           on its way
+  answered          the Command Post recorded it and said so
+  refused           the Command Post did not record it, and asking again is no use
+  in doubt, asking  it may have been recorded, but its answer was lost. Adit asks the run's status until it is
+                    clear, and then settles it or sends it again by itself: there is nothing for you to do
+  in doubt          it may have been recorded, and the run's status cannot tell: only you can decide
+  settled           its answer was lost, and the run's status showed that it was recorded
+  called done       you said that nothing is left to do about it (settled)
+  withdrawn         taken back before it was sent
+  same as 3         it is report 3 over again, and got that one's answer (withdrawn)
+
+YOUR WORD
+  send      a held report: it is meant. One in doubt: only where you know that it was not recorded (ask the
+            Command Post, or look at its count of reports), for else it uses up a second one of the allotment.
+            A refused or withdrawn one: try it all the same
+  withdraw  a held or waiting report: it is not to be sent. It can still be sent later
+  done      a report in doubt that was recorded, or that is not worth a second one of the allotment
+  resubmit  a finished report once more on purpose, as a new one with a number of its own
+  A report in doubt holds up no other: take your time.
 
 EXIT STATUS
-  0  no report is in doubt
-  1  one is
-  2  Adit cannot be reached, or the command line is wrong
+  0  no report waits for your word; of your word: all is done
+  1  one does (held, or in doubt); of your word: a report is not there, or is where that cannot be said of it
+  2  Adit cannot be reached or wants another token, there is no such report to show, or the command line is wrong
 
 EXAMPLES
   adit reports
-  adit reports --json | jq -r '.[] | [.number, .type, .state] | @tsv'
+  adit reports show 14
+  sudo adit reports done 14
+  sudo adit reports send 15 16
+  adit reports export > reports.csv
+  adit reports --run all --json | jq -r '.[] | [.number, .type, .state] | @tsv'
+)";
+
+constexpr const char* kRun = R"(adit run - tells Adit that a new run begins
+
+USAGE
+  adit run new [--json] [--token-file FILE] [--at ADDR:PORT | --settings FILE]
+
+WHAT IT DOES
+  Adit notices a new run by itself where the run clock goes back, or the run's name or the team changes. Where
+  it cannot (the next run went on from the same clock), this declares it. Reports that were not sent before are
+  held, so that none of the old run is sent into the new one unless you say so: adit reports send. The same
+  report as one of an earlier run is then a new report.
+
+EXIT STATUS
+  0  a new run has begun
+  2  Adit cannot be reached or wants another token, or the command line is wrong
+
+EXAMPLES
+  sudo adit run new
 )";
 
 constexpr const char* kCheck = R"(adit check - all that is wrong with a settings file, at once
@@ -115,6 +168,8 @@ const char* help_about(Command command) {
       return kStatus;
     case Command::Reports:
       return kReports;
+    case Command::Run:
+      return kRun;
     case Command::Check:
       return kCheck;
     case Command::Help:

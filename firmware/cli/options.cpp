@@ -1,23 +1,74 @@
 #include "cli/options.hpp"
 
-#include <optional>
+#include <algorithm>
+#include <charconv>
 #include <utility>
 
 namespace adit::cli {
 namespace {
 
-std::optional<Command> command_named(std::string_view word) {
-  if (word == "status") return Command::Status;
-  if (word == "reports") return Command::Reports;
-  if (word == "check") return Command::Check;
-  if (word == "help") return Command::Help;
-  return std::nullopt;
+using Words = std::span<const std::string_view>;
+
+struct CommandName {
+  std::string_view name;
+  Command command;
+};
+constexpr CommandName kCommands[] = {{"status", Command::Status},
+                                     {"reports", Command::Reports},
+                                     {"run", Command::Run},
+                                     {"check", Command::Check},
+                                     {"help", Command::Help}};
+
+struct VerbName {
+  std::string_view name;
+  Verb verb;
+  std::size_t least, most;  // numbers of reports
+};
+constexpr std::size_t kMany = 1000;
+constexpr VerbName kVerbs[] = {{"", Verb::List, 0, 0},
+                               {"show", Verb::Show, 1, 1},
+                               {"export", Verb::Export, 0, 0},
+                               {"send", Verb::Send, 1, kMany},
+                               {"withdraw", Verb::Withdraw, 1, kMany},
+                               {"done", Verb::Done, 1, kMany},
+                               {"resubmit", Verb::Resubmit, 1, 1}};
+
+template <class Row>
+const Row* named(std::span<const Row> table, std::string_view word) {
+  const auto found = std::ranges::find(table, word, &Row::name);
+  return found == table.end() ? nullptr : &*found;
+}
+
+const VerbName& row_of(Verb verb) {
+  return *std::ranges::find(kVerbs, verb, &VerbName::verb);
+}
+
+/// Whether the command line, as it was understood, has a use for the option.
+bool takes(const Options& options, std::string_view option) {
+  const bool lists = options.command == Command::Reports && options.verb == Verb::List;
+  const bool exports = options.command == Command::Reports && options.verb == Verb::Export;
+  const bool shows = options.command == Command::Reports && options.verb == Verb::Show;
+  if (option == "--at") return options.command != Command::Check;
+  if (option == "--run") return lists;
+  if (option == "--csv") return exports;
+  if (option == "--token-file") {
+    return options.command == Command::Run ||
+           (options.command == Command::Reports && !lists && !exports && !shows);
+  }
+  return true;
+}
+
+std::optional<std::int64_t> number_in(std::string_view text) {
+  std::int64_t number = 0;
+  const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), number);
+  const bool whole = error == std::errc() && end == text.data() + text.size() && number > 0;
+  return whole ? std::optional(number) : std::nullopt;
 }
 
 /// Takes the words one by one.
 class Parser {
  public:
-  explicit Parser(std::span<const std::string_view> words) : words_(words) {}
+  explicit Parser(Words words) : words_(words) {}
 
   std::expected<Options, std::string> parse() {
     while (!words_.empty() && trouble_.empty()) take(next());
@@ -35,58 +86,111 @@ class Parser {
   }
 
   void take(std::string_view word) {
+    if (word.starts_with('-')) return take_option(word);
+    if (!commanded_ || (help_ && options_.command == Command::Help)) return take_command(word);
+    switch (options_.command) {
+      case Command::Reports:
+        return take_word_of_reports(word);
+      case Command::Run:
+        return run_new_ || word != "new" ? too_many(word) : void(run_new_ = true);
+      case Command::Check:
+        return std::exchange(filed_, true) ? too_many(word) : void(options_.settings = word);
+      default:
+        return too_many(word);
+    }
+  }
+
+  void take_option(std::string_view word) {
+    given_.push_back(word);
     if (word == "--help" || word == "-h") {
       help_ = true;
     } else if (word == "--json") {
       options_.json = true;
+    } else if (word == "--csv") {
+      options_.csv = true;
     } else if (word == "--at") {
       take_value(word, options_.at);
     } else if (word == "--settings") {
       take_value(word, options_.settings);
-    } else if (word.starts_with('-')) {
-      refuse("no such option: ", word);
+    } else if (word == "--token-file") {
+      take_value(word, options_.token_file);
+    } else if (word == "--run") {
+      take_run();
     } else {
-      take_plain(word);
+      refuse("no such option: ", word);
     }
   }
 
   void take_value(std::string_view option, std::string& value) {
-    if (words_.empty()) return refuse("a value is missing after ", option);
+    if (words_.empty() || words_.front().empty()) return refuse("a value is missing after ", option);
     value = next();
   }
 
-  void take_plain(std::string_view word) {
-    const auto command = command_named(word);
-    const bool asks_about = help_ && options_.command == Command::Help;
-    if (!commanded_ && !command) return refuse("no such command: ", word);
-    if (command && (!commanded_ || asks_about)) {
-      help_ = help_ || *command == Command::Help;
-      commanded_ = true;
-      options_.command = *command;
-    } else if (options_.command == Command::Check && !filed_) {
-      filed_ = true;
-      options_.settings = word;
-    } else {
-      refuse("one word too many: ", word);
+  void take_run() {
+    std::string value;
+    take_value("--run", value);
+    if (!trouble_.empty()) return;
+    options_.run = number_in(value);
+    options_.all_runs = value == "all";
+    if (!options_.run && !options_.all_runs) refuse("expected --run and a run's number or all, got ", value);
+  }
+
+  void take_command(std::string_view word) {
+    const auto* row = named<CommandName>(kCommands, word);
+    if (row == nullptr) return refuse("no such command: ", word);
+    help_ = help_ || row->command == Command::Help;
+    commanded_ = true;
+    options_.command = row->command;
+  }
+
+  void take_word_of_reports(std::string_view word) {
+    if (options_.verb == Verb::List) {
+      const auto* row = named<VerbName>(kVerbs, word);
+      if (row == nullptr || row->verb == Verb::List) {
+        return refuse("expected show, send, withdraw, done, resubmit or export, got ", word);
+      }
+      options_.verb = row->verb;
+      return;
     }
+    const auto number = number_in(word);
+    if (options_.numbers.size() == row_of(options_.verb).most) return too_many(word);
+    if (!number) return refuse("expected a report's number, got ", word);
+    options_.numbers.push_back(*number);
   }
 
   void finish() {
-    if (!commanded_) return refuse("a command is missing: status, reports or check", "");
-    if (options_.command == Command::Check && !options_.at.empty()) refuse("check does not take ", "--at");
+    if (!commanded_) return refuse("a command is missing: status, reports, run or check", "");
+    const auto useless =
+        std::ranges::find_if_not(given_, [this](std::string_view option) { return takes(options_, option); });
+    if (useless != given_.end()) return refuse(spoken() + " does not take ", *useless);
+    if (options_.csv && options_.json) return refuse("--csv and --json are two formats: which one?", "");
+    if (options_.command == Command::Run && !run_new_) return refuse("a word is missing: run new", "");
+    if (options_.numbers.size() < row_of(options_.verb).least) {
+      refuse("a report's number is missing after ", row_of(options_.verb).name);
+    }
   }
 
+  /// "reports send"
+  std::string spoken() const {
+    const auto command = std::ranges::find(kCommands, options_.command, &CommandName::command);
+    std::string words(command->name);
+    if (options_.verb != Verb::List) words.append(" ").append(row_of(options_.verb).name);
+    return words;
+  }
+
+  void too_many(std::string_view word) { refuse("one word too many: ", word); }
   void refuse(std::string_view what, std::string_view word) { trouble_ = std::string(what).append(word); }
 
-  std::span<const std::string_view> words_;
+  Words words_;
   Options options_;
-  bool commanded_ = false, filed_ = false, help_ = false;
+  std::vector<std::string_view> given_;  // options
+  bool commanded_ = false, filed_ = false, run_new_ = false, help_ = false;
   std::string trouble_;
 };
 
 }  // namespace
 
-std::expected<Options, std::string> parse_options(std::span<const std::string_view> words) {
+std::expected<Options, std::string> parse_options(Words words) {
   return Parser(words).parse();
 }
 

@@ -1,15 +1,22 @@
 #pragma once
 
 #include <string>
+#include <vector>
 
+#include "cli/words.hpp"
 #include "page/page.hpp"
 
 namespace adit::cli {
 
-/// What `adit reports` prints.
-std::string reports_text(const page::RunView& view, bool colour);
+/// Where a report is in its life, as the operator is told: "held", "in doubt, asking", "same as 3".
+std::string life_of(const page::ReportRow& report);
+Tone tone_of(const page::ReportRow& report);
+/// "201, scored", "found out, scored", or "".
+std::string said_of(const page::ReportRow& report);
+/// "+1", "0", or "" where it is not known.
+std::string gained_by(const page::ReportRow& report);
 
-/// Whether the operator must decide about one.
-bool any_in_doubt(const page::RunView& view);
+/// What `adit reports` prints.
+std::string reports_text(const std::vector<page::ReportRow>& reports, page::Time now, bool colour);
 
 }  // namespace adit::cli

@@ -1,44 +1,12 @@
 #include "cli/run_view.hpp"
 
-#include "codec/field.hpp"
-#include "codec/json.hpp"
+#include "cli/reading.hpp"
+#include "cli/report_rows.hpp"
 
 namespace adit::cli {
 namespace {
 
 using codec::Field;
-
-template <class Integer>
-Integer whole(const Field& object, std::string_view name) {
-  return object.member(name).whole<Integer>();
-}
-
-std::string text(const Field& object, std::string_view name) {
-  return std::string(object.member(name).text());
-}
-
-double number(const Field& object, std::string_view name) {
-  return object.member(name).number();
-}
-
-std::optional<double> number_or_null(const Field& object, std::string_view name) {
-  const Field field = object.member(name);
-  return field.is_absent() ? std::nullopt : std::optional(field.number());
-}
-
-/// Counts are never negative, and JSON's are below 2^63.
-std::uint64_t count(const Field& object, std::string_view name) {
-  return static_cast<std::uint64_t>(object.member(name).whole<std::int64_t>(0));
-}
-
-template <class Row>
-std::vector<Row> rows(const Field& object, std::string_view name, Row (*read)(const Field&)) {
-  const Field array = object.member(name);
-  std::vector<Row> all;
-  for (std::size_t i = 0; i < array.size() && !array.reading().refused(); ++i)
-    all.push_back(read(array.element(i)));
-  return all;
-}
 
 page::EndpointRow endpoint(const Field& row) {
   return {.name = text(row, "name"),
@@ -47,24 +15,6 @@ page::EndpointRow endpoint(const Field& row) {
           .trouble = text(row, "trouble"),
           .last_status = whole<int>(row, "last_status"),
           .answer_ms = number_or_null(row, "answer_ms")};
-}
-
-page::ReportRow report(const Field& row) {
-  const Field position = row.member("position");
-  const Field score = row.member("score_change");
-  page::ReportRow read;
-  read.number = whole<std::int64_t>(row, "number");
-  read.type = text(row, "type");
-  read.position = {number(position, "x"), number(position, "y"), number(position, "z")};
-  read.sender = text(row, "sender");
-  read.received = number(row, "received");
-  read.changed = number(row, "changed");
-  read.state = text(row, "state");
-  read.status = whole<int>(row, "status");
-  read.report_status = text(row, "report_status");
-  if (!score.is_absent()) read.score_change = score.whole<std::int64_t>();
-  read.note = text(row, "note");
-  return read;
 }
 
 page::ActivityRow activity(const Field& row) {
@@ -112,26 +62,24 @@ std::optional<icd::RunStatus> run(const Field& object) {
 }  // namespace
 
 std::expected<page::RunView, std::string> read_run_view(std::string_view json) {
-  const auto root = codec::parse_json(json);
-  if (!root) return std::unexpected("its answer is no JSON: " + root.error());
-  codec::Reading reading;
-  const Field object(*root, reading);
-  page::RunView view;
-  view.now = number(object, "now");
-  view.version = text(object, "version");
-  view.run = run(object);
-  view.run_heard = number_or_null(object, "run_heard");
-  view.endpoints = rows(object, "endpoints", endpoint);
-  view.reports = rows(object, "reports", report);
-  view.activities = rows(object, "activities", activity);
-  view.refusals = rows(object, "refusals", refusal);
-  view.budget_mbit = number(object, "budget_mbit");
-  view.sent_mbit = number(object, "sent_mbit");
-  view.queued_bytes = count(object, "queued_bytes");
-  view.attention = rows(object, "attention", sentence);
-  auto read = reading.outcome(std::move(view));
-  if (!read) return std::unexpected("its answer is not of this version of Adit: " + read.error().sentence);
-  return std::move(*read);
+  return read<page::RunView>(json, [](const Field& object) {
+    page::RunView view;
+    view.now = number(object, "now");
+    view.version = text(object, "version");
+    view.run = run(object);
+    view.run_heard = number_or_null(object, "run_heard");
+    view.run_number = whole<std::int64_t>(object, "run_number");
+    view.run_id = text(object, "run_id");
+    view.endpoints = rows(object.member("endpoints"), endpoint);
+    view.reports = rows(object.member("reports"), read_report);
+    view.activities = rows(object.member("activities"), activity);
+    view.refusals = rows(object.member("refusals"), refusal);
+    view.budget_mbit = number(object, "budget_mbit");
+    view.sent_mbit = number(object, "sent_mbit");
+    view.queued_bytes = count(object, "queued_bytes");
+    view.attention = rows(object.member("attention"), sentence);
+    return view;
+  });
 }
 
 }  // namespace adit::cli

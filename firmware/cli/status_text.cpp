@@ -1,7 +1,10 @@
 #include "cli/status_text.hpp"
 
 #include <map>
+#include <set>
 
+#include "cli/report_rows.hpp"
+#include "cli/reports_text.hpp"
 #include "cli/table.hpp"
 #include "cli/words.hpp"
 #include "host/log.hpp"
@@ -40,12 +43,17 @@ std::string link_line(const RunView& view) {
 
 std::string reports_line(const RunView& view, bool colour) {
   std::map<std::string, int> states;
-  for (const page::ReportRow& report : view.reports) ++states[report.state];
+  std::set<std::string> urgent;
+  for (const page::ReportRow& report : view.reports) {
+    const std::string state = report.same_as == 0 ? life_of(report) : report.state;
+    ++states[state];
+    if (needs_the_operator(report)) urgent.insert(state);
+  }
   std::string text = "Reports";
   if (states.empty()) text += "  none so far";
   for (const auto& [state, number] : states) {
     const std::string words = host::escaped(state) + " " + std::to_string(number);
-    text += "  " + painted(words, state == "in doubt" ? Tone::Bad : Tone::Plain, colour);
+    text += "  " + painted(words, urgent.contains(state) ? Tone::Bad : Tone::Plain, colour);
   }
   return text + '\n';
 }

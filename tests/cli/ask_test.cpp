@@ -54,19 +54,6 @@ TEST(Status, GivesScriptsWhatAditSaid) {
   EXPECT_EQ(asked(json, {"status", "--json"}).out, json + "\n");
 }
 
-TEST(Reports, AreAListForScripts) {
-  const Outcome outcome = asked(page::write_run_view(sample_view()), {"reports", "--json"});
-  EXPECT_EQ(outcome.exit, Exit::Fine);
-  EXPECT_THAT(outcome.out, testing::StartsWith("[{\"number\":3,"));
-  EXPECT_THAT(outcome.out, testing::EndsWith("}]\n"));
-}
-
-TEST(Reports, InDoubtNeedTheOperator) {
-  page::RunView view = sample_view();
-  view.reports[0].state = "in doubt";
-  EXPECT_EQ(asked(page::write_run_view(view), {"reports"}).exit, Exit::Attention);
-}
-
 TEST(Ask, SaysThatTheAnswerIsNotAdits) {
   for (const std::string answer : {"", "hello", "[]", "{}", R"({"now": "noon"})"}) {
     const Outcome outcome = asked(answer, {"status"});
@@ -74,6 +61,15 @@ TEST(Ask, SaysThatTheAnswerIsNotAdits) {
     EXPECT_EQ(outcome.out, "");
     EXPECT_THAT(outcome.err, HasSubstr("cannot be understood")) << answer;
   }
+}
+
+TEST(Ask, PassesOnWhatAnErrorSays) {
+  const Server server(Server::reply("404 Not Found", "{}"));
+  EXPECT_THAT(run(std::vector<std::string_view>{"status", "--at", server.at()}, false).err,
+              HasSubstr("it answered 404 (is that Adit?)"));
+  const Server said(Server::reply("503 Service Unavailable", "\"the ledger is away\\u001b[2J\""));
+  EXPECT_EQ(run(std::vector<std::string_view>{"status", "--at", said.at()}, false).err,
+            "adit: the ledger is away\\x1b[2J\n");
 }
 
 TEST(Ask, SaysThatItDoesNotKnowWhereAditIs) {

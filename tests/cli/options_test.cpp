@@ -35,18 +35,59 @@ TEST(Options, TakeTheFileToCheckAsAWord) {
   EXPECT_EQ(parsed({"check"}).settings, "/etc/adit/settings.json");
 }
 
+TEST(Options, TakeTheOperatorsWord) {
+  const Options options = parsed({"reports", "done", "7", "--token-file", "t", "12"});
+  EXPECT_EQ(options.command, Command::Reports);
+  EXPECT_EQ(options.verb, Verb::Done);
+  EXPECT_EQ(options.numbers, (std::vector<std::int64_t>{7, 12}));
+  EXPECT_EQ(options.token_file, "t");
+  EXPECT_EQ(parsed({"reports", "send", "7"}).verb, Verb::Send);
+  EXPECT_EQ(parsed({"reports", "withdraw", "7"}).verb, Verb::Withdraw);
+  EXPECT_EQ(parsed({"reports", "resubmit", "7"}).verb, Verb::Resubmit);
+  EXPECT_EQ(parsed({"reports", "show", "7"}).verb, Verb::Show);
+  EXPECT_EQ(parsed({"run", "new"}).command, Command::Run);
+}
+
+TEST(Options, TakeWhichReportsAndHow) {
+  EXPECT_EQ(parsed({"reports"}).run, std::nullopt);
+  EXPECT_FALSE(parsed({"reports"}).all_runs);
+  EXPECT_EQ(parsed({"reports", "--run", "2"}).run, 2);
+  EXPECT_TRUE(parsed({"reports", "--run", "all"}).all_runs);
+  EXPECT_TRUE(parsed({"reports", "export", "--csv"}).csv);
+  EXPECT_TRUE(parsed({"reports", "export", "--json"}).json);
+}
+
 TEST(Options, NameTheWordThatIsWrong) {
   const struct {
     Words words;
     const char* sentence;
-  } cases[] = {{{}, "a command is missing: status, reports or check"},
-               {{"--json"}, "a command is missing: status, reports or check"},
+  } cases[] = {{{}, "a command is missing: status, reports, run or check"},
+               {{"--json"}, "a command is missing: status, reports, run or check"},
                {{"state"}, "no such command: state"},
                {{"status", "--jsn"}, "no such option: --jsn"},
                {{"status", "--at"}, "a value is missing after --at"},
                {{"status", "now"}, "one word too many: now"},
                {{"check", "a", "b"}, "one word too many: b"},
-               {{"check", "--at", "10.0.0.1:80"}, "check does not take --at"}};
+               {{"check", "--at", "10.0.0.1:80"}, "check does not take --at"},
+               {{"status", "--csv"}, "status does not take --csv"},
+               {{"reports", "sent"}, "expected show, send, withdraw, done, resubmit or export, got sent"},
+               {{"reports", "7"}, "expected show, send, withdraw, done, resubmit or export, got 7"},
+               {{"reports", "send"}, "a report's number is missing after send"},
+               {{"reports", "send", "0"}, "expected a report's number, got 0"},
+               {{"reports", "send", "7x"}, "expected a report's number, got 7x"},
+               {{"reports", "show", "7", "8"}, "one word too many: 8"},
+               {{"reports", "resubmit", "7", "8"}, "one word too many: 8"},
+               {{"reports", "export", "7"}, "one word too many: 7"},
+               {{"reports", "--csv"}, "reports does not take --csv"},
+               {{"reports", "--token-file", "x"}, "reports does not take --token-file"},
+               {{"reports", "show", "7", "--run", "2"}, "reports show does not take --run"},
+               {{"reports", "--run", "old"}, "expected --run and a run's number or all, got old"},
+               {{"reports", "--run"}, "a value is missing after --run"},
+               {{"reports", "export", "--csv", "--json"}, "--csv and --json are two formats: which one?"},
+               {{"reports", "send", "7", "--token-file", ""}, "a value is missing after --token-file"},
+               {{"run"}, "a word is missing: run new"},
+               {{"run", "old"}, "one word too many: old"},
+               {{"run", "new", "new"}, "one word too many: new"}};
   for (const auto& [words, sentence] : cases) {
     const auto options = parse_options(words);
     ASSERT_FALSE(options.has_value()) << sentence;
@@ -62,6 +103,8 @@ TEST(Help, IsGivenForTheCommandAskedAbout) {
     EXPECT_EQ(run(words, false).exit, Exit::Fine);
   }
   EXPECT_EQ(run(Words{"help", "reports"}, false).out, help_about(Command::Reports));
+  EXPECT_EQ(run(Words{"reports", "send", "--help"}, false).out, help_about(Command::Reports));
+  EXPECT_EQ(run(Words{"help", "run"}, false).out, help_about(Command::Run));
   EXPECT_EQ(run(Words{"help", "status"}, false).out, help_about(Command::Status));
 }
 

@@ -1,41 +1,130 @@
 #include "cli/reports_text.hpp"
 
+#include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include "cli/help.hpp"
+#include "cli/report_rows.hpp"
+#include "cli/report_text.hpp"
 #include "cli/view.hpp"
+#include "dispatch/report_life.hpp"
 
 namespace adit::cli {
 namespace {
 
+using testing::HasSubstr;
+
+page::ReportRow in_state(const std::string& state) {
+  page::ReportRow report = sample_view().reports[0];
+  report.state = state;
+  return report;
+}
+
 TEST(ReportsText, HasARowForEachReport) {
-  page::RunView view = sample_view();
-  page::ReportRow doubtful = view.reports[0];
+  page::ReportRow doubtful = in_state("in doubt");
   doubtful.number = 14;
+  doubtful.run = 2;
   doubtful.type = "Cell Phone";
-  doubtful.state = "in doubt";
   doubtful.status = 0;
   doubtful.report_status = "";
   doubtful.score_change = {};
   doubtful.note = "no answer within 10 s";
   doubtful.received = 990;
-  view.reports.insert(view.reports.begin(), doubtful);
   EXPECT_EQ(
-      reports_text(view, false),
-      "  no.  type            x   y    z  state     score  the Command Post said  sender    received\n"
-      "   14  Cell Phone  12.12  -3  0.5  in doubt         no answer within 10 s  10.0.0.7  10 s ago\n"
-      "    3  Survivor    12.12  -3  0.5  answered     +1  201, scored            10.0.0.7  60 s ago\n");
-  EXPECT_TRUE(any_in_doubt(view));
+      reports_text({doubtful, in_state("answered")}, 1000, false),
+      "  no.  run  type            x   y    z  state     score  the Command Post said, or why  sender    "
+      "received\n"
+      "   14    2  Cell Phone  12.12  -3  0.5  in doubt         no answer within 10 s          10.0.0.7  "
+      "10 s ago\n"
+      "    3    1  Survivor    12.12  -3  0.5  answered     +1  201, scored                    10.0.0.7  "
+      "60 s ago\n");
 }
 
 TEST(ReportsText, SaysThatThereAreNone) {
-  EXPECT_EQ(reports_text({}, false), "No reports so far.\n");
-  EXPECT_FALSE(any_in_doubt({}));
+  EXPECT_EQ(reports_text({}, 1000, false), "No reports so far.\n");
 }
 
 TEST(ReportsText, NeverLetsOthersSteerTheTerminal) {
-  page::RunView view = sample_view();
-  view.reports[0].type = view.reports[0].sender = view.reports[0].note = "\x1b[2J\n";
-  EXPECT_EQ(reports_text(view, false).find('\x1b'), std::string::npos);
+  page::ReportRow report = in_state("\x1b[2J");
+  report.type = report.sender = report.note = "\x1b[2J\n";
+  EXPECT_EQ(reports_text({report}, 1000, false).find('\x1b'), std::string::npos);
+  EXPECT_EQ(report_text({report, {{1000, "\x1b[2J", "\x1b[2J"}}, "\x1b[2J"}, false).find('\x1b'),
+            std::string::npos);
+}
+
+TEST(LifeOf, TellsWhoseWordIsWaitedFor) {
+  page::ReportRow doubt = in_state("in doubt");
+  EXPECT_EQ(life_of(doubt), "in doubt");
+  EXPECT_TRUE(needs_the_operator(doubt));
+  doubt.asking = true;
+  EXPECT_EQ(life_of(doubt), "in doubt, asking");
+  EXPECT_FALSE(needs_the_operator(doubt));
+  EXPECT_EQ(life_of(in_state("received")), "held");
+  EXPECT_TRUE(needs_the_operator(in_state("received")));
+}
+
+TEST(LifeOf, TellsWhatBecameOfIt) {
+  page::ReportRow report = in_state("settled");
+  EXPECT_EQ(life_of(report), "called done");
+  report.reconciled = true;
+  EXPECT_EQ(life_of(report), "settled");
+  EXPECT_EQ(said_of(report), "found out, scored");
+  report = in_state("withdrawn");
+  EXPECT_EQ(life_of(report), "withdrawn");
+  report.same_as = 2;
+  EXPECT_EQ(life_of(report), "same as 2");
+}
+
+TEST(LifeOf, IsExplainedInTheHelp) {
+  for (const auto& row : dispatch::report_life()) {
+    page::ReportRow report = in_state(std::string(dispatch::name_of(row.from)));
+    EXPECT_THAT(help_about(Command::Reports), HasSubstr("\n  " + life_of(report) + " "));
+    report.reconciled = report.asking = true;
+    EXPECT_THAT(help_about(Command::Reports), HasSubstr("\n  " + life_of(report) + " "));
+  }
+}
+
+TEST(ReportText, TellsAllOfOneReport) {
+  page::ReportRow report = in_state("settled");
+  report.received = 1566309785.125;
+  report.reconciled = true;
+  report.note = "recorded: the count of reports fell by one";
+  report.run = 2;
+  const page::ReportDetail detail{report,
+                                  {{1566309785.125, "waiting", ""}, {1566309786, "in doubt", "no answer"}},
+                                  "{\"score_change\": 1}"};
+  EXPECT_EQ(report_text(detail, false),
+            "  report    3\n"
+            "  type      Survivor\n"
+            "  at        12.125, -3, 0.5 m\n"
+            "  state     settled\n"
+            "  why       recorded: the count of reports fell by one\n"
+            "  said      found out, scored\n"
+            "  score     +1\n"
+            "  run       2\n"
+            "  sender    10.0.0.7\n"
+            "  received  2019-08-20T14:03:05.125Z\n"
+            "  answer    {\"score_change\": 1}\n"
+            "  deeds     resubmit\n"
+            "\n"
+            "History\n"
+            "  2019-08-20T14:03:05.125Z  waiting\n"
+            "  2019-08-20T14:03:06.000Z  in doubt  no answer\n");
+}
+
+TEST(ReportText, OffersTheDeedsThatCanBe) {
+  const auto deeds = [](const std::string& state) {
+    const std::string text = report_text({in_state(state), {}, ""}, false);
+    const auto begin = text.find("deeds     ");
+    return begin == std::string::npos ? "" : text.substr(begin + 10, text.find('\n', begin) - begin - 10);
+  };
+  EXPECT_EQ(deeds("received"), "send, withdraw");
+  EXPECT_EQ(deeds("waiting"), "send, withdraw");
+  EXPECT_EQ(deeds("sending"), "");
+  EXPECT_EQ(deeds("in doubt"), "send, done");
+  EXPECT_EQ(deeds("answered"), "resubmit");
+  EXPECT_EQ(deeds("refused"), "send, resubmit");
+  EXPECT_EQ(deeds("withdrawn"), "send, resubmit");
 }
 
 }  // namespace

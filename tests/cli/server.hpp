@@ -8,6 +8,7 @@
 
 #include <atomic>
 #include <cstdlib>
+#include <map>
 #include <string>
 #include <thread>
 
@@ -15,23 +16,16 @@
 
 namespace adit::cli {
 
-/// Listens on loopback and gives each connection the same bytes, whatever it asks, then closes. With
-/// `silent`, it keeps the connection and says nothing more.
+/// Listens on loopback and gives each connection its answer, then closes. With `silent`, it keeps the
+/// connection and says nothing more.
 class Server {
  public:
-  explicit Server(std::string answer, bool silent = false) : answer_(std::move(answer)), silent_(silent) {
-    fd_ = socket(AF_INET, SOCK_STREAM | SOCK_CLOEXEC, 0);
-    sockaddr_in name{};
-    name.sin_family = AF_INET;
-    name.sin_addr.s_addr = htonl(INADDR_LOOPBACK);
-    socklen_t size = sizeof name;
-    const bool listens = bind(fd_, reinterpret_cast<const sockaddr*>(&name), size) == 0 &&
-                         listen(fd_, 4) == 0 &&
-                         getsockname(fd_, reinterpret_cast<sockaddr*>(&name), &size) == 0;
-    if (!listens) std::abort();
-    port_ = ntohs(name.sin_port);
-    thread_ = std::thread([this] { serve(); });
-  }
+  using Answers = std::map<std::string, std::string>;  // by "POST /adit/runs"
+
+  /// The same bytes, whatever it is asked.
+  explicit Server(const std::string& answer, bool silent = false) : Server({{"", answer}}, silent) {}
+  /// What is in none of `answers` is 404.
+  explicit Server(Answers answers) : Server(std::move(answers), false) {}
   ~Server() {
     ended_ = true;
     thread_.join();
@@ -45,12 +39,27 @@ class Server {
   /// What the last client sent. After the server has ended, or the client has its answer.
   const std::string& request() const { return request_; }
 
-  static std::string ok(const std::string& body) {
-    return "HTTP/1.1 200 OK\r\nContent-Type: application/json\r\nContent-Length: " +
-           std::to_string(body.size()) + "\r\n\r\n" + body;
+  static std::string reply(const std::string& status, const std::string& body) {
+    return "HTTP/1.1 " + status +
+           "\r\nContent-Type: application/json\r\nContent-Length: " + std::to_string(body.size()) +
+           "\r\n\r\n" + body;
   }
+  static std::string ok(const std::string& body) { return reply("200 OK", body); }
 
  private:
+  Server(Answers answers, bool silent) : answers_(std::move(answers)), silent_(silent) {
+    fd_ = socket(AF_INET, SOCK_STREAM | SOCK_CLOEXEC, 0);
+    sockaddr_in name{};
+    name.sin_family = AF_INET;
+    name.sin_addr.s_addr = htonl(INADDR_LOOPBACK);
+    socklen_t size = sizeof name;
+    const bool listens = bind(fd_, reinterpret_cast<const sockaddr*>(&name), size) == 0 &&
+                         listen(fd_, 4) == 0 &&
+                         getsockname(fd_, reinterpret_cast<sockaddr*>(&name), &size) == 0;
+    if (!listens) std::abort();
+    port_ = ntohs(name.sin_port);
+    thread_ = std::thread([this] { serve(); });
+  }
   void serve() {
     while (!ended_) {
       pollfd entry{fd_, POLLIN, 0};
@@ -65,11 +74,18 @@ class Server {
     char buffer[4096];
     const ssize_t size = recv(client, buffer, sizeof buffer, 0);
     if (size > 0) request_.assign(buffer, static_cast<std::size_t>(size));
-    send(client, answer_.data(), answer_.size(), MSG_NOSIGNAL);
+    const std::string answer = answer_to(request_.substr(0, request_.find(" HTTP/")));
+    send(client, answer.data(), answer.size(), MSG_NOSIGNAL);
     while (silent_ && !ended_) std::this_thread::sleep_for(std::chrono::milliseconds(5));
   }
 
-  std::string answer_;
+  std::string answer_to(const std::string& asked) const {
+    const auto all = answers_.find(""), one = answers_.find(asked);
+    if (all != answers_.end()) return all->second;
+    return one == answers_.end() ? reply("404 Not Found", "\"there is nothing at this path\"") : one->second;
+  }
+
+  Answers answers_;
   bool silent_;
   int fd_ = -1;
   std::uint16_t port_ = 0;

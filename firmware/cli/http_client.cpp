@@ -1,4 +1,4 @@
-#include "cli/http_get.hpp"
+#include "cli/http_client.hpp"
 
 #include <arpa/inet.h>
 #include <netinet/in.h>
@@ -118,28 +118,37 @@ std::string receive(int fd, Parser& parser, Clock::time_point deadline) {
   return "";
 }
 
+std::string written(const HttpRequest& request, const std::string& host) {
+  const bool posts = request.method == HttpRequest::Method::Post;
+  std::string text = posts ? "POST " : "GET ";
+  text.append(request.target).append(" HTTP/1.1\r\nHost: ").append(host).append("\r\n");
+  text.append("Accept: application/json\r\nConnection: close\r\n");
+  if (posts) text.append("Content-Type: application/json\r\nContent-Length: 0\r\n");
+  if (posts && request.token)
+    text.append("Authorization: Bearer ").append(request.token->reveal()).append("\r\n");
+  return text.append("\r\n");
+}
+
 }  // namespace
 
-std::expected<std::string, std::string> http_get(const settings::Address& address, const std::string& target,
-                                                 std::chrono::milliseconds within) {
+std::expected<HttpReply, NoReply> http_ask(const settings::Address& address, const HttpRequest& request,
+                                           std::chrono::milliseconds within) {
   const auto deadline = Clock::now() + within;
   const std::string host = written(address);
-  const auto fail = [&host](const std::string& why) {
-    return std::unexpected("Adit at " + host + " cannot be asked: " + why);
+  const auto fail = [&host](const std::string& why, bool sent) {
+    return std::unexpected(NoReply{"Adit at " + host + " cannot be asked: " + why, sent});
   };
   const auto fd = connected(address, deadline);
-  if (!fd) return fail(reason(fd.error()));
-  const std::string request = "GET " + target + " HTTP/1.1\r\nHost: " + host +
-                              "\r\nAccept: application/json\r\nConnection: close\r\n\r\n";
-  if (const int error = send_all(fd->get(), request, deadline); error != 0) return fail(reason(error));
+  if (!fd) return fail(reason(fd.error()), false);
+  if (const int error = send_all(fd->get(), written(request, host), deadline); error != 0) {
+    return fail(reason(error), true);
+  }
   Parser parser;
   parser.body_limit(kLargestBody);
-  if (const std::string trouble = receive(fd->get(), parser, deadline); !trouble.empty())
-    return fail(trouble);
-  if (const unsigned status = parser.get().result_int(); status != 200) {
-    return fail("it answered " + std::to_string(status) + " (is that Adit?)");
+  if (const std::string trouble = receive(fd->get(), parser, deadline); !trouble.empty()) {
+    return fail(trouble, true);
   }
-  return std::move(parser.get().body());
+  return HttpReply{parser.get().result_int(), std::move(parser.get().body())};
 }
 
 }  // namespace adit::cli

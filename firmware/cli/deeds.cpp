@@ -1,0 +1,143 @@
+#include "cli/deeds.hpp"
+
+#include <algorithm>
+
+#include "cli/ask.hpp"
+#include "cli/http_client.hpp"
+#include "cli/reading.hpp"
+#include "cli/where.hpp"
+#include "host/log.hpp"
+
+namespace adit::cli {
+namespace {
+
+constexpr std::chrono::seconds kPatience{10};  // a deed is on the disk before it is answered
+
+/// A deed that was not done, or of which that is not known.
+struct Failure {
+  Exit exit = Exit::Unable;
+  std::string sentence;
+};
+
+/// Asks for deeds, each with the same token.
+class Deeds {
+ public:
+  Deeds(const settings::Address& address, std::optional<Token> token)
+      : address_(address), token_(std::move(token)) {}
+
+  /// The number that Adit answers under `name`. `check`: the command that tells whether a deed was done whose
+  /// answer was lost.
+  std::expected<std::int64_t, Failure> ask(const std::string& target, const char* name,
+                                           const std::string& check) {
+    HttpRequest request{.method = HttpRequest::Method::Post, .target = target};
+    if (token_) request.token = token_->token;
+    const auto reply = http_ask(address_, request, kPatience);
+    if (!reply) {
+      const std::string unsure =
+          reply.error().sent ? "; whether it was done is not known, see: " + check : "";
+      return std::unexpected(Failure{Exit::Unable, reply.error().sentence + unsure});
+    }
+    if (reply->status != 200) return std::unexpected(failure(*reply));
+    auto number = read<std::int64_t>(
+        reply->body, [name](const codec::Field& object) { return whole<std::int64_t>(object, name); });
+    if (number) return *number;
+    return std::unexpected(
+        Failure{Exit::Unable, "Adit at " + written(address_) + " cannot be understood: " + number.error()});
+  }
+
+ private:
+  Failure failure(const HttpReply& reply) const {
+    if (reply.status == 401) {
+      return {Exit::Unable, token_ ? "Adit does not know the token in " + token_->file
+                                   : "Adit asks for the team's token: run this as root, or name a file that "
+                                     "holds it by --token-file FILE"};
+    }
+    const std::string sentence = sentence_in(reply.body);
+    const bool judged = (reply.status == 404 || reply.status == 409) && !sentence.empty();
+    if (judged) return {Exit::Attention, sentence};
+    return {Exit::Unable, "Adit at " + written(address_) + " answered " + std::to_string(reply.status) +
+                              (sentence.empty() ? " (is that Adit?)" : ": " + sentence)};
+  }
+
+  settings::Address address_;
+  std::optional<Token> token_;
+};
+
+std::string path_of(Verb verb) {
+  switch (verb) {
+    case Verb::Send:
+      return "send";
+    case Verb::Withdraw:
+      return "withdraw";
+    case Verb::Done:
+      return "done";
+    default:
+      return "resubmit";
+  }
+}
+
+/// What was done to report `number`; `moved` is what Adit answered.
+std::string done(Verb verb, std::int64_t number, std::int64_t moved) {
+  const std::string report = "report " + std::to_string(number);
+  switch (verb) {
+    case Verb::Send:
+      return report + " is sent when its turn comes";
+    case Verb::Withdraw:
+      return report + " is withdrawn";
+    case Verb::Done:
+      return report + " is called done";
+    default:
+      return report + " is sent once more, as report " + std::to_string(moved);
+  }
+}
+
+std::string json_line(const char* name, std::int64_t number) {
+  return codec::write_json({codec::Value::Object{{name, {number}}}}) + '\n';
+}
+
+void add(Outcome& outcome, const Failure& failure) {
+  outcome.exit = std::max(outcome.exit, failure.exit);
+  outcome.err += unable(failure.sentence).err;
+}
+
+}  // namespace
+
+Outcome judge(const settings::Address& address, const Options& options) {
+  auto token = find_token(options.token_file, options.secrets);
+  if (!token) return unable(token.error());
+  Deeds deeds(address, std::move(*token));
+  Outcome outcome;
+  for (const std::int64_t number : options.numbers) {
+    const std::string text = std::to_string(number);
+    const auto moved =
+        deeds.ask("/adit/reports/" + text + "/" + path_of(options.verb), "report",
+                  options.verb == Verb::Resubmit ? "adit reports" : "adit reports show " + text);
+    if (moved) {
+      outcome.out += options.json ? json_line("report", *moved) : done(options.verb, number, *moved) + '\n';
+      continue;
+    }
+    add(outcome, moved.error());
+    if (moved.error().exit == Exit::Unable) break;
+  }
+  return outcome;
+}
+
+Outcome begin_run(const Options& options) {
+  const auto address = address_of(options);
+  if (!address) return unable(address.error());
+  auto token = find_token(options.token_file, options.secrets);
+  if (!token) return unable(token.error());
+  const auto run = Deeds(*address, std::move(*token)).ask("/adit/runs", "run", "adit reports");
+  Outcome outcome;
+  if (!run) {
+    add(outcome, run.error());
+  } else if (options.json) {
+    outcome.out = json_line("run", *run);
+  } else {
+    outcome.out =
+        "run " + std::to_string(*run) + " begins; what was not sent before is held: see adit reports\n";
+  }
+  return outcome;
+}
+
+}  // namespace adit::cli

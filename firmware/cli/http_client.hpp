@@ -1,0 +1,37 @@
+#pragma once
+
+#include <chrono>
+#include <expected>
+#include <optional>
+#include <string>
+
+#include "icd/bearer_token.hpp"
+#include "settings/settings.hpp"
+
+namespace adit::cli {
+
+inline constexpr std::size_t kLargestBody = 8u << 20;
+
+/// A request without a body. Only a POST shows a token.
+struct HttpRequest {
+  enum class Method : std::uint8_t { Get, Post } method = Method::Get;
+  std::string target;  // "/adit/run"
+  std::optional<icd::BearerToken> token = std::nullopt;
+};
+
+struct HttpReply {
+  unsigned status = 0;
+  std::string body;
+};
+
+struct NoReply {
+  std::string sentence;  // names the address
+  bool sent = false;     // the request may have arrived all the same
+};
+
+/// One blocking request (RFC 9112) on a connection of its own: the whole reply, or why there is none. All of
+/// it within `within`.
+std::expected<HttpReply, NoReply> http_ask(const settings::Address& address, const HttpRequest& request,
+                                           std::chrono::milliseconds within);
+
+}  // namespace adit::cli

@@ -1,0 +1,35 @@
+#include "cli/token.hpp"
+
+#include "host/service.hpp"
+
+namespace adit::cli {
+namespace {
+
+std::string_view trimmed(std::string_view text) {
+  constexpr std::string_view kSpace = " \t\r\n";
+  const auto first = text.find_first_not_of(kSpace);
+  if (first == std::string_view::npos) return {};
+  return text.substr(first, text.find_last_not_of(kSpace) - first + 1);
+}
+
+std::expected<Token, std::string> token_in_file(const std::string& file) {
+  const auto text = host::read_file(file);
+  if (!text) return std::unexpected(text.error());
+  auto token = icd::BearerToken::parse(trimmed(*text));
+  if (!token) return std::unexpected(file + ": expected one token of 1 to 256 visible ASCII characters");
+  return Token{std::move(*token), file};
+}
+
+}  // namespace
+
+std::expected<std::optional<Token>, std::string> find_token(const std::string& file,
+                                                            const std::string& secrets) {
+  if (!file.empty()) return token_in_file(file);
+  for (const char* name : {"/team.token", "/scoring.token"}) {
+    const auto text = host::read_file(secrets + name);
+    if (text && !trimmed(*text).empty()) return token_in_file(secrets + name);
+  }
+  return std::nullopt;
+}
+
+}  // namespace adit::cli

@@ -1,0 +1,136 @@
+#include "cli/deeds.hpp"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <cstdlib>
+#include <filesystem>
+#include <fstream>
+
+#include "cli/command.hpp"
+#include "cli/server.hpp"
+
+namespace adit::cli {
+namespace {
+
+using testing::HasSubstr;
+using testing::Not;
+
+class Deeds : public testing::Test {
+ public:
+  ~Deeds() override { std::filesystem::remove(token_file_); }
+
+ protected:
+  Deeds() {
+    std::string name = (std::filesystem::temp_directory_path() / "adit-deeds-XXXXXX").string();
+    close(mkstemp(name.data()));
+    token_file_ = name;
+    std::ofstream(token_file_) << "sesame-1\n";
+  }
+
+  Outcome say(const Server& server, std::vector<std::string_view> words) const {
+    const std::string at = server.at();
+    words.insert(words.end(), {"--at", at, "--token-file", token_file_});
+    Outcome outcome = run(words, false);
+    EXPECT_THAT(outcome.out + outcome.err, Not(HasSubstr("sesame")));
+    return outcome;
+  }
+
+  std::string token_file_;
+};
+
+TEST_F(Deeds, AreAskedForByTheirNames) {
+  const Server server({{"POST /adit/reports/7/send", Server::ok("{\"report\":7}")},
+                       {"POST /adit/reports/7/withdraw", Server::ok("{\"report\":7}")},
+                       {"POST /adit/reports/7/done", Server::ok("{\"report\":7}")},
+                       {"POST /adit/reports/7/resubmit", Server::ok("{\"report\":12}")},
+                       {"POST /adit/runs", Server::ok("{\"run\":2}")}});
+  EXPECT_EQ(say(server, {"reports", "send", "7"}).out, "report 7 is sent when its turn comes\n");
+  EXPECT_EQ(say(server, {"reports", "withdraw", "7"}).out, "report 7 is withdrawn\n");
+  EXPECT_EQ(say(server, {"reports", "done", "7"}).out, "report 7 is called done\n");
+  EXPECT_EQ(say(server, {"reports", "resubmit", "7"}).out, "report 7 is sent once more, as report 12\n");
+  EXPECT_EQ(say(server, {"reports", "resubmit", "7", "--json"}).out, "{\"report\":12}\n");
+  EXPECT_EQ(say(server, {"run", "new"}).out,
+            "run 2 begins; what was not sent before is held: see adit reports\n");
+  const Outcome outcome = say(server, {"run", "new", "--json"});
+  EXPECT_EQ(outcome.out, "{\"run\":2}\n");
+  EXPECT_EQ(outcome.exit, Exit::Fine);
+}
+
+TEST_F(Deeds, ShowTheTokenToAditAlone) {
+  const Server server({{"POST /adit/runs", Server::ok("{\"run\":2}")}});
+  say(server, {"run", "new"});
+  EXPECT_THAT(server.request(), HasSubstr("\r\nAuthorization: Bearer sesame-1\r\n"));
+}
+
+TEST_F(Deeds, GoOnAfterOneThatCannotBe) {
+  const Server server(
+      {{"POST /adit/reports/7/send", Server::ok("{\"report\":7}")},
+       {"POST /adit/reports/8/send",
+        Server::reply("409 Conflict", "\"report 8 is answered: to send it once more, resubmit it\"")},
+       {"POST /adit/reports/9/send", Server::ok("{\"report\":9}")}});
+  const Outcome outcome = say(server, {"reports", "send", "7", "8", "9"});
+  EXPECT_EQ(outcome.exit, Exit::Attention);
+  EXPECT_EQ(outcome.out, "report 7 is sent when its turn comes\nreport 9 is sent when its turn comes\n");
+  EXPECT_EQ(outcome.err, "adit: report 8 is answered: to send it once more, resubmit it\n");
+}
+
+TEST_F(Deeds, OfAReportThatIsNotThereAreRefused) {
+  const Server server(
+      {{"POST /adit/reports/8/done", Server::reply("404 Not Found", "\"there is no report 8\"")}});
+  const Outcome outcome = say(server, {"reports", "done", "8"});
+  EXPECT_EQ(outcome.exit, Exit::Attention);
+  EXPECT_EQ(outcome.err, "adit: there is no report 8\n");
+}
+
+TEST_F(Deeds, StopWhereTheTokenIsNotGood) {
+  const Server server(
+      Server::reply("401 Unauthorized", "\"Authorization: expected Bearer and the team's token\""));
+  const Outcome outcome = say(server, {"reports", "send", "7", "8"});
+  EXPECT_EQ(outcome.exit, Exit::Unable);
+  EXPECT_EQ(outcome.err, "adit: Adit does not know the token in " + token_file_ + "\n");
+}
+
+TEST_F(Deeds, WithoutATokenSayWhereOneIsLookedFor) {
+  const Server server(
+      Server::reply("401 Unauthorized", "\"Authorization: expected Bearer and the team's token\""));
+  Options options;
+  options.command = Command::Reports;
+  options.verb = Verb::Send;
+  options.numbers = {7};
+  options.secrets = "/nowhere";
+  const Outcome outcome = judge(server.address(), options);
+  EXPECT_EQ(outcome.exit, Exit::Unable);
+  EXPECT_THAT(outcome.err, HasSubstr("--token-file"));
+  EXPECT_THAT(server.request(), Not(HasSubstr("Authorization")));
+}
+
+TEST_F(Deeds, WhoseAnswerIsLostMayHaveBeenDone) {
+  const Server server("");
+  const Outcome outcome = say(server, {"reports", "resubmit", "7"});
+  EXPECT_EQ(outcome.exit, Exit::Unable);
+  EXPECT_THAT(outcome.err, HasSubstr("whether it was done is not known, see: adit reports\n"));
+  EXPECT_THAT(say(server, {"reports", "send", "7"}).err, HasSubstr("see: adit reports show 7\n"));
+}
+
+TEST_F(Deeds, OfAnAditThatIsNotThereWereNotDone) {
+  std::string at;
+  {
+    at = Server("").at();
+  }
+  const Outcome outcome =
+      run(std::vector<std::string_view>{"run", "new", "--at", at, "--token-file", token_file_}, false);
+  EXPECT_EQ(outcome.exit, Exit::Unable);
+  EXPECT_THAT(outcome.err, Not(HasSubstr("not known")));
+}
+
+TEST_F(Deeds, AreNotAskedForWithATokenThatCannotBeRead) {
+  const Server server({{"POST /adit/runs", Server::ok("{\"run\":2}")}});
+  const Outcome outcome =
+      run(std::vector<std::string_view>{"run", "new", "--at", server.at(), "--token-file", "/none"}, false);
+  EXPECT_EQ(outcome.exit, Exit::Unable);
+  EXPECT_EQ(outcome.err, "adit: /none: No such file or directory\n");
+}
+
+}  // namespace
+}  // namespace adit::cli

@@ -1,0 +1,106 @@
+#include "cli/http_client.hpp"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include "cli/server.hpp"
+
+namespace adit::cli {
+namespace {
+
+using std::chrono::milliseconds;
+using testing::AllOf;
+using testing::HasSubstr;
+using testing::Not;
+using testing::StartsWith;
+
+constexpr milliseconds kPatience{2000};
+
+std::string body_of(const std::string& answer) {
+  const Server server(answer);
+  const auto reply = http_ask(server.address(), {.target = "/adit/run"}, kPatience);
+  return reply ? reply->body : "error: " + reply.error().sentence;
+}
+
+TEST(HttpClient, GivesTheBody) {
+  EXPECT_EQ(body_of(Server::ok("{\"now\": 1}")), "{\"now\": 1}");
+}
+
+std::string request_for(const HttpRequest& request) {
+  const Server server(Server::ok("{}"));
+  EXPECT_TRUE(http_ask(server.address(), request, kPatience).has_value());
+  return server.request();
+}
+
+TEST(HttpClient, AsksForTheTargetAndShowsNoToken) {
+  const std::string request =
+      request_for({.target = "/adit/run", .token = icd::BearerToken::parse("secret")});
+  EXPECT_THAT(request, StartsWith("GET /adit/run HTTP/1.1\r\nHost: 127.0.0.1:"));
+  EXPECT_THAT(request, Not(HasSubstr("Authorization")));
+}
+
+TEST(HttpClient, PostsWithTheTokenThatItHas) {
+  HttpRequest post{.method = HttpRequest::Method::Post, .target = "/adit/runs"};
+  EXPECT_THAT(request_for(post),
+              AllOf(StartsWith("POST /adit/runs HTTP/1.1\r\n"), Not(HasSubstr("Authorization"))));
+  post.token = icd::BearerToken::parse("secret");
+  EXPECT_THAT(request_for(post),
+              AllOf(HasSubstr("\r\nAuthorization: Bearer secret\r\n"),
+                    HasSubstr("\r\nContent-Type: application/json\r\n"),
+                    HasSubstr("\r\nContent-Length: 0\r\n"), testing::EndsWith("\r\n\r\n")));
+}
+
+TEST(HttpClient, GivesAnErrorsStatusAndBody) {
+  const Server server(Server::reply("409 Conflict", "\"no\""));
+  const auto reply = http_ask(server.address(), {.target = "/"}, kPatience);
+  ASSERT_TRUE(reply.has_value());
+  EXPECT_EQ(reply->status, 409u);
+  EXPECT_EQ(reply->body, "\"no\"");
+}
+
+TEST(HttpClient, TakesABodyInChunksAndOneThatEndsWithTheConnection) {
+  EXPECT_EQ(body_of("HTTP/1.1 200 OK\r\nTransfer-Encoding: chunked\r\n\r\n3\r\nabc\r\n2\r\nde\r\n0\r\n\r\n"),
+            "abcde");
+  EXPECT_EQ(body_of("HTTP/1.1 200 OK\r\n\r\nto the end"), "to the end");
+  EXPECT_EQ(body_of(Server::ok("")), "");
+}
+
+TEST(HttpClient, TakesALargeBody) {
+  const std::string body(3u << 20, 'x');
+  EXPECT_EQ(body_of(Server::ok(body)).size(), body.size());
+}
+
+TEST(HttpClient, SaysWhyThereIsNoBody) {
+  EXPECT_THAT(body_of("HTTP/1.1 200 OK\r\nContent-Length: 9\r\n\r\n{}"),
+              HasSubstr("in the middle of its answer"));
+  EXPECT_THAT(body_of(""), HasSubstr("in the middle of its answer"));
+  EXPECT_THAT(body_of("SSH-2.0-OpenSSH_9.2\r\n"), HasSubstr("no HTTP"));
+  EXPECT_THAT(body_of("HTTP/1.1 200 OK\r\nContent-Length: 99999999999\r\n\r\n"), HasSubstr("too long"));
+}
+
+TEST(HttpClient, NamesTheAddressThatNobodyListensAt) {
+  settings::Address address;
+  {
+    address = Server("").address();
+  }
+  const auto reply = http_ask(address, {.target = "/"}, kPatience);
+  ASSERT_FALSE(reply.has_value());
+  EXPECT_FALSE(reply.error().sent);
+  EXPECT_EQ(reply.error().sentence,
+            "Adit at 127.0.0.1:" + std::to_string(address.port) + " cannot be asked: Connection refused");
+}
+
+TEST(HttpClient, GivesUpOnAServerThatSaysNothing) {
+  for (const std::string answer : {"", "HTTP/1.1 200 OK\r\nContent-Length: 9\r\n\r\n{}"}) {
+    const Server server(answer, true);
+    const auto began = std::chrono::steady_clock::now();
+    const auto reply = http_ask(server.address(), {.target = "/"}, milliseconds(100));
+    ASSERT_FALSE(reply.has_value());
+    EXPECT_TRUE(reply.error().sent);
+    EXPECT_THAT(reply.error().sentence, HasSubstr("timed out"));
+    EXPECT_LT(std::chrono::steady_clock::now() - began, milliseconds(1500));
+  }
+}
+
+}  // namespace
+}  // namespace adit::cli

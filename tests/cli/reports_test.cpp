@@ -1,0 +1,105 @@
+#include "cli/reports.hpp"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include "cli/command.hpp"
+#include "cli/reports_text.hpp"
+#include "cli/server.hpp"
+#include "cli/view.hpp"
+#include "page/reports_csv.hpp"
+#include "page/reports_json.hpp"
+
+namespace adit::cli {
+namespace {
+
+using testing::HasSubstr;
+
+page::ReportRow report(std::int64_t number, std::int64_t run, const std::string& state) {
+  page::ReportRow row = sample_view().reports[0];
+  row.number = number;
+  row.run = run;
+  row.state = state;
+  return row;
+}
+
+/// Two runs, of which the second is the present one.
+std::vector<page::ReportRow> two_runs() {
+  return {report(1, 1, "answered"), report(2, 1, "received"), report(3, 2, "settled"),
+          report(4, 2, "waiting")};
+}
+
+Outcome asked(const std::vector<page::ReportRow>& rows, std::vector<std::string_view> words) {
+  page::RunView view = sample_view();
+  view.run_number = 2;
+  const page::ReportDetail detail{rows.back(), {{1000, "waiting", "posted"}}, "{}"};
+  const Server server({{"GET /adit/run", Server::ok(page::write_run_view(view))},
+                       {"GET /adit/reports", Server::ok(page::write_reports(rows))},
+                       {"GET /adit/reports.csv", Server::ok(page::write_reports_csv(rows))},
+                       {"GET /adit/reports/4", Server::ok(page::write_report(detail))},
+                       {"GET /adit/reports/5", Server::reply("404 Not Found", "\"there is no report 5\"")}});
+  const std::string at = server.at();
+  words.insert(words.end(), {"--at", at});
+  return run(words, false);
+}
+
+TEST(Reports, ListThePresentRunAndWhatIsLeftOfEarlierOnes) {
+  const auto rows = two_runs();
+  const Outcome outcome = asked(rows, {"reports"});
+  EXPECT_EQ(outcome.err, "");
+  EXPECT_EQ(outcome.out, reports_text({rows[3], rows[2], rows[1]}, 1000, false));
+}
+
+TEST(Reports, ListAnotherRunOrAll) {
+  const auto rows = two_runs();
+  EXPECT_EQ(asked(rows, {"reports", "--run", "1"}).out, reports_text({rows[1], rows[0]}, 1000, false));
+  EXPECT_EQ(asked(rows, {"reports", "--run", "3"}).out, "No reports so far.\n");
+  EXPECT_EQ(asked(rows, {"reports", "--run", "all"}).out,
+            reports_text({rows[3], rows[2], rows[1], rows[0]}, 1000, false));
+}
+
+TEST(Reports, AreAListForScripts) {
+  const auto rows = two_runs();
+  EXPECT_EQ(asked(rows, {"reports", "--json"}).out, page::write_reports({rows[3], rows[2], rows[1]}) + "\n");
+}
+
+TEST(Reports, NeedTheOperatorWhereOneWaitsForHisWord) {
+  EXPECT_EQ(asked(two_runs(), {"reports", "--run", "2"}).exit, Exit::Attention)
+      << "though it is of another run";
+  EXPECT_EQ(asked({report(4, 2, "in doubt")}, {"reports"}).exit, Exit::Attention);
+  EXPECT_EQ(asked({report(4, 2, "in doubt")}, {"reports", "show", "4"}).exit, Exit::Attention);
+  page::ReportRow asking = report(4, 2, "in doubt");
+  asking.asking = true;
+  EXPECT_EQ(asked({asking}, {"reports"}).exit, Exit::Fine);
+  EXPECT_EQ(asked({report(4, 2, "answered")}, {"reports"}).exit, Exit::Fine);
+}
+
+TEST(Reports, ShowOneOrSayThatThereIsNone) {
+  const Outcome outcome = asked(two_runs(), {"reports", "show", "4"});
+  EXPECT_EQ(outcome.exit, Exit::Fine);
+  EXPECT_THAT(outcome.out, testing::AllOf(HasSubstr("report    4\n"), HasSubstr("waiting  posted\n")));
+  EXPECT_THAT(asked(two_runs(), {"reports", "show", "4", "--json"}).out,
+              testing::StartsWith("{\"number\":4,"));
+  const Outcome none = asked(two_runs(), {"reports", "show", "5"});
+  EXPECT_EQ(none.exit, Exit::Unable);
+  EXPECT_EQ(none.err, "adit: there is no report 5\n");
+}
+
+TEST(Reports, AreExportedAsTheyAre) {
+  const auto rows = two_runs();
+  EXPECT_EQ(asked(rows, {"reports", "export"}).out, page::write_reports_csv(rows));
+  EXPECT_EQ(asked(rows, {"reports", "export", "--csv"}).out, page::write_reports_csv(rows));
+  EXPECT_EQ(asked(rows, {"reports", "export", "--json"}).out, page::write_reports(rows) + "\n");
+  EXPECT_EQ(asked(rows, {"reports", "export"}).exit, Exit::Fine);
+}
+
+TEST(Reports, OfAnotherVersionAreNotGuessedAt) {
+  const Server server({{"GET /adit/run", Server::ok(page::write_run_view(sample_view()))},
+                       {"GET /adit/reports", Server::ok("[{\"number\": 1}]")}});
+  const Outcome outcome = run(std::vector<std::string_view>{"reports", "--at", server.at()}, false);
+  EXPECT_EQ(outcome.exit, Exit::Unable);
+  EXPECT_THAT(outcome.err, HasSubstr("is not of this version of Adit"));
+}
+
+}  // namespace
+}  // namespace adit::cli

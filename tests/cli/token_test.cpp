@@ -1,0 +1,67 @@
+#include "cli/token.hpp"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <cstdlib>
+#include <filesystem>
+#include <fstream>
+
+namespace adit::cli {
+namespace {
+
+using testing::HasSubstr;
+using testing::Not;
+
+class FindToken : public testing::Test {
+ public:
+  ~FindToken() override { std::filesystem::remove_all(folder_); }
+
+ protected:
+  FindToken() {
+    std::string name = (std::filesystem::temp_directory_path() / "adit-token-XXXXXX").string();
+    folder_ = mkdtemp(name.data());
+  }
+  std::string write(const std::string& name, const std::string& text) const {
+    std::ofstream(folder_ + "/" + name) << text;
+    return folder_ + "/" + name;
+  }
+  /// The token that is found without a file being named.
+  std::string found() const {
+    const auto token = find_token("", folder_);
+    if (!token) return "error: " + token.error();
+    return *token ? (*token)->token.reveal() : "none";
+  }
+  std::string folder_;
+};
+
+TEST_F(FindToken, TakesTheTeamsBeforeTheScoringToken) {
+  EXPECT_EQ(found(), "none");
+  write("scoring.token", "scoring-1\n");
+  EXPECT_EQ(found(), "scoring-1");
+  write("team.token", " \n");
+  EXPECT_EQ(found(), "scoring-1") << "an empty file is no token";
+  const std::string team = write("team.token", "team-1\n");
+  EXPECT_EQ(found(), "team-1");
+  EXPECT_EQ((*find_token("", folder_))->file, team);
+}
+
+TEST_F(FindToken, TakesTheFileThatIsNamed) {
+  write("team.token", "team-1");
+  const std::string mine = write("mine", "\tmine-1\r\n");
+  EXPECT_EQ((*find_token(mine, folder_))->token.reveal(), "mine-1");
+}
+
+TEST_F(FindToken, NamesTheFileAndNeverWhatIsInIt) {
+  const std::string two = write("two", "sesame one");
+  const auto token = find_token(two, folder_);
+  ASSERT_FALSE(token.has_value());
+  EXPECT_THAT(token.error(), testing::StartsWith(two + ": "));
+  EXPECT_THAT(token.error(), Not(HasSubstr("sesame")));
+  EXPECT_EQ(find_token(folder_ + "/none", folder_).error(), folder_ + "/none: No such file or directory");
+  write("team.token", "sesame one");
+  EXPECT_THAT(found(), testing::AllOf(HasSubstr("team.token"), Not(HasSubstr("sesame"))));
+}
+
+}  // namespace
+}  // namespace adit::cli

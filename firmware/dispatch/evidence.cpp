@@ -23,6 +23,9 @@ Evidence weigh(const icd::RunStatus& before, std::int64_t doubts, const SentSinc
   const std::int64_t used = before.remaining_reports - since.scored - now.remaining_reports;
   const std::int64_t points = now.score - before.score - since.points;
   const std::string seen = figures(before, doubts, since, now);
+  if (before.run_clock <= 0 && (used != 0 || points != 0)) {
+    return {Finding::Silent, seen + ": before the start of a run its counts may be set to anything", {}};
+  }
   if (used < 0 || used > doubts || points < 0 || points > used) {
     return {Finding::Contradicts, seen + ": does somebody else report with this token?", {}};
   }

@@ -27,9 +27,8 @@ void Reports::open(std::vector<Report> all, std::optional<Run> last_run, Time ti
   for (const std::int64_t number : sending) {
     step(number, ReportEvent::Restarted, "the gateway stopped while it was being sent", time,
          [this](Report& report) {
-           if (report.run == run().number) return;
-           report.run = run().number;  // a new run was noticed just then: it may have been recorded in either
-           report.before.reset();
+           ++report.tries;
+           enter_run(report);
          });
   }
   unchecked_.insert(book_.waiting().begin(), book_.waiting().end());
@@ -106,7 +105,6 @@ const Report* Reports::choose(Time time) {
 /// What is written down with the step to Sending, so that its fate can be found out even after a crash.
 void Reports::prepare(Report& report, Time time) {
   report.run = run().number;
-  report.tries += 1;
   report.sending = ++last_sending_;
   report.sent = time.stamp;
   report.before = book_.doubts(run().number).empty() ? account_.expected(time.now) : std::nullopt;
@@ -121,7 +119,16 @@ void Reports::ended(ReportEvent event, const std::string& note, Time time, const
   step(number, event, note, time, [&](Report& report) {
     if (event == ReportEvent::Lost) ++report.tries;
     if (edit) edit(report);
+    if (event == ReportEvent::Lost || is_young(report, time.now)) enter_run(report);
   });
+}
+
+/// For a report that was under way when a new run was noticed or declared: it may have been recorded in
+/// either.
+void Reports::enter_run(Report& report) const {
+  if (report.run == run().number) return;
+  report.run = run().number;
+  report.before.reset();
 }
 
 void Reports::answered(const HttpAnswer& answer, Time time) {
@@ -138,7 +145,7 @@ void Reports::answered(const HttpAnswer& answer, Time time) {
 
 void Reports::recorded(const ReportBook::Edit& keep, const icd::ReportReply& reply, Time time) {
   // It was recorded in the run that is on by now, whichever it was meant for.
-  if (const std::string why = account_.another(reply, time.stamp); !why.empty()) {
+  if (const std::string why = account_.another(reply, time); !why.empty()) {
     icd::RunStatus status = run().last.value_or(icd::RunStatus{});  // its counts are never looked at
     status.run_clock = reply.run_clock;
     begin_run(why, run().last ? std::optional(status) : std::nullopt, time);

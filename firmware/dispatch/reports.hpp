@@ -111,8 +111,10 @@ class Reports {
   // Clients.
   void tell_how_it_stands(ClientId client, const Report& report);
   void join(ClientId client, const Report& earlier, Time time);
+  void hand_clients_over(std::int64_t number, const Report& earlier);
 
   // Taking and choosing.
+  bool is_of_run(const Report& report) const;
   const Report* earlier(const Report& report) const;
   std::string reason_to_hold(const Report& report) const;
   bool check(std::int64_t number, Time time);
@@ -122,6 +124,7 @@ class Reports {
   void recorded(const ReportBook::Edit& keep, const icd::ReportReply& reply, Time time);
   bool take_new(Report report, const std::string& hold, ClientId client, bool may_send, Time time);
   void prepare(Report& report, Time time);
+  void enter_run(Report& report) const;
   bool step(std::int64_t number, ReportEvent event, const std::string& note, Time time,
             const ReportBook::Edit& edit = nullptr);
   void ended(ReportEvent event, const std::string& note, Time time, const ReportBook::Edit& edit = nullptr);
@@ -133,14 +136,15 @@ class Reports {
   void settle(const std::vector<const Report*>& doubts, const Evidence& evidence, Time time);
   void send_again(const std::vector<const Report*>& doubts, const Evidence& evidence, Time time);
   void explain(const std::vector<const Report*>& doubts, const std::string& why, Time time);
-  void blur_doubts(std::int64_t judged, Time time);
+  bool blur_doubts(std::int64_t judged, Time time);
+  void ask_for_others(Time time);
   void begin_run(const std::string& why, const std::optional<icd::RunStatus>& status, Time time);
 
   const ReportRules rules_;
   ReportBook book_;
   RunAccount account_;
   WaitingClients clients_;
-  std::map<std::int64_t, Instant> taken_at_;  // those taken since this program began
+  std::map<std::int64_t, Instant> taken_at_;  // when somebody last posted it, in this program's life
   std::set<std::int64_t> unchecked_;          // not yet compared with earlier ones: the run was not known
   std::optional<std::int64_t> sending_;
   std::int64_t last_sending_ = 0;  // Report::sending of the last one sent

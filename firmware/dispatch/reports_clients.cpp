@@ -1,4 +1,6 @@
 // The life of reports towards the team: taking them, joining the same one again, telling how they stand.
+#include <algorithm>
+
 #include "dispatch/report_verdict.hpp"
 #include "dispatch/reports.hpp"
 #include "dispatch/same_report.hpp"
@@ -8,6 +10,7 @@ namespace adit::dispatch {
 namespace {
 
 constexpr const char* kAskAgain = "; posting the same report again asks after it and never sends it twice";
+constexpr const char* kOldRun = "; it is of an earlier run: posting it again sends it in the present one";
 
 std::string metres(double distance) {
   return icd::number_text(static_cast<double>(static_cast<std::int64_t>(distance * 10 + 0.5)) / 10) + " m";
@@ -68,15 +71,20 @@ bool Reports::take_new(Report report, const std::string& hold, ClientId client, 
   return now;
 }
 
-/// The latest report before this one, of its run, that it would be a repeat of.
+/// What is under way counts for a run that was declared meanwhile, too: it may be recorded in it.
+bool Reports::is_of_run(const Report& report) const {
+  return report.run == run().number || report.number == sending_;
+}
+
+/// The latest report before this one, of the present run, that it would be a repeat of.
 const Report* Reports::earlier(const Report& report) const {
   for (auto item = book_.all().rbegin(); item != book_.all().rend(); ++item) {
     const Report& other = item->second;
     if (report.number != 0 && other.number >= report.number) continue;
-    if (other.run != run().number || !is_same(other.report, report.report) || !stands_for_others(other))
-      continue;
+    if (!is_of_run(other) || !is_same(other.report, report.report)) continue;
     const Report* const original = book_.find(other.same_as);
-    return original != nullptr ? original : &other;
+    const Report& stands = original != nullptr ? *original : other;
+    if (stands_for_others(stands)) return &stands;
   }
   return nullptr;
 }
@@ -85,8 +93,10 @@ const Report* Reports::earlier(const Report& report) const {
 std::string Reports::reason_to_hold(const Report& report) const {
   if (report.asked || rules_.review == Review::Off) return "";
   for (const auto& [number, other] : book_.all()) {
+    // Of two that wait, the later one is held.
+    const bool later = report.number != 0 && number > report.number && other.state == ReportState::Waiting;
     const bool counts =
-        other.run == run().number && other.number != report.number && other.state != ReportState::Withdrawn;
+        is_of_run(other) && !later && number != report.number && other.state != ReportState::Withdrawn;
     if (counts && is_near(other.report, report.report, rules_.near_metres) && stands_for_others(other)) {
       return icd::sentence("held: the same type as report ", number, ", ",
                            metres(distance(other.report, report.report)), " from it");
@@ -110,7 +120,7 @@ bool Reports::check(std::int64_t number, Time time) {
                              time, [original](Report& moved) { moved.same_as = original; });
     if (joined) {
       unchecked_.erase(number);
-      for (const ClientId client : clients_.take(number)) join(client, book_.at(original), time);
+      hand_clients_over(number, book_.at(original));
     }
     return false;
   }
@@ -124,16 +134,28 @@ bool Reports::check(std::int64_t number, Time time) {
 
 void Reports::join(ClientId client, const Report& earlier, Time time) {
   if (is_final(earlier.state)) return tell_how_it_stands(client, earlier);
-  if (taken_at_.contains(earlier.number) || earlier.state == ReportState::Waiting) {
-    taken_at_[earlier.number] = time.now;  // it was meant for the present run just now
-  }
+  taken_at_[earlier.number] = time.now;  // it is meant for the present run
   clients_.add(client, earlier.number, time.now + rules_.answer_within);
+}
+
+/// What was posted as `number` turned out to be `earlier` again.
+void Reports::hand_clients_over(std::int64_t number, const Report& earlier) {
+  if (is_final(earlier.state)) {
+    for (const ClientId client : clients_.take(number)) tell_how_it_stands(client, earlier);
+    return;
+  }
+  clients_.hand_over(number, earlier.number);
+  if (const auto taken = taken_at_.find(number); taken != taken_at_.end()) {
+    Instant& at = taken_at_.try_emplace(earlier.number, taken->second).first->second;
+    at = std::max(at, taken->second);
+  }
 }
 
 /// Its answer, or the truth about it.
 void Reports::tell_how_it_stands(ClientId client, const Report& report) {
   const std::string name = icd::sentence("report ", report.number);
   const std::string why = report.note.empty() ? "" : " (" + report.note + ")";
+  const char* const again = is_of_run(report) ? kAskAgain : kOldRun;
   ClientAnswer answer{.number = report.number};
   switch (report.state) {
     case ReportState::Answered:
@@ -147,23 +169,23 @@ void Reports::tell_how_it_stands(ClientId client, const Report& report) {
       break;
     case ReportState::Withdrawn:
       answer.status = icd::Status::Conflict;
-      answer.sentence = name + " was withdrawn by the operator and not sent" + why +
+      answer.sentence = name + " was withdrawn by the operator and is not sent any more" + why +
                         "; to send it, post it with the header Adit-Resubmit: yes";
       break;
     case ReportState::Received:
-      answer.sentence = name + " is kept, and waits for the operator's word" + why + kAskAgain;
+      answer.sentence = name + " is kept, and waits for the operator's word" + why + again;
       break;
     case ReportState::InDoubt:
       answer.status = icd::Status::GatewayTimeout;
-      answer.sentence = name + " is in doubt: it may or may not have been recorded" + why + kAskAgain;
+      answer.sentence = name + " is in doubt: it may or may not have been recorded" + why + again;
       break;
     case ReportState::Waiting:
       answer.sentence =
-          (stopping_ ? "the gateway is stopping; " : "") + name + " is kept and waiting" + why + kAskAgain;
+          (stopping_ ? "the gateway is stopping; " : "") + name + " is kept and waiting" + why + again;
       break;
     case ReportState::Sending:
       answer.status = icd::Status::GatewayTimeout;
-      answer.sentence = name + " is on its way, and may or may not have been recorded yet" + kAskAgain;
+      answer.sentence = name + " is on its way, and may or may not have been recorded yet" + again;
       break;
   }
   deeds_.tell(client, answer, report);

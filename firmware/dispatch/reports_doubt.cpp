@@ -44,7 +44,7 @@ SentSince Reports::sent_since(const Report& doubt) const {
 }
 
 void Reports::status_heard(const icd::RunStatus& status, Time time) {
-  if (const std::string why = account_.another(status, time.stamp); !why.empty()) {
+  if (const std::string why = account_.another(status, time); !why.empty()) {
     begin_run(why, status, time);
   }
   account_.heard(status, time);
@@ -119,13 +119,24 @@ void Reports::explain(const std::vector<const Report*>& doubts, const std::strin
   }
 }
 
-/// Of the reports sent around one that the operator has judged it can no longer be told which was recorded.
-void Reports::blur_doubts(std::int64_t judged, Time time) {
+/// Of the reports sent around one that the operator judges it can no longer be told which was recorded. Done
+/// before his word is, so that no power cut in between leaves evidence that means something else. False: the
+/// disk refuses.
+bool Reports::blur_doubts(std::int64_t judged, Time time) {
+  if (book_.at(judged).run != run().number) return true;  // nobody asks after it any more
+  bool written = true;
   for (const Report* const doubt : book_.doubts(run().number)) {
     if (doubt->number == judged || !doubt->before) continue;
-    book_.note(doubt->number, doubt->note, time.stamp, [](Report& report) { report.before.reset(); });
+    written &=
+        book_.note(doubt->number, doubt->note, time.stamp, [](Report& report) { report.before.reset(); });
   }
   account_.lose();
+  doubt_began(time.now);
+  return written;
+}
+
+/// After the operator judged one.
+void Reports::ask_for_others(Time time) {
   doubt_began(time.now);
   explain(book_.doubts(run().number), "", time);
 }

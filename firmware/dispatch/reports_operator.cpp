@@ -25,6 +25,7 @@ Reports::Outcome Reports::send(std::int64_t number, Time time) {
     return cannot(*report, "to send it once more, resubmit it");
   }
   const bool judged = report->state == ReportState::InDoubt;
+  if (judged && !blur_doubts(number, time)) return std::unexpected(kDisk);
   const bool moved = step(number, ReportEvent::Released, "the operator sends it", time, [&](Report& sent) {
     sent.asked = true;
     sent.same_as = 0;
@@ -32,7 +33,7 @@ Reports::Outcome Reports::send(std::int64_t number, Time time) {
     sent.run = run().number;
   });
   if (!moved) return std::unexpected(kDisk);
-  if (judged) blur_doubts(number, time);
+  if (judged) ask_for_others(time);
   return number;
 }
 
@@ -55,10 +56,10 @@ Reports::Outcome Reports::call_done(std::int64_t number, Time time) {
   if (transition(report->state, ReportEvent::CalledDone) == nullptr) {
     return cannot(*report, "only a report in doubt can be called done");
   }
-  if (!step(number, ReportEvent::CalledDone, "the operator calls it done", time)) {
-    return std::unexpected(kDisk);
-  }
-  blur_doubts(number, time);
+  const bool done =
+      blur_doubts(number, time) && step(number, ReportEvent::CalledDone, "the operator calls it done", time);
+  if (!done) return std::unexpected(kDisk);
+  ask_for_others(time);
   return number;
 }
 

@@ -20,17 +20,24 @@ std::optional<icd::RunStatus> RunAccount::expected(Instant now) const {
   return status;
 }
 
-std::string RunAccount::another(const icd::RunStatus& status, double stamp) const {
-  return another_run(run_, status, stamp);
+std::string RunAccount::another(const icd::RunStatus& status, Time time) const {
+  return another_run(run_, status, silence(time));
 }
 
-std::string RunAccount::another(const icd::ReportReply& reply, double stamp) const {
-  return another_run(run_, reply, stamp);
+std::string RunAccount::another(const icd::ReportReply& reply, Time time) const {
+  return another_run(run_, reply, silence(time));
+}
+
+/// In seconds. Over a restart by the box's clock, which may be set in between; else not, so that a clock that
+/// is set makes no new run.
+double RunAccount::silence(Time time) const {
+  return clock_at_ ? std::chrono::duration<double>(time.now - *clock_at_).count() : time.stamp - run_.heard;
 }
 
 void RunAccount::begin(const std::string& why, const std::optional<icd::RunStatus>& status,
                        std::span<const Report> steps, Time time) {
   run_ = {.number = run_.number + 1, .began = time.stamp, .why = why, .last = status, .heard = time.stamp};
+  clock_at_ = time.now;
   known_.reset();
   odd_ = unscored_ = false;
   book_.change(steps, run_);
@@ -38,7 +45,7 @@ void RunAccount::begin(const std::string& why, const std::optional<icd::RunStatu
 }
 
 void RunAccount::heard(const icd::RunStatus& status, Time time) {
-  heard_ = time.now;
+  heard_ = clock_at_ = time.now;
   const bool first = !run_.last;
   run_.last = status;
   run_.heard = time.stamp;
@@ -52,6 +59,7 @@ void RunAccount::answered(const icd::ReportReply& reply, Time time) {
   if (reply.run_clock > 0 && run_.last) {
     run_.last->run_clock = reply.run_clock;
     run_.heard = time.stamp;
+    clock_at_ = time.now;
   }
   if (run_.id.empty() && !reply.run.empty()) {
     run_.id = reply.run;

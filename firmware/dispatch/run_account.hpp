@@ -34,8 +34,8 @@ class RunAccount {
   std::optional<icd::RunStatus> expected(Instant now) const;
 
   /// Why this status is one of another run, or "".
-  std::string another(const icd::RunStatus& status, double stamp) const;
-  std::string another(const icd::ReportReply& reply, double stamp) const;
+  std::string another(const icd::RunStatus& status, Time time) const;
+  std::string another(const icd::ReportReply& reply, Time time) const;
   /// Another run begins, with this status if one was heard; what that does to the reports is written down
   /// with it.
   void begin(const std::string& why, const std::optional<icd::RunStatus>& status,
@@ -60,12 +60,14 @@ class RunAccount {
     SentSince since;
   };
   void write_down(double stamp);
+  double silence(Time time) const;
 
   ReportBook& book_;
   Run run_;
   double written_ = 0;            // Run::heard as it is on disk
   std::optional<Instant> heard_;  // the last word of the run, by a status or an answer
   std::optional<Instant> dumb_at_;
+  std::optional<Instant> clock_at_;  // when run_.last's clock was heard, if in this program's life
   std::optional<Known> known_;
   bool odd_ = false;       // the last status was not as expected
   bool unscored_ = false;  // the last answer says that reports are not being scored

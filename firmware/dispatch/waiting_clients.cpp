@@ -22,6 +22,12 @@ std::vector<ClientId> WaitingClients::take(std::int64_t number) {
   return taken;
 }
 
+void WaitingClients::hand_over(std::int64_t from, std::int64_t to) {
+  for (auto& [id, client] : clients_) {
+    if (client.number == from) client.number = to;
+  }
+}
+
 std::vector<std::pair<ClientId, std::int64_t>> WaitingClients::take_but(std::optional<std::int64_t> number) {
   return take_those([number](const Client& client) { return client.number != number; });
 }

@@ -17,6 +17,8 @@ class WaitingClients {
   void add(ClientId client, std::int64_t number, Instant deadline) { clients_[client] = {number, deadline}; }
   /// Takes out those that wait for a report.
   std::vector<ClientId> take(std::int64_t number);
+  /// Those that wait for `from` wait for `to` from now on, no longer than they would have.
+  void hand_over(std::int64_t from, std::int64_t to);
   /// Takes out all but those that wait for one report.
   std::vector<std::pair<ClientId, std::int64_t>> take_but(std::optional<std::int64_t> number);
   /// Takes out those whose time is up.

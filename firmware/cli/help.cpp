@@ -19,12 +19,12 @@ COMMANDS
   check    all that is wrong with a settings file, at once
 
 OPTIONS
-  --at ADDR:PORT   where Adit listens for the team: 10.0.0.1:8000 or [fd00::1]:8000
-  --settings FILE  the settings to find that in; /etc/adit/settings.json if not given
-  --token-file FILE  of what changes something: a file that holds the team's token or the scoring token. If not
-                   given, the first of team.token and scoring.token in /etc/adit/secrets that can be read
-  --json           for scripts: what Adit itself says, as JSON
-  --help           this, or more about a command
+  --at ADDR:PORT     where Adit listens for the team: 10.0.0.1:8000 or [fd00::1]:8000
+  --settings FILE    the settings to find that in; /etc/adit/settings.json if not given
+  --token-file FILE  what your word is shown with: a file that holds the team's token or the scoring token. If not
+                     given, the first of team.token and scoring.token in /etc/adit/secrets that can be read
+  --json             for scripts: what Adit itself says, as JSON
+  --help             this, or more about a command
 
 EXIT STATUS
   0  all is well

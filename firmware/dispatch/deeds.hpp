@@ -20,6 +20,12 @@ struct ClientAnswer {
   std::string sentence = "";
 };
 
+/// When what is written must outlive a power cut; the end of this program it outlives at once in either case.
+enum class Flush : std::uint8_t {
+  Now,   // before anything follows from it
+  Soon,  // within milliseconds: what has happened, and what the step before it lets Adit find out again
+};
+
 /// What the rules of reports want done: the seam between them and the disk, the clients and the log.
 class Deeds {
  public:
@@ -28,7 +34,7 @@ class Deeds {
   /// Writes all of these steps, in their order, and the run if there is one, as one transaction: after true
   /// they are on disk (a report may be there more than once, with one step each). After false none is, and
   /// nothing may follow.
-  virtual bool write(std::span<const Report> steps, const Run* run) = 0;
+  virtual bool write(std::span<const Report> steps, const Run* run, Flush flush) = 0;
 
   /// `report` is as it now is. Does nothing where the client has gone.
   virtual void tell(ClientId client, const ClientAnswer& answer, const Report& report) = 0;

@@ -51,7 +51,9 @@ bool ReportBook::move(std::int64_t number, ReportEvent event, const std::string&
   report.note = note;
   report.changed = stamp;
   if (edit) edit(report);
-  return write({&report, 1}, has_happened(event));
+  // With its answer lost in a power cut the report would be in doubt, and found recorded.
+  const bool is_answer = event == ReportEvent::Recorded || event == ReportEvent::Refused;
+  return write({&report, 1}, has_happened(event), is_answer ? Flush::Soon : Flush::Now);
 }
 
 bool ReportBook::note(std::int64_t number, const std::string& note, double stamp, const Edit& edit) {
@@ -72,16 +74,16 @@ void ReportBook::change(std::span<const Report> steps, const Run& run) {
 }
 
 /// What is still unwritten goes first, so that the ledger never has a later step without an earlier one.
-bool ReportBook::write(std::span<const Report> steps, bool happened) {
+bool ReportBook::write(std::span<const Report> steps, bool happened, Flush flush) {
   const Run* const run = unwritten_run_ ? &*unwritten_run_ : nullptr;
   bool written = false;
   if (unwritten_.empty()) {
-    written = deeds_.write(steps, run);
+    written = deeds_.write(steps, run, flush);
   } else {
     std::vector<Report> all;
     for (const std::int64_t number : unwritten_) all.push_back(reports_.at(number));
     all.insert(all.end(), steps.begin(), steps.end());
-    written = deeds_.write(all, run);
+    written = deeds_.write(all, run, Flush::Now);
   }
   if (written) {
     unwritten_.clear();

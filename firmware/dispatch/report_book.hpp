@@ -54,7 +54,7 @@ class ReportBook {
   std::vector<const Report*> doubts(std::int64_t run) const;
 
  private:
-  bool write(std::span<const Report> steps, bool happened);
+  bool write(std::span<const Report> steps, bool happened, Flush flush = Flush::Now);
   void put(const Report& report);
 
   Deeds& deeds_;

@@ -32,13 +32,24 @@ intake::Answer answer_of(const dispatch::ClientAnswer& answer, const dispatch::R
 
 }  // namespace
 
+ReportDeeds::ReportDeeds(loop::Loop& loop, ledger::Ledger& ledger)
+    : loop_(loop), ledger_(ledger), flush_(loop.timer([this] { flush(); })) {}
+
+void ReportDeeds::flush() {
+  const auto flushed = ledger_.flush();
+  if (!flushed)
+    host::log(host::Level::Error, "the ledger cannot be flushed", {{"why", flushed.error().what}});
+}
+
 dispatch::ClientId ReportDeeds::add(std::shared_ptr<intake::Responder> responder) {
   clients_[++last_client_] = std::move(responder);
   return last_client_;
 }
 
-bool ReportDeeds::write(std::span<const dispatch::Report> steps, const dispatch::Run* run) {
-  const auto written = ledger_.write(steps, run);
+bool ReportDeeds::write(std::span<const dispatch::Report> steps, const dispatch::Run* run,
+                        dispatch::Flush flush) {
+  const auto written = ledger_.write(steps, run, flush);
+  if (flush == dispatch::Flush::Soon) flush_.call_at(loop_.now() + kSoon);
   if (!written) {
     if (trouble_ != written.error().what) {
       host::log(host::Level::Error, "the ledger cannot be written", {{"why", written.error().what}});

@@ -29,7 +29,7 @@ Scoring::Scoring(loop::Loop& loop, ledger::Ledger& ledger, const settings::Setti
       ledger_(ledger),
       settings_(settings),
       record_(record),
-      deeds_(ledger),
+      deeds_(loop, ledger),
       reports_(rules_of(settings.reports), deeds_),
       channel_(loop, endpoint_of(settings.command_post, settings.command_post.scoring, 0), std::move(token),
                settings.command_post.timeouts.scoring_answer),
@@ -197,9 +197,8 @@ void Scoring::status_answered(uplink::Outcome outcome) {
     status_pace_.taken(now);
     answer_askers(client_answer(*answered));
   }
-  const auto run = answered != nullptr && answered->status == 200
-                       ? codec::read_run_status(answered->body)
-                       : std::unexpected<std::string>("");
+  const auto run = answered != nullptr && answered->status == 200 ? codec::read_run_status(answered->body)
+                                                                  : std::unexpected<std::string>("");
   if (run) {
     run_ = *run;
     run_heard_ = loop_.stamp_now();

@@ -40,18 +40,22 @@ class Ledger::Impl {
 
   explicit Impl(Opened opened) : database_(std::move(opened.database)), damage_(std::move(opened.damage)) {}
 
-  Result<void> write(std::span<const dispatch::Report> steps, const dispatch::Run* run) {
+  Result<void> write(std::span<const dispatch::Report> steps, const dispatch::Run* run,
+                     dispatch::Flush flush) {
     if (steps.empty() && run == nullptr) return {};
-    Transaction transaction(database_);
-    if (auto begun = transaction.begin(); !begun) return std::unexpected(begun.error());
-    for (const dispatch::Report& report : steps) {
-      if (auto written = write_one(report); !written) return written;
-    }
-    if (run != nullptr) {
-      if (auto written = write_one(*run); !written) return written;
-    }
-    if (auto committed = transaction.commit(); !committed) return std::unexpected(committed.error());
-    return {};
+    if (flush == dispatch::Flush::Now) return write(steps, run);
+    // NORMAL differs from FULL in this alone: the log is not flushed at the end of a transaction.
+    if (auto set = database_.execute("PRAGMA synchronous = NORMAL"); !set)
+      return std::unexpected(set.error());
+    const auto written = write(steps, run);
+    if (auto set = database_.execute("PRAGMA synchronous = FULL"); !set) return std::unexpected(set.error());
+    return written;
+  }
+
+  Result<void> flush() {
+    sqlite3_file* const log = database_.log();
+    if (log == nullptr || log->pMethods->xSync(log, SQLITE_SYNC_NORMAL) == SQLITE_OK) return {};
+    return std::unexpected(Error{"the ledger's log could not be flushed", false});
   }
 
   Result<std::vector<dispatch::Report>> reports() {
@@ -76,6 +80,19 @@ class Ledger::Impl {
   const std::string& damage() const { return damage_; }
 
  private:
+  Result<void> write(std::span<const dispatch::Report> steps, const dispatch::Run* run) {
+    Transaction transaction(database_);
+    if (auto begun = transaction.begin(); !begun) return std::unexpected(begun.error());
+    for (const dispatch::Report& report : steps) {
+      if (auto written = write_one(report); !written) return written;
+    }
+    if (run != nullptr) {
+      if (auto written = write_one(*run); !written) return written;
+    }
+    if (auto committed = transaction.commit(); !committed) return std::unexpected(committed.error());
+    return {};
+  }
+
   Result<void> write_one(const dispatch::Run& run) {
     Query query(write_run_);
     bind_run(query, run);
@@ -114,8 +131,12 @@ Result<Ledger> Ledger::open(const std::string& folder) {
   return Ledger(std::move(*impl));
 }
 
-Result<void> Ledger::write(std::span<const dispatch::Report> steps, const dispatch::Run* run) {
-  return impl_->write(steps, run);
+Result<void> Ledger::write(std::span<const dispatch::Report> steps, const dispatch::Run* run,
+                           dispatch::Flush flush) {
+  return impl_->write(steps, run, flush);
+}
+Result<void> Ledger::flush() {
+  return impl_->flush();
 }
 Result<std::vector<dispatch::Report>> Ledger::reports() const {
   return impl_->reports();

@@ -8,6 +8,7 @@
 #include <string>
 #include <vector>
 
+#include "dispatch/deeds.hpp"
 #include "dispatch/report.hpp"
 
 namespace adit::ledger {
@@ -33,12 +34,17 @@ class Ledger {
   Ledger& operator=(Ledger&&) noexcept;
   ~Ledger();
 
-  /// Writes all steps, in order, as one transaction with one flush: each report as it then is, and a row of
-  /// its history. What makes a report what it is (its type, position and time of receipt) never changes: a
-  /// step that has others under a number that is in use is an error.
-  /// `run`, where there is one, is written with them, as it now is.
-  Result<void> write(std::span<const dispatch::Report> steps, const dispatch::Run* run = nullptr);
+  /// Writes all steps, in order, as one transaction: each report as it then is, and a row of its history. One
+  /// flush, or none where `flush` is Soon: then it outlives this program, and a power cut after the next
+  /// write that is flushed, or flush(). What makes a report what it is (its type, position and time of
+  /// receipt) never changes: a step that has others under a number that is in use is an error. `run`, where
+  /// there is one, is written with them, as it now is.
+  Result<void> write(std::span<const dispatch::Report> steps, const dispatch::Run* run = nullptr,
+                     dispatch::Flush flush = dispatch::Flush::Now);
   Result<void> write(const dispatch::Run& run) { return write({}, &run); }
+
+  /// Flushes what was written without.
+  Result<void> flush();
 
   /// All reports, oldest first. A state that this version does not know is read as InDoubt: only the operator
   /// can judge it.

@@ -13,27 +13,38 @@ namespace adit::dispatch::model {
 /// Thrown where the model's power goes; nothing of the product is on the stack's other side.
 struct PowerCut {};
 
-/// A ledger that keeps what was written over every power cut, and nothing else.
+/// A ledger that keeps what was written over the end of the program, and what was flushed over a power cut.
 class Disk {
  public:
-  bool write(std::span<const Report> steps, const Run* run) {
+  struct Content {
+    std::map<std::int64_t, Report> reports;
+    std::optional<Run> last_run;
+  };
+
+  bool write(std::span<const Report> steps, const Run* run, bool flushes) {
     if (full) return false;
     cut();
-    for (const Report& report : steps) reports[report.number] = report;
-    if (run != nullptr) last_run = *run;
+    for (const Report& report : steps) written_.reports[report.number] = report;
+    if (run != nullptr) written_.last_run = *run;
+    if (flushes) flush();
     cut();
     return true;
   }
-  std::vector<Report> all() const {
+  void flush() { flushed_ = written_; }
+  void lose_unflushed() { written_ = flushed_; }
+
+  const Content& content() const { return written_; }
+  std::vector<Report> reports() const {
     std::vector<Report> list;
-    for (const auto& [number, report] : reports) list.push_back(report);
+    for (const auto& [number, report] : written_.reports) list.push_back(report);
     return list;
   }
 
   bool full = false;
   std::function<void()> cut = [] {};  // may throw PowerCut: before and after each write
-  std::map<std::int64_t, Report> reports;
-  std::optional<Run> last_run;
+
+ private:
+  Content written_, flushed_;
 };
 
 }  // namespace adit::dispatch::model

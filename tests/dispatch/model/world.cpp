@@ -18,6 +18,7 @@ constexpr std::size_t kClients = 12;
 constexpr Seconds kLatest = 9;
 /// A report posted so shortly before a new run began may be meant for it.
 constexpr Seconds kShortly = 25;
+constexpr Seconds kFlushSoon = 0.005;
 constexpr Seconds kRoundTrip = 0.02;
 constexpr double kEpoch = 1.7e9;  // simulated time 0, as a stamp
 
@@ -78,7 +79,7 @@ void World::live() {
   run_until(kTrouble + kCalm);
   for (const Client& client : clients_) tally_.acknowledged += client.acknowledged ? 1 : 0;
   tally_.recorded = static_cast<std::int64_t>(post_.recorded().size());
-  for (const auto& [number, report] : disk_.reports) {
+  for (const auto& [number, report] : disk_.content().reports) {
     tally_.undecided += report.state == ReportState::InDoubt ? 1 : 0;
     tally_.held += report.state == ReportState::Received ? 1 : 0;
   }
@@ -90,8 +91,9 @@ void World::tell_story(const std::string& sentence) {
 
 // Deeds.
 
-bool World::write(std::span<const Report> steps, const Run* run) {
-  if (!disk_.write(steps, run)) return false;
+bool World::write(std::span<const Report> steps, const Run* run, Flush flush) {
+  if (!disk_.write(steps, run, flush == Flush::Now)) return false;
+  if (flush == Flush::Soon) later(kFlushSoon, [this] { disk_.flush(); });
   if (run != nullptr) tell_story(icd::sentence("run ", run->number, " ", run->why));
   for (const Report& report : steps) {
     tell_story(icd::sentence("report ", report.number, " of ", report.report.position.x, " ",
@@ -170,12 +172,13 @@ void World::start() {
   };
   alive(alive);
   tell_story("start");
-  reports_->open(disk_.all(), disk_.last_run, time());
+  reports_->open(disk_.reports(), disk_.content().last_run, time());
 }
 
 void World::cut_power() {
   tell_story("power cut");
   ++tally_.power_cuts;
+  if (chance() < 0.5) disk_.lose_unflushed();  // else only the program has died
   reports_.reset();
   ++life_;
   for (const auto& pending : pending_) {
@@ -371,7 +374,7 @@ std::vector<std::string> World::broken_promises() const {
           icd::sentence("report ", which.first, " was sent into run ", which.second, " unasked"));
     }
   }
-  for (const auto& [number, report] : disk_.reports) {
+  for (const auto& [number, report] : disk_.content().reports) {
     const double key = report.report.position.x;
     const std::string name = icd::sentence("report ", number, " of ", key, " is ", name_of(report.state));
     const bool claimed =

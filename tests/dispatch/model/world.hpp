@@ -70,7 +70,7 @@ class World final : public Deeds {
   };
 
   // Deeds.
-  bool write(std::span<const Report> steps, const Run* run) override;
+  bool write(std::span<const Report> steps, const Run* run, Flush flush) override;
   void tell(ClientId client, const ClientAnswer& answer, const Report& report) override;
 
   // Time.

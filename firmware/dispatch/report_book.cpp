@@ -1,6 +1,7 @@
 #include "dispatch/report_book.hpp"
 
 #include <algorithm>
+#include <tuple>
 
 namespace adit::dispatch {
 namespace {
@@ -20,6 +21,12 @@ bool has_happened(ReportEvent event) {
     default:
       return false;
   }
+}
+
+/// With its answer lost in a power cut the report would be in doubt, and the run's status would tell.
+bool can_be_found_out(const Report& report, ReportEvent event) {
+  const bool is_answer = event == ReportEvent::Recorded || event == ReportEvent::Refused;
+  return is_answer && report.before.has_value();
 }
 
 }  // namespace
@@ -42,26 +49,22 @@ std::int64_t ReportBook::add(Report report, std::span<const ReportEvent> events,
   return write(steps, false) ? report.number : 0;
 }
 
-bool ReportBook::move(std::int64_t number, ReportEvent event, const std::string& note, double stamp,
-                      const Edit& edit) {
-  Report report = reports_.at(number);
-  const ReportTransition* const step = transition(report.state, event);
-  if (step == nullptr) return false;
-  report.state = step->to;
-  report.note = note;
-  report.changed = stamp;
-  if (edit) edit(report);
-  // With its answer lost in a power cut the report would be in doubt, and found recorded.
-  const bool is_answer = event == ReportEvent::Recorded || event == ReportEvent::Refused;
-  return write({&report, 1}, has_happened(event), is_answer ? Flush::Soon : Flush::Now);
-}
-
-bool ReportBook::note(std::int64_t number, const std::string& note, double stamp, const Edit& edit) {
-  Report report = reports_.at(number);
-  report.note = note;
-  report.changed = stamp;
-  if (edit) edit(report);
-  return report == reports_.at(number) || write({&report, 1}, false);
+bool ReportBook::move(std::span<const Step> steps, double stamp) {
+  std::vector<Report> moved;
+  bool happened = false;
+  bool soon = true;
+  for (const Step& step : steps) {
+    Report& report = moved.emplace_back(reports_.at(step.number));
+    const ReportTransition* const row = transition(report.state, step.event);
+    if (row == nullptr) return false;
+    report.state = row->to;
+    report.note = step.note;
+    report.changed = stamp;
+    if (step.edit) step.edit(report);
+    happened = happened || has_happened(step.event);
+    soon = soon && can_be_found_out(report, step.event);
+  }
+  return write(moved, happened, soon ? Flush::Soon : Flush::Now);
 }
 
 bool ReportBook::catch_up() {
@@ -97,8 +100,19 @@ bool ReportBook::write(std::span<const Report> steps, bool happened, Flush flush
   return true;
 }
 
+bool ReportBook::ByPlace::operator()(const icd::Point& one, const icd::Point& other) const {
+  return std::tie(one.x, one.y, one.z) < std::tie(other.x, other.y, other.z);
+}
+
+std::span<const std::int64_t> ReportBook::at_position(const icd::Point& position) const {
+  const auto found = by_position_.find(position);
+  if (found == by_position_.end()) return {};
+  return found->second;
+}
+
 void ReportBook::put(const Report& report) {
-  reports_[report.number] = report;
+  const bool is_new = reports_.insert_or_assign(report.number, report).second;
+  if (is_new) by_position_[report.report.position].push_back(report.number);
   const auto keep = [&report](std::set<std::int64_t>& numbers, ReportState state) {
     if (report.state == state) {
       numbers.insert(report.number);

@@ -21,6 +21,14 @@ class ReportBook {
   /// What changes beside the state.
   using Edit = std::function<void(Report&)>;
 
+  /// What happens to a report, with a note for the operator.
+  struct Step {
+    std::int64_t number = 0;
+    ReportEvent event = ReportEvent::Held;
+    std::string note = "";
+    Edit edit = nullptr;
+  };
+
   /// `deeds` outlives this.
   explicit ReportBook(Deeds& deeds) : deeds_(deeds) {}
 
@@ -31,13 +39,14 @@ class ReportBook {
   std::int64_t add(Report report, std::span<const ReportEvent> events, const std::string& note,
                    const Edit& edit = nullptr);
 
-  /// Takes the step that the table has for `event`, with a note for the operator. What the Command Post did
+  /// Takes the steps that the table has, each of another report, all in one write. What the Command Post did
   /// has happened even if the disk refuses: then the step is written later, and until then the ledger has the
-  /// safe side of it ("sending", which a restart reads as in doubt). Any other step is not taken: false.
-  bool move(std::int64_t number, ReportEvent event, const std::string& note, double stamp,
-            const Edit& edit = nullptr);
-  /// Changes what is known of a report, but not its state.
-  bool note(std::int64_t number, const std::string& note, double stamp, const Edit& edit = nullptr);
+  /// safe side of it ("sending", which a restart reads as in doubt). Any other step is not taken: false, and
+  /// none of them is.
+  bool move(std::span<const Step> steps, double stamp);
+  bool move(const Step& step, double stamp) { return move({&step, 1}, stamp); }
+  /// Changes what is known of reports, but not their states, all in one write.
+  bool note(std::span<const Report> noted) { return noted.empty() || write(noted, false); }
   /// All that follows for the reports from what happened to the run, and the run, in one write.
   void change(std::span<const Report> steps, const Run& run);
   void write(const Run& run) { change({}, run); }
@@ -47,6 +56,8 @@ class ReportBook {
   const Report& at(std::int64_t number) const { return reports_.at(number); }
   const Report* find(std::int64_t number) const;
   const std::map<std::int64_t, Report>& all() const { return reports_; }
+  /// Those at exactly this position, oldest first.
+  std::span<const std::int64_t> at_position(const icd::Point& position) const;
   /// Those in state Waiting, oldest first.
   const std::set<std::int64_t>& waiting() const { return waiting_; }
   std::size_t count(ReportState state) const;
@@ -58,7 +69,12 @@ class ReportBook {
   void put(const Report& report);
 
   Deeds& deeds_;
+  struct ByPlace {
+    bool operator()(const icd::Point& one, const icd::Point& other) const;
+  };
+
   std::map<std::int64_t, Report> reports_;
+  std::map<icd::Point, std::vector<std::int64_t>, ByPlace> by_position_;
   std::set<std::int64_t> waiting_;
   std::set<std::int64_t> in_doubt_;
   std::set<std::int64_t> unwritten_;  // their last step has happened, but is not on disk

@@ -1,5 +1,6 @@
 // The life of reports towards the team: taking them, joining the same one again, telling how they stand.
 #include <algorithm>
+#include <ranges>
 
 #include "dispatch/report_verdict.hpp"
 #include "dispatch/reports.hpp"
@@ -78,8 +79,8 @@ bool Reports::is_of_run(const Report& report) const {
 
 /// The latest report before this one, of the present run, that it would be a repeat of.
 const Report* Reports::earlier(const Report& report) const {
-  for (auto item = book_.all().rbegin(); item != book_.all().rend(); ++item) {
-    const Report& other = item->second;
+  for (const std::int64_t number : std::views::reverse(book_.at_position(report.report.position))) {
+    const Report& other = book_.at(number);
     if (report.number != 0 && other.number >= report.number) continue;
     if (!is_of_run(other) || !is_same(other.report, report.report)) continue;
     const Report* const original = book_.find(other.same_as);

@@ -11,17 +11,6 @@ namespace {
 
 using dispatch::ReportState;
 
-void log(const dispatch::Report& report) {
-  const bool for_the_operator = report.state == ReportState::InDoubt || report.state == ReportState::Received;
-  host::log(for_the_operator ? host::Level::Warning : host::Level::Notice,
-            "report " + std::string(dispatch::name_of(report.state)),
-            {{"report", std::to_string(report.number)},
-             {"type", report.report.type},
-             {"sender", report.sender},
-             {"status", report.status != 0 ? std::to_string(report.status) : ""},
-             {"why", report.note}});
-}
-
 intake::Answer answer_of(const dispatch::ClientAnswer& answer, const dispatch::Report& report) {
   if (!answer.sentence.empty()) return intake::error_answer(answer.status, answer.sentence);
   return client_answer({.status = report.status,
@@ -33,9 +22,19 @@ intake::Answer answer_of(const dispatch::ClientAnswer& answer, const dispatch::R
 }  // namespace
 
 ReportDeeds::ReportDeeds(loop::Loop& loop, ledger::Ledger& ledger)
-    : loop_(loop), ledger_(ledger), flush_(loop.timer([this] { flush(); })) {}
+    : loop_(loop), ledger_(ledger), follow_up_(loop.timer([this] { follow_up(); })) {}
 
-void ReportDeeds::flush() {
+void ReportDeeds::follow_up() {
+  for (const Step& step : std::exchange(unlogged_, {})) {
+    const bool for_the_operator = step.state == ReportState::InDoubt || step.state == ReportState::Received;
+    host::log(for_the_operator ? host::Level::Warning : host::Level::Notice,
+              "report " + std::string(dispatch::name_of(step.state)),
+              {{"report", std::to_string(step.number)},
+               {"type", step.type},
+               {"sender", step.sender},
+               {"status", step.status != 0 ? std::to_string(step.status) : ""},
+               {"why", step.note}});
+  }
   const auto flushed = ledger_.flush();
   if (!flushed)
     host::log(host::Level::Error, "the ledger cannot be flushed", {{"why", flushed.error().what}});
@@ -49,7 +48,6 @@ dispatch::ClientId ReportDeeds::add(std::shared_ptr<intake::Responder> responder
 bool ReportDeeds::write(std::span<const dispatch::Report> steps, const dispatch::Run* run,
                         dispatch::Flush flush) {
   const auto written = ledger_.write(steps, run, flush);
-  if (flush == dispatch::Flush::Soon) flush_.call_at(loop_.now() + kSoon);
   if (!written) {
     if (trouble_ != written.error().what) {
       host::log(host::Level::Error, "the ledger cannot be written", {{"why", written.error().what}});
@@ -59,7 +57,11 @@ bool ReportDeeds::write(std::span<const dispatch::Report> steps, const dispatch:
   }
   if (!trouble_.empty()) host::log(host::Level::Notice, "the ledger can be written again");
   trouble_.clear();
-  for (const dispatch::Report& report : steps) log(report);
+  for (const dispatch::Report& report : steps) {
+    unlogged_.push_back(
+        {report.number, report.report.type, report.sender, report.state, report.status, report.note});
+  }
+  follow_up_.call_at(loop_.now() + kSoon);
   return true;
 }
 

@@ -3,6 +3,7 @@
 #include <map>
 #include <memory>
 #include <string>
+#include <vector>
 
 #include "dispatch/deeds.hpp"
 #include "intake/server.hpp"
@@ -14,7 +15,8 @@ namespace adit::gateway {
 /// What the rules of reports want done: steps into the ledger and the log, answers to the clients.
 class ReportDeeds final : public dispatch::Deeds {
  public:
-  /// How soon Flush::Soon is: once the client has its answer.
+  /// What can follow once a report has left, or its client has its answer, follows so soon: Flush::Soon, and
+  /// the log.
   static constexpr std::chrono::milliseconds kSoon{2};
 
   ReportDeeds(loop::Loop& loop, ledger::Ledger& ledger);
@@ -31,11 +33,20 @@ class ReportDeeds final : public dispatch::Deeds {
   const std::string& trouble() const { return trouble_; }
 
  private:
-  void flush();
+  /// A step as the log tells of it.
+  struct Step {
+    std::int64_t number;
+    std::string type, sender;
+    dispatch::ReportState state;
+    int status;
+    std::string note;
+  };
+  void follow_up();
 
   loop::Loop& loop_;
   ledger::Ledger& ledger_;
-  loop::Source flush_;
+  loop::Source follow_up_;
+  std::vector<Step> unlogged_;
   std::map<dispatch::ClientId, std::shared_ptr<intake::Responder>> clients_;
   dispatch::ClientId last_client_ = 0;
   std::string trouble_;

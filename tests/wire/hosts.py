@@ -7,6 +7,7 @@ The test itself moves into the team's namespace, so that its sockets are a team'
 
 import ctypes
 import os
+import socket
 import subprocess
 import unittest
 
@@ -57,6 +58,24 @@ class Network:
 
     def start(self, host, *command, **options):
         return subprocess.Popen(["ip", "netns", "exec", host, *map(str, command)], **options)
+
+    @staticmethod
+    def connect(host, address, port, within):
+        """A connection that begins in the namespace `host`, whichever this thread is in."""
+        mine = os.open("/proc/thread-self/ns/net", os.O_RDONLY)
+        try:
+            enter(f"/run/netns/{host}")
+            made = socket.socket()
+            enter(f"/proc/self/fd/{mine}")
+        finally:
+            os.close(mine)
+        try:
+            made.settimeout(within)
+            made.connect((address, port))
+        except OSError:
+            made.close()
+            raise
+        return made
 
     def __exit__(self, *_):
         enter(f"/proc/self/fd/{self.home}")

@@ -1,11 +1,15 @@
 """The released programs under test: aditd on the box, adit-rehearsal at the Command Post."""
 
+import contextlib
+import http.client
 import json
 import os
 import pathlib
 import re
+import shutil
 import signal
 import socket
+import sqlite3
 import subprocess
 import tempfile
 import time
@@ -17,6 +21,8 @@ SCORING_TOKEN = "flux230{showroom"
 MAPPING_TOKEN = "rust871}backdoor"
 TEAM_TOKEN = "team-own-token-1"
 PORT = 8000
+ARTIFACTS = pathlib.Path(__file__).with_name("artifacts.csv")
+CONTROL_PORT = 8002  # on the Command Post's loopback
 
 
 def wait_until(condition, what, within=20.0):
@@ -70,9 +76,33 @@ class CommandPost(Program):
     def __init__(self, network, folder, *options):
         self.transcript = folder / "transcript"
         command = [BIN / "adit-rehearsal", "--scoring", f"{hosts.SCORING}:{PORT}", "--mapping",
-                   f"{hosts.MAPPING}:{PORT}", "--secrets", folder / "secrets", "--transcript", self.transcript, *options]
+                   f"{hosts.MAPPING}:{PORT}", "--control", f"127.0.0.1:{CONTROL_PORT}", "--secrets", folder / "secrets",
+                   "--artifacts", ARTIFACTS, "--transcript", self.transcript, *options]
+        self.network = network
         super().__init__(network, network.post, folder / "rehearsal.log", command)
         wait_until(lambda: "adit-rehearsal: scoring" in self.said(), "adit-rehearsal to listen")
+
+    def control(self, request, body=None):
+        """Asks the control port: control("POST /new-run", {"run": "2"})."""
+        method, _, path = request.partition(" ")
+        connection = http.client.HTTPConnection("127.0.0.1", CONTROL_PORT)
+        connection.sock = self.network.connect(self.network.post, "127.0.0.1", CONTROL_PORT, 5)
+        with contextlib.closing(connection):
+            connection.request(method, path, None if body is None else json.dumps(body))
+            answer = connection.getresponse()
+            said = json.loads(answer.read())
+        if answer.status >= 300:
+            raise AssertionError(f"{request}: {answer.status} {said}")
+        return said
+
+    def will(self, *faults, **of_others):
+        """What goes wrong with the next requests: will("drop", "ok", status=["500"])."""
+        self.control("POST /faults", {"reports": list(faults), **of_others})
+
+    def recorded(self, report=None):
+        """The reports that it recorded for its client; all, or those that are as `report` is."""
+        found = [made for made in self.control("GET /record")["reports"] if made["by"] == "client"]
+        return [made for made in found if report is None or all(made[key] == report[key] for key in ("x", "y", "z", "type"))]
 
     def requests(self, uri=None):
         path = self.transcript / "requests.jsonl"
@@ -92,7 +122,6 @@ class Box(Program):
     def __init__(self, network, folder, **overrides):
         self.network, self.folder = network, folder
         self.state = folder / "state"
-        self.state.mkdir(exist_ok=True)
         self.settings = folder / "settings.json"
         self.settings.write_text(json.dumps(settings(network, overrides)))
         command = [BIN / "aditd", "--settings", self.settings, "--secrets", folder / "secrets", "--state", self.state]
@@ -102,6 +131,44 @@ class Box(Program):
     @property
     def url(self):
         return f"http://{self.network.box_address}:{PORT}"
+
+    def ask(self, request, headers=()):
+        """Asks what the page asks: ask("GET /adit/run"). Its status, and what its JSON says."""
+        method, _, path = request.partition(" ")
+        connection = http.client.HTTPConnection(self.network.box_address, PORT, timeout=5)
+        with contextlib.closing(connection):
+            connection.request(method, path, headers=dict(headers))
+            answer = connection.getresponse()
+            return answer.status, json.loads(answer.read())
+
+    def reports(self):
+        """All reports as the page shows them, oldest first."""
+        return self.ask("GET /adit/reports")[1]
+
+    def attention(self):
+        """What the operator is to know or to decide, a sentence a line."""
+        return "\n".join(self.ask("GET /adit/run")[1]["attention"])
+
+    def judge(self, number, deed):
+        """The operator's word on a report: send, done, withdraw or resubmit. Its status, and what its JSON says."""
+        headers = {"Authorization": f"Bearer {TEAM_TOKEN}", "Content-Type": "application/json"}
+        return self.ask(f"POST /adit/reports/{number}/{deed}", headers)
+
+    def on_disk(self, query="SELECT state FROM report ORDER BY number"):
+        """Rows of the ledger; of one column: its values. From a copy, as aditd keeps the ledger to itself, and again
+        where that was torn."""
+        for _ in range(50):
+            with tempfile.TemporaryDirectory() as copy, contextlib.suppress(sqlite3.Error, OSError):
+                for file in self.state.glob("ledger.sqlite*"):
+                    shutil.copy(file, copy)
+                with contextlib.closing(sqlite3.connect(f"{copy}/ledger.sqlite")) as ledger:
+                    rows = ledger.execute(query).fetchall()
+                    return [row[0] if len(row) == 1 else row for row in rows]
+            time.sleep(0.02)
+        raise AssertionError("the ledger cannot be read")
+
+    def knows_the_run(self):
+        return self.ask("GET /adit/run")[1]["run_heard"] is not None
 
     def _answers(self):
         if self.process.poll() is not None:
@@ -138,7 +205,9 @@ def settings(network, overrides):
 class Stage:
     """Network, Command Post and box together, and a folder for their files."""
 
-    def __init__(self, team_net="192.168.7", post_options=("--rate", "0"), **overrides):
+    def __init__(self, team_net="192.168.7", post_options=("--rate", "0"), disk=None, **overrides):
+        """`disk`: the size of a file system of its own for the state folder ("2m")."""
+        self.disk = disk
         self.network = hosts.Network(team_net)
         self.post_options, self.overrides = post_options, overrides
         self.temporary = tempfile.TemporaryDirectory(prefix="adit-wire-")
@@ -149,6 +218,9 @@ class Stage:
         secrets_folder(self.folder / "secrets")
         self.network.__enter__()
         try:
+            (self.folder / "state").mkdir()
+            if self.disk is not None:
+                subprocess.run(["mount", "-t", "tmpfs", "-o", f"size={self.disk}", "adit-wire", self.folder / "state"], check=True)
             if self.post_options is not None:
                 self.post = CommandPost(self.network, self.folder, *self.post_options)
             self.box = Box(self.network, self.folder, **self.overrides)
@@ -165,5 +237,7 @@ class Stage:
             if program is not None and program.process.poll() is None:
                 program.process.kill()
                 program.process.wait()
+        if self.disk is not None:
+            subprocess.run(["umount", "--lazy", self.folder / "state"], stderr=subprocess.DEVNULL, check=False)
         self.network.__exit__()
         self.temporary.cleanup()

@@ -1,0 +1,62 @@
+"""Artifact reports as team software posts them: by clients that wait, and by clients that hang up and try again."""
+
+import concurrent.futures
+import json
+import time
+
+import requests
+
+import programs
+
+FIELDS = ("x", "y", "z", "type")
+REPORT = {"x": 1011.242, "y": -244.433, "z": -10.011, "type": "Backpack"}
+
+# So that a doubt takes a second, and not ten.
+QUICK = {"command_post__timeouts__scoring_answer_ms": 400, "reports__doubt_for_ms": 600, "reports__doubt_asks": 2,
+         "reports__answer_within_ms": 8000}
+
+
+def another(number):
+    """A report that is none of the others."""
+    return {**REPORT, "x": 10.0 * number}
+
+
+def submit(stage, report=None, timeout=30, **headers):
+    """One try. `headers` in addition: submit(stage, Adit_Resubmit="yes")."""
+    given = {"Authorization": f"Bearer {programs.TEAM_TOKEN}", "Content-Type": "application/json"}
+    given |= {name.replace("_", "-"): value for name, value in headers.items()}
+    return requests.post(stage.box.url + "/api/artifact_reports", data=json.dumps(report or REPORT), headers=given,
+                         timeout=timeout)
+
+
+def insist(stage, report=None, hang_up_after=0.3, pause=0.0, until=lambda answer: True, within=20):
+    """Hangs up and tries again until an answer comes that is good enough."""
+    end = time.monotonic() + within
+    while time.monotonic() < end:
+        try:
+            answer = submit(stage, report, hang_up_after)
+            if until(answer):
+                return answer
+        except requests.RequestException:
+            pass
+        time.sleep(pause)
+    raise AssertionError(f"tried for {within} s in vain")
+
+
+def began(stage):
+    """The stage, once reports can be sent."""
+    programs.wait_until(stage.box.knows_the_run, "the box to know the run")
+    return stage
+
+
+def sendings(stage, report=None):
+    """How often it left, whatever became of it."""
+    x = (report or REPORT)["x"]
+    return sum(request["message"]["x"] == x for request in stage.post.requests("/api/artifact_reports")
+               if request["message"])
+
+
+def at_once(*clients):
+    """What each gives, all of them called at the same time."""
+    with concurrent.futures.ThreadPoolExecutor(len(clients)) as pool:
+        return [future.result() for future in [pool.submit(client) for client in clients]]

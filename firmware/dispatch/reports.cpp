@@ -38,9 +38,25 @@ void Reports::open(std::vector<Report> all, std::optional<Run> last_run, Time ti
 /// Takes a step, and does what the table says follows from it. False: it is not on disk, and not taken.
 bool Reports::step(std::int64_t number, ReportEvent event, const std::string& note, Time time,
                    const ReportBook::Edit& edit) {
-  const ReportTransition* const row = transition(book_.at(number).state, event);
-  if (row == nullptr || !book_.move(number, event, note, time.stamp, edit)) return false;
-  switch (row->action) {
+  const ReportBook::Step one{number, event, note, edit};
+  return take_steps({&one, 1}, time);
+}
+
+/// The same for several reports: all of them, or none.
+bool Reports::take_steps(std::span<const ReportBook::Step> steps, Time time) {
+  std::vector<ReportAction> actions;
+  for (const ReportBook::Step& one : steps) {
+    const ReportTransition* const row = transition(book_.at(one.number).state, one.event);
+    if (row == nullptr) return false;
+    actions.push_back(row->action);
+  }
+  if (!book_.move(steps, time.stamp)) return false;
+  for (std::size_t i = 0; i < steps.size(); ++i) follow(steps[i].number, actions[i], time);
+  return true;
+}
+
+void Reports::follow(std::int64_t number, ReportAction action, Time time) {
+  switch (action) {
     case ReportAction::Nothing:
       break;
     case ReportAction::Send:
@@ -55,7 +71,6 @@ bool Reports::step(std::int64_t number, ReportEvent event, const std::string& no
       doubt_began(time.now);
       break;
   }
-  return true;
 }
 
 bool Reports::is_young(const Report& report, Instant now) const {

@@ -6,6 +6,7 @@
 #include <map>
 #include <optional>
 #include <set>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -127,6 +128,8 @@ class Reports {
   void enter_run(Report& report) const;
   bool step(std::int64_t number, ReportEvent event, const std::string& note, Time time,
             const ReportBook::Edit& edit = nullptr);
+  bool take_steps(std::span<const ReportBook::Step> steps, Time time);
+  void follow(std::int64_t number, ReportAction action, Time time);
   void ended(ReportEvent event, const std::string& note, Time time, const ReportBook::Edit& edit = nullptr);
 
   // Doubts and runs.

@@ -88,35 +88,47 @@ void Reports::inquire(const icd::RunStatus& status, Time time) {
 }
 
 void Reports::settle(const std::vector<const Report*>& doubts, const Evidence& evidence, Time time) {
+  std::vector<ReportBook::Step> steps;
   for (const Report* const doubt : doubts) {
-    const std::string answer = reconciled_answer(*doubt, run(), evidence.points_each, evidence.why);
-    step(doubt->number, ReportEvent::Found, "found recorded: " + evidence.why, time, [&](Report& report) {
+    const auto found = [&](Report& report) {
       report.status = static_cast<int>(icd::Status::Created);
       report.content_type = codec::kJson;
-      report.answer = answer;
+      report.answer = reconciled_answer(report, run(), evidence.points_each, evidence.why);
       report.reconciled = true;
-    });
+    };
+    steps.push_back({doubt->number, ReportEvent::Found, "found recorded: " + evidence.why, found});
   }
+  take_steps(steps, time);
 }
 
 void Reports::send_again(const std::vector<const Report*>& doubts, const Evidence& evidence, Time time) {
+  std::vector<ReportBook::Step> steps;
   for (const Report* const doubt : doubts) {
     if (doubt->tries < kMostTries) {
-      step(doubt->number, ReportEvent::Missing, "not recorded: " + evidence.why, time);
+      steps.push_back(
+          {.number = doubt->number, .event = ReportEvent::Missing, .note = "not recorded: " + evidence.why});
     } else {
-      step(doubt->number, ReportEvent::Held,
-           icd::sentence("held: sent ", doubt->tries, " times without an answer, and never recorded"), time);
+      steps.push_back({.number = doubt->number,
+                       .event = ReportEvent::Held,
+                       .note = icd::sentence("held: sent ", doubt->tries,
+                                             " times without an answer, and never recorded")});
     }
   }
+  take_steps(steps, time);
 }
 
 /// Says at each report in doubt how it stands.
 void Reports::explain(const std::vector<const Report*>& doubts, const std::string& seen, Time time) {
+  std::vector<Report> noted;
   for (const Report* const doubt : doubts) {
     const std::string note = is_asking(*doubt) ? "asking for the run's status: " + seen
                                                : undecidable(*doubts.front(), run()) + kOperator;
-    if (doubt->note != note) book_.note(doubt->number, note, time.stamp);
+    if (doubt->note == note) continue;
+    Report& report = noted.emplace_back(*doubt);
+    report.note = note;
+    report.changed = time.stamp;
   }
+  book_.note(noted);
 }
 
 /// Of the reports sent around one that the operator judges it can no longer be told which was recorded. Done
@@ -124,15 +136,14 @@ void Reports::explain(const std::vector<const Report*>& doubts, const std::strin
 /// disk refuses.
 bool Reports::blur_doubts(std::int64_t judged, Time time) {
   if (book_.at(judged).run != run().number) return true;  // nobody asks after it any more
-  bool written = true;
+  std::vector<Report> blurred;
   for (const Report* const doubt : book_.doubts(run().number)) {
-    if (doubt->number == judged || !doubt->before) continue;
-    written &=
-        book_.note(doubt->number, doubt->note, time.stamp, [](Report& report) { report.before.reset(); });
+    if (doubt->number != judged && doubt->before) blurred.emplace_back(*doubt).before.reset();
   }
+  if (!book_.note(blurred)) return false;
   account_.lose();
   doubt_began(time.now);
-  return written;
+  return true;
 }
 
 /// After the operator judged one.

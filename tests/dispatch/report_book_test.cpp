@@ -1,0 +1,185 @@
+#include "dispatch/report_book.hpp"
+
+#include <gmock/gmock.h>
+
+#include <array>
+
+#include "dispatch/scene.hpp"
+
+namespace adit::dispatch {
+namespace {
+
+using enum ReportState;
+using testing::ElementsAre;
+using testing::IsEmpty;
+
+class ReportBookTest : public testing::Test {
+ protected:
+  std::int64_t add(std::vector<ReportEvent> events = {}) {
+    Report report;
+    report.report = {"Drill", {1, 2, 3}};
+    return book_.add(report, events, "");
+  }
+  RecordingDeeds deeds_;
+  ReportBook book_{deeds_};
+};
+
+TEST_F(ReportBookTest, NumbersReportsFromOneAndGoesOnAfterARestart) {
+  EXPECT_EQ(add(), 1);
+  EXPECT_EQ(add(), 2);
+  ReportBook again(deeds_);
+  again.open({book_.at(1), book_.at(2)});
+  EXPECT_EQ(again.add(Report(), {}, ""), 3);
+}
+
+TEST_F(ReportBookTest, WritesAReportThatIsSentAtOnceWithBothStepsInOneGo) {
+  add({{ReportEvent::Chosen}});
+  EXPECT_EQ(deeds_.writes, 1);
+  EXPECT_THAT(deeds_.lives[1], ElementsAre(Waiting, Sending));
+  EXPECT_EQ(book_.at(1).state, Sending);
+}
+
+TEST_F(ReportBookTest, HasNoReportThatTheDiskRefused) {
+  deeds_.full = true;
+  EXPECT_EQ(add(), 0);
+  EXPECT_THAT(book_.all(), IsEmpty());
+  deeds_.full = false;
+  EXPECT_EQ(add(), 1);
+}
+
+TEST_F(ReportBookTest, TakesNoStepThatIsNotInTheTable) {
+  add();
+  EXPECT_FALSE(book_.move({1, ReportEvent::Found}, 0));
+  EXPECT_EQ(book_.at(1).state, Waiting);
+  EXPECT_EQ(deeds_.writes, 1);
+}
+
+/// Which steps of a report's life are taken though the disk refuses them.
+struct OnAFullDisk {
+  ReportEvent event;
+  ReportState from;
+  bool taken;
+};
+void PrintTo(const OnAFullDisk& one, std::ostream* out) {
+  *out << name_of(one.from) << ", event " << static_cast<int>(one.event);
+}
+
+const OnAFullDisk kFullDisk[] = {
+    {ReportEvent::Chosen, Waiting, false},     {ReportEvent::Held, Waiting, false},
+    {ReportEvent::Joined, Waiting, false},     {ReportEvent::Withdrawn, Waiting, false},
+    {ReportEvent::Recorded, Sending, true},    {ReportEvent::Refused, Sending, true},
+    {ReportEvent::Throttled, Sending, true},   {ReportEvent::Barred, Sending, true},
+    {ReportEvent::NeverLeft, Sending, true},   {ReportEvent::Lost, Sending, true},
+    {ReportEvent::Restarted, Sending, true},   {ReportEvent::Found, InDoubt, false},
+    {ReportEvent::Missing, InDoubt, false},    {ReportEvent::Held, InDoubt, false},
+    {ReportEvent::CalledDone, InDoubt, false}, {ReportEvent::Released, InDoubt, false},
+    {ReportEvent::Released, Received, false},  {ReportEvent::Released, Refused, false},
+    {ReportEvent::Released, Withdrawn, false},
+};
+
+class ReportBookOnAFullDisk : public testing::TestWithParam<OnAFullDisk> {};
+
+TEST_P(ReportBookOnAFullDisk, TakesOnlyTheStepsThatHaveHappenedAnyway) {
+  RecordingDeeds deeds;
+  ReportBook book(deeds);
+  Report report;
+  report.number = 1;
+  report.state = GetParam().from;
+  book.open({report});
+  deeds.full = true;
+  EXPECT_EQ(book.move({1, GetParam().event}, 0), GetParam().taken);
+  const ReportState to = transition(GetParam().from, GetParam().event)->to;
+  EXPECT_EQ(book.at(1).state, GetParam().taken ? to : GetParam().from);
+  EXPECT_EQ(book.catch_up(), !GetParam().taken);
+
+  deeds.full = false;
+  EXPECT_TRUE(book.catch_up());
+  EXPECT_EQ(deeds.ledger.contains(1), GetParam().taken) << "what has happened is written later";
+  const auto writes = deeds.writes;
+  EXPECT_TRUE(book.catch_up());
+  EXPECT_EQ(deeds.writes, writes) << "once";
+}
+INSTANTIATE_TEST_SUITE_P(Steps, ReportBookOnAFullDisk, testing::ValuesIn(kFullDisk));
+
+TEST_F(ReportBookTest, WritesWhatHasHappenedBeforeALaterStep) {
+  add({{ReportEvent::Chosen}});
+  add();
+  deeds_.full = true;
+  EXPECT_TRUE(book_.move({1, ReportEvent::Recorded}, 0));
+  EXPECT_FALSE(book_.move({2, ReportEvent::Chosen}, 0));
+  deeds_.full = false;
+  EXPECT_TRUE(book_.move({2, ReportEvent::Chosen}, 0));
+  EXPECT_EQ(deeds_.ledger.at(1).state, Answered);
+  EXPECT_EQ(deeds_.writes, 3) << "with it";
+}
+
+TEST_F(ReportBookTest, WritesANewRunLaterWhereTheDiskRefusesIt) {
+  deeds_.full = true;
+  book_.write(dispatch::Run{.number = 2});
+  EXPECT_EQ(deeds_.run, std::nullopt);
+  deeds_.full = false;
+  EXPECT_TRUE(book_.catch_up());
+  EXPECT_EQ(deeds_.run->number, 2);
+}
+
+TEST_F(ReportBookTest, TakesTheStepsOfSeveralReportsInOneWriteOrNone) {
+  std::vector<Report> all(2);
+  all[0] = {.number = 1, .state = InDoubt};
+  all[1] = {.number = 2, .state = InDoubt};
+  book_.open(all);
+  const std::array steps = {ReportBook::Step{1, ReportEvent::Found}, ReportBook::Step{2, ReportEvent::Found}};
+  deeds_.full = true;
+  EXPECT_FALSE(book_.move(steps, 0));
+  EXPECT_THAT(book_.doubts(0), testing::SizeIs(2));
+  deeds_.full = false;
+  EXPECT_TRUE(book_.move(steps, 0));
+  EXPECT_EQ(deeds_.writes, 1);
+  EXPECT_THAT(book_.doubts(0), IsEmpty());
+}
+
+TEST_F(ReportBookTest, NotesWhatIsKnownOfSeveralReportsInOneWriteOrNone) {
+  add();
+  add();
+  std::vector<Report> noted = {book_.at(1), book_.at(2)};
+  noted[0].note = noted[1].note = "why";
+  deeds_.full = true;
+  EXPECT_FALSE(book_.note(noted));
+  EXPECT_EQ(book_.at(1).note, "");
+  deeds_.full = false;
+  EXPECT_TRUE(book_.note(noted));
+  EXPECT_EQ(deeds_.writes, 3);
+  EXPECT_EQ(deeds_.ledger.at(2).note, "why");
+}
+
+TEST_F(ReportBookTest, FlushesAnAnswerSoonOnlyWhereItCouldBeFoundOutAgain) {
+  for (const bool known : {true, false}) {
+    std::vector<Report> all(1);
+    all[0] = {.number = 1, .state = Sending};
+    if (known) all[0].before = icd::RunStatus{};
+    book_.open(all);
+    EXPECT_TRUE(book_.move({1, ReportEvent::Recorded}, 0));
+    EXPECT_EQ(deeds_.last_flush, known ? Flush::Soon : Flush::Now);
+  }
+  add({{ReportEvent::Chosen}});
+  EXPECT_EQ(deeds_.last_flush, Flush::Now);
+  EXPECT_TRUE(book_.move({2, ReportEvent::Lost}, 0));
+  EXPECT_EQ(deeds_.last_flush, Flush::Now);
+}
+
+TEST_F(ReportBookTest, KnowsWhatWaitsAndWhatIsInDoubtInTheOrderOfSending) {
+  std::vector<Report> all(4);
+  all[0] = {.number = 1, .state = InDoubt, .run = 2, .sending = 9};
+  all[1] = {.number = 2, .state = InDoubt, .run = 2, .sending = 8};
+  all[2] = {.number = 3, .state = InDoubt, .run = 1, .sending = 7};
+  all[3] = {.number = 4};
+  book_.open(all);
+  EXPECT_THAT(book_.waiting(), ElementsAre(4));
+  EXPECT_THAT(book_.doubts(2), ElementsAre(&book_.at(2), &book_.at(1)));
+  EXPECT_EQ(book_.count(InDoubt), 3);
+  EXPECT_TRUE(book_.move({2, ReportEvent::Missing}, 0));
+  EXPECT_THAT(book_.waiting(), ElementsAre(2, 4));
+  EXPECT_EQ(book_.find(5), nullptr);
+}
+
+}  // namespace
+}  // namespace adit::dispatch

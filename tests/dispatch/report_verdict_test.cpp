@@ -1,0 +1,102 @@
+#include "dispatch/report_verdict.hpp"
+
+#include <gtest/gtest.h>
+
+namespace adit::dispatch {
+namespace {
+
+constexpr const char* kReply = R"({"report_status": "scored", "score_change": 1})";
+
+struct Case {
+  int status;
+  const char* body;
+  ReportEvent event;
+};
+void PrintTo(const Case& one, std::ostream* out) {
+  *out << one.status << " " << one.body;
+}
+
+const Case kCases[] = {
+    {200, kReply, ReportEvent::Recorded},
+    {201, kReply, ReportEvent::Recorded},
+    {201, "", ReportEvent::Lost},
+    {200, "<html>log in to the network</html>", ReportEvent::Lost},
+    {200, R"({"report_status": "scored"})", ReportEvent::Lost},
+    {204, "", ReportEvent::Lost},
+    {302, "", ReportEvent::Lost},
+    {304, kReply, ReportEvent::Lost},
+    {400, "\"bad\"", ReportEvent::Refused},
+    {401, "\"token\"", ReportEvent::Barred},
+    {402, "", ReportEvent::Refused},
+    {403, "", ReportEvent::Barred},
+    {404, "<html>", ReportEvent::Barred},
+    {405, "", ReportEvent::Barred},
+    {407, "", ReportEvent::Barred},
+    {408, "", ReportEvent::Lost},
+    {409, "", ReportEvent::Refused},
+    {413, "", ReportEvent::Refused},
+    {415, "", ReportEvent::Refused},
+    {422, kReply, ReportEvent::Refused},
+    {429, "", ReportEvent::Throttled},
+    {500, kReply, ReportEvent::Lost},
+    {502, "", ReportEvent::Lost},
+    {503, "", ReportEvent::Lost},
+    {504, "", ReportEvent::Lost},
+    {100, "", ReportEvent::Lost},
+    {999, "", ReportEvent::Lost},
+};
+
+class VerdictTable : public testing::TestWithParam<Case> {};
+
+TEST_P(VerdictTable, MeansThisForAReport) {
+  EXPECT_EQ(event_of(GetParam().status, GetParam().body), GetParam().event);
+}
+INSTANTIATE_TEST_SUITE_P(Answers, VerdictTable, testing::ValuesIn(kCases));
+
+Report with_answer(ReportState state, const std::string& answer, bool reconciled = false) {
+  Report report{.state = state, .status = 201, .answer = answer};
+  report.reconciled = reconciled;
+  return report;
+}
+
+icd::ReportReply unscored(const std::string& report_status) {
+  icd::ReportReply reply;
+  reply.report_status = report_status;
+  return reply;
+}
+
+TEST(Effect, OfAScoredReportUsesUpOneOfTheAllotment) {
+  const Effect effect = effect_of(with_answer(ReportState::Answered, kReply));
+  EXPECT_TRUE(effect.scored);
+  EXPECT_FALSE(effect.again);
+  EXPECT_EQ(effect.points, 1);
+}
+
+TEST(Effect, OfAReportInAnUnscoredPhaseIsThatItIsWorthPostingAgain) {
+  for (const std::string status : {"admin stop", "run not started"}) {
+    const Effect effect = effect_of(unscored(status));
+    EXPECT_FALSE(effect.scored) << status;
+    EXPECT_TRUE(effect.again) << status;
+  }
+  for (const std::string status : {"report limit exceeded", "time limit exceeded", "something new"}) {
+    const Effect effect = effect_of(unscored(status));
+    EXPECT_FALSE(effect.scored) << status;
+    EXPECT_FALSE(effect.again) << status;
+  }
+}
+
+TEST(Effect, OfAReconciledReportIsThatItWasScored) {
+  EXPECT_TRUE(effect_of(with_answer(ReportState::Settled, kReply, true)).scored);
+  EXPECT_TRUE(effect_of(with_answer(ReportState::Settled, R"({"score_change": null})", true)).scored);
+}
+
+TEST(Effect, IsNoneWhereNothingIsKnownToBeRecorded) {
+  EXPECT_FALSE(effect_of(with_answer(ReportState::Settled, kReply)).scored) << "called done by the operator";
+  for (const ReportState state : {ReportState::Refused, ReportState::InDoubt, ReportState::Waiting,
+                                  ReportState::Sending, ReportState::Received, ReportState::Withdrawn}) {
+    EXPECT_FALSE(effect_of(with_answer(state, kReply)).scored) << name_of(state);
+  }
+}
+
+}  // namespace
+}  // namespace adit::dispatch

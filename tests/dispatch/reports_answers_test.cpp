@@ -1,0 +1,165 @@
+// What becomes of a report by what came back: the table in the README of dispatch.
+#include <gmock/gmock.h>
+
+#include "dispatch/scene.hpp"
+
+namespace adit::dispatch {
+namespace {
+
+using enum ReportState;
+using testing::HasSubstr;
+using testing::IsEmpty;
+
+TEST(A2xx, IsTheClientsAnswerByteForByte) {
+  Scene scene;
+  const ClientId client = scene.post();
+  scene.answer(recorded(1));
+  EXPECT_EQ(scene.state(1), Answered);
+  EXPECT_EQ(scene.told(client).status, 201);
+  EXPECT_EQ(scene.told(client).body, recorded(1).body);
+  EXPECT_EQ(scene.deeds().ledger.at(1).answer, recorded(1).body) << "and on disk";
+}
+
+TEST(A2xx, ThatWasNotScoredSaysSoToTheOperator) {
+  Scene scene;
+  scene.post();
+  scene.answer(recorded(0, "admin stop"));
+  EXPECT_EQ(scene.report(1).note, "not scored (admin stop): post it again once the run goes on");
+}
+
+TEST(A2xx, WithoutAReportInItsBodyIsADoubt) {
+  Scene scene;
+  const ClientId client = scene.post();
+  scene.answer({200, "text/html", "<html>log in</html>"});
+  EXPECT_EQ(scene.state(1), InDoubt);
+  EXPECT_FALSE(scene.is_told(client));
+  scene.hear(19, 0);
+  scene.wait(1);
+  scene.hear(19, 0);
+  EXPECT_EQ(scene.told(client).status, 201);
+}
+
+TEST(A429, LeavesTheReportWaitingAndItsClientUntold) {
+  Scene scene;
+  const ClientId client = scene.post();
+  for (int i = 0; i < 10; ++i) {
+    scene.answer(answer_of(429));
+    EXPECT_EQ(scene.state(1), Waiting);
+    EXPECT_FALSE(scene.is_told(client));
+    scene.wait(1);
+    ASSERT_EQ(scene.send_next(), 1);
+  }
+  EXPECT_EQ(scene.report(1).tries, 0) << "it was answered";
+  scene.answer(recorded());
+  EXPECT_EQ(scene.told(client).status, 201);
+}
+
+TEST(A429, KeepsTheReportsPlace) {
+  Scene scene;
+  scene.post(1);
+  scene.post(2);
+  scene.answer(answer_of(429));
+  EXPECT_EQ(scene.send_next(), 1);
+}
+
+class Barring : public testing::TestWithParam<int> {};
+
+TEST_P(Barring, LeavesTheReportWaitingTellsItsClientAndSendsNothingBeforeAStatusIsAnswered) {
+  Scene scene;
+  const ClientId client = scene.post(1);
+  const ClientId other = scene.post(2);
+  scene.answer(answer_of(GetParam()));
+  EXPECT_EQ(scene.state(1), Waiting);
+  EXPECT_EQ(scene.told(client).status, 503);
+  EXPECT_THAT(scene.told(client).sentence, HasSubstr("is kept and waiting (the Command Post's words)"));
+  EXPECT_FALSE(scene.is_told(other));
+  EXPECT_EQ(scene.send_next(), 0);
+  EXPECT_EQ(scene.reports().wish(scene.time()).status, scene.time().now);
+  scene.reports().status_failed(true, scene.time());
+  EXPECT_EQ(scene.send_next(), 0);
+  scene.hear(20, 0);
+  EXPECT_EQ(scene.send_next(), 1);
+}
+INSTANTIATE_TEST_SUITE_P(Token, Barring, testing::Values(401, 403, 404, 405, 407));
+
+class Refusal : public testing::TestWithParam<int> {};
+
+TEST_P(Refusal, IsTheClientsAnswerAndTheEnd) {
+  Scene scene;
+  const ClientId client = scene.post();
+  scene.answer(answer_of(GetParam()));
+  EXPECT_EQ(scene.state(1), Refused);
+  EXPECT_EQ(scene.report(1).note, "the Command Post's words");
+  EXPECT_EQ(scene.told(client).status, GetParam());
+  EXPECT_EQ(scene.told(client).body, answer_of(GetParam()).body);
+  EXPECT_EQ(scene.send_next(), 0);
+}
+INSTANTIATE_TEST_SUITE_P(Final, Refusal, testing::Values(400, 402, 409, 413, 415, 422));
+
+class MeansNothing : public testing::TestWithParam<int> {};
+
+TEST_P(MeansNothing, AndLeavesTheReportInDoubt) {
+  Scene scene;
+  const ClientId client = scene.post();
+  scene.answer(answer_of(GetParam()));
+  EXPECT_EQ(scene.state(1), InDoubt);
+  EXPECT_TRUE(scene.reports().is_asking(scene.report(1)));
+  EXPECT_FALSE(scene.is_told(client)) << "it waits for what is found out";
+}
+INSTANTIATE_TEST_SUITE_P(FromSomethingBetween, MeansNothing, testing::Values(302, 304, 408, 500, 502, 503));
+
+TEST(NoByteLeft, LeavesTheReportWaiting) {
+  Scene scene;
+  const ClientId client = scene.post();
+  scene.reports().never_left("connecting to 10.100.1.200:8000: Connection refused", scene.time());
+  EXPECT_EQ(scene.state(1), Waiting);
+  EXPECT_EQ(scene.report(1).tries, 0);
+  EXPECT_FALSE(scene.is_told(client));
+  EXPECT_EQ(scene.send_next(), 1);
+}
+
+TEST(AReport, ThatKeepsKillingTheAnswerIsHeldForTheOperatorAtLast) {
+  ReportRules rules;
+  rules.answer_within = std::chrono::minutes(5);
+  Scene scene(rules);
+  const ClientId client = scene.post();
+  for (std::int64_t tries = 1; tries <= Reports::kMostTries; ++tries) {
+    EXPECT_EQ(scene.state(1), Sending) << tries;
+    scene.answer(answer_of(500));
+    EXPECT_EQ(scene.report(1).tries, tries);
+    scene.keep_hearing(10, 20, 0);
+    EXPECT_EQ(scene.send_next(), tries < Reports::kMostTries ? 1 : 0);
+  }
+  EXPECT_EQ(scene.state(1), Received);
+  EXPECT_EQ(scene.report(1).note, "held: sent 5 times without an answer, and never recorded");
+  EXPECT_EQ(scene.told(client).status, 503);
+  scene.post(2);
+  EXPECT_EQ(scene.state(2), Sending) << "nothing else is blocked";
+}
+
+TEST(AReport, ThatIsHeldForItsTriesHasAllOfThemAgainOnceTheOperatorSendsIt) {
+  Scene scene;
+  scene.post();
+  for (int i = 0; i < 5; ++i) {
+    scene.lose();
+    scene.keep_hearing(10, 20, 0);
+    scene.send_next();
+  }
+  ASSERT_TRUE(scene.reports().send(1, scene.time()).has_value());
+  ASSERT_EQ(scene.send_next(), 1);
+  scene.lose();
+  scene.keep_hearing(10, 20, 0);
+  EXPECT_EQ(scene.send_next(), 1);
+}
+
+TEST(AnAnswer, OfAnEarlierTryIsForgottenBeforeTheNext) {
+  Scene scene;
+  scene.post();
+  scene.answer(answer_of(429));
+  ASSERT_EQ(scene.send_next(), 1);
+  EXPECT_EQ(scene.report(1).status, 0);
+  EXPECT_THAT(scene.report(1).answer, IsEmpty());
+}
+
+}  // namespace
+}  // namespace adit::dispatch

@@ -1,0 +1,214 @@
+// How it is found out what became of a report whose answer was lost.
+#include <gmock/gmock.h>
+
+#include "dispatch/scene.hpp"
+
+namespace adit::dispatch {
+namespace {
+
+using enum ReportState;
+using testing::HasSubstr;
+using testing::IsEmpty;
+
+/// A report was lost at 100 s, with 20 left and no score.
+class Doubt : public testing::Test {
+ protected:
+  Doubt() : client_(scene_.post(1)) { scene_.lose(); }
+  /// An administrative stop, in which the count says nothing and others do not wait for it.
+  void stop_for(int seconds) {
+    for (int i = 0; i < seconds; ++i) {
+      scene_.wait(1);
+      scene_.hear(20, 0, 101);
+    }
+  }
+  void keep_hearing_after_stop(int seconds, std::int64_t remaining, std::int64_t score) {
+    for (int i = 0; i < seconds; ++i) {
+      scene_.wait(1);
+      scene_.hear(remaining, score, clock_++);
+    }
+  }
+
+  Scene scene_;
+  ClientId client_;
+  double clock_ = 118;
+};
+
+TEST_F(Doubt, IsSettledByTwoStatusesThatCountTheReport) {
+  scene_.hear(19, 1);
+  EXPECT_EQ(scene_.state(1), InDoubt);
+  scene_.wait(1);
+  scene_.hear(19, 1);
+  EXPECT_EQ(scene_.state(1), Settled);
+  const auto told = scene_.told(client_);
+  EXPECT_EQ(told.status, 201);
+  EXPECT_THAT(told.body, HasSubstr(R"("score_change":1)"));
+  EXPECT_THAT(told.body, HasSubstr(R"("reconciled":true)"));
+  EXPECT_EQ(scene_.report(1).note,
+            "found recorded: remaining_reports went from 20 to 19 and the score from 0 to 1");
+}
+
+TEST_F(Doubt, GivesItsReconciledAnswerToTheSameReportAgain) {
+  scene_.keep_hearing(2, 19, 0);
+  EXPECT_EQ(scene_.told(scene_.post(1)).body, scene_.told(client_).body);
+  EXPECT_EQ(scene_.count(), 1);
+}
+
+TEST_F(Doubt, EndsWithTheReportSentAgainWhereItWasNeverCounted) {
+  scene_.keep_hearing(9, 20, 0);
+  EXPECT_EQ(scene_.state(1), InDoubt) << "the Command Post may still record it";
+  scene_.keep_hearing(1, 20, 0);
+  EXPECT_EQ(scene_.state(1), Waiting);
+  EXPECT_FALSE(scene_.is_told(client_));
+  EXPECT_EQ(scene_.send_next(), 1);
+  EXPECT_EQ(scene_.report(1).before->remaining_reports, 20);
+  scene_.answer(recorded());
+  EXPECT_EQ(scene_.told(client_).body, recorded().body);
+}
+
+TEST_F(Doubt, IsSettledWhereTheCommandPostRecordsLate) {
+  scene_.keep_hearing(9, 20, 0);
+  scene_.keep_hearing(2, 19, 0);
+  EXPECT_EQ(scene_.state(1), Settled);
+}
+
+TEST_F(Doubt, IsLeftToTheOperatorWhereTheCountContradicts) {
+  scene_.wait(1);
+  scene_.hear(18, 0);
+  EXPECT_EQ(scene_.state(1), InDoubt);
+  EXPECT_FALSE(scene_.reports().is_asking(scene_.report(1)));
+  EXPECT_THAT(scene_.report(1).note, HasSubstr("does somebody else report with this token?; the operator"));
+  EXPECT_THAT(scene_.reports().attention(), testing::SizeIs(2)) << "the report, and the run";
+  scene_.keep_hearing(60, 19, 0);
+  EXPECT_EQ(scene_.state(1), InDoubt) << "no later count decides it";
+}
+
+TEST_F(Doubt, ThatTheCountCannotDecideBlocksNothing) {
+  scene_.wait(1);
+  scene_.hear(18, 0);
+  scene_.post(2);
+  EXPECT_EQ(scene_.state(2), Sending);
+  EXPECT_EQ(scene_.report(2).before, std::nullopt) << "the count proves nothing in this run";
+}
+
+TEST_F(Doubt, MakesOthersWaitWhileItMayBeDecided) {
+  scene_.post(2);
+  stop_for(14);
+  EXPECT_EQ(scene_.send_next(), 0);
+  stop_for(1);
+  EXPECT_EQ(scene_.send_next(), 2);
+}
+
+TEST_F(Doubt, IsAskedAfterEverySecond) {
+  EXPECT_LE(*scene_.reports().wish(scene_.time()).status, scene_.time().now);
+  scene_.wait(0.5);
+  scene_.reports().status_failed(false, scene_.time());
+  const auto next = *scene_.reports().wish(scene_.time()).status;
+  EXPECT_EQ(next, scene_.time().now + std::chrono::seconds(1));
+}
+
+TEST_F(Doubt, StaysWhileTheStatusIsSilent) {
+  for (int i = 0; i < 100; ++i) {
+    scene_.wait(1);
+    scene_.reports().status_failed(i % 2 == 0, scene_.time());
+  }
+  EXPECT_EQ(scene_.state(1), InDoubt);
+  scene_.hear(20, 0);
+  scene_.wait(1);
+  scene_.hear(20, 0);
+  EXPECT_EQ(scene_.state(1), InDoubt) << "two statuses are not three";
+  scene_.wait(1);
+  scene_.hear(20, 0);
+  EXPECT_EQ(scene_.state(1), Waiting);
+}
+
+TEST_F(Doubt, StaysWhileTheRunClockStandsStill) {
+  stop_for(60);
+  EXPECT_EQ(scene_.state(1), InDoubt) << "in an administrative stop a record does not show";
+  EXPECT_TRUE(scene_.reports().is_asking(scene_.report(1)));
+}
+
+TEST_F(Doubt, IsNotBlurredByReportsSentAndAnsweredMeanwhile) {
+  stop_for(16);
+  scene_.post(2);
+  ASSERT_EQ(scene_.state(2), Sending);
+  scene_.answer(recorded(1, "scored", "1", 117));
+  keep_hearing_after_stop(2, 18, 1);
+  EXPECT_EQ(scene_.state(1), Settled);
+  EXPECT_THAT(scene_.report(1).answer, HasSubstr(R"("score_change":0)")) << "the point was the other's";
+}
+
+/// A second one was lost while the first was in doubt.
+class TwoDoubts : public Doubt {
+ protected:
+  TwoDoubts() {
+    stop_for(16);
+    other_ = scene_.post(2);
+    scene_.lose();
+  }
+  ClientId other_ = 0;
+};
+
+TEST_F(TwoDoubts, AreBothSettledWhereBothWereCounted) {
+  EXPECT_EQ(scene_.report(2).before, std::nullopt) << "what was counted before it is not certain";
+  keep_hearing_after_stop(2, 18, 1);
+  for (const ClientId client : {client_, other_}) {
+    EXPECT_EQ(scene_.told(client).status, 201);
+    EXPECT_THAT(scene_.told(client).body, HasSubstr(R"("score_change":null)")) << "whose point it was";
+  }
+  EXPECT_EQ(scene_.state(1), Settled);
+}
+
+TEST_F(TwoDoubts, AreBothSentAgainInTheirOrderWhereNoneWasCounted) {
+  keep_hearing_after_stop(14, 20, 0);
+  EXPECT_EQ(scene_.send_next(), 1);
+  scene_.answer(recorded());
+  EXPECT_EQ(scene_.send_next(), 2);
+}
+
+TEST_F(TwoDoubts, StayWhereOneWasCounted) {
+  keep_hearing_after_stop(60, 19, 0);
+  EXPECT_EQ(scene_.state(1), InDoubt);
+  EXPECT_EQ(scene_.state(2), InDoubt);
+  EXPECT_THAT(scene_.report(2).note, HasSubstr("which of them was recorded does not show"));
+}
+
+TEST_F(TwoDoubts, AreDecidedInOneWriteOrNotAtAll) {
+  keep_hearing_after_stop(1, 18, 0);
+  scene_.deeds().full = true;
+  keep_hearing_after_stop(1, 18, 0);
+  EXPECT_EQ(scene_.state(1), InDoubt);
+  EXPECT_EQ(scene_.state(2), InDoubt);
+  scene_.deeds().full = false;
+  scene_.deeds().writes_until_full = 1;
+  keep_hearing_after_stop(1, 18, 0);
+  EXPECT_EQ(scene_.state(1), Settled);
+  EXPECT_EQ(scene_.state(2), Settled);
+}
+
+TEST(ADoubt, WithoutACountFromBeforeIsLeftToTheOperator) {
+  Scene scene;
+  scene.post(1);
+  scene.answer(recorded(0, "admin stop"));
+  const ClientId client = scene.post(2);
+  scene.lose();
+  EXPECT_FALSE(scene.reports().is_asking(scene.report(2)));
+  scene.keep_hearing(20, 20, 0);
+  EXPECT_EQ(scene.state(2), InDoubt);
+  EXPECT_THAT(scene.report(2).note, HasSubstr("is not known for certain; the operator decides"));
+  EXPECT_EQ(scene.told(client).status, 504);
+}
+
+TEST(ADoubt, WithNothingLeftOfTheAllotmentIsLeftToTheOperator) {
+  Scene exhausted;
+  exhausted.restart();
+  exhausted.hear(0, 0);
+  exhausted.post(1);
+  exhausted.lose();
+  exhausted.keep_hearing(60, 0, 0);
+  EXPECT_EQ(exhausted.state(1), InDoubt);
+  EXPECT_THAT(exhausted.report(1).note, HasSubstr("a record would not show"));
+  EXPECT_THAT(exhausted.reports().run().unreliable, IsEmpty());
+}
+
+}  // namespace
+}  // namespace adit::dispatch

@@ -1,0 +1,245 @@
+// What becomes of a report that is posted: taken, joined to the same one, held, or not taken.
+#include <gmock/gmock.h>
+
+#include "dispatch/scene.hpp"
+
+namespace adit::dispatch {
+namespace {
+
+using enum ReportState;
+using testing::ElementsAre;
+using testing::HasSubstr;
+
+ReportRules reviewing(Review review) {
+  ReportRules rules;
+  rules.review = review;
+  return rules;
+}
+
+TEST(Taking, SendsAReportAtOnceAfterOneWriteOfBothSteps) {
+  Scene scene;
+  const auto writes = scene.deeds().writes;
+  scene.post();
+  EXPECT_EQ(scene.deeds().writes, writes + 1);
+  EXPECT_THAT(scene.deeds().lives[1], ElementsAre(Waiting, Sending));
+  ASSERT_NE(scene.reports().sending(), nullptr);
+  EXPECT_EQ(scene.reports().sending()->before->remaining_reports, 20) << "for the case of a doubt";
+}
+
+TEST(Taking, KeepsTheOrderInWhichReportsCame) {
+  Scene scene;
+  for (const double x : {1, 2, 3}) scene.post_to_wait(x);
+  const ClientId late = scene.post(4);
+  EXPECT_EQ(scene.reports().sending(), nullptr) << "it does not overtake";
+  for (const std::int64_t number : {1, 2, 3, 4}) {
+    EXPECT_EQ(scene.send_next(), number);
+    EXPECT_FALSE(scene.is_told(late));
+    scene.answer(recorded());
+  }
+  EXPECT_EQ(scene.told(late).status, 201);
+}
+
+TEST(Taking, WaitsForTheFirstWordOfTheRun) {
+  Scene scene;
+  scene.wait(16);
+  scene.post();
+  EXPECT_EQ(scene.reports().sending(), nullptr);
+  EXPECT_FALSE(scene.reports().wish(scene.time()).report);
+  EXPECT_EQ(scene.reports().wish(scene.time()).status, scene.time().now);
+  scene.hear(20, 0);
+  EXPECT_EQ(scene.send_next(), 1);
+}
+
+TEST(Taking, DoesNotTakeMoreThanMayWait) {
+  ReportRules rules;
+  rules.most_waiting = 2;
+  Scene scene(rules);
+  scene.post_to_wait(1);
+  scene.post_to_wait(2);
+  const auto told = scene.told(scene.post_to_wait(3));
+  EXPECT_EQ(told.status, 429);
+  EXPECT_THAT(told.sentence, HasSubstr("not taken"));
+  EXPECT_EQ(told.number, 0);
+  EXPECT_EQ(scene.count(), 2);
+  const ClientId joined = scene.post_to_wait(2);
+  EXPECT_FALSE(scene.is_told(joined)) << "the same again takes no room";
+}
+
+TEST(TheSameReport, JoinsTheOneThatWaitsOrIsUnderWay) {
+  Scene scene;
+  const ClientId first = scene.post(1);
+  const ClientId second = scene.post(1, "dRILL");
+  EXPECT_EQ(scene.count(), 1);
+  scene.answer(recorded(1));
+  for (const ClientId client : {first, second}) {
+    EXPECT_EQ(scene.told(client).status, 201);
+    EXPECT_EQ(scene.told(client).body, recorded(1).body);
+    EXPECT_EQ(scene.deeds().told[client].size(), 1);
+  }
+}
+
+TEST(TheSameReport, GetsTheAnswerByteForByteLater) {
+  Scene scene;
+  scene.post(1);
+  scene.answer(recorded(1));
+  scene.wait(5);
+  const auto told = scene.told(scene.post(1));
+  EXPECT_EQ(told.status, 201);
+  EXPECT_EQ(told.body, recorded(1).body);
+  EXPECT_EQ(told.number, 1);
+  EXPECT_EQ(scene.count(), 1);
+}
+
+TEST(TheSameReport, IsSentAgainWhereItWasRefused) {
+  Scene scene;
+  scene.post(1);
+  scene.answer(answer_of(422));
+  scene.post(1);
+  ASSERT_NE(scene.reports().sending(), nullptr);
+  EXPECT_EQ(scene.reports().sending()->number, 2);
+}
+
+TEST(TheSameReport, IsSentAgainWhereItWasRecordedUnscored) {
+  for (const std::string status : {"admin stop", "run not started"}) {
+    Scene scene;
+    scene.post(1);
+    scene.answer(recorded(0, status));
+    scene.post(1);
+    ASSERT_NE(scene.reports().sending(), nullptr) << status;
+    EXPECT_EQ(scene.reports().sending()->number, 2);
+  }
+}
+
+TEST(TheSameReport, IsNotSentAgainWhereTheRunTakesNoMore) {
+  for (const std::string status : {"report limit exceeded", "time limit exceeded"}) {
+    Scene scene;
+    scene.post(1);
+    scene.answer(recorded(0, status));
+    EXPECT_EQ(scene.told(scene.post(1)).body, recorded(0, status).body);
+    EXPECT_EQ(scene.count(), 1);
+  }
+}
+
+TEST(TheSameReport, IsComparedOnlyOnceTheRunIsKnown) {
+  Scene scene;
+  scene.post(1);
+  scene.answer(recorded());
+  scene.wait(16);
+  const ClientId client = scene.post(1);
+  EXPECT_FALSE(scene.is_told(client)) << "it may be meant for another run";
+  EXPECT_EQ(scene.state(2), Waiting);
+  scene.hear(19, 0);
+  EXPECT_EQ(scene.send_next(), 0);
+  EXPECT_EQ(scene.state(2), Withdrawn);
+  EXPECT_EQ(scene.report(2).same_as, 1);
+  EXPECT_EQ(scene.told(client).body, recorded().body);
+}
+
+/// A repeat that was found to be one stands for nobody once the first of them does not.
+TEST(TheSameReport, IsSentAgainThoughAnEarlierRepeatWasJoined) {
+  for (const HttpAnswer& outcome : {answer_of(422), recorded(0, "admin stop")}) {
+    Scene scene;
+    scene.post_to_wait(1);
+    ASSERT_TRUE(scene.reports().withdraw(1, scene.time()).has_value());
+    scene.wait(16);
+    const ClientId repeat = scene.post(1);
+    scene.hear(20, 0);
+    scene.send_next();
+    ASSERT_EQ(scene.report(2).same_as, 1);
+    EXPECT_EQ(scene.told(repeat).status, 409);
+    ASSERT_TRUE(scene.reports().send(1, scene.time()).has_value());
+    ASSERT_EQ(scene.send_next(), 1);
+    scene.answer(outcome);
+    scene.post(1);
+    ASSERT_EQ(scene.count(), 3);
+    EXPECT_EQ(scene.state(3), Sending);
+  }
+}
+
+TEST(AResubmittedReport, IsSentAsANewOne) {
+  Scene scene;
+  scene.post(1);
+  scene.answer(recorded());
+  scene.post(1, "Drill", true);
+  ASSERT_NE(scene.reports().sending(), nullptr);
+  EXPECT_EQ(scene.reports().sending()->number, 2);
+  EXPECT_TRUE(scene.reports().sending()->asked);
+}
+
+TEST(AResubmittedReport, IsItselfNotDoubledByARetryOfTheSamePost) {
+  Scene scene;
+  scene.post(1);
+  scene.answer(recorded());
+  scene.post(1, "Drill", true);
+  const ClientId retry = scene.post(1, "Drill", true);
+  EXPECT_EQ(scene.count(), 2);
+  scene.answer(recorded(0, "scored", "1", 107));
+  EXPECT_EQ(scene.told(retry).body, recorded(0, "scored", "1", 107).body);
+}
+
+TEST(ANearReport, IsSentUnlessReviewsAreOn) {
+  Scene scene;
+  scene.post(1);
+  scene.answer(recorded());
+  scene.post(4);
+  EXPECT_NE(scene.reports().sending(), nullptr);
+}
+
+TEST(ANearReport, IsHeldForTheOperatorWithTheReason) {
+  Scene scene(reviewing(Review::Duplicates));
+  scene.post(1);
+  scene.answer(recorded());
+  const ClientId near = scene.post(4.26);
+  EXPECT_EQ(scene.state(2), Received);
+  EXPECT_EQ(scene.report(2).note, "held: the same type as report 1, 3.3 m from it");
+  scene.wait(20);
+  EXPECT_EQ(scene.told(near).status, 503);
+  EXPECT_THAT(scene.told(near).sentence, HasSubstr("waits for the operator's word (held: the same type"));
+  scene.hear(19, 0);
+  scene.post(7, "Drill");
+  EXPECT_EQ(scene.state(3), Received) << "near the one that is held";
+  scene.post(1, "Vent");
+  EXPECT_EQ(scene.state(4), Sending) << "another type";
+}
+
+TEST(ANearReport, IsNotHeldBackByOneThatWasRefusedOrNotScored) {
+  Scene scene(reviewing(Review::Duplicates));
+  scene.post(1);
+  scene.answer(answer_of(422));
+  scene.post(2);
+  scene.answer(recorded(0, "admin stop"));
+  scene.post(3);
+  EXPECT_EQ(scene.state(3), Sending);
+}
+
+TEST(ANearReport, IsNotHeldWhereItIsAskedFor) {
+  Scene scene(reviewing(Review::Duplicates));
+  scene.post(1);
+  scene.answer(recorded());
+  scene.post(2, "Drill", true);
+  EXPECT_EQ(scene.state(2), Sending);
+}
+
+TEST(TwoNearReports, ThatCameInSilenceAreNotHeldForEachOther) {
+  Scene scene(reviewing(Review::Duplicates));
+  scene.wait(16);
+  scene.post(1);
+  scene.post(2);
+  scene.hear(20, 0);
+  EXPECT_EQ(scene.send_next(), 1);
+  scene.answer(recorded());
+  EXPECT_EQ(scene.send_next(), 0);
+  EXPECT_EQ(scene.state(2), Received);
+}
+
+TEST(AReview, OfAllReportsHoldsEachUntilTheOperatorSendsIt) {
+  Scene scene(reviewing(Review::All));
+  scene.post(1);
+  EXPECT_EQ(scene.state(1), Received);
+  EXPECT_EQ(scene.send_next(), 0);
+  ASSERT_TRUE(scene.reports().send(1, scene.time()).has_value());
+  EXPECT_EQ(scene.send_next(), 1);
+}
+
+}  // namespace
+}  // namespace adit::dispatch

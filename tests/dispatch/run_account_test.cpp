@@ -1,0 +1,160 @@
+#include "dispatch/run_account.hpp"
+
+#include <gmock/gmock.h>
+
+#include "dispatch/scene.hpp"
+
+namespace adit::dispatch {
+namespace {
+
+using testing::HasSubstr;
+using testing::IsEmpty;
+
+/// At `now_` seconds of a run with 20 reports left.
+class RunAccountTest : public testing::Test {
+ protected:
+  Time at(double s) const {
+    return {RunAccount::Instant{} + std::chrono::milliseconds(static_cast<std::int64_t>(s * 1000)),
+            Scene::kEpoch + s};
+  }
+  Time time() const { return at(now_); }
+  icd::RunStatus status(std::int64_t remaining, std::int64_t score) const {
+    return {score, now_, remaining, "adit"};
+  }
+  void hear(std::int64_t remaining, std::int64_t score) {
+    account_.heard(status(remaining, score), time());
+    account_.settle(status(remaining, score), time());
+  }
+  void answer(const std::string& report_status, std::int64_t points) {
+    icd::ReportReply reply;
+    reply.run = "1";
+    reply.report_status = report_status;
+    reply.score_change = points;
+    account_.answered(reply, time());
+  }
+
+  RecordingDeeds deeds_;
+  ReportBook book_{deeds_};
+  RunAccount account_{book_};
+  double now_ = 100;
+};
+
+TEST_F(RunAccountTest, ExpectsNothingBeforeTheFirstStatus) {
+  EXPECT_EQ(account_.expected(time().now), std::nullopt);
+  EXPECT_FALSE(account_.is_fresh(time().now));
+}
+
+TEST_F(RunAccountTest, ExpectsTheLastStatusLessWhatItsOwnReportsDid) {
+  hear(20, 3);
+  answer("scored", 1);
+  answer("scored", 0);
+  now_ += 7;
+  EXPECT_EQ(account_.expected(time().now), status(18, 4));
+}
+
+TEST_F(RunAccountTest, ExpectsNothingAfterADoubtUntilTheNextStatusWithoutOne) {
+  hear(20, 3);
+  account_.lose();
+  EXPECT_EQ(account_.expected(time().now), std::nullopt);
+  hear(19, 3);
+  EXPECT_EQ(account_.expected(time().now), status(19, 3));
+}
+
+TEST_F(RunAccountTest, ExpectsNothingWhileReportsAreNotBeingScored) {
+  hear(20, 3);
+  answer("admin stop", 0);
+  EXPECT_EQ(account_.expected(time().now), std::nullopt);
+  answer("scored", 0);
+  EXPECT_EQ(account_.expected(time().now), status(19, 3));
+}
+
+TEST_F(RunAccountTest, DistrustsACountThatIsWrongTwiceInARow) {
+  hear(20, 3);
+  hear(19, 3);
+  EXPECT_EQ(account_.expected(time().now), std::nullopt) << "it is odd";
+  EXPECT_THAT(account_.run().unreliable, IsEmpty());
+  hear(19, 3);
+  EXPECT_EQ(account_.expected(time().now), std::nullopt);
+  EXPECT_THAT(account_.run().unreliable, HasSubstr("somebody else reports with this token"));
+  EXPECT_EQ(deeds_.run->unreliable, account_.run().unreliable) << "and has that on disk";
+}
+
+TEST_F(RunAccountTest, ForgivesACountThatLaggedBehind) {
+  hear(20, 3);
+  answer("scored", 0);
+  hear(20, 3);
+  hear(19, 3);
+  EXPECT_EQ(account_.expected(time().now), status(19, 3));
+  EXPECT_THAT(account_.run().unreliable, IsEmpty());
+}
+
+TEST_F(RunAccountTest, LetsCountsBeSetAtTheStartOfTheRun) {
+  now_ = 0;
+  hear(5, 0);
+  now_ = 10;
+  hear(25, 0);
+  EXPECT_EQ(account_.expected(time().now), status(25, 0));
+}
+
+TEST_F(RunAccountTest, TrustsTheCountAgainInTheNextRun) {
+  hear(20, 3);
+  account_.distrust("another sender", time().stamp);
+  account_.begin("the operator says so", std::nullopt, {}, time());
+  EXPECT_EQ(account_.run().number, 2);
+  EXPECT_EQ(account_.expected(time().now), std::nullopt);
+  hear(25, 0);
+  EXPECT_EQ(account_.expected(time().now), status(25, 0));
+}
+
+TEST_F(RunAccountTest, IsFreshForFifteenSecondsAfterAWord) {
+  hear(20, 3);
+  EXPECT_TRUE(account_.is_fresh(at(115).now));
+  EXPECT_FALSE(account_.is_fresh(at(115.1).now));
+  now_ = 114;
+  answer("scored", 0);
+  EXPECT_TRUE(account_.is_fresh(at(129).now));
+}
+
+TEST_F(RunAccountTest, KnowsACommandPostThatAnswersNothingThatHelps) {
+  EXPECT_FALSE(account_.is_dumb(time().now)) << "it was not asked";
+  account_.dumb(time().now);
+  EXPECT_TRUE(account_.is_dumb(time().now));
+  EXPECT_FALSE(account_.is_dumb(at(116).now)) << "that is long ago";
+  hear(20, 3);
+  EXPECT_FALSE(account_.is_dumb(time().now));
+}
+
+TEST_F(RunAccountTest, WritesTheRunClockDownOnlyNowAndThen) {
+  hear(20, 3);
+  const auto writes = deeds_.writes;
+  for (now_ = 101; now_ < 129; ++now_) hear(20, 3);
+  EXPECT_EQ(deeds_.writes, writes);
+  now_ = 131;
+  hear(20, 3);
+  EXPECT_EQ(deeds_.writes, writes + 1);
+  EXPECT_EQ(deeds_.run->last->run_clock, 131);
+}
+
+TEST_F(RunAccountTest, MeasuresASilenceByTheClockThatCannotBeSet) {
+  hear(20, 3);
+  const Time set{at(105).now, at(105 + 3600).stamp};
+  EXPECT_THAT(account_.another(icd::RunStatus{3, 105, 20, "adit"}, set), IsEmpty());
+  EXPECT_THAT(account_.another(icd::RunStatus{3, 105, 20, "adit"}, at(3700)), HasSubstr("without word"));
+}
+
+TEST_F(RunAccountTest, MeasuresASilenceOverARestartByWhatIsOnDisk) {
+  hear(20, 3);
+  RunAccount again(book_);
+  again.open(deeds_.run, 1);
+  EXPECT_THAT(again.another(icd::RunStatus{3, 105, 20, "adit"}, at(3700)), HasSubstr("without word"));
+  EXPECT_THAT(again.another(icd::RunStatus{3, 120, 20, "adit"}, at(120)), IsEmpty());
+}
+
+TEST_F(RunAccountTest, IsOfTheLatestRunThatAReportBelongsTo) {
+  account_.open(dispatch::Run{.number = 2, .id = "two"}, 3);
+  EXPECT_EQ(account_.run().number, 3);
+  EXPECT_THAT(account_.run().id, IsEmpty()) << "what was known of the run before does not hold";
+}
+
+}  // namespace
+}  // namespace adit::dispatch

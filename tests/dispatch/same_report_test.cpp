@@ -1,0 +1,48 @@
+#include "dispatch/same_report.hpp"
+
+#include <gtest/gtest.h>
+
+#include <array>
+
+namespace adit::dispatch {
+namespace {
+
+using icd::ArtifactReport;
+
+TEST(SameReport, IsOfTheSameTypeInAnyLetterCase) {
+  EXPECT_TRUE(is_same({"Cell Phone", {1, 2, 3}}, {"cell phone", {1, 2, 3}}));
+  EXPECT_FALSE(is_same({"Cell Phone", {1, 2, 3}}, {"CellPhone", {1, 2, 3}}));
+  EXPECT_FALSE(is_same({"Gas", {1, 2, 3}}, {"Vent", {1, 2, 3}}));
+}
+
+TEST(SameReport, IsAtTheSameCoordinatesToTheLastDigit) {
+  EXPECT_FALSE(is_same({"Gas", {1, 2, 3}}, {"Gas", {1, 2, 3.0000001}}));
+  EXPECT_TRUE(is_same({"Gas", {0.0, 2, 3}}, {"Gas", {-0.0, 2, 3}}));
+}
+
+TEST(NearReport, IsOfTheSameTypeWithinTheDistanceOnAllThreeAxes) {
+  const ArtifactReport one{"Gas", {1, 2, 3}};
+  EXPECT_TRUE(is_near(one, {"gas", {4, 6, 3}}, 5));
+  EXPECT_FALSE(is_near(one, {"Gas", {4, 6, 3.1}}, 5));
+  EXPECT_FALSE(is_near(one, {"Vent", {1, 2, 3}}, 5));
+  EXPECT_TRUE(is_near(one, one, 0));
+}
+
+TEST(NearReport, IsNearBothWaysAndTheSameIsAlwaysNear) {
+  const std::array all = {ArtifactReport{"Gas", {1, 2, 3}}, ArtifactReport{"GAS", {1, 2, 3}},
+                          ArtifactReport{"Gas", {-4, 2, 9}}, ArtifactReport{"Vent", {1, 2, 3}}};
+  for (const auto& one : all) {
+    for (const auto& other : all) {
+      EXPECT_EQ(is_near(one, other, 7), is_near(other, one, 7));
+      EXPECT_EQ(is_same(one, other), is_same(other, one));
+      EXPECT_TRUE(!is_same(one, other) || is_near(one, other, 0));
+    }
+  }
+}
+
+TEST(Distance, IsInMetres) {
+  EXPECT_DOUBLE_EQ(distance({"Gas", {0, 0, 0}}, {"Gas", {2, 3, 6}}), 7);
+}
+
+}  // namespace
+}  // namespace adit::dispatch

@@ -1,0 +1,157 @@
+#pragma once
+
+#include <chrono>
+#include <map>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "dispatch/reports.hpp"
+#include "icd/sentence.hpp"
+
+namespace adit::dispatch {
+
+/// A ledger and clients that remember.
+class RecordingDeeds final : public Deeds {
+ public:
+  struct Told {
+    int status = 0;
+    std::string sentence;  // "": the report's stored answer
+    std::string body;      // of that answer
+    std::int64_t number = 0;
+  };
+
+  bool write(std::span<const Report> steps, const Run* last, Flush flush) override {
+    if (full || writes_until_full == 0) return false;
+    --writes_until_full;
+    ++writes;
+    last_flush = flush;
+    for (const Report& report : steps) {
+      ledger[report.number] = report;
+      lives[report.number].push_back(report.state);
+    }
+    if (last != nullptr) run = *last;
+    return true;
+  }
+  void tell(ClientId client, const ClientAnswer& answer, const Report& report) override {
+    const bool own = !answer.sentence.empty();
+    told[client].push_back({.status = own ? static_cast<int>(answer.status) : report.status,
+                            .sentence = answer.sentence,
+                            .body = own ? "" : report.answer,
+                            .number = answer.number});
+  }
+
+  bool full = false;
+  std::int64_t writes_until_full = -1;  // negative: never
+  std::int64_t writes = 0;
+  Flush last_flush = Flush::Now;
+  std::map<std::int64_t, Report> ledger;
+  std::map<std::int64_t, std::vector<ReportState>> lives;  // as they were written
+  std::optional<Run> run;
+  std::map<ClientId, std::vector<Told>> told;
+};
+
+/// The Command Post's answer to a report it recorded.
+inline HttpAnswer recorded(std::int64_t points = 0, const std::string& report_status = "scored",
+                           const std::string& run = "1", double run_clock = 0) {
+  return {201, "application/json",
+          icd::sentence("{\"run\": \"", run, "\", \"run_clock\": ", run_clock, ", \"report_status\": \"",
+                        report_status, "\", \"score_change\": ", points, "}")};
+}
+inline HttpAnswer answer_of(int status) {
+  return {status, "application/json", "\"the Command Post's words\""};
+}
+
+/// The rules of reports on simulated time: at 100 s of a run with 20 reports left, heard of just now, unless
+/// told otherwise.
+class Scene {
+ public:
+  static constexpr double kEpoch = 1.7e9;  // simulated time 0, as a stamp
+
+  explicit Scene(const ReportRules& rules = {}) : rules_(rules) {
+    restart();
+    hear(20, 0);
+  }
+
+  Reports& reports() { return *reports_; }
+  RecordingDeeds& deeds() { return deeds_; }
+  Time time() const {
+    return {Reports::Instant(std::chrono::milliseconds(static_cast<std::int64_t>(now_ * 1000))),
+            kEpoch + now_ + clock_set_by_};
+  }
+  double now() const { return now_; }
+  void wait(double seconds) {
+    now_ += seconds;
+    reports_->tick(time());
+  }
+  void set_box_clock_forward(double seconds) { clock_set_by_ += seconds; }
+
+  /// The program ends at once, and begins again with what is on disk.
+  void restart() {
+    std::vector<Report> all;
+    for (const auto& [number, report] : deeds_.ledger) all.push_back(report);
+    reports_.emplace(rules_, deeds_);
+    reports_->open(std::move(all), deeds_.run, time());
+  }
+
+  /// A client posts; nothing is in the way of sending it at once, unless something is under way.
+  ClientId post(double x = 1, const std::string& type = "Drill", bool resubmit = false) {
+    return post(x, type, resubmit, reports_->sending() == nullptr);
+  }
+  /// The same, but the rate limit does not let it go.
+  ClientId post_to_wait(double x = 1, const std::string& type = "Drill") {
+    return post(x, type, false, false);
+  }
+  /// Sends the next one. Its number; 0: none may go.
+  std::int64_t send_next() {
+    if (!reports_->wish(time()).report) return 0;
+    const Report* const chosen = reports_->choose(time());
+    return chosen != nullptr ? chosen->number : 0;
+  }
+  void answer(const HttpAnswer& answer) { reports_->answered(answer, time()); }
+  void lose() { reports_->lost("no answer", time()); }
+
+  /// The run's status, with the run clock at what it should be.
+  void hear(std::int64_t remaining, std::int64_t score) { hear(remaining, score, run_clock()); }
+  void hear(std::int64_t remaining, std::int64_t score, double clock) {
+    reports_->status_heard({score, clock, remaining, "adit"}, time());
+  }
+  double run_clock() const { return now_; }
+  /// The same status each second, for so long.
+  void keep_hearing(double seconds, std::int64_t remaining, std::int64_t score) {
+    for (double end = now_ + seconds; now_ < end;) {
+      wait(1);
+      hear(remaining, score);
+    }
+  }
+
+  const Report& report(std::int64_t number) const { return reports_->book().at(number); }
+  ReportState state(std::int64_t number) const { return report(number).state; }
+  std::size_t count() const { return reports_->book().all().size(); }
+  bool is_told(ClientId client) const { return deeds_.told.contains(client); }
+  /// What a client was told, at last; status 0: nothing yet.
+  RecordingDeeds::Told told(ClientId client) const {
+    const auto found = deeds_.told.find(client);
+    return found == deeds_.told.end() ? RecordingDeeds::Told{} : found->second.back();
+  }
+
+ private:
+  ClientId post(double x, const std::string& type, bool resubmit, bool may_send) {
+    Posted posted;
+    posted.report.type = type;
+    posted.report.position.x = x;
+    posted.sender = "10.0.0.7";
+    posted.resubmit = resubmit;
+    reports_->take(posted, ++last_client_, may_send, time());
+    return last_client_;
+  }
+
+  const ReportRules rules_;
+  RecordingDeeds deeds_;
+  std::optional<Reports> reports_;
+  double now_ = 100;
+  double clock_set_by_ = 0;
+  ClientId last_client_ = 0;
+};
+
+}  // namespace adit::dispatch

@@ -1,0 +1,155 @@
+// What each client is told, and when: always once, never more than is known.
+#include <gmock/gmock.h>
+
+#include "dispatch/scene.hpp"
+
+namespace adit::dispatch {
+namespace {
+
+using enum ReportState;
+using std::chrono::seconds;
+using testing::HasSubstr;
+
+constexpr const char* kNeverTwice = "posting the same report again asks after it and never sends it twice";
+
+TEST(AClient, IsToldHowItsReportStandsBeforeItsTimeIsUp) {
+  Scene scene;
+  const ClientId client = scene.post_to_wait();
+  EXPECT_EQ(scene.reports().next_deadline(), scene.time().now + seconds(20));
+  scene.wait(19.9);
+  EXPECT_FALSE(scene.is_told(client));
+  scene.wait(0.1);
+  EXPECT_EQ(scene.told(client).status, 503);
+  EXPECT_THAT(scene.told(client).sentence, HasSubstr("report 1 is kept and waiting"));
+  EXPECT_EQ(scene.told(client).number, 1);
+  EXPECT_EQ(scene.reports().next_deadline(), std::nullopt);
+}
+
+TEST(AClient, IsToldOnlyOnce) {
+  Scene scene;
+  const ClientId client = scene.post();
+  scene.wait(20);
+  scene.answer(recorded());
+  EXPECT_EQ(scene.deeds().told[client].size(), 1);
+  EXPECT_EQ(scene.told(client).status, 504) << "and finds the answer by posting it again";
+}
+
+/// What a client whose time is up is told in each state.
+struct Telling {
+  ReportState state;
+  int status;
+  const char* sentence;
+};
+void PrintTo(const Telling& telling, std::ostream* out) {
+  *out << name_of(telling.state);
+}
+
+const Telling kTellings[] = {
+    {Waiting, 503, "report 1 is kept and waiting (why)"},
+    {Received, 503, "report 1 is kept, and waits for the operator's word (why)"},
+    {InDoubt, 504, "report 1 is in doubt: it may or may not have been recorded (why)"},
+};
+
+class AtItsDeadline : public testing::TestWithParam<Telling> {};
+
+TEST_P(AtItsDeadline, AClientIsToldTheTruth) {
+  Scene scene;
+  Report report;
+  report.number = 1;
+  report.report = {"Drill", {1, 0, 0}};
+  report.run = 1;
+  report.state = GetParam().state;
+  report.note = "why";
+  scene.deeds().ledger[1] = report;
+  scene.restart();
+  const ClientId client = scene.post_to_wait(1);
+  EXPECT_FALSE(scene.is_told(client));
+  scene.wait(20);
+  EXPECT_EQ(scene.told(client).status, GetParam().status);
+  EXPECT_EQ(scene.told(client).sentence, icd::sentence(GetParam().sentence, "; ", kNeverTwice));
+}
+INSTANTIATE_TEST_SUITE_P(States, AtItsDeadline, testing::ValuesIn(kTellings));
+
+TEST(AClient, OfAReportUnderWayIsToldThatItMayBeRecorded) {
+  Scene scene;
+  const ClientId client = scene.post();
+  scene.wait(20);
+  EXPECT_EQ(scene.told(client).status, 504);
+  EXPECT_THAT(scene.told(client).sentence, HasSubstr("is on its way, and may or may not have been recorded"));
+}
+
+TEST(AClient, IsNotPromisedThatAReportOfAnEarlierRunNeverGoesAgain) {
+  Scene scene;
+  const ClientId client = scene.post_to_wait(1);
+  scene.wait(11);
+  scene.hear(25, 0, 3);
+  ASSERT_EQ(scene.state(1), Received);
+  scene.wait(9);
+  EXPECT_EQ(scene.told(client).status, 503);
+  EXPECT_THAT(scene.told(client).sentence, Not(HasSubstr(kNeverTwice)));
+  EXPECT_THAT(scene.told(client).sentence, HasSubstr("posting it again sends it in the present one"));
+  scene.hear(25, 0, 12);
+  scene.post(1);
+  EXPECT_EQ(scene.state(2), Sending) << "which is true";
+}
+
+TEST(AClient, ThatIsFoundToHavePostedARepeatWaitsNoLongerForIt) {
+  ReportRules rules;
+  Scene scene(rules);
+  scene.post_to_wait(1);
+  ASSERT_TRUE(scene.reports().withdraw(1, scene.time()).has_value());
+  scene.wait(16);
+  const ClientId repeat = scene.post(1);  // the run is not known: it is compared later
+  const auto deadline = scene.time().now + seconds(20);
+  ASSERT_TRUE(scene.reports().send(1, scene.time()).has_value());
+  scene.wait(10);
+  scene.hear(20, 0);
+  ASSERT_EQ(scene.send_next(), 1);
+  scene.answer(answer_of(429));
+  EXPECT_EQ(scene.reports().next_deadline(), deadline);
+  scene.wait(10);
+  EXPECT_EQ(scene.told(repeat).status, 503);
+}
+
+TEST(AtAStop, ClientsAreToldButThoseWhoseReportIsUnderWay) {
+  Scene scene;
+  const ClientId under_way = scene.post(1);
+  const ClientId joined = scene.post(1);
+  const ClientId waiting = scene.post(2);
+  scene.reports().dismiss(false);
+  EXPECT_EQ(scene.told(waiting).status, 503);
+  EXPECT_THAT(scene.told(waiting).sentence,
+              HasSubstr("the gateway is stopping; report 2 is kept and waiting"));
+  EXPECT_FALSE(scene.is_told(under_way));
+  scene.answer(recorded());
+  EXPECT_EQ(scene.told(under_way).status, 201);
+  EXPECT_EQ(scene.told(joined).status, 201);
+}
+
+TEST(AtAStop, TheLastClientsAreToldWhereNoAnswerCame) {
+  Scene scene;
+  const ClientId client = scene.post(1);
+  scene.reports().dismiss(false);
+  scene.reports().dismiss(true);
+  EXPECT_EQ(scene.told(client).status, 504);
+  EXPECT_EQ(scene.deeds().told[client].size(), 1);
+}
+
+TEST(ManyClients, AreEachToldOnceWhateverBecomesOfTheirReports) {
+  Scene scene;
+  std::vector<ClientId> clients;
+  for (int i = 0; i < 300; ++i) clients.push_back(scene.post(i % 100));
+  for (int round = 0; scene.reports().sending() != nullptr || scene.send_next() != 0; ++round) {
+    if (round % 10 == 3) {
+      scene.answer(answer_of(422));
+    } else if (round % 10 == 5) {
+      scene.answer(answer_of(429));
+    } else {
+      scene.answer(recorded());
+    }
+  }
+  for (const ClientId client : clients) EXPECT_EQ(scene.deeds().told[client].size(), 1) << client;
+}
+
+}  // namespace
+}  // namespace adit::dispatch

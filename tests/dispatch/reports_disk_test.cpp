@@ -1,0 +1,150 @@
+// A disk that refuses: nothing follows from what is not written; what has happened is written later.
+#include <gmock/gmock.h>
+
+#include "dispatch/scene.hpp"
+
+namespace adit::dispatch {
+namespace {
+
+using enum ReportState;
+using testing::HasSubstr;
+
+class FullDisk : public testing::Test {
+ protected:
+  void fill() { scene_.deeds().full = true; }
+  void make_room() { scene_.deeds().full = false; }
+  ReportState on_disk(std::int64_t number) { return scene_.deeds().ledger.at(number).state; }
+  Scene scene_;
+};
+
+TEST_F(FullDisk, TakesNoReportAndSaysSo) {
+  fill();
+  const auto told = scene_.told(scene_.post());
+  EXPECT_EQ(told.status, 503);
+  EXPECT_EQ(told.sentence, "the report could not be written down and was not taken; post it again");
+  EXPECT_EQ(told.number, 0);
+  EXPECT_EQ(scene_.reports().sending(), nullptr);
+  EXPECT_EQ(scene_.count(), 0);
+  make_room();
+  scene_.post();
+  EXPECT_EQ(scene_.state(1), Sending);
+}
+
+TEST_F(FullDisk, SendsNothing) {
+  scene_.post_to_wait();
+  fill();
+  EXPECT_EQ(scene_.send_next(), 0);
+  EXPECT_EQ(scene_.reports().sending(), nullptr);
+  EXPECT_EQ(scene_.state(1), Waiting);
+  make_room();
+  EXPECT_EQ(scene_.send_next(), 1);
+}
+
+TEST_F(FullDisk, TellsAnAnswerThatCameAndWritesItLater) {
+  const ClientId client = scene_.post();
+  fill();
+  scene_.answer(recorded(1));
+  EXPECT_EQ(scene_.told(client).body, recorded(1).body);
+  EXPECT_EQ(scene_.told(scene_.post()).body, recorded(1).body) << "and to the same again";
+  EXPECT_EQ(on_disk(1), Sending);
+  make_room();
+  scene_.wait(1);
+  EXPECT_EQ(on_disk(1), Answered);
+  EXPECT_EQ(scene_.deeds().ledger.at(1).answer, recorded(1).body);
+}
+
+TEST_F(FullDisk, AndAPowerCutLeaveAnAnsweredReportInDoubt) {
+  scene_.post();
+  fill();
+  scene_.answer(recorded(1));
+  make_room();
+  scene_.restart();
+  EXPECT_EQ(scene_.state(1), InDoubt);
+  scene_.keep_hearing(2, 19, 1);
+  EXPECT_EQ(scene_.state(1), Settled) << "and it is found out again";
+}
+
+TEST_F(FullDisk, FindsOutButSettlesOnlyOnceItIsWritten) {
+  const ClientId client = scene_.post();
+  scene_.lose();
+  fill();
+  scene_.keep_hearing(5, 19, 0);
+  EXPECT_EQ(scene_.state(1), InDoubt);
+  EXPECT_FALSE(scene_.is_told(client));
+  make_room();
+  scene_.keep_hearing(1, 19, 0);
+  EXPECT_EQ(scene_.told(client).status, 201);
+}
+
+TEST_F(FullDisk, DoesNotSendAgainWhatIsNotWrittenAsWaiting) {
+  scene_.post();
+  scene_.lose();
+  fill();
+  scene_.keep_hearing(20, 20, 0);
+  EXPECT_EQ(scene_.state(1), InDoubt);
+  EXPECT_EQ(scene_.send_next(), 0);
+  make_room();
+  scene_.keep_hearing(1, 20, 0);
+  EXPECT_EQ(scene_.send_next(), 1);
+}
+
+TEST_F(FullDisk, KnowsOfADoubtAndWritesItLater) {
+  scene_.post();
+  fill();
+  scene_.lose();
+  EXPECT_EQ(scene_.state(1), InDoubt);
+  EXPECT_EQ(on_disk(1), Sending) << "which a restart reads as in doubt";
+  make_room();
+  scene_.wait(1);
+  EXPECT_EQ(on_disk(1), InDoubt);
+}
+
+TEST_F(FullDisk, BeginsANewRunAndWritesItWithItsReportsLater) {
+  scene_.post_to_wait();
+  scene_.wait(11);
+  fill();
+  scene_.hear(25, 0, 3);
+  EXPECT_EQ(scene_.reports().run().number, 2);
+  EXPECT_EQ(scene_.state(1), Received);
+  make_room();
+  scene_.wait(1);
+  EXPECT_EQ(scene_.deeds().run->number, 2);
+  EXPECT_EQ(on_disk(1), Received);
+}
+
+TEST_F(FullDisk, TakesNoWordOfTheOperators) {
+  scene_.post(1);
+  scene_.lose();
+  scene_.post(2);
+  fill();
+  EXPECT_THAT(scene_.reports().call_done(1, scene_.time()).error(), HasSubstr("could not be written down"));
+  EXPECT_FALSE(scene_.reports().send(1, scene_.time()).has_value());
+  EXPECT_FALSE(scene_.reports().withdraw(2, scene_.time()).has_value());
+  EXPECT_EQ(scene_.state(1), InDoubt);
+  EXPECT_EQ(scene_.state(2), Waiting);
+}
+
+/// The disk fills up after each of the first writes of a whole life in turn: whatever was on disk by then, a
+/// restart sends nothing that the Command Post may have.
+TEST(ADiskThatFillsUp, NeverMakesAReportGoTwice) {
+  for (std::int64_t writes = 0; writes < 12; ++writes) {
+    Scene scene;
+    scene.deeds().writes_until_full = writes;
+    const ClientId client = scene.post();
+    const bool left = scene.reports().sending() != nullptr;
+    EXPECT_EQ(left, writes >= 1);
+    EXPECT_EQ(scene.told(client).status, left ? 0 : 503);
+    if (left) scene.lose();
+    scene.keep_hearing(2, left ? 19 : 20, 0);
+    scene.deeds().writes_until_full = -1;
+    scene.restart();
+    scene.keep_hearing(20, left ? 19 : 20, 0);
+    EXPECT_EQ(scene.send_next(), 0) << writes;
+    if (left) {
+      EXPECT_EQ(scene.state(1), Settled) << writes;
+    }
+  }
+}
+
+}  // namespace
+}  // namespace adit::dispatch

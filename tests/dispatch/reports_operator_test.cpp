@@ -1,0 +1,192 @@
+// The operator's word.
+#include <gmock/gmock.h>
+
+#include "dispatch/scene.hpp"
+
+namespace adit::dispatch {
+namespace {
+
+using enum ReportState;
+using testing::ElementsAre;
+using testing::HasSubstr;
+
+/// In which states a word is taken.
+struct Words {
+  ReportState state;
+  bool send, withdraw, done, resubmit;
+};
+void PrintTo(const Words& words, std::ostream* out) {
+  *out << name_of(words.state);
+}
+
+const Words kWords[] = {
+    {Received, true, true, false, false},  {Waiting, true, true, false, false},
+    {Sending, false, false, false, false}, {Answered, false, false, false, true},
+    {Refused, true, false, false, true},   {InDoubt, true, false, true, false},
+    {Settled, false, false, false, true},  {Withdrawn, true, false, false, true},
+};
+
+class OperatorsWord : public testing::TestWithParam<Words> {
+ protected:
+  /// In a world of its own: whether `say` moved a report in that state. If not, it is untouched.
+  template <class Say>
+  bool taken(Say say) {
+    Scene scene;
+    Report report;
+    report.number = 1;
+    report.run = 1;
+    report.state = GetParam().state;
+    scene.deeds().ledger[1] = report;
+    if (report.state == Sending) {
+      scene.post();
+    } else {
+      scene.restart();
+    }
+    const Report before = scene.report(1);
+    const auto outcome = say(scene.reports(), scene.time());
+    if (!outcome) {
+      EXPECT_EQ(scene.report(1), before);
+      EXPECT_THAT(outcome.error(), HasSubstr("report 1 is " + std::string(name_of(GetParam().state))));
+    }
+    return outcome.has_value();
+  }
+};
+
+TEST_P(OperatorsWord, IsTakenWhereTheTableHasIt) {
+  EXPECT_EQ(taken([](Reports& all, Time time) { return all.send(1, time); }), GetParam().send);
+  EXPECT_EQ(taken([](Reports& all, Time time) { return all.withdraw(1, time); }), GetParam().withdraw);
+  EXPECT_EQ(taken([](Reports& all, Time time) { return all.call_done(1, time); }), GetParam().done);
+  EXPECT_EQ(taken([](Reports& all, Time time) { return all.resubmit(1, time); }), GetParam().resubmit);
+}
+INSTANTIATE_TEST_SUITE_P(States, OperatorsWord, testing::ValuesIn(kWords));
+
+TEST(TheOperator, IsToldWhereThereIsNoSuchReport) {
+  Scene scene;
+  const std::string none = "there is no report 7";
+  EXPECT_EQ(scene.reports().send(7, scene.time()).error(), none);
+  EXPECT_EQ(scene.reports().withdraw(7, scene.time()).error(), none);
+  EXPECT_EQ(scene.reports().call_done(7, scene.time()).error(), none);
+  EXPECT_EQ(scene.reports().resubmit(7, scene.time()).error(), none);
+}
+
+TEST(Withdrawing, TellsTheClientsAndTheSameReportAgain) {
+  Scene scene;
+  const ClientId client = scene.post_to_wait();
+  ASSERT_TRUE(scene.reports().withdraw(1, scene.time()).has_value());
+  EXPECT_EQ(scene.told(client).status, 409);
+  EXPECT_THAT(scene.told(client).sentence, HasSubstr("report 1 was withdrawn by the operator"));
+  EXPECT_EQ(scene.told(scene.post()).status, 409);
+  EXPECT_EQ(scene.send_next(), 0);
+}
+
+TEST(Sending, AWithdrawnReportLetsItGoAfterAll) {
+  Scene scene;
+  scene.post_to_wait();
+  ASSERT_TRUE(scene.reports().withdraw(1, scene.time()).has_value());
+  ASSERT_TRUE(scene.reports().send(1, scene.time()).has_value());
+  EXPECT_EQ(scene.send_next(), 1);
+}
+
+TEST(Sending, OneInDoubtSendsItAtOnceAndLeavesTheOthersUndecidable) {
+  Scene scene;
+  scene.post(1);
+  scene.lose();
+  for (int i = 0; i < 16; ++i) {
+    scene.wait(1);
+    scene.hear(20, 0, 101);
+  }
+  scene.post(2);
+  scene.lose();
+  ASSERT_TRUE(scene.reports().send(2, scene.time()).has_value());
+  EXPECT_EQ(scene.report(1).before, std::nullopt) << "if one is counted now, whose is it?";
+  EXPECT_FALSE(scene.reports().is_asking(scene.report(1)));
+  EXPECT_THAT(scene.report(1).note, HasSubstr("the operator decides"));
+  EXPECT_EQ(scene.send_next(), 2);
+}
+
+TEST(CallingDone, SettlesADoubtAndTellsTheClientsThatItsAnswerIsNotKnown) {
+  Scene scene;
+  const ClientId client = scene.post();
+  scene.lose();
+  ASSERT_TRUE(scene.reports().call_done(1, scene.time()).has_value());
+  EXPECT_EQ(scene.state(1), Settled);
+  EXPECT_FALSE(scene.report(1).reconciled);
+  EXPECT_EQ(scene.told(client).status, 409);
+  EXPECT_THAT(scene.told(client).sentence, HasSubstr("called done by the operator; its answer is not known"));
+  scene.hear(19, 0);
+  EXPECT_EQ(scene.told(scene.post()).status, 409) << "the same again";
+}
+
+TEST(CallingDone, DoesNotMakeTheCountOfTheNextStatusAContradiction) {
+  for (const std::int64_t remaining : {19, 20}) {
+    Scene scene;
+    scene.post();
+    scene.lose();
+    ASSERT_TRUE(scene.reports().call_done(1, scene.time()).has_value());
+    scene.keep_hearing(5, remaining, 0);
+    EXPECT_EQ(scene.reports().run().unreliable, "");
+  }
+}
+
+/// Of two in doubt the operator calls the second done, and the power goes at each write in turn: the first is
+/// never found recorded by what the second did.
+TEST(CallingDone, NeverLeavesEvidenceThatMeansSomethingElse) {
+  for (std::int64_t writes = 0; writes < 4; ++writes) {
+    Scene scene;
+    scene.post(1);
+    scene.lose();
+    for (int i = 0; i < 16; ++i) {
+      scene.wait(1);
+      scene.hear(20, 0, 101);
+    }
+    scene.post(2);
+    scene.lose();
+    scene.deeds().writes_until_full = writes;
+    (void)scene.reports().call_done(2, scene.time());
+    scene.deeds().writes_until_full = -1;
+    scene.restart();
+    for (int i = 0; i < 15; ++i) {
+      scene.wait(1);
+      scene.hear(19, 0, 118 + i);  // the second was recorded
+    }
+    EXPECT_EQ(scene.state(1), InDoubt) << writes;
+  }
+}
+
+TEST(Resubmitting, MakesANewReportThatNothingHoldsBack) {
+  ReportRules rules;
+  rules.review = Review::All;
+  Scene scene(rules);
+  scene.post(1, "Drill", true);
+  scene.answer(recorded());
+  const auto made = scene.reports().resubmit(1, scene.time());
+  ASSERT_TRUE(made.has_value());
+  EXPECT_EQ(*made, 2);
+  EXPECT_EQ(scene.report(2).report, scene.report(1).report);
+  EXPECT_EQ(scene.report(2).sender, "operator");
+  EXPECT_EQ(scene.send_next(), 2);
+}
+
+TEST(Resubmitting, IsRefusedByAFullDisk) {
+  Scene scene;
+  scene.post(1);
+  scene.answer(recorded());
+  scene.deeds().full = true;
+  EXPECT_FALSE(scene.reports().resubmit(1, scene.time()).has_value());
+  EXPECT_EQ(scene.count(), 1);
+}
+
+TEST(Attention, IsWhatTheOperatorMustKnowOrDecide) {
+  Scene scene;
+  EXPECT_THAT(scene.reports().attention(), ElementsAre());
+  scene.post(1);
+  scene.answer(answer_of(422));
+  scene.post(2);
+  scene.lose();
+  scene.hear(17, 0);
+  EXPECT_THAT(scene.reports().attention(),
+              ElementsAre(HasSubstr("report 2 is in doubt: "), HasSubstr("does somebody else report")));
+}
+
+}  // namespace
+}  // namespace adit::dispatch

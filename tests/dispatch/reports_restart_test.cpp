@@ -1,0 +1,137 @@
+// What the next life of the program makes of what is on disk.
+#include <gmock/gmock.h>
+
+#include "dispatch/scene.hpp"
+
+namespace adit::dispatch {
+namespace {
+
+using enum ReportState;
+using testing::HasSubstr;
+
+TEST(AfterARestart, AReportThatWasUnderWayIsInDoubtAndFoundOut) {
+  Scene scene;
+  scene.post();
+  scene.restart();
+  EXPECT_EQ(scene.state(1), InDoubt);
+  EXPECT_EQ(scene.report(1).tries, 1);
+  EXPECT_EQ(scene.report(1).note, "the gateway stopped while it was being sent");
+  EXPECT_TRUE(scene.reports().is_asking(scene.report(1)));
+  scene.keep_hearing(2, 19, 1);
+  EXPECT_EQ(scene.state(1), Settled);
+  EXPECT_THAT(scene.report(1).answer, HasSubstr(R"("score_change":1)"));
+}
+
+TEST(AfterARestart, ADoubtIsFoundOutWithWhatWasSentSince) {
+  Scene scene;
+  scene.post(1);
+  scene.lose();
+  for (int i = 0; i < 16; ++i) {
+    scene.wait(1);
+    scene.hear(20, 0, 101);
+  }
+  scene.post(2);
+  scene.answer(recorded(1, "scored", "1", 117));
+  scene.restart();
+  scene.keep_hearing(12, 19, 1);
+  EXPECT_EQ(scene.send_next(), 1) << "the one that was used up was the other's";
+}
+
+TEST(AfterARestart, ADoubtHasItsWholeTimeAgain) {
+  Scene scene;
+  scene.post();
+  scene.lose();
+  scene.keep_hearing(9, 20, 0);
+  scene.restart();
+  scene.keep_hearing(9, 20, 0);
+  EXPECT_EQ(scene.state(1), InDoubt) << "its bytes may have been on the way when the program ended";
+  scene.keep_hearing(1, 20, 0);
+  EXPECT_EQ(scene.state(1), Waiting);
+}
+
+TEST(AfterARestart, WhatWaitsGoesOnceTheRunIsKnownToBeTheSame) {
+  Scene scene;
+  scene.post_to_wait();
+  scene.restart();
+  EXPECT_EQ(scene.send_next(), 0);
+  scene.hear(20, 0);
+  EXPECT_EQ(scene.send_next(), 1);
+}
+
+TEST(AfterARestart, WhatWaitsIsHeldWhereAnotherRunIsOn) {
+  Scene scene;
+  scene.post_to_wait();
+  scene.restart();
+  scene.hear(25, 0, 3);
+  EXPECT_EQ(scene.state(1), Received);
+}
+
+TEST(AfterARestart, ALongSilenceIsComparedWithTheRunClock) {
+  Scene scene;
+  scene.post_to_wait();
+  scene.wait(3600);
+  scene.restart();
+  scene.hear(25, 0, 120);
+  EXPECT_EQ(scene.state(1), Received) << "the clock went on by 20 s in an hour";
+}
+
+TEST(AfterARestart, EveryOtherStateIsAsItWas) {
+  for (const ReportState state : {Received, Waiting, Answered, Refused, InDoubt, Settled, Withdrawn}) {
+    Scene scene;
+    Report report;
+    report.number = 1;
+    report.run = 1;
+    report.state = state;
+    report.note = "as it was";
+    scene.deeds().ledger[1] = report;
+    scene.restart();
+    EXPECT_EQ(scene.report(1), report) << name_of(state);
+  }
+}
+
+TEST(AfterARestart, TheSameReportStillGetsTheAnswer) {
+  Scene scene;
+  scene.post();
+  scene.answer(recorded(1));
+  scene.restart();
+  scene.hear(19, 1);
+  EXPECT_EQ(scene.told(scene.post()).body, recorded(1).body);
+}
+
+TEST(AfterARestart, PlacesAmongTheSendingsGoOn) {
+  Scene scene;
+  scene.post(1);
+  scene.answer(recorded());
+  scene.restart();
+  scene.hear(19, 0);
+  scene.post(2);
+  EXPECT_EQ(scene.report(2).sending, 2);
+}
+
+TEST(AfterARestart, TheCountIsStillDistrustedInThatRun) {
+  Scene scene;
+  scene.hear(18, 0);
+  scene.hear(18, 0);
+  scene.restart();
+  scene.hear(18, 0);
+  scene.post();
+  EXPECT_EQ(scene.report(1).before, std::nullopt);
+}
+
+TEST(AfterARestart, EachReportThatWaitsIsComparedWithTheOnesBefore) {
+  ReportRules rules;
+  rules.review = Review::Duplicates;
+  Scene scene(rules);
+  scene.wait(16);
+  scene.post(1);
+  scene.post(2);
+  scene.restart();
+  scene.hear(20, 0);
+  EXPECT_EQ(scene.send_next(), 1);
+  scene.answer(recorded());
+  scene.send_next();
+  EXPECT_EQ(scene.state(2), Received);
+}
+
+}  // namespace
+}  // namespace adit::dispatch

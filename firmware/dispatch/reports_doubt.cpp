@@ -141,7 +141,7 @@ bool Reports::blur_doubts(std::int64_t judged, Time time) {
     if (doubt->number != judged && doubt->before) blurred.emplace_back(*doubt).before.reset();
   }
   if (!book_.note(blurred)) return false;
-  account_.lose();
+  account_.lose(time.now + rules_.patience.doubt_for);
   doubt_began(time.now);
   return true;
 }

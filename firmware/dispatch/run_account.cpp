@@ -70,7 +70,13 @@ void RunAccount::answered(const icd::ReportReply& reply, Time time) {
   known_->since.points += effect.points;
 }
 
+void RunAccount::lose(Instant until) {
+  known_.reset();
+  uncertain_until_ = until;
+}
+
 void RunAccount::settle(const icd::RunStatus& status, Time time) {
+  if (uncertain_until_ && time.now < *uncertain_until_) return;
   // Before the start of a run its counts may be set to anything.
   if (known_ && known_->status.run_clock > 0) {
     const std::int64_t remaining = known_->status.remaining_reports - known_->since.scored;

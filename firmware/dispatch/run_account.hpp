@@ -48,6 +48,9 @@ class RunAccount {
   void dumb(Instant now) { dumb_at_ = now; }
   /// A report came into doubt: what follows from the last status is not certain.
   void lose() { known_.reset(); }
+  /// The same, and it stays so until `until`: what is in doubt no longer, because the operator judged it, may
+  /// still be recorded.
+  void lose(Instant until);
   /// Compares a status with what was expected, when nothing is in doubt, and starts from it.
   void settle(const icd::RunStatus& status, Time time);
   /// From now on, and until the next run, the count of reports proves nothing.
@@ -69,6 +72,7 @@ class RunAccount {
   std::optional<Instant> dumb_at_;
   std::optional<Instant> clock_at_;  // when run_.last's clock was heard, if in this program's life
   std::optional<Known> known_;
+  std::optional<Instant> uncertain_until_;
   bool odd_ = false;       // the last status was not as expected
   bool unscored_ = false;  // the last answer says that reports are not being scored
 };

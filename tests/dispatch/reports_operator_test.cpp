@@ -128,6 +128,18 @@ TEST(CallingDone, DoesNotMakeTheCountOfTheNextStatusAContradiction) {
   }
 }
 
+TEST(CallingDone, LeavesTheNextDoubtToTheOperatorWhileTheFirstMayStillBeRecorded) {
+  Scene scene;
+  scene.post(1);
+  scene.lose();
+  ASSERT_TRUE(scene.reports().call_done(1, scene.time()).has_value());
+  scene.keep_hearing(3, 20, 0);
+  scene.post(2);
+  scene.lose();
+  scene.keep_hearing(20, 19, 0);  // the first, late
+  EXPECT_EQ(scene.state(2), InDoubt);
+}
+
 /// Of two in doubt the operator calls the second done, and the power goes at each write in turn: the first is
 /// never found recorded by what the second did.
 TEST(CallingDone, NeverLeavesEvidenceThatMeansSomethingElse) {

@@ -60,6 +60,19 @@ TEST_F(RunAccountTest, ExpectsNothingAfterADoubtUntilTheNextStatusWithoutOne) {
   EXPECT_EQ(account_.expected(time().now), status(19, 3));
 }
 
+TEST_F(RunAccountTest, ExpectsNothingWhileWhatTheOperatorJudgedMayStillBeRecorded) {
+  hear(20, 3);
+  account_.lose(at(110).now);
+  hear(20, 3);
+  now_ = 109;
+  hear(19, 3);
+  EXPECT_EQ(account_.expected(time().now), std::nullopt);
+  now_ = 110;
+  hear(19, 3);
+  EXPECT_EQ(account_.expected(time().now), status(19, 3));
+  EXPECT_THAT(account_.run().unreliable, IsEmpty());
+}
+
 TEST_F(RunAccountTest, ExpectsNothingWhileReportsAreNotBeingScored) {
   hear(20, 3);
   answer("admin stop", 0);

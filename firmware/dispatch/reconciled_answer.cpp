@@ -41,7 +41,7 @@ std::string reconciled_answer(const Report& report, const Run& run, std::optiona
       {"z", {at.z}},
       {"type", {report.report.type}},
       {"submitted_datetime", {date_and_time(report.sent)}},
-      {"run_clock", report.before ? Value{report.before->run_clock} : Value{}},
+      {"run_clock", report.before ? Value{std::round(report.before->run_clock * 1000) / 1000} : Value{}},
       {"team", text_or_null(run.last ? run.last->current_team : "")},
       {"run", text_or_null(run.id)},
       {"report_status", {std::string("scored")}},

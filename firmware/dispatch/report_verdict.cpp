@@ -4,9 +4,9 @@
 
 namespace adit::dispatch {
 
-ReportEvent event_of(int status, std::string_view body) {
+ReportEvent event_of(int status, bool tells_of_a_report) {
   if (status >= 200 && status < 300) {
-    return codec::read_report_reply(body) ? ReportEvent::Recorded : ReportEvent::Lost;
+    return tells_of_a_report ? ReportEvent::Recorded : ReportEvent::Lost;
   }
   switch (status) {
     case 401:

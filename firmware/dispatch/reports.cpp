@@ -146,16 +146,21 @@ void Reports::enter_run(Report& report) const {
   report.before.reset();
 }
 
-void Reports::answered(const HttpAnswer& answer, Time time) {
-  const ReportEvent event = event_of(answer.status, answer.body);
+ReportEvent Reports::answered(const HttpAnswer& answer, Time time) {
+  const auto reply = codec::read_report_reply(answer.body);
+  const ReportEvent event = event_of(answer.status, reply.has_value());
   const auto keep = [&](Report& report) {
     report.status = answer.status;
     report.content_type = answer.content_type;
     report.answer = answer.body;
   };
   barred_ = event == ReportEvent::Barred;
-  if (event == ReportEvent::Recorded) return recorded(keep, *codec::read_report_reply(answer.body), time);
-  ended(event, said(answer.status, answer.body), time, keep);
+  if (event == ReportEvent::Recorded) {
+    recorded(keep, *reply, time);
+  } else {
+    ended(event, said(answer.status, answer.body), time, keep);
+  }
+  return event;
 }
 
 void Reports::recorded(const ReportBook::Edit& keep, const icd::ReportReply& reply, Time time) {

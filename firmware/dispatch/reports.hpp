@@ -77,7 +77,8 @@ class Reports {
   Wish wish(Time time) const;
   /// The first of those that wait, on disk as sending(). Nothing: none may go, or the disk refuses.
   const Report* choose(Time time);
-  void answered(const HttpAnswer& answer, Time time);
+  /// Gives what the answer means.
+  ReportEvent answered(const HttpAnswer& answer, Time time);
   void never_left(const std::string& why, Time time);
   void lost(const std::string& why, Time time);
   void status_heard(const icd::RunStatus& status, Time time);

@@ -6,7 +6,6 @@
 
 #include "codec/read.hpp"
 #include "codec/write.hpp"
-#include "dispatch/report_verdict.hpp"
 #include "dispatch/turn.hpp"
 #include "gateway/upstream_answer.hpp"
 #include "intake/icd_routes.hpp"
@@ -128,11 +127,11 @@ void Scoring::send(const dispatch::Report& report) {
 void Scoring::report_answered(uplink::Outcome outcome) {
   const loop::Instant now = loop_.now();
   if (const auto* answered = std::get_if<uplink::Answered>(&outcome)) {
-    reports_.answered(
+    const dispatch::ReportEvent event = reports_.answered(
         {.status = answered->status, .content_type = answered->content_type, .body = answered->body}, time());
-    if (answered->status == 429) {
+    if (event == dispatch::ReportEvent::Throttled) {
       report_pace_.throttled(now, answered->retry_after);
-    } else if (dispatch::event_of(answered->status, answered->body) == dispatch::ReportEvent::Barred) {
+    } else if (event == dispatch::ReportEvent::Barred) {
       report_pace_.failed(now);
     } else {
       report_pace_.taken(now);

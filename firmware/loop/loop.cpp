@@ -5,11 +5,13 @@
 #include <systemd/sd-event.h>
 
 #include <algorithm>
+#include <atomic>
 #include <csignal>
 #include <cstdio>
 #include <cstdlib>
 #include <cstring>
 #include <mutex>
+#include <thread>
 #include <utility>
 #include <vector>
 
@@ -95,8 +97,13 @@ class Loop::Impl {
     must(wake_ ? 0 : -errno, "eventfd");
     must(sd_event_new(&event_), "sd_event_new");
     must(sd_event_add_io(event_, nullptr, wake_.get(), EPOLLIN, &Impl::woken, this), "watching posts");
+    must(sd_event_add_defer(event_, &own_posts_, &Impl::posted_by_itself, this), "watching posts");
+    must(sd_event_source_set_enabled(own_posts_, SD_EVENT_OFF), "watching posts");
   }
-  ~Impl() { sd_event_unref(event_); }
+  ~Impl() {
+    sd_event_source_unref(own_posts_);
+    sd_event_unref(event_);
+  }
   Impl(const Impl&) = delete;
   Impl& operator=(const Impl&) = delete;
 
@@ -112,7 +119,14 @@ class Loop::Impl {
       first = posted_.empty();
       posted_.push_back(std::move(task));
     }
-    if (first) ::eventfd_write(wake_.get(), 1);  // cannot fail: the counter is far from its end
+    if (!first) return;
+    // The loop's own thread needs no system call. But a deferred source comes before all sockets, so that a
+    // task that posts another takes its turn among them.
+    if (std::this_thread::get_id() == thread_ && !running_tasks_) {
+      must(sd_event_source_set_enabled(own_posts_, SD_EVENT_ONESHOT), "post");
+    } else {
+      ::eventfd_write(wake_.get(), 1);  // cannot fail: the counter is far from its end
+    }
   }
 
   void run() {
@@ -122,6 +136,7 @@ class Loop::Impl {
   void stop() { stopping_ = true; }
 
   void turn(std::uint64_t most_usec) {
+    thread_ = std::this_thread::get_id();
     const int result = sd_event_run(event_, most_usec);
     if (result != -EINTR) must(result, "sd_event_run");
   }
@@ -134,16 +149,23 @@ class Loop::Impl {
     return 0;
   }
 
+  static int posted_by_itself(sd_event_source*, void* userdata) {
+    static_cast<Impl*>(userdata)->run_posted();
+    return 0;
+  }
+
   void run_posted() noexcept {
     std::vector<std::function<void()>> tasks;
     {
       const std::lock_guard lock(mutex_);
       tasks.swap(posted_);
     }
+    running_tasks_ = true;
     for (auto& task : tasks) {
       task();
       task = nullptr;  // what it holds is freed before the next one runs
     }
+    running_tasks_ = false;
   }
 
   const Instant started_ = std::chrono::steady_clock::now();
@@ -151,7 +173,10 @@ class Loop::Impl {
       std::chrono::duration<double>(std::chrono::system_clock::now().time_since_epoch()).count();
   FileDescriptor wake_;
   sd_event* event_ = nullptr;
+  sd_event_source* own_posts_ = nullptr;
+  std::atomic<std::thread::id> thread_{};  // the loop's own, once it has run
   bool stopping_ = false;
+  bool running_tasks_ = false;
   std::mutex mutex_;
   std::vector<std::function<void()>> posted_;
 };

@@ -91,6 +91,7 @@ class Connection::Impl : public std::enable_shared_from_this<Impl> {
     auto fd = begin_connect(endpoint_);
     if (!fd) return connecting_failed(fd.error());
     fd_ = std::move(*fd);
+    gives_up_after_ = {};
     phase_ = Phase::Connecting;
     watched_ = EPOLLOUT;
     source_ = loop_.watch(fd_.get(), watched_, [this](std::uint32_t) {
@@ -148,7 +149,9 @@ class Connection::Impl : public std::enable_shared_from_this<Impl> {
     // been sent, so that it is still safe to say so, or to try once more.
     if (!is_quiet(fd_.get()))
       return fresh_ ? never_sent("the peer closed the new connection, or spoke first") : begin_anew();
-    give_up_after(fd_.get(), exchange_->answer_within());
+    if (std::exchange(gives_up_after_, exchange_->answer_within()) != exchange_->answer_within()) {
+      give_up_after(fd_.get(), exchange_->answer_within());
+    }
     exchange_->begin(loop_.now());
     listen_again();
     write();
@@ -248,7 +251,8 @@ class Connection::Impl : public std::enable_shared_from_this<Impl> {
 
   Phase phase_ = Phase::Closed;
   loop::FileDescriptor fd_;
-  loop::Source source_;  // of fd_; ends before it
+  std::chrono::milliseconds gives_up_after_{};  // as fd_ was told; 0: not yet
+  loop::Source source_;                         // of fd_; ends before it
   std::uint32_t watched_ = 0;
   loop::Source timer_;  // the end of the phase: a pause, connecting, resting, the peer's silence
   bool warm_ = false;

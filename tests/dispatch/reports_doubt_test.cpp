@@ -185,6 +185,27 @@ TEST_F(TwoDoubts, AreDecidedInOneWriteOrNotAtAll) {
   EXPECT_EQ(scene_.state(2), Settled);
 }
 
+TEST(ADoubt, IsReckonedFromWhatWasSentBeforeIt) {
+  Scene scene;
+  scene.post(1);
+  scene.answer(recorded(1));
+  scene.post(2);
+  scene.lose();
+  scene.keep_hearing(2, 18, 1);
+  EXPECT_EQ(scene.state(2), Settled);
+  EXPECT_THAT(scene.report(2).answer, HasSubstr(R"("score_change":0)"));
+}
+
+TEST(ADoubt, ThatIsDecidedLeavesTheCountKnown) {
+  Scene scene;
+  scene.post(1);
+  scene.lose();
+  scene.keep_hearing(2, 19, 0);
+  scene.post(2);
+  ASSERT_TRUE(scene.report(2).before.has_value());
+  EXPECT_EQ(scene.report(2).before->remaining_reports, 19);
+}
+
 TEST(ADoubt, WithoutACountFromBeforeIsLeftToTheOperator) {
   Scene scene;
   scene.post(1);

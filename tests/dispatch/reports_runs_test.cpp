@@ -31,7 +31,8 @@ TEST(ANewRun, IsNoticedByTheRunOfAnAnswer) {
   scene.post(1);
   scene.answer(recorded(0, "scored", "1", 101));
   scene.post(2);
-  scene.answer(recorded(0, "scored", "2", 102));
+  scene.wait(12);
+  scene.answer(recorded(0, "scored", "2", 113));
   EXPECT_EQ(scene.reports().run().number, 2);
   EXPECT_EQ(scene.reports().run().id, "2");
   EXPECT_EQ(scene.report(1).run, 1);
@@ -125,6 +126,7 @@ TEST(ADoubt, ThatMayBeRecordedInTheNewRunStandsForTheSameReportThere) {
   scene.wait(5);
   scene.hear(25, 0, 3);
   EXPECT_EQ(scene.report(1).run, 2);
+  EXPECT_EQ(scene.report(1).before, std::nullopt) << "which was counted in the run before";
   const ClientId again = scene.post(1);
   EXPECT_EQ(scene.count(), 1);
   scene.wait(20);

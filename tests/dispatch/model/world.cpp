@@ -20,6 +20,10 @@ constexpr Seconds kLatest = 9;
 constexpr Seconds kShortly = 25;
 constexpr Seconds kFlushSoon = 0.005;
 constexpr Seconds kRoundTrip = 0.02;
+/// Rules answer a client within 20 s, looked at each second.
+constexpr Seconds kAnswered = 21.5;
+/// Single writes that fail, where the disk fills up at times.
+constexpr double kRefusedWrite = 0.02;
 constexpr double kEpoch = 1.7e9;  // simulated time 0, as a stamp
 
 }  // namespace
@@ -92,6 +96,7 @@ void World::tell_story(const std::string& sentence) {
 // Deeds.
 
 bool World::write(std::span<const Report> steps, const Run* run, Flush flush) {
+  if (!calm_ && trouble_.disk_full > 0 && chance() < kRefusedWrite) return false;
   if (!disk_.write(steps, run, flush == Flush::Now)) return false;
   if (flush == Flush::Soon) later(kFlushSoon, [this] { disk_.flush(); });
   if (run != nullptr) tell_story(icd::sentence("run ", run->number, " ", run->why));
@@ -106,6 +111,9 @@ bool World::write(std::span<const Report> steps, const Run* run, Flush flush) {
 }
 
 void World::tell(ClientId client, const ClientAnswer& answer, const Report& report) {
+  if (answer.number != 0 && !disk_.content().reports.contains(answer.number)) {
+    broken_.push_back(icd::sentence("report ", answer.number, " was called kept, and was not"));
+  }
   const int status = answer.sentence.empty() ? report.status : static_cast<int>(answer.status);
   const auto found = posts_.find(client);
   if (found == posts_.end()) return;  // it has hung up
@@ -133,6 +141,9 @@ void World::post(std::size_t who) {
       client.patience,
       [this, who, id] {
         if (clients_[who].waiting != id) return;
+        if (clients_[who].patience > kAnswered) {
+          broken_.push_back(icd::sentence("client ", clients_[who].key, " was left without a word"));
+        }
         posts_.erase(id);
         clients_[who].waiting = 0;
         heard(who, false, false);
@@ -324,6 +335,10 @@ void World::take_operators_word() {
   }
 }
 
+void World::declare_run() {
+  if (reports_->run().began < kEpoch + post_.run_began()) reports_->declare_new_run(time());
+}
+
 // Trouble that comes by itself.
 
 void World::make_trouble() {
@@ -340,6 +355,7 @@ void World::make_trouble() {
   if (trouble_.new_runs && chance() < 0.15 && now_ > post_.run_began() + kShortestRun) {
     tell_story("a new run");
     post_.new_run(now_);
+    if (trouble_.operator_acts) later(between(0, 3), [this] { declare_run(); });
   }
   if (chance() < trouble_.disk_full) {
     disk_.full = true;
@@ -350,7 +366,7 @@ void World::make_trouble() {
 // The judge.
 
 std::vector<std::string> World::broken_promises() const {
-  std::vector<std::string> broken;
+  std::vector<std::string> broken = broken_;
   std::map<std::pair<double, std::int64_t>, std::vector<Recorded>> records;
   for (const Recorded& record : post_.recorded()) {
     if (record.key >= 0) records[{record.key, record.run}].push_back(record);

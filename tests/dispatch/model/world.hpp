@@ -27,7 +27,7 @@ struct Trouble {
   double power_cut = 0;  // at each write, before or after it; and as often at any other event
   double disk_full = 0;  // for some seconds
   bool other_sender = false, admin_stops = false, new_runs = false;
-  bool operator_acts = false;
+  bool operator_acts = false;  // and declares a new run that Adit has not noticed yet
   Review review = Review::Off;
 };
 
@@ -90,6 +90,7 @@ class World final : public Deeds {
   void transmit(const Report& report);
   void ask();
   void take_operators_word();
+  void declare_run();
 
   // What is outside.
   void post(std::size_t client);
@@ -124,8 +125,9 @@ class World final : public Deeds {
   std::vector<Client> clients_;
   std::map<ClientId, std::size_t> posts_;
   ClientId last_post_ = 0;
-  std::set<double> touched_;     // the operator has said something of it
-  std::vector<Seconds> others_;  // when another sender reported
+  std::set<double> touched_;         // the operator has said something of it
+  std::vector<Seconds> others_;      // when another sender reported
+  std::vector<std::string> broken_;  // what was seen to break a promise as it happened
   Tally tally_;
   std::string story_;
   bool tells_ = false;

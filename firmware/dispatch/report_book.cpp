@@ -84,6 +84,7 @@ bool ReportBook::write(std::span<const Report> steps, bool happened, Flush flush
     written = deeds_.write(steps, run, flush);
   } else {
     std::vector<Report> all;
+    all.reserve(unwritten_.size() + steps.size());
     for (const std::int64_t number : unwritten_) all.push_back(reports_.at(number));
     all.insert(all.end(), steps.begin(), steps.end());
     written = deeds_.write(all, run, Flush::Now);

@@ -46,7 +46,8 @@ bool Reports::take(const Posted& posted, ClientId client, bool may_send, Time ti
         report);
     return false;
   }
-  return take_new(std::move(report), fresh ? reason_to_hold(report) : "", client, may_send, time);
+  const std::string hold = fresh ? reason_to_hold(report) : "";
+  return take_new(std::move(report), hold, client, may_send, time);
 }
 
 bool Reports::take_new(Report report, const std::string& hold, ClientId client, bool may_send, Time time) {

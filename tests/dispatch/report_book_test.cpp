@@ -33,7 +33,7 @@ TEST_F(ReportBookTest, NumbersReportsFromOneAndGoesOnAfterARestart) {
 }
 
 TEST_F(ReportBookTest, WritesAReportThatIsSentAtOnceWithBothStepsInOneGo) {
-  add({{ReportEvent::Chosen}});
+  add({ReportEvent::Chosen});
   EXPECT_EQ(deeds_.writes, 1);
   EXPECT_THAT(deeds_.lives[1], ElementsAre(Waiting, Sending));
   EXPECT_EQ(book_.at(1).state, Sending);
@@ -102,7 +102,7 @@ TEST_P(ReportBookOnAFullDisk, TakesOnlyTheStepsThatHaveHappenedAnyway) {
 INSTANTIATE_TEST_SUITE_P(Steps, ReportBookOnAFullDisk, testing::ValuesIn(kFullDisk));
 
 TEST_F(ReportBookTest, WritesWhatHasHappenedBeforeALaterStep) {
-  add({{ReportEvent::Chosen}});
+  add({ReportEvent::Chosen});
   add();
   deeds_.full = true;
   EXPECT_TRUE(book_.move({1, ReportEvent::Recorded}, 0));
@@ -160,7 +160,7 @@ TEST_F(ReportBookTest, FlushesAnAnswerSoonOnlyWhereItCouldBeFoundOutAgain) {
     EXPECT_TRUE(book_.move({1, ReportEvent::Recorded}, 0));
     EXPECT_EQ(deeds_.last_flush, known ? Flush::Soon : Flush::Now);
   }
-  add({{ReportEvent::Chosen}});
+  add({ReportEvent::Chosen});
   EXPECT_EQ(deeds_.last_flush, Flush::Now);
   EXPECT_TRUE(book_.move({2, ReportEvent::Lost}, 0));
   EXPECT_EQ(deeds_.last_flush, Flush::Now);

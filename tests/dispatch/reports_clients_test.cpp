@@ -146,6 +146,7 @@ TEST(AtAStop, TheLastClientsAreToldWhereNoAnswerCame) {
 TEST(ManyClients, AreEachToldOnceWhateverBecomesOfTheirReports) {
   Scene scene;
   std::vector<ClientId> clients;
+  clients.reserve(300);
   for (int i = 0; i < 300; ++i) clients.push_back(scene.post(i % 100));
   for (int round = 0; scene.reports().sending() != nullptr || scene.send_next() != 0; ++round) {
     if (round % 10 == 3) {

@@ -89,6 +89,7 @@ class Scene {
   /// The program ends at once, and begins again with what is on disk.
   void restart() {
     std::vector<Report> all;
+    all.reserve(deeds_.ledger.size());
     for (const auto& [number, report] : deeds_.ledger) all.push_back(report);
     reports_.emplace(rules_, deeds_);
     reports_->open(std::move(all), deeds_.run, time());

@@ -36,6 +36,7 @@ class Disk {
   const Content& content() const { return written_; }
   std::vector<Report> reports() const {
     std::vector<Report> list;
+    list.reserve(written_.reports.size());
     for (const auto& [number, report] : written_.reports) list.push_back(report);
     return list;
   }

@@ -13,6 +13,10 @@ using dispatch::ReportState;
 
 intake::Answer answer_of(const dispatch::ClientAnswer& answer, const dispatch::Report& report) {
   if (!answer.sentence.empty()) return intake::error_answer(answer.status, answer.sentence);
+  // What tells of a report has been read as JSON.
+  if (report.state == ReportState::Answered || report.state == ReportState::Settled) {
+    return {.status = static_cast<icd::Status>(report.status), .body = report.answer, .headers = {}};
+  }
   return client_answer({.status = report.status,
                         .content_type = report.content_type,
                         .body = report.answer,

@@ -336,7 +336,9 @@ void World::take_operators_word() {
 }
 
 void World::declare_run() {
-  if (reports_->run().began < kEpoch + post_.run_began()) reports_->declare_new_run(time());
+  if (reports_->run().began >= kEpoch + post_.run_began()) return;
+  declared_ = true;
+  reports_->declare_new_run(time());
 }
 
 // Trouble that comes by itself.
@@ -385,7 +387,8 @@ std::vector<std::string> World::broken_promises() const {
         client->posted_at, [&](Seconds at) { return at >= times.front().run_began - kShortly; });
     // Until a status or an answer tells, nobody knows that a run has begun.
     const bool unnoticed = times.front().at < times.front().run_began + kShortly;
-    if (trouble_.new_runs && which.second > 1 && !meant && !unnoticed) {
+    // A declared run of which no status was heard may be one that is still to begin.
+    if (trouble_.new_runs && which.second > 1 && !meant && !unnoticed && !declared_) {
       broken.push_back(
           icd::sentence("report ", which.first, " was sent into run ", which.second, " unasked"));
     }

@@ -125,6 +125,7 @@ class World final : public Deeds {
   std::vector<Client> clients_;
   std::map<ClientId, std::size_t> posts_;
   ClientId last_post_ = 0;
+  bool declared_ = false;            // a new run, by the operator
   std::set<double> touched_;         // the operator has said something of it
   std::vector<Seconds> others_;      // when another sender reported
   std::vector<std::string> broken_;  // what was seen to break a promise as it happened

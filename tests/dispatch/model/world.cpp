@@ -99,6 +99,7 @@ bool World::write(std::span<const Report> steps, const Run* run, Flush flush) {
   if (!calm_ && trouble_.disk_full > 0 && chance() < kRefusedWrite) return false;
   if (!disk_.write(steps, run, flush == Flush::Now)) return false;
   if (flush == Flush::Soon) later(kFlushSoon, [this] { disk_.flush(); });
+  if (run != nullptr && run->last && !first_heard_) first_heard_ = now_;
   if (run != nullptr) tell_story(icd::sentence("run ", run->number, " ", run->why));
   for (const Report& report : steps) {
     tell_story(icd::sentence("report ", report.number, " of ", report.report.position.x, " ",
@@ -383,8 +384,10 @@ std::vector<std::string> World::broken_promises() const {
     const std::int64_t count = trouble_.admin_stops ? scored : static_cast<std::int64_t>(times.size());
     if (count > 1) broken.push_back(icd::sentence("report ", which.first, " was recorded ", count, " times"));
     const auto client = std::ranges::find(clients_, which.first, &Client::key);
-    const bool meant = std::ranges::any_of(
-        client->posted_at, [&](Seconds at) { return at >= times.front().run_began - kShortly; });
+    // What came before anything was heard of a run is meant for the first that is.
+    const bool meant = std::ranges::any_of(client->posted_at, [&](Seconds at) {
+      return at >= times.front().run_began - kShortly || at <= first_heard_;
+    });
     // Until a status or an answer tells, nobody knows that a run has begun.
     const bool unnoticed = times.front().at < times.front().run_began + kShortly;
     // A declared run of which no status was heard may be one that is still to begin.

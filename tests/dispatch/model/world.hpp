@@ -4,6 +4,7 @@
 #include <functional>
 #include <map>
 #include <memory>
+#include <optional>
 #include <queue>
 #include <random>
 #include <set>
@@ -125,10 +126,11 @@ class World final : public Deeds {
   std::vector<Client> clients_;
   std::map<ClientId, std::size_t> posts_;
   ClientId last_post_ = 0;
-  bool declared_ = false;            // a new run, by the operator
-  std::set<double> touched_;         // the operator has said something of it
-  std::vector<Seconds> others_;      // when another sender reported
-  std::vector<std::string> broken_;  // what was seen to break a promise as it happened
+  std::optional<Seconds> first_heard_;  // the first status of all is on disk
+  bool declared_ = false;               // a new run, by the operator
+  std::set<double> touched_;            // the operator has said something of it
+  std::vector<Seconds> others_;         // when another sender reported
+  std::vector<std::string> broken_;     // what was seen to break a promise as it happened
   Tally tally_;
   std::string story_;
   bool tells_ = false;

@@ -59,7 +59,7 @@ using Outcome = std::variant<Answered, NeverSent, InDoubt>;
 class Connection {
  public:
   static constexpr std::chrono::seconds kIdle{25};         // a server closes after 60
-  static constexpr std::size_t kLongestAnswer = 1u << 20;  // bytes; more is InDoubt
+  static constexpr std::size_t kLongestAnswer = 64u << 10;  // bytes; more is InDoubt
 
   Connection(loop::Loop& loop, Endpoint endpoint, icd::BearerToken token);
   ~Connection();

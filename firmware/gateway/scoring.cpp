@@ -94,8 +94,9 @@ intake::Answer Scoring::fresh_status() const {
 
 void Scoring::pump() {
   if (stopping_ || channel_.busy()) return;
-  const loop::Instant now = loop_.now();
-  const dispatch::Wish wish = reports_.wish(time());
+  const dispatch::Time at = time();
+  const loop::Instant now = at.now;
+  const dispatch::Wish wish = reports_.wish(at);
   std::array<dispatch::Candidate, 2> candidates;
   if (wish.report) candidates[0] = {now, report_pace_.ready()};
   if (!askers_.empty() || poll_due_) {

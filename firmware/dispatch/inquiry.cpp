@@ -12,6 +12,7 @@ Finding Inquiry::hear(const Evidence& evidence, double run_clock, Instant now) {
   last_heard_ = now;
   agreeing_ = finding == finding_ ? agreeing_ + 1 : 1;
   finding_ = finding;
+  in_vain_ = !is_pending(now);
   if (finding == Finding::Recorded && agreeing_ < kRecordedAsks) return Finding::Silent;
   const bool late_enough = now - lost_ >= patience_.doubt_for && agreeing_ >= patience_.asks;
   if (finding == Finding::NotRecorded && !late_enough) return Finding::Silent;

@@ -28,6 +28,11 @@ class Inquiry {
   /// One status, weighed. Gives what is now certain: Recorded, NotRecorded, Contradicts, or Silent.
   Finding hear(const Evidence& evidence, double run_clock, Instant now);
   void asked(Instant now) { asked_ = now; }
+  /// An asking that brought no status.
+  void failed(Instant now) { in_vain_ = !is_pending(now); }
+  /// It has been asked for long enough, and nothing became certain: it goes on, but the operator may as well
+  /// decide.
+  bool is_in_vain() const { return in_vain_; }
 
   Instant next_ask(Instant now) const;
   /// Whether other reports should still wait for the outcome: one that is sent meanwhile, and lost too, would
@@ -44,6 +49,7 @@ class Inquiry {
   std::int64_t agreeing_ = 0;
   std::optional<Instant> first_heard_, last_heard_;
   double first_clock_ = 0;
+  bool in_vain_ = false;
 };
 
 }  // namespace adit::dispatch

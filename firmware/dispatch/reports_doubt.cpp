@@ -21,7 +21,8 @@ constexpr const char* kOperator = "; the operator decides: send it, or call it d
 }  // namespace
 
 bool Reports::is_asking(const Report& report) const {
-  return inquiry_ && report.state == ReportState::InDoubt && report.run == run().number;
+  return inquiry_ && !inquiry_->is_in_vain() && report.state == ReportState::InDoubt &&
+         report.run == run().number;
 }
 
 /// Also when another is in doubt already: from now on both are asked for.
@@ -59,7 +60,10 @@ void Reports::status_heard(const icd::RunStatus& status, Time time) {
 
 void Reports::status_failed(bool reached, Time time) {
   if (reached) account_.dumb(time.now);
-  if (inquiry_) inquiry_->asked(time.now);
+  if (!inquiry_) return;
+  inquiry_->asked(time.now);
+  inquiry_->failed(time.now);
+  if (inquiry_->is_in_vain()) explain(book_.doubts(run().number), "the run's status cannot be had", time);
 }
 
 void Reports::inquire(const icd::RunStatus& status, Time time) {
@@ -121,8 +125,9 @@ void Reports::send_again(const std::vector<const Report*>& doubts, const Evidenc
 void Reports::explain(const std::vector<const Report*>& doubts, const std::string& seen, Time time) {
   std::vector<Report> noted;
   for (const Report* const doubt : doubts) {
-    const std::string note = is_asking(*doubt) ? "asking for the run's status: " + seen
-                                               : undecidable(*doubts.front(), run()) + kOperator;
+    const std::string why = undecidable(*doubts.front(), run());
+    const std::string note =
+        is_asking(*doubt) ? "asking for the run's status: " + seen : (why.empty() ? seen : why) + kOperator;
     if (doubt->note == note) continue;
     Report& report = noted.emplace_back(*doubt);
     report.note = note;

@@ -112,6 +112,7 @@ TEST_F(Doubt, StaysWhileTheStatusIsSilent) {
     scene_.reports().status_failed(i % 2 == 0, scene_.time());
   }
   EXPECT_EQ(scene_.state(1), InDoubt);
+  EXPECT_THAT(scene_.report(1).note, HasSubstr("the run's status cannot be had; the operator decides"));
   scene_.hear(20, 0);
   scene_.wait(1);
   scene_.hear(20, 0);
@@ -124,7 +125,8 @@ TEST_F(Doubt, StaysWhileTheStatusIsSilent) {
 TEST_F(Doubt, StaysWhileTheRunClockStandsStill) {
   stop_for(60);
   EXPECT_EQ(scene_.state(1), InDoubt) << "in an administrative stop a record does not show";
-  EXPECT_TRUE(scene_.reports().is_asking(scene_.report(1)));
+  EXPECT_FALSE(scene_.reports().is_asking(scene_.report(1))) << "the operator may as well decide";
+  EXPECT_THAT(scene_.report(1).note, HasSubstr("the operator decides"));
 }
 
 TEST_F(Doubt, IsNotBlurredByReportsSentAndAnsweredMeanwhile) {

@@ -17,7 +17,7 @@ namespace adit::intake {
 /// Who sent a message and how large it came.
 struct Sender {
   std::string address;
-  std::size_t bytes = 0;  // of the body as received
+  std::size_t bytes = 0;   // of the body as received
   bool resubmits = false;  // a report: to be sent as a new one, though it be the same as an earlier one
 };
 

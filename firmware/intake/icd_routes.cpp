@@ -89,10 +89,8 @@ std::unique_ptr<Exchange> IcdRoutes::open(const RequestHead& head, std::shared_p
   Sender sender;
   sender.address = head.peer();
   sender.bytes = static_cast<std::size_t>(length.value_or(0));
-  Visit visit{.desk = desk_,
-              .uri = *uri,
-              .sender = std::move(sender),
-              .responder = with_cors(std::move(responder))};
+  Visit visit{
+      .desk = desk_, .uri = *uri, .sender = std::move(sender), .responder = with_cors(std::move(responder))};
   if (head.method() == "OPTIONS") {
     visit.responder->answer(preflight_answer(*uri, head.header("Access-Control-Request-Headers")));
     return nullptr;

@@ -58,7 +58,7 @@ using Outcome = std::variant<Answered, NeverSent, InDoubt>;
 /// an answer that says close and after anything odd, and never sends `Expect`.
 class Connection {
  public:
-  static constexpr std::chrono::seconds kIdle{25};         // a server closes after 60
+  static constexpr std::chrono::seconds kIdle{25};          // a server closes after 60
   static constexpr std::size_t kLongestAnswer = 64u << 10;  // bytes; more is InDoubt
 
   Connection(loop::Loop& loop, Endpoint endpoint, icd::BearerToken token);

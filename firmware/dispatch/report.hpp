@@ -51,6 +51,7 @@ struct Run {
   std::string why = "";                               // how it was noticed: a sentence
   std::optional<icd::RunStatus> last = std::nullopt;  // the last status heard in it
   double heard = 0;                                   // when; seconds since 1970
+  std::string post = "";        // where the Command Post was: address and port; "": not known
   std::string unreliable = "";  // why its count of reports proves nothing (another sender...); "": it does
   friend bool operator==(const Run&, const Run&) = default;
 };

@@ -14,7 +14,7 @@ namespace adit::dispatch {
 Reports::Reports(const ReportRules& rules, Deeds& deeds)
     : rules_(rules), book_(deeds), account_(book_), deeds_(deeds) {}
 
-void Reports::open(std::vector<Report> all, std::optional<Run> last_run, Time time) {
+void Reports::open(std::vector<Report> all, std::optional<Run> last_run, Time time, const std::string& post) {
   book_.open(std::move(all));
   std::int64_t latest_run = 1;
   std::vector<std::int64_t> sending;
@@ -23,7 +23,7 @@ void Reports::open(std::vector<Report> all, std::optional<Run> last_run, Time ti
     latest_run = std::max(latest_run, report.run);
     if (report.state == ReportState::Sending) sending.push_back(number);
   }
-  account_.open(std::move(last_run), latest_run);
+  account_.open(std::move(last_run), latest_run, post);
   for (const std::int64_t number : sending) {
     step(number, ReportEvent::Restarted, "the gateway stopped while it was being sent", time,
          [this](Report& report) {
@@ -33,6 +33,9 @@ void Reports::open(std::vector<Report> all, std::optional<Run> last_run, Time ti
   }
   unchecked_.insert(book_.waiting().begin(), book_.waiting().end());
   doubt_began(time.now);
+  if (!post.empty() && run().post != post) {
+    begin_run("the Command Post is at " + post + ", it was at " + run().post, std::nullopt, time);
+  }
 }
 
 /// Takes a step, and does what the table says follows from it. False: it is not on disk, and not taken.

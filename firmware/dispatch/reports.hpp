@@ -67,8 +67,8 @@ class Reports {
   /// `deeds` outlives this.
   Reports(const ReportRules& rules, Deeds& deeds);
 
-  /// Takes up what the ledger holds.
-  void open(std::vector<Report> all, std::optional<Run> last_run, Time time);
+  /// Takes up what the ledger holds. `post`: where the Command Post is; at another place it is another run.
+  void open(std::vector<Report> all, std::optional<Run> last_run, Time time, const std::string& post = "");
 
   /// A client posts a report; it is told by Deeds, at once or later. `may_send`: nothing is under way and
   /// the rate allows it. True: it is on disk as sending(): send it.
@@ -118,6 +118,7 @@ class Reports {
   // Taking and choosing.
   bool is_of_run(const Report& report) const;
   const Report* earlier(const Report& report) const;
+  const Report* twin(const Report& report) const;
   std::string reason_to_hold(const Report& report) const;
   bool check(std::int64_t number, Time time);
   bool is_young(const Report& report, Instant now) const;

@@ -91,6 +91,18 @@ const Report* Reports::earlier(const Report& report) const {
   return nullptr;
 }
 
+/// Another one of the present run that is the same, and was sent or is under way.
+const Report* Reports::twin(const Report& report) const {
+  for (const std::int64_t number : book_.at_position(report.report.position)) {
+    const Report& other = book_.at(number);
+    const bool counts = number != report.number && is_of_run(other) && is_same(other.report, report.report);
+    const bool held_back = other.state == ReportState::Received || other.state == ReportState::Waiting ||
+                           other.state == ReportState::Withdrawn;
+    if (counts && !held_back && stands_for_others(other)) return &other;
+  }
+  return nullptr;
+}
+
 /// Why it must not go without the operator's word, or "".
 std::string Reports::reason_to_hold(const Report& report) const {
   if (report.asked || rules_.review == Review::Off) return "";

@@ -12,6 +12,9 @@ namespace {
 std::string undecidable(const Report& report, const Run& run) {
   if (report.run != run.number) return "a new run began before it was clear whether it had been recorded";
   if (!run.unreliable.empty()) return run.unreliable;
+  if (!report.before && report.sent < run.began) {
+    return "a new run began when it had just been sent: it may have been recorded in either";
+  }
   if (!report.before) return "what the Command Post counted before it was sent is not known for certain";
   return "";
 }

@@ -1,5 +1,6 @@
 // The operator's word on a report.
 #include "dispatch/reports.hpp"
+#include "dispatch/same_report.hpp"
 #include "icd/sentence.hpp"
 
 namespace adit::dispatch {
@@ -25,6 +26,11 @@ Reports::Outcome Reports::send(std::int64_t number, Time time) {
     return cannot(*report, "to send it once more, resubmit it");
   }
   const bool judged = report->state == ReportState::InDoubt;
+  if (const Report* const other = judged ? nullptr : twin(*report); other != nullptr) {
+    return cannot(*report,
+                  icd::sentence("report ", other->number, " is the same, and is ", name_of(other->state),
+                                " in this run; to send it once more, resubmit that one"));
+  }
   if (judged && !blur_doubts(number, time)) return std::unexpected(kDisk);
   const bool moved = step(number, ReportEvent::Released, "the operator sends it", time, [&](Report& sent) {
     sent.asked = true;
@@ -67,6 +73,11 @@ Reports::Outcome Reports::resubmit(std::int64_t number, Time time) {
   const Report* const report = book_.find(number);
   if (report == nullptr) return no_such(number);
   if (!is_final(report->state)) return cannot(*report, "it is not finished yet");
+  for (const std::int64_t other : book_.at_position(report->report.position)) {
+    const Report& under_way = book_.at(other);
+    const bool same = under_way.asked && is_of_run(under_way) && is_same(under_way.report, report->report);
+    if (same && !is_final(under_way.state)) return other;  // pressed twice, it is sent once
+  }
   Report again{.report = report->report, .sender = "operator", .received = time.stamp, .changed = time.stamp};
   again.note = icd::sentence("report ", number, " once more");
   again.run = run().number;

@@ -5,9 +5,11 @@
 
 namespace adit::dispatch {
 
-void RunAccount::open(std::optional<Run> run, std::int64_t latest) {
+void RunAccount::open(std::optional<Run> run, std::int64_t latest, const std::string& post) {
   if (run) run_ = *std::move(run);
   if (run_.number < latest) run_ = {.number = latest, .last = std::nullopt};
+  if (run_.post.empty()) run_.post = post;
+  post_ = post;
   written_ = run_.heard;
 }
 
@@ -36,7 +38,12 @@ double RunAccount::silence(Time time) const {
 
 void RunAccount::begin(const std::string& why, const std::optional<icd::RunStatus>& status,
                        std::span<const Report> steps, Time time) {
-  run_ = {.number = run_.number + 1, .began = time.stamp, .why = why, .last = status, .heard = time.stamp};
+  run_ = {.number = run_.number + 1,
+          .began = time.stamp,
+          .why = why,
+          .last = status,
+          .heard = time.stamp,
+          .post = post_};
   clock_at_ = time.now;
   known_.reset();
   odd_ = unscored_ = false;

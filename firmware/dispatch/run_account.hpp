@@ -23,7 +23,7 @@ class RunAccount {
   explicit RunAccount(ReportBook& book) : book_(book) {}
 
   /// `latest`: the highest run that a report belongs to; it may have been written down before its run was.
-  void open(std::optional<Run> run, std::int64_t latest);
+  void open(std::optional<Run> run, std::int64_t latest, const std::string& post);
 
   const Run& run() const { return run_; }
   /// The run was heard of less than kFresh ago.
@@ -67,6 +67,7 @@ class RunAccount {
 
   ReportBook& book_;
   Run run_;
+  std::string post_;
   double written_ = 0;            // Run::heard as it is on disk
   std::optional<Instant> heard_;  // the last word of the run, by a status or an answer
   std::optional<Instant> dumb_at_;

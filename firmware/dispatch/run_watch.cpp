@@ -24,7 +24,8 @@ std::string clock_of_another(const Run& run, double clock, double silence) {
 
 std::string another_run(const Run& run, const icd::RunStatus& status, double silence) {
   if (!run.last) return "";
-  if (status.current_team != run.last->current_team) {
+  const bool named = !status.current_team.empty() && !run.last->current_team.empty();
+  if (named && status.current_team != run.last->current_team) {
     return icd::sentence("the team is ", icd::in_quotes(status.current_team), ", it was ",
                          icd::in_quotes(run.last->current_team));
   }

@@ -43,7 +43,8 @@ std::expected<void, std::string> Scoring::start() {
   if (!all) return std::unexpected(all.error().what);
   auto run = ledger_.last_run();
   if (!run) return std::unexpected(run.error().what);
-  reports_.open(std::move(*all), std::move(*run), time());
+  const settings::Address& post = settings_.command_post.scoring;
+  reports_.open(std::move(*all), std::move(*run), time(), post.address + ":" + std::to_string(post.port));
   channel_.keep_warm();
   poll();
   return {};

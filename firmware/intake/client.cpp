@@ -35,8 +35,9 @@ void Client::happened(std::uint32_t events) {
   if ((events & (EPOLLHUP | EPOLLERR)) != 0) {
     hung_up_ = true;
     resume();
-  } else if (!std::exchange(ended_, true) && bytes_expected_) {
-    expect_bytes(kAfterEnd);
+  } else if (!std::exchange(ended_, true)) {
+    if (bytes_expected_) expect_bytes(kAfterEnd);
+    if (may_give_way()) engine_.may_have_hung_up();
   }
 }
 

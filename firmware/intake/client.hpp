@@ -23,6 +23,8 @@ class Engine {
   virtual void run_soon() = 0;
   /// The server looks at its clients' deadlines no later than this.
   virtual void look_at(loop::Instant when) = 0;
+  /// A client has ended its own direction while it waits for an answer: it may have hung up.
+  virtual void may_have_hung_up() = 0;
 };
 
 /// One client's connection, from accept to close. Lives exactly as long as libmicrohttpd's own.
@@ -47,6 +49,8 @@ class Client {
   /// Both directions are over, or the connection was reset. A client that only ends its own direction is not
   /// gone: it may still read.
   bool hung_up() const { return hung_up_; }
+  /// It waits for an answer and sends no more: it is the first to give way where there is no more room.
+  bool may_give_way() const { return phase_ == Phase::Request && ended_ && suspended_; }
 
   void head_begun(std::string_view target);
   const std::string& target() const { return target_; }

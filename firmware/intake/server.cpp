@@ -4,6 +4,7 @@
 #include <sys/epoll.h>
 
 #include <algorithm>
+#include <map>
 #include <unordered_map>
 #include <utility>
 
@@ -42,6 +43,7 @@ class Server::Impl final : public Engine {
   const Listen& listen() const override { return listen_; }
   void run_soon() override;
   void look_at(loop::Instant when) override;
+  void may_have_hung_up() override { make_room(); }
 
  private:
   static MHD_Result request_came(void* cls, MHD_Connection* connection, const char* url, const char* method,
@@ -59,6 +61,7 @@ class Server::Impl final : public Engine {
   void first_call(Client& client, std::string_view method);
   void connected(MHD_Connection* connection, void** client_cls);
   void make_room();
+  bool give_way(std::string_view address);
   void run();
   void look_at_deadlines();
 
@@ -154,9 +157,16 @@ void Server::Impl::connected(MHD_Connection* connection, void** client_cls) {
   make_room();
 }
 
-/// At the limit libmicrohttpd takes nobody in: the connection that has asked for nothing for longest ends.
+/// At a limit libmicrohttpd takes nobody in: before that, a client that seems to have hung up while it waits
+/// for an answer gives way (a report that is tried again every 300 ms is one connection each time), and else
+/// the connection that has asked for nothing for longest.
 void Server::Impl::make_room() {
-  if (clients_.size() < listen_.connections) return;
+  std::map<std::string_view, std::uint32_t> of_address;
+  for (const auto& [client, owned] : clients_) ++of_address[client->peer()];
+  for (const auto& [address, count] : of_address) {
+    if (count >= listen_.connections_per_address) give_way(address);
+  }
+  if (clients_.size() < listen_.connections || give_way({})) return;
   Client* longest = nullptr;
   for (const auto& [client, owned] : clients_) {
     if (client->phase() == Client::Phase::Request) continue;
@@ -169,6 +179,17 @@ void Server::Impl::make_room() {
   } else {
     look_at(gives_way);
   }
+}
+
+/// The one of `address` (or, "", of any) that has waited longest since it ended its own direction ends.
+bool Server::Impl::give_way(std::string_view address) {
+  Client* oldest = nullptr;
+  for (const auto& [client, owned] : clients_) {
+    if (!client->may_give_way() || (!address.empty() && client->peer() != address)) continue;
+    if (oldest == nullptr || client->since() < oldest->since()) oldest = client;
+  }
+  if (oldest != nullptr) oldest->cut();
+  return oldest != nullptr;
 }
 
 void Server::Impl::first_call(Client& client, std::string_view method) {

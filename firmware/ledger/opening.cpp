@@ -8,6 +8,7 @@
 #include <cerrno>
 #include <cstdio>
 #include <cstring>
+#include <string_view>
 #include <utility>
 #include <vector>
 
@@ -43,12 +44,12 @@ Failure system_error(const std::string& doing) {
   return {{doing + ": " + std::strerror(code), code == ENOSPC || code == EDQUOT}};
 }
 
-/// Makes an empty file of mode 0600 where there is none; SQLite gives its -wal the same mode.
-Attempt<void> make_file(const std::string& path) {
+/// Makes an empty file of mode 0600 where there is none; SQLite gives its -wal the same mode. True: it did.
+Attempt<bool> make_file(const std::string& path) {
   const loop::FileDescriptor made(::open(path.c_str(), O_CREAT | O_EXCL | O_WRONLY | O_CLOEXEC, 0600));
   if (!made && errno != EEXIST) return std::unexpected(system_error("making " + path));
   if (!made && ::chmod(path.c_str(), 0600) != 0) return std::unexpected(system_error("chmod 0600 " + path));
-  return {};
+  return static_cast<bool>(made);
 }
 
 /// A new or renamed file outlives a power cut only once its folder is on disk too.
@@ -114,11 +115,27 @@ Attempt<std::string> set_aside(const std::string& folder, const std::string& pat
   }
 }
 
+/// A ledger that is there, but with nothing in it, nor a log beside it: what it held is lost. (One that was
+/// just being made when the box lost its power looks the same.)
+bool is_blank(const std::string& path) {
+  struct stat log{};
+  if (::stat((path + "-wal").c_str(), &log) == 0 && log.st_size > 0) return false;
+  const loop::FileDescriptor file(::open(path.c_str(), O_RDONLY | O_CLOEXEC));
+  if (!file) return false;
+  char head[72] = {};
+  const ssize_t length = ::pread(file.get(), head, sizeof head, 0);
+  constexpr int kApplicationAt = 68;  // of SQLite's file header
+  return length == 0 || (length == sizeof head && std::string_view(head, 15) == "SQLite format 3" &&
+                         std::string_view(head + kApplicationAt, 4) == std::string_view("\0\0\0\0", 4));
+}
+
 Attempt<Database> open_file(const std::string& path) {
-  if (const auto made = make_file(path); !made) return std::unexpected(made.error());
+  const auto made = make_file(path);
+  if (!made) return std::unexpected(made.error());
   auto database = Database::open(path);
   if (!database) return std::unexpected(database.error());
   if (auto ready = set_up(*database); !ready) {
+    if (*made) ::unlink(path.c_str());  // an empty one would be taken for one that has lost what it held
     // The damaged file stays as it was found, for whoever looks into it.
     sqlite3_db_config(database->get(), SQLITE_DBCONFIG_NO_CKPT_ON_CLOSE, 1, nullptr);
     return std::unexpected(std::move(ready.error()));
@@ -131,7 +148,9 @@ Attempt<Database> open_file(const std::string& path) {
 Attempt<Opened> open_database(const std::string& folder) {
   const std::string path = folder + "/ledger.sqlite";
   std::string damage;
+  const bool blank = is_blank(path);
   auto database = open_file(path);
+  if (database && blank) damage = "The ledger was empty: reports recorded before are not known.";
   if (!database && database.error().damaged) {
     const auto aside = set_aside(folder, path);
     if (!aside) return std::unexpected(aside.error());

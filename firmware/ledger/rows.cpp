@@ -33,15 +33,17 @@ const char* const kWriteStep = "INSERT INTO step(report, at, state, note) VALUES
 const char* const kReadSteps = "SELECT report, at, state, note FROM step WHERE report = ? ORDER BY rowid";
 
 const char* const kWriteRun = R"(
-  INSERT INTO run(number, id, began, why, score, run_clock, remaining_reports, current_team, heard, unreliable)
-  VALUES(?, ?, ?, ?, ?, ?, ?, ?, ?, ?)
+  INSERT INTO run(number, id, began, why, score, run_clock, remaining_reports, current_team, heard, post,
+    unreliable)
+  VALUES(?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?)
   ON CONFLICT(number) DO UPDATE SET
     id = excluded.id, began = excluded.began, why = excluded.why, score = excluded.score,
     run_clock = excluded.run_clock, remaining_reports = excluded.remaining_reports,
-    current_team = excluded.current_team, heard = excluded.heard, unreliable = excluded.unreliable)";
+    current_team = excluded.current_team, heard = excluded.heard, post = excluded.post,
+    unreliable = excluded.unreliable)";
 
 const char* const kReadLastRun = R"(
-  SELECT number, id, began, why, score, run_clock, remaining_reports, current_team, heard, unreliable
+  SELECT number, id, began, why, score, run_clock, remaining_reports, current_team, heard, post, unreliable
   FROM run ORDER BY number DESC LIMIT 1)";
 
 namespace {
@@ -107,7 +109,9 @@ dispatch::Report report_of(const Query& row) {
   report.sender = column.bytes();
   report.received = column.real();
   report.changed = column.real();
-  report.state = dispatch::state_named(column.bytes()).value_or(dispatch::ReportState::InDoubt);
+  const std::string state = column.bytes();
+  const auto known = dispatch::state_named(state);
+  report.state = known.value_or(dispatch::ReportState::InDoubt);
   report.note = column.bytes();
   report.run = column.number();
   report.asked = column.flag();
@@ -120,6 +124,10 @@ dispatch::Report report_of(const Query& row) {
   report.content_type = column.bytes();
   report.answer = column.bytes();
   report.reconciled = column.flag();
+  if (!known) {  // only the operator can judge it: without `before` nobody else does
+    report.note = "its state '" + state + "' is none that this version knows; " + report.note;
+    report.before.reset();
+  }
   return report;
 }
 
@@ -134,7 +142,7 @@ Ledger::Step step_of(const Query& row) {
 void bind_run(Query& query, const dispatch::Run& run) {
   query.bind(run.number).bind(run.id).bind(run.began).bind(run.why);
   bind_status(query, run.last);
-  query.bind(run.heard).bind(run.unreliable);
+  query.bind(run.heard).bind(run.post).bind(run.unreliable);
 }
 
 dispatch::Run run_of(const Query& row) {
@@ -146,6 +154,7 @@ dispatch::Run run_of(const Query& row) {
   run.why = column.bytes();
   run.last = column.status();
   run.heard = column.real();
+  run.post = column.bytes();
   run.unreliable = column.bytes();
   return run;
 }

@@ -31,7 +31,7 @@ constexpr const char* kTables = R"(
     number INTEGER PRIMARY KEY CHECK(number > 0),
     id TEXT NOT NULL, began REAL NOT NULL, why TEXT NOT NULL,
     score INTEGER, run_clock REAL, remaining_reports INTEGER, current_team TEXT,
-    heard REAL NOT NULL, unreliable TEXT NOT NULL,
+    heard REAL NOT NULL, post TEXT NOT NULL, unreliable TEXT NOT NULL,
     CHECK((score IS NULL) + (run_clock IS NULL) + (remaining_reports IS NULL) + (current_team IS NULL)
       IN (0, 4))) STRICT;
   PRAGMA application_id = 0x41444954;

@@ -200,5 +200,36 @@ TEST(Attention, IsWhatTheOperatorMustKnowOrDecide) {
               ElementsAre(HasSubstr("report 2 is in doubt: "), HasSubstr("does somebody else report")));
 }
 
+TEST(Resubmitting, PressedTwiceIsSentOnce) {
+  Scene scene;
+  scene.post();
+  scene.answer(recorded());
+  scene.wait(1);
+  EXPECT_EQ(scene.reports().resubmit(1, scene.time()), 2);
+  EXPECT_EQ(scene.reports().resubmit(1, scene.time()), 2);
+  EXPECT_EQ(scene.send_next(), 2);
+  EXPECT_EQ(scene.reports().resubmit(1, scene.time()), 2) << "it is under way";
+  scene.answer(recorded());
+  EXPECT_EQ(scene.reports().resubmit(1, scene.time()), 3) << "and that was answered";
+}
+
+TEST(Sending, IsRefusedWhereTheSameWasRecordedInThisRun) {
+  ReportRules rules;
+  rules.review = Review::Duplicates;
+  Scene scene(rules);
+  scene.post(1);
+  scene.answer(recorded());
+  scene.post(2);
+  ASSERT_EQ(scene.state(2), Received) << "2 is near 1";
+  scene.reports().declare_new_run(scene.time());
+  scene.hear(20, 0, 1);
+  scene.post(2);
+  scene.answer(recorded());
+  const auto sent = scene.reports().send(2, scene.time());
+  ASSERT_FALSE(sent);
+  EXPECT_THAT(sent.error(), HasSubstr("report 3 is the same, and is answered in this run"));
+  EXPECT_EQ(scene.state(2), Received);
+}
+
 }  // namespace
 }  // namespace adit::dispatch

@@ -133,5 +133,15 @@ TEST(AfterARestart, EachReportThatWaitsIsComparedWithTheOnesBefore) {
   EXPECT_EQ(scene.state(2), Received);
 }
 
+TEST(AfterARestart, ACommandPostAtAnotherPlaceIsAnotherRun) {
+  Scene scene;
+  scene.post();
+  scene.restart("10.100.2.200:8000");
+  EXPECT_EQ(scene.reports().run().number, 2);
+  scene.keep_hearing(20, 19, 0);
+  EXPECT_EQ(scene.state(1), InDoubt) << "the other one's count says nothing of it";
+  EXPECT_THAT(scene.report(1).note, HasSubstr("the operator decides"));
+}
+
 }  // namespace
 }  // namespace adit::dispatch

@@ -158,13 +158,13 @@ TEST_F(RunAccountTest, MeasuresASilenceByTheClockThatCannotBeSet) {
 TEST_F(RunAccountTest, MeasuresASilenceOverARestartByWhatIsOnDisk) {
   hear(20, 3);
   RunAccount again(book_);
-  again.open(deeds_.run, 1);
+  again.open(deeds_.run, 1, "");
   EXPECT_THAT(again.another(icd::RunStatus{3, 105, 20, "adit"}, at(3700)), HasSubstr("without word"));
   EXPECT_THAT(again.another(icd::RunStatus{3, 120, 20, "adit"}, at(120)), IsEmpty());
 }
 
 TEST_F(RunAccountTest, IsOfTheLatestRunThatAReportBelongsTo) {
-  account_.open(dispatch::Run{.number = 2, .id = "two"}, 3);
+  account_.open(dispatch::Run{.number = 2, .id = "two"}, 3, "");
   EXPECT_EQ(account_.run().number, 3);
   EXPECT_THAT(account_.run().id, IsEmpty()) << "what was known of the run before does not hold";
 }

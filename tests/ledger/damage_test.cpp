@@ -118,12 +118,18 @@ TEST(DamagedLedger, IsForgottenAtTheNextOpening) {
   EXPECT_EQ(open_or_fail(folder).damage(), "");
 }
 
-TEST(Ledger, BeginsInAnEmptyFile) {
+TEST(BlankLedger, IsSaidToHaveLostWhatItHeld) {
+  const std::string healthy = healthy_bytes();
+  for (const std::string& bytes : {std::string(), healthy.substr(0, 68) + std::string(4028, '\0')}) {
+    const Folder folder;
+    save(folder.file(), bytes);
+    EXPECT_NE(open_or_fail(folder).damage(), "") << bytes.size();
+  }
+}
+
+TEST(BlankLedger, IsNotANewOne) {
   const Folder folder;
-  save(folder.file(), "");  // made, and then the power went
-  auto ledger = open_or_fail(folder);
-  EXPECT_EQ(ledger.damage(), "");
-  EXPECT_TRUE(write(ledger, backpack(1)));
+  EXPECT_EQ(open_or_fail(folder).damage(), "");
 }
 
 }  // namespace

@@ -121,6 +121,16 @@ class ExactlyOnce(unittest.TestCase):
             self.assertEqual({answer.status_code for answer in answers}, {201})
             self.assertEqual(sorted(made["x"] for made in stage.post.recorded()), [10.0 * n for n in range(1, 9)])
 
+    def test_a_client_that_hangs_up_again_and_again_is_never_turned_away(self):
+        with Stage(**{**QUICK, "reports__doubt_for_ms": 7000}) as stage:
+            began(stage).post.will("drop")
+            posted = time.monotonic()
+            while time.monotonic() - posted < 6:
+                with self.assertRaises(requests.Timeout):  # and no ConnectionError
+                    submit(stage, timeout=0.3)
+            self.assertEqual(stage.box.attention()[:21], "report 1 is in doubt:")
+            self.assertEqual(submit(stage).status_code, 201)
+
 
 if __name__ == "__main__":
     unittest.main()

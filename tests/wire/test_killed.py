@@ -94,9 +94,7 @@ class Killed(unittest.TestCase):
         for fault, rate in FAULTS.items():
             options += ["--fault-rate", f"{fault}={rate}"]
         self.stage = self.enterContext(Stage(post_options=options, **{
-            **QUICK, "command_post__timeouts__scoring_answer_ms": 500, "reports__doubt_for_ms": 200,
-            # Whoever hangs up is waited for until he would have been told: five impatient clients at one address.
-            "team__connections": 1024, "team__connections_per_address": 1024}))
+            **QUICK, "command_post__timeouts__scoring_answer_ms": 500, "reports__doubt_for_ms": 200}))
         self.record = self.stage.post.recorded
 
     def kill_again_and_again(self):

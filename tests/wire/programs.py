@@ -20,6 +20,7 @@ BIN = pathlib.Path(os.environ["ADIT_BIN"])
 SCORING_TOKEN = "flux230{showroom"
 MAPPING_TOKEN = "rust871}backdoor"
 TEAM_TOKEN = "team-own-token-1"
+FIELDS = ("x", "y", "z", "type")  # of a report
 PORT = 8000
 ARTIFACTS = pathlib.Path(__file__).with_name("artifacts.csv")
 CONTROL_PORT = 8002  # on the Command Post's loopback
@@ -102,7 +103,7 @@ class CommandPost(Program):
     def recorded(self, report=None):
         """The reports that it recorded for its client; all, or those that are as `report` is."""
         found = [made for made in self.control("GET /record")["reports"] if made["by"] == "client"]
-        return [made for made in found if report is None or all(made[key] == report[key] for key in ("x", "y", "z", "type"))]
+        return [made for made in found if report is None or all(made[name] == report[name] for name in FIELDS)]
 
     def requests(self, uri=None):
         path = self.transcript / "requests.jsonl"
@@ -220,7 +221,8 @@ class Stage:
         try:
             (self.folder / "state").mkdir()
             if self.disk is not None:
-                subprocess.run(["mount", "-t", "tmpfs", "-o", f"size={self.disk}", "adit-wire", self.folder / "state"], check=True)
+                subprocess.run(["mount", "-t", "tmpfs", "-o", f"size={self.disk}", "adit-wire", self.folder / "state"],
+                               check=True)
             if self.post_options is not None:
                 self.post = CommandPost(self.network, self.folder, *self.post_options)
             self.box = Box(self.network, self.folder, **self.overrides)

@@ -8,7 +8,6 @@ import requests
 
 import programs
 
-FIELDS = ("x", "y", "z", "type")
 REPORT = {"x": 1011.242, "y": -244.433, "z": -10.011, "type": "Backpack"}
 
 # So that a doubt takes a second, and not ten.

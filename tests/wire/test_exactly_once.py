@@ -89,7 +89,8 @@ class ExactlyOnce(unittest.TestCase):
         self.is_its_own(*self.played("drop", of_status=["500", "ok", "drop"]))
 
     def test_a_client_that_hung_up_and_came_back_gets_the_real_answer(self):
-        for fault, check, patience in (("answer-after=1", self.is_its_own, 5000), ("record-after=1", self.is_its_own, 5000),
+        for fault, check, patience in (("answer-after=1", self.is_its_own, 5000),
+                                       ("record-after=1", self.is_its_own, 5000),
                                        ("answer-after=1", self.is_true, 400), ("reset", self.is_true, 400)):
             with self.subTest(fault, patience=patience), Stage(**{
                     **QUICK, "command_post__timeouts__scoring_answer_ms": patience}) as stage:

@@ -1,5 +1,5 @@
-"""A report of which nobody can tell whether it was recorded: it is in doubt, its client is told so, the operator sees why
-and decides, and all else goes on."""
+"""A report of which nobody can tell whether it was recorded: it is in doubt, its client is told so, the operator sees
+why and decides, and all else goes on."""
 
 import contextlib
 import time
@@ -37,8 +37,8 @@ class InDoubt(unittest.TestCase):
             self.assertIn(word, said)
 
     def is_in_doubt(self, stage, *why):
-        """Its client is told so at its deadline and the operator why, it is never sent again, and another report goes on.
-        Its number."""
+        """Its client is told so at its deadline and the operator why, it is never sent again, and another report goes
+        on. Its number."""
         posted = time.monotonic()
         told = submit(stage)
         self.assertEqual(told.status_code, 504, told.text)
@@ -55,7 +55,8 @@ class InDoubt(unittest.TestCase):
     def test_another_sender_while_it_was_on_its_way(self):
         with self.stage() as stage:
             stage.post.will("other-sender,record-then-drop")
-            self.is_in_doubt(stage, "remaining_reports went from 45 to 43", "does somebody else report with this token?",
+            self.is_in_doubt(stage, "remaining_reports went from 45 to 43",
+                             "does somebody else report with this token?",
                              "the operator decides: send it, or call it done")
 
     def test_another_sender_earlier_in_the_run(self):

@@ -1,228 +1,225 @@
-"""Artifact reports: on disk first, one at a time, the Command Post's own answer, and nothing but JSON for the client."""
+"""Artifact reports: on disk first, one at a time, the Command Post's answer, and nothing but JSON for the client."""
 
 import concurrent.futures
 import contextlib
 import json
 import pathlib
-import shutil
 import signal
-import sqlite3
 import sys
-import tempfile
 import time
 import unittest
 
 import requests
 
 import hosts
+import maps
 import messages
 import programs
 from programs import Stage, wait_until
+from reporting import QUICK, REPORT, another, at_once, began, sendings, submit
 
-REPORT = {"x": 1011.242, "y": -244.433, "z": -10.011, "type": "backpack", "name": "robot1"}
-HEADERS = {"Authorization": f"Bearer {programs.TEAM_TOKEN}", "Content-Type": "application/json"}
+PATIENT = {**QUICK, "command_post__timeouts__scoring_answer_ms": 10000}  # towards the Command Post
+TOKEN = {"Authorization": f"Bearer {programs.TEAM_TOKEN}"}
+SILENCE = "answer-after=60"  # recorded, and no answer comes
+DEAF = "record-after=60"  # not recorded while a test lasts, and no answer comes
 
 
 def setUpModule():
     hosts.needs_namespaces()
 
 
-def submit(stage, report=None, timeout=30):
-    return requests.post(stage.box.url + "/api/artifact_reports", data=json.dumps(report or REPORT), headers=HEADERS,
-                         timeout=timeout)
-
-
-def states(stage):
-    """The states of all reports as they are on disk: read from a copy, as aditd keeps the ledger to itself."""
-    with tempfile.TemporaryDirectory() as copy:
-        for file in stage.box.state.glob("ledger.sqlite*"):
-            shutil.copy(file, copy)
-        with contextlib.closing(sqlite3.connect(f"{copy}/ledger.sqlite")) as ledger:
-            return [row[0] for row in ledger.execute("SELECT state FROM report ORDER BY number")]
-
-
 class ScriptedPost(programs.Program):
-    def __init__(self, network, folder, *words):
-        self.seen = folder / "scripted.jsonl"
+    def __init__(self, stage, *words):
+        self.seen = stage.folder / "scripted.jsonl"
         script = pathlib.Path(__file__).with_name("scripted_post.py")
-        super().__init__(network, network.post, folder / "scripted.log",
+        super().__init__(stage.network, stage.network.post, stage.folder / "scripted.log",
                          [sys.executable, "-B", script, f"{hosts.SCORING}:{programs.PORT}", self.seen, *words])
         wait_until(lambda: "listening" in self.said(), "the scripted Command Post")
 
     def reports(self):
-        if not self.seen.exists():
-            return []
-        lines = [json.loads(line) for line in self.seen.read_text().splitlines()]
-        return [content for method, _, content in lines if method == "POST"]
+        return [json.loads(line) for line in self.seen.read_text().splitlines()] if self.seen.exists() else []
 
 
-class Reports(unittest.TestCase):
-    def stage(self, *words, **overrides):
-        """The box, and a scripted Command Post (none where there are no words)."""
-        stage = self.enterContext(Stage(post_options=None, **overrides))
-        if words:
-            stage.scripted = ScriptedPost(stage.network, stage.folder, *words)
-            self.addCleanup(stage.scripted.stop, signal.SIGKILL)
-        return stage
+@contextlib.contextmanager
+def scripted(*words):
+    """The box, and a Command Post that answers as these words say."""
+    with Stage(post_options=None, **QUICK) as stage:
+        stage.scripted = ScriptedPost(stage, *words)
+        try:
+            wait_until(lambda: requests.get(stage.box.url + "/api/status", headers=TOKEN, timeout=5).status_code == 200,
+                       "the box to know the run")  # at once: it was alone for a moment
+            yield stage
+        finally:
+            stage.scripted.stop(signal.SIGKILL)
+
+
+class Answers(unittest.TestCase):
+    def is_json(self, answer, status):
+        self.assertEqual(answer.status_code, status, answer.text)
+        self.assertEqual(answer.headers["Content-Type"], "application/json")
+        self.assertNotIn("WWW-Authenticate", answer.headers)
+        self.assertIsInstance(answer.json(), (str, dict))
 
     def test_the_client_gets_the_command_posts_own_status_and_bytes(self):
-        stage = self.stage("ok")
-        answer = submit(stage)
-        self.assertEqual(answer.status_code, 201)
-        self.assertEqual(answer.headers["Content-Type"], "application/json")
-        self.assertEqual(answer.json()["url"], "http://<ipaddress>:<port>/api/artifact_reports/1")
-        self.assertEqual(answer.json()["score_change"], 0)
-        sent = json.loads(stage.scripted.reports()[0])
-        self.assertEqual(sent, {key: REPORT[key] for key in ("x", "y", "z", "type")})
-        self.assertEqual(states(stage), ["answered"])
+        with scripted() as stage:
+            answer = submit(stage, {**REPORT, "name": "robot1"})
+            self.is_json(answer, 201)
+            self.assertEqual(answer.json()["url"], "http://<ipaddress>:<port>/api/artifact_reports/1")
+            self.assertIn('": ', answer.text, "its spaces too")
+            self.assertEqual(stage.scripted.reports(), [REPORT], "the robot's name stays here")
+            self.assertEqual(stage.box.on_disk(), ["answered"])
 
-    def test_every_error_is_json_whatever_the_command_post_sent(self):
-        for word, status in (("html500", 500), ("html404", 404), ("422", 422), ("detail401", 401), ("garbage", 504),
-                             ("half", 504), ("close", 504), ("reset", 504)):
-            with self.subTest(word), Stage(post_options=None) as stage:
-                post = ScriptedPost(stage.network, stage.folder, word)
-                self.addCleanup(post.stop, signal.SIGKILL)
+    def test_a_report_that_the_command_post_will_not_have_is_refused_and_may_be_posted_again(self):
+        for word, said in (("422:Missing field: 'y'", "Missing field: 'y'"), ("400", "something other than JSON"),
+                           ("413:too large", "too large")):
+            with self.subTest(word), scripted(word) as stage:
                 answer = submit(stage)
-                self.assertEqual(answer.status_code, status, answer.text)
-                self.assertEqual(answer.headers["Content-Type"], "application/json")
-                self.assertNotIn("WWW-Authenticate", answer.headers)
-                self.assertIsInstance(answer.json(), (str, dict))
-                self.assertEqual(len(post.reports()), 1)
+                self.is_json(answer, int(word[:3]))
+                self.assertIn(said, answer.json())
+                self.assertEqual(stage.box.on_disk(), ["refused"])
+                self.is_json(submit(stage), 201)
+                self.assertEqual(len(stage.scripted.reports()), 2)
 
-    def test_a_report_whose_answer_was_lost_is_in_doubt_and_never_sent_again(self):
-        stage = self.stage("reset", command_post__timeouts__scoring_answer_ms=500)
-        self.assertIn("in doubt", submit(stage).json())
-        self.assertEqual(states(stage), ["in doubt"])
-        time.sleep(2.5)
-        self.assertEqual(len(stage.scripted.reports()), 1)
-        stage.box.stop(signal.SIGKILL)
-        stage.restart_box()
-        time.sleep(1.5)
-        self.assertEqual(len(stage.scripted.reports()), 1)
-        view = requests.get(stage.box.url + "/adit/run", timeout=5).json()
-        self.assertIn("in doubt", " ".join(view["attention"]))
+    def test_where_nobody_may_enter_the_report_is_kept_and_its_client_told_at_once(self):
+        for word in ("401:Invalid token.", "403", "404", "405", "407"):
+            with self.subTest(word), scripted(word) as stage:
+                posted = time.monotonic()
+                told = submit(stage)
+                self.assertLess(time.monotonic() - posted, 0.4)
+                self.is_json(told, 503)
+                self.assertIn("is kept and waiting", told.json())
+                self.is_json(submit(stage), 201)
+                self.assertEqual(len(stage.scripted.reports()), 2)
 
-    def test_a_429_is_tried_again_until_it_is_recorded(self):
-        stage = self.stage("429", "429", "ok")
-        answer = submit(stage)
-        self.assertEqual(answer.status_code, 201)
-        self.assertEqual(len(stage.scripted.reports()), 3)
-
-    def test_reports_go_one_at_a_time_and_not_faster_than_allowed(self):
-        stage = self.stage("slow0.3", "slow0.3", "ok", command_post__rates__reports_hz=1)
-        began = time.monotonic()
-        with concurrent.futures.ThreadPoolExecutor(3) as clients:
-            answers = list(clients.map(lambda x: submit(stage, {**REPORT, "x": x}), (1, 2, 3)))
-        self.assertEqual([answer.status_code for answer in answers], [201] * 3)
-        self.assertGreater(time.monotonic() - began, 2.0)
-
-    def test_a_report_waits_on_disk_while_the_command_post_is_away_and_its_client_is_told(self):
-        stage = self.stage(reports__answer_within_ms=700)
-        answer = submit(stage)
-        self.assertEqual(answer.status_code, 503)
-        self.assertIn("kept and waiting", answer.json())
-        self.assertEqual(states(stage), ["waiting"])
-        post = ScriptedPost(stage.network, stage.folder, "ok")
-        self.addCleanup(post.stop, signal.SIGKILL)
-        wait_until(lambda: states(stage) == ["answered"], "the report to be sent once there is a Command Post")
-        self.assertEqual(len(post.reports()), 1)
-
-    def test_a_report_survives_a_kill_and_goes_out_after_it(self):
-        stage = self.stage()
-        with concurrent.futures.ThreadPoolExecutor(1) as client:
-            waiting = client.submit(lambda: self.assertRaises(requests.RequestException, submit, stage))
-            wait_until(lambda: states(stage) == ["waiting"], "the report to be on disk")
-            stage.box.stop(signal.SIGKILL)
-            waiting.result()
-        post = ScriptedPost(stage.network, stage.folder, "ok")
-        self.addCleanup(post.stop, signal.SIGKILL)
-        stage.restart_box()
-        wait_until(lambda: states(stage) == ["answered"], "the report to go out")
-        self.assertEqual(len(post.reports()), 1)
-
-    def test_a_kill_while_an_answer_is_awaited_leaves_it_in_doubt(self):
-        stage = self.stage("silence")
-        with concurrent.futures.ThreadPoolExecutor(1) as client:
-            waiting = client.submit(lambda: self.assertRaises(requests.RequestException, submit, stage))
-            wait_until(stage.scripted.reports, "the report to arrive")
-            stage.box.stop(signal.SIGKILL)
-            waiting.result()
-        stage.restart_box()
-        self.assertEqual(states(stage), ["in doubt"])
-        time.sleep(1.5)
-        self.assertEqual(len(stage.scripted.reports()), 1)
-
-    def test_sigterm_stops_within_a_second_with_a_report_under_way(self):
-        stage = self.stage("silence")
-        with concurrent.futures.ThreadPoolExecutor(1) as client:
-            client.submit(lambda: self.assertRaises(requests.RequestException, submit, stage))
-            wait_until(stage.scripted.reports, "the report to arrive")
-            status, took = stage.box.stop()
-        self.assertEqual(status, 0)
-        self.assertLess(took, 1.5)
-
-    def test_a_client_that_waits_is_told_when_the_service_stops(self):
-        stage = self.stage()
-        with concurrent.futures.ThreadPoolExecutor(1) as client:
-            waiting = client.submit(submit, stage)
-            wait_until(lambda: states(stage) == ["waiting"], "the report to be on disk")
-            self.assertEqual(stage.box.stop()[0], 0)
-        self.assertEqual(waiting.result().status_code, 503)
-        self.assertIn("is kept", waiting.result().json())
-
-    def test_a_report_that_comes_while_the_service_stops_is_refused_and_never_sent(self):
-        stage = self.stage("slow0.6")
-        with requests.Session() as kept, concurrent.futures.ThreadPoolExecutor(2) as clients:
-            kept.get(stage.box.url + "/api/status", headers=HEADERS, timeout=5)  # a connection that stays
-            under_way = clients.submit(submit, stage, {**REPORT, "x": 1})
-            wait_until(stage.scripted.reports, "the first report to arrive")
-            waiting = clients.submit(submit, stage, {**REPORT, "x": 2})
-            wait_until(lambda: len(states(stage)) == 2, "the second to be on disk")
-            stage.box.process.send_signal(signal.SIGTERM)
-            time.sleep(0.1)
-            late = kept.post(stage.box.url + "/api/artifact_reports", data=json.dumps({**REPORT, "x": 3}),
-                             headers=HEADERS, timeout=5)
-            self.assertEqual((late.status_code, under_way.result().status_code, waiting.result().status_code),
-                             (503, 201, 503))
-            self.assertIn("was not taken", late.json())
-            self.assertIn("is kept", waiting.result().json())
-        self.assertEqual(stage.box.stop()[0], 0)
-        self.assertEqual(states(stage), ["answered", "waiting"])
+    def test_an_answer_that_may_be_anybodys_is_not_believed(self):
+        for word in ("302", "408", "502", "503", "200", "201"):
+            with self.subTest(word), scripted(word) as stage:
+                self.is_json(submit(stage), 201)
+                self.assertEqual(stage.box.on_disk("SELECT tries FROM report"), [1])
+                self.assertEqual(len(stage.scripted.reports()), 2)
 
     def test_status_is_answered_from_what_is_known_for_a_second(self):
-        stage = self.stage("ok")
-        url = stage.box.url + "/api/status"
-
-        def asked():
-            lines = [json.loads(line) for line in stage.scripted.seen.read_text().splitlines()]
-            return len([line for line in lines if line[0] == "GET"])
-
-        first = requests.get(url, headers=HEADERS, timeout=5)
-        self.assertEqual((first.status_code, first.json()["remaining_reports"]), (200, 20))
-        before = asked()
-        for _ in range(20):
-            self.assertEqual(requests.get(url, headers=HEADERS, timeout=5).json(), first.json())
-        self.assertLessEqual(asked(), before + 1)
+        with Stage() as stage:
+            url = began(stage).box.url + "/api/status"
+            first = requests.get(url, headers=TOKEN, timeout=5)
+            self.assertEqual((first.status_code, first.json()["remaining_reports"]), (200, 45))
+            before = len(stage.post.requests("/api/status"))
+            for _ in range(20):
+                self.assertEqual(requests.get(url, headers=TOKEN, timeout=5).json(), first.json())
+            self.assertLessEqual(len(stage.post.requests("/api/status")), before + 1)
 
     def test_status_without_a_command_post_is_a_json_error(self):
-        stage = self.stage()
-        answer = requests.get(stage.box.url + "/api/status", headers=HEADERS, timeout=15)
-        self.assertIn(answer.status_code, (502, 503))
-        self.assertIsInstance(answer.json(), str)
+        with Stage(post_options=None) as stage:
+            answer = requests.get(stage.box.url + "/api/status", headers=TOKEN, timeout=15)
+            self.assertIn(answer.status_code, (502, 503))
+            self.assertIsInstance(answer.json(), str)
+
+
+class Order(unittest.TestCase):
+    def test_reports_go_one_at_a_time_and_not_faster_than_allowed(self):
+        with Stage(post_options=("--rate", "1"), command_post__rates__reports_hz=1) as stage:
+            stage.post.will("answer-after=0.3")
+            posted = time.monotonic()
+            answers = at_once(*[lambda n=n: submit(stage, another(n)) for n in (1, 2, 3)])
+            self.assertEqual([answer.status_code for answer in answers], [201] * 3)
+            self.assertGreater(time.monotonic() - posted, 2.0)
+            self.assertEqual([request["status"] for request in stage.post.requests("/api/artifact_reports")], [201] * 3)
 
     def test_a_report_overtakes_maps_that_fill_the_link(self):
         with Stage(command_post__budget_mbit=8) as stage:
-            import maps
-            session = requests.Session()
-            cloud = maps.made_cloud(150000)
-            answer = messages.post(session, stage.box.url, "/map/update",
-                                   messages.map_update(cloud, "r1", 1.0, messages.Style("cbor")), messages.Style("cbor"))
+            cbor = messages.Style("cbor")
+            update = messages.map_update(maps.made_cloud(150000), "r1", 1.0, cbor)
+            answer = messages.post(requests.Session(), stage.box.url, "/map/update", update, cbor)
             self.assertEqual(answer.status_code, 200)
             time.sleep(0.3)
             self.assertEqual(stage.post.requests("/map/update"), [], "the map is still on its way")
             self.assertEqual(submit(stage).status_code, 201)
             self.assertEqual(stage.post.requests("/map/update"), [], "the report did not wait for the map")
             wait_until(lambda: stage.post.requests("/map/update"), "the map to arrive")
+
+
+class Ends(unittest.TestCase):
+    """The box, or the Command Post, comes and goes."""
+
+    def hang_up(self, stage):
+        with self.assertRaises(requests.RequestException):
+            submit(stage, timeout=0.3)
+
+    def arrives(self, stage):
+        wait_until(lambda: sendings(stage) == 1 or stage.post.control("GET /faults")["reports"] == [],
+                   "the report to arrive")
+
+    def test_a_report_waits_on_disk_while_the_command_post_is_away_and_its_client_is_told(self):
+        with Stage(post_options=None, reports__answer_within_ms=700) as stage:
+            answer = submit(stage)
+            self.assertEqual(answer.status_code, 503)
+            self.assertIn("kept and waiting", answer.json())
+            self.assertEqual(stage.box.on_disk(), ["waiting"])
+            stage.post = programs.CommandPost(stage.network, stage.folder, "--rate", "0")
+            wait_until(lambda: stage.box.on_disk() == ["answered"], "the report to be sent now")
+            self.assertEqual(len(stage.post.recorded()), 1)
+
+    def test_a_report_survives_a_kill_and_goes_out_after_it(self):
+        with Stage(post_options=None) as stage:
+            self.hang_up(stage)
+            self.assertEqual(stage.box.on_disk(), ["waiting"])
+            stage.box.stop(signal.SIGKILL)
+            stage.post = programs.CommandPost(stage.network, stage.folder, "--rate", "0")
+            stage.restart_box()
+            wait_until(lambda: stage.box.on_disk() == ["answered"], "the report to go out")
+            self.assertEqual(len(stage.post.recorded()), 1)
+
+    def test_a_kill_while_an_answer_is_awaited_is_found_out_after_it(self):
+        for fault, ends in ((SILENCE, "settled"), (DEAF, "answered")):
+            with self.subTest(fault), Stage(**PATIENT) as stage:
+                began(stage).post.will(fault)
+                self.hang_up(stage)
+                stage.box.stop(signal.SIGKILL)
+                self.assertEqual(stage.box.on_disk(), ["sending"])
+                stage.restart_box()
+                wait_until(lambda stage=stage, ends=ends: stage.box.on_disk() == [ends], "it to be found out")
+                self.assertEqual(submit(stage).status_code, 201)
+                self.assertEqual(len(stage.post.recorded()), 1)
+
+    def test_sigterm_stops_within_a_second_with_a_report_under_way(self):
+        with Stage(**PATIENT) as stage:
+            began(stage).post.will(SILENCE)
+            with concurrent.futures.ThreadPoolExecutor(1) as client:
+                waiting = client.submit(submit, stage)
+                self.arrives(stage)
+                status, took = stage.box.stop()
+                self.assertEqual(status, 0)
+                self.assertLess(took, 1.5)
+                self.assertEqual(waiting.result().status_code, 504)
+                self.assertIn("may or may not have been recorded", waiting.result().json())
+
+    def test_a_client_that_waits_is_told_when_the_service_stops(self):
+        with Stage(post_options=None) as stage, concurrent.futures.ThreadPoolExecutor(1) as client:
+            waiting = client.submit(submit, stage)
+            wait_until(lambda: stage.box.on_disk() == ["waiting"], "the report to be on disk")
+            self.assertEqual(stage.box.stop()[0], 0)
+            self.assertEqual(waiting.result().status_code, 503)
+            self.assertIn("is kept", waiting.result().json())
+
+    def test_a_report_that_comes_while_the_service_stops_is_refused_and_never_sent(self):
+        with (Stage(**PATIENT) as stage, requests.Session() as kept,
+              concurrent.futures.ThreadPoolExecutor(2) as clients):
+            began(stage).post.will("answer-after=0.6")
+            kept.get(stage.box.url + "/api/status", headers=TOKEN, timeout=5)  # a connection that stays
+            under_way = clients.submit(submit, stage, another(1))
+            self.arrives(stage)
+            waiting = clients.submit(submit, stage, another(2))
+            wait_until(lambda: len(stage.box.on_disk()) == 2, "the second to be on disk")
+            stage.box.process.send_signal(signal.SIGTERM)
+            time.sleep(0.1)
+            late = kept.post(stage.box.url + "/api/artifact_reports", data=json.dumps(another(3)),
+                             headers={**TOKEN, "Content-Type": "application/json"}, timeout=5)
+            self.assertEqual((late.status_code, under_way.result().status_code, waiting.result().status_code),
+                             (503, 201, 503))
+            self.assertIn("was not taken", late.json())
+            self.assertIn("is kept", waiting.result().json())
+            self.assertEqual(stage.box.stop()[0], 0)
+            self.assertEqual(stage.box.on_disk(), ["answered", "waiting"])
 
 
 if __name__ == "__main__":

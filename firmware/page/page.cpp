@@ -46,8 +46,13 @@ class Page::Impl {
   void show(const intake::RequestHead& head, intake::Responder& responder) {
     const auto* file = file_at(head.path());
     const bool is_run = head.path() == "/adit/run", is_events = head.path() == "/adit/events";
-    if (file == nullptr && !is_run && !is_events) return responder.answer(nothing_here());
+    const bool is_session = head.path() == "/adit/session";
+    if (file == nullptr && !is_run && !is_events && !is_session) return responder.answer(nothing_here());
     if (!only_reads(head)) return responder.answer(wrong_method(kReading));
+    if (is_session) {
+      return responder.answer(
+          fresh("application/json", "{\"role\":\"operator\",\"csrf\":null,\"first_start\":false}"));
+    }
     if (file != nullptr) return responder.answer(answer_with(*file, head.header("If-None-Match")));
     if (is_run) return responder.answer(fresh("application/json", write_run_view(source_.view())));
     live_.open(responder);

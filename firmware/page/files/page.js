@@ -6,6 +6,7 @@ import { showRefusals } from "./refusals.js";
 import { showReports } from "./reports.js";
 import { showRobots } from "./robots.js";
 import { showAttention, showLights, showRun } from "./run.js";
+import { showWho } from "./session.js";
 import { clip, timeOfDay } from "./words.js";
 
 let view = null, heardAt = 0, lost = false;
@@ -36,6 +37,7 @@ function show() {
   if (document.title !== title) document.title = title;
 }
 
+showWho(document.getElementById("who"));
 listen(
   "/adit/events",
   (next) => {

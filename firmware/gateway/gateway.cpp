@@ -26,7 +26,10 @@ Gateway::Gateway(loop::Loop& loop, Parts parts)
       spool_(parts_.spool_folder),
       record_([this] { changed(); }),
       scoring_(loop, parts_.ledger, parts_.settings, *parts_.secrets.scoring, record_, random_),
-      maps_(loop, workers_, spool_, parts_.settings, *parts_.secrets.mapping, record_, random_),
+      picture_(
+          loop, workers_, [this] { return maps_.packing(); }, [this] { changed(); }),
+      maps_(loop, workers_, spool_, parts_.settings, *parts_.secrets.mapping, record_, random_,
+            [this](icd::MapUpdate map) { picture_.forwarded(std::move(map)); }),
       news_(loop, parts_.settings, *parts_.secrets.mapping, record_, random_),
       lights_(loop, std::move(parts_.lines)),
       page_(loop, *this, *this, team_tokens()),
@@ -184,7 +187,15 @@ std::int64_t Gateway::begin_run() {
 }
 
 void Gateway::changed() {
+  picture_the_run();
   page_.changed();
+}
+
+/// A new run begins with a blank picture.
+void Gateway::picture_the_run() {
+  const std::int64_t run = scoring_.reports().run().number;
+  const std::int64_t before = std::exchange(pictured_run_, run);
+  if (before != 0 && before != run) picture_.begin_run();
 }
 
 void Gateway::every_second() {
@@ -270,6 +281,7 @@ page::RunView Gateway::view() const {
                      .budget_mbit = parts_.settings.command_post.budget_mbit,
                      .sent_mbit = sent_mbit(),
                      .queued_bytes = maps_.queued_bytes(),
+                     .map_version = picture_.mosaic().version(),
                      .attention = attention()};
   for (page::ActivityRow& row : view.activities) {
     if (row.kind == "state") row.waiting = news_.waiting(Kind::State);

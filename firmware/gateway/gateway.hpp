@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "gateway/lights.hpp"
+#include "gateway/map_picture.hpp"
 #include "gateway/maps.hpp"
 #include "gateway/news.hpp"
 #include "gateway/record.hpp"
@@ -62,6 +63,7 @@ class Gateway final : public intake::Desk, public page::Source, public page::Ope
   std::optional<page::ReportDetail> report(std::int64_t number) const override;
   std::expected<std::int64_t, std::string> judge(std::int64_t number, page::Deed deed) override;
   std::int64_t begin_run() override;
+  const picture::Mosaic& map() const override { return picture_.mosaic(); }
 
  private:
   void restore();
@@ -69,6 +71,7 @@ class Gateway final : public intake::Desk, public page::Source, public page::Ope
   void finish();
   void keep_news();
   void changed();
+  void picture_the_run();
   void every_second();
   double sent_mbit() const;
   std::expected<void, std::string> listen();
@@ -86,6 +89,7 @@ class Gateway final : public intake::Desk, public page::Source, public page::Ope
   Record record_;
   lanes::StampShift stamps_;
   Scoring scoring_;
+  MapPicture picture_;
   Maps maps_;
   News news_;
   Lights lights_;
@@ -93,6 +97,7 @@ class Gateway final : public intake::Desk, public page::Source, public page::Ope
   intake::IcdRoutes routes_;
   std::vector<std::unique_ptr<intake::Server>> servers_;
   loop::Source second_, drained_;
+  std::int64_t pictured_run_ = 0;         // whose maps picture_ shows; 0: none yet
   std::deque<std::uint64_t> bytes_sent_;  // in all, at each of the last seconds
   bool keeping_news_ = false;
   bool dismissed_ = false;  // all clients have been told; only their answers have to leave

@@ -4,13 +4,12 @@
 
 #include "page/answers.hpp"
 #include "page/live.hpp"
+#include "page/map_routes.hpp"
 #include "page/report_routes.hpp"
 #include "page/site.hpp"
 
 namespace adit::page {
 namespace {
-
-constexpr auto kNotModified = static_cast<icd::Status>(304);  // RFC 9110 15.4.5; no ICD answer has it
 
 intake::Answer answer_with(const File& file, std::string_view if_none_match) {
   intake::Answer answer{.content_type = std::string(content_type_of(file)), .body = {}, .headers = {}};
@@ -31,12 +30,17 @@ class Page::Impl {
   Impl(loop::Loop& loop, const Source& source, Operator& judge, std::vector<icd::BearerToken> tokens)
       : source_(source),
         live_(loop, source),
+        maps_(source),
         reports_(source, judge, std::move(tokens), [this] { live_.changed(); }) {}
 
   std::unique_ptr<intake::Exchange> open(const intake::RequestHead& head,
                                          std::shared_ptr<intake::Responder> responder) {
     if (ReportRoutes::has(head.path())) return reports_.open(head, std::move(responder));
-    show(head, *responder);
+    if (MapRoutes::has(head.path())) {
+      responder->answer(maps_.answer(head));
+    } else {
+      show(head, *responder);
+    }
     return nullptr;
   }
 
@@ -60,6 +64,7 @@ class Page::Impl {
 
   const Source& source_;
   Live live_;
+  MapRoutes maps_;
   ReportRoutes reports_;
 };
 

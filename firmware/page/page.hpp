@@ -12,6 +12,7 @@
 #include "icd/run_status.hpp"
 #include "intake/server.hpp"
 #include "loop/loop.hpp"
+#include "picture/mosaic.hpp"
 
 namespace adit::page {
 
@@ -98,6 +99,7 @@ struct RunView {
   double budget_mbit = 0;
   double sent_mbit = 0;  // over the last seconds, to both endpoints
   std::size_t queued_bytes = 0;
+  std::uint64_t map_version = 0;       // picture::Mosaic::version(): says whether /adit/map has changed
   std::vector<std::string> attention;  // sentences for the operator, most urgent first
 };
 
@@ -111,6 +113,7 @@ class Source {
   virtual RunView view() const = 0;
   virtual std::vector<ReportRow> reports() const = 0;  // of all runs, oldest first
   virtual std::optional<ReportDetail> report(std::int64_t number) const = 0;
+  virtual const picture::Mosaic& map() const = 0;
 };
 
 /// The operator's word on a report: see dispatch::Reports.

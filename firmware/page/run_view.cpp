@@ -67,6 +67,7 @@ std::string write_run_view(const RunView& view) {
                                           {"budget_mbit", json(view.budget_mbit)},
                                           {"sent_mbit", json(view.sent_mbit)},
                                           {"queued_bytes", json(view.queued_bytes)},
+                                          {"map_version", json(view.map_version)},
                                           {"attention", json(view.attention)}}});
 }
 

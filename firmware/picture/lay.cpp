@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cmath>
 #include <map>
 
 #include "picture/palette.hpp"
@@ -113,8 +114,11 @@ std::optional<Heights> heights_of(const Sheet& sheet) {
     return static_cast<std::uint8_t>(index);
   };
   const std::size_t few = known / 100;
-  return Heights{height_of(beyond(few)) - kHeightStep / 2,
-                 height_of(beyond(known - 1 - few)) + kHeightStep / 2};
+  const auto rounded = [](double metres) {
+    return std::round(metres * 10) / 10;  // so that it reads well
+  };
+  return Heights{rounded(height_of(beyond(few)) - kHeightStep / 2),
+                 rounded(height_of(beyond(known - 1 - few)) + kHeightStep / 2)};
 }
 
 }  // namespace

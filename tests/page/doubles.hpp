@@ -6,6 +6,7 @@
 #include <map>
 #include <memory>
 #include <optional>
+#include <sstream>
 #include <string>
 #include <utility>
 #include <vector>
@@ -30,8 +31,11 @@ struct FakeSource final : Source {
     return found == details.end() ? std::nullopt : std::optional(found->second);
   }
 
+  const picture::Mosaic& map() const override { return mosaic; }
+
   RunView now;
   std::map<std::int64_t, ReportDetail> details;
+  picture::Mosaic mosaic;
   mutable int asked = 0;
 };
 
@@ -51,12 +55,22 @@ struct FakeOperator final : Operator {
 
 class FakeHead final : public intake::RequestHead {
  public:
-  FakeHead(std::string method, std::string path, std::vector<intake::Header> headers = {},
+  /// `target`: a path, and after it a query, if any.
+  FakeHead(std::string method, const std::string& target, std::vector<intake::Header> headers = {},
            std::optional<std::uint64_t> length = 0)
-      : method_(std::move(method)), path_(std::move(path)), headers_(std::move(headers)), length_(length) {}
+      : method_(std::move(method)), headers_(std::move(headers)), length_(length) {
+    std::istringstream rest(target);
+    std::getline(rest, path_, '?');
+    for (std::string name, value; std::getline(rest, name, '=') && std::getline(rest, value, '&');) {
+      query_[name] = value;
+    }
+  }
   std::string_view method() const override { return method_; }
   std::string_view path() const override { return path_; }
-  std::string_view query(std::string_view) const override { return ""; }
+  std::string_view query(std::string_view name) const override {
+    const auto found = query_.find(name);
+    return found == query_.end() ? std::string_view{} : found->second;
+  }
   std::string_view header(std::string_view name) const override {
     const auto found = std::ranges::find(headers_, name, &intake::Header::name);
     return found == headers_.end() ? std::string_view{} : found->value;
@@ -66,6 +80,7 @@ class FakeHead final : public intake::RequestHead {
 
  private:
   std::string method_, path_, peer_ = "10.0.0.5";
+  std::map<std::string, std::string, std::less<>> query_;
   std::vector<intake::Header> headers_;
   std::optional<std::uint64_t> length_;
 };

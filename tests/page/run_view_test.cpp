@@ -37,6 +37,12 @@ TEST(RunViewJson, NamesEachMemberAsTheViewDoes) {
   EXPECT_EQ(parsed["attention"].size(), 2);
 }
 
+TEST(RunViewJson, TellsTheVersionOfTheMapToTheLastDigit) {
+  RunView view;
+  view.map_version = 1'793'000'123'456;
+  EXPECT_EQ(json::parse(write_run_view(view))["map_version"], 1'793'000'123'456);
+}
+
 TEST(RunViewJson, TellsOfEachReportWhoseWordItWaitsFor) {
   const json parsed = json::parse(write_run_view(*scene("reports", 1000, 0)));
   EXPECT_EQ(parsed["run_number"], 2);

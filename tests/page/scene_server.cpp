@@ -8,6 +8,7 @@
 #include <string>
 #include <utility>
 
+#include "page/map_scene.hpp"
 #include "page/scenes.hpp"
 
 namespace adit::page {
@@ -15,11 +16,15 @@ namespace {
 
 class Stage final : public Source, public Operator {
  public:
-  Stage(loop::Loop& loop, std::string name) : loop_(loop), began_(loop.stamp_now()), name_(std::move(name)) {}
+  Stage(loop::Loop& loop, std::string name) : loop_(loop), began_(loop.stamp_now()), name_(std::move(name)) {
+    draw_scene(map_, began_);
+  }
 
   RunView view() const override {
     const Time now = loop_.stamp_now();
-    return *scene(name_, now, now - began_);
+    RunView view = *scene(name_, now, now - began_);
+    view.map_version = map().version();
+    return view;
   }
 
   std::vector<ReportRow> reports() const override {
@@ -31,6 +36,7 @@ class Stage final : public Source, public Operator {
     return std::unexpected("this is a scene");
   }
   std::int64_t begin_run() override { return 1; }
+  const picture::Mosaic& map() const override { return name_ == "empty" ? blank_ : map_; }
 
   bool change_to(const std::string& name) {
     const bool known = scene(name, 0, 0).has_value();
@@ -42,6 +48,7 @@ class Stage final : public Source, public Operator {
   loop::Loop& loop_;
   Time began_;
   std::string name_;
+  picture::Mosaic map_, blank_;
 };
 
 int serve(std::uint16_t port, const std::string& first) {

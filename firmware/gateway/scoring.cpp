@@ -56,11 +56,13 @@ void Scoring::take(const icd::ArtifactReport& report, const intake::Sender& send
         icd::Status::ServiceUnavailable, "the gateway is stopping; the report was not taken, send it again"));
     return;
   }
+  take({.report = report, .sender = sender.address, .resubmit = sender.resubmits},
+       deeds_.add(std::move(responder)));
+}
+
+void Scoring::take(const dispatch::Posted& posted, dispatch::ClientId client) {
   const bool may_send = !channel_.busy() && channel_.connected() && report_pace_.ready() <= loop_.now();
-  const bool chosen =
-      reports_.take({.report = report, .sender = sender.address, .resubmit = sender.resubmits},
-                    deeds_.add(std::move(responder)), may_send, time());
-  if (chosen) send(*reports_.sending());
+  if (reports_.take(posted, client, may_send, time())) send(*reports_.sending());
   watch_deadlines();
   record_.changed();
   pump();
@@ -94,8 +96,9 @@ intake::Answer Scoring::fresh_status() const {
 
 void Scoring::pump() {
   if (stopping_ || channel_.busy()) return;
-  const loop::Instant now = loop_.now();
-  const dispatch::Wish wish = reports_.wish(time());
+  const dispatch::Time at = time();
+  const loop::Instant now = at.now;
+  const dispatch::Wish wish = reports_.wish(at);
   std::array<dispatch::Candidate, 2> candidates;
   if (wish.report) candidates[0] = {now, report_pace_.ready()};
   if (!askers_.empty() || poll_due_) {
@@ -225,6 +228,16 @@ dispatch::Reports::Outcome Scoring::judge(std::int64_t number, page::Deed deed) 
   record_.changed();
   pump();
   return outcome;
+}
+
+dispatch::Reports::Outcome Scoring::report(const icd::ArtifactReport& report, bool resubmit) {
+  if (stopping_) return std::unexpected("the gateway is stopping; the report was not taken");
+  const dispatch::ClientId nobody = deeds_.add_nobody();
+  take({.report = report, .sender = "operator", .resubmit = resubmit}, nobody);
+  if (const auto number = reports_.awaited_by(nobody)) return *number;
+  const dispatch::ClientAnswer told = deeds_.last_told();
+  if (told.number == 0) return std::unexpected(told.sentence);
+  return told.number;
 }
 
 std::int64_t Scoring::begin_run() {

@@ -130,7 +130,7 @@ TEST(AnswerParser, GivesTheContentTypeAsItCame) {
 }
 
 TEST(AnswerParser, TakesAnAnswerThatIsLongButNotTooLong) {
-  const std::string body((1u << 20) - 100, 'x');
+  const std::string body(Connection::kLongestAnswer - 100, 'x');
   AnswerParser parser;
   EXPECT_EQ(
       parser.feed("HTTP/1.1 200 OK\r\nContent-Length: " + std::to_string(body.size()) + "\r\n\r\n" + body),

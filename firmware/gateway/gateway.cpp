@@ -182,6 +182,10 @@ std::expected<std::int64_t, std::string> Gateway::judge(std::int64_t number, pag
   return scoring_.judge(number, deed);
 }
 
+std::expected<std::int64_t, std::string> Gateway::report(const icd::ArtifactReport& report, bool resubmit) {
+  return scoring_.report(report, resubmit);
+}
+
 std::int64_t Gateway::begin_run() {
   return scoring_.begin_run();
 }
@@ -257,13 +261,15 @@ std::vector<page::EndpointRow> Gateway::endpoints() const {
            .connected = scoring.connected(),
            .trouble = scoring.trouble(),
            .last_status = scoring.last_status(),
-           .answer_ms = scoring.answer_ms()},
+           .answer_ms = scoring.answer_ms(),
+           .throttled = scoring.throttled()},
           {.name = "mapping",
            .address = text(command_post.mapping),
            .connected = maps.connected() || news.connected(),
            .trouble = maps.trouble().empty() ? news.trouble() : maps.trouble(),
            .last_status = latest.last_status(),
-           .answer_ms = latest.answer_ms()}};
+           .answer_ms = latest.answer_ms(),
+           .throttled = maps.throttled() + news.throttled()}};
 }
 
 page::RunView Gateway::view() const {
@@ -274,7 +280,9 @@ page::RunView Gateway::view() const {
                      .run_number = scoring_.reports().run().number,
                      .run_id = scoring_.reports().run().id,
                      .endpoints = endpoints(),
+                     .robots = news_.robots(),
                      .reports = latest_rows(scoring_.reports(), kMostReportRows),
+                     .near_metres = parts_.settings.reports.near_metres,
                      .activities = record_.activities(),
                      .refusals = record_.refusals(),
                      .lights = {},

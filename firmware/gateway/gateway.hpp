@@ -62,6 +62,7 @@ class Gateway final : public intake::Desk, public page::Source, public page::Ope
   std::vector<page::ReportRow> reports() const override;
   std::optional<page::ReportDetail> report(std::int64_t number) const override;
   std::expected<std::int64_t, std::string> judge(std::int64_t number, page::Deed deed) override;
+  std::expected<std::int64_t, std::string> report(const icd::ArtifactReport& report, bool resubmit) override;
   std::int64_t begin_run() override;
   const picture::Mosaic& map() const override { return picture_.mosaic(); }
 

@@ -7,6 +7,7 @@
 #include <string>
 #include <vector>
 
+#include "icd/artifact_report.hpp"
 #include "icd/bearer_token.hpp"
 #include "icd/geometry.hpp"
 #include "icd/run_status.hpp"
@@ -77,6 +78,15 @@ struct EndpointRow {
   std::string trouble;  // "" where there is none
   int last_status = 0;
   std::optional<double> answer_ms;  // of the last request
+  std::uint64_t throttled = 0;      // answers of 429, ever
+};
+
+/// A robot as the Command Post knows it.
+struct RobotRow {
+  std::string name;
+  icd::Point position;  // of its last forwarded pose, in the frame "darpa"
+  double heading = 0;   // radians about z: 0 along x, left is more
+  Time at = 0;          // when that was forwarded
 };
 
 struct LightRow {
@@ -92,7 +102,9 @@ struct RunView {
   std::int64_t run_number = 1;  // dispatch::Run
   std::string run_id;           // the Command Post's; "": it names none
   std::vector<EndpointRow> endpoints;
+  std::vector<RobotRow> robots;    // by name
   std::vector<ReportRow> reports;  // newest first
+  double near_metres = 0;          // of one type and this near, two reports may be of one artifact
   std::vector<ActivityRow> activities;
   std::vector<RefusalRow> refusals;  // newest first, the last 50
   std::vector<LightRow> lights;
@@ -125,6 +137,10 @@ class Operator {
   virtual ~Operator() = default;
   /// Gives the number of the report that it moved, or a sentence why not.
   virtual std::expected<std::int64_t, std::string> judge(std::int64_t number, Deed deed) = 0;
+  /// Takes a report that the operator composed, like one that a client posts; the number it has, or that the
+  /// same one has already. A sentence: it was not taken.
+  virtual std::expected<std::int64_t, std::string> report(const icd::ArtifactReport& report,
+                                                          bool resubmit) = 0;
   /// Gives the new run's number.
   virtual std::int64_t begin_run() = 0;
 };

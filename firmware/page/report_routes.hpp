@@ -28,6 +28,8 @@ class ReportRoutes {
   bool may_enter(const intake::RequestHead& head) const;
   intake::Answer shown(std::string_view path) const;
   intake::Answer judge(std::int64_t number, Deed deed);
+  /// Of the body of a composed report.
+  intake::Answer report(std::string_view body);
   intake::Answer begin_run();
 
   const Source& source_;

@@ -45,11 +45,16 @@ struct FakeOperator final : Operator {
     judged.emplace_back(number, deed);
     return outcome ? *outcome : number;
   }
+  std::expected<std::int64_t, std::string> report(const icd::ArtifactReport& report, bool resubmit) override {
+    reported.emplace_back(report, resubmit);
+    return outcome ? *outcome : 41;
+  }
   std::int64_t begin_run() override { return ++run; }
 
   std::vector<std::pair<std::int64_t, Deed>> judged;
+  std::vector<std::pair<icd::ArtifactReport, bool>> reported;
   std::optional<std::expected<std::int64_t, std::string>>
-      outcome;  // of judge(), where it is not the same number
+      outcome;  // of judge() and report(), where it is not the same number or 41
   std::int64_t run = 1;
 };
 

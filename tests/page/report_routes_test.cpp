@@ -39,6 +39,15 @@ class ReportRoutesTest : public testing::Test {
     }
   }
 
+  intake::Answer compose(const std::string& body) {
+    auto responder = std::make_shared<FakeResponder>();
+    const auto exchange = page.open(FakeHead{"POST", "/adit/reports", kGood, body.size()}, responder, {});
+    if (exchange) {
+      exchange->on_body({reinterpret_cast<const std::uint8_t*>(body.data()), body.size()});
+      exchange->on_end();
+    }
+    return responder->answered.value_or(intake::Answer{});
+  }
   intake::Answer ask(const std::string& method, const std::string& path,
                      std::vector<intake::Header> headers = {}, std::size_t body = 0) {
     auto responder = std::make_shared<FakeResponder>();
@@ -111,6 +120,39 @@ TEST_F(ReportRoutesTest, PassOnTheOperatorsWord) {
 TEST_F(ReportRoutesTest, DeclareANewRun) {
   EXPECT_EQ(post("/adit/runs").body, "{\"run\":2}");
   EXPECT_EQ(judge.run, 2);
+}
+
+TEST_F(ReportRoutesTest, TakeAReportThatTheOperatorComposed) {
+  const auto answer = compose(R"({"type":"Drill","x":1.5,"y":-2,"z":0})");
+  EXPECT_EQ(static_cast<int>(answer.status), 202);
+  EXPECT_EQ(answer.body, "{\"report\":41}");
+  compose(R"({"type":"rope","x":0,"y":0,"z":0,"resubmit":true})");
+  ASSERT_EQ(judge.reported.size(), 2u);
+  EXPECT_EQ(judge.reported[0], std::pair(icd::ArtifactReport{"Drill", {1.5, -2, 0}}, false));
+  EXPECT_EQ(judge.reported[1], std::pair(icd::ArtifactReport{"rope", {0, 0, 0}}, true));
+}
+
+TEST_F(ReportRoutesTest, NameTheFieldOfAComposedReportThatIsWrong) {
+  const std::pair<const char*, const char*> wrong[] = {
+      {R"({"type":"Lamp","x":0,"y":0,"z":0})", "type: expected one of"},
+      {R"({"type":"Rope","x":"0","y":0,"z":0})", "x: expected"},
+      {R"({"type":"Rope","x":0,"y":0})", "z: missing"},
+      {R"({"type":"Rope","x":0,"y":0,"z":0,"resubmit":"no"})", "resubmit: expected"},
+      {"[]", "expected"}};
+  for (const auto& [body, sentence] : wrong) {
+    const auto answer = compose(body);
+    EXPECT_EQ(answer.status, icd::Status::UnprocessableEntity) << body;
+    EXPECT_THAT(answer.body, testing::HasSubstr(sentence));
+  }
+  EXPECT_EQ(compose("{").status, icd::Status::BadRequest);
+  EXPECT_THAT(judge.reported, IsEmpty());
+}
+
+TEST_F(ReportRoutesTest, SayWhyAComposedReportWasNotTaken) {
+  judge.outcome = std::unexpected("1000 reports wait already; this one was not taken");
+  const auto answer = compose(R"({"type":"Rope","x":0,"y":0,"z":0})");
+  EXPECT_EQ(answer.status, icd::Status::Conflict);
+  EXPECT_EQ(json::parse(answer.body), "1000 reports wait already; this one was not taken");
 }
 
 TEST_F(ReportRoutesTest, SayWhyADeedCannotBe) {
@@ -197,7 +239,7 @@ TEST_F(ReportRoutesTest, TakeAnyBodyButAnEndlessOne) {
 }
 
 TEST_F(ReportRoutesTest, OnlyReadWhereTheyShow) {
-  for (const char* path : {"/adit/reports", "/adit/reports.csv", "/adit/reports/7"}) {
+  for (const char* path : {"/adit/reports.csv", "/adit/reports/7"}) {
     for (const char* method : {"POST", "PUT", "DELETE", "OPTIONS"}) {
       const auto answer = ask(method, path, kGood);
       EXPECT_EQ(answer.status, icd::Status::MethodNotAllowed) << method << ' ' << path;
@@ -207,6 +249,7 @@ TEST_F(ReportRoutesTest, OnlyReadWhereTheyShow) {
   for (const char* method : {"GET", "HEAD", "PUT", "DELETE"}) {
     EXPECT_EQ(header(ask(method, "/adit/runs", kGood), "Allow"), "POST") << method;
   }
+  EXPECT_EQ(header(ask("PUT", "/adit/reports", kGood), "Allow"), "GET, HEAD, POST");
 }
 
 TEST(ReportRoutesOnAServer, DoADeedAndShowIt) {

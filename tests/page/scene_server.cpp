@@ -9,6 +9,7 @@
 #include <utility>
 
 #include "page/map_scene.hpp"
+#include "page/played.hpp"
 #include "page/scenes.hpp"
 
 namespace adit::page {
@@ -24,6 +25,7 @@ class Stage final : public Source, public Operator {
     const Time now = loop_.stamp_now();
     RunView view = *scene(name_, now, now - began_);
     view.map_version = map().version();
+    played_.apply(view);
     return view;
   }
 
@@ -31,9 +33,17 @@ class Stage final : public Source, public Operator {
     auto rows = view().reports;
     return {rows.rbegin(), rows.rend()};
   }
-  std::optional<ReportDetail> report(std::int64_t) const override { return {}; }
-  std::expected<std::int64_t, std::string> judge(std::int64_t, Deed) override {
-    return std::unexpected("this is a scene");
+  std::optional<ReportDetail> report(std::int64_t number) const override {
+    const auto rows = view().reports;
+    const auto row = std::ranges::find(rows, number, &ReportRow::number);
+    if (row == rows.end()) return {};
+    return ReportDetail{*row, {{row->received, "received", ""}, {row->changed, row->state, row->note}}, {}};
+  }
+  std::expected<std::int64_t, std::string> judge(std::int64_t number, Deed deed) override {
+    return played_.judge(view(), number, deed);
+  }
+  std::expected<std::int64_t, std::string> report(const icd::ArtifactReport& report, bool resubmit) override {
+    return played_.report(view(), report, resubmit);
   }
   std::int64_t begin_run() override { return 1; }
   const picture::Mosaic& map() const override { return name_ == "empty" ? blank_ : map_; }
@@ -49,6 +59,7 @@ class Stage final : public Source, public Operator {
   Time began_;
   std::string name_;
   picture::Mosaic map_, blank_;
+  Played played_;
 };
 
 int serve(std::uint16_t port, const std::string& first) {

@@ -32,7 +32,8 @@ Gateway::Gateway(loop::Loop& loop, Parts parts)
             [this](icd::MapUpdate map) { picture_.forwarded(std::move(map)); }),
       news_(loop, parts_.settings, *parts_.secrets.mapping, record_, random_),
       lights_(loop, std::move(parts_.lines)),
-      page_(loop, *this, *this, team_tokens()),
+      accounts_(workers_, parts_.state_folder, parts_.secrets.label_code),
+      page_(loop, *this, *this, accounts_, tokens()),
       routes_(icd_options(), *this, workers_, page_),
       second_(loop.timer([this] { every_second(); })),
       drained_(loop.timer([this] { drain(); })) {}
@@ -42,14 +43,13 @@ Gateway::~Gateway() = default;
 intake::IcdOptions Gateway::icd_options() const {
   intake::IcdOptions options;
   options.rules = parts_.settings.rules;
-  options.tokens = team_tokens();
+  if (parts_.settings.team.require_token) options.tokens = tokens();
   return options;
 }
 
-/// Any of them lets a client of the team in; empty: none is asked for.
-std::vector<icd::BearerToken> Gateway::team_tokens() const {
+/// Any of them lets a client of the team in.
+std::vector<icd::BearerToken> Gateway::tokens() const {
   std::vector<icd::BearerToken> tokens;
-  if (!parts_.settings.team.require_token) return tokens;
   for (const auto& token : {parts_.secrets.team, parts_.secrets.scoring, parts_.secrets.mapping}) {
     if (token) tokens.push_back(*token);
   }

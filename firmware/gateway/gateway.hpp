@@ -7,6 +7,7 @@
 #include <string>
 #include <vector>
 
+#include "gateway/accounts.hpp"
 #include "gateway/lights.hpp"
 #include "gateway/map_picture.hpp"
 #include "gateway/maps.hpp"
@@ -33,6 +34,7 @@ struct Parts {
   ledger::Ledger ledger;
   std::unique_ptr<panel::Lines> lines;
   std::string spool_folder;
+  std::string state_folder;
 };
 
 /// The whole of Adit at work: the team's messages come in by Desk and leave by Scoring, Maps and News.
@@ -77,7 +79,7 @@ class Gateway final : public intake::Desk, public page::Source, public page::Ope
   double sent_mbit() const;
   std::expected<void, std::string> listen();
   intake::IcdOptions icd_options() const;
-  std::vector<icd::BearerToken> team_tokens() const;
+  std::vector<icd::BearerToken> tokens() const;
   panel::Condition condition() const;
   std::vector<std::string> attention() const;
   std::vector<page::EndpointRow> endpoints() const;
@@ -94,6 +96,7 @@ class Gateway final : public intake::Desk, public page::Source, public page::Ope
   Maps maps_;
   News news_;
   Lights lights_;
+  Accounts accounts_;
   page::Page page_;
   intake::IcdRoutes routes_;
   std::vector<std::unique_ptr<intake::Server>> servers_;

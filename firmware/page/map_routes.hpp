@@ -6,7 +6,7 @@
 
 namespace adit::page {
 
-/// The picture of the maps, for whoever asks: README.md. Answers at once, and draws nothing.
+/// The picture of the maps, for those whom Entrance let in: README.md. Answers at once, and draws nothing.
 class MapRoutes {
  public:
   /// `source` outlives this.

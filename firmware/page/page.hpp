@@ -17,6 +17,8 @@
 
 namespace adit::page {
 
+class Keys;
+
 /// Times are seconds since 1970 on the gateway's clock.
 using Time = double;
 
@@ -145,7 +147,8 @@ class Operator {
   virtual std::int64_t begin_run() = 0;
 };
 
-/// The local web page, on the team's side, and the operator's word on reports: README.md has its routes.
+/// The local web page, on the team's side, and the operator's word on reports, behind a login: README.md has
+/// its routes, firmware/access/README.md says what protects them.
 ///
 /// Every answer but the events carries a Content-Security-Policy of `default-src 'none'` with what the page
 /// needs, X-Content-Type-Options and Referrer-Policy; every error is a JSON string.
@@ -153,8 +156,10 @@ class Page final : public intake::Handler {
  public:
   static constexpr int kEventsPerSecond = 4;
 
-  /// `tokens`: any of them lets a deed in; empty: none is asked for. All others outlive this.
-  Page(loop::Loop& loop, const Source& source, Operator& judge, std::vector<icd::BearerToken> tokens);
+  /// `tokens`: any of them lets a script in as an operator; empty: none does. All others outlive this, and
+  /// whatever `keys` still answers.
+  Page(loop::Loop& loop, const Source& source, Operator& judge, Keys& keys,
+       std::vector<icd::BearerToken> tokens);
   ~Page() override;
 
   std::unique_ptr<intake::Exchange> open(const intake::RequestHead& head,

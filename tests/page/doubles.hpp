@@ -12,6 +12,7 @@
 #include <vector>
 
 #include "intake/server.hpp"
+#include "page/fake_keys.hpp"
 #include "page/page.hpp"
 
 namespace adit::page {
@@ -69,6 +70,7 @@ class FakeHead final : public intake::RequestHead {
     for (std::string name, value; std::getline(rest, name, '=') && std::getline(rest, value, '&');) {
       query_[name] = value;
     }
+    if (header("Host").empty()) headers_.push_back({"Host", "10.0.0.1:8000"});
   }
   std::string_view method() const override { return method_; }
   std::string_view path() const override { return path_; }
@@ -111,6 +113,8 @@ struct FakeResponder final : intake::Responder {
   std::shared_ptr<FakeStream> streaming;
   std::string stream_type;
 };
+
+inline const intake::Header kByToken{"Authorization", "Bearer team-1"};
 
 inline std::string header(const intake::Answer& answer, std::string_view name) {
   const auto found = std::ranges::find(answer.headers, name, &intake::Header::name);

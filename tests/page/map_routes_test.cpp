@@ -22,9 +22,11 @@ class MapRoutesTest : public testing::Test {
 
   intake::Answer get(const std::string& target, std::string if_none_match = "", std::string method = "GET") {
     auto responder = std::make_shared<FakeResponder>();
-    EXPECT_EQ(page.open(FakeHead{std::move(method), target, {{"If-None-Match", std::move(if_none_match)}}},
-                        responder, {}),
-              nullptr);
+    EXPECT_EQ(
+        page.open(
+            FakeHead{std::move(method), target, {{"If-None-Match", std::move(if_none_match)}, kByToken}},
+            responder, {}),
+        nullptr);
     EXPECT_TRUE(responder->answered) << "the picture is there, or it is not";
     return responder->answered.value_or(intake::Answer{});
   }
@@ -32,7 +34,8 @@ class MapRoutesTest : public testing::Test {
   loop::Loop loop;
   FakeSource source;
   FakeOperator judge;
-  Page page{loop, source, judge, {}};
+  FakeKeys keys;
+  Page page{loop, source, judge, keys, {token()}};
 };
 
 TEST_F(MapRoutesTest, TellsHowTilesAreCutAndColoured) {
@@ -156,24 +159,27 @@ TEST_F(MapRoutesTest, KeepsTheBrowserFromLoadingAnythingElse) {
   }
 }
 
+constexpr const char* kAuthorized = "Authorization: Bearer team-1\r\n";
+
 TEST(MapRoutesOnAServer, ReadsTheQueryOfARealRequest) {
   std::unique_ptr<Page> page;
   Forward forward;
   FakeOperator judge;
+  FakeKeys keys;
   intake::Served served{forward};
   FakeSource source;
   draw_scene(source.mosaic, 2000);
   served.on_loop([&] {
-    forward.to =
-        (page = std::make_unique<Page>(served.loop(), source, judge, std::vector<icd::BearerToken>{})).get();
+    page = std::make_unique<Page>(served.loop(), source, judge, keys, std::vector{token()});
+    forward.to = page.get();
   });
   intake::RawClient client{served.port()};
-  client.send(intake::request("GET", "/adit/map/cloud/ugv1/0/0/0.png?low=-1&high=7&at=1999.5"));
+  client.send(intake::request("GET", "/adit/map/cloud/ugv1/0/0/0.png?low=-1&high=7&at=1999.5", kAuthorized));
   const auto reply = client.reply();
   ASSERT_TRUE(reply);
   EXPECT_EQ(reply->status, 200);
   EXPECT_THAT(reply->body, StartsWith("\x89PNG"));
-  client.send(intake::request("GET", "/adit/map/grid/-/0/0/0.png?at=5"));
+  client.send(intake::request("GET", "/adit/map/grid/-/0/0/0.png?at=5", kAuthorized));
   const auto none = client.reply();
   ASSERT_TRUE(none);
   EXPECT_EQ(none->status, 404);

@@ -1,5 +1,6 @@
-// Serves the page with a scene of scenes.hpp, for a browser: `adit_page_scenes PORT [SCENE]`. Each line on
-// standard input is the name of the next scene; its end ends the program.
+// Serves the page with a scene of scenes.hpp, for a browser: `adit_page_scenes PORT [SCENE [first-start]]`.
+// The passwords are FakeKeys'; the token is "team-1". Each line on standard input is the name of the next
+// scene; its end ends the program.
 #include <sys/epoll.h>
 #include <unistd.h>
 
@@ -8,6 +9,7 @@
 #include <string>
 #include <utility>
 
+#include "page/fake_keys.hpp"
 #include "page/map_scene.hpp"
 #include "page/played.hpp"
 #include "page/scenes.hpp"
@@ -62,11 +64,13 @@ class Stage final : public Source, public Operator {
   Played played_;
 };
 
-int serve(std::uint16_t port, const std::string& first) {
+int serve(std::uint16_t port, const std::string& first, bool first_start) {
   loop::Loop loop;
   Stage stage{loop, "empty"};
   if (!stage.change_to(first)) return std::fprintf(stderr, "no such scene: %s\n", first.c_str()), 2;
-  Page page{loop, stage, stage, {}};
+  FakeKeys keys;
+  if (first_start) keys.operator_.reset();
+  Page page{loop, stage, stage, keys, {token()}};
   auto server = intake::Server::start(loop, {.address = "127.0.0.1", .port = port, .interface = {}}, page);
   if (!server) return std::fprintf(stderr, "%s\n", server.error().c_str()), 1;
   std::printf("%d\n", (*server)->port());
@@ -95,5 +99,5 @@ int serve(std::uint16_t port, const std::string& first) {
 int main(int count, char** arguments) {
   const int port =
       count > 1 ? std::atoi(arguments[1]) : 0;  // NOLINT(cert-err34-c): 0, any port, is right then
-  return adit::page::serve(static_cast<std::uint16_t>(port), count > 2 ? arguments[2] : "calm");
+  return adit::page::serve(static_cast<std::uint16_t>(port), count > 2 ? arguments[2] : "calm", count > 3);
 }

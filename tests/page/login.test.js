@@ -98,8 +98,9 @@ test("shows the door to a page whose session has ended elsewhere", async (t) => 
 });
 
 test("goes nowhere but to a page of this box", async (t) => {
-  const { page, stage } = await come(t);
+  const { page, stage } = await come(t, "icon.svg");
   for (const next of ["//evil.example/", "https://evil.example/", "javascript:alert(1)", "/.//evil.example/", "\\\\evil.example", "http://["]) {
+    await page.goto(`${stage.url}icon.svg`); // a page that goes nowhere by itself
     await page.context().clearCookies();
     await page.goto(`${stage.url}login.html?next=${encodeURIComponent(next)}`);
     await logIn(page, "correct horse");

@@ -111,7 +111,8 @@ class Killed(unittest.TestCase):
     def waiting_for_the_operator(self):
         """Those held, and those in doubt of which nothing was found out for a while, by their numbers."""
         return {row["number"]: row for row in self.stage.box.reports()
-                if row["state"] == "received" or (row["state"] == "in doubt" and time.time() - row["changed"] > DOUBTED)}
+                if row["state"] == "received"
+                or (row["state"] == "in doubt" and time.time() - row["changed"] > DOUBTED)}
 
     def operator(self):
         """Looks at what the Command Post shows as recorded, and judges what waits for him by that."""

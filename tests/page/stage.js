@@ -32,15 +32,16 @@ export const launch = () =>
 const BY_TOKEN = { extraHTTPHeaders: { Authorization: "Bearer team-1" } };
 
 /** Opens the page, let in by the token. */
-export async function look(browser, url, options = {}) {
-  const page = await visit(browser, url, { ...BY_TOKEN, ...options });
+export async function look(browser, url, options = {}, prepare = () => {}) {
+  const page = await visit(browser, url, { ...BY_TOKEN, ...options }, prepare);
   await page.waitForSelector("body[data-link=live]");
   return page;
 }
 
 /** Opens a page; what it complained of and where it went is in `page.complaints` and `page.requests`. */
-export async function visit(browser, url, options = {}) {
+export async function visit(browser, url, options = {}, prepare = () => {}) {
   const context = await browser.newContext({ viewport: { width: 1280, height: 720 }, ...options });
+  context.setDefaultTimeout(10_000);
   const page = await context.newPage();
   page.complaints = [];
   page.requests = [];
@@ -50,6 +51,7 @@ export async function visit(browser, url, options = {}) {
   page.on("pageerror", (error) => page.complaints.push(String(error)));
   page.on("dialog", (dialog) => page.complaints.push(`dialog: ${dialog.message()}`) && dialog.dismiss());
   page.on("request", (request) => page.requests.push(request.url()));
+  await prepare(page);
   await page.goto(url);
   return page;
 }

@@ -20,8 +20,6 @@ bool all_is_well(const page::RunView& view) {
          std::ranges::all_of(view.endpoints, &std::string::empty, &page::EndpointRow::trouble);
 }
 
-}  // namespace
-
 std::expected<settings::Address, std::string> address_of(const Options& options) {
   if (!options.at.empty()) return parse_address(options.at);
   const auto text = host::read_file(options.settings);
@@ -34,13 +32,31 @@ std::expected<settings::Address, std::string> address_of(const Options& options)
   return reach(settings->team);
 }
 
-std::expected<std::string, std::string> get(const settings::Address& address, const std::string& target) {
-  auto reply = http_ask(address, {.target = target}, kPatience);
+}  // namespace
+
+std::expected<Adit, std::string> adit_of(const Options& options) {
+  const auto address = address_of(options);
+  if (!address) return std::unexpected(address.error());
+  auto token = find_token(options.token_file, options.secrets);
+  if (!token) return std::unexpected(token.error());
+  if (*token) return Adit{*address, std::move(**token)};
+  return std::unexpected("Adit asks for the team's token, and there is none to be read in " +
+                         options.secrets +
+                         ": run this as root, or name a file that holds it by --token-file FILE");
+}
+
+std::string unknown_token(const Adit& adit) {
+  return "Adit does not know the token in " + adit.token.file;
+}
+
+std::expected<std::string, std::string> get(const Adit& adit, const std::string& target) {
+  auto reply = http_ask(adit.address, {.target = target, .token = adit.token.token}, kPatience);
   if (!reply) return std::unexpected(reply.error().sentence);
   if (reply->status == 200) return std::move(reply->body);
+  if (reply->status == 401) return std::unexpected(unknown_token(adit));
   const std::string sentence = sentence_in(reply->body);
   if (!sentence.empty()) return std::unexpected(sentence);
-  return std::unexpected("Adit at " + written(address) + " cannot be asked: it answered " +
+  return std::unexpected("Adit at " + written(adit.address) + " cannot be asked: it answered " +
                          std::to_string(reply->status) + " (is that Adit?)");
 }
 
@@ -55,12 +71,12 @@ Outcome unable(const std::string& why) {
 }
 
 Outcome status(const Options& options, bool colour) {
-  const auto address = address_of(options);
-  if (!address) return unable(address.error());
-  const auto json = get(*address, "/adit/run");
+  const auto adit = adit_of(options);
+  if (!adit) return unable(adit.error());
+  const auto json = get(*adit, "/adit/run");
   if (!json) return unable(json.error());
   const auto view = read_run_view(*json);
-  if (!view) return unable("Adit at " + written(*address) + " cannot be understood: " + view.error());
+  if (!view) return unable("Adit at " + written(adit->address) + " cannot be understood: " + view.error());
   const Exit exit = all_is_well(*view) ? Exit::Fine : Exit::Attention;
   return {exit, options.json ? *json + '\n' : status_text(*view, colour), ""};
 }

@@ -10,11 +10,20 @@
 
 namespace adit::cli {
 
-/// Where the Adit is that the options mean.
-std::expected<settings::Address, std::string> address_of(const Options& options);
+/// The Adit that the options mean: where it is, and what it is asked with.
+struct Adit {
+  settings::Address address;
+  Token token;
+};
+
+/// Without a token, the sentence says how to name one.
+std::expected<Adit, std::string> adit_of(const Options& options);
 
 /// The body of a 200, or a sentence.
-std::expected<std::string, std::string> get(const settings::Address& address, const std::string& target);
+std::expected<std::string, std::string> get(const Adit& adit, const std::string& target);
+
+/// For an answer of 401.
+std::string unknown_token(const Adit& adit);
 
 /// The sentence that an error's body is (a JSON string); "" where it is none.
 std::string sentence_in(const std::string& body);

@@ -2,7 +2,6 @@
 
 #include <algorithm>
 
-#include "cli/ask.hpp"
 #include "cli/http_client.hpp"
 #include "cli/reading.hpp"
 #include "cli/where.hpp"
@@ -22,16 +21,15 @@ struct Failure {
 /// Asks for deeds, each with the same token.
 class Deeds {
  public:
-  Deeds(const settings::Address& address, std::optional<Token> token)
-      : address_(address), token_(std::move(token)) {}
+  explicit Deeds(const Adit& adit) : adit_(adit) {}
 
   /// The number that Adit answers under `name`. `check`: the command that tells whether a deed was done whose
   /// answer was lost.
   std::expected<std::int64_t, Failure> ask(const std::string& target, const char* name,
                                            const std::string& check) {
-    HttpRequest request{.method = HttpRequest::Method::Post, .target = target};
-    if (token_) request.token = token_->token;
-    const auto reply = http_ask(address_, request, kPatience);
+    const auto reply = http_ask(
+        adit_.address, {.method = HttpRequest::Method::Post, .target = target, .token = adit_.token.token},
+        kPatience);
     if (!reply) {
       const std::string unsure =
           reply.error().sent ? "; whether it was done is not known, see: " + check : "";
@@ -41,26 +39,23 @@ class Deeds {
     auto number = read<std::int64_t>(
         reply->body, [name](const codec::Field& object) { return whole<std::int64_t>(object, name); });
     if (number) return *number;
-    return std::unexpected(
-        Failure{Exit::Unable, "Adit at " + written(address_) + " cannot be understood: " + number.error()});
+    return std::unexpected(Failure{
+        Exit::Unable, "Adit at " + written(adit_.address) + " cannot be understood: " + number.error()});
   }
 
  private:
   Failure failure(const HttpReply& reply) const {
     if (reply.status == 401) {
-      return {Exit::Unable, token_ ? "Adit does not know the token in " + token_->file
-                                   : "Adit asks for the team's token: run this as root, or name a file that "
-                                     "holds it by --token-file FILE"};
+      return {Exit::Unable, unknown_token(adit_)};
     }
     const std::string sentence = sentence_in(reply.body);
     const bool judged = (reply.status == 404 || reply.status == 409) && !sentence.empty();
     if (judged) return {Exit::Attention, sentence};
-    return {Exit::Unable, "Adit at " + written(address_) + " answered " + std::to_string(reply.status) +
+    return {Exit::Unable, "Adit at " + written(adit_.address) + " answered " + std::to_string(reply.status) +
                               (sentence.empty() ? " (is that Adit?)" : ": " + sentence)};
   }
 
-  settings::Address address_;
-  std::optional<Token> token_;
+  const Adit& adit_;
 };
 
 std::string path_of(Verb verb) {
@@ -102,10 +97,8 @@ void add(Outcome& outcome, const Failure& failure) {
 
 }  // namespace
 
-Outcome judge(const settings::Address& address, const Options& options) {
-  auto token = find_token(options.token_file, options.secrets);
-  if (!token) return unable(token.error());
-  Deeds deeds(address, std::move(*token));
+Outcome judge(const Adit& adit, const Options& options) {
+  Deeds deeds(adit);
   Outcome outcome;
   for (const std::int64_t number : options.numbers) {
     const std::string text = std::to_string(number);
@@ -123,11 +116,9 @@ Outcome judge(const settings::Address& address, const Options& options) {
 }
 
 Outcome begin_run(const Options& options) {
-  const auto address = address_of(options);
-  if (!address) return unable(address.error());
-  auto token = find_token(options.token_file, options.secrets);
-  if (!token) return unable(token.error());
-  const auto run = Deeds(*address, std::move(*token)).ask("/adit/runs", "run", "adit reports");
+  const auto adit = adit_of(options);
+  if (!adit) return unable(adit.error());
+  const auto run = Deeds(*adit).ask("/adit/runs", "run", "adit reports");
   Outcome outcome;
   if (!run) {
     add(outcome, run.error());

@@ -21,15 +21,15 @@ COMMANDS
 OPTIONS
   --at ADDR:PORT     where Adit listens for the team: 10.0.0.1:8000 or [fd00::1]:8000
   --settings FILE    the settings to find that in; /etc/adit/settings.json if not given
-  --token-file FILE  what your word is shown with: a file that holds the team's token or the scoring token. If not
-                     given, the first of team.token and scoring.token in /etc/adit/secrets that can be read
+  --token-file FILE  what lets you in: a file that holds the team's token or the scoring token. If not given, the
+                     first of team.token and scoring.token in /etc/adit/secrets that can be read (by root)
   --json             for scripts: what Adit itself says, as JSON
   --help             this, or more about a command
 
 EXIT STATUS
   0  all is well
   1  something needs the operator, or the settings are wrong
-  2  Adit cannot be reached, a file cannot be read, or the command line is wrong
+  2  Adit cannot be reached or wants another token, a file cannot be read, or the command line is wrong
 
 ENVIRONMENT
   NO_COLOR  if set, there is no colour on a terminal either
@@ -39,7 +39,7 @@ constexpr const char* kStatus =
     R"(adit status - the run, the Command Post, each robot's maps, and what the operator must do
 
 USAGE
-  adit status [--json] [--at ADDR:PORT | --settings FILE]
+  adit status [--json] [--token-file FILE] [--at ADDR:PORT | --settings FILE]
 
 WHAT IT SHOWS
   First what needs the operator, then the run as the Command Post last told of it, the two endpoints, how many
@@ -56,12 +56,12 @@ WHAT IT SHOWS
 EXIT STATUS
   0  nothing needs the operator
   1  something does, or an endpoint cannot be reached or refuses
-  2  Adit cannot be reached, or the command line is wrong
+  2  Adit cannot be reached or wants another token, or the command line is wrong
 
 EXAMPLES
-  adit status
-  watch -c -n 1 adit status --at 10.0.0.1:8000
-  adit status --json | jq '.run.remaining_reports'
+  sudo adit status
+  watch -c -n 1 adit status --at 10.0.0.1:8000 --token-file team.token
+  sudo adit status --json | jq '.run.remaining_reports'
 )";
 
 constexpr const char* kReports = R"(adit reports - every artifact report and what became of it
@@ -74,7 +74,7 @@ USAGE
   adit reports done NUMBER...
   adit reports resubmit NUMBER
   adit reports export [--csv | --json]
-  All take --at ADDR:PORT or --settings FILE; those that change something take --token-file FILE and --json.
+  All take --token-file FILE, and --at ADDR:PORT or --settings FILE; those that change something take --json.
 
 WHAT IT SHOWS
   A row for each report of the present run, and for those of earlier runs that are not finished, the newest
@@ -111,12 +111,12 @@ EXIT STATUS
   2  Adit cannot be reached or wants another token, there is no such report to show, or the command line is wrong
 
 EXAMPLES
-  adit reports
-  adit reports show 14
+  sudo adit reports
+  sudo adit reports show 14
   sudo adit reports done 14
   sudo adit reports send 15 16
-  adit reports export > reports.csv
-  adit reports --run all --json | jq -r '.[] | [.number, .type, .state] | @tsv'
+  sudo adit reports export > reports.csv
+  sudo adit reports --run all --json | jq -r '.[] | [.number, .type, .state] | @tsv'
 )";
 
 constexpr const char* kRun = R"(adit run - tells Adit that a new run begins

@@ -124,8 +124,7 @@ std::string written(const HttpRequest& request, const std::string& host) {
   text.append(request.target).append(" HTTP/1.1\r\nHost: ").append(host).append("\r\n");
   text.append("Accept: application/json\r\nConnection: close\r\n");
   if (posts) text.append("Content-Type: application/json\r\nContent-Length: 0\r\n");
-  if (posts && request.token)
-    text.append("Authorization: Bearer ").append(request.token->reveal()).append("\r\n");
+  if (request.token) text.append("Authorization: Bearer ").append(request.token->reveal()).append("\r\n");
   return text.append("\r\n");
 }
 

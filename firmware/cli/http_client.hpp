@@ -12,7 +12,7 @@ namespace adit::cli {
 
 inline constexpr std::size_t kLargestBody = 8u << 20;
 
-/// A request without a body. Only a POST shows a token.
+/// A request without a body.
 struct HttpRequest {
   enum class Method : std::uint8_t { Get, Post } method = Method::Get;
   std::string target;  // "/adit/run"

@@ -47,14 +47,9 @@ const VerbName& row_of(Verb verb) {
 bool takes(const Options& options, std::string_view option) {
   const bool lists = options.command == Command::Reports && options.verb == Verb::List;
   const bool exports = options.command == Command::Reports && options.verb == Verb::Export;
-  const bool shows = options.command == Command::Reports && options.verb == Verb::Show;
-  if (option == "--at") return options.command != Command::Check;
+  if (option == "--at" || option == "--token-file") return options.command != Command::Check;
   if (option == "--run") return lists;
   if (option == "--csv") return exports;
-  if (option == "--token-file") {
-    return options.command == Command::Run ||
-           (options.command == Command::Reports && !lists && !exports && !shows);
-  }
   return true;
 }
 

@@ -14,8 +14,8 @@
 namespace adit::cli {
 namespace {
 
-std::string not_understood(const settings::Address& address, const std::string& why) {
-  return "Adit at " + written(address) + " cannot be understood: " + why;
+std::string not_understood(const Adit& adit, const std::string& why) {
+  return "Adit at " + written(adit.address) + " cannot be understood: " + why;
 }
 
 Exit exit_for(const std::vector<page::ReportRow>& reports) {
@@ -28,15 +28,15 @@ bool is_listed(const page::ReportRow& report, const Options& options, std::int64
   return options.run ? report.run == *options.run : report.run == present || !is_finished(report);
 }
 
-Outcome list(const settings::Address& address, const Options& options, bool colour) {
-  const auto run_json = get(address, "/adit/run");
+Outcome list(const Adit& adit, const Options& options, bool colour) {
+  const auto run_json = get(adit, "/adit/run");
   if (!run_json) return unable(run_json.error());
   const auto run = read_run_view(*run_json);
-  if (!run) return unable(not_understood(address, run.error()));
-  const auto json = get(address, "/adit/reports");
+  if (!run) return unable(not_understood(adit, run.error()));
+  const auto json = get(adit, "/adit/reports");
   if (!json) return unable(json.error());
   auto rows = read_reports(*json);
-  if (!rows) return unable(not_understood(address, rows.error()));
+  if (!rows) return unable(not_understood(adit, rows.error()));
 
   const Exit exit = exit_for(*rows);
   std::erase_if(*rows, [&](const page::ReportRow& row) { return !is_listed(row, options, run->run_number); });
@@ -44,17 +44,17 @@ Outcome list(const settings::Address& address, const Options& options, bool colo
   return {exit, options.json ? page::write_reports(*rows) + '\n' : reports_text(*rows, run->now, colour), ""};
 }
 
-Outcome show(const settings::Address& address, const Options& options, bool colour) {
-  const auto json = get(address, "/adit/reports/" + std::to_string(options.numbers.front()));
+Outcome show(const Adit& adit, const Options& options, bool colour) {
+  const auto json = get(adit, "/adit/reports/" + std::to_string(options.numbers.front()));
   if (!json) return unable(json.error());
   const auto detail = read_report_detail(*json);
-  if (!detail) return unable(not_understood(address, detail.error()));
+  if (!detail) return unable(not_understood(adit, detail.error()));
   const Exit exit = exit_for({detail->row});
   return {exit, options.json ? *json + '\n' : report_text(*detail, colour), ""};
 }
 
-Outcome exported(const settings::Address& address, const Options& options) {
-  const auto text = get(address, options.json ? "/adit/reports" : "/adit/reports.csv");
+Outcome exported(const Adit& adit, const Options& options) {
+  const auto text = get(adit, options.json ? "/adit/reports" : "/adit/reports.csv");
   if (!text) return unable(text.error());
   return {Exit::Fine, options.json ? *text + '\n' : *text, ""};
 }
@@ -62,17 +62,17 @@ Outcome exported(const settings::Address& address, const Options& options) {
 }  // namespace
 
 Outcome reports(const Options& options, bool colour) {
-  const auto address = address_of(options);
-  if (!address) return unable(address.error());
+  const auto adit = adit_of(options);
+  if (!adit) return unable(adit.error());
   switch (options.verb) {
     case Verb::List:
-      return list(*address, options, colour);
+      return list(*adit, options, colour);
     case Verb::Show:
-      return show(*address, options, colour);
+      return show(*adit, options, colour);
     case Verb::Export:
-      return exported(*address, options);
+      return exported(*adit, options);
     default:
-      return judge(*address, options);
+      return judge(*adit, options);
   }
 }
 

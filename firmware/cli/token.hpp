@@ -11,7 +11,7 @@ namespace adit::cli {
 /// Where aditd.service has its tokens from.
 inline constexpr const char* kSecrets = "/etc/adit/secrets";
 
-/// What deeds are asked for with, and where it was.
+/// What Adit is asked with, and where it was.
 struct Token {
   icd::BearerToken token;
   std::string file;

@@ -101,6 +101,8 @@ class Reports {
   /// A new run begins, the operator says. Gives its number.
   std::int64_t declare_new_run(Time time);
 
+  /// The report whose answer a client waits for; nothing: it was told at once, or waits no more.
+  std::optional<std::int64_t> awaited_by(ClientId client) const { return clients_.awaited_by(client); }
   const ReportBook& book() const { return book_; }
   const Run& run() const { return account_.run(); }
   const Report* sending() const { return sending_ ? &book_.at(*sending_) : nullptr; }

@@ -36,6 +36,11 @@ std::vector<std::pair<ClientId, std::int64_t>> WaitingClients::take_late(Instant
   return take_those([now](const Client& client) { return client.deadline <= now; });
 }
 
+std::optional<std::int64_t> WaitingClients::awaited_by(ClientId client) const {
+  const auto found = clients_.find(client);
+  return found == clients_.end() ? std::nullopt : std::optional(found->second.number);
+}
+
 std::optional<WaitingClients::Instant> WaitingClients::next_deadline() const {
   if (clients_.empty()) return std::nullopt;
   return clients_.begin()->second.deadline;

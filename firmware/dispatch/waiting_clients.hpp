@@ -23,6 +23,7 @@ class WaitingClients {
   std::vector<std::pair<ClientId, std::int64_t>> take_but(std::optional<std::int64_t> number);
   /// Takes out those whose time is up.
   std::vector<std::pair<ClientId, std::int64_t>> take_late(Instant now);
+  std::optional<std::int64_t> awaited_by(ClientId client) const;
   std::optional<Instant> next_deadline() const;
 
  private:

@@ -27,6 +27,7 @@ void Channel::note(const uplink::Outcome& outcome) {
   heard_ = loop_.now();
   if (const auto* answered = std::get_if<uplink::Answered>(&outcome)) {
     last_status_ = answered->status;
+    if (last_status_ == 429) ++throttled_;
     answer_ms_ = std::chrono::duration<double, std::milli>(heard_ - sent_at_).count();
     trouble_ = answered->status < 400 ? "" : dispatch::said(answered->status, answered->body);
   } else {

@@ -28,6 +28,8 @@ class Channel {
   std::string trouble() const;
   int last_status() const { return last_status_; }
   std::optional<double> answer_ms() const { return answer_ms_; }
+  /// How many answers were 429.
+  std::uint64_t throttled() const { return throttled_; }
   /// When last_status() was heard.
   loop::Instant heard() const { return heard_; }
   /// All bytes of bodies that were handed to the kernel, those under way included.
@@ -40,7 +42,7 @@ class Channel {
   uplink::Connection connection_;
   std::chrono::milliseconds answer_within_;
   loop::Instant sent_at_{}, heard_{};
-  std::uint64_t finished_bytes_ = 0;
+  std::uint64_t finished_bytes_ = 0, throttled_ = 0;
   int last_status_ = 0;
   std::optional<double> answer_ms_;
   std::string trouble_;

@@ -26,10 +26,14 @@ Gateway::Gateway(loop::Loop& loop, Parts parts)
       spool_(parts_.spool_folder),
       record_([this] { changed(); }),
       scoring_(loop, parts_.ledger, parts_.settings, *parts_.secrets.scoring, record_, random_),
-      maps_(loop, workers_, spool_, parts_.settings, *parts_.secrets.mapping, record_, random_),
+      picture_(
+          loop, workers_, [this] { return maps_.packing(); }, [this] { changed(); }),
+      maps_(loop, workers_, spool_, parts_.settings, *parts_.secrets.mapping, record_, random_,
+            [this](icd::MapUpdate map) { picture_.forwarded(std::move(map)); }),
       news_(loop, parts_.settings, *parts_.secrets.mapping, record_, random_),
       lights_(loop, std::move(parts_.lines)),
-      page_(loop, *this, *this, team_tokens()),
+      accounts_(workers_, parts_.state_folder, parts_.secrets.label_code),
+      page_(loop, *this, *this, accounts_, tokens()),
       routes_(icd_options(), *this, workers_, page_),
       second_(loop.timer([this] { every_second(); })),
       drained_(loop.timer([this] { drain(); })) {}
@@ -39,14 +43,13 @@ Gateway::~Gateway() = default;
 intake::IcdOptions Gateway::icd_options() const {
   intake::IcdOptions options;
   options.rules = parts_.settings.rules;
-  options.tokens = team_tokens();
+  if (parts_.settings.team.require_token) options.tokens = tokens();
   return options;
 }
 
-/// Any of them lets a client of the team in; empty: none is asked for.
-std::vector<icd::BearerToken> Gateway::team_tokens() const {
+/// Any of them lets a client of the team in.
+std::vector<icd::BearerToken> Gateway::tokens() const {
   std::vector<icd::BearerToken> tokens;
-  if (!parts_.settings.team.require_token) return tokens;
   for (const auto& token : {parts_.secrets.team, parts_.secrets.scoring, parts_.secrets.mapping}) {
     if (token) tokens.push_back(*token);
   }
@@ -179,12 +182,24 @@ std::expected<std::int64_t, std::string> Gateway::judge(std::int64_t number, pag
   return scoring_.judge(number, deed);
 }
 
+std::expected<std::int64_t, std::string> Gateway::report(const icd::ArtifactReport& report, bool resubmit) {
+  return scoring_.report(report, resubmit);
+}
+
 std::int64_t Gateway::begin_run() {
   return scoring_.begin_run();
 }
 
 void Gateway::changed() {
+  picture_the_run();
   page_.changed();
+}
+
+/// A new run begins with a blank picture.
+void Gateway::picture_the_run() {
+  const std::int64_t run = scoring_.reports().run().number;
+  const std::int64_t before = std::exchange(pictured_run_, run);
+  if (before != 0 && before != run) picture_.begin_run();
 }
 
 void Gateway::every_second() {
@@ -246,13 +261,15 @@ std::vector<page::EndpointRow> Gateway::endpoints() const {
            .connected = scoring.connected(),
            .trouble = scoring.trouble(),
            .last_status = scoring.last_status(),
-           .answer_ms = scoring.answer_ms()},
+           .answer_ms = scoring.answer_ms(),
+           .throttled = scoring.throttled()},
           {.name = "mapping",
            .address = text(command_post.mapping),
            .connected = maps.connected() || news.connected(),
            .trouble = maps.trouble().empty() ? news.trouble() : maps.trouble(),
            .last_status = latest.last_status(),
-           .answer_ms = latest.answer_ms()}};
+           .answer_ms = latest.answer_ms(),
+           .throttled = maps.throttled() + news.throttled()}};
 }
 
 page::RunView Gateway::view() const {
@@ -263,13 +280,16 @@ page::RunView Gateway::view() const {
                      .run_number = scoring_.reports().run().number,
                      .run_id = scoring_.reports().run().id,
                      .endpoints = endpoints(),
+                     .robots = news_.robots(),
                      .reports = latest_rows(scoring_.reports(), kMostReportRows),
+                     .near_metres = parts_.settings.reports.near_metres,
                      .activities = record_.activities(),
                      .refusals = record_.refusals(),
                      .lights = {},
                      .budget_mbit = parts_.settings.command_post.budget_mbit,
                      .sent_mbit = sent_mbit(),
                      .queued_bytes = maps_.queued_bytes(),
+                     .map_version = picture_.mosaic().version(),
                      .attention = attention()};
   for (page::ActivityRow& row : view.activities) {
     if (row.kind == "state") row.waiting = news_.waiting(Kind::State);

@@ -7,7 +7,9 @@
 #include <string>
 #include <vector>
 
+#include "gateway/accounts.hpp"
 #include "gateway/lights.hpp"
+#include "gateway/map_picture.hpp"
 #include "gateway/maps.hpp"
 #include "gateway/news.hpp"
 #include "gateway/record.hpp"
@@ -32,6 +34,7 @@ struct Parts {
   ledger::Ledger ledger;
   std::unique_ptr<panel::Lines> lines;
   std::string spool_folder;
+  std::string state_folder;
 };
 
 /// The whole of Adit at work: the team's messages come in by Desk and leave by Scoring, Maps and News.
@@ -61,7 +64,9 @@ class Gateway final : public intake::Desk, public page::Source, public page::Ope
   std::vector<page::ReportRow> reports() const override;
   std::optional<page::ReportDetail> report(std::int64_t number) const override;
   std::expected<std::int64_t, std::string> judge(std::int64_t number, page::Deed deed) override;
+  std::expected<std::int64_t, std::string> report(const icd::ArtifactReport& report, bool resubmit) override;
   std::int64_t begin_run() override;
+  const picture::Mosaic& map() const override { return picture_.mosaic(); }
 
  private:
   void restore();
@@ -69,11 +74,12 @@ class Gateway final : public intake::Desk, public page::Source, public page::Ope
   void finish();
   void keep_news();
   void changed();
+  void picture_the_run();
   void every_second();
   double sent_mbit() const;
   std::expected<void, std::string> listen();
   intake::IcdOptions icd_options() const;
-  std::vector<icd::BearerToken> team_tokens() const;
+  std::vector<icd::BearerToken> tokens() const;
   panel::Condition condition() const;
   std::vector<std::string> attention() const;
   std::vector<page::EndpointRow> endpoints() const;
@@ -86,13 +92,16 @@ class Gateway final : public intake::Desk, public page::Source, public page::Ope
   Record record_;
   lanes::StampShift stamps_;
   Scoring scoring_;
+  MapPicture picture_;
   Maps maps_;
   News news_;
   Lights lights_;
+  Accounts accounts_;
   page::Page page_;
   intake::IcdRoutes routes_;
   std::vector<std::unique_ptr<intake::Server>> servers_;
   loop::Source second_, drained_;
+  std::int64_t pictured_run_ = 0;         // whose maps picture_ shows; 0: none yet
   std::deque<std::uint64_t> bytes_sent_;  // in all, at each of the last seconds
   bool keeping_news_ = false;
   bool dismissed_ = false;  // all clients have been told; only their answers have to leave

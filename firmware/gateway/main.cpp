@@ -67,7 +67,8 @@ std::expected<Parts, std::string> gather(const Options& options) {
                .secrets = std::move(*secrets),
                .ledger = std::move(*ledger),
                .lines = std::move(lines),
-               .spool_folder = runtime_folder(options) + "/waiting"};
+               .spool_folder = runtime_folder(options) + "/waiting",
+               .state_folder = options.state};
 }
 
 int fail(const std::string& why) {

@@ -21,12 +21,14 @@ constexpr std::chrono::milliseconds kLongestLead{500};
 }  // namespace
 
 Maps::Maps(loop::Loop& loop, loop::Workers& workers, const Spool& spool, const settings::Settings& settings,
-           icd::BearerToken token, Record& record, std::mt19937_64& random)
+           icd::BearerToken token, Record& record, std::mt19937_64& random,
+           std::function<void(icd::MapUpdate)> taken)
     : loop_(loop),
       workers_(workers),
       spool_(spool),
       settings_(settings),
       record_(record),
+      taken_(std::move(taken)),
       channel_(loop,
                endpoint_of(settings.command_post, settings.command_post.mapping,
                            pace::map_bytes_per_second(settings.command_post.budget_mbit)),
@@ -144,6 +146,7 @@ void Maps::verdict(const uplink::Answered& answered) {
       pace_.taken(now);
       record_.forwarded(traffic, prepared_->waiting.updates.size(), prepared_->body.size(), answered.status,
                         loop_.stamp_now());
+      taken_(std::move(prepared_->waiting.map));
       return done();
     case MappingVerdict::Throttled:
       pace_.throttled(now, answered.retry_after);

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <functional>
 #include <memory>
 #include <optional>
 #include <random>
@@ -22,8 +23,10 @@ namespace adit::gateway {
 /// time on a connection of their own, paced within the link's budget.
 class Maps {
  public:
+  /// `taken` is given each map that the Command Post took.
   Maps(loop::Loop& loop, loop::Workers& workers, const Spool& spool, const settings::Settings& settings,
-       icd::BearerToken token, Record& record, std::mt19937_64& random);
+       icd::BearerToken token, Record& record, std::mt19937_64& random,
+       std::function<void(icd::MapUpdate)> taken);
 
   /// A map that the spool kept under this number.
   void restore(std::uint64_t number, icd::MapUpdate update);
@@ -34,6 +37,7 @@ class Maps {
   /// Sends nothing more. False while an answer is awaited or a map is not yet kept.
   bool stop();
 
+  bool packing() const { return preparing_; }
   const Channel& channel() const { return channel_; }
   std::size_t queued_bytes() const { return lane_.bytes(); }
   bool nearly_full() const { return lane_.bytes() > settings_.queues.map_bytes / 5 * 4; }
@@ -63,6 +67,7 @@ class Maps {
   const Spool& spool_;
   const settings::Settings& settings_;
   Record& record_;
+  std::function<void(icd::MapUpdate)> taken_;
   Channel channel_;
   UriPace pace_;
   loop::Source wake_;

@@ -1,6 +1,7 @@
 #include "gateway/news.hpp"
 
 #include <array>
+#include <cmath>
 
 #include "codec/write.hpp"
 #include "dispatch/turn.hpp"
@@ -22,6 +23,13 @@ std::unexpected<icd::Refusal> full(const char* of) {
 NotTaken why_not(MappingVerdict verdict) {
   if (verdict == MappingVerdict::Throttled) return NotTaken::Throttled;
   return verdict == MappingVerdict::Refused ? NotTaken::Refused : NotTaken::Failed;
+}
+
+constexpr std::size_t kMostRobots = 100;  // whose poses the page is shown
+
+/// Where the robot's own x axis points, seen from above. The quaternion need not be of length one.
+double heading_of(const icd::Quaternion& q) {
+  return std::atan2(2 * (q.w * q.z + q.x * q.y), q.w * q.w + q.x * q.x - q.y * q.y - q.z * q.z);
 }
 
 std::size_t updates_in(const lanes::WaitingState& state) {
@@ -129,6 +137,7 @@ void News::answered(Kind kind, UriPace& pace, Waiting sent, std::size_t bytes,
   switch (verdict) {
     case MappingVerdict::Taken:
       pace.taken(now);
+      note_taken(sent);
       break;
     case MappingVerdict::Refused:
       pace.taken(now);
@@ -146,6 +155,24 @@ void News::answered(Kind kind, UriPace& pace, Waiting sent, std::size_t bytes,
       break;
   }
   pump();
+}
+
+void News::note_taken(const lanes::WaitingState& state) {
+  for (const icd::NamedPose& named : state.update.poses) {
+    const std::string& name = named.name.text();
+    if (robots_.size() >= kMostRobots && !robots_.contains(name)) continue;
+    robots_[name] = {.name = name,
+                     .position = named.pose.position,
+                     .heading = heading_of(named.pose.orientation),
+                     .at = loop_.stamp_now()};
+  }
+}
+
+std::vector<page::RobotRow> News::robots() const {
+  std::vector<page::RobotRow> rows;
+  rows.reserve(robots_.size());
+  for (const auto& [name, row] : robots_) rows.push_back(row);
+  return rows;
 }
 
 std::vector<Traffic> News::traffic_of(const lanes::WaitingState& state) const {

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <map>
 #include <random>
 #include <string>
 #include <utility>
@@ -36,6 +37,8 @@ class News {
   /// Whether what is unsent may have changed since this was last asked.
   bool changed_since_asked() { return std::exchange(changed_, false); }
 
+  /// Each robot's last pose that the Command Post took, by name.
+  std::vector<page::RobotRow> robots() const;
   const Channel& channel() const { return channel_; }
   std::size_t waiting(Kind kind) const;
 
@@ -47,6 +50,8 @@ class News {
   void answered(Kind kind, UriPace& pace, Waiting sent, std::size_t bytes, const uplink::Outcome& outcome);
   std::vector<Traffic> traffic_of(const lanes::WaitingState& state) const;
   std::vector<Traffic> traffic_of(const lanes::WaitingMarkers& markers) const;
+  void note_taken(const lanes::WaitingState& state);
+  void note_taken(const lanes::WaitingMarkers&) {}
   void put_back(const lanes::WaitingState& state) { state_.put_back(state); }
   void put_back(const lanes::WaitingMarkers& markers) { markers_.put_back(markers); }
 
@@ -59,6 +64,7 @@ class News {
   lanes::MarkerLane markers_;
   lanes::StampOrder state_stamps_, marker_stamps_;
   std::uint64_t numbers_ = 0;
+  std::map<std::string, page::RobotRow> robots_;
   icd::StateUpdate state_under_way_;
   icd::MarkersUpdate markers_under_way_;
   int state_failed_ = 0, markers_failed_ = 0;  // answers in a row of a handler that failed

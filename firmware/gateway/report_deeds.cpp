@@ -71,6 +71,7 @@ bool ReportDeeds::write(std::span<const dispatch::Report> steps, const dispatch:
 
 void ReportDeeds::tell(dispatch::ClientId client, const dispatch::ClientAnswer& answer,
                        const dispatch::Report& report) {
+  last_told_ = answer;
   const auto waiting = clients_.extract(client);
   if (!waiting) return;
   intake::Answer told = answer_of(answer, report);

@@ -23,6 +23,10 @@ class ReportDeeds final : public dispatch::Deeds {
 
   /// A client that waits from now on.
   dispatch::ClientId add(std::shared_ptr<intake::Responder> responder);
+  /// One that is told nothing: the operator watches the report itself.
+  dispatch::ClientId add_nobody() { return ++last_client_; }
+  /// What the last one was told, whoever it was.
+  const dispatch::ClientAnswer& last_told() const { return last_told_; }
 
   bool write(std::span<const dispatch::Report> steps, const dispatch::Run* run,
              dispatch::Flush flush) override;
@@ -49,6 +53,7 @@ class ReportDeeds final : public dispatch::Deeds {
   std::vector<Step> unlogged_;
   std::map<dispatch::ClientId, std::shared_ptr<intake::Responder>> clients_;
   dispatch::ClientId last_client_ = 0;
+  dispatch::ClientAnswer last_told_;
   std::string trouble_;
 };
 

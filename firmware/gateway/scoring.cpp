@@ -57,11 +57,13 @@ void Scoring::take(const icd::ArtifactReport& report, const intake::Sender& send
         icd::Status::ServiceUnavailable, "the gateway is stopping; the report was not taken, send it again"));
     return;
   }
+  take({.report = report, .sender = sender.address, .resubmit = sender.resubmits},
+       deeds_.add(std::move(responder)));
+}
+
+void Scoring::take(const dispatch::Posted& posted, dispatch::ClientId client) {
   const bool may_send = !channel_.busy() && channel_.connected() && report_pace_.ready() <= loop_.now();
-  const bool chosen =
-      reports_.take({.report = report, .sender = sender.address, .resubmit = sender.resubmits},
-                    deeds_.add(std::move(responder)), may_send, time());
-  if (chosen) send(*reports_.sending());
+  if (reports_.take(posted, client, may_send, time())) send(*reports_.sending());
   watch_deadlines();
   record_.changed();
   pump();
@@ -227,6 +229,16 @@ dispatch::Reports::Outcome Scoring::judge(std::int64_t number, page::Deed deed) 
   record_.changed();
   pump();
   return outcome;
+}
+
+dispatch::Reports::Outcome Scoring::report(const icd::ArtifactReport& report, bool resubmit) {
+  if (stopping_) return std::unexpected("the gateway is stopping; the report was not taken");
+  const dispatch::ClientId nobody = deeds_.add_nobody();
+  take({.report = report, .sender = "operator", .resubmit = resubmit}, nobody);
+  if (const auto number = reports_.awaited_by(nobody)) return *number;
+  const dispatch::ClientAnswer told = deeds_.last_told();
+  if (told.number == 0) return std::unexpected(told.sentence);
+  return told.number;
 }
 
 std::int64_t Scoring::begin_run() {

@@ -44,6 +44,8 @@ class Scoring {
 
   /// The operator's word on a report; gives the number of the report that it moved, or a sentence why not.
   dispatch::Reports::Outcome judge(std::int64_t number, page::Deed deed);
+  /// The operator's own report, as if a client had posted it; gives its number once it is on disk.
+  dispatch::Reports::Outcome report(const icd::ArtifactReport& report, bool resubmit);
   std::int64_t begin_run();
 
   /// Sends and takes nothing more; clients whose reports wait are told so. False while an answer is still
@@ -67,6 +69,7 @@ class Scoring {
   };
 
   dispatch::Time time() const { return {loop_.now(), loop_.stamp_now()}; }
+  void take(const dispatch::Posted& posted, dispatch::ClientId client);
   void poll();
   void pump();
   void send(const dispatch::Report& report);

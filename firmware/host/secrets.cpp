@@ -2,6 +2,7 @@
 #include <cstdlib>
 #include <filesystem>
 
+#include "access/password.hpp"
 #include "host/files.hpp"
 #include "host/service.hpp"
 
@@ -57,7 +58,12 @@ std::expected<Secrets, std::string> read_secrets(const std::string& folder) {
   if (!mapping) return std::unexpected(mapping.error());
   auto team = read_token(folder + "/team.token", credentials);
   if (!team) return std::unexpected(team.error());
-  return Secrets{std::move(*scoring), std::move(*mapping), std::move(*team)};
+  auto label = read_token(folder + "/label.code", credentials);
+  if (!label) return std::unexpected(label.error());
+  if (*label && !access::is_code((*label)->reveal())) {
+    return std::unexpected(folder + "/label.code: expected 8 digits");
+  }
+  return Secrets{std::move(*scoring), std::move(*mapping), std::move(*team), std::move(*label)};
 }
 
 }  // namespace adit::host

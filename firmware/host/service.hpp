@@ -24,12 +24,13 @@ std::expected<void, std::string> write_file(const std::string& path, const std::
 struct Secrets {
   std::optional<icd::BearerToken> scoring, mapping;  // what the Command Post knows the team by
   std::optional<icd::BearerToken> team;  // what the team's clients show; absent: only the other two are good
+  std::optional<icd::BearerToken> label_code;  // what sets the first password; absent: one is drawn
 };
 
-/// `scoring.token`, `mapping.token` and `team.token` in `folder` (a folder of systemd credentials, or one of
-/// mode 0700 with files of mode 0600); white space around a token is cut. An error names the file, never what
-/// is in it. A missing or empty scoring or mapping token is an error, a missing or empty team token is none.
-/// A file that others may read is an error.
+/// `scoring.token`, `mapping.token`, `team.token` and `label.code` in `folder` (a folder of systemd
+/// credentials, or one of mode 0700 with files of mode 0600); white space around a token is cut. An error
+/// names the file, never what is in it. A missing or empty scoring or mapping token is an error, a missing or
+/// empty team token or code is none. A file that others may read is an error.
 std::expected<Secrets, std::string> read_secrets(const std::string& folder);
 
 /// Whether `interface` has a carrier: nothing where there is no such interface; "" is always true.

@@ -13,6 +13,7 @@ enum class Status : std::uint16_t {
   NoContent = 204,
   BadRequest = 400,
   Unauthorized = 401,
+  Forbidden = 403,
   NotFound = 404,
   MethodNotAllowed = 405,
   RequestTimeout = 408,

@@ -18,6 +18,8 @@ intake::Answer nothing_here();
 /// 405; `allowed` as in RFC 9110 10.2.1: "GET, HEAD".
 intake::Answer wrong_method(std::string_view allowed);
 
+inline constexpr auto kNotModified = static_cast<icd::Status>(304);  // RFC 9110 15.4.5; no ICD answer has it
+
 inline constexpr std::string_view kReading = "GET, HEAD";
 inline bool only_reads(const intake::RequestHead& head) {
   return head.method() == "GET" || head.method() == "HEAD";

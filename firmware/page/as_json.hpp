@@ -34,6 +34,7 @@ inline codec::Value json(const icd::Point& point) {
 
 codec::Value json(const icd::RunStatus& run);
 codec::Value json(const EndpointRow& row);
+codec::Value json(const RobotRow& row);
 codec::Value json(const ReportRow& row);
 codec::Value json(const ReportStep& step);
 codec::Value json(const ActivityRow& row);

@@ -19,7 +19,7 @@ std::string Live::event() const {
   return "data: " + write_run_view(source_.view()) + "\n\n";
 }
 
-void Live::open(intake::Responder& responder) {
+void Live::open(intake::Responder& responder, std::function<bool()> may_stay) {
   if (pages_.size() >= kMostPages) drop_the_gone(":\n\n");
   if (pages_.size() >= kMostPages) {
     return responder.answer(intake::error_answer(
@@ -33,7 +33,7 @@ void Live::open(intake::Responder& responder) {
     dirty_ = false;
     timer_.call_at(sent_ + kHeartbeat);
   }
-  pages_.push_back(std::move(stream));
+  pages_.push_back({std::move(stream), std::move(may_stay)});
 }
 
 void Live::changed() {
@@ -49,7 +49,7 @@ void Live::send_to_all() {
 }
 
 void Live::drop_the_gone(std::string_view bytes) {
-  std::erase_if(pages_, [&](const auto& page) { return !page->send(bytes); });
+  std::erase_if(pages_, [&](const OpenPage& page) { return !page.may_stay() || !page.stream->send(bytes); });
 }
 
 }  // namespace adit::page

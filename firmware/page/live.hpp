@@ -1,5 +1,6 @@
 #pragma once
 
+#include <functional>
 #include <memory>
 #include <vector>
 
@@ -20,18 +21,23 @@ class Live {
 
   Live(loop::Loop& loop, const Source& source);
 
-  /// Answers with a stream of events, or 503 where kMostPages are open.
-  void open(intake::Responder& responder);
+  /// Answers with a stream of events, or 503 where kMostPages are open. It ends once `may_stay` is false.
+  void open(intake::Responder& responder, std::function<bool()> may_stay);
   void changed();
 
  private:
+  struct OpenPage {
+    std::shared_ptr<intake::Stream> stream;
+    std::function<bool()> may_stay;
+  };
+
   std::string event() const;
   void send_to_all();
   void drop_the_gone(std::string_view bytes);
 
   loop::Loop& loop_;
   const Source& source_;
-  std::vector<std::shared_ptr<intake::Stream>> pages_;
+  std::vector<OpenPage> pages_;
   loop::Source timer_;
   loop::Instant sent_;
   bool dirty_ = false;

@@ -3,14 +3,17 @@
 #include <utility>
 
 #include "page/answers.hpp"
+#include "page/entrance.hpp"
 #include "page/live.hpp"
+#include "page/map_routes.hpp"
 #include "page/report_routes.hpp"
+#include "page/session_routes.hpp"
 #include "page/site.hpp"
 
 namespace adit::page {
 namespace {
 
-constexpr auto kNotModified = static_cast<icd::Status>(304);  // RFC 9110 15.4.5; no ICD answer has it
+constexpr std::string_view kGuarded = "/adit/";  // all else is the page's own files
 
 intake::Answer answer_with(const File& file, std::string_view if_none_match) {
   intake::Answer answer{.content_type = std::string(content_type_of(file)), .body = {}, .headers = {}};
@@ -28,38 +31,65 @@ intake::Answer answer_with(const File& file, std::string_view if_none_match) {
 
 class Page::Impl {
  public:
-  Impl(loop::Loop& loop, const Source& source, Operator& judge, std::vector<icd::BearerToken> tokens)
+  Impl(loop::Loop& loop, const Source& source, Operator& judge, Keys& keys,
+       std::vector<icd::BearerToken> tokens)
       : source_(source),
+        entrance_(loop, std::move(tokens)),
+        sessions_(loop, entrance_, keys),
         live_(loop, source),
-        reports_(source, judge, std::move(tokens), [this] { live_.changed(); }) {}
+        maps_(source),
+        reports_(source, judge, [this] { live_.changed(); }) {}
 
   std::unique_ptr<intake::Exchange> open(const intake::RequestHead& head,
                                          std::shared_ptr<intake::Responder> responder) {
+    if (!head.path().starts_with(kGuarded)) {
+      responder->answer(file(head));
+      return nullptr;
+    }
+    if (SessionRoutes::has(head.path())) return sessions_.open(head, std::move(responder));
+    const auto visitor =
+        entrance_.admit(head, only_reads(head) ? access::Role::Viewer : access::Role::Operator);
+    if (!visitor) {
+      responder->answer(turned_away(visitor.error()));
+      return nullptr;
+    }
     if (ReportRoutes::has(head.path())) return reports_.open(head, std::move(responder));
-    show(head, *responder);
+    if (MapRoutes::has(head.path())) {
+      responder->answer(maps_.answer(head));
+    } else {
+      show(head, *visitor, *responder);
+    }
     return nullptr;
   }
 
   void changed() { live_.changed(); }
 
  private:
-  void show(const intake::RequestHead& head, intake::Responder& responder) {
+  static intake::Answer file(const intake::RequestHead& head) {
     const auto* file = file_at(head.path());
+    if (file == nullptr) return nothing_here();
+    return only_reads(head) ? answer_with(*file, head.header("If-None-Match")) : wrong_method(kReading);
+  }
+
+  void show(const intake::RequestHead& head, const access::Visitor& visitor, intake::Responder& responder) {
     const bool is_run = head.path() == "/adit/run", is_events = head.path() == "/adit/events";
-    if (file == nullptr && !is_run && !is_events) return responder.answer(nothing_here());
+    if (!is_run && !is_events) return responder.answer(nothing_here());
     if (!only_reads(head)) return responder.answer(wrong_method(kReading));
-    if (file != nullptr) return responder.answer(answer_with(*file, head.header("If-None-Match")));
     if (is_run) return responder.answer(fresh("application/json", write_run_view(source_.view())));
-    live_.open(responder);
+    live_.open(responder, entrance_.may_stay(visitor));
   }
 
   const Source& source_;
+  Entrance entrance_;
+  SessionRoutes sessions_;
   Live live_;
+  MapRoutes maps_;
   ReportRoutes reports_;
 };
 
-Page::Page(loop::Loop& loop, const Source& source, Operator& judge, std::vector<icd::BearerToken> tokens)
-    : impl_(std::make_unique<Impl>(loop, source, judge, std::move(tokens))) {}
+Page::Page(loop::Loop& loop, const Source& source, Operator& judge, Keys& keys,
+           std::vector<icd::BearerToken> tokens)
+    : impl_(std::make_unique<Impl>(loop, source, judge, keys, std::move(tokens))) {}
 Page::~Page() = default;
 
 std::unique_ptr<intake::Exchange> Page::open(const intake::RequestHead& head,

@@ -7,13 +7,17 @@
 #include <string>
 #include <vector>
 
+#include "icd/artifact_report.hpp"
 #include "icd/bearer_token.hpp"
 #include "icd/geometry.hpp"
 #include "icd/run_status.hpp"
 #include "intake/server.hpp"
 #include "loop/loop.hpp"
+#include "picture/mosaic.hpp"
 
 namespace adit::page {
+
+class Keys;
 
 /// Times are seconds since 1970 on the gateway's clock.
 using Time = double;
@@ -76,6 +80,15 @@ struct EndpointRow {
   std::string trouble;  // "" where there is none
   int last_status = 0;
   std::optional<double> answer_ms;  // of the last request
+  std::uint64_t throttled = 0;      // answers of 429, ever
+};
+
+/// A robot as the Command Post knows it.
+struct RobotRow {
+  std::string name;
+  icd::Point position;  // of its last forwarded pose, in the frame "darpa"
+  double heading = 0;   // radians about z: 0 along x, left is more
+  Time at = 0;          // when that was forwarded
 };
 
 struct LightRow {
@@ -91,13 +104,16 @@ struct RunView {
   std::int64_t run_number = 1;  // dispatch::Run
   std::string run_id;           // the Command Post's; "": it names none
   std::vector<EndpointRow> endpoints;
+  std::vector<RobotRow> robots;    // by name
   std::vector<ReportRow> reports;  // newest first
+  double near_metres = 0;          // of one type and this near, two reports may be of one artifact
   std::vector<ActivityRow> activities;
   std::vector<RefusalRow> refusals;  // newest first, the last 50
   std::vector<LightRow> lights;
   double budget_mbit = 0;
   double sent_mbit = 0;  // over the last seconds, to both endpoints
   std::size_t queued_bytes = 0;
+  std::uint64_t map_version = 0;       // picture::Mosaic::version(): says whether /adit/map has changed
   std::vector<std::string> attention;  // sentences for the operator, most urgent first
 };
 
@@ -111,6 +127,7 @@ class Source {
   virtual RunView view() const = 0;
   virtual std::vector<ReportRow> reports() const = 0;  // of all runs, oldest first
   virtual std::optional<ReportDetail> report(std::int64_t number) const = 0;
+  virtual const picture::Mosaic& map() const = 0;
 };
 
 /// The operator's word on a report: see dispatch::Reports.
@@ -122,11 +139,16 @@ class Operator {
   virtual ~Operator() = default;
   /// Gives the number of the report that it moved, or a sentence why not.
   virtual std::expected<std::int64_t, std::string> judge(std::int64_t number, Deed deed) = 0;
+  /// Takes a report that the operator composed, like one that a client posts; the number it has, or that the
+  /// same one has already. A sentence: it was not taken.
+  virtual std::expected<std::int64_t, std::string> report(const icd::ArtifactReport& report,
+                                                          bool resubmit) = 0;
   /// Gives the new run's number.
   virtual std::int64_t begin_run() = 0;
 };
 
-/// The local web page, on the team's side, and the operator's word on reports: README.md has its routes.
+/// The local web page, on the team's side, and the operator's word on reports, behind a login: README.md has
+/// its routes, firmware/access/README.md says what protects them.
 ///
 /// Every answer but the events carries a Content-Security-Policy of `default-src 'none'` with what the page
 /// needs, X-Content-Type-Options and Referrer-Policy; every error is a JSON string.
@@ -134,8 +156,10 @@ class Page final : public intake::Handler {
  public:
   static constexpr int kEventsPerSecond = 4;
 
-  /// `tokens`: any of them lets a deed in; empty: none is asked for. All others outlive this.
-  Page(loop::Loop& loop, const Source& source, Operator& judge, std::vector<icd::BearerToken> tokens);
+  /// `tokens`: any of them lets a script in as an operator; empty: none does. All others outlive this, and
+  /// whatever `keys` still answers.
+  Page(loop::Loop& loop, const Source& source, Operator& judge, Keys& keys,
+       std::vector<icd::BearerToken> tokens);
   ~Page() override;
 
   std::unique_ptr<intake::Exchange> open(const intake::RequestHead& head,

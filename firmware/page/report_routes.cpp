@@ -5,6 +5,8 @@
 #include <utility>
 
 #include "codec/body_decoder.hpp"
+#include "codec/field.hpp"
+#include "codec/read.hpp"
 #include "icd/sentence.hpp"
 #include "page/answers.hpp"
 #include "page/reports_csv.hpp"
@@ -15,7 +17,8 @@ namespace {
 
 constexpr std::string_view kReports = "/adit/reports", kCsv = "/adit/reports.csv", kOne = "/adit/reports/",
                            kRuns = "/adit/runs";
-constexpr std::size_t kMostBody = 65536;  // of a deed, which needs none
+constexpr std::size_t kMostBody = 65536;
+constexpr auto kAccepted = static_cast<icd::Status>(202);  // RFC 9110 15.3.3; no ICD answer has it
 
 struct DeedName {
   std::string_view name;
@@ -39,20 +42,24 @@ std::optional<std::int64_t> number_in(std::string_view text) {
   return error == std::errc() && end == text.data() + text.size() ? std::optional(number) : std::nullopt;
 }
 
-/// The path of a deed: "/adit/reports/7/send", or kRuns.
+enum class Wanted : std::uint8_t { Judgement, Report, Run };
+
+/// The path of a deed: "/adit/reports/7/send", kReports or kRuns.
 struct DeedPath {
-  std::int64_t number = 0;
-  std::optional<Deed> deed;  // nothing: a new run
+  Wanted wanted = Wanted::Judgement;
+  std::int64_t number = 0;  // of what is judged
+  Deed deed = Deed::Send;
 };
 
 std::optional<DeedPath> deed_at(std::string_view path) {
-  if (path == kRuns) return DeedPath{};
+  if (path == kRuns) return DeedPath{.wanted = Wanted::Run};
+  if (path == kReports) return DeedPath{.wanted = Wanted::Report};
   const auto slash = path.rfind('/');
   if (!path.starts_with(kOne) || slash < kOne.size()) return std::nullopt;
   const auto number = number_in(path.substr(kOne.size(), slash - kOne.size()));
   const auto deed = deed_named(path.substr(slash + 1));
   if (!number || !deed) return std::nullopt;
-  return DeedPath{*number, deed};
+  return DeedPath{.number = *number, .deed = *deed};
 }
 
 intake::Answer no_such(std::int64_t number) {
@@ -64,29 +71,32 @@ intake::Answer too_long() {
                  icd::sentence("expected a body of at most ", kMostBody, " bytes"));
 }
 
-/// Reads the body away, and does the deed once it is whole.
+/// Does the deed once the body is whole.
 class DeedVisit final : public intake::Exchange {
  public:
-  DeedVisit(std::shared_ptr<intake::Responder> responder, std::function<intake::Answer()> deed)
+  using DoDeed = std::function<intake::Answer(std::string_view body)>;
+  DeedVisit(std::shared_ptr<intake::Responder> responder, DoDeed deed)
       : responder_(std::move(responder)), deed_(std::move(deed)) {}
   bool on_body(std::span<const std::uint8_t> piece) override {
-    size_ += piece.size();
-    if (size_ > kMostBody) responder_->answer(too_long());
+    if (body_.size() + piece.size() > kMostBody) {
+      responder_->answer(too_long());
+    } else {
+      body_.append(reinterpret_cast<const char*>(piece.data()), piece.size());
+    }
     return true;
   }
-  void on_end() override { responder_->answer(deed_()); }
+  void on_end() override { responder_->answer(deed_(body_)); }
 
  private:
   std::shared_ptr<intake::Responder> responder_;
-  std::function<intake::Answer()> deed_;
-  std::size_t size_ = 0;
+  DoDeed deed_;
+  std::string body_;
 };
 
 }  // namespace
 
-ReportRoutes::ReportRoutes(const Source& source, Operator& judge, std::vector<icd::BearerToken> tokens,
-                           std::function<void()> changed)
-    : source_(source), operator_(judge), tokens_(std::move(tokens)), changed_(std::move(changed)) {}
+ReportRoutes::ReportRoutes(const Source& source, Operator& judge, std::function<void()> changed)
+    : source_(source), operator_(judge), changed_(std::move(changed)) {}
 
 bool ReportRoutes::has(std::string_view path) {
   return path == kReports || path == kCsv || path == kRuns || path.starts_with(kOne);
@@ -98,32 +108,23 @@ std::unique_ptr<intake::Exchange> ReportRoutes::open(const intake::RequestHead& 
     responder->answer(std::move(answer));
     return nullptr;
   };
-  const auto path = deed_at(head.path());
+  const bool lists = head.path() == kReports && only_reads(head);
+  const auto path = lists ? std::nullopt : deed_at(head.path());
   if (!path) return refuse(only_reads(head) ? shown(head.path()) : wrong_method(kReading));
-  if (head.method() != "POST") return refuse(wrong_method("POST"));
-  if (!may_enter(head)) {
-    auto answer = refusal(icd::Status::Unauthorized, "Authorization: expected Bearer and the team's token");
-    answer.headers.push_back({"WWW-Authenticate", "Bearer"});
-    return refuse(std::move(answer));
+  if (head.method() != "POST") {
+    return refuse(wrong_method(path->wanted == Wanted::Report ? "GET, HEAD, POST" : "POST"));
   }
   if (codec::format_of(head.header("Content-Type")) != codec::Format::Json) {
     return refuse(refusal(icd::Status::UnprocessableEntity, "Content-Type: expected application/json"));
   }
   if (head.content_length().value_or(0) > kMostBody) return refuse(too_long());
-  return std::make_unique<DeedVisit>(std::move(responder), [this, path = *path] {
-    auto answer = path.deed ? judge(path.number, *path.deed) : begin_run();
+  return std::make_unique<DeedVisit>(std::move(responder), [this, path = *path](std::string_view body) {
+    auto answer = path.wanted == Wanted::Judgement ? judge(path.number, path.deed)
+                  : path.wanted == Wanted::Report  ? report(body)
+                                                   : begin_run();
     changed_();
     return answer;
   });
-}
-
-bool ReportRoutes::may_enter(const intake::RequestHead& head) const {
-  const std::string_view presented = icd::token_in(head.header("Authorization"));
-  bool known = tokens_.empty();
-  for (const icd::BearerToken& token : tokens_) {
-    if (token.matches(presented)) known = true;  // no early end: the time must not tell which
-  }
-  return known;
 }
 
 intake::Answer ReportRoutes::shown(std::string_view path) const {
@@ -144,6 +145,23 @@ intake::Answer ReportRoutes::judge(std::int64_t number, Deed deed) {
   const auto moved = operator_.judge(number, deed);
   if (!moved) return refusal(icd::Status::Conflict, moved.error());
   return fresh("application/json", "{\"report\":" + std::to_string(*moved) + "}");
+}
+
+intake::Answer ReportRoutes::report(std::string_view body) {
+  const auto document = codec::decode({}, codec::Split::Nothing, body);
+  if (!document) return refusal(document.error().status, document.error().sentence);
+  const auto report = codec::read_artifact_report(*document, {});
+  if (!report) return refusal(report.error().status, report.error().sentence);
+  codec::Reading reading;
+  const codec::Field root(document->root, reading);
+  const codec::Field resubmit = root.member("resubmit");
+  const auto again = reading.outcome(!resubmit.is_absent() && resubmit.truth());
+  if (!again) return refusal(again.error().status, again.error().sentence);
+  const auto number = operator_.report(*report, *again);
+  if (!number) return refusal(icd::Status::Conflict, number.error());
+  auto answer = fresh("application/json", "{\"report\":" + std::to_string(*number) + "}");
+  answer.status = kAccepted;
+  return answer;
 }
 
 intake::Answer ReportRoutes::begin_run() {

@@ -3,21 +3,19 @@
 #include <functional>
 #include <memory>
 #include <string_view>
-#include <vector>
 
 #include "page/page.hpp"
 
 namespace adit::page {
 
-/// What is known of reports, for whoever asks, and the operator's deeds, for whoever has a token: README.md.
+/// What is known of reports, and the operator's deeds, for those whom Entrance let in: README.md.
 ///
-/// A deed is asked for by POST with a token in a header and JSON as its Content-Type: a web page from
-/// elsewhere, in a browser of the team's network, can send neither without a preflight, which is refused.
+/// A deed is asked for by POST with JSON as its Content-Type: a web page from elsewhere, in a browser of the
+/// team's network, cannot send that without a preflight, which is refused.
 class ReportRoutes {
  public:
   /// `changed` is called after each deed. All outlive this.
-  ReportRoutes(const Source& source, Operator& judge, std::vector<icd::BearerToken> tokens,
-               std::function<void()> changed);
+  ReportRoutes(const Source& source, Operator& judge, std::function<void()> changed);
 
   static bool has(std::string_view path);
   /// Requires has(head.path()).
@@ -25,14 +23,14 @@ class ReportRoutes {
                                          std::shared_ptr<intake::Responder> responder);
 
  private:
-  bool may_enter(const intake::RequestHead& head) const;
   intake::Answer shown(std::string_view path) const;
   intake::Answer judge(std::int64_t number, Deed deed);
+  /// Of the body of a composed report.
+  intake::Answer report(std::string_view body);
   intake::Answer begin_run();
 
   const Source& source_;
   Operator& operator_;
-  std::vector<icd::BearerToken> tokens_;
   std::function<void()> changed_;
 };
 

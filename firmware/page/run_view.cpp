@@ -18,7 +18,15 @@ Value json(const EndpointRow& row) {
                         {"connected", json(row.connected)},
                         {"trouble", json(row.trouble)},
                         {"last_status", json(row.last_status)},
-                        {"answer_ms", json(row.answer_ms)}}};
+                        {"answer_ms", json(row.answer_ms)},
+                        {"throttled", json(row.throttled)}}};
+}
+
+Value json(const RobotRow& row) {
+  return {Value::Object{{"name", json(row.name)},
+                        {"position", json(row.position)},
+                        {"heading", json(row.heading)},
+                        {"at", json(row.at)}}};
 }
 
 Value json(const ActivityRow& row) {
@@ -60,13 +68,16 @@ std::string write_run_view(const RunView& view) {
                                           {"run_number", json(view.run_number)},
                                           {"run_id", json(view.run_id)},
                                           {"endpoints", json(view.endpoints)},
+                                          {"robots", json(view.robots)},
                                           {"reports", json(view.reports)},
+                                          {"near_metres", json(view.near_metres)},
                                           {"activities", json(view.activities)},
                                           {"refusals", json(view.refusals)},
                                           {"lights", json(view.lights)},
                                           {"budget_mbit", json(view.budget_mbit)},
                                           {"sent_mbit", json(view.sent_mbit)},
                                           {"queued_bytes", json(view.queued_bytes)},
+                                          {"map_version", json(view.map_version)},
                                           {"attention", json(view.attention)}}});
 }
 

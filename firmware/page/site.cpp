@@ -17,7 +17,9 @@ constexpr std::pair<std::string_view, std::string_view> kContentTypes[] = {
 
 const File* file_at(std::string_view path) {
   const auto files = embedded_files();
-  const auto found = std::ranges::find(files, path == "/" ? "/index.html" : path, &File::path);
+  if (path == "/") path = "/index.html";
+  if (path == "/display") path = "/display.html";
+  const auto found = std::ranges::find(files, path, &File::path);
   return found == files.end() ? nullptr : &*found;
 }
 

@@ -6,6 +6,7 @@
 #include "cli/command.hpp"
 #include "cli/server.hpp"
 #include "cli/status_text.hpp"
+#include "cli/token_file.hpp"
 #include "cli/view.hpp"
 
 namespace adit::cli {
@@ -17,7 +18,8 @@ Outcome asked(const std::string& json, const std::vector<std::string_view>& word
   const Server server(Server::ok(json));
   const std::string at = server.at();
   std::vector<std::string_view> all = words;
-  all.insert(all.end(), {"--at", at});
+  const TokenFile token;
+  all.insert(all.end(), {"--at", at, "--token-file", token.path()});
   return run(all, false);
 }
 
@@ -64,12 +66,41 @@ TEST(Ask, SaysThatTheAnswerIsNotAdits) {
 }
 
 TEST(Ask, PassesOnWhatAnErrorSays) {
-  const Server server(Server::reply("404 Not Found", "{}"));
-  EXPECT_THAT(run(std::vector<std::string_view>{"status", "--at", server.at()}, false).err,
+  const TokenFile token;
+  const auto status_of = [&token](const Server& server) {
+    const std::string at = server.at();
+    return run(std::vector<std::string_view>{"status", "--at", at, "--token-file", token.path()}, false).err;
+  };
+  EXPECT_THAT(status_of(Server(Server::reply("404 Not Found", "{}"))),
               HasSubstr("it answered 404 (is that Adit?)"));
-  const Server said(Server::reply("503 Service Unavailable", "\"the ledger is away\\u001b[2J\""));
-  EXPECT_EQ(run(std::vector<std::string_view>{"status", "--at", said.at()}, false).err,
+  EXPECT_EQ(status_of(Server(Server::reply("503 Service Unavailable", "\"the ledger is away\\u001b[2J\""))),
             "adit: the ledger is away\\x1b[2J\n");
+  EXPECT_EQ(status_of(Server(Server::reply("401 Unauthorized", "\"log in\""))),
+            "adit: Adit does not know the token in " + token.path() + "\n");
+}
+
+TEST(Ask, ShowsItsTokenToAditAlone) {
+  const TokenFile token;
+  const Server server(Server::ok(page::write_run_view(sample_view())));
+  const std::string at = server.at();
+  const Outcome outcome =
+      run(std::vector<std::string_view>{"status", "--at", at, "--token-file", token.path()}, false);
+  EXPECT_THAT(server.request(), HasSubstr("\r\nAuthorization: Bearer sesame-1\r\n"));
+  EXPECT_THAT(outcome.out + outcome.err, testing::Not(HasSubstr("sesame")));
+}
+
+TEST(Ask, WithoutATokenSaysHowToNameOneAndAsksNothing) {
+  const Server server(Server::ok(page::write_run_view(sample_view())));
+  Options options;
+  options.at = server.at();
+  options.secrets = "/nowhere";
+  const Outcome outcome = status(options, false);
+  EXPECT_EQ(outcome.exit, Exit::Unable);
+  EXPECT_EQ(
+      outcome.err,
+      "adit: Adit asks for the team's token, and there is none to be read in /nowhere: run this as root, or "
+      "name a file that holds it by --token-file FILE\n");
+  EXPECT_EQ(server.request(), "");
 }
 
 TEST(Ask, SaysThatItDoesNotKnowWhereAditIs) {

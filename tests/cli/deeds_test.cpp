@@ -3,12 +3,9 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include <cstdlib>
-#include <filesystem>
-#include <fstream>
-
 #include "cli/command.hpp"
 #include "cli/server.hpp"
+#include "cli/token_file.hpp"
 
 namespace adit::cli {
 namespace {
@@ -17,17 +14,7 @@ using testing::HasSubstr;
 using testing::Not;
 
 class Deeds : public testing::Test {
- public:
-  ~Deeds() override { std::filesystem::remove(token_file_); }
-
  protected:
-  Deeds() {
-    std::string name = (std::filesystem::temp_directory_path() / "adit-deeds-XXXXXX").string();
-    close(mkstemp(name.data()));
-    token_file_ = name;
-    std::ofstream(token_file_) << "sesame-1\n";
-  }
-
   Outcome say(const Server& server, std::vector<std::string_view> words) const {
     const std::string at = server.at();
     words.insert(words.end(), {"--at", at, "--token-file", token_file_});
@@ -36,7 +23,8 @@ class Deeds : public testing::Test {
     return outcome;
   }
 
-  std::string token_file_;
+  TokenFile file_;
+  const std::string token_file_ = file_.path();
 };
 
 TEST_F(Deeds, AreAskedForByTheirNames) {
@@ -89,20 +77,6 @@ TEST_F(Deeds, StopWhereTheTokenIsNotGood) {
   const Outcome outcome = say(server, {"reports", "send", "7", "8"});
   EXPECT_EQ(outcome.exit, Exit::Unable);
   EXPECT_EQ(outcome.err, "adit: Adit does not know the token in " + token_file_ + "\n");
-}
-
-TEST_F(Deeds, WithoutATokenSayWhereOneIsLookedFor) {
-  const Server server(
-      Server::reply("401 Unauthorized", "\"Authorization: expected Bearer and the team's token\""));
-  Options options;
-  options.command = Command::Reports;
-  options.verb = Verb::Send;
-  options.numbers = {7};
-  options.secrets = "/nowhere";
-  const Outcome outcome = judge(server.address(), options);
-  EXPECT_EQ(outcome.exit, Exit::Unable);
-  EXPECT_THAT(outcome.err, HasSubstr("--token-file"));
-  EXPECT_THAT(server.request(), Not(HasSubstr("Authorization")));
 }
 
 TEST_F(Deeds, WhoseAnswerIsLostMayHaveBeenDone) {

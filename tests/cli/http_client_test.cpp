@@ -32,11 +32,12 @@ std::string request_for(const HttpRequest& request) {
   return server.request();
 }
 
-TEST(HttpClient, AsksForTheTargetAndShowsNoToken) {
+TEST(HttpClient, AsksForTheTargetWithTheTokenThatItHas) {
   const std::string request =
       request_for({.target = "/adit/run", .token = icd::BearerToken::parse("secret")});
   EXPECT_THAT(request, StartsWith("GET /adit/run HTTP/1.1\r\nHost: 127.0.0.1:"));
-  EXPECT_THAT(request, Not(HasSubstr("Authorization")));
+  EXPECT_THAT(request, HasSubstr("\r\nAuthorization: Bearer secret\r\n"));
+  EXPECT_THAT(request_for({.target = "/adit/run"}), Not(HasSubstr("Authorization")));
 }
 
 TEST(HttpClient, PostsWithTheTokenThatItHas) {

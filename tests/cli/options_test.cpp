@@ -79,7 +79,7 @@ TEST(Options, NameTheWordThatIsWrong) {
                {{"reports", "resubmit", "7", "8"}, "one word too many: 8"},
                {{"reports", "export", "7"}, "one word too many: 7"},
                {{"reports", "--csv"}, "reports does not take --csv"},
-               {{"reports", "--token-file", "x"}, "reports does not take --token-file"},
+               {{"check", "--token-file", "x"}, "check does not take --token-file"},
                {{"reports", "show", "7", "--run", "2"}, "reports show does not take --run"},
                {{"reports", "--run", "old"}, "expected --run and a run's number or all, got old"},
                {{"reports", "--run"}, "a value is missing after --run"},

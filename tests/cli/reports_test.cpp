@@ -6,6 +6,7 @@
 #include "cli/command.hpp"
 #include "cli/reports_text.hpp"
 #include "cli/server.hpp"
+#include "cli/token_file.hpp"
 #include "cli/view.hpp"
 #include "page/reports_csv.hpp"
 #include "page/reports_json.hpp"
@@ -39,7 +40,8 @@ Outcome asked(const std::vector<page::ReportRow>& rows, std::vector<std::string_
                        {"GET /adit/reports/4", Server::ok(page::write_report(detail))},
                        {"GET /adit/reports/5", Server::reply("404 Not Found", "\"there is no report 5\"")}});
   const std::string at = server.at();
-  words.insert(words.end(), {"--at", at});
+  const TokenFile token;
+  words.insert(words.end(), {"--at", at, "--token-file", token.path()});
   return run(words, false);
 }
 
@@ -96,7 +98,10 @@ TEST(Reports, AreExportedAsTheyAre) {
 TEST(Reports, OfAnotherVersionAreNotGuessedAt) {
   const Server server({{"GET /adit/run", Server::ok(page::write_run_view(sample_view()))},
                        {"GET /adit/reports", Server::ok("[{\"number\": 1}]")}});
-  const Outcome outcome = run(std::vector<std::string_view>{"reports", "--at", server.at()}, false);
+  const TokenFile token;
+  const std::string at = server.at();
+  const Outcome outcome =
+      run(std::vector<std::string_view>{"reports", "--at", at, "--token-file", token.path()}, false);
   EXPECT_EQ(outcome.exit, Exit::Unable);
   EXPECT_THAT(outcome.err, HasSubstr("is not of this version of Adit"));
 }

@@ -23,6 +23,11 @@ class WaitingClientsTest : public testing::Test {
   WaitingClients clients_;
 };
 
+TEST_F(WaitingClientsTest, KnowWhichReportEachOfThemWaitsFor) {
+  EXPECT_EQ(clients_.awaited_by(2), 8);
+  EXPECT_EQ(clients_.awaited_by(4), std::nullopt);
+}
+
 TEST_F(WaitingClientsTest, AreTakenOnceByTheirReport) {
   EXPECT_THAT(clients_.take(7), ElementsAre(1, 3));
   EXPECT_THAT(clients_.take(7), IsEmpty());

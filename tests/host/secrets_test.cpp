@@ -40,6 +40,18 @@ TEST_F(ReadSecrets, DoesWithoutATeamToken) {
   EXPECT_FALSE(read_secrets(folder_.path()).value().team.has_value());
 }
 
+TEST_F(ReadSecrets, KnowsTheCodeOfTheLabelWhereThereIsOne) {
+  EXPECT_FALSE(read_secrets(folder_.path()).value().label_code.has_value());
+  folder_.put("label.code", "\n");  // systemd's stand-in
+  EXPECT_FALSE(read_secrets(folder_.path()).value().label_code.has_value());
+  folder_.put("label.code", "31415926\n");
+  EXPECT_EQ(read_secrets(folder_.path()).value().label_code->reveal(), "31415926");
+  for (const std::string wrong : {"3141592", "314159265", "3141592x"}) {
+    folder_.put("label.code", wrong);
+    EXPECT_EQ(read_secrets(folder_.path()).error(), (folder_ / "label.code") + ": expected 8 digits");
+  }
+}
+
 TEST_F(ReadSecrets, NeedsBothTokensOfTheCommandPost) {
   for (const std::string name : {"scoring.token", "mapping.token"}) {
     const std::string path = folder_ / name;

@@ -167,7 +167,7 @@ void RawClient::reset() {
 std::string request(std::string_view method, std::string_view path, std::string_view headers,
                     std::string_view body) {
   std::string text;
-  text.append(method).append(" ").append(path).append(" HTTP/1.1\r\nHost: adit\r\n").append(headers);
+  text.append(method).append(" ").append(path).append(" HTTP/1.1\r\nHost: adit.local\r\n").append(headers);
   if (!body.empty()) text += "Content-Length: " + std::to_string(body.size()) + "\r\n";
   text.append("\r\n").append(body);
   return text;

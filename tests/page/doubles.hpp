@@ -6,11 +6,13 @@
 #include <map>
 #include <memory>
 #include <optional>
+#include <sstream>
 #include <string>
 #include <utility>
 #include <vector>
 
 #include "intake/server.hpp"
+#include "page/fake_keys.hpp"
 #include "page/page.hpp"
 
 namespace adit::page {
@@ -30,8 +32,11 @@ struct FakeSource final : Source {
     return found == details.end() ? std::nullopt : std::optional(found->second);
   }
 
+  const picture::Mosaic& map() const override { return mosaic; }
+
   RunView now;
   std::map<std::int64_t, ReportDetail> details;
+  picture::Mosaic mosaic;
   mutable int asked = 0;
 };
 
@@ -41,22 +46,38 @@ struct FakeOperator final : Operator {
     judged.emplace_back(number, deed);
     return outcome ? *outcome : number;
   }
+  std::expected<std::int64_t, std::string> report(const icd::ArtifactReport& report, bool resubmit) override {
+    reported.emplace_back(report, resubmit);
+    return outcome ? *outcome : 41;
+  }
   std::int64_t begin_run() override { return ++run; }
 
   std::vector<std::pair<std::int64_t, Deed>> judged;
+  std::vector<std::pair<icd::ArtifactReport, bool>> reported;
   std::optional<std::expected<std::int64_t, std::string>>
-      outcome;  // of judge(), where it is not the same number
+      outcome;  // of judge() and report(), where it is not the same number or 41
   std::int64_t run = 1;
 };
 
 class FakeHead final : public intake::RequestHead {
  public:
-  FakeHead(std::string method, std::string path, std::vector<intake::Header> headers = {},
+  /// `target`: a path, and after it a query, if any.
+  FakeHead(std::string method, const std::string& target, std::vector<intake::Header> headers = {},
            std::optional<std::uint64_t> length = 0)
-      : method_(std::move(method)), path_(std::move(path)), headers_(std::move(headers)), length_(length) {}
+      : method_(std::move(method)), headers_(std::move(headers)), length_(length) {
+    std::istringstream rest(target);
+    std::getline(rest, path_, '?');
+    for (std::string name, value; std::getline(rest, name, '=') && std::getline(rest, value, '&');) {
+      query_[name] = value;
+    }
+    if (header("Host").empty()) headers_.push_back({"Host", "10.0.0.1:8000"});
+  }
   std::string_view method() const override { return method_; }
   std::string_view path() const override { return path_; }
-  std::string_view query(std::string_view) const override { return ""; }
+  std::string_view query(std::string_view name) const override {
+    const auto found = query_.find(name);
+    return found == query_.end() ? std::string_view{} : found->second;
+  }
   std::string_view header(std::string_view name) const override {
     const auto found = std::ranges::find(headers_, name, &intake::Header::name);
     return found == headers_.end() ? std::string_view{} : found->value;
@@ -66,6 +87,7 @@ class FakeHead final : public intake::RequestHead {
 
  private:
   std::string method_, path_, peer_ = "10.0.0.5";
+  std::map<std::string, std::string, std::less<>> query_;
   std::vector<intake::Header> headers_;
   std::optional<std::uint64_t> length_;
 };
@@ -91,6 +113,8 @@ struct FakeResponder final : intake::Responder {
   std::shared_ptr<FakeStream> streaming;
   std::string stream_type;
 };
+
+inline const intake::Header kByToken{"Authorization", "Bearer team-1"};
 
 inline std::string header(const intake::Answer& answer, std::string_view name) {
   const auto found = std::ranges::find(answer.headers, name, &intake::Header::name);

@@ -19,7 +19,7 @@ class LiveTest : public testing::Test {
   /// Opens one more page; null where it was refused.
   std::shared_ptr<FakeStream> open() {
     FakeResponder responder;
-    live.open(responder);
+    live.open(responder, [this] { return welcome; });
     refusal = responder.answered;
     return responder.streaming;
   }
@@ -29,6 +29,7 @@ class LiveTest : public testing::Test {
     while (loop.now() < until) loop.turn(std::min<loop::Duration>(until - loop.now(), milliseconds{20}));
   }
 
+  bool welcome = true;
   loop::Loop loop;
   FakeSource source;
   Live live{loop, source};
@@ -102,6 +103,14 @@ TEST_F(LiveTest, AsksOnceForAllPages) {
   pass(milliseconds{400});
   EXPECT_EQ(source.asked, asked + 1);
   for (const auto& page : pages) EXPECT_THAT(page->sent, SizeIs(2));
+}
+
+TEST_F(LiveTest, EndsForWhoMayNotStay) {
+  const auto page = open();
+  welcome = false;
+  pass(Live::kHeartbeat + milliseconds{100});
+  EXPECT_THAT(page->sent, SizeIs(1));
+  EXPECT_EQ(page.use_count(), 1) << "the stream has been dropped, and so ended";
 }
 
 TEST_F(LiveTest, LeavesTheRobotsTheirConnections) {

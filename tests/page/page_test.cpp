@@ -20,10 +20,11 @@ class PageTest : public testing::Test {
  protected:
   intake::Answer get(std::string path, std::string if_none_match = "", std::string method = "GET") {
     auto responder = std::make_shared<FakeResponder>();
-    EXPECT_EQ(
-        page.open(FakeHead{std::move(method), std::move(path), {{"If-None-Match", std::move(if_none_match)}}},
-                  responder, {}),
-        nullptr);
+    EXPECT_EQ(page.open(FakeHead{std::move(method),
+                                 std::move(path),
+                                 {{"If-None-Match", std::move(if_none_match)}, kByToken}},
+                        responder, {}),
+              nullptr);
     EXPECT_TRUE(responder->answered) << "a page answers at once";
     return responder->answered.value_or(intake::Answer{});
   }
@@ -31,7 +32,8 @@ class PageTest : public testing::Test {
   loop::Loop loop;
   FakeSource source;
   FakeOperator judge;
-  Page page{loop, source, judge, {}};
+  FakeKeys keys;
+  Page page{loop, source, judge, keys, {token()}};
 };
 
 TEST_F(PageTest, ServesItsFilesWithTheirTypes) {
@@ -110,12 +112,13 @@ TEST(PageOnAServer, ServesABrowser) {
   std::unique_ptr<Page> page;
   Forward forward;
   FakeOperator judge;
+  FakeKeys keys;
   intake::Served served{forward};
   FakeSource source;
   source.now = *scene("calm", 1000, 0);
   served.on_loop([&] {
-    forward.to =
-        (page = std::make_unique<Page>(served.loop(), source, judge, std::vector<icd::BearerToken>{})).get();
+    page = std::make_unique<Page>(served.loop(), source, judge, keys, std::vector{token()});
+    forward.to = page.get();
   });
 
   intake::RawClient client{served.port()};
@@ -130,7 +133,7 @@ TEST(PageOnAServer, ServesABrowser) {
   EXPECT_EQ(again->status, 304);
   EXPECT_EQ(again->body, "");
 
-  client.send(intake::request("GET", "/adit/events"));
+  client.send(intake::request("GET", "/adit/events", "Authorization: Bearer team-1\r\n"));
   EXPECT_TRUE(client.wait_for("text/event-stream"));
   EXPECT_TRUE(client.wait_for("\"score\":7"));
   served.on_loop([&] {

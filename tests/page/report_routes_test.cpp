@@ -18,12 +18,7 @@ using testing::ElementsAre;
 using testing::IsEmpty;
 using testing::Pair;
 
-icd::BearerToken token(std::string_view text) {
-  return *icd::BearerToken::parse(text);
-}
-
-const std::vector<intake::Header> kGood = {{"Authorization", "Bearer team-1"},
-                                           {"Content-Type", "application/json"}};
+const std::vector<intake::Header> kGood = {kByToken, {"Content-Type", "application/json"}};
 
 class ReportRoutesTest : public testing::Test {
  protected:
@@ -39,8 +34,17 @@ class ReportRoutesTest : public testing::Test {
     }
   }
 
+  intake::Answer compose(const std::string& body) {
+    auto responder = std::make_shared<FakeResponder>();
+    const auto exchange = page.open(FakeHead{"POST", "/adit/reports", kGood, body.size()}, responder, {});
+    if (exchange) {
+      exchange->on_body({reinterpret_cast<const std::uint8_t*>(body.data()), body.size()});
+      exchange->on_end();
+    }
+    return responder->answered.value_or(intake::Answer{});
+  }
   intake::Answer ask(const std::string& method, const std::string& path,
-                     std::vector<intake::Header> headers = {}, std::size_t body = 0) {
+                     std::vector<intake::Header> headers = {kByToken}, std::size_t body = 0) {
     auto responder = std::make_shared<FakeResponder>();
     const auto exchange = page.open(FakeHead{method, path, std::move(headers), body}, responder, {});
     EXPECT_EQ(exchange == nullptr, responder->answered.has_value());
@@ -60,7 +64,8 @@ class ReportRoutesTest : public testing::Test {
   loop::Loop loop;
   FakeSource source;
   FakeOperator judge;
-  Page page{loop, source, judge, {token("team-1"), token("scoring-1")}};
+  FakeKeys keys;
+  Page page{loop, source, judge, keys, {token("team-1"), token("scoring-1")}};
 };
 
 TEST_F(ReportRoutesTest, GiveAllReportsAsJsonThatNobodyKeeps) {
@@ -113,6 +118,39 @@ TEST_F(ReportRoutesTest, DeclareANewRun) {
   EXPECT_EQ(judge.run, 2);
 }
 
+TEST_F(ReportRoutesTest, TakeAReportThatTheOperatorComposed) {
+  const auto answer = compose(R"({"type":"Drill","x":1.5,"y":-2,"z":0})");
+  EXPECT_EQ(static_cast<int>(answer.status), 202);
+  EXPECT_EQ(answer.body, "{\"report\":41}");
+  compose(R"({"type":"rope","x":0,"y":0,"z":0,"resubmit":true})");
+  ASSERT_EQ(judge.reported.size(), 2u);
+  EXPECT_EQ(judge.reported[0], std::pair(icd::ArtifactReport{"Drill", {1.5, -2, 0}}, false));
+  EXPECT_EQ(judge.reported[1], std::pair(icd::ArtifactReport{"rope", {0, 0, 0}}, true));
+}
+
+TEST_F(ReportRoutesTest, NameTheFieldOfAComposedReportThatIsWrong) {
+  const std::pair<const char*, const char*> wrong[] = {
+      {R"({"type":"Lamp","x":0,"y":0,"z":0})", "type: expected one of"},
+      {R"({"type":"Rope","x":"0","y":0,"z":0})", "x: expected"},
+      {R"({"type":"Rope","x":0,"y":0})", "z: missing"},
+      {R"({"type":"Rope","x":0,"y":0,"z":0,"resubmit":"no"})", "resubmit: expected"},
+      {"[]", "expected"}};
+  for (const auto& [body, sentence] : wrong) {
+    const auto answer = compose(body);
+    EXPECT_EQ(answer.status, icd::Status::UnprocessableEntity) << body;
+    EXPECT_THAT(answer.body, testing::HasSubstr(sentence));
+  }
+  EXPECT_EQ(compose("{").status, icd::Status::BadRequest);
+  EXPECT_THAT(judge.reported, IsEmpty());
+}
+
+TEST_F(ReportRoutesTest, SayWhyAComposedReportWasNotTaken) {
+  judge.outcome = std::unexpected("1000 reports wait already; this one was not taken");
+  const auto answer = compose(R"({"type":"Rope","x":0,"y":0,"z":0})");
+  EXPECT_EQ(answer.status, icd::Status::Conflict);
+  EXPECT_EQ(json::parse(answer.body), "1000 reports wait already; this one was not taken");
+}
+
 TEST_F(ReportRoutesTest, SayWhyADeedCannotBe) {
   judge.outcome = std::unexpected("report 7 is answered: there is nothing to withdraw");
   const auto answer = post("/adit/reports/7/withdraw");
@@ -148,17 +186,10 @@ TEST_F(ReportRoutesTest, DoNothingWithoutAToken) {
   EXPECT_EQ(judge.run, 1);
 }
 
-TEST_F(ReportRoutesTest, TakeAnyOfTheTokensAndNoneWhereNoneIsAskedFor) {
+TEST_F(ReportRoutesTest, TakeAnyOfTheTokens) {
   EXPECT_EQ(post("/adit/runs", {{"Authorization", "bearer scoring-1"}, {"Content-Type", "application/json"}})
                 .status,
             icd::Status::Ok);
-  Page open{loop, source, judge, {}};
-  auto responder = std::make_shared<FakeResponder>();
-  const auto exchange =
-      open.open(FakeHead{"POST", "/adit/runs", {{"Content-Type", "application/json"}}}, responder, {});
-  ASSERT_NE(exchange, nullptr);
-  exchange->on_end();
-  EXPECT_EQ(responder->answered->status, icd::Status::Ok);
 }
 
 /// What a form or a script of another web page can send without being asked (Fetch, CORS-safelisted).
@@ -170,8 +201,7 @@ TEST_F(ReportRoutesTest, LetNoOtherWebPageDoADeed) {
   }
   const auto preflight = ask("OPTIONS", "/adit/reports/7/send",
                              {{"Origin", "http://evil.example"}, {"Access-Control-Request-Method", "POST"}});
-  EXPECT_EQ(preflight.status, icd::Status::MethodNotAllowed);
-  EXPECT_EQ(header(preflight, "Allow"), "POST");
+  EXPECT_EQ(preflight.status, icd::Status::Forbidden);
   for (const auto& answer : {preflight, post("/adit/runs"), ask("GET", "/adit/reports")}) {
     for (const auto& [name, value] : answer.headers) EXPECT_FALSE(name.starts_with("Access-Control")) << name;
   }
@@ -197,7 +227,7 @@ TEST_F(ReportRoutesTest, TakeAnyBodyButAnEndlessOne) {
 }
 
 TEST_F(ReportRoutesTest, OnlyReadWhereTheyShow) {
-  for (const char* path : {"/adit/reports", "/adit/reports.csv", "/adit/reports/7"}) {
+  for (const char* path : {"/adit/reports.csv", "/adit/reports/7"}) {
     for (const char* method : {"POST", "PUT", "DELETE", "OPTIONS"}) {
       const auto answer = ask(method, path, kGood);
       EXPECT_EQ(answer.status, icd::Status::MethodNotAllowed) << method << ' ' << path;
@@ -207,17 +237,19 @@ TEST_F(ReportRoutesTest, OnlyReadWhereTheyShow) {
   for (const char* method : {"GET", "HEAD", "PUT", "DELETE"}) {
     EXPECT_EQ(header(ask(method, "/adit/runs", kGood), "Allow"), "POST") << method;
   }
+  EXPECT_EQ(header(ask("PUT", "/adit/reports", kGood), "Allow"), "GET, HEAD, POST");
 }
 
 TEST(ReportRoutesOnAServer, DoADeedAndShowIt) {
   std::unique_ptr<Page> page;
   Forward forward;
   FakeOperator judge;
+  FakeKeys keys;
   FakeSource source;
   source.details[7].row.number = 7;
   intake::Served served{forward};
   served.on_loop([&] {
-    page = std::make_unique<Page>(served.loop(), source, judge, std::vector{token("team-1")});
+    page = std::make_unique<Page>(served.loop(), source, judge, keys, std::vector{token()});
     forward.to = page.get();
   });
   intake::RawClient client{served.port()};

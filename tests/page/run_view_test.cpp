@@ -31,10 +31,22 @@ TEST(RunViewJson, NamesEachMemberAsTheViewDoes) {
   EXPECT_EQ(parsed["refusals"][0]["status"], 422);
   EXPECT_EQ(parsed["lights"][3], (json{{"name", "attention"}, {"pattern", "fast"}}));
   EXPECT_EQ(parsed["budget_mbit"], 100.0);
+  EXPECT_EQ(parsed["endpoints"][1]["throttled"], 3);
+  EXPECT_EQ(parsed["near_metres"], 5.0);
+  EXPECT_EQ(parsed["robots"][0], (json{{"name", "ANYmal1"},
+                                       {"position", {{"x", 24.0}, {"y", 6.0}, {"z", 0.5}}},
+                                       {"heading", 0.5},
+                                       {"at", 1000.0}}));
   EXPECT_EQ(parsed["run_number"], 1);
   EXPECT_EQ(parsed["run_id"], "");
   EXPECT_EQ(parsed["queued_bytes"], 214'000'000);
   EXPECT_EQ(parsed["attention"].size(), 2);
+}
+
+TEST(RunViewJson, TellsTheVersionOfTheMapToTheLastDigit) {
+  RunView view;
+  view.map_version = 1'793'000'123'456;
+  EXPECT_EQ(json::parse(write_run_view(view))["map_version"], 1'793'000'123'456);
 }
 
 TEST(RunViewJson, TellsOfEachReportWhoseWordItWaitsFor) {

@@ -1,5 +1,6 @@
-// Serves the page with a scene of scenes.hpp, for a browser: `adit_page_scenes PORT [SCENE]`. Each line on
-// standard input is the name of the next scene; its end ends the program.
+// Serves the page with a scene of scenes.hpp, for a browser: `adit_page_scenes PORT [SCENE [first-start]]`.
+// The passwords are FakeKeys'; the token is "team-1". Each line on standard input is the name of the next
+// scene; its end ends the program.
 #include <sys/epoll.h>
 #include <unistd.h>
 
@@ -8,6 +9,9 @@
 #include <string>
 #include <utility>
 
+#include "page/fake_keys.hpp"
+#include "page/map_scene.hpp"
+#include "page/played.hpp"
 #include "page/scenes.hpp"
 
 namespace adit::page {
@@ -15,22 +19,36 @@ namespace {
 
 class Stage final : public Source, public Operator {
  public:
-  Stage(loop::Loop& loop, std::string name) : loop_(loop), began_(loop.stamp_now()), name_(std::move(name)) {}
+  Stage(loop::Loop& loop, std::string name) : loop_(loop), began_(loop.stamp_now()), name_(std::move(name)) {
+    draw_scene(map_, began_);
+  }
 
   RunView view() const override {
     const Time now = loop_.stamp_now();
-    return *scene(name_, now, now - began_);
+    RunView view = *scene(name_, now, now - began_);
+    view.map_version = map().version();
+    played_.apply(view);
+    return view;
   }
 
   std::vector<ReportRow> reports() const override {
     auto rows = view().reports;
     return {rows.rbegin(), rows.rend()};
   }
-  std::optional<ReportDetail> report(std::int64_t) const override { return {}; }
-  std::expected<std::int64_t, std::string> judge(std::int64_t, Deed) override {
-    return std::unexpected("this is a scene");
+  std::optional<ReportDetail> report(std::int64_t number) const override {
+    const auto rows = view().reports;
+    const auto row = std::ranges::find(rows, number, &ReportRow::number);
+    if (row == rows.end()) return {};
+    return ReportDetail{*row, {{row->received, "received", ""}, {row->changed, row->state, row->note}}, {}};
+  }
+  std::expected<std::int64_t, std::string> judge(std::int64_t number, Deed deed) override {
+    return played_.judge(view(), number, deed);
+  }
+  std::expected<std::int64_t, std::string> report(const icd::ArtifactReport& report, bool resubmit) override {
+    return played_.report(view(), report, resubmit);
   }
   std::int64_t begin_run() override { return 1; }
+  const picture::Mosaic& map() const override { return name_ == "empty" ? blank_ : map_; }
 
   bool change_to(const std::string& name) {
     const bool known = scene(name, 0, 0).has_value();
@@ -42,13 +60,17 @@ class Stage final : public Source, public Operator {
   loop::Loop& loop_;
   Time began_;
   std::string name_;
+  picture::Mosaic map_, blank_;
+  Played played_;
 };
 
-int serve(std::uint16_t port, const std::string& first) {
+int serve(std::uint16_t port, const std::string& first, bool first_start) {
   loop::Loop loop;
   Stage stage{loop, "empty"};
   if (!stage.change_to(first)) return std::fprintf(stderr, "no such scene: %s\n", first.c_str()), 2;
-  Page page{loop, stage, stage, {}};
+  FakeKeys keys;
+  if (first_start) keys.operator_.reset();
+  Page page{loop, stage, stage, keys, {token()}};
   auto server = intake::Server::start(loop, {.address = "127.0.0.1", .port = port, .interface = {}}, page);
   if (!server) return std::fprintf(stderr, "%s\n", server.error().c_str()), 1;
   std::printf("%d\n", (*server)->port());
@@ -77,5 +99,5 @@ int serve(std::uint16_t port, const std::string& first) {
 int main(int count, char** arguments) {
   const int port =
       count > 1 ? std::atoi(arguments[1]) : 0;  // NOLINT(cert-err34-c): 0, any port, is right then
-  return adit::page::serve(static_cast<std::uint16_t>(port), count > 2 ? arguments[2] : "calm");
+  return adit::page::serve(static_cast<std::uint16_t>(port), count > 2 ? arguments[2] : "calm", count > 3);
 }

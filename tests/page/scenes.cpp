@@ -14,6 +14,7 @@ RunView empty(Time now) {
                     {.name = "mapping", .address = "10.100.1.201:8000", .trouble = {}, .answer_ms = {}}};
   view.lights = {{"health", "on"}, {"scoring", "off"}, {"mapping", "off"}, {"attention", "off"}};
   view.budget_mbit = 100;
+  view.near_metres = 5;
   return view;
 }
 
@@ -68,6 +69,9 @@ RunView calm(Time now, double elapsed) {
       traffic("state", "ANYmal1", now, 0.4, 710, 230),   traffic("state", "ANYmal2", now, 0.4, 710, 230),
       traffic("state", "Scout", now, 0.4, 709, 230),     traffic("markers", "", now, 21, 12, 1'900)};
   view.activities[2].merged = 96;
+  view.robots = {{"ANYmal1", {24, 6, 0.5}, 0.5, now - 0.5},
+                 {"ANYmal2", {52, -14, 0.25}, -2, now - 0.5},
+                 {"Scout", {71 + 4 * std::sin(elapsed / 5), 18, 3}, 1.6, now - 0.5}};
   view.reports = {report(7, "Survivor", began - 14, "answered", 201, 1),
                   report(6, "Gas", began - 95, "answered", 201, 0),
                   report(5, "Fire Extinguisher", began - 188, "answered", 201, 1),
@@ -88,7 +92,8 @@ RunView trouble(Time now, double elapsed) {
                        .connected = false,
                        .trouble = "connecting to 10.100.1.201:8000: Connection refused",
                        .last_status = 0,
-                       .answer_ms = {}};
+                       .answer_ms = {},
+                       .throttled = 3};
   view.lights = {{"health", "on"}, {"scoring", "on"}, {"mapping", "slow"}, {"attention", "fast"}};
   view.sent_mbit = 0;
   view.queued_bytes = 214'000'000;
@@ -134,15 +139,17 @@ RunView reports(Time now, double elapsed) {
                   report(19, "Survivor", now - 120, "refused", 422, {}),
                   report(18, "Survivor", now - 900, "answered", 201, 1)};
   for (ReportRow& row : view.reports) row.run = row.number == 18 ? 1 : 2;
+  view.reports[4].position = {306.25, -2.5, 0.25};  // near report 25, and of its type
+  view.reports[4].type = "Gas";
   view.reports[2].asking = true;
   view.reports[2].note = "the connection was lost before an answer came; the run's status is being asked";
   view.reports[3].note = "no answer came, and the run's status shows that another client reports, too";
-  view.reports[4].note = "another Rope was reported 2.1 m from here";
+  view.reports[4].note = "held: the same type as report 25, 2 m from it";
   view.reports[5].reconciled = true;
   view.reports[6].note = "the operator calls it done";
   view.reports[7].same_as = 17;
   view.attention = {"report 25 is in doubt: no answer came",
-                    "report 24 is held: another Rope was reported near"};
+                    "report 24 is held: the same type as report 25, 2 m from it"};
   return view;
 }
 
@@ -164,6 +171,7 @@ RunView hostile(Time now, double elapsed) {
   view.refusals.push_back({now - 1, script, endless, 422, script + endless});
   view.refusals.push_back({now - 1, script, endless, 422, script});
   view.endpoints[0].trouble = script + endless;
+  view.robots.push_back({script + endless, {1e308, -1e308, 0}, 1e300, now});
   view.lights[0].pattern = script;
   view.lights[1].name = endless.substr(0, 300);
   view.attention = {script + endless};

@@ -4,9 +4,9 @@ import { once } from "node:events";
 import { createInterface } from "node:readline";
 import { chromium } from "playwright-core";
 
-/** Serves `scene` on `port` (0: any free one). */
-export async function serve(scene, port = 0) {
-  const program = spawn(process.env.SCENE_SERVER, [String(port), scene], { stdio: ["pipe", "pipe", "inherit"] });
+/** Serves `scene` on `port` (0: any free one); `more`: "first-start". */
+export async function serve(scene, port = 0, ...more) {
+  const program = spawn(process.env.SCENE_SERVER, [String(port), scene, ...more], { stdio: ["pipe", "pipe", "inherit"] });
   const [line] = await once(createInterface({ input: program.stdout }), "line");
   return {
     port: Number(line),
@@ -29,9 +29,19 @@ export const launch = () =>
       .concat(process.getuid() === 0 ? ["--no-sandbox"] : []),
   });
 
-/** Opens the page; what it complained of and where it went is in `page.complaints` and `page.requests`. */
-export async function look(browser, url, options = {}) {
+const BY_TOKEN = { extraHTTPHeaders: { Authorization: "Bearer team-1" } };
+
+/** Opens the page, let in by the token. */
+export async function look(browser, url, options = {}, prepare = () => {}) {
+  const page = await visit(browser, url, { ...BY_TOKEN, ...options }, prepare);
+  await page.waitForSelector("body[data-link=live]");
+  return page;
+}
+
+/** Opens a page; what it complained of and where it went is in `page.complaints` and `page.requests`. */
+export async function visit(browser, url, options = {}, prepare = () => {}) {
   const context = await browser.newContext({ viewport: { width: 1280, height: 720 }, ...options });
+  context.setDefaultTimeout(10_000);
   const page = await context.newPage();
   page.complaints = [];
   page.requests = [];
@@ -41,7 +51,7 @@ export async function look(browser, url, options = {}) {
   page.on("pageerror", (error) => page.complaints.push(String(error)));
   page.on("dialog", (dialog) => page.complaints.push(`dialog: ${dialog.message()}`) && dialog.dismiss());
   page.on("request", (request) => page.requests.push(request.url()));
+  await prepare(page);
   await page.goto(url);
-  await page.waitForSelector("body[data-link=live]");
   return page;
 }

@@ -138,7 +138,7 @@ class Box(Program):
         method, _, path = request.partition(" ")
         connection = http.client.HTTPConnection(self.network.box_address, PORT, timeout=5)
         with contextlib.closing(connection):
-            connection.request(method, path, headers=dict(headers))
+            connection.request(method, path, headers={"Authorization": f"Bearer {TEAM_TOKEN}", **dict(headers)})
             answer = connection.getresponse()
             return answer.status, json.loads(answer.read())
 

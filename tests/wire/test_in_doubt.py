@@ -81,7 +81,7 @@ class InDoubt(unittest.TestCase):
                 stage.post.will("drop")
                 told, _ = at_once(lambda: submit(stage), lambda: self.begin_new_run(stage, body))
                 self.assertEqual(told.status_code, 504, told.text)
-                self.attention_says(stage, "report 1 is in doubt", "the operator decides")
+                self.attention_says(stage, "report 1 is in doubt", "a new run began", "the operator decides")
                 self.assertEqual(submit(stage, another(1)).status_code, 201)
                 time.sleep(1.0)
                 self.assertEqual((sendings(stage), stage.post.recorded(REPORT)), (1, []))

@@ -26,7 +26,7 @@ FAULTS = {
     "reports:record-after=0.05,reset": 0.02, "reports:answer-after=1": 0.02,
     "status:500": 0.02, "status:drop": 0.02, "status:half-answer": 0.01,
 }
-LIFE, LONG_LIFE = (0.1, 0.6), (0.7, 1.3)  # seconds from a start to its kill; every fifth is long enough to find out
+LIFE, LONG_LIFE = (0.1, 0.6), (0.8, 1.4)  # seconds from a start to its kill; every fifth is long enough to find out
 PATIENCES = (0.3, 0.3, 0.3, 1.0, 5.0)  # seconds after which each client hangs up and tries again
 # Given up by its client after this long; what it was told by then must be true all the same.
 GIVES_UP = 15.0
@@ -94,7 +94,7 @@ class Killed(unittest.TestCase):
         for fault, rate in FAULTS.items():
             options += ["--fault-rate", f"{fault}={rate}"]
         self.stage = self.enterContext(Stage(post_options=options, **{
-            **QUICK, "command_post__timeouts__scoring_answer_ms": 500, "reports__doubt_for_ms": 200}))
+            **QUICK, "command_post__timeouts__scoring_answer_ms": 500, "reports__doubt_for_ms": 500}))
         self.record = self.stage.post.recorded
 
     def kill_again_and_again(self):
@@ -109,7 +109,8 @@ class Killed(unittest.TestCase):
     def waiting_for_the_operator(self):
         """Those held, and those in doubt of which nothing was found out for a while, by their numbers."""
         return {row["number"]: row for row in self.stage.box.reports()
-                if row["state"] == "received" or (row["state"] == "in doubt" and time.time() - row["changed"] > DOUBTED)}
+                if row["state"] == "received"
+                or (row["state"] == "in doubt" and time.time() - row["changed"] > DOUBTED)}
 
     def operator(self):
         """Looks at what the Command Post shows as recorded, and judges what waits for him by that."""

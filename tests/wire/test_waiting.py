@@ -126,7 +126,7 @@ class Waiting(unittest.TestCase):
             self.post_map(stage, cloud, "r1")
             sent += len(cloud.data)
         wait_until(lambda: self.cloud_bytes(stage, "r1") == sent, "all of them", 40)
-        view = requests.get(stage.box.url + "/adit/run", timeout=5).json()
+        view = stage.box.ask("GET /adit/run")[1]
         row = next(row for row in view["activities"] if row["kind"] == "cloud")
         self.assertEqual((row["accepted"], row["waiting"]), (5, 0))
 

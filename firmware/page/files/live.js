@@ -1,5 +1,7 @@
 // The line to the box: server-sent events, and a watchdog that notices when they stop.
 
+import { checkSession } from "./session.js";
+
 const SILENCE = 4500;  // ms; the box says something every 2 s
 const RETRY = 2000;
 
@@ -18,7 +20,10 @@ export function listen(url, heard, lost) {
       set(false);
       heard(JSON.parse(event.data));
     };
-    source.onerror = () => set(true);
+    source.onerror = () => {
+      set(true);
+      if (source.readyState === EventSource.CLOSED) checkSession(); // an error answer: perhaps the session ended
+    };
   };
 
   // EventSource comes back by itself after a closed connection, but neither after an error answer nor from a

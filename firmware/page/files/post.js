@@ -1,7 +1,7 @@
-// The Command Post: its two endpoints, what goes to them, and what waits.
+// The Command Post: its two endpoints, and how much of the link is in use.
 import { badge, list, make, mark, say } from "./dom.js";
 import { endpoint } from "./verdict.js";
-import { bytes, clip, mbit } from "./words.js";
+import { clip, mbit } from "./words.js";
 
 const at = (id) => document.getElementById(id);
 
@@ -21,25 +21,6 @@ function updateEndpoint(node, row, lost) {
   say(trouble, clip(row.trouble));
 }
 
-// The last minute, a value a second.
-const SPAN = 60, HEIGHT = 32;
-const samples = [];
-
-export function sample(value) {
-  samples.push(value);
-  if (samples.length > SPAN) samples.shift();
-}
-
-function drawSpark() {
-  const most = Math.max(1, ...samples);
-  const y = (value) => (HEIGHT - 1 - (value / most) * (HEIGHT - 3)).toFixed(1);
-  const from = SPAN - samples.length;
-  const line = samples.map((value, i) => `${from + i} ${y(value)}`).join("L");
-  const [area, stroke] = at("spark").children;
-  stroke.setAttribute("d", line && `M${line}`);
-  area.setAttribute("d", line && `M${from} ${HEIGHT}L${line}L${SPAN - 1} ${HEIGHT}Z`);
-}
-
 export function showPost(view, lost) {
   list(document.querySelector("#post .endpoints"), view.endpoints, (row) => row.name, createEndpoint, (node, row) =>
     updateEndpoint(node, row, lost));
@@ -48,6 +29,4 @@ export function showPost(view, lost) {
   say(at("budget"), `of ${mbit(view.budget_mbit)}`);
   at("bar").setAttribute("aria-valuenow", share.toFixed(0));
   at("bar").firstElementChild.style.inlineSize = `${share}%`;
-  say(at("queue"), view.queued_bytes ? bytes(view.queued_bytes) : "empty");
-  drawSpark();
 }

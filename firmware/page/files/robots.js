@@ -67,10 +67,14 @@ function showMarkers(row, now, lost) {
   updateCell(line.children[1], row, now, lost);
 }
 
-export function showRobots(activities, now, lost) {
+/** The answer in one sentence. */
+export function showVerdict(activities, now, lost) {
   const { level, word } = lost ? { level: "bad", word: "Unknown: the box does not answer" } : overall(activities, now);
   badge(document.getElementById("verdict"), level, clip(word, 120));
+}
 
+export function showRobots(activities, now, lost) {
+  showVerdict(activities, now, lost);
   const robots = byRobot(activities.filter((row) => COLUMNS.includes(row.kind)));
   const table = document.getElementById("robots");
   table.hidden = robots.length === 0;

@@ -1,0 +1,20 @@
+#pragma once
+
+#include <chrono>
+#include <cstdint>
+#include <optional>
+#include <string_view>
+
+namespace adit::access {
+
+using Instant = std::chrono::steady_clock::time_point;
+using Duration = std::chrono::nanoseconds;
+
+/// What somebody may do: a viewer looks, an operator also has a word. Each includes those before it.
+enum class Role : std::uint8_t { Viewer, Operator };
+
+/// "viewer", "operator"
+std::string_view name_of(Role role);
+std::optional<Role> role_named(std::string_view name);
+
+}  // namespace adit::access

@@ -1,0 +1,79 @@
+#include "access/sessions.hpp"
+
+#include <algorithm>
+
+namespace adit::access {
+namespace {
+
+/// Visible ASCII and spaces, so that it can be shown anywhere.
+std::string plain(std::string_view agent) {
+  std::string text(agent.substr(0, Sessions::kLongestAgent));
+  std::ranges::replace_if(text, [](char letter) { return letter < 0x20 || letter > 0x7e; }, '?');
+  return text;
+}
+
+}  // namespace
+
+icd::BearerToken as_token(const Secret& secret) {
+  constexpr std::string_view kDigits = "0123456789abcdef";
+  std::string text;
+  for (const std::uint8_t byte : secret) {
+    text.push_back(kDigits[byte >> 4]);
+    text.push_back(kDigits[byte & 15]);
+  }
+  return *icd::BearerToken::parse(text);
+}
+
+const Session& Sessions::begin(const Secret& id, const Secret& csrf, Role role, const Caller& caller,
+                               Instant now) {
+  forget_ended(now);
+  if (sessions_.size() >= kMost) sessions_.erase(std::ranges::min_element(sessions_, {}, &Session::seen));
+  sessions_.push_back({.number = ++last_,
+                       .role = role,
+                       .id = as_token(id),
+                       .csrf = as_token(csrf),
+                       .made = now,
+                       .seen = now,
+                       .address = caller.address,
+                       .agent = plain(caller.agent)});
+  return sessions_.back();
+}
+
+const Session* Sessions::find(std::string_view id, Instant now) {
+  forget_ended(now);
+  Session* found = nullptr;
+  for (Session& session : sessions_) {
+    if (session.id.matches(id)) found = &session;  // no early end: the time must not tell which
+  }
+  if (found != nullptr) found->seen = now;
+  return found;
+}
+
+bool Sessions::still(std::uint64_t number, Instant now) {
+  forget_ended(now);
+  const auto found = std::ranges::find(sessions_, number, &Session::number);
+  if (found == sessions_.end()) return false;
+  found->seen = now;
+  return true;
+}
+
+bool Sessions::end(std::uint64_t number) {
+  return std::erase_if(sessions_, [number](const Session& each) { return each.number == number; }) > 0;
+}
+
+void Sessions::end_all(Role role, std::uint64_t but) {
+  std::erase_if(sessions_, [=](const Session& each) { return each.role == role && each.number != but; });
+}
+
+std::vector<Session> Sessions::all(Instant now) {
+  forget_ended(now);
+  return {sessions_.rbegin(), sessions_.rend()};
+}
+
+void Sessions::forget_ended(Instant now) {
+  std::erase_if(sessions_, [now](const Session& each) {
+    return now - each.seen >= kIdle || now - each.made >= kLongest;
+  });
+}
+
+}  // namespace adit::access

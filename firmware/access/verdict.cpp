@@ -1,0 +1,61 @@
+#include "access/verdict.hpp"
+
+#include <string>
+
+#include "access/whence.hpp"
+
+namespace adit::access {
+namespace {
+
+std::unexpected<icd::Refusal> refuse(icd::Status status, std::string sentence) {
+  return std::unexpected(icd::Refusal{status, std::move(sentence)});
+}
+
+bool only_reads(std::string_view method) {
+  return method == "GET" || method == "HEAD";
+}
+
+}  // namespace
+
+icd::Checked<void> check_whence(const Request& request) {
+  if (!names_this_box(request.host)) {
+    return refuse(icd::Status::Forbidden, "Host: expected the box's address, localhost or adit.local");
+  }
+  if (!request.origin.empty() && !is_same_origin(request.origin, request.host)) {
+    return refuse(icd::Status::Forbidden, "Origin: expected a page of this box");
+  }
+  return {};
+}
+
+std::optional<Visitor> who(const Request& request, std::span<const icd::BearerToken> tokens,
+                           Sessions& sessions, Instant now) {
+  if (!request.authorization.empty()) {
+    const std::string_view presented = icd::token_in(request.authorization);
+    bool known = false;
+    for (const icd::BearerToken& token : tokens) {
+      if (token.matches(presented)) known = true;  // no early end: the time must not tell which
+    }
+    return known ? std::optional(Visitor{Role::Operator, nullptr}) : std::nullopt;
+  }
+  const Session* const session = sessions.find(cookie_in(request.cookie, kCookie), now);
+  return session == nullptr ? std::nullopt : std::optional(Visitor{session->role, session});
+}
+
+icd::Checked<Visitor> judge(const Request& request, Role role, std::span<const icd::BearerToken> tokens,
+                            Sessions& sessions, Instant now) {
+  if (auto whence = check_whence(request); !whence) return std::unexpected(whence.error());
+  const auto visitor = who(request, tokens, sessions, now);
+  if (!visitor) {
+    return refuse(icd::Status::Unauthorized, "log in, or send Authorization: Bearer and the team's token");
+  }
+  if (visitor->session != nullptr && !only_reads(request.method) &&
+      !visitor->session->csrf.matches(request.csrf)) {
+    return refuse(icd::Status::Forbidden, std::string(kCsrfHeader) + ": expected the session's CSRF token");
+  }
+  if (visitor->role < role) {
+    return refuse(icd::Status::Forbidden, "this needs the operator's role; you are logged in as viewer");
+  }
+  return *visitor;
+}
+
+}  // namespace adit::access

@@ -1,0 +1,59 @@
+#include "access/whence.hpp"
+
+#include <arpa/inet.h>
+
+#include <algorithm>
+#include <string>
+
+namespace adit::access {
+namespace {
+
+bool same(std::string_view one, std::string_view other) {
+  const auto low = [](char letter) { return letter >= 'A' && letter <= 'Z' ? letter + 32 : letter; };
+  return std::ranges::equal(one, other, {}, low, low);
+}
+
+bool is_address(int family, std::string_view text) {
+  unsigned char bytes[sizeof(in6_addr)];
+  return inet_pton(family, std::string(text).c_str(), bytes) == 1;
+}
+
+bool is_port(std::string_view text) {
+  return text.empty() || (text.front() == ':' && text.size() <= 6 &&
+                          std::ranges::all_of(text.substr(1), [](char c) { return c >= '0' && c <= '9'; }));
+}
+
+}  // namespace
+
+bool names_this_box(std::string_view host) {
+  if (host.starts_with('[')) {
+    const auto end = host.find(']');
+    return end != std::string_view::npos && is_address(AF_INET6, host.substr(1, end - 1)) &&
+           is_port(host.substr(end + 1));
+  }
+  const std::string_view name = host.substr(0, host.find(':'));
+  if (!is_port(host.substr(name.size()))) return false;
+  return same(name, "localhost") || same(name, "adit.local") || is_address(AF_INET, name);
+}
+
+bool is_same_origin(std::string_view origin, std::string_view host) {
+  for (const std::string_view scheme : {"http://", "https://"}) {
+    if (same(origin.substr(0, scheme.size()), scheme)) return same(origin.substr(scheme.size()), host);
+  }
+  return false;
+}
+
+std::string_view cookie_in(std::string_view cookies, std::string_view name) {
+  while (!cookies.empty()) {
+    std::string_view pair = cookies.substr(0, cookies.find(';'));
+    cookies.remove_prefix(std::min(pair.size() + 1, cookies.size()));
+    pair.remove_prefix(std::min(pair.find_first_not_of(" \t"), pair.size()));
+    if (pair.starts_with(name) && pair.substr(name.size()).starts_with('=')) {
+      pair.remove_prefix(name.size() + 1);
+      return pair.substr(0, pair.find_last_not_of(" \t") + 1);
+    }
+  }
+  return {};
+}
+
+}  // namespace adit::access

@@ -1,0 +1,154 @@
+#include "gateway/accounts.hpp"
+
+#include <unistd.h>
+
+#include <cstdlib>
+#include <cstring>
+#include <filesystem>
+#include <memory>
+#include <span>
+#include <utility>
+
+#include "access/password.hpp"
+#include "host/log.hpp"
+#include "host/service.hpp"
+
+namespace adit::gateway {
+namespace {
+
+using access::Role;
+using host::Level;
+
+constexpr int kOursAlone = 0600;
+
+/// The kernel's, which cannot fail once the machine has begun (getentropy(3)).
+void fill_random(std::span<std::uint8_t> bytes) {
+  if (getentropy(bytes.data(), bytes.size()) == 0) return;
+  host::log(Level::Error, "the kernel gives no random bytes");
+  std::abort();
+}
+
+access::Accounts read(const std::string& file) {
+  std::error_code unknown;
+  if (!std::filesystem::exists(file, unknown) && !unknown) return {};
+  const auto text = host::read_file(file);
+  if (!text) {
+    host::log(Level::Error, "the passwords cannot be read: they have to be set anew",
+              {{"why", text.error()}});
+    return {};
+  }
+  auto accounts = access::read_accounts(*text);
+  if (accounts) return std::move(*accounts);
+  host::log(Level::Error, "the passwords cannot be read: they have to be set anew",
+            {{"why", file + ": " + accounts.error()}});
+  return {};
+}
+
+std::unexpected<icd::Refusal> refuse(icd::Status status, std::string sentence) {
+  return std::unexpected(icd::Refusal{status, std::move(sentence)});
+}
+
+/// `accounts` with a role's password set. Slow.
+icd::Checked<access::Accounts> with(access::Accounts accounts, Role role,
+                                    const std::optional<std::string>& password, const access::Salt& salt) {
+  accounts.of(role).reset();
+  if (!password) return accounts;
+  if (access::role_of(*password, accounts)) {
+    return refuse(icd::Status::UnprocessableEntity,
+                  "password: expected another than the other role's, as it alone says who comes");
+  }
+  auto hashed = access::hash(*password, salt);
+  if (!hashed) return refuse(icd::Status::ServiceUnavailable, hashed.error());
+  accounts.of(role) = std::move(*hashed);
+  return accounts;
+}
+
+}  // namespace
+
+Accounts::Accounts(loop::Workers& workers, std::string folder, std::optional<icd::BearerToken> label_code)
+    : workers_(workers), folder_(std::move(folder)), accounts_(read(file())) {
+  if (!first_start()) return;
+  const bool on_label = label_code.has_value();
+  code_ = on_label ? std::move(label_code) : kept_code();
+  if (on_label) {
+    host::log(Level::Notice, "no password is set: the page asks for the code on the label");
+  } else {
+    host::log(Level::Notice, "no password is set: the page asks for this code", {{"code", code_->reveal()}});
+  }
+}
+
+/// The one that an earlier start drew, or a new one.
+icd::BearerToken Accounts::kept_code() {
+  std::string code;
+  if (const auto kept = host::read_file(code_file())) code = kept->substr(0, kept->find('\n'));
+  if (!access::is_code(code)) {
+    std::uint64_t random = 0;
+    fill_random({reinterpret_cast<std::uint8_t*>(&random), sizeof random});
+    code = access::code_from(random);
+    if (const auto written = host::write_file(code_file(), code + "\n", kOursAlone); !written) {
+      host::log(Level::Warning, "the code of the first start is good until the next start only",
+                {{"why", written.error()}});
+    }
+  }
+  return *icd::BearerToken::parse(code);
+}
+
+bool Accounts::is_code(std::string_view presented) const {
+  return first_start() && code_ && code_->matches(presented);
+}
+
+void Accounts::check(std::string password, std::string address,
+                     std::function<void(std::optional<Role>)> done) {
+  auto role = std::make_shared<std::optional<Role>>();
+  workers_.submit([role, password = std::move(password),
+                   accounts = accounts_] { *role = access::role_of(password, accounts); },
+                  [role, address = std::move(address), done = std::move(done)] {
+                    if (*role) {
+                      host::log(Level::Notice, "a password was shown",
+                                {{"role", std::string(name_of(**role))}, {"sender", address}});
+                    } else {
+                      host::log(Level::Warning, "a wrong password was shown", {{"sender", address}});
+                    }
+                    done(*role);
+                  });
+}
+
+void Accounts::set(Role role, std::optional<std::string> password,
+                   std::function<void(icd::Checked<void>)> done) {
+  if (std::exchange(setting_, true)) {
+    return done(refuse(icd::Status::Conflict, "another password is being set: try again"));
+  }
+  access::Salt salt{};
+  fill_random(salt);
+  auto changed = std::make_shared<icd::Checked<access::Accounts>>();
+  const auto change = [changed, role, password = std::move(password), salt, accounts = accounts_,
+                       file = file(), code_file = code_file()] {
+    *changed = with(accounts, role, password, salt);
+    if (!*changed) return;
+    if (const auto written = host::write_file(file, access::write_accounts(**changed), kOursAlone);
+        !written) {
+      *changed = refuse(icd::Status::ServiceUnavailable, "the password cannot be kept: " + written.error());
+    } else {
+      unlink(code_file.c_str());  // if there was one, it has done its service
+    }
+  };
+  workers_.submit(change, [this, changed, role, done = std::move(done)] {
+    setting_ = false;
+    if (!*changed) {
+      host::log(Level::Warning, "a password was not set", {{"why", changed->error().sentence}});
+      return done(std::unexpected(changed->error()));
+    }
+    accounts_ = std::move(**changed);
+    host::log(Level::Notice, accounts_.of(role) ? "a password was set" : "a password was taken away",
+              {{"role", std::string(name_of(role))}});
+    done({});
+  });
+}
+
+access::Secret Accounts::draw() {
+  access::Secret secret;
+  fill_random(secret);
+  return secret;
+}
+
+}  // namespace adit::gateway

@@ -1,0 +1,76 @@
+// What the operator may do with a report, and what came of it.
+import { confirmed } from "./dialog.js";
+import { post, session } from "./session.js";
+
+const SEND = { name: "send", label: "Send" };
+const AGAIN = { name: "send", label: "Send again" };
+const COSTLY_SEND = { name: "send", label: "Send once more", costs: "It may be recorded already: then it is recorded twice" };
+const WITHDRAW = { name: "withdraw", label: "Withdraw" };
+const DONE = { name: "done", label: "Call it done" };
+const RESUBMIT = { name: "resubmit", label: "Resubmit", costs: "It is sent once more, as a new report" };
+
+/** By the state that a report is in: the deeds that the box takes (README.md). */
+const DEEDS = {
+  received: [SEND, WITHDRAW],
+  waiting: [WITHDRAW],
+  sending: [],
+  "in doubt": [COSTLY_SEND, DONE],
+  refused: [AGAIN],
+  withdrawn: [SEND],
+  answered: [RESUBMIT],
+  settled: [RESUBMIT],
+};
+
+export function deedsOf(report) {
+  if (report.state === "withdrawn" && report.same_as) return [COSTLY_SEND];
+  return DEEDS[report.state] ?? [];
+}
+
+let role = "viewer", lost = false;
+
+/** Why nothing can be done now, or "". */
+export const barred = () =>
+  lost ? "Nothing can be done while the box does not answer." : role !== "operator" ? "Only an operator can do something: log in as one." : "";
+
+export function linkIs(isLost) {
+  if (lost && !isLost) learnRole();
+  lost = isLost;
+}
+
+export async function learnRole() {
+  ({ role } = await session().catch(() => ({ role })));
+}
+learnRole();
+
+// What came of the last deed at each report: {text, bad}.
+const outcomes = new Map();
+const underWay = new Set();
+export const outcomeOf = (number) => outcomes.get(number);
+export const isBusy = (number) => underWay.has(number);
+export const tell = (number, text, bad = false) => outcomes.set(number, { text, bad });
+
+const PAST = { send: "It will be sent.", withdraw: "Withdrawn.", done: "Called done." };
+
+function question(deed, report, remaining) {
+  const left = remaining === undefined ? "" : ` ${remaining} reports are left.`;
+  return { title: `${deed.label}: report ${report.number}, ${report.type}?`, text: `${deed.costs}, and costs a report.${left}`, word: deed.label };
+}
+
+/** Does it, asking first where it costs a report. `shown` is called whenever there is something new to show. */
+export async function perform(deed, report, remaining, shown) {
+  const { number } = report;
+  if (underWay.has(number) || barred()) return;
+  if (deed.costs && !(await confirmed(question(deed, report, remaining)))) return;
+  underWay.add(number);
+  outcomes.delete(number);
+  shown();
+  try {
+    const answer = await post(`/adit/reports/${number}/${deed.name}`);
+    tell(number, deed.name === "resubmit" ? `Sent once more, as report ${answer.report}.` : PAST[deed.name]);
+  } catch (error) {
+    tell(number, error.message, true);
+  } finally {
+    underWay.delete(number);
+    shown();
+  }
+}

@@ -1,0 +1,54 @@
+// The run as others look at it: no controls, everything on one screen.
+import { badge, list, make, mark, say } from "./dom.js";
+import { listen } from "./live.js";
+import { MapOfRun } from "./map.js";
+import { showVerdict } from "./robots.js";
+import { showAttention, showRun } from "./run.js";
+import { life } from "./verdict.js";
+import { clip, timeOfDay } from "./words.js";
+
+const MOST_REPORTS = 20; // more than fit any screen
+
+const map = new MapOfRun(document.querySelector("#map canvas"));
+const reports = document.getElementById("reports");
+let view = null, heardAt = 0, lost = false;
+
+function showReports() {
+  const mine = view.reports.filter((report) => report.run === view.run_number);
+  say(reports.querySelector(".count"), mine.length ? String(mine.length) : "");
+  reports.querySelector(".empty").hidden = mine.length > 0;
+  const create = () => make("li", make("span.number"), make("span.what"), make("span.badge"));
+  list(reports.querySelector("ol"), mine.slice(0, MOST_REPORTS), (report) => report.number, create, (node, report) => {
+    const { level, word } = life(report);
+    const [number, what, verdict] = node.children;
+    mark(node, "level", level);
+    say(what, clip(report.type, 40));
+    badge(verdict, level, clip(word, 20));
+    say(number, `#${report.number}`);
+  });
+}
+
+function show() {
+  mark(document.body, "link", lost ? "lost" : view ? "live" : "opening");
+  if (!view) return showAttention([], lost ? "The box does not answer." : "");
+  const time = view.now + (performance.now() - heardAt) / 1000;
+  showAttention(view.attention.slice(0, lost ? 1 : 2), lost ? `The box does not answer: all is as it was at ${timeOfDay(view.now)}.` : "");
+  showRun(view, time, lost);
+  showVerdict(view.activities, time, lost);
+  showReports();
+  map.show(view);
+}
+
+listen(
+  "/adit/events",
+  (next) => {
+    view = next;
+    heardAt = performance.now();
+    show();
+  },
+  (isLost) => {
+    lost = isLost;
+    show();
+  },
+);
+setInterval(show, 1000);

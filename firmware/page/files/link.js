@@ -1,0 +1,54 @@
+// The link over the last ten minutes: rate, queue, what was throttled, and each endpoint's delay.
+import { list, make, say } from "./dom.js";
+import { Plot } from "./plot.js";
+import { bytes, clip, mbit } from "./words.js";
+
+const SVG = "http://www.w3.org/2000/svg";
+const plots = document.getElementById("plots");
+const known = new Map(); // a plot by its key
+const counted = new Map(); // an endpoint's throttled, when last sampled
+
+const ms = (value) => (value === null ? "–" : `${value.toFixed(value < 10 ? 1 : 0)} ms`);
+
+/** What is plotted: {key, label, value, text, least, most(value)}; a null value is not known. */
+function quantities(view, lost) {
+  const sum = view.endpoints.reduce((all, row) => all + row.throttled, 0);
+  const before = counted.get("all") ?? sum;
+  counted.set("all", sum);
+  const known = (value) => (lost ? null : value);
+  return [
+    { key: "rate", label: "Rate", value: known(view.sent_mbit), text: `${mbit(view.sent_mbit)} Mbit/s`, least: 1, unit: (n) => `${mbit(n)} Mbit/s` },
+    { key: "queue", label: "Queue", value: known(view.queued_bytes), text: view.queued_bytes ? bytes(view.queued_bytes) : "empty", least: 1e5, unit: bytes },
+    { key: "throttled", label: "Throttled (429)", value: known(Math.max(0, sum - before)), text: `${sum} in all`, least: 1, unit: (n) => `${n} a second` },
+    ...view.endpoints.map((row) => ({
+      key: `delay ${row.name}`, label: `Delay, ${clip(row.name, 20)}`, least: 1, unit: ms,
+      value: known(row.connected ? row.answer_ms : null), text: ms(row.connected ? row.answer_ms : null),
+    })),
+  ];
+}
+
+function create(quantity) {
+  const svg = document.createElementNS(SVG, "svg");
+  svg.setAttribute("viewBox", "0 0 149 32");
+  svg.setAttribute("preserveAspectRatio", "none");
+  svg.setAttribute("aria-hidden", "true");
+  for (const name of ["area", "line"]) {
+    const path = document.createElementNS(SVG, "path");
+    path.setAttribute("class", name);
+    svg.append(path);
+  }
+  known.set(quantity.key, new Plot(svg, quantity.least));
+  return make("li", make("span.label", quantity.label), make("strong"), svg, make("span.note"));
+}
+
+/** Once a second: what is now goes into the history. */
+export function sampleLink(view, lost) {
+  const all = quantities(view, lost);
+  list(plots, all, (quantity) => quantity.key, create, (node, quantity) => {
+    const plot = known.get(quantity.key);
+    plot.push(quantity.value);
+    plot.draw();
+    say(node.children[1], quantity.value === null ? "–" : quantity.text);
+    say(node.children[3], `most ${quantity.unit(plot.most())}`);
+  });
+}

@@ -1,0 +1,179 @@
+// The map: the picture of what was forwarded, and on it robots and reports. Drawn again only when something changed.
+import { listenTo } from "./map_input.js";
+import { coloursOf, drawCross, drawReports, drawRobots, drawScale, isStale, labelsOn } from "./map_marks.js";
+import { drawLayer, Tiles } from "./map_tiles.js";
+import { MapView } from "./map_view.js";
+
+export class MapOfRun {
+  #canvas;
+  #paint;
+  #view = new MapView();
+  #tiles = new Tiles(() => this.redraw());
+  #run = null;
+  #at = null; // the time that is shown; null: now
+  #asked = false;
+  #isFit = true; // until somebody moves it, all is shown
+  #version = -1;
+  #colours = {};
+  #picked = null;
+  #onTap = null;
+  #shown = { grid: true, cloud: true, robots: true, reports: true };
+  #hidden = new Set(); // robots whose maps are not shown
+  onLayers = () => {};
+
+  /** `canvas` is in the page and has its size by CSS. */
+  constructor(canvas) {
+    this.#canvas = canvas;
+    this.#paint = canvas.getContext("2d");
+    const recolour = () => {
+      this.#colours = coloursOf(document.documentElement);
+      this.redraw();
+    };
+    matchMedia("(prefers-color-scheme: light)").addEventListener("change", recolour);
+    new ResizeObserver(() => this.#resize()).observe(canvas);
+    recolour();
+    this.#resize();
+  }
+
+  /** Lets it be moved by hand. */
+  takeInput() {
+    listenTo(this.#canvas, this.#view, { moved: () => this.#movedByHand(), tapped: (place) => this.#onTap?.(place), fit: () => this.fit() });
+  }
+
+  #movedByHand() {
+    if (this.#fitting) this.#fitting = false;
+    else this.#isFit = false;
+    this.redraw();
+  }
+  #fitting = false;
+
+  zoom(factor) {
+    this.#view.zoom(factor);
+    this.#movedByHand();
+  }
+
+  fit() {
+    this.#isFit = this.#fitting = true;
+    this.redraw();
+  }
+
+  show(run) {
+    this.#run = run;
+    if (run.map_version !== this.#version && !this.#asked) this.#refresh(run.map_version);
+    const places = JSON.stringify([run.reports.map(({ number, state, asking }) => [number, state, asking]), run.near_metres,
+      run.robots.map((robot) => [robot.name, robot.position, robot.heading, isStale(robot, run.now)])]);
+    if (places === this.#drawn) return;
+    this.#drawn = places;
+    this.redraw();
+  }
+  #drawn = "";
+
+  async #refresh(version) {
+    this.#asked = true;
+    try {
+      await this.#tiles.refresh();
+      this.#version = version;
+      this.onLayers();
+    } catch {
+      // asked for again with the next event
+    } finally {
+      this.#asked = false;
+    }
+  }
+
+  /** Of the maps: null where there is none yet. */
+  first = () => this.#tiles.first();
+  colours = () => ({ ...this.#tiles.colours, spread: this.#tiles.heights });
+  robots = () => [...new Set([...this.#tiles.layers.values()].map((layer) => layer.robot))].sort();
+  kinds = () => new Set([...this.#tiles.layers.values()].map((layer) => layer.kind));
+  isLive = () => this.#at === null;
+
+  setTime(at) {
+    this.#at = at;
+    this.redraw();
+  }
+  setShown(what, isShown) {
+    this.#shown[what] = isShown;
+    this.redraw();
+  }
+  setRobot(robot, isShown) {
+    if (isShown) this.#hidden.delete(robot);
+    else this.#hidden.add(robot);
+    this.redraw();
+  }
+  /** A cross at {x, y}; null: none. */
+  setCross(place) {
+    this.#picked = place;
+    this.redraw();
+  }
+  setTap(tapped) {
+    this.#onTap = tapped;
+    this.redraw();
+  }
+  lookAt({ x, y }) {
+    this.#isFit = false;
+    this.#view.lookAt(x, y);
+    if (this.#view.scale < 6) this.#view.scale = 6;
+    this.redraw();
+  }
+  centre = () => this.#view.centre;
+
+  #resize() {
+    const density = devicePixelRatio || 1;
+    const { clientWidth: width, clientHeight: height } = this.#canvas;
+    if (!width || !height) return;
+    Object.assign(this.#view, { width, height });
+    Object.assign(this.#canvas, { width: Math.round(width * density), height: Math.round(height * density) });
+    this.#draw(); // at once: a canvas of a new size is blank
+  }
+
+  #waiting = false;
+  redraw() {
+    if (this.#waiting) return;
+    this.#waiting = true;
+    requestAnimationFrame(() => {
+      this.#waiting = false;
+      this.#draw();
+    });
+  }
+
+  #isSeen = (layer) => this.#shown[layer.kind] && !this.#hidden.has(layer.robot);
+
+  #places() {
+    const { reports = [], robots = [], run_number } = this.#run ?? {};
+    const until = this.#at ?? Infinity;
+    return {
+      reports: this.#shown.reports ? reports.filter((report) => report.run === run_number && report.received <= until) : [],
+      robots: this.#shown.robots && this.isLive() ? robots : [],
+    };
+  }
+
+  #fitAll({ reports, robots }) {
+    const area = this.#tiles.bounds(this.#isSeen) ?? { left: Infinity, bottom: Infinity, right: -Infinity, top: -Infinity };
+    const all = { ...area };
+    for (const { position: { x, y } } of [...reports, ...robots]) {
+      if (Math.abs(x) > 8192 || Math.abs(y) > 8192) continue;
+      Object.assign(all, { left: Math.min(all.left, x), right: Math.max(all.right, x), bottom: Math.min(all.bottom, y), top: Math.max(all.top, y) });
+    }
+    if (all.left <= all.right) this.#view.fit(all);
+  }
+
+  #draw() {
+    const paint = this.#paint, view = this.#view, density = devicePixelRatio || 1;
+    const places = this.#places();
+    if (this.#isFit) this.#fitAll(places);
+    paint.setTransform(density, 0, 0, density, 0, 0);
+    paint.clearRect(0, 0, view.width, view.height);
+    const layers = [...this.#tiles.layers.values()].filter(this.#isSeen);
+    // The merged map lies below those of robots, and clouds lie upon grids.
+    layers.sort((a, b) => (a.kind === "cloud") - (b.kind === "cloud") || (a.robot !== "") - (b.robot !== "") || a.robot.localeCompare(b.robot));
+    for (const layer of layers) drawLayer(paint, view, this.#tiles, layer, this.#at);
+    const size = parseFloat(getComputedStyle(this.#canvas).fontSize);
+    const labels = labelsOn(paint, this.#colours, size, view.width);
+    drawScale(paint, this.#colours, labels, view, size);
+    drawReports(paint, this.#colours, labels, view, this.#run, places.reports, size / 2);
+    drawRobots(paint, this.#colours, labels, view, places.robots, size / 1.8, this.#run?.now);
+    if (this.#onTap) drawCross(paint, { ...this.#colours, ask: this.#colours.soft }, view.toPixel(view.centre), size / 2);
+    if (this.#picked) drawCross(paint, this.#colours, view.toPixel(this.#picked), size / 2);
+  }
+}

@@ -1,0 +1,48 @@
+// Where the map's canvas looks: metres of the frame "darpa" (x to the right, y up) to pixels of the page.
+
+const MOST_METRES = 8192, LEAST_SCALE = 0.02, MOST_SCALE = 400;
+
+const within = (value, least, most) => Math.min(most, Math.max(least, value));
+
+export class MapView {
+  width = 1;
+  height = 1;
+  centre = { x: 0, y: 0 };
+  scale = 8; // pixels per metre
+
+  toPixel = ({ x, y }) => [this.width / 2 + (x - this.centre.x) * this.scale, this.height / 2 - (y - this.centre.y) * this.scale];
+
+  toMetres = (left, top) => ({
+    x: this.centre.x + (left - this.width / 2) / this.scale,
+    y: this.centre.y - (top - this.height / 2) / this.scale,
+  });
+
+  /** What is seen, in metres. */
+  bounds() {
+    const { x: left, y: top } = this.toMetres(0, 0), { x: right, y: bottom } = this.toMetres(this.width, this.height);
+    return { left, top, right, bottom };
+  }
+
+  pan(right, down) {
+    this.lookAt(this.centre.x - right / this.scale, this.centre.y + down / this.scale);
+  }
+
+  lookAt(x, y) {
+    this.centre = { x: within(x, -MOST_METRES, MOST_METRES), y: within(y, -MOST_METRES, MOST_METRES) };
+  }
+
+  /** What is under (left, top) stays there. */
+  zoom(factor, left = this.width / 2, top = this.height / 2) {
+    const before = this.toMetres(left, top);
+    this.scale = within(this.scale * factor, LEAST_SCALE, MOST_SCALE);
+    const after = this.toMetres(left, top);
+    this.lookAt(this.centre.x + before.x - after.x, this.centre.y + before.y - after.y);
+  }
+
+  /** Shows the whole of an area with a rim; a small one not larger than is useful. */
+  fit({ left, right, bottom, top }) {
+    this.lookAt((left + right) / 2, (bottom + top) / 2);
+    const scale = 0.9 * Math.min(this.width / Math.max(1, right - left), this.height / Math.max(1, top - bottom));
+    this.scale = within(scale, LEAST_SCALE, 40);
+  }
+}

@@ -1,0 +1,54 @@
+// Small plots of the last ten minutes, a value a second, kept by the page itself.
+
+const SPAN = 600, BUCKET = 4, HEIGHT = 32;
+
+export class Plot {
+  #values = [];
+  #svg;
+  #least;
+
+  /** `svg` has a path.area and a path.line; a plot reaches up to `least` at least. */
+  constructor(svg, least) {
+    this.#svg = svg;
+    this.#least = least;
+  }
+
+  /** null: not known. */
+  push(value) {
+    this.#values.push(value);
+    if (this.#values.length > SPAN) this.#values.shift();
+  }
+
+  most = () => Math.max(...this.#values.map((value) => value ?? 0), 0);
+
+  /** The highest of each four seconds, so that a short peak is seen, at its place from the right. */
+  #buckets() {
+    const buckets = [];
+    for (let end = this.#values.length; end > 0; end -= BUCKET) {
+      const known = this.#values.slice(Math.max(0, end - BUCKET), end).filter((value) => value !== null);
+      buckets.unshift(known.length ? Math.max(...known) : null);
+    }
+    return buckets;
+  }
+
+  draw() {
+    const buckets = this.#buckets(), from = SPAN / BUCKET - buckets.length;
+    const top = Math.max(this.#least, this.most());
+    const y = (value) => (HEIGHT - 1 - (value / top) * (HEIGHT - 3)).toFixed(1);
+    let line = "", area = "", begun = -1;
+    const close = (end) => {
+      if (begun >= 0) area += `L${end} ${HEIGHT}L${begun} ${HEIGHT}Z`;
+      begun = -1;
+    };
+    buckets.forEach((value, i) => {
+      const x = from + i;
+      if (value === null) return close(x - 1);
+      line += `${begun < 0 ? "M" : "L"}${x} ${y(value)}`;
+      area += `${begun < 0 ? "M" : "L"}${x} ${y(value)}`;
+      if (begun < 0) begun = x;
+    });
+    close(from + buckets.length - 1);
+    this.#svg.querySelector(".line").setAttribute("d", line);
+    this.#svg.querySelector(".area").setAttribute("d", area);
+  }
+}

@@ -1,0 +1,64 @@
+// Who looks at this page, and how it says something to the box.
+
+let asked = null;
+
+/** {role: "operator", "viewer" or null (nobody is logged in), csrf, first_start}; asked for once, or `anew`. */
+export function session(anew = false) {
+  if (anew || !asked) {
+    asked = fetch("/adit/session", { cache: "no-store" }).then(resultOf);
+    asked.catch(() => (asked = null));
+  }
+  return asked;
+}
+
+/** Asks for a password, and comes back here afterwards. */
+export function toLogin() {
+  const here = location.pathname + location.search + location.hash;
+  location.replace(`login.html?next=${encodeURIComponent(here)}`);
+}
+
+/** To the login where the box answers and says that nobody is logged in. */
+export async function checkSession() {
+  const { role } = await session(true).catch(() => ({}));
+  if (role === null) toLogin();
+}
+
+/** Posts `body` as JSON and gives the answer; an Error's message is the sentence to show, its `status` the box's. */
+export async function post(path, body = {}) {
+  const { csrf } = await session();
+  try {
+    return await send(path, body, csrf);
+  } catch (error) {
+    if (error.status === 401) toLogin();
+    if (error.status !== 403) throw error;
+    const { csrf: newer } = await session(true); // somebody logged in anew, in another tab
+    if (newer === csrf) throw error;
+    return send(path, body, newer);
+  }
+}
+
+async function send(path, body, csrf) {
+  const headers = { "Content-Type": "application/json" };
+  if (csrf) headers["Adit-CSRF"] = csrf;
+  const request = { method: "POST", headers, body: JSON.stringify(body) };
+  return resultOf(await fetch(path, request).catch(() => Promise.reject(new Error("The box does not answer."))));
+}
+
+async function resultOf(answer) {
+  const said = await answer.json().catch(() => null);
+  if (answer.ok) return said;
+  const sentence = typeof said === "string" ? said : `The box answered ${answer.status}.`;
+  throw Object.assign(new Error(sentence), { status: answer.status });
+}
+
+/** Shows the role in `node`, which has a `.text` and a button to log out. */
+export async function showWho(node) {
+  const { role, csrf } = await session().catch(() => ({}));
+  if (!role || !csrf) return;
+  node.querySelector(".text").textContent = `Logged in as ${role}`;
+  node.querySelector("button").addEventListener("click", async () => {
+    await post("/adit/logout").catch(() => {}); // where that fails, the login says so
+    toLogin();
+  });
+  node.hidden = false;
+}

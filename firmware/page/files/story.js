@@ -1,0 +1,22 @@
+// A report's history and the answer that is kept, asked for when its row is opened and when it moved on.
+import { make } from "./dom.js";
+import { clip, timeOfDay } from "./words.js";
+
+export async function showStory(node, { number, changed }) {
+  if (node.dataset.of === String(changed)) return;
+  node.dataset.of = String(changed);
+  try {
+    const answer = await fetch(`/adit/reports/${number}`);
+    if (!answer.ok) throw new Error();
+    const { history, answer: said, sender } = await answer.json();
+    const steps = history.map((step) => {
+      const time = make("time", timeOfDay(step.at));
+      return make("li", time, ` ${clip(step.state, 40)}`, step.note ? `: ${clip(step.note)}` : "");
+    });
+    node.replaceChildren(make("p", `From ${clip(sender, 60)}`), make("ol", ...steps));
+    if (said) node.append(make("p", `Answer: ${clip(said)}`));
+  } catch {
+    node.dataset.of = ""; // asked for again with the next event
+    node.replaceChildren(make("p", "Its history cannot be had from the box."));
+  }
+}

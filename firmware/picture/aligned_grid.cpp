@@ -1,0 +1,102 @@
+#include "picture/aligned_grid.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include "picture/draw.hpp"
+#include "picture/grid_cells.hpp"
+
+namespace adit::picture {
+namespace {
+
+constexpr double kPixel = kMetresPerPixel[0];
+/// How far the far end of a row or column may lie off its axis.
+constexpr double kMostSkew = kPixel / 10;
+/// A cell's centre on a pixel's border belongs to the pixel after it. What floating point makes of that
+/// border is that far off at most, in cells: else a grid that grows would flicker.
+constexpr double kRounding = 1e-3;
+
+int pixel_at(double metres) {
+  return static_cast<int>(
+      std::clamp(std::floor(metres / kPixel), double{-kWorldPixels}, double{kWorldPixels}));
+}
+
+}  // namespace
+
+AlignedGrid::Axis::Axis(double origin, double metres_per_cell, std::uint32_t count) {
+  const auto cell = [count](double number) {
+    return static_cast<std::uint32_t>(std::clamp(number, 0.0, static_cast<double>(count)));
+  };
+  const auto first_centre_from = [&](double metres) {
+    return cell(std::ceil((metres - origin) / metres_per_cell - 0.5 - kRounding));
+  };
+  first_pixel = pixel_at(origin);
+  const int last = std::min(pixel_at(origin + count * metres_per_cell), kWorldPixels - 1);
+  for (int pixel = first_pixel; pixel <= last; ++pixel) {
+    Cells shown{first_centre_from(pixel * kPixel), first_centre_from((pixel + 1) * kPixel)};
+    if (shown.begin == shown.end) {
+      const double centre = std::floor(((pixel + 0.5) * kPixel - origin) / metres_per_cell);
+      if (centre >= 0 && centre < count) shown = {cell(centre), cell(centre) + 1};
+    }
+    if (shown.begin < shown.end) {
+      cells.push_back(shown);
+    } else if (cells.empty()) {
+      ++first_pixel;  // less than half a cell of the grid lies in it
+    }
+  }
+}
+
+bool AlignedGrid::suits(const icd::OccupancyGrid& grid, const Placement& placement) {
+  const auto& turn = placement.turn;
+  const double along_x = grid.width * grid.resolution, along_y = grid.height * grid.resolution;
+  return turn[0][0] > 0.5 && turn[1][1] > 0.5 && std::abs(turn[1][0]) * along_x < kMostSkew &&
+         std::abs(turn[0][1]) * along_y < kMostSkew;
+}
+
+AlignedGrid::AlignedGrid(const icd::OccupancyGrid& grid, const Placement& placement, Sheet& sheet)
+    : sheet_(sheet),
+      columns_(placement.shift.x, grid.resolution * placement.turn[0][0], grid.width),
+      rows_(placement.shift.y, grid.resolution * placement.turn[1][1], grid.height),
+      width_(grid.width) {
+  if (columns_.end() - columns_.begin() > kMostColumns) columns_.cells.clear();
+  highest_.resize(columns_.end() - columns_.begin());
+  line_.resize(columns_.cells.size());
+}
+
+void AlignedGrid::draw(std::size_t row, std::size_t column, std::span<const std::uint8_t> cells) {
+  const std::size_t end = column + cells.size();
+  const std::size_t from = std::clamp(columns_.begin(), column, end),
+                    to = std::clamp(columns_.end(), from, end);
+  if (row < rows_.begin() || row >= rows_.end() || from == to) {
+    left_out_ += known_cells(cells);
+    return;
+  }
+  left_out_ += known_cells(cells.first(from - column)) + known_cells(cells.subspan(to - column));
+  const std::uint8_t* cell = cells.data() + (from - column);
+  std::uint8_t* highest = highest_.data() + (from - columns_.begin());
+  for (std::size_t i = 0; i < to - from; ++i) highest[i] = std::max(highest[i], index_of_cell(cell[i]));
+  if (end >= columns_.end()) row_ended(row);
+}
+
+void AlignedGrid::row_ended(std::size_t row) {
+  if (next_ == rows_.cells.size() || rows_.cells[next_].end != row + 1) return;
+  make_line();
+  for (; next_ < rows_.cells.size() && rows_.cells[next_].end == row + 1; ++next_) {
+    left_out_ += sheet_.raise(columns_.first_pixel, rows_.first_pixel + static_cast<int>(next_), line_);
+  }
+  std::ranges::fill(highest_, std::uint8_t{0});
+}
+
+void AlignedGrid::make_line() {
+  const std::size_t first = columns_.begin();
+  for (std::size_t pixel = 0; pixel < line_.size(); ++pixel) {
+    const auto [begin, end] = columns_.cells[pixel];
+    std::uint8_t highest = 0;
+    for (std::size_t column = begin; column < end; ++column) {
+      highest = std::max(highest, highest_[column - first]);
+    }
+    line_[pixel] = highest;
+  }
+}
+
+}  // namespace adit::picture

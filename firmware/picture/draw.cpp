@@ -1,0 +1,61 @@
+#include "picture/draw.hpp"
+
+#include "picture/aligned_grid.hpp"
+#include "picture/draw_parts.hpp"
+#include "picture/grid_cells.hpp"
+#include "picture/lay.hpp"
+#include "picture/turned_grid.hpp"
+
+namespace adit::picture {
+namespace {
+
+template <class Drawer>
+icd::Checked<std::size_t> draw_by(const icd::OccupancyGrid& grid, const Placement& placement,
+                                  const icd::MapData& data, Sheet& sheet) {
+  RowCutter cutter{grid.width, grid.height};
+  Drawer drawer{grid, placement, sheet};
+  auto drawn = for_each_piece(data, [&](std::span<const std::uint8_t> piece) -> icd::Checked<void> {
+    cutter.feed(piece, [&](std::size_t row, std::size_t column, std::span<const std::uint8_t> cells) {
+      drawer.draw(row, column, cells);
+    });
+    return {};
+  });
+  if (!drawn) return std::unexpected(std::move(drawn.error()));
+  return drawer.left_out();
+}
+
+}  // namespace
+
+icd::Checked<void> for_each_piece(const icd::MapData& data, const codec::Sink& sink) {
+  if (data.compression == icd::Compression::None) {
+    for (const auto& chunk : data.bytes.chunks()) {
+      if (auto taken = sink(*chunk); !taken) return taken;
+    }
+    return {};
+  }
+  auto inflated = codec::gunzip(data.bytes, data.raw_size, "msg.data", sink);
+  if (!inflated) return std::unexpected(std::move(inflated.error()));
+  return {};
+}
+
+icd::Checked<std::size_t> draw_grid(const icd::OccupancyGrid& grid, const icd::MapData& data, Sheet& sheet) {
+  const Placement placement{grid.origin};
+  return AlignedGrid::suits(grid, placement) ? draw_by<AlignedGrid>(grid, placement, data, sheet)
+                                             : draw_by<TurnedGrid>(grid, placement, data, sheet);
+}
+
+icd::Checked<Drawing> draw(const icd::MapUpdate& map, const Canvas& before) {
+  Sheet sheet;
+  const auto* grid = std::get_if<icd::OccupancyGrid>(&map.msg);
+  auto left_out = grid != nullptr ? draw_grid(*grid, map.data, sheet)
+                                  : draw_cloud(std::get<icd::PointCloud2>(map.msg), map.data, sheet);
+  if (!left_out) return std::unexpected(std::move(left_out.error()));
+  Drawing drawing;
+  drawing.layer = layer_of(map);
+  drawing.run = before.run;
+  drawing.left_out = *left_out;
+  lay(sheet, before, drawing);
+  return drawing;
+}
+
+}  // namespace adit::picture

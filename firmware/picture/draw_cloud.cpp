@@ -1,0 +1,76 @@
+#include <algorithm>
+#include <array>
+
+#include "picture/cloud_points.hpp"
+#include "picture/draw.hpp"
+#include "picture/draw_parts.hpp"
+#include "picture/palette.hpp"
+#include "picture/placement.hpp"
+
+namespace adit::picture {
+namespace {
+
+/// Where x, y and z stand in a point.
+using Offsets = std::array<std::size_t, 3>;
+
+const icd::FieldSchema& field_of(const icd::PointCloud2& cloud, std::string_view name) {
+  return *std::ranges::find(cloud.fields, name, &icd::FieldSchema::name);
+}
+
+/// Draws the points that it is given, from above.
+class Dabber {
+ public:
+  Dabber(const icd::PointCloud2& cloud, Sheet& sheet)
+      : sheet_(sheet), placement_(cloud.origin.value_or(icd::Pose{})) {}
+
+  void dab(const icd::Point& point) {
+    const auto [x, y, z] = placement_(point);
+    const auto inside = [](double at) {
+      return at >= -kWorldMetres && at < kWorldMetres;
+    };  // no number is not
+    if (!inside(x) || !inside(y) || !std::isfinite(z) || !sheet_.raise(pixel(x), pixel(y), height_index(z))) {
+      ++left_out;
+    }
+  }
+
+  std::size_t left_out = 0;
+
+ private:
+  static int pixel(double metres) {
+    return static_cast<int>((metres + kWorldMetres) * (1 / kMetresPerPixel[0])) - kWorldPixels;  // down
+  }
+
+  Sheet& sheet_;
+  Placement placement_;
+};
+
+template <class Float, bool Bigendian>
+icd::Checked<std::size_t> draw_points(const icd::PointCloud2& cloud, const icd::MapData& data, Sheet& sheet) {
+  const Offsets at{field_of(cloud, "x").offset, field_of(cloud, "y").offset, field_of(cloud, "z").offset};
+  const std::size_t points = data.raw_size / cloud.point_step;
+  PointCutter cutter{cloud.point_step, std::max<std::size_t>(1, (points + kMostPoints - 1) / kMostPoints)};
+  Dabber dabber{cloud, sheet};
+  auto drawn = for_each_piece(data, [&](std::span<const std::uint8_t> piece) -> icd::Checked<void> {
+    cutter.feed(piece, [&](const std::uint8_t* point) {
+      dabber.dab({coordinate<Float, Bigendian>(point + at[0]), coordinate<Float, Bigendian>(point + at[1]),
+                  coordinate<Float, Bigendian>(point + at[2])});
+    });
+    return {};
+  });
+  if (!drawn) return std::unexpected(std::move(drawn.error()));
+  return dabber.left_out;
+}
+
+}  // namespace
+
+icd::Checked<std::size_t> draw_cloud(const icd::PointCloud2& cloud, const icd::MapData& data, Sheet& sheet) {
+  const bool is_double = field_of(cloud, "x").datatype == icd::Datatype::Float64;
+  if (cloud.is_bigendian) {
+    return is_double ? draw_points<double, true>(cloud, data, sheet)
+                     : draw_points<float, true>(cloud, data, sheet);
+  }
+  return is_double ? draw_points<double, false>(cloud, data, sheet)
+                   : draw_points<float, false>(cloud, data, sheet);
+}
+
+}  // namespace adit::picture

@@ -1,0 +1,44 @@
+#pragma once
+
+#include <algorithm>
+#include <cstddef>
+#include <cstdint>
+#include <span>
+
+#include "icd/map_update.hpp"
+
+namespace adit::picture {
+
+/// The colour index of a cell; 0 for an unknown one.
+inline std::uint8_t index_of_cell(std::uint8_t value) {
+  return value <= icd::kMostOccupied ? static_cast<std::uint8_t>(value + 1) : std::uint8_t{0};
+}
+
+inline std::size_t known_cells(std::span<const std::uint8_t> cells) {
+  return static_cast<std::size_t>(
+      std::ranges::count_if(cells, [](std::uint8_t value) { return value <= icd::kMostOccupied; }));
+}
+
+/// Cuts a grid's data, piece by piece, where rows end: `visit(row, column, cells)` gets a part of one row.
+class RowCutter {
+ public:
+  RowCutter(std::uint32_t width, std::uint32_t height) : width_(width), height_(height) {}
+
+  template <class Visit>
+  void feed(std::span<const std::uint8_t> piece, Visit visit) {
+    while (!piece.empty() && row_ < height_) {
+      const auto cells = piece.first(std::min(piece.size(), width_ - column_));
+      visit(row_, column_, cells);
+      piece = piece.subspan(cells.size());
+      column_ += cells.size();
+      if (column_ < width_) continue;
+      column_ = 0;
+      ++row_;
+    }
+  }
+
+ private:
+  std::size_t width_, height_, row_ = 0, column_ = 0;
+};
+
+}  // namespace adit::picture

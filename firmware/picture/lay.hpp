@@ -1,0 +1,12 @@
+#pragma once
+
+#include "picture/draw.hpp"
+#include "picture/sheet.hpp"
+
+namespace adit::picture {
+
+/// Lays what a map says over what was drawn before, at all levels: fills in the drawing's tiles, area and
+/// heights. Its layer must be set.
+void lay(const Sheet& sheet, const Canvas& before, Drawing& drawing);
+
+}  // namespace adit::picture

@@ -1,0 +1,150 @@
+#include "picture/mosaic.hpp"
+
+#include <algorithm>
+#include <utility>
+
+namespace adit::picture {
+namespace {
+
+/// Longer than any time since 1970: one span for all.
+constexpr double kForever = 1e11;
+
+void extend(std::optional<Heights>& heights, const std::optional<Heights>& more) {
+  if (!more) return;
+  if (!heights) heights = more;
+  *heights = {std::min(heights->low, more->low), std::max(heights->high, more->high)};
+}
+
+}  // namespace
+
+Canvas Mosaic::canvas(const Layer& layer) const {
+  Canvas canvas{.run = run_, .tiles = {}};
+  const auto found = layers_.find(layer);
+  if (found == layers_.end()) return canvas;
+  for (const auto& [at, history] : found->second.tiles) {
+    if (const Tile& tile = history.newest().tile) canvas.tiles.emplace_hint(canvas.tiles.end(), at, tile);
+  }
+  return canvas;
+}
+
+/// Null where there are as many layers already as there may be.
+Mosaic::State* Mosaic::state_of(const Layer& layer, double stamp) {
+  const auto found = layers_.find(layer);
+  if (found != layers_.end()) return &found->second;
+  if (layers_.size() == kMostLayers) return nullptr;
+  State& state = layers_[layer];
+  state.view.layer = layer;
+  state.view.first = state.view.last = stamp;
+  return &state;
+}
+
+/// Gives the time of what comes now: a finite one, that does not run backward.
+double Mosaic::begin_change(double stamp) {
+  constexpr double kLatest = 1e11;
+  if (stamp > last_) last_ = std::min(stamp, kLatest);
+  version_ = std::max(version_ + 1, static_cast<std::uint64_t>(last_ * 1000));
+  return last_;
+}
+
+bool Mosaic::has_room(const State& state, const Drawing& drawing) const {
+  std::size_t more = 0, less = 0;
+  for (const auto& [at, tile] : drawing.tiles) {
+    more += cost_of({.tile = tile});
+    const auto found = state.tiles.find(at);
+    if (found != state.tiles.end()) less += cost_of(found->second.newest());
+  }
+  return newest_bytes_ + more - less <= budget_;
+}
+
+bool Mosaic::apply(Drawing drawing, double stamp) {
+  if (drawing.run != run_) return false;
+  State* state = state_of(drawing.layer, stamp);
+  if (state == nullptr) return false;
+  if (!has_room(*state, drawing)) {
+    ++state->view.missed;
+    return false;
+  }
+  const double now = drawing.tiles.empty() ? std::max(stamp, last_) : begin_change(stamp);
+  state->view.last = std::max(state->view.last, now);
+  state->view.left_out = drawing.left_out;
+  if (drawing.area) extend(state->view.bounds, *drawing.area);
+  extend(state->view.heights, drawing.heights);
+  if (drawing.tiles.empty()) return true;
+  state->view.version = version_;
+  for (auto& [at, tile] : drawing.tiles) put(*state, at, std::move(tile), now);
+  keep_to_budget();
+  return true;
+}
+
+void Mosaic::missed(const Layer& layer, double stamp) {
+  if (State* state = state_of(layer, stamp)) ++state->view.missed;
+}
+
+void Mosaic::wipe(double stamp) {
+  const double now = begin_change(stamp);
+  ++run_;
+  wiped_ = now;
+  for (auto& [layer, state] : layers_) {
+    state.view.bounds.reset();
+    state.view.heights.reset();
+    state.view.missed = state.view.left_out = 0;
+    state.view.version = version_;
+    for (auto& [at, history] : state.tiles) {
+      if (history.newest().tile) put(state, at, nullptr, now);
+    }
+  }
+  keep_to_budget();
+}
+
+void Mosaic::put(State& state, const TileAt& at, Tile tile, double stamp) {
+  History& history = state.tiles[at];
+  if (!history.empty()) newest_bytes_ -= cost_of(history.newest());
+  bytes_ -= history.cost();
+  history.add({stamp, version_, std::move(tile)}, spacing_);
+  bytes_ += history.cost();
+  newest_bytes_ += cost_of(history.newest());
+}
+
+void Mosaic::keep_to_budget() {
+  while (bytes_ > budget_ && spacing_ < kForever) {
+    spacing_ *= 2;
+    bytes_ = 0;
+    for (auto& [layer, state] : layers_) {
+      for (auto& [at, history] : state.tiles) {
+        history.thin(spacing_);
+        bytes_ += history.cost();
+      }
+    }
+  }
+}
+
+Mosaic::Shown Mosaic::tile(const Layer& layer, const TileAt& at, std::optional<double> stamp) const {
+  const auto state = layers_.find(layer);
+  if (state == layers_.end()) return {};
+  const auto found = state->second.tiles.find(at);
+  if (found == state->second.tiles.end()) return {};
+  const History& history = found->second;
+  const Version* version = stamp ? history.at(*stamp) : &history.newest();
+  if (version == nullptr) return {};
+  return {version->tile, version == &history.newest()};
+}
+
+std::vector<LayerView> Mosaic::layers(std::uint64_t since) const {
+  std::vector<LayerView> views;
+  views.reserve(layers_.size());
+  for (const auto& [layer, state] : layers_) {
+    LayerView& view = views.emplace_back(state.view);
+    for (const auto& [at, history] : state.tiles) {
+      const Version& newest = history.newest();
+      if (newest.number <= since) continue;
+      view.tiles.push_back({.at = at,
+                            .first = history.first().stamp,
+                            .stamp = newest.stamp,
+                            .version = newest.number,
+                            .blank = newest.tile == nullptr});
+    }
+  }
+  return views;
+}
+
+}  // namespace adit::picture

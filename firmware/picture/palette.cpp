@@ -1,0 +1,68 @@
+#include "picture/palette.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+namespace adit::picture {
+namespace {
+
+constexpr Colour kFree{0xc8, 0xd2, 0xda}, kOccupied{0xa8, 0x32, 0x1e};
+
+/// Viridis from an eighth of its length on, an eighth apart.
+constexpr Colour kRamp[] = {{71, 44, 122},  {59, 81, 139}, {44, 113, 142}, {33, 144, 141},
+                            {39, 173, 129}, {92, 200, 99}, {170, 220, 50}, {253, 231, 37}};
+
+std::uint8_t between(std::uint8_t a, std::uint8_t b, double part) {
+  return static_cast<std::uint8_t>(std::lround(a + (b - a) * part));
+}
+
+Colour between(const Colour& a, const Colour& b, double part) {
+  return {between(a.red, b.red, part), between(a.green, b.green, part), between(a.blue, b.blue, part)};
+}
+
+/// `part` of the way along the ramp, 0 to 1.
+Colour ramp_at(double part) {
+  const double at = part * (std::size(kRamp) - 1);
+  const auto before = std::min(static_cast<std::size_t>(at), std::size(kRamp) - 2);
+  return between(kRamp[before], kRamp[before + 1], at - static_cast<double>(before));
+}
+
+std::array<Colour, kMostOccupiedIndex + 1> made_grid_palette() {
+  std::array<Colour, kMostOccupiedIndex + 1> colours;
+  for (std::size_t value = 0; value < kMostOccupiedIndex; ++value) {
+    colours[value + 1] = between(kFree, kOccupied, static_cast<double>(value) / (kMostOccupiedIndex - 1));
+  }
+  return colours;
+}
+
+}  // namespace
+
+std::span<const Colour> grid_palette() {
+  static const auto palette = made_grid_palette();
+  return palette;
+}
+
+std::span<const Colour> height_ramp() {
+  return kRamp;
+}
+
+std::uint8_t height_index(double z) {
+  constexpr double kMost = 254;
+  return static_cast<std::uint8_t>(1 + std::clamp((z - kLowest) * (1 / kHeightStep), 0.0, kMost));
+}
+
+double height_of(std::uint8_t index) {
+  return kLowest + (index - 0.5) * kHeightStep;
+}
+
+std::array<Colour, 256> cloud_palette(double low, double high) {
+  std::array<Colour, 256> colours;
+  const double span = std::max(high - low, kHeightStep);
+  for (std::size_t index = 1; index < colours.size(); ++index) {
+    const double part = (height_of(static_cast<std::uint8_t>(index)) - low) / span;
+    colours[index] = ramp_at(std::clamp(part, 0.0, 1.0));
+  }
+  return colours;
+}
+
+}  // namespace adit::picture

@@ -1,0 +1,63 @@
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <memory>
+#include <span>
+#include <vector>
+
+#include "picture/tile.hpp"
+
+namespace adit::picture {
+
+/// What one map says, at the base's scale: of all that falls on a pixel, the highest index. A tile takes
+/// memory (64 KiB) once something is known in it, and no more than kMostTiles do.
+class Sheet {
+ public:
+  static constexpr std::size_t kMostTiles = 512;  // about 2 square kilometres
+
+  struct Part {
+    TileAt at;
+    std::unique_ptr<Pixels> pixels;
+  };
+
+  Sheet();
+
+  /// `index` at the base's pixel x, y (-kWorldPixels up to kWorldPixels). False where there is no tile for it
+  /// any more.
+  bool raise(int x, int y, std::uint8_t index) {
+    Pixels* pixels = tile(x >> 8, y >> 8);
+    if (pixels == nullptr) return false;
+    std::uint8_t& pixel = (*pixels)[index_of(x & (kSide - 1), y & (kSide - 1))];
+    if (index > pixel) pixel = index;
+    return true;
+  }
+
+  /// The same for a row of pixels from x, y on. Gives how many that are not 0 there was no tile for.
+  std::size_t raise(int x, int y, std::span<const std::uint8_t> row);
+
+  std::span<const Part> parts() const { return parts_; }
+
+ private:
+  static_assert(kSide == 1 << 8);
+  static constexpr std::uint16_t kNone = 0;
+
+  /// Null where it would be one too many.
+  Pixels* tile(int x, int y) {
+    const auto at = static_cast<std::size_t>((y + kWorldTiles) * 2 * kWorldTiles + x + kWorldTiles);
+    if (at != last_at_) {
+      if (places_[at] == kNone) places_[at] = made(x, y);
+      last_ = places_[at] == kNone ? nullptr : parts_[places_[at] - 1U].pixels.get();
+      last_at_ = at;
+    }
+    return last_;
+  }
+  std::uint16_t made(int x, int y);
+
+  std::vector<Part> parts_;
+  std::size_t last_at_ = SIZE_MAX;  // the tile asked for last, as most often the next one is
+  Pixels* last_ = nullptr;
+  std::vector<std::uint16_t> places_;  // in parts_, from 1; for each tile of the world
+};
+
+}  // namespace adit::picture

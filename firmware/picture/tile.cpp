@@ -1,0 +1,74 @@
+#include "picture/tile.hpp"
+
+#include <zlib.h>
+
+#include <algorithm>
+#include <new>
+
+namespace adit::picture {
+namespace {
+
+constexpr int kLevel = 4;                // of zlib: a tenth larger than 6, in half the time
+constexpr std::size_t kRow = kSide + 1;  // a row begins with the number of its filter (PNG 7.3); 0: none
+constexpr std::uint8_t kIdat[] = {'I', 'D', 'A', 'T'};
+
+void require(bool started) {
+  if (!started) throw std::bad_alloc();  // zlib fails to start for want of memory alone
+}
+
+}  // namespace
+
+struct Packer::Streams {
+  Streams() {
+    require(deflateInit(&out, kLevel) == Z_OK);
+    require(inflateInit(&in) == Z_OK);
+  }
+  ~Streams() {
+    deflateEnd(&out);
+    inflateEnd(&in);
+  }
+  Streams(const Streams&) = delete;
+  Streams& operator=(const Streams&) = delete;
+
+  z_stream out{}, in{};
+};
+
+Packer::Packer() : streams_(std::make_unique<Streams>()), rows_(kRow * kSide) {
+  made_.resize(deflateBound(&streams_->out, rows_.size()));
+}
+Packer::~Packer() = default;
+
+Tile Packer::pack(const Pixels& pixels) {
+  for (std::size_t row = 0; row < kSide; ++row) {
+    rows_[row * kRow] = 0;
+    std::copy_n(pixels.data() + row * kSide, kSide, rows_.data() + row * kRow + 1);
+  }
+  z_stream& zlib = streams_->out;
+  deflateReset(&zlib);
+  zlib.next_in = rows_.data();
+  zlib.avail_in = static_cast<uInt>(rows_.size());
+  zlib.next_out = made_.data();
+  zlib.avail_out = static_cast<uInt>(made_.size());
+  deflate(&zlib, Z_FINISH);  // cannot fail: there is room for all that can come out
+  auto packed = std::make_shared<Packed>();
+  packed->deflated.assign(made_.data(), zlib.next_out);
+  const auto crc = crc32(crc32(0, kIdat, sizeof kIdat), packed->deflated.data(),
+                         static_cast<uInt>(packed->deflated.size()));
+  packed->crc = static_cast<std::uint32_t>(crc);
+  return packed;
+}
+
+void Packer::unpack(const Packed& packed, Pixels& pixels) {
+  z_stream& zlib = streams_->in;
+  inflateReset(&zlib);
+  zlib.next_in = const_cast<Bytef*>(packed.deflated.data());  // zlib does not change what it reads
+  zlib.avail_in = static_cast<uInt>(packed.deflated.size());
+  zlib.next_out = rows_.data();
+  zlib.avail_out = static_cast<uInt>(rows_.size());
+  inflate(&zlib, Z_FINISH);  // cannot fail: pack() made it
+  for (std::size_t row = 0; row < kSide; ++row) {
+    std::copy_n(rows_.data() + row * kRow + 1, kSide, pixels.data() + row * kSide);
+  }
+}
+
+}  // namespace adit::picture

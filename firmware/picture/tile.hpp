@@ -1,0 +1,46 @@
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <memory>
+#include <vector>
+
+#include "picture/world.hpp"
+
+namespace adit::picture {
+
+/// The colour index of each pixel of a tile, row by row from the top as a PNG has them. 0: nothing is known
+/// there.
+using Pixels = std::array<std::uint8_t, kSide * kSide>;
+
+/// Where a pixel stands in Pixels; x to the right, y up.
+inline constexpr std::size_t index_of(int x, int y) {
+  return static_cast<std::size_t>(kSide - 1 - y) * kSide + static_cast<std::size_t>(x);
+}
+
+/// A tile as it is kept: the content of a PNG's IDAT chunk (a zlib stream of unfiltered rows), without the
+/// palette, which is one for all.
+struct Packed {
+  std::vector<std::uint8_t> deflated;
+  std::uint32_t crc = 0;  // of the chunk, by PNG 5.5: says whether two tiles are the same
+};
+using Tile = std::shared_ptr<const Packed>;  // null: blank
+
+/// Packs tile after tile with one zlib stream, whose memory is what costs. For one thread.
+class Packer {
+ public:
+  Packer();
+  ~Packer();
+  Packer(const Packer&) = delete;
+  Packer& operator=(const Packer&) = delete;
+
+  Tile pack(const Pixels& pixels);
+  void unpack(const Packed& packed, Pixels& pixels);
+
+ private:
+  struct Streams;
+  std::unique_ptr<Streams> streams_;
+  std::vector<std::uint8_t> rows_, made_;
+};
+
+}  // namespace adit::picture

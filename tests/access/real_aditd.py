@@ -1,0 +1,257 @@
+#!/usr/bin/python3
+"""The login of the real program: real_aditd.py ADITD. On loopback, with no Command Post."""
+
+import contextlib
+import http.client
+import json
+import pathlib
+import re
+import signal
+import stat
+import subprocess
+import sys
+import tempfile
+import time
+import unittest
+
+TOKENS = {"scoring": "scoring-token-1", "mapping": "mapping-token-1", "team": "team-token-1"}
+OPERATOR, VIEWER = "correct horse battery", "look, do not touch"
+NOWHERE = {"address": "127.0.0.1", "port": 9}
+aditd = None
+
+
+class Box:
+    """aditd with folders of its own, which outlive a restart."""
+
+    def __init__(self, folder, label=None, require_token=True):
+        self.folder = pathlib.Path(folder)
+        self.state, self.log = self.folder / "state", self.folder / "log"
+        secrets = self.folder / "secrets"
+        secrets.mkdir(mode=0o700)
+        for name, text in {**{f"{name}.token": token for name, token in TOKENS.items()}, "label.code": label}.items():
+            if text is not None:
+                (secrets / name).write_text(text + "\n")
+                (secrets / name).chmod(0o600)
+        (self.folder / "settings.json").write_text(json.dumps({
+            "version": 1,
+            "command_post": {"scoring": NOWHERE, "mapping": NOWHERE},
+            "team": {"listen": [{"address": "127.0.0.1", "port": 0}], "require_token": require_token}}))
+        self.start()
+
+    def start(self):
+        with open(self.log, "ab") as log:
+            begun = log.tell()
+            self.process = subprocess.Popen([aditd, "--settings", self.folder / "settings.json", "--secrets",
+                                             self.folder / "secrets", "--state", self.state], stdout=log, stderr=log)
+        for _ in range(500):
+            found = re.search(r"listening .*port=(\d+)", self.said()[begun:])
+            if found:
+                self.port = int(found.group(1))
+                return
+            time.sleep(0.01)
+        raise AssertionError("aditd does not listen:\n" + self.said())
+
+    def stop(self):
+        self.process.send_signal(signal.SIGTERM)
+        self.process.wait(5)
+
+    def said(self):
+        return self.log.read_text()
+
+    def code(self):
+        return (self.state / "first-start.code").read_text().strip()
+
+    def ask(self, request, body=None, **headers):
+        """ask("GET /adit/run", Cookie="adit=..."): status, JSON, headers. `_` in a header's name is `-`."""
+        method, _, path = request.partition(" ")
+        connection = http.client.HTTPConnection("127.0.0.1", self.port, timeout=10)
+        with contextlib.closing(connection):
+            sent = {"Content-Type": "application/json"} if body is not None else {}
+            sent.update({name.replace("_", "-"): value for name, value in headers.items()})
+            connection.request(method, path, None if body is None else json.dumps(body), sent)
+            answer = connection.getresponse()
+            text = answer.read()
+            is_json = answer.headers["Content-Type"] == "application/json"
+            return answer.status, json.loads(text) if is_json else text, answer.headers
+
+    def set_first(self, code=None, password=OPERATOR):
+        return self.ask("POST /adit/password", {"role": "operator", "code": code or self.code(), "password": password})
+
+    def log_in(self, password=OPERATOR):
+        """The headers that a browser sends from then on."""
+        status, said, headers = self.ask("POST /adit/login", {"password": password})
+        assert status == 200, (status, said)
+        return {"Cookie": headers["Set-Cookie"].partition(";")[0], "Adit_CSRF": said["csrf"]}
+
+
+class Login(unittest.TestCase):
+    def box(self, first=True, **options):
+        folder = tempfile.TemporaryDirectory(prefix="adit-login-")
+        self.addCleanup(folder.cleanup)
+        box = Box(folder.name, **options)
+        self.addCleanup(lambda: box.process.wait())
+        self.addCleanup(lambda: box.process.kill())
+        if first:
+            self.assertEqual(box.set_first()[0], 200)
+        return box
+
+    def test_the_first_start_asks_for_the_code_that_the_console_tells(self):
+        box = self.box(first=False)
+        self.assertEqual(box.ask("GET /adit/session")[1], {"role": None, "csrf": None, "first_start": True})
+        self.assertRegex(box.code(), r"^\d{8}$")
+        self.assertIn(f"code={box.code()}", box.said())
+        self.assertEqual(stat.S_IMODE((box.state / "first-start.code").stat().st_mode), 0o600)
+        wrong = "00000000" if box.code() != "00000000" else "11111111"
+        self.assertEqual(box.set_first(code=wrong)[0], 403)
+        code = box.code()
+        box.stop()
+        box.start()
+        self.assertEqual(box.code(), code, "the same after a restart")
+        self.assertEqual(box.set_first()[0], 200)
+        self.assertFalse((box.state / "first-start.code").exists())
+        self.assertEqual(box.set_first(code=code)[0], 401, "it has done its service")
+        before = len(box.said())
+        box.stop()
+        box.start()
+        self.assertNotIn("code=", box.said()[before:])
+        self.assertEqual(box.ask("GET /adit/session")[1]["first_start"], False)
+        self.assertEqual(box.ask("GET /adit/run", **box.log_in())[0], 200)
+
+    def test_the_code_of_the_label_is_not_told(self):
+        box = self.box(first=False, label="31415926")
+        self.assertFalse((box.state / "first-start.code").exists())
+        self.assertNotIn("31415926", box.said())
+        self.assertEqual(box.set_first(code="31415926")[0], 200)
+
+    def test_passwords_are_kept_hashed_and_for_aditd_alone_and_are_in_no_log(self):
+        box = self.box()
+        by_operator = box.log_in()
+        box.ask("POST /adit/login", {"password": "an untrue password"})
+        status, said, _ = box.ask("POST /adit/password", {"role": "viewer", "current": OPERATOR, "password": VIEWER},
+                                  **by_operator)
+        self.assertEqual((status, said), (200, {"role": "viewer"}))
+        file = box.state / "access.json"
+        self.assertEqual(stat.S_IMODE(file.stat().st_mode), 0o600)
+        kept = json.loads(file.read_text())
+        self.assertEqual(kept["version"], 1)
+        for role in ("operator", "viewer"):
+            self.assertTrue(kept[role].startswith("$y$j9T$"), role)
+        secret = by_operator["Cookie"].partition("=")[2]
+        for text in (OPERATOR, VIEWER, "an untrue password", secret, by_operator["Adit_CSRF"], "$y$"):
+            self.assertNotIn(text, box.said())
+        self.assertIn("a wrong password was shown", box.said())
+        self.assertEqual(box.ask("POST /adit/password", {"role": "viewer", "current": OPERATOR, "password": OPERATOR},
+                                 **by_operator)[0], 422, "one password for two roles")
+
+    def test_a_browser_logs_in_looks_does_and_logs_out(self):
+        box = self.box()
+        self.assertEqual(box.ask("GET /adit/run")[0], 401)
+        status, said, headers = box.ask("POST /adit/login", {"password": OPERATOR})
+        self.assertEqual((status, said["role"]), (200, "operator"))
+        self.assertRegex(headers["Set-Cookie"],
+                         r"^adit=[0-9a-f]{64}; HttpOnly; SameSite=Strict; Path=/; Max-Age=604800$")
+        mine = {"Cookie": headers["Set-Cookie"].partition(";")[0], "Adit_CSRF": said["csrf"]}
+        self.assertEqual(box.ask("GET /adit/run", **mine)[0], 200)
+        self.assertEqual(box.ask("POST /adit/runs", {}, Cookie=mine["Cookie"])[0], 403, "without CSRF token")
+        self.assertEqual(box.ask("POST /adit/runs", {}, **{**mine, "Adit_CSRF": "0" * 64})[0], 403, "a wrong one")
+        self.assertEqual(box.ask("POST /adit/runs", {}, **mine)[:2], (200, {"run": 2}))
+        status, _, headers = box.ask("POST /adit/logout", {}, **mine)
+        self.assertEqual(status, 200)
+        self.assertIn("Max-Age=0", headers["Set-Cookie"])
+        self.assertEqual(box.ask("GET /adit/run", **mine)[0], 401)
+
+    def test_a_viewer_may_look_but_not_post(self):
+        box = self.box()
+        box.ask("POST /adit/password", {"role": "viewer", "current": OPERATOR, "password": VIEWER}, **box.log_in())
+        viewer = box.log_in(VIEWER)
+        self.assertEqual(box.ask("GET /adit/reports", **viewer)[0], 200)
+        self.assertEqual(box.ask("GET /adit/map", **viewer)[0], 200)
+        self.assertEqual(box.ask("GET /adit/sessions", **viewer)[0], 403)
+        for path in ("/adit/runs", "/adit/reports/1/send", "/adit/sessions/1/end"):
+            self.assertEqual(box.ask(f"POST {path}", {}, **viewer)[0], 403, path)
+
+    def test_pages_from_elsewhere_and_foreign_names_get_nothing(self):
+        box = self.box()
+        mine = box.log_in()
+        for origin in ("http://evil.example", "null", "http://127.0.0.1:1"):
+            self.assertEqual(box.ask("POST /adit/runs", {}, Origin=origin, **mine)[0], 403, origin)
+            self.assertEqual(box.ask("POST /adit/login", {"password": OPERATOR}, Origin=origin)[0], 403, origin)
+        for host in ("evil.example", f"evil.example:{box.port}", "adit"):
+            self.assertEqual(box.ask("GET /adit/run", Host=host, **mine)[0], 403, host)
+            self.assertEqual(box.ask("GET /adit/session", Host=host)[0], 403, host)
+        for host in ("adit.local", f"localhost:{box.port}", "10.1.2.3", "[fd00::1]:8000"):
+            self.assertEqual(box.ask("GET /adit/run", Host=host, **mine)[0], 200, host)
+        own = f"http://127.0.0.1:{box.port}"
+        status, _, headers = box.ask("POST /adit/runs", {}, Origin=own, **mine)
+        self.assertEqual(status, 200)
+        self.assertFalse([name for name in headers if name.lower().startswith("access-control")])
+
+    def test_guesses_are_slowed_down_without_being_checked(self):
+        box = self.box()
+        for _ in range(5):
+            self.assertEqual(box.ask("POST /adit/login", {"password": "an untrue password"})[0], 403)
+        began = time.monotonic()
+        status, said, headers = box.ask("POST /adit/login", {"password": OPERATOR})
+        self.assertEqual((status, headers["Retry-After"]), (429, "1"), said)
+        self.assertLess(time.monotonic() - began, 0.5)
+        time.sleep(1.05)
+        self.assertEqual(box.ask("POST /adit/login", {"password": OPERATOR})[0], 200)
+
+    def test_many_logins_at_once_keep_nobody_else_waiting(self):
+        box = self.box()
+        connections = []
+        for _ in range(12):
+            connection = http.client.HTTPConnection("127.0.0.1", box.port, timeout=10)
+            connection.request("POST", "/adit/login", json.dumps({"password": OPERATOR}),
+                               {"Content-Type": "application/json"})
+            connections.append(connection)
+        slowest = 0
+        for _ in range(20):
+            began = time.monotonic()
+            self.assertEqual(box.ask("GET /page.css")[0], 200)
+            slowest = max(slowest, time.monotonic() - began)
+        statuses = [connection.getresponse().status for connection in connections]
+        for connection in connections:
+            connection.close()
+        self.assertLessEqual(set(statuses), {200, 429})
+        self.assertIn(200, statuses)
+        self.assertLess(slowest, 0.25)
+
+    def test_scripts_need_a_token_even_where_robots_need_none(self):
+        for require_token in (True, False):
+            box = self.box(require_token=require_token)
+            self.assertEqual(box.ask("GET /adit/run")[0], 401)
+            self.assertEqual(box.ask("GET /adit/run", Authorization="Bearer wrong")[0], 401)
+            for token in TOKENS.values():
+                self.assertEqual(box.ask("GET /adit/run", Authorization=f"Bearer {token}")[0], 200)
+                self.assertEqual(box.ask("POST /adit/runs", {}, Authorization=f"Bearer {token}")[0], 200)
+            status = box.ask("POST /state/update", {})[0]
+            self.assertEqual(status, 401 if require_token else 422, "the robots' own rule")
+
+    def test_the_pages_own_files_are_for_anybody_and_load_nothing_from_elsewhere(self):
+        box = self.box()
+        for path in ("/", "/login.html", "/page.js", "/page.css"):
+            status, text, headers = box.ask(f"GET {path}")
+            self.assertEqual(status, 200, path)
+            self.assertTrue(headers["Content-Security-Policy"].startswith("default-src 'none'"))
+            self.assertIn("frame-ancestors 'none'", headers["Content-Security-Policy"])
+            self.assertNotIn("unsafe", headers["Content-Security-Policy"])
+            self.assertEqual(headers["X-Content-Type-Options"], "nosniff")
+            self.assertEqual(headers["Referrer-Policy"], "no-referrer")
+            self.assertNotIn(b"<script>", text)
+
+    def test_a_damaged_file_of_passwords_asks_for_the_code_again_and_stops_nothing(self):
+        box = self.box()
+        box.stop()
+        (box.state / "access.json").write_text("{\"version\":1,\"oper")
+        box.start()
+        self.assertIn("the passwords cannot be read", box.said())
+        self.assertEqual(box.ask("GET /adit/session")[1]["first_start"], True)
+        self.assertEqual(box.ask("GET /adit/run", Authorization=f"Bearer {TOKENS['team']}")[0], 200)
+        self.assertEqual(box.set_first(password="another password")[0], 200)
+        box.log_in("another password")
+
+
+if __name__ == "__main__":
+    aditd = sys.argv.pop(1)
+    unittest.main()

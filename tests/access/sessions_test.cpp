@@ -1,0 +1,124 @@
+#include "access/sessions.hpp"
+
+#include <gmock/gmock.h>
+
+#include <random>
+#include <set>
+
+namespace adit::access {
+namespace {
+
+using namespace std::chrono_literals;
+
+constexpr Instant kStart{1000h};
+
+Secret secret(std::mt19937_64& random) {
+  Secret secret;
+  for (auto& byte : secret) byte = static_cast<std::uint8_t>(random());
+  return secret;
+}
+
+class SessionsTest : public testing::Test {
+ protected:
+  Session begin(Role role, Instant now, const std::string& agent = "browser") {
+    return sessions.begin(secret(random), secret(random), role, {"10.0.0.5", agent}, now);
+  }
+  bool lives(const Session& session, Instant now) {
+    return sessions.find(session.id.reveal(), now) != nullptr;
+  }
+
+  std::mt19937_64 random{7};
+  Sessions sessions;
+};
+
+TEST(Secrets, AreWrittenInHexadecimal) {
+  Secret secret{};
+  secret[0] = 0x0f;
+  secret[31] = 0xa0;
+  EXPECT_EQ(as_token(secret).reveal(), "0f" + std::string(60, '0') + "a0");
+}
+
+TEST_F(SessionsTest, AreFoundByTheirIdAlone) {
+  const Session mine = begin(Role::Operator, kStart);
+  const Session* const found = sessions.find(mine.id.reveal(), kStart);
+  ASSERT_NE(found, nullptr);
+  EXPECT_EQ(found->role, Role::Operator);
+  EXPECT_EQ(found->address, "10.0.0.5");
+  for (const std::string& other :
+       {std::string(), std::string("1"), mine.csrf.reveal(), mine.id.reveal() + "0",
+        mine.id.reveal().substr(1), std::string(64, '0')}) {
+    EXPECT_EQ(sessions.find(other, kStart), nullptr) << other;
+  }
+}
+
+TEST_F(SessionsTest, EndTwelveHoursAfterTheyWereSeenLast) {
+  const Session session = begin(Role::Viewer, kStart);
+  EXPECT_TRUE(lives(session, kStart + 12h - 1s));
+  EXPECT_TRUE(lives(session, kStart + 23h)) << "being seen puts it off";
+  EXPECT_FALSE(lives(session, kStart + 35h));
+  EXPECT_FALSE(lives(session, kStart + 35h)) << "for good";
+}
+
+TEST_F(SessionsTest, EndSevenDaysAfterTheyBeganHoweverOftenSeen) {
+  const Session session = begin(Role::Operator, kStart);
+  for (auto age = 1h; age < 7 * 24h; age += 1h) ASSERT_TRUE(sessions.still(session.number, kStart + age));
+  EXPECT_FALSE(sessions.still(session.number, kStart + 7 * 24h));
+}
+
+TEST_F(SessionsTest, AreAtMostSixtyFourAndTheOneIdleForLongestGoes) {
+  std::vector<Session> all;
+  for (int i = 0; i < 64; ++i) all.push_back(begin(Role::Viewer, kStart + i * 1s));
+  EXPECT_TRUE(lives(all[0], kStart + 100s));
+  const Session one_more = begin(Role::Viewer, kStart + 101s);
+  EXPECT_EQ(sessions.all(kStart + 101s).size(), 64u);
+  EXPECT_TRUE(lives(one_more, kStart + 101s));
+  EXPECT_TRUE(lives(all[0], kStart + 101s)) << "it was seen since";
+  EXPECT_FALSE(lives(all[1], kStart + 101s));
+}
+
+TEST_F(SessionsTest, EndOneByOneOrByRole) {
+  const Session viewer = begin(Role::Viewer, kStart), mine = begin(Role::Operator, kStart),
+                other = begin(Role::Operator, kStart);
+  sessions.end_all(Role::Operator, mine.number);
+  EXPECT_TRUE(lives(viewer, kStart));
+  EXPECT_TRUE(lives(mine, kStart));
+  EXPECT_FALSE(lives(other, kStart));
+  EXPECT_TRUE(sessions.end(viewer.number));
+  EXPECT_FALSE(sessions.end(viewer.number));
+  EXPECT_FALSE(lives(viewer, kStart));
+}
+
+TEST_F(SessionsTest, KeepTheBeginningOfTheBrowsersNameAsPlainText) {
+  EXPECT_EQ(begin(Role::Viewer, kStart, "a\x1b[2Jb\xc3\xa9\n").agent, "a?[2Jb???");
+  EXPECT_EQ(begin(Role::Viewer, kStart, std::string(300, 'x')).agent, std::string(80, 'x'));
+}
+
+/// Laws, over many random steps.
+TEST_F(SessionsTest, NeverShareAnIdOrANumberAndNeverOutliveTheirTime) {
+  std::set<std::string> ids;
+  std::set<std::uint64_t> numbers;
+  std::vector<Session> known;
+  Instant now = kStart;
+  for (int step = 0; step < 3000; ++step) {
+    now += std::chrono::minutes(random() % 40);
+    if (random() % 3 == 0) {
+      const Session session = begin(random() % 2 ? Role::Viewer : Role::Operator, now);
+      EXPECT_TRUE(ids.insert(session.id.reveal()).second);
+      EXPECT_TRUE(ids.insert(session.csrf.reveal()).second);
+      EXPECT_TRUE(numbers.insert(session.number).second);
+      known.push_back(session);
+    } else if (!known.empty()) {
+      (void)sessions.find(known[random() % known.size()].id.reveal(), now);
+    }
+    const auto all = sessions.all(now);
+    ASSERT_LE(all.size(), Sessions::kMost);
+    for (const Session& each : all) {
+      ASSERT_LT(now - each.seen, Sessions::kIdle);
+      ASSERT_LT(now - each.made, Sessions::kLongest);
+    }
+  }
+  EXPECT_GT(known.size(), 900u);
+}
+
+}  // namespace
+}  // namespace adit::access

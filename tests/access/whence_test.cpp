@@ -1,0 +1,67 @@
+#include "access/whence.hpp"
+
+#include <gtest/gtest.h>
+
+namespace adit::access {
+namespace {
+
+TEST(Whence, OnlyWhatNoDnsCanForgeNamesThisBox) {
+  for (const char* host :
+       {"10.0.0.1", "10.0.0.1:8000", "192.168.7.11:80", "[fd00::1]", "[fd00::1]:8000", "[::1]:1", "localhost",
+        "localhost:8000", "LocalHost", "adit.local", "Adit.Local:8000"}) {
+    EXPECT_TRUE(names_this_box(host)) << host;
+  }
+  for (const char* host : {"",
+                           ":8000",
+                           "evil.example",
+                           "evil.example:8000",
+                           "10.0.0.1.evil.example",
+                           "adit.local.evil.example",
+                           "xadit.local",
+                           "adit",
+                           "localhost.",
+                           "fd00::1",
+                           "[fd00::1",
+                           "[10.0.0.1]",
+                           "10.0.0.1:80x",
+                           "10.0.0.1:123456",
+                           "10.0.0",
+                           "2130706433",
+                           "0x7f000001",
+                           "10.0.0.1:80:80",
+                           "10.0.0.1 evil",
+                           "[fd00::1]x"}) {
+    EXPECT_FALSE(names_this_box(host)) << host;
+  }
+}
+
+TEST(Whence, AnOriginIsThePageOfTheVeryHostAndPort) {
+  struct Case {
+    const char *origin, *host;
+    bool same;
+  };
+  for (const auto& [origin, host, same] :
+       {Case{"http://10.0.0.1:8000", "10.0.0.1:8000", true}, Case{"http://adit.local", "ADIT.local", true},
+        Case{"https://adit.local", "adit.local", true}, Case{"http://[fd00::1]:8000", "[fd00::1]:8000", true},
+        Case{"http://10.0.0.1:8001", "10.0.0.1:8000", false}, Case{"http://10.0.0.1", "10.0.0.1:8000", false},
+        Case{"http://10.0.0.2:8000", "10.0.0.1:8000", false}, Case{"null", "10.0.0.1:8000", false},
+        Case{"http://evil.example", "10.0.0.1:8000", false}, Case{"10.0.0.1:8000", "10.0.0.1:8000", false},
+        Case{"file://10.0.0.1", "10.0.0.1", false}, Case{"http://", "", true}}) {
+    EXPECT_EQ(is_same_origin(origin, host), same) << origin << ' ' << host;
+  }
+}
+
+TEST(Whence, ACookieIsFoundByItsWholeName) {
+  EXPECT_EQ(cookie_in("adit=1", "adit"), "1");
+  EXPECT_EQ(cookie_in("theme=dark; adit=1; x=2", "adit"), "1");
+  EXPECT_EQ(cookie_in("theme=dark;adit=1 ", "adit"), "1");
+  EXPECT_EQ(cookie_in("adit=1; adit=2", "adit"), "1");
+  EXPECT_EQ(cookie_in("adit=a=b", "adit"), "a=b");
+  for (const char* cookies :
+       {"", "adit", "xadit=1", "adit2=1", "Adit=1", ";;;", " ; =", "x=adit=1", "adit="}) {
+    EXPECT_EQ(cookie_in(cookies, "adit"), "") << cookies;
+  }
+}
+
+}  // namespace
+}  // namespace adit::access

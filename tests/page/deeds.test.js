@@ -1,0 +1,108 @@
+import assert from "node:assert/strict";
+import { test } from "node:test";
+import { said, watch } from "./watch.js";
+
+const row = (page, number) => page.locator(`#reports li[data-key="${number}"]`);
+const button = (page, name, number) => page.getByRole("button", { name: `${name}: report ${number}` });
+const becomes = (page, number, words) =>
+  page.waitForFunction(([number, words]) => document.querySelector(`#reports li[data-key="${number}"]`)?.innerText.includes(words), [number, words]);
+
+test("offers at each report what its state allows, and nothing else", async (t) => {
+  const { page } = await watch(t, "reports");
+  const expected = {
+    28: ["Withdraw"], 27: [], 26: ["Send once more", "Call it done"], 25: ["Send once more", "Call it done"], 24: ["Send", "Withdraw"],
+    23: ["Resubmit"], 22: ["Resubmit"], 21: ["Send once more"], 20: ["Send"], 19: ["Send again"], 18: ["Resubmit"],
+  };
+  for (const [number, deeds] of Object.entries(expected)) {
+    await row(page, number).locator(".open").click();
+    assert.deepEqual(await row(page, number).locator(".deeds button").allTextContents(), deeds, `report ${number}`);
+  }
+});
+
+test("has what waits for the operator's word at hand, and the rest behind one press", async (t) => {
+  const { page } = await watch(t, "reports");
+  assert.equal(await row(page, 25).locator(".deeds button").count(), 2);
+  assert.equal(await row(page, 23).locator(".deeds button").count(), 0);
+  await row(page, 23).locator(".open").click();
+  assert.equal(await row(page, 23).locator(".deeds button").count(), 1);
+  await becomes(page, 23, "From 10.0.0.5");
+  await row(page, 23).locator(".open").click();
+  assert.equal(await row(page, 23).locator(".deeds button").count(), 0);
+});
+
+test("does at once what costs nothing", async (t) => {
+  const { page } = await watch(t, "reports");
+  await button(page, "Withdraw", 24).click();
+  await becomes(page, 24, "withdrawn");
+  await becomes(page, 24, "Withdrawn.");
+  await button(page, "Call it done", 25).click();
+  await becomes(page, 25, "called done");
+  await row(page, 20).locator(".open").click();
+  await button(page, "Send", 20).click();
+  await becomes(page, 20, "waiting");
+  assert.deepEqual(page.complaints, []);
+});
+
+test("asks before what costs a report, and does nothing where the answer is no", async (t) => {
+  const { page } = await watch(t, "reports");
+  await button(page, "Send once more", 25).click();
+  const question = page.getByRole("alertdialog");
+  assert.match(await question.textContent(), /report 25, Gas.*recorded twice.*costs a report.*18 reports are left/s);
+  assert.equal(await page.evaluate(() => document.activeElement.textContent), "Leave it");
+  await page.keyboard.press("Escape");
+  assert.ok(await question.isHidden());
+  assert.match(await row(page, 25).innerText(), /in doubt/);
+  await button(page, "Send once more", 25).click();
+  await question.getByRole("button", { name: "Leave it" }).click();
+  assert.match(await row(page, 25).innerText(), /in doubt/);
+  await button(page, "Send once more", 25).click();
+  await question.getByRole("button", { name: "Send once more" }).click();
+  await becomes(page, 25, "waiting");
+});
+
+test("resubmits as a new report, and says its number", async (t) => {
+  const { page } = await watch(t, "reports");
+  await row(page, 23).locator(".open").click();
+  await button(page, "Resubmit", 23).click();
+  await page.getByRole("alertdialog").getByRole("button", { name: "Resubmit" }).click();
+  await becomes(page, 23, "as report 29");
+  await becomes(page, 29, "waiting");
+});
+
+test("shows the box's sentence where a deed cannot be", async (t) => {
+  const { page } = await watch(t, "reports");
+  await row(page, 19).locator(".open").click();
+  await button(page, "Send again", 19).click();
+  await becomes(page, 19, "the step could not be written down; try again");
+  assert.equal(await row(page, 19).locator(".outcome").getAttribute("data-bad"), "true");
+});
+
+test("lets a viewer look, and says why no more", async (t) => {
+  const prepare = (page) => page.route("**/adit/session", (route) => route.fulfill({ json: { role: "viewer", csrf: "x", first_start: false } }));
+  const { page } = await watch(t, "reports", { prepare });
+  await said(page, "Only an operator can do something");
+  for (const one of await page.locator("#reports .deeds button, #reports button.compose").all()) assert.ok(await one.isDisabled());
+  await page.keyboard.press("n");
+  assert.ok(await page.locator("#compose").isHidden());
+});
+
+test("offers nothing while the box is lost, and again once it is back", async (t) => {
+  const { stage, page } = await watch(t, "reports");
+  stage.freeze();
+  await page.waitForSelector("body[data-link=lost]", { timeout: 6000 });
+  await said(page, "Nothing can be done while the box does not answer");
+  assert.ok(await button(page, "Send", 24).isDisabled());
+  stage.thaw();
+  await page.waitForSelector("body[data-link=live]", { timeout: 6000 });
+  await page.waitForFunction(() => !document.querySelector("#reports .deeds button").disabled);
+});
+
+test("has nothing to press that is smaller than a gloved finger", async (t) => {
+  for (const viewport of [{ width: 390, height: 844 }, { width: 1280, height: 720 }, { width: 3840, height: 2160 }]) {
+    const { page } = await watch(t, "reports", { viewport });
+    await row(page, 23).locator(".open").click();
+    const small = await page.$$eval("main button, main .head a, main .layers label, main input[type=range], footer .help", (nodes) =>
+      nodes.map((node) => [node.textContent || node.type, node.getBoundingClientRect()]).filter(([, box]) => box.width && (box.height < 48 || box.width < 48)).map(([name, box]) => `${name}: ${box.width} x ${box.height}`));
+    assert.deepEqual(small, [], `${viewport.width}`);
+  }
+});

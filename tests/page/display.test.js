@@ -1,0 +1,45 @@
+import assert from "node:assert/strict";
+import { test } from "node:test";
+import { said, text, watch } from "./watch.js";
+
+const SCREENS = [[1280, 720], [1920, 1080], [3840, 2160]];
+
+test("shows the run on one screen, without anything to press", async (t) => {
+  for (const path of ["display", "display.html"]) {
+    const { page } = await watch(t, "reports", { path });
+    assert.match(await text(page, "#clock"), /^12:3\d$/);
+    assert.equal(await text(page, "#score"), "7");
+    assert.equal(await text(page, "#remaining"), "18");
+    assert.match(await text(page, "#verdict"), /Yes, every map arrives/);
+    assert.match(await text(page, "#reports ol"), /#28.*Drill.*waiting.*#27.*Cube.*sending/);
+    assert.match(await text(page, "#attention"), /report 25 is in doubt/i);
+    assert.equal(await page.locator("button, input, a, select, [tabindex]").count(), 0);
+    assert.deepEqual(page.complaints, []);
+  }
+});
+
+test("fits 720p, 1080p and 4K whole, and nothing on it is too small to read", async (t) => {
+  const { page } = await watch(t, "trouble", { path: "display" });
+  for (const [width, height] of SCREENS) {
+    await page.setViewportSize({ width, height });
+    const tall = await page.evaluate(() => Math.max(...[...document.querySelectorAll("main > *")].map((node) => node.getBoundingClientRect().bottom)));
+    assert.ok(tall <= height, `${tall} of ${height}`);
+    const sizes = await page.$$eval("main *", (nodes) => nodes.filter((node) => node.childNodes.length && node.offsetHeight > 1 && !node.closest(".spoken")).map((node) => parseFloat(getComputedStyle(node).fontSize)));
+    assert.ok(Math.min(...sizes) >= height / 42, `${Math.min(...sizes)} px of ${height}`);
+    const map = await page.locator("#map").boundingBox();
+    assert.ok(map.width * map.height > (width * height) / 4, "the map is large");
+    const clock = await page.$eval("#clock", (node) => parseFloat(getComputedStyle(node).fontSize));
+    assert.ok(clock >= height / 9, `${clock}`);
+  }
+});
+
+test("says at once that the box is lost, and comes back by itself", async (t) => {
+  const { stage, page } = await watch(t, "calm", { path: "display" });
+  stage.freeze();
+  await page.waitForSelector("body[data-link=lost]", { timeout: 6000 });
+  await said(page, "The box does not answer");
+  assert.match(await text(page, "#verdict"), /Unknown/);
+  stage.thaw();
+  await page.waitForSelector("body[data-link=live]", { timeout: 6000 });
+  assert.equal(await text(page, "#attention"), "");
+});

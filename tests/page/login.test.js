@@ -1,0 +1,124 @@
+import assert from "node:assert/strict";
+import { createRequire } from "node:module";
+import { after, before, test } from "node:test";
+import { launch, serve, visit } from "./stage.js";
+
+const axe = createRequire(import.meta.url).resolve("axe-core/axe.min.js");
+
+let browser;
+before(async () => (browser = await launch()));
+after(() => browser?.close());
+
+/** A page at `path`, with no session, for the length of one test. */
+async function come(t, path = "", more = [], options) {
+  const stage = await serve("calm", 0, ...more);
+  t.after(() => stage.end());
+  const page = await visit(browser, stage.url + path, options);
+  t.after(() => page.context().close());
+  return { stage, page };
+}
+
+const live = (page) => page.waitForSelector("body[data-link=live]");
+
+async function logIn(page, password) {
+  await page.locator("#login").getByLabel("Password").fill(password);
+  await page.keyboard.press("Enter");
+}
+
+test("asks whoever is not logged in for the password, and goes where he wanted to", async (t) => {
+  const { page } = await come(t, "index.html?x=1#reports");
+  await page.waitForURL(/login\.html/);
+  await logIn(page, "correct horse");
+  await live(page);
+  assert.match(page.url(), /\/index\.html\?x=1#reports$/);
+  assert.equal(await page.locator("#who .text").textContent(), "Logged in as operator");
+});
+
+test("says what is wrong with a password, and lets it be typed again", async (t) => {
+  const { page } = await come(t, "login.html");
+  await logIn(page, "wrong horse");
+  await page.getByRole("alert").getByText("that is not the password").waitFor();
+  assert.equal(await page.evaluate(() => document.activeElement.name), "password");
+  await logIn(page, "look, do not touch");
+  await live(page);
+  assert.equal(await page.locator("#who .text").textContent(), "Logged in as viewer");
+});
+
+test("makes whoever guesses wait", async (t) => {
+  const { page } = await come(t, "login.html");
+  for (let i = 0; i < 5; ++i) {
+    await logIn(page, `guess ${i}`);
+    await page.getByRole("alert").getByText("that is not the password").waitFor();
+    await page.waitForSelector("#login button:enabled");
+  }
+  await logIn(page, "correct horse");
+  await page.getByRole("alert").getByText("wait 1 s").waitFor();
+});
+
+test("sets the first password with the code of the box", async (t) => {
+  const { page } = await come(t, "", ["first-start"]);
+  await page.getByLabel("Code").fill("12345678");
+  await page.getByLabel("New password").fill("a new password");
+  await page.getByLabel("The same once more").fill("another password");
+  await page.keyboard.press("Enter");
+  await page.getByRole("alert").getByText("differ").waitFor();
+  await page.getByLabel("The same once more").fill("a new password");
+  await page.getByLabel("Code").fill("11111111");
+  await page.keyboard.press("Enter");
+  await page.getByRole("alert").getByText("that is not the code").waitFor();
+  await page.getByLabel("Code").fill("12345678");
+  await page.keyboard.press("Enter");
+  await live(page);
+  assert.equal(await page.locator("#who .text").textContent(), "Logged in as operator");
+});
+
+test("logs out, for good", async (t) => {
+  const { page, stage } = await come(t);
+  await logIn(page, "correct horse");
+  await live(page);
+  const [cookie] = await page.context().cookies();
+  assert.equal(cookie.name, "adit");
+  assert.equal(cookie.httpOnly, true);
+  assert.equal(cookie.sameSite, "Strict");
+  await page.getByRole("button", { name: "Log out" }).click();
+  await page.waitForURL(/login\.html/);
+  const old = await fetch(`${stage.url}adit/run`, { headers: { Cookie: `adit=${cookie.value}` } });
+  assert.equal(old.status, 401);
+});
+
+test("shows the door to a page whose session has ended elsewhere", async (t) => {
+  const { page, stage } = await come(t);
+  await logIn(page, "correct horse");
+  await live(page);
+  const all = { "Authorization": "Bearer team-1", "Content-Type": "application/json" };
+  const sessions = await (await fetch(`${stage.url}adit/sessions`, { headers: all })).json();
+  assert.match(sessions[0].agent, /AppleWebKit/);
+  await fetch(`${stage.url}adit/sessions/${sessions[0].number}/end`, { method: "POST", headers: all });
+  await page.waitForURL(/login\.html/, { timeout: 8000 });
+});
+
+test("goes nowhere but to a page of this box", async (t) => {
+  const { page, stage } = await come(t, "icon.svg");
+  for (const next of ["//evil.example/", "https://evil.example/", "javascript:alert(1)", "/.//evil.example/", "\\\\evil.example", "http://["]) {
+    await page.goto(`${stage.url}icon.svg`); // a page that goes nowhere by itself
+    await page.context().clearCookies();
+    await page.goto(`${stage.url}login.html?next=${encodeURIComponent(next)}`);
+    await logIn(page, "correct horse");
+    await page.waitForURL((url) => !url.pathname.endsWith("login.html"));
+    assert.equal(new URL(page.url()).origin + "/", stage.url, next);
+  }
+});
+
+test("has nothing that axe finds wrong at the door, in the dark and by day", async (t) => {
+  for (const colorScheme of ["dark", "light"]) {
+    for (const more of [[], ["first-start"]]) {
+      const { page } = await come(t, "login.html", more, { colorScheme, bypassCSP: true });
+      await page.waitForSelector("form:not([hidden])");
+      await page.addScriptTag({ path: axe });
+      const { violations } = await page.evaluate(() => window.axe.run());
+      assert.deepEqual(violations.map((each) => `${each.id}: ${each.nodes[0].html}`), []);
+      assert.ok(await page.evaluate(() => document.documentElement.scrollWidth <= innerWidth));
+      assert.deepEqual(page.complaints, []);
+    }
+  }
+});

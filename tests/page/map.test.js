@@ -1,0 +1,184 @@
+import assert from "node:assert/strict";
+import { test } from "node:test";
+import { serve } from "./stage.js";
+import { watch } from "./watch.js";
+
+const canvas = "#map .frame canvas";
+const tiles = (page) => page.requests.filter((url) => url.includes(".png")).length;
+const settled = async (page) => {
+  let before = -1;
+  while (before !== tiles(page)) {
+    before = tiles(page);
+    await page.waitForTimeout(500);
+  }
+};
+/** The colours of the map, so that two can be compared. */
+const picture = (page) => page.$eval(canvas, (node) => node.toDataURL());
+/** Whether more pixels than the rims of letters have about this colour. */
+const shows = (page, [red, green, blue, most]) =>
+  page.$eval(canvas, (node, [red, green, blue, most]) => {
+    let count = 0;
+    const { data } = node.getContext("2d").getImageData(0, 0, node.width, node.height);
+    for (let i = 0; i < data.length; i += 4) {
+      if (data[i + 3] > 200 && Math.abs(data[i] - red) + Math.abs(data[i + 1] - green) + Math.abs(data[i + 2] - blue) < 24) ++count;
+    }
+    return count > most;
+  }, [red, green, blue, most]);
+
+const FREE = [0xc8, 0xd2, 0xda, 400], ROBOT = [0xff, 0xb2, 0x24, 10], SCORED = [0x43, 0xd8, 0x93, 10];
+const box = (page, name) => page.getByRole("checkbox", { name, exact: true });
+
+test("shows the maps, the robots on them and the reports, each by its box", async (t) => {
+  const { page } = await watch(t, "calm", { colorScheme: "dark" });
+  await settled(page);
+  for (const [name, colour] of [["Grids", FREE], ["Robots", ROBOT], ["Reports", SCORED], ["merged", FREE]]) {
+    assert.ok(await shows(page, colour), name);
+    await box(page, name).uncheck();
+    await page.waitForTimeout(100);
+    assert.ok(!(await shows(page, colour)), `${name} off`);
+    await box(page, name).check();
+    await page.waitForTimeout(100);
+  }
+  const before = await picture(page);
+  await box(page, "Clouds").uncheck();
+  await page.waitForTimeout(100);
+  assert.notEqual(await picture(page), before);
+  assert.match(await page.textContent("#map .legend"), /Height\s+0\.0 m\s+\d\.0 m/);
+  assert.deepEqual(page.complaints.filter((text) => !text.includes("getImageData")), []); // this test's own reading
+});
+
+test("is moved by hand, wheel, keys and buttons, and fits again", async (t) => {
+  const { page } = await watch(t, "empty");
+  await page.locator(canvas).scrollIntoViewIfNeeded();
+  const at = await page.locator(canvas).boundingBox();
+  const [x, y] = [at.x + at.width / 2, at.y + at.height / 2];
+  const moves = {
+    wheel: async () => { await page.mouse.move(x, y); await page.mouse.wheel(0, -240); },
+    "zoom in": () => page.getByRole("button", { name: "Zoom in" }).click(),
+    "zoom out": () => page.getByRole("button", { name: "Zoom out" }).click(),
+    plus: () => page.locator(canvas).press("+"),
+    minus: () => page.locator(canvas).press("-"),
+  };
+  for (const [name, move] of Object.entries(moves)) {
+    const before = await picture(page);
+    await move();
+    await page.waitForTimeout(100);
+    assert.notEqual(await picture(page), before, name);
+  }
+});
+
+test("pans by dragging and by the arrow keys, and comes back by All", async (t) => {
+  const { page } = await watch(t, "reports");
+  await settled(page);
+  await box(page, "Robots").uncheck(); // they move by themselves
+  await page.waitForTimeout(200);
+  const whole = await picture(page);
+  await page.locator(canvas).scrollIntoViewIfNeeded();
+  const at = await page.locator(canvas).boundingBox();
+  await page.mouse.move(at.x + 100, at.y + 100);
+  await page.mouse.down();
+  await page.mouse.move(at.x + 160, at.y + 130, { steps: 4 });
+  await page.mouse.up();
+  await page.waitForTimeout(100);
+  const dragged = await picture(page);
+  assert.notEqual(dragged, whole);
+  await page.locator(canvas).press("ArrowLeft");
+  await page.waitForTimeout(100);
+  assert.notEqual(await picture(page), dragged);
+  await page.getByRole("button", { name: "All", exact: true }).click();
+  await settled(page);
+  assert.equal(await picture(page), whole);
+});
+
+test("shows the map as it was, by the slider, and now again", async (t) => {
+  const { page } = await watch(t, "calm");
+  await settled(page);
+  await box(page, "Robots").uncheck();
+  await box(page, "Reports").uncheck();
+  await page.waitForTimeout(200);
+  const whole = await picture(page);
+  const slider = page.getByRole("slider");
+  assert.equal(await slider.getAttribute("aria-valuetext"), "now");
+  await slider.focus();
+  for (let i = 0; i < 2; ++i) await page.keyboard.press("PageDown");
+  for (let i = 0; i < 2; ++i) await page.keyboard.press("PageDown");
+  assert.match(await slider.getAttribute("aria-valuetext"), /^as of \d\d:\d\d:\d\d$/);
+  await settled(page);
+  assert.ok(page.requests.some((url) => url.includes("at=")));
+  assert.notEqual(await picture(page), whole);
+  await page.getByRole("button", { name: "Now" }).click();
+  await settled(page);
+  assert.equal(await slider.getAttribute("aria-valuetext"), "now");
+  assert.equal(await picture(page), whole);
+});
+
+test("fetches a tile when it is seen and its version changed, not over and over", async (t) => {
+  const { page } = await watch(t, "calm");
+  await settled(page);
+  const once = tiles(page), maps = page.requests.filter((url) => url.includes("/adit/map?")).length;
+  assert.ok(once > 0 && once < 40, `${once} tiles`);
+  await page.waitForTimeout(3000);
+  assert.equal(tiles(page), once);
+  assert.equal(page.requests.filter((url) => url.includes("/adit/map?")).length, maps);
+});
+
+test("is drawn again only when something on it changed", async (t) => {
+  const prepare = (page) => page.addInitScript(() => {
+    globalThis.drawn = 0;
+    const clear = CanvasRenderingContext2D.prototype.clearRect;
+    CanvasRenderingContext2D.prototype.clearRect = function (...box) {
+      ++globalThis.drawn;
+      clear.apply(this, box);
+    };
+  });
+  const { page } = await watch(t, "empty", { prepare });
+  await page.waitForTimeout(1000);
+  const before = await page.evaluate(() => globalThis.drawn);
+  await page.waitForTimeout(2500);
+  assert.equal(await page.evaluate(() => globalThis.drawn), before);
+});
+
+test("shows the map of a box that was started anew", async (t) => {
+  const { stage, page } = await watch(t, "calm", { colorScheme: "dark" });
+  await settled(page);
+  const once = tiles(page);
+  await stage.end();
+  const next = await serve("calm", stage.port);
+  t.after(() => next.end());
+  await page.waitForSelector("body[data-link=live]");
+  await page.waitForTimeout(1500);
+  await settled(page);
+  assert.ok(tiles(page) > once, "the tiles of the new map were fetched");
+  assert.ok(await shows(page, FREE));
+});
+
+test("takes two fingers", async (t) => {
+  const { page } = await watch(t, "calm", { hasTouch: true, viewport: { width: 390, height: 844 } });
+  await settled(page);
+  const before = await picture(page);
+  await page.$eval(canvas, (node) => {
+    const box = node.getBoundingClientRect();
+    const send = (type, id, x, y) =>
+      node.dispatchEvent(new PointerEvent(type, { pointerId: id, pointerType: "touch", clientX: box.x + x, clientY: box.y + y, bubbles: true }));
+    node.setPointerCapture = () => {};
+    send("pointerdown", 1, 100, 100);
+    send("pointerdown", 2, 140, 100);
+    send("pointermove", 2, 240, 100);
+    send("pointerup", 1, 100, 100);
+    send("pointerup", 2, 240, 100);
+  });
+  await page.waitForTimeout(200);
+  assert.notEqual(await picture(page), before);
+});
+
+test("gets the picture of the map later where it cannot be had at first", async (t) => {
+  let fails = true;
+  const prepare = (page) => page.route("**/adit/map?*", (route) => (fails ? route.fulfill({ status: 503, json: "busy" }) : route.continue()));
+  const { page } = await watch(t, "calm", { prepare });
+  await page.waitForTimeout(1500);
+  assert.equal(tiles(page), 0);
+  fails = false;
+  await settled(page);
+  await page.waitForTimeout(1500);
+  assert.ok(tiles(page) > 0);
+});

@@ -1,0 +1,76 @@
+#include "page/map_scene.hpp"
+
+#include <cmath>
+#include <cstring>
+#include <utility>
+
+namespace adit::page {
+namespace {
+
+constexpr int kSide = 480;  // cells of half a metre: 240 m
+
+/// How far a place lies from the middle of a tunnel that winds towards +X, or of its branch towards +Y.
+double off_the_way(double x, double y) {
+  const double main = std::abs(y - 40 - 12 * std::sin(x / 23));
+  const double branch = y < 40 ? 1e9 : std::abs(x - 130 - 9 * std::sin(y / 17));
+  return std::min(main, branch);
+}
+
+/// What is known of the cave once `reach` metres of it have been seen.
+icd::MapUpdate explored(double reach) {
+  icd::OccupancyGrid grid;
+  grid.width = grid.height = kSide;
+  grid.resolution = 0.5;
+  grid.origin.position = {-10, -30, 0};
+  std::vector<std::uint8_t> cells;
+  for (int i = 0; i < kSide * kSide; ++i) {
+    const double x = i % kSide * 0.5, y = i / kSide * 0.5, off = off_the_way(x, y);
+    const bool seen = x + std::max(0.0, y - 60) < reach && off < 4;
+    cells.push_back(!seen ? icd::kUnknownCell : off < 3.2 ? std::uint8_t{0} : icd::kMostOccupied);
+  }
+  icd::MapUpdate map{{}, grid, {}};
+  map.data.raw_size = cells.size();
+  map.data.bytes = icd::ChunkedBytes{cells};
+  return map;
+}
+
+icd::MapUpdate scanned(double reach) {
+  std::vector<float> values;
+  for (double x = 0; x < reach; x += 0.2) {
+    for (double across = -3; across <= 3; across += 0.2) {
+      values.push_back(static_cast<float>(x - 10));
+      values.push_back(static_cast<float>(10 + 12 * std::sin(x / 23) + across));
+      values.push_back(static_cast<float>(x / 40 + 0.1 * across * across));
+    }
+  }
+  icd::PointCloud2 cloud;
+  cloud.fields = {{"x", 0, icd::Datatype::Float32, 1},
+                  {"y", 4, icd::Datatype::Float32, 1},
+                  {"z", 8, icd::Datatype::Float32, 1}};
+  cloud.point_step = 12;
+  std::vector<std::uint8_t> bytes(values.size() * sizeof(float));
+  std::memcpy(bytes.data(), values.data(), bytes.size());
+  icd::MapUpdate map{icd::RobotName::parse("ugv1"), cloud, {}};
+  map.data.raw_size = bytes.size();
+  map.data.bytes = icd::ChunkedBytes{bytes};
+  return map;
+}
+
+void draw(picture::Mosaic& map, const icd::MapUpdate& update, double stamp) {
+  if (auto drawing = picture::draw(update, map.canvas(picture::layer_of(update)))) {
+    map.apply(std::move(*drawing), stamp);
+  }
+}
+
+}  // namespace
+
+void draw_scene(picture::Mosaic& map, double now) {
+  constexpr int kSteps = 20;
+  for (int step = 1; step <= kSteps; ++step) {
+    const double stamp = now - 30.0 * (kSteps - step), reach = 240.0 * step / kSteps;
+    draw(map, explored(reach), stamp - 1);
+    draw(map, scanned(reach), stamp);
+  }
+}
+
+}  // namespace adit::page

@@ -1,0 +1,39 @@
+// What every test of the page needs: a browser for the file, and a page that looks at a scene.
+import assert from "node:assert/strict";
+import { mkdirSync } from "node:fs";
+import { createRequire } from "node:module";
+import { dirname, join } from "node:path";
+import { after, before } from "node:test";
+import { launch, look, serve } from "./stage.js";
+
+let browser;
+before(async () => (browser = await launch()));
+after(() => browser?.close());
+
+const axe = createRequire(import.meta.url).resolve("axe-core/axe.min.js");
+
+/** A page that looks at a scene, for the length of one test; `prepare(page)` before it is opened. */
+export async function watch(t, scene, { path = "", prepare, ...options } = {}) {
+  const stage = await serve(scene);
+  t.after(() => stage.end());
+  const page = await look(browser, stage.url + path, options, prepare);
+  t.after(() => page.context().close());
+  return { stage, page };
+}
+
+export const text = (page, selector) => page.textContent(selector);
+export const said = (page, words) => page.waitForFunction((words) => document.body.innerText.includes(words), words);
+
+export async function axeFindsNothing(page, what) {
+  await page.addScriptTag({ path: axe });
+  const { violations } = await page.evaluate(() => globalThis.axe.run());
+  const found = violations.map(({ id, nodes }) => `${id}: ${nodes.map((node) => node.html).join(" ")}`);
+  assert.deepEqual(found, [], what);
+}
+
+/** Kept beside the scene server's build, for people to look at. */
+export async function shoot(page, name) {
+  const folder = join(dirname(process.env.SCENE_SERVER), "../shots");
+  mkdirSync(folder, { recursive: true });
+  await page.screenshot({ path: join(folder, `${name}.png`) });
+}

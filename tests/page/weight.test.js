@@ -1,0 +1,32 @@
+import assert from "node:assert/strict";
+import { readdirSync, readFileSync } from "node:fs";
+import { test } from "node:test";
+import { fileURLToPath } from "node:url";
+import { gzipSync } from "node:zlib";
+import { HtmlValidate } from "html-validate";
+
+const FOLDER = fileURLToPath(new URL("../../firmware/page/files/", import.meta.url));
+const MOST = 80_000;
+const files = readdirSync(FOLDER);
+const read = (name) => readFileSync(FOLDER + name);
+
+test("all pages together weigh at most 80 kB gzipped", (t) => {
+  const bytes = files.reduce((sum, name) => sum + gzipSync(read(name)).length, 0);
+  t.diagnostic(`${files.length} files, ${bytes} bytes gzipped`);
+  assert.ok(bytes > 10_000 && bytes <= MOST, `${bytes} bytes`);
+});
+
+test("every page is valid HTML without script or style of its own", async () => {
+  const validator = new HtmlValidate({
+    extends: ["html-validate:standard"],
+    rules: { "no-inline-style": "error", "no-trailing-whitespace": "error", "void-style": "off", "doctype-style": "off", "long-title": "off" },
+  });
+  const pages = files.filter((name) => name.endsWith(".html"));
+  assert.ok(pages.includes("index.html") && pages.includes("display.html"));
+  for (const page of pages) {
+    const report = await validator.validateString(read(page).toString(), page);
+    const found = report.results.flatMap(({ messages }) => messages.map(({ line, message, ruleId }) => `${page}:${line}: ${message} (${ruleId})`));
+    assert.deepEqual(found, []);
+    assert.doesNotMatch(read(page).toString(), /<script>|<style|\sstyle=|\son\w+=|https?:/);
+  }
+});

@@ -74,7 +74,8 @@ TEST_F(MapRoutesTest, TellsEachLayerAndItsTiles) {
 }
 
 TEST_F(MapRoutesTest, EveryTileThatItTellsOfIsThere) {
-  for (const json& layer : json::parse(get("/adit/map").body)["layers"]) {
+  const json map = json::parse(get("/adit/map").body);
+  for (const json& layer : map["layers"]) {
     ASSERT_FALSE(layer["tiles"].empty());
     const std::string robot = layer["robot"].get<std::string>();
     for (const json& tile : layer["tiles"]) {

@@ -48,14 +48,19 @@ class Ledger::Impl {
     if (auto set = database_.execute("PRAGMA synchronous = NORMAL"); !set)
       return std::unexpected(set.error());
     const auto written = write(steps, run);
+    unflushed_ = true;
     if (auto set = database_.execute("PRAGMA synchronous = FULL"); !set) return std::unexpected(set.error());
     return written;
   }
 
   Result<void> flush() {
+    if (!unflushed_) return {};
     sqlite3_file* const log = database_.log();
-    if (log == nullptr || log->pMethods->xSync(log, SQLITE_SYNC_NORMAL) == SQLITE_OK) return {};
-    return std::unexpected(Error{"the ledger's log could not be flushed", false});
+    if (log != nullptr && log->pMethods->xSync(log, SQLITE_SYNC_NORMAL) != SQLITE_OK) {
+      return std::unexpected(Error{"the ledger's log could not be flushed", false});
+    }
+    unflushed_ = false;
+    return {};
   }
 
   Result<std::vector<dispatch::Report>> reports() {
@@ -115,6 +120,7 @@ class Ledger::Impl {
 
   Database database_;  // before the statements, which it outlives
   std::string damage_;
+  bool unflushed_ = false;  // something was written whose flush was left for later
   Statement write_report_, write_step_, write_run_, read_reports_, read_steps_, read_last_run_;
 };
 

@@ -57,6 +57,17 @@ TEST(LedgerFlushes, OnceForEachWrite) {
   EXPECT_EQ(flushes_of([&] { return ledger.reports(); }), 0);
 }
 
+TEST(LedgerFlushes, LaterWhereItIsToldTo) {
+  const Folder folder;
+  auto ledger = open_or_fail(folder);
+  ASSERT_TRUE(write(ledger, backpack(1)));
+  EXPECT_EQ(flushes_of([&] { return ledger.flush(); }), 0) << "nothing was left";
+  const std::vector<dispatch::Report> answered{backpack(1)};
+  EXPECT_EQ(flushes_of([&] { return ledger.write(answered, nullptr, dispatch::Flush::Soon); }), 0);
+  EXPECT_EQ(flushes_of([&] { return ledger.flush(); }), 1);
+  EXPECT_EQ(flushes_of([&] { return ledger.flush(); }), 0);
+}
+
 TEST(LedgerFlushes, MoreThanOnceOnlyWhereTheLogBeginsAnew) {
   const Folder folder;
   auto ledger = open_or_fail(folder);

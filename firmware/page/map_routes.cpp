@@ -1,6 +1,5 @@
 #include "page/map_routes.hpp"
 
-#include <charconv>
 #include <cmath>
 #include <optional>
 #include <vector>
@@ -8,6 +7,7 @@
 #include "icd/sentence.hpp"
 #include "page/answers.hpp"
 #include "page/map_json.hpp"
+#include "page/number_in.hpp"
 #include "picture/png.hpp"
 
 namespace adit::page {
@@ -15,14 +15,6 @@ namespace {
 
 constexpr std::string_view kMap = "/adit/map", kTiles = "/adit/map/", kPng = ".png";
 constexpr std::string_view kMerged = "-";  // for the robot "", which no path could name
-
-/// All of `text`, or nothing.
-template <class Number>
-std::optional<Number> number_in(std::string_view text) {
-  Number number{};
-  const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), number);
-  return error == std::errc() && end == text.data() + text.size() ? std::optional(number) : std::nullopt;
-}
 
 std::vector<std::string_view> parts_of(std::string_view path) {
   std::vector<std::string_view> parts;

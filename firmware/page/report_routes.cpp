@@ -1,6 +1,5 @@
 #include "page/report_routes.hpp"
 
-#include <charconv>
 #include <optional>
 #include <utility>
 
@@ -9,8 +8,10 @@
 #include "codec/read.hpp"
 #include "icd/sentence.hpp"
 #include "page/answers.hpp"
+#include "page/number_in.hpp"
 #include "page/reports_csv.hpp"
 #include "page/reports_json.hpp"
+#include "page/small_body.hpp"
 
 namespace adit::page {
 namespace {
@@ -36,12 +37,6 @@ std::optional<Deed> deed_named(std::string_view name) {
   return std::nullopt;
 }
 
-std::optional<std::int64_t> number_in(std::string_view text) {
-  std::int64_t number = 0;
-  const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), number);
-  return error == std::errc() && end == text.data() + text.size() ? std::optional(number) : std::nullopt;
-}
-
 enum class Wanted : std::uint8_t { Judgement, Report, Run };
 
 /// The path of a deed: "/adit/reports/7/send", kReports or kRuns.
@@ -56,7 +51,7 @@ std::optional<DeedPath> deed_at(std::string_view path) {
   if (path == kReports) return DeedPath{.wanted = Wanted::Report};
   const auto slash = path.rfind('/');
   if (!path.starts_with(kOne) || slash < kOne.size()) return std::nullopt;
-  const auto number = number_in(path.substr(kOne.size(), slash - kOne.size()));
+  const auto number = number_in<std::int64_t>(path.substr(kOne.size(), slash - kOne.size()));
   const auto deed = deed_named(path.substr(slash + 1));
   if (!number || !deed) return std::nullopt;
   return DeedPath{.number = *number, .deed = *deed};
@@ -65,33 +60,6 @@ std::optional<DeedPath> deed_at(std::string_view path) {
 intake::Answer no_such(std::int64_t number) {
   return refusal(icd::Status::NotFound, icd::sentence("there is no report ", number));
 }
-
-intake::Answer too_long() {
-  return refusal(icd::Status::ContentTooLarge,
-                 icd::sentence("expected a body of at most ", kMostBody, " bytes"));
-}
-
-/// Does the deed once the body is whole.
-class DeedVisit final : public intake::Exchange {
- public:
-  using DoDeed = std::function<intake::Answer(std::string_view body)>;
-  DeedVisit(std::shared_ptr<intake::Responder> responder, DoDeed deed)
-      : responder_(std::move(responder)), deed_(std::move(deed)) {}
-  bool on_body(std::span<const std::uint8_t> piece) override {
-    if (body_.size() + piece.size() > kMostBody) {
-      responder_->answer(too_long());
-    } else {
-      body_.append(reinterpret_cast<const char*>(piece.data()), piece.size());
-    }
-    return true;
-  }
-  void on_end() override { responder_->answer(deed_(body_)); }
-
- private:
-  std::shared_ptr<intake::Responder> responder_;
-  DoDeed deed_;
-  std::string body_;
-};
 
 }  // namespace
 
@@ -117,14 +85,15 @@ std::unique_ptr<intake::Exchange> ReportRoutes::open(const intake::RequestHead& 
   if (codec::format_of(head.header("Content-Type")) != codec::Format::Json) {
     return refuse(refusal(icd::Status::UnprocessableEntity, "Content-Type: expected application/json"));
   }
-  if (head.content_length().value_or(0) > kMostBody) return refuse(too_long());
-  return std::make_unique<DeedVisit>(std::move(responder), [this, path = *path](std::string_view body) {
-    auto answer = path.wanted == Wanted::Judgement ? judge(path.number, path.deed)
-                  : path.wanted == Wanted::Report  ? report(body)
-                                                   : begin_run();
-    changed_();
-    return answer;
-  });
+  if (head.content_length().value_or(0) > kMostBody) return refuse(SmallBody::too_long(kMostBody));
+  return std::make_unique<SmallBody>(
+      responder, kMostBody, [this, path = *path, responder](const std::string& body) {
+        auto answer = path.wanted == Wanted::Judgement ? judge(path.number, path.deed)
+                      : path.wanted == Wanted::Report  ? report(body)
+                                                       : begin_run();
+        changed_();
+        responder->answer(std::move(answer));
+      });
 }
 
 intake::Answer ReportRoutes::shown(std::string_view path) const {
@@ -134,7 +103,7 @@ intake::Answer ReportRoutes::shown(std::string_view path) const {
     answer.headers.push_back({"Content-Disposition", "attachment; filename=\"adit-reports.csv\""});
     return answer;
   }
-  const auto number = number_in(path.substr(kOne.size()));
+  const auto number = number_in<std::int64_t>(path.substr(kOne.size()));
   if (!number) return nothing_here();
   const auto report = source_.report(*number);
   return report ? fresh("application/json", write_report(*report)) : no_such(*number);

@@ -1,6 +1,5 @@
 #include "page/session_routes.hpp"
 
-#include <charconv>
 #include <utility>
 
 #include "access/password.hpp"
@@ -10,6 +9,7 @@
 #include "icd/sentence.hpp"
 #include "page/answers.hpp"
 #include "page/as_json.hpp"
+#include "page/number_in.hpp"
 #include "page/small_body.hpp"
 
 namespace adit::page {
@@ -21,16 +21,14 @@ using codec::Value;
 constexpr std::string_view kSession = "/adit/session", kSessions = "/adit/sessions", kLogin = "/adit/login",
                            kLogout = "/adit/logout", kPassword = "/adit/password", kOne = "/adit/sessions/",
                            kEnd = "/end";
+constexpr std::size_t kMostBody = 4096;
 
 /// Of "/adit/sessions/7/end".
 std::optional<std::uint64_t> ended_by(std::string_view path) {
   if (!path.starts_with(kOne) || !path.ends_with(kEnd) || path.size() < kOne.size() + kEnd.size()) {
     return std::nullopt;
   }
-  const auto digits = path.substr(kOne.size(), path.size() - kOne.size() - kEnd.size());
-  std::uint64_t number = 0;
-  const auto [end, error] = std::from_chars(digits.data(), digits.data() + digits.size(), number);
-  return error == std::errc() && end == digits.data() + digits.size() ? std::optional(number) : std::nullopt;
+  return number_in<std::uint64_t>(path.substr(kOne.size(), path.size() - kOne.size() - kEnd.size()));
 }
 
 intake::Header cookie(const std::string& id, std::chrono::seconds age) {
@@ -157,7 +155,7 @@ std::unique_ptr<intake::Exchange> SessionRoutes::post(const intake::RequestHead&
   }
   const auto handle = head.path() == kLogin ? &SessionRoutes::log_in : &SessionRoutes::change_password;
   return std::make_unique<SmallBody>(
-      responder, [this, handle, poster = std::move(poster), responder](const std::string& body) {
+      responder, kMostBody, [this, handle, poster = std::move(poster), responder](const std::string& body) {
         (this->*handle)(poster, body, responder);
       });
 }

@@ -50,6 +50,10 @@ uplink::Endpoint endpoint_of(const settings::CommandPost& command_post, const se
           .connect_within = command_post.timeouts.connect};
 }
 
+std::string address_text(const settings::Address& address) {
+  return address.address + ":" + std::to_string(address.port);
+}
+
 std::string sentence_of(const uplink::Outcome& outcome) {
   if (const auto* never = std::get_if<uplink::NeverSent>(&outcome)) return never->why;
   if (const auto* doubt = std::get_if<uplink::InDoubt>(&outcome)) return doubt->why;

@@ -52,6 +52,9 @@ class Channel {
 uplink::Endpoint endpoint_of(const settings::CommandPost& command_post, const settings::Address& address,
                              std::uint64_t bytes_per_second);
 
+/// "10.100.1.200:8000"
+std::string address_text(const settings::Address& address);
+
 /// Why an outcome is no answer, or what the Command Post said in it.
 std::string sentence_of(const uplink::Outcome& outcome);
 

@@ -12,10 +12,6 @@ constexpr std::chrono::milliseconds kFlush{50};  // in which the answers just gi
 constexpr std::size_t kMeterSeconds = 5;
 constexpr std::size_t kMostReportRows = 200;
 
-std::string text(const settings::Address& address) {
-  return address.address + ":" + std::to_string(address.port);
-}
-
 }  // namespace
 
 Gateway::Gateway(loop::Loop& loop, Parts parts)
@@ -257,14 +253,14 @@ std::vector<page::EndpointRow> Gateway::endpoints() const {
   const Channel& latest = maps.heard() > news.heard() ? maps : news;
   const settings::CommandPost& command_post = parts_.settings.command_post;
   return {{.name = "scoring",
-           .address = text(command_post.scoring),
+           .address = address_text(command_post.scoring),
            .connected = scoring.connected(),
            .trouble = scoring.trouble(),
            .last_status = scoring.last_status(),
            .answer_ms = scoring.answer_ms(),
            .throttled = scoring.throttled()},
           {.name = "mapping",
-           .address = text(command_post.mapping),
+           .address = address_text(command_post.mapping),
            .connected = maps.connected() || news.connected(),
            .trouble = maps.trouble().empty() ? news.trouble() : maps.trouble(),
            .last_status = latest.last_status(),

@@ -43,8 +43,7 @@ std::expected<void, std::string> Scoring::start() {
   if (!all) return std::unexpected(all.error().what);
   auto run = ledger_.last_run();
   if (!run) return std::unexpected(run.error().what);
-  const settings::Address& post = settings_.command_post.scoring;
-  reports_.open(std::move(*all), std::move(*run), time(), post.address + ":" + std::to_string(post.port));
+  reports_.open(std::move(*all), std::move(*run), time(), address_text(settings_.command_post.scoring));
   channel_.keep_warm();
   poll();
   return {};

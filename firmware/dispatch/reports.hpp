@@ -119,6 +119,7 @@ class Reports {
 
   // Taking and choosing.
   bool is_of_run(const Report& report) const;
+  std::vector<const Report*> same_in_run(const icd::ArtifactReport& report) const;
   const Report* earlier(const Report& report) const;
   const Report* twin(const Report& report) const;
   std::string reason_to_hold(const Report& report) const;

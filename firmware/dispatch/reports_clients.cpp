@@ -78,14 +78,22 @@ bool Reports::is_of_run(const Report& report) const {
   return report.run == run().number || report.number == sending_;
 }
 
+/// Those of the present run that are the same, oldest first.
+std::vector<const Report*> Reports::same_in_run(const icd::ArtifactReport& report) const {
+  std::vector<const Report*> same;
+  for (const std::int64_t number : book_.at_position(report.position)) {
+    const Report& other = book_.at(number);
+    if (is_of_run(other) && is_same(other.report, report)) same.push_back(&other);
+  }
+  return same;
+}
+
 /// The latest report before this one, of the present run, that it would be a repeat of.
 const Report* Reports::earlier(const Report& report) const {
-  for (const std::int64_t number : std::views::reverse(book_.at_position(report.report.position))) {
-    const Report& other = book_.at(number);
-    if (report.number != 0 && other.number >= report.number) continue;
-    if (!is_of_run(other) || !is_same(other.report, report.report)) continue;
-    const Report* const original = book_.find(other.same_as);
-    const Report& stands = original != nullptr ? *original : other;
+  for (const Report* const other : std::views::reverse(same_in_run(report.report))) {
+    if (report.number != 0 && other->number >= report.number) continue;
+    const Report* const original = book_.find(other->same_as);
+    const Report& stands = original != nullptr ? *original : *other;
     if (stands_for_others(stands)) return &stands;
   }
   return nullptr;
@@ -93,12 +101,10 @@ const Report* Reports::earlier(const Report& report) const {
 
 /// Another one of the present run that is the same, and was sent or is under way.
 const Report* Reports::twin(const Report& report) const {
-  for (const std::int64_t number : book_.at_position(report.report.position)) {
-    const Report& other = book_.at(number);
-    const bool counts = number != report.number && is_of_run(other) && is_same(other.report, report.report);
-    const bool held_back = other.state == ReportState::Received || other.state == ReportState::Waiting ||
-                           other.state == ReportState::Withdrawn;
-    if (counts && !held_back && stands_for_others(other)) return &other;
+  for (const Report* const other : same_in_run(report.report)) {
+    const bool held_back = other->state == ReportState::Received || other->state == ReportState::Waiting ||
+                           other->state == ReportState::Withdrawn;
+    if (other->number != report.number && !held_back && stands_for_others(*other)) return other;
   }
   return nullptr;
 }

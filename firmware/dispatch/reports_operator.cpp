@@ -1,6 +1,5 @@
 // The operator's word on a report.
 #include "dispatch/reports.hpp"
-#include "dispatch/same_report.hpp"
 #include "icd/sentence.hpp"
 
 namespace adit::dispatch {
@@ -73,10 +72,8 @@ Reports::Outcome Reports::resubmit(std::int64_t number, Time time) {
   const Report* const report = book_.find(number);
   if (report == nullptr) return no_such(number);
   if (!is_final(report->state)) return cannot(*report, "it is not finished yet");
-  for (const std::int64_t other : book_.at_position(report->report.position)) {
-    const Report& under_way = book_.at(other);
-    const bool same = under_way.asked && is_of_run(under_way) && is_same(under_way.report, report->report);
-    if (same && !is_final(under_way.state)) return other;  // pressed twice, it is sent once
+  for (const Report* const other : same_in_run(report->report)) {
+    if (other->asked && !is_final(other->state)) return other->number;  // pressed twice, it is sent once
   }
   Report again{.report = report->report, .sender = "operator", .received = time.stamp, .changed = time.stamp};
   again.note = icd::sentence("report ", number, " once more");

@@ -106,10 +106,7 @@ TEST(AClient, ThatIsFoundToHavePostedARepeatWaitsForTheFirstAndNoLonger) {
   scene.hear(20, 0);
   ASSERT_EQ(scene.send_next(), 1);
   scene.lose();
-  for (int i = 0; i < 16; ++i) {
-    scene.wait(1);
-    scene.hear(20, 0, 117);  // a stop, so that others need not wait
-  }
+  scene.hear_stop(16, 117);
   scene.send_next();
   ASSERT_EQ(scene.report(2).same_as, 1);
   EXPECT_FALSE(scene.is_told(repeat));

@@ -14,13 +14,6 @@ using testing::IsEmpty;
 class Doubt : public testing::Test {
  protected:
   Doubt() : client_(scene_.post(1)) { scene_.lose(); }
-  /// An administrative stop, in which the count says nothing and others do not wait for it.
-  void stop_for(int seconds) {
-    for (int i = 0; i < seconds; ++i) {
-      scene_.wait(1);
-      scene_.hear(20, 0, 101);
-    }
-  }
   void keep_hearing_after_stop(int seconds, std::int64_t remaining, std::int64_t score) {
     for (int i = 0; i < seconds; ++i) {
       scene_.wait(1);
@@ -92,9 +85,9 @@ TEST_F(Doubt, ThatTheCountCannotDecideBlocksNothing) {
 
 TEST_F(Doubt, MakesOthersWaitWhileItMayBeDecided) {
   scene_.post(2);
-  stop_for(14);
+  scene_.hear_stop(14);
   EXPECT_EQ(scene_.send_next(), 0);
-  stop_for(1);
+  scene_.hear_stop(1);
   EXPECT_EQ(scene_.send_next(), 2);
 }
 
@@ -123,14 +116,14 @@ TEST_F(Doubt, StaysWhileTheStatusIsSilent) {
 }
 
 TEST_F(Doubt, StaysWhileTheRunClockStandsStill) {
-  stop_for(60);
+  scene_.hear_stop(60);
   EXPECT_EQ(scene_.state(1), InDoubt) << "in an administrative stop a record does not show";
   EXPECT_FALSE(scene_.reports().is_asking(scene_.report(1))) << "the operator may as well decide";
   EXPECT_THAT(scene_.report(1).note, HasSubstr("the operator decides"));
 }
 
 TEST_F(Doubt, IsNotBlurredByReportsSentAndAnsweredMeanwhile) {
-  stop_for(16);
+  scene_.hear_stop(16);
   scene_.post(2);
   ASSERT_EQ(scene_.state(2), Sending);
   scene_.answer(recorded(1, "scored", "1", 117));
@@ -143,7 +136,7 @@ TEST_F(Doubt, IsNotBlurredByReportsSentAndAnsweredMeanwhile) {
 class TwoDoubts : public Doubt {
  protected:
   TwoDoubts() {
-    stop_for(16);
+    scene_.hear_stop(16);
     other_ = scene_.post(2);
     scene_.lose();
   }

@@ -91,10 +91,7 @@ TEST(Sending, OneInDoubtSendsItAtOnceAndLeavesTheOthersUndecidable) {
   Scene scene;
   scene.post(1);
   scene.lose();
-  for (int i = 0; i < 16; ++i) {
-    scene.wait(1);
-    scene.hear(20, 0, 101);
-  }
+  scene.hear_stop(16);
   scene.post(2);
   scene.lose();
   ASSERT_TRUE(scene.reports().send(2, scene.time()).has_value());
@@ -147,10 +144,7 @@ TEST(CallingDone, NeverLeavesEvidenceThatMeansSomethingElse) {
     Scene scene;
     scene.post(1);
     scene.lose();
-    for (int i = 0; i < 16; ++i) {
-      scene.wait(1);
-      scene.hear(20, 0, 101);
-    }
+    scene.hear_stop(16);
     scene.post(2);
     scene.lose();
     scene.deeds().writes_until_full = writes;

@@ -26,10 +26,7 @@ TEST(AfterARestart, ADoubtIsFoundOutWithWhatWasSentSince) {
   Scene scene;
   scene.post(1);
   scene.lose();
-  for (int i = 0; i < 16; ++i) {
-    scene.wait(1);
-    scene.hear(20, 0, 101);
-  }
+  scene.hear_stop(16);
   scene.post(2);
   scene.answer(recorded(1, "scored", "1", 117));
   scene.restart();

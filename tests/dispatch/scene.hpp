@@ -126,6 +126,15 @@ class Scene {
     }
   }
 
+  /// An administrative stop, in which the count says nothing and others do not wait for it: a status each
+  /// second, of a run clock that stands still.
+  void hear_stop(int seconds, double clock = 101) {
+    for (int i = 0; i < seconds; ++i) {
+      wait(1);
+      hear(20, 0, clock);
+    }
+  }
+
   const Report& report(std::int64_t number) const { return reports_->book().at(number); }
   ReportState state(std::int64_t number) const { return report(number).state; }
   std::size_t count() const { return reports_->book().all().size(); }

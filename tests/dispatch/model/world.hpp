@@ -42,6 +42,8 @@ struct Tally {
 /// seed.
 class World final : public Deeds {
  public:
+  static constexpr double kEpoch = 1.7e9;  // simulated time 0, as a stamp
+
   World(const Trouble& trouble, std::uint64_t seed);
   ~World() override;
 
@@ -69,6 +71,12 @@ class World final : public Deeds {
     bool done = false, acknowledged = false;
     std::vector<Seconds> posted_at;
   };
+
+  // The judge (judge.cpp): each adds what it finds broken.
+  bool was_recorded(double key) const;
+  void judge_records(std::vector<std::string>& broken) const;
+  void judge_ledger(std::vector<std::string>& broken) const;
+  void judge_clients(std::vector<std::string>& broken) const;
 
   // Deeds.
   bool write(std::span<const Report> steps, const Run* run, Flush flush) override;

@@ -62,6 +62,8 @@ std::string path_of(Verb verb) {
   switch (verb) {
     case Verb::Send:
       return "send";
+    case Verb::Hold:
+      return "hold";
     case Verb::Withdraw:
       return "withdraw";
     case Verb::Done:
@@ -77,6 +79,8 @@ std::string done(Verb verb, std::int64_t number, std::int64_t moved) {
   switch (verb) {
     case Verb::Send:
       return report + " is sent when its turn comes";
+    case Verb::Hold:
+      return report + " is held: it goes only when you send it";
     case Verb::Withdraw:
       return report + " is withdrawn";
     case Verb::Done:

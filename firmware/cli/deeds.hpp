@@ -6,7 +6,7 @@
 
 namespace adit::cli {
 
-/// `adit reports send`, `withdraw`, `done` and `resubmit`: each report in turn, as far as Adit can be asked.
+/// `adit reports send`, `hold`, `withdraw`, `done` and `resubmit`: each report in turn, as far as Adit can be asked.
 Outcome judge(const Adit& adit, const Options& options);
 
 /// `adit run new`

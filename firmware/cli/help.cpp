@@ -7,7 +7,7 @@ constexpr const char* kAll = R"(adit - what the gateway is doing, for a shell an
 
 USAGE
   adit status  [--json] [--at ADDR:PORT | --settings FILE]
-  adit reports [show|send|withdraw|done|resubmit|export] [NUMBER...]
+  adit reports [show|send|hold|withdraw|done|resubmit|export] [NUMBER...]
   adit run new
   adit check   [--json] [SETTINGS]
   adit help [COMMAND]
@@ -70,6 +70,7 @@ USAGE
   adit reports [--run N|all] [--json]
   adit reports show NUMBER [--json]
   adit reports send NUMBER...
+  adit reports hold NUMBER...
   adit reports withdraw NUMBER...
   adit reports done NUMBER...
   adit reports resubmit NUMBER
@@ -83,7 +84,7 @@ WHAT IT SHOWS
 
 THE STATES (as the JSON and the CSV name them, where that is another word)
   held              waits for your word before it is sent; the row says why: a near duplicate, the review of all
-                    reports, a new run, or too many failures (received)
+                    reports, a new run, too many failures, or you hold it (received)
   waiting           kept on disk; it is sent when its turn comes
   sending           on its way
   answered          the Command Post recorded it and said so
@@ -100,6 +101,7 @@ YOUR WORD
   send      a held report: it is meant. One in doubt: only where you know that it was not recorded (ask the
             Command Post, or look at its count of reports), for else it uses up a second one of the allotment.
             A refused or withdrawn one: try it all the same
+  hold      a waiting report: it goes only when you send it
   withdraw  a held or waiting report: it is not to be sent. It can still be sent later
   done      a report in doubt that was recorded, or that is not worth a second one of the allotment
   resubmit  a finished report once more on purpose, as a new one with a number of its own

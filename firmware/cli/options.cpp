@@ -29,6 +29,7 @@ constexpr VerbName kVerbs[] = {{"", Verb::List, 0, 0},
                                {"show", Verb::Show, 1, 1},
                                {"export", Verb::Export, 0, 0},
                                {"send", Verb::Send, 1, kMany},
+                               {"hold", Verb::Hold, 1, kMany},
                                {"withdraw", Verb::Withdraw, 1, kMany},
                                {"done", Verb::Done, 1, kMany},
                                {"resubmit", Verb::Resubmit, 1, 1}};
@@ -142,7 +143,7 @@ class Parser {
     if (options_.verb == Verb::List) {
       const auto* row = named<VerbName>(kVerbs, word);
       if (row == nullptr || row->verb == Verb::List) {
-        return refuse("expected show, send, withdraw, done, resubmit or export, got ", word);
+        return refuse("expected show, send, hold, withdraw, done, resubmit or export, got ", word);
       }
       options_.verb = row->verb;
       return;

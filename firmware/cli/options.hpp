@@ -15,7 +15,7 @@ namespace adit::cli {
 enum class Command : std::uint8_t { Status, Reports, Run, Check, Help };
 
 /// What `adit reports` is to do.
-enum class Verb : std::uint8_t { List, Show, Export, Send, Withdraw, Done, Resubmit };
+enum class Verb : std::uint8_t { List, Show, Export, Send, Hold, Withdraw, Done, Resubmit };
 
 /// adit's command line.
 struct Options {

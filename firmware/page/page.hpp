@@ -131,7 +131,7 @@ class Source {
 };
 
 /// The operator's word on a report: see dispatch::Reports.
-enum class Deed : std::uint8_t { Send, Withdraw, CallDone, Resubmit };
+enum class Deed : std::uint8_t { Send, Hold, Withdraw, CallDone, Resubmit };
 
 /// What does as the operator says.
 class Operator {

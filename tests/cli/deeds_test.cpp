@@ -29,11 +29,13 @@ class Deeds : public testing::Test {
 
 TEST_F(Deeds, AreAskedForByTheirNames) {
   const Server server({{"POST /adit/reports/7/send", Server::ok("{\"report\":7}")},
+                       {"POST /adit/reports/7/hold", Server::ok("{\"report\":7}")},
                        {"POST /adit/reports/7/withdraw", Server::ok("{\"report\":7}")},
                        {"POST /adit/reports/7/done", Server::ok("{\"report\":7}")},
                        {"POST /adit/reports/7/resubmit", Server::ok("{\"report\":12}")},
                        {"POST /adit/runs", Server::ok("{\"run\":2}")}});
   EXPECT_EQ(say(server, {"reports", "send", "7"}).out, "report 7 is sent when its turn comes\n");
+  EXPECT_EQ(say(server, {"reports", "hold", "7"}).out, "report 7 is held: it goes only when you send it\n");
   EXPECT_EQ(say(server, {"reports", "withdraw", "7"}).out, "report 7 is withdrawn\n");
   EXPECT_EQ(say(server, {"reports", "done", "7"}).out, "report 7 is called done\n");
   EXPECT_EQ(say(server, {"reports", "resubmit", "7"}).out, "report 7 is sent once more, as report 12\n");

@@ -42,6 +42,7 @@ TEST(Options, TakeTheOperatorsWord) {
   EXPECT_EQ(options.numbers, (std::vector<std::int64_t>{7, 12}));
   EXPECT_EQ(options.token_file, "t");
   EXPECT_EQ(parsed({"reports", "send", "7"}).verb, Verb::Send);
+  EXPECT_EQ(parsed({"reports", "hold", "7", "8"}).verb, Verb::Hold);
   EXPECT_EQ(parsed({"reports", "withdraw", "7"}).verb, Verb::Withdraw);
   EXPECT_EQ(parsed({"reports", "resubmit", "7"}).verb, Verb::Resubmit);
   EXPECT_EQ(parsed({"reports", "show", "7"}).verb, Verb::Show);
@@ -70,8 +71,8 @@ TEST(Options, NameTheWordThatIsWrong) {
                {{"check", "a", "b"}, "one word too many: b"},
                {{"check", "--at", "10.0.0.1:80"}, "check does not take --at"},
                {{"status", "--csv"}, "status does not take --csv"},
-               {{"reports", "sent"}, "expected show, send, withdraw, done, resubmit or export, got sent"},
-               {{"reports", "7"}, "expected show, send, withdraw, done, resubmit or export, got 7"},
+               {{"reports", "sent"}, "expected show, send, hold, withdraw, done, resubmit or export, got sent"},
+               {{"reports", "7"}, "expected show, send, hold, withdraw, done, resubmit or export, got 7"},
                {{"reports", "send"}, "a report's number is missing after send"},
                {{"reports", "send", "0"}, "expected a report's number, got 0"},
                {{"reports", "send", "7x"}, "expected a report's number, got 7x"},

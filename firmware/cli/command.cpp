@@ -20,6 +20,8 @@ Outcome run(std::span<const std::string_view> words, bool colour) {
       return reports(*options, colour);
     case Command::Run:
       return begin_run(*options);
+    case Command::Identify:
+      return identify(*options);
     case Command::Check:
       return check(*options, colour);
     case Command::Help:

@@ -23,6 +23,19 @@ class Deeds {
  public:
   explicit Deeds(const Adit& adit) : adit_(adit) {}
 
+  /// Adit's answer to a deed that leaves nothing behind.
+  std::expected<std::string, Failure> ask_for_text(const std::string& target, std::string body) {
+    const auto reply = http_ask(adit_.address,
+                                {.method = HttpRequest::Method::Post,
+                                 .target = target,
+                                 .token = adit_.token.token,
+                                 .body = std::move(body)},
+                                kPatience);
+    if (!reply) return std::unexpected(Failure{Exit::Unable, reply.error().sentence});
+    if (reply->status != 200) return std::unexpected(failure(*reply));
+    return reply->body;
+  }
+
   /// The number that Adit answers under `name`. `check`: the command that tells whether a deed was done whose
   /// answer was lost.
   std::expected<std::int64_t, Failure> ask(const std::string& target, const char* name,
@@ -131,6 +144,20 @@ Outcome begin_run(const Options& options) {
   } else {
     outcome.out =
         "run " + std::to_string(*run) + " begins; what was not sent before is held: see adit reports\n";
+  }
+  return outcome;
+}
+
+Outcome identify(const Options& options) {
+  const auto adit = adit_of(options);
+  if (!adit) return unable(adit.error());
+  const std::string seconds = std::to_string(options.seconds);
+  const auto answer = Deeds(*adit).ask_for_text("/adit/identify", "{\"seconds\":" + seconds + "}");
+  Outcome outcome;
+  if (!answer) {
+    add(outcome, answer.error());
+  } else {
+    outcome.out = options.json ? *answer + '\n' : "all lights flash twice a second, for " + seconds + " s\n";
   }
   return outcome;
 }

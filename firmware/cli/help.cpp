@@ -9,6 +9,7 @@ USAGE
   adit status  [--json] [--at ADDR:PORT | --settings FILE]
   adit reports [show|send|hold|withdraw|done|resubmit|export] [NUMBER...]
   adit run new
+  adit identify [SECONDS]
   adit check   [--json] [SETTINGS]
   adit help [COMMAND]
 
@@ -16,6 +17,7 @@ COMMANDS
   status   the run, the Command Post, each robot's maps, and what the operator must do
   reports  every artifact report and what became of it; and your word on those that wait for it
   run      tells Adit that a new run begins
+  identify makes the box's lights flash, to tell it from others
   check    all that is wrong with a settings file, at once
 
 OPTIONS
@@ -140,6 +142,23 @@ EXAMPLES
   sudo adit run new
 )";
 
+constexpr const char* kIdentify = R"(adit identify - makes the box's lights flash, to tell it from others
+
+USAGE
+  adit identify [SECONDS] [--json] [--token-file FILE] [--at ADDR:PORT | --settings FILE]
+
+WHAT IT DOES
+  All lights flash twice a second, together, for SECONDS (1 to 60; 10 if not given): no condition shows that.
+  Then they show again how things stand.
+
+EXIT STATUS
+  0  they flash
+  2  Adit cannot be reached or wants another token, or the command line is wrong
+
+EXAMPLES
+  sudo adit identify 30
+)";
+
 constexpr const char* kCheck = R"(adit check - all that is wrong with a settings file, at once
 
 USAGE
@@ -172,6 +191,8 @@ const char* help_about(Command command) {
       return kReports;
     case Command::Run:
       return kRun;
+    case Command::Identify:
+      return kIdentify;
     case Command::Check:
       return kCheck;
     case Command::Help:

@@ -12,7 +12,7 @@
 
 namespace adit::cli {
 
-enum class Command : std::uint8_t { Status, Reports, Run, Check, Help };
+enum class Command : std::uint8_t { Status, Reports, Run, Identify, Check, Help };
 
 /// What `adit reports` is to do.
 enum class Verb : std::uint8_t { List, Show, Export, Send, Hold, Withdraw, Done, Resubmit };
@@ -25,6 +25,7 @@ struct Options {
   std::vector<std::int64_t> numbers;  // of reports
   std::optional<std::int64_t> run;    // whose reports to list; nothing: the present one's
   bool all_runs = false;
+  std::int64_t seconds = 10;  // how long the lights are to blink
   bool json = false, csv = false;
   std::string at;  // "ADDR:PORT"; empty: as the settings say
   std::string settings = "/etc/adit/settings.json";

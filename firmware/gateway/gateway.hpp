@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "gateway/accounts.hpp"
+#include "gateway/as_forwarded.hpp"
 #include "gateway/lights.hpp"
 #include "gateway/map_picture.hpp"
 #include "gateway/maps.hpp"
@@ -66,7 +67,12 @@ class Gateway final : public intake::Desk, public page::Source, public page::Ope
   std::expected<std::int64_t, std::string> judge(std::int64_t number, page::Deed deed) override;
   std::expected<std::int64_t, std::string> report(const icd::ArtifactReport& report, bool resubmit) override;
   std::int64_t begin_run() override;
+  page::Time identify(double seconds) override;
   const picture::Mosaic& map() const override { return picture_.mosaic(); }
+  page::MarkerNews markers(std::uint64_t since) const override { return as_forwarded_.markers().news(since); }
+  std::vector<page::Track> tracks(page::Time since) const override {
+    return as_forwarded_.tracks().since(since);
+  }
 
  private:
   void restore();
@@ -76,6 +82,7 @@ class Gateway final : public intake::Desk, public page::Source, public page::Ope
   void changed();
   void picture_the_run();
   void every_second();
+  void show_lights();
   double sent_mbit() const;
   std::expected<void, std::string> listen();
   intake::IcdOptions icd_options() const;
@@ -94,6 +101,7 @@ class Gateway final : public intake::Desk, public page::Source, public page::Ope
   Scoring scoring_;
   MapPicture picture_;
   Maps maps_;
+  AsForwarded as_forwarded_;
   News news_;
   Lights lights_;
   Accounts accounts_;
@@ -106,6 +114,7 @@ class Gateway final : public intake::Desk, public page::Source, public page::Ope
   bool keeping_news_ = false;
   bool dismissed_ = false;  // all clients have been told; only their answers have to leave
   std::string notified_;
+  panel::Lights told_lights_{};  // what pages were told that the lights show
   std::optional<loop::Instant> stop_by_;
 };
 

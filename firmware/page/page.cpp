@@ -6,7 +6,9 @@
 #include "page/entrance.hpp"
 #include "page/live.hpp"
 #include "page/map_routes.hpp"
+#include "page/panel_route.hpp"
 #include "page/report_routes.hpp"
+#include "page/scene_routes.hpp"
 #include "page/session_routes.hpp"
 #include "page/site.hpp"
 
@@ -38,6 +40,8 @@ class Page::Impl {
         sessions_(loop, entrance_, keys),
         live_(loop, source),
         maps_(source),
+        scene_(source),
+        panel_(judge),
         reports_(source, judge, [this] { live_.changed(); }) {}
 
   std::unique_ptr<intake::Exchange> open(const intake::RequestHead& head,
@@ -54,8 +58,11 @@ class Page::Impl {
       return nullptr;
     }
     if (ReportRoutes::has(head.path())) return reports_.open(head, std::move(responder));
+    if (PanelRoute::has(head.path())) return panel_.open(head, std::move(responder));
     if (MapRoutes::has(head.path())) {
       responder->answer(maps_.answer(head));
+    } else if (SceneRoutes::has(head.path())) {
+      responder->answer(scene_.answer(head));
     } else {
       show(head, *visitor, *responder);
     }
@@ -84,6 +91,8 @@ class Page::Impl {
   SessionRoutes sessions_;
   Live live_;
   MapRoutes maps_;
+  SceneRoutes scene_;
+  PanelRoute panel_;
   ReportRoutes reports_;
 };
 

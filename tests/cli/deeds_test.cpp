@@ -47,6 +47,16 @@ TEST_F(Deeds, AreAskedForByTheirNames) {
   EXPECT_EQ(outcome.exit, Exit::Fine);
 }
 
+TEST_F(Deeds, MakeTheLightsFlash) {
+  const Server server({{"POST /adit/identify", Server::ok("{\"identify_until\":1005.5}")}});
+  EXPECT_EQ(say(server, {"identify", "5"}).out, "all lights flash twice a second, for 5 s\n");
+  EXPECT_THAT(server.request(), testing::EndsWith("Content-Length: 13\r\n"
+                                                  "Authorization: Bearer sesame-1\r\n\r\n{\"seconds\":5}"));
+  EXPECT_EQ(say(server, {"identify", "--json"}).out, "{\"identify_until\":1005.5}\n");
+  const Server other({{"POST /adit/identify", Server::reply("403 Forbidden", "\"no\"")}});
+  EXPECT_EQ(say(other, {"identify"}).exit, Exit::Unable);
+}
+
 TEST_F(Deeds, ShowTheTokenToAditAlone) {
   const Server server({{"POST /adit/runs", Server::ok("{\"run\":2}")}});
   say(server, {"run", "new"});

@@ -118,9 +118,11 @@ TEST(Holding, LetsTheOthersGo) {
 TEST(Holding, SaysWhyItIsTooLate) {
   Scene scene;
   scene.post(1);
-  EXPECT_THAT(scene.reports().hold(1, scene.time()).error(), HasSubstr("is sending: it may have left already"));
+  EXPECT_THAT(scene.reports().hold(1, scene.time()).error(),
+              HasSubstr("is sending: it may have left already"));
   scene.lose();
-  EXPECT_THAT(scene.reports().hold(1, scene.time()).error(), HasSubstr("is in doubt: it may have left already"));
+  EXPECT_THAT(scene.reports().hold(1, scene.time()).error(),
+              HasSubstr("is in doubt: it may have left already"));
   EXPECT_EQ(scene.state(1), InDoubt);
 }
 

@@ -5,6 +5,7 @@ import { post, session } from "./session.js";
 const SEND = { name: "send", label: "Send" };
 const AGAIN = { name: "send", label: "Send again" };
 const COSTLY_SEND = { name: "send", label: "Send once more", costs: "It may be recorded already: then it is recorded twice" };
+const HOLD = { name: "hold", label: "Hold" };
 const WITHDRAW = { name: "withdraw", label: "Withdraw" };
 const DONE = { name: "done", label: "Call it done" };
 const RESUBMIT = { name: "resubmit", label: "Resubmit", costs: "It is sent once more, as a new report" };
@@ -12,7 +13,7 @@ const RESUBMIT = { name: "resubmit", label: "Resubmit", costs: "It is sent once 
 /** By the state that a report is in: the deeds that the box takes (README.md). */
 const DEEDS = {
   received: [SEND, WITHDRAW],
-  waiting: [WITHDRAW],
+  waiting: [HOLD, WITHDRAW],
   sending: [],
   "in doubt": [COSTLY_SEND, DONE],
   refused: [AGAIN],
@@ -49,7 +50,7 @@ export const outcomeOf = (number) => outcomes.get(number);
 export const isBusy = (number) => underWay.has(number);
 export const tell = (number, text, bad = false) => outcomes.set(number, { text, bad });
 
-const PAST = { send: "It will be sent.", withdraw: "Withdrawn.", done: "Called done." };
+const PAST = { send: "It will be sent.", hold: "Held: it goes only when you send it.", withdraw: "Withdrawn.", done: "Called done." };
 
 function question(deed, report, remaining) {
   const left = remaining === undefined ? "" : ` ${remaining} reports are left.`;

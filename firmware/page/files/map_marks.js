@@ -54,8 +54,8 @@ class Labels {
   keepOff([left, top], size) {
     this.#taken.push([left - size, top - size, left + size, top + size]);
   }
-  write(text, left, top, colour = this.colours.ink) {
-    const { paint, size } = this;
+  write(text, left, top, { colour = this.colours.ink, rim = this.colours.ground, size = this.size } = {}) {
+    const { paint } = this;
     paint.font = `600 ${size}px system-ui, sans-serif`;
     const wide = paint.measureText(text).width;
     const from = left + size + wide > this.width ? left - size - wide : left + size;
@@ -65,7 +65,7 @@ class Labels {
     paint.textBaseline = "middle";
     paint.lineJoin = "round";
     paint.lineWidth = size / 3;
-    paint.strokeStyle = this.colours.ground;
+    paint.strokeStyle = rim;
     paint.strokeText(text, box[0], top);
     paint.fillStyle = colour;
     paint.fillText(text, box[0], top);
@@ -88,7 +88,7 @@ function drawRobot(paint, colours, labels, view, robot, size, now) {
   if (old) paint.stroke();
   else paint.fill();
   paint.restore();
-  labels.write(clip(robot.name, 20), left, top, old ? colours.soft : colours.ink);
+  labels.write(clip(robot.name, 20), left, top, { colour: old ? colours.soft : colours.ink });
 }
 
 /** Two reports that may be of one artifact, joined by a line. */
@@ -121,6 +121,21 @@ export function drawReports(paint, colours, labels, view, run, reports, size) {
 export function drawRobots(paint, colours, labels, view, robots, size, now) {
   for (const robot of robots) labels.keepOff(view.toPixel(robot.position), size * 0.8);
   for (const robot of robots) drawRobot(paint, colours, labels, view, robot, size, now);
+}
+
+/** Sets two reports off from all others; their names come first. */
+export function drawPairRings(paint, colours, labels, view, pair, size) {
+  for (const report of pair) {
+    const [left, top] = view.toPixel(report.position);
+    for (const [width, colour] of [[7, colours.ground], [3, colours.ask]]) {
+      paint.lineWidth = width;
+      paint.strokeStyle = colour;
+      paint.beginPath();
+      paint.arc(left, top, size * 1.1, 0, 2 * Math.PI);
+      paint.stroke();
+    }
+    labels.write(`#${report.number} ${clip(report.type, 20)}`, left + size * 0.6, top);
+  }
 }
 
 export const labelsOn = (paint, colours, size, width) => new Labels(paint, colours, size, width);

@@ -71,6 +71,7 @@ test("pans by dragging and by the arrow keys, and comes back by All", async (t) 
   const { page } = await watch(t, "reports");
   await settled(page);
   await box(page, "Robots").uncheck(); // they move by themselves
+  await box(page, "Tracks").uncheck();
   await page.waitForTimeout(200);
   const whole = await picture(page);
   await page.locator(canvas).scrollIntoViewIfNeeded();
@@ -93,8 +94,7 @@ test("pans by dragging and by the arrow keys, and comes back by All", async (t) 
 test("shows the map as it was, by the slider, and now again", async (t) => {
   const { page } = await watch(t, "calm");
   await settled(page);
-  await box(page, "Robots").uncheck();
-  await box(page, "Reports").uncheck();
+  for (const name of ["Robots", "Tracks", "Reports"]) await box(page, name).uncheck();
   await page.waitForTimeout(200);
   const whole = await picture(page);
   const slider = page.getByRole("slider");

@@ -27,11 +27,11 @@ export function deedsOf(report) {
   return DEEDS[report.state] ?? [];
 }
 
-let role = "viewer", lost = false;
+let role = null, lost = false; // null: not learned yet
 
 /** Why nothing can be done now, or "". */
 export const barred = () =>
-  lost ? "Nothing can be done while the box does not answer." : role !== "operator" ? "Only an operator can do something: log in as one." : "";
+  lost ? "Nothing can be done while the box does not answer." : role === null ? "Asking who you are." : role !== "operator" ? "Only an operator can do something: log in as one." : "";
 
 export function linkIs(isLost) {
   if (lost && !isLost) learnRole();
@@ -41,7 +41,8 @@ export function linkIs(isLost) {
 export async function learnRole() {
   ({ role } = await session().catch(() => ({ role })));
 }
-learnRole();
+/** Ends once it is known who looks at this page. */
+export const learned = learnRole();
 
 // What came of the last deed at each report: {text, bad}.
 const outcomes = new Map();

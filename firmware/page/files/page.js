@@ -2,7 +2,7 @@
 import { badge, mark, say } from "./dom.js";
 import { follow } from "./live.js";
 import { compose, showCompose } from "./compose.js";
-import { linkIs } from "./deeds.js";
+import { learned, linkIs } from "./deeds.js";
 import { listenToKeys } from "./keys.js";
 import { showIdentify } from "./identify.js";
 import { sampleLink } from "./link.js";
@@ -47,7 +47,7 @@ function show({ view, time, lost }) {
 }
 
 showWho(document.getElementById("who"));
-follow("/adit/events", show);
+learned.then(follow("/adit/events", show));
 
 const focus = (selector) => document.querySelector(selector)?.focus();
 listenToKeys(

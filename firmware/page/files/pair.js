@@ -7,6 +7,7 @@ import { ago, clip, metres } from "./words.js";
 
 const panel = document.querySelector("#map .pair");
 let numbers = null, back = null;
+let last = null; // what was shown: {view, now}
 
 /** Shows both on the map; the focus goes back to `from` in the end. */
 export function comparePair(one, other, from) {
@@ -14,6 +15,7 @@ export function comparePair(one, other, from) {
   back = from;
   map.showPair([one, other]);
   panel.hidden = false;
+  showPair(last.view, last.now);
   panel.closest("section").scrollIntoView({ block: "nearest" });
   panel.querySelector("button").focus({ preventScroll: true });
 }
@@ -39,9 +41,10 @@ function update(node, report, now) {
   say(whence, `${ago(now - report.received)}, from ${clip(report.sender, 40)}`);
 }
 
-export function showPair({ reports }, now) {
+export function showPair(view, now) {
+  last = { view, now };
   if (!numbers) return;
-  const both = numbers.map((number) => reports.find((report) => report.number === number)).filter(Boolean);
+  const both = numbers.map((number) => view.reports.find((report) => report.number === number)).filter(Boolean);
   if (both.length < 2) return close();
   say(panel.querySelector(".apart"), `${distance(...both).toFixed(1)} m apart: one artifact, or two?`);
   const create = () => make("li", make("strong"), make("span.badge"), make("span.where"), make("span.whence"));

@@ -48,11 +48,9 @@ export class MapOfRun {
   }
 
   #movedByHand() {
-    if (this.#fitting) this.#fitting = false;
-    else this.#isFit = false;
+    this.#isFit = false;
     this.redraw();
   }
-  #fitting = false;
 
   zoom(factor) {
     this.#view.zoom(factor);
@@ -60,7 +58,7 @@ export class MapOfRun {
   }
 
   fit() {
-    this.#isFit = this.#fitting = true;
+    this.#isFit = true;
     this.redraw();
   }
 

@@ -20,7 +20,7 @@ function consequences({ reports, run_number }) {
   return [
     `Run ${run_number} ends, and run ${run_number + 1} begins.`,
     waiting.length
-      ? `What waits is held when its turn comes, and goes only when you send it: ${named(waiting)}. Only what was posted in the last 10 s goes on into the new run.`
+      ? `What waits is held, and goes only when you send it: ${named(waiting)}. Only what was posted in the last 10 s goes on into the new run.`
       : "No report waits to be sent.",
     doubts.length ? `What is under way or in doubt stays for you to judge: ${named(doubts)}.` : "",
     "Map, tracks and markers begin blank. The box notices most new runs by itself: this is for those it cannot.",

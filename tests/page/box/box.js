@@ -69,7 +69,7 @@ class Box {
     const at = (port) => ({ address: "127.0.0.1", port });
     const { command_post, ...others } = settings;
     writeFileSync(join(this.folder, "settings.json"), JSON.stringify({
-      version: 1, command_post: { scoring: at(scoring), mapping: at(mapping), ...command_post }, team: { listen: [at(this.port)] }, ...others,
+      version: 1, command_post: { scoring: at(scoring), mapping: at(mapping), ...command_post }, team: { listen: [at(this.port)], connections: 256, connections_per_address: 256 }, ...others,
     }));
     await this.startAditd();
     const code = readFileSync(join(this.folder, "state/first-start.code"), "utf8").trim();
@@ -84,6 +84,9 @@ class Box {
     const aditd = this.#start("aditd", "--settings", join(this.folder, "settings.json"), "--secrets", join(this.folder, "secrets"), "--state", join(this.folder, "state"));
     await until(() => fetch(this.url).then(({ ok }) => ok, () => aditd.exitCode !== null && Promise.reject(new Error(aditd.log()))), "aditd");
   }
+  /** Lets the robots stand still, and their programs, too; or go on. */
+  freezeRobots = () => this.#programs["adit-robots"].kill("SIGSTOP");
+  thawRobots = () => this.#programs["adit-robots"].kill("SIGCONT");
   killAditd = () => stop(this.#programs.aditd, "SIGKILL");
 
   /** Asks the box, as the team's script does: {status, said}. With a body: POST. */

@@ -1,6 +1,6 @@
 import assert from "node:assert/strict";
 import { test } from "node:test";
-import { box, deed, logIn, look, row, says } from "./box.js";
+import { box, deed, logIn, look, row, says, until } from "./box.js";
 
 const SLOW = { settings: { command_post: { rates: { reports_hz: 0.05 } } } }; // the second report waits for 20 s
 const recorded = async (made, x) => (await made.record()).reports.filter((report) => report.x === x).length;
@@ -110,15 +110,17 @@ test("shows near duplicates side by side, on the map and in words", async (t) =>
 test("begins a new run on the operator's word, and says before what becomes of what was not sent", async (t) => {
   const made = await box(t, SLOW);
   const number = await waiting(made);
+  const posted = Date.now();
   const page = await look(t, made);
   const before = (await made.run()).run_number;
   const question = page.getByRole("alertdialog");
   const press = () => page.getByRole("button", { name: "New run" }).first().click();
   await press();
-  assert.match(await question.innerText(), new RegExp(`Run ${before} ends, and run ${before + 1} begins\\. What waits is held when its turn comes, and goes only when you send it: #${number}\\.`));
+  assert.match(await question.innerText(), new RegExp(`Run ${before} ends, and run ${before + 1} begins\\. What waits is held, and goes only when you send it: #${number}\\.`));
   await question.getByRole("button", { name: "Leave it" }).click();
   assert.equal((await made.run()).run_number, before);
   assert.equal(await made.state(number), "waiting");
+  await until(() => Date.now() > posted + 10_500, "the report to be too old for another run");
   await press();
   await question.getByRole("button", { name: "New run" }).click();
   await page.waitForFunction((words) => document.querySelector("#run .outcome").textContent === words, `Run ${before + 1} began.`);

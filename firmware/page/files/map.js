@@ -1,7 +1,7 @@
 // The map: the picture of what was forwarded, and on it robots, their tracks, markers and reports. Drawn again only when something changed.
 import { listenTo } from "./map_input.js";
-import { coloursOf, drawCross, drawPairRings, drawReports, drawRobots, drawScale, isStale, labelsOn } from "./map_marks.js";
-import { drawMarkers, Markers } from "./map_markers.js";
+import { coloursOf, drawCross, drawPairRings, drawReports, drawRobots, drawScale, isStale, keepOffRobots, labelsOn } from "./map_marks.js";
+import { drawMarkers, Markers, writeMarkers } from "./map_markers.js";
 import { drawLayer, Tiles } from "./map_tiles.js";
 import { drawTracks, Tracks } from "./map_tracks.js";
 import { MapView } from "./map_view.js";
@@ -192,11 +192,13 @@ export class MapOfRun {
     const size = parseFloat(getComputedStyle(this.#canvas).fontSize);
     const labels = labelsOn(paint, this.#colours, size, view.width);
     drawTracks(paint, this.#colours, view, places.tracks);
-    if (this.#pair) drawPairRings(paint, this.#colours, labels, view, this.#pair, size);
-    drawMarkers(paint, this.#colours, labels, view, places.markers);
+    drawMarkers(paint, this.#colours, view, places.markers);
     drawScale(paint, this.#colours, labels, view, size);
-    drawReports(paint, this.#colours, labels, view, this.#run, places.reports, size / 2);
+    keepOffRobots(labels, view, places.robots, size / 1.8);
+    if (this.#pair) drawPairRings(paint, this.#colours, labels, view, this.#pair, size);
+    drawReports(paint, this.#colours, labels, view, this.#run, places.reports, size / 2, this.#pair ?? []);
     drawRobots(paint, this.#colours, labels, view, places.robots, size / 1.8, this.#at ?? this.#run?.now);
+    writeMarkers(labels, view, places.markers);
     if (this.#onTap) drawCross(paint, { ...this.#colours, ask: this.#colours.soft }, view.toPixel(view.centre), size / 2);
     if (this.#picked) drawCross(paint, this.#colours, view.toPixel(this.#picked), size / 2);
   }

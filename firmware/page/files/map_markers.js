@@ -101,20 +101,27 @@ function drawMarker(paint, colours, view, { type, heading, scale, color }, left,
   paint.restore();
 }
 
-function write(labels, view, { scale, color, text }, left, top) {
-  const size = Math.min(48, Math.max(labels.size, (scale.z || 0) * view.scale));
-  const seen = color.a ? { colour: css({ ...color, a: 1 }), rim: rimOf(color) } : { colour: labels.colours.soft };
-  labels.write(clip(text, LONGEST), left - size, top, { ...seen, size });
-}
-
-export function drawMarkers(paint, colours, labels, view, markers) {
+/** [{marker, left, top}] of those near to what is seen. */
+function seen(view, markers) {
   const reach = 100; // metres: so far a marker may stick out
   const { left: west, right: east, top: north, bottom: south } = view.bounds();
-  for (const marker of markers) {
-    const { x, y } = marker.position;
-    if (x < west - reach || x > east + reach || y < south - reach || y > north + reach) continue;
-    const [left, top] = view.toPixel(marker.position);
-    if (marker.type === TEXT) write(labels, view, marker, left, top);
-    else drawMarker(paint, colours, view, marker, left, top);
+  return markers
+    .filter(({ position: { x, y } }) => x > west - reach && x < east + reach && y > south - reach && y < north + reach)
+    .map((marker) => ({ marker, place: view.toPixel(marker.position) }));
+}
+
+export function drawMarkers(paint, colours, view, markers) {
+  for (const { marker, place } of seen(view, markers)) {
+    if (marker.type !== TEXT) drawMarker(paint, colours, view, marker, ...place);
+  }
+}
+
+/** Their texts, where reports and robots have left room for them. */
+export function writeMarkers(labels, view, markers) {
+  for (const { marker: { type, color, scale, text }, place } of seen(view, markers)) {
+    if (type !== TEXT) continue;
+    const size = Math.min(48, Math.max(labels.size, scale.z * view.scale));
+    const colours = color.a ? { colour: css({ ...color, a: 1 }), rim: rimOf(color) } : { colour: labels.colours.soft };
+    labels.write(clip(text, LONGEST), ...place, { ...colours, size });
   }
 }

@@ -105,21 +105,29 @@ function drawPair(paint, colours, labels, view, { one, other, metres: apart }) {
   if (Math.hypot(left - right, top - bottom) > 60) labels.write(`${apart.toFixed(1)} m`, (left + right) / 2, (top + bottom) / 2);
 }
 
-export function drawReports(paint, colours, labels, view, run, reports, size) {
+const nameOf = (report) => `#${report.number} ${clip(report.type, 20)}`;
+
+/** `named`: those whose names stand there already. */
+export function drawReports(paint, colours, labels, view, run, reports, size, named) {
   for (const pair of nearPairs({ ...run, reports })) drawPair(paint, colours, labels, view, pair);
   for (const report of [...reports].reverse()) {
     const [left, top] = view.toPixel(report.position);
     drawShape(paint, colours, life(report).level, left, top, size);
     labels.keepOff([left, top], size * 0.8);
   }
-  for (const report of reports) {
+  const numbers = named.map(({ number }) => number);
+  for (const report of reports.filter(({ number }) => !numbers.includes(number))) {
     const isAsking = life(report).level === "ask";
-    if (view.scale >= LABELS_FROM || isAsking) labels.write(`#${report.number} ${clip(report.type, 20)}`, ...view.toPixel(report.position));
+    if (view.scale >= LABELS_FROM || isAsking) labels.write(nameOf(report), ...view.toPixel(report.position));
   }
 }
 
-export function drawRobots(paint, colours, labels, view, robots, size, now) {
+/** Before any name is written: robots are drawn above them. */
+export function keepOffRobots(labels, view, robots, size) {
   for (const robot of robots) labels.keepOff(view.toPixel(robot.position), size * 0.8);
+}
+
+export function drawRobots(paint, colours, labels, view, robots, size, now) {
   for (const robot of robots) drawRobot(paint, colours, labels, view, robot, size, now);
 }
 
@@ -134,7 +142,7 @@ export function drawPairRings(paint, colours, labels, view, pair, size) {
       paint.arc(left, top, size * 1.1, 0, 2 * Math.PI);
       paint.stroke();
     }
-    labels.write(`#${report.number} ${clip(report.type, 20)}`, left + size * 0.6, top);
+    labels.write(nameOf(report), left - size * 2, top - size * 2);
   }
 }
 

@@ -5,11 +5,9 @@ import { mkdirSync, mkdtempSync, readFileSync, rmSync, writeFileSync } from "nod
 import { createServer } from "node:net";
 import { tmpdir } from "node:os";
 import { join, resolve } from "node:path";
-import { after, before } from "node:test";
-import { launch, visit } from "../stage.js";
 
 const BIN = resolve(process.env.ADIT_BIN);
-const TOKENS = { scoring: "flux230{showroom", mapping: "rust871}backdoor", team: "team-own-token-1" };
+export const TOKENS = { scoring: "flux230{showroom", mapping: "rust871}backdoor", team: "team-own-token-1" };
 export const PASSWORD = "a long cave password";
 
 export async function until(condition, what, within = 15_000) {
@@ -119,44 +117,3 @@ class Box {
 }
 
 export const begin = (options = {}) => new Box().begin(options);
-
-let browser;
-before(async () => (browser = await launch()));
-after(() => browser?.close());
-
-/** A box for the length of one test. */
-export async function box(t, options) {
-  const made = await begin(options);
-  t.after(() => made.end());
-  return made;
-}
-
-/** A page of the box's, for who has the team's token. */
-export async function look(t, made, path = "", options = {}) {
-  const page = await visit(browser, made.url + path, { extraHTTPHeaders: { Authorization: `Bearer ${TOKENS.team}` }, ...options });
-  t.after(() => page.context().close());
-  await page.waitForSelector("body[data-link=live]");
-  return page;
-}
-
-/** The same for who logs in by password, in a browser of his own; `prepare(page)` before it is opened. */
-export async function logIn(t, made, prepare) {
-  const page = await visit(browser, `${made.url}login.html`, {}, prepare);
-  t.after(() => page.context().close());
-  await page.fill("#login input[name=password]", PASSWORD);
-  await page.click("#login button");
-  await page.waitForSelector("body[data-link=live]");
-  return page;
-}
-
-/** Kept beside the build, for people to look at. */
-export async function shoot(page, name) {
-  const folder = resolve(BIN, "../screenshots");
-  mkdirSync(folder, { recursive: true });
-  await page.screenshot({ path: join(folder, `${name}.png`) });
-}
-
-export const row = (page, number) => page.locator(`#reports li[data-key="${number}"]`);
-export const deed = (page, name, number) => page.getByRole("button", { name: `${name}: report ${number}` });
-export const says = (page, number, words) =>
-  page.waitForFunction(([number, words]) => document.querySelector(`#reports li[data-key="${number}"]`)?.innerText.includes(words), [number, words]);

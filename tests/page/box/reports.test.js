@@ -1,6 +1,7 @@
 import assert from "node:assert/strict";
 import { test } from "node:test";
-import { box, deed, logIn, look, row, says, until } from "./box.js";
+import { until } from "./box.js";
+import { box, deed, logIn, look, row, says } from "./visits.js";
 
 const SLOW = { settings: { command_post: { rates: { reports_hz: 0.05 } } } }; // the second report waits for 20 s
 const recorded = async (made, x) => (await made.record()).reports.filter((report) => report.x === x).length;

@@ -1,7 +1,8 @@
 import assert from "node:assert/strict";
 import { after, before, test } from "node:test";
 import { axeFindsNothing } from "../watch.js";
-import { begin, look, shoot, until } from "./box.js";
+import { begin, until } from "./box.js";
+import { look, shoot } from "./visits.js";
 
 // One run for all of these: five robots explore, and the operator reports.
 let made;

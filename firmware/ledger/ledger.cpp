@@ -29,14 +29,10 @@ class Ledger::Impl {
   Result<void> write(std::span<const dispatch::Report> steps, const dispatch::Run* run,
                      dispatch::Flush flush) {
     if (steps.empty() && run == nullptr) return {};
-    if (flush == dispatch::Flush::Now) return write(steps, run);
-    // NORMAL differs from FULL in this alone: the log is not flushed at the end of a transaction.
-    if (auto set = database_.execute("PRAGMA synchronous = NORMAL"); !set)
-      return std::unexpected(set.error());
-    const auto written = write(steps, run);
-    unflushed_ = true;
-    if (auto set = database_.execute("PRAGMA synchronous = FULL"); !set) return std::unexpected(set.error());
-    return written;
+    const bool soon = flush == dispatch::Flush::Soon;
+    if (auto set = flush_each(!soon); !set) return set;
+    unflushed_ = unflushed_ || soon;
+    return write(steps, run);
   }
 
   Result<void> flush() {
@@ -46,7 +42,7 @@ class Ledger::Impl {
       return std::unexpected(Error{"the ledger's log could not be flushed", false});
     }
     unflushed_ = false;
-    return {};
+    return flush_each(true);  // here, where nobody waits for it
   }
 
   Result<std::vector<dispatch::Report>> reports() {
@@ -81,6 +77,15 @@ class Ledger::Impl {
   const std::string& damage() const { return damage_; }
 
  private:
+  /// NORMAL differs from FULL in this alone: the log is not flushed at the end of a transaction.
+  Result<void> flush_each(bool each) {
+    if (each == flushes_each_) return {};
+    const char* const set = each ? "PRAGMA synchronous = FULL" : "PRAGMA synchronous = NORMAL";
+    if (auto done = database_.execute(set); !done) return std::unexpected(done.error());
+    flushes_each_ = each;
+    return {};
+  }
+
   /// A statement alone is a transaction of its own.
   Result<void> write(std::span<const dispatch::Report> steps, const dispatch::Run* run) {
     if (run == nullptr && of_the_first(steps) == steps.size()) return write_one(steps);
@@ -126,7 +131,8 @@ class Ledger::Impl {
 
   Database database_;  // before the statements, which it outlives
   std::string damage_;
-  bool unflushed_ = false;  // something was written whose flush was left for later
+  bool flushes_each_ = true;  // as it was opened
+  bool unflushed_ = false;    // something was written whose flush was left for later
   Statement write_report_, write_run_, read_reports_, read_history_, read_last_run_;
 };
 

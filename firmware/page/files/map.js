@@ -191,8 +191,9 @@ export class MapOfRun {
     for (const layer of layers) drawLayer(paint, view, this.#tiles, layer, this.#at);
     const size = parseFloat(getComputedStyle(this.#canvas).fontSize);
     const labels = labelsOn(paint, this.#colours, size, view.width);
-    drawTracks(paint, this.#colours, view, places.tracks);
-    drawMarkers(paint, this.#colours, view, places.markers);
+    const unit = size / 14;
+    drawTracks(paint, this.#colours, view, places.tracks, unit);
+    drawMarkers(paint, this.#colours, view, places.markers, unit);
     drawScale(paint, this.#colours, labels, view, size);
     keepOffRobots(labels, view, places.robots, size / 1.8);
     if (this.#pair) drawPairRings(paint, this.#colours, labels, view, this.#pair, size);

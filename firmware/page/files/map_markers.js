@@ -2,7 +2,7 @@
 // (README.md: GET /adit/markers).
 import { clip } from "./words.js";
 
-const LEAST = 3; // pixels from the middle: what is smaller could not be seen
+const LEAST = 3; // units from the middle: what is smaller could not be seen
 const TEXT = 9; // of visualization_msgs/Marker
 const LONGEST = 40; // letters
 
@@ -70,7 +70,7 @@ function round(paint, x, y) {
   paint.ellipse(0, 0, x, y, 0, 0, 2 * Math.PI);
 }
 
-/** By type; x and y: half its size in pixels, along and across. */
+/** By type; x and y: half its size in units, along and across. */
 const SHAPES = {
   0: (paint, x, y) => polygon(paint, [[0, -y / 3], [1.3 * x, -y / 3], [1.3 * x, -y], [2 * x, 0], [1.3 * x, y], [1.3 * x, y / 3], [0, y / 3]]),
   1: (paint, x, y) => polygon(paint, [[-x, -y], [x, -y], [x, y], [-x, y]]),
@@ -87,11 +87,12 @@ const SHAPES = {
 };
 const LIKE = { 5: 4, 6: 8, 7: 8, 10: 11 };
 
-function drawMarker(paint, colours, view, { type, heading, scale, color }, left, top) {
-  const half = (size) => Math.max(LEAST, (Math.abs(size) * view.scale) / 2);
+function drawMarker(paint, colours, view, { type, heading, scale, color }, unit, left, top) {
+  const half = (size) => Math.max(LEAST, (Math.abs(size) * view.scale) / 2 / unit);
   paint.save();
   paint.translate(left, top);
   paint.rotate(-heading);
+  paint.scale(unit, unit);
   (SHAPES[LIKE[type] ?? type] ?? SHAPES[8])(paint, half(scale.x), half(scale.y || scale.x));
   paint.fillStyle = css(color);
   paint.lineWidth = 1;
@@ -110,9 +111,10 @@ function seen(view, markers) {
     .map((marker) => ({ marker, place: view.toPixel(marker.position) }));
 }
 
-export function drawMarkers(paint, colours, view, markers) {
+/** `unit`: pixels, by the size of the page's letters. */
+export function drawMarkers(paint, colours, view, markers, unit) {
   for (const { marker, place } of seen(view, markers)) {
-    if (marker.type !== TEXT) drawMarker(paint, colours, view, marker, ...place);
+    if (marker.type !== TEXT) drawMarker(paint, colours, view, marker, unit, ...place);
   }
 }
 

@@ -102,7 +102,7 @@ function drawPair(paint, colours, labels, view, { one, other, metres: apart }) {
     paint.lineTo(right, bottom);
     paint.stroke();
   }
-  if (Math.hypot(left - right, top - bottom) > 60) labels.write(`${apart.toFixed(1)} m`, (left + right) / 2, (top + bottom) / 2);
+  if (Math.hypot(left - right, top - bottom) > 8 * labels.size) labels.write(`${apart.toFixed(1)} m`, (left + right) / 2, (top + bottom) / 2);
 }
 
 const nameOf = (report) => `#${report.number} ${clip(report.type, 20)}`;

@@ -75,11 +75,12 @@ export class Tracks {
   until = (time) => [...this.#all.values()].map((track) => track.filter(([at]) => at <= time));
 }
 
-export function drawTracks(paint, colours, view, tracks) {
+/** `unit`: pixels, by the size of the page's letters. */
+export function drawTracks(paint, colours, view, tracks, unit) {
   paint.save();
   paint.lineJoin = "round";
   for (const [width, colour, alpha] of [[4, colours.ground, 0.5], [1.75, colours.lamp, 0.8]]) {
-    Object.assign(paint, { lineWidth: width, strokeStyle: colour, globalAlpha: alpha });
+    Object.assign(paint, { lineWidth: width * unit, strokeStyle: colour, globalAlpha: alpha });
     for (const track of tracks) drawTrack(paint, view, track);
   }
   paint.restore();

@@ -1,10 +1,12 @@
 // Measures how soon the page paints over a slow link, and what an open page costs the box. It asserts nothing:
 // tests/bench/README.md has figures and how to run it.
+import { once } from "node:events";
 import { readFileSync } from "node:fs";
+import { get } from "node:http";
 import { launch, visit } from "../stage.js";
 import { begin, TOKENS } from "../box/box.js";
 
-const PAGES = 4, SECONDS = Number(process.env.BENCH_SECONDS ?? 20), ROUNDS = 3, PAINTS = 9;
+const PAGES = 4, LISTENERS = 20, SECONDS = Number(process.env.BENCH_SECONDS ?? 20), ROUNDS = 3, PAINTS = 9;
 const LINK = { offline: false, latency: 20, downloadThroughput: 20e6 / 8, uploadThroughput: 20e6 / 8 };
 const TICKS = 100; // a second: USER_HZ
 
@@ -44,6 +46,15 @@ async function paint(browser, made, path) {
   return { first, live };
 }
 
+/** Somebody who only listens to the run's events; how many bytes came. */
+async function listen(made) {
+  const request = get(`${made.url}adit/events`, { headers: token });
+  const [answer] = await once(request, "response");
+  const heard = { bytes: 0, end: () => request.destroy() };
+  answer.on("data", (piece) => (heard.bytes += piece.length)).on("error", () => {});
+  return heard;
+}
+
 const made = await begin({ robots: 5 });
 const browser = await launch();
 try {
@@ -69,6 +80,12 @@ try {
     console.log(`/${path}: aditd takes ${of("without").toFixed(1)} % of a core without a page, ${of("first").toFixed(1)} % with one, ${of("withPages").toFixed(1)} % with ${PAGES}: ` +
       `${median(each.map((one) => (one.withPages - one.without) / PAGES)).toFixed(2)} % for each`);
   }
+  const without = await share(made.pid);
+  const listeners = await Promise.all(Array.from({ length: LISTENERS }, () => listen(made)));
+  const withThem = await share(made.pid);
+  const kilobytes = listeners[0].bytes / 1000 / SECONDS;
+  for (const listener of listeners) listener.end();
+  console.log(`the events alone, ${LISTENERS} listeners: ${((withThem - without) / LISTENERS).toFixed(2)} % of a core and ${kilobytes.toFixed(0)} kB/s for each`);
 } finally {
   await browser.close();
   await made.end();

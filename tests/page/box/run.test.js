@@ -1,6 +1,6 @@
 import assert from "node:assert/strict";
 import { after, before, test } from "node:test";
-import { axeFindsNothing } from "../watch.js";
+import { axeFindsNothing } from "../axe.js";
 import { begin, until } from "./box.js";
 import { look, shoot } from "./visits.js";
 

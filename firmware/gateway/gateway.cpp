@@ -1,5 +1,8 @@
 #include "gateway/gateway.hpp"
 
+#include <algorithm>
+#include <iterator>
+
 #include "gateway/report_rows.hpp"
 #include "gateway/version.hpp"
 #include "host/log.hpp"
@@ -10,6 +13,7 @@ namespace {
 constexpr std::chrono::milliseconds kDrainStep{10};
 constexpr std::chrono::milliseconds kFlush{50};  // in which the answers just given to the team leave
 constexpr std::size_t kMeterSeconds = 5;
+constexpr std::chrono::minutes kKeepSessionsEvery{1};
 constexpr std::size_t kMostReportRows = 200;
 
 }  // namespace
@@ -17,38 +21,44 @@ constexpr std::size_t kMostReportRows = 200;
 Gateway::Gateway(loop::Loop& loop, Parts parts)
     : loop_(loop),
       parts_(std::move(parts)),
+      settings_(settings::in_use(parts_.loaded.settings)),
       random_(std::random_device{}()),
       workers_(loop, 0),
-      spool_(parts_.spool_folder),
+      spool_(parts_.runtime_folder + "/waiting"),
       record_([this] { changed(); }),
-      scoring_(loop, parts_.ledger, parts_.settings, *parts_.secrets.scoring, record_, random_),
+      scoring_(loop, parts_.ledger, settings_, token_for("scoring", settings_, parts_.loaded.secrets),
+               record_, random_),
       picture_(
           loop, workers_, [this] { return maps_.packing(); }, [this] { changed(); }),
-      maps_(loop, workers_, spool_, parts_.settings, *parts_.secrets.mapping, record_, random_,
-            [this](icd::MapUpdate map) { picture_.forwarded(std::move(map)); }),
-      news_(loop, parts_.settings, *parts_.secrets.mapping, record_, random_),
+      maps_(loop, workers_, spool_, settings_, token_for("mapping", settings_, parts_.loaded.secrets),
+            record_, random_, [this](icd::MapUpdate map) { picture_.forwarded(std::move(map)); }),
+      news_(loop, settings_, token_for("mapping", settings_, parts_.loaded.secrets), record_, random_),
       lights_(loop, std::move(parts_.lines)),
-      accounts_(workers_, parts_.state_folder, parts_.secrets.label_code),
+      roster_(settings_.robots),
+      sessions_(parts_.runtime_folder + "/sessions.json", loop.now()),
+      accounts_(workers_, sessions_, parts_.state_folder, parts_.loaded.secrets.label_code),
+      setup_(parts_.store, parts_.loaded, accounts_, [this] { make_way(); }),
       page_(loop, *this, *this, accounts_, tokens()),
       routes_(icd_options(), *this, workers_, page_),
       second_(loop.timer([this] { every_second(); })),
-      drained_(loop.timer([this] { drain(); })) {}
+      drained_(loop.timer([this] { drain(); })) {
+  page_.serve(setup_);
+}
 
 Gateway::~Gateway() = default;
 
 intake::IcdOptions Gateway::icd_options() const {
   intake::IcdOptions options;
-  options.rules = parts_.settings.rules;
-  if (parts_.settings.team.require_token) options.tokens = tokens();
+  options.rules = settings_.rules;
+  options.asks_token = settings_.team.require_token;
+  options.tokens = tokens();
   return options;
 }
 
 /// Any of them lets a client of the team in.
 std::vector<icd::BearerToken> Gateway::tokens() const {
   std::vector<icd::BearerToken> tokens;
-  for (const auto& token : {parts_.secrets.team, parts_.secrets.scoring, parts_.secrets.mapping}) {
-    if (token) tokens.push_back(*token);
-  }
+  for (const auto& [name, token] : parts_.loaded.secrets.tokens) tokens.push_back(token);
   return tokens;
 }
 
@@ -62,7 +72,7 @@ std::expected<void, std::string> Gateway::start() {
 }
 
 std::expected<void, std::string> Gateway::listen() {
-  const settings::Team& team = parts_.settings.team;
+  const settings::Team& team = settings_.team;
   for (const settings::Address& address : team.listen) {
     auto server = intake::Server::start(loop_,
                                         {.address = address.address,
@@ -82,7 +92,7 @@ std::expected<void, std::string> Gateway::listen() {
 /// What an earlier service left, stamped anew: what it sent last is not known, and stamps must not run
 /// backward.
 void Gateway::restore() {
-  Spool::Kept kept = spool_.read(parts_.settings.rules);
+  Spool::Kept kept = spool_.read(settings_.rules);
   const double now = loop_.stamp_now();
   for (auto& [number, map] : kept.maps) {
     map.header().stamp = now;
@@ -104,9 +114,19 @@ void Gateway::keep_news() {
 }
 
 void Gateway::stop() {
-  if (stop_by_) return;
   host::notify_stopping();
   host::log(host::Level::Notice, "stopping");
+  makes_way_ = false;
+  end();
+}
+
+void Gateway::make_way() {
+  makes_way_ = true;
+  end();
+}
+
+void Gateway::end() {
+  if (stop_by_) return;
   stop_by_ = loop_.now() + kDrain;
   for (const auto& server : servers_) server->stop_listening();
   drain();
@@ -121,18 +141,21 @@ void Gateway::drain() {
 }
 
 void Gateway::finish() {
+  if (!sessions_.sessions().in_order().empty()) sessions_.keep();
   if (!keeping_news_) spool_.keep(news_.unsent_state(), news_.unsent_markers());
   loop_.stop();
 }
 
 icd::Checked<void> Gateway::take(icd::MapUpdate update, const intake::Sender& sender) {
   const std::string clock = sender.address + "/map/" + (update.name ? update.name->text() : "");
+  if (update.name) note_robot(update.name->text());
   update.header().stamp = stamps_.shift(clock, update.header().stamp, loop_.stamp_now());
   return maps_.take(std::move(update), sender.bytes);
 }
 
 icd::Checked<void> Gateway::take(const icd::StateUpdate& update, const intake::Sender& sender) {
   const std::string robot = update.poses.size() == 1 ? update.poses.front().name.text() : "";
+  for (const icd::NamedPose& pose : update.poses) note_robot(pose.name.text());
   icd::StateUpdate shifted = update;
   shifted.header.stamp =
       stamps_.shift(sender.address + "/state/" + robot, update.header.stamp, loop_.stamp_now());
@@ -146,6 +169,10 @@ icd::Checked<void> Gateway::take(const icd::MarkersUpdate& update, const intake:
         stamps_.shift(sender.address + "/markers/" + marker.ns, marker.header.stamp, loop_.stamp_now());
   }
   return news_.take(shifted, sender.bytes);
+}
+
+void Gateway::note_robot(const std::string& name) {
+  if (roster_.posted(name, loop_.now())) host::log(host::Level::Warning, roster_.sentence(name));
 }
 
 void Gateway::take(const icd::ArtifactReport& report, const intake::Sender& sender,
@@ -205,11 +232,19 @@ void Gateway::every_second() {
   scoring_.tick();
   lights_.show(condition());
   keep_news();
+  keep_sessions();
   if (std::string line = status_line(); line != notified_) {
     host::notify_status(line);
     notified_ = std::move(line);
   }
   second_.call_at(loop_.now() + std::chrono::seconds(1));
+}
+
+/// When somebody was seen last need not be known to the second.
+void Gateway::keep_sessions() {
+  if (loop_.now() < sessions_kept_ + kKeepSessionsEvery) return;
+  sessions_kept_ = loop_.now();
+  if (!sessions_.sessions().in_order().empty()) sessions_.keep();
 }
 
 double Gateway::sent_mbit() const {
@@ -234,6 +269,7 @@ std::vector<std::string> Gateway::attention() const {
   if (!scoring_.trouble().empty()) {
     sentences.push_back("no report is taken, the ledger cannot be written: " + scoring_.trouble());
   }
+  say_what_is_missing(sentences);
   if (!parts_.ledger.damage().empty()) sentences.push_back(parts_.ledger.damage());
   const auto token_refused = [&](const Channel& channel, const char* name) {
     if (channel.last_status() == 401) {
@@ -242,8 +278,24 @@ std::vector<std::string> Gateway::attention() const {
   };
   token_refused(scoring_.channel(), "scoring");
   token_refused(maps_.channel().last_status() == 401 ? maps_.channel() : news_.channel(), "mapping");
+  std::ranges::move(roster_.attention(loop_.now()), std::back_inserter(sentences));
   if (maps_.nearly_full()) sentences.emplace_back("the queue of maps is nearly full");
   return sentences;
+}
+
+/// What was to be set up, and is not.
+void Gateway::say_what_is_missing(std::vector<std::string>& sentences) const {
+  for (const std::string* trouble : {&parts_.trouble, &parts_.loaded.trouble}) {
+    if (!trouble->empty()) sentences.push_back(*trouble);
+  }
+  if (!scoring_.channel().has_token())
+    sentences.emplace_back("no scoring token is set: reports wait until one is");
+  if (!maps_.channel().has_token()) {
+    sentences.emplace_back("no mapping token is set: maps, states and markers wait until one is");
+  }
+  if (settings_.team.require_token && parts_.loaded.secrets.tokens.empty()) {
+    sentences.emplace_back("no token is set at all: every robot is turned away");
+  }
 }
 
 std::vector<page::EndpointRow> Gateway::endpoints() const {
@@ -251,7 +303,7 @@ std::vector<page::EndpointRow> Gateway::endpoints() const {
   const Channel& maps = maps_.channel();
   const Channel& news = news_.channel();
   const Channel& latest = maps.heard() > news.heard() ? maps : news;
-  const settings::CommandPost& command_post = parts_.settings.command_post;
+  const settings::CommandPost& command_post = settings_.command_post;
   return {{.name = "scoring",
            .address = address_text(command_post.scoring),
            .connected = scoring.connected(),
@@ -278,11 +330,11 @@ page::RunView Gateway::view() const {
                      .endpoints = endpoints(),
                      .robots = news_.robots(),
                      .reports = latest_rows(scoring_.reports(), kMostReportRows),
-                     .near_metres = parts_.settings.reports.near_metres,
+                     .near_metres = settings_.reports.near_metres,
                      .activities = record_.activities(),
                      .refusals = record_.refusals(),
                      .lights = {},
-                     .budget_mbit = parts_.settings.command_post.budget_mbit,
+                     .budget_mbit = settings_.command_post.budget_mbit,
                      .sent_mbit = sent_mbit(),
                      .queued_bytes = maps_.queued_bytes(),
                      .map_version = picture_.mosaic().version(),

@@ -25,7 +25,7 @@ class Maps {
  public:
   /// `taken` is given each map that the Command Post took.
   Maps(loop::Loop& loop, loop::Workers& workers, const Spool& spool, const settings::Settings& settings,
-       icd::BearerToken token, Record& record, std::mt19937_64& random,
+       std::optional<icd::BearerToken> token, Record& record, std::mt19937_64& random,
        std::function<void(icd::MapUpdate)> taken);
 
   /// A map that the spool kept under this number.

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <map>
+#include <optional>
 #include <random>
 #include <string>
 #include <utility>
@@ -20,8 +21,8 @@ namespace adit::gateway {
 /// has the older news first.
 class News {
  public:
-  News(loop::Loop& loop, const settings::Settings& settings, icd::BearerToken token, Record& record,
-       std::mt19937_64& random);
+  News(loop::Loop& loop, const settings::Settings& settings, std::optional<icd::BearerToken> token,
+       Record& record, std::mt19937_64& random);
 
   void start() { channel_.keep_warm(); }
   /// Stamps are on the gateway's clock. Refused with 429 where the lane is full.

@@ -31,7 +31,7 @@ class Scoring {
   static constexpr std::chrono::milliseconds kAskAfterReport{50};
 
   Scoring(loop::Loop& loop, ledger::Ledger& ledger, const settings::Settings& settings,
-          icd::BearerToken token, Record& record, std::mt19937_64& random);
+          std::optional<icd::BearerToken> token, Record& record, std::mt19937_64& random);
 
   /// Takes up what the ledger holds from before, and connects. An error: the ledger cannot be read.
   std::expected<void, std::string> start();

@@ -1,5 +1,6 @@
 #include "page/page.hpp"
 
+#include <optional>
 #include <utility>
 
 #include "page/answers.hpp"
@@ -8,6 +9,7 @@
 #include "page/map_routes.hpp"
 #include "page/report_routes.hpp"
 #include "page/session_routes.hpp"
+#include "page/settings_routes.hpp"
 #include "page/site.hpp"
 
 namespace adit::page {
@@ -34,7 +36,7 @@ class Page::Impl {
   Impl(loop::Loop& loop, const Source& source, Operator& judge, Keys& keys,
        std::vector<icd::BearerToken> tokens)
       : source_(source),
-        entrance_(loop, std::move(tokens)),
+        entrance_(loop, keys.sessions(), std::move(tokens)),
         sessions_(loop, entrance_, keys),
         live_(loop, source),
         maps_(source),
@@ -47,12 +49,14 @@ class Page::Impl {
       return nullptr;
     }
     if (SessionRoutes::has(head.path())) return sessions_.open(head, std::move(responder));
+    const bool sets_up = settings_ && SettingsRoutes::has(head.path());
     const auto visitor =
-        entrance_.admit(head, only_reads(head) ? access::Role::Viewer : access::Role::Operator);
+        entrance_.admit(head, only_reads(head) && !sets_up ? access::Role::Viewer : access::Role::Operator);
     if (!visitor) {
       responder->answer(turned_away(visitor.error()));
       return nullptr;
     }
+    if (sets_up) return settings_->open(head, std::move(responder));
     if (ReportRoutes::has(head.path())) return reports_.open(head, std::move(responder));
     if (MapRoutes::has(head.path())) {
       responder->answer(maps_.answer(head));
@@ -62,6 +66,10 @@ class Page::Impl {
     return nullptr;
   }
 
+  void serve(Setup& setup) {
+    settings_.emplace(setup);
+    sessions_.serve(setup);
+  }
   void changed() { live_.changed(); }
 
  private:
@@ -85,12 +93,17 @@ class Page::Impl {
   Live live_;
   MapRoutes maps_;
   ReportRoutes reports_;
+  std::optional<SettingsRoutes> settings_;
 };
 
 Page::Page(loop::Loop& loop, const Source& source, Operator& judge, Keys& keys,
            std::vector<icd::BearerToken> tokens)
     : impl_(std::make_unique<Impl>(loop, source, judge, keys, std::move(tokens))) {}
 Page::~Page() = default;
+
+void Page::serve(Setup& setup) {
+  impl_->serve(setup);
+}
 
 std::unique_ptr<intake::Exchange> Page::open(const intake::RequestHead& head,
                                              std::shared_ptr<intake::Responder> responder,

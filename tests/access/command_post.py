@@ -1,7 +1,9 @@
 """A Command Post that takes everything and remembers it: both endpoints on one port of loopback."""
 
+import contextlib
 import http.server
 import json
+import socket
 import threading
 
 
@@ -9,7 +11,7 @@ class CommandPost:
     """Listens from its making until close()."""
 
     def __init__(self):
-        self.requests, self.lock = [], threading.Lock()  # (path, token, body)
+        self.requests, self.clients, self.lock = [], [], threading.Lock()  # (path, token, body)
         self.server = http.server.ThreadingHTTPServer(("127.0.0.1", 0), self._handler())
         self.thread = threading.Thread(target=self.server.serve_forever, args=(0.02,), daemon=True)
         self.thread.start()
@@ -24,14 +26,22 @@ class CommandPost:
             return [(token, body) for at, token, body in self.requests if at == path]
 
     def close(self):
+        """As if its plug were pulled, connections and all."""
         self.server.shutdown()
         self.server.server_close()
+        for client in self.clients:
+            with contextlib.suppress(OSError):
+                client.shutdown(socket.SHUT_RDWR)
 
     def _handler(self):
         post = self
 
         class Handler(http.server.BaseHTTPRequestHandler):
             protocol_version = "HTTP/1.1"
+
+            def setup(self):
+                post.clients.append(self.request)
+                super().setup()
 
             def do_GET(self):
                 self.answer(200, {"score": 0, "remaining_reports": 25, "current_team": "adit", "run_clock": 12.5})

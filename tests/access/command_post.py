@@ -5,13 +5,14 @@ import http.server
 import json
 import socket
 import threading
+import time
 
 
 class CommandPost:
     """Listens from its making until close()."""
 
     def __init__(self):
-        self.requests, self.clients, self.lock = [], [], threading.Lock()  # (path, token, body)
+        self.requests, self.clients, self.lock = [], [], threading.Lock()  # (path, token, body, when)
         self.server = http.server.ThreadingHTTPServer(("127.0.0.1", 0), self._handler())
         self.thread = threading.Thread(target=self.server.serve_forever, args=(0.02,), daemon=True)
         self.thread.start()
@@ -23,7 +24,11 @@ class CommandPost:
     def heard(self, path):
         """The bodies that came at `path`, each with the token that it came with."""
         with self.lock:
-            return [(token, body) for at, token, body in self.requests if at == path]
+            return [(token, body) for at, token, body, _ in self.requests if at == path]
+
+    def times(self, path):
+        with self.lock:
+            return [when for at, _, _, when in self.requests if at == path]
 
     def close(self):
         """As if its plug were pulled, connections and all."""
@@ -57,7 +62,7 @@ class CommandPost:
                 body = self.rfile.read(int(self.headers.get("Content-Length", 0)))
                 token = self.headers.get("Authorization", "").removeprefix("Bearer ")
                 with post.lock:
-                    post.requests.append((self.path, token, body))
+                    post.requests.append((self.path, token, body, time.monotonic()))
                 text = json.dumps(document).encode()
                 self.send_response(status)
                 self.send_header("Content-Type", "application/json")

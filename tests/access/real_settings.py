@@ -165,6 +165,21 @@ class SetUp(unittest.TestCase):
         time.sleep(1.2)
         self.assertEqual(len(other.heard("/api/artifact_reports")), 1)
 
+    def test_a_change_in_the_middle_of_a_run_keeps_the_picture_and_the_rate_and_posts_no_report_twice(self):
+        post = self.post_office()
+        self.course("A", post)
+        self.applied("POST /adit/course", {"name": "A"})
+        self.assertEqual(self.box.ask("POST /map/update", grid("ugv1"), **TEAM)[0], 200)
+        drawn = wait_until(lambda: self.box.ask("GET /adit/map", **self.me)[1]["layers"], "the picture")
+        self.assertEqual(self.box.ask("POST /api/artifact_reports", REPORT, **TEAM)[0], 201)
+        self.change(lambda settings: settings["reports"].update(near_metres=6))
+        self.assertEqual(self.box.ask("GET /adit/map", **self.me)[1]["layers"], drawn)
+        self.assertEqual(self.box.ask("POST /api/artifact_reports", REPORT, **TEAM)[0], 201, "the answer that is kept")
+        self.assertEqual(self.box.ask("POST /api/artifact_reports", {**REPORT, "x": 5.0}, **TEAM)[0], 201)
+        first, second = post.times("/api/artifact_reports")
+        self.assertGreaterEqual(second - first, 0.95)
+        self.assertEqual(self.attention(), "")
+
     def test_a_report_that_waits_for_a_command_post_nobody_heard_of_goes_once_its_address_is_set_right(self):
         told = self.report_in_the_background()
         self.course("A", self.post_office())

@@ -29,7 +29,8 @@ Gateway::Gateway(loop::Loop& loop, Parts parts)
       news_(loop, parts_.settings, *parts_.secrets.mapping, record_, random_),
       lights_(loop, std::move(parts_.lines)),
       accounts_(workers_, parts_.state_folder, parts_.secrets.label_code),
-      page_(loop, *this, *this, accounts_, tokens()),
+      box_(loop, workers_, parts_.settings_text, [this](page::Usage& usage) { add_to(usage); }),
+      page_(loop, *this, *this, accounts_, box_, tokens()),
       routes_(icd_options(), *this, workers_, page_),
       second_(loop.timer([this] { every_second(); })),
       drained_(loop.timer([this] { drain(); })) {}
@@ -199,8 +200,7 @@ void Gateway::picture_the_run() {
 }
 
 void Gateway::every_second() {
-  bytes_sent_.push_back(scoring_.channel().bytes_sent() + maps_.channel().bytes_sent() +
-                        news_.channel().bytes_sent());
+  bytes_sent_.push_back(sent_bytes());
   if (bytes_sent_.size() > kMeterSeconds + 1) bytes_sent_.pop_front();
   scoring_.tick();
   lights_.show(condition());
@@ -210,6 +210,16 @@ void Gateway::every_second() {
     notified_ = std::move(line);
   }
   second_.call_at(loop_.now() + std::chrono::seconds(1));
+}
+
+std::uint64_t Gateway::sent_bytes() const {
+  return scoring_.channel().bytes_sent() + maps_.channel().bytes_sent() + news_.channel().bytes_sent();
+}
+
+void Gateway::add_to(page::Usage& usage) const {
+  for (const auto& server : servers_) usage.connections += server->connections();
+  usage.sent_bytes = sent_bytes();
+  usage.refused = record_.refused_counts();
 }
 
 double Gateway::sent_mbit() const {

@@ -15,6 +15,7 @@
 #include "gateway/record.hpp"
 #include "gateway/scoring.hpp"
 #include "gateway/spool.hpp"
+#include "gateway/this_box.hpp"
 #include "host/service.hpp"
 #include "intake/icd_routes.hpp"
 #include "lanes/stamps.hpp"
@@ -30,7 +31,8 @@ namespace adit::gateway {
 /// What the gateway is made of: all of it has passed its checks.
 struct Parts {
   settings::Settings settings;
-  host::Secrets secrets;  // scoring and mapping are there
+  std::string settings_text;  // the file that they are of
+  host::Secrets secrets;      // scoring and mapping are there
   ledger::Ledger ledger;
   std::unique_ptr<panel::Lines> lines;
   std::string spool_folder;
@@ -77,6 +79,8 @@ class Gateway final : public intake::Desk, public page::Source, public page::Ope
   void picture_the_run();
   void every_second();
   double sent_mbit() const;
+  std::uint64_t sent_bytes() const;
+  void add_to(page::Usage& usage) const;
   std::expected<void, std::string> listen();
   intake::IcdOptions icd_options() const;
   std::vector<icd::BearerToken> tokens() const;
@@ -97,6 +101,7 @@ class Gateway final : public intake::Desk, public page::Source, public page::Ope
   News news_;
   Lights lights_;
   Accounts accounts_;
+  ThisBox box_;
   page::Page page_;
   intake::IcdRoutes routes_;
   std::vector<std::unique_ptr<intake::Server>> servers_;

@@ -23,10 +23,9 @@ std::string runtime_folder(const Options& options) {
   return runtime != nullptr ? runtime : options.state;
 }
 
-std::expected<adit::settings::Settings, std::string> read_settings(const std::string& file) {
-  const auto text = adit::host::read_file(file);
-  if (!text) return std::unexpected(text.error());
-  auto settings = adit::settings::parse(*text);
+std::expected<adit::settings::Settings, std::string> parse_settings(const std::string& file,
+                                                                    const std::string& text) {
+  auto settings = adit::settings::parse(text);
   if (settings) return std::move(*settings);
   std::string sentences;
   for (const auto& error : settings.error()) sentences += (sentences.empty() ? "" : "; ") + error.sentence();
@@ -55,7 +54,9 @@ std::unique_ptr<adit::panel::Lines> open_panel(const adit::settings::Panel& sett
 }
 
 std::expected<Parts, std::string> gather(const Options& options) {
-  auto settings = read_settings(options.settings);
+  auto text = adit::host::read_file(options.settings);
+  if (!text) return std::unexpected(text.error());
+  auto settings = parse_settings(options.settings, *text);
   if (!settings) return std::unexpected(settings.error());
   auto secrets = adit::host::read_secrets(options.secrets);
   if (!secrets) return std::unexpected(secrets.error());
@@ -64,6 +65,7 @@ std::expected<Parts, std::string> gather(const Options& options) {
   if (!ledger) return std::unexpected(ledger.error().what);
   auto lines = open_panel(settings->panel, runtime_folder(options));
   return Parts{.settings = std::move(*settings),
+               .settings_text = std::move(*text),
                .secrets = std::move(*secrets),
                .ledger = std::move(*ledger),
                .lines = std::move(lines),

@@ -69,6 +69,15 @@ std::vector<Record> remembered(std::uint64_t after) {
   return memory().after(after);
 }
 
+std::uint64_t logged() {
+  return memory().last();
+}
+
+std::string line_of(const Record& record) {
+  const std::vector<Field> fields(record.fields.begin(), record.fields.end());
+  return plain_line(time_text(record.at), record.level, record.message, fields);
+}
+
 void set_least(Level level) {
   least.store(level, std::memory_order_relaxed);
 }

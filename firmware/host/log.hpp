@@ -38,6 +38,12 @@ void tell_console(Level level, std::string_view message, std::initializer_list<F
 /// What is remembered of the records after the one of that number, oldest first.
 std::vector<Record> remembered(std::uint64_t after);
 
+/// How many records there were: the number of the last.
+std::uint64_t logged();
+
+/// A record as one line, as it stands in the log.
+std::string line_of(const Record& record);
+
 /// Bytes that are not visible ASCII or a space as \xNN, and a backslash as two: so that what a client sent
 /// can neither forge a line nor steer a terminal.
 std::string escaped(std::string_view text);

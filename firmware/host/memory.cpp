@@ -35,6 +35,11 @@ void Memory::drop_the_oldest() {
   records_.pop_front();
 }
 
+std::uint64_t Memory::last() const {
+  const std::scoped_lock lock(mutex_);
+  return last_;
+}
+
 std::vector<Record> Memory::after(std::uint64_t seq) const {
   const std::scoped_lock lock(mutex_);
   const auto first = std::ranges::upper_bound(records_, seq, {}, &Record::seq);

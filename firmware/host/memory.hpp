@@ -24,6 +24,8 @@ class Memory {
   void keep(double at, Level level, std::string_view message, std::span<const Field> fields);
   /// Those after the one of that number, oldest first.
   std::vector<Record> after(std::uint64_t seq) const;
+  /// The number of the last that was kept; 0: none yet.
+  std::uint64_t last() const;
 
  private:
   void drop_the_oldest();

@@ -3,6 +3,8 @@
 #include <utility>
 
 #include "page/answers.hpp"
+#include "page/api.hpp"
+#include "page/box_routes.hpp"
 #include "page/entrance.hpp"
 #include "page/live.hpp"
 #include "page/map_routes.hpp"
@@ -13,7 +15,8 @@
 namespace adit::page {
 namespace {
 
-constexpr std::string_view kGuarded = "/adit/";  // all else is the page's own files
+constexpr std::string_view kGuarded = "/adit/";  // and kMetrics; all else is the page's own files
+constexpr std::string_view kMetrics = "/metrics", kApi = "/adit/openapi.json";
 
 intake::Answer answer_with(const File& file, std::string_view if_none_match) {
   intake::Answer answer{.content_type = std::string(content_type_of(file)), .body = {}, .headers = {}};
@@ -31,19 +34,24 @@ intake::Answer answer_with(const File& file, std::string_view if_none_match) {
 
 class Page::Impl {
  public:
-  Impl(loop::Loop& loop, const Source& source, Operator& judge, Keys& keys,
+  Impl(loop::Loop& loop, const Source& source, Operator& judge, Keys& keys, Box& box,
        std::vector<icd::BearerToken> tokens)
       : source_(source),
         entrance_(loop, std::move(tokens)),
         sessions_(loop, entrance_, keys),
+        box_(source, box, entrance_, loop),
         live_(loop, source),
         maps_(source),
         reports_(source, judge, [this] { live_.changed(); }) {}
 
   std::unique_ptr<intake::Exchange> open(const intake::RequestHead& head,
                                          std::shared_ptr<intake::Responder> responder) {
-    if (!head.path().starts_with(kGuarded)) {
+    if (!is_guarded(head.path())) {
       responder->answer(file(head));
+      return nullptr;
+    }
+    if (BoxRoutes::has(head.path())) {
+      box_.open(head, responder);
       return nullptr;
     }
     if (SessionRoutes::has(head.path())) return sessions_.open(head, std::move(responder));
@@ -65,8 +73,12 @@ class Page::Impl {
   void changed() { live_.changed(); }
 
  private:
+  static bool is_guarded(std::string_view path) {
+    return path == kMetrics || (path.starts_with(kGuarded) && path != kApi);
+  }
+
   static intake::Answer file(const intake::RequestHead& head) {
-    const auto* file = file_at(head.path());
+    const auto* file = head.path() == kApi ? &api::description() : file_at(head.path());
     if (file == nullptr) return nothing_here();
     return only_reads(head) ? answer_with(*file, head.header("If-None-Match")) : wrong_method(kReading);
   }
@@ -82,14 +94,15 @@ class Page::Impl {
   const Source& source_;
   Entrance entrance_;
   SessionRoutes sessions_;
+  BoxRoutes box_;
   Live live_;
   MapRoutes maps_;
   ReportRoutes reports_;
 };
 
-Page::Page(loop::Loop& loop, const Source& source, Operator& judge, Keys& keys,
+Page::Page(loop::Loop& loop, const Source& source, Operator& judge, Keys& keys, Box& box,
            std::vector<icd::BearerToken> tokens)
-    : impl_(std::make_unique<Impl>(loop, source, judge, keys, std::move(tokens))) {}
+    : impl_(std::make_unique<Impl>(loop, source, judge, keys, box, std::move(tokens))) {}
 Page::~Page() = default;
 
 std::unique_ptr<intake::Exchange> Page::open(const intake::RequestHead& head,

@@ -17,6 +17,7 @@
 
 namespace adit::page {
 
+class Box;
 class Keys;
 
 /// Times are seconds since 1970 on the gateway's clock.
@@ -157,8 +158,8 @@ class Page final : public intake::Handler {
   static constexpr int kEventsPerSecond = 4;
 
   /// `tokens`: any of them lets a script in as an operator; empty: none does. All others outlive this, and
-  /// whatever `keys` still answers.
-  Page(loop::Loop& loop, const Source& source, Operator& judge, Keys& keys,
+  /// whatever `keys` and `box` still answer.
+  Page(loop::Loop& loop, const Source& source, Operator& judge, Keys& keys, Box& box,
        std::vector<icd::BearerToken> tokens);
   ~Page() override;
 

@@ -30,10 +30,12 @@ Gateway::Gateway(loop::Loop& loop, Parts parts)
       lights_(loop, std::move(parts_.lines)),
       accounts_(workers_, parts_.state_folder, parts_.secrets.label_code),
       box_(loop, workers_, parts_.settings_text, [this](page::Usage& usage) { add_to(usage); }),
-      page_(loop, *this, *this, accounts_, box_, tokens()),
+      page_(loop, *this, *this, accounts_, tokens()),
       routes_(icd_options(), *this, workers_, page_),
       second_(loop.timer([this] { every_second(); })),
-      drained_(loop.timer([this] { drain(); })) {}
+      drained_(loop.timer([this] { drain(); })) {
+  page_.serve(box_);
+}
 
 Gateway::~Gateway() = default;
 

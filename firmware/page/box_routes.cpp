@@ -9,6 +9,7 @@
 #include "page/exposition.hpp"
 #include "page/metrics.hpp"
 #include "page/reports_json.hpp"
+#include "page/small_body.hpp"
 
 namespace adit::page {
 namespace {
@@ -36,13 +37,18 @@ bool BoxRoutes::has(std::string_view path) {
   return path == kMetrics || path == kLog || path == kLogText || path == kAbout || path == kBundle;
 }
 
-void BoxRoutes::open(const intake::RequestHead& head, const std::shared_ptr<intake::Responder>& responder) {
+std::unique_ptr<intake::Exchange> BoxRoutes::open(const intake::RequestHead& head,
+                                                  const std::shared_ptr<intake::Responder>& responder) {
   const bool is_bundle = head.path() == kBundle;
   const auto visitor = entrance_.admit(head, is_bundle ? access::Role::Operator : access::Role::Viewer);
-  if (!visitor) return responder->answer(turned_away(visitor.error()));
-  if (!only_reads(head)) return responder->answer(wrong_method(kReading));
-  if (is_bundle) return bundle(responder);
-  responder->answer(shown(head));
+  if (visitor && only_reads(head) && is_bundle) {
+    return std::make_unique<SmallBody>(responder, 0,
+                                       [this, responder](const std::string&) { bundle(responder); });
+  }
+  responder->answer(!visitor            ? turned_away(visitor.error())
+                    : !only_reads(head) ? wrong_method(kReading)
+                                        : shown(head));
+  return nullptr;
 }
 
 intake::Answer BoxRoutes::shown(const intake::RequestHead& head) const {

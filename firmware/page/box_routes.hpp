@@ -18,7 +18,8 @@ class BoxRoutes {
 
   static bool has(std::string_view path);
   /// Requires has(head.path()). Judges itself who may come in.
-  void open(const intake::RequestHead& head, const std::shared_ptr<intake::Responder>& responder);
+  std::unique_ptr<intake::Exchange> open(const intake::RequestHead& head,
+                                         const std::shared_ptr<intake::Responder>& responder);
 
  private:
   intake::Answer shown(const intake::RequestHead& head) const;

@@ -1,5 +1,6 @@
 #include "page/page.hpp"
 
+#include <optional>
 #include <utility>
 
 #include "page/answers.hpp"
@@ -34,12 +35,12 @@ intake::Answer answer_with(const File& file, std::string_view if_none_match) {
 
 class Page::Impl {
  public:
-  Impl(loop::Loop& loop, const Source& source, Operator& judge, Keys& keys, Box& box,
+  Impl(loop::Loop& loop, const Source& source, Operator& judge, Keys& keys,
        std::vector<icd::BearerToken> tokens)
-      : source_(source),
+      : loop_(loop),
+        source_(source),
         entrance_(loop, std::move(tokens)),
         sessions_(loop, entrance_, keys),
-        box_(source, box, entrance_, loop),
         live_(loop, source),
         maps_(source),
         reports_(source, judge, [this] { live_.changed(); }) {}
@@ -50,10 +51,7 @@ class Page::Impl {
       responder->answer(file(head));
       return nullptr;
     }
-    if (BoxRoutes::has(head.path())) {
-      box_.open(head, responder);
-      return nullptr;
-    }
+    if (box_ && BoxRoutes::has(head.path())) return box_->open(head, responder);
     if (SessionRoutes::has(head.path())) return sessions_.open(head, std::move(responder));
     const auto visitor =
         entrance_.admit(head, only_reads(head) ? access::Role::Viewer : access::Role::Operator);
@@ -70,6 +68,7 @@ class Page::Impl {
     return nullptr;
   }
 
+  void serve(Box& box) { box_.emplace(source_, box, entrance_, loop_); }
   void changed() { live_.changed(); }
 
  private:
@@ -91,24 +90,29 @@ class Page::Impl {
     live_.open(responder, entrance_.may_stay(visitor));
   }
 
+  loop::Loop& loop_;
   const Source& source_;
   Entrance entrance_;
   SessionRoutes sessions_;
-  BoxRoutes box_;
+  std::optional<BoxRoutes> box_;
   Live live_;
   MapRoutes maps_;
   ReportRoutes reports_;
 };
 
-Page::Page(loop::Loop& loop, const Source& source, Operator& judge, Keys& keys, Box& box,
+Page::Page(loop::Loop& loop, const Source& source, Operator& judge, Keys& keys,
            std::vector<icd::BearerToken> tokens)
-    : impl_(std::make_unique<Impl>(loop, source, judge, keys, box, std::move(tokens))) {}
+    : impl_(std::make_unique<Impl>(loop, source, judge, keys, std::move(tokens))) {}
 Page::~Page() = default;
 
 std::unique_ptr<intake::Exchange> Page::open(const intake::RequestHead& head,
                                              std::shared_ptr<intake::Responder> responder,
                                              std::shared_ptr<intake::Flow>) {
   return impl_->open(head, std::move(responder));
+}
+
+void Page::serve(Box& box) {
+  impl_->serve(box);
 }
 
 void Page::changed() {

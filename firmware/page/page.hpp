@@ -158,14 +158,17 @@ class Page final : public intake::Handler {
   static constexpr int kEventsPerSecond = 4;
 
   /// `tokens`: any of them lets a script in as an operator; empty: none does. All others outlive this, and
-  /// whatever `keys` and `box` still answer.
-  Page(loop::Loop& loop, const Source& source, Operator& judge, Keys& keys, Box& box,
+  /// whatever `keys` still answers.
+  Page(loop::Loop& loop, const Source& source, Operator& judge, Keys& keys,
        std::vector<icd::BearerToken> tokens);
   ~Page() override;
 
   std::unique_ptr<intake::Exchange> open(const intake::RequestHead& head,
                                          std::shared_ptr<intake::Responder> responder,
                                          std::shared_ptr<intake::Flow> flow) override;
+
+  /// Serves what is known of the box, too; it outlives this. Once, before anything is opened.
+  void serve(Box& box);
 
   /// Something that the page shows has changed.
   void changed();

@@ -9,6 +9,7 @@
 #include <string>
 #include <utility>
 
+#include "page/fake_box.hpp"
 #include "page/fake_keys.hpp"
 #include "page/map_scene.hpp"
 #include "page/played.hpp"
@@ -69,8 +70,10 @@ int serve(std::uint16_t port, const std::string& first, bool first_start) {
   Stage stage{loop, "empty"};
   if (!stage.change_to(first)) return std::fprintf(stderr, "no such scene: %s\n", first.c_str()), 2;
   FakeKeys keys;
+  FakeBox box;
   if (first_start) keys.operator_.reset();
   Page page{loop, stage, stage, keys, {token()}};
+  page.serve(box);
   auto server = intake::Server::start(loop, {.address = "127.0.0.1", .port = port, .interface = {}}, page);
   if (!server) return std::fprintf(stderr, "%s\n", server.error().c_str()), 1;
   std::printf("%d\n", (*server)->port());

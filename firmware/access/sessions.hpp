@@ -37,7 +37,7 @@ class Sessions {
  public:
   static constexpr std::chrono::hours kIdle{12}, kLongest{7 * 24};
   static constexpr std::size_t kMost = 64;  // at one more, the one that was idle for longest ends
-  static constexpr std::size_t kLongestAgent = 80;
+  static constexpr std::size_t kLongestAgent = 160;  // the name of the browser comes after 80 to 110
 
   /// `id` and `csrf` have never been used before. The result is valid until the next call.
   const Session& begin(const Secret& id, const Secret& csrf, Role role, const Caller& caller, Instant now);

@@ -110,10 +110,10 @@ test("keeps tokens to itself, and says which are there", async (t) => {
 test("checks the names of robots as they are typed", async (t) => {
   const { ask, page } = await ready(t, "setup#robots");
   const add = page.getByRole("button", { name: "Add a robot" });
-  for (const [name, what] of [["", "missing"], ["two words", ""], ["elevenchars", ""], ["ugv-1", ""], ["böse", ""]]) {
+  for (const name of ["", "two words", "elevenchars", "ugv-1", "böse"]) {
     await add.click();
     await page.keyboard.type(name);
-    await page.locator("[data-path='robots[0].name'] .wrong").filter({ hasText: what || "1 to 10 letters, digits and underscores" }).waitFor().catch((error) => {
+    await page.locator("[data-path='robots[0].name'] .wrong").filter({ hasText: "1 to 10 letters, digits and underscores" }).waitFor().catch((error) => {
       throw new Error(`${name}: ${error.message}`);
     });
     await page.getByRole("button", { name: "Remove: Robot 1" }).click();
@@ -135,7 +135,7 @@ test("checks the names of robots as they are typed", async (t) => {
   await page.getByRole("button", { name: "Look and apply" }).click();
   await review(page);
   await page.getByRole("button", { name: "Apply", exact: true }).click();
-  await hears(page, "Applied.");
+  await hears(page, /Applied\./);
   assert.deepEqual((await ask("/adit/settings")).said.settings.robots, [{ name: "ugv1", alias: "" }, { name: "uav1", alias: "drone-1" }]);
   await step(page, "Robots").getByText("2 named").waitFor();
   assert.deepEqual(page.complaints, []);
@@ -194,7 +194,7 @@ test("shows two operators what each has done, and lets one go on from the newer"
     await each.getByRole("button", { name: "Look and apply" }).click();
     assert.match(JSON.stringify(await review(each)), new RegExp(port));
     await each.getByRole("button", { name: "Apply", exact: true }).click();
-    await hears(each, "Applied.");
+    await hears(each, /Applied\./);
   }
   await page.getByRole("button", { name: "Look and apply" }).click();
   await page.getByRole("heading", { name: "Somebody else has saved settings meanwhile" }).waitFor();
@@ -203,7 +203,7 @@ test("shows two operators what each has done, and lets one go on from the newer"
   await page.getByRole("heading", { name: "Apply this?" }).waitFor();
   assert.deepEqual(await review(page), [["command_post.scoring.port", "8002", "8001"]]);
   await page.getByRole("button", { name: "Apply", exact: true }).click();
-  await hears(page, "Applied.");
+  await hears(page, /Applied\./);
   const { command_post: post } = (await ask("/adit/settings")).said.settings;
   assert.deepEqual([post.scoring.port, post.mapping.port], [8001, 8003]);
 
@@ -226,7 +226,7 @@ test("shows two operators what each has done, and lets one go on from the newer"
   await page.getByRole("button", { name: "Look and apply" }).click();
   assert.deepEqual((await review(page)).map(([path]) => path.replace(/\..*/, "")), ["robots[ugv2]", "robots[ugv2]"]);
   await page.getByRole("button", { name: "Apply", exact: true }).click();
-  await hears(page, "Applied.");
+  await hears(page, /Applied\./);
   assert.deepEqual((await ask("/adit/settings")).said.settings.robots.map(({ name }) => name), ["ugv1", "uav1"]);
 
   await other.getByRole("button", { name: "Look and apply" }).click();
@@ -257,7 +257,7 @@ test("loses nothing that was typed when the box is lost in the middle of it", as
   await page.getByRole("button", { name: "Apply", exact: true }).click();
   await page.waitForTimeout(1000);
   await box.startAditd();
-  await hears(page, "Applied.");
+  await hears(page, /Applied\./);
   assert.equal((await ask("/adit/settings")).said.settings.robots[0].name, "ugv1");
 });
 
@@ -272,7 +272,7 @@ test("switches to another course by one press, once it was said what that change
   await page.getByRole("button", { name: "Look and apply" }).click();
   await review(page);
   await page.getByRole("button", { name: "Apply", exact: true }).click();
-  await hears(page, "Applied.");
+  await hears(page, /Applied\./);
   const own = page.locator("form.token", { hasText: "Course B: scoring token of its own" });
   await own.getByLabel("Course B: scoring", { exact: false }).first().fill(TOKENS.scoring);
   await own.getByRole("button", { name: "Set" }).click();
@@ -295,7 +295,7 @@ test("switches to another course by one press, once it was said what that change
   await page.getByRole("button", { name: "Remove: Course 1" }).click();
   await page.getByRole("button", { name: "Look and apply" }).click();
   await page.getByRole("button", { name: "Apply", exact: true }).click();
-  await hears(page, "Applied.");
+  await hears(page, /Applied\./);
   assert.deepEqual((await ask("/adit/settings")).said.settings.courses.map(({ name }) => name), ["B"]);
   assert.deepEqual(page.complaints, []);
 });
@@ -328,7 +328,7 @@ test("gives all settings as a file, and takes one that is checked and shown firs
   await give(next);
   assert.match(JSON.stringify(await review(page)), /robots\[ugv1\]/);
   await page.getByRole("button", { name: "Apply", exact: true }).click();
-  await page.locator("#step-file").getByText("Applied.").waitFor();
+  await page.locator("#step-file").getByText(/Applied\./).waitFor();
   assert.deepEqual((await ask("/adit/settings")).said.settings.robots, [{ name: "ugv1", alias: "" }]);
   await step(page, "Robots").getByText("1 named").waitFor();
 });
@@ -352,7 +352,7 @@ test("finds a setting by its name or its meaning, and changes it", async (t) => 
   await hears(page, "3 changes not yet applied");
   await page.getByRole("button", { name: "Look and apply" }).click();
   await page.getByRole("button", { name: "Apply", exact: true }).click();
-  await hears(page, "Applied.");
+  await hears(page, /Applied\./);
   const { settings } = (await ask("/adit/settings")).said;
   assert.deepEqual([settings.reports.review, settings.command_post.rates.map_hz, settings.team.require_token], ["all", 0.5, false]);
 });

@@ -10,7 +10,7 @@ const PATIENCE = 8000, PAUSE = 250; // ms
 const place = document.getElementById("typed");
 const state = place.querySelector(".state"), elsewhere = place.querySelector(".elsewhere");
 const buttons = place.querySelectorAll("button");
-const sleep = (ms) => new Promise((resolve) => setTimeout(resolve, ms));
+export const sleep = (ms) => new Promise((resolve) => setTimeout(resolve, ms));
 const dialog = document.getElementById("review");
 const [heads, rows] = [dialog.querySelector("thead tr"), dialog.querySelector("tbody")];
 const [no, yes] = [dialog.querySelector(".no"), dialog.querySelector(".yes")];

@@ -1,5 +1,5 @@
 // Tokens: they are typed and set, and never shown again.
-import { insist } from "./apply.js";
+import { insist, sleep } from "./apply.js";
 import { confirmed } from "./dialog.js";
 import { badge, list, make, say } from "./dom.js";
 import { draft, ENDPOINTS, onDraft, refresh } from "./draft.js";
@@ -18,6 +18,15 @@ const hintOf = (name) => HINTS[name] ?? "Without one, the common token counts.";
 
 let readOnly = false;
 
+/** Until the box tells of the token as it was set; where one was removed, the one that it was given may count again. */
+async function untilTold(name, isSet) {
+  for (let tries = 0; tries < 10; ++tries) {
+    await insist(refresh);
+    if (draft.tokens[name] === isSet) return;
+    await sleep(200);
+  }
+}
+
 async function send(node, name, token) {
   const { field, outcome } = node;
   say(outcome, "");
@@ -26,7 +35,7 @@ async function send(node, name, token) {
     await insist(() => post("/adit/tokens", { name, token }));
     field.control.value = "";
     say(outcome, token === null ? "Removed." : "Set.");
-    await insist(refresh);
+    await untilTold(name, token !== null);
     return true;
   } catch (error) {
     blame(field, error.message);
@@ -54,7 +63,9 @@ function create(name) {
   Object.assign(node, { field, outcome, state, buttons: [show, remove, set] });
   show.onclick = () => {
     input.type = input.type === "password" ? "text" : "password";
-    say(show, input.type === "password" ? "Show" : "Hide");
+    const word = input.type === "password" ? "Show" : "Hide";
+    say(show, word);
+    show.setAttribute("aria-label", `${word}: ${labelOf(name)}`);
   };
   remove.onclick = () => removeIt(node, name);
   node.onsubmit = (event) => {

@@ -104,7 +104,8 @@ void Accounts::check(std::string password, std::string address,
   auto role = std::make_shared<std::optional<Role>>();
   workers_.submit([role, password = std::move(password),
                    accounts = accounts_] { *role = access::role_of(password, accounts); },
-                  [role, address = std::move(address), done = std::move(done)] {
+                  [this, role, address = std::move(address), done = std::move(done)] {
+                    if (*role && !accounts_.of(**role)) role->reset();  // forgotten while it was checked
                     if (*role) {
                       host::log(Level::Notice, "a password was shown",
                                 {{"role", std::string(name_of(**role))}, {"sender", address}});
@@ -149,6 +150,8 @@ void Accounts::set(Role role, std::optional<std::string> password,
 
 bool Accounts::forget() {
   if (setting_) return false;
+  accounts_ = {};
+  code_.reset();
   host::remove_file(file());
   host::remove_file(code_file());
   sessions_.forget();

@@ -1,8 +1,5 @@
 #include "gateway/gateway.hpp"
 
-#include <algorithm>
-#include <iterator>
-
 #include "gateway/report_rows.hpp"
 #include "gateway/version.hpp"
 #include "host/log.hpp"
@@ -30,7 +27,8 @@ Gateway::Gateway(loop::Loop& loop, Parts parts)
       scoring_(loop, parts_.ledger, settings_, token_for("scoring", settings_, parts_.loaded.secrets),
                record_, random_),
       picture_(
-          loop, workers_, [this] { return maps_.packing(); }, [this] { changed(); }),
+          loop, workers_, [this] { return maps_.packing(); }, [this] { changed(); },
+          parts_.legacy ? std::move(parts_.legacy->picture) : picture::Mosaic()),
       maps_(loop, workers_, spool_, settings_, token_for("mapping", settings_, parts_.loaded.secrets),
             record_, random_, [this](icd::MapUpdate map) { picture_.forwarded(std::move(map)); }),
       news_(loop, settings_, token_for("mapping", settings_, parts_.loaded.secrets), record_, random_),
@@ -44,9 +42,11 @@ Gateway::Gateway(loop::Loop& loop, Parts parts)
       page_(loop, *this, *this, accounts_, tokens()),
       routes_(icd_options(), *this, workers_, page_),
       second_(loop.timer([this] { every_second(); })),
-      drained_(loop.timer([this] { drain(); })) {
+      drained_(loop.timer([this] { drain(); })),
+      pictured_run_(parts_.legacy ? parts_.legacy->pictured_run : 0) {
   page_.serve(setup_);
   page_.serve(box_);
+  if (parts_.legacy) hold_back();
 }
 
 Gateway::~Gateway() = default;
@@ -64,6 +64,13 @@ std::vector<icd::BearerToken> Gateway::tokens() const {
   std::vector<icd::BearerToken> tokens;
   for (const auto& [name, token] : parts_.loaded.secrets.tokens) tokens.push_back(token);
   return tokens;
+}
+
+/// When the gateway before sent last is not known, and the Command Post sees too much of neither.
+void Gateway::hold_back() {
+  scoring_.hold_back();
+  maps_.hold_back();
+  news_.hold_back();
 }
 
 std::expected<void, std::string> Gateway::start() {
@@ -264,51 +271,6 @@ double Gateway::sent_mbit() const {
   if (bytes_sent_.size() < 2) return 0;
   const auto bytes = static_cast<double>(bytes_sent_.back() - bytes_sent_.front());
   return bytes * 8 / 1e6 / static_cast<double>(bytes_sent_.size() - 1);
-}
-
-panel::Condition Gateway::condition() const {
-  const Channel& scoring = scoring_.channel();
-  return {.serving = !servers_.empty() && scoring_.trouble().empty(),
-          .scoring_connected = scoring.connected(),
-          .scoring_failing = !scoring.trouble().empty(),
-          .mapping_connected = news_.channel().connected(),
-          .mapping_failing = !news_.channel().trouble().empty() || !maps_.channel().trouble().empty(),
-          .report_waiting = !scoring_.reports().book().waiting().empty(),
-          .needs_operator = !attention().empty()};
-}
-
-std::vector<std::string> Gateway::attention() const {
-  std::vector<std::string> sentences = scoring_.reports().attention();
-  if (!scoring_.trouble().empty()) {
-    sentences.push_back("no report is taken, the ledger cannot be written: " + scoring_.trouble());
-  }
-  say_what_is_missing(sentences);
-  if (!parts_.ledger.damage().empty()) sentences.push_back(parts_.ledger.damage());
-  const auto token_refused = [&](const Channel& channel, const char* name) {
-    if (channel.last_status() == 401) {
-      sentences.push_back(std::string("the Command Post refuses the ") + name + " token");
-    }
-  };
-  token_refused(scoring_.channel(), "scoring");
-  token_refused(maps_.channel().last_status() == 401 ? maps_.channel() : news_.channel(), "mapping");
-  std::ranges::move(roster_.attention(loop_.now()), std::back_inserter(sentences));
-  if (maps_.nearly_full()) sentences.emplace_back("the queue of maps is nearly full");
-  return sentences;
-}
-
-/// What was to be set up, and is not.
-void Gateway::say_what_is_missing(std::vector<std::string>& sentences) const {
-  for (const std::string* trouble : {&parts_.trouble, &parts_.loaded.trouble}) {
-    if (!trouble->empty()) sentences.push_back(*trouble);
-  }
-  if (!scoring_.channel().has_token())
-    sentences.emplace_back("no scoring token is set: reports wait until one is");
-  if (!maps_.channel().has_token()) {
-    sentences.emplace_back("no mapping token is set: maps, states and markers wait until one is");
-  }
-  if (settings_.team.require_token && parts_.loaded.secrets.tokens.empty()) {
-    sentences.emplace_back("no token is set at all: every robot is turned away");
-  }
 }
 
 std::vector<page::EndpointRow> Gateway::endpoints() const {

@@ -32,6 +32,12 @@
 
 namespace adit::gateway {
 
+/// What one gateway hands on to the next that takes its place.
+struct Legacy {
+  picture::Mosaic picture;
+  std::int64_t pictured_run = 0;  // whose maps it shows; 0: none yet
+};
+
 /// What the gateway is made of: all of it has passed its checks.
 struct Parts {
   const Store& store;  // outlives the gateway
@@ -41,6 +47,7 @@ struct Parts {
   std::unique_ptr<panel::Lines> lines;
   std::string runtime_folder;
   std::string state_folder;
+  std::optional<Legacy> legacy;  // of the gateway before, where there was one
 };
 
 /// The whole of Adit at work: the team's messages come in by Desk and leave by Scoring, Maps and News.
@@ -57,6 +64,8 @@ class Gateway final : public intake::Desk, public page::Source, public page::Ope
   void stop();
   /// Whether it stopped so that another, of what the store holds by now, takes its place.
   bool makes_way() const { return makes_way_; }
+  /// Once it has stopped, or could not start.
+  Legacy hand_over() { return {picture_.hand_over(), pictured_run_}; }
   /// What systemd shows: one line.
   std::string status_line() const;
 
@@ -77,6 +86,7 @@ class Gateway final : public intake::Desk, public page::Source, public page::Ope
   const picture::Mosaic& map() const override { return picture_.mosaic(); }
 
  private:
+  void hold_back();
   void make_way();
   void end();
   void restore();
@@ -122,7 +132,7 @@ class Gateway final : public intake::Desk, public page::Source, public page::Ope
   std::vector<std::unique_ptr<intake::Server>> servers_;
   loop::Source second_, drained_;
   loop::Instant sessions_kept_{};
-  std::int64_t pictured_run_ = 0;         // whose maps picture_ shows; 0: none yet
+  std::int64_t pictured_run_;             // Legacy's
   std::deque<std::uint64_t> bytes_sent_;  // in all, at each of the last seconds
   bool keeping_news_ = false;
   bool makes_way_ = false;

@@ -46,7 +46,7 @@ std::unique_ptr<adit::panel::Lines> open_panel(const adit::settings::Panel& sett
   return adit::panel::simulated(folder + "/panel");
 }
 
-std::expected<Parts, std::string> gather(const Options& options, const Store& store, std::string trouble) {
+std::expected<Parts, std::string> gather(const Options& options, const Store& store) {
   auto loaded = store.load();
   if (!loaded) return std::unexpected(loaded.error());
   auto ledger = adit::ledger::Ledger::open(options.state);
@@ -54,11 +54,12 @@ std::expected<Parts, std::string> gather(const Options& options, const Store& st
   auto lines = open_panel(loaded->settings.panel, runtime_folder(options));
   return Parts{.store = store,
                .loaded = std::move(*loaded),
-               .trouble = std::move(trouble),
+               .trouble = "",
                .ledger = std::move(*ledger),
                .lines = std::move(lines),
                .runtime_folder = runtime_folder(options),
-               .state_folder = options.state};
+               .state_folder = options.state,
+               .legacy = std::nullopt};
 }
 
 int fail(const std::string& why) {
@@ -77,14 +78,13 @@ class Service {
     if (auto made = make_folder(options_.state); !made) return fail(made.error());
     const auto terminated = loop_.signal(SIGTERM, [this] { running_->stop(); });
     const auto interrupted = loop_.signal(SIGINT, [this] { running_->stop(); });
-    std::string trouble;
     while (true) {
-      const auto anew = run_one(trouble);
+      const auto anew = run_one();
       if (anew && !*anew) break;
-      trouble.clear();
+      trouble_.clear();
       if (anew) continue;
       if (!store_.take_back()) return fail(anew.error());
-      trouble = "the last change was taken back: " + anew.error();
+      trouble_ = "the last change was taken back: " + anew.error();
       adit::host::log(adit::host::Level::Error, "the last change of the settings is taken back",
                       {{"why", anew.error()}});
     }
@@ -94,10 +94,18 @@ class Service {
 
  private:
   /// Whether another is to follow; an error: it could not start.
-  std::expected<bool, std::string> run_one(const std::string& trouble) {
-    auto parts = gather(options_, store_, trouble);
+  std::expected<bool, std::string> run_one() {
+    auto parts = gather(options_, store_);
     if (!parts) return std::unexpected(parts.error());
+    parts->trouble = trouble_;
+    parts->legacy = std::exchange(legacy_, std::nullopt);
     Gateway gateway(loop_, std::move(*parts));
+    const auto ran = run(gateway);
+    legacy_ = gateway.hand_over();
+    return ran;
+  }
+
+  std::expected<bool, std::string> run(Gateway& gateway) {
     if (const auto started = gateway.start(); !started) return std::unexpected(started.error());
     store_.settle();
     if (!std::exchange(ready_, true)) loop_.feed_watchdog();
@@ -111,6 +119,8 @@ class Service {
   Store store_;
   adit::loop::Loop loop_;
   Gateway* running_ = nullptr;  // signals come while the loop runs, and so does it
+  std::string trouble_;         // why the last change was taken back
+  std::optional<adit::gateway::Legacy> legacy_;
   bool ready_ = false;
 };
 

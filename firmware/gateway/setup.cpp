@@ -65,8 +65,9 @@ std::vector<std::string> Setup::warnings(const Settings& next) const {
                                       ": open it there, and point robots and stations there"));
   }
   if (now.command_post.scoring != then.command_post.scoring) {
-    sentences.push_back(icd::sentence("reports go to ", address_text(then.command_post.scoring),
-                                      " from then on: those that were not sent are held until you say"));
+    sentences.push_back(
+        icd::sentence("reports go to ", address_text(then.command_post.scoring),
+                      " from then on: those that were meant for the other are held until you say"));
   }
   if (now.command_post.mapping != then.command_post.mapping) {
     sentences.push_back(icd::sentence("maps, states and markers go to ",

@@ -52,7 +52,7 @@ test("leads from an empty box to a first report through it", async (t) => {
   await page.getByRole("button", { name: "Apply", exact: true }).click();
   await page.getByRole("heading", { name: "Test" }).waitFor();
   await page.getByRole("button", { name: "Test it" }).click();
-  await hears(page, "All is well. No report was spent.");
+  await page.getByText("All is well. No report was spent.").waitFor();
   await page.getByRole("button", { name: "To the run" }).click();
 
   await page.waitForSelector("body[data-link=live]");
@@ -124,7 +124,7 @@ test("checks the names of robots as they are typed", async (t) => {
   }
   await page.locator("[data-path='robots[1].name'] .wrong", { hasText: "the same as robots[0].name" }).waitFor();
   await page.getByRole("button", { name: "Look and apply" }).click();
-  assert.equal(await page.evaluate(() => document.activeElement.closest("[data-path]")?.dataset.path), "robots[1].name", "the error is where the focus goes");
+  await page.waitForFunction(() => document.activeElement.closest("[data-path]")?.dataset.path === "robots[1].name"); // the error
   await type(page, "robots[1].name", "uav1");
   await type(page, "robots[1].alias", "ugv1");
   await page.locator("[data-path='robots[1].alias'] .wrong", { hasText: "an alias is another name" }).waitFor();

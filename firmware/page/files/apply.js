@@ -10,12 +10,12 @@ const PATIENCE = 8000, PAUSE = 250; // ms
 const place = document.getElementById("typed");
 const state = place.querySelector(".state"), elsewhere = place.querySelector(".elsewhere");
 const buttons = place.querySelectorAll("button");
-export const sleep = (ms) => new Promise((resolve) => setTimeout(resolve, ms));
+const sleep = (ms) => new Promise((resolve) => setTimeout(resolve, ms));
 const dialog = document.getElementById("review");
 const [heads, rows] = [dialog.querySelector("thead tr"), dialog.querySelector("tbody")];
 const [no, yes] = [dialog.querySelector(".no"), dialog.querySelector(".yes")];
 
-let outcome = "", isBusy = false, link = null;
+let outcome = "", link = "", isBusy = false;
 
 const shown = (value) => (value === null || value === undefined ? "–" : value === "" ? "(empty)" : clip(typeof value === "object" ? JSON.stringify(value) : String(value), 300));
 
@@ -63,11 +63,11 @@ export async function insist(deed) {
   }
 }
 
-/** Waits for the box to run with other settings than those of `tag`. */
-export async function untilOther(tag) {
+/** What the box runs with once a change is applied or taken back; null: it does not answer. */
+export async function applied() {
   for (const end = performance.now() + PATIENCE; performance.now() < end; await sleep(PAUSE)) {
     const said = await get("/adit/settings").catch(() => null);
-    if (said && said.tag !== tag) return said;
+    if (said && !said.applying) return said;
   }
   return null;
 }
@@ -105,30 +105,29 @@ async function settle() {
 /** Posts settings that were looked at; whether the box runs with them now. */
 export async function save(settings) {
   const { tag, base } = draft;
-  link = null;
   isBusy = true;
+  link = "";
   report("It is being applied.");
   try {
     const { changes } = await insist(() => post("/adit/settings", { settings, base: tag }));
-    const where = newAddress(settings, base);
-    if (where) link = where;
-    if (where) report("The page moves:");
-    const said = changes.length ? await untilOther(tag) : await get("/adit/settings");
-    if (said) {
-      beginFrom(said);
-      await refresh();
-      return report("Applied."), true;
-    }
-    report(where ? "The page has moved:" : (await whyNot()) || "The box does not run with it: it may have been taken back.");
+    link = newAddress(settings, base);
+    if (link) report("The page moves to");
+    const said = await applied();
+    const isDone = said && (said.tag !== tag || !changes.length);
+    if (said) link = "";
+    if (isDone) beginFrom(said);
+    if (said) await refresh();
+    report(isDone ? "Applied." : said ? (await whyNot()) || "It was taken back." : link ? "The page has moved to" : "The box does not answer.");
+    return isDone;
   } catch (error) {
     if (error.status === 409) await refresh();
-    report(error.status === 409 ? "" : error.message);
+    report(draft.newer ? "" : error.message);
     if (draft.newer) await settle();
+    return false;
   } finally {
     isBusy = false;
     show();
   }
-  return false;
 }
 
 function report(text) {

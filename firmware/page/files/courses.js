@@ -1,7 +1,7 @@
 // Courses: one press switches to another Command Post, once it was said what that changes.
-import { insist, reviewed, untilOther } from "./apply.js";
+import { applied, insist, reviewed } from "./apply.js";
 import { badge, list, make, say } from "./dom.js";
-import { beginFrom, differs, draft, ENDPOINTS, onDraft, refresh } from "./draft.js";
+import { differs, draft, ENDPOINTS, onDraft, refresh } from "./draft.js";
 import { post } from "./session.js";
 
 const section = document.getElementById("step-courses");
@@ -21,14 +21,12 @@ async function switchTo(name) {
   say(outcome, "It is being applied.");
   outcome.dataset.bad = false;
   try {
-    const { tag } = draft;
-    const { changes: made } = await insist(() => post("/adit/course", { name }));
-    const said = made.length ? await untilOther(tag) : null;
-    if (said) beginFrom(said);
+    await insist(() => post("/adit/course", { name }));
+    await applied();
     await insist(refresh);
-    const done = draft.base.command_post.course === name;
-    outcome.dataset.bad = !done;
-    say(outcome, done ? `${nameOf(name)} is in use.` : "The box does not run with it: it may have been taken back.");
+    const isDone = draft.base.command_post.course === name;
+    outcome.dataset.bad = !isDone;
+    say(outcome, isDone ? `${nameOf(name)} is in use.` : "The box does not run with it: it may have been taken back.");
   } catch (error) {
     outcome.dataset.bad = true;
     say(outcome, error.message);

@@ -110,6 +110,7 @@ export async function check() {
 }
 
 export function checkAsTyped() {
+  if (differs()) check(); // it was typed before the page was loaded
   onDraft((what) => {
     if (what === "told") return;
     clearTimeout(timer);

@@ -17,7 +17,7 @@ const FIELDS = [
   ["command_post.gateway", "Gateway", "The way to endpoints outside of that subnet; empty: none."],
 ];
 const fields = new Map();
-let told = null, isTyped = false, asked = 0, timer = 0;
+let isTyped = false, asked = 0, timer = 0;
 
 const valueAt = (network, path) => path.split(".").reduce((value, name) => value?.[name], network) ?? "";
 
@@ -86,28 +86,28 @@ function on(button, deed) {
   });
 }
 
-const newPage = ({ team }) => `${location.protocol}//${team.address}${location.port ? `:${location.port}` : ""}/setup#network`;
-
 function showPending(network) {
   const { pending } = network;
   pendingPlace.hidden = !pending;
   if (!pending) return;
-  say(pendingPlace.querySelector(".left"), `${Math.max(0, Math.ceil(secondsLeft(network)))} s left`);
-  const url = newPage(pending), where = pendingPlace.querySelector(".where"), isHere = new URL(url).host === location.host;
+  say(pendingPlace.querySelector(".left"), `${secondsLeft(network)} s left`);
+  const url = `${pending.page}/setup#network`, where = pendingPlace.querySelector(".where"), isHere = new URL(url).host === location.host;
   const words = isHere ? "You are at the new address: confirm, and it is kept." : "Open the page at its new address and confirm it there: ";
   if (where.dataset.url === url) return;
   where.dataset.url = url;
   where.replaceChildren(words, ...(isHere ? [] : [Object.assign(make("a", url), { href: url })]));
 }
 
-const LAST = { confirmed: "The last change was confirmed.", "taken back": "The last change was taken back" };
+/** How the last change ended. */
+function lastOf({ last, last_why: why }) {
+  if (!last) return "";
+  return last === "confirmed" ? "The last change was confirmed." : `The last change was taken back${why ? `: ${why}` : ""}.`;
+}
 
 /** Shows what the box says of its network. */
 export function showNetwork(network) {
   const isOperator = document.body.dataset.role === "operator";
-  told = network;
-  const last = !network.last ? "" : network.last === "confirmed" ? LAST.confirmed : `${LAST["taken back"]}${network.why && network.managed ? `: ${network.why}` : ""}.`;
-  say(state, network.managed ? last : `The addresses are not set by this page: ${network.why}`);
+  say(state, network.managed ? lastOf(network) : `The addresses are not set by this page: ${network.why}`);
   showPending(network);
   const barred = !network.managed || !isOperator || network.pending !== null;
   change.hidden = !network.managed || !isOperator;

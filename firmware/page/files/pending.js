@@ -1,6 +1,6 @@
 // A change of the network that waits to be confirmed: told beside the ways to the pages, on each of them.
 import { make, mark, say } from "./dom.js";
-import { get } from "./session.js";
+import { boxNow, get } from "./session.js";
 
 const EVERY = 4000, PENDING = 1000; // ms
 const nav = document.querySelector("header nav");
@@ -18,11 +18,11 @@ function show(network) {
     mark(sign, "level", "wait");
     nav.append(sign);
   }
-  say(sign.lastChild, `${Math.max(0, Math.ceil(secondsLeft(network)))} s to confirm`);
+  say(sign.lastChild, `${secondsLeft(network)} s to confirm`);
 }
 
-/** Until the box takes it back, by the box's clock. */
-export const secondsLeft = ({ pending, now }) => pending.until - now;
+/** Until the box takes it back. */
+export const secondsLeft = ({ pending }) => Math.max(0, Math.ceil(pending.until - boxNow()));
 
 /** Calls `hear(network)`, or `hear(null, error)` where it is not told. */
 export function followNetwork(hear = () => {}) {

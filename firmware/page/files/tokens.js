@@ -1,5 +1,5 @@
 // Tokens: they are typed and set, and never shown again.
-import { insist, sleep } from "./apply.js";
+import { applied, insist } from "./apply.js";
 import { confirmed } from "./dialog.js";
 import { badge, list, make, say } from "./dom.js";
 import { draft, ENDPOINTS, onDraft, refresh } from "./draft.js";
@@ -18,15 +18,6 @@ const hintOf = (name) => HINTS[name] ?? "Without one, the common token counts.";
 
 let readOnly = false;
 
-/** Until the box tells of the token as it was set; where one was removed, the one that it was given may count again. */
-async function untilTold(name, isSet) {
-  for (let tries = 0; tries < 10; ++tries) {
-    await insist(refresh);
-    if (draft.tokens[name] === isSet) return;
-    await sleep(200);
-  }
-}
-
 async function send(node, name, token) {
   const { field, outcome } = node;
   say(outcome, "");
@@ -34,8 +25,9 @@ async function send(node, name, token) {
   try {
     await insist(() => post("/adit/tokens", { name, token }));
     field.control.value = "";
+    await applied();
+    await insist(refresh);
     say(outcome, token === null ? "Removed." : "Set.");
-    await untilTold(name, token !== null);
     return true;
   } catch (error) {
     blame(field, error.message);

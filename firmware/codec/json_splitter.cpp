@@ -9,7 +9,13 @@
 namespace adit::codec {
 namespace {
 
-constexpr std::string_view kBlanks = " \t\n\r";
+/// How much text is kept without asking for more memory: any of the ICD's messages but its maps' data.
+constexpr std::size_t kSmallText = 1024;
+
+/// Not by searching in a list of them: this is asked of every second character.
+bool is_blank(char c) {
+  return c == ' ' || c == '\n' || c == '\r' || c == '\t';
+}
 
 bool starts_number(char c) {
   return c == '-' || (c >= '0' && c <= '9');
@@ -21,6 +27,7 @@ JsonSplitter::JsonSplitter(Split split, std::size_t most_text, BulkData& data)
     : most_text_(most_text), data_(data), path_(split) {}
 
 icd::Checked<void> JsonSplitter::feed(std::string_view bytes) {
+  if (at_ == 0) rest_.reserve(std::min(bytes.size(), kSmallText));
   while (!bytes.empty()) {
     const auto taken = step(bytes);
     if (!taken) return std::unexpected(taken.error());
@@ -65,8 +72,8 @@ icd::Checked<std::size_t> JsonSplitter::step(std::string_view in) {
 }
 
 icd::Checked<std::size_t> JsonSplitter::structure(std::string_view in) {
-  if (kBlanks.find(in[0]) != std::string_view::npos) {
-    return std::min(in.find_first_not_of(kBlanks), in.size());
+  if (is_blank(in[0])) {
+    return static_cast<std::size_t>(std::ranges::find_if_not(in, is_blank) - in.begin());
   }
   const char c = in[0];
   switch (expect_) {

@@ -38,7 +38,6 @@ std::expected<JsonString::Piece, Fault> JsonString::next(std::string_view in) {
   if (!escape_.empty()) return escape(in);
   auto run = plain(in);
   if (!run || run->taken > 0) return run;
-  if (in[0] == '"') return Piece{.taken = 1, .raw = {}, .text = {}, .ended = true};
   if (in[0] == '\\') return escape(in);
   return std::unexpected(Fault{0, "a raw control character in a string (" + byte_name(in[0]) + ")"});
 }
@@ -57,7 +56,8 @@ std::expected<JsonString::Piece, Fault> JsonString::plain(std::string_view in) {
     ++n;
   }
   const std::string_view run = in.substr(0, n);
-  return Piece{.taken = n, .raw = run, .text = run};
+  const bool ended = utf8_.complete() && n < in.size() && in[n] == '"';
+  return Piece{.taken = ended ? n + 1 : n, .raw = run, .text = run, .ended = ended};
 }
 
 std::expected<JsonString::Piece, Fault> JsonString::escape(std::string_view in) {

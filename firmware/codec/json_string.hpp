@@ -24,7 +24,7 @@ class JsonString {
     std::size_t taken = 0;  // bytes used up of what was given
     std::string_view raw;   // characters as they stand in the document...
     std::string_view text;  // ...and what they mean, in UTF-8
-    bool ended = false;     // that was the closing quotation mark
+    bool ended = false;     // the closing quotation mark followed, and was taken
   };
 
   /// The next run of characters, or the next escape. Requires !in.empty(). The views live until the next

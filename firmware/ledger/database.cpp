@@ -36,7 +36,9 @@ int errno_behind(sqlite3* database) {
 Attempt<Database> Database::open(const std::string& path) {
   Database database;
   sqlite3* handle = nullptr;
-  const int result = sqlite3_open_v2(path.c_str(), &handle, SQLITE_OPEN_READWRITE, nullptr);
+  // No mutexes: a ledger is used by one thread at a time.
+  const int result =
+      sqlite3_open_v2(path.c_str(), &handle, SQLITE_OPEN_READWRITE | SQLITE_OPEN_NOMUTEX, nullptr);
   database.handle_.reset(handle);  // there to be closed also where opening failed
   if (result != SQLITE_OK) return std::unexpected(database.error("opening " + path));
   return database;
@@ -88,7 +90,6 @@ Attempt<Statement> Statement::prepare(const Database& database, const char* sql)
 
 Query::~Query() {
   sqlite3_reset(statement_);
-  sqlite3_clear_bindings(statement_);
 }
 
 void Query::keep(int result) {
@@ -107,14 +108,14 @@ Query& Query::bind(double value) {
 
 Query& Query::bind(std::string_view text) {
   // A null pointer would bind NULL.
-  keep(sqlite3_bind_text64(statement_, ++bound_, text.empty() ? "" : text.data(), text.size(),
-                           SQLITE_TRANSIENT, SQLITE_UTF8));
+  keep(sqlite3_bind_text64(statement_, ++bound_, text.empty() ? "" : text.data(), text.size(), SQLITE_STATIC,
+                           SQLITE_UTF8));
   return *this;
 }
 
 Query& Query::bind_blob(std::string_view bytes) {
   keep(sqlite3_bind_blob64(statement_, ++bound_, bytes.empty() ? "" : bytes.data(), bytes.size(),
-                           SQLITE_TRANSIENT));
+                           SQLITE_STATIC));
   return *this;
 }
 

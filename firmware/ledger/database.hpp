@@ -58,8 +58,8 @@ class Database {
   Statement begin_, commit_;  // after the handle, which outlives them
 };
 
-/// One run of a statement: bind its parameters in order, step, read columns from 0. Its end resets the
-/// statement. A binding that failed makes the first step() fail.
+/// One run of a statement: bind all of its parameters in order, step, read columns from 0. What is bound must
+/// outlive it. Its end resets the statement. A binding that failed makes the first step() fail.
 class Query {
  public:
   explicit Query(const Statement& statement) : statement_(statement.get()) {}

@@ -7,29 +7,15 @@
 #include "ledger/rows.hpp"
 
 namespace adit::ledger {
-namespace {
-
-/// All rows that `query` still has, each made a T by `read`.
-template <class T>
-Result<std::vector<T>> all(const Database& database, Query& query, T (*read)(const Query&),
-                           const char* doing) {
-  std::vector<T> rows;
-  int result = SQLITE_OK;
-  while ((result = query.step()) == SQLITE_ROW) rows.push_back(read(query));
-  if (result != SQLITE_DONE) return std::unexpected(database.error(doing));
-  return rows;
-}
-
-}  // namespace
-
 class Ledger::Impl {
  public:
   static Result<std::unique_ptr<Impl>> make(Opened opened) {
     auto impl = std::make_unique<Impl>(std::move(opened));
-    const std::pair<Statement*, const char*> statements[] = {
-        {&impl->write_report_, kWriteReport}, {&impl->write_step_, kWriteStep},
-        {&impl->write_run_, kWriteRun},       {&impl->read_reports_, kReadReports},
-        {&impl->read_steps_, kReadSteps},     {&impl->read_last_run_, kReadLastRun}};
+    const std::pair<Statement*, const char*> statements[] = {{&impl->write_report_, kWriteReport},
+                                                             {&impl->write_run_, kWriteRun},
+                                                             {&impl->read_reports_, kReadReports},
+                                                             {&impl->read_history_, kReadHistory},
+                                                             {&impl->read_last_run_, kReadLastRun}};
     for (const auto& [statement, sql] : statements) {
       auto prepared = Statement::prepare(impl->database_, sql);
       if (!prepared) return std::unexpected(prepared.error());
@@ -43,14 +29,10 @@ class Ledger::Impl {
   Result<void> write(std::span<const dispatch::Report> steps, const dispatch::Run* run,
                      dispatch::Flush flush) {
     if (steps.empty() && run == nullptr) return {};
-    if (flush == dispatch::Flush::Now) return write(steps, run);
-    // NORMAL differs from FULL in this alone: the log is not flushed at the end of a transaction.
-    if (auto set = database_.execute("PRAGMA synchronous = NORMAL"); !set)
-      return std::unexpected(set.error());
-    const auto written = write(steps, run);
-    unflushed_ = true;
-    if (auto set = database_.execute("PRAGMA synchronous = FULL"); !set) return std::unexpected(set.error());
-    return written;
+    const bool soon = flush == dispatch::Flush::Soon;
+    if (auto set = flush_each(!soon); !set) return set;
+    unflushed_ = unflushed_ || soon;
+    return write(steps, run);
   }
 
   Result<void> flush() {
@@ -60,18 +42,28 @@ class Ledger::Impl {
       return std::unexpected(Error{"the ledger's log could not be flushed", false});
     }
     unflushed_ = false;
-    return {};
+    return flush_each(true);  // here, where nobody waits for it
   }
 
   Result<std::vector<dispatch::Report>> reports() {
     Query query(read_reports_);
-    return all(database_, query, report_of, "reading the reports");
+    std::vector<dispatch::Report> all;
+    int result = SQLITE_OK;
+    while ((result = query.step()) == SQLITE_ROW) all.push_back(report_of(query));
+    if (result != SQLITE_DONE) return std::unexpected(database_.error("reading the reports"));
+    return all;
   }
 
   Result<std::vector<Step>> history(std::int64_t number) {
-    Query query(read_steps_);
+    const auto doing = [number] { return "reading the history of report " + std::to_string(number); };
+    Query query(read_history_);
     query.bind(number);
-    return all(database_, query, step_of, "reading a report's history");
+    const int result = query.step();
+    if (result == SQLITE_DONE) return std::vector<Step>();
+    if (result != SQLITE_ROW) return std::unexpected(database_.error(doing()));
+    auto steps = steps_of(number, query.bytes(0));
+    if (!steps) return std::unexpected(Error{doing() + ": it is damaged", false});
+    return *std::move(steps);
   }
 
   Result<std::optional<dispatch::Run>> last_run() {
@@ -85,17 +77,37 @@ class Ledger::Impl {
   const std::string& damage() const { return damage_; }
 
  private:
+  /// NORMAL differs from FULL in this alone: the log is not flushed at the end of a transaction.
+  Result<void> flush_each(bool each) {
+    if (each == flushes_each_) return {};
+    const char* const set = each ? "PRAGMA synchronous = FULL" : "PRAGMA synchronous = NORMAL";
+    if (auto done = database_.execute(set); !done) return std::unexpected(done.error());
+    flushes_each_ = each;
+    return {};
+  }
+
+  /// A statement alone is a transaction of its own.
   Result<void> write(std::span<const dispatch::Report> steps, const dispatch::Run* run) {
+    if (run == nullptr && of_the_first(steps) == steps.size()) return write_one(steps);
     Transaction transaction(database_);
     if (auto begun = transaction.begin(); !begun) return std::unexpected(begun.error());
-    for (const dispatch::Report& report : steps) {
-      if (auto written = write_one(report); !written) return written;
+    while (!steps.empty()) {
+      const std::size_t count = of_the_first(steps);
+      if (auto written = write_one(steps.first(count)); !written) return written;
+      steps = steps.subspan(count);
     }
     if (run != nullptr) {
       if (auto written = write_one(*run); !written) return written;
     }
     if (auto committed = transaction.commit(); !committed) return std::unexpected(committed.error());
     return {};
+  }
+
+  /// How many of the steps, from the first on, are of the same report.
+  static std::size_t of_the_first(std::span<const dispatch::Report> steps) {
+    std::size_t count = 0;
+    while (count < steps.size() && steps[count].number == steps[0].number) ++count;
+    return count;
   }
 
   Result<void> write_one(const dispatch::Run& run) {
@@ -105,23 +117,23 @@ class Ledger::Impl {
     return std::unexpected(database_.error("recording run " + std::to_string(run.number)));
   }
 
-  Result<void> write_one(const dispatch::Report& report) {
-    const std::string doing = "recording a step of report " + std::to_string(report.number);
+  /// Steps of one report: one row.
+  Result<void> write_one(std::span<const dispatch::Report> steps) {
+    const auto doing = [&] { return "recording a step of report " + std::to_string(steps[0].number); };
+    const std::string history = history_of(steps);
     Query row(write_report_);
-    bind_report(row, report);
-    if (row.step() != SQLITE_DONE) return std::unexpected(database_.error(doing));
+    bind_report(row, steps.back(), history);
+    if (row.step() != SQLITE_DONE) return std::unexpected(database_.error(doing()));
     if (sqlite3_changes(database_.get()) != 1)
-      return std::unexpected(Error{doing + ": this number is another report's", false});
-    Query step(write_step_);
-    bind_step(step, report);
-    if (step.step() != SQLITE_DONE) return std::unexpected(database_.error(doing));
+      return std::unexpected(Error{doing() + ": this number is another report's", false});
     return {};
   }
 
   Database database_;  // before the statements, which it outlives
   std::string damage_;
-  bool unflushed_ = false;  // something was written whose flush was left for later
-  Statement write_report_, write_step_, write_run_, read_reports_, read_steps_, read_last_run_;
+  bool flushes_each_ = true;  // as it was opened
+  bool unflushed_ = false;    // something was written whose flush was left for later
+  Statement write_report_, write_run_, read_reports_, read_history_, read_last_run_;
 };
 
 Ledger::Ledger(std::unique_ptr<Impl> impl) : impl_(std::move(impl)) {}

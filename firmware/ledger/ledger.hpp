@@ -34,7 +34,7 @@ class Ledger {
   Ledger& operator=(Ledger&&) noexcept;
   ~Ledger();
 
-  /// Writes all steps, in order, as one transaction: each report as it then is, and a row of its history. One
+  /// Writes all steps, in order, as one transaction: each report as it then is, its history with them. One
   /// flush, or none where `flush` is Soon: then it outlives this program, and a power cut after the next
   /// write that is flushed, or flush(). What makes a report what it is (its type, position and time of
   /// receipt) never changes: a step that has others under a number that is in use is an error. `run`, where

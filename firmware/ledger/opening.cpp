@@ -23,7 +23,6 @@ constexpr const char* kPragmas = R"(
   PRAGMA locking_mode = EXCLUSIVE;
   PRAGMA cell_size_check = ON;
   PRAGMA trusted_schema = OFF;
-  PRAGMA foreign_keys = ON;
   PRAGMA synchronous = FULL;
   PRAGMA wal_autocheckpoint = 960;
   PRAGMA journal_size_limit = 4194304;
@@ -32,7 +31,7 @@ constexpr const char* kPragmas = R"(
 /// The write-ahead log's size from the start (journal_size_limit is the same). A flush of bytes that are
 /// there already is one write to the disk; where a file grows, its file system's journal is another. 960
 /// pages, with the last transaction's, are within it, so that it is overwritten and never grows: a
-/// transaction has two or three pages of 4,120 bytes each.
+/// transaction has one page or two of 4,120 bytes each.
 constexpr sqlite3_int64 kLogSize = 4 << 20;
 
 /// quick_check reads the whole file. A ledger is some kilobytes; one past this is not checked, so that

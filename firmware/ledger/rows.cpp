@@ -1,6 +1,8 @@
 #include "ledger/rows.hpp"
 
-#include <optional>
+#include <charconv>
+
+#include "icd/sentence.hpp"
 
 namespace adit::ledger {
 
@@ -9,8 +11,8 @@ namespace adit::ledger {
 const char* const kWriteReport = R"(
   INSERT INTO report(number, type, x, y, z, sender, received, changed, state, note, run, asked, same_as,
     tries, sending, sent, before_score, before_run_clock, before_remaining_reports, before_current_team,
-    status, content_type, answer, reconciled)
-  VALUES(?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?)
+    status, content_type, answer, reconciled, history)
+  VALUES(?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?)
   ON CONFLICT(number) DO UPDATE SET
     sender = excluded.sender, changed = excluded.changed, state = excluded.state, note = excluded.note,
     run = excluded.run, asked = excluded.asked, same_as = excluded.same_as, tries = excluded.tries,
@@ -18,7 +20,8 @@ const char* const kWriteReport = R"(
     before_run_clock = excluded.before_run_clock,
     before_remaining_reports = excluded.before_remaining_reports,
     before_current_team = excluded.before_current_team, status = excluded.status,
-    content_type = excluded.content_type, answer = excluded.answer, reconciled = excluded.reconciled
+    content_type = excluded.content_type, answer = excluded.answer, reconciled = excluded.reconciled,
+    history = history || excluded.history
   WHERE type = excluded.type AND x = excluded.x AND y = excluded.y AND z = excluded.z
     AND received = excluded.received)";
 
@@ -28,9 +31,7 @@ const char* const kReadReports = R"(
     status, content_type, answer, reconciled
   FROM report ORDER BY number)";
 
-const char* const kWriteStep = "INSERT INTO step(report, at, state, note) VALUES(?, ?, ?, ?)";
-
-const char* const kReadSteps = "SELECT report, at, state, note FROM step WHERE report = ? ORDER BY rowid";
+const char* const kReadHistory = "SELECT history FROM report WHERE number = ?";
 
 const char* const kWriteRun = R"(
   INSERT INTO run(number, id, began, why, score, run_clock, remaining_reports, current_team, heard, post,
@@ -84,9 +85,34 @@ void bind_status(Query& query, const std::optional<icd::RunStatus>& status) {
   }
 }
 
+// Each takes something from the start of `text`, or gives false.
+
+bool take(std::string_view& text, char expected) {
+  if (!text.starts_with(expected)) return false;
+  text.remove_prefix(1);
+  return true;
+}
+
+template <class Number>
+bool take_number(std::string_view& text, Number& number) {
+  const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), number);
+  if (error != std::errc()) return false;
+  text.remove_prefix(static_cast<std::size_t>(end - text.data()));
+  return true;
+}
+
+/// "7:waiting"
+bool take_text(std::string_view& text, std::string& taken) {
+  std::size_t size = 0;
+  if (!take_number(text, size) || !take(text, ':') || size > text.size()) return false;
+  taken = text.substr(0, size);
+  text.remove_prefix(size);
+  return true;
+}
+
 }  // namespace
 
-void bind_report(Query& query, const dispatch::Report& report) {
+void bind_report(Query& query, const dispatch::Report& report, const std::string& history) {
   const icd::Point& position = report.report.position;
   query.bind(report.number).bind(report.report.type).bind(position.x).bind(position.y).bind(position.z);
   query.bind(report.sender).bind(report.received).bind(report.changed);
@@ -95,7 +121,30 @@ void bind_report(Query& query, const dispatch::Report& report) {
   query.bind(report.tries).bind(report.sending).bind(report.sent);
   bind_status(query, report.before);
   query.bind(std::int64_t{report.status}).bind(report.content_type).bind_blob(report.answer);
-  query.bind(std::int64_t{report.reconciled});
+  query.bind(std::int64_t{report.reconciled}).bind(history);
+}
+
+std::string history_of(std::span<const dispatch::Report> steps) {
+  std::string history;
+  for (const dispatch::Report& step : steps) {
+    const std::string_view state = dispatch::name_of(step.state);
+    history += icd::sentence(step.changed, " ", state.size(), ":", state, " ", step.note.size(), ":",
+                             step.note, "\n");
+  }
+  return history;
+}
+
+std::optional<std::vector<Ledger::Step>> steps_of(std::int64_t number, std::string_view history) {
+  std::vector<Ledger::Step> steps;
+  while (!history.empty()) {
+    Ledger::Step& step = steps.emplace_back();
+    step.report = number;
+    if (!take_number(history, step.at) || !take(history, ' ') || !take_text(history, step.state) ||
+        !take(history, ' ') || !take_text(history, step.note) || !take(history, '\n')) {
+      return std::nullopt;
+    }
+  }
+  return steps;
 }
 
 dispatch::Report report_of(const Query& row) {
@@ -129,14 +178,6 @@ dispatch::Report report_of(const Query& row) {
     report.before.reset();
   }
   return report;
-}
-
-void bind_step(Query& query, const dispatch::Report& report) {
-  query.bind(report.number).bind(report.changed).bind(dispatch::name_of(report.state)).bind(report.note);
-}
-
-Ledger::Step step_of(const Query& row) {
-  return {row.number(0), row.real(1), row.bytes(2), row.bytes(3)};
 }
 
 void bind_run(Query& query, const dispatch::Run& run) {

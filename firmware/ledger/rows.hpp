@@ -1,25 +1,34 @@
 #pragma once
 
+#include <optional>
+#include <span>
+#include <string>
+#include <vector>
+
 #include "dispatch/report.hpp"
 #include "ledger/database.hpp"
 
 namespace adit::ledger {
 
-/// How reports, steps and runs are written into their tables and read from them.
+/// How reports, their steps and runs are written into their tables and read from them. What is bound must
+/// outlive the query.
 
-/// Inserts a report, or updates the same one under its number; changes no row where the number is another's.
+/// Inserts a report, or updates the same one under its number and adds to its history; changes no row where
+/// the number is another's.
 extern const char* const kWriteReport;
-void bind_report(Query& query, const dispatch::Report& report);
+void bind_report(Query& query, const dispatch::Report& report, const std::string& history);
+
+/// A history is a line for each step, "1763632493.25 7:sending 4:note": when, and each text after its length
+/// in bytes, whatever is in it.
+std::string history_of(std::span<const dispatch::Report> steps);
+/// Nothing where that is no history.
+std::optional<std::vector<Ledger::Step>> steps_of(std::int64_t number, std::string_view history);
 
 extern const char* const kReadReports;
 dispatch::Report report_of(const Query& row);
 
-extern const char* const kWriteStep;
-void bind_step(Query& query, const dispatch::Report& report);
-
-/// Of the report that is its one parameter.
-extern const char* const kReadSteps;
-Ledger::Step step_of(const Query& row);
+/// Of the report whose number is its one parameter.
+extern const char* const kReadHistory;
 
 /// Inserts a run, or updates the one of its number.
 extern const char* const kWriteRun;

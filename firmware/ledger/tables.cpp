@@ -7,10 +7,9 @@ namespace adit::ledger {
 namespace {
 
 constexpr std::int64_t kApplicationId = 0x41444954;  // "ADIT", in SQLite's file header
-constexpr std::int64_t kVersion = 2;                 // of the tables below, in user_version
+constexpr std::int64_t kVersion = 3;                 // of the tables below, in user_version
 
-/// `report` is each report as it is now, `step` is how it came there. There is no index on step(report): it
-/// would cost every step another page, and a report's history is read only when somebody looks at it.
+/// `history` is a row's own, not a table: a step is then one row of one page to write.
 constexpr const char* kTables = R"(
   CREATE TABLE report(
     number INTEGER PRIMARY KEY CHECK(number > 0),
@@ -22,11 +21,9 @@ constexpr const char* kTables = R"(
     before_score INTEGER, before_run_clock REAL, before_remaining_reports INTEGER, before_current_team TEXT,
     status INTEGER NOT NULL, content_type TEXT NOT NULL, answer BLOB NOT NULL,
     reconciled INTEGER NOT NULL DEFAULT 0,
+    history TEXT NOT NULL,
     CHECK((before_score IS NULL) + (before_run_clock IS NULL) + (before_remaining_reports IS NULL)
       + (before_current_team IS NULL) IN (0, 4))) STRICT;
-  CREATE TABLE step(
-    report INTEGER NOT NULL REFERENCES report(number),
-    at REAL NOT NULL, state TEXT NOT NULL, note TEXT NOT NULL) STRICT;
   CREATE TABLE run(
     number INTEGER PRIMARY KEY CHECK(number > 0),
     id TEXT NOT NULL, began REAL NOT NULL, why TEXT NOT NULL,
@@ -35,22 +32,38 @@ constexpr const char* kTables = R"(
     CHECK((score IS NULL) + (run_clock IS NULL) + (remaining_reports IS NULL) + (current_team IS NULL)
       IN (0, 4))) STRICT;
   PRAGMA application_id = 0x41444954;
-  PRAGMA user_version = 2;
+  PRAGMA user_version = 3;
 )";
 
-/// Version 1 had `report` and `step` alone, and numbered the reports itself.
-constexpr const char* kBeforeVersion2 = R"(
-  ALTER TABLE report RENAME TO report_1;
-  ALTER TABLE step RENAME TO step_1;
-)";
-constexpr const char* kFromVersion1 = R"(
-  INSERT INTO report(number, type, x, y, z, sender, received, changed, state, note, status, content_type, answer)
-    SELECT number, type, x, y, z, sender, received, changed, state, note, status, content_type, answer
-    FROM report_1;
-  INSERT INTO step(report, at, state, note) SELECT report, at, state, note FROM step_1 ORDER BY rowid;
-  DROP TABLE step_1;
-  DROP TABLE report_1;
-)";
+/// Versions 1 and 2 had a table `step`, of report, at, state and note, in the order of its rows. Version 1
+/// numbered the reports itself, and knew less of them and nothing of runs.
+constexpr const char* kSetAside[] = {
+    "", "ALTER TABLE report RENAME TO old_report",
+    "ALTER TABLE report RENAME TO old_report; ALTER TABLE run RENAME TO old_run"};
+constexpr const char* kTakeOver[] = {"", R"(
+  INSERT INTO report(number, type, x, y, z, sender, received, changed, state, note, status, content_type,
+    answer, history)
+  SELECT number, type, x, y, z, sender, received, changed, state, note, status, content_type, answer, coalesce((
+    SELECT group_concat(line, '') FROM (
+      SELECT at || ' ' || length(CAST(state AS BLOB)) || ':' || state || ' ' || length(CAST(note AS BLOB))
+        || ':' || note || char(10) AS line
+      FROM step WHERE report = number ORDER BY rowid)), '')
+  FROM old_report;
+  DROP TABLE step;
+  DROP TABLE old_report;
+)",
+                                     R"(
+  INSERT INTO report SELECT *, coalesce((
+    SELECT group_concat(line, '') FROM (
+      SELECT at || ' ' || length(CAST(state AS BLOB)) || ':' || state || ' ' || length(CAST(note AS BLOB))
+        || ':' || note || char(10) AS line
+      FROM step WHERE report = number ORDER BY rowid)), '')
+  FROM old_report;
+  INSERT INTO run SELECT * FROM old_run;
+  DROP TABLE step;
+  DROP TABLE old_report;
+  DROP TABLE old_run;
+)"};
 
 /// What the file's header says it is; both are 0 in a new file.
 struct Kind {
@@ -99,8 +112,8 @@ Attempt<void> make_tables(Database& database) {
   if (kind->is_ledger() && kind->version == kVersion) return {};
   Transaction transaction(database);
   if (auto begun = transaction.begin(); !begun) return begun;
-  for (const char* sql :
-       {kind->is_ledger() ? kBeforeVersion2 : "", kTables, kind->is_ledger() ? kFromVersion1 : ""}) {
+  const auto old = static_cast<std::size_t>(kind->is_ledger() ? kind->version : 0);
+  for (const char* sql : {kSetAside[old], kTables, kTakeOver[old]}) {
     if (auto done = database.execute(sql); !done) return done;
   }
   return transaction.commit();

@@ -115,10 +115,28 @@ TEST(Ledger, ReadsAStateItDoesNotKnowAsInDoubtAndShowsItsWordInTheHistory) {
     auto ledger = open_or_fail(folder);
     ASSERT_TRUE(write(ledger, backpack(1)));
   }
-  by_hand(folder, "UPDATE report SET state = 'promised'; UPDATE step SET state = 'promised'");
+  by_hand(folder,
+          "UPDATE report SET state = 'promised', history = replace(history, '7:waiting', '8:promised')");
   const auto ledger = open_or_fail(folder);
   EXPECT_EQ(find_or_fail(ledger, 1).state, ReportState::InDoubt);
   EXPECT_EQ(ledger.history(1)->at(0).state, "promised");
+}
+
+TEST(Ledger, SaysWhichReportsHistoryIsDamaged) {
+  const Folder folder;
+  {
+    auto ledger = open_or_fail(folder);
+    ASSERT_TRUE(write(ledger, backpack(1)));
+  }
+  for (const char* history :
+       {"x", "10", "10 7:waiting", "10 7:waiting 0:", "10 70:waiting 0:\n", "10 -1: 0:\n"}) {
+    by_hand(folder, "UPDATE report SET history = '" + std::string(history) + "'");
+    const auto ledger = open_or_fail(folder);
+    const auto read = ledger.history(1);
+    ASSERT_FALSE(read) << history;
+    EXPECT_EQ(read.error().what, "reading the history of report 1: it is damaged");
+    EXPECT_EQ(find_or_fail(ledger, 1), backpack(1));
+  }
 }
 
 TEST(Ledger, WritesAllStepsOrNone) {

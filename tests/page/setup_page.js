@@ -4,9 +4,14 @@ export const field = (page, path) => page.locator(`.field[data-path="${path}"]`)
 export const step = (page, name) => page.locator("#steps").getByRole("link", { name });
 export const hears = (page, words) => page.locator("#link, #missing, #typed").filter({ hasText: words }).first().waitFor();
 
+/** What the browser complained of; that a box was away while it began anew is none. */
+export const complaints = (page, ...known) => page.complaints.filter((each) => !["ERR_CONNECTION", "ERR_EMPTY", ...known].some((part) => each.includes(part)));
+
 /** Types into the field of a setting. */
 export async function type(page, path, text) {
-  await field(page, path).locator("input").fill(text);
+  const input = field(page, path).locator("input");
+  await input.fill(text);
+  await input.dispatchEvent("input"); // fill() says nothing where the text was the same
 }
 
 export async function fill(page, fields) {

@@ -1,5 +1,5 @@
 // One setting as a field: what it means, what is allowed, what is wrong with it.
-import { draft, keyOf, onDraft, read, write } from "./draft.js";
+import { draft, keyOf, onDraft, read, same, write } from "./draft.js";
 import { make, say } from "./dom.js";
 
 const known = new Set();
@@ -56,7 +56,7 @@ export function setting(path, label) {
   field.dataset.path = path;
   field.show = () => {
     const value = read(path);
-    if (value === undefined || document.activeElement === control) return; // not while it is typed
+    if (value === undefined || document.activeElement === control || same(valueOf(control, key), value)) return; // as it is typed
     if (key.kind === "flag") control.checked = value;
     else control.value = value;
   };

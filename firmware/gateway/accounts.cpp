@@ -74,7 +74,8 @@ Accounts::Accounts(loop::Workers& workers, SessionKeeper& sessions, std::string 
   if (on_label) {
     host::log(Level::Notice, "no password is set: the page asks for the code on the label");
   } else {
-    host::log(Level::Notice, "no password is set: the page asks for this code", {{"code", code_->reveal()}});
+    host::tell_console(Level::Notice, "no password is set: the page asks for this code",
+                       {{"code", code_->reveal()}});
   }
 }
 

@@ -3,6 +3,7 @@
 #include "gateway/report_rows.hpp"
 #include "gateway/version.hpp"
 #include "host/log.hpp"
+#include "settings/written.hpp"
 
 namespace adit::gateway {
 namespace {
@@ -36,12 +37,15 @@ Gateway::Gateway(loop::Loop& loop, Parts parts)
       sessions_(parts_.runtime_folder + "/sessions.json", loop.now()),
       accounts_(workers_, sessions_, parts_.state_folder, parts_.loaded.secrets.label_code),
       setup_(parts_.store, parts_.loaded, accounts_, [this] { make_way(); }),
+      box_(loop, workers_, settings::file_of(parts_.loaded.settings),
+           [this](page::Usage& usage) { add_to(usage); }),
       page_(loop, *this, *this, accounts_, tokens()),
       routes_(icd_options(), *this, workers_, page_),
       second_(loop.timer([this] { every_second(); })),
       drained_(loop.timer([this] { drain(); })),
       pictured_run_(parts_.legacy ? parts_.legacy->pictured_run : 0) {
   page_.serve(setup_);
+  page_.serve(box_);
   if (parts_.legacy) hold_back();
 }
 
@@ -234,8 +238,7 @@ void Gateway::picture_the_run() {
 }
 
 void Gateway::every_second() {
-  bytes_sent_.push_back(scoring_.channel().bytes_sent() + maps_.channel().bytes_sent() +
-                        news_.channel().bytes_sent());
+  bytes_sent_.push_back(sent_bytes());
   if (bytes_sent_.size() > kMeterSeconds + 1) bytes_sent_.pop_front();
   scoring_.tick();
   lights_.show(condition());
@@ -253,6 +256,16 @@ void Gateway::keep_sessions() {
   if (loop_.now() < sessions_kept_ + kKeepSessionsEvery) return;
   sessions_kept_ = loop_.now();
   if (!sessions_.sessions().in_order().empty()) sessions_.keep();
+}
+
+std::uint64_t Gateway::sent_bytes() const {
+  return scoring_.channel().bytes_sent() + maps_.channel().bytes_sent() + news_.channel().bytes_sent();
+}
+
+void Gateway::add_to(page::Usage& usage) const {
+  for (const auto& server : servers_) usage.connections += server->connections();
+  usage.sent_bytes = sent_bytes();
+  usage.refused = record_.refused_counts();
 }
 
 double Gateway::sent_mbit() const {

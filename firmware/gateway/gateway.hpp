@@ -19,6 +19,7 @@
 #include "gateway/setup.hpp"
 #include "gateway/spool.hpp"
 #include "gateway/store.hpp"
+#include "gateway/this_box.hpp"
 #include "host/service.hpp"
 #include "intake/icd_routes.hpp"
 #include "lanes/stamps.hpp"
@@ -97,6 +98,8 @@ class Gateway final : public intake::Desk, public page::Source, public page::Ope
   void every_second();
   void keep_sessions();
   double sent_mbit() const;
+  std::uint64_t sent_bytes() const;
+  void add_to(page::Usage& usage) const;
   std::expected<void, std::string> listen();
   intake::IcdOptions icd_options() const;
   std::vector<icd::BearerToken> tokens() const;
@@ -123,6 +126,7 @@ class Gateway final : public intake::Desk, public page::Source, public page::Ope
   SessionKeeper sessions_;
   Accounts accounts_;
   Setup setup_;
+  ThisBox box_;
   page::Page page_;
   intake::IcdRoutes routes_;
   std::vector<std::unique_ptr<intake::Server>> servers_;

@@ -19,6 +19,7 @@ class Setup final : public page::Setup {
 
   const settings::Settings& settings() const override { return settings_; }
   bool saved() const override { return saved_; }
+  bool applying() const override { return applying_; }
   std::vector<page::TokenRow> tokens() const override;
   std::vector<std::string> warnings(const settings::Settings& next) const override;
   icd::Checked<void> save(const settings::Settings& next) override;

@@ -17,6 +17,7 @@
 
 namespace adit::page {
 
+class Box;
 class Keys;
 class Setup;
 
@@ -169,6 +170,9 @@ class Page final : public intake::Handler {
   std::unique_ptr<intake::Exchange> open(const intake::RequestHead& head,
                                          std::shared_ptr<intake::Responder> responder,
                                          std::shared_ptr<intake::Flow> flow) override;
+
+  /// Serves what is known of the box, too; it outlives this. Once, before anything is opened.
+  void serve(Box& box);
 
   /// Something that the page shows has changed.
   void changed();

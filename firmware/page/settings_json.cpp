@@ -67,6 +67,7 @@ std::string write_setup(const Setup& setup) {
   return codec::write_json({Value::Object{{"settings", settings::value_of(setup.settings())},
                                           {"tag", {settings::tag_of(setup.settings())}},
                                           {"saved", json(setup.saved())},
+                                          {"applying", json(setup.applying())},
                                           {"tokens", {std::move(tokens)}},
                                           {"keys", keys_value()}}});
 }

@@ -88,6 +88,10 @@ bool SettingsRoutes::has(std::string_view path) {
   return path == kExport || deed_at(path) != nullptr;
 }
 
+bool SettingsRoutes::is_for_viewers(std::string_view path) {
+  return path == kSettings || path == kExport;
+}
+
 std::unique_ptr<intake::Exchange> SettingsRoutes::open(const intake::RequestHead& head,
                                                        std::shared_ptr<intake::Responder> responder) {
   const auto refuse = [&responder](intake::Answer answer) {

@@ -16,6 +16,8 @@ class SettingsRoutes {
   explicit SettingsRoutes(Setup& setup) : setup_(setup) {}
 
   static bool has(std::string_view path);
+  /// What a viewer may see, too: no token is in it.
+  static bool is_for_viewers(std::string_view path);
   /// Requires has(head.path()).
   std::unique_ptr<intake::Exchange> open(const intake::RequestHead& head,
                                          std::shared_ptr<intake::Responder> responder);

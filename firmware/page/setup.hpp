@@ -27,6 +27,8 @@ class Setup {
   virtual const settings::Settings& settings() const = 0;
   /// Whether they were saved here, or are those that the box was given.
   virtual bool saved() const = 0;
+  /// Whether a change was taken and is about to be applied: all the rest is as it was before that.
+  virtual bool applying() const = 0;
   /// All tokens that there can be, by the courses there are.
   virtual std::vector<TokenRow> tokens() const = 0;
   /// What the operator should know before `next` is applied.

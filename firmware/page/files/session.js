@@ -37,11 +37,37 @@ export async function post(path, body = {}) {
   }
 }
 
+let ahead = 0; // of this device's clock, in ms
+
+/** The box's clock, in seconds since 1970: a phone's own may be anything. */
+export const boxNow = () => (Date.now() + ahead) / 1000;
+
+const SILENT = "The box does not answer.";
+
+/** What a path gives, where it gives what is asked for; an Error's message is the sentence to show. */
+async function ask(path) {
+  const answer = await fetch(path, { cache: "no-store" }).catch(() => Promise.reject(new Error(SILENT)));
+  if (answer.status === 401) toLogin();
+  ahead = Date.parse(answer.headers.get("Date")) - Date.now() || 0;
+  return answer;
+}
+
+/** Its JSON. */
+export const get = async (path) => resultOf(await ask(path));
+
+/** It as a file: its name and its bytes. */
+export async function getFile(path) {
+  const answer = await ask(path);
+  if (!answer.ok) await resultOf(answer); // throws
+  const name = /filename="([^"]+)"/.exec(answer.headers.get("Content-Disposition"))?.[1] ?? "adit";
+  return { name, blob: await answer.blob() };
+}
+
 async function send(path, body, csrf) {
   const headers = { "Content-Type": "application/json" };
   if (csrf) headers["Adit-CSRF"] = csrf;
   const request = { method: "POST", headers, body: JSON.stringify(body) };
-  return resultOf(await fetch(path, request).catch(() => Promise.reject(new Error("The box does not answer."))));
+  return resultOf(await fetch(path, request).catch(() => Promise.reject(new Error(SILENT))));
 }
 
 async function resultOf(answer) {

@@ -40,17 +40,7 @@ async function setFirst({ code, password, again }) {
   await logIn({ password });
 }
 
-/** After a reset: until the box has begun anew it would ask for a password that is gone. */
-async function begunAnew() {
-  for (const end = performance.now() + 15_000; performance.now() < end; ) {
-    const { first_start: firstStart } = await session(true).catch(() => ({}));
-    if (firstStart) return;
-    await new Promise((resolve) => setTimeout(resolve, 250));
-  }
-}
-
 async function begin() {
-  if (new URLSearchParams(location.search).has("anew")) await begunAnew();
   const { role, first_start: firstStart } = await session();
   if (role) return location.replace(next());
   if (firstStart) show(document.getElementById("first"), setFirst);

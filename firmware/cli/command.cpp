@@ -6,6 +6,7 @@
 #include "cli/help.hpp"
 #include "cli/options.hpp"
 #include "cli/reports.hpp"
+#include "cli/settings.hpp"
 #include "host/log.hpp"
 
 namespace adit::cli {
@@ -22,6 +23,10 @@ Outcome run(std::span<const std::string_view> words, bool colour) {
       return begin_run(*options);
     case Command::Identify:
       return identify(*options);
+    case Command::Settings:
+      return settings(*options, colour);
+    case Command::Course:
+      return switch_course(*options);
     case Command::Check:
       return check(*options, colour);
     case Command::Help:

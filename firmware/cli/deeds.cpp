@@ -2,7 +2,6 @@
 
 #include <algorithm>
 
-#include "cli/http_client.hpp"
 #include "cli/reading.hpp"
 #include "cli/where.hpp"
 #include "host/log.hpp"
@@ -10,64 +9,25 @@
 namespace adit::cli {
 namespace {
 
-constexpr std::chrono::seconds kPatience{10};  // a deed is on the disk before it is answered
-
-/// A deed that was not done, or of which that is not known.
-struct Failure {
-  Exit exit = Exit::Unable;
-  std::string sentence;
-};
-
 /// Asks for deeds, each with the same token.
 class Deeds {
  public:
   explicit Deeds(const Adit& adit) : adit_(adit) {}
 
-  /// Adit's answer to a deed that leaves nothing behind.
-  std::expected<std::string, Failure> ask_for_text(const std::string& target, std::string body) {
-    const auto reply = http_ask(adit_.address,
-                                {.method = HttpRequest::Method::Post,
-                                 .target = target,
-                                 .token = adit_.token.token,
-                                 .body = std::move(body)},
-                                kPatience);
-    if (!reply) return std::unexpected(Failure{Exit::Unable, reply.error().sentence});
-    if (reply->status != 200) return std::unexpected(failure(*reply));
-    return reply->body;
-  }
-
   /// The number that Adit answers under `name`. `check`: the command that tells whether a deed was done whose
   /// answer was lost.
   std::expected<std::int64_t, Failure> ask(const std::string& target, const char* name,
                                            const std::string& check) {
-    const auto reply = http_ask(
-        adit_.address, {.method = HttpRequest::Method::Post, .target = target, .token = adit_.token.token},
-        kPatience);
-    if (!reply) {
-      const std::string unsure =
-          reply.error().sent ? "; whether it was done is not known, see: " + check : "";
-      return std::unexpected(Failure{Exit::Unable, reply.error().sentence + unsure});
-    }
-    if (reply->status != 200) return std::unexpected(failure(*reply));
+    const auto body = post(adit_, target, "", check);
+    if (!body) return std::unexpected(body.error());
     auto number = read<std::int64_t>(
-        reply->body, [name](const codec::Field& object) { return whole<std::int64_t>(object, name); });
+        *body, [name](const codec::Field& object) { return whole<std::int64_t>(object, name); });
     if (number) return *number;
     return std::unexpected(Failure{
         Exit::Unable, "Adit at " + written(adit_.address) + " cannot be understood: " + number.error()});
   }
 
  private:
-  Failure failure(const HttpReply& reply) const {
-    if (reply.status == 401) {
-      return {Exit::Unable, unknown_token(adit_)};
-    }
-    const std::string sentence = sentence_in(reply.body);
-    const bool judged = (reply.status == 404 || reply.status == 409) && !sentence.empty();
-    if (judged) return {Exit::Attention, sentence};
-    return {Exit::Unable, "Adit at " + written(adit_.address) + " answered " + std::to_string(reply.status) +
-                              (sentence.empty() ? " (is that Adit?)" : ": " + sentence)};
-  }
-
   const Adit& adit_;
 };
 
@@ -152,7 +112,7 @@ Outcome identify(const Options& options) {
   const auto adit = adit_of(options);
   if (!adit) return unable(adit.error());
   const std::string seconds = std::to_string(options.seconds);
-  const auto answer = Deeds(*adit).ask_for_text("/adit/identify", "{\"seconds\":" + seconds + "}");
+  const auto answer = post(*adit, "/adit/identify", "{\"seconds\":" + seconds + "}", "adit status");
   Outcome outcome;
   if (!answer) {
     add(outcome, answer.error());

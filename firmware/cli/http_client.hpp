@@ -16,7 +16,7 @@ struct HttpRequest {
   enum class Method : std::uint8_t { Get, Post } method = Method::Get;
   std::string target;  // "/adit/run"
   std::optional<icd::BearerToken> token = std::nullopt;
-  std::string body = "";  // of a POST: JSON
+  std::string body = "";  // of a POST: JSON, or nothing
 };
 
 struct HttpReply {

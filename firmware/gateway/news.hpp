@@ -1,5 +1,6 @@
 #pragma once
 
+#include <optional>
 #include <random>
 #include <utility>
 #include <vector>
@@ -20,9 +21,14 @@ namespace adit::gateway {
 class News {
  public:
   /// `as_forwarded` is told what the Command Post took.
-  News(loop::Loop& loop, const settings::Settings& settings, icd::BearerToken token, Record& record,
-       std::mt19937_64& random, AsForwarded& as_forwarded);
+  News(loop::Loop& loop, const settings::Settings& settings, std::optional<icd::BearerToken> token,
+       Record& record, std::mt19937_64& random, AsForwarded& as_forwarded);
 
+  /// As if something had just been sent, by whoever sent before.
+  void hold_back() {
+    state_pace_.sent(loop_.now());
+    markers_pace_.sent(loop_.now());
+  }
   void start() { channel_.keep_warm(); }
   /// Stamps are on the gateway's clock. Refused with 429 where the lane is full.
   icd::Checked<void> take(const icd::StateUpdate& update, std::size_t bytes_received);

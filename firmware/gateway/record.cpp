@@ -69,6 +69,7 @@ void Record::not_taken(const Traffic& traffic, NotTaken how, int status, const s
 
 void Record::refused(icd::Uri uri, const intake::Sender& sender, const icd::Refusal& refusal,
                      page::Time now) {
+  ++refused_[{uri, refusal.status}];
   refusals_.push_front({.at = now,
                         .uri = std::string(icd::path_of(uri)),
                         .sender = sender.address,
@@ -76,6 +77,17 @@ void Record::refused(icd::Uri uri, const intake::Sender& sender, const icd::Refu
                         .sentence = refusal.sentence});
   if (refusals_.size() > kMostRefusals) refusals_.pop_back();
   changed_();
+}
+
+std::vector<page::RefusedCount> Record::refused_counts() const {
+  std::vector<page::RefusedCount> all;
+  all.reserve(refused_.size());
+  for (const auto& [what, count] : refused_) {
+    const auto& [uri, status] = what;
+    all.push_back(
+        {.uri = std::string(icd::path_of(uri)), .status = static_cast<int>(status), .count = count});
+  }
+  return all;
 }
 
 std::vector<page::ActivityRow> Record::activities() const {

@@ -11,6 +11,7 @@
 #include "icd/status.hpp"
 #include "icd/uri.hpp"
 #include "intake/desk.hpp"
+#include "page/box.hpp"
 #include "page/page.hpp"
 
 namespace adit::gateway {
@@ -48,6 +49,8 @@ class Record {
 
   /// Without `waiting`, which the lanes know.
   std::vector<page::ActivityRow> activities() const;
+  /// What was ever refused, by URI and status.
+  std::vector<page::RefusedCount> refused_counts() const;
   /// Newest first.
   std::vector<page::RefusalRow> refusals() const { return {refusals_.begin(), refusals_.end()}; }
   void changed() const { changed_(); }
@@ -58,6 +61,7 @@ class Record {
   std::function<void()> changed_;
   std::map<Traffic, page::ActivityRow> rows_;
   std::deque<page::RefusalRow> refusals_;
+  std::map<std::pair<icd::Uri, icd::Status>, std::uint64_t> refused_;
 };
 
 Traffic traffic_of(const icd::MapUpdate& update);

@@ -5,9 +5,10 @@
 #include <unistd.h>
 
 #include <atomic>
+#include <chrono>
 #include <cstdlib>
-#include <ctime>
 
+#include "host/memory.hpp"
 #include "host/record.hpp"
 
 namespace adit::host {
@@ -16,12 +17,13 @@ namespace {
 std::atomic<Level> least = Level::Info;
 
 /// Wall time: what a person compares with other logs. Policy never reads it (loop::Loop::now does that).
-std::string time_now() {
-  const std::time_t now = std::time(nullptr);
-  std::tm parts{};
-  gmtime_r(&now, &parts);
-  char text[32];
-  return {text, std::strftime(text, sizeof text, "%Y-%m-%dT%H:%M:%SZ", &parts)};
+double time_now() {
+  return std::chrono::duration<double>(std::chrono::system_clock::now().time_since_epoch()).count();
+}
+
+Memory& memory() {
+  static Memory records;
+  return records;
 }
 
 bool to_journal(const std::vector<std::string>& entry) {
@@ -37,13 +39,43 @@ void to_stderr(std::string line) {
   [[maybe_unused]] const ssize_t written = write(STDERR_FILENO, line.data(), line.size());
 }
 
+bool is_wanted(Level level) {
+  return level <= least.load(std::memory_order_relaxed);
+}
+
+void write_down(double at, Level level, std::string_view message, std::span<const Field> fields) {
+  static const bool under_journald = is_journal(STDERR_FILENO, std::getenv("JOURNAL_STREAM"));
+  if (under_journald && to_journal(journal_entry(level, message, fields))) return;
+  to_stderr(plain_line(time_text(at), level, message, fields));
+}
+
 }  // namespace
 
 void log(Level level, std::string_view message, std::initializer_list<Field> fields) {
-  if (level > least.load(std::memory_order_relaxed)) return;
-  static const bool under_journald = is_journal(STDERR_FILENO, std::getenv("JOURNAL_STREAM"));
-  if (under_journald && to_journal(journal_entry(level, message, fields))) return;
-  to_stderr(plain_line(time_now(), level, message, fields));
+  if (!is_wanted(level)) return;
+  const double at = time_now();
+  memory().keep(at, level, message, fields);
+  write_down(at, level, message, fields);
+}
+
+void tell_console(Level level, std::string_view message, std::initializer_list<Field> fields) {
+  if (!is_wanted(level)) return;
+  const double at = time_now();
+  memory().keep(at, level, message, {});
+  write_down(at, level, message, fields);
+}
+
+std::vector<Record> remembered(std::uint64_t after) {
+  return memory().after(after);
+}
+
+std::uint64_t logged() {
+  return memory().last();
+}
+
+std::string line_of(const Record& record) {
+  const std::vector<Field> fields(record.fields.begin(), record.fields.end());
+  return plain_line(time_text(record.at), record.level, record.message, fields);
 }
 
 void set_least(Level level) {

@@ -3,25 +3,10 @@
 #include <sys/stat.h>
 
 #include <cstdint>
+#include <ctime>
 
 namespace adit::host {
 namespace {
-
-std::string_view name_of(Level level) {
-  switch (level) {
-    case Level::Error:
-      return "error";
-    case Level::Warning:
-      return "warning";
-    case Level::Notice:
-      return "notice";
-    case Level::Info:
-      return "info";
-    case Level::Debug:
-      return "debug";
-  }
-  return "unknown";
-}
 
 std::string quoted_where_needed(std::string_view value) {
   if (value.find_first_of(" \"=") == std::string_view::npos) return escaped(value);
@@ -45,6 +30,30 @@ std::string journal_name(std::string_view name) {
 }
 
 }  // namespace
+
+std::string_view name_of(Level level) {
+  switch (level) {
+    case Level::Error:
+      return "error";
+    case Level::Warning:
+      return "warning";
+    case Level::Notice:
+      return "notice";
+    case Level::Info:
+      return "info";
+    case Level::Debug:
+      return "debug";
+  }
+  return "unknown";
+}
+
+std::string time_text(double at) {
+  const auto seconds = static_cast<std::time_t>(at);
+  std::tm parts{};
+  gmtime_r(&seconds, &parts);
+  char text[32];
+  return {text, std::strftime(text, sizeof text, "%Y-%m-%dT%H:%M:%SZ", &parts)};
+}
 
 std::string escaped(std::string_view text) {
   static constexpr std::string_view kDigits = "0123456789abcdef";

@@ -13,6 +13,9 @@ namespace adit::host {
 /// out.
 std::string sentence(std::string_view message, std::span<const Field> fields);
 
+/// "2026-01-31T12:00:00Z" of seconds since 1970.
+std::string time_text(double at);
+
 /// `2026-01-31T12:00:00Z warning: message key=value`, without a line end.
 std::string plain_line(std::string_view time, Level level, std::string_view message,
                        std::span<const Field> fields);

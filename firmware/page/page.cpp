@@ -1,8 +1,11 @@
 #include "page/page.hpp"
 
+#include <optional>
 #include <utility>
 
 #include "page/answers.hpp"
+#include "page/api.hpp"
+#include "page/box_routes.hpp"
 #include "page/entrance.hpp"
 #include "page/live.hpp"
 #include "page/map_routes.hpp"
@@ -10,12 +13,14 @@
 #include "page/report_routes.hpp"
 #include "page/scene_routes.hpp"
 #include "page/session_routes.hpp"
+#include "page/settings_routes.hpp"
 #include "page/site.hpp"
 
 namespace adit::page {
 namespace {
 
-constexpr std::string_view kGuarded = "/adit/";  // all else is the page's own files
+constexpr std::string_view kGuarded = "/adit/";  // and kMetrics; all else is the page's own files
+constexpr std::string_view kMetrics = "/metrics", kApi = "/adit/openapi.json";
 
 intake::Answer answer_with(const File& file, std::string_view if_none_match) {
   intake::Answer answer{.content_type = std::string(content_type_of(file)), .body = {}, .headers = {}};
@@ -35,8 +40,9 @@ class Page::Impl {
  public:
   Impl(loop::Loop& loop, const Source& source, Operator& judge, Keys& keys,
        std::vector<icd::BearerToken> tokens)
-      : source_(source),
-        entrance_(loop, std::move(tokens)),
+      : loop_(loop),
+        source_(source),
+        entrance_(loop, keys.sessions(), std::move(tokens)),
         sessions_(loop, entrance_, keys),
         live_(loop, source),
         maps_(source),
@@ -46,17 +52,20 @@ class Page::Impl {
 
   std::unique_ptr<intake::Exchange> open(const intake::RequestHead& head,
                                          std::shared_ptr<intake::Responder> responder) {
-    if (!head.path().starts_with(kGuarded)) {
+    if (!is_guarded(head.path())) {
       responder->answer(file(head));
       return nullptr;
     }
+    if (box_ && BoxRoutes::has(head.path())) return box_->open(head, responder);
     if (SessionRoutes::has(head.path())) return sessions_.open(head, std::move(responder));
-    const auto visitor =
-        entrance_.admit(head, only_reads(head) ? access::Role::Viewer : access::Role::Operator);
+    const bool sets_up = settings_ && SettingsRoutes::has(head.path());
+    const bool for_viewers = only_reads(head) && (!sets_up || SettingsRoutes::is_for_viewers(head.path()));
+    const auto visitor = entrance_.admit(head, for_viewers ? access::Role::Viewer : access::Role::Operator);
     if (!visitor) {
       responder->answer(turned_away(visitor.error()));
       return nullptr;
     }
+    if (sets_up) return settings_->open(head, std::move(responder));
     if (ReportRoutes::has(head.path())) return reports_.open(head, std::move(responder));
     if (PanelRoute::has(head.path())) return panel_.open(head, std::move(responder));
     if (MapRoutes::has(head.path())) {
@@ -69,11 +78,20 @@ class Page::Impl {
     return nullptr;
   }
 
+  void serve(Setup& setup) {
+    settings_.emplace(setup);
+    sessions_.serve(setup);
+  }
+  void serve(Box& box) { box_.emplace(source_, box, entrance_, loop_); }
   void changed() { live_.changed(); }
 
  private:
+  static bool is_guarded(std::string_view path) {
+    return path == kMetrics || (path.starts_with(kGuarded) && path != kApi);
+  }
+
   static intake::Answer file(const intake::RequestHead& head) {
-    const auto* file = file_at(head.path());
+    const auto* file = head.path() == kApi ? &api::description() : file_at(head.path());
     if (file == nullptr) return nothing_here();
     return only_reads(head) ? answer_with(*file, head.header("If-None-Match")) : wrong_method(kReading);
   }
@@ -86,14 +104,17 @@ class Page::Impl {
     live_.open(responder, entrance_.may_stay(visitor));
   }
 
+  loop::Loop& loop_;
   const Source& source_;
   Entrance entrance_;
   SessionRoutes sessions_;
+  std::optional<BoxRoutes> box_;
   Live live_;
   MapRoutes maps_;
   SceneRoutes scene_;
   PanelRoute panel_;
   ReportRoutes reports_;
+  std::optional<SettingsRoutes> settings_;
 };
 
 Page::Page(loop::Loop& loop, const Source& source, Operator& judge, Keys& keys,
@@ -101,10 +122,18 @@ Page::Page(loop::Loop& loop, const Source& source, Operator& judge, Keys& keys,
     : impl_(std::make_unique<Impl>(loop, source, judge, keys, std::move(tokens))) {}
 Page::~Page() = default;
 
+void Page::serve(Setup& setup) {
+  impl_->serve(setup);
+}
+
 std::unique_ptr<intake::Exchange> Page::open(const intake::RequestHead& head,
                                              std::shared_ptr<intake::Responder> responder,
                                              std::shared_ptr<intake::Flow>) {
   return impl_->open(head, std::move(responder));
+}
+
+void Page::serve(Box& box) {
+  impl_->serve(box);
 }
 
 void Page::changed() {

@@ -18,7 +18,9 @@
 
 namespace adit::page {
 
+class Box;
 class Keys;
+class Setup;
 
 /// One artifact report and where it is in its life.
 struct ReportRow {
@@ -168,9 +170,15 @@ class Page final : public intake::Handler {
        std::vector<icd::BearerToken> tokens);
   ~Page() override;
 
+  /// Serves the settings, too; `setup` outlives this. Once, before anything is opened.
+  void serve(Setup& setup);
+
   std::unique_ptr<intake::Exchange> open(const intake::RequestHead& head,
                                          std::shared_ptr<intake::Responder> responder,
                                          std::shared_ptr<intake::Flow> flow) override;
+
+  /// Serves what is known of the box, too; it outlives this. Once, before anything is opened.
+  void serve(Box& box);
 
   /// Something that the page shows has changed.
   void changed();

@@ -14,7 +14,7 @@ struct File {
 
 std::span<const File> embedded_files();
 
-/// The file that a request's path names ("/" is index.html, "/display" display.html), or null.
+/// The file that a request's path names ("/" is index.html, "/system" system.html and so on), or null.
 const File* file_at(std::string_view path);
 
 /// By the file's ending.

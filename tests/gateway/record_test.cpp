@@ -66,5 +66,18 @@ TEST(Record, KeepsTheLastRefusalsNewestFirst) {
   EXPECT_EQ(rows.front().status, 422);
 }
 
+TEST(Record, CountsWhatWasEverRefusedByUriAndStatus) {
+  Record record([] {});
+  for (std::size_t i = 0; i < Record::kMostRefusals + 5; ++i) {
+    record.refused(icd::Uri::MapUpdate, {"10.0.0.5", 3}, {icd::Status::UnprocessableEntity, "why"}, 0);
+  }
+  record.refused(icd::Uri::StateUpdate, {"10.0.0.5", 3}, {icd::Status::Unauthorized, "why"}, 0);
+  std::map<std::pair<std::string, int>, std::uint64_t> counts;
+  for (const auto& row : record.refused_counts()) counts[{row.uri, row.status}] = row.count;
+  EXPECT_EQ(counts.size(), 2);
+  EXPECT_EQ((counts[{"/map/update", 422}]), Record::kMostRefusals + 5);
+  EXPECT_EQ((counts[{"/state/update", 401}]), 1);
+}
+
 }  // namespace
 }  // namespace adit::gateway

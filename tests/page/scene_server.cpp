@@ -1,6 +1,6 @@
 // Serves the page with a scene of scenes.hpp, for a browser: `adit_page_scenes PORT [SCENE [first-start]]`.
 // The passwords are FakeKeys'; the token is "team-1". Each line on standard input is the name of the next
-// scene; its end ends the program.
+// scene, or after "say " what the log says next; its end ends the program.
 #include <sys/epoll.h>
 #include <unistd.h>
 
@@ -9,6 +9,7 @@
 #include <string>
 #include <utility>
 
+#include "page/fake_box.hpp"
 #include "page/fake_keys.hpp"
 #include "page/map_scene.hpp"
 #include "page/played.hpp"
@@ -79,13 +80,32 @@ class Stage final : public Source, public Operator {
   Played played_;
 };
 
+/// A box that has been at work for a while.
+void furnish(FakeBox& box, Time now) {
+  box.self = {.version = "0.1.0",
+              .build = "0123456789ab, GNU 12.2.0, Release",
+              .licence = "Apache-2.0",
+              .started = now - 4000,
+              .kernel = "Linux 6.1.0 aarch64",
+              .model = "A board",
+              .parts = {{.name = "zlib", .version = "1.2.13", .licence = "Zlib"},
+                        {.name = "SQLite", .version = "3.40.1", .licence = "blessing"}}};
+  box.say(5, "notice", "listening", "10.0.0.1:8000");
+  box.say(6, "info", "refused", "msg.info.width: expected a whole number, got a string");
+  box.say(4, "warning", "the Command Post refused a state", "<img src=x onerror=window.pwned=1>");
+  box.say(3, "error", "the ledger cannot be written", "disk I/O error");
+}
+
 int serve(std::uint16_t port, const std::string& first, bool first_start) {
   loop::Loop loop;
   Stage stage{loop, "empty"};
   if (!stage.change_to(first)) return std::fprintf(stderr, "no such scene: %s\n", first.c_str()), 2;
   FakeKeys keys;
+  FakeBox box;
   if (first_start) keys.operator_.reset();
   Page page{loop, stage, stage, keys, {token()}};
+  furnish(box, loop.stamp_now());
+  page.serve(box);
   auto server = intake::Server::start(loop, {.address = "127.0.0.1", .port = port, .interface = {}}, page);
   if (!server) return std::fprintf(stderr, "%s\n", server.error().c_str()), 1;
   std::printf("%d\n", (*server)->port());
@@ -102,6 +122,7 @@ int serve(std::uint16_t port, const std::string& first, bool first_start) {
     char byte = 0;
     if (::read(STDIN_FILENO, &byte, 1) != 1) return loop.stop();
     if (byte != '\n') return line.push_back(byte);
+    if (line.starts_with("say ")) return box.say(5, "notice", std::exchange(line, {}).substr(4));
     if (stage.change_to(std::exchange(line, {}))) page.changed();
   });
   loop.run();

@@ -2,7 +2,7 @@
 import { mkdirSync } from "node:fs";
 import { dirname, join } from "node:path";
 import { after, before } from "node:test";
-import { launch, look, serve } from "./stage.js";
+import { launch, look, serve, visit } from "./stage.js";
 
 export { axeFindsNothing } from "./axe.js";
 
@@ -17,6 +17,13 @@ export async function watch(t, scene, { path = "", prepare, ...options } = {}) {
   const page = await look(browser, stage.url + path, options, prepare);
   t.after(() => page.context().close());
   return { stage, page };
+}
+
+/** Whoever comes to `url` without a session, for the length of one test. */
+export async function visitor(t, url, options = {}) {
+  const page = await visit(browser, url, options);
+  t.after(() => page.context().close());
+  return page;
 }
 
 export const text = (page, selector) => page.textContent(selector);

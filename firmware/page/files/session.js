@@ -11,8 +11,11 @@ export function session(anew = false) {
   return asked;
 }
 
+let sitsOut = false;
+
 /** Asks for a password, and comes back here afterwards. */
 export function toLogin() {
+  if (sitsOut) return;
   const here = location.pathname + location.search + location.hash;
   location.replace(`login.html?next=${encodeURIComponent(here)}`);
 }
@@ -21,6 +24,18 @@ export function toLogin() {
 export async function checkSession() {
   const { role } = await session(true).catch(() => ({}));
   if (role === null) toLogin();
+}
+
+/** Stays until the box, which was reset, has begun anew: before, no page could be loaded whole. Then to its login. */
+export async function sitOutReset() {
+  sitsOut = true;
+  for (const end = performance.now() + 15_000; performance.now() < end; ) {
+    await new Promise((resolve) => setTimeout(resolve, 250));
+    const { first_start: firstStart } = await session(true).catch(() => ({}));
+    if (firstStart) break;
+  }
+  sitsOut = false;
+  toLogin();
 }
 
 /** Posts `body` as JSON and gives the answer; an Error's message is the sentence to show, its `status` the box's. */
@@ -37,11 +52,37 @@ export async function post(path, body = {}) {
   }
 }
 
+let ahead = 0; // of this device's clock, in ms
+
+/** The box's clock, in seconds since 1970: a phone's own may be anything. */
+export const boxNow = () => (Date.now() + ahead) / 1000;
+
+const SILENT = "The box does not answer.";
+
+/** What a path gives, where it gives what is asked for; an Error's message is the sentence to show. */
+async function ask(path) {
+  const answer = await fetch(path, { cache: "no-store" }).catch(() => Promise.reject(new Error(SILENT)));
+  if (answer.status === 401) toLogin();
+  ahead = Date.parse(answer.headers.get("Date")) - Date.now() || 0;
+  return answer;
+}
+
+/** Its JSON. */
+export const get = async (path) => resultOf(await ask(path));
+
+/** It as a file: its name and its bytes. */
+export async function getFile(path) {
+  const answer = await ask(path);
+  if (!answer.ok) await resultOf(answer); // throws
+  const name = /filename="([^"]+)"/.exec(answer.headers.get("Content-Disposition"))?.[1] ?? "adit";
+  return { name, blob: await answer.blob() };
+}
+
 async function send(path, body, csrf) {
   const headers = { "Content-Type": "application/json" };
   if (csrf) headers["Adit-CSRF"] = csrf;
   const request = { method: "POST", headers, body: JSON.stringify(body) };
-  return resultOf(await fetch(path, request).catch(() => Promise.reject(new Error("The box does not answer."))));
+  return resultOf(await fetch(path, request).catch(() => Promise.reject(new Error(SILENT))));
 }
 
 async function resultOf(answer) {

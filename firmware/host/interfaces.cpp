@@ -1,0 +1,101 @@
+#include "host/interfaces.hpp"
+
+#include <arpa/inet.h>
+#include <ifaddrs.h>
+#include <net/if.h>
+#include <netinet/in.h>
+
+#include <algorithm>
+#include <bit>
+#include <cerrno>
+#include <cstdint>
+#include <cstring>
+#include <memory>
+#include <sstream>
+#include <system_error>
+
+#include "host/files.hpp"
+#include "host/service.hpp"
+
+namespace adit::host {
+namespace {
+
+int ones_in(const void* bytes, std::size_t count) {
+  const auto* each = static_cast<const std::uint8_t*>(bytes);
+  int ones = 0;
+  for (std::size_t i = 0; i < count; ++i) ones += std::popcount(each[i]);
+  return ones;
+}
+
+/// "10.0.0.1/24", or "" for what is no address of IP.
+std::string address_text(const sockaddr* address, const sockaddr* mask) {
+  char text[INET6_ADDRSTRLEN];
+  if (address == nullptr || mask == nullptr) return "";
+  int ones = 0;
+  const void* bytes = nullptr;
+  if (address->sa_family == AF_INET) {
+    bytes = &reinterpret_cast<const sockaddr_in*>(address)->sin_addr;
+    ones = ones_in(&reinterpret_cast<const sockaddr_in*>(mask)->sin_addr, sizeof(in_addr));
+  } else if (address->sa_family == AF_INET6) {
+    bytes = &reinterpret_cast<const sockaddr_in6*>(address)->sin6_addr;
+    ones = ones_in(&reinterpret_cast<const sockaddr_in6*>(mask)->sin6_addr, sizeof(in6_addr));
+  }
+  if (bytes == nullptr || inet_ntop(address->sa_family, bytes, text, sizeof text) == nullptr) return "";
+  return std::string(text) + "/" + std::to_string(ones);
+}
+
+/// Of an address as /proc/net/route has it: hexadecimal, in the order of its bytes in memory.
+std::string address_text(std::uint32_t address) {
+  char text[INET_ADDRSTRLEN];
+  return inet_ntop(AF_INET, &address, text, sizeof text) == nullptr ? "" : text;
+}
+
+}  // namespace
+
+std::expected<std::vector<Interface>, std::string> interfaces() {
+  ifaddrs* first = nullptr;
+  if (getifaddrs(&first) != 0) return std::unexpected(std::system_category().message(errno));
+  const std::unique_ptr<ifaddrs, decltype(&freeifaddrs)> all(first, &freeifaddrs);
+  std::vector<Interface> interfaces;
+  for (const ifaddrs* each = all.get(); each != nullptr; each = each->ifa_next) {
+    auto known = std::ranges::find(interfaces, each->ifa_name, &Interface::name);
+    if (known == interfaces.end()) {
+      interfaces.push_back({.name = each->ifa_name,
+                            .up = (each->ifa_flags & IFF_UP) != 0,
+                            .carrier = carrier(each->ifa_name),
+                            .addresses = {}});
+      known = interfaces.end() - 1;
+    }
+    if (auto text = address_text(each->ifa_addr, each->ifa_netmask); !text.empty()) {
+      known->addresses.push_back(std::move(text));
+    }
+  }
+  return interfaces;
+}
+
+std::vector<Route> routes_in(const std::string& table) {
+  std::vector<Route> routes;
+  std::istringstream lines(table);
+  for (std::string line; std::getline(lines, line);) {
+    std::istringstream words(line);
+    std::string interface;
+    std::uint32_t destination = 0, gateway = 0, mask = 0;
+    unsigned flags = 0, references = 0, uses = 0, metric = 0;
+    words >> interface >> std::hex >> destination >> gateway >> flags >> std::dec >> references >> uses >>
+        metric >> std::hex >> mask;
+    if (!words) continue;  // the heading
+    routes.push_back({.destination = address_text(destination) + "/" + std::to_string(std::popcount(mask)),
+                      .gateway = gateway == 0 ? "" : address_text(gateway),
+                      .interface = interface,
+                      .metric = metric});
+  }
+  return routes;
+}
+
+/// Of this process's network, which is there under ProcSubset=pid, too.
+std::vector<Route> routes() {
+  const auto file = slurp("/proc/self/net/route");
+  return file ? routes_in(file->text) : std::vector<Route>{};
+}
+
+}  // namespace adit::host

@@ -1,0 +1,33 @@
+#pragma once
+
+#include <expected>
+#include <optional>
+#include <string>
+#include <vector>
+
+namespace adit::host {
+
+/// A network interface as the kernel has it now.
+struct Interface {
+  std::string name;
+  bool up = false;
+  std::optional<bool> carrier;
+  std::vector<std::string> addresses;  // "10.0.0.1/24", "fe80::1/64"
+};
+
+/// All of them in the kernel's order, or why they cannot be told (getifaddrs(3)).
+std::expected<std::vector<Interface>, std::string> interfaces();
+
+/// A route of IPv4.
+struct Route {
+  std::string destination;  // "10.100.1.0/24", "0.0.0.0/0"
+  std::string gateway;      // "" where it is on the link
+  std::string interface;
+  unsigned metric = 0;
+};
+
+/// By the text of /proc/net/route (proc_net(5)); a line that is none is left out.
+std::vector<Route> routes_in(const std::string& table);
+std::vector<Route> routes();
+
+}  // namespace adit::host

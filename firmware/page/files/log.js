@@ -1,0 +1,60 @@
+// The log, newest first, as it grows.
+import { badge, make } from "./dom.js";
+import { get } from "./session.js";
+import { clip, timeOfDay } from "./words.js";
+
+const EVERY = 2000; // ms
+const MOST = 500; // rows
+const LEVELS = { error: "bad", warning: "wait", notice: "good" };
+
+const section = document.getElementById("log");
+const rows = section.querySelector(".rows"), empty = section.querySelector(".empty");
+const level = section.querySelector("select"), text = section.querySelector("input"), file = section.querySelector("a");
+
+let last = 0; // the number of the newest that was asked for
+let asked = 0; // counts what was asked, so that a late answer to an older question is not shown
+
+function row({ at, level, message, fields }) {
+  const item = make("li", make("time", timeOfDay(at)), badge(make("span.badge"), LEVELS[level] ?? "quiet", level), make("span.message", clip(message, 600)));
+  item.dataset.level = LEVELS[level] ?? "quiet";
+  const said = Object.entries(fields).map(([name, value]) => `${name}=${value}`);
+  if (said.length) item.append(make("span.fields", clip(said.join("  "), 1200)));
+  return item;
+}
+
+function wanted() {
+  const query = new URLSearchParams({ level: level.value });
+  if (text.value) query.set("text", text.value);
+  return query;
+}
+
+async function ask() {
+  const mine = ++asked, query = wanted();
+  query.set("since", last);
+  const answer = await get(`/adit/log?${query}`);
+  if (mine !== asked) return;
+  if (answer.last < last) return startOver(); // the box began anew
+  last = answer.last;
+  rows.prepend(...answer.records.map(row).reverse());
+  while (rows.children.length > MOST) rows.lastElementChild.remove();
+  empty.hidden = rows.children.length > 0;
+  empty.textContent = text.value || level.value !== "debug" ? "Nothing that is asked for." : "Nothing yet.";
+}
+
+function startOver() {
+  last = 0;
+  rows.replaceChildren();
+  file.href = `adit/log.txt?${wanted()}`;
+  return ask();
+}
+
+/** Shows what comes; `lost(true or false)` is told whether the box answers. */
+export function followLog(lost) {
+  const turn = (deed) => deed().then(() => lost(false), () => lost(true));
+  for (const filter of [level, text]) filter.addEventListener("input", () => turn(startOver));
+  const follow = async () => {
+    if (!document.hidden) await turn(ask);
+    setTimeout(follow, EVERY);
+  };
+  turn(startOver).then(() => setTimeout(follow, EVERY));
+}

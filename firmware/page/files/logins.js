@@ -1,0 +1,62 @@
+// Who is logged in, and how to end it.
+import { confirmed } from "./dialog.js";
+import { list, make, say } from "./dom.js";
+import { get, post, toLogin } from "./session.js";
+import { ago, clip } from "./words.js";
+
+const EVERY = 5000; // ms
+
+const section = document.getElementById("sessions");
+const rows = section.querySelector(".who"), trouble = section.querySelector(".trouble");
+
+/** "Chrome on Windows" of a User-Agent, or its beginning. */
+function browserOf(agent) {
+  const browser = /(Firefox|Edg|OPR|Chrome|Safari)\//.exec(agent)?.[1];
+  const system = /(Android|iPhone|iPad|Windows|Mac OS X|CrOS|Linux)/.exec(agent)?.[1];
+  return browser && system ? `${browser} on ${system}` : clip(agent || "a program", 40);
+}
+
+function create() {
+  const button = make("button");
+  button.type = "button";
+  return make("li", make("span.role"), make("span.from"), make("span.note"), button);
+}
+
+function update(node, each, now) {
+  const [role, from, times, button] = node.children;
+  say(role, each.own ? `${each.role} (you)` : each.role);
+  say(from, `${each.address}, ${browserOf(each.agent)}`);
+  say(times, `logged in ${ago(now - each.made)}, seen ${ago(now - each.seen)}`);
+  say(button, each.own ? "Log out" : "End");
+  button.setAttribute("aria-label", `${each.own ? "Log out" : "End"}: ${each.role} at ${each.address}, session ${each.number}`);
+  button.onclick = () => end(each, button);
+}
+
+async function show() {
+  const sessions = await get("/adit/sessions");
+  const now = Math.max(...sessions.map(({ seen }) => seen), 0); // the box's clock: who asks is seen now
+  list(rows, sessions, ({ number }) => number, create, (node, each) => update(node, each, now));
+}
+
+async function end(each, button) {
+  const text = each.own ? "You have to log in again after that." : "Whoever it is has to log in again.";
+  if (!(await confirmed({ title: `End session ${each.number}, ${each.role}?`, text, word: "End it" }))) return;
+  button.disabled = true;
+  trouble.textContent = "";
+  try {
+    await post(each.own ? "/adit/logout" : `/adit/sessions/${each.number}/end`);
+    if (each.own) return toLogin();
+    await show();
+  } catch (error) {
+    trouble.textContent = error.message;
+    button.disabled = false;
+  }
+}
+
+export function watchSessions() {
+  const follow = async () => {
+    if (!document.hidden) await show().catch(() => {}); // the log says that the box is lost
+    setTimeout(follow, EVERY);
+  };
+  follow();
+}

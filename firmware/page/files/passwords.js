@@ -1,0 +1,50 @@
+// Setting and removing passwords. What is wrong with one is the box's to say.
+import { post } from "./session.js";
+
+const DONE = {
+  operator: "Changed. Whoever else was logged in has to log in anew.",
+  viewer: "Set. Whoever was logged in as viewer has to log in anew.",
+  removed: "Removed: nobody can log in as viewer.",
+};
+
+/** Does one deed of a form, and says what came of it. */
+async function attempt(form, deed) {
+  const outcome = form.querySelector(".outcome"), buttons = form.querySelectorAll("button");
+  const say = (text, bad) => {
+    outcome.textContent = text;
+    outcome.dataset.bad = bad;
+  };
+  say("", false);
+  for (const button of buttons) button.disabled = true;
+  try {
+    say(await deed(), false);
+    form.reset();
+  } catch (error) {
+    say(error.message, true);
+  }
+  for (const button of buttons) button.disabled = false;
+}
+
+async function set(role, { current, password, again }) {
+  if (!current) throw new Error("The operator’s present password is missing.");
+  if (password !== again) throw new Error("The two new passwords differ.");
+  await post("/adit/password", { role, current, password });
+  return DONE[role];
+}
+
+async function remove({ current }) {
+  if (!current) throw new Error("The operator’s present password is missing.");
+  await post("/adit/password", { role: "viewer", current, password: null });
+  return DONE.removed;
+}
+
+export function offerPasswords() {
+  for (const form of document.querySelectorAll("#passwords form")) {
+    const fields = () => Object.fromEntries(new FormData(form));
+    form.addEventListener("submit", (event) => {
+      event.preventDefault();
+      attempt(form, () => set(form.dataset.role, fields()));
+    });
+    form.querySelector(".remove")?.addEventListener("click", () => attempt(form, () => remove(fields())));
+  }
+}

@@ -1,0 +1,35 @@
+// The box itself: its log, who is logged in, passwords, what to send to whoever is to help, and what it is made of.
+import { badge } from "./dom.js";
+import { followLog } from "./log.js";
+import { offerBundle, offerReset, showAbout } from "./box.js";
+import { watchSessions } from "./logins.js";
+import { offerPasswords } from "./passwords.js";
+import { session, showWho, toLogin } from "./session.js";
+
+const link = document.getElementById("link");
+const RETRY = 2000;
+
+function linkIs(lost) {
+  badge(link, lost ? "bad" : "good", lost ? "Box lost" : "Live");
+}
+
+async function begin() {
+  const { role } = await session();
+  if (!role) return toLogin();
+  const operator = role === "operator";
+  for (const section of document.querySelectorAll("[data-operator]")) section.hidden = !operator;
+  document.getElementById("looks").hidden = operator;
+  showWho(document.getElementById("who"));
+  followLog(linkIs);
+  showAbout();
+  if (!operator) return;
+  watchSessions();
+  offerPasswords();
+  offerBundle();
+  offerReset();
+}
+
+begin().catch(() => {
+  linkIs(true);
+  setTimeout(() => location.reload(), RETRY);
+});

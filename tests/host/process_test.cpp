@@ -1,0 +1,32 @@
+#include "host/process.hpp"
+
+#include <fcntl.h>
+#include <gmock/gmock.h>
+#include <unistd.h>
+
+namespace adit::host {
+namespace {
+
+TEST(Process, TellsWhatTheKernelCounts) {
+  const Process before = process();
+  EXPECT_GT(before.resident_bytes, 1u << 20);
+  EXPECT_LT(before.resident_bytes, 1u << 30);
+  EXPECT_GE(before.threads, 1);
+  EXPECT_GE(before.most_files, before.open_files);
+  const int fd = open("/dev/null", O_RDONLY | O_CLOEXEC);
+  volatile double sum = 0;
+  while (process().cpu_seconds < before.cpu_seconds + 0.02) sum = sum + 1;
+  EXPECT_EQ(process().open_files, before.open_files + 1);
+  close(fd);
+}
+
+TEST(Kernel, IsNamed) {
+  EXPECT_THAT(kernel(), testing::MatchesRegex("Linux .+ .+"));
+}
+
+TEST(Model, HasNoByteOfZeroInIt) {
+  EXPECT_EQ(model().find('\0'), std::string::npos);
+}
+
+}  // namespace
+}  // namespace adit::host

@@ -1,0 +1,101 @@
+// The real thing: aditd with a rehearsal Command Post, on loopback, for the length of one test.
+import { spawn } from "node:child_process";
+import { once } from "node:events";
+import { chmodSync, mkdirSync, mkdtempSync, readFileSync, rmSync, writeFileSync } from "node:fs";
+import { tmpdir } from "node:os";
+import { dirname, join } from "node:path";
+import { setTimeout as sleep } from "node:timers/promises";
+
+const BIN = process.env.ADIT_BIN ?? dirname(process.env.SCENE_SERVER);
+export const TOKENS = { scoring: "scoring-token-1", mapping: "mapping-token-1", team: "team-token-1" };
+export const OPERATOR = "correct horse battery", VIEWER = "look, do not touch";
+
+/** What `look()` gives, once it is something. */
+export async function until(look, what, within = 15_000) {
+  for (const end = Date.now() + within; Date.now() < end; await sleep(50)) {
+    const found = await look();
+    if (found) return found;
+  }
+  throw new Error(`waited in vain for ${what}`);
+}
+
+class Program {
+  constructor(t, log, name, ...args) {
+    this.log = "";
+    this.process = spawn(join(BIN, name), args, { stdio: ["ignore", "pipe", "pipe"] });
+    for (const output of [this.process.stdout, this.process.stderr]) output.on("data", (bytes) => (this.log += bytes));
+    t.after(() => this.end());
+  }
+  /** The first group of `pattern` in what it printed. */
+  said = (pattern) => until(() => pattern.exec(this.log)?.[1], `${pattern} in:\n${this.log}`);
+  async end() {
+    if (this.process.exitCode !== null || this.process.signalCode !== null) return;
+    this.process.kill("SIGTERM");
+    await once(this.process, "exit");
+  }
+}
+
+function secretsIn(folder) {
+  mkdirSync(folder, { mode: 0o700 });
+  for (const [name, token] of Object.entries(TOKENS)) {
+    writeFileSync(join(folder, `${name}.token`), `${token}\n`);
+    chmodSync(join(folder, `${name}.token`), 0o600);
+  }
+  return folder;
+}
+
+/** aditd at work, both passwords set; `ask(method, path, {role, body, headers})` asks as an operator's script by default. */
+export async function box(t) {
+  const folder = mkdtempSync(join(tmpdir(), "adit-page-"));
+  t.after(() => rmSync(folder, { recursive: true }));
+  const secrets = secretsIn(join(folder, "secrets"));
+  const post = new Program(t, folder, "adit-rehearsal", "--scoring", "127.0.0.1:0", "--mapping", "127.0.0.1:0", "--secrets", secrets, "--verbose");
+  const address = async (name) => ({ address: "127.0.0.1", port: Number(await post.said(new RegExp(`${name} 127\\.0\\.0\\.1:(\\d+)`))) });
+  const settings = {
+    version: 1,
+    command_post: { scoring: await address("scoring"), mapping: await address("mapping") },
+    team: { listen: [{ address: "127.0.0.1", port: 0 }] },
+  };
+  writeFileSync(join(folder, "settings.json"), JSON.stringify(settings));
+  const state = join(folder, "state");
+  const aditd = new Program(t, folder, "aditd", "--settings", join(folder, "settings.json"), "--secrets", secrets, "--state", state);
+  const url = `http://127.0.0.1:${await aditd.said(/listening .*port=(\d+)/)}`;
+
+  const who = { operator: { Authorization: `Bearer ${TOKENS.team}` }, nobody: {} };
+  const ask = (method, path, { role = "operator", body, headers = {} } = {}) =>
+    fetch(url + path, {
+      method,
+      headers: { ...(method === "POST" && { "Content-Type": "application/json" }), ...who[role], ...headers },
+      body: body === undefined ? undefined : JSON.stringify(body),
+    });
+  const logIn = async (password) => {
+    const answer = await ask("POST", "/adit/login", { role: "nobody", body: { password } });
+    const { csrf } = await answer.json();
+    return { Cookie: answer.headers.get("Set-Cookie").split(";")[0], "Adit-CSRF": csrf };
+  };
+  const code = readFileSync(join(state, "first-start.code"), "utf8").trim();
+  await ask("POST", "/adit/password", { role: "nobody", body: { role: "operator", code, password: OPERATOR } });
+  await ask("POST", "/adit/password", { body: { role: "viewer", current: OPERATOR, password: VIEWER } });
+  who.viewer = await logIn(VIEWER);
+  return { url, ask, logIn, code, aditd, folder };
+}
+
+/** A team at work: one of every kind of message, and one that is refused. */
+export async function play(ask) {
+  const header = { stamp: Date.now() / 1000, frame_id: "darpa" };
+  const pose = { position: { x: 1, y: 2, z: 0 }, orientation: { x: 0, y: 0, z: 0, w: 1 } };
+  const data = Buffer.from([0, 100, 0, 100]).toString("base64");
+  const grid = { info: { resolution: 0.2, width: 2, height: 2, origin: pose }, data };
+  const map = { type: "OccupancyGrid", name: "ugv1", msg: { header, ...grid } };
+  const marker = { header, ns: "a", id: 1, type: 1, action: 0, pose, scale: { x: 1, y: 1, z: 1 }, color: { r: 1, g: 0, b: 0, a: 1 } };
+  const posts = [
+    ["/map/update", map],
+    ["/state/update", { header, poses: [{ name: "ugv1", ...pose }] }],
+    ["/markers/update", { markers: [marker] }],
+  ];
+  for (const [path, body] of posts) {
+    const answer = await ask("POST", path, { body });
+    if (!answer.ok) throw new Error(`${path}: ${answer.status} ${await answer.text()}`);
+  }
+  await ask("POST", "/state/update", { body: { poses: "none" } });
+}

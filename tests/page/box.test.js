@@ -1,0 +1,81 @@
+// What a real aditd tells of itself: metrics that the Grafana dashboard shows, and a support bundle without secrets.
+import assert from "node:assert/strict";
+import { execFileSync } from "node:child_process";
+import { mkdtempSync, readFileSync, readdirSync, rmSync, writeFileSync } from "node:fs";
+import { tmpdir } from "node:os";
+import { join } from "node:path";
+import { test } from "node:test";
+import { gunzipSync } from "node:zlib";
+import { OPERATOR, TOKENS, VIEWER, box, play, until } from "./box.js";
+
+const dashboard = JSON.parse(readFileSync(new URL("../../services/grafana/adit.json", import.meta.url), "utf8"));
+const expressions = dashboard.panels.flatMap(({ targets }) => (targets ?? []).map(({ expr }) => expr));
+
+const scrape = async (ask) => (await ask("GET", "/metrics")).text();
+
+test("every metric of the dashboard is in a real scrape, with the labels that the dashboard uses", async (t) => {
+  const { ask } = await box(t);
+  await play(ask);
+  const metrics = await until(async () => {
+    const text = await scrape(ask);
+    return /^adit_run_score /m.test(text) && /^adit_updates_forwarded_age_seconds\{kind="grid"/m.test(text) && text;
+  }, "a run that is known");
+  assert.ok(expressions.length > 25);
+  const names = new Set(expressions.flatMap((expression) => expression.match(/adit_\w+/g)));
+  const missing = [...names].filter((name) => !new RegExp(`^${name}[{ ]`, "m").test(metrics));
+  assert.deepEqual(missing, []);
+  for (const { targets = [] } of dashboard.panels) {
+    for (const { expr, legendFormat } of targets) {
+      const [name] = /adit_\w+/.exec(expr);
+      const [sample] = new RegExp(`^${name}.*`, "m").exec(metrics);
+      for (const [, label] of legendFormat.matchAll(/\{\{(\w+)\}\}/g)) assert.match(sample, new RegExp(`[{,]${label}="`), expr);
+    }
+  }
+});
+
+test("metrics follow what happens", async (t) => {
+  const { ask } = await box(t);
+  await play(ask);
+  const value = async (sample) => Number((await scrape(ask)).split("\n").find((line) => line.startsWith(`${sample} `))?.split(" ").at(-1));
+  await until(async () => (await value('adit_updates_forwarded_total{kind="state",robot="ugv1"}')) === 1, "a state to be forwarded");
+  assert.equal(await value('adit_updates_accepted_total{kind="state",robot="ugv1"}'), 1);
+  assert.equal(await value('adit_refused_total{uri="/state/update",status="422"}'), 1);
+  assert.equal(await value('adit_endpoint_up{endpoint="scoring"}'), 1);
+  assert.equal(await value('adit_sessions{role="viewer"}'), 1);
+  assert.ok((await value("adit_process_resident_memory_bytes")) > 1e6);
+  assert.ok((await value("adit_link_sent_bytes_total")) > 100);
+  await ask("POST", "/adit/reports", { body: { type: "Drill", x: 1, y: 2, z: 3 } });
+  await until(async () => (await value('adit_reports{state="answered"}')) + (await value('adit_reports{state="settled"}')) === 1, "an answered report");
+});
+
+test("the support bundle holds all that helps, and no token, password, code or cookie", async (t) => {
+  const { ask, code, logIn } = await box(t);
+  await play(ask);
+  const mine = await logIn(OPERATOR);
+  await ask("POST", "/adit/login", { role: "nobody", body: { password: "an untrue password" } });
+  await ask("POST", "/state/update", { role: "nobody", headers: { Authorization: "Bearer a-wrong-token" }, body: {} });
+  await ask("POST", "/adit/reports", { body: { type: "Drill", x: 1, y: 2, z: 3 } });
+  const answer = await ask("GET", "/adit/bundle");
+  assert.equal(answer.status, 200);
+  const bytes = Buffer.from(await answer.arrayBuffer());
+  const folder = mkdtempSync(join(tmpdir(), "adit-bundle-"));
+  t.after(() => rmSync(folder, { recursive: true }));
+  writeFileSync(join(folder, "bundle.tar.gz"), bytes);
+  execFileSync("tar", ["-xzf", "bundle.tar.gz"], { cwd: folder });
+  const [inside] = readdirSync(folder).filter((name) => name.startsWith("adit-support-"));
+  const read = (name) => readFileSync(join(folder, inside, name), "utf8");
+  assert.equal(JSON.parse(read("reports.json"))[0].type, "Drill");
+  assert.equal(JSON.parse(read("settings.json")).version, 1);
+  assert.ok(JSON.parse(read("run.json")).endpoints.length === 2);
+  assert.ok(JSON.parse(read("network.json")).interfaces.some(({ addresses }) => addresses.includes("127.0.0.1/8")));
+  assert.ok(JSON.parse(read("about.json")).parts.length >= 9);
+  assert.match(read("log.txt"), /a wrong password was shown/);
+  assert.match(read("metrics.txt"), /^adit_build_info/m);
+  const all = gunzipSync(bytes).toString("latin1") + (await (await ask("GET", "/adit/log.txt")).text()) + (await (await ask("GET", "/adit/log")).text());
+  const secrets = [...Object.values(TOKENS), OPERATOR, VIEWER, "an untrue password", "a-wrong-token", code, mine["Adit-CSRF"], mine.Cookie.split("=")[1], "$y$"];
+  for (const secret of secrets) {
+    assert.ok(secret.length > 2);
+    const at = all.indexOf(secret);
+    assert.equal(at, -1, `${secret} in: ${all.slice(Math.max(0, at - 200), at + 200)}`);
+  }
+});

@@ -1,0 +1,143 @@
+// The description of the API (openapi.json), held against a real aditd: every path and method that it names, and every
+// route that the README names.
+import assert from "node:assert/strict";
+import { readFileSync } from "node:fs";
+import { test } from "node:test";
+import Ajv from "ajv/dist/2020.js";
+import { OPERATOR, box, play, until } from "./box.js";
+
+const read = (path) => readFileSync(new URL(`../../firmware/page/${path}`, import.meta.url), "utf8");
+const api = JSON.parse(read("openapi.json"));
+const operations = Object.entries(api.paths).flatMap(([path, methods]) =>
+  Object.entries(methods).map(([method, operation]) => ({ path, method: method.toUpperCase(), operation })));
+const named = (operation, where) => (operation.parameters ?? []).filter((each) => each.in === where);
+
+const ajv = new Ajv({ strict: true, allErrors: true, validateFormats: false, strictTypes: false, keywords: ["x-event", "example"] });
+const refersByName = (schema) => JSON.parse(JSON.stringify(schema).replaceAll("#/components/schemas/", ""));
+for (const [name, schema] of Object.entries(api.components.schemas)) ajv.addSchema({ $id: name, ...refersByName(schema) });
+
+/** What is wrong with a value by a schema of the description. */
+function faults(schema, value) {
+  const check = ajv.compile(refersByName(schema));
+  return check(value) ? [] : check.errors.map(({ instancePath, message, params }) => `${instancePath} ${message} ${JSON.stringify(params)}`);
+}
+
+const resolved = (response) => (response.$ref ? api.components.responses[response.$ref.split("/").at(-1)] : response);
+
+/** Fails unless the answer is one that the description knows of this operation. */
+async function isAsDescribed({ path, method, operation }, answer) {
+  const what = `${method} ${path} ${answer.status}`;
+  const response = operation.responses[answer.status];
+  if (!response) assert.fail(`${what} is not described: ${await answer.text()}`);
+  const [[type, content]] = Object.entries(resolved(response).content);
+  assert.equal(answer.headers.get("Content-Type"), type, what);
+  if (content.schema) assert.deepEqual(faults(content.schema, await answer.json()), [], what);
+  if (content["x-event"]) assert.deepEqual(faults(content["x-event"], await firstEvent(answer)), [], what);
+  if (!content.schema && !content["x-event"]) assert.ok((await answer.arrayBuffer()).byteLength > 0, what);
+}
+
+async function firstEvent(answer) {
+  let text = "";
+  for await (const bytes of answer.body) {
+    text += Buffer.from(bytes).toString();
+    const event = /^data: (.*)\n\n/m.exec(text);
+    if (event) return JSON.parse(event[1]);
+  }
+}
+
+/** A path with the examples of the description in it, or with what `known` has in their place. */
+function pathOf({ path, operation }, known = {}) {
+  const value = (each) => String(known[each.name] ?? each.example);
+  const filled = named(operation, "path").reduce((sum, each) => sum.replace(`{${each.name}}`, value(each)), path);
+  const query = new URLSearchParams(named(operation, "query").filter((each) => "example" in each).map((each) => [each.name, value(each)]));
+  return query.size ? `${filled}?${query}` : filled;
+}
+
+const bodyOf = ({ operation }) => operation.requestBody?.content["application/json"].example;
+
+test("describes every route of the README, and no route that is not there", () => {
+  const rows = [...read("README.md").matchAll(/^\| (GET|POST) `([^`]+)` \|/gm)].map(([, method, path]) => ({ method, path }));
+  assert.ok(rows.length > 20);
+  const pattern = (path) => new RegExp(`^${path.replaceAll(".", "\\.").replaceAll(/\{\w+\}/g, "[^/]+")}$`);
+  const fits = (row, each) => row.method === each.method && pattern(each.path).test(row.path);
+  assert.deepEqual(rows.filter((row) => !operations.some((each) => fits(row, each))).map(({ method, path }) => `${method} ${path}`), []);
+  assert.deepEqual(operations.filter((each) => !rows.some((row) => fits(row, each))).map(({ method, path }) => `${method} ${path}`), []);
+});
+
+test("every example fits its schema", () => {
+  for (const each of operations) {
+    for (const parameter of each.operation.parameters ?? []) {
+      if ("example" in parameter) assert.deepEqual(faults(parameter.schema, parameter.example), [], `${each.path} ${parameter.name}`);
+      else assert.equal(parameter.in, "query", `${each.path} ${parameter.name}`);
+    }
+    const body = each.operation.requestBody?.content["application/json"];
+    if (body) assert.deepEqual(faults(body.schema, body.example), [], each.path);
+    if (each.method === "POST") assert.ok(body, `${each.path} has an example`);
+  }
+});
+
+test("every path and method does as it is described to an operator", async (t) => {
+  const { ask, logIn } = await box(t);
+  await play(ask);
+  const map = await until(async () => (await (await ask("GET", "/adit/map")).json()).layers[0], "a picture of a map");
+  const [tile] = map.tiles;
+  const session = async () => {
+    await logIn(OPERATOR);
+    return (await (await ask("GET", "/adit/sessions")).json())[0].number;
+  };
+  const report = async (type) => (await (await ask("POST", "/adit/reports", { body: { type, x: 1, y: 2, z: 3 } })).json()).report;
+  const state = async (number) => (await (await ask("GET", `/adit/reports/${number}`)).json()).state;
+  const settled = async (number) => (await until(async () => /answered|settled/.test(await state(number)), `report ${number} to be answered, not ${await state(number)}`)) && number;
+  const waiting = async () => {
+    for (const type of ["Rope", "Vent", "Gas"]) await report(type);
+    return report("Helmet"); // the others go first, one a second
+  };
+  const first = await settled(await report("Drill"));
+  const withdrawn = await waiting();
+  const known = {
+    "GET /adit/map/{kind}/{robot}/{level}/{x}/{y}.png": () => ({ kind: map.kind, robot: map.robot || "-", ...tile }),
+    "POST /adit/sessions/{session}/end": async () => ({ session: await session() }),
+    "POST /adit/reports/{number}/withdraw": () => ({ number: withdrawn }),
+    "POST /adit/reports/{number}/hold": async () => ({ number: await report("Cube") }),
+    "POST /adit/reports/{number}/send": () => ({ number: withdrawn }),
+    "POST /adit/reports/{number}/resubmit": () => ({ number: first }),
+  };
+  const never = ["POST /adit/reports/{number}/done"]; // no report is in doubt: 409
+  for (const each of operations) {
+    const name = `${each.method} ${each.path}`;
+    const answer = await ask(each.method, pathOf(each, await known[name]?.()), { body: bodyOf(each) });
+    assert.equal(answer.ok, !never.includes(name), `${name}: ${answer.status}`);
+    await isAsDescribed(each, answer);
+  }
+});
+
+test("nobody who is not known comes in, but where it is said to be for anybody", async (t) => {
+  const { ask } = await box(t);
+  for (const each of operations) {
+    const forAnybody = each.operation.security?.length === 0;
+    assert.ok(forAnybody !== Boolean(each.operation["x-adit-role"]), each.path);
+    const answer = await ask(each.method, pathOf(each), { role: "nobody", body: bodyOf(each) });
+    assert.equal(answer.status === 401, !forAnybody, `${each.method} ${each.path}: ${answer.status}`);
+    await isAsDescribed(each, answer);
+  }
+});
+
+test("a viewer is let in where it is said, and nowhere else", async (t) => {
+  const { ask } = await box(t);
+  for (const each of operations.filter(({ operation }) => operation["x-adit-role"])) {
+    const answer = await ask(each.method, pathOf(each), { role: "viewer", body: bodyOf(each) });
+    assert.equal(answer.status === 403, each.operation["x-adit-role"] === "operator", `${each.method} ${each.path}: ${answer.status}`);
+    await isAsDescribed(each, answer);
+  }
+});
+
+test("another method is refused, and the answer names those there are", async (t) => {
+  const { ask } = await box(t);
+  for (const [path, methods] of Object.entries(api.paths)) {
+    const [operation] = Object.values(methods);
+    const answer = await ask("DELETE", pathOf({ path, operation }));
+    assert.equal(answer.status, 405, path);
+    const allowed = answer.headers.get("Allow").split(", ");
+    assert.deepEqual(Object.keys(methods).map((method) => method.toUpperCase()).sort(), allowed.filter((method) => method !== "HEAD").sort(), path);
+  }
+});

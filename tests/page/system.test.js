@@ -1,0 +1,273 @@
+import assert from "node:assert/strict";
+import { readFile } from "node:fs/promises";
+import { test } from "node:test";
+import { gunzipSync } from "node:zlib";
+import { serve } from "./stage.js";
+import { axeFindsNothing, shoot, text, visitor } from "./watch.js";
+
+const OPERATOR = "correct horse", VIEWER = "look, do not touch";
+const SIZES = [["phone", 390, 844], ["720p", 1280, 720], ["1080p", 1920, 1080], ["4k", 3840, 2160]];
+
+/** A page that logged in with `password` and looks at the system, for the length of one test. */
+async function come(t, password = OPERATOR, { stage, ...options } = {}) {
+  if (!stage) {
+    stage = await serve("calm");
+    t.after(() => stage.end());
+  }
+  const page = await visitor(t, `${stage.url}system`, options);
+  await page.waitForURL(/login\.html\?next=%2Fsystem/);
+  await page.locator("#login").getByLabel("Password").fill(password);
+  await page.keyboard.press("Enter");
+  await page.waitForURL(/\/system$/);
+  await page.locator("#link .text", { hasText: "Live" }).waitFor();
+  return { stage, page };
+}
+
+const rows = (page) => page.$$eval("#log .rows li", (items) => items.map((item) => item.innerText.replace(/\s+/g, " ")));
+const untilRows = (page, count) => page.waitForFunction((count) => document.querySelectorAll("#log .rows li").length === count, count);
+
+/** Fills the fields of a form by their names. */
+async function fill(form, fields) {
+  for (const [name, value] of Object.entries(fields)) await form.locator(`[name=${name}]`).fill(value);
+}
+
+test("shows the log as it grows, newest first", async (t) => {
+  const { stage, page } = await come(t);
+  await untilRows(page, 4);
+  const said = await rows(page);
+  assert.match(said[0], /error the ledger cannot be written note=disk I\/O error/);
+  assert.match(said[3], /notice listening/);
+  stage.play("say the cable was pulled");
+  await page.locator("#log li", { hasText: "the cable was pulled" }).waitFor({ timeout: 4000 });
+  assert.match((await rows(page))[0], /the cable was pulled/);
+  assert.equal(await page.evaluate(() => window.pwned), undefined, "what anybody sent is text");
+  assert.deepEqual(page.complaints, []);
+});
+
+test("shows of the log what is asked for, and gives the same as a file", async (t) => {
+  const { page } = await come(t);
+  await page.getByLabel("Shown").selectOption("Warnings and worse");
+  await untilRows(page, 2);
+  await page.getByLabel("Holding the text").fill("LEDGER");
+  await untilRows(page, 1);
+  assert.match((await rows(page))[0], /the ledger/);
+  const [download] = await Promise.all([page.waitForEvent("download"), page.getByRole("link", { name: "Download" }).click()]);
+  assert.equal(download.suggestedFilename(), "adit-log.txt");
+  assert.equal(await readFile(await download.path(), "utf8"), "error: the ledger cannot be written note=disk I/O error\n");
+  await page.getByLabel("Holding the text").fill("nobody said this & that");
+  await page.getByText("Nothing that is asked for.").waitFor();
+  await page.getByLabel("Holding the text").fill("");
+  await page.getByLabel("Shown").selectOption("Everything");
+  await untilRows(page, 4);
+});
+
+test("says when the box is lost, and comes back with a log of its own when it was started anew", async (t) => {
+  const { stage, page } = await come(t);
+  await untilRows(page, 4);
+  for (let i = 0; i < 3; ++i) stage.play(`say ${i}`);
+  await untilRows(page, 7);
+  await stage.end();
+  await page.locator("#link .text", { hasText: "Box lost" }).waitFor();
+  const again = await serve("calm", stage.port);
+  t.after(() => again.end());
+  await page.waitForURL(/login\.html/); // its sessions are gone, too
+  await page.locator("#login").getByLabel("Password").fill(OPERATOR);
+  await page.keyboard.press("Enter");
+  await untilRows(page, 4);
+});
+
+test("lists who is logged in, and ends a session, whose page goes to the login", async (t) => {
+  const { stage, page } = await come(t);
+  const { page: other } = await come(t, VIEWER, { stage });
+  const row = page.locator("#sessions li", { hasText: /viewer/i });
+  await row.waitFor({ timeout: 8000 });
+  assert.match(await row.innerText(), /127\.0\.0\.1, Chrome on Linux/);
+  assert.match(await row.innerText(), /logged in now, seen now|logged in \d s ago/);
+  await row.getByRole("button", { name: "End: viewer" }).click();
+  await page.getByRole("button", { name: "Leave it" }).click();
+  assert.equal(await page.locator("#sessions li").count(), 2, "nothing is done on a no");
+  await row.getByRole("button", { name: "End: viewer" }).click();
+  await page.getByRole("button", { name: "End it" }).click();
+  await row.waitFor({ state: "detached" });
+  await other.waitForURL(/login\.html/, { timeout: 4000 });
+  assert.equal(await page.locator("#sessions li").count(), 1);
+});
+
+test("logs out by ending the own session", async (t) => {
+  const { page } = await come(t);
+  await page.locator("#sessions").getByRole("button", { name: /Log out: operator/ }).click();
+  await page.getByRole("button", { name: "End it" }).click();
+  await page.waitForURL(/login\.html/);
+  assert.deepEqual((await page.context().cookies()).filter(({ value }) => value), []);
+});
+
+test("says what is wrong with a new password", async (t) => {
+  const { page } = await come(t);
+  const form = page.locator("form[data-role=operator]"), outcome = form.locator(".outcome");
+  const cases = [
+    [{ current: "", password: "a new password", again: "a new password" }, /present password is missing/],
+    [{ current: OPERATOR, password: "a new password", again: "another password" }, /differ/],
+    [{ current: OPERATOR, password: "short", again: "short" }, /password: .*10/],
+    [{ current: OPERATOR, password: "x".repeat(129), again: "x".repeat(129) }, /password: .*128/],
+    [{ current: "wrong horse", password: "a new password", again: "a new password" }, /not the operator's present password/],
+  ];
+  for (const [fields, sentence] of cases) {
+    await fill(form, fields);
+    await form.getByRole("button", { name: "Change it" }).click();
+    await outcome.filter({ hasText: sentence }).waitFor();
+    assert.equal(await outcome.getAttribute("data-bad"), "true");
+    assert.equal(await form.locator("[name=current]").inputValue(), fields.current, "and leaves what was typed");
+  }
+});
+
+test("changes the operator's password, and sends the other operators to the login", async (t) => {
+  const { stage, page } = await come(t);
+  const { page: other } = await come(t, OPERATOR, { stage });
+  const form = page.locator("form[data-role=operator]");
+  await fill(form, { current: OPERATOR, password: "a new password", again: "a new password" });
+  await page.keyboard.press("Enter");
+  await form.getByText("Changed.").waitFor();
+  assert.equal(await form.locator("[name=password]").inputValue(), "", "and forgets it");
+  await other.waitForURL(/login\.html/, { timeout: 4000 });
+  await page.reload();
+  await page.locator("#link .text", { hasText: "Live" }).waitFor();
+  await other.locator("#login").getByLabel("Password").fill("a new password");
+  await other.keyboard.press("Enter");
+  await other.waitForURL(/\/system$/);
+});
+
+test("sets and removes the viewers' password", async (t) => {
+  const { stage, page } = await come(t);
+  const { page: other } = await come(t, VIEWER, { stage });
+  const form = page.locator("form[data-role=viewer]"), outcome = form.locator(".outcome");
+  await form.getByRole("button", { name: "Remove it" }).click();
+  await outcome.filter({ hasText: "present password is missing" }).waitFor();
+  await fill(form, { current: "wrong horse" });
+  await form.getByRole("button", { name: "Remove it" }).click();
+  await outcome.filter({ hasText: "not the operator's present password" }).waitFor();
+  await fill(form, { current: OPERATOR });
+  await form.getByRole("button", { name: "Remove it" }).click();
+  await outcome.filter({ hasText: "nobody can log in as viewer" }).waitFor();
+  await other.waitForURL(/login\.html/, { timeout: 4000 });
+  await fill(form, { current: OPERATOR, password: "for the teammates", again: "for the team" });
+  await form.getByRole("button", { name: "Set it" }).click();
+  await outcome.filter({ hasText: "differ" }).waitFor();
+  await fill(form, { again: "for the teammates" });
+  await form.getByRole("button", { name: "Set it" }).click();
+  await outcome.filter({ hasText: "Set. Whoever" }).waitFor();
+  await other.locator("#login").getByLabel("Password").fill("for the teammates");
+  await other.keyboard.press("Enter");
+  await other.waitForURL(/\/system$/);
+  await other.locator("#looks").waitFor();
+});
+
+test("gives the support bundle as a file", async (t) => {
+  const { stage, page } = await come(t);
+  const button = page.getByRole("button", { name: "Download the bundle" });
+  const [download] = await Promise.all([page.waitForEvent("download"), button.click()]);
+  assert.match(download.suggestedFilename(), /^adit-support-\d{8}T\d{6}Z\.tar\.gz$/);
+  const archive = gunzipSync(await readFile(await download.path())).toString();
+  assert.match(archive, /\/reports\.json/);
+  assert.match(archive, /disk I\/O error/);
+  for (const secret of [OPERATOR, VIEWER, "team-1"]) assert.ok(!archive.includes(secret), secret);
+  await page.locator("#bundle .outcome").filter({ hasText: download.suggestedFilename() }).waitFor();
+  await stage.end();
+  await button.click();
+  await page.locator("#bundle .outcome[data-bad=true]").filter({ hasText: "does not answer" }).waitFor();
+});
+
+test("resets the box for whoever knows the operator's password, and asks first", async (t) => {
+  const { page } = await come(t);
+  const posted = [];
+  let anew = false; // the box ends, and begins anew
+  await page.route("**/adit/session", (route) => (posted.includes(OPERATOR) ? route.fulfill({ json: { role: null, csrf: null, first_start: anew } }) : route.continue()));
+  await page.route("**/adit/reset", (route) => {
+    const { password } = route.request().postDataJSON();
+    posted.push(password);
+    if (password === OPERATOR) setTimeout(() => (anew = true), 700);
+    return password === OPERATOR ? route.fulfill({ json: {} }) : route.fulfill({ status: 403, json: "that is not the operator's present password" });
+  });
+  const open = page.locator("#reset").getByRole("button", { name: "Reset the box" }), dialog = page.locator("#wipe");
+  await open.click();
+  await dialog.getByRole("button", { name: "Leave it" }).click();
+  await open.click();
+  await page.keyboard.press("Escape");
+  assert.deepEqual(posted, []);
+  await open.click();
+  await dialog.getByLabel("present password").fill("wrong horse");
+  await page.keyboard.press("Enter");
+  await dialog.getByRole("alert").filter({ hasText: "not the operator's present password" }).waitFor();
+  await dialog.getByLabel("present password").fill(OPERATOR);
+  await dialog.getByRole("button", { name: "Reset the box" }).click();
+  await page.getByLabel("Code").waitFor();
+  assert.equal(await page.locator("#login").isVisible(), false, "nobody is asked for a password that is gone");
+  assert.deepEqual(posted, ["wrong horse", OPERATOR]);
+});
+
+test("tells what the box is made of", async (t) => {
+  const { page } = await come(t);
+  await page.locator("#about dd").first().waitFor();
+  assert.match(await text(page, "#about dl"), /Version0\.1\.0.*GNU 12\.2\.0.*Apache-2\.0.*1:06 h.*aarch64.*A board/);
+  await page.getByText("Parts and licences").click();
+  assert.match(await page.getByRole("row", { name: /SQLite/ }).innerText(), /3\.40\.1\s+blessing/);
+  for (const name of ["the API", "metrics"]) {
+    const path = await page.getByRole("link", { name }).getAttribute("href");
+    assert.equal(await page.evaluate(async (path) => (await fetch(path)).status, path), 200, name);
+  }
+});
+
+test("shows a viewer what he may see, and nothing that he may not do", async (t) => {
+  const { page } = await come(t, VIEWER);
+  await untilRows(page, 4);
+  await page.locator("#looks").waitFor();
+  await page.locator("#about dd").first().waitFor();
+  for (const id of ["sessions", "passwords", "bundle", "reset"]) assert.equal(await page.locator(`#${id}`).isVisible(), false, id);
+  assert.deepEqual(page.requests.filter((url) => /sessions|bundle/.test(url)), []);
+  assert.deepEqual(page.complaints, []);
+});
+
+test("leads from each page to the others", async (t) => {
+  const { stage, page } = await come(t);
+  const nav = page.getByRole("navigation", { name: "Pages" });
+  assert.deepEqual(await nav.getByRole("link").allInnerTexts(), ["Run", "Set-up", "System", "Display"]);
+  assert.equal(await nav.getByRole("link", { name: "System" }).getAttribute("aria-current"), "page");
+  await nav.getByRole("link", { name: "Run" }).click();
+  await page.waitForSelector("body[data-link=live]");
+  assert.equal(await nav.locator("[aria-current]").innerText(), "Run");
+  await nav.getByRole("link", { name: "System" }).click();
+  await page.waitForURL(`${stage.url}system`);
+  await nav.getByRole("link", { name: "Display" }).click();
+  await page.waitForURL(`${stage.url}display`);
+});
+
+test("fits every screen, in the dark and by day, with nothing that axe finds wrong", async (t) => {
+  for (const colorScheme of ["dark", "light"]) {
+    const { stage, page } = await come(t, OPERATOR, { colorScheme, bypassCSP: true });
+    await page.locator("#sessions li").first().waitFor();
+    stage.play(`say ${"long".repeat(200)}`);
+    await untilRows(page, 5);
+    for (const [name, width, height] of SIZES) {
+      await page.setViewportSize({ width, height });
+      assert.ok(await page.evaluate(() => document.documentElement.scrollWidth <= innerWidth), `${name} is wider than the screen`);
+      const small = await page.$$eval("main button, main a, nav a, select, main input", (nodes) =>
+        nodes.filter((node) => node.checkVisibility() && node.getBoundingClientRect().height < 44).map((node) => node.outerHTML));
+      assert.deepEqual(small, [], `${name}: too small for gloves`);
+      if (name === "phone" || name === "1080p") await axeFindsNothing(page, `${name}, ${colorScheme}`);
+      await shoot(page, `system-${name}-${colorScheme}`);
+    }
+    await page.locator("#reset").getByRole("button").click();
+    await axeFindsNothing(page, `reset, ${colorScheme}`);
+    assert.deepEqual(page.complaints, []);
+  }
+});
+
+test("can be used by keyboard alone", async (t) => {
+  const { page } = await come(t);
+  await page.locator("#sessions li").first().waitFor();
+  const reached = new Set();
+  for (let i = 0; i < 40; ++i) {
+    await page.keyboard.press("Tab");
+    reached.add(await page.evaluate(() => document.activeElement.closest("section")?.id));
+  }
+  for (const id of ["log", "sessions", "passwords", "bundle", "about", "reset"]) assert.ok(reached.has(id), id);
+});

@@ -42,10 +42,14 @@ TEST(Options, TakeTheOperatorsWord) {
   EXPECT_EQ(options.numbers, (std::vector<std::int64_t>{7, 12}));
   EXPECT_EQ(options.token_file, "t");
   EXPECT_EQ(parsed({"reports", "send", "7"}).verb, Verb::Send);
+  EXPECT_EQ(parsed({"reports", "hold", "7", "8"}).verb, Verb::Hold);
   EXPECT_EQ(parsed({"reports", "withdraw", "7"}).verb, Verb::Withdraw);
   EXPECT_EQ(parsed({"reports", "resubmit", "7"}).verb, Verb::Resubmit);
   EXPECT_EQ(parsed({"reports", "show", "7"}).verb, Verb::Show);
   EXPECT_EQ(parsed({"run", "new"}).command, Command::Run);
+  EXPECT_EQ(parsed({"identify"}).command, Command::Identify);
+  EXPECT_EQ(parsed({"identify"}).seconds, 10);
+  EXPECT_EQ(parsed({"identify", "60"}).seconds, 60);
 }
 
 TEST(Options, TakeWhichReportsAndHow) {
@@ -74,40 +78,45 @@ TEST(Options, NameTheWordThatIsWrong) {
   const struct {
     Words words;
     const char* sentence;
-  } cases[] = {{{}, "a command is missing: status, reports, run, settings, course or check"},
-               {{"--json"}, "a command is missing: status, reports, run, settings, course or check"},
-               {{"state"}, "no such command: state"},
-               {{"status", "--jsn"}, "no such option: --jsn"},
-               {{"status", "--at"}, "a value is missing after --at"},
-               {{"status", "now"}, "one word too many: now"},
-               {{"check", "a", "b"}, "one word too many: b"},
-               {{"check", "--at", "10.0.0.1:80"}, "check does not take --at"},
-               {{"status", "--csv"}, "status does not take --csv"},
-               {{"reports", "sent"}, "expected show, send, withdraw, done, resubmit or export, got sent"},
-               {{"reports", "7"}, "expected show, send, withdraw, done, resubmit or export, got 7"},
-               {{"reports", "send"}, "a report's number is missing after send"},
-               {{"reports", "send", "0"}, "expected a report's number, got 0"},
-               {{"reports", "send", "7x"}, "expected a report's number, got 7x"},
-               {{"reports", "show", "7", "8"}, "one word too many: 8"},
-               {{"reports", "resubmit", "7", "8"}, "one word too many: 8"},
-               {{"reports", "export", "7"}, "one word too many: 7"},
-               {{"reports", "--csv"}, "reports does not take --csv"},
-               {{"settings", "save"}, "expected show, check, apply or export, got save"},
-               {{"settings", "apply"}, "a file is missing after apply"},
-               {{"settings", "apply", "a", "b"}, "one word too many: b"},
-               {{"settings", "export", "a"}, "one word too many: a"},
-               {{"settings", "--csv"}, "settings does not take --csv"},
-               {{"course"}, "a course's name is missing"},
-               {{"course", "A", "B"}, "one word too many: B"},
-               {{"check", "--token-file", "x"}, "check does not take --token-file"},
-               {{"reports", "show", "7", "--run", "2"}, "reports show does not take --run"},
-               {{"reports", "--run", "old"}, "expected --run and a run's number or all, got old"},
-               {{"reports", "--run"}, "a value is missing after --run"},
-               {{"reports", "export", "--csv", "--json"}, "--csv and --json are two formats: which one?"},
-               {{"reports", "send", "7", "--token-file", ""}, "a value is missing after --token-file"},
-               {{"run"}, "a word is missing: run new"},
-               {{"run", "old"}, "one word too many: old"},
-               {{"run", "new", "new"}, "one word too many: new"}};
+  } cases[] = {
+      {{}, "a command is missing: status, reports, run, settings, course, identify or check"},
+      {{"--json"}, "a command is missing: status, reports, run, settings, course, identify or check"},
+      {{"state"}, "no such command: state"},
+      {{"status", "--jsn"}, "no such option: --jsn"},
+      {{"status", "--at"}, "a value is missing after --at"},
+      {{"status", "now"}, "one word too many: now"},
+      {{"check", "a", "b"}, "one word too many: b"},
+      {{"check", "--at", "10.0.0.1:80"}, "check does not take --at"},
+      {{"status", "--csv"}, "status does not take --csv"},
+      {{"reports", "sent"}, "expected show, send, hold, withdraw, done, resubmit or export, got sent"},
+      {{"reports", "7"}, "expected show, send, hold, withdraw, done, resubmit or export, got 7"},
+      {{"reports", "send"}, "a report's number is missing after send"},
+      {{"reports", "send", "0"}, "expected a report's number, got 0"},
+      {{"reports", "send", "7x"}, "expected a report's number, got 7x"},
+      {{"reports", "show", "7", "8"}, "one word too many: 8"},
+      {{"reports", "resubmit", "7", "8"}, "one word too many: 8"},
+      {{"reports", "export", "7"}, "one word too many: 7"},
+      {{"reports", "--csv"}, "reports does not take --csv"},
+      {{"settings", "save"}, "expected show, check, apply or export, got save"},
+      {{"settings", "apply"}, "a file is missing after apply"},
+      {{"settings", "apply", "a", "b"}, "one word too many: b"},
+      {{"settings", "export", "a"}, "one word too many: a"},
+      {{"settings", "--csv"}, "settings does not take --csv"},
+      {{"course"}, "a course's name is missing"},
+      {{"course", "A", "B"}, "one word too many: B"},
+      {{"check", "--token-file", "x"}, "check does not take --token-file"},
+      {{"reports", "show", "7", "--run", "2"}, "reports show does not take --run"},
+      {{"reports", "--run", "old"}, "expected --run and a run's number or all, got old"},
+      {{"reports", "--run"}, "a value is missing after --run"},
+      {{"reports", "export", "--csv", "--json"}, "--csv and --json are two formats: which one?"},
+      {{"reports", "send", "7", "--token-file", ""}, "a value is missing after --token-file"},
+      {{"run"}, "a word is missing: run new"},
+      {{"run", "old"}, "one word too many: old"},
+      {{"run", "new", "new"}, "one word too many: new"},
+      {{"identify", "0"}, "expected seconds, a whole number from 1 to 60, got 0"},
+      {{"identify", "61"}, "expected seconds, a whole number from 1 to 60, got 61"},
+      {{"identify", "now"}, "expected seconds, a whole number from 1 to 60, got now"},
+      {{"identify", "5", "6"}, "one word too many: 6"}};
   for (const auto& [words, sentence] : cases) {
     const auto options = parse_options(words);
     ASSERT_FALSE(options.has_value()) << sentence;
@@ -125,6 +134,7 @@ TEST(Help, IsGivenForTheCommandAskedAbout) {
   EXPECT_EQ(run(Words{"help", "reports"}, false).out, help_about(Command::Reports));
   EXPECT_EQ(run(Words{"reports", "send", "--help"}, false).out, help_about(Command::Reports));
   EXPECT_EQ(run(Words{"help", "run"}, false).out, help_about(Command::Run));
+  EXPECT_EQ(run(Words{"help", "identify"}, false).out, help_about(Command::Identify));
   EXPECT_EQ(run(Words{"help", "status"}, false).out, help_about(Command::Status));
 }
 

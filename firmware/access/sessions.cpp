@@ -24,6 +24,15 @@ icd::BearerToken as_token(const Secret& secret) {
   return *icd::BearerToken::parse(text);
 }
 
+void Sessions::restore(std::vector<Session> sessions, std::uint64_t last, Instant now) {
+  sessions_ = std::move(sessions);
+  std::erase_if(sessions_, [now](const Session& each) { return each.seen > now || each.made > each.seen; });
+  if (sessions_.size() > kMost) sessions_.erase(sessions_.begin(), sessions_.end() - kMost);
+  last_ = last;
+  for (const Session& each : sessions_) last_ = std::max(last_, each.number);
+  forget_ended(now);
+}
+
 const Session& Sessions::begin(const Secret& id, const Secret& csrf, Role role, const Caller& caller,
                                Instant now) {
   forget_ended(now);
@@ -36,6 +45,7 @@ const Session& Sessions::begin(const Secret& id, const Secret& csrf, Role role, 
                        .seen = now,
                        .address = caller.address,
                        .agent = plain(caller.agent)});
+  tell();
   return sessions_.back();
 }
 
@@ -58,11 +68,20 @@ bool Sessions::still(std::uint64_t number, Instant now) {
 }
 
 bool Sessions::end(std::uint64_t number) {
-  return std::erase_if(sessions_, [number](const Session& each) { return each.number == number; }) > 0;
+  const bool ended =
+      std::erase_if(sessions_, [number](const Session& each) { return each.number == number; }) > 0;
+  if (ended) tell();
+  return ended;
 }
 
 void Sessions::end_all(Role role, std::uint64_t but) {
   std::erase_if(sessions_, [=](const Session& each) { return each.role == role && each.number != but; });
+  tell();
+}
+
+void Sessions::end_all() {
+  sessions_.clear();
+  tell();
 }
 
 std::vector<Session> Sessions::all(Instant now) {

@@ -2,8 +2,10 @@
 
 #include <array>
 #include <cstdint>
+#include <functional>
 #include <string>
 #include <string_view>
+#include <utility>
 #include <vector>
 
 #include "access/role.hpp"
@@ -39,6 +41,15 @@ class Sessions {
   static constexpr std::size_t kMost = 64;  // at one more, the one that was idle for longest ends
   static constexpr std::size_t kLongestAgent = 160;  // the name of the browser comes after 80 to 110
 
+  /// `changed`, if given, is called whenever somebody logs in or a session is ended.
+  explicit Sessions(std::function<void()> changed = {}) : changed_(std::move(changed)) {}
+
+  /// Takes up those of an earlier start; none that has ended, or begins after `now`. `last`: the number that
+  /// was given last.
+  void restore(std::vector<Session> sessions, std::uint64_t last, Instant now);
+  std::uint64_t last() const { return last_; }
+  const std::vector<Session>& in_order() const { return sessions_; }
+
   /// `id` and `csrf` have never been used before. The result is valid until the next call.
   const Session& begin(const Secret& id, const Secret& csrf, Role role, const Caller& caller, Instant now);
   /// The session whose id is presented, seen now, or null; valid until the next call.
@@ -51,12 +62,19 @@ class Sessions {
   /// Of a role, all but one (0: no exception).
   void end_all(Role role, std::uint64_t but);
 
+  /// Of everybody.
+  void end_all();
+
   /// The newest first.
   std::vector<Session> all(Instant now);
 
  private:
   void forget_ended(Instant now);
+  void tell() const {
+    if (changed_) changed_();
+  }
 
+  std::function<void()> changed_;
   std::vector<Session> sessions_;  // in the order of their numbers
   std::uint64_t last_ = 0;
 };

@@ -14,20 +14,27 @@ namespace adit::cli {
 namespace {
 
 constexpr std::chrono::seconds kPatience{3};
+constexpr std::chrono::seconds kDeedPatience{10};  // a deed is on the disk before it is answered
 
 bool all_is_well(const page::RunView& view) {
   return view.attention.empty() &&
          std::ranges::all_of(view.endpoints, &std::string::empty, &page::EndpointRow::trouble);
 }
 
+/// The file that was named, or else the one that counts.
+std::string settings_file(const Options& options) {
+  const bool named = options.settings != kGivenSettings;
+  return !named && host::read_file(options.saved_settings) ? options.saved_settings : options.settings;
+}
+
 std::expected<settings::Address, std::string> address_of(const Options& options) {
   if (!options.at.empty()) return parse_address(options.at);
-  const auto text = host::read_file(options.settings);
+  const std::string file = settings_file(options);
+  const auto text = host::read_file(file);
   if (!text) return std::unexpected(text.error() + " (say where Adit listens by --at ADDR:PORT)");
   const auto settings = settings::parse(*text);
   if (!settings) {
-    return std::unexpected(options.settings + ": " + settings.error().front().sentence() +
-                           " (see: adit check)");
+    return std::unexpected(file + ": " + settings.error().front().sentence() + " (see: adit check)");
   }
   return reach(settings->team);
 }
@@ -37,11 +44,12 @@ std::expected<settings::Address, std::string> address_of(const Options& options)
 std::expected<Adit, std::string> adit_of(const Options& options) {
   const auto address = address_of(options);
   if (!address) return std::unexpected(address.error());
-  auto token = find_token(options.token_file, options.secrets);
+  const std::vector<std::string> folders = {options.saved_secrets, options.secrets};
+  auto token = find_token(options.token_file, folders);
   if (!token) return std::unexpected(token.error());
   if (*token) return Adit{*address, std::move(**token)};
   return std::unexpected("Adit asks for the team's token, and there is none to be read in " +
-                         options.secrets +
+                         options.saved_secrets + " or " + options.secrets +
                          ": run this as root, or name a file that holds it by --token-file FILE");
 }
 
@@ -58,6 +66,34 @@ std::expected<std::string, std::string> get(const Adit& adit, const std::string&
   if (!sentence.empty()) return std::unexpected(sentence);
   return std::unexpected("Adit at " + written(adit.address) + " cannot be asked: it answered " +
                          std::to_string(reply->status) + " (is that Adit?)");
+}
+
+namespace {
+
+Failure failure(const Adit& adit, const HttpReply& reply) {
+  if (reply.status == 401) return {Exit::Unable, unknown_token(adit)};
+  const std::string sentence = sentence_in(reply.body);
+  const bool judged =
+      (reply.status == 404 || reply.status == 409 || reply.status == 422) && !sentence.empty();
+  if (judged) return {Exit::Attention, sentence};
+  return {Exit::Unable, "Adit at " + written(adit.address) + " answered " + std::to_string(reply.status) +
+                            (sentence.empty() ? " (is that Adit?)" : ": " + sentence)};
+}
+
+}  // namespace
+
+std::expected<std::string, Failure> post(const Adit& adit, const std::string& target, const std::string& body,
+                                         const std::string& check) {
+  auto reply = http_ask(
+      adit.address,
+      {.method = HttpRequest::Method::Post, .target = target, .token = adit.token.token, .body = body},
+      kDeedPatience);
+  if (!reply) {
+    const std::string unsure = reply.error().sent ? "; whether it was done is not known, see: " + check : "";
+    return std::unexpected(Failure{Exit::Unable, reply.error().sentence + unsure});
+  }
+  if (reply->status != 200) return std::unexpected(failure(adit, *reply));
+  return std::move(reply->body);
 }
 
 std::string sentence_in(const std::string& body) {

@@ -6,6 +6,7 @@
 #include "cli/help.hpp"
 #include "cli/options.hpp"
 #include "cli/reports.hpp"
+#include "cli/settings.hpp"
 #include "host/log.hpp"
 
 namespace adit::cli {
@@ -20,6 +21,10 @@ Outcome run(std::span<const std::string_view> words, bool colour) {
       return reports(*options, colour);
     case Command::Run:
       return begin_run(*options);
+    case Command::Settings:
+      return settings(*options, colour);
+    case Command::Course:
+      return switch_course(*options);
     case Command::Check:
       return check(*options, colour);
     case Command::Help:

@@ -2,21 +2,12 @@
 
 #include <algorithm>
 
-#include "cli/http_client.hpp"
 #include "cli/reading.hpp"
 #include "cli/where.hpp"
 #include "host/log.hpp"
 
 namespace adit::cli {
 namespace {
-
-constexpr std::chrono::seconds kPatience{10};  // a deed is on the disk before it is answered
-
-/// A deed that was not done, or of which that is not known.
-struct Failure {
-  Exit exit = Exit::Unable;
-  std::string sentence;
-};
 
 /// Asks for deeds, each with the same token.
 class Deeds {
@@ -27,34 +18,16 @@ class Deeds {
   /// answer was lost.
   std::expected<std::int64_t, Failure> ask(const std::string& target, const char* name,
                                            const std::string& check) {
-    const auto reply = http_ask(
-        adit_.address, {.method = HttpRequest::Method::Post, .target = target, .token = adit_.token.token},
-        kPatience);
-    if (!reply) {
-      const std::string unsure =
-          reply.error().sent ? "; whether it was done is not known, see: " + check : "";
-      return std::unexpected(Failure{Exit::Unable, reply.error().sentence + unsure});
-    }
-    if (reply->status != 200) return std::unexpected(failure(*reply));
+    const auto body = post(adit_, target, "", check);
+    if (!body) return std::unexpected(body.error());
     auto number = read<std::int64_t>(
-        reply->body, [name](const codec::Field& object) { return whole<std::int64_t>(object, name); });
+        *body, [name](const codec::Field& object) { return whole<std::int64_t>(object, name); });
     if (number) return *number;
     return std::unexpected(Failure{
         Exit::Unable, "Adit at " + written(adit_.address) + " cannot be understood: " + number.error()});
   }
 
  private:
-  Failure failure(const HttpReply& reply) const {
-    if (reply.status == 401) {
-      return {Exit::Unable, unknown_token(adit_)};
-    }
-    const std::string sentence = sentence_in(reply.body);
-    const bool judged = (reply.status == 404 || reply.status == 409) && !sentence.empty();
-    if (judged) return {Exit::Attention, sentence};
-    return {Exit::Unable, "Adit at " + written(adit_.address) + " answered " + std::to_string(reply.status) +
-                              (sentence.empty() ? " (is that Adit?)" : ": " + sentence)};
-  }
-
   const Adit& adit_;
 };
 

@@ -9,20 +9,26 @@ USAGE
   adit status  [--json] [--at ADDR:PORT | --settings FILE]
   adit reports [show|send|withdraw|done|resubmit|export] [NUMBER...]
   adit run new
+  adit settings [show|check|apply|export] [FILE]
+  adit course NAME
   adit check   [--json] [SETTINGS]
   adit help [COMMAND]
 
 COMMANDS
-  status   the run, the Command Post, each robot's maps, and what the operator must do
-  reports  every artifact report and what became of it; and your word on those that wait for it
-  run      tells Adit that a new run begins
-  check    all that is wrong with a settings file, at once
+  status    the run, the Command Post, each robot's maps, and what the operator must do
+  reports   every artifact report and what became of it; and your word on those that wait for it
+  run       tells Adit that a new run begins
+  settings  what the running Adit is set to, and changes to it
+  course    switches to the Command Post of another course
+  check     all that is wrong with a settings file, at once
 
 OPTIONS
   --at ADDR:PORT     where Adit listens for the team: 10.0.0.1:8000 or [fd00::1]:8000
-  --settings FILE    the settings to find that in; /etc/adit/settings.json if not given
+  --settings FILE    the settings to find that in. If not given, those saved in /var/lib/adit/settings.json, or else
+                     /etc/adit/settings.json
   --token-file FILE  what lets you in: a file that holds the team's token or the scoring token. If not given, the
-                     first of team.token and scoring.token in /etc/adit/secrets that can be read (by root)
+                     first of team.token and scoring.token in /var/lib/adit/secrets and /etc/adit/secrets that can be
+                     read (by root)
   --json             for scripts: what Adit itself says, as JSON
   --help             this, or more about a command
 
@@ -138,6 +144,53 @@ EXAMPLES
   sudo adit run new
 )";
 
+constexpr const char* kSettings = R"(adit settings - what the running Adit is set to, and changes to it
+
+USAGE
+  adit settings [show]      [--json]
+  adit settings check FILE  [--json]
+  adit settings apply FILE  [--json]
+  adit settings export
+  All take --token-file FILE, and --at ADDR:PORT or --settings FILE.
+
+WHAT IT DOES
+  show    the settings that differ from what is by default, and which tokens are set; with --json all, and what each
+          key means
+  check   what is wrong with FILE, or what it would change and what to mind. Nothing is changed
+  apply   saves FILE on the box and applies it at once: Adit begins anew within a second. Reports, what waits and who
+          is logged in are kept. Where the new settings cannot be used, those before are in use again, and
+          'adit status' says why
+  export  the whole settings file, for 'apply'. Tokens are never in it
+
+EXIT STATUS
+  0  all is well
+  1  something is wrong with FILE, or somebody else changed the settings at the same time
+  2  Adit cannot be reached or wants another token, FILE cannot be read, or the command line is wrong
+
+EXAMPLES
+  sudo adit settings export > box.json
+  sudo adit settings check box.json && sudo adit settings apply box.json
+)";
+
+constexpr const char* kCourse = R"(adit course - switches to the Command Post of another course
+
+USAGE
+  adit course NAME [--json] [--token-file FILE] [--at ADDR:PORT | --settings FILE]
+
+WHAT IT DOES
+  NAME is one of the courses in the settings; "" means none, the endpoints of command_post itself. Reports that wait
+  for another Command Post, one that was heard of, are held, so that none of them is sent to this one unless you say
+  so: adit reports send.
+
+EXIT STATUS
+  0  the course is in use
+  1  there is no such course
+  2  Adit cannot be reached or wants another token, or the command line is wrong
+
+EXAMPLES
+  sudo adit course B
+)";
+
 constexpr const char* kCheck = R"(adit check - all that is wrong with a settings file, at once
 
 USAGE
@@ -170,6 +223,10 @@ const char* help_about(Command command) {
       return kReports;
     case Command::Run:
       return kRun;
+    case Command::Settings:
+      return kSettings;
+    case Command::Course:
+      return kCourse;
     case Command::Check:
       return kCheck;
     case Command::Help:

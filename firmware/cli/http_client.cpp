@@ -123,9 +123,13 @@ std::string written(const HttpRequest& request, const std::string& host) {
   std::string text = posts ? "POST " : "GET ";
   text.append(request.target).append(" HTTP/1.1\r\nHost: ").append(host).append("\r\n");
   text.append("Accept: application/json\r\nConnection: close\r\n");
-  if (posts) text.append("Content-Type: application/json\r\nContent-Length: 0\r\n");
+  if (posts) {
+    text.append("Content-Type: application/json\r\nContent-Length: ")
+        .append(std::to_string(request.body.size()))
+        .append("\r\n");
+  }
   if (request.token) text.append("Authorization: Bearer ").append(request.token->reveal()).append("\r\n");
-  return text.append("\r\n");
+  return text.append("\r\n").append(request.body);
 }
 
 }  // namespace

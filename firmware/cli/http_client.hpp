@@ -12,11 +12,11 @@ namespace adit::cli {
 
 inline constexpr std::size_t kLargestBody = 8u << 20;
 
-/// A request without a body.
 struct HttpRequest {
   enum class Method : std::uint8_t { Get, Post } method = Method::Get;
   std::string target;  // "/adit/run"
   std::optional<icd::BearerToken> token = std::nullopt;
+  std::string body = "";  // of a POST: JSON, or nothing
 };
 
 struct HttpReply {

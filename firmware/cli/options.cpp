@@ -13,10 +13,9 @@ struct CommandName {
   std::string_view name;
   Command command;
 };
-constexpr CommandName kCommands[] = {{"status", Command::Status},
-                                     {"reports", Command::Reports},
-                                     {"run", Command::Run},
-                                     {"check", Command::Check},
+constexpr CommandName kCommands[] = {{"status", Command::Status}, {"reports", Command::Reports},
+                                     {"run", Command::Run},       {"settings", Command::Settings},
+                                     {"course", Command::Course}, {"check", Command::Check},
                                      {"help", Command::Help}};
 
 struct VerbName {
@@ -32,6 +31,16 @@ constexpr VerbName kVerbs[] = {{"", Verb::List, 0, 0},
                                {"withdraw", Verb::Withdraw, 1, kMany},
                                {"done", Verb::Done, 1, kMany},
                                {"resubmit", Verb::Resubmit, 1, 1}};
+
+struct SettingName {
+  std::string_view name;
+  Setting setting;
+  bool wants_file;
+};
+constexpr SettingName kSettings[] = {{"show", Setting::Show, false},
+                                     {"check", Setting::Check, true},
+                                     {"apply", Setting::Apply, true},
+                                     {"export", Setting::Export, false}};
 
 template <class Row>
 const Row* named(std::span<const Row> table, std::string_view word) {
@@ -88,6 +97,10 @@ class Parser {
         return take_word_of_reports(word);
       case Command::Run:
         return run_new_ || word != "new" ? too_many(word) : void(run_new_ = true);
+      case Command::Settings:
+        return take_word_of_settings(word);
+      case Command::Course:
+        return std::exchange(coursed_, true) ? too_many(word) : void(options_.course = word);
       case Command::Check:
         return std::exchange(filed_, true) ? too_many(word) : void(options_.settings = word);
       default:
@@ -153,13 +166,30 @@ class Parser {
     options_.numbers.push_back(*number);
   }
 
+  void take_word_of_settings(std::string_view word) {
+    if (setting_ == nullptr) {
+      setting_ = named<SettingName>(kSettings, word);
+      if (setting_ == nullptr) return refuse("expected show, check, apply or export, got ", word);
+      options_.setting = setting_->setting;
+    } else if (!setting_->wants_file || !options_.file.empty()) {
+      too_many(word);
+    } else {
+      options_.file = word;
+    }
+  }
+
   void finish() {
-    if (!commanded_) return refuse("a command is missing: status, reports, run or check", "");
+    if (!commanded_)
+      return refuse("a command is missing: status, reports, run, settings, course or check", "");
     const auto useless =
         std::ranges::find_if_not(given_, [this](std::string_view option) { return takes(options_, option); });
     if (useless != given_.end()) return refuse(spoken() + " does not take ", *useless);
     if (options_.csv && options_.json) return refuse("--csv and --json are two formats: which one?", "");
     if (options_.command == Command::Run && !run_new_) return refuse("a word is missing: run new", "");
+    if (options_.command == Command::Course && !coursed_) return refuse("a course's name is missing", "");
+    if (setting_ != nullptr && setting_->wants_file && options_.file.empty()) {
+      return refuse("a file is missing after ", setting_->name);
+    }
     if (options_.numbers.size() < row_of(options_.verb).least) {
       refuse("a report's number is missing after ", row_of(options_.verb).name);
     }
@@ -169,6 +199,7 @@ class Parser {
   std::string spoken() const {
     const auto command = std::ranges::find(kCommands, options_.command, &CommandName::command);
     std::string words(command->name);
+    if (setting_ != nullptr) words.append(" ").append(setting_->name);
     if (options_.verb != Verb::List) words.append(" ").append(row_of(options_.verb).name);
     return words;
   }
@@ -178,8 +209,9 @@ class Parser {
 
   Words words_;
   Options options_;
-  std::vector<std::string_view> given_;  // options
-  bool commanded_ = false, filed_ = false, run_new_ = false, help_ = false;
+  std::vector<std::string_view> given_;   // options
+  const SettingName* setting_ = nullptr;  // as it was said
+  bool commanded_ = false, filed_ = false, run_new_ = false, coursed_ = false, help_ = false;
   std::string trouble_;
 };
 

@@ -12,10 +12,17 @@
 
 namespace adit::cli {
 
-enum class Command : std::uint8_t { Status, Reports, Run, Check, Help };
+enum class Command : std::uint8_t { Status, Reports, Run, Settings, Course, Check, Help };
 
 /// What `adit reports` is to do.
 enum class Verb : std::uint8_t { List, Show, Export, Send, Withdraw, Done, Resubmit };
+
+/// What `adit settings` is to do.
+enum class Setting : std::uint8_t { Show, Check, Apply, Export };
+
+/// What aditd is given with the box, and what it keeps that was saved since and then counts.
+inline constexpr const char* kGivenSettings = "/etc/adit/settings.json";
+inline constexpr const char* kSavedSettings = "/var/lib/adit/settings.json";
 
 /// adit's command line.
 struct Options {
@@ -27,9 +34,13 @@ struct Options {
   bool all_runs = false;
   bool json = false, csv = false;
   std::string at;  // "ADDR:PORT"; empty: as the settings say
-  std::string settings = "/etc/adit/settings.json";
+  Setting setting = Setting::Show;
+  std::string file;    // of settings: to check or apply
+  std::string course;  // to switch to; "": none
+  std::string settings = kGivenSettings;
+  std::string saved_settings = kSavedSettings;
   std::string token_file;  // empty: in `secrets`
-  std::string secrets = kSecrets;
+  std::string secrets = kSecrets, saved_secrets = kSavedSecrets;
 };
 
 /// What is wrong names the word it is about.

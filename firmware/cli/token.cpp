@@ -23,11 +23,13 @@ std::expected<Token, std::string> token_in_file(const std::string& file) {
 }  // namespace
 
 std::expected<std::optional<Token>, std::string> find_token(const std::string& file,
-                                                            const std::string& secrets) {
+                                                            std::span<const std::string> folders) {
   if (!file.empty()) return token_in_file(file);
   for (const char* name : {"/team.token", "/scoring.token"}) {
-    const auto text = host::read_file(secrets + name);
-    if (text && !trimmed(*text).empty()) return token_in_file(secrets + name);
+    for (const std::string& folder : folders) {
+      const auto text = host::read_file(folder + name);
+      if (text && !trimmed(*text).empty()) return token_in_file(folder + name);
+    }
   }
   return std::nullopt;
 }

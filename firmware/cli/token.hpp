@@ -2,14 +2,16 @@
 
 #include <expected>
 #include <optional>
+#include <span>
 #include <string>
 
 #include "icd/bearer_token.hpp"
 
 namespace adit::cli {
 
-/// Where aditd.service has its tokens from.
+/// Where adit.service has its tokens from, and where it keeps those that were saved since.
 inline constexpr const char* kSecrets = "/etc/adit/secrets";
+inline constexpr const char* kSavedSecrets = "/var/lib/adit/secrets";
 
 /// What Adit is asked with, and where it was.
 struct Token {
@@ -17,9 +19,10 @@ struct Token {
   std::string file;
 };
 
-/// The token in `file`; or, where that is empty, in the first of team.token and scoring.token in `secrets`
-/// that can be read and holds one: perhaps none. An error names the file, never what is in it.
+/// The token in `file`; or, where that is empty, in the first of team.token and scoring.token in `folders`,
+/// each in the first folder first, that can be read and holds one: perhaps none. An error names the file,
+/// never what is in it.
 std::expected<std::optional<Token>, std::string> find_token(const std::string& file,
-                                                            const std::string& secrets);
+                                                            std::span<const std::string> folders);
 
 }  // namespace adit::cli

@@ -6,9 +6,9 @@
 namespace adit::codec {
 namespace {
 
-std::optional<icd::RobotName> read_map_name(const Field& name) {
+std::optional<icd::RobotName> read_map_name(const Field& name, const icd::Rules& rules) {
   if (name.is_absent() || (name.is<std::string>() && name.text().empty())) return std::nullopt;  // merged
-  return read_robot_name(name);
+  return read_robot_name(name, rules);
 }
 
 icd::Compression read_compression(const Field& field, DataForm form) {
@@ -73,7 +73,7 @@ icd::Checked<icd::MapUpdate> read_structure(const Document& document, const icd:
   if (kind != "OccupancyGrid" && kind != "PointCloud2") {
     type.refuse("expected \"OccupancyGrid\" or \"PointCloud2\", got ", icd::in_quotes(kind));
   }
-  update.name = read_map_name(body.member("name"));
+  update.name = read_map_name(body.member("name"), rules);
   const Field msg = body.member("msg");
   if (kind == "PointCloud2") {
     update.msg = read_cloud(msg, rules);

@@ -35,8 +35,9 @@ icd::Pose read_pose(const Field& field) {
           .orientation = read_quaternion(field.member("orientation"))};
 }
 
-std::optional<icd::RobotName> read_robot_name(const Field& field) {
+std::optional<icd::RobotName> read_robot_name(const Field& field, const icd::Rules& rules) {
   const std::string_view text = field.text();
+  if (const auto alias = rules.aliases.find(text); alias != rules.aliases.end()) return alias->second;
   auto name = icd::RobotName::parse(text);
   if (!name) {
     field.refuse("expected 1 to ", icd::RobotName::kLongest, " letters, digits and underscores, got ",

@@ -19,7 +19,8 @@ icd::Point read_point(const Field& field);
 /// the identity.
 icd::Pose read_pose(const Field& field);
 
-/// Refuses, and gives nothing, where the text is no robot's name (ICD 2).
-std::optional<icd::RobotName> read_robot_name(const Field& field);
+/// An alias gives the name it stands for. Refuses, and gives nothing, where the text is no robot's name
+/// (ICD 2).
+std::optional<icd::RobotName> read_robot_name(const Field& field, const icd::Rules& rules);
 
 }  // namespace adit::codec

@@ -57,7 +57,7 @@ icd::Checked<icd::StateUpdate> read_state_update(const Document& document, const
   const std::size_t count = poses.size();
   for (std::size_t i = 0; i < count && !reading.refused(); ++i) {
     const Field named = poses.element(i);
-    const auto name = read_robot_name(named.member("name"));
+    const auto name = read_robot_name(named.member("name"), rules);
     const icd::Pose pose = read_pose(named);
     if (!name) break;
     const auto [place, is_new] = places.try_emplace(*name, update.poses.size());

@@ -65,8 +65,9 @@ icd::Checked<access::Accounts> with(access::Accounts accounts, Role role,
 
 }  // namespace
 
-Accounts::Accounts(loop::Workers& workers, std::string folder, std::optional<icd::BearerToken> label_code)
-    : workers_(workers), folder_(std::move(folder)), accounts_(read(file())) {
+Accounts::Accounts(loop::Workers& workers, SessionKeeper& sessions, std::string folder,
+                   std::optional<icd::BearerToken> label_code)
+    : workers_(workers), sessions_(sessions), folder_(std::move(folder)), accounts_(read(file())) {
   if (!first_start()) return;
   const bool on_label = label_code.has_value();
   code_ = on_label ? std::move(label_code) : kept_code();
@@ -103,7 +104,8 @@ void Accounts::check(std::string password, std::string address,
   auto role = std::make_shared<std::optional<Role>>();
   workers_.submit([role, password = std::move(password),
                    accounts = accounts_] { *role = access::role_of(password, accounts); },
-                  [role, address = std::move(address), done = std::move(done)] {
+                  [this, role, address = std::move(address), done = std::move(done)] {
+                    if (*role && !accounts_.of(**role)) role->reset();  // forgotten while it was checked
                     if (*role) {
                       host::log(Level::Notice, "a password was shown",
                                 {{"role", std::string(name_of(**role))}, {"sender", address}});
@@ -144,6 +146,16 @@ void Accounts::set(Role role, std::optional<std::string> password,
               {{"role", std::string(name_of(role))}});
     done({});
   });
+}
+
+bool Accounts::forget() {
+  if (setting_) return false;
+  accounts_ = {};
+  code_.reset();
+  host::remove_file(file());
+  host::remove_file(code_file());
+  sessions_.forget();
+  return true;
 }
 
 access::Secret Accounts::draw() {

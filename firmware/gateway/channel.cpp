@@ -4,23 +4,25 @@
 
 namespace adit::gateway {
 
-Channel::Channel(loop::Loop& loop, uplink::Endpoint endpoint, icd::BearerToken token,
-                 std::chrono::milliseconds answer_within)
-    : loop_(loop), connection_(loop, std::move(endpoint), std::move(token)), answer_within_(answer_within) {}
+Channel::Channel(loop::Loop& loop, const char* name, uplink::Endpoint endpoint,
+                 std::optional<icd::BearerToken> token, std::chrono::milliseconds answer_within)
+    : loop_(loop), name_(name), answer_within_(answer_within) {
+  if (token) connection_.emplace(loop, std::move(endpoint), std::move(*token));
+}
 
 void Channel::send(icd::Uri uri, std::string_view content_type, icd::ChunkedBytes body,
                    std::function<void(uplink::Outcome)> done) {
-  finished_bytes_ += connection_.sent_bytes();
+  finished_bytes_ += connection_->sent_bytes();
   sent_at_ = loop_.now();
-  connection_.send({.method = std::string(icd::method_of(uri)),
-                    .target = std::string(icd::path_of(uri)),
-                    .content_type = std::string(content_type),
-                    .body = std::move(body),
-                    .answer_within = answer_within_},
-                   [this, done = std::move(done)](uplink::Outcome outcome) {
-                     note(outcome);
-                     done(std::move(outcome));
-                   });
+  connection_->send({.method = std::string(icd::method_of(uri)),
+                     .target = std::string(icd::path_of(uri)),
+                     .content_type = std::string(content_type),
+                     .body = std::move(body),
+                     .answer_within = answer_within_},
+                    [this, done = std::move(done)](uplink::Outcome outcome) {
+                      note(outcome);
+                      done(std::move(outcome));
+                    });
 }
 
 void Channel::note(const uplink::Outcome& outcome) {
@@ -37,8 +39,9 @@ void Channel::note(const uplink::Outcome& outcome) {
 }
 
 std::string Channel::trouble() const {
+  if (!connection_) return std::string("no ") + name_ + " token is set";
   if (!trouble_.empty()) return trouble_;
-  return connected() ? "" : connection_.trouble();
+  return connected() ? "" : connection_->trouble();
 }
 
 uplink::Endpoint endpoint_of(const settings::CommandPost& command_post, const settings::Address& address,

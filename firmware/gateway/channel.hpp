@@ -11,18 +11,22 @@
 
 namespace adit::gateway {
 
-/// One connection to the Command Post, and what there is to say of it.
+/// One connection to the Command Post, and what there is to say of it. Without a token there is none.
 class Channel {
  public:
-  Channel(loop::Loop& loop, uplink::Endpoint endpoint, icd::BearerToken token,
-          std::chrono::milliseconds answer_within);
+  /// `name`: of the endpoint, "scoring" or "mapping".
+  Channel(loop::Loop& loop, const char* name, uplink::Endpoint endpoint,
+          std::optional<icd::BearerToken> token, std::chrono::milliseconds answer_within);
 
-  /// Requires !busy(). `content_type` is empty without a body.
+  bool has_token() const { return connection_.has_value(); }
+  /// Requires has_token() and !busy(). `content_type` is empty without a body.
   void send(icd::Uri uri, std::string_view content_type, icd::ChunkedBytes body,
             std::function<void(uplink::Outcome)> done);
-  bool busy() const { return connection_.busy(); }
-  bool connected() const { return connection_.connected(); }
-  void keep_warm() { connection_.keep_warm(); }
+  bool busy() const { return connection_ && connection_->busy(); }
+  bool connected() const { return connection_ && connection_->connected(); }
+  void keep_warm() {
+    if (connection_) connection_->keep_warm();
+  }
 
   /// Why the last request failed or was refused, or why there is no connection; "" where all is well.
   std::string trouble() const;
@@ -33,13 +37,14 @@ class Channel {
   /// When last_status() was heard.
   loop::Instant heard() const { return heard_; }
   /// All bytes of bodies that were handed to the kernel, those under way included.
-  std::uint64_t bytes_sent() const { return finished_bytes_ + connection_.sent_bytes(); }
+  std::uint64_t bytes_sent() const { return finished_bytes_ + (connection_ ? connection_->sent_bytes() : 0); }
 
  private:
   void note(const uplink::Outcome& outcome);
 
   loop::Loop& loop_;
-  uplink::Connection connection_;
+  const char* name_;
+  std::optional<uplink::Connection> connection_;
   std::chrono::milliseconds answer_within_;
   loop::Instant sent_at_{}, heard_{};
   std::uint64_t finished_bytes_ = 0, throttled_ = 0;

@@ -3,6 +3,7 @@
 #include "gateway/report_rows.hpp"
 #include "gateway/version.hpp"
 #include "host/log.hpp"
+#include "settings/written.hpp"
 
 namespace adit::gateway {
 namespace {
@@ -10,6 +11,7 @@ namespace {
 constexpr std::chrono::milliseconds kDrainStep{10};
 constexpr std::chrono::milliseconds kFlush{50};  // in which the answers just given to the team leave
 constexpr std::size_t kMeterSeconds = 5;
+constexpr std::chrono::minutes kKeepSessionsEvery{1};
 constexpr std::size_t kMostReportRows = 200;
 
 }  // namespace
@@ -17,42 +19,59 @@ constexpr std::size_t kMostReportRows = 200;
 Gateway::Gateway(loop::Loop& loop, Parts parts)
     : loop_(loop),
       parts_(std::move(parts)),
+      settings_(settings::in_use(parts_.loaded.settings)),
       random_(std::random_device{}()),
       workers_(loop, 0),
-      spool_(parts_.spool_folder),
+      spool_(parts_.runtime_folder + "/waiting"),
       record_([this] { changed(); }),
-      scoring_(loop, parts_.ledger, parts_.settings, *parts_.secrets.scoring, record_, random_),
+      scoring_(loop, parts_.ledger, settings_, token_for("scoring", settings_, parts_.loaded.secrets),
+               record_, random_),
       picture_(
-          loop, workers_, [this] { return maps_.packing(); }, [this] { changed(); }),
-      maps_(loop, workers_, spool_, parts_.settings, *parts_.secrets.mapping, record_, random_,
-            [this](icd::MapUpdate map) { picture_.forwarded(std::move(map)); }),
-      news_(loop, parts_.settings, *parts_.secrets.mapping, record_, random_),
+          loop, workers_, [this] { return maps_.packing(); }, [this] { changed(); },
+          parts_.legacy ? std::move(parts_.legacy->picture) : picture::Mosaic()),
+      maps_(loop, workers_, spool_, settings_, token_for("mapping", settings_, parts_.loaded.secrets),
+            record_, random_, [this](icd::MapUpdate map) { picture_.forwarded(std::move(map)); }),
+      news_(loop, settings_, token_for("mapping", settings_, parts_.loaded.secrets), record_, random_),
       lights_(loop, std::move(parts_.lines)),
-      accounts_(workers_, parts_.state_folder, parts_.secrets.label_code),
-      box_(loop, workers_, parts_.settings_text, [this](page::Usage& usage) { add_to(usage); }),
+      roster_(settings_.robots),
+      sessions_(parts_.runtime_folder + "/sessions.json", loop.now()),
+      accounts_(workers_, sessions_, parts_.state_folder, parts_.loaded.secrets.label_code),
+      setup_(parts_.store, parts_.loaded, accounts_, [this] { make_way(); }),
+      box_(loop, workers_, settings::file_of(parts_.loaded.settings),
+           [this](page::Usage& usage) { add_to(usage); }),
       page_(loop, *this, *this, accounts_, tokens()),
       routes_(icd_options(), *this, workers_, page_),
       second_(loop.timer([this] { every_second(); })),
-      drained_(loop.timer([this] { drain(); })) {
+      drained_(loop.timer([this] { drain(); })),
+      pictured_run_(parts_.legacy ? parts_.legacy->pictured_run : 0) {
+  page_.serve(setup_);
   page_.serve(box_);
+  if (parts_.legacy) hold_back();
 }
 
 Gateway::~Gateway() = default;
 
 intake::IcdOptions Gateway::icd_options() const {
   intake::IcdOptions options;
-  options.rules = parts_.settings.rules;
-  if (parts_.settings.team.require_token) options.tokens = tokens();
+  options.rules = settings_.rules;
+  options.asks_token = settings_.team.require_token;
+  options.tokens = tokens();
   return options;
 }
 
 /// Any of them lets a client of the team in.
 std::vector<icd::BearerToken> Gateway::tokens() const {
   std::vector<icd::BearerToken> tokens;
-  for (const auto& token : {parts_.secrets.team, parts_.secrets.scoring, parts_.secrets.mapping}) {
-    if (token) tokens.push_back(*token);
-  }
+  tokens.reserve(parts_.loaded.secrets.tokens.size());
+  for (const auto& [name, token] : parts_.loaded.secrets.tokens) tokens.push_back(token);
   return tokens;
+}
+
+/// When the gateway before sent last is not known, and the Command Post sees too much of neither.
+void Gateway::hold_back() {
+  scoring_.hold_back();
+  maps_.hold_back();
+  news_.hold_back();
 }
 
 std::expected<void, std::string> Gateway::start() {
@@ -65,7 +84,7 @@ std::expected<void, std::string> Gateway::start() {
 }
 
 std::expected<void, std::string> Gateway::listen() {
-  const settings::Team& team = parts_.settings.team;
+  const settings::Team& team = settings_.team;
   for (const settings::Address& address : team.listen) {
     auto server = intake::Server::start(loop_,
                                         {.address = address.address,
@@ -85,7 +104,7 @@ std::expected<void, std::string> Gateway::listen() {
 /// What an earlier service left, stamped anew: what it sent last is not known, and stamps must not run
 /// backward.
 void Gateway::restore() {
-  Spool::Kept kept = spool_.read(parts_.settings.rules);
+  Spool::Kept kept = spool_.read(settings_.rules);
   const double now = loop_.stamp_now();
   for (auto& [number, map] : kept.maps) {
     map.header().stamp = now;
@@ -107,9 +126,19 @@ void Gateway::keep_news() {
 }
 
 void Gateway::stop() {
-  if (stop_by_) return;
   host::notify_stopping();
   host::log(host::Level::Notice, "stopping");
+  makes_way_ = false;
+  end();
+}
+
+void Gateway::make_way() {
+  makes_way_ = true;
+  end();
+}
+
+void Gateway::end() {
+  if (stop_by_) return;
   stop_by_ = loop_.now() + kDrain;
   for (const auto& server : servers_) server->stop_listening();
   drain();
@@ -124,18 +153,21 @@ void Gateway::drain() {
 }
 
 void Gateway::finish() {
+  if (!sessions_.sessions().in_order().empty()) sessions_.keep();
   if (!keeping_news_) spool_.keep(news_.unsent_state(), news_.unsent_markers());
   loop_.stop();
 }
 
 icd::Checked<void> Gateway::take(icd::MapUpdate update, const intake::Sender& sender) {
   const std::string clock = sender.address + "/map/" + (update.name ? update.name->text() : "");
+  if (update.name) note_robot(update.name->text());
   update.header().stamp = stamps_.shift(clock, update.header().stamp, loop_.stamp_now());
   return maps_.take(std::move(update), sender.bytes);
 }
 
 icd::Checked<void> Gateway::take(const icd::StateUpdate& update, const intake::Sender& sender) {
   const std::string robot = update.poses.size() == 1 ? update.poses.front().name.text() : "";
+  for (const icd::NamedPose& pose : update.poses) note_robot(pose.name.text());
   icd::StateUpdate shifted = update;
   shifted.header.stamp =
       stamps_.shift(sender.address + "/state/" + robot, update.header.stamp, loop_.stamp_now());
@@ -149,6 +181,10 @@ icd::Checked<void> Gateway::take(const icd::MarkersUpdate& update, const intake:
         stamps_.shift(sender.address + "/markers/" + marker.ns, marker.header.stamp, loop_.stamp_now());
   }
   return news_.take(shifted, sender.bytes);
+}
+
+void Gateway::note_robot(const std::string& name) {
+  if (roster_.posted(name, loop_.now())) host::log(host::Level::Warning, roster_.sentence(name));
 }
 
 void Gateway::take(const icd::ArtifactReport& report, const intake::Sender& sender,
@@ -207,11 +243,19 @@ void Gateway::every_second() {
   scoring_.tick();
   lights_.show(condition());
   keep_news();
+  keep_sessions();
   if (std::string line = status_line(); line != notified_) {
     host::notify_status(line);
     notified_ = std::move(line);
   }
   second_.call_at(loop_.now() + std::chrono::seconds(1));
+}
+
+/// When somebody was seen last need not be known to the second.
+void Gateway::keep_sessions() {
+  if (loop_.now() < sessions_kept_ + kKeepSessionsEvery) return;
+  sessions_kept_ = loop_.now();
+  if (!sessions_.sessions().in_order().empty()) sessions_.keep();
 }
 
 std::uint64_t Gateway::sent_bytes() const {
@@ -230,40 +274,12 @@ double Gateway::sent_mbit() const {
   return bytes * 8 / 1e6 / static_cast<double>(bytes_sent_.size() - 1);
 }
 
-panel::Condition Gateway::condition() const {
-  const Channel& scoring = scoring_.channel();
-  return {.serving = !servers_.empty() && scoring_.trouble().empty(),
-          .scoring_connected = scoring.connected(),
-          .scoring_failing = !scoring.trouble().empty(),
-          .mapping_connected = news_.channel().connected(),
-          .mapping_failing = !news_.channel().trouble().empty() || !maps_.channel().trouble().empty(),
-          .report_waiting = !scoring_.reports().book().waiting().empty(),
-          .needs_operator = !attention().empty()};
-}
-
-std::vector<std::string> Gateway::attention() const {
-  std::vector<std::string> sentences = scoring_.reports().attention();
-  if (!scoring_.trouble().empty()) {
-    sentences.push_back("no report is taken, the ledger cannot be written: " + scoring_.trouble());
-  }
-  if (!parts_.ledger.damage().empty()) sentences.push_back(parts_.ledger.damage());
-  const auto token_refused = [&](const Channel& channel, const char* name) {
-    if (channel.last_status() == 401) {
-      sentences.push_back(std::string("the Command Post refuses the ") + name + " token");
-    }
-  };
-  token_refused(scoring_.channel(), "scoring");
-  token_refused(maps_.channel().last_status() == 401 ? maps_.channel() : news_.channel(), "mapping");
-  if (maps_.nearly_full()) sentences.emplace_back("the queue of maps is nearly full");
-  return sentences;
-}
-
 std::vector<page::EndpointRow> Gateway::endpoints() const {
   const Channel& scoring = scoring_.channel();
   const Channel& maps = maps_.channel();
   const Channel& news = news_.channel();
   const Channel& latest = maps.heard() > news.heard() ? maps : news;
-  const settings::CommandPost& command_post = parts_.settings.command_post;
+  const settings::CommandPost& command_post = settings_.command_post;
   return {{.name = "scoring",
            .address = address_text(command_post.scoring),
            .connected = scoring.connected(),
@@ -290,11 +306,11 @@ page::RunView Gateway::view() const {
                      .endpoints = endpoints(),
                      .robots = news_.robots(),
                      .reports = latest_rows(scoring_.reports(), kMostReportRows),
-                     .near_metres = parts_.settings.reports.near_metres,
+                     .near_metres = settings_.reports.near_metres,
                      .activities = record_.activities(),
                      .refusals = record_.refusals(),
                      .lights = {},
-                     .budget_mbit = parts_.settings.command_post.budget_mbit,
+                     .budget_mbit = settings_.command_post.budget_mbit,
                      .sent_mbit = sent_mbit(),
                      .queued_bytes = maps_.queued_bytes(),
                      .map_version = picture_.mosaic().version(),

@@ -13,8 +13,12 @@
 #include "gateway/maps.hpp"
 #include "gateway/news.hpp"
 #include "gateway/record.hpp"
+#include "gateway/roster.hpp"
 #include "gateway/scoring.hpp"
+#include "gateway/session_keeper.hpp"
+#include "gateway/setup.hpp"
 #include "gateway/spool.hpp"
+#include "gateway/store.hpp"
 #include "gateway/this_box.hpp"
 #include "host/service.hpp"
 #include "intake/icd_routes.hpp"
@@ -28,15 +32,22 @@
 
 namespace adit::gateway {
 
+/// What one gateway hands on to the next that takes its place.
+struct Legacy {
+  picture::Mosaic picture;
+  std::int64_t pictured_run = 0;  // whose maps it shows; 0: none yet
+};
+
 /// What the gateway is made of: all of it has passed its checks.
 struct Parts {
-  settings::Settings settings;
-  std::string settings_text;  // the file that they are of
-  host::Secrets secrets;      // scoring and mapping are there
+  const Store& store;  // outlives the gateway
+  Store::Loaded loaded;
+  std::string trouble;  // for the operator: why the settings are not those that were wanted; or ""
   ledger::Ledger ledger;
   std::unique_ptr<panel::Lines> lines;
-  std::string spool_folder;
+  std::string runtime_folder;
   std::string state_folder;
+  std::optional<Legacy> legacy;  // of the gateway before, where there was one
 };
 
 /// The whole of Adit at work: the team's messages come in by Desk and leave by Scoring, Maps and News.
@@ -51,6 +62,10 @@ class Gateway final : public intake::Desk, public page::Source, public page::Ope
   std::expected<void, std::string> start();
   /// Takes nothing new, waits for the answers under way, keeps what waits, and stops the loop.
   void stop();
+  /// Whether it stopped so that another, of what the store holds by now, takes its place.
+  bool makes_way() const { return makes_way_; }
+  /// Once it has stopped, or could not start.
+  Legacy hand_over() { return {picture_.hand_over(), pictured_run_}; }
   /// What systemd shows: one line.
   std::string status_line() const;
 
@@ -71,6 +86,9 @@ class Gateway final : public intake::Desk, public page::Source, public page::Ope
   const picture::Mosaic& map() const override { return picture_.mosaic(); }
 
  private:
+  void hold_back();
+  void make_way();
+  void end();
   void restore();
   void drain();
   void finish();
@@ -78,18 +96,22 @@ class Gateway final : public intake::Desk, public page::Source, public page::Ope
   void changed();
   void picture_the_run();
   void every_second();
+  void keep_sessions();
   double sent_mbit() const;
   std::uint64_t sent_bytes() const;
   void add_to(page::Usage& usage) const;
   std::expected<void, std::string> listen();
   intake::IcdOptions icd_options() const;
   std::vector<icd::BearerToken> tokens() const;
+  void note_robot(const std::string& name);
   panel::Condition condition() const;
   std::vector<std::string> attention() const;
+  void say_what_is_missing(std::vector<std::string>& sentences) const;
   std::vector<page::EndpointRow> endpoints() const;
 
   loop::Loop& loop_;
   Parts parts_;
+  const settings::Settings settings_;  // with the course in use
   std::mt19937_64 random_;
   loop::Workers workers_;
   Spool spool_;
@@ -100,15 +122,20 @@ class Gateway final : public intake::Desk, public page::Source, public page::Ope
   Maps maps_;
   News news_;
   Lights lights_;
+  Roster roster_;
+  SessionKeeper sessions_;
   Accounts accounts_;
+  Setup setup_;
   ThisBox box_;
   page::Page page_;
   intake::IcdRoutes routes_;
   std::vector<std::unique_ptr<intake::Server>> servers_;
   loop::Source second_, drained_;
-  std::int64_t pictured_run_ = 0;         // whose maps picture_ shows; 0: none yet
+  loop::Instant sessions_kept_{};
+  std::int64_t pictured_run_;             // Legacy's
   std::deque<std::uint64_t> bytes_sent_;  // in all, at each of the last seconds
   bool keeping_news_ = false;
+  bool makes_way_ = false;
   bool dismissed_ = false;  // all clients have been told; only their answers have to leave
   std::string notified_;
   std::optional<loop::Instant> stop_by_;

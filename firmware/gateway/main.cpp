@@ -5,6 +5,7 @@
 #include <cstdlib>
 #include <filesystem>
 #include <span>
+#include <utility>
 
 #include "gateway/gateway.hpp"
 #include "gateway/options.hpp"
@@ -16,20 +17,12 @@ namespace {
 using adit::gateway::Gateway;
 using adit::gateway::Options;
 using adit::gateway::Parts;
+using adit::gateway::Store;
 
 /// Where what need not outlive the box is kept.
 std::string runtime_folder(const Options& options) {
   const char* const runtime = std::getenv("RUNTIME_DIRECTORY");
   return runtime != nullptr ? runtime : options.state;
-}
-
-std::expected<adit::settings::Settings, std::string> parse_settings(const std::string& file,
-                                                                    const std::string& text) {
-  auto settings = adit::settings::parse(text);
-  if (settings) return std::move(*settings);
-  std::string sentences;
-  for (const auto& error : settings.error()) sentences += (sentences.empty() ? "" : "; ") + error.sentence();
-  return std::unexpected(file + ": " + sentences);
 }
 
 /// The state folder, made where it is not there yet, for this user alone.
@@ -53,24 +46,20 @@ std::unique_ptr<adit::panel::Lines> open_panel(const adit::settings::Panel& sett
   return adit::panel::simulated(folder + "/panel");
 }
 
-std::expected<Parts, std::string> gather(const Options& options) {
-  auto text = adit::host::read_file(options.settings);
-  if (!text) return std::unexpected(text.error());
-  auto settings = parse_settings(options.settings, *text);
-  if (!settings) return std::unexpected(settings.error());
-  auto secrets = adit::host::read_secrets(options.secrets);
-  if (!secrets) return std::unexpected(secrets.error());
-  if (auto made = make_folder(options.state); !made) return std::unexpected(made.error());
+std::expected<Parts, std::string> gather(const Options& options, const Store& store) {
+  auto loaded = store.load();
+  if (!loaded) return std::unexpected(loaded.error());
   auto ledger = adit::ledger::Ledger::open(options.state);
   if (!ledger) return std::unexpected(ledger.error().what);
-  auto lines = open_panel(settings->panel, runtime_folder(options));
-  return Parts{.settings = std::move(*settings),
-               .settings_text = std::move(*text),
-               .secrets = std::move(*secrets),
+  auto lines = open_panel(loaded->settings.panel, runtime_folder(options));
+  return Parts{.store = store,
+               .loaded = std::move(*loaded),
+               .trouble = "",
                .ledger = std::move(*ledger),
                .lines = std::move(lines),
-               .spool_folder = runtime_folder(options) + "/waiting",
-               .state_folder = options.state};
+               .runtime_folder = runtime_folder(options),
+               .state_folder = options.state,
+               .legacy = std::nullopt};
 }
 
 int fail(const std::string& why) {
@@ -78,25 +67,62 @@ int fail(const std::string& why) {
   return 1;
 }
 
-int run(const Options& options) {
-  auto parts = gather(options);
-  if (!parts) return fail(parts.error());
-  adit::loop::Loop loop;
-  Gateway* running = nullptr;
-  const auto stop = [&running] {
-    if (running != nullptr) running->stop();
-  };
-  const auto terminated = loop.signal(SIGTERM, stop);
-  const auto interrupted = loop.signal(SIGINT, stop);
-  Gateway gateway(loop, std::move(*parts));
-  running = &gateway;
-  if (const auto started = gateway.start(); !started) return fail(started.error());
-  loop.feed_watchdog();
-  adit::host::notify_ready(gateway.status_line());
-  loop.run();
-  adit::host::log(adit::host::Level::Notice, "stopped");
-  return 0;
-}
+/// Gateways, one after the other on one loop: each runs until it is stopped, or makes way for one of changed
+/// settings.
+class Service {
+ public:
+  explicit Service(const Options& options)
+      : options_(options), store_(options.settings, options.secrets, options.state) {}
+
+  int run() {
+    if (auto made = make_folder(options_.state); !made) return fail(made.error());
+    const auto terminated = loop_.signal(SIGTERM, [this] { running_->stop(); });
+    const auto interrupted = loop_.signal(SIGINT, [this] { running_->stop(); });
+    while (true) {
+      const auto anew = run_one();
+      if (anew && !*anew) break;
+      trouble_.clear();
+      if (anew) continue;
+      if (!store_.take_back()) return fail(anew.error());
+      trouble_ = "the last change was taken back: " + anew.error();
+      adit::host::log(adit::host::Level::Error, "the last change of the settings is taken back",
+                      {{"why", anew.error()}});
+    }
+    adit::host::log(adit::host::Level::Notice, "stopped");
+    return 0;
+  }
+
+ private:
+  /// Whether another is to follow; an error: it could not start.
+  std::expected<bool, std::string> run_one() {
+    auto parts = gather(options_, store_);
+    if (!parts) return std::unexpected(parts.error());
+    parts->trouble = trouble_;
+    parts->legacy = std::exchange(legacy_, std::nullopt);
+    Gateway gateway(loop_, std::move(*parts));
+    const auto ran = run(gateway);
+    legacy_ = gateway.hand_over();
+    return ran;
+  }
+
+  std::expected<bool, std::string> run(Gateway& gateway) {
+    if (const auto started = gateway.start(); !started) return std::unexpected(started.error());
+    store_.settle();
+    if (!std::exchange(ready_, true)) loop_.feed_watchdog();
+    adit::host::notify_ready(gateway.status_line());
+    running_ = &gateway;
+    loop_.run();
+    return gateway.makes_way();
+  }
+
+  const Options& options_;
+  Store store_;
+  adit::loop::Loop loop_;
+  Gateway* running_ = nullptr;  // signals come while the loop runs, and so does it
+  std::string trouble_;         // why the last change was taken back
+  std::optional<adit::gateway::Legacy> legacy_;
+  bool ready_ = false;
+};
 
 }  // namespace
 
@@ -109,5 +135,5 @@ int main(int argc, char** argv) {
   }
   if (options->help) return std::fputs(adit::gateway::kUsage, stdout) < 0 ? 1 : 0;
   if (options->version) return std::printf("aditd %s\n", adit::gateway::kVersion) < 0 ? 1 : 0;
-  return run(*options);
+  return Service(*options).run();
 }

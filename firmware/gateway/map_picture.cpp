@@ -28,12 +28,13 @@ struct MapPicture::Job {
 };
 
 MapPicture::MapPicture(loop::Loop& loop, loop::Workers& workers, std::function<bool()> packing,
-                       std::function<void()> changed)
+                       std::function<void()> changed, picture::Mosaic mosaic)
     : loop_(loop),
       workers_(workers),
       packing_(std::move(packing)),
       changed_(std::move(changed)),
-      wake_(loop.timer([this] { pump(); })) {}
+      wake_(loop.timer([this] { pump(); })),
+      mosaic_(std::move(mosaic)) {}
 
 void MapPicture::forwarded(icd::MapUpdate map) {
   std::erase_if(waiting_, [&](const Waiting& older) {
@@ -58,6 +59,13 @@ void MapPicture::begin_run() {
   changed_();
 }
 
+picture::Mosaic MapPicture::hand_over() {
+  if (drawing_) mosaic_.missed(drawing_->layer, drawing_->stamp);
+  for (const Waiting& waiting : waiting_) mosaic_.missed(picture::layer_of(waiting.map), waiting.stamp);
+  waiting_.clear();
+  return std::move(mosaic_);
+}
+
 void MapPicture::pump() {
   if (drawing_ || waiting_.empty()) return;
   if (packing_() && loop_.now() < waiting_.front().since + kPatience) {
@@ -71,7 +79,7 @@ void MapPicture::pump() {
 }
 
 void MapPicture::draw(Waiting waiting) {
-  drawing_ = true;
+  drawing_ = Drawn{picture::layer_of(waiting.map), waiting.stamp};
   auto job = std::make_shared<Job>(Job{std::move(waiting), {}});
   job->canvas = mosaic_.canvas(picture::layer_of(job->waiting.map));
   workers_.submit([job] { job->drawing = picture::draw(job->waiting.map, job->canvas); },
@@ -79,7 +87,7 @@ void MapPicture::draw(Waiting waiting) {
 }
 
 void MapPicture::drawn(Job& job) {
-  drawing_ = false;
+  drawing_.reset();
   const picture::Layer layer = picture::layer_of(job.waiting.map);
   const auto before = mosaic_.version();
   if (job.drawing) {

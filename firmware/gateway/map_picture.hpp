@@ -4,6 +4,7 @@
 #include <deque>
 #include <functional>
 #include <memory>
+#include <optional>
 
 #include "icd/map_update.hpp"
 #include "loop/loop.hpp"
@@ -21,8 +22,9 @@ class MapPicture {
   static constexpr std::size_t kMostWaiting = std::size_t{64} << 20;
 
   /// `packing`: whether a map is being packed. `changed` is called after each change of the picture.
+  /// `mosaic`: what an earlier one has drawn.
   MapPicture(loop::Loop& loop, loop::Workers& workers, std::function<bool()> packing,
-             std::function<void()> changed);
+             std::function<void()> changed, picture::Mosaic mosaic = picture::Mosaic());
 
   /// The Command Post took this map. It need not be drawn where one that follows covers it.
   void forwarded(icd::MapUpdate map);
@@ -30,12 +32,18 @@ class MapPicture {
   void begin_run();
 
   const picture::Mosaic& mosaic() const { return mosaic_; }
+  /// The picture, for one that follows this; what is not drawn yet is missed in it. Ends this.
+  picture::Mosaic hand_over();
 
  private:
   struct Waiting {
     icd::MapUpdate map;
     double stamp = 0;     // when it was forwarded, on the gateway's clock
     loop::Instant since;  // the same, on the loop's
+  };
+  struct Drawn {
+    picture::Layer layer;
+    double stamp = 0;
   };
   struct Job;
 
@@ -51,7 +59,7 @@ class MapPicture {
   picture::Mosaic mosaic_;
   std::deque<Waiting> waiting_;  // oldest first
   std::size_t waiting_bytes_ = 0;
-  bool drawing_ = false;
+  std::optional<Drawn> drawing_;  // that is under way
 };
 
 }  // namespace adit::gateway

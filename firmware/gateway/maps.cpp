@@ -21,7 +21,7 @@ constexpr std::chrono::milliseconds kLongestLead{500};
 }  // namespace
 
 Maps::Maps(loop::Loop& loop, loop::Workers& workers, const Spool& spool, const settings::Settings& settings,
-           icd::BearerToken token, Record& record, std::mt19937_64& random,
+           std::optional<icd::BearerToken> token, Record& record, std::mt19937_64& random,
            std::function<void(icd::MapUpdate)> taken)
     : loop_(loop),
       workers_(workers),
@@ -29,7 +29,7 @@ Maps::Maps(loop::Loop& loop, loop::Workers& workers, const Spool& spool, const s
       settings_(settings),
       record_(record),
       taken_(std::move(taken)),
-      channel_(loop,
+      channel_(loop, "mapping",
                endpoint_of(settings.command_post, settings.command_post.mapping,
                            pace::map_bytes_per_second(settings.command_post.budget_mbit)),
                std::move(token), settings.command_post.timeouts.mapping_answer),
@@ -92,7 +92,7 @@ void Maps::done() {
 }
 
 void Maps::pump() {
-  if (stopping_ || preparing_ || channel_.busy()) return;
+  if (stopping_ || preparing_ || channel_.busy() || !channel_.has_token()) return;
   const loop::Instant now = loop_.now();
   if (prepared_) {
     if (now >= pace_.ready()) return send();

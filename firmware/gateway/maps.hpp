@@ -25,9 +25,11 @@ class Maps {
  public:
   /// `taken` is given each map that the Command Post took.
   Maps(loop::Loop& loop, loop::Workers& workers, const Spool& spool, const settings::Settings& settings,
-       icd::BearerToken token, Record& record, std::mt19937_64& random,
+       std::optional<icd::BearerToken> token, Record& record, std::mt19937_64& random,
        std::function<void(icd::MapUpdate)> taken);
 
+  /// As if something had just been sent, by whoever sent before.
+  void hold_back() { pace_.sent(loop_.now()); }
   /// A map that the spool kept under this number.
   void restore(std::uint64_t number, icd::MapUpdate update);
 

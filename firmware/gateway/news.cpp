@@ -41,12 +41,12 @@ std::size_t updates_in(const lanes::WaitingMarkers& markers) {
 
 }  // namespace
 
-News::News(loop::Loop& loop, const settings::Settings& settings, icd::BearerToken token, Record& record,
-           std::mt19937_64& random)
+News::News(loop::Loop& loop, const settings::Settings& settings, std::optional<icd::BearerToken> token,
+           Record& record, std::mt19937_64& random)
     : loop_(loop),
       record_(record),
-      channel_(loop, endpoint_of(settings.command_post, settings.command_post.mapping, 0), std::move(token),
-               settings.command_post.timeouts.mapping_answer),
+      channel_(loop, "mapping", endpoint_of(settings.command_post, settings.command_post.mapping, 0),
+               std::move(token), settings.command_post.timeouts.mapping_answer),
       state_pace_(settings.command_post.rates.state_hz, random),
       markers_pace_(settings.command_post.rates.markers_hz, random),
       wake_(loop.timer([this] { pump(); })),
@@ -73,7 +73,7 @@ icd::Checked<void> News::take(const icd::MarkersUpdate& update, std::size_t byte
 }
 
 void News::pump() {
-  if (stopping_ || channel_.busy()) return;
+  if (stopping_ || channel_.busy() || !channel_.has_token()) return;
   const std::array candidates = {dispatch::Candidate{state_.oldest(), state_pace_.ready()},
                                  dispatch::Candidate{markers_.oldest(), markers_pace_.ready()}};
   const dispatch::Turn turn = dispatch::oldest_first(candidates, loop_.now());

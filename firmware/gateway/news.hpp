@@ -1,6 +1,7 @@
 #pragma once
 
 #include <map>
+#include <optional>
 #include <random>
 #include <string>
 #include <utility>
@@ -20,9 +21,14 @@ namespace adit::gateway {
 /// has the older news first.
 class News {
  public:
-  News(loop::Loop& loop, const settings::Settings& settings, icd::BearerToken token, Record& record,
-       std::mt19937_64& random);
+  News(loop::Loop& loop, const settings::Settings& settings, std::optional<icd::BearerToken> token,
+       Record& record, std::mt19937_64& random);
 
+  /// As if something had just been sent, by whoever sent before.
+  void hold_back() {
+    state_pace_.sent(loop_.now());
+    markers_pace_.sent(loop_.now());
+  }
   void start() { channel_.keep_warm(); }
   /// Stamps are on the gateway's clock. Refused with 429 where the lane is full.
   icd::Checked<void> take(const icd::StateUpdate& update, std::size_t bytes_received);

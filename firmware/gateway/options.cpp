@@ -9,14 +9,17 @@ const char* const kUsage =
     "\n"
     "Adit's gateway between a robot team and the Command Post.\n"
     "\n"
-    "  --settings FILE  the settings (JSON, version 1); `adit check FILE` explains what is wrong with one\n"
-    "  --secrets DIR    holds scoring.token, mapping.token and, if wanted, team.token, readable by nobody "
-    "else\n"
-    "  --state DIR      where the ledger of reports is kept; made where it is absent\n"
+    "  --settings FILE  the settings (JSON, version 1) unless others were saved; `adit check FILE` explains\n"
+    "                   what is wrong with them\n"
+    "  --secrets DIR    may hold scoring.token, mapping.token and team.token, readable by nobody else\n"
+    "  --state DIR      where the ledger of reports is kept, and what is set up by the page: settings.json "
+    "and\n"
+    "                   secrets/, which count before the other two; made where it is absent\n"
     "  --version        prints the version\n"
     "  --help           prints this\n"
     "\n"
-    "What waits is kept across a restart in $RUNTIME_DIRECTORY, or else in the state folder.\n"
+    "What waits and who is logged in is kept across a restart in $RUNTIME_DIRECTORY, or else in the state "
+    "folder.\n"
     "Exits 0 after SIGTERM or SIGINT, 1 where it cannot start (and says why), 2 on a wrong command line.\n";
 
 std::expected<Options, std::string> parse_options(std::span<char* const> arguments) {

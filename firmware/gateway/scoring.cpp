@@ -23,15 +23,15 @@ dispatch::ReportRules rules_of(const settings::Reports& reports) {
 }  // namespace
 
 Scoring::Scoring(loop::Loop& loop, ledger::Ledger& ledger, const settings::Settings& settings,
-                 icd::BearerToken token, Record& record, std::mt19937_64& random)
+                 std::optional<icd::BearerToken> token, Record& record, std::mt19937_64& random)
     : loop_(loop),
       ledger_(ledger),
       settings_(settings),
       record_(record),
       deeds_(loop, ledger),
       reports_(rules_of(settings.reports), deeds_),
-      channel_(loop, endpoint_of(settings.command_post, settings.command_post.scoring, 0), std::move(token),
-               settings.command_post.timeouts.scoring_answer),
+      channel_(loop, "scoring", endpoint_of(settings.command_post, settings.command_post.scoring, 0),
+               std::move(token), settings.command_post.timeouts.scoring_answer),
       report_pace_(settings.command_post.rates.reports_hz, random),
       status_pace_(settings.command_post.rates.status_hz, random),
       wake_(loop.timer([this] { pump(); })),
@@ -73,6 +73,10 @@ void Scoring::status(std::shared_ptr<intake::Responder> responder) {
     responder->answer(intake::error_answer(icd::Status::ServiceUnavailable, "the gateway is stopping"));
     return;
   }
+  if (!channel_.has_token()) {
+    responder->answer(intake::error_answer(icd::Status::ServiceUnavailable, channel_.trouble()));
+    return;
+  }
   if (status_fresh_until_ && loop_.now() < *status_fresh_until_) {
     responder->answer(fresh_status());
     return;
@@ -95,7 +99,7 @@ intake::Answer Scoring::fresh_status() const {
 }
 
 void Scoring::pump() {
-  if (stopping_ || channel_.busy()) return;
+  if (stopping_ || channel_.busy() || !channel_.has_token()) return;
   const dispatch::Time at = time();
   const loop::Instant now = at.now;
   const dispatch::Wish wish = reports_.wish(at);

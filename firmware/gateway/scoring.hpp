@@ -31,8 +31,13 @@ class Scoring {
   static constexpr std::chrono::milliseconds kAskAfterReport{50};
 
   Scoring(loop::Loop& loop, ledger::Ledger& ledger, const settings::Settings& settings,
-          icd::BearerToken token, Record& record, std::mt19937_64& random);
+          std::optional<icd::BearerToken> token, Record& record, std::mt19937_64& random);
 
+  /// As if something had just been sent, by whoever sent before.
+  void hold_back() {
+    report_pace_.sent(loop_.now());
+    status_pace_.sent(loop_.now());
+  }
   /// Takes up what the ledger holds from before, and connects. An error: the ledger cannot be read.
   std::expected<void, std::string> start();
 

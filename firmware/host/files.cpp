@@ -81,4 +81,14 @@ std::expected<void, std::string> write_file(const std::string& path, const std::
   return {};
 }
 
+bool remove_file(const std::string& path) {
+  if (unlink(path.c_str()) != 0) return errno == ENOENT;
+  return sync_folder(path);
+}
+
+std::string boot() {
+  const auto file = slurp("/proc/sys/kernel/random/boot_id");
+  return file ? file->text.substr(0, file->text.find('\n')) : "";
+}
+
 }  // namespace adit::host

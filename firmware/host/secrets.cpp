@@ -42,28 +42,25 @@ std::expected<Token, std::string> read_token(const std::string& path, bool crede
   return token;
 }
 
-std::expected<Token, std::string> read_required_token(const std::string& path, bool credential) {
-  auto token = read_token(path, credential);
-  if (token && !*token) return std::unexpected(path + ": there is no token");
-  return token;
-}
-
 }  // namespace
 
-std::expected<Secrets, std::string> read_secrets(const std::string& folder) {
-  const bool credentials = holds_credentials(folder);
-  auto scoring = read_required_token(folder + "/scoring.token", credentials);
-  if (!scoring) return std::unexpected(scoring.error());
-  auto mapping = read_required_token(folder + "/mapping.token", credentials);
-  if (!mapping) return std::unexpected(mapping.error());
-  auto team = read_token(folder + "/team.token", credentials);
-  if (!team) return std::unexpected(team.error());
-  auto label = read_token(folder + "/label.code", credentials);
+std::expected<Secrets, std::string> read_secrets(const std::string& given, const std::string& saved,
+                                                 std::span<const std::string> names) {
+  const bool credentials = holds_credentials(given);
+  Secrets secrets;
+  for (const std::string& name : names) {
+    auto token = read_token(saved + "/" + name + ".token", false);
+    if (token && !*token) token = read_token(given + "/" + name + ".token", credentials);
+    if (!token) return std::unexpected(token.error());
+    if (*token) secrets.tokens.emplace(name, std::move(**token));
+  }
+  auto label = read_token(given + "/label.code", credentials);
   if (!label) return std::unexpected(label.error());
   if (*label && !access::is_code((*label)->reveal())) {
-    return std::unexpected(folder + "/label.code: expected 8 digits");
+    return std::unexpected(given + "/label.code: expected 8 digits");
   }
-  return Secrets{std::move(*scoring), std::move(*mapping), std::move(*team), std::move(*label)};
+  secrets.label_code = std::move(*label);
+  return secrets;
 }
 
 }  // namespace adit::host

@@ -1,8 +1,12 @@
 #pragma once
 
 #include <expected>
+#include <functional>
+#include <map>
 #include <optional>
+#include <span>
 #include <string>
+#include <string_view>
 
 #include "icd/bearer_token.hpp"
 
@@ -21,17 +25,28 @@ std::expected<std::string, std::string> read_file(const std::string& path);
 /// rename, fsync of the folder.
 std::expected<void, std::string> write_file(const std::string& path, const std::string& text, int mode);
 
+/// Removes a file, for good once this is true; also where there was none.
+bool remove_file(const std::string& path);
+
 struct Secrets {
-  std::optional<icd::BearerToken> scoring, mapping;  // what the Command Post knows the team by
-  std::optional<icd::BearerToken> team;  // what the team's clients show; absent: only the other two are good
+  std::map<std::string, icd::BearerToken, std::less<>> tokens;  // by name: "scoring", "course.A.mapping"
   std::optional<icd::BearerToken> label_code;  // what sets the first password; absent: one is drawn
+
+  std::optional<icd::BearerToken> token(std::string_view name) const {
+    const auto found = tokens.find(name);
+    return found == tokens.end() ? std::nullopt : std::optional(found->second);
+  }
 };
 
-/// `scoring.token`, `mapping.token`, `team.token` and `label.code` in `folder` (a folder of systemd
-/// credentials, or one of mode 0700 with files of mode 0600); white space around a token is cut. An error
-/// names the file, never what is in it. A missing or empty scoring or mapping token is an error, a missing or
-/// empty team token or code is none. A file that others may read is an error.
-std::expected<Secrets, std::string> read_secrets(const std::string& folder);
+/// The tokens of these names, each in NAME.token in `saved` or else in `given` (a folder of systemd
+/// credentials, or one of mode 0700 with files of mode 0600); and `label.code` in `given`. White space around
+/// a token is cut; a missing or empty file is none. An error names the file, never what is in it: others may
+/// read it, or it holds no token.
+std::expected<Secrets, std::string> read_secrets(const std::string& given, const std::string& saved,
+                                                 std::span<const std::string> names);
+
+/// Names this start of the machine; "" where that cannot be known.
+std::string boot();
 
 /// Whether `interface` has a carrier: nothing where there is no such interface; "" is always true.
 std::optional<bool> carrier(const std::string& interface);

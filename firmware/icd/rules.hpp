@@ -2,10 +2,14 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <functional>
+#include <map>
 #include <span>
+#include <string>
 #include <string_view>
 
 #include "icd/map_update.hpp"
+#include "icd/robot_name.hpp"
 #include "icd/status.hpp"
 
 namespace adit::icd {
@@ -19,6 +23,7 @@ struct Rules {
   bool rewrite_frame_id = false;       // take any frame_id and send "darpa" (else 422)
   bool forward_unknown_types = false;  // send artifact types that are none of the ten (else 422)
   std::size_t map_bytes = 256u << 20;  // largest `data` of a map once inflated
+  std::map<std::string, RobotName, std::less<>> aliases = {};  // what a robot calls itself, and its name
 };
 
 /// Rules over several fields of a map, once each field has its type. Each names the field by its path in the

@@ -68,7 +68,7 @@ IcdRoutes::IcdRoutes(IcdOptions options, Desk& desk, loop::Workers& workers, Han
 
 bool IcdRoutes::may_enter(const RequestHead& head) const {
   const std::string_view presented = icd::token_in(head.header("Authorization"));
-  bool known = options_.tokens.empty();
+  bool known = !options_.asks_token;
   for (const icd::BearerToken& token : options_.tokens) {
     if (token.matches(presented)) known = true;  // no early end: the time must not tell which
   }
@@ -96,7 +96,9 @@ std::unique_ptr<Exchange> IcdRoutes::open(const RequestHead& head, std::shared_p
     return nullptr;
   }
   if (!may_enter(head)) {
-    visit.refuse({icd::Status::Unauthorized, "Authorization: expected Bearer and the team's token"});
+    visit.refuse({icd::Status::Unauthorized, options_.tokens.empty()
+                                                 ? "Authorization: no token is set up on this gateway yet"
+                                                 : "Authorization: expected Bearer and the team's token"});
     return nullptr;
   }
   if (head.method() != icd::method_of(*uri)) {

@@ -19,7 +19,8 @@ struct Visit;
 
 /// What the team's side of the ICD is served with.
 struct IcdOptions {
-  std::vector<icd::BearerToken> tokens;  // any of them is good; empty: none is asked for
+  std::vector<icd::BearerToken> tokens;  // any of them is good
+  bool asks_token = true;                // whether a client has to show one: without any, none is let in
   icd::Rules rules;
   std::size_t upload_bytes = 512u << 20;  // most that all maps under way together may have brought
 };

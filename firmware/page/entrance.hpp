@@ -13,9 +13,9 @@ namespace adit::page {
 /// The one door to what is under /adit/: firmware/access/README.md says who comes in.
 class Entrance {
  public:
-  /// `tokens`: any of them lets a script in; empty: none does. `loop` outlives this.
-  Entrance(loop::Loop& loop, std::vector<icd::BearerToken> tokens)
-      : loop_(loop), tokens_(std::move(tokens)) {}
+  /// `tokens`: any of them lets a script in; empty: none does. `loop` and `sessions` outlive this.
+  Entrance(loop::Loop& loop, access::Sessions& sessions, std::vector<icd::BearerToken> tokens)
+      : loop_(loop), sessions_(sessions), tokens_(std::move(tokens)) {}
 
   /// Visitor::session is valid until the next call of anything here.
   icd::Checked<access::Visitor> admit(const intake::RequestHead& head, access::Role role);
@@ -27,8 +27,8 @@ class Entrance {
 
  private:
   loop::Loop& loop_;
+  access::Sessions& sessions_;
   std::vector<icd::BearerToken> tokens_;
-  access::Sessions sessions_;
 };
 
 access::Request request_of(const intake::RequestHead& head);

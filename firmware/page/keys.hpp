@@ -11,8 +11,8 @@
 
 namespace adit::page {
 
-/// The passwords, and what is random: what the login needs of the box. For the loop; hashing takes tens of
-/// milliseconds, so what hashes answers later, on the loop.
+/// The passwords, who is logged in, and what is random: what the login needs of the box. For the loop;
+/// hashing takes tens of milliseconds, so what hashes answers later, on the loop.
 class Keys {
  public:
   virtual ~Keys() = default;
@@ -31,6 +31,9 @@ class Keys {
   /// be kept.
   virtual void set(access::Role role, std::optional<std::string> password,
                    std::function<void(icd::Checked<void>)> done) = 0;
+
+  /// Those who are logged in; kept where they outlive the page.
+  virtual access::Sessions& sessions() = 0;
 
   /// Never the same twice.
   virtual access::Secret draw() = 0;

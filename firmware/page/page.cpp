@@ -11,6 +11,7 @@
 #include "page/map_routes.hpp"
 #include "page/report_routes.hpp"
 #include "page/session_routes.hpp"
+#include "page/settings_routes.hpp"
 #include "page/site.hpp"
 
 namespace adit::page {
@@ -39,7 +40,7 @@ class Page::Impl {
        std::vector<icd::BearerToken> tokens)
       : loop_(loop),
         source_(source),
-        entrance_(loop, std::move(tokens)),
+        entrance_(loop, keys.sessions(), std::move(tokens)),
         sessions_(loop, entrance_, keys),
         live_(loop, source),
         maps_(source),
@@ -53,12 +54,14 @@ class Page::Impl {
     }
     if (box_ && BoxRoutes::has(head.path())) return box_->open(head, responder);
     if (SessionRoutes::has(head.path())) return sessions_.open(head, std::move(responder));
-    const auto visitor =
-        entrance_.admit(head, only_reads(head) ? access::Role::Viewer : access::Role::Operator);
+    const bool sets_up = settings_ && SettingsRoutes::has(head.path());
+    const bool for_viewers = only_reads(head) && (!sets_up || SettingsRoutes::is_for_viewers(head.path()));
+    const auto visitor = entrance_.admit(head, for_viewers ? access::Role::Viewer : access::Role::Operator);
     if (!visitor) {
       responder->answer(turned_away(visitor.error()));
       return nullptr;
     }
+    if (sets_up) return settings_->open(head, std::move(responder));
     if (ReportRoutes::has(head.path())) return reports_.open(head, std::move(responder));
     if (MapRoutes::has(head.path())) {
       responder->answer(maps_.answer(head));
@@ -68,6 +71,10 @@ class Page::Impl {
     return nullptr;
   }
 
+  void serve(Setup& setup) {
+    settings_.emplace(setup);
+    sessions_.serve(setup);
+  }
   void serve(Box& box) { box_.emplace(source_, box, entrance_, loop_); }
   void changed() { live_.changed(); }
 
@@ -98,12 +105,17 @@ class Page::Impl {
   Live live_;
   MapRoutes maps_;
   ReportRoutes reports_;
+  std::optional<SettingsRoutes> settings_;
 };
 
 Page::Page(loop::Loop& loop, const Source& source, Operator& judge, Keys& keys,
            std::vector<icd::BearerToken> tokens)
     : impl_(std::make_unique<Impl>(loop, source, judge, keys, std::move(tokens))) {}
 Page::~Page() = default;
+
+void Page::serve(Setup& setup) {
+  impl_->serve(setup);
+}
 
 std::unique_ptr<intake::Exchange> Page::open(const intake::RequestHead& head,
                                              std::shared_ptr<intake::Responder> responder,

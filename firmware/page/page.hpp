@@ -19,6 +19,7 @@ namespace adit::page {
 
 class Box;
 class Keys;
+class Setup;
 
 /// Times are seconds since 1970 on the gateway's clock.
 using Time = double;
@@ -162,6 +163,9 @@ class Page final : public intake::Handler {
   Page(loop::Loop& loop, const Source& source, Operator& judge, Keys& keys,
        std::vector<icd::BearerToken> tokens);
   ~Page() override;
+
+  /// Serves the settings, too; `setup` outlives this. Once, before anything is opened.
+  void serve(Setup& setup);
 
   std::unique_ptr<intake::Exchange> open(const intake::RequestHead& head,
                                          std::shared_ptr<intake::Responder> responder,

@@ -20,7 +20,7 @@ using codec::Value;
 
 constexpr std::string_view kSession = "/adit/session", kSessions = "/adit/sessions", kLogin = "/adit/login",
                            kLogout = "/adit/logout", kPassword = "/adit/password", kOne = "/adit/sessions/",
-                           kEnd = "/end";
+                           kEnd = "/end", kReset = "/adit/reset";
 constexpr std::size_t kMostBody = 4096;
 
 /// Of "/adit/sessions/7/end".
@@ -74,7 +74,7 @@ icd::Checked<Message> read_body(const std::string& body, Read read) {
 
 bool SessionRoutes::has(std::string_view path) {
   return path == kSession || path == kSessions || path == kLogin || path == kLogout || path == kPassword ||
-         ended_by(path).has_value();
+         path == kReset || ended_by(path).has_value();
 }
 
 std::unique_ptr<intake::Exchange> SessionRoutes::open(const intake::RequestHead& head,
@@ -143,7 +143,7 @@ std::unique_ptr<intake::Exchange> SessionRoutes::post(const intake::RequestHead&
     return nullptr;
   }
   const auto visitor = entrance_.admit(head, Role::Operator);
-  const bool open_to_all = head.path() == kLogin || keys_.first_start();
+  const bool open_to_all = head.path() == kLogin || (head.path() == kPassword && keys_.first_start());
   if (!visitor && !open_to_all) {
     responder->answer(turned_away(visitor.error()));
     return nullptr;
@@ -153,7 +153,9 @@ std::unique_ptr<intake::Exchange> SessionRoutes::post(const intake::RequestHead&
   if (const auto known = entrance_.who(head); known && known->session != nullptr) {
     poster.session = known->session->number;
   }
-  const auto handle = head.path() == kLogin ? &SessionRoutes::log_in : &SessionRoutes::change_password;
+  const auto handle = head.path() == kLogin   ? &SessionRoutes::log_in
+                      : head.path() == kReset ? &SessionRoutes::reset
+                                              : &SessionRoutes::change_password;
   return std::make_unique<SmallBody>(
       responder, kMostBody, [this, handle, poster = std::move(poster), responder](const std::string& body) {
         (this->*handle)(poster, body, responder);
@@ -254,6 +256,24 @@ void SessionRoutes::change_password(const Poster& poster, const std::string& bod
           if (role != Role::Operator) return responder->answer(wrong("the operator's present password"));
           set(change, poster, responder);
         });
+}
+
+void SessionRoutes::reset(const Poster& poster, const std::string& body, const Replies& responder) {
+  const auto password = read_body<std::string>(
+      body, [](const codec::Field& root) { return std::string(root.member("password").text()); });
+  if (!password) return responder->answer(refused(password.error()));
+  if (setup_ == nullptr) return responder->answer(nothing_here());
+  if (keys_.first_start()) {
+    return responder->answer(refusal(icd::Status::Conflict, "no password is set yet: set one with the code"));
+  }
+  check(*password, poster, responder, [this, responder](std::optional<Role> role) {
+    if (role != Role::Operator) return responder->answer(wrong("the operator's present password"));
+    if (const auto done = setup_->reset(); !done) return responder->answer(refused(done.error()));
+    auto answer =
+        object({{"said", {"settings, tokens, passwords and sessions are gone; the reports are kept"}}});
+    answer.headers.push_back(cookie("", std::chrono::seconds(0)));
+    responder->answer(std::move(answer));
+  });
 }
 
 void SessionRoutes::set(const Change& change, const Poster& poster, const Replies& responder) {

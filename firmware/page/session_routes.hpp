@@ -10,10 +10,11 @@
 #include "loop/loop.hpp"
 #include "page/entrance.hpp"
 #include "page/keys.hpp"
+#include "page/setup.hpp"
 
 namespace adit::page {
 
-/// Logging in and out, passwords and sessions: README.md has the routes.
+/// Logging in and out, passwords, sessions, and the reset that ends them all: README.md has the routes.
 class SessionRoutes {
  public:
   static constexpr int kMostChecks = 4;  // of passwords at once, as the workers also pack maps
@@ -21,6 +22,9 @@ class SessionRoutes {
   /// All outlive this, and whatever `keys` still answers.
   SessionRoutes(loop::Loop& loop, Entrance& entrance, Keys& keys)
       : loop_(loop), entrance_(entrance), keys_(keys) {}
+
+  /// Takes in /adit/reset, too: it needs a password like those here. `setup` outlives this.
+  void serve(Setup& setup) { setup_ = &setup; }
 
   static bool has(std::string_view path);
   /// Requires has(head.path()).
@@ -54,6 +58,7 @@ class SessionRoutes {
   intake::Answer end(const intake::RequestHead& head, std::uint64_t number);
 
   void change_password(const Poster& poster, const std::string& body, const Replies& responder);
+  void reset(const Poster& poster, const std::string& body, const Replies& responder);
   void set(const Change& change, const Poster& poster, const Replies& responder);
 
   /// Calls `done` with whose password it is; answers 429 instead where it is not to be checked now.
@@ -66,6 +71,7 @@ class SessionRoutes {
   loop::Loop& loop_;
   Entrance& entrance_;
   Keys& keys_;
+  Setup* setup_ = nullptr;
   access::Failures failures_;
   int checking_ = 0;
 };

@@ -21,6 +21,7 @@ const File* file_at(std::string_view path) {
   if (path == "/") path = "/index.html";
   if (path == "/display") path = "/display.html";
   if (path == "/system") path = "/system.html";
+  if (path == "/setup") path = "/setup.html";
   const auto found = std::ranges::find(files, path, &File::path);
   return found == files.end() ? nullptr : &*found;
 }

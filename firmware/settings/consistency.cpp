@@ -1,13 +1,23 @@
 #include "settings/consistency.hpp"
 
+#include <algorithm>
 #include <array>
+#include <iterator>
 #include <utility>
+
+#include "icd/sentence.hpp"
+#include "settings/network_rules.hpp"
 
 namespace adit::settings {
 namespace {
 
 std::string item(std::size_t index) {
   return "team.listen[" + std::to_string(index) + "]";
+}
+
+bool is_endpoint(const Address& address, const Settings& settings) {
+  const auto has = [&](const auto& post) { return post.scoring == address || post.mapping == address; };
+  return has(settings.command_post) || std::ranges::any_of(settings.courses, has);
 }
 
 void check_listen(const Settings& settings, std::vector<Error>& errors) {
@@ -17,7 +27,7 @@ void check_listen(const Settings& settings, std::vector<Error>& errors) {
       if (listen[i].port != 0 && listen[i] == listen[j])
         errors.push_back({item(i), "the same as " + item(j)});
     }
-    if (listen[i] == settings.command_post.scoring || listen[i] == settings.command_post.mapping) {
+    if (is_endpoint(listen[i], settings)) {
       errors.push_back({item(i), "the same as an endpoint of the Command Post; Adit would post to itself"});
     }
   }
@@ -51,6 +61,46 @@ void check_panel(const Panel& panel, std::vector<Error>& errors) {
     errors.push_back({"panel.chip", "names a chip, but no light has a line"});
 }
 
+/// Names are unique, and an alias is nobody else's and no robot's name: who posts must be clear.
+void check_robots(const std::vector<Robot>& robots, std::vector<Error>& errors) {
+  for (std::size_t i = 0; i < robots.size(); ++i) {
+    const std::string name = icd::sentence("robots[", i, "].name"),
+                      alias = icd::sentence("robots[", i, "].alias");
+    for (std::size_t j = 0; j < robots.size(); ++j) {
+      if (j < i && robots[i].name == robots[j].name) {
+        errors.push_back({name, icd::sentence("the same as robots[", j, "].name")});
+      }
+      if (robots[i].alias.empty()) continue;
+      if (j < i && robots[i].alias == robots[j].alias) {
+        errors.push_back({alias, icd::sentence("the same as robots[", j, "].alias")});
+      }
+      if (robots[i].alias == robots[j].name) {
+        errors.push_back(
+            {alias, icd::sentence("the same as robots[", j, "].name; an alias is another name")});
+      }
+    }
+  }
+}
+
+void check_courses(const Settings& settings, std::vector<Error>& errors) {
+  const std::vector<Course>& courses = settings.courses;
+  for (std::size_t i = 0; i < courses.size(); ++i) {
+    for (std::size_t j = 0; j < i; ++j) {
+      if (courses[i].name == courses[j].name) {
+        errors.push_back(
+            {icd::sentence("courses[", i, "].name"), icd::sentence("the same as courses[", j, "].name")});
+      }
+    }
+  }
+  const std::string& course = settings.command_post.course;
+  if (course.empty() || std::ranges::find(courses, course, &Course::name) != courses.end()) return;
+  std::string known;
+  for (const Course& each : courses) known.append(known.empty() ? "" : ", ").append(each.name);
+  errors.push_back(
+      {"command_post.course", icd::sentence("no course is called ", course,
+                                            known.empty() ? "; there are none" : "; there are ", known)});
+}
+
 }  // namespace
 
 std::vector<Error> contradictions(const Settings& settings) {
@@ -58,6 +108,9 @@ std::vector<Error> contradictions(const Settings& settings) {
   check_listen(settings, errors);
   check_connections(settings.team, errors);
   check_panel(settings.panel, errors);
+  check_robots(settings.robots, errors);
+  check_courses(settings, errors);
+  std::ranges::move(network_faults(settings), std::back_inserter(errors));
   return errors;
 }
 

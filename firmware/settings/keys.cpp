@@ -1,5 +1,7 @@
 #include "settings/keys.hpp"
 
+#include <algorithm>
+
 namespace adit::settings {
 namespace {
 
@@ -47,6 +49,18 @@ const Key kKeys[] = {
     {"command_post.timeouts.mapping_answer_ms",
      "How long the mapping endpoint may be silent before an update is sent again.",
      whole<MEMBER(command_post.timeouts.mapping_answer)>(100, 600000)},
+    {"command_post.course",
+     "The course in use, one of courses[].name, whose endpoints then count; empty: those above.",
+     text<MEMBER(command_post.course)>(Form::CourseOrNone)},
+
+    {"courses[].name", "What a course is called: its endpoints are switched to by this name.",
+     text<MEMBER(courses.back().name)>(Form::Course), kRequired},
+    {"courses[].scoring.address", "Its scoring endpoint.",
+     text<MEMBER(courses.back().scoring.address)>(Form::Address), kRequired},
+    {"courses[].scoring.port", "Its port.", whole<MEMBER(courses.back().scoring.port)>(1, 65535), kRequired},
+    {"courses[].mapping.address", "Its mapping endpoint.",
+     text<MEMBER(courses.back().mapping.address)>(Form::Address), kRequired},
+    {"courses[].mapping.port", "Its port.", whole<MEMBER(courses.back().mapping.port)>(1, 65535), kRequired},
 
     {"team.listen[].address",
      "Where the team's robots and stations reach Adit; 0.0.0.0: every address of team.interface.",
@@ -64,6 +78,30 @@ const Key kKeys[] = {
      whole<MEMBER(team.connections)>(1, 1024)},
     {"team.connections_per_address", "Connections from one address at once, at most.",
      whole<MEMBER(team.connections_per_address)>(1, 1024)},
+
+    {"robots[].name",
+     "A robot's name as it was registered (ICD 2). Where any is given, others are taken too, but told of.",
+     text<MEMBER(robots.back().name)>(Form::Robot), kRequired},
+    {"robots[].alias", "What that robot calls itself in its maps and states: it goes on under its name.",
+     text<MEMBER(robots.back().alias)>(Form::Alias)},
+
+    {"network.team.address", "The box's own address on team.interface; empty: set elsewhere.",
+     text<MEMBER(network.team.address)>(Form::Ipv4)},
+    {"network.team.prefix", "The length of its subnet's prefix.", whole<MEMBER(network.team.prefix)>(8, 30)},
+    {"network.command_post.address", "The box's own address on command_post.interface; empty: set elsewhere.",
+     text<MEMBER(network.command_post.address)>(Form::Ipv4)},
+    {"network.command_post.prefix", "The length of its subnet's prefix.",
+     whole<MEMBER(network.command_post.prefix)>(8, 30)},
+    {"network.command_post.gateway", "The way to endpoints outside of that subnet; empty: none.",
+     text<MEMBER(network.command_post.gateway)>(Form::Ipv4)},
+    {"network.confirm_within_ms",
+     "How long a change of the network waits to be confirmed from the new address; then it takes itself "
+     "back.",
+     whole<MEMBER(network.confirm_within)>(1000, 600000)},
+    {"network.allow_overlap",
+     "Whether the team's subnet may overlap the Command Post's: Adit works even so, but a robot cannot reach "
+     "both.",
+     flag<MEMBER(network.allow_overlap)>()},
 
     {"reports.answer_within_ms",
      "How long a client waits for the answer to its report, at most; then it is told 503 and that the report "
@@ -112,10 +150,45 @@ const Key kKeys[] = {
 
 #undef MEMBER
 
+template <auto member>
+constexpr List list(std::string_view path, std::size_t least, std::size_t most) {
+  return {path, least, most, [](const Settings& s) { return member(s).size(); },
+          [](Settings& s, std::size_t size) { member(s).resize(size); }};
+}
+
+const List kLists[] = {
+    list<[](auto& s) -> auto& { return s.courses; }>("courses", 0, 16),
+    list<[](auto& s) -> auto& { return s.team.listen; }>("team.listen", 1, 16),
+    list<[](auto& s) -> auto& { return s.robots; }>("robots", 0, 32),
+};
+
 }  // namespace
 
 std::span<const Key> keys() {
   return kKeys;
+}
+
+const List& list_at(std::string_view path) {
+  return *std::ranges::find(kLists, path, &List::path);
+}
+
+Settings with_an_item_of_each() {
+  Settings settings;
+  for (const List& list : kLists) list.resize(settings, 1);
+  return settings;
+}
+
+std::vector<Child> children_of(std::string_view prefix) {
+  std::vector<Child> children;
+  for (const Key& key : keys()) {
+    if (!key.path.starts_with(prefix)) continue;
+    const std::string_view rest = key.path.substr(prefix.size());
+    const std::string_view name = rest.substr(0, rest.find_first_of(".["));
+    if (!children.empty() && children.back().name == name) continue;
+    children.push_back(
+        {name, rest == name ? &key : nullptr, rest.size() > name.size() && rest[name.size()] == '['});
+  }
+  return children;
 }
 
 }  // namespace adit::settings

@@ -8,6 +8,7 @@
 #include <optional>
 
 #include "codec/json.hpp"
+#include "icd/robot_name.hpp"
 
 namespace adit::settings {
 namespace {
@@ -42,6 +43,19 @@ bool is_address(const std::string& text) {
   return inet_pton(AF_INET, text.c_str(), &parsed) == 1 || inet_pton(AF_INET6, text.c_str(), &parsed) == 1;
 }
 
+bool is_ipv4(const std::string& text) {
+  in_addr parsed{};
+  return text.find('\0') == std::string::npos && inet_pton(AF_INET, text.c_str(), &parsed) == 1;
+}
+
+/// 1 to 20 letters, digits, `_` and `-`: a course's name stands in the name of a file.
+bool is_course(const std::string& text) {
+  constexpr std::size_t kLongest = 20;
+  return !text.empty() && text.size() <= kLongest && std::ranges::all_of(text, [](char c) {
+    return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || (c >= '0' && c <= '9') || c == '_' || c == '-';
+  });
+}
+
 /// At most `most` visible ASCII characters and none of `without`.
 bool is_name(const std::string& text, std::size_t most, std::string_view without = "") {
   if (text.size() > most || text.find_first_of(without) != std::string::npos) return false;
@@ -59,6 +73,16 @@ bool fits(Form form, const std::string& text) {
       return is_name(text, 15, "/:") && text != "." && text != "..";  // the kernel's dev_valid_name()
     case Form::Chip:
       return is_name(text, 64);
+    case Form::Ipv4:
+      return text.empty() || is_ipv4(text);
+    case Form::Robot:
+      return icd::RobotName::parse(text).has_value();
+    case Form::Alias:
+      return is_name(text, 64);
+    case Form::Course:
+      return is_course(text);
+    case Form::CourseOrNone:
+      return text.empty() || is_course(text);
     case Form::Line:
       return is_name(text, 31);  // GPIO_MAX_NAME_SIZE in linux/gpio.h, less its NUL
   }
@@ -73,6 +97,16 @@ std::string range_of(Form form) {
       return "an interface's name of at most 15 characters, or \"\"";
     case Form::Chip:
       return "a GPIO chip's name or path, or \"\"";
+    case Form::Ipv4:
+      return "an IPv4 address, or \"\"";
+    case Form::Robot:
+      return "1 to 10 letters, digits and underscores";
+    case Form::Alias:
+      return "at most 64 visible ASCII characters, or \"\"";
+    case Form::Course:
+      return "1 to 20 letters, digits, underscores and hyphens";
+    case Form::CourseOrNone:
+      return "a course's name, or \"\"";
     case Form::Line:
       return "a GPIO line's name of at most 31 characters, or \"\"";
   }
@@ -121,15 +155,23 @@ std::string range_of(const Kind& kind) {
       kind);
 }
 
+codec::Value value_of(const Kind& kind, const Settings& settings) {
+  return std::visit(Each{[&](const Flag& k) { return codec::Value{k.get(settings)}; },
+                         [&](const Whole& k) { return codec::Value{k.get(settings)}; },
+                         [&](const Real& k) { return codec::Value{k.get(settings)}; },
+                         [&](const Text& k) { return codec::Value{k.get(settings)}; },
+                         [&](const Choice& k) { return codec::Value{std::string(k.words[k.get(settings)])}; },
+                         [](const Version&) { return codec::Value{std::uint64_t{1}}; }},
+                    kind);
+}
+
 std::string written(const Kind& kind, const Settings& settings) {
-  return std::visit(
-      Each{[&](const Flag& k) { return std::string(k.get(settings) ? "true" : "false"); },
-           [&](const Whole& k) { return std::to_string(k.get(settings)); },
-           [&](const Real& k) { return digits(k.get(settings)); },
-           [&](const Text& k) { return codec::write_json({k.get(settings)}); },
-           [&](const Choice& k) { return codec::write_json({std::string(k.words[k.get(settings)])}); },
-           [](const Version&) { return std::string("1"); }},
-      kind);
+  return codec::write_json(value_of(kind, settings));
+}
+
+std::string_view name_of(const Kind& kind) {
+  static constexpr std::string_view kNames[] = {"flag", "whole", "real", "text", "choice", "version"};
+  return kNames[kind.index()];
 }
 
 namespace {

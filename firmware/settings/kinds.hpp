@@ -35,7 +35,7 @@ struct Real {
   double least, most;
 };
 
-enum class Form : std::uint8_t { Address, Interface, Chip, Line };
+enum class Form : std::uint8_t { Address, Ipv4, Interface, Chip, Line, Robot, Alias, Course, CourseOrNone };
 struct Text {
   void (*put)(Settings&, std::string);
   const std::string& (*get)(const Settings&);
@@ -60,8 +60,13 @@ std::expected<void, std::string> put(const Kind& kind, const codec::Value& value
 /// "1 to 65535"
 std::string range_of(const Kind& kind);
 
-/// The member's value as the settings file would write it.
+/// The member's value as the settings file has it.
+codec::Value value_of(const Kind& kind, const Settings& settings);
+/// The same in JSON.
 std::string written(const Kind& kind, const Settings& settings);
+
+/// "flag", "whole", "real", "text", "choice" or "version"
+std::string_view name_of(const Kind& kind);
 
 /// A value for a sentence: as JSON and not too long, or what it is ("an object").
 std::string shown(const codec::Value& value);

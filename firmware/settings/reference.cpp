@@ -5,8 +5,7 @@
 namespace adit::settings {
 
 std::string reference() {
-  Settings defaults;
-  defaults.team.listen.emplace_back();  // for the keys of a list's items
+  const Settings defaults = with_an_item_of_each();
   std::string table = "| key | meaning | default | allowed |\n| --- | --- | --- | --- |\n";
   for (const Key& key : keys()) {
     table.append("| `").append(key.path).append("` | ").append(key.meaning).append(" | ");

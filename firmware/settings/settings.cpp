@@ -3,6 +3,7 @@
 #include <algorithm>
 
 #include "codec/json.hpp"
+#include "icd/sentence.hpp"
 #include "settings/consistency.hpp"
 #include "settings/keys.hpp"
 #include "settings/nearest.hpp"
@@ -11,27 +12,6 @@ namespace adit::settings {
 namespace {
 
 using codec::Value;
-
-/// What may stand under a name in an object of the settings file.
-struct Child {
-  std::string_view name;
-  const Key* key = nullptr;  // nothing for an object or a list
-  bool list = false;
-};
-
-/// The children of the object at `prefix` ("team.listen[]."), as the table of keys has them.
-std::vector<Child> children_of(std::string_view prefix) {
-  std::vector<Child> children;
-  for (const Key& key : keys()) {
-    if (!key.path.starts_with(prefix)) continue;
-    const std::string_view rest = key.path.substr(prefix.size());
-    const std::string_view name = rest.substr(0, rest.find_first_of(".["));
-    if (!children.empty() && children.back().name == name) continue;
-    children.push_back(
-        {name, rest == name ? &key : nullptr, rest.size() > name.size() && rest[name.size()] == '['});
-  }
-  return children;
-}
 
 /// A member's name for a path: as it is, or as a JSON string where it is no plain word.
 std::string shown_name(const std::string& name) {
@@ -91,7 +71,7 @@ void Reader::read_object(const Value& value, const std::string& pattern, const s
 void Reader::read_child(const Child& child, const Value& value, const std::string& pattern,
                         const std::string& path) {
   if (child.list) {
-    read_list(value, pattern + "[]", path);
+    read_list(value, pattern, path);
   } else if (child.key == nullptr) {
     read_object(value, pattern, path);
   } else if (const auto done = put(child.key->kind, value, settings); !done) {
@@ -99,18 +79,23 @@ void Reader::read_child(const Child& child, const Value& value, const std::strin
   }
 }
 
-/// team.listen is the only list there is.
+/// "a list of 1 to 16 items"
+std::string range_of(const List& list) {
+  return list.least == 0 ? icd::sentence("a list of at most ", list.most, " items")
+                         : icd::sentence("a list of ", list.least, " to ", list.most, " items");
+}
+
 void Reader::read_list(const Value& value, const std::string& pattern, const std::string& path) {
-  static constexpr std::size_t kMost = 16;
+  const List& list = list_at(pattern);
   const auto* items = std::get_if<Value::Array>(&value.is);
-  if (items == nullptr || items->empty() || items->size() > kMost) {
+  if (items == nullptr || items->size() < list.least || items->size() > list.most) {
     const std::string got = items == nullptr ? shown(value) : std::to_string(items->size());
-    errors.push_back({path, "expected a list of 1 to " + std::to_string(kMost) + " items, got " + got});
+    errors.push_back({path, icd::sentence("expected ", range_of(list), ", got ", got)});
     return;
   }
   for (std::size_t i = 0; i < items->size(); ++i) {
-    settings.team.listen.emplace_back();
-    read_object((*items)[i], pattern, path + "[" + std::to_string(i) + "]");
+    list.resize(settings, i + 1);
+    read_object((*items)[i], pattern + "[]", icd::sentence(path, "[", i, "]"));
   }
 }
 
@@ -130,7 +115,8 @@ void Reader::tell_unknown(const std::string& name, const std::vector<Child>& chi
 /// Names each required key, so that one look tells all that is to be written.
 void Reader::tell_missing(const Child& child, const std::string& pattern, const std::string& path) {
   if (child.list) {
-    errors.push_back({path, "missing; expected a list of at least one item"});
+    if (list_at(pattern).least > 0)
+      errors.push_back({path, "missing; expected " + range_of(list_at(pattern))});
   } else if (child.key == nullptr) {
     read_object(Value{Value::Object{}}, pattern, path);
   } else if (child.key->required) {
@@ -151,14 +137,36 @@ bool only_the_version(const std::vector<Error>& errors, const Value& root) {
 std::expected<Settings, std::vector<Error>> parse(std::string_view json) {
   const auto root = codec::parse_json(json);
   if (!root) return std::unexpected(std::vector<Error>{{"", "not JSON: " + root.error()}});
+  return parse(*root);
+}
+
+std::expected<Settings, std::vector<Error>> parse(const Value& root) {
   Reader reader;
-  reader.read_object(*root, "", "");
-  if (only_the_version(reader.errors, *root)) {
+  reader.read_object(root, "", "");
+  if (only_the_version(reader.errors, root)) {
     std::erase_if(reader.errors, [](const Error& error) { return error.path != "version"; });
   }
   if (reader.errors.empty()) reader.errors = contradictions(reader.settings);
   if (!reader.errors.empty()) return std::unexpected(std::move(reader.errors));
   return std::move(reader.settings);
+}
+
+Settings in_use(Settings settings) {
+  const auto course = std::ranges::find(settings.courses, settings.command_post.course, &Course::name);
+  if (course != settings.courses.end()) {
+    settings.command_post.scoring = course->scoring;
+    settings.command_post.mapping = course->mapping;
+  }
+  for (const Robot& robot : settings.robots) {
+    if (!robot.alias.empty()) settings.rules.aliases.emplace(robot.alias, *icd::RobotName::parse(robot.name));
+  }
+  return settings;
+}
+
+std::string sentence_of(const std::vector<Error>& errors) {
+  std::string sentences;
+  for (const Error& error : errors) sentences += (sentences.empty() ? "" : "; ") + error.sentence();
+  return sentences;
 }
 
 }  // namespace adit::settings

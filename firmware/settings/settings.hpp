@@ -8,6 +8,7 @@
 #include <string_view>
 #include <vector>
 
+#include "codec/value.hpp"
 #include "dispatch/reports.hpp"
 #include "icd/rules.hpp"
 
@@ -37,6 +38,7 @@ struct CommandPost {
   double budget_mbit = 100;  // of the link, over both endpoints (ICD 3)
   Rates rates;
   Timeouts timeouts;
+  std::string course;  // the one in use, whose endpoints then count instead of these; "": none
 };
 
 struct Team {
@@ -67,10 +69,40 @@ struct Panel {
   bool active_low = false;
 };
 
+/// A robot as it was registered (ICD 2).
+struct Robot {
+  std::string name;   // icd::RobotName
+  std::string alias;  // what it calls itself, goes on under `name`; "": nothing else
+};
+
+/// One of the Command Posts of an event: its endpoints, switched by name.
+struct Course {
+  std::string name;
+  Address scoring, mapping;
+};
+
+/// What the box's own interfaces are to have; an empty address: set elsewhere, and left as it is.
+struct Network {
+  struct Team {
+    std::string address;
+    std::uint32_t prefix = 24;
+  } team;
+  struct CommandPost {
+    std::string address;
+    std::uint32_t prefix = 16;
+    std::string gateway;  // "": none
+  } command_post;
+  std::chrono::milliseconds confirm_within{90000};  // then a change of these is taken back
+  bool allow_overlap = false;                       // of the team's subnet with the Command Post's
+};
+
 /// The settings file, version 1. Everything but the addresses has a default. Tokens are never in it.
 struct Settings {
   CommandPost command_post;
+  std::vector<Course> courses;
   Team team;
+  std::vector<Robot> robots;
+  Network network;
   Reports reports;
   Queues queues;
   icd::Rules rules;
@@ -86,5 +118,13 @@ struct Error {
 /// All errors at once, in the order of the file; an unknown key is an error that names it and the keys there
 /// are.
 std::expected<Settings, std::vector<Error>> parse(std::string_view json);
+std::expected<Settings, std::vector<Error>> parse(const codec::Value& root);
+
+/// The settings as they work while their course is in use: its endpoints are the Command Post's, and each
+/// robot's alias is in the rules. Requires settings that parse() gave.
+Settings in_use(Settings settings);
+
+/// "a: what; b: what"
+std::string sentence_of(const std::vector<Error>& errors);
 
 }  // namespace adit::settings

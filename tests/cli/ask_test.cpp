@@ -3,6 +3,9 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <filesystem>
+#include <fstream>
+
 #include "cli/command.hpp"
 #include "cli/server.hpp"
 #include "cli/status_text.hpp"
@@ -94,13 +97,32 @@ TEST(Ask, WithoutATokenSaysHowToNameOneAndAsksNothing) {
   Options options;
   options.at = server.at();
   options.secrets = "/nowhere";
+  options.saved_secrets = "/nothing";
   const Outcome outcome = status(options, false);
   EXPECT_EQ(outcome.exit, Exit::Unable);
   EXPECT_EQ(
       outcome.err,
-      "adit: Adit asks for the team's token, and there is none to be read in /nowhere: run this as root, or "
-      "name a file that holds it by --token-file FILE\n");
+      "adit: Adit asks for the team's token, and there is none to be read in /nothing or /nowhere: run this "
+      "as root, or name a file that holds it by --token-file FILE\n");
   EXPECT_EQ(server.request(), "");
+}
+
+TEST(Ask, LooksForAditWhereTheSavedSettingsHaveItBeforeTheGiven) {
+  const Server server(Server::ok(page::write_run_view(sample_view())));
+  const TokenFile token;
+  char saved[] = "/tmp/adit-saved-XXXXXX";
+  close(mkstemp(saved));
+  const std::string port = std::to_string(server.address().port);
+  std::ofstream(saved) << R"({"version": 1, "command_post": {"scoring": {"address": "::1", "port": 1},)"
+                       << R"("mapping": {"address": "::1", "port": 2}},)"
+                       << R"("team": {"listen": [{"address": "127.0.0.1", "port": )" << port << "}]}}";
+  Options options;
+  options.token_file = token.path();
+  options.saved_settings = saved;
+  EXPECT_NE(status(options, false).exit, Exit::Unable);
+  options.settings = "/none.json";
+  EXPECT_EQ(status(options, false).exit, Exit::Unable) << "a file that is named is the one that is meant";
+  std::filesystem::remove(saved);
 }
 
 TEST(Ask, SaysThatItDoesNotKnowWhereAditIs) {

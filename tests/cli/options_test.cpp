@@ -57,12 +57,25 @@ TEST(Options, TakeWhichReportsAndHow) {
   EXPECT_TRUE(parsed({"reports", "export", "--json"}).json);
 }
 
+TEST(Options, TakeWhatIsToBeDoneToTheSettings) {
+  EXPECT_EQ(parsed({"settings"}).setting, Setting::Show);
+  EXPECT_EQ(parsed({"settings", "show", "--json"}).setting, Setting::Show);
+  EXPECT_EQ(parsed({"settings", "export"}).setting, Setting::Export);
+  const Options options = parsed({"settings", "apply", "box.json", "--at", "10.0.0.1:80"});
+  EXPECT_EQ(options.command, Command::Settings);
+  EXPECT_EQ(options.setting, Setting::Apply);
+  EXPECT_EQ(options.file, "box.json");
+  EXPECT_EQ(parsed({"settings", "check", "box.json"}).setting, Setting::Check);
+  EXPECT_EQ(parsed({"course", "B"}).course, "B");
+  EXPECT_EQ(parsed({"course", ""}).course, "");
+}
+
 TEST(Options, NameTheWordThatIsWrong) {
   const struct {
     Words words;
     const char* sentence;
-  } cases[] = {{{}, "a command is missing: status, reports, run or check"},
-               {{"--json"}, "a command is missing: status, reports, run or check"},
+  } cases[] = {{{}, "a command is missing: status, reports, run, settings, course or check"},
+               {{"--json"}, "a command is missing: status, reports, run, settings, course or check"},
                {{"state"}, "no such command: state"},
                {{"status", "--jsn"}, "no such option: --jsn"},
                {{"status", "--at"}, "a value is missing after --at"},
@@ -79,6 +92,13 @@ TEST(Options, NameTheWordThatIsWrong) {
                {{"reports", "resubmit", "7", "8"}, "one word too many: 8"},
                {{"reports", "export", "7"}, "one word too many: 7"},
                {{"reports", "--csv"}, "reports does not take --csv"},
+               {{"settings", "save"}, "expected show, check, apply or export, got save"},
+               {{"settings", "apply"}, "a file is missing after apply"},
+               {{"settings", "apply", "a", "b"}, "one word too many: b"},
+               {{"settings", "export", "a"}, "one word too many: a"},
+               {{"settings", "--csv"}, "settings does not take --csv"},
+               {{"course"}, "a course's name is missing"},
+               {{"course", "A", "B"}, "one word too many: B"},
                {{"check", "--token-file", "x"}, "check does not take --token-file"},
                {{"reports", "show", "7", "--run", "2"}, "reports show does not take --run"},
                {{"reports", "--run", "old"}, "expected --run and a run's number or all, got old"},

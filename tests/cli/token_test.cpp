@@ -15,25 +15,39 @@ using testing::Not;
 
 class FindToken : public testing::Test {
  public:
-  ~FindToken() override { std::filesystem::remove_all(folder_); }
+  ~FindToken() override {
+    for (const std::string& folder : folders_) std::filesystem::remove_all(folder);
+  }
 
  protected:
   FindToken() {
-    std::string name = (std::filesystem::temp_directory_path() / "adit-token-XXXXXX").string();
-    folder_ = mkdtemp(name.data());
+    for (std::string& folder : folders_) {
+      folder = (std::filesystem::temp_directory_path() / "adit-token-XXXXXX").string();
+      if (mkdtemp(folder.data()) == nullptr) ADD_FAILURE() << folder;
+    }
   }
+  /// A file among the given ones.
   std::string write(const std::string& name, const std::string& text) const {
     std::ofstream(folder_ + "/" + name) << text;
     return folder_ + "/" + name;
   }
   /// The token that is found without a file being named.
   std::string found() const {
-    const auto token = find_token("", folder_);
+    const auto token = find_token("", folders_);
     if (!token) return "error: " + token.error();
     return *token ? (*token)->token.reveal() : "none";
   }
-  std::string folder_;
+  std::vector<std::string> folders_{2};  // of the saved ones, and of the given
+  const std::string& folder_ = folders_[1];
 };
+
+TEST_F(FindToken, TakesASavedTokenBeforeTheSameThatWasGiven) {
+  write("team.token", "given-1");
+  std::ofstream(folders_[0] + "/scoring.token") << "saved-scoring";
+  EXPECT_EQ(found(), "given-1") << "the team's first";
+  std::ofstream(folders_[0] + "/team.token") << "saved-team";
+  EXPECT_EQ(found(), "saved-team");
+}
 
 TEST_F(FindToken, TakesTheTeamsBeforeTheScoringToken) {
   EXPECT_EQ(found(), "none");
@@ -43,22 +57,22 @@ TEST_F(FindToken, TakesTheTeamsBeforeTheScoringToken) {
   EXPECT_EQ(found(), "scoring-1") << "an empty file is no token";
   const std::string team = write("team.token", "team-1\n");
   EXPECT_EQ(found(), "team-1");
-  EXPECT_EQ((*find_token("", folder_))->file, team);
+  EXPECT_EQ((*find_token("", folders_))->file, team);
 }
 
 TEST_F(FindToken, TakesTheFileThatIsNamed) {
   write("team.token", "team-1");
   const std::string mine = write("mine", "\tmine-1\r\n");
-  EXPECT_EQ((*find_token(mine, folder_))->token.reveal(), "mine-1");
+  EXPECT_EQ((*find_token(mine, folders_))->token.reveal(), "mine-1");
 }
 
 TEST_F(FindToken, NamesTheFileAndNeverWhatIsInIt) {
   const std::string two = write("two", "sesame one");
-  const auto token = find_token(two, folder_);
+  const auto token = find_token(two, folders_);
   ASSERT_FALSE(token.has_value());
   EXPECT_THAT(token.error(), testing::StartsWith(two + ": "));
   EXPECT_THAT(token.error(), Not(HasSubstr("sesame")));
-  EXPECT_EQ(find_token(folder_ + "/none", folder_).error(), folder_ + "/none: No such file or directory");
+  EXPECT_EQ(find_token(folder_ + "/none", folders_).error(), folder_ + "/none: No such file or directory");
   write("team.token", "sesame one");
   EXPECT_THAT(found(), testing::AllOf(HasSubstr("team.token"), Not(HasSubstr("sesame"))));
 }

@@ -232,5 +232,19 @@ TEST(ReadMarkersUpdate, RewritesTheFrameOfEachMarkerWhereTheSettingsSaySo) {
   expect_answers(read_markers_update, rows, test::good_markers(), rules);
 }
 
+TEST(StateUpdates, AreReadUnderTheNameThatAnAliasStandsFor) {
+  icd::Rules rules;
+  rules.aliases.emplace("husky-number-1", *icd::RobotName::parse("ugv1"));
+  const auto name_of = [&](const std::string& name) {
+    const std::string pose = R"("position":{"x":1,"y":0,"z":0},"orientation":{"x":0,"y":0,"z":0,"w":1})";
+    const auto update =
+        read(&read_state_update, Format::Json, R"({"poses":[{"name":")" + name + "\"," + pose + "}]}", rules);
+    return update ? update->poses.at(0).name.text() : "refused";
+  };
+  EXPECT_EQ(name_of("husky-number-1"), "ugv1");
+  EXPECT_EQ(name_of("ugv1"), "ugv1");
+  EXPECT_EQ(name_of("husky-number-2"), "refused");
+}
+
 }  // namespace
 }  // namespace adit::codec

@@ -71,6 +71,18 @@ TEST_F(MapPictureTest, DrawsEachMapThatWasForwardedAndSaysThatThePictureChanged)
   EXPECT_EQ(changes, 4) << "the same grid again changed nothing";
 }
 
+TEST_F(MapPictureTest, IsHandedOnWithWhatItHasDrawnAndCountsWhatItHasNot) {
+  picture.forwarded(grid("r1", 0, 4, 0));
+  ASSERT_TRUE(run_until([&] { return drawn("r1", {0, 0, 0}); }));
+  picture.forwarded(grid("r2", 0, 4, 0));
+  const picture::Mosaic handed = picture.hand_over();
+  const auto layers = handed.layers();
+  ASSERT_EQ(layers.size(), 2u);
+  EXPECT_EQ(layers[0].missed, 0u);
+  EXPECT_FALSE(layers[0].tiles.empty());
+  EXPECT_EQ(layers[1].missed, 1u);
+}
+
 TEST_F(MapPictureTest, WaitsWhileAMapIsPackedThoughNotForEver) {
   packing = true;
   const auto began = loop.now();

@@ -62,8 +62,21 @@ TEST(IcdRoutes, TakeEveryKnownTokenUnderBearerInAnyCase) {
   }
 }
 
-TEST(IcdRoutes, AskForNoTokenWhereThereIsNone) {
+TEST(IcdRoutes, LetNobodyInWhereATokenIsAskedForAndNoneIsSet) {
   Team team{IcdOptions{}};
+  for (const std::string header : {"", "Authorization: Bearer \r\n", "Authorization: Bearer any\r\n"}) {
+    const auto reply =
+        team.ask(request("POST", "/state/update", header + std::string(kJsonType), kStateBody));
+    ASSERT_TRUE(reply) << header;
+    EXPECT_EQ(reply->status, 401) << header;
+    EXPECT_EQ(reply->body, "\"Authorization: no token is set up on this gateway yet\"");
+  }
+}
+
+TEST(IcdRoutes, AskForNoTokenWhereNoneIsWanted) {
+  IcdOptions options;
+  options.asks_token = false;
+  Team team{options};
   EXPECT_EQ(team.ask(request("POST", "/state/update", kJsonType, kStateBody))->status, 200);
   EXPECT_EQ(team.ask(request("POST", "/state/update",
                              "Authorization: Bearer any\r\n" + std::string(kJsonType), kStateBody))

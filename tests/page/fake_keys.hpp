@@ -34,6 +34,7 @@ struct FakeKeys final : Keys {
     (role == access::Role::Operator ? operator_ : viewer) = std::move(password);
     later([done = std::move(done)] { done({}); });
   }
+  access::Sessions& sessions() override { return sessions_; }
   access::Secret draw() override { return {++drawn}; }
 
   void later(std::function<void()> answer) {
@@ -52,6 +53,7 @@ struct FakeKeys final : Keys {
   std::vector<std::function<void()>> waiting;
   int checked = 0;
   std::uint8_t drawn = 0;
+  access::Sessions sessions_;
 };
 
 }  // namespace adit::page

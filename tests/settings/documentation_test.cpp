@@ -2,6 +2,7 @@
 
 #include <fstream>
 #include <iterator>
+#include <regex>
 #include <string>
 
 #include "codec/json.hpp"
@@ -36,24 +37,29 @@ TEST(SettingsExample, Works) {
   EXPECT_EQ(settings->command_post.interface, "darpa0");
 }
 
-/// {"command_post": {"rates": {"map_hz": 1}}} for "command_post.rates.map_hz".
+/// {"robots": [{"alias": ""}]} for "robots[].alias".
 codec::Value nested(std::string_view path, codec::Value value) {
   const auto dot = path.rfind('.');
   const bool last = dot == std::string_view::npos;
-  codec::Value object{
-      codec::Value::Object{{std::string(last ? path : path.substr(dot + 1)), std::move(value)}}};
+  std::string name(last ? path : path.substr(dot + 1));
+  if (name.ends_with("[]")) {
+    name.resize(name.size() - 2);
+    value = codec::Value{codec::Value::Array{std::move(value)}};
+  }
+  codec::Value object{codec::Value::Object{{std::move(name), std::move(value)}}};
   return last ? object : nested(path.substr(0, dot), std::move(object));
 }
 
 TEST(SettingsKeys, EachTakeTheirOwnDefault) {
-  const Settings defaults;
+  const Settings defaults = with_an_item_of_each();
   for (const Key& key : keys()) {
     if (key.required) continue;
     const auto value = codec::parse_json(written(key.kind, defaults));
     ASSERT_TRUE(value.has_value()) << key.path;
     const auto settings = parse(codec::write_json(nested(key.path, *value)));
     ASSERT_FALSE(settings.has_value());  // version and addresses are missing
-    for (const Error& error : settings.error()) EXPECT_NE(error.path, key.path) << error.sentence();
+    const std::string item = std::regex_replace(std::string(key.path), std::regex("\\[\\]"), "[0]");
+    for (const Error& error : settings.error()) EXPECT_NE(error.path, item) << error.sentence();
   }
 }
 

@@ -75,7 +75,7 @@ const Case kValues[] = {
 const Case kKeys[] = {
     {sample(R"(, "intrface": "darpa0")"),
      "command_post.intrface: no such key; did you mean interface? (keys here: scoring, mapping, "
-     "interface, budget_mbit, rates, timeouts)"},
+     "interface, budget_mbit, rates, timeouts, course)"},
     {sample(R"(, "timeouts": {"connect": 5})"),
      "command_post.timeouts.connect: no such key; did you mean connect_ms? (keys here: connect_ms, "
      "scoring_answer_ms, mapping_answer_ms)"},
@@ -97,6 +97,45 @@ const Case kContradictions[] = {
     {sample("", "", R"(, "panel": {"chip": "gpiochip0", "health": "H", "mapping": "H"})"),
      "panel.mapping: the same line as panel.health"}};
 
+const char* const kCourse =
+    R"({"name": "A", "scoring": {"address": "::2", "port": 1}, "mapping": {"address": "::2", "port": 2}})";
+
+const Case kNames[] = {
+    {sample("", "", R"(, "robots": [{"name": "ugv-1"}])"),
+     "robots[0].name: expected 1 to 10 letters, digits and underscores, got \"ugv-1\""},
+    {sample("", "", R"(, "robots": [{"name": "ugv1"}, {"name": ""}])"),
+     "robots[1].name: expected 1 to 10 letters, digits and underscores, got \"\""},
+    {sample("", "", R"(, "robots": [{"name": "elevenlongs"}])"),
+     "robots[0].name: expected 1 to 10 letters, digits and underscores, got \"elevenlongs\""},
+    {sample("", "", R"(, "robots": [{"alias": "husky"}])"),
+     "robots[0].name: missing; expected 1 to 10 letters, digits and underscores"},
+    {sample("", "", R"(, "robots": [{"name": "ugv1", "alias": "a b"}])"),
+     "robots[0].alias: expected at most 64 visible ASCII characters, or \"\", got \"a b\""},
+    {sample("", "", R"(, "robots": {"name": "ugv1"})"),
+     "robots: expected a list of at most 32 items, got an object"},
+    {sample("", "", R"(, "robots": [{"name": "ugv1"}, {"name": "ugv1"}])"),
+     "robots[1].name: the same as robots[0].name"},
+    {sample("", "", R"(, "robots": [{"name": "ugv1", "alias": "x"}, {"name": "ugv2", "alias": "x"}])"),
+     "robots[1].alias: the same as robots[0].alias"},
+    {sample("", "", R"(, "robots": [{"name": "ugv1", "alias": "ugv2"}, {"name": "ugv2"}])"),
+     "robots[0].alias: the same as robots[1].name; an alias is another name"},
+    {sample("", "", R"(, "robots": [{"name": "ugv1", "alias": "ugv1"}])"),
+     "robots[0].alias: the same as robots[0].name; an alias is another name"},
+    {sample(R"(, "course": "A")"), "command_post.course: no course is called A; there are none"},
+    {sample(R"(, "course": "B")", "", std::string(R"(, "courses": [)") + kCourse + "]"),
+     "command_post.course: no course is called B; there are A"},
+    {sample(R"(, "course": "a/b")"), "command_post.course: expected a course's name, or \"\", got \"a/b\""},
+    {sample("", "", std::string(R"(, "courses": [)") + kCourse + "," + kCourse + "]"),
+     "courses[1].name: the same as courses[0].name"},
+    {sample(
+         "", "",
+         R"(, "courses": [{"name": "..", "scoring": {"address": "::2", "port": 1}, "mapping": {"address": "::2", "port": 2}}])"),
+     "courses[0].name: expected 1 to 20 letters, digits, underscores and hyphens, got \"..\""},
+    {sample(
+         "", "",
+         R"(, "courses": [{"name": "A", "scoring": {"address": "0.0.0.0", "port": 8000}, "mapping": {"address": "::2", "port": 2}}])"),
+     "team.listen[0]: the same as an endpoint of the Command Post; Adit would post to itself"}};
+
 void expect(std::span<const Case> cases) {
   for (const Case& row : cases) EXPECT_THAT(errors_of(row.json), ElementsAre(row.sentence));
 }
@@ -109,6 +148,10 @@ TEST(SettingsErrors, NameAKeyThatIsNoneOrIsGivenTwice) {
 }
 TEST(SettingsErrors, NameSettingsThatContradictOthers) {
   expect(kContradictions);
+}
+
+TEST(SettingsErrors, NameRobotsAndCoursesThatAreNoneOrMeanTwo) {
+  expect(kNames);
 }
 
 TEST(SettingsErrors, ComeAllAtOnceInTheOrderOfTheFile) {

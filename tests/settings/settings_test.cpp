@@ -46,7 +46,13 @@ TEST(Settings, SetEveryMemberByItsKey) {
     "queues": {"map_bytes": 2000000, "merge_bytes": 0, "markers_per_message": 7},
     "rules": {"rewrite_frame_id": true, "forward_unknown_types": true, "map_bytes": 4096},
     "panel": {"chip": "/dev/gpiochip1", "health": "H", "scoring": "S", "mapping": "M", "attention": "A",
-              "active_low": true}})");
+              "active_low": true},
+    "courses": [{"name": "A", "scoring": {"address": "::3", "port": 3}, "mapping": {"address": "::4", "port": 4}},
+                {"name": "b-2", "scoring": {"address": "::5", "port": 5}, "mapping": {"address": "::6", "port": 6}}],
+    "robots": [{"name": "ugv1", "alias": "husky/1"}, {"name": "ugv2"}],
+    "network": {"team": {"address": "192.168.7.1", "prefix": 25},
+                "command_post": {"address": "10.100.1.10", "prefix": 24, "gateway": "10.100.1.1"},
+                "confirm_within_ms": 5000, "allow_overlap": true}})");
   const CommandPost& post = settings.command_post;
   EXPECT_EQ(post.scoring, (Address{"fd00::1", 1}));
   EXPECT_EQ(post.mapping, (Address{"::1", 65535}));
@@ -82,6 +88,34 @@ TEST(Settings, SetEveryMemberByItsKey) {
   EXPECT_EQ(settings.panel.mapping, "M");
   EXPECT_EQ(settings.panel.attention, "A");
   EXPECT_TRUE(settings.panel.active_low);
+  ASSERT_EQ(settings.courses.size(), 2u);
+  EXPECT_EQ(settings.courses[0].name, "A");
+  EXPECT_EQ(settings.courses[0].scoring, (Address{"::3", 3}));
+  EXPECT_EQ(settings.courses[1].mapping, (Address{"::6", 6}));
+  ASSERT_EQ(settings.robots.size(), 2u);
+  EXPECT_EQ(settings.robots[0].name, "ugv1");
+  EXPECT_EQ(settings.robots[0].alias, "husky/1");
+  EXPECT_EQ(settings.robots[1].alias, "");
+  const Network& network = settings.network;
+  EXPECT_EQ(network.team.address, "192.168.7.1");
+  EXPECT_EQ(network.team.prefix, 25u);
+  EXPECT_EQ(network.command_post.address, "10.100.1.10");
+  EXPECT_EQ(network.command_post.prefix, 24u);
+  EXPECT_EQ(network.command_post.gateway, "10.100.1.1");
+  EXPECT_EQ(network.confirm_within, milliseconds(5000));
+  EXPECT_TRUE(network.allow_overlap);
+}
+
+TEST(Settings, InUseHaveTheEndpointsOfTheirCourseAndKnowTheAliases) {
+  const std::string rest =
+      R"(, "courses": [{"name": "B", "scoring": {"address": "10.100.2.200", "port": 8000},)"
+      R"( "mapping": {"address": "10.100.2.201", "port": 8000}}], "robots": [{"name": "ugv1", "alias": "husky"}])";
+  const Settings none = in_use(parsed(sample("", "", rest)));
+  EXPECT_EQ(none.command_post.scoring, (Address{"10.100.1.200", 8000}));
+  const Settings with_course = in_use(parsed(sample(R"(, "course": "B")", "", rest)));
+  EXPECT_EQ(with_course.command_post.scoring, (Address{"10.100.2.200", 8000}));
+  EXPECT_EQ(with_course.command_post.mapping, (Address{"10.100.2.201", 8000}));
+  EXPECT_EQ(with_course.rules.aliases.at("husky").text(), "ugv1");
 }
 
 TEST(Settings, TakeAWholeNumberHoweverItIsWritten) {

@@ -92,11 +92,14 @@ class Service(unittest.TestCase):
         self.write_settings(comand_post={}, team={"listen": [{"address": "nowhere", "port": 70000}]})
         self.refuses("comand_post", "team.listen[0].address", "team.listen[0].port")
 
-    def test_names_the_secret_that_is_missing_or_open_to_others(self):
+    def test_names_the_secret_that_is_open_to_others(self):
         (self.folder / "secrets" / "scoring.token").chmod(0o644)
         self.refuses("scoring.token")
+
+    def test_starts_without_a_token_and_says_which_is_missing(self):
         (self.folder / "secrets" / "scoring.token").unlink()
-        self.refuses("scoring.token")
+        self.start()
+        self.assertIn("no scoring token is set", self.heard("READY=1"))
 
     def test_says_which_address_it_cannot_listen_on(self):
         taken = socket.create_server(("127.0.0.1", 0))

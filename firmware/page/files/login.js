@@ -1,5 +1,6 @@
 // The door: a password, or at the first start the code of the box and a new password.
-import { post, session } from "./session.js";
+import { missingTokens } from "./draft.js";
+import { get, post, session } from "./session.js";
 
 const trouble = document.getElementById("trouble");
 
@@ -12,6 +13,15 @@ function next() {
   return "/";
 }
 
+/** To the set-up where nothing can go up yet, or all is as it was given; else where he wanted to go. */
+async function goOn(isFirst) {
+  const wanted = next();
+  if (wanted !== `${location.origin}/` || (await session(true)).role !== "operator") return location.replace(wanted);
+  const said = await get("/adit/settings").catch(() => null);
+  const isReady = !said || (missingTokens(said).length === 0 && (said.saved || !isFirst));
+  location.replace(isReady ? wanted : "/setup");
+}
+
 /** Shows a form, and does `deed` with its fields when it is sent. */
 function show(form, deed) {
   const button = form.querySelector("button"), first = form.querySelector("input");
@@ -21,7 +31,7 @@ function show(form, deed) {
     button.disabled = true;
     try {
       await deed(Object.fromEntries(new FormData(form)));
-      location.replace(next());
+      await goOn(form.id === "first");
     } catch (error) {
       trouble.textContent = error.message;
       button.disabled = false;

@@ -52,12 +52,18 @@ export async function post(path, body = {}) {
   }
 }
 
+let ahead = 0; // of this device's clock, in ms
+
+/** The box's clock, in seconds since 1970: a phone's own may be anything. */
+export const boxNow = () => (Date.now() + ahead) / 1000;
+
 const SILENT = "The box does not answer.";
 
 /** What a path gives, where it gives what is asked for; an Error's message is the sentence to show. */
 async function ask(path) {
   const answer = await fetch(path, { cache: "no-store" }).catch(() => Promise.reject(new Error(SILENT)));
   if (answer.status === 401) toLogin();
+  ahead = Date.parse(answer.headers.get("Date")) - Date.now() || 0;
   return answer;
 }
 

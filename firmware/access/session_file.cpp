@@ -1,0 +1,92 @@
+#include "access/session_file.hpp"
+
+#include "codec/field.hpp"
+#include "codec/json.hpp"
+
+namespace adit::access {
+namespace {
+
+using codec::Field;
+using codec::Value;
+
+constexpr std::int64_t kVersion = 1;
+
+Value value_of(Instant at) {
+  return {std::int64_t{std::chrono::duration_cast<Duration>(at.time_since_epoch()).count()}};
+}
+
+Instant instant_in(const Field& object, std::string_view name) {
+  return Instant(Duration(object.member(name).whole<std::int64_t>(0)));
+}
+
+std::uint64_t number_in(const Field& object, std::string_view name) {
+  return static_cast<std::uint64_t>(object.member(name).whole<std::int64_t>(0));
+}
+
+Value value_of(const Session& session) {
+  return {Value::Object{{"number", {session.number}},
+                        {"role", {std::string(name_of(session.role))}},
+                        {"id", {session.id.reveal()}},
+                        {"csrf", {session.csrf.reveal()}},
+                        {"made", value_of(session.made)},
+                        {"seen", value_of(session.seen)},
+                        {"address", {session.address}},
+                        {"agent", {session.agent}}}};
+}
+
+/// Refuses, and gives nothing, where the text cannot be one.
+std::optional<icd::BearerToken> token_in(const Field& object, std::string_view name) {
+  const Field field = object.member(name);
+  auto token = icd::BearerToken::parse(field.text());
+  if (!token) field.refuse("expected a token");
+  return token;
+}
+
+std::optional<Session> session_in(const Field& object) {
+  const Field role = object.member("role");
+  const auto named = role_named(role.text());
+  if (!named) role.refuse("expected operator or viewer");
+  const auto id = token_in(object, "id"), csrf = token_in(object, "csrf");
+  if (!named || !id || !csrf) return std::nullopt;
+  return Session{.number = number_in(object, "number"),
+                 .role = *named,
+                 .id = *id,
+                 .csrf = *csrf,
+                 .made = instant_in(object, "made"),
+                 .seen = instant_in(object, "seen"),
+                 .address = std::string(object.member("address").text()),
+                 .agent = std::string(object.member("agent").text())};
+}
+
+}  // namespace
+
+std::string write_sessions(const KeptSessions& kept) {
+  Value::Array sessions;
+  for (const Session& session : kept.sessions) sessions.push_back(value_of(session));
+  return codec::write_json({Value::Object{{"version", {kVersion}},
+                                          {"boot", {kept.boot}},
+                                          {"last", {kept.last}},
+                                          {"sessions", {std::move(sessions)}}}}) +
+         '\n';
+}
+
+std::expected<KeptSessions, std::string> read_sessions(std::string_view json) {
+  const auto root = codec::parse_json(json);
+  if (!root) return std::unexpected("it is no JSON: " + root.error());
+  codec::Reading reading;
+  const Field object(*root, reading);
+  const Field version = object.member("version");
+  if (version.whole<std::int64_t>() != kVersion) version.refuse("expected ", kVersion);
+  KeptSessions kept{
+      .boot = std::string(object.member("boot").text()), .last = number_in(object, "last"), .sessions = {}};
+  const Field sessions = object.member("sessions");
+  const std::size_t count = sessions.size();
+  for (std::size_t i = 0; i < count && !reading.refused(); ++i) {
+    if (auto session = session_in(sessions.element(i))) kept.sessions.push_back(std::move(*session));
+  }
+  auto outcome = reading.outcome(std::move(kept));
+  if (!outcome) return std::unexpected(outcome.error().sentence);
+  return std::move(*outcome);
+}
+
+}  // namespace adit::access

@@ -1,0 +1,14 @@
+#pragma once
+
+#include "cli/options.hpp"
+#include "cli/outcome.hpp"
+
+namespace adit::cli {
+
+/// `adit settings`, asked of the running Adit.
+Outcome settings(const Options& options, bool colour);
+
+/// `adit course`
+Outcome switch_course(const Options& options);
+
+}  // namespace adit::cli

@@ -1,0 +1,53 @@
+#include <algorithm>
+#include <iterator>
+
+#include "gateway/gateway.hpp"
+
+namespace adit::gateway {
+
+panel::Condition Gateway::condition() const {
+  const Channel& scoring = scoring_.channel();
+  return {.serving = !servers_.empty() && scoring_.trouble().empty(),
+          .scoring_connected = scoring.connected(),
+          .scoring_failing = !scoring.trouble().empty(),
+          .mapping_connected = news_.channel().connected(),
+          .mapping_failing = !news_.channel().trouble().empty() || !maps_.channel().trouble().empty(),
+          .report_waiting = !scoring_.reports().book().waiting().empty(),
+          .needs_operator = !attention().empty()};
+}
+
+std::vector<std::string> Gateway::attention() const {
+  std::vector<std::string> sentences = scoring_.reports().attention();
+  if (!scoring_.trouble().empty()) {
+    sentences.push_back("no report is taken, the ledger cannot be written: " + scoring_.trouble());
+  }
+  say_what_is_missing(sentences);
+  if (!parts_.ledger.damage().empty()) sentences.push_back(parts_.ledger.damage());
+  const auto token_refused = [&](const Channel& channel, const char* name) {
+    if (channel.last_status() == 401) {
+      sentences.push_back(std::string("the Command Post refuses the ") + name + " token");
+    }
+  };
+  token_refused(scoring_.channel(), "scoring");
+  token_refused(maps_.channel().last_status() == 401 ? maps_.channel() : news_.channel(), "mapping");
+  std::ranges::move(roster_.attention(loop_.now()), std::back_inserter(sentences));
+  if (maps_.nearly_full()) sentences.emplace_back("the queue of maps is nearly full");
+  return sentences;
+}
+
+/// What was to be set up, and is not.
+void Gateway::say_what_is_missing(std::vector<std::string>& sentences) const {
+  for (const std::string* trouble : {&parts_.trouble, &parts_.loaded.trouble}) {
+    if (!trouble->empty()) sentences.push_back(*trouble);
+  }
+  if (!scoring_.channel().has_token())
+    sentences.emplace_back("no scoring token is set: reports wait until one is");
+  if (!maps_.channel().has_token()) {
+    sentences.emplace_back("no mapping token is set: maps, states and markers wait until one is");
+  }
+  if (settings_.team.require_token && parts_.loaded.secrets.tokens.empty()) {
+    sentences.emplace_back("no token is set at all: every robot is turned away");
+  }
+}
+
+}  // namespace adit::gateway

@@ -1,0 +1,36 @@
+#include "gateway/roster.hpp"
+
+#include <algorithm>
+
+#include "icd/sentence.hpp"
+
+namespace adit::gateway {
+
+Roster::Roster(const std::vector<settings::Robot>& robots) {
+  for (const settings::Robot& robot : robots) names_.push_back(robot.name);
+}
+
+bool Roster::posted(const std::string& name, loop::Instant now) {
+  if (names_.empty() || std::ranges::find(names_, name) != names_.end()) return false;
+  if (!unknown_.contains(name) && unknown_.size() >= kMostUnknown) {
+    std::erase_if(unknown_, [now](const auto& entry) { return now - entry.second >= kRecent; });
+    if (unknown_.size() >= kMostUnknown) return false;
+  }
+  return unknown_.insert_or_assign(name, now).second;
+}
+
+std::vector<std::string> Roster::attention(loop::Instant now) const {
+  std::vector<std::string> sentences;
+  for (const auto& [name, last] : unknown_) {
+    if (now - last < kRecent) sentences.push_back(sentence(name));
+  }
+  return sentences;
+}
+
+std::string Roster::sentence(const std::string& name) const {
+  std::string known;
+  for (const std::string& each : names_) known.append(known.empty() ? "" : ", ").append(each);
+  return icd::sentence("unknown robot '", name, "' is posting; set-up has ", known);
+}
+
+}  // namespace adit::gateway

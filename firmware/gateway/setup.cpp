@@ -1,0 +1,116 @@
+#include "gateway/setup.hpp"
+
+#include <algorithm>
+
+#include "gateway/channel.hpp"
+#include "host/log.hpp"
+#include "icd/sentence.hpp"
+#include "settings/network_rules.hpp"
+#include "settings/written.hpp"
+
+namespace adit::gateway {
+namespace {
+
+using settings::Settings;
+
+std::unexpected<icd::Refusal> refuse(icd::Status status, std::string sentence) {
+  return std::unexpected(icd::Refusal{status, std::move(sentence)});
+}
+
+icd::Checked<void> being_applied() {
+  return refuse(icd::Status::Conflict, "another change is being applied: try again");
+}
+
+/// "10.0.0.1:8000, [::]:8000"
+std::string listed(const std::vector<settings::Address>& addresses) {
+  std::string text;
+  for (const settings::Address& address : addresses)
+    text.append(text.empty() ? "" : ", ").append(address_text(address));
+  return text;
+}
+
+}  // namespace
+
+std::optional<icd::BearerToken> token_for(const std::string& endpoint, const Settings& settings,
+                                          const host::Secrets& secrets) {
+  const std::string& course = settings.command_post.course;
+  auto own = course.empty() ? std::nullopt : secrets.token(icd::sentence("course.", course, ".", endpoint));
+  return own ? std::move(own) : secrets.token(endpoint);
+}
+
+Setup::Setup(const Store& store, const Store::Loaded& loaded, Accounts& accounts, std::function<void()> apply)
+    : store_(store),
+      settings_(loaded.settings),
+      saved_(loaded.saved),
+      accounts_(accounts),
+      apply_(std::move(apply)) {
+  for (const auto& [name, token] : loaded.secrets.tokens) tokens_set_.push_back(name);
+}
+
+std::vector<page::TokenRow> Setup::tokens() const {
+  std::vector<page::TokenRow> rows;
+  for (std::string& name : token_names(settings_)) {
+    const bool set = std::ranges::find(tokens_set_, name) != tokens_set_.end();
+    rows.push_back({std::move(name), set});
+  }
+  return rows;
+}
+
+std::vector<std::string> Setup::warnings(const Settings& next) const {
+  std::vector<std::string> sentences;
+  const auto now = settings::in_use(settings_), then = settings::in_use(next);
+  if (now.team.listen != then.team.listen || now.team.interface != then.team.interface) {
+    sentences.push_back(icd::sentence("Adit and this page move from ", listed(now.team.listen), " to ",
+                                      listed(then.team.listen),
+                                      ": open it there, and point robots and stations there"));
+  }
+  if (now.command_post.scoring != then.command_post.scoring) {
+    sentences.push_back(
+        icd::sentence("reports go to ", address_text(then.command_post.scoring),
+                      " from then on: those that were meant for the other are held until you say"));
+  }
+  if (now.command_post.mapping != then.command_post.mapping) {
+    sentences.push_back(icd::sentence("maps, states and markers go to ",
+                                      address_text(then.command_post.mapping),
+                                      " from then on, also those that wait"));
+  }
+  if (const std::string what = settings::overlap(next); !what.empty() && next.network.allow_overlap) {
+    sentences.push_back(what + ", and is allowed to: a robot cannot reach both");
+  }
+  if (!next.team.require_token && settings_.team.require_token) {
+    sentences.emplace_back("whoever is on the team's network may post reports, without a token");
+  }
+  return sentences;
+}
+
+icd::Checked<void> Setup::applied(const std::expected<void, std::string>& written, const char* what) {
+  if (!written) {
+    host::log(host::Level::Error, "a change cannot be kept", {{"what", what}, {"why", written.error()}});
+    return refuse(icd::Status::ServiceUnavailable, "the change cannot be kept: " + written.error());
+  }
+  host::log(host::Level::Notice, "a change is applied", {{"what", what}});
+  applying_ = true;
+  apply_();
+  return {};
+}
+
+icd::Checked<void> Setup::save(const Settings& next) {
+  if (applying_) return being_applied();
+  for (const settings::Change& change : settings::changes(settings_, next)) {
+    host::log(host::Level::Notice, "a setting is changed", {{"setting", change.path}});
+  }
+  return applied(store_.save(next), "settings");
+}
+
+icd::Checked<void> Setup::set_token(const std::string& name, const std::optional<icd::BearerToken>& token) {
+  if (applying_) return being_applied();
+  return applied(store_.save_token(name, token), "a token");
+}
+
+icd::Checked<void> Setup::reset() {
+  if (applying_) return being_applied();
+  if (!accounts_.forget()) return refuse(icd::Status::Conflict, "a password is being set: try again");
+  return applied(store_.forget(), "all that was set up is forgotten");
+}
+
+}  // namespace adit::gateway

@@ -1,0 +1,47 @@
+#pragma once
+
+#include <functional>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "gateway/accounts.hpp"
+#include "gateway/store.hpp"
+#include "page/setup.hpp"
+
+namespace adit::gateway {
+
+/// What this gateway was built from, and how it comes to be built anew.
+class Setup final : public page::Setup {
+ public:
+  /// `apply` ends the gateway, so that another begins. Store and Accounts outlive this.
+  Setup(const Store& store, const Store::Loaded& loaded, Accounts& accounts, std::function<void()> apply);
+
+  const settings::Settings& settings() const override { return settings_; }
+  bool saved() const override { return saved_; }
+  bool applying() const override { return applying_; }
+  std::vector<page::TokenRow> tokens() const override;
+  std::vector<std::string> warnings(const settings::Settings& next) const override;
+  icd::Checked<void> save(const settings::Settings& next) override;
+  icd::Checked<void> set_token(const std::string& name,
+                               const std::optional<icd::BearerToken>& token) override;
+  icd::Checked<void> reset() override;
+
+ private:
+  /// Applies what `written` has on the disk.
+  icd::Checked<void> applied(const std::expected<void, std::string>& written, const char* what);
+
+  const Store& store_;
+  settings::Settings settings_;
+  bool saved_;
+  std::vector<std::string> tokens_set_;
+  Accounts& accounts_;
+  std::function<void()> apply_;
+  bool applying_ = false;
+};
+
+/// The token for an endpoint ("scoring", "mapping"): that of the course in use, or else the common one.
+std::optional<icd::BearerToken> token_for(const std::string& endpoint, const settings::Settings& settings,
+                                          const host::Secrets& secrets);
+
+}  // namespace adit::gateway

@@ -1,0 +1,121 @@
+#include "gateway/store.hpp"
+
+#include <filesystem>
+#include <utility>
+
+#include "host/log.hpp"
+#include "settings/written.hpp"
+
+namespace adit::gateway {
+namespace {
+
+namespace fs = std::filesystem;
+
+constexpr int kOursAlone = 0600;
+
+bool exists(const std::string& path) {
+  std::error_code unknown;
+  return fs::exists(path, unknown) || unknown;
+}
+
+std::expected<settings::Settings, std::string> read_settings(const std::string& file) {
+  const auto text = host::read_file(file);
+  if (!text) return std::unexpected(text.error());
+  auto settings = settings::parse(*text);
+  if (settings) return std::move(*settings);
+  return std::unexpected(file + ": " + settings::sentence_of(settings.error()));
+}
+
+}  // namespace
+
+std::vector<std::string> token_names(const settings::Settings& settings) {
+  std::vector<std::string> names = {"scoring", "mapping", "team"};
+  for (const settings::Course& course : settings.courses) {
+    names.push_back("course." + course.name + ".scoring");
+    names.push_back("course." + course.name + ".mapping");
+  }
+  return names;
+}
+
+Store::Store(std::string given_settings, std::string given_secrets, std::string state_folder)
+    : given_settings_(std::move(given_settings)),
+      given_secrets_(std::move(given_secrets)),
+      state_(std::move(state_folder)) {}
+
+std::expected<Store::Loaded, std::string> Store::load() const {
+  Loaded loaded;
+  auto settings = read_settings(exists(file()) ? file() : given_settings_);
+  loaded.saved = settings.has_value() && exists(file());
+  if (!settings && exists(file())) {
+    loaded.trouble =
+        "the saved settings are set aside, those that the box was given are in use: " + settings.error();
+    std::error_code error;
+    fs::rename(file(), file() + ".damaged", error);
+    settings = read_settings(given_settings_);
+  }
+  if (!settings) return std::unexpected(settings.error());
+  loaded.settings = std::move(*settings);
+  auto secrets = host::read_secrets(given_secrets_, secrets_folder(), token_names(loaded.settings));
+  if (!secrets) return std::unexpected(secrets.error());
+  loaded.secrets = std::move(*secrets);
+  return loaded;
+}
+
+/// An empty file of settings before stands for none.
+std::expected<void, std::string> Store::save(const settings::Settings& settings) const {
+  if (!exists(file_before())) {
+    const auto before =
+        exists(file()) ? host::read_file(file()) : std::expected<std::string, std::string>("");
+    if (!before) return std::unexpected(before.error());
+    if (const auto kept = host::write_file(file_before(), *before, kOursAlone); !kept) return kept;
+  }
+  return host::write_file(file(), settings::file_of(settings), kOursAlone);
+}
+
+std::expected<void, std::string> Store::make_secrets_folder() const {
+  std::error_code error;
+  fs::create_directories(secrets_folder(), error);
+  if (!error) fs::permissions(secrets_folder(), fs::perms::owner_all, error);
+  if (error) return std::unexpected(secrets_folder() + ": " + error.message());
+  return {};
+}
+
+std::expected<void, std::string> Store::save_token(const std::string& name,
+                                                   const std::optional<icd::BearerToken>& token) const {
+  if (!token) {
+    if (host::remove_file(token_file(name))) return {};
+    return std::unexpected(token_file(name) + ": cannot be removed");
+  }
+  if (auto made = make_secrets_folder(); !made) return made;
+  return host::write_file(token_file(name), token->reveal() + "\n", kOursAlone);
+}
+
+void Store::settle() const {
+  if (!host::remove_file(file_before())) {
+    host::log(host::Level::Warning, "cannot be removed", {{"file", file_before()}});
+  }
+}
+
+bool Store::take_back() const {
+  const auto before = host::read_file(file_before());
+  if (!before) return false;
+  if (before->empty()) {
+    if (!host::remove_file(file())) return false;
+  } else if (const auto written = host::write_file(file(), *before, kOursAlone); !written) {
+    host::log(host::Level::Error, "the settings before cannot be written", {{"why", written.error()}});
+    return false;
+  }
+  return host::remove_file(file_before());
+}
+
+std::expected<void, std::string> Store::forget() const {
+  std::error_code error;
+  fs::remove_all(secrets_folder(), error);
+  if (error) return std::unexpected(secrets_folder() + ": " + error.message());
+  for (const std::string& each : {file_before(), file(), file() + ".damaged"}) {
+    if (!host::remove_file(each)) return std::unexpected(each + ": cannot be removed");
+  }
+  return {};
+}
+
+}  // namespace adit::gateway

@@ -1,0 +1,199 @@
+// Applying what was typed: shown first, and never over what somebody else saved meanwhile.
+import { open } from "./dialog.js";
+import { beginFrom, check, differs, draft, drop, flat, merged, onDraft, onVerdict, refresh, same, verdict } from "./draft.js";
+import { make, say } from "./dom.js";
+import { blameAll } from "./field.js";
+import { get, post } from "./session.js";
+import { clip } from "./words.js";
+
+const PATIENCE = 8000, PAUSE = 250; // ms
+const place = document.getElementById("typed");
+const state = place.querySelector(".state"), elsewhere = place.querySelector(".elsewhere");
+const buttons = place.querySelectorAll("button");
+const sleep = (ms) => new Promise((resolve) => setTimeout(resolve, ms));
+const dialog = document.getElementById("review");
+const [heads, rows] = [dialog.querySelector("thead tr"), dialog.querySelector("tbody")];
+const [no, yes] = [dialog.querySelector(".no"), dialog.querySelector(".yes")];
+
+let outcome = "", link = "", isBusy = false;
+
+const shown = (value) => (value === null || value === undefined ? "–" : value === "" ? "(empty)" : clip(typeof value === "object" ? JSON.stringify(value) : String(value), 300));
+
+function head(text, scope) {
+  const cell = make("th", text);
+  cell.scope = scope;
+  return cell;
+}
+
+/** Asks; gives true (`word`), false (`other`), or null where the dialog was left. `changes`: [path, value, ...]. */
+export function reviewed({ title, text = "", columns = ["From", "To"], changes, warnings = [], word, other = "" }) {
+  dialog.querySelector("h2").textContent = title;
+  dialog.querySelector(".text").textContent = text;
+  heads.replaceChildren(...["Setting", ...columns].map((name) => head(name, "col")));
+  rows.replaceChildren(...changes.map(([path, ...values]) => make("tr", head(path, "row"), ...values.map((value) => make("td", shown(value))))));
+  dialog.querySelector(".scroll").hidden = !changes.length;
+  dialog.querySelector(".warnings").replaceChildren(...warnings.map((warning) => make("li", warning)));
+  yes.textContent = word;
+  no.textContent = other || "Leave it";
+  open(dialog);
+  no.focus();
+  return new Promise((resolve) => {
+    let answer = null;
+    const end = (value) => () => {
+      answer = value;
+      dialog.close();
+    };
+    yes.onclick = end(true);
+    no.onclick = end(other ? false : null);
+    dialog.onclose = () => resolve(answer);
+  });
+}
+
+export const fromTo = (changes) => changes.map(({ path, from, to }) => [path, from, to]);
+
+/** Does something that the box applies: while another change is being applied, and where it is silent, again. */
+export async function insist(deed) {
+  for (const end = performance.now() + PATIENCE; ; await sleep(PAUSE)) {
+    try {
+      return await deed();
+    } catch (error) {
+      const passes = !error.status || (error.status === 409 && error.message.includes("being applied"));
+      if (!passes || performance.now() > end) throw error;
+    }
+  }
+}
+
+/** What the box runs with once a change is applied or taken back; null: it does not answer. */
+export async function applied() {
+  for (const end = performance.now() + PATIENCE; performance.now() < end; await sleep(PAUSE)) {
+    const said = await get("/adit/settings").catch(() => null);
+    if (said && !said.applying) return said;
+  }
+  return null;
+}
+
+/** Where the page is to be found once the team is served elsewhere; "": where it is. */
+function newAddress({ team }, before) {
+  const [listen] = team.listen;
+  if (!listen || same(team.listen, before.team.listen)) return "";
+  const host = listen.address === "0.0.0.0" || listen.address === "::" ? location.hostname : listen.address;
+  return `http://${host.includes(":") ? `[${host}]` : host}:${listen.port}/setup${location.hash}`;
+}
+
+/** Why the box took a change back, in its words. */
+async function whyNot() {
+  const { attention = [] } = await get("/adit/run").catch(() => ({}));
+  return attention.find((each) => each.includes("taken back")) ?? "";
+}
+
+/** Two operators: theirs is in use, and one goes on from it. */
+async function settle() {
+  const { base, settings: mine, newer } = draft;
+  const [was, own, theirs] = [base, mine, newer.settings].map((each) => flat(each));
+  const paths = [...new Set([...theirs.keys(), ...own.keys()])].filter((path) => own.get(path) !== was.get(path) || theirs.get(path) !== was.get(path));
+  const answer = await reviewed({
+    title: "Somebody else has saved settings meanwhile",
+    text: "What is in use now is in the column Theirs. Go on from it: what you changed yourself is put over it, and can still be changed.",
+    columns: ["Before", "Theirs", "Yours"],
+    changes: paths.map((path) => [path, was.get(path), theirs.get(path), own.get(path)]),
+    word: "Go on with mine over theirs",
+    other: "Drop mine",
+  });
+  if (answer !== null) beginFrom(newer, answer ? merged(base, mine, newer.settings) : undefined);
+}
+
+/** Posts settings that were looked at; whether the box runs with them now. */
+export async function save(settings) {
+  const { tag, base } = draft;
+  isBusy = true;
+  link = "";
+  report("It is being applied.");
+  try {
+    const { changes } = await insist(() => post("/adit/settings", { settings, base: tag }));
+    link = newAddress(settings, base);
+    if (link) report("The page moves to");
+    const said = await applied();
+    const isDone = said && (said.tag !== tag || !changes.length);
+    if (said) link = "";
+    if (isDone) beginFrom(said);
+    if (said) await refresh();
+    report(isDone ? "Applied." : said ? (await whyNot()) || "It was taken back." : link ? "The page has moved to" : "The box does not answer.");
+    return isDone;
+  } catch (error) {
+    if (error.status === 409) await refresh();
+    report(draft.newer ? "" : error.message);
+    if (draft.newer) await settle();
+    return false;
+  } finally {
+    isBusy = false;
+    show();
+  }
+}
+
+function report(text) {
+  outcome = text;
+  show();
+}
+
+/** Shows what is to change and applies it where that is wanted; whether nothing is left to apply. */
+export async function apply() {
+  if (!differs()) return true;
+  await refresh().catch(() => {});
+  if (draft.newer) await settle();
+  const { errors, changes, warnings, trouble } = await check();
+  if (trouble) return report(`${trouble} What you typed is kept.`), false;
+  if (errors.length) return goTo(errors[0]), false;
+  const settings = structuredClone(draft.settings);
+  const yes = await reviewed({ title: "Apply this?", changes: fromTo(changes), warnings, word: "Apply" });
+  return yes === true && save(settings);
+}
+
+function goTo({ path }) {
+  const { field } = blameAll(verdict.errors).find((error) => error.path === path) ?? {};
+  if (!field) return;
+  const step = field.closest("section").id.replace("step-", "#");
+  if (location.hash !== step) location.hash = step;
+  requestAnimationFrame(() => requestAnimationFrame(() => field.control.focus()));
+}
+
+function errorLink(error) {
+  const item = make("button", `${error.path}: ${error.what}`);
+  item.type = "button";
+  item.addEventListener("click", () => goTo(error));
+  return make("li", error.field ? item : item.textContent);
+}
+
+function described() {
+  const { errors, changes, trouble } = verdict;
+  if (trouble) return `${trouble} What you typed is kept, and checked once it does.`;
+  if (errors.length) return `${errors.length === 1 ? "1 error" : `${errors.length} errors`} to mend before it can be applied.`;
+  return `${changes.length === 1 ? "1 change" : `${changes.length} changes`} not yet applied.`;
+}
+
+function show() {
+  const typed = differs();
+  place.hidden = !typed && !outcome;
+  say(state, isBusy || !typed ? outcome : [outcome, described()].filter(Boolean).join(" "));
+  if (link) state.append(" ", Object.assign(make("a", link), { href: link }));
+  for (const button of buttons) button.hidden = !typed || isBusy;
+  const here = document.querySelector("#sheets > section:not([hidden])");
+  const others = blameAll(verdict.errors).filter(({ field }) => !field || !here?.contains(field));
+  elsewhere.replaceChildren(...others.map(errorLink));
+  document.body.dataset.typed = typed;
+}
+
+export function offerApply() {
+  const [dropIt, applyIt] = buttons;
+  dropIt.addEventListener("click", () => {
+    outcome = "";
+    drop();
+  });
+  applyIt.addEventListener("click", apply);
+  onDraft((what) => {
+    if (what === "typed") outcome = "";
+    show();
+  });
+  onVerdict(show);
+  addEventListener("hashchange", () => requestAnimationFrame(show));
+  if (draft.newer) settle();
+}

@@ -1,0 +1,120 @@
+// The settings as they are typed, beside those of the box that they began from. What is typed outlives errors, a lost
+// box and a reload of the page, until it is applied or dropped; the box says what is wrong with it.
+import { get, post } from "./session.js";
+
+const STORED = "adit.typed";
+const PAUSE = 300, RETRY = 2000; // ms without a key, ms until a silent box is asked again
+const hearers = [], judges = [];
+
+/** `base` and `tag`: what it began from; `newer`: what somebody else saved meanwhile; `keys`: by path. */
+export const draft = { settings: null, base: null, tag: "", newer: null, saved: false, tokens: {}, keys: new Map() };
+
+export const ENDPOINTS = ["scoring", "mapping"];
+
+/** Tokens without which the Command Post of these settings lets nothing in. */
+export const missingTokens = ({ settings, tokens }) =>
+  ENDPOINTS.filter((name) => !tokens[name] && !tokens[`course.${settings.command_post.course}.${name}`]);
+
+/** `hear(what)`: "typed", "begun" (from other settings than were typed here), or "told" (of tokens, or something newer). */
+export const onDraft = (hear) => hearers.push(hear);
+
+export const same = (a, b) => JSON.stringify(a) === JSON.stringify(b);
+export const differs = () => !same(draft.settings, draft.base);
+
+const parts = (path) => path.split(/[.[\]]+/).filter(Boolean);
+export const keyOf = (path) => draft.keys.get(path.replace(/\[\d+\]/g, "[]"));
+export const read = (path, from = draft.settings) => parts(path).reduce((value, name) => value?.[name], from);
+
+export function write(path, value) {
+  const names = parts(path), last = names.pop();
+  names.reduce((object, name) => object[name], draft.settings)[last] = value;
+  tell("typed");
+}
+
+function tell(what) {
+  if (differs()) sessionStorage.setItem(STORED, JSON.stringify({ settings: draft.settings, base: draft.base, tag: draft.tag }));
+  else sessionStorage.removeItem(STORED);
+  for (const hear of hearers) hear(what);
+}
+
+/** Begins from `said`, with `settings` as typed. */
+export function beginFrom(said, settings = structuredClone(said.settings)) {
+  Object.assign(draft, { settings, base: said.settings, tag: said.tag, newer: null });
+  tell("begun");
+}
+
+export const drop = () => beginFrom({ settings: draft.base, tag: draft.tag });
+
+/** Asks the box again; what is typed stays, and `newer` is set where it began from other settings. */
+export async function refresh() {
+  const said = await get("/adit/settings");
+  Object.assign(draft, { saved: said.saved, tokens: said.tokens, keys: new Map(said.keys.map((key) => [key.path, key])) });
+  const fresh = !draft.tag;
+  if (fresh) Object.assign(draft, JSON.parse(sessionStorage.getItem(STORED) ?? "{}"));
+  if (!draft.tag || (said.tag !== draft.tag && !differs())) return beginFrom(said);
+  draft.newer = said.tag === draft.tag ? null : said;
+  tell(fresh ? "begun" : "told");
+}
+
+const isObject = (value) => value !== null && typeof value === "object";
+const named = (items) => new Map(items.map((item) => [item.name ?? JSON.stringify(item), item]));
+
+/** `theirs` with what was changed from `base` to `mine`; items of lists are known by their names. */
+export function merged(base, mine, theirs) {
+  if (same(mine, base)) return theirs;
+  if (same(theirs, base) || ![base, mine, theirs].every(isObject)) return mine;
+  if (!Array.isArray(mine)) return Object.fromEntries(Object.keys(theirs).map((name) => [name, merged(base[name], mine[name], theirs[name])]));
+  const [was, own, newer] = [base, mine, theirs].map(named);
+  const kept = [...newer].filter(([name]) => own.has(name) || !was.has(name));
+  const added = [...own].filter(([name, item]) => !newer.has(name) && !same(item, was.get(name)));
+  return [...kept.map(([name, item]) => (own.has(name) ? merged(was.get(name), own.get(name), item) : item)), ...added.map(([, item]) => item)];
+}
+
+/** All values by their paths; items of lists by their names. */
+export function flat(value, path = "", into = new Map()) {
+  if (!isObject(value)) return into.set(path, value);
+  const step = (name, item) => (Array.isArray(value) ? `${path}[${item.name ?? name}]` : path ? `${path}.${name}` : name);
+  for (const [name, item] of Object.entries(value)) flat(item, step(name, item), into);
+  return into;
+}
+
+let timer = 0, asked = 0;
+
+/** {errors, changes, warnings}, and `trouble` where the box could not be asked. */
+export let verdict = { errors: [], changes: [], warnings: [], trouble: "" };
+export const onVerdict = (hear) => judges.push(hear);
+
+function set(next) {
+  verdict = { errors: [], changes: [], warnings: [], trouble: "", ...next };
+  for (const hear of judges) hear(verdict);
+}
+
+function forget() {
+  ++asked;
+  set({});
+}
+
+/** Asks now. A late answer to an older question is not taken. */
+export async function check() {
+  clearTimeout(timer);
+  const mine = ++asked;
+  try {
+    const said = await post("/adit/settings/check", { settings: draft.settings });
+    if (mine === asked) set(said);
+  } catch (error) {
+    if (mine !== asked) return verdict;
+    set({ errors: verdict.errors, changes: verdict.changes, trouble: error.message });
+    if (!error.status) timer = setTimeout(check, RETRY);
+  }
+  return verdict;
+}
+
+export function checkAsTyped() {
+  if (differs()) check(); // it was typed before the page was loaded
+  onDraft((what) => {
+    if (what === "told") return;
+    clearTimeout(timer);
+    if (!differs()) return forget();
+    timer = setTimeout(check, PAUSE);
+  });
+}

@@ -1,0 +1,22 @@
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "page/setup.hpp"
+#include "settings/written.hpp"
+
+namespace adit::page {
+
+/// The JSON of /adit/settings: README.md names the members.
+std::string write_setup(const Setup& setup);
+
+/// {"errors": [...], "changes": [...], "warnings": [...]}
+std::string write_check(const std::vector<settings::Error>& errors,
+                        const std::vector<settings::Change>& changes,
+                        const std::vector<std::string>& warnings);
+
+/// {"changes": [...]}
+std::string write_changes(const std::vector<settings::Change>& changes);
+
+}  // namespace adit::page

@@ -1,0 +1,313 @@
+#!/usr/bin/python3
+"""Setting up the real program by its API: real_settings.py ADITD. On loopback."""
+
+import base64
+import contextlib
+import http.client
+import json
+import re
+import signal
+import socket
+import stat
+import sys
+import tempfile
+import threading
+import time
+import unittest
+
+import command_post
+import real_aditd
+
+TEAM = {"Authorization": f"Bearer {real_aditd.TOKENS['team']}"}
+REPORT = {"type": "Drill", "x": 1.0, "y": 2.0, "z": 3.0}
+
+
+def free_port():
+    with contextlib.closing(socket.socket()) as free:
+        free.bind(("127.0.0.1", 0))
+        return free.getsockname()[1]
+
+
+def wait_until(condition, what, within=10):
+    end = time.monotonic() + within
+    while time.monotonic() < end:
+        value = condition()
+        if value:
+            return value
+        time.sleep(0.02)
+    raise AssertionError(f"waited {within} s in vain for {what}")
+
+
+def grid(name):
+    pose = {"position": {"x": 0, "y": 0, "z": 0}, "orientation": {"x": 0, "y": 0, "z": 0, "w": 1}}
+    return {"name": name, "type": "OccupancyGrid", "msg": {
+        "header": {"stamp": 1.0, "frame_id": "darpa"},
+        "info": {"resolution": 1.0, "width": 2, "height": 2, "origin": pose},
+        "data": base64.b64encode(bytes([0, 100, 255, 0])).decode()}}
+
+
+def state(name):
+    return {"header": {"stamp": 1.0, "frame_id": "darpa"}, "poses": [
+        {"name": name, "position": {"x": 1, "y": 0, "z": 0}, "orientation": {"x": 0, "y": 0, "z": 0, "w": 1}}]}
+
+
+class SetUp(unittest.TestCase):
+    def setUp(self):
+        folder = tempfile.TemporaryDirectory(prefix="adit-set-up-")
+        self.addCleanup(folder.cleanup)
+        self.box = real_aditd.Box(folder.name)
+        self.addCleanup(lambda: self.box.process.wait())
+        self.addCleanup(lambda: self.box.process.kill())
+        self.assertEqual(self.box.set_first()[0], 200)
+        self.me = self.box.log_in()
+
+    def post_office(self):
+        post = command_post.CommandPost()
+        self.addCleanup(post.close)
+        return post
+
+    def settings(self):
+        status, said, _ = self.box.ask("GET /adit/settings", **self.me)
+        self.assertEqual(status, 200, said)
+        return said
+
+    def applied(self, request, body):
+        """Asks for a change, and waits until the box serves anew."""
+        before = self.box.said().count("listening ")
+        status, said, _ = self.box.ask(request, body, **self.me)
+        self.assertEqual(status, 200, said)
+        wait_until(lambda: self.box.said().count("listening ") > before, "aditd to listen anew")
+        self.box.port = int(re.findall(r"listening .*port=(\d+)", self.box.said())[-1])
+        return said
+
+    def change(self, edit):
+        """Changes the settings as `edit` does; what it says has changed."""
+        now = self.settings()
+        edit(now["settings"])
+        return self.applied("POST /adit/settings", {"settings": now["settings"], "base": now["tag"]})["changes"]
+
+    def attention(self):
+        return "\n".join(self.box.ask("GET /adit/run", **self.me)[1]["attention"])
+
+    def trouble(self):
+        return self.box.ask("GET /adit/run", **self.me)[1]["endpoints"][0]["trouble"]
+
+    def report_in_the_background(self):
+        """Gives what its client is told, once it is."""
+        told, port = [], self.box.port
+
+        def post():
+            connection = http.client.HTTPConnection("127.0.0.1", port, timeout=30)
+            with contextlib.closing(connection):
+                connection.request("POST", "/api/artifact_reports", json.dumps(REPORT),
+                                   {**TEAM, "Content-Type": "application/json"})
+                answer = connection.getresponse()
+                told.append((answer.status, answer.read()))
+
+        thread = threading.Thread(target=post)
+        thread.start()
+        wait_until(lambda: self.box.ask("GET /adit/reports", **self.me)[1], "the report")
+        return lambda: thread.join(10) or told[0]
+
+    def course(self, name, post, **more):
+        def edit(settings):
+            settings["courses"].append({"name": name, "scoring": post.address, "mapping": post.address})
+            settings.update(more)
+        self.change(edit)
+
+    def test_a_change_moves_the_box_and_whoever_is_logged_in_stays_so(self):
+        port, old = free_port(), self.box.port
+        changes = self.change(lambda settings: settings["team"]["listen"][0].update(port=port))
+        self.assertEqual(changes, [{"path": "team.listen[0].port", "from": 0, "to": port}])
+        self.assertEqual(self.box.port, port)
+        self.assertTrue(self.settings()["saved"])
+        with self.assertRaises(ConnectionRefusedError):
+            socket.create_connection(("127.0.0.1", old), 1)
+        file = self.box.state / "settings.json"
+        self.assertEqual(stat.S_IMODE(file.stat().st_mode), 0o600)
+        self.assertFalse((self.box.state / "settings.json.before").exists(), "it has proven itself")
+        for ends in (signal.SIGTERM, signal.SIGKILL):
+            self.box.process.send_signal(ends)
+            self.box.process.wait(5)
+            self.box.start()
+            self.assertEqual(self.box.port, port, ends)
+            self.assertEqual(self.box.ask("POST /adit/settings/check", {"settings": {}}, **self.me)[0], 200, ends)
+        sessions = self.box.state / "sessions.json"
+        self.assertEqual(stat.S_IMODE(sessions.stat().st_mode), 0o600)
+        self.assertEqual(self.box.ask("POST /adit/logout", {}, **self.me)[0], 200)
+        self.box.process.kill()
+        self.box.process.wait()
+        self.box.start()
+        self.assertEqual(self.box.ask("GET /adit/run", **self.me)[0], 401, "who logged out stays so, too")
+
+    def test_a_waiting_report_and_map_outlive_a_switch_of_the_course(self):
+        one, other = self.post_office(), self.post_office()
+        self.course("A", one)
+        self.course("B", other)
+        self.applied("POST /adit/course", {"name": "A"})
+        wait_until(lambda: self.box.ask("GET /adit/run", **self.me)[1]["run"], "the first Command Post")
+        one.close()
+        wait_until(self.trouble, "it to be missed")
+        self.assertEqual(self.box.ask("POST /map/update", grid("ugv1"), **TEAM)[0], 200)
+        self.assertEqual(self.box.ask("POST /state/update", state("ugv1"), **TEAM)[0], 200)
+        told = self.report_in_the_background()
+        said = self.applied("POST /adit/course", {"name": "B"})
+        self.assertEqual(said["changes"], [{"path": "command_post.course", "from": "A", "to": "B"}])
+        self.assertEqual(told()[0], 503, "its client was told that it is kept")
+        wait_until(lambda: other.heard("/map/update") and other.heard("/state/update"), "the map and the state")
+        self.assertEqual(other.heard("/map/update")[0][0], real_aditd.TOKENS["mapping"])
+        report, = self.box.ask("GET /adit/reports", **self.me)[1]
+        self.assertEqual(report["state"], "received", "held: it was meant for another Command Post")
+        self.assertEqual(other.heard("/api/artifact_reports"), [])
+        self.assertEqual(self.box.ask("POST /adit/reports/1/send", {}, **self.me)[0], 200)
+        sent = wait_until(lambda: other.heard("/api/artifact_reports"), "the report at the Command Post")
+        self.assertEqual(json.loads(sent[0][1]), REPORT)
+        time.sleep(1.2)
+        self.assertEqual(len(other.heard("/api/artifact_reports")), 1)
+
+    def test_a_change_in_the_middle_of_a_run_keeps_the_picture_and_the_rate_and_posts_no_report_twice(self):
+        post = self.post_office()
+        self.course("A", post)
+        self.applied("POST /adit/course", {"name": "A"})
+        self.assertEqual(self.box.ask("POST /map/update", grid("ugv1"), **TEAM)[0], 200)
+        drawn = wait_until(lambda: self.box.ask("GET /adit/map", **self.me)[1]["layers"], "the picture")
+        self.assertEqual(self.box.ask("POST /api/artifact_reports", REPORT, **TEAM)[0], 201)
+        self.change(lambda settings: settings["reports"].update(near_metres=6))
+        self.assertEqual(self.box.ask("GET /adit/map", **self.me)[1]["layers"], drawn)
+        self.assertEqual(self.box.ask("POST /api/artifact_reports", REPORT, **TEAM)[0], 201, "the answer that is kept")
+        self.assertEqual(self.box.ask("POST /api/artifact_reports", {**REPORT, "x": 5.0}, **TEAM)[0], 201)
+        first, second = post.times("/api/artifact_reports")
+        self.assertGreaterEqual(second - first, 0.95)
+        self.assertEqual(self.attention(), "")
+
+    def test_a_report_that_waits_for_a_command_post_nobody_heard_of_goes_once_its_address_is_set_right(self):
+        told = self.report_in_the_background()
+        self.course("A", self.post_office())
+        self.assertEqual(told()[0], 503)
+        self.applied("POST /adit/course", {"name": "A"})
+        wait_until(lambda: self.box.ask("GET /adit/reports", **self.me)[1][0]["state"] == "answered", "its answer")
+
+    def test_settings_that_nobody_can_listen_by_are_taken_back_and_said_why(self):
+        port = free_port()
+        self.change(lambda settings: settings["team"]["listen"][0].update(port=port))
+        good = (self.box.state / "settings.json").read_text()
+        with contextlib.closing(socket.create_server(("127.0.0.1", 0))) as taken:
+            other = taken.getsockname()[1]
+            self.change(lambda settings: settings["team"]["listen"][0].update(port=other))
+            self.assertEqual(self.box.port, port, "where it was before")
+            self.assertIn(f"the last change was taken back: binding to 127.0.0.1 port {other}", self.attention())
+            self.assertIn("Address already in use", self.attention())
+            self.assertIn("the last change of the settings is taken back", self.box.said())
+            self.assertEqual((self.box.state / "settings.json").read_text(), good)
+        self.change(lambda settings: settings["team"]["listen"][0].update(port=other))
+        self.assertEqual((self.box.port, self.attention()), (other, ""))
+
+    def test_the_first_change_is_taken_back_to_what_the_box_was_given_also_over_a_power_cut(self):
+        self.box.stop()
+        given = json.loads((self.box.folder / "settings.json").read_text())
+        with contextlib.closing(socket.create_server(("127.0.0.1", 0))) as taken:
+            given["team"]["listen"][0]["port"] = taken.getsockname()[1]
+            (self.box.state / "settings.json").write_text(json.dumps(given))
+            (self.box.state / "settings.json.before").write_text("")
+            self.box.start()
+        self.assertIn("the last change was taken back", self.attention())
+        self.assertFalse(self.settings()["saved"])
+        self.assertFalse((self.box.state / "settings.json").exists())
+
+    def test_saved_settings_that_cannot_be_understood_are_set_aside(self):
+        self.box.stop()
+        (self.box.state / "settings.json").write_text("{\"version\": 7}")
+        self.box.start()
+        self.assertIn("set aside", self.attention())
+        self.assertIn("version: expected 1, got 7", self.attention())
+        self.assertFalse(self.settings()["saved"])
+        self.assertTrue((self.box.state / "settings.json.damaged").exists())
+
+    def test_of_two_operators_the_one_who_has_not_seen_the_others_change_is_told(self):
+        mine = self.settings()
+        self.change(lambda settings: settings["robots"].append({"name": "ugv1", "alias": ""}))
+        mine["settings"]["reports"]["near_metres"] = 7
+        status, said, _ = self.box.ask("POST /adit/settings", {"settings": mine["settings"], "base": mine["tag"]},
+                                       **self.me)
+        self.assertEqual(status, 409)
+        self.assertIn("somebody else", said)
+        self.assertEqual(self.settings()["settings"]["reports"]["near_metres"], 5)
+
+    def test_an_alias_goes_on_as_the_robots_name_and_an_unknown_robot_is_taken_and_told_of(self):
+        post = self.post_office()
+        robots = [{"name": "ugv1", "alias": "husky-number-1"}, {"name": "ugv2", "alias": ""}]
+        self.course("A", post, robots=robots)
+        self.applied("POST /adit/course", {"name": "A"})
+        self.assertEqual(self.box.ask("POST /map/update", grid("husky-number-1"), **TEAM)[0], 200)
+        self.assertEqual(self.box.ask("POST /state/update", state("husky-number-1"), **TEAM)[0], 200)
+        for path in ("/map/update", "/state/update"):
+            body = wait_until(lambda path=path: post.heard(path), path)[0][1]
+            self.assertIn(b"ugv1", body)
+            self.assertNotIn(b"husky", body)
+        self.assertEqual(self.attention(), "")
+        self.assertEqual(self.box.ask("POST /state/update", state("x"), **TEAM)[0], 200)
+        self.assertEqual(self.box.ask("POST /state/update", state("x"), **TEAM)[0], 200)
+        self.assertEqual(self.attention(), "unknown robot 'x' is posting; set-up has ugv1, ugv2")
+        self.assertEqual(self.box.said().count("unknown robot"), 1)
+        self.assertEqual(self.box.ask("POST /state/update", state("husky-number-9"), **TEAM)[0], 422, "the ICD's rule")
+
+    def test_a_courses_own_tokens_count_while_it_is_in_use(self):
+        post = self.post_office()
+        self.course("A", post)
+        self.applied("POST /adit/tokens", {"name": "course.A.scoring", "token": "course-a-secret"})
+        self.applied("POST /adit/course", {"name": "A"})
+        wait_until(lambda: post.heard("/api/status"), "the status to be asked for")
+        self.assertEqual({token for token, _ in post.heard("/api/status")}, {"course-a-secret"})
+        self.assertEqual(self.settings()["tokens"],
+                         {"scoring": True, "mapping": True, "team": True, "course.A.scoring": True,
+                          "course.A.mapping": False})
+        file = self.box.state / "secrets" / "course.A.scoring.token"
+        self.assertEqual(stat.S_IMODE(file.stat().st_mode), 0o600)
+        self.assertEqual(stat.S_IMODE(file.parent.stat().st_mode), 0o700)
+        for text in (self.box.said(), json.dumps(self.settings())):
+            self.assertNotIn("course-a-secret", text)
+        self.applied("POST /adit/tokens", {"name": "course.A.scoring", "token": None})
+        self.assertFalse(file.exists())
+        wait_until(lambda: real_aditd.TOKENS["scoring"] in {token for token, _ in post.heard("/api/status")},
+                   "the common token")
+
+    def test_it_starts_without_tokens_and_says_what_is_missing(self):
+        self.box.stop()
+        for name in real_aditd.TOKENS:
+            (self.box.folder / "secrets" / f"{name}.token").unlink()
+        self.box.start()
+        self.assertIn("no scoring token is set: reports wait until one is", self.attention())
+        self.assertIn("no mapping token is set", self.attention())
+        endpoints = self.box.ask("GET /adit/run", **self.me)[1]["endpoints"]
+        self.assertEqual([row["trouble"] for row in endpoints], ["no scoring token is set", "no mapping token is set"])
+        status, said, _ = self.box.ask("POST /state/update", state("ugv1"), **TEAM)
+        self.assertEqual((status, said), (401, "Authorization: no token is set up on this gateway yet"))
+        for name in ("scoring", "mapping", "team"):
+            self.applied("POST /adit/tokens", {"name": name, "token": f"{name}-from-the-page"})
+        self.assertEqual(self.attention(), "")
+        self.assertEqual(self.box.ask("POST /state/update", state("ugv1"), Authorization="Bearer team-from-the-page")[0],
+                         200)
+
+    def test_a_reset_forgets_all_but_the_reports(self):
+        self.assertEqual(self.box.ask("POST /adit/reports", REPORT, **self.me)[0], 202)
+        self.applied("POST /adit/tokens", {"name": "team", "token": "team-from-the-page"})
+        self.change(lambda settings: settings["robots"].append({"name": "ugv1", "alias": ""}))
+        self.assertEqual(self.box.ask("POST /adit/reset", {"password": "not the password"}, **self.me)[0], 403)
+        self.assertEqual(self.box.ask("POST /adit/reset", {"password": real_aditd.OPERATOR})[0], 401, "not logged in")
+        said = self.applied("POST /adit/reset", {"password": real_aditd.OPERATOR})
+        self.assertIn("the reports are kept", said["said"])
+        self.assertEqual(self.box.ask("GET /adit/run", **self.me)[0], 401)
+        self.assertEqual(self.box.ask("GET /adit/session")[1]["first_start"], True)
+        for gone in ("settings.json", "secrets", "access.json"):
+            self.assertFalse((self.box.state / gone).exists(), gone)
+        self.assertEqual(self.box.set_first(password="another password")[0], 200)
+        self.me = self.box.log_in("another password")
+        now = self.settings()
+        self.assertEqual((now["saved"], now["settings"]["robots"]), (False, []))
+        report, = self.box.ask("GET /adit/reports", **self.me)[1]
+        self.assertEqual(report["type"], "Drill")
+
+
+if __name__ == "__main__":
+    real_aditd.aditd = sys.argv.pop(1)
+    unittest.main()

@@ -1,0 +1,138 @@
+#include "cli/settings.hpp"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <filesystem>
+#include <fstream>
+
+#include "cli/command.hpp"
+#include "cli/server.hpp"
+#include "cli/token_file.hpp"
+
+namespace adit::cli {
+namespace {
+
+using testing::HasSubstr;
+using testing::Not;
+
+constexpr const char* kFile =
+    R"({"version":1,"command_post":{"scoring":{"address":"10.100.1.200","port":8000},)"
+    R"("mapping":{"address":"10.100.1.201","port":8000}},)"
+    R"("team":{"listen":[{"address":"10.0.0.1","port":8000}]},"robots":[{"name":"ugv1"}]})";
+
+std::string shown() {
+  return std::string(R"({"settings":)") + kFile +
+         R"(,"tag":"0123456789abcdef","saved":true,"tokens":{"scoring":true,"team":false},"keys":[]})";
+}
+
+constexpr const char* kChanges =
+    R"({"errors":[],"changes":[{"path":"team.listen[0].port","from":8000,"to":8080}],)"
+    R"("warnings":["Adit and this page move"]})";
+
+class SettingsCommand : public testing::Test {
+ public:
+  ~SettingsCommand() override { std::filesystem::remove(settings_); }
+
+ protected:
+  SettingsCommand() {
+    close(mkstemp(settings_.data()));
+    std::ofstream(settings_) << kFile;
+  }
+  Outcome say(const Server& server, std::vector<std::string_view> words) const {
+    const std::string at = server.at();
+    words.insert(words.end(), {"--at", at, "--token-file", file_.path()});
+    return run(words, false);
+  }
+
+  TokenFile file_;
+  std::string settings_ = "/tmp/adit-settings-XXXXXX";
+};
+
+TEST_F(SettingsCommand, ShowsWhatDiffersFromTheDefaultsAndWhichTokensAreSet) {
+  const Server server({{"GET /adit/settings", Server::ok(shown())}});
+  const Outcome outcome = say(server, {"settings"});
+  EXPECT_EQ(outcome.exit, Exit::Fine);
+  EXPECT_THAT(outcome.out, HasSubstr("saved on the box\n"));
+  EXPECT_THAT(outcome.out, HasSubstr("command_post.scoring.address  \"10.100.1.200\"\n"));
+  EXPECT_THAT(outcome.out, HasSubstr("robots[ugv1].name             \"ugv1\"\n"));
+  EXPECT_THAT(outcome.out, Not(HasSubstr("budget_mbit")));
+  EXPECT_THAT(outcome.out, HasSubstr("tokens\n  scoring  set\n  team     none\n"));
+  EXPECT_EQ(say(server, {"settings", "show", "--json"}).out, shown() + "\n");
+}
+
+TEST_F(SettingsCommand, ExportsTheFileByteForByte) {
+  const Server server({{"GET /adit/settings/export", Server::ok("{\n  \"version\": 1\n}\n")}});
+  EXPECT_EQ(say(server, {"settings", "export"}).out, "{\n  \"version\": 1\n}\n");
+}
+
+TEST_F(SettingsCommand, ChecksAFileWithoutChangingAnything) {
+  const Server server({{"POST /adit/settings/check", Server::ok(kChanges)}});
+  const Outcome outcome = say(server, {"settings", "check", settings_});
+  EXPECT_EQ(outcome.exit, Exit::Fine) << outcome.err;
+  EXPECT_EQ(outcome.out, "  team.listen[0].port  8000  -> 8080\nmind: Adit and this page move\n");
+  EXPECT_THAT(server.request(), HasSubstr(std::string(R"({"settings":)") + kFile + "}"));
+}
+
+TEST_F(SettingsCommand, AppliesAFileToTheSettingsThatItSaw) {
+  const Server server({{"GET /adit/settings", Server::ok(shown())},
+                       {"POST /adit/settings/check", Server::ok(kChanges)},
+                       {"POST /adit/settings", Server::ok(R"({"changes":[]})")}});
+  const Outcome outcome = say(server, {"settings", "apply", settings_});
+  EXPECT_EQ(outcome.exit, Exit::Fine) << outcome.err;
+  EXPECT_EQ(outcome.out, "  team.listen[0].port  8000  -> 8080\nmind: Adit and this page move\n");
+  EXPECT_THAT(server.request(), HasSubstr(R"("base":"0123456789abcdef"})"));
+}
+
+TEST_F(SettingsCommand, NamesEachErrorOfAFileAndAppliesNothing) {
+  const Server server(
+      {{"GET /adit/settings", Server::ok(shown())},
+       {"POST /adit/settings/check",
+        Server::ok(
+            R"({"errors":[{"path":"a.b","what":"is wrong"},{"path":"","what":"too"}],"changes":[],"warnings":[]})")},
+       {"POST /adit/settings", Server::ok(R"({"changes":[]})")}});
+  for (const std::string_view verb : {"check", "apply"}) {
+    const Outcome outcome = say(server, {"settings", verb, settings_});
+    EXPECT_EQ(outcome.exit, Exit::Attention);
+    EXPECT_EQ(outcome.err, "adit: a.b: is wrong\nadit: too\n");
+    EXPECT_THAT(server.request(), HasSubstr("POST /adit/settings/check ")) << "that was the last";
+  }
+}
+
+TEST_F(SettingsCommand, SaysThatSomebodyElseChangedThem) {
+  const Server server({{"GET /adit/settings", Server::ok(shown())},
+                       {"POST /adit/settings/check", Server::ok(kChanges)},
+                       {"POST /adit/settings", Server::reply("409 Conflict", "\"somebody else has\"")}});
+  const Outcome outcome = say(server, {"settings", "apply", settings_});
+  EXPECT_EQ(outcome.exit, Exit::Attention);
+  EXPECT_EQ(outcome.err, "adit: somebody else has\n");
+}
+
+TEST_F(SettingsCommand, SaysWhatIsWrongWithAFileThatIsNone) {
+  const Server server({{"POST /adit/settings/check", Server::ok(kChanges)}});
+  EXPECT_EQ(say(server, {"settings", "check", "/none.json"}).err,
+            "adit: /none.json: No such file or directory\n");
+  std::ofstream(settings_, std::ios::trunc) << "{";
+  const Outcome outcome = say(server, {"settings", "check", settings_});
+  EXPECT_EQ(outcome.exit, Exit::Unable);
+  EXPECT_THAT(outcome.err, HasSubstr(settings_ + ": not JSON: "));
+  EXPECT_EQ(server.request(), "");
+}
+
+TEST_F(SettingsCommand, SwitchesTheCourse) {
+  const Server server({{"POST /adit/course", Server::ok(R"({"changes":[]})")}});
+  EXPECT_EQ(
+      say(server, {"course", "B"}).out,
+      "course B is in use; reports that were meant for another Command Post are held: see adit reports\n");
+  EXPECT_THAT(server.request(), HasSubstr(R"({"name":"B"})"));
+  EXPECT_THAT(say(server, {"course", ""}).out, HasSubstr("no course is in use"));
+  const Server other(
+      {{"POST /adit/course",
+        Server::reply("422 Unprocessable", "\"command_post.course: no course is called C\"")}});
+  const Outcome outcome = say(other, {"course", "C"});
+  EXPECT_EQ(outcome.exit, Exit::Attention);
+  EXPECT_EQ(outcome.err, "adit: command_post.course: no course is called C\n");
+}
+
+}  // namespace
+}  // namespace adit::cli

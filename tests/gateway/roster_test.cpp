@@ -1,0 +1,43 @@
+#include "gateway/roster.hpp"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include "icd/sentence.hpp"
+
+namespace adit::gateway {
+namespace {
+
+using namespace std::chrono_literals;
+using testing::ElementsAre;
+using testing::IsEmpty;
+
+constexpr loop::Instant kStart{100h};
+
+TEST(Roster, OfNobodyWelcomesEverybody) {
+  Roster roster(std::vector<settings::Robot>{});
+  EXPECT_FALSE(roster.posted("anybody", kStart));
+  EXPECT_THAT(roster.attention(kStart), IsEmpty());
+}
+
+TEST(Roster, TellsOfEachUnknownRobotOnceAndForAsLongAsItPosts) {
+  Roster roster(std::vector<settings::Robot>{{"ugv1", "husky"}, {"ugv2", ""}});
+  EXPECT_FALSE(roster.posted("ugv1", kStart));
+  EXPECT_TRUE(roster.posted("uvg1", kStart));
+  EXPECT_FALSE(roster.posted("uvg1", kStart + 1min)) << "not news";
+  EXPECT_THAT(roster.attention(kStart + 3min - 1s),
+              ElementsAre("unknown robot 'uvg1' is posting; set-up has ugv1, ugv2"));
+  EXPECT_THAT(roster.attention(kStart + 3min), IsEmpty());
+}
+
+TEST(Roster, RemembersOnlySoManyAndForgetsTheSilentFirst) {
+  Roster roster(std::vector<settings::Robot>{{"ugv1", ""}});
+  for (std::size_t i = 0; i < 2 * Roster::kMostUnknown; ++i) roster.posted(icd::sentence("x", i), kStart);
+  EXPECT_EQ(roster.attention(kStart).size(), Roster::kMostUnknown);
+  EXPECT_TRUE(roster.posted("y", kStart + Roster::kRecent));
+  EXPECT_THAT(roster.attention(kStart + Roster::kRecent),
+              ElementsAre("unknown robot 'y' is posting; set-up has ugv1"));
+}
+
+}  // namespace
+}  // namespace adit::gateway

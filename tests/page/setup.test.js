@@ -1,0 +1,401 @@
+import assert from "node:assert/strict";
+import { readFile } from "node:fs/promises";
+import { existsSync, readFileSync } from "node:fs";
+import { join } from "node:path";
+import { test } from "node:test";
+import { come, freePort, freshBox, LOOKING, PASSWORD, TOKENS, until } from "./fresh_box.js";
+import { complaints, field, fill, hears, review, step, type } from "./setup_page.js";
+
+const COURSES = [
+  { name: "A", scoring: { address: "10.100.1.200", port: 8000 }, mapping: { address: "10.100.1.201", port: 8000 } },
+  { name: "B", scoring: { address: "10.100.2.200", port: 8000 }, mapping: { address: "10.100.2.201", port: 8000 } },
+];
+
+/** A box that is set up but for `settings`, and the set-up's page of its operator. */
+async function ready(t, path = "setup", settings = {}) {
+  const box = await freshBox(t, { secrets: ["scoring", "mapping", "team"], settings });
+  const ask = await box.settle();
+  const page = await come(t, box, path, PASSWORD);
+  await hears(page, "Live");
+  return { box, ask, page };
+}
+
+test("leads from an empty box to a first report through it", async (t) => {
+  const box = await freshBox(t);
+  const page = await come(t, box, "");
+  await page.waitForURL(/login\.html/);
+  await page.getByLabel("Code").fill(box.code());
+  await page.getByLabel("New password").fill(PASSWORD);
+  await page.getByLabel("The same once more").fill(PASSWORD);
+  await page.keyboard.press("Enter");
+  await page.waitForURL(/\/setup$/);
+  await hears(page, "Not set up yet: the scoring and the mapping token are missing.");
+
+  await page.getByRole("heading", { name: "Team network" }).waitFor();
+  await page.getByRole("button", { name: "Next" }).click();
+  await page.getByRole("heading", { name: "Command Post" }).waitFor();
+  await fill(page, { "Scoring port": String(box.scoring), "Mapping port": String(box.mapping) });
+  await page.getByRole("button", { name: "Next" }).click();
+  assert.deepEqual((await review(page)).map(([path, , to]) => [path, to]), [["command_post.scoring.port", String(box.scoring)], ["command_post.mapping.port", String(box.mapping)]]);
+  await page.getByRole("button", { name: "Apply", exact: true }).click();
+
+  await page.getByRole("heading", { name: "Tokens" }).waitFor();
+  await page.getByLabel("Scoring endpoint’s token", { exact: true }).fill(TOKENS.scoring);
+  await page.getByLabel("Mapping endpoint’s token", { exact: true }).fill(`  ${TOKENS.mapping} `);
+  await page.getByRole("button", { name: "Next" }).click();
+  await page.getByRole("heading", { name: "Robots" }).waitFor();
+  assert.ok(await page.locator("#missing").isHidden());
+  await page.getByRole("button", { name: "Add a robot" }).click();
+  await page.keyboard.type("ugv1");
+  await page.getByLabel("Alias").fill("husky-1");
+  await page.getByRole("button", { name: "Next" }).click();
+  await page.getByRole("button", { name: "Apply", exact: true }).click();
+  await page.getByRole("heading", { name: "Test" }).waitFor();
+  await page.getByRole("button", { name: "Test it" }).click();
+  await page.getByText("All is well. No report was spent.").waitFor();
+  await page.getByRole("button", { name: "To the run" }).click();
+
+  await page.waitForSelector("body[data-link=live]");
+  const record = async () => (await fetch(`http://127.0.0.1:${box.control}/record`)).json();
+  const before = JSON.stringify(await record());
+  assert.doesNotMatch(before, /"type": ?"Drill"/, "the test spent no report");
+  await page.getByRole("button", { name: "New report" }).click();
+  await page.locator("#compose").getByRole("radio", { name: "Drill" }).check({ force: true });
+  for (const [name, value] of [["x", "12.5"], ["y", "-3"], ["z", "0"]]) await page.fill(`#compose input[name=${name}]`, value);
+  await page.locator("#compose .go").click();
+  await page.locator("#compose .send").click();
+  const ask = await box.operator();
+  await until(async () => (await ask("/adit/reports")).said.some(({ state }) => state === "answered"), "an answer to the report");
+  assert.deepEqual(complaints(page, "401"), []);
+});
+
+test("keeps tokens to itself, and says which are there", async (t) => {
+  const { box, ask, page } = await ready(t, "setup#tokens");
+  const token = page.locator("form.token", { hasText: "The team’s own token" });
+  await token.getByText("is set").waitFor();
+  const input = token.getByLabel("The team’s own token", { exact: true });
+  assert.equal(await input.inputValue(), "");
+  assert.equal(await input.getAttribute("type"), "password");
+  await token.getByRole("button", { name: "Set" }).click();
+  await token.getByText("nothing is typed yet").waitFor();
+  for (const wrong of ["two words", "grüße", "x".repeat(257)]) {
+    await input.fill(wrong);
+    await token.getByText("expected 1 to 256 visible ASCII characters").waitFor();
+    await token.getByRole("button", { name: "Set" }).click();
+    await token.getByText("token: expected null or 1 to 256 visible ASCII characters").waitFor();
+    assert.equal(await input.inputValue(), wrong, "what was typed is kept");
+  }
+  await token.getByRole("button", { name: "Show" }).click();
+  assert.equal(await input.getAttribute("type"), "text");
+  await token.getByRole("button", { name: "Hide" }).click();
+  await input.fill("another-token");
+  await page.keyboard.press("Enter");
+  await token.getByText("Set.").waitFor();
+  assert.equal(await input.inputValue(), "");
+  assert.equal(readFileSync(join(box.state, "secrets/team.token"), "utf8").trim(), "another-token");
+  const asTeam = (bearer) => fetch(`${box.url}adit/run`, { headers: { Authorization: `Bearer ${bearer}` } }).then(({ status }) => status);
+  assert.deepEqual([await asTeam("another-token"), await asTeam(TOKENS.team)], [200, 401]);
+  await token.getByRole("button", { name: "Remove" }).click();
+  await page.locator("#confirm").getByRole("button", { name: "Leave it" }).click();
+  await token.getByRole("button", { name: "Remove" }).click();
+  await page.locator("#confirm").getByRole("button", { name: "Remove it" }).click();
+  await token.getByText("Removed.").waitFor();
+  assert.ok(!existsSync(join(box.state, "secrets/team.token")));
+  assert.equal(await asTeam(TOKENS.team), 200, "the one that the box was given counts again");
+  const shown = JSON.stringify((await ask("/adit/settings")).said) + (await page.content());
+  for (const secret of [...Object.values(TOKENS), "another-token"]) assert.ok(!shown.includes(secret));
+  assert.deepEqual(complaints(page, "422"), []);
+});
+
+test("checks the names of robots as they are typed", async (t) => {
+  const { ask, page } = await ready(t, "setup#robots");
+  const add = page.getByRole("button", { name: "Add a robot" });
+  for (const name of ["", "two words", "elevenchars", "ugv-1", "böse"]) {
+    await add.click();
+    await page.keyboard.type(name);
+    await page.locator("[data-path='robots[0].name'] .wrong").filter({ hasText: "1 to 10 letters, digits and underscores" }).waitFor().catch((error) => {
+      throw new Error(`${name}: ${error.message}`);
+    });
+    await page.getByRole("button", { name: "Remove: Robot 1" }).click();
+  }
+  for (const name of ["ugv1", "ugv1"]) {
+    await add.click();
+    await page.keyboard.type(name);
+  }
+  await page.locator("[data-path='robots[1].name'] .wrong", { hasText: "the same as robots[0].name" }).waitFor();
+  await page.getByRole("button", { name: "Look and apply" }).click();
+  await page.waitForFunction(() => document.activeElement.closest("[data-path]")?.dataset.path === "robots[1].name"); // the error
+  await type(page, "robots[1].name", "uav1");
+  await type(page, "robots[1].alias", "ugv1");
+  await page.locator("[data-path='robots[1].alias'] .wrong", { hasText: "an alias is another name" }).waitFor();
+  await type(page, "robots[1].alias", "drone one");
+  await page.locator("[data-path='robots[1].alias'] .wrong", { hasText: "visible ASCII" }).waitFor();
+  await type(page, "robots[1].alias", "drone-1");
+  await hears(page, /changes? not yet applied/);
+  await page.getByRole("button", { name: "Look and apply" }).click();
+  await review(page);
+  await page.getByRole("button", { name: "Apply", exact: true }).click();
+  await hears(page, /Applied\./);
+  assert.deepEqual((await ask("/adit/settings")).said.settings.robots, [{ name: "ugv1", alias: "" }, { name: "uav1", alias: "drone-1" }]);
+  await step(page, "Robots").getByText("2 named").waitFor();
+  assert.deepEqual(complaints(page), []);
+});
+
+/** What no setting of its kind can be. */
+const WRONG = { whole: ["-1", "1.5", "many", "99999999999999999999", ""], real: ["0x", "-3", "many", ""], text: ["ß ß", "\u0007"] };
+
+test("says at every field what is wrong with it, and keeps what was typed", async (t) => {
+  const { page } = await ready(t, "setup", { robots: [{ name: "ugv1" }], courses: COURSES });
+  const { keys } = await page.evaluate(async () => (await fetch("/adit/settings")).json());
+  const kinds = new Map(keys.map(({ path, kind }) => [path, kind]));
+  let checked = 0;
+  for (const at of ["network", "post", "robots", "courses", "all"]) {
+    await page.evaluate((at) => (location.hash = at), at);
+    const here = page.locator(`#step-${at}`);
+    await here.waitFor();
+    const paths = await here.locator(".field[data-path]:not(form .field)").evaluateAll((all) => all.map((each) => each.dataset.path));
+    const ofKind = (path) => WRONG[kinds.get(path.replace(/\[\d\]/g, "[]"))] ?? []; // a choice and a flag cannot be wrong
+    for (let i = 0; i < WRONG.whole.length; ++i) {
+      const wrong = new Map(paths.flatMap((path) => (ofKind(path)[i] === undefined ? [] : [[path, ofKind(path)[i]]])));
+      for (const [path, text] of wrong) await type(page, path, text);
+      for (const [path, text] of wrong) {
+        await field(page, path).locator("[aria-invalid=true]").waitFor().catch(() => assert.fail(`${path} takes ${JSON.stringify(text)}`));
+        const control = field(page, path).locator("input");
+        const said = await control.evaluate((node) => document.getElementById(node.getAttribute("aria-describedby").split(" ")[0]).textContent);
+        assert.notEqual(said, "", path);
+        assert.equal(await control.inputValue(), text, path);
+        ++checked;
+      }
+    }
+    await page.getByRole("button", { name: "Drop" }).click();
+    await page.waitForFunction(() => !document.querySelector("[aria-invalid=true]"));
+  }
+  assert.ok(checked > 100, `${checked} wrong inputs`);
+  assert.deepEqual(complaints(page), []);
+});
+
+test("lists the errors of other steps, each with a way to it", async (t) => {
+  const { page } = await ready(t, "setup#post");
+  await type(page, "command_post.scoring.port", "0");
+  await hears(page, "1 error to mend");
+  await step(page, "Command Post").getByText("1 error").waitFor();
+  await step(page, "Robots").click();
+  await page.locator("#typed").getByRole("button", { name: /^command_post\.scoring\.port: expected/ }).click();
+  await page.getByRole("heading", { name: "Command Post" }).waitFor();
+  await page.waitForFunction(() => document.activeElement.closest("[data-path]")?.dataset.path === "command_post.scoring.port");
+  await page.getByRole("button", { name: "Next" }).click();
+  assert.ok(await page.getByRole("heading", { name: "Command Post" }).isVisible(), "an error is mended before one goes on");
+  await page.getByRole("button", { name: "Drop" }).click();
+  assert.equal(await field(page, "command_post.scoring.port").locator("input").inputValue(), "1");
+  assert.ok(await page.locator("#typed").isHidden());
+});
+
+test("shows two operators what each has done, and lets one go on from the newer", async (t) => {
+  const { box, ask, page } = await ready(t, "setup#post", { robots: [{ name: "ugv1" }, { name: "ugv2" }] });
+  const other = await come(t, box, "setup#post", PASSWORD);
+  await type(page, "command_post.scoring.port", "8001");
+  await type(other, "command_post.scoring.port", "8002");
+  await type(other, "command_post.mapping.port", "8003");
+  for (const [each, port] of [[other, "8002"]]) {
+    await each.getByRole("button", { name: "Look and apply" }).click();
+    assert.match(JSON.stringify(await review(each)), new RegExp(port));
+    await each.getByRole("button", { name: "Apply", exact: true }).click();
+    await hears(each, /Applied\./);
+  }
+  await page.getByRole("button", { name: "Look and apply" }).click();
+  await page.getByRole("heading", { name: "Somebody else has saved settings meanwhile" }).waitFor();
+  assert.deepEqual(await review(page), [["command_post.scoring.port", "1", "8002", "8001"], ["command_post.mapping.port", "2", "8003", "2"]]);
+  await page.getByRole("button", { name: "Go on with mine over theirs" }).click();
+  await page.getByRole("heading", { name: "Apply this?" }).waitFor();
+  assert.deepEqual(await review(page), [["command_post.scoring.port", "8002", "8001"]]);
+  await page.getByRole("button", { name: "Apply", exact: true }).click();
+  await hears(page, /Applied\./);
+  const { command_post: post } = (await ask("/adit/settings")).said.settings;
+  assert.deepEqual([post.scoring.port, post.mapping.port], [8001, 8003]);
+
+  // Both are in the dialog when the first of them applies: the box itself refuses the second.
+  await type(other, "command_post.mapping.port", "8004");
+  await hears(other, /change/);
+  await page.evaluate(() => (location.hash = "robots"));
+  await page.getByRole("button", { name: "Remove: Robot 2" }).click();
+  await page.getByRole("button", { name: "Look and apply" }).click();
+  await review(page);
+  const saved = await ask("/adit/settings/check", { settings: {} });
+  assert.equal(saved.status, 200);
+  const { settings, tag } = (await ask("/adit/settings")).said;
+  settings.robots.push({ name: "uav1", alias: "" });
+  assert.equal((await ask("/adit/settings", { settings, base: tag })).status, 200);
+  await until(async () => (await ask("/adit/settings").catch(() => ({}))).said?.tag !== tag, "the box to run with it");
+  await page.getByRole("button", { name: "Apply", exact: true }).click();
+  await page.getByRole("heading", { name: "Somebody else has saved settings meanwhile" }).waitFor();
+  await page.getByRole("button", { name: "Go on with mine over theirs" }).click();
+  await page.getByRole("button", { name: "Look and apply" }).click();
+  assert.deepEqual((await review(page)).map(([path]) => path.replace(/\..*/, "")), ["robots[ugv2]", "robots[ugv2]"]);
+  await page.getByRole("button", { name: "Apply", exact: true }).click();
+  await hears(page, /Applied\./);
+  assert.deepEqual((await ask("/adit/settings")).said.settings.robots.map(({ name }) => name), ["ugv1", "uav1"]);
+
+  await other.getByRole("button", { name: "Look and apply" }).click();
+  await other.getByRole("button", { name: "Drop mine" }).click();
+  await other.waitForFunction(() => document.querySelector("#typed").hidden);
+  assert.equal(await field(other, "command_post.mapping.port").locator("input").inputValue(), "8003");
+});
+
+test("loses nothing that was typed when the box is lost in the middle of it", async (t) => {
+  const { box, ask, page } = await ready(t, "setup#robots");
+  await page.getByRole("button", { name: "Add a robot" }).click();
+  await page.keyboard.type("ug");
+  await box.end("aditd", "SIGKILL");
+  await page.keyboard.type("v1");
+  await hears(page, "Box lost");
+  await hears(page, "What you typed is kept");
+  await page.getByRole("button", { name: "Look and apply" }).click();
+  assert.equal(await field(page, "robots[0].name").locator("input").inputValue(), "ugv1");
+  await box.startAditd();
+  await hears(page, "Live");
+  await hears(page, /1 change|2 changes/);
+  await page.reload();
+  await hears(page, /1 change|2 changes/);
+  assert.equal(await field(page, "robots[0].name").locator("input").inputValue(), "ugv1", "kept through a reload, too");
+  await page.getByRole("button", { name: "Look and apply" }).click();
+  await review(page);
+  await box.end("aditd", "SIGKILL");
+  await page.getByRole("button", { name: "Apply", exact: true }).click();
+  await page.waitForTimeout(1000);
+  await box.startAditd();
+  await hears(page, /Applied\./);
+  assert.equal((await ask("/adit/settings")).said.settings.robots[0].name, "ugv1");
+});
+
+test("switches to another course by one press, once it was said what that changes", async (t) => {
+  const { box, ask, page } = await ready(t, "setup#courses", { courses: [COURSES[0]] });
+  await page.getByRole("button", { name: "Add a course" }).click();
+  await page.keyboard.type("B");
+  for (const [name, value] of [["scoring.address", "127.0.0.1"], ["scoring.port", box.scoring], ["mapping.address", "127.0.0.1"], ["mapping.port", box.mapping]]) {
+    await type(page, `courses[1].${name}`, String(value));
+  }
+  assert.ok(await page.getByRole("button", { name: "Switch to Course A" }).isDisabled(), "what was typed comes first");
+  await page.getByRole("button", { name: "Look and apply" }).click();
+  await review(page);
+  await page.getByRole("button", { name: "Apply", exact: true }).click();
+  await hears(page, /Applied\./);
+  const own = page.locator("form.token", { hasText: "Course B: scoring token of its own" });
+  await own.getByLabel("Course B: scoring", { exact: false }).first().fill(TOKENS.scoring);
+  await own.getByRole("button", { name: "Set" }).click();
+  await own.getByText("Set.", { exact: true }).waitFor();
+  await page.getByRole("button", { name: "Switch to Course B" }).click();
+  assert.deepEqual(await review(page), [
+    ["course", "No course", "Course B"],
+    ["scoring address", "127.0.0.1:1", `127.0.0.1:${box.scoring}`], ["mapping address", "127.0.0.1:2", `127.0.0.1:${box.mapping}`],
+    ["scoring token", "the common one", "its own"], ["mapping token", "the common one", "the common one"],
+  ]);
+  await page.getByRole("button", { name: "Switch", exact: true }).click();
+  await page.getByText("Course B is in use.").waitFor();
+  await until(async () => (await ask("/adit/run")).said.endpoints.every(({ last_status: status }) => status === 200 || status === 0) && (await ask("/adit/run")).said.endpoints[0].last_status === 200, "the scoring endpoint's answer");
+  await step(page, "Command Post").click();
+  await page.getByText("Course B is in use: these count again without a course.").waitFor();
+  await step(page, "Courses").click();
+  await page.getByRole("button", { name: "Switch to No course" }).click();
+  await page.locator("#review").getByRole("button", { name: "Leave it" }).click();
+  assert.equal((await ask("/adit/settings")).said.settings.command_post.course, "B");
+  await page.getByRole("button", { name: "Remove: Course 1" }).click();
+  await page.getByRole("button", { name: "Look and apply" }).click();
+  await page.getByRole("button", { name: "Apply", exact: true }).click();
+  await hears(page, /Applied\./);
+  assert.deepEqual((await ask("/adit/settings")).said.settings.courses.map(({ name }) => name), ["B"]);
+  assert.deepEqual(complaints(page), []);
+});
+
+test("gives all settings as a file, and takes one that is checked and shown first", async (t) => {
+  const { ask, page } = await ready(t, "setup#file");
+  const [download] = await Promise.all([page.waitForEvent("download"), page.getByRole("link", { name: "Download the settings" }).click()]);
+  assert.equal(download.suggestedFilename(), "adit-settings.json");
+  const settings = JSON.parse(await readFile(await download.path(), "utf8"));
+  assert.deepEqual(settings, (await ask("/adit/settings")).said.settings);
+  const give = (what) => page.getByLabel("Settings from a file").setInputFiles({ name: "mine.json", mimeType: "application/json", buffer: Buffer.from(what) });
+  await give("no JSON");
+  await page.getByText("That is no JSON").waitFor();
+  await give(" ".repeat(300_000));
+  await page.getByText("That is too long").waitFor();
+  await give("[]");
+  await page.getByText("settings: expected an object").waitFor();
+  await give(JSON.stringify({ ...settings, robots: [{ name: "two words" }], bugdet: 1 }));
+  await page.getByText("Nothing was applied: the file has errors.").waitFor();
+  await page.getByText(/robots\[0\]\.name: /).waitFor();
+  await page.getByText(/bugdet: no such key/).waitFor();
+  await give(JSON.stringify(settings));
+  await page.getByText("Nothing to apply").waitFor();
+  const next = JSON.stringify({ ...settings, robots: [{ name: "ugv1" }] });
+  await give(next);
+  await review(page);
+  await page.getByRole("button", { name: "Leave it" }).click();
+  await page.getByText("Nothing was applied.").waitFor();
+  assert.equal((await ask("/adit/settings")).said.settings.robots.length, 0);
+  await give(next);
+  assert.match(JSON.stringify(await review(page)), /robots\[ugv1\]/);
+  await page.getByRole("button", { name: "Apply", exact: true }).click();
+  await page.locator("#step-file").getByText(/Applied\./).waitFor();
+  assert.deepEqual((await ask("/adit/settings")).said.settings.robots, [{ name: "ugv1", alias: "" }]);
+  await step(page, "Robots").getByText("1 named").waitFor();
+});
+
+test("finds a setting by its name or its meaning, and changes it", async (t) => {
+  const { ask, page } = await ready(t, "setup#all");
+  const search = page.getByLabel("Look for");
+  await search.fill("near duplicates");
+  await page.getByText("1 found.").waitFor();
+  await page.getByLabel("reports.review").selectOption("all");
+  await search.fill("no such thing at all");
+  await page.getByText("No setting is called so").waitFor();
+  await search.fill("map_hz");
+  await page.getByLabel("command_post.rates.map_hz").fill("0.5");
+  await search.fill("require_token");
+  await page.getByLabel("team.require_token").uncheck();
+  await page.getByRole("button", { name: "Look and apply" }).click();
+  assert.deepEqual(await review(page), [["command_post.rates.map_hz", "1", "0.5"], ["team.require_token", "true", "false"], ["reports.review", "off", "all"]]);
+  await page.locator("#review .warnings").getByText("without a token").waitFor();
+  await page.getByRole("button", { name: "Leave it" }).click();
+  await hears(page, "3 changes not yet applied");
+  await page.getByRole("button", { name: "Look and apply" }).click();
+  await page.getByRole("button", { name: "Apply", exact: true }).click();
+  await hears(page, /Applied\./);
+  const { settings } = (await ask("/adit/settings")).said;
+  assert.deepEqual([settings.reports.review, settings.command_post.rates.map_hz, settings.team.require_token], ["all", 0.5, false]);
+});
+
+test("says where the page goes when it moves, and takes back what the box cannot use", async (t) => {
+  const { page } = await ready(t, "setup#network");
+  await type(page, "team.listen[0].address", "203.0.113.7");
+  await page.getByRole("button", { name: "Look and apply" }).click();
+  await page.locator("#review .warnings").getByText("this page move").waitFor();
+  await page.getByRole("button", { name: "Apply", exact: true }).click();
+  await page.locator("#typed a", { hasText: "http://203.0.113.7:" }).waitFor();
+  await page.locator("#typed").getByText("the last change was taken back").waitFor({ timeout: 15_000 });
+  const port = await freePort();
+  await type(page, "team.listen[0].address", "127.0.0.1");
+  await type(page, "team.listen[0].port", String(port));
+  await page.getByRole("button", { name: "Look and apply" }).click();
+  await page.getByRole("button", { name: "Apply", exact: true }).click();
+  const link = page.locator("#typed a", { hasText: `http://127.0.0.1:${port}/setup#network` });
+  await link.click();
+  await page.waitForURL((url) => url.port === String(port));
+  await hears(page, "Live");
+});
+
+test("shows a viewer all of it, and lets him change nothing", async (t) => {
+  const box = await freshBox(t, { secrets: ["scoring", "mapping"], settings: { robots: [{ name: "ugv1" }], courses: COURSES } });
+  await box.settle();
+  const page = await come(t, box, "setup", LOOKING);
+  await hears(page, "Live");
+  await page.locator("#looks").waitFor();
+  for (const name of ["network", "post", "tokens", "robots", "test", "courses", "all"]) {
+    await page.evaluate((name) => (location.hash = name), name);
+    await page.locator(`#step-${name}`).waitFor();
+    const usable = await page.$$eval(`#step-${name} :is(input:not([type=search]), select, button)`, (nodes) => nodes.filter((node) => node.checkVisibility() && !node.disabled && !node.readOnly).map((node) => node.outerHTML));
+    assert.deepEqual(usable, [], name);
+  }
+  assert.equal(await field(page, "robots[0].name").locator("input").inputValue(), "ugv1");
+  assert.ok(await page.getByRole("button", { name: "Apply" }).isHidden());
+  assert.deepEqual(page.requests.filter((url) => url.includes("check")), []);
+  assert.deepEqual(complaints(page), []);
+});

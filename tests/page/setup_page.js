@@ -1,0 +1,25 @@
+// The set-up's page, for its tests.
+
+export const field = (page, path) => page.locator(`.field[data-path="${path}"]`);
+export const step = (page, name) => page.locator("#steps").getByRole("link", { name });
+export const hears = (page, words) => page.locator("#link, #missing, #typed").filter({ hasText: words }).first().waitFor();
+
+/** What the browser complained of; that a box was away while it began anew is none. */
+export const complaints = (page, ...known) => page.complaints.filter((each) => !["ERR_CONNECTION", "ERR_EMPTY", ...known].some((part) => each.includes(part)));
+
+/** Types into the field of a setting. */
+export async function type(page, path, text) {
+  const input = field(page, path).locator("input");
+  await input.fill(text);
+  await input.dispatchEvent("input"); // fill() says nothing where the text was the same
+}
+
+export async function fill(page, fields) {
+  for (const [label, text] of Object.entries(fields)) await page.getByLabel(label, { exact: true }).fill(text);
+}
+
+/** The rows of the dialog that shows what is about to change. */
+export async function review(page) {
+  await page.locator("#review[open]").waitFor();
+  return page.$$eval("#review tbody tr", (rows) => rows.map((row) => [...row.cells].map((cell) => cell.textContent)));
+}

@@ -16,23 +16,6 @@ test("all pages together weigh at most 80 kB gzipped", (t) => {
   assert.ok(bytes > 10_000 && bytes <= MOST, `${bytes} bytes`);
 });
 
-/** All modules that a module needs, itself included. */
-function modulesOf(name, known = new Set()) {
-  if (known.has(name)) return known;
-  known.add(name);
-  for (const [, other] of read(name).toString().matchAll(/from "\.\/([a-z_]+\.js)"/g)) modulesOf(other, known);
-  return known;
-}
-
-test("the run is asked for at once, not module after module", () => {
-  for (const page of ["index.html", "display.html"]) {
-    const text = read(page).toString();
-    const [, first] = text.match(/<script type="module" src="([^"]+)"/);
-    const preloaded = [...text.matchAll(/<link rel="modulepreload" href="([^"]+)">/g)].map(([, name]) => name);
-    assert.deepEqual([first, ...preloaded].sort(), [...modulesOf(first)].sort(), page);
-  }
-});
-
 test("every page is valid HTML without script or style of its own", async () => {
   const validator = new HtmlValidate({
     extends: ["html-validate:standard"],

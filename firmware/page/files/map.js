@@ -131,6 +131,7 @@ export class MapOfRun {
       const [xs, ys] = ["x", "y"].map((axis) => pair.map(({ position }) => position[axis]));
       const rim = PAIR_RIM + Math.max(Math.max(...xs) - Math.min(...xs), Math.max(...ys) - Math.min(...ys)) / 2;
       this.#view.fit({ left: Math.min(...xs) - rim, right: Math.max(...xs) + rim, bottom: Math.min(...ys) - rim, top: Math.max(...ys) + rim });
+      this.#view.pan(0, this.#view.height / 6); // below what is said of them
     }
     this.redraw();
   }

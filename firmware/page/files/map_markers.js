@@ -75,22 +75,17 @@ const SHAPES = {
   0: (paint, x, y) => polygon(paint, [[0, -y / 3], [1.3 * x, -y / 3], [1.3 * x, -y], [2 * x, 0], [1.3 * x, y], [1.3 * x, y / 3], [0, y / 3]]),
   1: (paint, x, y) => polygon(paint, [[-x, -y], [x, -y], [x, y], [-x, y]]),
   2: round,
-  3: (paint, x, y) => {
-    round(paint, x, y);
-    paint.moveTo(0.6 * x, 0);
-    paint.ellipse(0, 0, 0.6 * x, 0.6 * y, 0, 0, 2 * Math.PI);
-  },
   // The ICD has no points for strips and lists: they are where their pose is.
   4: (paint) => polygon(paint, [[-8, -1], [8, -1], [8, 1], [-8, 1]]),
   8: (paint) => polygon(paint, [[0, -LEAST], [LEAST, 0], [0, LEAST], [-LEAST, 0]]),
   11: (paint, x, y) => polygon(paint, [[x, y], [-x, y], [0, -y]]),
 };
-const LIKE = { 5: 4, 6: 8, 7: 8, 10: 11 };
+const LIKE = { 3: 2, 5: 4, 6: 8, 7: 8, 10: 11 };
 
-function drawMarker(paint, colours, view, { type, heading, scale, color }, unit, left, top) {
+function drawMarker(paint, colours, view, { type, position, heading, scale, color }, unit) {
   const half = (size) => Math.max(LEAST, (Math.abs(size) * view.scale) / 2 / unit);
   paint.save();
-  paint.translate(left, top);
+  paint.translate(...view.toPixel(position));
   paint.rotate(-heading);
   paint.scale(unit, unit);
   (SHAPES[LIKE[type] ?? type] ?? SHAPES[8])(paint, half(scale.x), half(scale.y || scale.x));
@@ -102,28 +97,19 @@ function drawMarker(paint, colours, view, { type, heading, scale, color }, unit,
   paint.restore();
 }
 
-/** [{marker, left, top}] of those near to what is seen. */
-function seen(view, markers) {
-  const reach = 100; // metres: so far a marker may stick out
-  const { left: west, right: east, top: north, bottom: south } = view.bounds();
-  return markers
-    .filter(({ position: { x, y } }) => x > west - reach && x < east + reach && y > south - reach && y < north + reach)
-    .map((marker) => ({ marker, place: view.toPixel(marker.position) }));
-}
-
 /** `unit`: pixels, by the size of the page's letters. */
 export function drawMarkers(paint, colours, view, markers, unit) {
-  for (const { marker, place } of seen(view, markers)) {
-    if (marker.type !== TEXT) drawMarker(paint, colours, view, marker, unit, ...place);
+  for (const marker of markers) {
+    if (marker.type !== TEXT) drawMarker(paint, colours, view, marker, unit);
   }
 }
 
 /** Their texts, where reports and robots have left room for them. */
 export function writeMarkers(labels, view, markers) {
-  for (const { marker: { type, color, scale, text }, place } of seen(view, markers)) {
+  for (const { type, position, color, scale, text } of markers) {
     if (type !== TEXT) continue;
     const size = Math.min(48, Math.max(labels.size, scale.z * view.scale));
     const colours = color.a ? { colour: css({ ...color, a: 1 }), rim: rimOf(color) } : { colour: labels.colours.soft };
-    labels.write(clip(text, LONGEST), ...place, { ...colours, size });
+    labels.write(clip(text, LONGEST), ...view.toPixel(position), { ...colours, size });
   }
 }

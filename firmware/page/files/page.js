@@ -1,13 +1,12 @@
 // The one live page. Each part draws itself from the last view of the run that came from the box.
 import { badge, mark, say } from "./dom.js";
 import { follow } from "./live.js";
+import { showBoxDeeds } from "./box_deeds.js";
 import { compose, showCompose } from "./compose.js";
 import { learned, linkIs } from "./deeds.js";
 import { listenToKeys } from "./keys.js";
-import { showIdentify } from "./identify.js";
 import { sampleLink } from "./link.js";
 import { goLive, map, showMap } from "./map_controls.js";
-import { showNewRun } from "./new_run.js";
 import { showPair } from "./pair.js";
 import { showPost } from "./post.js";
 import { showRefusals } from "./refusals.js";
@@ -30,9 +29,8 @@ function show({ view, time, lost }) {
   if (!view) return showAttention([], lost ? "The box does not answer." : "");
   showAttention(view.attention, lost ? `The box does not answer: all below is as it was at ${timeOfDay(view.now)}.` : "");
   showRun(view, time, lost);
-  showNewRun(view);
+  showBoxDeeds(view, time);
   showLights(view.lights);
-  showIdentify(view, time);
   showRobots(view.activities, time, lost);
   showReports(view, time);
   showCompose(view);

@@ -168,10 +168,8 @@ test("is kept as pictures, for people to look at", async (t) => {
       }
     }
   }
-  const page = await look(t, made);
+  const page = await look(t, made, "", { colorScheme: "dark" });
   await page.getByRole("button", { name: /^Show both on the map/ }).first().click();
-  await page.waitForTimeout(800);
-  await shoot(page, "run-pair-720p-dark");
   for (const [width, height, name] of [[390, 844, "phone"], [1280, 720, "720p"]]) {
     await page.setViewportSize({ width, height });
     await page.locator("#map").scrollIntoViewIfNeeded();

@@ -1,17 +1,15 @@
-// The operator says that a new run begins, where the box did not notice it by itself.
+// What the operator may do with the run and the box: say that a new run begins, make the lights flash.
 import { barred } from "./deeds.js";
 import { confirmed } from "./dialog.js";
 import { say } from "./dom.js";
 import { post } from "./session.js";
 
-const button = document.querySelector("#run .newrun");
-const outcome = document.querySelector("#run .outcome");
+const SECONDS = 10;
+const newRun = document.querySelector("#run .newrun"), outcome = document.querySelector("#run .outcome");
+const identify = document.querySelector("button.identify"), identified = document.getElementById("identified");
 let view = null, busy = false;
 
-const named = (reports) => {
-  const names = reports.slice(0, 8).map(({ number }) => `#${number}`).join(", ");
-  return reports.length > 8 ? `${names} and ${reports.length - 8} more` : names;
-};
+const named = (reports) => reports.map(({ number }) => `#${number}`).join(", ");
 
 /** What will happen, in sentences. */
 function consequences({ reports, run_number }) {
@@ -42,9 +40,17 @@ async function begin() {
     busy = false;
   }
 }
-button.addEventListener("click", begin);
+newRun.addEventListener("click", begin);
 
-export function showNewRun(next) {
+identify.addEventListener("click", async () => {
+  say(identified, "");
+  await post("/adit/identify", { seconds: SECONDS }).catch((error) => say(identified, error.message));
+});
+
+export function showBoxDeeds(next, now) {
   view = next;
-  button.disabled = busy || Boolean(barred());
+  const left = Math.ceil(view.identify_until - now); // null is long ago
+  say(identify, left > 0 ? `Flashing, ${left} s` : "Identify");
+  identify.disabled = Boolean(barred());
+  newRun.disabled = busy || identify.disabled;
 }

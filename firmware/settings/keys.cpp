@@ -65,6 +65,15 @@ const Key kKeys[] = {
     {"team.connections_per_address", "Connections from one address at once, at most.",
      whole<MEMBER(team.connections_per_address)>(1, 1024)},
 
+    {"network.confirm_within_ms",
+     "How long a change of the box's own addresses waits to be confirmed from the new one; then it takes "
+     "itself back.",
+     whole<MEMBER(network.confirm_within)>(10000, 600000)},
+    {"network.allow_overlap",
+     "Whether the team's subnet may overlap the Command Post's on purpose (10.1.1.0/24, 10.2.1.0/24, "
+     "10.100.0.0/16, ICD 3, and what is set).",
+     flag<MEMBER(network.allow_overlap)>()},
+
     {"reports.answer_within_ms",
      "How long a client waits for the answer to its report, at most; then it is told 503 and that the report "
      "is kept.",

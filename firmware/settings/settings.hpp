@@ -67,10 +67,18 @@ struct Panel {
   bool active_low = false;
 };
 
+/// Changes of the box's own addresses (firmware/network), which are kept where the network is set up and not
+/// here.
+struct Network {
+  std::chrono::milliseconds confirm_within{90000};  // then a change is taken back
+  bool allow_overlap = false;                       // of the team's subnet with the Command Post's
+};
+
 /// The settings file, version 1. Everything but the addresses has a default. Tokens are never in it.
 struct Settings {
   CommandPost command_post;
   Team team;
+  Network network;
   Reports reports;
   Queues queues;
   icd::Rules rules;

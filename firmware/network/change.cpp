@@ -49,6 +49,10 @@ void Change::tick(Instant now) {
   }
 }
 
+void Change::stop(Instant now) {
+  if (status_.pending && !try_at_) take_back("adit-network was stopped", now);
+}
+
 std::optional<Instant> Change::wake() const {
   if (try_at_) return try_at_;
   return status_.pending ? std::optional(status_.pending->until) : std::nullopt;

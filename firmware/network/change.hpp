@@ -34,12 +34,19 @@ class Change {
   /// `hands` outlives this. `kept`: what was confirmed last.
   Change(Hands& hands, std::optional<Numbers> kept) : hands_(hands) { status_.kept = std::move(kept); }
 
+  void set_interfaces(std::string team, std::string command_post) {
+    status_.team_interface = std::move(team);
+    status_.command_post_interface = std::move(command_post);
+  }
+
   /// A change was under way when this last ended: it has been taken back.
   void interrupted();
 
   void want(const Wanted& wanted, Instant now);
   void hear(const Word& word, Instant now);
   void tick(Instant now);
+  /// There is no more time: what is pending is taken back, once.
+  void stop(Instant now);
 
   /// When tick() is to be called; nothing: no change is under way.
   std::optional<Instant> wake() const;

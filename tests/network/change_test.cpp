@@ -109,6 +109,15 @@ TEST_F(ChangeTest, IsTakenBackOnAWord) {
   EXPECT_EQ(change.status().ended_nonce, nonce);
 }
 
+TEST_F(ChangeTest, IsTakenBackWhereItsKeeperStops) {
+  change.stop(at(0));
+  EXPECT_THAT(hands.done, IsEmpty());
+  want();
+  change.stop(at(1));
+  EXPECT_THAT(hands.done, ElementsAre("apply 192.168.8.11/24", "take back"));
+  EXPECT_EQ(change.status().ended, Ended::TakenBack);
+}
+
 TEST_F(ChangeTest, IsTakenBackAtOnceWhereItCannotBeApplied) {
   hands.fail_apply = true;
   want();

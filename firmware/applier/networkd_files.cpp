@@ -4,11 +4,14 @@
 
 #include <cerrno>
 #include <cstdio>
+#include <utility>
+#include <vector>
 
 #include "host/command.hpp"
 #include "host/files.hpp"
 #include "host/log.hpp"
 #include "host/service.hpp"
+#include "icd/sentence.hpp"
 #include "network/networkd.hpp"
 
 namespace adit::applier {
@@ -24,15 +27,22 @@ std::string text_of(const std::string& path) {
 }  // namespace
 
 std::array<NetworkdFiles::Place, 2> NetworkdFiles::places() const {
-  return {{{options_.tried + '/' + network::kTriedTeam, options_.kept + '/' + network::kKeptTeam, ""},
-           {options_.tried + '/' + network::kTriedCommandPost,
-            options_.kept + '/' + network::kKeptCommandPost, ""}}};
+  return {{{.interface = options_.team,
+            .tried = options_.tried + '/' + network::kTriedTeam,
+            .kept = options_.kept + '/' + network::kKeptTeam,
+            .text = ""},
+           {.interface = options_.command_post,
+            .tried = options_.tried + '/' + network::kTriedCommandPost,
+            .kept = options_.kept + '/' + network::kKeptCommandPost,
+            .text = ""}}};
 }
 
 std::array<NetworkdFiles::Place, 2> NetworkdFiles::places(const network::Numbers& numbers) const {
   auto both = places();
   both[0].text = network::team_file(options_.team, numbers);
+  both[0].address = numbers.team.address;
   both[1].text = network::command_post_file(options_.command_post, numbers);
+  both[1].address = numbers.command_post.address;
   return both;
 }
 
@@ -69,14 +79,32 @@ std::expected<void, std::string> NetworkdFiles::set_aside(const std::string& why
 }
 
 std::expected<void, std::string> NetworkdFiles::apply(const network::Numbers& numbers) {
-  bool changed = false;
-  for (const Place& place : places(numbers)) {
+  std::vector<Place> changes;
+  for (Place& place : places(numbers)) {
     const std::string tried = text_of(place.tried);
-    if ((tried.empty() ? text_of(place.kept) : tried) == place.text) continue;
-    if (auto written = host::write_file(place.tried, place.text, kForAll); !written) return written;
-    changed = true;
+    if ((tried.empty() ? text_of(place.kept) : tried) != place.text) changes.push_back(std::move(place));
   }
-  return changed ? reload() : std::expected<void, std::string>{};
+  for (const Place& place : changes) {
+    if (auto unused = check_unused(place); !unused) return unused;
+  }
+  for (const Place& place : changes) {
+    if (auto written = host::write_file(place.tried, place.text, kForAll); !written) return written;
+  }
+  return changes.empty() ? std::expected<void, std::string>{} : reload();
+}
+
+/// An interface that is down, or not there yet, has nobody to ask.
+std::expected<void, std::string> NetworkdFiles::check_unused(const Place& place) const {
+  const auto claim = probe_(place.interface, place.address);
+  if (!claim) {
+    host::log(host::Level::Warning, "nobody could be asked for an address", {{"why", claim.error()}});
+  } else if (*claim) {
+    const std::string& own = (*claim)->own;
+    return std::unexpected(icd::sentence(settings::ipv4_text(place.address), " is in use already on ",
+                                         place.interface, ", by ",
+                                         own.empty() ? (*claim)->mac : "this box's own " + own));
+  }
+  return {};
 }
 
 /// What was tried stays where it is until the next start, so that networkd has nothing to do anew. Once

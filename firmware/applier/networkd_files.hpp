@@ -2,19 +2,23 @@
 
 #include <array>
 
+#include "applier/arp_probe.hpp"
 #include "applier/options.hpp"
 #include "network/change.hpp"
 
 namespace adit::applier {
 
-/// The numbers as systemd-networkd's files. An interface whose numbers stay as they are is not touched:
-/// networkd takes the address away for some seconds while it asks whether anybody else has the new one.
+/// The numbers as systemd-networkd's files. An interface whose numbers stay as they are is not touched, and
+/// no address is taken that somebody else on its network has.
 class NetworkdFiles final : public network::Hands {
  public:
   static constexpr std::chrono::seconds kReload{30};
 
+  using Prober = decltype(&probe);
+
   /// `options` outlives this.
-  explicit NetworkdFiles(const Options& options) : options_(options) {}
+  explicit NetworkdFiles(const Options& options, Prober prober = &probe)
+      : options_(options), probe_(prober) {}
 
   /// Reads what was confirmed last, and makes networkd's folders hold that and nothing else: a power cut or a
   /// kill may have come at any point. An error: they are not as they should be.
@@ -30,18 +34,21 @@ class NetworkdFiles final : public network::Hands {
  private:
   /// One interface's two places, and what would stand there.
   struct Place {
-    std::string tried, kept, text;
+    std::string interface, tried, kept, text;
+    std::uint32_t address = 0;
   };
   std::array<Place, 2> places(const network::Numbers& numbers) const;
   std::array<Place, 2> places() const;
   std::string confirmed_file() const { return options_.state + "/confirmed.json"; }
   std::expected<void, std::string> set_aside(const std::string& why) const;
   std::expected<bool, std::string> write_kept(const network::Numbers& numbers) const;
+  std::expected<void, std::string> check_unused(const Place& place) const;
   /// Whether any was there.
   std::expected<bool, std::string> remove_tried() const;
   std::expected<void, std::string> reload();
 
   const Options& options_;
+  Prober probe_;
   std::optional<network::Numbers> confirmed_;
   bool found_a_change_ = false;
   bool reload_is_due_ = false;  // the last one failed

@@ -3,8 +3,11 @@
 namespace adit::network {
 namespace {
 
-/// The address stays without a carrier, and where networkd is started anew: a cable that is pulled and put
-/// back costs no more than that. Before it is used, others are asked whether they have it (RFC 5227).
+/// The address stays without a carrier: a cable that is pulled and put back costs no more than that. Whatever
+/// else the interface had goes (KeepConfiguration=no), or an address that was changed would stay beside the
+/// new one. Whether anybody else has the address (RFC 5227) is asked before this is written, and so with an
+/// answer; networkd would ask for seconds in which there is no address at all, and where it is told another
+/// one meanwhile, version 252 takes up both.
 std::string file(const std::string& interface, const settings::Subnet& host) {
   return "# Written by adit-network: to change it, use Adit's page.\n"
          "[Match]\n"
@@ -20,7 +23,7 @@ std::string file(const std::string& interface, const settings::Subnet& host) {
          "IPv6AcceptRA=no\n"
          "LLMNR=no\n"
          "MulticastDNS=no\n"
-         "KeepConfiguration=static\n"
+         "KeepConfiguration=no\n"
          "ConfigureWithoutCarrier=yes\n"
          "IgnoreCarrierLoss=yes\n"
          "\n"
@@ -28,7 +31,7 @@ std::string file(const std::string& interface, const settings::Subnet& host) {
          "Address=" +
          host_text(host) +
          "\n"
-         "DuplicateAddressDetection=ipv4\n";
+         "DuplicateAddressDetection=none\n";
 }
 
 }  // namespace

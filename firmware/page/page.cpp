@@ -6,6 +6,7 @@
 #include "page/entrance.hpp"
 #include "page/live.hpp"
 #include "page/map_routes.hpp"
+#include "page/network_routes.hpp"
 #include "page/report_routes.hpp"
 #include "page/session_routes.hpp"
 #include "page/site.hpp"
@@ -31,13 +32,14 @@ intake::Answer answer_with(const File& file, std::string_view if_none_match) {
 
 class Page::Impl {
  public:
-  Impl(loop::Loop& loop, const Source& source, Operator& judge, Keys& keys,
+  Impl(loop::Loop& loop, const Source& source, Operator& judge, Keys& keys, Network& network, SelfTest& test,
        std::vector<icd::BearerToken> tokens)
       : source_(source),
         entrance_(loop, std::move(tokens)),
         sessions_(loop, entrance_, keys),
         live_(loop, source),
         maps_(source),
+        network_(network, test, [this] { live_.changed(); }),
         reports_(source, judge, [this] { live_.changed(); }) {}
 
   std::unique_ptr<intake::Exchange> open(const intake::RequestHead& head,
@@ -54,6 +56,7 @@ class Page::Impl {
       return nullptr;
     }
     if (ReportRoutes::has(head.path())) return reports_.open(head, std::move(responder));
+    if (NetworkRoutes::has(head.path())) return network_.open(head, std::move(responder));
     if (MapRoutes::has(head.path())) {
       responder->answer(maps_.answer(head));
     } else {
@@ -84,12 +87,13 @@ class Page::Impl {
   SessionRoutes sessions_;
   Live live_;
   MapRoutes maps_;
+  NetworkRoutes network_;
   ReportRoutes reports_;
 };
 
-Page::Page(loop::Loop& loop, const Source& source, Operator& judge, Keys& keys,
-           std::vector<icd::BearerToken> tokens)
-    : impl_(std::make_unique<Impl>(loop, source, judge, keys, std::move(tokens))) {}
+Page::Page(loop::Loop& loop, const Source& source, Operator& judge, Keys& keys, Network& network,
+           SelfTest& test, std::vector<icd::BearerToken> tokens)
+    : impl_(std::make_unique<Impl>(loop, source, judge, keys, network, test, std::move(tokens))) {}
 Page::~Page() = default;
 
 std::unique_ptr<intake::Exchange> Page::open(const intake::RequestHead& head,

@@ -18,6 +18,8 @@
 namespace adit::page {
 
 class Keys;
+class Network;
+class SelfTest;
 
 /// Times are seconds since 1970 on the gateway's clock.
 using Time = double;
@@ -158,7 +160,7 @@ class Page final : public intake::Handler {
 
   /// `tokens`: any of them lets a script in as an operator; empty: none does. All others outlive this, and
   /// whatever `keys` still answers.
-  Page(loop::Loop& loop, const Source& source, Operator& judge, Keys& keys,
+  Page(loop::Loop& loop, const Source& source, Operator& judge, Keys& keys, Network& network, SelfTest& test,
        std::vector<icd::BearerToken> tokens);
   ~Page() override;
 

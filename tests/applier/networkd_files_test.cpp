@@ -15,6 +15,16 @@ using testing::HasSubstr;
 using testing::IsEmpty;
 using testing::UnorderedElementsAre;
 
+std::expected<std::optional<Claim>, std::string> nobody(const std::string& interface, std::uint32_t) {
+  if (interface == "darpa0") return std::unexpected("darpa0: Network is down");
+  return std::nullopt;
+}
+std::expected<std::optional<Claim>, std::string> somebody(const std::string& interface,
+                                                          std::uint32_t address) {
+  if (interface == "darpa0" || address != *settings::ipv4_of("192.168.8.11")) return std::nullopt;
+  return Claim{"02:00:00:00:00:09", ""};
+}
+
 class NetworkdFilesTest : public testing::Test {
  protected:
   NetworkdFilesTest() {
@@ -43,14 +53,14 @@ class NetworkdFilesTest : public testing::Test {
   /// As the next start of adit-network would find it, after the machine was started anew or not.
   void start_anew(bool machine) {
     if (machine) fs::remove_all(options.tried), fs::create_directory(options.tried);
-    files = std::make_unique<NetworkdFiles>(options);
+    files = std::make_unique<NetworkdFiles>(options, &nobody);
     const auto settled = files->settle();
     EXPECT_TRUE(settled) << settled.error();
   }
 
   host::Folder folder;
   Options options;
-  std::unique_ptr<NetworkdFiles> files = std::make_unique<NetworkdFiles>(options);
+  std::unique_ptr<NetworkdFiles> files = std::make_unique<NetworkdFiles>(options, &nobody);
   const network::Numbers first = numbers(), second = numbers("192.168.8.11/24");
 };
 
@@ -88,6 +98,14 @@ TEST_F(NetworkdFilesTest, TouchOnlyTheInterfaceThatChanges) {
   ASSERT_TRUE(files->take_back());
   EXPECT_THAT(in(options.tried), IsEmpty());
   EXPECT_EQ(text(options.kept + "/50-adit-team.network"), network::team_file("team0", first));
+}
+
+TEST_F(NetworkdFilesTest, TakeNoAddressThatSomebodyElseHas) {
+  NetworkdFiles watchful(options, &somebody);
+  EXPECT_EQ(watchful.apply(second).error(), "192.168.8.11 is in use already on team0, by 02:00:00:00:00:09");
+  EXPECT_THAT(in(options.tried), IsEmpty());
+  EXPECT_EQ(reloads(), 0u);
+  EXPECT_TRUE(watchful.apply(first));
 }
 
 TEST_F(NetworkdFilesTest, GoBackToWhatWasConfirmedInThisVeryStart) {

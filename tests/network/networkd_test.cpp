@@ -15,8 +15,8 @@ TEST(NetworkdFiles, GiveAnInterfaceOneStaticAddressAndNothingElse) {
        {team_file("team0", numbers()),
         command_post_file("darpa0", numbers("192.168.7.11/24", "10.100.1.10/24", "10.100.1.1"))}) {
     for (const char* line :
-         {"DHCP=no\n", "LinkLocalAddressing=no\n", "IPv6AcceptRA=no\n", "KeepConfiguration=static\n",
-          "DuplicateAddressDetection=ipv4\n", "ConfigureWithoutCarrier=yes\n"}) {
+         {"DHCP=no\n", "LinkLocalAddressing=no\n", "IPv6AcceptRA=no\n", "KeepConfiguration=no\n",
+          "DuplicateAddressDetection=none\n", "ConfigureWithoutCarrier=yes\n"}) {
       EXPECT_THAT(file, HasSubstr(line));
     }
     for (const char* never : {"DNS=1", "Forward", "Masquerade", "0.0.0.0/0", "DefaultRoute"}) {

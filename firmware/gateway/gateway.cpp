@@ -29,7 +29,11 @@ Gateway::Gateway(loop::Loop& loop, Parts parts)
       news_(loop, parts_.settings, *parts_.secrets.mapping, record_, random_),
       lights_(loop, std::move(parts_.lines)),
       accounts_(workers_, parts_.state_folder, parts_.secrets.label_code),
-      page_(loop, *this, *this, accounts_, tokens()),
+      network_requests_(parts_.state_folder, parts_.network_folder),
+      network_(loop, parts_.settings, network_requests_),
+      self_test_(loop, parts_.settings, {parts_.secrets.scoring, parts_.secrets.mapping}, network_requests_,
+                 [this] { changed(); }),
+      page_(loop, *this, *this, accounts_, network_, self_test_, tokens()),
       routes_(icd_options(), *this, workers_, page_),
       second_(loop.timer([this] { every_second(); })),
       drained_(loop.timer([this] { drain(); })) {}
@@ -231,6 +235,9 @@ panel::Condition Gateway::condition() const {
 
 std::vector<std::string> Gateway::attention() const {
   std::vector<std::string> sentences = scoring_.reports().attention();
+  if (std::string change = network_.attention(); !change.empty()) {
+    sentences.insert(sentences.begin(), std::move(change));  // it is the one that has a deadline
+  }
   if (!scoring_.trouble().empty()) {
     sentences.push_back("no report is taken, the ledger cannot be written: " + scoring_.trouble());
   }

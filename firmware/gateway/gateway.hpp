@@ -11,9 +11,12 @@
 #include "gateway/lights.hpp"
 #include "gateway/map_picture.hpp"
 #include "gateway/maps.hpp"
+#include "gateway/network_change.hpp"
+#include "gateway/network_requests.hpp"
 #include "gateway/news.hpp"
 #include "gateway/record.hpp"
 #include "gateway/scoring.hpp"
+#include "gateway/self_test.hpp"
 #include "gateway/spool.hpp"
 #include "host/service.hpp"
 #include "intake/icd_routes.hpp"
@@ -35,6 +38,7 @@ struct Parts {
   std::unique_ptr<panel::Lines> lines;
   std::string spool_folder;
   std::string state_folder;
+  std::string network_folder;  // where adit-network tells its status
 };
 
 /// The whole of Adit at work: the team's messages come in by Desk and leave by Scoring, Maps and News.
@@ -97,6 +101,9 @@ class Gateway final : public intake::Desk, public page::Source, public page::Ope
   News news_;
   Lights lights_;
   Accounts accounts_;
+  NetworkRequests network_requests_;
+  NetworkChange network_;
+  SelfTest self_test_;
   page::Page page_;
   intake::IcdRoutes routes_;
   std::vector<std::unique_ptr<intake::Server>> servers_;

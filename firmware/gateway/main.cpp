@@ -68,7 +68,8 @@ std::expected<Parts, std::string> gather(const Options& options) {
                .ledger = std::move(*ledger),
                .lines = std::move(lines),
                .spool_folder = runtime_folder(options) + "/waiting",
-               .state_folder = options.state};
+               .state_folder = options.state,
+               .network_folder = options.network};
 }
 
 int fail(const std::string& why) {

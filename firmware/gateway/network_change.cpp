@@ -25,7 +25,8 @@ void NetworkChange::refresh() const {
   status_ = requests_.status();
   if (!asked_) return;
   const std::string& nonce = asked_->wanted.nonce;
-  const bool seen = status_ && ((status_->pending && status_->pending->nonce == nonce) || status_->ended_nonce == nonce);
+  const bool seen =
+      status_ && ((status_->pending && status_->pending->nonce == nonce) || status_->ended_nonce == nonce);
   if (seen) {
     asked_.reset();
   } else if (now >= asked_->at + kTakenUpWithin) {
@@ -45,8 +46,8 @@ std::string NetworkChange::hindrance() const {
   }
   if (!status_) return "adit-network does not run here: " + status_.error();
   if (status_->team_interface != team || status_->command_post_interface != post) {
-    return icd::sentence("adit-network has ", status_->team_interface, " and ", status_->command_post_interface,
-                         ", and the settings name ", team, " and ", post);
+    return icd::sentence("adit-network has ", status_->team_interface, " and ",
+                         status_->command_post_interface, ", and the settings name ", team, " and ", post);
   }
   return "";
 }
@@ -56,14 +57,16 @@ std::optional<network::Pending> NetworkChange::pending() const {
   if (status_ && status_->pending) return status_->pending;
   if (!asked_) return std::nullopt;
   const network::Wanted& wanted = asked_->wanted;
-  return network::Pending{wanted.nonce, wanted.numbers, asked_->at + wanted.confirm_within, wanted.confirm_within};
+  return network::Pending{wanted.nonce, wanted.numbers, asked_->at + wanted.confirm_within,
+                          wanted.confirm_within};
 }
 
 std::optional<network::Numbers> NetworkChange::present() const {
   const auto team = address_of(settings_.team.interface), post = address_of(settings_.command_post.interface);
   if (!team || !post) return std::nullopt;
   network::Numbers numbers{*team, *post, std::nullopt};
-  if (status_ && status_->kept && status_->kept->command_post == *post) numbers.gateway = status_->kept->gateway;
+  if (status_ && status_->kept && status_->kept->command_post == *post)
+    numbers.gateway = status_->kept->gateway;
   return numbers;
 }
 
@@ -108,9 +111,11 @@ icd::Checked<void> NetworkChange::change(const network::Numbers& wanted) {
   if (pending()) return conflict("a change waits to be confirmed or taken back");
   if (const std::string why = hindrance(); !why.empty()) return conflict(why);
   network::Wanted request{NetworkRequests::draw_nonce(), settings_.network.confirm_within, wanted};
-  if (const auto asked = requests_.ask(request); !asked) return conflict("it cannot be asked for: " + asked.error());
-  host::log(host::Level::Notice, "a change of the network is asked for",
-            {{"team", network::host_text(wanted.team)}, {"command_post", network::host_text(wanted.command_post)}});
+  if (const auto asked = requests_.ask(request); !asked)
+    return conflict("it cannot be asked for: " + asked.error());
+  host::log(
+      host::Level::Notice, "a change of the network is asked for",
+      {{"team", network::host_text(wanted.team)}, {"command_post", network::host_text(wanted.command_post)}});
   asked_ = Asked{std::move(request), loop_.now()};
   not_taken_up_.clear();
   return {};
@@ -118,7 +123,8 @@ icd::Checked<void> NetworkChange::change(const network::Numbers& wanted) {
 
 icd::Checked<void> NetworkChange::confirm(const std::string& local) {
   const auto waits = pending();
-  if (!waits || asked_) return conflict(waits ? "the change is not made yet" : "no change waits to be confirmed");
+  if (!waits || asked_)
+    return conflict(waits ? "the change is not made yet" : "no change waits to be confirmed");
   const std::string address = settings::ipv4_text(waits->wanted.team.address);
   const bool stays = status_->kept && status_->kept->team.address == waits->wanted.team.address;
   if (!stays && local != address) {

@@ -28,8 +28,9 @@ std::optional<std::chrono::sys_seconds> http_date(std::string_view text) {
     return std::nullopt;
   }
   const auto name = std::ranges::find(kMonths, text.substr(8, 3));
-  const int day_of = digits(text.substr(5, 2)), year_of = digits(text.substr(12, 4)), hour = digits(text.substr(17, 2)),
-            minute = digits(text.substr(20, 2)), second = digits(text.substr(23, 2));
+  const int day_of = digits(text.substr(5, 2)), year_of = digits(text.substr(12, 4)),
+            hour = digits(text.substr(17, 2)), minute = digits(text.substr(20, 2)),
+            second = digits(text.substr(23, 2));
   if (name == std::end(kMonths) || day_of < 0 || year_of < 0) return std::nullopt;
   if (hour < 0 || hour > 23 || minute < 0 || minute > 59 || second < 0 || second > 60) return std::nullopt;
   const year_month_day date{year(year_of), month(static_cast<unsigned>(name - std::begin(kMonths) + 1)),

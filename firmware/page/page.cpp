@@ -9,6 +9,7 @@
 #include "page/entrance.hpp"
 #include "page/live.hpp"
 #include "page/map_routes.hpp"
+#include "page/network_routes.hpp"
 #include "page/report_routes.hpp"
 #include "page/session_routes.hpp"
 #include "page/settings_routes.hpp"
@@ -63,6 +64,7 @@ class Page::Impl {
     }
     if (sets_up) return settings_->open(head, std::move(responder));
     if (ReportRoutes::has(head.path())) return reports_.open(head, std::move(responder));
+    if (network_ && NetworkRoutes::has(head.path())) return network_->open(head, std::move(responder));
     if (MapRoutes::has(head.path())) {
       responder->answer(maps_.answer(head));
     } else {
@@ -74,6 +76,9 @@ class Page::Impl {
   void serve(Setup& setup) {
     settings_.emplace(setup);
     sessions_.serve(setup);
+  }
+  void serve(Network& network, SelfTest& test) {
+    network_.emplace(network, test, [this] { live_.changed(); });
   }
   void serve(Box& box) { box_.emplace(source_, box, entrance_, loop_); }
   void changed() { live_.changed(); }
@@ -104,6 +109,7 @@ class Page::Impl {
   std::optional<BoxRoutes> box_;
   Live live_;
   MapRoutes maps_;
+  std::optional<NetworkRoutes> network_;
   ReportRoutes reports_;
   std::optional<SettingsRoutes> settings_;
 };
@@ -125,6 +131,10 @@ std::unique_ptr<intake::Exchange> Page::open(const intake::RequestHead& head,
 
 void Page::serve(Box& box) {
   impl_->serve(box);
+}
+
+void Page::serve(Network& network, SelfTest& test) {
+  impl_->serve(network, test);
 }
 
 void Page::changed() {

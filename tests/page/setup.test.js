@@ -96,9 +96,9 @@ test("keeps tokens to itself, and says which are there", async (t) => {
   const asTeam = (bearer) => fetch(`${box.url}adit/run`, { headers: { Authorization: `Bearer ${bearer}` } }).then(({ status }) => status);
   assert.deepEqual([await asTeam("another-token"), await asTeam(TOKENS.team)], [200, 401]);
   await token.getByRole("button", { name: "Remove" }).click();
-  await page.locator("#confirm").getByRole("button", { name: "Leave it" }).click();
+  await page.locator("#review").getByRole("button", { name: "Leave it" }).click();
   await token.getByRole("button", { name: "Remove" }).click();
-  await page.locator("#confirm").getByRole("button", { name: "Remove it" }).click();
+  await page.locator("#review").getByRole("button", { name: "Remove it" }).click();
   await token.getByText("Removed.").waitFor();
   assert.ok(!existsSync(join(box.state, "secrets/team.token")));
   assert.equal(await asTeam(TOKENS.team), 200, "the one that the box was given counts again");

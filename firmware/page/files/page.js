@@ -11,6 +11,7 @@ import { showRefusals } from "./refusals.js";
 import { showReports } from "./reports.js";
 import { showRobots } from "./robots.js";
 import { showAttention, showLights, showRun } from "./run.js";
+import { followNetwork } from "./pending.js";
 import { showWho } from "./session.js";
 import { clip, timeOfDay } from "./words.js";
 
@@ -45,6 +46,7 @@ function show() {
   if (document.title !== title) document.title = title;
 }
 
+followNetwork();
 showWho(document.getElementById("who"));
 listen(
   "/adit/events",

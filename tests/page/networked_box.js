@@ -11,6 +11,7 @@ import { launch, visit } from "./stage.js";
 const BIN = resolve(process.env.ADIT_BIN ?? dirname(process.env.SCENE_SERVER));
 const STAND_IN = fileURLToPath(new URL("../wire/stand_in_networkctl", import.meta.url));
 const BOX = `aditbox${process.pid}`, STATION = `aditsta${process.pid}`;
+const AS_IT_COMES = { team0: "192.168.7.11/24", darpa0: "10.100.1.10/24" };
 const ASKED = ["wanted.json", "word.json", "probe.json"];
 
 const ip = (...words) => execFileSync("ip", words, { stdio: "pipe" });
@@ -33,8 +34,7 @@ function connect() {
   ip("-n", BOX, "link", "add", "darpa0", "type", "veth", "peer", "name", "wan0", "netns", STATION);
   for (const [name, link] of [[BOX, "team0"], [BOX, "darpa0"], [STATION, "lan0"], [STATION, "wan0"]]) ip("-n", name, "link", "set", link, "up");
   for (const address of ["192.168.7.2/24", "192.168.8.2/24"]) ip("-n", STATION, "address", "add", address, "dev", "lan0");
-  ip("-n", BOX, "address", "add", "192.168.7.11/24", "dev", "team0");
-  ip("-n", BOX, "address", "add", "10.100.1.10/24", "dev", "darpa0");
+  for (const [name, address] of Object.entries(AS_IT_COMES)) ip("-n", BOX, "address", "add", address, "dev", name);
 }
 
 export class NetworkedBox {
@@ -60,6 +60,9 @@ export class NetworkedBox {
     const folders = ["status", "networkd", "tried", "kept"].map((name) => join(this.folder, name));
     for (const folder of [this.state, ...folders]) mkdirSync(folder);
     const [status, state, tried, kept] = folders;
+    for (const [name, address] of Object.entries(AS_IT_COMES)) {
+      writeFileSync(join(kept, `60-${name}.network`), `[Match]\nName=${name}\n[Address]\nAddress=${address}\n`);
+    }
     const run = () => once(this.#start(BOX, join(BIN, "adit-network"), "--networkctl", networkctl, "--wanted", this.state,
       "--status", status, "--state", state, "--tried", tried, "--kept", kept), "exit");
     await run();

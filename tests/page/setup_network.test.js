@@ -92,7 +92,7 @@ test("takes a change back that nobody confirms, and says so", { skip: why || fal
   await page.locator("#review").getByRole("button", { name: "Leave it" }).click();
   assert.equal(box.address(), "192.168.7.11/24");
   await change(page, "192.168.8.11");
-  assert.match(await sign(page).innerText(), /\d+ s to confirm/);
+  assert.match(await sign(page).innerText(), /\d+ s left/);
   await page.locator("#pending a", { hasText: `${NEW}setup#network` }).waitFor();
   await hears(page, "Box lost");
   await until(() => box.address() === "192.168.7.11/24", "the address before", WITHIN + 6000);
@@ -106,7 +106,7 @@ test("keeps a change that is confirmed from the new address", { skip: why || fal
   await change(page, "192.168.8.11");
   const there = await come(t, NEW);
   await there.goto(NEW);
-  assert.match(await sign(there).innerText(), /\d+ s to confirm/, "on the run's page, too");
+  assert.match(await sign(there).innerText(), /\d+ s left/, "on the run's page, too");
   await there.goto(`${NEW}system`);
   await sign(there).click();
   await there.getByText("You are at the new address: confirm, and it is kept.").waitFor();

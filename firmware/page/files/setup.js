@@ -125,8 +125,8 @@ async function begin() {
   leadThrough();
   offerApply();
   followNetwork((network, error) => {
-    linkIs(Boolean(error && !error.status));
     if (network) showNetwork(network);
+    if (error !== undefined) linkIs(error !== null && !error.status);
   });
 }
 

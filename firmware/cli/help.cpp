@@ -178,9 +178,9 @@ USAGE
   adit course NAME [--json] [--token-file FILE] [--at ADDR:PORT | --settings FILE]
 
 WHAT IT DOES
-  NAME is one of the courses in the settings; "" means none, the endpoints of command_post itself. Reports that were
-  not sent to the old Command Post are held, so that none of them is sent to the new one unless you say so: adit
-  reports send.
+  NAME is one of the courses in the settings; "" means none, the endpoints of command_post itself. Reports that wait
+  for another Command Post, one that was heard of, are held, so that none of them is sent to this one unless you say
+  so: adit reports send.
 
 EXIT STATUS
   0  the course is in use

@@ -174,7 +174,8 @@ Outcome switch_course(const Options& options) {
   if (options.json) return {Exit::Fine, *body + '\n', ""};
   const std::string used =
       options.course.empty() ? "no course is in use" : "course " + options.course + " is in use";
-  return {Exit::Fine, used + "; what was not sent before is held: see adit reports\n", ""};
+  return {Exit::Fine,
+          used + "; reports that were meant for another Command Post are held: see adit reports\n", ""};
 }
 
 }  // namespace adit::cli

@@ -69,6 +69,7 @@ intake::IcdOptions Gateway::icd_options() const {
 /// Any of them lets a client of the team in.
 std::vector<icd::BearerToken> Gateway::tokens() const {
   std::vector<icd::BearerToken> tokens;
+  tokens.reserve(parts_.loaded.secrets.tokens.size());
   for (const auto& [name, token] : parts_.loaded.secrets.tokens) tokens.push_back(token);
   return tokens;
 }

@@ -121,8 +121,9 @@ TEST_F(SettingsCommand, SaysWhatIsWrongWithAFileThatIsNone) {
 
 TEST_F(SettingsCommand, SwitchesTheCourse) {
   const Server server({{"POST /adit/course", Server::ok(R"({"changes":[]})")}});
-  EXPECT_EQ(say(server, {"course", "B"}).out,
-            "course B is in use; what was not sent before is held: see adit reports\n");
+  EXPECT_EQ(
+      say(server, {"course", "B"}).out,
+      "course B is in use; reports that were meant for another Command Post are held: see adit reports\n");
   EXPECT_THAT(server.request(), HasSubstr(R"({"name":"B"})"));
   EXPECT_THAT(say(server, {"course", ""}).out, HasSubstr("no course is in use"));
   const Server other(

@@ -24,6 +24,7 @@ Settings settings_of(const std::string& json) {
 
 std::vector<std::string> sentences(const std::vector<Change>& changes) {
   std::vector<std::string> all;
+  all.reserve(changes.size());
   for (const Change& change : changes) {
     all.push_back(change.path + ": " + codec::write_json(change.from) + " -> " +
                   codec::write_json(change.to));

@@ -1,7 +1,7 @@
 // The support bundle, the factory reset, and what the box is made of.
 import { open } from "./dialog.js";
 import { make } from "./dom.js";
-import { get, getFile, post, toLogin } from "./session.js";
+import { get, getFile, post, sitOutReset } from "./session.js";
 import { age, bytes, clip } from "./words.js";
 
 function save({ name, blob }) {
@@ -45,7 +45,8 @@ export function offerReset() {
     button.disabled = true;
     try {
       await post("/adit/reset", Object.fromEntries(new FormData(form)));
-      toLogin();
+      button.textContent = "The box begins anew";
+      await sitOutReset();
     } catch (error) {
       trouble.textContent = error.message;
       button.disabled = false;

@@ -11,8 +11,11 @@ export function session(anew = false) {
   return asked;
 }
 
+let sitsOut = false;
+
 /** Asks for a password, and comes back here afterwards. */
 export function toLogin() {
+  if (sitsOut) return;
   const here = location.pathname + location.search + location.hash;
   location.replace(`login.html?next=${encodeURIComponent(here)}`);
 }
@@ -21,6 +24,18 @@ export function toLogin() {
 export async function checkSession() {
   const { role } = await session(true).catch(() => ({}));
   if (role === null) toLogin();
+}
+
+/** Stays until the box, which was reset, has begun anew: before, no page could be loaded whole. Then to its login. */
+export async function sitOutReset() {
+  sitsOut = true;
+  for (const end = performance.now() + 15_000; performance.now() < end; ) {
+    await new Promise((resolve) => setTimeout(resolve, 250));
+    const { first_start: firstStart } = await session(true).catch(() => ({}));
+    if (firstStart) break;
+  }
+  sitsOut = false;
+  toLogin();
 }
 
 /** Posts `body` as JSON and gives the answer; an Error's message is the sentence to show, its `status` the box's. */

@@ -13,10 +13,9 @@ struct CommandName {
   std::string_view name;
   Command command;
 };
-constexpr CommandName kCommands[] = {{"status", Command::Status},
-                                     {"reports", Command::Reports},
-                                     {"run", Command::Run},
-                                     {"check", Command::Check},
+constexpr CommandName kCommands[] = {{"status", Command::Status}, {"reports", Command::Reports},
+                                     {"run", Command::Run},       {"network", Command::Network},
+                                     {"test", Command::Test},     {"check", Command::Check},
                                      {"help", Command::Help}};
 
 struct VerbName {
@@ -88,6 +87,8 @@ class Parser {
         return take_word_of_reports(word);
       case Command::Run:
         return run_new_ || word != "new" ? too_many(word) : void(run_new_ = true);
+      case Command::Network:
+        return take_word_of_network(word);
       case Command::Check:
         return std::exchange(filed_, true) ? too_many(word) : void(options_.settings = word);
       default:
@@ -138,6 +139,13 @@ class Parser {
     options_.command = row->command;
   }
 
+  void take_word_of_network(std::string_view word) {
+    if (!options_.word.empty()) return too_many(word);
+    if (word != "show" && word != "confirm" && word != "back")
+      return refuse("expected show, confirm or back, got ", word);
+    options_.word = word;
+  }
+
   void take_word_of_reports(std::string_view word) {
     if (options_.verb == Verb::List) {
       const auto* row = named<VerbName>(kVerbs, word);
@@ -154,12 +162,13 @@ class Parser {
   }
 
   void finish() {
-    if (!commanded_) return refuse("a command is missing: status, reports, run or check", "");
+    if (!commanded_) return refuse("a command is missing: status, reports, run, network, test or check", "");
     const auto useless =
         std::ranges::find_if_not(given_, [this](std::string_view option) { return takes(options_, option); });
     if (useless != given_.end()) return refuse(spoken() + " does not take ", *useless);
     if (options_.csv && options_.json) return refuse("--csv and --json are two formats: which one?", "");
     if (options_.command == Command::Run && !run_new_) return refuse("a word is missing: run new", "");
+    if (options_.command == Command::Network && options_.word.empty()) options_.word = "show";
     if (options_.numbers.size() < row_of(options_.verb).least) {
       refuse("a report's number is missing after ", row_of(options_.verb).name);
     }

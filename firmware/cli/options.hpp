@@ -12,7 +12,7 @@
 
 namespace adit::cli {
 
-enum class Command : std::uint8_t { Status, Reports, Run, Check, Help };
+enum class Command : std::uint8_t { Status, Reports, Run, Network, Test, Check, Help };
 
 /// What `adit reports` is to do.
 enum class Verb : std::uint8_t { List, Show, Export, Send, Withdraw, Done, Resubmit };
@@ -22,6 +22,7 @@ struct Options {
   Command command = Command::Help;
   Command about = Command::Help;  // of Help: the command to explain
   Verb verb = Verb::List;
+  std::string word;                   // of Network: "show", "confirm", "back"
   std::vector<std::int64_t> numbers;  // of reports
   std::optional<std::int64_t> run;    // whose reports to list; nothing: the present one's
   bool all_runs = false;

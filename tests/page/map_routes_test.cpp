@@ -35,7 +35,9 @@ class MapRoutesTest : public testing::Test {
   FakeSource source;
   FakeOperator judge;
   FakeKeys keys;
-  Page page{loop, source, judge, keys, {token()}};
+  FakeNetwork network;
+  FakeTest test;
+  Page page{loop, source, judge, keys, network, test, {token()}};
 };
 
 TEST_F(MapRoutesTest, TellsHowTilesAreCutAndColoured) {
@@ -167,11 +169,13 @@ TEST(MapRoutesOnAServer, ReadsTheQueryOfARealRequest) {
   Forward forward;
   FakeOperator judge;
   FakeKeys keys;
+  FakeNetwork network;
+  FakeTest test;
   intake::Served served{forward};
   FakeSource source;
   draw_scene(source.mosaic, 2000);
   served.on_loop([&] {
-    page = std::make_unique<Page>(served.loop(), source, judge, keys, std::vector{token()});
+    page = std::make_unique<Page>(served.loop(), source, judge, keys, network, test, std::vector{token()});
     forward.to = page.get();
   });
   intake::RawClient client{served.port()};

@@ -33,7 +33,9 @@ class PageTest : public testing::Test {
   FakeSource source;
   FakeOperator judge;
   FakeKeys keys;
-  Page page{loop, source, judge, keys, {token()}};
+  FakeNetwork network;
+  FakeTest test;
+  Page page{loop, source, judge, keys, network, test, {token()}};
 };
 
 TEST_F(PageTest, ServesItsFilesWithTheirTypes) {
@@ -113,11 +115,13 @@ TEST(PageOnAServer, ServesABrowser) {
   Forward forward;
   FakeOperator judge;
   FakeKeys keys;
+  FakeNetwork network;
+  FakeTest test;
   intake::Served served{forward};
   FakeSource source;
   source.now = *scene("calm", 1000, 0);
   served.on_loop([&] {
-    page = std::make_unique<Page>(served.loop(), source, judge, keys, std::vector{token()});
+    page = std::make_unique<Page>(served.loop(), source, judge, keys, network, test, std::vector{token()});
     forward.to = page.get();
   });
 

@@ -65,7 +65,9 @@ class ReportRoutesTest : public testing::Test {
   FakeSource source;
   FakeOperator judge;
   FakeKeys keys;
-  Page page{loop, source, judge, keys, {token("team-1"), token("scoring-1")}};
+  FakeNetwork network;
+  FakeTest test;
+  Page page{loop, source, judge, keys, network, test, {token("team-1"), token("scoring-1")}};
 };
 
 TEST_F(ReportRoutesTest, GiveAllReportsAsJsonThatNobodyKeeps) {
@@ -245,11 +247,13 @@ TEST(ReportRoutesOnAServer, DoADeedAndShowIt) {
   Forward forward;
   FakeOperator judge;
   FakeKeys keys;
+  FakeNetwork network;
+  FakeTest test;
   FakeSource source;
   source.details[7].row.number = 7;
   intake::Served served{forward};
   served.on_loop([&] {
-    page = std::make_unique<Page>(served.loop(), source, judge, keys, std::vector{token()});
+    page = std::make_unique<Page>(served.loop(), source, judge, keys, network, test, std::vector{token()});
     forward.to = page.get();
   });
   intake::RawClient client{served.port()};

@@ -70,7 +70,9 @@ int serve(std::uint16_t port, const std::string& first, bool first_start) {
   if (!stage.change_to(first)) return std::fprintf(stderr, "no such scene: %s\n", first.c_str()), 2;
   FakeKeys keys;
   if (first_start) keys.operator_.reset();
-  Page page{loop, stage, stage, keys, {token()}};
+  FakeNetwork network;
+  FakeTest test;
+  Page page{loop, stage, stage, keys, network, test, {token()}};
   auto server = intake::Server::start(loop, {.address = "127.0.0.1", .port = port, .interface = {}}, page);
   if (!server) return std::fprintf(stderr, "%s\n", server.error().c_str()), 1;
   std::printf("%d\n", (*server)->port());

@@ -64,7 +64,9 @@ class SessionRoutesTest : public testing::Test {
   FakeSource source;
   FakeOperator judge;
   FakeKeys keys;
-  Page page{loop, source, judge, keys, {token("team-1")}};
+  FakeNetwork network;
+  FakeTest test;
+  Page page{loop, source, judge, keys, network, test, {token("team-1")}};
 };
 
 TEST_F(SessionRoutesTest, TellAnybodyWhoHeIs) {

@@ -65,12 +65,6 @@ class Networkd:
         self.daemon = self.network.start(self.network.box, "unshare", "-m", "sh", "-c", START, env=self.environment,
                                          stderr=self.log, stdout=self.log)
 
-    def start_anew(self):
-        self.daemon.kill()
-        self.daemon.wait()
-        self._start()
-        programs.wait_until(self._answers, "networkd")
-
     def _answers(self):
         return self.reload().returncode == 0
 

@@ -265,17 +265,6 @@ class WithNetworkd(Base):
 
     listening = staticmethod(WithAStandIn.listening)
 
-    def test_a_new_start_of_networkd_costs_no_address(self):
-        self.confirm_first()
-        self.has("10.100.1.10/24", "darpa0")
-        with WithAStandIn.monitored(self) as seen:
-            self.networkd.start_anew()
-            self.box.want(within_ms=12000, team="192.168.8.11")
-            self.has(NEW)
-        self.assertNotIn("darpa0", "\n".join(line for line in seen().splitlines() if "Deleted" in line))
-        self.ends()
-        self.has(OLD)
-
     def test_a_pulled_cable_costs_no_address(self):
         self.confirm_first()
         self.has("10.100.1.10/24", "darpa0")

@@ -61,8 +61,8 @@ TEST(Options, NameTheWordThatIsWrong) {
   const struct {
     Words words;
     const char* sentence;
-  } cases[] = {{{}, "a command is missing: status, reports, run or check"},
-               {{"--json"}, "a command is missing: status, reports, run or check"},
+  } cases[] = {{{}, "a command is missing: status, reports, run, network, test or check"},
+               {{"--json"}, "a command is missing: status, reports, run, network, test or check"},
                {{"state"}, "no such command: state"},
                {{"status", "--jsn"}, "no such option: --jsn"},
                {{"status", "--at"}, "a value is missing after --at"},

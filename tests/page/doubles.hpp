@@ -13,9 +13,8 @@
 
 #include "intake/server.hpp"
 #include "page/fake_keys.hpp"
-#include "page/network.hpp"
+#include "page/fake_network.hpp"
 #include "page/page.hpp"
-#include "page/self_test.hpp"
 
 namespace adit::page {
 
@@ -59,41 +58,6 @@ struct FakeOperator final : Operator {
   std::optional<std::expected<std::int64_t, std::string>>
       outcome;  // of judge() and report(), where it is not the same number or 41
   std::int64_t run = 1;
-};
-
-/// Has the addresses that it is told to have, and remembers what it was asked for.
-struct FakeNetwork final : Network {
-  NetworkView network() const override { return view; }
-  network::Verdict check(const network::Numbers&, const std::string& asker) const override {
-    askers.push_back(asker);
-    return verdict;
-  }
-  icd::Checked<void> change(const network::Numbers& numbers) override {
-    wanted.push_back(numbers);
-    return outcome;
-  }
-  icd::Checked<void> confirm(const std::string& local) override {
-    confirmed.push_back(local);
-    return outcome;
-  }
-  icd::Checked<void> take_back() override {
-    ++taken_back;
-    return outcome;
-  }
-
-  NetworkView view;
-  network::Verdict verdict;
-  icd::Checked<void> outcome;
-  mutable std::vector<std::string> askers;
-  std::vector<network::Numbers> wanted;
-  std::vector<std::string> confirmed;
-  int taken_back = 0;
-};
-
-struct FakeTest final : SelfTest {
-  TestView test() const override { return view; }
-  bool begin_test() override { return !std::exchange(view.running, true); }
-  TestView view;
 };
 
 class FakeHead final : public intake::RequestHead {

@@ -10,6 +10,7 @@
 #include <utility>
 
 #include "page/fake_keys.hpp"
+#include "page/fake_network.hpp"
 #include "page/map_scene.hpp"
 #include "page/played.hpp"
 #include "page/scenes.hpp"

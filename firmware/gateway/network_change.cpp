@@ -123,10 +123,10 @@ icd::Checked<void> NetworkChange::change(const network::Numbers& wanted) {
 
 icd::Checked<void> NetworkChange::confirm(const std::string& local) {
   const auto waits = pending();
-  if (!waits || asked_)
-    return conflict(waits ? "the change is not made yet" : "no change waits to be confirmed");
+  if (!waits) return conflict("no change waits to be confirmed");
   const std::string address = settings::ipv4_text(waits->wanted.team.address);
-  const bool stays = status_->kept && status_->kept->team.address == waits->wanted.team.address;
+  const bool stays = status_ && status_->kept && status_->kept->team.address == waits->wanted.team.address;
+  if (stays && asked_) return conflict("the change is not made yet: try again in a few seconds");
   if (!stays && local != address) {
     return conflict(icd::sentence("confirm it at ", network::page_at(waits->wanted, settings_.team.listen),
                                   ": this came to ", local, ", and says nothing of the new address"));

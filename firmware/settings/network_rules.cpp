@@ -70,7 +70,8 @@ std::string overlap(const Settings& settings) {
   if (!team) return "";
   for (const Subnet& darpa : command_post_subnets()) {
     if (overlaps(*team, darpa)) {
-      return icd::sentence(written(*team), " overlaps ", written(darpa), ", which the Command Post uses (ICD 3)");
+      return icd::sentence(written(*team), " overlaps ", written(darpa),
+                           ", which the Command Post uses (ICD 3)");
     }
   }
   const auto post = subnet_of(network.command_post.address, network.command_post.prefix);

@@ -13,6 +13,7 @@
 
 #include "intake/server.hpp"
 #include "page/fake_keys.hpp"
+#include "page/fake_network.hpp"
 #include "page/page.hpp"
 
 namespace adit::page {

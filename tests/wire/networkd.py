@@ -65,12 +65,6 @@ class Networkd:
         self.daemon = self.network.start(self.network.box, "unshare", "-m", "sh", "-c", START, env=self.environment,
                                          stderr=self.log, stdout=self.log)
 
-    def start_anew(self):
-        self.daemon.kill()
-        self.daemon.wait()
-        self._start()
-        programs.wait_until(self._answers, "networkd")
-
     def _answers(self):
         return self.reload().returncode == 0
 
@@ -90,7 +84,7 @@ class AditNetwork:
     """adit-network as its units run it: started whenever something is asked for, one at a time."""
 
     def __init__(self, network, folder, networkctl=None):
-        self.network, self.folder = network, folder
+        self.network, self.folder, self.wanted = network, folder, folder / "wanted"
         for name in ("wanted", "status", "state", "tried", "kept"):
             (folder / name).mkdir(exist_ok=True)
         for each in (folder, folder / "tried", folder / "kept"):
@@ -106,7 +100,8 @@ class AditNetwork:
 
     def start(self):
         words = [programs.BIN / "adit-network", "--networkctl", self.networkctl]
-        for name in ("wanted", "status", "state", "tried", "kept"):
+        words += ["--wanted", self.wanted]
+        for name in ("status", "state", "tried", "kept"):
             words += [f"--{name}", self.folder / name]
         with open(self.folder / "adit-network.log", "ab") as log:
             self.process = self.network.start(self.network.box, *words, stdout=log, stderr=log)
@@ -119,9 +114,9 @@ class AditNetwork:
     def ask(self, file, **members):
         """As aditd does: by a rename. Gives the request's nonce."""
         document = {"version": 1, "nonce": secrets.token_hex(16), **members}
-        temporary = self.folder / "wanted" / ".new"
+        temporary = self.wanted / ".new"
         temporary.write_text(json.dumps(document))
-        temporary.rename(self.folder / "wanted" / file)
+        temporary.rename(self.wanted / file)
         return document["nonce"]
 
     def want(self, within_ms=60000, **numbers):

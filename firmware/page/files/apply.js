@@ -19,7 +19,11 @@ const MOST = 250_000; // bytes of a file; the box takes a little more
 
 let outcome = "", link = "", isBusy = false;
 
-const shown = (value) => (value === null || value === undefined ? "–" : value === "" ? "(empty)" : clip(typeof value === "object" ? JSON.stringify(value) : String(value), 300));
+/** A value as people read it. */
+function shown(value) {
+  if (value === "") return "(empty)";
+  return value === null || value === undefined ? "–" : clip(typeof value === "object" ? JSON.stringify(value) : String(value), 300);
+}
 
 function head(text, scope) {
   const cell = make("th", text);
@@ -92,7 +96,8 @@ async function whyNot() {
 async function settle() {
   const { base, settings: mine, newer } = draft;
   const [was, own, theirs] = [base, mine, newer.settings].map((each) => flat(each));
-  const paths = [...new Set([...theirs.keys(), ...own.keys()])].filter((path) => own.get(path) !== was.get(path) || theirs.get(path) !== was.get(path));
+  const isOther = (path) => own.get(path) !== was.get(path) || theirs.get(path) !== was.get(path);
+  const paths = [...new Set([...theirs.keys(), ...own.keys()])].filter(isOther);
   const answer = await reviewed({
     title: "Somebody else has saved settings meanwhile",
     text: "What is in use now is in the column Theirs. Go on from it: what you changed yourself is put over it, and can still be changed.",
@@ -119,7 +124,9 @@ export async function save(settings) {
     if (said) link = "";
     if (isDone) beginFrom(said);
     if (said) await refresh();
-    report(isDone ? "Applied." : said ? (await whyNot()) || "It was taken back." : link ? "The page has moved to" : "The box does not answer.");
+    if (isDone) report("Applied.");
+    else if (said) report((await whyNot()) || "It was taken back.");
+    else report(link ? "The page has moved to" : "The box does not answer.");
     return isDone;
   } catch (error) {
     if (error.status === 409) await refresh();
@@ -222,7 +229,8 @@ async function takeFile(file) {
   if (errors.length) return reportFile("Nothing was applied: the file has errors.", errors);
   if (!changes.length) return reportFile("Nothing to apply: the box runs with the same settings.");
   const text = differs() ? "What you typed and did not apply is dropped." : "";
-  if (!(await reviewed({ title: `Apply ${file.name}?`, text, changes: fromTo(changes), warnings, word: "Apply" }))) return reportFile("Nothing was applied.");
+  const yes = await reviewed({ title: `Apply ${file.name}?`, text, changes: fromTo(changes), warnings, word: "Apply" });
+  if (!yes) return reportFile("Nothing was applied.");
   reportFile("");
   if (await save(settings)) reportFile("Applied.");
 }

@@ -11,6 +11,7 @@ const HINTS = {
   mapping: "Given by the Command Post’s staff; maps, states and markers need it.",
   team: "For scripts and stations of the team, if these are to have one of their own.",
 };
+const WRONG = "expected 1 to 256 visible ASCII characters";
 const ofCourse = (name) => name.startsWith("course.");
 const labelOf = (name) => COMMON[name] ?? name.replace(/^course\.(.+)\.(\w+)$/, "Course $1: $2 token of its own");
 const hintOf = (name) => HINTS[name] ?? "Without one, the common token counts.";
@@ -41,14 +42,14 @@ async function removeIt(node, name) {
 }
 
 function create(name) {
-  const input = Object.assign(make("input"), { type: "password", autocomplete: "off", spellcheck: false, maxLength: 300, disabled: readOnly });
+  const input = Object.assign(make("input"), { type: "password", autocomplete: "off", maxLength: 300, disabled: readOnly });
   const field = labelled(labelOf(name), input, hintOf(name));
   const state = make("p.state"), outcome = make("p.outcome");
   outcome.setAttribute("role", "status");
   const [show, remove, set] = ["Show", "Remove", "Set"].map((word) => Object.assign(make("button", word), { type: "button" }));
   set.className = "set main";
   set.type = "submit";
-  for (const [button, word] of [[show, "Show"], [remove, "Remove"], [set, "Set"]]) button.setAttribute("aria-label", `${word}: ${labelOf(name)}`);
+  for (const button of [show, remove, set]) button.setAttribute("aria-label", `${button.textContent}: ${labelOf(name)}`);
   const node = make("form.token", field, state, make("div.answers", show, remove, set), outcome);
   node.noValidate = true;
   Object.assign(node, { field, outcome, state, buttons: [show, remove, set] });
@@ -65,7 +66,7 @@ function create(name) {
     if (token) send(node, name, token);
     else blame(field, "nothing is typed yet");
   };
-  input.addEventListener("input", () => blame(field, /^[!-~]{0,256}$/.test(input.value.trim()) ? "" : "expected 1 to 256 visible ASCII characters"));
+  input.addEventListener("input", () => blame(field, /^[!-~]{0,256}$/.test(input.value.trim()) ? "" : WRONG));
   return node;
 }
 
@@ -82,7 +83,7 @@ function update(node, name) {
 
 /** Sets whatever is typed and not set yet; whether all of it was taken. */
 export async function setTyped() {
-  for (const node of document.querySelectorAll("#step-tokens form.token")) {
+  for (const node of document.querySelectorAll("form.token")) {
     const token = node.field.control.value.trim();
     if (token && !(await send(node, node.dataset.key, token))) return false;
   }
@@ -104,15 +105,17 @@ export function showTokens(isReadOnly) {
 const nameOf = (course) => (course ? `Course ${course}` : "No course");
 const at = ({ address, port }) => `${address.includes(":") ? `[${address}]` : address}:${port}`;
 const postOf = (settings, name) => (name ? settings.courses.find((course) => course.name === name) : settings.command_post);
-const tokenOf = (name, endpoint) => (draft.tokens[`course.${name}.${endpoint}`] ? "its own" : draft.tokens[endpoint] ? "the common one" : "missing");
+const tokenOf = (name, endpoint) =>
+  draft.tokens[`course.${name}.${endpoint}`] ? "its own" : draft.tokens[endpoint] ? "the common one" : "missing";
 
 async function switchTo(name) {
   const outcome = document.querySelector("#step-courses > .outcome");
   const { base } = draft, now = base.command_post.course;
   const rows = (what, value) => ENDPOINTS.map((endpoint) => [`${endpoint} ${what}`, value(now, endpoint), value(name, endpoint)]);
-  const changes = [["course", nameOf(now), nameOf(name)], ...rows("address", (course, endpoint) => at(postOf(base, course)[endpoint])), ...rows("token", tokenOf)];
+  const addressOf = (course, endpoint) => at(postOf(base, course)[endpoint]);
+  const changes = [["course", nameOf(now), nameOf(name)], ...rows("address", addressOf), ...rows("token", tokenOf)];
   const text = "Reports that were not sent to the old Command Post are held until you say; maps that wait go to the new one.";
-  if (!(await reviewed({ title: `Switch to ${nameOf(name).toLowerCase().replace(name.toLowerCase(), name)}?`, text, changes, word: "Switch" }))) return;
+  if (!(await reviewed({ title: `Switch to ${nameOf(name)}?`, text, changes, word: "Switch" }))) return;
   say(outcome, "It is being applied.");
   outcome.dataset.bad = false;
   try {

@@ -79,7 +79,7 @@ const go = (section) => (location.hash = nameOf(section));
 /** What was typed in a step is set before the next one. */
 async function goOn() {
   const at = here();
-  if (nameOf(sections[at]) === "tokens" && !(await setTyped())) return;
+  if (!(await setTyped())) return;
   if (!(await apply())) return;
   if (at === FIRST - 1) location.href = "/";
   else go(sections[at + 1]);

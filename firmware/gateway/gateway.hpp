@@ -12,10 +12,13 @@
 #include "gateway/lights.hpp"
 #include "gateway/map_picture.hpp"
 #include "gateway/maps.hpp"
+#include "gateway/network_change.hpp"
+#include "gateway/network_requests.hpp"
 #include "gateway/news.hpp"
 #include "gateway/record.hpp"
 #include "gateway/roster.hpp"
 #include "gateway/scoring.hpp"
+#include "gateway/self_test.hpp"
 #include "gateway/session_keeper.hpp"
 #include "gateway/setup.hpp"
 #include "gateway/spool.hpp"
@@ -49,6 +52,7 @@ struct Parts {
   std::unique_ptr<panel::Lines> lines;
   std::string runtime_folder;
   std::string state_folder;
+  std::string network_folder;    // where adit-network tells its status
   std::optional<Legacy> legacy;  // of the gateway before, where there was one
 };
 
@@ -136,6 +140,9 @@ class Gateway final : public intake::Desk, public page::Source, public page::Ope
   Accounts accounts_;
   Setup setup_;
   ThisBox box_;
+  NetworkRequests network_requests_;
+  NetworkChange network_;
+  SelfTest self_test_;
   page::Page page_;
   intake::IcdRoutes routes_;
   std::vector<std::unique_ptr<intake::Server>> servers_;

@@ -4,14 +4,17 @@
 #include "cli/check.hpp"
 #include "cli/deeds.hpp"
 #include "cli/help.hpp"
+#include "cli/network.hpp"
 #include "cli/options.hpp"
 #include "cli/reports.hpp"
 #include "cli/settings.hpp"
+#include "cli/test.hpp"
 #include "host/log.hpp"
 
 namespace adit::cli {
 
-Outcome run(std::span<const std::string_view> words, bool colour) {
+Outcome run(std::span<const std::string_view> words, bool colour,
+            const std::function<void(const std::string&)>& print) {
   const auto options = parse_options(words);
   if (!options) return {Exit::Unable, "", "adit: " + host::escaped(options.error()) + '\n' + kSeeHelp};
   switch (options->command) {
@@ -21,12 +24,16 @@ Outcome run(std::span<const std::string_view> words, bool colour) {
       return reports(*options, colour);
     case Command::Run:
       return begin_run(*options);
-    case Command::Identify:
-      return identify(*options);
     case Command::Settings:
       return settings(*options, colour);
     case Command::Course:
       return switch_course(*options);
+    case Command::Identify:
+      return identify(*options);
+    case Command::Network:
+      return network(*options);
+    case Command::Test:
+      return test(*options, colour, print);
     case Command::Check:
       return check(*options, colour);
     case Command::Help:

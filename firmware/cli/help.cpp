@@ -9,9 +9,11 @@ USAGE
   adit status  [--json] [--at ADDR:PORT | --settings FILE]
   adit reports [show|send|hold|withdraw|done|resubmit|export] [NUMBER...]
   adit run new
-  adit identify [SECONDS]
   adit settings [show|check|apply|export] [FILE]
   adit course NAME
+  adit identify [SECONDS]
+  adit network [show|confirm|back]
+  adit test
   adit check   [--json] [SETTINGS]
   adit help [COMMAND]
 
@@ -19,9 +21,11 @@ COMMANDS
   status    the run, the Command Post, each robot's maps, and what the operator must do
   reports   every artifact report and what became of it; and your word on those that wait for it
   run       tells Adit that a new run begins
-  identify  makes the box's lights flash, to tell it from others
   settings  what the running Adit is set to, and changes to it
   course    switches to the Command Post of another course
+  identify  makes the box's lights flash, to tell it from others
+  network   the box's own addresses, and your word on a change of them that waits
+  test      tries each endpoint of the Command Post step by step, and spends no report
   check     all that is wrong with a settings file, at once
 
 OPTIONS
@@ -148,23 +152,6 @@ EXAMPLES
   sudo adit run new
 )";
 
-constexpr const char* kIdentify = R"(adit identify - makes the box's lights flash, to tell it from others
-
-USAGE
-  adit identify [SECONDS] [--json] [--token-file FILE] [--at ADDR:PORT | --settings FILE]
-
-WHAT IT DOES
-  All lights flash twice a second, together, for SECONDS (1 to 60; 10 if not given): no condition shows that.
-  Then they show again how things stand.
-
-EXIT STATUS
-  0  they flash
-  2  Adit cannot be reached or wants another token, or the command line is wrong
-
-EXAMPLES
-  sudo adit identify 30
-)";
-
 constexpr const char* kSettings = R"(adit settings - what the running Adit is set to, and changes to it
 
 USAGE
@@ -212,6 +199,73 @@ EXAMPLES
   sudo adit course B
 )";
 
+constexpr const char* kIdentify = R"(adit identify - makes the box's lights flash, to tell it from others
+
+USAGE
+  adit identify [SECONDS] [--json] [--token-file FILE] [--at ADDR:PORT | --settings FILE]
+
+WHAT IT DOES
+  All lights flash twice a second, together, for SECONDS (1 to 60; 10 if not given): no condition shows that.
+  Then they show again how things stand.
+
+EXIT STATUS
+  0  they flash
+  2  Adit cannot be reached or wants another token, or the command line is wrong
+
+EXAMPLES
+  sudo adit identify 30
+)";
+
+constexpr const char* kNetwork =
+    R"(adit network - the box's own addresses, and your word on a change of them that waits
+
+USAGE
+  adit network [show|confirm|back] [--json] [--token-file FILE] [--at ADDR:PORT | --settings FILE]
+
+WHAT IT DOES
+  'show' tells which addresses the box has on its two sides, and which change waits to be confirmed. A change is
+  made on the page. It is tried at once, and takes itself back unless it is confirmed in time
+  (network.confirm_within_ms), so that a wrong address costs a minute and not the box.
+
+YOUR WORD
+  confirm  the change is good and stays. It must be said at the new address, as what reaches Adit there shows
+           that the address works: adit finds it by team.interface, or name it by --at
+  back     the change is taken back now
+
+EXIT STATUS
+  0  no change waits; of your word: it is done
+  1  a change waits; of your word: none waits, or it cannot be said there
+  2  Adit cannot be reached or wants another token, or the command line is wrong
+
+EXAMPLES
+  sudo adit network
+  sudo adit network confirm --at 192.168.8.11:8000
+)";
+
+constexpr const char* kTest =
+    R"(adit test - tries each endpoint of the Command Post step by step, and spends no report
+
+USAGE
+  adit test [--json] [--token-file FILE] [--at ADDR:PORT | --settings FILE]
+
+WHAT IT TRIES
+  link     does the interface to the Command Post have a carrier
+  address  does it have an address, and does anybody else on its network have the same
+  reach    does the endpoint take a connection
+  token    does it take the token
+  clock    does the box's clock agree with the Command Post's, to 2 s
+  Each step is good, BAD or skipped, with what was found, and with what to do about it.
+
+EXIT STATUS
+  0  no step is bad
+  1  one is
+  2  Adit cannot be reached or wants another token, or the command line is wrong
+
+EXAMPLES
+  sudo adit test
+  sudo adit test --json | jq '.endpoints[].steps[] | select(.state == "bad")'
+)";
+
 constexpr const char* kCheck = R"(adit check - all that is wrong with a settings file, at once
 
 USAGE
@@ -244,12 +298,16 @@ const char* help_about(Command command) {
       return kReports;
     case Command::Run:
       return kRun;
-    case Command::Identify:
-      return kIdentify;
     case Command::Settings:
       return kSettings;
     case Command::Course:
       return kCourse;
+    case Command::Identify:
+      return kIdentify;
+    case Command::Network:
+      return kNetwork;
+    case Command::Test:
+      return kTest;
     case Command::Check:
       return kCheck;
     case Command::Help:

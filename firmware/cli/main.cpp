@@ -9,9 +9,13 @@
 int main(int count, char** arguments) {
   const std::vector<std::string_view> words(arguments + 1, arguments + count);
   const bool colour = isatty(STDOUT_FILENO) == 1 && std::getenv("NO_COLOR") == nullptr;
-  const auto outcome = adit::cli::run(words, colour);
+  bool printed = true;
+  const auto print = [&printed](const std::string& text) {
+    printed = std::fwrite(text.data(), 1, text.size(), stdout) == text.size() && std::fflush(stdout) == 0 &&
+              printed;
+  };
+  const auto outcome = adit::cli::run(words, colour, print);
   std::fputs(outcome.err.c_str(), stderr);
-  const bool printed = std::fwrite(outcome.out.data(), 1, outcome.out.size(), stdout) == outcome.out.size() &&
-                       std::fflush(stdout) == 0;
+  print(outcome.out);
   return static_cast<int>(printed ? outcome.exit : adit::cli::Exit::Unable);
 }

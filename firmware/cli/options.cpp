@@ -13,10 +13,11 @@ struct CommandName {
   std::string_view name;
   Command command;
 };
-constexpr CommandName kCommands[] = {{"status", Command::Status},     {"reports", Command::Reports},
-                                     {"run", Command::Run},           {"identify", Command::Identify},
-                                     {"settings", Command::Settings}, {"course", Command::Course},
-                                     {"check", Command::Check},       {"help", Command::Help}};
+constexpr CommandName kCommands[] = {{"status", Command::Status},   {"reports", Command::Reports},
+                                     {"run", Command::Run},         {"settings", Command::Settings},
+                                     {"course", Command::Course},   {"identify", Command::Identify},
+                                     {"network", Command::Network}, {"test", Command::Test},
+                                     {"check", Command::Check},     {"help", Command::Help}};
 
 struct VerbName {
   std::string_view name;
@@ -95,12 +96,14 @@ class Parser {
         return take_word_of_reports(word);
       case Command::Run:
         return run_new_ || word != "new" ? too_many(word) : void(run_new_ = true);
-      case Command::Identify:
-        return take_seconds(word);
       case Command::Settings:
         return take_word_of_settings(word);
       case Command::Course:
         return std::exchange(coursed_, true) ? too_many(word) : void(options_.course = word);
+      case Command::Identify:
+        return take_seconds(word);
+      case Command::Network:
+        return take_word_of_network(word);
       case Command::Check:
         return std::exchange(filed_, true) ? too_many(word) : void(options_.settings = word);
       default:
@@ -160,6 +163,13 @@ class Parser {
     options_.command = row->command;
   }
 
+  void take_word_of_network(std::string_view word) {
+    if (!options_.word.empty()) return too_many(word);
+    if (word != "show" && word != "confirm" && word != "back")
+      return refuse("expected show, confirm or back, got ", word);
+    options_.word = word;
+  }
+
   void take_word_of_reports(std::string_view word) {
     if (options_.verb == Verb::List) {
       const auto* row = named<VerbName>(kVerbs, word);
@@ -188,8 +198,11 @@ class Parser {
   }
 
   void finish() {
-    if (!commanded_)
-      return refuse("a command is missing: status, reports, run, identify, settings, course or check", "");
+    if (!commanded_) {
+      return refuse(
+          "a command is missing: status, reports, run, settings, course, identify, network, test or check",
+          "");
+    }
     const auto useless =
         std::ranges::find_if_not(given_, [this](std::string_view option) { return takes(options_, option); });
     if (useless != given_.end()) return refuse(spoken() + " does not take ", *useless);
@@ -199,6 +212,7 @@ class Parser {
     if (setting_ != nullptr && setting_->wants_file && options_.file.empty()) {
       return refuse("a file is missing after ", setting_->name);
     }
+    if (options_.command == Command::Network && options_.word.empty()) options_.word = "show";
     if (options_.numbers.size() < row_of(options_.verb).least) {
       refuse("a report's number is missing after ", row_of(options_.verb).name);
     }

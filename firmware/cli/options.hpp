@@ -12,7 +12,18 @@
 
 namespace adit::cli {
 
-enum class Command : std::uint8_t { Status, Reports, Run, Identify, Settings, Course, Check, Help };
+enum class Command : std::uint8_t {
+  Status,
+  Reports,
+  Run,
+  Settings,
+  Course,
+  Identify,
+  Network,
+  Test,
+  Check,
+  Help
+};
 
 /// What `adit reports` is to do.
 enum class Verb : std::uint8_t { List, Show, Export, Send, Hold, Withdraw, Done, Resubmit };
@@ -29,6 +40,7 @@ struct Options {
   Command command = Command::Help;
   Command about = Command::Help;  // of Help: the command to explain
   Verb verb = Verb::List;
+  std::string word;                   // of Network: "show", "confirm", "back"
   std::vector<std::int64_t> numbers;  // of reports
   std::optional<std::int64_t> run;    // whose reports to list; nothing: the present one's
   bool all_runs = false;

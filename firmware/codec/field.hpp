@@ -59,6 +59,9 @@ class Field {
   Field element(std::size_t index) const&;
   Field element(std::size_t index) const&& = delete;
 
+  /// What is there; null where nothing is given. For readers that tell more than one refusal.
+  const Value* value() const { return value_; }
+
   /// Not given, or null.
   bool is_absent() const;
   template <class Kind>

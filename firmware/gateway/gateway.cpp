@@ -41,6 +41,12 @@ Gateway::Gateway(loop::Loop& loop, Parts parts)
       setup_(parts_.store, parts_.loaded, accounts_, [this] { make_way(); }),
       box_(loop, workers_, settings::file_of(parts_.loaded.settings),
            [this](page::Usage& usage) { add_to(usage); }),
+      network_requests_(parts_.state_folder, parts_.network_folder),
+      network_(loop, settings_, network_requests_),
+      self_test_(loop, settings_,
+                 {token_for("scoring", settings_, parts_.loaded.secrets),
+                  token_for("mapping", settings_, parts_.loaded.secrets)},
+                 network_requests_, [this] { changed(); }),
       page_(loop, *this, *this, accounts_, tokens()),
       routes_(icd_options(), *this, workers_, page_),
       second_(loop.timer([this] { every_second(); })),
@@ -48,6 +54,7 @@ Gateway::Gateway(loop::Loop& loop, Parts parts)
       pictured_run_(parts_.legacy ? parts_.legacy->pictured_run : 0) {
   page_.serve(setup_);
   page_.serve(box_);
+  page_.serve(network_, self_test_);
   if (parts_.legacy) hold_back();
 }
 

@@ -12,10 +12,13 @@
 #include "gateway/lights.hpp"
 #include "gateway/map_picture.hpp"
 #include "gateway/maps.hpp"
+#include "gateway/network_change.hpp"
+#include "gateway/network_requests.hpp"
 #include "gateway/news.hpp"
 #include "gateway/record.hpp"
 #include "gateway/roster.hpp"
 #include "gateway/scoring.hpp"
+#include "gateway/self_test.hpp"
 #include "gateway/session_keeper.hpp"
 #include "gateway/setup.hpp"
 #include "gateway/spool.hpp"
@@ -36,8 +39,8 @@ namespace adit::gateway {
 /// What one gateway hands on to the next that takes its place.
 struct Legacy {
   picture::Mosaic picture;
-  AsForwarded as_forwarded;
   std::int64_t pictured_run = 0;  // whose maps it shows; 0: none yet
+  AsForwarded as_forwarded;
 };
 
 /// What the gateway is made of: all of it has passed its checks.
@@ -49,6 +52,7 @@ struct Parts {
   std::unique_ptr<panel::Lines> lines;
   std::string runtime_folder;
   std::string state_folder;
+  std::string network_folder;    // where adit-network tells its status
   std::optional<Legacy> legacy;  // of the gateway before, where there was one
 };
 
@@ -67,7 +71,7 @@ class Gateway final : public intake::Desk, public page::Source, public page::Ope
   /// Whether it stopped so that another, of what the store holds by now, takes its place.
   bool makes_way() const { return makes_way_; }
   /// Once it has stopped, or could not start.
-  Legacy hand_over() { return {picture_.hand_over(), std::move(as_forwarded_), pictured_run_}; }
+  Legacy hand_over() { return {picture_.hand_over(), pictured_run_, std::move(as_forwarded_)}; }
   /// What systemd shows: one line.
   std::string status_line() const;
 
@@ -103,8 +107,8 @@ class Gateway final : public intake::Desk, public page::Source, public page::Ope
   void changed();
   void picture_the_run();
   void every_second();
-  void show_lights();
   void keep_sessions();
+  void show_lights();
   double sent_mbit() const;
   std::uint64_t sent_bytes() const;
   void add_to(page::Usage& usage) const;
@@ -136,6 +140,9 @@ class Gateway final : public intake::Desk, public page::Source, public page::Ope
   Accounts accounts_;
   Setup setup_;
   ThisBox box_;
+  NetworkRequests network_requests_;
+  NetworkChange network_;
+  SelfTest self_test_;
   page::Page page_;
   intake::IcdRoutes routes_;
   std::vector<std::unique_ptr<intake::Server>> servers_;

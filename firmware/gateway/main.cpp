@@ -59,6 +59,7 @@ std::expected<Parts, std::string> gather(const Options& options, const Store& st
                .lines = std::move(lines),
                .runtime_folder = runtime_folder(options),
                .state_folder = options.state,
+               .network_folder = options.network,
                .legacy = std::nullopt};
 }
 
@@ -97,17 +98,18 @@ class Service {
   std::expected<bool, std::string> run_one() {
     auto parts = gather(options_, store_);
     if (!parts) return std::unexpected(parts.error());
+    const adit::settings::Settings settings = parts->loaded.settings;
     parts->trouble = trouble_;
     parts->legacy = std::exchange(legacy_, std::nullopt);
     Gateway gateway(loop_, std::move(*parts));
-    const auto ran = run(gateway);
+    const auto ran = run(gateway, settings);
     legacy_ = gateway.hand_over();
     return ran;
   }
 
-  std::expected<bool, std::string> run(Gateway& gateway) {
+  std::expected<bool, std::string> run(Gateway& gateway, const adit::settings::Settings& settings) {
     if (const auto started = gateway.start(); !started) return std::unexpected(started.error());
-    store_.settle();
+    store_.settle(settings);
     if (!std::exchange(ready_, true)) loop_.feed_watchdog();
     adit::host::notify_ready(gateway.status_line());
     running_ = &gateway;

@@ -15,6 +15,7 @@ const char* const kUsage =
     "  --state DIR      where the ledger of reports is kept, and what is set up by the page: settings.json "
     "and\n"
     "                   secrets/, which count before the other two; made where it is absent\n"
+    "  --network DIR    where adit-network tells how it stands; /run/adit-network if not given\n"
     "  --version        prints the version\n"
     "  --help           prints this\n"
     "\n"
@@ -37,6 +38,7 @@ std::expected<Options, std::string> parse_options(std::span<char* const> argumen
     std::string* const value = word == "--settings"  ? &options.settings
                                : word == "--secrets" ? &options.secrets
                                : word == "--state"   ? &options.state
+                               : word == "--network" ? &options.network
                                                      : nullptr;
     if (value == nullptr) return std::unexpected("unknown word '" + std::string(word) + "'");
     if (++i == arguments.size()) return std::unexpected(std::string(word) + " wants a value");

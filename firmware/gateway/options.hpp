@@ -9,6 +9,7 @@ namespace adit::gateway {
 /// aditd's command line.
 struct Options {
   std::string settings, secrets, state;
+  std::string network = "/run/adit-network";
   bool help = false, version = false;
 };
 

@@ -1,5 +1,6 @@
 #include "gateway/store.hpp"
 
+#include <algorithm>
 #include <filesystem>
 #include <utility>
 
@@ -90,7 +91,13 @@ std::expected<void, std::string> Store::save_token(const std::string& name,
   return host::write_file(token_file(name), token->reveal() + "\n", kOursAlone);
 }
 
-void Store::settle() const {
+void Store::settle(const settings::Settings& settings) const {
+  const std::vector<std::string> names = token_names(settings);
+  std::error_code none;
+  for (const auto& file : fs::directory_iterator(secrets_folder(), none)) {
+    const bool known = std::ranges::find(names, file.path().stem().string()) != names.end();
+    if (!known && file.path().extension() == ".token") host::remove_file(file.path().string());
+  }
   if (!host::remove_file(file_before())) {
     host::log(host::Level::Warning, "cannot be removed", {{"file", file_before()}});
   }

@@ -35,7 +35,8 @@ class Store {
   std::expected<void, std::string> save(const settings::Settings& settings) const;
   std::expected<void, std::string> save_token(const std::string& name,
                                               const std::optional<icd::BearerToken>& token) const;
-  void settle() const;
+  /// What counts works. Tokens of courses that there are no more are removed: nobody could see them.
+  void settle(const settings::Settings& settings) const;
   /// False: nothing is on trial.
   bool take_back() const;
   /// Forgets all that was saved.

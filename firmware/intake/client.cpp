@@ -22,8 +22,9 @@ constexpr std::chrono::milliseconds kAfterEnd(100);
 
 }  // namespace
 
-Client::Client(Engine& engine, loop::Loop& loop, MHD_Connection* connection, int fd, std::string peer)
-    : engine_(engine), connection_(connection), fd_(fd), peer_(std::move(peer)) {
+Client::Client(Engine& engine, loop::Loop& loop, MHD_Connection* connection, int fd, std::string peer,
+               std::string local)
+    : engine_(engine), connection_(connection), fd_(fd), peer_(std::move(peer)), local_(std::move(local)) {
   // libmicrohttpd does not look at the sockets of suspended connections, and misses an end that comes
   // together with the last bytes. Edge-triggered, because an ended direction would be reported over and over.
   hang_up_ = loop.watch(fd, EPOLLRDHUP | EPOLLET, [this](std::uint32_t events) { happened(events); });

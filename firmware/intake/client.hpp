@@ -37,12 +37,14 @@ class Client {
     Request,  // Request sets the deadlines
   };
 
-  Client(Engine& engine, loop::Loop& loop, MHD_Connection* connection, int fd, std::string peer);
+  Client(Engine& engine, loop::Loop& loop, MHD_Connection* connection, int fd, std::string peer,
+         std::string local);
   Client(const Client&) = delete;
   Client& operator=(const Client&) = delete;
 
   MHD_Connection* connection() const { return connection_; }
   const std::string& peer() const { return peer_; }
+  const std::string& local() const { return local_; }
   Engine& engine() const { return engine_; }
   Phase phase() const { return phase_; }
   loop::Instant since() const { return since_; }  // when the phase began
@@ -87,7 +89,7 @@ class Client {
   Engine& engine_;
   MHD_Connection* connection_;
   int fd_;
-  std::string peer_;
+  std::string peer_, local_;
   std::string target_;
   Phase phase_ = Phase::Head;
   loop::Instant since_;

@@ -23,8 +23,13 @@ Framing framing_of(MHD_Connection* connection);
 class Head final : public RequestHead {
  public:
   Head(MHD_Connection* connection, std::string_view method, Target target, const std::string& peer,
-       std::optional<std::uint64_t> length)
-      : connection_(connection), method_(method), target_(std::move(target)), peer_(peer), length_(length) {}
+       const std::string& local, std::optional<std::uint64_t> length)
+      : connection_(connection),
+        method_(method),
+        target_(std::move(target)),
+        peer_(peer),
+        local_(local),
+        length_(length) {}
 
   std::string_view method() const override { return method_; }
   std::string_view path() const override { return target_.path; }
@@ -32,12 +37,14 @@ class Head final : public RequestHead {
   std::string_view header(std::string_view name) const override;
   std::optional<std::uint64_t> content_length() const override { return length_; }
   const std::string& peer() const override { return peer_; }
+  const std::string& local() const override { return local_; }
 
  private:
   MHD_Connection* connection_;
   std::string method_;
   Target target_;
   const std::string& peer_;
+  const std::string& local_;
   std::optional<std::uint64_t> length_;
 };
 

@@ -22,4 +22,7 @@ std::uint16_t port_of(int fd);
 /// The address without its port; an IPv4 address mapped into IPv6 (RFC 4291 2.5.5.2) is shown as IPv4.
 std::string address_text(const sockaddr* address);
 
+/// The address of this machine that a connection came to.
+std::string local_address(int fd);
+
 }  // namespace adit::intake

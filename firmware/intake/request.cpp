@@ -25,7 +25,8 @@ Request::Request(Client& client, std::string_view method) : client_(&client), is
 
 void Request::open(Handler& handler, std::string_view method, Target target, const Framing& framing) {
   left_ = framing.length;
-  head_.emplace(client_->connection(), method, std::move(target), client_->peer(), framing.length);
+  head_.emplace(client_->connection(), method, std::move(target), client_->peer(), client_->local(),
+                framing.length);
   in_call_ = true;
   exchange_ = handler.open(*head_, shared_from_this(), shared_from_this());
   in_call_ = false;

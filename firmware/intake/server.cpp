@@ -150,8 +150,9 @@ void Server::Impl::look_at_deadlines() {
 void Server::Impl::connected(MHD_Connection* connection, void** client_cls) {
   const auto* address = MHD_get_connection_info(connection, MHD_CONNECTION_INFO_CLIENT_ADDRESS);
   const auto* socket = MHD_get_connection_info(connection, MHD_CONNECTION_INFO_CONNECTION_FD);
-  auto client = std::make_unique<Client>(*this, loop_, connection, socket->connect_fd,
-                                         address_text(address->client_addr));
+  auto client =
+      std::make_unique<Client>(*this, loop_, connection, socket->connect_fd,
+                               address_text(address->client_addr), local_address(socket->connect_fd));
   *client_cls = client.get();
   clients_.emplace(client.get(), std::move(client));
   make_room();

@@ -37,6 +37,7 @@ class RequestHead {
   virtual std::string_view header(std::string_view name) const = 0;  // "" where absent; any letter case
   virtual std::optional<std::uint64_t> content_length() const = 0;   // absent where chunked
   virtual const std::string& peer() const = 0;                       // "10.0.0.5"
+  virtual const std::string& local() const = 0;  // the box's own that was asked: "10.0.0.1"
 };
 
 struct Header {

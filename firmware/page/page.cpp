@@ -9,6 +9,7 @@
 #include "page/entrance.hpp"
 #include "page/live.hpp"
 #include "page/map_routes.hpp"
+#include "page/network_routes.hpp"
 #include "page/panel_route.hpp"
 #include "page/report_routes.hpp"
 #include "page/scene_routes.hpp"
@@ -68,6 +69,7 @@ class Page::Impl {
     if (sets_up) return settings_->open(head, std::move(responder));
     if (ReportRoutes::has(head.path())) return reports_.open(head, std::move(responder));
     if (PanelRoute::has(head.path())) return panel_.open(head, std::move(responder));
+    if (network_ && NetworkRoutes::has(head.path())) return network_->open(head, std::move(responder));
     if (MapRoutes::has(head.path())) {
       responder->answer(maps_.answer(head));
     } else if (SceneRoutes::has(head.path())) {
@@ -81,6 +83,9 @@ class Page::Impl {
   void serve(Setup& setup) {
     settings_.emplace(setup);
     sessions_.serve(setup);
+  }
+  void serve(Network& network, SelfTest& test) {
+    network_.emplace(network, test, [this] { live_.changed(); });
   }
   void serve(Box& box) { box_.emplace(source_, box, entrance_, loop_); }
   void changed() { live_.changed(); }
@@ -113,6 +118,7 @@ class Page::Impl {
   MapRoutes maps_;
   SceneRoutes scene_;
   PanelRoute panel_;
+  std::optional<NetworkRoutes> network_;
   ReportRoutes reports_;
   std::optional<SettingsRoutes> settings_;
 };
@@ -134,6 +140,10 @@ std::unique_ptr<intake::Exchange> Page::open(const intake::RequestHead& head,
 
 void Page::serve(Box& box) {
   impl_->serve(box);
+}
+
+void Page::serve(Network& network, SelfTest& test) {
+  impl_->serve(network, test);
 }
 
 void Page::changed() {

@@ -20,6 +20,8 @@ namespace adit::page {
 
 class Box;
 class Keys;
+class Network;
+class SelfTest;
 class Setup;
 
 /// One artifact report and where it is in its life.
@@ -176,6 +178,9 @@ class Page final : public intake::Handler {
   std::unique_ptr<intake::Exchange> open(const intake::RequestHead& head,
                                          std::shared_ptr<intake::Responder> responder,
                                          std::shared_ptr<intake::Flow> flow) override;
+
+  /// Serves the box's own addresses and the Test, too; they outlive this. Once, before anything is opened.
+  void serve(Network& network, SelfTest& test);
 
   /// Serves what is known of the box, too; it outlives this. Once, before anything is opened.
   void serve(Box& box);

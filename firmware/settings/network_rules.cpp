@@ -9,21 +9,24 @@
 namespace adit::settings {
 namespace {
 
-/// "nominally used by the DARPA network" (ICD 3)
-const Subnet kDarpa[] = {
-    {10u << 24 | 1u << 16 | 1u << 8, 24}, {10u << 24 | 2u << 16 | 1u << 8, 24}, {10u << 24 | 100u << 16, 16}};
+/// The subnet that `address` is in. Nothing where that is no IPv4 address.
+std::optional<Subnet> subnet_of(const std::string& address, std::uint32_t prefix) {
+  const auto host = ipv4_of(address);
+  if (!host) return std::nullopt;
+  return Subnet{*host, static_cast<std::uint8_t>(prefix)};
+}
 
 /// An address that the box could have in that subnet.
 void check_host(const std::string& path, const std::string& address, const Subnet& subnet,
                 std::vector<Error>& errors) {
-  const std::uint32_t host = ipv4(address).value_or(0);
+  const std::uint32_t host = ipv4_of(address).value_or(0);
   const std::uint32_t first = host >> 24;
   if (first == 0 || first == 127 || first >= 224) {
     errors.push_back({path, address + " is no address that a host can have"});
-  } else if (host == subnet.address) {
-    errors.push_back({path, icd::sentence(address, " is the subnet ", subnet.text(), " itself")});
-  } else if (host == (subnet.address | (~std::uint32_t{0} >> subnet.prefix))) {
-    errors.push_back({path, icd::sentence(address, " is the broadcast address of ", subnet.text())});
+  } else if (host == subnet.first()) {
+    errors.push_back({path, icd::sentence(address, " is the subnet ", written(subnet), " itself")});
+  } else if (host == subnet.last()) {
+    errors.push_back({path, icd::sentence(address, " is the broadcast address of ", written(subnet))});
   }
 }
 
@@ -34,8 +37,8 @@ void check_command_post(const Network::CommandPost& network, std::vector<Error>&
   const std::string path = "network.command_post.gateway";
   if (!subnet) {
     errors.push_back({path, "a gateway is set, but network.command_post.address is not"});
-  } else if (!subnet->contains(ipv4(network.gateway).value_or(0))) {
-    errors.push_back({path, icd::sentence(network.gateway, " is not in ", subnet->text(),
+  } else if (!subnet->contains(ipv4_of(network.gateway).value_or(0))) {
+    errors.push_back({path, icd::sentence(network.gateway, " is not in ", written(*subnet),
                                           ", the subnet of network.command_post.address")});
   } else if (network.gateway == network.address) {
     errors.push_back({path, "the same as network.command_post.address"});
@@ -47,7 +50,7 @@ void check_command_post(const Network::CommandPost& network, std::vector<Error>&
 /// The endpoint's path, where it lies in the team's subnet.
 std::string endpoint_within(const Subnet& team, const Settings& settings) {
   const auto within = [&team](const Address& address) {
-    const auto host = ipv4(address.address);
+    const auto host = ipv4_of(address.address);
     return host && team.contains(*host);
   };
   if (within(settings.command_post.scoring)) return "command_post.scoring.address";
@@ -65,18 +68,19 @@ std::string overlap(const Settings& settings) {
   const Network& network = settings.network;
   const auto team = subnet_of(network.team.address, network.team.prefix);
   if (!team) return "";
-  for (const Subnet& darpa : kDarpa) {
-    if (team->overlaps(darpa)) {
-      return icd::sentence(team->text(), " overlaps ", darpa.text(), ", which the Command Post uses (ICD 3)");
+  for (const Subnet& darpa : command_post_subnets()) {
+    if (overlaps(*team, darpa)) {
+      return icd::sentence(written(*team), " overlaps ", written(darpa),
+                           ", which the Command Post uses (ICD 3)");
     }
   }
   const auto post = subnet_of(network.command_post.address, network.command_post.prefix);
-  if (post && team->overlaps(*post)) {
-    return icd::sentence(team->text(), " overlaps ", post->text(),
+  if (post && overlaps(*team, *post)) {
+    return icd::sentence(written(*team), " overlaps ", written(*post),
                          ", the subnet of network.command_post.address");
   }
   const std::string endpoint = endpoint_within(*team, settings);
-  return endpoint.empty() ? "" : icd::sentence(team->text(), " holds ", endpoint);
+  return endpoint.empty() ? "" : icd::sentence(written(*team), " holds ", endpoint);
 }
 
 std::vector<Error> network_faults(const Settings& settings) {

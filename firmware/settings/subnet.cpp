@@ -1,44 +1,71 @@
 #include "settings/subnet.hpp"
 
-#include <arpa/inet.h>
-
 #include <algorithm>
-
-#include "icd/sentence.hpp"
+#include <charconv>
 
 namespace adit::settings {
 namespace {
 
-std::uint32_t mask(std::uint32_t prefix) {
-  return prefix == 0 ? 0 : ~std::uint32_t{0} << (32 - prefix);
+constexpr Subnet kCommandPost[] = {{0x0a010100, 24}, {0x0a020100, 24}, {0x0a640000, 16}};
+
+/// All of `text` as a decimal number of at most `most`, without leading zeros: inet_aton() would read these
+/// as octal.
+std::optional<std::uint32_t> decimal(std::string_view text, std::uint32_t most) {
+  std::uint32_t number = 0;
+  const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), number);
+  if (error != std::errc() || end != text.data() + text.size() || number > most) return std::nullopt;
+  if (text.size() > 1 && text.front() == '0') return std::nullopt;
+  return number;
 }
 
 }  // namespace
 
-bool Subnet::contains(std::uint32_t host) const {
-  return (host & mask(prefix)) == address;
+std::optional<std::uint32_t> ipv4_of(std::string_view text) {
+  std::uint32_t address = 0;
+  for (int part = 0; part < 4; ++part) {
+    const auto dot = part < 3 ? text.find('.') : text.size();
+    if (dot == std::string_view::npos) return std::nullopt;
+    const auto byte = decimal(text.substr(0, dot), 255);
+    if (!byte) return std::nullopt;
+    address = address << 8 | *byte;
+    text.remove_prefix(std::min(dot + 1, text.size()));
+  }
+  return address;
 }
 
-bool Subnet::overlaps(const Subnet& other) const {
-  const std::uint32_t wider = mask(std::min(prefix, other.prefix));
-  return (address & wider) == (other.address & wider);
+std::string ipv4_text(std::uint32_t address) {
+  std::string text;
+  for (int shift = 24; shift >= 0; shift -= 8) {
+    text += std::to_string(address >> shift & 255);
+    if (shift > 0) text += '.';
+  }
+  return text;
 }
 
-std::string Subnet::text() const {
-  return icd::sentence(address >> 24, ".", address >> 16 & 255, ".", address >> 8 & 255, ".", address & 255,
-                       "/", prefix);
+std::expected<Subnet, std::string> parse_subnet(std::string_view text) {
+  const auto slash = text.find('/');
+  const auto address = ipv4_of(text.substr(0, slash));
+  const auto prefix = slash == std::string_view::npos ? std::nullopt : decimal(text.substr(slash + 1), 32);
+  if (!address || !prefix) return std::unexpected("expected an IPv4 subnet such as 10.1.1.0/24");
+  return Subnet{*address, static_cast<std::uint8_t>(*prefix)};
 }
 
-std::optional<std::uint32_t> ipv4(const std::string& text) {
-  in_addr parsed{};
-  if (inet_pton(AF_INET, text.c_str(), &parsed) != 1) return std::nullopt;
-  return ntohl(parsed.s_addr);
+std::string written(const Subnet& subnet) {
+  return ipv4_text(subnet.first()) + '/' + std::to_string(subnet.prefix);
 }
 
-std::optional<Subnet> subnet_of(const std::string& address, std::uint32_t prefix) {
-  const auto host = ipv4(address);
-  if (!host) return std::nullopt;
-  return Subnet{*host & mask(prefix), prefix};
+bool overlaps(const Subnet& a, const Subnet& b) {
+  return a.prefix <= b.prefix ? a.contains(b.address) : b.contains(a.address);
+}
+
+std::span<const Subnet> command_post_subnets() {
+  return kCommandPost;
+}
+
+std::optional<Subnet> overlapped_by(const Subnet& team) {
+  const auto found =
+      std::ranges::find_if(kCommandPost, [&](const Subnet& each) { return overlaps(each, team); });
+  return found == std::end(kCommandPost) ? std::nullopt : std::optional(*found);
 }
 
 }  // namespace adit::settings

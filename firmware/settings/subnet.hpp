@@ -1,26 +1,44 @@
 #pragma once
 
 #include <cstdint>
+#include <expected>
 #include <optional>
+#include <span>
 #include <string>
+#include <string_view>
 
 namespace adit::settings {
 
-/// An IPv4 subnet (RFC 4632).
-struct Subnet {
-  std::uint32_t address = 0;  // of the subnet itself, in the host's order of bytes
-  std::uint32_t prefix = 32;
+/// An IPv4 address as a number: 10.0.0.1 is 0x0a000001.
+std::optional<std::uint32_t> ipv4_of(std::string_view text);
+std::string ipv4_text(std::uint32_t address);
 
-  bool contains(std::uint32_t host) const;
-  bool overlaps(const Subnet& other) const;
-  /// "10.100.0.0/16"
-  std::string text() const;
+/// An IPv4 address and how many of its leading bits name the subnet that it lies in: a host's own address
+/// with its prefix, or a whole subnet.
+struct Subnet {
+  std::uint32_t address = 0;
+  std::uint8_t prefix = 0;  // 0 to 32
+
+  std::uint32_t mask() const { return prefix == 0 ? 0 : ~std::uint32_t{0} << (32 - prefix); }
+  std::uint32_t first() const { return address & mask(); }  // the network's own address
+  std::uint32_t last() const { return first() | ~mask(); }  // its broadcast address
+  bool contains(std::uint32_t other) const { return (other & mask()) == first(); }
+  friend bool operator==(const Subnet&, const Subnet&) = default;
 };
 
-/// Nothing where `text` is no IPv4 address.
-std::optional<std::uint32_t> ipv4(const std::string& text);
+/// "10.1.1.0/24"; the address may be any of the subnet's.
+std::expected<Subnet, std::string> parse_subnet(std::string_view text);
+/// The subnet, not the host in it: "10.1.1.0/24".
+std::string written(const Subnet& subnet);
 
-/// The subnet that `address` is in. Nothing where that is no IPv4 address.
-std::optional<Subnet> subnet_of(const std::string& address, std::uint32_t prefix);
+/// Whether an address can be in both.
+bool overlaps(const Subnet& a, const Subnet& b);
+
+/// What the Command Post's network nominally uses, and a team's should not (ICD 3): 10.1.1.0/24, 10.2.1.0/24,
+/// 10.100.0.0/16.
+std::span<const Subnet> command_post_subnets();
+
+/// The first of these that `team` overlaps.
+std::optional<Subnet> overlapped_by(const Subnet& team);
 
 }  // namespace adit::settings

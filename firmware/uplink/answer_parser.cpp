@@ -5,6 +5,8 @@
 #include <optional>
 #include <utility>
 
+#include "uplink/http_date.hpp"
+
 // GCC 12 sees boost::optional as uninitialised where the sanitizers keep it from inlining.
 #if defined(__GNUC__) && !defined(__clang__)
 #pragma GCC diagnostic push
@@ -121,6 +123,7 @@ Answered AnswerParser::take() {
   answered.status = static_cast<int>(message.result_int());
   answered.content_type = to_string(message[http::field::content_type]);
   answered.retry_after = retry_after(to_string(message[http::field::retry_after]));
+  answered.date = http_date(to_string(message[http::field::date]));
   answered.body = std::move(message.body());
   return answered;
 }

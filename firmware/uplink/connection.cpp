@@ -89,7 +89,7 @@ class Connection::Impl : public std::enable_shared_from_this<Impl> {
   void connect() {
     began_ = loop_.now();
     auto fd = begin_connect(endpoint_);
-    if (!fd) return connecting_failed(fd.error());
+    if (!fd) return connecting_failed(fd.error().why);
     fd_ = std::move(*fd);
     gives_up_after_ = {};
     phase_ = Phase::Connecting;

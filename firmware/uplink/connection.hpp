@@ -39,6 +39,7 @@ struct Answered {
   std::string content_type;
   std::string body;
   std::optional<std::chrono::seconds> retry_after;
+  std::optional<std::chrono::sys_seconds> date = {};  // by the peer's clock
 };
 /// No byte of the request was given to the kernel: it is safe to send it again.
 struct NeverSent {

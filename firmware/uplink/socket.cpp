@@ -75,8 +75,8 @@ void keep_alive(int fd) {
   set(fd, IPPROTO_TCP, TCP_KEEPCNT, kKeepAliveProbes);
 }
 
-std::unexpected<std::string> failure(const std::string& doing, int error) {
-  return std::unexpected(doing + std::strerror(error));
+std::unexpected<NoSocket> failure(const std::string& doing, int error) {
+  return std::unexpected(NoSocket{doing + std::strerror(error), error});
 }
 
 }  // namespace
@@ -88,9 +88,9 @@ std::string authority_of(const Endpoint& endpoint) {
   return (is_ipv6 ? "[" + address + "]" : address) + ":" + std::to_string(endpoint.port);
 }
 
-std::expected<loop::FileDescriptor, std::string> begin_connect(const Endpoint& endpoint) {
+std::expected<loop::FileDescriptor, NoSocket> begin_connect(const Endpoint& endpoint) {
   const Addresses address = parse(endpoint);
-  if (!address) return std::unexpected("\"" + endpoint.address + "\" is no IP address");
+  if (!address) return std::unexpected(NoSocket{"\"" + endpoint.address + "\" is no IP address"});
   loop::FileDescriptor fd(
       ::socket(address->ai_family, SOCK_STREAM | SOCK_NONBLOCK | SOCK_CLOEXEC, IPPROTO_TCP));
   if (!fd) return failure("making a socket: ", errno);

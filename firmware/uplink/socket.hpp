@@ -13,9 +13,14 @@ namespace adit::uplink {
 /// "10.100.1.200:8000" or "[fd00::1]:8000": for the Host header (RFC 9110 7.2) and for sentences.
 std::string authority_of(const Endpoint& endpoint);
 
+struct NoSocket {
+  std::string why;
+  int error = 0;  // an errno; 0: the address is none
+};
+
 /// A non-blocking TCP socket of the endpoint's settings that has begun to connect, or why there is none:
 /// "Connection refused", "binding to interface darpa0: No such device".
-std::expected<loop::FileDescriptor, std::string> begin_connect(const Endpoint& endpoint);
+std::expected<loop::FileDescriptor, NoSocket> begin_connect(const Endpoint& endpoint);
 
 /// How connecting ended: 0 or an errno.
 int connect_error(int fd);

@@ -51,7 +51,7 @@ TEST_F(StoreTest, GivesWhatTheBoxWasGivenUntilSomethingIsSaved) {
 TEST_F(StoreTest, TakesBackWhatWasSavedUntilItIsSettled) {
   EXPECT_FALSE(store_.take_back()) << "nothing is on trial";
   (void)store_.save(with_connections(30));
-  store_.settle();
+  store_.settle(with_connections(30));
   EXPECT_FALSE(store_.take_back());
   (void)store_.save(with_connections(40));
   (void)store_.save(with_connections(50));
@@ -101,6 +101,17 @@ TEST_F(StoreTest, KnowsTheTokensOfEachCourse) {
   (void)store_.save(with_connections(30));
   (void)store_.save_token("course.A.mapping", icd::BearerToken::parse("of-a"));
   EXPECT_EQ(store_.load()->secrets.token("course.A.mapping")->reveal(), "of-a");
+}
+
+TEST_F(StoreTest, RemovesTheTokensOfCoursesThatAreNoMoreOnceThatIsSettled) {
+  (void)store_.save_token("course.A.mapping", icd::BearerToken::parse("of-a"));
+  (void)store_.save_token("course.B.mapping", icd::BearerToken::parse("of-b"));
+  (void)store_.save_token("team", icd::BearerToken::parse("team-1"));
+  (void)store_.save(with_connections(30));
+  EXPECT_TRUE(kept("secrets/course.B.mapping.token")) << "it may be taken back yet";
+  store_.settle(with_connections(30));
+  EXPECT_FALSE(kept("secrets/course.B.mapping.token"));
+  EXPECT_TRUE(kept("secrets/course.A.mapping.token") && kept("secrets/team.token"));
 }
 
 TEST_F(StoreTest, SaysThatItCannotBeWritten) {

@@ -13,6 +13,7 @@
 
 #include "intake/server.hpp"
 #include "page/fake_keys.hpp"
+#include "page/fake_network.hpp"
 #include "page/page.hpp"
 
 namespace adit::page {
@@ -101,9 +102,14 @@ class FakeHead final : public intake::RequestHead {
   }
   std::optional<std::uint64_t> content_length() const override { return length_; }
   const std::string& peer() const override { return peer_; }
+  const std::string& local() const override { return local_; }
+  FakeHead& to(std::string local) {
+    local_ = std::move(local);
+    return *this;
+  }
 
  private:
-  std::string method_, path_, peer_ = "10.0.0.5";
+  std::string method_, path_, peer_ = "10.0.0.5", local_ = "10.0.0.1";
   std::map<std::string, std::string, std::less<>> query_;
   std::vector<intake::Header> headers_;
   std::optional<std::uint64_t> length_;

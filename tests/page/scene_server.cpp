@@ -11,6 +11,7 @@
 
 #include "page/fake_box.hpp"
 #include "page/fake_keys.hpp"
+#include "page/fake_network.hpp"
 #include "page/map_scene.hpp"
 #include "page/played.hpp"
 #include "page/scenes.hpp"
@@ -103,9 +104,12 @@ int serve(std::uint16_t port, const std::string& first, bool first_start) {
   FakeKeys keys;
   FakeBox box;
   if (first_start) keys.operator_.reset();
+  FakeNetwork network;
+  FakeTest test;
   Page page{loop, stage, stage, keys, {token()}};
   furnish(box, loop.stamp_now());
   page.serve(box);
+  page.serve(network, test);
   auto server = intake::Server::start(loop, {.address = "127.0.0.1", .port = port, .interface = {}}, page);
   if (!server) return std::fprintf(stderr, "%s\n", server.error().c_str()), 1;
   std::printf("%d\n", (*server)->port());

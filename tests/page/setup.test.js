@@ -69,6 +69,37 @@ test("leads from an empty box to a first report through it", async (t) => {
   assert.deepEqual(complaints(page, "401"), []);
 });
 
+/** Runs the Test, and gives of each endpoint each step's state. */
+async function tried(page) {
+  await page.getByRole("button", { name: "Test it" }).click();
+  await page.locator("#step-test .outcome", { hasText: "No report was spent." }).waitFor({ timeout: 30_000 });
+  return page.$$eval("#step-test .trial", (all) => all.map((each) => [...each.querySelectorAll("ol .badge")].map((badge) => badge.textContent.trim())));
+}
+
+test("tries each endpoint step by step, and says what to do where one fails", async (t) => {
+  const { box, ask, page } = await ready(t, "setup#test");
+  const unreached = await tried(page);
+  assert.equal(unreached.length, 2);
+  for (const states of unreached) assert.deepEqual(states.slice(2), ["bad", "skipped", "skipped"]);
+  const reach = page.locator(".trial li", { hasText: "The endpoint answers" }).first();
+  assert.notEqual(await reach.locator(".said").innerText(), "");
+  assert.notEqual(await reach.locator(".advice").innerText(), "");
+  await step(page, "Test").getByText("failed").waitFor();
+
+  const { settings, tag } = (await ask("/adit/settings")).said;
+  Object.assign(settings.command_post.scoring, { port: box.scoring });
+  Object.assign(settings.command_post.mapping, { port: box.mapping });
+  await ask("/adit/settings", { settings, base: tag });
+  const free = async () => (await ask("/adit/settings").catch(() => ({}))).said?.applying === false;
+  await until(free, "the settings to be applied");
+  await ask("/adit/tokens", { name: "scoring", token: "not-the-token" });
+  await until(free, "the token to be applied");
+  await hears(page, "Live");
+  const [scoring, mapping] = await tried(page);
+  assert.deepEqual([scoring[2], scoring[3], mapping[3]], ["good", "bad", "good"]);
+  assert.notEqual(await page.locator(".trial li", { hasText: "The token is taken" }).first().locator(".advice").innerText(), "");
+});
+
 test("keeps tokens to itself, and says which are there", async (t) => {
   const { box, ask, page } = await ready(t, "setup#tokens");
   const token = page.locator("form.token", { hasText: "The team’s own token" });
@@ -96,9 +127,9 @@ test("keeps tokens to itself, and says which are there", async (t) => {
   const asTeam = (bearer) => fetch(`${box.url}adit/run`, { headers: { Authorization: `Bearer ${bearer}` } }).then(({ status }) => status);
   assert.deepEqual([await asTeam("another-token"), await asTeam(TOKENS.team)], [200, 401]);
   await token.getByRole("button", { name: "Remove" }).click();
-  await page.locator("#confirm").getByRole("button", { name: "Leave it" }).click();
+  await page.locator("#review").getByRole("button", { name: "Leave it" }).click();
   await token.getByRole("button", { name: "Remove" }).click();
-  await page.locator("#confirm").getByRole("button", { name: "Remove it" }).click();
+  await page.locator("#review").getByRole("button", { name: "Remove it" }).click();
   await token.getByText("Removed.").waitFor();
   assert.ok(!existsSync(join(box.state, "secrets/team.token")));
   assert.equal(await asTeam(TOKENS.team), 200, "the one that the box was given counts again");

@@ -22,9 +22,9 @@ export async function serve(scene, port = 0, ...more) {
   };
 }
 
-export const launch = () =>
+export const launch = (executablePath = process.env.CHROMIUM ?? "/usr/bin/chromium") =>
   chromium.launch({
-    executablePath: process.env.CHROMIUM ?? "/usr/bin/chromium",
+    executablePath,
     args: ["--disable-gpu", "--no-first-run", "--disable-background-networking", "--disable-component-update", "--disable-sync"]
       .concat(process.getuid() === 0 ? ["--no-sandbox"] : []),
   });

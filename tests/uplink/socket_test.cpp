@@ -20,7 +20,7 @@ T option(const loop::FileDescriptor& fd, int level, int name) {
 
 loop::FileDescriptor socket_of(const Endpoint& endpoint) {
   auto fd = begin_connect(endpoint);
-  EXPECT_TRUE(fd) << fd.error();
+  EXPECT_TRUE(fd) << fd.error().why;
   return fd ? std::move(*fd) : loop::FileDescriptor();
 }
 

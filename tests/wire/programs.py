@@ -125,7 +125,8 @@ class Box(Program):
         self.state = folder / "state"
         self.settings = folder / "settings.json"
         self.settings.write_text(json.dumps(settings(network, overrides)))
-        command = [BIN / "aditd", "--settings", self.settings, "--secrets", folder / "secrets", "--state", self.state]
+        command = [BIN / "aditd", "--settings", self.settings, "--secrets", folder / "secrets", "--state", self.state,
+                   "--network", folder / "network" / "status"]
         super().__init__(network, network.box, folder / "aditd.log", command)
         wait_until(self._answers, "aditd to listen")
 

@@ -1,5 +1,4 @@
-// Applying what was typed: shown first, and never over what somebody else saved meanwhile.
-import { open } from "./dialog.js";
+// Applying what was typed, or a file: shown first, and never over what somebody else saved meanwhile.
 import { beginFrom, check, differs, draft, drop, flat, merged, onDraft, onVerdict, refresh, same, verdict } from "./draft.js";
 import { make, say } from "./dom.js";
 import { blameAll } from "./field.js";
@@ -15,9 +14,16 @@ const dialog = document.getElementById("review");
 const [heads, rows] = [dialog.querySelector("thead tr"), dialog.querySelector("tbody")];
 const [no, yes] = [dialog.querySelector(".no"), dialog.querySelector(".yes")];
 
+const fileSection = document.getElementById("step-file");
+const MOST = 250_000; // bytes of a file; the box takes a little more
+
 let outcome = "", link = "", isBusy = false;
 
-const shown = (value) => (value === null || value === undefined ? "–" : value === "" ? "(empty)" : clip(typeof value === "object" ? JSON.stringify(value) : String(value), 300));
+/** A value as people read it. */
+function shown(value) {
+  if (value === "") return "(empty)";
+  return value === null || value === undefined ? "–" : clip(typeof value === "object" ? JSON.stringify(value) : String(value), 300);
+}
 
 function head(text, scope) {
   const cell = make("th", text);
@@ -26,7 +32,7 @@ function head(text, scope) {
 }
 
 /** Asks; gives true (`word`), false (`other`), or null where the dialog was left. `changes`: [path, value, ...]. */
-export function reviewed({ title, text = "", columns = ["From", "To"], changes, warnings = [], word, other = "" }) {
+export function reviewed({ title, text = "", columns = ["From", "To"], changes = [], warnings = [], word, other = "" }) {
   dialog.querySelector("h2").textContent = title;
   dialog.querySelector(".text").textContent = text;
   heads.replaceChildren(...["Setting", ...columns].map((name) => head(name, "col")));
@@ -35,7 +41,7 @@ export function reviewed({ title, text = "", columns = ["From", "To"], changes, 
   dialog.querySelector(".warnings").replaceChildren(...warnings.map((warning) => make("li", warning)));
   yes.textContent = word;
   no.textContent = other || "Leave it";
-  open(dialog);
+  dialog.showModal();
   no.focus();
   return new Promise((resolve) => {
     let answer = null;
@@ -90,7 +96,8 @@ async function whyNot() {
 async function settle() {
   const { base, settings: mine, newer } = draft;
   const [was, own, theirs] = [base, mine, newer.settings].map((each) => flat(each));
-  const paths = [...new Set([...theirs.keys(), ...own.keys()])].filter((path) => own.get(path) !== was.get(path) || theirs.get(path) !== was.get(path));
+  const isOther = (path) => own.get(path) !== was.get(path) || theirs.get(path) !== was.get(path);
+  const paths = [...new Set([...theirs.keys(), ...own.keys()])].filter(isOther);
   const answer = await reviewed({
     title: "Somebody else has saved settings meanwhile",
     text: "What is in use now is in the column Theirs. Go on from it: what you changed yourself is put over it, and can still be changed.",
@@ -117,7 +124,9 @@ export async function save(settings) {
     if (said) link = "";
     if (isDone) beginFrom(said);
     if (said) await refresh();
-    report(isDone ? "Applied." : said ? (await whyNot()) || "It was taken back." : link ? "The page has moved to" : "The box does not answer.");
+    if (isDone) report("Applied.");
+    else if (said) report((await whyNot()) || "It was taken back.");
+    else report(link ? "The page has moved to" : "The box does not answer.");
     return isDone;
   } catch (error) {
     if (error.status === 409) await refresh();
@@ -196,4 +205,44 @@ export function offerApply() {
   onVerdict(show);
   addEventListener("hashchange", () => requestAnimationFrame(show));
   if (draft.newer) settle();
+}
+
+function reportFile(text, errors = []) {
+  const [said, wrong] = fileSection.querySelectorAll(".outcome, .warnings");
+  said.dataset.bad = text !== "Applied.";
+  say(said, text);
+  wrong.replaceChildren(...errors.map(({ path, what }) => make("li", `${path}: ${what}`)));
+}
+
+async function readFile(file) {
+  if (file.size > MOST) throw new Error("That is too long for a file of settings.");
+  try {
+    return JSON.parse(await file.text());
+  } catch {
+    throw new Error("That is no JSON, and so no file of settings.");
+  }
+}
+
+async function takeFile(file) {
+  const settings = await readFile(file);
+  const { errors, changes, warnings } = await post("/adit/settings/check", { settings });
+  if (errors.length) return reportFile("Nothing was applied: the file has errors.", errors);
+  if (!changes.length) return reportFile("Nothing to apply: the box runs with the same settings.");
+  const text = differs() ? "What you typed and did not apply is dropped." : "";
+  const yes = await reviewed({ title: `Apply ${file.name}?`, text, changes: fromTo(changes), warnings, word: "Apply" });
+  if (!yes) return reportFile("Nothing was applied.");
+  reportFile("");
+  if (await save(settings)) reportFile("Applied.");
+}
+
+/** Settings from a file: checked by the box, shown, and only then applied. */
+export function offerImport() {
+  const input = fileSection.querySelector("input");
+  input.addEventListener("change", async () => {
+    const [file] = input.files;
+    if (!file) return;
+    reportFile("");
+    await takeFile(file).catch((error) => reportFile(error.message));
+    input.value = "";
+  });
 }

@@ -1,23 +1,121 @@
-// Courses: one press switches to another Command Post, once it was said what that changes.
+// What lets the box in at a Command Post: tokens, which are set and never shown again; and the switch between courses.
 import { applied, insist, reviewed } from "./apply.js";
 import { badge, list, make, say } from "./dom.js";
 import { differs, draft, ENDPOINTS, onDraft, refresh } from "./draft.js";
+import { blame, labelled } from "./field.js";
 import { post } from "./session.js";
 
-const section = document.getElementById("step-courses");
-const outcome = section.querySelector(".outcome");
+const COMMON = { scoring: "Scoring endpoint’s token", mapping: "Mapping endpoint’s token", team: "The team’s own token" };
+const HINTS = {
+  scoring: "Given by the Command Post’s staff; reports and the run’s status need it.",
+  mapping: "Given by the Command Post’s staff; maps, states and markers need it.",
+  team: "For scripts and stations of the team, if these are to have one of their own.",
+};
+const WRONG = "expected 1 to 256 visible ASCII characters";
+const ofCourse = (name) => name.startsWith("course.");
+const labelOf = (name) => COMMON[name] ?? name.replace(/^course\.(.+)\.(\w+)$/, "Course $1: $2 token of its own");
+const hintOf = (name) => HINTS[name] ?? "Without one, the common token counts.";
+
+let readOnly = false;
+
+async function send(node, name, token) {
+  const { field, outcome } = node;
+  say(outcome, "");
+  blame(field, "");
+  try {
+    await insist(() => post("/adit/tokens", { name, token }));
+    field.control.value = "";
+    await applied();
+    await insist(refresh);
+    say(outcome, token === null ? "Removed." : "Set.");
+    return true;
+  } catch (error) {
+    blame(field, error.message);
+    field.control.focus();
+    return false;
+  }
+}
+
+async function removeIt(node, name) {
+  const text = "The one that the box was given, if any, counts then; without one the Command Post lets nothing in.";
+  if (await reviewed({ title: `Remove “${labelOf(name)}”?`, text, word: "Remove it" })) await send(node, name, null);
+}
+
+function create(name) {
+  const input = Object.assign(make("input"), { type: "password", autocomplete: "off", maxLength: 300, disabled: readOnly });
+  const field = labelled(labelOf(name), input, hintOf(name));
+  const state = make("p.state"), outcome = make("p.outcome");
+  outcome.setAttribute("role", "status");
+  const [show, remove, set] = ["Show", "Remove", "Set"].map((word) => Object.assign(make("button", word), { type: "button" }));
+  set.className = "set main";
+  set.type = "submit";
+  for (const button of [show, remove, set]) button.setAttribute("aria-label", `${button.textContent}: ${labelOf(name)}`);
+  const node = make("form.token", field, state, make("div.answers", show, remove, set), outcome);
+  node.noValidate = true;
+  Object.assign(node, { field, outcome, state, buttons: [show, remove, set] });
+  show.onclick = () => {
+    input.type = input.type === "password" ? "text" : "password";
+    const word = input.type === "password" ? "Show" : "Hide";
+    say(show, word);
+    show.setAttribute("aria-label", `${word}: ${labelOf(name)}`);
+  };
+  remove.onclick = () => removeIt(node, name);
+  node.onsubmit = (event) => {
+    event.preventDefault();
+    const token = input.value.trim();
+    if (token) send(node, name, token);
+    else blame(field, "nothing is typed yet");
+  };
+  input.addEventListener("input", () => blame(field, /^[!-~]{0,256}$/.test(input.value.trim()) ? "" : WRONG));
+  return node;
+}
+
+function update(node, name) {
+  const set = draft.tokens[name], needed = ENDPOINTS.includes(name);
+  const level = set ? "good" : needed ? "bad" : "quiet";
+  node.state.dataset.level = level;
+  if (!node.state.firstChild) node.state.append(make("span.badge"));
+  badge(node.state.firstChild, level, set ? "is set" : needed ? "is missing" : "none");
+  const [show, remove, setIt] = node.buttons;
+  show.hidden = setIt.hidden = readOnly;
+  remove.hidden = readOnly || !set;
+}
+
+/** Sets whatever is typed and not set yet; whether all of it was taken. */
+export async function setTyped() {
+  for (const node of document.querySelectorAll("form.token")) {
+    const token = node.field.control.value.trim();
+    if (token && !(await send(node, node.dataset.key, token))) return false;
+  }
+  return true;
+}
+
+export function showTokens(isReadOnly) {
+  readOnly = isReadOnly;
+  const show = () => {
+    const names = Object.keys(draft.tokens);
+    const put = (step, which) => list(document.querySelector(`#${step} .tokens`), names.filter(which), (name) => name, create, update);
+    put("step-tokens", (name) => !ofCourse(name));
+    put("step-courses", ofCourse);
+  };
+  onDraft(show);
+  show();
+}
 
 const nameOf = (course) => (course ? `Course ${course}` : "No course");
 const at = ({ address, port }) => `${address.includes(":") ? `[${address}]` : address}:${port}`;
 const postOf = (settings, name) => (name ? settings.courses.find((course) => course.name === name) : settings.command_post);
-const tokenOf = (name, endpoint) => (draft.tokens[`course.${name}.${endpoint}`] ? "its own" : draft.tokens[endpoint] ? "the common one" : "missing");
+const tokenOf = (name, endpoint) =>
+  draft.tokens[`course.${name}.${endpoint}`] ? "its own" : draft.tokens[endpoint] ? "the common one" : "missing";
 
 async function switchTo(name) {
+  const outcome = document.querySelector("#step-courses > .outcome");
   const { base } = draft, now = base.command_post.course;
   const rows = (what, value) => ENDPOINTS.map((endpoint) => [`${endpoint} ${what}`, value(now, endpoint), value(name, endpoint)]);
-  const changes = [["course", nameOf(now), nameOf(name)], ...rows("address", (course, endpoint) => at(postOf(base, course)[endpoint])), ...rows("token", tokenOf)];
+  const addressOf = (course, endpoint) => at(postOf(base, course)[endpoint]);
+  const changes = [["course", nameOf(now), nameOf(name)], ...rows("address", addressOf), ...rows("token", tokenOf)];
   const text = "Reports that were not sent to the old Command Post are held until you say; maps that wait go to the new one.";
-  if (!(await reviewed({ title: `Switch to ${nameOf(name).toLowerCase().replace(name.toLowerCase(), name)}?`, text, changes, word: "Switch" }))) return;
+  if (!(await reviewed({ title: `Switch to ${nameOf(name)}?`, text, changes, word: "Switch" }))) return;
   say(outcome, "It is being applied.");
   outcome.dataset.bad = false;
   try {
@@ -33,12 +131,12 @@ async function switchTo(name) {
   }
 }
 
-function create() {
+function createCourse() {
   const button = Object.assign(make("button", "Switch"), { type: "button" });
   return make("li", make("span.name"), make("span.badge"), make("span.note"), button);
 }
 
-function update(node, name) {
+function updateCourse(node, name) {
   const [title, state, note, button] = node.children;
   const inUse = draft.base.command_post.course === name, { scoring, mapping } = postOf(draft.base, name);
   node.dataset.level = inUse ? "good" : "quiet";
@@ -55,7 +153,7 @@ export function showCourses() {
   const overruled = document.getElementById("overruled");
   const show = () => {
     const { courses, command_post: { course } } = draft.base;
-    list(document.getElementById("switch"), ["", ...courses.map(({ name }) => name)], (name) => name, create, update);
+    list(document.getElementById("switch"), ["", ...courses.map(({ name }) => name)], (name) => name, createCourse, updateCourse);
     overruled.hidden = !course;
     overruled.dataset.level = "wait";
     badge(overruled.firstElementChild, "wait", `Course ${course} is in use: these count again without a course.`);

@@ -73,7 +73,7 @@ export function fillIn() {
   for (const place of document.querySelectorAll("[data-fields] [data-path]")) place.replaceWith(setting(place.dataset.path, place.textContent));
 }
 
-const labels = { name: "Name", alias: "Alias", address: "Address", port: "Port", "scoring.address": "Scoring address", "scoring.port": "Scoring port", "mapping.address": "Mapping address", "mapping.port": "Mapping port" };
+const capital = (text) => text[0].toUpperCase() + text.slice(1);
 const blank = (keys) => {
   const item = {};
   for (const [name, { default: usual }] of keys) {
@@ -101,7 +101,7 @@ export function listOf(place) {
       write(path, read(path).toSpliced(i, 1));
       (rows.children[i]?.querySelector("input") ?? more).focus();
     });
-    const fields = keys.map(([name]) => setting(`${path}[${i}].${name}`, labels[name] ?? name));
+    const fields = keys.map(([name]) => setting(`${path}[${i}].${name}`, capital(name.replace(".", " "))));
     return make("fieldset.item", make("legend", `${item} ${i + 1}`), make("div.fields", ...fields), ...(readOnly ? [] : [remove]));
   };
   const show = (what) => {

@@ -2,7 +2,7 @@
 import { fromTo, reviewed } from "./apply.js";
 import { make, say } from "./dom.js";
 import { blame, labelled } from "./field.js";
-import { secondsLeft } from "./pending.js";
+import { left, told } from "./pending.js";
 import { post } from "./session.js";
 
 const PAUSE = 300; // ms without a key
@@ -70,7 +70,7 @@ async function tryIt() {
     word: "Change for now",
   });
   if (!yes) return;
-  await post("/adit/network", wanted());
+  told(await post("/adit/network", wanted()));
   isTyped = false;
   warned.replaceChildren();
   report("");
@@ -90,7 +90,7 @@ function showPending(network) {
   const { pending } = network;
   pendingPlace.hidden = !pending;
   if (!pending) return;
-  say(pendingPlace.querySelector(".left"), `${secondsLeft(network)} s left`);
+  say(pendingPlace.querySelector(".left"), left(network));
   const url = `${pending.page}/setup#network`, where = pendingPlace.querySelector(".where"), isHere = new URL(url).host === location.host;
   const words = isHere ? "You are at the new address: confirm, and it is kept." : "Open the page at its new address and confirm it there: ";
   if (where.dataset.url === url) return;
@@ -130,6 +130,6 @@ export function offerNetwork() {
   form.noValidate = true;
   form.addEventListener("submit", (event) => event.preventDefault());
   on(change, tryIt);
-  on(pendingPlace.querySelector(".confirm"), () => post("/adit/network/confirm"));
-  on(pendingPlace.querySelector(".back"), () => post("/adit/network/back"));
+  on(pendingPlace.querySelector(".confirm"), async () => told(await post("/adit/network/confirm")));
+  on(pendingPlace.querySelector(".back"), async () => told(await post("/adit/network/back")));
 }

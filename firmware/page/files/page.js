@@ -13,6 +13,7 @@ import { showRefusals } from "./refusals.js";
 import { showReports } from "./reports.js";
 import { showRobots } from "./robots.js";
 import { showAttention, showLights, showRun } from "./run.js";
+import { followNetwork } from "./pending.js";
 import { showWho } from "./session.js";
 import { clip, timeOfDay } from "./words.js";
 
@@ -44,6 +45,7 @@ function show({ view, time, lost }) {
   if (document.title !== title) document.title = title;
 }
 
+followNetwork();
 showWho(document.getElementById("who"));
 learned.then(follow("/adit/events", show));
 

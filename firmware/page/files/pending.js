@@ -4,11 +4,16 @@ import { boxNow, get } from "./session.js";
 
 const EVERY = 4000, PENDING = 1000; // ms
 const nav = document.querySelector("header nav");
-let sign = null;
+let sign = null, last = null, hear = () => {};
 
-function show(network) {
-  const pending = network?.pending;
-  if (!pending) {
+/** Until the box takes it back: "73 s left". */
+export function left({ pending }) {
+  const seconds = Math.ceil(pending.until - boxNow());
+  return seconds > 0 ? `${seconds} s left` : "it is being taken back";
+}
+
+function show() {
+  if (!last?.pending) {
     sign?.remove();
     sign = null;
     return;
@@ -18,28 +23,23 @@ function show(network) {
     mark(sign, "level", "wait");
     nav.append(sign);
   }
-  say(sign.lastChild, `${secondsLeft(network)} s to confirm`);
+  say(sign.lastChild, left(last));
 }
 
-/** Until the box takes it back. */
-export const secondsLeft = ({ pending }) => Math.max(0, Math.ceil(pending.until - boxNow()));
+/** Shows what the box said of its network. */
+export function told(network) {
+  last = network;
+  show();
+  hear(network, null);
+}
 
-/** Calls `hear(network)`, or `hear(null, error)` where it is not told. */
-export function followNetwork(hear = () => {}) {
+/** Calls `heard(network, null)` as the box tells it, `heard(null, error)` where it does not, `heard(network)` as time passes. */
+export function followNetwork(heard = hear) {
+  hear = heard;
   const follow = async () => {
-    let isPending = false;
-    if (!document.hidden) {
-      try {
-        const network = await get("/adit/network");
-        isPending = network.pending !== null;
-        show(network);
-        hear(network);
-      } catch (error) {
-        hear(null, error);
-        isPending = !error.status;
-      }
-    }
-    setTimeout(follow, isPending ? PENDING : EVERY);
+    if (!document.hidden) await get("/adit/network", AbortSignal.timeout(EVERY)).then(told, (error) => hear(null, error));
+    setTimeout(follow, last?.pending ? PENDING : EVERY);
   };
   follow();
+  setInterval(() => last?.pending && (show(), hear(last)), PENDING); // it counts down where the box cannot be reached, too
 }

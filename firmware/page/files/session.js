@@ -60,15 +60,15 @@ export const boxNow = () => (Date.now() + ahead) / 1000;
 const SILENT = "The box does not answer.";
 
 /** What a path gives, where it gives what is asked for; an Error's message is the sentence to show. */
-async function ask(path) {
-  const answer = await fetch(path, { cache: "no-store" }).catch(() => Promise.reject(new Error(SILENT)));
+async function ask(path, signal) {
+  const answer = await fetch(path, { cache: "no-store", signal }).catch(() => Promise.reject(new Error(SILENT)));
   if (answer.status === 401) toLogin();
   ahead = Date.parse(answer.headers.get("Date")) - Date.now() || 0;
   return answer;
 }
 
 /** Its JSON. */
-export const get = async (path) => resultOf(await ask(path));
+export const get = async (path, signal) => resultOf(await ask(path, signal));
 
 /** It as a file: its name and its bytes. */
 export async function getFile(path) {

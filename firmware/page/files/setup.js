@@ -1,19 +1,103 @@
-// Set-up: the box's addresses, the Command Post's, tokens, robots, courses and all else, in steps.
-import { offerApply } from "./apply.js";
-import { showCourses } from "./courses.js";
-import { badge } from "./dom.js";
-import { checkAsTyped, refresh } from "./draft.js";
-import { fillIn, listOf, onlyShow, showAll } from "./field.js";
-import { offerImport } from "./file.js";
+// Set-up: the box's addresses, the Command Post's, tokens, robots, courses and all else, in steps: in order at first, in
+// any order later.
+import { apply, offerApply, offerImport } from "./apply.js";
+import { setTyped, showCourses, showTokens } from "./courses.js";
+import { badge, list, make, mark, say } from "./dom.js";
+import { checkAsTyped, draft, missingTokens, onDraft, onVerdict, refresh, verdict } from "./draft.js";
+import { blameAll, fillIn, listOf, onlyShow, showAll } from "./field.js";
 import { offerNetwork, showNetwork } from "./network.js";
 import { followNetwork } from "./pending.js";
 import { session, showWho, toLogin } from "./session.js";
-import { leadThrough } from "./steps.js";
-import { showTokens } from "./tokens.js";
-import { offerTest } from "./trial.js";
+import { offerTest, result } from "./trial.js";
 
 const RETRY = 2000; // ms
 const link = document.getElementById("link");
+const sections = [...document.querySelectorAll("#sheets > section")];
+const FIRST = 5; // those that lead through in order
+const place = document.querySelector("#steps ol"), turn = document.getElementById("turn");
+const [back, next] = turn.querySelectorAll("button");
+
+const nameOf = (section) => section.id.replace("step-", "");
+const titleOf = (section) => section.querySelector("h2").textContent;
+const here = () => Math.max(0, sections.findIndex((section) => `#${nameOf(section)}` === location.hash));
+
+/** How far a step is: a level, and its word. */
+const STATES = {
+  post: () => ["good", "set"],
+  tokens: () => (missingTokens({ settings: draft.base, tokens: draft.tokens }).length ? ["bad", "missing"] : ["good", "set"]),
+  robots: () => (draft.base.robots.length ? ["good", `${draft.base.robots.length} named`] : ["quiet", "any name"]),
+  test: () => ({ good: ["good", "passed"], bad: ["bad", "failed"], "": ["quiet", "not run"] })[result],
+  courses: () => ["quiet", draft.base.command_post.course || "none"],
+};
+
+function stateOf(section, errors) {
+  const wrong = errors.filter(({ field }) => field && section.contains(field)).length;
+  return wrong ? ["bad", wrong === 1 ? "1 error" : `${wrong} errors`] : (STATES[nameOf(section)]?.() ?? ["quiet", ""]);
+}
+
+function update(node, section, errors) {
+  const link = node.firstChild, i = sections.indexOf(section), [level, word] = stateOf(section, errors);
+  if (i === here()) link.setAttribute("aria-current", "step");
+  else link.removeAttribute("aria-current");
+  say(link.firstChild, i < FIRST ? `${i + 1}. ${titleOf(section)}` : titleOf(section));
+  mark(link, "level", level);
+  link.lastChild.hidden = !word;
+  badge(link.lastChild, level, word);
+}
+
+function create(section) {
+  return make("li", Object.assign(make("a", make("span"), make("span.badge")), { href: `#${nameOf(section)}` }));
+}
+
+function show() {
+  const errors = blameAll(verdict.errors), at = here();
+  list(place, sections, nameOf, create, (node, section) => update(node, section, errors));
+  back.hidden = at === 0;
+  next.hidden = at === sections.length - 1;
+  say(next, at === FIRST - 1 ? "To the run" : "Next");
+  showMissing();
+}
+
+function showMissing() {
+  const sign = document.getElementById("missing"), missing = missingTokens({ settings: draft.base, tokens: draft.tokens });
+  sign.hidden = missing.length === 0;
+  say(sign.querySelector(".text"), `Not set up yet: the ${missing.join(" and the ")} token ${missing.length > 1 ? "are" : "is"} missing.`);
+}
+
+function turnTo(focus) {
+  const at = here();
+  sections.forEach((section, i) => (section.hidden = i !== at));
+  show();
+  place.children[at].scrollIntoView({ block: "nearest", inline: "center" });
+  if (!focus) return;
+  scrollTo(0, 0);
+  sections[at].querySelector("h2").focus();
+}
+
+const go = (section) => (location.hash = nameOf(section));
+
+/** What was typed in a step is set before the next one. */
+async function goOn() {
+  const at = here();
+  if (!(await setTyped())) return;
+  if (!(await apply())) return;
+  if (at === FIRST - 1) location.href = "/";
+  else go(sections[at + 1]);
+}
+
+function leadThrough() {
+  addEventListener("hashchange", () => turnTo(true));
+  document.addEventListener("tested", show);
+  back.addEventListener("click", () => go(sections[here() - 1]));
+  next.addEventListener("click", async () => {
+    next.disabled = true;
+    await goOn().finally(() => (next.disabled = false));
+  });
+  onDraft(show);
+  onVerdict(show);
+  for (const each of [document.getElementById("steps"), document.getElementById("sheets")]) each.hidden = false;
+  turnTo(false);
+}
 
 function linkIs(lost) {
   badge(link, lost ? "bad" : "good", lost ? "Box lost" : "Live");
@@ -41,8 +125,8 @@ async function begin() {
   leadThrough();
   offerApply();
   followNetwork((network, error) => {
-    linkIs(Boolean(error && !error.status));
     if (network) showNetwork(network);
+    if (error !== undefined) linkIs(error !== null && !error.status);
   });
 }
 

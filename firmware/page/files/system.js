@@ -4,6 +4,7 @@ import { followLog } from "./log.js";
 import { offerBundle, offerReset, showAbout } from "./box.js";
 import { watchSessions } from "./logins.js";
 import { offerPasswords } from "./passwords.js";
+import { followNetwork } from "./pending.js";
 import { session, showWho, toLogin } from "./session.js";
 
 const link = document.getElementById("link");
@@ -21,6 +22,7 @@ async function begin() {
   document.getElementById("looks").hidden = operator;
   showWho(document.getElementById("who"));
   followLog(linkIs);
+  followNetwork();
   showAbout();
   if (!operator) return;
   watchSessions();

@@ -3,28 +3,44 @@ import { badge, list, make, say } from "./dom.js";
 import { get, post } from "./session.js";
 
 const EVERY = 500; // ms
-const section = document.getElementById("step-test");
-const button = section.querySelector("button"), outcome = section.querySelector(".outcome"), rows = section.querySelector(".endpoints");
-const NAMES = { link: "Cable and link", address: "Nobody else has the box’s address", reach: "The endpoint answers", token: "The token is taken", clock: "The clocks agree" };
+const NAMES = {
+  link: "Cable and link",
+  address: "Nobody else has the box’s address",
+  reach: "The endpoint answers",
+  token: "The token is taken",
+  clock: "The clocks agree",
+};
 const LEVELS = { waiting: "quiet", running: "ask", good: "good", bad: "bad", skipped: "quiet" };
+const section = document.getElementById("step-test");
+const [button, outcome, rows] = ["button", ".outcome", ".endpoints"].map((part) => section.querySelector(part));
 
 /** "good", "bad", or "" where it was not run to its end. */
 export let result = "";
 
 function updateStep(node, { name, state, said, advice }) {
-  const [state_, title, sentence, help] = node.children;
+  const [verdict, title, sentence, help] = node.children;
   node.dataset.level = LEVELS[state] ?? "quiet";
-  badge(state_, LEVELS[state] ?? "quiet", state);
+  badge(verdict, node.dataset.level, state);
   say(title, NAMES[name] ?? name);
   say(sentence, said ?? "");
   say(help, advice ?? "");
 }
 
+const createStep = () => make("li", ...["badge", "title", "said", "advice"].map((part) => make(`span.${part}`)));
+
 function update(node, { name, address, steps }) {
-  const [title, where, list_] = node.children;
+  const [title, where, place] = node.children;
   say(title, name);
   say(where, address);
-  list(list_, steps, (step) => step.name, () => make("li", make("span.badge"), make("span.title"), make("span.said"), make("span.advice")), updateStep);
+  list(place, steps, (step) => step.name, createStep, updateStep);
+}
+
+/** What came of it, in a sentence. */
+function verdictOf(states, running) {
+  if (running) return "It is running. No report is spent.";
+  if (!result) return "";
+  const bad = states.filter((state) => state === "bad").length;
+  return `${bad ? `${bad} of ${states.length} steps failed` : "All is well"}. No report was spent.`;
 }
 
 function show({ running, endpoints }) {
@@ -34,8 +50,7 @@ function show({ running, endpoints }) {
   result = !isDone ? "" : states.includes("bad") ? "bad" : "good";
   button.disabled = running;
   outcome.dataset.bad = result === "bad";
-  const bad = states.filter((state) => state === "bad").length;
-  say(outcome, running ? "It is running. No report is spent." : { good: "All is well. No report was spent.", bad: `${bad} of ${states.length} steps failed. No report was spent.`, "": "" }[result]);
+  say(outcome, verdictOf(states, running));
   document.dispatchEvent(new Event("tested"));
 }
 

@@ -1,0 +1,47 @@
+#pragma once
+
+#include <optional>
+#include <string>
+
+#include "applier/networkd_files.hpp"
+#include "applier/options.hpp"
+#include "host/untrusted_folder.hpp"
+#include "loop/file_descriptor.hpp"
+#include "loop/loop.hpp"
+#include "network/change.hpp"
+
+namespace adit::applier {
+
+/// adit-network at work: takes what aditd asks for, does it, tells how it stands, and ends the loop once
+/// nothing is pending.
+class Applier {
+ public:
+  /// Both outlive this.
+  Applier(loop::Loop& loop, const Options& options);
+
+  /// An error: its own folders are not as they should be. Requests of an earlier start of the machine are
+  /// dropped: whoever asked has seen that it came to nothing.
+  std::expected<void, std::string> start();
+  /// A pending change is taken back, and the loop ends.
+  void stop();
+
+ private:
+  void look();
+  void take_requests(bool drop);
+  void after();
+  bool tell();
+  void answer_probe(const network::Probe& probe);
+  std::optional<std::string> taken(const char* name);
+  void watch_folder();
+
+  loop::Loop& loop_;
+  const Options& options_;
+  NetworkdFiles files_;
+  std::optional<network::Change> change_;
+  std::optional<host::UntrustedFolder> folder_;
+  loop::FileDescriptor notices_;
+  loop::Source noticed_, due_;
+  std::string told_;
+};
+
+}  // namespace adit::applier

@@ -1,0 +1,57 @@
+#include "applier/arp.hpp"
+
+#include <algorithm>
+
+namespace adit::applier {
+namespace {
+
+// RFC 826: hardware 1 (Ethernet), protocol 0x0800 (IPv4), lengths 6 and 4, then the operation.
+constexpr std::array<std::uint8_t, 6> kEthernetIpv4 = {0, 1, 8, 0, 6, 4};
+constexpr std::uint8_t kRequest = 1, kReply = 2;
+constexpr std::size_t kOperation = 7, kSender = 8, kSenderAddress = 14, kTargetAddress = 24;
+
+void put(std::span<std::uint8_t> at, std::uint32_t address) {
+  for (std::size_t i = 0; i < 4; ++i) at[i] = static_cast<std::uint8_t>(address >> (24 - 8 * i));
+}
+
+std::uint32_t get(std::span<const std::uint8_t> at) {
+  return std::uint32_t{at[0]} << 24 | std::uint32_t{at[1]} << 16 | std::uint32_t{at[2]} << 8 | at[3];
+}
+
+}  // namespace
+
+std::string text_of(const Mac& mac) {
+  static constexpr char kDigits[] = "0123456789abcdef";
+  std::string text;
+  for (const std::uint8_t byte : mac) {
+    if (!text.empty()) text += ':';
+    text += kDigits[byte >> 4];
+    text += kDigits[byte & 15];
+  }
+  return text;
+}
+
+std::array<std::uint8_t, kArpBytes> arp_probe(const Mac& own, std::uint32_t address) {
+  std::array<std::uint8_t, kArpBytes> packet{};
+  std::ranges::copy(kEthernetIpv4, packet.begin());
+  packet[kOperation] = kRequest;
+  std::ranges::copy(own, packet.begin() + kSender);
+  put(std::span(packet).subspan(kTargetAddress), address);
+  return packet;
+}
+
+std::optional<Mac> claimant(std::span<const std::uint8_t> packet, std::uint32_t address, const Mac& own) {
+  if (packet.size() < kArpBytes || !std::ranges::equal(packet.first(kEthernetIpv4.size()), kEthernetIpv4)) {
+    return std::nullopt;
+  }
+  if (packet[kOperation - 1] != 0 || (packet[kOperation] != kRequest && packet[kOperation] != kReply))
+    return std::nullopt;
+  Mac sender{};
+  std::ranges::copy(packet.subspan(kSender, sender.size()), sender.begin());
+  const std::uint32_t from = get(packet.subspan(kSenderAddress)), about = get(packet.subspan(kTargetAddress));
+  const bool probes = packet[kOperation] == kRequest && from == 0 && about == address;
+  if ((from != address && !probes) || sender == own) return std::nullopt;
+  return sender;
+}
+
+}  // namespace adit::applier

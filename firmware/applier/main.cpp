@@ -1,0 +1,38 @@
+/// adit-network: changes the box's own addresses, as root, for aditd, which has no privilege.
+
+#include <csignal>
+#include <cstdio>
+
+#include "applier/applier.hpp"
+#include "applier/options.hpp"
+#include "host/log.hpp"
+#include "loop/loop.hpp"
+
+namespace {
+
+int run(const adit::applier::Options& options) {
+  adit::loop::Loop loop;
+  adit::applier::Applier applier(loop, options);
+  const auto terminated = loop.signal(SIGTERM, [&applier] { applier.stop(); });
+  const auto interrupted = loop.signal(SIGINT, [&applier] { applier.stop(); });
+  if (const auto started = applier.start(); !started) {
+    adit::host::log(adit::host::Level::Error, "cannot work", {{"why", started.error()}});
+    return 1;
+  }
+  loop.run();
+  return 0;
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  const auto options =
+      adit::applier::parse_options(std::span<char* const>(argv + 1, static_cast<std::size_t>(argc - 1)));
+  if (!options) {
+    std::fprintf(stderr, "adit-network: %s\n%s", options.error().c_str(), adit::applier::kUsage);
+    return 2;
+  }
+  if (options->help) return std::fputs(adit::applier::kUsage, stdout) < 0 ? 1 : 0;
+  if (options->version) return std::printf("adit-network %s\n", ADIT_VERSION) < 0 ? 1 : 0;
+  return run(*options);
+}

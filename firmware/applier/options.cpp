@@ -1,0 +1,78 @@
+#include "applier/options.hpp"
+
+#include <string_view>
+#include <utility>
+
+namespace adit::applier {
+namespace {
+
+constexpr std::pair<std::string_view, std::string Options::*> kValues[] = {
+    {"--wanted", &Options::wanted}, {"--status", &Options::status},
+    {"--state", &Options::state},   {"--tried", &Options::tried},
+    {"--kept", &Options::kept},     {"--networkctl", &Options::networkctl},
+    {"--team", &Options::team},     {"--command-post", &Options::command_post}};
+
+/// The kernel's dev_valid_name(), and nothing that means more to systemd.network(5): a pattern, a list, a
+/// negation.
+bool is_interface(std::string_view name) {
+  return !name.empty() && name.size() <= 15 && name != "." && name != ".." &&
+         name.find_first_not_of("abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ0123456789._-") ==
+             std::string_view::npos;
+}
+
+std::string Options::* member_named(std::string_view word) {
+  for (const auto& [name, member] : kValues) {
+    if (name == word) return member;
+  }
+  return nullptr;
+}
+
+}  // namespace
+
+const char* const kUsage =
+    "Usage: adit-network [OPTION VALUE]...\n"
+    "\n"
+    "Changes the addresses of Adit's two network interfaces, as aditd asks, by systemd-networkd; and takes "
+    "a\n"
+    "change back by itself unless it is confirmed in time. Ends once nothing is left to do.\n"
+    "\n"
+    "  --team NAME          the interface to the team (team0)\n"
+    "  --command-post NAME  the interface to the Command Post (darpa0)\n"
+    "  --wanted DIR         where aditd asks (/var/lib/private/adit)\n"
+    "  --status DIR         where it is answered (/run/adit-network)\n"
+    "  --state DIR          where what was confirmed is kept (/var/lib/adit-network)\n"
+    "  --tried DIR          networkd's folder until the next start (/run/systemd/network)\n"
+    "  --kept DIR           networkd's folder for good (/etc/systemd/network)\n"
+    "  --networkctl CMD     what makes networkd read them, called with the word reload (networkctl)\n"
+    "  --version            prints the version\n"
+    "  --help               prints this\n"
+    "\n"
+    "Exits 0 once nothing is pending, 1 where it cannot do its work (and says why), 2 on a wrong command "
+    "line.\n";
+
+std::expected<Options, std::string> parse_options(std::span<char* const> arguments) {
+  Options options;
+  for (std::size_t i = 0; i < arguments.size(); ++i) {
+    const std::string_view word = arguments[i];
+    if (word == "--help") {
+      options.help = true;
+    } else if (word == "--version") {
+      options.version = true;
+    } else if (const auto member = member_named(word); member == nullptr) {
+      return std::unexpected("unknown word '" + std::string(word) + "'");
+    } else if (++i == arguments.size() || *arguments[i] == '\0') {
+      return std::unexpected(std::string(word) + " wants a value");
+    } else {
+      options.*member = arguments[i];
+    }
+  }
+  for (const auto& [word, name] :
+       {std::pair("--team", options.team), std::pair("--command-post", options.command_post)}) {
+    if (!is_interface(name)) return std::unexpected(std::string(word) + " wants an interface's name");
+  }
+  if (options.team == options.command_post)
+    return std::unexpected("--team and --command-post name the same interface");
+  return options;
+}
+
+}  // namespace adit::applier

@@ -1,0 +1,27 @@
+#pragma once
+
+#include <expected>
+#include <span>
+#include <string>
+
+namespace adit::applier {
+
+/// adit-network's command line. Interfaces stand here and not in what aditd asks for: it can move these two
+/// alone.
+struct Options {
+  std::string wanted = "/var/lib/private/adit";  // where aditd asks
+  std::string status = "/run/adit-network";      // where it is answered, for everybody to read
+  std::string state = "/var/lib/adit-network";   // what was confirmed last
+  std::string tried = "/run/systemd/network";    // networkd's, gone at the next start
+  std::string kept = "/etc/systemd/network";     // networkd's, for good
+  std::string networkctl = "networkctl";
+  std::string team = "team0", command_post = "darpa0";
+  bool help = false, version = false;
+};
+
+extern const char* const kUsage;
+
+/// What is wrong names the word it is about.
+std::expected<Options, std::string> parse_options(std::span<char* const> arguments);
+
+}  // namespace adit::applier

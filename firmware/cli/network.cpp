@@ -1,0 +1,161 @@
+#include "cli/network.hpp"
+
+#include <algorithm>
+#include <chrono>
+#include <thread>
+
+#include "cli/ask.hpp"
+#include "cli/http_client.hpp"
+#include "cli/reading.hpp"
+#include "cli/where.hpp"
+#include "cli/words.hpp"
+#include "host/log.hpp"
+#include "icd/sentence.hpp"
+
+namespace adit::cli {
+namespace {
+
+constexpr std::chrono::seconds kPatience{10};
+/// How often, and how many times, Adit is asked what became of a word: for 5 s.
+constexpr std::chrono::milliseconds kEvery{200};
+constexpr int kTimes = 25;
+
+struct Side {
+  std::string interface, address, gateway;
+};
+
+/// What `adit network` shows of GET /adit/network.
+struct View {
+  bool managed = false;
+  std::string why;
+  Side team, post;
+  bool pending = false;
+  double until = 0;
+  std::string page;
+  Side wanted_team, wanted_post;
+  std::string last, last_why;
+};
+
+/// "192.168.7.11/24", or "none"
+std::string host_in(const codec::Field& side) {
+  if (side.member("address").is_absent()) return "none";
+  return text(side, "address") + '/' + std::to_string(whole<std::int64_t>(side, "prefix"));
+}
+
+Side read_side(const codec::Field& side, bool has_interface, bool has_gateway) {
+  return {.interface = has_interface ? text(side, "interface") : "",
+          .address = host_in(side),
+          .gateway = has_gateway ? text(side, "gateway") : ""};
+}
+
+View read_view(const codec::Field& root) {
+  const codec::Field team = root.member("team"), post = root.member("command_post"),
+                     pending = root.member("pending"), last = root.member("last");
+  View view;
+  view.managed = root.member("managed").truth();
+  view.why = text(root, "why");
+  view.team = read_side(team, true, false);
+  view.post = read_side(post, true, true);
+  view.last = last.is_absent() ? "" : std::string(last.text());
+  view.last_why = text(root, "last_why");
+  view.pending = !pending.is_absent();
+  if (!view.pending) return view;
+  const codec::Field wanted_team = pending.member("team"), wanted_post = pending.member("command_post");
+  view.until = number(pending, "until");
+  view.page = text(pending, "page");
+  view.wanted_team = read_side(wanted_team, false, false);
+  view.wanted_post = read_side(wanted_post, false, true);
+  return view;
+}
+
+std::string side_line(const char* name, const Side& side) {
+  const std::string interface = side.interface.empty() ? "" : icd::sentence("  ", side.interface);
+  const std::string gateway = side.gateway.empty() ? "" : icd::sentence("  gateway ", side.gateway);
+  return host::escaped(icd::sentence("  ", name, interface, "  ", side.address, gateway)) + '\n';
+}
+
+std::string text_of(const View& view, double now) {
+  std::string out = side_line("team        ", view.team) + side_line("command post", view.post);
+  if (view.pending) {
+    out += icd::sentence("\nA change waits to be confirmed, for ", duration(std::max(0.0, view.until - now)),
+                         " more:\n");
+    out += side_line("team        ", view.wanted_team) + side_line("command post", view.wanted_post);
+    out += icd::sentence("Confirm it at ", host::escaped(view.page),
+                         " (adit network confirm), or it is taken back.\n");
+  } else if (!view.last.empty()) {
+    const std::string why = view.last_why.empty() ? "" : icd::sentence(", ", view.last_why);
+    out += icd::sentence("\nThe last change: ", host::escaped(view.last + why), "\n");
+  }
+  if (!view.managed) out += icd::sentence("\nNothing can be changed here: ", host::escaped(view.why), "\n");
+  return out;
+}
+
+/// Seconds since 1970.
+double time_now() {
+  return std::chrono::duration<double>(std::chrono::system_clock::now().time_since_epoch()).count();
+}
+
+std::expected<View, std::string> understood(const Adit& adit, const std::string& json) {
+  auto view = read<View>(json, read_view);
+  if (view) return view;
+  return std::unexpected("Adit at " + written(adit.address) + " cannot be understood: " + view.error());
+}
+
+Outcome show(const Adit& adit, const Options& options) {
+  const auto json = get(adit, "/adit/network");
+  if (!json) return unable(json.error());
+  const auto view = understood(adit, *json);
+  if (!view) return unable(view.error());
+  const Exit exit = view->pending ? Exit::Attention : Exit::Fine;
+  return {exit, options.json ? *json + '\n' : text_of(*view, time_now()), ""};
+}
+
+Outcome said_no(const Adit& adit, const HttpReply& reply) {
+  if (reply.status == 401) return unable(unknown_token(adit));
+  const std::string sentence = sentence_in(reply.body);
+  Outcome outcome = unable(sentence.empty() ? "Adit at " + written(adit.address) + " answered " +
+                                                  std::to_string(reply.status) + " (is that Adit?)"
+                                            : sentence);
+  if (reply.status == 409) outcome.exit = Exit::Attention;
+  return outcome;
+}
+
+/// The word is said, and then what became of it is waited for. After `back` the address that was asked may be
+/// gone.
+Outcome say(const Adit& adit, const Options& options, bool confirms) {
+  const auto reply = http_ask(adit.address,
+                              {.method = HttpRequest::Method::Post,
+                               .target = confirms ? "/adit/network/confirm" : "/adit/network/back",
+                               .token = adit.token.token},
+                              kPatience);
+  if (!reply) return unable(reply.error().sentence);
+  if (reply->status != 200) return said_no(adit, *reply);
+  for (int i = 0; i < kTimes; ++i) {
+    const auto json = get(adit, "/adit/network");
+    if (!json && !confirms) break;
+    if (!json) return unable(json.error());
+    const auto view = understood(adit, *json);
+    if (!view) return unable(view.error());
+    if (!view->pending) {
+      const bool done = view->last == (confirms ? "confirmed" : "taken back");
+      std::string line =
+          "the change is " + view->last + (done || view->last_why.empty() ? "" : ": " + view->last_why);
+      return {done ? Exit::Fine : Exit::Attention, options.json ? *json + '\n' : host::escaped(line) + '\n',
+              ""};
+    }
+    std::this_thread::sleep_for(kEvery);
+  }
+  if (!confirms) return {Exit::Fine, options.json ? "" : "the change is being taken back\n", ""};
+  return unable("the change still waits, though it was confirmed: see adit network show");
+}
+
+}  // namespace
+
+Outcome network(const Options& options) {
+  const auto adit = adit_of(options);
+  if (!adit) return unable(adit.error());
+  if (options.word == "show") return show(*adit, options);
+  return say(*adit, options, options.word == "confirm");
+}
+
+}  // namespace adit::cli

@@ -1,0 +1,11 @@
+#pragma once
+
+#include "cli/options.hpp"
+#include "cli/outcome.hpp"
+
+namespace adit::cli {
+
+/// `adit network show`, `confirm` and `back`.
+Outcome network(const Options& options);
+
+}  // namespace adit::cli

@@ -1,0 +1,119 @@
+#include "cli/test.hpp"
+
+#include <algorithm>
+#include <thread>
+#include <vector>
+
+#include "cli/ask.hpp"
+#include "cli/http_client.hpp"
+#include "cli/reading.hpp"
+#include "cli/where.hpp"
+#include "cli/words.hpp"
+#include "host/log.hpp"
+#include "page/self_test.hpp"
+
+namespace adit::cli {
+namespace {
+
+constexpr std::chrono::seconds kPatience{10};
+constexpr std::chrono::milliseconds kEvery{250};
+constexpr int kTimes = 480;  // two minutes, far longer than all steps may take
+
+page::TestStep read_step(const codec::Field& step) {
+  return {.name = text(step, "name"),
+          .state = text(step, "state"),
+          .said = text(step, "said"),
+          .advice = text(step, "advice")};
+}
+
+page::TestedEndpoint read_endpoint(const codec::Field& endpoint) {
+  const codec::Field steps = endpoint.member("steps");
+  return {
+      .name = text(endpoint, "name"), .address = text(endpoint, "address"), .steps = rows(steps, &read_step)};
+}
+
+page::TestView read_view(const codec::Field& root) {
+  const codec::Field endpoints = root.member("endpoints");
+  return {.running = root.member("running").truth(), .endpoints = rows(endpoints, &read_endpoint)};
+}
+
+bool has_ended(const page::TestStep& step) {
+  return step.state == "good" || step.state == "bad" || step.state == "skipped";
+}
+
+std::string line_of(const page::TestStep& step, bool colour) {
+  const Tone tone = step.state == "good" ? Tone::Good : step.state == "bad" ? Tone::Bad : Tone::Faint;
+  const std::string word = step.state == "bad" ? "BAD" : step.state;
+  std::string line =
+      "  " + host::escaped(step.name) + std::string(9 - std::min<std::size_t>(step.name.size(), 8), ' ') +
+      painted(host::escaped(word), tone, colour) +
+      std::string(9 - std::min<std::size_t>(word.size(), 8), ' ') + host::escaped(step.said) + '\n';
+  if (!step.advice.empty()) line += std::string(11, ' ') + host::escaped(step.advice) + '\n';
+  return line;
+}
+
+/// Prints what has ended since it was last called, in the order of the steps.
+class Progress {
+ public:
+  Progress(bool colour, const std::function<void(const std::string&)>& print)
+      : colour_(colour), print_(print) {}
+
+  void show(const page::TestView& view) {
+    std::size_t number = 0;
+    for (const page::TestedEndpoint& endpoint : view.endpoints) {
+      for (const page::TestStep& step : endpoint.steps) {
+        if (number++ < printed_) continue;
+        if (!has_ended(step)) return;
+        if (&step == &endpoint.steps.front())
+          print_(host::escaped(endpoint.name + " " + endpoint.address) + '\n');
+        print_(line_of(step, colour_));
+        ++printed_;
+      }
+    }
+  }
+
+ private:
+  bool colour_;
+  const std::function<void(const std::string&)>& print_;
+  std::size_t printed_ = 0;
+};
+
+bool is_bad(const page::TestView& view) {
+  return std::ranges::any_of(view.endpoints, [](const page::TestedEndpoint& endpoint) {
+    return std::ranges::any_of(endpoint.steps,
+                               [](const page::TestStep& step) { return step.state == "bad"; });
+  });
+}
+
+}  // namespace
+
+Outcome test(const Options& options, bool colour, const std::function<void(const std::string&)>& print) {
+  const auto adit = adit_of(options);
+  if (!adit) return unable(adit.error());
+  const auto begun = http_ask(
+      adit->address,
+      {.method = HttpRequest::Method::Post, .target = "/adit/test", .token = adit->token.token}, kPatience);
+  if (!begun) return unable(begun.error().sentence);
+  if (begun->status == 401) return unable(unknown_token(*adit));
+  if (begun->status != 200 && begun->status != 409) {  // 409: one runs already
+    const std::string sentence = sentence_in(begun->body);
+    return unable("Adit at " + written(adit->address) + " answered " + std::to_string(begun->status) +
+                  (sentence.empty() ? " (is that Adit?)" : ": " + sentence));
+  }
+  Progress progress(colour, print);
+  for (int i = 0; i < kTimes; ++i) {
+    const auto json = get(*adit, "/adit/test");
+    if (!json) return unable(json.error());
+    const auto view = read<page::TestView>(*json, read_view);
+    if (!view) return unable("Adit at " + written(adit->address) + " cannot be understood: " + view.error());
+    if (!options.json) progress.show(*view);
+    if (!view->running) {
+      if (options.json) print(*json + '\n');
+      return {is_bad(*view) ? Exit::Attention : Exit::Fine, "", ""};
+    }
+    std::this_thread::sleep_for(kEvery);
+  }
+  return unable("the test does not end: see journalctl -u adit");
+}
+
+}  // namespace adit::cli

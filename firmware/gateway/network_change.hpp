@@ -1,0 +1,56 @@
+#pragma once
+
+#include <optional>
+#include <string>
+
+#include "gateway/network_requests.hpp"
+#include "loop/loop.hpp"
+#include "page/network.hpp"
+#include "settings/settings.hpp"
+
+namespace adit::gateway {
+
+/// The operator's changes of the box's own addresses, as adit-network makes them.
+class NetworkChange final : public page::Network {
+ public:
+  /// adit-network asks the network first whether an address is free, which takes some seconds.
+  static constexpr std::chrono::seconds kTakenUpWithin{15};
+  /// How old what was read of its status may be.
+  static constexpr std::chrono::milliseconds kFresh{50};
+
+  /// All outlive this.
+  NetworkChange(loop::Loop& loop, const settings::Settings& settings, const NetworkRequests& requests)
+      : loop_(loop), settings_(settings), requests_(requests) {}
+
+  page::NetworkView network() const override;
+  network::Verdict check(const network::Numbers& wanted, const std::string& asker) const override;
+  icd::Checked<void> change(const network::Numbers& wanted) override;
+  icd::Checked<void> confirm(const std::string& local) override;
+  icd::Checked<void> take_back() override;
+
+  /// What the operator is to do while a change waits; "" where none does.
+  std::string attention() const;
+
+ private:
+  /// What was asked for and is not in the status yet.
+  struct Asked {
+    network::Wanted wanted;
+    loop::Instant at;
+  };
+  void refresh() const;
+  /// Why nothing can be changed here; "" where it can.
+  std::string hindrance() const;
+  std::optional<network::Pending> pending() const;
+  std::optional<network::Numbers> present() const;
+  icd::Checked<void> say(network::Word::What what, const network::Pending& pending) const;
+
+  loop::Loop& loop_;
+  const settings::Settings& settings_;
+  const NetworkRequests& requests_;
+  mutable std::expected<network::Status, std::string> status_;
+  mutable std::optional<loop::Instant> read_at_;
+  mutable std::optional<Asked> asked_;
+  mutable std::string not_taken_up_;  // why the last change came to nothing
+};
+
+}  // namespace adit::gateway

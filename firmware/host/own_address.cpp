@@ -1,0 +1,38 @@
+#include "host/own_address.hpp"
+
+#include <arpa/inet.h>
+#include <net/if.h>
+#include <netinet/in.h>
+#include <sys/ioctl.h>
+#include <sys/socket.h>
+
+#include <bit>
+#include <cstring>
+
+#include "loop/file_descriptor.hpp"
+
+namespace adit::host {
+namespace {
+
+std::uint32_t ipv4_in(const sockaddr& address) {
+  sockaddr_in ipv4{};
+  std::memcpy(&ipv4, &address, sizeof ipv4);
+  return ntohl(ipv4.sin_addr.s_addr);
+}
+
+}  // namespace
+
+std::optional<OwnAddress> own_address(const std::string& interface) {
+  if (interface.empty() || interface.size() >= IFNAMSIZ) return std::nullopt;
+  const loop::FileDescriptor fd(socket(AF_INET, SOCK_DGRAM | SOCK_CLOEXEC, 0));
+  ifreq asked{};
+  std::memcpy(asked.ifr_name, interface.c_str(), interface.size());
+  if (!fd || ioctl(fd.get(), SIOCGIFADDR, &asked) != 0) return std::nullopt;
+  OwnAddress own{.address = ipv4_in(asked.ifr_addr), .prefix = 32};
+  if (ioctl(fd.get(), SIOCGIFNETMASK, &asked) == 0) {
+    own.prefix = static_cast<std::uint8_t>(std::popcount(ipv4_in(asked.ifr_netmask)));
+  }
+  return own;
+}
+
+}  // namespace adit::host

@@ -1,0 +1,61 @@
+#include "host/untrusted_folder.hpp"
+
+#include <fcntl.h>
+#include <sys/stat.h>
+#include <unistd.h>
+
+#include <cerrno>
+#include <utility>
+
+#include "host/files.hpp"
+
+namespace adit::host {
+namespace {
+
+/// All of a plain file.
+std::expected<std::string, std::string> read_all(int fd, const std::string& name) {
+  struct stat status{};
+  if (fstat(fd, &status) != 0) return std::unexpected(trouble(name, errno));
+  if (!S_ISREG(status.st_mode)) return std::unexpected(name + ": expected a plain file");
+  std::string text(UntrustedFolder::kLargest + 1, '\0');
+  std::size_t size = 0;
+  while (size < text.size()) {
+    const ssize_t count = read(fd, text.data() + size, text.size() - size);
+    if (count < 0 && errno == EINTR) continue;
+    if (count < 0) return std::unexpected(trouble(name, errno));
+    if (count == 0) break;
+    size += static_cast<std::size_t>(count);
+  }
+  if (size == text.size()) return std::unexpected(trouble(name, EFBIG));
+  text.resize(size);
+  return text;
+}
+
+}  // namespace
+
+std::expected<UntrustedFolder, std::string> UntrustedFolder::open(const std::string& path) {
+  loop::FileDescriptor folder(::open(path.c_str(), O_RDONLY | O_DIRECTORY | O_NOFOLLOW | O_CLOEXEC));
+  if (!folder) return std::unexpected(trouble(path, errno));
+  return UntrustedFolder(std::move(folder));
+}
+
+std::expected<std::optional<std::string>, std::string> UntrustedFolder::take(const std::string& name) const {
+  // O_NONBLOCK: a FIFO without a writer must not hold this up.
+  const loop::FileDescriptor fd(
+      openat(folder_.get(), name.c_str(), O_RDONLY | O_NOFOLLOW | O_NONBLOCK | O_NOCTTY | O_CLOEXEC));
+  const int error = errno;
+  if (!fd && error == ENOENT) return std::nullopt;
+  if (unlinkat(folder_.get(), name.c_str(), 0) != 0 && errno != ENOENT) {
+    unlinkat(folder_.get(), name.c_str(), AT_REMOVEDIR);
+  }
+  if (!fd) return std::unexpected(trouble(name, error));
+  auto text = read_all(fd.get(), name);
+  if (!text) return std::unexpected(std::move(text.error()));
+  return std::move(*text);
+}
+
+std::string UntrustedFolder::path_by_descriptor() const {
+  return "/proc/self/fd/" + std::to_string(folder_.get());
+}
+
+}  // namespace adit::host

@@ -1,0 +1,33 @@
+#pragma once
+
+#include <cstddef>
+#include <expected>
+#include <optional>
+#include <string>
+
+#include "loop/file_descriptor.hpp"
+
+namespace adit::host {
+
+/// A folder in which somebody else writes: for a program with more rights than whoever does. Nothing in it is
+/// followed elsewhere, waited for, or believed to be small.
+class UntrustedFolder {
+ public:
+  static constexpr std::size_t kLargest = 65536;
+
+  /// An error where it is not there, or is no folder itself but a link to one.
+  static std::expected<UntrustedFolder, std::string> open(const std::string& path);
+
+  /// Takes a file away and gives what was in it; nothing where there is none of that name. An error: it was
+  /// no plain file, too large or unreadable; it is gone all the same.
+  std::expected<std::optional<std::string>, std::string> take(const std::string& name) const;
+
+  /// For inotify(7): names the folder itself, whatever its path has come to mean.
+  std::string path_by_descriptor() const;
+
+ private:
+  explicit UntrustedFolder(loop::FileDescriptor folder) : folder_(std::move(folder)) {}
+  loop::FileDescriptor folder_;
+};
+
+}  // namespace adit::host

@@ -1,0 +1,84 @@
+#include "network/change.hpp"
+
+#include <utility>
+
+#include "icd/sentence.hpp"
+
+namespace adit::network {
+
+void Change::interrupted() {
+  status_.ended = Ended::TakenBack;
+  status_.why = "it was not confirmed before adit-network ended";
+}
+
+void Change::want(const Wanted& wanted, Instant now) {
+  if (status_.pending) return;  // its sender sees by the status that it was not taken
+  if (status_.kept == wanted.numbers) {
+    status_.ended_nonce = wanted.nonce;
+    status_.ended = Ended::Confirmed;
+    status_.why = "these are the numbers already";
+    return;
+  }
+  status_.pending = Pending{wanted.nonce, wanted.numbers, now + wanted.confirm_within, wanted.confirm_within};
+  if (const auto applied = hands_.apply(wanted.numbers); !applied) {
+    take_back("it could not be applied: " + applied.error(), now);
+  }
+}
+
+void Change::hear(const Word& word, Instant now) {
+  if (!status_.pending || word.nonce != status_.pending->nonce) return;
+  tick(now);
+  if (!status_.pending || try_at_) return;
+  if (word.what == Word::What::Back) return take_back("somebody said so", now);
+  const Numbers numbers = status_.pending->wanted;
+  if (const auto kept = hands_.keep(numbers); !kept) {
+    return take_back("it was confirmed, but could not be kept: " + kept.error(), now);
+  }
+  status_.kept = numbers;
+  end(Ended::Confirmed, "");
+}
+
+void Change::tick(Instant now) {
+  if (try_at_) {
+    if (now >= *try_at_) try_to_take_back(now);
+  } else if (status_.pending && now >= status_.pending->until) {
+    take_back(
+        icd::sentence("nobody confirmed it within ",
+                      std::chrono::ceil<std::chrono::seconds>(status_.pending->confirm_within).count(), " s"),
+        now);
+  }
+}
+
+void Change::stop(Instant now) {
+  if (status_.pending && !try_at_) take_back("adit-network was stopped", now);
+}
+
+std::optional<Instant> Change::wake() const {
+  if (try_at_) return try_at_;
+  return status_.pending ? std::optional(status_.pending->until) : std::nullopt;
+}
+
+void Change::take_back(std::string why, Instant now) {
+  why_ = std::move(why);
+  tries_ = 0;
+  try_to_take_back(now);
+}
+
+void Change::try_to_take_back(Instant now) {
+  const auto taken = hands_.take_back();
+  if (taken) return end(Ended::TakenBack, why_);
+  if (++tries_ == kTries) {
+    return end(Ended::TakenBack, why_ + "; it takes effect once the box is started anew: " + taken.error());
+  }
+  try_at_ = now + kTryAgain;
+}
+
+void Change::end(Ended how, std::string why) {
+  status_.ended_nonce = status_.pending->nonce;
+  status_.pending.reset();
+  status_.ended = how;
+  status_.why = std::move(why);
+  try_at_.reset();
+}
+
+}  // namespace adit::network

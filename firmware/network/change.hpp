@@ -1,0 +1,67 @@
+#pragma once
+
+#include <chrono>
+#include <cstdint>
+#include <expected>
+#include <optional>
+#include <string>
+
+#include "network/messages.hpp"
+#include "network/numbers.hpp"
+
+namespace adit::network {
+
+/// What is done to the machine.
+class Hands {
+ public:
+  virtual ~Hands() = default;
+  /// Uses the numbers until the machine is started anew, or until they are taken back.
+  virtual std::expected<void, std::string> apply(const Numbers& numbers) = 0;
+  /// Uses them from now on.
+  virtual std::expected<void, std::string> keep(const Numbers& numbers) = 0;
+  /// Goes back to what was kept last.
+  virtual std::expected<void, std::string> take_back() = 0;
+};
+
+/// A change of the network's numbers, which takes itself back unless it is confirmed in time: what is wanted
+/// is applied at once and for now, and only kept once somebody has said so. One at a time.
+class Change {
+ public:
+  /// Taking back is tried again this often, this long after the last time.
+  static constexpr int kTries = 5;
+  static constexpr std::chrono::seconds kTryAgain{2};
+
+  /// `hands` outlives this. `kept`: what was confirmed last.
+  Change(Hands& hands, std::optional<Numbers> kept) : hands_(hands) { status_.kept = std::move(kept); }
+
+  void set_interfaces(std::string team, std::string command_post) {
+    status_.team_interface = std::move(team);
+    status_.command_post_interface = std::move(command_post);
+  }
+
+  /// A change was under way when this last ended: it has been taken back.
+  void interrupted();
+
+  void want(const Wanted& wanted, Instant now);
+  void hear(const Word& word, Instant now);
+  void tick(Instant now);
+  /// There is no more time: what is pending is taken back, once.
+  void stop(Instant now);
+
+  /// When tick() is to be called; nothing: no change is under way.
+  std::optional<Instant> wake() const;
+  const Status& status() const { return status_; }
+
+ private:
+  void take_back(std::string why, Instant now);
+  void try_to_take_back(Instant now);
+  void end(Ended how, std::string why);
+
+  Hands& hands_;
+  Status status_;
+  std::string why_;  // it is being taken back
+  int tries_ = 0;
+  std::optional<Instant> try_at_;
+};
+
+}  // namespace adit::network

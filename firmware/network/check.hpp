@@ -1,0 +1,38 @@
+#pragma once
+
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "network/numbers.hpp"
+
+namespace adit::network {
+
+/// One number that is to be another: "team.address", "192.168.7.11", "192.168.8.11".
+struct Difference {
+  std::string path, from, to;
+};
+
+/// Where the numbers are to be used.
+struct Circumstances {
+  bool allow_overlap = false;  // network.allow_overlap
+  std::chrono::milliseconds confirm_within{90000};
+  settings::CommandPost command_post;
+  std::vector<settings::Address> listen;  // team.listen
+  std::string asker;                      // the address of the one who asks
+};
+
+struct Verdict {
+  std::vector<settings::Error> errors;  // the change is refused
+  std::vector<Difference> changes;
+  std::vector<std::string> warnings;  // what it would do that may not be meant
+};
+
+/// `present`: what the interfaces have now, as far as it is known.
+Verdict check(const Numbers& wanted, const std::optional<Numbers>& present,
+              const Circumstances& circumstances);
+
+/// "http://192.168.8.11:8000", where the page is to be found with these numbers.
+std::string page_at(const Numbers& numbers, const std::vector<settings::Address>& listen);
+
+}  // namespace adit::network

@@ -1,0 +1,212 @@
+#include "network/messages.hpp"
+
+#include <algorithm>
+#include <initializer_list>
+#include <utility>
+
+#include "codec/field.hpp"
+#include "codec/json.hpp"
+#include "icd/sentence.hpp"
+
+namespace adit::network {
+namespace {
+
+using codec::Field;
+using codec::Value;
+
+constexpr std::int64_t kVersion = 1;
+constexpr std::size_t kNonceDigits = 32;
+
+std::string written(Value::Object members) {
+  members.insert(members.begin(), {"version", {kVersion}});
+  return codec::write_json({std::move(members)}) + '\n';
+}
+
+/// A file of exactly these members and the version.
+template <class Message, class Make>
+Read<Message> read(std::string_view json, std::initializer_list<std::string_view> names, Make make) {
+  const auto root = codec::parse_json(json);
+  if (!root) return std::unexpected("no JSON: " + root.error());
+  const auto* object = std::get_if<Value::Object>(&root->is);
+  if (object == nullptr) return std::unexpected("expected an object");
+  for (const auto& [name, value] : *object) {
+    if (name != "version" && std::ranges::find(names, name) == names.end()) {
+      return std::unexpected(icd::sentence("no such member: ", icd::in_quotes(name)));
+    }
+  }
+  codec::Reading reading;
+  const Field field(*root, reading);
+  field.member("version").whole<std::int64_t>(kVersion, kVersion);
+  auto message = reading.outcome<Message>(make(field));
+  if (!message) return std::unexpected(message.error().sentence);
+  return std::move(*message);
+}
+
+std::string text(const Field& object, std::string_view name) {
+  return std::string(object.member(name).text());
+}
+
+std::string nonce(const Field& object) {
+  const Field field = object.member("nonce");
+  std::string text(field.text());
+  if (!is_nonce(text)) field.refuse("expected 32 hexadecimal digits");
+  return text;
+}
+
+std::chrono::milliseconds within(const Field& object) {
+  return std::chrono::milliseconds(
+      object.member("confirm_within_ms").whole<std::int64_t>(kLeastWithin.count(), kMostWithin.count()));
+}
+
+Numbers numbers(const Field& object, std::string_view name) {
+  const Field field = object.member(name);
+  if (field.value() == nullptr) {
+    field.refuse_kind("an object");
+    return {};
+  }
+  auto read = read_numbers(*field.value());
+  if (read) return *read;
+  field.refuse(read.error().front().sentence());
+  return {};
+}
+
+Ended ended(const Field& object) {
+  const Field field = object.member("last");
+  if (field.is_absent()) return Ended::NotYet;
+  const std::string_view word = field.text();
+  for (const Ended each : {Ended::Confirmed, Ended::TakenBack}) {
+    if (word == name_of(each)) return each;
+  }
+  field.refuse("expected confirmed or taken back");
+  return Ended::NotYet;
+}
+
+std::int64_t milliseconds(Instant instant) {
+  return std::chrono::duration_cast<std::chrono::milliseconds>(instant.time_since_epoch()).count();
+}
+
+Value json(const std::optional<Pending>& pending) {
+  if (!pending) return {};
+  return {Value::Object{{"nonce", {pending->nonce}},
+                        {"until_ms", {milliseconds(pending->until)}},
+                        {"confirm_within_ms", {std::int64_t{pending->confirm_within.count()}}},
+                        {"wanted", to_json(pending->wanted)}}};
+}
+
+std::optional<Pending> pending(const Field& object) {
+  const Field field = object.member("pending");
+  if (field.is_absent()) return std::nullopt;
+  return Pending{nonce(field), numbers(field, "wanted"),
+                 Instant(std::chrono::milliseconds(field.member("until_ms").whole<std::int64_t>(0))),
+                 within(field)};
+}
+
+std::optional<Numbers> kept(const Field& object) {
+  if (object.member("kept").is_absent()) return std::nullopt;
+  return numbers(object, "kept");
+}
+
+}  // namespace
+
+bool is_nonce(std::string_view text) {
+  return text.size() == kNonceDigits && text.find_first_not_of("0123456789abcdef") == std::string_view::npos;
+}
+
+std::string_view name_of(Ended ended) {
+  switch (ended) {
+    case Ended::Confirmed:
+      return "confirmed";
+    case Ended::TakenBack:
+      return "taken back";
+    case Ended::NotYet:
+      break;
+  }
+  return "";
+}
+
+std::string write(const Wanted& wanted) {
+  return written({{"nonce", {wanted.nonce}},
+                  {"confirm_within_ms", {std::int64_t{wanted.confirm_within.count()}}},
+                  {"numbers", to_json(wanted.numbers)}});
+}
+
+std::string write(const Word& word) {
+  return written({{"nonce", {word.nonce}},
+                  {"word", {std::string(word.what == Word::What::Confirm ? "confirm" : "back")}}});
+}
+
+std::string write(const Probe& probe) {
+  return written({{"nonce", {probe.nonce}}});
+}
+
+std::string write(const Status& status) {
+  const std::string_view last = name_of(status.ended);
+  return written({{"team_interface", {status.team_interface}},
+                  {"command_post_interface", {status.command_post_interface}},
+                  {"kept", status.kept ? to_json(*status.kept) : Value{}},
+                  {"pending", json(status.pending)},
+                  {"last", last.empty() ? Value{} : Value{std::string(last)}},
+                  {"last_nonce", {status.ended_nonce}},
+                  {"why", {status.why}}});
+}
+
+std::string write(const Probed& probed) {
+  return written({{"nonce", {probed.nonce}},
+                  {"address", {probed.address}},
+                  {"claimant", {probed.claimant}},
+                  {"own", {probed.own}},
+                  {"trouble", {probed.trouble}}});
+}
+
+Read<Wanted> read_wanted(std::string_view json) {
+  return read<Wanted>(json, {"nonce", "confirm_within_ms", "numbers"}, [](const Field& root) {
+    return Wanted{nonce(root), within(root), numbers(root, "numbers")};
+  });
+}
+
+Read<Word> read_word(std::string_view json) {
+  return read<Word>(json, {"nonce", "word"}, [](const Field& root) {
+    const Field field = root.member("word");
+    const std::string_view word = field.text();
+    if (word != "confirm" && word != "back") field.refuse("expected confirm or back");
+    return Word{nonce(root), word == "confirm" ? Word::What::Confirm : Word::What::Back};
+  });
+}
+
+Read<Probe> read_probe(std::string_view json) {
+  return read<Probe>(json, {"nonce"}, [](const Field& root) { return Probe{nonce(root)}; });
+}
+
+Read<Status> read_status(std::string_view json) {
+  return read<Status>(
+      json, {"team_interface", "command_post_interface", "kept", "pending", "last", "last_nonce", "why"},
+      [](const Field& root) {
+        return Status{.team_interface = text(root, "team_interface"),
+                      .command_post_interface = text(root, "command_post_interface"),
+                      .kept = kept(root),
+                      .pending = pending(root),
+                      .ended = ended(root),
+                      .ended_nonce = text(root, "last_nonce"),
+                      .why = text(root, "why")};
+      });
+}
+
+Read<Probed> read_probed(std::string_view json) {
+  return read<Probed>(json, {"nonce", "address", "claimant", "own", "trouble"}, [](const Field& root) {
+    return Probed{.nonce = nonce(root),
+                  .address = text(root, "address"),
+                  .claimant = text(root, "claimant"),
+                  .own = text(root, "own"),
+                  .trouble = text(root, "trouble")};
+  });
+}
+
+std::string write_kept(const Numbers& numbers) {
+  return written({{"numbers", to_json(numbers)}});
+}
+
+Read<Numbers> read_kept(std::string_view json) {
+  return read<Numbers>(json, {"numbers"}, [](const Field& root) { return numbers(root, "numbers"); });
+}
+
+}  // namespace adit::network

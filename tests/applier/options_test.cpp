@@ -1,0 +1,40 @@
+#include "applier/options.hpp"
+
+#include <gmock/gmock.h>
+
+#include <vector>
+
+namespace adit::applier {
+namespace {
+
+using testing::HasSubstr;
+
+std::expected<Options, std::string> parse(std::vector<std::string> words) {
+  std::vector<char*> arguments;
+  for (std::string& word : words) arguments.push_back(word.data());
+  return parse_options(arguments);
+}
+
+TEST(AditNetworkOptions, HaveTheServicesOwnFolders) {
+  const auto options = parse({});
+  ASSERT_TRUE(options);
+  EXPECT_EQ(options->wanted, "/var/lib/private/adit");
+  EXPECT_EQ(options->team, "team0");
+  EXPECT_EQ(options->command_post, "darpa0");
+  EXPECT_EQ(parse({"--tried", "/tmp/x", "--team", "eth0.7"})->tried, "/tmp/x");
+}
+
+TEST(AditNetworkOptions, AreRefusedByTheirWord) {
+  EXPECT_THAT(parse({"--wnated", "x"}).error(), HasSubstr("--wnated"));
+  EXPECT_THAT(parse({"--wanted"}).error(), HasSubstr("--wanted wants a value"));
+  EXPECT_THAT(parse({"--kept", ""}).error(), HasSubstr("--kept wants a value"));
+  for (const char* name :
+       {"*", "eth*", "!team0", "a b", "eth0\nName=*", "..", ".", "sixteen-letters-", "a/b", "en:0"}) {
+    EXPECT_THAT(parse({"--team", name}).error(), HasSubstr("--team wants an interface's name")) << name;
+    EXPECT_THAT(parse({"--command-post", name}).error(), HasSubstr("--command-post wants")) << name;
+  }
+  EXPECT_THAT(parse({"--team", "darpa0"}).error(), HasSubstr("the same interface"));
+}
+
+}  // namespace
+}  // namespace adit::applier

@@ -1,0 +1,133 @@
+#include "cli/network.hpp"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include "cli/command.hpp"
+#include "cli/server.hpp"
+#include "cli/token_file.hpp"
+
+namespace adit::cli {
+namespace {
+
+using testing::HasSubstr;
+using testing::Not;
+
+const std::string kSides =
+    R"("team":{"interface":"team0","address":"192.168.7.11","prefix":24},)"
+    R"("command_post":{"interface":"darpa0","address":null,"prefix":null,"gateway":""})";
+
+std::string view(const std::string& pending, const std::string& last, bool managed = true) {
+  return Server::ok(std::string(R"({"managed":)") + (managed ? "true" : "false") +
+                    R"(,"why":"it is set elsewhere",)" + kSides + R"(,"pending":)" + pending + R"(,"last":)" +
+                    last + R"(,"last_why":"nobody confirmed it"})");
+}
+
+const std::string kPending =
+    R"({"until":1e10,"team":{"address":"192.168.8.11","prefix":24},"command_post":{"address":"10.100.1.10","prefix":24,)"
+    R"("gateway":"10.100.1.1"},"previous":null,"page":"http://192.168.8.11:8000"})";
+
+class NetworkCommand : public testing::Test {
+ protected:
+  Outcome say(const Server& server, std::vector<std::string_view> words) {
+    const std::string at = server.at();
+    words.insert(words.end(), {"--at", at, "--token-file", token_file_});
+    printed_.clear();
+    return run(words, false, [this](const std::string& text) { printed_ += text; });
+  }
+  TokenFile file_;
+  const std::string token_file_ = file_.path();
+  std::string printed_;
+};
+
+TEST_F(NetworkCommand, ShowsBothSides) {
+  const Server server({{"GET /adit/network", view("null", "null")}});
+  const Outcome outcome = say(server, {"network"});
+  EXPECT_EQ(outcome.exit, Exit::Fine);
+  EXPECT_EQ(outcome.out, "  team          team0  192.168.7.11/24\n  command post  darpa0  none\n");
+  EXPECT_EQ(say(server, {"network", "show"}).out, outcome.out);
+  EXPECT_THAT(say(server, {"network", "--json"}).out, HasSubstr("{\"managed\":true"));
+}
+
+TEST_F(NetworkCommand, ShowsAChangeThatWaits) {
+  const Server server({{"GET /adit/network", view(kPending, "null")}});
+  const Outcome outcome = say(server, {"network", "show"});
+  EXPECT_EQ(outcome.exit, Exit::Attention);
+  EXPECT_THAT(outcome.out, HasSubstr("A change waits to be confirmed"));
+  EXPECT_THAT(outcome.out, HasSubstr("192.168.8.11/24"));
+  EXPECT_THAT(outcome.out, HasSubstr("10.100.1.10/24  gateway 10.100.1.1"));
+  EXPECT_THAT(outcome.out, HasSubstr("Confirm it at http://192.168.8.11:8000"));
+}
+
+TEST_F(NetworkCommand, ShowsHowTheLastChangeEndedAndWhyNoneCanBeMade) {
+  const Server server({{"GET /adit/network", view("null", "\"taken back\"", false)}});
+  const Outcome outcome = say(server, {"network"});
+  EXPECT_THAT(outcome.out, HasSubstr("The last change: taken back, nobody confirmed it\n"));
+  EXPECT_THAT(outcome.out, HasSubstr("Nothing can be changed here: it is set elsewhere\n"));
+}
+
+TEST_F(NetworkCommand, SaysTheOperatorsWordAndWhatBecameOfIt) {
+  const Server server({{"POST /adit/network/confirm", view(kPending, "null")},
+                       {"POST /adit/network/back", view(kPending, "null")},
+                       {"GET /adit/network", view("null", "\"confirmed\"")}});
+  const Outcome confirmed = say(server, {"network", "confirm"});
+  EXPECT_EQ(confirmed.exit, Exit::Fine) << confirmed.err;
+  EXPECT_EQ(confirmed.out, "the change is confirmed\n");
+  const Outcome back = say(server, {"network", "back"});
+  EXPECT_EQ(back.exit, Exit::Attention) << "it was confirmed meanwhile";
+  EXPECT_EQ(back.out, "the change is confirmed: nobody confirmed it\n");
+}
+
+TEST_F(NetworkCommand, SaysWhyAWordCannotBe) {
+  const Server server(
+      {{"POST /adit/network/confirm", Server::reply("409 Conflict", "\"no change waits to be confirmed\"")}});
+  const Outcome outcome = say(server, {"network", "confirm"});
+  EXPECT_EQ(outcome.exit, Exit::Attention);
+  EXPECT_EQ(outcome.err, "adit: no change waits to be confirmed\n");
+  EXPECT_EQ(say(Server("nonsense"), {"network"}).exit, Exit::Unable);
+  EXPECT_THAT(say(Server(Server::ok("{}")), {"network"}).err, HasSubstr("not of this version of Adit"));
+}
+
+TEST_F(NetworkCommand, TakesNoOtherWords) {
+  EXPECT_THAT(run(std::vector<std::string_view>{"network", "apply"}, false).err,
+              HasSubstr("expected show, confirm or back, got apply"));
+  EXPECT_THAT(run(std::vector<std::string_view>{"network", "show", "all"}, false).err,
+              HasSubstr("one word too many: all"));
+  EXPECT_THAT(run(std::vector<std::string_view>{"test", "all"}, false).err,
+              HasSubstr("one word too many: all"));
+  EXPECT_THAT(run(std::vector<std::string_view>{"help", "network"}, false).out, HasSubstr("adit network - "));
+  EXPECT_THAT(run(std::vector<std::string_view>{"test", "--help"}, false).out, HasSubstr("adit test - "));
+}
+
+std::string tested(const std::string& clock, bool running = false) {
+  return Server::ok(std::string(R"({"running":)") + (running ? "true" : "false") +
+                    R"(,"endpoints":[{"name":"scoring","address":"10.100.1.200:8000","steps":[)"
+                    R"({"name":"link","state":"good","said":"darpa0 has a carrier","advice":""},)"
+                    R"({"name":"clock","state":")" +
+                    clock + R"(","said":"7 s behind","advice":"Set it."}]}]})");
+}
+
+TEST_F(NetworkCommand, PrintsTheStepsOfATestAndFailsWhereOneIsBad) {
+  const Server server({{"POST /adit/test", tested("running", true)}, {"GET /adit/test", tested("bad")}});
+  const Outcome outcome = say(server, {"test"});
+  EXPECT_EQ(outcome.exit, Exit::Attention) << outcome.err;
+  EXPECT_EQ(printed_,
+            "scoring 10.100.1.200:8000\n"
+            "  link     good     darpa0 has a carrier\n"
+            "  clock    BAD      7 s behind\n"
+            "           Set it.\n");
+  EXPECT_THAT(say(server, {"test", "--json"}).out + printed_, HasSubstr("\"running\":false"));
+}
+
+TEST_F(NetworkCommand, JoinsATestThatRuns) {
+  const Server server({{"POST /adit/test", Server::reply("409 Conflict", "\"a test is running\"")},
+                       {"GET /adit/test", tested("skipped")}});
+  EXPECT_EQ(say(server, {"test"}).exit, Exit::Fine);
+  EXPECT_THAT(printed_, HasSubstr("skipped"));
+  EXPECT_EQ(say(Server(Server::reply("401 Unauthorized", "\"no\"")), {"test"}).exit, Exit::Unable);
+  EXPECT_EQ(say(Server(Server::reply("404 Not Found", "\"no\"")), {"test"}).exit, Exit::Unable);
+  EXPECT_THAT(printed_, Not(HasSubstr("good")));
+}
+
+}  // namespace
+}  // namespace adit::cli

@@ -1,0 +1,245 @@
+#include "network/change.hpp"
+
+#include <gmock/gmock.h>
+
+#include "network/doubles.hpp"
+
+namespace adit::network {
+namespace {
+
+using std::chrono::milliseconds;
+using std::chrono::seconds;
+using testing::ElementsAre;
+using testing::HasSubstr;
+using testing::IsEmpty;
+
+/// Remembers what it was told, and fails as it is told. What could not be applied may be in use all the same.
+struct FakeHands final : Hands {
+  std::expected<void, std::string> apply(const Numbers& all) override {
+    in_use = host_text(all.team);
+    return did("apply " + in_use, fail_apply);
+  }
+  std::expected<void, std::string> keep(const Numbers& all) override {
+    if (!fail_keep) kept = host_text(all.team);
+    return did("keep " + host_text(all.team), fail_keep);
+  }
+  std::expected<void, std::string> take_back() override {
+    const bool fails = fail_take_back > 0 && fail_take_back-- > 0;
+    if (!fails) in_use = kept;
+    return did("take back", fails);
+  }
+  std::expected<void, std::string> did(const std::string& what, bool fails) {
+    done.push_back(what);
+    if (fails) return std::unexpected("the disk is full");
+    return {};
+  }
+  std::vector<std::string> done;
+  std::string in_use = "192.168.7.11/24", kept = in_use;
+  bool fail_apply = false, fail_keep = false;
+  int fail_take_back = 0;
+};
+
+class ChangeTest : public testing::Test {
+ protected:
+  static constexpr const char* kNew = "192.168.8.11/24";
+  const std::string nonce = std::string(32, 'a'), other = std::string(32, 'b');
+
+  void want(const std::string& team = kNew) { change.want({nonce, seconds(90), numbers(team)}, at(0)); }
+  static Instant at(double s) { return Instant(milliseconds(static_cast<std::int64_t>(1e6 + s * 1000))); }
+  void confirm(double s) { change.hear({nonce, Word::What::Confirm}, at(s)); }
+
+  FakeHands hands;
+  Change change{hands, numbers()};
+};
+
+TEST_F(ChangeTest, IsAppliedAtOnceAndPendingUntilItsTime) {
+  want();
+  EXPECT_THAT(hands.done, ElementsAre("apply 192.168.8.11/24"));
+  ASSERT_TRUE(change.status().pending);
+  EXPECT_EQ(change.status().pending->until, at(90));
+  EXPECT_EQ(change.wake(), at(90));
+  EXPECT_EQ(change.status().kept, numbers()) << "until it is confirmed";
+  EXPECT_EQ(change.status().ended, Ended::NotYet);
+}
+
+TEST_F(ChangeTest, IsKeptOnceItIsConfirmed) {
+  want();
+  confirm(89.999);
+  EXPECT_THAT(hands.done, ElementsAre("apply 192.168.8.11/24", "keep 192.168.8.11/24"));
+  EXPECT_FALSE(change.status().pending);
+  EXPECT_EQ(change.status().ended, Ended::Confirmed);
+  EXPECT_EQ(change.status().kept, numbers(kNew));
+  EXPECT_EQ(change.wake(), std::nullopt);
+  change.tick(at(1000));
+  EXPECT_EQ(hands.done.size(), 2u) << "nothing comes after it";
+}
+
+TEST_F(ChangeTest, TakesItselfBackInTime) {
+  want();
+  change.tick(at(89.999));
+  EXPECT_TRUE(change.status().pending);
+  change.tick(at(90));
+  EXPECT_THAT(hands.done, ElementsAre("apply 192.168.8.11/24", "take back"));
+  EXPECT_FALSE(change.status().pending);
+  EXPECT_EQ(change.status().ended, Ended::TakenBack);
+  EXPECT_EQ(change.status().why, "nobody confirmed it within 90 s");
+  EXPECT_EQ(change.status().kept, numbers());
+}
+
+TEST_F(ChangeTest, IsNotConfirmedTooLate) {
+  want();
+  confirm(90);
+  EXPECT_THAT(hands.done, ElementsAre("apply 192.168.8.11/24", "take back"));
+  EXPECT_EQ(change.status().ended, Ended::TakenBack);
+}
+
+TEST_F(ChangeTest, IsConfirmedByItsOwnNonceAlone) {
+  want();
+  change.hear({other, Word::What::Confirm}, at(1));
+  change.hear({other, Word::What::Back}, at(1));
+  EXPECT_TRUE(change.status().pending);
+  EXPECT_EQ(hands.done.size(), 1u);
+}
+
+TEST_F(ChangeTest, IsTakenBackOnAWord) {
+  want();
+  change.hear({nonce, Word::What::Back}, at(1));
+  EXPECT_THAT(hands.done, ElementsAre("apply 192.168.8.11/24", "take back"));
+  EXPECT_EQ(change.status().ended, Ended::TakenBack);
+  EXPECT_EQ(change.status().ended_nonce, nonce);
+}
+
+TEST_F(ChangeTest, IsTakenBackWhereItsKeeperStops) {
+  change.stop(at(0));
+  EXPECT_THAT(hands.done, IsEmpty());
+  want();
+  change.stop(at(1));
+  EXPECT_THAT(hands.done, ElementsAre("apply 192.168.8.11/24", "take back"));
+  EXPECT_EQ(change.status().ended, Ended::TakenBack);
+}
+
+TEST_F(ChangeTest, IsTakenBackAtOnceWhereItCannotBeApplied) {
+  hands.fail_apply = true;
+  want();
+  EXPECT_THAT(hands.done, ElementsAre("apply 192.168.8.11/24", "take back"));
+  EXPECT_FALSE(change.status().pending);
+  EXPECT_EQ(change.status().why, "it could not be applied: the disk is full");
+}
+
+TEST_F(ChangeTest, IsTakenBackWhereItCannotBeKept) {
+  hands.fail_keep = true;
+  want();
+  confirm(1);
+  EXPECT_THAT(hands.done, ElementsAre("apply 192.168.8.11/24", "keep 192.168.8.11/24", "take back"));
+  EXPECT_EQ(change.status().ended, Ended::TakenBack);
+  EXPECT_EQ(change.status().kept, numbers());
+  EXPECT_THAT(change.status().why, HasSubstr("could not be kept: the disk is full"));
+}
+
+TEST_F(ChangeTest, IsTakenBackAgainAndAgainUntilItSucceeds) {
+  hands.fail_take_back = 2;
+  want();
+  change.tick(at(90));
+  EXPECT_TRUE(change.status().pending) << "it is still in use";
+  EXPECT_EQ(change.wake(), at(92));
+  confirm(91);
+  EXPECT_TRUE(change.status().pending) << "too late";
+  change.tick(at(92));
+  change.tick(at(94));
+  EXPECT_THAT(hands.done, ElementsAre("apply 192.168.8.11/24", "take back", "take back", "take back"));
+  EXPECT_EQ(change.status().ended, Ended::TakenBack);
+  EXPECT_EQ(change.wake(), std::nullopt);
+}
+
+TEST_F(ChangeTest, IsGivenUpWhereItCannotBeTakenBack) {
+  hands.fail_take_back = 99;
+  want();
+  for (double s = 90; s < 200; s += 1) change.tick(at(s));
+  EXPECT_EQ(hands.done.size(), 1u + Change::kTries);
+  EXPECT_FALSE(change.status().pending);
+  EXPECT_THAT(change.status().why, HasSubstr("once the box is started anew: the disk is full"));
+}
+
+TEST_F(ChangeTest, IsNotReplacedWhileItIsPending) {
+  want();
+  change.want({other, seconds(90), numbers("192.168.9.11/24")}, at(10));
+  EXPECT_EQ(hands.done.size(), 1u);
+  EXPECT_EQ(change.status().pending->nonce, nonce);
+  EXPECT_EQ(change.wake(), at(90)) << "nor does it last longer";
+}
+
+TEST_F(ChangeTest, ToWhatIsThereAlreadyTouchesNothing) {
+  want("192.168.7.11/24");
+  EXPECT_THAT(hands.done, IsEmpty());
+  EXPECT_EQ(change.status().ended, Ended::Confirmed);
+  EXPECT_EQ(change.status().ended_nonce, nonce);
+}
+
+TEST_F(ChangeTest, FollowsAnother) {
+  want();
+  confirm(1);
+  change.want({other, seconds(10), numbers("192.168.9.11/24")}, at(5));
+  change.tick(at(15));
+  EXPECT_THAT(hands.done, ElementsAre("apply 192.168.8.11/24", "keep 192.168.8.11/24",
+                                      "apply 192.168.9.11/24", "take back"));
+  EXPECT_EQ(change.status().kept, numbers(kNew)) << "the one that was confirmed";
+}
+
+TEST(AFirstChange, IsTakenBackToNothing) {
+  FakeHands hands;
+  Change change(hands, std::nullopt);
+  change.interrupted();
+  EXPECT_EQ(change.status().ended, Ended::TakenBack);
+  const Instant now{};
+  change.want({std::string(32, 'c'), seconds(1), numbers()}, now);
+  EXPECT_EQ(change.status().kept, std::nullopt);
+  change.tick(now + seconds(1));
+  EXPECT_THAT(hands.done, ElementsAre("apply 192.168.7.11/24", "take back"));
+}
+
+/// A law: whatever comes when, at the end nothing is in use that was not confirmed in time.
+TEST(Changes, NeverLeaveInUseWhatNobodyConfirmed) {
+  std::uint64_t random = 1;
+  const auto draw = [&random](std::uint64_t most) {
+    random = random * 6364136223846793005u + 1442695040888963407u;
+    return (random >> 33) % most;
+  };
+  for (int round = 0; round < 2000; ++round) {
+    FakeHands hands;
+    Change change(hands, numbers());
+    std::string confirmed = "192.168.7.11/24";
+    Instant now{};
+    for (int step = 0; step < 12; ++step) {
+      now += milliseconds(draw(1500));
+      hands.fail_apply = draw(8) == 0;
+      hands.fail_keep = draw(8) == 0;
+      const std::string nonce(32, static_cast<char>('0' + draw(3)));
+      const std::string team = "192.168." + std::to_string(20 + draw(3)) + ".11/24";
+      const auto before = change.status().pending;
+      switch (draw(4)) {
+        case 0:
+          change.want({nonce, seconds(1), numbers(team)}, now);
+          break;
+        case 1:
+          change.hear({nonce, Word::What::Confirm}, now);
+          if (before && before->nonce == nonce && now < before->until && !hands.fail_keep) {
+            confirmed = host_text(before->wanted.team);
+          }
+          break;
+        case 2:
+          change.hear({nonce, Word::What::Back}, now);
+          break;
+        default:
+          change.tick(now);
+      }
+    }
+    change.tick(now + seconds(1));
+    EXPECT_FALSE(change.status().pending);
+    EXPECT_EQ(hands.kept, confirmed);
+    EXPECT_EQ(hands.in_use, confirmed);
+    EXPECT_EQ(host_text(change.status().kept->team), confirmed);
+  }
+}
+
+}  // namespace
+}  // namespace adit::network

@@ -1,0 +1,117 @@
+#include "network/check.hpp"
+
+#include <gmock/gmock.h>
+
+#include "network/doubles.hpp"
+
+namespace adit::network {
+namespace {
+
+using testing::AllOf;
+using testing::Contains;
+using testing::ElementsAre;
+using testing::HasSubstr;
+using testing::IsEmpty;
+using testing::SizeIs;
+
+Circumstances usual() {
+  Circumstances around;
+  around.command_post.scoring = {"10.100.1.200", 8000};
+  around.command_post.mapping = {"10.100.1.201", 8000};
+  around.listen = {{"0.0.0.0", 8000}};
+  around.asker = "192.168.7.12";
+  return around;
+}
+
+std::vector<std::string> errors(const Numbers& wanted, const Circumstances& around) {
+  std::vector<std::string> sentences;
+  for (const auto& error : check(wanted, numbers(), around).errors) sentences.push_back(error.sentence());
+  return sentences;
+}
+
+TEST(NetworkCheck, HasNothingAgainstWhatIsThere) {
+  const Verdict verdict = check(numbers(), numbers(), usual());
+  EXPECT_THAT(verdict.errors, IsEmpty());
+  EXPECT_THAT(verdict.changes, IsEmpty());
+  EXPECT_THAT(verdict.warnings, IsEmpty());
+}
+
+TEST(NetworkCheck, TellsWhatBecomesAnother) {
+  const Verdict verdict =
+      check(numbers("192.168.7.11/25", "10.100.1.10/24", "10.100.1.1"), numbers("192.168.7.10/24"), usual());
+  ASSERT_THAT(verdict.changes, SizeIs(3));
+  EXPECT_EQ(verdict.changes[0].path, "team.address");
+  EXPECT_EQ(verdict.changes[0].from, "192.168.7.10");
+  EXPECT_EQ(verdict.changes[0].to, "192.168.7.11");
+  EXPECT_EQ(verdict.changes[1].path, "team.prefix");
+  EXPECT_EQ(verdict.changes[2].path, "command_post.gateway");
+  EXPECT_EQ(verdict.changes[2].from, "");
+  EXPECT_THAT(check(numbers(), std::nullopt, usual()).changes, SizeIs(4))
+      << "all but the gateway, which stays none";
+}
+
+TEST(NetworkCheck, RefusesATeamInTheCommandPostsSubnets) {
+  for (const char* team : {"10.1.1.7/24", "10.2.1.7/25", "10.100.7.7/24", "10.0.0.7/8"}) {
+    EXPECT_THAT(errors(numbers(team), usual()),
+                Contains(AllOf(HasSubstr("team.address: "), HasSubstr("(ICD 3); choose another subnet"))))
+        << team;
+  }
+  EXPECT_THAT(errors(numbers("172.16.1.7/24", "172.16.1.8/24"), usual()),
+              ElementsAre(HasSubstr("172.16.1.0/24 overlaps 172.16.1.0/24 on the Command Post's side")));
+  Circumstances around = usual();
+  around.command_post.mapping.address = "192.168.7.201";
+  EXPECT_THAT(errors(numbers(), around),
+              ElementsAre(HasSubstr("the mapping endpoint 192.168.7.201 lies in 192.168.7.0/24")));
+}
+
+TEST(NetworkCheck, AllowsAnOverlapOnPurposeAndSaysSo) {
+  Circumstances around = usual();
+  around.allow_overlap = true;
+  const Verdict verdict = check(numbers("10.100.7.7/24"), numbers(), around);
+  EXPECT_THAT(verdict.errors, IsEmpty());
+  EXPECT_THAT(verdict.warnings, Contains(HasSubstr("overlaps 10.100.0.0/16")));
+}
+
+TEST(NetworkCheck, WarnsOneWhoCutsHimselfOff) {
+  const auto warnings = [](const char* team, const char* asker) {
+    Circumstances around = usual();
+    around.asker = asker;
+    return check(numbers(team), numbers(), around).warnings;
+  };
+  EXPECT_THAT(
+      warnings("192.168.8.11/24", "192.168.7.12"),
+      ElementsAre(AllOf(HasSubstr("this cuts you off: your address 192.168.7.12 is not in 192.168.8.0/24"),
+                        HasSubstr("open http://192.168.8.11:8000"), HasSubstr("within 90 s"))));
+  EXPECT_THAT(warnings("192.168.7.99/24", "192.168.7.12"),
+              ElementsAre(HasSubstr("the page moves: open http://192.168.7.99:8000")));
+  EXPECT_THAT(warnings("192.168.7.11/24", "192.168.7.12"), IsEmpty()) << "the team's side stays as it is";
+  EXPECT_THAT(warnings("192.168.8.11/24", "fd00::5"), ElementsAre(HasSubstr("cuts you off")));
+}
+
+TEST(NetworkCheck, WarnsOfEndpointsThatAreLost) {
+  EXPECT_THAT(check(numbers("192.168.7.11/24", "10.100.2.10/24"), numbers(), usual()).warnings,
+              ElementsAre("the scoring endpoint 10.100.1.200 cannot be reached: it is not in 10.100.2.0/24, "
+                          "and there is no gateway",
+                          "the mapping endpoint 10.100.1.201 cannot be reached: it is not in 10.100.2.0/24, "
+                          "and there is no gateway"));
+  EXPECT_THAT(check(numbers("192.168.7.11/24", "10.100.2.10/24", "10.100.2.1"), numbers(), usual()).warnings,
+              IsEmpty());
+  Circumstances around = usual();
+  around.command_post.scoring.address = "172.20.0.1";
+  EXPECT_THAT(check(numbers("192.168.7.11/24", "10.100.1.10/24", "10.100.1.1"), numbers(), around).warnings,
+              ElementsAre(HasSubstr("no gateway leads there")));
+}
+
+TEST(NetworkCheck, RefusesAnAddressAtWhichNothingListens) {
+  Circumstances around = usual();
+  around.listen = {{"192.168.7.11", 80}};
+  EXPECT_THAT(
+      errors(numbers("192.168.8.11/24"), around),
+      ElementsAre(HasSubstr(
+          "nothing would be served at 192.168.8.11: the settings' team.listen has only 192.168.7.11")));
+  EXPECT_THAT(errors(numbers(), around), IsEmpty());
+  EXPECT_EQ(page_at(numbers(), around.listen), "http://192.168.7.11");
+}
+
+}  // namespace
+}  // namespace adit::network

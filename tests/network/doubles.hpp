@@ -1,0 +1,28 @@
+#pragma once
+
+#include <gtest/gtest.h>
+
+#include <string>
+
+#include "codec/json.hpp"
+#include "network/numbers.hpp"
+
+namespace adit::network {
+
+inline settings::Subnet host(const std::string& text) {
+  const auto parsed = settings::parse_subnet(text);
+  EXPECT_TRUE(parsed) << text;
+  return parsed.value_or(settings::Subnet{});
+}
+
+/// A box as it is usual.
+inline Numbers numbers(const std::string& team = "192.168.7.11/24",
+                       const std::string& post = "10.100.1.10/24", const std::string& gateway = "") {
+  return {host(team), host(post), settings::ipv4_of(gateway)};
+}
+
+inline std::string json_of(const Numbers& all) {
+  return codec::write_json(to_json(all));
+}
+
+}  // namespace adit::network

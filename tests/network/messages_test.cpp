@@ -1,0 +1,88 @@
+#include "network/messages.hpp"
+
+#include <gmock/gmock.h>
+
+#include <nlohmann/json.hpp>
+
+#include "network/doubles.hpp"
+
+namespace adit::network {
+namespace {
+
+using nlohmann::json;
+using testing::HasSubstr;
+
+const std::string kNonce = "0123456789abcdef0123456789abcdef";
+
+TEST(NetworkMessages, SurviveTheirWriting) {
+  const auto wanted = read_wanted(write(Wanted{kNonce, std::chrono::milliseconds(90000), numbers()}));
+  ASSERT_TRUE(wanted) << wanted.error();
+  EXPECT_EQ(wanted->nonce, kNonce);
+  EXPECT_EQ(wanted->confirm_within.count(), 90000);
+  EXPECT_EQ(wanted->numbers, numbers());
+  for (const auto what : {Word::What::Confirm, Word::What::Back}) {
+    const auto word = read_word(write(Word{kNonce, what}));
+    ASSERT_TRUE(word);
+    EXPECT_EQ(word->what, what);
+  }
+  ASSERT_TRUE(read_probe(write(Probe{kNonce})));
+  const auto probed = read_probed(write(Probed{kNonce, "10.100.1.10", "02:00:00:00:00:01", "team0", "none"}));
+  ASSERT_TRUE(probed);
+  EXPECT_EQ(probed->claimant, "02:00:00:00:00:01");
+  EXPECT_EQ(read_kept(write_kept(numbers())), numbers());
+}
+
+TEST(NetworkMessages, TellTheWholeStatus) {
+  Status status{.team_interface = "team0", .command_post_interface = "darpa0"};
+  EXPECT_EQ(read_status(write(status)), status);
+  status.kept = numbers();
+  status.pending = Pending{kNonce, numbers("10.0.0.1/8"), Instant(std::chrono::milliseconds(123456)),
+                           std::chrono::seconds(5)};
+  status.ended = Ended::TakenBack;
+  status.ended_nonce = kNonce;
+  status.why = "nobody confirmed it";
+  EXPECT_EQ(read_status(write(status)), status);
+  EXPECT_EQ(json::parse(write(status))["pending"]["until_ms"], 123456);
+}
+
+/// What a gateway that has been taken over could write.
+TEST(NetworkMessages, AreRefusedWhereTheyAreHostile) {
+  const json good = json::parse(write(Wanted{kNonce, std::chrono::milliseconds(90000), numbers()}));
+  const std::pair<const char*, const char*> cases[] = {
+      {R"({"version":2})", "version"},
+      {R"({"version":null})", "version"},
+      {R"({"nonce":"0123"})", "nonce: expected 32 hexadecimal digits"},
+      {R"({"nonce":"0123456789ABCDEF0123456789ABCDEF"})", "nonce"},
+      {R"({"nonce":"../../../../etc/passwd0000000000"})", "nonce"},
+      {R"({"nonce":7})", "nonce"},
+      {R"({"confirm_within_ms":999})", "confirm_within_ms"},
+      {R"({"confirm_within_ms":600001})", "confirm_within_ms"},
+      {R"({"confirm_within_ms":-1})", "confirm_within_ms"},
+      {R"({"confirm_within_ms":"90000"})", "confirm_within_ms"},
+      {R"({"numbers":null})", "numbers"},
+      {R"({"numbers":"x"})", "numbers: expected an object"},
+      {R"({"numbers":{"team":{"address":"1.2.3.4\n[Network]\nDHCP=yes"}}})",
+       "numbers: team.address: expected an IPv4"},
+      {R"({"run":"rm"})", "no such member: \"run\""},
+  };
+  for (const auto& [change, what] : cases) {
+    json bad = good;
+    bad.update(json::parse(change));
+    const auto read = read_wanted(bad.dump());
+    ASSERT_FALSE(read) << change;
+    EXPECT_THAT(read.error(), HasSubstr(what));
+  }
+  for (const char* text : {"", "{", "[]", "null", "7", "{\"version\":1}", "\xff\xfe"}) {
+    EXPECT_FALSE(read_wanted(text)) << text;
+    EXPECT_FALSE(read_word(text)) << text;
+    EXPECT_FALSE(read_probe(text)) << text;
+    EXPECT_FALSE(read_status(text)) << text;
+    EXPECT_FALSE(read_probed(text)) << text;
+    EXPECT_FALSE(read_kept(text)) << text;
+  }
+  EXPECT_FALSE(read_word(R"({"version":1,"nonce":")" + kNonce + R"(","word":"maybe"})"));
+  EXPECT_FALSE(read_word(R"({"version":1,"nonce":"x","word":"back"})"));
+}
+
+}  // namespace
+}  // namespace adit::network

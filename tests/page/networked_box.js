@@ -1,0 +1,122 @@
+// A box with two interfaces, adit-network at work, and a station on the team's network, each in a network namespace.
+import { execFileSync, spawn, spawnSync } from "node:child_process";
+import { once } from "node:events";
+import { chmodSync, existsSync, mkdirSync, mkdtempSync, readFileSync, rmSync, writeFileSync } from "node:fs";
+import { tmpdir } from "node:os";
+import { dirname, join, resolve } from "node:path";
+import { setTimeout as sleep } from "node:timers/promises";
+import { fileURLToPath } from "node:url";
+import { launch, visit } from "./stage.js";
+
+const BIN = resolve(process.env.ADIT_BIN ?? dirname(process.env.SCENE_SERVER));
+const STAND_IN = fileURLToPath(new URL("../wire/stand_in_networkctl", import.meta.url));
+const BOX = `aditbox${process.pid}`, STATION = `aditsta${process.pid}`;
+const AS_IT_COMES = { team0: "192.168.7.11/24", darpa0: "10.100.1.10/24" };
+const ASKED = ["wanted.json", "word.json", "probe.json"];
+
+const ip = (...words) => execFileSync("ip", words, { stdio: "pipe" });
+
+/** Why no namespaces can be had here; "" where they can. */
+export function hindrance() {
+  if (process.getuid() !== 0) return "network namespaces need root";
+  const made = spawnSync("ip", ["netns", "add", BOX]), used = spawnSync("ip", ["netns", "exec", BOX, "true"]);
+  spawnSync("ip", ["netns", "delete", BOX]);
+  return made.status === 0 && used.status === 0 ? "" : `network namespaces cannot be used here: ${made.stderr}${used.stderr}`;
+}
+
+/** team0 of the box to the station, which has an address in each subnet that is tried; darpa0 to nobody. */
+function connect() {
+  for (const name of [BOX, STATION]) {
+    ip("netns", "add", name);
+    ip("-n", name, "link", "set", "lo", "up");
+  }
+  ip("-n", BOX, "link", "add", "team0", "type", "veth", "peer", "name", "lan0", "netns", STATION);
+  ip("-n", BOX, "link", "add", "darpa0", "type", "veth", "peer", "name", "wan0", "netns", STATION);
+  for (const [name, link] of [[BOX, "team0"], [BOX, "darpa0"], [STATION, "lan0"], [STATION, "wan0"]]) ip("-n", name, "link", "set", link, "up");
+  for (const address of ["192.168.7.2/24", "192.168.8.2/24"]) ip("-n", STATION, "address", "add", address, "dev", "lan0");
+  for (const [name, address] of Object.entries(AS_IT_COMES)) ip("-n", BOX, "address", "add", address, "dev", name);
+}
+
+export class NetworkedBox {
+  folder = mkdtempSync(join(tmpdir(), "adit-network-page-"));
+  state = join(this.folder, "state");
+  #running = new Set();
+  #isOpen = true;
+
+  #start(space, ...words) {
+    const program = spawn("ip", ["netns", "exec", space, ...words], { stdio: ["ignore", "pipe", "pipe"] });
+    this.#running.add(program);
+    program.said = "";
+    for (const stream of [program.stdout, program.stderr]) stream.on("data", (piece) => (program.said += piece));
+    program.once("exit", () => this.#running.delete(program));
+    return program;
+  }
+
+  /** adit-network as its units run it: whenever something is asked for, one at a time. */
+  async #serveNetwork() {
+    const networkctl = join(this.folder, "networkctl");
+    writeFileSync(networkctl, `#!/bin/sh\nexec ${STAND_IN} ${this.folder}/tried ${this.folder}/kept "$@"\n`);
+    chmodSync(networkctl, 0o755);
+    const folders = ["status", "networkd", "tried", "kept"].map((name) => join(this.folder, name));
+    for (const folder of [this.state, ...folders]) mkdirSync(folder);
+    const [status, state, tried, kept] = folders;
+    for (const [name, address] of Object.entries(AS_IT_COMES)) {
+      writeFileSync(join(kept, `60-${name}.network`), `[Match]\nName=${name}\n[Address]\nAddress=${address}\n`);
+    }
+    const run = () => once(this.#start(BOX, join(BIN, "adit-network"), "--networkctl", networkctl, "--wanted", this.state,
+      "--status", status, "--state", state, "--tried", tried, "--kept", kept), "exit");
+    await run();
+    const follow = async () => {
+      while (this.#isOpen) {
+        if (ASKED.some((name) => existsSync(join(this.state, name)))) await run();
+        else await sleep(50);
+      }
+    };
+    follow();
+  }
+
+  async begin(confirmWithin) {
+    connect();
+    chmodSync(this.folder, 0o755);
+    const at = (address) => ({ address, port: 8000 });
+    const settings = {
+      version: 1,
+      command_post: { scoring: at("10.100.1.200"), mapping: at("10.100.1.201"), interface: "darpa0" },
+      team: { listen: [at("0.0.0.0")], interface: "team0" },
+      network: { confirm_within_ms: confirmWithin },
+    };
+    writeFileSync(join(this.folder, "settings.json"), JSON.stringify(settings));
+    mkdirSync(join(this.folder, "secrets"), { mode: 0o700 });
+    await this.#serveNetwork();
+    const aditd = this.#start(BOX, join(BIN, "aditd"), "--settings", join(this.folder, "settings.json"), "--secrets", join(this.folder, "secrets"),
+      "--state", this.state, "--network", join(this.folder, "status"));
+    for (let tries = 0; !aditd.said.includes("listening"); ++tries) {
+      if (tries > 100 || aditd.exitCode !== null) throw new Error(`aditd: ${aditd.said}`);
+      await sleep(100);
+    }
+    const chromium = join(this.folder, "chromium");
+    writeFileSync(chromium, `#!/bin/sh\nexec ip netns exec ${STATION} ${process.env.CHROMIUM ?? "/usr/bin/chromium"} "$@"\n`);
+    chmodSync(chromium, 0o755);
+    this.browser = await launch(chromium);
+    return this;
+  }
+
+  code = () => readFileSync(join(this.state, "first-start.code"), "utf8").trim();
+  /** The address that team0 has: "192.168.7.11/24". */
+  address() {
+    const [link] = JSON.parse(ip("-n", BOX, "-4", "-j", "address", "show", "dev", "team0"));
+    return link.addr_info.map(({ local, prefixlen }) => `${local}/${prefixlen}`).join(" ");
+  }
+  visit = (url) => visit(this.browser, url);
+
+  async close() {
+    this.#isOpen = false;
+    await this.browser?.close();
+    for (const program of this.#running) {
+      program.kill("SIGKILL");
+      await once(program, "exit");
+    }
+    for (const name of [BOX, STATION]) spawnSync("ip", ["netns", "delete", name]);
+    rmSync(this.folder, { recursive: true, force: true });
+  }
+}

@@ -1,0 +1,166 @@
+"""adit-network on the box, with a real systemd-networkd in the box's namespace or with a stand-in for it."""
+
+import json
+import os
+import pathlib
+import secrets
+import subprocess
+import unittest
+
+import programs
+
+NETWORKD = "/lib/systemd/systemd-networkd"
+STAND_IN = pathlib.Path(__file__).with_name("stand_in_networkctl")
+
+BUS = """<!DOCTYPE busconfig PUBLIC "-//freedesktop//DTD D-Bus Bus Configuration 1.0//EN"
+ "http://www.freedesktop.org/standards/dbus/1.0/busconfig.dtd">
+<busconfig><type>system</type><listen>unix:path={path}</listen><policy context="default"><allow user="*"/><allow own="*"/>
+<allow send_destination="*" eavesdrop="true"/><allow eavesdrop="true"/></policy></busconfig>
+"""
+
+# A /sys that is only read tells networkd that no udev is to be waited for.
+START = """set -e
+mount -o remount,bind,ro /sys
+mount -t tmpfs tmpfs /run/systemd
+mkdir -p /run/systemd/network /run/systemd/netif/links /run/systemd/netif/leases /run/systemd/netif/lldp
+chown -R systemd-network: /run/systemd/netif
+mount --bind "$FOLDER/tried" /run/systemd/network
+mount --bind "$FOLDER/kept" /etc/systemd/network
+exec "$NETWORKD"
+"""
+
+
+def needs_networkd():
+    for program in (NETWORKD, "/usr/bin/dbus-daemon", "/usr/bin/networkctl"):
+        if not os.access(program, os.X_OK):
+            raise unittest.SkipTest(f"a real networkd needs {program}")
+
+
+class Networkd:
+    """A real one, in the box's namespace, which reads folder/kept and folder/tried."""
+
+    def __init__(self, network, folder):
+        self.network = network
+        self.bus = folder / "bus"
+        (folder / "bus.conf").write_text(BUS.format(path=self.bus))
+        self.dbus = subprocess.Popen(["dbus-daemon", "--nofork", "--nosyslog", "--nopidfile",
+                                      f"--config-file={folder / 'bus.conf'}"], stderr=subprocess.DEVNULL)
+        programs.wait_until(self.bus.exists, "the bus")
+        self.environment = {**os.environ, "DBUS_SYSTEM_BUS_ADDRESS": f"unix:path={self.bus}", "FOLDER": str(folder),
+                            "NETWORKD": NETWORKD, "SYSTEMD_LOG_TARGET": "console"}
+        self.log = open(folder / "networkd.log", "wb")
+        self._start()
+        self.networkctl = folder / "networkctl"
+        self.networkctl.write_text(
+            f"#!/bin/sh\nDBUS_SYSTEM_BUS_ADDRESS=unix:path={self.bus} exec /usr/bin/networkctl \"$@\"\n")
+        self.networkctl.chmod(0o755)
+        try:
+            programs.wait_until(self._answers, "networkd")
+        except AssertionError:
+            self.stop()
+            raise unittest.SkipTest("a real networkd does not run here: " +
+                                    (folder / "networkd.log").read_text()[-300:]) from None
+
+    def _start(self):
+        self.daemon = self.network.start(self.network.box, "unshare", "-m", "sh", "-c", START, env=self.environment,
+                                         stderr=self.log, stdout=self.log)
+
+    def _answers(self):
+        return self.reload().returncode == 0
+
+    def reload(self):
+        """networkctl insists on networkd's own namespace."""
+        return subprocess.run(["ip", "netns", "exec", self.network.box, self.networkctl, "reload"], capture_output=True,
+                              check=False)
+
+    def stop(self):
+        for process in (self.daemon, self.dbus):
+            process.kill()
+            process.wait()
+        self.log.close()
+
+
+class AditNetwork:
+    """adit-network as its units run it: started whenever something is asked for, one at a time."""
+
+    def __init__(self, network, folder, networkctl=None):
+        self.network, self.folder, self.wanted = network, folder, folder / "wanted"
+        for name in ("wanted", "status", "state", "tried", "kept"):
+            (folder / name).mkdir(exist_ok=True)
+        for each in (folder, folder / "tried", folder / "kept"):
+            each.chmod(0o755)
+        self.networkctl = networkctl or self.stand_in()
+        self.process = None
+
+    def stand_in(self):
+        path = self.folder / "networkctl"
+        path.write_text(f"#!/bin/sh\nexec {STAND_IN} {self.folder / 'tried'} {self.folder / 'kept'} \"$@\"\n")
+        path.chmod(0o755)
+        return path
+
+    def start(self):
+        words = [programs.BIN / "adit-network", "--networkctl", self.networkctl]
+        words += ["--wanted", self.wanted]
+        for name in ("status", "state", "tried", "kept"):
+            words += [f"--{name}", self.folder / name]
+        with open(self.folder / "adit-network.log", "ab") as log:
+            self.process = self.network.start(self.network.box, *words, stdout=log, stderr=log)
+
+    def run(self):
+        """Starts it and waits for its end."""
+        self.start()
+        return self.process.wait(20)
+
+    def ask(self, file, **members):
+        """As aditd does: by a rename. Gives the request's nonce."""
+        document = {"version": 1, "nonce": secrets.token_hex(16), **members}
+        temporary = self.wanted / ".new"
+        temporary.write_text(json.dumps(document))
+        temporary.rename(self.wanted / file)
+        return document["nonce"]
+
+    def want(self, within_ms=60000, **numbers):
+        nonce = self.ask("wanted.json", confirm_within_ms=within_ms, numbers=self.numbers(**numbers))
+        self.start()
+        programs.wait_until(lambda: self.status() and (self.pending() or self.status()["last_nonce"] == nonce),
+                            "the change to be taken up")
+        return nonce
+
+    @staticmethod
+    def numbers(team="192.168.7.11", post="10.100.1.10", gateway="", prefix=24):
+        return {"team": {"address": team, "prefix": prefix},
+                "command_post": {"address": post, "prefix": 24, "gateway": gateway}}
+
+    def status(self):
+        path = self.folder / "status" / "status.json"
+        return json.loads(path.read_text()) if path.exists() else None
+
+    def pending(self):
+        status = self.status()
+        return status and status["pending"]
+
+    def probed(self):
+        path = self.folder / "status" / "probed.json"
+        return json.loads(path.read_text()) if path.exists() else None
+
+    def files(self, name):
+        return sorted(path.name for path in (self.folder / name).iterdir())
+
+    def said(self):
+        return (self.folder / "adit-network.log").read_text()
+
+    def addresses(self, interface):
+        """The interface's IPv4 addresses: ["192.168.7.11/24"]."""
+        shown = subprocess.run(["ip", "-n", self.network.box, "-4", "-j", "address", "show", "dev", interface],
+                               capture_output=True, check=True)
+        return [f"{each['local']}/{each['prefixlen']}" for link in json.loads(shown.stdout or "[]")
+                for each in link.get("addr_info", [])]
+
+    def routes(self):
+        shown = subprocess.run(["ip", "-n", self.network.box, "-4", "-j", "route"], capture_output=True, check=True)
+        return {each["dst"]: (each.get("gateway"), each["dev"]) for each in json.loads(shown.stdout or "[]")}
+
+    def stop(self):
+        if self.process is not None and self.process.poll() is None:
+            self.process.kill()
+            self.process.wait()

@@ -90,7 +90,8 @@ TEST_F(SessionsTest, EndOneByOneOrByRole) {
 
 TEST_F(SessionsTest, KeepTheBeginningOfTheBrowsersNameAsPlainText) {
   EXPECT_EQ(begin(Role::Viewer, kStart, "a\x1b[2Jb\xc3\xa9\n").agent, "a?[2Jb???");
-  EXPECT_EQ(begin(Role::Viewer, kStart, std::string(300, 'x')).agent, std::string(Sessions::kLongestAgent, 'x'));
+  EXPECT_EQ(begin(Role::Viewer, kStart, std::string(300, 'x')).agent,
+            std::string(Sessions::kLongestAgent, 'x'));
 }
 
 /// Laws, over many random steps.

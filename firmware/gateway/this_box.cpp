@@ -31,7 +31,7 @@ ThisBox::ThisBox(const loop::Loop& loop, loop::Workers& workers, std::string set
     : workers_(workers),
       settings_(std::move(settings)),
       add_to_(std::move(add_to)),
-      started_(loop.stamp_now()) {}
+      started_(loop.stamp_now() - host::process().age_seconds) {}
 
 std::vector<page::LogRecord> ThisBox::log(std::uint64_t after) const {
   std::vector<page::LogRecord> rows;

@@ -28,7 +28,7 @@ class ThisBox final : public page::Box {
   loop::Workers& workers_;
   std::string settings_;
   std::function<void(page::Usage&)> add_to_;
-  page::Time started_;
+  page::Time started_;  // the process, of which the gateway may not be the first
 };
 
 }  // namespace adit::gateway

@@ -7,6 +7,7 @@ namespace adit::host {
 
 /// What this process uses of the machine, as the kernel counts it.
 struct Process {
+  double age_seconds = 0;  // since it began
   double cpu_seconds = 0;  // user and system, of all threads
   std::uint64_t resident_bytes = 0, open_files = 0, most_files = 0, threads = 0;
 };

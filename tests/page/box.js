@@ -1,6 +1,7 @@
 // The real thing: aditd with a rehearsal Command Post, on loopback, for the length of one test.
 import { spawn } from "node:child_process";
 import { once } from "node:events";
+import { createServer } from "node:net";
 import { chmodSync, mkdirSync, mkdtempSync, readFileSync, rmSync, writeFileSync } from "node:fs";
 import { tmpdir } from "node:os";
 import { dirname, join } from "node:path";
@@ -35,6 +36,16 @@ class Program {
   }
 }
 
+/** One that nobody listens at: a box whose settings are applied anew has to be found where it was. */
+async function freePort() {
+  const server = createServer().listen(0, "127.0.0.1");
+  await once(server, "listening");
+  const { port } = server.address();
+  server.close();
+  await once(server, "close");
+  return port;
+}
+
 function secretsIn(folder) {
   mkdirSync(folder, { mode: 0o700 });
   for (const [name, token] of Object.entries(TOKENS)) {
@@ -54,7 +65,7 @@ export async function box(t) {
   const settings = {
     version: 1,
     command_post: { scoring: await address("scoring"), mapping: await address("mapping") },
-    team: { listen: [{ address: "127.0.0.1", port: 0 }] },
+    team: { listen: [{ address: "127.0.0.1", port: await freePort() }] },
   };
   writeFileSync(join(folder, "settings.json"), JSON.stringify(settings));
   const state = join(folder, "state");
@@ -77,7 +88,10 @@ export async function box(t) {
   await ask("POST", "/adit/password", { role: "nobody", body: { role: "operator", code, password: OPERATOR } });
   await ask("POST", "/adit/password", { body: { role: "viewer", current: OPERATOR, password: VIEWER } });
   who.viewer = await logIn(VIEWER);
-  return { url, ask, logIn, code, aditd, folder };
+  let listened = 1;
+  /** When what was saved is applied. */
+  const begunAnew = () => until(() => (aditd.log.match(/: listening /g) ?? []).length > listened && ++listened, "the box to begin anew");
+  return { url, ask, logIn, code, begunAnew };
 }
 
 /** A team at work: one of every kind of message, and one that is refused. */

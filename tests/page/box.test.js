@@ -6,6 +6,7 @@ import { tmpdir } from "node:os";
 import { join } from "node:path";
 import { test } from "node:test";
 import { gunzipSync } from "node:zlib";
+import { launch, visit } from "./stage.js";
 import { OPERATOR, TOKENS, VIEWER, box, play, until } from "./box.js";
 
 const dashboard = JSON.parse(readFileSync(new URL("../../services/grafana/adit.json", import.meta.url), "utf8"));
@@ -78,4 +79,28 @@ test("the support bundle holds all that helps, and no token, password, code or c
     const at = all.indexOf(secret);
     assert.equal(at, -1, `${secret} in: ${all.slice(Math.max(0, at - 200), at + 200)}`);
   }
+});
+
+test("a reset from the page takes the box back to its first start, and keeps the reports", async (t) => {
+  const { ask, url, begunAnew } = await box(t);
+  await ask("POST", "/adit/reports", { body: { type: "Drill", x: 1, y: 2, z: 3 } });
+  const browser = await launch();
+  t.after(() => browser.close());
+  const page = await visit(browser, `${url}/system`);
+  await page.locator("#login").getByLabel("Password").fill(OPERATOR);
+  await page.keyboard.press("Enter");
+  await page.locator("#reset").getByRole("button", { name: "Reset the box" }).click();
+  const dialog = page.locator("#wipe");
+  await dialog.getByLabel("present password").fill("wrong horse");
+  await page.keyboard.press("Enter");
+  await dialog.getByRole("alert").filter({ hasText: "not the operator's present password" }).waitFor();
+  assert.equal((await (await ask("GET", "/adit/session")).json()).first_start, false);
+  await dialog.getByLabel("present password").fill(OPERATOR);
+  await page.keyboard.press("Enter");
+  await page.getByLabel("Code").waitFor();
+  await begunAnew();
+  assert.equal((await (await ask("GET", "/adit/session")).json()).first_start, true);
+  assert.equal((await (await ask("GET", "/adit/reports")).json()).length, 1);
+  const log = await (await ask("GET", "/adit/log.txt")).text();
+  assert.equal(log.match(/asks for this code\n/g)?.length, 2, "both codes are for the console alone");
 });

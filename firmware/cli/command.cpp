@@ -28,6 +28,8 @@ Outcome run(std::span<const std::string_view> words, bool colour,
       return settings(*options, colour);
     case Command::Course:
       return switch_course(*options);
+    case Command::Identify:
+      return identify(*options);
     case Command::Network:
       return network(*options);
     case Command::Test:

@@ -9,32 +9,25 @@
 namespace adit::cli {
 namespace {
 
-/// Asks for deeds, each with the same token.
-class Deeds {
- public:
-  explicit Deeds(const Adit& adit) : adit_(adit) {}
-
-  /// The number that Adit answers under `name`. `check`: the command that tells whether a deed was done whose
-  /// answer was lost.
-  std::expected<std::int64_t, Failure> ask(const std::string& target, const char* name,
-                                           const std::string& check) {
-    const auto body = post(adit_, target, "", check);
-    if (!body) return std::unexpected(body.error());
-    auto number = read<std::int64_t>(
-        *body, [name](const codec::Field& object) { return whole<std::int64_t>(object, name); });
-    if (number) return *number;
-    return std::unexpected(Failure{
-        Exit::Unable, "Adit at " + written(adit_.address) + " cannot be understood: " + number.error()});
-  }
-
- private:
-  const Adit& adit_;
-};
+/// Asks for a deed, and gives the number that Adit answers under `name`. `check`: the command that tells
+/// whether a deed was done whose answer was lost.
+std::expected<std::int64_t, Failure> ask(const Adit& adit, const std::string& target, const char* name,
+                                         const std::string& check) {
+  const auto body = post(adit, target, "", check);
+  if (!body) return std::unexpected(body.error());
+  auto number = read<std::int64_t>(
+      *body, [name](const codec::Field& object) { return whole<std::int64_t>(object, name); });
+  if (number) return *number;
+  return std::unexpected(
+      Failure{Exit::Unable, "Adit at " + written(adit.address) + " cannot be understood: " + number.error()});
+}
 
 std::string path_of(Verb verb) {
   switch (verb) {
     case Verb::Send:
       return "send";
+    case Verb::Hold:
+      return "hold";
     case Verb::Withdraw:
       return "withdraw";
     case Verb::Done:
@@ -50,6 +43,8 @@ std::string done(Verb verb, std::int64_t number, std::int64_t moved) {
   switch (verb) {
     case Verb::Send:
       return report + " is sent when its turn comes";
+    case Verb::Hold:
+      return report + " is held: it goes only when you send it";
     case Verb::Withdraw:
       return report + " is withdrawn";
     case Verb::Done:
@@ -71,13 +66,11 @@ void add(Outcome& outcome, const Failure& failure) {
 }  // namespace
 
 Outcome judge(const Adit& adit, const Options& options) {
-  Deeds deeds(adit);
   Outcome outcome;
   for (const std::int64_t number : options.numbers) {
     const std::string text = std::to_string(number);
-    const auto moved =
-        deeds.ask("/adit/reports/" + text + "/" + path_of(options.verb), "report",
-                  options.verb == Verb::Resubmit ? "adit reports" : "adit reports show " + text);
+    const auto moved = ask(adit, "/adit/reports/" + text + "/" + path_of(options.verb), "report",
+                           options.verb == Verb::Resubmit ? "adit reports" : "adit reports show " + text);
     if (moved) {
       outcome.out += options.json ? json_line("report", *moved) : done(options.verb, number, *moved) + '\n';
       continue;
@@ -91,7 +84,7 @@ Outcome judge(const Adit& adit, const Options& options) {
 Outcome begin_run(const Options& options) {
   const auto adit = adit_of(options);
   if (!adit) return unable(adit.error());
-  const auto run = Deeds(*adit).ask("/adit/runs", "run", "adit reports");
+  const auto run = ask(*adit, "/adit/runs", "run", "adit reports");
   Outcome outcome;
   if (!run) {
     add(outcome, run.error());
@@ -100,6 +93,20 @@ Outcome begin_run(const Options& options) {
   } else {
     outcome.out =
         "run " + std::to_string(*run) + " begins; what was not sent before is held: see adit reports\n";
+  }
+  return outcome;
+}
+
+Outcome identify(const Options& options) {
+  const auto adit = adit_of(options);
+  if (!adit) return unable(adit.error());
+  const std::string seconds = std::to_string(options.seconds);
+  const auto answer = post(*adit, "/adit/identify", "{\"seconds\":" + seconds + "}", "adit status");
+  Outcome outcome;
+  if (!answer) {
+    add(outcome, answer.error());
+  } else {
+    outcome.out = options.json ? *answer + '\n' : "all lights flash twice a second, for " + seconds + " s\n";
   }
   return outcome;
 }

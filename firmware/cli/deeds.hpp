@@ -6,10 +6,14 @@
 
 namespace adit::cli {
 
-/// `adit reports send`, `withdraw`, `done` and `resubmit`: each report in turn, as far as Adit can be asked.
+/// `adit reports send`, `hold`, `withdraw`, `done` and `resubmit`: each report in turn, as far as Adit can be
+/// asked.
 Outcome judge(const Adit& adit, const Options& options);
 
 /// `adit run new`
 Outcome begin_run(const Options& options);
+
+/// `adit identify`
+Outcome identify(const Options& options);
 
 }  // namespace adit::cli

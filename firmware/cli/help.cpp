@@ -7,10 +7,11 @@ constexpr const char* kAll = R"(adit - what the gateway is doing, for a shell an
 
 USAGE
   adit status  [--json] [--at ADDR:PORT | --settings FILE]
-  adit reports [show|send|withdraw|done|resubmit|export] [NUMBER...]
+  adit reports [show|send|hold|withdraw|done|resubmit|export] [NUMBER...]
   adit run new
   adit settings [show|check|apply|export] [FILE]
   adit course NAME
+  adit identify [SECONDS]
   adit network [show|confirm|back]
   adit test
   adit check   [--json] [SETTINGS]
@@ -22,6 +23,7 @@ COMMANDS
   run       tells Adit that a new run begins
   settings  what the running Adit is set to, and changes to it
   course    switches to the Command Post of another course
+  identify  makes the box's lights flash, to tell it from others
   network   the box's own addresses, and your word on a change of them that waits
   test      tries each endpoint of the Command Post step by step, and spends no report
   check     all that is wrong with a settings file, at once
@@ -80,6 +82,7 @@ USAGE
   adit reports [--run N|all] [--json]
   adit reports show NUMBER [--json]
   adit reports send NUMBER...
+  adit reports hold NUMBER...
   adit reports withdraw NUMBER...
   adit reports done NUMBER...
   adit reports resubmit NUMBER
@@ -93,7 +96,7 @@ WHAT IT SHOWS
 
 THE STATES (as the JSON and the CSV name them, where that is another word)
   held              waits for your word before it is sent; the row says why: a near duplicate, the review of all
-                    reports, a new run, or too many failures (received)
+                    reports, a new run, too many failures, or you hold it (received)
   waiting           kept on disk; it is sent when its turn comes
   sending           on its way
   answered          the Command Post recorded it and said so
@@ -110,6 +113,7 @@ YOUR WORD
   send      a held report: it is meant. One in doubt: only where you know that it was not recorded (ask the
             Command Post, or look at its count of reports), for else it uses up a second one of the allotment.
             A refused or withdrawn one: try it all the same
+  hold      a waiting report: it goes only when you send it
   withdraw  a held or waiting report: it is not to be sent. It can still be sent later
   done      a report in doubt that was recorded, or that is not worth a second one of the allotment
   resubmit  a finished report once more on purpose, as a new one with a number of its own
@@ -193,6 +197,23 @@ EXIT STATUS
 
 EXAMPLES
   sudo adit course B
+)";
+
+constexpr const char* kIdentify = R"(adit identify - makes the box's lights flash, to tell it from others
+
+USAGE
+  adit identify [SECONDS] [--json] [--token-file FILE] [--at ADDR:PORT | --settings FILE]
+
+WHAT IT DOES
+  All lights flash twice a second, together, for SECONDS (1 to 60; 10 if not given): no condition shows that.
+  Then they show again how things stand.
+
+EXIT STATUS
+  0  they flash
+  2  Adit cannot be reached or wants another token, or the command line is wrong
+
+EXAMPLES
+  sudo adit identify 30
 )";
 
 constexpr const char* kNetwork =
@@ -281,6 +302,8 @@ const char* help_about(Command command) {
       return kSettings;
     case Command::Course:
       return kCourse;
+    case Command::Identify:
+      return kIdentify;
     case Command::Network:
       return kNetwork;
     case Command::Test:

@@ -13,10 +13,11 @@ struct CommandName {
   std::string_view name;
   Command command;
 };
-constexpr CommandName kCommands[] = {
-    {"status", Command::Status},     {"reports", Command::Reports}, {"run", Command::Run},
-    {"settings", Command::Settings}, {"course", Command::Course},   {"network", Command::Network},
-    {"test", Command::Test},         {"check", Command::Check},     {"help", Command::Help}};
+constexpr CommandName kCommands[] = {{"status", Command::Status},   {"reports", Command::Reports},
+                                     {"run", Command::Run},         {"settings", Command::Settings},
+                                     {"course", Command::Course},   {"identify", Command::Identify},
+                                     {"network", Command::Network}, {"test", Command::Test},
+                                     {"check", Command::Check},     {"help", Command::Help}};
 
 struct VerbName {
   std::string_view name;
@@ -24,13 +25,11 @@ struct VerbName {
   std::size_t least, most;  // numbers of reports
 };
 constexpr std::size_t kMany = 1000;
-constexpr VerbName kVerbs[] = {{"", Verb::List, 0, 0},
-                               {"show", Verb::Show, 1, 1},
-                               {"export", Verb::Export, 0, 0},
-                               {"send", Verb::Send, 1, kMany},
-                               {"withdraw", Verb::Withdraw, 1, kMany},
-                               {"done", Verb::Done, 1, kMany},
-                               {"resubmit", Verb::Resubmit, 1, 1}};
+constexpr std::int64_t kLongestIdentify = 60;  // seconds
+constexpr VerbName kVerbs[] = {{"", Verb::List, 0, 0},         {"show", Verb::Show, 1, 1},
+                               {"export", Verb::Export, 0, 0}, {"send", Verb::Send, 1, kMany},
+                               {"hold", Verb::Hold, 1, kMany}, {"withdraw", Verb::Withdraw, 1, kMany},
+                               {"done", Verb::Done, 1, kMany}, {"resubmit", Verb::Resubmit, 1, 1}};
 
 struct SettingName {
   std::string_view name;
@@ -101,6 +100,8 @@ class Parser {
         return take_word_of_settings(word);
       case Command::Course:
         return std::exchange(coursed_, true) ? too_many(word) : void(options_.course = word);
+      case Command::Identify:
+        return take_seconds(word);
       case Command::Network:
         return take_word_of_network(word);
       case Command::Check:
@@ -145,6 +146,15 @@ class Parser {
     if (!options_.run && !options_.all_runs) refuse("expected --run and a run's number or all, got ", value);
   }
 
+  void take_seconds(std::string_view word) {
+    if (std::exchange(timed_, true)) return too_many(word);
+    const auto seconds = number_in(word);
+    if (!seconds || *seconds > kLongestIdentify) {
+      return refuse("expected seconds, a whole number from 1 to 60, got ", word);
+    }
+    options_.seconds = *seconds;
+  }
+
   void take_command(std::string_view word) {
     const auto* row = named<CommandName>(kCommands, word);
     if (row == nullptr) return refuse("no such command: ", word);
@@ -164,7 +174,7 @@ class Parser {
     if (options_.verb == Verb::List) {
       const auto* row = named<VerbName>(kVerbs, word);
       if (row == nullptr || row->verb == Verb::List) {
-        return refuse("expected show, send, withdraw, done, resubmit or export, got ", word);
+        return refuse("expected show, send, hold, withdraw, done, resubmit or export, got ", word);
       }
       options_.verb = row->verb;
       return;
@@ -189,8 +199,9 @@ class Parser {
 
   void finish() {
     if (!commanded_) {
-      return refuse("a command is missing: status, reports, run, settings, course, network, test or check",
-                    "");
+      return refuse(
+          "a command is missing: status, reports, run, settings, course, identify, network, test or check",
+          "");
     }
     const auto useless =
         std::ranges::find_if_not(given_, [this](std::string_view option) { return takes(options_, option); });
@@ -223,7 +234,7 @@ class Parser {
   Options options_;
   std::vector<std::string_view> given_;   // options
   const SettingName* setting_ = nullptr;  // as it was said
-  bool commanded_ = false, filed_ = false, run_new_ = false, coursed_ = false, help_ = false;
+  bool commanded_ = false, filed_ = false, timed_ = false, run_new_ = false, coursed_ = false, help_ = false;
   std::string trouble_;
 };
 

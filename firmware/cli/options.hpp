@@ -12,10 +12,21 @@
 
 namespace adit::cli {
 
-enum class Command : std::uint8_t { Status, Reports, Run, Settings, Course, Network, Test, Check, Help };
+enum class Command : std::uint8_t {
+  Status,
+  Reports,
+  Run,
+  Settings,
+  Course,
+  Identify,
+  Network,
+  Test,
+  Check,
+  Help
+};
 
 /// What `adit reports` is to do.
-enum class Verb : std::uint8_t { List, Show, Export, Send, Withdraw, Done, Resubmit };
+enum class Verb : std::uint8_t { List, Show, Export, Send, Hold, Withdraw, Done, Resubmit };
 
 /// What `adit settings` is to do.
 enum class Setting : std::uint8_t { Show, Check, Apply, Export };
@@ -33,6 +44,7 @@ struct Options {
   std::vector<std::int64_t> numbers;  // of reports
   std::optional<std::int64_t> run;    // whose reports to list; nothing: the present one's
   bool all_runs = false;
+  std::int64_t seconds = 10;  // how long the lights are to blink
   bool json = false, csv = false;
   std::string at;  // "ADDR:PORT"; empty: as the settings say
   Setting setting = Setting::Show;

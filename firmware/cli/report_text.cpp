@@ -19,6 +19,7 @@ std::string deeds_for(const page::ReportRow& report) {
     if (possible) text.append(text.empty() ? "" : ", ").append(deed);
   };
   offer(dispatch::transition(*state, ReportEvent::Released) != nullptr, "send");
+  offer(dispatch::transition(*state, ReportEvent::HeldBack) != nullptr, "hold");
   offer(dispatch::transition(*state, ReportEvent::Withdrawn) != nullptr, "withdraw");
   offer(dispatch::transition(*state, ReportEvent::CalledDone) != nullptr, "done");
   offer(dispatch::is_final(*state), "resubmit");

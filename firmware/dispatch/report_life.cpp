@@ -12,6 +12,7 @@ using Action = ReportAction;
 constexpr std::array kLife = {
     ReportTransition{Waiting, Event::Chosen, Sending, Action::Send},
     ReportTransition{Waiting, Event::Held, Received, Action::Nothing},
+    ReportTransition{Waiting, Event::HeldBack, Received, Action::TellClients},
     ReportTransition{Waiting, Event::Joined, Withdrawn, Action::Nothing},
     ReportTransition{Waiting, Event::Withdrawn, Withdrawn, Action::TellClients},
     ReportTransition{Waiting, Event::Released, Waiting, Action::Nothing},
@@ -61,6 +62,8 @@ std::string_view words(ReportEvent event) {
   switch (event) {
     case Event::Held:
       return "held for the operator";
+    case Event::HeldBack:
+      return "operator: hold";
     case Event::Released:
       return "operator: send";
     case Event::Chosen:

@@ -22,6 +22,7 @@ enum class ReportState : std::uint8_t {
 
 enum class ReportEvent : std::uint8_t {
   Held,       // the review, a new run or too many failures want the operator's word first
+  HeldBack,   // the operator holds it: it waits for his further word
   Released,   // the operator says send, and takes it on himself
   Chosen,     // its turn has come
   Recorded,   // answered 2xx

@@ -94,6 +94,7 @@ class Reports {
 
   /// The operator's word. Each gives the number of the report that it moved, or a sentence why not.
   Outcome send(std::int64_t number, Time time);
+  Outcome hold(std::int64_t number, Time time);
   Outcome withdraw(std::int64_t number, Time time);
   Outcome call_done(std::int64_t number, Time time);
   /// The same once more, as a new report.

@@ -42,6 +42,21 @@ Reports::Outcome Reports::send(std::int64_t number, Time time) {
   return number;
 }
 
+Reports::Outcome Reports::hold(std::int64_t number, Time time) {
+  const Report* const report = book_.find(number);
+  if (report == nullptr) return no_such(number);
+  if (transition(report->state, ReportEvent::HeldBack) == nullptr) {
+    return cannot(*report, report->state == ReportState::Received ? "it is held already"
+                           : is_final(report->state)              ? "there is nothing to hold"
+                                                     : "it may have left already, and nothing takes it back");
+  }
+  if (!step(number, ReportEvent::HeldBack, "held: the operator holds it", time)) {
+    return std::unexpected(kDisk);
+  }
+  unchecked_.erase(number);  // his later word is enough
+  return number;
+}
+
 Reports::Outcome Reports::withdraw(std::int64_t number, Time time) {
   const Report* const report = book_.find(number);
   if (report == nullptr) return no_such(number);

@@ -31,7 +31,9 @@ Gateway::Gateway(loop::Loop& loop, Parts parts)
           parts_.legacy ? std::move(parts_.legacy->picture) : picture::Mosaic()),
       maps_(loop, workers_, spool_, settings_, token_for("mapping", settings_, parts_.loaded.secrets),
             record_, random_, [this](icd::MapUpdate map) { picture_.forwarded(std::move(map)); }),
-      news_(loop, settings_, token_for("mapping", settings_, parts_.loaded.secrets), record_, random_),
+      as_forwarded_(parts_.legacy ? std::move(parts_.legacy->as_forwarded) : AsForwarded()),
+      news_(loop, settings_, token_for("mapping", settings_, parts_.loaded.secrets), record_, random_,
+            as_forwarded_),
       lights_(loop, std::move(parts_.lines)),
       roster_(settings_.robots),
       sessions_(parts_.runtime_folder + "/sessions.json", loop.now()),
@@ -232,6 +234,18 @@ std::int64_t Gateway::begin_run() {
   return scoring_.begin_run();
 }
 
+page::Time Gateway::identify(double seconds) {
+  const auto length = std::chrono::duration_cast<loop::Duration>(std::chrono::duration<double>(seconds));
+  lights_.identify(length);
+  page_.changed();
+  return loop_.stamp_now() + seconds;
+}
+
+void Gateway::show_lights() {
+  lights_.show(condition());
+  if (std::exchange(told_lights_, lights_.shown()) != lights_.shown()) page_.changed();
+}
+
 void Gateway::changed() {
   picture_the_run();
   page_.changed();
@@ -241,14 +255,16 @@ void Gateway::changed() {
 void Gateway::picture_the_run() {
   const std::int64_t run = scoring_.reports().run().number;
   const std::int64_t before = std::exchange(pictured_run_, run);
-  if (before != 0 && before != run) picture_.begin_run();
+  if (before == 0 || before == run) return;
+  as_forwarded_.begin_run(loop_.stamp_now());
+  picture_.begin_run();
 }
 
 void Gateway::every_second() {
   bytes_sent_.push_back(sent_bytes());
   if (bytes_sent_.size() > kMeterSeconds + 1) bytes_sent_.pop_front();
   scoring_.tick();
-  lights_.show(condition());
+  show_lights();
   keep_news();
   keep_sessions();
   if (std::string line = status_line(); line != notified_) {
@@ -311,16 +327,18 @@ page::RunView Gateway::view() const {
                      .run_number = scoring_.reports().run().number,
                      .run_id = scoring_.reports().run().id,
                      .endpoints = endpoints(),
-                     .robots = news_.robots(),
+                     .robots = as_forwarded_.robots(),
                      .reports = latest_rows(scoring_.reports(), kMostReportRows),
                      .near_metres = settings_.reports.near_metres,
                      .activities = record_.activities(),
                      .refusals = record_.refusals(),
                      .lights = {},
+                     .identify_until = {},
                      .budget_mbit = settings_.command_post.budget_mbit,
                      .sent_mbit = sent_mbit(),
                      .queued_bytes = maps_.queued_bytes(),
                      .map_version = picture_.mosaic().version(),
+                     .marker_version = as_forwarded_.markers().version(),
                      .attention = attention()};
   for (page::ActivityRow& row : view.activities) {
     if (row.kind == "state") row.waiting = news_.waiting(Kind::State);
@@ -332,6 +350,9 @@ page::RunView Gateway::view() const {
     view.lights.push_back(
         {.name = std::string(panel::name_of(light)),
          .pattern = std::string(panel::name_of(lights_.shown()[static_cast<std::size_t>(light)]))});
+  }
+  if (const auto left = lights_.identifying()) {
+    view.identify_until = view.now + std::chrono::duration<double>(*left).count();
   }
   return view;
 }

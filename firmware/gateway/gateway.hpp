@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "gateway/accounts.hpp"
+#include "gateway/as_forwarded.hpp"
 #include "gateway/lights.hpp"
 #include "gateway/map_picture.hpp"
 #include "gateway/maps.hpp"
@@ -39,6 +40,7 @@ namespace adit::gateway {
 struct Legacy {
   picture::Mosaic picture;
   std::int64_t pictured_run = 0;  // whose maps it shows; 0: none yet
+  AsForwarded as_forwarded;
 };
 
 /// What the gateway is made of: all of it has passed its checks.
@@ -69,7 +71,7 @@ class Gateway final : public intake::Desk, public page::Source, public page::Ope
   /// Whether it stopped so that another, of what the store holds by now, takes its place.
   bool makes_way() const { return makes_way_; }
   /// Once it has stopped, or could not start.
-  Legacy hand_over() { return {picture_.hand_over(), pictured_run_}; }
+  Legacy hand_over() { return {picture_.hand_over(), pictured_run_, std::move(as_forwarded_)}; }
   /// What systemd shows: one line.
   std::string status_line() const;
 
@@ -87,7 +89,12 @@ class Gateway final : public intake::Desk, public page::Source, public page::Ope
   std::expected<std::int64_t, std::string> judge(std::int64_t number, page::Deed deed) override;
   std::expected<std::int64_t, std::string> report(const icd::ArtifactReport& report, bool resubmit) override;
   std::int64_t begin_run() override;
+  page::Time identify(double seconds) override;
   const picture::Mosaic& map() const override { return picture_.mosaic(); }
+  page::MarkerNews markers(std::uint64_t since) const override { return as_forwarded_.markers().news(since); }
+  std::vector<page::Track> tracks(page::Time since) const override {
+    return as_forwarded_.tracks().since(since);
+  }
 
  private:
   void hold_back();
@@ -101,6 +108,7 @@ class Gateway final : public intake::Desk, public page::Source, public page::Ope
   void picture_the_run();
   void every_second();
   void keep_sessions();
+  void show_lights();
   double sent_mbit() const;
   std::uint64_t sent_bytes() const;
   void add_to(page::Usage& usage) const;
@@ -124,6 +132,7 @@ class Gateway final : public intake::Desk, public page::Source, public page::Ope
   Scoring scoring_;
   MapPicture picture_;
   Maps maps_;
+  AsForwarded as_forwarded_;
   News news_;
   Lights lights_;
   Roster roster_;
@@ -145,6 +154,7 @@ class Gateway final : public intake::Desk, public page::Source, public page::Ope
   bool makes_way_ = false;
   bool dismissed_ = false;  // all clients have been told; only their answers have to leave
   std::string notified_;
+  panel::Lights told_lights_{};  // what pages were told that the lights show
   std::optional<loop::Instant> stop_by_;
 };
 

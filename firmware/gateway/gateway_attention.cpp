@@ -18,6 +18,9 @@ panel::Condition Gateway::condition() const {
 
 std::vector<std::string> Gateway::attention() const {
   std::vector<std::string> sentences = scoring_.reports().attention();
+  if (std::string change = network_.attention(); !change.empty()) {
+    sentences.insert(sentences.begin(), std::move(change));  // it is the one that has a deadline
+  }
   if (!scoring_.trouble().empty()) {
     sentences.push_back("no report is taken, the ledger cannot be written: " + scoring_.trouble());
   }

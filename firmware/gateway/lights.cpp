@@ -10,7 +10,7 @@ namespace {
 constexpr std::chrono::milliseconds kTick{125};  // half a period of the fastest pattern
 
 bool blinks(panel::Pattern pattern) {
-  return pattern == panel::Pattern::Slow || pattern == panel::Pattern::Fast;
+  return pattern != panel::Pattern::Off && pattern != panel::Pattern::On;
 }
 
 }  // namespace
@@ -19,11 +19,22 @@ Lights::Lights(loop::Loop& loop, std::unique_ptr<panel::Lines> lines)
     : loop_(loop), lines_(std::move(lines)), began_(loop.now()), tick_(loop.timer([this] { paint(); })) {}
 
 void Lights::show(const panel::Condition& condition) {
-  shown_ = panel::lights_for(condition);
+  condition_ = panel::lights_for(condition);
   paint();
 }
 
+void Lights::identify(loop::Duration length) {
+  identify_until_ = loop_.now() + length;
+  paint();
+}
+
+std::optional<loop::Duration> Lights::identifying() const {
+  const loop::Instant now = loop_.now();
+  return now < identify_until_ ? std::optional(identify_until_ - now) : std::nullopt;
+}
+
 void Lights::paint() {
+  shown_ = identifying() ? panel::kIdentify : condition_;
   const auto elapsed = std::chrono::duration_cast<std::chrono::milliseconds>(loop_.now() - began_);
   std::array<bool, panel::kLights.size()> lit{};
   std::ranges::transform(shown_, lit.begin(), [&](panel::Pattern pattern) {

@@ -2,6 +2,7 @@
 
 #include <array>
 #include <memory>
+#include <optional>
 
 #include "loop/loop.hpp"
 #include "panel/panel.hpp"
@@ -14,6 +15,10 @@ class Lights {
   Lights(loop::Loop& loop, std::unique_ptr<panel::Lines> lines);
 
   void show(const panel::Condition& condition);
+  /// All lights show panel::kIdentify for so long from now on, whatever the condition.
+  void identify(loop::Duration length);
+  /// For how much longer they do; nothing: they do not.
+  std::optional<loop::Duration> identifying() const;
   const panel::Lights& shown() const { return shown_; }
 
  private:
@@ -23,7 +28,8 @@ class Lights {
   std::unique_ptr<panel::Lines> lines_;
   loop::Instant began_;
   loop::Source tick_;
-  panel::Lights shown_{};
+  panel::Lights condition_{}, shown_{};
+  loop::Instant identify_until_{};
   std::array<bool, panel::kLights.size()> lit_{};
   bool painted_ = false;
   bool broken_ = false;

@@ -1,7 +1,6 @@
 #include "gateway/news.hpp"
 
 #include <array>
-#include <cmath>
 
 #include "codec/write.hpp"
 #include "dispatch/turn.hpp"
@@ -25,13 +24,6 @@ NotTaken why_not(MappingVerdict verdict) {
   return verdict == MappingVerdict::Refused ? NotTaken::Refused : NotTaken::Failed;
 }
 
-constexpr std::size_t kMostRobots = 100;  // whose poses the page is shown
-
-/// Where the robot's own x axis points, seen from above. The quaternion need not be of length one.
-double heading_of(const icd::Quaternion& q) {
-  return std::atan2(2 * (q.w * q.z + q.x * q.y), q.w * q.w + q.x * q.x - q.y * q.y - q.z * q.z);
-}
-
 std::size_t updates_in(const lanes::WaitingState& state) {
   return state.updates;
 }
@@ -42,9 +34,10 @@ std::size_t updates_in(const lanes::WaitingMarkers& markers) {
 }  // namespace
 
 News::News(loop::Loop& loop, const settings::Settings& settings, std::optional<icd::BearerToken> token,
-           Record& record, std::mt19937_64& random)
+           Record& record, std::mt19937_64& random, AsForwarded& as_forwarded)
     : loop_(loop),
       record_(record),
+      as_forwarded_(as_forwarded),
       channel_(loop, "mapping", endpoint_of(settings.command_post, settings.command_post.mapping, 0),
                std::move(token), settings.command_post.timeouts.mapping_answer),
       state_pace_(settings.command_post.rates.state_hz, random),
@@ -137,7 +130,7 @@ void News::answered(Kind kind, UriPace& pace, Waiting sent, std::size_t bytes,
   switch (verdict) {
     case MappingVerdict::Taken:
       pace.taken(now);
-      note_taken(sent);
+      as_forwarded_.forwarded(sent.update, loop_.stamp_now());
       break;
     case MappingVerdict::Refused:
       pace.taken(now);
@@ -155,24 +148,6 @@ void News::answered(Kind kind, UriPace& pace, Waiting sent, std::size_t bytes,
       break;
   }
   pump();
-}
-
-void News::note_taken(const lanes::WaitingState& state) {
-  for (const icd::NamedPose& named : state.update.poses) {
-    const std::string& name = named.name.text();
-    if (robots_.size() >= kMostRobots && !robots_.contains(name)) continue;
-    robots_[name] = {.name = name,
-                     .position = named.pose.position,
-                     .heading = heading_of(named.pose.orientation),
-                     .at = loop_.stamp_now()};
-  }
-}
-
-std::vector<page::RobotRow> News::robots() const {
-  std::vector<page::RobotRow> rows;
-  rows.reserve(robots_.size());
-  for (const auto& [name, row] : robots_) rows.push_back(row);
-  return rows;
 }
 
 std::vector<Traffic> News::traffic_of(const lanes::WaitingState& state) const {

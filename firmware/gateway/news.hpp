@@ -1,12 +1,11 @@
 #pragma once
 
-#include <map>
 #include <optional>
 #include <random>
-#include <string>
 #include <utility>
 #include <vector>
 
+#include "gateway/as_forwarded.hpp"
 #include "gateway/channel.hpp"
 #include "gateway/record.hpp"
 #include "gateway/uri_pace.hpp"
@@ -21,8 +20,9 @@ namespace adit::gateway {
 /// has the older news first.
 class News {
  public:
+  /// `as_forwarded` is told what the Command Post took.
   News(loop::Loop& loop, const settings::Settings& settings, std::optional<icd::BearerToken> token,
-       Record& record, std::mt19937_64& random);
+       Record& record, std::mt19937_64& random, AsForwarded& as_forwarded);
 
   /// As if something had just been sent, by whoever sent before.
   void hold_back() {
@@ -43,8 +43,6 @@ class News {
   /// Whether what is unsent may have changed since this was last asked.
   bool changed_since_asked() { return std::exchange(changed_, false); }
 
-  /// Each robot's last pose that the Command Post took, by name.
-  std::vector<page::RobotRow> robots() const;
   const Channel& channel() const { return channel_; }
   std::size_t waiting(Kind kind) const;
 
@@ -56,13 +54,12 @@ class News {
   void answered(Kind kind, UriPace& pace, Waiting sent, std::size_t bytes, const uplink::Outcome& outcome);
   std::vector<Traffic> traffic_of(const lanes::WaitingState& state) const;
   std::vector<Traffic> traffic_of(const lanes::WaitingMarkers& markers) const;
-  void note_taken(const lanes::WaitingState& state);
-  void note_taken(const lanes::WaitingMarkers&) {}
   void put_back(const lanes::WaitingState& state) { state_.put_back(state); }
   void put_back(const lanes::WaitingMarkers& markers) { markers_.put_back(markers); }
 
   loop::Loop& loop_;
   Record& record_;
+  AsForwarded& as_forwarded_;
   Channel channel_;
   UriPace state_pace_, markers_pace_;
   loop::Source wake_;
@@ -70,7 +67,6 @@ class News {
   lanes::MarkerLane markers_;
   lanes::StampOrder state_stamps_, marker_stamps_;
   std::uint64_t numbers_ = 0;
-  std::map<std::string, page::RobotRow> robots_;
   icd::StateUpdate state_under_way_;
   icd::MarkersUpdate markers_under_way_;
   int state_failed_ = 0, markers_failed_ = 0;  // answers in a row of a handler that failed

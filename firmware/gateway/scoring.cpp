@@ -226,6 +226,7 @@ void Scoring::answer_askers(const intake::Answer& answer) {
 dispatch::Reports::Outcome Scoring::judge(std::int64_t number, page::Deed deed) {
   const dispatch::Reports::Outcome outcome =
       deed == page::Deed::Send       ? reports_.send(number, time())
+      : deed == page::Deed::Hold     ? reports_.hold(number, time())
       : deed == page::Deed::Withdraw ? reports_.withdraw(number, time())
       : deed == page::Deed::CallDone ? reports_.call_done(number, time())
                                      : reports_.resubmit(number, time());

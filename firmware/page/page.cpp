@@ -10,7 +10,9 @@
 #include "page/live.hpp"
 #include "page/map_routes.hpp"
 #include "page/network_routes.hpp"
+#include "page/panel_route.hpp"
 #include "page/report_routes.hpp"
+#include "page/scene_routes.hpp"
 #include "page/session_routes.hpp"
 #include "page/settings_routes.hpp"
 #include "page/site.hpp"
@@ -45,6 +47,8 @@ class Page::Impl {
         sessions_(loop, entrance_, keys),
         live_(loop, source),
         maps_(source),
+        scene_(source),
+        panel_(judge),
         reports_(source, judge, [this] { live_.changed(); }) {}
 
   std::unique_ptr<intake::Exchange> open(const intake::RequestHead& head,
@@ -64,9 +68,12 @@ class Page::Impl {
     }
     if (sets_up) return settings_->open(head, std::move(responder));
     if (ReportRoutes::has(head.path())) return reports_.open(head, std::move(responder));
+    if (PanelRoute::has(head.path())) return panel_.open(head, std::move(responder));
     if (network_ && NetworkRoutes::has(head.path())) return network_->open(head, std::move(responder));
     if (MapRoutes::has(head.path())) {
       responder->answer(maps_.answer(head));
+    } else if (SceneRoutes::has(head.path())) {
+      responder->answer(scene_.answer(head));
     } else {
       show(head, *visitor, *responder);
     }
@@ -109,6 +116,8 @@ class Page::Impl {
   std::optional<BoxRoutes> box_;
   Live live_;
   MapRoutes maps_;
+  SceneRoutes scene_;
+  PanelRoute panel_;
   std::optional<NetworkRoutes> network_;
   ReportRoutes reports_;
   std::optional<SettingsRoutes> settings_;

@@ -13,6 +13,7 @@
 #include "icd/run_status.hpp"
 #include "intake/server.hpp"
 #include "loop/loop.hpp"
+#include "page/scene.hpp"
 #include "picture/mosaic.hpp"
 
 namespace adit::page {
@@ -22,9 +23,6 @@ class Keys;
 class Network;
 class SelfTest;
 class Setup;
-
-/// Times are seconds since 1970 on the gateway's clock.
-using Time = double;
 
 /// One artifact report and where it is in its life.
 struct ReportRow {
@@ -114,10 +112,12 @@ struct RunView {
   std::vector<ActivityRow> activities;
   std::vector<RefusalRow> refusals;  // newest first, the last 50
   std::vector<LightRow> lights;
+  std::optional<Time> identify_until;  // the lights blink so that the box can be found
   double budget_mbit = 0;
   double sent_mbit = 0;  // over the last seconds, to both endpoints
   std::size_t queued_bytes = 0;
   std::uint64_t map_version = 0;       // picture::Mosaic::version(): says whether /adit/map has changed
+  std::uint64_t marker_version = 0;    // the same for /adit/markers
   std::vector<std::string> attention;  // sentences for the operator, most urgent first
 };
 
@@ -132,10 +132,14 @@ class Source {
   virtual std::vector<ReportRow> reports() const = 0;  // of all runs, oldest first
   virtual std::optional<ReportDetail> report(std::int64_t number) const = 0;
   virtual const picture::Mosaic& map() const = 0;
+  /// What changed after version `since`.
+  virtual MarkerNews markers(std::uint64_t since) const = 0;
+  /// Where each robot was in this run after `since`.
+  virtual std::vector<Track> tracks(Time since) const = 0;
 };
 
 /// The operator's word on a report: see dispatch::Reports.
-enum class Deed : std::uint8_t { Send, Withdraw, CallDone, Resubmit };
+enum class Deed : std::uint8_t { Send, Hold, Withdraw, CallDone, Resubmit };
 
 /// What does as the operator says.
 class Operator {
@@ -149,6 +153,8 @@ class Operator {
                                                           bool resubmit) = 0;
   /// Gives the new run's number.
   virtual std::int64_t begin_run() = 0;
+  /// All lights blink for so long. Gives until when.
+  virtual Time identify(double seconds) = 0;
 };
 
 /// The local web page, on the team's side, and the operator's word on reports, behind a login: README.md has

@@ -26,6 +26,7 @@ struct DeedName {
   Deed deed;
 };
 constexpr DeedName kDeeds[] = {{"send", Deed::Send},
+                               {"hold", Deed::Hold},
                                {"withdraw", Deed::Withdraw},
                                {"done", Deed::CallDone},
                                {"resubmit", Deed::Resubmit}};

@@ -74,10 +74,12 @@ std::string write_run_view(const RunView& view) {
                                           {"activities", json(view.activities)},
                                           {"refusals", json(view.refusals)},
                                           {"lights", json(view.lights)},
+                                          {"identify_until", json(view.identify_until)},
                                           {"budget_mbit", json(view.budget_mbit)},
                                           {"sent_mbit", json(view.sent_mbit)},
                                           {"queued_bytes", json(view.queued_bytes)},
                                           {"map_version", json(view.map_version)},
+                                          {"marker_version", json(view.marker_version)},
                                           {"attention", json(view.attention)}}});
 }
 

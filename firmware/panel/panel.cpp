@@ -53,6 +53,8 @@ std::string_view name_of(Pattern pattern) {
       return "slow";
     case Pattern::Fast:
       return "fast";
+    case Pattern::Twice:
+      return "twice";
   }
   return "unknown";
 }
@@ -71,6 +73,8 @@ bool lit(Pattern pattern, std::uint64_t elapsed_ms) {
       return blinks_on(elapsed_ms, 1000);
     case Pattern::Fast:
       return blinks_on(elapsed_ms, 250);
+    case Pattern::Twice:
+      return elapsed_ms % 1000 < 375 && blinks_on(elapsed_ms, 250);
   }
   return false;
 }

@@ -16,8 +16,14 @@ inline constexpr std::array kLights = {Light::Health, Light::Scoring, Light::Map
 std::string_view name_of(Light light);  // "health", ...
 
 /// How a light shows: steady off, steady on, or a blink that can be told apart without colour.
-enum class Pattern : std::uint8_t { Off, On, Slow /* 1 Hz */, Fast /* 4 Hz */ };
-std::string_view name_of(Pattern pattern);  // "off", "on", "slow", "fast"
+enum class Pattern : std::uint8_t {
+  Off,
+  On,
+  Slow /* 1 Hz */,
+  Fast /* 4 Hz */,
+  Twice /* two flashes a second */
+};
+std::string_view name_of(Pattern pattern);  // "off", "on", "slow", "fast", "twice"
 
 using Lights = std::array<Pattern, kLights.size()>;  // by Light
 
@@ -34,6 +40,10 @@ struct Condition {
 
 /// The table of which condition shows as what: see README.md beside this file.
 Lights lights_for(const Condition& condition);
+
+/// What no condition shows: all lights flash twice a second, together, so that one box can be told from
+/// others.
+inline constexpr Lights kIdentify = {Pattern::Twice, Pattern::Twice, Pattern::Twice, Pattern::Twice};
 
 /// Whether a light with this pattern is lit `elapsed_ms` after the panel started.
 bool lit(Pattern pattern, std::uint64_t elapsed_ms);

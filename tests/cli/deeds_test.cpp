@@ -29,11 +29,13 @@ class Deeds : public testing::Test {
 
 TEST_F(Deeds, AreAskedForByTheirNames) {
   const Server server({{"POST /adit/reports/7/send", Server::ok("{\"report\":7}")},
+                       {"POST /adit/reports/7/hold", Server::ok("{\"report\":7}")},
                        {"POST /adit/reports/7/withdraw", Server::ok("{\"report\":7}")},
                        {"POST /adit/reports/7/done", Server::ok("{\"report\":7}")},
                        {"POST /adit/reports/7/resubmit", Server::ok("{\"report\":12}")},
                        {"POST /adit/runs", Server::ok("{\"run\":2}")}});
   EXPECT_EQ(say(server, {"reports", "send", "7"}).out, "report 7 is sent when its turn comes\n");
+  EXPECT_EQ(say(server, {"reports", "hold", "7"}).out, "report 7 is held: it goes only when you send it\n");
   EXPECT_EQ(say(server, {"reports", "withdraw", "7"}).out, "report 7 is withdrawn\n");
   EXPECT_EQ(say(server, {"reports", "done", "7"}).out, "report 7 is called done\n");
   EXPECT_EQ(say(server, {"reports", "resubmit", "7"}).out, "report 7 is sent once more, as report 12\n");
@@ -43,6 +45,16 @@ TEST_F(Deeds, AreAskedForByTheirNames) {
   const Outcome outcome = say(server, {"run", "new", "--json"});
   EXPECT_EQ(outcome.out, "{\"run\":2}\n");
   EXPECT_EQ(outcome.exit, Exit::Fine);
+}
+
+TEST_F(Deeds, MakeTheLightsFlash) {
+  const Server server({{"POST /adit/identify", Server::ok("{\"identify_until\":1005.5}")}});
+  EXPECT_EQ(say(server, {"identify", "5"}).out, "all lights flash twice a second, for 5 s\n");
+  EXPECT_THAT(server.request(), testing::EndsWith("Content-Length: 13\r\n"
+                                                  "Authorization: Bearer sesame-1\r\n\r\n{\"seconds\":5}"));
+  EXPECT_EQ(say(server, {"identify", "--json"}).out, "{\"identify_until\":1005.5}\n");
+  const Server other({{"POST /adit/identify", Server::reply("403 Forbidden", "\"no\"")}});
+  EXPECT_EQ(say(other, {"identify"}).exit, Exit::Unable);
 }
 
 TEST_F(Deeds, ShowTheTokenToAditAlone) {

@@ -42,10 +42,14 @@ TEST(Options, TakeTheOperatorsWord) {
   EXPECT_EQ(options.numbers, (std::vector<std::int64_t>{7, 12}));
   EXPECT_EQ(options.token_file, "t");
   EXPECT_EQ(parsed({"reports", "send", "7"}).verb, Verb::Send);
+  EXPECT_EQ(parsed({"reports", "hold", "7", "8"}).verb, Verb::Hold);
   EXPECT_EQ(parsed({"reports", "withdraw", "7"}).verb, Verb::Withdraw);
   EXPECT_EQ(parsed({"reports", "resubmit", "7"}).verb, Verb::Resubmit);
   EXPECT_EQ(parsed({"reports", "show", "7"}).verb, Verb::Show);
   EXPECT_EQ(parsed({"run", "new"}).command, Command::Run);
+  EXPECT_EQ(parsed({"identify"}).command, Command::Identify);
+  EXPECT_EQ(parsed({"identify"}).seconds, 10);
+  EXPECT_EQ(parsed({"identify", "60"}).seconds, 60);
 }
 
 TEST(Options, TakeWhichReportsAndHow) {
@@ -75,8 +79,9 @@ TEST(Options, NameTheWordThatIsWrong) {
     Words words;
     const char* sentence;
   } cases[] = {
-      {{}, "a command is missing: status, reports, run, settings, course, network, test or check"},
-      {{"--json"}, "a command is missing: status, reports, run, settings, course, network, test or check"},
+      {{}, "a command is missing: status, reports, run, settings, course, identify, network, test or check"},
+      {{"--json"},
+       "a command is missing: status, reports, run, settings, course, identify, network, test or check"},
       {{"state"}, "no such command: state"},
       {{"status", "--jsn"}, "no such option: --jsn"},
       {{"status", "--at"}, "a value is missing after --at"},
@@ -84,8 +89,8 @@ TEST(Options, NameTheWordThatIsWrong) {
       {{"check", "a", "b"}, "one word too many: b"},
       {{"check", "--at", "10.0.0.1:80"}, "check does not take --at"},
       {{"status", "--csv"}, "status does not take --csv"},
-      {{"reports", "sent"}, "expected show, send, withdraw, done, resubmit or export, got sent"},
-      {{"reports", "7"}, "expected show, send, withdraw, done, resubmit or export, got 7"},
+      {{"reports", "sent"}, "expected show, send, hold, withdraw, done, resubmit or export, got sent"},
+      {{"reports", "7"}, "expected show, send, hold, withdraw, done, resubmit or export, got 7"},
       {{"reports", "send"}, "a report's number is missing after send"},
       {{"reports", "send", "0"}, "expected a report's number, got 0"},
       {{"reports", "send", "7x"}, "expected a report's number, got 7x"},
@@ -108,7 +113,11 @@ TEST(Options, NameTheWordThatIsWrong) {
       {{"reports", "send", "7", "--token-file", ""}, "a value is missing after --token-file"},
       {{"run"}, "a word is missing: run new"},
       {{"run", "old"}, "one word too many: old"},
-      {{"run", "new", "new"}, "one word too many: new"}};
+      {{"run", "new", "new"}, "one word too many: new"},
+      {{"identify", "0"}, "expected seconds, a whole number from 1 to 60, got 0"},
+      {{"identify", "61"}, "expected seconds, a whole number from 1 to 60, got 61"},
+      {{"identify", "now"}, "expected seconds, a whole number from 1 to 60, got now"},
+      {{"identify", "5", "6"}, "one word too many: 6"}};
   for (const auto& [words, sentence] : cases) {
     const auto options = parse_options(words);
     ASSERT_FALSE(options.has_value()) << sentence;
@@ -126,6 +135,7 @@ TEST(Help, IsGivenForTheCommandAskedAbout) {
   EXPECT_EQ(run(Words{"help", "reports"}, false).out, help_about(Command::Reports));
   EXPECT_EQ(run(Words{"reports", "send", "--help"}, false).out, help_about(Command::Reports));
   EXPECT_EQ(run(Words{"help", "run"}, false).out, help_about(Command::Run));
+  EXPECT_EQ(run(Words{"help", "identify"}, false).out, help_about(Command::Identify));
   EXPECT_EQ(run(Words{"help", "status"}, false).out, help_about(Command::Status));
 }
 

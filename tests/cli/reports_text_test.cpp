@@ -119,7 +119,7 @@ TEST(ReportText, OffersTheDeedsThatCanBe) {
     return begin == std::string::npos ? "" : text.substr(begin + 10, text.find('\n', begin) - begin - 10);
   };
   EXPECT_EQ(deeds("received"), "send, withdraw");
-  EXPECT_EQ(deeds("waiting"), "send, withdraw");
+  EXPECT_EQ(deeds("waiting"), "send, hold, withdraw");
   EXPECT_EQ(deeds("sending"), "");
   EXPECT_EQ(deeds("in doubt"), "send, done");
   EXPECT_EQ(deeds("answered"), "resubmit");

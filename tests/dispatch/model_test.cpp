@@ -94,12 +94,16 @@ TEST_P(ReportsModel, LosesNoReportAndRecordsNoneTwice) {
     all.power_cuts += one.power_cuts;
     all.undecided += one.undecided;
     all.held += one.held;
+    all.held_back += one.held_back;
   }
   std::cout << all.steps << " steps: " << all.posts << " posts, " << all.recorded << " recorded, "
             << all.acknowledged << " acknowledged, " << all.settled << " found recorded, " << all.sent_again
             << " found missing, " << all.power_cuts << " power cuts, " << all.undecided << " left in doubt, "
-            << all.held << " held\n";
+            << all.held << " held, " << all.held_back << " times by the operator\n";
   EXPECT_GT(all.recorded, 0);
+  if (GetParam().trouble.operator_acts) {
+    EXPECT_GT(all.held_back, 0);
+  }
 }
 
 INSTANTIATE_TEST_SUITE_P(Trouble, ReportsModel, testing::ValuesIn(kProfiles),

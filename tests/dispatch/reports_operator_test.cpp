@@ -13,17 +13,17 @@ using testing::HasSubstr;
 /// In which states a word is taken.
 struct Words {
   ReportState state;
-  bool send, withdraw, done, resubmit;
+  bool send, hold, withdraw, done, resubmit;
 };
 void PrintTo(const Words& words, std::ostream* out) {
   *out << name_of(words.state);
 }
 
 const Words kWords[] = {
-    {Received, true, true, false, false},  {Waiting, true, true, false, false},
-    {Sending, false, false, false, false}, {Answered, false, false, false, true},
-    {Refused, true, false, false, true},   {InDoubt, true, false, true, false},
-    {Settled, false, false, false, true},  {Withdrawn, true, false, false, true},
+    {Received, true, false, true, false, false},  {Waiting, true, true, true, false, false},
+    {Sending, false, false, false, false, false}, {Answered, false, false, false, false, true},
+    {Refused, true, false, false, false, true},   {InDoubt, true, false, false, true, false},
+    {Settled, false, false, false, false, true},  {Withdrawn, true, false, false, false, true},
 };
 
 class OperatorsWord : public testing::TestWithParam<Words> {
@@ -54,6 +54,7 @@ class OperatorsWord : public testing::TestWithParam<Words> {
 
 TEST_P(OperatorsWord, IsTakenWhereTheTableHasIt) {
   EXPECT_EQ(taken([](Reports& all, Time time) { return all.send(1, time); }), GetParam().send);
+  EXPECT_EQ(taken([](Reports& all, Time time) { return all.hold(1, time); }), GetParam().hold);
   EXPECT_EQ(taken([](Reports& all, Time time) { return all.withdraw(1, time); }), GetParam().withdraw);
   EXPECT_EQ(taken([](Reports& all, Time time) { return all.call_done(1, time); }), GetParam().done);
   EXPECT_EQ(taken([](Reports& all, Time time) { return all.resubmit(1, time); }), GetParam().resubmit);
@@ -64,9 +65,73 @@ TEST(TheOperator, IsToldWhereThereIsNoSuchReport) {
   Scene scene;
   const std::string none = "there is no report 7";
   EXPECT_EQ(scene.reports().send(7, scene.time()).error(), none);
+  EXPECT_EQ(scene.reports().hold(7, scene.time()).error(), none);
   EXPECT_EQ(scene.reports().withdraw(7, scene.time()).error(), none);
   EXPECT_EQ(scene.reports().call_done(7, scene.time()).error(), none);
   EXPECT_EQ(scene.reports().resubmit(7, scene.time()).error(), none);
+}
+
+TEST(Holding, KeepsAReportBackUntilTheOperatorSendsIt) {
+  Scene scene;
+  const ClientId client = scene.post_to_wait();
+  ASSERT_TRUE(scene.reports().hold(1, scene.time()).has_value());
+  EXPECT_EQ(scene.state(1), Received);
+  EXPECT_EQ(scene.report(1).note, "held: the operator holds it");
+  EXPECT_EQ(scene.told(client).status, 503);
+  EXPECT_THAT(scene.told(client).sentence, HasSubstr("waits for the operator's word"));
+  EXPECT_THAT(scene.reports().attention(), ElementsAre("report 1 is held: the operator holds it"));
+  scene.keep_hearing(60, 20, 0);
+  EXPECT_EQ(scene.send_next(), 0);
+  ASSERT_TRUE(scene.reports().send(1, scene.time()).has_value());
+  EXPECT_EQ(scene.send_next(), 1);
+}
+
+TEST(Holding, HoldsWhatOutlivesARestartToo) {
+  Scene scene;
+  scene.post_to_wait();
+  ASSERT_TRUE(scene.reports().hold(1, scene.time()).has_value());
+  scene.restart();
+  scene.hear(20, 0);
+  EXPECT_EQ(scene.state(1), Received);
+  EXPECT_EQ(scene.send_next(), 0);
+}
+
+TEST(Holding, HoldsTheSameReportPostedAgainWithIt) {
+  Scene scene;
+  scene.post_to_wait();
+  ASSERT_TRUE(scene.reports().hold(1, scene.time()).has_value());
+  const ClientId again = scene.post();
+  EXPECT_EQ(scene.count(), 1);
+  scene.wait(21);
+  EXPECT_EQ(scene.told(again).status, 503);
+  EXPECT_EQ(scene.send_next(), 0);
+}
+
+TEST(Holding, LetsTheOthersGo) {
+  Scene scene;
+  scene.post_to_wait(1);
+  scene.post_to_wait(2);
+  ASSERT_TRUE(scene.reports().hold(1, scene.time()).has_value());
+  EXPECT_EQ(scene.send_next(), 2);
+}
+
+TEST(Holding, SaysWhyItIsTooLate) {
+  Scene scene;
+  scene.post(1);
+  EXPECT_THAT(scene.reports().hold(1, scene.time()).error(),
+              HasSubstr("is sending: it may have left already"));
+  scene.lose();
+  EXPECT_THAT(scene.reports().hold(1, scene.time()).error(),
+              HasSubstr("is in doubt: it may have left already"));
+  EXPECT_EQ(scene.state(1), InDoubt);
+}
+
+TEST(Holding, IsRefusedByAFullDisk) {
+  Scene scene;
+  scene.post_to_wait();
+  scene.deeds().full = true;
+  EXPECT_FALSE(scene.reports().hold(1, scene.time()).has_value());
+  EXPECT_EQ(scene.state(1), Waiting);
 }
 
 TEST(Withdrawing, TellsTheClientsAndTheSameReportAgain) {

@@ -2,6 +2,7 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <vector>
 
 namespace adit::gateway {
@@ -51,6 +52,25 @@ TEST(Lights, BlinkByTheLoopsTimer) {
   const auto attention = static_cast<std::size_t>(panel::Light::Attention);
   EXPECT_NE(seen.shown[1][attention], seen.shown[2][attention]);
   EXPECT_NE(seen.shown[2][attention], seen.shown[3][attention]);
+}
+
+TEST(Lights, AllFlashTogetherWhileTheBoxIsIdentifiedAndThenTellOfTheConditionAgain) {
+  loop::Loop loop;
+  WatchedLines::Seen seen;
+  Lights lights(loop, std::make_unique<WatchedLines>(seen));
+  lights.show({.serving = true, .scoring_connected = true, .mapping_connected = true});
+  lights.identify(std::chrono::milliseconds(600));
+  EXPECT_EQ(lights.shown(), panel::kIdentify);
+  lights.show({.serving = true, .scoring_connected = true});
+  EXPECT_EQ(lights.shown(), panel::kIdentify) << "whatever happens meanwhile";
+  EXPECT_GT(lights.identifying().value_or(loop::Duration{0}), std::chrono::milliseconds(0));
+  const auto until = loop.now() + std::chrono::seconds(5);
+  while (lights.shown() == panel::kIdentify && loop.now() < until) loop.turn(std::chrono::milliseconds(200));
+  EXPECT_EQ(lights.identifying(), std::nullopt);
+  EXPECT_EQ(lights.shown()[static_cast<std::size_t>(panel::Light::Mapping)], panel::Pattern::Off);
+  EXPECT_EQ(seen.shown.back(), (Lit{true, true, false, false}));
+  EXPECT_NE(std::ranges::find(seen.shown, Lit{}), seen.shown.end()) << "all were dark between two flashes";
+  EXPECT_NE(std::ranges::find(seen.shown, Lit{true, true, true, true}), seen.shown.end());
 }
 
 TEST(Lights, GoOnAfterThePanelFails) {

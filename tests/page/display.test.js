@@ -33,6 +33,17 @@ test("fits 720p, 1080p and 4K whole, and nothing on it is too small to read", as
   }
 });
 
+test("cuts no figure short, not even on a phone", async (t) => {
+  const { page } = await watch(t, "reports", { path: "display" });
+  for (const [width, height] of [[390, 844], [844, 390], [768, 1024], ...SCREENS]) {
+    await page.setViewportSize({ width, height });
+    const cut = await page.$$eval(".figures dd", (nodes) => nodes.filter((node) => node.scrollWidth > node.clientWidth + 1).map((node) => node.id));
+    assert.deepEqual(cut, [], `${width} x ${height}`);
+    const outside = await page.$$eval(".figures, .figures > div", ([box, ...parts]) => parts.filter((part) => part.getBoundingClientRect().right > box.getBoundingClientRect().right + 1).length);
+    assert.equal(outside, 0, `${width} x ${height}`);
+  }
+});
+
 test("says at once that the box is lost, and comes back by itself", async (t) => {
   const { stage, page } = await watch(t, "calm", { path: "display" });
   stage.freeze();

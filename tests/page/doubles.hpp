@@ -34,10 +34,22 @@ struct FakeSource final : Source {
   }
 
   const picture::Mosaic& map() const override { return mosaic; }
+  MarkerNews markers(std::uint64_t since) const override {
+    since_version = since;
+    return marker_news;
+  }
+  std::vector<Track> tracks(Time since) const override {
+    since_time = since;
+    return robot_tracks;
+  }
 
   RunView now;
   std::map<std::int64_t, ReportDetail> details;
   picture::Mosaic mosaic;
+  MarkerNews marker_news;
+  std::vector<Track> robot_tracks;
+  mutable std::uint64_t since_version = 0;
+  mutable Time since_time = 0;
   mutable int asked = 0;
 };
 
@@ -52,12 +64,17 @@ struct FakeOperator final : Operator {
     return outcome ? *outcome : 41;
   }
   std::int64_t begin_run() override { return ++run; }
+  Time identify(double seconds) override {
+    identified = seconds;
+    return 1000 + seconds;
+  }
 
   std::vector<std::pair<std::int64_t, Deed>> judged;
   std::vector<std::pair<icd::ArtifactReport, bool>> reported;
   std::optional<std::expected<std::int64_t, std::string>>
       outcome;  // of judge() and report(), where it is not the same number or 41
   std::int64_t run = 1;
+  double identified = 0;  // seconds
 };
 
 class FakeHead final : public intake::RequestHead {

@@ -25,13 +25,13 @@ const shows = (page, [red, green, blue, most]) =>
     return count > most;
   }, [red, green, blue, most]);
 
-const FREE = [0xc8, 0xd2, 0xda, 400], ROBOT = [0xff, 0xb2, 0x24, 10], SCORED = [0x43, 0xd8, 0x93, 10];
+const FREE = [0xc8, 0xd2, 0xda, 400], ROBOT = [0xff, 0xb2, 0x24, 10], SCORED = [0x43, 0xd8, 0x93, 10], MARKER = [0xff, 0x33, 0xff, 10];
 const box = (page, name) => page.getByRole("checkbox", { name, exact: true });
 
 test("shows the maps, the robots on them and the reports, each by its box", async (t) => {
   const { page } = await watch(t, "calm", { colorScheme: "dark" });
   await settled(page);
-  for (const [name, colour] of [["Grids", FREE], ["Robots", ROBOT], ["Reports", SCORED], ["merged", FREE]]) {
+  for (const [name, colour] of [["Grids", FREE], ["Robots", ROBOT], ["Reports", SCORED], ["Markers", MARKER], ["merged", FREE]]) {
     assert.ok(await shows(page, colour), name);
     await box(page, name).uncheck();
     await page.waitForTimeout(100);
@@ -45,6 +45,28 @@ test("shows the maps, the robots on them and the reports, each by its box", asyn
   assert.notEqual(await picture(page), before);
   assert.match(await page.textContent("#map .legend"), /Height\s+0\.0 m\s+\d\.0 m/);
   assert.deepEqual(page.complaints.filter((text) => !text.includes("getImageData")), []); // this test's own reading
+});
+
+test("shows the robots where they were, and the tracks and markers as far as they had come", async (t) => {
+  const { page } = await watch(t, "calm", { colorScheme: "dark" });
+  await settled(page);
+  for (const name of ["Grids", "Clouds", "Reports", "Tracks"]) await box(page, name).uncheck();
+  assert.match(await page.textContent("#map .leftout"), /Of the markers the newest 12 are shown; 3 older ones are not/);
+  const slider = page.getByRole("slider");
+  await slider.press("Home");
+  await slider.press("ArrowRight");
+  await page.waitForTimeout(400);
+  assert.ok(await shows(page, ROBOT), "as they were ten minutes ago");
+  assert.ok(!(await shows(page, MARKER)), "before any marker came");
+  await box(page, "Robots").uncheck();
+  await page.waitForTimeout(200);
+  assert.ok(!(await shows(page, ROBOT)));
+  const without = await picture(page);
+  await slider.press("End");
+  await box(page, "Markers").uncheck();
+  await box(page, "Tracks").check();
+  await page.waitForTimeout(400);
+  assert.ok((await picture(page)) !== without, "the tracks");
 });
 
 test("is moved by hand, wheel, keys and buttons, and fits again", async (t) => {
@@ -71,6 +93,7 @@ test("pans by dragging and by the arrow keys, and comes back by All", async (t) 
   const { page } = await watch(t, "reports");
   await settled(page);
   await box(page, "Robots").uncheck(); // they move by themselves
+  await box(page, "Tracks").uncheck();
   await page.waitForTimeout(200);
   const whole = await picture(page);
   await page.locator(canvas).scrollIntoViewIfNeeded();
@@ -93,8 +116,7 @@ test("pans by dragging and by the arrow keys, and comes back by All", async (t) 
 test("shows the map as it was, by the slider, and now again", async (t) => {
   const { page } = await watch(t, "calm");
   await settled(page);
-  await box(page, "Robots").uncheck();
-  await box(page, "Reports").uncheck();
+  for (const name of ["Robots", "Tracks", "Reports"]) await box(page, name).uncheck();
   await page.waitForTimeout(200);
   const whole = await picture(page);
   const slider = page.getByRole("slider");

@@ -73,4 +73,33 @@ void draw_scene(picture::Mosaic& map, double now) {
   }
 }
 
+MarkerNews scene_markers(double now) {
+  MarkerNews news{.version = 1, .whole = true, .left_out = 3, .markers = {}, .gone = {}};
+  for (std::int32_t type = 0; type <= icd::kLastMarkerType; ++type) {
+    icd::Marker marker;
+    marker.ns = "scene";
+    marker.id = type;
+    marker.type = type;
+    marker.pose.position = {type * 10.0, 40 + 12 * std::sin(type * 10.0 / 23) + 6, 0};
+    marker.pose.orientation = {0, 0, 0.38, 0.92};
+    marker.scale = {4, 2, 2};
+    marker.color = {1, 0.2, 1, 1};
+    marker.text = type == 9 ? "camp" : "";
+    news.markers.push_back({marker, now - 300 + type});
+  }
+  news.markers[2].marker.color.a = 0;
+  news.markers[1].marker.lifetime = 10;
+  return news;
+}
+
+std::vector<Track> scene_tracks(double now) {
+  std::vector<Track> tracks = {{"ANYmal1", {}}, {"Scout", {}}};
+  for (int i = 0; i < 600; ++i) {
+    const double x = i / 600.0 * 100;
+    tracks[0].poses.push_back({now - 600 + i, {x, 40 + 12 * std::sin(x / 23), 0}, 0.3});
+    tracks[1].poses.push_back({now - 600 + i, {x * 0.7, 38 + 12 * std::sin(x * 0.7 / 23), 1}, 0.3});
+  }
+  return tracks;
+}
+
 }  // namespace adit::page

@@ -1,5 +1,8 @@
 #pragma once
 
+#include <vector>
+
+#include "page/scene.hpp"
 #include "picture/mosaic.hpp"
 
 namespace adit::page {
@@ -7,5 +10,11 @@ namespace adit::page {
 /// Ten minutes of a run, up to `now`: the merged grid of a cave that is explored bit by bit, and a robot's
 /// clouds of its floor, which climbs from 0 to 6 m.
 void draw_scene(picture::Mosaic& map, double now);
+
+/// A marker of each type, along the tunnel; one that cannot be seen, and one that has expired.
+MarkerNews scene_markers(double now);
+
+/// Two robots on their ways, the last ten minutes up to `now`.
+std::vector<Track> scene_tracks(double now);
 
 }  // namespace adit::page

@@ -98,6 +98,7 @@ test("every path and method does as it is described to an operator", async (t) =
     "GET /adit/map/{kind}/{robot}/{level}/{x}/{y}.png": () => ({ kind: map.kind, robot: map.robot || "-", ...tile }),
     "POST /adit/sessions/{session}/end": async () => ({ session: await session() }),
     "POST /adit/reports/{number}/withdraw": () => ({ number: withdrawn }),
+    "POST /adit/reports/{number}/hold": async () => ({ number: await report("Cube") }),
     "POST /adit/reports/{number}/send": () => ({ number: withdrawn }),
     "POST /adit/reports/{number}/resubmit": () => ({ number: first }),
   };

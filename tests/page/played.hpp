@@ -18,7 +18,10 @@ class Played {
     if (found == view.reports.end()) return std::unexpected("there is no such report");
     if (found->state == "refused") return std::unexpected("the step could not be written down; try again");
     if (deed == Deed::Resubmit) return add(view, found->type, found->position);
-    states_[number] = deed == Deed::Send ? "waiting" : deed == Deed::Withdraw ? "withdrawn" : "settled";
+    states_[number] = deed == Deed::Send       ? "waiting"
+                      : deed == Deed::Hold     ? "received"
+                      : deed == Deed::Withdraw ? "withdrawn"
+                                               : "settled";
     return number;
   }
 
@@ -31,7 +34,16 @@ class Played {
     return add(view, report.type, report.position);
   }
 
+  std::int64_t begin_run(const RunView& view) {
+    for (const ReportRow& row : view.reports) {
+      if (row.state == "waiting") states_[row.number] = "received";
+    }
+    ++runs_;
+    return view.run_number + 1;
+  }
+
   void apply(RunView& view) const {
+    view.run_number += runs_;
     for (ReportRow& row : view.reports) {
       if (const auto state = states_.find(row.number); state != states_.end()) {
         row.state = state->second;
@@ -56,6 +68,7 @@ class Played {
   }
 
   std::map<std::int64_t, std::string> states_;
+  std::int64_t runs_ = 0;         // that the operator declared
   std::vector<ReportRow> added_;  // oldest first
 };
 

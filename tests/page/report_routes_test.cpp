@@ -103,9 +103,10 @@ TEST_F(ReportRoutesTest, GiveAReportWithItsHistoryAndItsAnswer) {
 TEST_F(ReportRoutesTest, PassOnTheOperatorsWord) {
   EXPECT_EQ(post("/adit/reports/7/send").body, "{\"report\":7}");
   post("/adit/reports/12/withdraw");
+  post("/adit/reports/12/hold");
   post("/adit/reports/7/done");
-  EXPECT_THAT(judge.judged,
-              ElementsAre(Pair(7, Deed::Send), Pair(12, Deed::Withdraw), Pair(7, Deed::CallDone)));
+  EXPECT_THAT(judge.judged, ElementsAre(Pair(7, Deed::Send), Pair(12, Deed::Withdraw), Pair(12, Deed::Hold),
+                                        Pair(7, Deed::CallDone)));
   judge.outcome = 13;
   const auto answer = post("/adit/reports/7/resubmit");
   EXPECT_EQ(answer.status, icd::Status::Ok);

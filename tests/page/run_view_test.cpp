@@ -37,16 +37,22 @@ TEST(RunViewJson, NamesEachMemberAsTheViewDoes) {
                                        {"position", {{"x", 24.0}, {"y", 6.0}, {"z", 0.5}}},
                                        {"heading", 0.5},
                                        {"at", 1000.0}}));
+  EXPECT_EQ(parsed["identify_until"], nullptr);
   EXPECT_EQ(parsed["run_number"], 1);
   EXPECT_EQ(parsed["run_id"], "");
   EXPECT_EQ(parsed["queued_bytes"], 214'000'000);
   EXPECT_EQ(parsed["attention"].size(), 2);
 }
 
-TEST(RunViewJson, TellsTheVersionOfTheMapToTheLastDigit) {
+TEST(RunViewJson, TellsTheVersionsOfThePicturesToTheLastDigit) {
   RunView view;
   view.map_version = 1'793'000'123'456;
-  EXPECT_EQ(json::parse(write_run_view(view))["map_version"], 1'793'000'123'456);
+  view.marker_version = 1'793'000'123'457;
+  view.identify_until = 12.5;
+  const json parsed = json::parse(write_run_view(view));
+  EXPECT_EQ(parsed["map_version"], 1'793'000'123'456);
+  EXPECT_EQ(parsed["marker_version"], 1'793'000'123'457);
+  EXPECT_EQ(parsed["identify_until"], 12.5);
 }
 
 TEST(RunViewJson, TellsOfEachReportWhoseWordItWaitsFor) {

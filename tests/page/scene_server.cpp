@@ -29,6 +29,11 @@ class Stage final : public Source, public Operator {
     const Time now = loop_.stamp_now();
     RunView view = *scene(name_, now, now - began_);
     view.map_version = map().version();
+    view.marker_version = markers(0).version;
+    if (now < identify_until_) {
+      view.identify_until = identify_until_;
+      for (LightRow& light : view.lights) light.pattern = "twice";
+    }
     played_.apply(view);
     return view;
   }
@@ -49,7 +54,17 @@ class Stage final : public Source, public Operator {
   std::expected<std::int64_t, std::string> report(const icd::ArtifactReport& report, bool resubmit) override {
     return played_.report(view(), report, resubmit);
   }
-  std::int64_t begin_run() override { return 1; }
+  std::int64_t begin_run() override { return played_.begin_run(view()); }
+  Time identify(double seconds) override {
+    identify_until_ = loop_.stamp_now() + seconds;
+    return identify_until_;
+  }
+  MarkerNews markers(std::uint64_t) const override {
+    return name_ == "empty" ? MarkerNews{} : scene_markers(began_);
+  }
+  std::vector<Track> tracks(Time) const override {
+    return name_ == "empty" ? std::vector<Track>{} : scene_tracks(began_);
+  }
   const picture::Mosaic& map() const override { return name_ == "empty" ? blank_ : map_; }
 
   bool change_to(const std::string& name) {
@@ -60,7 +75,7 @@ class Stage final : public Source, public Operator {
 
  private:
   loop::Loop& loop_;
-  Time began_;
+  Time began_, identify_until_ = 0;
   std::string name_;
   picture::Mosaic map_, blank_;
   Played played_;

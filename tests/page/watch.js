@@ -1,16 +1,14 @@
 // What every test of the page needs: a browser for the file, and a page that looks at a scene.
-import assert from "node:assert/strict";
 import { mkdirSync } from "node:fs";
-import { createRequire } from "node:module";
 import { dirname, join } from "node:path";
 import { after, before } from "node:test";
 import { launch, look, serve, visit } from "./stage.js";
 
+export { axeFindsNothing } from "./axe.js";
+
 let browser;
 before(async () => (browser = await launch()));
 after(() => browser?.close());
-
-const axe = createRequire(import.meta.url).resolve("axe-core/axe.min.js");
 
 /** A page that looks at a scene, for the length of one test; `prepare(page)` before it is opened. */
 export async function watch(t, scene, { path = "", prepare, ...options } = {}) {
@@ -30,13 +28,6 @@ export async function visitor(t, url, options = {}) {
 
 export const text = (page, selector) => page.textContent(selector);
 export const said = (page, words) => page.waitForFunction((words) => document.body.innerText.includes(words), words);
-
-export async function axeFindsNothing(page, what) {
-  await page.addScriptTag({ path: axe });
-  const { violations } = await page.evaluate(() => globalThis.axe.run());
-  const found = violations.map(({ id, nodes }) => `${id}: ${nodes.map((node) => node.html).join(" ")}`);
-  assert.deepEqual(found, [], what);
-}
 
 /** Kept beside the scene server's build, for people to look at. */
 export async function shoot(page, name) {

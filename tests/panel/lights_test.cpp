@@ -51,6 +51,8 @@ TEST(Lights, AreAllDarkInNoConditionAtAll) {
   for (unsigned bits = 0; bits < 128; ++bits) {
     const auto bit = [bits](unsigned n) { return (bits >> n & 1u) != 0; };
     const Lights lights = lights_for({bit(0), bit(1), bit(2), bit(3), bit(4), bit(5), bit(6)});
+    for (const Pattern pattern : lights)
+      EXPECT_NE(pattern, Pattern::Twice) << "that is for telling boxes apart";
     EXPECT_NE(lights[0], Pattern::Off) << "a dark health light means that Adit is not running";
   }
 }
@@ -68,6 +70,7 @@ TEST(Patterns, BlinkAtTheirRateForHalfTheTime) {
   EXPECT_EQ(lit_of_a_second(Pattern::On), std::pair(1000, 0));
   EXPECT_EQ(lit_of_a_second(Pattern::Slow), std::pair(500, 1));
   EXPECT_EQ(lit_of_a_second(Pattern::Fast), std::pair(500, 4));
+  EXPECT_EQ(lit_of_a_second(Pattern::Twice), std::pair(250, 2));
 }
 
 TEST(Patterns, BeginLit) {
@@ -78,8 +81,8 @@ TEST(Patterns, BeginLit) {
 TEST(Names, AreDistinct) {
   std::set<std::string_view> names;
   for (const Light light : kLights) names.insert(name_of(light));
-  for (const Pattern pattern : {kOff, kOn, kSlow, kFast}) names.insert(name_of(pattern));
-  EXPECT_EQ(names.size(), 8u);
+  for (const Pattern pattern : {kOff, kOn, kSlow, kFast, Pattern::Twice}) names.insert(name_of(pattern));
+  EXPECT_EQ(names.size(), 9u);
 }
 
 TEST(PanelReadme, HasARowForEachLight) {

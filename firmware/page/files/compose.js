@@ -7,7 +7,7 @@ import { nearTo, sameAs } from "./near.js";
 import { reveal } from "./reports.js";
 import { post } from "./session.js";
 import { life } from "./verdict.js";
-import { ago, metres } from "./words.js";
+import { ago, clip, metres } from "./words.js";
 
 // ICD 5.2.
 const TYPES = ["Survivor", "Cell Phone", "Backpack", "Drill", "Fire Extinguisher", "Gas", "Vent", "Helmet", "Rope", "Cube"];
@@ -33,8 +33,8 @@ function typed() {
   for (const axis of AXES) {
     const text = field(axis).value.trim().replace("−", "-");
     position[axis] = Number(text);
-    if (!/^[-+]?(\d+\.?\d*|\.\d+)$/.test(text)) {
-      throw Object.assign(new Error(`${axis}: expected metres, as in 12.5${text ? `, got ${text}` : ""}.`), { field: field(axis) });
+    if (!/^[-+]?(\d+\.?\d*|\.\d+)$/.test(text) || !Number.isFinite(position[axis])) {
+      throw Object.assign(new Error(`${axis}: expected metres, as in 12.5${text ? `, got ${clip(text, 40)}` : ""}.`), { field: field(axis) });
     }
   }
   return { type, position };

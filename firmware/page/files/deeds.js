@@ -5,6 +5,7 @@ import { post, session } from "./session.js";
 const SEND = { name: "send", label: "Send" };
 const AGAIN = { name: "send", label: "Send again" };
 const COSTLY_SEND = { name: "send", label: "Send once more", costs: "It may be recorded already: then it is recorded twice" };
+const HOLD = { name: "hold", label: "Hold" };
 const WITHDRAW = { name: "withdraw", label: "Withdraw" };
 const DONE = { name: "done", label: "Call it done" };
 const RESUBMIT = { name: "resubmit", label: "Resubmit", costs: "It is sent once more, as a new report" };
@@ -12,7 +13,7 @@ const RESUBMIT = { name: "resubmit", label: "Resubmit", costs: "It is sent once 
 /** By the state that a report is in: the deeds that the box takes (README.md). */
 const DEEDS = {
   received: [SEND, WITHDRAW],
-  waiting: [WITHDRAW],
+  waiting: [HOLD, WITHDRAW],
   sending: [],
   "in doubt": [COSTLY_SEND, DONE],
   refused: [AGAIN],
@@ -26,11 +27,11 @@ export function deedsOf(report) {
   return DEEDS[report.state] ?? [];
 }
 
-let role = "viewer", lost = false;
+let role = null, lost = false; // null: not learned yet
 
 /** Why nothing can be done now, or "". */
 export const barred = () =>
-  lost ? "Nothing can be done while the box does not answer." : role !== "operator" ? "Only an operator can do something: log in as one." : "";
+  lost ? "Nothing can be done while the box does not answer." : role === null ? "Asking who you are." : role !== "operator" ? "Only an operator can do something: log in as one." : "";
 
 export function linkIs(isLost) {
   if (lost && !isLost) learnRole();
@@ -40,7 +41,8 @@ export function linkIs(isLost) {
 export async function learnRole() {
   ({ role } = await session().catch(() => ({ role })));
 }
-learnRole();
+/** Ends once it is known who looks at this page. */
+export const learned = learnRole();
 
 // What came of the last deed at each report: {text, bad}.
 const outcomes = new Map();
@@ -49,7 +51,7 @@ export const outcomeOf = (number) => outcomes.get(number);
 export const isBusy = (number) => underWay.has(number);
 export const tell = (number, text, bad = false) => outcomes.set(number, { text, bad });
 
-const PAST = { send: "It will be sent.", withdraw: "Withdrawn.", done: "Called done." };
+const PAST = { send: "It will be sent.", hold: "Held: it goes only when you send it.", withdraw: "Withdrawn.", done: "Called done." };
 
 function question(deed, report, remaining) {
   const left = remaining === undefined ? "" : ` ${remaining} reports are left.`;

@@ -1,6 +1,6 @@
 // The run as others look at it: no controls, everything on one screen.
 import { badge, list, make, mark, say } from "./dom.js";
-import { listen } from "./live.js";
+import { follow } from "./live.js";
 import { MapOfRun } from "./map.js";
 import { showVerdict } from "./robots.js";
 import { showAttention, showRun } from "./run.js";
@@ -11,9 +11,8 @@ const MOST_REPORTS = 20; // more than fit any screen
 
 const map = new MapOfRun(document.querySelector("#map canvas"));
 const reports = document.getElementById("reports");
-let view = null, heardAt = 0, lost = false;
 
-function showReports() {
+function showReports(view) {
   const mine = view.reports.filter((report) => report.run === view.run_number);
   say(reports.querySelector(".count"), mine.length ? String(mine.length) : "");
   reports.querySelector(".empty").hidden = mine.length > 0;
@@ -28,27 +27,14 @@ function showReports() {
   });
 }
 
-function show() {
+function show({ view, time, lost }) {
   mark(document.body, "link", lost ? "lost" : view ? "live" : "opening");
   if (!view) return showAttention([], lost ? "The box does not answer." : "");
-  const time = view.now + (performance.now() - heardAt) / 1000;
   showAttention(view.attention.slice(0, lost ? 1 : 2), lost ? `The box does not answer: all is as it was at ${timeOfDay(view.now)}.` : "");
   showRun(view, time, lost);
   showVerdict(view.activities, time, lost);
-  showReports();
+  showReports(view);
   map.show(view);
 }
 
-listen(
-  "/adit/events",
-  (next) => {
-    view = next;
-    heardAt = performance.now();
-    show();
-  },
-  (isLost) => {
-    lost = isLost;
-    show();
-  },
-);
-setInterval(show, 1000);
+follow("/adit/events", show);

@@ -41,8 +41,13 @@ function create(quantity) {
   return make("li", make("span.label", quantity.label), make("strong"), svg, make("span.note"));
 }
 
-/** Once a second: what is now goes into the history. */
-export function sampleLink(view, lost) {
+let sampled = 0; // the box's time of the last sample
+
+/** Once a second, however often it is called: what is now goes into the history. */
+export function sampleLink(view, time, lost) {
+  if (Math.abs(time - sampled) > 5) sampled = time - 1;
+  if (time < sampled + 1) return;
+  ++sampled;
   const all = quantities(view, lost);
   list(plots, all, (quantity) => quantity.key, create, (node, quantity) => {
     const plot = known.get(quantity.key);

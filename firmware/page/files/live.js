@@ -5,8 +5,27 @@ import { checkSession } from "./session.js";
 const SILENCE = 4500;  // ms; the box says something every 2 s
 const RETRY = 2000;
 
+/** Follows the run: `show({view, time, lost})` for each view that comes (null: none came yet), as the line goes and
+ *  comes back, and each second, for ages grow. `time` is the box's clock. Gives what shows it once more. */
+export function follow(url, show) {
+  let view = null, heardAt = 0, lost = false;
+  const again = () => show({ view, lost, time: view && view.now + (performance.now() - heardAt) / 1000 });
+  const heard = (next) => {
+    view = next;
+    heardAt = performance.now();
+    again();
+  };
+  const lose = (isLost) => {
+    lost = isLost;
+    again();
+  };
+  listen(url, heard, lose);
+  setInterval(again, 1000);
+  return again;
+}
+
 /** Calls `heard(view)` for each view that comes, and `lost(true or false)` as the line goes and comes back. */
-export function listen(url, heard, lost) {
+function listen(url, heard, lost) {
   let source = null, last = performance.now(), isLost = false;
 
   const set = (value) => {

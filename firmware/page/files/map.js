@@ -1,14 +1,20 @@
-// The map: the picture of what was forwarded, and on it robots and reports. Drawn again only when something changed.
+// The map: the picture of what was forwarded, and on it robots, their tracks, markers and reports. Drawn again only when something changed.
 import { listenTo } from "./map_input.js";
-import { coloursOf, drawCross, drawReports, drawRobots, drawScale, isStale, labelsOn } from "./map_marks.js";
+import { coloursOf, drawCross, drawPairRings, drawReports, drawRobots, drawScale, isStale, keepOffRobots, labelsOn } from "./map_marks.js";
+import { drawMarkers, Markers, writeMarkers } from "./map_markers.js";
 import { drawLayer, Tiles } from "./map_tiles.js";
+import { drawTracks, Tracks } from "./map_tracks.js";
 import { MapView } from "./map_view.js";
+
+const PAIR_RIM = 4; // metres around two reports that are compared
 
 export class MapOfRun {
   #canvas;
   #paint;
   #view = new MapView();
   #tiles = new Tiles(() => this.redraw());
+  #markers = new Markers(() => this.redraw());
+  #tracks = new Tracks(() => this.redraw());
   #run = null;
   #at = null; // the time that is shown; null: now
   #asked = false;
@@ -17,7 +23,8 @@ export class MapOfRun {
   #colours = {};
   #picked = null;
   #onTap = null;
-  #shown = { grid: true, cloud: true, robots: true, reports: true };
+  #pair = null; // [report, report] that are compared
+  #shown = { grid: true, cloud: true, robots: true, tracks: true, markers: true, reports: true };
   #hidden = new Set(); // robots whose maps are not shown
   onLayers = () => {};
 
@@ -41,11 +48,9 @@ export class MapOfRun {
   }
 
   #movedByHand() {
-    if (this.#fitting) this.#fitting = false;
-    else this.#isFit = false;
+    this.#isFit = false;
     this.redraw();
   }
-  #fitting = false;
 
   zoom(factor) {
     this.#view.zoom(factor);
@@ -53,13 +58,15 @@ export class MapOfRun {
   }
 
   fit() {
-    this.#isFit = this.#fitting = true;
+    this.#isFit = true;
     this.redraw();
   }
 
   show(run) {
     this.#run = run;
     if (run.map_version !== this.#version && !this.#asked) this.#refresh(run.map_version);
+    this.#markers.follow(run.marker_version);
+    this.#tracks.follow(run);
     const places = JSON.stringify([run.reports.map(({ number, state, asking }) => [number, state, asking]), run.near_metres,
       run.robots.map((robot) => [robot.name, robot.position, robot.heading, isStale(robot, run.now)])]);
     if (places === this.#drawn) return;
@@ -116,6 +123,19 @@ export class MapOfRun {
     if (this.#view.scale < 6) this.#view.scale = 6;
     this.redraw();
   }
+  /** Looks at two reports and rings them; null: at none. */
+  showPair(pair) {
+    this.#pair = pair;
+    if (pair) {
+      this.#isFit = false;
+      const [xs, ys] = ["x", "y"].map((axis) => pair.map(({ position }) => position[axis]));
+      const rim = PAIR_RIM + Math.max(Math.max(...xs) - Math.min(...xs), Math.max(...ys) - Math.min(...ys)) / 2;
+      this.#view.fit({ left: Math.min(...xs) - rim, right: Math.max(...xs) + rim, bottom: Math.min(...ys) - rim, top: Math.max(...ys) + rim });
+      this.#view.pan(0, this.#view.height / 6); // below what is said of them
+    }
+    this.redraw();
+  }
+  markers = () => this.#markers;
   centre = () => this.#view.centre;
 
   #resize() {
@@ -144,7 +164,9 @@ export class MapOfRun {
     const until = this.#at ?? Infinity;
     return {
       reports: this.#shown.reports ? reports.filter((report) => report.run === run_number && report.received <= until) : [],
-      robots: this.#shown.robots && this.isLive() ? robots : [],
+      robots: !this.#shown.robots ? [] : this.isLive() ? robots : this.#tracks.robotsAt(until),
+      tracks: this.#shown.tracks ? this.#tracks.until(until) : [],
+      markers: this.#shown.markers ? this.#markers.at(this.#at ?? this.#run?.now ?? 0) : [],
     };
   }
 
@@ -170,9 +192,15 @@ export class MapOfRun {
     for (const layer of layers) drawLayer(paint, view, this.#tiles, layer, this.#at);
     const size = parseFloat(getComputedStyle(this.#canvas).fontSize);
     const labels = labelsOn(paint, this.#colours, size, view.width);
+    const unit = size / 14;
+    drawTracks(paint, this.#colours, view, places.tracks, unit);
+    drawMarkers(paint, this.#colours, view, places.markers, unit);
     drawScale(paint, this.#colours, labels, view, size);
-    drawReports(paint, this.#colours, labels, view, this.#run, places.reports, size / 2);
-    drawRobots(paint, this.#colours, labels, view, places.robots, size / 1.8, this.#run?.now);
+    keepOffRobots(labels, view, places.robots, size / 1.8);
+    if (this.#pair) drawPairRings(paint, this.#colours, labels, view, this.#pair, size);
+    drawReports(paint, this.#colours, labels, view, this.#run, places.reports, size / 2, this.#pair ?? []);
+    drawRobots(paint, this.#colours, labels, view, places.robots, size / 1.8, this.#at ?? this.#run?.now);
+    writeMarkers(labels, view, places.markers);
     if (this.#onTap) drawCross(paint, { ...this.#colours, ask: this.#colours.soft }, view.toPixel(view.centre), size / 2);
     if (this.#picked) drawCross(paint, this.#colours, view.toPixel(this.#picked), size / 2);
   }

@@ -83,6 +83,8 @@ export function showMap(view, time) {
   now = time;
   stretchSlider();
   map.show(view);
+  const { count, leftOut } = map.markers();
+  say(section.querySelector(".leftout"), leftOut ? `Of the markers the newest ${count} are shown; ${leftOut} older ones are not.` : "");
 }
 
 /** Lets a place be picked; gives {x, y}, or null where it was given up. */

@@ -55,13 +55,13 @@ export function listenTo(canvas, view, { moved, tapped, fit }) {
     "+": () => view.zoom(1.5),
     "=": () => view.zoom(1.5),
     "-": () => view.zoom(1 / 1.5),
-    f: fit,
     Enter: () => tapped(view.centre),
   };
   canvas.addEventListener("keydown", (event) => {
-    if (event.ctrlKey || event.metaKey || event.altKey || !keys[event.key]) return;
+    if (event.ctrlKey || event.metaKey || event.altKey || (!keys[event.key] && event.key !== "f")) return;
     event.preventDefault();
     event.stopPropagation();
+    if (event.key === "f") return fit();
     keys[event.key]();
     moved();
   });

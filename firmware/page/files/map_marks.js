@@ -54,8 +54,8 @@ class Labels {
   keepOff([left, top], size) {
     this.#taken.push([left - size, top - size, left + size, top + size]);
   }
-  write(text, left, top, colour = this.colours.ink) {
-    const { paint, size } = this;
+  write(text, left, top, { colour = this.colours.ink, rim = this.colours.ground, size = this.size } = {}) {
+    const { paint } = this;
     paint.font = `600 ${size}px system-ui, sans-serif`;
     const wide = paint.measureText(text).width;
     const from = left + size + wide > this.width ? left - size - wide : left + size;
@@ -65,7 +65,7 @@ class Labels {
     paint.textBaseline = "middle";
     paint.lineJoin = "round";
     paint.lineWidth = size / 3;
-    paint.strokeStyle = this.colours.ground;
+    paint.strokeStyle = rim;
     paint.strokeText(text, box[0], top);
     paint.fillStyle = colour;
     paint.fillText(text, box[0], top);
@@ -88,7 +88,7 @@ function drawRobot(paint, colours, labels, view, robot, size, now) {
   if (old) paint.stroke();
   else paint.fill();
   paint.restore();
-  labels.write(clip(robot.name, 20), left, top, old ? colours.soft : colours.ink);
+  labels.write(clip(robot.name, 20), left, top, { colour: old ? colours.soft : colours.ink });
 }
 
 /** Two reports that may be of one artifact, joined by a line. */
@@ -102,25 +102,48 @@ function drawPair(paint, colours, labels, view, { one, other, metres: apart }) {
     paint.lineTo(right, bottom);
     paint.stroke();
   }
-  if (Math.hypot(left - right, top - bottom) > 60) labels.write(`${apart.toFixed(1)} m`, (left + right) / 2, (top + bottom) / 2);
+  if (Math.hypot(left - right, top - bottom) > 8 * labels.size) labels.write(`${apart.toFixed(1)} m`, (left + right) / 2, (top + bottom) / 2);
 }
 
-export function drawReports(paint, colours, labels, view, run, reports, size) {
+const nameOf = (report) => `#${report.number} ${clip(report.type, 20)}`;
+
+/** `named`: those whose names stand there already. */
+export function drawReports(paint, colours, labels, view, run, reports, size, named) {
   for (const pair of nearPairs({ ...run, reports })) drawPair(paint, colours, labels, view, pair);
   for (const report of [...reports].reverse()) {
     const [left, top] = view.toPixel(report.position);
     drawShape(paint, colours, life(report).level, left, top, size);
     labels.keepOff([left, top], size * 0.8);
   }
-  for (const report of reports) {
+  const numbers = named.map(({ number }) => number);
+  for (const report of reports.filter(({ number }) => !numbers.includes(number))) {
     const isAsking = life(report).level === "ask";
-    if (view.scale >= LABELS_FROM || isAsking) labels.write(`#${report.number} ${clip(report.type, 20)}`, ...view.toPixel(report.position));
+    if (view.scale >= LABELS_FROM || isAsking) labels.write(nameOf(report), ...view.toPixel(report.position));
   }
 }
 
-export function drawRobots(paint, colours, labels, view, robots, size, now) {
+/** Before any name is written: robots are drawn above them. */
+export function keepOffRobots(labels, view, robots, size) {
   for (const robot of robots) labels.keepOff(view.toPixel(robot.position), size * 0.8);
+}
+
+export function drawRobots(paint, colours, labels, view, robots, size, now) {
   for (const robot of robots) drawRobot(paint, colours, labels, view, robot, size, now);
+}
+
+/** Sets two reports off from all others; their names come first. */
+export function drawPairRings(paint, colours, labels, view, pair, size) {
+  for (const report of pair) {
+    const [left, top] = view.toPixel(report.position);
+    for (const [width, colour] of [[7, colours.ground], [3, colours.ask]]) {
+      paint.lineWidth = width;
+      paint.strokeStyle = colour;
+      paint.beginPath();
+      paint.arc(left, top, size * 1.1, 0, 2 * Math.PI);
+      paint.stroke();
+    }
+    labels.write(nameOf(report), left - size * 2, top - size * 2);
+  }
 }
 
 export const labelsOn = (paint, colours, size, width) => new Labels(paint, colours, size, width);

@@ -1,11 +1,13 @@
 // The one live page. Each part draws itself from the last view of the run that came from the box.
 import { badge, mark, say } from "./dom.js";
-import { listen } from "./live.js";
+import { follow } from "./live.js";
+import { showBoxDeeds } from "./box_deeds.js";
 import { compose, showCompose } from "./compose.js";
-import { linkIs } from "./deeds.js";
+import { learned, linkIs } from "./deeds.js";
 import { listenToKeys } from "./keys.js";
 import { sampleLink } from "./link.js";
 import { goLive, map, showMap } from "./map_controls.js";
+import { showPair } from "./pair.js";
 import { showPost } from "./post.js";
 import { showRefusals } from "./refusals.js";
 import { showReports } from "./reports.js";
@@ -15,30 +17,27 @@ import { followNetwork } from "./pending.js";
 import { showWho } from "./session.js";
 import { clip, timeOfDay } from "./words.js";
 
-let view = null, heardAt = 0, lost = false;
-
-/** The box's clock. */
-const now = () => view.now + (performance.now() - heardAt) / 1000;
-
-function showLink() {
+function showLink(view, lost) {
   const link = document.getElementById("link");
   mark(document.body, "link", lost ? "lost" : view ? "live" : "opening");
   if (lost) badge(link, "bad", view ? "Box lost" : "No box");
   else badge(link, view ? "good" : "quiet", view ? "Live" : "Looking for the box");
 }
 
-function show() {
-  showLink();
+function show({ view, time, lost }) {
+  showLink(view, lost);
   linkIs(lost);
   if (!view) return showAttention([], lost ? "The box does not answer." : "");
-  const time = now();
   showAttention(view.attention, lost ? `The box does not answer: all below is as it was at ${timeOfDay(view.now)}.` : "");
   showRun(view, time, lost);
+  showBoxDeeds(view, time);
   showLights(view.lights);
   showRobots(view.activities, time, lost);
   showReports(view, time);
   showCompose(view);
   showMap(view, time);
+  showPair(view, time);
+  sampleLink(view, time, lost);
   showPost(view, lost);
   showRefusals(view.refusals, time);
   say(document.getElementById("about"), `Adit ${clip(view.version, 40)} · the box's clock ${timeOfDay(time)}`);
@@ -48,24 +47,7 @@ function show() {
 
 followNetwork();
 showWho(document.getElementById("who"));
-listen(
-  "/adit/events",
-  (next) => {
-    view = next;
-    heardAt = performance.now();
-    show();
-  },
-  (isLost) => {
-    lost = isLost;
-    show();
-  },
-);
-
-// Ages grow, and the link is sampled, whether or not anything comes.
-setInterval(() => {
-  if (view) sampleLink(view, lost);
-  show();
-}, 1000);
+learned.then(follow("/adit/events", show));
 
 const focus = (selector) => document.querySelector(selector)?.focus();
 listenToKeys(

@@ -2,6 +2,7 @@
 import { barred, deedsOf, isBusy, outcomeOf, perform } from "./deeds.js";
 import { badge, list, make, mark, say } from "./dom.js";
 import { nearTo } from "./near.js";
+import { comparePair } from "./pair.js";
 import { showStory } from "./story.js";
 import { life } from "./verdict.js";
 import { ago, clip, metres } from "./words.js";
@@ -21,7 +22,7 @@ function create(report) {
   const outcome = make("p.outcome");
   outcome.setAttribute("role", "status");
   return make("li", make("span.badge"), make("span.what"), make("span.where"), make("span.since"), make("span.more"), open,
-    make("div.deeds"), outcome, make("div.story"));
+    make("div.acts", make("div.near"), make("div.deeds")), outcome, make("div.story"));
 }
 
 function toggle(number) {
@@ -39,13 +40,26 @@ export function reveal(number) {
   return row !== null;
 }
 
+const nearestOf = (report, view) => (report.run === view.run_number && report.state !== "withdrawn" ? nearTo(view, report)[0] : undefined);
+
 /** What else there is to know: the Command Post's words, or why it is where it is. */
-function more(report, view) {
+function more(report, nearest) {
   const said = report.report_status && report.report_status !== "scored" ? report.report_status : "";
   const found = report.reconciled ? "found out from the run’s status" : "";
-  const [nearest] = report.run === view.run_number && report.state !== "withdrawn" ? nearTo(view, report) : [];
   const near = nearest ? `${nearest.metres.toFixed(1)} m from #${nearest.other.number}, of the same type` : "";
   return [said, found, report.note, near, report.status >= 400 ? `status ${report.status}` : ""].filter(Boolean).join(" · ");
+}
+
+function showNear(node, report, nearest) {
+  const create = () => {
+    const button = make("button", "Show both on the map");
+    button.type = "button";
+    return button;
+  };
+  list(node, nearest ? [nearest] : [], () => "both", create, (button, { other }) => {
+    button.setAttribute("aria-label", `Show both on the map: reports ${report.number} and ${other.number}`);
+    button.onclick = () => comparePair(report, other, button);
+  });
 }
 
 function showDeeds(node, report, view, isShown) {
@@ -65,7 +79,8 @@ function showDeeds(node, report, view, isShown) {
 function update(node, report, view, now) {
   const { level, word } = life(report);
   const isOpen = opened.has(report.number);
-  const [verdict, what, where, since, rest, open, deeds, outcome, story] = node.children;
+  const [verdict, what, where, since, rest, open, acts, outcome, story] = node.children;
+  const [near, deeds] = acts.children;
   mark(node, "level", level);
   badge(verdict, level, clip(word, 40));
   say(what, clip(report.type, 40));
@@ -73,7 +88,9 @@ function update(node, report, view, now) {
   say(where, `${metres(x)}, ${metres(y)}, ${metres(z)} m`);
   const earlier = report.run === view.run_number ? "" : ` · run ${report.run}`;
   say(since, `#${report.number} · ${ago(now - report.received)}${earlier}`);
-  say(rest, clip(more(report, view)));
+  const nearest = nearestOf(report, view);
+  say(rest, clip(more(report, nearest)));
+  showNear(near, report, isOpen || level === "ask" ? nearest : undefined);
   open.setAttribute("aria-expanded", String(isOpen));
   say(open.lastChild, `More of report ${report.number}`);
   showDeeds(deeds, report, view, isOpen || level === "ask");

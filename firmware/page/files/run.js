@@ -40,7 +40,7 @@ export function showAttention(sentences, lost) {
 }
 
 // On and off show by themselves, as filled and hollow: their words are for those who do not see them.
-const PATTERNS = { off: "off", on: "on", slow: "blinks", fast: "blinks fast" };
+const PATTERNS = { off: "off", on: "on", slow: "blinks", fast: "blinks fast", twice: "flashes" };
 
 export function showLights(lights) {
   const create = () => make("li", make("span.led"), make("span.name"), make("span.pattern"));

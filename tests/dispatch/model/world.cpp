@@ -322,6 +322,12 @@ void World::take_operators_word() {
     const bool waits = report.state == ReportState::Received || report.state == ReportState::InDoubt;
     if (waits && !reports_->is_asking(report)) stuck.push_back(report);
   }
+  const std::set<std::int64_t> waiting = reports_->book().waiting();
+  for (const std::int64_t number : waiting) {
+    if (chance() < 0.6) continue;
+    tell_story(icd::sentence("the operator holds report ", number));
+    tally_.held_back += reports_->hold(number, time()).has_value() ? 1 : 0;
+  }
   for (const Report& report : stuck) {
     if (chance() < 0.6) continue;
     touched_.insert(report.report.position.x);

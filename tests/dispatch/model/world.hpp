@@ -35,7 +35,7 @@ struct Trouble {
 /// What the product does, for tests that must not be vacuous.
 struct Tally {
   std::int64_t steps = 0, posts = 0, acknowledged = 0, recorded = 0, settled = 0, sent_again = 0,
-               power_cuts = 0, undecided = 0, held = 0;
+               power_cuts = 0, undecided = 0, held = 0, held_back = 0;
 };
 
 /// Adit's rules, clients, a Command Post and what lies between, on simulated time. Everything comes from the

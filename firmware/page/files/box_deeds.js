@@ -1,0 +1,56 @@
+// What the operator may do with the run and the box: say that a new run begins, make the lights flash.
+import { barred } from "./deeds.js";
+import { confirmed } from "./dialog.js";
+import { say } from "./dom.js";
+import { post } from "./session.js";
+
+const SECONDS = 10;
+const newRun = document.querySelector("#run .newrun"), outcome = document.querySelector("#run .outcome");
+const identify = document.querySelector("button.identify"), identified = document.getElementById("identified");
+let view = null, busy = false;
+
+const named = (reports) => reports.map(({ number }) => `#${number}`).join(", ");
+
+/** What will happen, in sentences. */
+function consequences({ reports, run_number }) {
+  const waiting = reports.filter(({ state }) => state === "waiting");
+  const doubts = reports.filter(({ state }) => state === "in doubt" || state === "sending");
+  return [
+    `Run ${run_number} ends, and run ${run_number + 1} begins.`,
+    waiting.length
+      ? `What waits is held, and goes only when you send it: ${named(waiting)}. Only what was posted in the last 10 s goes on into the new run.`
+      : "No report waits to be sent.",
+    doubts.length ? `What is under way or in doubt stays for you to judge: ${named(doubts)}.` : "",
+    "Map, tracks and markers begin blank. The box notices most new runs by itself: this is for those it cannot.",
+  ].filter(Boolean).join(" ");
+}
+
+async function begin() {
+  if (busy || !view || barred()) return;
+  const sure = await confirmed({ title: "Begin a new run?", text: consequences(view), word: "New run" });
+  if (!sure) return;
+  busy = true;
+  say(outcome, "");
+  try {
+    const { run } = await post("/adit/runs");
+    say(outcome, `Run ${run} began.`);
+  } catch (error) {
+    say(outcome, error.message);
+  } finally {
+    busy = false;
+  }
+}
+newRun.addEventListener("click", begin);
+
+identify.addEventListener("click", async () => {
+  say(identified, "");
+  await post("/adit/identify", { seconds: SECONDS }).catch((error) => say(identified, error.message));
+});
+
+export function showBoxDeeds(next, now) {
+  view = next;
+  const left = Math.ceil(view.identify_until - now); // null is long ago
+  say(identify, left > 0 ? `Flashing, ${left} s` : "Identify");
+  identify.disabled = Boolean(barred());
+  newRun.disabled = busy || identify.disabled;
+}

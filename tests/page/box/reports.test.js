@@ -1,0 +1,163 @@
+import assert from "node:assert/strict";
+import { test } from "node:test";
+import { until } from "./box.js";
+import { box, deed, logIn, look, row, says } from "./visits.js";
+
+const SLOW = { settings: { command_post: { rates: { reports_hz: 0.05 } } } }; // the second report waits for 20 s
+const recorded = async (made, x) => (await made.record()).reports.filter((report) => report.x === x).length;
+
+/** A report that waits, because one before it was just sent. */
+async function waiting(made, x = 50, type = "Drill") {
+  await made.becomes(await made.compose("Rope", -900 - x), "answered");
+  const number = await made.compose(type, x);
+  await made.becomes(number, "waiting");
+  return number;
+}
+
+test("holds a report that waits, and sends it on the operator's further word", async (t) => {
+  const made = await box(t, SLOW);
+  const number = await waiting(made);
+  const page = await look(t, made);
+  await row(page, number).locator(".open").click();
+  await deed(page, "Hold", number).click();
+  await says(page, number, "held");
+  await says(page, number, "Held: it goes only when you send it.");
+  assert.equal(await made.state(number), "received");
+  await page.waitForFunction((words) => document.getElementById("attention").innerText.includes(words), `eport ${number} is held: the operator holds it`);
+  assert.deepEqual(await made.ask(`/adit/reports/${number}/hold`, {}), { status: 409, said: `report ${number} is received: it is held already` });
+  await deed(page, "Send", number).click();
+  await says(page, number, "It will be sent.");
+  assert.equal(await made.state(number), "waiting");
+  await deed(page, "Withdraw", number).click();
+  await says(page, number, "withdrawn");
+  assert.equal(await recorded(made, 50), 0);
+  assert.deepEqual(page.complaints, []);
+});
+
+test("does not hold what may have left", async (t) => {
+  const made = await box(t);
+  await made.misbehave({ reports: ["answer-after=3"] });
+  const number = await made.compose("Drill", 7);
+  await made.becomes(number, "sending");
+  const { status, said } = await made.ask(`/adit/reports/${number}/hold`, {});
+  assert.equal(status, 409);
+  assert.equal(said, `report ${number} is sending: it may have left already, and nothing takes it back`);
+  await made.becomes(number, "answered");
+  assert.equal((await made.ask(`/adit/reports/${number}/hold`, {})).said, `report ${number} is answered: there is nothing to hold`);
+  assert.equal((await made.ask("/adit/reports/99/hold", {})).status, 404);
+});
+
+test("is sent once where two operators press send at once", async (t) => {
+  const made = await box(t, SLOW);
+  const number = await waiting(made);
+  await made.ask(`/adit/reports/${number}/hold`, {});
+  const pages = [await logIn(t, made), await logIn(t, made)];
+  const name = `Send: report ${number}`;
+  const ready = (name) => document.querySelector(`[aria-label="${name}"]:enabled`) !== null;
+  await Promise.all(pages.map((page) => page.waitForFunction(ready, name)));
+  await Promise.all(pages.map((page) => page.evaluate((name) => document.querySelector(`[aria-label="${name}"]`).click(), name)));
+  for (const page of pages) {
+    await says(page, number, "waiting");
+    await says(page, number, "It will be sent.");
+  }
+  await made.becomes(number, "answered");
+  await new Promise((resolve) => setTimeout(resolve, 2500));
+  assert.equal(await recorded(made, 50), 1);
+});
+
+test("tells the second of two operators why his send was not taken", async (t) => {
+  const made = await box(t, { settings: { reports: { review: "all" } } });
+  const number = await made.compose("Drill", 50);
+  await made.becomes(number, "received");
+  const deaf = (page) => page.addInitScript(() => { // sees nothing of what the other one does
+    const { set } = Object.getOwnPropertyDescriptor(EventSource.prototype, "onmessage");
+    Object.defineProperty(EventSource.prototype, "onmessage", {
+      set(heard) {
+        set.call(this, (event) => globalThis.deaf || heard(event));
+      },
+    });
+  });
+  const first = await logIn(t, made), second = await logIn(t, made, deaf);
+  await deed(second, "Send", number).waitFor();
+  await second.evaluate(() => (globalThis.deaf = true));
+  await deed(first, "Send", number).click();
+  await made.becomes(number, "answered");
+  await deed(second, "Send", number).click();
+  await says(second, number, `report ${number} is answered: to send it once more, resubmit it`);
+  assert.equal(await row(second, number).locator(".outcome").getAttribute("data-bad"), "true");
+  await second.evaluate(() => (globalThis.deaf = false));
+  await second.waitForFunction((number) => document.querySelector(`#reports li[data-key="${number}"] .badge`).textContent.match(/scored|points/), number);
+  assert.equal(await deed(second, "Send", number).count(), 0);
+  assert.equal(await recorded(made, 50), 1);
+});
+
+test("shows near duplicates side by side, on the map and in words", async (t) => {
+  const made = await box(t, { settings: { reports: { review: "duplicates" } } });
+  await made.becomes(await made.compose("Gas", 40, 10, 1), "answered");
+  const second = await made.compose("Gas", 42, 10, 1);
+  await made.becomes(second, "received");
+  const page = await look(t, made);
+  const show = page.getByRole("button", { name: `Show both on the map: reports ${second} and 1` });
+  await show.click();
+  const pair = page.getByRole("group", { name: "Two reports side by side" });
+  assert.match(await pair.innerText(), /2\.0 m apart: one artifact, or two\?/);
+  assert.match((await pair.innerText()).replace(/\s+/g, " "), /#1 Gas .*(scored|points).* 40\.0, 10\.0, 1\.0 m .* #2 Gas held 42\.0, 10\.0, 1\.0 m/);
+  await deed(page, "Withdraw", second).click();
+  await page.waitForFunction(() => document.querySelector("#map .pair").innerText.includes("withdrawn"));
+  await pair.getByRole("button", { name: "Close" }).press("Escape");
+  assert.ok(await pair.isHidden());
+});
+
+test("begins a new run on the operator's word, and says before what becomes of what was not sent", async (t) => {
+  const made = await box(t, SLOW);
+  const number = await waiting(made);
+  const posted = Date.now();
+  const page = await look(t, made);
+  const before = (await made.run()).run_number;
+  const question = page.getByRole("alertdialog");
+  const press = () => page.getByRole("button", { name: "New run" }).first().click();
+  await press();
+  assert.match(await question.innerText(), new RegExp(`Run ${before} ends, and run ${before + 1} begins\\. What waits is held, and goes only when you send it: #${number}\\.`));
+  await question.getByRole("button", { name: "Leave it" }).click();
+  assert.equal((await made.run()).run_number, before);
+  assert.equal(await made.state(number), "waiting");
+  await until(() => Date.now() > posted + 10_500, "the report to be too old for another run");
+  await press();
+  await question.getByRole("button", { name: "New run" }).click();
+  await page.waitForFunction((words) => document.querySelector("#run .outcome").textContent === words, `Run ${before + 1} began.`);
+  assert.equal((await made.run()).run_number, before + 1);
+  await made.becomes(number, "received");
+  await says(page, number, "a new run began");
+  assert.equal(await recorded(made, 50), 0);
+});
+
+test("names every field of a composed report that is wrong, and the box would too", async (t) => {
+  const made = await box(t);
+  const page = await look(t, made);
+  await page.keyboard.press("n");
+  const trouble = page.locator("#compose .trouble"), check = page.getByRole("button", { name: "Check" });
+  await check.click();
+  assert.match(await trouble.innerText(), /Choose what it is/);
+  await page.getByRole("radio", { name: "Cell Phone" }).check();
+  for (const axis of ["x", "y", "z"]) {
+    for (const wrong of ["", " ", "12,5", "1e3", ".", "-", "--1", "1 2", "0x10", "NaN", "Infinity", "12m", "9".repeat(400)]) {
+      for (const each of ["x", "y", "z"]) await page.fill(`#compose input[name=${each}]`, "1");
+      await page.fill(`#compose input[name=${axis}]`, wrong);
+      await check.click();
+      assert.match(await trouble.innerText(), new RegExp(`^${axis}: expected metres`), `${axis} ${wrong}`);
+      assert.equal(await page.getAttribute(`#compose input[name=${axis}]`, "aria-invalid"), "true");
+      assert.equal(await page.evaluate(() => document.activeElement.name), axis);
+    }
+  }
+  const good = { type: "Rope", x: 1, y: 2, z: 3 };
+  const wrong = { type: ["", "Lamp", 7, null], x: ["1", null, true], y: [{}, "2"], z: ["", []], resubmit: ["yes", 2] };
+  for (const [field, values] of Object.entries(wrong)) {
+    for (const value of values) {
+      const { status, said } = await made.ask("/adit/reports", { ...good, [field]: value });
+      assert.equal(status, 422, `${field} ${JSON.stringify(value)}`);
+      assert.ok(said.startsWith(`${field}: `), said);
+    }
+  }
+  assert.equal((await made.ask("/adit/reports", "{")).status, 400);
+  assert.deepEqual((await made.run()).reports, []);
+});

@@ -1,0 +1,196 @@
+import assert from "node:assert/strict";
+import { after, before, test } from "node:test";
+import { axeFindsNothing } from "../axe.js";
+import { begin, until } from "./box.js";
+import { look, shoot } from "./visits.js";
+
+// One run for all of these: five robots explore, and the operator reports.
+let made;
+before(async () => {
+  made = await begin({ robots: 5, settings: { reports: { review: "duplicates" } }, post: ["--team", "Cerberus"] });
+  const [x, y] = await until(async () => {
+    const robot = (await made.run()).robots.find(({ name }) => name);
+    return robot && [robot.position.x, robot.position.y];
+  }, "a robot");
+  for (const [type, left, up] of [["Survivor", 4, 2], ["Drill", -3, 6], ["Gas", 8, -4], ["Gas", 10, -4]]) await made.compose(type, x + left, y + up);
+  await until(async () => (await made.ask("/adit/markers")).said.markers.length > 5, "markers", 40_000);
+  await until(async () => Math.max(...(await made.ask("/adit/tracks")).said.tracks.map(({ poses }) => poses.length)) > 12, "tracks", 40_000);
+});
+after(() => made?.end());
+
+const canvas = "#map .frame canvas";
+const picture = (page) => page.$eval(canvas, (node) => node.toDataURL());
+const box = (page, name) => page.getByRole("checkbox", { name, exact: true });
+const off = async (page, ...names) => {
+  for (const name of names) await box(page, name).uncheck();
+  await page.waitForTimeout(400);
+};
+
+test("draws the markers and the robots' tracks, each by its box", async (t) => {
+  const page = await look(t, made);
+  await page.waitForTimeout(1500);
+  await off(page, "Grids", "Clouds", "Robots", "Reports", "Tracks");
+  for (const name of ["Markers", "Tracks"]) {
+    await off(page, "Markers", "Tracks");
+    const without = await picture(page);
+    await box(page, name).check();
+    await page.waitForTimeout(400);
+    assert.ok((await picture(page)) !== without, name);
+  }
+  assert.deepEqual(page.complaints, []);
+});
+
+test("fetches the markers that changed, and the tracks once", async (t) => {
+  const page = await look(t, made);
+  await page.waitForTimeout(6000);
+  const asked = (part) => page.requests.filter((url) => url.includes(part));
+  assert.equal(asked("/adit/tracks").length, 1);
+  const [first, ...later] = asked("/adit/markers");
+  assert.match(first, /since=0$/);
+  assert.ok(later.length >= 1 && later.length <= 8, `${later.length} times in 6 s`);
+  for (const url of later) assert.doesNotMatch(url, /since=0$/);
+});
+
+test("shows where the robots were, by the slider", async (t) => {
+  const page = await look(t, made);
+  await page.waitForFunction(() => !document.querySelector("#time").disabled);
+  await page.waitForTimeout(1000);
+  await off(page, "Grids", "Clouds", "Reports", "Tracks", "Markers");
+  const slider = page.getByRole("slider");
+  const shown = async (keys) => {
+    for (const key of keys) await slider.press(key);
+    await page.waitForTimeout(400);
+    return picture(page);
+  };
+  await off(page, "Robots");
+  const none = await shown(["ArrowLeft", "ArrowLeft"]);
+  await box(page, "Robots").check();
+  const late = await shown([]);
+  assert.ok(late !== none, "robots are there");
+  const early = await shown(["Home", "ArrowRight", "ArrowRight"]);
+  assert.ok(early !== late, "and were elsewhere before");
+  assert.ok((await picture(page)) === early, "and stay where they were");
+});
+
+test("makes the lights flash, on the box as on the page, and lets them be again", async (t) => {
+  const page = await look(t, made);
+  await page.getByRole("button", { name: "Identify" }).click();
+  await page.waitForFunction(() => [...document.querySelectorAll("#lights li")].every((light) => light.dataset.pattern === "twice"));
+  await page.waitForFunction(() => /Flashing, \d+ s/.test(document.querySelector("button.identify").textContent));
+  const all = (lit) => until(() => Object.values(made.lights()).every((light) => light === lit), `all lights ${lit}`, 3000);
+  for (const lit of [true, false, true, false]) await all(lit);
+  const ends = await page.evaluate(() => getComputedStyle(document.querySelector("#lights .led")).animationName);
+  assert.equal(ends, "flash");
+  assert.equal((await made.ask("/adit/identify", { seconds: 1 })).status, 200, "a shorter time counts from now");
+  await page.waitForFunction(() => [...document.querySelectorAll("#lights li")].every((light) => light.dataset.pattern !== "twice"), null, { timeout: 4000 });
+  assert.equal(await page.textContent("button.identify"), "Identify");
+  for (const seconds of [0, 61, -1, "10", null, true, {}]) {
+    const { status, said } = await made.ask("/adit/identify", { seconds });
+    assert.equal(status, 422, JSON.stringify(seconds));
+    assert.match(said, /^seconds: expected/);
+  }
+  assert.equal((await made.ask("/adit/identify", {})).said, "seconds: missing");
+});
+
+test("does by every shortcut what the list of them says", async (t) => {
+  made.freezeRobots(); // the map keeps still
+  t.after(() => made.thawRobots());
+  await until(async () => (await made.run()).reports.every(({ state }) => !["waiting", "sending"].includes(state)), "all reports to be answered", 30_000);
+  const page = await look(t, made);
+  await page.waitForTimeout(800);
+  const focus = () => page.evaluate(() => document.activeElement.closest("section")?.id ?? document.activeElement.tagName);
+  const blur = () => page.evaluate(() => document.activeElement.blur());
+  const isOpen = (id) => page.locator(`#${id}`).evaluate((node) => node.open);
+  await page.keyboard.press("?");
+  assert.ok(await isOpen("help"));
+  const listed = await page.locator("#help dt").allTextContents();
+  assert.deepEqual(listed, ["n", "r", "m", "l", "0", "?", "← ↑ ↓ →", "+ −", "F", "Esc"]);
+  await page.keyboard.press("Escape");
+  assert.ok(!(await isOpen("help")));
+  await blur();
+  await page.keyboard.press("n");
+  assert.ok(await isOpen("compose"));
+  await page.fill("#compose input[name=x]", "");
+  await page.keyboard.type("nr0?");
+  assert.equal(await page.inputValue("#compose input[name=x]"), "nr0?", "letters are letters while somebody types");
+  await page.keyboard.press("Escape");
+  await blur();
+  await page.keyboard.press("r");
+  assert.equal(await focus(), "reports");
+  await page.keyboard.press("m");
+  assert.equal(await focus(), "map");
+  await off(page, "Robots", "Tracks", "Markers", "Clouds", "Grids");
+  await page.keyboard.press("0");
+  await page.waitForTimeout(300);
+  const whole = await picture(page);
+  for (const [key, back] of [["ArrowLeft", "f"], ["ArrowUp", "0"], ["ArrowRight", "f"], ["ArrowDown", "f"], ["+", "f"], ["-", "f"]]) {
+    await page.locator(canvas).press(key);
+    await page.waitForTimeout(200);
+    assert.ok((await picture(page)) !== whole, key);
+    await page.locator(canvas).press(back);
+    await page.waitForTimeout(200);
+    assert.ok((await picture(page)) === whole, back);
+  }
+  const slider = page.getByRole("slider");
+  await slider.press("Home");
+  assert.match(await slider.getAttribute("aria-valuetext"), /^as of/);
+  await page.keyboard.press("l");
+  assert.equal(await slider.getAttribute("aria-valuetext"), "now");
+  await page.keyboard.press("Control+n").catch(() => {});
+  assert.ok(!(await isOpen("compose")), "with Ctrl it is the browser's");
+  await page.keyboard.press("?");
+  await page.getByRole("checkbox", { name: "Shortcuts are on" }).uncheck();
+  await page.keyboard.press("Escape");
+  await blur();
+  for (const key of ["n", "?"]) await page.keyboard.press(key);
+  assert.ok(!(await isOpen("compose")) && !(await isOpen("help")), "they can be turned off");
+});
+
+test("has nothing that axe finds wrong during a run, in the dark and by day", async (t) => {
+  for (const colorScheme of ["dark", "light"]) {
+    const page = await look(t, made, "", { colorScheme, bypassCSP: true });
+    await page.getByRole("button", { name: /^Show both on the map/ }).first().click();
+    await axeFindsNothing(page, colorScheme);
+    await page.getByRole("button", { name: "New run" }).click();
+    await axeFindsNothing(page, `new run, ${colorScheme}`);
+  }
+});
+
+test("is kept as pictures, for people to look at", async (t) => {
+  for (const colorScheme of ["dark", "light"]) {
+    for (const path of ["", "display"]) {
+      const page = await look(t, made, path, { colorScheme });
+      await page.waitForTimeout(2500);
+      for (const [name, width, height] of [["phone", 390, 844], ["720p", 1280, 720], ["1080p", 1920, 1080], ["4k", 3840, 2160]]) {
+        await page.setViewportSize({ width, height });
+        await page.waitForTimeout(600);
+        await shoot(page, `${path || "run"}-${name}-${colorScheme}`);
+      }
+    }
+  }
+  const page = await look(t, made, "", { colorScheme: "dark" });
+  await page.getByRole("button", { name: /^Show both on the map/ }).first().click();
+  for (const [width, height, name] of [[390, 844, "phone"], [1280, 720, "720p"]]) {
+    await page.setViewportSize({ width, height });
+    await page.locator("#map").scrollIntoViewIfNeeded();
+    await page.waitForTimeout(600);
+    await shoot(page, `run-pair-${name}-dark`);
+  }
+});
+
+test("says within three seconds that the box is lost, and comes back by itself with all that was known", async (t) => {
+  const pages = [await look(t, made), await look(t, made, "display")];
+  const reports = (await made.run()).reports.length;
+  assert.ok(reports >= 4);
+  await made.killAditd();
+  for (const page of pages) {
+    await page.waitForSelector("body[data-link=lost]", { timeout: 3000 });
+    await page.waitForFunction(() => document.getElementById("attention").innerText.includes("does not answer"));
+  }
+  await made.startAditd();
+  for (const page of pages) await page.waitForSelector("body[data-link=live]", { timeout: 10_000 });
+  const [page] = pages;
+  await page.waitForFunction((reports) => document.querySelectorAll("#reports .rows > li").length >= reports, reports);
+  await page.waitForFunction(() => !document.getElementById("attention").innerText.includes("does not answer"));
+  await page.waitForFunction(() => !document.querySelector("button.compose").disabled);
+});

@@ -1,0 +1,47 @@
+// What every test against the real box needs: a browser for the file, pages that look at the box, and their reports.
+import { mkdirSync } from "node:fs";
+import { join, resolve } from "node:path";
+import { after, before } from "node:test";
+import { launch, visit } from "../stage.js";
+import { begin, PASSWORD, TOKENS } from "./box.js";
+
+let browser;
+before(async () => (browser = await launch()));
+after(() => browser?.close());
+
+/** A box for the length of one test. */
+export async function box(t, options) {
+  const made = await begin(options);
+  t.after(() => made.end());
+  return made;
+}
+
+/** A page of the box's, for who has the team's token. */
+export async function look(t, made, path = "", options = {}) {
+  const page = await visit(browser, made.url + path, { extraHTTPHeaders: { Authorization: `Bearer ${TOKENS.team}` }, ...options });
+  t.after(() => page.context().close());
+  await page.waitForSelector("body[data-link=live]");
+  return page;
+}
+
+/** The same for who logs in by password, in a browser of his own; `prepare(page)` before it is opened. */
+export async function logIn(t, made, prepare) {
+  const page = await visit(browser, `${made.url}login.html`, {}, prepare);
+  t.after(() => page.context().close());
+  await page.fill("#login input[name=password]", PASSWORD);
+  await page.click("#login button");
+  await page.waitForSelector("body[data-link=live]");
+  return page;
+}
+
+/** Kept beside the build, for people to look at. */
+export async function shoot(page, name) {
+  const folder = resolve(process.env.ADIT_BIN, "../screenshots");
+  mkdirSync(folder, { recursive: true });
+  await page.screenshot({ path: join(folder, `${name}.png`) });
+}
+
+export const row = (page, number) => page.locator(`#reports li[data-key="${number}"]`);
+export const deed = (page, name, number) => page.getByRole("button", { name: `${name}: report ${number}` });
+export const says = (page, number, words) =>
+  page.waitForFunction(([number, words]) => document.querySelector(`#reports li[data-key="${number}"]`)?.innerText.includes(words), [number, words]);

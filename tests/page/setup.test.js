@@ -408,6 +408,8 @@ test("says where the page goes when it moves, and takes back what the box cannot
   await page.getByRole("button", { name: "Look and apply" }).click();
   await page.getByRole("button", { name: "Apply", exact: true }).click();
   const link = page.locator("#typed a", { hasText: `http://127.0.0.1:${port}/setup#network` });
+  await link.waitFor();
+  await until(() => fetch(`http://127.0.0.1:${port}/`).then(({ ok }) => ok, () => false), "the box at its new address");
   await link.click();
   await page.waitForURL((url) => url.port === String(port));
   await hears(page, "Live");

@@ -118,7 +118,7 @@ export async function save(settings) {
   try {
     const { changes } = await insist(() => post("/adit/settings", { settings, base: tag }));
     link = newAddress(settings, base);
-    if (link) report("The page moves to");
+    if (link) report("Within a second the page moves to");
     const said = await applied();
     const isDone = said && (said.tag !== tag || !changes.length);
     if (said) link = "";

@@ -5,7 +5,6 @@
 #include "gateway/channel.hpp"
 #include "host/log.hpp"
 #include "icd/sentence.hpp"
-#include "settings/network_rules.hpp"
 #include "settings/written.hpp"
 
 namespace adit::gateway {
@@ -73,9 +72,6 @@ std::vector<std::string> Setup::warnings(const Settings& next) const {
     sentences.push_back(icd::sentence("maps, states and markers go to ",
                                       address_text(then.command_post.mapping),
                                       " from then on, also those that wait"));
-  }
-  if (const std::string what = settings::overlap(next); !what.empty() && next.network.allow_overlap) {
-    sentences.push_back(what + ", and is allowed to: a robot cannot reach both");
   }
   if (!next.team.require_token && settings_.team.require_token) {
     sentences.emplace_back("whoever is on the team's network may post reports, without a token");

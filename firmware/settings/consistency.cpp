@@ -6,7 +6,6 @@
 #include <utility>
 
 #include "icd/sentence.hpp"
-#include "settings/network_rules.hpp"
 
 namespace adit::settings {
 namespace {
@@ -110,7 +109,6 @@ std::vector<Error> contradictions(const Settings& settings) {
   check_panel(settings.panel, errors);
   check_robots(settings.robots, errors);
   check_courses(settings, errors);
-  std::ranges::move(network_faults(settings), std::back_inserter(errors));
   return errors;
 }
 

@@ -85,15 +85,6 @@ const Key kKeys[] = {
     {"robots[].alias", "What that robot calls itself in its maps and states: it goes on under its name.",
      text<MEMBER(robots.back().alias)>(Form::Alias)},
 
-    {"network.team.address", "The box's own address on team.interface; empty: set elsewhere.",
-     text<MEMBER(network.team.address)>(Form::Ipv4)},
-    {"network.team.prefix", "The length of its subnet's prefix.", whole<MEMBER(network.team.prefix)>(8, 30)},
-    {"network.command_post.address", "The box's own address on command_post.interface; empty: set elsewhere.",
-     text<MEMBER(network.command_post.address)>(Form::Ipv4)},
-    {"network.command_post.prefix", "The length of its subnet's prefix.",
-     whole<MEMBER(network.command_post.prefix)>(8, 30)},
-    {"network.command_post.gateway", "The way to endpoints outside of that subnet; empty: none.",
-     text<MEMBER(network.command_post.gateway)>(Form::Ipv4)},
     {"network.confirm_within_ms",
      "How long a change of the network waits to be confirmed from the new address; then it takes itself "
      "back.",

@@ -43,11 +43,6 @@ bool is_address(const std::string& text) {
   return inet_pton(AF_INET, text.c_str(), &parsed) == 1 || inet_pton(AF_INET6, text.c_str(), &parsed) == 1;
 }
 
-bool is_ipv4(const std::string& text) {
-  in_addr parsed{};
-  return text.find('\0') == std::string::npos && inet_pton(AF_INET, text.c_str(), &parsed) == 1;
-}
-
 /// 1 to 20 letters, digits, `_` and `-`: a course's name stands in the name of a file.
 bool is_course(const std::string& text) {
   constexpr std::size_t kLongest = 20;
@@ -73,8 +68,6 @@ bool fits(Form form, const std::string& text) {
       return is_name(text, 15, "/:") && text != "." && text != "..";  // the kernel's dev_valid_name()
     case Form::Chip:
       return is_name(text, 64);
-    case Form::Ipv4:
-      return text.empty() || is_ipv4(text);
     case Form::Robot:
       return icd::RobotName::parse(text).has_value();
     case Form::Alias:
@@ -97,8 +90,6 @@ std::string range_of(Form form) {
       return "an interface's name of at most 15 characters, or \"\"";
     case Form::Chip:
       return "a GPIO chip's name or path, or \"\"";
-    case Form::Ipv4:
-      return "an IPv4 address, or \"\"";
     case Form::Robot:
       return "1 to 10 letters, digits and underscores";
     case Form::Alias:

@@ -81,18 +81,9 @@ struct Course {
   Address scoring, mapping;
 };
 
-/// What the box's own interfaces are to have; an empty address: set elsewhere, and left as it is.
+/// How the box's own addresses are changed. They are not here: room network.
 struct Network {
-  struct Team {
-    std::string address;
-    std::uint32_t prefix = 24;
-  } team;
-  struct CommandPost {
-    std::string address;
-    std::uint32_t prefix = 16;
-    std::string gateway;  // "": none
-  } command_post;
-  std::chrono::milliseconds confirm_within{90000};  // then a change of these is taken back
+  std::chrono::milliseconds confirm_within{90000};  // then a change of them is taken back
   bool allow_overlap = false;                       // of the team's subnet with the Command Post's
 };
 

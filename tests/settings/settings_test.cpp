@@ -50,9 +50,7 @@ TEST(Settings, SetEveryMemberByItsKey) {
     "courses": [{"name": "A", "scoring": {"address": "::3", "port": 3}, "mapping": {"address": "::4", "port": 4}},
                 {"name": "b-2", "scoring": {"address": "::5", "port": 5}, "mapping": {"address": "::6", "port": 6}}],
     "robots": [{"name": "ugv1", "alias": "husky/1"}, {"name": "ugv2"}],
-    "network": {"team": {"address": "192.168.7.1", "prefix": 25},
-                "command_post": {"address": "10.100.1.10", "prefix": 24, "gateway": "10.100.1.1"},
-                "confirm_within_ms": 5000, "allow_overlap": true}})");
+    "network": {"confirm_within_ms": 5000, "allow_overlap": true}})");
   const CommandPost& post = settings.command_post;
   EXPECT_EQ(post.scoring, (Address{"fd00::1", 1}));
   EXPECT_EQ(post.mapping, (Address{"::1", 65535}));
@@ -97,11 +95,6 @@ TEST(Settings, SetEveryMemberByItsKey) {
   EXPECT_EQ(settings.robots[0].alias, "husky/1");
   EXPECT_EQ(settings.robots[1].alias, "");
   const Network& network = settings.network;
-  EXPECT_EQ(network.team.address, "192.168.7.1");
-  EXPECT_EQ(network.team.prefix, 25u);
-  EXPECT_EQ(network.command_post.address, "10.100.1.10");
-  EXPECT_EQ(network.command_post.prefix, 24u);
-  EXPECT_EQ(network.command_post.gateway, "10.100.1.1");
   EXPECT_EQ(network.confirm_within, milliseconds(5000));
   EXPECT_TRUE(network.allow_overlap);
 }

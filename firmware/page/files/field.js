@@ -138,7 +138,7 @@ onDraft((what) => {
 });
 
 // What has a place of its own, or none: the layout's version.
-const ELSEWHERE = /\[\]|^version$|^command_post\.(course|scoring|mapping)|^network\.(team|command_post|allow_overlap)/;
+const ELSEWHERE = /\[\]|^version$|^command_post\.(course|scoring|mapping)|^network\.allow_overlap$/;
 
 /** All the other settings, made of what the box tells of its keys. */
 export function showAll() {

@@ -51,9 +51,10 @@ Value value_of(const cJSON& item) {
 }  // namespace
 
 icd::Checked<Value> json_value(const std::string& text) {
+  constexpr bool kNothingAfter = true;
   const std::unique_ptr<cJSON, decltype(&cJSON_Delete)> root(
-      cJSON_ParseWithLength(text.c_str(), text.size() + 1), &cJSON_Delete);
-  if (root == nullptr) {  // only for want of memory: the text is known to be well-formed
+      cJSON_ParseWithLengthOpts(text.c_str(), text.size() + 1, nullptr, kNothingAfter), &cJSON_Delete);
+  if (root == nullptr) {  // of what a JsonSplitter has passed, only for want of memory
     return std::unexpected(
         icd::Refusal{icd::Status::InternalServerError, "the JSON document could not be parsed"});
   }

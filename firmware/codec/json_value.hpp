@@ -7,7 +7,8 @@
 
 namespace adit::codec {
 
-/// The document that a JsonSplitter has passed and kept, by cJSON. U+FFFF stands for NUL.
+/// A document by cJSON, which takes more than RFC 8259 does: see JsonSplitter and is_plain(). U+FFFF stands
+/// for NUL.
 icd::Checked<Value> json_value(const std::string& text);
 
 }  // namespace adit::codec

@@ -2,7 +2,12 @@
 
 #include <gtest/gtest.h>
 
+#include <random>
+#include <string>
+#include <vector>
+
 #include "codec/documents.hpp"
+#include "icd/sentence.hpp"
 
 namespace adit::codec::test {
 namespace {
@@ -57,6 +62,41 @@ TEST(Value, SaysItsKindInASentence) {
                                                             {{Value::Array{}}, "an array"},
                                                             {{Value::Object{}}, "an object"}};
   for (const auto& [value, kind] : kinds) EXPECT_EQ(value.kind(), kind);
+}
+
+/// What is read by cJSON alone is no more than what the splitter lets through: documents made of pieces that
+/// go together, mostly, and then changed in one place.
+TEST(Json, IsReadAsStrictlyWhereItIsPlain) {
+  std::mt19937 random(7);
+  const auto below = [&random](std::size_t n) {
+    return std::uniform_int_distribution<std::size_t>(0, n - 1)(random);
+  };
+  const std::vector<std::string> scalars{"0",       "-1",     "12.5",         "-0",       "1e3",
+                                         "01",      "1.",     ".5",           "-",        "1.2.3",
+                                         "true",    "fals",   "null",         "\"a\"",    "\"\"",
+                                         "\"\\n\"", "\"\t\"", "\"\xC3\xA9\"", "\"\xFF\"", "1234567890123456",
+                                         "+1",      "0x1",    "NaN"};
+  const std::string bytes("{}[]\",:-0123456789.eE tfn\\\n\x01\x7F\xEF\xBB\xBF\0", 41);
+  const auto document = [&](auto&& self, int depth) -> std::string {
+    const std::string& scalar = scalars[below(scalars.size())];
+    if (depth == 0 || below(3) == 0) return scalar;
+    const std::string one = self(self, depth - 1), other = self(self, depth - 1);
+    if (below(2) == 0) return icd::sentence("[", one, ", ", other, "]");
+    return icd::sentence("{\"k\": ", one, ",\"\":", other, "}");
+  };
+  int well_formed = 0;
+  for (int i = 0; i < 100000; ++i) {
+    std::string text = document(document, 3);
+    if (below(2) == 0) text.insert(below(text.size() + 1), 1, bytes[below(bytes.size())]);
+    if (below(4) == 0) text.erase(below(text.size()), 1);
+    ASSERT_EQ(parse_json(text).has_value(), is_json(text)) << text;
+    well_formed += is_json(text) ? 1 : 0;
+  }
+  EXPECT_GT(well_formed, 1000);
+  EXPECT_FALSE(parse_json("\xEF\xBB\xBF{}")) << "a byte order mark is no JSON";
+  EXPECT_FALSE(parse_json("{} 1"));
+  EXPECT_TRUE(parse_json(std::string(64, '[') + std::string(64, ']')));
+  EXPECT_FALSE(parse_json(std::string(65, '[') + std::string(65, ']')));
 }
 
 }  // namespace

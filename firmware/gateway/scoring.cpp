@@ -129,6 +129,7 @@ void Scoring::send(const dispatch::Report& report) {
   channel_.send(icd::Uri::ArtifactReports, codec::kJson,
                 icd::ChunkedBytes({reinterpret_cast<const std::uint8_t*>(body.data()), body.size()}),
                 [this](uplink::Outcome outcome) { report_answered(std::move(outcome)); });
+  ledger_.expect(dispatch::Flush::Soon);  // its answer is what comes next
 }
 
 void Scoring::report_answered(uplink::Outcome outcome) {

@@ -35,6 +35,10 @@ class Ledger::Impl {
     return write(steps, run);
   }
 
+  void expect(dispatch::Flush flush) {
+    flush_each(flush == dispatch::Flush::Now);  // where that fails, so will write(), and say so
+  }
+
   Result<void> flush() {
     if (!unflushed_) return {};
     sqlite3_file* const log = database_.log();
@@ -153,6 +157,10 @@ Result<void> Ledger::write(std::span<const dispatch::Report> steps, const dispat
                            dispatch::Flush flush) {
   return impl_->write(steps, run, flush);
 }
+void Ledger::expect(dispatch::Flush flush) {
+  impl_->expect(flush);
+}
+
 Result<void> Ledger::flush() {
   return impl_->flush();
 }

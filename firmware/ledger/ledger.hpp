@@ -43,6 +43,10 @@ class Ledger {
                      dispatch::Flush flush = dispatch::Flush::Now);
   Result<void> write(const dispatch::Run& run) { return write({}, &run); }
 
+  /// How the next write is likely to be flushed: said where nobody waits for it, it need not be prepared
+  /// then.
+  void expect(dispatch::Flush flush);
+
   /// Flushes what was written without.
   Result<void> flush();
 

@@ -97,13 +97,8 @@ class Loop::Impl {
     must(wake_ ? 0 : -errno, "eventfd");
     must(sd_event_new(&event_), "sd_event_new");
     must(sd_event_add_io(event_, nullptr, wake_.get(), EPOLLIN, &Impl::woken, this), "watching posts");
-    must(sd_event_add_defer(event_, &own_posts_, &Impl::posted_by_itself, this), "watching posts");
-    must(sd_event_source_set_enabled(own_posts_, SD_EVENT_OFF), "watching posts");
   }
-  ~Impl() {
-    sd_event_source_unref(own_posts_);
-    sd_event_unref(event_);
-  }
+  ~Impl() { sd_event_unref(event_); }
   Impl(const Impl&) = delete;
   Impl& operator=(const Impl&) = delete;
 
@@ -120,10 +115,10 @@ class Loop::Impl {
       posted_.push_back(std::move(task));
     }
     if (!first) return;
-    // The loop's own thread needs no system call. But a deferred source comes before all sockets, so that a
-    // task that posts another takes its turn among them.
+    // What the loop's own thread posts runs at the end of its turn, and needs no system call. But a task that
+    // posts another takes its turn among the sockets.
     if (std::this_thread::get_id() == thread_ && !running_tasks_) {
-      must(sd_event_source_set_enabled(own_posts_, SD_EVENT_ONESHOT), "post");
+      own_posts_ = true;
     } else {
       ::eventfd_write(wake_.get(), 1);  // cannot fail: the counter is far from its end
     }
@@ -137,19 +132,15 @@ class Loop::Impl {
 
   void turn(std::uint64_t most_usec) {
     thread_ = std::this_thread::get_id();
-    const int result = sd_event_run(event_, most_usec);
+    const int result = sd_event_run(event_, own_posts_ ? 0 : most_usec);
     if (result != -EINTR) must(result, "sd_event_run");
+    if (std::exchange(own_posts_, false)) run_posted();
   }
 
  private:
   static int woken(sd_event_source*, int fd, std::uint32_t, void* userdata) {
     eventfd_t count = 0;
     ::eventfd_read(fd, &count);
-    static_cast<Impl*>(userdata)->run_posted();
-    return 0;
-  }
-
-  static int posted_by_itself(sd_event_source*, void* userdata) {
     static_cast<Impl*>(userdata)->run_posted();
     return 0;
   }
@@ -173,10 +164,10 @@ class Loop::Impl {
       std::chrono::duration<double>(std::chrono::system_clock::now().time_since_epoch()).count();
   FileDescriptor wake_;
   sd_event* event_ = nullptr;
-  sd_event_source* own_posts_ = nullptr;
   std::atomic<std::thread::id> thread_{};  // the loop's own, once it has run
   bool stopping_ = false;
   bool running_tasks_ = false;
+  bool own_posts_ = false;  // its own thread posted, and no eventfd tells of it
   std::mutex mutex_;
   std::vector<std::function<void()>> posted_;
 };

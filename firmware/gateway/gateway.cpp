@@ -1,7 +1,6 @@
 #include "gateway/gateway.hpp"
 
 #include "gateway/report_rows.hpp"
-#include "gateway/version.hpp"
 #include "host/log.hpp"
 #include "settings/written.hpp"
 
@@ -12,7 +11,6 @@ constexpr std::chrono::milliseconds kDrainStep{10};
 constexpr std::chrono::milliseconds kFlush{50};  // in which the answers just given to the team leave
 constexpr std::size_t kMeterSeconds = 5;
 constexpr std::chrono::minutes kKeepSessionsEvery{1};
-constexpr std::size_t kMostReportRows = 200;
 
 }  // namespace
 
@@ -289,83 +287,6 @@ void Gateway::add_to(page::Usage& usage) const {
   for (const auto& server : servers_) usage.connections += server->connections();
   usage.sent_bytes = sent_bytes();
   usage.refused = record_.refused_counts();
-}
-
-double Gateway::sent_mbit() const {
-  if (bytes_sent_.size() < 2) return 0;
-  const auto bytes = static_cast<double>(bytes_sent_.back() - bytes_sent_.front());
-  return bytes * 8 / 1e6 / static_cast<double>(bytes_sent_.size() - 1);
-}
-
-std::vector<page::EndpointRow> Gateway::endpoints() const {
-  const Channel& scoring = scoring_.channel();
-  const Channel& maps = maps_.channel();
-  const Channel& news = news_.channel();
-  const Channel& latest = maps.heard() > news.heard() ? maps : news;
-  const settings::CommandPost& command_post = settings_.command_post;
-  return {{.name = "scoring",
-           .address = address_text(command_post.scoring),
-           .connected = scoring.connected(),
-           .trouble = scoring.trouble(),
-           .last_status = scoring.last_status(),
-           .answer_ms = scoring.answer_ms(),
-           .throttled = scoring.throttled()},
-          {.name = "mapping",
-           .address = address_text(command_post.mapping),
-           .connected = maps.connected() || news.connected(),
-           .trouble = maps.trouble().empty() ? news.trouble() : maps.trouble(),
-           .last_status = latest.last_status(),
-           .answer_ms = latest.answer_ms(),
-           .throttled = maps.throttled() + news.throttled()}};
-}
-
-page::RunView Gateway::view() const {
-  page::RunView view{.now = loop_.stamp_now(),
-                     .version = kVersion,
-                     .run = scoring_.run(),
-                     .run_heard = scoring_.run_heard(),
-                     .run_number = scoring_.reports().run().number,
-                     .run_id = scoring_.reports().run().id,
-                     .endpoints = endpoints(),
-                     .robots = as_forwarded_.robots(),
-                     .reports = latest_rows(scoring_.reports(), kMostReportRows),
-                     .near_metres = settings_.reports.near_metres,
-                     .activities = record_.activities(),
-                     .refusals = record_.refusals(),
-                     .lights = {},
-                     .identify_until = {},
-                     .budget_mbit = settings_.command_post.budget_mbit,
-                     .sent_mbit = sent_mbit(),
-                     .queued_bytes = maps_.queued_bytes(),
-                     .map_version = picture_.mosaic().version(),
-                     .marker_version = as_forwarded_.markers().version(),
-                     .attention = attention()};
-  for (page::ActivityRow& row : view.activities) {
-    if (row.kind == "state") row.waiting = news_.waiting(Kind::State);
-    if (row.kind == "markers") row.waiting = news_.waiting(Kind::Markers);
-    if (row.kind == "grid") row.waiting = maps_.waiting({Kind::Grid, row.robot});
-    if (row.kind == "cloud") row.waiting = maps_.waiting({Kind::Cloud, row.robot});
-  }
-  for (const panel::Light light : panel::kLights) {
-    view.lights.push_back(
-        {.name = std::string(panel::name_of(light)),
-         .pattern = std::string(panel::name_of(lights_.shown()[static_cast<std::size_t>(light)]))});
-  }
-  if (const auto left = lights_.identifying()) {
-    view.identify_until = view.now + std::chrono::duration<double>(*left).count();
-  }
-  return view;
-}
-
-std::string Gateway::status_line() const {
-  std::string line = scoring_.run() ? "score " + std::to_string(scoring_.run()->score) + ", " +
-                                          std::to_string(scoring_.run()->remaining_reports) + " reports left"
-                                    : "no word from the Command Post yet";
-  if (const std::size_t waiting = scoring_.reports().book().waiting().size(); waiting > 0) {
-    line += ", " + std::to_string(waiting) + " reports waiting";
-  }
-  if (const auto sentences = attention(); !sentences.empty()) line += "; " + sentences.front();
-  return line;
 }
 
 }  // namespace adit::gateway

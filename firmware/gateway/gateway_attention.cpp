@@ -1,3 +1,4 @@
+// What the operator must know, in lights and in words.
 #include <algorithm>
 #include <iterator>
 

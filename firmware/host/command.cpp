@@ -37,6 +37,7 @@ bool hear(int fd, Clock::time_point until, std::string& heard) {
 
 std::expected<pid_t, int> start(const std::vector<std::string>& words, int output) {
   std::vector<char*> arguments;
+  arguments.reserve(words.size() + 1);
   for (const std::string& word : words) arguments.push_back(const_cast<char*>(word.c_str()));
   arguments.push_back(nullptr);
   posix_spawn_file_actions_t actions;

@@ -32,7 +32,7 @@ class Change {
   static constexpr std::chrono::seconds kTryAgain{2};
 
   /// `hands` outlives this. `kept`: what was confirmed last.
-  Change(Hands& hands, std::optional<Numbers> kept) : hands_(hands) { status_.kept = std::move(kept); }
+  Change(Hands& hands, const std::optional<Numbers>& kept) : hands_(hands) { status_.kept = kept; }
 
   void set_interfaces(std::string team, std::string command_post) {
     status_.team_interface = std::move(team);

@@ -82,14 +82,18 @@ TEST(LedgerOfVersion1, TakesNewStepsOnceItWasBroughtUp) {
   EXPECT_EQ(ledger.history(5)->size(), 2u);
 }
 
-TEST(LedgerOfVersion1, HasTheSameTablesAfterwardsAsANewOne) {
+void expect_the_tables_of_a_new_one(const char* sql) {
   const Folder old, fresh;
-  by_hand(old, kVersion1);
+  by_hand(old, sql);
   open_or_fail(old);
   open_or_fail(fresh);
   const char* tables = "SELECT sql FROM sqlite_schema WHERE name NOT LIKE 'sqlite_%' ORDER BY name";
   EXPECT_EQ(by_hand(old, tables), by_hand(fresh, tables));
   EXPECT_EQ(by_hand(fresh, tables).size(), 2u);
+}
+
+TEST(LedgerOfVersion1, HasTheSameTablesAfterwardsAsANewOne) {
+  expect_the_tables_of_a_new_one(kVersion1);
 }
 
 TEST(LedgerOfVersion1, StaysAsItIsWhereThereIsNoRoomToBringItUp) {
@@ -175,12 +179,7 @@ TEST(LedgerOfVersion2, IsBroughtUpToThisOneWithAllThatIsInIt) {
 }
 
 TEST(LedgerOfVersion2, HasTheSameTablesAfterwardsAsANewOne) {
-  const Folder old, fresh;
-  by_hand(old, kVersion2);
-  open_or_fail(old);
-  open_or_fail(fresh);
-  const char* tables = "SELECT sql FROM sqlite_schema WHERE name NOT LIKE 'sqlite_%' ORDER BY name";
-  EXPECT_EQ(by_hand(old, tables), by_hand(fresh, tables));
+  expect_the_tables_of_a_new_one(kVersion2);
 }
 
 TEST(LedgerOfALaterVersion, IsRefusedWithASentenceAndStaysAsItIs) {

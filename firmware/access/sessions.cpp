@@ -1,6 +1,7 @@
 #include "access/sessions.hpp"
 
 #include <algorithm>
+#include <utility>
 
 namespace adit::access {
 namespace {
@@ -36,7 +37,11 @@ void Sessions::restore(std::vector<Session> sessions, std::uint64_t last, Instan
 const Session& Sessions::begin(const Secret& id, const Secret& csrf, Role role, const Caller& caller,
                                Instant now) {
   forget_ended(now);
-  if (sessions_.size() >= kMost) sessions_.erase(std::ranges::min_element(sessions_, {}, &Session::seen));
+  if (sessions_.size() >= kMost) {
+    // Viewers first, so that none of them can make an operator go.
+    const auto by = [](const Session& each) { return std::pair(each.role == Role::Operator, each.seen); };
+    sessions_.erase(std::ranges::min_element(sessions_, {}, by));
+  }
   sessions_.push_back({.number = ++last_,
                        .role = role,
                        .id = as_token(id),

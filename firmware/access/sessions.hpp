@@ -38,7 +38,8 @@ struct Caller {
 class Sessions {
  public:
   static constexpr std::chrono::hours kIdle{12}, kLongest{7 * 24};
-  static constexpr std::size_t kMost = 64;           // at one more, the one that was idle for longest ends
+  static constexpr std::size_t kMost =
+      64;  // at one more, the viewer that was idle for longest ends, or else the operator
   static constexpr std::size_t kLongestAgent = 160;  // the name of the browser comes after 80 to 110
 
   /// `changed`, if given, is called whenever somebody logs in or a session is ended.

@@ -1,15 +1,24 @@
 #include "gateway/as_forwarded.hpp"
 
+#include <algorithm>
+
 namespace adit::gateway {
 
 void AsForwarded::forwarded(const icd::StateUpdate& update, page::Time now) {
   for (const icd::NamedPose& named : update.poses) {
     const std::string& name = named.name.text();
-    if (robots_.size() >= kMostRobots && !robots_.contains(name)) continue;
+    if (robots_.size() >= kMostRobots && !robots_.contains(name)) forget_the_oldest();
     const double heading = page::heading_of(named.pose.orientation);
     robots_[name] = {.name = name, .position = named.pose.position, .heading = heading, .at = now};
     tracks_.forwarded(name, {.at = now, .position = named.pose.position, .heading = heading});
   }
+}
+
+/// The one that was silent for longest: a robot that goes on posting keeps its place.
+void AsForwarded::forget_the_oldest() {
+  const auto oldest = std::ranges::min_element(robots_, {}, [](const auto& item) { return item.second.at; });
+  tracks_.forget(oldest->first);
+  robots_.erase(oldest);
 }
 
 void AsForwarded::begin_run(page::Time now) {

@@ -15,7 +15,7 @@ namespace adit::gateway {
 /// Robots and markers as the Command Post knows them: what it took, and nothing that waits.
 class AsForwarded {
  public:
-  static constexpr std::size_t kMostRobots = 100;
+  static constexpr std::size_t kMostRobots = 100;  // those heard of last
 
   void forwarded(const icd::StateUpdate& update, page::Time now);
   void forwarded(const icd::MarkersUpdate& update, page::Time now) { markers_.forwarded(update, now); }
@@ -28,6 +28,8 @@ class AsForwarded {
   const Tracks& tracks() const { return tracks_; }
 
  private:
+  void forget_the_oldest();
+
   std::map<std::string, page::RobotRow> robots_;
   MarkerScene markers_;
   Tracks tracks_;

@@ -203,7 +203,10 @@ void Gateway::status(const intake::Sender&, std::shared_ptr<intake::Responder> r
   scoring_.status(std::move(responder));
 }
 
-void Gateway::refused(icd::Uri uri, const intake::Sender& sender, const icd::Refusal& refusal) {
+/// The sentence quotes what was sent, which may be a token that was put into a wrong field.
+void Gateway::refused(icd::Uri uri, const intake::Sender& sender, const icd::Refusal& told) {
+  icd::Refusal refusal = told;
+  for (const icd::BearerToken& token : tokens()) token.strike_from(refusal.sentence);
   host::log(host::Level::Info, "refused",
             {{"uri", std::string(icd::path_of(uri))},
              {"sender", sender.address},

@@ -81,7 +81,7 @@ class Gateway final : public intake::Desk, public page::Source, public page::Ope
   void take(const icd::ArtifactReport& report, const intake::Sender& sender,
             std::shared_ptr<intake::Responder> responder) override;
   void status(const intake::Sender& sender, std::shared_ptr<intake::Responder> responder) override;
-  void refused(icd::Uri uri, const intake::Sender& sender, const icd::Refusal& refusal) override;
+  void refused(icd::Uri uri, const intake::Sender& sender, const icd::Refusal& told) override;
 
   page::RunView view() const override;
   std::vector<page::ReportRow> reports() const override;

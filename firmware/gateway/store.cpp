@@ -19,6 +19,14 @@ bool exists(const std::string& path) {
   return fs::exists(path, unknown) || unknown;
 }
 
+/// So that the box still serves a page on which it can be set right.
+void set_aside(const std::string& path, const std::string& why) {
+  std::error_code error;
+  fs::remove_all(path + ".damaged", error);
+  fs::rename(path, path + ".damaged", error);
+  host::log(host::Level::Error, "what was saved is set aside", {{"why", why}});
+}
+
 std::expected<settings::Settings, std::string> read_settings(const std::string& file) {
   const auto text = host::read_file(file);
   if (!text) return std::unexpected(text.error());
@@ -50,13 +58,19 @@ std::expected<Store::Loaded, std::string> Store::load() const {
   if (!settings && exists(file())) {
     loaded.trouble =
         "the saved settings are set aside, those that the box was given are in use: " + settings.error();
-    std::error_code error;
-    fs::rename(file(), file() + ".damaged", error);
+    set_aside(file(), loaded.trouble);
     settings = read_settings(given_settings_);
   }
   if (!settings) return std::unexpected(settings.error());
   loaded.settings = std::move(*settings);
-  auto secrets = host::read_secrets(given_secrets_, secrets_folder(), token_names(loaded.settings));
+  const std::vector<std::string> names = token_names(loaded.settings);
+  auto secrets = host::read_secrets(given_secrets_, secrets_folder(), names);
+  if (!secrets && secrets.error().starts_with(secrets_folder())) {
+    loaded.trouble =
+        "the saved tokens are set aside, those that the box was given are in use: " + secrets.error();
+    set_aside(secrets_folder(), loaded.trouble);
+    secrets = host::read_secrets(given_secrets_, secrets_folder(), names);
+  }
   if (!secrets) return std::unexpected(secrets.error());
   loaded.secrets = std::move(*secrets);
   return loaded;

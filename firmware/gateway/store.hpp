@@ -27,9 +27,9 @@ class Store {
     settings::Settings settings;
     bool saved = false;
     host::Secrets secrets;
-    std::string trouble;  // why the saved settings do not count, though there are any
+    std::string trouble;  // why saved settings or tokens do not count, though there are any
   };
-  /// What counts. An error: neither can be used. Damaged saved settings are set aside.
+  /// What counts. An error: neither can be used. Damaged saved settings or tokens are set aside.
   std::expected<Loaded, std::string> load() const;
 
   std::expected<void, std::string> save(const settings::Settings& settings) const;

@@ -21,6 +21,7 @@ class Tracks {
   /// The caller bounds the number of robots.
   void forwarded(const std::string& robot, const page::TrackPose& pose);
   void wipe() { tracks_.clear(); }
+  void forget(const std::string& robot) { tracks_.erase(robot); }
 
   /// By name, the poses later than `since`; robots without any are left out.
   std::vector<page::Track> since(page::Time since) const;

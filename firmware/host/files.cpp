@@ -47,10 +47,13 @@ std::string trouble(const std::string& path, int error) {
 }
 
 std::expected<File, int> slurp(const std::string& path) {
-  const FileDescriptor fd(open(path.c_str(), O_RDONLY | O_CLOEXEC));
+  // Not to wait for whoever might write into a pipe of that name.
+  const FileDescriptor fd(open(path.c_str(), O_RDONLY | O_NONBLOCK | O_CLOEXEC));
   if (!fd) return std::unexpected(errno);
   File file{};
   if (fstat(fd.get(), &file.status) != 0) return std::unexpected(errno);
+  if (S_ISDIR(file.status.st_mode)) return std::unexpected(EISDIR);
+  if (S_ISFIFO(file.status.st_mode)) return std::unexpected(EINVAL);
   char buffer[16384];
   while (true) {
     const ssize_t count = read(fd.get(), buffer, sizeof buffer);

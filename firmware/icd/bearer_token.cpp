@@ -24,6 +24,15 @@ bool BearerToken::matches(std::string_view presented) const {
   return difference == 0;
 }
 
+void BearerToken::strike_from(std::string& text) const {
+  constexpr std::string_view kStruck = "[token]";
+  constexpr std::size_t kShortest = 4;
+  if (text_.size() < kShortest) return;
+  for (std::size_t at = 0; (at = text.find(text_, at)) != std::string::npos; at += kStruck.size()) {
+    text.replace(at, text_.size(), kStruck);
+  }
+}
+
 std::string_view token_in(std::string_view authorization) {
   constexpr std::string_view kBlanks = " \t";
   const auto start = authorization.find_first_not_of(kBlanks);

@@ -19,6 +19,11 @@ class BearerToken {
   /// Takes the same time wherever the two differ.
   bool matches(std::string_view presented) const;
 
+  /// Replaces it by "[token]" wherever it stands in a text that somebody else wrote and others will read:
+  /// what a client put into a wrong field, or a server echoed. A token of less than 4 characters is no
+  /// secret, and stays.
+  void strike_from(std::string& text) const;
+
  private:
   explicit BearerToken(std::string text) : text_(std::move(text)) {}
   std::string text_;

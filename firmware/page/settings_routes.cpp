@@ -22,6 +22,7 @@ constexpr std::string_view kSettings = "/adit/settings", kCheck = "/adit/setting
                            kExport = "/adit/settings/export", kTokens = "/adit/tokens",
                            kCourse = "/adit/course";
 constexpr std::size_t kMostBody = 262144;
+constexpr std::size_t kShortestTeamToken = 8;
 
 intake::Answer refused(const icd::Refusal& why) {
   return refusal(why.status, why.sentence);
@@ -58,6 +59,18 @@ icd::Checked<Posted> read_posted(const std::string& body, bool with_base) {
   return reading.outcome(std::move(posted));
 }
 
+/// What may not be saved here, though a file may say it: a port that is another one after each change.
+std::vector<settings::Error> unfit_to_save(const settings::Settings& now, const settings::Settings& next) {
+  std::vector<settings::Error> errors;
+  for (std::size_t i = 0; i < next.team.listen.size(); ++i) {
+    const settings::Address& listen = next.team.listen[i];
+    if (listen.port != 0 || std::ranges::find(now.team.listen, listen) != now.team.listen.end()) continue;
+    errors.push_back({icd::sentence("team.listen[", i, "].port"),
+                      "expected 1 to 65535, got 0: nobody could tell where this page would be"});
+  }
+  return errors;
+}
+
 struct PostedToken {
   std::string name;
   std::optional<icd::BearerToken> token;
@@ -70,6 +83,10 @@ icd::Checked<PostedToken> read_token(const std::string& body) {
     if (token.is<std::nullptr_t>()) return posted;
     posted.token = icd::BearerToken::parse(token.text());
     if (!posted.token) token.refuse("expected null or 1 to 256 visible ASCII characters");
+    // The others are the Command Post's to choose.
+    if (posted.token && posted.name == "team" && posted.token->reveal().size() < kShortestTeamToken) {
+      token.refuse("expected at least ", kShortestTeamToken, " characters: it is as good as the password");
+    }
     return posted;
   });
 }
@@ -125,6 +142,8 @@ intake::Answer SettingsRoutes::check(const std::string& body) {
   if (!posted) return refused(posted.error());
   const auto next = settings::parse(posted->settings);
   if (!next) return fresh("application/json", write_check(next.error(), {}, {}));
+  const auto unfit = unfit_to_save(setup_.settings(), *next);
+  if (!unfit.empty()) return fresh("application/json", write_check(unfit, {}, {}));
   return fresh("application/json",
                write_check({}, settings::changes(setup_.settings(), *next), setup_.warnings(*next)));
 }
@@ -138,6 +157,8 @@ intake::Answer SettingsRoutes::save(const std::string& body) {
   }
   const auto next = settings::parse(posted->settings);
   if (!next) return refusal(icd::Status::UnprocessableEntity, settings::sentence_of(next.error()));
+  const auto unfit = unfit_to_save(setup_.settings(), *next);
+  if (!unfit.empty()) return refusal(icd::Status::UnprocessableEntity, settings::sentence_of(unfit));
   return apply(*next);
 }
 

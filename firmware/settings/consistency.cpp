@@ -1,11 +1,14 @@
 #include "settings/consistency.hpp"
 
+#include <arpa/inet.h>
+
 #include <algorithm>
 #include <array>
 #include <iterator>
 #include <utility>
 
 #include "icd/sentence.hpp"
+#include "settings/subnet.hpp"
 
 namespace adit::settings {
 namespace {
@@ -14,9 +17,59 @@ std::string item(std::size_t index) {
   return "team.listen[" + std::to_string(index) + "]";
 }
 
-bool is_endpoint(const Address& address, const Settings& settings) {
-  const auto has = [&](const auto& post) { return post.scoring == address || post.mapping == address; };
+/// Of an IPv4 or IPv6 address.
+struct Host {
+  bool any = false, loopback = false;
+  bool several = false;  // multicast or broadcast
+  bool mapped = false;   // IPv4 within IPv6
+};
+
+Host host_of(const std::string& text) {
+  if (const auto ipv4 = ipv4_of(text)) {
+    return {.any = *ipv4 == 0, .loopback = *ipv4 >> 24 == 127, .several = *ipv4 >> 28 >= 14};
+  }
+  in6_addr ipv6{};
+  if (inet_pton(AF_INET6, text.c_str(), &ipv6) != 1) return {};
+  return {.any = IN6_IS_ADDR_UNSPECIFIED(&ipv6) != 0,
+          .loopback = IN6_IS_ADDR_LOOPBACK(&ipv6) != 0,
+          .several = IN6_IS_ADDR_MULTICAST(&ipv6) != 0,
+          .mapped = IN6_IS_ADDR_V4MAPPED(&ipv6) != 0};
+}
+
+/// Whether what is sent to `endpoint` comes in at `listen`, as far as the addresses tell.
+bool comes_in_at(const Address& listen, const Address& endpoint) {
+  if (listen == endpoint) return true;
+  return listen.port == endpoint.port && host_of(listen.address).any && host_of(endpoint.address).loopback;
+}
+
+bool is_endpoint(const Address& listen, const Settings& settings) {
+  const auto has = [&](const auto& post) {
+    return comes_in_at(listen, post.scoring) || comes_in_at(listen, post.mapping);
+  };
   return has(settings.command_post) || std::ranges::any_of(settings.courses, has);
+}
+
+void check_endpoint(const std::string& path, const Address& address, std::vector<Error>& errors) {
+  const Host host = host_of(address.address);
+  if (host.any || host.several) {
+    errors.push_back({path, icd::sentence(address.address, " is no address of one machine")});
+  } else if (host.mapped) {
+    errors.push_back({path, icd::sentence(address.address, " is an IPv4 address: write it as one")});
+  }
+}
+
+void check_endpoints(const Settings& settings, std::vector<Error>& errors) {
+  const auto is_own = [&settings](const Address& endpoint) {  // check_listen() tells of these
+    return std::ranges::find(settings.team.listen, endpoint) != settings.team.listen.end();
+  };
+  const auto check = [&](const std::string& of, const auto& post) {
+    if (!is_own(post.scoring)) check_endpoint(of + ".scoring.address", post.scoring, errors);
+    if (!is_own(post.mapping)) check_endpoint(of + ".mapping.address", post.mapping, errors);
+  };
+  check("command_post", settings.command_post);
+  for (std::size_t i = 0; i < settings.courses.size(); ++i) {
+    check(icd::sentence("courses[", i, "]"), settings.courses[i]);
+  }
 }
 
 void check_listen(const Settings& settings, std::vector<Error>& errors) {
@@ -104,6 +157,7 @@ void check_courses(const Settings& settings, std::vector<Error>& errors) {
 
 std::vector<Error> contradictions(const Settings& settings) {
   std::vector<Error> errors;
+  check_endpoints(settings, errors);
   check_listen(settings, errors);
   check_connections(settings.team, errors);
   check_panel(settings.panel, errors);

@@ -196,6 +196,7 @@ class Connection::Impl : public std::enable_shared_from_this<Impl> {
     } else {
       drop();
     }
+    token_.strike_from(answer.body);  // a server that echoes what it was asked
     deliver(std::move(answer));
   }
 

@@ -121,5 +121,12 @@ TEST_F(SessionsTest, NeverShareAnIdOrANumberAndNeverOutliveTheirTime) {
   EXPECT_GT(known.size(), 900u);
 }
 
+TEST_F(SessionsTest, OfViewersMakeNoOperatorGo) {
+  const Session mine = begin(Role::Operator, kStart);
+  for (std::size_t i = 0; i < 2 * Sessions::kMost; ++i) begin(Role::Viewer, kStart + 1h);
+  EXPECT_TRUE(lives(mine, kStart + 2h));
+  EXPECT_EQ(sessions.all(kStart + 2h).size(), Sessions::kMost);
+}
+
 }  // namespace
 }  // namespace adit::access

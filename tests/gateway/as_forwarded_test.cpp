@@ -2,6 +2,7 @@
 
 #include <gmock/gmock.h>
 
+#include <algorithm>
 #include <cmath>
 
 #include "icd/sentence.hpp"
@@ -45,6 +46,19 @@ TEST(AsForwarded, HasRoomForSoManyRobots) {
   for (int i = 0; i < 150; ++i) all.forwarded(state(icd::sentence("r", i), i), 100);
   EXPECT_THAT(all.robots(), SizeIs(AsForwarded::kMostRobots));
   EXPECT_THAT(all.tracks().since(0), SizeIs(AsForwarded::kMostRobots));
+}
+
+TEST(AsForwarded, ForgetsTheRobotThatWasSilentForLongestForOneMore) {
+  AsForwarded all;
+  all.forwarded(state("ours", 1), 99);
+  for (int i = 0; i < 300; ++i) {
+    all.forwarded(state(icd::sentence("r", i), i), 100 + i);
+    if (i % 50 == 0) all.forwarded(state("ours", i), 100 + i);
+  }
+  const auto robots = all.robots();
+  EXPECT_THAT(robots, SizeIs(AsForwarded::kMostRobots));
+  EXPECT_EQ(std::ranges::count(robots, "ours", &page::RobotRow::name), 1);
+  EXPECT_EQ(std::ranges::count(robots, "r0", &page::RobotRow::name), 0);
 }
 
 }  // namespace

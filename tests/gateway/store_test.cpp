@@ -13,6 +13,7 @@ namespace {
 
 using testing::ElementsAre;
 using testing::HasSubstr;
+using testing::Not;
 
 constexpr const char* kCourse =
     R"(, "courses": [{"name": "A", "scoring": {"address": "10.100.2.200", "port": 8000},)"
@@ -112,6 +113,16 @@ TEST_F(StoreTest, RemovesTheTokensOfCoursesThatAreNoMoreOnceThatIsSettled) {
   store_.settle(with_connections(30));
   EXPECT_FALSE(kept("secrets/course.B.mapping.token"));
   EXPECT_TRUE(kept("secrets/course.A.mapping.token") && kept("secrets/team.token"));
+}
+
+TEST_F(StoreTest, SetsSavedTokensAsideThatCannotBeRead) {
+  (void)store_.save_token("scoring", icd::BearerToken::parse("saved-1"));
+  std::filesystem::create_directory(state_ / "secrets/mapping.token");
+  const auto loaded = store_.load();
+  ASSERT_TRUE(loaded.has_value()) << loaded.error();
+  EXPECT_THAT(loaded->trouble, HasSubstr("the saved tokens are set aside"));
+  EXPECT_THAT(loaded->trouble, Not(HasSubstr("saved-1")));
+  EXPECT_TRUE(kept("secrets.damaged/scoring.token"));
 }
 
 TEST_F(StoreTest, SaysThatItCannotBeWritten) {

@@ -1,5 +1,6 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
+#include <sys/stat.h>
 
 #include "host/folder.hpp"
 #include "host/service.hpp"
@@ -19,6 +20,12 @@ TEST(ReadFile, NamesTheFileAndTheReason) {
   const Folder folder;
   EXPECT_EQ(read_file(folder / "none").error(), (folder / "none") + ": No such file or directory");
   EXPECT_EQ(read_file(folder.path()).error(), folder.path() + ": Is a directory");
+}
+
+TEST(ReadFile, WaitsForNobodyWhoMightWriteIntoAPipe) {
+  const Folder folder;
+  ASSERT_EQ(mkfifo((folder / "pipe").c_str(), 0600), 0);
+  EXPECT_EQ(read_file(folder / "pipe").error(), (folder / "pipe") + ": Invalid argument");
 }
 
 TEST(ReadFile, TakesAMebibyteAndNoByteMore) {

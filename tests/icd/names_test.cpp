@@ -36,6 +36,14 @@ TEST(BearerToken, IsNothingThatAHeaderCannotHold) {
   EXPECT_FALSE(BearerToken::parse(std::string(257, 'a')).has_value());
 }
 
+TEST(BearerToken, IsStruckFromWhatOthersWrote) {
+  std::string text = "got \"team-7\", team-7team-7 and Team-7";
+  BearerToken::parse("team-7")->strike_from(text);
+  EXPECT_EQ(text, "got \"[token]\", [token][token] and Team-7");
+  BearerToken::parse("tok")->strike_from(text);
+  EXPECT_EQ(text, "got \"[token]\", [token][token] and Team-7") << "too short to be a secret";
+}
+
 TEST(BearerToken, MatchesItselfAlone) {
   const auto token = BearerToken::parse("abcabc");
   ASSERT_TRUE(token.has_value());

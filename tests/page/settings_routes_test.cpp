@@ -176,6 +176,17 @@ TEST_F(SettingsRoutesTest, SaveWhatIsGoodAndSayWhatChanges) {
   EXPECT_EQ(setup.saves, 1) << "the same settings need not be applied again";
 }
 
+TEST_F(SettingsRoutesTest, SaveNoPortThatNobodyWouldFindAgain) {
+  json said = shown();
+  said["settings"]["team"]["listen"].push_back({{"address", "10.0.0.1"}, {"port", 0}});
+  const auto checked = post("/adit/settings/check", {{"settings", said["settings"]}});
+  EXPECT_THAT(checked.body, HasSubstr("].port"));
+  EXPECT_THAT(checked.body, HasSubstr("expected 1 to 65535, got 0"));
+  const auto saved = post("/adit/settings", {{"settings", said["settings"]}, {"base", said["tag"]}});
+  EXPECT_EQ(saved.status, Status::UnprocessableEntity);
+  EXPECT_EQ(setup.saves, 0);
+}
+
 TEST_F(SettingsRoutesTest, RefuseWhatIsNotGoodWithEveryErrorAndSaveNothing) {
   const json said = shown();
   json settings = said["settings"];
@@ -210,6 +221,7 @@ TEST_F(SettingsRoutesTest, RefuseBodiesThatAreNotWhatIsAskedForAndNameTheField) 
       {"/adit/tokens", {{"name", "scoring"}, {"token", ""}}, "token: expected null or 1 to 256 visible"},
       {"/adit/tokens", {{"name", "scoring"}, {"token", "two words"}}, "token: expected null or 1 to 256"},
       {"/adit/tokens", {{"name", "scoring"}, {"token", std::string(257, 'x')}}, "token: expected null or"},
+      {"/adit/tokens", {{"name", "team"}, {"token", "1234567"}}, "token: expected at least 8 characters"},
       {"/adit/tokens",
        {{"name", "../x"}, {"token", "x"}},
        "name: expected one of scoring, course.A.mapping, got"},

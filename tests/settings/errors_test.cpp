@@ -134,7 +134,19 @@ const Case kNames[] = {
     {sample(
          "", "",
          R"(, "courses": [{"name": "A", "scoring": {"address": "0.0.0.0", "port": 8000}, "mapping": {"address": "::2", "port": 2}}])"),
-     "team.listen[0]: the same as an endpoint of the Command Post; Adit would post to itself"}};
+     "team.listen[0]: the same as an endpoint of the Command Post; Adit would post to itself"},
+    {sample(
+         "", "",
+         R"(, "courses": [{"name": "A", "scoring": {"address": "127.0.0.1", "port": 8000}, "mapping": {"address": "::2", "port": 2}}])"),
+     "team.listen[0]: the same as an endpoint of the Command Post; Adit would post to itself"},
+    {sample(
+         "", "",
+         R"(, "courses": [{"name": "A", "scoring": {"address": "224.0.0.1", "port": 1}, "mapping": {"address": "::2", "port": 2}}])"),
+     "courses[0].scoring.address: 224.0.0.1 is no address of one machine"},
+    {sample(
+         "", "",
+         R"(, "courses": [{"name": "A", "scoring": {"address": "::1", "port": 1}, "mapping": {"address": "::ffff:10.0.0.1", "port": 2}}])"),
+     "courses[0].mapping.address: ::ffff:10.0.0.1 is an IPv4 address: write it as one"}};
 
 void expect(std::span<const Case> cases) {
   for (const Case& row : cases) EXPECT_THAT(errors_of(row.json), ElementsAre(row.sentence));

@@ -76,7 +76,7 @@ TEST(Json, IsReadAsStrictlyWhereItIsPlain) {
                                          "true",    "fals",   "null",         "\"a\"",    "\"\"",
                                          "\"\\n\"", "\"\t\"", "\"\xC3\xA9\"", "\"\xFF\"", "1234567890123456",
                                          "+1",      "0x1",    "NaN"};
-  const std::string bytes("{}[]\",:-0123456789.eE tfn\\\n\x01\x7F\xEF\xBB\xBF\0", 41);
+  const std::string bytes = std::string("{}[]\",:-0123456789.eE tfn\\\n\x01\x7F\xEF\xBB\xBF") + '\0';
   const auto document = [&](auto&& self, int depth) -> std::string {
     const std::string& scalar = scalars[below(scalars.size())];
     if (depth == 0 || below(3) == 0) return scalar;

@@ -12,14 +12,34 @@ namespace {
 
 const std::regex kHelp(R"(# HELP ([a-zA-Z_:][a-zA-Z0-9_:]*) ((?:[^\\]|\\\\|\\n)+))");
 const std::regex kType(R"(# TYPE ([a-zA-Z_:][a-zA-Z0-9_:]*) (counter|gauge))");
-const std::regex kSample(
-    R"re(([a-zA-Z_:][a-zA-Z0-9_:]*)(\{(?:[a-zA-Z_][a-zA-Z0-9_]*="(?:[^"\\]|\\\\|\\"|\\n)*",?)+\})? ([^ ]+))re");
+/// Of a line that emptied() has been through.
+const std::regex kSample(R"re(([a-zA-Z_:][a-zA-Z0-9_:]*)(\{(?:[a-zA-Z_][a-zA-Z0-9_]*="",?)+\})? ([^ ]+))re");
 const std::regex kValue(R"(NaN|[+-]Inf|-?\d+(\.\d+)?(e[+-]?\d+)?)");
+
+/// The line without what is in its labels' values, which may be long; "" where that is not escaped as it
+/// must.
+std::string emptied(const std::string& line) {
+  std::string text;
+  bool inside = false;
+  for (std::size_t at = 0; at < line.size(); ++at) {
+    if (inside && line[at] == '\\') {
+      if (++at == line.size() || std::string_view("\\\"n").find(line[at]) == std::string_view::npos)
+        return "";
+    } else if (line[at] == '"') {
+      inside = !inside;
+      text += '"';
+    } else if (!inside) {
+      text += line[at];
+    }
+  }
+  return inside ? "" : text;
+}
 
 class Reader {
  public:
   void read(const std::string& line) {
     std::smatch parts;
+    const std::string form = emptied(line);
     if (std::regex_match(line, parts, kHelp)) {
       if (!helped_.insert(parts[1]).second) fault(line, "a second HELP");
       metric_ = parts[1];
@@ -28,7 +48,7 @@ class Reader {
       if (!types_.emplace(parts[1], parts[2]).second) fault(line, "a second TYPE");
       if ((parts[2] == "counter") != metric_.ends_with("_total"))
         fault(line, "only a counter ends in _total");
-    } else if (std::regex_match(line, parts, kSample)) {
+    } else if (std::regex_match(form, parts, kSample)) {
       sample(line, parts);
     } else {
       fault(line, "is nothing that the format knows");
@@ -42,7 +62,7 @@ class Reader {
     if (name != metric_ || !types_.contains(name)) fault(line, "stands apart from its HELP and TYPE");
     if (!std::regex_match(value, kValue)) fault(line, "is no number");
     if (types_[name] == "counter" && std::strtod(value.c_str(), nullptr) < 0) fault(line, "counts backward");
-    if (!samples_.insert(name + labels).second) fault(line, "is there twice");
+    if (!samples_.insert(line.substr(0, line.rfind(' '))).second) fault(line, "is there twice");
     if (labels.ends_with(",}")) fault(line, "ends its labels with a comma");
   }
   void fault(const std::string& line, const char* what) { faults.push_back("'" + line + "' " + what); }

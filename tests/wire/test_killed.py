@@ -5,6 +5,7 @@ twice."""
 import collections
 import dataclasses
 import random
+import re
 import signal
 import threading
 import time
@@ -161,7 +162,8 @@ class Killed(unittest.TestCase):
         self.assertEqual(recorded.total(), len(self.record()), "nothing was recorded since")
 
     def show(self, all_posted, recorded, waiting):
-        steps = self.stage.box.on_disk("SELECT note FROM step")
+        histories = "".join(self.stage.box.on_disk("SELECT history FROM report"))
+        steps = re.findall(r"^\S+ \d+:[a-z ]+ \d+:(.*)$", histories, re.MULTILINE)
         found = sum(note.startswith("found recorded") for note in steps)
         again = sum(note.startswith("not recorded") for note in steps)
         cut_off = steps.count("the gateway stopped while it was being sent")

@@ -46,6 +46,14 @@ TEST_F(AnsweredRequests, AreThoseRefusedEarlyByAPeerThatStaysAndReadsNoMore) {
   EXPECT_EQ(answered(ask(peer.endpoint(), post(megabytes(20)))).status, 413);
 }
 
+TEST_F(AnsweredRequests, DoNotTellTheTokenToWhoeverReadsTheAnswerOfAnEchoingServer) {
+  const ListeningPeer peer([](Wire& wire) {
+    wire.read_request();
+    wire.write(answer("401 Unauthorized", std::string("\"Authorization: Bearer ") + kToken + "\""));
+  });
+  EXPECT_EQ(answered(ask(peer.endpoint(), post("{}"))).body, "\"Authorization: Bearer [token]\"");
+}
+
 TEST_F(AnsweredRequests, AreThoseWhosePeerReadsSlowlyButReads) {
   const ListeningPeer peer([](Wire& wire) {
     wire.read_slowly(milliseconds(25));

@@ -7,11 +7,6 @@
 namespace adit::gateway {
 namespace {
 
-std::optional<settings::Subnet> address_of(const std::string& interface) {
-  const auto own = host::own_address(interface);
-  return own ? std::optional(settings::Subnet{own->address, own->prefix}) : std::nullopt;
-}
-
 std::unexpected<icd::Refusal> conflict(std::string sentence) {
   return std::unexpected(icd::Refusal{icd::Status::Conflict, std::move(sentence)});
 }
@@ -62,7 +57,8 @@ std::optional<network::Pending> NetworkChange::pending() const {
 }
 
 std::optional<network::Numbers> NetworkChange::present() const {
-  const auto team = address_of(settings_.team.interface), post = address_of(settings_.command_post.interface);
+  const auto team = host::own_address(settings_.team.interface),
+             post = host::own_address(settings_.command_post.interface);
   if (!team || !post) return std::nullopt;
   network::Numbers numbers{*team, *post, std::nullopt};
   if (status_ && status_->kept && status_->kept->command_post == *post)
@@ -77,8 +73,8 @@ page::NetworkView NetworkChange::network() const {
   view.managed = view.why.empty();
   view.team_interface = settings_.team.interface;
   view.command_post_interface = settings_.command_post.interface;
-  view.team = address_of(view.team_interface);
-  view.command_post = address_of(view.command_post_interface);
+  view.team = host::own_address(view.team_interface);
+  view.command_post = host::own_address(view.command_post_interface);
   if (const auto numbers = present()) view.gateway = numbers->gateway;
   if (const auto waits = pending()) {
     const double left = std::chrono::duration<double>(waits->until - loop_.now()).count();

@@ -129,8 +129,7 @@ void SelfTest::ask_address() {
     if (asked) return wait_for_probe();
     why = asked.error();
   }
-  const auto host = own ? std::optional(settings::Subnet{own->address, own->prefix}) : std::nullopt;
-  finish(steps::address(interface, host, std::nullopt, why));
+  finish(steps::address(interface, own, std::nullopt, why));
 }
 
 void SelfTest::wait_for_probe() {
@@ -140,9 +139,8 @@ void SelfTest::wait_for_probe() {
     when_due_ = [this] { wait_for_probe(); };
     return timer_.call_at(loop_.now() + kProbePoll);
   }
-  const auto own = host::own_address(settings_.command_post.interface);
-  const auto host = own ? std::optional(settings::Subnet{own->address, own->prefix}) : std::nullopt;
-  finish(steps::address(settings_.command_post.interface, host, probed, "adit-network did not answer"));
+  const std::string& interface = settings_.command_post.interface;
+  finish(steps::address(interface, host::own_address(interface), probed, "adit-network did not answer"));
 }
 
 uplink::Endpoint SelfTest::there() const {

@@ -22,13 +22,13 @@ std::uint32_t ipv4_in(const sockaddr& address) {
 
 }  // namespace
 
-std::optional<OwnAddress> own_address(const std::string& interface) {
+std::optional<settings::Subnet> own_address(const std::string& interface) {
   if (interface.empty() || interface.size() >= IFNAMSIZ) return std::nullopt;
   const loop::FileDescriptor fd(socket(AF_INET, SOCK_DGRAM | SOCK_CLOEXEC, 0));
   ifreq asked{};
   std::memcpy(asked.ifr_name, interface.c_str(), interface.size());
   if (!fd || ioctl(fd.get(), SIOCGIFADDR, &asked) != 0) return std::nullopt;
-  OwnAddress own{.address = ipv4_in(asked.ifr_addr), .prefix = 32};
+  settings::Subnet own{.address = ipv4_in(asked.ifr_addr), .prefix = 32};
   if (ioctl(fd.get(), SIOCGIFNETMASK, &asked) == 0) {
     own.prefix = static_cast<std::uint8_t>(std::popcount(ipv4_in(asked.ifr_netmask)));
   }

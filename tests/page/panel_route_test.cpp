@@ -4,7 +4,7 @@
 
 #include <nlohmann/json.hpp>
 
-#include "page/doubles.hpp"
+#include "page/on_page.hpp"
 
 namespace adit::page {
 namespace {
@@ -13,25 +13,12 @@ using testing::HasSubstr;
 
 const std::vector<intake::Header> kGood = {kByToken, {"Content-Type", "application/json"}};
 
-class PanelRouteTest : public testing::Test {
+class PanelRouteTest : public OnPage {
  protected:
   intake::Answer post(const std::string& body, std::vector<intake::Header> headers = kGood,
                       const std::string& method = "POST") {
-    auto responder = std::make_shared<FakeResponder>();
-    const auto exchange =
-        page.open(FakeHead{method, "/adit/identify", std::move(headers), body.size()}, responder, {});
-    if (exchange) {
-      exchange->on_body({reinterpret_cast<const std::uint8_t*>(body.data()), body.size()});
-      exchange->on_end();
-    }
-    return responder->answered.value_or(intake::Answer{});
+    return request(method, "/adit/identify", std::move(headers), body);
   }
-
-  loop::Loop loop;
-  FakeSource source;
-  FakeOperator judge;
-  FakeKeys keys;
-  Page page{loop, source, judge, keys, {token("team-1")}};
 };
 
 TEST_F(PanelRouteTest, MakesTheLightsBlinkAndSaysUntilWhen) {

@@ -5,27 +5,21 @@
 #include <cmath>
 #include <nlohmann/json.hpp>
 
-#include "page/doubles.hpp"
+#include "page/on_page.hpp"
 
 namespace adit::page {
 namespace {
 
 using nlohmann::json;
 
-class SceneRoutesTest : public testing::Test {
+class SceneRoutesTest : public OnPage {
  protected:
   intake::Answer ask(const std::string& target, const std::string& method = "GET",
                      std::vector<intake::Header> headers = {kByToken}) {
-    auto responder = std::make_shared<FakeResponder>();
-    EXPECT_EQ(page.open(FakeHead{method, target, std::move(headers)}, responder, {}), nullptr);
-    return responder->answered.value_or(intake::Answer{});
+    auto answer = request(method, target, std::move(headers));
+    EXPECT_FALSE(took_body) << target;
+    return answer;
   }
-
-  loop::Loop loop;
-  FakeSource source;
-  FakeOperator judge;
-  FakeKeys keys;
-  Page page{loop, source, judge, keys, {token("team-1")}};
 };
 
 TEST_F(SceneRoutesTest, GiveTheMarkersThatChanged) {

@@ -2,7 +2,10 @@
 
 import fcntl
 import os
+import select
+import socket
 import struct
+import time
 
 import hosts
 
@@ -32,6 +35,29 @@ class Cables(hosts.Network):
                 hosts.ip("address", "add", f"{address}/24", "dev", "eth0")
             hosts.ip("link", "set", "eth0", "up")
         hosts.enter(f"/run/netns/{self.team}")
+
+    def open_ports(self, host, address, ports, within=4.0):
+        """Those of the TCP ports at which somebody answers to `host`."""
+        waiting = select.poll()
+        tried = {}
+        try:
+            for port in ports:
+                made = self.made_in(host, lambda: socket.socket(socket.AF_INET, socket.SOCK_STREAM | socket.SOCK_NONBLOCK))
+                tried[made.fileno()] = made, port
+                made.connect_ex((address, port))
+                waiting.register(made, select.POLLOUT)
+            end, found = time.monotonic() + within, []
+            while tried and time.monotonic() < end:
+                for number, _ in waiting.poll(100):
+                    made, port = tried.pop(number)
+                    waiting.unregister(made)
+                    if made.getsockopt(socket.SOL_SOCKET, socket.SO_ERROR) == 0:
+                        found.append(port)
+                    made.close()
+            return found
+        finally:
+            for made, _ in tried.values():
+                made.close()
 
     def __exit__(self, *reason):
         for port in self.ports:

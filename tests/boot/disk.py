@@ -7,12 +7,12 @@ write or not, by chance, as a disk does that has a cache of its own and no batte
 """
 
 import random
-import shutil
 import struct
 import subprocess
 
 SECTOR = 512
 MAGIC = 0x6A736677736872
+BOOT_PARTITION = 17 << 20  # where rootfs/disk puts it
 FLUSH, FUA, DISCARD = 1, 2, 4  # flags of a write, as Linux's dm-log-writes has them
 
 
@@ -49,17 +49,17 @@ class Disk:
                 play(log, at, disk, sector * SECTOR, length)
         return lost
 
-    def copy_to(self, folder):
-        shutil.copy2(self.file, folder)
-
     # What stands on the boot partition, as somebody with a card reader sees it.
-    def put(self, name, text, partition_at=17 << 20):
+    def put(self, name, text):
         """Puts a file on the FAT partition: put("adit/settings.json", "...")."""
-        subprocess.run(["mcopy", "-o", "-i", f"{self.file}@@{partition_at}", "-", f"::{name}"], input=text.encode(), check=True)
+        subprocess.run(["mcopy", "-o", "-i", f"{self.file}@@{BOOT_PARTITION}", "-", f"::{name}"], input=text.encode(), check=True)
 
-    def get(self, name, partition_at=17 << 20):
+    def make_folder(self, name):
+        subprocess.run(["mmd", "-i", f"{self.file}@@{BOOT_PARTITION}", f"::{name}"], check=True)
+
+    def get(self, name):
         """A file's text, or None where there is none."""
-        got = subprocess.run(["mtype", "-i", f"{self.file}@@{partition_at}", f"::{name}"], capture_output=True, check=False)
+        got = subprocess.run(["mtype", "-i", f"{self.file}@@{BOOT_PARTITION}", f"::{name}"], capture_output=True, check=False)
         return got.stdout.decode() if got.returncode == 0 else None
 
 

@@ -29,6 +29,8 @@ class Eavesdropper:
                 frame, (_, _, kind, *_) = self.socket.recvfrom(128)
             except TimeoutError:
                 continue
+            except OSError:  # the port itself is gone
+                return
             if kind != OUTGOING:
                 self.frames.append((time.monotonic(), frame))
 

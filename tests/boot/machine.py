@@ -122,10 +122,33 @@ class Machine(programs.Page):
 
     # What a client on the team's side sees.
 
-    def wait_for_answer(self, within=90.0):
+    def wait_for_answer(self, within=180.0):
         """Seconds from the power switch to the first answer on team0."""
-        self.wait_until(self._answers, "the box to answer", within)
+        self.wait_until(self.answers, "the box to answer", within)
         return time.monotonic() - self.switched_on
+
+    def run_view(self):
+        return self.ask("GET /adit/run")[1]
+
+    def is_connected(self, endpoint):
+        return any(each["connected"] for each in self.run_view()["endpoints"] if each["name"] == endpoint)
+
+    @staticmethod
+    def wants(ask, request, **members):
+        """Whether the box answers, and these members are so."""
+        try:
+            said = ask(request)
+        except OSError:
+            return False
+        return all(said[name] == value for name, value in members.items())
+
+    def cpu_seconds(self):
+        """Of this machine's processor time, that QEMU has used: what the wall clock of an idle machine would say."""
+        fields = pathlib.Path(f"/proc/{self.process.pid}/stat").read_text().rpartition(")")[2].split()
+        return (int(fields[11]) + int(fields[12])) / os.sysconf("SC_CLK_TCK")
+
+    def said_last(self):
+        return self.console.said()[-4000:]
 
     def wait_until(self, condition, what, within=20.0):
         """As programs.wait_until, but that a machine which has ended is said to have."""
@@ -137,17 +160,17 @@ class Machine(programs.Page):
         try:
             return programs.wait_until(is_so, what, within)
         except AssertionError as error:
-            raise AssertionError(f"{error}\n--- console:\n{self.console.said()[-3000:]}") from None
+            raise AssertionError(f"{error}\n--- console:\n{self.said_last()}") from None
 
-    def _answers(self):
+    def answers(self):
         try:
-            return self.ask("GET /adit/session")[0] in (200, 401)
+            return self.ask("GET /adit/session", token=None)[0] == 200
         except (OSError, ValueError):
             return False
 
 
-def needs():
+def missing():
     """What there must be on this machine, or the words that say what is missing."""
     wanted = ["qemu-system-aarch64", "qemu-img", "mkenvimage", "fdtput", "mcopy", "mtype", "setpriv", "dpkg-deb"]
-    missing = [program for program in wanted if not shutil.which(program)]
-    return f"not on this machine: {', '.join(missing)}" if missing else ""
+    absent = [program for program in wanted if not shutil.which(program)]
+    return f"not on this machine: {', '.join(absent)}" if absent else ""

@@ -1,5 +1,6 @@
 """Hears every frame on the box's cable, and says what in it the box should not have said."""
 
+import contextlib
 import socket
 import struct
 import threading
@@ -81,28 +82,41 @@ def mdns_addresses(network, host, own_address, name="adit.local", within=3.0):
         group = socket.inet_aton("224.0.0.251")
         asker.setsockopt(socket.IPPROTO_IP, socket.IP_ADD_MEMBERSHIP, group + socket.inet_aton(own_address))
         asker.setsockopt(socket.IPPROTO_IP, socket.IP_MULTICAST_IF, socket.inet_aton(own_address))
+        asker.settimeout(0.5)
         end, found = time.monotonic() + within, set()
-        while time.monotonic() < end and not found:
+        while time.monotonic() < end:
             asker.sendto(struct.pack("!6H", 0, 0, 1, 0, 0, 0) + question + struct.pack("!2H", 1, 1), ("224.0.0.251", PORT_MDNS))
-            asker.settimeout(0.5)
-            try:
-                while True:
-                    answer, _ = asker.recvfrom(9000)
-                    found |= addresses_in(answer, question)
-            except TimeoutError:
-                pass
+            with contextlib.suppress(TimeoutError):
+                while time.monotonic() < end:
+                    found |= addresses_in(asker.recv(9000), name)
         return found
 
 
-def addresses_in(answer, question):
-    """Of A records: a name (here uncompressed, and the only one), type 1, class 1 with or without "cache flush", ttl, 4 bytes."""
-    if not answer[2] & 0x80:
-        return set()  # a question
-    found, at = set(), answer.find(question)
-    while at >= 0:
-        rest = at + len(question)
-        kind, klass, _, size = struct.unpack_from("!HHIH", answer.ljust(rest + 14, b"\0"), rest)
-        if (kind, klass & 0x7FFF, size) == (1, 1, 4):
-            found.add(socket.inet_ntoa(answer[rest + 10:rest + 14]))
-        at = answer.find(question, rest)
+def addresses_in(message, name):
+    """Of the A records of that name in a DNS message (RFC 1035, 4.1), where it is an answer."""
+    _, flags, questions, *records = struct.unpack_from("!6H", message)
+    if not flags & 0x8000:
+        return set()
+    at, found = 12, set()
+    for _ in range(questions):
+        at = name_at(message, at)[1] + 4
+    for _ in range(sum(records)):
+        owner, at = name_at(message, at)
+        kind, klass, _, size = struct.unpack_from("!HHIH", message, at)
+        at += 10 + size
+        if (owner.lower(), kind, klass & 0x7FFF, size) == (name, 1, 1, 4):  # the bit above: "forget what you knew"
+            found.add(socket.inet_ntoa(message[at - 4:at]))
     return found
+
+
+def name_at(message, at):
+    """A name and where it ends; a part of it may be a pointer to where that stood before."""
+    parts, end = [], None
+    while message[at]:
+        if message[at] >= 0xC0:
+            end = end or at + 2
+            at = struct.unpack_from("!H", message, at)[0] & 0x3FFF
+        else:
+            parts.append(message[at + 1:at + 1 + message[at]].decode(errors="replace"))
+            at += 1 + message[at]
+    return ".".join(parts), end or at + 1

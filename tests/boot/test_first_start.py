@@ -90,7 +90,7 @@ class FirstStart(Story):
         self.assertEqual((status, said["score_change"]), (201, 1), said)
         status, said = self.stage.robots(20, "--robots", "2", "--seed", "7")
         self.assertEqual(status, 0, said)
-        self.assertGreater(self.box.ask("GET /adit/run")[1]["score"], 0)
+        self.assertGreater(self.box.run_view()["run"]["score"], 0)
         for uri in ("/map/update", "/state/update", "/markers/update", "/api/artifact_reports"):
             self.assertGreater(len(self.stage.post.requests(uri)), 0, uri)
         self.assertEqual(self.stage.post.violations(), [])

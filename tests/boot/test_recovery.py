@@ -18,10 +18,13 @@ class Recovery(Story):
         return int(self.box.console.ask(PID))
 
     def comes_back(self, within):
-        """Until another process answers. Seconds."""
-        began, before = time.monotonic(), self.before
-        self.box.wait_until(lambda: self.pid() not in (0, before) and self.box.answers(), "another aditd to answer", within)
-        return time.monotonic() - began
+        """Until another process answers: seconds since it was hit()."""
+        self.box.wait_until(lambda: self.pid() not in (0, self.before) and self.box.answers(), "another aditd to answer", within)
+        return time.monotonic() - self.when
+
+    def hit(self, how):
+        type(self).before, type(self).when = self.pid(), time.monotonic()
+        self.box.console.ask(f"kill -{how} {self.before}")
 
     def test_a_card_that_was_prepared_in_a_reader_sets_the_box_up(self):
         self.stage.start().began()
@@ -31,8 +34,7 @@ class Recovery(Story):
 
     def test_after_a_kill_the_lights_are_dark_or_say_fault_within_two_seconds(self):
         leds.wait_for(self.box, health="on", within=60)
-        type(self).before = self.pid()
-        self.box.console.ask(f"kill -9 {self.before}")
+        self.hit("KILL")
         seen = self.box.watch_lights(2.0, every=0.01)
         dark = [at for at, lights in seen if not any(lights.values())]
         self.assertTrue(dark, "never dark in two seconds")
@@ -43,8 +45,7 @@ class Recovery(Story):
         leds.wait_for(self.box, health="on", scoring="on", within=60)
 
     def test_what_is_hung_is_killed_by_systemds_watchdog_and_started_again(self):
-        type(self).before = self.pid()
-        self.box.console.ask(f"kill -STOP {self.before}")
+        self.hit("STOP")
         note("serves again after a SIGSTOP", f"{self.comes_back(60):.1f} s")
         self.assertIn("watchdog", self.box.console.ask("journalctl -b -u adit -n 30 --no-pager", 60).lower())
 

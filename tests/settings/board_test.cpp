@@ -3,6 +3,10 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <filesystem>
+#include <fstream>
+#include <iterator>
+
 namespace adit::settings {
 namespace {
 
@@ -96,6 +100,19 @@ TEST(Board, TellsAllThatIsWrongAtOnce) {
                           "active_low, button, button_active_low)",
                           "name: expected 1 to 32 small letters, digits, hyphens and underscores, got \"A\"",
                           "title: missing"));
+}
+
+TEST(Board, IsDescribedRightByEachBoardOfTheHouse) {
+  int boards = 0;
+  for (const auto& folder : std::filesystem::directory_iterator(ADIT_SOURCE_DIR "/board")) {
+    if (!folder.is_directory()) continue;
+    std::ifstream stream(folder.path() / "board.json");
+    const auto board = parse_board(std::string(std::istreambuf_iterator<char>(stream), {}));
+    ASSERT_TRUE(board) << folder.path() << ": " << sentence_of(board.error());
+    EXPECT_EQ(board->name, folder.path().filename().string());
+    ++boards;
+  }
+  EXPECT_GT(boards, 0);
 }
 
 }  // namespace

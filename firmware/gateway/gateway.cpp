@@ -92,17 +92,21 @@ std::expected<void, std::string> Gateway::start() {
 
 std::expected<void, std::string> Gateway::listen() {
   const settings::Team& team = settings_.team;
-  for (const settings::Address& address : team.listen) {
+  auto open = parts_.sockets.open(team);
+  if (!open) return std::unexpected(std::move(open.error()));
+  for (ListenSockets::Open& each : *open) {
     auto server = intake::Server::start(loop_,
-                                        {.address = address.address,
-                                         .port = address.port,
-                                         .interface = team.interface,
+                                        {.address = each.at.address,
+                                         .port = each.at.port,
+                                         .interface = each.at.interface,
                                          .connections = team.connections,
                                          .connections_per_address = team.connections_per_address},
-                                        routes_);
+                                        routes_, std::move(each.socket));
     if (!server) return std::unexpected(server.error());
     host::log(host::Level::Notice, "listening",
-              {{"address", address.address}, {"port", std::to_string((*server)->port())}});
+              {{"address", each.at.address},
+               {"port", std::to_string(each.at.port)},
+               {"interface", each.at.interface}});
     servers_.push_back(std::move(*server));
   }
   return {};

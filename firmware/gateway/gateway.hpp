@@ -10,6 +10,7 @@
 #include "gateway/accounts.hpp"
 #include "gateway/as_forwarded.hpp"
 #include "gateway/lights.hpp"
+#include "gateway/listen_sockets.hpp"
 #include "gateway/map_picture.hpp"
 #include "gateway/maps.hpp"
 #include "gateway/network_change.hpp"
@@ -45,7 +46,8 @@ struct Legacy {
 
 /// What the gateway is made of: all of it has passed its checks.
 struct Parts {
-  const Store& store;  // outlives the gateway
+  const Store& store;      // outlives the gateway
+  ListenSockets& sockets;  // so does this
   Store::Loaded loaded;
   std::string trouble;  // for the operator: why the settings are not those that were wanted; or ""
   ledger::Ledger ledger;
@@ -72,6 +74,8 @@ class Gateway final : public intake::Desk, public page::Source, public page::Ope
   bool makes_way() const { return makes_way_; }
   /// Once it has stopped, or could not start.
   Legacy hand_over() { return {picture_.hand_over(), pictured_run_, std::move(as_forwarded_)}; }
+  /// To be asked for signs of life.
+  loop::Workers& workers() { return workers_; }
   /// What systemd shows: one line.
   std::string status_line() const;
 

@@ -11,6 +11,7 @@
 #include <vector>
 
 #include "icd/status.hpp"
+#include "loop/file_descriptor.hpp"
 #include "loop/loop.hpp"
 
 namespace adit::intake {
@@ -106,15 +107,18 @@ class Handler {
 /// writer of headers is closed), and keeps a body's bytes nowhere: a slow receiver is back-pressure.
 class Server {
  public:
+  /// `socket`: one that listens already, taken instead of opening one at `listen`.
   static std::expected<std::unique_ptr<Server>, std::string> start(loop::Loop& loop, const Listen& listen,
-                                                                   Handler& handler);
+                                                                   Handler& handler,
+                                                                   loop::FileDescriptor socket = {});
   ~Server();
   Server(const Server&) = delete;
   Server& operator=(const Server&) = delete;
 
   std::uint16_t port() const;
   std::size_t connections() const;
-  /// Takes no new connections; requests under way go on.
+  /// Takes no new connections; requests under way go on. A socket of which there is a copy elsewhere goes on
+  /// to listen, and whoever connects waits for who has it.
   void stop_listening();
 
  private:

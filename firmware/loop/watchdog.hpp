@@ -1,0 +1,39 @@
+#pragma once
+
+#include <chrono>
+#include <functional>
+
+#include "loop/loop.hpp"
+#include "loop/workers.hpp"
+
+namespace adit::loop {
+
+/// Gives signs of life while the loop turns and every worker answers.
+///
+/// A worker may be at one job for a while: the largest map is the longest. So a loop that hangs is found out
+/// after the `within` of whoever listens, and a worker that hangs `longest_job` later.
+class Watchdog {
+ public:
+  /// Ten times what the longest job takes on a slow core: firmware/loop/README.md.
+  static constexpr std::chrono::seconds kLongestJob{60};
+
+  /// Calls `feed` four times in each `within` from now on.
+  Watchdog(Loop& loop, Duration within, std::function<void()> feed, Duration longest_job = kLongestJob);
+  Watchdog(const Watchdog&) = delete;
+  Watchdog& operator=(const Watchdog&) = delete;
+
+  /// Whose answers count from now on; null: nobody's but the loop's. They outlive this, or are replaced
+  /// first.
+  void ask_also(Workers* workers);
+
+ private:
+  void look();
+
+  Loop& loop_;
+  const Duration every_, longest_job_;
+  const std::function<void()> feed_;
+  Workers* workers_ = nullptr;
+  Source due_;
+};
+
+}  // namespace adit::loop

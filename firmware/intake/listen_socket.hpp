@@ -21,9 +21,9 @@ std::expected<void, std::string> adopt_listen_socket(int fd, const Listen& liste
 
 /// Where a socket listens.
 struct Bound {
-  std::string address;  // "::": every address, of IPv4 as well unless only_v6
+  std::string address = "";  // "::": every address, of IPv4 as well unless only_v6
   std::uint16_t port = 0;
-  std::string interface;  // "": any
+  std::string interface = "";  // "": any
   bool only_v6 = false;
 };
 

@@ -87,24 +87,33 @@ Done tell(const UntrustedFolder& card, const std::string& text) {
   return host::write_file(card.path_by_descriptor() + '/' + kTakenText, text, kOursAlone);
 }
 
-void leave_renamed(const UntrustedFolder& card, const std::string& name) {
-  const std::string path = card.path_by_descriptor() + '/' + name;
-  if (rename(path.c_str(), (path + kTakenEnding).c_str()) != 0) {
-    host::log(Level::Warning, "a file that was taken cannot be renamed",
-              {{"file", name}, {"why", std::strerror(errno)}});
+void rename_taken(const UntrustedFolder& folder, const std::string& name) {
+  const std::string path = folder.path_by_descriptor() + '/' + name;
+  if (rename(path.c_str(), (path + kTakenEnding).c_str()) == 0) return;
+  host::log(Level::Warning, "a file that was taken cannot be renamed",
+            {{"file", name}, {"why", std::strerror(errno)}});
+}
+
+/// Anybody who has the card could read them. One that was cut off while it was wiped is no token any more: so
+/// each is renamed first, and those of an earlier start are found here.
+void wipe_taken(const UntrustedFolder& card) {
+  const auto secrets = card.folder(kCardSecrets);
+  if (!secrets || !*secrets) return;
+  const std::vector<std::string> names = (*secrets)->names().value_or(std::vector<std::string>());
+  for (const std::string& name : names) {
+    if (!name.ends_with(kTakenEnding) || (*secrets)->wipe(name)) continue;
+    host::log(Level::Warning, "a token that was taken may still be on the card", {{"file", name}});
   }
 }
 
-/// The settings last: without them, all that is left is taken again as it was.
+/// The settings last: without them, what is left is taken again as it was.
 void leave(const UntrustedFolder& card, const Brought& brought) {
   if (const auto secrets = card.folder(kCardSecrets); secrets && *secrets) {
-    for (const auto& [file, token] : brought.tokens) {
-      if ((*secrets)->wipe(file)) continue;
-      host::log(Level::Warning, "a token that was taken may still be on the card", {{"file", file}});
-    }
+    for (const auto& [file, token] : brought.tokens) rename_taken(**secrets, file);
   }
-  if (brought.numbers) leave_renamed(card, kCardNetwork);
-  if (brought.settings) leave_renamed(card, kCardSettings);
+  wipe_taken(card);
+  if (brought.numbers) rename_taken(card, kCardNetwork);
+  if (brought.settings) rename_taken(card, kCardSettings);
   const loop::FileDescriptor folder(
       open(card.path_by_descriptor().c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC));
   if (!folder || syncfs(folder.get()) != 0) host::log(Level::Warning, "the card cannot be synced");
@@ -118,6 +127,7 @@ Done Import::run() {
     host::log(Level::Debug, "nothing was brought", {{"why", card.error()}});
     return {};
   }
+  wipe_taken(*card);
   const Found found = read_card(*card, in_force());
   const std::string said = said_of(found);
   if (said.empty()) return {};

@@ -272,11 +272,20 @@ void Gateway::every_second() {
   show_lights();
   keep_news();
   keep_sessions();
+  look_at_sockets();
   if (std::string line = status_line(); line != notified_) {
     host::notify_status(line);
     notified_ = std::move(line);
   }
   second_.call_at(loop_.now() + std::chrono::seconds(1));
+}
+
+/// The team's interface came back as another one.
+void Gateway::look_at_sockets() {
+  const ListenSockets::Reach reach = parts_.sockets.reach();
+  if (reach == ListenSockets::Reach::Well || stop_by_) return;
+  host::log(host::Level::Warning, "the team's interface is a new one: listening anew");
+  reach == ListenSockets::Reach::Anew ? make_way() : stop();
 }
 
 /// When somebody was seen last need not be known to the second.

@@ -112,6 +112,7 @@ class Gateway final : public intake::Desk, public page::Source, public page::Ope
   void picture_the_run();
   void every_second();
   void keep_sessions();
+  void look_at_sockets();
   void show_lights();
   double sent_mbit() const;
   std::uint64_t sent_bytes() const;

@@ -1,6 +1,7 @@
 #include "gateway/listen_sockets.hpp"
 
 #include <fcntl.h>
+#include <net/if.h>
 #include <sys/socket.h>
 
 #include <algorithm>
@@ -32,6 +33,12 @@ std::expected<ListenSockets, std::string> ListenSockets::take_over(std::vector<h
     Held held{.name = std::move(each.name), .socket = std::move(each.descriptor), .at = {}};
     held.stored = held.name.starts_with(kStored);
     held.door = !held.stored;
+    if (intake::is_deaf(held.socket.get())) {
+      host::log(host::Level::Warning, "a socket of systemd's is of no use: its interface is gone",
+                {{"name", held.name}});
+      end(held);
+      continue;
+    }
     auto bound = intake::bound_at(held.socket.get());
     if (bound) {
       held.at = std::move(*bound);
@@ -66,7 +73,7 @@ std::expected<std::vector<ListenSockets::Open>, std::string> ListenSockets::open
   }
   std::vector<Open> open;
   for (const Held& held : held_) {
-    if (!held.wanted) continue;
+    if (!held.wanted || intake::is_deaf(held.socket.get())) continue;
     loop::FileDescriptor copy(fcntl(held.socket.get(), F_DUPFD_CLOEXEC, 0));
     if (!copy) return std::unexpected(icd::sentence("a copy of a socket: ", std::strerror(errno)));
     if (auto adopted = intake::adopt_listen_socket(copy.get(), {}); !adopted) {
@@ -75,6 +82,17 @@ std::expected<std::vector<ListenSockets::Open>, std::string> ListenSockets::open
     open.push_back({std::move(copy), held.at});
   }
   return open;
+}
+
+ListenSockets::Reach ListenSockets::reach() const {
+  Reach reach = Reach::Well;
+  for (const Held& held : held_) {
+    if (held.at.interface.empty() || !intake::is_deaf(held.socket.get())) continue;
+    if (if_nametoindex(held.at.interface.c_str()) == 0) continue;
+    if (held.door) return Reach::BySystemd;
+    reach = Reach::Anew;
+  }
+  return reach;
 }
 
 void ListenSockets::settle() {
@@ -93,7 +111,7 @@ bool ListenSockets::is_held(const intake::Listen& listen) {
   const std::string name = name_of(listen);
   for (Held& held : held_) {
     if (held.door ? !intake::covers(held.at, listen) : held.wanted || held.name != name) continue;
-    if (!held.door && held.at.interface != listen.interface) continue;  // its interface is gone
+    if (intake::is_deaf(held.socket.get())) continue;
     held.wanted = true;
     return true;
   }

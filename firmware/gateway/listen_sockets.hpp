@@ -33,6 +33,15 @@ class ListenSockets {
   /// at.
   std::expected<std::vector<Open>, std::string> open(const settings::Team& team);
 
+  /// How those are reached that are bound to an interface. An adapter that is pulled and plugged in again
+  /// comes back as another interface of the same name.
+  enum class Reach : std::uint8_t {
+    Well,       // also where the interface is still away
+    Anew,       // they have to be opened anew
+    BySystemd,  // by systemd, for they are the box's doors: the process has to start anew
+  };
+  Reach reach() const;
+
   /// What open() was told last is what counts: the others are closed for good, these are kept by systemd.
   void settle();
 

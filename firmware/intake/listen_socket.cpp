@@ -122,6 +122,12 @@ std::expected<Bound, std::string> bound_at(int fd) {
                .only_v6 = only_v6 != 0};
 }
 
+bool is_deaf(int fd) {
+  std::array<char, IFNAMSIZ> interface{};
+  socklen_t size = interface.size();
+  return ::getsockopt(fd, SOL_SOCKET, SO_BINDTODEVICE, interface.data(), &size) != 0 && errno == ENODEV;
+}
+
 bool covers(const Bound& bound, const Listen& listen) {
   if (bound.port != listen.port) return false;
   // Bound to no interface, it would answer others as well.

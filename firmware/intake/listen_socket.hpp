@@ -30,6 +30,10 @@ struct Bound {
 /// An error says what it is instead of a TCP socket over IPv4 or IPv6 that listens.
 std::expected<Bound, std::string> bound_at(int fd);
 
+/// Whether it is bound to an interface that is gone: nobody reaches it any more, also once there is another
+/// of that name.
+bool is_deaf(int fd);
+
 /// Whether what comes to `listen` comes to that socket. Where `listen` names no interface, the socket's will
 /// do.
 bool covers(const Bound& bound, const Listen& listen);

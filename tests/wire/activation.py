@@ -30,9 +30,9 @@ def listening(address="127.0.0.1", port=0, family=socket.AF_INET):
 class ServiceManager:
     """What systemd is to one service with a socket unit."""
 
-    def __init__(self, folder, doors=()):
-        """`doors`: the socket unit's."""
-        self.folder, self.doors = folder, list(doors)
+    def __init__(self, folder, doors=(), inside=()):
+        """`doors`: the socket unit's. `inside`: the command by which another is run in its network namespace."""
+        self.folder, self.doors, self.inside = folder, list(doors), list(inside)
         self.store = []  # (name, socket), as FDSTORE=1 has it
         self.said = []  # every assignment of every notification, with the time
         self.process = None
@@ -85,7 +85,7 @@ class ServiceManager:
         names = {"LISTEN_FDS": str(len(given)), "LISTEN_FDNAMES": ":".join(name for name, _ in given)} if given else {}
         with open(self.folder / "aditd.log", "ab") as log:
             self.process = subprocess.Popen(
-                ["bash", "-c", HAND_OVER.format(moves=moves), "-", *command], pass_fds=high, stdout=log, stderr=log,
+                [*self.inside, "bash", "-c", HAND_OVER.format(moves=moves), "-", *command], pass_fds=high, stdout=log, stderr=log,
                 env={**os.environ, "NOTIFY_SOCKET": str(self.folder / "notify"), **names, **environment})
         for fd in high:
             os.close(fd)

@@ -12,6 +12,7 @@ import time
 import unittest
 
 import activation
+import hosts
 import programs
 from activation import TOKEN, listening
 
@@ -223,6 +224,68 @@ class Sockets(unittest.TestCase):
             self.assertEqual(clients.answered, len(clients.visits))
             self.assertLessEqual(clients.cut, cut)
             self.assertGreater(clients.slowest, 0.9, "nobody came while it was away")
+
+
+class TeamPort(unittest.TestCase):
+    """team0 goes and comes back as another interface, as an adapter does that is pulled and plugged in again."""
+
+    @classmethod
+    def setUpClass(cls):
+        hosts.needs_namespaces()
+
+    def setUp(self):
+        self.network = self.enterContext(hosts.Network())
+        folder = pathlib.Path(self.enterContext(tempfile.TemporaryDirectory(prefix="adit-port-")))
+        programs.secrets_folder(folder / "secrets")
+        inside = ["ip", "netns", "exec", self.network.box]
+        self.manager = activation.ServiceManager(folder, inside=inside)
+        self.addCleanup(self.manager.close)
+
+    def door(self):
+        hosts.enter(f"/run/netns/{self.network.box}")
+        try:
+            opened = socket.socket()
+            opened.setsockopt(socket.SOL_SOCKET, socket.SO_BINDTODEVICE, b"team0")
+            opened.bind(("0.0.0.0", 80))
+            opened.listen(1024)
+            return opened
+        finally:
+            hosts.enter(f"/run/netns/{self.network.team}")
+
+    def settings(self):
+        document = settings((self.network.box_address, 8000))
+        document["team"]["interface"] = "team0"
+        return document
+
+    def is_answered(self, port):
+        try:
+            return ask(port, address=self.network.box_address)[0] == 200
+        except OSError:
+            return False
+
+    def replug(self):
+        hosts.ip("-n", self.network.box, "link", "delete", "team0")
+        time.sleep(1.5)
+        self.assertIsNone(self.manager.process.poll(), "it goes on while the port is away")
+        self.network.plug_team()
+
+    def test_is_listened_at_anew(self):
+        self.manager.ready(self.manager.start(self.settings()))
+        self.assertTrue(self.is_answered(8000))
+        self.replug()
+        programs.wait_until(lambda: self.is_answered(8000), "an answer at the new port", within=4)
+        self.assertIsNone(self.manager.process.poll())
+
+    def test_ends_aditd_where_only_systemd_can_listen_there(self):
+        self.manager.doors.append(self.door())
+        self.manager.ready(self.manager.start(self.settings()))
+        self.assertTrue(self.is_answered(80) and self.is_answered(8000))
+        self.replug()
+        self.assertEqual(self.manager.process.wait(4), 0)
+        self.manager.doors.append(self.door())  # as systemd starts adit.socket anew; what it has of the old one is deaf
+        self.manager.ready(self.manager.start(None))
+        self.assertTrue(self.is_answered(80) and self.is_answered(8000))
+        self.assertIn("its interface is gone", self.manager.log())
 
 
 if __name__ == "__main__":

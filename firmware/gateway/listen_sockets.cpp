@@ -57,9 +57,11 @@ std::expected<ListenSockets, std::string> ListenSockets::take_over(std::vector<h
 
 std::expected<std::vector<ListenSockets::Open>, std::string> ListenSockets::open(const settings::Team& team) {
   for (Held& held : held_) held.wanted = held.door;
+  const bool has_door = std::ranges::any_of(held_, &Held::door);
   std::vector<intake::Listen> missing;
   for (const settings::Address& address : team.listen) {
-    intake::Listen listen{.address = address.address, .port = address.port, .interface = team.interface};
+    intake::Listen listen{
+        .address = address.address, .port = address.port, .interface = team.interface, .free_bind = has_door};
     if (!is_held(listen)) missing.push_back(std::move(listen));
   }
   for (const intake::Listen& listen : missing) make_way(listen.port);

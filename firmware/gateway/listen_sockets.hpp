@@ -15,8 +15,9 @@ namespace adit::gateway {
 /// connects while another takes over waits in the kernel's queue, and is served by that one.
 ///
 /// The box's own doors are those of systemd's socket unit: they are always served, whatever the settings say,
-/// so that the page is reached. The others follow the settings; systemd keeps copies of them in the service's
-/// store.
+/// so that the page is reached. So an address that the box does not have yet (a cable that is out, DHCP)
+/// keeps nothing from starting where there is a door, and is an error where there is none. The others follow
+/// the settings; systemd keeps copies of them in the service's store.
 class ListenSockets {
  public:
   ListenSockets() = default;

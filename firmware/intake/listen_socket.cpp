@@ -85,6 +85,10 @@ std::expected<loop::FileDescriptor, std::string> open_listen_socket(const Listen
                    static_cast<socklen_t>(listen.interface.size())) != 0) {
     return std::unexpected(failed("binding to interface " + listen.interface));
   }
+  if (listen.free_bind) {
+    const bool v6 = address->ai_family == AF_INET6;
+    set(fd.get(), v6 ? IPPROTO_IPV6 : IPPROTO_IP, v6 ? IPV6_FREEBIND : IP_FREEBIND, 1);
+  }
   set_keepalive(fd.get(), listen.idle);
   if (::bind(fd.get(), address->ai_addr, address->ai_addrlen) != 0) {
     return std::unexpected(failed("binding to " + place));

@@ -21,6 +21,7 @@ struct Listen {
   std::string address;
   std::uint16_t port = 0;  // 0: any free port, see Server::port()
   std::string interface;   // SO_BINDTODEVICE; "": not bound
+  bool free_bind = false;  // also at an address that this machine does not have, or not yet
   std::uint32_t connections = 64, connections_per_address = 16;
   std::chrono::milliseconds headers_within{
       10000};  // from connecting, or from the last answer's first byte since

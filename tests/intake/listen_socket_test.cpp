@@ -28,6 +28,17 @@ TEST(AListenSocket, SaysWhereItListens) {
   EXPECT_FALSE(bound_at(everywhere->get())->only_v6);
 }
 
+TEST(AListenSocket, MayComeBeforeItsAddress) {
+  for (const char* address : {"192.0.2.1", "2001:db8::1"}) {
+    Listen listen = at(address, 0);
+    EXPECT_THAT(open_listen_socket(listen).error(), HasSubstr("Cannot assign requested address"));
+    listen.free_bind = true;
+    const auto opened = open_listen_socket(listen);
+    ASSERT_TRUE(opened) << opened.error();
+    EXPECT_EQ(bound_at(opened->get())->address, address);
+  }
+}
+
 TEST(AListenSocket, IsNothingElse) {
   const loop::FileDescriptor idle(socket(AF_INET, SOCK_STREAM, 0)), datagrams(socket(AF_INET, SOCK_DGRAM, 0)),
       local(socket(AF_UNIX, SOCK_STREAM, 0)), file(open("/dev/null", O_RDONLY));

@@ -177,6 +177,16 @@ class Sockets(unittest.TestCase):
         self.assertEqual(ask(stays, address="127.0.0.2")[0], 200)
         programs.wait_until(lambda: [name for name, _ in manager.store] == [f"listen--0.0.0.0-{stays}"], "the other one")
 
+    def test_an_address_that_the_box_has_not_yet_keeps_it_from_starting_only_where_nothing_else_is_served(self):
+        door = listening()
+        document = settings(("127.0.0.1", door.getsockname()[1]), ("192.0.2.1", 8000))
+        self.started(document, door)
+        self.assertEqual(ask(door.getsockname()[1])[0], 200)
+        manager = self.manager()
+        manager.start(document)
+        self.assertEqual(manager.process.wait(5), 1)
+        self.assertIn("Cannot assign requested address", manager.log())
+
     def test_a_kept_descriptor_that_is_no_socket_is_thrown_away(self):
         manager = self.manager()
         manager.store.append(("listen--127.0.0.1-0", socket.socket(socket.AF_INET, socket.SOCK_DGRAM)))

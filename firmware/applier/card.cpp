@@ -7,6 +7,7 @@
 #include "host/log.hpp"
 #include "icd/sentence.hpp"
 #include "network/check.hpp"
+#include "network/messages.hpp"
 #include "settings/saved.hpp"
 
 namespace adit::applier {
@@ -83,7 +84,7 @@ class Reader {
     if (!text) return;
     const auto value = codec::parse_json(*text);
     if (!value) return refuse(kCardNetwork, value.error());
-    const auto numbers = network::read_numbers(*value);
+    const auto numbers = numbers_of(*value, *text);
     if (!numbers) return refuse(kCardNetwork, numbers.error());
     const Settings settings = settings::in_use(counting());
     const auto verdict = network::check(*numbers, std::nullopt,
@@ -94,6 +95,19 @@ class Reader {
                                          .asker = ""});
     if (!verdict.errors.empty()) return refuse(kCardNetwork, verdict.errors);
     found_.brought.numbers = *numbers;
+  }
+
+  /// The numbers alone, or with their version, as the image's own and adit-network's file have them.
+  static std::expected<network::Numbers, std::vector<settings::Error>> numbers_of(const codec::Value& value,
+                                                                                  const std::string& text) {
+    const auto* object = std::get_if<codec::Value::Object>(&value.is);
+    const bool has_version =
+        object != nullptr &&
+        std::ranges::find(*object, "version", &codec::Value::Member::first) != object->end();
+    if (!has_version) return network::read_numbers(value);
+    auto numbers = network::read_kept(text);
+    if (!numbers) return std::unexpected(std::vector<settings::Error>{{"", std::move(numbers.error())}});
+    return *numbers;
   }
 
   void read_secrets() {

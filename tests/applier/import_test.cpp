@@ -67,7 +67,7 @@ class ImportTest : public testing::Test {
   }
   /// What is wrong with it is told, and nothing is taken.
   void expect_refused(const std::string& name, const std::string& brought, const std::string& what) {
-    fs::remove_all(options.card);
+    for (const std::string& path : {options.card, options.state, options.network}) fs::remove_all(path);
     fs::create_directories(options.card + "/secrets");
     bring_all();
     bring(name, brought);
@@ -118,6 +118,13 @@ TEST_F(ImportTest, TakesEachAlone) {
   bring("network.json", network::json_of(numbers));
   import();
   EXPECT_TRUE(fs::exists(options.network + "/confirmed.json"));
+}
+
+TEST_F(ImportTest, TakesNumbersAsTheBoxItselfKeepsThem) {
+  bring("network.json", network::write_kept(numbers));
+  import();
+  EXPECT_EQ(network::read_kept(text(options.network + "/confirmed.json")), numbers);
+  expect_refused("network.json", R"({"version": 2, "numbers": {}})", "adit/network.json: ");
 }
 
 TEST_F(ImportTest, SaysNothingWhereNothingWasBrought) {

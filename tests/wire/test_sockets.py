@@ -177,13 +177,13 @@ class Sockets(unittest.TestCase):
         self.assertEqual(ask(stays, address="127.0.0.2")[0], 200)
         programs.wait_until(lambda: [name for name, _ in manager.store] == [f"listen--0.0.0.0-{stays}"], "the other one")
 
-    def test_an_address_that_the_box_has_not_yet_keeps_it_from_starting_only_where_nothing_else_is_served(self):
+    def test_an_address_that_is_not_there_yet_is_waited_for_where_there_is_a_door(self):
         door = listening()
         document = settings(("127.0.0.1", door.getsockname()[1]), ("192.0.2.1", 8000))
         self.started(document, door)
         self.assertEqual(ask(door.getsockname()[1])[0], 200)
         manager = self.manager()
-        manager.start(document)
+        manager.start(settings(("127.0.0.1", 0), ("192.0.2.1", 8000)))
         self.assertEqual(manager.process.wait(5), 1)
         self.assertIn("Cannot assign requested address", manager.log())
 

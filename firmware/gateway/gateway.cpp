@@ -93,17 +93,21 @@ std::expected<void, std::string> Gateway::start() {
 
 std::expected<void, std::string> Gateway::listen() {
   const settings::Team& team = settings_.team;
-  for (const settings::Address& address : team.listen) {
+  auto open = parts_.sockets.open(team);
+  if (!open) return std::unexpected(std::move(open.error()));
+  for (ListenSockets::Open& each : *open) {
     auto server = intake::Server::start(loop_,
-                                        {.address = address.address,
-                                         .port = address.port,
-                                         .interface = team.interface,
+                                        {.address = each.at.address,
+                                         .port = each.at.port,
+                                         .interface = each.at.interface,
                                          .connections = team.connections,
                                          .connections_per_address = team.connections_per_address},
-                                        routes_);
+                                        routes_, std::move(each.socket));
     if (!server) return std::unexpected(server.error());
     host::log(host::Level::Notice, "listening",
-              {{"address", address.address}, {"port", std::to_string((*server)->port())}});
+              {{"address", each.at.address},
+               {"port", std::to_string(each.at.port)},
+               {"interface", each.at.interface}});
     servers_.push_back(std::move(*server));
   }
   return {};
@@ -257,11 +261,20 @@ void Gateway::every_second() {
   show_lights();
   keep_news();
   keep_sessions();
+  look_at_sockets();
   if (std::string line = status_line(); line != notified_) {
     host::notify_status(line);
     notified_ = std::move(line);
   }
   second_.call_at(loop_.now() + std::chrono::seconds(1));
+}
+
+/// The team's interface came back as another one.
+void Gateway::look_at_sockets() {
+  const ListenSockets::Reach reach = parts_.sockets.reach();
+  if (reach == ListenSockets::Reach::Well || stop_by_) return;
+  host::log(host::Level::Warning, "the team's interface is a new one: listening anew");
+  reach == ListenSockets::Reach::Anew ? make_way() : stop();
 }
 
 /// When somebody was seen last need not be known to the second.

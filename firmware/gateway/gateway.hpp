@@ -11,6 +11,7 @@
 #include "gateway/as_forwarded.hpp"
 #include "gateway/button_watch.hpp"
 #include "gateway/lights.hpp"
+#include "gateway/listen_sockets.hpp"
 #include "gateway/map_picture.hpp"
 #include "gateway/maps.hpp"
 #include "gateway/network_change.hpp"
@@ -47,7 +48,8 @@ struct Legacy {
 
 /// What the gateway is made of: all of it has passed its checks.
 struct Parts {
-  const Store& store;  // outlives the gateway
+  const Store& store;      // outlives the gateway
+  ListenSockets& sockets;  // so does this
   Store::Loaded loaded;
   std::string trouble;  // for the operator: why the settings are not those that were wanted; or ""
   ledger::Ledger ledger;
@@ -77,6 +79,8 @@ class Gateway final : public intake::Desk, public page::Source, public page::Ope
   bool makes_way() const { return makes_way_; }
   /// Once it has stopped, or could not start.
   Legacy hand_over() { return {picture_.hand_over(), pictured_run_, std::move(as_forwarded_)}; }
+  /// To be asked for signs of life.
+  loop::Workers& workers() { return workers_; }
   /// What systemd shows: one line.
   std::string status_line() const;
 
@@ -113,6 +117,7 @@ class Gateway final : public intake::Desk, public page::Source, public page::Ope
   void picture_the_run();
   void every_second();
   void keep_sessions();
+  void look_at_sockets();
   void show_lights();
   double sent_mbit() const;
   std::uint64_t sent_bytes() const;

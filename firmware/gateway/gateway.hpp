@@ -10,6 +10,7 @@
 #include "gateway/accounts.hpp"
 #include "gateway/as_forwarded.hpp"
 #include "gateway/lights.hpp"
+#include "gateway/links.hpp"
 #include "gateway/map_picture.hpp"
 #include "gateway/maps.hpp"
 #include "gateway/network_change.hpp"
@@ -98,6 +99,7 @@ class Gateway final : public intake::Desk, public page::Source, public page::Ope
 
  private:
   void hold_back();
+  void link_is_back();
   void make_way();
   void end();
   void restore();
@@ -135,12 +137,13 @@ class Gateway final : public intake::Desk, public page::Source, public page::Ope
   AsForwarded as_forwarded_;
   News news_;
   Lights lights_;
+  Links links_;
   Roster roster_;
   SessionKeeper sessions_;
   Accounts accounts_;
+  NetworkRequests network_requests_;
   Setup setup_;
   ThisBox box_;
-  NetworkRequests network_requests_;
   NetworkChange network_;
   SelfTest self_test_;
   page::Page page_;

@@ -9,6 +9,7 @@
 #include <bit>
 #include <cstring>
 
+#include "host/interfaces.hpp"
 #include "loop/file_descriptor.hpp"
 
 namespace adit::host {
@@ -33,6 +34,17 @@ std::optional<settings::Subnet> own_address(const std::string& interface) {
     own.prefix = static_cast<std::uint8_t>(std::popcount(ipv4_in(asked.ifr_netmask)));
   }
   return own;
+}
+
+std::vector<settings::Subnet> own_addresses(const std::string& interface) {
+  std::vector<settings::Subnet> all;
+  for (const Interface& each : interfaces().value_or(std::vector<Interface>{})) {
+    if (each.name != interface) continue;
+    for (const std::string& address : each.addresses) {
+      if (const auto subnet = settings::parse_subnet(address)) all.push_back(*subnet);
+    }
+  }
+  return all;
 }
 
 }  // namespace adit::host

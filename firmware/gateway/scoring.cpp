@@ -257,7 +257,7 @@ void Scoring::link_is_back() {
   report_pace_.link_is_back();
   status_pace_.link_is_back();
   channel_.hurry();
-  pump();
+  poll();  // what the Command Post says now is news
 }
 
 bool Scoring::stop() {

@@ -105,7 +105,7 @@ export class NetworkedBox {
   /** The address that team0 has: "192.168.7.11/24". */
   address() {
     const [link] = JSON.parse(ip("-n", BOX, "-4", "-j", "address", "show", "dev", "team0"));
-    return link.addr_info.map(({ local, prefixlen }) => `${local}/${prefixlen}`).join(" ");
+    return (link?.addr_info ?? []).map(({ local, prefixlen }) => `${local}/${prefixlen}`).join(" ");
   }
   visit = (url) => visit(this.browser, url);
 

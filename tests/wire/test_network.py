@@ -11,6 +11,7 @@ import tempfile
 import threading
 import unittest
 
+import dhcp
 import hosts
 import networkd
 import programs
@@ -261,6 +262,7 @@ class WithNetworkd(Base):
     def setUp(self):
         super().setUp()
         networkd.needs_networkd()
+        hosts.ip("-n", self.network.box, "address", "flush", "dev", "darpa0")  # with its route, which networkd would keep
         self.box = networkd.AditNetwork(self.network, self.folder)
         self.networkd = networkd.Networkd(self.network, self.folder)
         self.addCleanup(self.networkd.stop)
@@ -277,8 +279,33 @@ class WithNetworkd(Base):
         self.ends()
         self.has(OLD)
 
+    def test_by_dhcp_comes_an_address_and_nothing_else(self):
+        server = dhcp.Server(self.network.team, "eth0", self.network.team_address, "192.168.7.77")
+        self.addCleanup(server.stop)
+        self.confirm_first()
+        self.box.ask("wanted.json", confirm_within_ms=60000, numbers={
+            **self.box.numbers(), "team": {"mode": "dhcp"}})
+        self.box.start()
+        self.has("192.168.7.77/24")
+        self.assertEqual(set(self.box.routes("main")) - {"169.254.0.0/16"}, {"192.168.7.0/24"})
+        self.assertEqual(self.box.pending()["wanted"]["team"], {"mode": "dhcp"})
+        self.box.ask("word.json", nonce=self.box.pending()["nonce"], word="back")
+        self.ends()
+        self.has(OLD)
+
+    def test_several_addresses_on_the_command_posts_side(self):
+        nonce = self.box.want(post=["10.100.1.10", "10.100.2.10", "10.100.1.11"], gateway="10.100.2.1")
+        three = ["10.100.1.10/24", "10.100.1.11/24", "10.100.2.10/24"]
+        wait_until(lambda: sorted(self.box.addresses("darpa0")) == three, "all three addresses")
+        self.box.ask("word.json", nonce=nonce, word="confirm")
+        self.ends()
+        self.assertEqual(self.box.status()["kept"]["command_post"]["gateway"], "10.100.2.1")
+        self.box.want(within_ms=1000, post=[])
+        wait_until(lambda: self.box.addresses("darpa0") == [], "no address")
+        self.ends()
+        wait_until(lambda: sorted(self.box.addresses("darpa0")) == three, "all three addresses again")
+
     def test_a_confirmation_disturbs_nothing(self):
-        hosts.ip("-n", self.network.box, "address", "flush", "dev", "darpa0")
         self.box.put("endpoints.json", endpoints=["10.100.1.200", "10.100.2.201", "172.20.0.1"])
         nonce = self.box.want(team="192.168.8.11", post="10.100.1.10", gateway="10.100.1.200")
         self.has(NEW)
@@ -405,7 +432,7 @@ class WholeBox(Base):
     def test_the_test_finds_nothing_wrong_and_spends_no_report(self):
         steps = self.steps()
         self.assertEqual({name: state for name, state in self.states(steps).items() if state == "bad"}, {}, steps)
-        for name in ("link", "address", "reach", "token"):
+        for name in ("link", "address", "cables", "reach", "token"):
             self.assertEqual((steps[f"scoring {name}"]["state"], steps[f"mapping {name}"]["state"]), ("good", "good"), steps)
         self.assertEqual(self.stage.post.recorded(), [])
 
@@ -421,6 +448,13 @@ class WholeBox(Base):
         self.assertEqual(steps["scoring token"]["state"], "skipped")
         self.network.pull_cable()
         self.assertEqual(self.steps()["mapping link"]["state"], "bad")
+
+    def test_the_test_finds_the_command_post_at_the_wrong_port(self):
+        hosts.ip("-n", self.network.post, "address", "delete", f"{hosts.SCORING}/24", "dev", "eth0")
+        hosts.ip("-n", self.network.team, "address", "add", f"{hosts.SCORING}/24", "dev", "eth0")
+        cables = self.steps()["scoring cables"]
+        self.assertEqual(cables["state"], "bad", cables)
+        self.assertIn("10.100.1.200 is not at darpa0 but at team0", cables["said"])
 
     def test_the_test_finds_wrong_tokens(self):
         self.stage.box.stop()

@@ -52,7 +52,7 @@ std::expected<void, std::string> check_new(std::string_view password) {
     return std::unexpected(
         icd::sentence("expected ", kShortest, " to ", kLongest, " characters, got ", size));
   }
-  const auto is_control = [](char byte) { return (byte >= 0 && byte < 0x20) || byte == 0x7f; };
+  const auto is_control = [](unsigned char byte) { return byte < 0x20 || byte == 0x7f; };
   if (std::ranges::any_of(password, is_control)) return std::unexpected("expected no control characters");
   return {};
 }

@@ -166,6 +166,7 @@ void NetworkChange::lead_to_endpoints() {
 }
 
 std::string NetworkChange::next_hop() const {
+  refresh();
   const auto endpoint = settings::ipv4_of(settings_.command_post.scoring.address);
   const auto numbers = present();
   if (!endpoint || !numbers) return "";

@@ -71,6 +71,12 @@ class Networkd:
     def _answers(self):
         return self.reload().returncode == 0
 
+    def start_anew(self):
+        self.daemon.kill()
+        self.daemon.wait()
+        self._start()
+        programs.wait_until(self._answers, "networkd")
+
     def reload(self):
         """networkctl insists on networkd's own namespace."""
         return subprocess.run(["ip", "netns", "exec", self.network.box, self.networkctl, "reload"], capture_output=True,

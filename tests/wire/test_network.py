@@ -305,6 +305,17 @@ class WithNetworkd(Base):
         self.ends()
         wait_until(lambda: sorted(self.box.addresses("darpa0")) == three, "all three addresses again")
 
+    def test_networkd_may_start_anew_while_a_change_waits(self):
+        self.confirm_first()
+        self.box.want(within_ms=5000, team="192.168.8.11")
+        self.has(NEW)
+        self.networkd.start_anew()
+        self.assertEqual(self.box.addresses("team0"), [NEW])
+        self.ends()
+        self.has(OLD)
+        self.networkd.start_anew()
+        self.has(OLD)
+
     def test_a_confirmation_disturbs_nothing(self):
         self.box.put("endpoints.json", endpoints=["10.100.1.200", "10.100.2.201", "172.20.0.1"])
         nonce = self.box.want(team="192.168.8.11", post="10.100.1.10", gateway="10.100.1.200")

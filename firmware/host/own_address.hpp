@@ -8,10 +8,11 @@
 
 namespace adit::host {
 
-/// The first IPv4 address of an interface; nothing where it has none, or there is no such interface.
-std::optional<settings::Subnet> own_address(const std::string& interface);
-
-/// All IPv4 addresses of an interface, by netlink (getifaddrs(3)).
+/// All IPv4 addresses of an interface, link-local ones last (the kernel has them first); none where there is
+/// no such interface.
 std::vector<settings::Subnet> own_addresses(const std::string& interface);
+
+/// The first of them.
+std::optional<settings::Subnet> own_address(const std::string& interface);
 
 }  // namespace adit::host

@@ -24,6 +24,7 @@ class Appliance(unittest.TestCase):
     """`numbers`: what was confirmed before the box starts."""
 
     team_net = "192.168.7"
+    post_address = hosts.BOX_DARPA  # of the box
 
     def setUp(self):
         hosts.needs_namespaces()
@@ -50,13 +51,14 @@ class Appliance(unittest.TestCase):
         files = self.folder / "network"
         files.mkdir()
         self.box = networkd.AditNetwork(self.network, files)
-        self.confirmed(self.box.numbers(self.network.box_address))
+        self.confirmed(self.box.numbers(self.network.box_address, self.post_address))
         programs.secrets_folder(self.folder / "secrets")
         self.box.start("--start")
         self.assertEqual(self.box.process.wait(5), 0, self.box.said())
         self.networkd = networkd.Networkd(self.network, files)
         self.addCleanup(self.networkd.stop)
-        wait_until(lambda: self.box.addresses("darpa0") and self.box.addresses("team0"), "the addresses")
+        wait_until(lambda: self.box.addresses("team0") and (self.box.addresses("darpa0") or not self.post_address),
+                   "the addresses")
         self.post = self.command_post()
         (self.folder / "state").mkdir()
         self.aditd = programs.Box(self.network, self.folder, network__allow_overlap=True,
@@ -157,6 +159,8 @@ class TwoNetworks(Appliance):
         hosts.ip("-n", self.network.team, "address", "add", "169.254.7.7/16", "dev", "eth0")
         self.network.connect(self.network.team, address, programs.PORT, 2).close()
         self.assertTrue(capture.answers_ping(self.network.team, address))
+        shown = self.aditd.ask("GET /adit/network")[1]["team"]
+        self.assertEqual(shown["address"], self.network.box_address, "that is not the one to tell people")
 
     def test_what_waited_for_the_cable_goes_on_within_two_seconds(self):
         wait_until(self.connected, "the Command Post")
@@ -175,6 +179,17 @@ class TwoNetworks(Appliance):
                 print(f"cable out for {seconds} s: {uri} {took:.2f} s after it is in", flush=True)
                 worst = max(worst, took)
         self.assertLess(worst, 2)
+
+
+class AsItComes(Appliance):
+    """Nobody has given it an address on the Command Post's side yet."""
+
+    post_address = ()
+
+    def test_nothing_at_all_leaves_by_darpa0(self):
+        wait_until(lambda: self.aditd.ask("GET /adit/run")[1]["endpoints"][0]["trouble"], "the Command Post to be missed")
+        time.sleep(3)
+        self.assertEqual(self.heard.since(0), [])
 
 
 class Overlapping(Appliance):

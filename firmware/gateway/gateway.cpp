@@ -35,12 +35,13 @@ Gateway::Gateway(loop::Loop& loop, Parts parts)
       lights_(loop, std::move(parts_.lines)),
       links_(
           loop, settings_, host::carrier, [this] { changed(); }, [this] { link_is_back(); }),
+      button_(loop, std::move(parts_.button), lights_, [this](panel::Press press) { pressed(press); }),
       roster_(settings_.robots),
       sessions_(parts_.runtime_folder + "/sessions.json", loop.now()),
-      accounts_(workers_, sessions_, parts_.state_folder, parts_.loaded.secrets.label_code),
+      accounts_(loop, workers_, sessions_, parts_.state_folder, parts_.loaded.secrets.label_code),
       network_requests_(parts_.state_folder, parts_.network_folder),
       setup_(parts_.store, parts_.loaded, accounts_, network_requests_, [this] { make_way(); }),
-      box_(loop, workers_, settings::file_of(parts_.loaded.settings),
+      box_(loop, workers_, parts_.board, settings::file_of(parts_.loaded.settings),
            [this](page::Usage& usage) { add_to(usage); }),
       network_(loop, settings_, network_requests_),
       self_test_(loop, settings_,
@@ -242,18 +243,6 @@ std::expected<std::int64_t, std::string> Gateway::report(const icd::ArtifactRepo
 
 std::int64_t Gateway::begin_run() {
   return scoring_.begin_run();
-}
-
-page::Time Gateway::identify(double seconds) {
-  const auto length = std::chrono::duration_cast<loop::Duration>(std::chrono::duration<double>(seconds));
-  lights_.identify(length);
-  page_.changed();
-  return loop_.stamp_now() + seconds;
-}
-
-void Gateway::show_lights() {
-  lights_.show(condition());
-  if (std::exchange(told_lights_, lights_.shown()) != lights_.shown()) page_.changed();
 }
 
 void Gateway::changed() {

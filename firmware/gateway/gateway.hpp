@@ -9,6 +9,7 @@
 
 #include "gateway/accounts.hpp"
 #include "gateway/as_forwarded.hpp"
+#include "gateway/button_watch.hpp"
 #include "gateway/lights.hpp"
 #include "gateway/links.hpp"
 #include "gateway/map_picture.hpp"
@@ -32,7 +33,8 @@
 #include "loop/loop.hpp"
 #include "loop/workers.hpp"
 #include "page/page.hpp"
-#include "panel/panel.hpp"
+#include "panel/lines.hpp"
+#include "settings/board.hpp"
 #include "settings/settings.hpp"
 
 namespace adit::gateway {
@@ -50,7 +52,10 @@ struct Parts {
   Store::Loaded loaded;
   std::string trouble;  // for the operator: why the settings are not those that were wanted; or ""
   ledger::Ledger ledger;
+  settings::Board board;
+  std::string board_trouble;  // why what the board's file says does not count; or ""
   std::unique_ptr<panel::Lines> lines;
+  std::unique_ptr<panel::ButtonLine> button;  // null: there is none
   std::string runtime_folder;
   std::string state_folder;
   std::string network_folder;    // where adit-network tells its status
@@ -118,7 +123,10 @@ class Gateway final : public intake::Desk, public page::Source, public page::Ope
   intake::IcdOptions icd_options() const;
   std::vector<icd::BearerToken> tokens() const;
   void note_robot(const std::string& name);
-  panel::Condition condition() const;
+  void assert_states();
+  void pressed(panel::Press press);
+  void show_address();
+  std::string team_address() const;
   std::vector<std::string> attention() const;
   void say_what_is_missing(std::vector<std::string>& sentences) const;
   std::vector<page::EndpointRow> endpoints() const;
@@ -138,6 +146,7 @@ class Gateway final : public intake::Desk, public page::Source, public page::Ope
   News news_;
   Lights lights_;
   Links links_;
+  ButtonWatch button_;
   Roster roster_;
   SessionKeeper sessions_;
   Accounts accounts_;

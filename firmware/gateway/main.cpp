@@ -8,6 +8,7 @@
 #include <utility>
 
 #include "gateway/gateway.hpp"
+#include "gateway/open_panel.hpp"
 #include "gateway/options.hpp"
 #include "gateway/version.hpp"
 #include "host/log.hpp"
@@ -35,28 +36,22 @@ std::expected<void, std::string> make_folder(const std::string& folder) {
   return {};
 }
 
-std::unique_ptr<adit::panel::Lines> open_panel(const adit::settings::Panel& settings,
-                                               const std::string& folder) {
-  if (!settings.chip.empty()) {
-    auto lines = adit::panel::open_gpio(settings);
-    if (lines) return std::move(*lines);
-    adit::host::log(adit::host::Level::Error, "the panel is simulated: its lines cannot be had",
-                    {{"why", lines.error()}});
-  }
-  return adit::panel::simulated(folder + "/panel");
-}
-
 std::expected<Parts, std::string> gather(const Options& options, const Store& store) {
   auto loaded = store.load();
   if (!loaded) return std::unexpected(loaded.error());
   auto ledger = adit::ledger::Ledger::open(options.state);
   if (!ledger) return std::unexpected(ledger.error().what);
-  auto lines = open_panel(loaded->settings.panel, runtime_folder(options));
+  auto known = adit::gateway::read_board(options.board);
+  auto panel =
+      adit::gateway::open_panel(known.board.panel.value_or(loaded->settings.panel), runtime_folder(options));
   return Parts{.store = store,
                .loaded = std::move(*loaded),
                .trouble = "",
                .ledger = std::move(*ledger),
-               .lines = std::move(lines),
+               .board = std::move(known.board),
+               .board_trouble = std::move(known.trouble),
+               .lines = std::move(panel.lines),
+               .button = std::move(panel.button),
                .runtime_folder = runtime_folder(options),
                .state_folder = options.state,
                .network_folder = options.network,

@@ -123,9 +123,10 @@ class Machine(programs.Page):
     # What a client on the team's side sees.
 
     def wait_for_answer(self, within=180.0):
-        """Seconds from the power switch to the first answer on team0."""
+        """Until the first answer on team0; how long that took from the power switch on is in `answered_after`, and how much of
+        this machine's processor time, which is what the clock of an idle one would say, in `cpu_answered_after`."""
         self.wait_until(self.answers, "the box to answer", within)
-        return time.monotonic() - self.switched_on
+        self.answered_after, self.cpu_answered_after = time.monotonic() - self.switched_on, self.cpu_seconds()
 
     def run_view(self):
         return self.ask("GET /adit/run")[1]
@@ -143,12 +144,15 @@ class Machine(programs.Page):
         return all(said[name] == value for name, value in members.items())
 
     def cpu_seconds(self):
-        """Of this machine's processor time, that QEMU has used: what the wall clock of an idle machine would say."""
+        """Of QEMU, so far."""
         fields = pathlib.Path(f"/proc/{self.process.pid}/stat").read_text().rpartition(")")[2].split()
         return (int(fields[11]) + int(fields[12])) / os.sysconf("SC_CLK_TCK")
 
     def said_last(self):
         return self.console.said()[-4000:]
+
+    def start_took(self):
+        return f"{self.answered_after:.1f} s ({self.cpu_answered_after:.1f} s of this machine's processor)"
 
     def wait_until(self, condition, what, within=20.0):
         """As programs.wait_until, but that a machine which has ended is said to have."""

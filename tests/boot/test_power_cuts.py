@@ -43,7 +43,7 @@ class PowerCuts(Story):
             time.sleep(self.chance.uniform(*LIFE))
             lost += self.box.cut_power(self.chance)
             self.stage.start()
-            starts.append(time.monotonic() - self.box.switched_on)
+            starts.append(self.box.answered_after)
             if number % 5 == 0:
                 self.stage.began()
                 operator.looks()

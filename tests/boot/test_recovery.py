@@ -28,7 +28,7 @@ class Recovery(Story):
 
     def test_a_card_that_was_prepared_in_a_reader_sets_the_box_up(self):
         self.stage.start().began()
-        note("start of a prepared card, from power to the first answer", f"{time.monotonic() - self.box.switched_on:.1f} s")
+        note("first start of a prepared card, from power to the first answer on team0", self.box.start_took())
         self.box.console.wait_for_shell()
         self.assertEqual(self.box.ask("GET /adit/settings")[1]["tokens"]["scoring"], True)
 

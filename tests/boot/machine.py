@@ -34,7 +34,7 @@ class Firmware:
 
     def __init__(self, folder, memory):
         self.loader, self.environment, self.tree = folder / "loader.bin", folder / "environment.bin", folder / "machine.dtb"
-        package = next((SOURCE / "build" / "image" / "debian-arm64" / "debs").glob("u-boot-qemu_*.deb"))
+        package = next((SOURCE / "build" / "image" / "debian-arm64").glob("*/u-boot-qemu_*.deb"))
         opened = subprocess.run(["dpkg-deb", "--fsys-tarfile", package], stdout=subprocess.PIPE, check=True).stdout
         subprocess.run(["tar", "-xO", "./usr/lib/u-boot/qemu_arm64/u-boot.bin"], input=opened, stdout=open(self.loader, "wb"),
                        check=True)

@@ -49,16 +49,7 @@ class FirstStart(Story):
         self.asked("POST /adit/password", {"role": "operator", "password": PASSWORD})
         said = self.asked("GET /adit/session")
         self.assertEqual((said["first_start"], said["set_up_open"]), (False, False))
-        self.log_in()
-
-    def log_in(self):
-        connection = programs.http.client.HTTPConnection(self.stage.network.box_address, 80, timeout=20)
-        connection.request("POST", "/adit/login", programs.json.dumps({"password": PASSWORD}), {"Content-Type": "application/json"})
-        answer = connection.getresponse()
-        said = programs.json.loads(answer.read())
-        self.assertEqual((answer.status, said["role"]), (200, "operator"))
-        type(self).session = {"Cookie": answer.headers["Set-Cookie"].partition(";")[0], "Adit-CSRF": said["csrf"]}
-        connection.close()
+        type(self).session = programs.log_in(self.box, PASSWORD)
 
     def test_tokens_and_settings_are_set_over_the_api(self):
         for name, token in (("scoring", programs.SCORING_TOKEN), ("mapping", programs.MAPPING_TOKEN), ("team", programs.TEAM_TOKEN)):
@@ -146,6 +137,6 @@ class FirstStart(Story):
         self.box.press(4.0)
         self.box.wait_until(lambda: self.asked("GET /adit/session")["set_up_open"], "set-up to be open")
         self.asked("POST /adit/password", {"role": "operator", "password": PASSWORD})
-        self.log_in()
+        type(self).session = programs.log_in(self.box, PASSWORD)
         self.assertEqual([(each["number"], each["state"]) for each in self.asked("GET /adit/reports")], reports)
         self.assertFalse(self.has_address(hosts.BOX_DARPA), "the box's addresses are forgotten")

@@ -154,6 +154,18 @@ class Page:
         return self.ask("GET /adit/run")[1]["run_heard"] is not None
 
 
+def log_in(page, password):
+    """The headers that a browser sends from then on, as the operator."""
+    connection = http.client.HTTPConnection(page.network.box_address, page.port, timeout=20)
+    with contextlib.closing(connection):
+        connection.request("POST", "/adit/login", json.dumps({"password": password}), {"Content-Type": "application/json"})
+        answer = connection.getresponse()
+        said = json.loads(answer.read())
+    if answer.status != 200:
+        raise AssertionError(f"the login: {answer.status} {said}")
+    return {"Cookie": answer.headers["Set-Cookie"].partition(";")[0], "Adit-CSRF": said["csrf"]}
+
+
 class Box(Program, Page):
     """aditd between the two."""
 

@@ -1,4 +1,5 @@
-"""The box's two cables: each port of the machine is the other end of `eth0` of a namespace, the team's or the Command Post's."""
+"""The box's two cables: each port of the machine is the other end of `eth0` of a namespace, the team's or the Command
+Post's."""
 
 import fcntl
 import os
@@ -42,7 +43,9 @@ class Cables(hosts.Network):
         tried = {}
         try:
             for port in ports:
-                made = self.made_in(host, lambda: socket.socket(socket.AF_INET, socket.SOCK_STREAM | socket.SOCK_NONBLOCK))
+                made = self.made_in(
+                    host, lambda: socket.socket(socket.AF_INET, socket.SOCK_STREAM | socket.SOCK_NONBLOCK)
+                )
                 tried[made.fileno()] = made, port
                 made.connect_ex((address, port))
                 waiting.register(made, select.POLLOUT)

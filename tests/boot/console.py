@@ -1,5 +1,5 @@
-"""A root shell on the machine's console, which whoever has the card may ask for (rootfs/README.md). For what no user of the box
-can see or do: hung and killed processes, what holds memory, where the time goes."""
+"""A root shell on the machine's console, which whoever has the card may ask for (rootfs/README.md). For what no user of
+the box can see or do: hung and killed processes, what holds memory, where the time goes."""
 
 import re
 import socket
@@ -48,15 +48,18 @@ class Console:
                     return found
                 left = end - time.monotonic()
                 if left <= 0:
-                    raise AssertionError(f"the console did not say {pattern!r} within {within:g} s:\n"
-                                         + self.heard[-2000:].decode(errors="replace"))
+                    raise AssertionError(
+                        f"the console did not say {pattern!r} within {within:g} s:\n"
+                        + self.heard[-2000:].decode(errors="replace")
+                    )
                 self.news.wait(left)
 
     def type(self, line):
         self.socket.sendall(line.encode() + b"\n")
 
     def wait_for_shell(self, within=60.0):
-        """Until it answers. What is typed before there is a shell is lost, and stops the boot loader if it is typed to that."""
+        """Until it answers. What is typed before there is a shell is lost, and stops the boot loader if it is typed to
+        that."""
         end = time.monotonic() + within
         self.wait_for(rb"Starting kernel.*/ # ", within)
         while True:

@@ -1,9 +1,9 @@
 """A machine's disk that loses in a power cut what a real one may lose.
 
-QEMU that is killed leaves all that the guest ever wrote in the host's cache: a cut that hurts nobody. So QEMU writes to a copy
-that is thrown away, and keeps a log of each write and flush beside it, in the order in which they ended. Once the machine is
-off, the log is played back on the disk itself: after a power cut all up to the last flush, and of what was written since, each
-write or not, by chance, as a disk does that has a cache of its own and no battery.
+QEMU that is killed leaves all that the guest ever wrote in the host's cache: a cut that hurts nobody. So QEMU writes to
+a copy that is thrown away, and keeps a log of each write and flush beside it, in the order in which they ended. Once the
+machine is off, the log is played back on the disk itself: after a power cut all up to the last flush, and of what was
+written since, each write or not, by chance, as a disk does that has a cache of its own and no battery.
 """
 
 import random
@@ -28,14 +28,15 @@ class Disk:
         subprocess.run(["qemu-img", "create", "-q", "-f", "qcow2", "-b", self.file, "-F", "raw", self.copy], check=True)
         self.log.write_bytes(b"")
         quick = "cache.no-flush=on"  # what the guest flushes is in the log; the host need not wait for its own disk
-        return ["-blockdev", f"driver=qcow2,node-name=copy,file.driver=file,{quick},file.{quick},file.filename={self.copy}",
+        copy = f"driver=qcow2,node-name=copy,{quick},file.driver=file,file.{quick},file.filename={self.copy}"
+        return ["-blockdev", copy,
                 "-blockdev", f"driver=file,node-name=log,{quick},filename={self.log}",
-                "-blockdev", f"driver=blklogwrites,node-name=disk,file=copy,log=log",
+                "-blockdev", "driver=blklogwrites,node-name=disk,file=copy,log=log",
                 "-device", "virtio-blk-pci,drive=disk"]
 
     def is_off(self, chance=None):
-        """Plays the log back, all of it or, with a `chance` (random.Random), as a power cut leaves it. How many writes were
-        lost."""
+        """Plays the log back, all of it or, with a `chance` (random.Random), as a power cut leaves it. How many writes
+        were lost."""
         writes = list(entries(self.log))
         flushed = max((index for index, (flags, *_) in enumerate(writes) if flags & FLUSH), default=-1)
         lost = 0
@@ -52,15 +53,18 @@ class Disk:
     # What stands on the boot partition, as somebody with a card reader sees it.
     def put(self, name, text):
         """Puts a file on the FAT partition: put("adit/settings.json", "...")."""
-        subprocess.run(["mcopy", "-o", "-i", f"{self.file}@@{BOOT_PARTITION}", "-", f"::{name}"], input=text.encode(), check=True)
+        subprocess.run(["mcopy", "-o", *self._boot_partition(), "-", f"::{name}"], input=text.encode(), check=True)
 
     def make_folder(self, name):
-        subprocess.run(["mmd", "-i", f"{self.file}@@{BOOT_PARTITION}", f"::{name}"], check=True)
+        subprocess.run(["mmd", *self._boot_partition(), f"::{name}"], check=True)
 
     def get(self, name):
         """A file's text, or None where there is none."""
-        got = subprocess.run(["mtype", "-i", f"{self.file}@@{BOOT_PARTITION}", f"::{name}"], capture_output=True, check=False)
+        got = subprocess.run(["mtype", *self._boot_partition(), f"::{name}"], capture_output=True, check=False)
         return got.stdout.decode() if got.returncode == 0 else None
+
+    def _boot_partition(self):
+        return ["-i", f"{self.file}@@{BOOT_PARTITION}"]
 
 
 def entries(path):

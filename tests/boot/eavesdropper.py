@@ -63,7 +63,7 @@ def stranger(frame, endpoints):
     if ethertype != IPV4:
         return f"Ethernet type {ethertype:#06x} to {frame[:6].hex(':')}"
     protocol, length = frame[23], (frame[14] & 0x0F) * 4
-    source, target = (socket.inet_ntoa(frame[at:at + 4]) for at in (26, 30))
+    source, target = (socket.inet_ntoa(frame[at : at + 4]) for at in (26, 30))
     if protocol not in (TCP, UDP):
         return f"IP protocol {protocol} from {source} to {target}"
     port = struct.unpack_from("!H", frame, 14 + length + 2)[0]
@@ -85,7 +85,9 @@ def mdns_addresses(network, host, own_address, name="adit.local", within=3.0):
         asker.settimeout(0.5)
         end, found = time.monotonic() + within, set()
         while time.monotonic() < end:
-            asker.sendto(struct.pack("!6H", 0, 0, 1, 0, 0, 0) + question + struct.pack("!2H", 1, 1), ("224.0.0.251", PORT_MDNS))
+            asker.sendto(
+                struct.pack("!6H", 0, 0, 1, 0, 0, 0) + question + struct.pack("!2H", 1, 1), ("224.0.0.251", PORT_MDNS)
+            )
             with contextlib.suppress(TimeoutError):
                 while time.monotonic() < end:
                     found |= addresses_in(asker.recv(9000), name)
@@ -105,7 +107,7 @@ def addresses_in(message, name):
         kind, klass, _, size = struct.unpack_from("!HHIH", message, at)
         at += 10 + size
         if (owner.lower(), kind, klass & 0x7FFF, size) == (name, 1, 1, 4):  # the bit above: "forget what you knew"
-            found.add(socket.inet_ntoa(message[at - 4:at]))
+            found.add(socket.inet_ntoa(message[at - 4 : at]))
     return found
 
 
@@ -117,6 +119,6 @@ def name_at(message, at):
             end = end or at + 2
             at = struct.unpack_from("!H", message, at)[0] & 0x3FFF
         else:
-            parts.append(message[at + 1:at + 1 + message[at]].decode(errors="replace"))
+            parts.append(message[at + 1 : at + 1 + message[at]].decode(errors="replace"))
             at += 1 + message[at]
     return ".".join(parts), end or at + 1

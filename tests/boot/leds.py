@@ -33,6 +33,7 @@ def wait_for(machine, within=30.0, **wanted):
     def as_wanted():
         shown.update(patterns(machine.watch_lights(LONGEST)))
         return all(shown[name] == each for name, each in wanted.items())
+
     try:
         machine.wait_until(as_wanted, f"the lights to show {wanted}", within)
     except AssertionError as error:

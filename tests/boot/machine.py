@@ -1,5 +1,5 @@
-"""The box as a machine: QEMU's arm64 `virt`, started from its card by U-Boot as a board is, with two ports, four lights, a
-button and a hardware watchdog."""
+"""The box as a machine: QEMU's arm64 `virt`, started from its card by U-Boot as a board is, with two ports, four
+lights, a button and a hardware watchdog."""
 
 import os
 import pathlib
@@ -19,6 +19,7 @@ MACHINE = ["-M", "virt,acpi=off", "-cpu", "cortex-a53", "-smp", "1", "-nodefault
 LINES = ["ADIT_HEALTH", "ADIT_SCORING", "ADIT_MAPPING", "POWER_KEY", "ADIT_ATTENTION", "ADIT_BUTTON", "", ""]
 LIGHTS = {"health": 0, "scoring": 1, "mapping": 2, "attention": 4}
 BUTTON = 5
+PORT = "virtio-net-pci,romfile="
 
 
 def image():
@@ -33,11 +34,12 @@ class Firmware:
     """What is soldered to the machine: its boot loader, the boot loader's environment, and the device tree."""
 
     def __init__(self, folder, memory):
-        self.loader, self.environment, self.tree = folder / "loader.bin", folder / "environment.bin", folder / "machine.dtb"
+        self.loader, self.environment = folder / "loader.bin", folder / "environment.bin"
+        self.tree = folder / "machine.dtb"
         package = next((SOURCE / "build" / "image" / "debian-arm64").glob("*/u-boot-qemu_*.deb"))
         opened = subprocess.run(["dpkg-deb", "--fsys-tarfile", package], stdout=subprocess.PIPE, check=True).stdout
-        subprocess.run(["tar", "-xO", "./usr/lib/u-boot/qemu_arm64/u-boot.bin"], input=opened, stdout=open(self.loader, "wb"),
-                       check=True)
+        with open(self.loader, "wb") as loader:
+            subprocess.run(["tar", "-xO", "./usr/lib/u-boot/qemu_arm64/u-boot.bin"], input=opened, stdout=loader, check=True)
         words = [line for line in (BOARD / "u-boot.env").read_text().splitlines() if line and not line.startswith("#")]
         text = folder / "environment.txt"
         text.write_text("\n".join(words) + "\n")
@@ -64,13 +66,13 @@ class Machine(programs.Page):
         sockets = [self.folder / name for name in ("qmp", "qtest", "serial")]
         for path in sockets:
             path.unlink(missing_ok=True)
-        command = ["setpriv", "--pdeathsig", "KILL", "qemu-system-aarch64", *MACHINE, "-accel", "tcg", "-m", str(self.memory),
-                   "-dtb", self.firmware.tree,
+        command = ["setpriv", "--pdeathsig", "KILL",
+                   "qemu-system-aarch64", *MACHINE, "-accel", "tcg", "-m", str(self.memory), "-dtb", self.firmware.tree,
                    "-drive", f"if=pflash,format=raw,unit=0,readonly=on,file={self.firmware.loader}",
                    "-drive", f"if=pflash,format=raw,unit=1,file={self.firmware.environment}",
                    *self.disk.options(), "-device", "virtio-rng-pci",
-                   "-netdev", f"tap,id=team,fd={team0}", "-device", "virtio-net-pci,id=team0,netdev=team,addr=5,romfile=",
-                   "-netdev", f"tap,id=darpa,fd={darpa0}", "-device", "virtio-net-pci,id=darpa0,netdev=darpa,addr=6,romfile=",
+                   "-netdev", f"tap,id=team,fd={team0}", "-device", f"{PORT},id=team0,netdev=team,addr=5",
+                   "-netdev", f"tap,id=darpa,fd={darpa0}", "-device", f"{PORT},id=darpa0,netdev=darpa,addr=6",
                    "-qmp", f"unix:{sockets[0]},server=on,wait=off",
                    "-qtest", f"unix:{sockets[1]},server=on,wait=off", "-qtest-log", "/dev/null",
                    "-chardev", f"socket,id=serial,path={sockets[2]},server=on,wait=on", "-serial", "chardev:serial"]
@@ -123,7 +125,7 @@ class Machine(programs.Page):
     # What a client on the team's side sees.
 
     def wait_for_answer(self, within=180.0):
-        """Until the first answer on team0; how long that took from the power switch on is in `answered_after`, and how much of
+        """Until the first answer on team0. How long that took from the power switch on is in `answered_after`; how much of
         this machine's processor time, which is what the clock of an idle one would say, in `cpu_answered_after`."""
         self.wait_until(self.answers, "the box to answer", within)
         self.answered_after, self.cpu_answered_after = time.monotonic() - self.switched_on, self.cpu_seconds()

@@ -1,5 +1,5 @@
-"""QEMU from outside: its monitor (QMP), through which a test reads the lights' lines, and qtest, through which it presses the
-button."""
+"""QEMU from outside: its monitor (QMP), through which a test reads the lights' lines, and qtest, through which it
+presses the button."""
 
 import json
 import socket

@@ -15,12 +15,17 @@ import hosts
 import machine
 import programs
 
-# What a card of this board's image is set up with; the rest is as in programs.settings(), but that a machine which is emulated
-# on a busy one is given time.
+# What a card of this board's image is set up with; the rest is as in programs.settings(), but that a machine which is
+# emulated on a busy one is given time.
 LISTEN = [{"address": "0.0.0.0", "port": 80}, {"address": "0.0.0.0", "port": 8000}]
-SETTINGS = {"team__listen": LISTEN, "command_post__rates": {"reports_hz": 20, "status_hz": 5, "map_hz": 1, "state_hz": 2, "markers_hz": 2}}
-NUMBERS = {"team": {"mode": "static", "address": cables.FACTORY_ADDRESS, "prefix": 24},
-           "command_post": {"addresses": [{"address": hosts.BOX_DARPA, "prefix": 24}], "gateway": ""}}
+SETTINGS = {
+    "team__listen": LISTEN,
+    "command_post__rates": {"reports_hz": 20, "status_hz": 5, "map_hz": 1, "state_hz": 2, "markers_hz": 2},
+}
+NUMBERS = {
+    "team": {"mode": "static", "address": cables.FACTORY_ADDRESS, "prefix": 24},
+    "command_post": {"addresses": [{"address": hosts.BOX_DARPA, "prefix": 24}], "gateway": ""},
+}
 ENDPOINTS = [(hosts.SCORING, programs.PORT), (hosts.MAPPING, programs.PORT)]
 FIGURES = pathlib.Path(os.environ.get("ADIT_FIGURES", "boot-figures.txt"))
 
@@ -33,16 +38,22 @@ def setUpModule():  # of each module that imports it
 
 def load_tests(_, tests, __):
     """A story is told in the order in which it is written."""
+
     def each(suite):
         for test in suite:
             yield from each(test) if isinstance(test, unittest.TestSuite) else [test]
-    return unittest.TestSuite(sorted(each(tests), key=lambda test: (
-        type(test).__name__, getattr(type(test), test._testMethodName).__code__.co_firstlineno)))
+
+    return unittest.TestSuite(
+        sorted(
+            each(tests),
+            key=lambda test: (type(test).__name__, getattr(type(test), test._testMethodName).__code__.co_firstlineno),
+        )
+    )
 
 
 class Stage:
-    """`set_up`: whether the card brings settings, addresses and tokens, as from a card reader. `post_options`: None for no
-    Command Post."""
+    """`set_up`: whether the card brings settings, addresses and tokens, as from a card reader. `post_options`: None for
+    no Command Post."""
 
     def __init__(self, set_up=True, post_options=("--rate", "0"), **overrides):
         self.temporary = tempfile.TemporaryDirectory(prefix="adit-boot-")
@@ -85,9 +96,21 @@ class Stage:
 
     def robots(self, seconds, *options):
         """The simulated team explores for so long. Its exit status, and what it said."""
-        robots = self.network.start(self.network.team, programs.BIN / "adit-robots", "--post", self.box.url, "--secrets",
-                                    self.folder / "secrets", "--for", seconds, "--quiet", *options,
-                                    stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True)
+        robots = self.network.start(
+            self.network.team,
+            programs.BIN / "adit-robots",
+            "--post",
+            self.box.url,
+            "--secrets",
+            self.folder / "secrets",
+            "--for",
+            seconds,
+            "--quiet",
+            *options,
+            stdout=subprocess.PIPE,
+            stderr=subprocess.STDOUT,
+            text=True,
+        )
         said, _ = robots.communicate(timeout=seconds + 60)
         return robots.returncode, said
 
@@ -104,8 +127,8 @@ class Stage:
 
 
 class Story(unittest.TestCase):
-    """Tests that share one machine, each of which begins where the one before it ended. Where one fails, those after it would
-    only say so again: they are skipped."""
+    """Tests that share one machine, each of which begins where the one before it ended. Where one fails, those after it
+    would only say so again: they are skipped."""
 
     broken = ""
 

@@ -1,4 +1,5 @@
-"""Every day's variant: the real root and units in a container, set up, reporting, restarted and killed, in under a minute."""
+"""Every day's variant: the real root and units in a container, set up, reporting, restarted and killed, in under a
+minute."""
 
 import pathlib
 import tempfile
@@ -71,10 +72,17 @@ class Everyday(Story):
     def test_it_is_set_up_over_the_api(self):
         self.asked("POST /adit/password", {"role": "operator", "code": self.box.code(), "password": PASSWORD})
         type(self).session = programs.log_in(self.box, PASSWORD)
-        for name, token in (("scoring", programs.SCORING_TOKEN), ("mapping", programs.MAPPING_TOKEN), ("team", programs.TEAM_TOKEN)):
+        for name, token in (
+            ("scoring", programs.SCORING_TOKEN),
+            ("mapping", programs.MAPPING_TOKEN),
+            ("team", programs.TEAM_TOKEN),
+        ):
             self.asked("POST /adit/tokens", {"name": name, "token": token})
         self.asked("POST /adit/network", stage.NUMBERS)
-        programs.wait_until(lambda: hosts.BOX_DARPA in str(self.asked("GET /adit/network")["command_post"]), "darpa0 to have its address")
+        programs.wait_until(
+            lambda: hosts.BOX_DARPA in str(self.asked("GET /adit/network")["command_post"]),
+            "darpa0 to have its address",
+        )
         self.asked("POST /adit/network/confirm")
         programs.wait_until(self.box.knows_the_run, "the box to know the run")
 

@@ -21,8 +21,13 @@ class FirstStart(Story):
         cls.stage.box.power_on()
 
     def asked(self, request, body=None, status=200):
-        got, said = self.box.ask(request, body=body, headers={**type(self).session, "Content-Type": "application/json"},
-                                 token=None, timeout=20)
+        got, said = self.box.ask(
+            request,
+            body=body,
+            headers={**type(self).session, "Content-Type": "application/json"},
+            token=None,
+            timeout=20,
+        )
         self.assertEqual(got, status, said)
         return said
 
@@ -52,14 +57,22 @@ class FirstStart(Story):
         type(self).session = programs.log_in(self.box, PASSWORD)
 
     def test_tokens_and_settings_are_set_over_the_api(self):
-        for name, token in (("scoring", programs.SCORING_TOKEN), ("mapping", programs.MAPPING_TOKEN), ("team", programs.TEAM_TOKEN)):
+        for name, token in (
+            ("scoring", programs.SCORING_TOKEN),
+            ("mapping", programs.MAPPING_TOKEN),
+            ("team", programs.TEAM_TOKEN),
+        ):
             self.asked("POST /adit/tokens", {"name": name, "token": token})
-        self.box.wait_until(lambda: self.box.wants(self.asked, "GET /adit/settings", applying=False), "the tokens to be in use")
+        self.box.wait_until(
+            lambda: self.box.wants(self.asked, "GET /adit/settings", applying=False), "the tokens to be in use"
+        )
         settings = programs.settings(self.stage.network, self.stage.overrides)
         tag = self.asked("GET /adit/settings")["tag"]
         self.asked("POST /adit/settings", {"settings": settings, "base": tag})
         self.box.wait_until(self.box.answers, "the box to serve with its new settings")
-        self.assertEqual(self.asked("GET /adit/settings")["settings"]["command_post"]["scoring"]["address"], hosts.SCORING)
+        self.assertEqual(
+            self.asked("GET /adit/settings")["settings"]["command_post"]["scoring"]["address"], hosts.SCORING
+        )
 
     def test_darpa0_gets_an_address_that_stays_once_it_is_confirmed(self):
         leds.wait_for(self.box, scoring="fast")
@@ -102,7 +115,9 @@ class FirstStart(Story):
 
     def test_nothing_listens_to_the_command_post(self):
         network = self.stage.network
-        self.assertEqual(network.open_ports(network.team, network.box_address, [22, 80, 8000]), [80, 8000], "this way it does")
+        self.assertEqual(
+            network.open_ports(network.team, network.box_address, [22, 80, 8000]), [80, 8000], "this way it does"
+        )
         self.assertEqual(network.open_ports(network.post, hosts.BOX_DARPA, PORTS_NOBODY_MAY_OPEN), [])
 
     def test_nor_is_the_teams_side_to_be_had_by_the_command_posts_cable(self):
@@ -113,12 +128,16 @@ class FirstStart(Story):
     def test_a_pulled_cable_shows_and_heals(self):
         self.box.plug("darpa0", False)
         leds.wait_for(self.box, scoring="flash", mapping="flash", within=30)
-        self.assertIn(("command_post", False), [(link["side"], link["carrier"]) for link in self.box.run_view()["links"]])
+        self.assertIn(
+            ("command_post", False), [(link["side"], link["carrier"]) for link in self.box.run_view()["links"]]
+        )
         heard = self.box.run_view()["run_heard"]
         self.box.plug("darpa0")
         began = programs.time.monotonic()
-        self.box.wait_until(lambda: self.box.run_view()["run_heard"] > heard and self.box.is_connected("scoring"),
-                            "the Command Post to be heard again")
+        self.box.wait_until(
+            lambda: self.box.run_view()["run_heard"] > heard and self.box.is_connected("scoring"),
+            "the Command Post to be heard again",
+        )
         healed = programs.time.monotonic() - began
         note("healed after the cable was put back in", f"{healed:.2f} s")
         self.assertLess(healed, 8.0, "2 s on a machine that is not emulated on a busy one")
@@ -132,7 +151,9 @@ class FirstStart(Story):
         self.assertGreater(len(reports), 0)
         self.box.press(11.0)
         type(self).session = {}
-        self.box.wait_until(lambda: self.box.wants(self.asked, "GET /adit/session", first_start=True), "the first start again", 60)
+        self.box.wait_until(
+            lambda: self.box.wants(self.asked, "GET /adit/session", first_start=True), "the first start again", 60
+        )
         self.assertEqual(self.box.ask("GET /adit/run")[0], 401, "the team's token is forgotten")
         self.box.press(4.0)
         self.box.wait_until(lambda: self.asked("GET /adit/session")["set_up_open"], "set-up to be open")

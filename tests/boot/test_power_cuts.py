@@ -1,4 +1,5 @@
-"""The plug pulled 20 times while reports flow, on a disk that loses what was not flushed: no report is lost or sent twice."""
+"""The plug pulled 20 times while reports flow, on a disk that loses what was not flushed: no report is lost or sent
+twice."""
 
 import time
 import unittest
@@ -21,8 +22,12 @@ class PowerCuts(Story):
         options = ["--rate", "0", "--reports", "100000", "--seed", str(SEED)]
         for fault, rate in FAULTS.items():
             options += ["--fault-rate", f"{fault}={rate}"]
-        cls.tell(Stage(post_options=options, **{**QUICK, "command_post__timeouts__scoring_answer_ms": 1500,
-                                                "reports__doubt_for_ms": 1000}))
+        cls.tell(
+            Stage(
+                post_options=options,
+                **{**QUICK, "command_post__timeouts__scoring_answer_ms": 1500, "reports__doubt_for_ms": 1000},
+            )
+        )
         cls.chance = dice(SEED)
 
     def test_a_cut_in_the_first_start_leaves_a_box_that_starts(self):
@@ -54,8 +59,12 @@ class PowerCuts(Story):
         self.assertEqual([client.odd for client in clients], [[]] * len(clients), "what no client should be told")
         posted = [each for client in clients for each in client.posted]
         recorded, waiting = judge(self, self.stage, operator, posted)
-        note(f"{CUTS} power cuts", f"{lost} writes lost, {len(posted)} reports posted, {recorded.total()} recorded, 0 doubled, "
-             f"{waiting} wait for the operator, {len(operator.judged)} judged by him; start {min(starts):.1f} to {max(starts):.1f} s")
+        note(
+            f"{CUTS} power cuts",
+            f"{lost} writes lost, {len(posted)} reports posted, {recorded.total()} recorded, 0 doubled, "
+            f"{waiting} wait for the operator, {len(operator.judged)} judged by him; "
+            f"starts of {min(starts):.1f} to {max(starts):.1f} s",
+        )
         self.assertGreater(recorded.total(), CUTS)
 
     def test_the_journal_of_all_these_starts_is_kept(self):

@@ -19,7 +19,9 @@ class Recovery(Story):
 
     def comes_back(self, within):
         """Until another process answers: seconds since it was hit()."""
-        self.box.wait_until(lambda: self.pid() not in (0, self.before) and self.box.answers(), "another aditd to answer", within)
+        self.box.wait_until(
+            lambda: self.pid() not in (0, self.before) and self.box.answers(), "another aditd to answer", within
+        )
         return time.monotonic() - self.when
 
     def hit(self, how):

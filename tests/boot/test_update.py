@@ -1,4 +1,5 @@
-"""Updates: one that stays, one that cannot start and is left again, and those that are refused. Settings and reports come along."""
+"""Updates: one that stays, one that cannot start and is left again, and those that are refused. Settings and reports
+come along."""
 
 import http.client
 import pathlib
@@ -40,7 +41,9 @@ class Updates(Story):
 
     def is_refused(self, path, *words):
         self.send(path)
-        refusal = self.box.wait_until(lambda: (now := self.stands())["doing"] is None and now["refusal"], "a refusal", 90)
+        refusal = self.box.wait_until(
+            lambda: (now := self.stands())["doing"] is None and now["refusal"], "a refusal", 90
+        )
         for word in words:
             self.assertIn(word, str(refusal))
         self.assertEqual((self.stands()["version"], self.stands()["slot"]), (RUNS, "A"))
@@ -62,6 +65,7 @@ class Updates(Story):
                 return self.last() == wanted
             except (OSError, ValueError, KeyError):
                 return False  # it starts anew
+
         self.box.wait_until(is_so, f"an update that is {wanted}", within)
 
     def test_it_runs_in_the_first_slot(self):

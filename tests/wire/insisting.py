@@ -1,6 +1,6 @@
-"""Clients that report one thing after another while the box dies again and again, and the verdict on what became of it all:
-each report that any client was told is taken or kept is recorded exactly once, or waits where the operator sees it; none is
-there twice."""
+"""Clients that report one thing after another while the box dies again and again, and the verdict on what became of it
+all: each report that any client was told is taken or kept is recorded exactly once, or waits where the operator sees
+it; none is there twice."""
 
 import collections
 import dataclasses
@@ -38,8 +38,8 @@ def at_of(row):
 
 
 class Client(threading.Thread):
-    """Reports one thing after another, each again and again until it is answered 201, or given up. It begins a new one at most
-    each `pause` seconds."""
+    """Reports one thing after another, each again and again until it is answered 201, or given up. It begins a new one
+    at most each `pause` seconds."""
 
     def __init__(self, stage, number, patience, pause=0.0):
         super().__init__(daemon=True)
@@ -76,9 +76,11 @@ class Operator:
 
     def waiting(self):
         """Those held, and those in doubt of which nothing was found out for a while, by their numbers."""
-        return {row["number"]: row for row in self.stage.box.reports()
-                if row["state"] == "received"
-                or (row["state"] == "in doubt" and time.time() - row["changed"] > DOUBTED)}
+        return {
+            row["number"]: row
+            for row in self.stage.box.reports()
+            if row["state"] == "received" or (row["state"] == "in doubt" and time.time() - row["changed"] > DOUBTED)
+        }
 
     def looks(self):
         waiting = self.waiting()
@@ -104,7 +106,8 @@ def end(clients):
 
 
 def judge(test, stage, operator, all_posted):
-    """The verdict on `all_posted`, once all is at rest. What was recorded, as a Counter by (x, y), and how many wait."""
+    """The verdict on `all_posted`, once all is at rest. What was recorded, as a Counter by (x, y), and how many
+    wait."""
     recorded = collections.Counter((made["x"], made["y"]) for made in stage.post.recorded())
     waiting = operator.waiting()
     said = stage.box.attention()

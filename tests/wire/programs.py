@@ -158,7 +158,8 @@ def log_in(page, password):
     """The headers that a browser sends from then on, as the operator."""
     connection = http.client.HTTPConnection(page.network.box_address, page.port, timeout=20)
     with contextlib.closing(connection):
-        connection.request("POST", "/adit/login", json.dumps({"password": password}), {"Content-Type": "application/json"})
+        connection.request("POST", "/adit/login", json.dumps({"password": password}),
+                           {"Content-Type": "application/json"})
         answer = connection.getresponse()
         said = json.loads(answer.read())
     if answer.status != 200:

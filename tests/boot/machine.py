@@ -39,7 +39,8 @@ class Firmware:
         package = next((SOURCE / "build" / "image" / "debian-arm64").glob("*/u-boot-qemu_*.deb"))
         opened = subprocess.run(["dpkg-deb", "--fsys-tarfile", package], stdout=subprocess.PIPE, check=True).stdout
         with open(self.loader, "wb") as loader:
-            subprocess.run(["tar", "-xO", "./usr/lib/u-boot/qemu_arm64/u-boot.bin"], input=opened, stdout=loader, check=True)
+            subprocess.run(["tar", "-xO", "./usr/lib/u-boot/qemu_arm64/u-boot.bin"], input=opened, stdout=loader,
+                           check=True)
         words = [line for line in (BOARD / "u-boot.env").read_text().splitlines() if line and not line.startswith("#")]
         text = folder / "environment.txt"
         text.write_text("\n".join(words) + "\n")
@@ -125,8 +126,8 @@ class Machine(programs.Page):
     # What a client on the team's side sees.
 
     def wait_for_answer(self, within=180.0):
-        """Until the first answer on team0. How long that took from the power switch on is in `answered_after`; how much of
-        this machine's processor time, which is what the clock of an idle one would say, in `cpu_answered_after`."""
+        """Until the first answer on team0. How long that took from the power switch on is in `answered_after`; how much
+        of this machine's processor time, which is what the clock of an idle one would say, in `cpu_answered_after`."""
         self.wait_until(self.answers, "the box to answer", within)
         self.answered_after, self.cpu_answered_after = time.monotonic() - self.switched_on, self.cpu_seconds()
 
@@ -162,6 +163,8 @@ class Machine(programs.Page):
             if not self.is_on():
                 raise AssertionError(f"QEMU has ended while waiting for {what}:\n"
                                      + (self.folder / "qemu.log").read_text(errors="replace"))
+            if "You are in emergency mode" in self.console.said():
+                raise AssertionError(f"systemd has given up while waiting for {what}")
             return condition()
         try:
             return programs.wait_until(is_so, what, within)

@@ -24,10 +24,7 @@ PORT = "virtio-net-pci,romfile="
 
 def image():
     """The newest image of the board that tests boot."""
-    found = sorted(IMAGES.glob("adit-qemu-virt-*.img"), key=lambda path: path.stat().st_mtime)
-    if not found:
-        raise AssertionError("there is no image: toolchain/image qemu-virt makes it")
-    return found[-1]
+    return max(IMAGES.glob("adit-qemu-virt-*.img"), key=lambda path: path.stat().st_mtime)
 
 
 class Firmware:
@@ -179,7 +176,11 @@ class Machine(programs.Page):
 
 
 def missing():
-    """What there must be on this machine, or the words that say what is missing."""
+    """What keeps this machine from starting the other, in words; or ""."""
     wanted = ["qemu-system-aarch64", "qemu-img", "mkenvimage", "fdtput", "mcopy", "mtype", "setpriv", "dpkg-deb"]
     absent = [program for program in wanted if not shutil.which(program)]
-    return f"not on this machine: {', '.join(absent)}" if absent else ""
+    if absent:
+        return f"not on this machine: {', '.join(absent)}; toolchain/setup test installs it"
+    if not any(IMAGES.glob("adit-qemu-virt-*.img")):
+        return "there is no image: toolchain/image qemu-virt makes it"
+    return "" if os.path.exists("/dev/net/tun") else "no taps here: /dev/net/tun is missing"

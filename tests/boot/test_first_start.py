@@ -37,6 +37,9 @@ class FirstStart(Story):
         said = self.asked("GET /adit/session")
         self.assertEqual((said["role"], said["first_start"], said["set_up_open"]), (None, True, False))
 
+    def test_the_lights_say_that_somebody_has_to_set_it_up(self):
+        leds.wait_for(self.box, health="on", scoring="fast", mapping="fast", attention="fast")
+
     def test_the_root_is_read_only_and_the_state_has_the_rest_of_the_card(self):
         self.box.console.wait_for_shell()
         self.assertNotEqual(self.box.console.run("touch /etc/x")[0], 0)
@@ -75,7 +78,6 @@ class FirstStart(Story):
         )
 
     def test_darpa0_gets_an_address_that_stays_once_it_is_confirmed(self):
-        leds.wait_for(self.box, scoring="fast")
         self.asked("POST /adit/network", stage.NUMBERS)
         self.box.wait_until(lambda: self.asked("GET /adit/network")["pending"], "the change to be tried")
         self.box.wait_until(lambda: self.has_address(hosts.BOX_DARPA), "darpa0 to have its address", 30)

@@ -70,6 +70,7 @@ class Updates(Story):
 
     def test_it_runs_in_the_first_slot(self):
         self.stage.start().began()
+        self.box.wait_until(lambda: self.stands()["managed"], "adit-update to have told what runs", 60)
         self.assertEqual((self.stands()["managed"], self.stands()["version"], self.stands()["slot"]), (True, RUNS, "A"))
         status, said = self.box.ask("POST /api/artifact_reports", body=REPORT, timeout=30)
         self.assertEqual(status, 201, said)

@@ -10,6 +10,7 @@ namespace adit::gateway {
 struct Options {
   std::string settings, secrets, state;
   std::string network = "/run/adit-network";
+  std::string board;  // "": none
   bool help = false, version = false;
 };
 

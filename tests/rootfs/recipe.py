@@ -22,7 +22,7 @@ def conf(board: str, name: str) -> list[str]:
 
 def built() -> list[str]:
     """The boards of which there is an image."""
-    return [board for board in BOARDS if (IMAGES / board / "work/root.squashfs").exists()]
+    return [board for board in BOARDS if list((IMAGES / board).glob("*.spdx.json"))]
 
 
 def nodes(dtb: Path) -> dict[str, dict[str, str]]:

@@ -55,7 +55,8 @@ struct Parts {
   std::string trouble;  // for the operator: why the settings are not those that were wanted; or ""
   ledger::Ledger ledger;
   settings::Board board;
-  std::string board_trouble;  // why what the board's file says does not count; or ""
+  std::string board_trouble;         // why what the board's file says does not count; or ""
+  std::vector<std::string> notices;  // of those who started the box
   std::unique_ptr<panel::Lines> lines;
   std::unique_ptr<panel::ButtonLine> button;  // null: there is none
   std::string runtime_folder;

@@ -34,6 +34,7 @@ void Gateway::say_what_is_missing(std::vector<std::string>& sentences) const {
   for (const std::string* trouble : {&parts_.trouble, &parts_.loaded.trouble, &parts_.board_trouble}) {
     if (!trouble->empty()) sentences.push_back(*trouble);
   }
+  std::ranges::copy(parts_.notices, std::back_inserter(sentences));
   if (!scoring_.channel().has_token())
     sentences.emplace_back("no scoring token is set: reports wait until one is");
   if (!maps_.channel().has_token()) {

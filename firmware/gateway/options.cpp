@@ -19,6 +19,9 @@ const char* const kUsage =
     "  --board FILE     what the board is, and where its lights and its button are: counts before the "
     "settings'\n"
     "                   panel; may be absent\n"
+    "  --notices DIR    sentences for the operator, a file each, of whatever started the box; "
+    "/run/adit-notices if not\n"
+    "                   given\n"
     "  --version        prints the version\n"
     "  --help           prints this\n"
     "\n"
@@ -43,6 +46,7 @@ std::expected<Options, std::string> parse_options(std::span<char* const> argumen
                                : word == "--state"   ? &options.state
                                : word == "--network" ? &options.network
                                : word == "--board"   ? &options.board
+                               : word == "--notices" ? &options.notices
                                                      : nullptr;
     if (value == nullptr) return std::unexpected("unknown word '" + std::string(word) + "'");
     if (++i == arguments.size()) return std::unexpected(std::string(word) + " wants a value");

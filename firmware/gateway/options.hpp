@@ -11,6 +11,7 @@ struct Options {
   std::string settings, secrets, state;
   std::string network = "/run/adit-network";
   std::string board;  // "": none
+  std::string notices = "/run/adit-notices";
   bool help = false, version = false;
 };
 

@@ -1,6 +1,7 @@
 #include "update/bundle.hpp"
 
 #include <charconv>
+#include <functional>
 
 #include "codec/field.hpp"
 #include "codec/json.hpp"
@@ -13,6 +14,9 @@ namespace {
 using codec::Field;
 using codec::Value;
 
+constexpr std::size_t kLongestFault = 300;
+constexpr std::string_view kLastError = "LastError: ";
+
 /// RAUC lists slots as objects of one member, the slot's name.
 void take_slot(const Value& slot, const std::string& booted, Running& running) {
   const auto* named = std::get_if<Value::Object>(&slot.is);
@@ -22,6 +26,15 @@ void take_slot(const Value& slot, const std::string& booted, Running& running) {
   const Field name = field.member("bootname");
   if (name.is_absent() || !name.is<std::string>()) return;  // a part of another slot
   if (name.text() != booted) running.other = name.text();
+}
+
+void for_each_line(std::string_view text, const std::function<void(std::string_view)>& tell) {
+  while (!text.empty()) {
+    const std::size_t end = text.find('\n');
+    tell(text.substr(0, end));
+    if (end == std::string_view::npos) return;
+    text.remove_prefix(end + 1);
+  }
 }
 
 }  // namespace
@@ -60,6 +73,17 @@ std::optional<int> percent_in(std::string_view line) {
   const auto [end, error] = std::from_chars(line.data() + digit, line.data() + line.size(), percent);
   if (error != std::errc{} || end == line.data() + line.size() || *end != '%') return std::nullopt;
   return percent >= 0 && percent <= 100 ? std::optional(percent) : std::nullopt;
+}
+
+std::string fault_in(std::string_view out, std::string_view err) {
+  std::string_view fault;
+  for_each_line(err, [&fault](std::string_view line) {
+    if (!line.empty() && !line.starts_with("rauc-Message")) fault = line;
+  });
+  for_each_line(out, [&fault](std::string_view line) {
+    if (line.starts_with(kLastError)) fault = line.substr(kLastError.size());
+  });
+  return std::string(fault.substr(0, kLongestFault));
 }
 
 std::string hindrance(const Bundle& bundle, const Running& running, bool again) {

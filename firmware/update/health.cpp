@@ -31,9 +31,9 @@ Ready read_ready(std::string_view properties, std::chrono::microseconds now) {
   return at <= now ? Ready(now - at) : std::nullopt;
 }
 
-Health judge(bool trial, const Ready& ready, std::chrono::microseconds since_start) {
+Health judge(bool trial, const Ready& ready, bool late) {
   if (ready && (!trial || *ready >= kHealthyFor)) return Health::Good;
-  return trial && since_start >= kGoodWithin ? Health::Restart : Health::Wait;
+  return trial && late ? Health::Restart : Health::Wait;
 }
 
 }  // namespace adit::update

@@ -21,12 +21,12 @@ enum class Health : std::uint8_t {
 
 /// A slot on trial is good once aditd has been ready, and its watchdog fed, for so long without a break.
 inline constexpr std::chrono::seconds kHealthyFor{60};
-/// A slot on trial that is not good so long after the kernel's start is started anew.
+/// For so long a slot on trial may be not good.
 inline constexpr std::chrono::seconds kGoodWithin{300};
 
-/// `since_start`: of the kernel. A slot that is not on trial is good as soon as aditd is ready, so that short
+/// `late`: kGoodWithin is over. A slot that is not on trial is good as soon as aditd is ready, so that short
 /// lives (a loose plug) do not count against it, and never ends in a restart: what is wrong with it are its
 /// settings, and they are set right on a box that stays up.
-Health judge(bool trial, const Ready& ready, std::chrono::microseconds since_start);
+Health judge(bool trial, const Ready& ready, bool late);
 
 }  // namespace adit::update

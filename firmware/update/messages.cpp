@@ -20,8 +20,8 @@ constexpr std::int64_t kFormat = 1;  // of these files
 constexpr std::pair<std::string_view, Request::What> kWhat[] = {{"install", Request::What::Install},
                                                                 {"stick", Request::What::Stick},
                                                                 {"restart", Request::What::Restart}};
-constexpr Stage kStages[] = {Stage::None,   Stage::Refused,   Stage::Installing, Stage::Interrupted,
-                             Stage::Failed, Stage::Installed, Stage::Left,       Stage::Good};
+constexpr Stage kStages[] = {Stage::None,      Stage::Installing, Stage::Interrupted, Stage::Failed,
+                             Stage::Installed, Stage::Left,       Stage::Good};
 
 std::string written(Value::Object members) {
   members.insert(members.begin(), {"format", {kFormat}});
@@ -116,6 +116,7 @@ std::string write(const Status& status) {
                                   {"slot", {running.slot}},
                                   {"other", {running.other}}}}},
                   {"nonce", {status.nonce}},
+                  {"refusal", {status.refusal}},
                   {"doing", {status.doing}},
                   {"progress", status.progress ? Value{std::int64_t{*status.progress}} : Value{}},
                   {"last", story_json(status.last)},
@@ -150,13 +151,14 @@ Read<Request> read_request(std::string_view json) {
 
 Read<Status> read_status_file(std::string_view json) {
   return read<Status>(json, [](const Field& root) {
-    only(root, {"format", "trouble", "running", "nonce", "doing", "progress", "last", "trial", "stick",
-                "stick_trouble"});
+    only(root, {"format", "trouble", "running", "nonce", "refusal", "doing", "progress", "last", "trial",
+                "stick", "stick_trouble"});
     const Field progress = root.member("progress");
     return Status{
         .trouble = text(root, "trouble"),
         .running = running_in(root),
         .nonce = text(root, "nonce"),
+        .refusal = text(root, "refusal"),
         .doing = text(root, "doing"),
         .progress = progress.is_absent() ? std::nullopt : std::optional(progress.whole<int>(0, 100)),
         .last = last_in(root),

@@ -42,6 +42,7 @@ struct Status {
   std::string trouble = "";  // why nothing can be updated here; "" where it can
   Running running = {};
   std::string nonce = "";            // of the last request that was taken up
+  std::string refusal = "";          // why it was not done; "" where it was, or is being done
   std::string doing = "";            // "", "checking", "installing", "restarting"
   std::optional<int> progress = {};  // per cent of "installing"
   Story last = {};

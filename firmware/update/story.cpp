@@ -6,8 +6,6 @@ namespace adit::update {
 
 std::string_view name_of(Stage stage) {
   switch (stage) {
-    case Stage::Refused:
-      return "refused";
     case Stage::Installing:
       return "installing";
     case Stage::Interrupted:

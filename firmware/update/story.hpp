@@ -11,7 +11,6 @@ namespace adit::update {
 /// How far the last update has come. What is installed is on trial until it was healthy once.
 enum class Stage : std::uint8_t {
   None,         // there was none
-  Refused,      // nothing was written
   Installing,   // the other slot is being written
   Interrupted,  // while it was: the slot that runs was not touched
   Failed,       // RAUC could not write it
@@ -19,7 +18,7 @@ enum class Stage : std::uint8_t {
   Left,         // it did not come up healthy in three starts, and the boot loader went back
   Good,         // it came up healthy
 };
-/// "", "refused", "installing", ...
+/// "", "installing", "interrupted", ...
 std::string_view name_of(Stage stage);
 
 /// The last update. Kept over starts of the machine.

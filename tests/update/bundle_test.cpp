@@ -56,6 +56,18 @@ TEST(Progress, IsTheNumberBeforeThePerCent) {
   }
 }
 
+TEST(Fault, IsTheLastThingThatRaucSays) {
+  EXPECT_EQ(
+      fault_in("",
+               "rauc-Message: 15:05:30.310: Reading bundle: x\nInvalid bundle format: Signature size is 0\n"),
+      "Invalid bundle format: Signature size is 0");
+  EXPECT_EQ(fault_in("installing\n100% Installing failed.\nLastError: No space left on device\nidle\n",
+                     "rauc-Message: 1\nInstalling `x` failed\n"),
+            "No space left on device");
+  EXPECT_EQ(fault_in("", "rauc-Message: 1\n"), "");
+  EXPECT_EQ(fault_in("", std::string(5000, 'x')).size(), 300u);
+}
+
 TEST(Hindrance, IsNoneToANewerVersionForThisBoard) {
   for (const char* version : {"0.2.1", "0.3.0-rc.1", "1.0.0"}) {
     EXPECT_EQ(hindrance({"adit-qemu-virt", version}, kRunning, false), "") << version;

@@ -16,6 +16,7 @@ Status a_status() {
   return {.trouble = "none",
           .running = {"adit-qemu-virt", "0.1.0", "A", "B"},
           .nonce = kNonce,
+          .refusal = "no",
           .doing = "installing",
           .progress = 40,
           .last = {Stage::Left, "0.2.0", "B", "boot", "it did not"},
@@ -38,7 +39,7 @@ TEST(Messages, SayWhatTheyWereGiven) {
   const auto none = read_status_file(write(Status{}));
   ASSERT_TRUE(none) << none.error();
   EXPECT_EQ(*none, Status{});
-  for (const Stage stage : {Stage::None, Stage::Refused, Stage::Installing, Stage::Interrupted, Stage::Failed,
+  for (const Stage stage : {Stage::None, Stage::Installing, Stage::Interrupted, Stage::Failed,
                             Stage::Installed, Stage::Left, Stage::Good}) {
     const Story story{stage, "0.2.0", "B", "boot", "why"};
     const auto read = read_story(write(story));

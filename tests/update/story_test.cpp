@@ -38,8 +38,7 @@ TEST(Story, OfAnInterruptedInstallationIsOverInThisStartOrTheNext) {
 }
 
 TEST(Story, ThatIsOverStaysAsItWas) {
-  for (const Stage stage :
-       {Stage::None, Stage::Refused, Stage::Interrupted, Stage::Failed, Stage::Left, Stage::Good}) {
+  for (const Stage stage : {Stage::None, Stage::Interrupted, Stage::Failed, Stage::Left, Stage::Good}) {
     for (const Running& running : {kOld, kNew}) {
       EXPECT_EQ(settled(story(stage), running, "third"), story(stage)) << name_of(stage);
       EXPECT_FALSE(on_trial(story(stage), running.slot, "third")) << name_of(stage);

@@ -24,6 +24,7 @@
 #include "gateway/spool.hpp"
 #include "gateway/store.hpp"
 #include "gateway/this_box.hpp"
+#include "gateway/updates.hpp"
 #include "host/service.hpp"
 #include "intake/icd_routes.hpp"
 #include "lanes/stamps.hpp"
@@ -52,6 +53,7 @@ struct Parts {
   std::unique_ptr<panel::Lines> lines;
   std::string runtime_folder;
   std::string state_folder;
+  std::string update_folder;     // where adit-update tells its status
   std::string network_folder;    // where adit-network tells its status
   std::optional<Legacy> legacy;  // of the gateway before, where there was one
 };
@@ -118,6 +120,7 @@ class Gateway final : public intake::Desk, public page::Source, public page::Ope
   void note_robot(const std::string& name);
   panel::Condition condition() const;
   std::vector<std::string> attention() const;
+  std::string report_under_way() const;
   void say_what_is_missing(std::vector<std::string>& sentences) const;
   std::vector<page::EndpointRow> endpoints() const;
 
@@ -143,6 +146,7 @@ class Gateway final : public intake::Desk, public page::Source, public page::Ope
   NetworkRequests network_requests_;
   NetworkChange network_;
   SelfTest self_test_;
+  Updates updates_;
   page::Page page_;
   intake::IcdRoutes routes_;
   std::vector<std::unique_ptr<intake::Server>> servers_;

@@ -16,6 +16,7 @@ const char* const kUsage =
     "and\n"
     "                   secrets/, which count before the other two; made where it is absent\n"
     "  --network DIR    where adit-network tells how it stands; /run/adit-network if not given\n"
+    "  --update DIR     where adit-update tells how it stands; /run/adit-update if not given\n"
     "  --version        prints the version\n"
     "  --help           prints this\n"
     "\n"
@@ -39,6 +40,7 @@ std::expected<Options, std::string> parse_options(std::span<char* const> argumen
                                : word == "--secrets" ? &options.secrets
                                : word == "--state"   ? &options.state
                                : word == "--network" ? &options.network
+                               : word == "--update"  ? &options.update
                                                      : nullptr;
     if (value == nullptr) return std::unexpected("unknown word '" + std::string(word) + "'");
     if (++i == arguments.size()) return std::unexpected(std::string(word) + " wants a value");

@@ -9,7 +9,7 @@ namespace adit::gateway {
 /// aditd's command line.
 struct Options {
   std::string settings, secrets, state;
-  std::string network = "/run/adit-network";
+  std::string network = "/run/adit-network", update = "/run/adit-update";
   bool help = false, version = false;
 };
 

@@ -20,7 +20,8 @@ std::string by(const std::string& interface) {
 
 std::string lines_of(const settings::Panel& panel) {
   std::string lines;
-  for (const std::string& line : {panel.health, panel.scoring, panel.mapping, panel.attention}) {
+  for (const std::string& line :
+       {panel.health, panel.scoring, panel.mapping, panel.attention, panel.button}) {
     if (!line.empty()) lines.append(lines.empty() ? "" : ", ").append(line);
   }
   return lines;
@@ -39,7 +40,8 @@ std::string summary(const std::string& file, const Settings& settings, bool colo
   }
   table.add({{"link", Tone::Strong}, {decimal(post.budget_mbit, 3) + " Mbit/s"}, {}});
   const settings::Panel& panel = settings.panel;
-  table.add({{"panel", Tone::Strong}, {panel.chip.empty() ? "simulated" : panel.chip}, {lines_of(panel)}});
+  const std::string chip = panel.chip.empty() ? "any chip" : panel.chip;
+  table.add({{"panel", Tone::Strong}, {panel.is_simulated() ? "simulated" : chip}, {lines_of(panel)}});
   return host::escaped(file) + ": " + painted("good", Tone::Good, colour) + '\n' + table.written(colour);
 }
 

@@ -65,9 +65,13 @@ icd::Checked<access::Accounts> with(access::Accounts accounts, Role role,
 
 }  // namespace
 
-Accounts::Accounts(loop::Workers& workers, SessionKeeper& sessions, std::string folder,
-                   std::optional<icd::BearerToken> label_code)
-    : workers_(workers), sessions_(sessions), folder_(std::move(folder)), accounts_(read(file())) {
+Accounts::Accounts(const loop::Loop& loop, loop::Workers& workers, SessionKeeper& sessions,
+                   std::string folder, std::optional<icd::BearerToken> label_code)
+    : loop_(loop),
+      workers_(workers),
+      sessions_(sessions),
+      folder_(std::move(folder)),
+      accounts_(read(file())) {
   if (!first_start()) return;
   const bool on_label = label_code.has_value();
   code_ = on_label ? std::move(label_code) : kept_code();
@@ -142,16 +146,24 @@ void Accounts::set(Role role, std::optional<std::string> password,
       return done(std::unexpected(changed->error()));
     }
     accounts_ = std::move(**changed);
+    if (role == Role::Operator) set_up_.close();
     host::log(Level::Notice, accounts_.of(role) ? "a password was set" : "a password was taken away",
               {{"role", std::string(name_of(role))}});
     done({});
   });
 }
 
+void Accounts::open_set_up() {
+  set_up_.open(loop_.now());
+  host::log(Level::Warning, "set-up is opened at the box: a new password may be set without the present one",
+            {{"minutes", std::to_string(access::SetUpWindow::kLength.count())}});
+}
+
 bool Accounts::forget() {
   if (setting_) return false;
   accounts_ = {};
   code_.reset();
+  set_up_.close();
   host::remove_file(file());
   host::remove_file(code_file());
   sessions_.forget();

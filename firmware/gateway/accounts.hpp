@@ -4,8 +4,10 @@
 #include <string>
 
 #include "access/accounts.hpp"
+#include "access/set_up_window.hpp"
 #include "gateway/session_keeper.hpp"
 #include "icd/bearer_token.hpp"
+#include "loop/loop.hpp"
 #include "loop/workers.hpp"
 #include "page/keys.hpp"
 
@@ -16,18 +18,24 @@ namespace adit::gateway {
 /// logged, and keeps nothing else from working.
 class Accounts final : public page::Keys {
  public:
-  /// Logs the code of a first start, unless it is on the label. `workers` and `sessions` outlive this.
-  Accounts(loop::Workers& workers, SessionKeeper& sessions, std::string folder,
+  /// Logs the code of a first start, unless it is on the label. `loop`, `workers` and `sessions` outlive
+  /// this.
+  Accounts(const loop::Loop& loop, loop::Workers& workers, SessionKeeper& sessions, std::string folder,
            std::optional<icd::BearerToken> label_code);
 
   bool first_start() const override { return !accounts_.operator_; }
   bool is_code(std::string_view presented) const override;
+  bool set_up_open() const override { return set_up_left().has_value(); }
   void check(std::string password, std::string address,
              std::function<void(std::optional<access::Role>)> done) override;
   void set(access::Role role, std::optional<std::string> password,
            std::function<void(icd::Checked<void>)> done) override;
   access::Sessions& sessions() override { return sessions_.sessions(); }
   access::Secret draw() override;
+
+  /// On the word of the box's own button. Nothing else calls it.
+  void open_set_up();
+  std::optional<access::Duration> set_up_left() const { return set_up_.left(loop_.now()); }
 
   /// No passwords any more, a new code, and nobody logged in. False: a password is being set.
   bool forget();
@@ -37,11 +45,13 @@ class Accounts final : public page::Keys {
   std::string code_file() const { return folder_ + "/first-start.code"; }
   icd::BearerToken kept_code();
 
+  const loop::Loop& loop_;
   loop::Workers& workers_;
   SessionKeeper& sessions_;
   std::string folder_;
   access::Accounts accounts_;
   std::optional<icd::BearerToken> code_;
+  access::SetUpWindow set_up_;
   bool setting_ = false;
 };
 

@@ -33,11 +33,12 @@ Gateway::Gateway(loop::Loop& loop, Parts parts)
       news_(loop, settings_, token_for("mapping", settings_, parts_.loaded.secrets), record_, random_,
             as_forwarded_),
       lights_(loop, std::move(parts_.lines)),
+      button_(loop, std::move(parts_.button), lights_, [this](panel::Press press) { pressed(press); }),
       roster_(settings_.robots),
       sessions_(parts_.runtime_folder + "/sessions.json", loop.now()),
-      accounts_(workers_, sessions_, parts_.state_folder, parts_.loaded.secrets.label_code),
+      accounts_(loop, workers_, sessions_, parts_.state_folder, parts_.loaded.secrets.label_code),
       setup_(parts_.store, parts_.loaded, accounts_, [this] { make_way(); }),
-      box_(loop, workers_, settings::file_of(parts_.loaded.settings),
+      box_(loop, workers_, parts_.board, settings::file_of(parts_.loaded.settings),
            [this](page::Usage& usage) { add_to(usage); }),
       network_requests_(parts_.state_folder, parts_.network_folder),
       network_(loop, settings_, network_requests_),
@@ -95,17 +96,21 @@ std::expected<void, std::string> Gateway::start() {
 
 std::expected<void, std::string> Gateway::listen() {
   const settings::Team& team = settings_.team;
-  for (const settings::Address& address : team.listen) {
+  auto open = parts_.sockets.open(team);
+  if (!open) return std::unexpected(std::move(open.error()));
+  for (ListenSockets::Open& each : *open) {
     auto server = intake::Server::start(loop_,
-                                        {.address = address.address,
-                                         .port = address.port,
-                                         .interface = team.interface,
+                                        {.address = each.at.address,
+                                         .port = each.at.port,
+                                         .interface = each.at.interface,
                                          .connections = team.connections,
                                          .connections_per_address = team.connections_per_address},
-                                        routes_);
+                                        routes_, std::move(each.socket));
     if (!server) return std::unexpected(server.error());
     host::log(host::Level::Notice, "listening",
-              {{"address", address.address}, {"port", std::to_string((*server)->port())}});
+              {{"address", each.at.address},
+               {"port", std::to_string(each.at.port)},
+               {"interface", each.at.interface}});
     servers_.push_back(std::move(*server));
   }
   return {};
@@ -238,18 +243,6 @@ std::int64_t Gateway::begin_run() {
   return scoring_.begin_run();
 }
 
-page::Time Gateway::identify(double seconds) {
-  const auto length = std::chrono::duration_cast<loop::Duration>(std::chrono::duration<double>(seconds));
-  lights_.identify(length);
-  page_.changed();
-  return loop_.stamp_now() + seconds;
-}
-
-void Gateway::show_lights() {
-  lights_.show(condition());
-  if (std::exchange(told_lights_, lights_.shown()) != lights_.shown()) page_.changed();
-}
-
 void Gateway::changed() {
   picture_the_run();
   page_.changed();
@@ -271,11 +264,20 @@ void Gateway::every_second() {
   show_lights();
   keep_news();
   keep_sessions();
+  look_at_sockets();
   if (std::string line = status_line(); line != notified_) {
     host::notify_status(line);
     notified_ = std::move(line);
   }
   second_.call_at(loop_.now() + std::chrono::seconds(1));
+}
+
+/// The team's interface came back as another one.
+void Gateway::look_at_sockets() {
+  const ListenSockets::Reach reach = parts_.sockets.reach();
+  if (reach == ListenSockets::Reach::Well || stop_by_) return;
+  host::log(host::Level::Warning, "the team's interface is a new one: listening anew");
+  reach == ListenSockets::Reach::Anew ? make_way() : stop();
 }
 
 /// When somebody was seen last need not be known to the second.

@@ -9,7 +9,9 @@
 
 #include "gateway/accounts.hpp"
 #include "gateway/as_forwarded.hpp"
+#include "gateway/button_watch.hpp"
 #include "gateway/lights.hpp"
+#include "gateway/listen_sockets.hpp"
 #include "gateway/map_picture.hpp"
 #include "gateway/maps.hpp"
 #include "gateway/network_change.hpp"
@@ -32,7 +34,8 @@
 #include "loop/loop.hpp"
 #include "loop/workers.hpp"
 #include "page/page.hpp"
-#include "panel/panel.hpp"
+#include "panel/lines.hpp"
+#include "settings/board.hpp"
 #include "settings/settings.hpp"
 
 namespace adit::gateway {
@@ -46,11 +49,15 @@ struct Legacy {
 
 /// What the gateway is made of: all of it has passed its checks.
 struct Parts {
-  const Store& store;  // outlives the gateway
+  const Store& store;      // outlives the gateway
+  ListenSockets& sockets;  // so does this
   Store::Loaded loaded;
   std::string trouble;  // for the operator: why the settings are not those that were wanted; or ""
   ledger::Ledger ledger;
+  settings::Board board;
+  std::string board_trouble;  // why what the board's file says does not count; or ""
   std::unique_ptr<panel::Lines> lines;
+  std::unique_ptr<panel::ButtonLine> button;  // null: there is none
   std::string runtime_folder;
   std::string state_folder;
   std::string update_folder;     // where adit-update tells its status
@@ -74,6 +81,8 @@ class Gateway final : public intake::Desk, public page::Source, public page::Ope
   bool makes_way() const { return makes_way_; }
   /// Once it has stopped, or could not start.
   Legacy hand_over() { return {picture_.hand_over(), pictured_run_, std::move(as_forwarded_)}; }
+  /// To be asked for signs of life.
+  loop::Workers& workers() { return workers_; }
   /// What systemd shows: one line.
   std::string status_line() const;
 
@@ -110,6 +119,7 @@ class Gateway final : public intake::Desk, public page::Source, public page::Ope
   void picture_the_run();
   void every_second();
   void keep_sessions();
+  void look_at_sockets();
   void show_lights();
   double sent_mbit() const;
   std::uint64_t sent_bytes() const;
@@ -118,7 +128,10 @@ class Gateway final : public intake::Desk, public page::Source, public page::Ope
   intake::IcdOptions icd_options() const;
   std::vector<icd::BearerToken> tokens() const;
   void note_robot(const std::string& name);
-  panel::Condition condition() const;
+  void assert_states();
+  void pressed(panel::Press press);
+  void show_address();
+  std::string team_address() const;
   std::vector<std::string> attention() const;
   std::string report_under_way() const;
   void say_what_is_missing(std::vector<std::string>& sentences) const;
@@ -138,6 +151,7 @@ class Gateway final : public intake::Desk, public page::Source, public page::Ope
   AsForwarded as_forwarded_;
   News news_;
   Lights lights_;
+  ButtonWatch button_;
   Roster roster_;
   SessionKeeper sessions_;
   Accounts accounts_;

@@ -1,4 +1,4 @@
-// What the operator must know, in lights and in words.
+// What the operator must know, in words.
 #include <algorithm>
 #include <iterator>
 
@@ -6,17 +6,6 @@
 #include "icd/sentence.hpp"
 
 namespace adit::gateway {
-
-panel::Condition Gateway::condition() const {
-  const Channel& scoring = scoring_.channel();
-  return {.serving = !servers_.empty() && scoring_.trouble().empty(),
-          .scoring_connected = scoring.connected(),
-          .scoring_failing = !scoring.trouble().empty(),
-          .mapping_connected = news_.channel().connected(),
-          .mapping_failing = !news_.channel().trouble().empty() || !maps_.channel().trouble().empty(),
-          .report_waiting = !scoring_.reports().book().waiting().empty(),
-          .needs_operator = !attention().empty()};
-}
 
 std::vector<std::string> Gateway::attention() const {
   std::vector<std::string> sentences = scoring_.reports().attention();
@@ -52,7 +41,7 @@ std::string Gateway::report_under_way() const {
 
 /// What was to be set up, and is not.
 void Gateway::say_what_is_missing(std::vector<std::string>& sentences) const {
-  for (const std::string* trouble : {&parts_.trouble, &parts_.loaded.trouble}) {
+  for (const std::string* trouble : {&parts_.trouble, &parts_.loaded.trouble, &parts_.board_trouble}) {
     if (!trouble->empty()) sentences.push_back(*trouble);
   }
   if (!scoring_.channel().has_token())

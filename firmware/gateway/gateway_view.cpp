@@ -53,6 +53,7 @@ page::RunView Gateway::view() const {
                      .refusals = record_.refusals(),
                      .lights = {},
                      .identify_until = {},
+                     .setup_open_until = {},
                      .budget_mbit = settings_.command_post.budget_mbit,
                      .sent_mbit = sent_mbit(),
                      .queued_bytes = maps_.queued_bytes(),
@@ -66,13 +67,14 @@ page::RunView Gateway::view() const {
     if (row.kind == "cloud") row.waiting = maps_.waiting({Kind::Cloud, row.robot});
   }
   for (const panel::Light light : panel::kLights) {
-    view.lights.push_back(
-        {.name = std::string(panel::name_of(light)),
-         .pattern = std::string(panel::name_of(lights_.shown()[static_cast<std::size_t>(light)]))});
+    view.lights.push_back({.name = std::string(panel::name_of(light)),
+                           .pattern = std::string(panel::name_of(lights_.shown()[panel::index_of(light)]))});
   }
-  if (const auto left = lights_.identifying()) {
-    view.identify_until = view.now + std::chrono::duration<double>(*left).count();
-  }
+  const auto ends = [&view](std::optional<loop::Duration> left) {
+    return left ? std::optional(view.now + std::chrono::duration<double>(*left).count()) : std::nullopt;
+  };
+  view.identify_until = ends(lights_.left(panel::State::Identify));
+  view.setup_open_until = ends(accounts_.set_up_left());
   return view;
 }
 

@@ -8,13 +8,17 @@
 #include <utility>
 
 #include "gateway/gateway.hpp"
+#include "gateway/open_panel.hpp"
 #include "gateway/options.hpp"
 #include "gateway/version.hpp"
+#include "host/inherited.hpp"
 #include "host/log.hpp"
+#include "loop/watchdog.hpp"
 
 namespace {
 
 using adit::gateway::Gateway;
+using adit::gateway::ListenSockets;
 using adit::gateway::Options;
 using adit::gateway::Parts;
 using adit::gateway::Store;
@@ -35,28 +39,23 @@ std::expected<void, std::string> make_folder(const std::string& folder) {
   return {};
 }
 
-std::unique_ptr<adit::panel::Lines> open_panel(const adit::settings::Panel& settings,
-                                               const std::string& folder) {
-  if (!settings.chip.empty()) {
-    auto lines = adit::panel::open_gpio(settings);
-    if (lines) return std::move(*lines);
-    adit::host::log(adit::host::Level::Error, "the panel is simulated: its lines cannot be had",
-                    {{"why", lines.error()}});
-  }
-  return adit::panel::simulated(folder + "/panel");
-}
-
-std::expected<Parts, std::string> gather(const Options& options, const Store& store) {
+std::expected<Parts, std::string> gather(const Options& options, const Store& store, ListenSockets& sockets) {
   auto loaded = store.load();
   if (!loaded) return std::unexpected(loaded.error());
   auto ledger = adit::ledger::Ledger::open(options.state);
   if (!ledger) return std::unexpected(ledger.error().what);
-  auto lines = open_panel(loaded->settings.panel, runtime_folder(options));
+  auto known = adit::gateway::read_board(options.board);
+  auto panel =
+      adit::gateway::open_panel(known.board.panel.value_or(loaded->settings.panel), runtime_folder(options));
   return Parts{.store = store,
+               .sockets = sockets,
                .loaded = std::move(*loaded),
                .trouble = "",
                .ledger = std::move(*ledger),
-               .lines = std::move(lines),
+               .board = std::move(known.board),
+               .board_trouble = std::move(known.trouble),
+               .lines = std::move(panel.lines),
+               .button = std::move(panel.button),
                .runtime_folder = runtime_folder(options),
                .state_folder = options.state,
                .update_folder = options.update,
@@ -77,6 +76,7 @@ class Service {
       : options_(options), store_(options.settings, options.secrets, options.state) {}
 
   int run() {
+    if (auto taken = take_over_sockets(); !taken) return fail(taken.error());
     if (auto made = make_folder(options_.state); !made) return fail(made.error());
     const auto terminated = loop_.signal(SIGTERM, [this] { running_->stop(); });
     const auto interrupted = loop_.signal(SIGINT, [this] { running_->stop(); });
@@ -97,7 +97,7 @@ class Service {
  private:
   /// Whether another is to follow; an error: it could not start.
   std::expected<bool, std::string> run_one() {
-    auto parts = gather(options_, store_);
+    auto parts = gather(options_, store_, sockets_);
     if (!parts) return std::unexpected(parts.error());
     const adit::settings::Settings settings = parts->loaded.settings;
     parts->trouble = trouble_;
@@ -111,20 +111,40 @@ class Service {
   std::expected<bool, std::string> run(Gateway& gateway, const adit::settings::Settings& settings) {
     if (const auto started = gateway.start(); !started) return std::unexpected(started.error());
     store_.settle(settings);
-    if (!std::exchange(ready_, true)) loop_.feed_watchdog();
+    sockets_.settle();
     adit::host::notify_ready(gateway.status_line());
+    begin_watchdog();
+    if (watchdog_) watchdog_->ask_also(&gateway.workers());
     running_ = &gateway;
     loop_.run();
+    if (watchdog_) watchdog_->ask_also(nullptr);
     return gateway.makes_way();
+  }
+
+  void begin_watchdog() {
+    if (watchdog_) return;
+    if (const auto within = adit::host::watchdog_within()) {
+      watchdog_.emplace(loop_, *within, &adit::host::notify_alive);
+    }
+  }
+
+  std::expected<void, std::string> take_over_sockets() {
+    auto given = adit::host::inherited();
+    if (!given) return std::unexpected(std::move(given.error()));
+    auto sockets = ListenSockets::take_over(std::move(*given));
+    if (!sockets) return std::unexpected(std::move(sockets.error()));
+    sockets_ = std::move(*sockets);
+    return {};
   }
 
   const Options& options_;
   Store store_;
+  ListenSockets sockets_;
   adit::loop::Loop loop_;
-  Gateway* running_ = nullptr;  // signals come while the loop runs, and so does it
-  std::string trouble_;         // why the last change was taken back
+  std::optional<adit::loop::Watchdog> watchdog_;  // where systemd wants one
+  Gateway* running_ = nullptr;                    // signals come while the loop runs, and so does it
+  std::string trouble_;                           // why the last change was taken back
   std::optional<adit::gateway::Legacy> legacy_;
-  bool ready_ = false;
 };
 
 }  // namespace

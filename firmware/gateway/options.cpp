@@ -17,6 +17,9 @@ const char* const kUsage =
     "                   secrets/, which count before the other two; made where it is absent\n"
     "  --network DIR    where adit-network tells how it stands; /run/adit-network if not given\n"
     "  --update DIR     where adit-update tells how it stands; /run/adit-update if not given\n"
+    "  --board FILE     what the board is, and where its lights and its button are: counts before the "
+    "settings'\n"
+    "                   panel; may be absent\n"
     "  --version        prints the version\n"
     "  --help           prints this\n"
     "\n"
@@ -41,6 +44,7 @@ std::expected<Options, std::string> parse_options(std::span<char* const> argumen
                                : word == "--state"   ? &options.state
                                : word == "--network" ? &options.network
                                : word == "--update"  ? &options.update
+                               : word == "--board"   ? &options.board
                                                      : nullptr;
     if (value == nullptr) return std::unexpected("unknown word '" + std::string(word) + "'");
     if (++i == arguments.size()) return std::unexpected(std::string(word) + " wants a value");

@@ -10,6 +10,7 @@ namespace adit::gateway {
 struct Options {
   std::string settings, secrets, state;
   std::string network = "/run/adit-network", update = "/run/adit-update";
+  std::string board;  // "": none
   bool help = false, version = false;
 };
 

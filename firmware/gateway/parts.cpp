@@ -4,7 +4,6 @@
 #include <cbor.h>
 #include <crypt.h>
 #include <gnu/libc-version.h>
-#include <gpiod.h>
 #include <microhttpd.h>
 #include <sqlite3.h>
 #include <zlib.h>
@@ -13,6 +12,7 @@
 
 #include "gateway/build.hpp"
 #include "icd/sentence.hpp"
+#include "panel/lines.hpp"
 
 namespace adit::gateway {
 namespace {
@@ -39,7 +39,7 @@ std::vector<page::PartRow> parts() {
           {.name = "SQLite", .version = sqlite3_libversion(), .licence = "blessing"},
           {.name = "Boost.Beast", .version = boost_version(), .licence = "BSL-1.0"},
           {.name = "libsystemd", .version = kSystemdVersion, .licence = kLesserGpl},
-          {.name = "libgpiod", .version = gpiod_version_string(), .licence = kLesserGpl},
+          {.name = "libgpiod", .version = panel::gpiod_version(), .licence = kLesserGpl},
           {.name = "libcrypt", .version = XCRYPT_VERSION_STR, .licence = kLesserGpl},
           {.name = "glibc", .version = gnu_get_libc_version(), .licence = kLesserGpl}};
 }

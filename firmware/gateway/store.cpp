@@ -37,15 +37,6 @@ std::expected<settings::Settings, std::string> read_settings(const std::string& 
 
 }  // namespace
 
-std::vector<std::string> token_names(const settings::Settings& settings) {
-  std::vector<std::string> names = {"scoring", "mapping", "team"};
-  for (const settings::Course& course : settings.courses) {
-    names.push_back("course." + course.name + ".scoring");
-    names.push_back("course." + course.name + ".mapping");
-  }
-  return names;
-}
-
 Store::Store(std::string given_settings, std::string given_secrets, std::string state_folder)
     : given_settings_(std::move(given_settings)),
       given_secrets_(std::move(given_secrets)),

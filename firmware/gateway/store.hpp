@@ -7,12 +7,12 @@
 
 #include "host/service.hpp"
 #include "icd/bearer_token.hpp"
+#include "settings/saved.hpp"
 #include "settings/settings.hpp"
 
 namespace adit::gateway {
 
-/// The names of all tokens that there can be: "scoring", "mapping", "team", and two for each course.
-std::vector<std::string> token_names(const settings::Settings& settings);
+using settings::token_names;
 
 /// Where settings and tokens are kept, and which of them count: those that were saved in the state folder, or
 /// else those that the box was given.
@@ -43,10 +43,12 @@ class Store {
   std::expected<void, std::string> forget() const;
 
  private:
-  std::string file() const { return state_ + "/settings.json"; }
-  std::string file_before() const { return state_ + "/settings.json.before"; }
-  std::string secrets_folder() const { return state_ + "/secrets"; }
-  std::string token_file(const std::string& name) const { return secrets_folder() + "/" + name + ".token"; }
+  std::string file() const { return state_ + '/' + settings::kSavedFile; }
+  std::string file_before() const { return state_ + '/' + settings::kFileBefore; }
+  std::string secrets_folder() const { return state_ + '/' + settings::kSecretsFolder; }
+  std::string token_file(const std::string& name) const {
+    return secrets_folder() + "/" + name + settings::kTokenEnding;
+  }
   std::expected<void, std::string> make_secrets_folder() const;
 
   std::string given_settings_, given_secrets_, state_;

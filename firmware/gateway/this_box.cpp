@@ -26,9 +26,10 @@ page::LogRecord row_of(const host::Record& record) {
 
 }  // namespace
 
-ThisBox::ThisBox(const loop::Loop& loop, loop::Workers& workers, std::string settings,
+ThisBox::ThisBox(const loop::Loop& loop, loop::Workers& workers, settings::Board board, std::string settings,
                  std::function<void(page::Usage&)> add_to)
     : workers_(workers),
+      board_(std::move(board)),
       settings_(std::move(settings)),
       add_to_(std::move(add_to)),
       started_(loop.stamp_now() - host::process().age_seconds) {}
@@ -63,6 +64,8 @@ page::About ThisBox::about() const {
           .started = started_,
           .kernel = host::kernel(),
           .model = host::model(),
+          .board = board_.name,
+          .board_title = board_.title,
           .parts = parts()};
 }
 

@@ -6,6 +6,7 @@
 #include "loop/loop.hpp"
 #include "loop/workers.hpp"
 #include "page/box.hpp"
+#include "settings/board.hpp"
 
 namespace adit::gateway {
 
@@ -13,7 +14,7 @@ namespace adit::gateway {
 class ThisBox final : public page::Box {
  public:
   /// `add_to` adds what the gateway itself counts. `workers` outlives this.
-  ThisBox(const loop::Loop& loop, loop::Workers& workers, std::string settings,
+  ThisBox(const loop::Loop& loop, loop::Workers& workers, settings::Board board, std::string settings,
           std::function<void(page::Usage&)> add_to);
 
   std::vector<page::LogRecord> log(std::uint64_t after) const override;
@@ -26,6 +27,7 @@ class ThisBox final : public page::Box {
 
  private:
   loop::Workers& workers_;
+  settings::Board board_;
   std::string settings_;
   std::function<void(page::Usage&)> add_to_;
   page::Time started_;  // the process, of which the gateway may not be the first

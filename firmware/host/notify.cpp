@@ -25,4 +25,14 @@ void notify_stopping() {
   sd_notify(0, "STOPPING=1");
 }
 
+void notify_alive() {
+  sd_notify(0, "WATCHDOG=1");
+}
+
+std::optional<std::chrono::microseconds> watchdog_within() {
+  std::uint64_t usec = 0;
+  if (sd_watchdog_enabled(0, &usec) <= 0) return std::nullopt;
+  return std::chrono::microseconds(usec);
+}
+
 }  // namespace adit::host

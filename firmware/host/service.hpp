@@ -1,5 +1,6 @@
 #pragma once
 
+#include <chrono>
 #include <expected>
 #include <functional>
 #include <map>
@@ -17,6 +18,11 @@ namespace adit::host {
 void notify_ready(const std::string& status);
 void notify_status(const std::string& status);
 void notify_stopping();
+void notify_alive();  // WATCHDOG=1
+
+/// How long systemd waits for a sign of life (WatchdogSec=) before it kills the service; nothing where it
+/// does not wait for any.
+std::optional<std::chrono::microseconds> watchdog_within();
 
 /// A small text file, at most 1 MiB.
 std::expected<std::string, std::string> read_file(const std::string& path);

@@ -4,10 +4,14 @@
 #include <sys/stat.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <cerrno>
+#include <filesystem>
+#include <system_error>
 #include <utility>
 
 #include "host/files.hpp"
+#include "icd/sentence.hpp"
 
 namespace adit::host {
 namespace {
@@ -52,6 +56,55 @@ std::expected<std::optional<std::string>, std::string> UntrustedFolder::take(con
   auto text = read_all(fd.get(), name);
   if (!text) return std::unexpected(std::move(text.error()));
   return std::move(*text);
+}
+
+std::expected<std::optional<std::string>, std::string> UntrustedFolder::read(const std::string& name) const {
+  const loop::FileDescriptor fd(
+      openat(folder_.get(), name.c_str(), O_RDONLY | O_NOFOLLOW | O_NONBLOCK | O_NOCTTY | O_CLOEXEC));
+  if (!fd && errno == ENOENT) return std::nullopt;
+  if (!fd) return std::unexpected(trouble(name, errno));
+  auto text = read_all(fd.get(), name);
+  if (!text) return std::unexpected(std::move(text.error()));
+  return std::move(*text);
+}
+
+std::expected<std::optional<UntrustedFolder>, std::string> UntrustedFolder::folder(
+    const std::string& name) const {
+  loop::FileDescriptor fd(
+      openat(folder_.get(), name.c_str(), O_RDONLY | O_DIRECTORY | O_NOFOLLOW | O_CLOEXEC));
+  if (!fd && errno == ENOENT) return std::nullopt;
+  if (!fd) return std::unexpected(trouble(name, errno));
+  return UntrustedFolder(std::move(fd));
+}
+
+std::expected<std::vector<std::string>, std::string> UntrustedFolder::names() const {
+  std::error_code error;
+  std::vector<std::string> names;
+  for (auto entry = std::filesystem::directory_iterator(path_by_descriptor(), error);
+       !error && entry != std::filesystem::directory_iterator(); entry.increment(error)) {
+    if (names.size() == kMostNames)
+      return std::unexpected(icd::sentence("holds more than ", kMostNames, " files"));
+    names.push_back(entry->path().filename().string());
+  }
+  if (error) return std::unexpected(error.message());
+  std::ranges::sort(names);
+  return names;
+}
+
+bool UntrustedFolder::wipe(const std::string& name) const {
+  const loop::FileDescriptor fd(
+      openat(folder_.get(), name.c_str(), O_WRONLY | O_NOFOLLOW | O_NONBLOCK | O_NOCTTY | O_CLOEXEC));
+  struct stat status{};
+  bool blank = fd && fstat(fd.get(), &status) == 0 && S_ISREG(status.st_mode);
+  const std::string zeros(4096, '\0');
+  for (off_t at = 0; blank && at < status.st_size;) {
+    const auto size = std::min(zeros.size(), static_cast<std::size_t>(status.st_size - at));
+    const ssize_t count = pwrite(fd.get(), zeros.data(), size, at);
+    blank = count > 0 || (count < 0 && errno == EINTR);
+    if (count > 0) at += count;
+  }
+  blank = blank && fsync(fd.get()) == 0;
+  return unlinkat(folder_.get(), name.c_str(), 0) == 0 && fsync(folder_.get()) == 0 && blank;
 }
 
 std::string UntrustedFolder::path_by_descriptor() const {

@@ -4,6 +4,7 @@
 #include <expected>
 #include <optional>
 #include <string>
+#include <vector>
 
 #include "loop/file_descriptor.hpp"
 
@@ -14,6 +15,7 @@ namespace adit::host {
 class UntrustedFolder {
  public:
   static constexpr std::size_t kLargest = 65536;
+  static constexpr std::size_t kMostNames = 256;
 
   /// An error where it is not there, or is no folder itself but a link to one.
   static std::expected<UntrustedFolder, std::string> open(const std::string& path);
@@ -21,6 +23,20 @@ class UntrustedFolder {
   /// Takes a file away and gives what was in it; nothing where there is none of that name. An error: it was
   /// no plain file, too large or unreadable; it is gone all the same.
   std::expected<std::optional<std::string>, std::string> take(const std::string& name) const;
+
+  /// What is in a file, which stays; nothing where there is none of that name. An error: it is no plain file,
+  /// too large or unreadable.
+  std::expected<std::optional<std::string>, std::string> read(const std::string& name) const;
+
+  /// A folder in it; nothing where there is none of that name.
+  std::expected<std::optional<UntrustedFolder>, std::string> folder(const std::string& name) const;
+
+  /// The names of what is in it, in order. An error where it cannot be read, or holds more than kMostNames.
+  std::expected<std::vector<std::string>, std::string> names() const;
+
+  /// Removes a file so that its text is not left on the disk: overwritten, then unlinked. False: it may still
+  /// be there.
+  bool wipe(const std::string& name) const;
 
   /// For inotify(7): names the folder itself, whatever its path has come to mean.
   std::string path_by_descriptor() const;

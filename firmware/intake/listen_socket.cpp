@@ -1,6 +1,8 @@
 #include "intake/listen_socket.hpp"
 
 #include <arpa/inet.h>
+#include <fcntl.h>
+#include <net/if.h>
 #include <netdb.h>
 #include <netinet/in.h>
 #include <netinet/tcp.h>
@@ -11,11 +13,14 @@
 #include <chrono>
 #include <cstring>
 #include <memory>
+#include <optional>
 
 namespace adit::intake {
 namespace {
 
-constexpr int kBacklog = 256;
+/// Those who connect while the service is started anew wait here: two seconds at 200 a second, and as many
+/// again.
+constexpr int kBacklog = 1024;
 constexpr int kProbes = 3;  // unanswered ones until the kernel gives a silent peer up
 
 using Seconds = std::chrono::seconds;
@@ -36,6 +41,26 @@ void set_keepalive(int fd, std::chrono::milliseconds idle) {
   set(fd, IPPROTO_TCP, TCP_KEEPINTVL, static_cast<int>(probe.count()));
   set(fd, IPPROTO_TCP, TCP_KEEPCNT, kProbes);
   set(fd, IPPROTO_TCP, TCP_USER_TIMEOUT, static_cast<int>(idle.count()));
+}
+
+std::optional<int> get(int fd, int option) {
+  int value = 0;
+  socklen_t size = sizeof value;
+  if (::getsockopt(fd, SOL_SOCKET, option, &value, &size) != 0) return std::nullopt;
+  return value;
+}
+
+bool is_any(const std::string& address) {
+  return address == "0.0.0.0" || address == "::";
+}
+
+/// One way to write each address.
+std::string canonical(const std::string& address) {
+  std::array<unsigned char, sizeof(in6_addr)> bytes{};
+  std::array<char, INET6_ADDRSTRLEN> text{};
+  if (::inet_pton(AF_INET6, address.c_str(), bytes.data()) != 1) return address;
+  ::inet_ntop(AF_INET6, bytes.data(), text.data(), text.size());
+  return text.data();
 }
 
 }  // namespace
@@ -60,12 +85,61 @@ std::expected<loop::FileDescriptor, std::string> open_listen_socket(const Listen
                    static_cast<socklen_t>(listen.interface.size())) != 0) {
     return std::unexpected(failed("binding to interface " + listen.interface));
   }
+  if (listen.free_bind) {
+    const bool v6 = address->ai_family == AF_INET6;
+    set(fd.get(), v6 ? IPPROTO_IPV6 : IPPROTO_IP, v6 ? IPV6_FREEBIND : IP_FREEBIND, 1);
+  }
   set_keepalive(fd.get(), listen.idle);
   if (::bind(fd.get(), address->ai_addr, address->ai_addrlen) != 0) {
     return std::unexpected(failed("binding to " + place));
   }
   if (::listen(fd.get(), kBacklog) != 0) return std::unexpected(failed("listening on " + place));
   return fd;
+}
+
+std::expected<void, std::string> adopt_listen_socket(int fd, const Listen& listen) {
+  const int flags = ::fcntl(fd, F_GETFL);
+  if (flags < 0 || ::fcntl(fd, F_SETFL, flags | O_NONBLOCK) != 0) {
+    return std::unexpected(failed("taking a socket over"));
+  }
+  set_keepalive(fd, listen.idle);
+  if (::listen(fd, kBacklog) != 0) return std::unexpected(failed("listening on a socket taken over"));
+  return {};
+}
+
+std::expected<Bound, std::string> bound_at(int fd) {
+  static const std::string kExpected = "expected a TCP socket over IPv4 or IPv6 that listens, got ";
+  const auto type = get(fd, SO_TYPE), domain = get(fd, SO_DOMAIN);
+  if (!type) return std::unexpected(kExpected + "no socket");
+  if (*domain != AF_INET && *domain != AF_INET6) return std::unexpected(kExpected + "one of another family");
+  if (*type != SOCK_STREAM) return std::unexpected(kExpected + "one that is no stream");
+  if (get(fd, SO_ACCEPTCONN) != 1) return std::unexpected(kExpected + "one that does not");
+  std::array<char, IFNAMSIZ> interface{};
+  socklen_t size = interface.size();
+  if (::getsockopt(fd, SOL_SOCKET, SO_BINDTODEVICE, interface.data(), &size) != 0) interface[0] = '\0';
+  int only_v6 = 0;
+  size = sizeof only_v6;
+  if (*domain == AF_INET6) ::getsockopt(fd, IPPROTO_IPV6, IPV6_V6ONLY, &only_v6, &size);
+  return Bound{.address = local_address(fd),
+               .port = port_of(fd),
+               .interface = interface.data(),
+               .only_v6 = only_v6 != 0};
+}
+
+bool is_deaf(int fd) {
+  std::array<char, IFNAMSIZ> interface{};
+  socklen_t size = interface.size();
+  return ::getsockopt(fd, SOL_SOCKET, SO_BINDTODEVICE, interface.data(), &size) != 0 && errno == ENODEV;
+}
+
+bool covers(const Bound& bound, const Listen& listen) {
+  if (bound.port != listen.port) return false;
+  // Bound to no interface, it would answer others as well.
+  if (!listen.interface.empty() && bound.interface != listen.interface) return false;
+  const bool wants_v6 = listen.address.find(':') != std::string::npos;
+  if (bound.address == "::") return wants_v6 || !bound.only_v6;
+  if (is_any(bound.address)) return !wants_v6;
+  return canonical(bound.address) == canonical(listen.address);
 }
 
 std::uint16_t port_of(int fd) {

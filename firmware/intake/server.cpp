@@ -34,7 +34,7 @@ class Server::Impl final : public Engine {
   Impl& operator=(const Impl&) = delete;
   ~Impl() override;
 
-  std::expected<void, std::string> start();
+  std::expected<void, std::string> start(loop::FileDescriptor given);
   void stop_listening();
   std::uint16_t port() const { return port_; }
   std::size_t connections() const { return clients_.size(); }
@@ -71,6 +71,7 @@ class Server::Impl final : public Engine {
   MHD_Daemon* daemon_ = nullptr;
   std::uint16_t port_ = 0;
   bool stopping_ = false;
+  bool listening_ = false;
   bool run_is_due_ = false;
   std::unordered_map<Client*, std::unique_ptr<Client>> clients_;
   loop::Instant look_due_ = loop::Instant::max();
@@ -78,8 +79,9 @@ class Server::Impl final : public Engine {
   const std::shared_ptr<Impl*> alive_ = std::make_shared<Impl*>(this);  // for what is posted
 };
 
-std::expected<void, std::string> Server::Impl::start() {
-  auto socket = open_listen_socket(listen_);
+std::expected<void, std::string> Server::Impl::start(loop::FileDescriptor given) {
+  auto socket = given ? std::expected<loop::FileDescriptor, std::string>(std::move(given))
+                      : open_listen_socket(listen_);
   if (!socket) return std::unexpected(std::move(socket.error()));
   port_ = port_of(socket->get());
   daemon_ = MHD_start_daemon(
@@ -91,7 +93,8 @@ std::expected<void, std::string> Server::Impl::start() {
       MHD_OPTION_NOTIFY_COMPLETED, &Impl::request_completed, this, MHD_OPTION_URI_LOG_CALLBACK,
       &Impl::head_begun, this, MHD_OPTION_UNESCAPE_CALLBACK, &Impl::leave_escaped, nullptr, MHD_OPTION_END);
   if (daemon_ == nullptr) return std::unexpected("the HTTP server did not start");
-  socket->release();  // NOLINT(bugprone-unused-return-value): libmicrohttpd closes it
+  socket->release();  // NOLINT(bugprone-unused-return-value): libmicrohttpd's, until stop_listening()
+  listening_ = true;
 
   const MHD_DaemonInfo* info = MHD_get_daemon_info(daemon_, MHD_DAEMON_INFO_EPOLL_FD);
   if (info == nullptr || info->epoll_fd < 0)
@@ -105,11 +108,14 @@ Server::Impl::~Impl() {
   if (daemon_ == nullptr) return;
   stopping_ = true;
   readable_ = {};
+  stop_listening();
   for (const auto& [client, owned] : clients_) client->resume();  // else libmicrohttpd aborts
   MHD_stop_daemon(daemon_);
 }
 
+/// libmicrohttpd may not end it: a socket that it shuts down is deaf for everybody who has a copy.
 void Server::Impl::stop_listening() {
+  if (!std::exchange(listening_, false)) return;
   const MHD_socket socket = MHD_quiesce_daemon(daemon_);
   if (socket != MHD_INVALID_SOCKET) ::close(socket);
 }
@@ -269,9 +275,11 @@ Server::Server(std::unique_ptr<Impl> impl) : impl_(std::move(impl)) {}
 Server::~Server() = default;
 
 std::expected<std::unique_ptr<Server>, std::string> Server::start(loop::Loop& loop, const Listen& listen,
-                                                                  Handler& handler) {
+                                                                  Handler& handler,
+                                                                  loop::FileDescriptor socket) {
   auto impl = std::make_unique<Impl>(loop, listen, handler);
-  if (auto started = impl->start(); !started) return std::unexpected(std::move(started.error()));
+  if (auto started = impl->start(std::move(socket)); !started)
+    return std::unexpected(std::move(started.error()));
   return std::unique_ptr<Server>(new Server(std::move(impl)));
 }
 

@@ -11,6 +11,7 @@
 #include <vector>
 
 #include "icd/status.hpp"
+#include "loop/file_descriptor.hpp"
 #include "loop/loop.hpp"
 
 namespace adit::intake {
@@ -20,6 +21,7 @@ struct Listen {
   std::string address;
   std::uint16_t port = 0;  // 0: any free port, see Server::port()
   std::string interface;   // SO_BINDTODEVICE; "": not bound
+  bool free_bind = false;  // also at an address that this machine does not have, or not yet
   std::uint32_t connections = 64, connections_per_address = 16;
   std::chrono::milliseconds headers_within{
       10000};  // from connecting, or from the last answer's first byte since
@@ -106,15 +108,18 @@ class Handler {
 /// writer of headers is closed), and keeps a body's bytes nowhere: a slow receiver is back-pressure.
 class Server {
  public:
+  /// `socket`: one that listens already, taken instead of opening one at `listen`.
   static std::expected<std::unique_ptr<Server>, std::string> start(loop::Loop& loop, const Listen& listen,
-                                                                   Handler& handler);
+                                                                   Handler& handler,
+                                                                   loop::FileDescriptor socket = {});
   ~Server();
   Server(const Server&) = delete;
   Server& operator=(const Server&) = delete;
 
   std::uint16_t port() const;
   std::size_t connections() const;
-  /// Takes no new connections; requests under way go on.
+  /// Takes no new connections; requests under way go on. A socket of which there is a copy elsewhere goes on
+  /// to listen, and whoever connects waits for who has it.
   void stop_listening();
 
  private:

@@ -217,12 +217,6 @@ void Loop::post(std::function<void()> task) {
   impl_->post(std::move(task));
 }
 
-bool Loop::feed_watchdog() {
-  const int result = sd_event_set_watchdog(impl_->event(), 1);
-  must(result, "feeding the watchdog");
-  return result > 0;
-}
-
 void Loop::run() {
   impl_->run();
 }

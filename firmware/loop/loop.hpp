@@ -58,9 +58,6 @@ class Loop {
   /// a later turn, so that tasks never keep the loop from its sockets.
   void post(std::function<void()> task);
 
-  /// Feeds systemd's watchdog from this loop where $WATCHDOG_USEC asks for it; true where it does.
-  bool feed_watchdog();
-
   /// Until stop(), which may also have been called before.
   void run();
   void stop();

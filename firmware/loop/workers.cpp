@@ -39,10 +39,10 @@ class SignalsBlocked {
 
 class Workers::Impl {
  public:
-  Impl(Loop& loop, unsigned count) : loop_(loop) {
+  Impl(Loop& loop, unsigned count) : loop_(loop), lives_(threads_for(count)) {
     const SignalsBlocked blocked;
-    for (unsigned i = 0; i < threads_for(count); ++i) {
-      threads_.emplace_back([this] { serve(); });
+    for (Life& life : lives_) {
+      threads_.emplace_back([this, &life] { serve(life); });
       pthread_setname_np(threads_.back().native_handle(), "worker");
     }
   }
@@ -69,21 +69,50 @@ class Workers::Impl {
     came_.notify_one();
   }
 
+  void ask() {
+    {
+      const std::lock_guard lock(mutex_);
+      ++asked_;
+    }
+    came_.notify_all();
+  }
+  bool are_well(Duration longest) {
+    const Instant now = loop_.now();
+    const std::lock_guard lock(mutex_);
+    return std::ranges::all_of(lives_, [&](const Life& life) {
+      return life.answered == asked_ || (life.at_work && now - life.began <= longest);
+    });
+  }
+
  private:
   struct Job {
     std::function<void()> work;
     std::function<void()> done;
   };
 
-  void serve() noexcept {
+  /// What is known of a worker.
+  struct Life {
+    std::uint64_t answered = 0;  // the last ask() that it has heard
+    bool at_work = false;
+    Instant began{};  // its job
+  };
+
+  void serve(Life& life) noexcept {
     while (true) {
       Job job;
       {
         std::unique_lock lock(mutex_);
-        came_.wait(lock, [this] { return stopping_ || !jobs_.empty(); });
+        life.at_work = false;
+        life.answered = asked_;
+        while (!stopping_ && jobs_.empty()) {
+          came_.wait(lock);
+          life.answered = asked_;
+        }
         if (stopping_) return;
         job = std::move(jobs_.front());
         jobs_.pop_front();
+        life.at_work = true;
+        life.began = loop_.now();
       }
       job.work();
       job.work = nullptr;  // freed here, so that `done` finds its data its own
@@ -99,6 +128,8 @@ class Workers::Impl {
   std::condition_variable came_;
   std::deque<Job> jobs_;
   bool stopping_ = false;
+  std::uint64_t asked_ = 0;
+  std::vector<Life> lives_;  // one for each thread
   std::vector<std::thread> threads_;
 };
 
@@ -107,6 +138,12 @@ Workers::~Workers() = default;
 
 void Workers::submit(std::function<void()> work, std::function<void()> done) {
   impl_->submit(std::move(work), std::move(done));
+}
+void Workers::ask() {
+  impl_->ask();
+}
+bool Workers::are_well(Duration longest) const {
+  return impl_->are_well(longest);
 }
 
 }  // namespace adit::loop

@@ -22,6 +22,11 @@ class Workers {
   /// first out.
   void submit(std::function<void()> work, std::function<void()> done);
 
+  /// Asks each worker for a sign of life, which it gives between two jobs.
+  void ask();
+  /// Whether each has answered the last ask(), or is at a job that it began at most `longest` ago.
+  bool are_well(Duration longest) const;
+
  private:
   class Impl;
   std::unique_ptr<Impl> impl_;

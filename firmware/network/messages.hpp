@@ -93,7 +93,8 @@ Read<Probe> read_probe(std::string_view json);
 Read<Status> read_status(std::string_view json);
 Read<Probed> read_probed(std::string_view json);
 
-/// What is kept, in a file of its own: the numbers alone.
+/// What is kept, in a file of its own in adit-network's state folder: the numbers alone.
+inline constexpr const char* kConfirmedFile = "confirmed.json";
 std::string write_kept(const Numbers& numbers);
 Read<Numbers> read_kept(std::string_view json);
 

@@ -48,7 +48,8 @@ struct About {
   std::string version, build;  // build: "9f1c2ab0d3e4, GCC 12.2.0, Release"
   std::string licence;         // of Adit itself
   Time started = 0;
-  std::string kernel, model;  // "": not known
+  std::string kernel, model;                 // "": not known
+  std::string board = "", board_title = "";  // of the board's file; "": there is none
   std::vector<PartRow> parts;
 };
 

@@ -40,6 +40,12 @@ Value json(const LogRecord& record) {
                         {"fields", {std::move(fields)}}}};
 }
 
+/// null: the box was not told which one it is.
+Value board_of(const About& about) {
+  if (about.board.empty()) return {};
+  return {Value::Object{{"name", page::json(about.board)}, {"title", page::json(about.board_title)}}};
+}
+
 template <class Row>
 Value rows(const std::vector<Row>& rows) {
   Value::Array array;
@@ -58,6 +64,7 @@ std::string write_about(const About& about, Time now) {
                                           {"uptime", page::json(now - about.started)},
                                           {"kernel", page::json(about.kernel)},
                                           {"model", page::json(about.model)},
+                                          {"board", board_of(about)},
                                           {"parts", rows(about.parts)}}});
 }
 

@@ -22,6 +22,10 @@ class Keys {
   /// False where it is not the first start.
   virtual bool is_code(std::string_view presented) const = 0;
 
+  /// Somebody at the box itself opened set-up with its button: who comes may set the operator's password
+  /// without the present one or the code, until one is set.
+  virtual bool set_up_open() const = 0;
+
   /// Tells whose password it is, if anybody's. `address`: who says so, for the log.
   virtual void check(std::string password, std::string address,
                      std::function<void(std::optional<access::Role>)> done) = 0;

@@ -113,7 +113,8 @@ struct RunView {
   std::vector<ActivityRow> activities;
   std::vector<RefusalRow> refusals;  // newest first, the last 50
   std::vector<LightRow> lights;
-  std::optional<Time> identify_until;  // the lights blink so that the box can be found
+  std::optional<Time> identify_until;    // the lights blink so that the box can be found
+  std::optional<Time> setup_open_until;  // the button opened set-up: Keys::set_up_open()
   double budget_mbit = 0;
   double sent_mbit = 0;  // over the last seconds, to both endpoints
   std::size_t queued_bytes = 0;

@@ -75,6 +75,7 @@ std::string write_run_view(const RunView& view) {
                                           {"refusals", json(view.refusals)},
                                           {"lights", json(view.lights)},
                                           {"identify_until", json(view.identify_until)},
+                                          {"setup_open_until", json(view.setup_open_until)},
                                           {"budget_mbit", json(view.budget_mbit)},
                                           {"sent_mbit", json(view.sent_mbit)},
                                           {"queued_bytes", json(view.queued_bytes)},

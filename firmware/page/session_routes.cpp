@@ -109,7 +109,8 @@ intake::Answer SessionRoutes::session(const intake::RequestHead& head) {
   const auto* const session = visitor ? visitor->session : nullptr;
   return object({{"role", visitor ? json(std::string(name_of(visitor->role))) : Value{}},
                  {"csrf", session != nullptr ? json(session->csrf.reveal()) : Value{}},
-                 {"first_start", json(keys_.first_start())}});
+                 {"first_start", json(keys_.first_start())},
+                 {"set_up_open", json(keys_.set_up_open())}});
 }
 
 intake::Answer SessionRoutes::sessions(const intake::RequestHead& head) {
@@ -143,7 +144,8 @@ std::unique_ptr<intake::Exchange> SessionRoutes::post(const intake::RequestHead&
     return nullptr;
   }
   const auto visitor = entrance_.admit(head, Role::Operator);
-  const bool open_to_all = head.path() == kLogin || (head.path() == kPassword && keys_.first_start());
+  const bool open_to_all =
+      head.path() == kLogin || (head.path() == kPassword && (keys_.first_start() || keys_.set_up_open()));
   if (!visitor && !open_to_all) {
     responder->answer(turned_away(visitor.error()));
     return nullptr;
@@ -236,9 +238,17 @@ icd::Checked<SessionRoutes::Change> SessionRoutes::read_change(const std::string
   });
 }
 
+/// There is nothing to guess: whoever comes while set-up is open may, and he who opened it sees at the box
+/// when it is closed.
+bool SessionRoutes::is_by_button(const Change& change) const {
+  return keys_.set_up_open() && change.role == Role::Operator && change.current.empty() &&
+         change.code.empty();
+}
+
 void SessionRoutes::change_password(const Poster& poster, const std::string& body, const Replies& responder) {
   const auto change = read_change(body);
   if (!change) return responder->answer(refused(change.error()));
+  if (is_by_button(*change)) return set(*change, poster, responder);
   if (keys_.first_start()) {
     if (change->role != Role::Operator) {
       return responder->answer(refusal(icd::Status::Conflict, "the operator's password is set first"));
@@ -248,7 +258,7 @@ void SessionRoutes::change_password(const Poster& poster, const std::string& bod
     failures_.succeeded(poster.address);
     return set(*change, poster, responder);
   }
-  if (!poster.admitted) {  // the first password was set while this was on its way
+  if (!poster.admitted) {  // somebody else set it while this was on its way, or it is the viewers'
     return responder->answer(turned_away({icd::Status::Unauthorized, "log in: a password has been set"}));
   }
   check(change->current, poster, responder,

@@ -58,6 +58,7 @@ class SessionRoutes {
   intake::Answer end(const intake::RequestHead& head, std::uint64_t number);
 
   void change_password(const Poster& poster, const std::string& body, const Replies& responder);
+  bool is_by_button(const Change& change) const;
   void reset(const Poster& poster, const std::string& body, const Replies& responder);
   void set(const Change& change, const Poster& poster, const Replies& responder);
 

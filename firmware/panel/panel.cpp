@@ -1,82 +1,89 @@
 #include "panel/panel.hpp"
 
+#include <algorithm>
+#include <numeric>
+
 namespace adit::panel {
 namespace {
 
-Pattern health_of(const Condition& condition) {
-  return condition.serving ? Pattern::On : Pattern::Fast;
-}
+using namespace std::chrono_literals;
 
-Pattern scoring_of(const Condition& condition) {
-  if (condition.scoring_failing) return Pattern::Fast;
-  if (!condition.scoring_connected) return Pattern::Off;
-  return condition.report_waiting ? Pattern::Slow : Pattern::On;
-}
-
-Pattern mapping_of(const Condition& condition) {
-  if (condition.mapping_failing) return Pattern::Fast;
-  return condition.mapping_connected ? Pattern::On : Pattern::Off;
-}
-
-Pattern attention_of(const Condition& condition) {
-  return condition.needs_operator ? Pattern::Fast : Pattern::Off;
-}
-
-/// On for the first half of each period.
-bool blinks_on(std::uint64_t elapsed_ms, std::uint64_t period_ms) {
-  return elapsed_ms % period_ms < period_ms / 2;
-}
+// A blink is a whole number of steps, and lit first. "Slow" and "fast" are four to one, "rush" is too fast to
+// count; "flash" is mostly dark, "wink" mostly lit.
+constexpr Step kOff[] = {{false, 1s}};
+constexpr Step kOn[] = {{true, 1s}};
+constexpr Step kSlow[] = {{true, 500ms}, {false, 500ms}};
+constexpr Step kFast[] = {{true, 125ms}, {false, 125ms}};
+constexpr Step kTwice[] = {{true, 125ms}, {false, 125ms}, {true, 125ms}, {false, 625ms}};
+constexpr Step kFlash[] = {{true, 125ms}, {false, 1875ms}};
+constexpr Step kWink[] = {{true, 1750ms}, {false, 250ms}};
+constexpr Step kRush[] = {{true, 50ms}, {false, 50ms}};
 
 }  // namespace
 
 std::string_view name_of(Light light) {
-  switch (light) {
-    case Light::Health:
-      return "health";
-    case Light::Scoring:
-      return "scoring";
-    case Light::Mapping:
-      return "mapping";
-    case Light::Attention:
-      return "attention";
-  }
-  return "unknown";
+  static constexpr std::array<std::string_view, kLights.size()> kNames = {"health", "scoring", "mapping",
+                                                                          "attention"};
+  return kNames[index_of(light)];
 }
 
 std::string_view name_of(Pattern pattern) {
-  switch (pattern) {
-    case Pattern::Off:
-      return "off";
-    case Pattern::On:
-      return "on";
-    case Pattern::Slow:
-      return "slow";
-    case Pattern::Fast:
-      return "fast";
-    case Pattern::Twice:
-      return "twice";
-  }
-  return "unknown";
+  static constexpr std::array<std::string_view, kPatterns.size()> kNames = {
+      "off", "on", "slow", "fast", "twice", "flash", "wink", "rush", "digits"};
+  return kNames[static_cast<std::size_t>(pattern)];
 }
 
-Lights lights_for(const Condition& condition) {
-  return {health_of(condition), scoring_of(condition), mapping_of(condition), attention_of(condition)};
-}
-
-bool lit(Pattern pattern, std::uint64_t elapsed_ms) {
+std::span<const Step> steps_of(Pattern pattern) {
   switch (pattern) {
     case Pattern::Off:
-      return false;
+      return kOff;
     case Pattern::On:
-      return true;
+      return kOn;
     case Pattern::Slow:
-      return blinks_on(elapsed_ms, 1000);
+      return kSlow;
     case Pattern::Fast:
-      return blinks_on(elapsed_ms, 250);
+      return kFast;
     case Pattern::Twice:
-      return elapsed_ms % 1000 < 375 && blinks_on(elapsed_ms, 250);
+      return kTwice;
+    case Pattern::Flash:
+      return kFlash;
+    case Pattern::Wink:
+      return kWink;
+    case Pattern::Rush:
+      return kRush;
+    case Pattern::Digits:
+      break;
   }
-  return false;
+  return {};
+}
+
+Milliseconds length_of(std::span<const Step> steps) {
+  return std::accumulate(steps.begin(), steps.end(), Milliseconds{0},
+                         [](Milliseconds sum, const Step& step) { return sum + step.length; });
+}
+
+Moment once(std::span<const Step> steps, Milliseconds elapsed) {
+  for (const Step& step : steps) {
+    if (elapsed < step.length) return {step.lit, step.length - elapsed};
+    elapsed -= step.length;
+  }
+  return {};
+}
+
+Moment repeated(std::span<const Step> steps, Milliseconds elapsed) {
+  if (steps.empty()) return {};
+  if (steps.size() == 1) return {steps.front().lit, std::nullopt};
+  return once(steps, elapsed % length_of(steps));
+}
+
+Frame frame_of(const Lights& lights, Milliseconds elapsed) {
+  Frame frame;
+  for (const Light light : kLights) {
+    const Moment moment = repeated(steps_of(lights[index_of(light)]), elapsed);
+    frame.lit[index_of(light)] = moment.lit;
+    if (moment.lasts) frame.lasts = std::min(*moment.lasts, frame.lasts.value_or(*moment.lasts));
+  }
+  return frame;
 }
 
 }  // namespace adit::panel

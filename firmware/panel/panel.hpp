@@ -1,67 +1,62 @@
 #pragma once
 
 #include <array>
+#include <chrono>
 #include <cstdint>
-#include <expected>
-#include <memory>
-#include <string>
+#include <optional>
+#include <span>
 #include <string_view>
 
-#include "settings/settings.hpp"
-
 namespace adit::panel {
+
+using Milliseconds = std::chrono::milliseconds;
 
 enum class Light : std::uint8_t { Health, Scoring, Mapping, Attention };
 inline constexpr std::array kLights = {Light::Health, Light::Scoring, Light::Mapping, Light::Attention};
 std::string_view name_of(Light light);  // "health", ...
+inline constexpr std::size_t index_of(Light light) {
+  return static_cast<std::size_t>(light);
+}
 
-/// How a light shows: steady off, steady on, or a blink that can be told apart without colour.
-enum class Pattern : std::uint8_t {
-  Off,
-  On,
-  Slow /* 1 Hz */,
-  Fast /* 4 Hz */,
-  Twice /* two flashes a second */
+/// How a light shows. Each can be told from the others without colour: README.md draws them.
+enum class Pattern : std::uint8_t { Off, On, Slow, Fast, Twice, Flash, Wink, Rush, Digits };
+inline constexpr std::array kPatterns = {Pattern::Off,  Pattern::On,    Pattern::Slow,
+                                         Pattern::Fast, Pattern::Twice, Pattern::Flash,
+                                         Pattern::Wink, Pattern::Rush,  Pattern::Digits};
+std::string_view name_of(Pattern pattern);  // "off", "on", "slow", ...
+
+/// Lit or dark for so long.
+struct Step {
+  bool lit = false;
+  Milliseconds length{};
+  friend bool operator==(const Step&, const Step&) = default;
 };
-std::string_view name_of(Pattern pattern);  // "off", "on", "slow", "fast", "twice"
+
+/// What a pattern repeats for ever; one step: steady. None for Digits, which are played once and made of an
+/// address (address_digits.hpp).
+std::span<const Step> steps_of(Pattern pattern);
+
+/// Where a sequence of steps stands.
+struct Moment {
+  bool lit = false;
+  std::optional<Milliseconds> lasts;  // until the next step; nothing: for ever
+};
+/// `elapsed` after its first step began, while it is repeated; dark where there is none.
+Moment repeated(std::span<const Step> steps, Milliseconds elapsed);
+/// The same of steps that are played once, and dark after them.
+Moment once(std::span<const Step> steps, Milliseconds elapsed);
+Milliseconds length_of(std::span<const Step> steps);
 
 using Lights = std::array<Pattern, kLights.size()>;  // by Light
+using Lit = std::array<bool, kLights.size()>;        // by Light
 
-/// What the panel is to tell.
-struct Condition {
-  bool serving = false;  // the team's side listens and the ledger can be written
-  bool scoring_connected = false;
-  bool scoring_failing = false;  // the last request to scoring failed or was refused
-  bool mapping_connected = false;
-  bool mapping_failing = false;
-  bool report_waiting = false;
-  bool needs_operator = false;  // a report in doubt, a damaged ledger, a token refused
+/// All lights at one moment.
+struct Frame {
+  Lit lit{};
+  std::optional<Milliseconds> lasts;  // until one changes; nothing: for ever
 };
-
-/// The table of which condition shows as what: see README.md beside this file.
-Lights lights_for(const Condition& condition);
-
-/// What no condition shows: all lights flash twice a second, together, so that one box can be told from
-/// others.
-inline constexpr Lights kIdentify = {Pattern::Twice, Pattern::Twice, Pattern::Twice, Pattern::Twice};
-
-/// Whether a light with this pattern is lit `elapsed_ms` after the panel started.
-bool lit(Pattern pattern, std::uint64_t elapsed_ms);
-
-/// The lines that lights hang on: the seam between the panel and GPIO.
-class Lines {
- public:
-  virtual ~Lines() = default;
-  /// Sets all lights. An error is told once by its sentence; the rest of Adit goes on.
-  virtual std::expected<void, std::string> set(const std::array<bool, kLights.size()>& lit) = 0;
-};
-
-/// The lines named in the settings, by libgpiod. Lines without a name are left out. All are let go, dark, at
-/// the end.
-std::expected<std::unique_ptr<Lines>, std::string> open_gpio(const settings::Panel& settings);
-
-/// A panel without GPIO: what it shows is readable from `file` ("health on\n..."), rewritten atomically at
-/// each change.
-std::unique_ptr<Lines> simulated(std::string file);
+/// `elapsed` after the patterns began, which they did together so that lights of one pattern flash together.
+/// Digits stay dark.
+Frame frame_of(const Lights& lights, Milliseconds elapsed);
 
 }  // namespace adit::panel

@@ -4,17 +4,15 @@
 #include <optional>
 #include <system_error>
 
-#include "panel/panel.hpp"
+#include "panel/lines.hpp"
 
 namespace adit::panel {
 namespace {
 
-using Lit = std::array<bool, kLights.size()>;
-
 std::string text_of(const Lit& lit) {
   std::string text;
   for (const Light light : kLights) {
-    text.append(name_of(light)).append(lit[static_cast<std::size_t>(light)] ? " on\n" : " off\n");
+    text.append(name_of(light)).append(lit[index_of(light)] ? " on\n" : " off\n");
   }
   return text;
 }

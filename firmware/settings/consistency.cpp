@@ -92,27 +92,6 @@ void check_connections(const Team& team, std::vector<Error>& errors) {
                                                         std::to_string(team.connections_per_address)});
 }
 
-void check_panel(const Panel& panel, std::vector<Error>& errors) {
-  const std::array<std::pair<const char*, const std::string&>, 4> lines = {
-      {{"panel.health", panel.health},
-       {"panel.scoring", panel.scoring},
-       {"panel.mapping", panel.mapping},
-       {"panel.attention", panel.attention}}};
-  bool named = false;
-  for (std::size_t i = 0; i < lines.size(); ++i) {
-    const auto& [path, line] = lines[i];
-    if (line.empty()) continue;
-    named = true;
-    if (panel.chip.empty()) errors.push_back({path, "names a line, but panel.chip names no chip"});
-    for (std::size_t j = 0; j < i; ++j) {
-      if (line == lines[j].second)
-        errors.push_back({path, std::string("the same line as ") + lines[j].first});
-    }
-  }
-  if (!panel.chip.empty() && !named)
-    errors.push_back({"panel.chip", "names a chip, but no light has a line"});
-}
-
 /// Names are unique, and an alias is nobody else's and no robot's name: who posts must be clear.
 void check_robots(const std::vector<Robot>& robots, std::vector<Error>& errors) {
   for (std::size_t i = 0; i < robots.size(); ++i) {
@@ -154,6 +133,26 @@ void check_courses(const Settings& settings, std::vector<Error>& errors) {
 }
 
 }  // namespace
+
+void check_panel(const Panel& panel, std::vector<Error>& errors) {
+  const std::array<std::pair<const char*, const std::string&>, 5> lines = {
+      {{"panel.health", panel.health},
+       {"panel.scoring", panel.scoring},
+       {"panel.mapping", panel.mapping},
+       {"panel.attention", panel.attention},
+       {"panel.button", panel.button}}};
+  for (std::size_t i = 0; i < lines.size(); ++i) {
+    const auto& [path, line] = lines[i];
+    for (std::size_t j = 0; j < i; ++j) {
+      if (!line.empty() && line == lines[j].second) {
+        errors.push_back({path, std::string("the same line as ") + lines[j].first});
+      }
+    }
+  }
+  if (!panel.chip.empty() && panel.is_simulated()) {
+    errors.push_back({"panel.chip", "names a chip, but neither a light nor the button has a line"});
+  }
+}
 
 std::vector<Error> contradictions(const Settings& settings) {
   std::vector<Error> errors;

@@ -129,14 +129,20 @@ const Key kKeys[] = {
     {"rules.map_bytes", "The largest data of one map once inflated, in bytes; above it 413.",
      whole<MEMBER(rules.map_bytes)>(1024, 1024 * kMiB)},
 
-    {"panel.chip", "The GPIO chip of the lights (gpiochip0); empty: a simulated panel.",
+    {"panel.chip",
+     "The GPIO chip of the lights and the button (gpiochip0), by name, label or path; empty: whichever has a "
+     "line of that name.",
      text<MEMBER(panel.chip)>(Form::Chip)},
-    {"panel.health", "The line of the health light; empty: there is none.",
+    {"panel.health",
+     "The line of the health light; empty: there is none. Without any line: a simulated panel.",
      text<MEMBER(panel.health)>(Form::Line)},
     {"panel.scoring", "The line of the scoring light.", text<MEMBER(panel.scoring)>(Form::Line)},
     {"panel.mapping", "The line of the mapping light.", text<MEMBER(panel.mapping)>(Form::Line)},
     {"panel.attention", "The line of the attention light.", text<MEMBER(panel.attention)>(Form::Line)},
     {"panel.active_low", "Whether a light is lit by driving its line low.", flag<MEMBER(panel.active_low)>()},
+    {"panel.button", "The line of the button; empty: there is none.", text<MEMBER(panel.button)>(Form::Line)},
+    {"panel.button_active_low", "Whether the button pulls its line low when it is pressed.",
+     flag<MEMBER(panel.button_active_low)>()},
 };
 
 #undef MEMBER

@@ -62,11 +62,18 @@ struct Queues {
   std::size_t markers_per_message = 2000;
 };
 
-/// GPIO lines of the four lights, by name; an empty chip: a simulated panel.
+/// GPIO lines of the four lights and the button, by name; no line at all: a simulated panel.
 struct Panel {
-  std::string chip;  // "gpiochip0" or "/dev/gpiochip0"
+  std::string chip;  // its name, label or path; "": whichever chip has a line of that name
   std::string health, scoring, mapping, attention;
-  bool active_low = false;
+  bool active_low = false;  // the lights
+  std::string button;
+  bool button_active_low = true;
+
+  bool has_lights() const {
+    return !health.empty() || !scoring.empty() || !mapping.empty() || !attention.empty();
+  }
+  bool is_simulated() const { return !has_lights() && button.empty(); }
 };
 
 /// A robot as it was registered (ICD 2).

@@ -23,8 +23,8 @@ aditd = None
 class Box:
     """aditd with folders of its own, which outlive a restart."""
 
-    def __init__(self, folder, label=None, require_token=True):
-        self.folder = pathlib.Path(folder)
+    def __init__(self, folder, label=None, require_token=True, more=()):
+        self.folder, self.more = pathlib.Path(folder), more
         self.state, self.log = self.folder / "state", self.folder / "log"
         secrets = self.folder / "secrets"
         secrets.mkdir(mode=0o700)
@@ -42,7 +42,8 @@ class Box:
         with open(self.log, "ab") as log:
             begun = log.tell()
             self.process = subprocess.Popen([aditd, "--settings", self.folder / "settings.json", "--secrets",
-                                             self.folder / "secrets", "--state", self.state], stdout=log, stderr=log)
+                                             self.folder / "secrets", "--state", self.state, *self.more],
+                                            stdout=log, stderr=log)
         for _ in range(500):
             found = re.search(r"listening .*port=(\d+)", self.said()[begun:])
             if found:
@@ -97,7 +98,8 @@ class Login(unittest.TestCase):
 
     def test_the_first_start_asks_for_the_code_that_the_console_tells(self):
         box = self.box(first=False)
-        self.assertEqual(box.ask("GET /adit/session")[1], {"role": None, "csrf": None, "first_start": True})
+        self.assertEqual(box.ask("GET /adit/session")[1], {"role": None, "csrf": None, "first_start": True,
+                                                             "set_up_open": False})
         self.assertRegex(box.code(), r"^\d{8}$")
         self.assertIn(f"code={box.code()}", box.said())
         self.assertEqual(stat.S_IMODE((box.state / "first-start.code").stat().st_mode), 0o600)

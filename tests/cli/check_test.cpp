@@ -61,7 +61,8 @@ TEST_F(Check, SaysWhatGoodSettingsComeTo) {
             "  mapping  10.100.1.201:8000  by darpa0 alone\n"
             "  team     0.0.0.0:8000       by team0 alone\n"
             "  link     100 Mbit/s\n"
-            "  panel    gpiochip0          ADIT_HEALTH, ADIT_SCORING, ADIT_MAPPING, ADIT_ATTENTION\n");
+            "  panel    gpiochip0          ADIT_HEALTH, ADIT_SCORING, ADIT_MAPPING, ADIT_ATTENTION, "
+            "ADIT_BUTTON\n");
 }
 
 TEST_F(Check, SaysTheSameToScripts) {

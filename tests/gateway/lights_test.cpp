@@ -5,81 +5,118 @@
 #include <algorithm>
 #include <vector>
 
+#include "gateway/watched_lines.hpp"
+
 namespace adit::gateway {
 namespace {
 
-using Lit = std::array<bool, panel::kLights.size()>;
+using namespace std::chrono_literals;
+using panel::Lit;
+using panel::Pattern;
+using panel::State;
 
-/// Remembers what it was told to show; fails when asked to.
-class WatchedLines final : public panel::Lines {
- public:
-  struct Seen {
-    std::vector<Lit> shown;
-    bool fail = false;
-  };
-  explicit WatchedLines(Seen& seen) : seen_(seen) {}
-  std::expected<void, std::string> set(const Lit& lit) override {
-    seen_.shown.push_back(lit);
-    if (seen_.fail) return std::unexpected("gpiochip0: gone");
-    return {};
+constexpr std::size_t kHealth = panel::index_of(panel::Light::Health),
+                      kMapping = panel::index_of(panel::Light::Mapping),
+                      kAttention = panel::index_of(panel::Light::Attention);
+
+class LightsTest : public testing::Test {
+ protected:
+  void be_well() {
+    for (const State state : {State::Serving, State::ScoringConnected, State::MappingConnected}) {
+      lights.set(state, true);
+    }
+  }
+  template <class Done>
+  void turn_until(Done done, loop::Duration most = 5s) {
+    const auto until = loop.now() + most;
+    while (!done() && loop.now() < until) loop.turn(50ms);
+    EXPECT_TRUE(done());
   }
 
- private:
-  Seen& seen_;
+  loop::Loop loop;
+  WatchedLines::Seen seen;
+  Lights lights{loop, std::make_unique<WatchedLines>(seen)};
 };
 
-TEST(Lights, SetsTheLinesOnlyWhenSomethingChanges) {
-  loop::Loop loop;
-  WatchedLines::Seen seen;
-  Lights lights(loop, std::make_unique<WatchedLines>(seen));
-  panel::Condition well{.serving = true, .scoring_connected = true, .mapping_connected = true};
-  lights.show(well);
-  lights.show(well);
-  ASSERT_EQ(seen.shown.size(), 1u);
-  EXPECT_TRUE(seen.shown[0][static_cast<std::size_t>(panel::Light::Health)]);
-  EXPECT_FALSE(seen.shown[0][static_cast<std::size_t>(panel::Light::Attention)]);
+TEST_F(LightsTest, SetTheLinesOnlyWhenSomethingChanges) {
+  be_well();
+  const std::size_t changes = seen.shown.size();
+  EXPECT_EQ(seen.shown.back(), (Lit{true, true, true, false}));
+  be_well();
+  lights.set(State::NeedsOperator, false);
+  EXPECT_EQ(seen.shown.size(), changes);
 }
 
-TEST(Lights, BlinkByTheLoopsTimer) {
-  loop::Loop loop;
-  WatchedLines::Seen seen;
-  Lights lights(loop, std::make_unique<WatchedLines>(seen));
-  lights.show(
-      {.serving = true, .scoring_connected = true, .mapping_connected = true, .needs_operator = true});
-  const auto until = loop.now() + std::chrono::seconds(5);
-  while (seen.shown.size() < 4 && loop.now() < until) loop.turn(std::chrono::milliseconds(200));
-  ASSERT_GE(seen.shown.size(), 4u);
-  const auto attention = static_cast<std::size_t>(panel::Light::Attention);
-  EXPECT_NE(seen.shown[1][attention], seen.shown[2][attention]);
-  EXPECT_NE(seen.shown[2][attention], seen.shown[3][attention]);
+TEST_F(LightsTest, AreAllDarkAtFirst) {
+  lights.set(State::Serving, false);
+  ASSERT_EQ(seen.shown.size(), 1u) << "whatever they showed before";
+  EXPECT_EQ(seen.shown.back(), Lit{});
 }
 
-TEST(Lights, AllFlashTogetherWhileTheBoxIsIdentifiedAndThenTellOfTheConditionAgain) {
-  loop::Loop loop;
-  WatchedLines::Seen seen;
-  Lights lights(loop, std::make_unique<WatchedLines>(seen));
-  lights.show({.serving = true, .scoring_connected = true, .mapping_connected = true});
-  lights.identify(std::chrono::milliseconds(600));
-  EXPECT_EQ(lights.shown(), panel::kIdentify);
-  lights.show({.serving = true, .scoring_connected = true});
-  EXPECT_EQ(lights.shown(), panel::kIdentify) << "whatever happens meanwhile";
-  EXPECT_GT(lights.identifying().value_or(loop::Duration{0}), std::chrono::milliseconds(0));
-  const auto until = loop.now() + std::chrono::seconds(5);
-  while (lights.shown() == panel::kIdentify && loop.now() < until) loop.turn(std::chrono::milliseconds(200));
-  EXPECT_EQ(lights.identifying(), std::nullopt);
-  EXPECT_EQ(lights.shown()[static_cast<std::size_t>(panel::Light::Mapping)], panel::Pattern::Off);
+TEST_F(LightsTest, BlinkByTheLoopsTimer) {
+  be_well();
+  seen.shown.clear();
+  lights.set(State::NeedsOperator, true);
+  const auto began = loop.now();
+  turn_until([&] { return seen.shown.size() >= 9; });
+  for (std::size_t i = 1; i < 9; ++i) EXPECT_NE(seen.shown[i][kAttention], seen.shown[i - 1][kAttention]);
+  const auto took = loop.now() - began;
+  EXPECT_GT(took, 800ms);
+  EXPECT_LT(took, 1500ms) << "eight steps of 125 ms";
+}
+
+TEST_F(LightsTest, KeepTheirTimeWhileTheyAreToldTheSameOverAndOver) {
+  lights.set(State::NeedsOperator, true);
+  seen.shown.clear();
+  const auto until = loop.now() + 1s;
+  while (loop.now() < until) {
+    lights.set(State::NeedsOperator, true);
+    loop.turn(10ms);
+  }
+  EXPECT_GE(seen.shown.size(), 6u);
+  EXPECT_LE(seen.shown.size(), 9u);
+}
+
+TEST_F(LightsTest, AllFlashTogetherWhileTheBoxIsIdentifiedAndThenTellOfTheOthersAgain) {
+  be_well();
+  lights.set_for(State::Identify, 600ms);
+  constexpr panel::Lights kTwice = {Pattern::Twice, Pattern::Twice, Pattern::Twice, Pattern::Twice};
+  EXPECT_EQ(lights.shown(), kTwice);
+  lights.set(State::MappingConnected, false);
+  EXPECT_EQ(lights.shown(), kTwice) << "whatever happens meanwhile";
+  EXPECT_GT(lights.left(State::Identify).value_or(0ms), 0ms);
+  turn_until([&] { return lights.shown() != kTwice; });
+  EXPECT_EQ(lights.left(State::Identify), std::nullopt);
+  EXPECT_FALSE(lights.has(State::Identify));
+  EXPECT_EQ(lights.shown()[kMapping], Pattern::Off);
   EXPECT_EQ(seen.shown.back(), (Lit{true, true, false, false}));
   EXPECT_NE(std::ranges::find(seen.shown, Lit{}), seen.shown.end()) << "all were dark between two flashes";
   EXPECT_NE(std::ranges::find(seen.shown, Lit{true, true, true, true}), seen.shown.end());
 }
 
-TEST(Lights, GoOnAfterThePanelFails) {
-  loop::Loop loop;
-  WatchedLines::Seen seen;
+TEST_F(LightsTest, PlayDigitsOnceFromTheirBeginningOnAttentionAlone) {
+  be_well();
+  loop.turn(30ms);
+  seen.shown.clear();
+  lights.play_digits({{false, 100ms}, {true, 100ms}, {false, 100ms}, {true, 200ms}, {false, 100ms}});
+  EXPECT_EQ(lights.shown()[kAttention], Pattern::Digits);
+  turn_until([&] { return !lights.has(State::Address); });
+  const Lit dark{}, digit{false, false, false, true}, well{true, true, true, false};
+  EXPECT_EQ(seen.shown, (std::vector{dark, digit, dark, digit, dark, well}));
+}
+
+TEST_F(LightsTest, ClearAStateThatWouldEndByItself) {
+  lights.set(State::Serving, true);
+  lights.set_for(State::Identify, 1h);
+  lights.set(State::Identify, false);
+  EXPECT_EQ(lights.left(State::Identify), std::nullopt);
+  EXPECT_EQ(lights.shown()[kHealth], Pattern::On);
+}
+
+TEST_F(LightsTest, GoOnAfterThePanelFails) {
   seen.fail = true;
-  Lights lights(loop, std::make_unique<WatchedLines>(seen));
-  lights.show({.serving = true});
-  lights.show({.serving = true, .scoring_connected = true});
+  lights.set(State::Serving, true);
+  lights.set(State::ScoringConnected, true);
   EXPECT_EQ(seen.shown.size(), 2u);
 }
 

@@ -22,6 +22,16 @@ TEST(Options, AreTheThreeThatTheServiceNeeds) {
   EXPECT_EQ(options->state, "c");
 }
 
+TEST(Options, MayNameTheBoardAndTheFolderOfTheNetwork) {
+  const auto options =
+      parse({"--settings", "a", "--secrets", "b", "--state", "c", "--board", "d", "--network", "e"});
+  ASSERT_TRUE(options);
+  EXPECT_EQ(options->board, "d");
+  EXPECT_EQ(options->network, "e");
+  EXPECT_EQ(parse({"--settings", "a", "--secrets", "b", "--state", "c"})->board, "");
+  EXPECT_EQ(parse({"--board"}).error(), "--board wants a value");
+}
+
 TEST(Options, NameWhatIsMissingOrUnknown) {
   EXPECT_EQ(parse({"--settings", "a"}).error(), "--secrets DIR is missing");
   EXPECT_EQ(parse({"--settings"}).error(), "--settings wants a value");

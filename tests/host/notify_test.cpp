@@ -3,9 +3,12 @@
 #include <sys/un.h>
 #include <unistd.h>
 
+#include <chrono>
 #include <cstdlib>
+#include <cstring>
 
 #include "host/folder.hpp"
+#include "host/inherited.hpp"
 #include "host/service.hpp"
 
 namespace adit::host {
@@ -32,7 +35,6 @@ class Notify : public testing::Test {
     return size < 0 ? "" : std::string(text, static_cast<std::size_t>(size));
   }
 
- private:
   Folder folder_;
   int socket_;
 };
@@ -42,6 +44,8 @@ TEST_F(Notify, TellsSystemdHowTheServiceIs) {
   EXPECT_EQ(heard(), "READY=1\nSTATUS=serving");
   notify_status("2 reports wait");
   EXPECT_EQ(heard(), "STATUS=2 reports wait");
+  notify_alive();
+  EXPECT_EQ(heard(), "WATCHDOG=1");
   notify_stopping();
   EXPECT_EQ(heard(), "STOPPING=1");
 }
@@ -49,6 +53,58 @@ TEST_F(Notify, TellsSystemdHowTheServiceIs) {
 TEST_F(Notify, TakesNoOrdersFromAStatus) {
   notify_status("from a client\nSTOPPING=1");
   EXPECT_EQ(heard(), "STATUS=from a client\\x0aSTOPPING=1");
+}
+
+TEST_F(Notify, GivesDescriptorsToKeepByName) {
+  int ends[2];
+  ASSERT_EQ(pipe(ends), 0);
+  store_descriptor("listen-team0-10.0.0.1-8000", ends[1]);
+  close(ends[1]);
+  char text[64];
+  iovec piece{text, sizeof text};
+  alignas(cmsghdr) char ancillary[CMSG_SPACE(sizeof(int))];
+  msghdr message{};
+  message.msg_iov = &piece;
+  message.msg_iovlen = 1;
+  message.msg_control = ancillary;
+  message.msg_controllen = sizeof ancillary;
+  const ssize_t size = recvmsg(socket_, &message, 0);
+  ASSERT_GT(size, 0);
+  EXPECT_EQ(std::string(text, static_cast<std::size_t>(size)),
+            "FDSTORE=1\nFDNAME=listen-team0-10.0.0.1-8000");
+  const cmsghdr* given = CMSG_FIRSTHDR(&message);
+  ASSERT_NE(given, nullptr);
+  ASSERT_EQ(given->cmsg_type, SCM_RIGHTS);
+  int kept = -1;
+  std::memcpy(&kept, CMSG_DATA(given), sizeof kept);
+  EXPECT_EQ(write(kept, "x", 1), 1) << "the pipe's writing end";
+  EXPECT_EQ(read(ends[0], text, sizeof text), 1);
+  close(kept);
+  close(ends[0]);
+  forget_descriptor("listen-team0-10.0.0.1-8000");
+  EXPECT_EQ(heard(), "FDSTOREREMOVE=1\nFDNAME=listen-team0-10.0.0.1-8000");
+}
+
+TEST(Inherited, IsNothingOutsideSystemdOrWhatIsMeantForAnother) {
+  EXPECT_TRUE(inherited().value().empty());
+  setenv("LISTEN_FDS", "1", 1);
+  setenv("LISTEN_PID", "1", 1);
+  EXPECT_TRUE(inherited().value().empty());
+  setenv("LISTEN_PID", std::to_string(getpid()).c_str(), 1);
+  setenv("LISTEN_FDS", "many", 1);
+  EXPECT_FALSE(inherited());
+  EXPECT_EQ(getenv("LISTEN_FDS"), nullptr) << "a program that is started from here would take it for its own";
+}
+
+TEST(WatchdogWithin, IsWhatSystemdSays) {
+  unsetenv("WATCHDOG_USEC");
+  EXPECT_EQ(watchdog_within(), std::nullopt);
+  setenv("WATCHDOG_USEC", "10000000", 1);
+  EXPECT_EQ(watchdog_within(), std::chrono::seconds(10));
+  setenv("WATCHDOG_PID", "1", 1);
+  EXPECT_EQ(watchdog_within(), std::nullopt) << "it is another's";
+  unsetenv("WATCHDOG_USEC");
+  unsetenv("WATCHDOG_PID");
 }
 
 TEST_F(Notify, SaysNothingOutsideSystemd) {

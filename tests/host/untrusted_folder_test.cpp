@@ -66,5 +66,52 @@ TEST_F(UntrustedFolderTest, IsNoLinkItself) {
   EXPECT_FALSE(UntrustedFolder::open(folder / "none"));
 }
 
+TEST_F(UntrustedFolderTest, ReadsAFileThatStays) {
+  folder.put("wanted.json", "{}");
+  const auto opened = UntrustedFolder::open(folder.path());
+  ASSERT_TRUE(opened);
+  EXPECT_EQ(opened->read("wanted.json").value(), "{}");
+  EXPECT_EQ(opened->read("wanted.json").value(), "{}");
+  EXPECT_EQ(opened->read("word.json").value(), std::nullopt);
+  ASSERT_EQ(symlink((folder / "wanted.json").c_str(), (folder / "word.json").c_str()), 0);
+  EXPECT_FALSE(opened->read("word.json"));
+}
+
+TEST_F(UntrustedFolderTest, OpensFoldersInItAndNoLinksToOthers) {
+  const auto opened = UntrustedFolder::open(folder.path());
+  ASSERT_TRUE(opened);
+  EXPECT_FALSE(opened->folder("inside").value());
+  ASSERT_EQ(mkdir((folder / "inside").c_str(), 0700), 0);
+  EXPECT_TRUE(opened->folder("inside").value());
+  ASSERT_EQ(symlink("/etc", (folder / "link").c_str()), 0);
+  EXPECT_FALSE(opened->folder("link"));
+}
+
+TEST_F(UntrustedFolderTest, NamesSoManyFilesInOrder) {
+  const auto opened = UntrustedFolder::open(folder.path());
+  ASSERT_TRUE(opened);
+  for (const char* name : {"b", "a"}) folder.put(name, "");
+  EXPECT_EQ(opened->names().value(), (std::vector<std::string>{"a", "b"}));
+  for (std::size_t i = 2; i < UntrustedFolder::kMostNames; ++i) folder.put(std::to_string(i), "");
+  EXPECT_EQ(opened->names().value().size(), UntrustedFolder::kMostNames);
+  folder.put("one more", "");
+  EXPECT_THAT(opened->names().error(), HasSubstr("more than 256"));
+}
+
+TEST_F(UntrustedFolderTest, WipesAFileAndNothingElse) {
+  const auto opened = UntrustedFolder::open(folder.path());
+  ASSERT_TRUE(opened);
+  folder.put("token", std::string(5000, 'x'));
+  ASSERT_EQ(link((folder / "token").c_str(), (folder / "same").c_str()), 0);
+  EXPECT_TRUE(opened->wipe("token"));
+  EXPECT_FALSE(is_there("token"));
+  EXPECT_EQ(opened->read("same").value(), std::string(5000, '\0'));
+  EXPECT_FALSE(opened->wipe("token"));
+  folder.put("of somebody else", "stays");
+  ASSERT_EQ(symlink("of somebody else", (folder / "token").c_str()), 0);
+  EXPECT_FALSE(opened->wipe("token"));
+  EXPECT_EQ(opened->read("of somebody else").value(), "stays");
+}
+
 }  // namespace
 }  // namespace adit::host

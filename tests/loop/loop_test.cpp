@@ -232,34 +232,5 @@ TEST(Loop, CarriesTheStampOnWithTheMonotonicClock) {
   EXPECT_GE(loop.stamp_now() - first, 0.002);
 }
 
-TEST(Loop, FeedsTheWatchdogOnlyWhereSystemdAsksForIt) {
-  ::unsetenv("WATCHDOG_USEC");
-  EXPECT_FALSE(Loop().feed_watchdog());
-
-  // systemd's end of $NOTIFY_SOCKET, in the abstract namespace
-  const std::string name = "adit-loop-test-" + std::to_string(::getpid());
-  const FileDescriptor listener(::socket(AF_UNIX, SOCK_DGRAM | SOCK_NONBLOCK, 0));
-  sockaddr_un address{};
-  address.sun_family = AF_UNIX;
-  name.copy(address.sun_path + 1, name.size());
-  const auto size = static_cast<socklen_t>(offsetof(sockaddr_un, sun_path) + 1 + name.size());
-  ASSERT_EQ(::bind(listener.get(), reinterpret_cast<const sockaddr*>(&address), size), 0);
-  ::setenv("NOTIFY_SOCKET", ("@" + name).c_str(), 1);
-  ::setenv("WATCHDOG_USEC", "40000", 1);
-  ::setenv("WATCHDOG_PID", std::to_string(::getpid()).c_str(), 1);
-
-  Loop loop;
-  EXPECT_TRUE(loop.feed_watchdog());
-  std::string told;
-  EXPECT_TRUE(turn_until(loop, [&] {
-    char text[64];
-    const auto got = ::recv(listener.get(), text, sizeof text, 0);
-    if (got > 0) told.assign(text, static_cast<std::size_t>(got));
-    return !told.empty();
-  }));
-  EXPECT_EQ(told, "WATCHDOG=1");
-  for (const char* variable : {"NOTIFY_SOCKET", "WATCHDOG_USEC", "WATCHDOG_PID"}) ::unsetenv(variable);
-}
-
 }  // namespace
 }  // namespace adit::loop

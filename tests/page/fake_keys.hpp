@@ -21,6 +21,7 @@ inline icd::BearerToken token(std::string_view text = "team-1") {
 struct FakeKeys final : Keys {
   bool first_start() const override { return !operator_; }
   bool is_code(std::string_view presented) const override { return first_start() && presented == "12345678"; }
+  bool set_up_open() const override { return set_up; }
   void check(std::string password, std::string,
              std::function<void(std::optional<access::Role>)> done) override {
     ++checked;
@@ -32,6 +33,7 @@ struct FakeKeys final : Keys {
   void set(access::Role role, std::optional<std::string> password,
            std::function<void(icd::Checked<void>)> done) override {
     (role == access::Role::Operator ? operator_ : viewer) = std::move(password);
+    if (role == access::Role::Operator) set_up = false;
     later([done = std::move(done)] { done({}); });
   }
   access::Sessions& sessions() override { return sessions_; }
@@ -49,6 +51,7 @@ struct FakeKeys final : Keys {
   }
 
   std::optional<std::string> operator_ = "correct horse", viewer = "look, do not touch";
+  bool set_up = false;
   bool slow = false;
   std::vector<std::function<void()>> waiting;
   int checked = 0;

@@ -72,6 +72,19 @@ test("sets the first password with the code of the box", async (t) => {
   assert.equal(await page.locator("#who .text").textContent(), "Logged in as operator");
 });
 
+test("offers a new password without the code while set-up is open, beside the login", async (t) => {
+  const { page } = await come(t, "", ["set-up-open"]);
+  const first = page.locator("#first");
+  await first.waitFor();
+  assert.equal(await page.getByLabel("Code").count(), 0);
+  assert.ok(await page.locator("#login").isVisible());
+  await first.getByLabel("New password").fill("a new password");
+  await first.getByLabel("The same once more").fill("a new password");
+  await page.keyboard.press("Enter");
+  await live(page);
+  assert.equal(await page.locator("#who .text").textContent(), "Logged in as operator");
+});
+
 test("logs out, for good", async (t) => {
   const { page, stage } = await come(t);
   await logIn(page, "correct horse");
@@ -111,7 +124,7 @@ test("goes nowhere but to a page of this box", async (t) => {
 
 test("has nothing that axe finds wrong at the door, in the dark and by day", async (t) => {
   for (const colorScheme of ["dark", "light"]) {
-    for (const more of [[], ["first-start"]]) {
+    for (const more of [[], ["first-start"], ["set-up-open"]]) {
       const { page } = await come(t, "login.html", more, { colorScheme, bypassCSP: true });
       await page.waitForSelector("form:not([hidden])");
       await page.addScriptTag({ path: axe });

@@ -38,6 +38,7 @@ TEST(RunViewJson, NamesEachMemberAsTheViewDoes) {
                                        {"heading", 0.5},
                                        {"at", 1000.0}}));
   EXPECT_EQ(parsed["identify_until"], nullptr);
+  EXPECT_EQ(parsed["setup_open_until"], nullptr);
   EXPECT_EQ(parsed["run_number"], 1);
   EXPECT_EQ(parsed["run_id"], "");
   EXPECT_EQ(parsed["queued_bytes"], 214'000'000);
@@ -49,10 +50,12 @@ TEST(RunViewJson, TellsTheVersionsOfThePicturesToTheLastDigit) {
   view.map_version = 1'793'000'123'456;
   view.marker_version = 1'793'000'123'457;
   view.identify_until = 12.5;
+  view.setup_open_until = 13.5;
   const json parsed = json::parse(write_run_view(view));
   EXPECT_EQ(parsed["map_version"], 1'793'000'123'456);
   EXPECT_EQ(parsed["marker_version"], 1'793'000'123'457);
   EXPECT_EQ(parsed["identify_until"], 12.5);
+  EXPECT_EQ(parsed["setup_open_until"], 13.5);
 }
 
 TEST(RunViewJson, TellsOfEachReportWhoseWordItWaitsFor) {

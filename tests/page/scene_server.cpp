@@ -1,6 +1,6 @@
-// Serves the page with a scene of scenes.hpp, for a browser: `adit_page_scenes PORT [SCENE [first-start]]`.
-// The passwords are FakeKeys'; the token is "team-1". Each line on standard input is the name of the next
-// scene, or after "say " what the log says next; its end ends the program.
+// Serves the page with a scene of scenes.hpp, for a browser: `adit_page_scenes PORT [SCENE
+// [first-start|set-up-open]]`. The passwords are FakeKeys'; the token is "team-1". Each line on standard
+// input is the name of the next scene, or after "say " what the log says next; its end ends the program.
 #include <sys/epoll.h>
 #include <unistd.h>
 
@@ -97,13 +97,14 @@ void furnish(FakeBox& box, Time now) {
   box.say(3, "error", "the ledger cannot be written", "disk I/O error");
 }
 
-int serve(std::uint16_t port, const std::string& first, bool first_start) {
+int serve(std::uint16_t port, const std::string& first, const std::string& more) {
   loop::Loop loop;
   Stage stage{loop, "empty"};
   if (!stage.change_to(first)) return std::fprintf(stderr, "no such scene: %s\n", first.c_str()), 2;
   FakeKeys keys;
   FakeBox box;
-  if (first_start) keys.operator_.reset();
+  if (more == "first-start") keys.operator_.reset();
+  keys.set_up = more == "set-up-open";
   FakeNetwork network;
   FakeTest test;
   Page page{loop, stage, stage, keys, {token()}};
@@ -139,5 +140,6 @@ int serve(std::uint16_t port, const std::string& first, bool first_start) {
 int main(int count, char** arguments) {
   const int port =
       count > 1 ? std::atoi(arguments[1]) : 0;  // NOLINT(cert-err34-c): 0, any port, is right then
-  return adit::page::serve(static_cast<std::uint16_t>(port), count > 2 ? arguments[2] : "calm", count > 3);
+  return adit::page::serve(static_cast<std::uint16_t>(port), count > 2 ? arguments[2] : "calm",
+                           count > 3 ? arguments[3] : "");
 }

@@ -68,12 +68,16 @@ class SessionRoutesTest : public testing::Test {
 };
 
 TEST_F(SessionRoutesTest, TellAnybodyWhoHeIs) {
-  EXPECT_EQ(session(), (json{{"role", nullptr}, {"csrf", nullptr}, {"first_start", false}}));
+  EXPECT_EQ(session(),
+            (json{{"role", nullptr}, {"csrf", nullptr}, {"first_start", false}, {"set_up_open", false}}));
   const Browser mine = log_in("correct horse");
-  EXPECT_EQ(session(mine), (json{{"role", "operator"}, {"csrf", mine.csrf}, {"first_start", false}}));
+  EXPECT_EQ(
+      session(mine),
+      (json{{"role", "operator"}, {"csrf", mine.csrf}, {"first_start", false}, {"set_up_open", false}}));
   EXPECT_EQ(session(log_in("look, do not touch"))["role"], "viewer");
   const json script = json::parse(ask("GET", "/adit/session", {kByToken}).body);
-  EXPECT_EQ(script, (json{{"role", "operator"}, {"csrf", nullptr}, {"first_start", false}}));
+  EXPECT_EQ(script,
+            (json{{"role", "operator"}, {"csrf", nullptr}, {"first_start", false}, {"set_up_open", false}}));
 }
 
 TEST_F(SessionRoutesTest, GiveACookieThatNoScriptReadsAndNoOtherSiteSends) {
@@ -211,6 +215,75 @@ TEST_F(SessionRoutesTest, SetTheFirstPasswordWithTheCodeAlone) {
   EXPECT_EQ(keys.operator_, "a new password");
   EXPECT_EQ(post("/adit/password", good).status, Status::Unauthorized) << "the code is good once";
   EXPECT_EQ(session(log_in("a new password"))["role"], "operator");
+}
+
+TEST_F(SessionRoutesTest, SetANewPasswordWithNothingElseOnceTheButtonOpenedSetUp) {
+  const Browser old = log_in("correct horse"), viewer = log_in("look, do not touch");
+  const json body = {{"role", "operator"}, {"password", "a new password"}};
+  EXPECT_EQ(post("/adit/password", body).status, Status::Unauthorized) << "not before";
+  EXPECT_EQ(session()["set_up_open"], false);
+  keys.set_up = true;
+  EXPECT_EQ(session()["set_up_open"], true);
+  EXPECT_EQ(get("/adit/run", old).status, Status::Ok) << "nothing has changed yet";
+  json wrong = body;
+  wrong["password"] = "too short";
+  EXPECT_EQ(post("/adit/password", wrong).status, Status::UnprocessableEntity);
+  wrong = {{"role", "viewer"}, {"password", "a new password"}};
+  EXPECT_EQ(post("/adit/password", wrong).status, Status::Unauthorized) << "the viewers' needs the operator";
+  wrong = {{"role", "operator"}, {"current", "wrong"}, {"password", "a new password"}};
+  EXPECT_EQ(post("/adit/password", wrong).status, Status::Unauthorized) << "who says one is asked for it";
+  EXPECT_EQ(keys.operator_, "correct horse");
+  EXPECT_EQ(get("/adit/run", old).status, Status::Ok);
+
+  EXPECT_EQ(post("/adit/password", body).status, Status::Ok);
+  EXPECT_EQ(keys.operator_, "a new password");
+  EXPECT_EQ(get("/adit/run", old).status, Status::Unauthorized) << "who knew the old one is out";
+  EXPECT_EQ(get("/adit/run", viewer).status, Status::Ok);
+  EXPECT_EQ(post("/adit/password", body).status, Status::Unauthorized) << "it is good once";
+}
+
+TEST_F(SessionRoutesTest, OpenNothingElseWhileSetUpIsOpen) {
+  keys.set_up = true;
+  for (const char* path : {"/adit/reset", "/adit/logout", "/adit/sessions/1/end", "/adit/runs"}) {
+    EXPECT_EQ(post(path, {{"password", "a new password"}}).status, Status::Unauthorized) << path;
+  }
+  EXPECT_EQ(get("/adit/run").status, Status::Unauthorized);
+  Headers headers = of({});
+  headers[2].value = "http://evil.example";
+  EXPECT_EQ(
+      ask("POST", "/adit/password", headers, R"({"role":"operator","password":"a new password"})").status,
+      Status::Forbidden)
+      << "a page from elsewhere";
+  EXPECT_EQ(ask("POST", "/adit/password", {{"Content-Type", "text/plain"}},
+                R"({"role":"operator","password":"a new password"})")
+                .status,
+            Status::UnprocessableEntity);
+  EXPECT_EQ(keys.operator_, "correct horse");
+}
+
+TEST_F(SessionRoutesTest, SetNoPasswordOnceSetUpIsClosedWhileItIsOnItsWay) {
+  keys.set_up = true;
+  auto responder = std::make_shared<FakeResponder>();
+  const auto late = page.open(FakeHead{"POST", "/adit/password", of({}), std::nullopt}, responder, {});
+  ASSERT_NE(late, nullptr);
+  keys.set_up = false;
+  const std::string body = R"({"role":"operator","password":"a new password"})";
+  late->on_body({reinterpret_cast<const std::uint8_t*>(body.data()), body.size()});
+  late->on_end();
+  EXPECT_EQ(responder->answered->status, Status::Unauthorized);
+  EXPECT_EQ(keys.operator_, "correct horse");
+}
+
+TEST_F(SessionRoutesTest, AskForNoCodeAtTheFirstStartWhileSetUpIsOpen) {
+  keys.operator_.reset();
+  keys.set_up = true;
+  EXPECT_EQ(
+      post("/adit/password", {{"role", "operator"}, {"code", "1"}, {"password", "a new password"}}).status,
+      Status::Forbidden)
+      << "but one that is shown has to be right";
+  EXPECT_EQ(post("/adit/password", {{"role", "operator"}, {"password", "a new password"}}).status,
+            Status::Ok);
+  EXPECT_EQ(keys.operator_, "a new password");
 }
 
 TEST_F(SessionRoutesTest, SlowDownWhoGuessesTheCode) {

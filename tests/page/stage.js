@@ -4,7 +4,7 @@ import { once } from "node:events";
 import { createInterface } from "node:readline";
 import { chromium } from "playwright-core";
 
-/** Serves `scene` on `port` (0: any free one); `more`: "first-start". */
+/** Serves `scene` on `port` (0: any free one); `more`: "first-start" or "set-up-open". */
 export async function serve(scene, port = 0, ...more) {
   const program = spawn(process.env.SCENE_SERVER, [String(port), scene, ...more], { stdio: ["pipe", "pipe", "inherit"] });
   const [line] = await once(createInterface({ input: program.stdout }), "line");

@@ -6,21 +6,35 @@
 
 namespace adit::panel {
 
-/// What stands behind the fake libgpiod: one chip, "gpiochip0", and its lines by name.
+/// What stands behind the fake libgpiod: chips by their paths, and their lines by name.
 struct FakeLine {
   bool requested = false;
+  bool output = false;
   bool active_low = false;
+  int pull = 0;  // 1 up, -1 down
   std::string consumer;
-  bool level = false;  // what the wire carries; an output keeps its last level after it is released
-  int fails_with = 0;  // errno of setting it
+  bool level = false;   // what the wire carries; an output keeps its last level after it is released
+  int fails_with = 0;   // errno of setting or reading it
+  int descriptor = -1;  // a pipe's end: readable while events wait
+  int events = 0;       // how many wait
 };
 
 struct FakeChip {
+  std::string name, label;
+  bool knows_pull = true;
   std::map<std::string, FakeLine> lines;
-  int open = 0;                      // how often it is open
-  std::vector<std::string> history;  // "open", "request HEALTH", "release HEALTH", "close"
 };
 
-FakeChip& fake_chip();
+struct FakeGpio {
+  std::map<std::string, FakeChip> chips;  // by path: "/dev/gpiochip0"
+  int open = 0;                           // chips and requests that are not closed yet
+  std::vector<std::string> history;       // "request HEALTH", "release HEALTH"
+
+  FakeLine& line(const std::string& name);
+  /// The wire of an input changes, and its user is told.
+  void drive(const std::string& name, bool level);
+};
+
+FakeGpio& fake_gpio();
 
 }  // namespace adit::panel

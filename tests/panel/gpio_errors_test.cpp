@@ -1,7 +1,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include "panel/panel.hpp"
+#include "panel/lines.hpp"
 
 namespace adit::panel {
 namespace {
@@ -19,14 +19,14 @@ settings::Panel panel_at(const std::string& chip) {
 
 TEST(OpenGpio, NamesAChipThatThereIsNot) {
   for (const std::string chip : {"no-such-chip", "/dev/gpiochip-none"}) {
-    const auto lines = open_gpio(panel_at(chip));
+    const auto lines = open_gpio(panel_at(chip), "aditd");
     ASSERT_FALSE(lines.has_value());
     EXPECT_EQ(lines.error(), "panel: chip " + chip + ": No such file or directory");
   }
 }
 
 TEST(OpenGpio, NamesADeviceThatIsNoChip) {
-  const auto lines = open_gpio(panel_at("/dev/null"));
+  const auto lines = open_gpio(panel_at("/dev/null"), "aditd");
   ASSERT_FALSE(lines.has_value());
   EXPECT_THAT(lines.error(), StartsWith("panel: chip /dev/null: "));
 }

@@ -4,7 +4,7 @@
 #include <cerrno>
 
 #include "panel/fake_gpiod.hpp"
-#include "panel/panel.hpp"
+#include "panel/lines.hpp"
 
 namespace adit::panel {
 namespace {
@@ -14,16 +14,32 @@ using testing::HasSubstr;
 class Gpio : public testing::Test {
  protected:
   Gpio() {
-    fake_chip() = {};
-    for (const std::string name : {"HEALTH", "SCORING", "MAPPING", "ATTENTION"}) fake_chip().lines[name];
-    settings_ = {"gpiochip0", "HEALTH", "SCORING", "MAPPING", "ATTENTION", false};
+    fake_gpio() = {};
+    FakeChip& first = fake_gpio().chips["/dev/gpiochip0"];
+    first.name = "gpiochip0";
+    first.label = "other";
+    first.lines["ELSEWHERE"];
+    FakeChip& second = fake_gpio().chips["/dev/gpiochip1"];
+    second.name = "gpiochip1";
+    second.label = "9030000.pl061";
+    for (const std::string name : {"HEALTH", "SCORING", "MAPPING", "ATTENTION", "BUTTON"}) second.lines[name];
+    settings_ = {.chip = "gpiochip1",
+                 .health = "HEALTH",
+                 .scoring = "SCORING",
+                 .mapping = "MAPPING",
+                 .attention = "ATTENTION",
+                 .button = "BUTTON"};
+    line("BUTTON").level = true;  // pulled up
   }
-  static bool level(const std::string& line) { return fake_chip().lines.at(line).level; }
+  static FakeLine& line(const std::string& name) { return fake_gpio().line(name); }
+  static bool level(const std::string& name) { return line(name).level; }
+  auto open() const { return open_gpio(settings_, "aditd"); }
+  auto open_button() const { return open_gpio_button(settings_, "aditd"); }
   settings::Panel settings_;
 };
 
 TEST_F(Gpio, SetsEachLightsOwnLine) {
-  const auto lines = open_gpio(settings_);
+  const auto lines = open();
   ASSERT_TRUE(lines.has_value()) << lines.error();
   ASSERT_TRUE((*lines)->set({true, false, true, false}).has_value());
   EXPECT_TRUE(level("HEALTH"));
@@ -35,12 +51,41 @@ TEST_F(Gpio, SetsEachLightsOwnLine) {
   EXPECT_TRUE(level("SCORING"));
   EXPECT_FALSE(level("MAPPING"));
   EXPECT_TRUE(level("ATTENTION"));
-  EXPECT_EQ(fake_chip().lines.at("HEALTH").consumer, "aditd");
+  EXPECT_EQ(line("HEALTH").consumer, "aditd");
+  EXPECT_TRUE(line("HEALTH").output);
+}
+
+TEST_F(Gpio, FindsItsChipByNameLabelOrPathAndWithNoneNamedByItsLines) {
+  for (const std::string chip : {"gpiochip1", "9030000.pl061", "/dev/gpiochip1", ""}) {
+    settings_.chip = chip;
+    const auto lines = open();
+    ASSERT_TRUE(lines.has_value()) << lines.error();
+    ASSERT_TRUE((*lines)->set({true, true, true, true}).has_value());
+    EXPECT_TRUE(level("HEALTH")) << chip;
+    const auto button = open_button();
+    ASSERT_TRUE(button.has_value()) << button.error();
+    EXPECT_TRUE(line("BUTTON").requested) << chip;
+  }
+  EXPECT_EQ(fake_gpio().open, 0);
+}
+
+TEST_F(Gpio, TakesTheLinesOfSeveralChipsWhereNoneIsNamed) {
+  settings_.chip = "";
+  settings_.mapping = "ELSEWHERE";
+  {
+    const auto lines = open();
+    ASSERT_TRUE(lines.has_value()) << lines.error();
+    ASSERT_TRUE((*lines)->set({true, false, true, false}).has_value());
+    EXPECT_TRUE(level("ELSEWHERE"));
+    EXPECT_TRUE(level("HEALTH"));
+  }
+  EXPECT_FALSE(level("ELSEWHERE"));
+  EXPECT_EQ(fake_gpio().open, 0);
 }
 
 TEST_F(Gpio, DrivesALineLowToLightItWhereTheSettingsSaySo) {
   settings_.active_low = true;
-  const auto lines = open_gpio(settings_);
+  const auto lines = open();
   ASSERT_TRUE(lines.has_value()) << lines.error();
   EXPECT_TRUE(level("HEALTH")) << "dark at first";
   ASSERT_TRUE((*lines)->set({true, false, false, false}).has_value());
@@ -52,53 +97,113 @@ TEST_F(Gpio, LetsAllLinesGoDarkAtTheEnd) {
   for (const bool active_low : {false, true}) {
     settings_.active_low = active_low;
     {
-      const auto lines = open_gpio(settings_);
+      const auto lines = open();
       ASSERT_TRUE(lines.has_value()) << lines.error();
       ASSERT_TRUE((*lines)->set({true, true, true, true}).has_value());
     }
-    for (const auto& [name, line] : fake_chip().lines) {
-      EXPECT_EQ(line.level, active_low) << name;
-      EXPECT_FALSE(line.requested) << name;
+    for (const char* name : {"HEALTH", "SCORING", "MAPPING", "ATTENTION"}) {
+      EXPECT_EQ(level(name), active_low) << name;
+      EXPECT_FALSE(line(name).requested) << name;
     }
-    EXPECT_EQ(fake_chip().open, 0);
-    EXPECT_EQ(fake_chip().history.back(), "close") << "a line must not be touched after its chip is closed";
+    EXPECT_EQ(fake_gpio().open, 0);
   }
 }
 
 TEST_F(Gpio, LeavesOutALightWithoutALine) {
   settings_.scoring = "";
-  const auto lines = open_gpio(settings_);
+  const auto lines = open();
   ASSERT_TRUE(lines.has_value()) << lines.error();
   ASSERT_TRUE((*lines)->set({true, true, true, true}).has_value());
-  EXPECT_FALSE(fake_chip().lines.at("SCORING").requested);
+  EXPECT_FALSE(line("SCORING").requested);
   EXPECT_TRUE(level("MAPPING"));
 }
 
-TEST_F(Gpio, NamesALineThatTheChipDoesNotHaveAndLetsTheOthersGo) {
+TEST_F(Gpio, NamesALineThatThereIsNotAndLetsTheOthersGo) {
   settings_.mapping = "MAPING";
-  const auto lines = open_gpio(settings_);
-  ASSERT_FALSE(lines.has_value());
-  EXPECT_EQ(lines.error(), "panel: line MAPING (mapping) of chip gpiochip0: No such file or directory");
-  EXPECT_FALSE(fake_chip().lines.at("HEALTH").requested);
-  EXPECT_EQ(fake_chip().open, 0);
+  for (const std::string chip : {"gpiochip1", ""}) {
+    settings_.chip = chip;
+    const auto lines = open();
+    ASSERT_FALSE(lines.has_value());
+    EXPECT_EQ(lines.error(), "panel: line MAPING (mapping) of " +
+                                 (chip.empty() ? std::string("any chip") : "chip " + chip) +
+                                 ": No such file or directory");
+    EXPECT_FALSE(line("HEALTH").requested);
+    EXPECT_EQ(fake_gpio().open, 0);
+  }
+}
+
+TEST_F(Gpio, NamesAChipThatThereIsNot) {
+  for (const std::string chip : {"gpiochip7", "/dev/gpiochip7", "label"}) {
+    settings_.chip = chip;
+    EXPECT_EQ(open().error(), "panel: chip " + chip + ": No such file or directory");
+    EXPECT_EQ(open_button().error(), "panel: chip " + chip + ": No such file or directory");
+  }
 }
 
 TEST_F(Gpio, NamesALineThatSomebodyElseHas) {
-  fake_chip().lines.at("ATTENTION").requested = true;
-  const auto lines = open_gpio(settings_);
+  line("ATTENTION").requested = true;
+  const auto lines = open();
   ASSERT_FALSE(lines.has_value());
-  EXPECT_EQ(lines.error(), "panel: line ATTENTION (attention) of chip gpiochip0: Device or resource busy");
-  EXPECT_TRUE(fake_chip().lines.at("ATTENTION").requested) << "what is another's is left alone";
+  EXPECT_EQ(lines.error(), "panel: line ATTENTION (attention) of chip gpiochip1: Device or resource busy");
+  EXPECT_TRUE(line("ATTENTION").requested) << "what is another's is left alone";
 }
 
 TEST_F(Gpio, SetsTheOtherLightsWhereOneFails) {
-  const auto lines = open_gpio(settings_);
+  const auto lines = open();
   ASSERT_TRUE(lines.has_value()) << lines.error();
-  fake_chip().lines.at("HEALTH").fails_with = EIO;
+  line("HEALTH").fails_with = EIO;
   const auto set = (*lines)->set({true, true, true, true});
   ASSERT_FALSE(set.has_value());
-  EXPECT_THAT(set.error(), HasSubstr("line HEALTH (health) of chip gpiochip0: Input/output error"));
+  EXPECT_THAT(set.error(), HasSubstr("line HEALTH (health) of chip gpiochip1: Input/output error"));
   EXPECT_TRUE(level("ATTENTION"));
+}
+
+TEST_F(Gpio, ReadsTheButtonByItsLevelHoweverManyEdgesCame) {
+  line("BUTTON").descriptor = 7;
+  const auto button = open_button();
+  ASSERT_TRUE(button.has_value()) << button.error();
+  EXPECT_EQ((*button)->descriptor(), 7);
+  EXPECT_FALSE(line("BUTTON").output);
+  EXPECT_FALSE((*button)->pressed().value());
+  fake_gpio().drive("BUTTON", false);
+  line("BUTTON").events = 40;  // it bounced
+  EXPECT_TRUE((*button)->pressed().value());
+  EXPECT_EQ(line("BUTTON").events, 0) << "or its descriptor would stay readable";
+  fake_gpio().drive("BUTTON", true);
+  EXPECT_FALSE((*button)->pressed().value());
+}
+
+TEST_F(Gpio, PullsTheButtonToWhereItIsNotPressed) {
+  {
+    const auto button = open_button();
+    EXPECT_TRUE(line("BUTTON").active_low);
+    EXPECT_EQ(line("BUTTON").pull, 1);
+  }
+  EXPECT_FALSE(line("BUTTON").requested);
+  EXPECT_EQ(fake_gpio().open, 0);
+  settings_.button_active_low = false;
+  const auto button = open_button();
+  EXPECT_EQ(line("BUTTON").pull, -1);
+  EXPECT_TRUE((*button)->pressed().value()) << "the wire is high";
+}
+
+TEST_F(Gpio, TakesTheButtonOfAChipThatKnowsNoPull) {
+  fake_gpio().chips["/dev/gpiochip1"].knows_pull = false;
+  const auto button = open_button();
+  ASSERT_TRUE(button.has_value()) << button.error();
+  EXPECT_EQ(line("BUTTON").pull, 0);
+}
+
+TEST_F(Gpio, SaysWhyTheButtonCannotBeHadOrRead) {
+  line("BUTTON").requested = true;
+  EXPECT_EQ(open_button().error(), "panel: line BUTTON (button) of chip gpiochip1: Device or resource busy");
+  line("BUTTON").requested = false;
+  const auto button = open_button();
+  line("BUTTON").fails_with = EIO;
+  EXPECT_EQ((*button)->pressed().error(),
+            "panel: line BUTTON (button) of chip gpiochip1: Input/output error");
+  settings_.button = "BUTTN";
+  EXPECT_EQ(open_button().error(), "panel: line BUTTN (button) of chip gpiochip1: No such file or directory");
 }
 
 }  // namespace

@@ -6,7 +6,7 @@
 #include <fstream>
 #include <iterator>
 
-#include "panel/panel.hpp"
+#include "panel/lines.hpp"
 
 namespace adit::panel {
 namespace {

@@ -70,7 +70,11 @@ const Case kValues[] = {
      "reports.review: expected \"off\", \"duplicates\" or \"all\", got true"},
     {sample("", R"(, "require_token": "no")"), "team.require_token: expected true or false, got \"no\""},
     {sample("", "", R"(, "panel": {"chip": "gpiochip0", "health": "a line"})"),
-     "panel.health: expected a GPIO line's name of at most 31 characters, or \"\", got \"a line\""}};
+     "panel.health: expected a GPIO line's name of at most 31 characters, or \"\", got \"a line\""},
+    {sample("", "", R"(, "panel": {"button": 3})"),
+     "panel.button: expected a GPIO line's name of at most 31 characters, or \"\", got 3"},
+    {sample("", "", R"(, "panel": {"button_active_low": "yes"})"),
+     "panel.button_active_low: expected true or false, got \"yes\""}};
 
 const Case kKeys[] = {
     {sample(R"(, "intrface": "darpa0")"),
@@ -90,12 +94,12 @@ const Case kKeys[] = {
 const Case kContradictions[] = {
     {sample("", R"(, "connections": 8)"),
      "team.connections_per_address: expected at most team.connections, 8, got 16"},
-    {sample("", "", R"(, "panel": {"health": "H"})"),
-     "panel.health: names a line, but panel.chip names no chip"},
     {sample("", "", R"(, "panel": {"chip": "gpiochip0"})"),
-     "panel.chip: names a chip, but no light has a line"},
+     "panel.chip: names a chip, but neither a light nor the button has a line"},
     {sample("", "", R"(, "panel": {"chip": "gpiochip0", "health": "H", "mapping": "H"})"),
-     "panel.mapping: the same line as panel.health"}};
+     "panel.mapping: the same line as panel.health"},
+    {sample("", "", R"(, "panel": {"attention": "H", "button": "H"})"),
+     "panel.button: the same line as panel.attention"}};
 
 const char* const kCourse =
     R"({"name": "A", "scoring": {"address": "::2", "port": 1}, "mapping": {"address": "::2", "port": 2}})";

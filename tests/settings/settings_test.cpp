@@ -28,6 +28,8 @@ TEST(Settings, NeedOnlyTheAddresses) {
   EXPECT_EQ(settings.command_post.rates.map_hz, 1);
   EXPECT_EQ(settings.team.require_token, true);
   EXPECT_EQ(settings.panel.chip, "");
+  EXPECT_TRUE(settings.panel.is_simulated());
+  EXPECT_TRUE(settings.panel.button_active_low);
 }
 
 TEST(Settings, SetEveryMemberByItsKey) {
@@ -46,7 +48,7 @@ TEST(Settings, SetEveryMemberByItsKey) {
     "queues": {"map_bytes": 2000000, "merge_bytes": 0, "markers_per_message": 7},
     "rules": {"rewrite_frame_id": true, "forward_unknown_types": true, "map_bytes": 4096},
     "panel": {"chip": "/dev/gpiochip1", "health": "H", "scoring": "S", "mapping": "M", "attention": "A",
-              "active_low": true},
+              "active_low": true, "button": "B", "button_active_low": false},
     "courses": [{"name": "A", "scoring": {"address": "::3", "port": 3}, "mapping": {"address": "::4", "port": 4}},
                 {"name": "b-2", "scoring": {"address": "::5", "port": 5}, "mapping": {"address": "::6", "port": 6}}],
     "robots": [{"name": "ugv1", "alias": "husky/1"}, {"name": "ugv2"}],
@@ -86,6 +88,8 @@ TEST(Settings, SetEveryMemberByItsKey) {
   EXPECT_EQ(settings.panel.mapping, "M");
   EXPECT_EQ(settings.panel.attention, "A");
   EXPECT_TRUE(settings.panel.active_low);
+  EXPECT_EQ(settings.panel.button, "B");
+  EXPECT_FALSE(settings.panel.button_active_low);
   ASSERT_EQ(settings.courses.size(), 2u);
   EXPECT_EQ(settings.courses[0].name, "A");
   EXPECT_EQ(settings.courses[0].scoring, (Address{"::3", 3}));

@@ -40,9 +40,12 @@ class Network:
         for name in (self.team, self.box, self.post):
             ip("netns", "add", name)
             ip("-n", name, "link", "set", "lo", "up")
-        self._cable(self.team, "eth0", [self.team_address], self.box, "team0", [self.box_address])
+        self.plug_team()
         self._cable(self.post, "eth0", [SCORING, MAPPING], self.box, "darpa0", [BOX_DARPA])
         enter(f"/run/netns/{self.team}")
+
+    def plug_team(self):
+        self._cable(self.team, "eth0", [self.team_address], self.box, "team0", [self.box_address])
 
     @staticmethod
     def _cable(left, left_port, left_addresses, right, right_port, right_addresses):

@@ -65,8 +65,8 @@ const part = ({ name, version, licence }) => {
 export async function showAbout() {
   const section = document.getElementById("about");
   try {
-    const { version, build, licence, uptime, kernel, model, parts } = await get("/adit/about");
-    const facts = [["Version", version], ["Build", build], ["Licence", licence], ["Running for", age(uptime)], ["Kernel", kernel], ["Machine", model]];
+    const { version, build, licence, uptime, kernel, model, board, parts } = await get("/adit/about");
+    const facts = [["Version", version], ["Build", build], ["Licence", licence], ["Running for", age(uptime)], ["Kernel", kernel], ["Machine", model], ["Board", board?.title]];
     section.querySelector("dl").replaceChildren(...facts.filter(([, value]) => value).map(([name, value]) => fact(name, value)));
     section.querySelector("tbody").replaceChildren(...parts.map(part));
   } catch (error) {

@@ -1,4 +1,4 @@
-// The door: a password, or at the first start the code of the box and a new password.
+// The door: a password, or a new one: at the first start with the code of the box, without while set-up is open.
 import { missingTokens } from "./draft.js";
 import { get, post, session } from "./session.js";
 
@@ -51,10 +51,12 @@ async function setFirst({ code, password, again }) {
 }
 
 async function begin() {
-  const { role, first_start: firstStart } = await session();
+  const { role, first_start: firstStart, set_up_open: isOpen } = await session();
   if (role) return location.replace(next());
-  if (firstStart) show(document.getElementById("first"), setFirst);
-  else show(document.getElementById("login"), logIn);
+  const first = document.getElementById("first");
+  if (isOpen) for (const each of first.querySelectorAll(".code")) each.remove();
+  if (firstStart || isOpen) show(first, setFirst);
+  if (!firstStart) show(document.getElementById("login"), logIn);
 }
 
 begin().catch(() => {

@@ -40,7 +40,7 @@ export function showAttention(sentences, lost) {
 }
 
 // On and off show by themselves, as filled and hollow: their words are for those who do not see them.
-const PATTERNS = { off: "off", on: "on", slow: "blinks", fast: "blinks fast", twice: "flashes" };
+const PATTERNS = { off: "off", on: "on", slow: "blinks", fast: "blinks fast", twice: "flashes", flash: "glints", wink: "winks", rush: "blinks very fast", digits: "tells the address" };
 
 export function showLights(lights) {
   const create = () => make("li", make("span.led"), make("span.name"), make("span.pattern"));

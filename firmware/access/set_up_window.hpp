@@ -1,0 +1,28 @@
+#pragma once
+
+#include <optional>
+
+#include "access/role.hpp"
+
+namespace adit::access {
+
+/// For how long somebody who was seen at the box itself may have its password set without the present one.
+/// Nothing that comes over a network opens it, and it is kept nowhere: a restart closes it.
+class SetUpWindow {
+ public:
+  static constexpr std::chrono::minutes kLength{10};
+
+  /// From now on; where it is open already, anew.
+  void open(Instant now) { until_ = now + kLength; }
+  /// It has been used.
+  void close() { until_.reset(); }
+  /// For how much longer it is open; nothing: it is not.
+  std::optional<Duration> left(Instant now) const {
+    return until_ && now < *until_ ? std::optional<Duration>(*until_ - now) : std::nullopt;
+  }
+
+ private:
+  std::optional<Instant> until_;
+};
+
+}  // namespace adit::access

@@ -1,0 +1,164 @@
+#include "applier/card.hpp"
+
+#include <algorithm>
+#include <utility>
+
+#include "codec/json.hpp"
+#include "host/log.hpp"
+#include "icd/sentence.hpp"
+#include "network/check.hpp"
+#include "network/messages.hpp"
+#include "settings/saved.hpp"
+
+namespace adit::applier {
+namespace {
+
+using host::UntrustedFolder;
+using settings::Settings;
+
+/// One card while it is read.
+class Reader {
+ public:
+  Reader(const UntrustedFolder& card, const Settings& now) : card_(card), now_(now) {}
+
+  Found read() && {
+    read_names();
+    read_settings();
+    read_network();
+    read_secrets();
+    return std::move(found_);
+  }
+
+ private:
+  void refuse(const std::string& name, const std::string& what) {
+    found_.errors.push_back(icd::sentence("adit/", host::escaped(name), ": ", host::escaped(what)));
+  }
+  void refuse(const std::string& name, const std::vector<settings::Error>& errors) {
+    for (const settings::Error& error : errors) refuse(name, error.sentence());
+  }
+
+  /// What is in a file of `folder`, told of as `name`.
+  std::optional<std::string> text_of(const UntrustedFolder& folder, const std::string& file,
+                                     const std::string& name) {
+    static constexpr std::string_view kByteOrderMark = "\xef\xbb\xbf";
+    auto text = folder.read(file);
+    if (!text) {
+      refuse(name, text.error().substr(std::min(text.error().size(), file.size() + 2)));
+      return std::nullopt;
+    }
+    if (*text && (*text)->starts_with(kByteOrderMark)) (*text)->erase(0, kByteOrderMark.size());
+    return std::move(*text);
+  }
+
+  void read_names() {
+    const auto names = card_.names();
+    if (!names) return refuse("", names.error());
+    for (const std::string& written : *names) {
+      std::string name = written;  // FAT knows no letter case
+      std::ranges::transform(name, name.begin(), [](char letter) {
+        return letter >= 'A' && letter <= 'Z' ? static_cast<char>(letter | 0x20) : letter;
+      });
+      const bool known =
+          name == kCardSettings || name == kCardNetwork || name == kCardSecrets || is_spent(name);
+      if (!known) found_.left_alone.push_back(written);
+    }
+  }
+
+  /// Taken before, Adit's own, or of those that desktops leave beside others.
+  static bool is_spent(const std::string& name) {
+    return name.starts_with('.') || name.ends_with(kTakenEnding) || name == kTakenText;
+  }
+
+  void read_settings() {
+    const auto text = text_of(card_, kCardSettings, kCardSettings);
+    if (!text) return;
+    auto settings = settings::parse(*text);
+    if (!settings) return refuse(kCardSettings, settings.error());
+    found_.brought.settings = std::move(*settings);
+  }
+
+  const Settings& counting() const { return found_.brought.settings ? *found_.brought.settings : now_; }
+
+  void read_network() {
+    const auto text = text_of(card_, kCardNetwork, kCardNetwork);
+    if (!text) return;
+    const auto value = codec::parse_json(*text);
+    if (!value) return refuse(kCardNetwork, value.error());
+    const auto numbers = numbers_of(*value, *text);
+    if (!numbers) return refuse(kCardNetwork, numbers.error());
+    const Settings settings = settings::in_use(counting());
+    const auto verdict = network::check(*numbers, std::nullopt,
+                                        {.allow_overlap = settings.network.allow_overlap,
+                                         .confirm_within = settings.network.confirm_within,
+                                         .command_post = settings.command_post,
+                                         .listen = settings.team.listen,
+                                         .asker = ""});
+    if (!verdict.errors.empty()) return refuse(kCardNetwork, verdict.errors);
+    found_.brought.numbers = *numbers;
+  }
+
+  /// The numbers alone, or with their version, as the image's own and adit-network's file have them.
+  static std::expected<network::Numbers, std::vector<settings::Error>> numbers_of(const codec::Value& value,
+                                                                                  const std::string& text) {
+    const auto* object = std::get_if<codec::Value::Object>(&value.is);
+    const bool has_version =
+        object != nullptr &&
+        std::ranges::find(*object, "version", &codec::Value::Member::first) != object->end();
+    if (!has_version) return network::read_numbers(value);
+    auto numbers = network::read_kept(text);
+    if (!numbers) return std::unexpected(std::vector<settings::Error>{{"", std::move(numbers.error())}});
+    return *numbers;
+  }
+
+  void read_secrets() {
+    const auto folder = card_.folder(kCardSecrets);
+    if (!folder) return refuse(kCardSecrets, "expected a folder");
+    if (!*folder) return;
+    const auto names = (*folder)->names();
+    if (!names) return refuse(kCardSecrets, names.error());
+    for (const std::string& name : *names) {
+      if (!is_spent(name)) read_token(**folder, name);
+    }
+  }
+
+  void read_token(const UntrustedFolder& folder, const std::string& file) {
+    const std::string name = icd::sentence(kCardSecrets, "/", file);
+    const auto known = settings::token_names(counting());
+    const bool is_known = std::ranges::any_of(
+        known, [&file](const std::string& token) { return token + settings::kTokenEnding == file; });
+    if (!is_known)
+      return refuse(name, icd::sentence("no token is called so; expected one of ", listed(known)));
+    const auto text = text_of(folder, file, name);
+    if (!text) return;
+    auto token = icd::BearerToken::parse(trimmed(*text));
+    if (!token) return refuse(name, "expected one token of 1 to 256 visible ASCII characters");
+    found_.brought.tokens.emplace(file, std::move(*token));
+  }
+
+  static std::string listed(const std::vector<std::string>& tokens) {
+    std::string list;
+    for (const std::string& token : tokens) {
+      list.append(list.empty() ? "" : ", ").append(token).append(settings::kTokenEnding);
+    }
+    return list;
+  }
+
+  static std::string_view trimmed(std::string_view text) {
+    static constexpr std::string_view kSpace = " \t\r\n";
+    const auto first = text.find_first_not_of(kSpace);
+    if (first == std::string_view::npos) return {};
+    return text.substr(first, text.find_last_not_of(kSpace) - first + 1);
+  }
+
+  const UntrustedFolder& card_;
+  const Settings& now_;
+  Found found_;
+};
+
+}  // namespace
+
+Found read_card(const UntrustedFolder& card, const Settings& now) {
+  return Reader(card, now).read();
+}
+
+}  // namespace adit::applier

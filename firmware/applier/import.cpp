@@ -1,0 +1,206 @@
+#include "applier/import.hpp"
+
+#include <fcntl.h>
+#include <sys/stat.h>
+#include <unistd.h>
+
+#include <cerrno>
+#include <cstdio>
+#include <cstring>
+#include <filesystem>
+#include <system_error>
+#include <utility>
+
+#include "host/files.hpp"
+#include "host/log.hpp"
+#include "host/service.hpp"
+#include "icd/sentence.hpp"
+#include "network/messages.hpp"
+#include "settings/saved.hpp"
+#include "settings/written.hpp"
+
+namespace adit::applier {
+namespace {
+
+using host::Level;
+using host::UntrustedFolder;
+using Done = std::expected<void, std::string>;
+
+constexpr int kOursAlone = 0600, kForAll = 0644;
+constexpr mode_t kFolderOfOurs = 0700;
+
+/// Gives what root made to whom the folder belongs: systemd looks at no more than the folder itself before it
+/// starts aditd (systemd.exec(5), StateDirectory=).
+Done give_to_owner(const UntrustedFolder& folder, const std::string& path) {
+  struct stat owner{};
+  if (stat(folder.path_by_descriptor().c_str(), &owner) == 0 &&
+      lchown(path.c_str(), owner.st_uid, owner.st_gid) == 0) {
+    return {};
+  }
+  return std::unexpected(host::trouble(path, errno));
+}
+
+/// A file of aditd's. The folder is aditd's too, so its path is not trusted.
+Done put(const UntrustedFolder& folder, const std::string& name, const std::string& text) {
+  const std::string path = folder.path_by_descriptor() + '/' + name;
+  if (auto written = host::write_file(path, text, kOursAlone); !written) return written;
+  return give_to_owner(folder, path);
+}
+
+/// systemd makes it anew where it is not there yet, of this mode, and gives it to aditd.
+std::expected<UntrustedFolder, std::string> open_state(const std::string& path) {
+  const std::filesystem::path parent = std::filesystem::path(path).parent_path();
+  std::error_code error;
+  std::filesystem::create_directories(parent.parent_path(), error);
+  for (const std::string& folder : {parent.string(), path}) {
+    if (mkdir(folder.c_str(), kFolderOfOurs) != 0 && errno != EEXIST) {
+      return std::unexpected(host::trouble(folder, errno));
+    }
+  }
+  return UntrustedFolder::open(path);
+}
+
+std::string said_of(const Found& found) {
+  std::string text;
+  if (!found.errors.empty()) {
+    text = "Adit took nothing. Set right what is named here, and start it again.\n";
+    for (const std::string& error : found.errors) text += error + '\n';
+  } else {
+    if (!found.brought.nothing()) text = "Adit took what was here:\n";
+    if (found.brought.settings) text += icd::sentence("adit/", kCardSettings, ": taken\n");
+    if (found.brought.numbers) text += icd::sentence("adit/", kCardNetwork, ": taken\n");
+    for (const auto& [file, token] : found.brought.tokens) {
+      text += icd::sentence("adit/", kCardSecrets, "/", file, ": taken, and removed from here\n");
+    }
+  }
+  for (const std::string& name : found.left_alone) {
+    text += icd::sentence("adit/", host::escaped(name), ": left alone; Adit takes ", kCardSettings, ", ",
+                          kCardNetwork, " and ", kCardSecrets, "/*", settings::kTokenEnding, "\n");
+  }
+  return text;
+}
+
+/// Not written anew at each start: a card wears out.
+Done tell(const UntrustedFolder& card, const std::string& text) {
+  const auto told = card.read(kTakenText);
+  if (told && *told == text) return {};
+  return host::write_file(card.path_by_descriptor() + '/' + kTakenText, text, kOursAlone);
+}
+
+void rename_taken(const UntrustedFolder& folder, const std::string& name) {
+  const std::string path = folder.path_by_descriptor() + '/' + name;
+  if (rename(path.c_str(), (path + kTakenEnding).c_str()) == 0) return;
+  host::log(Level::Warning, "a file that was taken cannot be renamed",
+            {{"file", name}, {"why", std::strerror(errno)}});
+}
+
+/// Anybody who has the card could read them. One that was cut off while it was wiped is no token any more: so
+/// each is renamed first, and those of an earlier start are found here.
+void wipe_taken(const UntrustedFolder& card) {
+  const auto secrets = card.folder(kCardSecrets);
+  if (!secrets || !*secrets) return;
+  const std::vector<std::string> names = (*secrets)->names().value_or(std::vector<std::string>());
+  for (const std::string& name : names) {
+    if (!name.ends_with(kTakenEnding) || (*secrets)->wipe(name)) continue;
+    host::log(Level::Warning, "a token that was taken may still be on the card", {{"file", name}});
+  }
+}
+
+/// The settings last: without them, what is left is taken again as it was.
+void leave(const UntrustedFolder& card, const Brought& brought) {
+  if (const auto secrets = card.folder(kCardSecrets); secrets && *secrets) {
+    for (const auto& [file, token] : brought.tokens) rename_taken(**secrets, file);
+  }
+  wipe_taken(card);
+  if (brought.numbers) rename_taken(card, kCardNetwork);
+  if (brought.settings) rename_taken(card, kCardSettings);
+  const loop::FileDescriptor folder(
+      open(card.path_by_descriptor().c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC));
+  if (!folder || syncfs(folder.get()) != 0) host::log(Level::Warning, "the card cannot be synced");
+}
+
+}  // namespace
+
+Done Import::run() {
+  const auto card = UntrustedFolder::open(options_.card);
+  if (!card) {
+    host::log(Level::Debug, "nothing was brought", {{"why", card.error()}});
+    return {};
+  }
+  wipe_taken(*card);
+  const Found found = read_card(*card, in_force());
+  const std::string said = said_of(found);
+  if (said.empty()) return {};
+  for (const std::string& error : found.errors)
+    host::log(Level::Error, "refused what was brought", {{"why", error}});
+  // First, because files of a card that cannot be written would be taken again at each start.
+  if (auto told = tell(*card, said); !told) {
+    return std::unexpected("nothing is taken from a card that cannot be written: " + told.error());
+  }
+  if (!found.errors.empty() || found.brought.nothing()) return {};
+  if (auto saved = save(found.brought); !saved) {
+    tell(*card, "Adit could not take what is here: " + saved.error() + '\n');
+    return saved;
+  }
+  leave(*card, found.brought);
+  host::log(Level::Notice, "took what was brought",
+            {{"settings", found.brought.settings ? "yes" : "no"},
+             {"network", found.brought.numbers ? "yes" : "no"},
+             {"tokens", std::to_string(found.brought.tokens.size())}});
+  return {};
+}
+
+settings::Settings Import::in_force() const {
+  std::optional<std::string> text;
+  if (const auto state = UntrustedFolder::open(options_.state)) {
+    if (const auto saved = state->read(settings::kSavedFile)) text = *saved;
+  }
+  if (!text) {
+    const auto given = host::slurp(options_.given);
+    text = given ? given->text : "";
+  }
+  return settings::parse(*text).value_or(settings::Settings{});
+}
+
+Done Import::save(const Brought& brought) const {
+  const auto state = open_state(options_.state);
+  if (!state) return std::unexpected(state.error());
+  if (auto saved = save_tokens(*state, brought); !saved) return saved;
+  if (brought.numbers) {
+    std::error_code error;
+    std::filesystem::create_directories(options_.network, error);
+    const std::string file = options_.network + '/' + network::kConfirmedFile;
+    if (auto saved = host::write_file(file, network::write_kept(*brought.numbers), kForAll); !saved)
+      return saved;
+  }
+  return brought.settings ? save_settings(*state, *brought.settings) : Done{};
+}
+
+Done Import::save_tokens(const UntrustedFolder& state, const Brought& brought) const {
+  if (brought.tokens.empty()) return {};
+  const std::string path = state.path_by_descriptor() + '/' + settings::kSecretsFolder;
+  if (mkdir(path.c_str(), kFolderOfOurs) != 0 && errno != EEXIST) {
+    return std::unexpected(host::trouble(settings::kSecretsFolder, errno));
+  }
+  if (auto given = give_to_owner(state, path); !given) return given;
+  const auto secrets = state.folder(settings::kSecretsFolder);
+  if (!secrets) return std::unexpected(secrets.error());
+  for (const auto& [file, token] : brought.tokens) {
+    if (auto saved = put(**secrets, file, token.reveal() + "\n"); !saved) return saved;
+  }
+  return {};
+}
+
+/// On trial, as those that the page saves: aditd takes them back where it cannot start with them.
+Done Import::save_settings(const UntrustedFolder& state, const settings::Settings& settings) const {
+  const auto before = state.read(settings::kFileBefore);
+  if (!before) return std::unexpected(before.error());
+  if (!*before) {
+    const auto now = state.read(settings::kSavedFile);
+    if (!now) return std::unexpected(now.error());
+    if (auto kept = put(state, settings::kFileBefore, now->value_or("")); !kept) return kept;
+  }
+  return put(state, settings::kSavedFile, settings::file_of(settings));
+}
+
+}  // namespace adit::applier

@@ -1,0 +1,34 @@
+#pragma once
+
+#include <functional>
+#include <memory>
+
+#include "gateway/lights.hpp"
+#include "loop/loop.hpp"
+#include "panel/button.hpp"
+#include "panel/lines.hpp"
+
+namespace adit::gateway {
+
+/// Watches the button on the loop, and shows while it is held what letting go would do.
+class ButtonWatch {
+ public:
+  /// `line` may be null: there is no button. `lights` outlives this. A press that has ended is told by
+  /// `pressed`, which may not destroy this.
+  ButtonWatch(loop::Loop& loop, std::unique_ptr<panel::ButtonLine> line, Lights& lights,
+              std::function<void(panel::Press)> pressed);
+
+ private:
+  void look();
+  void give_up(const std::string& why);
+  void show();
+
+  loop::Loop& loop_;
+  std::unique_ptr<panel::ButtonLine> line_;
+  Lights& lights_;
+  std::function<void(panel::Press)> pressed_;
+  panel::Button button_{false, {}};
+  loop::Source edges_, due_;  // after line_: ended before its descriptor is closed
+};
+
+}  // namespace adit::gateway

@@ -1,0 +1,114 @@
+// What the box itself shows and takes: its lights and its button.
+#include <algorithm>
+#include <vector>
+
+#include "gateway/gateway.hpp"
+#include "host/interfaces.hpp"
+#include "host/log.hpp"
+#include "panel/address_digits.hpp"
+#include "settings/subnet.hpp"
+
+namespace adit::gateway {
+namespace {
+
+using panel::State;
+
+constexpr std::chrono::seconds kIdentify{10};  // by the button
+
+/// Whether a cable is missing. "": none is needed.
+bool is_unplugged(const std::string& interface) {
+  return !host::carrier(interface).value_or(false);
+}
+
+bool is_link_local(std::uint32_t ipv4) {
+  return ipv4 >> 16 == 0xa9fe;  // 169.254.0.0/16 (RFC 3927)
+}
+
+/// The IPv4 address of an interface, one that was given to it rather than a link-local one; or "".
+std::string ipv4_on(const std::string& interface) {
+  const auto interfaces = host::interfaces();
+  if (!interfaces) return "";
+  std::string found;
+  for (const host::Interface& each : *interfaces) {
+    if (each.name != interface) continue;
+    for (const std::string& address : each.addresses) {
+      const std::string text = address.substr(0, address.find('/'));
+      const auto ipv4 = settings::ipv4_of(text);
+      if (ipv4 && !is_link_local(*ipv4)) return text;
+      if (ipv4 && found.empty()) found = text;
+    }
+  }
+  return found;
+}
+
+}  // namespace
+
+void Gateway::assert_states() {
+  const Channel& scoring = scoring_.channel();
+  const bool serving = !servers_.empty() && scoring_.trouble().empty();
+  lights_.set(State::Serving, serving);
+  lights_.set(State::NotServing, !serving);
+  lights_.set(State::ScoringConnected, scoring.connected());
+  lights_.set(State::ScoringFailing, !scoring.trouble().empty());
+  lights_.set(State::ReportWaiting, !scoring_.reports().book().waiting().empty());
+  lights_.set(State::MappingConnected, news_.channel().connected());
+  lights_.set(State::MappingFailing,
+              !news_.channel().trouble().empty() || !maps_.channel().trouble().empty());
+  lights_.set(State::NeedsOperator, !attention().empty());
+  lights_.set(State::CommandPostUnplugged, is_unplugged(settings_.command_post.interface));
+  lights_.set(State::TeamUnplugged, is_unplugged(settings_.team.interface));
+  if (lights_.has(State::SetUpOpen) && !accounts_.set_up_open()) {
+    host::log(host::Level::Notice, "set-up is closed");
+  }
+  lights_.set(State::SetUpOpen, accounts_.set_up_open());
+}
+
+void Gateway::show_lights() {
+  assert_states();
+  if (std::exchange(told_lights_, lights_.shown()) != lights_.shown()) page_.changed();
+}
+
+page::Time Gateway::identify(double seconds) {
+  const auto length = std::chrono::duration_cast<loop::Duration>(std::chrono::duration<double>(seconds));
+  lights_.set_for(State::Identify, length);
+  page_.changed();
+  return loop_.stamp_now() + seconds;
+}
+
+void Gateway::pressed(panel::Press press) {
+  switch (press) {
+    case panel::Press::Identify:
+      host::log(host::Level::Notice, "the button was pressed");
+      identify(std::chrono::duration<double>(kIdentify).count());
+      return;
+    case panel::Press::ShowAddress:
+      accounts_.open_set_up();
+      show_address();
+      show_lights();
+      return;
+    case panel::Press::Reset:
+      host::log(host::Level::Warning, "the button was held: all that was set up is forgotten");
+      if (const auto done = setup_.reset(); !done) {
+        host::log(host::Level::Error, "nothing was forgotten: hold the button again",
+                  {{"why", done.error().sentence}});
+      }
+  }
+}
+
+void Gateway::show_address() {
+  const std::string address = team_address();
+  host::log(host::Level::Notice, "the lights show the address", {{"address", address}});
+  if (!address.empty()) lights_.play_digits(panel::address_digits(address));
+}
+
+/// Where the team reaches the box, by IPv4; "" where it does not.
+std::string Gateway::team_address() const {
+  const settings::Team& team = settings_.team;
+  if (!team.interface.empty()) return ipv4_on(team.interface);
+  const auto given = std::ranges::find_if(team.listen, [](const settings::Address& each) {
+    return settings::ipv4_of(each.address).value_or(0) != 0;
+  });
+  return given == team.listen.end() ? "" : given->address;
+}
+
+}  // namespace adit::gateway

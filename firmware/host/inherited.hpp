@@ -1,0 +1,27 @@
+#pragma once
+
+#include <expected>
+#include <string>
+#include <vector>
+
+#include "loop/file_descriptor.hpp"
+
+namespace adit::host {
+
+/// A descriptor that systemd handed over: a socket unit's, or one that the service had it keep.
+struct Inherited {
+  std::string name;  // FileDescriptorName= of the unit, or what store_descriptor() was told
+  loop::FileDescriptor descriptor;
+};
+
+/// All of them (sd_listen_fds_with_names(3)), closed in programs that this one starts. None outside systemd,
+/// and none when asked again.
+std::expected<std::vector<Inherited>, std::string> inherited();
+
+/// Has systemd keep a copy over restarts of the service (FDSTORE=1), until forget_descriptor(). `name`: at
+/// most 255 visible ASCII characters, no colon. Nothing outside systemd.
+void store_descriptor(const std::string& name, int descriptor);
+/// All that were stored by that name.
+void forget_descriptor(const std::string& name);
+
+}  // namespace adit::host

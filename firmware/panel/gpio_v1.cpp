@@ -1,0 +1,162 @@
+// The panel by libgpiod 1.
+#include <gpiod.h>
+
+#include <array>
+#include <utility>
+
+#include "panel/gpio_lines.hpp"
+#include "panel/lines.hpp"
+
+namespace adit::panel {
+namespace {
+
+struct CloseChip {
+  void operator()(gpiod_chip* chip) const { gpiod_chip_close(chip); }
+};
+using Chip = std::unique_ptr<gpiod_chip, CloseChip>;
+
+struct Found {
+  Chip chip;  // outlives the line
+  gpiod_line* line = nullptr;
+};
+
+/// `about` is for the error.
+std::expected<Found, std::string> find(const settings::Panel& settings, const std::string& name,
+                                       const std::string& about) {
+  errno = 0;
+  if (settings.chip.empty()) {
+    gpiod_line* const line = gpiod_line_find(name.c_str());  // opens the chip, which is ours then
+    if (line == nullptr) return gpio_trouble(about, gpio_error());
+    return Found{Chip(gpiod_line_get_chip(line)), line};
+  }
+  Chip chip(gpiod_chip_open_lookup(settings.chip.c_str()));
+  if (!chip) return gpio_trouble("chip " + settings.chip, gpio_error());
+  errno = 0;
+  gpiod_line* const line = gpiod_chip_find_line(chip.get(), name.c_str());
+  if (line == nullptr) return gpio_trouble(about, gpio_error());
+  return Found{std::move(chip), line};
+}
+
+/// An output, dark at first and when it is let go.
+class Output {
+ public:
+  Output() = default;
+  explicit Output(Found found) : chip_(std::move(found.chip)), line_(found.line) {}
+  Output(Output&& other) noexcept
+      : chip_(std::move(other.chip_)), line_(std::exchange(other.line_, nullptr)) {}
+  Output& operator=(Output&& other) noexcept {
+    std::swap(chip_, other.chip_);
+    std::swap(line_, other.line_);
+    return *this;
+  }
+  ~Output() {
+    if (line_ == nullptr) return;
+    gpiod_line_set_value(line_, 0);
+    gpiod_line_release(line_);
+  }
+  bool is_there() const { return line_ != nullptr; }
+  bool set(bool lit) { return gpiod_line_set_value(line_, lit ? 1 : 0) == 0; }
+
+ private:
+  Chip chip_;
+  gpiod_line* line_ = nullptr;
+};
+
+class GpioLines final : public Lines {
+ public:
+  explicit GpioLines(settings::Panel settings) : settings_(std::move(settings)) {}
+
+  std::expected<void, std::string> request(Light light, const std::string& consumer) {
+    const std::string& name = line_of(settings_, light);
+    if (name.empty()) return {};
+    auto found = find(settings_, name, about(light));
+    if (!found) return std::unexpected(found.error());
+    const int flags = settings_.active_low ? GPIOD_LINE_REQUEST_FLAG_ACTIVE_LOW : 0;
+    if (gpiod_line_request_output_flags(found->line, consumer.c_str(), flags, 0) != 0) {
+      return gpio_trouble(about(light), errno);
+    }
+    outputs_[index_of(light)] = Output(std::move(*found));
+    return {};
+  }
+
+  /// Every light is set, also after one that fails; the first failure is told.
+  std::expected<void, std::string> set(const Lit& lit) override {
+    std::expected<void, std::string> result;
+    for (const Light light : kLights) {
+      Output& output = outputs_[index_of(light)];
+      if (!output.is_there() || output.set(lit[index_of(light)])) continue;
+      if (result) result = gpio_trouble(about(light), errno);
+    }
+    return result;
+  }
+
+ private:
+  std::string about(Light light) const {
+    return panel::about(settings_, line_of(settings_, light), name_of(light));
+  }
+
+  settings::Panel settings_;
+  std::array<Output, kLights.size()> outputs_;
+};
+
+class GpioButton final : public ButtonLine {
+ public:
+  GpioButton(Found found, std::string about) : found_(std::move(found)), about_(std::move(about)) {}
+  GpioButton(const GpioButton&) = delete;
+  GpioButton& operator=(const GpioButton&) = delete;
+  ~GpioButton() override { gpiod_line_release(found_.line); }
+
+  int descriptor() const override { return gpiod_line_event_get_fd(found_.line); }
+
+  /// By its level, not by the events: the kernel drops those of a long bounce.
+  std::expected<bool, std::string> pressed() override {
+    constexpr timespec kNow{};
+    std::array<gpiod_line_event, 16> events{};
+    int waiting = 0;
+    while ((waiting = gpiod_line_event_wait(found_.line, &kNow)) > 0) {
+      const int read = gpiod_line_event_read_multiple(found_.line, events.data(), events.size());
+      if (read < 0) return gpio_trouble(about_, errno);
+    }
+    const int value = waiting < 0 ? -1 : gpiod_line_get_value(found_.line);
+    if (value < 0) return gpio_trouble(about_, errno);
+    return value == 1;
+  }
+
+ private:
+  Found found_;
+  std::string about_;
+};
+
+}  // namespace
+
+std::expected<std::unique_ptr<Lines>, std::string> open_gpio(const settings::Panel& settings,
+                                                             const std::string& consumer) {
+  auto lines = std::make_unique<GpioLines>(settings);
+  for (const Light light : kLights) {
+    if (auto requested = lines->request(light, consumer); !requested) {
+      return std::unexpected(requested.error());
+    }
+  }
+  return lines;
+}
+
+std::expected<std::unique_ptr<ButtonLine>, std::string> open_gpio_button(const settings::Panel& settings,
+                                                                         const std::string& consumer) {
+  const std::string what = about(settings, settings.button, "button");
+  auto found = find(settings, settings.button, what);
+  if (!found) return std::unexpected(found.error());
+  const int flags = settings.button_active_low ? GPIOD_LINE_REQUEST_FLAG_ACTIVE_LOW : 0;
+  const int pull = settings.button_active_low ? GPIOD_LINE_REQUEST_FLAG_BIAS_PULL_UP
+                                              : GPIOD_LINE_REQUEST_FLAG_BIAS_PULL_DOWN;
+  const auto request = [&](int with) {
+    return gpiod_line_request_both_edges_events_flags(found->line, consumer.c_str(), flags | with) == 0;
+  };
+  if (!request(pull) && !request(0)) return gpio_trouble(what, errno);  // some chips know no pull
+  return std::make_unique<GpioButton>(std::move(*found), what);
+}
+
+std::string gpiod_version() {
+  return gpiod_version_string();
+}
+
+}  // namespace adit::panel

@@ -1,0 +1,158 @@
+#include "panel/states.hpp"
+
+#include <string>
+
+namespace adit::panel {
+namespace {
+
+constexpr std::optional<Pattern> kLeft;  // to states of lower priority
+constexpr auto kOff = Pattern::Off, kOn = Pattern::On, kSlow = Pattern::Slow, kFast = Pattern::Fast,
+               kTwice = Pattern::Twice, kFlash = Pattern::Flash, kWink = Pattern::Wink, kRush = Pattern::Rush,
+               kDigits = Pattern::Digits;
+
+// What somebody at the box does comes before what the box would tell by itself, and of that what is worse
+// before what is better. An operator's deed that waits does not hide that set-up is open: who opened it has
+// to see until when, and the page tells of the other.
+constexpr StateRow kTable[] = {
+    {State::Fault,
+     "fault",
+     170,
+     {kSlow, kOff, kOff, kOff},
+     "Adit has died, and is started again or has to be: `journalctl -u adit`"},
+    {State::ResetWarning,
+     "reset warning",
+     160,
+     {kRush, kRush, kRush, kRush},
+     "the button is held: let go, or all that was set up is forgotten"},
+    {State::ButtonHeld,
+     "button held",
+     150,
+     {kOn, kOn, kOn, kOn},
+     "the button is held: let go now for the address and for set-up"},
+    {State::Identify,
+     "identify",
+     140,
+     {kTwice, kTwice, kTwice, kTwice},
+     "this is the box that is looked for"},
+    {State::Address,
+     "address",
+     130,
+     {kOff, kOff, kOff, kDigits},
+     "the box's address on the team's side is being shown"},
+    {State::UpdateRunning,
+     "update running",
+     120,
+     {kWink, kLeft, kLeft, kLeft},
+     "another version is being installed: leave the power on"},
+    {State::CommandPostUnplugged,
+     "Command Post unplugged",
+     110,
+     {kLeft, kFlash, kFlash, kLeft},
+     "no link on the Command Post's network: is the cable in?"},
+    {State::TeamUnplugged,
+     "team unplugged",
+     100,
+     {kFlash, kLeft, kLeft, kLeft},
+     "no link on the team's network: is the cable in?"},
+    {State::NotServing,
+     "not serving",
+     90,
+     {kFast, kLeft, kLeft, kLeft},
+     "nobody listens on the team's side, or no report can be kept: `adit status`"},
+    {State::ScoringFailing,
+     "scoring failing",
+     80,
+     {kLeft, kFast, kLeft, kLeft},
+     "the last request to scoring failed or was refused"},
+    {State::MappingFailing,
+     "mapping failing",
+     70,
+     {kLeft, kLeft, kFast, kLeft},
+     "the last update failed or was refused"},
+    {State::SetUpOpen,
+     "set-up open",
+     60,
+     {kLeft, kLeft, kLeft, kSlow},
+     "a new password can be set without the old one, for ten minutes"},
+    {State::NeedsOperator,
+     "needs operator",
+     50,
+     {kLeft, kLeft, kLeft, kFast},
+     "the operator must act, the page says how: a report in doubt, a token refused"},
+    {State::ReportWaiting,
+     "report waiting",
+     40,
+     {kLeft, kSlow, kLeft, kLeft},
+     "a report waits for its answer"},
+    {State::Serving,
+     "serving",
+     30,
+     {kOn, kLeft, kLeft, kLeft},
+     "the team's side listens and reports can be kept"},
+    {State::ScoringConnected,
+     "scoring connected",
+     20,
+     {kLeft, kOn, kLeft, kLeft},
+     "connected to the scoring endpoint, nothing waits"},
+    {State::MappingConnected,
+     "mapping connected",
+     10,
+     {kLeft, kLeft, kOn, kLeft},
+     "connected to the mapping endpoint"},
+};
+
+static_assert(std::size(kTable) == kStates);
+
+constexpr bool is_in_order() {
+  for (std::size_t i = 0; i < kStates; ++i) {
+    if (static_cast<std::size_t>(kTable[i].state) != i) return false;
+    if (i > 0 && kTable[i].priority >= kTable[i - 1].priority) return false;
+  }
+  return true;
+}
+static_assert(is_in_order(), "shown() looks at the highest priority first");
+
+}  // namespace
+
+std::span<const StateRow> state_table() {
+  return kTable;
+}
+
+std::string_view name_of(State state) {
+  return kTable[static_cast<std::size_t>(state)].name;
+}
+
+std::string state_table_text() {
+  std::string text = "| state | health | scoring | mapping | attention | priority | what it says |\n";
+  text += "| --- | --- | --- | --- | --- | --- | --- |\n";
+  for (const StateRow& row : kTable) {
+    text.append("| ").append(row.name).append(" |");
+    for (const auto& pattern : row.patterns) {
+      text.append(" ").append(pattern ? name_of(*pattern) : "").append(pattern ? " |" : "|");
+    }
+    text.append(" ").append(std::to_string(row.priority)).append(" | ").append(row.meaning).append(" |\n");
+  }
+  return text;
+}
+
+bool States::set(State state, bool asserted) {
+  bool& now = asserted_[static_cast<std::size_t>(state)];
+  const bool changed = now != asserted;
+  now = asserted;
+  return changed;
+}
+
+Lights States::shown() const {
+  Lights lights{};
+  for (const Light light : kLights) {
+    for (const StateRow& row : kTable) {
+      const auto& pattern = row.patterns[index_of(light)];
+      if (!has(row.state) || !pattern) continue;
+      lights[index_of(light)] = *pattern;
+      break;
+    }
+  }
+  return lights;
+}
+
+}  // namespace adit::panel

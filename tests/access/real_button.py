@@ -1,0 +1,212 @@
+#!/usr/bin/python3
+"""The button and the lights of the real program, with a simulated panel: real_button.py ADITD. On loopback."""
+
+import contextlib
+import json
+import os
+import pathlib
+import re
+import stat
+import sys
+import tempfile
+import time
+import unittest
+
+import real_aditd
+from real_aditd import OPERATOR, Box
+
+REPORT = {"x": 1.0, "y": 2.0, "z": 3.0, "type": "Drill"}
+NEW = "a password set at the box"
+
+
+def wait_until(is_so, what, within=5):
+    end = time.monotonic() + within
+    while time.monotonic() < end:
+        with contextlib.suppress(OSError):  # it may be starting anew
+            if found := is_so():
+                return found
+        time.sleep(0.02)
+    raise AssertionError(f"waited {within} s in vain for {what}")
+
+
+class Button(unittest.TestCase):
+    def start_box(self, first=True, **options):
+        folder = self.enterContext(tempfile.TemporaryDirectory(prefix="adit-button-"))
+        self.box = Box(folder, **options)
+        self.addCleanup(lambda: self.box.process.wait())
+        self.addCleanup(lambda: self.box.process.kill())
+        if first:
+            self.assertEqual(self.box.set_first()[0], 200)
+            self.me = self.box.log_in()
+        return self.box
+
+    def write(self, text):
+        file = os.open(self.box.state / "panel.button", os.O_WRONLY | os.O_NONBLOCK)
+        try:
+            os.write(file, text)
+        finally:
+            os.close(file)
+
+    def hold(self, seconds):
+        self.write(b"press\n")
+        time.sleep(seconds)
+        self.write(b"release\n")
+        time.sleep(0.15)
+
+    def listening(self):
+        return re.findall(r"listening .*port=(\d+)", self.box.said())
+
+    def await_anew(self, before, within=5):
+        """Until it listens once more, at whichever port that is."""
+        self.box.port = int(wait_until(lambda: self.listening()[before:], "it to begin anew", within)[-1])
+
+    def run_view(self):
+        status, view, _ = self.box.ask("GET /adit/run", Authorization="Bearer " + real_aditd.TOKENS["team"])
+        self.assertEqual(status, 200)
+        return view
+
+    def patterns(self):
+        return {light["name"]: light["pattern"] for light in self.run_view()["lights"]}
+
+    def lit(self):
+        return [line.split()[1] for line in (self.box.state / "panel").read_text().splitlines()]
+
+    def is_open(self):
+        return self.box.ask("GET /adit/session")[1]["set_up_open"]
+
+    def set_password(self, password=NEW):
+        return self.box.ask("POST /adit/password", {"role": "operator", "password": password})[0]
+
+    def test_a_short_press_makes_the_lights_flash_and_opens_nothing(self):
+        self.start_box()
+        self.assertIsNone(self.run_view()["identify_until"])
+        self.hold(0.2)
+        view = self.run_view()
+        self.assertAlmostEqual(view["identify_until"] - view["now"], 10, delta=1)
+        self.assertEqual(set(self.patterns().values()), {"twice"})
+        self.assertIsNone(view["setup_open_until"])
+        self.assertFalse(self.is_open())
+        self.assertEqual(self.set_password(), 401)
+
+    def test_three_seconds_open_set_up_for_whoever_forgot_the_password(self):
+        box = self.start_box()
+        self.write(b"press\n")
+        time.sleep(2.8)
+        self.assertFalse(self.is_open())
+        self.assertEqual(self.set_password(), 401, "nobody stands at the box")
+        wait_until(lambda: set(self.patterns().values()) == {"on"}, "all lights to be lit", within=1)
+        self.assertEqual(self.lit(), ["on"] * 4)
+        self.write(b"release\n")
+        wait_until(self.is_open, "set-up to be open", within=1)
+        view = self.run_view()
+        self.assertAlmostEqual(view["setup_open_until"] - view["now"], 600, delta=2)
+        self.assertEqual(self.patterns(), {"health": "off", "scoring": "off", "mapping": "off", "attention": "digits"})
+        self.assertIn("the lights show the address address=127.0.0.1", box.said())
+
+        self.assertEqual(box.ask("GET /adit/sessions", **self.me)[0], 200, "nothing has changed yet")
+        self.assertEqual(box.log_in().keys(), self.me.keys())
+        for body in ({"role": "viewer", "password": NEW}, {"role": "operator", "current": "x", "password": NEW}):
+            self.assertEqual(box.ask("POST /adit/password", body)[0], 401)
+        self.assertEqual(box.ask("POST /adit/reset", {"password": NEW})[0], 401)
+        self.assertEqual(box.ask("POST /adit/password", {"role": "operator", "password": NEW},
+                                 Origin="http://elsewhere.example")[0], 403)
+
+        self.assertEqual(self.set_password(), 200)
+        self.assertFalse(self.is_open())
+        self.assertIsNone(self.run_view()["setup_open_until"])
+        self.assertEqual(self.set_password("another password still"), 401, "it is good once")
+        self.assertEqual(box.ask("GET /adit/sessions", **self.me)[0], 401)
+        self.assertEqual(box.ask("POST /adit/login", {"password": OPERATOR})[0], 403)
+        box.log_in(NEW)
+        wait_until(lambda: "set-up is closed" in box.said(), "that to be logged", within=2)
+        self.assertIn("set-up is opened at the box", box.said())
+        self.assertNotIn(NEW, box.said())
+
+    def test_a_restart_closes_set_up(self):
+        box = self.start_box()
+        self.hold(3.2)
+        self.assertTrue(self.is_open())
+        box.stop()
+        self.assertEqual(self.lit(), ["off"] * 4)
+        box.start()
+        self.assertFalse(self.is_open())
+        self.assertEqual(self.set_password(), 401)
+        box.log_in()
+
+    def test_at_the_first_start_it_stands_for_the_code(self):
+        box = self.start_box(first=False)
+        self.assertEqual(self.set_password(), 403, "without the code")
+        self.hold(3.2)
+        self.assertEqual(self.set_password(), 200)
+        box.log_in(NEW)
+        self.assertFalse((box.state / "first-start.code").exists())
+
+    def test_ten_seconds_reset_the_box_after_a_warning_and_keep_the_reports(self):
+        box = self.start_box()
+        self.assertEqual(box.ask("POST /adit/reports", REPORT, **self.me)[0], 202)
+        self.assertEqual(box.ask("POST /adit/tokens", {"name": "team", "token": "team-from-the-page"}, **self.me)[0], 200)
+        self.await_anew(1)
+        self.hold(6.5)
+        self.assertFalse(self.is_open(), "who lets go at the warning wants out")
+        self.assertTrue((box.state / "secrets" / "team.token").exists())
+        self.write(b"press\n")
+        time.sleep(6.2)
+        answer = box.ask("GET /adit/run", Authorization="Bearer team-from-the-page")[1]
+        self.assertEqual({light["pattern"] for light in answer["lights"]}, {"rush"})
+        time.sleep(3.3)
+        self.assertEqual(box.ask("GET /adit/session")[1]["first_start"], False, "not before ten seconds")
+        self.await_anew(2, within=3)
+        self.assertEqual(box.ask("GET /adit/session")[1]["first_start"], True)
+        for gone in ("settings.json", "secrets", "access.json"):
+            self.assertFalse((box.state / gone).exists(), gone)
+        self.assertEqual(box.ask("GET /adit/sessions", **self.me)[0], 401)
+        self.assertIn("the button was held: all that was set up is forgotten", box.said())
+        self.assertEqual(box.set_first(password=NEW)[0], 200)
+        report, = box.ask("GET /adit/reports", **box.log_in(NEW))[1]
+        self.assertEqual(report["type"], "Drill")
+
+    def test_only_its_own_user_can_press_and_nothing_else_is_a_press(self):
+        box = self.start_box()
+        fifo = box.state / "panel.button"
+        self.assertTrue(stat.S_ISFIFO(fifo.stat().st_mode))
+        self.assertEqual(stat.S_IMODE(fifo.stat().st_mode), 0o600)
+        for text in (b"PRESS\n", b"press", b"\0" * 3000 + b"\n", b"release\n" * 100, b"../press\n", b"x" * 60000 + b"\n"):
+            self.write(text)
+            time.sleep(0.1)
+        self.assertIsNone(self.run_view()["identify_until"])
+        box.stop()
+        self.assertFalse(fifo.exists())
+
+    def test_a_missing_link_shows_on_its_lights(self):
+        box = self.start_box()
+        box.stop()
+        settings = json.loads((box.folder / "settings.json").read_text())
+        settings["command_post"]["interface"] = "no-such-link"
+        (box.folder / "settings.json").write_text(json.dumps(settings))
+        box.start()
+        wait_until(lambda: self.patterns()["scoring"] == "flash", "its pattern", within=2)
+        self.assertEqual(self.patterns(), {"health": "on", "scoring": "flash", "mapping": "flash", "attention": "off"})
+
+    def test_tells_which_board_it_is_and_takes_its_panel_before_that_of_the_settings(self):
+        folder = pathlib.Path(self.enterContext(tempfile.TemporaryDirectory(prefix="adit-board-")))
+        file = folder / "board.json"
+        box = self.start_box(more=("--board", file))
+        about = lambda: box.ask("GET /adit/about", Authorization="Bearer " + real_aditd.TOKENS["team"])[1]
+        self.assertIsNone(about()["board"], "the file is not there")
+        self.assertEqual(self.run_view()["attention"], [])
+        file.write_text(json.dumps({"name": "my-board", "title": "My board", "panel": {"chip": "no-chip", "health": "H"}}))
+        box.stop()
+        box.start()
+        self.assertEqual(about()["board"], {"name": "my-board", "title": "My board"})
+        self.assertIn("panel: chip no-chip: No such file or directory", box.said())
+        self.assertFalse((box.state / "panel.button").exists(), "no other takes a real one's place")
+        file.write_text(json.dumps({"name": "my-board", "title": "My board", "panel": {"helth": "H"}}))
+        box.stop()
+        box.start()
+        self.assertIsNone(about()["board"])
+        self.assertIn("panel.helth: no such key; did you mean health?", self.run_view()["attention"][0])
+
+
+if __name__ == "__main__":
+    real_aditd.aditd = sys.argv.pop(1)
+    unittest.main()

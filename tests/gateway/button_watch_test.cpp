@@ -1,0 +1,145 @@
+#include "gateway/button_watch.hpp"
+
+#include <gtest/gtest.h>
+#include <sys/eventfd.h>
+#include <unistd.h>
+
+#include <optional>
+
+#include "gateway/watched_lines.hpp"
+#include "loop/file_descriptor.hpp"
+
+namespace adit::gateway {
+namespace {
+
+using namespace std::chrono_literals;
+using panel::Press;
+using panel::State;
+
+/// A wire that a test presses.
+struct Wire {
+  loop::FileDescriptor changed{eventfd(0, EFD_NONBLOCK | EFD_CLOEXEC)};
+  bool pressed = false, broken = false;
+  bool open = false;
+  int looked = 0;
+
+  void set(bool is_pressed) {
+    pressed = is_pressed;
+    eventfd_write(changed.get(), 1);
+  }
+};
+
+class WireLine final : public panel::ButtonLine {
+ public:
+  explicit WireLine(Wire& wire) : wire_(wire) { wire_.open = true; }
+  WireLine(const WireLine&) = delete;
+  WireLine& operator=(const WireLine&) = delete;
+  ~WireLine() override { wire_.open = false; }
+  int descriptor() const override { return wire_.changed.get(); }
+  std::expected<bool, std::string> pressed() override {
+    eventfd_t count = 0;
+    eventfd_read(wire_.changed.get(), &count);
+    ++wire_.looked;
+    if (wire_.broken) return std::unexpected("gpiochip0: gone");
+    return wire_.pressed;
+  }
+
+ private:
+  Wire& wire_;
+};
+
+class ButtonWatchTest : public testing::Test {
+ protected:
+  void watch() {
+    button.emplace(loop, std::make_unique<WireLine>(wire), lights,
+                   [this](Press press) { presses.push_back(press); });
+  }
+  void turn_for(loop::Duration length) {
+    for (const auto until = loop.now() + length; loop.now() < until;) loop.turn(until - loop.now());
+  }
+
+  loop::Loop loop;
+  WatchedLines::Seen seen;
+  Lights lights{loop, std::make_unique<WatchedLines>(seen)};
+  Wire wire;
+  std::vector<Press> presses;
+  std::optional<ButtonWatch> button;
+};
+
+TEST_F(ButtonWatchTest, TellsOfAPressOnceItIsOver) {
+  watch();
+  wire.set(true);
+  turn_for(100ms);
+  EXPECT_TRUE(presses.empty());
+  wire.set(false);
+  turn_for(100ms);
+  EXPECT_EQ(presses, std::vector{Press::Identify});
+  const int looked = wire.looked;
+  turn_for(100ms);
+  EXPECT_EQ(wire.looked, looked) << "nobody looks at a button that nobody touches";
+}
+
+TEST_F(ButtonWatchTest, IgnoresABounce) {
+  watch();
+  for (int i = 0; i < 10; ++i) {
+    wire.set(i % 2 == 0);
+    turn_for(5ms);
+  }
+  turn_for(100ms);
+  EXPECT_TRUE(presses.empty());
+}
+
+TEST_F(ButtonWatchTest, ShowsWhenItIsTimeToLetGoAndWhenItIsNot) {
+  watch();
+  lights.set(State::Serving, true);
+  wire.set(true);
+  turn_for(2900ms);
+  EXPECT_FALSE(lights.has(State::ButtonHeld));
+  turn_for(300ms);
+  EXPECT_TRUE(lights.has(State::ButtonHeld));
+  wire.set(false);
+  turn_for(100ms);
+  EXPECT_FALSE(lights.has(State::ButtonHeld));
+  EXPECT_EQ(presses, std::vector{Press::ShowAddress});
+}
+
+TEST_F(ButtonWatchTest, DoesNothingWhileTheButtonIsStuck) {
+  wire.pressed = true;
+  watch();
+  turn_for(3200ms);
+  EXPECT_FALSE(lights.has(State::ButtonHeld));
+  wire.set(false);
+  turn_for(100ms);
+  EXPECT_TRUE(presses.empty());
+}
+
+TEST_F(ButtonWatchTest, LeavesAButtonAloneThatCannotBeRead) {
+  watch();
+  wire.set(true);
+  turn_for(100ms);
+  wire.broken = true;
+  wire.set(false);
+  turn_for(200ms);
+  EXPECT_TRUE(presses.empty());
+  EXPECT_FALSE(lights.has(State::ButtonHeld));
+  const int looked = wire.looked;
+  wire.set(true);
+  turn_for(200ms);
+  EXPECT_EQ(wire.looked, looked) << "or it would be asked for ever";
+}
+
+TEST_F(ButtonWatchTest, IsNoneWhereThereIsNoLine) {
+  button.emplace(loop, nullptr, lights, [this](Press press) { presses.push_back(press); });
+  turn_for(50ms);
+  EXPECT_TRUE(presses.empty());
+}
+
+TEST_F(ButtonWatchTest, LetsItsLineGo) {
+  watch();
+  EXPECT_TRUE(wire.open);
+  button.reset();
+  EXPECT_FALSE(wire.open);
+}
+
+}  // namespace
+}  // namespace adit::gateway

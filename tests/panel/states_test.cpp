@@ -1,0 +1,121 @@
+#include "panel/states.hpp"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <initializer_list>
+#include <set>
+
+namespace adit::panel {
+namespace {
+
+constexpr auto kOff = Pattern::Off, kOn = Pattern::On, kSlow = Pattern::Slow, kFast = Pattern::Fast,
+               kFlash = Pattern::Flash, kWink = Pattern::Wink;
+
+constexpr std::initializer_list<State> kWell = {State::Serving, State::ScoringConnected,
+                                                State::MappingConnected};
+
+Lights shown(std::initializer_list<State> asserted) {
+  States states;
+  for (const State state : asserted) states.set(state, true);
+  return states.shown();
+}
+
+/// All is well but for these.
+Lights well_but(std::initializer_list<State> more) {
+  States states;
+  for (const State state : kWell) states.set(state, true);
+  for (const State state : more) states.set(state, true);
+  return states.shown();
+}
+
+Lights all(Pattern pattern) {
+  return {pattern, pattern, pattern, pattern};
+}
+
+TEST(States, OfABoxThatIsWellAreThreeSteadyLights) {
+  EXPECT_EQ(shown(kWell), (Lights{kOn, kOn, kOn, kOff}));
+}
+
+TEST(States, AreShownEachOnItsOwnLight) {
+  EXPECT_EQ(shown({}), all(kOff));
+  EXPECT_EQ(shown({State::NotServing}), (Lights{kFast, kOff, kOff, kOff}));
+  EXPECT_EQ(well_but({State::ScoringFailing}), (Lights{kOn, kFast, kOn, kOff}));
+  EXPECT_EQ(well_but({State::MappingFailing}), (Lights{kOn, kOn, kFast, kOff}));
+  EXPECT_EQ(well_but({State::ReportWaiting}), (Lights{kOn, kSlow, kOn, kOff}));
+  EXPECT_EQ(well_but({State::NeedsOperator}), (Lights{kOn, kOn, kOn, kFast}));
+  EXPECT_EQ(well_but({State::CommandPostUnplugged}), (Lights{kOn, kFlash, kFlash, kOff}));
+  EXPECT_EQ(well_but({State::TeamUnplugged}), (Lights{kFlash, kOn, kOn, kOff}));
+  EXPECT_EQ(well_but({State::UpdateRunning}), (Lights{kWink, kOn, kOn, kOff}));
+  EXPECT_EQ(well_but({State::SetUpOpen}), (Lights{kOn, kOn, kOn, kSlow}));
+}
+
+TEST(States, OfHigherPriorityHideOthersOnTheirLightsAlone) {
+  EXPECT_EQ(well_but({State::ScoringFailing, State::ReportWaiting}), (Lights{kOn, kFast, kOn, kOff}));
+  EXPECT_EQ(well_but({State::CommandPostUnplugged, State::ScoringFailing, State::MappingFailing}),
+            (Lights{kOn, kFlash, kFlash, kOff}))
+      << "why they fail";
+  EXPECT_EQ(shown({State::ReportWaiting}), (Lights{kOff, kSlow, kOff, kOff})) << "also unconnected";
+  EXPECT_EQ(well_but({State::NeedsOperator, State::SetUpOpen}), (Lights{kOn, kOn, kOn, kSlow}));
+  EXPECT_EQ(shown({State::NotServing, State::TeamUnplugged}), (Lights{kFlash, kOff, kOff, kOff}));
+}
+
+TEST(States, ThatAreWholePicturesHideAllOthers) {
+  States states;
+  for (const StateRow& row : state_table()) states.set(row.state, row.state != State::Fault);
+  EXPECT_EQ(states.shown(), all(Pattern::Rush));
+  states.set(State::ResetWarning, false);
+  EXPECT_EQ(states.shown(), all(kOn)) << "the button is held";
+  states.set(State::ButtonHeld, false);
+  EXPECT_EQ(states.shown(), all(Pattern::Twice)) << "identify";
+  states.set(State::Identify, false);
+  EXPECT_EQ(states.shown(), (Lights{kOff, kOff, kOff, Pattern::Digits}));
+  states.set(State::Address, false);
+  EXPECT_EQ(states.shown(), (Lights{kWink, kFlash, kFlash, kSlow}));
+}
+
+TEST(States, AreGoneOnceTheyAreCleared) {
+  States states;
+  EXPECT_TRUE(states.set(State::NeedsOperator, true));
+  EXPECT_FALSE(states.set(State::NeedsOperator, true)) << "nothing new";
+  EXPECT_TRUE(states.has(State::NeedsOperator));
+  EXPECT_TRUE(states.set(State::NeedsOperator, false));
+  EXPECT_EQ(states.shown(), all(kOff));
+}
+
+TEST(StateTable, HasNoTwoRowsThatLookAlike) {
+  std::set<std::array<int, kLights.size()>> pictures;
+  std::set<std::string_view> names;
+  for (const StateRow& row : state_table()) {
+    std::array<int, kLights.size()> picture{};
+    for (const Light light : kLights) {
+      const auto& pattern = row.patterns[index_of(light)];
+      picture[index_of(light)] = pattern ? static_cast<int>(*pattern) : -1;
+    }
+    EXPECT_TRUE(pictures.insert(picture).second) << row.name;
+    EXPECT_TRUE(names.insert(row.name).second) << row.name;
+  }
+}
+
+/// Of the states that leave the other lights alone, no two show the same on a light.
+TEST(StateTable, SaysOneThingByAPatternOfALight) {
+  for (const Light light : kLights) {
+    std::set<Pattern> seen;
+    for (const StateRow& row : state_table()) {
+      const auto& pattern = row.patterns[index_of(light)];
+      const bool whole = std::ranges::all_of(row.patterns, [](const auto& each) { return each.has_value(); });
+      if (!pattern || whole) continue;
+      EXPECT_TRUE(seen.insert(*pattern).second) << name_of(light) << " " << row.name;
+    }
+  }
+}
+
+TEST(StateTable, LeavesADarkHealthLightToABoxThatIsNotRunning) {
+  for (const StateRow& row : state_table()) {
+    if (row.state == State::Address) continue;  // it ends by itself
+    EXPECT_NE(row.patterns[index_of(Light::Health)], std::optional(kOff)) << row.name;
+  }
+}
+
+}  // namespace
+}  // namespace adit::panel

@@ -1,0 +1,103 @@
+"""Plays systemd for aditd: hands over listening sockets, hears its notifications, keeps what it is given to keep."""
+
+import array
+import contextlib
+import fcntl
+import json
+import os
+import pathlib
+import socket
+import subprocess
+import threading
+import time
+
+import programs
+
+TOKEN = {"Authorization": f"Bearer {programs.TEAM_TOKEN}"}
+# A shell's own number is that of what it becomes: LISTEN_PID must be right (sd_listen_fds(3)).
+HAND_OVER = 'export LISTEN_PID=$$; exec "$@" {moves}'
+FIRST_HIGH = 100  # where descriptors wait for the shell to move them down
+
+
+def listening(address="127.0.0.1", port=0, family=socket.AF_INET):
+    opened = socket.socket(family, socket.SOCK_STREAM)
+    opened.setsockopt(socket.SOL_SOCKET, socket.SO_REUSEADDR, 1)
+    opened.bind((address, port))
+    opened.listen(1024)
+    return opened
+
+
+class ServiceManager:
+    """What systemd is to one service with a socket unit."""
+
+    def __init__(self, folder, doors=(), inside=()):
+        """`doors`: the socket unit's. `inside`: the command by which another is run in its network namespace."""
+        self.folder, self.doors, self.inside = folder, list(doors), list(inside)
+        self.store = []  # (name, socket), as FDSTORE=1 has it
+        self.said = []  # every assignment of every notification, with the time
+        self.process = None
+        self.notify = socket.socket(socket.AF_UNIX, socket.SOCK_DGRAM)
+        self.notify.bind(str(folder / "notify"))
+        self.ended = False
+        self.hearing = threading.Thread(target=self._hear)
+        self.hearing.start()
+
+    def close(self):
+        if self.process and self.process.poll() is None:
+            self.process.kill()
+            self.process.wait()
+        self.ended = True
+        with contextlib.closing(socket.socket(socket.AF_UNIX, socket.SOCK_DGRAM)) as waker:
+            waker.sendto(b"", str(self.folder / "notify"))
+        self.hearing.join()
+        self.notify.close()
+        for each in self.doors + [kept for _, kept in self.store]:
+            each.close()
+
+    def _hear(self):
+        while not self.ended:
+            text, ancillary, _, _ = self.notify.recvmsg(4096, socket.CMSG_SPACE(16 * 4))
+            given = array.array("i")
+            for _, kind, data in ancillary:
+                if kind == socket.SCM_RIGHTS:
+                    given.frombytes(data[:len(data) - len(data) % given.itemsize])
+            lines = text.decode().split("\n")
+            values = dict(line.split("=", 1) for line in lines if "=" in line)
+            sockets = [socket.socket(fileno=fd) for fd in given]
+            if values.get("FDSTORE") == "1":
+                self.store += [(values["FDNAME"], each) for each in sockets]
+            elif values.get("FDSTOREREMOVE") == "1":
+                for name, kept in [pair for pair in self.store if pair[0] == values["FDNAME"]]:
+                    kept.close()
+                self.store = [pair for pair in self.store if pair[0] != values["FDNAME"]]
+            self.said += [(time.monotonic(), line) for line in lines]
+
+    def start(self, settings, **environment):
+        """`settings`: the document, or None for what there was."""
+        if settings is not None:
+            (self.folder / "settings.json").write_text(json.dumps(settings))
+        given = [("team", door) for door in self.doors] + list(self.store)
+        high = [fcntl.fcntl(each.fileno(), fcntl.F_DUPFD, FIRST_HIGH) for _, each in given]
+        moves = " ".join(f"{3 + at}<&{fd} {fd}<&-" for at, fd in enumerate(high))
+        begun = len(self.said)
+        command = [programs.BIN / "aditd", "--settings", self.folder / "settings.json", "--secrets",
+                   self.folder / "secrets", "--state", self.folder / "state"]
+        names = {"LISTEN_FDS": str(len(given)), "LISTEN_FDNAMES": ":".join(name for name, _ in given)} if given else {}
+        with open(self.folder / "aditd.log", "ab") as log:
+            self.process = subprocess.Popen(
+                [*self.inside, "bash", "-c", HAND_OVER.format(moves=moves), "-", *command], pass_fds=high, stdout=log, stderr=log,
+                env={**os.environ, "NOTIFY_SOCKET": str(self.folder / "notify"), **names, **environment})
+        for fd in high:
+            os.close(fd)
+        return begun
+
+    def ready(self, begun):
+        programs.wait_until(lambda: self.heard("READY=1", begun) or self.process.poll() is not None, "READY=1")
+        if self.process.poll() is not None:
+            raise AssertionError("aditd ended:\n" + self.log())
+
+    def heard(self, line, begun=0):
+        return any(said == line for _, said in self.said[begun:])
+
+    def log(self):
+        return pathlib.Path(self.folder / "aditd.log").read_text()

@@ -1,0 +1,302 @@
+"""aditd takes its sockets from systemd, has it keep the others, and so loses nobody who connects while it is started anew:
+the tests play systemd (activation.py). On loopback."""
+
+import http.client
+import json
+import pathlib
+import signal
+import socket
+import tempfile
+import threading
+import time
+import unittest
+
+import activation
+import hosts
+import programs
+from activation import TOKEN, listening
+
+NOBODY = {"address": "127.0.0.1", "port": 9}  # discard: nobody listens there
+
+
+def settings(*listen):
+    return {"version": 1, "command_post": {"scoring": NOBODY, "mapping": NOBODY},
+            "team": {"connections": 256, "connections_per_address": 256,
+                     "listen": [{"address": address, "port": port} for address, port in listen]}}
+
+
+def free_port(address="127.0.0.1"):
+    with listening(address) as found:
+        return found.getsockname()[1]
+
+
+def ask(port, method="GET", path="/adit/run", body=None, address="127.0.0.1"):
+    connection = http.client.HTTPConnection(address, port, timeout=10)
+    try:
+        headers = {**TOKEN, "Content-Type": "application/json"} if body is not None else TOKEN
+        connection.request(method, path, None if body is None else json.dumps(body), headers)
+        answer = connection.getresponse()
+        return answer.status, answer.read()
+    finally:
+        connection.close()
+
+
+class Clients(threading.Thread):
+    """One connection each 5 ms, from its own thread; what became of each."""
+
+    EVERY = 0.005
+
+    def __init__(self, port):
+        super().__init__()
+        self.port, self.ended = port, False
+        self.answered, self.refused, self.cut, self.slowest, self.troubles = 0, 0, 0, 0.0, []
+        self.lock, self.visits = threading.Lock(), []
+
+    def run(self):
+        due = time.monotonic()
+        while not self.ended:
+            visit = threading.Thread(target=self.visit)
+            visit.start()
+            self.visits.append(visit)
+            due += self.EVERY
+            time.sleep(max(0.0, due - time.monotonic()))
+
+    def visit(self):
+        began = time.monotonic()
+        for _ in range(2):  # as any client of HTTP, again where a connection ends without an answer
+            try:
+                status, _ = ask(self.port, path="/page.css")
+            except ConnectionRefusedError:
+                with self.lock:
+                    self.refused += 1
+                return
+            except (ConnectionError, http.client.BadStatusLine):
+                with self.lock:
+                    self.cut += 1
+                continue
+            except OSError as trouble:
+                with self.lock:
+                    self.troubles.append(repr(trouble))
+                return
+            with self.lock:
+                self.answered += status == 200
+                self.slowest = max(self.slowest, time.monotonic() - began)
+            return
+
+    def stop(self):
+        self.ended = True
+        self.join()
+        for visit in self.visits:
+            visit.join()
+
+
+class Sockets(unittest.TestCase):
+    def manager(self, *doors):
+        folder = pathlib.Path(self.enterContext(tempfile.TemporaryDirectory(prefix="adit-sockets-")))
+        programs.secrets_folder(folder / "secrets")
+        manager = activation.ServiceManager(folder, doors)
+        self.addCleanup(manager.close)
+        return manager
+
+    def started(self, document, *doors):
+        manager = self.manager(*doors)
+        manager.ready(manager.start(document))
+        return manager
+
+    def start_anew(self, manager, number, document=None):
+        manager.process.send_signal(number)
+        manager.process.wait(5)
+        manager.ready(manager.start(document))
+
+    def refuses(self, given, *words):
+        manager = self.manager(given)
+        manager.start(settings(("127.0.0.1", 0)))
+        self.assertEqual(manager.process.wait(5), 1)
+        for word in ("team", *words):
+            self.assertIn(word, manager.log())
+
+    def is_refused(self, port, address="127.0.0.1"):
+        with self.assertRaises(ConnectionRefusedError):
+            socket.create_connection((address, port), 2).close()
+
+    def test_serves_the_socket_units_instead_of_opening_its_own(self):
+        door = listening()
+        port = door.getsockname()[1]
+        manager = self.started(settings(("127.0.0.1", port)), door)
+        self.assertEqual(ask(port)[0], 200)
+        self.assertEqual(manager.log().count("listening "), 1)
+        self.assertEqual(manager.store, [], "systemd has it already")
+
+    def test_serves_the_socket_units_even_where_the_settings_name_none_of_them(self):
+        door, own = listening(), free_port()
+        self.started(settings(("127.0.0.1", own)), door)
+        for port in (door.getsockname()[1], own):
+            self.assertEqual(ask(port)[0], 200)
+
+    def test_a_door_at_every_address_is_that_of_each(self):
+        door = listening("::", family=socket.AF_INET6)
+        port = door.getsockname()[1]
+        manager = self.started(settings(("127.0.0.1", port), ("0.0.0.0", port), ("::1", port)), door)
+        self.assertEqual(manager.log().count("listening "), 1)
+        for address in ("127.0.0.1", "127.0.0.2", "::1"):
+            self.assertEqual(ask(port, address=address)[0], 200)
+
+    def test_refuses_what_it_cannot_listen_with(self):
+        bound = socket.socket()
+        bound.bind(("127.0.0.1", 0))
+        self.refuses(bound, "one that does not")
+        self.refuses(socket.socket(socket.AF_INET, socket.SOCK_DGRAM), "no stream")
+        local = socket.socket(socket.AF_UNIX)
+        local.bind(str(pathlib.Path(self.enterContext(tempfile.TemporaryDirectory())) / "socket"))
+        local.listen()
+        self.refuses(local, "another family")
+        self.refuses(open("/dev/null", "rb"), "no socket")  # noqa: SIM115
+
+    def test_has_systemd_keep_its_own_and_takes_them_back(self):
+        port = free_port()
+        manager = self.started(settings(("127.0.0.1", port), ("127.0.0.1", 0)))
+        programs.wait_until(lambda: len(manager.store) == 2, "two sockets to keep")
+        names = [name for name, _ in manager.store]
+        self.assertEqual(names, [f"listen--127.0.0.1-{port}", "listen--127.0.0.1-0"])
+        drawn = manager.store[1][1].getsockname()[1]
+        for number in (signal.SIGTERM, signal.SIGKILL):
+            self.start_anew(manager, number)
+            self.assertEqual([ask(port)[0], ask(drawn)[0]], [200, 200])
+            self.assertEqual([name for name, _ in manager.store], names, "it gave none twice")
+
+    def test_lets_go_of_what_the_settings_no_longer_name(self):
+        gone, stays = free_port(), free_port()
+        manager = self.started(settings(("127.0.0.1", gone), ("127.0.0.1", stays)))
+        programs.wait_until(lambda: len(manager.store) == 2, "two sockets to keep")
+        self.start_anew(manager, signal.SIGTERM, settings(("127.0.0.1", stays)))
+        programs.wait_until(lambda: len(manager.store) == 1, "one to be let go of")
+        self.is_refused(gone)
+        self.assertEqual(ask(stays)[0], 200)
+        # Every address instead of one, at the same port: the old one is in the way, and systemd has a copy.
+        self.start_anew(manager, signal.SIGTERM, settings(("0.0.0.0", stays)))
+        self.assertEqual(ask(stays, address="127.0.0.2")[0], 200)
+        programs.wait_until(lambda: [name for name, _ in manager.store] == [f"listen--0.0.0.0-{stays}"], "the other one")
+
+    def test_an_address_that_is_not_there_yet_is_waited_for_where_there_is_a_door(self):
+        door = listening()
+        document = settings(("127.0.0.1", door.getsockname()[1]), ("192.0.2.1", 8000))
+        self.started(document, door)
+        self.assertEqual(ask(door.getsockname()[1])[0], 200)
+        manager = self.manager()
+        manager.start(settings(("127.0.0.1", 0), ("192.0.2.1", 8000)))
+        self.assertEqual(manager.process.wait(5), 1)
+        self.assertIn("Cannot assign requested address", manager.log())
+
+    def test_a_kept_descriptor_that_is_no_socket_is_thrown_away(self):
+        manager = self.manager()
+        manager.store.append(("listen--127.0.0.1-0", socket.socket(socket.AF_INET, socket.SOCK_DGRAM)))
+        manager.ready(manager.start(settings(("127.0.0.1", 0))))
+        self.assertIn("of no use", manager.log())
+        programs.wait_until(lambda: [s.type for _, s in manager.store] == [socket.SOCK_STREAM], "a better one")
+
+    def test_other_settings_keep_the_sockets_open(self):
+        door, moved = listening(), free_port()
+        port = door.getsockname()[1]
+        manager = self.started(settings(("127.0.0.1", port), ("127.0.0.1", moved)), door)
+        clients = [Clients(port), Clients(moved)]
+        for each in clients:
+            each.start()
+        for ports in ((moved, free_port()), (moved,), (free_port(), moved)):
+            document = settings(*(("127.0.0.1", each) for each in (port, *ports)))
+            begun = manager.log().count("listening ")
+            base = json.loads(ask(port, path="/adit/settings")[1])["tag"]
+            status, said = ask(port, "POST", "/adit/settings", {"settings": document, "base": base})
+            self.assertEqual(status, 200, said)
+            programs.wait_until(lambda: manager.log().count("listening ") >= begun + 2, "it to begin anew")
+            time.sleep(0.3)
+        for each in clients:
+            each.stop()
+            self.assertEqual((each.refused, each.cut, each.troubles), (0, 0, []))
+            self.assertGreater(each.answered, 150)
+
+    def test_a_restart_turns_nobody_away(self):
+        """At 200 connections a second. Whoever was already taken in when the process was killed is cut off with it."""
+        for number, cut in ((signal.SIGTERM, 0), (signal.SIGKILL, 8)):
+            door = listening()
+            manager = self.started(settings(("127.0.0.1", door.getsockname()[1])), door)
+            clients = Clients(door.getsockname()[1])
+            clients.start()
+            for _ in range(3):
+                time.sleep(0.3)
+                manager.process.send_signal(number)
+                manager.process.wait(5)
+                time.sleep(1.0)  # RestartSec=
+                manager.ready(manager.start(None))
+            time.sleep(0.3)
+            clients.stop()
+            print(f"{number.name}: {clients.answered} answered, {clients.cut} cut, slowest {clients.slowest:.2f} s")
+            self.assertEqual((clients.refused, clients.troubles), (0, []))
+            self.assertEqual(clients.answered, len(clients.visits))
+            self.assertLessEqual(clients.cut, cut)
+            self.assertGreater(clients.slowest, 0.9, "nobody came while it was away")
+
+
+class TeamPort(unittest.TestCase):
+    """team0 goes and comes back as another interface, as an adapter does that is pulled and plugged in again."""
+
+    @classmethod
+    def setUpClass(cls):
+        hosts.needs_namespaces()
+
+    def setUp(self):
+        self.network = self.enterContext(hosts.Network())
+        folder = pathlib.Path(self.enterContext(tempfile.TemporaryDirectory(prefix="adit-port-")))
+        programs.secrets_folder(folder / "secrets")
+        inside = ["ip", "netns", "exec", self.network.box]
+        self.manager = activation.ServiceManager(folder, inside=inside)
+        self.addCleanup(self.manager.close)
+
+    def door(self):
+        hosts.enter(f"/run/netns/{self.network.box}")
+        try:
+            opened = socket.socket()
+            opened.setsockopt(socket.SOL_SOCKET, socket.SO_BINDTODEVICE, b"team0")
+            opened.bind(("0.0.0.0", 80))
+            opened.listen(1024)
+            return opened
+        finally:
+            hosts.enter(f"/run/netns/{self.network.team}")
+
+    def settings(self):
+        document = settings((self.network.box_address, 8000))
+        document["team"]["interface"] = "team0"
+        return document
+
+    def is_answered(self, port):
+        try:
+            return ask(port, address=self.network.box_address)[0] == 200
+        except OSError:
+            return False
+
+    def replug(self):
+        hosts.ip("-n", self.network.box, "link", "delete", "team0")
+        time.sleep(1.5)
+        self.assertIsNone(self.manager.process.poll(), "it goes on while the port is away")
+        self.network.plug_team()
+
+    def test_is_listened_at_anew(self):
+        self.manager.ready(self.manager.start(self.settings()))
+        self.assertTrue(self.is_answered(8000))
+        self.replug()
+        programs.wait_until(lambda: self.is_answered(8000), "an answer at the new port", within=4)
+        self.assertIsNone(self.manager.process.poll())
+
+    def test_ends_aditd_where_only_systemd_can_listen_there(self):
+        self.manager.doors.append(self.door())
+        self.manager.ready(self.manager.start(self.settings()))
+        self.assertTrue(self.is_answered(80) and self.is_answered(8000))
+        self.replug()
+        self.assertEqual(self.manager.process.wait(4), 0)
+        self.manager.doors.append(self.door())  # as systemd starts adit.socket anew; what it has of the old one is deaf
+        self.manager.ready(self.manager.start(None))
+        self.assertTrue(self.is_answered(80) and self.is_answered(8000))
+        self.assertIn("its interface is gone", self.manager.log())
+
+
+if __name__ == "__main__":
+    unittest.main()

@@ -23,9 +23,10 @@ constexpr std::chrono::milliseconds kEvery{500};
 /// What `adit update` shows of GET /adit/update.
 struct View {
   bool managed = false, trial = false;
-  std::string why, board, version, slot, doing, refusal, stick, stick_name, stick_why;
-  std::optional<double> progress;
-  std::string stage, last_version, last_why;
+  std::string why = "", board = "", version = "", slot = "", doing = "", refusal = "", stick_why = "";
+  std::optional<double> progress = {};
+  std::string stick = "", stick_name = "";
+  std::string stage = "", last_version = "", last_why = "";
 };
 
 /// "" where it is null

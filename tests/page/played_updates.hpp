@@ -24,8 +24,7 @@ struct PlayedUpdates final : Updates {
     return {};
   }
   icd::Checked<void> restart(bool anyway) override {
-    if (!anyway)
-      return std::unexpected(icd::Refusal{icd::Status::Conflict, "1 report waits to be sent"});
+    if (!anyway) return std::unexpected(icd::Refusal{icd::Status::Conflict, "1 report waits to be sent"});
     view.doing = "restarting";
     return {};
   }

@@ -21,6 +21,10 @@ using host::Level;
 
 constexpr int kForAll = 0644;
 
+void refused(const char* file, const std::string& why) {
+  host::log(Level::Warning, "refused what was asked for", {{"file", file}, {"why", why}});
+}
+
 }  // namespace
 
 Applier::Applier(loop::Loop& loop, const Options& options)
@@ -29,7 +33,8 @@ Applier::Applier(loop::Loop& loop, const Options& options)
 std::expected<void, std::string> Applier::start() {
   const bool first = access((options_.status + '/' + network::kStatusFile).c_str(), F_OK) != 0;
   if (auto settled = files_.settle(); !settled) return settled;
-  change_.emplace(files_, files_.confirmed());
+  change_.emplace(files_, files_.kept());
+  change_->set_endpoints(files_.endpoints());
   change_->set_interfaces(options_.team, options_.command_post);
   if (files_.found_a_change()) {
     host::log(Level::Warning, "a change that nobody had confirmed was taken back");
@@ -77,29 +82,28 @@ void Applier::look() {
   after();
 }
 
-/// `drop`: they are taken away and not done.
+/// `drop`: they are taken away and not done, but for those that are as right now as they were then.
 void Applier::take_requests(bool drop) {
   const auto wanted_text = taken(network::kWantedFile), word_text = taken(network::kWordFile),
              probe_text = taken(network::kProbeFile);
+  take_forget();
+  take_endpoints();
   if (drop) return;
-  const auto refuse = [](const char* file, const std::string& why) {
-    host::log(Level::Warning, "refused what was asked for", {{"file", file}, {"why", why}});
-  };
   if (wanted_text) {
     if (const auto wanted = network::read_wanted(*wanted_text)) {
       host::log(Level::Notice, "asked for a change",
-                {{"team", network::host_text(wanted->numbers.team)},
-                 {"command_post", network::host_text(wanted->numbers.command_post)}});
+                {{"team", network::team_text(wanted->numbers)},
+                 {"command_post", network::command_post_text(wanted->numbers)}});
       change_->want(*wanted, loop_.now());
     } else {
-      refuse(network::kWantedFile, wanted.error());
+      refused(network::kWantedFile, wanted.error());
     }
   }
   if (word_text) {
     if (const auto word = network::read_word(*word_text)) {
       change_->hear(*word, loop_.now());
     } else {
-      refuse(network::kWordFile, word.error());
+      refused(network::kWordFile, word.error());
     }
   }
   if (probe_text) {
@@ -107,9 +111,34 @@ void Applier::take_requests(bool drop) {
     if (const auto probe = network::read_probe(*probe_text)) {
       answer_probe(*probe);
     } else {
-      refuse(network::kProbeFile, probe.error());
+      refused(network::kProbeFile, probe.error());
     }
   }
+}
+
+void Applier::take_forget() {
+  const auto text = taken(network::kForgetFile);
+  if (!text) return;
+  if (const auto forget = network::read_forget(*text); !forget) {
+    return refused(network::kForgetFile, forget.error());
+  }
+  if (const auto forgotten = change_->forget(); !forgotten) {
+    host::log(Level::Error, "the addresses are not forgotten as they should be",
+              {{"why", forgotten.error()}});
+  } else {
+    host::log(Level::Notice, "the addresses are those that the box came with");
+  }
+}
+
+void Applier::take_endpoints() {
+  const auto text = taken(network::kEndpointsFile);
+  if (!text) return;
+  const auto endpoints = network::read_endpoints(*text);
+  if (!endpoints) return refused(network::kEndpointsFile, endpoints.error());
+  if (const auto done = files_.lead_to(*endpoints); !done) {
+    host::log(Level::Error, "there are no routes to the endpoints", {{"why", done.error()}});
+  }
+  change_->set_endpoints(files_.endpoints());
 }
 
 std::optional<std::string> Applier::taken(const char* name) {
@@ -121,19 +150,32 @@ std::optional<std::string> Applier::taken(const char* name) {
 
 void Applier::answer_probe(const network::Probe& probe) {
   network::Probed probed{.nonce = probe.nonce};
-  if (const auto own = host::own_address(options_.command_post)) {
-    probed.address = settings::ipv4_text(own->address);
-    const auto claim = applier::probe(options_.command_post, own->address);
+  std::vector<std::uint32_t> own;
+  for (const settings::Subnet& each : host::own_addresses(options_.command_post)) own.push_back(each.address);
+  if (!own.empty()) {
+    probed.address = settings::ipv4_text(own.front());
+    const auto claim = applier::probe(options_.command_post, own);
     if (!claim) {
       probed.trouble = claim.error();
     } else if (*claim) {
+      probed.address = settings::ipv4_text((*claim)->address);
       probed.claimant = (*claim)->mac;
       probed.own = (*claim)->own;
     }
   }
+  if (const auto sought = settings::ipv4_of(probe.sought)) probed.found_on = side_of(*sought);
   const auto written =
       host::write_file(options_.status + '/' + network::kProbedFile, network::write(probed), kForAll);
   if (!written) host::log(Level::Error, "an answer cannot be given", {{"why", written.error()}});
+}
+
+/// The interface on which somebody answers for an address; "": nobody does, or nobody can be asked.
+std::string Applier::side_of(std::uint32_t address) const {
+  for (const std::string& interface : {options_.command_post, options_.team}) {
+    const auto claim = applier::probe(interface, {address});
+    if (claim && *claim) return interface;
+  }
+  return "";
 }
 
 /// The status, where it is another than was told last.

@@ -28,9 +28,12 @@ class Applier {
  private:
   void look();
   void take_requests(bool drop);
+  void take_endpoints();
+  void take_forget();
   void after();
   bool tell();
   void answer_probe(const network::Probe& probe);
+  std::string side_of(std::uint32_t address) const;
   std::optional<std::string> taken(const char* name);
   void watch_folder();
 

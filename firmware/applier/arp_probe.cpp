@@ -58,22 +58,6 @@ std::expected<Listener, std::string> listen_on(const std::string& interface) {
   return listener;
 }
 
-/// The first claim that is heard by then.
-std::optional<Mac> hear(const Listener& listener, std::uint32_t address, Clock::time_point until) {
-  while (true) {
-    const auto left = std::chrono::ceil<std::chrono::milliseconds>(until - Clock::now()).count();
-    pollfd ready{listener.socket.get(), POLLIN, 0};
-    if (left <= 0 || poll(&ready, 1, static_cast<int>(left)) <= 0) {
-      if (left > 0 && errno == EINTR) continue;
-      return std::nullopt;
-    }
-    std::uint8_t packet[128];
-    const ssize_t size = recv(listener.socket.get(), packet, sizeof packet, MSG_DONTWAIT);
-    if (size <= 0) continue;
-    if (auto mac = claimant({packet, static_cast<std::size_t>(size)}, address, listener.own)) return mac;
-  }
-}
-
 /// The interface of this machine that has the MAC address, or "".
 std::string own_interface(const std::string& mac) {
   std::error_code error;
@@ -84,22 +68,43 @@ std::string own_interface(const std::string& mac) {
   return "";
 }
 
+using Addresses = std::vector<std::uint32_t>;
+
+/// The first claim that is heard by then.
+std::optional<Claim> hear(const Listener& listener, const Addresses& addresses, Clock::time_point until) {
+  while (true) {
+    const auto left = std::chrono::ceil<std::chrono::milliseconds>(until - Clock::now()).count();
+    pollfd ready{listener.socket.get(), POLLIN, 0};
+    if (left <= 0 || poll(&ready, 1, static_cast<int>(left)) <= 0) {
+      if (left > 0 && errno == EINTR) continue;
+      return std::nullopt;
+    }
+    std::uint8_t packet[128];
+    const ssize_t size = recv(listener.socket.get(), packet, sizeof packet, MSG_DONTWAIT);
+    if (size <= 0) continue;
+    for (const std::uint32_t address : addresses) {
+      const auto mac = claimant({packet, static_cast<std::size_t>(size)}, address, listener.own);
+      if (mac) return Claim{.address = address, .mac = text_of(*mac), .own = own_interface(text_of(*mac))};
+    }
+  }
+}
+
 }  // namespace
 
-std::expected<std::optional<Claim>, std::string> probe(const std::string& interface, std::uint32_t address) {
+std::expected<std::optional<Claim>, std::string> probe(const std::string& interface,
+                                                       const Addresses& addresses) {
   const auto listener = listen_on(interface);
   if (!listener) return std::unexpected(listener.error());
-  const auto packet = arp_probe(listener->own, address);
   for (int i = 0; i < kProbes; ++i) {
-    if (sendto(listener->socket.get(), packet.data(), packet.size(), 0,
-               reinterpret_cast<const sockaddr*>(&listener->everybody), sizeof listener->everybody) < 0) {
-      return failed(interface, "asking by ARP");
+    for (const std::uint32_t address : addresses) {
+      const auto packet = arp_probe(listener->own, address);
+      if (sendto(listener->socket.get(), packet.data(), packet.size(), 0,
+                 reinterpret_cast<const sockaddr*>(&listener->everybody), sizeof listener->everybody) < 0) {
+        return failed(interface, "asking by ARP");
+      }
     }
     const auto wait = i + 1 < kProbes ? kBetweenProbes : kAfterProbes;
-    if (const auto mac = hear(*listener, address, Clock::now() + wait)) {
-      const std::string text = text_of(*mac);
-      return Claim{text, own_interface(text)};
-    }
+    if (auto claim = hear(*listener, addresses, Clock::now() + wait)) return claim;
   }
   return std::nullopt;
 }

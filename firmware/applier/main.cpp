@@ -10,6 +10,14 @@
 
 namespace {
 
+/// Once, as the machine starts: networkd finds its files when it comes.
+int start(const adit::applier::Options& options) {
+  const auto written = adit::applier::NetworkdFiles(options).write_at_start();
+  if (written) return 0;
+  adit::host::log(adit::host::Level::Error, "cannot work", {{"why", written.error()}});
+  return 1;
+}
+
 int run(const adit::applier::Options& options) {
   adit::loop::Loop loop;
   adit::applier::Applier applier(loop, options);
@@ -34,5 +42,5 @@ int main(int argc, char** argv) {
   }
   if (options->help) return std::fputs(adit::applier::kUsage, stdout) < 0 ? 1 : 0;
   if (options->version) return std::printf("adit-network %s\n", ADIT_VERSION) < 0 ? 1 : 0;
-  return run(*options);
+  return options->start ? start(*options) : run(*options);
 }

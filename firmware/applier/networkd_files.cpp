@@ -28,48 +28,99 @@ std::string text_of(const std::string& path) {
 
 std::array<NetworkdFiles::Place, 2> NetworkdFiles::places() const {
   return {{{.interface = options_.team,
-            .tried = options_.tried + '/' + network::kTriedTeam,
-            .kept = options_.kept + '/' + network::kKeptTeam,
-            .text = ""},
+            .tried = options_.networkd + '/' + network::kTriedTeam,
+            .kept = options_.networkd + '/' + network::kKeptTeam,
+            .text = "",
+            .addresses = {}},
            {.interface = options_.command_post,
-            .tried = options_.tried + '/' + network::kTriedCommandPost,
-            .kept = options_.kept + '/' + network::kKeptCommandPost,
-            .text = ""}}};
+            .tried = options_.networkd + '/' + network::kTriedCommandPost,
+            .kept = options_.networkd + '/' + network::kKeptCommandPost,
+            .text = "",
+            .addresses = {}}}};
 }
 
 std::array<NetworkdFiles::Place, 2> NetworkdFiles::places(const network::Numbers& numbers) const {
   auto both = places();
   both[0].text = network::team_file(options_.team, numbers);
-  both[0].address = numbers.team.address;
-  both[1].text = network::command_post_file(options_.command_post, numbers);
-  both[1].address = numbers.command_post.address;
+  if (numbers.mode == network::Mode::Static) both[0].addresses = {numbers.team.address};
+  both[1].text = network::command_post_file(options_.command_post, numbers, endpoints_.addresses);
+  for (const settings::Subnet& each : numbers.command_post) both[1].addresses.push_back(each.address);
   return both;
 }
 
 std::expected<void, std::string> NetworkdFiles::settle() {
-  if (const auto text = host::slurp(confirmed_file())) {
-    const auto kept = network::read_kept(text->text);
-    if (kept) {
-      confirmed_ = *kept;
-    } else if (auto aside = set_aside(kept.error()); !aside) {
-      return aside;
-    }
-  } else if (text.error() != ENOENT) {
-    return std::unexpected(host::trouble(confirmed_file(), text.error()));
+  if (auto read = this->read(); !read) return read;
+  const auto changed = write();
+  if (!changed) return std::unexpected(changed.error());
+  return *changed ? reload() : std::expected<void, std::string>{};
+}
+
+std::expected<void, std::string> NetworkdFiles::write_at_start() {
+  if (const auto read = this->read(); !read) {
+    host::log(host::Level::Error, "what was confirmed cannot be read: the box has the addresses it came with",
+              {{"why", read.error()}});
+    use_factory();
   }
+  const auto changed = write();
+  return changed ? std::expected<void, std::string>{} : std::unexpected(changed.error());
+}
+
+std::expected<void, std::string> NetworkdFiles::read() {
+  const auto confirmed = read_confirmed();
+  if (!confirmed) return std::unexpected(confirmed.error());
+  if (!*confirmed) use_factory();
+  read_endpoints();
+  return {};
+}
+
+std::expected<bool, std::string> NetworkdFiles::read_confirmed() {
+  const auto text = host::slurp(confirmed_file());
+  if (!text && text.error() == ENOENT) return false;
+  if (!text) return std::unexpected(host::trouble(confirmed_file(), text.error()));
+  const auto confirmed = network::read_kept(text->text);
+  if (confirmed) {
+    kept_ = *confirmed;
+    return true;
+  }
+  const auto aside = set_aside(confirmed.error());
+  return aside ? std::expected<bool, std::string>(false) : std::unexpected(aside.error());
+}
+
+/// Where there are none, somebody else set the addresses, and that stays.
+void NetworkdFiles::use_factory() {
+  kept_.reset();
+  const auto text = host::slurp(options_.factory);
+  if (!text && text.error() == ENOENT) return;
+  const auto factory =
+      text ? network::read_kept(text->text) : std::unexpected(host::trouble(options_.factory, text.error()));
+  if (factory) {
+    kept_ = *factory;
+  } else {
+    host::log(host::Level::Error, "the addresses that the box comes with cannot be read",
+              {{"file", options_.factory}, {"why", factory.error()}});
+  }
+}
+
+/// Where they cannot be read, aditd tells them again.
+void NetworkdFiles::read_endpoints() {
+  const auto endpoints = network::read_endpoints(text_of(endpoints_file()));
+  endpoints_ = endpoints.value_or(network::Endpoints{});
+}
+
+std::expected<bool, std::string> NetworkdFiles::write() {
   bool changed = false;
-  if (confirmed_) {
-    const auto written = write_kept(*confirmed_);
-    if (!written) return std::unexpected(written.error());
+  if (kept_) {
+    const auto written = write_kept(*kept_);
+    if (!written) return written;
     changed = *written;
   }
   const auto removed = remove_tried();
-  if (!removed) return std::unexpected(removed.error());
+  if (!removed) return removed;
   found_a_change_ = *removed;
-  return changed || *removed ? reload() : std::expected<void, std::string>{};
+  return changed || *removed;
 }
 
-/// What networkd has stays as it is, and a change can be made.
+/// A change can be made all the same.
 std::expected<void, std::string> NetworkdFiles::set_aside(const std::string& why) const {
   const std::string file = confirmed_file();
   host::log(host::Level::Error, "what was confirmed last is damaged and set aside",
@@ -81,26 +132,32 @@ std::expected<void, std::string> NetworkdFiles::set_aside(const std::string& why
 std::expected<void, std::string> NetworkdFiles::apply(const network::Numbers& numbers) {
   std::vector<Place> changes;
   for (Place& place : places(numbers)) {
-    const std::string tried = text_of(place.tried);
-    if ((tried.empty() ? text_of(place.kept) : tried) != place.text) changes.push_back(std::move(place));
+    if (in_use_of(place) != place.text) changes.push_back(std::move(place));
   }
   for (const Place& place : changes) {
     if (auto unused = check_unused(place); !unused) return unused;
   }
+  tried_ = numbers;
   for (const Place& place : changes) {
     if (auto written = host::write_file(place.tried, place.text, kForAll); !written) return written;
   }
   return changes.empty() ? std::expected<void, std::string>{} : reload();
 }
 
+std::string NetworkdFiles::in_use_of(const Place& place) {
+  const std::string tried = text_of(place.tried);
+  return tried.empty() ? text_of(place.kept) : tried;
+}
+
 /// An interface that is down, or not there yet, has nobody to ask.
 std::expected<void, std::string> NetworkdFiles::check_unused(const Place& place) const {
-  const auto claim = probe_(place.interface, place.address);
+  if (place.addresses.empty()) return {};
+  const auto claim = probe_(place.interface, place.addresses);
   if (!claim) {
     host::log(host::Level::Warning, "nobody could be asked for an address", {{"why", claim.error()}});
   } else if (*claim) {
     const std::string& own = (*claim)->own;
-    return std::unexpected(icd::sentence(settings::ipv4_text(place.address), " is in use already on ",
+    return std::unexpected(icd::sentence(settings::ipv4_text((*claim)->address), " is in use already on ",
                                          place.interface, ", by ",
                                          own.empty() ? (*claim)->mac : "this box's own " + own));
   }
@@ -112,7 +169,8 @@ std::expected<void, std::string> NetworkdFiles::check_unused(const Place& place)
 std::expected<void, std::string> NetworkdFiles::keep(const network::Numbers& numbers) {
   if (auto written = host::write_file(confirmed_file(), network::write_kept(numbers), kForAll); !written)
     return written;
-  confirmed_ = numbers;
+  kept_ = numbers;
+  tried_.reset();
   if (const auto written = write_kept(numbers); !written) {
     host::log(host::Level::Error, "kept, but not for networkd: that is tried again at the next start",
               {{"why", written.error()}});
@@ -123,7 +181,45 @@ std::expected<void, std::string> NetworkdFiles::keep(const network::Numbers& num
 std::expected<void, std::string> NetworkdFiles::take_back() {
   const auto removed = remove_tried();
   if (!removed) return std::unexpected(removed.error());
+  tried_.reset();
   return *removed || reload_is_due_ ? reload() : std::expected<void, std::string>{};
+}
+
+/// Where the box came with no addresses, networkd has none of ours.
+std::expected<std::optional<network::Numbers>, std::string> NetworkdFiles::forget() {
+  for (const std::string& file : {confirmed_file(), endpoints_file()}) {
+    if (unlink(file.c_str()) != 0 && errno != ENOENT) return std::unexpected(host::trouble(file, errno));
+  }
+  endpoints_ = {};
+  tried_.reset();
+  use_factory();
+  for (const Place& place : places()) {
+    if (!kept_ && unlink(place.kept.c_str()) != 0 && errno != ENOENT) {
+      return std::unexpected(host::trouble(place.kept, errno));
+    }
+  }
+  if (const auto written = write(); !written) return std::unexpected(written.error());
+  if (const auto reloaded = reload(); !reloaded) return std::unexpected(reloaded.error());
+  return kept_;
+}
+
+std::expected<void, std::string> NetworkdFiles::lead_to(const network::Endpoints& endpoints) {
+  if (endpoints == endpoints_) return {};
+  if (auto kept = host::write_file(endpoints_file(), network::write(endpoints), kForAll); !kept) return kept;
+  endpoints_ = endpoints;
+  bool changed = false;
+  if (kept_) {
+    const auto written = write_kept(*kept_);
+    if (!written) return std::unexpected(written.error());
+    changed = *written;
+  }
+  const auto& in_use = tried_ ? tried_ : kept_;
+  for (const Place& place : in_use ? places(*in_use) : std::array<Place, 2>{}) {
+    if (in_use_of(place) == place.text) continue;
+    if (auto written = host::write_file(place.tried, place.text, kForAll); !written) return written;
+    changed = true;
+  }
+  return changed ? reload() : std::expected<void, std::string>{};
 }
 
 std::expected<bool, std::string> NetworkdFiles::write_kept(const network::Numbers& numbers) const {
@@ -140,7 +236,7 @@ std::expected<bool, std::string> NetworkdFiles::write_kept(const network::Number
 
 std::expected<bool, std::string> NetworkdFiles::remove_tried() const {
   bool removed = false;
-  for (const Place& place : confirmed_ ? places(*confirmed_) : places()) {
+  for (const Place& place : kept_ ? places(*kept_) : places()) {
     const auto tried = host::slurp(place.tried);
     if (!tried && tried.error() == ENOENT) continue;
     if (tried && !place.text.empty() && tried->text == place.text) continue;  // this is what was confirmed

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <array>
+#include <vector>
 
 #include "applier/arp_probe.hpp"
 #include "applier/options.hpp"
@@ -20,28 +21,45 @@ class NetworkdFiles final : public network::Hands {
   explicit NetworkdFiles(const Options& options, Prober prober = &probe)
       : options_(options), probe_(prober) {}
 
-  /// Reads what was confirmed last, and makes networkd's folders hold that and nothing else: a power cut or a
-  /// kill may have come at any point. An error: they are not as they should be.
+  /// Reads what was confirmed last, or else what the box came with, and makes networkd's folder hold that and
+  /// nothing else: a kill may have come at any point. An error: it is not as it should be.
   std::expected<void, std::string> settle();
-  const std::optional<network::Numbers>& confirmed() const { return confirmed_; }
+  /// The same before networkd is there. What cannot be read is no reason to be without any address: then it
+  /// is what the box came with.
+  std::expected<void, std::string> write_at_start();
+  /// What was confirmed last, or what the box came with.
+  const std::optional<network::Numbers>& kept() const { return kept_; }
+  const network::Endpoints& endpoints() const { return endpoints_; }
   /// settle() found a change that nobody had confirmed.
   bool found_a_change() const { return found_a_change_; }
 
   std::expected<void, std::string> apply(const network::Numbers& numbers) override;
   std::expected<void, std::string> keep(const network::Numbers& numbers) override;
   std::expected<void, std::string> take_back() override;
+  std::expected<std::optional<network::Numbers>, std::string> forget() override;
+  /// Leads to these from now on, with whatever addresses are in use.
+  std::expected<void, std::string> lead_to(const network::Endpoints& endpoints);
 
  private:
   /// One interface's two places, and what would stand there.
   struct Place {
     std::string interface, tried, kept, text;
-    std::uint32_t address = 0;
+    std::vector<std::uint32_t> addresses;
   };
   std::array<Place, 2> places(const network::Numbers& numbers) const;
   std::array<Place, 2> places() const;
   std::string confirmed_file() const { return options_.state + "/confirmed.json"; }
+  std::string endpoints_file() const { return options_.state + '/' + network::kEndpointsFile; }
+  std::expected<void, std::string> read();
+  std::expected<bool, std::string> read_confirmed();
+  void read_endpoints();
+  void use_factory();
+  /// Whether anything changed.
+  std::expected<bool, std::string> write();
   std::expected<void, std::string> set_aside(const std::string& why) const;
   std::expected<bool, std::string> write_kept(const network::Numbers& numbers) const;
+  /// What networkd goes by; "": nothing.
+  static std::string in_use_of(const Place& place);
   std::expected<void, std::string> check_unused(const Place& place) const;
   /// Whether any was there.
   std::expected<bool, std::string> remove_tried() const;
@@ -49,7 +67,8 @@ class NetworkdFiles final : public network::Hands {
 
   const Options& options_;
   Prober probe_;
-  std::optional<network::Numbers> confirmed_;
+  std::optional<network::Numbers> kept_, tried_;
+  network::Endpoints endpoints_;
   bool found_a_change_ = false;
   bool reload_is_due_ = false;  // the last one failed
 };

@@ -7,10 +7,10 @@ namespace adit::applier {
 namespace {
 
 constexpr std::pair<std::string_view, std::string Options::*> kValues[] = {
-    {"--wanted", &Options::wanted}, {"--status", &Options::status},
-    {"--state", &Options::state},   {"--tried", &Options::tried},
-    {"--kept", &Options::kept},     {"--networkctl", &Options::networkctl},
-    {"--team", &Options::team},     {"--command-post", &Options::command_post}};
+    {"--wanted", &Options::wanted},   {"--status", &Options::status},
+    {"--state", &Options::state},     {"--networkd", &Options::networkd},
+    {"--factory", &Options::factory}, {"--networkctl", &Options::networkctl},
+    {"--team", &Options::team},       {"--command-post", &Options::command_post}};
 
 /// The kernel's dev_valid_name(), and nothing that means more to systemd.network(5): a pattern, a list, a
 /// negation.
@@ -41,9 +41,10 @@ const char* const kUsage =
     "  --wanted DIR         where aditd asks (/var/lib/private/adit)\n"
     "  --status DIR         where it is answered (/run/adit-network)\n"
     "  --state DIR          where what was confirmed is kept (/var/lib/adit-network)\n"
-    "  --tried DIR          networkd's folder until the next start (/run/systemd/network)\n"
-    "  --kept DIR           networkd's folder for good (/etc/systemd/network)\n"
+    "  --factory FILE       the addresses where none were confirmed (/usr/share/adit/network.json)\n"
+    "  --networkd DIR       networkd's folder until the next start (/run/systemd/network)\n"
     "  --networkctl CMD     what makes networkd read them, called with the word reload (networkctl)\n"
+    "  --start              only writes networkd's files: before networkd starts\n"
     "  --version            prints the version\n"
     "  --help               prints this\n"
     "\n"
@@ -56,6 +57,8 @@ std::expected<Options, std::string> parse_options(std::span<char* const> argumen
     const std::string_view word = arguments[i];
     if (word == "--help") {
       options.help = true;
+    } else if (word == "--start") {
+      options.start = true;
     } else if (word == "--version") {
       options.version = true;
     } else if (const auto member = member_named(word); member == nullptr) {

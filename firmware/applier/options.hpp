@@ -9,13 +9,14 @@ namespace adit::applier {
 /// adit-network's command line. Interfaces stand here and not in what aditd asks for: it can move these two
 /// alone.
 struct Options {
-  std::string wanted = "/var/lib/private/adit";  // where aditd asks
-  std::string status = "/run/adit-network";      // where it is answered, for everybody to read
-  std::string state = "/var/lib/adit-network";   // what was confirmed last
-  std::string tried = "/run/systemd/network";    // networkd's, gone at the next start
-  std::string kept = "/etc/systemd/network";     // networkd's, for good
+  std::string wanted = "/var/lib/private/adit";          // where aditd asks
+  std::string status = "/run/adit-network";              // where it is answered, for everybody to read
+  std::string state = "/var/lib/adit-network";           // what was confirmed last
+  std::string networkd = "/run/systemd/network";         // networkd's folder that is gone at the next start
+  std::string factory = "/usr/share/adit/network.json";  // the addresses that the box comes with
   std::string networkctl = "networkctl";
   std::string team = "team0", command_post = "darpa0";
+  bool start = false;  // only writes networkd's files, before networkd is there
   bool help = false, version = false;
 };
 

@@ -253,6 +253,7 @@ USAGE
 WHAT IT TRIES
   link     does the interface to the Command Post have a carrier
   address  does it have an address, and does anybody else on its network have the same
+  cables   is the Command Post's network at its own port, and not at the team's
   reach    does the endpoint take a connection
   token    does it take the token
   clock    does the box's clock agree with the Command Post's, to 2 s

@@ -21,7 +21,7 @@ constexpr std::chrono::milliseconds kEvery{200};
 constexpr int kTimes = 25;
 
 struct Side {
-  std::string interface, address, gateway;
+  std::string interface, addresses, gateway;
 };
 
 /// What `adit network` shows of GET /adit/network.
@@ -36,16 +36,30 @@ struct View {
   std::string last, last_why;
 };
 
-/// "192.168.7.11/24", or "none"
 std::string host_in(const codec::Field& side) {
-  if (side.member("address").is_absent()) return "none";
   return text(side, "address") + '/' + std::to_string(whole<std::int64_t>(side, "prefix"));
 }
 
-Side read_side(const codec::Field& side, bool has_interface, bool has_gateway) {
-  return {.interface = has_interface ? text(side, "interface") : "",
-          .address = host_in(side),
-          .gateway = has_gateway ? text(side, "gateway") : ""};
+/// "static  192.168.7.11/24", "dhcp  none"; of what is wanted, "dhcp" alone. What the box has: `is_shown`.
+Side read_team(const codec::Field& side, bool is_shown) {
+  const std::string mode = text(side, "mode");
+  const bool none = side.member("address").is_absent();
+  const std::string addresses = none ? (is_shown ? "none" : "") : host_in(side);
+  return {.interface = is_shown ? text(side, "interface") : "",
+          .addresses = addresses.empty() ? mode : mode + "  " + addresses,
+          .gateway = ""};
+}
+
+/// "10.100.1.10/24, 10.100.2.10/24", "none"
+Side read_post(const codec::Field& side, bool is_shown) {
+  const codec::Field list = side.member("addresses");
+  std::string addresses;
+  for (std::size_t i = 0; i < list.size(); ++i) {
+    addresses.append(i == 0 ? "" : ", ").append(host_in(list.element(i)));
+  }
+  return {.interface = is_shown ? text(side, "interface") : "",
+          .addresses = addresses.empty() ? "none" : addresses,
+          .gateway = text(side, "gateway")};
 }
 
 View read_view(const codec::Field& root) {
@@ -54,8 +68,8 @@ View read_view(const codec::Field& root) {
   View view;
   view.managed = root.member("managed").truth();
   view.why = text(root, "why");
-  view.team = read_side(team, true, false);
-  view.post = read_side(post, true, true);
+  view.team = read_team(team, true);
+  view.post = read_post(post, true);
   view.last = last.is_absent() ? "" : std::string(last.text());
   view.last_why = text(root, "last_why");
   view.pending = !pending.is_absent();
@@ -63,15 +77,15 @@ View read_view(const codec::Field& root) {
   const codec::Field wanted_team = pending.member("team"), wanted_post = pending.member("command_post");
   view.until = number(pending, "until");
   view.page = text(pending, "page");
-  view.wanted_team = read_side(wanted_team, false, false);
-  view.wanted_post = read_side(wanted_post, false, true);
+  view.wanted_team = read_team(wanted_team, false);
+  view.wanted_post = read_post(wanted_post, false);
   return view;
 }
 
 std::string side_line(const char* name, const Side& side) {
   const std::string interface = side.interface.empty() ? "" : icd::sentence("  ", side.interface);
   const std::string gateway = side.gateway.empty() ? "" : icd::sentence("  gateway ", side.gateway);
-  return host::escaped(icd::sentence("  ", name, interface, "  ", side.address, gateway)) + '\n';
+  return host::escaped(icd::sentence("  ", name, interface, "  ", side.addresses, gateway)) + '\n';
 }
 
 std::string text_of(const View& view, double now) {

@@ -24,6 +24,10 @@ class Channel {
             std::function<void(uplink::Outcome)> done);
   bool busy() const { return connection_ && connection_->busy(); }
   bool connected() const { return connection_ && connection_->connected(); }
+  /// uplink::Connection::hurry()
+  void hurry() {
+    if (connection_) connection_->hurry();
+  }
   void keep_warm() {
     if (connection_) connection_->keep_warm();
   }

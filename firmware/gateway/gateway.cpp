@@ -33,19 +33,21 @@ Gateway::Gateway(loop::Loop& loop, Parts parts)
       news_(loop, settings_, token_for("mapping", settings_, parts_.loaded.secrets), record_, random_,
             as_forwarded_),
       lights_(loop, std::move(parts_.lines)),
+      links_(
+          loop, settings_, host::carrier, [this] { changed(); }, [this] { link_is_back(); }),
       button_(loop, std::move(parts_.button), lights_, [this](panel::Press press) { pressed(press); }),
       roster_(settings_.robots),
       sessions_(parts_.runtime_folder + "/sessions.json", loop.now()),
       accounts_(loop, workers_, sessions_, parts_.state_folder, parts_.loaded.secrets.label_code),
-      setup_(parts_.store, parts_.loaded, accounts_, [this] { make_way(); }),
+      network_requests_(parts_.state_folder, parts_.network_folder),
+      setup_(parts_.store, parts_.loaded, accounts_, network_requests_, [this] { make_way(); }),
       box_(loop, workers_, parts_.board, settings::file_of(parts_.loaded.settings),
            [this](page::Usage& usage) { add_to(usage); }),
-      network_requests_(parts_.state_folder, parts_.network_folder),
       network_(loop, settings_, network_requests_),
       self_test_(loop, settings_,
                  {token_for("scoring", settings_, parts_.loaded.secrets),
                   token_for("mapping", settings_, parts_.loaded.secrets)},
-                 network_requests_, [this] { changed(); }),
+                 network_requests_, network_, [this] { changed(); }),
       updates_(loop, workers_, UpdateRequests(parts_.state_folder, parts_.update_folder),
                [this] { return report_under_way(); }),
       page_(loop, *this, *this, accounts_, tokens()),
@@ -83,6 +85,13 @@ void Gateway::hold_back() {
   scoring_.hold_back();
   maps_.hold_back();
   news_.hold_back();
+}
+
+/// Nothing waits for what it would have waited for without a cable.
+void Gateway::link_is_back() {
+  scoring_.link_is_back();
+  maps_.link_is_back();
+  news_.link_is_back();
 }
 
 std::expected<void, std::string> Gateway::start() {
@@ -262,6 +271,7 @@ void Gateway::every_second() {
   if (bytes_sent_.size() > kMeterSeconds + 1) bytes_sent_.pop_front();
   scoring_.tick();
   show_lights();
+  network_.lead_to_endpoints();
   keep_news();
   keep_sessions();
   look_at_sockets();

@@ -11,6 +11,7 @@
 #include "gateway/as_forwarded.hpp"
 #include "gateway/button_watch.hpp"
 #include "gateway/lights.hpp"
+#include "gateway/links.hpp"
 #include "gateway/listen_sockets.hpp"
 #include "gateway/map_picture.hpp"
 #include "gateway/maps.hpp"
@@ -109,6 +110,7 @@ class Gateway final : public intake::Desk, public page::Source, public page::Ope
 
  private:
   void hold_back();
+  void link_is_back();
   void make_way();
   void end();
   void restore();
@@ -151,13 +153,14 @@ class Gateway final : public intake::Desk, public page::Source, public page::Ope
   AsForwarded as_forwarded_;
   News news_;
   Lights lights_;
+  Links links_;
   ButtonWatch button_;
   Roster roster_;
   SessionKeeper sessions_;
   Accounts accounts_;
+  NetworkRequests network_requests_;
   Setup setup_;
   ThisBox box_;
-  NetworkRequests network_requests_;
   NetworkChange network_;
   SelfTest self_test_;
   Updates updates_;

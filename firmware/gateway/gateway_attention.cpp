@@ -12,6 +12,7 @@ std::vector<std::string> Gateway::attention() const {
   if (std::string change = network_.attention(); !change.empty()) {
     sentences.insert(sentences.begin(), std::move(change));  // it is the one that has a deadline
   }
+  std::ranges::move(links_.attention(), std::back_inserter(sentences));
   if (!scoring_.trouble().empty()) {
     sentences.push_back("no report is taken, the ledger cannot be written: " + scoring_.trouble());
   }

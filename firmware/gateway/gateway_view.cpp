@@ -52,6 +52,7 @@ page::RunView Gateway::view() const {
                      .activities = record_.activities(),
                      .refusals = record_.refusals(),
                      .lights = {},
+                     .links = links_.rows(),
                      .identify_until = {},
                      .setup_open_until = {},
                      .budget_mbit = settings_.command_post.budget_mbit,

@@ -184,6 +184,12 @@ void Maps::give_up(int status, const std::string& sentence) {
   prepared_.reset();
 }
 
+void Maps::link_is_back() {
+  pace_.link_is_back();
+  channel_.hurry();
+  pump();
+}
+
 bool Maps::stop() {
   stopping_ = true;
   return !channel_.busy() && being_kept_ == 0;

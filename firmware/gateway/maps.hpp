@@ -38,6 +38,8 @@ class Maps {
 
   /// Sends nothing more. False while an answer is awaited or a map is not yet kept.
   bool stop();
+  /// The cable is: nothing waits any more for what failed without it.
+  void link_is_back();
 
   bool packing() const { return preparing_; }
   const Channel& channel() const { return channel_; }

@@ -1,5 +1,7 @@
 #include "gateway/network_change.hpp"
 
+#include <algorithm>
+
 #include "host/log.hpp"
 #include "host/own_address.hpp"
 #include "icd/sentence.hpp"
@@ -57,13 +59,11 @@ std::optional<network::Pending> NetworkChange::pending() const {
 }
 
 std::optional<network::Numbers> NetworkChange::present() const {
-  const auto team = host::own_address(settings_.team.interface),
-             post = host::own_address(settings_.command_post.interface);
-  if (!team || !post) return std::nullopt;
-  network::Numbers numbers{*team, *post, std::nullopt};
-  if (status_ && status_->kept && status_->kept->command_post == *post)
-    numbers.gateway = status_->kept->gateway;
-  return numbers;
+  if (status_ && status_->kept) return status_->kept;
+  const auto team = host::own_address(settings_.team.interface);
+  if (!team) return std::nullopt;
+  return network::Numbers{.team = *team,
+                          .command_post = host::own_addresses(settings_.command_post.interface)};
 }
 
 page::NetworkView NetworkChange::network() const {
@@ -74,8 +74,11 @@ page::NetworkView NetworkChange::network() const {
   view.team_interface = settings_.team.interface;
   view.command_post_interface = settings_.command_post.interface;
   view.team = host::own_address(view.team_interface);
-  view.command_post = host::own_address(view.command_post_interface);
-  if (const auto numbers = present()) view.gateway = numbers->gateway;
+  view.command_post = host::own_addresses(view.command_post_interface);
+  if (status_ && status_->kept) {
+    view.mode = status_->kept->mode;
+    view.gateway = status_->kept->gateway;
+  }
   if (const auto waits = pending()) {
     const double left = std::chrono::duration<double>(waits->until - loop_.now()).count();
     view.pending = {.until = loop_.stamp_now() + left,
@@ -83,6 +86,7 @@ page::NetworkView NetworkChange::network() const {
                     .previous = status_ ? status_->kept : std::nullopt,
                     .page = network::page_at(waits->wanted, settings_.team.listen)};
   }
+  if (view.pending) return view;  // how the one before ended says nothing of this one
   if (!not_taken_up_.empty()) {
     view.last = name_of(network::Ended::TakenBack);
     view.last_why = not_taken_up_;
@@ -109,9 +113,8 @@ icd::Checked<void> NetworkChange::change(const network::Numbers& wanted) {
   network::Wanted request{NetworkRequests::draw_nonce(), settings_.network.confirm_within, wanted};
   if (const auto asked = requests_.ask(request); !asked)
     return conflict("it cannot be asked for: " + asked.error());
-  host::log(
-      host::Level::Notice, "a change of the network is asked for",
-      {{"team", network::host_text(wanted.team)}, {"command_post", network::host_text(wanted.command_post)}});
+  host::log(host::Level::Notice, "a change of the network is asked for",
+            {{"team", network::team_text(wanted)}, {"command_post", network::command_post_text(wanted)}});
   asked_ = Asked{std::move(request), loop_.now()};
   not_taken_up_.clear();
   return {};
@@ -120,14 +123,55 @@ icd::Checked<void> NetworkChange::change(const network::Numbers& wanted) {
 icd::Checked<void> NetworkChange::confirm(const std::string& local) {
   const auto waits = pending();
   if (!waits) return conflict("no change waits to be confirmed");
-  const std::string address = settings::ipv4_text(waits->wanted.team.address);
-  const bool stays = status_ && status_->kept && status_->kept->team.address == waits->wanted.team.address;
-  if (stays && asked_) return conflict("the change is not made yet: try again in a few seconds");
-  if (!stays && local != address) {
-    return conflict(icd::sentence("confirm it at ", network::page_at(waits->wanted, settings_.team.listen),
-                                  ": this came to ", local, ", and says nothing of the new address"));
-  }
+  if (auto may = check_confirmable(waits->wanted, local); !may) return may;
   return say(network::Word::What::Confirm, *waits);
+}
+
+/// Which address DHCP gave, or the box chose, nobody knows beforehand: it is any but the one that went.
+icd::Checked<void> NetworkChange::check_confirmable(const network::Numbers& wanted,
+                                                    const std::string& local) const {
+  const bool fixed = wanted.mode == network::Mode::Static;
+  const auto kept = status_ ? status_->kept : std::nullopt;
+  const bool stays = kept && kept->mode == wanted.mode && kept->team.address == wanted.team.address;
+  if ((stays || !fixed) && asked_) return conflict("the change is not made yet: try again in a few seconds");
+  const bool new_one = fixed ? local == settings::ipv4_text(wanted.team.address)
+                             : !kept || local != settings::ipv4_text(kept->team.address);
+  if (stays || new_one) return {};
+  return conflict(icd::sentence("confirm it at ", network::page_at(wanted, settings_.team.listen),
+                                ": this came to ", local, ", and says nothing of the new address"));
+}
+
+void NetworkChange::lead_to_endpoints() {
+  refresh();
+  if (!hindrance().empty()) return;
+  network::Endpoints all;
+  const auto add = [&all](const settings::Address& address) {
+    if (const auto number = settings::ipv4_of(address.address)) all.addresses.push_back(*number);
+  };
+  add(settings_.command_post.scoring);
+  add(settings_.command_post.mapping);
+  for (const settings::Course& course : settings_.courses) {
+    add(course.scoring);
+    add(course.mapping);
+  }
+  std::ranges::sort(all.addresses);
+  const auto twice = std::ranges::unique(all.addresses);
+  all.addresses.erase(twice.begin(), twice.end());
+  if (status_->endpoints == all || (told_at_ && loop_.now() < *told_at_ + kTellAgain)) return;
+  told_at_ = loop_.now();
+  if (const auto asked = requests_.ask(all); !asked) {
+    host::log(host::Level::Error, "adit-network cannot be told where the endpoints are",
+              {{"why", asked.error()}});
+  }
+}
+
+std::string NetworkChange::next_hop() const {
+  refresh();
+  const auto endpoint = settings::ipv4_of(settings_.command_post.scoring.address);
+  const auto numbers = present();
+  if (!endpoint || !numbers) return "";
+  if (network::on_link(*numbers, *endpoint) != nullptr) return settings_.command_post.scoring.address;
+  return numbers->gateway ? settings::ipv4_text(*numbers->gateway) : "";
 }
 
 icd::Checked<void> NetworkChange::take_back() {
@@ -145,6 +189,11 @@ icd::Checked<void> NetworkChange::say(network::Word::What what, const network::P
 
 std::string NetworkChange::attention() const {
   const auto waits = pending();
+  const bool bare = status_ && status_->kept && status_->kept->command_post.empty();
+  if (!waits && bare && hindrance().empty()) {
+    return icd::sentence(settings_.command_post.interface,
+                         " has no address yet: set one in the Command Post's subnet");
+  }
   if (!waits) return "";
   const auto left = std::chrono::ceil<std::chrono::seconds>(waits->until - loop_.now()).count();
   if (left <= 0) return "network change: it is being taken back";

@@ -17,6 +17,9 @@ class NetworkChange final : public page::Network {
   static constexpr std::chrono::seconds kTakenUpWithin{15};
   /// How old what was read of its status may be.
   static constexpr std::chrono::milliseconds kFresh{50};
+  /// adit-network is told again where the endpoints are, where it does not know, this long after the last
+  /// time.
+  static constexpr std::chrono::seconds kTellAgain{10};
 
   /// All outlive this.
   NetworkChange(loop::Loop& loop, const settings::Settings& settings, const NetworkRequests& requests)
@@ -27,6 +30,11 @@ class NetworkChange final : public page::Network {
   icd::Checked<void> change(const network::Numbers& wanted) override;
   icd::Checked<void> confirm(const std::string& local) override;
   icd::Checked<void> take_back() override;
+
+  /// Sees to it that there are ways to the endpoints of the settings, and of all courses; called each second.
+  void lead_to_endpoints();
+  /// Who answers for them: the first endpoint, or the gateway to it; "": there is no way to it.
+  std::string next_hop() const;
 
   /// What the operator is to do while a change waits; "" where none does.
   std::string attention() const;
@@ -42,6 +50,8 @@ class NetworkChange final : public page::Network {
   std::string hindrance() const;
   std::optional<network::Pending> pending() const;
   std::optional<network::Numbers> present() const;
+  /// Where `local` is an address by which the confirmation of a change to `wanted` may come.
+  icd::Checked<void> check_confirmable(const network::Numbers& wanted, const std::string& local) const;
   icd::Checked<void> say(network::Word::What what, const network::Pending& pending) const;
 
   loop::Loop& loop_;
@@ -50,7 +60,8 @@ class NetworkChange final : public page::Network {
   mutable std::expected<network::Status, std::string> status_;
   mutable std::optional<loop::Instant> read_at_;
   mutable std::optional<Asked> asked_;
-  mutable std::string not_taken_up_;  // why the last change came to nothing
+  std::optional<loop::Instant> told_at_;  // where the endpoints are
+  mutable std::string not_taken_up_;      // why the last change came to nothing
 };
 
 }  // namespace adit::gateway

@@ -37,6 +37,12 @@ std::expected<void, std::string> NetworkRequests::ask(const network::Word& word)
 std::expected<void, std::string> NetworkRequests::ask(const network::Probe& probe) const {
   return host::write_file(state_ + '/' + network::kProbeFile, network::write(probe), kOursAlone);
 }
+std::expected<void, std::string> NetworkRequests::ask(const network::Endpoints& endpoints) const {
+  return host::write_file(state_ + '/' + network::kEndpointsFile, network::write(endpoints), kOursAlone);
+}
+std::expected<void, std::string> NetworkRequests::ask(const network::Forget& forget) const {
+  return host::write_file(state_ + '/' + network::kForgetFile, network::write(forget), kOursAlone);
+}
 
 void NetworkRequests::forget_wanted() const {
   unlink((state_ + '/' + network::kWantedFile).c_str());

@@ -23,6 +23,8 @@ class NetworkRequests {
   std::expected<void, std::string> ask(const network::Wanted& wanted) const;
   std::expected<void, std::string> ask(const network::Word& word) const;
   std::expected<void, std::string> ask(const network::Probe& probe) const;
+  std::expected<void, std::string> ask(const network::Endpoints& endpoints) const;
+  std::expected<void, std::string> ask(const network::Forget& forget) const;
   /// It is not to be done any more, where it has not been begun.
   void forget_wanted() const;
 

@@ -161,6 +161,13 @@ std::vector<Traffic> News::traffic_of(const lanes::WaitingMarkers&) const {
   return {{Kind::Markers, ""}};
 }
 
+void News::link_is_back() {
+  state_pace_.link_is_back();
+  markers_pace_.link_is_back();
+  channel_.hurry();
+  pump();
+}
+
 bool News::stop() {
   stopping_ = true;
   return !channel_.busy();

@@ -36,6 +36,8 @@ class News {
 
   /// Sends nothing more. False while an answer is still awaited.
   bool stop();
+  /// The cable is: nothing waits any more for what failed without it.
+  void link_is_back();
   /// What has not been taken by the Command Post; empty lists where nothing waits.
   icd::StateUpdate unsent_state() const;
   icd::MarkersUpdate unsent_markers() const;

@@ -253,6 +253,13 @@ std::int64_t Scoring::begin_run() {
   return number;
 }
 
+void Scoring::link_is_back() {
+  report_pace_.link_is_back();
+  status_pace_.link_is_back();
+  channel_.hurry();
+  poll();  // what the Command Post says now is news
+}
+
 bool Scoring::stop() {
   stopping_ = true;
   answer_askers(intake::error_answer(icd::Status::ServiceUnavailable, "the gateway is stopping"));

@@ -56,6 +56,8 @@ class Scoring {
   /// Sends and takes nothing more; clients whose reports wait are told so. False while an answer is still
   /// awaited. Called again until it is true or there is no more time.
   bool stop();
+  /// The cable is: nothing waits any more for what failed without it.
+  void link_is_back();
   /// Tells the client whose report is still under way, too.
   void dismiss();
 

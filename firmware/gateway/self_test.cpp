@@ -17,7 +17,7 @@
 namespace adit::gateway {
 namespace {
 
-constexpr const char* kSteps[] = {"link", "address", "reach", "token", "clock"};
+constexpr const char* kSteps[] = {"link", "address", "cables", "reach", "token", "clock"};
 constexpr int kTooMany = 429;
 
 /// Of an answer to GET /api/status.
@@ -35,11 +35,13 @@ icd::ChunkedBytes empty_object() {
 }  // namespace
 
 SelfTest::SelfTest(loop::Loop& loop, const settings::Settings& settings, Tokens tokens,
-                   const NetworkRequests& requests, std::function<void()> changed)
+                   const NetworkRequests& requests, const NetworkChange& network,
+                   std::function<void()> changed)
     : loop_(loop),
       settings_(settings),
       tokens_(std::move(tokens)),
       requests_(requests),
+      network_(network),
       changed_(std::move(changed)),
       timer_(loop.timer([this] { std::exchange(when_due_, {})(); })) {}
 
@@ -54,6 +56,7 @@ bool SelfTest::begin_test() {
     view_.endpoints.push_back(std::move(endpoint));
   }
   tested_ = 0;
+  probed_.reset();
   at_ = At::Link;
   run_step();
   return true;
@@ -68,6 +71,8 @@ void SelfTest::run_step() {
       return finish(steps::link(interface, host::carrier(interface)));
     case At::Address:
       return ask_address();
+    case At::Cables:
+      return look_at_cables();
     case At::Reach:
       return connect();
     case At::Token:
@@ -84,7 +89,8 @@ void SelfTest::finish(page::TestStep step) {
   const bool is_bad = step.state == "bad";
   const std::string said = step.said;
   endpoint().steps[static_cast<std::size_t>(at_)] = std::move(step);
-  if (is_bad && at_ != At::Address && at_ != At::Token) return skip_the_rest("not tried: " + said);
+  if (is_bad && at_ != At::Address && at_ != At::Cables && at_ != At::Token)
+    return skip_the_rest("not tried: " + said);
   at_ = static_cast<At>(static_cast<int>(at_) + 1);
   next();
 }
@@ -123,8 +129,8 @@ void SelfTest::ask_address() {
                                                                         " instead"
                                                                   : "";
   if (own && why.empty()) {
-    probe_ = NetworkRequests::draw_nonce();
-    const auto asked = requests_.ask(network::Probe{probe_});
+    probe_ = {NetworkRequests::draw_nonce(), network_.next_hop()};
+    const auto asked = requests_.ask(probe_);
     until_ = loop_.now() + kProbeWithin;
     if (asked) return wait_for_probe();
     why = asked.error();
@@ -134,13 +140,18 @@ void SelfTest::ask_address() {
 
 void SelfTest::wait_for_probe() {
   auto probed = requests_.probed();
-  if (!probed || probed->nonce != probe_) probed.reset();
+  if (!probed || probed->nonce != probe_.nonce) probed.reset();
   if (!probed && loop_.now() < until_) {
     when_due_ = [this] { wait_for_probe(); };
     return timer_.call_at(loop_.now() + kProbePoll);
   }
   const std::string& interface = settings_.command_post.interface;
+  probed_ = probed;
   finish(steps::address(interface, host::own_address(interface), probed, "adit-network did not answer"));
+}
+
+void SelfTest::look_at_cables() {
+  finish(steps::cables(settings_.command_post.interface, settings_.team.interface, probe_.sought, probed_));
 }
 
 uplink::Endpoint SelfTest::there() const {

@@ -5,6 +5,7 @@
 #include <string>
 #include <vector>
 
+#include "gateway/network_change.hpp"
 #include "gateway/network_requests.hpp"
 #include "gateway/test_steps.hpp"
 #include "icd/bearer_token.hpp"
@@ -32,13 +33,13 @@ class SelfTest final : public page::SelfTest {
 
   /// `changed` is called as steps end. All outlive this.
   SelfTest(loop::Loop& loop, const settings::Settings& settings, Tokens tokens,
-           const NetworkRequests& requests, std::function<void()> changed);
+           const NetworkRequests& requests, const NetworkChange& network, std::function<void()> changed);
 
   page::TestView test() const override { return view_; }
   bool begin_test() override;
 
  private:
-  enum class At : std::uint8_t { Link, Address, Reach, Token, Clock, End };
+  enum class At : std::uint8_t { Link, Address, Cables, Reach, Token, Clock, End };
 
   void next();
   void run_step();
@@ -48,6 +49,7 @@ class SelfTest final : public page::SelfTest {
 
   void ask_address();
   void wait_for_probe();
+  void look_at_cables();
   void connect();
   void connected(int error, const std::string& why);
   void ask_token();
@@ -66,6 +68,7 @@ class SelfTest final : public page::SelfTest {
   const settings::Settings& settings_;
   Tokens tokens_;
   const NetworkRequests& requests_;
+  const NetworkChange& network_;
   std::function<void()> changed_;
   page::TestView view_;
   std::size_t tested_ = 0;  // which endpoint
@@ -73,7 +76,8 @@ class SelfTest final : public page::SelfTest {
 
   loop::Source timer_;
   std::function<void()> when_due_;
-  std::string probe_;  // its nonce
+  network::Probe probe_;
+  std::optional<network::Probed> probed_;
   loop::Instant until_{};
   loop::FileDescriptor socket_;
   loop::Source connecting_;

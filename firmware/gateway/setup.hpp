@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "gateway/accounts.hpp"
+#include "gateway/network_requests.hpp"
 #include "gateway/store.hpp"
 #include "page/setup.hpp"
 
@@ -14,8 +15,9 @@ namespace adit::gateway {
 /// What this gateway was built from, and how it comes to be built anew.
 class Setup final : public page::Setup {
  public:
-  /// `apply` ends the gateway, so that another begins. Store and Accounts outlive this.
-  Setup(const Store& store, const Store::Loaded& loaded, Accounts& accounts, std::function<void()> apply);
+  /// `apply` ends the gateway, so that another begins. All others outlive this.
+  Setup(const Store& store, const Store::Loaded& loaded, Accounts& accounts, const NetworkRequests& network,
+        std::function<void()> apply);
 
   const settings::Settings& settings() const override { return settings_; }
   bool saved() const override { return saved_; }
@@ -36,6 +38,7 @@ class Setup final : public page::Setup {
   bool saved_;
   std::vector<std::string> tokens_set_;
   Accounts& accounts_;
+  const NetworkRequests& network_;
   std::function<void()> apply_;
   bool applying_ = false;
 };

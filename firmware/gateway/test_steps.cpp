@@ -56,7 +56,9 @@ TestStep address(const std::string& interface, const std::optional<settings::Sub
     return bad("address", icd::sentence(interface, " has no IPv4 address"),
                "Set one in the Command Post's subnet, on the page or where the box's network is set up.");
   }
-  const std::string has = icd::sentence(interface, " has ", network::host_text(*own));
+  const std::string conflict = probed && !probed->claimant.empty() ? probed->address : "";
+  const std::string has =
+      icd::sentence(interface, " has ", conflict.empty() ? network::host_text(*own) : conflict);
   if (!probed)
     return skipped("address", icd::sentence(has, "; whether anybody else has it was not asked: ", not_asked));
   if (!probed->trouble.empty()) {
@@ -73,6 +75,18 @@ TestStep address(const std::string& interface, const std::optional<settings::Sub
                "Give the box another address on the Command Post's side, or ask its crew who has this one.");
   }
   return good("address", icd::sentence(has, ", and nobody else has it"));
+}
+
+TestStep cables(const std::string& interface, const std::string& team, const std::string& sought,
+                const std::optional<network::Probed>& probed) {
+  if (!probed || sought.empty())
+    return skipped("cables", "nobody could be asked which network is at which port");
+  if (probed->found_on == interface) return good("cables", icd::sentence(sought, " is at ", interface));
+  if (probed->found_on.empty() || probed->found_on != team) {
+    return skipped("cables", icd::sentence("nobody answers for ", sought, " at either port"));
+  }
+  return bad("cables", icd::sentence(sought, " is not at ", interface, " but at ", team),
+             "The Command Post's network is at the team's port: exchange the two cables.");
 }
 
 TestStep reach(const std::string& at, int error, const std::string& why) {

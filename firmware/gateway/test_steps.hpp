@@ -26,6 +26,11 @@ TestStep link(const std::string& interface, std::optional<bool> carrier);
 TestStep address(const std::string& interface, const std::optional<settings::Subnet>& own,
                  const std::optional<network::Probed>& probed, const std::string& not_asked);
 
+/// Whether the Command Post is at its own port, or at the team's: by who answers for `sought`, the endpoint
+/// or the gateway to it.
+TestStep cables(const std::string& interface, const std::string& team, const std::string& sought,
+                const std::optional<network::Probed>& probed);
+
 /// How connecting ended: 0 or an errno, and why in words.
 TestStep reach(const std::string& at, int error, const std::string& why);
 

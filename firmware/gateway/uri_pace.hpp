@@ -32,6 +32,12 @@ class UriPace {
     retry_at_ = now + backoff_.failed(std::uniform_real_distribution<double>(0, 1)(random_));
   }
 
+  /// What failed may well succeed now.
+  void link_is_back() {
+    backoff_.succeeded();
+    retry_at_ = {};
+  }
+
  private:
   pace::RateLimit rate_;
   pace::Backoff backoff_;

@@ -2,13 +2,17 @@
 
 #include <optional>
 #include <string>
+#include <vector>
 
 #include "settings/subnet.hpp"
 
 namespace adit::host {
 
-/// The first IPv4 address of an interface; nothing where it has none, or there is no such interface. By
-/// ioctl, as the service may use no netlink.
+/// All IPv4 addresses of an interface, link-local ones last (the kernel has them first); none where there is
+/// no such interface.
+std::vector<settings::Subnet> own_addresses(const std::string& interface);
+
+/// The first of them.
 std::optional<settings::Subnet> own_address(const std::string& interface);
 
 }  // namespace adit::host

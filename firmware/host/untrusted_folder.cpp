@@ -50,7 +50,8 @@ std::expected<std::optional<std::string>, std::string> UntrustedFolder::take(con
   const int error = errno;
   if (!fd && error == ENOENT) return std::nullopt;
   if (unlinkat(folder_.get(), name.c_str(), 0) != 0 && errno != ENOENT) {
-    unlinkat(folder_.get(), name.c_str(), AT_REMOVEDIR);
+    std::error_code left;  // a folder: with all that is in it, or it would be asked for again and again
+    std::filesystem::remove_all(path_by_descriptor() + '/' + name, left);
   }
   if (!fd) return std::unexpected(trouble(name, error));
   auto text = read_all(fd.get(), name);

@@ -38,6 +38,15 @@ void Change::hear(const Word& word, Instant now) {
   end(Ended::Confirmed, "");
 }
 
+std::expected<void, std::string> Change::forget() {
+  auto kept = hands_.forget();
+  if (!kept) return std::unexpected(std::move(kept.error()));
+  status_.kept = *kept;
+  status_.endpoints = {};
+  if (status_.pending) end(Ended::TakenBack, "all addresses were forgotten");
+  return {};
+}
+
 void Change::tick(Instant now) {
   if (try_at_) {
     if (now >= *try_at_) try_to_take_back(now);

@@ -21,6 +21,8 @@ class Hands {
   virtual std::expected<void, std::string> keep(const Numbers& numbers) = 0;
   /// Goes back to what was kept last.
   virtual std::expected<void, std::string> take_back() = 0;
+  /// Goes back to what the box came with, and keeps that; gives it, where it came with any.
+  virtual std::expected<std::optional<Numbers>, std::string> forget() = 0;
 };
 
 /// A change of the network's numbers, which takes itself back unless it is confirmed in time: what is wanted
@@ -31,7 +33,7 @@ class Change {
   static constexpr int kTries = 5;
   static constexpr std::chrono::seconds kTryAgain{2};
 
-  /// `hands` outlives this. `kept`: what was confirmed last.
+  /// `hands` outlives this. `kept`: what was confirmed last, or what the box came with.
   Change(Hands& hands, const std::optional<Numbers>& kept) : hands_(hands) { status_.kept = kept; }
 
   void set_interfaces(std::string team, std::string command_post) {
@@ -44,12 +46,15 @@ class Change {
 
   void want(const Wanted& wanted, Instant now);
   void hear(const Word& word, Instant now);
+  /// Ends what is pending, too. An error: it is not done, or not in use before the next start.
+  std::expected<void, std::string> forget();
   void tick(Instant now);
   /// There is no more time: what is pending is taken back, once.
   void stop(Instant now);
 
   /// When tick() is to be called; nothing: no change is under way.
   std::optional<Instant> wake() const;
+  void set_endpoints(Endpoints endpoints) { status_.endpoints = std::move(endpoints); }
   const Status& status() const { return status_; }
 
  private:

@@ -18,9 +18,23 @@ bool is_any(const std::string& address) {
   return address == "0.0.0.0" || address == "::";
 }
 
-/// What the team's subnet overlaps of the Command Post's network, in words.
+struct Endpoint {
+  const char* name;
+  std::string address;
+  std::optional<std::uint32_t> number;  // nothing: no IPv4 address
+};
+
+std::array<Endpoint, 2> endpoints(const Circumstances& around) {
+  const auto of = [](const char* name, const Address& address) {
+    return Endpoint{name, address.address, settings::ipv4_of(address.address)};
+  };
+  return {of("scoring", around.command_post.scoring), of("mapping", around.command_post.mapping)};
+}
+
+/// What the team's subnet overlaps of the Command Post's network, in words. What DHCP will give is not known.
 std::vector<std::string> overlaps_of(const Numbers& wanted, const Circumstances& around) {
   std::vector<std::string> what;
+  if (wanted.mode != Mode::Static) return what;
   const std::string team = written(wanted.team);
   for (const Subnet& each : settings::command_post_subnets()) {
     if (settings::overlaps(wanted.team, each)) {
@@ -28,14 +42,12 @@ std::vector<std::string> overlaps_of(const Numbers& wanted, const Circumstances&
                                    ", which the Command Post's network uses (ICD 3)"));
     }
   }
-  if (settings::overlaps(wanted.team, wanted.command_post)) {
-    what.push_back(
-        icd::sentence(team, " overlaps ", written(wanted.command_post), " on the Command Post's side"));
+  for (const Subnet& each : wanted.command_post) {
+    if (settings::overlaps(wanted.team, each)) {
+      what.push_back(icd::sentence(team, " overlaps ", written(each), " on the Command Post's side"));
+    }
   }
-  const std::array endpoints = {std::pair("scoring", around.command_post.scoring.address),
-                                std::pair("mapping", around.command_post.mapping.address)};
-  for (const auto& [name, address] : endpoints) {
-    const auto number = settings::ipv4_of(address);
+  for (const auto& [name, address, number] : endpoints(around)) {
     if (number && wanted.team.contains(*number)) {
       what.push_back(icd::sentence("the ", name, " endpoint ", address, " lies in ", team));
     }
@@ -46,31 +58,28 @@ std::vector<std::string> overlaps_of(const Numbers& wanted, const Circumstances&
 /// An endpoint that the box would find no way to.
 void warn_of_lost_endpoints(const Numbers& wanted, const Circumstances& around,
                             std::vector<std::string>& warnings) {
-  const std::array endpoints = {std::pair("scoring", around.command_post.scoring.address),
-                                std::pair("mapping", around.command_post.mapping.address)};
-  for (const auto& [name, address] : endpoints) {
-    const auto number = settings::ipv4_of(address);
-    if (!number || wanted.command_post.contains(*number)) continue;
-    const bool nominal = std::ranges::any_of(settings::command_post_subnets(),
-                                             [&](const Subnet& each) { return each.contains(*number); });
-    if (nominal && wanted.gateway) continue;
-    warnings.push_back(
-        icd::sentence("the ", name, " endpoint ", address, " cannot be reached: it is not in ",
-                      written(wanted.command_post),
-                      nominal ? ", and there is no gateway"
-                              : ", and no gateway leads there (only to the Command Post's own subnets)"));
+  for (const auto& [name, address, number] : endpoints(around)) {
+    if (!number || wanted.gateway || on_link(wanted, *number) != nullptr) continue;
+    warnings.push_back(icd::sentence("the ", name, " endpoint ", address, " cannot be reached: ",
+                                     wanted.command_post.empty()
+                                         ? "the box has no address on that side"
+                                         : icd::sentence("it is in no subnet of ", command_post_text(wanted),
+                                                         ", and there is no gateway")));
   }
 }
 
 void warn_the_asker(const Numbers& wanted, const std::optional<Numbers>& present, const Circumstances& around,
                     std::vector<std::string>& warnings) {
   const auto asker = settings::ipv4_of(around.asker);
-  if (present && present->team == wanted.team) return;
+  if (present && present->mode == wanted.mode && present->team == wanted.team) return;
   const std::string within =
       icd::sentence("within ", std::chrono::ceil<std::chrono::seconds>(around.confirm_within).count(),
                     " s, or it is taken back");
   const std::string page = page_at(wanted, around.listen);
-  if (asker && (wanted.team.contains(*asker) || asker.value() >> 24 == 127)) {
+  if (wanted.mode != Mode::Static) {
+    warnings.push_back(icd::sentence("the page moves to an address that is not known yet: open ", page,
+                                     " and confirm ", within));
+  } else if (asker && (wanted.team.contains(*asker) || asker.value() >> 24 == 127)) {
     warnings.push_back(icd::sentence("the page moves: open ", page, " and confirm ", within));
   } else {
     warnings.push_back(icd::sentence("this cuts you off: your address ", around.asker, " is not in ",
@@ -81,24 +90,27 @@ void warn_the_asker(const Numbers& wanted, const std::optional<Numbers>& present
 
 void check_listening(const Numbers& wanted, const Circumstances& around,
                      std::vector<settings::Error>& errors) {
-  const std::string address = settings::ipv4_text(wanted.team.address);
+  const bool fixed = wanted.mode == Mode::Static;
+  const std::string address = fixed ? settings::ipv4_text(wanted.team.address) : "";
   const bool reached = std::ranges::any_of(around.listen, [&](const Address& listen) {
     return is_any(listen.address) || listen.address == address;
   });
   if (reached || around.listen.empty()) return;
-  errors.push_back(
-      {"team.address", icd::sentence("nothing would be served at ", address,
-                                     ": the settings' team.listen has only ", around.listen.front().address,
-                                     "; set it to 0.0.0.0, which is every address of team.interface")});
+  errors.push_back({fixed ? "team.address" : "team.mode",
+                    icd::sentence("nothing would be served ",
+                                  fixed ? "at " + address : "at an address that is not known yet",
+                                  ": the settings' team.listen has only ", around.listen.front().address,
+                                  "; set it to 0.0.0.0, which is every address of team.interface")});
 }
 
 std::vector<Difference> differences(const Numbers& wanted, const std::optional<Numbers>& present) {
   const auto rows = [](const Numbers& numbers) {
+    const bool fixed = numbers.mode == Mode::Static;
     return std::array<std::pair<const char*, std::string>, 5>{
-        {{"team.address", settings::ipv4_text(numbers.team.address)},
-         {"team.prefix", std::to_string(numbers.team.prefix)},
-         {"command_post.address", settings::ipv4_text(numbers.command_post.address)},
-         {"command_post.prefix", std::to_string(numbers.command_post.prefix)},
+        {{"team.mode", std::string(name_of(numbers.mode))},
+         {"team.address", fixed ? settings::ipv4_text(numbers.team.address) : ""},
+         {"team.prefix", fixed ? std::to_string(numbers.team.prefix) : ""},
+         {"command_post.addresses", numbers.command_post.empty() ? "" : command_post_text(numbers)},
          {"command_post.gateway", numbers.gateway ? settings::ipv4_text(*numbers.gateway) : ""}}};
   };
   const auto to = rows(wanted);
@@ -114,7 +126,8 @@ std::vector<Difference> differences(const Numbers& wanted, const std::optional<N
 
 std::string page_at(const Numbers& numbers, const std::vector<Address>& listen) {
   const std::uint16_t port = listen.empty() ? kHttp : listen.front().port;
-  const std::string host = icd::sentence("http://", settings::ipv4_text(numbers.team.address));
+  const std::string host = icd::sentence(
+      "http://", numbers.mode == Mode::Static ? settings::ipv4_text(numbers.team.address) : kHostName);
   return port == kHttp ? host : icd::sentence(host, ":", port);
 }
 

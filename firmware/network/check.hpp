@@ -8,7 +8,8 @@
 
 namespace adit::network {
 
-/// One number that is to be another: "team.address", "192.168.7.11", "192.168.8.11".
+/// One number that is to be another: "team.address", "192.168.7.11", "192.168.8.11"; of the Command Post's
+/// addresses, all of them.
 struct Difference {
   std::string path, from, to;
 };
@@ -32,7 +33,10 @@ struct Verdict {
 Verdict check(const Numbers& wanted, const std::optional<Numbers>& present,
               const Circumstances& circumstances);
 
-/// "http://192.168.8.11:8000", where the page is to be found with these numbers.
+/// What the box is called where its address is not known beforehand (mDNS, RFC 6762).
+inline constexpr const char* kHostName = "adit.local";
+
+/// "http://192.168.8.11:8000", where the page is to be found with these numbers; "http://adit.local:8000".
 std::string page_at(const Numbers& numbers, const std::vector<settings::Address>& listen);
 
 }  // namespace adit::network

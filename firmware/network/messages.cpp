@@ -70,6 +70,39 @@ Numbers numbers(const Field& object, std::string_view name) {
   return {};
 }
 
+/// An IPv4 address, or "".
+std::string address_or_none(const Field& object, std::string_view name) {
+  const Field field = object.member(name);
+  std::string text(field.text());
+  if (!text.empty() && !settings::ipv4_of(text)) field.refuse("expected an IPv4 address, or none");
+  return text;
+}
+
+Value json(const Endpoints& endpoints) {
+  Value::Array list;
+  for (const std::uint32_t each : endpoints.addresses) list.push_back({settings::ipv4_text(each)});
+  return {std::move(list)};
+}
+
+Endpoints endpoints(const Field& object) {
+  Endpoints all;
+  const Field list = object.member("endpoints");
+  const std::size_t count = list.size();
+  if (count > kMostEndpoints) list.refuse("expected at most ", kMostEndpoints);
+  for (std::size_t i = 0; i < count && !list.reading().refused(); ++i) {
+    const Field field = list.element(i);
+    const auto address = settings::ipv4_of(field.text());
+    if (!address) {
+      field.refuse("expected an IPv4 address");
+    } else if (!all.addresses.empty() && all.addresses.back() >= *address) {
+      field.refuse("expected them in order, and none twice");
+    } else {
+      all.addresses.push_back(*address);
+    }
+  }
+  return all;
+}
+
 Ended ended(const Field& object) {
   const Field field = object.member("last");
   if (field.is_absent()) return Ended::NotYet;
@@ -136,7 +169,15 @@ std::string write(const Word& word) {
 }
 
 std::string write(const Probe& probe) {
-  return written({{"nonce", {probe.nonce}}});
+  return written({{"nonce", {probe.nonce}}, {"sought", {probe.sought}}});
+}
+
+std::string write(const Endpoints& endpoints) {
+  return written({{"endpoints", json(endpoints)}});
+}
+
+std::string write(const Forget& forget) {
+  return written({{"nonce", {forget.nonce}}});
 }
 
 std::string write(const Status& status) {
@@ -144,6 +185,7 @@ std::string write(const Status& status) {
   return written({{"team_interface", {status.team_interface}},
                   {"command_post_interface", {status.command_post_interface}},
                   {"kept", status.kept ? to_json(*status.kept) : Value{}},
+                  {"endpoints", json(status.endpoints)},
                   {"pending", json(status.pending)},
                   {"last", last.empty() ? Value{} : Value{std::string(last)}},
                   {"last_nonce", {status.ended_nonce}},
@@ -155,6 +197,7 @@ std::string write(const Probed& probed) {
                   {"address", {probed.address}},
                   {"claimant", {probed.claimant}},
                   {"own", {probed.own}},
+                  {"found_on", {probed.found_on}},
                   {"trouble", {probed.trouble}}});
 }
 
@@ -174,31 +217,44 @@ Read<Word> read_word(std::string_view json) {
 }
 
 Read<Probe> read_probe(std::string_view json) {
-  return read<Probe>(json, {"nonce"}, [](const Field& root) { return Probe{nonce(root)}; });
+  return read<Probe>(json, {"nonce", "sought"},
+                     [](const Field& root) { return Probe{nonce(root), address_or_none(root, "sought")}; });
+}
+
+Read<Endpoints> read_endpoints(std::string_view json) {
+  return read<Endpoints>(json, {"endpoints"}, [](const Field& root) { return endpoints(root); });
+}
+
+Read<Forget> read_forget(std::string_view json) {
+  return read<Forget>(json, {"nonce"}, [](const Field& root) { return Forget{nonce(root)}; });
 }
 
 Read<Status> read_status(std::string_view json) {
-  return read<Status>(
-      json, {"team_interface", "command_post_interface", "kept", "pending", "last", "last_nonce", "why"},
-      [](const Field& root) {
-        return Status{.team_interface = text(root, "team_interface"),
-                      .command_post_interface = text(root, "command_post_interface"),
-                      .kept = kept(root),
-                      .pending = pending(root),
-                      .ended = ended(root),
-                      .ended_nonce = text(root, "last_nonce"),
-                      .why = text(root, "why")};
-      });
+  return read<Status>(json,
+                      {"team_interface", "command_post_interface", "kept", "endpoints", "pending", "last",
+                       "last_nonce", "why"},
+                      [](const Field& root) {
+                        return Status{.team_interface = text(root, "team_interface"),
+                                      .command_post_interface = text(root, "command_post_interface"),
+                                      .kept = kept(root),
+                                      .endpoints = endpoints(root),
+                                      .pending = pending(root),
+                                      .ended = ended(root),
+                                      .ended_nonce = text(root, "last_nonce"),
+                                      .why = text(root, "why")};
+                      });
 }
 
 Read<Probed> read_probed(std::string_view json) {
-  return read<Probed>(json, {"nonce", "address", "claimant", "own", "trouble"}, [](const Field& root) {
-    return Probed{.nonce = nonce(root),
-                  .address = text(root, "address"),
-                  .claimant = text(root, "claimant"),
-                  .own = text(root, "own"),
-                  .trouble = text(root, "trouble")};
-  });
+  return read<Probed>(json, {"nonce", "address", "claimant", "own", "found_on", "trouble"},
+                      [](const Field& root) {
+                        return Probed{.nonce = nonce(root),
+                                      .address = text(root, "address"),
+                                      .claimant = text(root, "claimant"),
+                                      .own = text(root, "own"),
+                                      .found_on = text(root, "found_on"),
+                                      .trouble = text(root, "trouble")};
+                      });
 }
 
 std::string write_kept(const Numbers& numbers) {

@@ -6,6 +6,7 @@
 #include <optional>
 #include <string>
 #include <string_view>
+#include <vector>
 
 #include "network/numbers.hpp"
 
@@ -20,6 +21,8 @@ using Instant = std::chrono::steady_clock::time_point;
 inline constexpr const char* kWantedFile = "wanted.json";
 inline constexpr const char* kWordFile = "word.json";
 inline constexpr const char* kProbeFile = "probe.json";
+inline constexpr const char* kEndpointsFile = "endpoints.json";
+inline constexpr const char* kForgetFile = "forget.json";
 /// What adit-network tells everybody, in its runtime folder.
 inline constexpr const char* kStatusFile = "status.json";
 inline constexpr const char* kProbedFile = "probed.json";
@@ -42,8 +45,22 @@ struct Word {
   What what = What::Back;
 };
 
-/// Whether somebody else has the box's address on the Command Post's network.
+/// Whether somebody else has one of the box's addresses on the Command Post's network, and who answers for
+/// `sought` on which side.
 struct Probe {
+  std::string nonce;
+  std::string sought = "";  // an IPv4 address: the endpoint, or the gateway to it; "": none is looked for
+};
+
+/// Where the settings' endpoints are, for whatever addresses the box has: no change, and so never confirmed.
+struct Endpoints {
+  std::vector<std::uint32_t> addresses;  // kMostEndpoints, in order, none twice
+  friend bool operator==(const Endpoints&, const Endpoints&) = default;
+};
+inline constexpr std::size_t kMostEndpoints = 64;
+
+/// The box is to have the addresses that it came with.
+struct Forget {
   std::string nonce;
 };
 
@@ -61,7 +78,8 @@ std::string_view name_of(Ended ended);
 
 struct Status {
   std::string team_interface = "", command_post_interface = "";
-  std::optional<Numbers> kept = {};  // what is kept in /etc; nothing: never changed here
+  std::optional<Numbers> kept = {};  // confirmed, or as the box came; nothing: set elsewhere
+  Endpoints endpoints = {};          // to which there are routes
   std::optional<Pending> pending = {};
   Ended ended = Ended::NotYet;   // how the last change of this start ended
   std::string ended_nonce = "";  // its own
@@ -71,15 +89,18 @@ struct Status {
 
 struct Probed {
   std::string nonce;
-  std::string address = "";   // that was asked about; "": there is none
+  std::string address = "";  // that somebody else has; of all where nobody does, the first; "": there is none
   std::string claimant = "";  // the MAC address that has it, too; "": nobody's
   std::string own = "";       // the interface of this box that this is
+  std::string found_on = "";  // the interface on which somebody answers for what was sought; "": nobody does
   std::string trouble = "";   // why nothing was found out
 };
 
 std::string write(const Wanted& wanted);
 std::string write(const Word& word);
 std::string write(const Probe& probe);
+std::string write(const Endpoints& endpoints);
+std::string write(const Forget& forget);
 std::string write(const Status& status);
 std::string write(const Probed& probed);
 
@@ -90,6 +111,8 @@ using Read = std::expected<Message, std::string>;
 Read<Wanted> read_wanted(std::string_view json);
 Read<Word> read_word(std::string_view json);
 Read<Probe> read_probe(std::string_view json);
+Read<Endpoints> read_endpoints(std::string_view json);
+Read<Forget> read_forget(std::string_view json);
 Read<Status> read_status(std::string_view json);
 Read<Probed> read_probed(std::string_view json);
 

@@ -1,55 +1,114 @@
 #include "network/networkd.hpp"
 
+#include <algorithm>
+
+#include "icd/sentence.hpp"
+
 namespace adit::network {
 namespace {
 
-/// The address stays without a carrier: a cable that is pulled and put back costs no more than that. Whatever
+using settings::Subnet;
+
+/// An address stays without a carrier: a cable that is pulled and put back costs no more than that. Whatever
 /// else the interface had goes (KeepConfiguration=no), or an address that was changed would stay beside the
-/// new one. Whether anybody else has the address (RFC 5227) is asked before this is written, and so with an
-/// answer; networkd would ask for seconds in which there is no address at all, and where it is told another
-/// one meanwhile, version 252 takes up both.
-std::string file(const std::string& interface, const settings::Subnet& host) {
-  return "# Written by adit-network: to change it, use Adit's page.\n"
-         "[Match]\n"
-         "Name=" +
-         interface +
-         "\n\n"
-         "[Link]\n"
-         "RequiredForOnline=no\n"
-         "\n"
-         "[Network]\n"
-         "DHCP=no\n"
-         "LinkLocalAddressing=no\n"
-         "IPv6AcceptRA=no\n"
-         "LLMNR=no\n"
-         "MulticastDNS=no\n"
-         "KeepConfiguration=no\n"
-         "ConfigureWithoutCarrier=yes\n"
-         "IgnoreCarrierLoss=yes\n"
-         "\n"
-         "[Address]\n"
-         "Address=" +
-         host_text(host) +
-         "\n"
-         "DuplicateAddressDetection=none\n";
+/// new one.
+constexpr const char* kHead =
+    "# Written by adit-network: to change it, use Adit's page.\n"
+    "[Match]\n"
+    "Name=";
+constexpr const char* kBoth =
+    "IPv6AcceptRA=no\n"
+    "LLMNR=no\n"
+    "LLDP=no\n"
+    "EmitLLDP=no\n"
+    "KeepConfiguration=no\n"
+    "ConfigureWithoutCarrier=yes\n";
+
+/// Whether anybody else has the address (RFC 5227) is asked before this is written, and so with an answer;
+/// networkd would ask for seconds in which there is no address at all, and where it is told another one
+/// meanwhile, version 252 takes up both.
+std::string address(const Subnet& host, bool with_route) {
+  return icd::sentence("\n[Address]\nAddress=", host_text(host), with_route ? "" : "\nAddPrefixRoute=no",
+                       "\nDuplicateAddressDetection=none\n");
+}
+
+std::string in_table() {
+  return icd::sentence("Table=", kRouteTable, "\n");
+}
+
+/// To the subnet that an address is in; of two addresses in one, by the first.
+std::string link_route(const Subnet& host) {
+  return icd::sentence("\n[Route]\nDestination=", written(host),
+                       "\nScope=link\nPreferredSource=", settings::ipv4_text(host.address), "\n") +
+         in_table();
+}
+
+std::string endpoint_route(std::uint32_t endpoint, std::uint32_t gateway, const Subnet& own) {
+  return icd::sentence("\n[Route]\nDestination=", settings::ipv4_text(endpoint),
+                       "/32\nGateway=", settings::ipv4_text(gateway),
+                       "\nPreferredSource=", settings::ipv4_text(own.address), "\n") +
+         in_table();
+}
+
+/// Who looks in the table: sockets that are bound to the interface, and, so that the kernel knows the way
+/// back of what comes (rp_filter), whatever goes from its addresses.
+std::string rules(const std::string& interface, const Numbers& numbers) {
+  std::string text = icd::sentence("\n[RoutingPolicyRule]\nOutgoingInterface=", interface,
+                                   "\nFamily=ipv4\nPriority=", kRouteTable, "\n") +
+                     in_table();
+  for (const Subnet& each : numbers.command_post) {
+    text += icd::sentence("\n[RoutingPolicyRule]\nFrom=", settings::ipv4_text(each.address),
+                          "/32\nPriority=", kRouteTable, "\n") +
+            in_table();
+  }
+  return text;
 }
 
 }  // namespace
 
 std::string team_file(const std::string& interface, const Numbers& numbers) {
-  return file(interface, numbers.team);
-}
-
-std::string command_post_file(const std::string& interface, const Numbers& numbers) {
-  std::string text = file(interface, numbers.command_post);
-  if (!numbers.gateway) return text;
-  for (const settings::Subnet& subnet : settings::command_post_subnets()) {
-    if (subnet.first() == numbers.command_post.first() && subnet.prefix == numbers.command_post.prefix)
-      continue;
-    text.append("\n[Route]\nDestination=").append(written(subnet));
-    text.append("\nGateway=").append(settings::ipv4_text(*numbers.gateway)).append("\n");
+  const bool asks = numbers.mode == Mode::Dhcp;
+  std::string text = kHead + interface +
+                     "\n\n[Link]\nRequiredForOnline=no\n\n[Network]\n"
+                     "LinkLocalAddressing=yes\n"
+                     "MulticastDNS=yes\n" +
+                     kBoth;
+  text += asks ? "DHCP=ipv4\n" : "DHCP=no\n";
+  // What another network gave is of no use in this one; a cable that was only moved keeps it.
+  text += asks ? "IgnoreCarrierLoss=5s\n" : "IgnoreCarrierLoss=yes\n";
+  if (numbers.mode == Mode::Static) text += address(numbers.team, true);
+  if (asks) {
+    text +=
+        "\n[DHCPv4]\nUseDNS=no\nUseNTP=no\nUseSIP=no\nUseHostname=no\nUseDomains=no\nUseTimezone=no\n"
+        "UseGateway=no\nUseRoutes=no\nUseMTU=no\n";
   }
   return text;
+}
+
+std::string command_post_file(const std::string& interface, const Numbers& numbers,
+                              const std::vector<std::uint32_t>& endpoints) {
+  std::string text = kHead + interface +
+                     "\n\n[Link]\nRequiredForOnline=no\nMulticast=no\n\n[Network]\n"
+                     "DHCP=no\n"
+                     "LinkLocalAddressing=no\n"
+                     "MulticastDNS=no\n" +
+                     kBoth + "IgnoreCarrierLoss=yes\n";
+  if (numbers.command_post.empty()) return text;
+  std::vector<Subnet> linked;
+  for (const Subnet& each : numbers.command_post) {
+    text += address(each, false);
+    const Subnet subnet{each.first(), each.prefix};
+    if (std::ranges::find(linked, subnet) == linked.end()) {
+      linked.push_back(subnet);
+      text += link_route(each);
+    }
+  }
+  for (const std::uint32_t endpoint : endpoints) {
+    if (numbers.gateway && on_link(numbers, endpoint) == nullptr) {
+      text += endpoint_route(endpoint, *numbers.gateway, *on_link(numbers, *numbers.gateway));
+    }
+  }
+  return text + rules(interface, numbers);
 }
 
 }  // namespace adit::network

@@ -1,20 +1,28 @@
 #pragma once
 
+#include <cstdint>
 #include <string>
+#include <vector>
 
 #include "network/numbers.hpp"
 
 namespace adit::network {
 
-/// What systemd-networkd is to read (systemd.network(5)): a static IPv4 address, nothing learned from the
-/// network, nothing said to it.
-std::string team_file(const std::string& interface, const Numbers& numbers);
-/// The same, and by the gateway only the Command Post's nominal subnets (ICD 3), never a default route: the
-/// two networks touch only inside Adit.
-std::string command_post_file(const std::string& interface, const Numbers& numbers);
+/// The Command Post's routes have a table of their own, in which nobody looks but who is bound to its
+/// interface, or to an address of it: where both sides' subnets overlap, what goes to the team never finds
+/// them.
+inline constexpr int kRouteTable = 230;
 
-/// A .network file of a lower number wins over one of a higher, wherever they are; of the same name, /etc
-/// would win over /run. So what is tried goes before what is kept.
+/// What systemd-networkd is to read (systemd.network(5)). The team's side: its address, a link-local one
+/// besides, and mDNS. By DHCP an address is taken, and nothing else: no route, no name server, no time.
+std::string team_file(const std::string& interface, const Numbers& numbers);
+/// The Command Post's side: addresses, and by the gateway those of `endpoints` that are in no subnet of them,
+/// never a default route: the two networks touch only inside Adit. Nothing is learned from the network, and
+/// nothing said to it.
+std::string command_post_file(const std::string& interface, const Numbers& numbers,
+                              const std::vector<std::uint32_t>& endpoints);
+
+/// A .network file of a lower number wins over one of a higher: what is tried goes before what is kept.
 inline constexpr const char* kTriedTeam = "40-adit-team.network";
 inline constexpr const char* kTriedCommandPost = "40-adit-command-post.network";
 inline constexpr const char* kKeptTeam = "50-adit-team.network";

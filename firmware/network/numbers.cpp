@@ -1,6 +1,7 @@
 #include "network/numbers.hpp"
 
 #include <algorithm>
+#include <iterator>
 #include <utility>
 
 #include "codec/json.hpp"
@@ -54,9 +55,7 @@ class Members {
   std::optional<std::uint32_t> address(std::string_view name, bool may_be_none = false) {
     const Value* value = find(name);
     const auto* text = value == nullptr ? nullptr : std::get_if<std::string>(&value->is);
-    const bool is_none = value == nullptr || std::holds_alternative<std::nullptr_t>(value->is) ||
-                         (text != nullptr && text->empty());
-    if (is_none && may_be_none) return std::nullopt;
+    if (may_be_none && is_none(value)) return std::nullopt;
     if (object_ == nullptr) return std::nullopt;  // told already
     if (value == nullptr) {
       refuse(name, "missing");
@@ -88,6 +87,25 @@ class Members {
     return static_cast<std::uint8_t>(*number);
   }
 
+  /// Static where there is none: what was written before there were modes.
+  Mode mode() {
+    const Value* value = find("mode");
+    if (value == nullptr) return Mode::Static;
+    const auto* text = std::get_if<std::string>(&value->is);
+    for (const Mode each : {Mode::Static, Mode::Dhcp, Mode::LinkLocal}) {
+      if (text != nullptr && *text == name_of(each)) return each;
+    }
+    refuse("mode", "expected static, dhcp or link-local, got " + shown(*value));
+    return Mode::Static;
+  }
+
+  /// A member that has nothing to say here.
+  void none(std::string_view name, std::string_view why) {
+    if (const Value* value = find(name); !is_none(value)) {
+      refuse(name, icd::sentence("expected none ", why, ", got ", shown(*value)));
+    }
+  }
+
   /// Once all that there may be has been asked for.
   void finish() {
     if (object_ == nullptr) return;
@@ -102,16 +120,25 @@ class Members {
   }
 
  private:
+  static bool is_none(const Value* value) {
+    if (value == nullptr || std::holds_alternative<std::nullptr_t>(value->is)) return true;
+    const auto* text = std::get_if<std::string>(&value->is);
+    return text != nullptr && text->empty();
+  }
+
   std::string path_;
   std::vector<Error>& errors_;
   const Value::Object* object_ = nullptr;
   std::vector<std::string> known_;
 };
 
+constexpr std::uint32_t kLinkLocal = 169u << 8 | 254;  // the first two numbers of 169.254.0.0/16
+
 /// Why no host of the subnet can have the address; "" where one can.
 std::string unfit(std::uint32_t address, const Subnet& subnet) {
   const std::uint32_t first = address >> 24;
   if (first == 0 || first == 127 || first >= 224) return "is no address that a host can have";
+  if (address >> 16 == kLinkLocal) return "is link-local: nobody sets such an address (RFC 3927)";
   if (address == subnet.first()) return "is the address of the subnet " + written(subnet) + " itself";
   if (address == subnet.last()) return "is the broadcast address of " + written(subnet);
   return "";
@@ -128,15 +155,91 @@ std::optional<Subnet> host(Members& members) {
   return subnet;
 }
 
-void check_gateway(Members& members, std::uint32_t gateway, const Subnet& host) {
-  const std::string text = settings::ipv4_text(gateway);
-  if (!host.contains(gateway)) {
-    members.refuse("gateway",
-                   icd::sentence(text, " is not in ", written(host), ", the subnet of its interface"));
-  } else if (gateway == host.address) {
-    members.refuse("gateway", icd::sentence(text, " is the box's own address"));
-  } else if (const std::string why = unfit(gateway, host); !why.empty()) {
-    members.refuse("gateway", icd::sentence(text, " ", why));
+void read_team(Members& team, Numbers& numbers) {
+  if (!team.are_there()) return;
+  numbers.mode = team.mode();
+  if (numbers.mode == Mode::Static) {
+    numbers.team = host(team).value_or(Subnet{});
+  } else {
+    const std::string why = icd::sentence("with mode ", name_of(numbers.mode));
+    team.none("address", why);
+    team.none("prefix", why);
+  }
+  team.finish();
+}
+
+/// All of a list, or none where anything is wrong with one of them.
+std::optional<std::vector<Subnet>> hosts(const Value::Array& list, const std::string& path,
+                                         std::vector<Error>& errors) {
+  const std::size_t before = errors.size();
+  if (list.size() > kMostAddresses) {
+    errors.push_back({path, icd::sentence("expected at most ", kMostAddresses, ", got ", list.size())});
+    return std::nullopt;
+  }
+  std::vector<Subnet> all;
+  for (std::size_t i = 0; i < list.size(); ++i) {
+    Members each(&list[i], icd::sentence(path, "[", i, "]"), errors);
+    const auto read = each.are_there() ? host(each) : std::nullopt;
+    each.finish();
+    if (!read) continue;
+    const auto same = std::ranges::find(all, read->address, &Subnet::address);
+    if (same != all.end()) each.refuse("address", settings::ipv4_text(read->address) + " is given twice");
+    all.push_back(*read);
+  }
+  return errors.size() == before ? std::optional(std::move(all)) : std::nullopt;
+}
+
+/// By `addresses`, or by `address` and `prefix`, as they were when there was one.
+std::optional<std::vector<Subnet>> own_of(Members& post, std::vector<Error>& errors) {
+  const Value* list = post.find("addresses");
+  if (list == nullptr && post.find("address") != nullptr) {
+    const auto one = host(post);
+    return one ? std::optional(std::vector{*one}) : std::nullopt;
+  }
+  if (list == nullptr) {
+    post.refuse("addresses", "missing");
+    return std::nullopt;
+  }
+  const auto* array = std::get_if<Value::Array>(&list->is);
+  if (array == nullptr) {
+    post.refuse("addresses", "expected a list of addresses, got " + shown(*list));
+    return std::nullopt;
+  }
+  return hosts(*array, post.path_of("addresses"), errors);
+}
+
+void check_gateway(Members& post, const Numbers& numbers) {
+  const std::string text = settings::ipv4_text(*numbers.gateway);
+  const Subnet* subnet = on_link(numbers, *numbers.gateway);
+  if (subnet == nullptr) {
+    post.refuse("gateway", icd::sentence(text, " is in no subnet of its interface, which has ",
+                                         command_post_text(numbers)));
+  } else if (std::ranges::find(numbers.command_post, *numbers.gateway, &Subnet::address) !=
+             numbers.command_post.end()) {
+    post.refuse("gateway", icd::sentence(text, " is the box's own address"));
+  } else if (const std::string why = unfit(*numbers.gateway, *subnet); !why.empty()) {
+    post.refuse("gateway", icd::sentence(text, " ", why));
+  }
+}
+
+void read_command_post(Members& post, Numbers& numbers, std::vector<Error>& errors) {
+  if (!post.are_there()) return;
+  const auto own = own_of(post, errors);
+  numbers.gateway = post.address("gateway", true);
+  if (own) {
+    numbers.command_post = *own;
+    if (numbers.gateway) check_gateway(post, numbers);
+  }
+  post.finish();
+}
+
+/// The kernel would take what is meant for one side for the other's.
+void check_both(const Numbers& numbers, std::vector<Error>& errors) {
+  if (numbers.mode != Mode::Static || numbers.team.address == 0) return;
+  if (std::ranges::find(numbers.command_post, numbers.team.address, &Subnet::address) !=
+      numbers.command_post.end()) {
+    errors.push_back({"team.address", icd::sentence(settings::ipv4_text(numbers.team.address),
+                                                    " is the box's address on the Command Post's side")});
   }
 }
 
@@ -147,20 +250,28 @@ Value json(const Subnet& host) {
 
 }  // namespace
 
+std::string_view name_of(Mode mode) {
+  switch (mode) {
+    case Mode::Static:
+      return "static";
+    case Mode::Dhcp:
+      return "dhcp";
+    case Mode::LinkLocal:
+      break;
+  }
+  return "link-local";
+}
+
 std::expected<Numbers, std::vector<Error>> read_numbers(const Value& value) {
   std::vector<Error> errors;
   Members root(&value, "", errors);
   Numbers numbers;
   if (root.are_there()) {
     Members team(root.find("team"), "team", errors);
-    numbers.team = host(team).value_or(Subnet{});
-    team.finish();
+    read_team(team, numbers);
     Members post(root.find("command_post"), "command_post", errors);
-    const auto own = host(post);
-    numbers.command_post = own.value_or(Subnet{});
-    numbers.gateway = post.address("gateway", true);
-    if (own && numbers.gateway) check_gateway(post, *numbers.gateway, *own);
-    post.finish();
+    read_command_post(post, numbers, errors);
+    check_both(numbers, errors);
     root.finish();
   }
   if (!errors.empty()) return std::unexpected(std::move(errors));
@@ -168,14 +279,38 @@ std::expected<Numbers, std::vector<Error>> read_numbers(const Value& value) {
 }
 
 Value to_json(const Numbers& numbers) {
-  Value post = json(numbers.command_post);
-  std::get<Value::Object>(post.is).emplace_back(
-      "gateway", Value{numbers.gateway ? settings::ipv4_text(*numbers.gateway) : std::string()});
-  return {Value::Object{{"team", json(numbers.team)}, {"command_post", std::move(post)}}};
+  Value team{Value::Object{{"mode", {std::string(name_of(numbers.mode))}}}};
+  if (numbers.mode == Mode::Static) {
+    Value host = json(numbers.team);
+    std::ranges::move(std::get<Value::Object>(host.is), std::back_inserter(std::get<Value::Object>(team.is)));
+  }
+  Value::Array addresses;
+  for (const Subnet& each : numbers.command_post) addresses.push_back(json(each));
+  Value post{
+      Value::Object{{"addresses", {std::move(addresses)}},
+                    {"gateway", {numbers.gateway ? settings::ipv4_text(*numbers.gateway) : std::string()}}}};
+  return {Value::Object{{"team", std::move(team)}, {"command_post", std::move(post)}}};
+}
+
+const Subnet* on_link(const Numbers& numbers, std::uint32_t address) {
+  const auto found =
+      std::ranges::find_if(numbers.command_post, [&](const Subnet& each) { return each.contains(address); });
+  return found == numbers.command_post.end() ? nullptr : &*found;
 }
 
 std::string host_text(const Subnet& host) {
   return settings::ipv4_text(host.address) + '/' + std::to_string(host.prefix);
+}
+
+std::string team_text(const Numbers& numbers) {
+  return numbers.mode == Mode::Static ? host_text(numbers.team) : std::string(name_of(numbers.mode));
+}
+
+std::string command_post_text(const Numbers& numbers) {
+  std::string text;
+  for (const Subnet& each : numbers.command_post)
+    text.append(text.empty() ? "" : ", ").append(host_text(each));
+  return text.empty() ? "none" : text;
 }
 
 }  // namespace adit::network

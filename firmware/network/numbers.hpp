@@ -4,6 +4,7 @@
 #include <expected>
 #include <optional>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "codec/value.hpp"
@@ -12,24 +13,41 @@
 
 namespace adit::network {
 
-/// What the box's two interfaces have: each an IPv4 address of its own in a subnet.
+/// How team0 comes by its address. Besides, it always has a link-local one (RFC 3927).
+enum class Mode : std::uint8_t { Static, Dhcp, LinkLocal };
+/// "static", "dhcp", "link-local"
+std::string_view name_of(Mode mode);
+
+inline constexpr std::size_t kMostAddresses = 8;  // of the Command Post's side
+
+/// What the box's two interfaces have: IPv4 addresses of their own, each in a subnet.
 struct Numbers {
-  settings::Subnet team;
-  settings::Subnet command_post;
-  std::optional<std::uint32_t> gateway;  // in the Command Post's subnet, to the rest of its network
+  Mode mode = Mode::Static;                         // of the team's side
+  settings::Subnet team = {};                       // of Mode::Static
+  std::vector<settings::Subnet> command_post = {};  // kMostAddresses; none: the interface has none
+  std::optional<std::uint32_t> gateway = {};        // in one of these subnets, to endpoints elsewhere
 
   friend bool operator==(const Numbers&, const Numbers&) = default;
 };
 
 inline constexpr std::uint8_t kWidest = 8, kNarrowest = 30;  // prefixes that leave room for two hosts
 
-/// Of `{"team": {"address", "prefix"}, "command_post": {"address", "prefix", "gateway"}}`, or all that is
-/// wrong with it, each by its path: members that are missing, unknown or given twice, values of the wrong
-/// kind, addresses that no host can have. `gateway` may be absent, null or "".
+/// Of `{"team": {"mode", "address", "prefix"}, "command_post": {"addresses": [{"address", "prefix"}, ...],
+/// "gateway"}}`, or all that is wrong with it, each by its path: members that are missing, unknown or given
+/// twice, values of the wrong kind, addresses that no host can have, or that are given twice. `mode` may be
+/// absent: static; the other modes have no address. `gateway` may be absent, null or "". What one address had
+/// before there were several is read as well: `{"address", "prefix", "gateway"}`.
 std::expected<Numbers, std::vector<settings::Error>> read_numbers(const codec::Value& value);
 
 codec::Value to_json(const Numbers& numbers);
 
+/// Of the Command Post's addresses, the one in whose subnet `address` is.
+const settings::Subnet* on_link(const Numbers& numbers, std::uint32_t address);
+
+/// "192.168.7.11/24", "dhcp", "link-local"
+std::string team_text(const Numbers& numbers);
+/// "10.100.1.10/24, 10.100.2.10/24", or "none"
+std::string command_post_text(const Numbers& numbers);
 /// "192.168.7.11/24"
 std::string host_text(const settings::Subnet& host);
 

@@ -2,6 +2,7 @@
 
 #include <optional>
 #include <string>
+#include <vector>
 
 #include "icd/status.hpp"
 #include "network/check.hpp"
@@ -15,7 +16,10 @@ struct NetworkView {
   std::string why;       // why not; "" where they can
   std::string team_interface, command_post_interface;
   /// What the interfaces have now, whoever set it.
-  std::optional<settings::Subnet> team, command_post;
+  std::optional<settings::Subnet> team;  // the first
+  std::vector<settings::Subnet> command_post;
+  /// As they were confirmed, or as the box came.
+  network::Mode mode = network::Mode::Static;
   std::optional<std::uint32_t> gateway;
 
   struct Pending {

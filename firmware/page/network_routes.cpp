@@ -22,16 +22,27 @@ intake::Answer object(Value::Object members) {
   return fresh("application/json", codec::write_json({std::move(members)}));
 }
 
-Value address_json(const std::optional<settings::Subnet>& host) {
-  return host ? json(settings::ipv4_text(host->address)) : Value{};
-}
-Value prefix_json(const std::optional<settings::Subnet>& host) {
-  return host ? json(std::int64_t{host->prefix}) : Value{};
+Value team_json(const NetworkView& view) {
+  Value address, prefix;
+  if (view.team) {
+    address = json(settings::ipv4_text(view.team->address));
+    prefix = json(std::int64_t{view.team->prefix});
+  }
+  return {Value::Object{{"interface", json(view.team_interface)},
+                        {"mode", json(std::string(network::name_of(view.mode)))},
+                        {"address", std::move(address)},
+                        {"prefix", std::move(prefix)}}};
 }
 
-Value side(const std::string& interface, const std::optional<settings::Subnet>& host) {
-  return {Value::Object{
-      {"interface", json(interface)}, {"address", address_json(host)}, {"prefix", prefix_json(host)}}};
+Value command_post_json(const NetworkView& view) {
+  Value numbers = network::to_json({.command_post = view.command_post, .gateway = view.gateway});
+  for (auto& [name, value] : std::get<Value::Object>(numbers.is)) {
+    if (name != "command_post") continue;
+    auto& members = std::get<Value::Object>(value.is);
+    members.insert(members.begin(), {"interface", json(view.command_post_interface)});
+    return std::move(value);
+  }
+  return {};
 }
 
 Value pending_json(const NetworkView::Pending& pending) {
@@ -114,13 +125,10 @@ intake::Answer NetworkRoutes::post(std::string_view path, const std::string& bod
 
 intake::Answer NetworkRoutes::shown() const {
   const NetworkView view = network_.network();
-  Value post = side(view.command_post_interface, view.command_post);
-  std::get<Value::Object>(post.is).emplace_back(
-      "gateway", json(view.gateway ? settings::ipv4_text(*view.gateway) : std::string()));
   return object({{"managed", json(view.managed)},
                  {"why", json(view.why)},
-                 {"team", side(view.team_interface, view.team)},
-                 {"command_post", std::move(post)},
+                 {"team", team_json(view)},
+                 {"command_post", command_post_json(view)},
                  {"pending", view.pending ? pending_json(*view.pending) : Value{}},
                  {"last", view.last.empty() ? Value{} : json(view.last)},
                  {"last_why", json(view.last_why)}});

@@ -98,6 +98,12 @@ struct LightRow {
   std::string name, pattern;  // panel::name_of
 };
 
+/// One of the two cables.
+struct LinkRow {
+  std::string side, interface;  // "team" or "command_post"
+  std::optional<bool> carrier;  // nothing: there is no such interface
+};
+
 /// All that the page, `adit status` and tests read.
 struct RunView {
   Time now = 0;
@@ -113,6 +119,7 @@ struct RunView {
   std::vector<ActivityRow> activities;
   std::vector<RefusalRow> refusals;  // newest first, the last 50
   std::vector<LightRow> lights;
+  std::vector<LinkRow> links;            // of the interfaces that the settings name
   std::optional<Time> identify_until;    // the lights blink so that the box can be found
   std::optional<Time> setup_open_until;  // the button opened set-up: Keys::set_up_open()
   double budget_mbit = 0;

@@ -60,6 +60,11 @@ Value json(const LightRow& row) {
   return {Value::Object{{"name", json(row.name)}, {"pattern", json(row.pattern)}}};
 }
 
+Value json(const LinkRow& row) {
+  return {Value::Object{
+      {"side", json(row.side)}, {"interface", json(row.interface)}, {"carrier", json(row.carrier)}}};
+}
+
 std::string write_run_view(const RunView& view) {
   return codec::write_json({Value::Object{{"now", json(view.now)},
                                           {"version", json(view.version)},
@@ -74,6 +79,7 @@ std::string write_run_view(const RunView& view) {
                                           {"activities", json(view.activities)},
                                           {"refusals", json(view.refusals)},
                                           {"lights", json(view.lights)},
+                                          {"links", json(view.links)},
                                           {"identify_until", json(view.identify_until)},
                                           {"setup_open_until", json(view.setup_open_until)},
                                           {"budget_mbit", json(view.budget_mbit)},

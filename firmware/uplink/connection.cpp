@@ -36,6 +36,17 @@ class Connection::Impl : public std::enable_shared_from_this<Impl> {
     if (phase_ == Phase::Closed) connect_in_time();
   }
 
+  void hurry() {
+    const auto alive = shared_from_this();
+    pause_ = kFirstPause;
+    if (phase_ == Phase::Connecting) {
+      close();
+      connect();
+    } else if (phase_ == Phase::Closed && warm_) {
+      connect();
+    }
+  }
+
   void send(Request request, std::function<void(Outcome)> done) {
     exchange_ = std::make_unique<Exchange>(endpoint_, token_, std::move(request));
     done_ = std::move(done);
@@ -277,6 +288,9 @@ Connection::~Connection() {
 
 void Connection::keep_warm() {
   impl_->keep_warm();
+}
+void Connection::hurry() {
+  impl_->hurry();
 }
 void Connection::send(Request request, std::function<void(Outcome)> done) {
   impl_->send(std::move(request), std::move(done));

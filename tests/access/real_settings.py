@@ -300,6 +300,7 @@ class SetUp(unittest.TestCase):
         self.assertEqual(self.box.ask("GET /adit/session")[1]["first_start"], True)
         for gone in ("settings.json", "secrets", "access.json"):
             self.assertFalse((self.box.state / gone).exists(), gone)
+        self.assertTrue((self.box.state / "forget.json").exists(), "adit-network is asked to forget the addresses")
         self.assertEqual(self.box.set_first(password="another password")[0], 200)
         self.me = self.box.log_in("another password")
         now = self.settings()

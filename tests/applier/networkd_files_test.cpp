@@ -2,6 +2,8 @@
 
 #include <gmock/gmock.h>
 
+#include <algorithm>
+
 #include "host/folder.hpp"
 #include "network/doubles.hpp"
 #include "network/networkd.hpp"
@@ -14,23 +16,27 @@ using network::numbers;
 using testing::HasSubstr;
 using testing::IsEmpty;
 using testing::UnorderedElementsAre;
+using testing::UnorderedElementsAreArray;
 
-std::expected<std::optional<Claim>, std::string> nobody(const std::string& interface, std::uint32_t) {
+using Addresses = std::vector<std::uint32_t>;
+
+std::expected<std::optional<Claim>, std::string> nobody(const std::string& interface, const Addresses&) {
   if (interface == "darpa0") return std::unexpected("darpa0: Network is down");
   return std::nullopt;
 }
 std::expected<std::optional<Claim>, std::string> somebody(const std::string& interface,
-                                                          std::uint32_t address) {
-  if (interface == "darpa0" || address != *settings::ipv4_of("192.168.8.11")) return std::nullopt;
-  return Claim{"02:00:00:00:00:09", ""};
+                                                          const Addresses& addresses) {
+  const std::uint32_t taken = *settings::ipv4_of("192.168.8.11");
+  if (interface == "darpa0" || std::ranges::find(addresses, taken) == addresses.end()) return std::nullopt;
+  return Claim{.address = taken, .mac = "02:00:00:00:00:09", .own = ""};
 }
 
 class NetworkdFilesTest : public testing::Test {
  protected:
   NetworkdFilesTest() {
-    for (const char* name : {"tried", "kept", "state"}) fs::create_directory(folder / name);
-    options.tried = folder / "tried";
-    options.kept = folder / "kept";
+    for (const char* name : {"networkd", "state"}) fs::create_directory(folder / name);
+    options.networkd = folder / "networkd";
+    options.factory = folder / "network.json";
     options.state = folder / "state";
     options.networkctl =
         folder.put("networkctl",
@@ -52,10 +58,19 @@ class NetworkdFilesTest : public testing::Test {
   }
   /// As the next start of adit-network would find it, after the machine was started anew or not.
   void start_anew(bool machine) {
-    if (machine) fs::remove_all(options.tried), fs::create_directory(options.tried);
+    if (machine) {
+      fs::remove_all(options.networkd), fs::create_directory(options.networkd);
+      const auto written = NetworkdFiles(options, &nobody).write_at_start();
+      EXPECT_TRUE(written) << written.error();
+    }
     files = std::make_unique<NetworkdFiles>(options, &nobody);
     const auto settled = files->settle();
     EXPECT_TRUE(settled) << settled.error();
+  }
+
+  std::string text_of(const char* name) const { return text(options.networkd + '/' + name); }
+  void come_with(const network::Numbers& numbers) {
+    folder.put("network.json", network::write_kept(numbers));
   }
 
   host::Folder folder;
@@ -64,26 +79,26 @@ class NetworkdFilesTest : public testing::Test {
   const network::Numbers first = numbers(), second = numbers("192.168.8.11/24");
 };
 
-TEST_F(NetworkdFilesTest, TryInTheFolderThatIsGoneAtTheNextStart) {
+constexpr const char* kBothTried[] = {"40-adit-team.network", "40-adit-command-post.network"};
+constexpr const char* kBothKept[] = {"50-adit-team.network", "50-adit-command-post.network"};
+
+TEST_F(NetworkdFilesTest, TryBesideWhatIsKept) {
   ASSERT_TRUE(files->settle());
   EXPECT_EQ(reloads(), 0u);
   ASSERT_TRUE(files->apply(first));
-  EXPECT_THAT(in(options.tried),
-              UnorderedElementsAre("40-adit-team.network", "40-adit-command-post.network"));
-  EXPECT_THAT(in(options.kept), IsEmpty());
-  EXPECT_EQ(text(options.tried + "/40-adit-team.network"), network::team_file("team0", first));
+  EXPECT_THAT(in(options.networkd), UnorderedElementsAreArray(kBothTried));
+  EXPECT_EQ(text_of("40-adit-team.network"), network::team_file("team0", first));
   EXPECT_EQ(reloads(), 1u);
   ASSERT_TRUE(files->take_back());
-  EXPECT_THAT(in(options.tried), IsEmpty());
+  EXPECT_THAT(in(options.networkd), IsEmpty());
   EXPECT_EQ(reloads(), 2u);
 }
 
 TEST_F(NetworkdFilesTest, KeepWithoutDisturbingAnything) {
   ASSERT_TRUE(files->apply(first));
   ASSERT_TRUE(files->keep(first));
-  EXPECT_THAT(in(options.kept), UnorderedElementsAre("50-adit-team.network", "50-adit-command-post.network"));
-  EXPECT_EQ(text(options.kept + "/50-adit-command-post.network"),
-            network::command_post_file("darpa0", first));
+  EXPECT_EQ(in(options.networkd).size(), 4u);
+  EXPECT_EQ(text_of("50-adit-command-post.network"), network::command_post_file("darpa0", first, {}));
   EXPECT_EQ(reloads(), 1u) << "networkd has it all already";
   ASSERT_TRUE(files->take_back());
   EXPECT_EQ(reloads(), 1u) << "there is nothing to take back";
@@ -94,16 +109,17 @@ TEST_F(NetworkdFilesTest, TouchOnlyTheInterfaceThatChanges) {
   ASSERT_TRUE(files->keep(first));
   start_anew(true);
   ASSERT_TRUE(files->apply(second));
-  EXPECT_THAT(in(options.tried), UnorderedElementsAre("40-adit-team.network"));
+  EXPECT_EQ(in(options.networkd).size(), 3u);
+  EXPECT_EQ(text_of("40-adit-team.network"), network::team_file("team0", second));
   ASSERT_TRUE(files->take_back());
-  EXPECT_THAT(in(options.tried), IsEmpty());
-  EXPECT_EQ(text(options.kept + "/50-adit-team.network"), network::team_file("team0", first));
+  EXPECT_THAT(in(options.networkd), UnorderedElementsAreArray(kBothKept));
+  EXPECT_EQ(text_of("50-adit-team.network"), network::team_file("team0", first));
 }
 
 TEST_F(NetworkdFilesTest, TakeNoAddressThatSomebodyElseHas) {
   NetworkdFiles watchful(options, &somebody);
   EXPECT_EQ(watchful.apply(second).error(), "192.168.8.11 is in use already on team0, by 02:00:00:00:00:09");
-  EXPECT_THAT(in(options.tried), IsEmpty());
+  EXPECT_THAT(in(options.networkd), IsEmpty());
   EXPECT_EQ(reloads(), 0u);
   EXPECT_TRUE(watchful.apply(first));
 }
@@ -113,37 +129,104 @@ TEST_F(NetworkdFilesTest, GoBackToWhatWasConfirmedInThisVeryStart) {
   ASSERT_TRUE(files->keep(first));
   ASSERT_TRUE(files->apply(second));
   ASSERT_TRUE(files->take_back());
-  EXPECT_THAT(in(options.tried), UnorderedElementsAre("40-adit-command-post.network"))
-      << "it says what is confirmed";
-  EXPECT_EQ(text(options.kept + "/50-adit-team.network"), network::team_file("team0", first));
+  EXPECT_EQ(in(options.networkd).size(), 3u) << "of what was tried, what is confirmed may stay";
+  EXPECT_EQ(text_of("40-adit-team.network"), "");
+  EXPECT_EQ(text_of("50-adit-team.network"), network::team_file("team0", first));
 }
 
 TEST_F(NetworkdFilesTest, LoseAnUnconfirmedChangeInAPowerCut) {
   ASSERT_TRUE(files->apply(first));
   start_anew(true);
   EXPECT_FALSE(files->found_a_change());
-  EXPECT_EQ(files->confirmed(), std::nullopt);
-  EXPECT_THAT(in(options.kept), IsEmpty());
+  EXPECT_EQ(files->kept(), std::nullopt);
+  EXPECT_THAT(in(options.networkd), IsEmpty());
 }
 
 TEST_F(NetworkdFilesTest, TakeAnUnconfirmedChangeBackAfterAKill) {
   ASSERT_TRUE(files->apply(first));
   start_anew(false);
   EXPECT_TRUE(files->found_a_change());
-  EXPECT_THAT(in(options.tried), IsEmpty());
+  EXPECT_THAT(in(options.networkd), IsEmpty());
   EXPECT_EQ(reloads(), 2u);
 }
 
 TEST_F(NetworkdFilesTest, FinishAKeepingThatWasCutOff) {
   ASSERT_TRUE(files->apply(second));
   ASSERT_TRUE(files->keep(second));
-  std::ofstream(options.kept + "/50-adit-team.network") << network::team_file("team0", first);
-  fs::remove(options.kept + "/50-adit-command-post.network");
+  std::ofstream(options.networkd + "/50-adit-team.network") << network::team_file("team0", first);
+  fs::remove(options.networkd + "/50-adit-command-post.network");
+  start_anew(false);
+  EXPECT_EQ(files->kept(), second);
+  EXPECT_EQ(text_of("50-adit-team.network"), network::team_file("team0", second));
+  EXPECT_EQ(text_of("50-adit-command-post.network"), network::command_post_file("darpa0", second, {}));
+}
+
+TEST_F(NetworkdFilesTest, HaveWhatTheBoxCameWithUntilSomethingIsConfirmed) {
+  come_with(first);
   start_anew(true);
-  EXPECT_EQ(files->confirmed(), second);
-  EXPECT_EQ(text(options.kept + "/50-adit-team.network"), network::team_file("team0", second));
-  EXPECT_EQ(text(options.kept + "/50-adit-command-post.network"),
-            network::command_post_file("darpa0", second));
+  EXPECT_EQ(files->kept(), first);
+  EXPECT_EQ(reloads(), 0u) << "networkd reads them as it starts";
+  EXPECT_EQ(text_of("50-adit-team.network"), network::team_file("team0", first));
+  ASSERT_TRUE(files->apply(second));
+  ASSERT_TRUE(files->keep(second));
+  start_anew(true);
+  EXPECT_EQ(files->kept(), second);
+  EXPECT_EQ(text_of("50-adit-team.network"), network::team_file("team0", second));
+}
+
+TEST_F(NetworkdFilesTest, ForgetWhatWasConfirmed) {
+  come_with(first);
+  start_anew(true);
+  ASSERT_TRUE(files->lead_to({{0x0a6402c8}}));
+  ASSERT_TRUE(files->apply(second));
+  ASSERT_TRUE(files->keep(second));
+  const auto forgotten = files->forget();
+  ASSERT_TRUE(forgotten) << forgotten.error();
+  EXPECT_EQ(*forgotten, first);
+  EXPECT_THAT(in(options.state), IsEmpty());
+  EXPECT_THAT(in(options.networkd), UnorderedElementsAreArray(kBothKept));
+  EXPECT_EQ(text_of("50-adit-team.network"), network::team_file("team0", first));
+}
+
+TEST_F(NetworkdFilesTest, ForgetAllWhereTheBoxCameWithNothing) {
+  ASSERT_TRUE(files->apply(first));
+  ASSERT_TRUE(files->keep(first));
+  EXPECT_EQ(files->forget().value(), std::nullopt);
+  EXPECT_THAT(in(options.networkd), IsEmpty());
+}
+
+TEST_F(NetworkdFilesTest, LeadToOtherEndpointsWithoutAChange) {
+  const network::Numbers routed = numbers("192.168.7.11/24", "10.100.1.10/24", "10.100.1.1");
+  const network::Endpoints elsewhere{{0x0a6402c8}}, near{{0x0a6401c8}};
+  ASSERT_TRUE(files->apply(routed));
+  ASSERT_TRUE(files->keep(routed));
+  const std::size_t before = reloads();
+  ASSERT_TRUE(files->lead_to(near));
+  EXPECT_EQ(reloads(), before) << "they are on the link";
+  ASSERT_TRUE(files->lead_to(elsewhere));
+  EXPECT_EQ(reloads(), before + 1);
+  for (const char* name : {"40-adit-command-post.network", "50-adit-command-post.network"}) {
+    EXPECT_EQ(text_of(name), network::command_post_file("darpa0", routed, elsewhere.addresses)) << name;
+  }
+  ASSERT_TRUE(files->lead_to(elsewhere));
+  EXPECT_EQ(reloads(), before + 1);
+  start_anew(true);
+  EXPECT_EQ(files->endpoints(), elsewhere);
+  EXPECT_EQ(text_of("50-adit-command-post.network"),
+            network::command_post_file("darpa0", routed, elsewhere.addresses));
+}
+
+TEST_F(NetworkdFilesTest, LeadToOtherEndpointsWhileAChangeIsTried) {
+  come_with(first);
+  start_anew(true);
+  const network::Numbers routed = numbers("192.168.7.11/24", "10.100.1.10/24", "10.100.1.1");
+  ASSERT_TRUE(files->apply(routed));
+  ASSERT_TRUE(files->lead_to({{0x0a6402c8}}));
+  EXPECT_EQ(text_of("40-adit-command-post.network"),
+            network::command_post_file("darpa0", routed, {0x0a6402c8}));
+  EXPECT_EQ(text_of("40-adit-team.network"), "") << "that side stays as it is";
+  ASSERT_TRUE(files->take_back());
+  EXPECT_THAT(in(options.networkd), UnorderedElementsAreArray(kBothKept));
 }
 
 TEST_F(NetworkdFilesTest, SayWhatDidNotWorkAndTryItAgain) {
@@ -154,21 +237,36 @@ TEST_F(NetworkdFilesTest, SayWhatDidNotWorkAndTryItAgain) {
   const std::size_t before = reloads();
   EXPECT_TRUE(files->take_back());
   EXPECT_EQ(reloads(), before + 1) << "though the files are gone already";
-  fs::remove_all(options.tried);
-  EXPECT_THAT(files->apply(first).error(), HasSubstr(options.tried));
+  fs::remove_all(options.networkd);
+  EXPECT_THAT(files->apply(first).error(), HasSubstr(options.networkd));
   fs::remove_all(options.state);
   EXPECT_THAT(files->keep(first).error(), HasSubstr(options.state));
+  EXPECT_THAT(files->lead_to({{1}}).error(), HasSubstr(options.state));
 }
 
-TEST_F(NetworkdFilesTest, SetADamagedConfirmationAsideAndGoOn) {
-  ASSERT_TRUE(files->apply(first));
-  ASSERT_TRUE(files->keep(first));
+TEST_F(NetworkdFilesTest, SetADamagedConfirmationAsideAndHaveWhatTheBoxCameWith) {
+  come_with(first);
+  ASSERT_TRUE(files->apply(second));
+  ASSERT_TRUE(files->keep(second));
   std::ofstream(options.state + "/confirmed.json") << "{\"version\":1,";
   start_anew(true);
-  EXPECT_EQ(files->confirmed(), std::nullopt);
+  EXPECT_EQ(files->kept(), first);
   EXPECT_THAT(in(options.state), UnorderedElementsAre("confirmed.json.damaged"));
-  EXPECT_EQ(in(options.kept).size(), 2u) << "networkd goes on as it was";
+  EXPECT_EQ(text_of("50-adit-team.network"), network::team_file("team0", first));
   EXPECT_TRUE(files->apply(second));
+}
+
+TEST_F(NetworkdFilesTest, HaveAddressesThoughNothingCanBeRead) {
+  come_with(first);
+  fs::create_directory(options.state + "/confirmed.json");
+  EXPECT_FALSE(files->settle()) << "what is in use stays in use";
+  EXPECT_THAT(in(options.networkd), IsEmpty());
+  ASSERT_TRUE(NetworkdFiles(options, &nobody).write_at_start());
+  EXPECT_EQ(text_of("50-adit-team.network"), network::team_file("team0", first));
+  folder.put("network.json", "{");
+  NetworkdFiles without(options, &nobody);
+  EXPECT_TRUE(without.write_at_start());
+  EXPECT_EQ(without.kept(), std::nullopt);
 }
 
 }  // namespace

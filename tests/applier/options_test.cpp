@@ -21,13 +21,18 @@ TEST(AditNetworkOptions, HaveTheServicesOwnFolders) {
   EXPECT_EQ(options->wanted, "/var/lib/private/adit");
   EXPECT_EQ(options->team, "team0");
   EXPECT_EQ(options->command_post, "darpa0");
-  EXPECT_EQ(parse({"--tried", "/tmp/x", "--team", "eth0.7"})->tried, "/tmp/x");
+  EXPECT_EQ(parse({"--networkd", "/tmp/x", "--team", "eth0.7"})->networkd, "/tmp/x");
+}
+
+TEST(AditNetworkOptions, MayAskForNothingButTheFilesOfTheStart) {
+  EXPECT_FALSE(parse({})->start);
+  EXPECT_TRUE(parse({"--start", "--team", "eth0"})->start);
 }
 
 TEST(AditNetworkOptions, AreRefusedByTheirWord) {
   EXPECT_THAT(parse({"--wnated", "x"}).error(), HasSubstr("--wnated"));
   EXPECT_THAT(parse({"--wanted"}).error(), HasSubstr("--wanted wants a value"));
-  EXPECT_THAT(parse({"--kept", ""}).error(), HasSubstr("--kept wants a value"));
+  EXPECT_THAT(parse({"--factory", ""}).error(), HasSubstr("--factory wants a value"));
   for (const char* name :
        {"*", "eth*", "!team0", "a b", "eth0\nName=*", "..", ".", "sixteen-letters-", "a/b", "en:0"}) {
     EXPECT_THAT(parse({"--team", name}).error(), HasSubstr("--team wants an interface's name")) << name;

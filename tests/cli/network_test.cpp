@@ -14,8 +14,8 @@ using testing::HasSubstr;
 using testing::Not;
 
 const std::string kSides =
-    R"("team":{"interface":"team0","address":"192.168.7.11","prefix":24},)"
-    R"("command_post":{"interface":"darpa0","address":null,"prefix":null,"gateway":""})";
+    R"("team":{"interface":"team0","mode":"static","address":"192.168.7.11","prefix":24},)"
+    R"("command_post":{"interface":"darpa0","addresses":[],"gateway":""})";
 
 std::string view(const std::string& pending, const std::string& last, bool managed = true) {
   return Server::ok(std::string(R"({"managed":)") + (managed ? "true" : "false") +
@@ -24,8 +24,8 @@ std::string view(const std::string& pending, const std::string& last, bool manag
 }
 
 const std::string kPending =
-    R"({"until":1e10,"team":{"address":"192.168.8.11","prefix":24},"command_post":{"address":"10.100.1.10","prefix":24,)"
-    R"("gateway":"10.100.1.1"},"previous":null,"page":"http://192.168.8.11:8000"})";
+    R"({"until":1e10,"team":{"mode":"static","address":"192.168.8.11","prefix":24},"command_post":{"addresses":)"
+    R"([{"address":"10.100.1.10","prefix":24},{"address":"10.100.2.10","prefix":24}],"gateway":"10.100.1.1"},"previous":null,"page":"http://192.168.8.11:8000"})";
 
 class NetworkCommand : public testing::Test {
  protected:
@@ -44,9 +44,23 @@ TEST_F(NetworkCommand, ShowsBothSides) {
   const Server server({{"GET /adit/network", view("null", "null")}});
   const Outcome outcome = say(server, {"network"});
   EXPECT_EQ(outcome.exit, Exit::Fine);
-  EXPECT_EQ(outcome.out, "  team          team0  192.168.7.11/24\n  command post  darpa0  none\n");
+  EXPECT_EQ(outcome.out, "  team          team0  static  192.168.7.11/24\n  command post  darpa0  none\n");
   EXPECT_EQ(say(server, {"network", "show"}).out, outcome.out);
   EXPECT_THAT(say(server, {"network", "--json"}).out, HasSubstr("{\"managed\":true"));
+}
+
+TEST_F(NetworkCommand, ShowsHowTheTeamsSideComesByItsAddress) {
+  const auto with = [](const char* team) {
+    return Server::ok(std::string(R"({"managed":true,"why":"","team":)") + team +
+                      R"(,"command_post":{"interface":"darpa0","addresses":[],"gateway":""},"pending":null,)"
+                      R"("last":null,"last_why":""})");
+  };
+  const Server given({{"GET /adit/network",
+                       with(R"({"interface":"team0","mode":"dhcp","address":"10.0.0.77","prefix":8})")}});
+  EXPECT_THAT(say(given, {"network"}).out, HasSubstr("team0  dhcp  10.0.0.77/8\n"));
+  const Server none({{"GET /adit/network",
+                      with(R"({"interface":"team0","mode":"link-local","address":null,"prefix":null})")}});
+  EXPECT_THAT(say(none, {"network"}).out, HasSubstr("team0  link-local  none\n"));
 }
 
 TEST_F(NetworkCommand, ShowsAChangeThatWaits) {
@@ -54,8 +68,8 @@ TEST_F(NetworkCommand, ShowsAChangeThatWaits) {
   const Outcome outcome = say(server, {"network", "show"});
   EXPECT_EQ(outcome.exit, Exit::Attention);
   EXPECT_THAT(outcome.out, HasSubstr("A change waits to be confirmed"));
-  EXPECT_THAT(outcome.out, HasSubstr("192.168.8.11/24"));
-  EXPECT_THAT(outcome.out, HasSubstr("10.100.1.10/24  gateway 10.100.1.1"));
+  EXPECT_THAT(outcome.out, HasSubstr("static  192.168.8.11/24"));
+  EXPECT_THAT(outcome.out, HasSubstr("10.100.1.10/24, 10.100.2.10/24  gateway 10.100.1.1"));
   EXPECT_THAT(outcome.out, HasSubstr("Confirm it at http://192.168.8.11:8000"));
 }
 

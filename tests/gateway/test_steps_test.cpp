@@ -27,7 +27,10 @@ TEST(TheLinkStep, LooksForACarrier) {
 TEST(TheAddressStep, LooksForOthersWhoHaveIt) {
   network::Probed probed{.nonce = "", .address = "10.100.1.10"};
   expect(address("darpa0", kOwn, probed, ""), "good", "darpa0 has 10.100.1.10/24, and nobody else has it");
+  probed.address = "10.100.1.11";
   probed.claimant = "02:00:00:00:00:09";
+  expect(address("darpa0", kOwn, probed, ""), "bad", "darpa0 has 10.100.1.11, and so has the machine");
+  probed.address = "10.100.1.10";
   expect(address("darpa0", kOwn, probed, ""), "bad", "and so has the machine 02:00:00:00:00:09");
   probed.own = "team0";
   expect(address("darpa0", kOwn, probed, ""), "bad", "the box's own team0 answers for it");
@@ -37,6 +40,18 @@ TEST(TheAddressStep, LooksForOthersWhoHaveIt) {
          "adit-network does not run");
   expect(address("darpa0", std::nullopt, std::nullopt, ""), "bad", "darpa0 has no IPv4 address");
   expect(address("", kOwn, std::nullopt, ""), "skipped", "command_post.interface");
+}
+
+TEST(TheCablesStep, LooksForTheCommandPostAtBothPorts) {
+  network::Probed probed{.nonce = "", .found_on = "darpa0"};
+  expect(cables("darpa0", "team0", "10.100.1.200", probed), "good", "10.100.1.200 is at darpa0");
+  probed.found_on = "team0";
+  expect(cables("darpa0", "team0", "10.100.1.200", probed), "bad",
+         "10.100.1.200 is not at darpa0 but at team0");
+  probed.found_on = "";
+  expect(cables("darpa0", "team0", "10.100.1.200", probed), "skipped", "nobody answers for 10.100.1.200");
+  expect(cables("darpa0", "team0", "", probed), "skipped", "nobody could be asked");
+  expect(cables("darpa0", "team0", "10.100.1.200", std::nullopt), "skipped", "nobody could be asked");
 }
 
 TEST(TheReachStep, TellsHowConnectingFails) {

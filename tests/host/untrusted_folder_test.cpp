@@ -52,6 +52,18 @@ TEST_F(UntrustedFolderTest, WaitsForNoFifoAndReadsNoFolder) {
   EXPECT_FALSE(is_there("wanted.json"));
 }
 
+TEST_F(UntrustedFolderTest, TakesAFolderAwayWithAllThatIsInItAndFollowsNothingThere) {
+  folder.put("secret", "of root");
+  ASSERT_EQ(mkdir((folder / "wanted.json").c_str(), 0700), 0);
+  ASSERT_EQ(mkdir((folder / "wanted.json/deeper").c_str(), 0700), 0);
+  folder.put("wanted.json/deeper/file", "x");
+  ASSERT_EQ(symlink((folder / "secret").c_str(), (folder / "wanted.json/link").c_str()), 0);
+  ASSERT_EQ(symlink(folder.path().c_str(), (folder / "wanted.json/deeper/all").c_str()), 0);
+  EXPECT_FALSE(take("wanted.json"));
+  EXPECT_FALSE(is_there("wanted.json"));
+  EXPECT_TRUE(is_there("secret"));
+}
+
 TEST_F(UntrustedFolderTest, ReadsOnlySoMuch) {
   folder.put("wanted.json", std::string(UntrustedFolder::kLargest, ' '));
   EXPECT_EQ(take("wanted.json").value()->size(), UntrustedFolder::kLargest);

@@ -28,6 +28,12 @@ struct FakeHands final : Hands {
     if (!fails) in_use = kept;
     return did("take back", fails);
   }
+  std::expected<std::optional<Numbers>, std::string> forget() override {
+    const auto done_so = did("forget", fail_keep);
+    if (!done_so) return std::unexpected(done_so.error());
+    in_use = kept = "10.0.0.1/24";
+    return numbers(kept);
+  }
   std::expected<void, std::string> did(const std::string& what, bool fails) {
     done.push_back(what);
     if (fails) return std::unexpected("the disk is full");
@@ -195,6 +201,27 @@ TEST(AFirstChange, IsTakenBackToNothing) {
   EXPECT_EQ(change.status().kept, std::nullopt);
   change.tick(now + seconds(1));
   EXPECT_THAT(hands.done, ElementsAre("apply 192.168.7.11/24", "take back"));
+}
+
+TEST_F(ChangeTest, IsForgottenWithAllThatWasConfirmed) {
+  change.set_endpoints({{1, 2}});
+  want();
+  EXPECT_TRUE(change.forget());
+  EXPECT_FALSE(change.status().pending);
+  EXPECT_EQ(change.wake(), std::nullopt);
+  EXPECT_EQ(change.status().ended, Ended::TakenBack);
+  EXPECT_EQ(change.status().why, "all addresses were forgotten");
+  EXPECT_EQ(change.status().kept, numbers("10.0.0.1/24"));
+  EXPECT_EQ(change.status().endpoints, Endpoints{});
+  EXPECT_THAT(hands.done, ElementsAre("apply 192.168.8.11/24", "forget"));
+}
+
+TEST_F(ChangeTest, GoesOnWhereItCannotBeForgotten) {
+  hands.fail_keep = true;
+  want();
+  EXPECT_EQ(change.forget().error(), "the disk is full");
+  EXPECT_TRUE(change.status().pending);
+  EXPECT_EQ(change.status().kept, numbers());
 }
 
 /// A law: whatever comes when, at the end nothing is in use that was not confirmed in time.

@@ -90,16 +90,55 @@ TEST(NetworkCheck, WarnsOneWhoCutsHimselfOff) {
 
 TEST(NetworkCheck, WarnsOfEndpointsThatAreLost) {
   EXPECT_THAT(check(numbers("192.168.7.11/24", "10.100.2.10/24"), numbers(), usual()).warnings,
-              ElementsAre("the scoring endpoint 10.100.1.200 cannot be reached: it is not in 10.100.2.0/24, "
-                          "and there is no gateway",
-                          "the mapping endpoint 10.100.1.201 cannot be reached: it is not in 10.100.2.0/24, "
-                          "and there is no gateway"));
+              ElementsAre("the scoring endpoint 10.100.1.200 cannot be reached: it is in no subnet of "
+                          "10.100.2.10/24, and there is no gateway",
+                          "the mapping endpoint 10.100.1.201 cannot be reached: it is in no subnet of "
+                          "10.100.2.10/24, and there is no gateway"));
   EXPECT_THAT(check(numbers("192.168.7.11/24", "10.100.2.10/24", "10.100.2.1"), numbers(), usual()).warnings,
               IsEmpty());
   Circumstances around = usual();
   around.command_post.scoring.address = "172.20.0.1";
   EXPECT_THAT(check(numbers("192.168.7.11/24", "10.100.1.10/24", "10.100.1.1"), numbers(), around).warnings,
-              ElementsAre(HasSubstr("no gateway leads there")));
+              IsEmpty())
+      << "the gateway leads to whatever endpoints there are";
+  Numbers both = numbers("192.168.7.11/24", "10.100.2.10/24");
+  both.command_post.push_back(host("10.100.1.10/24"));
+  EXPECT_THAT(check(both, numbers(), usual()).warnings, IsEmpty());
+  Numbers none = numbers();
+  none.command_post.clear();
+  EXPECT_THAT(
+      check(none, numbers(), usual()).warnings,
+      Contains("the scoring endpoint 10.100.1.200 cannot be reached: the box has no address on that side"));
+}
+
+TEST(NetworkCheck, LooksAtEachAddressOfTheCommandPostsSide) {
+  Numbers both = numbers("172.16.1.7/24");
+  both.command_post.push_back(host("172.16.1.8/24"));
+  EXPECT_THAT(errors(both, usual()), ElementsAre(HasSubstr("172.16.1.0/24 overlaps 172.16.1.0/24")));
+  both.team = host("192.168.7.11/24");
+  const auto changes = check(both, numbers(), usual()).changes;
+  ASSERT_THAT(changes, SizeIs(1));
+  EXPECT_EQ(changes[0].path, "command_post.addresses");
+  EXPECT_EQ(changes[0].from, "10.100.1.10/24");
+  EXPECT_EQ(changes[0].to, "10.100.1.10/24, 172.16.1.8/24");
+}
+
+TEST(NetworkCheck, WarnsThatWithoutAnAddressOfItsOwnTheBoxIsFoundByName) {
+  for (const Mode mode : {Mode::Dhcp, Mode::LinkLocal}) {
+    const Verdict verdict = check(with_mode(mode), numbers(), usual());
+    EXPECT_THAT(verdict.errors, IsEmpty());
+    EXPECT_THAT(verdict.warnings,
+                ElementsAre(AllOf(HasSubstr("not known yet"), HasSubstr("http://adit.local:8000"))));
+    ASSERT_THAT(verdict.changes, SizeIs(3));
+    EXPECT_EQ(verdict.changes[0].path, "team.mode");
+    EXPECT_EQ(verdict.changes[0].to, name_of(mode));
+    EXPECT_EQ(verdict.changes[1].to, "");
+    EXPECT_THAT(check(with_mode(mode), with_mode(mode), usual()).warnings, IsEmpty());
+  }
+  Circumstances around = usual();
+  around.listen = {{"192.168.7.11", 80}};
+  EXPECT_THAT(errors(with_mode(Mode::Dhcp), around),
+              ElementsAre(HasSubstr("team.mode: nothing would be served")));
 }
 
 TEST(NetworkCheck, RefusesAnAddressAtWhichNothingListens) {

@@ -18,7 +18,15 @@ inline settings::Subnet host(const std::string& text) {
 /// A box as it is usual.
 inline Numbers numbers(const std::string& team = "192.168.7.11/24",
                        const std::string& post = "10.100.1.10/24", const std::string& gateway = "") {
-  return {host(team), host(post), settings::ipv4_of(gateway)};
+  return {.team = host(team), .command_post = {host(post)}, .gateway = settings::ipv4_of(gateway)};
+}
+
+/// With no address of its own on the team's side.
+inline Numbers with_mode(Mode mode) {
+  Numbers all = numbers();
+  all.mode = mode;
+  all.team = {};
+  return all;
 }
 
 inline std::string json_of(const Numbers& all) {

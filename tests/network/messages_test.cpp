@@ -26,16 +26,26 @@ TEST(NetworkMessages, SurviveTheirWriting) {
     EXPECT_EQ(word->what, what);
   }
   ASSERT_TRUE(read_probe(write(Probe{kNonce})));
-  const auto probed = read_probed(write(Probed{kNonce, "10.100.1.10", "02:00:00:00:00:01", "team0", "none"}));
+  EXPECT_EQ(read_probe(write(Probe{kNonce, "10.100.1.200"}))->sought, "10.100.1.200");
+  EXPECT_EQ(read_forget(write(Forget{kNonce}))->nonce, kNonce);
+  for (const Endpoints& each : {Endpoints{}, Endpoints{{0x0a6401c8, 0x0a6401c9}}}) {
+    EXPECT_EQ(read_endpoints(write(each)), each);
+  }
+  const auto probed =
+      read_probed(write(Probed{kNonce, "10.100.1.10", "02:00:00:00:00:01", "team0", "darpa0", "none"}));
   ASSERT_TRUE(probed);
   EXPECT_EQ(probed->claimant, "02:00:00:00:00:01");
-  EXPECT_EQ(read_kept(write_kept(numbers())), numbers());
+  EXPECT_EQ(probed->found_on, "darpa0");
+  for (const Numbers& each : {numbers(), with_mode(Mode::Dhcp), with_mode(Mode::LinkLocal)}) {
+    EXPECT_EQ(read_kept(write_kept(each)), each);
+  }
 }
 
 TEST(NetworkMessages, TellTheWholeStatus) {
   Status status{.team_interface = "team0", .command_post_interface = "darpa0"};
   EXPECT_EQ(read_status(write(status)), status);
   status.kept = numbers();
+  status.endpoints = {{0x0a6401c8}};
   status.pending = Pending{kNonce, numbers("10.0.0.1/8"), Instant(std::chrono::milliseconds(123456)),
                            std::chrono::seconds(5)};
   status.ended = Ended::TakenBack;
@@ -76,12 +86,44 @@ TEST(NetworkMessages, AreRefusedWhereTheyAreHostile) {
     EXPECT_FALSE(read_wanted(text)) << text;
     EXPECT_FALSE(read_word(text)) << text;
     EXPECT_FALSE(read_probe(text)) << text;
+    EXPECT_FALSE(read_endpoints(text)) << text;
+    EXPECT_FALSE(read_forget(text)) << text;
     EXPECT_FALSE(read_status(text)) << text;
     EXPECT_FALSE(read_probed(text)) << text;
     EXPECT_FALSE(read_kept(text)) << text;
   }
   EXPECT_FALSE(read_word(R"({"version":1,"nonce":")" + kNonce + R"(","word":"maybe"})"));
   EXPECT_FALSE(read_word(R"({"version":1,"nonce":"x","word":"back"})"));
+  EXPECT_FALSE(read_forget(R"({"version":1,"nonce":"x"})"));
+  EXPECT_FALSE(read_probe(R"({"version":1,"nonce":")" + kNonce + R"(","sought":"adit.local"})"));
+}
+
+TEST(NetworkMessages, RefuseEndpointsThatAreNone) {
+  const std::pair<const char*, const char*> cases[] = {
+      {R"("10.100.1.200")", "endpoints"},
+      {R"(["10.100.1"])", "endpoints[0]: expected an IPv4 address"},
+      {R"(["10.100.1.200\nGateway=1.2.3.4"])", "endpoints[0]"},
+      {R"([7])", "endpoints[0]"},
+      {R"(["10.100.1.201","10.100.1.200"])", "endpoints[1]: expected them in order"},
+      {R"(["10.100.1.201","10.100.1.201"])", "none twice"},
+  };
+  for (const auto& [list, what] : cases) {
+    const auto read = read_endpoints(std::string(R"({"version":1,"endpoints":)") + list + "}");
+    ASSERT_FALSE(read) << list;
+    EXPECT_THAT(read.error(), HasSubstr(what));
+  }
+  Endpoints many;
+  for (std::uint32_t i = 0; i < kMostEndpoints; ++i) many.addresses.push_back(i + 1);
+  EXPECT_TRUE(read_endpoints(write(many)));
+  many.addresses.push_back(99);
+  EXPECT_THAT(read_endpoints(write(many)).error(), HasSubstr("at most 64"));
+}
+
+/// What adit-network of an earlier version kept.
+TEST(NetworkMessages, ReadWhatAnEarlierVersionKept) {
+  EXPECT_EQ(read_kept(R"({"version":1,"numbers":{"team":{"address":"192.168.7.11","prefix":24},)"
+                      R"("command_post":{"address":"10.100.1.10","prefix":24,"gateway":""}}})"),
+            numbers());
 }
 
 }  // namespace

@@ -10,41 +10,82 @@ namespace {
 using testing::HasSubstr;
 using testing::Not;
 
-TEST(NetworkdFiles, GiveAnInterfaceOneStaticAddressAndNothingElse) {
+const std::vector<std::uint32_t> kEndpoints = {*settings::ipv4_of("10.100.1.200"),
+                                               *settings::ipv4_of("10.100.2.201")};
+
+Numbers several() {
+  Numbers all = numbers("192.168.7.11/24", "10.100.1.10/24", "10.100.1.1");
+  all.command_post.push_back(host("10.100.3.10/24"));
+  all.command_post.push_back(host("10.100.1.11/24"));
+  return all;
+}
+
+TEST(NetworkdFiles, TakeUpNothingThatANetworkOffers) {
   for (const std::string& file :
-       {team_file("team0", numbers()),
-        command_post_file("darpa0", numbers("192.168.7.11/24", "10.100.1.10/24", "10.100.1.1"))}) {
-    for (const char* line :
-         {"DHCP=no\n", "LinkLocalAddressing=no\n", "IPv6AcceptRA=no\n", "KeepConfiguration=no\n",
-          "DuplicateAddressDetection=none\n", "ConfigureWithoutCarrier=yes\n"}) {
+       {team_file("team0", numbers()), team_file("team0", with_mode(Mode::LinkLocal)),
+        command_post_file("darpa0", several(), kEndpoints)}) {
+    for (const char* line : {"DHCP=no\n", "IPv6AcceptRA=no\n", "LLMNR=no\n", "LLDP=no\n", "EmitLLDP=no\n",
+                             "KeepConfiguration=no\n", "ConfigureWithoutCarrier=yes\n",
+                             "IgnoreCarrierLoss=yes\n", "RequiredForOnline=no\n"}) {
       EXPECT_THAT(file, HasSubstr(line));
     }
     for (const char* never : {"DNS=1", "Forward", "Masquerade", "0.0.0.0/0", "DefaultRoute"}) {
       EXPECT_THAT(file, Not(HasSubstr(never)));
     }
   }
-  EXPECT_THAT(team_file("team0", numbers()), HasSubstr("[Match]\nName=team0\n"));
-  EXPECT_THAT(team_file("team0", numbers()), HasSubstr("[Address]\nAddress=192.168.7.11/24\n"));
-  EXPECT_THAT(team_file("team0", numbers()), Not(HasSubstr("[Route]")));
-  EXPECT_THAT(command_post_file("darpa0", numbers()), HasSubstr("Name=darpa0\n"));
-  EXPECT_THAT(command_post_file("darpa0", numbers()), Not(HasSubstr("[Route]")));
 }
 
-TEST(NetworkdFiles, LeadByTheGatewayToTheCommandPostAlone) {
-  const std::string file =
-      command_post_file("darpa0", numbers("192.168.7.11/24", "10.100.1.10/24", "10.100.1.1"));
-  for (const char* route : {"[Route]\nDestination=10.1.1.0/24\nGateway=10.100.1.1\n",
-                            "[Route]\nDestination=10.2.1.0/24\nGateway=10.100.1.1\n",
-                            "[Route]\nDestination=10.100.0.0/16\nGateway=10.100.1.1\n"}) {
-    EXPECT_THAT(file, HasSubstr(route));
+TEST(NetworkdFiles, GiveTheTeamsSideItsAddressALinkLocalOneAndAName) {
+  const std::string file = team_file("team0", numbers());
+  for (const char* line :
+       {"[Match]\nName=team0\n", "[Address]\nAddress=192.168.7.11/24\n", "DuplicateAddressDetection=none\n",
+        "LinkLocalAddressing=yes\n", "MulticastDNS=yes\n"}) {
+    EXPECT_THAT(file, HasSubstr(line));
   }
+  EXPECT_THAT(file, Not(HasSubstr("[Route]")));
+  EXPECT_THAT(file, Not(HasSubstr("AddPrefixRoute")));
 }
 
-TEST(NetworkdFiles, NeedNoRouteToTheirOwnSubnet) {
-  const std::string file =
-      command_post_file("darpa0", numbers("192.168.7.11/24", "10.100.1.10/16", "10.100.0.1"));
-  EXPECT_THAT(file, Not(HasSubstr("Destination=10.100.0.0/16")));
-  EXPECT_THAT(file, HasSubstr("Destination=10.2.1.0/24"));
+TEST(NetworkdFiles, TakeFromDhcpAnAddressAlone) {
+  const std::string file = team_file("team0", with_mode(Mode::Dhcp));
+  for (const char* line : {"DHCP=ipv4\n", "UseGateway=no\n", "UseRoutes=no\n", "UseDNS=no\n", "UseNTP=no\n",
+                           "IgnoreCarrierLoss=5s\n", "LinkLocalAddressing=yes\n"}) {
+    EXPECT_THAT(file, HasSubstr(line));
+  }
+  EXPECT_THAT(file, Not(HasSubstr("[Address]")));
+  EXPECT_THAT(team_file("team0", with_mode(Mode::LinkLocal)), Not(HasSubstr("[Address]")));
+}
+
+TEST(NetworkdFiles, KeepTheCommandPostsSideSilent) {
+  const std::string file = command_post_file("darpa0", numbers(), {});
+  for (const char* line : {"[Match]\nName=darpa0\n", "LinkLocalAddressing=no\n", "MulticastDNS=no\n",
+                           "Multicast=no\n", "[Address]\nAddress=10.100.1.10/24\nAddPrefixRoute=no\n"}) {
+    EXPECT_THAT(file, HasSubstr(line));
+  }
+  Numbers none = numbers();
+  none.command_post.clear();
+  EXPECT_THAT(command_post_file("darpa0", none, kEndpoints), Not(HasSubstr("[Route]")));
+  EXPECT_THAT(command_post_file("darpa0", none, kEndpoints), Not(HasSubstr("[Address]")));
+}
+
+TEST(NetworkdFiles, HaveTheWaysToTheCommandPostInATableOfTheirOwn) {
+  const std::string file = command_post_file("darpa0", several(), {});
+  for (const char* part :
+       {"[Route]\nDestination=10.100.1.0/24\nScope=link\nPreferredSource=10.100.1.10\nTable=230\n",
+        "[Route]\nDestination=10.100.3.0/24\nScope=link\nPreferredSource=10.100.3.10\nTable=230\n",
+        "[RoutingPolicyRule]\nOutgoingInterface=darpa0\nFamily=ipv4\nPriority=230\nTable=230\n",
+        "[RoutingPolicyRule]\nFrom=10.100.1.11/32\nPriority=230\nTable=230\n"}) {
+    EXPECT_THAT(file, HasSubstr(part));
+  }
+  EXPECT_THAT(file, Not(HasSubstr("PreferredSource=10.100.1.11"))) << "one way to a subnet";
+}
+
+TEST(NetworkdFiles, LeadByTheGatewayToTheEndpointsElsewhereAlone) {
+  const std::string file = command_post_file("darpa0", several(), kEndpoints);
+  EXPECT_THAT(file, HasSubstr("[Route]\nDestination=10.100.2.201/32\nGateway=10.100.1.1\n"
+                              "PreferredSource=10.100.1.10\nTable=230\n"));
+  EXPECT_THAT(file, Not(HasSubstr("10.100.1.200/32"))) << "that one is in a subnet";
+  EXPECT_THAT(command_post_file("darpa0", numbers(), kEndpoints), Not(HasSubstr("/32\nGateway")));
 }
 
 }  // namespace

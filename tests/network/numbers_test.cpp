@@ -33,8 +33,38 @@ TEST(Numbers, AreReadAndWritten) {
   const auto read = read_numbers(*codec::parse_json(json_of(all)));
   ASSERT_TRUE(read);
   EXPECT_EQ(*read, all);
-  EXPECT_EQ(json_of(numbers()), R"({"team":{"address":"192.168.7.11","prefix":24},)"
-                                R"("command_post":{"address":"10.100.1.10","prefix":24,"gateway":""}})");
+  EXPECT_EQ(json_of(numbers()),
+            R"({"team":{"mode":"static","address":"192.168.7.11","prefix":24},)"
+            R"("command_post":{"addresses":[{"address":"10.100.1.10","prefix":24}],"gateway":""}})");
+  EXPECT_EQ(json_of(with_mode(Mode::Dhcp)),
+            R"({"team":{"mode":"dhcp"},"command_post":{"addresses":[{"address":"10.100.1.10","prefix":24}],)"
+            R"("gateway":""}})");
+}
+
+TEST(Numbers, MayHaveSeveralAddressesOrNoneOnTheCommandPostsSide) {
+  Numbers all = numbers("192.168.7.11/24", "10.100.1.10/24", "10.100.2.1");
+  all.command_post.push_back(host("10.100.2.10/24"));
+  EXPECT_EQ(read_numbers(*codec::parse_json(json_of(all))), all) << "the gateway is in the second's subnet";
+  EXPECT_EQ(command_post_text(all), "10.100.1.10/24, 10.100.2.10/24");
+  all.command_post.clear();
+  all.gateway.reset();
+  EXPECT_EQ(read_numbers(*codec::parse_json(json_of(all))), all);
+  EXPECT_EQ(command_post_text(all), "none");
+  for (std::uint32_t i = 0; i < kMostAddresses; ++i) all.command_post.push_back({0x0a640101 + i, 24});
+  EXPECT_EQ(read_numbers(*codec::parse_json(json_of(all))), all);
+  all.command_post.push_back({0x0a6401fe, 24});
+  EXPECT_THAT(faults(json_of(all)), ElementsAre("command_post.addresses: expected at most 8, got 9"));
+}
+
+TEST(Numbers, OfOtherModesHaveNoAddressOfTheTeamsSide) {
+  for (const Mode mode : {Mode::Dhcp, Mode::LinkLocal}) {
+    EXPECT_EQ(read_numbers(*codec::parse_json(json_of(with_mode(mode)))), with_mode(mode));
+    EXPECT_EQ(team_text(with_mode(mode)), name_of(mode));
+  }
+  EXPECT_THAT(faults(with(R"({"mode":"dhcp","address":"","prefix":null})", kPost)), ElementsAre());
+  EXPECT_THAT(faults(with(R"({"mode":"dhcp","address":"192.168.7.11","prefix":24})", kPost)),
+              ElementsAre("team.address: expected none with mode dhcp, got \"192.168.7.11\"",
+                          "team.prefix: expected none with mode dhcp, got 24"));
 }
 
 TEST(Numbers, NeedNoGateway) {
@@ -78,10 +108,17 @@ TEST(Numbers, AreRefusedByTheirPaths) {
       {R"({"address":"192.168.7.11","prefix":24,"gateway":"192.168.7.1"})", kPost,
        "team.\"gateway\": no such member here"},
       {R"({"address":"192.168.7.11","prefix":24,"prefix":25})", kPost, "team.prefix: given twice"},
+      {R"({"mode":"bootp","address":"192.168.7.11","prefix":24})", kPost,
+       "team.mode: expected static, dhcp or link-local, got \"bootp\""},
+      {R"({"mode":7,"address":"192.168.7.11","prefix":24})", kPost, "team.mode: expected static"},
+      {R"({"mode":"static","prefix":24})", kPost, "team.address: missing"},
+      {R"({"address":"169.254.7.11","prefix":16})", kPost, "team.address: 169.254.7.11 is link-local"},
+      {R"({"address":"10.100.1.10","prefix":24})", kPost,
+       "team.address: 10.100.1.10 is the box's address on the Command Post's side"},
       {"[]", kPost, "team: expected an object, got an array"},
       {"null", kPost, "team: expected an object, got null"},
       {kTeam, R"({"address":"10.100.1.10","prefix":24,"gateway":"10.100.2.1"})",
-       "command_post.gateway: 10.100.2.1 is not in 10.100.1.0/24, the subnet of its interface"},
+       "command_post.gateway: 10.100.2.1 is in no subnet of its interface, which has 10.100.1.10/24"},
       {kTeam, R"({"address":"10.100.1.10","prefix":24,"gateway":"10.100.1.10"})",
        "command_post.gateway: 10.100.1.10 is the box's own address"},
       {kTeam, R"({"address":"10.100.1.10","prefix":24,"gateway":"10.100.1.255"})",
@@ -90,6 +127,20 @@ TEST(Numbers, AreRefusedByTheirPaths) {
        "command_post.gateway: expected an IPv4 address"},
       {kTeam, R"({"address":"10.100.1.10","prefix":24,"gateway":"none"})",
        "command_post.gateway: expected an IPv4"},
+      {kTeam, R"({"gateway":""})", "command_post.addresses: missing"},
+      {kTeam, R"({"addresses":"10.100.1.10/24","gateway":""})", "command_post.addresses: expected a list"},
+      {kTeam, R"({"addresses":[],"gateway":"10.100.1.1"})",
+       "command_post.gateway: 10.100.1.1 is in no subnet of its interface, which has none"},
+      {kTeam, R"({"addresses":[{"address":"10.100.1.10"}]})", "command_post.addresses[0].prefix: missing"},
+      {kTeam, R"({"addresses":["10.100.1.10/24"]})", "command_post.addresses[0]: expected an object"},
+      {kTeam,
+       R"({"addresses":[{"address":"10.100.1.10","prefix":24},{"address":"10.100.1.10","prefix":16}]})",
+       "command_post.addresses[1].address: 10.100.1.10 is given twice"},
+      {kTeam, R"({"addresses":[{"address":"169.254.1.1","prefix":16}]})",
+       "command_post.addresses[0].address: 169.254.1.1 is link-local"},
+      {kTeam, R"({"addresses":[{"address":"10.100.1.10","prefix":24,"name":"x"}]})",
+       "command_post.addresses[0].\"name\": no such member"},
+      {kTeam, R"({"addresses":[],"address":"10.100.1.10"})", "command_post.\"address\": no such member"},
       {kTeam, R"({"address":"10.100.1.10","prefix":24,"interface":"eth0"})",
        "command_post.\"interface\": no such member"},
   };

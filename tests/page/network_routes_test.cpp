@@ -18,9 +18,10 @@ using testing::IsEmpty;
 
 const std::vector<intake::Header> kGood = {kByToken, {"Content-Type", "application/json"}};
 const std::string kNumbers =
-    R"({"team":{"address":"192.168.8.11","prefix":24},)"
-    R"("command_post":{"address":"10.100.1.10","prefix":24,"gateway":"10.100.1.1"}})";
-const network::Numbers kRead = {{0xc0a8080b, 24}, {0x0a64010a, 24}, 0x0a640101};
+    R"({"team":{"mode":"static","address":"192.168.8.11","prefix":24},)"
+    R"("command_post":{"addresses":[{"address":"10.100.1.10","prefix":24}],"gateway":"10.100.1.1"}})";
+const network::Numbers kRead = {
+    .team = {0xc0a8080b, 24}, .command_post = {{0x0a64010a, 24}}, .gateway = 0x0a640101};
 
 class NetworkRoutesTest : public testing::Test {
  protected:
@@ -55,14 +56,33 @@ TEST_F(NetworkRoutesTest, TellWhatTheInterfacesHave) {
                   .command_post_interface = "darpa0",
                   .team = settings::Subnet{0xc0a8070b, 24},
                   .command_post = {},
+                  .mode = network::Mode::Dhcp,
                   .gateway = {},
                   .pending = {},
                   .last = "",
                   .last_why = ""};
   EXPECT_EQ(json::parse(ask("GET", "/adit/network", "", {kByToken}).body), json::parse(R"({
-    "managed": true, "why": "", "team": {"interface": "team0", "address": "192.168.7.11", "prefix": 24},
-    "command_post": {"interface": "darpa0", "address": null, "prefix": null, "gateway": ""},
+    "managed": true, "why": "", "team": {"interface": "team0", "mode": "dhcp", "address": "192.168.7.11", "prefix": 24},
+    "command_post": {"interface": "darpa0", "addresses": [], "gateway": ""},
     "pending": null, "last": null, "last_why": ""})"));
+}
+
+TEST_F(NetworkRoutesTest, TellEachAddressOfTheCommandPostsSide) {
+  network.view.command_post = {{0x0a64010a, 24}, {0x0a64020a, 16}};
+  network.view.gateway = 0x0a640101;
+  const json shown = json::parse(ask("GET", "/adit/network").body);
+  EXPECT_EQ(shown["command_post"]["addresses"],
+            json::parse(R"([{"address":"10.100.1.10","prefix":24},{"address":"10.100.2.10","prefix":16}])"));
+  EXPECT_EQ(shown["command_post"]["gateway"], "10.100.1.1");
+  EXPECT_EQ(shown["team"]["mode"], "static");
+  EXPECT_TRUE(shown["team"]["address"].is_null());
+}
+
+TEST_F(NetworkRoutesTest, TakeOneAddressAsItWasWrittenBeforeThereWereSeveral) {
+  ask("POST", "/adit/network",
+      R"({"team":{"address":"192.168.8.11","prefix":24},)"
+      R"("command_post":{"address":"10.100.1.10","prefix":24,"gateway":"10.100.1.1"}})");
+  EXPECT_THAT(network.wanted, ElementsAre(kRead));
 }
 
 TEST_F(NetworkRoutesTest, TellOfAChangeThatWaits) {

@@ -12,7 +12,7 @@ const BIN = resolve(process.env.ADIT_BIN ?? dirname(process.env.SCENE_SERVER));
 const STAND_IN = fileURLToPath(new URL("../wire/stand_in_networkctl", import.meta.url));
 const BOX = `aditbox${process.pid}`, STATION = `aditsta${process.pid}`;
 const AS_IT_COMES = { team0: "192.168.7.11/24", darpa0: "10.100.1.10/24" };
-const ASKED = ["wanted.json", "word.json", "probe.json"];
+const ASKED = ["wanted.json", "word.json", "probe.json", "endpoints.json", "forget.json"];
 
 const ip = (...words) => execFileSync("ip", words, { stdio: "pipe" });
 
@@ -55,16 +55,16 @@ export class NetworkedBox {
   /** adit-network as its units run it: whenever something is asked for, one at a time. */
   async #serveNetwork() {
     const networkctl = join(this.folder, "networkctl");
-    writeFileSync(networkctl, `#!/bin/sh\nexec ${STAND_IN} ${this.folder}/tried ${this.folder}/kept "$@"\n`);
+    writeFileSync(networkctl, `#!/bin/sh\nexec ${STAND_IN} ${this.folder}/files "$@"\n`);
     chmodSync(networkctl, 0o755);
-    const folders = ["status", "networkd", "tried", "kept"].map((name) => join(this.folder, name));
+    const folders = ["status", "networkd", "files"].map((name) => join(this.folder, name));
     for (const folder of [this.state, ...folders]) mkdirSync(folder);
-    const [status, state, tried, kept] = folders;
+    const [status, state, files] = folders;
     for (const [name, address] of Object.entries(AS_IT_COMES)) {
-      writeFileSync(join(kept, `60-${name}.network`), `[Match]\nName=${name}\n[Address]\nAddress=${address}\n`);
+      writeFileSync(join(files, `60-${name}.network`), `[Match]\nName=${name}\n[Address]\nAddress=${address}\n`);
     }
     const run = () => once(this.#start(BOX, join(BIN, "adit-network"), "--networkctl", networkctl, "--wanted", this.state,
-      "--status", status, "--state", state, "--tried", tried, "--kept", kept), "exit");
+      "--status", status, "--state", state, "--networkd", files, "--factory", join(this.folder, "none")), "exit");
     await run();
     const follow = async () => {
       while (this.#isOpen) {
@@ -105,7 +105,7 @@ export class NetworkedBox {
   /** The address that team0 has: "192.168.7.11/24". */
   address() {
     const [link] = JSON.parse(ip("-n", BOX, "-4", "-j", "address", "show", "dev", "team0"));
-    return link.addr_info.map(({ local, prefixlen }) => `${local}/${prefixlen}`).join(" ");
+    return (link?.addr_info ?? []).map(({ local, prefixlen }) => `${local}/${prefixlen}`).join(" ");
   }
   visit = (url) => visit(this.browser, url);
 

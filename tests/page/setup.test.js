@@ -80,7 +80,7 @@ test("tries each endpoint step by step, and says what to do where one fails", as
   const { box, ask, page } = await ready(t, "setup#test");
   const unreached = await tried(page);
   assert.equal(unreached.length, 2);
-  for (const states of unreached) assert.deepEqual(states.slice(2), ["bad", "skipped", "skipped"]);
+  for (const states of unreached) assert.deepEqual(states.slice(3), ["bad", "skipped", "skipped"]);
   const reach = page.locator(".trial li", { hasText: "The endpoint answers" }).first();
   assert.notEqual(await reach.locator(".said").innerText(), "");
   assert.notEqual(await reach.locator(".advice").innerText(), "");
@@ -96,7 +96,7 @@ test("tries each endpoint step by step, and says what to do where one fails", as
   await until(free, "the token to be applied");
   await hears(page, "Live");
   const [scoring, mapping] = await tried(page);
-  assert.deepEqual([scoring[2], scoring[3], mapping[3]], ["good", "bad", "good"]);
+  assert.deepEqual([scoring[3], scoring[4], mapping[4]], ["good", "bad", "good"]);
   assert.notEqual(await page.locator(".trial li", { hasText: "The token is taken" }).first().locator(".advice").innerText(), "");
 });
 

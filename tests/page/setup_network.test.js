@@ -38,7 +38,7 @@ async function come(t, url) {
 
 /** Changes the team's address for now. */
 async function change(page, address) {
-  await team(page, "Address").fill(address);
+  await team(page, "Address").fill(`${address}/24`);
   await page.getByRole("button", { name: "Change the addresses" }).click();
   await review(page);
   await page.getByRole("button", { name: "Change for now" }).click();
@@ -47,13 +47,14 @@ async function change(page, address) {
 
 test("says what is wrong with the addresses as they are typed, and what a change would do", { skip: why || false }, async (t) => {
   const page = await come(t, OLD);
-  assert.equal(await team(page, "Address").inputValue(), "192.168.7.11");
-  assert.equal(await post(page, "Prefix length").inputValue(), "24");
+  assert.equal(await team(page, "Mode").inputValue(), "static");
+  assert.equal(await team(page, "Address").inputValue(), "192.168.7.11/24");
+  assert.equal(await post(page, "Addresses").inputValue(), "10.100.1.10/24");
   const wrong = [
-    [team(page, "Address"), ["300.1.1.1", "", "here", "192.168.7.255", "127.0.0.1"]],
-    [team(page, "Prefix length"), ["0", "33", "", "wide"]],
-    [post(page, "Address"), ["10.100.1", "0.0.0.0"]],
-    [post(page, "Prefix length"), ["7", "31", "-1"]],
+    [team(page, "Address"), ["300.1.1.1/24", "", "here", "192.168.7.255/24", "127.0.0.1/8", "192.168.7.11", "192.168.7.11/33",
+      "192.168.7.11/0", "192.168.7.11/wide", "169.254.1.1/16"]],
+    [post(page, "Addresses"), ["10.100.1/24", "0.0.0.0/8", "10.100.1.10/7", "10.100.1.10/31", "10.100.1.10/-1", "10.100.1.10/24,",
+      "10.100.1.10/24, 10.100.1.10/24"]],
     [post(page, "Gateway"), ["10.100.2.1", "there", "10.100.1.10"]],
   ];
   for (const [input, texts] of wrong) {
@@ -68,24 +69,33 @@ test("says what is wrong with the addresses as they are typed, and what a change
     await input.fill(was);
     await page.waitForFunction(() => !document.querySelector("#addresses [aria-invalid=true]"));
   }
-  await team(page, "Address").fill("10.100.1.77");
+  await team(page, "Address").fill("10.100.1.77/24");
   await page.locator("#addresses .wrong", { hasText: "10.100.1.0/24 overlaps 10.100.0.0/16" }).waitFor();
   await page.getByLabel("Allow the team’s subnet to overlap").check();
   await page.getByRole("button", { name: "Look and apply" }).click();
   await review(page);
   await page.getByRole("button", { name: "Apply", exact: true }).click();
   await hears(page, /Applied\./);
-  await team(page, "Address").fill("10.100.1.78");
+  await team(page, "Address").fill("10.100.1.78/24");
   await page.locator("#addresses .warnings", { hasText: "that is allowed by network.allow_overlap" }).waitFor();
   await page.locator("#addresses .warnings", { hasText: "this cuts you off" }).waitFor();
-  await team(page, "Address").fill("192.168.7.11");
+  await team(page, "Mode").selectOption("dhcp");
+  assert.ok(await team(page, "Address").isHidden());
+  await page.locator("#addresses .warnings", { hasText: "open http://adit.local:8000" }).waitFor();
+  await team(page, "Mode").selectOption("static");
+  await team(page, "Address").fill("192.168.7.11/24");
+  await post(page, "Addresses").fill("10.100.1.10/24, 10.100.2.10/16");
+  await page.getByRole("button", { name: "Change the addresses" }).click();
+  assert.deepEqual(await review(page), [["command_post.addresses", "10.100.1.10/24", "10.100.1.10/24, 10.100.2.10/16"]]);
+  await page.locator("#review").getByRole("button", { name: "Leave it" }).click();
+  await post(page, "Addresses").fill("10.100.1.10/24");
   await page.getByRole("button", { name: "Change the addresses" }).click();
   await page.getByText("The box has these addresses already.").waitFor();
 });
 
 test("takes a change back that nobody confirms, and says so", { skip: why || false }, async (t) => {
   const page = await come(t, OLD);
-  await team(page, "Address").fill("192.168.8.11");
+  await team(page, "Address").fill("192.168.8.11/24");
   await page.getByRole("button", { name: "Change the addresses" }).click();
   assert.deepEqual(await review(page), [["team.address", "192.168.7.11", "192.168.8.11"]]);
   await page.locator("#review .warnings", { hasText: "this cuts you off: your address 192.168.7.2 is not in 192.168.8.0/24" }).waitFor();

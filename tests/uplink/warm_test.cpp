@@ -42,6 +42,20 @@ TEST_F(WarmConnection, SaysItsTroubleAndConnectsOnceItCan) {
   EXPECT_EQ(connection.trouble(), "");
 }
 
+TEST_F(WarmConnection, WaitsForNoPauseWhereTheWayMayBeBack) {
+  Peer peer({always(answer("200 OK", "null"))});
+  Connection connection(loop_, peer.endpoint(), token());
+  connection.keep_warm();
+  EXPECT_TRUE(turn_until([&] { return !connection.trouble().empty(); }));
+  peer.listen();
+  connection.hurry();
+  const loop::Instant before = loop_.now();
+  EXPECT_TRUE(turn_until([&] { return connection.connected(); }));
+  EXPECT_LT(loop_.now() - before, milliseconds(500));
+  connection.hurry();
+  EXPECT_TRUE(connection.connected()) << "what is there stays";
+}
+
 TEST_F(WarmConnection, DoesNotHammerAPeerThatClosesAtOnce) {
   const ListeningPeer peer([](Wire&) {});
   Connection connection(loop_, peer.endpoint(), token());

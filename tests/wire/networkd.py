@@ -12,6 +12,9 @@ import programs
 NETWORKD = "/lib/systemd/systemd-networkd"
 STAND_IN = pathlib.Path(__file__).with_name("stand_in_networkctl")
 
+# What adit-network.path looks for.
+ASKED = ("wanted.json", "word.json", "probe.json", "endpoints.json", "forget.json")
+
 BUS = """<!DOCTYPE busconfig PUBLIC "-//freedesktop//DTD D-Bus Bus Configuration 1.0//EN"
  "http://www.freedesktop.org/standards/dbus/1.0/busconfig.dtd">
 <busconfig><type>system</type><listen>unix:path={path}</listen><policy context="default"><allow user="*"/><allow own="*"/>
@@ -24,8 +27,8 @@ mount -o remount,bind,ro /sys
 mount -t tmpfs tmpfs /run/systemd
 mkdir -p /run/systemd/network /run/systemd/netif/links /run/systemd/netif/leases /run/systemd/netif/lldp
 chown -R systemd-network: /run/systemd/netif
-mount --bind "$FOLDER/tried" /run/systemd/network
-mount --bind "$FOLDER/kept" /etc/systemd/network
+mount --bind "$FOLDER/networkd" /run/systemd/network
+mount -t tmpfs tmpfs /etc/systemd/network
 exec "$NETWORKD"
 """
 
@@ -37,7 +40,7 @@ def needs_networkd():
 
 
 class Networkd:
-    """A real one, in the box's namespace, which reads folder/kept and folder/tried."""
+    """A real one, in the box's namespace, which reads folder/networkd."""
 
     def __init__(self, network, folder):
         self.network = network
@@ -68,6 +71,12 @@ class Networkd:
     def _answers(self):
         return self.reload().returncode == 0
 
+    def start_anew(self):
+        self.daemon.kill()
+        self.daemon.wait()
+        self._start()
+        programs.wait_until(self._answers, "networkd")
+
     def reload(self):
         """networkctl insists on networkd's own namespace."""
         return subprocess.run(["ip", "netns", "exec", self.network.box, self.networkctl, "reload"], capture_output=True,
@@ -85,23 +94,23 @@ class AditNetwork:
 
     def __init__(self, network, folder, networkctl=None):
         self.network, self.folder, self.wanted = network, folder, folder / "wanted"
-        for name in ("wanted", "status", "state", "tried", "kept"):
+        for name in ("wanted", "status", "state", "networkd"):
             (folder / name).mkdir(exist_ok=True)
-        for each in (folder, folder / "tried", folder / "kept"):
+        for each in (folder, folder / "networkd"):
             each.chmod(0o755)
         self.networkctl = networkctl or self.stand_in()
         self.process = None
 
     def stand_in(self):
         path = self.folder / "networkctl"
-        path.write_text(f"#!/bin/sh\nexec {STAND_IN} {self.folder / 'tried'} {self.folder / 'kept'} \"$@\"\n")
+        path.write_text(f"#!/bin/sh\nexec {STAND_IN} {self.folder / 'networkd'} \"$@\"\n")
         path.chmod(0o755)
         return path
 
-    def start(self):
-        words = [programs.BIN / "adit-network", "--networkctl", self.networkctl]
-        words += ["--wanted", self.wanted]
-        for name in ("status", "state", "tried", "kept"):
+    def start(self, *more):
+        words = [programs.BIN / "adit-network", "--networkctl", self.networkctl, *more]
+        words += ["--wanted", self.wanted, "--factory", self.folder / "network.json"]
+        for name in ("status", "state", "networkd"):
             words += [f"--{name}", self.folder / name]
         with open(self.folder / "adit-network.log", "ab") as log:
             self.process = self.network.start(self.network.box, *words, stdout=log, stderr=log)
@@ -113,11 +122,14 @@ class AditNetwork:
 
     def ask(self, file, **members):
         """As aditd does: by a rename. Gives the request's nonce."""
-        document = {"version": 1, "nonce": secrets.token_hex(16), **members}
+        nonce = secrets.token_hex(16)
+        self.put(file, **{"nonce": nonce, **members})
+        return nonce
+
+    def put(self, file, **members):
         temporary = self.wanted / ".new"
-        temporary.write_text(json.dumps(document))
+        temporary.write_text(json.dumps({"version": 1, **members}))
         temporary.rename(self.wanted / file)
-        return document["nonce"]
 
     def want(self, within_ms=60000, **numbers):
         nonce = self.ask("wanted.json", confirm_within_ms=within_ms, numbers=self.numbers(**numbers))
@@ -128,8 +140,9 @@ class AditNetwork:
 
     @staticmethod
     def numbers(team="192.168.7.11", post="10.100.1.10", gateway="", prefix=24):
-        return {"team": {"address": team, "prefix": prefix},
-                "command_post": {"address": post, "prefix": 24, "gateway": gateway}}
+        addresses = [{"address": each, "prefix": 24} for each in ([post] if isinstance(post, str) else post)]
+        return {"team": {"mode": "static", "address": team, "prefix": prefix},
+                "command_post": {"addresses": addresses, "gateway": gateway}}
 
     def status(self):
         path = self.folder / "status" / "status.json"
@@ -150,14 +163,16 @@ class AditNetwork:
         return (self.folder / "adit-network.log").read_text()
 
     def addresses(self, interface):
-        """The interface's IPv4 addresses: ["192.168.7.11/24"]."""
+        """The interface's IPv4 addresses but for link-local ones: ["192.168.7.11/24"]."""
         shown = subprocess.run(["ip", "-n", self.network.box, "-4", "-j", "address", "show", "dev", interface],
                                capture_output=True, check=True)
         return [f"{each['local']}/{each['prefixlen']}" for link in json.loads(shown.stdout or "[]")
-                for each in link.get("addr_info", [])]
+                for each in link.get("addr_info", []) if each["scope"] == "global"]
 
-    def routes(self):
-        shown = subprocess.run(["ip", "-n", self.network.box, "-4", "-j", "route"], capture_output=True, check=True)
+    def routes(self, table="230"):
+        """{"10.100.2.201": ("10.100.1.200", "darpa0")}; 230 is the Command Post's own table."""
+        shown = subprocess.run(["ip", "-n", self.network.box, "-4", "-j", "route", "show", "table", table], capture_output=True,
+                               check=False)
         return {each["dst"]: (each.get("gateway"), each["dev"]) for each in json.loads(shown.stdout or "[]")}
 
     def stop(self):

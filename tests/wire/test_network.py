@@ -11,6 +11,7 @@ import tempfile
 import threading
 import unittest
 
+import dhcp
 import hosts
 import networkd
 import programs
@@ -60,7 +61,7 @@ class WithAStandIn(Base):
         status = self.box.status()
         self.assertEqual((status["pending"], status["last"]), (None, "taken back"))
         self.assertEqual(status["why"], "nobody confirmed it within 2 s")
-        self.assertNotIn("40-adit-team.network", self.box.files("tried"))
+        self.assertNotIn("40-adit-team.network", self.box.files("networkd"))
 
     def test_a_confirmed_change_stays(self):
         nonce = self.box.want(team="192.168.8.11")
@@ -69,15 +70,17 @@ class WithAStandIn(Base):
         self.ends()
         status = self.box.status()
         self.assertEqual((status["pending"], status["last"]), (None, "confirmed"))
-        self.assertIn("Address=192.168.8.11/24", (self.folder / "kept" / "50-adit-team.network").read_text())
+        self.assertIn("Address=192.168.8.11/24", (self.folder / "networkd" / "50-adit-team.network").read_text())
         self.start_the_machine_anew()
         self.has(NEW)
 
     def start_the_machine_anew(self):
         """What is in /run is gone, and the interfaces have what networkd finds."""
-        for name in ("tried", "status"):
+        for name in ("networkd", "status"):
             for path in (self.folder / name).iterdir():
                 path.unlink()
+        self.box.start("--start")
+        self.assertEqual(self.box.process.wait(5), 0, self.box.said())
         self.assertEqual(self.box.run(), 0, self.box.said())
         hosts.ip("-n", self.network.box, "address", "flush", "dev", "team0")
         subprocess.run(["ip", "netns", "exec", self.network.box, self.box.networkctl, "reload"], check=True)
@@ -163,7 +166,8 @@ class WithAStandIn(Base):
                               ("wanted.json", {"confirm_within_ms": 10, "numbers": good}),
                               ("wanted.json", {"confirm_within_ms": 60000, "numbers": good, "interface": "lo"}),
                               ("wanted.json", {"confirm_within_ms": 60000, "numbers": good, "nonce": "../../x"}),
-                              ("word.json", {"word": "reboot"}), ("probe.json", {"interface": "lo"})):
+                              ("word.json", {"word": "reboot"}), ("probe.json", {"interface": "lo"}),
+                              ("endpoints.json", {"endpoints": ["0.0.0.0/0"]}), ("forget.json", {"all": True})):
             self.box.ask(file, **members)
             self.assertEqual(self.box.run(), 0)
         (self.folder / "wanted" / "wanted.json").symlink_to(secret)
@@ -172,7 +176,9 @@ class WithAStandIn(Base):
         self.assertEqual(self.box.run(), 0)
         (self.folder / "wanted" / "wanted.json").write_bytes(b"{" * 1000000)
         self.assertEqual(self.box.run(), 0)
-        self.assertEqual(self.box.said().count("refused what was asked for"), 9, self.box.said())
+        (self.folder / "wanted" / "wanted.json" / "deeper").mkdir(parents=True)
+        self.assertEqual(self.box.run(), 0)
+        self.assertEqual(self.box.said().count("refused what was asked for"), 12, self.box.said())
         self.assertEqual(self.box.files("wanted"), [])
         self.assertEqual(secret.read_text(), "of root")
         self.assertNotIn("of root", self.box.said())
@@ -185,7 +191,7 @@ class WithAStandIn(Base):
         status = self.box.status()
         self.assertEqual(status["last"], "taken back")
         self.assertIn("no bus", status["why"])
-        self.assertNotIn("40-adit-team.network", self.box.files("tried"))
+        self.assertNotIn("40-adit-team.network", self.box.files("networkd"))
 
     def test_an_address_that_somebody_has_is_not_taken(self):
         hosts.ip("-n", self.network.team, "address", "add", "192.168.8.11/24", "dev", "eth0")
@@ -196,8 +202,24 @@ class WithAStandIn(Base):
         self.assertIn("192.168.8.11 is in use already on team0", status["why"])
         self.assertEqual(self.box.addresses("team0"), [OLD])
 
-    def probe(self):
-        nonce = self.box.ask("probe.json")
+    def test_what_was_confirmed_is_forgotten(self):
+        (self.folder / "network.json").write_text(json.dumps({"version": 1, "numbers": self.box.numbers("10.0.0.1", [])}))
+        self.box.ask("forget.json")
+        self.assertEqual(self.box.run(), 0)
+        self.assertEqual((self.box.addresses("team0"), self.box.addresses("darpa0")), (["10.0.0.1/24"], []))
+        self.assertEqual(self.box.files("state"), [])
+        self.assertEqual(self.box.status()["kept"], self.box.numbers("10.0.0.1", []))
+        self.start_the_machine_anew()
+        self.assertEqual(self.box.addresses("team0"), ["10.0.0.1/24"])
+
+    def test_what_was_to_be_forgotten_before_a_power_cut_is_forgotten_after_it(self):
+        self.box.ask("forget.json")
+        self.start_the_machine_anew()
+        self.assertIsNone(self.box.status()["kept"])
+        self.assertEqual(self.box.files("state"), [])
+
+    def probe(self, sought=""):
+        nonce = self.box.ask("probe.json", sought=sought)
         self.assertEqual(self.box.run(), 0)
         probed = self.box.probed()
         self.assertEqual(probed["nonce"], nonce)
@@ -205,7 +227,7 @@ class WithAStandIn(Base):
 
     def test_nobody_else_has_the_address(self):
         self.assertEqual({**self.probe(), "nonce": ""},
-                         {"version": 1, "nonce": "", "address": "10.100.1.10", "claimant": "", "own": "", "trouble": ""})
+                         {"version": 1, "nonce": "", "address": "10.100.1.10", "claimant": "", "own": "", "found_on": "", "trouble": ""})
 
     def test_somebody_else_has_the_address(self):
         hosts.ip("-n", self.network.post, "address", "add", "10.100.1.10/24", "dev", "eth0")
@@ -215,9 +237,15 @@ class WithAStandIn(Base):
         self.assertEqual(probed["claimant"], shown.stdout.strip())
         self.assertEqual((probed["own"], probed["trouble"]), ("", ""))
 
+    def test_the_command_post_is_found_at_whichever_port_it_is(self):
+        self.assertEqual(self.probe(hosts.SCORING)["found_on"], "darpa0")
+        self.assertEqual(self.probe("10.100.1.77")["found_on"], "")
+        hosts.ip("-n", self.network.team, "address", "add", "10.100.1.77/24", "dev", "eth0")
+        self.assertEqual(self.probe("10.100.1.77")["found_on"], "team0")
+
     def test_a_probe_does_not_wait_for_a_change(self):
         nonce = self.box.want(team="192.168.8.11")
-        asked = self.box.ask("probe.json")
+        asked = self.box.ask("probe.json", sought="")
         wait_until(lambda: (self.box.probed() or {}).get("nonce") == asked, "the probe's answer")
         self.assertTrue(self.box.pending())
         self.box.ask("word.json", nonce=nonce, word="confirm")
@@ -234,6 +262,7 @@ class WithNetworkd(Base):
     def setUp(self):
         super().setUp()
         networkd.needs_networkd()
+        hosts.ip("-n", self.network.box, "address", "flush", "dev", "darpa0")  # with its route, which networkd would keep
         self.box = networkd.AditNetwork(self.network, self.folder)
         self.networkd = networkd.Networkd(self.network, self.folder)
         self.addCleanup(self.networkd.stop)
@@ -250,15 +279,52 @@ class WithNetworkd(Base):
         self.ends()
         self.has(OLD)
 
+    def test_by_dhcp_comes_an_address_and_nothing_else(self):
+        server = dhcp.Server(self.network.team, "eth0", self.network.team_address, "192.168.7.77")
+        self.addCleanup(server.stop)
+        self.confirm_first()
+        self.box.ask("wanted.json", confirm_within_ms=60000, numbers={
+            **self.box.numbers(), "team": {"mode": "dhcp"}})
+        self.box.start()
+        self.has("192.168.7.77/24")
+        self.assertEqual(set(self.box.routes("main")) - {"169.254.0.0/16"}, {"192.168.7.0/24"})
+        self.assertEqual(self.box.pending()["wanted"]["team"], {"mode": "dhcp"})
+        self.box.ask("word.json", nonce=self.box.pending()["nonce"], word="back")
+        self.ends()
+        self.has(OLD)
+
+    def test_several_addresses_on_the_command_posts_side(self):
+        nonce = self.box.want(post=["10.100.1.10", "10.100.2.10", "10.100.1.11"], gateway="10.100.2.1")
+        three = ["10.100.1.10/24", "10.100.1.11/24", "10.100.2.10/24"]
+        wait_until(lambda: sorted(self.box.addresses("darpa0")) == three, "all three addresses")
+        self.box.ask("word.json", nonce=nonce, word="confirm")
+        self.ends()
+        self.assertEqual(self.box.status()["kept"]["command_post"]["gateway"], "10.100.2.1")
+        self.box.want(within_ms=1000, post=[])
+        wait_until(lambda: self.box.addresses("darpa0") == [], "no address")
+        self.ends()
+        wait_until(lambda: sorted(self.box.addresses("darpa0")) == three, "all three addresses again")
+
+    def test_networkd_may_start_anew_while_a_change_waits(self):
+        self.confirm_first()
+        self.box.want(within_ms=5000, team="192.168.8.11")
+        self.has(NEW)
+        self.networkd.start_anew()
+        self.assertEqual(self.box.addresses("team0"), [NEW])
+        self.ends()
+        self.has(OLD)
+        self.networkd.start_anew()
+        self.has(OLD)
+
     def test_a_confirmation_disturbs_nothing(self):
+        self.box.put("endpoints.json", endpoints=["10.100.1.200", "10.100.2.201", "172.20.0.1"])
         nonce = self.box.want(team="192.168.8.11", post="10.100.1.10", gateway="10.100.1.200")
         self.has(NEW)
         self.has("10.100.1.10/24", "darpa0")
-        wait_until(lambda: "10.100.0.0/16" in self.box.routes(), "the gateway's routes")
-        routes = self.box.routes()
-        for subnet in ("10.1.1.0/24", "10.2.1.0/24", "10.100.0.0/16"):
-            self.assertEqual(routes[subnet], ("10.100.1.200", "darpa0"))
-        self.assertNotIn("default", routes)
+        by_gateway = ("10.100.1.200", "darpa0")
+        ways = {"10.100.1.0/24": (None, "darpa0"), "10.100.2.201": by_gateway, "172.20.0.1": by_gateway}
+        wait_until(lambda: self.box.routes() == ways, "the ways to the endpoints and no others")
+        self.assertEqual(set(self.box.routes("main")) - {"169.254.0.0/16"}, {"192.168.8.0/24"})
         with WithAStandIn.monitored(self) as seen:
             self.box.ask("word.json", nonce=nonce, word="confirm")
             self.ends()
@@ -304,7 +370,7 @@ class WholeBox(Base):
     def path_unit(self):
         """As adit-network.path does."""
         while not self.stopping.wait(0.05):
-            if any((self.box.wanted / name).exists() for name in ("wanted.json", "word.json", "probe.json")):
+            if any((self.box.wanted / name).exists() for name in networkd.ASKED):
                 self.box.start()
                 while self.box.process.poll() is None and not self.stopping.wait(0.05):
                     pass
@@ -377,7 +443,7 @@ class WholeBox(Base):
     def test_the_test_finds_nothing_wrong_and_spends_no_report(self):
         steps = self.steps()
         self.assertEqual({name: state for name, state in self.states(steps).items() if state == "bad"}, {}, steps)
-        for name in ("link", "address", "reach", "token"):
+        for name in ("link", "address", "cables", "reach", "token"):
             self.assertEqual((steps[f"scoring {name}"]["state"], steps[f"mapping {name}"]["state"]), ("good", "good"), steps)
         self.assertEqual(self.stage.post.recorded(), [])
 
@@ -393,6 +459,13 @@ class WholeBox(Base):
         self.assertEqual(steps["scoring token"]["state"], "skipped")
         self.network.pull_cable()
         self.assertEqual(self.steps()["mapping link"]["state"], "bad")
+
+    def test_the_test_finds_the_command_post_at_the_wrong_port(self):
+        hosts.ip("-n", self.network.post, "address", "delete", f"{hosts.SCORING}/24", "dev", "eth0")
+        hosts.ip("-n", self.network.team, "address", "add", f"{hosts.SCORING}/24", "dev", "eth0")
+        cables = self.steps()["scoring cables"]
+        self.assertEqual(cables["state"], "bad", cables)
+        self.assertIn("10.100.1.200 is not at darpa0 but at team0", cables["said"])
 
     def test_the_test_finds_wrong_tokens(self):
         self.stage.box.stop()

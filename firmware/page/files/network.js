@@ -1,4 +1,4 @@
-// The box's own two addresses: changed for now, and for good only once that is confirmed from the new one.
+// The box's own addresses: changed for now, and for good only once that is confirmed from the new one.
 import { fromTo, reviewed } from "./apply.js";
 import { make, say } from "./dom.js";
 import { blame, labelled } from "./field.js";
@@ -9,27 +9,31 @@ const PAUSE = 300; // ms without a key
 const form = document.getElementById("addresses");
 const state = form.querySelector(".state"), outcome = form.querySelector(".outcome"), warned = form.querySelector(".warnings");
 const pendingPlace = document.getElementById("pending"), change = form.querySelector(".try");
+const MODE = "team.mode";
 const FIELDS = [
-  ["team.address", "Address", "Robots and stations post here."],
-  ["team.prefix", "Prefix length", "24 stands for 255.255.255.0."],
-  ["command_post.address", "Address", "The box’s own on the Command Post’s network, not an endpoint’s."],
-  ["command_post.prefix", "Prefix length", "16 stands for 255.255.0.0."],
-  ["command_post.gateway", "Gateway", "The way to endpoints outside of that subnet; empty: none."],
+  [MODE, "Mode", "By DHCP, or with a link-local address alone, the box is found as adit.local."],
+  ["team.address", "Address", "Robots and stations post here: 10.0.0.1/24."],
+  ["command_post.addresses", "Addresses", "The box’s own there, not an endpoint’s: 10.100.1.10/24; several with commas."],
+  ["command_post.gateway", "Gateway", "The way to endpoints outside of these subnets; empty: none."],
 ];
 const fields = new Map();
 let isTyped = false, asked = 0, timer = 0;
 
-const valueAt = (network, path) => path.split(".").reduce((value, name) => value?.[name], network) ?? "";
-
-/** What is typed, as the box takes it. */
+const text = ({ address, prefix }) => (address ? `${address}/${prefix}` : "");
+const host = (typed) => {
+  const [address, prefix = ""] = typed.trim().split("/");
+  return { address, prefix: /^\d{1,3}$/.test(prefix) ? Number(prefix) : prefix };
+};
+/** What the fields show of a network, and the network that they show. */
+const shown = ({ team, command_post: post }) => [team.mode, text(team), post.addresses.map(text).join(", "), post.gateway];
 function wanted() {
-  const of = (path) => fields.get(path).control.value.trim();
-  const whole = (path) => (/^\d{1,3}$/.test(of(path)) ? Number(of(path)) : of(path));
+  const [mode, address, addresses, gateway] = [...fields.values()].map(({ control }) => control.value.trim());
   return {
-    team: { address: of("team.address"), prefix: whole("team.prefix") },
-    command_post: { address: of("command_post.address"), prefix: whole("command_post.prefix"), gateway: of("command_post.gateway") },
+    team: { mode, ...(mode === "static" && host(address)) },
+    command_post: { addresses: addresses ? addresses.split(",").map(host) : [], gateway },
   };
 }
+const fieldAt = (path) => [...fields].find(([own]) => path.replace("prefix", "address").startsWith(own))?.[1];
 
 function report(text, bad = false) {
   outcome.dataset.bad = bad;
@@ -40,14 +44,15 @@ async function check() {
   const mine = ++asked;
   const verdict = await post("/adit/network/check", wanted());
   if (mine !== asked) return null;
-  const left = verdict.errors.filter(({ path }) => !fields.has(path));
-  for (const [path, field] of fields) blame(field, verdict.errors.filter((error) => error.path === path).map(({ what }) => what).join("; "));
+  const left = verdict.errors.filter(({ path }) => !fieldAt(path));
+  for (const field of fields.values()) blame(field, verdict.errors.filter(({ path }) => fieldAt(path) === field).map(({ what }) => what).join("; "));
   warned.replaceChildren(...left.map(({ path, what }) => make("li", `${path}: ${what}`)), ...verdict.warnings.map((warning) => make("li", warning)));
   return verdict;
 }
 
 function typed() {
   isTyped = true;
+  showMode();
   report("");
   clearTimeout(timer);
   timer = setTimeout(() => check().catch((error) => report(`${error.message} What you typed is kept.`, true)), PAUSE);
@@ -58,8 +63,7 @@ async function tryIt() {
   const verdict = await check();
   if (!verdict) return;
   if (verdict.errors.length) {
-    const field = fields.get(verdict.errors[0].path);
-    return field?.control.focus();
+    return fieldAt(verdict.errors[0].path)?.control.focus();
   }
   if (!verdict.changes.length) return report("The box has these addresses already.");
   const yes = await reviewed({
@@ -113,17 +117,22 @@ export function showNetwork(network) {
   change.hidden = !network.managed || !isOperator;
   change.disabled = barred;
   for (const button of pendingPlace.querySelectorAll("button")) button.hidden = !isOperator;
-  for (const [path, { control }] of fields) {
-    control.readOnly = barred;
-    if (!isTyped && document.activeElement !== control) control.value = valueAt(network, path);
-  }
+  [...fields.values()].forEach(({ control }, at) => {
+    control.disabled = barred;
+    if (!isTyped && document.activeElement !== control) control.value = shown(network)[at];
+  });
+  showMode();
 }
+
+const showMode = () => (fields.get("team.address").hidden = fields.get(MODE).control.value !== "static");
 
 export function offerNetwork() {
   for (const [path, label, hint] of FIELDS) {
-    const field = labelled(label, Object.assign(make("input"), { type: "text", inputMode: "decimal", autocomplete: "off", spellcheck: false }), hint);
+    const control = path === MODE ? make("select", ...["static", "dhcp", "link-local"].map((mode) => make("option", mode)))
+      : Object.assign(make("input"), { type: "text", autocomplete: "off", spellcheck: false });
+    const field = labelled(label, control, hint);
     field.dataset.path = path;
-    field.control.addEventListener("input", typed);
+    control.addEventListener("input", typed);
     fields.set(path, field);
     form.querySelector(`[data-side=${path.split(".")[0]}]`).append(field);
   }

@@ -6,6 +6,7 @@ const EVERY = 500; // ms
 const NAMES = {
   link: "Cable and link",
   address: "Nobody else has the box’s address",
+  cables: "Each cable is in its port",
   reach: "The endpoint answers",
   token: "The token is taken",
   clock: "The clocks agree",

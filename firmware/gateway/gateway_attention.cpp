@@ -3,6 +3,7 @@
 #include <iterator>
 
 #include "gateway/gateway.hpp"
+#include "icd/sentence.hpp"
 
 namespace adit::gateway {
 
@@ -27,6 +28,16 @@ std::vector<std::string> Gateway::attention() const {
   std::ranges::move(roster_.attention(loop_.now()), std::back_inserter(sentences));
   if (maps_.nearly_full()) sentences.emplace_back("the queue of maps is nearly full");
   return sentences;
+}
+
+/// Why the box should not be started anew just now, or "".
+std::string Gateway::report_under_way() const {
+  const dispatch::Reports& reports = scoring_.reports();
+  if (const auto* report = reports.sending())
+    return icd::sentence("report ", report->number, " is being sent: its answer would have to be found out");
+  const std::size_t waiting = reports.book().waiting().size();
+  if (waiting == 0) return "";
+  return icd::sentence(waiting, waiting == 1 ? " report waits" : " reports wait", " to be sent");
 }
 
 /// What was to be set up, and is not.

@@ -60,6 +60,7 @@ std::expected<Parts, std::string> gather(const Options& options, const Store& st
                .button = std::move(panel.button),
                .runtime_folder = runtime_folder(options),
                .state_folder = options.state,
+               .update_folder = options.update,
                .network_folder = options.network,
                .legacy = std::nullopt};
 }

@@ -16,6 +16,7 @@ const char* const kUsage =
     "and\n"
     "                   secrets/, which count before the other two; made where it is absent\n"
     "  --network DIR    where adit-network tells how it stands; /run/adit-network if not given\n"
+    "  --update DIR     where adit-update tells how it stands; /run/adit-update if not given\n"
     "  --board FILE     what the board is, and where its lights and its button are: counts before the "
     "settings'\n"
     "                   panel; may be absent\n"
@@ -45,6 +46,7 @@ std::expected<Options, std::string> parse_options(std::span<char* const> argumen
                                : word == "--secrets" ? &options.secrets
                                : word == "--state"   ? &options.state
                                : word == "--network" ? &options.network
+                               : word == "--update"  ? &options.update
                                : word == "--board"   ? &options.board
                                : word == "--notices" ? &options.notices
                                                      : nullptr;

@@ -9,6 +9,7 @@
 #include "cli/reports.hpp"
 #include "cli/settings.hpp"
 #include "cli/test.hpp"
+#include "cli/update.hpp"
 #include "host/log.hpp"
 
 namespace adit::cli {
@@ -34,6 +35,8 @@ Outcome run(std::span<const std::string_view> words, bool colour,
       return network(*options);
     case Command::Test:
       return test(*options, colour, print);
+    case Command::Update:
+      return update(*options, print);
     case Command::Check:
       return check(*options, colour);
     case Command::Help:

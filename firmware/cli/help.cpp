@@ -14,6 +14,7 @@ USAGE
   adit identify [SECONDS]
   adit network [show|confirm|back]
   adit test
+  adit update  [FILE] [--stick | --restart]
   adit check   [--json] [SETTINGS]
   adit help [COMMAND]
 
@@ -26,6 +27,7 @@ COMMANDS
   identify  makes the box's lights flash, to tell it from others
   network   the box's own addresses, and your word on a change of them that waits
   test      tries each endpoint of the Command Post step by step, and spends no report
+  update    the box's version, and the installation of another
   check     all that is wrong with a settings file, at once
 
 OPTIONS
@@ -267,6 +269,37 @@ EXAMPLES
   sudo adit test --json | jq '.endpoints[].steps[] | select(.state == "bad")'
 )";
 
+constexpr const char* kUpdate =
+    R"(adit update - the box's version, and the installation of another
+
+USAGE
+  adit update [FILE] [--again] [--json] [--token-file FILE] [--at ADDR:PORT | --settings FILE]
+  adit update --stick [--again]
+  adit update --restart [--anyway]
+
+WHAT IT DOES
+  Without a word it tells which version runs, in which of the two slots, and what became of the last update. FILE is
+  an update, adit-BOARD-VERSION.raucb: it is sent to the box, checked there, and installed into the slot that does
+  not run. That takes some minutes, and all goes on meanwhile.
+
+    --stick    installs the update that is on the USB stick in the box
+    --restart  starts the box anew, to use what was installed. Not while a report waits or is being sent, unless
+    --anyway   is said: it is not lost, but its answer has to be found out afterwards
+    --again    installs the version that runs already
+
+  What is installed is on trial: it stays once it has been healthy for a minute; where it does not come up in three
+  starts, the box goes back to the version before by itself. Another board's update, one that is not signed with a
+  key that the box knows, and an older version are refused.
+
+EXIT STATUS
+  0  all is well
+  1  the update was refused, failed or was left; a report is under way; nothing can be updated here
+  2  Adit cannot be reached or wants another token, FILE cannot be read, or the command line is wrong
+
+EXAMPLES
+  sudo adit update adit-qemu-virt-0.2.0.raucb && sudo adit update --restart
+)";
+
 constexpr const char* kCheck = R"(adit check - all that is wrong with a settings file, at once
 
 USAGE
@@ -309,6 +342,8 @@ const char* help_about(Command command) {
       return kNetwork;
     case Command::Test:
       return kTest;
+    case Command::Update:
+      return kUpdate;
     case Command::Check:
       return kCheck;
     case Command::Help:

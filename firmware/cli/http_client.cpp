@@ -118,18 +118,21 @@ std::string receive(int fd, Parser& parser, Clock::time_point deadline) {
   return "";
 }
 
-std::string written(const HttpRequest& request, const std::string& host) {
+/// All but the body.
+std::string head_of(const HttpRequest& request, const std::string& host) {
   const bool posts = request.method == HttpRequest::Method::Post;
   std::string text = posts ? "POST " : "GET ";
   text.append(request.target).append(" HTTP/1.1\r\nHost: ").append(host).append("\r\n");
   text.append("Accept: application/json\r\nConnection: close\r\n");
   if (posts) {
-    text.append("Content-Type: application/json\r\nContent-Length: ")
+    text.append("Content-Type: ")
+        .append(request.content_type)
+        .append("\r\nContent-Length: ")
         .append(std::to_string(request.body.size()))
         .append("\r\n");
   }
   if (request.token) text.append("Authorization: Bearer ").append(request.token->reveal()).append("\r\n");
-  return text.append("\r\n").append(request.body);
+  return text.append("\r\n");
 }
 
 }  // namespace
@@ -143,13 +146,15 @@ std::expected<HttpReply, NoReply> http_ask(const settings::Address& address, con
   };
   const auto fd = connected(address, deadline);
   if (!fd) return fail(reason(fd.error()), false);
-  if (const int error = send_all(fd->get(), written(request, host), deadline); error != 0) {
-    return fail(reason(error), true);
-  }
+  int error = send_all(fd->get(), head_of(request, host), deadline);
+  if (error == 0) error = send_all(fd->get(), request.body, deadline);
+  // Who refuses a long body says so and hangs up before it is whole.
+  const bool hung_up = error == EPIPE || error == ECONNRESET;
+  if (error != 0 && !hung_up) return fail(reason(error), true);
   Parser parser;
   parser.body_limit(kLargestBody);
   if (const std::string trouble = receive(fd->get(), parser, deadline); !trouble.empty()) {
-    return fail(trouble, true);
+    return fail(hung_up ? reason(error) : trouble, true);
   }
   return HttpReply{parser.get().result_int(), std::move(parser.get().body())};
 }

@@ -17,6 +17,7 @@ struct HttpRequest {
   std::string target;  // "/adit/run"
   std::optional<icd::BearerToken> token = std::nullopt;
   std::string body = "";  // of a POST: JSON, or nothing
+  std::string content_type = "application/json";
 };
 
 struct HttpReply {

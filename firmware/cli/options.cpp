@@ -13,11 +13,11 @@ struct CommandName {
   std::string_view name;
   Command command;
 };
-constexpr CommandName kCommands[] = {{"status", Command::Status},   {"reports", Command::Reports},
-                                     {"run", Command::Run},         {"settings", Command::Settings},
-                                     {"course", Command::Course},   {"identify", Command::Identify},
-                                     {"network", Command::Network}, {"test", Command::Test},
-                                     {"check", Command::Check},     {"help", Command::Help}};
+constexpr CommandName kCommands[] = {
+    {"status", Command::Status},     {"reports", Command::Reports}, {"run", Command::Run},
+    {"settings", Command::Settings}, {"course", Command::Course},   {"identify", Command::Identify},
+    {"network", Command::Network},   {"test", Command::Test},       {"update", Command::Update},
+    {"check", Command::Check},       {"help", Command::Help}};
 
 struct VerbName {
   std::string_view name;
@@ -58,6 +58,10 @@ bool takes(const Options& options, std::string_view option) {
   if (option == "--at" || option == "--token-file") return options.command != Command::Check;
   if (option == "--run") return lists;
   if (option == "--csv") return exports;
+  if (option == "--restart" || option == "--stick") return options.command == Command::Update;
+  if (option == "--again")
+    return options.command == Command::Update && (options.stick || !options.file.empty());
+  if (option == "--anyway") return options.command == Command::Update && options.restart;
   return true;
 }
 
@@ -104,6 +108,8 @@ class Parser {
         return take_seconds(word);
       case Command::Network:
         return take_word_of_network(word);
+      case Command::Update:
+        return options_.file.empty() ? void(options_.file = word) : too_many(word);
       case Command::Check:
         return std::exchange(filed_, true) ? too_many(word) : void(options_.settings = word);
       default:
@@ -119,6 +125,14 @@ class Parser {
       options_.json = true;
     } else if (word == "--csv") {
       options_.csv = true;
+    } else if (word == "--restart") {
+      options_.restart = true;
+    } else if (word == "--stick") {
+      options_.stick = true;
+    } else if (word == "--again") {
+      options_.again = true;
+    } else if (word == "--anyway") {
+      options_.anyway = true;
     } else if (word == "--at") {
       take_value(word, options_.at);
     } else if (word == "--settings") {
@@ -200,7 +214,8 @@ class Parser {
   void finish() {
     if (!commanded_) {
       return refuse(
-          "a command is missing: status, reports, run, settings, course, identify, network, test or check",
+          "a command is missing: status, reports, run, settings, course, identify, network, test, update or "
+          "check",
           "");
     }
     const auto useless =
@@ -212,6 +227,10 @@ class Parser {
     if (setting_ != nullptr && setting_->wants_file && options_.file.empty()) {
       return refuse("a file is missing after ", setting_->name);
     }
+    if (int{options_.stick} + int{options_.restart} +
+            int{options_.command == Command::Update && !options_.file.empty()} >
+        1)
+      return refuse("a file, --stick and --restart are three things: which one?", "");
     if (options_.command == Command::Network && options_.word.empty()) options_.word = "show";
     if (options_.numbers.size() < row_of(options_.verb).least) {
       refuse("a report's number is missing after ", row_of(options_.verb).name);

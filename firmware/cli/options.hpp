@@ -21,6 +21,7 @@ enum class Command : std::uint8_t {
   Identify,
   Network,
   Test,
+  Update,
   Check,
   Help
 };
@@ -48,8 +49,9 @@ struct Options {
   bool json = false, csv = false;
   std::string at;  // "ADDR:PORT"; empty: as the settings say
   Setting setting = Setting::Show;
-  std::string file;    // of settings: to check or apply
-  std::string course;  // to switch to; "": none
+  std::string file;  // of settings: to check or apply; of Update: the bundle
+  bool restart = false, stick = false, again = false, anyway = false;  // of Update
+  std::string course;                                                  // to switch to; "": none
   std::string settings = kGivenSettings;
   std::string saved_settings = kSavedSettings;
   std::string token_file;  // empty: in `secrets`

@@ -48,6 +48,8 @@ Gateway::Gateway(loop::Loop& loop, Parts parts)
                  {token_for("scoring", settings_, parts_.loaded.secrets),
                   token_for("mapping", settings_, parts_.loaded.secrets)},
                  network_requests_, network_, [this] { changed(); }),
+      updates_(loop, workers_, UpdateRequests(parts_.state_folder, parts_.update_folder),
+               [this] { return report_under_way(); }),
       page_(loop, *this, *this, accounts_, tokens()),
       routes_(icd_options(), *this, workers_, page_),
       second_(loop.timer([this] { every_second(); })),
@@ -56,6 +58,7 @@ Gateway::Gateway(loop::Loop& loop, Parts parts)
   page_.serve(setup_);
   page_.serve(box_);
   page_.serve(network_, self_test_);
+  page_.serve(updates_);
   if (parts_.legacy) hold_back();
 }
 

@@ -27,6 +27,7 @@
 #include "gateway/spool.hpp"
 #include "gateway/store.hpp"
 #include "gateway/this_box.hpp"
+#include "gateway/updates.hpp"
 #include "host/service.hpp"
 #include "intake/icd_routes.hpp"
 #include "lanes/stamps.hpp"
@@ -55,11 +56,13 @@ struct Parts {
   std::string trouble;  // for the operator: why the settings are not those that were wanted; or ""
   ledger::Ledger ledger;
   settings::Board board;
-  std::string board_trouble;  // why what the board's file says does not count; or ""
+  std::string board_trouble;         // why what the board's file says does not count; or ""
+  std::vector<std::string> notices;  // of those who started the box
   std::unique_ptr<panel::Lines> lines;
   std::unique_ptr<panel::ButtonLine> button;  // null: there is none
   std::string runtime_folder;
   std::string state_folder;
+  std::string update_folder;     // where adit-update tells its status
   std::string network_folder;    // where adit-network tells its status
   std::optional<Legacy> legacy;  // of the gateway before, where there was one
 };
@@ -133,6 +136,7 @@ class Gateway final : public intake::Desk, public page::Source, public page::Ope
   void show_address();
   std::string team_address() const;
   std::vector<std::string> attention() const;
+  std::string report_under_way() const;
   void say_what_is_missing(std::vector<std::string>& sentences) const;
   std::vector<page::EndpointRow> endpoints() const;
 
@@ -160,6 +164,7 @@ class Gateway final : public intake::Desk, public page::Source, public page::Ope
   ThisBox box_;
   NetworkChange network_;
   SelfTest self_test_;
+  Updates updates_;
   page::Page page_;
   intake::IcdRoutes routes_;
   std::vector<std::unique_ptr<intake::Server>> servers_;

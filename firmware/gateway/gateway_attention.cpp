@@ -3,6 +3,7 @@
 #include <iterator>
 
 #include "gateway/gateway.hpp"
+#include "icd/sentence.hpp"
 
 namespace adit::gateway {
 
@@ -29,11 +30,22 @@ std::vector<std::string> Gateway::attention() const {
   return sentences;
 }
 
+/// Why the box should not be started anew just now, or "".
+std::string Gateway::report_under_way() const {
+  const dispatch::Reports& reports = scoring_.reports();
+  if (const auto* report = reports.sending())
+    return icd::sentence("report ", report->number, " is being sent: its answer would have to be found out");
+  const std::size_t waiting = reports.book().waiting().size();
+  if (waiting == 0) return "";
+  return icd::sentence(waiting, waiting == 1 ? " report waits" : " reports wait", " to be sent");
+}
+
 /// What was to be set up, and is not.
 void Gateway::say_what_is_missing(std::vector<std::string>& sentences) const {
   for (const std::string* trouble : {&parts_.trouble, &parts_.loaded.trouble, &parts_.board_trouble}) {
     if (!trouble->empty()) sentences.push_back(*trouble);
   }
+  std::ranges::copy(parts_.notices, std::back_inserter(sentences));
   if (!scoring_.channel().has_token())
     sentences.emplace_back("no scoring token is set: reports wait until one is");
   if (!maps_.channel().has_token()) {

@@ -55,6 +55,7 @@ void Gateway::assert_states() {
   lights_.set(State::MappingFailing,
               !news_.channel().trouble().empty() || !maps_.channel().trouble().empty());
   lights_.set(State::NeedsOperator, !attention().empty());
+  lights_.set(State::UpdateRunning, updates_.running());
   lights_.set(State::CommandPostUnplugged, is_unplugged(settings_.command_post.interface));
   lights_.set(State::TeamUnplugged, is_unplugged(settings_.team.interface));
   if (lights_.has(State::SetUpOpen) && !accounts_.set_up_open()) {

@@ -8,6 +8,7 @@
 #include <utility>
 
 #include "gateway/gateway.hpp"
+#include "gateway/notices.hpp"
 #include "gateway/open_panel.hpp"
 #include "gateway/options.hpp"
 #include "gateway/version.hpp"
@@ -54,10 +55,12 @@ std::expected<Parts, std::string> gather(const Options& options, const Store& st
                .ledger = std::move(*ledger),
                .board = std::move(known.board),
                .board_trouble = std::move(known.trouble),
+               .notices = adit::gateway::read_notices(options.notices),
                .lines = std::move(panel.lines),
                .button = std::move(panel.button),
                .runtime_folder = runtime_folder(options),
                .state_folder = options.state,
+               .update_folder = options.update,
                .network_folder = options.network,
                .legacy = std::nullopt};
 }

@@ -16,9 +16,13 @@ const char* const kUsage =
     "and\n"
     "                   secrets/, which count before the other two; made where it is absent\n"
     "  --network DIR    where adit-network tells how it stands; /run/adit-network if not given\n"
+    "  --update DIR     where adit-update tells how it stands; /run/adit-update if not given\n"
     "  --board FILE     what the board is, and where its lights and its button are: counts before the "
     "settings'\n"
     "                   panel; may be absent\n"
+    "  --notices DIR    sentences for the operator, a file each, of whatever started the box; "
+    "/run/adit-notices if not\n"
+    "                   given\n"
     "  --version        prints the version\n"
     "  --help           prints this\n"
     "\n"
@@ -42,7 +46,9 @@ std::expected<Options, std::string> parse_options(std::span<char* const> argumen
                                : word == "--secrets" ? &options.secrets
                                : word == "--state"   ? &options.state
                                : word == "--network" ? &options.network
+                               : word == "--update"  ? &options.update
                                : word == "--board"   ? &options.board
+                               : word == "--notices" ? &options.notices
                                                      : nullptr;
     if (value == nullptr) return std::unexpected("unknown word '" + std::string(word) + "'");
     if (++i == arguments.size()) return std::unexpected(std::string(word) + " wants a value");

@@ -9,8 +9,9 @@ namespace adit::gateway {
 /// aditd's command line.
 struct Options {
   std::string settings, secrets, state;
-  std::string network = "/run/adit-network";
+  std::string network = "/run/adit-network", update = "/run/adit-update";
   std::string board;  // "": none
+  std::string notices = "/run/adit-notices";
   bool help = false, version = false;
 };
 

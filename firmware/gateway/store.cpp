@@ -35,6 +35,21 @@ std::expected<settings::Settings, std::string> read_settings(const std::string& 
   return std::unexpected(file + ": " + settings::sentence_of(settings.error()));
 }
 
+/// Those that were saved here. What a later Adit knew beside is left out: an update that was taken back must
+/// not cost the rest of them.
+std::expected<settings::Settings, std::string> read_saved(const std::string& file, std::string& trouble) {
+  const auto text = host::read_file(file);
+  if (!text) return std::unexpected(text.error());
+  auto saved = settings::parse_saved(*text);
+  if (!saved) return std::unexpected(file + ": " + settings::sentence_of(saved.error()));
+  if (!saved->passed_over.empty()) {
+    trouble = "a later Adit saved the settings, and these are passed over:";
+    for (const std::string& path : saved->passed_over) trouble += " " + path;
+    host::log(host::Level::Warning, trouble);
+  }
+  return std::move(saved->settings);
+}
+
 }  // namespace
 
 Store::Store(std::string given_settings, std::string given_secrets, std::string state_folder)
@@ -44,7 +59,7 @@ Store::Store(std::string given_settings, std::string given_secrets, std::string 
 
 std::expected<Store::Loaded, std::string> Store::load() const {
   Loaded loaded;
-  auto settings = read_settings(exists(file()) ? file() : given_settings_);
+  auto settings = exists(file()) ? read_saved(file(), loaded.trouble) : read_settings(given_settings_);
   loaded.saved = settings.has_value() && exists(file());
   if (!settings && exists(file())) {
     loaded.trouble =

@@ -8,6 +8,10 @@ namespace {
 
 constexpr std::int64_t kApplicationId = 0x41444954;  // "ADIT", in SQLite's file header
 constexpr std::int64_t kVersion = 3;                 // of the tables below, in user_version
+/// A later version that only adds to these tables writes 3 << 16 | its own number, so that the slot before an
+/// update can still work with its ledger.
+constexpr int kOldestAt = 16;
+constexpr std::int64_t kVersionBits = 0xffff;
 
 /// `history` is a row's own, not a table: a step is then one row of one page to write.
 constexpr const char* kTables = R"(
@@ -65,10 +69,11 @@ constexpr const char* kTakeOver[] = {"", R"(
   DROP TABLE old_run;
 )"};
 
-/// What the file's header says it is; both are 0 in a new file.
+/// What the file's header says it is; all are 0 in a new file.
 struct Kind {
   std::int64_t application = 0;
   std::int64_t version = 0;
+  std::int64_t oldest = 0;  // the version whose Adit can still work with these tables
 
   bool is_ledger() const { return application == kApplicationId; }
 };
@@ -78,7 +83,8 @@ Attempt<Kind> kind_of(Database& database) {
   if (!application) return std::unexpected(application.error());
   const auto version = database.number("PRAGMA user_version");
   if (!version) return std::unexpected(version.error());
-  return Kind{*application, *version};
+  const std::int64_t oldest = *version >> kOldestAt;
+  return Kind{*application, oldest > 0 ? *version & kVersionBits : *version, oldest > 0 ? oldest : *version};
 }
 
 std::unexpected<Failure> no_ledger(std::string why) {
@@ -98,7 +104,7 @@ Attempt<void> check_version(Database& database) {
   }
   const std::string version = "version " + std::to_string(kind->version);
   if (kind->version < 1) return no_ledger("it has " + version + ", which there never was");
-  if (kind->version > kVersion) {
+  if (kind->oldest > kVersion) {
     std::string sentence = "a later Adit wrote this ledger (" + version + ", and this one reads up to ";
     sentence += std::to_string(kVersion) + "): run that Adit, or move the ledger out of its folder";
     return std::unexpected(Failure{{std::move(sentence)}, false});
@@ -109,7 +115,7 @@ Attempt<void> check_version(Database& database) {
 Attempt<void> make_tables(Database& database) {
   const auto kind = kind_of(database);
   if (!kind) return std::unexpected(kind.error());
-  if (kind->is_ledger() && kind->version == kVersion) return {};
+  if (kind->is_ledger() && kind->version >= kVersion) return {};
   Transaction transaction(database);
   if (auto begun = transaction.begin(); !begun) return begun;
   const auto old = static_cast<std::size_t>(kind->is_ledger() ? kind->version : 0);

@@ -16,6 +16,7 @@
 #include "page/session_routes.hpp"
 #include "page/settings_routes.hpp"
 #include "page/site.hpp"
+#include "page/update_routes.hpp"
 
 namespace adit::page {
 namespace {
@@ -52,7 +53,8 @@ class Page::Impl {
         reports_(source, judge, [this] { live_.changed(); }) {}
 
   std::unique_ptr<intake::Exchange> open(const intake::RequestHead& head,
-                                         std::shared_ptr<intake::Responder> responder) {
+                                         std::shared_ptr<intake::Responder> responder,
+                                         std::shared_ptr<intake::Flow> flow) {
     if (!is_guarded(head.path())) {
       responder->answer(file(head));
       return nullptr;
@@ -70,6 +72,7 @@ class Page::Impl {
     if (ReportRoutes::has(head.path())) return reports_.open(head, std::move(responder));
     if (PanelRoute::has(head.path())) return panel_.open(head, std::move(responder));
     if (network_ && NetworkRoutes::has(head.path())) return network_->open(head, std::move(responder));
+    if (updates_ && UpdateRoutes::has(head.path())) return updates_->open(head, responder, std::move(flow));
     if (MapRoutes::has(head.path())) {
       responder->answer(maps_.answer(head));
     } else if (SceneRoutes::has(head.path())) {
@@ -86,6 +89,9 @@ class Page::Impl {
   }
   void serve(Network& network, SelfTest& test) {
     network_.emplace(network, test, [this] { live_.changed(); });
+  }
+  void serve(Updates& updates) {
+    updates_.emplace(updates, [this] { live_.changed(); });
   }
   void serve(Box& box) { box_.emplace(source_, box, entrance_, loop_); }
   void changed() { live_.changed(); }
@@ -119,6 +125,7 @@ class Page::Impl {
   SceneRoutes scene_;
   PanelRoute panel_;
   std::optional<NetworkRoutes> network_;
+  std::optional<UpdateRoutes> updates_;
   ReportRoutes reports_;
   std::optional<SettingsRoutes> settings_;
 };
@@ -134,12 +141,16 @@ void Page::serve(Setup& setup) {
 
 std::unique_ptr<intake::Exchange> Page::open(const intake::RequestHead& head,
                                              std::shared_ptr<intake::Responder> responder,
-                                             std::shared_ptr<intake::Flow>) {
-  return impl_->open(head, std::move(responder));
+                                             std::shared_ptr<intake::Flow> flow) {
+  return impl_->open(head, std::move(responder), std::move(flow));
 }
 
 void Page::serve(Box& box) {
   impl_->serve(box);
+}
+
+void Page::serve(Updates& updates) {
+  impl_->serve(updates);
 }
 
 void Page::serve(Network& network, SelfTest& test) {

@@ -23,6 +23,7 @@ class Keys;
 class Network;
 class SelfTest;
 class Setup;
+class Updates;
 
 /// One artifact report and where it is in its life.
 struct ReportRow {
@@ -189,6 +190,9 @@ class Page final : public intake::Handler {
 
   /// Serves the box's own addresses and the Test, too; they outlive this. Once, before anything is opened.
   void serve(Network& network, SelfTest& test);
+
+  /// Serves the update of the box, too; it outlives this. Once, before anything is opened.
+  void serve(Updates& updates);
 
   /// Serves what is known of the box, too; it outlives this. Once, before anything is opened.
   void serve(Box& box);

@@ -83,6 +83,7 @@ void Reader::read_list(const Value& value, const std::string& pattern, const std
 
 void Reader::tell_unknown(const std::string& name, const std::vector<Child>& children,
                           const std::string& path) {
+  if (passes_unknown) return passed_over.push_back(joined(path, shown_name(name)));
   std::vector<std::string_view> known;
   std::string list;
   for (const Child& child : children) {

@@ -21,6 +21,8 @@ class Reader {
 
   Settings settings;
   std::vector<Error> errors;
+  bool passes_unknown = false;           // unknown keys are no errors
+  std::vector<std::string> passed_over;  // their paths
 
  private:
   void read_child(const Child& child, const codec::Value& value, const std::string& pattern,

@@ -19,6 +19,16 @@ bool only_the_version(const std::vector<Error>& errors, const Value& root) {
          std::ranges::any_of(errors, is_version, &Error::path);
 }
 
+std::expected<Settings, std::vector<Error>> read(Reader& reader, const Value& root) {
+  reader.read_object(root, "", "");
+  if (only_the_version(reader.errors, root)) {
+    std::erase_if(reader.errors, [](const Error& error) { return error.path != "version"; });
+  }
+  if (reader.errors.empty()) reader.errors = contradictions(reader.settings);
+  if (!reader.errors.empty()) return std::unexpected(std::move(reader.errors));
+  return std::move(reader.settings);
+}
+
 }  // namespace
 
 std::expected<Settings, std::vector<Error>> parse(std::string_view json) {
@@ -29,13 +39,17 @@ std::expected<Settings, std::vector<Error>> parse(std::string_view json) {
 
 std::expected<Settings, std::vector<Error>> parse(const Value& root) {
   Reader reader;
-  reader.read_object(root, "", "");
-  if (only_the_version(reader.errors, root)) {
-    std::erase_if(reader.errors, [](const Error& error) { return error.path != "version"; });
-  }
-  if (reader.errors.empty()) reader.errors = contradictions(reader.settings);
-  if (!reader.errors.empty()) return std::unexpected(std::move(reader.errors));
-  return std::move(reader.settings);
+  return read(reader, root);
+}
+
+std::expected<Saved, std::vector<Error>> parse_saved(std::string_view json) {
+  const auto root = codec::parse_json(json);
+  if (!root) return std::unexpected(std::vector<Error>{{"", "not JSON: " + root.error()}});
+  Reader reader;
+  reader.passes_unknown = true;
+  auto settings = read(reader, *root);
+  if (!settings) return std::unexpected(std::move(settings.error()));
+  return Saved{std::move(*settings), std::move(reader.passed_over)};
 }
 
 Settings in_use(Settings settings) {

@@ -118,6 +118,14 @@ struct Error {
 std::expected<Settings, std::vector<Error>> parse(std::string_view json);
 std::expected<Settings, std::vector<Error>> parse(const codec::Value& root);
 
+/// Of a file that Adit itself wrote, and perhaps a later one, of an update that was taken back: keys that
+/// this version does not know are passed over.
+struct Saved {
+  Settings settings;
+  std::vector<std::string> passed_over;  // the paths of these keys
+};
+std::expected<Saved, std::vector<Error>> parse_saved(std::string_view json);
+
 /// The settings as they work while their course is in use: its endpoints are the Command Post's, and each
 /// robot's alias is in the rules. Requires settings that parse() gave.
 Settings in_use(Settings settings);

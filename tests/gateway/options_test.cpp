@@ -22,12 +22,13 @@ TEST(Options, AreTheThreeThatTheServiceNeeds) {
   EXPECT_EQ(options->state, "c");
 }
 
-TEST(Options, MayNameTheBoardAndTheFolderOfTheNetwork) {
-  const auto options =
-      parse({"--settings", "a", "--secrets", "b", "--state", "c", "--board", "d", "--network", "e"});
+TEST(Options, MayNameTheBoardAndTheFoldersOfOthers) {
+  const auto options = parse({"--settings", "a", "--secrets", "b", "--state", "c", "--board", "d",
+                              "--network", "e", "--notices", "f"});
   ASSERT_TRUE(options);
   EXPECT_EQ(options->board, "d");
   EXPECT_EQ(options->network, "e");
+  EXPECT_EQ(options->notices, "f");
   EXPECT_EQ(parse({"--settings", "a", "--secrets", "b", "--state", "c"})->board, "");
   EXPECT_EQ(parse({"--board"}).error(), "--board wants a value");
 }

@@ -78,6 +78,21 @@ TEST_F(StoreTest, SetsSavedSettingsAsideThatCannotBeUnderstood) {
   EXPECT_EQ(store_.load().value().trouble, "");
 }
 
+TEST_F(StoreTest, PassesOverWhatALaterAditSavedBeside) {
+  ASSERT_TRUE(store_.save(with_connections(30)));
+  std::string text = host::read_file(state_ / "settings.json").value();
+  text.insert(text.find('{') + 1, R"("beacons": {"port": 7}, )");
+  const std::string team = R"("team":)";
+  ASSERT_NE(text.find(team), std::string::npos) << text;
+  text.insert(text.find('{', text.find(team)) + 1, R"("mesh": [1, 2], )");
+  state_.put("settings.json", text);
+  const auto loaded = store_.load().value();
+  EXPECT_TRUE(loaded.saved);
+  EXPECT_EQ(loaded.settings.team.connections, 30u);
+  EXPECT_EQ(loaded.trouble, "a later Adit saved the settings, and these are passed over: beacons team.mesh");
+  EXPECT_EQ(host::read_file(state_ / "settings.json"), text) << "the later Adit finds it as it was";
+}
+
 TEST_F(StoreTest, SaysWhyNothingCanBeUsed) {
   std::filesystem::remove(given_ / "settings.json");
   EXPECT_EQ(store_.load().error(), (given_ / "settings.json") + ": No such file or directory");

@@ -182,6 +182,49 @@ TEST(LedgerOfVersion2, HasTheSameTablesAfterwardsAsANewOne) {
   expect_the_tables_of_a_new_one(kVersion2);
 }
 
+/// What a later version might add, and say that version 3 can live with.
+constexpr const char* kAdditions = R"(
+  ALTER TABLE report ADD COLUMN robot TEXT NOT NULL DEFAULT '';
+  CREATE TABLE more(thing TEXT NOT NULL) STRICT;
+  INSERT INTO more VALUES ('kept');
+  UPDATE report SET robot = 'ugv1';
+  PRAGMA user_version = 196612; -- 3 << 16 | 4
+)";
+
+TEST(LedgerOfALaterVersionThatOnlyAdds, IsWorkedWithAndKeepsItsAdditions) {
+  const Folder folder;
+  {
+    auto ledger = open_or_fail(folder);
+    ASSERT_TRUE(write(ledger, backpack(1)));
+  }
+  by_hand(folder, kAdditions);
+  {
+    auto ledger = open_or_fail(folder);
+    EXPECT_EQ(ledger.damage(), "");
+    dispatch::Report first = find_or_fail(ledger, 1);
+    EXPECT_EQ(first, backpack(1));
+    first.state = ReportState::Sending;
+    ASSERT_TRUE(write(ledger, first));
+    ASSERT_TRUE(write(ledger, backpack(2)));
+  }
+  EXPECT_THAT(by_hand(folder, "PRAGMA user_version"), ElementsAre("196612"));
+  EXPECT_THAT(by_hand(folder, "SELECT thing FROM more"), ElementsAre("kept"));
+  EXPECT_THAT(by_hand(folder, "SELECT number || state || robot FROM report ORDER BY number"),
+              ElementsAre("1sendingugv1", "2waiting"));
+}
+
+TEST(LedgerOfALaterVersionThatOnlyAdds, IsRefusedWhereThatIsToAVersionLaterThanThis) {
+  const Folder folder;
+  {
+    auto ledger = open_or_fail(folder);
+  }
+  by_hand(folder, "PRAGMA user_version = 262149");  // 4 << 16 | 5
+  const auto refused = Ledger::open(folder.text());
+  ASSERT_FALSE(refused);
+  EXPECT_THAT(refused.error().what, HasSubstr("version 5, and this one reads up to 3"));
+  EXPECT_THAT(by_hand(folder, "PRAGMA user_version"), ElementsAre("262149"));
+}
+
 TEST(LedgerOfALaterVersion, IsRefusedWithASentenceAndStaysAsItIs) {
   const Folder folder;
   {

@@ -6,6 +6,7 @@
 #include <map>
 #include <memory>
 #include <optional>
+#include <regex>
 #include <sstream>
 #include <string>
 #include <utility>
@@ -158,6 +159,14 @@ inline std::string file_on_disk(std::string_view path) {
   std::ifstream file(std::string(ADIT_SOURCE_DIR "/firmware/page/files") + std::string(path),
                      std::ios::binary);
   return {std::istreambuf_iterator<char>(file), {}};
+}
+
+/// Scripts are embedded without the lines that are a comment.
+inline std::string as_embedded(std::string_view path) {
+  std::string text = file_on_disk(path);
+  if (!path.ends_with(".js")) return text;
+  static const std::regex comment(R"((^|\n) *(//[^\n]*|/\*\*[^\n]*\*/))");
+  return std::regex_replace(text, comment, "$1");
 }
 
 }  // namespace adit::page

@@ -46,7 +46,7 @@ TEST_F(PageTest, ServesItsFilesWithTheirTypes) {
 
 TEST_F(PageTest, EmbedsItsFilesByteForByte) {
   for (const File& file : embedded_files()) {
-    EXPECT_EQ(file.body, file_on_disk(file.path)) << file.path;
+    EXPECT_EQ(file.body, as_embedded(file.path)) << file.path;
     EXPECT_NE(content_type_of(file), "application/octet-stream") << file.path;
   }
 }

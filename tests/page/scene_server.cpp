@@ -14,6 +14,7 @@
 #include "page/fake_network.hpp"
 #include "page/map_scene.hpp"
 #include "page/played.hpp"
+#include "page/played_updates.hpp"
 #include "page/scenes.hpp"
 
 namespace adit::page {
@@ -107,10 +108,12 @@ int serve(std::uint16_t port, const std::string& first, const std::string& more)
   keys.set_up = more == "set-up-open";
   FakeNetwork network;
   FakeTest test;
+  PlayedUpdates updates;
   Page page{loop, stage, stage, keys, {token()}};
   furnish(box, loop.stamp_now());
   page.serve(box);
   page.serve(network, test);
+  page.serve(updates);
   auto server = intake::Server::start(loop, {.address = "127.0.0.1", .port = port, .interface = {}}, page);
   if (!server) return std::fprintf(stderr, "%s\n", server.error().c_str()), 1;
   std::printf("%d\n", (*server)->port());

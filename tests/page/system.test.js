@@ -271,3 +271,47 @@ test("can be used by keyboard alone", async (t) => {
   }
   for (const id of ["log", "sessions", "passwords", "bundle", "about", "reset"]) assert.ok(reached.has(id), id);
 });
+
+const updating = (page) => page.locator("#update");
+const aFile = (text) => ({ name: "adit-a-board-0.2.0.raucb", mimeType: "", buffer: Buffer.from(text) });
+
+test("tells which version runs and what became of the last update", async (t) => {
+  const { page } = await come(t);
+  await updating(page).getByText("0.1.0, slot A. 0.0.9 left: it did not come up healthy in three starts").waitFor();
+  assert.deepEqual(page.complaints, []);
+});
+
+test("installs an update from a file, and says why one was refused", async (t) => {
+  const { page } = await come(t);
+  const file = updating(page).getByLabel("The update"), install = updating(page).getByRole("button", { name: "Install it" });
+  await file.setInputFiles(aFile("xxx"));
+  await install.click();
+  await updating(page).getByText("Invalid bundle format: Signature size is 0").waitFor();
+  await file.setInputFiles(aFile("good"));
+  await install.click();
+  await updating(page).getByText("0.1.0, slot A. 0.2.0 waits for a restart").waitFor();
+  assert.deepEqual(page.complaints, []);
+});
+
+test("installs what is on a stick, and shows how far it is", async (t) => {
+  const { page } = await come(t);
+  await updating(page).getByRole("button", { name: "Install 0.3.0 from the stick" }).click();
+  await updating(page).getByText("The box is installing.").waitFor();
+  assert.equal(await updating(page).getByRole("progressbar").getAttribute("value"), "40");
+  assert.equal(await updating(page).getByRole("button").count(), 0, "one at a time");
+});
+
+test("restarts the box only on the operator's word while a report waits", async (t) => {
+  const { page } = await come(t);
+  await updating(page).getByRole("button", { name: "Restart the box" }).click();
+  const dialog = page.locator("#confirm");
+  await dialog.getByText("1 report waits to be sent").waitFor();
+  await dialog.getByRole("button", { name: "Restart" }).click();
+  await updating(page).getByText("The box is restarting.").waitFor();
+});
+
+test("lets a viewer see the update and do nothing", async (t) => {
+  const { page } = await come(t, VIEWER);
+  await updating(page).getByText("0.1.0, slot A").waitFor();
+  assert.equal(await updating(page).getByRole("button").count(), 0);
+});

@@ -10,8 +10,14 @@ const MOST = 80_000;
 const files = readdirSync(FOLDER);
 const read = (name) => readFileSync(FOLDER + name);
 
+/** As toolchain/cmake/embed.cmake puts it into aditd: scripts without the lines that are a comment. */
+function embedded(name) {
+  if (!name.endsWith(".js")) return read(name);
+  return `\n${read(name)}`.replaceAll(/\n *(\/\/[^\n]*|\/\*\*[^\n]*\*\/)/g, "\n").slice(1);
+}
+
 test("all pages together weigh at most 80 kB gzipped", (t) => {
-  const bytes = files.reduce((sum, name) => sum + gzipSync(read(name)).length, 0);
+  const bytes = files.reduce((sum, name) => sum + gzipSync(embedded(name)).length, 0);
   t.diagnostic(`${files.length} files, ${bytes} bytes gzipped`);
   assert.ok(bytes > 10_000 && bytes <= MOST, `${bytes} bytes`);
 });

@@ -1,5 +1,5 @@
 // The support bundle, the factory reset, and what the box is made of.
-import { open } from "./dialog.js";
+import { confirmed, open } from "./dialog.js";
 import { make } from "./dom.js";
 import { get, getFile, post, sitOutReset } from "./session.js";
 import { age, bytes, clip } from "./words.js";
@@ -72,4 +72,49 @@ export async function showAbout() {
   } catch (error) {
     section.querySelector(".trouble").textContent = error.message;
   }
+}
+
+const STAGES = { installed: "waits for a restart", good: "came up healthy" };
+
+export async function offerUpdate(operator) {
+  const section = document.getElementById("update"), bar = section.querySelector("progress");
+  const [file, install, stick, restart] = section.querySelectorAll("input, button");
+  const [told, outcome] = section.querySelectorAll("p");
+  let timer;
+  function show({ managed, why, version, slot, doing, progress, refusal, trial, last, stick: offer, stick_why: unfit }) {
+    const end = last && `${last.version} ${trial ? "is on trial" : STAGES[last.stage] ?? last.stage}${last.why && `: ${last.why}`}`;
+    told.textContent = managed ? [`${version}, slot ${slot}`, end, unfit].filter(Boolean).join(". ") : why;
+    outcome.textContent = doing ? `The box is ${doing}.` : refusal ?? "";
+    outcome.dataset.bad = !doing && Boolean(refusal);
+    bar.hidden = !doing;
+    if (progress !== null) bar.value = progress;
+    for (const node of [file, install, stick, restart]) node.hidden = !operator || !managed || Boolean(doing);
+    stick.hidden ||= !offer;
+    if (offer) stick.textContent = `Install ${offer.version} from the stick`;
+  }
+  async function look() {
+    clearTimeout(timer);
+    await get("/adit/update").then(show, () => {});
+    timer = setTimeout(look, 2000);
+  }
+  function act(deed) {
+    look();
+    deed().then(look, (error) => {
+      clearTimeout(timer);
+      timer = setTimeout(look, 9000);
+      outcome.textContent = error.message;
+      outcome.dataset.bad = true;
+    });
+  }
+  install.addEventListener("click", () => file.files[0] && act(() => post("/adit/update", file.files[0])));
+  stick.addEventListener("click", () => act(() => post("/adit/update/stick")));
+  restart.addEventListener("click", () => act(async () => {
+    try {
+      await post("/adit/update/restart");
+    } catch (error) {
+      if (error.status !== 409 || !(await confirmed({ title: "Restart the box?", text: error.message, word: "Restart" }))) throw error;
+      await post("/adit/update/restart", { anyway: true });
+    }
+  }));
+  look();
 }

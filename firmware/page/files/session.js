@@ -79,9 +79,10 @@ export async function getFile(path) {
 }
 
 async function send(path, body, csrf) {
-  const headers = { "Content-Type": "application/json" };
+  const file = body instanceof Blob;
+  const headers = { "Content-Type": file ? "application/octet-stream" : "application/json" };
   if (csrf) headers["Adit-CSRF"] = csrf;
-  const request = { method: "POST", headers, body: JSON.stringify(body) };
+  const request = { method: "POST", headers, body: file ? body : JSON.stringify(body) };
   return resultOf(await fetch(path, request).catch(() => Promise.reject(new Error(SILENT))));
 }
 

@@ -1,7 +1,7 @@
 // The box itself: its log, who is logged in, passwords, what to send to whoever is to help, and what it is made of.
 import { badge } from "./dom.js";
 import { followLog } from "./log.js";
-import { offerBundle, offerReset, showAbout } from "./box.js";
+import { offerBundle, offerReset, offerUpdate, showAbout } from "./box.js";
 import { watchSessions } from "./logins.js";
 import { offerPasswords } from "./passwords.js";
 import { followNetwork } from "./pending.js";
@@ -24,6 +24,7 @@ async function begin() {
   followLog(linkIs);
   followNetwork();
   showAbout();
+  offerUpdate(operator);
   if (!operator) return;
   watchSessions();
   offerPasswords();

@@ -1,0 +1,69 @@
+#include "applier/bundle_file.hpp"
+
+#include <fcntl.h>
+#include <sys/stat.h>
+#include <unistd.h>
+
+#include <cerrno>
+#include <utility>
+
+#include "host/files.hpp"
+#include "icd/sentence.hpp"
+#include "update/messages.hpp"
+
+namespace adit::applier {
+namespace {
+
+/// O_NONBLOCK: a FIFO must not hold this up.
+constexpr int kOpen = O_RDONLY | O_NOFOLLOW | O_NONBLOCK | O_NOCTTY | O_CLOEXEC;
+
+std::expected<loop::FileDescriptor, std::string> open_plain(const std::string& path,
+                                                            const std::string& name) {
+  loop::FileDescriptor file(::open(path.c_str(), kOpen));
+  if (!file) return std::unexpected(host::trouble(name, errno));
+  struct stat status{};
+  if (fstat(file.get(), &status) != 0) return std::unexpected(host::trouble(name, errno));
+  if (!S_ISREG(status.st_mode)) return std::unexpected(name + ": expected a plain file");
+  if (status.st_size == 0) return std::unexpected(name + ": it is empty");
+  if (std::cmp_greater(status.st_size, update::kLargestBundle)) {
+    return std::unexpected(icd::sentence(name, ": it has ", status.st_size, " bytes, and at most ",
+                                         update::kLargestBundle, " were expected"));
+  }
+  return file;
+}
+
+/// From now on nobody but this user can open it; and a lease is given only where nobody has it open for
+/// writing (fcntl(2)).
+std::expected<void, std::string> make_ours(const loop::FileDescriptor& file, const std::string& name) {
+  if (fchown(file.get(), geteuid(), getegid()) != 0 || fchmod(file.get(), S_IRUSR) != 0)
+    return std::unexpected(host::trouble(name, errno));
+  if (fcntl(file.get(), F_SETLEASE, F_RDLCK) != 0) {
+    return std::unexpected(errno == EAGAIN ? name + ": somebody writes to it" : host::trouble(name, errno));
+  }
+  fcntl(file.get(), F_SETLEASE, F_UNLCK);
+  return {};
+}
+
+}  // namespace
+
+std::expected<BundleFile, std::string> BundleFile::take(const host::UntrustedFolder& folder,
+                                                        const std::string& name) {
+  const std::string path = folder.path_by_descriptor() + '/' + name;
+  auto file = open_plain(path, name);
+  if (unlink(path.c_str()) != 0 && errno == EISDIR) rmdir(path.c_str());
+  if (!file) return std::unexpected(file.error());
+  if (auto ours = make_ours(*file, name); !ours) return std::unexpected(ours.error());
+  return BundleFile(std::move(*file));
+}
+
+std::expected<BundleFile, std::string> BundleFile::open(const std::string& path) {
+  auto file = open_plain(path, path.substr(path.rfind('/') + 1));
+  if (!file) return std::unexpected(file.error());
+  return BundleFile(std::move(*file));
+}
+
+std::string BundleFile::path() const {
+  return icd::sentence("/proc/", getpid(), "/fd/", file_.get());
+}
+
+}  // namespace adit::applier

@@ -1,0 +1,68 @@
+#include "applier/health_watch.hpp"
+
+#include <chrono>
+#include <thread>
+
+#include "applier/rauc.hpp"
+#include "applier/story_file.hpp"
+#include "host/log.hpp"
+#include "host/output.hpp"
+#include "host/service.hpp"
+#include "update/health.hpp"
+
+namespace adit::applier {
+namespace {
+
+using host::Level;
+
+constexpr std::chrono::seconds kAnswer{30};
+/// How often systemd is asked: of a slot on trial; of one that only its settings keep from being ready.
+constexpr std::chrono::seconds kOnTrial{2}, kElse{10};
+
+std::chrono::microseconds now() {
+  return std::chrono::duration_cast<std::chrono::microseconds>(
+      std::chrono::steady_clock::now().time_since_epoch());  // CLOCK_MONOTONIC, as systemd's
+}
+
+update::Ready ready(const std::string& systemctl) {
+  const auto said = host::output_of(
+      {systemctl, "show", "--property=ActiveState,ActiveEnterTimestampMonotonic", "adit.service"}, kAnswer);
+  return update::read_ready(said.out, now());
+}
+
+std::expected<void, std::string> restart(const std::string& systemctl) {
+  host::log(Level::Error, "this slot did not come up healthy in time: the machine is started anew");
+  const auto said = host::output_of({systemctl, "reboot"}, kAnswer);
+  if (said.trouble.empty()) return {};
+  return std::unexpected("the machine cannot be started anew: " + said.trouble);
+}
+
+/// adit-update tells everybody.
+std::expected<void, std::string> pass_trial(const UpdateOptions& options, update::Story story) {
+  host::log(Level::Notice, "the update is healthy", {{"version", story.version}, {"slot", story.slot}});
+  story.stage = update::Stage::Good;
+  if (!save_story(options.state, story)) return std::unexpected("the trial cannot be ended");
+  host::output_of({options.systemctl, "start", "--no-block", "adit-update.service"}, kAnswer);
+  return {};
+}
+
+}  // namespace
+
+std::expected<void, std::string> watch_health(const UpdateOptions& options) {
+  const Rauc rauc(options.rauc);
+  const auto running = rauc.status();
+  if (!running) return std::unexpected(running.error());
+  const update::Story story = load_story(options.state);
+  const bool trial = update::on_trial(story, running->slot, host::boot());
+  const auto late_at = now() + options.within;
+  while (true) {
+    const auto health = update::judge(trial, ready(options.systemctl), now() >= late_at);
+    if (health == update::Health::Restart) return restart(options.systemctl);
+    if (health == update::Health::Good) break;
+    std::this_thread::sleep_for(trial ? kOnTrial : kElse);
+  }
+  if (auto marked = rauc.mark_good(); !marked) return marked;
+  return trial ? pass_trial(options, story) : std::expected<void, std::string>{};
+}
+
+}  // namespace adit::applier

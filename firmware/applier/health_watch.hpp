@@ -1,0 +1,13 @@
+#pragma once
+
+#include <expected>
+#include <string>
+
+#include "applier/update_options.hpp"
+
+namespace adit::applier {
+
+/// `adit-update good`: waits until the slot that runs is good and marks it so, or starts the machine anew.
+std::expected<void, std::string> watch_health(const UpdateOptions& options);
+
+}  // namespace adit::applier

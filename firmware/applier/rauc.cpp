@@ -1,0 +1,61 @@
+#include "applier/rauc.hpp"
+
+#include "host/output.hpp"
+
+namespace adit::applier {
+namespace {
+
+/// A slot of a slow card is written in some minutes.
+constexpr std::chrono::minutes kInstall{20};
+constexpr std::chrono::seconds kAnswer{60};
+
+std::string fault(const host::Output& said) {
+  std::string fault = update::fault_in(said.out, said.err);
+  return fault.empty() ? "rauc: " + said.trouble : fault;
+}
+
+std::expected<std::string, std::string> ask(const std::vector<std::string>& words) {
+  host::Output said = host::output_of(words, kAnswer);
+  if (!said.trouble.empty()) return std::unexpected(fault(said));
+  return std::move(said.out);
+}
+
+std::expected<void, std::string> mark(const std::string& command, const char* how) {
+  if (const auto said = ask({command, "status", how, "booted"}); !said) return std::unexpected(said.error());
+  return {};
+}
+
+}  // namespace
+
+std::expected<update::Running, std::string> Rauc::status() const {
+  const auto said = ask({command_, "status", "--output-format=json"});
+  if (!said) return std::unexpected(said.error());
+  return update::read_status(*said);
+}
+
+std::expected<update::Bundle, std::string> Rauc::info(const std::string& bundle) const {
+  const auto said = ask({command_, "info", "--output-format=json", bundle});
+  if (!said) return std::unexpected(said.error());
+  return update::read_info(*said);
+}
+
+std::expected<void, std::string> Rauc::install(const std::string& bundle,
+                                               const std::function<void(int)>& progress) const {
+  const host::Output said = host::output_of({command_, "install", "--progress", bundle}, kInstall,
+                                            [&progress](std::string_view line) {
+                                              if (const auto percent = update::percent_in(line))
+                                                progress(*percent);
+                                            });
+  if (said.trouble.empty()) return {};
+  return std::unexpected(fault(said));
+}
+
+std::expected<void, std::string> Rauc::mark_good() const {
+  return mark(command_, "mark-good");
+}
+
+std::expected<void, std::string> Rauc::mark_active() const {
+  return mark(command_, "mark-active");
+}
+
+}  // namespace adit::applier

@@ -1,0 +1,32 @@
+#pragma once
+
+#include <expected>
+#include <functional>
+#include <string>
+
+#include "applier/update_options.hpp"
+#include "update/bundle.hpp"
+
+namespace adit::applier {
+
+/// RAUC, as a program. What it says of a bundle is after its signature was found good. Errors are sentences.
+class Rauc {
+ public:
+  explicit Rauc(std::string command) : command_(std::move(command)) {}
+
+  /// Which board and slot this is; not the version.
+  std::expected<update::Running, std::string> status() const;
+  std::expected<update::Bundle, std::string> info(const std::string& bundle) const;
+  /// Writes the slot that does not run, and has it started next. `progress`: per cent, as it goes.
+  std::expected<void, std::string> install(const std::string& bundle,
+                                           const std::function<void(int)>& progress) const;
+  /// The slot that runs came up healthy: its count of starts begins anew.
+  std::expected<void, std::string> mark_good() const;
+  /// The slot that runs is to be started next, before the other.
+  std::expected<void, std::string> mark_active() const;
+
+ private:
+  std::string command_;
+};
+
+}  // namespace adit::applier

@@ -1,0 +1,29 @@
+#pragma once
+
+#include <expected>
+#include <span>
+#include <string>
+
+#include "update/health.hpp"
+
+namespace adit::applier {
+
+/// adit-update's command line.
+struct UpdateOptions {
+  std::string wanted = "/var/lib/private/adit";  // where aditd asks
+  std::string status = "/run/adit-update";       // where it is answered, for everybody to read
+  std::string state = "/var/lib/adit-update";    // what became of the last update
+  std::string stick = "/run/adit-stick";         // where a USB stick is mounted
+  std::string os_release = "/etc/os-release";    // says which version runs
+  std::string rauc = "rauc", systemctl = "systemctl";
+  std::chrono::seconds within = update::kGoodWithin;  // of `good`
+  bool good = false;  // watches the start of the machine, rather than doing what is asked for
+  bool help = false, version = false;
+};
+
+extern const char* const kUpdateUsage;
+
+/// What is wrong names the word it is about.
+std::expected<UpdateOptions, std::string> parse_update_options(std::span<char* const> arguments);
+
+}  // namespace adit::applier

@@ -1,0 +1,188 @@
+#include "applier/updater.hpp"
+
+#include <unistd.h>
+
+#include <utility>
+
+#include "applier/stick.hpp"
+#include "applier/story_file.hpp"
+#include "host/log.hpp"
+#include "host/output.hpp"
+#include "host/service.hpp"
+#include "icd/sentence.hpp"
+
+namespace adit::applier {
+namespace {
+
+using host::Level;
+using update::Stage;
+
+constexpr int kForAll = 0644;
+constexpr std::chrono::seconds kRestart{30};
+
+/// VERSION_ID of os-release(5), with or without quotation marks; "" where there is none.
+std::string version_in(const std::string& path) {
+  constexpr std::string_view kName = "\nVERSION_ID=";
+  const std::string text = icd::sentence("\n", host::read_file(path).value_or(""));
+  const std::size_t at = text.find(kName);
+  if (at == std::string::npos) return "";
+  std::string value = text.substr(at + kName.size(), text.find('\n', at + 1) - at - kName.size());
+  std::erase(value, '"');
+  return value;
+}
+
+}  // namespace
+
+std::expected<void, std::string> Updater::work() {
+  const std::string file = options_.status + '/' + update::kStatusFile;
+  const bool first = access(file.c_str(), F_OK) != 0;
+  if (const auto before = host::read_file(file)) {
+    if (const auto status = update::read_status_file(*before)) status_.nonce = status->nonce;
+  }
+  boot_ = host::boot();
+  find_out();
+  look_at_stick();
+  if (!tell()) return std::unexpected("the status cannot be told");
+  const auto folder = host::UntrustedFolder::open(options_.wanted);
+  if (folder) {
+    take_requests(*folder, first);
+  } else {
+    host::log(Level::Info, "nobody asks for anything", {{"why", folder.error()}});
+  }
+  return {};
+}
+
+/// Which slot runs, and what that says of the last update.
+void Updater::find_out() {
+  const auto running = rauc_.status();
+  if (running) {
+    status_.running = *running;
+  } else {
+    status_.trouble = "RAUC does not run here: " + running.error();
+  }
+  status_.running.version = version_in(options_.os_release);
+  const update::Story kept = load_story(options_.state);
+  update::Story story = running ? update::settled(kept, status_.running, boot_) : kept;
+  if (story.stage == Stage::Left && kept.stage != Stage::Left) {
+    if (const auto active = rauc_.mark_active(); !active)
+      host::log(Level::Error, "the boot loader would try it again", {{"why", active.error()}});
+  }
+  if (story == kept) {
+    status_.last = std::move(story);
+  } else {
+    tell_of(std::move(story));
+  }
+  status_.trial = update::on_trial(status_.last, status_.running.slot, boot_);
+}
+
+void Updater::look_at_stick() {
+  if (!status_.trouble.empty()) return;
+  OnStick found = applier::look_at_stick(options_.stick, rauc_, status_.running);
+  status_.stick = std::move(found.offer);
+  status_.stick_trouble = std::move(found.trouble);
+}
+
+/// `drop`: they are taken away and not done.
+void Updater::take_requests(const host::UntrustedFolder& folder, bool drop) {
+  while (true) {
+    auto text = folder.take(update::kRequestFile);
+    if (text && !*text) break;
+    const auto request = text ? update::read_request(**text)
+                              : std::expected<update::Request, std::string>(std::unexpected(text.error()));
+    if (drop) continue;
+    if (request) {
+      answer(*request, folder);
+    } else {
+      host::log(Level::Warning, "refused what was asked for", {{"why", request.error()}});
+    }
+  }
+  if (drop) (void)BundleFile::take(folder, update::kBundleFile);  // whatever it is, it is gone
+}
+
+void Updater::answer(const update::Request& request, const host::UntrustedFolder& folder) {
+  using What = update::Request::What;
+  status_.nonce = request.nonce;
+  status_.refusal.clear();
+  if (request.what == What::Install) {
+    status_.refusal = install(BundleFile::take(folder, update::kBundleFile), request.again);
+  } else if (request.what == What::Restart) {
+    status_.refusal = restart();
+  } else if (look_at_stick(); status_.stick) {
+    status_.refusal = install(BundleFile::open(options_.stick + '/' + status_.stick->name), request.again);
+  } else {
+    status_.refusal = status_.stick_trouble.empty() ? "there is no update on a stick" : status_.stick_trouble;
+  }
+  if (!status_.refusal.empty()) host::log(Level::Warning, "refused", {{"why", status_.refusal}});
+  tell();
+}
+
+std::string Updater::install(const std::expected<BundleFile, std::string>& file, bool again) {
+  if (!file) return file.error();
+  if (!status_.trouble.empty()) return status_.trouble;
+  if (status_.trial) {
+    return icd::sentence(status_.running.version, " is on trial: wait until it has been healthy for ", 60,
+                         " s");
+  }
+  status_.doing = "checking";
+  tell();
+  const auto bundle = rauc_.info(file->path());
+  std::string why = bundle ? update::hindrance(*bundle, status_.running, again) : bundle.error();
+  if (why.empty()) why = write(*file, *bundle);
+  status_.doing.clear();
+  status_.progress.reset();
+  return why;
+}
+
+std::string Updater::write(const BundleFile& file, const update::Bundle& bundle) {
+  update::Story story{
+      .stage = Stage::Installing, .version = bundle.version, .slot = status_.running.other, .boot = boot_};
+  // Were that not kept, the slot would not be on trial.
+  if (!save_story(options_.state, story)) return "it cannot be written down that it is being installed";
+  status_.doing = "installing";
+  status_.progress = 0;
+  tell_of(story);
+  tell();
+  const auto installed = rauc_.install(file.path(), [this](int percent) {
+    status_.progress = percent;
+    tell();
+  });
+  story.stage = installed ? Stage::Installed : Stage::Failed;
+  story.why = installed ? "" : installed.error();
+  tell_of(story);
+  return story.why;
+}
+
+std::string Updater::restart() {
+  status_.doing = "restarting";
+  tell();
+  host::log(Level::Notice, "starting the machine anew");
+  const auto said = host::output_of({options_.systemctl, "reboot"}, kRestart);
+  if (said.trouble.empty()) return "";
+  status_.doing.clear();
+  return "it cannot be started anew: " + (said.err.empty() ? said.trouble : host::escaped(said.err));
+}
+
+void Updater::tell_of(update::Story story) {
+  host::log(story.stage == Stage::Left || story.stage == Stage::Failed ? Level::Error : Level::Notice,
+            "an update",
+            {{"version", story.version},
+             {"slot", story.slot},
+             {"stage", std::string(name_of(story.stage))},
+             {"why", story.why}});
+  save_story(options_.state, story);
+  status_.last = std::move(story);
+}
+
+bool Updater::tell() {
+  std::string text = update::write(status_);
+  if (text == told_) return true;
+  const auto written = host::write_file(options_.status + '/' + update::kStatusFile, text, kForAll);
+  if (!written) {
+    host::log(Level::Error, "the status cannot be told", {{"why", written.error()}});
+    return false;
+  }
+  told_ = std::move(text);
+  return true;
+}
+
+}  // namespace adit::applier

@@ -1,0 +1,42 @@
+#pragma once
+
+#include <optional>
+#include <string>
+
+#include "applier/bundle_file.hpp"
+#include "applier/rauc.hpp"
+#include "applier/update_options.hpp"
+#include "update/messages.hpp"
+
+namespace adit::applier {
+
+/// adit-update at work: does what aditd asks for, one thing after the other, and tells how it stands.
+class Updater {
+ public:
+  /// Outlives this.
+  explicit Updater(const UpdateOptions& options) : options_(options), rauc_(options.rauc) {}
+
+  /// Until nothing is asked for. An error: its own folders are not as they should be. What was asked before
+  /// the machine was started anew is dropped: whoever asked has seen that it came to nothing.
+  std::expected<void, std::string> work();
+
+ private:
+  void find_out();
+  void look_at_stick();
+  void take_requests(const host::UntrustedFolder& folder, bool drop);
+  void answer(const update::Request& request, const host::UntrustedFolder& folder);
+  /// "", or why it is not done.
+  std::string install(const std::expected<BundleFile, std::string>& file, bool again);
+  std::string write(const BundleFile& file, const update::Bundle& bundle);
+  std::string restart();
+  void tell_of(update::Story story);
+  bool tell();
+
+  const UpdateOptions& options_;
+  Rauc rauc_;
+  std::string boot_;
+  update::Status status_;
+  std::string told_;
+};
+
+}  // namespace adit::applier

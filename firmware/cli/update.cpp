@@ -1,0 +1,192 @@
+#include "cli/update.hpp"
+
+#include <chrono>
+#include <fstream>
+#include <iterator>
+#include <thread>
+
+#include "cli/ask.hpp"
+#include "cli/http_client.hpp"
+#include "cli/reading.hpp"
+#include "cli/where.hpp"
+#include "host/log.hpp"
+#include "icd/sentence.hpp"
+#include "update/messages.hpp"
+
+namespace adit::cli {
+namespace {
+
+/// For a bundle over a slow link, and for a slot of a slow card.
+constexpr std::chrono::minutes kUpload{30}, kInstall{25};
+constexpr std::chrono::milliseconds kEvery{500};
+
+/// What `adit update` shows of GET /adit/update.
+struct View {
+  bool managed = false, trial = false;
+  std::string why = "", board = "", version = "", slot = "", doing = "", refusal = "", stick_why = "";
+  std::optional<double> progress = {};
+  std::string stick = "", stick_name = "";
+  std::string stage = "", last_version = "", last_why = "";
+};
+
+/// "" where it is null
+std::string text_or_none(const codec::Field& object, std::string_view name) {
+  return object.member(name).is_absent() ? "" : text(object, name);
+}
+
+View read_view(const codec::Field& root) {
+  View view{.managed = root.member("managed").truth(),
+            .trial = root.member("trial").truth(),
+            .why = text(root, "why"),
+            .board = text(root, "board"),
+            .version = text(root, "version"),
+            .slot = text(root, "slot"),
+            .doing = text_or_none(root, "doing"),
+            .refusal = text_or_none(root, "refusal"),
+            .stick_why = text_or_none(root, "stick_why"),
+            .progress = number_or_null(root, "progress")};
+  const codec::Field stick = root.member("stick"), last = root.member("last");
+  if (!stick.is_absent()) {
+    view.stick_name = text(stick, "name");
+    view.stick = text(stick, "version");
+  }
+  if (!last.is_absent()) {
+    view.stage = text(last, "stage");
+    view.last_version = text(last, "version");
+    view.last_why = text(last, "why");
+  }
+  return view;
+}
+
+/// What became of the last update, or "".
+std::string last_line(const View& view) {
+  if (view.stage.empty()) return "";
+  const std::string name = icd::sentence("update ", view.last_version);
+  if (view.stage == "good") return icd::sentence(name, " came up healthy\n");
+  if (view.trial) return icd::sentence(name, " is on trial until it has been healthy for a minute\n");
+  if (view.stage == "installed")
+    return icd::sentence(name, " is installed: restart to use it (adit update --restart)\n");
+  if (view.stage == "installing") return icd::sentence(name, " is being installed\n");
+  return host::escaped(icd::sentence(name, " was ", view.stage, ": ", view.last_why)) + '\n';
+}
+
+std::string text_of(const View& view) {
+  if (!view.managed) return icd::sentence("Nothing can be updated here: ", host::escaped(view.why), "\n");
+  std::string out =
+      host::escaped(icd::sentence(view.version, " runs, in slot ", view.slot, " of ", view.board)) + '\n';
+  if (!view.doing.empty()) out += icd::sentence("The box is ", host::escaped(view.doing), "\n");
+  if (!view.refusal.empty())
+    out += icd::sentence("The last one was refused: ", host::escaped(view.refusal), "\n");
+  out += last_line(view);
+  if (!view.stick.empty())
+    out += host::escaped(icd::sentence("On the stick is ", view.stick, " (", view.stick_name,
+                                       "): adit update --stick")) +
+           '\n';
+  if (!view.stick_why.empty()) out += icd::sentence("On the stick: ", host::escaped(view.stick_why), "\n");
+  return out;
+}
+
+Exit exit_of(const View& view) {
+  const bool failed = view.stage == "failed" || view.stage == "left" || view.stage == "interrupted";
+  return failed || !view.managed || !view.refusal.empty() ? Exit::Attention : Exit::Fine;
+}
+
+std::expected<View, std::string> understood(const Adit& adit, const std::string& json) {
+  auto view = read<View>(json, read_view);
+  if (view) return view;
+  return std::unexpected("Adit at " + written(adit.address) + " cannot be understood: " + view.error());
+}
+
+Outcome show(const Adit& adit, const Options& options) {
+  const auto json = get(adit, "/adit/update");
+  if (!json) return unable(json.error());
+  const auto view = understood(adit, *json);
+  if (!view) return unable(view.error());
+  return {exit_of(*view), options.json ? *json + '\n' : text_of(*view), ""};
+}
+
+std::expected<std::string, std::string> read_bundle(const std::string& path) {
+  std::ifstream file(path, std::ios::binary | std::ios::ate);
+  if (!file) return std::unexpected(path + ": it cannot be read");
+  const auto size = static_cast<std::streamoff>(file.tellg());
+  if (size <= 0) return std::unexpected(path + ": it is empty, or no file");
+  if (std::cmp_greater(size, update::kLargestBundle))
+    return std::unexpected(path + ": it is too large for an update");
+  std::string bytes(static_cast<std::size_t>(size), '\0');
+  file.seekg(0);
+  if (!file.read(bytes.data(), size)) return std::unexpected(path + ": it cannot be read");
+  return bytes;
+}
+
+/// Until nothing is done any more.
+Outcome follow(const Adit& adit, const Options& options,
+               const std::function<void(const std::string&)>& print) {
+  std::string told;
+  for (const auto until = std::chrono::steady_clock::now() + kInstall;;) {
+    const auto json = get(adit, "/adit/update");
+    if (!json) return unable(json.error());
+    const auto view = understood(adit, *json);
+    if (!view) return unable(view.error());
+    if (view->doing.empty())
+      return {exit_of(*view),
+              options.json            ? *json + '\n'
+              : view->refusal.empty() ? last_line(*view)
+                                      : icd::sentence("it was refused: ", host::escaped(view->refusal), "\n"),
+              ""};
+    std::string line = icd::sentence(host::escaped(view->doing), "\n");
+    if (view->progress) line = icd::sentence(host::escaped(view->doing), " ", *view->progress, " %\n");
+    if (!options.json && line != told) print(line);
+    told = line;
+    if (std::chrono::steady_clock::now() >= until) return unable("the box is still at it: see adit update");
+    std::this_thread::sleep_for(kEvery);
+  }
+}
+
+Outcome refused(const Adit& adit, const HttpReply& reply) {
+  if (reply.status == 401) return unable(unknown_token(adit));
+  const std::string sentence = sentence_in(reply.body);
+  Outcome outcome = unable(sentence.empty() ? "Adit at " + written(adit.address) + " answered " +
+                                                  std::to_string(reply.status) + " (is that Adit?)"
+                                            : sentence);
+  if (reply.status == 409 || reply.status == 413) outcome.exit = Exit::Attention;
+  return outcome;
+}
+
+Outcome upload(const Adit& adit, const Options& options,
+               const std::function<void(const std::string&)>& print) {
+  auto bundle = read_bundle(options.file);
+  if (!bundle) return unable(bundle.error());
+  if (!options.json) print(icd::sentence("sending ", bundle->size() >> 20, " MiB\n"));
+  const auto reply = http_ask(adit.address,
+                              {.method = HttpRequest::Method::Post,
+                               .target = options.again ? "/adit/update?again=1" : "/adit/update",
+                               .token = adit.token.token,
+                               .body = std::move(*bundle),
+                               .content_type = "application/octet-stream"},
+                              kUpload);
+  if (!reply) return unable(reply.error().sentence);
+  if (reply->status != 200) return refused(adit, *reply);
+  return follow(adit, options, print);
+}
+
+}  // namespace
+
+Outcome update(const Options& options, const std::function<void(const std::string&)>& print) {
+  const auto adit = adit_of(options);
+  if (!adit) return unable(adit.error());
+  if (!options.file.empty()) return upload(*adit, options, print);
+  if (!options.stick && !options.restart) return show(*adit, options);
+  const std::string flag = options.stick ? (options.again ? R"({"again": true})" : "{}")
+                                         : (options.anyway ? R"({"anyway": true})" : "{}");
+  const auto body =
+      post(*adit, options.stick ? "/adit/update/stick" : "/adit/update/restart", flag, "adit update");
+  if (!body) {
+    Outcome outcome = unable(body.error().sentence);
+    outcome.exit = body.error().exit;
+    return outcome;
+  }
+  if (options.stick) return follow(*adit, options, print);
+  return {Exit::Fine, options.json ? *body + '\n' : "the box starts anew\n", ""};
+}
+
+}  // namespace adit::cli

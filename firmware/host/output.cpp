@@ -1,0 +1,114 @@
+#include "host/output.hpp"
+
+#include <fcntl.h>
+#include <poll.h>
+#include <signal.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <cerrno>
+#include <cstdlib>
+#include <cstring>
+#include <optional>
+#include <utility>
+
+#include "host/spawn.hpp"
+#include "loop/file_descriptor.hpp"
+
+namespace adit::host {
+namespace {
+
+using Clock = std::chrono::steady_clock;
+
+struct Pipe {
+  loop::FileDescriptor from, to;
+};
+
+std::optional<Pipe> make_pipe() {
+  int ends[2];
+  if (pipe2(ends, O_CLOEXEC) != 0) return std::nullopt;
+  return Pipe{loop::FileDescriptor(ends[0]), loop::FileDescriptor(ends[1])};
+}
+
+std::vector<std::string> clean_environment() {
+  std::vector<std::string> clean = {"LC_ALL=C"};
+  for (const char* name : {"PATH", "DBUS_SYSTEM_BUS_ADDRESS"}) {
+    if (const char* value = std::getenv(name)) clean.push_back(std::string(name) + '=' + value);
+  }
+  return clean;
+}
+
+/// One of the two ends that are read.
+class Ear {
+ public:
+  Ear(int fd, std::string& heard) : fd_(fd), heard_(heard) {}
+  int fd() const { return over_ ? -1 : fd_; }  // poll(2) passes over -1
+  bool over() const { return over_; }
+
+  void read() {
+    char buffer[4096];
+    const ssize_t size = ::read(fd_, buffer, sizeof buffer);
+    if (size < 0 && errno == EINTR) return;
+    over_ = size <= 0;
+    if (over_) return;
+    heard_.append(buffer, static_cast<std::size_t>(size));
+    if (heard_.size() <= Output::kMostKept) return;
+    const std::size_t surplus = heard_.size() - Output::kMostKept;
+    heard_.erase(0, surplus);
+    told_ -= std::min(told_, surplus);
+  }
+  /// The whole lines that have not been told.
+  void tell(const std::function<void(std::string_view)>& line) {
+    for (std::size_t end; (end = heard_.find('\n', told_)) != std::string::npos; told_ = end + 1) {
+      if (line) line(std::string_view(heard_).substr(told_, end - told_));
+    }
+  }
+
+ private:
+  int fd_;
+  std::string& heard_;
+  std::size_t told_ = 0;
+  bool over_ = false;
+};
+
+/// Until both have ended; false where that takes longer.
+bool hear(Ear& out, Ear& err, Clock::time_point until, const std::function<void(std::string_view)>& line) {
+  while (!out.over() || !err.over()) {
+    const auto left = std::chrono::ceil<std::chrono::milliseconds>(until - Clock::now()).count();
+    pollfd ready[] = {{out.fd(), POLLIN, 0}, {err.fd(), POLLIN, 0}};
+    const int count = left > 0 ? poll(ready, 2, static_cast<int>(left)) : 0;
+    if (count < 0 && errno == EINTR) continue;
+    if (count <= 0) return false;
+    if (ready[0].revents != 0) {
+      out.read();
+      out.tell(line);
+    }
+    if (ready[1].revents != 0) err.read();
+  }
+  return true;
+}
+
+}  // namespace
+
+Output output_of(const std::vector<std::string>& words, std::chrono::milliseconds within,
+                 const std::function<void(std::string_view)>& line) {
+  Output output;
+  auto out = make_pipe(), err = make_pipe();
+  const auto environment = clean_environment();
+  const auto process = out && err ? spawn(words, out->to.get(), err->to.get(), &environment)
+                                  : std::expected<pid_t, int>(std::unexpected(errno));
+  if (!process) {
+    output.trouble = words.front() + ": " + std::strerror(process.error());
+    return output;
+  }
+  out->to = loop::FileDescriptor();
+  err->to = loop::FileDescriptor();
+  Ear outs(out->from.get(), output.out), errs(err->from.get(), output.err);
+  const bool in_time = hear(outs, errs, Clock::now() + within, line);
+  if (!in_time) kill(*process, SIGKILL);
+  output.trouble = await_end(*process);
+  if (!in_time) output.trouble = "took longer than " + std::to_string(within.count()) + " ms";
+  return output;
+}
+
+}  // namespace adit::host

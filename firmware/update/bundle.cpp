@@ -1,0 +1,105 @@
+#include "update/bundle.hpp"
+
+#include <charconv>
+#include <functional>
+
+#include "codec/field.hpp"
+#include "codec/json.hpp"
+#include "icd/sentence.hpp"
+#include "update/version.hpp"
+
+namespace adit::update {
+namespace {
+
+using codec::Field;
+using codec::Value;
+
+constexpr std::size_t kLongestFault = 300;
+constexpr std::string_view kLastError = "LastError: ";
+
+/// RAUC lists slots as objects of one member, the slot's name.
+void take_slot(const Value& slot, const std::string& booted, Running& running) {
+  const auto* named = std::get_if<Value::Object>(&slot.is);
+  if (named == nullptr || named->size() != 1) return;
+  codec::Reading reading;
+  const Field field(named->front().second, reading);
+  const Field name = field.member("bootname");
+  if (name.is_absent() || !name.is<std::string>()) return;  // a part of another slot
+  if (name.text() != booted) running.other = name.text();
+}
+
+void for_each_line(std::string_view text, const std::function<void(std::string_view)>& tell) {
+  while (!text.empty()) {
+    const std::size_t end = text.find('\n');
+    tell(text.substr(0, end));
+    if (end == std::string_view::npos) return;
+    text.remove_prefix(end + 1);
+  }
+}
+
+}  // namespace
+
+std::expected<Bundle, std::string> read_info(std::string_view json) {
+  const auto root = codec::parse_json(json);
+  if (!root) return std::unexpected("RAUC says no JSON of the bundle: " + root.error());
+  codec::Reading reading;
+  const Field field(*root, reading);
+  const Field compatible = field.member("compatible"), version = field.member("version");
+  Bundle bundle{std::string(compatible.text()), std::string(version.text())};
+  if (reading.refused()) return std::unexpected("the bundle: " + reading.outcome(0).error().sentence);
+  return bundle;
+}
+
+std::expected<Running, std::string> read_status(std::string_view json) {
+  const auto root = codec::parse_json(json);
+  if (!root) return std::unexpected("RAUC says no JSON of the box: " + root.error());
+  codec::Reading reading;
+  const Field field(*root, reading);
+  const Field compatible = field.member("compatible"), booted = field.member("booted"),
+              slots = field.member("slots");
+  Running running{.compatible = std::string(compatible.text()), .slot = std::string(booted.text())};
+  slots.size();
+  if (reading.refused()) return std::unexpected("RAUC: " + reading.outcome(0).error().sentence);
+  for (const Value& slot : std::get<Value::Array>(slots.value()->is)) take_slot(slot, running.slot, running);
+  if (running.other.empty())
+    return std::unexpected("RAUC knows no slot beside " + icd::in_quotes(running.slot));
+  return running;
+}
+
+std::optional<int> percent_in(std::string_view line) {
+  const std::size_t digit = line.find_first_not_of(' ');
+  if (digit == std::string_view::npos) return std::nullopt;
+  int percent = 0;
+  const auto [end, error] = std::from_chars(line.data() + digit, line.data() + line.size(), percent);
+  if (error != std::errc{} || end == line.data() + line.size() || *end != '%') return std::nullopt;
+  return percent >= 0 && percent <= 100 ? std::optional(percent) : std::nullopt;
+}
+
+std::string fault_in(std::string_view out, std::string_view err) {
+  std::string_view fault;
+  for_each_line(err, [&fault](std::string_view line) {
+    if (!line.empty() && !line.starts_with("rauc-Message")) fault = line;
+  });
+  for_each_line(out, [&fault](std::string_view line) {
+    if (line.starts_with(kLastError)) fault = line.substr(kLastError.size());
+  });
+  return std::string(fault.substr(0, kLongestFault));
+}
+
+std::string hindrance(const Bundle& bundle, const Running& running, bool again) {
+  if (bundle.compatible != running.compatible) {
+    return icd::sentence("it is for another board: ", icd::in_quotes(bundle.compatible), ", and this one is ",
+                         icd::in_quotes(running.compatible));
+  }
+  const auto offered = Version::parse(bundle.version), present = Version::parse(running.version);
+  if (!offered) return "its version cannot be read: " + icd::in_quotes(bundle.version);
+  if (!present) return "the version that runs cannot be read: " + icd::in_quotes(running.version);
+  if (*offered < *present) {
+    return icd::sentence("it is older than what runs: ", bundle.version, ", and this is ", running.version);
+  }
+  if (*offered == *present && !again)
+    return bundle.version + " runs already: say so if it is to be installed again";
+  return "";
+}
+
+}  // namespace adit::update

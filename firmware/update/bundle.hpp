@@ -1,0 +1,39 @@
+#pragma once
+
+#include <expected>
+#include <optional>
+#include <string>
+#include <string_view>
+
+namespace adit::update {
+
+/// What an update says of itself, once its signature was found good.
+struct Bundle {
+  std::string compatible = "";  // the board that it is for: "adit-qemu-virt"
+  std::string version = "";
+};
+
+/// What the box is.
+struct Running {
+  std::string compatible = "";
+  std::string version = "";
+  std::string slot = "";   // the boot loader's name: "A"
+  std::string other = "";  // the slot that an update goes into: "B"
+  friend bool operator==(const Running&, const Running&) = default;
+};
+
+/// Reads what `rauc info --output-format=json` and `rauc status --output-format=json` print; an error says
+/// what is not as it must be. Running::version is not RAUC's to know.
+std::expected<Bundle, std::string> read_info(std::string_view json);
+std::expected<Running, std::string> read_status(std::string_view json);
+
+/// The per cent in a line of `rauc install --progress`, " 40% Verifying signature done."
+std::optional<int> percent_in(std::string_view line);
+
+/// What RAUC says went wrong, out of its standard output and its standard error.
+std::string fault_in(std::string_view out, std::string_view err);
+
+/// Why the bundle must not be installed, or "". `again`: the version that runs already may be.
+std::string hindrance(const Bundle& bundle, const Running& running, bool again);
+
+}  // namespace adit::update

@@ -1,0 +1,178 @@
+#include "update/messages.hpp"
+
+#include <algorithm>
+#include <initializer_list>
+#include <utility>
+
+#include "codec/field.hpp"
+#include "codec/json.hpp"
+#include "icd/sentence.hpp"
+#include "network/messages.hpp"
+
+namespace adit::update {
+namespace {
+
+using codec::Field;
+using codec::Value;
+
+constexpr std::int64_t kFormat = 1;  // of these files
+
+constexpr std::pair<std::string_view, Request::What> kWhat[] = {{"install", Request::What::Install},
+                                                                {"stick", Request::What::Stick},
+                                                                {"restart", Request::What::Restart}};
+constexpr Stage kStages[] = {Stage::None,      Stage::Installing, Stage::Interrupted, Stage::Failed,
+                             Stage::Installed, Stage::Left,       Stage::Good};
+
+std::string written(Value::Object members) {
+  members.insert(members.begin(), {"format", {kFormat}});
+  return codec::write_json({std::move(members)}) + '\n';
+}
+
+/// An object of exactly these members.
+void only(const Field& field, std::initializer_list<std::string_view> names) {
+  const auto* object = field.value() == nullptr ? nullptr : std::get_if<Value::Object>(&field.value()->is);
+  if (object == nullptr) return field.refuse_kind("an object");
+  for (const auto& [name, value] : *object) {
+    if (std::ranges::find(names, name) == names.end()) field.refuse("no such member: ", icd::in_quotes(name));
+  }
+}
+
+template <class Message, class Make>
+Read<Message> read(std::string_view json, Make make) {
+  const auto root = codec::parse_json(json);
+  if (!root) return std::unexpected("no JSON: " + root.error());
+  codec::Reading reading;
+  const Field field(*root, reading);
+  field.member("format").whole<std::int64_t>(kFormat, kFormat);
+  auto message = reading.outcome<Message>(make(field));
+  if (!message) return std::unexpected(message.error().sentence);
+  return std::move(*message);
+}
+
+std::string text(const Field& object, std::string_view name) {
+  return std::string(object.member(name).text());
+}
+
+Value story_json(const Story& story) {
+  return {Value::Object{{"stage", {std::string(name_of(story.stage))}},
+                        {"version", {story.version}},
+                        {"slot", {story.slot}},
+                        {"boot", {story.boot}},
+                        {"why", {story.why}}}};
+}
+
+Story story_in(const Field& object) {
+  Story story{.version = text(object, "version"),
+              .slot = text(object, "slot"),
+              .boot = text(object, "boot"),
+              .why = text(object, "why")};
+  const Field field = object.member("stage");
+  const auto* found = std::ranges::find(kStages, field.text(), name_of);
+  if (found == std::end(kStages)) {
+    field.refuse("expected a stage");
+  } else {
+    story.stage = *found;
+  }
+  return story;
+}
+
+Running running_in(const Field& object) {
+  const Field field = object.member("running");
+  only(field, {"compatible", "version", "slot", "other"});
+  return {.compatible = text(field, "compatible"),
+          .version = text(field, "version"),
+          .slot = text(field, "slot"),
+          .other = text(field, "other")};
+}
+
+std::optional<Offer> offer_in(const Field& object) {
+  const Field field = object.member("stick");
+  if (field.is_absent()) return std::nullopt;
+  only(field, {"name", "version"});
+  return Offer{text(field, "name"), text(field, "version")};
+}
+
+Story last_in(const Field& object) {
+  const Field field = object.member("last");
+  only(field, {"stage", "version", "slot", "boot", "why"});
+  return story_in(field);
+}
+
+}  // namespace
+
+std::string write(const Request& request) {
+  const auto* what =
+      std::ranges::find(kWhat, request.what, &std::pair<std::string_view, Request::What>::second);
+  return written(
+      {{"nonce", {request.nonce}}, {"what", {std::string(what->first)}}, {"again", {request.again}}});
+}
+
+std::string write(const Status& status) {
+  const Running& running = status.running;
+  return written({{"trouble", {status.trouble}},
+                  {"running",
+                   {Value::Object{{"compatible", {running.compatible}},
+                                  {"version", {running.version}},
+                                  {"slot", {running.slot}},
+                                  {"other", {running.other}}}}},
+                  {"nonce", {status.nonce}},
+                  {"refusal", {status.refusal}},
+                  {"doing", {status.doing}},
+                  {"progress", status.progress ? Value{std::int64_t{*status.progress}} : Value{}},
+                  {"last", story_json(status.last)},
+                  {"trial", {status.trial}},
+                  {"stick", status.stick ? Value{Value::Object{{"name", {status.stick->name}},
+                                                               {"version", {status.stick->version}}}}
+                                         : Value{}},
+                  {"stick_trouble", {status.stick_trouble}}});
+}
+
+std::string write(const Story& story) {
+  Value value = story_json(story);
+  return written(std::move(std::get<Value::Object>(value.is)));
+}
+
+Read<Request> read_request(std::string_view json) {
+  return read<Request>(json, [](const Field& root) {
+    only(root, {"format", "nonce", "what", "again"});
+    Request request{.nonce = text(root, "nonce"), .again = root.member("again").truth()};
+    if (!network::is_nonce(request.nonce)) root.member("nonce").refuse("expected 32 hexadecimal digits");
+    const Field field = root.member("what");
+    const auto* what =
+        std::ranges::find(kWhat, field.text(), &std::pair<std::string_view, Request::What>::first);
+    if (what == std::end(kWhat)) {
+      field.refuse("expected install, stick or restart");
+    } else {
+      request.what = what->second;
+    }
+    return request;
+  });
+}
+
+Read<Status> read_status_file(std::string_view json) {
+  return read<Status>(json, [](const Field& root) {
+    only(root, {"format", "trouble", "running", "nonce", "refusal", "doing", "progress", "last", "trial",
+                "stick", "stick_trouble"});
+    const Field progress = root.member("progress");
+    return Status{
+        .trouble = text(root, "trouble"),
+        .running = running_in(root),
+        .nonce = text(root, "nonce"),
+        .refusal = text(root, "refusal"),
+        .doing = text(root, "doing"),
+        .progress = progress.is_absent() ? std::nullopt : std::optional(progress.whole<int>(0, 100)),
+        .last = last_in(root),
+        .trial = root.member("trial").truth(),
+        .stick = offer_in(root),
+        .stick_trouble = text(root, "stick_trouble")};
+  });
+}
+
+Read<Story> read_story(std::string_view json) {
+  return read<Story>(json, [](const Field& root) {
+    only(root, {"format", "stage", "version", "slot", "boot", "why"});
+    return story_in(root);
+  });
+}
+
+}  // namespace adit::update

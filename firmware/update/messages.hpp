@@ -1,0 +1,66 @@
+#pragma once
+
+#include <cstdint>
+#include <expected>
+#include <optional>
+#include <string>
+#include <string_view>
+
+#include "update/bundle.hpp"
+#include "update/story.hpp"
+
+/// The files by which aditd, which has no privilege, and adit-update, which runs as root, speak with each
+/// other: README.md.
+namespace adit::update {
+
+/// What aditd asks for and the bundle that was uploaded, in its own state folder. adit-update takes both
+/// away.
+inline constexpr const char* kRequestFile = "update.json";
+inline constexpr const char* kBundleFile = "update.raucb";
+/// What adit-update tells everybody, in its runtime folder; and what it keeps, in its state folder.
+inline constexpr const char* kStatusFile = "status.json";
+inline constexpr const char* kStoryFile = "last.json";
+
+/// More than both slots hold.
+inline constexpr std::uint64_t kLargestBundle = 256U << 20;
+
+struct Request {
+  enum class What : std::uint8_t { Install, Stick, Restart };
+  std::string nonce = "";  // network::is_nonce()
+  What what = What::Restart;
+  bool again = false;  // Install, Stick: though that version runs already
+};
+
+/// A bundle on a USB stick that could be installed.
+struct Offer {
+  std::string name = "";  // of the file
+  std::string version = "";
+  friend bool operator==(const Offer&, const Offer&) = default;
+};
+
+struct Status {
+  std::string trouble = "";  // why nothing can be updated here; "" where it can
+  Running running = {};
+  std::string nonce = "";            // of the last request that was taken up
+  std::string refusal = "";          // why it was not done; "" where it was, or is being done
+  std::string doing = "";            // "", "checking", "installing", "restarting"
+  std::optional<int> progress = {};  // per cent of "installing"
+  Story last = {};
+  bool trial = false;  // on_trial()
+  std::optional<Offer> stick = {};
+  std::string stick_trouble = "";  // why what is on the stick cannot be installed; "" where there is none
+  friend bool operator==(const Status&, const Status&) = default;
+};
+
+std::string write(const Request& request);
+std::string write(const Status& status);
+std::string write(const Story& story);
+
+/// Strict: an unknown or a missing member, or a value that is not what it must be, is an error that names it.
+template <class Message>
+using Read = std::expected<Message, std::string>;
+Read<Request> read_request(std::string_view json);
+Read<Status> read_status_file(std::string_view json);
+Read<Story> read_story(std::string_view json);
+
+}  // namespace adit::update

@@ -1,0 +1,41 @@
+#pragma once
+
+#include <cstdint>
+#include <string>
+#include <string_view>
+
+#include "update/bundle.hpp"
+
+namespace adit::update {
+
+/// How far the last update has come. What is installed is on trial until it was healthy once.
+enum class Stage : std::uint8_t {
+  None,         // there was none
+  Installing,   // the other slot is being written
+  Interrupted,  // while it was: the slot that runs was not touched
+  Failed,       // RAUC could not write it
+  Installed,    // waits for a restart; once the box was started anew, from that slot, on trial
+  Left,         // it did not come up healthy in three starts, and the boot loader went back
+  Good,         // it came up healthy
+};
+/// "", "installing", "interrupted", ...
+std::string_view name_of(Stage stage);
+
+/// The last update. Kept over starts of the machine.
+struct Story {
+  Stage stage = Stage::None;
+  std::string version = "";  // the update's; "": not known, the bundle could not be read
+  std::string slot = "";     // that it was installed into
+  std::string boot = "";     // the start of the machine in which it was (host::boot())
+  std::string why = "";      // a sentence about the stage
+  friend bool operator==(const Story&, const Story&) = default;
+};
+
+/// What the story has come to, as found at a start of the program: `slot` runs, in the machine's start
+/// `boot`.
+Story settled(Story story, const Running& running, const std::string& boot);
+
+/// The slot that runs is the one that was installed, and has not been healthy yet.
+bool on_trial(const Story& story, const std::string& slot, const std::string& boot);
+
+}  // namespace adit::update

@@ -1,0 +1,43 @@
+"""What the tests of the recipe share: where things are, and what a board says of itself."""
+import re
+import subprocess
+import sys
+from pathlib import Path
+
+TOP = Path(__file__).resolve().parents[2]
+BOARDS = sorted(path.parent.name for path in TOP.glob("board/*/board.conf"))
+IMAGES = TOP / "build/image"
+
+
+def skip(why: str) -> None:
+    print(f"skipped: {why}")
+    sys.exit(77)
+
+
+def conf(board: str, name: str) -> list[str]:
+    """The words of a variable of board.conf, which is Bash."""
+    script = f'. "{TOP}/board/{board}/board.conf"; printf "%s\\n" "${{{name}[@]}}"'
+    return [word for word in subprocess.run(["bash", "-c", script], check=True, capture_output=True, text=True).stdout.split("\n") if word]
+
+
+def built() -> list[str]:
+    """The boards of which there is an image."""
+    return [board for board in BOARDS if list((IMAGES / board).glob("*.spdx.json"))]
+
+
+def nodes(dtb: Path) -> dict[str, dict[str, str]]:
+    """The nodes of a device tree that are in use, by path: their properties as dtc writes them."""
+    source = subprocess.run(["dtc", "-q", "-I", "dtb", "-O", "dts", dtb], check=True, capture_output=True, text=True).stdout
+    open_nodes: list[tuple[str, dict[str, str]]] = []
+    found = {}
+    for line in map(str.strip, source.splitlines()):
+        if line.endswith("{"):
+            open_nodes.append((line[:-1].strip().strip("/"), {}))
+        elif line == "};":
+            path = "/".join(name for name, _ in open_nodes) or "/"
+            if not any(properties.get("status") == '"disabled"' for _, properties in open_nodes):
+                found[path] = open_nodes[-1][1]
+            open_nodes.pop()
+        elif match := re.match(r"([^ =]+) = (.*);$", line):
+            open_nodes[-1][1][match[1]] = match[2]
+    return found

@@ -1,0 +1,108 @@
+#!/usr/bin/env python3
+"""Every board is whole, and the image that was built for it has a driver for each device that it cannot do without."""
+import json
+import re
+import sys
+import unittest
+from pathlib import Path
+
+from recipe import BOARDS, IMAGES, TOP, built, conf, nodes
+
+NEEDED = re.compile(r"^(ethernet|mmc|gpio|watchdog|usb|i2c|switch\d*|mdio|phy)@")  # kinds of nodes
+GROUP = "health", "scoring", "mapping", "attention", "button"
+
+
+class Folders(unittest.TestCase):
+    def test_there_are_the_four_boards(self):
+        self.assertEqual(BOARDS, ["espressobin", "generic-x86_64", "qemu-virt", "rock-pi-e"])
+
+    def test_a_board_says_what_it_is_and_how_it_boots(self):
+        for board in BOARDS:
+            with self.subTest(board):
+                for name in "title", "architecture", "kernel_package", "bootloader", "console", "initrd_modules", "modules":
+                    self.assertTrue(conf(board, name), f"board.conf: no {name}")
+                self.assertTrue((TOP / "board" / board / "README.md").exists())
+
+    def test_what_the_box_reads_is_the_same_board_with_all_lines_of_a_panel_or_none(self):
+        for board in BOARDS:
+            with self.subTest(board):
+                data = json.loads((TOP / "board" / board / "board.json").read_text())
+                self.assertEqual(data["name"], board)
+                self.assertEqual([data["title"]], conf(board, "title"))
+                if panel := data.get("panel"):
+                    self.assertEqual(set(panel), {"chip", "active_low", "button_active_low", *GROUP})
+                    self.assertEqual(len({panel[light] for light in GROUP}), len(GROUP))
+
+    def test_the_ports_are_named_by_path_and_not_by_the_order_in_which_they_are_found(self):
+        for board in BOARDS:
+            with self.subTest(board):
+                links = sorted((TOP / "board" / board).glob("*.link"))
+                if board == "generic-x86_64":  # usr/lib/adit/ports does it
+                    self.assertFalse(links)
+                    continue
+                self.assertEqual([link.name for link in links], ["10-darpa0.link", "10-team0.link"])
+                matches = [re.search(r"^(Path|OriginalName)=(.*)$", link.read_text(), re.M) for link in links]
+                self.assertTrue(all(matches))
+                self.assertNotEqual(matches[0][2], matches[1][2])
+                self.assertFalse(any(re.match(r"eth\d|\*", match[2]) for match in matches))
+
+
+class Drivers(unittest.TestCase):
+    """Of the images that were built here."""
+
+    def test_each_device_that_is_needed_has_a_driver_in_the_image_or_in_the_kernel(self):
+        for board, dtb in self.device_trees():
+            root = IMAGES / board / "work/root"
+            modules = next(root.glob("usr/lib/modules/*"))
+            aliases = re.findall(r"^alias (of:\S+) (\S+)$", (modules / "modules.alias").read_text(), re.M)
+            kernel = next((IMAGES / board / "work/slot").glob("Image")).read_bytes()
+            for path, properties in nodes(dtb).items():
+                if not NEEDED.match(path.rsplit("/", 1)[-1]) or "compatible" not in properties:
+                    continue
+                names = properties["compatible"].strip('"').split("\\0")
+                with self.subTest(f"{board} {path}", compatible=names):
+                    module = any(self.fits(alias, name) for alias, _ in aliases for name in names)
+                    builtin = any(b"\0" + name.encode() + b"\0" in kernel for name in names)
+                    self.assertTrue(module or builtin or names[0].startswith("ethernet-phy-id"))
+
+    def test_what_finds_the_root_is_in_the_initrd(self):
+        for board in built():
+            with self.subTest(board):
+                order = (IMAGES / board / "work/initrd.modules").read_text()
+                builtin = next((IMAGES / board / "work/root").glob("usr/lib/modules/*/modules.builtin")).read_text()
+                for module in [*conf(board, "initrd_modules"), "squashfs"]:
+                    self.assertRegex(order + builtin, "/" + re.sub("[-_]", "[-_]", module) + r"\.ko")
+
+    def test_the_lines_of_the_panel_have_their_names_in_the_device_tree(self):
+        for board, dtb in self.device_trees():
+            panel = json.loads((TOP / "board" / board / "board.json").read_text())["panel"]
+            names = {name for properties in nodes(dtb).values() for name in properties.get("gpio-line-names", "").strip('"').split("\\0")}
+            with self.subTest(board):
+                self.assertLessEqual({panel[light] for light in GROUP}, names)
+
+    def test_the_ports_are_where_the_device_tree_has_them(self):
+        for board, dtb in self.device_trees():
+            tree = nodes(dtb)
+            for link in (TOP / "board" / board).glob("*.link"):
+                with self.subTest(board, link=link.name):
+                    kind, what = re.search(r"^(Path|OriginalName)=(.*)$", link.read_text(), re.M).groups()
+                    if kind == "Path":  # platform-ff540000.ethernet is the node ethernet@ff540000
+                        address, device = re.fullmatch(r"platform-([0-9a-f]+)\.(\w+)", what).groups()
+                        self.assertIn(f"/{device}@{address}", tree)
+                    else:
+                        self.assertIn(f'"{what}"', [properties.get("label") for properties in tree.values()])
+
+    def device_trees(self):
+        boards = [board for board in built() if (IMAGES / board / "work/slot/board.dtb").exists()]
+        if not boards:
+            self.skipTest("no image with a device tree was built here")
+        return [(board, IMAGES / board / "work/slot/board.dtb") for board in boards]
+
+    @staticmethod
+    def fits(alias: str, name: str) -> bool:
+        return re.fullmatch(r"of:N\*T\*C" + re.escape(name) + r"(C\*)?", alias) is not None
+
+
+if __name__ == "__main__":
+    sys.dont_write_bytecode = True
+    unittest.main()

@@ -1,0 +1,152 @@
+#!/usr/bin/env python3
+"""The image that was built here: small, the same bytes each time, with nothing in it that is not on its list of parts."""
+import gzip
+import hashlib
+import json
+import os
+import re
+import shutil
+import subprocess
+import tempfile
+import unittest
+from pathlib import Path
+
+from recipe import IMAGES, TOP, built, conf, skip
+
+ID = re.compile(r"SPDXRef-[A-Za-z0-9.-]+")
+BOARDS = built()
+if not BOARDS:
+    skip("no image was built here; toolchain/image builds one")
+
+
+def parts_of(board: str) -> dict:
+    return json.loads((IMAGES / board / "work/parts.spdx.json").read_text())
+
+
+def elf_files(root: Path):
+    for path in root.rglob("*"):
+        if path.is_file() and not path.is_symlink():
+            with path.open("rb") as file:
+                if file.read(4) == b"\x7fELF":
+                    yield str(path.relative_to(root))
+
+
+class Parts(unittest.TestCase):
+    def test_the_list_is_spdx_2_3(self):
+        for board in BOARDS:
+            with self.subTest(board):
+                document = parts_of(board)
+                self.assertEqual((document["spdxVersion"], document["dataLicense"], document["SPDXID"]), ("SPDX-2.3", "CC0-1.0", "SPDXRef-DOCUMENT"))
+                self.assertRegex(document["creationInfo"]["created"], r"^\d{4}-\d\d-\d\dT\d\d:\d\d:\d\dZ$")
+                self.assertTrue(document["creationInfo"]["creators"][0].startswith("Tool: "))
+                self.assertRegex(document["documentNamespace"], r"^urn:uuid:[0-9a-f-]{36}$")
+                ids = [package["SPDXID"] for package in document["packages"]]
+                self.assertEqual(len(ids), len(set(ids)))
+                self.assertTrue(all(ID.fullmatch(each) for each in ids))
+                ends = {end for relation in document["relationships"] for end in (relation["spdxElementId"], relation["relatedSpdxElement"])}
+                self.assertLessEqual(ends, {*ids, "SPDXRef-DOCUMENT"})
+                self.assertLessEqual(set(ids), ends)
+
+    def test_each_part_has_a_version_and_says_its_licence_or_that_it_does_not(self):
+        for board in BOARDS:
+            known = {each["licenseId"] for each in parts_of(board)["hasExtractedLicensingInfos"]}
+            for package in parts_of(board)["packages"]:
+                with self.subTest(board, package=package["name"]):
+                    self.assertTrue(package["versionInfo"])
+                    self.assertLessEqual(set(re.findall(r"LicenseRef-[A-Za-z0-9.-]+", package["licenseDeclared"])), known)
+                    if package["name"].startswith("lib"):
+                        self.assertRegex(package["checksums"][0]["checksumValue"], r"^[0-9a-f]{64}$")
+                        self.assertIn("source package", package["sourceInfo"])
+
+    def test_kernel_loader_busybox_and_adit_are_on_it_and_what_is_not_in_the_image_is_not(self):
+        for board in BOARDS:
+            with self.subTest(board):
+                names = {package["name"] for package in parts_of(board)["packages"]}
+                self.assertLessEqual({"adit", "busybox-static", "systemd", "libc6", *conf(board, "boot_packages")}, names)
+                self.assertEqual(len([name for name in names if name.startswith("linux-image-")]), 1)
+                self.assertFalse(names & {"adduser", "passwd", "debconf", "libpam-modules"})
+
+    def test_every_program_and_library_is_of_a_listed_part(self):
+        for board in BOARDS:
+            with self.subTest(board):
+                work = IMAGES / board / "work"
+                names = {package["name"] for package in parts_of(board)["packages"]}
+                owners = dict(line.split("\t") for line in (work / "parts.spdx.json.owners").read_text().splitlines())
+                adit = {re.sub(r"^.*/work/root/", "", line) for line in (work / "install.log").read_text().splitlines()}
+                for path in elf_files(work / "root"):
+                    owner = owners.get(path) or owners.get(re.sub("^usr/", "", path))
+                    self.assertTrue(owner in names or path in adit, f"{path} is of no part")
+
+    def test_the_box_has_its_own_list_with_it(self):
+        for board in BOARDS:
+            with self.subTest(board):
+                inside = gzip.decompress((IMAGES / board / "work/root/usr/share/adit/parts.spdx.json.gz").read_bytes())
+                self.assertEqual(json.loads(inside), parts_of(board))
+
+
+class Root(unittest.TestCase):
+    def test_an_image_is_at_most_40_mb_compressed(self):
+        for board in BOARDS:
+            with self.subTest(board):
+                for image in (IMAGES / board).glob("*.img.xz"):
+                    self.assertLessEqual(image.stat().st_size, 40_000_000)
+
+    def test_nothing_runs_with_the_rights_of_another_and_no_package_manager_is_there(self):
+        for board in BOARDS:
+            root = IMAGES / board / "work/root"
+            with self.subTest(board):
+                for path in root.rglob("*"):
+                    if not path.is_symlink():
+                        self.assertFalse(path.stat().st_mode & 0o6000 and path.is_file(), path)
+                for program in "apt", "apt-get", "dpkg", "sudo", "su", "login", "sshd", "passwd":
+                    self.assertFalse(list(root.glob(f"usr/*bin/{program}")))
+
+    def test_every_library_that_is_asked_for_is_there(self):
+        for board in BOARDS:
+            root = IMAGES / board / "work/root"
+            there = {path.name for path in root.rglob("*.so*")}
+            with self.subTest(board):
+                files = [root / path for path in elf_files(root) if not path.endswith(".ko")]
+                said = subprocess.run(["readelf", "-d", *files], capture_output=True, text=True).stdout
+                self.assertLessEqual(set(re.findall(r"\(NEEDED\).*\[(.*)\]", said)), there)
+
+    def test_every_program_that_a_unit_starts_is_there(self):
+        for board in BOARDS:
+            root = IMAGES / board / "work/root"
+            for unit in root.glob("usr/lib/systemd/system/**/*"):
+                if not unit.is_file() or unit.is_symlink():
+                    continue
+                for line in re.findall(r"^Exec\w+=[-@:+!|]*([^\s$]+)", unit.read_text(), re.M):
+                    with self.subTest(board, unit=unit.name):
+                        places = [root / line.lstrip("/")] if line.startswith("/") else [root / "usr/bin" / line, root / "usr/sbin" / line]
+                        self.assertTrue(any(os.path.lexists(place) for place in places), line)
+
+
+class Again(unittest.TestCase):
+    def test_the_same_packages_and_programs_give_the_same_bytes(self):
+        board = "qemu-virt"
+        debian, build = IMAGES / "debian-arm64", TOP / "build/arm64"
+        if board not in BOARDS or not (debian / "words").exists():
+            self.skipTest("no image of qemu-virt was built here")
+        with tempfile.TemporaryDirectory() as scratch:
+            key = Path(scratch) / "cert.pem"
+            key.write_text("a certificate\n")
+            sums = [self.make(board, build, debian, Path(scratch) / name, zone, key) for name, zone in (("one", "UTC0"), ("another", "XYZ-11"))]
+        self.assertEqual(sums[0], sums[1])
+
+    @staticmethod
+    def make(board: str, build: Path, debian: Path, work: Path, zone: str, key: Path) -> dict[str, str]:
+        work.mkdir()
+        env = os.environ | {"SOURCE_DATE_EPOCH": "1767225600", "ADIT_KEYRING": str(key), "TZ": zone}
+        for command in (["rootfs/slot", board, "1.2.3", build, debian, work], ["rootfs/disk", board, debian, work, work / "disk.img"]):
+            subprocess.run(command, check=True, cwd=TOP, env=env, stdout=subprocess.DEVNULL)
+        sums = {}
+        for name in "root.squashfs", "boot.vfat", "parts.spdx.json", "disk.img":
+            with (work / name).open("rb") as file:
+                sums[name] = hashlib.file_digest(file, "sha256").hexdigest()
+        shutil.rmtree(work)
+        return sums
+
+
+if __name__ == "__main__":
+    unittest.main()

@@ -1,0 +1,105 @@
+#include "update/bundle.hpp"
+
+#include <gmock/gmock.h>
+
+namespace adit::update {
+namespace {
+
+using testing::HasSubstr;
+
+const Running kRunning = {"adit-qemu-virt", "0.2.0", "A", "B"};
+
+TEST(Bundle, IsReadFromWhatRaucSaysOfIt) {
+  const auto bundle = read_info(
+      R"({"compatible":"adit-qemu-virt","version":"0.2.0","description":null,"build":"abc","hooks":[],"images":[]})");
+  ASSERT_TRUE(bundle) << bundle.error();
+  EXPECT_EQ(bundle->compatible, "adit-qemu-virt");
+  EXPECT_EQ(bundle->version, "0.2.0");
+}
+
+TEST(Bundle, ThatRaucSaysNothingOfIsNone) {
+  for (const char* said :
+       {"", "rauc-Message", "[]", "null", "{}", R"({"compatible":"adit-x","version":null})",
+        R"({"version":"1.0.0"})", R"({"compatible":3,"version":"1.0.0"})"}) {
+    EXPECT_FALSE(read_info(said)) << said;
+  }
+}
+
+TEST(Running, IsReadFromWhatRaucSaysOfTheBox) {
+  const auto running = read_status(R"({"compatible":"adit-qemu-virt","variant":"","booted":"B",
+    "boot_primary":"rootfs.1","slots":[
+      {"rootfs.1":{"class":"rootfs","bootname":"B","state":"booted","parent":null}},
+      {"boot.0":{"class":"boot","bootname":null,"state":"inactive","parent":"rootfs.0"}},
+      {"rootfs.0":{"class":"rootfs","bootname":"A","state":"inactive","parent":null}}]})");
+  ASSERT_TRUE(running) << running.error();
+  EXPECT_EQ(*running, (Running{"adit-qemu-virt", "", "B", "A"}));
+}
+
+TEST(Running, IsNotKnownWhereRaucKnowsNoOtherSlot) {
+  for (const char* said :
+       {"", "{}", R"({"compatible":"a","booted":"A"})", R"({"compatible":"a","booted":"A","slots":{}})",
+        R"({"compatible":"a","booted":null,"slots":[]})",
+        R"({"compatible":"a","booted":"A","slots":[1,{},[]]})",
+        R"({"compatible":"a","booted":"A","slots":[{"rootfs.0":{"bootname":"A"}}]})",
+        R"({"compatible":"a","booted":"A","slots":[{"rootfs.0":{"bootname":7}}]})"}) {
+    EXPECT_FALSE(read_status(said)) << said;
+  }
+}
+
+TEST(Progress, IsTheNumberBeforeThePerCent) {
+  EXPECT_EQ(percent_in("  0% Installing"), 0);
+  EXPECT_EQ(percent_in(" 40% Verifying signature done."), 40);
+  EXPECT_EQ(percent_in("100% Installing done."), 100);
+  for (const char* line :
+       {"", "   ", "installing", "LastError: 40% of it", "40", "101% x", "-1% x", "4 0% x"}) {
+    EXPECT_EQ(percent_in(line), std::nullopt) << line;
+  }
+}
+
+TEST(Fault, IsTheLastThingThatRaucSays) {
+  EXPECT_EQ(
+      fault_in("",
+               "rauc-Message: 15:05:30.310: Reading bundle: x\nInvalid bundle format: Signature size is 0\n"),
+      "Invalid bundle format: Signature size is 0");
+  EXPECT_EQ(fault_in("installing\n100% Installing failed.\nLastError: No space left on device\nidle\n",
+                     "rauc-Message: 1\nInstalling `x` failed\n"),
+            "No space left on device");
+  EXPECT_EQ(fault_in("", "rauc-Message: 1\n"), "");
+  EXPECT_EQ(fault_in("", std::string(5000, 'x')).size(), 300u);
+}
+
+TEST(Hindrance, IsNoneToANewerVersionForThisBoard) {
+  for (const char* version : {"0.2.1", "0.3.0-rc.1", "1.0.0"}) {
+    EXPECT_EQ(hindrance({"adit-qemu-virt", version}, kRunning, false), "") << version;
+  }
+}
+
+TEST(Hindrance, IsAnotherBoard) {
+  EXPECT_EQ(hindrance({"adit-generic-x86_64", "0.3.0"}, kRunning, true),
+            R"(it is for another board: "adit-generic-x86_64", and this one is "adit-qemu-virt")");
+  EXPECT_THAT(hindrance({"", "0.3.0"}, kRunning, true), HasSubstr("another board"));
+}
+
+TEST(Hindrance, IsAnOlderVersionWhateverIsSaid) {
+  for (const char* version : {"0.1.9", "0.2.0-rc.1", "0.0.1"}) {
+    EXPECT_EQ(hindrance({"adit-qemu-virt", version}, kRunning, true),
+              "it is older than what runs: " + std::string(version) + ", and this is 0.2.0");
+  }
+}
+
+TEST(Hindrance, IsTheSameVersionUnlessItIsSaidAgain) {
+  EXPECT_EQ(hindrance({"adit-qemu-virt", "0.2.0"}, kRunning, false),
+            "0.2.0 runs already: say so if it is to be installed again");
+  EXPECT_EQ(hindrance({"adit-qemu-virt", "0.2.0"}, kRunning, true), "");
+}
+
+TEST(Hindrance, IsAVersionThatCannotBeCompared) {
+  EXPECT_THAT(hindrance({"adit-qemu-virt", "newest"}, kRunning, true),
+              HasSubstr("its version cannot be read"));
+  Running unknown = kRunning;
+  unknown.version = "";
+  EXPECT_THAT(hindrance({"adit-qemu-virt", "9.0.0"}, unknown, true), HasSubstr("that runs cannot be read"));
+}
+
+}  // namespace
+}  // namespace adit::update

@@ -1,6 +1,7 @@
 """The box as a machine: QEMU's arm64 `virt`, started from its card by U-Boot as a board is, with two ports, four
 lights, a button and a hardware watchdog."""
 
+import http.client
 import os
 import pathlib
 import shutil
@@ -155,14 +156,17 @@ class Machine(programs.Page):
         return f"{self.answered_after:.1f} s ({self.cpu_answered_after:.1f} s of this machine's processor)"
 
     def wait_until(self, condition, what, within=20.0):
-        """As programs.wait_until, but that a machine which has ended is said to have."""
+        """As programs.wait_until, for a box that may be away; a machine which has ended for good is said to have."""
         def is_so():
             if not self.is_on():
                 raise AssertionError(f"QEMU has ended while waiting for {what}:\n"
                                      + (self.folder / "qemu.log").read_text(errors="replace"))
             if "You are in emergency mode" in self.console.said():
                 raise AssertionError(f"systemd has given up while waiting for {what}")
-            return condition()
+            try:
+                return condition()
+            except (OSError, http.client.HTTPException):
+                return False  # the box is away, or turned this one away
         try:
             return programs.wait_until(is_so, what, within)
         except AssertionError as error:

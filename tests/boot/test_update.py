@@ -51,7 +51,8 @@ class Updates(Story):
     def install(self, path, version):
         began = time.monotonic()
         self.send(path)
-        self.box.wait_until(lambda: self.last() == ("installed", version), f"{version} to be installed", 240)
+        self.box.wait_until(lambda: self.last() in (("installed", version), ("failed", version)), "the end of it", 240)
+        self.assertEqual(self.last(), ("installed", version), self.stands()["refusal"])
         note(f"update of {path.stat().st_size / 1e6:.0f} MB sent and installed", f"{time.monotonic() - began:.0f} s")
         self.assertEqual(self.box.ask("POST /adit/update/restart", body={"anyway": True})[0], 200)
 

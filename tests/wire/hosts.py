@@ -63,15 +63,20 @@ class Network:
         return subprocess.Popen(["ip", "netns", "exec", host, *map(str, command)], **options)
 
     @staticmethod
-    def connect(host, address, port, within):
-        """A connection that begins in the namespace `host`, whichever this thread is in."""
+    def made_in(host, make):
+        """What `make()` makes in the namespace `host`, whichever this thread is in: a socket that is of there."""
         mine = os.open("/proc/thread-self/ns/net", os.O_RDONLY)
         try:
             enter(f"/run/netns/{host}")
-            made = socket.socket()
-            enter(f"/proc/self/fd/{mine}")
+            return make()
         finally:
+            enter(f"/proc/self/fd/{mine}")
             os.close(mine)
+
+    @staticmethod
+    def connect(host, address, port, within):
+        """A connection that begins in the namespace `host`."""
+        made = Network.made_in(host, socket.socket)
         try:
             made.settimeout(within)
             made.connect((address, port))

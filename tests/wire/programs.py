@@ -117,29 +117,24 @@ class CommandPost(Program):
         return [(request["uri"], request["violations"]) for request in self.requests() if request["violations"]]
 
 
-class Box(Program):
-    """aditd between the two."""
+class Page:
+    """What is asked of a box as its page asks it. Who is one has `network` and `port`."""
 
-    def __init__(self, network, folder, **overrides):
-        self.network, self.folder = network, folder
-        self.state = folder / "state"
-        self.settings = folder / "settings.json"
-        self.settings.write_text(json.dumps(settings(network, overrides)))
-        command = [BIN / "aditd", "--settings", self.settings, "--secrets", folder / "secrets", "--state", self.state,
-                   "--network", folder / "network" / "status"]
-        super().__init__(network, network.box, folder / "aditd.log", command)
-        wait_until(self._answers, "aditd to listen")
+    port = PORT
 
     @property
     def url(self):
-        return f"http://{self.network.box_address}:{PORT}"
+        return f"http://{self.network.box_address}:{self.port}"
 
-    def ask(self, request, headers=()):
+    def ask(self, request, headers=(), body=None, token=TEAM_TOKEN, timeout=5):
         """Asks what the page asks: ask("GET /adit/run"). Its status, and what its JSON says."""
         method, _, path = request.partition(" ")
-        connection = http.client.HTTPConnection(self.network.box_address, PORT, timeout=5)
+        sent = {"Authorization": f"Bearer {token}"} if token else {}
+        if body is not None:
+            sent["Content-Type"] = "application/json"
+        connection = http.client.HTTPConnection(self.network.box_address, self.port, timeout=timeout)
         with contextlib.closing(connection):
-            connection.request(method, path, headers={"Authorization": f"Bearer {TEAM_TOKEN}", **dict(headers)})
+            connection.request(method, path, None if body is None else json.dumps(body), {**sent, **dict(headers)})
             answer = connection.getresponse()
             return answer.status, json.loads(answer.read())
 
@@ -153,8 +148,37 @@ class Box(Program):
 
     def judge(self, number, deed):
         """The operator's word on a report: send, done, withdraw or resubmit. Its status, and what its JSON says."""
-        headers = {"Authorization": f"Bearer {TEAM_TOKEN}", "Content-Type": "application/json"}
-        return self.ask(f"POST /adit/reports/{number}/{deed}", headers)
+        return self.ask(f"POST /adit/reports/{number}/{deed}", {"Content-Type": "application/json"})
+
+    def knows_the_run(self):
+        return self.ask("GET /adit/run")[1]["run_heard"] is not None
+
+
+def log_in(page, password):
+    """The headers that a browser sends from then on, as the operator."""
+    connection = http.client.HTTPConnection(page.network.box_address, page.port, timeout=20)
+    with contextlib.closing(connection):
+        connection.request("POST", "/adit/login", json.dumps({"password": password}),
+                           {"Content-Type": "application/json"})
+        answer = connection.getresponse()
+        said = json.loads(answer.read())
+    if answer.status != 200:
+        raise AssertionError(f"the login: {answer.status} {said}")
+    return {"Cookie": answer.headers["Set-Cookie"].partition(";")[0], "Adit-CSRF": said["csrf"]}
+
+
+class Box(Program, Page):
+    """aditd between the two."""
+
+    def __init__(self, network, folder, **overrides):
+        self.network, self.folder = network, folder
+        self.state = folder / "state"
+        self.settings = folder / "settings.json"
+        self.settings.write_text(json.dumps(settings(network, overrides)))
+        command = [BIN / "aditd", "--settings", self.settings, "--secrets", folder / "secrets", "--state", self.state,
+                   "--network", folder / "network" / "status"]
+        super().__init__(network, network.box, folder / "aditd.log", command)
+        wait_until(self._answers, "aditd to listen")
 
     def on_disk(self, query="SELECT state FROM report ORDER BY number"):
         """Rows of the ledger; of one column: its values. From a copy, as aditd keeps the ledger to itself, and again
@@ -168,9 +192,6 @@ class Box(Program):
                     return [row[0] if len(row) == 1 else row for row in rows]
             time.sleep(0.02)
         raise AssertionError("the ledger cannot be read")
-
-    def knows_the_run(self):
-        return self.ask("GET /adit/run")[1]["run_heard"] is not None
 
     def _answers(self):
         if self.process.poll() is not None:

@@ -1,9 +1,11 @@
 """Runs one module of tests; exit status 77 where all of it was skipped, as ctest is told."""
 
+import signal
 import sys
 import unittest
 
 if __name__ == "__main__":
+    signal.signal(signal.SIGTERM, signal.default_int_handler)  # so that what was made is taken away
     result = unittest.TextTestRunner(verbosity=2).run(unittest.defaultTestLoader.loadTestsFromName(sys.argv[1]))
     skipped_all = result.testsRun > 0 and len(result.skipped) >= result.testsRun
     nothing_ran = result.testsRun == 0 and bool(result.skipped)

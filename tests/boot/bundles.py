@@ -1,0 +1,55 @@
+"""Updates of other versions, made of the image that is there: its root with another version in it, or with something
+missing."""
+
+import os
+import shutil
+import subprocess
+
+import machine
+
+WORK = machine.IMAGES / "work"
+
+
+def bundle(folder, version, board="qemu-virt", without=None):
+    """Signed as toolchain/image signs. `without`: a file that its root lacks."""
+    work, output = folder / f"work-{version}", folder / f"adit-{board}-{version}.raucb"
+    work.mkdir()
+    root = work / "root"
+    subprocess.run(
+        ["unsquashfs", "-q", "-n", "-d", root, WORK / "root.squashfs"], check=True, stdout=subprocess.DEVNULL
+    )
+    release = root / "usr/lib/os-release"
+    lines = [
+        f"VERSION_ID={version}" if line.startswith("VERSION_ID=") else line for line in release.read_text().splitlines()
+    ]
+    release.write_text("\n".join(lines) + "\n")
+    if without:
+        (root / without).unlink()
+    # Quickly, and not small.
+    subprocess.run(
+        [
+            "mksquashfs",
+            root,
+            work / "root.squashfs",
+            "-comp",
+            "zstd",
+            "-Xcompression-level",
+            "3",
+            "-all-root",
+            "-noappend",
+            "-no-xattrs",
+            "-quiet",
+            "-no-progress",
+        ],
+        check=True,
+        stdout=subprocess.DEVNULL,
+    )
+    shutil.rmtree(root)
+    os.link(WORK / "boot.vfat", work / "boot.vfat") if same_disk(WORK, work) else shutil.copy(WORK / "boot.vfat", work)
+    subprocess.run([machine.SOURCE / "rootfs" / "bundle", board, version, work, output], check=True)
+    shutil.rmtree(work)
+    return output
+
+
+def same_disk(one, other):
+    return one.stat().st_dev == other.stat().st_dev

@@ -1,0 +1,92 @@
+"""A root shell on the machine's console, which whoever has the card may ask for (rootfs/README.md). For what no user of
+the box can see or do: hung and killed processes, what holds memory, where the time goes."""
+
+import re
+import socket
+import threading
+import time
+
+import qmp
+
+
+class Console:
+    """Reads all that the machine says, into a file, and types commands."""
+
+    def __init__(self, path, log):
+        self.socket = qmp.connected(path)
+        self.log, self.heard, self.asked = log, b"", 0
+        self.news = threading.Condition()
+        self.reader = threading.Thread(target=self._read, daemon=True)
+        self.reader.start()
+
+    def _read(self):
+        with open(self.log, "ab") as log:
+            while True:
+                try:
+                    some = self.socket.recv(65536)
+                except OSError:
+                    some = b""
+                if not some:
+                    return
+                log.write(some)
+                log.flush()
+                with self.news:
+                    self.heard += some
+                    self.news.notify_all()
+
+    def said(self):
+        with self.news:
+            return self.heard.decode(errors="replace")
+
+    def wait_for(self, pattern, within, after=0):
+        """The match of a regular expression in what was said after the `after`th byte."""
+        end = time.monotonic() + within
+        with self.news:
+            while True:
+                found = re.search(pattern, self.heard[after:], re.DOTALL)
+                if found:
+                    return found
+                left = end - time.monotonic()
+                if left <= 0:
+                    raise AssertionError(
+                        f"the console did not say {pattern!r} within {within:g} s:\n"
+                        + self.heard[-2000:].decode(errors="replace")
+                    )
+                self.news.wait(left)
+
+    def type(self, line):
+        self.socket.sendall(line.encode() + b"\n")
+
+    def wait_for_shell(self, within=60.0):
+        """Until it answers. What is typed before there is a shell is lost, and stops the boot loader if it is typed to
+        that."""
+        end = time.monotonic() + within
+        self.wait_for(rb"Starting kernel.*/ # ", within)
+        while True:
+            try:
+                return self.ask("true", within=2.0)
+            except AssertionError:
+                if time.monotonic() > end:
+                    raise
+
+    def run(self, command, within=20.0):
+        """Exit status and output. The marks are typed in two halves, so that the echo of what is typed is none."""
+        self.asked += 1
+        with self.news:
+            after = len(self.heard)
+        self.type(f"echo be''gin{self.asked}; {command}; echo en''d{self.asked} $?")
+        begin, end = (f"{word}{self.asked}".encode() for word in ("begin", "end"))
+        found = self.wait_for(begin + rb"\r?\n(.*?)" + end + rb" (\d+)", within, after)
+        return int(found.group(2)), found.group(1).decode(errors="replace").replace("\r", "")
+
+    def ask(self, command, within=20.0):
+        """The output of a command that must succeed."""
+        status, said = self.run(command, within)
+        if status != 0:
+            raise AssertionError(f"{command}: {status}\n{said}")
+        return said
+
+    def close(self):
+        self.socket.shutdown(socket.SHUT_RDWR)
+        self.socket.close()
+        self.reader.join()

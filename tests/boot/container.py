@@ -1,0 +1,178 @@
+"""The same root in a container (systemd-nspawn), for every day: this machine's own processor, the real units, seconds
+to start. What only a machine has is not in it: boot loader, kernel, disk, GPIO, hardware watchdog, and what asks for
+these (the import from the boot partition, updates)."""
+
+import os
+import pathlib
+import re
+import shutil
+import signal
+import subprocess
+import time
+
+import cables
+import hosts
+import programs
+
+SOURCE = pathlib.Path(os.environ["ADIT_SOURCE"])
+BOARD = "generic-x86_64"
+TREE = SOURCE / "build" / "image" / BOARD / "work" / "root"
+
+
+def missing():
+    """What keeps this machine from running it, in words; or ""."""
+    if not shutil.which("systemd-nspawn"):
+        return "not on this machine: systemd-nspawn (Debian: systemd-container)"
+    if not TREE.is_dir():
+        return f"no root of {BOARD}: toolchain/image {BOARD} makes it"
+    if os.uname().machine != "x86_64":
+        return f"{BOARD} does not run on {os.uname().machine}"
+    return ""
+
+
+class Cables(hosts.Network):
+    """As the wire tests' three hosts: the container takes the box's two ports, and its own network sets the
+    addresses."""
+
+    def __init__(self):
+        super().__init__("10.0.0")
+        self.box_address, self.team_address = cables.FACTORY_ADDRESS, cables.TEAM_ADDRESS
+
+    def _make(self):
+        super()._make()
+        self._flush()
+
+    def _flush(self):
+        for port in ("team0", "darpa0"):
+            hosts.ip("-n", self.box, "address", "flush", "dev", port)
+
+    def cable_the_box(self):
+        """Anew: with the container its ports went, and with them the other ends of the cables."""
+        for host, addresses, port in (
+            (self.team, [self.team_address], "team0"),
+            (self.post, [hosts.SCORING, hosts.MAPPING], "darpa0"),
+        ):
+            if (
+                subprocess.run(
+                    ["ip", "-n", self.box, "link", "show", port], capture_output=True, check=False
+                ).returncode
+                != 0
+            ):
+                self._cable(host, "eth0", addresses, self.box, port, [])
+
+
+class Container(programs.Page):
+    def __init__(self, network, folder):
+        self.network, self.folder = network, folder
+        self.log, self.root, self.state = folder / "container.log", folder / "root", folder / "var"
+        upper, work = folder / "upper", folder / "work"
+        for path in (self.root, self.state, upper, work):
+            path.mkdir()
+        # The tree as the image has it, and over it the programs and units of this build and the overlay as it is now.
+        subprocess.run(
+            [
+                "mount",
+                "-t",
+                "overlay",
+                "adit-container",
+                "-o",
+                f"lowerdir={TREE},upperdir={upper},workdir={work}",
+                self.root,
+            ],
+            check=True,
+        )
+        with open(folder / "install.log", "wb") as said:
+            subprocess.run(
+                ["cmake", "--install", programs.BIN.parent, "--prefix", "/usr", "--strip"],
+                check=True,
+                stdout=said,
+                stderr=said,
+                env={**os.environ, "DESTDIR": str(self.root)},
+            )
+        subprocess.run(["cp", "-a", f"{SOURCE}/rootfs/overlay/.", self.root], check=True)
+        subprocess.run(
+            ["systemctl", f"--root={self.root}", "preset-all", "--preset-mode=full"],
+            check=True,
+            stderr=subprocess.DEVNULL,
+        )
+        self.process = None
+
+    def start(self):
+        """As facts of nspawn are where this machine's own first process is not systemd."""
+        self.began = time.monotonic()
+        inside = (
+            "mount -t tmpfs tmpfs /run; mount -t sysfs -o ro sysfs /sys; mount -t cgroup2 cgroup2 /sys/fs/cgroup; "
+            f"exec systemd-nspawn -q -D {self.root} -b --read-only --bind={self.state}:/var --register=no --keep-unit "
+            "--uuid=0123456789abcdef0123456789abcdef --network-interface=team0 --network-interface=darpa0"
+        )
+        with open(self.log, "ab") as said:
+            self.process = subprocess.Popen(
+                [
+                    "setpriv",
+                    "--pdeathsig",
+                    "KILL",
+                    "nsenter",
+                    f"--net=/run/netns/{self.network.box}",
+                    "unshare",
+                    "-m",
+                    "--propagation",
+                    "private",
+                    "bash",
+                    "-c",
+                    inside,
+                ],
+                stdin=subprocess.DEVNULL,
+                stdout=said,
+                stderr=said,
+            )
+        programs.wait_until(self.answers, "the container to answer:\n" + self.said_last(), 12)
+        self.answered_after = time.monotonic() - self.began
+
+    def answers(self):
+        if self.process.poll() is not None:
+            raise AssertionError(f"systemd-nspawn has ended:\n{self.said_last()}")
+        try:
+            return self.ask("GET /adit/session", token=None)[0] == 200
+        except (OSError, ValueError):
+            return False
+
+    def said_last(self):
+        return self.log.read_text(errors="replace")[-4000:] if self.log.exists() else ""
+
+    def leader(self):
+        """Its first process, as this machine numbers it."""
+        return int(
+            subprocess.run(
+                ["pgrep", "-P", str(self.process.pid)], capture_output=True, text=True, check=True
+            ).stdout.split()[0]
+        )
+
+    def run(self, *command):
+        """A command in it, as root."""
+        return subprocess.run(
+            ["nsenter", "-a", "-t", str(self.leader()), *command], capture_output=True, text=True, check=False
+        )
+
+    def pid(self):
+        return int(self.run("systemctl", "show", "-p", "MainPID", "--value", "adit.service").stdout or 0)
+
+    def stop(self):
+        if self.process is None or self.process.poll() is not None:
+            return
+        os.kill(self.leader(), signal.SIGRTMIN + 3)
+        try:
+            self.process.wait(20)
+        except subprocess.TimeoutExpired:
+            self.process.kill()
+            self.process.wait()
+
+    def close(self):
+        self.stop()
+        subprocess.run(["umount", "--lazy", self.root], check=False)
+
+    def code(self):
+        """That of the first start, as it stands in the log."""
+        said = self.run(
+            "journalctl", "-u", "adit", "-o", "cat", "--no-pager", "--output-fields=MESSAGE,CODE,ADIT_CODE"
+        ).stdout
+        return re.search(r"code=(\d{8})", said).group(1)

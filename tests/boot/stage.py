@@ -1,0 +1,161 @@
+"""A machine with a card, between the Command Post and the team: what every scene needs."""
+
+import json
+import os
+import pathlib
+import subprocess
+import tempfile
+import time
+import unittest
+
+import cables
+import disk
+import eavesdropper
+import hosts
+import machine
+import programs
+
+# What a card of this board's image is set up with; the rest is as in programs.settings(), but that a machine which is
+# emulated on a busy one is given time.
+LISTEN = [{"address": "0.0.0.0", "port": 80}, {"address": "0.0.0.0", "port": 8000}]
+SETTINGS = {
+    "team__listen": LISTEN,
+    "command_post__rates": {"reports_hz": 20, "status_hz": 5, "map_hz": 1, "state_hz": 2, "markers_hz": 2},
+}
+NUMBERS = {
+    "team": {"mode": "static", "address": cables.FACTORY_ADDRESS, "prefix": 24},
+    "command_post": {"addresses": [{"address": hosts.BOX_DARPA, "prefix": 24}], "gateway": ""},
+}
+ENDPOINTS = [(hosts.SCORING, programs.PORT), (hosts.MAPPING, programs.PORT)]
+FIGURES = pathlib.Path(os.environ.get("ADIT_FIGURES", "boot-figures.txt"))
+
+
+def setUpModule():  # of each module that imports it
+    hosts.needs_namespaces()
+    if machine.missing():
+        raise unittest.SkipTest(machine.missing())
+
+
+def load_tests(_, tests, __):
+    """A story is told in the order in which it is written."""
+
+    def each(suite):
+        for test in suite:
+            yield from each(test) if isinstance(test, unittest.TestSuite) else [test]
+
+    return unittest.TestSuite(
+        sorted(
+            each(tests),
+            key=lambda test: (type(test).__name__, getattr(type(test), test._testMethodName).__code__.co_firstlineno),
+        )
+    )
+
+
+class Stage:
+    """`set_up`: whether the card brings settings, addresses and tokens, as from a card reader. `post_options`: None for
+    no Command Post."""
+
+    def __init__(self, set_up=True, post_options=("--rate", "0"), **overrides):
+        self.temporary = tempfile.TemporaryDirectory(prefix="adit-boot-")
+        self.folder = pathlib.Path(self.temporary.name)
+        self.set_up, self.post_options, self.overrides = set_up, post_options, {**SETTINGS, **overrides}
+        self.network = cables.Cables()
+        self.post = self.box = self.ear = None
+
+    def __enter__(self):
+        secrets = programs.secrets_folder(self.folder / "secrets")
+        self.network.__enter__()
+        try:
+            self.ear = eavesdropper.Eavesdropper(self.network, self.network.post)
+            if self.post_options is not None:
+                self.post = programs.CommandPost(self.network, self.folder, *self.post_options)
+            self.disk = disk.Disk(self.folder, machine.image())
+            self.disk.put("adit/boot.env", "adit_cmdline=adit.console\n")
+            if self.set_up:
+                self.disk.put("adit/settings.json", json.dumps(programs.settings(self.network, self.overrides)))
+                self.disk.put("adit/network.json", json.dumps(NUMBERS))
+                self.disk.make_folder("adit/secrets")
+                for token in secrets.iterdir():
+                    self.disk.put(f"adit/secrets/{token.name}", token.read_text())
+            self.box = machine.Machine(self.network, self.folder, self.disk)
+        except BaseException:
+            self.__exit__()
+            raise
+        return self
+
+    def start(self):
+        """Switches it on, and waits until it answers the team."""
+        self.box.power_on()
+        self.box.wait_for_answer()
+        return self
+
+    def began(self):
+        """Once the box knows the run."""
+        self.box.wait_until(self.box.knows_the_run, "the box to know the run", 60)
+        return self
+
+    def robots(self, seconds, *options):
+        """The simulated team explores for so long. Its exit status, and what it said."""
+        robots = self.network.start(
+            self.network.team,
+            programs.BIN / "adit-robots",
+            "--post",
+            self.box.url,
+            "--secrets",
+            self.folder / "secrets",
+            "--for",
+            seconds,
+            "--quiet",
+            *options,
+            stdout=subprocess.PIPE,
+            stderr=subprocess.STDOUT,
+            text=True,
+        )
+        said, _ = robots.communicate(timeout=seconds + 60)
+        return robots.returncode, said
+
+    def __exit__(self, *_):
+        if self.box is not None and self.box.process is not None:
+            self.box.cut_power()
+        if self.post is not None and self.post.process.poll() is None:
+            self.post.process.kill()
+            self.post.process.wait()
+        if self.ear is not None:
+            self.ear.close()
+        self.network.__exit__()
+        self.temporary.cleanup()
+
+
+class Story(unittest.TestCase):
+    """Tests that share one machine, each of which begins where the one before it ended. Where one fails, those after it
+    would only say so again: they are skipped."""
+
+    broken = ""
+
+    @classmethod
+    def tell(cls, stage):
+        """The stage of all of them, from setUpClass."""
+        cls.stage = cls.enterClassContext(stage)
+        return stage
+
+    def run(self, result=None):
+        if type(self).broken:
+            self.setUp = lambda: self.skipTest("after " + type(self).broken)
+        before = len(result.failures) + len(result.errors)
+        super().run(result)
+        if len(result.failures) + len(result.errors) > before and not type(self).broken:
+            type(self).broken = self._testMethodName
+            print("--- what the console said last:\n" + self.stage.box.said_last(), flush=True)
+        return result
+
+    @property
+    def box(self):
+        return self.stage.box
+
+
+def note(figure, value):
+    """Prints a figure, and keeps it where CI finds it."""
+    print(f"\n  {figure}: {value}", flush=True)
+    FIGURES.parent.mkdir(parents=True, exist_ok=True)
+    with open(FIGURES, "a", encoding="utf-8") as file:
+        file.write(f"{time.strftime('%F %T')}  {figure}: {value}\n")

@@ -1,0 +1,117 @@
+"""Every day's variant: the real root and units in a container, set up, reporting, restarted and killed, in under a
+minute."""
+
+import pathlib
+import tempfile
+import time
+import unittest
+
+import container
+import hosts
+import programs
+import stage
+from reporting import REPORT, submit
+from stage import Story, load_tests, note  # unittest looks for them here
+
+PASSWORD = "correct horse battery"
+
+
+def setUpModule():
+    hosts.needs_namespaces()
+    if container.missing():
+        raise unittest.SkipTest(container.missing())
+
+
+class Contained:
+    """The stage: container and Command Post."""
+
+    def __enter__(self):
+        self.temporary = tempfile.TemporaryDirectory(prefix="adit-container-")
+        self.folder = pathlib.Path(self.temporary.name)
+        self.network = container.Cables()
+        self.post = self.box = None
+        self.network.__enter__()
+        try:
+            programs.secrets_folder(self.folder / "secrets")
+            self.post = programs.CommandPost(self.network, self.folder, "--rate", "0")
+            self.box = container.Container(self.network, self.folder)
+        except BaseException:
+            self.__exit__()
+            raise
+        return self
+
+    def __exit__(self, *_):
+        if self.box is not None:
+            self.box.close()
+        if self.post is not None:
+            self.post.stop()
+        self.network.__exit__()
+        self.temporary.cleanup()
+
+
+class Everyday(Story):
+    session = {}
+
+    @classmethod
+    def setUpClass(cls):
+        cls.tell(Contained())
+
+    def asked(self, request, body=None, status=200):
+        got, said = self.box.ask(request, {**self.session, "Content-Type": "application/json"}, body, token=None)
+        self.assertEqual(got, status, said)
+        return said
+
+    def test_it_answers_at_the_factory_address(self):
+        self.box.start()
+        note("container, from its start to the first answer on team0", f"{self.box.answered_after:.1f} s")
+        self.assertEqual(self.asked("GET /adit/session")["first_start"], True)
+
+    def test_no_unit_has_failed(self):
+        self.assertEqual(self.box.run("systemctl", "--failed", "--plain", "--no-legend", "--no-pager").stdout, "")
+
+    def test_it_is_set_up_over_the_api(self):
+        self.asked("POST /adit/password", {"role": "operator", "code": self.box.code(), "password": PASSWORD})
+        type(self).session = programs.log_in(self.box, PASSWORD)
+        for name, token in (
+            ("scoring", programs.SCORING_TOKEN),
+            ("mapping", programs.MAPPING_TOKEN),
+            ("team", programs.TEAM_TOKEN),
+        ):
+            self.asked("POST /adit/tokens", {"name": name, "token": token})
+        self.asked("POST /adit/network", stage.NUMBERS)
+        programs.wait_until(
+            lambda: hosts.BOX_DARPA in str(self.asked("GET /adit/network")["command_post"]),
+            "darpa0 to have its address",
+        )
+        self.asked("POST /adit/network/confirm")
+        programs.wait_until(self.box.knows_the_run, "the box to know the run")
+
+    def test_a_report_is_recorded(self):
+        self.assertEqual(submit(self.stage).status_code, 201)
+        self.assertEqual(len(self.stage.post.recorded(REPORT)), 1)
+
+    def test_a_restart_loses_no_connection_attempt(self):
+        self.box.run("systemctl", "restart", "--no-block", "adit.service")
+        end, tried = time.monotonic() + 3.0, 0
+        while time.monotonic() < end:
+            self.stage.network.connect(self.stage.network.team, self.stage.network.box_address, 80, 5.0).close()
+            tried += 1
+        self.assertGreater(tried, 100)
+
+    def test_it_is_started_again_after_a_kill(self):
+        before = programs.wait_until(self.box.pid, "it to run")
+        self.box.run("kill", "-9", str(before))
+        programs.wait_until(lambda: self.box.pid() not in (0, before) and self.box.answers(), "another aditd to answer")
+
+    def test_settings_reports_and_journal_are_kept_over_a_start(self):
+        self.box.stop()
+        self.stage.network.cable_the_box()
+        self.box.start()
+        self.assertEqual([each["state"] for each in self.box.reports()], ["answered"])
+        programs.wait_until(self.box.knows_the_run, "the Command Post to be heard again by the confirmed address")
+        boots = self.box.run("journalctl", "--list-boots", "-q", "--no-pager").stdout
+        self.assertEqual(len(boots.splitlines()), 2, boots)
+
+
+if __name__ == "__main__":
+    unittest.main()

@@ -1,0 +1,77 @@
+"""The plug pulled 20 times while reports flow, on a disk that loses what was not flushed: no report is lost or sent
+twice."""
+
+import os
+import time
+import unittest
+
+from disk import dice
+from insisting import Client, Operator, end, judge
+from reporting import QUICK
+from stage import Stage, Story, load_tests, note, setUpModule  # unittest looks for them here
+
+CUTS = int(os.environ.get("ADIT_CUTS", "20"))
+SEED = 20210924
+FAULTS = {"reports:record-then-drop": 0.05, "reports:drop": 0.05, "reports:answer-after=0.3": 0.4, "status:drop": 0.02}
+LIFE = (0.3, 4.0)  # seconds from a start to its cut
+PATIENCES = (0.5, 1.0, 5.0)  # seconds after which each client hangs up and tries again
+
+
+class PowerCuts(Story):
+    @classmethod
+    def setUpClass(cls):
+        options = ["--rate", "0", "--reports", "100000", "--seed", str(SEED)]
+        for fault, rate in FAULTS.items():
+            options += ["--fault-rate", f"{fault}={rate}"]
+        cls.tell(
+            Stage(
+                post_options=options,
+                **{**QUICK, "command_post__timeouts__scoring_answer_ms": 1500, "reports__doubt_for_ms": 1000},
+            )
+        )
+        cls.chance = dice(SEED)
+
+    def test_a_cut_in_the_first_start_leaves_a_box_that_starts(self):
+        lost = 0
+        for after in (4.0, 8.0):
+            self.box.power_on()
+            time.sleep(after)
+            lost += self.box.cut_power(self.chance)
+        note("writes lost by cuts in the first start", lost)
+        self.stage.start().began()
+
+    def test_no_report_is_lost_or_doubled_by_twenty_cuts(self):
+        operator, lost, starts = Operator(self.stage), 0, []
+        clients = [Client(self.stage, number, patience, pause=0.1) for number, patience in enumerate(PATIENCES, 1)]
+        for client in clients:
+            client.start()
+        for number in range(1, CUTS + 1):
+            time.sleep(self.chance.uniform(*LIFE))
+            lost += self.box.cut_power(self.chance)
+            self.stage.start()
+            starts.append(self.box.answered_after)
+            if number % 5 == 0:
+                self.stage.began()
+                operator.looks()
+        self.stage.began()
+        end(clients)
+        self.stage.post.control("DELETE /faults")
+        self.box.wait_until(operator.sees_all_at_rest, "all to come to rest", 60)
+        self.assertEqual([client.odd for client in clients], [[]] * len(clients), "what no client should be told")
+        posted = [each for client in clients for each in client.posted]
+        recorded, waiting = judge(self, self.stage, operator, posted)
+        note(
+            f"{CUTS} power cuts",
+            f"{lost} writes lost, {len(posted)} reports posted, {recorded.total()} recorded, 0 doubled, "
+            f"{waiting} wait for the operator, {len(operator.judged)} judged by him; "
+            f"starts of {min(starts):.1f} to {max(starts):.1f} s",
+        )
+        self.assertGreater(recorded.total(), CUTS)
+
+    def test_the_journal_of_all_these_starts_is_kept(self):
+        self.box.console.wait_for_shell()
+        self.assertGreater(int(self.box.console.ask("journalctl --list-boots -q --no-pager | wc -l", 60)), CUTS // 2)
+
+
+if __name__ == "__main__":
+    unittest.main()

@@ -1,0 +1,81 @@
+"""What is killed, hangs or panics: each comes back by itself, and the lights do not pretend."""
+
+import time
+import unittest
+
+import leds
+from stage import Stage, Story, load_tests, note, setUpModule  # unittest looks for them here
+
+PID = "systemctl show -p MainPID --value adit.service"
+
+
+class Recovery(Story):
+    @classmethod
+    def setUpClass(cls):
+        cls.tell(Stage())
+
+    def pid(self):
+        return int(self.box.console.ask(PID))
+
+    def comes_back(self, within):
+        """Until another process answers: seconds since it was hit()."""
+        self.box.wait_until(
+            lambda: self.pid() not in (0, self.before) and self.box.answers(), "another aditd to answer", within
+        )
+        return time.monotonic() - self.when
+
+    def hit(self, how):
+        type(self).before, type(self).when = self.pid(), time.monotonic()
+        self.box.console.ask(f"kill -{how} {self.before}")
+
+    def test_a_card_that_was_prepared_in_a_reader_sets_the_box_up(self):
+        self.stage.start().began()
+        note("first start of a prepared card, from power to the first answer on team0", self.box.start_took())
+        self.box.console.wait_for_shell()
+        self.assertEqual(self.box.ask("GET /adit/settings")[1]["tokens"]["scoring"], True)
+
+    def test_after_a_kill_the_lights_are_dark_or_say_fault_within_two_seconds(self):
+        leds.wait_for(self.box, health="on", scoring="on", mapping="on", within=60)
+        self.hit("KILL")
+        seen = self.box.watch_lights(2.0, every=0.01)
+        dark = [at for at, lights in seen if not (lights["scoring"] or lights["mapping"] or lights["attention"])]
+        self.assertTrue(dark, "they pretend for two seconds")
+        note("dark after a kill -9", f"{dark[0]:.2f} s")
+
+    def test_and_it_is_started_again(self):
+        note("serves again after a kill -9", f"{self.comes_back(30):.1f} s")
+        leds.wait_for(self.box, health="on", scoring="on", within=60)
+
+    def test_what_is_hung_is_killed_by_systemds_watchdog_and_started_again(self):
+        self.hit("STOP")
+        note("serves again after a SIGSTOP", f"{self.comes_back(60):.1f} s")
+        self.assertIn("watchdog", self.box.console.ask("journalctl -b -u adit -n 30 --no-pager", 60).lower())
+
+    def test_connections_of_the_team_wait_while_it_is_started_again(self):
+        self.box.console.ask("systemctl restart --no-block adit.service")
+        end, tried = time.monotonic() + 6.0, 0
+        while time.monotonic() < end:
+            self.stage.network.connect(self.stage.network.team, self.stage.network.box_address, 80, 5.0).close()
+            tried += 1
+            time.sleep(0.05)
+        self.assertGreater(tried, 30)
+
+    def test_a_kernel_that_panics_starts_the_box_again(self):
+        self.box.console.type("echo c > /proc/sysrq-trigger")
+        self.restarts("a kernel panic", 120)
+
+    def test_a_kernel_that_hangs_is_reset_by_the_hardware_watchdog(self):
+        self.box.console.wait_for_shell()
+        self.box.console.ask("echo 0 > /proc/sys/kernel/panic")  # so that the panic itself starts nothing
+        self.box.console.type("echo c > /proc/sysrq-trigger")
+        self.restarts("a kernel that hangs", 150)
+
+    def restarts(self, why, within):
+        began, heard = time.monotonic(), len(self.box.console.said().encode())
+        self.box.console.wait_for(rb"Starting kernel", within, heard)
+        self.box.wait_until(self.box.answers, "the box to answer", 120)
+        note(f"serves again after {why}", f"{time.monotonic() - began:.1f} s")
+
+
+if __name__ == "__main__":
+    unittest.main()

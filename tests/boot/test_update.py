@@ -1,0 +1,106 @@
+"""Updates: one that stays, one that cannot start and is left again, and those that are refused. Settings and reports
+come along."""
+
+import http.client
+import pathlib
+import re
+import tempfile
+import time
+import unittest
+
+import machine
+import programs
+from bundles import bundle
+from reporting import REPORT
+from stage import Stage, Story, load_tests, note, setUpModule  # unittest looks for them here
+
+RUNS = re.search(r"adit-qemu-virt-([0-9].*)\.img$", machine.image().name).group(1) if not machine.missing() else ""
+NEWER, BROKEN = "7.0.0", "7.1.0"
+
+
+@unittest.skipUnless((machine.SOURCE / "rootfs" / "bundle").exists(), "this Adit has no updates")
+class Updates(Story):
+    @classmethod
+    def setUpClass(cls):
+        cls.tell(Stage())
+        cls.folder = pathlib.Path(cls.enterClassContext(tempfile.TemporaryDirectory(prefix="adit-bundles-")))
+
+    def stands(self):
+        return self.box.ask("GET /adit/update", timeout=20)[1]
+
+    def send(self, path):
+        """As the page does."""
+        connection = http.client.HTTPConnection(self.stage.network.box_address, self.box.port, timeout=120)
+        headers = {"Authorization": f"Bearer {programs.TEAM_TOKEN}", "Content-Type": "application/octet-stream"}
+        with open(path, "rb") as file:
+            connection.request("POST", "/adit/update", file, {**headers, "Content-Length": str(path.stat().st_size)})
+            answer = connection.getresponse()
+            said = answer.read()
+        connection.close()
+        self.assertIn(answer.status, (200, 202), said)
+
+    def is_refused(self, path, *words):
+        self.send(path)
+        refusal = self.box.wait_until(
+            lambda: (now := self.stands())["doing"] is None and now["refusal"], "a refusal", 90
+        )
+        for word in words:
+            self.assertIn(word, str(refusal))
+        self.assertEqual((self.stands()["version"], self.stands()["slot"]), (RUNS, "A"))
+
+    def install(self, path, version):
+        began = time.monotonic()
+        self.send(path)
+        self.box.wait_until(lambda: self.last() in (("installed", version), ("failed", version)), "the end of it", 240)
+        self.assertEqual(self.last(), ("installed", version), self.stands()["refusal"])
+        note(f"update of {path.stat().st_size / 1e6:.0f} MB sent and installed", f"{time.monotonic() - began:.0f} s")
+        self.assertEqual(self.box.ask("POST /adit/update/restart", body={"anyway": True})[0], 200)
+
+    def last(self):
+        last = self.stands()["last"]
+        return last and (last["stage"], last["version"])
+
+    def settled(self, *wanted, within):
+        def is_so():
+            try:
+                return self.last() == wanted
+            except (OSError, ValueError, KeyError):
+                return False  # it starts anew
+
+        self.box.wait_until(is_so, f"an update that is {wanted}", within)
+
+    def test_it_runs_in_the_first_slot(self):
+        self.stage.start().began()
+        self.box.wait_until(lambda: self.stands()["managed"], "adit-update to have told what runs", 60)
+        self.assertEqual((self.stands()["managed"], self.stands()["version"], self.stands()["slot"]), (True, RUNS, "A"))
+        status, said = self.box.ask("POST /api/artifact_reports", body=REPORT, timeout=30)
+        self.assertEqual(status, 201, said)
+
+    def test_one_for_another_board_is_refused(self):
+        self.is_refused(bundle(self.folder, "7.2.0", board="rock-pi-e"), "rock-pi-e")
+
+    def test_an_older_one_is_refused(self):
+        self.is_refused(bundle(self.folder, "0.0.1"), "0.0.1")
+
+    def test_a_newer_one_is_installed_in_the_other_slot_and_stays_once_it_was_healthy(self):
+        self.install(bundle(self.folder, NEWER), NEWER)
+        self.settled("good", NEWER, within=400)
+        self.assertEqual((self.stands()["version"], self.stands()["slot"]), (NEWER, "B"))
+
+    def test_settings_tokens_and_reports_came_along(self):
+        self.assertEqual([each["state"] for each in self.box.reports()], ["answered"])
+        self.stage.began()
+
+    def test_one_that_does_not_come_up_is_left_after_three_starts(self):
+        self.install(bundle(self.folder, BROKEN, without="usr/lib/systemd/systemd"), BROKEN)
+        self.settled("left", BROKEN, within=400)
+        self.assertEqual((self.stands()["version"], self.stands()["slot"]), (NEWER, "B"))
+        self.assertEqual(self.box.console.said().count("Adit: slot a"), 1 + 3)
+
+    def test_and_all_is_as_it_was(self):
+        self.assertEqual([each["state"] for each in self.box.reports()], ["answered"])
+        self.stage.began()
+
+
+if __name__ == "__main__":
+    unittest.main()

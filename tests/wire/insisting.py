@@ -1,0 +1,126 @@
+"""Clients that report one thing after another while the box dies again and again, and the verdict on what became of it
+all: each report that any client was told is taken or kept is recorded exactly once, or waits where the operator sees
+it; none is there twice."""
+
+import collections
+import dataclasses
+import threading
+import time
+
+import requests
+
+from reporting import submit
+
+# Given up by its client after this long; what it was told by then must be true all the same.
+GIVES_UP = 15.0
+DOUBTED = 1.0  # seconds after which the operator looks at a report in doubt
+ENDS = {"answered", "settled", "refused", "withdrawn"}
+
+
+@dataclasses.dataclass
+class Posted:
+    """A report, and what its client was told of it."""
+
+    report: dict
+    kept: bool = False
+    answer: requests.Response | None = None  # the last one: 201, or 409 where the operator had called it done
+
+    @property
+    def at(self):
+        return self.report["x"], self.report["y"]
+
+    def is_recorded(self):
+        return self.answer is not None and self.answer.status_code == 201
+
+
+def at_of(row):
+    return row["position"]["x"], row["position"]["y"]
+
+
+class Client(threading.Thread):
+    """Reports one thing after another, each again and again until it is answered 201, or given up. It begins a new one
+    at most each `pause` seconds."""
+
+    def __init__(self, stage, number, patience, pause=0.0):
+        super().__init__(daemon=True)
+        self.stage, self.number, self.patience, self.pause = stage, number, patience, pause
+        self.posted, self.ending, self.odd = [], threading.Event(), []
+
+    def run(self):
+        while not self.ending.wait(self.pause):
+            report = {"x": 100.0 * self.number, "y": float(len(self.posted)), "z": 0.5, "type": "Drill"}
+            self.posted.append(Posted(report))
+            end = time.monotonic() + GIVES_UP
+            while time.monotonic() < end and not self.once(self.posted[-1]):
+                time.sleep(0.02)
+
+    def once(self, posted):
+        try:
+            answer = submit(self.stage, posted.report, self.patience)
+        except requests.RequestException:
+            return False  # the box is away, or too late
+        if answer.status_code == 201 or "called done by the operator" in answer.text:
+            posted.answer = answer
+        elif answer.status_code in (503, 504):
+            posted.kept = posted.kept or "Adit-Report" in answer.headers
+        else:
+            self.odd.append(f"{answer.status_code} {answer.text}")
+        return posted.answer is not None
+
+
+class Operator:
+    """Of a stage: looks at what the Command Post shows as recorded, and judges by that what waits for him."""
+
+    def __init__(self, stage):
+        self.stage, self.judged = stage, {}  # the deed by the report's number
+
+    def waiting(self):
+        """Those held, and those in doubt of which nothing was found out for a while, by their numbers."""
+        return {
+            row["number"]: row
+            for row in self.stage.box.reports()
+            if row["state"] == "received" or (row["state"] == "in doubt" and time.time() - row["changed"] > DOUBTED)
+        }
+
+    def looks(self):
+        waiting = self.waiting()
+        recorded = {(made["x"], made["y"]) for made in self.stage.post.recorded()}
+        for number, row in waiting.items():
+            done = row["state"] == "in doubt" and at_of(row) in recorded
+            self.judged[number] = "done" if done else "send"
+            status, said = self.stage.box.judge(number, self.judged[number])
+            if status != 200:
+                raise AssertionError(f"report {number}, {self.judged[number]}: {status} {said}")
+
+    def sees_all_at_rest(self):
+        """Nothing moves any more by itself."""
+        waiting = self.waiting()
+        return all(row["state"] in ENDS or row["number"] in waiting for row in self.stage.box.reports())
+
+
+def end(clients):
+    for client in clients:
+        client.ending.set()
+    for client in clients:
+        client.join(GIVES_UP + 10)
+
+
+def judge(test, stage, operator, all_posted):
+    """The verdict on `all_posted`, once all is at rest. What was recorded, as a Counter by (x, y), and how many
+    wait."""
+    recorded = collections.Counter((made["x"], made["y"]) for made in stage.post.recorded())
+    waiting = operator.waiting()
+    said = stage.box.attention()
+    for number in waiting:
+        test.assertIn(f"report {number} is ", said, "the operator sees it")
+    places = {at_of(row) for row in waiting.values()}
+    for posted in all_posted:
+        with test.subTest(report=posted.report):
+            test.assertLessEqual(recorded[posted.at], 1, "recorded twice")
+            if posted.answer is not None:
+                test.assertEqual(recorded[posted.at], 1, "answered, or called done")
+                test.assertEqual(submit(stage, posted.report).content, posted.answer.content)
+            if posted.kept:
+                test.assertTrue(recorded[posted.at] == 1 or posted.at in places, "told that it is kept")
+    test.assertEqual(recorded.total(), len(stage.post.recorded()), "nothing was recorded since")
+    return recorded, len(waiting)

@@ -177,7 +177,7 @@ class Button(unittest.TestCase):
         box.stop()
         self.assertFalse(fifo.exists())
 
-    def test_a_missing_link_shows_on_its_lights(self):
+    def test_a_missing_link_shows_on_its_lights_and_asks_for_the_operator(self):
         box = self.start_box()
         box.stop()
         settings = json.loads((box.folder / "settings.json").read_text())
@@ -185,7 +185,7 @@ class Button(unittest.TestCase):
         (box.folder / "settings.json").write_text(json.dumps(settings))
         box.start()
         wait_until(lambda: self.patterns()["scoring"] == "flash", "its pattern", within=2)
-        self.assertEqual(self.patterns(), {"health": "on", "scoring": "flash", "mapping": "flash", "attention": "off"})
+        self.assertEqual(self.patterns(), {"health": "on", "scoring": "flash", "mapping": "flash", "attention": "fast"})
 
     def test_tells_which_board_it_is_and_takes_its_panel_before_that_of_the_settings(self):
         folder = pathlib.Path(self.enterContext(tempfile.TemporaryDirectory(prefix="adit-board-")))

@@ -71,12 +71,30 @@ class Server {
   }
 
   void answer(int client) {
-    char buffer[4096];
-    const ssize_t size = recv(client, buffer, sizeof buffer, 0);
-    if (size > 0) request_.assign(buffer, static_cast<std::size_t>(size));
+    request_ = received(client);
     const std::string answer = answer_to(request_.substr(0, request_.find(" HTTP/")));
     send(client, answer.data(), answer.size(), MSG_NOSIGNAL);
     while (silent_ && !ended_) std::this_thread::sleep_for(std::chrono::milliseconds(5));
+  }
+
+  /// A whole request, which may come in pieces, or what there was of one.
+  static std::string received(int client) {
+    std::string request;
+    char buffer[4096];
+    while (!is_whole(request)) {
+      const ssize_t size = recv(client, buffer, sizeof buffer, 0);
+      if (size <= 0) break;
+      request.append(buffer, static_cast<std::size_t>(size));
+    }
+    return request;
+  }
+
+  static bool is_whole(const std::string& request) {
+    const std::size_t head = request.find("\r\n\r\n");
+    if (head == std::string::npos) return false;
+    const std::size_t length = request.find("Content-Length: ");
+    if (length == std::string::npos || length > head) return true;
+    return request.size() - head - 4 >= std::stoul(request.substr(length + 16));
   }
 
   std::string answer_to(const std::string& asked) const {

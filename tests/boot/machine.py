@@ -15,7 +15,7 @@ import qmp
 SOURCE = pathlib.Path(os.environ["ADIT_SOURCE"])
 BOARD = SOURCE / "board" / "qemu-virt"
 IMAGES = SOURCE / "build" / "image" / "qemu-virt"
-MACHINE = ["-M", "virt,acpi=off", "-cpu", "cortex-a53", "-smp", "1", "-nodefaults", "-display", "none"]
+MACHINE = ["-M", "virt,acpi=off", "-cpu", "cortex-a53", "-smp", "2", "-nodefaults", "-display", "none"]
 # As board.json has them, on the eight lines of QEMU's PL061. Line 3 is the machine's own power key.
 LINES = ["ADIT_HEALTH", "ADIT_SCORING", "ADIT_MAPPING", "POWER_KEY", "ADIT_ATTENTION", "ADIT_BUTTON", "", ""]
 LIGHTS = {"health": 0, "scoring": 1, "mapping": 2, "attention": 4}

@@ -79,9 +79,12 @@ TEST(Options, NameTheWordThatIsWrong) {
     Words words;
     const char* sentence;
   } cases[] = {
-      {{}, "a command is missing: status, reports, run, settings, course, identify, network, test, update or check"},
+      {{},
+       "a command is missing: status, reports, run, settings, course, identify, network, test, update or "
+       "check"},
       {{"--json"},
-       "a command is missing: status, reports, run, settings, course, identify, network, test, update or check"},
+       "a command is missing: status, reports, run, settings, course, identify, network, test, update or "
+       "check"},
       {{"state"}, "no such command: state"},
       {{"status", "--jsn"}, "no such option: --jsn"},
       {{"status", "--at"}, "a value is missing after --at"},

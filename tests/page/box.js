@@ -73,12 +73,15 @@ export async function box(t) {
   const url = `http://127.0.0.1:${await aditd.said(/listening .*port=(\d+)/)}`;
 
   const who = { operator: { Authorization: `Bearer ${TOKENS.team}` }, nobody: {} };
-  const ask = (method, path, { role = "operator", body, headers = {} } = {}) =>
-    fetch(url + path, {
+  const ask = (method, path, { role = "operator", body, headers = {} } = {}) => {
+    const bytes = Buffer.isBuffer(body);
+    const type = bytes ? "application/octet-stream" : "application/json";
+    return fetch(url + path, {
       method,
-      headers: { ...(method === "POST" && { "Content-Type": "application/json" }), ...who[role], ...headers },
-      body: body === undefined ? undefined : JSON.stringify(body),
+      headers: { ...(method === "POST" && { "Content-Type": type }), ...who[role], ...headers },
+      body: body === undefined || bytes ? body : JSON.stringify(body),
     });
+  };
   const logIn = async (password) => {
     const answer = await ask("POST", "/adit/login", { role: "nobody", body: { password } });
     const { csrf } = await answer.json();

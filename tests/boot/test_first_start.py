@@ -81,9 +81,15 @@ class FirstStart(Story):
         self.asked("POST /adit/network", stage.NUMBERS)
         self.box.wait_until(lambda: self.asked("GET /adit/network")["pending"], "the change to be tried")
         self.box.wait_until(lambda: self.has_address(hosts.BOX_DARPA), "darpa0 to have its address", 30)
-        self.asked("POST /adit/network/confirm")
+        self.box.wait_until(self.confirmed, "the change to be made, so that it can be confirmed")
         self.box.wait_until(lambda: self.asked("GET /adit/network")["last"] == "confirmed", "it to be confirmed")
         self.stage.began()
+
+    def confirmed(self):
+        headers = {**type(self).session, "Content-Type": "application/json"}
+        status, said = self.box.ask("POST /adit/network/confirm", headers=headers, token=None, timeout=20)
+        self.assertIn(status, (200, 409), said)
+        return status == 200
 
     def has_address(self, address):
         return address in [each["address"] for each in self.asked("GET /adit/network")["command_post"]["addresses"]]

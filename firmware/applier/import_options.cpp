@@ -1,23 +1,15 @@
-#include <string_view>
-#include <utility>
-
 #include "applier/import.hpp"
+#include "host/command_line.hpp"
 
 namespace adit::applier {
 namespace {
 
-constexpr std::pair<std::string_view, std::string ImportOptions::*> kValues[] = {
-    {"--card", &ImportOptions::card},
-    {"--state", &ImportOptions::state},
-    {"--network", &ImportOptions::network},
-    {"--given", &ImportOptions::given}};
-
-std::string ImportOptions::* member_named(std::string_view word) {
-  for (const auto& [name, member] : kValues) {
-    if (name == word) return member;
-  }
-  return nullptr;
-}
+constexpr host::Flag<ImportOptions> kFlags[] = {{"--help", &ImportOptions::help},
+                                                {"--version", &ImportOptions::version}};
+constexpr host::Value<ImportOptions> kValues[] = {{"--card", &ImportOptions::card},
+                                                  {"--state", &ImportOptions::state},
+                                                  {"--network", &ImportOptions::network},
+                                                  {"--given", &ImportOptions::given}};
 
 }  // namespace
 
@@ -42,22 +34,7 @@ const char* const kImportUsage =
     "(and says why); 2 on a wrong command line.\n";
 
 std::expected<ImportOptions, std::string> parse_import_options(std::span<char* const> arguments) {
-  ImportOptions options;
-  for (std::size_t i = 0; i < arguments.size(); ++i) {
-    const std::string_view word = arguments[i];
-    if (word == "--help") {
-      options.help = true;
-    } else if (word == "--version") {
-      options.version = true;
-    } else if (const auto member = member_named(word); member == nullptr) {
-      return std::unexpected("unknown word '" + std::string(word) + "'");
-    } else if (++i == arguments.size() || *arguments[i] == '\0') {
-      return std::unexpected(std::string(word) + " wants a value");
-    } else {
-      options.*member = arguments[i];
-    }
-  }
-  return options;
+  return host::read_command_line<ImportOptions>(arguments, kFlags, kValues);
 }
 
 }  // namespace adit::applier

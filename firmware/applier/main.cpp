@@ -1,10 +1,10 @@
 /// adit-network: changes the box's own addresses, as root, for aditd, which has no privilege.
 
 #include <csignal>
-#include <cstdio>
 
 #include "applier/applier.hpp"
 #include "applier/options.hpp"
+#include "host/command_line.hpp"
 #include "host/log.hpp"
 #include "loop/loop.hpp"
 
@@ -36,11 +36,7 @@ int run(const adit::applier::Options& options) {
 int main(int argc, char** argv) {
   const auto options =
       adit::applier::parse_options(std::span<char* const>(argv + 1, static_cast<std::size_t>(argc - 1)));
-  if (!options) {
-    std::fprintf(stderr, "adit-network: %s\n%s", options.error().c_str(), adit::applier::kUsage);
-    return 2;
-  }
-  if (options->help) return std::fputs(adit::applier::kUsage, stdout) < 0 ? 1 : 0;
-  if (options->version) return std::printf("adit-network %s\n", ADIT_VERSION) < 0 ? 1 : 0;
+  if (const auto exit = adit::host::answered("adit-network", ADIT_VERSION, adit::applier::kUsage, options))
+    return *exit;
   return options->start ? start(*options) : run(*options);
 }

@@ -3,10 +3,14 @@
 #include <string_view>
 #include <utility>
 
+#include "host/command_line.hpp"
+
 namespace adit::applier {
 namespace {
 
-constexpr std::pair<std::string_view, std::string Options::*> kValues[] = {
+constexpr host::Flag<Options> kFlags[] = {
+    {"--start", &Options::start}, {"--help", &Options::help}, {"--version", &Options::version}};
+constexpr host::Value<Options> kValues[] = {
     {"--wanted", &Options::wanted},   {"--status", &Options::status},
     {"--state", &Options::state},     {"--networkd", &Options::networkd},
     {"--factory", &Options::factory}, {"--networkctl", &Options::networkctl},
@@ -18,13 +22,6 @@ bool is_interface(std::string_view name) {
   return !name.empty() && name.size() <= 15 && name != "." && name != ".." &&
          name.find_first_not_of("abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ0123456789._-") ==
              std::string_view::npos;
-}
-
-std::string Options::* member_named(std::string_view word) {
-  for (const auto& [name, member] : kValues) {
-    if (name == word) return member;
-  }
-  return nullptr;
 }
 
 }  // namespace
@@ -52,28 +49,13 @@ const char* const kUsage =
     "line.\n";
 
 std::expected<Options, std::string> parse_options(std::span<char* const> arguments) {
-  Options options;
-  for (std::size_t i = 0; i < arguments.size(); ++i) {
-    const std::string_view word = arguments[i];
-    if (word == "--help") {
-      options.help = true;
-    } else if (word == "--start") {
-      options.start = true;
-    } else if (word == "--version") {
-      options.version = true;
-    } else if (const auto member = member_named(word); member == nullptr) {
-      return std::unexpected("unknown word '" + std::string(word) + "'");
-    } else if (++i == arguments.size() || *arguments[i] == '\0') {
-      return std::unexpected(std::string(word) + " wants a value");
-    } else {
-      options.*member = arguments[i];
-    }
-  }
+  const auto options = host::read_command_line<Options>(arguments, kFlags, kValues);
+  if (!options) return options;
   for (const auto& [word, name] :
-       {std::pair("--team", options.team), std::pair("--command-post", options.command_post)}) {
+       {std::pair("--team", options->team), std::pair("--command-post", options->command_post)}) {
     if (!is_interface(name)) return std::unexpected(std::string(word) + " wants an interface's name");
   }
-  if (options.team == options.command_post)
+  if (options->team == options->command_post)
     return std::unexpected("--team and --command-post name the same interface");
   return options;
 }

@@ -3,26 +3,23 @@
 #include <charconv>
 #include <optional>
 #include <string_view>
-#include <utility>
+
+#include "host/command_line.hpp"
 
 namespace adit::applier {
 namespace {
 
-constexpr std::pair<std::string_view, std::string UpdateOptions::*> kValues[] = {
-    {"--wanted", &UpdateOptions::wanted},         {"--status", &UpdateOptions::status},
-    {"--state", &UpdateOptions::state},           {"--stick", &UpdateOptions::stick},
-    {"--os-release", &UpdateOptions::os_release}, {"--rauc", &UpdateOptions::rauc},
-    {"--systemctl", &UpdateOptions::systemctl}};
-constexpr std::pair<std::string_view, bool UpdateOptions::*> kFlags[] = {
-    {"good", &UpdateOptions::good}, {"--help", &UpdateOptions::help}, {"--version", &UpdateOptions::version}};
-
-template <class Member, std::size_t kSize>
-Member member_named(const std::pair<std::string_view, Member> (&table)[kSize], std::string_view word) {
-  for (const auto& [name, member] : table) {
-    if (name == word) return member;
-  }
-  return nullptr;
-}
+/// As they are written; a member whose kind is not a text stands here as one.
+struct Written : UpdateOptions {
+  std::string within_seconds = "";
+};
+constexpr host::Flag<Written> kFlags[] = {
+    {"good", &Written::good}, {"--help", &Written::help}, {"--version", &Written::version}};
+constexpr host::Value<Written> kValues[] = {
+    {"--wanted", &Written::wanted},         {"--status", &Written::status},
+    {"--state", &Written::state},           {"--stick", &Written::stick},
+    {"--os-release", &Written::os_release}, {"--rauc", &Written::rauc},
+    {"--systemctl", &Written::systemctl},   {"--within", &Written::within_seconds}};
 
 std::optional<std::chrono::seconds> seconds_in(std::string_view text) {
   int seconds = 0;
@@ -57,24 +54,14 @@ const char* const kUpdateUsage =
     "Exits 0 once it is done, 1 where it cannot do its work (and says why), 2 on a wrong command line.\n";
 
 std::expected<UpdateOptions, std::string> parse_update_options(std::span<char* const> arguments) {
-  UpdateOptions options;
-  for (std::size_t i = 0; i < arguments.size(); ++i) {
-    const std::string_view word = arguments[i];
-    if (const auto flag = member_named(kFlags, word)) {
-      options.*flag = true;
-    } else if (word == "--within" && i + 1 < arguments.size()) {
-      const auto seconds = seconds_in(arguments[++i]);
-      if (!seconds) return std::unexpected("--within wants 1 to 3600 seconds");
-      options.within = *seconds;
-    } else if (const auto member = member_named(kValues, word); member == nullptr) {
-      return std::unexpected("unknown word '" + std::string(word) + "'");
-    } else if (++i == arguments.size() || *arguments[i] == '\0') {
-      return std::unexpected(std::string(word) + " wants a value");
-    } else {
-      options.*member = arguments[i];
-    }
+  auto written = host::read_command_line<Written>(arguments, kFlags, kValues);
+  if (!written) return std::unexpected(written.error());
+  if (!written->within_seconds.empty()) {
+    const auto seconds = seconds_in(written->within_seconds);
+    if (!seconds) return std::unexpected("--within wants 1 to 3600 seconds");
+    written->within = *seconds;
   }
-  return options;
+  return std::move(*written);
 }
 
 }  // namespace adit::applier

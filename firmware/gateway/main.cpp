@@ -1,7 +1,6 @@
 /// aditd: the only place that knows all rooms.
 
 #include <csignal>
-#include <cstdio>
 #include <cstdlib>
 #include <filesystem>
 #include <span>
@@ -12,6 +11,7 @@
 #include "gateway/open_panel.hpp"
 #include "gateway/options.hpp"
 #include "gateway/version.hpp"
+#include "host/command_line.hpp"
 #include "host/inherited.hpp"
 #include "host/log.hpp"
 #include "loop/watchdog.hpp"
@@ -154,11 +154,8 @@ class Service {
 int main(int argc, char** argv) {
   const auto options =
       adit::gateway::parse_options(std::span<char* const>(argv + 1, static_cast<std::size_t>(argc - 1)));
-  if (!options) {
-    std::fprintf(stderr, "aditd: %s\n%s", options.error().c_str(), adit::gateway::kUsage);
-    return 2;
-  }
-  if (options->help) return std::fputs(adit::gateway::kUsage, stdout) < 0 ? 1 : 0;
-  if (options->version) return std::printf("aditd %s\n", adit::gateway::kVersion) < 0 ? 1 : 0;
+  if (const auto exit =
+          adit::host::answered("aditd", adit::gateway::kVersion, adit::gateway::kUsage, options))
+    return *exit;
   return Service(*options).run();
 }

@@ -1,8 +1,17 @@
 #include "gateway/options.hpp"
 
-#include <string_view>
+#include "host/command_line.hpp"
 
 namespace adit::gateway {
+namespace {
+
+constexpr host::Flag<Options> kFlags[] = {{"--help", &Options::help}, {"--version", &Options::version}};
+constexpr host::Value<Options> kValues[] = {
+    {"--settings", &Options::settings}, {"--secrets", &Options::secrets}, {"--state", &Options::state},
+    {"--network", &Options::network},   {"--update", &Options::update},   {"--board", &Options::board},
+    {"--notices", &Options::notices}};
+
+}  // namespace
 
 const char* const kUsage =
     "Usage: aditd --settings FILE --secrets DIR --state DIR\n"
@@ -31,33 +40,12 @@ const char* const kUsage =
     "Exits 0 after SIGTERM or SIGINT, 1 where it cannot start (and says why), 2 on a wrong command line.\n";
 
 std::expected<Options, std::string> parse_options(std::span<char* const> arguments) {
-  Options options;
-  for (std::size_t i = 0; i < arguments.size(); ++i) {
-    const std::string_view word = arguments[i];
-    if (word == "--help") {
-      options.help = true;
-      continue;
-    }
-    if (word == "--version") {
-      options.version = true;
-      continue;
-    }
-    std::string* const value = word == "--settings"  ? &options.settings
-                               : word == "--secrets" ? &options.secrets
-                               : word == "--state"   ? &options.state
-                               : word == "--network" ? &options.network
-                               : word == "--update"  ? &options.update
-                               : word == "--board"   ? &options.board
-                               : word == "--notices" ? &options.notices
-                                                     : nullptr;
-    if (value == nullptr) return std::unexpected("unknown word '" + std::string(word) + "'");
-    if (++i == arguments.size()) return std::unexpected(std::string(word) + " wants a value");
-    *value = arguments[i];
-  }
-  if (options.help || options.version) return options;
-  if (options.settings.empty()) return std::unexpected("--settings FILE is missing");
-  if (options.secrets.empty()) return std::unexpected("--secrets DIR is missing");
-  if (options.state.empty()) return std::unexpected("--state DIR is missing");
+  auto options = host::read_command_line<Options>(arguments, kFlags, kValues, host::Empty::Taken);
+  if (!options) return options;
+  if (options->help || options->version) return options;
+  if (options->settings.empty()) return std::unexpected("--settings FILE is missing");
+  if (options->secrets.empty()) return std::unexpected("--secrets DIR is missing");
+  if (options->state.empty()) return std::unexpected("--state DIR is missing");
   return options;
 }
 

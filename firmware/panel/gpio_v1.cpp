@@ -5,7 +5,6 @@
 #include <utility>
 
 #include "panel/gpio_lines.hpp"
-#include "panel/lines.hpp"
 
 namespace adit::panel {
 namespace {
@@ -62,42 +61,17 @@ class Output {
   gpiod_line* line_ = nullptr;
 };
 
-class GpioLines final : public Lines {
- public:
-  explicit GpioLines(settings::Panel settings) : settings_(std::move(settings)) {}
-
-  std::expected<void, std::string> request(Light light, const std::string& consumer) {
-    const std::string& name = line_of(settings_, light);
-    if (name.empty()) return {};
-    auto found = find(settings_, name, about(light));
-    if (!found) return std::unexpected(found.error());
-    const int flags = settings_.active_low ? GPIOD_LINE_REQUEST_FLAG_ACTIVE_LOW : 0;
-    if (gpiod_line_request_output_flags(found->line, consumer.c_str(), flags, 0) != 0) {
-      return gpio_trouble(about(light), errno);
-    }
-    outputs_[index_of(light)] = Output(std::move(*found));
-    return {};
+/// `about` is for the error.
+std::expected<Output, std::string> request_output(const settings::Panel& settings, const std::string& line,
+                                                  const std::string& about, const std::string& consumer) {
+  auto found = find(settings, line, about);
+  if (!found) return std::unexpected(found.error());
+  const int flags = settings.active_low ? GPIOD_LINE_REQUEST_FLAG_ACTIVE_LOW : 0;
+  if (gpiod_line_request_output_flags(found->line, consumer.c_str(), flags, 0) != 0) {
+    return gpio_trouble(about, errno);
   }
-
-  /// Every light is set, also after one that fails; the first failure is told.
-  std::expected<void, std::string> set(const Lit& lit) override {
-    std::expected<void, std::string> result;
-    for (const Light light : kLights) {
-      Output& output = outputs_[index_of(light)];
-      if (!output.is_there() || output.set(lit[index_of(light)])) continue;
-      if (result) result = gpio_trouble(about(light), errno);
-    }
-    return result;
-  }
-
- private:
-  std::string about(Light light) const {
-    return panel::about(settings_, line_of(settings_, light), name_of(light));
-  }
-
-  settings::Panel settings_;
-  std::array<Output, kLights.size()> outputs_;
-};
+  return Output(std::move(*found));
+}
 
 class GpioButton final : public ButtonLine {
  public:
@@ -131,13 +105,9 @@ class GpioButton final : public ButtonLine {
 
 std::expected<std::unique_ptr<Lines>, std::string> open_gpio(const settings::Panel& settings,
                                                              const std::string& consumer) {
-  auto lines = std::make_unique<GpioLines>(settings);
-  for (const Light light : kLights) {
-    if (auto requested = lines->request(light, consumer); !requested) {
-      return std::unexpected(requested.error());
-    }
-  }
-  return lines;
+  return open_lines<Output>(settings, [&](const std::string& line, const std::string& about) {
+    return request_output(settings, line, about, consumer);
+  });
 }
 
 std::expected<std::unique_ptr<ButtonLine>, std::string> open_gpio_button(const settings::Panel& settings,

@@ -1,12 +1,10 @@
 // The panel by libgpiod 2.
 #include <gpiod.h>
 
-#include <array>
 #include <utility>
 #include <vector>
 
 #include "panel/gpio_lines.hpp"
-#include "panel/lines.hpp"
 
 namespace adit::panel {
 namespace {
@@ -107,46 +105,21 @@ class Output {
   unsigned offset_ = 0;
 };
 
-class GpioLines final : public Lines {
- public:
-  explicit GpioLines(settings::Panel settings) : settings_(std::move(settings)) {}
-
-  std::expected<void, std::string> request(Light light, const std::string& consumer) {
-    const std::string& name = line_of(settings_, light);
-    if (name.empty()) return {};
-    const auto found = find(settings_, name, about(light));
-    if (!found) return std::unexpected(found.error());
-    const LineSettings output(gpiod_line_settings_new());
-    if (output) {
-      gpiod_line_settings_set_direction(output.get(), GPIOD_LINE_DIRECTION_OUTPUT);
-      gpiod_line_settings_set_output_value(output.get(), GPIOD_LINE_VALUE_INACTIVE);
-      gpiod_line_settings_set_active_low(output.get(), settings_.active_low);
-    }
-    Request line = panel::request(*found, output.get(), consumer);
-    if (!line) return gpio_trouble(about(light), errno);
-    outputs_[index_of(light)] = Output(std::move(line), found->offset);
-    return {};
+/// `about` is for the error.
+std::expected<Output, std::string> request_output(const settings::Panel& settings, const std::string& line,
+                                                  const std::string& about, const std::string& consumer) {
+  const auto found = find(settings, line, about);
+  if (!found) return std::unexpected(found.error());
+  const LineSettings output(gpiod_line_settings_new());
+  if (output) {
+    gpiod_line_settings_set_direction(output.get(), GPIOD_LINE_DIRECTION_OUTPUT);
+    gpiod_line_settings_set_output_value(output.get(), GPIOD_LINE_VALUE_INACTIVE);
+    gpiod_line_settings_set_active_low(output.get(), settings.active_low);
   }
-
-  /// Every light is set, also after one that fails; the first failure is told.
-  std::expected<void, std::string> set(const Lit& lit) override {
-    std::expected<void, std::string> result;
-    for (const Light light : kLights) {
-      Output& output = outputs_[index_of(light)];
-      if (!output.is_there() || output.set(lit[index_of(light)])) continue;
-      if (result) result = gpio_trouble(about(light), errno);
-    }
-    return result;
-  }
-
- private:
-  std::string about(Light light) const {
-    return panel::about(settings_, line_of(settings_, light), name_of(light));
-  }
-
-  settings::Panel settings_;
-  std::array<Output, kLights.size()> outputs_;
-};
+  Request request = panel::request(found.value(), output.get(), consumer);
+  if (!request) return gpio_trouble(about, errno);
+  return Output(std::move(request), found->offset);
+}
 
 class GpioButton final : public ButtonLine {
  public:
@@ -182,13 +155,9 @@ class GpioButton final : public ButtonLine {
 
 std::expected<std::unique_ptr<Lines>, std::string> open_gpio(const settings::Panel& settings,
                                                              const std::string& consumer) {
-  auto lines = std::make_unique<GpioLines>(settings);
-  for (const Light light : kLights) {
-    if (auto requested = lines->request(light, consumer); !requested) {
-      return std::unexpected(requested.error());
-    }
-  }
-  return lines;
+  return open_lines<Output>(settings, [&](const std::string& line, const std::string& about) {
+    return request_output(settings, line, about, consumer);
+  });
 }
 
 std::expected<std::unique_ptr<ButtonLine>, std::string> open_gpio_button(const settings::Panel& settings,

@@ -32,7 +32,8 @@ class Aditd:
         with open(self.log, "wb") as log:
             self.process = subprocess.Popen(
                 [os.environ["ADITD"], "--settings", box.folder / "settings.json", "--secrets", secrets, "--state",
-                 box.folder / "wanted", "--update", box.folder / "status"], stdout=log, stderr=log)
+                 box.folder / "wanted", "--update", box.folder / "status"], stdout=log, stderr=log,
+                env={**os.environ, "ASAN_OPTIONS": "quarantine_size_mb=1"})  # else what is freed stays resident there
         found = raucs.wait_until(lambda: re.search(r"listening .*port=(\d+)", self.log.read_text()), "aditd to listen")
         self.port = int(found.group(1))
 

@@ -113,6 +113,7 @@ void Updater::answer(const update::Request& request, const host::UntrustedFolder
     status_.refusal = status_.stick_trouble.empty() ? "there is no update on a stick" : status_.stick_trouble;
   }
   if (!status_.refusal.empty()) host::log(Level::Warning, "refused", {{"why", status_.refusal}});
+  look_at_stick();  // it may be another by now, or gone
   tell();
 }
 

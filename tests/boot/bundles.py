@@ -1,5 +1,5 @@
 """Updates of other versions, made of the image that is there: its root with another version in it, or with something
-missing."""
+missing; and sticks with updates."""
 
 import os
 import shutil
@@ -49,6 +49,17 @@ def bundle(folder, version, board="qemu-virt", without=None):
     subprocess.run([machine.SOURCE / "rootfs" / "bundle", board, version, work, output], check=True)
     shutil.rmtree(work)
     return output
+
+
+def stick(folder, *files):
+    """A USB stick's bytes: a partition with a FAT file system, and these files in it."""
+    image, partition = folder / "stick.img", f"{folder / 'stick.img'}@@1M"
+    with open(image, "wb") as made:
+        made.truncate(257 << 20)
+    subprocess.run(["sfdisk", "--quiet", image], input=b"start=2048, type=c\n", check=True)
+    subprocess.run(["mformat", "-i", partition, "-F", "-T", str((256 << 20) // 512), "::"], check=True)
+    subprocess.run(["mcopy", "-i", partition, *files, "::"], check=True)
+    return image
 
 
 def same_disk(one, other):

@@ -69,7 +69,7 @@ class Machine(programs.Page):
                    "qemu-system-aarch64", *MACHINE, "-accel", "tcg", "-m", str(self.memory), "-dtb", self.firmware.tree,
                    "-drive", f"if=pflash,format=raw,unit=0,readonly=on,file={self.firmware.loader}",
                    "-drive", f"if=pflash,format=raw,unit=1,file={self.firmware.environment}",
-                   *self.disk.options(), "-device", "virtio-rng-pci",
+                   *self.disk.options(), "-device", "virtio-rng-pci", "-device", "qemu-xhci,id=usb",
                    "-netdev", f"tap,id=team,fd={team0}", "-device", f"{PORT},id=team0,netdev=team,addr=5",
                    "-netdev", f"tap,id=darpa,fd={darpa0}", "-device", f"{PORT},id=darpa0,netdev=darpa,addr=6",
                    "-qmp", f"unix:{sockets[0]},server=on,wait=off",
@@ -120,6 +120,15 @@ class Machine(programs.Page):
     def plug(self, port, plugged=True):
         """The cable of team0 or darpa0, in or out."""
         self.monitor.ask("set_link", name=port, up=plugged)
+
+    def plug_stick(self, image):
+        """A USB stick that cannot be written on, of an image of its bytes."""
+        file = {"driver": "file", "filename": str(image), "read-only": True}
+        self.monitor.ask("blockdev-add", **{"driver": "raw", "node-name": "stick", "read-only": True, "file": file})
+        self.monitor.ask("device_add", driver="usb-storage", bus="usb.0", id="stick", drive="stick")
+
+    def pull_stick(self):
+        self.monitor.ask("device_del", id="stick")
 
     # What a client on the team's side sees.
 

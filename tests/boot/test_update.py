@@ -1,5 +1,5 @@
-"""Updates: one that stays, one that cannot start and is left again, and those that are refused. Settings and reports
-come along."""
+"""Updates: one from a stick that stays, one that is uploaded, cannot start and is left again, and those that are
+refused. Settings and reports come along."""
 
 import http.client
 import pathlib
@@ -10,7 +10,7 @@ import unittest
 
 import machine
 import programs
-from bundles import bundle
+from bundles import bundle, stick
 from reporting import REPORT
 from stage import Stage, Story, load_tests, note, setUpModule  # unittest looks for them here
 
@@ -48,12 +48,15 @@ class Updates(Story):
             self.assertIn(word, str(refusal))
         self.assertEqual((self.stands()["version"], self.stands()["slot"]), (RUNS, "A"))
 
-    def install(self, path, version):
+    def install(self, ask, version):
+        """`ask`: that asks for it."""
         began = time.monotonic()
-        self.send(path)
+        ask()
         self.box.wait_until(lambda: self.last() in (("installed", version), ("failed", version)), "the end of it", 240)
         self.assertEqual(self.last(), ("installed", version), self.stands()["refusal"])
-        note(f"update of {path.stat().st_size / 1e6:.0f} MB sent and installed", f"{time.monotonic() - began:.0f} s")
+        return time.monotonic() - began
+
+    def restart(self):
         self.assertEqual(self.box.ask("POST /adit/update/restart", body={"anyway": True})[0], 200)
 
     def last(self):
@@ -82,8 +85,18 @@ class Updates(Story):
     def test_an_older_one_is_refused(self):
         self.is_refused(bundle(self.folder, "0.0.1"), "0.0.1")
 
-    def test_a_newer_one_is_installed_in_the_other_slot_and_stays_once_it_was_healthy(self):
-        self.install(bundle(self.folder, NEWER), NEWER)
+    def test_a_newer_one_on_a_stick_is_offered_and_not_installed_by_itself(self):
+        newer = bundle(self.folder, NEWER)
+        self.box.plug_stick(stick(self.folder, newer))
+        self.box.wait_until(lambda: self.stands()["stick"], "what is on the stick to be offered", 60)
+        self.assertEqual(self.stands()["stick"], {"name": newer.name, "version": NEWER})
+        self.assertEqual((self.stands()["doing"], self.stands()["last"]), (None, None))
+
+    def test_it_is_installed_in_the_other_slot_and_stays_once_it_was_healthy(self):
+        self.install(lambda: self.assertEqual(self.box.ask("POST /adit/update/stick", body={})[0], 200), NEWER)
+        self.box.pull_stick()
+        self.box.wait_until(lambda: not self.stands()["stick"], "the stick to be gone", 30)
+        self.restart()
         self.settled("good", NEWER, within=400)
         self.assertEqual((self.stands()["version"], self.stands()["slot"]), (NEWER, "B"))
 
@@ -92,7 +105,10 @@ class Updates(Story):
         self.stage.began()
 
     def test_one_that_does_not_come_up_is_left_after_three_starts(self):
-        self.install(bundle(self.folder, BROKEN, without="usr/lib/systemd/systemd"), BROKEN)
+        broken = bundle(self.folder, BROKEN, without="usr/lib/systemd/systemd")
+        took = self.install(lambda: self.send(broken), BROKEN)
+        note(f"update of {broken.stat().st_size / 1e6:.0f} MB sent and installed", f"{took:.0f} s")
+        self.restart()
         self.settled("left", BROKEN, within=400)
         self.assertEqual((self.stands()["version"], self.stands()["slot"]), (NEWER, "B"))
         self.assertEqual(self.box.console.said().count("Adit: slot a"), 1 + 3)

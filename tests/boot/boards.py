@@ -1,4 +1,4 @@
-"""What differs between the machines that the tests start: the emulator, what is soldered to it, and where its image is."""
+"""What differs between the machines that the tests start: the emulator, what is soldered to it, where its image is."""
 
 import dataclasses
 import os
@@ -12,9 +12,9 @@ FLASH_SIZE = 64 << 20  # of each of the two flashes of arm64's virt
 
 @dataclasses.dataclass(frozen=True)
 class Board:
-    """`soldered(folder, memory)` makes what the machine is delivered with, in `folder`, and says how QEMU is told of it;
-    `card` and `ports` are QEMU's devices, the latter in their order; `words` are for the kernel, as adit/boot.env has
-    them; `memory` is in megabytes."""
+    """`soldered(folder, memory)` makes what the machine is delivered with, in `folder`, and says how QEMU is told of
+    it; `card` and `ports` are QEMU's devices, the latter in their order; `words` are for the kernel, as adit/boot.env
+    has them; `memory` is in megabytes; `needs` are programs and files of the host's."""
 
     name: str
     emulator: str
@@ -45,7 +45,8 @@ class Board:
         return "" if os.path.exists("/dev/net/tun") else "no taps here: /dev/net/tun is missing"
 
 
-# QEMU's arm64 `virt`, which U-Boot starts, with eight GPIO lines as board.json has them. Line 3 is the machine's own power key.
+# QEMU's arm64 `virt`, which U-Boot starts, with eight GPIO lines as board.json has them. Line 3 is the machine's own
+# power key.
 VIRT = ["-M", "virt,acpi=off", "-cpu", "cortex-a53", "-smp", "2", "-nodefaults", "-display", "none"]
 LINES = ["ADIT_HEALTH", "ADIT_SCORING", "ADIT_MAPPING", "POWER_KEY", "ADIT_ATTENTION", "ADIT_BUTTON", "", ""]
 

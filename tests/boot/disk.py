@@ -24,7 +24,7 @@ class Disk:
         subprocess.run(["truncate", "-s", size, self.file], check=True)
 
     def options(self, device):
-        """What QEMU is told, from a new copy on; as which device of its."""
+        """What QEMU is told, from a new copy on: a disk of this device of its."""
         subprocess.run(["qemu-img", "create", "-q", "-f", "qcow2", "-b", self.file, "-F", "raw", self.copy], check=True)
         self.log.write_bytes(b"")
         quick = "cache.no-flush=on"  # what the guest flushes is in the log; the host need not wait for its own disk

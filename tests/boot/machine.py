@@ -1,5 +1,5 @@
-"""The box as a machine: QEMU, started from its card by the boot loader as a board is, with two ports, a hardware watchdog, and, where
-the board has them, four lights and a button."""
+"""The box as a machine: QEMU, started from its card by the boot loader as a board is, with two ports, a hardware
+watchdog, and, where the board has them, four lights and a button."""
 
 import http.client
 import os

@@ -1,4 +1,4 @@
-"""A PC, which GRUB starts: GRUB counts and RAUC marks good what it counted, an update stays, and one that cannot start is left."""
+"""A PC, which GRUB starts: an update is installed, GRUB counts a start of it, and RAUC marks good what GRUB counted."""
 
 import pathlib
 import tempfile
@@ -12,8 +12,8 @@ from bundles import bundle
 from stage import Stage, Story, load_tests, note  # unittest looks for them here
 from updating import Updating
 
-NEWER, BROKEN = "7.0.0", "7.1.0"
-BROKEN_TOO = False
+NEWER = "7.0.0"
+NOTICE = "/run/adit-notices/disks"
 
 
 def setUpModule():
@@ -41,20 +41,21 @@ class Pc(Updating, Story):
 
     def test_no_update_is_installed_while_two_disks_hold_an_adit(self):
         self.box.plug_stick(boards.PC.image())
-        self.box.wait_until(lambda: "2 disks" in self.box.console.run("cat /run/adit-notices/disks")[1], "it to be noticed", 30)
+        self.box.wait_until(lambda: self.box.console.run(f"cat {NOTICE}")[0] == 0, "it to be noticed", 30)
         self.box.wait_until(lambda: self.stands()["managed"], "adit-update to have told what runs", 60)
         self.send(self.newer)
         self.settled("failed", NEWER, within=60)
         self.assertIn("2 disks hold an Adit", self.box.console.ask("journalctl -b -u rauc --no-pager"))
         self.box.pull_stick()
-        self.box.wait_until(lambda: self.box.console.run("ls /run/adit-notices/disks")[0] != 0, "it to be gone", 30)
+        self.box.wait_until(lambda: self.box.console.run(f"ls {NOTICE}")[0] != 0, "it to be gone", 30)
 
     def test_an_update_is_installed(self):
         began = time.monotonic()
         self.send(self.newer)
         self.settled("installed", NEWER, within=120)
         note(f"PC: update of {self.newer.stat().st_size / 1e6:.0f} MB", f"{time.monotonic() - began:.0f} s")
-        self.assertEqual({**self.counts(), "A_TRY": ""}, {"ORDER": "B A", "A_OK": "1", "B_OK": "1", "A_TRY": "", "B_TRY": "0"})
+        counts = self.counts()
+        self.assertEqual((counts["ORDER"], counts["B_OK"], counts["B_TRY"]), ("B A", "1", "0"))
 
     def test_grub_counts_a_start_of_it(self):
         self.restart()

@@ -1,4 +1,4 @@
-"""What a story of updates does, over the API: sends one, has it installed, restarts, and waits for what becomes of it."""
+"""What a story of updates does, over the API: sends one, restarts, and waits for what becomes of it."""
 
 import http.client
 

@@ -33,7 +33,7 @@ def bundle(folder, version, board="qemu-virt", without=None, source=boards.QEMU_
             "-comp",
             "zstd",
             "-Xcompression-level",
-            "3",
+            "1",
             "-all-root",
             "-noappend",
             "-no-xattrs",
@@ -47,6 +47,16 @@ def bundle(folder, version, board="qemu-virt", without=None, source=boards.QEMU_
     os.link(made / "boot.vfat", work / "boot.vfat") if same_disk(made, work) else shutil.copy(made / "boot.vfat", work)
     subprocess.run([boards.SOURCE / "rootfs" / "bundle", board, version, work, output], check=True)
     shutil.rmtree(work)
+    return output
+
+
+def bundle_of_nothing(folder, version, board):
+    """Signed as well, and small, for what is refused before a slot is written."""
+    work, output = folder / f"work-{version}", folder / f"adit-{board}-{version}.raucb"
+    work.mkdir()
+    for name in ("root.squashfs", "boot.vfat"):
+        (work / name).write_bytes(os.urandom(1 << 16))  # what is packed to less than a block makes no bundle
+    subprocess.run([boards.SOURCE / "rootfs" / "bundle", board, version, work, output], check=True)
     return output
 
 

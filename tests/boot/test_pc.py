@@ -8,11 +8,11 @@ import unittest
 import boards
 import hosts
 import stage
-from bundles import bundle
+from bundles import bundle, bundle_of_nothing
 from stage import Stage, Story, load_tests, note  # unittest looks for them here
 from updating import Updating
 
-NEWER = "7.0.0"
+NEWER, REFUSED = "7.0.0", "6.0.0"
 NOTICE = "/run/adit-notices/disks"
 
 
@@ -43,8 +43,8 @@ class Pc(Updating, Story):
         self.box.plug_stick(boards.PC.image())
         self.box.wait_until(lambda: self.box.console.run(f"cat {NOTICE}")[0] == 0, "it to be noticed", 30)
         self.box.wait_until(lambda: self.stands()["managed"], "adit-update to have told what runs", 60)
-        self.send(self.newer)
-        self.settled("failed", NEWER, within=60)
+        self.send(bundle_of_nothing(self.folder, REFUSED, boards.PC.name))
+        self.settled("failed", REFUSED, within=60)
         self.assertIn("2 disks hold an Adit", self.box.console.ask("journalctl -b -u rauc --no-pager"))
         self.box.pull_stick()
         self.box.wait_until(lambda: self.box.console.run(f"ls {NOTICE}")[0] != 0, "it to be gone", 30)

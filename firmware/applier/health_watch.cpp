@@ -41,6 +41,7 @@ std::expected<void, std::string> restart(const std::string& systemctl) {
 std::expected<void, std::string> pass_trial(const UpdateOptions& options, update::Story story) {
   host::log(Level::Notice, "the update is healthy", {{"version", story.version}, {"slot", story.slot}});
   story.stage = update::Stage::Good;
+  story.why.clear();  // of a story that adit-update has not settled yet
   if (!save_story(options.state, story)) return std::unexpected("the trial cannot be ended");
   host::output_of({options.systemctl, "start", "--no-block", "adit-update.service"}, kAnswer);
   return {};

@@ -64,8 +64,8 @@ void Updater::find_out() {
   const update::Story kept = load_story(options_.state);
   update::Story story = running ? update::settled(kept, status_.running, boot_) : kept;
   if (story.stage == Stage::Left && kept.stage != Stage::Left) {
-    if (const auto active = rauc_.mark_active(); !active)
-      host::log(Level::Error, "the boot loader would try it again", {{"why", active.error()}});
+    if (const auto left = rauc_.leave_other(); !left)
+      host::log(Level::Error, "the boot loader would try it again", {{"why", left.error()}});
   }
   if (story == kept) {
     status_.last = std::move(story);

@@ -245,8 +245,10 @@ class OnTrial(OnABox):
             status = self.box.update()
             self.assertEqual((status["last"]["stage"], status["last"]["version"]), ("left", "0.2.0"))
             self.assertIn("0.1.0 runs again", status["last"]["why"])
-        self.assertEqual(self.box.boot_loader(), {"BOOT_ORDER": "A B", "BOOT_A_LEFT": "3", "BOOT_B_LEFT": "0"})
+        # Nor once all tries are used up, when the boot loader gives three again to each slot of its order.
+        self.assertEqual(self.box.boot_loader(), {"BOOT_ORDER": "A", "BOOT_A_LEFT": "3", "BOOT_B_LEFT": "0"})
         self.assertEqual(self.box.install(self.newer)["last"]["stage"], "installed")  # the operator may try it again
+        self.assertEqual(self.box.boot_loader(), {"BOOT_ORDER": "B A", "BOOT_A_LEFT": "3", "BOOT_B_LEFT": "3"})
 
     def test_a_slot_that_was_good_once_is_good_as_soon_as_the_service_is_ready(self):
         self.box.start("B")
@@ -283,6 +285,36 @@ class ACutOfThePower(OnABox):
         loader = self.box.boot_loader()
         self.assertEqual((loader["BOOT_ORDER"].split()[0], loader["BOOT_A_LEFT"], loader["BOOT_B_LEFT"]), ("A", "3", "0"))
         self.assertEqual(self.box.install(self.newer)["last"]["stage"], "installed")
+
+
+    def test_after_its_end_and_before_the_note_of_it_leaves_the_slot_on_trial(self):
+        self.box.install(self.newer)
+        for stage, why in (("installing", ""), ("interrupted", "install it again"), ("failed", "took longer")):
+            self.box.began_before(stage=stage, why=why)
+            self.box.start("B")
+            status = self.box.update()
+            self.assertEqual((status["last"]["stage"], status["last"]["why"], status["trial"]), ("installed", "", True))
+        self.expect_refused(self.box.install(self.bundles.make("0.3.0")), "is on trial")
+
+
+class Killed(OnABox):
+    def test_while_rauc_works_waits_for_its_end_once_it_is_started_anew_and_tells_it(self):
+        hold = self.box.hold_the_boot_loader()
+        shutil.copy(self.newer, self.box.folder / "wanted/update.raucb")
+        self.box.ask("install")
+        with subprocess.Popen(self.box.command(), env=self.box.environment, stderr=subprocess.DEVNULL) as process:
+            raucs.wait_until(lambda: hold.with_name("held").exists(), "RAUC at work")
+            process.kill()
+        with subprocess.Popen(self.box.command(), env=self.box.environment, stderr=subprocess.DEVNULL) as process:
+            time.sleep(2)
+            self.assertIsNone(process.poll())
+            self.assertEqual(self.box.status()["doing"], "installing")
+            hold.unlink()
+            self.assertEqual(process.wait(60), 0)
+        status = self.box.status()
+        self.assertEqual((status["doing"], status["progress"], status["trouble"]), ("", None, ""))
+        self.assertEqual((status["last"]["stage"], status["last"]["why"]), ("installed", ""))
+        self.assertEqual(self.box.boot_loader()["BOOT_ORDER"], "B A")
 
 
 class AStick(OnABox):

@@ -116,10 +116,16 @@ void Applier::take_requests(bool drop) {
   }
 }
 
+/// Taken away once it is done: after a power cut before that it is done again.
 void Applier::take_forget() {
-  const auto text = taken(network::kForgetFile);
-  if (!text) return;
-  if (const auto forget = network::read_forget(*text); !forget) {
+  const auto text = folder_->read(network::kForgetFile);
+  if (text && !*text) return;
+  if (text) forget(**text);
+  taken(network::kForgetFile);
+}
+
+void Applier::forget(const std::string& text) {
+  if (const auto forget = network::read_forget(text); !forget) {
     return refused(network::kForgetFile, forget.error());
   }
   if (const auto forgotten = change_->forget(); !forgotten) {
@@ -144,7 +150,9 @@ void Applier::take_endpoints() {
 std::optional<std::string> Applier::taken(const char* name) {
   auto text = folder_->take(name);
   if (text) return std::move(*text);
-  host::log(Level::Warning, "refused what was asked for", {{"why", text.error()}});
+  is_stuck_ = is_stuck_ || text.error().stays;
+  host::log(text.error().stays ? Level::Error : Level::Warning, "refused what was asked for",
+            {{"why", text.error().why}});
   return std::nullopt;
 }
 

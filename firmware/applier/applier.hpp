@@ -25,11 +25,15 @@ class Applier {
   /// A pending change is taken back, and the loop ends.
   void stop();
 
+  /// Something that was asked for could not be taken away: to be started again at once would find it again.
+  bool is_stuck() const { return is_stuck_; }
+
  private:
   void look();
   void take_requests(bool drop);
   void take_endpoints();
   void take_forget();
+  void forget(const std::string& text);
   void after();
   bool tell();
   void answer_probe(const network::Probe& probe);
@@ -45,6 +49,7 @@ class Applier {
   loop::FileDescriptor notices_;
   loop::Source noticed_, due_;
   std::string told_;
+  bool is_stuck_ = false;
 };
 
 }  // namespace adit::applier

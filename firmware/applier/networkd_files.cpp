@@ -188,7 +188,7 @@ std::expected<void, std::string> NetworkdFiles::take_back() {
 /// Where the box came with no addresses, networkd has none of ours.
 std::expected<std::optional<network::Numbers>, std::string> NetworkdFiles::forget() {
   for (const std::string& file : {confirmed_file(), endpoints_file()}) {
-    if (unlink(file.c_str()) != 0 && errno != ENOENT) return std::unexpected(host::trouble(file, errno));
+    if (!host::remove_file(file)) return std::unexpected(host::trouble(file, errno));
   }
   endpoints_ = {};
   tried_.reset();

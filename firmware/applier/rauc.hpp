@@ -14,7 +14,8 @@ class Rauc {
  public:
   explicit Rauc(std::string command) : command_(std::move(command)) {}
 
-  /// Which board and slot this is; not the version. Waits while RAUC is at work, for it says nothing meanwhile.
+  /// Which board and slot this is; not the version. Waits while RAUC is at work, for it says nothing
+  /// meanwhile.
   std::expected<update::Running, std::string> status() const;
   std::expected<update::Bundle, std::string> info(const std::string& bundle) const;
   /// Writes the slot that does not run, and has it started next. `progress`: per cent, as it goes.

@@ -44,11 +44,8 @@ std::expected<void, std::string> Updater::work() {
   look_at_stick();
   if (!tell()) return std::unexpected("the status cannot be told");
   const auto folder = host::UntrustedFolder::open(options_.wanted);
-  if (folder) {
-    take_requests(*folder, first);
-  } else {
-    host::log(Level::Info, "nobody asks for anything", {{"why", folder.error()}});
-  }
+  if (folder) return take_requests(*folder, first);
+  host::log(Level::Info, "nobody asks for anything", {{"why", folder.error()}});
   return {};
 }
 
@@ -83,12 +80,16 @@ void Updater::look_at_stick() {
 }
 
 /// `drop`: they are taken away and not done.
-void Updater::take_requests(const host::UntrustedFolder& folder, bool drop) {
+std::expected<void, std::string> Updater::take_requests(const host::UntrustedFolder& folder, bool drop) {
   while (true) {
     auto text = folder.take(update::kRequestFile);
     if (text && !*text) break;
-    const auto request = text ? update::read_request(**text)
-                              : std::expected<update::Request, std::string>(std::unexpected(text.error()));
+    if (!text && text.error().stays) {
+      status_.trouble = text.error().why;
+      tell();
+      return std::unexpected(status_.trouble);
+    }
+    const auto request = text ? update::read_request(**text) : std::unexpected(text.error().why);
     if (drop) continue;
     if (request) {
       answer(*request, folder);
@@ -97,6 +98,7 @@ void Updater::take_requests(const host::UntrustedFolder& folder, bool drop) {
     }
   }
   if (drop) (void)BundleFile::take(folder, update::kBundleFile);  // whatever it is, it is gone
+  return {};
 }
 
 void Updater::answer(const update::Request& request, const host::UntrustedFolder& folder) {

@@ -16,14 +16,15 @@ class Updater {
   /// Outlives this.
   explicit Updater(const UpdateOptions& options) : options_(options), rauc_(options.rauc) {}
 
-  /// Until nothing is asked for. An error: its own folders are not as they should be. What was asked before
-  /// the machine was started anew is dropped: whoever asked has seen that it came to nothing.
+  /// Until nothing is asked for. An error: its own folders are not as they should be, or what is asked for
+  /// cannot be taken away. What was asked before the machine was started anew is dropped: whoever asked has
+  /// seen that it came to nothing.
   std::expected<void, std::string> work();
 
  private:
   void find_out();
   void look_at_stick();
-  void take_requests(const host::UntrustedFolder& folder, bool drop);
+  std::expected<void, std::string> take_requests(const host::UntrustedFolder& folder, bool drop);
   void answer(const update::Request& request, const host::UntrustedFolder& folder);
   /// "", or why it is not done.
   std::string install(const std::expected<BundleFile, std::string>& file, bool again);

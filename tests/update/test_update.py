@@ -174,6 +174,19 @@ class Refused(OnABox):
             self.assertEqual(self.box.update()["nonce"], "")
         self.assertEqual(list((self.box.folder / "wanted").iterdir()), [])
 
+    def test_a_request_that_cannot_be_taken_away_ends_in_trouble_and_not_in_a_circle(self):
+        request = self.box.folder / "wanted/update.json"
+        request.mkdir()
+        subprocess.run(["mount", "-t", "tmpfs", "none", request], check=True)
+        try:
+            done = subprocess.run(self.box.command(), env=self.box.environment, capture_output=True, timeout=30, check=False)
+        finally:
+            subprocess.run(["umount", request], check=True)
+        self.assertEqual(done.returncode, 1, "systemd waits before it starts it again")
+        self.assertIn("update.json: Device or resource busy", self.box.status()["trouble"])
+        self.assertEqual(self.box.update()["trouble"], "", "once it can be taken away")
+        self.assertEqual(self.box.install(self.newer)["last"]["stage"], "installed")
+
     def test_what_was_asked_before_the_machine_was_started_anew(self):
         shutil.rmtree(self.box.folder / "status")
         (self.box.folder / "status").mkdir()

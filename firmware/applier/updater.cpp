@@ -41,7 +41,7 @@ std::expected<void, std::string> Updater::work() {
   }
   boot_ = host::boot();
   find_out();
-  look_at_stick();
+  look_at_sticks();
   if (!tell()) return std::unexpected("the status cannot be told");
   const auto folder = host::UntrustedFolder::open(options_.wanted);
   if (folder) return take_requests(*folder, first);
@@ -72,10 +72,11 @@ void Updater::find_out() {
   status_.trial = update::on_trial(status_.last, status_.running.slot, boot_);
 }
 
-void Updater::look_at_stick() {
+void Updater::look_at_sticks() {
   if (!status_.trouble.empty()) return;
-  OnStick found = applier::look_at_stick(options_.stick, rauc_, status_.running);
+  OnStick found = applier::look_at_sticks(options_.sticks, rauc_, status_.running);
   status_.stick = std::move(found.offer);
+  on_stick_ = std::move(found.path);
   status_.stick_trouble = std::move(found.trouble);
 }
 
@@ -109,13 +110,13 @@ void Updater::answer(const update::Request& request, const host::UntrustedFolder
     status_.refusal = install(BundleFile::take(folder, update::kBundleFile), request.again);
   } else if (request.what == What::Restart) {
     status_.refusal = restart();
-  } else if (look_at_stick(); status_.stick) {
-    status_.refusal = install(BundleFile::open(options_.stick + '/' + status_.stick->name), request.again);
+  } else if (look_at_sticks(); status_.stick) {
+    status_.refusal = install(BundleFile::open(on_stick_), request.again);
   } else {
     status_.refusal = status_.stick_trouble.empty() ? "there is no update on a stick" : status_.stick_trouble;
   }
   if (!status_.refusal.empty()) host::log(Level::Warning, "refused", {{"why", status_.refusal}});
-  look_at_stick();  // it may be another by now, or gone
+  look_at_sticks();  // it may be another by now, or gone
   tell();
 }
 

@@ -23,7 +23,7 @@ class Updater {
 
  private:
   void find_out();
-  void look_at_stick();
+  void look_at_sticks();
   std::expected<void, std::string> take_requests(const host::UntrustedFolder& folder, bool drop);
   void answer(const update::Request& request, const host::UntrustedFolder& folder);
   /// "", or why it is not done.
@@ -37,6 +37,7 @@ class Updater {
   Rauc rauc_;
   std::string boot_;
   update::Status status_;
+  std::string on_stick_;  // the file of status_.stick
   std::string told_;
 };
 

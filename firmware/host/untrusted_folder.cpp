@@ -13,7 +13,7 @@
 #include <utility>
 
 #include "host/files.hpp"
-#include "icd/sentence.hpp"
+#include "host/service.hpp"
 
 namespace adit::host {
 namespace {
@@ -98,17 +98,7 @@ std::expected<std::optional<UntrustedFolder>, std::string> UntrustedFolder::fold
 }
 
 std::expected<std::vector<std::string>, std::string> UntrustedFolder::names() const {
-  std::error_code error;
-  std::vector<std::string> names;
-  for (auto entry = std::filesystem::directory_iterator(path_by_descriptor(), error);
-       !error && entry != std::filesystem::directory_iterator(); entry.increment(error)) {
-    if (names.size() == kMostNames)
-      return std::unexpected(icd::sentence("holds more than ", kMostNames, " files"));
-    names.push_back(entry->path().filename().string());
-  }
-  if (error) return std::unexpected(error.message());
-  std::ranges::sort(names);
-  return names;
+  return names_in(path_by_descriptor());
 }
 
 bool UntrustedFolder::wipe(const std::string& name) const {

@@ -15,7 +15,6 @@ namespace adit::host {
 class UntrustedFolder {
  public:
   static constexpr std::size_t kLargest = 65536;
-  static constexpr std::size_t kMostNames = 256;
 
   /// An error where it is not there, or is no folder itself but a link to one.
   static std::expected<UntrustedFolder, std::string> open(const std::string& path);
@@ -39,7 +38,7 @@ class UntrustedFolder {
   /// A folder in it; nothing where there is none of that name.
   std::expected<std::optional<UntrustedFolder>, std::string> folder(const std::string& name) const;
 
-  /// The names of what is in it, in order. An error where it cannot be read, or holds more than kMostNames.
+  /// names_in() it.
   std::expected<std::vector<std::string>, std::string> names() const;
 
   /// Removes a file so that its text is not left on the disk: overwritten, then unlinked. False: it may still

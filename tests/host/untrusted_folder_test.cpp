@@ -12,6 +12,7 @@
 #include <algorithm>
 
 #include "host/folder.hpp"
+#include "host/service.hpp"
 
 namespace adit::host {
 namespace {
@@ -150,8 +151,8 @@ TEST_F(UntrustedFolderTest, NamesSoManyFilesInOrder) {
   ASSERT_TRUE(opened);
   for (const char* name : {"b", "a"}) folder.put(name, "");
   EXPECT_EQ(opened->names().value(), (std::vector<std::string>{"a", "b"}));
-  for (std::size_t i = 2; i < UntrustedFolder::kMostNames; ++i) folder.put(std::to_string(i), "");
-  EXPECT_EQ(opened->names().value().size(), UntrustedFolder::kMostNames);
+  for (std::size_t i = 2; i < kMostNames; ++i) folder.put(std::to_string(i), "");
+  EXPECT_EQ(opened->names().value().size(), kMostNames);
   folder.put("one more", "");
   EXPECT_THAT(opened->names().error(), HasSubstr("more than 256"));
 }

@@ -80,8 +80,8 @@ class Bundles:
 class Box:
     def __init__(self, bundles, version="0.1.0", running="A"):
         self.folder = pathlib.Path(tempfile.mkdtemp(prefix="adit-update-box."))
-        for name in ("wanted", "status", "state", "stick", "bin", "mount"):
-            (self.folder / name).mkdir()
+        for name in ("wanted", "status", "state", "sticks/sda1", "bin", "mount"):
+            (self.folder / name).mkdir(parents=True)
         self.slots = {name: self.folder / f"slot-{name}" for name in ("root-a", "root-b", "boot-a", "boot-b")}
         for name, path in self.slots.items():
             path.write_bytes(name.encode() * 16)
@@ -160,7 +160,7 @@ class Box:
 
     def command(self, *words):
         return [ADIT_UPDATE, *words, "--wanted", self.folder / "wanted", "--status", self.folder / "status", "--state",
-                self.folder / "state", "--stick", self.folder / "stick", "--os-release", self.folder / "os-release"]
+                self.folder / "state", "--sticks", self.folder / "sticks", "--os-release", self.folder / "os-release"]
 
     def update(self):
         """Runs adit-update to its end, and gives what it tells."""

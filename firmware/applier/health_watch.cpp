@@ -32,9 +32,9 @@ update::Ready ready(const std::string& systemctl) {
 
 std::expected<void, std::string> restart(const std::string& systemctl) {
   host::log(Level::Error, "this slot did not come up healthy in time: the machine is started anew");
-  const auto said = host::output_of({systemctl, "reboot"}, kAnswer);
-  if (said.trouble.empty()) return {};
-  return std::unexpected("the machine cannot be started anew: " + said.trouble);
+  auto restarted = host::run_command({systemctl, "reboot"}, kAnswer);
+  if (restarted) return restarted;
+  return std::unexpected("the machine cannot be started anew: " + restarted.error());
 }
 
 /// adit-update tells everybody.

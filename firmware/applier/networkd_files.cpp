@@ -7,9 +7,9 @@
 #include <utility>
 #include <vector>
 
-#include "host/command.hpp"
 #include "host/files.hpp"
 #include "host/log.hpp"
+#include "host/output.hpp"
 #include "host/service.hpp"
 #include "icd/sentence.hpp"
 #include "network/networkd.hpp"

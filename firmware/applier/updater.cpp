@@ -124,8 +124,8 @@ std::string Updater::install(const std::expected<BundleFile, std::string>& file,
   if (!file) return file.error();
   if (!status_.trouble.empty()) return status_.trouble;
   if (status_.trial) {
-    return icd::sentence(status_.running.version, " is on trial: wait until it has been healthy for ", 60,
-                         " s");
+    return icd::sentence(status_.running.version, " is on trial: wait until it has been healthy for ",
+                         update::kHealthyFor.count(), " s");
   }
   status_.doing = "checking";
   tell();
@@ -160,10 +160,10 @@ std::string Updater::restart() {
   status_.doing = "restarting";
   tell();
   host::log(Level::Notice, "starting the machine anew");
-  const auto said = host::output_of({options_.systemctl, "reboot"}, kRestart);
-  if (said.trouble.empty()) return "";
+  const auto restarted = host::run_command({options_.systemctl, "reboot"}, kRestart);
+  if (restarted) return "";
   status_.doing.clear();
-  return "it cannot be started anew: " + (said.err.empty() ? said.trouble : host::escaped(said.err));
+  return "it cannot be started anew: " + restarted.error();
 }
 
 void Updater::tell_of(update::Story story) {

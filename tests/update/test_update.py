@@ -85,6 +85,11 @@ class Installed(OnABox):
 
 
 class Refused(OnABox):
+    def test_a_restart_that_systemd_refuses(self):
+        raucs.script(self.box.folder / "bin/systemctl", "echo no bus >&2; exit 1\n")
+        self.box.ask("restart")
+        self.expect_refused(self.box.update(), "it cannot be started anew: systemctl reboot: no bus (exit status 1)")
+
     def test_another_board(self):
         self.expect_refused(self.box.install(self.bundles.make(board="adit-other"), again=True), "another board")
         self.expect_untouched()

@@ -5,6 +5,7 @@
 
 #include "applier/networkd_files.hpp"
 #include "applier/options.hpp"
+#include "applier/status_file.hpp"
 #include "host/untrusted_folder.hpp"
 #include "loop/file_descriptor.hpp"
 #include "loop/loop.hpp"
@@ -44,11 +45,11 @@ class Applier {
   loop::Loop& loop_;
   const Options& options_;
   NetworkdFiles files_;
+  StatusFile file_;
   std::optional<network::Change> change_;
   std::optional<host::UntrustedFolder> folder_;
   loop::FileDescriptor notices_;
   loop::Source noticed_, due_;
-  std::string told_;
   bool is_stuck_ = false;
 };
 

@@ -26,7 +26,6 @@ using host::Level;
 using host::UntrustedFolder;
 using Done = std::expected<void, std::string>;
 
-constexpr int kOursAlone = 0600, kForAll = 0644;
 constexpr mode_t kFolderOfOurs = 0700;
 
 /// Gives what root made to whom the folder belongs: systemd looks at no more than the folder itself before it
@@ -43,7 +42,7 @@ Done give_to_owner(const UntrustedFolder& folder, const std::string& path) {
 /// A file of aditd's. The folder is aditd's too, so its path is not trusted.
 Done put(const UntrustedFolder& folder, const std::string& name, const std::string& text) {
   const std::string path = folder.path_by_descriptor() + '/' + name;
-  if (auto written = host::write_file(path, text, kOursAlone); !written) return written;
+  if (auto written = host::write_file(path, text, host::kOursAlone); !written) return written;
   return give_to_owner(folder, path);
 }
 
@@ -91,7 +90,7 @@ std::string said_of(const Found& found, bool lasting) {
 Done tell(const UntrustedFolder& card, const std::string& text) {
   const auto told = card.read(kTakenText);
   if (told && *told == text) return {};
-  return host::write_file(card.path_by_descriptor() + '/' + kTakenText, text, kOursAlone);
+  return host::write_file(card.path_by_descriptor() + '/' + kTakenText, text, host::kOursAlone);
 }
 
 void rename_taken(const UntrustedFolder& folder, const std::string& name) {
@@ -181,7 +180,7 @@ Done Import::save(const Brought& brought) const {
     std::error_code error;
     std::filesystem::create_directories(options_.network, error);
     const std::string file = options_.network + '/' + network::kConfirmedFile;
-    if (auto saved = host::write_file(file, network::write_kept(*brought.numbers), kForAll); !saved)
+    if (auto saved = host::write_file(file, network::write_kept(*brought.numbers), host::kForAll); !saved)
       return saved;
   }
   return brought.settings ? save_settings(*state, *brought.settings) : Done{};

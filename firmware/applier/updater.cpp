@@ -17,7 +17,6 @@ namespace {
 using host::Level;
 using update::Stage;
 
-constexpr int kForAll = 0644;
 constexpr std::chrono::seconds kRestart{30};
 
 /// VERSION_ID of os-release(5), with or without quotation marks; "" where there is none.
@@ -178,15 +177,7 @@ void Updater::tell_of(update::Story story) {
 }
 
 bool Updater::tell() {
-  std::string text = update::write(status_);
-  if (text == told_) return true;
-  const auto written = host::write_file(options_.status + '/' + update::kStatusFile, text, kForAll);
-  if (!written) {
-    host::log(Level::Error, "the status cannot be told", {{"why", written.error()}});
-    return false;
-  }
-  told_ = std::move(text);
-  return true;
+  return file_.tell(update::write(status_)).has_value();
 }
 
 }  // namespace adit::applier

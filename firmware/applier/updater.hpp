@@ -5,6 +5,7 @@
 
 #include "applier/bundle_file.hpp"
 #include "applier/rauc.hpp"
+#include "applier/status_file.hpp"
 #include "applier/update_options.hpp"
 #include "update/messages.hpp"
 
@@ -14,7 +15,8 @@ namespace adit::applier {
 class Updater {
  public:
   /// Outlives this.
-  explicit Updater(const UpdateOptions& options) : options_(options), rauc_(options.rauc) {}
+  explicit Updater(const UpdateOptions& options)
+      : options_(options), rauc_(options.rauc), file_(options.status + '/' + update::kStatusFile) {}
 
   /// Until nothing is asked for. An error: its own folders are not as they should be, or what is asked for
   /// cannot be taken away. What was asked before the machine was started anew is dropped: whoever asked has
@@ -38,7 +40,7 @@ class Updater {
   std::string boot_;
   update::Status status_;
   std::string on_stick_;  // the file of status_.stick
-  std::string told_;
+  StatusFile file_;
 };
 
 }  // namespace adit::applier

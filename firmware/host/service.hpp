@@ -28,6 +28,9 @@ std::optional<std::chrono::microseconds> watchdog_within();
 /// A small text file, at most 1 MiB.
 std::expected<std::string, std::string> read_file(const std::string& path);
 
+/// Modes of files: readable for everybody, or for nobody else.
+inline constexpr int kForAll = 0644, kOursAlone = 0600;
+
 /// Writes `text` so that after a crash there is the old file or the new one: a temporary beside it, fsync,
 /// rename, fsync of the folder.
 std::expected<void, std::string> write_file(const std::string& path, const std::string& text, int mode);

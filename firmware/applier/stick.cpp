@@ -35,7 +35,9 @@ std::vector<Candidate> candidates(const std::string& sticks, const std::string& 
       if (update::is_bundle_name(name)) found.push_back({folder, name, update::promise_of(name, compatible)});
     }
   }
-  std::ranges::stable_sort(found, std::greater(), &Candidate::promise);
+  std::ranges::sort(found, [](const Candidate& left, const Candidate& right) {
+    return left.promise == right.promise ? left.name < right.name : left.promise > right.promise;
+  });
   if (found.size() > kMost) found.resize(kMost);
   return found;
 }

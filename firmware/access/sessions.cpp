@@ -84,11 +84,6 @@ void Sessions::end_all(Role role, std::uint64_t but) {
   tell();
 }
 
-void Sessions::end_all() {
-  sessions_.clear();
-  tell();
-}
-
 std::vector<Session> Sessions::all(Instant now) {
   forget_ended(now);
   return {sessions_.rbegin(), sessions_.rend()};

@@ -63,9 +63,6 @@ class Sessions {
   /// Of a role, all but one (0: no exception).
   void end_all(Role role, std::uint64_t but);
 
-  /// Of everybody.
-  void end_all();
-
   /// The newest first.
   std::vector<Session> all(Instant now);
 

@@ -159,17 +159,6 @@ void Accounts::open_set_up() {
             {{"minutes", std::to_string(access::SetUpWindow::kLength.count())}});
 }
 
-bool Accounts::forget() {
-  if (setting_) return false;
-  accounts_ = {};
-  code_.reset();
-  set_up_.close();
-  host::remove_file(file());
-  host::remove_file(code_file());
-  sessions_.forget();
-  return true;
-}
-
 access::Secret Accounts::draw() {
   access::Secret secret;
   fill_random(secret);

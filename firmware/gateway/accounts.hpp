@@ -13,11 +13,14 @@
 
 namespace adit::gateway {
 
-/// The passwords, kept in the state folder: access.json holds their hashes, and until there is one
-/// first-start.code the code that sets it, where the box's label has none. What is wrong with the folder is
-/// logged, and keeps nothing else from working.
+/// The passwords. What is wrong with the state folder is logged, and keeps nothing else from working.
 class Accounts final : public page::Keys {
  public:
+  /// In the state folder: the passwords' hashes, and until there is one the code that sets it, where the
+  /// box's label has none.
+  static constexpr const char* kFile = "access.json";
+  static constexpr const char* kCodeFile = "first-start.code";
+
   /// Logs the code of a first start, unless it is on the label. `loop`, `workers` and `sessions` outlive
   /// this.
   Accounts(const loop::Loop& loop, loop::Workers& workers, SessionKeeper& sessions, std::string folder,
@@ -37,12 +40,9 @@ class Accounts final : public page::Keys {
   void open_set_up();
   std::optional<access::Duration> set_up_left() const { return set_up_.left(loop_.now()); }
 
-  /// No passwords any more, a new code, and nobody logged in. False: a password is being set.
-  bool forget();
-
  private:
-  std::string file() const { return folder_ + "/access.json"; }
-  std::string code_file() const { return folder_ + "/first-start.code"; }
+  std::string file() const { return folder_ + '/' + kFile; }
+  std::string code_file() const { return folder_ + '/' + kCodeFile; }
   icd::BearerToken kept_code();
 
   const loop::Loop& loop_;

@@ -50,8 +50,9 @@ struct Legacy {
 
 /// What the gateway is made of: all of it has passed its checks.
 struct Parts {
-  const Store& store;      // outlives the gateway
-  ListenSockets& sockets;  // so does this
+  const Store& store;         // outlives the gateway
+  const FactoryReset& reset;  // so does this
+  ListenSockets& sockets;     // and this
   Store::Loaded loaded;
   std::string trouble;  // for the operator: why the settings are not those that were wanted; or ""
   ledger::Ledger ledger;

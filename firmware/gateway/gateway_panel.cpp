@@ -3,8 +3,8 @@
 #include <vector>
 
 #include "gateway/gateway.hpp"
-#include "host/interfaces.hpp"
 #include "host/log.hpp"
+#include "host/own_address.hpp"
 #include "panel/address_digits.hpp"
 #include "settings/subnet.hpp"
 
@@ -14,32 +14,6 @@ namespace {
 using panel::State;
 
 constexpr std::chrono::seconds kIdentify{10};  // by the button
-
-/// Whether a cable is missing. "": none is needed.
-bool is_unplugged(const std::string& interface) {
-  return !host::carrier(interface).value_or(false);
-}
-
-bool is_link_local(std::uint32_t ipv4) {
-  return ipv4 >> 16 == 0xa9fe;  // 169.254.0.0/16 (RFC 3927)
-}
-
-/// The IPv4 address of an interface, one that was given to it rather than a link-local one; or "".
-std::string ipv4_on(const std::string& interface) {
-  const auto interfaces = host::interfaces();
-  if (!interfaces) return "";
-  std::string found;
-  for (const host::Interface& each : *interfaces) {
-    if (each.name != interface) continue;
-    for (const std::string& address : each.addresses) {
-      const std::string text = address.substr(0, address.find('/'));
-      const auto ipv4 = settings::ipv4_of(text);
-      if (ipv4 && !is_link_local(*ipv4)) return text;
-      if (ipv4 && found.empty()) found = text;
-    }
-  }
-  return found;
-}
 
 }  // namespace
 
@@ -56,8 +30,10 @@ void Gateway::assert_states() {
               !news_.channel().trouble().empty() || !maps_.channel().trouble().empty());
   lights_.set(State::NeedsOperator, !attention().empty());
   lights_.set(State::UpdateRunning, updates_.running());
-  lights_.set(State::CommandPostUnplugged, is_unplugged(settings_.command_post.interface));
-  lights_.set(State::TeamUnplugged, is_unplugged(settings_.team.interface));
+  for (const page::LinkRow& link : links_.rows()) {
+    lights_.set(link.side == "team" ? State::TeamUnplugged : State::CommandPostUnplugged,
+                !link.carrier.value_or(false));
+  }
   if (lights_.has(State::SetUpOpen) && !accounts_.set_up_open()) {
     host::log(host::Level::Notice, "set-up is closed");
   }
@@ -105,7 +81,10 @@ void Gateway::show_address() {
 /// Where the team reaches the box, by IPv4; "" where it does not.
 std::string Gateway::team_address() const {
   const settings::Team& team = settings_.team;
-  if (!team.interface.empty()) return ipv4_on(team.interface);
+  if (!team.interface.empty()) {
+    const auto own = host::own_address(team.interface);
+    return own ? settings::ipv4_text(own->address) : "";
+  }
   const auto given = std::ranges::find_if(team.listen, [](const settings::Address& each) {
     return settings::ipv4_of(each.address).value_or(0) != 0;
   });

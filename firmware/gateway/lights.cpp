@@ -76,7 +76,7 @@ void Lights::light_up(const panel::Lit& lit) {
     host::log(host::Level::Error, "the panel's lights cannot be set", {{"why", set.error()}});
   }
   if (set) broken_ = false;
-  lit_ = lit;
+  lit_ = set ? std::optional(lit) : std::nullopt;
 }
 
 void Lights::wake_for_what_is_next(const panel::Frame& frame) {

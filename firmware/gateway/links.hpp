@@ -19,12 +19,12 @@ class Links {
   static constexpr std::chrono::milliseconds kEvery{250};
   using Look = std::function<std::optional<bool>(const std::string& interface)>;
 
-  /// `changed` is called as a cable comes or goes, `back` after it where the Command Post's came. An
-  /// interface that the settings do not name is not looked at. `look`: host::carrier().
+  /// `changed` is called as a cable comes or goes, `back` after it where the Command Post's came.
+  /// `look`: host::carrier().
   Links(loop::Loop& loop, const settings::Settings& settings, Look look, std::function<void()> changed,
         std::function<void()> back);
 
-  /// The team's, then the Command Post's.
+  /// The team's, then the Command Post's; without one whose interface the settings do not name.
   std::vector<page::LinkRow> rows() const;
   /// For the operator: which cable is out.
   std::vector<std::string> attention() const;

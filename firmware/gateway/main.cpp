@@ -18,6 +18,7 @@
 
 namespace {
 
+using adit::gateway::FactoryReset;
 using adit::gateway::Gateway;
 using adit::gateway::ListenSockets;
 using adit::gateway::Options;
@@ -40,7 +41,8 @@ std::expected<void, std::string> make_folder(const std::string& folder) {
   return {};
 }
 
-std::expected<Parts, std::string> gather(const Options& options, const Store& store, ListenSockets& sockets) {
+std::expected<Parts, std::string> gather(const Options& options, const Store& store,
+                                         const FactoryReset& reset, ListenSockets& sockets) {
   auto loaded = store.load();
   if (!loaded) return std::unexpected(loaded.error());
   auto ledger = adit::ledger::Ledger::open(options.state);
@@ -49,6 +51,7 @@ std::expected<Parts, std::string> gather(const Options& options, const Store& st
   auto panel =
       adit::gateway::open_panel(known.board.panel.value_or(loaded->settings.panel), runtime_folder(options));
   return Parts{.store = store,
+               .reset = reset,
                .sockets = sockets,
                .loaded = std::move(*loaded),
                .trouble = "",
@@ -75,7 +78,9 @@ int fail(const std::string& why) {
 class Service {
  public:
   explicit Service(const Options& options)
-      : options_(options), store_(options.settings, options.secrets, options.state) {}
+      : options_(options),
+        store_(options.settings, options.secrets, options.state),
+        reset_(store_, options.state, runtime_folder(options)) {}
 
   int run() {
     if (auto taken = take_over_sockets(); !taken) return fail(taken.error());
@@ -99,7 +104,11 @@ class Service {
  private:
   /// Whether another is to follow; an error: it could not start.
   std::expected<bool, std::string> run_one() {
-    auto parts = gather(options_, store_, sockets_);
+    if (const auto done = reset_.finish(); !done) {
+      trouble_ = "the factory reset is not finished: " + done.error();
+      adit::host::log(adit::host::Level::Error, trouble_);
+    }
+    auto parts = gather(options_, store_, reset_, sockets_);
     if (!parts) return std::unexpected(parts.error());
     const adit::settings::Settings settings = parts->loaded.settings;
     parts->trouble = trouble_;
@@ -141,11 +150,12 @@ class Service {
 
   const Options& options_;
   Store store_;
+  FactoryReset reset_;
   ListenSockets sockets_;
   adit::loop::Loop loop_;
   std::optional<adit::loop::Watchdog> watchdog_;  // where systemd wants one
   Gateway* running_ = nullptr;                    // signals come while the loop runs, and so does it
-  std::string trouble_;                           // why the last change was taken back
+  std::string trouble_;                           // what came of the last change
   std::optional<adit::gateway::Legacy> legacy_;
 };
 

@@ -191,8 +191,8 @@ std::string NetworkChange::attention() const {
   const auto waits = pending();
   const bool bare = status_ && status_->kept && status_->kept->command_post.empty();
   if (!waits && bare && hindrance().empty()) {
-    return icd::sentence(settings_.command_post.interface,
-                         " has no address yet: set one in the Command Post's subnet");
+    return icd::sentence("there is no address on ", settings_.command_post.interface,
+                         " yet: set one in the Command Post's subnet");
   }
   if (!waits) return "";
   const auto left = std::chrono::ceil<std::chrono::seconds>(waits->until - loop_.now()).count();

@@ -1,7 +1,5 @@
 #include "gateway/session_keeper.hpp"
 
-#include <unistd.h>
-
 #include <filesystem>
 #include <utility>
 
@@ -43,11 +41,6 @@ void SessionKeeper::keep() {
   const bool failed_before = std::exchange(failed_, !written.has_value());
   if (written || failed_before) return;
   host::log(host::Level::Warning, "who is logged in is kept in memory alone", {{"why", written.error()}});
-}
-
-void SessionKeeper::forget() {
-  sessions_.end_all();
-  unlink(file_.c_str());
 }
 
 }  // namespace adit::gateway

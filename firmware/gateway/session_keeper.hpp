@@ -11,14 +11,14 @@ namespace adit::gateway {
 /// than a login.
 class SessionKeeper {
  public:
+  static constexpr const char* kFile = "sessions.json";  // in the runtime folder
+
   /// `now`: of the monotonic clock.
   SessionKeeper(std::string file, access::Instant now);
 
   access::Sessions& sessions() { return sessions_; }
   /// Writes down when each was seen last. Logging in and out is written at once.
   void keep();
-  /// Ends all sessions and removes the file.
-  void forget();
 
  private:
   std::string file_, boot_;

@@ -37,13 +37,12 @@ std::optional<icd::BearerToken> token_for(const std::string& endpoint, const Set
   return own ? std::move(own) : secrets.token(endpoint);
 }
 
-Setup::Setup(const Store& store, const Store::Loaded& loaded, Accounts& accounts,
-             const NetworkRequests& network, std::function<void()> apply)
+Setup::Setup(const Store& store, const FactoryReset& reset, const Store::Loaded& loaded,
+             std::function<void()> apply)
     : store_(store),
+      reset_(reset),
       settings_(loaded.settings),
       saved_(loaded.saved),
-      accounts_(accounts),
-      network_(network),
       apply_(std::move(apply)) {
   for (const auto& [name, token] : loaded.secrets.tokens) tokens_set_.push_back(name);
 }
@@ -107,11 +106,7 @@ icd::Checked<void> Setup::set_token(const std::string& name, const std::optional
 
 icd::Checked<void> Setup::reset() {
   if (applying_) return being_applied();
-  if (!accounts_.forget()) return refuse(icd::Status::Conflict, "a password is being set: try again");
-  if (const auto asked = network_.ask(network::Forget{NetworkRequests::draw_nonce()}); !asked) {
-    host::log(host::Level::Error, "the box's addresses cannot be forgotten", {{"why", asked.error()}});
-  }
-  return applied(store_.forget(), "all that was set up is forgotten");
+  return applied(reset_.begin(), "a factory reset");
 }
 
 }  // namespace adit::gateway

@@ -5,8 +5,7 @@
 #include <string>
 #include <vector>
 
-#include "gateway/accounts.hpp"
-#include "gateway/network_requests.hpp"
+#include "gateway/factory_reset.hpp"
 #include "gateway/store.hpp"
 #include "page/setup.hpp"
 
@@ -15,8 +14,8 @@ namespace adit::gateway {
 /// What this gateway was built from, and how it comes to be built anew.
 class Setup final : public page::Setup {
  public:
-  /// `apply` ends the gateway, so that another begins. All others outlive this.
-  Setup(const Store& store, const Store::Loaded& loaded, Accounts& accounts, const NetworkRequests& network,
+  /// `apply` ends the gateway, so that another begins. `store` and `reset` outlive this.
+  Setup(const Store& store, const FactoryReset& reset, const Store::Loaded& loaded,
         std::function<void()> apply);
 
   const settings::Settings& settings() const override { return settings_; }
@@ -34,11 +33,10 @@ class Setup final : public page::Setup {
   icd::Checked<void> applied(const std::expected<void, std::string>& written, const char* what);
 
   const Store& store_;
+  const FactoryReset& reset_;
   settings::Settings settings_;
   bool saved_;
   std::vector<std::string> tokens_set_;
-  Accounts& accounts_;
-  const NetworkRequests& network_;
   std::function<void()> apply_;
   bool applying_ = false;
 };

@@ -13,6 +13,7 @@ namespace {
 namespace fs = std::filesystem;
 
 constexpr int kOursAlone = 0600;
+constexpr const char* kDamaged = ".damaged";
 
 bool exists(const std::string& path) {
   std::error_code unknown;
@@ -22,8 +23,8 @@ bool exists(const std::string& path) {
 /// So that the box still serves a page on which it can be set right.
 void set_aside(const std::string& path, const std::string& why) {
   std::error_code error;
-  fs::remove_all(path + ".damaged", error);
-  fs::rename(path, path + ".damaged", error);
+  fs::remove_all(path + kDamaged, error);
+  fs::rename(path, path + kDamaged, error);
   host::log(host::Level::Error, "what was saved is set aside", {{"why", why}});
 }
 
@@ -139,9 +140,11 @@ bool Store::take_back() const {
 
 std::expected<void, std::string> Store::forget() const {
   std::error_code error;
-  fs::remove_all(secrets_folder(), error);
-  if (error) return std::unexpected(secrets_folder() + ": " + error.message());
-  for (const std::string& each : {file_before(), file(), file() + ".damaged"}) {
+  for (const std::string& folder : {secrets_folder(), secrets_folder() + kDamaged}) {
+    fs::remove_all(folder, error);
+    if (error) return std::unexpected(folder + ": " + error.message());
+  }
+  for (const std::string& each : {file_before(), file(), file() + kDamaged}) {
     if (!host::remove_file(each)) return std::unexpected(each + ": cannot be removed");
   }
   return {};

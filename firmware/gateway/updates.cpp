@@ -35,7 +35,9 @@ std::optional<icd::Refusal> no_room(const std::string& folder, std::uint64_t siz
 
 Updates::Updates(loop::Loop& loop, loop::Workers& workers, UpdateRequests requests,
                  std::function<std::string()> under_way)
-    : loop_(loop), workers_(workers), requests_(std::move(requests)), under_way_(std::move(under_way)) {}
+    : loop_(loop), workers_(workers), requests_(std::move(requests)), under_way_(std::move(under_way)) {
+  unlink(requests_.part_file().c_str());  // of an upload that a power cut broke off
+}
 
 void Updates::refresh() const {
   const loop::Instant now = loop_.now();

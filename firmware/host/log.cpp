@@ -4,7 +4,6 @@
 #include <systemd/sd-journal.h>
 #include <unistd.h>
 
-#include <atomic>
 #include <chrono>
 #include <cstdlib>
 
@@ -14,7 +13,7 @@
 namespace adit::host {
 namespace {
 
-std::atomic<Level> least = Level::Info;
+constexpr Level kLeast = Level::Info;
 
 /// Wall time: what a person compares with other logs. Policy never reads it (loop::Loop::now does that).
 double time_now() {
@@ -39,10 +38,6 @@ void to_stderr(std::string line) {
   [[maybe_unused]] const ssize_t written = write(STDERR_FILENO, line.data(), line.size());
 }
 
-bool is_wanted(Level level) {
-  return level <= least.load(std::memory_order_relaxed);
-}
-
 void write_down(double at, Level level, std::string_view message, std::span<const Field> fields) {
   static const bool under_journald = is_journal(STDERR_FILENO, std::getenv("JOURNAL_STREAM"));
   if (under_journald && to_journal(journal_entry(level, message, fields))) return;
@@ -52,14 +47,14 @@ void write_down(double at, Level level, std::string_view message, std::span<cons
 }  // namespace
 
 void log(Level level, std::string_view message, std::initializer_list<Field> fields) {
-  if (!is_wanted(level)) return;
+  if (level > kLeast) return;
   const double at = time_now();
   memory().keep(at, level, message, fields);
   write_down(at, level, message, fields);
 }
 
 void tell_console(Level level, std::string_view message, std::initializer_list<Field> fields) {
-  if (!is_wanted(level)) return;
+  if (level > kLeast) return;
   const double at = time_now();
   memory().keep(at, level, message, {});
   write_down(at, level, message, fields);
@@ -76,10 +71,6 @@ std::uint64_t logged() {
 std::string line_of(const Record& record) {
   const std::vector<Field> fields(record.fields.begin(), record.fields.end());
   return plain_line(time_text(record.at), record.level, record.message, fields);
-}
-
-void set_least(Level level) {
-  least.store(level, std::memory_order_relaxed);
 }
 
 }  // namespace adit::host

@@ -48,7 +48,4 @@ std::string line_of(const Record& record);
 /// can neither forge a line nor steer a terminal.
 std::string escaped(std::string_view text);
 
-/// Records less important than this are left out; Info at first.
-void set_least(Level level);
-
 }  // namespace adit::host

@@ -87,7 +87,7 @@ class Members {
     return static_cast<std::uint8_t>(*number);
   }
 
-  /// Static where there is none: what was written before there were modes.
+  /// Static where there is none.
   Mode mode() {
     const Value* value = find("mode");
     if (value == nullptr) return Mode::Static;

@@ -35,8 +35,8 @@ inline constexpr std::uint8_t kWidest = 8, kNarrowest = 30;  // prefixes that le
 /// Of `{"team": {"mode", "address", "prefix"}, "command_post": {"addresses": [{"address", "prefix"}, ...],
 /// "gateway"}}`, or all that is wrong with it, each by its path: members that are missing, unknown or given
 /// twice, values of the wrong kind, addresses that no host can have, or that are given twice. `mode` may be
-/// absent: static; the other modes have no address. `gateway` may be absent, null or "". What one address had
-/// before there were several is read as well: `{"address", "prefix", "gateway"}`.
+/// absent: static; the other modes have no address. `gateway` may be absent, null or "". One address may
+/// stand in place of `addresses`: `{"address", "prefix", "gateway"}`.
 std::expected<Numbers, std::vector<settings::Error>> read_numbers(const codec::Value& value);
 
 codec::Value to_json(const Numbers& numbers);

@@ -62,10 +62,4 @@ std::span<const Subnet> command_post_subnets() {
   return kCommandPost;
 }
 
-std::optional<Subnet> overlapped_by(const Subnet& team) {
-  const auto found =
-      std::ranges::find_if(kCommandPost, [&](const Subnet& each) { return overlaps(each, team); });
-  return found == std::end(kCommandPost) ? std::nullopt : std::optional(*found);
-}
-
 }  // namespace adit::settings

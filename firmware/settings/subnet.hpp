@@ -38,7 +38,4 @@ bool overlaps(const Subnet& a, const Subnet& b);
 /// 10.100.0.0/16.
 std::span<const Subnet> command_post_subnets();
 
-/// The first of these that `team` overlaps.
-std::optional<Subnet> overlapped_by(const Subnet& team);
-
 }  // namespace adit::settings

@@ -88,8 +88,6 @@ TEST_F(SessionFileTest, IsWrittenWheneverSomebodyComesOrGoes) {
   EXPECT_EQ(told, 2);
   watched.end_all(Role::Operator, 0);
   EXPECT_EQ(told, 3);
-  watched.end_all();
-  EXPECT_EQ(told, 4);
 }
 
 TEST_F(SessionFileTest, ThatIsNoneSaysWhyAndShowsNothingOfWhatIsInIt) {

@@ -11,9 +11,8 @@ import time
 import hosts
 
 TUNSETIFF = 0x400454CA
-TUNSETPERSIST = 0x400454CB
 IFF_TAP, IFF_NO_PI, IFF_VNET_HDR = 0x0002, 0x1000, 0x4000
-FACTORY_ADDRESS = "10.0.0.1"  # of the box, as rootfs/overlay/usr/share/adit/network.json has it
+FACTORY_ADDRESS = "10.0.0.1"  # of the box, as services/network.json has it
 TEAM_ADDRESS = "10.0.0.12"
 
 

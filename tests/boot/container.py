@@ -98,7 +98,7 @@ class Container(programs.Page):
         self.process = None
 
     def start(self):
-        """As facts of nspawn are where this machine's own first process is not systemd."""
+        """With the mounts that nspawn wants where this machine's own first process is not systemd."""
         self.began = time.monotonic()
         inside = (
             "mount -t tmpfs tmpfs /run; mount -t sysfs -o ro sysfs /sys; mount -t cgroup2 cgroup2 /sys/fs/cgroup; "

@@ -120,5 +120,15 @@ TEST_F(LightsTest, GoOnAfterThePanelFails) {
   EXPECT_EQ(seen.shown.size(), 2u);
 }
 
+TEST_F(LightsTest, AreTriedAgainAfterThePanelFailed) {
+  seen.fail = true;
+  lights.set(State::Serving, true);
+  seen.fail = false;
+  seen.shown.clear();
+  lights.set(State::Serving, true);
+  lights.set(State::Serving, true);
+  EXPECT_EQ(seen.shown, (std::vector{Lit{true, false, false, false}}));
+}
+
 }  // namespace
 }  // namespace adit::gateway

@@ -114,7 +114,7 @@ TEST_F(NetworkChangeTest, TellsTheOperatorThatTheCommandPostsSideHasNoAddressYet
   EXPECT_EQ(change.attention(), "");
   status.kept->command_post.clear();
   tell();
-  EXPECT_THAT(change.attention(), HasSubstr("darpa0 has no address yet"));
+  EXPECT_THAT(change.attention(), HasSubstr("no address on darpa0 yet"));
   wait(numbers());
   EXPECT_THAT(change.attention(), HasSubstr("network change: confirm within"));
 }

@@ -70,13 +70,5 @@ TEST_F(SessionKeeperTest, GoesOnInMemoryWhereNothingCanBeWritten) {
   EXPECT_TRUE(knows(keeper, mine));
 }
 
-TEST_F(SessionKeeperTest, ForgetsEverybodyWhenItIsTold) {
-  SessionKeeper keeper(file_, kStart);
-  const std::string mine = log_in(keeper);
-  keeper.forget();
-  EXPECT_FALSE(knows(keeper, mine));
-  EXPECT_FALSE(std::filesystem::exists(file_));
-}
-
 }  // namespace
 }  // namespace adit::gateway

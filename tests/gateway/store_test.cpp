@@ -149,8 +149,13 @@ TEST_F(StoreTest, ForgetsAllThatWasSavedAndNothingElse) {
   state_.put("ledger.sqlite", "reports");
   (void)store_.save(with_connections(30));
   (void)store_.save_token("scoring", icd::BearerToken::parse("saved-1"));
+  state_.put("settings.json.damaged", "what nobody could read");
+  std::filesystem::create_directory(state_ / "secrets.damaged");
+  state_.put("secrets.damaged/mapping.token", "saved-2");
   ASSERT_TRUE(store_.forget().has_value());
-  EXPECT_FALSE(kept("settings.json") || kept("settings.json.before") || kept("secrets"));
+  for (const char* gone :
+       {"settings.json", "settings.json.before", "settings.json.damaged", "secrets", "secrets.damaged"})
+    EXPECT_FALSE(kept(gone)) << gone;
   EXPECT_TRUE(kept("ledger.sqlite"));
   EXPECT_EQ(connections(), 20u);
 }

@@ -59,6 +59,12 @@ class UpdatesTest : public testing::Test {
                    [this] { return under_way_; }};
 };
 
+TEST_F(UpdatesTest, LeaveNothingOfAnUploadThatAPowerCutBrokeOff) {
+  const std::string half = state_.put(std::string(update::kBundleFile) + ".part", "half of a bundle");
+  const Updates after(loop_, workers_, UpdateRequests(state_.path(), run_.path()), [] { return ""; });
+  EXPECT_FALSE(fs::exists(half));
+}
+
 TEST_F(UpdatesTest, TellWhatAditUpdateTells) {
   say({.running = {"adit-board", "0.1.0", "A", "B"},
        .refusal = "it is older",

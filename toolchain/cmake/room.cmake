@@ -24,6 +24,7 @@ function(adit_room_test name)
   add_executable(adit_${name}_test ${TEST_SOURCES})
   target_include_directories(adit_${name}_test PRIVATE ${PROJECT_SOURCE_DIR}/tests)
   target_compile_definitions(adit_${name}_test PRIVATE ADIT_SOURCE_DIR="${PROJECT_SOURCE_DIR}")
+  target_compile_options(adit_${name}_test PRIVATE -O0)  # of the tests alone: they are run once for each time they are compiled
   target_link_libraries(adit_${name}_test PRIVATE
     adit_options adit_${name} ${TEST_ROOMS} ${TEST_LIBRARIES} GTest::gmock GTest::gtest_main)
   gtest_discover_tests(adit_${name}_test TEST_PREFIX "${name}: " NO_PRETTY_VALUES DISCOVERY_TIMEOUT 60

@@ -38,7 +38,7 @@ export function linkIs(isLost) {
   lost = isLost;
 }
 
-export async function learnRole() {
+async function learnRole() {
   ({ role } = await session().catch(() => ({ role })));
 }
 /** Ends once it is known who looks at this page. */

@@ -50,7 +50,7 @@ const hintOf = ({ meaning, kind, range, required, default: usual }) =>
   `${meaning} ${kind === "flag" ? "" : `Allowed: ${range}. `}${required ? "" : `By default ${written(usual)}.`}`;
 
 /** The field of the setting at `path`, which has a key. */
-export function setting(path, label) {
+function setting(path, label) {
   const key = keyOf(path), control = controlOf(key);
   const field = labelled(label, control, hintOf(key));
   field.dataset.path = path;

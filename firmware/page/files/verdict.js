@@ -43,7 +43,7 @@ export function arrival(row, now) {
 }
 
 const RANK = ["quiet", "good", "wait", "bad"];
-export const worst = (verdicts) =>
+const worst = (verdicts) =>
   verdicts.reduce((a, b) => (RANK.indexOf(b.level) > RANK.indexOf(a.level) ? b : a), { level: "quiet" });
 
 /** One sentence over all maps: is my map arriving? */

@@ -1,0 +1,52 @@
+"""What the tests of adit-network have in common."""
+
+import contextlib
+import os
+import pathlib
+import tempfile
+import unittest
+
+import hosts
+from programs import wait_until
+
+OLD, NEW = "192.168.7.11/24", "192.168.8.11/24"
+
+
+class Change(unittest.TestCase):
+    """`box` is an adit-network."""
+
+    def setUp(self):
+        hosts.needs_namespaces()
+        self.network = self.enterContext(hosts.Network())
+        self.folder = pathlib.Path(self.enterContext(tempfile.TemporaryDirectory(prefix="adit-network-")))
+        self.addCleanup(lambda: self.box.stop())
+
+    def ends(self, within=20.0):
+        wait_until(lambda: self.box.process.poll() is not None, "adit-network to end", within)
+        self.assertEqual(self.box.process.returncode, 0, self.box.said())
+
+    def has(self, address, interface="team0", within=15.0):
+        wait_until(lambda: self.box.addresses(interface) == [address], f"{interface} to have {address}", within)
+
+    def confirm_first(self):
+        """The numbers that the box has from the beginning, confirmed."""
+        nonce = self.box.want()
+        self.has(OLD)
+        self.box.ask("word.json", nonce=nonce, word="confirm")
+        self.ends()
+
+    @contextlib.contextmanager
+    def monitored(self):
+        log = self.folder / "monitor"
+        with open(log, "wb") as output:
+            monitor = self.network.start(self.network.box, "stdbuf", "-oL", "ip", "-o", "monitor", "address", stdout=output)
+            try:
+                wait_until(lambda: self.listening(monitor), "ip monitor")
+                yield log.read_text
+            finally:
+                monitor.kill()
+                monitor.wait()
+
+    @staticmethod
+    def listening(monitor):
+        return any("socket" in os.readlink(link) for link in pathlib.Path(f"/proc/{monitor.pid}/fd").iterdir())

@@ -1,0 +1,99 @@
+"""Changes of the box's addresses by a real systemd-networkd."""
+
+import unittest
+
+import dhcp
+import hosts
+import networkd
+from changes import Change, NEW, OLD
+from programs import wait_until
+
+
+class WithNetworkd(Change):
+    """A real one."""
+
+    def setUp(self):
+        super().setUp()
+        networkd.needs_networkd()
+        hosts.ip("-n", self.network.box, "address", "flush", "dev", "darpa0")  # with its route, which networkd would keep
+        self.box = networkd.AditNetwork(self.network, self.folder)
+        self.networkd = networkd.Networkd(self.network, self.folder)
+        self.addCleanup(self.networkd.stop)
+        self.box.networkctl = self.networkd.networkctl
+        self.assertEqual(self.box.run(), 0)
+
+    def test_a_change_and_the_way_back(self):
+        self.confirm_first()
+        self.has(OLD)
+        self.has("10.100.1.10/24", "darpa0")
+        self.box.want(within_ms=12000, team="192.168.8.11")
+        self.has(NEW)
+        self.assertEqual(self.box.addresses("darpa0"), ["10.100.1.10/24"])
+        self.ends()
+        self.has(OLD)
+
+    def test_by_dhcp_comes_an_address_and_nothing_else(self):
+        server = dhcp.Server(self.network.team, "eth0", self.network.team_address, "192.168.7.77")
+        self.addCleanup(server.stop)
+        self.confirm_first()
+        self.box.ask("wanted.json", confirm_within_ms=60000, numbers={
+            **self.box.numbers(), "team": {"mode": "dhcp"}})
+        self.box.start()
+        self.has("192.168.7.77/24")
+        self.assertEqual(set(self.box.routes("main")) - {"169.254.0.0/16"}, {"192.168.7.0/24"})
+        self.assertEqual(self.box.pending()["wanted"]["team"], {"mode": "dhcp"})
+        self.box.ask("word.json", nonce=self.box.pending()["nonce"], word="back")
+        self.ends()
+        self.has(OLD)
+
+    def test_several_addresses_on_the_command_posts_side(self):
+        nonce = self.box.want(post=["10.100.1.10", "10.100.2.10", "10.100.1.11"], gateway="10.100.2.1")
+        three = ["10.100.1.10/24", "10.100.1.11/24", "10.100.2.10/24"]
+        wait_until(lambda: sorted(self.box.addresses("darpa0")) == three, "all three addresses")
+        self.box.ask("word.json", nonce=nonce, word="confirm")
+        self.ends()
+        self.assertEqual(self.box.status()["kept"]["command_post"]["gateway"], "10.100.2.1")
+        self.box.want(within_ms=1000, post=[])
+        wait_until(lambda: self.box.addresses("darpa0") == [], "no address")
+        self.ends()
+        wait_until(lambda: sorted(self.box.addresses("darpa0")) == three, "all three addresses again")
+
+    def test_networkd_may_start_anew_while_a_change_waits(self):
+        self.confirm_first()
+        self.box.want(within_ms=5000, team="192.168.8.11")
+        self.has(NEW)
+        self.networkd.start_anew()
+        self.assertEqual(self.box.addresses("team0"), [NEW])
+        self.ends()
+        self.has(OLD)
+        self.networkd.start_anew()
+        self.has(OLD)
+
+    def test_a_confirmation_disturbs_nothing(self):
+        self.box.put("endpoints.json", endpoints=["10.100.1.200", "10.100.2.201", "172.20.0.1"])
+        nonce = self.box.want(team="192.168.8.11", post="10.100.1.10", gateway="10.100.1.200")
+        self.has(NEW)
+        self.has("10.100.1.10/24", "darpa0")
+        by_gateway = ("10.100.1.200", "darpa0")
+        ways = {"10.100.1.0/24": (None, "darpa0"), "10.100.2.201": by_gateway, "172.20.0.1": by_gateway}
+        wait_until(lambda: self.box.routes() == ways, "the ways to the endpoints and no others")
+        self.assertEqual(set(self.box.routes("main")) - {"169.254.0.0/16"}, {"192.168.8.0/24"})
+        with self.monitored() as seen:
+            self.box.ask("word.json", nonce=nonce, word="confirm")
+            self.ends()
+            self.assertEqual(self.networkd.reload().returncode, 0)
+        self.assertEqual(seen(), "")
+        self.assertEqual(self.box.addresses("team0"), [NEW])
+
+    def test_a_pulled_cable_costs_no_address(self):
+        self.confirm_first()
+        self.has("10.100.1.10/24", "darpa0")
+        with self.monitored() as seen:
+            self.network.pull_cable()
+            self.network.pull_cable(False)
+        self.assertNotIn("Deleted", seen())
+        self.assertEqual(self.box.addresses("darpa0"), ["10.100.1.10/24"])
+
+
+if __name__ == "__main__":
+    unittest.main()

@@ -1,0 +1,151 @@
+"""Changes of the box's addresses and the test of its links, as an operator asks for them."""
+
+import contextlib
+import http.client
+import json
+import threading
+import unittest
+
+import hosts
+import networkd
+import programs
+from changes import Change, NEW, OLD
+from programs import wait_until
+
+
+class WholeBox(Change):
+    """aditd asks, adit-network does; the team's host is who sits at the page."""
+
+    def setUp(self):
+        hosts.needs_namespaces()
+        self.stage = self.enterContext(programs.Stage(network__confirm_within_ms=10000, **{
+            "team__listen": [{"address": "0.0.0.0", "port": programs.PORT}]}))
+        self.network, self.folder = self.stage.network, self.stage.folder / "network"
+        self.folder.mkdir()
+        self.stage.folder.chmod(0o755)
+        self.box = networkd.AditNetwork(self.network, self.folder)
+        self.addCleanup(self.box.stop)
+        self.box.wanted = self.stage.folder / "state"
+        self.assertEqual(self.box.run(), 0, self.box.said())
+        self.confirm_first()
+        self.stage.box.stop()
+        self.stage.restart_box()
+        self.stopping = threading.Event()
+        self.units = threading.Thread(target=self.path_unit)
+        self.units.start()
+        self.addCleanup(self.units.join)
+        self.addCleanup(self.stopping.set)
+
+    def path_unit(self):
+        """As adit-network.path does."""
+        while not self.stopping.wait(0.05):
+            if any((self.box.wanted / name).exists() for name in networkd.ASKED):
+                self.box.start()
+                while self.box.process.poll() is None and not self.stopping.wait(0.05):
+                    pass
+
+    def post(self, path, body=None, at="192.168.7.11"):
+        """Its status, and what its JSON says."""
+        connection = http.client.HTTPConnection(at, programs.PORT, timeout=5)
+        with contextlib.closing(connection):
+            connection.request("POST", path, json.dumps(body or {}), {
+                "Authorization": f"Bearer {programs.TEAM_TOKEN}", "Content-Type": "application/json"})
+            answer = connection.getresponse()
+            return answer.status, json.loads(answer.read())
+
+    def shown(self):
+        return self.stage.box.ask("GET /adit/network")[1]
+
+    def test_a_change_is_checked_tried_and_confirmed_from_the_new_address(self):
+        self.assertTrue(self.shown()["managed"], self.shown())
+        wanted = self.box.numbers(team="192.168.8.11")
+        _, verdict = self.post("/adit/network/check", wanted)
+        self.assertEqual(verdict["errors"], [])
+        self.assertIn("this cuts you off", verdict["warnings"][0])
+        self.assertEqual(verdict["changes"], [{"path": "team.address", "from": "192.168.7.11", "to": "192.168.8.11"}])
+        status, view = self.post("/adit/network", wanted)
+        self.assertEqual((status, view["pending"]["page"]), (200, "http://192.168.8.11:8000"))
+        self.has(NEW)
+        hosts.ip("-n", self.network.team, "address", "add", "192.168.8.12/24", "dev", "eth0")
+        self.network.box_address = "192.168.8.11"
+        wait_until(lambda: self.shown()["pending"], "the change to wait")
+        self.assertIn("network change: confirm within", self.stage.box.attention())
+        self.assertEqual(self.post("/adit/network", wanted, "192.168.8.11")[0], 409)
+        status, _ = self.post("/adit/network/confirm", at="192.168.8.11")
+        self.assertEqual(status, 200)
+        wait_until(lambda: self.shown()["last"] == "confirmed", "the change to be confirmed")
+        self.assertIsNone(self.shown()["pending"])
+        self.assertNotIn("network change", self.stage.box.attention())
+
+    def test_a_change_that_cuts_everybody_off_takes_itself_back(self):
+        self.post("/adit/network", self.box.numbers(team="192.168.8.11"))
+        self.has(NEW)
+        self.has(OLD, within=15.0)
+        wait_until(lambda: self.shown()["last"] == "taken back", "the change to be taken back")
+
+    def test_a_change_is_not_confirmed_where_the_new_address_is_not_asked(self):
+        hosts.ip("-n", self.network.box, "address", "add", "192.168.7.99/24", "dev", "team0")
+        self.post("/adit/network", self.box.numbers(team="192.168.7.98"), "192.168.7.99")
+        self.has("192.168.7.98/24")
+        hosts.ip("-n", self.network.box, "address", "add", "192.168.7.99/24", "dev", "team0")
+        status, why = self.post("/adit/network/confirm", at="192.168.7.99")
+        self.assertEqual(status, 409)
+        self.assertIn("confirm it at http://192.168.7.98:8000", why)
+        self.assertEqual(self.post("/adit/network/back", at="192.168.7.99")[0], 200)
+        self.ends()
+
+    def test_overlaps_are_refused(self):
+        status, why = self.post("/adit/network", self.box.numbers(team="10.100.7.11"))
+        self.assertEqual(status, 422)
+        self.assertIn("overlaps 10.100.0.0/16", why)
+
+    def steps(self):
+        """All steps of a test, by "scoring link", once it has ended."""
+        self.assertEqual(self.post("/adit/test")[0], 200)
+        wait_until(lambda: not self.stage.box.ask("GET /adit/test")[1]["running"], "the test to end", 30)
+        return {f"{endpoint['name']} {step['name']}": step
+                for endpoint in self.stage.box.ask("GET /adit/test")[1]["endpoints"] for step in endpoint["steps"]}
+
+    def states(self, steps):
+        return {name: step["state"] for name, step in steps.items()}
+
+    def test_the_test_finds_nothing_wrong_and_spends_no_report(self):
+        steps = self.steps()
+        self.assertEqual({name: state for name, state in self.states(steps).items() if state == "bad"}, {}, steps)
+        for name in ("link", "address", "cables", "reach", "token"):
+            self.assertEqual((steps[f"scoring {name}"]["state"], steps[f"mapping {name}"]["state"]), ("good", "good"), steps)
+        self.assertEqual(self.stage.post.recorded(), [])
+
+    def test_the_test_finds_a_conflict_and_a_server_that_is_gone(self):
+        hosts.ip("-n", self.network.post, "address", "add", "10.100.1.10/24", "dev", "eth0")
+        steps = self.steps()
+        self.assertEqual(steps["scoring address"]["state"], "bad", steps)
+        hosts.ip("-n", self.network.post, "address", "delete", "10.100.1.10/24", "dev", "eth0")
+        self.stage.post.stop()
+        steps = self.steps()
+        self.assertEqual(steps["scoring reach"]["state"], "bad")
+        self.assertIn("no server at that port", steps["scoring reach"]["said"])
+        self.assertEqual(steps["scoring token"]["state"], "skipped")
+        self.network.pull_cable()
+        self.assertEqual(self.steps()["mapping link"]["state"], "bad")
+
+    def test_the_test_finds_the_command_post_at_the_wrong_port(self):
+        hosts.ip("-n", self.network.post, "address", "delete", f"{hosts.SCORING}/24", "dev", "eth0")
+        hosts.ip("-n", self.network.team, "address", "add", f"{hosts.SCORING}/24", "dev", "eth0")
+        cables = self.steps()["scoring cables"]
+        self.assertEqual(cables["state"], "bad", cables)
+        self.assertIn("10.100.1.200 is not at darpa0 but at team0", cables["said"])
+
+    def test_the_test_finds_wrong_tokens(self):
+        self.stage.box.stop()
+        for name in ("scoring", "mapping"):
+            (self.stage.folder / "secrets" / f"{name}.token").write_text("another\n")
+        self.stage.restart_box()
+        steps = self.steps()
+        for name in ("scoring token", "mapping token"):
+            self.assertEqual(steps[name]["state"], "bad", steps)
+            self.assertIn("token is refused", steps[name]["said"])
+
+
+if __name__ == "__main__":
+    unittest.main()

@@ -98,8 +98,9 @@ class Updates(Story):
     def test_a_second_stick_is_looked_at_beside_it(self):
         folder = self.folder / "second"
         folder.mkdir()
-        file = {"driver": "file", "filename": str(stick(folder, bundle(folder, EVEN_NEWER))), "read-only": True}
-        self.box.monitor.ask("blockdev-add", **{"driver": "raw", "node-name": "second", "read-only": True, "file": file})
+        image = stick(folder, bundle(folder, EVEN_NEWER))
+        node = {"node-name": "second", "driver": "file", "filename": str(image), "read-only": True}
+        self.box.monitor.ask("blockdev-add", **node)
         self.box.monitor.ask("device_add", driver="usb-storage", bus="usb.0", id="second", drive="second")
         self.box.wait_until(lambda: self.offered() == EVEN_NEWER, "what is on the second stick to be offered", 60)
         mounted = self.box.console.ask("ls /run/adit-stick; grep -c /run/adit-stick/ /proc/mounts").split()

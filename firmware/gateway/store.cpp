@@ -114,10 +114,12 @@ std::expected<void, std::string> Store::save_token(const std::string& name,
 
 void Store::settle(const settings::Settings& settings) const {
   const std::vector<std::string> names = token_names(settings);
-  std::error_code none;
-  for (const auto& file : fs::directory_iterator(secrets_folder(), none)) {
-    const bool known = std::ranges::find(names, file.path().stem().string()) != names.end();
-    if (!known && file.path().extension() == ".token") host::remove_file(file.path().string());
+  const auto files = host::names_in(secrets_folder());
+  if (!files)
+    host::log(host::Level::Warning, "tokens that nothing needs may be left", {{"why", files.error()}});
+  for (const fs::path file : files.value_or(std::vector<std::string>())) {
+    const bool known = std::ranges::find(names, file.stem().string()) != names.end();
+    if (!known && file.extension() == ".token") host::remove_file(secrets_folder() / file);
   }
   if (!host::remove_file(file_before())) {
     host::log(host::Level::Warning, "cannot be removed", {{"file", file_before()}});

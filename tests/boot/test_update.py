@@ -15,7 +15,7 @@ from reporting import REPORT
 from stage import Stage, Story, load_tests, note, setUpModule  # unittest looks for them here
 
 RUNS = re.search(r"adit-qemu-virt-([0-9].*)\.img$", machine.image().name).group(1) if not machine.missing() else ""
-NEWER, BROKEN = "7.0.0", "7.1.0"
+NEWER, EVEN_NEWER, BROKEN = "7.0.0", "7.0.1", "7.1.0"
 
 
 @unittest.skipUnless((machine.SOURCE / "rootfs" / "bundle").exists(), "this Adit has no updates")
@@ -59,6 +59,9 @@ class Updates(Story):
     def restart(self):
         self.assertEqual(self.box.ask("POST /adit/update/restart", body={"anyway": True})[0], 200)
 
+    def offered(self):
+        return (self.stands()["stick"] or {}).get("version")
+
     def last(self):
         last = self.stands()["last"]
         return last and (last["stage"], last["version"])
@@ -92,6 +95,18 @@ class Updates(Story):
         self.assertEqual(self.stands()["stick"], {"name": newer.name, "version": NEWER})
         self.assertEqual((self.stands()["doing"], self.stands()["last"]), (None, None))
 
+    def test_a_second_stick_is_looked_at_beside_it(self):
+        folder = self.folder / "second"
+        folder.mkdir()
+        file = {"driver": "file", "filename": str(stick(folder, bundle(folder, EVEN_NEWER))), "read-only": True}
+        self.box.monitor.ask("blockdev-add", **{"driver": "raw", "node-name": "second", "read-only": True, "file": file})
+        self.box.monitor.ask("device_add", driver="usb-storage", bus="usb.0", id="second", drive="second")
+        self.box.wait_until(lambda: self.offered() == EVEN_NEWER, "what is on the second stick to be offered", 60)
+        mounted = self.box.console.ask("ls /run/adit-stick; grep -c /run/adit-stick/ /proc/mounts").split()
+        self.assertEqual(mounted, ["sda1", "sda2", "sdb1", "sdb2", "4"])
+        self.box.monitor.ask("device_del", id="second")
+        self.box.wait_until(lambda: self.offered() == NEWER, "what is on the first one to be offered again", 60)
+
     def test_it_is_installed_in_the_other_slot_and_stays_once_it_was_healthy(self):
         self.install(lambda: self.assertEqual(self.box.ask("POST /adit/update/stick", body={})[0], 200), NEWER)
         self.box.pull_stick()
@@ -112,6 +127,9 @@ class Updates(Story):
         self.settled("left", BROKEN, within=400)
         self.assertEqual((self.stands()["version"], self.stands()["slot"]), (NEWER, "B"))
         self.assertEqual(self.box.console.said().count("Adit: slot a"), 1 + 3)
+        self.box.console.wait_for_shell()
+        order = self.box.console.ask("fw_printenv -n BOOT_ORDER")
+        self.assertEqual(order.split(), ["B"], "it is never started again")
 
     def test_and_all_is_as_it_was(self):
         self.assertEqual([each["state"] for each in self.box.reports()], ["answered"])

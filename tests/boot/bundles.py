@@ -5,18 +5,17 @@ import os
 import shutil
 import subprocess
 
-import machine
-
-WORK = machine.IMAGES / "work"
+import boards
 
 
-def bundle(folder, version, board="qemu-virt", without=None):
-    """Signed as toolchain/image signs. `without`: a file that its root lacks."""
+def bundle(folder, version, board="qemu-virt", without=None, source=boards.QEMU_VIRT):
+    """Signed as toolchain/image signs, for `board`, of the image of `source`. `without`: a file that its root lacks."""
     work, output = folder / f"work-{version}", folder / f"adit-{board}-{version}.raucb"
+    made = source.images / "work"
     work.mkdir()
     root = work / "root"
     subprocess.run(
-        ["unsquashfs", "-q", "-n", "-d", root, WORK / "root.squashfs"], check=True, stdout=subprocess.DEVNULL
+        ["unsquashfs", "-q", "-n", "-d", root, made / "root.squashfs"], check=True, stdout=subprocess.DEVNULL
     )
     release = root / "usr/lib/os-release"
     lines = [
@@ -45,8 +44,8 @@ def bundle(folder, version, board="qemu-virt", without=None):
         stdout=subprocess.DEVNULL,
     )
     shutil.rmtree(root)
-    os.link(WORK / "boot.vfat", work / "boot.vfat") if same_disk(WORK, work) else shutil.copy(WORK / "boot.vfat", work)
-    subprocess.run([machine.SOURCE / "rootfs" / "bundle", board, version, work, output], check=True)
+    os.link(made / "boot.vfat", work / "boot.vfat") if same_disk(made, work) else shutil.copy(made / "boot.vfat", work)
+    subprocess.run([boards.SOURCE / "rootfs" / "bundle", board, version, work, output], check=True)
     shutil.rmtree(work)
     return output
 

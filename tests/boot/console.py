@@ -61,7 +61,7 @@ class Console:
         """Until it answers. What is typed before there is a shell is lost, and stops the boot loader if it is typed to
         that."""
         end = time.monotonic() + within
-        self.wait_for(rb"Starting kernel.*/ # ", within)
+        self.wait_for(rb"Adit: slot .*/ # ", within)
         while True:
             try:
                 return self.ask("true", within=2.0)

@@ -23,8 +23,8 @@ class Disk:
         subprocess.run(["cp", "--sparse=always", "--reflink=auto", image, self.file], check=True)
         subprocess.run(["truncate", "-s", size, self.file], check=True)
 
-    def options(self):
-        """What QEMU is told, from a new copy on."""
+    def options(self, device):
+        """What QEMU is told, from a new copy on: a disk of this device of its."""
         subprocess.run(["qemu-img", "create", "-q", "-f", "qcow2", "-b", self.file, "-F", "raw", self.copy], check=True)
         self.log.write_bytes(b"")
         quick = "cache.no-flush=on"  # what the guest flushes is in the log; the host need not wait for its own disk
@@ -32,7 +32,7 @@ class Disk:
         return ["-blockdev", copy,
                 "-blockdev", f"driver=file,node-name=log,{quick},filename={self.log}",
                 "-blockdev", "driver=blklogwrites,node-name=disk,file=copy,log=log",
-                "-device", "virtio-blk-pci,drive=disk"]
+                "-device", f"{device},drive=disk"]
 
     def is_off(self, chance=None):
         """Plays the log back, all of it or, with a `chance` (random.Random), as a power cut leaves it. How many writes
@@ -57,11 +57,6 @@ class Disk:
 
     def make_folder(self, name):
         subprocess.run(["mmd", *self._boot_partition(), f"::{name}"], check=True)
-
-    def get(self, name):
-        """A file's text, or None where there is none."""
-        got = subprocess.run(["mtype", *self._boot_partition(), f"::{name}"], capture_output=True, check=False)
-        return got.stdout.decode() if got.returncode == 0 else None
 
     def _boot_partition(self):
         return ["-i", f"{self.file}@@{BOOT_PARTITION}"]

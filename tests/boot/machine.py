@@ -1,62 +1,31 @@
-"""The box as a machine: QEMU's arm64 `virt`, started from its card by U-Boot as a board is, with two ports, four
-lights, a button and a hardware watchdog."""
+"""The box as a machine: QEMU, started from its card by the boot loader as a board is, with two ports, a hardware
+watchdog, and, where the board has them, four lights and a button."""
 
 import http.client
 import os
 import pathlib
-import shutil
-import subprocess
 import time
 
+import boards
 import console
 import programs
 import qmp
 
-SOURCE = pathlib.Path(os.environ["ADIT_SOURCE"])
-BOARD = SOURCE / "board" / "qemu-virt"
-IMAGES = SOURCE / "build" / "image" / "qemu-virt"
-MACHINE = ["-M", "virt,acpi=off", "-cpu", "cortex-a53", "-smp", "2", "-nodefaults", "-display", "none"]
-# As board.json has them, on the eight lines of QEMU's PL061. Line 3 is the machine's own power key.
-LINES = ["ADIT_HEALTH", "ADIT_SCORING", "ADIT_MAPPING", "POWER_KEY", "ADIT_ATTENTION", "ADIT_BUTTON", "", ""]
-LIGHTS = {"health": 0, "scoring": 1, "mapping": 2, "attention": 4}
+SOURCE, IMAGES = boards.SOURCE, boards.QEMU_VIRT.images
+image, missing = boards.QEMU_VIRT.image, boards.QEMU_VIRT.missing
+LIGHTS = {"health": 0, "scoring": 1, "mapping": 2, "attention": 4}  # lines of the panel's chip
 BUTTON = 5
-PORT = "virtio-net-pci,romfile="
-
-
-def image():
-    """The newest image of the board that tests boot."""
-    return max(IMAGES.glob("adit-qemu-virt-*.img"), key=lambda path: path.stat().st_mtime)
-
-
-class Firmware:
-    """What is soldered to the machine: its boot loader, the boot loader's environment, and the device tree."""
-
-    def __init__(self, folder, memory):
-        self.loader, self.environment = folder / "loader.bin", folder / "environment.bin"
-        self.tree = folder / "machine.dtb"
-        package = next((SOURCE / "build" / "image" / "debian-arm64").glob("*/u-boot-qemu_*.deb"))
-        opened = subprocess.run(["dpkg-deb", "--fsys-tarfile", package], stdout=subprocess.PIPE, check=True).stdout
-        with open(self.loader, "wb") as loader:
-            subprocess.run(["tar", "-xO", "./usr/lib/u-boot/qemu_arm64/u-boot.bin"], input=opened, stdout=loader,
-                           check=True)
-        words = [line for line in (BOARD / "u-boot.env").read_text().splitlines() if line and not line.startswith("#")]
-        text = folder / "environment.txt"
-        text.write_text("\n".join(words) + "\n")
-        subprocess.run(["mkenvimage", "-s", "0x40000", "-o", self.environment, text], check=True)
-        for flash in (self.loader, self.environment):
-            os.truncate(flash, 64 << 20)
-        dump = [word + f",dumpdtb={self.tree}" if word.startswith("virt") else word for word in MACHINE]
-        subprocess.run(["qemu-system-aarch64", *dump, "-m", str(memory)], check=True, stderr=subprocess.DEVNULL)
-        subprocess.run(["fdtput", "-t", "s", self.tree, "/pl061@9030000", "gpio-line-names", *LINES], check=True)
+GAVE_UP = "adit: the start failed"  # rootfs/overlay's emergency.service says so
 
 
 class Machine(programs.Page):
     """`cables` are in its two ports from the beginning; `disk` is its card."""
 
-    def __init__(self, cables, folder, disk, memory=256, watchdog=True):
-        self.network, self.folder, self.disk, self.memory, self.watchdog = cables, folder, disk, memory, watchdog
-        self.firmware = Firmware(folder, memory)
-        self.process = None
+    def __init__(self, cables, folder, disk, board=boards.QEMU_VIRT):
+        self.network, self.folder, self.disk, self.board = cables, folder, disk, board
+        self.memory = board.memory
+        self.soldered = board.soldered(folder, board.memory)
+        self.process = self.pins = None
         self.log = folder / "console.log"
 
     def power_on(self):
@@ -65,32 +34,31 @@ class Machine(programs.Page):
         sockets = [self.folder / name for name in ("qmp", "qtest", "serial")]
         for path in sockets:
             path.unlink(missing_ok=True)
+        first, second = self.board.ports
         command = ["setpriv", "--pdeathsig", "KILL",
-                   "qemu-system-aarch64", *MACHINE, "-accel", "tcg", "-m", str(self.memory), "-dtb", self.firmware.tree,
-                   "-drive", f"if=pflash,format=raw,unit=0,readonly=on,file={self.firmware.loader}",
-                   "-drive", f"if=pflash,format=raw,unit=1,file={self.firmware.environment}",
-                   *self.disk.options(), "-device", "virtio-rng-pci", "-device", "qemu-xhci,id=usb",
-                   "-netdev", f"tap,id=team,fd={team0}", "-device", f"{PORT},id=team0,netdev=team,addr=5",
-                   "-netdev", f"tap,id=darpa,fd={darpa0}", "-device", f"{PORT},id=darpa0,netdev=darpa,addr=6",
+                   self.board.emulator, *self.soldered, "-accel", "tcg", "-m", str(self.memory),
+                   *self.disk.options(self.board.card), "-device", "virtio-rng-pci", "-device", "qemu-xhci,id=usb",
+                   "-device", "i6300esb,addr=7", "-action", "watchdog=reset",
+                   "-netdev", f"tap,id=team,fd={team0}", "-device", f"{first},id=team0,netdev=team",
+                   "-netdev", f"tap,id=darpa,fd={darpa0}", "-device", f"{second},id=darpa0,netdev=darpa",
                    "-qmp", f"unix:{sockets[0]},server=on,wait=off",
                    "-qtest", f"unix:{sockets[1]},server=on,wait=off", "-qtest-log", "/dev/null",
                    "-chardev", f"socket,id=serial,path={sockets[2]},server=on,wait=on", "-serial", "chardev:serial"]
-        if self.watchdog:
-            command += ["-device", "i6300esb,addr=7", "-action", "watchdog=reset"]
         with open(self.folder / "qemu.log", "ab") as said:
             self.process = self.network.start(self.network.box, *command, stdout=said, stderr=said,
                                               pass_fds=(team0, darpa0))
         self.console = console.Console(sockets[2], self.log)
         self.monitor = qmp.Monitor(sockets[0])
-        self.pins = qmp.Pins(sockets[1], self.monitor.gpio_chip())
+        if self.board.has_panel:
+            self.pins = qmp.Pins(sockets[1], self.monitor.gpio_chip())
 
     def cut_power(self, chance=None):
         """Off, this very moment; with `chance` the disk loses what it may. How many writes that were."""
         self.process.kill()
         self.process.wait()
-
         for end in (self.pins, self.monitor, self.console):
-            end.close()
+            if end is not None:
+                end.close()
         self.process = None
         return self.disk.is_off(chance)
 
@@ -121,14 +89,14 @@ class Machine(programs.Page):
         """The cable of team0 or darpa0, in or out."""
         self.monitor.ask("set_link", name=port, up=plugged)
 
-    def plug_stick(self, image):
+    def plug_stick(self, image, name="stick"):
         """A USB stick that cannot be written on, of an image of its bytes."""
         file = {"driver": "file", "filename": str(image), "read-only": True}
-        self.monitor.ask("blockdev-add", **{"driver": "raw", "node-name": "stick", "read-only": True, "file": file})
-        self.monitor.ask("device_add", driver="usb-storage", bus="usb.0", id="stick", drive="stick")
+        self.monitor.ask("blockdev-add", **{"driver": "raw", "node-name": name, "read-only": True, "file": file})
+        self.monitor.ask("device_add", driver="usb-storage", bus="usb.0", id=name, drive=name)
 
-    def pull_stick(self):
-        self.monitor.ask("device_del", id="stick")
+    def pull_stick(self, name="stick"):
+        self.monitor.ask("device_del", id=name)
 
     # What a client on the team's side sees.
 
@@ -170,8 +138,8 @@ class Machine(programs.Page):
             if not self.is_on():
                 raise AssertionError(f"QEMU has ended while waiting for {what}:\n"
                                      + (self.folder / "qemu.log").read_text(errors="replace"))
-            if "You are in emergency mode" in self.console.said():
-                raise AssertionError(f"systemd has given up while waiting for {what}")
+            if GAVE_UP in self.console.said():
+                raise AssertionError(f"systemd has given up while waiting for {what}:\n{self.said_last()}")
             try:
                 return condition()
             except (OSError, http.client.HTTPException):
@@ -186,14 +154,3 @@ class Machine(programs.Page):
             return self.ask("GET /adit/session", token=None)[0] == 200
         except (OSError, ValueError):
             return False
-
-
-def missing():
-    """What keeps this machine from starting the other, in words; or ""."""
-    wanted = ["qemu-system-aarch64", "qemu-img", "mkenvimage", "fdtput", "mcopy", "mtype", "setpriv", "dpkg-deb"]
-    absent = [program for program in wanted if not shutil.which(program)]
-    if absent:
-        return f"not on this machine: {', '.join(absent)}; toolchain/setup test installs it"
-    if not any(IMAGES.glob("adit-qemu-virt-*.img")):
-        return "there is no image: toolchain/image qemu-virt makes it"
-    return "" if os.path.exists("/dev/net/tun") else "no taps here: /dev/net/tun is missing"

@@ -8,6 +8,7 @@ import tempfile
 import time
 import unittest
 
+import boards
 import cables
 import disk
 import eavesdropper
@@ -32,8 +33,12 @@ FIGURES = pathlib.Path(os.environ.get("ADIT_FIGURES", "boot-figures.txt"))
 
 def setUpModule():  # of each module that imports it
     hosts.needs_namespaces()
-    if machine.missing():
-        raise unittest.SkipTest(machine.missing())
+    skip_without(boards.QEMU_VIRT)
+
+
+def skip_without(board):
+    if board.missing():
+        raise unittest.SkipTest(board.missing())
 
 
 def load_tests(_, tests, __):
@@ -55,11 +60,11 @@ class Stage:
     """`set_up`: whether the card brings settings, addresses and tokens, as from a card reader. `post_options`: None for
     no Command Post."""
 
-    def __init__(self, set_up=True, post_options=("--rate", "0"), **overrides):
+    def __init__(self, set_up=True, post_options=("--rate", "0"), board=boards.QEMU_VIRT, **overrides):
         self.temporary = tempfile.TemporaryDirectory(prefix="adit-boot-")
         self.folder = pathlib.Path(self.temporary.name)
         self.set_up, self.post_options, self.overrides = set_up, post_options, {**SETTINGS, **overrides}
-        self.network = cables.Cables()
+        self.board, self.network = board, cables.Cables()
         self.post = self.box = self.ear = None
 
     def __enter__(self):
@@ -69,15 +74,15 @@ class Stage:
             self.ear = eavesdropper.Eavesdropper(self.network, self.network.post)
             if self.post_options is not None:
                 self.post = programs.CommandPost(self.network, self.folder, *self.post_options)
-            self.disk = disk.Disk(self.folder, machine.image())
-            self.disk.put("adit/boot.env", "adit_cmdline=adit.console\n")
+            self.disk = disk.Disk(self.folder, self.board.image())
+            self.disk.put("adit/boot.env", f"adit_cmdline={self.board.words}\n")
             if self.set_up:
                 self.disk.put("adit/settings.json", json.dumps(programs.settings(self.network, self.overrides)))
                 self.disk.put("adit/network.json", json.dumps(NUMBERS))
                 self.disk.make_folder("adit/secrets")
                 for token in secrets.iterdir():
                     self.disk.put(f"adit/secrets/{token.name}", token.read_text())
-            self.box = machine.Machine(self.network, self.folder, self.disk)
+            self.box = machine.Machine(self.network, self.folder, self.disk, self.board)
         except BaseException:
             self.__exit__()
             raise

@@ -4,6 +4,7 @@ import time
 import unittest
 
 import leds
+import machine
 from stage import Stage, Story, load_tests, note, setUpModule  # unittest looks for them here
 
 PID = "systemctl show -p MainPID --value adit.service"
@@ -69,6 +70,12 @@ class Recovery(Story):
         self.box.console.ask("echo 0 > /proc/sys/kernel/panic")  # so that the panic itself starts nothing
         self.box.console.type("echo c > /proc/sysrq-trigger")
         self.restarts("a kernel that hangs", 150)
+
+    def test_a_start_that_systemd_gives_up_is_tried_again(self):
+        self.box.cut_power()
+        self.stage.disk.put("adit/boot.env", "adit_cmdline=adit.console systemd.unit=emergency.target\n")
+        self.box.power_on()
+        self.box.console.wait_for(machine.GAVE_UP.encode() + rb".*Starting kernel", 120)
 
     def restarts(self, why, within):
         began, heard = time.monotonic(), len(self.box.console.said().encode())

@@ -1,0 +1,74 @@
+"""A PC, which GRUB starts: an update is installed, GRUB counts a start of it, and RAUC marks good what GRUB counted."""
+
+import pathlib
+import tempfile
+import time
+import unittest
+
+import boards
+import hosts
+import stage
+from bundles import bundle
+from stage import Stage, Story, load_tests, note  # unittest looks for them here
+from updating import Updating
+
+NEWER = "7.0.0"
+NOTICE = "/run/adit-notices/disks"
+
+
+def setUpModule():
+    hosts.needs_namespaces()
+    stage.skip_without(boards.PC)
+
+
+class Pc(Updating, Story):
+    @classmethod
+    def setUpClass(cls):
+        cls.tell(Stage(board=boards.PC, post_options=None))
+        cls.folder = pathlib.Path(cls.enterClassContext(tempfile.TemporaryDirectory(prefix="adit-bundles-")))
+        cls.newer = bundle(cls.folder, NEWER, board=boards.PC.name, source=boards.PC)
+
+    def counts(self):
+        """What GRUB keeps: {"ORDER": "A B", "A_TRY": "1", ...}."""
+        said = self.box.console.ask("grub-editenv /dev/disk/by-partlabel/adit-env list")
+        return dict(line.split("=", 1) for line in said.splitlines() if "=" in line)
+
+    def test_it_answers_on_the_first_port_of_two(self):
+        self.stage.start()
+        note("PC: first start, from power to the first answer on team0", self.box.start_took())
+        self.box.console.wait_for_shell()
+        self.assertEqual(self.box.console.ask("ls /sys/class/net").split(), ["darpa0", "lo", "team0"])
+
+    def test_no_update_is_installed_while_two_disks_hold_an_adit(self):
+        self.box.plug_stick(boards.PC.image())
+        self.box.wait_until(lambda: self.box.console.run(f"cat {NOTICE}")[0] == 0, "it to be noticed", 30)
+        self.box.wait_until(lambda: self.stands()["managed"], "adit-update to have told what runs", 60)
+        self.send(self.newer)
+        self.settled("failed", NEWER, within=60)
+        self.assertIn("2 disks hold an Adit", self.box.console.ask("journalctl -b -u rauc --no-pager"))
+        self.box.pull_stick()
+        self.box.wait_until(lambda: self.box.console.run(f"ls {NOTICE}")[0] != 0, "it to be gone", 30)
+
+    def test_an_update_is_installed(self):
+        began = time.monotonic()
+        self.send(self.newer)
+        self.settled("installed", NEWER, within=120)
+        note(f"PC: update of {self.newer.stat().st_size / 1e6:.0f} MB", f"{time.monotonic() - began:.0f} s")
+        counts = self.counts()
+        self.assertEqual((counts["ORDER"], counts["B_OK"], counts["B_TRY"]), ("B A", "1", "0"))
+
+    def test_grub_counts_a_start_of_it(self):
+        self.restart()
+        self.box.console.wait_for(rb"Adit: slot b", 60)
+        self.box.wait_until(lambda: self.stands()["slot"] == "B", "slot B to answer", 120)
+        self.box.wait_until(lambda: self.box.console.run("true", within=2)[0] == 0, "a shell", 30)
+        self.assertEqual(self.counts()["B_TRY"], "1")
+
+    def test_and_rauc_marks_it_good(self):
+        self.settled("good", NEWER, within=150)
+        self.assertEqual((self.stands()["version"], self.stands()["slot"]), (NEWER, "B"))
+        self.assertEqual(self.counts()["B_TRY"], "0")
+
+
+if __name__ == "__main__":
+    unittest.main()

@@ -1,0 +1,165 @@
+#!/usr/bin/env python3
+"""Scripts of the recipe and of the box, called with files and folders that are made here: GRUB's environment, two disks, toolchain/image's
+options."""
+import os
+import shutil
+import subprocess
+import tempfile
+import unittest
+from pathlib import Path
+
+from recipe import TOP
+
+SECTOR = 512
+FIRST = b"# GRUB Environment Block\n"
+DEFAULTS = {"ORDER": "A B", "A_OK": "1", "B_OK": "1", "A_TRY": "0", "B_TRY": "0"}
+MACHINE_ID = b"0123456789abcdef0123456789abcdef\n"
+
+
+class Scripts(unittest.TestCase):
+    def setUp(self):
+        self.folder = Path(self.enterContext(tempfile.TemporaryDirectory()))
+
+    def call(self, *command, **environment):
+        return subprocess.run([*map(str, command)], capture_output=True, text=True, env=os.environ | environment, cwd=self.folder)
+
+
+class GrubsEnvironment(Scripts):
+    def setUp(self):
+        super().setUp()
+        self.partition = self.folder / "adit-env"
+        self.write(b"\0" * SECTOR)
+
+    def write(self, sector):
+        """Between a tar's header and what the initrd keeps there."""
+        self.before, self.behind = b"grubenv".ljust(SECTOR, b"\0"), bytes(2048 + 512) + MACHINE_ID
+        self.partition.write_bytes(self.before + sector + self.behind)
+
+    def edit(self, *words):
+        return self.call(TOP / "rootfs/boot/grub-editenv", self.partition, *words)
+
+    def set(self, *words):
+        done = self.edit("set", *words)
+        self.assertEqual((done.returncode, done.stderr), (0, ""))
+
+    def listed(self):
+        done = self.edit("list")
+        self.assertEqual(done.returncode, 0, done.stderr)
+        return dict(line.split("=", 1) for line in done.stdout.splitlines())
+
+    def test_what_is_set_is_listed_and_the_rest_is_kept(self):
+        self.set("A_TRY=2")
+        self.set("A_TRY=0", "ORDER=B A")
+        self.assertEqual(self.listed(), {**DEFAULTS, "ORDER": "B A"})
+
+    def test_it_writes_a_sector_and_not_a_byte_beside_it(self):
+        self.set("B_TRY=3")
+        written = self.partition.read_bytes()
+        self.assertEqual((written[:SECTOR], written[2 * SECTOR:]), (self.before, self.behind))
+        self.assertTrue(written[SECTOR:].startswith(FIRST))
+        self.assertEqual(written[SECTOR:2 * SECTOR].rstrip(b"#")[-1:], b"\n")
+
+    @unittest.skipUnless(shutil.which("grub-editenv"), "no grub-editenv here")
+    def test_grubs_own_program_reads_it(self):
+        self.set("ORDER=B A", "B_TRY=1")
+        alone = self.folder / "grubenv"
+        alone.write_bytes(self.partition.read_bytes()[SECTOR:2 * SECTOR])
+        said = self.call("grub-editenv", alone, "list").stdout
+        self.assertEqual(dict(line.split("=", 1) for line in said.splitlines()), {**DEFAULTS, "ORDER": "B A", "B_TRY": "1"})
+
+    def test_one_that_cannot_be_read_is_made_anew_with_what_grub_goes_by(self):
+        for damaged in bytes(SECTOR), b"\xff" * SECTOR, b"#" * SECTOR, FIRST[:9] + bytes(SECTOR - 9):
+            with self.subTest(damaged[:12]):
+                self.write(damaged)
+                self.assertEqual(self.listed(), DEFAULTS)
+                self.set("A_TRY=1")
+                self.assertEqual(self.listed(), {**DEFAULTS, "A_TRY": "1"})
+
+    def test_what_it_does_not_understand_changes_nothing(self):
+        self.set("A_TRY=1")
+        before = self.partition.read_bytes()
+        for words in (["set", "A_TRY"], ["set", "A_TRY=$x"], ["set", "A_TRY=1\n2"], ["set", "A_TRY=2", "=1"], ["set", "A=1=2"],
+                      ["unset", "A_TRY"], ["set", "X=" + "x" * 500]):
+            with self.subTest(words):
+                done = self.edit(*words)
+                self.assertEqual(done.returncode, 1)
+                self.assertTrue(done.stderr.startswith("grub-editenv: "), done.stderr)
+                self.assertEqual(self.partition.read_bytes(), before)
+
+    def test_a_partition_that_is_not_there_is_an_error_and_is_not_made(self):
+        self.partition.unlink()
+        for words in ["list"], ["set", "A_TRY=1"]:
+            self.assertIn("there is no", self.edit(*words).stderr)
+        self.assertFalse(self.partition.exists())
+
+
+class TwoDisks(Scripts):
+    def held_by(self, *disks):
+        sysfs, notice = self.folder / "sys", self.folder / "notices/disks"
+        shutil.rmtree(sysfs, ignore_errors=True)
+        for disk in (*disks, "other"):
+            name = "adit-env" if disk != "other" else "somebodys"
+            (sysfs / "class/block" / f"{disk}1").mkdir(parents=True)
+            (sysfs / "class/block" / f"{disk}1/uevent").write_text(f"DEVTYPE=partition\nPARTNAME={name}\n")
+        done = self.call(TOP / "rootfs/overlay/usr/lib/adit/disks", sysfs, notice)
+        return done.returncode, notice.read_text() if notice.exists() else None
+
+    def test_two_that_hold_an_adit_are_told_until_one_is_gone(self):
+        self.assertEqual(self.held_by("sda"), (0, None))
+        status, notice = self.held_by("sda", "sdb")
+        self.assertEqual(status, 1)
+        self.assertRegex(notice, "^2 disks hold an Adit: .*\n$")
+        self.assertEqual(self.held_by("sda"), (0, None))
+
+    def test_rauc_asks_before_it_installs_and_udev_as_disks_come_and_go(self):
+        self.assertIn("\npre-install=/usr/lib/adit/disks\n", (TOP / "rootfs/rauc.conf.in").read_text())
+        self.assertIn('RUN+="/usr/lib/adit/disks"', (TOP / "rootfs/overlay/usr/lib/udev/rules.d/70-adit-disks.rules").read_text())
+
+
+class Options(Scripts):
+    """Of toolchain/image, in a tree whose recipe writes down what it is told."""
+
+    def setUp(self):
+        super().setUp()
+        for path in "board/one", "toolchain", "rootfs", "programs":
+            (self.folder / path).mkdir(parents=True)
+        for path in "toolchain/image", "toolchain/image-key":
+            shutil.copy(TOP / path, self.folder / path)
+        (self.folder / "board/one/board.conf").write_text("architecture=amd64 kernel_package=linux boot_packages=()\n")
+        (self.folder / "CMakeLists.txt").write_text("project(adit VERSION 0.1.0)\n")
+        (self.folder / "rootfs/packages").touch()
+        (self.folder / "programs/CMakeCache.txt").touch()
+        for path in "toolchain/setup", "rootfs/debian", "rootfs/disk", "rootfs/bundle":
+            self.program(path, "")
+        self.program("rootfs/slot", 'echo "$2 $ADIT_KEYRING" >told; touch "$5/parts.spdx.json"\n')
+
+    def program(self, path, does):
+        (self.folder / path).write_text("#!/bin/sh\n" + does)
+        (self.folder / path).chmod(0o755)
+
+    def told(self, *options, **environment):
+        done = self.call(self.folder / "toolchain/image", *options, "--programs", "programs", "one", **environment)
+        self.assertEqual(done.returncode, 0, done.stderr)
+        return (self.folder / "told").read_text().split()
+
+    def test_the_version_is_one_that_a_box_can_compare(self):
+        for version in "1.2.3", "0.0.0", "1.2.3-rc.1", "1.2.3-0a", "1.2.3--", "1.2.3+5.01", "1.2.3-rc.1+b-2":
+            with self.subTest(version):
+                self.assertEqual(self.told("--version", version)[0], version)
+        for version in ("", "1.2", "1.2.3~rc1", "1.2.3.4", "01.2.3", "1.2.3+a+b", "1.2.3-01", "1.2.3-", "1.2.3-a..b", "v1.2.3", "1.2.3-a_b",
+                        "1.2.3-" + "a" * 60):
+            with self.subTest(version):
+                done = self.call(self.folder / "toolchain/image", "--version", version, "one")
+                self.assertEqual(done.returncode, 2)
+                self.assertIn("--version wants", done.stderr)
+
+    def test_the_box_takes_updates_for_the_keyring_that_the_user_sets(self):
+        self.assertEqual(self.told(ADIT_KEYRING="both.pem", ADIT_SIGNING_CERT="one.pem")[1], "both.pem")
+
+    def test_or_else_for_the_certificate_that_updates_are_signed_for(self):
+        self.assertEqual(self.told(ADIT_KEYRING="", ADIT_SIGNING_CERT="one.pem")[1], "one.pem")
+        self.assertEqual(self.told(ADIT_KEYRING="", ADIT_SIGNING_CERT="")[1], "build/image/keys/cert.pem")
+
+
+if __name__ == "__main__":
+    unittest.main()

@@ -19,8 +19,6 @@ namespace {
 
 using host::Level;
 
-constexpr int kForAll = 0644;
-
 void refused(const char* file, const std::string& why) {
   host::log(Level::Warning, "refused what was asked for", {{"file", file}, {"why", why}});
 }
@@ -28,7 +26,11 @@ void refused(const char* file, const std::string& why) {
 }  // namespace
 
 Applier::Applier(loop::Loop& loop, const Options& options)
-    : loop_(loop), options_(options), files_(options), due_(loop.timer([this] { look(); })) {}
+    : loop_(loop),
+      options_(options),
+      files_(options),
+      file_(options.status + '/' + network::kStatusFile),
+      due_(loop.timer([this] { look(); })) {}
 
 std::expected<void, std::string> Applier::start() {
   const bool first = access((options_.status + '/' + network::kStatusFile).c_str(), F_OK) != 0;
@@ -116,10 +118,16 @@ void Applier::take_requests(bool drop) {
   }
 }
 
+/// Taken away once it is done: after a power cut before that it is done again.
 void Applier::take_forget() {
-  const auto text = taken(network::kForgetFile);
-  if (!text) return;
-  if (const auto forget = network::read_forget(*text); !forget) {
+  const auto text = folder_->read(network::kForgetFile);
+  if (text && !*text) return;
+  if (text) forget(**text);
+  taken(network::kForgetFile);
+}
+
+void Applier::forget(const std::string& text) {
+  if (const auto forget = network::read_forget(text); !forget) {
     return refused(network::kForgetFile, forget.error());
   }
   if (const auto forgotten = change_->forget(); !forgotten) {
@@ -144,7 +152,9 @@ void Applier::take_endpoints() {
 std::optional<std::string> Applier::taken(const char* name) {
   auto text = folder_->take(name);
   if (text) return std::move(*text);
-  host::log(Level::Warning, "refused what was asked for", {{"why", text.error()}});
+  is_stuck_ = is_stuck_ || text.error().stays;
+  host::log(text.error().stays ? Level::Error : Level::Warning, "refused what was asked for",
+            {{"why", text.error().why}});
   return std::nullopt;
 }
 
@@ -165,7 +175,7 @@ void Applier::answer_probe(const network::Probe& probe) {
   }
   if (const auto sought = settings::ipv4_of(probe.sought)) probed.found_on = side_of(*sought);
   const auto written =
-      host::write_file(options_.status + '/' + network::kProbedFile, network::write(probed), kForAll);
+      host::write_file(options_.status + '/' + network::kProbedFile, network::write(probed), host::kForAll);
   if (!written) host::log(Level::Error, "an answer cannot be given", {{"why", written.error()}});
 }
 
@@ -181,14 +191,8 @@ std::string Applier::side_of(std::uint32_t address) const {
 /// The status, where it is another than was told last.
 bool Applier::tell() {
   const network::Status& status = change_->status();
-  std::string text = network::write(status);
-  if (text == told_) return true;
-  const auto written = host::write_file(options_.status + '/' + network::kStatusFile, text, kForAll);
-  if (!written) {
-    host::log(Level::Error, "the status cannot be told", {{"why", written.error()}});
-    return false;
-  }
-  told_ = std::move(text);
+  const auto told = file_.tell(network::write(status));
+  if (!told || !*told) return told.has_value();
   if (status.pending) {
     host::log(Level::Notice, "a change waits to be confirmed");
   } else if (status.ended != network::Ended::NotYet) {

@@ -5,6 +5,7 @@
 
 #include "applier/networkd_files.hpp"
 #include "applier/options.hpp"
+#include "applier/status_file.hpp"
 #include "host/untrusted_folder.hpp"
 #include "loop/file_descriptor.hpp"
 #include "loop/loop.hpp"
@@ -25,11 +26,15 @@ class Applier {
   /// A pending change is taken back, and the loop ends.
   void stop();
 
+  /// Something that was asked for could not be taken away: to be started again at once would find it again.
+  bool is_stuck() const { return is_stuck_; }
+
  private:
   void look();
   void take_requests(bool drop);
   void take_endpoints();
   void take_forget();
+  void forget(const std::string& text);
   void after();
   bool tell();
   void answer_probe(const network::Probe& probe);
@@ -40,11 +45,12 @@ class Applier {
   loop::Loop& loop_;
   const Options& options_;
   NetworkdFiles files_;
+  StatusFile file_;
   std::optional<network::Change> change_;
   std::optional<host::UntrustedFolder> folder_;
   loop::FileDescriptor notices_;
   loop::Source noticed_, due_;
-  std::string told_;
+  bool is_stuck_ = false;
 };
 
 }  // namespace adit::applier

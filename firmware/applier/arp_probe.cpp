@@ -11,11 +11,11 @@
 #include <algorithm>
 #include <cerrno>
 #include <cstring>
-#include <filesystem>
 #include <utility>
 
 #include "applier/arp.hpp"
 #include "host/files.hpp"
+#include "host/service.hpp"
 #include "loop/file_descriptor.hpp"
 
 namespace adit::applier {
@@ -60,10 +60,10 @@ std::expected<Listener, std::string> listen_on(const std::string& interface) {
 
 /// The interface of this machine that has the MAC address, or "".
 std::string own_interface(const std::string& mac) {
-  std::error_code error;
-  for (const auto& entry : std::filesystem::directory_iterator("/sys/class/net", error)) {
-    const auto file = host::slurp(entry.path().string() + "/address");
-    if (file && file->text.starts_with(mac)) return entry.path().filename().string();
+  const std::string folder = "/sys/class/net";
+  for (const std::string& name : host::names_in(folder).value_or(std::vector<std::string>())) {
+    const auto file = host::slurp(folder + '/' + name + "/address");
+    if (file && file->text.starts_with(mac)) return name;
   }
   return "";
 }

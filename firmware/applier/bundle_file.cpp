@@ -50,8 +50,9 @@ std::expected<BundleFile, std::string> BundleFile::take(const host::UntrustedFol
                                                         const std::string& name) {
   const std::string path = folder.path_by_descriptor() + '/' + name;
   auto file = open_plain(path, name);
-  if (unlink(path.c_str()) != 0 && errno == EISDIR) rmdir(path.c_str());
+  const auto gone = folder.remove(name);
   if (!file) return std::unexpected(file.error());
+  if (!gone) return std::unexpected(gone.error());
   if (auto ours = make_ours(*file, name); !ours) return std::unexpected(ours.error());
   return BundleFile(std::move(*file));
 }

@@ -12,7 +12,8 @@ namespace adit::applier {
 class BundleFile {
  public:
   /// Takes the file of that name out of a folder in which somebody else writes: its name is gone, it belongs
-  /// to this user, and nobody has it open for writing. An error says what it is, and it is gone all the same.
+  /// to this user, and nobody has it open for writing. An error says what it is; it is gone all the same,
+  /// where it can be taken away.
   static std::expected<BundleFile, std::string> take(const host::UntrustedFolder& folder,
                                                      const std::string& name);
   /// Opens one where nobody writes: a file system that is mounted read-only.

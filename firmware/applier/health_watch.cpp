@@ -32,15 +32,16 @@ update::Ready ready(const std::string& systemctl) {
 
 std::expected<void, std::string> restart(const std::string& systemctl) {
   host::log(Level::Error, "this slot did not come up healthy in time: the machine is started anew");
-  const auto said = host::output_of({systemctl, "reboot"}, kAnswer);
-  if (said.trouble.empty()) return {};
-  return std::unexpected("the machine cannot be started anew: " + said.trouble);
+  auto restarted = host::run_command({systemctl, "reboot"}, kAnswer);
+  if (restarted) return restarted;
+  return std::unexpected("the machine cannot be started anew: " + restarted.error());
 }
 
 /// adit-update tells everybody.
 std::expected<void, std::string> pass_trial(const UpdateOptions& options, update::Story story) {
   host::log(Level::Notice, "the update is healthy", {{"version", story.version}, {"slot", story.slot}});
   story.stage = update::Stage::Good;
+  story.why.clear();  // of a story that adit-update has not settled yet
   if (!save_story(options.state, story)) return std::unexpected("the trial cannot be ended");
   host::output_of({options.systemctl, "start", "--no-block", "adit-update.service"}, kAnswer);
   return {};

@@ -26,7 +26,6 @@ using host::Level;
 using host::UntrustedFolder;
 using Done = std::expected<void, std::string>;
 
-constexpr int kOursAlone = 0600, kForAll = 0644;
 constexpr mode_t kFolderOfOurs = 0700;
 
 /// Gives what root made to whom the folder belongs: systemd looks at no more than the folder itself before it
@@ -43,7 +42,7 @@ Done give_to_owner(const UntrustedFolder& folder, const std::string& path) {
 /// A file of aditd's. The folder is aditd's too, so its path is not trusted.
 Done put(const UntrustedFolder& folder, const std::string& name, const std::string& text) {
   const std::string path = folder.path_by_descriptor() + '/' + name;
-  if (auto written = host::write_file(path, text, kOursAlone); !written) return written;
+  if (auto written = host::write_file(path, text, host::kOursAlone); !written) return written;
   return give_to_owner(folder, path);
 }
 
@@ -60,17 +59,24 @@ std::expected<UntrustedFolder, std::string> open_state(const std::string& path) 
   return UntrustedFolder::open(path);
 }
 
-std::string said_of(const Found& found) {
+/// `lasting`: the state is there at the next start, too.
+std::string said_of(const Found& found, bool lasting) {
   std::string text;
   if (!found.errors.empty()) {
     text = "Adit took nothing. Set right what is named here, and start it again.\n";
     for (const std::string& error : found.errors) text += error + '\n';
   } else {
-    if (!found.brought.nothing()) text = "Adit took what was here:\n";
+    const char* of_token = lasting ? ": taken, and removed from here\n" : ": taken\n";
+    if (!found.brought.nothing()) {
+      text = lasting
+                 ? "Adit took what was here:\n"
+                 : "Adit cannot keep what it takes, for its state partition is unusable: it takes what is "
+                   "here at each start.\n";
+    }
     if (found.brought.settings) text += icd::sentence("adit/", kCardSettings, ": taken\n");
     if (found.brought.numbers) text += icd::sentence("adit/", kCardNetwork, ": taken\n");
     for (const auto& [file, token] : found.brought.tokens) {
-      text += icd::sentence("adit/", kCardSecrets, "/", file, ": taken, and removed from here\n");
+      text += icd::sentence("adit/", kCardSecrets, "/", file, of_token);
     }
   }
   for (const std::string& name : found.left_alone) {
@@ -84,12 +90,14 @@ std::string said_of(const Found& found) {
 Done tell(const UntrustedFolder& card, const std::string& text) {
   const auto told = card.read(kTakenText);
   if (told && *told == text) return {};
-  return host::write_file(card.path_by_descriptor() + '/' + kTakenText, text, kOursAlone);
+  return host::write_file(card.path_by_descriptor() + '/' + kTakenText, text, host::kOursAlone);
 }
 
 void rename_taken(const UntrustedFolder& folder, const std::string& name) {
-  const std::string path = folder.path_by_descriptor() + '/' + name;
-  if (rename(path.c_str(), (path + kTakenEnding).c_str()) == 0) return;
+  const std::string path = folder.path_by_descriptor() + '/' + name, taken = path + kTakenEnding;
+  if (rename(path.c_str(), taken.c_str()) == 0) return;
+  // A folder of that name: what cannot be renamed would be taken again at each start.
+  if (folder.remove(name + kTakenEnding) && rename(path.c_str(), taken.c_str()) == 0) return;
   host::log(Level::Warning, "a file that was taken cannot be renamed",
             {{"file", name}, {"why", std::strerror(errno)}});
 }
@@ -129,7 +137,8 @@ Done Import::run() {
   }
   wipe_taken(*card);
   const Found found = read_card(*card, in_force());
-  const std::string said = said_of(found);
+  const bool lasting = access(options_.in_memory.c_str(), F_OK) != 0;
+  const std::string said = said_of(found, lasting);
   if (said.empty()) return {};
   for (const std::string& error : found.errors)
     host::log(Level::Error, "refused what was brought", {{"why", error}});
@@ -142,7 +151,7 @@ Done Import::run() {
     tell(*card, "Adit could not take what is here: " + saved.error() + '\n');
     return saved;
   }
-  leave(*card, found.brought);
+  if (lasting) leave(*card, found.brought);
   host::log(Level::Notice, "took what was brought",
             {{"settings", found.brought.settings ? "yes" : "no"},
              {"network", found.brought.numbers ? "yes" : "no"},
@@ -159,7 +168,8 @@ settings::Settings Import::in_force() const {
     const auto given = host::slurp(options_.given);
     text = given ? given->text : "";
   }
-  return settings::parse(*text).value_or(settings::Settings{});
+  auto saved = settings::parse_saved(*text);  // as aditd does: perhaps of a later Adit
+  return saved ? std::move(saved->settings) : settings::Settings{};
 }
 
 Done Import::save(const Brought& brought) const {
@@ -170,7 +180,7 @@ Done Import::save(const Brought& brought) const {
     std::error_code error;
     std::filesystem::create_directories(options_.network, error);
     const std::string file = options_.network + '/' + network::kConfirmedFile;
-    if (auto saved = host::write_file(file, network::write_kept(*brought.numbers), kForAll); !saved)
+    if (auto saved = host::write_file(file, network::write_kept(*brought.numbers), host::kForAll); !saved)
       return saved;
   }
   return brought.settings ? save_settings(*state, *brought.settings) : Done{};

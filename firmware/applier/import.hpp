@@ -11,10 +11,11 @@ namespace adit::applier {
 
 /// adit-import's command line.
 struct ImportOptions {
-  std::string card = "/boot/adit";                // what was put there
-  std::string state = "/var/lib/private/adit";    // aditd's
-  std::string network = "/var/lib/adit-network";  // adit-network's
-  std::string given = "/etc/adit/settings.json";  // the settings of the image
+  std::string card = "/boot/adit";                    // what was put there
+  std::string state = "/var/lib/private/adit";        // aditd's
+  std::string network = "/var/lib/adit-network";      // adit-network's
+  std::string given = "/etc/adit/settings.json";      // the settings of the image
+  std::string in_memory = "/run/adit-notices/state";  // is there where the state is lost at the next start
   bool help = false, version = false;
 };
 
@@ -27,8 +28,8 @@ std::expected<ImportOptions, std::string> parse_import_options(std::span<char* c
 /// what became of it, in taken.txt.
 ///
 /// Tokens are wiped from the card and other files renamed only once all is in the state: a power cut before
-/// that finds the same files again, and one after it finds fewer. Runs while neither aditd nor adit-network
-/// does.
+/// that finds the same files again, and one after it finds fewer. Where the state is in memory alone they
+/// stay on the card, and are taken at each start. Runs while neither aditd nor adit-network does.
 class Import {
  public:
   /// `options` outlives this.

@@ -9,7 +9,8 @@ constexpr host::Flag<ImportOptions> kFlags[] = {{"--help", &ImportOptions::help}
 constexpr host::Value<ImportOptions> kValues[] = {{"--card", &ImportOptions::card},
                                                   {"--state", &ImportOptions::state},
                                                   {"--network", &ImportOptions::network},
-                                                  {"--given", &ImportOptions::given}};
+                                                  {"--given", &ImportOptions::given},
+                                                  {"--memory", &ImportOptions::in_memory}};
 
 }  // namespace
 
@@ -26,6 +27,9 @@ const char* const kImportUsage =
     "  --state DIR    aditd's state (/var/lib/private/adit)\n"
     "  --network DIR  adit-network's state (/var/lib/adit-network)\n"
     "  --given FILE   the settings that count until others are saved (/etc/adit/settings.json)\n"
+    "  --memory FILE  where it is there, the state is lost at the next start, and what is taken stays on the "
+    "card\n"
+    "                 (/run/adit-notices/state)\n"
     "  --version      prints the version\n"
     "  --help         prints this\n"
     "\n"

@@ -28,7 +28,7 @@ int run(const adit::applier::Options& options) {
     return 1;
   }
   loop.run();
-  return 0;
+  return applier.is_stuck() ? 1 : 0;
 }
 
 }  // namespace

@@ -7,17 +7,15 @@
 #include <utility>
 #include <vector>
 
-#include "host/command.hpp"
 #include "host/files.hpp"
 #include "host/log.hpp"
+#include "host/output.hpp"
 #include "host/service.hpp"
 #include "icd/sentence.hpp"
 #include "network/networkd.hpp"
 
 namespace adit::applier {
 namespace {
-
-constexpr int kForAll = 0644;
 
 /// "" where it cannot be read.
 std::string text_of(const std::string& path) {
@@ -139,7 +137,7 @@ std::expected<void, std::string> NetworkdFiles::apply(const network::Numbers& nu
   }
   tried_ = numbers;
   for (const Place& place : changes) {
-    if (auto written = host::write_file(place.tried, place.text, kForAll); !written) return written;
+    if (auto written = host::write_file(place.tried, place.text, host::kForAll); !written) return written;
   }
   return changes.empty() ? std::expected<void, std::string>{} : reload();
 }
@@ -167,7 +165,8 @@ std::expected<void, std::string> NetworkdFiles::check_unused(const Place& place)
 /// What was tried stays where it is until the next start, so that networkd has nothing to do anew. Once
 /// confirmed.json is written, the change is kept, whatever happens next: settle() does the rest.
 std::expected<void, std::string> NetworkdFiles::keep(const network::Numbers& numbers) {
-  if (auto written = host::write_file(confirmed_file(), network::write_kept(numbers), kForAll); !written)
+  if (auto written = host::write_file(confirmed_file(), network::write_kept(numbers), host::kForAll);
+      !written)
     return written;
   kept_ = numbers;
   tried_.reset();
@@ -188,7 +187,7 @@ std::expected<void, std::string> NetworkdFiles::take_back() {
 /// Where the box came with no addresses, networkd has none of ours.
 std::expected<std::optional<network::Numbers>, std::string> NetworkdFiles::forget() {
   for (const std::string& file : {confirmed_file(), endpoints_file()}) {
-    if (unlink(file.c_str()) != 0 && errno != ENOENT) return std::unexpected(host::trouble(file, errno));
+    if (!host::remove_file(file)) return std::unexpected(host::trouble(file, errno));
   }
   endpoints_ = {};
   tried_.reset();
@@ -205,7 +204,8 @@ std::expected<std::optional<network::Numbers>, std::string> NetworkdFiles::forge
 
 std::expected<void, std::string> NetworkdFiles::lead_to(const network::Endpoints& endpoints) {
   if (endpoints == endpoints_) return {};
-  if (auto kept = host::write_file(endpoints_file(), network::write(endpoints), kForAll); !kept) return kept;
+  if (auto kept = host::write_file(endpoints_file(), network::write(endpoints), host::kForAll); !kept)
+    return kept;
   endpoints_ = endpoints;
   bool changed = false;
   if (kept_) {
@@ -216,7 +216,7 @@ std::expected<void, std::string> NetworkdFiles::lead_to(const network::Endpoints
   const auto& in_use = tried_ ? tried_ : kept_;
   for (const Place& place : in_use ? places(*in_use) : std::array<Place, 2>{}) {
     if (in_use_of(place) == place.text) continue;
-    if (auto written = host::write_file(place.tried, place.text, kForAll); !written) return written;
+    if (auto written = host::write_file(place.tried, place.text, host::kForAll); !written) return written;
     changed = true;
   }
   return changed ? reload() : std::expected<void, std::string>{};
@@ -226,7 +226,7 @@ std::expected<bool, std::string> NetworkdFiles::write_kept(const network::Number
   bool changed = false;
   for (const Place& place : places(numbers)) {
     if (text_of(place.kept) == place.text) continue;
-    if (const auto written = host::write_file(place.kept, place.text, kForAll); !written) {
+    if (const auto written = host::write_file(place.kept, place.text, host::kForAll); !written) {
       return std::unexpected(written.error());
     }
     changed = true;

@@ -45,8 +45,9 @@ const char* const kUsage =
     "  --version            prints the version\n"
     "  --help               prints this\n"
     "\n"
-    "Exits 0 once nothing is pending, 1 where it cannot do its work (and says why), 2 on a wrong command "
-    "line.\n";
+    "Exits 0 once nothing is pending, 1 where it cannot do its work, or what is asked for cannot be taken "
+    "away (and\n"
+    "says why), 2 on a wrong command line.\n";
 
 std::expected<Options, std::string> parse_options(std::span<char* const> arguments) {
   const auto options = host::read_command_line<Options>(arguments, kFlags, kValues);

@@ -1,5 +1,9 @@
 #include "applier/rauc.hpp"
 
+#include <chrono>
+#include <string_view>
+#include <thread>
+
 #include "host/output.hpp"
 
 namespace adit::applier {
@@ -8,6 +12,9 @@ namespace {
 /// A slot of a slow card is written in some minutes.
 constexpr std::chrono::minutes kInstall{20};
 constexpr std::chrono::seconds kAnswer{60};
+/// What its service says to whoever asks while it installs or marks; and how often it is asked again.
+constexpr std::string_view kBusy = "already processing a different method";
+constexpr std::chrono::seconds kAgain{1};
 
 std::string fault(const host::Output& said) {
   std::string fault = update::fault_in(said.out, said.err);
@@ -20,15 +27,21 @@ std::expected<std::string, std::string> ask(const std::vector<std::string>& word
   return std::move(said.out);
 }
 
-std::expected<void, std::string> mark(const std::string& command, const char* how) {
-  if (const auto said = ask({command, "status", how, "booted"}); !said) return std::unexpected(said.error());
+std::expected<void, std::string> mark(const std::string& command, const char* how, const char* slot) {
+  if (const auto said = ask({command, "status", how, slot}); !said) return std::unexpected(said.error());
   return {};
 }
 
 }  // namespace
 
 std::expected<update::Running, std::string> Rauc::status() const {
-  const auto said = ask({command_, "status", "--output-format=json"});
+  const auto until = std::chrono::steady_clock::now() + kInstall;
+  const std::vector<std::string> words = {command_, "status", "--output-format=json"};
+  auto said = ask(words);
+  while (!said && said.error().find(kBusy) != std::string::npos && std::chrono::steady_clock::now() < until) {
+    std::this_thread::sleep_for(kAgain);
+    said = ask(words);
+  }
   if (!said) return std::unexpected(said.error());
   return update::read_status(*said);
 }
@@ -51,11 +64,14 @@ std::expected<void, std::string> Rauc::install(const std::string& bundle,
 }
 
 std::expected<void, std::string> Rauc::mark_good() const {
-  return mark(command_, "mark-good");
+  return mark(command_, "mark-good", "booted");
 }
 
-std::expected<void, std::string> Rauc::mark_active() const {
-  return mark(command_, "mark-active");
+/// Marked bad, it is out of the boot loader's order, which would else try it three times more once no slot
+/// has a try left.
+std::expected<void, std::string> Rauc::leave_other() const {
+  if (auto first = mark(command_, "mark-active", "booted"); !first) return first;
+  return mark(command_, "mark-bad", "other");
 }
 
 }  // namespace adit::applier

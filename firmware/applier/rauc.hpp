@@ -14,7 +14,8 @@ class Rauc {
  public:
   explicit Rauc(std::string command) : command_(std::move(command)) {}
 
-  /// Which board and slot this is; not the version.
+  /// Which board and slot this is; not the version. Waits while RAUC is at work, for it says nothing
+  /// meanwhile.
   std::expected<update::Running, std::string> status() const;
   std::expected<update::Bundle, std::string> info(const std::string& bundle) const;
   /// Writes the slot that does not run, and has it started next. `progress`: per cent, as it goes.
@@ -22,8 +23,8 @@ class Rauc {
                                            const std::function<void(int)>& progress) const;
   /// The slot that runs came up healthy: its count of starts begins anew.
   std::expected<void, std::string> mark_good() const;
-  /// The slot that runs is to be started next, before the other.
-  std::expected<void, std::string> mark_active() const;
+  /// The slot that runs is to be started next, and the other one never, until it is written anew.
+  std::expected<void, std::string> leave_other() const;
 
  private:
   std::string command_;

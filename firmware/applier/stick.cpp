@@ -1,55 +1,72 @@
 #include "applier/stick.hpp"
 
 #include <algorithm>
-#include <filesystem>
 #include <vector>
 
 #include "applier/bundle_file.hpp"
 #include "host/log.hpp"
-#include "update/version.hpp"
+#include "host/service.hpp"
+#include "update/bundle_name.hpp"
 
 namespace adit::applier {
 namespace {
 
 /// Each is read once, which takes a while.
 constexpr std::size_t kMost = 8;
+/// Names at the top of a stick, of whatever.
+constexpr std::size_t kMostAtTop = 4096;
 
-std::vector<std::string> bundles_in(const std::string& folder) {
-  std::vector<std::string> names;
-  std::error_code none;
-  for (const auto& file : std::filesystem::directory_iterator(folder, none)) {
-    const std::string name = file.path().filename().string();
-    if (name.starts_with("adit-") && name.ends_with(".raucb")) names.push_back(name);
+struct Candidate {
+  std::string folder, name;
+  update::Promise promise;
+};
+
+/// Those that promise most of all that is on the sticks.
+std::vector<Candidate> candidates(const std::string& sticks, const std::string& compatible,
+                                  std::string& trouble) {
+  std::vector<Candidate> found;
+  const auto all = host::names_in(sticks);
+  if (!all) trouble = "the sticks: " + all.error();
+  for (const std::string& stick : all.value_or(std::vector<std::string>())) {
+    const std::string folder = sticks + '/' + stick;
+    const auto names = host::names_in(folder, kMostAtTop);
+    if (!names) trouble = host::escaped(stick) + ": " + names.error();
+    for (const std::string& name : names.value_or(std::vector<std::string>())) {
+      if (update::is_bundle_name(name)) found.push_back({folder, name, update::promise_of(name, compatible)});
+    }
   }
-  std::ranges::sort(names);
-  if (names.size() > kMost) names.resize(kMost);
-  return names;
+  std::ranges::sort(found, [](const Candidate& left, const Candidate& right) {
+    return left.promise == right.promise ? left.name < right.name : left.promise > right.promise;
+  });
+  if (found.size() > kMost) found.resize(kMost);
+  return found;
 }
 
 /// What could be installed, or why not.
-std::expected<update::Offer, std::string> judge(const std::string& folder, const std::string& name,
-                                                const Rauc& rauc, const update::Running& running) {
-  const auto file = BundleFile::open(folder + '/' + name);
+std::expected<update::Offer, std::string> judge(const Candidate& candidate, const Rauc& rauc,
+                                                const update::Running& running) {
+  if (!update::is_plain(candidate.name)) return std::unexpected("call it by letters of ASCII alone");
+  const auto file = BundleFile::open(candidate.folder + '/' + candidate.name);
   if (!file) return std::unexpected(file.error());
   const auto bundle = rauc.info(file->path());
   if (!bundle) return std::unexpected(bundle.error());
   if (std::string why = update::hindrance(*bundle, running, true); !why.empty())
     return std::unexpected(std::move(why));
-  return update::Offer{name, bundle->version};
+  return update::Offer{candidate.name, bundle->version};
 }
 
 }  // namespace
 
-OnStick look_at_stick(const std::string& folder, const Rauc& rauc, const update::Running& running) {
+OnStick look_at_sticks(const std::string& folder, const Rauc& rauc, const update::Running& running) {
   OnStick found;
-  for (const std::string& name : bundles_in(folder)) {
-    const auto offer = judge(folder, name, rauc, running);
-    const std::string shown = host::escaped(name);
+  for (const Candidate& candidate : candidates(folder, running.compatible, found.trouble)) {
+    const auto offer = judge(candidate, rauc, running);
     if (!offer) {
-      found.trouble = shown + ": " + offer.error();
+      found.trouble = host::escaped(candidate.name) + ": " + offer.error();
     } else if (!found.offer ||
                *update::Version::parse(found.offer->version) < *update::Version::parse(offer->version)) {
       found.offer = *offer;
+      found.path = candidate.folder + '/' + candidate.name;
     }
   }
   if (found.offer) found.trouble.clear();

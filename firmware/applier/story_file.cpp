@@ -8,11 +8,6 @@
 #include "update/messages.hpp"
 
 namespace adit::applier {
-namespace {
-
-constexpr int kForAll = 0644;
-
-}  // namespace
 
 update::Story load_story(const std::string& folder) {
   const std::string path = folder + '/' + update::kStoryFile;
@@ -26,7 +21,8 @@ update::Story load_story(const std::string& folder) {
 }
 
 bool save_story(const std::string& folder, const update::Story& story) {
-  const auto written = host::write_file(folder + '/' + update::kStoryFile, update::write(story), kForAll);
+  const auto written =
+      host::write_file(folder + '/' + update::kStoryFile, update::write(story), host::kForAll);
   if (!written)
     host::log(host::Level::Error, "what became of the update cannot be kept", {{"why", written.error()}});
   return written.has_value();

@@ -17,7 +17,7 @@ constexpr host::Flag<Written> kFlags[] = {
     {"good", &Written::good}, {"--help", &Written::help}, {"--version", &Written::version}};
 constexpr host::Value<Written> kValues[] = {
     {"--wanted", &Written::wanted},         {"--status", &Written::status},
-    {"--state", &Written::state},           {"--stick", &Written::stick},
+    {"--state", &Written::state},           {"--sticks", &Written::sticks},
     {"--os-release", &Written::os_release}, {"--rauc", &Written::rauc},
     {"--systemctl", &Written::systemctl},   {"--within", &Written::within_seconds}};
 
@@ -44,7 +44,7 @@ const char* const kUpdateUsage =
     "  --wanted DIR      where aditd asks (/var/lib/private/adit)\n"
     "  --status DIR      where it is answered (/run/adit-update)\n"
     "  --state DIR       where what became of the last update is kept (/var/lib/adit-update)\n"
-    "  --stick DIR       where a USB stick is mounted (/run/adit-stick)\n"
+    "  --sticks DIR      in whose folders USB sticks are mounted (/run/adit-stick)\n"
     "  --os-release FILE says by VERSION_ID which version runs (/etc/os-release)\n"
     "  --rauc CMD        RAUC (rauc)\n"
     "  --systemctl CMD   systemd (systemctl)\n"

@@ -13,7 +13,7 @@ struct UpdateOptions {
   std::string wanted = "/var/lib/private/adit";  // where aditd asks
   std::string status = "/run/adit-update";       // where it is answered, for everybody to read
   std::string state = "/var/lib/adit-update";    // what became of the last update
-  std::string stick = "/run/adit-stick";         // where a USB stick is mounted
+  std::string sticks = "/run/adit-stick";        // in whose folders USB sticks are mounted
   std::string os_release = "/etc/os-release";    // says which version runs
   std::string rauc = "rauc", systemctl = "systemctl";
   std::chrono::seconds within = update::kGoodWithin;  // of `good`

@@ -17,7 +17,6 @@ namespace {
 using host::Level;
 using update::Stage;
 
-constexpr int kForAll = 0644;
 constexpr std::chrono::seconds kRestart{30};
 
 /// VERSION_ID of os-release(5), with or without quotation marks; "" where there is none.
@@ -41,14 +40,11 @@ std::expected<void, std::string> Updater::work() {
   }
   boot_ = host::boot();
   find_out();
-  look_at_stick();
+  look_at_sticks();
   if (!tell()) return std::unexpected("the status cannot be told");
   const auto folder = host::UntrustedFolder::open(options_.wanted);
-  if (folder) {
-    take_requests(*folder, first);
-  } else {
-    host::log(Level::Info, "nobody asks for anything", {{"why", folder.error()}});
-  }
+  if (folder) return take_requests(*folder, first);
+  host::log(Level::Info, "nobody asks for anything", {{"why", folder.error()}});
   return {};
 }
 
@@ -64,8 +60,8 @@ void Updater::find_out() {
   const update::Story kept = load_story(options_.state);
   update::Story story = running ? update::settled(kept, status_.running, boot_) : kept;
   if (story.stage == Stage::Left && kept.stage != Stage::Left) {
-    if (const auto active = rauc_.mark_active(); !active)
-      host::log(Level::Error, "the boot loader would try it again", {{"why", active.error()}});
+    if (const auto left = rauc_.leave_other(); !left)
+      host::log(Level::Error, "the boot loader would try it again", {{"why", left.error()}});
   }
   if (story == kept) {
     status_.last = std::move(story);
@@ -75,20 +71,25 @@ void Updater::find_out() {
   status_.trial = update::on_trial(status_.last, status_.running.slot, boot_);
 }
 
-void Updater::look_at_stick() {
+void Updater::look_at_sticks() {
   if (!status_.trouble.empty()) return;
-  OnStick found = applier::look_at_stick(options_.stick, rauc_, status_.running);
+  OnStick found = applier::look_at_sticks(options_.sticks, rauc_, status_.running);
   status_.stick = std::move(found.offer);
+  on_stick_ = std::move(found.path);
   status_.stick_trouble = std::move(found.trouble);
 }
 
 /// `drop`: they are taken away and not done.
-void Updater::take_requests(const host::UntrustedFolder& folder, bool drop) {
+std::expected<void, std::string> Updater::take_requests(const host::UntrustedFolder& folder, bool drop) {
   while (true) {
     auto text = folder.take(update::kRequestFile);
     if (text && !*text) break;
-    const auto request = text ? update::read_request(**text)
-                              : std::expected<update::Request, std::string>(std::unexpected(text.error()));
+    if (!text && text.error().stays) {
+      status_.trouble = text.error().why;
+      tell();
+      return std::unexpected(status_.trouble);
+    }
+    const auto request = text ? update::read_request(**text) : std::unexpected(text.error().why);
     if (drop) continue;
     if (request) {
       answer(*request, folder);
@@ -97,6 +98,7 @@ void Updater::take_requests(const host::UntrustedFolder& folder, bool drop) {
     }
   }
   if (drop) (void)BundleFile::take(folder, update::kBundleFile);  // whatever it is, it is gone
+  return {};
 }
 
 void Updater::answer(const update::Request& request, const host::UntrustedFolder& folder) {
@@ -107,13 +109,13 @@ void Updater::answer(const update::Request& request, const host::UntrustedFolder
     status_.refusal = install(BundleFile::take(folder, update::kBundleFile), request.again);
   } else if (request.what == What::Restart) {
     status_.refusal = restart();
-  } else if (look_at_stick(); status_.stick) {
-    status_.refusal = install(BundleFile::open(options_.stick + '/' + status_.stick->name), request.again);
+  } else if (look_at_sticks(); status_.stick) {
+    status_.refusal = install(BundleFile::open(on_stick_), request.again);
   } else {
     status_.refusal = status_.stick_trouble.empty() ? "there is no update on a stick" : status_.stick_trouble;
   }
   if (!status_.refusal.empty()) host::log(Level::Warning, "refused", {{"why", status_.refusal}});
-  look_at_stick();  // it may be another by now, or gone
+  look_at_sticks();  // it may be another by now, or gone
   tell();
 }
 
@@ -121,8 +123,8 @@ std::string Updater::install(const std::expected<BundleFile, std::string>& file,
   if (!file) return file.error();
   if (!status_.trouble.empty()) return status_.trouble;
   if (status_.trial) {
-    return icd::sentence(status_.running.version, " is on trial: wait until it has been healthy for ", 60,
-                         " s");
+    return icd::sentence(status_.running.version, " is on trial: wait until it has been healthy for ",
+                         update::kHealthyFor.count(), " s");
   }
   status_.doing = "checking";
   tell();
@@ -157,10 +159,10 @@ std::string Updater::restart() {
   status_.doing = "restarting";
   tell();
   host::log(Level::Notice, "starting the machine anew");
-  const auto said = host::output_of({options_.systemctl, "reboot"}, kRestart);
-  if (said.trouble.empty()) return "";
+  const auto restarted = host::run_command({options_.systemctl, "reboot"}, kRestart);
+  if (restarted) return "";
   status_.doing.clear();
-  return "it cannot be started anew: " + (said.err.empty() ? said.trouble : host::escaped(said.err));
+  return "it cannot be started anew: " + restarted.error();
 }
 
 void Updater::tell_of(update::Story story) {
@@ -175,15 +177,7 @@ void Updater::tell_of(update::Story story) {
 }
 
 bool Updater::tell() {
-  std::string text = update::write(status_);
-  if (text == told_) return true;
-  const auto written = host::write_file(options_.status + '/' + update::kStatusFile, text, kForAll);
-  if (!written) {
-    host::log(Level::Error, "the status cannot be told", {{"why", written.error()}});
-    return false;
-  }
-  told_ = std::move(text);
-  return true;
+  return file_.tell(update::write(status_)).has_value();
 }
 
 }  // namespace adit::applier

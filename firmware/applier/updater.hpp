@@ -5,6 +5,7 @@
 
 #include "applier/bundle_file.hpp"
 #include "applier/rauc.hpp"
+#include "applier/status_file.hpp"
 #include "applier/update_options.hpp"
 #include "update/messages.hpp"
 
@@ -14,16 +15,18 @@ namespace adit::applier {
 class Updater {
  public:
   /// Outlives this.
-  explicit Updater(const UpdateOptions& options) : options_(options), rauc_(options.rauc) {}
+  explicit Updater(const UpdateOptions& options)
+      : options_(options), rauc_(options.rauc), file_(options.status + '/' + update::kStatusFile) {}
 
-  /// Until nothing is asked for. An error: its own folders are not as they should be. What was asked before
-  /// the machine was started anew is dropped: whoever asked has seen that it came to nothing.
+  /// Until nothing is asked for. An error: its own folders are not as they should be, or what is asked for
+  /// cannot be taken away. What was asked before the machine was started anew is dropped: whoever asked has
+  /// seen that it came to nothing.
   std::expected<void, std::string> work();
 
  private:
   void find_out();
-  void look_at_stick();
-  void take_requests(const host::UntrustedFolder& folder, bool drop);
+  void look_at_sticks();
+  std::expected<void, std::string> take_requests(const host::UntrustedFolder& folder, bool drop);
   void answer(const update::Request& request, const host::UntrustedFolder& folder);
   /// "", or why it is not done.
   std::string install(const std::expected<BundleFile, std::string>& file, bool again);
@@ -36,7 +39,8 @@ class Updater {
   Rauc rauc_;
   std::string boot_;
   update::Status status_;
-  std::string told_;
+  std::string on_stick_;  // the file of status_.stick
+  StatusFile file_;
 };
 
 }  // namespace adit::applier

@@ -19,8 +19,6 @@ namespace {
 using access::Role;
 using host::Level;
 
-constexpr int kOursAlone = 0600;
-
 /// The kernel's, which cannot fail once the machine has begun (getentropy(3)).
 void fill_random(std::span<std::uint8_t> bytes) {
   if (getentropy(bytes.data(), bytes.size()) == 0) return;
@@ -91,7 +89,7 @@ icd::BearerToken Accounts::kept_code() {
     std::uint64_t random = 0;
     fill_random({reinterpret_cast<std::uint8_t*>(&random), sizeof random});
     code = access::code_from(random);
-    if (const auto written = host::write_file(code_file(), code + "\n", kOursAlone); !written) {
+    if (const auto written = host::write_file(code_file(), code + "\n", host::kOursAlone); !written) {
       host::log(Level::Warning, "the code of the first start is good until the next start only",
                 {{"why", written.error()}});
     }
@@ -132,7 +130,7 @@ void Accounts::set(Role role, std::optional<std::string> password,
                        file = file(), code_file = code_file()] {
     *changed = with(accounts, role, password, salt);
     if (!*changed) return;
-    if (const auto written = host::write_file(file, access::write_accounts(**changed), kOursAlone);
+    if (const auto written = host::write_file(file, access::write_accounts(**changed), host::kOursAlone);
         !written) {
       *changed = refuse(icd::Status::ServiceUnavailable, "the password cannot be kept: " + written.error());
     } else {

@@ -11,8 +11,6 @@
 namespace adit::gateway {
 namespace {
 
-constexpr int kOursAlone = 0600;
-
 std::expected<void, std::string> remove(const std::string& file) {
   if (host::remove_file(file)) return {};
   return std::unexpected(file + ": cannot be removed");
@@ -24,7 +22,7 @@ FactoryReset::FactoryReset(const Store& store, std::string state_folder, std::st
     : store_(store), state_(std::move(state_folder)), runtime_(std::move(runtime_folder)) {}
 
 std::expected<void, std::string> FactoryReset::begin() const {
-  return host::write_file(begun(), "", kOursAlone);
+  return host::write_file(begun(), "", host::kOursAlone);
 }
 
 std::expected<void, std::string> FactoryReset::finish() const {

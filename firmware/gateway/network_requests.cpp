@@ -9,11 +9,6 @@
 #include "host/service.hpp"
 
 namespace adit::gateway {
-namespace {
-
-constexpr int kOursAlone = 0600;
-
-}  // namespace
 
 std::expected<network::Status, std::string> NetworkRequests::status() const {
   const auto text = host::read_file(status_ + '/' + network::kStatusFile);
@@ -29,19 +24,20 @@ std::optional<network::Probed> NetworkRequests::probed() const {
 }
 
 std::expected<void, std::string> NetworkRequests::ask(const network::Wanted& wanted) const {
-  return host::write_file(state_ + '/' + network::kWantedFile, network::write(wanted), kOursAlone);
+  return host::write_file(state_ + '/' + network::kWantedFile, network::write(wanted), host::kOursAlone);
 }
 std::expected<void, std::string> NetworkRequests::ask(const network::Word& word) const {
-  return host::write_file(state_ + '/' + network::kWordFile, network::write(word), kOursAlone);
+  return host::write_file(state_ + '/' + network::kWordFile, network::write(word), host::kOursAlone);
 }
 std::expected<void, std::string> NetworkRequests::ask(const network::Probe& probe) const {
-  return host::write_file(state_ + '/' + network::kProbeFile, network::write(probe), kOursAlone);
+  return host::write_file(state_ + '/' + network::kProbeFile, network::write(probe), host::kOursAlone);
 }
 std::expected<void, std::string> NetworkRequests::ask(const network::Endpoints& endpoints) const {
-  return host::write_file(state_ + '/' + network::kEndpointsFile, network::write(endpoints), kOursAlone);
+  return host::write_file(state_ + '/' + network::kEndpointsFile, network::write(endpoints),
+                          host::kOursAlone);
 }
 std::expected<void, std::string> NetworkRequests::ask(const network::Forget& forget) const {
-  return host::write_file(state_ + '/' + network::kForgetFile, network::write(forget), kOursAlone);
+  return host::write_file(state_ + '/' + network::kForgetFile, network::write(forget), host::kOursAlone);
 }
 
 void NetworkRequests::forget_wanted() const {

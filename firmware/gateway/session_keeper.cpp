@@ -10,8 +10,6 @@
 namespace adit::gateway {
 namespace {
 
-constexpr int kOursAlone = 0600;
-
 std::expected<access::KeptSessions, std::string> read(const std::string& file) {
   std::error_code unknown;
   if (!std::filesystem::exists(file, unknown) && !unknown) return {};
@@ -37,7 +35,7 @@ SessionKeeper::SessionKeeper(std::string file, access::Instant now)
 
 void SessionKeeper::keep() {
   access::KeptSessions kept{.boot = boot_, .last = sessions_.last(), .sessions = sessions_.in_order()};
-  const auto written = host::write_file(file_, access::write_sessions(kept), kOursAlone);
+  const auto written = host::write_file(file_, access::write_sessions(kept), host::kOursAlone);
   const bool failed_before = std::exchange(failed_, !written.has_value());
   if (written || failed_before) return;
   host::log(host::Level::Warning, "who is logged in is kept in memory alone", {{"why", written.error()}});

@@ -12,7 +12,6 @@ namespace {
 
 namespace fs = std::filesystem;
 
-constexpr int kOursAlone = 0600;
 constexpr const char* kDamaged = ".damaged";
 
 bool exists(const std::string& path) {
@@ -89,9 +88,9 @@ std::expected<void, std::string> Store::save(const settings::Settings& settings)
     const auto before =
         exists(file()) ? host::read_file(file()) : std::expected<std::string, std::string>("");
     if (!before) return std::unexpected(before.error());
-    if (const auto kept = host::write_file(file_before(), *before, kOursAlone); !kept) return kept;
+    if (const auto kept = host::write_file(file_before(), *before, host::kOursAlone); !kept) return kept;
   }
-  return host::write_file(file(), settings::file_of(settings), kOursAlone);
+  return host::write_file(file(), settings::file_of(settings), host::kOursAlone);
 }
 
 std::expected<void, std::string> Store::make_secrets_folder() const {
@@ -109,15 +108,17 @@ std::expected<void, std::string> Store::save_token(const std::string& name,
     return std::unexpected(token_file(name) + ": cannot be removed");
   }
   if (auto made = make_secrets_folder(); !made) return made;
-  return host::write_file(token_file(name), token->reveal() + "\n", kOursAlone);
+  return host::write_file(token_file(name), token->reveal() + "\n", host::kOursAlone);
 }
 
 void Store::settle(const settings::Settings& settings) const {
   const std::vector<std::string> names = token_names(settings);
-  std::error_code none;
-  for (const auto& file : fs::directory_iterator(secrets_folder(), none)) {
-    const bool known = std::ranges::find(names, file.path().stem().string()) != names.end();
-    if (!known && file.path().extension() == ".token") host::remove_file(file.path().string());
+  const auto files = host::names_in(secrets_folder());
+  if (!files)
+    host::log(host::Level::Warning, "tokens that nothing needs may be left", {{"why", files.error()}});
+  for (const fs::path file : files.value_or(std::vector<std::string>())) {
+    const bool known = std::ranges::find(names, file.stem().string()) != names.end();
+    if (!known && file.extension() == ".token") host::remove_file(secrets_folder() / file);
   }
   if (!host::remove_file(file_before())) {
     host::log(host::Level::Warning, "cannot be removed", {{"file", file_before()}});
@@ -129,7 +130,7 @@ bool Store::take_back() const {
   if (!before) return false;
   if (before->empty()) {
     if (!host::remove_file(file())) return false;
-  } else if (const auto written = host::write_file(file(), *before, kOursAlone); !written) {
+  } else if (const auto written = host::write_file(file(), *before, host::kOursAlone); !written) {
     host::log(host::Level::Error, "the settings before cannot be written", {{"why", written.error()}});
     return false;
   }

@@ -5,11 +5,6 @@
 #include "host/service.hpp"
 
 namespace adit::gateway {
-namespace {
-
-constexpr int kOursAlone = 0600;
-
-}  // namespace
 
 std::expected<update::Status, std::string> UpdateRequests::status() const {
   const auto text = host::read_file(status_ + '/' + update::kStatusFile);
@@ -18,7 +13,7 @@ std::expected<update::Status, std::string> UpdateRequests::status() const {
 }
 
 std::expected<void, std::string> UpdateRequests::ask(const update::Request& request) const {
-  return host::write_file(state_ + '/' + update::kRequestFile, update::write(request), kOursAlone);
+  return host::write_file(state_ + '/' + update::kRequestFile, update::write(request), host::kOursAlone);
 }
 
 void UpdateRequests::forget() const {

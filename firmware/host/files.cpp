@@ -3,10 +3,13 @@
 #include <fcntl.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <cerrno>
+#include <filesystem>
 #include <system_error>
 
 #include "host/service.hpp"
+#include "icd/sentence.hpp"
 #include "loop/file_descriptor.hpp"
 
 namespace adit::host {
@@ -82,6 +85,19 @@ std::expected<void, std::string> write_file(const std::string& path, const std::
   }
   if (!sync_folder(path)) return std::unexpected(trouble(folder_of(path), errno));
   return {};
+}
+
+std::expected<std::vector<std::string>, std::string> names_in(const std::string& folder, std::size_t most) {
+  std::error_code error;
+  std::vector<std::string> names;
+  for (std::filesystem::directory_iterator entry(folder, error), end; !error && entry != end;
+       entry.increment(error)) {
+    if (names.size() == most) return std::unexpected(icd::sentence("holds more than ", most, " files"));
+    names.push_back(entry->path().filename().string());
+  }
+  if (error && error != std::errc::no_such_file_or_directory) return std::unexpected(error.message());
+  std::ranges::sort(names);
+  return names;
 }
 
 bool remove_file(const std::string& path) {

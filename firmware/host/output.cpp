@@ -12,6 +12,7 @@
 #include <optional>
 #include <utility>
 
+#include "host/log.hpp"
 #include "host/spawn.hpp"
 #include "loop/file_descriptor.hpp"
 
@@ -19,6 +20,7 @@ namespace adit::host {
 namespace {
 
 using Clock = std::chrono::steady_clock;
+constexpr std::size_t kMostTold = 512;
 
 struct Pipe {
   loop::FileDescriptor from, to;
@@ -95,10 +97,10 @@ Output output_of(const std::vector<std::string>& words, std::chrono::millisecond
   Output output;
   auto out = make_pipe(), err = make_pipe();
   const auto environment = clean_environment();
-  const auto process = out && err ? spawn(words, out->to.get(), err->to.get(), &environment)
+  const auto process = out && err ? spawn(words, out->to.get(), err->to.get(), environment)
                                   : std::expected<pid_t, int>(std::unexpected(errno));
   if (!process) {
-    output.trouble = words.front() + ": " + std::strerror(process.error());
+    output.trouble = std::strerror(process.error());
     return output;
   }
   out->to = loop::FileDescriptor();
@@ -109,6 +111,18 @@ Output output_of(const std::vector<std::string>& words, std::chrono::millisecond
   output.trouble = await_end(*process);
   if (!in_time) output.trouble = "took longer than " + std::to_string(within.count()) + " ms";
   return output;
+}
+
+std::expected<void, std::string> run_command(const std::vector<std::string>& words,
+                                             std::chrono::milliseconds within) {
+  const Output output = output_of(words, within);
+  if (output.trouble.empty()) return {};
+  std::string sentence;
+  for (const std::string& word : words) sentence += word + (&word == &words.back() ? ": " : " ");
+  const std::string& said = output.err.empty() ? output.out : output.err;
+  if (said.empty()) return std::unexpected(sentence + output.trouble);
+  const std::string first = said.substr(0, std::min(said.find('\n'), kMostTold));
+  return std::unexpected(sentence + escaped(first) + " (" + output.trouble + ')');
 }
 
 }  // namespace adit::host

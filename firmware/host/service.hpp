@@ -8,6 +8,7 @@
 #include <span>
 #include <string>
 #include <string_view>
+#include <vector>
 
 #include "icd/bearer_token.hpp"
 
@@ -27,9 +28,18 @@ std::optional<std::chrono::microseconds> watchdog_within();
 /// A small text file, at most 1 MiB.
 std::expected<std::string, std::string> read_file(const std::string& path);
 
+/// Modes of files: readable for everybody, or for nobody else.
+inline constexpr int kForAll = 0644, kOursAlone = 0600;
+
 /// Writes `text` so that after a crash there is the old file or the new one: a temporary beside it, fsync,
 /// rename, fsync of the folder.
 std::expected<void, std::string> write_file(const std::string& path, const std::string& text, int mode);
+
+/// The names of what is in a folder, in order; none where there is no such folder. An error, without the
+/// folder's name: it cannot be read to its end, or holds more than `most`.
+inline constexpr std::size_t kMostNames = 256;
+std::expected<std::vector<std::string>, std::string> names_in(const std::string& folder,
+                                                              std::size_t most = kMostNames);
 
 /// Removes a file, for good once this is true; also where there was none.
 bool remove_file(const std::string& path);

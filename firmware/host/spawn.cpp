@@ -23,9 +23,9 @@ std::vector<char*> pointers_to(const std::vector<std::string>& texts) {
 }  // namespace
 
 std::expected<pid_t, int> spawn(const std::vector<std::string>& words, int output, int errors,
-                                const std::vector<std::string>* environment) {
+                                const std::vector<std::string>& environment) {
   const auto arguments = pointers_to(words);
-  const auto variables = environment == nullptr ? std::vector<char*>{} : pointers_to(*environment);
+  const auto variables = pointers_to(environment);
   posix_spawn_file_actions_t actions;
   posix_spawn_file_actions_init(&actions);
   posix_spawn_file_actions_addopen(&actions, STDIN_FILENO, "/dev/null", O_RDONLY, 0);
@@ -38,8 +38,8 @@ std::expected<pid_t, int> spawn(const std::vector<std::string>& words, int outpu
   posix_spawnattr_setsigmask(&attributes, &none);  // the loop's own signals are blocked here
   posix_spawnattr_setflags(&attributes, POSIX_SPAWN_SETSIGMASK);
   pid_t process = 0;
-  const int error = posix_spawnp(&process, arguments[0], &actions, &attributes, arguments.data(),
-                                 environment == nullptr ? environ : variables.data());
+  const int error =
+      posix_spawnp(&process, arguments[0], &actions, &attributes, arguments.data(), variables.data());
   posix_spawnattr_destroy(&attributes);
   posix_spawn_file_actions_destroy(&actions);
   if (error != 0) return std::unexpected(error);

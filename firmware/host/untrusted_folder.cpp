@@ -6,12 +6,14 @@
 
 #include <algorithm>
 #include <cerrno>
+#include <cstdio>
+#include <cstdlib>
 #include <filesystem>
 #include <system_error>
 #include <utility>
 
 #include "host/files.hpp"
-#include "icd/sentence.hpp"
+#include "host/service.hpp"
 
 namespace adit::host {
 namespace {
@@ -43,20 +45,37 @@ std::expected<UntrustedFolder, std::string> UntrustedFolder::open(const std::str
   return UntrustedFolder(std::move(folder));
 }
 
-std::expected<std::optional<std::string>, std::string> UntrustedFolder::take(const std::string& name) const {
+std::expected<std::optional<std::string>, UntrustedFolder::Untaken> UntrustedFolder::take(
+    const std::string& name) const {
   // O_NONBLOCK: a FIFO without a writer must not hold this up.
   const loop::FileDescriptor fd(
       openat(folder_.get(), name.c_str(), O_RDONLY | O_NOFOLLOW | O_NONBLOCK | O_NOCTTY | O_CLOEXEC));
   const int error = errno;
   if (!fd && error == ENOENT) return std::nullopt;
-  if (unlinkat(folder_.get(), name.c_str(), 0) != 0 && errno != ENOENT) {
-    std::error_code left;  // a folder: with all that is in it, or it would be asked for again and again
-    std::filesystem::remove_all(path_by_descriptor() + '/' + name, left);
-  }
-  if (!fd) return std::unexpected(trouble(name, error));
+  if (auto gone = remove(name); !gone)
+    return std::unexpected(Untaken{.why = std::move(gone.error()), .stays = true});
+  if (!fd) return std::unexpected(Untaken{.why = trouble(name, error)});
   auto text = read_all(fd.get(), name);
-  if (!text) return std::unexpected(std::move(text.error()));
+  if (!text) return std::unexpected(Untaken{.why = std::move(text.error())});
   return std::move(*text);
+}
+
+std::expected<void, std::string> UntrustedFolder::remove(const std::string& name) const {
+  if (unlinkat(folder_.get(), name.c_str(), 0) == 0 || errno == ENOENT) return {};
+  const auto stays = [&name] { return std::unexpected("it cannot be taken away: " + trouble(name, errno)); };
+  if (errno != EISDIR) return stays();
+  const std::string path = path_by_descriptor() + '/' + name;
+  std::string aside = path + ".XXXXXX";
+  if (mkdtemp(aside.data()) == nullptr) return stays();
+  if (::rename(path.c_str(), aside.c_str()) != 0) {
+    const int error = errno;
+    rmdir(aside.c_str());
+    errno = error;
+    return stays();
+  }
+  std::error_code left;
+  std::filesystem::remove_all(aside, left);
+  return {};
 }
 
 std::expected<std::optional<std::string>, std::string> UntrustedFolder::read(const std::string& name) const {
@@ -79,17 +98,7 @@ std::expected<std::optional<UntrustedFolder>, std::string> UntrustedFolder::fold
 }
 
 std::expected<std::vector<std::string>, std::string> UntrustedFolder::names() const {
-  std::error_code error;
-  std::vector<std::string> names;
-  for (auto entry = std::filesystem::directory_iterator(path_by_descriptor(), error);
-       !error && entry != std::filesystem::directory_iterator(); entry.increment(error)) {
-    if (names.size() == kMostNames)
-      return std::unexpected(icd::sentence("holds more than ", kMostNames, " files"));
-    names.push_back(entry->path().filename().string());
-  }
-  if (error) return std::unexpected(error.message());
-  std::ranges::sort(names);
-  return names;
+  return names_in(path_by_descriptor());
 }
 
 bool UntrustedFolder::wipe(const std::string& name) const {

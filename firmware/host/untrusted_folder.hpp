@@ -15,14 +15,21 @@ namespace adit::host {
 class UntrustedFolder {
  public:
   static constexpr std::size_t kLargest = 65536;
-  static constexpr std::size_t kMostNames = 256;
 
   /// An error where it is not there, or is no folder itself but a link to one.
   static std::expected<UntrustedFolder, std::string> open(const std::string& path);
 
+  struct Untaken {
+    std::string why = "";
+    bool stays = false;  // what has the name cannot be taken away, and would be found again and again
+  };
   /// Takes a file away and gives what was in it; nothing where there is none of that name. An error: it was
-  /// no plain file, too large or unreadable; it is gone all the same.
-  std::expected<std::optional<std::string>, std::string> take(const std::string& name) const;
+  /// no plain file, too large or unreadable, and is gone all the same, or it stays.
+  std::expected<std::optional<std::string>, Untaken> take(const std::string& name) const;
+
+  /// Takes away whatever has that name. Of a folder that cannot be deleted (it may be deeper than files can
+  /// be opened) the name at least: what is left is beside it, as NAME.XXXXXX.
+  std::expected<void, std::string> remove(const std::string& name) const;
 
   /// What is in a file, which stays; nothing where there is none of that name. An error: it is no plain file,
   /// too large or unreadable.
@@ -31,7 +38,7 @@ class UntrustedFolder {
   /// A folder in it; nothing where there is none of that name.
   std::expected<std::optional<UntrustedFolder>, std::string> folder(const std::string& name) const;
 
-  /// The names of what is in it, in order. An error where it cannot be read, or holds more than kMostNames.
+  /// names_in() it.
   std::expected<std::vector<std::string>, std::string> names() const;
 
   /// Removes a file so that its text is not left on the disk: overwritten, then unlinked. False: it may still

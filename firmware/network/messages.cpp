@@ -1,49 +1,27 @@
 #include "network/messages.hpp"
 
-#include <algorithm>
 #include <initializer_list>
 #include <utility>
 
-#include "codec/field.hpp"
-#include "codec/json.hpp"
-#include "icd/sentence.hpp"
+#include "network/file_object.hpp"
 
 namespace adit::network {
 namespace {
 
 using codec::Field;
 using codec::Value;
+using file_object::text;
 
-constexpr std::int64_t kVersion = 1;
+constexpr std::string_view kFormat = "version";  // the member
 constexpr std::size_t kNonceDigits = 32;
 
 std::string written(Value::Object members) {
-  members.insert(members.begin(), {"version", {kVersion}});
-  return codec::write_json({std::move(members)}) + '\n';
+  return file_object::written(kFormat, std::move(members));
 }
 
-/// A file of exactly these members and the version.
 template <class Message, class Make>
 Read<Message> read(std::string_view json, std::initializer_list<std::string_view> names, Make make) {
-  const auto root = codec::parse_json(json);
-  if (!root) return std::unexpected("no JSON: " + root.error());
-  const auto* object = std::get_if<Value::Object>(&root->is);
-  if (object == nullptr) return std::unexpected("expected an object");
-  for (const auto& [name, value] : *object) {
-    if (name != "version" && std::ranges::find(names, name) == names.end()) {
-      return std::unexpected(icd::sentence("no such member: ", icd::in_quotes(name)));
-    }
-  }
-  codec::Reading reading;
-  const Field field(*root, reading);
-  field.member("version").whole<std::int64_t>(kVersion, kVersion);
-  auto message = reading.outcome<Message>(make(field));
-  if (!message) return std::unexpected(message.error().sentence);
-  return std::move(*message);
-}
-
-std::string text(const Field& object, std::string_view name) {
-  return std::string(object.member(name).text());
+  return file_object::read<Message>(json, kFormat, names, make);
 }
 
 std::string nonce(const Field& object) {

@@ -42,8 +42,8 @@ std::optional<settings::Panel> find_panel(const panel::LightsOptions& options) {
   for (const std::string& file : options.settings) {
     const auto text = text_of(file);
     if (!text) continue;
-    auto settings = settings::parse(*text);
-    if (settings) return std::move(settings->panel);
+    auto settings = settings::parse_saved(*text);  // as aditd does: perhaps of a later Adit
+    if (settings) return std::move(settings->settings.panel);
     complain(file + ": " + settings::sentence_of(settings.error()));
   }
   return std::nullopt;

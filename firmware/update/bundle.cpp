@@ -17,15 +17,18 @@ using codec::Value;
 constexpr std::size_t kLongestFault = 300;
 constexpr std::string_view kLastError = "LastError: ";
 
-/// RAUC lists slots as objects of one member, the slot's name.
-void take_slot(const Value& slot, const std::string& booted, Running& running) {
+/// RAUC lists slots as objects of one member, the slot's name. `next`: the name of the one that is started
+/// next.
+void take_slot(const Value& slot, const std::string& booted, const std::string& next, Running& running) {
   const auto* named = std::get_if<Value::Object>(&slot.is);
   if (named == nullptr || named->size() != 1) return;
   codec::Reading reading;
   const Field field(named->front().second, reading);
   const Field name = field.member("bootname");
   if (name.is_absent() || !name.is<std::string>()) return;  // a part of another slot
-  if (name.text() != booted) running.other = name.text();
+  if (name.text() == booted) return;
+  running.other = name.text();
+  running.other_next = named->front().first == next;
 }
 
 void for_each_line(std::string_view text, const std::function<void(std::string_view)>& tell) {
@@ -59,8 +62,11 @@ std::expected<Running, std::string> read_status(std::string_view json) {
               slots = field.member("slots");
   Running running{.compatible = std::string(compatible.text()), .slot = std::string(booted.text())};
   slots.size();
+  const Field primary = field.member("boot_primary");  // absent where the boot loader's environment is none
+  const std::string next(primary.is_absent() ? "" : primary.text());
   if (reading.refused()) return std::unexpected("RAUC: " + reading.outcome(0).error().sentence);
-  for (const Value& slot : std::get<Value::Array>(slots.value()->is)) take_slot(slot, running.slot, running);
+  for (const Value& slot : std::get<Value::Array>(slots.value()->is))
+    take_slot(slot, running.slot, next, running);
   if (running.other.empty())
     return std::unexpected("RAUC knows no slot beside " + icd::in_quotes(running.slot));
   return running;

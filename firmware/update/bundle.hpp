@@ -17,8 +17,9 @@ struct Bundle {
 struct Running {
   std::string compatible = "";
   std::string version = "";
-  std::string slot = "";   // the boot loader's name: "A"
-  std::string other = "";  // the slot that an update goes into: "B"
+  std::string slot = "";    // the boot loader's name: "A"
+  std::string other = "";   // the slot that an update goes into: "B"
+  bool other_next = false;  // the boot loader starts that one next; known here alone, no file says it
   friend bool operator==(const Running&, const Running&) = default;
 };
 

@@ -4,9 +4,7 @@
 #include <initializer_list>
 #include <utility>
 
-#include "codec/field.hpp"
-#include "codec/json.hpp"
-#include "icd/sentence.hpp"
+#include "network/file_object.hpp"
 #include "network/messages.hpp"
 
 namespace adit::update {
@@ -14,8 +12,10 @@ namespace {
 
 using codec::Field;
 using codec::Value;
+using network::file_object::only;
+using network::file_object::text;
 
-constexpr std::int64_t kFormat = 1;  // of these files
+constexpr std::string_view kFormat = "format";  // the member
 
 constexpr std::pair<std::string_view, Request::What> kWhat[] = {{"install", Request::What::Install},
                                                                 {"stick", Request::What::Stick},
@@ -24,33 +24,12 @@ constexpr Stage kStages[] = {Stage::None,      Stage::Installing, Stage::Interru
                              Stage::Installed, Stage::Left,       Stage::Good};
 
 std::string written(Value::Object members) {
-  members.insert(members.begin(), {"format", {kFormat}});
-  return codec::write_json({std::move(members)}) + '\n';
-}
-
-/// An object of exactly these members.
-void only(const Field& field, std::initializer_list<std::string_view> names) {
-  const auto* object = field.value() == nullptr ? nullptr : std::get_if<Value::Object>(&field.value()->is);
-  if (object == nullptr) return field.refuse_kind("an object");
-  for (const auto& [name, value] : *object) {
-    if (std::ranges::find(names, name) == names.end()) field.refuse("no such member: ", icd::in_quotes(name));
-  }
+  return network::file_object::written(kFormat, std::move(members));
 }
 
 template <class Message, class Make>
-Read<Message> read(std::string_view json, Make make) {
-  const auto root = codec::parse_json(json);
-  if (!root) return std::unexpected("no JSON: " + root.error());
-  codec::Reading reading;
-  const Field field(*root, reading);
-  field.member("format").whole<std::int64_t>(kFormat, kFormat);
-  auto message = reading.outcome<Message>(make(field));
-  if (!message) return std::unexpected(message.error().sentence);
-  return std::move(*message);
-}
-
-std::string text(const Field& object, std::string_view name) {
-  return std::string(object.member(name).text());
+Read<Message> read(std::string_view json, std::initializer_list<std::string_view> names, Make make) {
+  return network::file_object::read<Message>(json, kFormat, names, make);
 }
 
 Value story_json(const Story& story) {
@@ -133,8 +112,7 @@ std::string write(const Story& story) {
 }
 
 Read<Request> read_request(std::string_view json) {
-  return read<Request>(json, [](const Field& root) {
-    only(root, {"format", "nonce", "what", "again"});
+  return read<Request>(json, {"nonce", "what", "again"}, [](const Field& root) {
     Request request{.nonce = text(root, "nonce"), .again = root.member("again").truth()};
     if (!network::is_nonce(request.nonce)) root.member("nonce").refuse("expected 32 hexadecimal digits");
     const Field field = root.member("what");
@@ -150,29 +128,29 @@ Read<Request> read_request(std::string_view json) {
 }
 
 Read<Status> read_status_file(std::string_view json) {
-  return read<Status>(json, [](const Field& root) {
-    only(root, {"format", "trouble", "running", "nonce", "refusal", "doing", "progress", "last", "trial",
-                "stick", "stick_trouble"});
-    const Field progress = root.member("progress");
-    return Status{
-        .trouble = text(root, "trouble"),
-        .running = running_in(root),
-        .nonce = text(root, "nonce"),
-        .refusal = text(root, "refusal"),
-        .doing = text(root, "doing"),
-        .progress = progress.is_absent() ? std::nullopt : std::optional(progress.whole<int>(0, 100)),
-        .last = last_in(root),
-        .trial = root.member("trial").truth(),
-        .stick = offer_in(root),
-        .stick_trouble = text(root, "stick_trouble")};
-  });
+  return read<Status>(json,
+                      {"trouble", "running", "nonce", "refusal", "doing", "progress", "last", "trial",
+                       "stick", "stick_trouble"},
+                      [](const Field& root) {
+                        const Field progress = root.member("progress");
+                        return Status{.trouble = text(root, "trouble"),
+                                      .running = running_in(root),
+                                      .nonce = text(root, "nonce"),
+                                      .refusal = text(root, "refusal"),
+                                      .doing = text(root, "doing"),
+                                      .progress = progress.is_absent()
+                                                      ? std::nullopt
+                                                      : std::optional(progress.whole<int>(0, 100)),
+                                      .last = last_in(root),
+                                      .trial = root.member("trial").truth(),
+                                      .stick = offer_in(root),
+                                      .stick_trouble = text(root, "stick_trouble")};
+                      });
 }
 
 Read<Story> read_story(std::string_view json) {
-  return read<Story>(json, [](const Field& root) {
-    only(root, {"format", "stage", "version", "slot", "boot", "why"});
-    return story_in(root);
-  });
+  return read<Story>(json, {"stage", "version", "slot", "boot", "why"},
+                     [](const Field& root) { return story_in(root); });
 }
 
 }  // namespace adit::update

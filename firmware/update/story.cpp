@@ -3,6 +3,21 @@
 #include "icd/sentence.hpp"
 
 namespace adit::update {
+namespace {
+
+/// Whether RAUC came to its end is known for certain only of what it said in time: it goes on by itself where
+/// adit-update is killed or waits no longer, and the power may go before its answer is kept.
+bool may_be_whole(Stage stage) {
+  return stage == Stage::Installing || stage == Stage::Interrupted || stage == Stage::Failed ||
+         stage == Stage::Installed;
+}
+
+/// RAUC has the slot that it writes started next once all of it is written.
+bool waits_for_a_restart(const Story& story, const Running& running, const std::string& boot) {
+  return may_be_whole(story.stage) && story.boot == boot && story.slot == running.other && running.other_next;
+}
+
+}  // namespace
 
 std::string_view name_of(Stage stage) {
   switch (stage) {
@@ -25,7 +40,10 @@ std::string_view name_of(Stage stage) {
 }
 
 Story settled(Story story, const Running& running, const std::string& boot) {
-  if (story.stage == Stage::Installing) {
+  if (on_trial(story, running.slot, boot) || waits_for_a_restart(story, running, boot)) {
+    story.stage = Stage::Installed;
+    story.why.clear();
+  } else if (story.stage == Stage::Installing) {
     story.stage = Stage::Interrupted;
     story.why = "it was interrupted: what runs was not touched, install it again";
   } else if (story.stage == Stage::Installed && story.boot != boot && story.slot != running.slot) {
@@ -37,7 +55,7 @@ Story settled(Story story, const Running& running, const std::string& boot) {
 }
 
 bool on_trial(const Story& story, const std::string& slot, const std::string& boot) {
-  return story.stage == Stage::Installed && story.boot != boot && story.slot == slot;
+  return may_be_whole(story.stage) && story.boot != boot && story.slot == slot;
 }
 
 }  // namespace adit::update

@@ -13,7 +13,7 @@ enum class Stage : std::uint8_t {
   None,         // there was none
   Installing,   // the other slot is being written
   Interrupted,  // while it was: the slot that runs was not touched
-  Failed,       // RAUC could not write it
+  Failed,       // RAUC could not write it, or not in time
   Installed,    // waits for a restart; once the box was started anew, from that slot, on trial
   Left,         // it did not come up healthy in three starts, and the boot loader went back
   Good,         // it came up healthy
@@ -35,7 +35,8 @@ struct Story {
 /// `boot`.
 Story settled(Story story, const Running& running, const std::string& boot);
 
-/// The slot that runs is the one that was installed, and has not been healthy yet.
+/// The slot that runs is the one that was written last, and has not been healthy yet; whatever became known
+/// of the end of the writing, for what was cut off before its end does not start.
 bool on_trial(const Story& story, const std::string& slot, const std::string& boot);
 
 }  // namespace adit::update

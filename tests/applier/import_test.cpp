@@ -31,6 +31,7 @@ class ImportTest : public testing::Test {
     options.state = folder / "private/adit";
     options.network = folder / "adit-network";
     options.given = folder.put("given.json", settings::sample());
+    options.in_memory = folder / "notices/state";
     fs::create_directories(options.card + "/secrets");
   }
 
@@ -107,6 +108,25 @@ TEST_F(ImportTest, TakesNothingTwice) {
   import();
   EXPECT_EQ(state("settings.json"), "what the page saved since");
   EXPECT_EQ(taken(), said);
+}
+
+TEST_F(ImportTest, TakesAllAgainAtEachStartWhereItCannotBeKept) {
+  fs::create_directory(folder / "notices");
+  folder.put("notices/state", "the state partition is unusable");
+  bring_all();
+  for (int start = 0; start < 2; ++start) {
+    import();
+    EXPECT_EQ(settings::parse(state("settings.json"))->team.connections, 33u);
+    EXPECT_EQ(state("secrets/scoring.token"), "scoring-1\n");
+    EXPECT_EQ(network::read_kept(text(options.network + "/confirmed.json")), numbers);
+    EXPECT_EQ(text(options.card + "/secrets/scoring.token"), "scoring-1\r\n");
+    EXPECT_TRUE(on_card("settings.json") && on_card("network.json"));
+    EXPECT_THAT(taken(), AllOf(StartsWith("Adit cannot keep what it takes"), Not(HasSubstr("removed"))));
+    for (const std::string& path : {options.state, options.network}) fs::remove_all(path);
+  }
+  fs::remove_all(folder / "notices");
+  import();
+  expect_all_taken();
 }
 
 TEST_F(ImportTest, TakesEachAlone) {
@@ -238,6 +258,22 @@ TEST_F(ImportTest, KnowsTheCoursesOfTheSettingsThatAreInForce) {
   std::ofstream(options.state + "/settings.json") << settings::sample("", "", kCourse);
   import();
   EXPECT_EQ(state("secrets/course.A.scoring.token"), "token-1\n");
+}
+
+TEST_F(ImportTest, KnowsTheCoursesOfSettingsThatALaterAditSaved) {
+  fs::create_directories(options.state);
+  std::ofstream(options.state + "/settings.json") << settings::sample("", R"(, "of_later": 1)", kCourse);
+  bring("secrets/course.A.scoring.token", "token-1");
+  import();
+  EXPECT_EQ(state("secrets/course.A.scoring.token"), "token-1\n");
+}
+
+TEST_F(ImportTest, TakesSettingsOnceThoughAFolderIsInTheWay) {
+  fs::create_directories(options.card + "/settings.json.taken/of/somebody");
+  bring("settings.json", settings::sample());
+  import();
+  EXPECT_FALSE(on_card("settings.json"));
+  EXPECT_TRUE(fs::is_regular_file(options.card + "/settings.json.taken"));
 }
 
 TEST_F(ImportTest, GivesWhatItTakesToWhomTheStateBelongs) {

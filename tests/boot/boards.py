@@ -36,7 +36,7 @@ class Board:
 
     def missing(self):
         """What keeps this machine from starting the other, in words; or ""."""
-        wanted = [self.emulator, "qemu-img", "mcopy", "mtype", "setpriv", *self.needs]
+        wanted = [self.emulator, "qemu-img", "mcopy", "setpriv", *self.needs]
         absent = [program for program in wanted if not (shutil.which(program) or os.path.exists(program))]
         if absent:
             return f"not on this machine: {', '.join(absent)}; toolchain/setup test installs it"

@@ -61,13 +61,17 @@ def bundle_of_nothing(folder, version, board):
 
 
 def stick(folder, *files):
-    """A USB stick's bytes: a partition with a FAT file system, and these files in it."""
-    image, partition = folder / "stick.img", f"{folder / 'stick.img'}@@1M"
+    """A USB stick's bytes: two partitions with FAT file systems, and these files in the second."""
+    image = folder / "stick.img"
+    sizes = [64, 256]  # MiB
     with open(image, "wb") as made:
-        made.truncate(257 << 20)
-    subprocess.run(["sfdisk", "--quiet", image], input=b"start=2048, type=c\n", check=True)
-    subprocess.run(["mformat", "-i", partition, "-F", "-T", str((256 << 20) // 512), "::"], check=True)
-    subprocess.run(["mcopy", "-i", partition, *files, "::"], check=True)
+        made.truncate((sum(sizes) + 2) << 20)
+    table = "".join(f"size={size}MiB, type=c\n" for size in sizes)
+    subprocess.run(["sfdisk", "--quiet", image], input=table.encode(), check=True)
+    starts = [1, 1 + sizes[0]]
+    for start, size in zip(starts, sizes):
+        subprocess.run(["mformat", "-i", f"{image}@@{start}M", "-F", "-T", str((size << 20) // 512), "::"], check=True)
+    subprocess.run(["mcopy", "-i", f"{image}@@{starts[1]}M", *files, "::"], check=True)
     return image
 
 

@@ -58,11 +58,6 @@ class Disk:
     def make_folder(self, name):
         subprocess.run(["mmd", *self._boot_partition(), f"::{name}"], check=True)
 
-    def get(self, name):
-        """A file's text, or None where there is none."""
-        got = subprocess.run(["mtype", *self._boot_partition(), f"::{name}"], capture_output=True, check=False)
-        return got.stdout.decode() if got.returncode == 0 else None
-
     def _boot_partition(self):
         return ["-i", f"{self.file}@@{BOOT_PARTITION}"]
 

@@ -21,9 +21,9 @@ GAVE_UP = "adit: the start failed"  # rootfs/overlay's emergency.service says so
 class Machine(programs.Page):
     """`cables` are in its two ports from the beginning; `disk` is its card."""
 
-    def __init__(self, cables, folder, disk, board=boards.QEMU_VIRT, watchdog=True):
+    def __init__(self, cables, folder, disk, board=boards.QEMU_VIRT):
         self.network, self.folder, self.disk, self.board = cables, folder, disk, board
-        self.memory, self.watchdog = board.memory, watchdog
+        self.memory = board.memory
         self.soldered = board.soldered(folder, board.memory)
         self.process = self.pins = None
         self.log = folder / "console.log"
@@ -38,13 +38,12 @@ class Machine(programs.Page):
         command = ["setpriv", "--pdeathsig", "KILL",
                    self.board.emulator, *self.soldered, "-accel", "tcg", "-m", str(self.memory),
                    *self.disk.options(self.board.card), "-device", "virtio-rng-pci", "-device", "qemu-xhci,id=usb",
+                   "-device", "i6300esb,addr=7", "-action", "watchdog=reset",
                    "-netdev", f"tap,id=team,fd={team0}", "-device", f"{first},id=team0,netdev=team",
                    "-netdev", f"tap,id=darpa,fd={darpa0}", "-device", f"{second},id=darpa0,netdev=darpa",
                    "-qmp", f"unix:{sockets[0]},server=on,wait=off",
                    "-qtest", f"unix:{sockets[1]},server=on,wait=off", "-qtest-log", "/dev/null",
                    "-chardev", f"socket,id=serial,path={sockets[2]},server=on,wait=on", "-serial", "chardev:serial"]
-        if self.watchdog:
-            command += ["-device", "i6300esb,addr=7", "-action", "watchdog=reset"]
         with open(self.folder / "qemu.log", "ab") as said:
             self.process = self.network.start(self.network.box, *command, stdout=said, stderr=said,
                                               pass_fds=(team0, darpa0))
@@ -90,14 +89,14 @@ class Machine(programs.Page):
         """The cable of team0 or darpa0, in or out."""
         self.monitor.ask("set_link", name=port, up=plugged)
 
-    def plug_stick(self, image):
+    def plug_stick(self, image, name="stick"):
         """A USB stick that cannot be written on, of an image of its bytes."""
         file = {"driver": "file", "filename": str(image), "read-only": True}
-        self.monitor.ask("blockdev-add", **{"driver": "raw", "node-name": "stick", "read-only": True, "file": file})
-        self.monitor.ask("device_add", driver="usb-storage", bus="usb.0", id="stick", drive="stick")
+        self.monitor.ask("blockdev-add", **{"driver": "raw", "node-name": name, "read-only": True, "file": file})
+        self.monitor.ask("device_add", driver="usb-storage", bus="usb.0", id=name, drive=name)
 
-    def pull_stick(self):
-        self.monitor.ask("device_del", id="stick")
+    def pull_stick(self, name="stick"):
+        self.monitor.ask("device_del", id=name)
 
     # What a client on the team's side sees.
 

@@ -4,7 +4,6 @@ import lzma
 import re
 import unittest
 
-import machine
 from stage import Stage, Story, load_tests, note, setUpModule  # unittest looks for them here
 
 QUIET = "SYSTEMD_COLORS=0 SYSTEMD_PAGER= "
@@ -37,12 +36,12 @@ class Figures(Story):
         self.assertLessEqual(used, 64)
 
     def test_the_image_is_small(self):
-        packed = machine.image().with_suffix(".img.xz")
+        packed = self.box.board.image().with_suffix(".img.xz")
         if packed.exists():
             size = packed.stat().st_size
         else:
             squeezer = lzma.LZMACompressor(preset=0)
-            size = sum(len(squeezer.compress(some)) for some in blocks(machine.image())) + len(squeezer.flush())
+            size = sum(len(squeezer.compress(some)) for some in blocks(self.box.board.image())) + len(squeezer.flush())
         note("image, compressed", f"{size / 1e6:.1f} MB")
         self.assertLessEqual(size, 40e6 if packed.exists() else 60e6)
 

@@ -1,43 +1,27 @@
 """Updates: one from a stick that stays, one that is uploaded, cannot start and is left again, and those that are
 refused. Settings and reports come along."""
 
-import http.client
 import pathlib
 import re
 import tempfile
 import time
 import unittest
 
-import machine
-import programs
+import boards
 from bundles import bundle, stick
 from reporting import REPORT
 from stage import Stage, Story, load_tests, note, setUpModule  # unittest looks for them here
+from updating import Updating
 
-RUNS = re.search(r"adit-qemu-virt-([0-9].*)\.img$", machine.image().name).group(1) if not machine.missing() else ""
-NEWER, BROKEN = "7.0.0", "7.1.0"
+RUNS = re.search(r"-([0-9].*)\.img$", boards.QEMU_VIRT.image().name).group(1) if not boards.QEMU_VIRT.missing() else ""
+NEWER, EVEN_NEWER, BROKEN = "7.0.0", "7.0.1", "7.1.0"
 
 
-@unittest.skipUnless((machine.SOURCE / "rootfs" / "bundle").exists(), "this Adit has no updates")
-class Updates(Story):
+class Updates(Updating, Story):
     @classmethod
     def setUpClass(cls):
         cls.tell(Stage())
         cls.folder = pathlib.Path(cls.enterClassContext(tempfile.TemporaryDirectory(prefix="adit-bundles-")))
-
-    def stands(self):
-        return self.box.ask("GET /adit/update", timeout=20)[1]
-
-    def send(self, path):
-        """As the page does."""
-        connection = http.client.HTTPConnection(self.stage.network.box_address, self.box.port, timeout=120)
-        headers = {"Authorization": f"Bearer {programs.TEAM_TOKEN}", "Content-Type": "application/octet-stream"}
-        with open(path, "rb") as file:
-            connection.request("POST", "/adit/update", file, {**headers, "Content-Length": str(path.stat().st_size)})
-            answer = connection.getresponse()
-            said = answer.read()
-        connection.close()
-        self.assertIn(answer.status, (200, 202), said)
 
     def is_refused(self, path, *words):
         self.send(path)
@@ -56,21 +40,8 @@ class Updates(Story):
         self.assertEqual(self.last(), ("installed", version), self.stands()["refusal"])
         return time.monotonic() - began
 
-    def restart(self):
-        self.assertEqual(self.box.ask("POST /adit/update/restart", body={"anyway": True})[0], 200)
-
-    def last(self):
-        last = self.stands()["last"]
-        return last and (last["stage"], last["version"])
-
-    def settled(self, *wanted, within):
-        def is_so():
-            try:
-                return self.last() == wanted
-            except (OSError, ValueError, KeyError):
-                return False  # it starts anew
-
-        self.box.wait_until(is_so, f"an update that is {wanted}", within)
+    def offered(self):
+        return (self.stands()["stick"] or {}).get("version")
 
     def test_it_runs_in_the_first_slot(self):
         self.stage.start().began()
@@ -92,6 +63,16 @@ class Updates(Story):
         self.assertEqual(self.stands()["stick"], {"name": newer.name, "version": NEWER})
         self.assertEqual((self.stands()["doing"], self.stands()["last"]), (None, None))
 
+    def test_a_second_stick_is_looked_at_beside_it(self):
+        folder = self.folder / "second"
+        folder.mkdir()
+        self.box.plug_stick(stick(folder, bundle(folder, EVEN_NEWER)), "second")
+        self.box.wait_until(lambda: self.offered() == EVEN_NEWER, "what is on the second stick to be offered", 60)
+        mounted = self.box.console.ask("ls /run/adit-stick; grep -c /run/adit-stick/ /proc/mounts").split()
+        self.assertEqual(mounted, ["sda1", "sda2", "sdb1", "sdb2", "4"])
+        self.box.pull_stick("second")
+        self.box.wait_until(lambda: self.offered() == NEWER, "what is on the first one to be offered again", 60)
+
     def test_it_is_installed_in_the_other_slot_and_stays_once_it_was_healthy(self):
         self.install(lambda: self.assertEqual(self.box.ask("POST /adit/update/stick", body={})[0], 200), NEWER)
         self.box.pull_stick()
@@ -112,6 +93,9 @@ class Updates(Story):
         self.settled("left", BROKEN, within=400)
         self.assertEqual((self.stands()["version"], self.stands()["slot"]), (NEWER, "B"))
         self.assertEqual(self.box.console.said().count("Adit: slot a"), 1 + 3)
+        self.box.console.wait_for_shell()
+        order = self.box.console.ask("fw_printenv -n BOOT_ORDER")
+        self.assertEqual(order.split(), ["B"], "it is never started again")
 
     def test_and_all_is_as_it_was(self):
         self.assertEqual([each["state"] for each in self.box.reports()], ["answered"])

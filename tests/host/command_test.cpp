@@ -1,7 +1,6 @@
-#include "host/command.hpp"
-
 #include <gmock/gmock.h>
 
+#include "host/output.hpp"
 #include "host/own_address.hpp"
 
 namespace adit::host {

@@ -2,10 +2,17 @@
 
 #include <fcntl.h>
 #include <gmock/gmock.h>
+#include <sched.h>
+#include <sys/mount.h>
+#include <sys/resource.h>
 #include <sys/stat.h>
+#include <sys/wait.h>
 #include <unistd.h>
 
+#include <algorithm>
+
 #include "host/folder.hpp"
+#include "host/service.hpp"
 
 namespace adit::host {
 namespace {
@@ -14,7 +21,7 @@ using testing::HasSubstr;
 
 class UntrustedFolderTest : public testing::Test {
  protected:
-  std::expected<std::optional<std::string>, std::string> take(const std::string& name) {
+  std::expected<std::optional<std::string>, UntrustedFolder::Untaken> take(const std::string& name) {
     const auto opened = UntrustedFolder::open(folder.path());
     EXPECT_TRUE(opened);
     return opened->take(name);
@@ -38,14 +45,14 @@ TEST_F(UntrustedFolderTest, FollowsNoLink) {
   ASSERT_EQ(symlink((folder / "secret").c_str(), (folder / "wanted.json").c_str()), 0);
   const auto taken = take("wanted.json");
   ASSERT_FALSE(taken);
-  EXPECT_THAT(taken.error(), HasSubstr("wanted.json"));
+  EXPECT_THAT(taken.error().why, HasSubstr("wanted.json"));
   EXPECT_FALSE(is_there("wanted.json")) << "or it would be asked for again and again";
   EXPECT_TRUE(is_there("secret"));
 }
 
 TEST_F(UntrustedFolderTest, WaitsForNoFifoAndReadsNoFolder) {
   ASSERT_EQ(mkfifo((folder / "wanted.json").c_str(), 0600), 0);
-  EXPECT_THAT(take("wanted.json").error(), HasSubstr("expected a plain file"));
+  EXPECT_THAT(take("wanted.json").error().why, HasSubstr("expected a plain file"));
   EXPECT_FALSE(is_there("wanted.json"));
   ASSERT_EQ(mkdir((folder / "wanted.json").c_str(), 0700), 0);
   EXPECT_FALSE(take("wanted.json"));
@@ -64,11 +71,51 @@ TEST_F(UntrustedFolderTest, TakesAFolderAwayWithAllThatIsInItAndFollowsNothingTh
   EXPECT_TRUE(is_there("secret"));
 }
 
+TEST_F(UntrustedFolderTest, TakesTheNameOfAFolderThatIsTooDeepToBeDeleted) {
+  int deepest = open(folder.path().c_str(), O_RDONLY | O_DIRECTORY), levels = 0;
+  for (const char* name = "wanted.json"; deepest >= 0 && levels < 300; ++levels, name = "d") {
+    ASSERT_EQ(mkdirat(deepest, name, 0700), 0);
+    const int deeper = openat(deepest, name, O_RDONLY | O_DIRECTORY);
+    close(deepest);
+    deepest = deeper;
+  }
+  close(deepest);
+  rlimit before{};
+  getrlimit(RLIMIT_NOFILE, &before);
+  const rlimit few{.rlim_cur = 256, .rlim_max = before.rlim_max};
+  setrlimit(RLIMIT_NOFILE, &few);
+  const auto taken = take("wanted.json");
+  setrlimit(RLIMIT_NOFILE, &before);
+  ASSERT_FALSE(taken);
+  EXPECT_FALSE(taken.error().stays);
+  EXPECT_FALSE(is_there("wanted.json")) << "or it would be asked for again and again";
+  EXPECT_EQ(take("wanted.json").value(), std::nullopt);
+}
+
+TEST_F(UntrustedFolderTest, SaysSoWhereTheNameStays) {
+  if (geteuid() != 0) GTEST_SKIP() << "needs root";
+  ASSERT_EQ(mkdir((folder / "wanted.json").c_str(), 0700), 0);
+  const pid_t child = fork();
+  if (child == 0) {  // what is mounted on cannot be taken away
+    const bool mounted = unshare(CLONE_NEWNS) == 0 && mount("", "/", "", MS_REC | MS_PRIVATE, "") == 0 &&
+                         mount("none", (folder / "wanted.json").c_str(), "tmpfs", 0, "") == 0;
+    const auto taken = take("wanted.json");
+    _exit(!mounted ? 77 : !taken && taken.error().stays && is_there("wanted.json") ? 0 : 1);
+  }
+  int status = 0;
+  waitpid(child, &status, 0);
+  ASSERT_TRUE(WIFEXITED(status));
+  if (WEXITSTATUS(status) == 77) GTEST_SKIP() << "needs to mount";
+  EXPECT_EQ(WEXITSTATUS(status), 0);
+  EXPECT_EQ(std::ranges::distance(std::filesystem::directory_iterator(folder.path())), 1)
+      << "nothing beside it";
+}
+
 TEST_F(UntrustedFolderTest, ReadsOnlySoMuch) {
   folder.put("wanted.json", std::string(UntrustedFolder::kLargest, ' '));
   EXPECT_EQ(take("wanted.json").value()->size(), UntrustedFolder::kLargest);
   folder.put("wanted.json", std::string(UntrustedFolder::kLargest + 1, ' '));
-  EXPECT_THAT(take("wanted.json").error(), HasSubstr("large"));
+  EXPECT_THAT(take("wanted.json").error().why, HasSubstr("large"));
   EXPECT_FALSE(is_there("wanted.json"));
 }
 
@@ -104,8 +151,8 @@ TEST_F(UntrustedFolderTest, NamesSoManyFilesInOrder) {
   ASSERT_TRUE(opened);
   for (const char* name : {"b", "a"}) folder.put(name, "");
   EXPECT_EQ(opened->names().value(), (std::vector<std::string>{"a", "b"}));
-  for (std::size_t i = 2; i < UntrustedFolder::kMostNames; ++i) folder.put(std::to_string(i), "");
-  EXPECT_EQ(opened->names().value().size(), UntrustedFolder::kMostNames);
+  for (std::size_t i = 2; i < kMostNames; ++i) folder.put(std::to_string(i), "");
+  EXPECT_EQ(opened->names().value().size(), kMostNames);
   folder.put("one more", "");
   EXPECT_THAT(opened->names().error(), HasSubstr("more than 256"));
 }

@@ -116,6 +116,11 @@ class Lights(unittest.TestCase):
         self.assertIn("damaged.json: not JSON", said)
         self.assertEqual(self.lit(), DARK)
 
+    def test_passes_over_what_a_later_adit_saved(self):
+        self.write_settings(chip="no-such-chip", health="H")
+        self.settings.write_text(json.dumps({**json.loads(self.settings.read_text()), "of_later": 1}))
+        self.assertIn("chip no-such-chip", self.ends(self.begin("dark"), code=1))
+
     def test_says_where_nothing_tells_it_of_any_lights(self):
         self.assertIn("neither a board nor settings", self.ends(self.begin("dark", settings="/nowhere"), code=1))
 

@@ -1,6 +1,5 @@
 """The public test servers as they were measured, row by row."""
 
-import base64
 import gzip
 import select
 import time

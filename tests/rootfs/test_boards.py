@@ -4,7 +4,6 @@ import json
 import re
 import sys
 import unittest
-from pathlib import Path
 
 from recipe import BOARDS, IMAGES, TOP, built, conf, nodes
 

@@ -2,6 +2,8 @@
 
 #include <gmock/gmock.h>
 
+#include "icd/sentence.hpp"
+
 namespace adit::update {
 namespace {
 
@@ -33,6 +35,17 @@ TEST(Running, IsReadFromWhatRaucSaysOfTheBox) {
       {"rootfs.0":{"class":"rootfs","bootname":"A","state":"inactive","parent":null}}]})");
   ASSERT_TRUE(running) << running.error();
   EXPECT_EQ(*running, (Running{"adit-qemu-virt", "", "B", "A"}));
+}
+
+TEST(Running, SaysWhetherTheOtherSlotIsNext) {
+  for (const auto& [primary, next] :
+       {std::pair(R"("rootfs.0")", true), std::pair(R"("rootfs.1")", false), std::pair("null", false)}) {
+    const auto running = read_status(
+        icd::sentence(R"({"compatible":"a","booted":"B","boot_primary":)", primary,
+                      R"(,"slots":[{"rootfs.1":{"bootname":"B"}},{"rootfs.0":{"bootname":"A"}}]})"));
+    ASSERT_TRUE(running) << running.error();
+    EXPECT_EQ(running->other_next, next) << primary;
+  }
 }
 
 TEST(Running, IsNotKnownWhereRaucKnowsNoOtherSlot) {

@@ -80,8 +80,8 @@ class Bundles:
 class Box:
     def __init__(self, bundles, version="0.1.0", running="A"):
         self.folder = pathlib.Path(tempfile.mkdtemp(prefix="adit-update-box."))
-        for name in ("wanted", "status", "state", "stick", "bin", "mount"):
-            (self.folder / name).mkdir()
+        for name in ("wanted", "status", "state", "sticks/sda1", "bin", "mount"):
+            (self.folder / name).mkdir(parents=True)
         self.slots = {name: self.folder / f"slot-{name}" for name in ("root-a", "root-b", "boot-a", "boot-b")}
         for name, path in self.slots.items():
             path.write_bytes(name.encode() * 16)
@@ -116,7 +116,8 @@ class Box:
     def _programs(self):
         bin_folder = self.folder / "bin"
         for name in ("fw_printenv", "fw_setenv"):
-            script(bin_folder / name, f'exec {shutil.which(name)} -c {self.folder}/fw_env.config "$@"\n')
+            wait = f"while [ -e {self.folder}/hold ]; do : >{self.folder}/held; sleep 0.1; done\n"
+            script(bin_folder / name, f'{wait if name == "fw_setenv" else ""}exec {shutil.which(name)} -c {self.folder}/fw_env.config "$@"\n')
         script(bin_folder / "rauc", f'exec {shutil.which("rauc")} -c {self.folder}/system.conf "$@"\n')
         script(bin_folder / "systemctl",
                f'echo "$*" >>{self.calls}\n[ "$1" != show ] || cat {self.properties}\n')
@@ -159,7 +160,7 @@ class Box:
 
     def command(self, *words):
         return [ADIT_UPDATE, *words, "--wanted", self.folder / "wanted", "--status", self.folder / "status", "--state",
-                self.folder / "state", "--stick", self.folder / "stick", "--os-release", self.folder / "os-release"]
+                self.folder / "state", "--sticks", self.folder / "sticks", "--os-release", self.folder / "os-release"]
 
     def update(self):
         """Runs adit-update to its end, and gives what it tells."""
@@ -185,14 +186,19 @@ class Box:
         assert status["nonce"] == nonce, status
         return status
 
-    def began_before(self):
-        """The last update was installed in an earlier start of the machine."""
+    def began_before(self, **known):
+        """The last update was installed in an earlier start of the machine; `known`: what of it else was noted."""
         path = self.folder / "state/last.json"
-        path.write_text(json.dumps({**json.loads(path.read_text()), "boot": "an earlier one"}))
+        path.write_text(json.dumps({**json.loads(path.read_text()), "boot": "an earlier one", **known}))
 
     def boot_loader(self):
         said = subprocess.run([self.folder / "bin/fw_printenv"], capture_output=True, check=True).stdout.decode()
         return dict(line.split("=", 1) for line in said.splitlines())
+
+    def hold_the_boot_loader(self):
+        """Its environment cannot be changed while this file is there; `held` beside it: somebody waits for it."""
+        (self.folder / "hold").touch()
+        return self.folder / "hold"
 
     def contents(self):
         return {name: path.read_bytes() for name, path in self.slots.items()}

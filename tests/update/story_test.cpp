@@ -17,7 +17,7 @@ TEST(Story, OfAnInstalledUpdateWaitsForTheRestart) {
 }
 
 TEST(Story, OfAnUpdateThatRunsIsATrial) {
-  EXPECT_EQ(settled(story(Stage::Installed), kNew, "second"), story(Stage::Installed));
+  EXPECT_EQ(settled(story(Stage::Installed), kNew, "second").stage, Stage::Installed);
   EXPECT_TRUE(on_trial(story(Stage::Installed), "B", "second"));
 }
 
@@ -29,6 +29,18 @@ TEST(Story, SaysThatAnUpdateWasLeftWhenTheOldSlotRunsAgain) {
   EXPECT_FALSE(on_trial(left, "A", "second"));
 }
 
+TEST(Story, OfASlotThatRunsIsATrialWhateverWasSeenOfTheEndOfItsWriting) {
+  for (const Stage stage : {Stage::Installing, Stage::Interrupted, Stage::Failed}) {
+    EXPECT_TRUE(on_trial(story(stage), "B", "second")) << name_of(stage);
+    const Story whole = settled(story(stage), kNew, "second");
+    EXPECT_EQ(whole.stage, Stage::Installed) << name_of(stage);
+    EXPECT_EQ(whole.why, "") << name_of(stage);
+    EXPECT_TRUE(on_trial(whole, "B", "second"));
+    EXPECT_EQ(settled(whole, kOld, "third").stage, Stage::Left) << name_of(stage);
+    EXPECT_FALSE(on_trial(story(stage), "A", "second")) << name_of(stage);
+  }
+}
+
 TEST(Story, OfAnInterruptedInstallationIsOverInThisStartOrTheNext) {
   for (const char* boot : {"first", "second"}) {
     const Story broken = settled(story(Stage::Installing), kOld, boot);
@@ -37,12 +49,27 @@ TEST(Story, OfAnInterruptedInstallationIsOverInThisStartOrTheNext) {
   }
 }
 
+TEST(Story, OfAnInstallationThatRaucFinishedByItselfWaitsForTheRestart) {
+  Running finished = kOld;
+  finished.other_next = true;
+  for (const Stage stage : {Stage::Installing, Stage::Interrupted, Stage::Failed}) {
+    const Story whole = settled(story(stage), finished, "first");
+    EXPECT_EQ(whole.stage, Stage::Installed) << name_of(stage);
+    EXPECT_EQ(whole.why, "") << name_of(stage);
+    EXPECT_FALSE(on_trial(whole, "A", "first"));
+  }
+  EXPECT_EQ(settled(story(Stage::Good), finished, "first").stage, Stage::Good);
+}
+
 TEST(Story, ThatIsOverStaysAsItWas) {
-  for (const Stage stage : {Stage::None, Stage::Interrupted, Stage::Failed, Stage::Left, Stage::Good}) {
+  for (const Stage stage : {Stage::None, Stage::Left, Stage::Good}) {
     for (const Running& running : {kOld, kNew}) {
       EXPECT_EQ(settled(story(stage), running, "third"), story(stage)) << name_of(stage);
       EXPECT_FALSE(on_trial(story(stage), running.slot, "third")) << name_of(stage);
     }
+  }
+  for (const Stage stage : {Stage::Interrupted, Stage::Failed}) {
+    EXPECT_EQ(settled(story(stage), kOld, "third"), story(stage)) << name_of(stage);
   }
 }
 

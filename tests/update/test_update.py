@@ -85,6 +85,11 @@ class Installed(OnABox):
 
 
 class Refused(OnABox):
+    def test_a_restart_that_systemd_refuses(self):
+        raucs.script(self.box.folder / "bin/systemctl", "echo no bus >&2; exit 1\n")
+        self.box.ask("restart")
+        self.expect_refused(self.box.update(), "it cannot be started anew: systemctl reboot: no bus (exit status 1)")
+
     def test_another_board(self):
         self.expect_refused(self.box.install(self.bundles.make(board="adit-other"), again=True), "another board")
         self.expect_untouched()
@@ -174,6 +179,19 @@ class Refused(OnABox):
             self.assertEqual(self.box.update()["nonce"], "")
         self.assertEqual(list((self.box.folder / "wanted").iterdir()), [])
 
+    def test_a_request_that_cannot_be_taken_away_ends_in_trouble_and_not_in_a_circle(self):
+        request = self.box.folder / "wanted/update.json"
+        request.mkdir()
+        subprocess.run(["mount", "-t", "tmpfs", "none", request], check=True)
+        try:
+            done = subprocess.run(self.box.command(), env=self.box.environment, capture_output=True, timeout=30, check=False)
+        finally:
+            subprocess.run(["umount", request], check=True)
+        self.assertEqual(done.returncode, 1, "systemd waits before it starts it again")
+        self.assertIn("update.json: Device or resource busy", self.box.status()["trouble"])
+        self.assertEqual(self.box.update()["trouble"], "", "once it can be taken away")
+        self.assertEqual(self.box.install(self.newer)["last"]["stage"], "installed")
+
     def test_what_was_asked_before_the_machine_was_started_anew(self):
         shutil.rmtree(self.box.folder / "status")
         (self.box.folder / "status").mkdir()
@@ -245,8 +263,10 @@ class OnTrial(OnABox):
             status = self.box.update()
             self.assertEqual((status["last"]["stage"], status["last"]["version"]), ("left", "0.2.0"))
             self.assertIn("0.1.0 runs again", status["last"]["why"])
-        self.assertEqual(self.box.boot_loader(), {"BOOT_ORDER": "A B", "BOOT_A_LEFT": "3", "BOOT_B_LEFT": "0"})
+        # Nor once all tries are used up, when the boot loader gives three again to each slot of its order.
+        self.assertEqual(self.box.boot_loader(), {"BOOT_ORDER": "A", "BOOT_A_LEFT": "3", "BOOT_B_LEFT": "0"})
         self.assertEqual(self.box.install(self.newer)["last"]["stage"], "installed")  # the operator may try it again
+        self.assertEqual(self.box.boot_loader(), {"BOOT_ORDER": "B A", "BOOT_A_LEFT": "3", "BOOT_B_LEFT": "3"})
 
     def test_a_slot_that_was_good_once_is_good_as_soon_as_the_service_is_ready(self):
         self.box.start("B")
@@ -285,23 +305,83 @@ class ACutOfThePower(OnABox):
         self.assertEqual(self.box.install(self.newer)["last"]["stage"], "installed")
 
 
+    def test_after_its_end_and_before_the_note_of_it_leaves_the_slot_on_trial(self):
+        self.box.install(self.newer)
+        for stage, why in (("installing", ""), ("interrupted", "install it again"), ("failed", "took longer")):
+            self.box.began_before(stage=stage, why=why)
+            self.box.start("B")
+            status = self.box.update()
+            self.assertEqual((status["last"]["stage"], status["last"]["why"], status["trial"]), ("installed", "", True))
+        self.expect_refused(self.box.install(self.bundles.make("0.3.0")), "is on trial")
+
+
+class Killed(OnABox):
+    def test_while_rauc_works_waits_for_its_end_once_it_is_started_anew_and_tells_it(self):
+        hold = self.box.hold_the_boot_loader()
+        shutil.copy(self.newer, self.box.folder / "wanted/update.raucb")
+        self.box.ask("install")
+        with subprocess.Popen(self.box.command(), env=self.box.environment, stderr=subprocess.DEVNULL) as process:
+            raucs.wait_until(lambda: hold.with_name("held").exists(), "RAUC at work")
+            process.kill()
+        with subprocess.Popen(self.box.command(), env=self.box.environment, stderr=subprocess.DEVNULL) as process:
+            time.sleep(2)
+            self.assertIsNone(process.poll())
+            self.assertEqual(self.box.status()["doing"], "installing")
+            hold.unlink()
+            self.assertEqual(process.wait(60), 0)
+        status = self.box.status()
+        self.assertEqual((status["doing"], status["progress"], status["trouble"]), ("", None, ""))
+        self.assertEqual((status["last"]["stage"], status["last"]["why"]), ("installed", ""))
+        self.assertEqual(self.box.boot_loader()["BOOT_ORDER"], "B A")
+
+
 class AStick(OnABox):
-    def put(self, name, *words, **more):
-        shutil.copy(self.bundles.make(*words, **more), self.box.folder / "stick" / name)
+    def put(self, name, *words, stick="sda1", **more):
+        shutil.copy(self.bundles.make(*words, **more), self.box.folder / "sticks" / stick / name)
 
     def test_with_updates_offers_the_newest_that_fits(self):
         self.put("adit-one.raucb", "0.2.0")
         self.put("adit-two.raucb", "0.10.0")
         self.put("adit-three.raucb", "9.0.0", board="adit-other")
-        (self.box.folder / "stick/adit-four.raucb").write_bytes(b"no bundle")
-        (self.box.folder / "stick/other.raucb").write_bytes(b"not looked at")
+        (self.box.folder / "sticks/sda1/adit-four.raucb").write_bytes(b"no bundle")
+        (self.box.folder / "sticks/sda1/other.raucb").write_bytes(b"not looked at")
         status = self.box.update()
         self.assertEqual((status["stick"], status["stick_trouble"]), ({"name": "adit-two.raucb", "version": "0.10.0"}, ""))
         self.expect_untouched()  # nothing happens by itself
         self.box.ask("stick")
         status = self.box.update()
         self.assertEqual((status["last"]["stage"], status["last"]["version"], status["refusal"]), ("installed", "0.10.0", ""))
-        self.assertTrue((self.box.folder / "stick/adit-two.raucb").exists())
+        self.assertTrue((self.box.folder / "sticks/sda1/adit-two.raucb").exists())
+
+    def test_with_many_is_read_from_the_newest_of_this_board_on(self):
+        for minor in range(2, 12):
+            self.put(f"{raucs.BOARD}-0.{minor}.0.raucb", f"0.{minor}.0")
+        for number in range(8):
+            (self.box.folder / f"sticks/sda1/adit-a-board-9.{number}.0.raucb").write_bytes(b"of another board")
+        self.assertEqual(self.box.update()["stick"], {"name": f"{raucs.BOARD}-0.11.0.raucb", "version": "0.11.0"})
+
+    def test_beside_another_and_with_two_partitions_is_looked_at_like_one(self):
+        for stick in ("sda2", "sdb1"):
+            (self.box.folder / "sticks" / stick).mkdir()
+        self.put("adit-one.raucb", "0.2.0")
+        self.put("adit-one.raucb", "0.3.0", stick="sdb1")
+        self.put("adit-two.raucb", "0.1.0", stick="sda2")
+        self.assertEqual(self.box.update()["stick"], {"name": "adit-one.raucb", "version": "0.3.0"})
+        self.box.ask("stick")
+        self.assertEqual(self.box.update()["last"]["version"], "0.3.0", "of two files that are called alike, the one offered")
+
+    def test_with_a_name_that_is_no_text_says_so(self):
+        shutil.copy(self.newer, os.fsencode(self.box.folder / "sticks/sda1") + b"/adit-\xff.raucb")
+        status = self.box.update()
+        self.assertIsNone(status["stick"])
+        self.assertEqual(status["stick_trouble"], "adit-\\xff.raucb: call it by letters of ASCII alone")
+        self.put("adit-good.raucb", "0.3.0")
+        self.assertEqual(self.box.update()["stick"]["version"], "0.3.0")
+
+    def test_that_is_full_of_files_says_so(self):
+        for number in range(4097):
+            (self.box.folder / f"sticks/sda1/photo-{number}").touch()
+        self.assertEqual(self.box.update()["stick_trouble"], "sda1: holds more than 4096 files")
 
     def test_without_one_that_fits_says_why(self):
         self.put("adit-old.raucb", "0.0.1")

@@ -15,11 +15,15 @@ struct Written : UpdateOptions {
 };
 constexpr host::Flag<Written> kFlags[] = {
     {"good", &Written::good}, {"--help", &Written::help}, {"--version", &Written::version}};
-constexpr host::Value<Written> kValues[] = {
-    {"--wanted", &Written::wanted},         {"--status", &Written::status},
-    {"--state", &Written::state},           {"--sticks", &Written::sticks},
-    {"--os-release", &Written::os_release}, {"--rauc", &Written::rauc},
-    {"--systemctl", &Written::systemctl},   {"--within", &Written::within_seconds}};
+constexpr host::Value<Written> kValues[] = {{"--wanted", &Written::wanted},
+                                            {"--status", &Written::status},
+                                            {"--state", &Written::state},
+                                            {"--sticks", &Written::sticks},
+                                            {"--os-release", &Written::os_release},
+                                            {"--hindrance", &Written::hindrance},
+                                            {"--rauc", &Written::rauc},
+                                            {"--systemctl", &Written::systemctl},
+                                            {"--within", &Written::within_seconds}};
 
 std::optional<std::chrono::seconds> seconds_in(std::string_view text) {
   int seconds = 0;
@@ -46,6 +50,7 @@ const char* const kUpdateUsage =
     "  --state DIR       where what became of the last update is kept (/var/lib/adit-update)\n"
     "  --sticks DIR      in whose folders USB sticks are mounted (/run/adit-stick)\n"
     "  --os-release FILE says by VERSION_ID which version runs (/etc/os-release)\n"
+    "  --hindrance FILE  says, where it is there, why none may be installed (/run/adit-notices/disks)\n"
     "  --rauc CMD        RAUC (rauc)\n"
     "  --systemctl CMD   systemd (systemctl)\n"
     "  --version         prints the version\n"

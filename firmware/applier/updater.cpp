@@ -126,6 +126,7 @@ std::string Updater::install(const std::expected<BundleFile, std::string>& file,
     return icd::sentence(status_.running.version, " is on trial: wait until it has been healthy for ",
                          update::kHealthyFor.count(), " s");
   }
+  if (const auto why = host::read_file(options_.hindrance)) return why->substr(0, why->find('\n'));
   status_.doing = "checking";
   tell();
   const auto bundle = rauc_.info(file->path());

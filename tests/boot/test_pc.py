@@ -44,8 +44,8 @@ class Pc(Updating, Story):
         self.box.wait_until(lambda: self.box.console.run(f"cat {NOTICE}")[0] == 0, "it to be noticed", 30)
         self.box.wait_until(lambda: self.stands()["managed"], "adit-update to have told what runs", 60)
         self.send(bundle_of_nothing(self.folder, REFUSED, boards.PC.name))
-        self.settled("failed", REFUSED, within=60)
-        self.assertIn("2 disks hold an Adit", self.box.console.ask("journalctl -b -u rauc --no-pager"))
+        self.box.wait_until(lambda: self.stands()["refusal"], "a refusal", 60)
+        self.assertIn("2 disks hold an Adit", self.stands()["refusal"])
         self.box.pull_stick()
         self.box.wait_until(lambda: self.box.console.run(f"ls {NOTICE}")[0] != 0, "it to be gone", 30)
 

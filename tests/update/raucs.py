@@ -160,7 +160,8 @@ class Box:
 
     def command(self, *words):
         return [ADIT_UPDATE, *words, "--wanted", self.folder / "wanted", "--status", self.folder / "status", "--state",
-                self.folder / "state", "--sticks", self.folder / "sticks", "--os-release", self.folder / "os-release"]
+                self.folder / "state", "--sticks", self.folder / "sticks", "--os-release", self.folder / "os-release",
+                "--hindrance", self.folder / "hindrance"]
 
     def update(self):
         """Runs adit-update to its end, and gives what it tells."""

@@ -335,6 +335,16 @@ class Killed(OnABox):
         self.assertEqual(self.box.boot_loader()["BOOT_ORDER"], "B A")
 
 
+class AHindrance(OnABox):
+    def test_is_told_as_it_stands_and_nothing_is_installed_until_it_is_gone(self):
+        hindrance = self.box.folder / "hindrance"
+        hindrance.write_text("2 disks hold an Adit: take one out\nmore\n")
+        self.assertEqual(self.box.install(self.bundles.make())["refusal"], "2 disks hold an Adit: take one out")
+        self.expect_untouched()
+        hindrance.unlink()
+        self.assertEqual(self.box.install(self.bundles.make())["last"]["stage"], "installed")
+
+
 class AStick(OnABox):
     def put(self, name, *words, stick="sda1", **more):
         shutil.copy(self.bundles.make(*words, **more), self.box.folder / "sticks" / stick / name)

@@ -6,21 +6,14 @@ import { createServer } from "node:net";
 import { tmpdir } from "node:os";
 import { dirname, join } from "node:path";
 import { after, before } from "node:test";
-import { setTimeout as sleep } from "node:timers/promises";
+import { until } from "./box.js";
 import { launch, visit } from "./stage.js";
+
+export { until };
 
 const BIN = process.env.ADIT_BIN ?? dirname(process.env.SCENE_SERVER);
 export const TOKENS = { scoring: "flux230{showroom", mapping: "rust871}backdoor", team: "team-own-token-1" };
 export const PASSWORD = "a long cave password", LOOKING = "look, do not touch";
-
-/** What `look()` gives, once it is something. */
-export async function until(look, what, within = 15_000) {
-  for (const end = Date.now() + within; Date.now() < end; await sleep(50)) {
-    const found = await look();
-    if (found) return found;
-  }
-  throw new Error(`waited ${within} ms in vain for ${what}`);
-}
 
 export async function freePort() {
   const server = createServer().listen(0, "127.0.0.1");

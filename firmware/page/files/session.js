@@ -11,11 +11,12 @@ export function session(anew = false) {
   return asked;
 }
 
-let sitsOut = false;
+let sitsOut = false, leaves = false;
 
-/** Asks for a password, and comes back here afterwards. */
+/** Asks for a password, and comes back here afterwards. However many hear that nobody is logged in, the page leaves once. */
 export function toLogin() {
-  if (sitsOut) return;
+  if (sitsOut || leaves) return;
+  leaves = true;
   const here = location.pathname + location.search + location.hash;
   location.replace(`login.html?next=${encodeURIComponent(here)}`);
 }

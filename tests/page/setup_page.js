@@ -1,8 +1,23 @@
 // The set-up's page, for its tests.
+import { come, freshBox, PASSWORD } from "./fresh_box.js";
+
+export const COURSES = [
+  { name: "A", scoring: { address: "10.100.1.200", port: 8000 }, mapping: { address: "10.100.1.201", port: 8000 } },
+  { name: "B", scoring: { address: "10.100.2.200", port: 8000 }, mapping: { address: "10.100.2.201", port: 8000 } },
+];
 
 export const field = (page, path) => page.locator(`.field[data-path="${path}"]`);
 export const step = (page, name) => page.locator("#steps").getByRole("link", { name });
 export const hears = (page, words) => page.locator("#link, #missing, #typed").filter({ hasText: words }).first().waitFor();
+
+/** A box that is set up but for `settings`, and the set-up's page of its operator. */
+export async function ready(t, path = "setup", settings = {}) {
+  const box = await freshBox(t, { secrets: ["scoring", "mapping", "team"], settings });
+  const ask = await box.settle();
+  const page = await come(t, box, path, PASSWORD);
+  await hears(page, "Live");
+  return { box, ask, page };
+}
 
 /** What the browser complained of; that a box was away while it began anew is none. */
 export const complaints = (page, ...known) => page.complaints.filter((each) => !["ERR_CONNECTION", "ERR_EMPTY", ...known].some((part) => each.includes(part)));

@@ -1,0 +1,165 @@
+// What is typed on the set-up's page: checked as it is typed, and never lost.
+import assert from "node:assert/strict";
+import { test } from "node:test";
+import { come, PASSWORD, until } from "./fresh_box.js";
+import { complaints, COURSES, field, hears, ready, review, step, type } from "./setup_page.js";
+
+test("checks the names of robots as they are typed", async (t) => {
+  const { ask, page } = await ready(t, "setup#robots");
+  const add = page.getByRole("button", { name: "Add a robot" });
+  for (const name of ["", "two words", "elevenchars", "ugv-1", "böse"]) {
+    await add.click();
+    await page.keyboard.type(name);
+    await page.locator("[data-path='robots[0].name'] .wrong").filter({ hasText: "1 to 10 letters, digits and underscores" }).waitFor().catch((error) => {
+      throw new Error(`${name}: ${error.message}`);
+    });
+    await page.getByRole("button", { name: "Remove: Robot 1" }).click();
+  }
+  for (const name of ["ugv1", "ugv1"]) {
+    await add.click();
+    await page.keyboard.type(name);
+  }
+  await page.locator("[data-path='robots[1].name'] .wrong", { hasText: "the same as robots[0].name" }).waitFor();
+  await page.getByRole("button", { name: "Look and apply" }).click();
+  await page.waitForFunction(() => document.activeElement.closest("[data-path]")?.dataset.path === "robots[1].name"); // the error
+  await type(page, "robots[1].name", "uav1");
+  await type(page, "robots[1].alias", "ugv1");
+  await page.locator("[data-path='robots[1].alias'] .wrong", { hasText: "an alias is another name" }).waitFor();
+  await type(page, "robots[1].alias", "drone one");
+  await page.locator("[data-path='robots[1].alias'] .wrong", { hasText: "visible ASCII" }).waitFor();
+  await type(page, "robots[1].alias", "drone-1");
+  await hears(page, /changes? not yet applied/);
+  await page.getByRole("button", { name: "Look and apply" }).click();
+  await review(page);
+  await page.getByRole("button", { name: "Apply", exact: true }).click();
+  await hears(page, /Applied\./);
+  assert.deepEqual((await ask("/adit/settings")).said.settings.robots, [{ name: "ugv1", alias: "" }, { name: "uav1", alias: "drone-1" }]);
+  await step(page, "Robots").getByText("2 named").waitFor();
+  assert.deepEqual(complaints(page), []);
+});
+
+/** What no setting of its kind can be. */
+const WRONG = { whole: ["-1", "1.5", "many", "99999999999999999999", ""], real: ["0x", "-3", "many", ""], text: ["ß ß", "\u0007"] };
+
+test("says at every field what is wrong with it, and keeps what was typed", async (t) => {
+  const { page } = await ready(t, "setup", { robots: [{ name: "ugv1" }], courses: COURSES });
+  const { keys } = await page.evaluate(async () => (await fetch("/adit/settings")).json());
+  const kinds = new Map(keys.map(({ path, kind }) => [path, kind]));
+  let checked = 0;
+  for (const at of ["network", "post", "robots", "courses", "all"]) {
+    await page.evaluate((at) => (location.hash = at), at);
+    const here = page.locator(`#step-${at}`);
+    await here.waitFor();
+    const paths = await here.locator(".field[data-path]:not(form .field)").evaluateAll((all) => all.map((each) => each.dataset.path));
+    const ofKind = (path) => WRONG[kinds.get(path.replace(/\[\d\]/g, "[]"))] ?? []; // a choice and a flag cannot be wrong
+    for (let i = 0; i < WRONG.whole.length; ++i) {
+      const wrong = new Map(paths.flatMap((path) => (ofKind(path)[i] === undefined ? [] : [[path, ofKind(path)[i]]])));
+      for (const [path, text] of wrong) await type(page, path, text);
+      for (const [path, text] of wrong) {
+        await field(page, path).locator("[aria-invalid=true]").waitFor().catch(() => assert.fail(`${path} takes ${JSON.stringify(text)}`));
+        const control = field(page, path).locator("input");
+        const said = await control.evaluate((node) => document.getElementById(node.getAttribute("aria-describedby").split(" ")[0]).textContent);
+        assert.notEqual(said, "", path);
+        assert.equal(await control.inputValue(), text, path);
+        ++checked;
+      }
+    }
+    await page.getByRole("button", { name: "Drop" }).click();
+    await page.waitForFunction(() => !document.querySelector("[aria-invalid=true]"));
+  }
+  assert.ok(checked > 100, `${checked} wrong inputs`);
+  assert.deepEqual(complaints(page), []);
+});
+
+test("lists the errors of other steps, each with a way to it", async (t) => {
+  const { page } = await ready(t, "setup#post");
+  await type(page, "command_post.scoring.port", "0");
+  await hears(page, "1 error to mend");
+  await step(page, "Command Post").getByText("1 error").waitFor();
+  await step(page, "Robots").click();
+  await page.locator("#typed").getByRole("button", { name: /^command_post\.scoring\.port: expected/ }).click();
+  await page.getByRole("heading", { name: "Command Post" }).waitFor();
+  await page.waitForFunction(() => document.activeElement.closest("[data-path]")?.dataset.path === "command_post.scoring.port");
+  await page.getByRole("button", { name: "Next" }).click();
+  assert.ok(await page.getByRole("heading", { name: "Command Post" }).isVisible(), "an error is mended before one goes on");
+  await page.getByRole("button", { name: "Drop" }).click();
+  assert.equal(await field(page, "command_post.scoring.port").locator("input").inputValue(), "1");
+  assert.ok(await page.locator("#typed").isHidden());
+});
+
+test("shows two operators what each has done, and lets one go on from the newer", async (t) => {
+  const { box, ask, page } = await ready(t, "setup#post", { robots: [{ name: "ugv1" }, { name: "ugv2" }] });
+  const other = await come(t, box, "setup#post", PASSWORD);
+  await type(page, "command_post.scoring.port", "8001");
+  await type(other, "command_post.scoring.port", "8002");
+  await type(other, "command_post.mapping.port", "8003");
+  for (const [each, port] of [[other, "8002"]]) {
+    await each.getByRole("button", { name: "Look and apply" }).click();
+    assert.match(JSON.stringify(await review(each)), new RegExp(port));
+    await each.getByRole("button", { name: "Apply", exact: true }).click();
+    await hears(each, /Applied\./);
+  }
+  await page.getByRole("button", { name: "Look and apply" }).click();
+  await page.getByRole("heading", { name: "Somebody else has saved settings meanwhile" }).waitFor();
+  assert.deepEqual(await review(page), [["command_post.scoring.port", "1", "8002", "8001"], ["command_post.mapping.port", "2", "8003", "2"]]);
+  await page.getByRole("button", { name: "Go on with mine over theirs" }).click();
+  await page.getByRole("heading", { name: "Apply this?" }).waitFor();
+  assert.deepEqual(await review(page), [["command_post.scoring.port", "8002", "8001"]]);
+  await page.getByRole("button", { name: "Apply", exact: true }).click();
+  await hears(page, /Applied\./);
+  const { command_post: post } = (await ask("/adit/settings")).said.settings;
+  assert.deepEqual([post.scoring.port, post.mapping.port], [8001, 8003]);
+
+  // Both are in the dialog when the first of them applies: the box itself refuses the second.
+  await type(other, "command_post.mapping.port", "8004");
+  await hears(other, /change/);
+  await page.evaluate(() => (location.hash = "robots"));
+  await page.getByRole("button", { name: "Remove: Robot 2" }).click();
+  await page.getByRole("button", { name: "Look and apply" }).click();
+  await review(page);
+  const saved = await ask("/adit/settings/check", { settings: {} });
+  assert.equal(saved.status, 200);
+  const { settings, tag } = (await ask("/adit/settings")).said;
+  settings.robots.push({ name: "uav1", alias: "" });
+  assert.equal((await ask("/adit/settings", { settings, base: tag })).status, 200);
+  await until(async () => (await ask("/adit/settings").catch(() => ({}))).said?.tag !== tag, "the box to run with it");
+  await page.getByRole("button", { name: "Apply", exact: true }).click();
+  await page.getByRole("heading", { name: "Somebody else has saved settings meanwhile" }).waitFor();
+  await page.getByRole("button", { name: "Go on with mine over theirs" }).click();
+  await page.getByRole("button", { name: "Look and apply" }).click();
+  assert.deepEqual((await review(page)).map(([path]) => path.replace(/\..*/, "")), ["robots[ugv2]", "robots[ugv2]"]);
+  await page.getByRole("button", { name: "Apply", exact: true }).click();
+  await hears(page, /Applied\./);
+  assert.deepEqual((await ask("/adit/settings")).said.settings.robots.map(({ name }) => name), ["ugv1", "uav1"]);
+
+  await other.getByRole("button", { name: "Look and apply" }).click();
+  await other.getByRole("button", { name: "Drop mine" }).click();
+  await other.waitForFunction(() => document.querySelector("#typed").hidden);
+  assert.equal(await field(other, "command_post.mapping.port").locator("input").inputValue(), "8003");
+});
+
+test("loses nothing that was typed when the box is lost in the middle of it", async (t) => {
+  const { box, ask, page } = await ready(t, "setup#robots");
+  await page.getByRole("button", { name: "Add a robot" }).click();
+  await page.keyboard.type("ug");
+  await box.end("aditd", "SIGKILL");
+  await page.keyboard.type("v1");
+  await hears(page, "Box lost");
+  await hears(page, "What you typed is kept");
+  await page.getByRole("button", { name: "Look and apply" }).click();
+  assert.equal(await field(page, "robots[0].name").locator("input").inputValue(), "ugv1");
+  await box.startAditd();
+  await hears(page, "Live");
+  await hears(page, /1 change|2 changes/);
+  await page.reload();
+  await hears(page, /1 change|2 changes/);
+  assert.equal(await field(page, "robots[0].name").locator("input").inputValue(), "ugv1", "kept through a reload, too");
+  await page.getByRole("button", { name: "Look and apply" }).click();
+  await review(page);
+  await box.end("aditd", "SIGKILL");
+  await page.getByRole("button", { name: "Apply", exact: true }).click();
+  await page.waitForTimeout(1000);
+  await box.startAditd();
+  await hears(page, /Applied\./);
+  assert.equal((await ask("/adit/settings")).said.settings.robots[0].name, "ugv1");
+});

@@ -1,0 +1,143 @@
+#!/usr/bin/python3
+"""What becomes of an update: on trial, good or left; cut off, or told by nobody."""
+
+import os
+import shutil
+import signal
+import subprocess
+import time
+import unittest
+
+import raucs
+from on_a_box import OnABox
+
+
+class OnTrial(OnABox):
+    def setUp(self):
+        super().setUp()
+        self.box.install(self.newer)
+        self.box.began_before()
+        (self.box.folder / "os-release").write_text("VERSION_ID=0.2.0\n")
+
+    def watch(self, seconds, *words):
+        """`adit-update good` for so long; whether it ended by itself."""
+        with subprocess.Popen(self.box.command("good", *words), env=self.box.environment, stderr=subprocess.DEVNULL) as process:
+            try:
+                return process.wait(seconds) == 0
+            except subprocess.TimeoutExpired:
+                process.send_signal(signal.SIGTERM)
+                return False
+
+    def ready_for(self, seconds):
+        since = int((time.clock_gettime(time.CLOCK_MONOTONIC) - seconds) * 1e6)
+        self.box.properties.write_text(f"ActiveState=active\nActiveEnterTimestampMonotonic={since}\n")
+
+    def test_the_new_slot_is_good_after_a_minute_of_health(self):
+        self.box.start("B")
+        subprocess.run([self.box.folder / "bin/fw_setenv", "BOOT_B_LEFT", "2"], check=True)  # the boot loader counts
+        self.assertTrue(self.box.update()["trial"])
+        self.ready_for(57)
+        self.assertFalse(self.watch(1))
+        self.assertEqual(self.box.boot_loader()["BOOT_B_LEFT"], "2")
+        self.ready_for(60)
+        self.assertTrue(self.watch(20))
+        self.assertEqual(self.box.boot_loader(), {"BOOT_ORDER": "B A", "BOOT_A_LEFT": "3", "BOOT_B_LEFT": "3"})
+        self.assertIn("start --no-block adit-update.service", self.box.calls.read_text())
+        status = self.box.update()
+        self.assertEqual((status["trial"], status["last"]["stage"], status["last"]["version"]), (False, "good", "0.2.0"))
+        self.assertNotIn("reboot", self.box.calls.read_text())
+
+    def test_a_slot_that_does_not_come_up_healthy_in_time_ends_in_a_restart(self):
+        self.box.start("B")
+        self.ready_for(5)
+        self.assertTrue(self.watch(20, "--within", "3"))
+        self.assertEqual(self.box.calls.read_text().splitlines()[-1], "reboot")
+        self.assertEqual(self.box.update()["last"]["stage"], "installed")
+
+    def test_nothing_else_is_installed_meanwhile(self):
+        self.box.start("B")
+        status = self.box.install(self.bundles.make("0.3.0"))
+        self.expect_refused(status, "0.2.0 is on trial")
+
+    def test_a_slot_that_was_left_is_not_tried_again_and_says_so(self):
+        subprocess.run([self.box.folder / "bin/fw_setenv", "BOOT_B_LEFT", "0"], check=True)
+        (self.box.folder / "os-release").write_text("VERSION_ID=0.1.0\n")
+        self.box.start("A")
+        for _ in range(2):  # and says so from then on
+            status = self.box.update()
+            self.assertEqual((status["last"]["stage"], status["last"]["version"]), ("left", "0.2.0"))
+            self.assertIn("0.1.0 runs again", status["last"]["why"])
+        # Nor once all tries are used up, when the boot loader gives three again to each slot of its order.
+        self.assertEqual(self.box.boot_loader(), {"BOOT_ORDER": "A", "BOOT_A_LEFT": "3", "BOOT_B_LEFT": "0"})
+        self.assertEqual(self.box.install(self.newer)["last"]["stage"], "installed")  # the operator may try it again
+        self.assertEqual(self.box.boot_loader(), {"BOOT_ORDER": "B A", "BOOT_A_LEFT": "3", "BOOT_B_LEFT": "3"})
+
+    def test_a_slot_that_was_good_once_is_good_as_soon_as_the_service_is_ready(self):
+        self.box.start("B")
+        self.ready_for(60)
+        self.assertTrue(self.watch(20))
+        subprocess.run([self.box.folder / "bin/fw_setenv", "BOOT_B_LEFT", "1"], check=True)
+        self.box.properties.write_text("ActiveState=activating\n")
+        self.assertFalse(self.watch(3, "--within", "1"))
+        self.assertEqual(self.box.boot_loader()["BOOT_B_LEFT"], "1")
+        self.ready_for(0)
+        self.assertTrue(self.watch(20))
+        self.assertEqual(self.box.boot_loader()["BOOT_B_LEFT"], "3")
+        self.assertNotIn("reboot", self.box.calls.read_text())
+
+
+class ACutOfThePower(OnABox):
+    def test_in_the_middle_of_the_writing_leaves_what_runs_and_what_is_next(self):
+        shutil.copy(self.bundles.make(root_size=(4 << 20) - 4096), self.box.folder / "wanted/update.raucb")
+        self.box.ask("install")
+        # The other slot's new content does not come to its end: the process that writes it is stopped where it begins.
+        os.remove(self.box.slots["root-b"])
+        os.mkfifo(self.box.slots["root-b"])
+        with subprocess.Popen(self.box.command(), env=self.box.environment, stderr=subprocess.DEVNULL) as process:
+            raucs.wait_until(lambda: self.box.boot_loader()["BOOT_B_LEFT"] == "0", "the other slot marked bad")
+            self.box.halt()
+            process.kill()
+        os.remove(self.box.slots["root-b"])
+        self.box.slots["root-b"].write_bytes(bytes(4 << 20))
+        self.box.start("A")
+        status = self.box.update()
+        self.assertEqual(status["last"]["stage"], "interrupted")
+        self.assertEqual((self.box.contents()["root-a"], self.box.contents()["boot-a"]),
+                         (self.before["root-a"], self.before["boot-a"]))
+        loader = self.box.boot_loader()
+        self.assertEqual((loader["BOOT_ORDER"].split()[0], loader["BOOT_A_LEFT"], loader["BOOT_B_LEFT"]), ("A", "3", "0"))
+        self.assertEqual(self.box.install(self.newer)["last"]["stage"], "installed")
+
+
+    def test_after_its_end_and_before_the_note_of_it_leaves_the_slot_on_trial(self):
+        self.box.install(self.newer)
+        for stage, why in (("installing", ""), ("interrupted", "install it again"), ("failed", "took longer")):
+            self.box.began_before(stage=stage, why=why)
+            self.box.start("B")
+            status = self.box.update()
+            self.assertEqual((status["last"]["stage"], status["last"]["why"], status["trial"]), ("installed", "", True))
+        self.expect_refused(self.box.install(self.bundles.make("0.3.0")), "is on trial")
+
+
+class Killed(OnABox):
+    def test_while_rauc_works_waits_for_its_end_once_it_is_started_anew_and_tells_it(self):
+        hold = self.box.hold_the_boot_loader()
+        shutil.copy(self.newer, self.box.folder / "wanted/update.raucb")
+        self.box.ask("install")
+        with subprocess.Popen(self.box.command(), env=self.box.environment, stderr=subprocess.DEVNULL) as process:
+            raucs.wait_until(lambda: hold.with_name("held").exists(), "RAUC at work")
+            process.kill()
+        with subprocess.Popen(self.box.command(), env=self.box.environment, stderr=subprocess.DEVNULL) as process:
+            time.sleep(2)
+            self.assertIsNone(process.poll())
+            self.assertEqual(self.box.status()["doing"], "installing")
+            hold.unlink()
+            self.assertEqual(process.wait(60), 0)
+        status = self.box.status()
+        self.assertEqual((status["doing"], status["progress"], status["trouble"]), ("", None, ""))
+        self.assertEqual((status["last"]["stage"], status["last"]["why"]), ("installed", ""))
+        self.assertEqual(self.box.boot_loader()["BOOT_ORDER"], "B A")
+
+
+if __name__ == "__main__":
+    unittest.main()

@@ -95,8 +95,9 @@ class ACutOfThePower(OnABox):
         os.mkfifo(self.box.slots["root-b"])
         with subprocess.Popen(self.box.command(), env=self.box.environment, stderr=subprocess.DEVNULL) as process:
             raucs.wait_until(lambda: self.box.boot_loader()["BOOT_B_LEFT"] == "0", "the other slot marked bad")
+            process.kill()  # before RAUC, whose end it would note
+            process.wait()
             self.box.halt()
-            process.kill()
         os.remove(self.box.slots["root-b"])
         self.box.slots["root-b"].write_bytes(bytes(4 << 20))
         self.box.start("A")
@@ -107,7 +108,6 @@ class ACutOfThePower(OnABox):
         loader = self.box.boot_loader()
         self.assertEqual((loader["BOOT_ORDER"].split()[0], loader["BOOT_A_LEFT"], loader["BOOT_B_LEFT"]), ("A", "3", "0"))
         self.assertEqual(self.box.install(self.newer)["last"]["stage"], "installed")
-
 
     def test_after_its_end_and_before_the_note_of_it_leaves_the_slot_on_trial(self):
         self.box.install(self.newer)

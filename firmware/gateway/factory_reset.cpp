@@ -27,7 +27,9 @@ std::expected<void, std::string> FactoryReset::begin() const {
 
 std::expected<void, std::string> FactoryReset::finish() const {
   std::error_code unknown;
-  if (!std::filesystem::exists(begun(), unknown) && !unknown) return {};
+  const bool is_begun = std::filesystem::exists(begun(), unknown);
+  if (unknown) return std::unexpected(begun() + ": " + unknown.message());
+  if (!is_begun) return {};
   if (auto done = store_.forget(); !done) return done;
   const NetworkRequests network(state_, "");
   if (auto asked = network.ask(network::Forget{NetworkRequests::draw_nonce()}); !asked) return asked;

@@ -64,6 +64,13 @@ TEST_F(FactoryResetTest, GoesOnAfterItCameToNoEnd) {
   expect_first_start();
 }
 
+TEST_F(FactoryResetTest, ForgetsNothingWhereItIsNotKnownWhetherItWasBegun) {
+  const FactoryReset unknown(store_, state_ / std::string(300, 'x'), runtime_.path());
+  EXPECT_THAT(unknown.finish().error(), HasSubstr("/reset: File name too long"));
+  EXPECT_TRUE(kept("settings.json") && kept("secrets/team.token"));
+  EXPECT_TRUE(std::filesystem::exists(runtime_ / "sessions.json"));
+}
+
 TEST_F(FactoryResetTest, IsRefusedWhereItCannotBeWrittenDown) {
   const FactoryReset nowhere(store_, state_ / "none", runtime_.path());
   EXPECT_THAT(nowhere.begin().error(), HasSubstr("No such file or directory"));

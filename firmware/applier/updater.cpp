@@ -109,7 +109,7 @@ void Updater::answer(const update::Request& request, const host::UntrustedFolder
     status_.refusal = install(BundleFile::take(folder, update::kBundleFile), request.again);
   } else if (request.what == What::Restart) {
     status_.refusal = restart();
-  } else if (look_at_sticks(); status_.stick) {
+  } else if (status_.stick) {
     status_.refusal = install(BundleFile::open(on_stick_), request.again);
   } else {
     status_.refusal = status_.stick_trouble.empty() ? "there is no update on a stick" : status_.stick_trouble;

@@ -187,7 +187,7 @@ std::expected<void, std::string> NetworkdFiles::take_back() {
 /// Where the box came with no addresses, networkd has none of ours.
 std::expected<std::optional<network::Numbers>, std::string> NetworkdFiles::forget() {
   for (const std::string& file : {confirmed_file(), endpoints_file()}) {
-    if (!host::remove_file(file)) return std::unexpected(host::trouble(file, errno));
+    if (auto removed = host::remove_file(file); !removed) return std::unexpected(removed.error());
   }
   endpoints_ = {};
   tried_.reset();

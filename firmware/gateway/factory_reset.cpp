@@ -9,14 +9,6 @@
 #include "host/service.hpp"
 
 namespace adit::gateway {
-namespace {
-
-std::expected<void, std::string> remove(const std::string& file) {
-  if (host::remove_file(file)) return {};
-  return std::unexpected(file + ": cannot be removed");
-}
-
-}  // namespace
 
 FactoryReset::FactoryReset(const Store& store, std::string state_folder, std::string runtime_folder)
     : store_(store), state_(std::move(state_folder)), runtime_(std::move(runtime_folder)) {}
@@ -36,7 +28,7 @@ std::expected<void, std::string> FactoryReset::finish() const {
   // Last: until then the box does not look as if it were reset.
   for (const std::string& file : {runtime_ + '/' + SessionKeeper::kFile, state_ + '/' + Accounts::kCodeFile,
                                   state_ + '/' + Accounts::kFile, begun()}) {
-    if (auto done = remove(file); !done) return done;
+    if (auto done = host::remove_file(file); !done) return done;
   }
   host::log(host::Level::Notice, "all that was set up is forgotten");
   return {};

@@ -103,10 +103,7 @@ std::expected<void, std::string> Store::make_secrets_folder() const {
 
 std::expected<void, std::string> Store::save_token(const std::string& name,
                                                    const std::optional<icd::BearerToken>& token) const {
-  if (!token) {
-    if (host::remove_file(token_file(name))) return {};
-    return std::unexpected(token_file(name) + ": cannot be removed");
-  }
+  if (!token) return host::remove_file(token_file(name));
   if (auto made = make_secrets_folder(); !made) return made;
   return host::write_file(token_file(name), token->reveal() + "\n", host::kOursAlone);
 }
@@ -134,7 +131,7 @@ bool Store::take_back() const {
     host::log(host::Level::Error, "the settings before cannot be written", {{"why", written.error()}});
     return false;
   }
-  return host::remove_file(file_before());
+  return host::remove_file(file_before()).has_value();
 }
 
 std::expected<void, std::string> Store::forget() const {
@@ -144,7 +141,7 @@ std::expected<void, std::string> Store::forget() const {
     if (error) return std::unexpected(folder + ": " + error.message());
   }
   for (const std::string& each : {file_before(), file(), file() + kDamaged}) {
-    if (!host::remove_file(each)) return std::unexpected(each + ": cannot be removed");
+    if (auto removed = host::remove_file(each); !removed) return removed;
   }
   return {};
 }

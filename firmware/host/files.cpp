@@ -100,9 +100,13 @@ std::expected<std::vector<std::string>, std::string> names_in(const std::string&
   return names;
 }
 
-bool remove_file(const std::string& path) {
-  if (unlink(path.c_str()) != 0) return errno == ENOENT;
-  return sync_folder(path);
+std::expected<void, std::string> remove_file(const std::string& path) {
+  if (unlink(path.c_str()) != 0) {
+    if (errno == ENOENT) return {};
+    return std::unexpected(trouble(path + ": cannot be removed", errno));
+  }
+  if (!sync_folder(path)) return std::unexpected(trouble(folder_of(path), errno));
+  return {};
 }
 
 std::string boot() {

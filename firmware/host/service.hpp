@@ -41,8 +41,8 @@ inline constexpr std::size_t kMostNames = 256;
 std::expected<std::vector<std::string>, std::string> names_in(const std::string& folder,
                                                               std::size_t most = kMostNames);
 
-/// Removes a file, for good once this is true; also where there was none.
-bool remove_file(const std::string& path);
+/// Removes a file, for good once this has succeeded; also where there was none. An error names the file.
+std::expected<void, std::string> remove_file(const std::string& path);
 
 struct Secrets {
   std::map<std::string, icd::BearerToken, std::less<>> tokens;  // by name: "scoring", "course.A.mapping"

@@ -163,6 +163,8 @@ class Connection::Impl : public std::enable_shared_from_this<Impl> {
     if (std::exchange(gives_up_after_, exchange_->answer_within()) != exchange_->answer_within()) {
       give_up_after(fd_.get(), exchange_->answer_within());
     }
+    // What is given up must not arrive after what follows it on another connection, nor be recorded unseen.
+    reset_on_close(fd_.get(), true);
     exchange_->begin(loop_.now());
     listen_again();
     write();
@@ -199,6 +201,7 @@ class Connection::Impl : public std::enable_shared_from_this<Impl> {
 
   void answered() {
     Answered answer = exchange_->take_answer();
+    reset_on_close(fd_.get(), exchange_->sent() < exchange_->total());
     // The measured mapping server promises keep-alive with a 4xx and closes all the same.
     const bool keep = exchange_->may_keep_alive() && answer.status < 400;
     if (keep) {

@@ -117,6 +117,10 @@ void give_up_after(int fd, std::chrono::milliseconds silence) {
   set(fd, IPPROTO_TCP, TCP_USER_TIMEOUT, static_cast<unsigned>(silence.count()));
 }
 
+void reset_on_close(int fd, bool reset) {
+  set(fd, SOL_SOCKET, SO_LINGER, linger{.l_onoff = reset ? 1 : 0, .l_linger = 0});
+}
+
 bool is_quiet(int fd) {
   char byte = 0;
   return ::recv(fd, &byte, 1, MSG_PEEK | MSG_DONTWAIT) < 0 && (errno == EAGAIN || errno == EWOULDBLOCK);

@@ -12,7 +12,7 @@ export const TOKENS = { scoring: "scoring-token-1", mapping: "mapping-token-1", 
 export const OPERATOR = "correct horse battery", VIEWER = "look, do not touch";
 
 /** What `look()` gives, once it is something. */
-export async function until(look, what, within = 15_000) {
+export async function until(look, what, within = 60_000) {
   for (const end = Date.now() + within; Date.now() < end; await sleep(50)) {
     const found = await look();
     if (found) return found;

@@ -1,5 +1,7 @@
 #include <gmock/gmock.h>
 
+#include <atomic>
+#include <functional>
 #include <string>
 #include <thread>
 
@@ -127,6 +129,56 @@ TEST_F(DoubtfulRequests, AreThoseWhoseEarlyAnswerEndsInAReset) {
     wire.reset();
   });
   expect_doubt(peer, "");
+}
+
+/// Whether a connection that `use` uses and then leaves ended in a reset, for the peer of this script.
+class Endings : public Asking {
+ protected:
+  bool was_reset(const Peer::Script& script, const std::function<void(Connection&)>& use) {
+    bool reset = false;
+    {
+      const ListeningPeer peer([&](Wire& wire) {
+        script(wire);
+        wire.wait_for_close();
+        reset = wire.was_reset();
+      });
+      Connection connection(loop_, peer.endpoint(), token());
+      use(connection);
+    }
+    return reset;
+  }
+};
+
+TEST_F(Endings, LeaveNothingOfARequestInDoubtThatMightArriveLater) {
+  const auto deaf = [](Wire&) { std::this_thread::sleep_for(milliseconds(400)); };
+  for (const std::string& body : {std::string("a report"), megabytes(1)}) {
+    EXPECT_TRUE(was_reset(deaf, [&](Connection& connection) {
+      Request request = post(body);
+      request.answer_within = milliseconds(100);
+      EXPECT_TRUE(std::holds_alternative<InDoubt>(ask(connection, std::move(request))));
+    }));
+  }
+}
+
+TEST_F(Endings, LeaveNothingOfARequestThatNobodyWaitsForAnyMore) {
+  std::atomic<bool> came = false;
+  const auto silent = [&](Wire& wire) { wire.read_request(), came = true; };
+  EXPECT_TRUE(was_reset(silent, [&](Connection& connection) {
+    connection.send(post("a report"), [](const Outcome&) { ADD_FAILURE() << "done was called"; });
+    EXPECT_TRUE(turn_until([&] { return came.load(); }));
+  }));
+}
+
+TEST_F(Endings, AreInGoodOrderAfterAnAnswer) {
+  for (const char* field : {"", "Connection: close\r\n"}) {
+    const auto answers = [&](Wire& wire) {
+      wire.read_request();
+      wire.write(std::string("HTTP/1.1 200 OK\r\nContent-Length: 0\r\n") + field + "\r\n");
+    };
+    EXPECT_FALSE(was_reset(answers, [&](Connection& connection) {
+      EXPECT_EQ(answered(ask(connection, post("a report"))).status, 200);
+    }));
+  }
 }
 
 TEST_F(DoubtfulRequests, AreThoseOnAKeptConnectionThatClosesWithoutAnAnswer) {

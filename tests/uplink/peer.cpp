@@ -7,6 +7,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cerrno>
 #include <cstdlib>
 #include <stdexcept>
 #include <utility>
@@ -33,6 +34,7 @@ std::size_t Wire::read_some(std::size_t most) {
   if (pause_.count() > 0) std::this_thread::sleep_for(pause_);
   std::string bytes(most, '\0');
   const ssize_t got = ::recv(fd_.get(), bytes.data(), bytes.size(), 0);
+  was_reset_ = got < 0 && errno == ECONNRESET;
   if (got <= 0) return 0;
   unread_.append(bytes, 0, static_cast<std::size_t>(got));
   return static_cast<std::size_t>(got);

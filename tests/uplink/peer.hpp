@@ -29,6 +29,8 @@ class Wire {
   /// False where the other side is gone.
   bool write(std::string_view bytes);
   void wait_for_close();
+  /// Whether the other side ended it with a reset, once nothing more came.
+  bool was_reset() const { return was_reset_; }
   /// Closes; with a reset where bytes are unread, as TCP does.
   void close() { fd_ = {}; }
   /// Closes with a reset in any case.
@@ -37,6 +39,7 @@ class Wire {
  private:
   loop::FileDescriptor fd_;
   std::string unread_;
+  bool was_reset_ = false;
   std::chrono::milliseconds pause_{0};
 };
 

@@ -139,7 +139,7 @@ def shout(host, port, source_mac):
             packets.send(target + source_mac + struct.pack("!H", kind) + payload)
 
 
-def answers_ping(host, target, within=1.5):
+def answers_ping(host, target, within=10.0):
     """An echo, and whether it came back."""
     with inside(host):
         pinger = socket.socket(socket.AF_INET, socket.SOCK_RAW, socket.IPPROTO_ICMP)
@@ -154,7 +154,7 @@ def answers_ping(host, target, within=1.5):
     return False
 
 
-def answers_arp(host, port, target, within=1.5):
+def answers_arp(host, port, target, within=10.0):
     """Whether anybody at that cable says that it has the address."""
     with inside(host), open_packets(port) as packets:
         own = packets.getsockname()[4]

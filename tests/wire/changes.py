@@ -21,11 +21,11 @@ class Change(unittest.TestCase):
         self.folder = pathlib.Path(self.enterContext(tempfile.TemporaryDirectory(prefix="adit-network-")))
         self.addCleanup(lambda: self.box.stop())
 
-    def ends(self, within=20.0):
+    def ends(self, within=50.0):
         wait_until(lambda: self.box.process.poll() is not None, "adit-network to end", within)
         self.assertEqual(self.box.process.returncode, 0, self.box.said())
 
-    def has(self, address, interface="team0", within=15.0):
+    def has(self, address, interface="team0", within=50.0):
         wait_until(lambda: self.box.addresses(interface) == [address], f"{interface} to have {address}", within)
 
     def confirm_first(self):

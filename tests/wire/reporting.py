@@ -20,7 +20,7 @@ def another(number):
     return {**REPORT, "x": 10.0 * number}
 
 
-def submit(stage, report=None, timeout=30, **headers):
+def submit(stage, report=None, timeout=60, **headers):
     """One try. `headers` in addition: submit(stage, Adit_Resubmit="yes")."""
     given = {"Authorization": f"Bearer {programs.TEAM_TOKEN}", "Content-Type": "application/json"}
     given |= {name.replace("_", "-"): value for name, value in headers.items()}
@@ -28,7 +28,7 @@ def submit(stage, report=None, timeout=30, **headers):
                          timeout=timeout)
 
 
-def insist(stage, report=None, hang_up_after=0.3, pause=0.0, until=lambda answer: True, within=20):
+def insist(stage, report=None, hang_up_after=0.3, pause=0.0, until=lambda answer: True, within=60):
     """Hangs up and tries again until an answer comes that is good enough."""
     end = time.monotonic() + within
     while time.monotonic() < end:

@@ -58,7 +58,7 @@ class Killed(unittest.TestCase):
         self.kill_again_and_again()
         end(clients)
         self.stage.post.control("DELETE /faults")
-        wait_until(self.operator.sees_all_at_rest, "all to come to rest", 30)
+        wait_until(self.operator.sees_all_at_rest, "all to come to rest")
         self.assertEqual([client.odd for client in clients], [[]] * len(clients), "what no client should be told")
         all_posted = [posted for client in clients for posted in client.posted]
         self.show(all_posted, *judge(self, self.stage, self.operator, all_posted))

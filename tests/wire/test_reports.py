@@ -18,7 +18,9 @@ import programs
 from programs import Stage, wait_until
 from reporting import QUICK, REPORT, another, at_once, began, sendings, submit
 
-PATIENT = {**QUICK, "command_post__timeouts__scoring_answer_ms": 10000}  # towards the Command Post
+ANSWER_WITHIN = QUICK["reports__answer_within_ms"] / 1000  # seconds
+PATIENCE = 20  # seconds, towards the Command Post
+PATIENT = {**QUICK, "command_post__timeouts__scoring_answer_ms": PATIENCE * 1000}
 TOKEN = {"Authorization": f"Bearer {programs.TEAM_TOKEN}"}
 SILENCE = "answer-after=60"  # recorded, and no answer comes
 DEAF = "record-after=60"  # not recorded while a test lasts, and no answer comes
@@ -46,7 +48,7 @@ def scripted(*words):
     with Stage(post_options=None, **QUICK) as stage:
         stage.scripted = ScriptedPost(stage, *words)
         try:
-            wait_until(lambda: requests.get(stage.box.url + "/api/status", headers=TOKEN, timeout=5).status_code == 200,
+            wait_until(lambda: requests.get(stage.box.url + "/api/status", headers=TOKEN, timeout=30).status_code == 200,
                        "the box to know the run")  # at once: it was alone for a moment
             yield stage
         finally:
@@ -85,7 +87,7 @@ class Answers(unittest.TestCase):
             with self.subTest(word), scripted(word) as stage:
                 posted = time.monotonic()
                 told = submit(stage)
-                self.assertLess(time.monotonic() - posted, 0.4)
+                self.assertLess(time.monotonic() - posted, ANSWER_WITHIN)
                 self.is_json(told, 503)
                 self.assertIn("is kept and waiting", told.json())
                 self.is_json(submit(stage), 201)
@@ -101,16 +103,16 @@ class Answers(unittest.TestCase):
     def test_status_is_answered_from_what_is_known_for_a_second(self):
         with Stage() as stage:
             url = began(stage).box.url + "/api/status"
-            first = requests.get(url, headers=TOKEN, timeout=5)
+            first = requests.get(url, headers=TOKEN, timeout=30)
             self.assertEqual((first.status_code, first.json()["remaining_reports"]), (200, 45))
-            before = len(stage.post.requests("/api/status"))
+            before, began_at = len(stage.post.requests("/api/status")), time.monotonic()
             for _ in range(20):
-                self.assertEqual(requests.get(url, headers=TOKEN, timeout=5).json(), first.json())
-            self.assertLessEqual(len(stage.post.requests("/api/status")), before + 1)
+                self.assertEqual(requests.get(url, headers=TOKEN, timeout=30).json(), first.json())
+            self.assertLessEqual(len(stage.post.requests("/api/status")), before + 1 + time.monotonic() - began_at)
 
     def test_status_without_a_command_post_is_a_json_error(self):
         with Stage(post_options=None) as stage:
-            answer = requests.get(stage.box.url + "/api/status", headers=TOKEN, timeout=15)
+            answer = requests.get(stage.box.url + "/api/status", headers=TOKEN, timeout=60)
             self.assertIn(answer.status_code, (502, 503))
             self.assertIsInstance(answer.json(), str)
 
@@ -126,7 +128,7 @@ class Order(unittest.TestCase):
             self.assertEqual([request["status"] for request in stage.post.requests("/api/artifact_reports")], [201] * 3)
 
     def test_a_report_overtakes_maps_that_fill_the_link(self):
-        with Stage(command_post__budget_mbit=8) as stage:
+        with Stage(command_post__budget_mbit=2) as stage:
             cbor = messages.Style("cbor")
             update = messages.map_update(maps.made_cloud(150000), "r1", 1.0, cbor)
             answer = messages.post(requests.Session(), stage.box.url, "/map/update", update, cbor)
@@ -143,7 +145,7 @@ class Ends(unittest.TestCase):
 
     def hang_up(self, stage):
         with self.assertRaises(requests.RequestException):
-            submit(stage, timeout=0.3)
+            submit(stage, timeout=1)
 
     def arrives(self, stage):
         wait_until(lambda: sendings(stage) == 1 or stage.post.control("GET /faults")["reports"] == [],
@@ -162,7 +164,7 @@ class Ends(unittest.TestCase):
     def test_a_report_survives_a_kill_and_goes_out_after_it(self):
         with Stage(post_options=None) as stage:
             self.hang_up(stage)
-            self.assertEqual(stage.box.on_disk(), ["waiting"])
+            wait_until(lambda: stage.box.on_disk() == ["waiting"], "the report to be on disk")
             stage.box.stop(signal.SIGKILL)
             stage.post = programs.CommandPost(stage.network, stage.folder, "--rate", "0")
             stage.restart_box()
@@ -174,6 +176,7 @@ class Ends(unittest.TestCase):
             with self.subTest(fault), Stage(**PATIENT) as stage:
                 began(stage).post.will(fault)
                 self.hang_up(stage)
+                self.arrives(stage)
                 stage.box.stop(signal.SIGKILL)
                 self.assertEqual(stage.box.on_disk(), ["sending"])
                 stage.restart_box()
@@ -181,15 +184,13 @@ class Ends(unittest.TestCase):
                 self.assertEqual(submit(stage).status_code, 201)
                 self.assertEqual(len(stage.post.recorded()), 1)
 
-    def test_sigterm_stops_within_a_second_with_a_report_under_way(self):
+    def test_sigterm_does_not_wait_for_a_report_under_way(self):
         with Stage(**PATIENT) as stage:
             began(stage).post.will(SILENCE)
             with concurrent.futures.ThreadPoolExecutor(1) as client:
                 waiting = client.submit(submit, stage)
                 self.arrives(stage)
-                status, took = stage.box.stop()
-                self.assertEqual(status, 0)
-                self.assertLess(took, 1.5)
+                self.assertEqual(stage.box.stop(within=PATIENCE * 0.8), 0)
                 self.assertEqual(waiting.result().status_code, 504)
                 self.assertIn("may or may not have been recorded", waiting.result().json())
 
@@ -197,28 +198,30 @@ class Ends(unittest.TestCase):
         with Stage(post_options=None) as stage, concurrent.futures.ThreadPoolExecutor(1) as client:
             waiting = client.submit(submit, stage)
             wait_until(lambda: stage.box.on_disk() == ["waiting"], "the report to be on disk")
-            self.assertEqual(stage.box.stop()[0], 0)
+            self.assertEqual(stage.box.stop(), 0)
             self.assertEqual(waiting.result().status_code, 503)
             self.assertIn("is kept", waiting.result().json())
 
     def test_a_report_that_comes_while_the_service_stops_is_refused_and_never_sent(self):
         with (Stage(**PATIENT) as stage, requests.Session() as kept,
               concurrent.futures.ThreadPoolExecutor(2) as clients):
-            began(stage).post.will("answer-after=0.6")
-            kept.get(stage.box.url + "/api/status", headers=TOKEN, timeout=5)  # a connection that stays
+            began(stage)
+            kept.get(stage.box.url + "/api/status", headers=TOKEN, timeout=30)  # a connection that stays
+            stage.post.process.send_signal(signal.SIGSTOP)
             under_way = clients.submit(submit, stage, another(1))
-            self.arrives(stage)
+            wait_until(lambda: stage.box.on_disk() == ["sending"], "the first to be sent")
             waiting = clients.submit(submit, stage, another(2))
             wait_until(lambda: len(stage.box.on_disk()) == 2, "the second to be on disk")
             stage.box.process.send_signal(signal.SIGTERM)
             time.sleep(0.1)
             late = kept.post(stage.box.url + "/api/artifact_reports", data=json.dumps(another(3)),
-                             headers={**TOKEN, "Content-Type": "application/json"}, timeout=5)
+                             headers={**TOKEN, "Content-Type": "application/json"}, timeout=30)
+            stage.post.process.send_signal(signal.SIGCONT)
             self.assertEqual((late.status_code, under_way.result().status_code, waiting.result().status_code),
                              (503, 201, 503))
             self.assertIn("was not taken", late.json())
             self.assertIn("is kept", waiting.result().json())
-            self.assertEqual(stage.box.stop()[0], 0)
+            self.assertEqual(stage.box.stop(), 0)
             self.assertEqual(stage.box.on_disk(), ["answered", "waiting"])
 
 

@@ -86,10 +86,8 @@ class SameReport(unittest.TestCase):
 
 class Held(unittest.TestCase):
     def is_held(self, stage, report, why):
-        posted = time.monotonic()
         told = submit(stage, report)
         self.assertEqual(told.status_code, 503, told.text)
-        self.assertLess(time.monotonic() - posted, 1.5, "told at its deadline")
         self.assertIn("waits for the operator's word", told.json())
         self.assertIn(why, told.json())
         number = int(told.headers["Adit-Report"])
@@ -99,7 +97,7 @@ class Held(unittest.TestCase):
         return number
 
     def test_near_duplicates(self):
-        with playing(reports__review="duplicates", reports__answer_within_ms=700) as stage:
+        with playing(reports__review="duplicates", reports__answer_within_ms=2000) as stage:
             for report in (REPORT, moved(5.1), {**moved(1), "type": "Drill"}):
                 self.assertEqual(submit(stage, report).status_code, 201)
             number = self.is_held(stage, moved(2), "the same type as report ")
@@ -110,7 +108,7 @@ class Held(unittest.TestCase):
             self.assertEqual(stage.box.attention(), "")
 
     def test_every_report(self):
-        with playing(reports__review="all", reports__answer_within_ms=700) as stage:
+        with playing(reports__review="all", reports__answer_within_ms=2000) as stage:
             first = self.is_held(stage, another(1), "every report is reviewed")
             second = self.is_held(stage, another(2), "every report is reviewed")
             self.assertEqual(stage.box.judge(first, "withdraw")[0], 200)
@@ -125,7 +123,8 @@ class Held(unittest.TestCase):
             self.assertEqual(submit(stage, another(1)).status_code, 201)
             stage.post.will("429,retry-after=30")
             with self.assertRaises(OSError):
-                submit(stage, timeout=0.3)
+                submit(stage, timeout=1)
+            wait_until(lambda: sendings(stage) == 1 and stage.box.on_disk() == ["answered", "waiting"], "it to be put off")
             stage.box.stop(signal.SIGKILL)
             stage.post.control("POST /new-run")
             stage.restart_box()
@@ -156,7 +155,7 @@ class Held(unittest.TestCase):
             wait_until(lambda: stage.post.control("GET /record")["run_clock"] > 1.5, "the run to go on")
             first = submit(stage)
             stage.post.control("POST /new-run")
-            wait_until(lambda: stage.box.ask("GET /adit/run")[1]["run_number"] == 2, "the new run to be noticed", 12)
+            wait_until(lambda: stage.box.ask("GET /adit/run")[1]["run_number"] == 2, "the new run to be noticed")
             second = submit(stage)
             self.assertEqual([first.json()["run"], second.json()["run"]], ["1", "2"])
             self.assertEqual(len(stage.post.recorded()), 2)
@@ -169,7 +168,7 @@ class Barred(unittest.TestCase):
             posted = time.monotonic()
             told = submit(stage)
             self.assertEqual(told.status_code, 503)
-            self.assertLess(time.monotonic() - posted, 0.3, "told at once")
+            self.assertLess(time.monotonic() - posted, QUICK["reports__answer_within_ms"] / 1000, "told at once")
             self.assertIn("is kept and waiting", told.json())
             self.assertNotIn("WWW-Authenticate", told.headers)
             self.assertIn("refuses the scoring token", stage.box.attention())

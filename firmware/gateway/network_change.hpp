@@ -14,7 +14,7 @@ namespace adit::gateway {
 class NetworkChange final : public page::Network {
  public:
   /// adit-network asks the network first whether an address is free, which takes some seconds.
-  static constexpr std::chrono::seconds kTakenUpWithin{15};
+  static constexpr std::chrono::seconds kTakenUpWithin{30};
   /// How old what was read of its status may be.
   static constexpr std::chrono::milliseconds kFresh{50};
   /// adit-network is told again where the endpoints are, where it does not know, this long after the last

@@ -16,7 +16,7 @@ namespace adit::gateway {
 class Updates final : public page::Updates {
  public:
   /// adit-update begins within that time, unless it does not run here.
-  static constexpr std::chrono::seconds kTakenUpWithin{15};
+  static constexpr std::chrono::seconds kTakenUpWithin{60};
   /// How old what was read of its status may be.
   static constexpr std::chrono::milliseconds kFresh{100};
   /// What stays free on the disk beside a bundle: for the ledger above all.

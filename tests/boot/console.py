@@ -57,19 +57,19 @@ class Console:
     def type(self, line):
         self.socket.sendall(line.encode() + b"\n")
 
-    def wait_for_shell(self, within=60.0):
+    def wait_for_shell(self, within=180.0):
         """Until it answers. What is typed before there is a shell is lost, and stops the boot loader if it is typed to
         that."""
         end = time.monotonic() + within
         self.wait_for(rb"Adit: slot .*/ # ", within)
         while True:
             try:
-                return self.ask("true", within=2.0)
+                return self.ask("true", within=5.0)
             except AssertionError:
                 if time.monotonic() > end:
                     raise
 
-    def run(self, command, within=20.0):
+    def run(self, command, within=120.0):
         """Exit status and output. The marks are typed in two halves, so that the echo of what is typed is none."""
         self.asked += 1
         with self.news:
@@ -79,7 +79,7 @@ class Console:
         found = self.wait_for(begin + rb"\r?\n(.*?)" + end + rb" (\d+)", within, after)
         return int(found.group(2)), found.group(1).decode(errors="replace").replace("\r", "")
 
-    def ask(self, command, within=20.0):
+    def ask(self, command, within=120.0):
         """The output of a command that must succeed."""
         status, said = self.run(command, within)
         if status != 0:

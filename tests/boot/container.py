@@ -125,14 +125,17 @@ class Container(programs.Page):
                 stdout=said,
                 stderr=said,
             )
-        programs.wait_until(self.answers, "the container to answer:\n" + self.said_last(), 12)
+        programs.wait_until(self.answers, "the container to answer", 90)
         self.answered_after = time.monotonic() - self.began
+
+    def ask(self, request, *words, timeout=20, **more):
+        return super().ask(request, *words, timeout=timeout, **more)
 
     def answers(self):
         if self.process.poll() is not None:
             raise AssertionError(f"systemd-nspawn has ended:\n{self.said_last()}")
         try:
-            return self.ask("GET /adit/session", token=None)[0] == 200
+            return self.ask("GET /adit/session", token=None, timeout=5)[0] == 200
         except (OSError, ValueError):
             return False
 
@@ -161,7 +164,7 @@ class Container(programs.Page):
             return
         os.kill(self.leader(), signal.SIGRTMIN + 3)
         try:
-            self.process.wait(20)
+            self.process.wait(60)
         except subprocess.TimeoutExpired:
             self.process.kill()
             self.process.wait()

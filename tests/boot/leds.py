@@ -26,7 +26,7 @@ def patterns(seen):
     return {name: pattern([(at, lights[name]) for at, lights in seen]) for name in seen[0][1]}
 
 
-def wait_for(machine, within=30.0, **wanted):
+def wait_for(machine, within=120.0, **wanted):
     """Looks until the lights show these patterns: wait_for(machine, health="on", scoring="fast")."""
     shown = {}
 

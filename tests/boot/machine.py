@@ -100,11 +100,14 @@ class Machine(programs.Page):
 
     # What a client on the team's side sees.
 
-    def wait_for_answer(self, within=180.0):
+    def wait_for_answer(self, within=400.0):
         """Until the first answer on team0. How long that took from the power switch on is in `answered_after`; how much
         of this machine's processor time, which is what the clock of an idle one would say, in `cpu_answered_after`."""
         self.wait_until(self.answers, "the box to answer", within)
         self.answered_after, self.cpu_answered_after = time.monotonic() - self.switched_on, self.cpu_seconds()
+
+    def ask(self, request, *words, timeout=20, **more):
+        return super().ask(request, *words, timeout=timeout, **more)
 
     def run_view(self):
         return self.ask("GET /adit/run")[1]
@@ -132,7 +135,7 @@ class Machine(programs.Page):
     def start_took(self):
         return f"{self.answered_after:.1f} s ({self.cpu_answered_after:.1f} s of this machine's processor)"
 
-    def wait_until(self, condition, what, within=20.0):
+    def wait_until(self, condition, what, within=120.0):
         """As programs.wait_until, for a box that may be away; a machine which has ended for good is said to have."""
         def is_so():
             if not self.is_on():
@@ -151,6 +154,6 @@ class Machine(programs.Page):
 
     def answers(self):
         try:
-            return self.ask("GET /adit/session", token=None)[0] == 200
+            return self.ask("GET /adit/session", token=None, timeout=5)[0] == 200
         except (OSError, ValueError):
             return False

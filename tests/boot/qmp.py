@@ -69,7 +69,7 @@ class Pins:
         self.socket.close()
 
 
-def connected(path, within=10.0):
+def connected(path, within=60.0):
     """A connection to a socket that QEMU is about to make."""
     end = time.monotonic() + within
     while True:

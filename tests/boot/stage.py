@@ -96,7 +96,7 @@ class Stage:
 
     def began(self):
         """Once the box knows the run."""
-        self.box.wait_until(self.box.knows_the_run, "the box to know the run", 60)
+        self.box.wait_until(self.box.knows_the_run, "the box to know the run", 180)
         return self
 
     def robots(self, seconds, *options):
@@ -116,7 +116,7 @@ class Stage:
             stderr=subprocess.STDOUT,
             text=True,
         )
-        said, _ = robots.communicate(timeout=seconds + 60)
+        said, _ = robots.communicate(timeout=seconds + 180)
         return robots.returncode, said
 
     def __exit__(self, *_):

@@ -41,31 +41,31 @@ class Pc(Updating, Story):
 
     def test_no_update_is_installed_while_two_disks_hold_an_adit(self):
         self.box.plug_stick(boards.PC.image())
-        self.box.wait_until(lambda: self.box.console.run(f"cat {NOTICE}")[0] == 0, "it to be noticed", 30)
-        self.box.wait_until(lambda: self.stands()["managed"], "adit-update to have told what runs", 60)
+        self.box.wait_until(lambda: self.box.console.run(f"cat {NOTICE}")[0] == 0, "it to be noticed")
+        self.box.wait_until(lambda: self.stands()["managed"], "adit-update to have told what runs")
         self.send(bundle_of_nothing(self.folder, REFUSED, boards.PC.name))
-        self.box.wait_until(lambda: self.stands()["refusal"], "a refusal", 60)
+        self.box.wait_until(lambda: self.stands()["refusal"], "a refusal")
         self.assertIn("2 disks hold an Adit", self.stands()["refusal"])
         self.box.pull_stick()
-        self.box.wait_until(lambda: self.box.console.run(f"ls {NOTICE}")[0] != 0, "it to be gone", 30)
+        self.box.wait_until(lambda: self.box.console.run(f"ls {NOTICE}")[0] != 0, "it to be gone")
 
     def test_an_update_is_installed(self):
         began = time.monotonic()
         self.send(self.newer)
-        self.settled("installed", NEWER, within=120)
+        self.settled("installed", NEWER, within=300)
         note(f"PC: update of {self.newer.stat().st_size / 1e6:.0f} MB", f"{time.monotonic() - began:.0f} s")
         counts = self.counts()
         self.assertEqual((counts["ORDER"], counts["B_OK"], counts["B_TRY"]), ("B A", "1", "0"))
 
     def test_grub_counts_a_start_of_it(self):
         self.restart()
-        self.box.console.wait_for(rb"Adit: slot b", 60)
-        self.box.wait_until(lambda: self.stands()["slot"] == "B", "slot B to answer", 120)
-        self.box.wait_until(lambda: self.box.console.run("true", within=2)[0] == 0, "a shell", 30)
+        self.box.console.wait_for(rb"Adit: slot b", 180)
+        self.box.wait_until(lambda: self.stands()["slot"] == "B", "slot B to answer", 300)
+        self.box.console.wait_for_shell()
         self.assertEqual(self.counts()["B_TRY"], "1")
 
     def test_and_rauc_marks_it_good(self):
-        self.settled("good", NEWER, within=150)
+        self.settled("good", NEWER, within=300)
         self.assertEqual((self.stands()["version"], self.stands()["slot"]), (NEWER, "B"))
         self.assertEqual(self.counts()["B_TRY"], "0")
 

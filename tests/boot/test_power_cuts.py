@@ -54,9 +54,10 @@ class PowerCuts(Story):
                 self.stage.began()
                 operator.looks()
         self.stage.began()
+        self.box.wait_until(lambda: len(self.stage.post.recorded()) > CUTS, "reports to be recorded", 300)
         end(clients)
         self.stage.post.control("DELETE /faults")
-        self.box.wait_until(operator.sees_all_at_rest, "all to come to rest", 60)
+        self.box.wait_until(operator.sees_all_at_rest, "all to come to rest", 180)
         self.assertEqual([client.odd for client in clients], [[]] * len(clients), "what no client should be told")
         posted = [each for client in clients for each in client.posted]
         recorded, waiting = judge(self, self.stage, operator, posted)
@@ -66,11 +67,10 @@ class PowerCuts(Story):
             f"{waiting} wait for the operator, {len(operator.judged)} judged by him; "
             f"starts of {min(starts):.1f} to {max(starts):.1f} s",
         )
-        self.assertGreater(recorded.total(), CUTS)
 
     def test_the_journal_of_all_these_starts_is_kept(self):
         self.box.console.wait_for_shell()
-        self.assertGreater(int(self.box.console.ask("journalctl --list-boots -q --no-pager | wc -l", 60)), CUTS // 2)
+        self.assertGreater(int(self.box.console.ask("journalctl --list-boots -q --no-pager | wc -l")), CUTS // 2)
 
 
 if __name__ == "__main__":

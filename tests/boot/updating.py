@@ -9,7 +9,7 @@ class Updating:
     """Beside stage.Story."""
 
     def stands(self):
-        return self.box.ask("GET /adit/update", timeout=20)[1]
+        return self.box.ask("GET /adit/update")[1]
 
     def last(self):
         last = self.stands()["last"]
@@ -17,7 +17,7 @@ class Updating:
 
     def send(self, path):
         """As the page does."""
-        connection = http.client.HTTPConnection(self.stage.network.box_address, self.box.port, timeout=120)
+        connection = http.client.HTTPConnection(self.stage.network.box_address, self.box.port, timeout=300)
         headers = {"Authorization": f"Bearer {programs.TEAM_TOKEN}", "Content-Type": "application/octet-stream"}
         with open(path, "rb") as file:
             connection.request("POST", "/adit/update", file, {**headers, "Content-Length": str(path.stat().st_size)})

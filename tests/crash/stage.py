@@ -22,7 +22,7 @@ REPORT = {"x": 101.5, "y": -24.25, "z": -1.125, "type": "Backpack"}
 DONE = {"answered", "settled"}
 
 
-def wait_until(condition, what, within=20.0):
+def wait_until(condition, what, within=60.0):
     """The first true value of `condition()`; an error that says `what` after `within` seconds."""
     end = time.monotonic() + within
     while time.monotonic() < end:
@@ -91,7 +91,7 @@ class Box:
         if self.process is not None and not self.ended():
             self.process.send_signal(how)
         if self.process is not None:
-            self.process.wait(10)
+            self.process.wait(60)
 
     def said(self):
         return (self.folder / "log").read_text(errors="replace")[-2000:]
@@ -127,7 +127,7 @@ def settings(address, ports):
     }
 
 
-def request(address, port, method, path, body=b"", within=10.0):
+def request(address, port, method, path, body=b"", within=30.0):
     """One request on a connection of its own, sent at once; its status and body."""
     with socket.create_connection((address, port), within) as connection:
         head = [f"{method} {path} HTTP/1.1", f"Host: {address}", f"Authorization: Bearer {TOKEN}",
@@ -171,7 +171,7 @@ class Stage:
             assert {key: answer[key] for key in REPORT} == REPORT, answer
         return status
 
-    def submit_until_taken(self, within=20.0):
+    def submit_until_taken(self, within=60.0):
         """As real clients do: again, until it is answered 201. The box is started again when it has died."""
         def taken():
             if self.box.ended():

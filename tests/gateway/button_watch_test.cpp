@@ -54,6 +54,18 @@ class ButtonWatchTest : public testing::Test {
     button.emplace(loop, std::make_unique<WireLine>(wire), lights,
                    [this](Press press) { presses.push_back(press); });
   }
+  template <class Done>
+  void turn_until(Done done) {
+    for (const auto end = loop.now() + 20s; !done() && loop.now() < end;) loop.turn(10ms);
+    EXPECT_TRUE(done());
+  }
+  /// Until it has been seen, and for longer than it may bounce.
+  void set(bool pressed) {
+    const int before = wire.looked;
+    wire.set(pressed);
+    turn_until([&] { return wire.looked > before; });
+    turn_for(100ms);
+  }
   void turn_for(loop::Duration length) {
     for (const auto until = loop.now() + length; loop.now() < until;) loop.turn(until - loop.now());
   }
@@ -68,11 +80,10 @@ class ButtonWatchTest : public testing::Test {
 
 TEST_F(ButtonWatchTest, TellsOfAPressOnceItIsOver) {
   watch();
-  wire.set(true);
-  turn_for(100ms);
+  set(true);
   EXPECT_TRUE(presses.empty());
   wire.set(false);
-  turn_for(100ms);
+  turn_until([&] { return !presses.empty(); });
   EXPECT_EQ(presses, std::vector{Press::Identify});
   const int looked = wire.looked;
   turn_for(100ms);
@@ -99,13 +110,12 @@ TEST_F(ButtonWatchTest, IgnoresABounce) {
 TEST_F(ButtonWatchTest, ShowsWhenItIsTimeToLetGoAndWhenItIsNot) {
   watch();
   lights.set(State::Serving, true);
-  wire.set(true);
-  turn_for(2900ms);
+  set(true);
+  turn_for(2400ms);
   EXPECT_FALSE(lights.has(State::ButtonHeld));
-  turn_for(300ms);
-  EXPECT_TRUE(lights.has(State::ButtonHeld));
+  turn_until([&] { return lights.has(State::ButtonHeld); });
   wire.set(false);
-  turn_for(100ms);
+  turn_until([&] { return !presses.empty(); });
   EXPECT_FALSE(lights.has(State::ButtonHeld));
   EXPECT_EQ(presses, std::vector{Press::ShowAddress});
 }
@@ -115,18 +125,15 @@ TEST_F(ButtonWatchTest, DoesNothingWhileTheButtonIsStuck) {
   watch();
   turn_for(3200ms);
   EXPECT_FALSE(lights.has(State::ButtonHeld));
-  wire.set(false);
-  turn_for(100ms);
+  set(false);
   EXPECT_TRUE(presses.empty());
 }
 
 TEST_F(ButtonWatchTest, LeavesAButtonAloneThatCannotBeRead) {
   watch();
-  wire.set(true);
-  turn_for(100ms);
+  set(true);
   wire.broken = true;
-  wire.set(false);
-  turn_for(200ms);
+  set(false);
   EXPECT_TRUE(presses.empty());
   EXPECT_FALSE(lights.has(State::ButtonHeld));
   const int looked = wire.looked;

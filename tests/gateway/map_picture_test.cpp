@@ -40,7 +40,7 @@ class MapPictureTest : public testing::Test {
     for (const auto end = loop.now() + time; loop.now() < end;) loop.turn(std::chrono::milliseconds{5});
   }
   bool run_until(const std::function<bool()>& reached) {
-    for (const auto end = loop.now() + std::chrono::seconds{10}; loop.now() < end;) {
+    for (const auto end = loop.now() + std::chrono::seconds{20}; loop.now() < end;) {
       if (reached()) return true;
       loop.turn(std::chrono::milliseconds{5});
     }

@@ -11,27 +11,27 @@ using testing::HasSubstr;
 using testing::StartsWith;
 
 TEST(ACommand, IsRunToItsEnd) {
-  EXPECT_TRUE(run_command({"true"}, milliseconds(5000)));
-  EXPECT_TRUE(run_command({"/bin/sh", "-c", "sleep 0.1; exit 0"}, milliseconds(5000)));
+  EXPECT_TRUE(run_command({"true"}, milliseconds(20000)));
+  EXPECT_TRUE(run_command({"/bin/sh", "-c", "sleep 0.1; exit 0"}, milliseconds(20000)));
 }
 
 TEST(ACommand, ThatFailsSaysWhy) {
-  EXPECT_EQ(run_command({"/bin/sh", "-c", "echo no bus >&2; echo more; exit 3"}, milliseconds(5000)).error(),
+  EXPECT_EQ(run_command({"/bin/sh", "-c", "echo no bus >&2; echo more; exit 3"}, milliseconds(20000)).error(),
             "/bin/sh -c echo no bus >&2; echo more; exit 3: no bus (exit status 3)");
-  EXPECT_EQ(run_command({"false"}, milliseconds(5000)).error(), "false: exit status 1");
-  EXPECT_THAT(run_command({"/bin/sh", "-c", "kill -9 $$"}, milliseconds(5000)).error(),
+  EXPECT_EQ(run_command({"false"}, milliseconds(20000)).error(), "false: exit status 1");
+  EXPECT_THAT(run_command({"/bin/sh", "-c", "kill -9 $$"}, milliseconds(20000)).error(),
               HasSubstr("ended by signal 9"));
-  EXPECT_THAT(run_command({"/no/such"}, milliseconds(5000)).error(), StartsWith("/no/such: "));
+  EXPECT_THAT(run_command({"/no/such"}, milliseconds(20000)).error(), StartsWith("/no/such: "));
 }
 
 TEST(ACommand, ThatHangsIsEnded) {
   const auto began = std::chrono::steady_clock::now();
   EXPECT_THAT(run_command({"sleep", "30"}, milliseconds(100)).error(), HasSubstr("took longer than 100 ms"));
-  EXPECT_LT(std::chrono::steady_clock::now() - began, milliseconds(5000));
+  EXPECT_LT(std::chrono::steady_clock::now() - began, milliseconds(20000));
 }
 
 TEST(ACommand, ThatTalksWithoutEndIsHeardOutAndNotKept) {
-  const auto run = run_command({"/bin/sh", "-c", "head -c 1000000 /dev/zero; exit 1"}, milliseconds(5000));
+  const auto run = run_command({"/bin/sh", "-c", "head -c 1000000 /dev/zero; exit 1"}, milliseconds(20000));
   ASSERT_FALSE(run);
   EXPECT_LT(run.error().size(), 4096u);
 }

@@ -23,7 +23,8 @@ struct Reply {
   }
 };
 
-/// A client that does just what it is told, byte by byte, over a blocking socket.
+/// A client that does just what it is told, byte by byte, over a blocking socket. Its patience is less than
+/// that of a server, by default, for a body: what comes in time did not come by the server's own deadline.
 class RawClient {
  public:
   /// From `source`, which is any of 127.0.0.0/8.
@@ -41,7 +42,8 @@ class RawClient {
   bool wait_for(std::string_view text, std::chrono::milliseconds patience = std::chrono::seconds(10));
   /// All bytes until the server ends the connection; nothing where it does not in `patience`.
   std::optional<std::string> rest(std::chrono::milliseconds patience = std::chrono::seconds(10));
-  bool closed_within(std::chrono::milliseconds patience) { return rest(patience).has_value(); }
+  /// Whether the server ends the connection.
+  bool closes() { return rest().has_value(); }
 
   /// Ends this direction alone.
   void half_close();

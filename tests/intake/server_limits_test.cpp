@@ -11,7 +11,6 @@ namespace adit::intake {
 namespace {
 
 using std::chrono::milliseconds;
-using std::chrono::seconds;
 
 /// What libmicrohttpd answers by itself, before it asks anybody: no JSON (ICD 4), but no more than these.
 bool is_libmicrohttpds_own(const Reply& reply) {
@@ -20,10 +19,10 @@ bool is_libmicrohttpds_own(const Reply& reply) {
   return status && reply.body.find("<html>") != std::string::npos;
 }
 
-bool answers(std::uint16_t port, const std::string& source, milliseconds within = seconds(2)) {
+bool answers(std::uint16_t port, const std::string& source) {
   RawClient client(port, source);
   client.send(request("POST", "/echo", {}, "x"));
-  const auto reply = client.reply(within);
+  const auto reply = client.reply();
   return reply && reply->status == 200;
 }
 
@@ -50,7 +49,7 @@ TEST(ServerLimits, MakeRoomWhereManyAddressesFillAllConnections) {
     flood.back()->send("GET /echo HTTP/1.1\r\nX-Slow: ");
   }
   std::this_thread::sleep_for(milliseconds(300));
-  EXPECT_TRUE(answers(served.port(), "127.0.0.1", seconds(15)));
+  EXPECT_TRUE(answers(served.port(), "127.0.0.1"));
   EXPECT_LE(served.on_loop([&] { return served.server().connections(); }), 64u);
 }
 
@@ -66,7 +65,7 @@ TEST(ServerLimits, DoNotEndARequestUnderWayToMakeRoom) {
     std::this_thread::sleep_for(milliseconds(300));
   }
   EXPECT_TRUE(answers(served.port(), "127.0.0.1"));
-  EXPECT_TRUE(idle[0]->closed_within(seconds(1)));
+  EXPECT_TRUE(idle[0]->closes());
   served.on_loop([&] { handler.responders[0]->answer({.body = "1", .headers = {}}); });
   EXPECT_EQ(waiting.reply()->body, "1");
 }
@@ -94,12 +93,12 @@ TEST(ServerLimits, RefuseABodyThatTwoReadersCouldSeeDifferently) {
   for (const std::string_view framing : framings) {
     RawClient client(served.port());
     client.send(request("POST", "/echo", framing) + "0\r\n\r\nGET /smuggled HTTP/1.1\r\nHost: adit\r\n\r\n");
-    const auto reply = client.reply(seconds(2));
+    const auto reply = client.reply();
     if (reply && !is_libmicrohttpds_own(*reply)) {
       EXPECT_EQ(reply->status, 400) << framing;
       EXPECT_TRUE(reply->body.starts_with('"')) << framing << reply->body;
     }
-    const auto rest = client.rest(seconds(3));
+    const auto rest = client.rest();
     ASSERT_TRUE(rest) << framing;
     EXPECT_EQ(rest->find("smuggled"), std::string::npos) << framing;
     EXPECT_EQ(rest->find("HTTP/1.1 200"), std::string::npos) << framing;
@@ -137,7 +136,7 @@ TEST(ServerLimits, SurviveGarbage) {
     RawClient client(served.port());
     client.send(each);
     client.half_close();
-    while (const auto reply = client.reply(seconds(2))) {
+    while (const auto reply = client.reply()) {
       EXPECT_TRUE(reply->status == 200 || reply->body.starts_with('"') || is_libmicrohttpds_own(*reply))
           << each.substr(0, 80) << " -> " << reply->status << " " << reply->body;
     }
@@ -188,7 +187,7 @@ TEST(ServerLimits, SurviveRequestsChangedAtRandom) {
       crowd.back().second->half_close();
     }
     for (auto& [text, client] : crowd) {
-      while (const auto reply = client->reply(seconds(3))) {
+      while (const auto reply = client->reply()) {
         if (reply->status == 100 || reply->status == 200 || is_libmicrohttpds_own(*reply)) continue;
         EXPECT_TRUE(nlohmann::json::parse(reply->body, nullptr, false).is_string())
             << text << " -> " << reply->status << " " << reply->body;

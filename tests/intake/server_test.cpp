@@ -54,7 +54,7 @@ TEST_F(ServerTest, TakesARequestByteByByte) {
 
 TEST_F(ServerTest, AnswersHeadWithoutABody) {
   client.send(request("HEAD", "/echo"));
-  const auto reply = client.reply(seconds(5), true);
+  const auto reply = client.reply(seconds(10), true);
   ASSERT_TRUE(reply);
   EXPECT_EQ(reply->status, 200);
   client.send(request("GET", "/echo"));
@@ -74,11 +74,11 @@ TEST_F(ServerTest, RefusesAWaitingClientInsteadOfSendingContinue) {
     waiting.send(
         method +
         " /refuse HTTP/1.1\r\nHost: adit\r\nExpect: 100-continue\r\nContent-Length: 90000000\r\n\r\n");
-    const auto reply = waiting.reply(seconds(1));
+    const auto reply = waiting.reply();
     ASSERT_TRUE(reply) << method;
     EXPECT_EQ(reply->status, 401) << method;
     EXPECT_EQ(reply->body, "\"no\"");
-    EXPECT_EQ(waiting.rest(seconds(3)), "") << method;
+    EXPECT_EQ(waiting.rest(), "") << method;
   }
 }
 
@@ -103,19 +103,19 @@ TEST_F(ServerTest, RefusesALargeBodyAtOnceAndReadsLittleOfIt) {
 
 TEST_F(ServerTest, RefusesBeforeTheBodyHasBegun) {
   client.send("POST /refuse HTTP/1.1\r\nHost: adit\r\nContent-Length: 5000000\r\n\r\n");
-  EXPECT_EQ(client.reply(seconds(1))->status, 401);
+  EXPECT_EQ(client.reply()->status, 401);
   client.half_close();
-  EXPECT_EQ(client.rest(seconds(1)), "");
+  EXPECT_EQ(client.rest(), "");
 }
 
 TEST_F(ServerTest, RefusesASmallBodyThatDoesNotComeAfterASecond) {
   client.send("POST /refuse HTTP/1.1\r\nHost: adit\r\nContent-Length: 500\r\n\r\n");
-  EXPECT_EQ(client.reply(seconds(3))->status, 401);
+  EXPECT_EQ(client.reply()->status, 401);
 }
 
 TEST_F(ServerTest, RefusesInTheMiddleOfABody) {
   client.send("POST /midway HTTP/1.1\r\nHost: adit\r\nContent-Length: 50000000\r\n\r\nfirst");
-  const auto reply = client.reply(seconds(1));
+  const auto reply = client.reply();
   ASSERT_TRUE(reply);
   EXPECT_EQ(reply->status, 422);
   EXPECT_EQ(reply->body, "\"midway\"");
@@ -124,7 +124,7 @@ TEST_F(ServerTest, RefusesInTheMiddleOfABody) {
 
 TEST_F(ServerTest, RefusesInTheMiddleOfAChunkedBody) {
   client.send(request("POST", "/midway", "Transfer-Encoding: chunked\r\n") + "5\r\nfirst\r\n");
-  EXPECT_EQ(client.reply(seconds(1))->body, "\"midway\"");
+  EXPECT_EQ(client.reply()->body, "\"midway\"");
 }
 
 TEST_F(ServerTest, AnswersLater) {
@@ -147,14 +147,14 @@ TEST_F(ServerTest, AnswersOnceThoughAskedTwice) {
   });
   EXPECT_EQ(client.reply()->body, "1");
   client.half_close();
-  EXPECT_EQ(client.rest(seconds(1)), "");
+  EXPECT_EQ(client.rest(), "");
 }
 
 TEST_F(ServerTest, MayBeAnsweredWhileTheBodyIsStillComing) {
   client.send("POST /eager HTTP/1.1\r\nHost: adit\r\nContent-Length: 5000000\r\n\r\nfirst");
   ASSERT_TRUE(served.eventually([&] { return handler.body_bytes == 5; }));
   served.on_loop([&] { handler.responders[0]->answer(error_answer(icd::Status::TooManyRequests, "busy")); });
-  EXPECT_EQ(client.reply(seconds(1))->status, 429);
+  EXPECT_EQ(client.reply()->status, 429);
 }
 
 TEST_F(ServerTest, SaysSoWhereAHandlerGivesNothing) {

@@ -32,10 +32,10 @@ struct SocketPair {
   void tell() const { EXPECT_EQ(::write(theirs.get(), "x", 1), 1); }
 };
 
-/// Turns the loop until `done`, at most five seconds.
+/// Turns the loop until `done`, at most twenty seconds.
 template <class Done>
 bool turn_until(Loop& loop, Done done) {
-  const Instant end = loop.now() + std::chrono::seconds(5);
+  const Instant end = loop.now() + std::chrono::seconds(20);
   while (!done() && loop.now() < end) loop.turn(milliseconds(10));
   return done();
 }
@@ -227,7 +227,7 @@ TEST(Loop, CarriesTheStampOnWithTheMonotonicClock) {
   const double wall =
       std::chrono::duration<double>(std::chrono::system_clock::now().time_since_epoch()).count();
   const double first = loop.stamp_now();
-  EXPECT_NEAR(first, wall, 1.0);
+  EXPECT_NEAR(first, wall, 10.0);
   std::this_thread::sleep_for(milliseconds(2));
   EXPECT_GE(loop.stamp_now() - first, 0.002);
 }

@@ -10,7 +10,7 @@ namespace {
 
 using std::chrono::milliseconds;
 
-constexpr milliseconds kWithin{200}, kLongestJob{150};
+constexpr milliseconds kWithin{200}, kLongestJob{800};
 
 class WatchdogTest : public testing::Test {
  protected:
@@ -23,10 +23,27 @@ class WatchdogTest : public testing::Test {
     turn(length);
     return fed;
   }
-  /// A job that ends when it is let go.
+  bool turn_until_fed(int times) {
+    fed = 0;
+    for (const Instant end = loop.now() + std::chrono::seconds(20); fed < times && loop.now() < end;)
+      loop.turn(milliseconds(5));
+    return fed >= times;
+  }
+  /// Whether it is fed three times in each `within` and more; on a busy machine, after some time.
+  bool is_fed_often() {
+    for (int attempt = 0; attempt < 20; ++attempt) {
+      const Instant began = loop.now();
+      if (turn_until_fed(6) && loop.now() - began < 2 * kWithin) return true;
+    }
+    return false;
+  }
+  /// A job that has begun, and ends when it is let go.
   std::shared_ptr<std::promise<void>> hang(Workers& workers) {
     auto let_go = std::make_shared<std::promise<void>>();
-    workers.submit([waits = let_go->get_future().share()] { waits.wait(); }, [] {});
+    std::promise<void> begun;
+    workers.submit([&begun, waits = let_go->get_future().share()] { begun.set_value(), waits.wait(); },
+                   [] {});
+    begun.get_future().wait();
     return let_go;
   }
 
@@ -37,7 +54,7 @@ class WatchdogTest : public testing::Test {
 
 TEST_F(WatchdogTest, IsFedFromTheStartAndFarMoreOftenThanItMust) {
   EXPECT_EQ(fed, 1);
-  EXPECT_GE(fed_in(kWithin * 3), 6);
+  EXPECT_TRUE(is_fed_often());
 }
 
 TEST_F(WatchdogTest, IsFedByNobodyButTheLoop) {
@@ -49,7 +66,7 @@ TEST_F(WatchdogTest, IsFedByNobodyButTheLoop) {
 TEST_F(WatchdogTest, IsFedWhileEveryWorkerAnswers) {
   Workers workers(loop, 3);
   watchdog.ask_also(&workers);
-  EXPECT_GE(fed_in(kWithin * 3), 6);
+  EXPECT_TRUE(is_fed_often());
   watchdog.ask_also(nullptr);
 }
 
@@ -60,7 +77,7 @@ TEST_F(WatchdogTest, IsFedWhileWorkersNeverRest) {
     workers.submit([] { std::this_thread::sleep_for(milliseconds(1)); }, [&again] { again(); });
   };
   for (int i = 0; i < 8; ++i) again();
-  EXPECT_GE(fed_in(kWithin * 4), 8);
+  EXPECT_TRUE(is_fed_often());
   watchdog.ask_also(nullptr);
 }
 
@@ -69,11 +86,11 @@ TEST_F(WatchdogTest, IsFedDuringALongJobButStarvesWhenItDoesNotEnd) {
   watchdog.ask_also(&workers);
   turn(kWithin);
   const auto let_go = hang(workers);
-  EXPECT_GE(fed_in(kLongestJob - milliseconds(50)), 1) << "a job may take that long";
-  turn(kWithin);
+  EXPECT_TRUE(turn_until_fed(2)) << "a job may take a while";
+  turn(kLongestJob);
   EXPECT_EQ(fed_in(kWithin * 3), 0) << "the other worker answers, this one does not";
   let_go->set_value();
-  EXPECT_GE(fed_in(kWithin * 2), 3) << "it was only slow";
+  EXPECT_TRUE(is_fed_often()) << "it was only slow";
   watchdog.ask_also(nullptr);
 }
 
@@ -81,11 +98,12 @@ TEST_F(WatchdogTest, AsksThoseThatTookOver) {
   Workers before(loop, 1);
   watchdog.ask_also(&before);
   const auto let_go = hang(before);
-  turn(kLongestJob + kWithin);
+  EXPECT_TRUE(turn_until_fed(1));
+  turn(kLongestJob);
   EXPECT_EQ(fed_in(kWithin), 0);
   Workers after(loop, 1);
   watchdog.ask_also(&after);
-  EXPECT_GE(fed_in(kWithin * 2), 3);
+  EXPECT_TRUE(is_fed_often());
   let_go->set_value();
   watchdog.ask_also(nullptr);
 }

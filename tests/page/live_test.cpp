@@ -27,6 +27,7 @@ class LiveTest : public testing::Test {
   void pass(milliseconds time) {
     const auto until = loop.now() + time;
     while (loop.now() < until) loop.turn(std::min<loop::Duration>(until - loop.now(), milliseconds{20}));
+    loop.turn(milliseconds{0});  // what is due by then
   }
 
   bool welcome = true;
@@ -49,12 +50,14 @@ TEST_F(LiveTest, SendsOneEventAtOnceThatIsTheRunAsJson) {
 
 TEST_F(LiveTest, SendsNoMoreEventsASecondThanAllowedHoweverMuchChanges) {
   const auto page = open();
+  const auto began = loop.now();
   for (int i = 0; i < 100; ++i) {
     live.changed();
     pass(milliseconds{10});
   }
+  const std::chrono::duration<double> passed = loop.now() - began;
   EXPECT_GE(page->sent.size(), 3);
-  EXPECT_LE(page->sent.size(), 1 + Page::kEventsPerSecond + 1);
+  EXPECT_LE(static_cast<double>(page->sent.size()), 1 + Page::kEventsPerSecond * passed.count() + 1);
 }
 
 TEST_F(LiveTest, TellsAChangeThatComesAfterAPauseWithoutDelay) {
@@ -77,10 +80,10 @@ TEST_F(LiveTest, TellsTheLastOfManyChanges) {
 }
 
 TEST_F(LiveTest, SaysSomethingWithinFiveSecondsThoughNothingChanges) {
+  static_assert(Live::kHeartbeat < milliseconds{5000});
   const auto page = open();
-  const auto opened = loop.now();
-  while (page->sent.size() < 2 && loop.now() < opened + milliseconds{6000}) pass(milliseconds{20});
-  EXPECT_LT(loop.now() - opened, milliseconds{5000});
+  pass(Live::kHeartbeat + milliseconds{100});
+  EXPECT_THAT(page->sent, SizeIs(testing::Ge(2)));
 }
 
 TEST_F(LiveTest, AsksForNothingWhileNoPageIsOpen) {

@@ -9,7 +9,7 @@ import zlib
 import cbor2
 
 from command_post import (DROP, MAPPING_TOKEN, SCORING_TOKEN, CommandPost, changed, cloud, connect, fields, grid,
-                          marker, read_answer, state)
+                          marker, read_answer, state, two_at_once)
 
 CBOR = {"Content-Type": "application/cbor"}
 REPORT = {"x": 1, "y": 2, "z": 3, "type": "Drill"}
@@ -103,16 +103,21 @@ class Mapping(unittest.TestCase):
 
     def test_clouds_have_one_timer_and_are_taken_all_the_same(self):
         with CommandPost("--as-measured", rate=None) as post:
-            self.assertEqual(post.map(cloud(name="A")).status_code, 200)
-            answer = post.map(cloud(name="B"))
-            self.assertEqual((answer.status_code, answer.json()),
-                             (429, "Cloud updates too frequent. Reduce to <1Hz."))
+            answers = []
+
+            def send(name):
+                answers.append(post.map(cloud(name=name)))
+                return answers[-1]
+
+            self.assertEqual(two_at_once(lambda: send("A"), lambda: send("B")), [200, 429])
+            self.assertEqual(answers[-1].json(), "Cloud updates too frequent. Reduce to <1Hz.")
             for _ in range(3):
                 self.assertEqual(post.map(grid()).status_code, 200)
             time.sleep(1.05)
-            self.assertEqual(post.map(cloud(name="A")).status_code, 200)
+            self.assertEqual(send("A").status_code, 200)
             counts = {part["robot"]: part["count"] for part in post.record()["accepted"]}
-            self.assertEqual(counts, {"A": 2, "B": 1, "X1": 3})
+            tries = len(answers) // 2
+            self.assertEqual(counts, {"A": tries + 1, "B": tries, "X1": 3})
 
     def test_after_a_4xx_it_closes_though_it_promised_not_to(self):
         with CommandPost("--as-measured") as post:
@@ -233,7 +238,7 @@ class Scoring(unittest.TestCase):
         with CommandPost("--as-measured", rate=None) as post:
             self.assertEqual([post.report(REPORT).status_code for _ in range(5)], [201] * 5)
         with CommandPost("--as-measured", rate=1) as post:
-            self.assertEqual([post.report(REPORT).status_code for _ in range(2)], [201, 429])
+            self.assertEqual(two_at_once(lambda: post.report(REPORT)), [201, 429])
 
 
 if __name__ == "__main__":

@@ -4,7 +4,7 @@ import datetime
 import time
 import unittest
 
-from command_post import SCORING_TOKEN, CommandPost, changed, DROP
+from command_post import DROP, SCORING_TOKEN, CommandPost, changed, two_at_once
 
 ARTIFACTS = "type,x,y,z\nBackpack,10,0,0\nCell Phone,20,5,-1\nBackpack,10,1,0\n"
 REPORT = {"x": 10.0, "y": 3.0, "z": 4.0, "type": "backpack"}  # 5 m from the first
@@ -121,15 +121,18 @@ class Refusals(unittest.TestCase):
 
     def test_more_than_one_a_second_for_a_uri_is_429(self):
         with CommandPost(rate=None) as post:
-            self.assertEqual(post.status().status_code, 200)
-            self.assertEqual(post.report(REPORT).status_code, 201, "each URI has its own timer")
-            self.assertEqual(post.report(REPORT).status_code, 429)
-            answer = post.status()
-            self.assertEqual(answer.status_code, 429)
-            self.assertIsInstance(answer.json(), str)
+            answers = []
+
+            def report():
+                answers.append(post.report(REPORT))
+                return answers[-1]
+
+            self.assertEqual(two_at_once(post.status), [200, 429])
+            self.assertEqual(two_at_once(report), [201, 429], "each URI has its own timer")
+            self.assertIsInstance(answers[-1].json(), str)
             time.sleep(1)
-            self.assertEqual(post.report(REPORT).status_code, 201, "one that was refused does not count")
-            self.assertEqual(post.record()["report_count"], 2)
+            self.assertEqual(report().status_code, 201, "one that was refused does not count")
+            self.assertEqual(post.record()["report_count"], sum(answer.status_code == 201 for answer in answers))
 
 
 if __name__ == "__main__":

@@ -38,7 +38,7 @@ def script(path, text):
     path.chmod(0o755)
 
 
-def wait_until(condition, what, within=30.0):
+def wait_until(condition, what, within=60.0):
     end = time.monotonic() + within
     while time.monotonic() < end:
         if value := condition():

@@ -108,7 +108,7 @@ class OverTheApi(unittest.TestCase):
         raucs.wait_until(lambda: self.left() == [], "nothing of it to be left")
 
     def test_one_of_a_gigabyte_is_refused_before_it_is_sent(self):
-        connection = http.client.HTTPConnection("127.0.0.1", self.aditd.port, timeout=20)
+        connection = http.client.HTTPConnection("127.0.0.1", self.aditd.port, timeout=60)
         with contextlib.closing(connection):
             connection.putrequest("POST", "/adit/update")
             for name, value in (("Authorization", f"Bearer {TOKEN}"), ("Content-Type", "application/octet-stream"),

@@ -36,11 +36,11 @@ class OnTrial(OnABox):
         self.box.start("B")
         subprocess.run([self.box.folder / "bin/fw_setenv", "BOOT_B_LEFT", "2"], check=True)  # the boot loader counts
         self.assertTrue(self.box.update()["trial"])
-        self.ready_for(57)
+        self.ready_for(45)
         self.assertFalse(self.watch(1))
         self.assertEqual(self.box.boot_loader()["BOOT_B_LEFT"], "2")
         self.ready_for(60)
-        self.assertTrue(self.watch(20))
+        self.assertTrue(self.watch(60))
         self.assertEqual(self.box.boot_loader(), {"BOOT_ORDER": "B A", "BOOT_A_LEFT": "3", "BOOT_B_LEFT": "3"})
         self.assertIn("start --no-block adit-update.service", self.box.calls.read_text())
         status = self.box.update()
@@ -50,7 +50,7 @@ class OnTrial(OnABox):
     def test_a_slot_that_does_not_come_up_healthy_in_time_ends_in_a_restart(self):
         self.box.start("B")
         self.ready_for(5)
-        self.assertTrue(self.watch(20, "--within", "3"))
+        self.assertTrue(self.watch(60, "--within", "3"))
         self.assertEqual(self.box.calls.read_text().splitlines()[-1], "reboot")
         self.assertEqual(self.box.update()["last"]["stage"], "installed")
 
@@ -75,13 +75,13 @@ class OnTrial(OnABox):
     def test_a_slot_that_was_good_once_is_good_as_soon_as_the_service_is_ready(self):
         self.box.start("B")
         self.ready_for(60)
-        self.assertTrue(self.watch(20))
+        self.assertTrue(self.watch(60))
         subprocess.run([self.box.folder / "bin/fw_setenv", "BOOT_B_LEFT", "1"], check=True)
         self.box.properties.write_text("ActiveState=activating\n")
         self.assertFalse(self.watch(3, "--within", "1"))
         self.assertEqual(self.box.boot_loader()["BOOT_B_LEFT"], "1")
         self.ready_for(0)
-        self.assertTrue(self.watch(20))
+        self.assertTrue(self.watch(60))
         self.assertEqual(self.box.boot_loader()["BOOT_B_LEFT"], "3")
         self.assertNotIn("reboot", self.box.calls.read_text())
 

@@ -41,16 +41,23 @@ class Installed(OnABox):
 
     def test_progress_is_told_while_it_goes(self):
         big = self.bundles.make("0.3.0", root_size=(4 << 20) - 4096)
-        shutil.copy(big, self.box.folder / "wanted/update.raucb")
-        self.box.ask("install")
         seen = set()
-        with subprocess.Popen(self.box.command(), env=self.box.environment, stderr=subprocess.DEVNULL) as process:
-            while process.poll() is None:
-                status = self.box.status()
-                seen.add((status["doing"], status["progress"]))
-                time.sleep(0.002)
-        self.assertIn(("checking", None), seen)
-        self.assertGreaterEqual(len({progress for doing, progress in seen if doing == "installing"}), 2, seen)
+
+        def is_seen():
+            return ("checking", None) in seen and len({progress for doing, progress in seen if doing == "installing"}) >= 2
+
+        for _ in range(5):  # a machine that does much besides may let this test look too seldom
+            seen.clear()
+            shutil.copy(big, self.box.folder / "wanted/update.raucb")
+            self.box.ask("install", again=True)
+            with subprocess.Popen(self.box.command(), env=self.box.environment, stderr=subprocess.DEVNULL) as process:
+                while process.poll() is None:
+                    status = self.box.status()
+                    seen.add((status["doing"], status["progress"]))
+                    time.sleep(0.002)
+            if is_seen():
+                break
+        self.assertTrue(is_seen(), seen)
         self.assertEqual(self.box.status()["doing"], "")
 
     def test_a_restart_is_systemds(self):
@@ -159,7 +166,7 @@ class Refused(OnABox):
         request.mkdir()
         subprocess.run(["mount", "-t", "tmpfs", "none", request], check=True)
         try:
-            done = subprocess.run(self.box.command(), env=self.box.environment, capture_output=True, timeout=30, check=False)
+            done = subprocess.run(self.box.command(), env=self.box.environment, capture_output=True, timeout=120, check=False)
         finally:
             subprocess.run(["umount", request], check=True)
         self.assertEqual(done.returncode, 1, "systemd waits before it starts it again")

@@ -22,9 +22,11 @@ inline icd::BearerToken token() {
 /// A loop, and what a test does with connections on it.
 class Asking : public testing::Test {
  protected:
+  static constexpr std::chrono::seconds kPatience{20};
+
   template <class Done>
   bool turn_until(Done done) {
-    const loop::Instant end = loop_.now() + std::chrono::seconds(8);
+    const loop::Instant end = loop_.now() + std::chrono::seconds(30);
     while (!done() && loop_.now() < end) loop_.turn(std::chrono::milliseconds(5));
     return done();
   }
@@ -62,7 +64,7 @@ class Asking : public testing::Test {
     Request request;
     request.method = "GET";
     request.target = std::move(target);
-    request.answer_within = std::chrono::milliseconds(3000);
+    request.answer_within = kPatience;
     return request;
   }
   static Request post(const std::string& body) {
@@ -71,7 +73,7 @@ class Asking : public testing::Test {
     request.target = "/map/update";
     request.content_type = "application/cbor";
     request.body.append({reinterpret_cast<const std::uint8_t*>(body.data()), body.size()});
-    request.answer_within = std::chrono::milliseconds(3000);
+    request.answer_within = kPatience;
     return request;
   }
   static std::string megabytes(std::size_t count) {

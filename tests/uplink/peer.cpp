@@ -15,7 +15,7 @@
 namespace adit::uplink {
 namespace {
 
-constexpr timeval kPatience{5, 0};
+constexpr timeval kPatience{20, 0};
 
 std::size_t length_in(const std::string& head) {
   const std::string_view field = "\r\nContent-Length: ";

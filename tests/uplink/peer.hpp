@@ -13,7 +13,7 @@
 
 namespace adit::uplink {
 
-/// The peer's end of one connection: raw, blocking, for five seconds at most.
+/// The peer's end of one connection: raw, blocking, for twenty seconds at most.
 class Wire {
  public:
   explicit Wire(loop::FileDescriptor fd);

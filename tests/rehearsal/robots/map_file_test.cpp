@@ -1,6 +1,7 @@
 #include "rehearsal/robots/maps/map_file.hpp"
 
 #include <gtest/gtest.h>
+#include <unistd.h>
 
 #include <algorithm>
 #include <cstring>
@@ -45,9 +46,7 @@ float float_at(const Cloud& cloud, std::size_t at) {
 }
 
 struct Folder : testing::Test {
-  Folder()
-      : path_(fs::path(testing::TempDir()) /
-              ("adit_robots_" + std::string(testing::UnitTest::GetInstance()->current_test_info()->name()))) {
+  Folder() : path_(fs::path(testing::TempDir()) / ("adit_robots_maps_" + std::to_string(getpid()))) {
     fs::remove_all(path_);
     fs::create_directories(path_);
   }

@@ -1,6 +1,7 @@
 #include "rehearsal/robots/options.hpp"
 
 #include <gtest/gtest.h>
+#include <unistd.h>
 
 #include <filesystem>
 #include <fstream>
@@ -59,7 +60,7 @@ TEST(Options, NameTheArgumentThatIsWrong) {
 }
 
 TEST(TeamToken, IsTheFilesOneLine) {
-  const std::filesystem::path folder = testing::TempDir() + "adit_robots_token";
+  const std::filesystem::path folder = testing::TempDir() + "adit_robots_token_" + std::to_string(getpid());
   std::filesystem::create_directories(folder);
   const std::pair<const char*, bool> cases[] = {{"flux230{showroom", true},
                                                 {"flux230{showroom\r\n", true},

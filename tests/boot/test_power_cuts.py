@@ -52,7 +52,7 @@ class PowerCuts(Story):
             starts.append(self.box.answered_after)
             if number % 5 == 0:
                 self.stage.began()
-                operator.looks()
+                self.box.wait_until(lambda: operator.looks() or True, "the operator to be answered")
         self.stage.began()
         self.box.wait_until(lambda: len(self.stage.post.recorded()) > CUTS, "reports to be recorded", 300)
         end(clients)

@@ -11,6 +11,9 @@ const BIN = process.env.ADIT_BIN ?? dirname(process.env.SCENE_SERVER);
 export const TOKENS = { scoring: "scoring-token-1", mapping: "mapping-token-1", team: "team-token-1" };
 export const OPERATOR = "correct horse battery", VIEWER = "look, do not touch";
 
+/** A connection of its own for a request: a box that begins anew closes those that are kept. */
+export const ONCE = { Connection: "close" };
+
 /** What `look()` gives, once it is something. */
 export async function until(look, what, within = 60_000) {
   for (const end = Date.now() + within; Date.now() < end; await sleep(50)) {
@@ -56,7 +59,7 @@ function secretsIn(folder) {
 }
 
 /** aditd at work, both passwords set; `ask(method, path, {role, body, headers})` asks as an operator's script by default. */
-export async function box(t) {
+export async function box(t, rates = {}) {
   const folder = mkdtempSync(join(tmpdir(), "adit-page-"));
   t.after(() => rmSync(folder, { recursive: true }));
   const secrets = secretsIn(join(folder, "secrets"));
@@ -64,7 +67,7 @@ export async function box(t) {
   const address = async (name) => ({ address: "127.0.0.1", port: Number(await post.said(new RegExp(`${name} 127\\.0\\.0\\.1:(\\d+)`))) });
   const settings = {
     version: 1,
-    command_post: { scoring: await address("scoring"), mapping: await address("mapping") },
+    command_post: { scoring: await address("scoring"), mapping: await address("mapping"), rates },
     team: { listen: [{ address: "127.0.0.1", port: await freePort() }] },
   };
   writeFileSync(join(folder, "settings.json"), JSON.stringify(settings));
@@ -78,7 +81,7 @@ export async function box(t) {
     const type = bytes ? "application/octet-stream" : "application/json";
     return fetch(url + path, {
       method,
-      headers: { ...(method === "POST" && { "Content-Type": type }), ...who[role], ...headers },
+      headers: { ...ONCE, ...(method === "POST" && { "Content-Type": type }), ...who[role], ...headers },
       body: body === undefined || bytes ? body : JSON.stringify(body),
     });
   };

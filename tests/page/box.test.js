@@ -41,7 +41,7 @@ test("metrics follow what happens", async (t) => {
   await until(async () => (await value('adit_updates_forwarded_total{kind="state",robot="ugv1"}')) === 1, "a state to be forwarded");
   assert.equal(await value('adit_updates_accepted_total{kind="state",robot="ugv1"}'), 1);
   assert.equal(await value('adit_refused_total{uri="/state/update",status="422"}'), 1);
-  assert.equal(await value('adit_endpoint_up{endpoint="scoring"}'), 1);
+  await until(async () => (await value('adit_endpoint_up{endpoint="scoring"}')) === 1, "the scoring endpoint to answer");
   assert.equal(await value('adit_sessions{role="viewer"}'), 1);
   assert.ok((await value("adit_process_resident_memory_bytes")) > 1e6);
   assert.ok((await value("adit_link_sent_bytes_total")) > 100);

@@ -6,6 +6,12 @@ const fill = async (page, type, x, y, z) => {
   await page.getByRole("radio", { name: type, exact: true }).check();
   for (const [axis, value] of Object.entries({ x, y, z })) if (value !== undefined) await page.fill(`#compose input[name=${axis}]`, value);
 };
+/** By its key, which does nothing until it is known who looks. */
+const compose = async (page) => {
+  await page.waitForSelector("#reports .compose:enabled");
+  await page.keyboard.press("n");
+  await page.waitForSelector("#compose[open]");
+};
 const check = (page) => page.getByRole("button", { name: "Check" }).click();
 const send = (page) => page.locator("#compose .send").click();
 const becomes = (page, number, words) =>
@@ -30,7 +36,7 @@ test("composes a report: what, where, a look at what is near, and away", async (
 
 test("names the field that is wrong, and goes there", async (t) => {
   const { page } = await watch(t, "reports");
-  await page.keyboard.press("n");
+  await compose(page);
   await check(page);
   assert.match(await text(page, "#compose .trouble"), /Choose what it is/);
   for (const [axis, wrong] of [["x", ""], ["x", "12,5"], ["y", "left"], ["z", "1e3"], ["z", "."]]) {
@@ -45,7 +51,7 @@ test("names the field that is wrong, and goes there", async (t) => {
 
 test("says that the very same was reported, and sends it anew only when told to", async (t) => {
   const { page } = await watch(t, "reports");
-  await page.keyboard.press("n");
+  await compose(page);
   await fill(page, "Helmet", "281.75", "−4.5", ".25");
   await check(page);
   assert.match(await text(page, "#compose .notes"), /Reported already, at the very same place: #23 Helmet, scored \+1/);
@@ -63,7 +69,7 @@ test("says that the very same was reported, and sends it anew only when told to"
 
 test("shows the box's sentence where it was not taken, and keeps what was typed", async (t) => {
   const { page } = await watch(t, "reports");
-  await page.keyboard.press("n");
+  await compose(page);
   await fill(page, "Cube", "666", "0", "0");
   await check(page);
   await send(page);
@@ -71,12 +77,12 @@ test("shows the box's sentence where it was not taken, and keeps what was typed"
   await page.getByRole("button", { name: "Change" }).click();
   assert.equal(await page.inputValue("#compose input[name=x]"), "666");
   await page.getByRole("button", { name: "Close" }).click();
-  assert.ok(await page.locator("#compose").isHidden());
+  await page.locator("#compose").waitFor({ state: "hidden" });
 });
 
 test("takes a place from the map, by finger and by keyboard, and a robot's height with it", async (t) => {
   const { page } = await watch(t, "calm");
-  await page.keyboard.press("n");
+  await compose(page);
   await page.getByRole("button", { name: "Pick on the map" }).click();
   const canvas = page.locator("#map .frame canvas");
   await canvas.click({ position: { x: 200, y: 150 } });
@@ -99,16 +105,19 @@ test("takes a place from the map, by finger and by keyboard, and a robot's heigh
 test("has nothing that axe finds wrong in its dialogs", async (t) => {
   for (const colorScheme of ["dark", "light"]) {
     const { page } = await watch(t, "reports", { colorScheme, bypassCSP: true });
-    await page.keyboard.press("n");
+    await compose(page);
     await axeFindsNothing(page, `fields, ${colorScheme}`);
     await fill(page, "Helmet", "281.75", "-4.5", "0.25");
     await check(page);
     await axeFindsNothing(page, `check, ${colorScheme}`);
     await page.keyboard.press("Escape");
+    await page.locator("#compose").waitFor({ state: "hidden" });
     await page.keyboard.press("?");
+    await page.waitForSelector("#help[open]");
     await axeFindsNothing(page, `help, ${colorScheme}`);
     await page.keyboard.press("Escape");
     await page.getByRole("button", { name: "Send once more: report 25" }).click();
+    await page.waitForSelector("#confirm[open]");
     await axeFindsNothing(page, `confirm, ${colorScheme}`);
   }
 });

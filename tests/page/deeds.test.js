@@ -50,7 +50,7 @@ test("asks before what costs a report, and does nothing where the answer is no",
   assert.match(await question.textContent(), /report 25, Gas.*recorded twice.*costs a report.*18 reports are left/s);
   assert.equal(await page.evaluate(() => document.activeElement.textContent), "Leave it");
   await page.keyboard.press("Escape");
-  assert.ok(await question.isHidden());
+  await question.waitFor({ state: "hidden" });
   assert.match(await row(page, 25).innerText(), /in doubt/);
   await button(page, "Send once more", 25).click();
   await question.getByRole("button", { name: "Leave it" }).click();
@@ -89,11 +89,11 @@ test("lets a viewer look, and says why no more", async (t) => {
 test("offers nothing while the box is lost, and again once it is back", async (t) => {
   const { stage, page } = await watch(t, "reports");
   stage.freeze();
-  await page.waitForSelector("body[data-link=lost]", { timeout: 6000 });
+  await page.waitForSelector("body[data-link=lost]");
   await said(page, "Nothing can be done while the box does not answer");
   assert.ok(await button(page, "Send", 24).isDisabled());
   stage.thaw();
-  await page.waitForSelector("body[data-link=live]", { timeout: 6000 });
+  await page.waitForSelector("body[data-link=live]");
   await page.waitForFunction(() => !document.querySelector("#reports .deeds button").disabled);
 });
 

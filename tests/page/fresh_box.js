@@ -6,7 +6,7 @@ import { createServer } from "node:net";
 import { tmpdir } from "node:os";
 import { dirname, join } from "node:path";
 import { after, before } from "node:test";
-import { until } from "./box.js";
+import { ONCE, until } from "./box.js";
 import { launch, visit } from "./stage.js";
 
 export { until };
@@ -78,11 +78,11 @@ class FreshBox {
 
   /** An operator's own session, by password: `ask(path, body)` gives {status, said}; with a body it posts. */
   async operator() {
-    const post = (path, body, headers = {}) =>
+    const post = (path, body, headers = ONCE) =>
       fetch(this.url.slice(0, -1) + path, { method: "POST", headers: { "Content-Type": "application/json", ...headers }, body: JSON.stringify(body) });
     const answer = await post("/adit/login", { password: PASSWORD });
     const { csrf } = await answer.json();
-    const headers = { Cookie: answer.headers.get("Set-Cookie").split(";")[0], "Adit-CSRF": csrf };
+    const headers = { ...ONCE, Cookie: answer.headers.get("Set-Cookie").split(";")[0], "Adit-CSRF": csrf };
     return async (path, body) => {
       const said = body === undefined ? await fetch(this.url.slice(0, -1) + path, { headers }) : await post(path, body, headers);
       return { status: said.status, said: await said.json().catch(() => null) };

@@ -1,17 +1,12 @@
 import assert from "node:assert/strict";
 import { test } from "node:test";
+import { until } from "./box.js";
 import { serve } from "./stage.js";
-import { watch } from "./watch.js";
+import { settled, watch } from "./watch.js";
 
 const canvas = "#map .frame canvas";
-const tiles = (page) => page.requests.filter((url) => url.includes(".png")).length;
-const settled = async (page) => {
-  let before = -1;
-  while (before !== tiles(page)) {
-    before = tiles(page);
-    await page.waitForTimeout(500);
-  }
-};
+const asked = (page, part) => page.requests.filter((url) => url.includes(part)).length;
+const tiles = (page) => asked(page, ".png");
 /** The colours of the map, so that two can be compared. */
 const picture = (page) => page.$eval(canvas, (node) => node.toDataURL());
 /** Whether more pixels than the rims of letters have about this colour. */
@@ -27,50 +22,68 @@ const shows = (page, [red, green, blue, most]) =>
 
 const FREE = [0xc8, 0xd2, 0xda, 400], ROBOT = [0xff, 0xb2, 0x24, 10], SCORED = [0x43, 0xd8, 0x93, 10], MARKER = [0xff, 0x33, 0xff, 10];
 const box = (page, name) => page.getByRole("checkbox", { name, exact: true });
+async function hide(page, ...names) {
+  for (const name of names) await box(page, name).uncheck();
+  await settled(page);
+}
+
+const appears = (page, colour, what) => until(() => shows(page, colour), what);
+const goes = (page, colour, what) => until(async () => !(await shows(page, colour)), `${what} to go`);
+/** The next picture that is not `before`. */
+const changed = (page, before, what) =>
+  until(async () => {
+    const now = await picture(page);
+    return now !== before && now;
+  }, what);
+const becomes = (page, whole) => until(async () => (await picture(page)) === whole, "the picture before");
+
+/** The slider, which is there once a map is. */
+async function sliderOf(page) {
+  await page.waitForSelector("#map input[type=range]:enabled");
+  return page.getByRole("slider");
+}
 
 test("shows the maps, the robots on them and the reports, each by its box", async (t) => {
   const { page } = await watch(t, "calm", { colorScheme: "dark" });
   await settled(page);
   for (const [name, colour] of [["Grids", FREE], ["Robots", ROBOT], ["Reports", SCORED], ["Markers", MARKER], ["merged", FREE]]) {
-    assert.ok(await shows(page, colour), name);
+    await appears(page, colour, name);
     await box(page, name).uncheck();
-    await page.waitForTimeout(100);
-    assert.ok(!(await shows(page, colour)), `${name} off`);
+    await goes(page, colour, name);
     await box(page, name).check();
-    await page.waitForTimeout(100);
+    await appears(page, colour, `${name}, again`);
   }
+  await hide(page, "Robots", "Tracks"); // they change by themselves
   const before = await picture(page);
   await box(page, "Clouds").uncheck();
-  await page.waitForTimeout(100);
-  assert.notEqual(await picture(page), before);
+  await changed(page, before, "the clouds to go");
   assert.match(await page.textContent("#map .legend"), /Height\s+0\.0 m\s+\d\.0 m/);
   assert.deepEqual(page.complaints.filter((text) => !text.includes("getImageData")), []); // this test's own reading
 });
 
 test("shows the robots where they were, and the tracks and markers as far as they had come", async (t) => {
   const { page } = await watch(t, "calm", { colorScheme: "dark" });
-  await settled(page);
-  for (const name of ["Grids", "Clouds", "Reports", "Tracks"]) await box(page, name).uncheck();
-  assert.match(await page.textContent("#map .leftout"), /Of the markers the newest 12 are shown; 3 older ones are not/);
-  const slider = page.getByRole("slider");
+  const slider = await sliderOf(page);
+  await hide(page, "Clouds", "Reports", "Tracks");
+  await appears(page, MARKER, "the markers");
+  await page.locator("#map .leftout", { hasText: "Of the markers the newest 12 are shown; 3 older ones are not" }).waitFor();
   await slider.press("Home");
   await slider.press("ArrowRight");
-  await page.waitForTimeout(400);
+  await goes(page, MARKER, "the markers, none of which had come");
   assert.ok(await shows(page, ROBOT), "as they were ten minutes ago");
-  assert.ok(!(await shows(page, MARKER)), "before any marker came");
   await box(page, "Robots").uncheck();
-  await page.waitForTimeout(200);
-  assert.ok(!(await shows(page, ROBOT)));
+  await goes(page, ROBOT, "the robots");
+  await hide(page, "Markers", "Grids");
   const without = await picture(page);
-  await slider.press("End");
-  await box(page, "Markers").uncheck();
   await box(page, "Tracks").check();
-  await page.waitForTimeout(400);
-  assert.ok((await picture(page)) !== without, "the tracks");
+  const begun = await changed(page, without, "the beginning of the tracks");
+  await slider.press("End");
+  await changed(page, begun, "the tracks as far as they have come now");
 });
 
 test("is moved by hand, wheel, keys and buttons, and fits again", async (t) => {
   const { page } = await watch(t, "empty");
+  await settled(page);
   await page.locator(canvas).scrollIntoViewIfNeeded();
   const at = await page.locator(canvas).boundingBox();
   const [x, y] = [at.x + at.width / 2, at.y + at.height / 2];
@@ -84,17 +97,15 @@ test("is moved by hand, wheel, keys and buttons, and fits again", async (t) => {
   for (const [name, move] of Object.entries(moves)) {
     const before = await picture(page);
     await move();
-    await page.waitForTimeout(100);
-    assert.notEqual(await picture(page), before, name);
+    await changed(page, before, name);
+    await settled(page);
   }
 });
 
 test("pans by dragging and by the arrow keys, and comes back by All", async (t) => {
   const { page } = await watch(t, "reports");
   await settled(page);
-  await box(page, "Robots").uncheck(); // they move by themselves
-  await box(page, "Tracks").uncheck();
-  await page.waitForTimeout(200);
+  await hide(page, "Robots", "Tracks"); // they move by themselves
   const whole = await picture(page);
   await page.locator(canvas).scrollIntoViewIfNeeded();
   const at = await page.locator(canvas).boundingBox();
@@ -102,46 +113,39 @@ test("pans by dragging and by the arrow keys, and comes back by All", async (t) 
   await page.mouse.down();
   await page.mouse.move(at.x + 160, at.y + 130, { steps: 4 });
   await page.mouse.up();
-  await page.waitForTimeout(100);
-  const dragged = await picture(page);
-  assert.notEqual(dragged, whole);
-  await page.locator(canvas).press("ArrowLeft");
-  await page.waitForTimeout(100);
-  assert.notEqual(await picture(page), dragged);
-  await page.getByRole("button", { name: "All", exact: true }).click();
   await settled(page);
-  assert.equal(await picture(page), whole);
+  const dragged = await changed(page, whole, "the drag");
+  await page.locator(canvas).press("ArrowLeft");
+  await changed(page, dragged, "the arrow key");
+  await page.getByRole("button", { name: "All", exact: true }).click();
+  await becomes(page, whole);
 });
 
 test("shows the map as it was, by the slider, and now again", async (t) => {
   const { page } = await watch(t, "calm");
-  await settled(page);
-  for (const name of ["Robots", "Tracks", "Reports"]) await box(page, name).uncheck();
-  await page.waitForTimeout(200);
+  const slider = await sliderOf(page);
+  await hide(page, "Robots", "Tracks", "Reports");
   const whole = await picture(page);
-  const slider = page.getByRole("slider");
   assert.equal(await slider.getAttribute("aria-valuetext"), "now");
   await slider.focus();
   for (let i = 0; i < 2; ++i) await page.keyboard.press("PageDown");
   for (let i = 0; i < 2; ++i) await page.keyboard.press("PageDown");
   assert.match(await slider.getAttribute("aria-valuetext"), /^as of \d\d:\d\d:\d\d$/);
-  await settled(page);
-  assert.ok(page.requests.some((url) => url.includes("at=")));
-  assert.notEqual(await picture(page), whole);
+  await until(() => asked(page, "at=") > 0, "tiles as they were");
+  await changed(page, whole, "the map as it was");
   await page.getByRole("button", { name: "Now" }).click();
-  await settled(page);
   assert.equal(await slider.getAttribute("aria-valuetext"), "now");
-  assert.equal(await picture(page), whole);
+  await becomes(page, whole);
 });
 
 test("fetches a tile when it is seen and its version changed, not over and over", async (t) => {
   const { page } = await watch(t, "calm");
   await settled(page);
-  const once = tiles(page), maps = page.requests.filter((url) => url.includes("/adit/map?")).length;
+  const once = tiles(page), maps = asked(page, "/adit/map?");
   assert.ok(once > 0 && once < 40, `${once} tiles`);
   await page.waitForTimeout(3000);
   assert.equal(tiles(page), once);
-  assert.equal(page.requests.filter((url) => url.includes("/adit/map?")).length, maps);
+  assert.equal(asked(page, "/adit/map?"), maps);
 });
 
 test("is drawn again only when something on it changed", async (t) => {
@@ -154,7 +158,7 @@ test("is drawn again only when something on it changed", async (t) => {
     };
   });
   const { page } = await watch(t, "empty", { prepare });
-  await page.waitForTimeout(1000);
+  await settled(page);
   const before = await page.evaluate(() => globalThis.drawn);
   await page.waitForTimeout(2500);
   assert.equal(await page.evaluate(() => globalThis.drawn), before);
@@ -165,18 +169,19 @@ test("shows the map of a box that was started anew", async (t) => {
   await settled(page);
   const once = tiles(page);
   await stage.end();
+  await page.waitForSelector("body[data-link=lost]");
   const next = await serve("calm", stage.port);
   t.after(() => next.end());
   await page.waitForSelector("body[data-link=live]");
-  await page.waitForTimeout(1500);
+  await until(() => tiles(page) > once, "the tiles of the new map");
   await settled(page);
-  assert.ok(tiles(page) > once, "the tiles of the new map were fetched");
   assert.ok(await shows(page, FREE));
 });
 
 test("takes two fingers", async (t) => {
   const { page } = await watch(t, "calm", { hasTouch: true, viewport: { width: 390, height: 844 } });
   await settled(page);
+  await hide(page, "Robots", "Tracks"); // they move by themselves
   const before = await picture(page);
   await page.$eval(canvas, (node) => {
     const box = node.getBoundingClientRect();
@@ -189,18 +194,15 @@ test("takes two fingers", async (t) => {
     send("pointerup", 1, 100, 100);
     send("pointerup", 2, 240, 100);
   });
-  await page.waitForTimeout(200);
-  assert.notEqual(await picture(page), before);
+  await changed(page, before, "the fingers' move");
 });
 
 test("gets the picture of the map later where it cannot be had at first", async (t) => {
   let fails = true;
   const prepare = (page) => page.route("**/adit/map?*", (route) => (fails ? route.fulfill({ status: 503, json: "busy" }) : route.continue()));
   const { page } = await watch(t, "calm", { prepare });
-  await page.waitForTimeout(1500);
+  await until(() => asked(page, "/adit/map?") > 1, "the picture to be asked for again");
   assert.equal(tiles(page), 0);
   fails = false;
-  await settled(page);
-  await page.waitForTimeout(1500);
-  assert.ok(tiles(page) > 0);
+  await until(() => tiles(page) > 0, "the tiles");
 });

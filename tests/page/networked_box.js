@@ -6,6 +6,7 @@ import { tmpdir } from "node:os";
 import { dirname, join, resolve } from "node:path";
 import { setTimeout as sleep } from "node:timers/promises";
 import { fileURLToPath } from "node:url";
+import { until } from "./box.js";
 import { launch, visit } from "./stage.js";
 
 const BIN = resolve(process.env.ADIT_BIN ?? dirname(process.env.SCENE_SERVER));
@@ -42,6 +43,7 @@ export class NetworkedBox {
   state = join(this.folder, "state");
   #running = new Set();
   #isOpen = true;
+  #isChanging = false;
 
   #start(space, ...words) {
     const program = spawn("ip", ["netns", "exec", space, ...words], { stdio: ["ignore", "pipe", "pipe"] });
@@ -68,7 +70,8 @@ export class NetworkedBox {
     await run();
     const follow = async () => {
       while (this.#isOpen) {
-        if (ASKED.some((name) => existsSync(join(this.state, name)))) await run();
+        this.#isChanging = this.#isAsked();
+        if (this.#isChanging) await run();
         else await sleep(50);
       }
     };
@@ -90,16 +93,18 @@ export class NetworkedBox {
     await this.#serveNetwork();
     const aditd = this.#start(BOX, join(BIN, "aditd"), "--settings", join(this.folder, "settings.json"), "--secrets", join(this.folder, "secrets"),
       "--state", this.state, "--network", join(this.folder, "status"));
-    for (let tries = 0; !aditd.said.includes("listening"); ++tries) {
-      if (tries > 100 || aditd.exitCode !== null) throw new Error(`aditd: ${aditd.said}`);
-      await sleep(100);
-    }
+    const failed = () => aditd.exitCode !== null && Promise.reject(new Error(`aditd: ${aditd.said}`));
+    await until(() => aditd.said.includes("listening") || failed(), "aditd");
     const chromium = join(this.folder, "chromium");
     writeFileSync(chromium, `#!/bin/sh\nexec ip netns exec ${STATION} ${process.env.CHROMIUM ?? "/usr/bin/chromium"} "$@"\n`);
     chmodSync(chromium, 0o755);
     this.browser = await launch(chromium);
     return this;
   }
+
+  #isAsked = () => ASKED.some((name) => existsSync(join(this.state, name)));
+  /** Nothing is asked for, and adit-network, which takes a change back in time, has ended. */
+  isAtRest = () => !this.#isAsked() && !this.#isChanging;
 
   code = () => readFileSync(join(this.state, "first-start.code"), "utf8").trim();
   /** The address that team0 has: "192.168.7.11/24". */

@@ -58,7 +58,7 @@ test("leads from an empty box to a first report through it", async (t) => {
 /** Runs the Test, and gives of each endpoint each step's state. */
 async function tried(page) {
   await page.getByRole("button", { name: "Test it" }).click();
-  await page.locator("#step-test .outcome", { hasText: "No report was spent." }).waitFor({ timeout: 30_000 });
+  await page.locator("#step-test .outcome", { hasText: "No report was spent." }).waitFor();
   return page.$$eval("#step-test .trial", (all) => all.map((each) => [...each.querySelectorAll("ol .badge")].map((badge) => badge.textContent.trim())));
 }
 
@@ -225,9 +225,9 @@ test("says where the page goes when it moves, and takes back what the box cannot
   await type(page, "team.listen[0].address", "203.0.113.7");
   await page.getByRole("button", { name: "Look and apply" }).click();
   await page.locator("#review .warnings").getByText("this page move").waitFor();
-  await page.getByRole("button", { name: "Apply", exact: true }).click();
-  await page.locator("#typed a", { hasText: "http://203.0.113.7:" }).waitFor();
-  await page.locator("#typed").getByText("the last change was taken back").waitFor({ timeout: 15_000 });
+  const movesTo = page.locator("#typed a", { hasText: "http://203.0.113.7:" }).waitFor(); // shown until it is taken back
+  await Promise.all([movesTo, page.getByRole("button", { name: "Apply", exact: true }).click()]);
+  await page.locator("#typed").getByText("the last change was taken back").waitFor();
   const port = await freePort();
   await type(page, "team.listen[0].address", "127.0.0.1");
   await type(page, "team.listen[0].port", String(port));

@@ -4,6 +4,9 @@ import { test } from "node:test";
 import { come, PASSWORD, until } from "./fresh_box.js";
 import { complaints, COURSES, field, hears, ready, review, step, type } from "./setup_page.js";
 
+const focusIsAt = (page, path) =>
+  page.waitForFunction((path) => document.activeElement.closest("[data-path]")?.dataset.path === path, path);
+
 test("checks the names of robots as they are typed", async (t) => {
   const { ask, page } = await ready(t, "setup#robots");
   const add = page.getByRole("button", { name: "Add a robot" });
@@ -21,7 +24,7 @@ test("checks the names of robots as they are typed", async (t) => {
   }
   await page.locator("[data-path='robots[1].name'] .wrong", { hasText: "the same as robots[0].name" }).waitFor();
   await page.getByRole("button", { name: "Look and apply" }).click();
-  await page.waitForFunction(() => document.activeElement.closest("[data-path]")?.dataset.path === "robots[1].name"); // the error
+  await focusIsAt(page, "robots[1].name"); // the error
   await type(page, "robots[1].name", "uav1");
   await type(page, "robots[1].alias", "ugv1");
   await page.locator("[data-path='robots[1].alias'] .wrong", { hasText: "an alias is another name" }).waitFor();
@@ -79,8 +82,9 @@ test("lists the errors of other steps, each with a way to it", async (t) => {
   await step(page, "Robots").click();
   await page.locator("#typed").getByRole("button", { name: /^command_post\.scoring\.port: expected/ }).click();
   await page.getByRole("heading", { name: "Command Post" }).waitFor();
-  await page.waitForFunction(() => document.activeElement.closest("[data-path]")?.dataset.path === "command_post.scoring.port");
+  await focusIsAt(page, "command_post.scoring.port");
   await page.getByRole("button", { name: "Next" }).click();
+  await focusIsAt(page, "command_post.scoring.port");
   assert.ok(await page.getByRole("heading", { name: "Command Post" }).isVisible(), "an error is mended before one goes on");
   await page.getByRole("button", { name: "Drop" }).click();
   assert.equal(await field(page, "command_post.scoring.port").locator("input").inputValue(), "1");
@@ -157,8 +161,9 @@ test("loses nothing that was typed when the box is lost in the middle of it", as
   await page.getByRole("button", { name: "Look and apply" }).click();
   await review(page);
   await box.end("aditd", "SIGKILL");
-  await page.getByRole("button", { name: "Apply", exact: true }).click();
-  await page.waitForTimeout(1000);
+  const isPost = (request) => request.method() === "POST" && request.url().endsWith("/adit/settings");
+  const unanswered = page.waitForEvent("requestfailed", isPost);
+  await Promise.all([unanswered, page.getByRole("button", { name: "Apply", exact: true }).click()]);
   await box.startAditd();
   await hears(page, /Applied\./);
   assert.equal((await ask("/adit/settings")).said.settings.robots[0].name, "ugv1");

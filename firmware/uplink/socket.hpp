@@ -28,8 +28,8 @@ int connect_error(int fd);
 /// TCP_USER_TIMEOUT: how long bytes may stay without the peer's acknowledgement.
 void give_up_after(int fd, std::chrono::milliseconds silence);
 
-/// SO_LINGER: whether closing the socket, also by the death of this process, throws away what the peer has not taken and
-/// resets the connection, in place of sending the rest of it from the kernel.
+/// SO_LINGER: whether closing the socket, also by the death of this process, throws away what the peer has
+/// not taken and resets the connection, in place of sending the rest of it from the kernel.
 void reset_on_close(int fd, bool reset);
 
 /// Whether an idle connection is still there: neither closed, nor has anything come that nobody asked for.

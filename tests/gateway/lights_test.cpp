@@ -57,8 +57,8 @@ TEST_F(LightsTest, BlinkByTheLoopsTimer) {
   be_well();
   lights.set(State::NeedsOperator, true);
   loop::Duration took = 1h;
-  for (int attempt = 0; attempt < 10 && took > 1500ms;
-       ++attempt) {  // a busy machine takes longer now and then
+  // A busy machine takes longer now and then.
+  for (int attempt = 0; attempt < 10 && took > 1500ms; ++attempt) {
     const auto began = loop.now();
     seen.shown.clear();
     turn_until([&] { return seen.shown.size() >= 9; });
@@ -105,8 +105,8 @@ TEST_F(LightsTest, PlayDigitsOnceFromTheirBeginningOnAttentionAlone) {
   const Lit dark{}, digit{false, false, false, true}, well{true, true, true, false};
   const std::vector all{dark, digit, dark, digit, dark, well};
   seen.shown.clear();
-  for (int attempt = 0; attempt < 20 && seen.shown != all;
-       ++attempt) {  // a busy machine may sleep through one
+  // A busy machine may sleep through one.
+  for (int attempt = 0; attempt < 20 && seen.shown != all; ++attempt) {
     seen.shown.clear();
     lights.play_digits({{false, 100ms}, {true, 100ms}, {false, 100ms}, {true, 200ms}, {false, 100ms}});
     EXPECT_EQ(lights.shown()[kAttention], Pattern::Digits);

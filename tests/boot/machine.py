@@ -84,6 +84,7 @@ class Machine(programs.Page):
         self.pins.set(BUTTON, True)
         time.sleep(seconds)
         self.pins.set(BUTTON, False)
+        time.sleep(0.2)  # for less, it would be a bounce
 
     def plug(self, port, plugged=True):
         """The cable of team0 or darpa0, in or out."""

@@ -44,7 +44,7 @@ class Pc(Updating, Story):
         self.box.wait_until(lambda: self.box.console.run(f"cat {NOTICE}")[0] == 0, "it to be noticed")
         self.box.wait_until(lambda: self.stands()["managed"], "adit-update to have told what runs")
         self.send(bundle_of_nothing(self.folder, REFUSED, boards.PC.name))
-        self.box.wait_until(lambda: "2 disks hold an Adit" in self.stands()["refusal"], "it to be refused")
+        self.box.wait_until(lambda: "2 disks hold an Adit" in (self.stands()["refusal"] or ""), "it to be refused")
         self.box.pull_stick()
         self.box.wait_until(lambda: self.box.console.run(f"ls {NOTICE}")[0] != 0, "it to be gone")
 

@@ -128,9 +128,6 @@ class Container(programs.Page):
         programs.wait_until(self.answers, "the container to answer", 90)
         self.answered_after = time.monotonic() - self.began
 
-    def ask(self, request, *words, timeout=20, **more):
-        return super().ask(request, *words, timeout=timeout, **more)
-
     def answers(self):
         if self.process.poll() is not None:
             raise AssertionError(f"systemd-nspawn has ended:\n{self.said_last()}")

@@ -107,9 +107,6 @@ class Machine(programs.Page):
         self.wait_until(self.answers, "the box to answer", within)
         self.answered_after, self.cpu_answered_after = time.monotonic() - self.switched_on, self.cpu_seconds()
 
-    def ask(self, request, *words, timeout=20, **more):
-        return super().ask(request, *words, timeout=timeout, **more)
-
     def run_view(self):
         return self.ask("GET /adit/run")[1]
 

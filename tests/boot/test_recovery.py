@@ -8,6 +8,7 @@ import machine
 from stage import Stage, Story, load_tests, note, setUpModule  # unittest looks for them here
 
 PID = "systemctl show -p MainPID --value adit.service"
+LATER = "/run/systemd/system/adit.service.d"  # what has systemd wait before it starts aditd again
 
 
 class Recovery(Story):
@@ -37,15 +38,21 @@ class Recovery(Story):
 
     def test_after_a_kill_the_lights_are_dark_or_say_fault(self):
         leds.wait_for(self.box, health="on", scoring="on", mapping="on")
+        self.box.console.ask(f"mkdir {LATER} && printf '[Service]\\nRestartSec=600\\n' >{LATER}/later.conf")
+        self.box.console.ask("systemctl daemon-reload")
         self.hit("KILL")
         self.box.wait_until(self.are_dark, "the lights not to pretend any more")
         note("dark after a kill -9", f"{time.monotonic() - self.when:.2f} s")
+        self.assertEqual(self.pid(), 0, "nobody else made them so")
+        self.box.console.ask(f"rm -r {LATER} && systemctl daemon-reload && systemctl restart adit")
+        leds.wait_for(self.box, health="on", scoring="on")
 
     def are_dark(self):
         lights = self.box.lights()
         return not (lights["scoring"] or lights["mapping"] or lights["attention"])
 
     def test_and_it_is_started_again(self):
+        self.hit("KILL")
         note("serves again after a kill -9", f"{self.comes_back():.1f} s")
         leds.wait_for(self.box, health="on", scoring="on")
 

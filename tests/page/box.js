@@ -40,7 +40,7 @@ class Program {
 }
 
 /** One that nobody listens at: a box whose settings are applied anew has to be found where it was. */
-async function freePort() {
+export async function freePort() {
   const server = createServer().listen(0, "127.0.0.1");
   await once(server, "listening");
   const { port } = server.address();

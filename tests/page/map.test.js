@@ -1,14 +1,12 @@
 import assert from "node:assert/strict";
 import { test } from "node:test";
 import { until } from "./box.js";
+import { becomes, box, canvas, changed, picture } from "./pictures.js";
 import { serve } from "./stage.js";
 import { settled, watch } from "./watch.js";
 
-const canvas = "#map .frame canvas";
 const asked = (page, part) => page.requests.filter((url) => url.includes(part)).length;
 const tiles = (page) => asked(page, ".png");
-/** The colours of the map, so that two can be compared. */
-const picture = (page) => page.$eval(canvas, (node) => node.toDataURL());
 /** Whether more pixels than the rims of letters have about this colour. */
 const shows = (page, [red, green, blue, most]) =>
   page.$eval(canvas, (node, [red, green, blue, most]) => {
@@ -21,7 +19,6 @@ const shows = (page, [red, green, blue, most]) =>
   }, [red, green, blue, most]);
 
 const FREE = [0xc8, 0xd2, 0xda, 400], ROBOT = [0xff, 0xb2, 0x24, 10], SCORED = [0x43, 0xd8, 0x93, 10], MARKER = [0xff, 0x33, 0xff, 10];
-const box = (page, name) => page.getByRole("checkbox", { name, exact: true });
 async function hide(page, ...names) {
   for (const name of names) await box(page, name).uncheck();
   await settled(page);
@@ -29,13 +26,6 @@ async function hide(page, ...names) {
 
 const appears = (page, colour, what) => until(() => shows(page, colour), what);
 const goes = (page, colour, what) => until(async () => !(await shows(page, colour)), `${what} to go`);
-/** The next picture that is not `before`. */
-const changed = (page, before, what) =>
-  until(async () => {
-    const now = await picture(page);
-    return now !== before && now;
-  }, what);
-const becomes = (page, whole) => until(async () => (await picture(page)) === whole, "the picture before");
 
 /** The slider, which is there once a map is. */
 async function sliderOf(page) {

@@ -24,6 +24,7 @@ FIELDS = ("x", "y", "z", "type")  # of a report
 PORT = 8000
 ARTIFACTS = pathlib.Path(__file__).with_name("artifacts.csv")
 CONTROL_PORT = 8002  # on the Command Post's loopback
+STOPS_WITHIN = 5.0  # seconds: TimeoutStopSec= of adit.service
 
 
 def wait_until(condition, what, within=60.0):
@@ -54,7 +55,7 @@ class Program:
         with open(log, "ab") as output:
             self.process = network.start(host, *command, stdout=output, stderr=output)
 
-    def stop(self, number=signal.SIGTERM, within=30.0):
+    def stop(self, number=signal.SIGTERM, within=STOPS_WITHIN):
         """Its exit status."""
         if self.process.poll() is None:
             self.process.send_signal(number)

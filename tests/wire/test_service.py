@@ -59,7 +59,7 @@ class Service(unittest.TestCase):
         self.assertIn("STATUS=", self.heard("READY=1"))
         process.send_signal(signal.SIGTERM)
         self.heard("STOPPING=1")
-        self.assertEqual(process.wait(30), 0)
+        self.assertEqual(process.wait(programs.STOPS_WITHIN), 0)
 
     def test_feeds_the_watchdog_only_while_its_loop_turns(self):
         process = self.start(WATCHDOG_USEC="400000")
@@ -84,7 +84,7 @@ class Service(unittest.TestCase):
             process = self.start()
             self.heard("READY=1")
             process.send_signal(number)
-            self.assertEqual(process.wait(30), 0)
+            self.assertEqual(process.wait(programs.STOPS_WITHIN), 0)
 
     def test_names_every_fault_of_its_settings(self):
         self.write_settings(comand_post={}, team={"listen": [{"address": "nowhere", "port": 70000}]})

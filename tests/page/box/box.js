@@ -2,30 +2,13 @@
 import { spawn } from "node:child_process";
 import { once } from "node:events";
 import { mkdirSync, mkdtempSync, readFileSync, rmSync, writeFileSync } from "node:fs";
-import { createServer } from "node:net";
 import { tmpdir } from "node:os";
 import { join, resolve } from "node:path";
+import { freePort, until } from "../box.js";
 
 const BIN = resolve(process.env.ADIT_BIN);
 export const TOKENS = { scoring: "flux230{showroom", mapping: "rust871}backdoor", team: "team-own-token-1" };
 export const PASSWORD = "a long cave password";
-
-export async function until(condition, what, within = 60_000) {
-  for (const end = Date.now() + within; Date.now() < end; ) {
-    const value = await condition();
-    if (value) return value;
-    await new Promise((resolve) => setTimeout(resolve, 50));
-  }
-  throw new Error(`waited ${within} ms in vain for ${what}`);
-}
-
-async function freePort() {
-  const server = createServer().listen(0, "127.0.0.1");
-  await once(server, "listening");
-  const { port } = server.address();
-  await new Promise((closed) => server.close(closed));
-  return port;
-}
 
 async function stop(program, signal = "SIGTERM") {
   if (!program || program.exitCode !== null || program.signalCode !== null) return;

@@ -1,6 +1,6 @@
 import assert from "node:assert/strict";
 import { test } from "node:test";
-import { until } from "./box.js";
+import { until } from "../box.js";
 import { box, deed, logIn, look, row, says } from "./visits.js";
 
 /** The second report waits for so many seconds. */
@@ -68,6 +68,7 @@ test("is sent once where two operators press send at once", async (t) => {
   await Promise.all(pages.map((page) => deed(page, "Send", number).click()));
   for (const page of pages) {
     await page.evaluate(() => (globalThis.deaf = false));
+    await says(page, number, "waiting");
     await says(page, number, "It will be sent.");
   }
   await made.becomes(number, "answered");

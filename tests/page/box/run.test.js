@@ -1,7 +1,9 @@
 import assert from "node:assert/strict";
 import { after, before, test } from "node:test";
 import { axeFindsNothing } from "../axe.js";
-import { begin, until } from "./box.js";
+import { becomes, box, canvas, changed, picture } from "../pictures.js";
+import { until } from "../box.js";
+import { begin } from "./box.js";
 import { look, shoot } from "./visits.js";
 
 // One run for all of these: five robots explore, and the operator reports.
@@ -18,16 +20,12 @@ before(async () => {
 });
 after(() => made?.end());
 
-const canvas = "#map .frame canvas";
-const picture = (page) => page.$eval(canvas, (node) => node.toDataURL());
-const box = (page, name) => page.getByRole("checkbox", { name, exact: true });
 const off = async (page, ...names) => {
   for (const name of names) await box(page, name).uncheck();
 };
-const looks = (page, like, what) => until(async () => like(await picture(page)), what);
 
 /** The picture, once it keeps still. */
-async function settled(page) {
+async function still(page) {
   for (let last = await picture(page); ; ) {
     await page.waitForTimeout(400);
     const next = await picture(page);
@@ -41,9 +39,9 @@ test("draws the markers and the robots' tracks, each by its box", async (t) => {
   await off(page, "Grids", "Clouds", "Robots", "Reports", "Tracks");
   for (const name of ["Markers", "Tracks"]) {
     await off(page, "Markers", "Tracks");
-    const without = await settled(page);
+    const without = await still(page);
     await box(page, name).check();
-    await looks(page, (now) => now !== without, name);
+    await changed(page, without, name);
   }
   assert.deepEqual(page.complaints, []);
 });
@@ -72,14 +70,14 @@ test("shows where the robots were, by the slider", async (t) => {
   };
   await off(page, "Robots");
   await press("ArrowLeft", "ArrowLeft");
-  const none = await settled(page);
+  const none = await still(page);
   await box(page, "Robots").check();
-  await looks(page, (now) => now !== none, "robots");
-  const late = await settled(page);
+  await changed(page, none, "robots");
+  const late = await still(page);
   await press("Home", "ArrowRight", "ArrowRight");
-  await looks(page, (now) => now !== late, "them to have been elsewhere before");
-  const early = await settled(page);
-  assert.ok((await settled(page)) === early, "and stay where they were");
+  await changed(page, late, "them to have been elsewhere before");
+  const early = await still(page);
+  assert.ok((await still(page)) === early, "and stay where they were");
 });
 
 test("makes the lights flash, on the box as on the page, and lets them be again", async (t) => {
@@ -130,12 +128,12 @@ test("does by every shortcut what the list of them says", async (t) => {
   assert.equal(await focus(), "map");
   await off(page, "Robots", "Tracks", "Markers", "Clouds", "Grids");
   await page.keyboard.press("0");
-  const whole = await settled(page);
+  const whole = await still(page);
   for (const [key, back] of [["ArrowLeft", "f"], ["ArrowUp", "0"], ["ArrowRight", "f"], ["ArrowDown", "f"], ["+", "f"], ["-", "f"]]) {
     await page.locator(canvas).press(key);
-    await looks(page, (now) => now !== whole, key);
+    await changed(page, whole, key);
     await page.locator(canvas).press(back);
-    await looks(page, (now) => now === whole, back);
+    await becomes(page, whole, back);
   }
   const slider = page.getByRole("slider");
   await slider.press("Home");

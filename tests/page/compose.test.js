@@ -111,7 +111,7 @@ test("has nothing that axe finds wrong in its dialogs", async (t) => {
     await check(page);
     await axeFindsNothing(page, `check, ${colorScheme}`);
     await page.keyboard.press("Escape");
-    await page.locator("#compose").waitFor({ state: "hidden" });
+    await page.waitForFunction(() => !document.activeElement.closest("dialog")); // which takes the keys until the next frame
     await page.keyboard.press("?");
     await page.waitForSelector("#help[open]");
     await axeFindsNothing(page, `help, ${colorScheme}`);

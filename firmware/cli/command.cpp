@@ -1,5 +1,6 @@
 #include "cli/command.hpp"
 
+#include "cli/aside.hpp"
 #include "cli/ask.hpp"
 #include "cli/check.hpp"
 #include "cli/deeds.hpp"
@@ -23,12 +24,14 @@ Outcome run(std::span<const std::string_view> words, bool colour,
       return status(*options, colour);
     case Command::Reports:
       return reports(*options, colour);
+    case Command::Aside:
+      return aside(*options, colour);
     case Command::Run:
       return begin_run(*options);
     case Command::Settings:
       return settings(*options, colour);
     case Command::Course:
-      return switch_course(*options);
+      return switch_course(*options, colour);
     case Command::Identify:
       return identify(*options);
     case Command::Network:

@@ -8,6 +8,7 @@ constexpr const char* kAll = R"(adit - what the gateway is doing, for a shell an
 USAGE
   adit status  [--json] [--at ADDR:PORT | --settings FILE]
   adit reports [show|send|hold|withdraw|done|resubmit|export] [NUMBER...]
+  adit aside   [show|send|discard] [NUMBER...]
   adit run new
   adit settings [show|check|apply|export] [FILE]
   adit course NAME
@@ -21,6 +22,7 @@ USAGE
 COMMANDS
   status    the run, the Command Post, each robot's maps, and what the operator must do
   reports   every artifact report and what became of it; and your word on those that wait for it
+  aside     maps, states and markers that the Command Post would not take, and your word on them
   run       tells Adit that a new run begins
   settings  what the running Adit is set to, and changes to it
   course    switches to the Command Post of another course
@@ -92,8 +94,9 @@ USAGE
   All take --token-file FILE, and --at ADDR:PORT or --settings FILE; those that change something take --json.
 
 WHAT IT SHOWS
-  A row for each report of the present run, and for those of earlier runs that are not finished, the newest
-  first; with --run those of one run or of all. 'show' tells all of one report: its history, the answer that is
+  A row for each report of the present run, and for those of other runs that are not finished, the newest
+  first; with --run those of one run or of all. A line at the end says how many there are of other runs that
+  are not listed: of earlier ones, and of those at other Command Posts. 'show' tells all of one report: its history, the answer that is
   kept, and what you can do. 'export' writes all reports of all runs, as CSV for a spreadsheet or as JSON.
 
 THE STATES (as the JSON and the CSV name them, where that is another word)
@@ -141,10 +144,12 @@ USAGE
   adit run new [--json] [--token-file FILE] [--at ADDR:PORT | --settings FILE]
 
 WHAT IT DOES
-  Adit notices a new run by itself where the run clock goes back, or the run's name or the team changes. Where
-  it cannot (the next run went on from the same clock), this declares it. Reports that were not sent before are
-  held, so that none of the old run is sent into the new one unless you say so: adit reports send. The same
-  report as one of an earlier run is then a new report.
+  Adit notices a new run by itself where the run's name or the team changes, where more reports are left than
+  before, or where a run clock that was seen to run goes back. Where only that clock tells of it, the same report
+  as one of the run before is held until an answer names the run. Where Adit cannot notice it (the next run went
+  on from the same clock), this declares it. Reports that were not sent before are held, so that none of the old
+  run is sent into the new one unless you say so: adit reports send. The same report as one of an earlier run is
+  then a new report.
 
 EXIT STATUS
   0  a new run has begun
@@ -188,9 +193,11 @@ USAGE
   adit course NAME [--json] [--token-file FILE] [--at ADDR:PORT | --settings FILE]
 
 WHAT IT DOES
-  NAME is one of the courses in the settings; "" means none, the endpoints of command_post itself. Reports that wait
-  for another Command Post, one that was heard of, are held, so that none of them is sent to this one unless you say
-  so: adit reports send.
+  NAME is one of the courses in the settings; "" means none, the endpoints of command_post itself. It says how many
+  reports wait, are in doubt or are held: they are kept for the run at the old endpoint, and none of them is sent to
+  the new one unless you say so (adit reports send). Back there, that run is taken up again with its reports: what
+  waits goes, what is in doubt is found out, and the same report again gets the recorded answer. Where nothing was
+  heard from the old endpoint (a mistyped address), what waits is sent to the first that answers.
 
 EXIT STATUS
   0  the course is in use
@@ -216,6 +223,27 @@ EXIT STATUS
 
 EXAMPLES
   sudo adit identify 30
+)";
+
+constexpr const char* kAside =
+    R"(adit aside - maps, states and markers that the Command Post would not take, and your word on them
+
+USAGE
+  adit aside [show]           [--json] [--token-file FILE] [--at ADDR:PORT | --settings FILE]
+  adit aside send    NUMBER...
+  adit aside discard NUMBER...
+
+WHAT IT SHOWS
+  Each message that was set aside: because the Command Post refused it (400, 413, 422), or because it failed at it
+  again and again (500) while others passed. They are kept, the newest hundred, until you say what becomes of them.
+
+WHAT IT DOES
+  send     sends it once more, when its turn comes. Adit does not where something newer that says all of it was sent
+           since: that would put the older in its place.
+  discard  forgets it.
+
+EXIT STATUS
+  1  something is set aside that nothing newer has replaced, or your word could not be done
 )";
 
 constexpr const char* kNetwork =
@@ -330,6 +358,8 @@ const char* help_about(Command command) {
       return kStatus;
     case Command::Reports:
       return kReports;
+    case Command::Aside:
+      return kAside;
     case Command::Run:
       return kRun;
     case Command::Settings:

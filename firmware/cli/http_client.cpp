@@ -5,19 +5,18 @@
 #include <poll.h>
 #include <sys/socket.h>
 
-#include <boost/beast/http/parser.hpp>
-#include <boost/beast/http/string_body.hpp>
 #include <cerrno>
 #include <system_error>
 
 #include "cli/where.hpp"
 #include "loop/file_descriptor.hpp"
+#include "uplink/answer_parser.hpp"
 
 namespace adit::cli {
 namespace {
 
-namespace http = boost::beast::http;
 using Clock = std::chrono::steady_clock;
+using State = uplink::AnswerParser::State;
 
 std::string reason(int error) {
   return std::system_category().message(error);
@@ -79,43 +78,23 @@ int send_all(int fd, std::string_view text, Clock::time_point deadline) {
   return 0;
 }
 
-using Parser = http::response_parser<http::string_body>;
-
-/// Feeds what came to the parser, and keeps what it left for the next time. False: no HTTP.
-bool feed(Parser& parser, std::string& waiting, std::string& trouble) {
-  while (!waiting.empty() && !parser.is_done()) {
-    boost::system::error_code error;
-    const std::size_t used = parser.put(boost::asio::buffer(waiting), error);
-    waiting.erase(0, used);
-    if (error == http::error::need_more) return true;
-    if (error) {
-      trouble = "its answer is no HTTP, or too long: " + error.message();
-      return false;
-    }
-  }
-  return true;
-}
-
 /// The whole answer, or a sentence.
-std::string receive(int fd, Parser& parser, Clock::time_point deadline) {
-  std::string waiting, trouble;
+std::string receive(int fd, uplink::AnswerParser& parser, Clock::time_point deadline) {
   char buffer[65536];
-  while (!parser.is_done()) {
+  State state = State::Incomplete;
+  while (state == State::Incomplete) {
     const ssize_t count = recv(fd, buffer, sizeof buffer, 0);
     if (count > 0) {
-      waiting.append(buffer, static_cast<std::size_t>(count));
-      if (!feed(parser, waiting, trouble)) return trouble;
+      state = parser.feed({buffer, static_cast<std::size_t>(count)});
     } else if (count == 0) {
-      boost::system::error_code error = http::error::end_of_stream;
-      if (parser.got_some()) parser.put_eof(error);
-      return error ? "it closed the connection in the middle of its answer" : "";
+      state = parser.feed_end();
     } else if (errno == EAGAIN) {
       if (const int error = wait_for(fd, POLLIN, deadline); error != 0) return reason(error);
     } else if (errno != EINTR) {
       return reason(errno);
     }
   }
-  return "";
+  return state == State::Whole ? "" : parser.fault();
 }
 
 /// All but the body.
@@ -151,12 +130,12 @@ std::expected<HttpReply, NoReply> http_ask(const settings::Address& address, con
   // Who refuses a long body says so and hangs up before it is whole.
   const bool hung_up = error == EPIPE || error == ECONNRESET;
   if (error != 0 && !hung_up) return fail(reason(error), true);
-  Parser parser;
-  parser.body_limit(kLargestBody);
+  uplink::AnswerParser parser(kLargestBody);
   if (const std::string trouble = receive(fd->get(), parser, deadline); !trouble.empty()) {
     return fail(hung_up ? reason(error) : trouble, true);
   }
-  return HttpReply{parser.get().result_int(), std::move(parser.get().body())};
+  uplink::Answered answered = parser.take();
+  return HttpReply{static_cast<unsigned>(answered.status), std::move(answered.body)};
 }
 
 }  // namespace adit::cli

@@ -14,10 +14,10 @@ struct CommandName {
   Command command;
 };
 constexpr CommandName kCommands[] = {
-    {"status", Command::Status},     {"reports", Command::Reports}, {"run", Command::Run},
-    {"settings", Command::Settings}, {"course", Command::Course},   {"identify", Command::Identify},
-    {"network", Command::Network},   {"test", Command::Test},       {"update", Command::Update},
-    {"check", Command::Check},       {"help", Command::Help}};
+    {"status", Command::Status},     {"reports", Command::Reports},   {"aside", Command::Aside},
+    {"run", Command::Run},           {"settings", Command::Settings}, {"course", Command::Course},
+    {"identify", Command::Identify}, {"network", Command::Network},   {"test", Command::Test},
+    {"update", Command::Update},     {"check", Command::Check},       {"help", Command::Help}};
 
 struct VerbName {
   std::string_view name;
@@ -108,6 +108,8 @@ class Parser {
         return take_seconds(word);
       case Command::Network:
         return take_word_of_network(word);
+      case Command::Aside:
+        return take_word_of_aside(word);
       case Command::Update:
         return options_.file.empty() ? void(options_.file = word) : too_many(word);
       case Command::Check:
@@ -184,6 +186,19 @@ class Parser {
     options_.word = word;
   }
 
+  void take_word_of_aside(std::string_view word) {
+    if (options_.word.empty()) {
+      if (word != "show" && word != "send" && word != "discard")
+        return refuse("expected show, send or discard, got ", word);
+      options_.word = word;
+      return;
+    }
+    const auto number = number_in(word);
+    if (options_.word == "show" || options_.numbers.size() == kMany) return too_many(word);
+    if (!number) return refuse("expected the number of what is set aside, got ", word);
+    options_.numbers.push_back(*number);
+  }
+
   void take_word_of_reports(std::string_view word) {
     if (options_.verb == Verb::List) {
       const auto* row = named<VerbName>(kVerbs, word);
@@ -214,7 +229,8 @@ class Parser {
   void finish() {
     if (!commanded_) {
       return refuse(
-          "a command is missing: status, reports, run, settings, course, identify, network, test, update or "
+          "a command is missing: status, reports, aside, run, settings, course, identify, network, test, "
+          "update or "
           "check",
           "");
     }
@@ -231,7 +247,11 @@ class Parser {
             int{options_.command == Command::Update && !options_.file.empty()} >
         1)
       return refuse("a file, --stick and --restart are three things: which one?", "");
-    if (options_.command == Command::Network && options_.word.empty()) options_.word = "show";
+    const bool shows = options_.command == Command::Network || options_.command == Command::Aside;
+    if (shows && options_.word.empty()) options_.word = "show";
+    if (options_.command == Command::Aside && options_.word != "show" && options_.numbers.empty()) {
+      return refuse("the number of what is set aside is missing after ", options_.word);
+    }
     if (options_.numbers.size() < row_of(options_.verb).least) {
       refuse("a report's number is missing after ", row_of(options_.verb).name);
     }

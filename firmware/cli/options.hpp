@@ -15,6 +15,7 @@ namespace adit::cli {
 enum class Command : std::uint8_t {
   Status,
   Reports,
+  Aside,
   Run,
   Settings,
   Course,
@@ -41,8 +42,8 @@ struct Options {
   Command command = Command::Help;
   Command about = Command::Help;  // of Help: the command to explain
   Verb verb = Verb::List;
-  std::string word;                   // of Network: "show", "confirm", "back"
-  std::vector<std::int64_t> numbers;  // of reports
+  std::string word;  // of Network: "show", "confirm", "back"; of Aside: "show", "send", "discard"
+  std::vector<std::int64_t> numbers;  // of reports, or of what is set aside
   std::optional<std::int64_t> run;    // whose reports to list; nothing: the present one's
   bool all_runs = false;
   std::int64_t seconds = 10;  // how long the lights are to blink

@@ -26,7 +26,8 @@ page::ReportRow read_report(const Field& row) {
   page::ReportRow read;
   read.number = whole<std::int64_t>(row, "number");
   read.type = text(row, "type");
-  read.position = {number(position, "x"), number(position, "y"), number(position, "z")};
+  read.lost = position.is_absent();
+  if (!read.lost) read.position = {number(position, "x"), number(position, "y"), number(position, "z")};
   read.sender = text(row, "sender");
   read.received = number(row, "received");
   read.changed = number(row, "changed");

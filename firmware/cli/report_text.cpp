@@ -38,7 +38,7 @@ std::string facts(const page::ReportDetail& detail, bool colour) {
   };
   add("report", std::to_string(report.number), Tone::Strong);
   add("type", report.type, Tone::Strong);
-  add("at", place_of(report.position));
+  add("at", report.lost ? "lost" : place_of(report.position));
   add("state", life_of(report), tone_of(report));
   add("why", report.note);
   add("said", said_of(report));

@@ -39,9 +39,12 @@ Outcome list(const Adit& adit, const Options& options, bool colour) {
   if (!rows) return unable(not_understood(adit, rows.error()));
 
   const Exit exit = exit_for(*rows);
-  std::erase_if(*rows, [&](const page::ReportRow& row) { return !is_listed(row, options, run->run_number); });
+  const std::size_t others = std::erase_if(
+      *rows, [&](const page::ReportRow& row) { return !is_listed(row, options, run->run_number); });
   std::ranges::reverse(*rows);  // the newest first
-  return {exit, options.json ? page::write_reports(*rows) + '\n' : reports_text(*rows, run->now, colour), ""};
+  const std::string text =
+      options.json ? page::write_reports(*rows) + '\n' : reports_text(*rows, others, run->now, colour);
+  return {exit, text, ""};
 }
 
 Outcome show(const Adit& adit, const Options& options, bool colour) {

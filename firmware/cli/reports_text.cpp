@@ -18,6 +18,16 @@ std::string joined(std::initializer_list<std::string> parts) {
   return text;
 }
 
+std::string of_other_runs(std::size_t count) {
+  if (count == 0) return "";
+  return std::to_string(count) + (count == 1 ? " report of another run is" : " reports of other runs are") +
+         " not listed: adit reports --run all\n";
+}
+
+std::string coordinate(const page::ReportRow& report, double icd::Point::* axis) {
+  return report.lost ? "lost" : decimal(report.position.*axis, 2);
+}
+
 }  // namespace
 
 std::string life_of(const page::ReportRow& report) {
@@ -63,8 +73,11 @@ std::string gained_by(const page::ReportRow& report) {
   return text.append(std::to_string(*report.score_change));
 }
 
-std::string reports_text(const std::vector<page::ReportRow>& reports, page::Time now, bool colour) {
-  if (reports.empty()) return "No reports so far.\n";
+std::string reports_text(const std::vector<page::ReportRow>& reports, std::size_t others, page::Time now,
+                         bool colour) {
+  const std::string elsewhere = of_other_runs(others);
+  if (reports.empty())
+    return (others == 0 ? "No reports so far.\n" : "No reports in this run so far.\n") + elsewhere;
   Table table({{"no.", Align::Right},
                {"run", Align::Right},
                {"type"},
@@ -80,16 +93,16 @@ std::string reports_text(const std::vector<page::ReportRow>& reports, page::Time
     table.add({{std::to_string(report.number)},
                {std::to_string(report.run)},
                {report.type, Tone::Strong},
-               {decimal(report.position.x, 2)},
-               {decimal(report.position.y, 2)},
-               {decimal(report.position.z, 2)},
+               {coordinate(report, &icd::Point::x)},
+               {coordinate(report, &icd::Point::y)},
+               {coordinate(report, &icd::Point::z)},
                {life_of(report), tone_of(report)},
                {gained_by(report)},
                {joined({said_of(report), report.note})},
                {report.sender},
                {duration(now - report.received) + " ago"}});
   }
-  return table.written(colour);
+  return table.written(colour) + elsewhere;
 }
 
 }  // namespace adit::cli

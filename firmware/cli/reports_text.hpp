@@ -16,7 +16,8 @@ std::string said_of(const page::ReportRow& report);
 /// "+1", "0", or "" where it is not known.
 std::string gained_by(const page::ReportRow& report);
 
-/// What `adit reports` prints.
-std::string reports_text(const std::vector<page::ReportRow>& reports, page::Time now, bool colour);
+/// What `adit reports` prints. `others`: how many reports of other runs are not among them.
+std::string reports_text(const std::vector<page::ReportRow>& reports, std::size_t others, page::Time now,
+                         bool colour);
 
 }  // namespace adit::cli

@@ -38,12 +38,24 @@ page::ActivityRow activity(const Field& row) {
   return read;
 }
 
+page::AsideRow aside(const Field& row) {
+  return {.number = count(row, "number"),
+          .kind = text(row, "kind"),
+          .robot = text(row, "robot"),
+          .at = number(row, "at"),
+          .status = whole<int>(row, "status"),
+          .why = text(row, "why"),
+          .bytes = count(row, "bytes"),
+          .overtaken = row.member("overtaken").truth()};
+}
+
 page::RefusalRow refusal(const Field& row) {
   return {.at = number(row, "at"),
           .uri = text(row, "uri"),
           .sender = text(row, "sender"),
           .status = whole<int>(row, "status"),
-          .sentence = text(row, "sentence")};
+          .sentence = text(row, "sentence"),
+          .parts = count(row, "parts")};
 }
 
 std::string sentence(const Field& element) {
@@ -74,6 +86,7 @@ std::expected<page::RunView, std::string> read_run_view(std::string_view json) {
     view.reports = rows(object.member("reports"), read_report);
     view.activities = rows(object.member("activities"), activity);
     view.refusals = rows(object.member("refusals"), refusal);
+    view.aside = rows(object.member("aside"), aside);
     view.budget_mbit = number(object, "budget_mbit");
     view.sent_mbit = number(object, "sent_mbit");
     view.queued_bytes = count(object, "queued_bytes");

@@ -165,17 +165,18 @@ Outcome settings(const Options& options, bool colour) {
   return exports ? Outcome{Exit::Fine, *body, ""} : show(*body, options, colour);
 }
 
-Outcome switch_course(const Options& options) {
+Outcome switch_course(const Options& options, bool colour) {
   const auto adit = adit_of(options);
   if (!adit) return unable(adit.error());
   const auto body =
       post(*adit, "/adit/course", codec::write_json({Value::Object{{"name", {options.course}}}}), kSee);
   if (!body) return failed(body.error());
   if (options.json) return {Exit::Fine, *body + '\n', ""};
+  const auto answer = codec::parse_json(*body);
+  if (!answer) return not_understood(answer.error());
   const std::string used =
       options.course.empty() ? "no course is in use" : "course " + options.course + " is in use";
-  return {Exit::Fine,
-          used + "; reports that were meant for another Command Post are held: see adit reports\n", ""};
+  return {Exit::Fine, used + '\n' + warnings_text(*answer, colour), ""};
 }
 
 }  // namespace adit::cli

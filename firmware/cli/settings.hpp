@@ -9,6 +9,6 @@ namespace adit::cli {
 Outcome settings(const Options& options, bool colour);
 
 /// `adit course`
-Outcome switch_course(const Options& options);
+Outcome switch_course(const Options& options, bool colour);
 
 }  // namespace adit::cli

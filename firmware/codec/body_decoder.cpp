@@ -41,6 +41,8 @@ class BodyDecoder::Impl {
     return spent_;
   }
 
+  BulkData& data() { return data_; }
+
   icd::Checked<Document> finish() {
     if (!spent_) return std::unexpected(spent_.error());
     if (auto whole = content_.finish(); !whole) return std::unexpected(whole.error());
@@ -66,6 +68,14 @@ BodyDecoder& BodyDecoder::operator=(BodyDecoder&&) noexcept = default;
 
 icd::Checked<void> BodyDecoder::feed(std::span<const std::uint8_t> chunk) {
   return impl_->feed({reinterpret_cast<const char*>(chunk.data()), chunk.size()});
+}
+
+std::size_t BodyDecoder::data_held() const {
+  return impl_->data().held();
+}
+
+icd::ChunkedBytes BodyDecoder::take_data() {
+  return impl_->data().take_some();
 }
 
 icd::Checked<Document> BodyDecoder::finish() {

@@ -15,7 +15,7 @@ icd::Checked<void> BulkData::appear() {
 }
 
 icd::Checked<void> BulkData::append(std::span<const std::uint8_t> bytes) {
-  if (bytes.size() > most_ - bytes_.size()) {
+  if (bytes.size() > most_ - taken_ - bytes_.size()) {
     return std::unexpected(icd::Refusal{icd::Status::ContentTooLarge,
                                         icd::sentence("msg.data: larger than the ", most_, " bytes taken")});
   }
@@ -40,12 +40,18 @@ icd::Checked<void> BulkData::append_element(std::uint8_t byte) {
 icd::Refusal BulkData::bad_element(std::string_view got) const {
   constexpr std::size_t kLongest = 32;
   return {icd::Status::UnprocessableEntity,
-          icd::sentence("msg.data[", bytes_.size() + waiting_, "]: expected an integer from -1 to 255, got ",
-                        got.substr(0, kLongest), got.size() > kLongest ? "..." : "")};
+          icd::sentence("msg.data[", taken_ + bytes_.size() + waiting_,
+                        "]: expected an integer from -1 to 255, got ", got.substr(0, kLongest),
+                        got.size() > kLongest ? "..." : "")};
 }
 
 icd::Checked<void> BulkData::flush() {
   return append(std::span(elements_).first(std::exchange(waiting_, 0)));
+}
+
+icd::ChunkedBytes BulkData::take_some() {
+  taken_ += bytes_.size();
+  return std::move(bytes_);
 }
 
 icd::Checked<icd::ChunkedBytes> BulkData::take() {

@@ -32,7 +32,11 @@ class BulkData {
   icd::Refusal bad_element(std::string_view got) const;
 
   DataForm form() const { return form_; }
-  /// All of it, once, at the end.
+  /// How many bytes take_some() would give.
+  std::size_t held() const { return bytes_.size(); }
+  /// What has come since the last take_some(), but for the last few elements of an array.
+  icd::ChunkedBytes take_some();
+  /// All that take_some() has left, once, at the end.
   icd::Checked<icd::ChunkedBytes> take();
 
  private:
@@ -42,6 +46,7 @@ class BulkData {
   bool appeared_ = false;
   DataForm form_ = DataForm::Absent;
   icd::ChunkedBytes bytes_;
+  std::size_t taken_ = 0;                      // by take_some()
   std::array<std::uint8_t, 4096> elements_{};  // those that are not in bytes_ yet
   std::size_t waiting_ = 0;
 };

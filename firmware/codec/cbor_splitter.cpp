@@ -6,6 +6,15 @@
 #include "icd/sentence.hpp"
 
 namespace adit::codec {
+namespace {
+
+/// A tag that says what a value is for and leaves it what it is: date and time as text or number, how it is
+/// to be written in other formats, kinds of text, and that this is CBOR (RFC 8949 3.4).
+bool is_remark(std::uint64_t tag) {
+  return tag <= 1 || (tag >= 21 && tag <= 23) || (tag >= 32 && tag <= 36) || tag == 55799;
+}
+
+}  // namespace
 
 CborSplitter::CborSplitter(Split split, std::size_t most_text, BulkData& data)
     : most_text_(most_text), data_(data), path_(split) {
@@ -49,15 +58,27 @@ icd::Checked<void> CborSplitter::check_head() const {
   if (head_.indefinite() && (major == Major::Unsigned || major == Major::Negative || major == Major::Tag)) {
     return std::unexpected(fault("an indefinite length where there is none"));
   }
+  if (major == Major::Tag) {
+    if (auto known = check_tag(); !known) return known;
+  }
   if (major == Major::Simple && head_.info() == 24 && head_.argument() < 32) {
     return std::unexpected(fault("a simple value below 32 in two bytes"));
   }
   return {};
 }
 
+icd::Checked<void> CborSplitter::check_tag() const {
+  const std::uint64_t tag = head_.argument();
+  if (is_remark(tag)) return {};
+  return icd::unprocessable(
+      "byte ", head_at_, ": CBOR tag ", tag,
+      " changes the meaning of what it stands before; expected none, or one of 0, 1, 21 to "
+      "23, 32 to 36 and 55799, which do not");
+}
+
 icd::Checked<void> CborSplitter::item() {
   if (head_.is_break()) return end_of_nest();
-  if (at_key()) path_.key({});  // until it turns out to be a text
+  if (at_key()) path_.key({});  // until it turns out to be a string
   Into into = at_key() ? Into::Key : Into::Rest;
   if (elements()) {
     if (auto taken = element(); !taken) return taken;
@@ -96,8 +117,10 @@ icd::Checked<void> CborSplitter::nest(Major kind) {
   if (nests_.size() == BodyDecoder::kDeepest) {
     return std::unexpected(fault(icd::sentence("nested deeper than ", BodyDecoder::kDeepest)));
   }
-  keep(head_.raw());
-  if (kind != Major::Tag) path_.open();
+  if (kind != Major::Tag) {
+    keep(head_.raw());
+    path_.open();
+  }
   nests_.push_back({.kind = kind,
                     .indefinite = head_.indefinite(),
                     .left = kind == Major::Tag ? 1 : head_.argument(),

@@ -16,7 +16,8 @@
 namespace adit::codec {
 
 /// CBOR (RFC 8949): checks that it is well-formed (section 5.3.1), that texts are UTF-8, and that nesting,
-/// tags included, is not too deep. No length is believed before its bytes are there.
+/// tags included, is not too deep. No length is believed before its bytes are there. Tags that only remark on
+/// their value are left out; others are refused with 422.
 class CborSplitter final : public Splitter {
  public:
   /// `data` must outlive this.
@@ -41,6 +42,7 @@ class CborSplitter final : public Splitter {
 
   icd::Checked<void> item();
   icd::Checked<void> check_head() const;
+  icd::Checked<void> check_tag() const;
   icd::Checked<void> begin_string(Into into);
   icd::Checked<void> chunk_of_string();
   icd::Checked<void> begin_piece();
@@ -83,8 +85,8 @@ class CborSplitter final : public Splitter {
 
   std::size_t elements_of_ = 0;  // how many nests there are in the map's data, when it is an array
 
-  /// The document with null for the map's data, and undefined for the simple values that libcbor does not
-  /// know.
+  /// The document without tags (libcbor refuses 6 to 20), with null for the map's data, and undefined for the
+  /// simple values that libcbor does not know.
   std::string rest_;
 };
 

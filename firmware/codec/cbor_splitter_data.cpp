@@ -123,7 +123,7 @@ icd::Checked<void> CborSplitter::end_of_piece() {
 }
 
 void CborSplitter::string_ended() {
-  if (into_ == Into::Key && string_ == Major::Text) path_.key(key_);
+  if (into_ == Into::Key) path_.key(key_);
   string_.reset();
   item_ended();
 }

@@ -7,6 +7,8 @@
 #include <optional>
 #include <span>
 
+#include "codec/utf8.hpp"
+
 namespace adit::codec {
 namespace {
 
@@ -62,12 +64,13 @@ std::string text_of(const cbor_item_t& item) {
   return text;
 }
 
-/// libcbor gives no view of a tagged item without taking a reference to it; this is released at once, for the
-/// tag keeps its own.
-const cbor_item_t& without_tags(const cbor_item_t& item) {
-  const cbor_item_t* inner = &item;
-  while (cbor_isa_tag(inner)) inner = Item(cbor_tag_item(inner)).get();
-  return *inner;
+/// A member's name: a text, or a byte string that holds one, as Python 2 writes it. Nothing for another key.
+std::optional<std::string> name_of(const cbor_item_t& key) {
+  if (cbor_isa_string(&key)) return text_of(key);
+  if (!cbor_isa_bytestring(&key)) return std::nullopt;
+  const auto bytes = bytes_of(key);
+  std::string name(bytes.begin(), bytes.end());
+  return is_utf8(name) ? std::optional(std::move(name)) : std::nullopt;
 }
 
 Value simple(const cbor_item_t& item) {
@@ -77,8 +80,7 @@ Value simple(const cbor_item_t& item) {
 }
 
 /// Recursion ends at BodyDecoder::kDeepest.
-Value value_of(const cbor_item_t& tagged) {
-  const cbor_item_t& item = without_tags(tagged);
+Value value_of(const cbor_item_t& item) {
   switch (cbor_typeof(&item)) {
     case CBOR_TYPE_UINT:
       return whole(cbor_get_int(&item));
@@ -98,12 +100,11 @@ Value value_of(const cbor_item_t& tagged) {
     case CBOR_TYPE_MAP: {
       Value::Object object;
       for (const cbor_pair& pair : std::span(cbor_map_handle(&item), cbor_map_size(&item))) {
-        const cbor_item_t& key = without_tags(*pair.key);
-        if (cbor_isa_string(&key)) object.emplace_back(text_of(key), value_of(*pair.value));
+        if (auto name = name_of(*pair.key)) object.emplace_back(*std::move(name), value_of(*pair.value));
       }
       return {std::move(object)};
     }
-    case CBOR_TYPE_TAG:
+    case CBOR_TYPE_TAG:  // a CborSplitter leaves none
     case CBOR_TYPE_FLOAT_CTRL:
       break;
   }

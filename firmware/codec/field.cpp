@@ -2,6 +2,8 @@
 
 #include <cmath>
 
+#include "codec/utf8.hpp"
+
 namespace adit::codec {
 namespace {
 
@@ -69,8 +71,8 @@ std::size_t Field::size() const {
   return 0;
 }
 
-Field Field::element(std::size_t index) const& {
-  return {&std::get<Value::Array>(value_->is)[index], this, {}, index, reading_};
+Field Field::element(std::size_t index, Reading& reading) const& {
+  return {&std::get<Value::Array>(value_->is)[index], this, {}, index, reading};
 }
 
 bool Field::is_absent() const {
@@ -99,10 +101,21 @@ std::int64_t Field::whole_number(std::int64_t least, std::int64_t most) const {
   return least;
 }
 
+std::optional<std::string_view> Field::characters() const {
+  if (is<std::string>()) return std::get<std::string>(value_->is);
+  if (!is<Value::Bytes>()) return std::nullopt;
+  const auto& bytes = std::get<Value::Bytes>(value_->is).bytes;
+  return std::string_view(reinterpret_cast<const char*>(bytes.data()), bytes.size());
+}
+
 std::string_view Field::text() const {
-  const auto* given = value_ ? std::get_if<std::string>(&value_->is) : nullptr;
+  const auto given = characters();
   if (!given) {
     refuse_kind("a string");
+    return {};
+  }
+  if (!is_utf8(*given)) {  // the splitters have looked at strings
+    refuse("expected a string, got a byte string that is not UTF-8");
     return {};
   }
   if (!given->contains('\0')) return *given;

@@ -55,8 +55,10 @@ class Field {
 
   /// How many elements an array has; an absent one is refused.
   std::size_t size() const;
-  /// Requires index < size().
-  Field element(std::size_t index) const&;
+  /// Requires index < size(). What is refused of it goes to `reading`.
+  Field element(std::size_t index, Reading& reading) const&;
+  Field element(std::size_t index) const& { return element(index, reading_); }
+  Field element(std::size_t index, Reading& reading) const&& = delete;
   Field element(std::size_t index) const&& = delete;
 
   /// What is there; null where nothing is given. For readers that tell more than one refusal.
@@ -79,8 +81,10 @@ class Field {
     return static_cast<Integer>(whole_number(least, most));
   }
 
-  /// A string without NUL characters.
+  /// A string without NUL characters. In CBOR a byte string of UTF-8 is one too: so Python 2 writes text.
   std::string_view text() const;
+  /// A string, or such a byte string, without characters.
+  bool is_empty_text() const { return characters() == std::string_view(); }
   /// A bool; 0 and 1 are tolerated.
   bool truth() const;
   /// Seconds, not negative: a number, or {secs, nsecs} as ROS has them.
@@ -103,6 +107,7 @@ class Field {
   Field(const Value* value, const Field* parent, std::string_view name, std::size_t index, Reading& reading)
       : value_(value), parent_(parent), name_(name), index_(index), reading_(reading) {}
 
+  std::optional<std::string_view> characters() const;
   std::int64_t whole_number(std::int64_t least, std::int64_t most) const;
   const Value::Object* object() const;
 

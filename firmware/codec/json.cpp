@@ -19,7 +19,7 @@ struct Writer {
   void operator()(bool value) const { text += value ? "true" : "false"; }
   void operator()(std::int64_t value) const { text += std::to_string(value); }
   void operator()(std::uint64_t value) const { text += std::to_string(value); }
-  void operator()(double value) const { text += std::isfinite(value) ? icd::number_text(value) : "null"; }
+  void operator()(double value) const { text += std::isfinite(value) ? icd::real_text(value) : "null"; }
   void operator()(const std::string& value) const { text += json_string(value); }
   void operator()(const Value::Bytes&) const { text += "null"; }
   void operator()(Value::SplitOut) const { text += "null"; }

@@ -3,6 +3,8 @@
 #include <expected>
 #include <string>
 #include <string_view>
+#include <utility>
+#include <vector>
 
 #include "codec/body_decoder.hpp"
 #include "icd/artifact_report.hpp"
@@ -17,11 +19,41 @@ namespace adit::codec {
 
 /// Documents to messages that have passed every rule of the ICD. Each refusal is 422 and names the field.
 /// Tolerated: stamps and lifetimes as {secs, nsecs}, integers for floats and whole floats for integers,
-/// members that the ICD does not have, all-zero quaternions, absent or empty map names.
+/// members that the ICD does not have, all-zero quaternions, absent or empty map names and frames, CBOR byte
+/// strings of UTF-8 for text.
 
 /// ICD 6.3, 6.4. Inflates `data` where the message says it is compressed, checks it, and leaves a grid's
-/// cells as one gzip member and a cloud's points raw. CPU-bound in the size of the map: meant for a worker.
+/// cells as one gzip member and a cloud's points raw and little-endian. CPU-bound in the size of the map:
+/// meant for a worker.
 icd::Checked<icd::MapUpdate> read_map_update(Document document, const icd::Rules& rules);
+/// What of a message was not taken, part by part.
+struct RefusedParts {
+  static constexpr std::size_t kMostToldOf = 10;
+
+  std::size_t count = 0, others = 0;   // of the bad parts, and of the good ones
+  std::vector<std::string> sentences;  // about the first bad ones
+
+  void add(std::string sentence) {
+    if (++count <= kMostToldOf) sentences.push_back(std::move(sentence));
+  }
+  /// 422 with all its sentences, and what became of the others. Requires a bad part.
+  icd::Refusal refusal() const;
+};
+
+/// The good parts of a message, and the others.
+template <class Message>
+struct InParts {
+  Message message;
+  RefusedParts refused;
+};
+
+/// ICD 6.5, 6.6: a state pose by pose, markers one by one, so that what one robot or program writes wrong
+/// does not hide the others. Refused as a whole where the message around them is not good or where no part
+/// is.
+icd::Checked<InParts<icd::StateUpdate>> read_state_parts(const Document& document, const icd::Rules& rules);
+icd::Checked<InParts<icd::MarkersUpdate>> read_markers_parts(const Document& document,
+                                                             const icd::Rules& rules);
+
 /// ICD 6.5. Where a robot is named twice, its last pose counts.
 icd::Checked<icd::StateUpdate> read_state_update(const Document& document, const icd::Rules& rules);
 /// ICD 6.6. For actions 2 and 3, type, pose, scale and color may be absent.

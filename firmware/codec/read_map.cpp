@@ -1,4 +1,5 @@
 // POST /map/update (ICD 6.3, 6.4).
+#include "codec/byte_order.hpp"
 #include "codec/read.hpp"
 #include "codec/read_map_data.hpp"
 #include "codec/read_parts.hpp"
@@ -7,7 +8,7 @@ namespace adit::codec {
 namespace {
 
 std::optional<icd::RobotName> read_map_name(const Field& name, const icd::Rules& rules) {
-  if (name.is_absent() || (name.is<std::string>() && name.text().empty())) return std::nullopt;  // merged
+  if (name.is_absent() || name.is_empty_text()) return std::nullopt;  // merged
   return read_robot_name(name, rules);
 }
 
@@ -85,6 +86,22 @@ icd::Checked<icd::MapUpdate> read_structure(const Document& document, const icd:
   return reading.outcome(std::move(update));
 }
 
+/// ICD 6.3.2 and what a server makes of it: points go up little-endian, for there is one that turns the
+/// points of a big-endian cloud with an origin wrongly. Where their values cannot be turned they go up as
+/// they came.
+icd::Checked<icd::MapData> turned(icd::PointCloud2& cloud, icd::MapData data) {
+  const auto order = little_endian_order(cloud);
+  if (!order && cloud.origin) {
+    return icd::unprocessable(
+        "msg.is_bigendian: expected false where there is an origin and fields lie across each other, got "
+        "true");
+  }
+  if (!order) return data;
+  cloud.is_bigendian = false;
+  data.bytes = in_order(std::move(data.bytes), *order);
+  return data;
+}
+
 }  // namespace
 
 icd::Checked<icd::MapUpdate> read_map_update(Document document, const icd::Rules& rules) {
@@ -96,6 +113,10 @@ icd::Checked<icd::MapUpdate> read_map_update(Document document, const icd::Rules
                                 : read_points(std::get<icd::PointCloud2>(update->msg),
                                               std::move(document.data), compression, rules);
   if (!data) return std::unexpected(std::move(data.error()));
+  if (auto* cloud = std::get_if<icd::PointCloud2>(&update->msg); cloud != nullptr && cloud->is_bigendian) {
+    data = turned(*cloud, *std::move(data));
+    if (!data) return std::unexpected(std::move(data.error()));
+  }
   update->data = *std::move(data);
   return update;
 }

@@ -21,7 +21,8 @@ icd::Header read_header(const Field& message, const icd::Rules& rules) {
   if (const Field stamp = header.member("stamp"); !stamp.is_absent()) read.stamp = stamp.seconds();
   if (const Field frame_id = header.member("frame_id"); !frame_id.is_absent()) {
     const std::string_view text = frame_id.text();
-    if (text != icd::kFrame) header.reading().keep(icd::check_frame_id(text, frame_id.path(), rules));
+    if (text != icd::kFrame && !text.empty())
+      header.reading().keep(icd::check_frame_id(text, frame_id.path(), rules));
   }
   return read;
 }
@@ -41,7 +42,8 @@ std::optional<icd::RobotName> read_robot_name(const Field& field, const icd::Rul
   auto name = icd::RobotName::parse(text);
   if (!name) {
     field.refuse("expected 1 to ", icd::RobotName::kLongest, " letters, digits and underscores, got ",
-                 icd::in_quotes(text));
+                 icd::in_quotes(text),
+                 text.empty() ? "" : " (the setting robots[].alias gives a name to whoever calls itself so)");
   }
   return name;
 }

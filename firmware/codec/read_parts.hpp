@@ -10,7 +10,7 @@
 
 namespace adit::codec {
 
-/// The optional "header" of a message (ICD 6.1, 6.2).
+/// The optional "header" of a message (ICD 6.1, 6.2). A frame_id "" is ROS's word for none.
 icd::Header read_header(const Field& message, const icd::Rules& rules);
 
 icd::Point read_point(const Field& field);

@@ -22,7 +22,9 @@ std::string_view read_type(const Field& field, const icd::Rules& rules) {
   if (!rules.forward_unknown_types) {
     std::string ten;
     for (const auto known : icd::kArtifactTypes) ten += icd::sentence(known, ", ");
-    field.refuse("expected one of ", ten, "got ", icd::in_quotes(type));
+    const char* const cure =
+        is_forwardable(type) ? " (the setting rules.forward_unknown_types takes others)" : "";
+    field.refuse("expected one of ", ten, "got ", icd::in_quotes(type), cure);
   } else if (!is_forwardable(type)) {
     field.refuse("expected 1 to ", kLongestUnknownType, " printable ASCII characters, got ",
                  icd::in_quotes(type));

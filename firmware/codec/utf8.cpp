@@ -26,6 +26,11 @@ std::optional<std::size_t> Utf8Checker::feed(std::string_view bytes) {
   return std::nullopt;
 }
 
+bool is_utf8(std::string_view text) {
+  Utf8Checker checker;
+  return !checker.feed(text) && checker.complete();
+}
+
 void append_utf8(std::string& text, char32_t character) {
   const auto continuation = [&](int shift) {
     text.push_back(static_cast<char>(0x80 | ((character >> shift) & 0x3F)));

@@ -32,6 +32,8 @@ class Utf8Checker {
   std::uint8_t most_ = 0xBF;
 };
 
+bool is_utf8(std::string_view text);
+
 /// Requires a scalar value: at most U+10FFFF and no surrogate.
 void append_utf8(std::string& text, char32_t character);
 

@@ -11,13 +11,13 @@ namespace adit::codec {
 /// A parsed document without its bulk data: what JSON (RFC 8259) and CBOR (RFC 8949) have in common.
 /// Members keep their order and their duplicates, so that a reader can refuse a member that is given twice.
 struct Value {
-  struct Bytes {  // a CBOR byte string
+  struct Bytes {  // a CBOR byte string; text where it is UTF-8 and text is asked for
     std::vector<std::uint8_t> bytes;
   };
   /// Stands where the map's `data` was split out (Document::data holds it).
   struct SplitOut {};
   using Array = std::vector<Value>;
-  using Member = std::pair<std::string, Value>;  // CBOR keys that are not text are left out
+  using Member = std::pair<std::string, Value>;  // CBOR keys that are no text are left out
   using Object = std::vector<Member>;
 
   std::variant<std::nullptr_t, bool, std::int64_t, std::uint64_t, double, std::string, Bytes, SplitOut, Array,

@@ -16,11 +16,21 @@ inline constexpr std::string_view kJson = "application/json";
 inline constexpr std::string_view kCbor = "application/cbor";
 
 /// The one canonical form of each message that goes upstream: CBOR (RFC 8949 4.1, preferred lengths) for the
-/// mapping endpoint, with name, header {stamp, frame_id}, ns and id always there; JSON for scoring,
-/// coordinates in the fewest digits that give the same double back.
+/// mapping endpoint, with name, header {stamp, frame_id}, ns and id always there, and of a marker what the
+/// ICD does not list only where it says something; JSON for scoring,
+/// every <float> in the fewest digits that give the same double back, with a point or an exponent.
 
 /// Shares the chunks of `update.data`; "compression" is "gzip" or "none" as update.data says.
 icd::ChunkedBytes write_map_update(const icd::MapUpdate& update);
+
+/// The same message in another order, its data first, so that the data can be written down before the rest is
+/// known: `before`, always so long, then the data as update.data has it, then `after`.
+struct DataFirst {
+  static constexpr std::size_t kBefore = 20;
+  std::string before, after;
+};
+DataFirst write_data_first(const icd::MapUpdate& update);
+
 icd::ChunkedBytes write_state_update(const icd::StateUpdate& update);
 icd::ChunkedBytes write_markers_update(const icd::MarkersUpdate& update);
 std::string write_artifact_report(const icd::ArtifactReport& report);

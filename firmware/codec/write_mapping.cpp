@@ -1,4 +1,6 @@
 // The mapping endpoint's messages (ICD 6), members in the order of the ICD's listings.
+#include <cassert>
+
 #include "codec/cbor_writer.hpp"
 #include "codec/write.hpp"
 
@@ -32,17 +34,42 @@ void write_text(CborWriter& out, std::string_view name, std::string_view text) {
   out.text(text);
 }
 
-void write_point(CborWriter& out, std::string_view name, const icd::Point& point) {
+void write_truth(CborWriter& out, std::string_view name, bool yes) {
   out.text(name);
+  out.truth(yes);
+}
+
+void write_item(CborWriter& out, const icd::Point& point) {
   out.map(3);
   write_real(out, "x", point.x);
   write_real(out, "y", point.y);
   write_real(out, "z", point.z);
 }
 
+void write_item(CborWriter& out, const icd::Color& color) {
+  out.map(4);
+  write_real(out, "r", color.r);
+  write_real(out, "g", color.g);
+  write_real(out, "b", color.b);
+  write_real(out, "a", color.a);
+}
+
+template <class Item>
+void write_named(CborWriter& out, std::string_view name, const Item& item) {
+  out.text(name);
+  write_item(out, item);
+}
+
+template <class Item>
+void write_list(CborWriter& out, std::string_view name, const std::vector<Item>& items) {
+  out.text(name);
+  out.array(items.size());
+  for (const Item& item : items) write_item(out, item);
+}
+
 /// The two members of a pose.
 void write_pose_members(CborWriter& out, const icd::Pose& pose) {
-  write_point(out, "position", pose.position);
+  write_named(out, "position", pose.position);
   out.text("orientation");
   out.map(4);
   write_real(out, "x", pose.orientation.x);
@@ -57,14 +84,19 @@ void write_pose(CborWriter& out, std::string_view name, const icd::Pose& pose) {
   write_pose_members(out, pose);
 }
 
-void write_data(CborWriter& out, const icd::MapData& data) {
-  out.text("data");
-  out.byte_string(data.bytes);
+void write_compression(CborWriter& out, const icd::MapData& data) {
   write_text(out, "compression", data.compression == icd::Compression::Gzip ? "gzip" : "none");
 }
 
-void write_msg(CborWriter& out, const icd::OccupancyGrid& grid, const icd::MapData& data) {
-  out.map(4);
+std::size_t members_of(const icd::OccupancyGrid&) {
+  return 4;
+}
+std::size_t members_of(const icd::PointCloud2& cloud) {
+  return cloud.origin ? 7 : 6;
+}
+
+/// All members but data and its compression.
+void write_members(CborWriter& out, const icd::OccupancyGrid& grid) {
   write_header(out, grid.header);
   out.text("info");
   out.map(4);
@@ -72,13 +104,11 @@ void write_msg(CborWriter& out, const icd::OccupancyGrid& grid, const icd::MapDa
   write_whole(out, "width", grid.width);
   write_whole(out, "height", grid.height);
   write_pose(out, "origin", grid.origin);
-  write_data(out, data);
 }
 
-void write_msg(CborWriter& out, const icd::PointCloud2& cloud, const icd::MapData& data) {
-  out.map(7);
+void write_members(CborWriter& out, const icd::PointCloud2& cloud) {
   write_header(out, cloud.header);
-  write_pose(out, "origin", cloud.origin.value_or(icd::Pose{}));
+  if (cloud.origin) write_pose(out, "origin", *cloud.origin);
   out.text("fields");
   out.array(cloud.fields.size());
   for (const icd::FieldSchema& field : cloud.fields) {
@@ -88,29 +118,52 @@ void write_msg(CborWriter& out, const icd::PointCloud2& cloud, const icd::MapDat
     write_whole(out, "datatype", static_cast<std::int64_t>(field.datatype));
     write_whole(out, "count", field.count);
   }
-  out.text("is_bigendian");
-  out.truth(cloud.is_bigendian);
+  write_truth(out, "is_bigendian", cloud.is_bigendian);
   write_whole(out, "point_step", cloud.point_step);
-  write_data(out, data);
+}
+
+void write_type_and_name(CborWriter& out, const icd::MapUpdate& update) {
+  write_text(out, "type", update.is_grid() ? "OccupancyGrid" : "PointCloud2");
+  write_text(out, "name", update.name ? update.name->text() : std::string_view());
+}
+
+/// Up to the data: all that has to be known before it is how much it is, and how many members msg has.
+std::string write_up_to_data(std::size_t members, std::uint64_t size) {
+  CborWriter out;
+  out.map(3);
+  out.text("msg");
+  out.map(members);
+  out.text("data");
+  std::string before = out.finish().to_string();
+  before += '\x5B';  // a byte string whose length stands in 8 bytes (RFC 8949 3)
+  for (int shift = 56; shift >= 0; shift -= 8) before += static_cast<char>(size >> shift & 0xFF);
+  return before;
+}
+
+/// How many of the members that ROS has and the ICD does not list say something in this marker. The others
+/// are left out: a reader takes them as ROS's defaults.
+std::size_t unlisted_members(const icd::Marker& marker) {
+  return std::size_t{marker.frame_locked} + !marker.points.empty() + !marker.colors.empty() +
+         !marker.mesh_resource.empty() + marker.mesh_use_embedded_materials;
 }
 
 void write_marker(CborWriter& out, const icd::Marker& marker) {
-  out.map(10);
+  out.map(10 + unlisted_members(marker));
   write_header(out, marker.header);
   write_text(out, "ns", marker.ns);
   write_whole(out, "id", marker.id);
   write_whole(out, "type", marker.type);
   write_whole(out, "action", static_cast<std::int64_t>(marker.action));
   write_pose(out, "pose", marker.pose);
-  write_point(out, "scale", marker.scale);
-  out.text("color");
-  out.map(4);
-  write_real(out, "r", marker.color.r);
-  write_real(out, "g", marker.color.g);
-  write_real(out, "b", marker.color.b);
-  write_real(out, "a", marker.color.a);
+  write_named(out, "scale", marker.scale);
+  write_named(out, "color", marker.color);
   write_real(out, "lifetime", marker.lifetime);
   write_text(out, "text", marker.text);
+  if (marker.frame_locked) write_truth(out, "frame_locked", true);
+  if (!marker.points.empty()) write_list(out, "points", marker.points);
+  if (!marker.colors.empty()) write_list(out, "colors", marker.colors);
+  if (!marker.mesh_resource.empty()) write_text(out, "mesh_resource", marker.mesh_resource);
+  if (marker.mesh_use_embedded_materials) write_truth(out, "mesh_use_embedded_materials", true);
 }
 
 }  // namespace
@@ -118,11 +171,30 @@ void write_marker(CborWriter& out, const icd::Marker& marker) {
 icd::ChunkedBytes write_map_update(const icd::MapUpdate& update) {
   CborWriter out;
   out.map(3);
-  write_text(out, "type", update.is_grid() ? "OccupancyGrid" : "PointCloud2");
-  write_text(out, "name", update.name ? update.name->text() : std::string_view());
+  write_type_and_name(out, update);
   out.text("msg");
-  std::visit([&](const auto& msg) { write_msg(out, msg, update.data); }, update.msg);
+  std::visit(
+      [&](const auto& msg) {
+        out.map(members_of(msg));
+        write_members(out, msg);
+      },
+      update.msg);
+  out.text("data");
+  out.byte_string(update.data.bytes);
+  write_compression(out, update.data);
   return out.finish();
+}
+
+DataFirst write_data_first(const icd::MapUpdate& update) {
+  const std::size_t members = std::visit([](const auto& msg) { return members_of(msg); }, update.msg);
+  CborWriter out;
+  write_compression(out, update.data);
+  std::visit([&](const auto& msg) { write_members(out, msg); }, update.msg);
+  write_type_and_name(out, update);
+  DataFirst written{.before = write_up_to_data(members, update.data.bytes.size()),
+                    .after = out.finish().to_string()};
+  assert(written.before.size() == DataFirst::kBefore);
+  return written;
 }
 
 icd::ChunkedBytes write_state_update(const icd::StateUpdate& update) {

@@ -9,10 +9,11 @@
 namespace adit::codec {
 namespace {
 
-/// In the fewest digits that give the same double back. No message holds NaN or an infinity; if one did, null
-/// is what JSON has for it, and a server refuses it where the field matters.
+/// In the fewest digits that give the same double back, and as what the ICD calls <float>: 11.0, not 11. No
+/// message holds NaN or an infinity; if one did, null is what JSON has for it, and a server refuses it where
+/// the field matters.
 std::string json_number(double number) {
-  return std::isfinite(number) ? icd::number_text(number) : "null";
+  return std::isfinite(number) ? icd::real_text(number) : "null";
 }
 
 /// Bytes of the UTF-8 character at the front of `text`; 0 where there is none.

@@ -5,6 +5,7 @@
 #include <string>
 
 #include "dispatch/report.hpp"
+#include "dispatch/run.hpp"
 #include "icd/status.hpp"
 
 namespace adit::dispatch {

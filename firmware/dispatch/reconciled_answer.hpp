@@ -4,6 +4,7 @@
 #include <string>
 
 #include "dispatch/report.hpp"
+#include "dispatch/run.hpp"
 
 namespace adit::dispatch {
 

@@ -4,6 +4,7 @@
 #include <cstdint>
 #include <optional>
 #include <string>
+#include <string_view>
 
 #include "dispatch/report_life.hpp"
 #include "icd/artifact_report.hpp"
@@ -21,7 +22,7 @@ struct Time {
 struct Report {
   std::int64_t number = 0;  // Adit's own, from 1, never used twice
   icd::ArtifactReport report = {};
-  std::string sender = "";  // address of who posted it, or "operator"
+  std::string sender = "";  // address of who posted it, "operator", or kLost
   double received = 0;      // seconds since 1970
   double changed = 0;
   ReportState state = ReportState::Waiting;
@@ -40,20 +41,12 @@ struct Report {
   std::string content_type = "";  // of that answer
   std::string answer = "";        // its body, byte for byte
   bool reconciled = false;        // the answer is Adit's, found out from the run's status
-  friend bool operator==(const Report&, const Report&) = default;
-};
 
-/// One run of the Command Post, as far as it is known.
-struct Run {
-  std::int64_t number = 1;                            // Adit's own, from 1
-  std::string id = "";                                // the Command Post's (ICD 5.2 `run`); "": not heard yet
-  double began = 0;                                   // when it was noticed; seconds since 1970
-  std::string why = "";                               // how it was noticed: a sentence
-  std::optional<icd::RunStatus> last = std::nullopt;  // the last status heard in it
-  double heard = 0;                                   // when; seconds since 1970
-  std::string post = "";        // where the Command Post was: address and port; "": not known
-  std::string unreliable = "";  // why its count of reports proves nothing (another sender...); "": it does
-  friend bool operator==(const Run&, const Run&) = default;
+  /// It stands for reports that damage took from the ledger: nothing is known of them but that they may have
+  /// been sent. Its note says which.
+  bool is_lost() const { return sender == kLost; }
+  static constexpr std::string_view kLost = "lost";
+  friend bool operator==(const Report&, const Report&) = default;
 };
 
 }  // namespace adit::dispatch

@@ -68,19 +68,31 @@ bool ReportBook::move(std::span<const Step> steps, double stamp) {
 }
 
 bool ReportBook::catch_up() {
-  return (unwritten_.empty() && !unwritten_run_) || write({}, false);
+  return (unwritten_.empty() && unwritten_runs_.empty()) || write({}, false);
 }
 
 void ReportBook::change(std::span<const Report> steps, const Run& run) {
-  unwritten_run_ = run;
+  std::erase_if(unwritten_runs_, [&](const Run& other) { return other.number == run.number; });
+  unwritten_runs_.push_back(run);
   write(steps, true);
+}
+
+/// All but the one that changed last: what becomes of reports goes with that one.
+bool ReportBook::write_earlier_runs() {
+  while (unwritten_runs_.size() > 1) {
+    if (!deeds_.write({}, &unwritten_runs_.front(), Flush::Now)) return false;
+    unwritten_runs_.erase(unwritten_runs_.begin());
+  }
+  return true;
 }
 
 /// What is still unwritten goes first, so that the ledger never has a later step without an earlier one.
 bool ReportBook::write(std::span<const Report> steps, bool happened, Flush flush) {
-  const Run* const run = unwritten_run_ ? &*unwritten_run_ : nullptr;
-  bool written = false;
-  if (unwritten_.empty()) {
+  bool written = write_earlier_runs();
+  const Run* const run = unwritten_runs_.empty() ? nullptr : &unwritten_runs_.back();
+  if (!written) {
+    // The disk refuses.
+  } else if (unwritten_.empty()) {
     written = deeds_.write(steps, run, flush);
   } else {
     std::vector<Report> all;
@@ -91,7 +103,7 @@ bool ReportBook::write(std::span<const Report> steps, bool happened, Flush flush
   }
   if (written) {
     unwritten_.clear();
-    unwritten_run_.reset();
+    unwritten_runs_.clear();
   }
   if (!written && !happened) return false;
   for (const Report& report : steps) {

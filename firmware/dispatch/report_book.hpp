@@ -66,6 +66,7 @@ class ReportBook {
 
  private:
   bool write(std::span<const Report> steps, bool happened, Flush flush = Flush::Now);
+  bool write_earlier_runs();
   void put(const Report& report);
 
   Deeds& deeds_;
@@ -78,7 +79,7 @@ class ReportBook {
   std::set<std::int64_t> waiting_;
   std::set<std::int64_t> in_doubt_;
   std::set<std::int64_t> unwritten_;  // their last step has happened, but is not on disk
-  std::optional<Run> unwritten_run_;
+  std::vector<Run> unwritten_runs_;   // each as it now is, the one that changed last at the end
 };
 
 }  // namespace adit::dispatch

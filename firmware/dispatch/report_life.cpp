@@ -20,6 +20,8 @@ constexpr std::array kLife = {
 
     ReportTransition{Received, Event::Released, Waiting, Action::Nothing},
     ReportTransition{Received, Event::Withdrawn, Withdrawn, Action::TellClients},
+    ReportTransition{Received, Event::Joined, Withdrawn, Action::Nothing},
+    ReportTransition{Received, Event::Cleared, Waiting, Action::Nothing},
     ReportTransition{Received, Event::Held, Received, Action::Nothing},
     ReportTransition{Received, Event::Restarted, Received, Action::Nothing},
 
@@ -90,6 +92,8 @@ std::string_view words(ReportEvent event) {
       return "operator: withdraw";
     case Event::Joined:
       return "same as an earlier one";
+    case Event::Cleared:
+      return "another run";
     case Event::Restarted:
       return "restart";
   }

@@ -36,6 +36,7 @@ enum class ReportEvent : std::uint8_t {
   CalledDone,  // the operator says that nothing is left to do
   Withdrawn,   // the operator takes it back
   Joined,      // it is the same as an earlier one, whose answer it gets
+  Cleared,     // it is none of an earlier run's again: it was held as long as that was not known
   Restarted,   // this program began anew and found it so
 };
 

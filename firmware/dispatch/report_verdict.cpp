@@ -4,7 +4,7 @@
 
 namespace adit::dispatch {
 
-ReportEvent event_of(int status, bool tells_of_a_report) {
+ReportEvent event_of(int status, bool tells_of_a_report, Body body) {
   if (status >= 200 && status < 300) {
     return tells_of_a_report ? ReportEvent::Recorded : ReportEvent::Lost;
   }
@@ -20,7 +20,8 @@ ReportEvent event_of(int status, bool tells_of_a_report) {
     case 429:
       return ReportEvent::Throttled;
     default:
-      return status >= 400 && status < 500 ? ReportEvent::Refused : ReportEvent::Lost;
+      if (status < 400 || status >= 500 || body == Body::Other) return ReportEvent::Lost;
+      return ReportEvent::Refused;
   }
 }
 

@@ -14,7 +14,7 @@ namespace adit::dispatch {
 Reports::Reports(const ReportRules& rules, Deeds& deeds)
     : rules_(rules), book_(deeds), account_(book_), deeds_(deeds) {}
 
-void Reports::open(std::vector<Report> all, std::optional<Run> last_run, Time time, const std::string& post) {
+void Reports::open(std::vector<Report> all, std::vector<Run> runs, Time time, const std::string& post) {
   book_.open(std::move(all));
   std::int64_t latest_run = 1;
   std::vector<std::int64_t> sending;
@@ -23,7 +23,7 @@ void Reports::open(std::vector<Report> all, std::optional<Run> last_run, Time ti
     latest_run = std::max(latest_run, report.run);
     if (report.state == ReportState::Sending) sending.push_back(number);
   }
-  account_.open(std::move(last_run), latest_run, post);
+  account_.open(std::move(runs), latest_run, post);
   for (const std::int64_t number : sending) {
     step(number, ReportEvent::Restarted, "the gateway stopped while it was being sent", time,
          [this](Report& report) {
@@ -33,9 +33,7 @@ void Reports::open(std::vector<Report> all, std::optional<Run> last_run, Time ti
   }
   unchecked_.insert(book_.waiting().begin(), book_.waiting().end());
   doubt_began(time.now);
-  if (!post.empty() && run().post != post) {
-    begin_run("the Command Post is at " + post + ", it was at " + run().post, std::nullopt, time);
-  }
+  if (!post.empty() && run().post != post) change_post(post, time);
 }
 
 /// Takes a step, and does what the table says follows from it. False: it is not on disk, and not taken.
@@ -87,12 +85,31 @@ bool Reports::may_go(const Report& report, Instant now) const {
   if (barred_) return false;
   if (inquiry_ && inquiry_->is_pending(now)) return false;
   if (account_.is_fresh(now)) return true;
-  return account_.is_dumb(now) && (report.asked || is_young(report, now));
+  if (!account_.is_dumb(now) || sent_to_another_post(report) != nullptr) return false;
+  return report.asked || is_young(report, now);
+}
+
+/// Those that wait for the Command Post that the settings name. Others are kept for theirs.
+std::vector<std::int64_t> Reports::waiting_here() const {
+  std::vector<std::int64_t> here;
+  for (const std::int64_t number : book_.waiting()) {
+    if (account_.runs().is_here(book_.at(number).run)) here.push_back(number);
+  }
+  return here;
+}
+
+std::map<std::string, std::size_t> Reports::waiting_elsewhere() const {
+  std::map<std::string, std::size_t> counts;
+  for (const std::int64_t number : book_.waiting()) {
+    const std::int64_t its = book_.at(number).run;
+    if (!account_.runs().is_here(its)) ++counts[account_.runs().find(its)->post];
+  }
+  return counts;
 }
 
 /// The first of those that wait that may go; nothing: none may.
 std::optional<std::int64_t> Reports::next(Instant now) const {
-  for (const std::int64_t number : book_.waiting()) {
+  for (const std::int64_t number : waiting_here()) {
     if (may_go(book_.at(number), now)) return number;
   }
   return std::nullopt;
@@ -102,7 +119,7 @@ Wish Reports::wish(Time time) const {
   if (sending_) return {};
   Wish wish;
   if (inquiry_) wish.status = inquiry_->next_ask(time.now);
-  if (book_.waiting().empty()) return wish;
+  if (waiting_here().empty()) return wish;
   wish.report = next(time.now).has_value();
   if (barred_ || !account_.is_fresh(time.now)) wish.status = time.now;
   return wish;
@@ -151,7 +168,7 @@ void Reports::enter_run(Report& report) const {
 
 ReportEvent Reports::answered(const HttpAnswer& answer, Time time) {
   const auto reply = codec::read_report_reply(answer.body);
-  const ReportEvent event = event_of(answer.status, reply.has_value());
+  const ReportEvent event = event_of(answer.status, reply.has_value(), body_of(answer.body));
   const auto keep = [&](Report& report) {
     report.status = answer.status;
     report.content_type = answer.content_type;
@@ -167,12 +184,7 @@ ReportEvent Reports::answered(const HttpAnswer& answer, Time time) {
 }
 
 void Reports::recorded(const ReportBook::Edit& keep, const icd::ReportReply& reply, Time time) {
-  // It was recorded in the run that is on by now, whichever it was meant for.
-  if (const std::string why = account_.another(reply, time); !why.empty()) {
-    icd::RunStatus status = run().last.value_or(icd::RunStatus{});  // its counts are never looked at
-    status.run_clock = reply.run_clock;
-    begin_run(why, run().last ? std::optional(status) : std::nullopt, time);
-  }
+  meet(reply, time);  // it was recorded in the run that is on by now, whichever it was meant for
   const Effect effect = effect_of(reply);
   const std::string note =
       effect.again ? "not scored (" + reply.report_status + "): post it again once the run goes on" : "";

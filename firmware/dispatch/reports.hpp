@@ -3,6 +3,7 @@
 #include <chrono>
 #include <cstdint>
 #include <expected>
+#include <functional>
 #include <map>
 #include <optional>
 #include <set>
@@ -67,8 +68,9 @@ class Reports {
   /// `deeds` outlives this.
   Reports(const ReportRules& rules, Deeds& deeds);
 
-  /// Takes up what the ledger holds. `post`: where the Command Post is; at another place it is another run.
-  void open(std::vector<Report> all, std::optional<Run> last_run, Time time, const std::string& post = "");
+  /// Takes up what the ledger holds. `post`: where the Command Post is. At another place than before it is
+  /// another run: the last one there, taken up again, or a new one.
+  void open(std::vector<Report> all, std::vector<Run> runs, Time time, const std::string& post = "");
 
   /// A client posts a report; it is told by Deeds, at once or later. `may_send`: nothing is under way and
   /// the rate allows it. True: it is on disk as sending(): send it.
@@ -106,6 +108,11 @@ class Reports {
   std::optional<std::int64_t> awaited_by(ClientId client) const { return clients_.awaited_by(client); }
   const ReportBook& book() const { return book_; }
   const Run& run() const { return account_.run(); }
+  const Runs& runs() const { return account_.runs(); }
+  /// Those that wait for the Command Post that the settings name, oldest first.
+  std::vector<std::int64_t> waiting_here() const;
+  /// How many wait for each of the other Command Posts.
+  std::map<std::string, std::size_t> waiting_elsewhere() const;
   const Report* sending() const { return sending_ ? &book_.at(*sending_) : nullptr; }
   /// It is in doubt, and Adit can find out by itself.
   bool is_asking(const Report& report) const;
@@ -123,13 +130,18 @@ class Reports {
   std::vector<const Report*> same_in_run(const icd::ArtifactReport& report) const;
   const Report* earlier(const Report& report) const;
   const Report* twin(const Report& report) const;
-  std::string reason_to_hold(const Report& report) const;
+  /// Why the operator's word is wanted first; "": it is not.
+  struct Hold {
+    std::string why;
+    std::int64_t same_as = 0;  // it may be this one again: held until the run is known for certain
+  };
+  Hold reason_to_hold(const Report& report) const;
   bool check(std::int64_t number, Time time);
   bool is_young(const Report& report, Instant now) const;
   bool may_go(const Report& report, Instant now) const;
   std::optional<std::int64_t> next(Instant now) const;
   void recorded(const ReportBook::Edit& keep, const icd::ReportReply& reply, Time time);
-  bool take_new(Report report, const std::string& hold, ClientId client, bool may_send, Time time);
+  bool take_new(Report report, const Hold& hold, ClientId client, bool may_send, Time time);
   void prepare(Report& report, Time time);
   void enter_run(Report& report) const;
   bool step(std::int64_t number, ReportEvent event, const std::string& note, Time time,
@@ -138,7 +150,7 @@ class Reports {
   void follow(std::int64_t number, ReportAction action, Time time);
   void ended(ReportEvent event, const std::string& note, Time time, const ReportBook::Edit& edit = nullptr);
 
-  // Doubts and runs.
+  // Doubts.
   void doubt_began(Instant now);
   void inquire(const icd::RunStatus& status, Time time);
   SentSince sent_since(const Report& doubt) const;
@@ -147,7 +159,21 @@ class Reports {
   void explain(const std::vector<const Report*>& doubts, const std::string& why, Time time);
   bool blur_doubts(std::int64_t judged, Time time);
   void ask_for_others(Time time);
-  void begin_run(const std::string& why, const std::optional<icd::RunStatus>& status, Time time);
+
+  // Runs.
+  void change_post(const std::string& post, Time time);
+  void meet(const AnotherRun& another, const icd::RunStatus& status, Time time);
+  void meet(const icd::ReportReply& reply, Time time);
+  std::vector<Report> steps_into(std::int64_t next, const std::string& why, Time time);
+  void begin_run(const std::string& why, std::int64_t may_be, const std::optional<icd::RunStatus>& status,
+                 Time time);
+  void take_up_run(const Run& known, const std::string& why, Time time);
+  void return_to(const Run& known, Time time);
+  void clear_held(Time time);
+  bool anything_was_sent_here() const;
+  const Report* sent_elsewhere(const Report& report, const std::function<bool(const Run&)>& counts) const;
+  const Report* maybe_same(const Report& report) const;
+  const Report* sent_to_another_post(const Report& report) const;
 
   const ReportRules rules_;
   ReportBook book_;

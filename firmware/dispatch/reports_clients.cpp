@@ -38,7 +38,7 @@ bool Reports::take(const Posted& posted, ClientId client, bool may_send, Time ti
     join(client, *same, time);
     return false;
   }
-  if (book_.waiting().size() >= rules_.most_waiting) {
+  if (waiting_here().size() >= rules_.most_waiting) {
     deeds_.tell(
         client,
         {.status = icd::Status::TooManyRequests,
@@ -46,20 +46,26 @@ bool Reports::take(const Posted& posted, ClientId client, bool may_send, Time ti
         report);
     return false;
   }
-  const std::string hold = fresh ? reason_to_hold(report) : "";
+  const Hold hold = fresh ? reason_to_hold(report) : Hold{};
+  if (const Report* const other = sent_to_another_post(report); other != nullptr) {
+    report.note = icd::sentence("it is the same as report ", other->number,
+                                ", which was sent to another Command Post: it waits until the one at ",
+                                run().post, " has answered");
+  }
   return take_new(std::move(report), hold, client, may_send, time);
 }
 
-bool Reports::take_new(Report report, const std::string& hold, ClientId client, bool may_send, Time time) {
+bool Reports::take_new(Report report, const Hold& hold, ClientId client, bool may_send, Time time) {
   const bool fresh = account_.is_fresh(time.now);
   // Received and chosen in one write: the disk is flushed once before it leaves.
-  const bool now =
-      may_send && hold.empty() && fresh && !sending_ && book_.waiting().empty() && may_go(report, time.now);
+  const bool now = may_send && hold.why.empty() && fresh && !sending_ && waiting_here().empty() &&
+                   may_go(report, time.now);
   std::vector<ReportEvent> events;
-  if (!hold.empty()) events.push_back(ReportEvent::Held);
+  if (!hold.why.empty()) events.push_back(ReportEvent::Held);
   if (now) events.push_back(ReportEvent::Chosen);
-  const std::int64_t number = book_.add(report, events, hold, [&](Report& chosen) {
+  const std::int64_t number = book_.add(report, events, hold.why, [&](Report& chosen) {
     if (chosen.state == ReportState::Sending) prepare(chosen, time);
+    if (chosen.state == ReportState::Received) chosen.same_as = hold.same_as;
   });
   if (number == 0) {
     deeds_.tell(client, {.sentence = "the report could not be written down and was not taken; post it again"},
@@ -92,7 +98,8 @@ std::vector<const Report*> Reports::same_in_run(const icd::ArtifactReport& repor
 const Report* Reports::earlier(const Report& report) const {
   for (const Report* const other : std::views::reverse(same_in_run(report.report))) {
     if (report.number != 0 && other->number >= report.number) continue;
-    const Report* const original = book_.find(other->same_as);
+    const bool joined = other->state == ReportState::Withdrawn;
+    const Report* const original = joined ? book_.find(other->same_as) : nullptr;
     const Report& stands = original != nullptr ? *original : *other;
     if (stands_for_others(stands)) return &stands;
   }
@@ -109,20 +116,30 @@ const Report* Reports::twin(const Report& report) const {
   return nullptr;
 }
 
-/// Why it must not go without the operator's word, or "".
-std::string Reports::reason_to_hold(const Report& report) const {
-  if (report.asked || rules_.review == Review::Off) return "";
+/// Why it must not go without the operator's word, if so.
+Reports::Hold Reports::reason_to_hold(const Report& report) const {
+  if (report.asked) return {};
+  for (const Report* const doubt : book_.doubts(run().number)) {
+    if (doubt->is_lost()) return {icd::sentence("held: ", doubt->note, ", and this may be it")};
+  }
+  if (const Report* const other = maybe_same(report); other != nullptr) {
+    return {icd::sentence("held: the same as report ", other->number,
+                          ", and that run may go on still: nothing but the clock says that a new one began (",
+                          run().why, ")"),
+            other->number};
+  }
+  if (rules_.review == Review::Off) return {};
   for (const auto& [number, other] : book_.all()) {
     // Of two that wait, the later one is held.
     const bool later = report.number != 0 && number > report.number && other.state == ReportState::Waiting;
     const bool counts =
         is_of_run(other) && !later && number != report.number && other.state != ReportState::Withdrawn;
     if (counts && is_near(other.report, report.report, rules_.near_metres) && stands_for_others(other)) {
-      return icd::sentence("held: the same type as report ", number, ", ",
-                           metres(distance(other.report, report.report)), " from it");
+      return {icd::sentence("held: the same type as report ", number, ", ",
+                            metres(distance(other.report, report.report)), " from it")};
     }
   }
-  return rules_.review == Review::All ? "held: every report is reviewed" : "";
+  return rules_.review == Review::All ? Hold{"held: every report is reviewed"} : Hold{};
 }
 
 /// What take() could not do because the run was not known. False: it is not to be sent (or not yet).
@@ -144,8 +161,9 @@ bool Reports::check(std::int64_t number, Time time) {
     }
     return false;
   }
-  if (const std::string reason = reason_to_hold(report); !reason.empty()) {
-    if (step(number, ReportEvent::Held, reason, time)) unchecked_.erase(number);
+  if (const Hold hold = reason_to_hold(report); !hold.why.empty()) {
+    const auto keep = [&hold](Report& held) { held.same_as = hold.same_as; };
+    if (step(number, ReportEvent::Held, hold.why, time, keep)) unchecked_.erase(number);
     return false;
   }
   unchecked_.erase(number);

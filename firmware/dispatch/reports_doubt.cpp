@@ -1,4 +1,4 @@
-// The life of reports whose answer was lost, and the run that all belong to.
+// The life of reports whose answer was lost.
 #include "codec/write.hpp"
 #include "dispatch/reconciled_answer.hpp"
 #include "dispatch/report_verdict.hpp"
@@ -9,7 +9,11 @@ namespace adit::dispatch {
 namespace {
 
 /// Why the run's status cannot say what became of it, or "".
-std::string undecidable(const Report& report, const Run& run) {
+std::string undecidable(const Report& report, const Run& run, const Run* its) {
+  if (its != nullptr && !its->post.empty() && its->post != run.post) {
+    return "it was sent to the Command Post at " + its->post +
+           ", which is asked again once the settings name it again";
+  }
   if (report.run != run.number) return "a new run began before it was clear whether it had been recorded";
   if (!run.unreliable.empty()) return run.unreliable;
   if (!report.before && report.sent < run.began) {
@@ -32,7 +36,9 @@ bool Reports::is_asking(const Report& report) const {
 void Reports::doubt_began(Instant now) {
   inquiry_.reset();
   const auto doubts = book_.doubts(run().number);
-  if (!doubts.empty() && undecidable(*doubts.front(), run()).empty()) inquiry_.emplace(rules_.patience, now);
+  if (!doubts.empty() && undecidable(*doubts.front(), run(), &run()).empty()) {
+    inquiry_.emplace(rules_.patience, now);
+  }
 }
 
 /// What Adit sent after a report in doubt, and how that was answered.
@@ -48,9 +54,7 @@ SentSince Reports::sent_since(const Report& doubt) const {
 }
 
 void Reports::status_heard(const icd::RunStatus& status, Time time) {
-  if (const std::string why = account_.another(status, time); !why.empty()) {
-    begin_run(why, status, time);
-  }
+  if (const auto another = account_.another(status, time)) meet(*another, status, time);
   account_.heard(status, time);
   barred_ = false;
   if (inquiry_) inquiry_->asked(time.now);
@@ -128,7 +132,9 @@ void Reports::send_again(const std::vector<const Report*>& doubts, const Evidenc
 void Reports::explain(const std::vector<const Report*>& doubts, const std::string& seen, Time time) {
   std::vector<Report> noted;
   for (const Report* const doubt : doubts) {
-    const std::string why = undecidable(*doubts.front(), run());
+    if (doubt->is_lost()) continue;  // it says all that is known
+    const Report& first = *doubts.front();
+    const std::string why = undecidable(first, run(), account_.runs().find(first.run));
     const std::string note =
         is_asking(*doubt) ? "asking for the run's status: " + seen : (why.empty() ? seen : why) + kOperator;
     if (doubt->note == note) continue;
@@ -143,12 +149,13 @@ void Reports::explain(const std::vector<const Report*>& doubts, const std::strin
 /// before his word is, so that no power cut in between leaves evidence that means something else. False: the
 /// disk refuses.
 bool Reports::blur_doubts(std::int64_t judged, Time time) {
-  if (book_.at(judged).run != run().number) return true;  // nobody asks after it any more
+  const std::int64_t its_run = book_.at(judged).run;
   std::vector<Report> blurred;
-  for (const Report* const doubt : book_.doubts(run().number)) {
+  for (const Report* const doubt : book_.doubts(its_run)) {
     if (doubt->number != judged && doubt->before) blurred.emplace_back(*doubt).before.reset();
   }
   if (!book_.note(blurred)) return false;
+  if (its_run != run().number) return true;  // nobody asks after it now
   account_.lose(time.now + rules_.patience.doubt_for);
   doubt_began(time.now);
   return true;
@@ -158,43 +165,6 @@ bool Reports::blur_doubts(std::int64_t judged, Time time) {
 void Reports::ask_for_others(Time time) {
   doubt_began(time.now);
   explain(book_.doubts(run().number), "", time);
-}
-
-/// What waits was meant for the run before, but for what was posted just now. What is in doubt and was sent
-/// since shortly before the old run was last heard of may have been recorded in either: from now on it stands
-/// for the same report in the new one.
-void Reports::begin_run(const std::string& why, const std::optional<icd::RunStatus>& status, Time time) {
-  const std::chrono::duration<double> late = rules_.patience.doubt_for + kYoung;
-  const double last_word = run().heard - late.count();
-  std::vector<Report> steps;
-  const auto step_of = [&](const Report& report, bool enters) {
-    Report& changed = steps.emplace_back(report);
-    changed.changed = time.stamp;
-    if (enters) {
-      changed.run = run().number + 1;
-      changed.before.reset();
-    } else {
-      changed.state = transition(report.state, ReportEvent::Held)->to;
-      changed.note = "held: a new run began (" + why + ")";
-    }
-  };
-  const auto doubts = book_.doubts(run().number);
-  for (const Report* const doubt : doubts) {
-    if (doubt->sent >= last_word) step_of(*doubt, true);
-  }
-  for (const std::int64_t number : book_.waiting()) {
-    const bool enters = is_young(book_.at(number), time.now);
-    step_of(book_.at(number), enters);
-    if (enters) unchecked_.insert(number);
-  }
-  inquiry_.reset();
-  account_.begin(why, status, steps, time);
-  explain(doubts, "", time);
-}
-
-std::int64_t Reports::declare_new_run(Time time) {
-  begin_run("the operator says so", std::nullopt, time);
-  return run().number;
 }
 
 }  // namespace adit::dispatch

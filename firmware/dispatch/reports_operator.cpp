@@ -5,6 +5,10 @@
 namespace adit::dispatch {
 namespace {
 
+constexpr const char* kLost = "what it said is lost from the ledger: post it again, or call it done";
+constexpr const char* kCallDone = "; call it done";
+constexpr const char* kUntilDone =
+    "; what is posted in this run is held for the operator, as it may be the same, until he calls it done";
 constexpr const char* kDisk = "the step could not be written down, so it was not taken; try again";
 
 std::unexpected<std::string> no_such(std::int64_t number) {
@@ -24,6 +28,7 @@ Reports::Outcome Reports::send(std::int64_t number, Time time) {
   if (transition(report->state, ReportEvent::Released) == nullptr) {
     return cannot(*report, "to send it once more, resubmit it");
   }
+  if (report->is_lost()) return cannot(*report, kLost);
   const bool judged = report->state == ReportState::InDoubt;
   if (const Report* const other = judged ? nullptr : twin(*report); other != nullptr) {
     return cannot(*report,
@@ -87,6 +92,7 @@ Reports::Outcome Reports::resubmit(std::int64_t number, Time time) {
   const Report* const report = book_.find(number);
   if (report == nullptr) return no_such(number);
   if (!is_final(report->state)) return cannot(*report, "it is not finished yet");
+  if (report->is_lost()) return cannot(*report, kLost);
   for (const Report* const other : same_in_run(report->report)) {
     if (other->asked && !is_final(other->state)) return other->number;  // pressed twice, it is sent once
   }
@@ -103,10 +109,17 @@ Reports::Outcome Reports::resubmit(std::int64_t number, Time time) {
 std::vector<std::string> Reports::attention() const {
   std::vector<std::string> sentences;
   for (const auto& [number, report] : book_.all()) {
-    if (report.state == ReportState::Received || report.state == ReportState::InDoubt) {
+    if (report.is_lost() && report.state == ReportState::InDoubt) {
+      sentences.push_back(report.note + (is_of_run(report) ? kUntilDone : kCallDone));
+    } else if (report.state == ReportState::Received || report.state == ReportState::InDoubt) {
       sentences.push_back(icd::sentence(
           "report ", number, " is ", report.state == ReportState::InDoubt ? "in doubt: " : "", report.note));
     }
+  }
+  for (const auto& [post, count] : waiting_elsewhere()) {
+    sentences.push_back(icd::sentence(count, count == 1 ? " report waits" : " reports wait",
+                                      " for the Command Post at ", post,
+                                      ", which the settings do not name now"));
   }
   if (!run().unreliable.empty()) sentences.push_back(run().unreliable);
   return sentences;

@@ -1,20 +1,20 @@
 #include "dispatch/run_account.hpp"
 
-#include "dispatch/run_watch.hpp"
+#include <utility>
+
 #include "icd/sentence.hpp"
 
 namespace adit::dispatch {
 
-void RunAccount::open(std::optional<Run> run, std::int64_t latest, const std::string& post) {
-  if (run) run_ = *std::move(run);
-  if (run_.number < latest) run_ = {.number = latest, .last = std::nullopt};
-  if (run_.post.empty()) run_.post = post;
-  post_ = post;
-  written_ = run_.heard;
+void RunAccount::open(std::vector<Run> all, std::int64_t latest, const std::string& post) {
+  runs_.open(std::move(all), latest);
+  if (runs_.present().post.empty()) runs_.present().post = post;
+  post_ = post.empty() ? run().post : post;
+  written_ = run().heard;
 }
 
 std::optional<icd::RunStatus> RunAccount::expected(Instant now) const {
-  if (!known_ || odd_ || unscored_ || !run_.unreliable.empty()) return std::nullopt;
+  if (!known_ || odd_ || unscored_ || !run().unreliable.empty()) return std::nullopt;
   icd::RunStatus status = known_->status;
   status.remaining_reports -= known_->since.scored;
   status.score += known_->since.points;
@@ -22,56 +22,126 @@ std::optional<icd::RunStatus> RunAccount::expected(Instant now) const {
   return status;
 }
 
-std::string RunAccount::another(const icd::RunStatus& status, Time time) const {
-  return another_run(run_, status, silence(time));
+std::optional<AnotherRun> RunAccount::another(const icd::RunStatus& status, Time time) const {
+  return another_run(run(), status, silence(time));
 }
 
-std::string RunAccount::another(const icd::ReportReply& reply, Time time) const {
-  return another_run(run_, reply, silence(time));
+std::optional<AnotherRun> RunAccount::another(const icd::ReportReply& reply, Time time) const {
+  return another_run(run(), reply, silence(time));
+}
+
+const Run* RunAccount::of_team(const std::string& team) const {
+  return runs_.latest([&](const Run& run) {
+    return run.post == post_ && run.last && !team.empty() && run.last->current_team == team;
+  });
+}
+
+const Run* RunAccount::of_name(const std::string& id) const {
+  return runs_.latest([&](const Run& other) {
+    const bool other_team =
+        run().last && other.last && are_other_teams(run().last->current_team, other.last->current_team);
+    return other.post == post_ && other.id == id && !other_team;
+  });
+}
+
+const Run* RunAccount::at_post(const std::string& post) const {
+  return runs_.latest([&](const Run& run) { return run.post == post; });
+}
+
+const Run* RunAccount::named_before() const {
+  const Run* named = nullptr;
+  for (const auto& [number, run] : runs_.all()) {
+    if (!run.id.empty() && runs_.may_be_present(number)) named = &run;
+  }
+  return named;
 }
 
 /// In seconds. Over a restart by the box's clock, which may be set in between; else not, so that a clock that
 /// is set makes no new run.
 double RunAccount::silence(Time time) const {
-  return clock_at_ ? std::chrono::duration<double>(time.now - *clock_at_).count() : time.stamp - run_.heard;
+  return clock_at_ ? std::chrono::duration<double>(time.now - *clock_at_).count() : time.stamp - run().heard;
 }
 
-void RunAccount::begin(const std::string& why, const std::optional<icd::RunStatus>& status,
-                       std::span<const Report> steps, Time time) {
-  run_ = {.number = run_.number + 1,
-          .began = time.stamp,
-          .why = why,
-          .last = status,
-          .heard = time.stamp,
-          .post = post_};
+void RunAccount::begin(const std::string& why, std::int64_t may_be,
+                       const std::optional<icd::RunStatus>& status, std::span<const Report> steps,
+                       Time time) {
+  Run next{
+      .began = time.stamp, .why = why, .last = status, .heard = time.stamp, .post = post_, .may_be = may_be};
+  if (status) next.status_clock = Clock{.shows = status->run_clock};
+  runs_.begin(std::move(next));
   clock_at_ = time.now;
+  forget_counts();
+  book_.change(steps, run());
+  written_ = time.stamp;
+}
+
+void RunAccount::take_up(std::int64_t number, std::span<const Report> steps, Time time) {
+  runs_.take_up(number);
+  clock_at_.reset();
+  forget_counts();
+  book_.change(steps, run());
+  written_ = time.stamp;
+}
+
+void RunAccount::merge_into(std::int64_t number, std::span<const Report> steps, Time time) {
+  const Run later = run();
+  runs_.take_up(number);
+  Run& present = runs_.present();
+  if (later.last) {
+    present.last = later.last;
+    present.status_clock = later.status_clock;
+  }
+  if (later.answer_clock) present.answer_clock = later.answer_clock;
+  if (present.unreliable.empty()) present.unreliable = later.unreliable;
+  present.heard = later.heard;
+  forget_counts();
+  book_.change(steps, present);
+  written_ = time.stamp;
+}
+
+void RunAccount::is_another(double stamp) {
+  runs_.present().may_be = 0;
+  write_down(stamp);
+}
+
+void RunAccount::forget_counts() {
   known_.reset();
   odd_ = unscored_ = false;
-  book_.change(steps, run_);
-  written_ = time.stamp;
 }
 
 void RunAccount::heard(const icd::RunStatus& status, Time time) {
   heard_ = clock_at_ = time.now;
-  const bool first = !run_.last;
-  run_.last = status;
-  run_.heard = time.stamp;
-  if (first || time.stamp - written_ >= kWriteEvery || time.stamp < written_) write_down(time.stamp);
+  Run& run = runs_.present();
+  // What another run is told by is on disk at once.
+  const bool is_news = !run.last || run.last->remaining_reports != status.remaining_reports ||
+                       run.last->current_team != status.current_team;
+  const Clock clock = seen_again(run.status_clock, status.run_clock);
+  const bool seen_to_run = clock.runs && !(run.status_clock && run.status_clock->runs);
+  run.last = status;
+  run.status_clock = clock;
+  run.heard = time.stamp;
+  const bool is_late = time.stamp - written_ >= kWriteEvery || time.stamp < written_;
+  if (is_news || seen_to_run || is_late) write_down(time.stamp);
 }
 
 void RunAccount::answered(const icd::ReportReply& reply, Time time) {
   const Effect effect = effect_of(reply);
   heard_ = time.now;
   unscored_ = !effect.scored;
-  if (reply.run_clock > 0 && run_.last) {
-    run_.last->run_clock = reply.run_clock;
-    run_.heard = time.stamp;
+  Run& run = runs_.present();
+  bool is_news = false;
+  if (reply.run_clock > 0) {
+    const Clock clock = seen_again(run.answer_clock, reply.run_clock);
+    is_news = !run.answer_clock || clock.runs != run.answer_clock->runs;
+    run.answer_clock = clock;
+    run.heard = time.stamp;
     clock_at_ = time.now;
   }
-  if (run_.id.empty() && !reply.run.empty()) {
-    run_.id = reply.run;
-    write_down(time.stamp);
+  if (run.id.empty() && !reply.run.empty()) {
+    run.id = reply.run;
+    is_news = true;
   }
+  if (is_news) write_down(time.stamp);
   if (!known_ || !effect.scored) return;
   ++known_->since.scored;
   known_->since.points += effect.points;
@@ -105,13 +175,13 @@ void RunAccount::settle(const icd::RunStatus& status, Time time) {
 }
 
 void RunAccount::distrust(const std::string& why, double stamp) {
-  if (!run_.unreliable.empty()) return;
-  run_.unreliable = why;
+  if (!run().unreliable.empty()) return;
+  runs_.present().unreliable = why;
   write_down(stamp);
 }
 
 void RunAccount::write_down(double stamp) {
-  book_.write(run_);
+  book_.write(run());
   written_ = stamp;
 }
 

@@ -3,11 +3,14 @@
 #include <chrono>
 #include <optional>
 #include <string>
+#include <vector>
 
 #include "dispatch/evidence.hpp"
 #include "dispatch/report.hpp"
 #include "dispatch/report_book.hpp"
 #include "dispatch/report_verdict.hpp"
+#include "dispatch/run_watch.hpp"
+#include "dispatch/runs.hpp"
 
 namespace adit::dispatch {
 
@@ -23,9 +26,10 @@ class RunAccount {
   explicit RunAccount(ReportBook& book) : book_(book) {}
 
   /// `latest`: the highest run that a report belongs to; it may have been written down before its run was.
-  void open(std::optional<Run> run, std::int64_t latest, const std::string& post);
+  void open(std::vector<Run> all, std::int64_t latest, const std::string& post);
 
-  const Run& run() const { return run_; }
+  const Run& run() const { return runs_.present(); }
+  const Runs& runs() const { return runs_; }
   /// The run was heard of less than kFresh ago.
   bool is_fresh(Instant now) const { return heard_ && now - *heard_ <= kFresh; }
   /// The Command Post was asked less than kFresh ago, and answered nothing that helps.
@@ -33,13 +37,29 @@ class RunAccount {
   /// What /api/status would answer; nothing: it is not known for certain, or proves nothing.
   std::optional<icd::RunStatus> expected(Instant now) const;
 
-  /// Why this status is one of another run, or "".
-  std::string another(const icd::RunStatus& status, Time time) const;
-  std::string another(const icd::ReportReply& reply, Time time) const;
-  /// Another run begins, with this status if one was heard; what that does to the reports is written down
-  /// with it.
-  void begin(const std::string& why, const std::optional<icd::RunStatus>& status,
+  /// Why this is one of another run; nothing: it is not.
+  std::optional<AnotherRun> another(const icd::RunStatus& status, Time time) const;
+  std::optional<AnotherRun> another(const icd::ReportReply& reply, Time time) const;
+  /// A run of that status' team here, from before another team's; nothing: none was seen.
+  const Run* of_team(const std::string& team) const;
+  /// A run of that name here, from before one of another name.
+  const Run* of_name(const std::string& id) const;
+  /// The run that was the present one last at `post`.
+  const Run* at_post(const std::string& post) const;
+  /// The first run that has a name, of those that the present one may be.
+  const Run* named_before() const;
+
+  /// Another run begins, at the place that the settings name, with this status if one was heard; what that
+  /// does to the reports is written down with it. `may_be`: the run that it may be still; 0: none.
+  void begin(const std::string& why, std::int64_t may_be, const std::optional<icd::RunStatus>& status,
              std::span<const Report> steps, Time time);
+  /// An earlier one is the present one again.
+  void take_up(std::int64_t number, std::span<const Report> steps, Time time);
+  /// The present one is one that it may be: that one is the present one again, with all that is known of
+  /// both.
+  void merge_into(std::int64_t number, std::span<const Report> steps, Time time);
+  /// The present one is another than the one before, for certain.
+  void is_another(double stamp);
 
   /// A status of this run.
   void heard(const icd::RunStatus& status, Time time);
@@ -62,16 +82,17 @@ class RunAccount {
     Instant heard;
     SentSince since;
   };
+  void forget_counts();
   void write_down(double stamp);
   double silence(Time time) const;
 
   ReportBook& book_;
-  Run run_;
+  Runs runs_;
   std::string post_;
   double written_ = 0;            // Run::heard as it is on disk
   std::optional<Instant> heard_;  // the last word of the run, by a status or an answer
   std::optional<Instant> dumb_at_;
-  std::optional<Instant> clock_at_;  // when run_.last's clock was heard, if in this program's life
+  std::optional<Instant> clock_at_;  // when one of the run's clocks was heard, if in this program's life
   std::optional<Known> known_;
   std::optional<Instant> uncertain_until_;
   bool odd_ = false;       // the last status was not as expected

@@ -5,40 +5,55 @@
 namespace adit::dispatch {
 namespace {
 
-/// Why a run clock that shows `clock` is not the one of `run`, or "".
-std::string clock_of_another(const Run& run, double clock, double silence) {
-  const double before = run.last->run_clock;
-  if (clock < before - kClockJitter) {
-    return icd::sentence("the run clock went back from ", before, " s to ", clock, " s");
+/// What `shows` says where `clock` was seen before.
+std::optional<AnotherRun> clock_of_another(const std::optional<Clock>& clock, double shows, double silence) {
+  if (!clock || !clock->runs) return std::nullopt;
+  const double before = clock->shows;
+  if (shows < before - kClockJitter) {
+    return AnotherRun{icd::sentence("the run clock went back from ", before, " s to ", shows, " s"), false};
   }
   // A clock at 0 belongs to a run that has not started: it may stay there for as long as it likes.
-  if (before > 0 && silence > kShortSilence && clock - before < silence / 2) {
-    return icd::sentence("after ", static_cast<std::int64_t>(silence),
-                         " s without word the run clock had gone on by only ",
-                         static_cast<std::int64_t>(clock - before), " s");
+  if (before > 0 && silence > kShortSilence && shows - before < silence / 2) {
+    return AnotherRun{icd::sentence("after ", static_cast<std::int64_t>(silence),
+                                    " s without word the run clock had gone on by only ",
+                                    static_cast<std::int64_t>(shows - before), " s"),
+                      false};
   }
-  return "";
+  return std::nullopt;
+}
+
+/// Before the start of a run its counts may be set to anything.
+bool has_started(const Run& run) {
+  return run.last->run_clock > 0 || (run.answer_clock && run.answer_clock->shows > 0);
 }
 
 }  // namespace
 
-std::string another_run(const Run& run, const icd::RunStatus& status, double silence) {
-  if (!run.last) return "";
-  const bool named = !status.current_team.empty() && !run.last->current_team.empty();
-  if (named && status.current_team != run.last->current_team) {
-    return icd::sentence("the team is ", icd::in_quotes(status.current_team), ", it was ",
-                         icd::in_quotes(run.last->current_team));
-  }
-  return clock_of_another(run, status.run_clock, silence);
+bool are_other_teams(const std::string& one, const std::string& other) {
+  return !one.empty() && !other.empty() && one != other;
 }
 
-std::string another_run(const Run& run, const icd::ReportReply& reply, double silence) {
-  if (!run.id.empty() && !reply.run.empty() && run.id != reply.run) {
-    return icd::sentence("the Command Post calls it run ", icd::in_quotes(reply.run), ", it was ",
-                         icd::in_quotes(run.id));
+std::optional<AnotherRun> another_run(const Run& run, const icd::RunStatus& status, double silence) {
+  if (!run.last) return std::nullopt;
+  if (are_other_teams(status.current_team, run.last->current_team)) {
+    return AnotherRun{icd::sentence("the team is ", icd::in_quotes(status.current_team), ", it was ",
+                                    icd::in_quotes(run.last->current_team))};
   }
-  const bool has_clock = reply.run_clock > 0;
-  return has_clock && run.last ? clock_of_another(run, reply.run_clock, silence) : "";
+  if (has_started(run) && status.remaining_reports > run.last->remaining_reports) {
+    return AnotherRun{icd::sentence("the reports left went up from ", run.last->remaining_reports, " to ",
+                                    status.remaining_reports)};
+  }
+  return clock_of_another(run.status_clock, status.run_clock, silence);
+}
+
+std::optional<AnotherRun> another_run(const Run& run, const icd::ReportReply& reply, double silence) {
+  if (!run.id.empty() && !reply.run.empty()) {
+    if (run.id == reply.run) return std::nullopt;
+    return AnotherRun{icd::sentence("the Command Post calls it run ", icd::in_quotes(reply.run), ", it was ",
+                                    icd::in_quotes(run.id))};
+  }
+  if (reply.run_clock <= 0) return std::nullopt;  // it has none
+  return clock_of_another(run.answer_clock, reply.run_clock, silence);
 }
 
 }  // namespace adit::dispatch

@@ -1,8 +1,10 @@
 #pragma once
 
+#include <optional>
 #include <string>
 
-#include "dispatch/report.hpp"
+#include "dispatch/run.hpp"
+#include "icd/run_status.hpp"
 
 namespace adit::dispatch {
 
@@ -11,11 +13,24 @@ inline constexpr double kClockJitter = 1.0;  // seconds
 /// Within a shorter silence than this no run ends and another overtakes its clock unnoticed.
 inline constexpr double kShortSilence = 30.0;  // seconds
 
-/// Why a status heard `silence` seconds after the last word of `run` is one of another run, or "": another
-/// team, a clock that ran backward, or, after a long silence, one that does not fit the time that went by.
-std::string another_run(const Run& run, const icd::RunStatus& status, double silence);
+/// Another run than the one that was known.
+struct AnotherRun {
+  std::string why;
+  /// Its name, its team or its count of reports says so; else only its clock, so that it may be the same yet.
+  bool certain = true;
+};
 
-/// The same of an answer to a report, by its `run` and its run_clock (ICD 5.2).
-std::string another_run(const Run& run, const icd::ReportReply& reply, double silence);
+/// What a status, heard `silence` seconds after the last word of `run`, shows: another team, more reports
+/// left than before, or a clock that was seen to run in this run's statuses and now ran backward, or after a
+/// long silence does not fit the time that went by. A clock that stands, or another URI's, shows nothing.
+/// Nothing: it may be one of `run`.
+std::optional<AnotherRun> another_run(const Run& run, const icd::RunStatus& status, double silence);
+
+/// The same of an answer to a report, by its `run` (ICD 5.2); where that is not known, by the clock of the
+/// answers.
+std::optional<AnotherRun> another_run(const Run& run, const icd::ReportReply& reply, double silence);
+
+/// Both are teams, and different ones.
+bool are_other_teams(const std::string& one, const std::string& other);
 
 }  // namespace adit::dispatch

@@ -28,11 +28,4 @@ Turn in_order(std::span<const Candidate> candidates, Instant now) {
   return {};
 }
 
-MappingVerdict mapping_verdict(int status) {
-  if (status >= 200 && status < 300) return MappingVerdict::Taken;
-  if (status == 429) return MappingVerdict::Throttled;
-  if (status == 400 || status == 413 || status == 422) return MappingVerdict::Refused;
-  return MappingVerdict::Failing;
-}
-
 }  // namespace adit::dispatch

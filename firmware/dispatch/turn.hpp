@@ -28,20 +28,4 @@ Turn oldest_first(std::span<const Candidate> candidates, Instant now);
 /// (a status is never asked for ahead of a waiting report).
 Turn in_order(std::span<const Candidate> candidates, Instant now);
 
-/// What became of a message to the mapping endpoint, by the Command Post's status.
-enum class MappingVerdict {
-  Taken,      // 2xx
-  Throttled,  // 429: slow down and send it again
-  Refused,    // 400, 413, 422: it will never be taken
-  Failing,    // anything else (401 and 404 too: settings or the Command Post may be mended): send it again,
-              // later
-};
-MappingVerdict mapping_verdict(int status);
-
-/// What a Command Post answers whose handler fails at a message; other 5xx come from something in between,
-/// and pass.
-inline constexpr int kHandlerFailed = 500;
-/// How often a message is sent that is answered kHandlerFailed.
-inline constexpr int kMostTries = 5;
-
 }  // namespace adit::dispatch

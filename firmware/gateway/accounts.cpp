@@ -63,10 +63,11 @@ icd::Checked<access::Accounts> with(access::Accounts accounts, Role role,
 
 }  // namespace
 
-Accounts::Accounts(const loop::Loop& loop, loop::Workers& workers, SessionKeeper& sessions,
-                   std::string folder, std::optional<icd::BearerToken> label_code)
+Accounts::Accounts(const loop::Loop& loop, loop::Workers& workers, loop::Writer& writer,
+                   SessionKeeper& sessions, std::string folder, std::optional<icd::BearerToken> label_code)
     : loop_(loop),
       workers_(workers),
+      writer_(writer),
       sessions_(sessions),
       folder_(std::move(folder)),
       accounts_(read(file())) {
@@ -115,7 +116,8 @@ void Accounts::check(std::string password, std::string address,
                       host::log(Level::Warning, "a wrong password was shown", {{"sender", address}});
                     }
                     done(*role);
-                  });
+                  },
+                  [] {});  // who waits for it is told by being dropped
 }
 
 void Accounts::set(Role role, std::optional<std::string> password,
@@ -125,10 +127,12 @@ void Accounts::set(Role role, std::optional<std::string> password,
   }
   access::Salt salt{};
   fill_random(salt);
-  auto changed = std::make_shared<icd::Checked<access::Accounts>>();
-  const auto change = [changed, role, password = std::move(password), salt, accounts = accounts_,
-                       file = file(), code_file = code_file()] {
+  auto changed = std::make_shared<icd::Checked<access::Accounts>>(
+      refuse(icd::Status::ServiceUnavailable, "the password could not be set: try again"));
+  const auto change = [changed, role, password = std::move(password), salt, accounts = accounts_] {
     *changed = with(accounts, role, password, salt);
+  };
+  const auto keep = [changed, file = file(), code_file = code_file()] {
     if (!*changed) return;
     if (const auto written = host::write_file(file, access::write_accounts(**changed), host::kOursAlone);
         !written) {
@@ -137,18 +141,22 @@ void Accounts::set(Role role, std::optional<std::string> password,
       unlink(code_file.c_str());  // if there was one, it has done its service
     }
   };
-  workers_.submit(change, [this, changed, role, done = std::move(done)] {
-    setting_ = false;
-    if (!*changed) {
-      host::log(Level::Warning, "a password was not set", {{"why", changed->error().sentence}});
-      return done(std::unexpected(changed->error()));
-    }
-    accounts_ = std::move(**changed);
-    if (role == Role::Operator) set_up_.close();
-    host::log(Level::Notice, accounts_.of(role) ? "a password was set" : "a password was taken away",
-              {{"role", std::string(name_of(role))}});
-    done({});
-  });
+  const auto ended = [this, changed, role, done = std::move(done)] { was_set(role, *changed, done); };
+  workers_.submit(change, [this, keep, ended] { writer_.submit(keep, ended); });
+}
+
+void Accounts::was_set(Role role, const icd::Checked<access::Accounts>& changed,
+                       const std::function<void(icd::Checked<void>)>& done) {
+  setting_ = false;
+  if (!changed) {
+    host::log(Level::Warning, "a password was not set", {{"why", changed.error().sentence}});
+    return done(std::unexpected(changed.error()));
+  }
+  accounts_ = *changed;
+  if (role == Role::Operator) set_up_.close();
+  host::log(Level::Notice, accounts_.of(role) ? "a password was set" : "a password was taken away",
+            {{"role", std::string(name_of(role))}});
+  done({});
 }
 
 void Accounts::open_set_up() {

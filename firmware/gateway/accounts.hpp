@@ -21,10 +21,10 @@ class Accounts final : public page::Keys {
   static constexpr const char* kFile = "access.json";
   static constexpr const char* kCodeFile = "first-start.code";
 
-  /// Logs the code of a first start, unless it is on the label. `loop`, `workers` and `sessions` outlive
-  /// this.
-  Accounts(const loop::Loop& loop, loop::Workers& workers, SessionKeeper& sessions, std::string folder,
-           std::optional<icd::BearerToken> label_code);
+  /// Logs the code of a first start, unless it is on the label. `loop`, `workers` (which hash, and are asked
+  /// for nothing else), `writer` and `sessions` outlive this.
+  Accounts(const loop::Loop& loop, loop::Workers& workers, loop::Writer& writer, SessionKeeper& sessions,
+           std::string folder, std::optional<icd::BearerToken> label_code);
 
   bool first_start() const override { return !accounts_.operator_; }
   bool is_code(std::string_view presented) const override;
@@ -44,9 +44,12 @@ class Accounts final : public page::Keys {
   std::string file() const { return folder_ + '/' + kFile; }
   std::string code_file() const { return folder_ + '/' + kCodeFile; }
   icd::BearerToken kept_code();
+  void was_set(access::Role role, const icd::Checked<access::Accounts>& changed,
+               const std::function<void(icd::Checked<void>)>& done);
 
   const loop::Loop& loop_;
   loop::Workers& workers_;
+  loop::Writer& writer_;
   SessionKeeper& sessions_;
   std::string folder_;
   access::Accounts accounts_;

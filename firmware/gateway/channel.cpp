@@ -1,8 +1,30 @@
 #include "gateway/channel.hpp"
 
+#include "dispatch/mapping_verdict.hpp"
 #include "dispatch/said.hpp"
+#include "icd/sentence.hpp"
 
 namespace adit::gateway {
+
+namespace {
+
+/// Bytes of a body. A status is four numbers and a name; a report's answer a dozen of them; a mapping answer
+/// null, or whatever a wrong address says.
+std::size_t longest_answer_to(icd::Uri uri) {
+  return uri == icd::Uri::Status ? 16u << 10 : uplink::Request::kLongestAnswer;
+}
+
+/// No Command Post says so much; what it says is not looked at.
+bool comes_from_another(const uplink::Outcome& outcome) {
+  if (const auto* answered = std::get_if<uplink::Answered>(&outcome)) {
+    return !dispatch::may_be_the_command_post(answered->status, dispatch::body_of(answered->body));
+  }
+  const auto* doubt = std::get_if<uplink::InDoubt>(&outcome);
+  return doubt != nullptr && doubt->too_long_status != 0 &&
+         !dispatch::may_be_the_command_post(doubt->too_long_status, dispatch::Body::Other);
+}
+
+}  // namespace
 
 Channel::Channel(loop::Loop& loop, const char* name, uplink::Endpoint endpoint,
                  std::optional<icd::BearerToken> token, std::chrono::milliseconds answer_within)
@@ -18,7 +40,8 @@ void Channel::send(icd::Uri uri, std::string_view content_type, icd::ChunkedByte
                      .target = std::string(icd::path_of(uri)),
                      .content_type = std::string(content_type),
                      .body = std::move(body),
-                     .answer_within = answer_within_},
+                     .answer_within = answer_within_,
+                     .longest_answer = longest_answer_to(uri)},
                     [this, done = std::move(done)](uplink::Outcome outcome) {
                       note(outcome);
                       done(std::move(outcome));
@@ -27,15 +50,17 @@ void Channel::send(icd::Uri uri, std::string_view content_type, icd::ChunkedByte
 
 void Channel::note(const uplink::Outcome& outcome) {
   heard_ = loop_.now();
-  if (const auto* answered = std::get_if<uplink::Answered>(&outcome)) {
+  last_status_ = 0;
+  foreign_now_ = comes_from_another(outcome);
+  if (foreign_now_) ++foreign_;
+  const auto* answered = std::get_if<uplink::Answered>(&outcome);
+  if (answered != nullptr) {
     last_status_ = answered->status;
     if (last_status_ == 429) ++throttled_;
     answer_ms_ = std::chrono::duration<double, std::milli>(heard_ - sent_at_).count();
-    trouble_ = answered->status < 400 ? "" : dispatch::said(answered->status, answered->body);
-  } else {
-    last_status_ = 0;
-    trouble_ = gateway::sentence_of(outcome);
   }
+  const bool is_well = answered != nullptr && !foreign_now_ && last_status_ < 400;
+  trouble_ = is_well ? "" : gateway::sentence_of(outcome);
 }
 
 std::string Channel::trouble() const {
@@ -61,7 +86,12 @@ std::string sentence_of(const uplink::Outcome& outcome) {
   if (const auto* never = std::get_if<uplink::NeverSent>(&outcome)) return never->why;
   if (const auto* doubt = std::get_if<uplink::InDoubt>(&outcome)) return doubt->why;
   const auto& answered = std::get<uplink::Answered>(outcome);
-  return dispatch::said(answered.status, answered.body);
+  if (dispatch::may_be_the_command_post(answered.status, dispatch::body_of(answered.body)))
+    return dispatch::said(answered.status, answered.body);
+  return icd::sentence("what answered ", answered.status,
+                       answered.status < 400 && answered.status >= 300 ? " (look elsewhere)"
+                                                                       : " with something other than JSON",
+                       " is no Command Post");
 }
 
 }  // namespace adit::gateway

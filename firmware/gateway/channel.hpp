@@ -36,6 +36,9 @@ class Channel {
   std::string trouble() const;
   int last_status() const { return last_status_; }
   std::optional<double> answer_ms() const { return answer_ms_; }
+  /// Whether the last answer was one that no Command Post gives, and how many were.
+  bool is_foreign() const { return foreign_now_; }
+  std::uint64_t foreign() const { return foreign_; }
   /// How many answers were 429.
   std::uint64_t throttled() const { return throttled_; }
   /// When last_status() was heard.
@@ -51,7 +54,8 @@ class Channel {
   std::optional<uplink::Connection> connection_;
   std::chrono::milliseconds answer_within_;
   loop::Instant sent_at_{}, heard_{};
-  std::uint64_t finished_bytes_ = 0, throttled_ = 0;
+  std::uint64_t finished_bytes_ = 0, throttled_ = 0, foreign_ = 0;
+  bool foreign_now_ = false;
   int last_status_ = 0;
   std::optional<double> answer_ms_;
   std::string trouble_;

@@ -16,10 +16,10 @@ class FactoryReset {
 
   /// An error: nothing is forgotten.
   std::expected<void, std::string> begin() const;
-  /// Forgets settings, tokens, passwords, the code, who is logged in and, by adit-network, the box's
-  /// addresses, where that was begun. Called while nothing else uses them. An error says what is left, or
-  /// why it is not known whether it was begun: then nothing is forgotten.
-  std::expected<void, std::string> finish() const;
+  /// Forgets settings, tokens, passwords, the code, who is logged in, what waits or is set aside and, by
+  /// adit-network, the box's addresses, where that was begun: then true. Called while nothing else uses them.
+  /// An error says what is left, or why it is not known whether it was begun: then nothing is forgotten.
+  std::expected<bool, std::string> finish() const;
 
  private:
   std::string begun() const { return state_ + "/reset"; }

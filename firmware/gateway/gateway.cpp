@@ -1,7 +1,11 @@
 #include "gateway/gateway.hpp"
 
+#include <set>
+
+#include "dispatch/another_post.hpp"
 #include "gateway/report_rows.hpp"
 #include "host/log.hpp"
+#include "loop/guard.hpp"
 #include "settings/written.hpp"
 
 namespace adit::gateway {
@@ -11,6 +15,15 @@ constexpr std::chrono::milliseconds kDrainStep{10};
 constexpr std::chrono::milliseconds kFlush{50};  // in which the answers just given to the team leave
 constexpr std::size_t kMeterSeconds = 5;
 constexpr std::chrono::minutes kKeepSessionsEvery{1};
+/// Seconds by which the system's clock was ahead of what it should have been: somebody has set it.
+constexpr double kClockWasSet = 1;
+
+/// What is in the runtime folder beside maps: of the journal, which is made smaller beside itself, four times
+/// what waits, what is set aside, and what others keep there.
+std::uint64_t beside_maps(const settings::Settings& settings) {
+  constexpr std::uint64_t kOthers = 8u << 20;
+  return 4 * std::uint64_t{settings.queues.marker_bytes} + lanes::SetAside::kMostBytes + kOthers;
+}
 
 }  // namespace
 
@@ -19,28 +32,41 @@ Gateway::Gateway(loop::Loop& loop, Parts parts)
       parts_(std::move(parts)),
       settings_(settings::in_use(parts_.loaded.settings)),
       random_(std::random_device{}()),
+      spool_(parts_.runtime_folder + "/waiting", beside_maps(settings_)),
+      stamp_floor_(parts_.state_folder),
+      writer_(loop),
+      disk_writer_(loop),
       workers_(loop, 0),
-      spool_(parts_.runtime_folder + "/waiting"),
+      log_ins_(loop, 1),
+      journal_(loop, parts_.runtime_folder + "/journal"),
+      aside_(loop, writer_, parts_.runtime_folder + "/aside"),
       record_([this] { changed(); }),
       scoring_(loop, parts_.ledger, settings_, token_for("scoring", settings_, parts_.loaded.secrets),
-               record_, random_),
+               record_, random_, journal_),
       picture_(
           loop, workers_, [this] { return maps_.packing(); }, [this] { changed(); },
           parts_.legacy ? std::move(parts_.legacy->picture) : picture::Mosaic()),
-      maps_(loop, workers_, spool_, settings_, token_for("mapping", settings_, parts_.loaded.secrets),
-            record_, random_, [this](icd::MapUpdate map) { picture_.forwarded(std::move(map)); }),
+      maps_(loop, workers_, writer_, spool_, settings_,
+            token_for("mapping", settings_, parts_.loaded.secrets), record_, aside_, random_, journal_,
+            [this](icd::MapUpdate map) { picture_.forwarded(std::move(map)); }),
       as_forwarded_(parts_.legacy ? std::move(parts_.legacy->as_forwarded) : AsForwarded()),
-      news_(loop, settings_, token_for("mapping", settings_, parts_.loaded.secrets), record_, random_,
-            as_forwarded_),
+      news_(loop, settings_, token_for("mapping", settings_, parts_.loaded.secrets), record_, aside_, random_,
+            journal_, as_forwarded_),
       lights_(loop, std::move(parts_.lines)),
       links_(
           loop, settings_, host::carrier, [this] { changed(); }, [this] { link_is_back(); }),
       button_(loop, std::move(parts_.button), lights_, [this](panel::Press press) { pressed(press); }),
       roster_(settings_.robots),
       sessions_(parts_.runtime_folder + '/' + SessionKeeper::kFile, loop.now()),
-      accounts_(loop, workers_, sessions_, parts_.state_folder, parts_.loaded.secrets.label_code),
+      accounts_(loop, log_ins_, disk_writer_, sessions_, parts_.state_folder,
+                parts_.loaded.secrets.label_code),
       network_requests_(parts_.state_folder, parts_.network_folder),
-      setup_(parts_.store, parts_.reset, parts_.loaded, [this] { make_way(); }),
+      setup_(
+          parts_.store, parts_.reset, parts_.loaded,
+          [this](const std::string& post) {
+            return dispatch::meaning_of_another_post(scoring_.reports(), post);
+          },
+          [this] { make_way(); }),
       box_(loop, workers_, parts_.board, settings::file_of(parts_.loaded.settings),
            [this](page::Usage& usage) { add_to(usage); }),
       network_(loop, settings_, network_requests_),
@@ -48,18 +74,21 @@ Gateway::Gateway(loop::Loop& loop, Parts parts)
                  {token_for("scoring", settings_, parts_.loaded.secrets),
                   token_for("mapping", settings_, parts_.loaded.secrets)},
                  network_requests_, network_, [this] { changed(); }),
-      updates_(loop, workers_, UpdateRequests(parts_.state_folder, parts_.update_folder),
+      updates_(loop, disk_writer_, UpdateRequests(parts_.state_folder, parts_.update_folder),
                [this] { return report_under_way(); }),
       page_(loop, *this, *this, accounts_, tokens()),
       routes_(icd_options(), *this, workers_, page_),
       second_(loop.timer([this] { every_second(); })),
       drained_(loop.timer([this] { drain(); })),
       pictured_run_(parts_.legacy ? parts_.legacy->pictured_run : 0) {
+  if (!parts_.ledger.refusal().empty()) {
+    ledger_return_.emplace(loop, disk_writer_, parts_.state_folder, parts_.ledger_rest,
+                           [this] { ledger_is_back(); });
+  }
   page_.serve(setup_);
   page_.serve(box_);
   page_.serve(network_, self_test_);
   page_.serve(updates_);
-  if (parts_.legacy) hold_back();
 }
 
 Gateway::~Gateway() = default;
@@ -80,6 +109,11 @@ std::vector<icd::BearerToken> Gateway::tokens() const {
   return tokens;
 }
 
+void Gateway::ledger_is_back() {
+  host::log(host::Level::Notice, "the state folder can be written to again: beginning anew with its ledger");
+  make_way();
+}
+
 /// When the gateway before sent last is not known, and the Command Post sees too much of neither.
 void Gateway::hold_back() {
   scoring_.hold_back();
@@ -95,9 +129,9 @@ void Gateway::link_is_back() {
 }
 
 std::expected<void, std::string> Gateway::start() {
+  carry_on();
   if (auto started = scoring_.start(); !started) return started;
   news_.start();
-  restore();
   if (auto listening = listen(); !listening) return listening;
   every_second();
   return {};
@@ -125,28 +159,54 @@ std::expected<void, std::string> Gateway::listen() {
   return {};
 }
 
-/// What an earlier service left, stamped anew: what it sent last is not known, and stamps must not run
-/// backward.
-void Gateway::restore() {
-  Spool::Kept kept = spool_.read(settings_.rules);
+/// Takes up what the life before left, in this process or another: rates and stamps go on as if nothing had
+/// been.
+void Gateway::carry_on() {
+  journal::Carried carried = journal_.read();
+  const std::string boot = host::boot();
+  const bool is_first = !carried.clock();
+  const double floor = stamp_floor_.read();
+  carried.machine_is(boot);
+  const auto& clock = carried.clock();
+  if (clock) {
+    const double due = clock->stamp + std::chrono::duration<double>(loop_.now() - clock->at).count();
+    const double set_ahead = loop_.stamp_now() - due;
+    stamps_ = carried.senders();
+    if (set_ahead < kClockWasSet) {
+      loop_.set_stamp(due);
+    } else {
+      stamps_.move(set_ahead);
+    }
+  } else if (floor > loop_.stamp_now()) {
+    loop_.set_stamp(floor);  // the machine has no clock that went on
+  }
+  journal_.begin({.boot = boot, .at = loop_.now(), .stamp = loop_.stamp_now()});
+  for (const auto& [sender, its] : stamps_.clocks()) journal_.sender(sender, its);  // they may have moved
+  if (is_first && parts_.legacy) hold_back();
+  scoring_.carry_on(carried);
+  maps_.carry_on(carried);
+  news_.carry_on(carried);
+  restore(is_first);
+}
+
+/// What is kept in files of its own. What a release before the journal left is stamped anew, and waits: what
+/// that sent last, and when, is not known.
+void Gateway::restore(bool is_first) {
+  aside_.restore();
+  Spool::Kept kept = spool_.read();
   const double now = loop_.stamp_now();
+  const bool is_left = !kept.maps.empty() || !kept.state.poses.empty() || !kept.markers.markers.empty();
+  if (is_first && is_left) hold_back();
   for (auto& [number, map] : kept.maps) {
-    map.header().stamp = now;
+    if (is_first) map.header().stamp = now;
     maps_.restore(number, std::move(map));
   }
   kept.state.header.stamp = now;
   for (icd::Marker& marker : kept.markers.markers) marker.header.stamp = now;
-  if (!kept.state.poses.empty()) (void)news_.take(kept.state, 0);  // the lanes are empty: there is room
-  if (!kept.markers.markers.empty()) (void)news_.take(kept.markers, 0);
-}
-
-/// On a worker, and one at a time: there may be many markers.
-void Gateway::keep_news() {
-  if (keeping_news_ || !news_.changed_since_asked()) return;
-  keeping_news_ = true;
-  workers_.submit([&spool = spool_, state = news_.unsent_state(),
-                   markers = news_.unsent_markers()] { spool.keep(state, markers); },
-                  [this] { keeping_news_ = false; });
+  // The lanes are empty: there is room. What cannot be kept in the journal stays in its file; the other is
+  // not taken twice, for what came since is newer.
+  if (kept.state.poses.empty() || news_.take(kept.state, 0)) spool_.forget_state();
+  if (kept.markers.markers.empty() || news_.take(kept.markers, 0)) spool_.forget_markers();
 }
 
 void Gateway::stop() {
@@ -156,7 +216,9 @@ void Gateway::stop() {
   end();
 }
 
+/// A stop that has begun stays one.
 void Gateway::make_way() {
+  if (stop_by_) return;
   makes_way_ = true;
   end();
 }
@@ -164,29 +226,54 @@ void Gateway::make_way() {
 void Gateway::end() {
   if (stop_by_) return;
   stop_by_ = loop_.now() + kDrain;
+  drained_.call_at(loop_.now() + kDrainStep);  // first: whatever fails below, the end comes
   for (const auto& server : servers_) server->stop_listening();
+  routes_.stop();
   drain();
 }
 
 void Gateway::drain() {
-  if (dismissed_) return finish();
+  const bool is_late = loop_.now() >= *stop_by_ + 2 * kKeepWithin;  // something fails again and again
+  if (dismissed_ || is_late) return finish();
+  drained_.call_at(loop_.now() + kDrainStep);
   const bool scoring = scoring_.stop(), maps = maps_.stop(), news = news_.stop();
-  dismissed_ = (scoring && maps && news && !keeping_news_) || loop_.now() >= *stop_by_;
-  if (dismissed_) scoring_.dismiss();
-  drained_.call_at(loop_.now() + (dismissed_ ? kFlush : kDrainStep));
+  const bool kept = (maps_.all_kept() && aside_.all_kept()) || loop_.now() >= *stop_by_ + kKeepWithin;
+  dismissed_ = kept && ((scoring && maps && news) || loop_.now() >= *stop_by_);
+  if (!dismissed_) return;
+  drained_.call_at(loop_.now() + kFlush);
+  scoring_.dismiss();
 }
 
 void Gateway::finish() {
-  if (!sessions_.sessions().in_order().empty()) sessions_.keep();
-  if (!keeping_news_) spool_.keep(news_.unsent_state(), news_.unsent_markers());
   loop_.stop();
+  if (!sessions_.sessions().in_order().empty()) sessions_.keep();
 }
 
-icd::Checked<void> Gateway::take(icd::MapUpdate update, const intake::Sender& sender) {
+/// On the gateway's clock. The journal keeps how the sender's goes, so that a life to come goes on with it.
+icd::Stamp Gateway::stamped_here(const std::string& clock, std::optional<icd::Stamp> stamp,
+                                 std::uint64_t connection) {
+  const icd::Stamp shifted = stamps_.shift(clock, stamp, loop_.stamp_now(), connection);
+  keep_clock(clock);
+  return shifted;
+}
+
+void Gateway::keep_clock(const std::string& clock) {
+  if (const lanes::SenderClock* its = stamps_.clock_of(clock)) journal_.sender(clock, *its);
+}
+
+std::shared_ptr<intake::MapArrival> Gateway::map_arrives() {
+  return maps_.arrives([this](icd::MapUpdate update, const intake::Sender& sender,
+                              std::shared_ptr<MapFile> file, std::function<void(icd::Checked<void>)> done) {
+    take(std::move(update), sender, std::move(file), std::move(done));
+  });
+}
+
+void Gateway::take(icd::MapUpdate update, const intake::Sender& sender, std::shared_ptr<MapFile> file,
+                   std::function<void(icd::Checked<void>)> done) {
   const std::string clock = sender.address + "/map/" + (update.name ? update.name->text() : "");
   if (update.name) note_robot(update.name->text());
-  update.header().stamp = stamps_.shift(clock, update.header().stamp, loop_.stamp_now());
-  return maps_.take(std::move(update), sender.bytes);
+  update.header().stamp = stamped_here(clock, update.header().stamp, sender.connection);
+  maps_.take(std::move(update), sender.bytes, std::move(file), std::move(done));
 }
 
 icd::Checked<void> Gateway::take(const icd::StateUpdate& update, const intake::Sender& sender) {
@@ -194,16 +281,19 @@ icd::Checked<void> Gateway::take(const icd::StateUpdate& update, const intake::S
   for (const icd::NamedPose& pose : update.poses) note_robot(pose.name.text());
   icd::StateUpdate shifted = update;
   shifted.header.stamp =
-      stamps_.shift(sender.address + "/state/" + robot, update.header.stamp, loop_.stamp_now());
+      stamped_here(sender.address + "/state/" + robot, update.header.stamp, sender.connection);
   return news_.take(shifted, sender.bytes);
 }
 
+/// The markers of one message have stamps of their own, in no order.
 icd::Checked<void> Gateway::take(const icd::MarkersUpdate& update, const intake::Sender& sender) {
   icd::MarkersUpdate shifted = update;
+  std::set<std::string> clocks;
   for (icd::Marker& marker : shifted.markers) {
-    marker.header.stamp =
-        stamps_.shift(sender.address + "/markers/" + marker.ns, marker.header.stamp, loop_.stamp_now());
+    const auto clock = clocks.insert(sender.address + "/markers/" + marker.ns).first;
+    marker.header.stamp = stamps_.shift(*clock, marker.header.stamp, loop_.stamp_now());
   }
+  for (const std::string& clock : clocks) keep_clock(clock);
   return news_.take(shifted, sender.bytes);
 }
 
@@ -248,6 +338,19 @@ std::expected<std::int64_t, std::string> Gateway::report(const icd::ArtifactRepo
   return scoring_.report(report, resubmit);
 }
 
+std::expected<void, std::string> Gateway::aside(std::uint64_t number, page::AsideDeed deed) {
+  if (stop_by_) return std::unexpected("the gateway is stopping: nothing is sent any more");
+  if (deed == page::AsideDeed::Discard) return aside_.discard(number);
+  auto message = aside_.to_be_sent(number);
+  if (!message) return std::unexpected(message.error());
+  if (auto* const map = std::get_if<icd::MapUpdate>(&*message)) {
+    maps_.send_again(std::move(*map), [this, number](bool kept) { aside_.sent_again(number, kept); });
+  } else {
+    aside_.sent_again(number, news_.send_again(*message));
+  }
+  return {};
+}
+
 std::int64_t Gateway::begin_run() {
   return scoring_.begin_run();
 }
@@ -267,19 +370,20 @@ void Gateway::picture_the_run() {
 }
 
 void Gateway::every_second() {
+  second_.call_at(loop_.now() +
+                  std::chrono::seconds(1));  // first: whatever fails below, the next second comes
   bytes_sent_.push_back(sent_bytes());
   if (bytes_sent_.size() > kMeterSeconds + 1) bytes_sent_.pop_front();
   scoring_.tick();
   show_lights();
   network_.lead_to_endpoints();
-  keep_news();
   keep_sessions();
+  keep_stamp_floor();
   look_at_sockets();
   if (std::string line = status_line(); line != notified_) {
     host::notify_status(line);
     notified_ = std::move(line);
   }
-  second_.call_at(loop_.now() + std::chrono::seconds(1));
 }
 
 /// The team's interface came back as another one.
@@ -288,6 +392,12 @@ void Gateway::look_at_sockets() {
   if (reach == ListenSockets::Reach::Well || stop_by_) return;
   host::log(host::Level::Warning, "the team's interface is a new one: listening anew");
   reach == ListenSockets::Reach::Anew ? make_way() : stop();
+}
+
+/// By the disk's own writer: it may wait long.
+void Gateway::keep_stamp_floor() {
+  const auto floor = stamp_floor_.due(loop_.stamp_now());
+  if (floor) disk_writer_.submit([kept = stamp_floor_, floor = *floor] { kept.write(floor); }, [] {});
 }
 
 /// When somebody was seen last need not be known to the second.
@@ -304,6 +414,8 @@ std::uint64_t Gateway::sent_bytes() const {
 void Gateway::add_to(page::Usage& usage) const {
   for (const auto& server : servers_) usage.connections += server->connections();
   usage.sent_bytes = sent_bytes();
+  usage.exceptions = loop::caught_so_far();
+  usage.aside_dropped = aside_.dropped();
   usage.refused = record_.refused_counts();
 }
 

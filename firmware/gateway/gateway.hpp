@@ -9,7 +9,9 @@
 
 #include "gateway/accounts.hpp"
 #include "gateway/as_forwarded.hpp"
+#include "gateway/aside.hpp"
 #include "gateway/button_watch.hpp"
+#include "gateway/ledger_return.hpp"
 #include "gateway/lights.hpp"
 #include "gateway/links.hpp"
 #include "gateway/listen_sockets.hpp"
@@ -25,11 +27,13 @@
 #include "gateway/session_keeper.hpp"
 #include "gateway/setup.hpp"
 #include "gateway/spool.hpp"
+#include "gateway/stamp_floor.hpp"
 #include "gateway/store.hpp"
 #include "gateway/this_box.hpp"
 #include "gateway/updates.hpp"
 #include "host/service.hpp"
 #include "intake/icd_routes.hpp"
+#include "journal/journal.hpp"
 #include "lanes/stamps.hpp"
 #include "ledger/ledger.hpp"
 #include "loop/loop.hpp"
@@ -56,6 +60,7 @@ struct Parts {
   Store::Loaded loaded;
   std::string trouble;  // for the operator: why the settings are not those that were wanted; or ""
   ledger::Ledger ledger;
+  std::chrono::seconds ledger_rest;  // before it is looked whether one that takes no write does again
   settings::Board board;
   std::string board_trouble;         // why what the board's file says does not count; or ""
   std::vector<std::string> notices;  // of those who started the box
@@ -72,6 +77,7 @@ struct Parts {
 class Gateway final : public intake::Desk, public page::Source, public page::Operator {
  public:
   static constexpr std::chrono::milliseconds kDrain{800};  // how long stop() waits for answers under way
+  static constexpr std::chrono::milliseconds kKeepWithin{3000};  // and for what is being kept
 
   Gateway(loop::Loop& loop, Parts parts);
   ~Gateway() override;
@@ -84,12 +90,12 @@ class Gateway final : public intake::Desk, public page::Source, public page::Ope
   bool makes_way() const { return makes_way_; }
   /// Once it has stopped, or could not start.
   Legacy hand_over() { return {picture_.hand_over(), pictured_run_, std::move(as_forwarded_)}; }
-  /// To be asked for signs of life.
-  loop::Workers& workers() { return workers_; }
+  /// All its threads, to be asked for signs of life.
+  std::vector<loop::Workers*> threads() { return {&workers_, &log_ins_, &writer_, &disk_writer_}; }
   /// What systemd shows: one line.
   std::string status_line() const;
 
-  icd::Checked<void> take(icd::MapUpdate update, const intake::Sender& sender) override;
+  std::shared_ptr<intake::MapArrival> map_arrives() override;
   icd::Checked<void> take(const icd::StateUpdate& update, const intake::Sender& sender) override;
   icd::Checked<void> take(const icd::MarkersUpdate& update, const intake::Sender& sender) override;
   void take(const icd::ArtifactReport& report, const intake::Sender& sender,
@@ -102,6 +108,7 @@ class Gateway final : public intake::Desk, public page::Source, public page::Ope
   std::optional<page::ReportDetail> report(std::int64_t number) const override;
   std::expected<std::int64_t, std::string> judge(std::int64_t number, page::Deed deed) override;
   std::expected<std::int64_t, std::string> report(const icd::ArtifactReport& report, bool resubmit) override;
+  std::expected<void, std::string> aside(std::uint64_t number, page::AsideDeed deed) override;
   std::int64_t begin_run() override;
   page::Time identify(double seconds) override;
   const picture::Mosaic& map() const override { return picture_.mosaic(); }
@@ -111,19 +118,26 @@ class Gateway final : public intake::Desk, public page::Source, public page::Ope
   }
 
  private:
+  void take(icd::MapUpdate update, const intake::Sender& sender, std::shared_ptr<MapFile> file,
+            std::function<void(icd::Checked<void>)> done);
   void hold_back();
   void link_is_back();
   void make_way();
   void end();
-  void restore();
+  void carry_on();
+  void restore(bool is_first);
+  icd::Stamp stamped_here(const std::string& clock, std::optional<icd::Stamp> stamp,
+                          std::uint64_t connection);
+  void keep_clock(const std::string& clock);
   void drain();
   void finish();
-  void keep_news();
   void changed();
   void picture_the_run();
   void every_second();
   void keep_sessions();
+  void keep_stamp_floor();
   void look_at_sockets();
+  void ledger_is_back();
   void show_lights();
   double sent_mbit() const;
   std::uint64_t sent_bytes() const;
@@ -138,6 +152,7 @@ class Gateway final : public intake::Desk, public page::Source, public page::Ope
   std::string team_address() const;
   std::vector<std::string> attention() const;
   std::string report_under_way() const;
+  void say_what_is_set_aside(std::vector<std::string>& sentences) const;
   void say_what_is_missing(std::vector<std::string>& sentences) const;
   std::vector<page::EndpointRow> endpoints() const;
 
@@ -145,8 +160,14 @@ class Gateway final : public intake::Desk, public page::Source, public page::Ope
   Parts parts_;
   const settings::Settings settings_;  // with the course in use
   std::mt19937_64 random_;
-  loop::Workers workers_;
-  Spool spool_;
+  Spool spool_;  // before its writer, whose jobs use it to the end
+  StampFloor stamp_floor_;
+  loop::Writer writer_;       // of the runtime folder, in memory: an answer to a map waits for it
+  loop::Writer disk_writer_;  // of the state folder, on the disk, for which no map waits
+  loop::Workers workers_;     // after the writers: what a job holds is the writers' to the end
+  loop::Workers log_ins_;     // of their own: nobody who logs in waits behind maps, nor maps behind him
+  journal::Journal journal_;
+  Aside aside_;
   Record record_;
   lanes::StampShift stamps_;
   Scoring scoring_;
@@ -171,9 +192,9 @@ class Gateway final : public intake::Desk, public page::Source, public page::Ope
   std::vector<std::unique_ptr<intake::Server>> servers_;
   loop::Source second_, drained_;
   loop::Instant sessions_kept_{};
+  std::optional<LedgerReturn> ledger_return_;
   std::int64_t pictured_run_;             // Legacy's
   std::deque<std::uint64_t> bytes_sent_;  // in all, at each of the last seconds
-  bool keeping_news_ = false;
   bool makes_way_ = false;
   bool dismissed_ = false;  // all clients have been told; only their answers have to leave
   std::string notified_;

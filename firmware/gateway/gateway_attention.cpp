@@ -16,13 +16,25 @@ std::vector<std::string> Gateway::attention() const {
   if (!scoring_.trouble().empty()) {
     sentences.push_back("no report is taken, the ledger cannot be written: " + scoring_.trouble());
   }
+  if (!maps_.trouble().empty()) sentences.push_back("the last map was not taken: " + maps_.trouble());
   say_what_is_missing(sentences);
   if (!parts_.ledger.damage().empty()) sentences.push_back(parts_.ledger.damage());
   const auto token_refused = [&](const Channel& channel, const char* name) {
-    if (channel.last_status() == 401) {
+    if (channel.last_status() == 401 && !channel.is_foreign()) {
       sentences.push_back(std::string("the Command Post refuses the ") + name + " token");
     }
   };
+  const auto foreign = [&](const Channel& channel, const char* name, const settings::Address& address) {
+    if (!channel.is_foreign()) return false;
+    sentences.push_back(icd::sentence("what answers at ", address_text(address), " is no Command Post (",
+                                      name, "): nothing counts as taken there; is the address right?"));
+    return true;
+  };
+  foreign(scoring_.channel(), "scoring", settings_.command_post.scoring);
+  if (!foreign(maps_.channel(), "mapping", settings_.command_post.mapping)) {
+    foreign(news_.channel(), "mapping", settings_.command_post.mapping);
+  }
+  say_what_is_set_aside(sentences);
   token_refused(scoring_.channel(), "scoring");
   token_refused(maps_.channel().last_status() == 401 ? maps_.channel() : news_.channel(), "mapping");
   std::ranges::move(roster_.attention(loop_.now()), std::back_inserter(sentences));
@@ -35,9 +47,19 @@ std::string Gateway::report_under_way() const {
   const dispatch::Reports& reports = scoring_.reports();
   if (const auto* report = reports.sending())
     return icd::sentence("report ", report->number, " is being sent: its answer would have to be found out");
-  const std::size_t waiting = reports.book().waiting().size();
+  const std::size_t waiting = reports.waiting_here().size();
   if (waiting == 0) return "";
   return icd::sentence(waiting, waiting == 1 ? " report waits" : " reports wait", " to be sent");
+}
+
+/// What the Command Post would not take, and is for the operator to look at.
+void Gateway::say_what_is_set_aside(std::vector<std::string>& sentences) const {
+  const auto rows = aside_.rows();
+  const auto count = std::ranges::count(rows, false, &page::AsideRow::overtaken);
+  if (count == 0) return;
+  sentences.push_back(icd::sentence(count, count == 1 ? " message is" : " messages are",
+                                    " set aside: the Command Post would not take ",
+                                    count == 1 ? "it" : "them"));
 }
 
 /// What was to be set up, and is not.
@@ -46,6 +68,9 @@ void Gateway::say_what_is_missing(std::vector<std::string>& sentences) const {
     if (!trouble->empty()) sentences.push_back(*trouble);
   }
   std::ranges::copy(parts_.notices, std::back_inserter(sentences));
+  if (!journal_.trouble().empty()) {
+    sentences.push_back("states and markers are not taken, they cannot be kept: " + journal_.trouble());
+  }
   if (!scoring_.channel().has_token())
     sentences.emplace_back("no scoring token is set: reports wait until one is");
   if (!maps_.channel().has_token()) {

@@ -24,7 +24,7 @@ void Gateway::assert_states() {
   lights_.set(State::NotServing, !serving);
   lights_.set(State::ScoringConnected, scoring.connected());
   lights_.set(State::ScoringFailing, !scoring.trouble().empty());
-  lights_.set(State::ReportWaiting, !scoring_.reports().book().waiting().empty());
+  lights_.set(State::ReportWaiting, !scoring_.reports().waiting_here().empty());
   lights_.set(State::MappingConnected, news_.channel().connected());
   lights_.set(State::MappingFailing,
               !news_.channel().trouble().empty() || !maps_.channel().trouble().empty());

@@ -28,14 +28,16 @@ std::vector<page::EndpointRow> Gateway::endpoints() const {
            .trouble = scoring.trouble(),
            .last_status = scoring.last_status(),
            .answer_ms = scoring.answer_ms(),
-           .throttled = scoring.throttled()},
+           .throttled = scoring.throttled(),
+           .foreign = scoring.foreign()},
           {.name = "mapping",
            .address = address_text(command_post.mapping),
            .connected = maps.connected() || news.connected(),
            .trouble = maps.trouble().empty() ? news.trouble() : maps.trouble(),
            .last_status = latest.last_status(),
            .answer_ms = latest.answer_ms(),
-           .throttled = maps.throttled() + news.throttled()}};
+           .throttled = maps.throttled() + news.throttled(),
+           .foreign = maps.foreign() + news.foreign()}};
 }
 
 page::RunView Gateway::view() const {
@@ -51,6 +53,7 @@ page::RunView Gateway::view() const {
                      .near_metres = settings_.reports.near_metres,
                      .activities = record_.activities(),
                      .refusals = record_.refusals(),
+                     .aside = aside_.rows(),
                      .lights = {},
                      .links = links_.rows(),
                      .identify_until = {},
@@ -83,7 +86,7 @@ std::string Gateway::status_line() const {
   std::string line = scoring_.run() ? "score " + std::to_string(scoring_.run()->score) + ", " +
                                           std::to_string(scoring_.run()->remaining_reports) + " reports left"
                                     : "no word from the Command Post yet";
-  if (const std::size_t waiting = scoring_.reports().book().waiting().size(); waiting > 0) {
+  if (const std::size_t waiting = scoring_.reports().waiting_here().size(); waiting > 0) {
     line += ", " + std::to_string(waiting) + " reports waiting";
   }
   if (const auto sentences = attention(); !sentences.empty()) line += "; " + sentences.front();

@@ -14,12 +14,14 @@
 #include "host/command_line.hpp"
 #include "host/inherited.hpp"
 #include "host/log.hpp"
+#include "loop/guard.hpp"
 #include "loop/watchdog.hpp"
 
 namespace {
 
 using adit::gateway::FactoryReset;
 using adit::gateway::Gateway;
+using adit::gateway::LedgerReturn;
 using adit::gateway::ListenSockets;
 using adit::gateway::Options;
 using adit::gateway::Parts;
@@ -41,11 +43,29 @@ std::expected<void, std::string> make_folder(const std::string& folder) {
   return {};
 }
 
+/// Where the state folder is full, or cannot be written to, maps and states flow all the same; reports are
+/// refused, and those that can be read are shown.
+adit::ledger::Result<adit::ledger::Ledger> open_ledger(const Options& options) {
+  using adit::ledger::Ledger;
+  auto opened = Ledger::open(options.state);
+  std::error_code unknown;
+  const bool is_there = std::filesystem::exists(options.state, unknown);
+  if (!opened && (opened.error().full || opened.error().read_only || !is_there)) {
+    adit::host::log(adit::host::Level::Error, "no report is taken, the ledger cannot be written",
+                    {{"why", opened.error().what}});
+    const char* const runtime = std::getenv("RUNTIME_DIRECTORY");
+    const std::string scratch = runtime != nullptr ? runtime : std::filesystem::temp_directory_path(unknown);
+    opened = Ledger::stand_in(options.state, scratch, opened.error().what);
+  }
+  if (opened && !opened->damage().empty()) adit::host::log(adit::host::Level::Error, opened->damage());
+  return opened;
+}
+
 std::expected<Parts, std::string> gather(const Options& options, const Store& store,
                                          const FactoryReset& reset, ListenSockets& sockets) {
   auto loaded = store.load();
   if (!loaded) return std::unexpected(loaded.error());
-  auto ledger = adit::ledger::Ledger::open(options.state);
+  auto ledger = open_ledger(options);
   if (!ledger) return std::unexpected(ledger.error().what);
   auto known = adit::gateway::read_board(options.board);
   auto panel =
@@ -56,6 +76,7 @@ std::expected<Parts, std::string> gather(const Options& options, const Store& st
                .loaded = std::move(*loaded),
                .trouble = "",
                .ledger = std::move(*ledger),
+               .ledger_rest = LedgerReturn::kRest,
                .board = std::move(known.board),
                .board_trouble = std::move(known.trouble),
                .notices = adit::gateway::read_notices(options.notices),
@@ -84,7 +105,9 @@ class Service {
 
   int run() {
     if (auto taken = take_over_sockets(); !taken) return fail(taken.error());
-    if (auto made = make_folder(options_.state); !made) return fail(made.error());
+    if (auto made = make_folder(options_.state); !made) {
+      adit::host::log(adit::host::Level::Error, "the state folder cannot be made", {{"why", made.error()}});
+    }
     const auto terminated = loop_.signal(SIGTERM, [this] { running_->stop(); });
     const auto interrupted = loop_.signal(SIGINT, [this] { running_->stop(); });
     while (true) {
@@ -107,11 +130,16 @@ class Service {
     if (const auto done = reset_.finish(); !done) {
       trouble_ = "the factory reset is not finished: " + done.error();
       adit::host::log(adit::host::Level::Error, trouble_);
+    } else if (*done) {
+      legacy_.reset();  // the team's before: its map, its robots
     }
     auto parts = gather(options_, store_, reset_, sockets_);
     if (!parts) return std::unexpected(parts.error());
     const adit::settings::Settings settings = parts->loaded.settings;
     parts->trouble = trouble_;
+    const bool waits_for_ledger = !parts->ledger.refusal().empty();
+    parts->ledger_rest = std::exchange(
+        ledger_rest_, waits_for_ledger ? adit::gateway::longer(ledger_rest_) : LedgerReturn::kRest);
     parts->legacy = std::exchange(legacy_, std::nullopt);
     Gateway gateway(loop_, std::move(*parts));
     const auto ran = run(gateway, settings);
@@ -125,10 +153,10 @@ class Service {
     sockets_.settle();
     adit::host::notify_ready(gateway.status_line());
     begin_watchdog();
-    if (watchdog_) watchdog_->ask_also(&gateway.workers());
+    if (watchdog_) watchdog_->ask_also(gateway.threads());
     running_ = &gateway;
     loop_.run();
-    if (watchdog_) watchdog_->ask_also(nullptr);
+    if (watchdog_) watchdog_->ask_also({});
     return gateway.makes_way();
   }
 
@@ -157,6 +185,7 @@ class Service {
   Gateway* running_ = nullptr;                    // signals come while the loop runs, and so does it
   std::string trouble_;                           // what came of the last change
   std::optional<adit::gateway::Legacy> legacy_;
+  std::chrono::seconds ledger_rest_ = LedgerReturn::kRest;
 };
 
 }  // namespace
@@ -167,5 +196,11 @@ int main(int argc, char** argv) {
   if (const auto exit =
           adit::host::answered("aditd", adit::gateway::kVersion, adit::gateway::kUsage, options))
     return *exit;
-  return Service(*options).run();
+  adit::loop::tell_of_caught([](const char* where, const char* what) {
+    adit::host::log(adit::host::Level::Error, "an exception ended what it came from",
+                    {{"what", where}, {"why", what}});
+  });
+  int exit = 1;
+  adit::loop::guarded("the service", [&] { exit = Service(*options).run(); });
+  return exit;
 }

@@ -82,8 +82,12 @@ void MapPicture::draw(Waiting waiting) {
   drawing_ = Drawn{picture::layer_of(waiting.map), waiting.stamp};
   auto job = std::make_shared<Job>(Job{std::move(waiting), {}});
   job->canvas = mosaic_.canvas(picture::layer_of(job->waiting.map));
-  workers_.submit([job] { job->drawing = picture::draw(job->waiting.map, job->canvas); },
-                  [this, job] { drawn(*job); });
+  workers_.submit(
+      [job] { job->drawing = picture::draw(job->waiting.map, job->canvas); }, [this, job] { drawn(*job); },
+      [this, job] {
+        job->drawing = std::unexpected(icd::Refusal{icd::Status::ServiceUnavailable, "no memory"});
+        drawn(*job);
+      });
 }
 
 void MapPicture::drawn(Job& job) {

@@ -3,9 +3,11 @@
 #include <algorithm>
 
 #include "codec/write.hpp"
-#include "dispatch/turn.hpp"
+#include "dispatch/mapping_verdict.hpp"
 #include "gateway/upstream_answer.hpp"
 #include "host/log.hpp"
+#include "icd/sentence.hpp"
+#include "loop/guard.hpp"
 #include "pace/budget.hpp"
 #include "pack/pack.hpp"
 
@@ -18,37 +20,108 @@ using dispatch::MappingVerdict;
 /// it.
 constexpr std::chrono::milliseconds kLongestLead{500};
 
+/// For a writer that threw.
+icd::Refusal not_kept() {
+  return {icd::Status::ServiceUnavailable, "this map cannot be kept; send it again later"};
+}
+
+/// For lanes::Blame: a robot's maps of one kind.
+std::string whose(const icd::MapUpdate& map) {
+  return (map.is_grid() ? "grid " : "cloud ") + (map.name ? map.name->text() : "");
+}
+
 }  // namespace
 
-Maps::Maps(loop::Loop& loop, loop::Workers& workers, const Spool& spool, const settings::Settings& settings,
-           std::optional<icd::BearerToken> token, Record& record, std::mt19937_64& random,
+Maps::Maps(loop::Loop& loop, loop::Workers& workers, loop::Writer& writer, const Spool& spool,
+           const settings::Settings& settings, std::optional<icd::BearerToken> token, Record& record,
+           Aside& aside, std::mt19937_64& random, journal::Journal& journal,
            std::function<void(icd::MapUpdate)> taken)
     : loop_(loop),
       workers_(workers),
+      writer_(writer),
+      while_alive_(&writer, [](loop::Writer*) {}),
       spool_(spool),
       settings_(settings),
       record_(record),
+      journal_(journal),
+      aside_(aside),
       taken_(std::move(taken)),
       channel_(loop, "mapping",
                endpoint_of(settings.command_post, settings.command_post.mapping,
                            pace::map_bytes_per_second(settings.command_post.budget_mbit)),
                std::move(token), settings.command_post.timeouts.mapping_answer),
-      pace_(settings.command_post.rates.map_hz, random),
+      pace_(icd::Uri::MapUpdate, settings.command_post.rates.map_hz, random, journal),
       wake_(loop.timer([this] { pump(); })),
-      lane_(settings.queues.merge_bytes) {}
+      lane_(settings.queues.merge_bytes),
+      trouble_(spool.trouble()) {}
 
-icd::Checked<void> Maps::take(icd::MapUpdate update, std::size_t bytes_received) {
-  if (lane_.count() > 0 && lane_.bytes() + update.data.bytes.size() > settings_.queues.map_bytes) {
-    return std::unexpected(icd::Refusal{
-        icd::Status::TooManyRequests, std::to_string(lane_.count()) + " maps of " +
-                                          std::to_string(lane_.bytes() >> 20) +
-                                          " MiB wait already; this one was not taken, send it again later"});
+/// What replaces something that waits is taken by a full queue too.
+bool Maps::has_room_for(const icd::MapUpdate& update, bool replaces) const {
+  const std::size_t waiting = lane_.bytes() + bytes_being_kept_;
+  if (!replaces && lane_.count() + static_cast<std::size_t>(being_kept_) >= kMostMaps) return false;
+  return replaces || waiting == 0 || waiting + update.data.bytes.size() <= settings_.queues.map_bytes;
+}
+
+/// What arrives leaves room for a grid that replaces one.
+std::shared_ptr<intake::MapArrival> Maps::arrives(MapArrival::Take take) {
+  return std::make_shared<MapArrival>(
+      while_alive_, spool_, [this] { return lane_.largest_grid(); }, std::move(take));
+}
+
+void Maps::take(icd::MapUpdate update, std::size_t bytes_received, std::shared_ptr<MapFile> file,
+                std::function<void(icd::Checked<void>)> done) {
+  const bool replaces = lane_.replaces_any(update);
+  if (!has_room_for(update, replaces)) {
+    if (file) writer_.submit([file = std::move(file)]() mutable { file.reset(); }, [] {});
+    return done(std::unexpected(
+        icd::Refusal{icd::Status::TooManyRequests,
+                     icd::sentence(lane_.count() + static_cast<std::size_t>(being_kept_), " maps of ",
+                                   (lane_.bytes() + bytes_being_kept_) >> 20,
+                                   " MiB wait already; this one was not taken, send it again later")}));
   }
-  record_.accepted(traffic_of(update), bytes_received, loop_.stamp_now());
-  const std::uint64_t number = ++numbers_;
-  keep(number, update, add(number, update));
+  const auto keeping = std::make_shared<Keeping>();
+  keeping->number = ++numbers_;
+  keeping->bytes_received = bytes_received;
+  keeping->size = update.data.bytes.size();
+  // Only a grid is ever replaced, and the newer one must find room beside it.
+  if (!replaces) keeping->spare = std::max(lane_.largest_grid(), update.is_grid() ? keeping->size : 0);
+  keeping->update = std::move(update);
+  keeping->file = std::move(file);
+  keeping->done = std::move(done);
+  writer_.submit(
+      [&spool = spool_, keeping] {
+        keeping->kept =
+            spool.keep(keeping->number, std::move(keeping->update), keeping->spare, std::move(keeping->file));
+      },
+      [this, keeping] { kept(*keeping); },
+      [this, keeping] {
+        keeping->kept = std::unexpected(not_kept());
+        kept(*keeping);
+      });
+  ++being_kept_;  // only now: where it could not be submitted, nothing is
+  bytes_being_kept_ += keeping->size;
+}
+
+/// It waits from now on, and its sender may know.
+void Maps::kept(Keeping& keeping) {
+  --being_kept_;
+  bytes_being_kept_ -= keeping.size;
+  const std::string before = std::exchange(trouble_, keeping.kept ? "" : keeping.kept.error().sentence);
+  if (!keeping.kept) {
+    if (before.empty()) host::log(host::Level::Error, "a map was not taken", {{"why", trouble_}});
+    return keeping.done(std::unexpected(std::move(keeping.kept.error())));
+  }
+  record_.accepted(traffic_of(*keeping.kept), keeping.bytes_received, loop_.stamp_now());
+  forget(add(keeping.number, std::move(*keeping.kept)));
+  keeping.done({});
   pump();
-  return {};
+}
+
+void Maps::carry_on(const journal::Carried& carried) {
+  pace_.carry_on(carried, loop_.now());
+  if (const auto last = carried.stamps().find(icd::Uri::MapUpdate); last != carried.stamps().end()) {
+    stamps_.carry_on(last->second);
+  }
 }
 
 void Maps::restore(std::uint64_t number, icd::MapUpdate update) {
@@ -61,28 +134,18 @@ void Maps::restore(std::uint64_t number, icd::MapUpdate update) {
 /// The numbers of the maps that this one replaced.
 std::vector<std::uint64_t> Maps::add(std::uint64_t number, icd::MapUpdate update) {
   const Traffic traffic = traffic_of(update);
-  needed_.insert(number);
   auto replaced = lane_.add(number, std::move(update), loop_.now());
   record_.replaced(traffic, replaced.size());
   return replaced;
 }
 
-/// What it replaced is forgotten once it is kept itself.
-void Maps::keep(std::uint64_t number, const icd::MapUpdate& update, std::vector<std::uint64_t> replaced) {
-  ++being_kept_;
-  workers_.submit([&spool = spool_, number, update] { spool.keep(number, update); },
-                  [this, number, replaced = std::move(replaced)] {
-                    --being_kept_;
-                    if (!needed_.contains(number)) spool_.forget(number);
-                    forget(replaced);
-                  });
-}
-
-void Maps::forget(const std::vector<std::uint64_t>& numbers) {
-  for (const std::uint64_t number : numbers) {
-    needed_.erase(number);
-    spool_.forget(number);
-  }
+void Maps::forget(std::vector<std::uint64_t> numbers) {
+  if (numbers.empty()) return;
+  writer_.submit(
+      [&spool = spool_, numbers = std::move(numbers)] {
+        for (const std::uint64_t number : numbers) spool.forget(number);
+      },
+      [] {});
 }
 
 /// The map under way needs no more care.
@@ -106,9 +169,10 @@ void Maps::pump() {
 }
 
 void Maps::prepare() {
-  auto waiting = lane_.take();
+  auto waiting = lane_.take(loop_.now());
   if (!waiting) return;
   waiting->map.header().stamp = stamps_.next(waiting->map.header().stamp.value_or(loop_.stamp_now()));
+  journal_.stamped(icd::Uri::MapUpdate, *waiting->map.header().stamp);
   prepared_ = std::make_shared<Prepared>(Prepared{std::move(*waiting), {}});
   preparing_ = true;
   const loop::Instant began = loop_.now();
@@ -118,70 +182,127 @@ void Maps::prepare() {
         preparing_ = false;
         packing_took_ = loop_.now() - began;
         pump();
+      },
+      [this] {
+        preparing_ = false;
+        pace_.failed(loop_.now());
+        record_.not_taken(traffic_of(prepared_->waiting.map), NotTaken::Failed, 0, "it could not be packed");
+        again();
+        pump();
       });
 }
 
 void Maps::send() {
   pace_.sent(loop_.now());
   channel_.send(icd::Uri::MapUpdate, codec::kCbor, prepared_->body,
-                [this](uplink::Outcome outcome) { answered(std::move(outcome)); });
+                [this](const uplink::Outcome& outcome) { answered(outcome); });
 }
 
-void Maps::answered(uplink::Outcome outcome) {
-  if (const auto* answer = std::get_if<uplink::Answered>(&outcome)) {
-    verdict(*answer);
-  } else {
+/// An answer that cannot be dealt with is as good as none: the map is sent again.
+void Maps::answered(const uplink::Outcome& outcome) {
+  const bool judged = loop::guarded("the answer to a map", [&] { judge(outcome); });
+  if (!judged && prepared_) {
     pace_.failed(loop_.now());
-    record_.not_taken(traffic_of(prepared_->waiting.map), NotTaken::Failed, 0, sentence_of(outcome));
     again();
   }
   pump();
 }
 
+void Maps::judge(const uplink::Outcome& outcome) {
+  if (const auto* answer = std::get_if<uplink::Answered>(&outcome)) return verdict(*answer);
+  pace_.failed(loop_.now());
+  record_.not_taken(traffic_of(prepared_->waiting.map), NotTaken::Failed, 0, sentence_of(outcome));
+  again();
+}
+
+void Maps::taken(int status) {
+  pace_.taken(loop_.now());
+  blame_.passed(whose(prepared_->waiting.map), loop_.now());
+  aside_.taken(prepared_->waiting.map);
+  record_.forwarded(traffic_of(prepared_->waiting.map), prepared_->waiting.updates.size(),
+                    prepared_->body.size(), status, loop_.stamp_now());
+  taken_(std::move(prepared_->waiting.map));
+  done();
+}
+
 void Maps::verdict(const uplink::Answered& answered) {
   const loop::Instant now = loop_.now();
   const Traffic traffic = traffic_of(prepared_->waiting.map);
-  switch (dispatch::mapping_verdict(answered.status)) {
+  const std::string sentence = sentence_of(answered);
+  switch (dispatch::mapping_verdict(answered.status, dispatch::body_of(answered.body))) {
     case MappingVerdict::Taken:
-      pace_.taken(now);
-      record_.forwarded(traffic, prepared_->waiting.updates.size(), prepared_->body.size(), answered.status,
-                        loop_.stamp_now());
-      taken_(std::move(prepared_->waiting.map));
-      return done();
+      return taken(answered.status);
     case MappingVerdict::Throttled:
       pace_.throttled(now, answered.retry_after);
-      record_.not_taken(traffic, NotTaken::Throttled, answered.status, sentence_of(answered));
+      record_.not_taken(traffic, NotTaken::Throttled, answered.status, sentence);
       return again();
     case MappingVerdict::Refused:
       pace_.taken(now);
-      return give_up(answered.status, sentence_of(answered));
+      return give_up(answered.status, sentence);
+    case MappingVerdict::Suspect:
+      pace_.failed(now);
+      if (blame_.failed(whose(prepared_->waiting.map), prepared_->waiting.trial, now) ==
+          lanes::Blame::Verdict::SetAside)
+        return give_up(answered.status, sentence + " (others passed, this one failed again and again)");
+      record_.not_taken(traffic, NotTaken::Failed, answered.status, sentence);
+      return again();
     case MappingVerdict::Failing:
       pace_.failed(now);
-      record_.not_taken(traffic, NotTaken::Failed, answered.status, sentence_of(answered));
-      if (answered.status != dispatch::kHandlerFailed) return again();
-      const std::uint64_t number = prepared_->waiting.updates.front();
-      tries_ = std::exchange(tried_, number) == number ? tries_ + 1 : 1;
-      if (tries_ < dispatch::kMostTries) return again();
-      tries_ = 0;
-      return give_up(answered.status, sentence_of(answered) + " (given up after " +
-                                          std::to_string(dispatch::kMostTries) + " tries)");
+      record_.not_taken(traffic, NotTaken::Failed, answered.status, sentence);
+      return again();
   }
 }
 
 void Maps::again() {
-  lane_.put_back(std::move(prepared_->waiting));
+  forget(lane_.put_back(std::move(prepared_->waiting)));
   prepared_.reset();
 }
 
-/// A map that will not be taken; of a merged cloud each part is tried by itself.
+/// A map that will not be taken is set aside; of a merged cloud each part is tried by itself.
 void Maps::give_up(int status, const std::string& sentence) {
-  const Traffic traffic = traffic_of(prepared_->waiting.map);
-  host::log(host::Level::Warning, "the Command Post refused a map",
-            {{"robot", traffic.robot}, {"status", std::to_string(status)}, {"why", sentence}});
-  record_.not_taken(traffic, NotTaken::Refused, status, sentence);
-  if (prepared_->waiting.parts.empty()) return done();
+  record_.not_taken(traffic_of(prepared_->waiting.map), NotTaken::Refused, status, sentence);
+  if (prepared_->waiting.parts.empty()) {
+    aside_.add(prepared_->waiting.map, status, sentence, prepared_->waiting.map.data.bytes.size(),
+               {.let_go = [this, numbers = prepared_->waiting.updates] { forget(numbers); }});
+    return prepared_.reset();
+  }
   lane_.put_back_apart(std::move(prepared_->waiting));
   prepared_.reset();
+}
+
+/// One that waits may cover it by now: that one says all of it, and a life to come, which reads the maps in
+/// the order of their numbers, must not find it the newer one.
+void Maps::send_again(icd::MapUpdate update, std::function<void(bool kept)> done) {
+  if (lane_.is_replaced(update)) return done(true);
+  update.header().stamp = loop_.stamp_now();
+  const auto keeping = std::make_shared<Keeping>();
+  keeping->number = ++numbers_;
+  keeping->size = update.data.bytes.size();
+  keeping->update = std::move(update);
+  writer_.submit([&spool = spool_,
+                  keeping] { keeping->kept = spool.keep(keeping->number, std::move(keeping->update), 0); },
+                 [this, keeping, done] { kept_again(*keeping, done); },
+                 [this, keeping, done] {
+                   keeping->kept = std::unexpected(not_kept());
+                   kept_again(*keeping, done);
+                 });
+  ++being_kept_;
+  bytes_being_kept_ += keeping->size;
+}
+
+void Maps::kept_again(Keeping& keeping, const std::function<void(bool kept)>& done) {
+  --being_kept_;
+  bytes_being_kept_ -= keeping.size;
+  done(keeping.kept.has_value());
+  if (!keeping.kept) {
+    return host::log(host::Level::Error, "what was set aside is not sent again",
+                     {{"why", keeping.kept.error().sentence}});
+  }
+  forget(lane_.put_back({.map = std::move(*keeping.kept),
+                         .accepted = loop_.now(),
+                         .updates = {keeping.number},
+                         .alone = true}));
+  pump();
 }
 
 void Maps::link_is_back() {
@@ -192,7 +313,7 @@ void Maps::link_is_back() {
 
 bool Maps::stop() {
   stopping_ = true;
-  return !channel_.busy() && being_kept_ == 0;
+  return !channel_.busy();
 }
 
 std::size_t Maps::waiting(const Traffic& traffic) const {

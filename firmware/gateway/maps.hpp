@@ -4,10 +4,12 @@
 #include <memory>
 #include <optional>
 #include <random>
-#include <set>
+#include <string>
 #include <vector>
 
+#include "gateway/aside.hpp"
 #include "gateway/channel.hpp"
+#include "gateway/map_arrival.hpp"
 #include "gateway/record.hpp"
 #include "gateway/spool.hpp"
 #include "gateway/uri_pace.hpp"
@@ -19,25 +21,44 @@
 
 namespace adit::gateway {
 
-/// Maps on their way to the mapping endpoint: wait in their lane, are packed on a worker, and go out one at a
-/// time on a connection of their own, paced within the link's budget.
+/// Maps on their way to the mapping endpoint: are kept by the writer before they are taken, wait in their
+/// lane, are packed on a worker, and go out one at a time on a connection of their own, paced within the
+/// link's budget.
 class Maps {
  public:
-  /// `taken` is given each map that the Command Post took.
-  Maps(loop::Loop& loop, loop::Workers& workers, const Spool& spool, const settings::Settings& settings,
-       std::optional<icd::BearerToken> token, Record& record, std::mt19937_64& random,
+  /// So many may wait, however small: each has a file that is mapped (vm.max_map_count is 65,530).
+  static constexpr std::size_t kMostMaps = 20'000;
+
+  /// `taken` is given each map that the Command Post took. `spool` outlives the writer.
+  Maps(loop::Loop& loop, loop::Workers& workers, loop::Writer& writer, const Spool& spool,
+       const settings::Settings& settings, std::optional<icd::BearerToken> token, Record& record,
+       Aside& aside, std::mt19937_64& random, journal::Journal& journal,
        std::function<void(icd::MapUpdate)> taken);
 
+  void carry_on(const journal::Carried& carried);
   /// As if something had just been sent, by whoever sent before.
   void hold_back() { pace_.sent(loop_.now()); }
   /// A map that the spool kept under this number.
   void restore(std::uint64_t number, icd::MapUpdate update);
 
-  /// `update`'s stamp is on the gateway's clock. Refused with 429 where the queue is full.
-  icd::Checked<void> take(icd::MapUpdate update, std::size_t bytes_received);
+  /// For a map that begins to arrive. What is stored of it goes to the writer until this ends.
+  std::shared_ptr<intake::MapArrival> arrives(MapArrival::Take take);
+  /// `update`'s stamp is on the gateway's clock; `file`: where its data was stored, or null. `done` is told
+  /// once it is kept and waits, or why not: 429 where the queue is full and it replaces nothing, 503 where
+  /// there is no room for it.
+  void take(icd::MapUpdate update, std::size_t bytes_received, std::shared_ptr<MapFile> file,
+            std::function<void(icd::Checked<void>)> done);
 
-  /// Sends nothing more. False while an answer is awaited or a map is not yet kept.
+  /// What was set aside, on the operator's word: before all that waits. `done` is told whether it is kept and
+  /// waits; if not, nothing has become of it.
+  void send_again(icd::MapUpdate update, std::function<void(bool kept)> done);
+
+  /// Sends nothing more. False while an answer is awaited.
   bool stop();
+  /// Whether nothing that was to be taken has still to be kept.
+  bool all_kept() const { return being_kept_ == 0; }
+  /// Why the last map could not be kept, or "".
+  const std::string& trouble() const { return trouble_; }
   /// The cable is: nothing waits any more for what failed without it.
   void link_is_back();
 
@@ -55,22 +76,40 @@ class Maps {
   };
 
   std::vector<std::uint64_t> add(std::uint64_t number, icd::MapUpdate update);
-  void keep(std::uint64_t number, const icd::MapUpdate& update, std::vector<std::uint64_t> replaced);
-  void forget(const std::vector<std::uint64_t>& numbers);
+  /// A map on its way to its file: the writer's, until it is handed back.
+  struct Keeping {
+    std::uint64_t number = 0;
+    std::size_t bytes_received = 0, size = 0;
+    std::uint64_t spare = 0;  // that is to be left
+    icd::MapUpdate update;
+    std::shared_ptr<MapFile> file;  // where its data was stored as it came
+    icd::Checked<icd::MapUpdate> kept;
+    std::function<void(icd::Checked<void>)> done;
+  };
+  bool has_room_for(const icd::MapUpdate& update, bool replaces) const;
+  void kept(Keeping& keeping);
+  void kept_again(Keeping& keeping, const std::function<void(bool kept)>& done);
+  void forget(std::vector<std::uint64_t> numbers);
   void done();
   void pump();
   void prepare();
   void send();
-  void answered(uplink::Outcome outcome);
+  void answered(const uplink::Outcome& outcome);
+  void judge(const uplink::Outcome& outcome);
   void verdict(const uplink::Answered& answered);
+  void taken(int status);
   void again();
   void give_up(int status, const std::string& sentence);
 
   loop::Loop& loop_;
   loop::Workers& workers_;
+  loop::Writer& writer_;
+  const std::shared_ptr<loop::Writer> while_alive_;  // the same, for arrivals, which may outlive this
   const Spool& spool_;
   const settings::Settings& settings_;
   Record& record_;
+  journal::Journal& journal_;
+  Aside& aside_;
   std::function<void(icd::MapUpdate)> taken_;
   Channel channel_;
   UriPace pace_;
@@ -79,13 +118,13 @@ class Maps {
   lanes::MapLane lane_;
   lanes::StampOrder stamps_;
   std::uint64_t numbers_ = 0;
-  std::set<std::uint64_t> needed_;  // maps that must be kept until they are taken
   int being_kept_ = 0;
+  std::size_t bytes_being_kept_ = 0;
+  std::string trouble_;
   bool preparing_ = false;
   loop::Duration packing_took_{0};
   std::shared_ptr<Prepared> prepared_;  // while it is packed, waits for its time, or is under way
-  std::uint64_t tried_ = 0;             // the number of the map that `tries_` counts for
-  int tries_ = 0;
+  lanes::Blame blame_;
   bool stopping_ = false;
 };
 

@@ -1,7 +1,7 @@
 #include "gateway/marker_scene.hpp"
 
 #include <algorithm>
-#include <iterator>
+#include <utility>
 
 namespace adit::gateway {
 
@@ -28,7 +28,7 @@ void MarkerScene::wipe(page::Time now) {
 void MarkerScene::clear() {
   entries_.clear();
   in_order_.clear();
-  standing_ = 0;
+  standing_ = gone_ = {};
   forgotten_ = version_;
 }
 
@@ -42,38 +42,53 @@ void MarkerScene::apply(const icd::Marker& marker, page::Time now) {
     case icd::MarkerAction::Delete:
       return remove(key);
     case icd::MarkerAction::Add:
-      break;
+      return put(key, {.marker = page::drawn(marker), .at = now, .version = version_});
   }
-  Entry& entry = entries_[key];
-  if (entry.version == 0 || entry.gone) ++standing_;
-  in_order_.erase(entry.version);
-  entry = {.marker = marker, .at = now, .version = version_};
-  in_order_.emplace(version_, key);
 }
 
 void MarkerScene::remove(const Key& key) {
   const auto found = entries_.find(key);
   if (found == entries_.end() || found->second.gone) return;
+  put(key, {.marker = {.ns = key.first}, .version = version_, .gone = true});
+}
+
+void MarkerScene::put(const Key& key, Entry entry) {
+  erase(key);
+  Held& held = entry.gone ? gone_ : standing_;
+  ++held.count;
+  held.bytes += entry.marker.size();
+  in_order_.emplace(entry.version, key);
+  entries_.emplace(key, std::move(entry));
+}
+
+void MarkerScene::erase(const Key& key) {
+  const auto found = entries_.find(key);
+  if (found == entries_.end()) return;
+  Held& held = found->second.gone ? gone_ : standing_;
+  --held.count;
+  held.bytes -= found->second.marker.size();
   in_order_.erase(found->second.version);
-  found->second = {.marker = {}, .version = version_, .gone = true};
-  in_order_.emplace(version_, key);
-  --standing_;
+  entries_.erase(found);
+}
+
+/// Requires that there is one.
+MarkerScene::InOrder::const_iterator MarkerScene::oldest(bool gone) const {
+  return std::ranges::find_if(in_order_,
+                              [&](const auto& one) { return entries_.at(one.second).gone == gone; });
 }
 
 void MarkerScene::keep_bounds() {
-  if (standing_ > kMost) {
-    const auto oldest =
-        std::ranges::find_if(in_order_, [this](const auto& one) { return !entries_.at(one.second).gone; });
+  const auto exceeds = [](const Held& held) { return held.count > kMost || held.bytes > kMostBytes; };
+  while (exceeds(standing_)) {
+    const Key key = oldest(false)->second;
     ++version_;  // a change of its own
-    remove(Key(oldest->second));
+    remove(key);
     ++left_out_;
   }
-  if (entries_.size() - standing_ > kMost) {
-    const auto oldest =
-        std::ranges::find_if(in_order_, [this](const auto& one) { return entries_.at(one.second).gone; });
-    forgotten_ = oldest->first;
-    entries_.erase(oldest->second);
-    in_order_.erase(oldest);
+  while (exceeds(gone_)) {
+    const auto [version, key] = *oldest(true);
+    forgotten_ = version;
+    erase(key);
   }
 }
 

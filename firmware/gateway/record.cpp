@@ -69,12 +69,15 @@ void Record::not_taken(const Traffic& traffic, NotTaken how, int status, const s
 
 void Record::refused(icd::Uri uri, const intake::Sender& sender, const icd::Refusal& refusal,
                      page::Time now) {
-  ++refused_[{uri, refusal.status}];
+  page::RefusedCount& counted = refused_[{uri, refusal.status}];
+  ++counted.count;
+  counted.parts += refusal.parts;
   refusals_.push_front({.at = now,
                         .uri = std::string(icd::path_of(uri)),
                         .sender = sender.address,
                         .status = static_cast<int>(refusal.status),
-                        .sentence = refusal.sentence});
+                        .sentence = refusal.sentence,
+                        .parts = refusal.parts});
   if (refusals_.size() > kMostRefusals) refusals_.pop_back();
   changed_();
 }
@@ -82,10 +85,12 @@ void Record::refused(icd::Uri uri, const intake::Sender& sender, const icd::Refu
 std::vector<page::RefusedCount> Record::refused_counts() const {
   std::vector<page::RefusedCount> all;
   all.reserve(refused_.size());
-  for (const auto& [what, count] : refused_) {
+  for (const auto& [what, counted] : refused_) {
     const auto& [uri, status] = what;
-    all.push_back(
-        {.uri = std::string(icd::path_of(uri)), .status = static_cast<int>(status), .count = count});
+    all.push_back({.uri = std::string(icd::path_of(uri)),
+                   .status = static_cast<int>(status),
+                   .count = counted.count,
+                   .parts = counted.parts});
   }
   return all;
 }

@@ -61,7 +61,7 @@ class Record {
   std::function<void()> changed_;
   std::map<Traffic, page::ActivityRow> rows_;
   std::deque<page::RefusalRow> refusals_;
-  std::map<std::pair<icd::Uri, icd::Status>, std::uint64_t> refused_;
+  std::map<std::pair<icd::Uri, icd::Status>, page::RefusedCount> refused_;  // its counts
 };
 
 Traffic traffic_of(const icd::MapUpdate& update);

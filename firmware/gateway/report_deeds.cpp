@@ -28,7 +28,11 @@ intake::Answer answer_of(const dispatch::ClientAnswer& answer, const dispatch::R
 ReportDeeds::ReportDeeds(loop::Loop& loop, ledger::Ledger& ledger)
     : loop_(loop), ledger_(ledger), follow_up_(loop.timer([this] { follow_up(); })) {}
 
+/// The flush first: the log waits where its reader is slow.
 void ReportDeeds::follow_up() {
+  const auto flushed = ledger_.flush();
+  if (!flushed)
+    host::log(host::Level::Error, "the ledger cannot be flushed", {{"why", flushed.error().what}});
   for (const Step& step : std::exchange(unlogged_, {})) {
     const bool for_the_operator = step.state == ReportState::InDoubt || step.state == ReportState::Received;
     host::log(for_the_operator ? host::Level::Warning : host::Level::Notice,
@@ -39,9 +43,6 @@ void ReportDeeds::follow_up() {
                {"status", step.status != 0 ? std::to_string(step.status) : ""},
                {"why", step.note}});
   }
-  const auto flushed = ledger_.flush();
-  if (!flushed)
-    host::log(host::Level::Error, "the ledger cannot be flushed", {{"why", flushed.error().what}});
 }
 
 dispatch::ClientId ReportDeeds::add(std::shared_ptr<intake::Responder> responder) {

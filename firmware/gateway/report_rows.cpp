@@ -21,7 +21,8 @@ page::ReportRow row_of(const dispatch::Reports& reports, const dispatch::Report&
                       .run = report.run,
                       .asking = reports.is_asking(report),
                       .reconciled = report.reconciled,
-                      .same_as = report.same_as};
+                      .same_as = report.same_as,
+                      .lost = report.is_lost()};
   if (report.answer.empty()) return row;
   if (const auto reply = codec::read_report_reply(report.answer)) {
     row.report_status = reply->report_status;

@@ -9,6 +9,7 @@
 #include "dispatch/turn.hpp"
 #include "gateway/upstream_answer.hpp"
 #include "intake/icd_routes.hpp"
+#include "loop/guard.hpp"
 
 namespace adit::gateway {
 namespace {
@@ -23,7 +24,8 @@ dispatch::ReportRules rules_of(const settings::Reports& reports) {
 }  // namespace
 
 Scoring::Scoring(loop::Loop& loop, ledger::Ledger& ledger, const settings::Settings& settings,
-                 std::optional<icd::BearerToken> token, Record& record, std::mt19937_64& random)
+                 std::optional<icd::BearerToken> token, Record& record, std::mt19937_64& random,
+                 journal::Journal& journal)
     : loop_(loop),
       ledger_(ledger),
       settings_(settings),
@@ -32,8 +34,8 @@ Scoring::Scoring(loop::Loop& loop, ledger::Ledger& ledger, const settings::Setti
       reports_(rules_of(settings.reports), deeds_),
       channel_(loop, "scoring", endpoint_of(settings.command_post, settings.command_post.scoring, 0),
                std::move(token), settings.command_post.timeouts.scoring_answer),
-      report_pace_(settings.command_post.rates.reports_hz, random),
-      status_pace_(settings.command_post.rates.status_hz, random),
+      report_pace_(icd::Uri::ArtifactReports, settings.command_post.rates.reports_hz, random, journal),
+      status_pace_(icd::Uri::Status, settings.command_post.rates.status_hz, random, journal),
       wake_(loop.timer([this] { pump(); })),
       poll_(loop.timer([this] { poll(); })),
       deadline_(loop.timer([this] { deadline_came(); })) {}
@@ -41,9 +43,9 @@ Scoring::Scoring(loop::Loop& loop, ledger::Ledger& ledger, const settings::Setti
 std::expected<void, std::string> Scoring::start() {
   auto all = ledger_.reports();
   if (!all) return std::unexpected(all.error().what);
-  auto run = ledger_.last_run();
-  if (!run) return std::unexpected(run.error().what);
-  reports_.open(std::move(*all), std::move(*run), time(), address_text(settings_.command_post.scoring));
+  auto runs = ledger_.runs();
+  if (!runs) return std::unexpected(runs.error().what);
+  reports_.open(std::move(*all), std::move(*runs), time(), address_text(settings_.command_post.scoring));
   channel_.keep_warm();
   poll();
   return {};
@@ -77,13 +79,20 @@ void Scoring::status(std::shared_ptr<intake::Responder> responder) {
     responder->answer(intake::error_answer(icd::Status::ServiceUnavailable, channel_.trouble()));
     return;
   }
-  if (status_fresh_until_ && loop_.now() < *status_fresh_until_) {
-    responder->answer(fresh_status());
+  const loop::Instant now = loop_.now();
+  if (known_status_.is_fresh(now)) {
+    responder->answer(*known_status_.answer(now));
     return;
   }
-  askers_.push_back({std::move(responder), loop_.now()});
-  watch_deadlines();
+  askers_.push_back({std::move(responder), now + kAskerWaits});
   pump();
+  if (!askers_.empty() && !asked_status_ && !may_ask_soon(now)) tell_askers(now + kAskerWaits);
+  watch_deadlines();
+}
+
+/// Neither does a report go first, nor is the pace in the way for longer than an asker waits.
+bool Scoring::may_ask_soon(loop::Instant now) const {
+  return !channel_.busy() && !reports_.wish(time()).report && status_pace_.ready() <= now + kAskerWaits;
 }
 
 void Scoring::poll() {
@@ -91,11 +100,15 @@ void Scoring::poll() {
   pump();
 }
 
-intake::Answer Scoring::fresh_status() const {
-  return {.status = icd::Status::Ok,
-          .content_type = std::string(codec::kJson),
-          .body = status_body_,
-          .headers = {}};
+/// Why nothing is known that is young enough.
+intake::Answer Scoring::no_status() const {
+  const std::string why = !channel_.trouble().empty() ? channel_.trouble()
+                          : asked_status_             ? "it has not answered yet"
+                                                      : "reports go first";
+  intake::Answer answer = intake::error_answer(icd::Status::ServiceUnavailable,
+                                               "the status of the run is not known just now: " + why);
+  answer.headers.push_back({"Retry-After", "1"});
+  return answer;
 }
 
 void Scoring::pump() {
@@ -128,11 +141,25 @@ void Scoring::send(const dispatch::Report& report) {
   const std::string body = codec::write_artifact_report(report.report);
   channel_.send(icd::Uri::ArtifactReports, codec::kJson,
                 icd::ChunkedBytes({reinterpret_cast<const std::uint8_t*>(body.data()), body.size()}),
-                [this](uplink::Outcome outcome) { report_answered(std::move(outcome)); });
+                [this](const uplink::Outcome& outcome) { report_answered(outcome); });
   ledger_.expect(dispatch::Flush::Soon);  // its answer is what comes next
 }
 
-void Scoring::report_answered(uplink::Outcome outcome) {
+/// An answer that cannot be dealt with is as good as one that cannot be read.
+void Scoring::report_answered(const uplink::Outcome& outcome) {
+  const bool judged = loop::guarded("the answer to a report", [&] { judge_report(outcome); });
+  if (!judged && reports_.sending() != nullptr) {
+    loop::guarded("the loss of a report's answer",
+                  [&] { reports_.lost("its answer could not be dealt with", time()); });
+  }
+  known_status_.no_longer_fresh();  // score and remaining reports have changed, or may have
+  poll_.call_at(loop_.now() + kAskAfterReport);
+  watch_deadlines();
+  record_.changed();
+  pump();
+}
+
+void Scoring::judge_report(const uplink::Outcome& outcome) {
   const loop::Instant now = loop_.now();
   if (const auto* answered = std::get_if<uplink::Answered>(&outcome)) {
     const dispatch::ReportEvent event = reports_.answered(
@@ -151,29 +178,36 @@ void Scoring::report_answered(uplink::Outcome outcome) {
     reports_.lost(sentence_of(outcome), time());
     report_pace_.taken(now);
   }
-  status_fresh_until_.reset();  // score and remaining reports have changed, or may have
-  poll_.call_at(now + kAskAfterReport);
-  watch_deadlines();
-  record_.changed();
-  pump();
 }
 
 void Scoring::watch_deadlines() {
   std::optional<loop::Instant> first = reports_.next_deadline();
-  if (!askers_.empty()) first = std::min(first.value_or(asker_deadline()), asker_deadline());
+  if (const auto asker = first_asker()) first = std::min(first.value_or(*asker), *asker);
   if (first) deadline_.call_at(*first);
 }
 
-loop::Instant Scoring::asker_deadline() const {
-  return askers_.front().since + settings_.command_post.timeouts.scoring_answer;
+std::optional<loop::Instant> Scoring::first_asker() const {
+  if (askers_.empty()) return std::nullopt;
+  return std::ranges::min_element(askers_, {}, &Asker::until)->until;
+}
+
+/// Those who have waited until `now`: what is known, or else what is under way is waited for a little longer.
+void Scoring::tell_askers(loop::Instant now) {
+  const auto known = known_status_.answer(loop_.now());
+  const loop::Instant longest = asked_status_ ? *asked_status_ + kSlow : now;
+  std::erase_if(askers_, [&](Asker& asker) {
+    if (asker.until > now) return false;
+    if (!known && longest > now) {
+      asker.until = longest;
+      return false;
+    }
+    asker.responder->answer(known ? *known : no_status());
+    return true;
+  });
 }
 
 void Scoring::deadline_came() {
-  while (!askers_.empty() && asker_deadline() <= loop_.now()) {
-    askers_.front().responder->answer(intake::error_answer(
-        icd::Status::ServiceUnavailable, "the Command Post could not be asked in time: reports go first"));
-    askers_.pop_front();
-  }
+  tell_askers(loop_.now());
   reports_.tick(time());
   watch_deadlines();
 }
@@ -185,39 +219,50 @@ void Scoring::tick() {
 
 void Scoring::ask_status() {
   poll_due_ = false;
+  asked_status_ = loop_.now();
   status_pace_.sent(loop_.now());
   channel_.send(icd::Uri::Status, "", {},
-                [this](uplink::Outcome outcome) { status_answered(std::move(outcome)); });
+                [this](const uplink::Outcome& outcome) { status_answered(outcome); });
 }
 
-void Scoring::status_answered(uplink::Outcome outcome) {
+void Scoring::status_answered(const uplink::Outcome& outcome) {
+  asked_status_.reset();
+  poll_.call_at(loop_.now() + kAskEvery);
+  loop::guarded("the answer to a status", [&] { judge_status(outcome); });
+  watch_deadlines();
+  record_.changed();
+  pump();
+}
+
+void Scoring::judge_status(const uplink::Outcome& outcome) {
   const loop::Instant now = loop_.now();
-  poll_.call_at(now + kAskEvery);
   const auto* answered = std::get_if<uplink::Answered>(&outcome);
   if (answered == nullptr) {
     status_pace_.failed(now);
-    answer_askers(intake::error_answer(icd::Status::BadGateway, sentence_of(outcome)));
+    answer_askers(known_or(intake::error_answer(icd::Status::BadGateway, sentence_of(outcome))));
   } else if (answered->status == 429) {
     status_pace_.throttled(now, answered->retry_after);
-    answer_askers(client_answer(*answered));
+    answer_askers(known_or(client_answer(*answered)));
   } else {
     status_pace_.taken(now);
-    answer_askers(client_answer(*answered));
+    const bool failed = answered->status >= 500 || channel_.is_foreign();
+    answer_askers(failed ? known_or(client_answer(*answered)) : client_answer(*answered));
   }
   const auto run = answered != nullptr && answered->status == 200 ? codec::read_run_status(answered->body)
                                                                   : std::unexpected<std::string>("");
   if (run) {
     run_ = *run;
     run_heard_ = loop_.stamp_now();
-    status_body_ = answered->body;
-    status_fresh_until_ = now + kFresh;
+    known_status_.heard(answered->body, now);
     reports_.status_heard(*run, time());
   } else {
     reports_.status_failed(!std::holds_alternative<uplink::NeverSent>(outcome), time());
   }
-  watch_deadlines();
-  record_.changed();
-  pump();
+}
+
+/// Better than a failure that may be over in a second.
+intake::Answer Scoring::known_or(intake::Answer failure) const {
+  return known_status_.answer(loop_.now()).value_or(std::move(failure));
 }
 
 void Scoring::answer_askers(const intake::Answer& answer) {

@@ -8,6 +8,7 @@
 
 #include "dispatch/reports.hpp"
 #include "gateway/channel.hpp"
+#include "gateway/known_status.hpp"
 #include "gateway/record.hpp"
 #include "gateway/report_deeds.hpp"
 #include "gateway/uri_pace.hpp"
@@ -25,14 +26,22 @@ namespace adit::gateway {
 /// status, never asked for ahead of a report that may go.
 class Scoring {
  public:
-  static constexpr std::chrono::seconds kFresh{1};      // how long a status is good as an answer
+  /// Who asks for the status is told the last known one where the Command Post says nothing for so long.
+  static constexpr std::chrono::milliseconds kAskerWaits{100};
+  /// Where none is known, an answer that is under way is waited for: so long since it was asked for.
+  static constexpr std::chrono::seconds kSlow{2};
   static constexpr std::chrono::seconds kAskEvery{10};  // the status is asked for at least this often
   /// After a report the status is asked for once its client has been answered.
   static constexpr std::chrono::milliseconds kAskAfterReport{50};
 
   Scoring(loop::Loop& loop, ledger::Ledger& ledger, const settings::Settings& settings,
-          std::optional<icd::BearerToken> token, Record& record, std::mt19937_64& random);
+          std::optional<icd::BearerToken> token, Record& record, std::mt19937_64& random,
+          journal::Journal& journal);
 
+  void carry_on(const journal::Carried& carried) {
+    report_pace_.carry_on(carried, loop_.now());
+    status_pace_.carry_on(carried, loop_.now());
+  }
   /// As if something had just been sent, by whoever sent before.
   void hold_back() {
     report_pace_.sent(loop_.now());
@@ -66,13 +75,15 @@ class Scoring {
   std::optional<page::Time> run_heard() const { return run_heard_; }
   const dispatch::Reports& reports() const { return reports_; }
   /// Why the ledger cannot be written, or "".
-  const std::string& trouble() const { return deeds_.trouble(); }
+  const std::string& trouble() const {
+    return ledger_.refusal().empty() ? deeds_.trouble() : ledger_.refusal();
+  }
 
  private:
   /// Somebody who asked for the status.
   struct Asker {
     std::shared_ptr<intake::Responder> responder;
-    loop::Instant since;
+    loop::Instant until;  // then it is told what is known
   };
 
   dispatch::Time time() const { return {loop_.now(), loop_.stamp_now()}; }
@@ -81,14 +92,19 @@ class Scoring {
   void pump();
   void send(const dispatch::Report& report);
   void send_next();
-  void report_answered(uplink::Outcome outcome);
+  void report_answered(const uplink::Outcome& outcome);
+  void judge_report(const uplink::Outcome& outcome);
   void ask_status();
-  void status_answered(uplink::Outcome outcome);
+  void status_answered(const uplink::Outcome& outcome);
+  void judge_status(const uplink::Outcome& outcome);
   void answer_askers(const intake::Answer& answer);
   void watch_deadlines();
-  loop::Instant asker_deadline() const;
+  void tell_askers(loop::Instant now);
+  std::optional<loop::Instant> first_asker() const;
+  bool may_ask_soon(loop::Instant now) const;
   void deadline_came();
-  intake::Answer fresh_status() const;
+  intake::Answer no_status() const;
+  intake::Answer known_or(intake::Answer failure) const;
 
   loop::Loop& loop_;
   ledger::Ledger& ledger_;
@@ -105,8 +121,8 @@ class Scoring {
 
   std::optional<icd::RunStatus> run_;
   std::optional<page::Time> run_heard_;
-  std::optional<loop::Instant> status_fresh_until_;
-  std::string status_body_;
+  KnownStatus known_status_;
+  std::optional<loop::Instant> asked_status_;  // when that which is under way was asked for
   bool stopping_ = false;
 };
 

@@ -37,12 +37,13 @@ std::optional<icd::BearerToken> token_for(const std::string& endpoint, const Set
   return own ? std::move(own) : secrets.token(endpoint);
 }
 
-Setup::Setup(const Store& store, const FactoryReset& reset, const Store::Loaded& loaded,
+Setup::Setup(const Store& store, const FactoryReset& reset, const Store::Loaded& loaded, Meaning for_reports,
              std::function<void()> apply)
     : store_(store),
       reset_(reset),
       settings_(loaded.settings),
       saved_(loaded.saved),
+      for_reports_(std::move(for_reports)),
       apply_(std::move(apply)) {
   for (const auto& [name, token] : loaded.secrets.tokens) tokens_set_.push_back(name);
 }
@@ -65,9 +66,7 @@ std::vector<std::string> Setup::warnings(const Settings& next) const {
                                       ": open it there, and point robots and stations there"));
   }
   if (now.command_post.scoring != then.command_post.scoring) {
-    sentences.push_back(
-        icd::sentence("reports go to ", address_text(then.command_post.scoring),
-                      " from then on: those that were meant for the other are held until you say"));
+    sentences.push_back(for_reports_(address_text(then.command_post.scoring)));
   }
   if (now.command_post.mapping != then.command_post.mapping) {
     sentences.push_back(icd::sentence("maps, states and markers go to ",

@@ -14,8 +14,11 @@ namespace adit::gateway {
 /// What this gateway was built from, and how it comes to be built anew.
 class Setup final : public page::Setup {
  public:
+  /// What it means for the reports where the scoring endpoint is at this address and port from then on.
+  using Meaning = std::function<std::string(const std::string& post)>;
+
   /// `apply` ends the gateway, so that another begins. `store` and `reset` outlive this.
-  Setup(const Store& store, const FactoryReset& reset, const Store::Loaded& loaded,
+  Setup(const Store& store, const FactoryReset& reset, const Store::Loaded& loaded, Meaning for_reports,
         std::function<void()> apply);
 
   const settings::Settings& settings() const override { return settings_; }
@@ -37,6 +40,7 @@ class Setup final : public page::Setup {
   settings::Settings settings_;
   bool saved_;
   std::vector<std::string> tokens_set_;
+  Meaning for_reports_;
   std::function<void()> apply_;
   bool applying_ = false;
 };

@@ -1,18 +1,21 @@
 #include "gateway/spool.hpp"
 
+#include <sys/statvfs.h>
+#include <unistd.h>
+
 #include <algorithm>
 #include <array>
+#include <cerrno>
 #include <charconv>
 #include <cstdio>
+#include <cstring>
 #include <filesystem>
-#include <fstream>
 #include <optional>
 #include <string_view>
 
-#include "codec/body_decoder.hpp"
-#include "codec/read.hpp"
-#include "codec/write.hpp"
+#include "gateway/kept_message.hpp"
 #include "host/log.hpp"
+#include "icd/sentence.hpp"
 
 namespace adit::gateway {
 namespace {
@@ -20,7 +23,9 @@ namespace {
 namespace fs = std::filesystem;
 
 constexpr std::string_view kState = "/state.cbor", kMarkers = "/markers.cbor";
-constexpr std::string_view kMap = "map-", kEnding = ".cbor", kPart = ".part";
+/// What a map's file takes beside the map's data, in whole pages.
+constexpr std::uint64_t kBeside = 8192;
+constexpr std::string_view kMap = "map-", kEnding = ".cbor";
 
 /// The number in "map-00000012.cbor"; nothing for another file.
 std::optional<std::uint64_t> number_in(std::string_view name) {
@@ -33,42 +38,26 @@ std::optional<std::uint64_t> number_in(std::string_view name) {
   return number;
 }
 
-void write(const std::string& path, const icd::ChunkedBytes& bytes) {
-  const std::string part = path + std::string(kPart);
-  std::ofstream file(part, std::ios::binary);
-  for (const auto& chunk : bytes.chunks()) {
-    file.write(reinterpret_cast<const char*>(chunk->data()), static_cast<std::streamsize>(chunk->size()));
-  }
-  file.close();
-  std::error_code error;
-  if (file) fs::rename(part, path, error);
-  if (file && !error) return;
-  fs::remove(part, error);
-  host::log(host::Level::Warning, "a waiting message is kept in memory alone", {{"file", path}});
+std::unexpected<icd::Refusal> not_kept(const std::string& why) {
+  return std::unexpected(icd::Refusal{icd::Status::ServiceUnavailable,
+                                      "this map cannot be kept: " + why + "; send it again later"});
 }
 
-icd::Checked<codec::Document> decode(const std::string& path, codec::Split split, const icd::Rules& rules) {
-  codec::BodyDecoder decoder({codec::Format::Cbor, codec::ContentCoding::Identity}, split,
-                             {.text_bytes = 64u << 20, .data_bytes = rules.map_bytes});
-  std::ifstream file(path, std::ios::binary);
-  std::vector<char> piece(icd::ChunkedBytes::kChunk);
-  while (file.read(piece.data(), static_cast<std::streamsize>(piece.size())) || file.gcount() > 0) {
-    const auto fed = decoder.feed(
-        {reinterpret_cast<const std::uint8_t*>(piece.data()), static_cast<std::size_t>(file.gcount())});
-    if (!fed) return std::unexpected(fed.error());
-  }
-  return decoder.finish();
+/// What is left in the folder's file system for this user and for maps; an error is its errno.
+std::expected<std::uint64_t, int> room_in(const std::string& folder, std::uint64_t left_to_others) {
+  struct statvfs room{};
+  if (::statvfs(folder.c_str(), &room) != 0) return std::unexpected(errno);
+  const std::uint64_t left = std::uint64_t{room.f_bavail} * room.f_frsize;
+  return left - std::min({left, left_to_others, std::uint64_t{room.f_blocks} * room.f_frsize / 4});
 }
 
 /// The message in one file, which is set aside where it cannot be understood.
-template <class Message, class Reader>
-std::optional<Message> read_file(const std::string& path, codec::Split split, const icd::Rules& rules,
-                                 const Reader& reader) {
+template <class Message>
+std::optional<Message> message_in(const std::string& path,
+                                  icd::Checked<Message> (*read)(const std::string&)) {
   std::error_code error;
   if (!fs::exists(path, error)) return std::nullopt;
-  auto document = decode(path, split, rules);
-  icd::Checked<Message> message = document ? reader(std::move(*document), rules)
-                                           : icd::Checked<Message>(std::unexpected(document.error()));
+  icd::Checked<Message> message = read(path);
   if (message) return std::move(*message);
   host::log(host::Level::Error, "a kept message could not be read and is set aside",
             {{"file", path}, {"why", message.error().sentence}});
@@ -78,10 +67,14 @@ std::optional<Message> read_file(const std::string& path, codec::Split split, co
 
 }  // namespace
 
-Spool::Spool(std::string folder) : folder_(std::move(folder)) {
-  std::error_code error;
-  fs::create_directories(folder_, error);
-  fs::permissions(folder_, fs::perms::owner_all, error);
+Spool::Spool(std::string folder, std::uint64_t left_to_others)
+    : folder_(std::move(folder)), left_to_others_(left_to_others) {
+  make_folder_of_ours(folder_);
+}
+
+std::string Spool::trouble() const {
+  if (::access(folder_.c_str(), W_OK | X_OK) == 0) return "";
+  return folder_ + ": " + std::strerror(errno);
 }
 
 std::string Spool::file_of(std::uint64_t number) const {
@@ -90,8 +83,28 @@ std::string Spool::file_of(std::uint64_t number) const {
   return folder_ + "/" + std::string(kMap) + digits.data() + std::string(kEnding);
 }
 
-void Spool::keep(std::uint64_t number, const icd::MapUpdate& map) const {
-  write(file_of(number), codec::write_map_update(map));
+bool Spool::has_room(std::uint64_t bytes) const {
+  const auto room = room_in(folder_, left_to_others_);
+  return room && *room >= bytes;
+}
+
+std::shared_ptr<MapFile> Spool::begin() const {
+  return std::make_shared<MapFile>(folder_ + "/arriving");
+}
+
+icd::Checked<icd::MapUpdate> Spool::keep(std::uint64_t number, icd::MapUpdate map, std::uint64_t spare,
+                                         std::shared_ptr<MapFile> begun) const {
+  if (::access(folder_.c_str(), F_OK) != 0) make_folder_of_ours(folder_);
+  const std::string path = file_of(number);
+  if (!begun || !begun->begins(map.data.bytes)) begun = std::make_shared<MapFile>(path);
+  const auto room = room_in(folder_, left_to_others_);
+  if (!room) return not_kept(folder_ + ": " + std::strerror(room.error()));
+  if (*room < map.data.bytes.size() - begun->stored_bytes() + kBeside + spare) {
+    return not_kept(icd::sentence("the room for maps that wait is full (", *room >> 20, " MiB are left)"));
+  }
+  if (const int error = begun->finish(map, path); error != 0)
+    return not_kept(path + ": " + std::strerror(error));
+  return map;
 }
 
 void Spool::forget(std::uint64_t number) const {
@@ -99,36 +112,33 @@ void Spool::forget(std::uint64_t number) const {
   fs::remove(file_of(number), error);
 }
 
-void Spool::keep(const icd::StateUpdate& state, const icd::MarkersUpdate& markers) const {
+void Spool::forget_state() const {
   std::error_code error;
-  const std::string state_file = folder_ + std::string(kState),
-                    markers_file = folder_ + std::string(kMarkers);
-  state.poses.empty() ? void(fs::remove(state_file, error))
-                      : write(state_file, codec::write_state_update(state));
-  markers.markers.empty() ? void(fs::remove(markers_file, error))
-                          : write(markers_file, codec::write_markers_update(markers));
+  fs::remove(folder_ + std::string(kState), error);
 }
 
-Spool::Kept Spool::read(const icd::Rules& rules) const {
+void Spool::forget_markers() const {
+  std::error_code error;
+  fs::remove(folder_ + std::string(kMarkers), error);
+}
+
+Spool::Kept Spool::read() const {
+  remove_parts(folder_);
   std::vector<std::uint64_t> numbers;
   std::error_code error;
   for (const auto& file : fs::directory_iterator(folder_, error)) {
     if (const auto number = number_in(file.path().filename().string())) numbers.push_back(*number);
-    if (file.path().extension() == kPart) fs::remove(file.path(), error);  // a kill came while it was written
   }
   std::ranges::sort(numbers);
   Kept kept;
   for (const std::uint64_t number : numbers) {
-    auto map =
-        read_file<icd::MapUpdate>(file_of(number), codec::Split::MapData, rules, codec::read_map_update);
-    if (map) kept.maps.emplace_back(number, std::move(*map));
+    auto map = message_in(file_of(number), read_map);
+    if (!map) continue;
+    MapFile::show(*map, file_of(number));
+    kept.maps.emplace_back(number, std::move(*map));
   }
-  kept.state = read_file<icd::StateUpdate>(folder_ + std::string(kState), codec::Split::Nothing, rules,
-                                           codec::read_state_update)
-                   .value_or(icd::StateUpdate{});
-  kept.markers = read_file<icd::MarkersUpdate>(folder_ + std::string(kMarkers), codec::Split::Nothing, rules,
-                                               codec::read_markers_update)
-                     .value_or(icd::MarkersUpdate{});
+  kept.state = message_in(folder_ + std::string(kState), read_state).value_or(icd::StateUpdate{});
+  kept.markers = message_in(folder_ + std::string(kMarkers), read_markers).value_or(icd::MarkersUpdate{});
   return kept;
 }
 

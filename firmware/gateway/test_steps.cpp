@@ -3,6 +3,7 @@
 #include <cerrno>
 #include <cmath>
 
+#include "dispatch/mapping_verdict.hpp"
 #include "icd/sentence.hpp"
 
 namespace adit::gateway::steps {
@@ -25,7 +26,8 @@ const char* name_of(Asked asked) {
 
 /// The mapping endpoint is asked an empty question, so that what is wrong is the question: it has got past
 /// the token.
-bool took_the_token(Asked asked, int status) {
+bool took_the_token(Asked asked, int status, dispatch::Body body) {
+  if (body == dispatch::Body::Other) return false;  // a page is no answer of a Command Post
   if (status >= 200 && status < 300) return true;
   return asked == Asked::Mapping && (status == 400 || status == 415 || status == 422);
 }
@@ -134,9 +136,10 @@ TestStep token(Asked asked, const uplink::Outcome& outcome) {
         "The server takes connections but gave no answer: try again, then ask the Command Post's crew.");
   }
   const int status = answer->status;
-  if (took_the_token(asked, status))
+  const dispatch::Body body = dispatch::body_of(answer->body);
+  if (took_the_token(asked, status, body))
     return good("token", icd::sentence("the ", name_of(asked), " token is taken"));
-  if (status == 401 || status == 403) {
+  if ((status == 401 || status == 403) && body != dispatch::Body::Other) {
     return bad("token",
                icd::sentence("the ", name_of(asked), " token is refused; ", answered(status, answer->body)),
                "Enter the token anew, to the letter; scoring and mapping may have different ones.");

@@ -23,8 +23,8 @@ icd::Refusal cannot(const std::string& why) {
 /// On the loop but for write_now(), of which one runs at a time.
 class UpdateUpload::Writing : public std::enable_shared_from_this<Writing> {
  public:
-  Writing(loop::Workers& workers, Ends ends, loop::FileDescriptor file)
-      : workers_(workers), ends_(std::move(ends)), file_(std::move(file)) {}
+  Writing(loop::Writer& writer, Ends ends, loop::FileDescriptor file)
+      : writer_(writer), ends_(std::move(ends)), file_(std::move(file)) {}
 
   bool take(std::span<const std::uint8_t> piece) {
     received_ += piece.size();
@@ -54,10 +54,15 @@ class UpdateUpload::Writing : public std::enable_shared_from_this<Writing> {
  private:
   void write_waiting() {
     busy_ = true;
-    workers_.submit(
+    writer_.submit(
         [self = shared_from_this(), bytes = std::exchange(waiting_, {})] { self->write_now(bytes); },
         [self = shared_from_this()] {
           self->busy_ = false;
+          self->go_on();
+        },
+        [self = shared_from_this()] {
+          self->busy_ = false;
+          self->error_ = ENOMEM;
           self->go_on();
         });
   }
@@ -105,25 +110,25 @@ class UpdateUpload::Writing : public std::enable_shared_from_this<Writing> {
     return ends_.asked();
   }
 
-  loop::Workers& workers_;
+  loop::Writer& writer_;
   Ends ends_;
   loop::FileDescriptor file_;
   std::vector<std::uint8_t> waiting_;
   std::uint64_t received_ = 0;
-  int error_ = 0;         // of the worker's, read while none is busy
-  bool busy_ = false;     // a worker writes
+  int error_ = 0;         // of the writer's, read while it is not busy
+  bool busy_ = false;     // the writer is at it
   bool held_ = false;     // whoever sends is waiting
   bool dropped_ = false;  // nothing is left to do
   std::function<void(icd::Checked<void>)> done_;
 };
 
-icd::Checked<std::unique_ptr<UpdateUpload>> UpdateUpload::begin(loop::Workers& workers, Ends ends) {
+icd::Checked<std::unique_ptr<UpdateUpload>> UpdateUpload::begin(loop::Writer& writer, Ends ends) {
   unlink(ends.part.c_str());
   loop::FileDescriptor file(
       ::open(ends.part.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_NOFOLLOW | O_CLOEXEC, 0600));
   if (!file) return std::unexpected(cannot(std::strerror(errno)));
   return std::unique_ptr<UpdateUpload>(
-      new UpdateUpload(std::make_shared<Writing>(workers, std::move(ends), std::move(file))));
+      new UpdateUpload(std::make_shared<Writing>(writer, std::move(ends), std::move(file))));
 }
 
 UpdateUpload::~UpdateUpload() {

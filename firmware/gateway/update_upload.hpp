@@ -11,7 +11,7 @@
 
 namespace adit::gateway {
 
-/// A bundle that is written as it comes, by a worker: a slow disk is back-pressure to whoever sends it, and
+/// A bundle that is written as it comes, by the writer: a slow disk is back-pressure to whoever sends it, and
 /// never holds up the loop.
 class UpdateUpload final : public page::Upload {
  public:
@@ -26,8 +26,8 @@ class UpdateUpload final : public page::Upload {
     std::function<icd::Checked<void>()> asked;  // it is whole: asks for the installation
     std::function<void()> over;                 // nothing of it is left to do
   };
-  /// Refused where the file cannot be made. `workers` outlives this.
-  static icd::Checked<std::unique_ptr<UpdateUpload>> begin(loop::Workers& workers, Ends ends);
+  /// Refused where the file cannot be made. `writer` outlives this.
+  static icd::Checked<std::unique_ptr<UpdateUpload>> begin(loop::Writer& writer, Ends ends);
   ~UpdateUpload() override;
   UpdateUpload(const UpdateUpload&) = delete;
   UpdateUpload& operator=(const UpdateUpload&) = delete;
@@ -39,7 +39,7 @@ class UpdateUpload final : public page::Upload {
  private:
   class Writing;
   explicit UpdateUpload(std::shared_ptr<Writing> writing) : writing_(std::move(writing)) {}
-  std::shared_ptr<Writing> writing_;  // shared with the worker's jobs
+  std::shared_ptr<Writing> writing_;  // shared with the writer's jobs
 };
 
 }  // namespace adit::gateway

@@ -33,9 +33,9 @@ std::optional<icd::Refusal> no_room(const std::string& folder, std::uint64_t siz
 
 }  // namespace
 
-Updates::Updates(loop::Loop& loop, loop::Workers& workers, UpdateRequests requests,
+Updates::Updates(loop::Loop& loop, loop::Writer& writer, UpdateRequests requests,
                  std::function<std::string()> under_way)
-    : loop_(loop), workers_(workers), requests_(std::move(requests)), under_way_(std::move(under_way)) {
+    : loop_(loop), writer_(writer), requests_(std::move(requests)), under_way_(std::move(under_way)) {
   unlink(requests_.part_file().c_str());  // of an upload that a power cut broke off
 }
 
@@ -95,12 +95,12 @@ icd::Checked<std::unique_ptr<page::Upload>> Updates::receive(std::uint64_t size,
   if (auto why = hindrance()) return std::unexpected(std::move(*why));
   if (auto why = no_room(requests_.state_folder(), size)) return std::unexpected(std::move(*why));
   auto upload = UpdateUpload::begin(
-      workers_, {.part = requests_.part_file(),
-                 .whole = requests_.bundle_file(),
-                 .size = size,
-                 .resume = std::move(resume),
-                 .asked = [this, again] { return ask(update::Request::What::Install, again); },
-                 .over = [this] { receiving_ = nullptr; }});
+      writer_, {.part = requests_.part_file(),
+                .whole = requests_.bundle_file(),
+                .size = size,
+                .resume = std::move(resume),
+                .asked = [this, again] { return ask(update::Request::What::Install, again); },
+                .over = [this] { receiving_ = nullptr; }});
   if (!upload) return std::unexpected(std::move(upload.error()));
   host::log(host::Level::Notice, "an update is being received", {{"bytes", std::to_string(size)}});
   receiving_ = upload->get();

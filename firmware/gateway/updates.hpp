@@ -23,7 +23,7 @@ class Updates final : public page::Updates {
   static constexpr std::uint64_t kSpared = 16 << 20;
 
   /// `under_way`: a sentence about the report that the Command Post is being sent, or "". All outlive this.
-  Updates(loop::Loop& loop, loop::Workers& workers, UpdateRequests requests,
+  Updates(loop::Loop& loop, loop::Writer& writer, UpdateRequests requests,
           std::function<std::string()> under_way);
 
   page::UpdateView update() const override;
@@ -47,7 +47,7 @@ class Updates final : public page::Updates {
   icd::Checked<void> ask(update::Request::What what, bool again);
 
   loop::Loop& loop_;
-  loop::Workers& workers_;
+  loop::Writer& writer_;
   UpdateRequests requests_;
   std::function<std::string()> under_way_;
   std::uint64_t expected_ = 0;               // bytes of what is being received; 0: nothing is

@@ -14,26 +14,32 @@ void ChunkedBytes::swap(ChunkedBytes& other) noexcept {
 }
 
 /// The last chunk where it has room and nobody else can see it, else a new one.
-std::vector<std::uint8_t>& ChunkedBytes::open_chunk() {
+void ChunkedBytes::open_chunk() {
   constexpr long kOurs = 2;  // open_ and chunks_.back()
   if (open_ && open_->size() < kChunk && open_.use_count() == kOurs) {
     std::atomic_thread_fence(std::memory_order_acquire);  // whoever shared it has let go of it before this
-    return *open_;
+    return;
   }
   open_ = std::make_shared<std::vector<std::uint8_t>>();
-  chunks_.push_back(open_);
-  return *open_;
+  chunks_.emplace_back(open_, *open_);
+}
+
+/// Adds to the open chunk, which has room for it.
+void ChunkedBytes::grow(std::span<const std::uint8_t> piece) {
+  std::vector<std::uint8_t>& chunk = *open_;
+  if (chunk.capacity() - chunk.size() < piece.size()) {
+    chunk.reserve(std::min(kChunk, std::max(chunk.size() + piece.size(), 2 * chunk.capacity())));
+  }
+  chunk.insert(chunk.end(), piece.begin(), piece.end());
+  chunks_.back().bytes_ = chunk;
+  size_ += piece.size();
 }
 
 void ChunkedBytes::append(std::span<const std::uint8_t> bytes) {
   while (!bytes.empty()) {
-    auto& chunk = open_chunk();
-    const auto piece = bytes.first(std::min(bytes.size(), kChunk - chunk.size()));
-    if (chunk.capacity() - chunk.size() < piece.size()) {
-      chunk.reserve(std::min(kChunk, std::max(chunk.size() + piece.size(), 2 * chunk.capacity())));
-    }
-    chunk.insert(chunk.end(), piece.begin(), piece.end());
-    size_ += piece.size();
+    open_chunk();
+    const auto piece = bytes.first(std::min(bytes.size(), kChunk - open_->size()));
+    grow(piece);
     bytes = bytes.subspan(piece.size());
   }
 }
@@ -51,7 +57,16 @@ void ChunkedBytes::append(std::vector<std::uint8_t>&& chunk) {
   if (chunk.size() > kChunk) return append(std::span<const std::uint8_t>(chunk));
   open_.reset();
   size_ += chunk.size();
-  chunks_.push_back(std::make_shared<const std::vector<std::uint8_t>>(std::move(chunk)));
+  const auto owner = std::make_shared<const std::vector<std::uint8_t>>(std::move(chunk));
+  chunks_.emplace_back(owner, *owner);
+}
+
+void ChunkedBytes::append(const std::shared_ptr<const void>& owner, std::span<const std::uint8_t> bytes) {
+  if (!bytes.empty()) open_.reset();
+  size_ += bytes.size();
+  for (; !bytes.empty(); bytes = bytes.subspan(std::min(bytes.size(), kChunk))) {
+    chunks_.emplace_back(owner, bytes.first(std::min(bytes.size(), kChunk)));
+  }
 }
 
 ChunkedBytes::Chunk ChunkedBytes::pop_front() {

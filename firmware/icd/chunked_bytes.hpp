@@ -5,19 +5,36 @@
 #include <memory>
 #include <span>
 #include <string>
+#include <utility>
 #include <vector>
 
 namespace adit::icd {
 
+/// Some bytes and whatever keeps them alive: a vector of their own, or a file that is mapped into memory.
+class Chunk {
+ public:
+  Chunk() = default;
+  Chunk(std::shared_ptr<const void> owner, std::span<const std::uint8_t> bytes)
+      : owner_(std::move(owner)), bytes_(bytes) {}
+  std::span<const std::uint8_t> operator*() const { return bytes_; }
+  const std::span<const std::uint8_t>* operator->() const { return &bytes_; }
+  const std::shared_ptr<const void>& owner() const { return owner_; }
+
+ private:
+  friend class ChunkedBytes;
+  std::shared_ptr<const void> owner_;
+  std::span<const std::uint8_t> bytes_;
+};
+
 /// Bulk bytes in chunks of at most kChunk that are shared and never changed once written, so that a map is
-/// queued, merged with another, sent and sent again without a second copy.
+/// queued, merged with another, sent and sent again without a second copy, wherever its bytes are.
 ///
 /// Copying a ChunkedBytes shares its chunks. Not for use by two threads at once, though chunks may be shared
 /// across threads.
 class ChunkedBytes {
  public:
   static constexpr std::size_t kChunk = std::size_t{64} * 1024;
-  using Chunk = std::shared_ptr<const std::vector<std::uint8_t>>;
+  using Chunk = icd::Chunk;
 
   ChunkedBytes() = default;
   ChunkedBytes(const ChunkedBytes&) = default;
@@ -36,6 +53,8 @@ class ChunkedBytes {
   void append(const ChunkedBytes& other);
   /// Takes a whole chunk over, without a copy where it is no larger than kChunk.
   void append(std::vector<std::uint8_t>&& chunk);
+  /// Shows `bytes`, of any size, which live and do not change while `owner` lives, without a copy.
+  void append(const std::shared_ptr<const void>& owner, std::span<const std::uint8_t> bytes);
 
   /// All bytes, in order; no chunk is empty.
   std::span<const Chunk> chunks() const { return std::span(chunks_).subspan(first_); }
@@ -54,7 +73,8 @@ class ChunkedBytes {
 
  private:
   void swap(ChunkedBytes& other) noexcept;
-  std::vector<std::uint8_t>& open_chunk();
+  void grow(std::span<const std::uint8_t> piece);
+  void open_chunk();
 
   std::vector<Chunk> chunks_;
   std::size_t first_ = 0;                            // of chunks_ that has not been popped

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <cstddef>
 #include <cstdint>
 #include <string>
 #include <vector>
@@ -11,8 +12,26 @@ namespace adit::icd {
 
 enum class MarkerAction : std::uint8_t { Add = 0, Delete = 2, DeleteAll = 3 };
 
-/// The largest type of ROS's visualization_msgs/Marker (TRIANGLE_LIST).
-inline constexpr std::int32_t kLastMarkerType = 11;
+/// The types of ROS's visualization_msgs/Marker. Those from LineStrip to Points, and TriangleList, are made
+/// of `points`; an Arrow may be given by two of them, its tail and its tip.
+enum class MarkerType : std::int32_t {
+  Arrow,
+  Cube,
+  Sphere,
+  Cylinder,
+  LineStrip,
+  LineList,
+  CubeList,
+  SphereList,
+  Points,
+  TextViewFacing,
+  MeshResource,
+  TriangleList,
+};
+inline constexpr auto kLastMarkerType = static_cast<std::int32_t>(MarkerType::TriangleList);
+
+inline constexpr std::size_t kMostMarkerPoints = 100'000;
+inline constexpr std::size_t kLongestMeshResource = 4096;  // bytes
 
 /// Each component from 0 to 1.
 struct Color {
@@ -20,20 +39,31 @@ struct Color {
   friend bool operator==(const Color&, const Color&) = default;
 };
 
-/// One of POST /markers/update (ICD 6.6). For Delete and DeleteAll only ns and id mean anything.
+/// One of POST /markers/update (ICD 6.6): a whole visualization_msgs/Marker of ROS 1, which the ICD encodes
+/// (2.2) and lists in part. For Delete and DeleteAll only ns and id mean anything.
 struct Marker {
   Header header;
   std::string ns;
   std::int32_t id = 0;
-  std::int32_t type = 0;  // 0 to kLastMarkerType
+  std::int32_t type = 0;  // a MarkerType
   MarkerAction action = MarkerAction::Add;
   Pose pose;
   Point scale;  // metres
   Color color;
   double lifetime = 0;  // seconds, not negative; 0: for ever
   std::string text;
+  bool frame_locked = false;       // drawn anew in its frame as that moves
+  std::vector<Point> points = {};  // metres from `pose`; at most kMostMarkerPoints
+  std::vector<Color> colors = {};  // as they came; of use where there is one for each point, or each triangle
+  std::string mesh_resource = {};  // the URL of a MeshResource; at most kLongestMeshResource
+  bool mesh_use_embedded_materials = false;
+
+  bool is(MarkerType other) const { return type == static_cast<std::int32_t>(other); }
   friend bool operator==(const Marker&, const Marker&) = default;
 };
+
+/// What a marker takes in memory and in a message: no less than either, and little more than the larger.
+std::size_t bytes_of(const Marker& marker);
 
 struct MarkersUpdate {
   std::vector<Marker> markers;

@@ -75,8 +75,9 @@ Checked<void> check(const OccupancyGrid& grid, const Rules& rules) {
   if (auto checked = check_side("msg.info.height", grid.height); !checked) return checked;
   const std::uint64_t cells = std::uint64_t{grid.width} * grid.height;
   if (cells <= rules.map_bytes) return {};
-  return unprocessable("msg.info.width: expected at most ", rules.map_bytes, " cells, got ", grid.width,
-                       " x ", grid.height, " = ", cells);
+  const char* const cure = cells <= kMostMapBytes ? " (the setting rules.map_bytes)" : "";
+  return unprocessable("msg.info.width: expected at most ", rules.map_bytes, " cells", cure, ", got ",
+                       grid.width, " x ", grid.height, " = ", cells);
 }
 
 Checked<void> check_size(const OccupancyGrid& grid, std::size_t bytes) {
@@ -118,7 +119,8 @@ Checked<void> check_size(const PointCloud2& cloud, std::size_t bytes) {
 
 Checked<void> check_frame_id(std::string_view frame_id, std::string_view path, const Rules& rules) {
   if (frame_id == kFrame || rules.rewrite_frame_id) return {};
-  return unprocessable(path, ": expected \"", kFrame, "\", got ", in_quotes(frame_id));
+  return unprocessable(path, ": expected \"", kFrame, "\", got ", in_quotes(frame_id),
+                       " (the setting rules.rewrite_frame_id takes any)");
 }
 
 }  // namespace adit::icd

@@ -18,6 +18,8 @@ inline constexpr std::uint32_t kMostCellsASide = 0x7fffffff;  // width and heigh
 inline constexpr std::uint32_t kLargestPoint = 65536;         // bytes; far above any sensor's
 inline constexpr std::size_t kMostFields = 256;
 
+inline constexpr std::size_t kMostMapBytes = std::size_t{1} << 30;  // what rules.map_bytes may be set to
+
 /// Where a team may bend the ICD's rules, by its settings.
 struct Rules {
   bool rewrite_frame_id = false;       // take any frame_id and send "darpa" (else 422)

@@ -21,6 +21,11 @@ std::string number_text(double number) {
   return {digits.data(), end};
 }
 
+std::string real_text(double number) {
+  const std::string text = number_text(number);
+  return text.find_first_of(".en") == std::string::npos ? text + ".0" : text;  // n: nan and inf
+}
+
 std::string in_quotes(std::string_view text) {
   const bool cut = text.size() > kMostQuoted;
   if (cut) {

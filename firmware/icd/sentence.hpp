@@ -12,6 +12,9 @@ namespace adit::icd {
 /// A number as a sentence shows it: in the fewest digits that say which double it is.
 std::string number_text(double number);
 
+/// The same, and never as a whole number: with ".0" where there would be neither point nor exponent.
+std::string real_text(double number);
+
 /// What a sender wrote, for a sentence: in quotation marks, on one line, at most 40 bytes of it.
 std::string in_quotes(std::string_view text);
 

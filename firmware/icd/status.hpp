@@ -1,5 +1,6 @@
 #pragma once
 
+#include <cstddef>
 #include <cstdint>
 #include <expected>
 #include <string>
@@ -32,6 +33,7 @@ enum class Status : std::uint16_t {
 struct Refusal {
   Status status = Status::UnprocessableEntity;
   std::string sentence;
+  std::size_t parts = 0;  // of a state or of markers, that it is about; 0: it is about a message
   friend bool operator==(const Refusal&, const Refusal&) = default;
 };
 

@@ -8,6 +8,7 @@
 #include <sys/socket.h>
 
 #include <algorithm>
+#include <atomic>
 #include <utility>
 
 #include "intake/answer.hpp"
@@ -20,11 +21,22 @@ namespace {
 /// How long libmicrohttpd has for the last bytes of a client that sends no more.
 constexpr std::chrono::milliseconds kAfterEnd(100);
 
+/// A process may have several servers, and tests have several loops.
+std::uint64_t next_number() {
+  static std::atomic<std::uint64_t> last = 0;
+  return ++last;
+}
+
 }  // namespace
 
 Client::Client(Engine& engine, loop::Loop& loop, MHD_Connection* connection, int fd, std::string peer,
                std::string local)
-    : engine_(engine), connection_(connection), fd_(fd), peer_(std::move(peer)), local_(std::move(local)) {
+    : engine_(engine),
+      connection_(connection),
+      fd_(fd),
+      number_(next_number()),
+      peer_(std::move(peer)),
+      local_(std::move(local)) {
   // libmicrohttpd does not look at the sockets of suspended connections, and misses an end that comes
   // together with the last bytes. Edge-triggered, because an ended direction would be reported over and over.
   hang_up_ = loop.watch(fd, EPOLLRDHUP | EPOLLET, [this](std::uint32_t events) { happened(events); });

@@ -43,6 +43,7 @@ class Client {
   Client& operator=(const Client&) = delete;
 
   MHD_Connection* connection() const { return connection_; }
+  std::uint64_t number() const { return number_; }  // RequestHead::connection()
   const std::string& peer() const { return peer_; }
   const std::string& local() const { return local_; }
   Engine& engine() const { return engine_; }
@@ -89,6 +90,7 @@ class Client {
   Engine& engine_;
   MHD_Connection* connection_;
   int fd_;
+  std::uint64_t number_;
   std::string peer_, local_;
   std::string target_;
   Phase phase_ = Phase::Head;

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <functional>
+#include <memory>
 #include <string>
 
 #include "icd/artifact_report.hpp"
@@ -17,8 +18,27 @@ namespace adit::intake {
 /// Who sent a message and how large it came.
 struct Sender {
   std::string address;
-  std::size_t bytes = 0;   // of the body as received
-  bool resubmits = false;  // a report: to be sent as a new one, though it be the same as an earlier one
+  std::size_t bytes = 0;         // of the body as received
+  std::uint64_t connection = 0;  // RequestHead::connection()
+  bool resubmits = false;        // a report: to be sent as a new one, though it be the same as an earlier one
+};
+
+/// A map on its way in. Dropped before it is taken, nothing of it is left.
+class MapArrival {
+ public:
+  virtual ~MapArrival() = default;
+
+  /// Keeps `bytes` of its data, which follow those before, so that they need not be held in memory; then
+  /// calls `done` on the loop with those that there was no room for: a part of them and all after it.
+  virtual void store(icd::ChunkedBytes bytes, std::function<void(icd::ChunkedBytes left)> done) = 0;
+  /// All that was stored. For any thread, while nothing is being stored.
+  virtual icd::Checked<icd::ChunkedBytes> stored() = 0;
+
+  /// It is whole and checked. Keeps and queues it, and calls `done` on the loop once it is kept, so that it
+  /// outlives the service, or with why not (a queue is full: 429; there is no room: 503). Then its sender is
+  /// answered. Costs least where its data begins with stored().
+  virtual void take(icd::MapUpdate update, const Sender& sender,
+                    std::function<void(icd::Checked<void>)> done) = 0;
 };
 
 /// What the team's messages are handed to once they have passed every check. Called on the loop.
@@ -26,9 +46,10 @@ class Desk {
  public:
   virtual ~Desk() = default;
 
+  /// A map begins to come.
+  virtual std::shared_ptr<MapArrival> map_arrives() = 0;
   /// Queues the message, or says why not (a queue is full: 429). On success the sender is answered 200
   /// `null`.
-  virtual icd::Checked<void> take(icd::MapUpdate update, const Sender& sender) = 0;
   virtual icd::Checked<void> take(const icd::StateUpdate& update, const Sender& sender) = 0;
   virtual icd::Checked<void> take(const icd::MarkersUpdate& update, const Sender& sender) = 0;
 

@@ -23,12 +23,13 @@ Framing framing_of(MHD_Connection* connection);
 class Head final : public RequestHead {
  public:
   Head(MHD_Connection* connection, std::string_view method, Target target, const std::string& peer,
-       const std::string& local, std::optional<std::uint64_t> length)
+       const std::string& local, std::uint64_t number, std::optional<std::uint64_t> length)
       : connection_(connection),
         method_(method),
         target_(std::move(target)),
         peer_(peer),
         local_(local),
+        number_(number),
         length_(length) {}
 
   std::string_view method() const override { return method_; }
@@ -38,6 +39,7 @@ class Head final : public RequestHead {
   std::optional<std::uint64_t> content_length() const override { return length_; }
   const std::string& peer() const override { return peer_; }
   const std::string& local() const override { return local_; }
+  std::uint64_t connection() const override { return number_; }
 
  private:
   MHD_Connection* connection_;
@@ -45,6 +47,7 @@ class Head final : public RequestHead {
   Target target_;
   const std::string& peer_;
   const std::string& local_;
+  std::uint64_t number_;
   std::optional<std::uint64_t> length_;
 };
 

@@ -7,6 +7,7 @@
 #include "codec/body_decoder.hpp"
 #include "icd/sentence.hpp"
 #include "intake/map_upload.hpp"
+#include "intake/markers_upload.hpp"
 #include "intake/small_upload.hpp"
 #include "intake/visit.hpp"
 
@@ -57,6 +58,10 @@ icd::Checked<bool> resubmits_of(const RequestHead& head) {
   return icd::unprocessable("Adit-Resubmit: expected yes or no such header, got ", icd::in_quotes(word));
 }
 
+icd::Refusal stops() {
+  return {icd::Status::ServiceUnavailable, "the gateway is stopping; this was not taken, send it again"};
+}
+
 }  // namespace
 
 IcdRoutes::IcdRoutes(IcdOptions options, Desk& desk, loop::Workers& workers, Handler& other)
@@ -76,6 +81,7 @@ bool IcdRoutes::may_enter(const RequestHead& head) const {
 }
 
 std::size_t IcdRoutes::most_bytes(icd::Uri uri) const {
+  if (uri == icd::Uri::MarkersUpdate) return MarkersUpload::kMost;
   if (uri != icd::Uri::MapUpdate) return kSmallBody;
   return options_.rules.map_bytes / 3 * 4 + kSmallBody;  // base64
 }
@@ -88,6 +94,7 @@ std::unique_ptr<Exchange> IcdRoutes::open(const RequestHead& head, std::shared_p
   const auto length = head.content_length();
   Sender sender;
   sender.address = head.peer();
+  sender.connection = head.connection();
   sender.bytes = static_cast<std::size_t>(length.value_or(0));
   Visit visit{
       .desk = desk_, .uri = *uri, .sender = std::move(sender), .responder = with_cors(std::move(responder))};
@@ -114,6 +121,10 @@ std::unique_ptr<Exchange> IcdRoutes::open(const RequestHead& head, std::shared_p
 
 std::unique_ptr<Exchange> IcdRoutes::take_in(Visit visit, const RequestHead& head,
                                              std::shared_ptr<Flow> flow) {
+  if (stopping_ && visit.uri != icd::Uri::ArtifactReports) {
+    visit.refuse(stops());
+    return nullptr;
+  }
   const auto kind = kind_of(visit.uri, head);
   if (!kind) {
     visit.refuse(kind.error());
@@ -133,12 +144,22 @@ std::unique_ptr<Exchange> IcdRoutes::take_in(Visit visit, const RequestHead& hea
                   icd::sentence("Content-Length: expected at most ", most, ", got ", *length)});
     return nullptr;
   }
+  if (visit.uri == icd::Uri::MarkersUpdate) {
+    return std::make_unique<MarkersUpload>(std::move(visit), *kind, options_.rules, workers_, budget_,
+                                           under_way_);
+  }
   if (visit.uri != icd::Uri::MapUpdate) {
-    return std::make_unique<SmallUpload>(std::move(visit), *kind, options_.rules);
+    return std::make_unique<SmallUpload>(std::move(visit), *kind, options_.rules, under_way_);
   }
   return std::make_unique<MapUpload>(
       std::move(visit), MapUploadOptions{.kind = *kind, .rules = options_.rules, .most_bytes = most},
-      std::move(flow), workers_, budget_);
+      std::move(flow), workers_, budget_, under_way_);
+}
+
+void IcdRoutes::stop() {
+  stopping_ = true;
+  const Upload::UnderWay all = *under_way_;
+  for (Upload* upload : all) upload->turn_away(stops());
 }
 
 std::unique_ptr<Exchange> NotFound::open(const RequestHead&, std::shared_ptr<Responder> responder,

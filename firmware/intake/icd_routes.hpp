@@ -10,6 +10,7 @@
 #include "icd/rules.hpp"
 #include "intake/desk.hpp"
 #include "intake/server.hpp"
+#include "intake/upload.hpp"
 #include "loop/workers.hpp"
 
 namespace adit::intake {
@@ -22,11 +23,12 @@ struct IcdOptions {
   std::vector<icd::BearerToken> tokens;  // any of them is good
   bool asks_token = true;                // whether a client has to show one: without any, none is let in
   icd::Rules rules;
-  std::size_t upload_bytes = 512u << 20;  // most that all maps under way together may have brought
+  std::size_t upload_bytes = 512u << 20;  // most that all maps and markers under way may take: UploadBudget
 };
 
 /// The ICD's five URIs for the team: tokens, methods, content types, CORS, decoding (maps on a worker, chunk
-/// by chunk with back-pressure; the rest on the loop), and the answer. Any other path goes to `other`.
+/// by chunk with back-pressure; large markers on one, too; the rest on the loop), and the answer. Any other
+/// path goes to `other`.
 ///
 /// Every error is a JSON string. CORS preflights (OPTIONS) are answered 204 without a token; every answer of
 /// an ICD URI carries Access-Control-Allow-Origin.
@@ -39,6 +41,10 @@ class IcdRoutes final : public Handler {
   std::unique_ptr<Exchange> open(const RequestHead& head, std::shared_ptr<Responder> responder,
                                  std::shared_ptr<Flow> flow) override;
 
+  /// Takes no message in any more: who is in the middle of one, or comes with a map, a state or markers, is
+  /// told 503. (A report whose body is whole is the desk's to refuse.)
+  void stop();
+
  private:
   std::unique_ptr<Exchange> take_in(Visit visit, const RequestHead& head, std::shared_ptr<Flow> flow);
   bool may_enter(const RequestHead& head) const;
@@ -50,6 +56,8 @@ class IcdRoutes final : public Handler {
   loop::Workers& workers_;
   Handler& other_;
   std::shared_ptr<UploadBudget> budget_;
+  std::shared_ptr<Upload::UnderWay> under_way_ = std::make_shared<Upload::UnderWay>();
+  bool stopping_ = false;
 };
 
 /// An error answer of this gateway: `sentence` as a JSON string.

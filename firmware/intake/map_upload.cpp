@@ -7,6 +7,7 @@
 #include "codec/read.hpp"
 #include "icd/map_update.hpp"
 #include "icd/sentence.hpp"
+#include "loop/guard.hpp"
 
 namespace adit::intake {
 namespace {
@@ -19,7 +20,14 @@ class Decoding {
   Decoding(codec::BodyKind kind, const icd::Rules& rules)
       : rules_(rules), decoder_(kind, codec::Split::MapData, {.data_bytes = rules.map_bytes}) {}
 
-  void work(Pieces& pieces, bool whole) {
+  /// What was taken out of it before the end.
+  struct Before {
+    std::shared_ptr<MapArrival> stored;  // null: nothing
+    icd::ChunkedBytes left;              // follows what was stored
+  };
+
+  /// `before`: where the body is whole.
+  void work(Pieces& pieces, std::optional<Before> before) {
     for (auto& piece : pieces) {
       if (auto fed = decoder_.feed(piece); !fed) {
         result_ = std::unexpected(std::move(fed.error()));
@@ -27,19 +35,29 @@ class Decoding {
       }
       std::vector<std::uint8_t>().swap(piece);
     }
-    if (!whole) return;
-    auto document = decoder_.finish();
-    if (!document) {
-      result_ = std::unexpected(std::move(document.error()));
-    } else {
-      result_ = codec::read_map_update(std::move(*document), rules_);
-    }
+    if (before) result_ = finish(std::move(*before));
   }
+
+  std::size_t data_held() const { return decoder_.data_held(); }
+  icd::ChunkedBytes take_data() { return decoder_.take_data(); }
 
   /// Nothing while more of the body is to come.
   std::optional<icd::Checked<icd::MapUpdate>>& result() { return result_; }
 
  private:
+  icd::Checked<icd::MapUpdate> finish(Before before) {
+    auto document = decoder_.finish();
+    if (!document) return std::unexpected(std::move(document.error()));
+    if (before.stored) {
+      auto data = before.stored->stored();
+      if (!data) return std::unexpected(std::move(data.error()));
+      data->append(before.left);
+      data->append(document->data);
+      document->data = std::move(*data);
+    }
+    return codec::read_map_update(std::move(*document), rules_);
+  }
+
   icd::Rules rules_;
   codec::BodyDecoder decoder_;
   std::optional<icd::Checked<icd::MapUpdate>> result_;
@@ -57,6 +75,7 @@ class MapUpload::State : public std::enable_shared_from_this<State> {
         flow_(std::move(flow)),
         workers_(workers),
         budget_(std::move(budget)),
+        arrival_(visit_.desk.map_arrives()),
         decoding_(std::make_shared<Decoding>(options.kind, options.rules)) {
     visit_.sender.bytes = 0;
   }
@@ -72,11 +91,26 @@ class MapUpload::State : public std::enable_shared_from_this<State> {
   void abandon() {
     over_ = true;
     pending_.clear();
+    arrival_.reset();
+  }
+  void turn_away(const icd::Refusal& refusal) {
+    if (over_) return;
+    abandon();
+    visit_.refuse(refusal);
   }
 
  private:
   void give_to_worker();
   void worked();
+  void take_result(icd::Checked<icd::MapUpdate> result);
+  void store_what_came();
+  void stored(icd::ChunkedBytes left);
+  void go_on();
+  void failed() {
+    at_work_ = false;
+    if (!over_)
+      refuse(icd::Status::ServiceUnavailable, "the gateway could not hold this map; send it again later");
+  }
   void refuse(icd::Status status, std::string sentence) {
     abandon();
     visit_.refuse({status, std::move(sentence)});
@@ -87,14 +121,18 @@ class MapUpload::State : public std::enable_shared_from_this<State> {
   std::shared_ptr<Flow> flow_;
   loop::Workers& workers_;
   std::shared_ptr<UploadBudget> budget_;
+  std::shared_ptr<MapArrival> arrival_;  // null once over
   std::shared_ptr<Decoding> decoding_;
   std::size_t taken_ = 0;  // of the budget
   Pieces pending_;
   std::size_t pending_bytes_ = 0;
-  bool at_work_ = false;
+  bool at_work_ = false;  // a worker is, and decoding_ is its own
+  bool storing_ = false;
+  bool has_stored_ = false;
+  icd::ChunkedBytes left_;  // there was no room for it
   bool held_back_ = false;
   bool whole_ = false;
-  bool over_ = false;  // answered, or the client is gone
+  bool over_ = false;  // answered, the client is gone, or it is the desk's
 };
 
 bool MapUpload::State::take(std::span<const std::uint8_t> piece) {
@@ -120,29 +158,65 @@ bool MapUpload::State::take(std::span<const std::uint8_t> piece) {
 
 void MapUpload::State::give_to_worker() {
   if (at_work_ || over_ || (pending_.empty() && !whole_)) return;
+  if (storing_ && (whole_ || decoding_->data_held() >= kStored)) return;  // stored() goes on
   at_work_ = true;
   auto pieces = std::make_shared<Pieces>(std::exchange(pending_, {}));
   pending_bytes_ = 0;
-  workers_.submit([decoding = decoding_, pieces, whole = whole_] { decoding->work(*pieces, whole); },
-                  [self = shared_from_this()] { self->worked(); });
+  std::optional<Decoding::Before> before;
+  if (whole_) before.emplace(has_stored_ ? arrival_ : nullptr, left_);
+  // What comes after holds the arrival, too, so that the loop is the last to do so.
+  workers_.submit(
+      [decoding = decoding_, pieces, before = std::move(before)] { decoding->work(*pieces, before); },
+      [self = shared_from_this(), arrival = arrival_] { self->worked(); },
+      [self = shared_from_this()] { self->failed(); });
 }
 
 void MapUpload::State::worked() {
   at_work_ = false;
   if (over_) return;
-  if (auto& result = decoding_->result()) {
-    abandon();
-    visit_.answer(*result ? visit_.desk.take(std::move(**result), visit_.sender)
-                          : std::unexpected(std::move(result->error())));
-    return;
-  }
+  const bool well = loop::guarded("taking a map", [this] {
+    if (auto& result = decoding_->result()) return take_result(std::move(*result));
+    go_on();
+  });
+  if (!well) failed();
+}
+
+void MapUpload::State::take_result(icd::Checked<icd::MapUpdate> result) {
+  const auto arrival = arrival_;
+  abandon();
+  if (!result) return visit_.answer(std::unexpected(std::move(result.error())));
+  arrival->take(std::move(*result), visit_.sender,
+                [self = shared_from_this()](const icd::Checked<void>& taken) { self->visit_.answer(taken); });
+}
+
+/// The worker is not at it.
+void MapUpload::State::go_on() {
+  store_what_came();
   give_to_worker();
-  if (std::exchange(held_back_, false)) flow_->resume();
+  if (pending_bytes_ <= kPending && std::exchange(held_back_, false)) flow_->resume();
+}
+
+/// Where there was no room, there is none for the rest: it is held until the end, which judges it.
+void MapUpload::State::store_what_came() {
+  if (storing_ || !left_.empty() || decoding_->data_held() < kStored) return;
+  if (options_.kind.coding != codec::ContentCoding::Identity) return;
+  has_stored_ = storing_ = true;
+  arrival_->store(decoding_->take_data(),
+                  [self = shared_from_this()](icd::ChunkedBytes left) { self->stored(std::move(left)); });
+}
+
+void MapUpload::State::stored(icd::ChunkedBytes left) {
+  storing_ = false;
+  left_ = std::move(left);
+  if (over_ || at_work_) return;
+  if (!loop::guarded("storing a map", [this] { go_on(); })) failed();
 }
 
 MapUpload::MapUpload(Visit visit, MapUploadOptions options, std::shared_ptr<Flow> flow,
-                     loop::Workers& workers, std::shared_ptr<UploadBudget> budget)
-    : state_(
+                     loop::Workers& workers, std::shared_ptr<UploadBudget> budget,
+                     std::shared_ptr<UnderWay> under_way)
+    : Upload(std::move(under_way)),
+      state_(
           std::make_shared<State>(std::move(visit), options, std::move(flow), workers, std::move(budget))) {}
 
 MapUpload::~MapUpload() {
@@ -159,6 +233,10 @@ void MapUpload::on_end() {
 
 void MapUpload::on_gone() {
   state_->abandon();
+}
+
+void MapUpload::turn_away(const icd::Refusal& refusal) {
+  state_->turn_away(refusal);
 }
 
 }  // namespace adit::intake

@@ -5,26 +5,12 @@
 
 #include "codec/body_decoder.hpp"
 #include "icd/rules.hpp"
+#include "intake/upload.hpp"
+#include "intake/upload_budget.hpp"
 #include "intake/visit.hpp"
 #include "loop/workers.hpp"
 
 namespace adit::intake {
-
-/// How much all maps under way together may have brought, so that many at once cannot use up the memory. For
-/// the loop alone.
-class UploadBudget {
- public:
-  explicit UploadBudget(std::size_t bytes) : left_(bytes) {}
-  bool take(std::size_t bytes) {
-    if (bytes > left_) return false;
-    left_ -= bytes;
-    return true;
-  }
-  void give_back(std::size_t bytes) { left_ += bytes; }
-
- private:
-  std::size_t left_;
-};
 
 struct MapUploadOptions {
   codec::BodyKind kind;
@@ -33,16 +19,21 @@ struct MapUploadOptions {
 };
 
 /// Takes a map. Its body is decoded on a worker as it arrives, one piece of work at a time; while more than
-/// kPending waits for the worker, the client is made to wait.
+/// kPending waits for the worker, the client is made to wait. What has been decoded of its data is stored
+/// kStored bytes and more at a time, and the worker rests while as much is decoded again before that is done:
+/// a large map is nowhere in memory as a whole.
 ///
 /// A body that is compressed as a whole may grow a thousandfold. It is held as it came until it is whole, so
 /// that the budget knows what is held, and no more than one for each worker is ever inflated.
-class MapUpload final : public Exchange {
+///
+/// Once whole and checked it is the desk's, which answers when it is kept, also where the client has hung up
+/// meanwhile; until then a client that hangs up takes its map back.
+class MapUpload final : public Upload {
  public:
-  static constexpr std::size_t kPending = 256 * 1024;
+  static constexpr std::size_t kPending = 256 * 1024, kStored = 256 * 1024;
 
   MapUpload(Visit visit, MapUploadOptions options, std::shared_ptr<Flow> flow, loop::Workers& workers,
-            std::shared_ptr<UploadBudget> budget);
+            std::shared_ptr<UploadBudget> budget, std::shared_ptr<UnderWay> under_way);
   ~MapUpload() override;
   MapUpload(const MapUpload&) = delete;
   MapUpload& operator=(const MapUpload&) = delete;
@@ -50,6 +41,7 @@ class MapUpload final : public Exchange {
   bool on_body(std::span<const std::uint8_t> piece) override;
   void on_end() override;
   void on_gone() override;
+  void turn_away(const icd::Refusal& refusal) override;
 
  private:
   class State;

@@ -7,6 +7,7 @@
 #include "intake/answer.hpp"
 #include "intake/client.hpp"
 #include "intake/icd_routes.hpp"
+#include "loop/guard.hpp"
 
 namespace adit::intake {
 namespace {
@@ -19,6 +20,32 @@ constexpr std::chrono::milliseconds kReadAwayWithin(1000);
 constexpr std::size_t kLinger = 256 * 1024;
 constexpr std::chrono::milliseconds kLingerWithin(2000);
 
+Answer failure() {
+  return error_answer(icd::Status::InternalServerError,
+                      "the gateway could not finish this request, which may have been taken: send it again");
+}
+
+/// What the handler is given to answer by. Whoever drops it unanswered, by an exception too, has answered
+/// 500: no client waits for somebody who has forgotten it.
+class Owed final : public Responder {
+ public:
+  explicit Owed(std::shared_ptr<Responder> request) : request_(std::move(request)) {}
+  Owed(const Owed&) = delete;
+  Owed& operator=(const Owed&) = delete;
+  ~Owed() override {
+    loop::guarded("the answer to a dropped request", [this] { request_->answer(failure()); });
+  }
+
+  void answer(Answer answer) override { request_->answer(std::move(answer)); }
+  std::shared_ptr<Stream> stream(std::string_view content_type) override {
+    return request_->stream(content_type);
+  }
+  bool client_gone() const override { return request_->client_gone(); }
+
+ private:
+  const std::shared_ptr<Responder> request_;
+};
+
 }  // namespace
 
 Request::Request(Client& client, std::string_view method) : client_(&client), is_head_(method == "HEAD") {}
@@ -26,9 +53,9 @@ Request::Request(Client& client, std::string_view method) : client_(&client), is
 void Request::open(Handler& handler, std::string_view method, Target target, const Framing& framing) {
   left_ = framing.length;
   head_.emplace(client_->connection(), method, std::move(target), client_->peer(), client_->local(),
-                framing.length);
+                client_->number(), framing.length);
   in_call_ = true;
-  exchange_ = handler.open(*head_, shared_from_this(), shared_from_this());
+  exchange_ = handler.open(*head_, std::make_shared<Owed>(shared_from_this()), shared_from_this());
   in_call_ = false;
   stage_ = Stage::Body;
   if (!exchange_ && !answered()) answer_ = error_answer(icd::Status::InternalServerError, "no answer");
@@ -130,6 +157,16 @@ void Request::late() {
     refuse(error_answer(icd::Status::RequestTimeout, "the body of the request took too long"));
   }
   client_->cut();
+}
+
+Next Request::failed() {
+  in_call_ = false;
+  const bool whole = stage_ == Stage::Whole;
+  if (stream_ || stage_ == Stage::Answering || stage_ == Stage::Refusing || stage_ == Stage::Over)
+    return Next::Close;
+  if (!answer_) answer_ = failure();
+  refuse(*answer_);
+  return whole ? Next::Close : Next::GoOn;
 }
 
 void Request::completed() {

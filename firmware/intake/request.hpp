@@ -29,6 +29,9 @@ class Request final : public Responder, public Flow, public std::enable_shared_f
   /// The body is whole; called again each time that the connection has been resumed.
   Next end();
   void late();
+  /// A callback of the handler's threw: answered 500, unless an answer was on its way, and the connection
+  /// ends.
+  Next failed();
   /// libmicrohttpd is done with it, in whatever way.
   void completed();
 

@@ -13,6 +13,7 @@
 #include "intake/listen_socket.hpp"
 #include "intake/request.hpp"
 #include "intake/target.hpp"
+#include "loop/guard.hpp"
 
 namespace adit::intake {
 namespace {
@@ -58,6 +59,7 @@ class Server::Impl final : public Engine {
   static std::size_t leave_escaped(void* cls, MHD_Connection* connection, char* text);
   static void say_nothing(void*, const char*, va_list) {}
 
+  Next hear(Client& client, std::string_view method, std::string_view upload, void** request_cls);
   void first_call(Client& client, std::string_view method);
   void connected(MHD_Connection* connection, void** client_cls);
   void make_room();
@@ -159,8 +161,9 @@ void Server::Impl::connected(MHD_Connection* connection, void** client_cls) {
   auto client =
       std::make_unique<Client>(*this, loop_, connection, socket->connect_fd,
                                address_text(address->client_addr), local_address(socket->connect_fd));
-  *client_cls = client.get();
-  clients_.emplace(client.get(), std::move(client));
+  Client* const known = client.get();
+  clients_.emplace(known, std::move(client));
+  *client_cls = known;
   make_room();
 }
 
@@ -228,17 +231,24 @@ MHD_Result Server::Impl::request_came(void* cls, MHD_Connection* connection, con
   auto& server = *static_cast<Impl*>(cls);
   Client* client = client_of(connection);
   if (client == nullptr || server.stopping_) return MHD_NO;
-  Next next = Next::GoOn;
-  if (*request_cls == nullptr) {
-    *request_cls = client;
-    server.first_call(*client, method);
-  } else if (*upload_size > 0) {
-    next = client->request()->body({reinterpret_cast<const std::uint8_t*>(upload), *upload_size});
-    *upload_size = 0;
-  } else {
-    next = client->request()->end();
+  Next next = Next::Close;
+  const std::string_view piece(upload, std::exchange(*upload_size, 0));
+  if (!loop::guarded("a request", [&] { next = server.hear(*client, method, piece, request_cls); }) &&
+      client->request()) {
+    loop::guarded("the answer to a failed request", [&] { next = client->request()->failed(); });
   }
   return next == Next::GoOn ? MHD_YES : MHD_NO;
+}
+
+Next Server::Impl::hear(Client& client, std::string_view method, std::string_view upload,
+                        void** request_cls) {
+  if (*request_cls == nullptr) {
+    *request_cls = &client;
+    first_call(client, method);
+    return Next::GoOn;
+  }
+  if (upload.empty()) return client.request()->end();
+  return client.request()->body({reinterpret_cast<const std::uint8_t*>(upload.data()), upload.size()});
 }
 
 void Server::Impl::request_completed(void*, MHD_Connection* connection, void** request_cls,
@@ -247,23 +257,26 @@ void Server::Impl::request_completed(void*, MHD_Connection* connection, void** r
   if (*request_cls == nullptr || client == nullptr || !client->request()) return;
   *request_cls = nullptr;
   const std::shared_ptr<Request> request = client->request();
-  client->request_over();
-  request->completed();
+  loop::guarded("the end of a request", [&] { client->request_over(); });
+  loop::guarded("the end of a request", [&] { request->completed(); });
 }
 
 void Server::Impl::connection_changed(void* cls, MHD_Connection* connection, void** client_cls,
                                       MHD_ConnectionNotificationCode what) {
   auto& server = *static_cast<Impl*>(cls);
   if (what == MHD_CONNECTION_NOTIFY_STARTED) {
-    server.connected(connection, client_cls);
+    loop::guarded("a connection of the team", [&] { server.connected(connection, client_cls); });
   } else if (auto* client = static_cast<Client*>(std::exchange(*client_cls, nullptr)); client != nullptr) {
-    server.clients_.erase(client);
-    server.run_soon();  // libmicrohttpd looks only then whether there is room for another connection
+    loop::guarded("a connection of the team", [&] {
+      server.clients_.erase(client);
+      server.run_soon();  // libmicrohttpd looks only then whether there is room for another connection
+    });
   }
 }
 
 void* Server::Impl::head_begun(void*, const char* target, MHD_Connection* connection) {
-  if (Client* client = client_of(connection); client != nullptr) client->head_begun(target);
+  Client* const client = client_of(connection);
+  if (client != nullptr) loop::guarded("the head of a request", [&] { client->head_begun(target); });
   return nullptr;
 }
 

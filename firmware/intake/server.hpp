@@ -40,6 +40,7 @@ class RequestHead {
   virtual std::optional<std::uint64_t> content_length() const = 0;   // absent where chunked
   virtual const std::string& peer() const = 0;                       // "10.0.0.5"
   virtual const std::string& local() const = 0;  // the box's own that was asked: "10.0.0.1"
+  virtual std::uint64_t connection() const = 0;  // its number: from 1, no two of a process alike
 };
 
 struct Header {

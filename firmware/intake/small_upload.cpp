@@ -1,6 +1,7 @@
 #include "intake/small_upload.hpp"
 
 #include "codec/read.hpp"
+#include "intake/take_parts.hpp"
 
 namespace adit::intake {
 
@@ -11,6 +12,7 @@ bool SmallUpload::on_body(std::span<const std::uint8_t> piece) {
 }
 
 void SmallUpload::on_end() {
+  whole_ = true;
   const auto document = decoder_.finish();
   if (!document) {
     visit_.refuse(document.error());
@@ -20,13 +22,8 @@ void SmallUpload::on_end() {
 }
 
 void SmallUpload::give_to_desk(const codec::Document& document) {
-  const auto take = [this](const auto& message) {
-    visit_.answer(message ? visit_.desk.take(*message, visit_.sender) : std::unexpected(message.error()));
-  };
   if (visit_.uri == icd::Uri::StateUpdate) {
-    take(codec::read_state_update(document, rules_));
-  } else if (visit_.uri == icd::Uri::MarkersUpdate) {
-    take(codec::read_markers_update(document, rules_));
+    take_parts(visit_, codec::read_state_parts(document, rules_));
   } else if (const auto report = codec::read_artifact_report(document, rules_); report) {
     visit_.desk.take(*report, visit_.sender, visit_.responder);
   } else {

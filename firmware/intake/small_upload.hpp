@@ -2,20 +2,27 @@
 
 #include "codec/body_decoder.hpp"
 #include "icd/rules.hpp"
+#include "intake/upload.hpp"
 #include "intake/visit.hpp"
 
 namespace adit::intake {
 
-/// Takes a state, a markers update or a report: at most a megabyte, decoded on the loop as it arrives.
-class SmallUpload final : public Exchange {
+/// Takes a state or a report: at most a megabyte, decoded on the loop as it arrives.
+class SmallUpload final : public Upload {
  public:
-  SmallUpload(Visit visit, codec::BodyKind kind, const icd::Rules& rules)
-      : visit_(std::move(visit)), rules_(rules), decoder_(kind, codec::Split::Nothing, {}) {
+  SmallUpload(Visit visit, codec::BodyKind kind, const icd::Rules& rules, std::shared_ptr<UnderWay> under_way)
+      : Upload(std::move(under_way)),
+        visit_(std::move(visit)),
+        rules_(rules),
+        decoder_(kind, codec::Split::Nothing, {}) {
     visit_.sender.bytes = 0;
   }
 
   bool on_body(std::span<const std::uint8_t> piece) override;
   void on_end() override;
+  void turn_away(const icd::Refusal& refusal) override {
+    if (!whole_) visit_.refuse(refusal);
+  }
 
  private:
   void give_to_desk(const codec::Document& document);
@@ -23,6 +30,7 @@ class SmallUpload final : public Exchange {
   Visit visit_;
   icd::Rules rules_;
   codec::BodyDecoder decoder_;
+  bool whole_ = false;
 };
 
 }  // namespace adit::intake

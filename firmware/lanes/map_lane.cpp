@@ -2,14 +2,11 @@
 
 #include <algorithm>
 #include <iterator>
+#include <set>
 #include <utility>
 
 namespace adit::lanes {
 namespace {
-
-const icd::OccupancyGrid* grid_in(const WaitingMap& waiting) {
-  return std::get_if<icd::OccupancyGrid>(&waiting.map.msg);
-}
 
 /// The cloud whose points can be joined to others; null for a grid and for packed points.
 const icd::PointCloud2* loose_cloud_in(const icd::MapUpdate& map) {
@@ -27,9 +24,10 @@ std::size_t bytes_held(const WaitingMap& waiting) {
   return bytes;
 }
 
-bool replaces(const WaitingMap& newer, const WaitingMap& older) {
-  const auto *new_grid = grid_in(newer), *old_grid = grid_in(older);
-  return new_grid && old_grid && newer.map.name == older.map.name && covers(*new_grid, *old_grid);
+bool replaces(const icd::MapUpdate& newer, const icd::MapUpdate& older) {
+  const auto* const new_grid = std::get_if<icd::OccupancyGrid>(&newer.msg);
+  const auto* const old_grid = std::get_if<icd::OccupancyGrid>(&older.msg);
+  return new_grid && old_grid && newer.name == older.name && covers(*new_grid, *old_grid);
 }
 
 /// What is merged keeps what it was merged of: the bytes are shared, so that this costs next to nothing.
@@ -49,6 +47,10 @@ void take_over(WaitingMap& to, WaitingMap from) {
   to.updates = std::move(from.updates);
   std::inplace_merge(to.updates.begin(), to.updates.begin() + middle, to.updates.end());
   to.accepted = std::min(to.accepted, from.accepted);
+  // Its place and its rests, too, but it is to fail by itself before it is blamed.
+  if (to.trial.failures > 0) return;
+  to.trial = from.trial;
+  to.trial.strikes = std::min(to.trial.strikes, Blame::kMostStrikes - 2);
 }
 
 }  // namespace
@@ -67,7 +69,7 @@ icd::MapUpdate merge(icd::MapUpdate older, const icd::MapUpdate& newer) {
 
 std::vector<std::uint64_t> MapLane::add(std::uint64_t number, icd::MapUpdate map, Instant now) {
   WaitingMap added{std::move(map), now, {number}, {}, false};
-  const auto stays = [&](const WaitingMap& waiting) { return !replaces(added, waiting); };
+  const auto stays = [&](const WaitingMap& waiting) { return !replaces(added.map, waiting.map); };
   const auto first = added.map.is_grid() ? std::ranges::find_if_not(waiting_, stays) : waiting_.end();
   const auto gone = std::stable_partition(first, waiting_.end(), stays);
   std::vector<std::uint64_t> replaced;
@@ -82,17 +84,41 @@ std::vector<std::uint64_t> MapLane::add(std::uint64_t number, icd::MapUpdate map
   return replaced;
 }
 
-std::optional<WaitingMap> MapLane::take() {
-  if (waiting_.empty()) return {};
-  auto chosen = std::ranges::min_element(waiting_, {}, &WaitingMap::accepted);
-  if (chosen->map.is_grid()) {
-    // Grids that were made before it go first: sent after it, their old cells would overwrite its new ones.
-    chosen = std::ranges::find_if(waiting_, [&](const WaitingMap& waiting) {
-      return waiting.map.is_grid() && waiting.map.name == chosen->map.name;
+/// The oldest news of those that do not rest; where all do, what rested longest. Grids of the same name that
+/// were made before it go first: sent after it, their old cells would overwrite its new ones.
+MapLane::Place MapLane::choose(Instant now) {
+  const auto passable = [&](const WaitingMap& waiting) {
+    return waiting.trial.failures >= kInPlace && waiting.trial.rests(now);
+  };
+  std::set<std::optional<icd::RobotName>> held_up;  // names whose grids wait behind one that rests
+  auto chosen = waiting_.end();
+  for (auto each = waiting_.begin(); each != waiting_.end(); ++each) {
+    const bool grid = each->map.is_grid();
+    if (each->trial.rests(now)) {
+      if (grid && !passable(*each)) held_up.insert(each->map.name);
+    } else if (!(grid && held_up.contains(each->map.name)) &&
+               (chosen == waiting_.end() || each->accepted < chosen->accepted)) {
+      chosen = each;
+    }
+  }
+  const bool all_rest = chosen == waiting_.end();
+  if (all_rest) {
+    chosen = std::ranges::min_element(waiting_, {}, [](const WaitingMap& waiting) {
+      return std::pair(waiting.trial.failed.value_or(Instant{}), waiting.accepted);
     });
   }
+  if (!chosen->map.is_grid()) return chosen;
+  return std::ranges::find_if(waiting_, [&](const WaitingMap& waiting) {
+    return waiting.map.is_grid() && waiting.map.name == chosen->map.name && (all_rest || !passable(waiting));
+  });
+}
+
+std::optional<WaitingMap> MapLane::take(Instant now) {
+  if (waiting_.empty()) return {};
+  const auto chosen = choose(now);
   WaitingMap next = std::move(*chosen);
   waiting_.erase(chosen);
+  for (WaitingMap& other : waiting_) other.trial.steps_behind = false;
   bytes_ -= bytes_held(next);
   merge_followers(next);
   return next;
@@ -100,9 +126,10 @@ std::optional<WaitingMap> MapLane::take() {
 
 void MapLane::merge_followers(WaitingMap& next) {
   const icd::PointCloud2* first = loose_cloud_in(next.map);
-  bool open = first != nullptr && !next.alone;
+  bool open = first != nullptr && !next.alone && next.trial.failures == 0;
   std::erase_if(waiting_, [&](const WaitingMap& other) {
     if (!open || other.map.is_grid() || other.map.name != next.map.name) return false;
+    if (other.trial.failures > 0) return false;  // what is on trial goes by itself
     const icd::PointCloud2* cloud = loose_cloud_in(other.map);
     open = cloud && !other.alone && mergeable(*first, *cloud) &&
            next.map.data.raw_size + other.map.data.raw_size <= merge_bytes_;
@@ -117,17 +144,19 @@ void MapLane::merge_followers(WaitingMap& next) {
   });
 }
 
-void MapLane::put_back(WaitingMap map) {
-  const auto newer =
-      std::ranges::find_if(waiting_, [&](const WaitingMap& waiting) { return replaces(waiting, map); });
+std::vector<std::uint64_t> MapLane::put_back(WaitingMap map) {
+  const auto newer = std::ranges::find_if(
+      waiting_, [&](const WaitingMap& waiting) { return replaces(waiting.map, map.map); });
   if (newer == waiting_.end()) {
     bytes_ += bytes_held(map);
     waiting_.push_front(std::move(map));
-    return;
+    return {};
   }
+  const std::uint64_t replaced = map.updates.back();
   bytes_ -= bytes_held(*newer);
   take_over(*newer, std::move(map));
   bytes_ += bytes_held(*newer);
+  return {replaced};
 }
 
 void MapLane::put_back_apart(WaitingMap map) {
@@ -136,6 +165,22 @@ void MapLane::put_back_apart(WaitingMap map) {
     bytes_ += bytes_held(part);
     waiting_.push_front(std::move(part));
   }
+}
+
+bool MapLane::replaces_any(const icd::MapUpdate& map) const {
+  return std::ranges::any_of(waiting_, [&](const WaitingMap& waiting) { return replaces(map, waiting.map); });
+}
+
+bool MapLane::is_replaced(const icd::MapUpdate& map) const {
+  return std::ranges::any_of(waiting_, [&](const WaitingMap& waiting) { return replaces(waiting.map, map); });
+}
+
+std::size_t MapLane::largest_grid() const {
+  std::size_t most = 0;
+  for (const WaitingMap& waiting : waiting_) {
+    if (waiting.map.is_grid()) most = std::max(most, waiting.map.data.bytes.size());
+  }
+  return most;
 }
 
 std::optional<Instant> MapLane::oldest() const {

@@ -8,10 +8,9 @@
 #include <vector>
 
 #include "icd/map_update.hpp"
+#include "lanes/blame.hpp"
 
 namespace adit::lanes {
-
-using Instant = std::chrono::steady_clock::time_point;
 
 /// ICD 6.3.1 and promise 2: whether `newer` says all that `older` said, so that `older` need not be sent: the
 /// same lattice (resolution, orientation and height alike, origins a whole number of cells apart, to a
@@ -34,6 +33,7 @@ struct WaitingMap {
   std::vector<icd::MapUpdate>
       parts{};         // the clouds that were merged into it, one for each update; else empty
   bool alone = false;  // not to be merged with others
+  Trial trial{};       // where the Command Post's handler failed at it
 };
 
 /// The maps that wait for the Command Post.
@@ -42,6 +42,9 @@ struct WaitingMap {
 /// inherits its age; what waits of that name and is not covered still goes ahead of it, so that old cells are
 /// never sent after newer ones. Clouds are kept in order; take() merges those of one name that follow each
 /// other while more than one wait. Nothing else is ever dropped.
+///
+/// What is on trial (Blame) lets others go first while it rests. A grid on trial keeps the later grids of its
+/// name waiting behind it for its first kInPlace failures; then they pass it, to see whether they can.
 class MapLane {
  public:
   /// Most bytes of points that take() merges into one message.
@@ -51,23 +54,33 @@ class MapLane {
   /// twice.
   std::vector<std::uint64_t> add(std::uint64_t number, icd::MapUpdate map, Instant now);
 
-  /// The next to be sent, taken out of the lane.
-  std::optional<WaitingMap> take();
+  static constexpr int kInPlace = 3;
+
+  /// The next to be sent, taken out of the lane. Without `now`, nothing rests.
+  std::optional<WaitingMap> take(Instant now = Instant::max());
 
   /// Puts back what could not be sent: first in line, unless a newer grid that covers it came meanwhile (then
-  /// that one takes its updates and its age).
-  void put_back(WaitingMap map);
+  /// that one takes its updates and its age). The numbers of those that are needed no more, as from add().
+  std::vector<std::uint64_t> put_back(WaitingMap map);
 
   /// Puts back the parts of a merged cloud, first in line and never to be merged again, so that the one that
   /// the Command Post cannot take is found and the others arrive. Requires parts.
   void put_back_apart(WaitingMap map);
 
+  /// Whether add() would replace one that waits.
+  bool replaces_any(const icd::MapUpdate& map) const;
+  /// Whether put_back() would find a newer grid that covers it.
+  bool is_replaced(const icd::MapUpdate& map) const;
+
   std::size_t count() const { return waiting_.size(); }
   std::size_t bytes() const { return bytes_; }  // of memory held by all that wait
+  std::size_t largest_grid() const;             // bytes of its data: what one that replaces it may need
   std::optional<Instant> oldest() const;
   const std::deque<WaitingMap>& waiting() const { return waiting_; }  // in the order they were made
 
  private:
+  using Place = std::deque<WaitingMap>::iterator;
+  Place choose(Instant now);
   void merge_followers(WaitingMap& next);
 
   std::deque<WaitingMap> waiting_;

@@ -3,6 +3,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <map>
+#include <optional>
 #include <string>
 #include <utility>
 #include <vector>
@@ -17,24 +18,42 @@ class MarkerChanges {
  public:
   using Place = std::int64_t;
 
+  struct Size {
+    std::size_t count = 0;  // of changes
+    std::size_t bytes = 0;  // icd::bytes_of all of them
+    friend bool operator==(const Size&, const Size&) = default;
+  };
+
   /// Adds a change that comes after all others; gives the place of the change that stands for it, or of the
   /// DeleteAll that made it needless.
   Place apply(const icd::Marker& marker);
 
-  /// Takes the first `most` out.
-  std::vector<icd::Marker> take(std::size_t most);
+  /// Takes out the change of the same ns and id, or the DeleteAll, where there is one.
+  std::optional<icd::Marker> remove(const icd::Marker& like);
+  /// Takes the first `most.count` out, and no more than `most.bytes` of them, but at least one.
+  std::vector<icd::Marker> take(Size most);
+  std::vector<icd::Marker> take_all() { return take(size_); }
 
-  std::size_t count() const { return by_place_.size(); }
+  Size size() const { return size_; }
+  /// What size() would be after `newer` had been applied.
+  Size size_with(const std::vector<icd::Marker>& newer) const;
   bool empty() const { return by_place_.empty(); }
+  /// Whether what waits makes an earlier change of that marker needless.
+  bool says_more_than(const icd::Marker& earlier) const {
+    return begins_with_delete_all() ||
+           (earlier.action != icd::MarkerAction::DeleteAll && places_.contains({earlier.ns, earlier.id}));
+  }
   const std::map<Place, icd::Marker>& in_order() const { return by_place_; }
+  bool begins_with_delete_all() const;
 
  private:
   using Key = std::pair<std::string, std::int32_t>;  // ns and id (ICD 6.6)
-  bool begins_with_delete_all() const;
+  std::size_t bytes_at(const Key& key) const;
 
   std::map<Place, icd::Marker> by_place_;
   std::map<Key, Place> places_;
   Place next_ = 0;
+  Size size_;
 };
 
 }  // namespace adit::lanes

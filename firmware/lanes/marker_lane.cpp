@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <iterator>
-#include <limits>
 #include <utility>
 
 namespace adit::lanes {
@@ -12,28 +11,65 @@ std::vector<icd::Marker> merge(const std::vector<icd::Marker>& pending,
   MarkerChanges changes;
   for (const icd::Marker& marker : pending) changes.apply(marker);
   for (const icd::Marker& marker : newer) changes.apply(marker);
-  return changes.take(changes.count());
+  return changes.take_all();
 }
 
-void MarkerLane::add(std::uint64_t number, const icd::MarkersUpdate& update, Instant now) {
-  Update added{number, now, kNowhere};
-  for (const icd::Marker& marker : update.markers) added.last = std::max(added.last, changes_.apply(marker));
-  updates_.push_back(added);
+bool MarkerLane::has_room_for(const icd::MarkersUpdate& update) const {
+  if (empty()) return true;
+  const MarkerChanges::Size now = changes_.size(), then = changes_.size_with(update.markers);
+  const bool only_replaces = then.count <= now.count;
+  const std::size_t most_bytes = only_replaces ? bounds_.bytes : bounds_.bytes - bounds_.bytes / 4;
+  return then.count <= std::max(kMostMarkers, now.count) && then.bytes <= std::max(most_bytes, now.bytes);
+}
+
+void MarkerLane::add(const icd::MarkersUpdate& update, Instant now) {
+  Place last = kNowhere;
+  for (const icd::Marker& marker : update.markers) last = std::max(last, changes_.apply(marker));
+  add_to(updates_, last, {1, now});
+  oldest_ = std::min(oldest_.value_or(now), now);
+  if (updates_.size() > 2 * (count() + 1)) join_updates();
+}
+
+void MarkerLane::add_to(UpdatesByPlace& all, Place last, const Updates& updates) {
+  const auto [found, is_new] = all.try_emplace(last, updates);
+  if (is_new) return;
+  found->second.count += updates.count;
+  found->second.accepted = std::min(found->second.accepted, updates.accepted);
+}
+
+/// Updates whose last place is gone are done with the last one before it that is not: there are never many
+/// more of them than changes.
+void MarkerLane::join_updates() {
+  UpdatesByPlace joined;
+  for (const auto& [last, updates] : updates_) {
+    const auto after = changes_.in_order().upper_bound(last);
+    add_to(joined, after == changes_.in_order().begin() ? kNowhere : std::prev(after)->first, updates);
+  }
+  updates_ = std::move(joined);
 }
 
 std::optional<WaitingMarkers> MarkerLane::take() {
-  const auto accepted = oldest();
-  if (!accepted) return {};
+  if (!oldest_) return {};
   WaitingMarkers taken;
-  taken.accepted = *accepted;
-  taken.update.markers = changes_.take(most_);
-  const auto still_waits = [&](const Update& update) {
-    return !changes_.empty() && update.last >= changes_.in_order().begin()->first;
-  };
-  const auto done = std::stable_partition(updates_.begin(), updates_.end(), still_waits);
-  std::ranges::transform(done, updates_.end(), std::back_inserter(taken.updates), &Update::number);
-  updates_.erase(done, updates_.end());
+  taken.accepted = *oldest_;
+  if (auto ahead = one_ahead()) {
+    taken.update.markers.push_back(std::move(*ahead));
+    taken.is_ahead = true;
+    return taken;
+  }
+  taken.update.markers = changes_.take({most_now_, bounds_.bytes_per_message});
+  const auto still_waiting =
+      changes_.empty() ? updates_.end() : updates_.lower_bound(changes_.in_order().begin()->first);
+  for (auto done = updates_.begin(); done != still_waiting; ++done) taken.updates += done->second.count;
+  updates_.erase(updates_.begin(), still_waiting);
+  find_oldest();
   return taken;
+}
+
+std::optional<icd::Marker> MarkerLane::one_ahead() {
+  if (!std::exchange(may_go_ahead_, false) || !changes_.begins_with_delete_all() || count() < 2) return {};
+  const auto which = static_cast<std::ptrdiff_t>(1 + ahead_++ % (count() - 1));
+  return std::next(changes_.in_order().begin(), which)->second;
 }
 
 void MarkerLane::put_back(const WaitingMarkers& markers) {
@@ -41,20 +77,38 @@ void MarkerLane::put_back(const WaitingMarkers& markers) {
   auto last = kNowhere;
   for (const icd::Marker& marker : markers.update.markers) last = std::max(last, all.apply(marker));
 
-  std::vector<Update> updates;
-  updates.reserve(markers.updates.size() + updates_.size());
-  for (const std::uint64_t number : markers.updates) updates.push_back({number, markers.accepted, last});
+  UpdatesByPlace updates;
+  if (markers.updates > 0) add_to(updates, last, {markers.updates, markers.accepted});
   // An update ends where the last of the changes up to its end has gone to.
-  std::map<MarkerChanges::Place, MarkerChanges::Place> moved{{kNowhere, last}};
+  std::map<Place, Place> moved{{kNowhere, last}};
   for (const auto& [place, marker] : changes_.in_order()) {
     last = std::max(last, all.apply(marker));
     moved.emplace(place, last);
   }
-  for (const Update& update : updates_) {
-    updates.push_back({update.number, update.accepted, std::prev(moved.upper_bound(update.last))->second});
+  for (const auto& [place, waiting] : updates_) {
+    add_to(updates, std::prev(moved.upper_bound(place))->second, waiting);
   }
   changes_ = std::move(all);
   updates_ = std::move(updates);
+  find_oldest();
+}
+
+void MarkerLane::put_back_narrower(const WaitingMarkers& markers) {
+  put_back(markers);
+  most_now_ = std::max<std::size_t>(1, markers.update.markers.size() / 2);
+}
+
+void MarkerLane::put_behind(const WaitingMarkers& markers) {
+  if (markers.update.markers.size() != 1 || changes_.empty()) return put_back(markers);
+  const icd::Marker& marker = markers.update.markers.front();
+  if (marker.action == icd::MarkerAction::DeleteAll) {
+    may_go_ahead_ = true;
+    return put_back(markers);
+  }
+  const auto last =
+      changes_.says_more_than(marker) ? changes_.in_order().rbegin()->first : changes_.apply(marker);
+  if (markers.updates > 0) add_to(updates_, last, {markers.updates, markers.accepted});
+  find_oldest();
 }
 
 std::vector<icd::Marker> MarkerLane::pending() const {
@@ -64,9 +118,11 @@ std::vector<icd::Marker> MarkerLane::pending() const {
   return all;
 }
 
-std::optional<Instant> MarkerLane::oldest() const {
-  if (updates_.empty()) return {};
-  return std::ranges::min_element(updates_, {}, &Update::accepted)->accepted;
+void MarkerLane::find_oldest() {
+  oldest_.reset();
+  for (const auto& [last, updates] : updates_) {
+    oldest_ = std::min(oldest_.value_or(updates.accepted), updates.accepted);
+  }
 }
 
 }  // namespace adit::lanes

@@ -4,16 +4,19 @@
 
 namespace adit::lanes {
 
-icd::Stamp StampShift::shift(const std::string& sender, std::optional<icd::Stamp> stamp, double now) {
+icd::Stamp StampShift::shift(const std::string& sender, std::optional<icd::Stamp> stamp, double now,
+                             Connection connection) {
   if (!stamp || *stamp == 0) return std::max(now, latest_of(sender));
   const auto [found, is_new] = senders_.try_emplace(sender);
   Clock& clock = found->second;
   clock.used = ++uses_;
   // A difference is taken first: a stamp far from the gateway's would lose its fractions in a sum.
   icd::Stamp shifted = clock.ours + (*stamp - clock.theirs);
-  if (is_new || *stamp < clock.latest - kJump || shifted > now + kJump) {
+  const bool set_back = clock.step_back.shown_by(*stamp, connection);
+  if (is_new || set_back || *stamp < clock.latest - kJump || shifted > now + kJump) {
+    shifted = is_new ? now : std::max(now, clock.latest_given());
+    clock.ours = shifted;
     clock.theirs = clock.latest = *stamp;
-    clock.ours = shifted = now;
   }
   clock.latest = std::max(clock.latest, *stamp);
   if (senders_.size() > kMostSenders) forget_the_most_silent();
@@ -22,9 +25,32 @@ icd::Stamp StampShift::shift(const std::string& sender, std::optional<icd::Stamp
 
 icd::Stamp StampShift::latest_of(const std::string& sender) const {
   const auto known = senders_.find(sender);
-  if (known == senders_.end()) return 0;
-  const Clock& clock = known->second;
-  return clock.ours + (clock.latest - clock.theirs);
+  return known == senders_.end() ? 0 : known->second.latest_given();
+}
+
+const SenderClock* StampShift::clock_of(const std::string& sender) const {
+  const auto known = senders_.find(sender);
+  return known == senders_.end() ? nullptr : &known->second;
+}
+
+std::vector<std::pair<std::string, SenderClock>> StampShift::clocks() const {
+  std::vector<std::pair<std::uint64_t, const std::string*>> by_use;
+  by_use.reserve(senders_.size());
+  for (const auto& [sender, clock] : senders_) by_use.emplace_back(clock.used, &sender);
+  std::ranges::sort(by_use);
+  std::vector<std::pair<std::string, SenderClock>> clocks;
+  clocks.reserve(by_use.size());
+  for (const auto& [used, sender] : by_use) clocks.emplace_back(*sender, senders_.at(*sender));
+  return clocks;
+}
+
+void StampShift::carry_on(const std::string& sender, const SenderClock& clock) {
+  senders_[sender] = Clock{clock, ++uses_, {}};
+  if (senders_.size() > kMostSenders) forget_the_most_silent();
+}
+
+void StampShift::move(double seconds) {
+  for (auto& [sender, clock] : senders_) clock.ours += seconds;
 }
 
 void StampShift::forget_the_most_silent() {

@@ -1,36 +1,60 @@
 #pragma once
 
+#include <algorithm>
 #include <cstddef>
 #include <cstdint>
 #include <map>
 #include <optional>
 #include <string>
+#include <utility>
+#include <vector>
 
 #include "icd/header.hpp"
+#include "lanes/step_back.hpp"
 
 namespace adit::lanes {
+
+/// How a sender's clock is brought to the gateway's: it goes on from `ours` as the sender's goes on from
+/// `theirs`.
+struct SenderClock {
+  icd::Stamp theirs = 0, ours = 0;  // one moment, by both clocks
+  icd::Stamp latest = 0;            // the sender's own
+
+  icd::Stamp latest_given() const { return ours + (latest - theirs); }
+};
 
 /// ICD 6.2 and promise 5: brings each sender's stamps to the gateway's clock, keeping the spacing it gave
 /// them.
 ///
 /// A sender's first stamp is taken as now; from then on its offset is kept, so that two messages it stamped
 /// 0.3 s apart stay 0.3 s apart however late they came. A sender whose clock jumped (backward by more than
-/// kJump, or to more than kJump after now) starts anew. A message without a stamp (or with
-/// 0, ROS's word for none) is stamped now, or with the latest stamp of its sender where that is later. Of
-/// more than kMostSenders, the one that was silent longest is forgotten.
+/// kJump, or by less where StepBack shows it, or to more than kJump after now) starts anew: now, or with the
+/// latest stamp that it was given where that is later, so that what it says next is newer than all before. A
+/// message without a stamp (or with 0, ROS's word for none) is stamped so, too. Of more than kMostSenders,
+/// the one that was silent longest is forgotten.
 class StampShift {
  public:
   static constexpr double kJump = 5.0;  // seconds
   static constexpr std::size_t kMostSenders = 1024;
 
   /// `now`: the gateway's clock, seconds since 1970. `sender`: any key that stands for one clock.
-  icd::Stamp shift(const std::string& sender, std::optional<icd::Stamp> stamp, double now);
+  /// `connection`: what the message came on; 0 where a message has several stamps, which are in no order.
+  icd::Stamp shift(const std::string& sender, std::optional<icd::Stamp> stamp, double now,
+                   Connection connection = 0);
+
+  /// As it is after shift(); null for a sender that is not known.
+  const SenderClock* clock_of(const std::string& sender) const;
+  /// All of them, the one that was silent longest first.
+  std::vector<std::pair<std::string, SenderClock>> clocks() const;
+  /// A clock of an earlier life goes on.
+  void carry_on(const std::string& sender, const SenderClock& clock);
+  /// The gateway's clock was set ahead by so many seconds, and all stamps go with it.
+  void move(double seconds);
 
  private:
-  struct Clock {
-    icd::Stamp theirs = 0, ours = 0;  // one moment, by both clocks
-    icd::Stamp latest = 0;            // the sender's own
-    std::uint64_t used = 0;           // the higher, the later
+  struct Clock : SenderClock {
+    std::uint64_t used = 0;  // the higher, the later
+    StepBack step_back;
   };
   icd::Stamp latest_of(const std::string& sender) const;
   void forget_the_most_silent();
@@ -44,6 +68,8 @@ class StampOrder {
  public:
   /// `stamp`, or the last one given out where that is later.
   icd::Stamp next(icd::Stamp stamp);
+  /// `last` was the last of an earlier life.
+  void carry_on(icd::Stamp last) { last_ = std::max(last_, last); }
 
  private:
   icd::Stamp last_ = 0;

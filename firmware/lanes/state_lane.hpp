@@ -6,7 +6,7 @@
 #include <optional>
 
 #include "icd/state_update.hpp"
-#include "lanes/map_lane.hpp"
+#include "lanes/blame.hpp"
 
 namespace adit::lanes {
 
@@ -18,9 +18,15 @@ struct WaitingState {
 };
 
 /// Robots' newest poses (ICD 6.5): each robot may post alone, all go out together, also those without news.
+///
+/// Where the Command Post will not take a state of several, each of its robots goes apart, one to a message,
+/// until it has been taken once: the one at fault is found, and the others arrive.
 class StateLane {
  public:
-  /// What the lane holds at most, so that no sender can fill the memory.
+  /// How long a robot waits whose own state was given up.
+  static constexpr std::chrono::seconds kRest{10};
+
+  /// What the lane holds at most, so that no sender can fill the memory. A robot without news makes room.
   static constexpr std::size_t kMostRobots = 1000;
   bool has_room_for(const icd::StateUpdate& update) const;
 
@@ -28,10 +34,25 @@ class StateLane {
   /// newer stamp.
   void add(const icd::StateUpdate& update, Instant now);
 
-  /// All robots' newest poses; nothing where no news came since the last take().
-  std::optional<WaitingState> take();
-  /// What could not be sent is news again; newer poses that came meanwhile stay.
+  /// Makes these robots news again, with their newer poses where they are known.
+  void add_unless_known(const icd::StateUpdate& update, Instant now);
+
+  /// All robots' newest poses, but for those that go apart, or one of these; nothing where no news came since
+  /// the last take(). Without `now`, nobody rests.
+  std::optional<WaitingState> take(Instant now = Instant::max());
+  /// What was news and could not be sent is news again; newer poses that came meanwhile stay.
   void put_back(const WaitingState& state);
+  /// The same, and from now on each of its robots goes apart.
+  void put_back_apart(const WaitingState& state);
+  /// It was taken: its robots go together again.
+  void passed(const WaitingState& state);
+  /// A robot's own state is not sent again; its next one waits for kRest.
+  void give_up(const icd::RobotName& name, Instant now);
+  /// Of a robot in a state that take() gave.
+  Trial& trial_of(const icd::RobotName& name) { return robots_[name].trial; }
+
+  /// The newest poses of those robots that have news.
+  icd::StateUpdate unsent() const;
 
   std::optional<Instant> oldest() const { return oldest_; }
   bool empty() const { return !oldest_; }  // no news
@@ -42,8 +63,18 @@ class StateLane {
 
     icd::Pose pose;
     std::optional<icd::Stamp> stamp;
+    bool waits() const { return is_news || is_under_way; }
+
+    bool is_news = true;
+    bool is_under_way = false;  // what was news when it was taken
+    bool apart = false;
+    Trial trial{};
   };
-  std::map<icd::RobotName, Held> robots_;
+  using Robots = std::map<icd::RobotName, Held>;
+  std::size_t unknown_in(const icd::StateUpdate& update) const;
+  Robots::iterator next_apart(Instant now);
+  void include(WaitingState& taken, Robots::value_type& robot);
+  Robots robots_;
   std::optional<Instant> oldest_;
   std::uint64_t updates_ = 0;
 };

@@ -33,12 +33,11 @@ int errno_behind(sqlite3* database) {
 
 }  // namespace
 
-Attempt<Database> Database::open(const std::string& path) {
+Attempt<Database> Database::open(const std::string& path, int flags) {
   Database database;
   sqlite3* handle = nullptr;
   // No mutexes: a ledger is used by one thread at a time.
-  const int result =
-      sqlite3_open_v2(path.c_str(), &handle, SQLITE_OPEN_READWRITE | SQLITE_OPEN_NOMUTEX, nullptr);
+  const int result = sqlite3_open_v2(path.c_str(), &handle, flags | SQLITE_OPEN_NOMUTEX, nullptr);
   database.handle_.reset(handle);  // there to be closed also where opening failed
   if (result != SQLITE_OK) return std::unexpected(database.error("opening " + path));
   return database;
@@ -66,13 +65,14 @@ Attempt<std::string> Database::text(const char* sql) {
 }
 
 Failure Database::error(std::string_view doing) const {
-  if (get() == nullptr) return {{std::string(doing) + ": out of memory", false}};
+  if (get() == nullptr) return {{std::string(doing) + ": out of memory"}};
   const int code = sqlite3_errcode(get()) & 0xff;
   std::string what = std::string(doing) + ": " + sqlite3_errmsg(get());
   if (code == SQLITE_BUSY) what += ": another process has the ledger open";
   const int system_error = code == SQLITE_IOERR || code == SQLITE_CANTOPEN ? errno_behind(get()) : 0;
   if (system_error != 0) what += std::string(" (") + std::strerror(system_error) + ")";
-  return {{what, is_full(code, system_error)}, code == SQLITE_CORRUPT || code == SQLITE_NOTADB};
+  const bool damaged = code == SQLITE_CORRUPT || code == SQLITE_NOTADB || code == SQLITE_ERROR;
+  return {{what, is_full(code, system_error), code == SQLITE_READONLY}, damaged};
 }
 
 sqlite3_file* Database::log() const {

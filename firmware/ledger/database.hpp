@@ -11,7 +11,8 @@
 
 namespace adit::ledger {
 
-/// Why something could not be done, and whether the file itself is to blame: no database, or a damaged one.
+/// Why something could not be done, and whether the file itself is to blame: no database, a damaged one, or
+/// one that does not know what a ledger has (SQLITE_ERROR).
 struct Failure : Error {
   bool damaged = false;
 };
@@ -39,7 +40,7 @@ class Statement {
 class Database {
  public:
   /// Opens a file that exists.
-  static Attempt<Database> open(const std::string& path);
+  static Attempt<Database> open(const std::string& path, int flags = SQLITE_OPEN_READWRITE);
 
   Attempt<void> execute(const char* sql);
   /// The first column of the first row, as a number and as text.

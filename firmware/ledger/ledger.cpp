@@ -1,38 +1,86 @@
 #include "ledger/ledger.hpp"
 
+#include <cstdlib>
+#include <filesystem>
 #include <utility>
 
 #include "ledger/database.hpp"
+#include "ledger/files.hpp"
+#include "ledger/mark.hpp"
 #include "ledger/opening.hpp"
 #include "ledger/rows.hpp"
 
 namespace adit::ledger {
+namespace {
+
+/// A ledger is some kilobytes, and begins with a few.
+constexpr const char* kFile = "/ledger.sqlite";
+constexpr std::int64_t kRoomToBegin = 1 << 20;
+
+/// A folder that goes with this; "": none.
+class Scratch {
+ public:
+  Scratch() = default;
+  explicit Scratch(const std::string& below) {
+    std::string path = below + "/ledger-XXXXXX";
+    if (::mkdtemp(path.data()) != nullptr) path_ = path;
+  }
+  ~Scratch() { clear(); }
+  Scratch(Scratch&& other) noexcept : path_(std::exchange(other.path_, "")) {}
+  Scratch& operator=(Scratch&& other) noexcept {
+    std::swap(path_, other.path_);
+    return *this;
+  }
+
+  const std::string& path() const { return path_; }
+  void clear() const {
+    std::error_code ignored;
+    if (!path_.empty()) std::filesystem::remove_all(path_, ignored);
+  }
+
+ private:
+  std::string path_;
+};
+
+}  // namespace
+
 class Ledger::Impl {
  public:
   static Result<std::unique_ptr<Impl>> make(Opened opened) {
     auto impl = std::make_unique<Impl>(std::move(opened));
-    const std::pair<Statement*, const char*> statements[] = {{&impl->write_report_, kWriteReport},
-                                                             {&impl->write_run_, kWriteRun},
-                                                             {&impl->read_reports_, kReadReports},
-                                                             {&impl->read_history_, kReadHistory},
-                                                             {&impl->read_last_run_, kReadLastRun}};
+    const std::pair<Statement*, const char*> statements[] = {
+        {&impl->write_report_, kWriteReport},     {&impl->write_run_, kWriteRun},
+        {&impl->write_sighting_, kWriteSighting}, {&impl->read_reports_, kReadReports},
+        {&impl->read_history_, kReadHistory},     {&impl->read_runs_, kReadRuns}};
     for (const auto& [statement, sql] : statements) {
       auto prepared = Statement::prepare(impl->database_, sql);
       if (!prepared) return std::unexpected(prepared.error());
       *statement = std::move(*prepared);
     }
+    sqlite3_wal_hook(impl->database_.get(), &Impl::note_pages, impl.get());
     return impl;
   }
+
+  /// What the file says of itself alone is then so.
+  ~Impl() {
+    (void)flush_each(false);  // closing flushes
+    (void)write_mark(database_, false, 0);
+  }
+  Impl(const Impl&) = delete;
+  Impl& operator=(const Impl&) = delete;
 
   explicit Impl(Opened opened) : database_(std::move(opened.database)), damage_(std::move(opened.damage)) {}
 
   Result<void> write(std::span<const dispatch::Report> steps, const dispatch::Run* run,
                      dispatch::Flush flush) {
     if (steps.empty() && run == nullptr) return {};
+    if (!refusal_.empty()) return std::unexpected(Error{refusal_, false, true});
     const bool soon = flush == dispatch::Flush::Soon;
     if (auto set = flush_each(!soon); !set) return set;
     unflushed_ = unflushed_ || soon;
-    return write(steps, run);
+    auto written = write(steps, run);
+    if (pages_ >= kPagesOfLog) begin_log_anew();
+    return written;
   }
 
   void expect(dispatch::Flush flush) {
@@ -70,17 +118,33 @@ class Ledger::Impl {
     return *std::move(steps);
   }
 
-  Result<std::optional<dispatch::Run>> last_run() {
-    Query query(read_last_run_);
-    const int result = query.step();
-    if (result == SQLITE_ROW) return run_of(query);
-    if (result == SQLITE_DONE) return std::nullopt;
-    return std::unexpected(database_.error("reading the last run"));
+  Result<std::vector<dispatch::Run>> runs() {
+    Query query(read_runs_);
+    std::vector<dispatch::Run> all;
+    int result = SQLITE_OK;
+    while ((result = query.step()) == SQLITE_ROW) all.push_back(run_of(query));
+    if (result != SQLITE_DONE) return std::unexpected(database_.error("reading the runs"));
+    return all;
   }
 
   const std::string& damage() const { return damage_; }
+  const std::string& refusal() const { return refusal_; }
+  void refuse(const std::string& why, Scratch scratch) {
+    refusal_ = why;
+    scratch_ = std::move(scratch);
+  }
 
  private:
+  static int note_pages(void* self, sqlite3*, const char*, int pages) {
+    static_cast<Impl*>(self)->pages_ = pages;
+    return SQLITE_OK;
+  }
+
+  void begin_log_anew() {
+    (void)flush_each(false);  // taking it over flushes all that is in it
+    take_over_log(database_);
+  }
+
   /// NORMAL differs from FULL in this alone: the log is not flushed at the end of a transaction.
   Result<void> flush_each(bool each) {
     if (each == flushes_each_) return {};
@@ -117,7 +181,9 @@ class Ledger::Impl {
   Result<void> write_one(const dispatch::Run& run) {
     Query query(write_run_);
     bind_run(query, run);
-    if (query.step() == SQLITE_DONE) return {};
+    Query sighting(write_sighting_);
+    bind_sighting(sighting, run);
+    if (query.step() == SQLITE_DONE && sighting.step() == SQLITE_DONE) return {};
     return std::unexpected(database_.error("recording run " + std::to_string(run.number)));
   }
 
@@ -133,11 +199,13 @@ class Ledger::Impl {
     return {};
   }
 
+  Scratch scratch_;    // before the database, which is in it
   Database database_;  // before the statements, which it outlives
-  std::string damage_;
+  std::string damage_, refusal_;
   bool flushes_each_ = true;  // as it was opened
+  int pages_ = 0;             // in the log
   bool unflushed_ = false;    // something was written whose flush was left for later
-  Statement write_report_, write_run_, read_reports_, read_history_, read_last_run_;
+  Statement write_report_, write_run_, write_sighting_, read_reports_, read_history_, read_runs_;
 };
 
 Ledger::Ledger(std::unique_ptr<Impl> impl) : impl_(std::move(impl)) {}
@@ -151,6 +219,26 @@ Result<Ledger> Ledger::open(const std::string& folder) {
   auto impl = Impl::make(std::move(*opened));
   if (!impl) return std::unexpected(std::move(impl.error()));
   return Ledger(std::move(*impl));
+}
+
+Result<Ledger> Ledger::stand_in(const std::string& folder, const std::string& scratch,
+                                const std::string& why) {
+  Scratch made(scratch);
+  if (made.path().empty()) return std::unexpected(system_error("making a folder in " + scratch));
+  std::string unread;
+  if (auto copied = copy_database(folder + kFile, made.path() + kFile); !copied) {
+    unread = "; what is in it cannot be read: " + copied.error().what;
+    remove_database(made.path() + kFile);
+  }
+  auto opened = open(made.path());
+  if (!opened) return opened;
+  opened->impl_->refuse(why + unread, std::move(made));
+  return opened;
+}
+
+bool Ledger::can_be_opened(const std::string& folder) {
+  // Tables of an earlier version are written anew, and so is a ledger that is salvaged.
+  return try_opening(folder + kFile) && try_room(folder, kRoomToBegin + 2 * size_of(folder + kFile));
 }
 
 Result<void> Ledger::write(std::span<const dispatch::Report> steps, const dispatch::Run* run,
@@ -167,14 +255,17 @@ Result<void> Ledger::flush() {
 Result<std::vector<dispatch::Report>> Ledger::reports() const {
   return impl_->reports();
 }
-Result<std::optional<dispatch::Run>> Ledger::last_run() const {
-  return impl_->last_run();
+Result<std::vector<dispatch::Run>> Ledger::runs() const {
+  return impl_->runs();
 }
 Result<std::vector<Ledger::Step>> Ledger::history(std::int64_t number) const {
   return impl_->history(number);
 }
 const std::string& Ledger::damage() const {
   return impl_->damage();
+}
+const std::string& Ledger::refusal() const {
+  return impl_->refusal();
 }
 
 }  // namespace adit::ledger

@@ -10,12 +10,14 @@
 
 #include "dispatch/deeds.hpp"
 #include "dispatch/report.hpp"
+#include "dispatch/run.hpp"
 
 namespace adit::ledger {
 
 struct Error {
   std::string what;
-  bool full = false;  // the disk is full
+  bool full = false;       // the disk is full
+  bool read_only = false;  // the folder cannot be written to
 };
 
 template <class T>
@@ -26,10 +28,19 @@ using Result = std::expected<T, Error>;
 /// on disk; when it has returned one, nothing of it is.
 class Ledger {
  public:
-  /// Opens or makes `folder`/ledger.sqlite, mode 0600. A file that is no ledger, or damaged, is set aside as
-  /// ledger.sqlite.damaged-<n>, a new one is begun, and damage() says so. A ledger of an earlier version is
-  /// brought up to this one; one of a later version is an error, and stays as it is.
+  /// Opens or makes `folder`/ledger.sqlite, mode 0600. One that is damaged, or no ledger, is set aside as
+  /// ledger.sqlite.damaged-<n>; what can be had of it is taken over row by row into a new one, which holds
+  /// for the operator what may have been sent, and damage() says so. A log of which a byte is damaged is put
+  /// right. A ledger of an earlier version is brought up to this one; one of a later version is an error, and
+  /// stays as it is, unless that says that this one can work with it.
   static Result<Ledger> open(const std::string& folder);
+  /// Where open() failed for `why` because the folder is full or cannot be written to: what can be read of
+  /// its ledger, as a copy in a folder that is made below `scratch` and goes with this. It takes no write.
+  static Result<Ledger> stand_in(const std::string& folder, const std::string& scratch,
+                                 const std::string& why);
+  /// Whether a folder that was full or could not be written to can be now, also for an upgrade or a salvage
+  /// of the ledger in it. Waits for the disk.
+  static bool can_be_opened(const std::string& folder);
   Ledger(Ledger&&) noexcept;
   Ledger& operator=(Ledger&&) noexcept;
   ~Ledger();
@@ -53,8 +64,8 @@ class Ledger {
   /// All reports, oldest first. A state that this version does not know is read as InDoubt: only the operator
   /// can judge it.
   Result<std::vector<dispatch::Report>> reports() const;
-  /// The run with the highest number.
-  Result<std::optional<dispatch::Run>> last_run() const;
+  /// All runs, oldest first.
+  Result<std::vector<dispatch::Run>> runs() const;
 
   /// One step of a report's life. `state` is as it was written, whatever wrote it.
   struct Step {
@@ -66,8 +77,10 @@ class Ledger {
   /// All steps of one report, oldest first.
   Result<std::vector<Step>> history(std::int64_t number) const;
 
-  /// A sentence about a ledger that was set aside at open(), or "".
+  /// A sentence about damage that was found at open(), or "".
   const std::string& damage() const;
+  /// Why it takes no write at all (stand_in()), or "".
+  const std::string& refusal() const;
 
  private:
   class Impl;

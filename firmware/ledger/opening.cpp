@@ -5,13 +5,16 @@
 #include <unistd.h>
 
 #include <algorithm>
-#include <cerrno>
-#include <cstdio>
-#include <cstring>
-#include <string_view>
 #include <utility>
 #include <vector>
 
+#include "ledger/carving.hpp"
+#include "ledger/files.hpp"
+#include "ledger/log_file.hpp"
+#include "ledger/mark.hpp"
+#include "ledger/proof.hpp"
+#include "ledger/rows.hpp"
+#include "ledger/salvage.hpp"
 #include "ledger/tables.hpp"
 #include "loop/file_descriptor.hpp"
 
@@ -19,12 +22,13 @@ namespace adit::ledger {
 namespace {
 
 /// One process owns the ledger, so its lock is exclusive; that also keeps WAL's index out of a shared file.
+/// The log is taken over by take_over_log().
 constexpr const char* kPragmas = R"(
   PRAGMA locking_mode = EXCLUSIVE;
   PRAGMA cell_size_check = ON;
   PRAGMA trusted_schema = OFF;
   PRAGMA synchronous = FULL;
-  PRAGMA wal_autocheckpoint = 960;
+  PRAGMA wal_autocheckpoint = 0;
   PRAGMA journal_size_limit = 4194304;
 )";
 
@@ -38,24 +42,8 @@ constexpr sqlite3_int64 kLogSize = 4 << 20;
 /// start-up stays short.
 constexpr std::int64_t kMostChecked = 64 << 20;
 
-Failure system_error(const std::string& doing) {
-  const int code = errno;
-  return {{doing + ": " + std::strerror(code), code == ENOSPC || code == EDQUOT}};
-}
-
-/// Makes an empty file of mode 0600 where there is none; SQLite gives its -wal the same mode. True: it did.
-Attempt<bool> make_file(const std::string& path) {
-  const loop::FileDescriptor made(::open(path.c_str(), O_CREAT | O_EXCL | O_WRONLY | O_CLOEXEC, 0600));
-  if (!made && errno != EEXIST) return std::unexpected(system_error("making " + path));
-  if (!made && ::chmod(path.c_str(), 0600) != 0) return std::unexpected(system_error("chmod 0600 " + path));
-  return static_cast<bool>(made);
-}
-
-/// A new or renamed file outlives a power cut only once its folder is on disk too.
-Attempt<void> sync_folder(const std::string& folder) {
-  const loop::FileDescriptor opened(::open(folder.c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC));
-  if (!opened || ::fsync(opened.get()) != 0) return std::unexpected(system_error("syncing " + folder));
-  return {};
+Failure damaged(std::string what) {
+  return {{std::move(what), false, false}, true};
 }
 
 Attempt<void> check_pages(Database& database) {
@@ -66,100 +54,220 @@ Attempt<void> check_pages(Database& database) {
   if (*pages * *page_size > kMostChecked) return {};
   const auto verdict = database.text("PRAGMA quick_check(1)");
   if (!verdict) return std::unexpected(verdict.error());
-  if (*verdict != "ok") return std::unexpected(Failure{{*verdict}, true});
+  if (*verdict != "ok") return std::unexpected(damaged(*verdict));
   return {};
 }
 
+/// A row may have been changed so that it is still a row: only its proof tells.
+Attempt<void> check_rows(Database& database) {
+  const auto unproven = database.text(kUnprovenRow);
+  if (!unproven) return std::unexpected(database.error("reading all rows"));
+  if (!unproven->empty()) return std::unexpected(damaged(*unproven + " is not as it was written"));
+  for (const char* sql : {kWriteReport, kWriteRun, kWriteSighting, kReadReports, kReadHistory, kReadRuns}) {
+    if (const auto known = Statement::prepare(database, sql); !known) return std::unexpected(known.error());
+  }
+  return database.execute(kProveRows);
+}
+
 /// Fills the write-ahead log up with zeros, which SQLite takes for its end. Where there is no room for that
-/// it grows as it is written.
-void reserve_log(Database& database) {
+/// it grows as it is written. Gives its size then, 0 where it grows.
+sqlite3_int64 reserve_log(Database& database) {
   sqlite3_file* const log = database.log();
   sqlite3_int64 size = 0;
-  if (log == nullptr || log->pMethods->xFileSize(log, &size) != SQLITE_OK) return;
+  if (log == nullptr || log->pMethods->xFileSize(log, &size) != SQLITE_OK) return 0;
   const std::vector<char> zeros(64 << 10);
   for (; size < kLogSize; size += static_cast<sqlite3_int64>(zeros.size())) {
     const auto length = std::min<sqlite3_int64>(kLogSize - size, static_cast<sqlite3_int64>(zeros.size()));
-    if (log->pMethods->xWrite(log, zeros.data(), static_cast<int>(length), size) != SQLITE_OK) break;
+    if (log->pMethods->xWrite(log, zeros.data(), static_cast<int>(length), size) != SQLITE_OK) return 0;
   }
-  log->pMethods->xSync(log, SQLITE_SYNC_NORMAL);
+  return log->pMethods->xSync(log, SQLITE_SYNC_NORMAL) == SQLITE_OK ? kLogSize : 0;
+}
+
+/// A ledger may be used also where there is no room for its mark; one that SQLite will not write to may not.
+Attempt<void> begin_log(Database& database) {
+  const sqlite3_int64 size = reserve_log(database);
+  if (auto marked = write_mark(database, true, size); !marked) {
+    if (marked.error().read_only) return std::unexpected(damaged(marked.error().what));
+    return {};
+  }
+  sqlite3_wal_checkpoint_v2(database.get(), nullptr, SQLITE_CHECKPOINT_PASSIVE, nullptr, nullptr);
+  (void)write_mark(database, false, size);
+  return {};
 }
 
 Attempt<void> set_up(Database& database) {
-  if (auto set = database.execute(kPragmas); !set) return set;
+  if (!database.execute(kPragmas)) return std::unexpected(database.error("opening the ledger"));
+  if (auto taught = teach_proof(database); !taught) return taught;
   if (auto known = check_version(database); !known) return known;
+  const auto tables = database.number("SELECT count(*) FROM sqlite_schema");
+  if (!tables) return std::unexpected(tables.error());
+  // A new one gets its name only when it is whole.
+  if (*tables == 0) return std::unexpected(damaged("it is empty"));
   const auto mode = database.text("PRAGMA journal_mode = WAL");
   if (!mode) return std::unexpected(mode.error());
   if (*mode != "wal") return std::unexpected(Failure{{"the ledger's file system has no WAL: " + *mode}});
   if (auto pages = check_pages(database); !pages) return pages;
   if (auto made = make_tables(database); !made) return made;
-  reserve_log(database);
-  return {};
+  if (auto rows = check_rows(database); !rows) return rows;
+  return begin_log(database);
 }
 
-/// Renames the file and what SQLite keeps beside it to the first `damaged-<n>` that is free.
-Attempt<std::string> set_aside(const std::string& folder, const std::string& path) {
-  for (int n = 1;; ++n) {
-    std::string aside = path + ".damaged-" + std::to_string(n);
-    if (::renameat2(AT_FDCWD, path.c_str(), AT_FDCWD, aside.c_str(), RENAME_NOREPLACE) != 0) {
-      if (errno == EEXIST) continue;
-      return std::unexpected(system_error("setting aside " + path));
+class Opening {
+ public:
+  explicit Opening(const std::string& folder)
+      : folder_(folder),
+        path_(folder + "/ledger.sqlite"),
+        new_(path_ + ".new"),
+        salvaged_(path_ + ".salvaged") {}
+
+  Attempt<Opened> open() {
+    if (auto writable = try_writing(folder_); !writable) return std::unexpected(writable.error());
+    if (auto there = have_file(); !there) return std::unexpected(there.error());
+    auto database = open_file();
+    if (!database && database.error().damaged) {
+      // What a log says that was put right is known for certain only where all rows prove it.
+      tail_lost_ = tail_lost_ || repaired_;
+      if (auto done = salvage_files(database.error().what); !done) return std::unexpected(done.error());
+      tail_lost_ = repaired_ = false;
+      database = open_file();
     }
-    for (const char* suffix : {"-wal", "-shm", "-journal"}) {
-      const bool moved = ::rename((path + suffix).c_str(), (aside + suffix).c_str()) == 0;
-      // One left behind would be taken for the new file's.
-      if (!moved && errno != ENOENT) return std::unexpected(system_error("setting aside " + path + suffix));
+    if (!database) return std::unexpected(std::move(database.error()));
+    if (auto synced = sync_folder(folder_); !synced) return std::unexpected(synced.error());
+    return Opened{std::move(*database), std::move(damage_)};
+  }
+
+ private:
+  /// A ledger under its name: the one that was salvaged when the box died, or a new one.
+  Attempt<void> have_file() {
+    if (exists(salvaged_)) {
+      damage_ = "The ledger was damaged and set aside; what could be had was taken over from it.";
+      return put_salvaged_in_place();
     }
-    if (auto synced = sync_folder(folder); !synced) return std::unexpected(synced.error());
-    return aside;
+    if (exists(path_)) return {};
+    if (auto made = make_new(nullptr); !made) return made;
+    if (exists(path_ + "-wal")) {  // of a ledger that is gone
+      if (auto aside = set_aside(folder_, path_); !aside) return std::unexpected(aside.error());
+    }
+    if (auto named = rename_file(new_, path_); !named) return named;
+    return sync_folder(folder_);
   }
-}
 
-/// A ledger that is there, but with nothing in it, nor a log beside it: what it held is lost. (One that was
-/// just being made when the box lost its power looks the same.)
-bool is_blank(const std::string& path) {
-  struct stat log{};
-  if (::stat((path + "-wal").c_str(), &log) == 0 && log.st_size > 0) return false;
-  const loop::FileDescriptor file(::open(path.c_str(), O_RDONLY | O_CLOEXEC));
-  if (!file) return false;
-  char head[72] = {};
-  const ssize_t length = ::pread(file.get(), head, sizeof head, 0);
-  constexpr int kApplicationAt = 68;  // of SQLite's file header
-  return length == 0 || (length == sizeof head && std::string_view(head, 15) == "SQLite format 3" &&
-                         std::string_view(head + kApplicationAt, 4) == std::string_view("\0\0\0\0", 4));
-}
-
-Attempt<Database> open_file(const std::string& path) {
-  const auto made = make_file(path);
-  if (!made) return std::unexpected(made.error());
-  auto database = Database::open(path);
-  if (!database) return std::unexpected(database.error());
-  if (auto ready = set_up(*database); !ready) {
-    if (*made) ::unlink(path.c_str());  // an empty one would be taken for one that has lost what it held
-    // The damaged file stays as it was found, for whoever looks into it.
-    sqlite3_db_config(database->get(), SQLITE_DBCONFIG_NO_CKPT_ON_CLOSE, 1, nullptr);
-    return std::unexpected(std::move(ready.error()));
+  /// A whole ledger under its first name: empty, or with what was carved.
+  Attempt<void> make_new(const Carved* carved) {
+    remove_database(new_);
+    auto made = make_file(new_);
+    if (made) made = fill_new(carved);
+    if (!made) remove_database(new_);
+    return made;
   }
-  return std::move(*database);
-}
+
+  Attempt<void> fill_new(const Carved* carved) {
+    auto database = Database::open(new_);
+    if (!database) return std::unexpected(database.error());
+    if (auto set = database->execute("PRAGMA synchronous = FULL"); !set) return set;
+    if (auto taught = teach_proof(*database); !taught) return taught;
+    if (auto made = make_tables(*database); !made) return made;
+    if (carved == nullptr) return {};
+    auto sentence = salvage(*database, *carved, tail_lost_ || !carved->highest || carved->unproven);
+    if (!sentence) return std::unexpected(sentence.error());
+    taken_over_ = *std::move(sentence);
+    return {};
+  }
+
+  Attempt<Database> open_file() {
+    if (auto log = look_at_log(); !log) return std::unexpected(log.error());
+    auto database = Database::open(path_);
+    if (!database) return std::unexpected(database.error());
+    if (::chmod(path_.c_str(), 0600) != 0) return std::unexpected(system_error("chmod 0600 " + path_));
+    if (auto ready = set_up(*database); !ready) {
+      // The damaged file stays as it was found, for whoever looks into it; its log with what was put right.
+      sqlite3_db_config(database->get(), SQLITE_DBCONFIG_NO_CKPT_ON_CLOSE, 1, nullptr);
+      return std::unexpected(std::move(ready.error()));
+    }
+    return std::move(*database);
+  }
+
+  /// Before SQLite does, which says nothing of what it does not take.
+  Attempt<void> look_at_log() {
+    auto log = read_file(path_ + "-wal");
+    if (!log) return std::unexpected(log.error());
+    const LogReading reading = read_log(*log);
+    std::string lost = reading.damage;
+    if (const auto mark = mark_without_log(path_); mark && mark->log_needed) {
+      const bool cut = static_cast<std::int64_t>(log->size()) < mark->log_size && !reading.ended;
+      if (lost.empty() && reading.empty) lost = "it is gone";
+      if (lost.empty() && cut) lost = "it was cut short";
+    }
+    if (!lost.empty()) {
+      tail_lost_ = true;
+      return std::unexpected(damaged("its log: " + lost));
+    }
+    return repair_log(reading.repairs);
+  }
+
+  Attempt<void> repair_log(const std::vector<LogReading::Repair>& repairs) {
+    if (repairs.empty()) return {};
+    const std::string path = path_ + "-wal";
+    const loop::FileDescriptor file(::open(path.c_str(), O_WRONLY | O_CLOEXEC));
+    if (!file) return std::unexpected(system_error("repairing " + path));
+    for (const auto& [at, byte] : repairs) {
+      if (::pwrite(file.get(), &byte, 1, static_cast<off_t>(at)) != 1) {
+        return std::unexpected(system_error("repairing " + path));
+      }
+    }
+    if (::fdatasync(file.get()) != 0) return std::unexpected(system_error("repairing " + path));
+    repaired_ = true;
+    damage_ = "The ledger's log was damaged; its checksums told what had been there, and it was put right: " +
+              std::to_string(repairs.size()) + " bytes. No report is missing.";
+    return {};
+  }
+
+  /// Row by row, into a new ledger; the damaged one is kept aside.
+  Attempt<void> salvage_files(const std::string& why) {
+    const auto file = read_file(path_);
+    if (!file) return std::unexpected(file.error());
+    auto log = read_file(path_ + "-wal");
+    if (!log) return std::unexpected(log.error());
+    (void)read_log(*log);  // which puts right what it can
+    const Carved carved = carve(*file, *log);
+    if (auto made = make_new(&carved); !made) return made;
+    if (auto named = rename_file(new_, salvaged_); !named) return named;
+    if (auto synced = sync_folder(folder_); !synced) return synced;
+    if (auto placed = put_salvaged_in_place(); !placed) return placed;
+    damage_ =
+        "The ledger was damaged (" + why + ") and was set aside as " + aside_ + "; " + taken_over_ + ".";
+    return {};
+  }
+
+  Attempt<void> put_salvaged_in_place() {
+    auto aside = set_aside(folder_, path_);
+    if (!aside) return std::unexpected(aside.error());
+    aside_ = *std::move(aside);
+    if (auto named = rename_file(salvaged_, path_); !named) return named;
+    return sync_folder(folder_);
+  }
+
+  const std::string folder_, path_;
+  const std::string new_;       // where one is made
+  const std::string salvaged_;  // where one is that is whole, and that is to take the damaged one's place
+  std::string damage_, aside_, taken_over_;
+  bool tail_lost_ = false;  // what came last cannot be told from the files
+  bool repaired_ = false;   // the log was put right by its checksums, of which several bytes may be the cause
+};
 
 }  // namespace
 
 Attempt<Opened> open_database(const std::string& folder) {
-  const std::string path = folder + "/ledger.sqlite";
-  std::string damage;
-  const bool blank = is_blank(path);
-  auto database = open_file(path);
-  if (database && blank) damage = "The ledger was empty: reports recorded before are not known.";
-  if (!database && database.error().damaged) {
-    const auto aside = set_aside(folder, path);
-    if (!aside) return std::unexpected(aside.error());
-    damage = "The ledger could not be read (" + database.error().what + ") and was set aside as " + *aside +
-             "; reports recorded in it are not shown.";
-    database = open_file(path);
-  }
-  if (!database) return std::unexpected(std::move(database.error()));
-  if (auto synced = sync_folder(folder); !synced) return std::unexpected(synced.error());
-  return Opened{std::move(*database), std::move(damage)};
+  return Opening(folder).open();
+}
+
+void take_over_log(Database& database) {
+  sqlite3_int64 size = 0;
+  sqlite3_file* const log = database.log();
+  if (log == nullptr || log->pMethods->xFileSize(log, &size) != SQLITE_OK) return;
+  if (!write_mark(database, true, size >= kLogSize ? kLogSize : 0)) return;
+  sqlite3_wal_checkpoint_v2(database.get(), nullptr, SQLITE_CHECKPOINT_PASSIVE, nullptr, nullptr);
+  (void)write_mark(database, false, size >= kLogSize ? kLogSize : 0);
 }
 
 }  // namespace adit::ledger

@@ -8,10 +8,15 @@ namespace adit::ledger {
 
 struct Opened {
   Database database;
-  std::string damage;  // a sentence about the file that was set aside, or ""
+  std::string damage;  // a sentence about what was found damaged, or ""
 };
 
-/// Opens `folder`/ledger.sqlite, made and set aside as Ledger::open() says, with its tables there.
+/// Opens `folder`/ledger.sqlite, made, put right and salvaged as Ledger::open() says, with its tables there.
 Attempt<Opened> open_database(const std::string& folder);
+
+/// At this many pages the log is taken over into the file.
+inline constexpr int kPagesOfLog = 960;
+/// Takes the log over into the file, so that it is written from its start again.
+void take_over_log(Database& database);
 
 }  // namespace adit::ledger

@@ -6,13 +6,17 @@
 
 namespace adit::ledger {
 
-// The order of the columns in a statement is that of the bindings, and of the readings, below it.
+// The order of the columns in a statement is that of the bindings, and of the readings, below it; in a proof
+// it is that of the table.
 
 const char* const kWriteReport = R"(
   INSERT INTO report(number, type, x, y, z, sender, received, changed, state, note, run, asked, same_as,
     tries, sending, sent, before_score, before_run_clock, before_remaining_reports, before_current_team,
-    status, content_type, answer, reconciled, history)
-  VALUES(?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?)
+    status, content_type, answer, reconciled, history, proof)
+  VALUES(?1, ?2, ?3, ?4, ?5, ?6, ?7, ?8, ?9, ?10, ?11, ?12, ?13, ?14, ?15, ?16, ?17, ?18, ?19, ?20, ?21, ?22,
+    ?23, ?24, ?25,
+    proof(?1, ?2, ?3, ?4, ?5, ?6, ?7, ?8, ?9, ?10, ?11, ?12, ?13, ?14, ?15, ?16, ?17, ?18, ?19, ?20, ?21, ?22,
+      ?23, ?24, ?25))
   ON CONFLICT(number) DO UPDATE SET
     sender = excluded.sender, changed = excluded.changed, state = excluded.state, note = excluded.note,
     run = excluded.run, asked = excluded.asked, same_as = excluded.same_as, tries = excluded.tries,
@@ -21,7 +25,9 @@ const char* const kWriteReport = R"(
     before_remaining_reports = excluded.before_remaining_reports,
     before_current_team = excluded.before_current_team, status = excluded.status,
     content_type = excluded.content_type, answer = excluded.answer, reconciled = excluded.reconciled,
-    history = history || excluded.history
+    history = history || excluded.history,
+    proof = proof(?1, ?2, ?3, ?4, ?5, ?6, ?7, ?8, ?9, ?10, ?11, ?12, ?13, ?14, ?15, ?16, ?17, ?18, ?19, ?20, ?21,
+      ?22, ?23, ?24, history || excluded.history)
   WHERE type = excluded.type AND x = excluded.x AND y = excluded.y AND z = excluded.z
     AND received = excluded.received)";
 
@@ -35,17 +41,45 @@ const char* const kReadHistory = "SELECT history FROM report WHERE number = ?";
 
 const char* const kWriteRun = R"(
   INSERT INTO run(number, id, began, why, score, run_clock, remaining_reports, current_team, heard, post,
-    unreliable)
-  VALUES(?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?)
+    unreliable, proof)
+  VALUES(?1, ?2, ?3, ?4, ?5, ?6, ?7, ?8, ?9, ?10, ?11, proof(?1, ?2, ?3, ?4, ?5, ?6, ?7, ?8, ?9, ?10, ?11))
   ON CONFLICT(number) DO UPDATE SET
     id = excluded.id, began = excluded.began, why = excluded.why, score = excluded.score,
     run_clock = excluded.run_clock, remaining_reports = excluded.remaining_reports,
     current_team = excluded.current_team, heard = excluded.heard, post = excluded.post,
-    unreliable = excluded.unreliable)";
+    unreliable = excluded.unreliable, proof = excluded.proof)";
 
-const char* const kReadLastRun = R"(
-  SELECT number, id, began, why, score, run_clock, remaining_reports, current_team, heard, post, unreliable
-  FROM run ORDER BY number DESC LIMIT 1)";
+const char* const kWriteSighting = R"(
+  REPLACE INTO sighting(number, turn, may_be, status_clock, status_clock_runs, answer_clock, answer_clock_runs,
+    heard, proof)
+  VALUES(?1, ?2, ?3, ?4, ?5, ?6, ?7, ?8, proof(?1, ?2, ?3, ?4, ?5, ?6, ?7, ?8)))";
+
+const char* const kReadRuns = R"(
+  SELECT number, id, began, why, score, run_clock, remaining_reports, current_team, run.heard, post, unreliable,
+    coalesce(turn, 0), coalesce(may_be, 0), status_clock, status_clock_runs, answer_clock, answer_clock_runs
+  FROM run LEFT JOIN sighting USING(number) ORDER BY number)";
+
+const char* const kProveRows = R"(
+  UPDATE report SET proof = proof(number, type, x, y, z, sender, received, changed, state, note, run, asked,
+    same_as, tries, sending, sent, before_score, before_run_clock, before_remaining_reports,
+    before_current_team, status, content_type, answer, reconciled, history) WHERE proof = 1;
+  UPDATE run SET proof = proof(number, id, began, why, score, run_clock, remaining_reports, current_team,
+    heard, post, unreliable) WHERE proof = 1;
+  UPDATE sighting SET proof = proof(number, turn, may_be, status_clock, status_clock_runs, answer_clock,
+    answer_clock_runs, heard) WHERE proof = 1)";
+
+const char* const kUnprovenRow = R"(
+  SELECT 'report ' || number FROM report WHERE proof NOT IN (1, proof(number, type, x, y, z, sender, received,
+    changed, state, note, run, asked, same_as, tries, sending, sent, before_score, before_run_clock,
+    before_remaining_reports, before_current_team, status, content_type, answer, reconciled, history))
+  UNION ALL SELECT 'run ' || number FROM run WHERE proof NOT IN (1, proof(number, id, began, why, score,
+    run_clock, remaining_reports, current_team, heard, post, unreliable))
+  UNION ALL SELECT 'what was seen of run ' || number FROM sighting WHERE proof NOT IN (1, proof(number, turn,
+    may_be, status_clock, status_clock_runs, answer_clock, answer_clock_runs, heard))
+  UNION ALL SELECT 'the mark' FROM mark WHERE proof != proof(number, log_needed, log_size, highest)
+  UNION ALL SELECT 'report ' || highest FROM mark
+    WHERE highest > (SELECT coalesce(max(number), 0) FROM report)
+  UNION ALL SELECT '' LIMIT 1)";
 
 namespace {
 
@@ -58,6 +92,15 @@ class Columns {
   double real() { return row_.real(next_++); }
   std::string bytes() { return row_.bytes(next_++); }
   bool flag() { return number() != 0; }
+
+  /// What it shows, NULL where none was seen, and whether it runs.
+  std::optional<dispatch::Clock> clock() {
+    const bool none = row_.is_null(next_);
+    const double shows = real();
+    const bool runs = flag();
+    if (none) return std::nullopt;
+    return dispatch::Clock{.shows = shows, .runs = runs};
+  }
 
   /// The four columns of a status; all of them are NULL where there is none.
   std::optional<icd::RunStatus> status() {
@@ -82,6 +125,14 @@ void bind_status(Query& query, const std::optional<icd::RunStatus>& status) {
     query.bind(status->current_team);
   } else {
     query.bind_null().bind_null().bind_null().bind_null();
+  }
+}
+
+void bind_clock(Query& query, const std::optional<dispatch::Clock>& clock) {
+  if (clock) {
+    query.bind(clock->shows).bind(std::int64_t{clock->runs});
+  } else {
+    query.bind_null().bind(std::int64_t{0});
   }
 }
 
@@ -186,6 +237,13 @@ void bind_run(Query& query, const dispatch::Run& run) {
   query.bind(run.heard).bind(run.post).bind(run.unreliable);
 }
 
+void bind_sighting(Query& query, const dispatch::Run& run) {
+  query.bind(run.number).bind(run.turn).bind(run.may_be);
+  bind_clock(query, run.status_clock);
+  bind_clock(query, run.answer_clock);
+  query.bind(run.heard);
+}
+
 dispatch::Run run_of(const Query& row) {
   Columns column(row);
   dispatch::Run run;
@@ -197,6 +255,10 @@ dispatch::Run run_of(const Query& row) {
   run.heard = column.real();
   run.post = column.bytes();
   run.unreliable = column.bytes();
+  run.turn = column.number();
+  run.may_be = column.number();
+  run.status_clock = column.clock();
+  run.answer_clock = column.clock();
   return run;
 }
 

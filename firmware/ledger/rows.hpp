@@ -3,15 +3,24 @@
 #include <optional>
 #include <span>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "dispatch/report.hpp"
+#include "dispatch/run.hpp"
 #include "ledger/database.hpp"
 
 namespace adit::ledger {
 
 /// How reports, their steps and runs are written into their tables and read from them. What is bound must
 /// outlive the query.
+
+/// The columns of each table in their order, but for the proof, which is the last: integer, real, text or
+/// blob. In capitals: it may be NULL. The first one is the row's number.
+inline constexpr std::string_view kReportKinds = "itrrrtrrttiiiiirIRITitbit";
+inline constexpr std::string_view kRunKinds = "itrtIRITrtt";
+inline constexpr std::string_view kSightingKinds = "iiiRiRir";
+inline constexpr std::string_view kMarkKinds = "iiii";
 
 /// Inserts a report, or updates the same one under its number and adds to its history; changes no row where
 /// the number is another's.
@@ -33,8 +42,17 @@ extern const char* const kReadHistory;
 /// Inserts a run, or updates the one of its number.
 extern const char* const kWriteRun;
 void bind_run(Query& query, const dispatch::Run& run);
+/// The same of what tells it from other runs, which is in a table of its own.
+extern const char* const kWriteSighting;
+void bind_sighting(Query& query, const dispatch::Run& run);
 
-extern const char* const kReadLastRun;
+/// Gives a proof to the rows that an Adit wrote that knew none.
+extern const char* const kProveRows;
+/// The name of a row whose proof is another's, or that is not there ("report 7"), or "".
+extern const char* const kUnprovenRow;
+
+/// All runs, with what tells them from others.
+extern const char* const kReadRuns;
 dispatch::Run run_of(const Query& row);
 
 }  // namespace adit::ledger

@@ -3,13 +3,15 @@
 #include <string>
 #include <utility>
 
+#include "ledger/rows.hpp"
+
 namespace adit::ledger {
 namespace {
 
 constexpr std::int64_t kApplicationId = 0x41444954;  // "ADIT", in SQLite's file header
-constexpr std::int64_t kVersion = 3;                 // of the tables below, in user_version
-/// A later version that only adds to these tables writes 3 << 16 | its own number, so that the slot before an
-/// update can still work with its ledger.
+constexpr std::int64_t kVersion = 4;                 // of the tables below, in user_version
+/// A version that only adds to an earlier one's tables writes that one's number << 16 | its own, so that the
+/// slot before an update can still work with its ledger. Version 4 only adds to version 3.
 constexpr int kOldestAt = 16;
 constexpr std::int64_t kVersionBits = 0xffff;
 
@@ -36,14 +38,39 @@ constexpr const char* kTables = R"(
     CHECK((score IS NULL) + (run_clock IS NULL) + (remaining_reports IS NULL) + (current_team IS NULL)
       IN (0, 4))) STRICT;
   PRAGMA application_id = 0x41444954;
-  PRAGMA user_version = 3;
+)";
+
+/// What version 4 adds: a proof in each row (1: none; 0 is what a page reads as that was cut off), the mark
+/// (mark.hpp), and what tells a run from another, which is not in `run`, as version 3 writes that. Where
+/// somebody writes a row again who knows no proofs, the one that was in it is none any more.
+constexpr const char* kAddProofs = R"(
+  ALTER TABLE report ADD COLUMN proof INTEGER NOT NULL DEFAULT 1;
+  ALTER TABLE run ADD COLUMN proof INTEGER NOT NULL DEFAULT 1;
+  CREATE TABLE mark(
+    number INTEGER PRIMARY KEY CHECK(number = 1),
+    log_needed INTEGER NOT NULL, log_size INTEGER NOT NULL, highest INTEGER NOT NULL,
+    proof INTEGER NOT NULL) STRICT;
+  CREATE TABLE sighting(
+    number INTEGER PRIMARY KEY CHECK(number > 0),
+    turn INTEGER NOT NULL, may_be INTEGER NOT NULL,
+    status_clock REAL, status_clock_runs INTEGER NOT NULL,
+    answer_clock REAL, answer_clock_runs INTEGER NOT NULL,
+    heard REAL NOT NULL, proof INTEGER NOT NULL) STRICT;
+  CREATE TRIGGER report_without_proof AFTER UPDATE ON report WHEN NEW.proof IS OLD.proof
+    BEGIN UPDATE report SET proof = 1 WHERE number = NEW.number; END;
+  CREATE TRIGGER run_without_proof AFTER UPDATE ON run WHEN NEW.proof IS OLD.proof
+    AND (NEW.id, NEW.began, NEW.why, NEW.score, NEW.run_clock, NEW.remaining_reports, NEW.current_team,
+      NEW.heard, NEW.post, NEW.unreliable) IS NOT (OLD.id, OLD.began, OLD.why, OLD.score, OLD.run_clock,
+      OLD.remaining_reports, OLD.current_team, OLD.heard, OLD.post, OLD.unreliable)
+    BEGIN UPDATE run SET proof = 1 WHERE number = NEW.number; END;
+  PRAGMA user_version = 196612; -- 3 << 16 | 4
 )";
 
 /// Versions 1 and 2 had a table `step`, of report, at, state and note, in the order of its rows. Version 1
 /// numbered the reports itself, and knew less of them and nothing of runs.
 constexpr const char* kSetAside[] = {
     "", "ALTER TABLE report RENAME TO old_report",
-    "ALTER TABLE report RENAME TO old_report; ALTER TABLE run RENAME TO old_run"};
+    "ALTER TABLE report RENAME TO old_report; ALTER TABLE run RENAME TO old_run", ""};
 constexpr const char* kTakeOver[] = {"", R"(
   INSERT INTO report(number, type, x, y, z, sender, received, changed, state, note, status, content_type,
     answer, history)
@@ -67,7 +94,8 @@ constexpr const char* kTakeOver[] = {"", R"(
   DROP TABLE step;
   DROP TABLE old_report;
   DROP TABLE old_run;
-)"};
+)",
+                                     ""};
 
 /// What the file's header says it is; all are 0 in a new file.
 struct Kind {
@@ -104,6 +132,8 @@ Attempt<void> check_version(Database& database) {
   }
   const std::string version = "version " + std::to_string(kind->version);
   if (kind->version < 1) return no_ledger("it has " + version + ", which there never was");
+  if (kind->oldest > kind->version)
+    return no_ledger("it has " + version + ", which only a later one can read");
   if (kind->oldest > kVersion) {
     std::string sentence = "a later Adit wrote this ledger (" + version + ", and this one reads up to ";
     sentence += std::to_string(kVersion) + "): run that Adit, or move the ledger out of its folder";
@@ -119,7 +149,8 @@ Attempt<void> make_tables(Database& database) {
   Transaction transaction(database);
   if (auto begun = transaction.begin(); !begun) return begun;
   const auto old = static_cast<std::size_t>(kind->is_ledger() ? kind->version : 0);
-  for (const char* sql : {kSetAside[old], kTables, kTakeOver[old]}) {
+  const char* const tables = old == 3 ? "" : kTables;
+  for (const char* sql : {kSetAside[old], tables, kTakeOver[old], kAddProofs, kProveRows}) {
     if (auto done = database.execute(sql); !done) return done;
   }
   return transaction.commit();

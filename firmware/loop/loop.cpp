@@ -16,6 +16,7 @@
 #include <vector>
 
 #include "loop/file_descriptor.hpp"
+#include "loop/guard.hpp"
 
 namespace adit::loop {
 namespace {
@@ -54,7 +55,7 @@ struct Source::State : std::enable_shared_from_this<Source::State> {
   /// Holds the callback while it runs, for it may destroy its own Source.
   static int run(void* userdata, std::uint32_t events) noexcept {
     const auto alive = static_cast<State*>(userdata)->weak_from_this().lock();
-    alive->call(events);
+    guarded("a callback of the loop", [&] { alive->call(events); });
     return 0;
   }
   static int ready(sd_event_source*, int, std::uint32_t events, void* userdata) {
@@ -107,12 +108,14 @@ class Loop::Impl {
     return stamp_at_start_ + std::chrono::duration<double>(instant - started_).count();
   }
 
-  void post(std::function<void()> task) {
+  void set_stamp(double stamp, Instant instant) { stamp_at_start_ += stamp - stamp_at(instant); }
+
+  void post(std::function<void()>&& task) {
     bool first = false;
     {
       const std::lock_guard lock(mutex_);
       first = posted_.empty();
-      posted_.push_back(std::move(task));
+      posted_.push_back(std::move(task));  // moves only once there is room
     }
     if (!first) return;
     // What the loop's own thread posts runs at the end of its turn, and needs no system call. But a task that
@@ -153,14 +156,14 @@ class Loop::Impl {
     }
     running_tasks_ = true;
     for (auto& task : tasks) {
-      task();
+      guarded("a task of the loop", [&] { task(); });
       task = nullptr;  // what it holds is freed before the next one runs
     }
     running_tasks_ = false;
   }
 
   const Instant started_ = std::chrono::steady_clock::now();
-  const double stamp_at_start_ =
+  double stamp_at_start_ =
       std::chrono::duration<double>(std::chrono::system_clock::now().time_since_epoch()).count();
   FileDescriptor wake_;
   sd_event* event_ = nullptr;
@@ -180,6 +183,9 @@ Instant Loop::now() const {
 }
 double Loop::stamp_now() const {
   return impl_->stamp_at(now());
+}
+void Loop::set_stamp(double now) {
+  impl_->set_stamp(now, this->now());
 }
 
 Source Loop::watch(int fd, std::uint32_t events, std::function<void(std::uint32_t)> ready) {
@@ -213,7 +219,7 @@ Source Loop::signal(int number, std::function<void()> came) {
   return Source(std::move(state));
 }
 
-void Loop::post(std::function<void()> task) {
+void Loop::post(std::function<void()>&& task) {
   impl_->post(std::move(task));
 }
 

@@ -10,8 +10,9 @@ namespace adit::loop {
 using Instant = std::chrono::steady_clock::time_point;
 using Duration = std::chrono::nanoseconds;
 
-/// A thing the loop watches; destroying it ends the watch, also from within its own callback. A callback may
-/// not throw. For watch(): destroy the Source before closing its file descriptor.
+/// A thing the loop watches; destroying it ends the watch, also from within its own callback. A callback that
+/// throws has ended there (guard.hpp), and is called again as if it had returned. For watch(): destroy the
+/// Source before closing its file descriptor.
 class Source {
  public:
   Source() = default;
@@ -45,8 +46,10 @@ class Loop {
   /// The one way to take the time for policy: monotonic.
   Instant now() const;
   /// The gateway's clock for stamps: seconds since 1970 as of start, carried on by the monotonic clock, so
-  /// that it never steps.
+  /// that it never steps but by set_stamp().
   double stamp_now() const;
+  /// Sets that clock: an earlier process has given out stamps by it.
+  void set_stamp(double now);
 
   /// Calls `ready` with the EPOLL* events that came on `fd`, which stays the caller's.
   Source watch(int fd, std::uint32_t events, std::function<void(std::uint32_t)> ready);
@@ -55,8 +58,9 @@ class Loop {
   /// Blocks the signal for the process (call before starting threads) and calls `came` for it.
   Source signal(int number, std::function<void()> came);
   /// Runs `task` on the loop's thread, soon, in the order of posting. Thread-safe. What a task posts runs in
-  /// a later turn, so that tasks never keep the loop from its sockets.
-  void post(std::function<void()> task);
+  /// a later turn, so that tasks never keep the loop from its sockets. Where it throws (no memory), `task` is
+  /// as it was.
+  void post(std::function<void()>&& task);
 
   /// Until stop(), which may also have been called before.
   void run();

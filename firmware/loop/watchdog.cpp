@@ -1,5 +1,6 @@
 #include "loop/watchdog.hpp"
 
+#include <algorithm>
 #include <utility>
 
 namespace adit::loop {
@@ -13,20 +14,21 @@ Watchdog::Watchdog(Loop& loop, Duration within, std::function<void()> feed, Dura
   look();
 }
 
-void Watchdog::ask_also(Workers* workers) {
-  workers_ = workers;
-  if (workers_ != nullptr) workers_->ask();
+void Watchdog::ask_also(std::vector<Workers*> workers) {
+  workers_ = std::move(workers);
+  ask();
+}
+
+void Watchdog::ask() {
+  for (Workers* const each : workers_) each->ask();
 }
 
 /// Whoever has not answered for a whole round is not asked again before it has.
 void Watchdog::look() {
-  if (workers_ == nullptr) {
-    feed_();
-  } else if (workers_->are_well(longest_job_)) {
-    feed_();
-    workers_->ask();
-  }
   due_.call_at(loop_.now() + every_);
+  if (!std::ranges::all_of(workers_, [this](Workers* each) { return each->are_well(longest_job_); })) return;
+  feed_();
+  ask();
 }
 
 }  // namespace adit::loop

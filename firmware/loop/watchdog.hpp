@@ -2,6 +2,7 @@
 
 #include <chrono>
 #include <functional>
+#include <vector>
 
 #include "loop/loop.hpp"
 #include "loop/workers.hpp"
@@ -23,17 +24,17 @@ class Watchdog {
   Watchdog(const Watchdog&) = delete;
   Watchdog& operator=(const Watchdog&) = delete;
 
-  /// Whose answers count from now on; null: nobody's but the loop's. They outlive this, or are replaced
-  /// first.
-  void ask_also(Workers* workers);
+  /// Whose answers count from now on beside the loop's. They outlive this, or are replaced first.
+  void ask_also(std::vector<Workers*> workers);
 
  private:
   void look();
+  void ask();
 
   Loop& loop_;
   const Duration every_, longest_job_;
   const std::function<void()> feed_;
-  Workers* workers_ = nullptr;
+  std::vector<Workers*> workers_;
   Source due_;
 };
 

@@ -11,8 +11,13 @@
 #include <utility>
 #include <vector>
 
+#include "loop/guard.hpp"
+
 namespace adit::loop {
 namespace {
+
+/// How long a result waits that cannot be handed back for want of memory.
+constexpr std::chrono::milliseconds kNoMemory{10};
 
 unsigned threads_for(unsigned asked) {
   if (asked > 0) return asked;
@@ -39,11 +44,11 @@ class SignalsBlocked {
 
 class Workers::Impl {
  public:
-  Impl(Loop& loop, unsigned count) : loop_(loop), lives_(threads_for(count)) {
+  Impl(Loop& loop, unsigned count, AtEnd at_end) : loop_(loop), at_end_(at_end), lives_(threads_for(count)) {
     const SignalsBlocked blocked;
     for (Life& life : lives_) {
       threads_.emplace_back([this, &life] { serve(life); });
-      pthread_setname_np(threads_.back().native_handle(), "worker");
+      pthread_setname_np(threads_.back().native_handle(), at_end == AtEnd::Finish ? "writer" : "worker");
     }
   }
 
@@ -53,7 +58,7 @@ class Workers::Impl {
     {
       const std::lock_guard lock(mutex_);
       stopping_ = true;
-      dropped.swap(jobs_);
+      if (at_end_ == AtEnd::Drop) dropped.swap(jobs_);
     }
     came_.notify_all();
     for (auto& thread : threads_) thread.join();
@@ -61,10 +66,11 @@ class Workers::Impl {
   Impl(const Impl&) = delete;
   Impl& operator=(const Impl&) = delete;
 
-  void submit(std::function<void()> work, std::function<void()> done) {
+  void submit(std::function<void()> work, std::function<void()> done, std::function<void()> failed) {
+    Job job = job_of(std::move(work), {std::move(done), std::move(failed)});
     {
       const std::lock_guard lock(mutex_);
-      jobs_.push_back({std::move(work), std::move(done)});
+      jobs_.push_back(std::move(job));
     }
     came_.notify_one();
   }
@@ -85,10 +91,25 @@ class Workers::Impl {
   }
 
  private:
+  /// What follows a job on the loop, and is touched and freed there alone but for `well`.
+  struct Ends {
+    std::function<void()> done, failed;
+    bool well = false;
+  };
   struct Job {
     std::function<void()> work;
-    std::function<void()> done;
+    std::function<void()> end;
+    Ends* ends = nullptr;  // end's own
   };
+
+  Job job_of(std::function<void()> work, Ends ends) const {
+    const auto held = std::make_shared<Ends>(std::move(ends));
+    return {std::move(work),
+            [alive = alive_, held] {
+              if (*alive) (held->well ? held->done : held->failed)();
+            },
+            held.get()};
+  }
 
   /// What is known of a worker.
   struct Life {
@@ -108,21 +129,27 @@ class Workers::Impl {
           came_.wait(lock);
           life.answered = asked_;
         }
-        if (stopping_) return;
+        if (jobs_.empty()) return;  // stopping
         job = std::move(jobs_.front());
         jobs_.pop_front();
         life.at_work = true;
         life.began = loop_.now();
       }
-      job.work();
+      job.ends->well = guarded("a job of a worker", job.work);
       job.work = nullptr;  // freed here, so that `done` finds its data its own
-      loop_.post([alive = alive_, done = std::move(job.done)] {
-        if (*alive) done();
-      });
+      hand_back(std::move(job.end));
+    }
+  }
+
+  /// Somebody waits for it: where there is no memory for it just now, it is tried until there is.
+  void hand_back(std::function<void()> end) noexcept {
+    while (!guarded("handing a job back", [&] { loop_.post(std::move(end)); })) {
+      std::this_thread::sleep_for(kNoMemory);
     }
   }
 
   Loop& loop_;
+  const AtEnd at_end_;
   const std::shared_ptr<bool> alive_ = std::make_shared<bool>(true);  // read and written on the loop alone
   std::mutex mutex_;
   std::condition_variable came_;
@@ -133,11 +160,16 @@ class Workers::Impl {
   std::vector<std::thread> threads_;
 };
 
-Workers::Workers(Loop& loop, unsigned count) : impl_(std::make_unique<Impl>(loop, count)) {}
+Workers::Workers(Loop& loop, unsigned count, AtEnd at_end)
+    : impl_(std::make_unique<Impl>(loop, count, at_end)) {}
 Workers::~Workers() = default;
 
+void Workers::submit(std::function<void()> work, std::function<void()> done, std::function<void()> failed) {
+  impl_->submit(std::move(work), std::move(done), std::move(failed));
+}
 void Workers::submit(std::function<void()> work, std::function<void()> done) {
-  impl_->submit(std::move(work), std::move(done));
+  const auto either = std::make_shared<std::function<void()>>(std::move(done));
+  impl_->submit(std::move(work), [either] { (*either)(); }, [either] { (*either)(); });
 }
 void Workers::ask() {
   impl_->ask();

@@ -8,16 +8,34 @@ namespace adit::pace {
 using Instant = std::chrono::steady_clock::time_point;
 using Duration = std::chrono::nanoseconds;
 
+/// What of a rate limit outlives its gateway.
+struct Learned {
+  Instant next{};          // the earliest time for the next request
+  Duration spacing{};      // learned; 0: as the settings allow
+  bool under_way = false;  // a request was sent, and how it ended is not known here
+  friend bool operator==(const Learned&, const Learned&) = default;
+};
+
 /// How often one URI may be asked: at most `hertz` times a second, evenly spaced, measured from the end of
-/// one request to the start of the next where that is later. Learned down by half on a 429 (RFC 6585 4), and
-/// back up by a tenth with each request that is taken.
+/// one request to the start of the next where that is later.
+///
+/// After a 429 (RFC 6585 4) it tries again with pauses that double up to kStormPause, so that the end of a
+/// storm is found within that time, and the first request that is taken brings back the rate from before: a
+/// storm says nothing about the rate, however long it lasts. What lasts is a limit, and is learned: the rate
+/// goes down where a 429 comes again at once, or within kSoonAgain of a short storm or of the second in a
+/// row; and up again by steps, of which each that fails doubles the time until the next (kFirstHold to
+/// kLongestHold).
 class RateLimit {
  public:
-  static constexpr double kSlowest = 1.0 / 30;  // hertz
-  static constexpr std::chrono::seconds kLongestPause{30};
+  static constexpr double kSlowest = 1.0 / 30;              // hertz
+  static constexpr std::chrono::seconds kLongestPause{30};  // that a server may ask for
+  static constexpr std::chrono::seconds kStormPause{4};
+  static constexpr std::chrono::seconds kShort{6};  // no storm: a limit refuses, and then lets one pass
+  static constexpr std::chrono::seconds kSoonAgain{45};
+  static constexpr std::chrono::seconds kFirstHold{10}, kLongestHold{160};
 
   /// hertz > 0.
-  explicit RateLimit(double hertz) : allowed_(hertz), learned_(hertz) {}
+  explicit RateLimit(double hertz);
 
   /// The earliest time for the next request.
   Instant next() const { return next_; }
@@ -31,12 +49,41 @@ class RateLimit {
   /// hour.
   void throttled(Instant now, std::optional<std::chrono::seconds> retry_after);
 
-  double hertz() const { return learned_; }
+  /// What is learned: never more than is allowed.
+  double hertz() const;
+
+  Learned learned() const;
+  /// What the gateway before has learned; this one begins at `now`. A request that was under way may have
+  /// ended just before.
+  void carry_on(const Learned& learned, Instant now);
 
  private:
-  double allowed_;
-  double learned_;
-  Instant next_;
+  /// 429 and nothing else.
+  struct Storm {
+    Instant began;
+    Duration pause;
+  };
+
+  void begin_storm(Instant now);
+  bool is_a_limit() const;
+  void slow_down(Instant now);
+  void speed_up(Instant now);
+
+  Duration allowed_;  // between two requests, as all that follow
+  Duration spacing_;  // learned
+  Instant next_{};
+  std::optional<Storm> storm_;
+  std::optional<Instant> sent_;  // last
+  bool under_way_ = false;
+  Duration worked_{0};                 // the pause before the request that ended the last storm
+  std::optional<Instant> calm_since_;  // the end of the last storm
+  bool last_was_short_ = false;
+  int taken_since_ = 0;     // the end of the last storm
+  int soon_again_ = 0;      // storms in a row, each of which began soon after the one before
+  Duration on_average_{0};  // between two that were taken, from the end of one storm to the end of the next
+  Instant learned_at_{};    // when spacing_ changed last
+  std::optional<Duration> tried_from_;  // the spacing before the step up that is on trial
+  Duration hold_ = kFirstHold;          // until the next step up
 };
 
 }  // namespace adit::pace

@@ -39,6 +39,7 @@ codec::Value json(const ReportRow& row);
 codec::Value json(const ReportStep& step);
 codec::Value json(const ActivityRow& row);
 codec::Value json(const RefusalRow& row);
+codec::Value json(const AsideRow& row);
 codec::Value json(const LightRow& row);
 
 template <class T>

@@ -26,7 +26,8 @@ struct LogRecord {
 struct RefusedCount {
   std::string uri;
   int status = 0;
-  std::uint64_t count = 0;
+  std::uint64_t count = 0;  // messages
+  std::uint64_t parts = 0;  // of states and markers: poses and markers
 };
 
 /// What the process has used and done since the start.
@@ -34,8 +35,10 @@ struct Usage {
   Time started = 0;
   double cpu_seconds = 0;
   std::uint64_t resident_bytes = 0, open_files = 0, most_files = 0, threads = 0;
-  std::uint64_t connections = 0;  // of the team's side, now
-  std::uint64_t sent_bytes = 0;   // of bodies, to both endpoints
+  std::uint64_t connections = 0;    // of the team's side, now
+  std::uint64_t sent_bytes = 0;     // of bodies, to both endpoints
+  std::uint64_t aside_dropped = 0;  // what was set aside and made place for newer ones
+  std::uint64_t exceptions = 0;     // that were caught at the program's edge: loop/guard.hpp
   std::vector<RefusedCount> refused;
 };
 

@@ -1,5 +1,6 @@
 #include "page/metrics.hpp"
 
+#include <algorithm>
 #include <map>
 
 #include "page/exposition.hpp"
@@ -33,6 +34,8 @@ void write_box(Exposition& out, const Measured& measured) {
   out.sample(number(usage.threads));
   out.gauge("adit_connections", "Connections of the team's side.");
   out.sample(number(usage.connections));
+  out.counter("adit_exceptions_total", "Requests, answers and jobs that were ended by an exception.");
+  out.sample(number(usage.exceptions));
   out.gauge("adit_sessions", "Logins that have not ended.");
   out.sample({{"role", "operator"}}, number(measured.operators));
   out.sample({{"role", "viewer"}}, number(measured.viewers));
@@ -86,6 +89,8 @@ void write_endpoints(Exposition& out, const RunView& view) {
   for (const EndpointRow& row : view.endpoints) out.sample({{"endpoint", row.name}}, row.last_status);
   out.counter("adit_endpoint_throttled_total", "Answers of 429.");
   for (const EndpointRow& row : view.endpoints) out.sample({{"endpoint", row.name}}, number(row.throttled));
+  out.counter("adit_endpoint_foreign_total", "Answers that no Command Post gives: pages of HTML, redirects.");
+  for (const EndpointRow& row : view.endpoints) out.sample({{"endpoint", row.name}}, number(row.foreign));
 }
 
 void write_link(Exposition& out, const Measured& measured) {
@@ -97,6 +102,12 @@ void write_link(Exposition& out, const Measured& measured) {
   out.sample(measured.view.budget_mbit * kBytesPerMbit);
   out.gauge("adit_queue_bytes", "Bytes of maps that wait.");
   out.sample(number(measured.view.queued_bytes));
+  out.gauge("adit_set_aside",
+            "Messages that the Command Post would not take and nothing newer has replaced.");
+  out.sample(
+      number(static_cast<std::size_t>(std::ranges::count(measured.view.aside, false, &AsideRow::overtaken))));
+  out.counter("adit_set_aside_dropped_total", "Messages set aside that made place for newer ones.");
+  out.sample(number(measured.usage.aside_dropped));
 }
 
 /// A counter of each robot and kind.
@@ -153,6 +164,12 @@ void write_refused(Exposition& out, const Usage& usage) {
   out.counter("adit_refused_total", "Messages of the team that Adit refused to their senders.");
   for (const RefusedCount& row : usage.refused) {
     out.sample({{"uri", row.uri}, {"status", std::to_string(row.status)}}, number(row.count));
+  }
+  out.counter(
+      "adit_refused_parts_total",
+      "Poses and markers that Adit refused to their senders, each by itself or with all of its message.");
+  for (const RefusedCount& row : usage.refused) {
+    if (row.parts > 0) out.sample({{"uri", row.uri}}, number(row.parts));
   }
 }
 

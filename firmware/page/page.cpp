@@ -5,6 +5,7 @@
 
 #include "page/answers.hpp"
 #include "page/api.hpp"
+#include "page/aside_routes.hpp"
 #include "page/box_routes.hpp"
 #include "page/entrance.hpp"
 #include "page/live.hpp"
@@ -50,7 +51,8 @@ class Page::Impl {
         maps_(source),
         scene_(source),
         panel_(judge),
-        reports_(source, judge, [this] { live_.changed(); }) {}
+        reports_(source, judge, [this] { live_.changed(); }),
+        aside_(judge, [this] { live_.changed(); }) {}
 
   std::unique_ptr<intake::Exchange> open(const intake::RequestHead& head,
                                          std::shared_ptr<intake::Responder> responder,
@@ -70,6 +72,7 @@ class Page::Impl {
     }
     if (sets_up) return settings_->open(head, std::move(responder));
     if (ReportRoutes::has(head.path())) return reports_.open(head, std::move(responder));
+    if (AsideRoutes::has(head.path())) return aside_.open(head, std::move(responder));
     if (PanelRoute::has(head.path())) return panel_.open(head, std::move(responder));
     if (network_ && NetworkRoutes::has(head.path())) return network_->open(head, std::move(responder));
     if (updates_ && UpdateRoutes::has(head.path())) return updates_->open(head, responder, std::move(flow));
@@ -127,6 +130,7 @@ class Page::Impl {
   std::optional<NetworkRoutes> network_;
   std::optional<UpdateRoutes> updates_;
   ReportRoutes reports_;
+  AsideRoutes aside_;
   std::optional<SettingsRoutes> settings_;
 };
 

@@ -29,7 +29,7 @@ class Updates;
 struct ReportRow {
   std::int64_t number = 0;
   std::string type;
-  icd::Point position;
+  icd::Point position;  // nothing where it is lost
   std::string sender;
   Time received = 0, changed = 0;
   std::string state;  // dispatch::name_of(ReportState): "received", "waiting", "in doubt", "settled", ...
@@ -41,6 +41,7 @@ struct ReportRow {
   bool asking = false;       // in doubt, and Adit is finding out
   bool reconciled = false;   // its answer was found out from the run's status
   std::int64_t same_as = 0;  // the earlier report that it turned out to be; 0: none
+  bool lost = false;         // damage took from the ledger what it said: dispatch::Report::is_lost
 };
 
 /// One step of a report's life.
@@ -74,6 +75,7 @@ struct RefusalRow {
   std::string uri, sender;
   int status = 0;
   std::string sentence;
+  std::uint64_t parts = 0;  // of a state or of markers, that were refused; 0: it was refused as a whole
 };
 
 struct EndpointRow {
@@ -84,6 +86,19 @@ struct EndpointRow {
   int last_status = 0;
   std::optional<double> answer_ms;  // of the last request
   std::uint64_t throttled = 0;      // answers of 429, ever
+  std::uint64_t foreign = 0;        // answers that no Command Post gives, ever: pages of HTML, redirects
+};
+
+/// A map, state or markers that the Command Post would not take: kept until it is sent again or discarded.
+struct AsideRow {
+  std::uint64_t number = 0;
+  std::string kind;   // "grid", "cloud", "state", "markers"
+  std::string robot;  // "": of several, or of none
+  Time at = 0;        // when it was set aside
+  int status = 0;     // the Command Post's
+  std::string why;    // its sentence
+  std::size_t bytes = 0;
+  bool overtaken = false;  // something newer that says all of it was sent since: it is not sent again
 };
 
 /// A robot as the Command Post knows it.
@@ -118,6 +133,7 @@ struct RunView {
   double near_metres = 0;          // of one type and this near, two reports may be of one artifact
   std::vector<ActivityRow> activities;
   std::vector<RefusalRow> refusals;  // newest first, the last 50
+  std::vector<AsideRow> aside;       // oldest first
   std::vector<LightRow> lights;
   std::vector<LinkRow> links;            // of the interfaces that the settings name
   std::optional<Time> identify_until;    // the lights blink so that the box can be found
@@ -150,6 +166,9 @@ class Source {
 /// The operator's word on a report: see dispatch::Reports.
 enum class Deed : std::uint8_t { Send, Hold, Withdraw, CallDone, Resubmit };
 
+/// The operator's word on a message that was set aside.
+enum class AsideDeed : std::uint8_t { Send, Discard };
+
 /// What does as the operator says.
 class Operator {
  public:
@@ -160,6 +179,8 @@ class Operator {
   /// same one has already. A sentence: it was not taken.
   virtual std::expected<std::int64_t, std::string> report(const icd::ArtifactReport& report,
                                                           bool resubmit) = 0;
+  /// A sentence: why not.
+  virtual std::expected<void, std::string> aside(std::uint64_t number, AsideDeed deed) = 0;
   /// Gives the new run's number.
   virtual std::int64_t begin_run() = 0;
   /// All lights blink for so long. Gives until when.

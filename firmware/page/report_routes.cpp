@@ -18,6 +18,7 @@ namespace {
 
 constexpr std::string_view kReports = "/adit/reports", kCsv = "/adit/reports.csv", kOne = "/adit/reports/",
                            kRuns = "/adit/runs";
+constexpr std::string_view kAll = "all", kPresent = "present";
 constexpr std::size_t kMostBody = 65536;
 constexpr auto kAccepted = static_cast<icd::Status>(202);  // RFC 9110 15.3.3; no ICD answer has it
 
@@ -79,7 +80,7 @@ std::unique_ptr<intake::Exchange> ReportRoutes::open(const intake::RequestHead& 
   };
   const bool lists = head.path() == kReports && only_reads(head);
   const auto path = lists ? std::nullopt : deed_at(head.path());
-  if (!path) return refuse(only_reads(head) ? shown(head.path()) : wrong_method(kReading));
+  if (!path) return refuse(only_reads(head) ? shown(head) : wrong_method(kReading));
   if (head.method() != "POST") {
     return refuse(wrong_method(path->wanted == Wanted::Report ? "GET, HEAD, POST" : "POST"));
   }
@@ -97,10 +98,25 @@ std::unique_ptr<intake::Exchange> ReportRoutes::open(const intake::RequestHead& 
       });
 }
 
-intake::Answer ReportRoutes::shown(std::string_view path) const {
-  if (path == kReports) return fresh("application/json", write_reports(source_.reports()));
-  if (path == kCsv) {
-    auto answer = fresh("text/csv; charset=utf-8; header=present", write_reports_csv(source_.reports()));
+icd::Checked<std::vector<ReportRow>> ReportRoutes::listed(std::string_view run) const {
+  std::vector<ReportRow> rows = source_.reports();
+  if (run.empty() || run == kAll) return rows;
+  const auto number = run == kPresent ? source_.view().run_number : number_in<std::int64_t>(run);
+  if (!number) {
+    return std::unexpected(
+        icd::Refusal{icd::Status::BadRequest, "run: expected a run's number, present or all"});
+  }
+  std::erase_if(rows, [&](const ReportRow& row) { return row.run != *number; });
+  return rows;
+}
+
+intake::Answer ReportRoutes::shown(const intake::RequestHead& head) const {
+  const std::string_view path = head.path();
+  if (path == kReports || path == kCsv) {
+    const auto rows = listed(head.query("run"));
+    if (!rows) return refusal(rows.error().status, rows.error().sentence);
+    if (path == kReports) return fresh("application/json", write_reports(*rows));
+    auto answer = fresh("text/csv; charset=utf-8; header=present", write_reports_csv(*rows));
     answer.headers.push_back({"Content-Disposition", "attachment; filename=\"adit-reports.csv\""});
     return answer;
   }

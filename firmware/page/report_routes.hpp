@@ -3,6 +3,7 @@
 #include <functional>
 #include <memory>
 #include <string_view>
+#include <vector>
 
 #include "page/page.hpp"
 
@@ -23,7 +24,9 @@ class ReportRoutes {
                                          std::shared_ptr<intake::Responder> responder);
 
  private:
-  intake::Answer shown(std::string_view path) const;
+  intake::Answer shown(const intake::RequestHead& head) const;
+  /// Of one run: its number, "present" or, as "", "all".
+  icd::Checked<std::vector<ReportRow>> listed(std::string_view run) const;
   intake::Answer judge(std::int64_t number, Deed deed);
   /// Of the body of a composed report.
   intake::Answer report(std::string_view body);

@@ -65,6 +65,11 @@ std::string cell(double number) {
   return {text, std::to_chars(text, text + sizeof text, number).ptr};
 }
 
+/// Empty where it is lost: a report without a place is at no place.
+std::string coordinate(const ReportRow& row, double icd::Point::* axis) {
+  return row.lost ? "" : cell(row.position.*axis);
+}
+
 std::string cell(bool value) {
   return value ? "yes" : "no";
 }
@@ -78,9 +83,9 @@ std::string line(const ReportRow& row) {
   const std::string cells[] = {std::to_string(row.number),
                                std::to_string(row.run),
                                cell(row.type),
-                               cell(row.position.x),
-                               cell(row.position.y),
-                               cell(row.position.z),
+                               coordinate(row, &icd::Point::x),
+                               coordinate(row, &icd::Point::y),
+                               coordinate(row, &icd::Point::z),
                                cell(row.sender),
                                iso_time(row.received),
                                iso_time(row.changed),

@@ -14,7 +14,7 @@ Value json(const ReportStep& step) {
 Value json(const ReportRow& row) {
   return {Value::Object{{"number", json(row.number)},
                         {"type", json(row.type)},
-                        {"position", json(row.position)},
+                        {"position", row.lost ? Value{} : json(row.position)},
                         {"sender", json(row.sender)},
                         {"received", json(row.received)},
                         {"changed", json(row.changed)},

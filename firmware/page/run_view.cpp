@@ -19,7 +19,19 @@ Value json(const EndpointRow& row) {
                         {"trouble", json(row.trouble)},
                         {"last_status", json(row.last_status)},
                         {"answer_ms", json(row.answer_ms)},
-                        {"throttled", json(row.throttled)}}};
+                        {"throttled", json(row.throttled)},
+                        {"foreign", json(row.foreign)}}};
+}
+
+Value json(const AsideRow& row) {
+  return {Value::Object{{"number", json(row.number)},
+                        {"kind", json(row.kind)},
+                        {"robot", json(row.robot)},
+                        {"at", json(row.at)},
+                        {"status", json(row.status)},
+                        {"why", json(row.why)},
+                        {"bytes", json(row.bytes)},
+                        {"overtaken", json(row.overtaken)}}};
 }
 
 Value json(const RobotRow& row) {
@@ -53,7 +65,8 @@ Value json(const RefusalRow& row) {
                         {"uri", json(row.uri)},
                         {"sender", json(row.sender)},
                         {"status", json(row.status)},
-                        {"sentence", json(row.sentence)}}};
+                        {"sentence", json(row.sentence)},
+                        {"parts", json(row.parts)}}};
 }
 
 Value json(const LightRow& row) {
@@ -78,6 +91,7 @@ std::string write_run_view(const RunView& view) {
                                           {"near_metres", json(view.near_metres)},
                                           {"activities", json(view.activities)},
                                           {"refusals", json(view.refusals)},
+                                          {"aside", json(view.aside)},
                                           {"lights", json(view.lights)},
                                           {"links", json(view.links)},
                                           {"identify_until", json(view.identify_until)},

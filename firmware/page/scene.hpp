@@ -6,20 +6,16 @@
 #include <vector>
 
 #include "icd/geometry.hpp"
-#include "icd/markers_update.hpp"
+#include "page/drawn_marker.hpp"
 
 namespace adit::page {
 
 /// Seconds since 1970 on the gateway's clock.
 using Time = double;
 
-/// Where the robot's own x axis points, seen from above: radians about z. The quaternion need not be of
-/// length one.
-double heading_of(const icd::Quaternion& orientation);
-
 /// A marker as the Command Post was last told of it.
 struct MarkerRow {
-  icd::Marker marker;
+  DrawnMarker marker;
   Time at = 0;  // when that was forwarded
 };
 

@@ -1,3 +1,4 @@
+#include <algorithm>
 #include <cmath>
 
 #include "codec/json.hpp"
@@ -19,16 +20,49 @@ Value json(const icd::Color& color) {
       {"r", rounded(color.r)}, {"g", rounded(color.g)}, {"b", rounded(color.b)}, {"a", rounded(color.a)}}};
 }
 
+/// "#rrggbbaa": a list may have a thousand of them.
+Value as_hex(const icd::Color& color) {
+  constexpr std::string_view kDigits = "0123456789abcdef";
+  std::string text = "#";
+  for (const double part : {color.r, color.g, color.b, color.a}) {
+    const auto byte = static_cast<std::size_t>(std::lround(255 * std::clamp(part, 0.0, 1.0)));
+    text += {kDigits[byte / 16], kDigits[byte % 16]};
+  }
+  return {std::move(text)};
+}
+
+Value hex_of(const std::vector<icd::Color>& colors) {
+  Value::Array array;
+  array.reserve(colors.size());
+  for (const icd::Color& color : colors) array.push_back(as_hex(color));
+  return {std::move(array)};
+}
+
+/// x, y, x, y, ...
+Value flat(const std::vector<FlatPoint>& points) {
+  Value::Array array;
+  array.reserve(2 * points.size());
+  for (const auto& [x, y] : points) {
+    array.push_back(rounded(x));
+    array.push_back(rounded(y));
+  }
+  return {std::move(array)};
+}
+
 Value json(const MarkerRow& row) {
-  const icd::Marker& marker = row.marker;
+  const DrawnMarker& marker = row.marker;
   return {Value::Object{{"ns", page::json(marker.ns)},
                         {"id", page::json(marker.id)},
                         {"type", page::json(marker.type)},
-                        {"position", page::json(marker.pose.position)},
-                        {"heading", rounded(heading_of(marker.pose.orientation))},
+                        {"position", page::json(marker.position)},
+                        {"heading", rounded(marker.heading)},
                         {"scale", page::json(marker.scale)},
                         {"color", json(marker.color)},
+                        {"points", flat(marker.points)},
+                        {"colors", hex_of(marker.colors)},
+                        {"point_count", page::json(marker.point_count)},
                         {"text", page::json(marker.text)},
+                        {"mesh", page::json(marker.mesh)},
                         {"lifetime", page::json(marker.lifetime)},
                         {"at", page::json(row.at)}}};
 }
@@ -48,10 +82,6 @@ Value array_of(const Each& each) {
 }
 
 }  // namespace
-
-double heading_of(const icd::Quaternion& q) {
-  return std::atan2(2 * (q.w * q.z + q.x * q.y), q.w * q.w + q.x * q.x - q.y * q.y - q.z * q.z);
-}
 
 std::string write_markers(const MarkerNews& news) {
   Value::Array gone;

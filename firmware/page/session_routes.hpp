@@ -17,7 +17,8 @@ namespace adit::page {
 /// Logging in and out, passwords, sessions, and the reset that ends them all: README.md has the routes.
 class SessionRoutes {
  public:
-  static constexpr int kMostChecks = 4;  // of passwords at once, as the workers also pack maps
+  static constexpr int kMostChecks =
+      4;  // of passwords at once: each takes memory, and one after the other is checked
 
   /// All outlive this, and whatever `keys` still answers.
   SessionRoutes(loop::Loop& loop, Entrance& entrance, Keys& keys)

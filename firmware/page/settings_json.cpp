@@ -79,8 +79,9 @@ std::string write_check(const std::vector<settings::Error>& errors,
       {"errors", value_of(errors)}, {"changes", value_of(changes)}, {"warnings", json(warnings)}}});
 }
 
-std::string write_changes(const std::vector<settings::Change>& changes) {
-  return codec::write_json({Value::Object{{"changes", value_of(changes)}}});
+std::string write_changes(const std::vector<settings::Change>& changes,
+                          const std::vector<std::string>& warnings) {
+  return codec::write_json({Value::Object{{"changes", value_of(changes)}, {"warnings", json(warnings)}}});
 }
 
 }  // namespace adit::page

@@ -16,7 +16,8 @@ std::string write_check(const std::vector<settings::Error>& errors,
                         const std::vector<settings::Change>& changes,
                         const std::vector<std::string>& warnings);
 
-/// {"changes": [...]}
-std::string write_changes(const std::vector<settings::Change>& changes);
+/// {"changes": [...], "warnings": [...]}
+std::string write_changes(const std::vector<settings::Change>& changes,
+                          const std::vector<std::string>& warnings);
 
 }  // namespace adit::page

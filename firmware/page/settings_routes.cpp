@@ -175,10 +175,11 @@ intake::Answer SettingsRoutes::switch_course(const std::string& body) {
 
 intake::Answer SettingsRoutes::apply(const settings::Settings& next) {
   const auto changes = settings::changes(setup_.settings(), next);
+  const auto warnings = setup_.warnings(next);
   if (!changes.empty()) {
     if (const auto saved = setup_.save(next); !saved) return refused(saved.error());
   }
-  return fresh("application/json", write_changes(changes));
+  return fresh("application/json", write_changes(changes, warnings));
 }
 
 intake::Answer SettingsRoutes::set_token(const std::string& body) {

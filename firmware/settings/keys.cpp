@@ -118,8 +118,16 @@ const Key kKeys[] = {
      whole<MEMBER(queues.map_bytes)>(kMiB, 16384 * kMiB)},
     {"queues.merge_bytes", "Points that waiting clouds are merged into, at most, in bytes; 0: never merged.",
      whole<MEMBER(queues.merge_bytes)>(0, 256 * kMiB)},
+    {"queues.marker_bytes",
+     "Markers that may wait, in bytes; above three quarters of it new ones are refused with 429, above it "
+     "also "
+     "those that replace one that waits.",
+     whole<MEMBER(queues.marker_bytes)>(kMiB, 1024 * kMiB)},
     {"queues.markers_per_message", "Markers in one update, at most.",
      whole<MEMBER(queues.markers_per_message)>(1, 100000)},
+    {"queues.marker_bytes_per_message",
+     "Bytes of markers in one update, at most, unless a single one is larger.",
+     whole<MEMBER(queues.marker_bytes_per_message)>(1024, 256 * kMiB)},
 
     {"rules.rewrite_frame_id", "Take any frame_id and send \"darpa\"; if not, others are refused with 422.",
      flag<MEMBER(rules.rewrite_frame_id)>()},
@@ -127,7 +135,7 @@ const Key kKeys[] = {
      "Send artifact types that are none of the ICD's ten; if not, they are refused with 422.",
      flag<MEMBER(rules.forward_unknown_types)>()},
     {"rules.map_bytes", "The largest data of one map once inflated, in bytes; above it 413.",
-     whole<MEMBER(rules.map_bytes)>(1024, 1024 * kMiB)},
+     whole<MEMBER(rules.map_bytes)>(1024, icd::kMostMapBytes)},
 
     {"panel.chip",
      "The GPIO chip of the lights and the button (gpiochip0), by name, label or path; empty: whichever has a "

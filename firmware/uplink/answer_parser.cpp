@@ -5,6 +5,7 @@
 #include <optional>
 #include <utility>
 
+#include "loop/guard.hpp"
 #include "uplink/http_date.hpp"
 
 // GCC 12 sees boost::optional as uninitialised where the sanitizers keep it from inlining.
@@ -12,8 +13,10 @@
 #pragma GCC diagnostic push
 #pragma GCC diagnostic ignored "-Wmaybe-uninitialized"
 #endif
+#include <boost/beast/core/buffers_range.hpp>
+#include <boost/beast/http/error.hpp>
+#include <boost/beast/http/message.hpp>
 #include <boost/beast/http/parser.hpp>
-#include <boost/beast/http/string_body.hpp>
 #if defined(__GNUC__) && !defined(__clang__)
 #pragma GCC diagnostic pop
 #endif
@@ -22,9 +25,49 @@ namespace adit::uplink {
 namespace {
 
 namespace http = boost::beast::http;
-using Parser = http::response_parser<http::string_body>;
 
-constexpr std::uint32_t kLongestHead = 16 * 1024;
+/// The body of an answer, held as it comes. Beast's own string_body reserves whatever length is announced
+/// before it looks at the limit.
+struct BoundedBody {
+  struct value_type {
+    std::string text;
+    std::size_t longest = 0;
+  };
+  class reader {
+   public:
+    template <bool isRequest, class Fields>
+    reader(http::header<isRequest, Fields>&, value_type& body) : body_(body) {}
+
+    void init(const boost::optional<std::uint64_t>& length, boost::beast::error_code& error) {
+      error = {};
+      if (length && *length > body_.longest) error = http::error::body_limit;
+    }
+    template <class Buffers>
+    std::size_t put(const Buffers& buffers, boost::beast::error_code& error) {
+      error = {};
+      std::size_t taken = 0;
+      for (const boost::asio::const_buffer piece : boost::beast::buffers_range_ref(buffers)) {
+        if (piece.size() > body_.longest - body_.text.size()) {
+          error = http::error::body_limit;
+          return taken;
+        }
+        body_.text.append(static_cast<const char*>(piece.data()), piece.size());
+        taken += piece.size();
+      }
+      return taken;
+    }
+    void finish(boost::beast::error_code& error) { error = {}; }
+
+   private:
+    value_type& body_;
+  };
+};
+using Parser = http::response_parser<BoundedBody>;
+
+/// Of the head and of all interim answers before it, and what chunks add to a body.
+constexpr std::size_t kMostBytes(std::size_t longest_body) {
+  return 2 * AnswerParser::kLongestHead + 2 * longest_body;
+}
 constexpr unsigned kFirstFinal = 200, kLast = 599, kSwitchingProtocols = 101;
 
 /// Seconds, or nothing where it is absent or a date (RFC 9110 10.2.3).
@@ -43,17 +86,20 @@ std::string to_string(boost::beast::string_view text) {
 
 struct AnswerParser::Impl {
   std::unique_ptr<Parser> parser;
+  const std::size_t longest_body;
   std::string unread;  // what the parser has not consumed
   std::size_t read = 0;
   std::string fault;
+  int too_long_status = 0;
 
-  Impl() { begin(); }
+  explicit Impl(std::size_t longest) : longest_body(longest) { begin(); }
 
   void begin() {
     parser = std::make_unique<Parser>();
     parser->eager(true);
     parser->header_limit(kLongestHead);
-    parser->body_limit(Connection::kLongestAnswer);
+    parser->body_limit(longest_body);
+    parser->get().body().longest = longest_body;
   }
 
   State malformed(std::string why) {
@@ -62,8 +108,15 @@ struct AnswerParser::Impl {
   }
 
   State malformed(boost::beast::error_code error) {
-    const bool too_long = error == http::error::body_limit || error == http::error::header_limit;
-    return malformed(too_long ? "the answer is too long" : "the answer is no HTTP: " + error.message());
+    if (error == http::error::body_limit || error == http::error::header_limit) return too_long(error);
+    return malformed("the answer is no HTTP: " + error.message());
+  }
+
+  /// Its status is known once its body has begun, or would have.
+  State too_long(boost::beast::error_code error) {
+    const bool has_status = error == http::error::body_limit || parser->is_header_done();
+    if (has_status) too_long_status = static_cast<int>(parser->get().result_int());
+    return malformed("the answer is too long");
   }
 
   /// Whole, or Incomplete where a 1xx has made place for the answer proper.
@@ -94,7 +147,7 @@ struct AnswerParser::Impl {
   }
 };
 
-AnswerParser::AnswerParser() : impl_(std::make_unique<Impl>()) {}
+AnswerParser::AnswerParser(std::size_t longest_body) : impl_(std::make_unique<Impl>(longest_body)) {}
 AnswerParser::AnswerParser(AnswerParser&&) noexcept = default;
 AnswerParser& AnswerParser::operator=(AnswerParser&&) noexcept = default;
 AnswerParser::~AnswerParser() = default;
@@ -102,9 +155,13 @@ AnswerParser::~AnswerParser() = default;
 AnswerParser::State AnswerParser::feed(std::string_view bytes) {
   impl_->read += bytes.size();
   // Interim answers and chunk extensions could go on for ever without ever reaching the body's limit.
-  if (impl_->read > Connection::kLongestAnswer) return impl_->malformed("the answer is too long");
-  impl_->unread.append(bytes);
-  return impl_->parse();
+  if (impl_->read > kMostBytes(impl_->longest_body)) return impl_->too_long({});
+  State state = State::Malformed;
+  const bool well = loop::guarded("reading an answer", [&] {
+    impl_->unread.append(bytes);
+    state = impl_->parse();
+  });
+  return well ? state : impl_->malformed("the answer could not be read");
 }
 
 AnswerParser::State AnswerParser::feed_end() {
@@ -124,13 +181,17 @@ Answered AnswerParser::take() {
   answered.content_type = to_string(message[http::field::content_type]);
   answered.retry_after = retry_after(to_string(message[http::field::retry_after]));
   answered.date = http_date(to_string(message[http::field::date]));
-  answered.body = std::move(message.body());
+  answered.body = std::move(message.body().text);
   return answered;
 }
 
 bool AnswerParser::may_keep_alive() const {
   return impl_->parser->keep_alive() && impl_->unread.empty();
 }
+int AnswerParser::too_long_status() const {
+  return impl_->too_long_status;
+}
+
 const std::string& AnswerParser::fault() const {
   return impl_->fault;
 }

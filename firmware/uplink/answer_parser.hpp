@@ -10,11 +10,16 @@
 namespace adit::uplink {
 
 /// The bytes of an HTTP/1 answer to one request, as they come (RFC 9112). Interim answers (1xx) are skipped.
+///
+/// Nothing that the peer says makes it take memory: it holds what has come, and that is bounded (its body by
+/// `longest_body`, each head by kLongestHead, all of it by kMostBytes()), whatever lengths are announced.
 class AnswerParser {
  public:
   enum class State : std::uint8_t { Incomplete, Whole, Malformed };
+  static constexpr std::size_t kLongestHead = 16 * 1024;  // bytes
 
-  AnswerParser();
+  /// `longest_body`: bytes; a longer one is Malformed, as soon as that is known.
+  explicit AnswerParser(std::size_t longest_body);
   AnswerParser(AnswerParser&&) noexcept;
   AnswerParser& operator=(AnswerParser&&) noexcept;
   ~AnswerParser();
@@ -28,6 +33,8 @@ class AnswerParser {
   Answered take();
   /// For Whole: both sides may go on using the connection, and nothing came after the answer.
   bool may_keep_alive() const;
+  /// For Malformed: its status where all that is wrong is that it is too long; else 0.
+  int too_long_status() const;
   /// For Malformed: what is wrong with it, in words of our own.
   const std::string& fault() const;
   bool has_begun() const;

@@ -7,6 +7,7 @@
 #include <utility>
 
 #include "loop/file_descriptor.hpp"
+#include "loop/guard.hpp"
 #include "uplink/exchange.hpp"
 #include "uplink/socket.hpp"
 
@@ -25,10 +26,7 @@ class Connection::Impl : public std::enable_shared_from_this<Impl> {
  public:
   Impl(loop::Loop& loop, Endpoint endpoint, icd::BearerToken token)
       : loop_(loop), endpoint_(std::move(endpoint)), token_(std::move(token)) {
-    timer_ = loop_.timer([this] {
-      const auto alive = shared_from_this();
-      time_came();
-    });
+    timer_ = loop_.timer([this] { guard(&Impl::time_came); });
   }
 
   void keep_warm() {
@@ -48,13 +46,13 @@ class Connection::Impl : public std::enable_shared_from_this<Impl> {
   }
 
   void send(Request request, std::function<void(Outcome)> done) {
-    exchange_ = std::make_unique<Exchange>(endpoint_, token_, std::move(request));
+    auto exchange = std::make_unique<Exchange>(endpoint_, token_, std::move(request));
+    exchange_ = std::move(exchange);
     done_ = std::move(done);
     sent_ = 0;
     total_ = exchange_->total();
     within_send_ = true;
-    if (phase_ == Phase::Closed) connect();
-    if (phase_ == Phase::Open && exchange_) begin();
+    guard(&Impl::begin_sending);
     within_send_ = false;
   }
 
@@ -76,6 +74,18 @@ class Connection::Impl : public std::enable_shared_from_this<Impl> {
  private:
   enum class Phase : std::uint8_t { Closed, Connecting, Open };
 
+  /// Calls one of its own parts. What throws there ends the request under way, of which bytes may have left.
+  void guard(void (Impl::*part)()) {
+    const auto alive = shared_from_this();
+    if (loop::guarded("a connection to the Command Post", [&] { (this->*part)(); })) return;
+    if (exchange_) in_doubt({.why = "what the peer sent could not be dealt with"});
+  }
+
+  void begin_sending() {
+    if (phase_ == Phase::Closed) connect();
+    if (phase_ == Phase::Open && exchange_) begin();
+  }
+
   // What the socket and the timer call.
 
   void ready() {
@@ -91,7 +101,7 @@ class Connection::Impl : public std::enable_shared_from_this<Impl> {
     if (!exchange_) return idle_ended();
     exchange_->listen(fd_.get(), loop_.now());
     if (exchange_->is_silent_at(loop_.now()))
-      return in_doubt(exchange_->sentence("the peer was silent for too long"));
+      return in_doubt({.why = exchange_->sentence("the peer was silent for too long")});
     listen_again();
   }
 
@@ -105,10 +115,7 @@ class Connection::Impl : public std::enable_shared_from_this<Impl> {
     gives_up_after_ = {};
     phase_ = Phase::Connecting;
     watched_ = EPOLLOUT;
-    source_ = loop_.watch(fd_.get(), watched_, [this](std::uint32_t) {
-      const auto alive = shared_from_this();
-      ready();
-    });
+    source_ = loop_.watch(fd_.get(), watched_, [this](std::uint32_t) { guard(&Impl::ready); });
     timer_.call_at(began_ + endpoint_.connect_within);
   }
 
@@ -188,7 +195,7 @@ class Connection::Impl : public std::enable_shared_from_this<Impl> {
       case Exchange::Answer::Waiting:
         return false;
       case Exchange::Answer::Lost:
-        in_doubt(exchange_->fault());
+        in_doubt(exchange_->doubt());
         return true;
       case Exchange::Answer::Whole:
         answered();
@@ -214,9 +221,9 @@ class Connection::Impl : public std::enable_shared_from_this<Impl> {
     deliver(std::move(answer));
   }
 
-  void in_doubt(std::string why) {
+  void in_doubt(InDoubt doubt) {
     drop();
-    deliver(InDoubt{std::move(why)});
+    deliver(std::move(doubt));
   }
 
   void never_sent(const std::string& reason) {

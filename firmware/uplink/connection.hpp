@@ -31,6 +31,9 @@ struct Request {
   /// How long the peer's TCP may acknowledge no more of the request, and then how long the whole answer may
   /// take. Halves of an answer do not make it longer.
   std::chrono::milliseconds answer_within{10000};
+  std::size_t longest_answer = kLongestAnswer;  // bytes of its body; a longer one is InDoubt
+
+  static constexpr std::size_t kLongestAnswer = 64u << 10;
 };
 
 /// A whole HTTP answer came. Its body may be anything.
@@ -48,6 +51,7 @@ struct NeverSent {
 /// Bytes may have left and no whole answer came: nobody here knows what became of it.
 struct InDoubt {
   std::string why;
+  int too_long_status = 0;  // of an answer that came and was longer than a Command Post's; else 0
 };
 using Outcome = std::variant<Answered, NeverSent, InDoubt>;
 
@@ -59,8 +63,7 @@ using Outcome = std::variant<Answered, NeverSent, InDoubt>;
 /// an answer that says close and after anything odd, and never sends `Expect`.
 class Connection {
  public:
-  static constexpr std::chrono::seconds kIdle{25};          // a server closes after 60
-  static constexpr std::size_t kLongestAnswer = 64u << 10;  // bytes; more is InDoubt
+  static constexpr std::chrono::seconds kIdle{25};  // a server closes after 60
 
   Connection(loop::Loop& loop, Endpoint endpoint, icd::BearerToken token);
   ~Connection();

@@ -42,7 +42,8 @@ Exchange::Exchange(const Endpoint& endpoint, const icd::BearerToken& token, Requ
     : authority_(authority_of(endpoint)),
       request_(std::move(request)),
       head_(head_of(authority_, token, request_)),
-      total_(head_.size() + request_.body.size()) {}
+      total_(head_.size() + request_.body.size()),
+      parser_(request_.longest_answer) {}
 
 int Exchange::write(int fd) {
   std::array<iovec, kChunksAtOnce + 1> pieces{};

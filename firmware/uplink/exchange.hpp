@@ -28,7 +28,7 @@ class Exchange {
   Answered take_answer() { return parser_.take(); }
   bool may_keep_alive() const { return sent_ == total_ && parser_.may_keep_alive(); }
   /// For Lost.
-  const std::string& fault() const { return fault_; }
+  InDoubt doubt() const { return {.why = fault_, .too_long_status = parser_.too_long_status()}; }
 
   /// The clock of the peer's silence starts.
   void begin(loop::Instant now) { heard_ = now; }

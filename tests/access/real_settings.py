@@ -148,9 +148,11 @@ class SetUp(unittest.TestCase):
         wait_until(lambda: other.heard("/map/update") and other.heard("/state/update"), "the map and the state")
         self.assertEqual(other.heard("/map/update")[0][0], real_aditd.TOKENS["mapping"])
         report, = self.box.ask("GET /adit/reports", **self.me)[1]
-        self.assertEqual(report["state"], "received", "held: it was meant for another Command Post")
+        self.assertEqual(report["state"], "waiting", "it is kept for the Command Post that it was meant for")
+        self.assertIn("kept for the Command Post at ", report["note"])
         self.assertEqual(other.heard("/api/artifact_reports"), [])
-        self.assertEqual(self.box.ask("POST /adit/reports/1/send", {}, **self.me)[0], 200)
+        for deed in ("hold", "send"):  # the operator wants it here
+            self.assertEqual(self.box.ask(f"POST /adit/reports/1/{deed}", {}, **self.me)[0], 200)
         sent = wait_until(lambda: other.heard("/api/artifact_reports"), "the report at the Command Post")
         self.assertEqual(json.loads(sent[0][1]), REPORT)
         time.sleep(1.2)

@@ -26,6 +26,7 @@ class Machine(programs.Page):
         self.memory = board.memory
         self.soldered = board.soldered(folder, board.memory)
         self.process = self.pins = None
+        self.cuts = 0  # of its power, so far
         self.log = folder / "console.log"
 
     def power_on(self):
@@ -54,6 +55,7 @@ class Machine(programs.Page):
 
     def cut_power(self, chance=None):
         """Off, this very moment; with `chance` the disk loses what it may. How many writes that were."""
+        self.cuts += 1
         self.process.kill()
         self.process.wait()
         for end in (self.pins, self.monitor, self.console):

@@ -6,14 +6,21 @@ import tempfile
 import time
 import unittest
 
+import requests
+
 import container
 import hosts
+import maps
+import messages
 import programs
 import stage
-from reporting import REPORT, submit
+from reporting import REPORT, another, submit
 from stage import Story, load_tests, note  # unittest looks for them here
 
 PASSWORD = "correct horse battery"
+STATE = "/var/lib/private/adit"
+JSON = messages.Style()
+POSE = {"name": "r1", "position": {"x": 4.0, "y": 0.0, "z": 0.0}, "orientation": maps.IDENTITY}
 
 
 def setUpModule():
@@ -102,6 +109,51 @@ class Everyday(Story):
             for _ in range(20):
                 network.connect(network.team, network.box_address, 80, 20.0).close()
                 tried += 1
+
+    def shell(self, script):
+        done = self.box.run("sh", "-euc", script)
+        self.assertEqual(done.returncode, 0, done.stderr)
+
+    def flows(self, uri, message):
+        """What is posted is taken, and arrives."""
+        before = len(self.stage.post.requests(uri))
+        answer = messages.post(requests.Session(), self.box.url, uri, message, JSON)
+        self.assertEqual(answer.status_code, 200, answer.text)
+        programs.wait_until(lambda: len(self.stage.post.requests(uri)) > before, f"{uri} to go on", 60)
+
+    def says(self, why):
+        said = self.box.attention()
+        self.assertIn("no report is taken, the ledger cannot be written: ", said)
+        self.assertIn(why, said)
+
+    def takes_no(self, report):
+        """And all else flows."""
+        refused = submit(self.stage, report)
+        self.assertEqual(refused.status_code, 503, refused.text)
+        self.assertIn("could not be written down and was not taken", refused.json())
+        self.assertEqual(self.stage.post.recorded(report), [])
+        self.assertEqual([each["state"] for each in self.box.reports()], ["answered"], "what can be read is shown")
+        self.flows("/state/update", {"poses": [POSE]})
+        self.flows("/map/update", messages.map_update(maps.made_grid(20, 20), "r1", time.time(), JSON))
+
+    def test_a_state_folder_that_cannot_be_written_to(self):
+        """A file system of its own, that is read-only as after an error of the disk, then full, then as it was."""
+        self.shell(f"""systemctl stop adit.service; cp -a {STATE} /run/was
+            mount -t tmpfs -o size=8m,mode=0700 tmpfs {STATE}; cp -aT /run/was {STATE}; mount -o remount,ro {STATE}
+            systemctl start adit.service""")
+        programs.wait_until(self.box.knows_the_run, "it to start", 60)
+        self.says("Read-only file system")
+        self.takes_no(another(1))
+        self.shell(f"""systemctl stop adit.service; mount -o remount,rw {STATE}
+            dd if=/dev/zero of={STATE}/filler bs=4096 2>/dev/null || true; systemctl start adit.service""")
+        programs.wait_until(self.box.knows_the_run, "it to start", 60)
+        self.takes_no(another(2))
+        self.says("full")
+        self.shell(f"rm {STATE}/filler")
+        programs.wait_until(lambda: submit(self.stage, another(3)).status_code == 201, "it to recover by itself", 60)
+        self.assertNotIn("the ledger", self.box.attention())
+        self.shell(f"""systemctl stop adit.service; umount {STATE}; systemctl start adit.service""")
+        programs.wait_until(self.box.knows_the_run, "it to start", 60)
 
     def test_it_is_started_again_after_a_kill(self):
         before = programs.wait_until(self.box.pid, "it to run", 60)

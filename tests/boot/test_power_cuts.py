@@ -42,7 +42,10 @@ class PowerCuts(Story):
 
     def test_no_report_is_lost_or_doubled_by_twenty_cuts(self):
         operator, lost, starts = Operator(self.stage), 0, []
-        clients = [Client(self.stage, number, patience, pause=0.1) for number, patience in enumerate(PATIENCES, 1)]
+        clients = [
+            Client(self.stage, number, patience, pause=0.1, life=lambda: self.box.cuts)
+            for number, patience in enumerate(PATIENCES, 1)
+        ]
         for client in clients:
             client.start()
         for number in range(1, CUTS + 1):
@@ -60,7 +63,7 @@ class PowerCuts(Story):
         self.box.wait_until(operator.sees_all_at_rest, "all to come to rest", 180)
         self.assertEqual([client.odd for client in clients], [[]] * len(clients), "what no client should be told")
         posted = [each for client in clients for each in client.posted]
-        recorded, waiting = judge(self, self.stage, operator, posted)
+        recorded, waiting = judge(self, self.stage, operator, posted, cuts=True)
         note(
             f"{CUTS} power cuts",
             f"{lost} writes lost, {len(posted)} reports posted, {recorded.total()} recorded, 0 doubled, "

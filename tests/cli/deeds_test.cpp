@@ -6,6 +6,7 @@
 #include "cli/command.hpp"
 #include "cli/server.hpp"
 #include "cli/token_file.hpp"
+#include "cli/view.hpp"
 
 namespace adit::cli {
 namespace {
@@ -45,6 +46,42 @@ TEST_F(Deeds, AreAskedForByTheirNames) {
   const Outcome outcome = say(server, {"run", "new", "--json"});
   EXPECT_EQ(outcome.out, "{\"run\":2}\n");
   EXPECT_EQ(outcome.exit, Exit::Fine);
+}
+
+TEST_F(Deeds, AreAskedForOfWhatIsSetAside) {
+  page::RunView view = sample_view();
+  view.aside = {{.number = 3,
+                 .kind = "cloud",
+                 .robot = "r2",
+                 .at = 940,
+                 .status = 500,
+                 .why = "it failed",
+                 .bytes = 1200},
+                {.number = 4,
+                 .kind = "state",
+                 .robot = "",
+                 .at = 950,
+                 .status = 422,
+                 .why = "no",
+                 .bytes = 90,
+                 .overtaken = true}};
+  const Server server(
+      {{"GET /adit/run", Server::ok(page::write_run_view(view))},
+       {"POST /adit/aside/3/send", Server::ok("{\"aside\":3}")},
+       {"POST /adit/aside/3/discard", Server::ok("{\"aside\":3}")},
+       {"POST /adit/aside/4/send", Server::reply("409 Conflict", "\"something newer was sent\"")}});
+  const Outcome listed = say(server, {"aside"});
+  EXPECT_THAT(listed.out, HasSubstr("500: it failed"));
+  EXPECT_THAT(listed.out, HasSubstr("something newer was sent"));
+  EXPECT_EQ(listed.exit, Exit::Attention);
+  EXPECT_THAT(say(server, {"aside", "--json"}).out, HasSubstr("\"overtaken\":true"));
+  EXPECT_EQ(say(server, {"aside", "send", "3"}).out, "3 is sent again when its turn comes\n");
+  EXPECT_EQ(say(server, {"aside", "discard", "3"}).out, "3 is discarded\n");
+  const Outcome refused = say(server, {"aside", "send", "4"});
+  EXPECT_THAT(refused.err, HasSubstr("something newer was sent"));
+  EXPECT_EQ(refused.exit, Exit::Attention);
+  EXPECT_THAT(say(server, {"aside", "send"}).err, HasSubstr("is missing after send"));
+  EXPECT_THAT(say(server, {"aside", "keep", "3"}).err, HasSubstr("expected show, send or discard, got keep"));
 }
 
 TEST_F(Deeds, MakeTheLightsFlash) {

@@ -80,10 +80,12 @@ TEST(Options, NameTheWordThatIsWrong) {
     const char* sentence;
   } cases[] = {
       {{},
-       "a command is missing: status, reports, run, settings, course, identify, network, test, update or "
+       "a command is missing: status, reports, aside, run, settings, course, identify, network, test, update "
+       "or "
        "check"},
       {{"--json"},
-       "a command is missing: status, reports, run, settings, course, identify, network, test, update or "
+       "a command is missing: status, reports, aside, run, settings, course, identify, network, test, update "
+       "or "
        "check"},
       {{"state"}, "no such command: state"},
       {{"status", "--jsn"}, "no such option: --jsn"},

@@ -49,15 +49,17 @@ TEST(Reports, ListThePresentRunAndWhatIsLeftOfEarlierOnes) {
   const auto rows = two_runs();
   const Outcome outcome = asked(rows, {"reports"});
   EXPECT_EQ(outcome.err, "");
-  EXPECT_EQ(outcome.out, reports_text({rows[3], rows[2], rows[1]}, 1000, false));
+  EXPECT_EQ(outcome.out, reports_text({rows[3], rows[2], rows[1]}, 1, 1000, false));
 }
 
 TEST(Reports, ListAnotherRunOrAll) {
   const auto rows = two_runs();
-  EXPECT_EQ(asked(rows, {"reports", "--run", "1"}).out, reports_text({rows[1], rows[0]}, 1000, false));
-  EXPECT_EQ(asked(rows, {"reports", "--run", "3"}).out, "No reports so far.\n");
+  EXPECT_EQ(asked(rows, {"reports", "--run", "1"}).out, reports_text({rows[1], rows[0]}, 2, 1000, false));
+  EXPECT_EQ(
+      asked(rows, {"reports", "--run", "3"}).out,
+      "No reports in this run so far.\n4 reports of other runs are not listed: adit reports --run all\n");
   EXPECT_EQ(asked(rows, {"reports", "--run", "all"}).out,
-            reports_text({rows[3], rows[2], rows[1], rows[0]}, 1000, false));
+            reports_text({rows[3], rows[2], rows[1], rows[0]}, 0, 1000, false));
 }
 
 TEST(Reports, AreAListForScripts) {

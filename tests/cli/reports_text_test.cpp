@@ -31,7 +31,7 @@ TEST(ReportsText, HasARowForEachReport) {
   doubtful.note = "no answer within 10 s";
   doubtful.received = 990;
   EXPECT_EQ(
-      reports_text({doubtful, in_state("answered")}, 1000, false),
+      reports_text({doubtful, in_state("answered")}, 0, 1000, false),
       "  no.  run  type            x   y    z  state     score  the Command Post said, or why  sender    "
       "received\n"
       "   14    2  Cell Phone  12.12  -3  0.5  in doubt         no answer within 10 s          10.0.0.7  "
@@ -40,14 +40,27 @@ TEST(ReportsText, HasARowForEachReport) {
       "60 s ago\n");
 }
 
+TEST(ReportsText, HasNoPlaceForAReportThatIsLost) {
+  page::ReportRow lost = in_state("in doubt");
+  lost.position = {};
+  lost.lost = true;
+  EXPECT_THAT(reports_text({lost}, 0, 1000, false), HasSubstr("lost  lost  lost"));
+  EXPECT_THAT(report_text({.row = lost, .history = {}, .answer = ""}, false), HasSubstr("lost"));
+}
+
 TEST(ReportsText, SaysThatThereAreNone) {
-  EXPECT_EQ(reports_text({}, 1000, false), "No reports so far.\n");
+  EXPECT_EQ(reports_text({}, 0, 1000, false), "No reports so far.\n");
+  EXPECT_EQ(
+      reports_text({}, 12, 1000, false),
+      "No reports in this run so far.\n12 reports of other runs are not listed: adit reports --run all\n");
+  EXPECT_THAT(reports_text({in_state("answered")}, 1, 1000, false),
+              testing::EndsWith("\n1 report of another run is not listed: adit reports --run all\n"));
 }
 
 TEST(ReportsText, NeverLetsOthersSteerTheTerminal) {
   page::ReportRow report = in_state("\x1b[2J");
   report.type = report.sender = report.note = "\x1b[2J\n";
-  EXPECT_EQ(reports_text({report}, 1000, false).find('\x1b'), std::string::npos);
+  EXPECT_EQ(reports_text({report}, 0, 1000, false).find('\x1b'), std::string::npos);
   EXPECT_EQ(report_text({report, {{1000, "\x1b[2J", "\x1b[2J"}}, "\x1b[2J"}, false).find('\x1b'),
             std::string::npos);
 }

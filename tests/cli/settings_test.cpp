@@ -120,10 +120,11 @@ TEST_F(SettingsCommand, SaysWhatIsWrongWithAFileThatIsNone) {
 }
 
 TEST_F(SettingsCommand, SwitchesTheCourse) {
-  const Server server({{"POST /adit/course", Server::ok(R"({"changes":[]})")}});
-  EXPECT_EQ(
-      say(server, {"course", "B"}).out,
-      "course B is in use; reports that were meant for another Command Post are held: see adit reports\n");
+  const Server server(
+      {{"POST /adit/course",
+        Server::ok(R"({"changes":[],"warnings":["reports go to b:1 from then on; 2 reports wait"]})")}});
+  EXPECT_EQ(say(server, {"course", "B"}).out,
+            "course B is in use\nmind: reports go to b:1 from then on; 2 reports wait\n");
   EXPECT_THAT(server.request(), HasSubstr(R"({"name":"B"})"));
   EXPECT_THAT(say(server, {"course", ""}).out, HasSubstr("no course is in use"));
   const Server other(

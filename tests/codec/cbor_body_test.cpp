@@ -67,7 +67,7 @@ const std::vector<std::pair<std::string, std::string>> kGood = {
     {"c11a514b67b0", "1363896240"},
     {"c1fb41d452d9ec200000", "1363896240.5"},
     {"d9d9f7 83010203", "[1,2,3]"},
-    {"c0c1c2d82000", "0"},
+    {"c0c1d7d82000", "0"},
     {"60", "\"\""},
     {"6161", "\"a\""},
     {"6449455446", "\"IETF\""},
@@ -97,10 +97,12 @@ const std::vector<std::pair<std::string, std::string>> kGood = {
     {"826161bf61626163ff", R"(["a",{"b":"c"}])"},
     {"bf6346756ef563416d7421ff", R"({"Fun":true,"Amt":-2})"},
     {"bfff", "{}"},
-    // Keys: in chunks, tagged, and those that are no text
+    // Keys: in chunks, tagged, texts as byte strings, and those that are no text
     {"a17f61616162ff01", R"({"ab":1})"},
     {"a1c0616101", R"({"a":1})"},
-    {"a24101026161f6", R"({"a":null})"},
+    {"a24101026161f6", "{\"\\u0001\":2,\"a\":null}"},
+    {"a2 42c328 02 6161 03", R"({"a":3})"},
+    {"a1 5f 4161 4162 ff 01", R"({"ab":1})"},
     {"a2 8161 61 02 6162 03", R"({"b":3})"},
     {"a2 f6 02 6162 01", R"({"b":1})"},
     {"bf a1 6161 01 02 6162 03 ff", R"({"b":3})"},
@@ -125,13 +127,33 @@ TEST(CborBody, KeepsByteStringsAsBytes) {
                                                                   {"5fff", ""},
                                                                   {"5f4040ff", ""},
                                                                   {"d74401020304", "\1\2\3\4"},
-                                                                  {"d818456449455446", "dIETF"},
-                                                                  {"c2 41 07", "\7"}};
+                                                                  {"d823456449455446", "dIETF"},
+                                                                  {"c1 41 07", "\7"}};
   for (const auto& [hex, bytes] : cases) {
     const auto document = decode_hex(hex);
     ASSERT_TRUE(document) << hex;
     const auto& read = std::get<Value::Bytes>(document->root.is).bytes;
     EXPECT_EQ(std::string(read.begin(), read.end()), bytes);
+  }
+}
+
+/// The head of a tag in its shortest form, before a 0.
+std::string tagged(std::uint64_t tag) {
+  std::string body;
+  const int size = tag < 24 ? 0 : tag < 256 ? 1 : tag < 65536 ? 2 : 4;
+  body += static_cast<char>(0xC0 | (size == 0 ? tag : size == 1 ? 24 : size == 2 ? 25 : 26));
+  for (int byte = size - 1; byte >= 0; --byte) body += static_cast<char>(tag >> (8 * byte));
+  return body + '\0';
+}
+
+TEST(CborBody, WithATagThatChangesAMeaningIsRefusedWith422AndWithARemarkIsTaken) {
+  for (std::uint64_t tag = 0; tag < 70'000; ++tag) {
+    const bool remark = tag < 2 || (tag > 20 && tag < 24) || (tag > 31 && tag < 37) || tag == 55799;
+    const auto document = decode(kCborBody, Split::Nothing, tagged(tag));
+    ASSERT_EQ(document.has_value(), remark) << tag;
+    if (remark) continue;
+    EXPECT_EQ(document.error().status, icd::Status::UnprocessableEntity);
+    EXPECT_EQ(document.error().sentence.find("byte 0: CBOR tag " + std::to_string(tag) + " "), 0U);
   }
 }
 

@@ -105,6 +105,36 @@ TEST(JsonData, ThatIsNotWellFormedIsRefusedWith400) {
   }
 }
 
+TEST(JsonData, CanBeTakenAsItComesAndCountsAllTheSame) {
+  const Limits limits{.data_bytes = 6000};
+  const auto feed = [](BodyDecoder& decoder, std::string_view text) {
+    return decoder.feed({reinterpret_cast<const std::uint8_t*>(text.data()), text.size()});
+  };
+  BodyDecoder decoder(kJsonBody, Split::MapData, limits);
+  ASSERT_TRUE(feed(decoder, R"({"msg":{"data":")" + std::string(4000, 'A')));
+  EXPECT_EQ(decoder.data_held(), 3000u);
+  const icd::ChunkedBytes first = decoder.take_data();
+  EXPECT_EQ(first.to_string(), std::string(3000, '\0'));
+  EXPECT_EQ(decoder.data_held(), 0u);
+  ASSERT_TRUE(feed(decoder, "////"));
+  ASSERT_TRUE(feed(decoder, "\"}}"));
+  const auto document = decoder.finish();
+  ASSERT_TRUE(document);
+  EXPECT_EQ(document->data.to_string(), "\xff\xff\xff") << "the rest of it";
+
+  BodyDecoder too_much(kJsonBody, Split::MapData, limits);
+  ASSERT_TRUE(feed(too_much, R"({"msg":{"data":")" + std::string(8000, 'A')));
+  EXPECT_EQ(too_much.take_data().size(), 6000u);
+  EXPECT_EQ(feed(too_much, "AAAA").error().status, icd::Status::ContentTooLarge);
+
+  BodyDecoder elements(kJsonBody, Split::MapData, {});
+  std::string text = R"({"msg":{"data":[0)";
+  for (int i = 1; i < 5000; ++i) text += ",0";
+  ASSERT_TRUE(feed(elements, text));
+  EXPECT_EQ(elements.take_data().size(), 4096u);
+  EXPECT_TRUE(feed(elements, ",true").error().sentence.starts_with("msg.data[5000]: "));
+}
+
 TEST(JsonData, OverItsLimitIsRefusedWith413WhileTheRestHasItsOwn) {
   const Limits limits{.text_bytes = 40, .data_bytes = 6000};
   const auto body = [](const std::string& data) { return R"({"msg":{"data":)" + data + "}}"; };

@@ -50,6 +50,13 @@ TEST(Json, HasNullForWhatItCannotSay) {
   EXPECT_EQ(write_json({std::move(array)}), "[null,null,null,null,18446744073709551615]");
 }
 
+TEST(Json, HasANumbersKind) {
+  Value::Array array;
+  for (const double number : {11.0, -0.0, 0.5, 1e21, 1e300}) array.push_back({number});
+  array.push_back({std::int64_t{11}});
+  EXPECT_EQ(write_json({std::move(array)}), "[11.0,-0.0,0.5,1e+21,1e+300,11]");
+}
+
 TEST(Value, SaysItsKindInASentence) {
   const std::vector<std::pair<Value, std::string>> kinds = {{{}, "null"},
                                                             {{true}, "true or false"},

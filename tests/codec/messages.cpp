@@ -3,6 +3,8 @@
 #include <gtest/gtest.h>
 #include <zlib.h>
 
+#include <algorithm>
+
 namespace adit::codec::test {
 namespace {
 
@@ -141,6 +143,22 @@ Bytes only_member(const Bytes& bytes) {
 Bytes raw_data(const icd::MapData& data) {
   const Bytes bytes = data.bytes.to_vector();
   return data.compression == icd::Compression::Gzip ? only_member(bytes) : bytes;
+}
+
+icd::MapUpdate little_endian(icd::MapUpdate map) {
+  auto* const cloud = std::get_if<icd::PointCloud2>(&map.msg);
+  if (cloud == nullptr || !cloud->is_bigendian) return map;
+  Bytes points = raw_data(map.data);
+  for (std::size_t point = 0; point < points.size(); point += cloud->point_step) {
+    for (const icd::FieldSchema& field : cloud->fields) {
+      const auto size = static_cast<std::ptrdiff_t>(icd::size_of(field.datatype));
+      auto value = points.begin() + static_cast<std::ptrdiff_t>(point + field.offset);
+      for (std::uint32_t i = 0; i < field.count; ++i, value += size) std::reverse(value, value + size);
+    }
+  }
+  cloud->is_bigendian = false;
+  map.data = {.bytes = icd::ChunkedBytes(points), .compression = {}, .raw_size = points.size()};
+  return map;
 }
 
 void expect_same(const icd::MapUpdate& map, const icd::MapUpdate& expected) {

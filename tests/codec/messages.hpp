@@ -49,6 +49,8 @@ std::string sentence_of(const icd::Checked<T>& checked) {
 
 /// Equal in everything but in how the data is held: its bytes are compared before compression.
 void expect_same(const icd::MapUpdate& map, const icd::MapUpdate& expected);
+/// With the values of a big-endian cloud turned: as it is once it has been read.
+icd::MapUpdate little_endian(icd::MapUpdate map);
 Bytes raw_data(const icd::MapData& data);
 
 icd::MapUpdate random_grid(Random& random);

@@ -63,6 +63,21 @@ double fraction(Random& random) {
   return static_cast<double>(below(random, 1001)) / 1000;
 }
 
+icd::Color any_color(Random& random) {
+  return {fraction(random), fraction(random), fraction(random), fraction(random)};
+}
+
+/// Of a marker, what the ICD does not list.
+void add_geometry(icd::Marker& marker, Random& random) {
+  marker.frame_locked = below(random, 2) == 0;
+  marker.points.resize(any_size(random, 200));
+  for (icd::Point& point : marker.points) point = any_point(random);
+  if (below(random, 2) == 0) marker.colors.resize(marker.points.size());
+  for (icd::Color& color : marker.colors) color = any_color(random);
+  if (below(random, 3) == 0) marker.mesh_resource = any_text(random);
+  marker.mesh_use_embedded_materials = below(random, 2) == 0;
+}
+
 }  // namespace
 
 icd::MapUpdate random_grid(Random& random) {
@@ -87,7 +102,7 @@ icd::MapUpdate random_grid(Random& random) {
 icd::MapUpdate random_cloud(Random& random) {
   icd::PointCloud2 cloud;
   cloud.header = any_header(random);
-  cloud.origin = any_pose(random);
+  if (below(random, 3) != 0) cloud.origin = any_pose(random);
   cloud.is_bigendian = below(random, 2) == 0;
   const auto coordinate = below(random, 2) == 0 ? icd::Datatype::Float32 : icd::Datatype::Float64;
   const auto add = [&](std::string name, icd::Datatype datatype, std::uint32_t count) {
@@ -126,17 +141,17 @@ icd::MarkersUpdate random_markers(Random& random) {
                                                    icd::MarkerAction::DeleteAll};
   icd::MarkersUpdate update;
   for (std::size_t i = 0, size = below(random, 12); i < size; ++i) {
-    update.markers.push_back(
-        {.header = any_header(random),
-         .ns = any_text(random),
-         .id = static_cast<std::int32_t>(random()),
-         .type = static_cast<std::int32_t>(below(random, 12)),
-         .action = kActions[below(random, 3)],
-         .pose = any_pose(random),
-         .scale = any_point(random),
-         .color = {fraction(random), fraction(random), fraction(random), fraction(random)},
-         .lifetime = std::abs(any_number(random)),
-         .text = any_text(random)});
+    update.markers.push_back({.header = any_header(random),
+                              .ns = any_text(random),
+                              .id = static_cast<std::int32_t>(random()),
+                              .type = static_cast<std::int32_t>(below(random, 12)),
+                              .action = kActions[below(random, 3)],
+                              .pose = any_pose(random),
+                              .scale = any_point(random),
+                              .color = any_color(random),
+                              .lifetime = std::abs(any_number(random)),
+                              .text = any_text(random)});
+    if (below(random, 2) == 0) add_geometry(update.markers.back(), random);
   }
   return update;
 }

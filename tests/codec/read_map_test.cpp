@@ -56,18 +56,19 @@ TEST(ReadMapUpdate, RefusesWhatTheIcdForbidsInAnyMap) {
       {"6.4", [](json& m) { m["msg"] = nullptr; }, "msg: expected an object, got null"},
       {"6.4", [](json& m) { m["msg"] = {1}; }, "msg: expected an object, got an array"},
       {"2, 6.4", [](json& m) { m["name"] = "ABCDEFGHIJK"; },
-       "name: expected 1 to 10 letters, digits and underscores, got \"ABCDEFGHIJK\""},
+       "name: expected 1 to 10 letters, digits and underscores, got \"ABCDEFGHIJK\" "
+       "(the setting robots[].alias gives a name to whoever calls itself so)"},
       {"2, 6.4", [](json& m) { m["name"] = "a-b"; },
-       "name: expected 1 to 10 letters, digits and underscores, got \"a-b\""},
+       "name: expected 1 to 10 letters, digits and underscores, got \"a-b\" "
+       "(the setting robots[].alias gives a name to whoever calls itself so)"},
       {"2, 6.4", [](json& m) { m["name"] = 7; }, "name: expected a string, got a whole number"},
       {"2, 6.4", [](json& m) { m["name"] = std::string("a\0b", 3); },
        "name: expected a string without NUL characters, got one with them"},
       {"6.3.1", [](json& m) { m["msg"]["header"] = 5; },
        "msg.header: expected an object, got a whole number"},
       {"6.1", [](json& m) { m["msg"]["header"]["frame_id"] = "map"; },
-       "msg.header.frame_id: expected \"darpa\", got \"map\""},
-      {"6.1", [](json& m) { m["msg"]["header"]["frame_id"] = ""; },
-       "msg.header.frame_id: expected \"darpa\", got \"\""},
+       "msg.header.frame_id: expected \"darpa\", got \"map\" (the setting rules.rewrite_frame_id takes any)"},
+      {"6.1", [](json& m) { m["msg"]["header"]["frame_id"] = ""; }, "taken"},
       {"6.1", [](json& m) { m["msg"]["header"]["frame_id"] = 1; },
        "msg.header.frame_id: expected a string, got a whole number"},
       {"6.2", [](json& m) { m["msg"]["header"]["stamp"] = "now"; },
@@ -265,7 +266,7 @@ TEST(ReadMapUpdate, RefusesACloudOverTheLargestMap) {
   const Row rows[] = {
       {"setting", [](json& m) { m["msg"]["data"] = json::binary(Bytes(1600, 0)); }, "taken"},
       {"setting", [](json& m) { m["msg"]["data"] = json::binary(Bytes(1616, 0)); },
-       "msg.data: expected at most 1600 bytes, got 1616"},
+       "msg.data: expected at most 1600 bytes (the setting rules.map_bytes), got 1616"},
       {"setting and a gzip bomb",
        [](json& m) {
          m["msg"]["data"] = json::binary(test::compressed(Bytes(16'000'000, 0)));
@@ -351,7 +352,7 @@ TEST(ReadMapUpdate, KeepsWhatAGridSays) {
 
 TEST(ReadMapUpdate, KeepsWhatACloudSaysAndItsPointsAsTheyAre) {
   json message = test::good_cloud();
-  message["msg"]["is_bigendian"] = 1;
+  message["msg"]["is_bigendian"] = 0;
   const auto map = read(Format::Json, test::as_json(message));
   ASSERT_TRUE(map.has_value());
   const auto& cloud = std::get<icd::PointCloud2>(map->msg);
@@ -359,7 +360,7 @@ TEST(ReadMapUpdate, KeepsWhatACloudSaysAndItsPointsAsTheyAre) {
   EXPECT_EQ(cloud.origin, (icd::Pose{{1.5, -2.5, 0.25}, {0, 0, 0.6, 0.8}}));
   ASSERT_EQ(cloud.fields.size(), 4U);
   EXPECT_EQ(cloud.fields[3], (icd::FieldSchema{"rgba", 12, icd::Datatype::Uint32, 1}));
-  EXPECT_TRUE(cloud.is_bigendian);
+  EXPECT_FALSE(cloud.is_bigendian);
   EXPECT_EQ(cloud.point_step, 16U);
   EXPECT_EQ(map->data.compression, icd::Compression::None);
   EXPECT_EQ(map->data.raw_size, 32U);

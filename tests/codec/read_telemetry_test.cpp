@@ -55,7 +55,7 @@ TEST(ReadStateUpdate, RefusesWhatTheIcdForbids) {
       {"6.5", [](json& m) { m = nullptr; }, "the body: expected an object, got null"},
       {"6.5", [](json& m) { m["header"] = json::array(); }, "header: expected an object, got an array"},
       {"6.1", [](json& m) { m["header"]["frame_id"] = "odom"; },
-       "header.frame_id: expected \"darpa\", got \"odom\""},
+       "header.frame_id: expected \"darpa\", got \"odom\" (the setting rules.rewrite_frame_id takes any)"},
       {"6.2", [](json& m) { m["header"]["stamp"] = -1; },
        "header.stamp: expected a finite number of at least 0, got -1"},
       {"6.2", [](json& m) { m["header"]["stamp"] = kNan; },
@@ -69,7 +69,8 @@ TEST(ReadStateUpdate, RefusesWhatTheIcdForbids) {
       {"2, 6.5", [](json& m) { m["poses"][1]["name"] = ""; },
        "poses[1].name: expected 1 to 10 letters, digits and underscores, got \"\""},
       {"2, 6.5", [](json& m) { m["poses"][1]["name"] = "drone 2"; },
-       "poses[1].name: expected 1 to 10 letters, digits and underscores, got \"drone 2\""},
+       "poses[1].name: expected 1 to 10 letters, digits and underscores, got \"drone 2\" "
+       "(the setting robots[].alias gives a name to whoever calls itself so)"},
       {"6.5", [](json& m) { m["poses"][0].erase("position"); }, "poses[0].position: missing"},
       {"6.5", [](json& m) { m["poses"][0]["position"]["y"] = "1"; },
        "poses[0].position.y: expected a number, got a string"},
@@ -143,7 +144,8 @@ TEST(ReadMarkersUpdate, RefusesWhatTheIcdForbids) {
       {"6.6", [](json& m) { m["markers"] = 1; }, "markers: expected an array, got a whole number"},
       {"6.6", [](json& m) { m["markers"][0] = nullptr; }, "markers[0]: expected an object, got null"},
       {"6.1", [](json& m) { m["markers"][0]["header"]["frame_id"] = "map"; },
-       "markers[0].header.frame_id: expected \"darpa\", got \"map\""},
+       "markers[0].header.frame_id: expected \"darpa\", got \"map\" (the setting rules.rewrite_frame_id "
+       "takes any)"},
       {"6.2", [](json& m) { m["markers"][0]["header"]["stamp"] = -2; },
        "markers[0].header.stamp: expected a finite number of at least 0, got -2"},
       {"6.6", [](json& m) { m["markers"][0].erase("ns"); }, "taken"},

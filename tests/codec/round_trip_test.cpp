@@ -53,7 +53,7 @@ TEST(RoundTrip, OfClouds) {
   Random random(2);
   for (int round = 0; round < kRounds; ++round) {
     const icd::MapUpdate map = test::random_cloud(random);
-    test::expect_same(map_of(kCborBody, write_map_update(map).to_string(), random), map);
+    test::expect_same(map_of(kCborBody, write_map_update(map).to_string(), random), test::little_endian(map));
   }
 }
 
@@ -174,9 +174,11 @@ TEST(RoundTrip, OfMapsInEveryStyleOfClients) {
       for (const Coding& coding : kCodings) {
         SCOPED_TRACE(testing::Message() << style.name << ", coding " << coding.window);
         test::expect_same(
-            map_of({Format::Json, coding.coding}, encoded(test::as_json(document), coding), random), map);
+            map_of({Format::Json, coding.coding}, encoded(test::as_json(document), coding), random),
+            test::little_endian(map));
         test::expect_same(
-            map_of({Format::Cbor, coding.coding}, encoded(test::as_cbor(document), coding), random), map);
+            map_of({Format::Cbor, coding.coding}, encoded(test::as_cbor(document), coding), random),
+            test::little_endian(map));
       }
     }
   }
@@ -221,10 +223,7 @@ TEST(RoundTrip, SurvivesDamagedBodies) {
       continue;
     }
     ++taken;
-    icd::MapUpdate expected = *map;
-    if (auto* cloud = std::get_if<icd::PointCloud2>(&expected.msg); cloud && !cloud->origin)
-      cloud->origin.emplace();
-    test::expect_same(map_of(kCborBody, write_map_update(*map).to_string(), random), expected);
+    test::expect_same(map_of(kCborBody, write_map_update(*map).to_string(), random), *map);
   }
   EXPECT_GT(taken, 100);
 }

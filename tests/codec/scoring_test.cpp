@@ -52,7 +52,8 @@ TEST(ReadArtifactReport, RefusesWhatTheIcdForbids) {
       {"5.2", [](json& m) { m.erase("type"); }, "type: missing"},
       {"5.2", [](json& m) { m["type"] = 1; }, "type: expected a string, got a whole number"},
       {"5.2", [](json& m) { m["type"] = "CELL pHone"; }, "taken"},
-      {"5.2", [](json& m) { m["type"] = "test"; }, kTheTen + "\"test\""},
+      {"5.2", [](json& m) { m["type"] = "test"; },
+       kTheTen + "\"test\" (the setting rules.forward_unknown_types takes others)"},
       {"5.2", [](json& m) { m["type"] = ""; }, kTheTen + "\"\""},
       {"5.2", [](json& m) { m["type"] = "Cell\nPhone"; }, kTheTen + "\"Cell?Phone\""},
   };
@@ -93,6 +94,25 @@ TEST(ReadArtifactReport, KeepsTheTypeAsItsSenderWroteIt) {
 TEST(WriteArtifactReport, WritesTheIcdsExample) {
   EXPECT_EQ(write_artifact_report({.type = "backpack", .position = {1011.242, -244.433, -10.011}}),
             R"({"x": 1011.242, "y": -244.433, "z": -10.011, "type": "backpack"})");
+}
+
+TEST(WriteArtifactReport, WritesFloatsAsWhatTheyAre) {  // ICD 5.2; a whole number is not one to every server
+  const auto written = [](const char* x) {
+    const auto report = read(std::string(R"({"x":)") + x + R"(,"y":0,"z":-0.0,"type":"Rope"})");
+    return report ? write_artifact_report(*report) : report.error().sentence;
+  };
+  const auto expected = [](const char* x) {
+    return std::string(R"({"x": )") + x + R"(, "y": 0.0, "z": -0.0, "type": "Rope"})";
+  };
+  for (const auto& [came, goes] : {std::pair{"11.0", "11.0"},
+                                   {"11", "11.0"},
+                                   {"-7.50", "-7.5"},
+                                   {"1e3", "1000.0"},
+                                   {"1e300", "1e+300"},
+                                   {"9007199254740993", "9007199254740992.0"},
+                                   {"123456789012345678901234567890", "1.2345678901234568e+29"}}) {
+    EXPECT_EQ(written(came), expected(goes));
+  }
 }
 
 TEST(WriteArtifactReport, GivesTheSameDoublesBack) {

@@ -51,6 +51,28 @@ const Profile kProfiles[] = {
                         trouble.power_cut = 0.02;
                         trouble.review = Review::Duplicates;
                       })},
+    {"StandingClocks", with(kFaults,
+                            [](Trouble& trouble) {
+                              trouble.clocks = CommandPost::Clocks::Standing;
+                              trouble.power_cut = 0.01;
+                            })},
+    {"DifferingClocks", with(kFaults,
+                             [](Trouble& trouble) {
+                               trouble.clocks = CommandPost::Clocks::Differing;
+                               trouble.new_runs = true;
+                               trouble.power_cut = 0.01;
+                             })},
+    {"Courses", with(kFaults,
+                     [](Trouble& trouble) {
+                       trouble.courses = true;
+                       trouble.power_cut = 0.01;
+                     })},
+    {"CoursesOfStandingClocks", with(kFaults,
+                                     [](Trouble& trouble) {
+                                       trouble.courses = true;
+                                       trouble.clocks = CommandPost::Clocks::Standing;
+                                       trouble.disk_full = 0.1;
+                                     })},
     {"Everything", with(kFaults,
                         [](Trouble& trouble) {
                           trouble.power_cut = 0.02;
@@ -95,12 +117,17 @@ TEST_P(ReportsModel, LosesNoReportAndRecordsNoneTwice) {
     all.undecided += one.undecided;
     all.held += one.held;
     all.held_back += one.held_back;
+    all.switches += one.switches;
   }
   std::cout << all.steps << " steps: " << all.posts << " posts, " << all.recorded << " recorded, "
             << all.acknowledged << " acknowledged, " << all.settled << " found recorded, " << all.sent_again
             << " found missing, " << all.power_cuts << " power cuts, " << all.undecided << " left in doubt, "
-            << all.held << " held, " << all.held_back << " times by the operator\n";
+            << all.held << " held, " << all.held_back << " times by the operator, " << all.switches
+            << " switches of course\n";
   EXPECT_GT(all.recorded, 0);
+  if (GetParam().trouble.courses) {
+    EXPECT_GT(all.switches, 0);
+  }
   if (GetParam().trouble.operator_acts) {
     EXPECT_GT(all.held_back, 0);
   }

@@ -21,7 +21,7 @@ const Run kRun{.id = "1.5.2", .last = icd::RunStatus{4, 733, 13, "subt"}};
 TEST(ReconciledAnswer, HasTheFieldsThatAreKnownToBeTrue) {
   const std::string body = reconciled_answer(found(), kRun, 1, "from 14 to 13");
   for (const char* const field :
-       {R"("x":1.5)", R"("y":-2)", R"("z":0)", R"("type":"cell phone")",
+       {R"("x":1.5)", R"("y":-2.0)", R"("z":0.0)", R"("type":"cell phone")",
         R"("submitted_datetime":"2023-11-14T22:13:20.250000+00:00")", R"("run_clock":721.4)",
         R"("team":"subt")", R"("run":"1.5.2")", R"("report_status":"scored")", R"("score_change":1)"}) {
     EXPECT_THAT(body, HasSubstr(field));

@@ -39,6 +39,11 @@ const Case kCases[] = {
     {413, "", ReportEvent::Refused},
     {415, "", ReportEvent::Refused},
     {422, kReply, ReportEvent::Refused},
+    {400, "<html>blocked by the firewall</html>", ReportEvent::Lost},
+    {413, "<html>too large</html>", ReportEvent::Lost},
+    {422, "<html>log in to the network</html>", ReportEvent::Lost},
+    {451, "not here", ReportEvent::Lost},
+    {429, "<html>slow down</html>", ReportEvent::Throttled},
     {429, "", ReportEvent::Throttled},
     {500, kReply, ReportEvent::Lost},
     {502, "", ReportEvent::Lost},
@@ -51,7 +56,8 @@ const Case kCases[] = {
 class VerdictTable : public testing::TestWithParam<Case> {};
 
 TEST_P(VerdictTable, MeansThisForAReport) {
-  EXPECT_EQ(event_of(GetParam().status, codec::read_report_reply(GetParam().body).has_value()),
+  const std::string body = GetParam().body;
+  EXPECT_EQ(event_of(GetParam().status, codec::read_report_reply(body).has_value(), body_of(body)),
             GetParam().event);
 }
 INSTANTIATE_TEST_SUITE_P(Answers, VerdictTable, testing::ValuesIn(kCases));

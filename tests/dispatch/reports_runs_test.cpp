@@ -13,10 +13,19 @@ using testing::IsEmpty;
 TEST(ANewRun, IsNoticedByAClockThatRanBackward) {
   Scene scene;
   scene.wait(10);
-  scene.hear(25, 0, 3);
+  scene.hear(20, 0);
+  scene.hear(20, 0, 3);
   EXPECT_EQ(scene.reports().run().number, 2);
   EXPECT_EQ(scene.deeds().run->number, 2);
   EXPECT_THAT(scene.deeds().run->why, HasSubstr("the run clock went back"));
+}
+
+TEST(ANewRun, IsNoticedByMoreReportsLeft) {
+  Scene scene;
+  scene.wait(10);
+  scene.hear(25, 0);
+  EXPECT_EQ(scene.reports().run().number, 2);
+  EXPECT_THAT(scene.deeds().run->why, HasSubstr("the reports left went up from 20 to 25"));
   EXPECT_EQ(scene.deeds().run->last->remaining_reports, 25);
 }
 
@@ -60,7 +69,7 @@ TEST(ANewRun, HoldsWhatWaitsFromTheRunBefore) {
   scene.wait(11);
   scene.hear(25, 0, 3);
   EXPECT_EQ(scene.state(1), Received);
-  EXPECT_THAT(scene.report(1).note, HasSubstr("held: a new run began (the run clock went back"));
+  EXPECT_THAT(scene.report(1).note, HasSubstr("held: a new run began (the reports left went up"));
   EXPECT_EQ(scene.deeds().ledger.at(1).state, Received) << "written down with the run";
   ASSERT_TRUE(scene.reports().send(1, scene.time()).has_value());
   EXPECT_EQ(scene.send_next(), 1) << "the operator asks for it";

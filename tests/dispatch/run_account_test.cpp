@@ -112,7 +112,7 @@ TEST_F(RunAccountTest, LetsCountsBeSetAtTheStartOfTheRun) {
 TEST_F(RunAccountTest, TrustsTheCountAgainInTheNextRun) {
   hear(20, 3);
   account_.distrust("another sender", time().stamp);
-  account_.begin("the operator says so", std::nullopt, {}, time());
+  account_.begin("the operator says so", 0, std::nullopt, {}, time());
   EXPECT_EQ(account_.run().number, 2);
   EXPECT_EQ(account_.expected(time().now), std::nullopt);
   hear(25, 0);
@@ -139,32 +139,48 @@ TEST_F(RunAccountTest, KnowsACommandPostThatAnswersNothingThatHelps) {
 
 TEST_F(RunAccountTest, WritesTheRunClockDownOnlyNowAndThen) {
   hear(20, 3);
+  now_ = 101;
+  hear(20, 3);
+  EXPECT_TRUE(deeds_.run->status_clock->runs) << "it was seen to run, which is news";
   const auto writes = deeds_.writes;
-  for (now_ = 101; now_ < 129; ++now_) hear(20, 3);
+  for (now_ = 102; now_ < 130; ++now_) hear(20, 3);
   EXPECT_EQ(deeds_.writes, writes);
-  now_ = 131;
+  now_ = 132;
   hear(20, 3);
   EXPECT_EQ(deeds_.writes, writes + 1);
-  EXPECT_EQ(deeds_.run->last->run_clock, 131);
+  EXPECT_EQ(deeds_.run->last->run_clock, 132);
+}
+
+TEST_F(RunAccountTest, WritesTheReportsLeftDownAtOnce) {
+  hear(20, 3);
+  now_ = 101;
+  hear(19, 3);
+  EXPECT_EQ(deeds_.run->last->remaining_reports, 19) << "by which a new run is told";
 }
 
 TEST_F(RunAccountTest, MeasuresASilenceByTheClockThatCannotBeSet) {
+  now_ = 99;
+  hear(20, 3);
+  now_ = 100;
   hear(20, 3);
   const Time set{at(105).now, at(105 + 3600).stamp};
-  EXPECT_THAT(account_.another(icd::RunStatus{3, 105, 20, "adit"}, set), IsEmpty());
-  EXPECT_THAT(account_.another(icd::RunStatus{3, 105, 20, "adit"}, at(3700)), HasSubstr("without word"));
+  EXPECT_EQ(account_.another(icd::RunStatus{3, 105, 20, "adit"}, set), std::nullopt);
+  EXPECT_THAT(account_.another(icd::RunStatus{3, 105, 20, "adit"}, at(3700))->why, HasSubstr("without word"));
 }
 
 TEST_F(RunAccountTest, MeasuresASilenceOverARestartByWhatIsOnDisk) {
+  now_ = 99;
+  hear(20, 3);
+  now_ = 100;
   hear(20, 3);
   RunAccount again(book_);
-  again.open(deeds_.run, 1, "");
-  EXPECT_THAT(again.another(icd::RunStatus{3, 105, 20, "adit"}, at(3700)), HasSubstr("without word"));
-  EXPECT_THAT(again.another(icd::RunStatus{3, 120, 20, "adit"}, at(120)), IsEmpty());
+  again.open({*deeds_.run}, 1, "");
+  EXPECT_THAT(again.another(icd::RunStatus{3, 105, 20, "adit"}, at(3700))->why, HasSubstr("without word"));
+  EXPECT_EQ(again.another(icd::RunStatus{3, 120, 20, "adit"}, at(120)), std::nullopt);
 }
 
 TEST_F(RunAccountTest, IsOfTheLatestRunThatAReportBelongsTo) {
-  account_.open(dispatch::Run{.number = 2, .id = "two"}, 3, "");
+  account_.open({dispatch::Run{.number = 2, .id = "two"}}, 3, "");
   EXPECT_EQ(account_.run().number, 3);
   EXPECT_THAT(account_.run().id, IsEmpty()) << "what was known of the run before does not hold";
 }

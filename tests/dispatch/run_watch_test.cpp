@@ -8,11 +8,24 @@ namespace {
 using testing::HasSubstr;
 using testing::IsEmpty;
 
+std::string why(const std::optional<AnotherRun>& another) {
+  return another ? another->why : "";
+}
+
+/// A run whose clocks were both seen to run, and show `clock`.
 Run run_at(double clock) {
-  return {.id = "1", .last = icd::RunStatus{3, clock, 14, "subt"}};
+  return {.id = "1",
+          .last = icd::RunStatus{3, clock, 14, "subt"},
+          .status_clock = Clock{clock, true},
+          .answer_clock = Clock{clock, true}};
+}
+Run nameless_run_at(double clock) {
+  Run run = run_at(clock);
+  run.id.clear();
+  return run;
 }
 std::string another(double before, double clock, double silence) {
-  return another_run(run_at(before), icd::RunStatus{3, clock, 14, "subt"}, silence);
+  return why(another_run(run_at(before), icd::RunStatus{3, clock, 14, "subt"}, silence));
 }
 
 icd::ReportReply reply(const std::string& run, double run_clock) {
@@ -22,15 +35,69 @@ icd::ReportReply reply(const std::string& run, double run_clock) {
   return reply;
 }
 
+TEST(AClock, RunsOnceItWasSeenToGoOn) {
+  const Clock first = seen_again(std::nullopt, 5);
+  EXPECT_EQ(first, (Clock{5, false}));
+  EXPECT_EQ(seen_again(first, 5), (Clock{5, false})) << "it stands";
+  EXPECT_EQ(seen_again(first, 3), (Clock{3, false})) << "it went back";
+  EXPECT_EQ(seen_again(first, 6), (Clock{6, true}));
+  EXPECT_EQ(seen_again(Clock{6, true}, 6), (Clock{6, true})) << "a stop: it ran";
+}
+
 TEST(AnotherRun, ShowsByAClockThatRanBackward) {
   EXPECT_THAT(another(600, 2, 10), HasSubstr("went back from 600 s to 2 s"));
   EXPECT_THAT(another(600, 598.9, 1), HasSubstr("went back"));
   EXPECT_THAT(another(600, 599.1, 1), IsEmpty()) << "a jitter of less than a second";
 }
 
+TEST(AnotherRun, IsNotCertainWhereOnlyAClockTellsOfIt) {
+  EXPECT_FALSE(another_run(run_at(600), icd::RunStatus{3, 2, 14, "subt"}, 1)->certain);
+  EXPECT_FALSE(another_run(nameless_run_at(600), reply("1", 2), 1)->certain);
+  EXPECT_FALSE(another_run(run_at(600), icd::RunStatus{3, 620, 14, "subt"}, 3000)->certain);
+  EXPECT_TRUE(another_run(run_at(600), icd::RunStatus{3, 610, 14, "other"}, 10)->certain);
+  EXPECT_TRUE(another_run(run_at(600), icd::RunStatus{3, 2, 15, "subt"}, 10)->certain);
+  EXPECT_TRUE(another_run(run_at(600), reply("2", 601), 10)->certain);
+}
+
+/// What a clock says that was, or was not, seen to run; of the status and of the answers alike.
+TEST(AnotherRun, IsNotToldByAClockThatWasNeverSeenToRun) {
+  struct Case {
+    double shown, shows, silence;
+  };
+  for (const auto& [shown, shows, silence] :
+       {Case{25.98, 3.14, 1}, Case{25.98, 25.98, 3600}, Case{3.14, 3.14, 1e6}, Case{600, 2, 5}}) {
+    dispatch::Run run = nameless_run_at(shown);
+    run.status_clock->runs = run.answer_clock->runs = false;
+    EXPECT_THAT(why(another_run(run, icd::RunStatus{3, shows, 14, "subt"}, silence)), IsEmpty()) << shown;
+    EXPECT_THAT(why(another_run(run, reply("", shows), silence)), IsEmpty()) << shown;
+  }
+}
+
+TEST(AnotherRun, IsToldByEachUriWithItsOwnClock) {
+  dispatch::Run run = nameless_run_at(600);
+  run.answer_clock = std::nullopt;
+  EXPECT_THAT(why(another_run(run, reply("", 3.14), 1)), IsEmpty()) << "none of this URI's was seen";
+  run.answer_clock = Clock{3.14, false};
+  EXPECT_THAT(why(another_run(run, reply("", 3.14), 3600)), IsEmpty());
+  EXPECT_THAT(why(another_run(run, icd::RunStatus{3, 601, 14, "subt"}, 1)), IsEmpty());
+}
+
 TEST(AnotherRun, ShowsByAnotherTeam) {
   const icd::RunStatus status{3, 610, 14, "other"};
-  EXPECT_EQ(another_run(run_at(600), status, 10), "the team is \"other\", it was \"subt\"");
+  EXPECT_EQ(why(another_run(run_at(600), status, 10)), "the team is \"other\", it was \"subt\"");
+}
+
+TEST(AnotherRun, ShowsByMoreReportsLeft) {
+  const auto left = [](const dispatch::Run& run, std::int64_t reports) {
+    return why(another_run(run, icd::RunStatus{0, run.last->run_clock, reports, "subt"}, 10));
+  };
+  EXPECT_EQ(left(run_at(600), 15), "the reports left went up from 14 to 15");
+  EXPECT_THAT(left(run_at(600), 14), IsEmpty());
+  EXPECT_THAT(left(run_at(600), 3), IsEmpty());
+  EXPECT_THAT(left(run_at(0), 25), IsEmpty()) << "before the start they may be set to anything";
+  dispatch::Run standing = run_at(0);
+  standing.answer_clock = Clock{3.14, false};
+  EXPECT_THAT(left(standing, 15), HasSubstr("went up")) << "its answers tell that it has started";
 }
 
 TEST(AnotherRun, ShowsAfterALongSilenceByAClockThatDoesNotFitIt) {
@@ -45,20 +112,21 @@ TEST(AnotherRun, IsNotTheStartOfTheOneThatWasWaitedFor) {
 }
 
 TEST(AnotherRun, IsNeverTheFirstThatIsHeardOf) {
-  EXPECT_THAT(another_run(dispatch::Run{}, icd::RunStatus{3, 5, 14, "subt"}, 1e9), IsEmpty());
-  EXPECT_THAT(another_run(dispatch::Run{}, reply("7", 5), 1e9), IsEmpty());
+  EXPECT_THAT(why(another_run(dispatch::Run{}, icd::RunStatus{3, 5, 14, "subt"}, 1e9)), IsEmpty());
+  EXPECT_THAT(why(another_run(dispatch::Run{}, reply("7", 5), 1e9)), IsEmpty());
 }
 
 TEST(AnotherRun, ShowsByTheRunOfAnAnswer) {
-  EXPECT_EQ(another_run(run_at(600), reply("2", 601), 1),
+  EXPECT_EQ(why(another_run(run_at(600), reply("2", 601), 1)),
             "the Command Post calls it run \"2\", it was \"1\"");
-  EXPECT_THAT(another_run(run_at(600), reply("1", 601), 1), IsEmpty());
+  EXPECT_THAT(why(another_run(run_at(600), reply("1", 601), 1)), IsEmpty());
+  EXPECT_THAT(why(another_run(run_at(600), reply("1", 4), 1)), IsEmpty()) << "its name is what counts";
 }
 
 TEST(AnotherRun, ShowsByTheClockOfAnAnswerThatHasOne) {
-  EXPECT_THAT(another_run(run_at(600), reply("1", 4), 1), HasSubstr("went back"));
-  EXPECT_THAT(another_run(run_at(600), reply("1", 0), 1), IsEmpty());
-  EXPECT_THAT(another_run(run_at(600), reply("", 0), 1), IsEmpty());
+  EXPECT_THAT(why(another_run(nameless_run_at(600), reply("1", 4), 1)), HasSubstr("went back"));
+  EXPECT_THAT(why(another_run(run_at(600), reply("", 4), 1)), HasSubstr("went back"));
+  EXPECT_THAT(why(another_run(run_at(600), reply("", 0), 1)), IsEmpty());
 }
 
 }  // namespace

@@ -30,7 +30,10 @@ class RecordingDeeds final : public Deeds {
       ledger[report.number] = report;
       lives[report.number].push_back(report.state);
     }
-    if (last != nullptr) run = *last;
+    if (last != nullptr) {
+      run = *last;
+      runs[last->number] = *last;
+    }
     return true;
   }
   void tell(ClientId client, const ClientAnswer& answer, const Report& report) override {
@@ -47,7 +50,8 @@ class RecordingDeeds final : public Deeds {
   Flush last_flush = Flush::Now;
   std::map<std::int64_t, Report> ledger;
   std::map<std::int64_t, std::vector<ReportState>> lives;  // as they were written
-  std::optional<Run> run;
+  std::optional<Run> run;                                  // the one that was written last
+  std::map<std::int64_t, Run> runs;
   std::map<ClientId, std::vector<Told>> told;
 };
 
@@ -74,6 +78,7 @@ class Scene {
   }
 
   Reports& reports() { return *reports_; }
+  const Reports& reports() const { return *reports_; }
   RecordingDeeds& deeds() { return deeds_; }
   Time time() const {
     return {Reports::Instant(std::chrono::milliseconds(static_cast<std::int64_t>(now_ * 1000))),
@@ -92,7 +97,9 @@ class Scene {
     all.reserve(deeds_.ledger.size());
     for (const auto& [number, report] : deeds_.ledger) all.push_back(report);
     reports_.emplace(rules_, deeds_);
-    reports_->open(std::move(all), deeds_.run, time(), post);
+    std::vector<Run> runs;
+    for (const auto& [number, run] : deeds_.runs) runs.push_back(run);
+    reports_->open(std::move(all), std::move(runs), time(), post);
   }
 
   /// A client posts; nothing is in the way of sending it at once, unless something is under way.

@@ -48,15 +48,5 @@ TEST(Turn, GoesInOrderWhereAllMaySend) {
   EXPECT_EQ(in_order(candidates, at(100)).candidate, 0u);
 }
 
-TEST(MappingVerdict, GivesUpOnlyOnWhatTheCommandPostWillNeverTake) {
-  for (const int status : {400, 413, 422})
-    EXPECT_EQ(mapping_verdict(status), MappingVerdict::Refused) << status;
-  for (const int status : {200, 201, 204})
-    EXPECT_EQ(mapping_verdict(status), MappingVerdict::Taken) << status;
-  for (const int status : {301, 401, 404, 500, 501, 503})
-    EXPECT_EQ(mapping_verdict(status), MappingVerdict::Failing);
-  EXPECT_EQ(mapping_verdict(429), MappingVerdict::Throttled);
-}
-
 }  // namespace
 }  // namespace adit::dispatch

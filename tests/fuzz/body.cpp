@@ -1,10 +1,12 @@
 #include "body.hpp"
 
+#include <algorithm>
 #include <cstdlib>
 #include <string_view>
 
 #include "codec/json.hpp"
 #include "codec/read.hpp"
+#include "codec/write.hpp"
 #include "icd/rules.hpp"
 
 namespace adit::fuzz {
@@ -67,6 +69,28 @@ void require_settles(const codec::Value& value) {
   require(twice.has_value() && codec::write_json(*twice) == written);
 }
 
+/// What the service takes of a state or of markers, part by part, and what the strict reader takes are the
+/// same where nothing is refused; where something is, each refusal has its sentence. What is taken can be
+/// written.
+template <class Message, class Write>
+void require_parts(const icd::Checked<codec::InParts<Message>>& parts, const icd::Checked<Message>& whole,
+                   Write write) {
+  const bool all_good = parts && parts->refused.count == 0;
+  require(whole.has_value() == all_good);
+  if (!parts) {
+    require(!parts.error().sentence.empty());
+    return;
+  }
+  if (all_good) require(parts->message == *whole);
+  const codec::RefusedParts& refused = parts->refused;
+  if (refused.count > 0) {
+    require(refused.others > 0);
+    require(refused.sentences.size() == std::min(refused.count, codec::RefusedParts::kMostToldOf));
+    require(!refused.refusal().sentence.empty());
+  }
+  require(!write(parts->message).empty());
+}
+
 void read_message(int message, const codec::Document& document) {
   const icd::Rules rules;
   switch (message) {
@@ -74,10 +98,12 @@ void read_message(int message, const codec::Document& document) {
       (void)codec::read_map_update(document, rules);
       break;
     case 1:
-      (void)codec::read_state_update(document, rules);
+      require_parts(codec::read_state_parts(document, rules), codec::read_state_update(document, rules),
+                    codec::write_state_update);
       break;
     case 2:
-      (void)codec::read_markers_update(document, rules);
+      require_parts(codec::read_markers_parts(document, rules), codec::read_markers_update(document, rules),
+                    codec::write_markers_update);
       break;
     default:
       (void)codec::read_artifact_report(document, rules);

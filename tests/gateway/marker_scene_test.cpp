@@ -36,7 +36,7 @@ TEST(MarkerScene, HasEachMarkerAsItWasLastForwarded) {
   const auto news = scene.news(0);
   EXPECT_TRUE(news.whole);
   EXPECT_THAT(names(news), ElementsAre("a2", "b1", "a1"));
-  EXPECT_EQ(news.markers[2].marker.pose.position.x, 7);
+  EXPECT_EQ(news.markers[2].marker.position.x, 7);
   EXPECT_EQ(news.markers[2].at, 101);
 }
 
@@ -91,6 +91,39 @@ TEST(MarkerScene, LeavesOutTheOldestOfTooManyAndSaysHowMany) {
   EXPECT_EQ(news.markers.front().marker.id, 3);
 }
 
+TEST(MarkerScene, LeavesOutTheOldestWhereTheyAreTooLarge) {
+  MarkerScene scene;
+  icd::Marker line = marker("a", 0);
+  line.type = static_cast<std::int32_t>(icd::MarkerType::LineStrip);
+  for (int i = 0; i < 5000; ++i) line.points.push_back({i * 1.0, 0, 0});
+  for (; line.id < 100; ++line.id) {
+    scene.forwarded({{line}}, 100 + line.id);
+  }
+  const auto news = scene.news(0);
+  std::size_t bytes = 0;
+  for (const auto& row : news.markers) bytes += row.marker.size();
+  EXPECT_LE(bytes, MarkerScene::kMostBytes);
+  EXPECT_GT(news.markers.size(), 50u);
+  EXPECT_EQ(news.left_out, 100 - news.markers.size());
+  EXPECT_EQ(news.markers.back().marker.id, 99);
+  const auto first = news.markers.front().marker.id;
+  for (std::int32_t id = first; id < 100; ++id) scene.forwarded({{marker("a", id)}}, 300);
+  line.id = 0;
+  scene.forwarded({{line}}, 301);
+  EXPECT_THAT(scene.news(0).markers, SizeIs(101 - first)) << "what has become small has made room";
+}
+
+TEST(MarkerScene, ForgetsTheLongNamesOfThoseThatAreGone) {
+  MarkerScene scene;
+  const auto begun = (scene.forwarded({{marker("b", 0)}}, 99), scene.version());
+  for (char name = 'a'; name < 'z'; ++name) {
+    const std::string longest(200'000, name);
+    scene.forwarded({{marker(longest, 1), marker(longest, 1, 0, MarkerAction::Delete)}}, 100);
+  }
+  EXPECT_TRUE(scene.news(begun).whole) << "what went since then is not told any more";
+  EXPECT_THAT(names(scene.news(0)), ElementsAre("b0"));
+}
+
 /// Whoever follows the news has the scene at each moment, however it changed in between.
 TEST(MarkerScene, GivesNewsThatAddUpToTheWhole) {
   std::mt19937 random(7);
@@ -113,12 +146,12 @@ TEST(MarkerScene, GivesNewsThatAddUpToTheWhole) {
     if (news.whole) followed.clear();
     for (const auto& key : news.gone) followed.erase(key);
     for (const auto& row : news.markers) {
-      followed[{row.marker.ns, row.marker.id}] = row.marker.pose.position.x;
+      followed[{row.marker.ns, row.marker.id}] = row.marker.position.x;
     }
     known = news.version;
     Shown whole;
     for (const auto& row : scene.news(0).markers) {
-      whole[{row.marker.ns, row.marker.id}] = row.marker.pose.position.x;
+      whole[{row.marker.ns, row.marker.id}] = row.marker.position.x;
     }
     ASSERT_EQ(followed, whole) << "after step " << step;
     ASSERT_LE(whole.size(), MarkerScene::kMost);

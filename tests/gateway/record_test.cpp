@@ -79,5 +79,17 @@ TEST(Record, CountsWhatWasEverRefusedByUriAndStatus) {
   EXPECT_EQ((counts[{"/state/update", 401}]), 1);
 }
 
+TEST(Record, CountsRefusedPartsEach) {
+  Record record([] {});
+  for (const std::size_t parts : {3u, 12u}) {
+    record.refused(icd::Uri::StateUpdate, {"10.0.0.5", 3},
+                   {icd::Status::UnprocessableEntity, "poses[1].name: missing", parts}, 0);
+  }
+  ASSERT_EQ(record.refused_counts().size(), 1u);
+  EXPECT_EQ(record.refused_counts()[0].count, 2u);
+  EXPECT_EQ(record.refused_counts()[0].parts, 15u);
+  EXPECT_EQ(record.refusals()[0].parts, 12u);
+}
+
 }  // namespace
 }  // namespace adit::gateway

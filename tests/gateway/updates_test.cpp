@@ -53,15 +53,14 @@ class UpdatesTest : public testing::Test {
 
   host::Folder state_, run_;
   loop::Loop loop_;
-  loop::Workers workers_{loop_, 1};
+  loop::Writer writer_{loop_};
   std::string under_way_;
-  Updates updates_{loop_, workers_, UpdateRequests(state_.path(), run_.path()),
-                   [this] { return under_way_; }};
+  Updates updates_{loop_, writer_, UpdateRequests(state_.path(), run_.path()), [this] { return under_way_; }};
 };
 
 TEST_F(UpdatesTest, LeaveNothingOfAnUploadThatAPowerCutBrokeOff) {
   const std::string half = state_.put(std::string(update::kBundleFile) + ".part", "half of a bundle");
-  const Updates after(loop_, workers_, UpdateRequests(state_.path(), run_.path()), [] { return ""; });
+  const Updates after(loop_, writer_, UpdateRequests(state_.path(), run_.path()), [] { return ""; });
   EXPECT_FALSE(fs::exists(half));
 }
 

@@ -52,8 +52,8 @@ TEST(ChunkedBytes, ShareTheirChunksWithACopy) {
   const ChunkedBytes original(counted(100'000));
   const ChunkedBytes copy =
       original;  // NOLINT(performance-unnecessary-copy-initialization): the copy is the test
-  EXPECT_EQ(copy.chunks()[0].get(), original.chunks()[0].get());
-  EXPECT_EQ(copy.chunks()[1].get(), original.chunks()[1].get());
+  EXPECT_EQ(copy.chunks()[0]->data(), original.chunks()[0]->data());
+  EXPECT_EQ(copy.chunks()[1]->data(), original.chunks()[1]->data());
 }
 
 TEST(ChunkedBytes, NeverChangeAChunkThatSomebodyElseCanSee) {
@@ -64,7 +64,7 @@ TEST(ChunkedBytes, NeverChangeAChunkThatSomebodyElseCanSee) {
   const Bytes three = counted(3, 2);
   original.append(five);
   copy.append(three);
-  EXPECT_EQ(*held, counted(10));
+  EXPECT_EQ(Bytes(held->begin(), held->end()), counted(10));
   EXPECT_EQ(original.size(), 15U);
   EXPECT_EQ(original.to_vector().size(), 15U);
   EXPECT_EQ(copy.to_vector().size(), 13U);
@@ -103,7 +103,7 @@ TEST(ChunkedBytes, ShareTheChunksOfAnother) {
   ChunkedBytes first(counted(10));
   const ChunkedBytes second(counted(20));
   first.append(second);
-  EXPECT_EQ(first.chunks()[1].get(), second.chunks()[0].get());
+  EXPECT_EQ(first.chunks()[1]->data(), second.chunks()[0]->data());
   const Bytes one = counted(1);
   first.append(one);
   EXPECT_EQ(second.to_vector(), counted(20));
@@ -138,9 +138,26 @@ TEST(ChunkedBytes, ArePoppedChunkByChunkFromTheFront) {
 
 TEST(ChunkedBytes, FreeAPoppedChunkOnceNobodyHoldsIt) {
   ChunkedBytes bytes(counted(2 * ChunkedBytes::kChunk));
-  const std::weak_ptr<const Bytes> first = bytes.chunks()[0];
+  const std::weak_ptr<const void> first = bytes.chunks()[0].owner();
   bytes.pop_front();
   EXPECT_TRUE(first.expired());
+}
+
+TEST(ChunkedBytes, ShowBytesOfAnOwnerWithoutACopyAndKeepItAlive) {
+  auto owner = std::make_shared<const Bytes>(counted(2 * ChunkedBytes::kChunk + 5));
+  const std::weak_ptr<const Bytes> alive = owner;
+  ChunkedBytes bytes(counted(3));
+  bytes.append(owner, *owner);
+  bytes.append(counted(4));
+  ASSERT_EQ(bytes.chunks().size(), 5U);
+  EXPECT_EQ(bytes.chunks()[1]->data(), owner->data());
+  EXPECT_EQ(bytes.size(), owner->size() + 7);
+  EXPECT_EQ(*owner, counted(2 * ChunkedBytes::kChunk + 5)) << "what is shown is never written to";
+  owner.reset();
+  const ChunkedBytes copy = bytes;
+  while (!bytes.empty()) bytes.pop_front();
+  EXPECT_FALSE(alive.expired());
+  EXPECT_EQ(copy.to_vector().size(), 2 * ChunkedBytes::kChunk + 12);
 }
 
 TEST(ChunkedBytes, AreEqualWhereTheirBytesAreHoweverTheyAreCut) {

@@ -72,7 +72,7 @@ TEST(GridRules, EachSayWhatTheyExpectedAndWhatTheyGot) {
          g.width = 101;
          g.height = 100;
        },
-       "msg.info.width: expected at most 10000 cells, got 101 x 100 = 10100"},
+       "msg.info.width: expected at most 10000 cells (the setting rules.map_bytes), got 101 x 100 = 10100"},
       {"6.3.1 in 64 bits",
        [](auto& g) {
          g.width = 0x40000000;
@@ -173,9 +173,10 @@ TEST(CloudSize, IsAWholeNumberOfPoints) {  // ICD 6.3.2
 
 TEST(FrameId, IsDarpaUnlessTheSettingsRewriteIt) {  // ICD 6.1
   EXPECT_EQ(sentence_of(check_frame_id("darpa", "header.frame_id", {})), "taken");
-  for (const std::string frame : {"", "map", "Darpa", "darpa ", "/darpa"}) {
+  for (const std::string frame : {"map", "Darpa", "darpa ", "/darpa"}) {
     EXPECT_EQ(sentence_of(check_frame_id(frame, "header.frame_id", {})),
-              sentence("header.frame_id: expected \"darpa\", got \"", frame, "\""));
+              sentence("header.frame_id: expected \"darpa\", got \"", frame,
+                       "\" (the setting rules.rewrite_frame_id takes any)"));
     Rules rewriting;
     rewriting.rewrite_frame_id = true;
     EXPECT_EQ(sentence_of(check_frame_id(frame, "header.frame_id", rewriting)), "taken");

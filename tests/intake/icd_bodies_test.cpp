@@ -153,6 +153,45 @@ TEST(IcdBodies, ThatGrowOverAMegabyteAreRefused) {
   EXPECT_EQ(reply->status, 413);
 }
 
+/// Three robots of which the second does not say its name.
+const std::string kOneBadPose = [] {
+  auto state = nlohmann::json::parse(kStateBody);
+  const auto pose = state["poses"][0];
+  state["poses"] = {pose, pose, pose};
+  state["poses"][1].erase("name");
+  state["poses"][2]["name"] = "r3";
+  return state.dump();
+}();
+
+TEST(IcdBodies, OfGoodAndBadPartsAreTakenForTheGoodOnesAndAnsweredForTheBad) {
+  Team team;
+  const auto reply = team.ask(authorized("POST", "/state/update", kJsonType, kOneBadPose));
+  ASSERT_TRUE(reply);
+  EXPECT_EQ(reply->status, 422);
+  EXPECT_EQ(reply->body, "\"poses[1].name: missing (the other 2 were taken)\"");
+  auto markers = nlohmann::json::parse(kMarkersBody);
+  markers["markers"].push_back(7);
+  EXPECT_EQ(team.ask(authorized("POST", "/markers/update", kJsonType, markers.dump()))->status, 422);
+  team.served.on_loop([&] {
+    ASSERT_EQ(team.desk.states.size(), 1u);
+    ASSERT_EQ(team.desk.states[0].poses.size(), 2u);
+    EXPECT_EQ(team.desk.states[0].poses[1].name.text(), "r3");
+    ASSERT_EQ(team.desk.markers.size(), 1u);
+    EXPECT_EQ(team.desk.markers[0].markers.size(), markers["markers"].size() - 1);
+    ASSERT_EQ(team.desk.refusals.size(), 2u);
+    EXPECT_EQ(team.desk.refusals[0].second.sentence, "poses[1].name: missing (the other 2 were taken)");
+  });
+}
+
+TEST(IcdBodies, OfGoodAndBadPartsAreAnsweredAsTheDeskSaysWhereItTakesNone) {
+  Team team;
+  team.served.on_loop([&] { team.desk.full = {icd::Status::TooManyRequests, "full"}; });
+  const auto reply = team.ask(authorized("POST", "/state/update", kJsonType, kOneBadPose));
+  ASSERT_TRUE(reply);
+  EXPECT_EQ(reply->status, 429);
+  EXPECT_EQ(reply->body, "\"full\"");
+}
+
 TEST(IcdBodies, AreRefusedWhereTheDeskIsFull) {
   Team team;
   team.served.on_loop([&] { team.desk.full = {icd::Status::TooManyRequests, "the queue is full"}; });

@@ -28,9 +28,15 @@ class FakeDesk final : public Desk {
   std::vector<std::pair<icd::Uri, icd::Refusal>> refusals;
   std::optional<icd::Refusal> full;  // what take() says
 
-  icd::Checked<void> take(icd::MapUpdate update, const Sender& sender) override {
-    return keep(maps, std::move(update), sender);
-  }
+  std::vector<std::function<void()>> storing;  // answers of maps that wait until the test lets them be kept
+  bool stores_at_once = true;
+
+  int arriving = 0;             // maps on their way
+  std::size_t stored = 0;       // bytes of their data that were stored, ever
+  std::size_t room = 1u << 30;  // for them
+  bool stores_pieces = true;    // at once; else they wait in `storing`
+
+  std::shared_ptr<MapArrival> map_arrives() override { return std::make_shared<Arrival>(*this); }
   icd::Checked<void> take(const icd::StateUpdate& update, const Sender& sender) override {
     return keep(states, update, sender);
   }
@@ -53,6 +59,37 @@ class FakeDesk final : public Desk {
   }
 
  private:
+  /// Keeps in memory what is to be stored.
+  class Arrival final : public MapArrival {
+   public:
+    explicit Arrival(FakeDesk& desk) : desk_(desk) { ++desk_.arriving; }
+    ~Arrival() override { --desk_.arriving; }
+    Arrival(const Arrival&) = delete;
+    Arrival& operator=(const Arrival&) = delete;
+
+    void store(icd::ChunkedBytes bytes, std::function<void(icd::ChunkedBytes)> done) override {
+      while (!bytes.empty() && bytes.chunks().front()->size() <= desk_.room) {
+        const auto chunk = bytes.pop_front();
+        desk_.room -= chunk->size();
+        desk_.stored += chunk->size();
+        stored_.append(*chunk);
+      }
+      if (desk_.stores_pieces) return done(std::move(bytes));
+      desk_.storing.emplace_back([bytes, done = std::move(done)] { done(bytes); });
+    }
+    icd::Checked<icd::ChunkedBytes> stored() override { return stored_; }
+    void take(icd::MapUpdate update, const Sender& sender,
+              std::function<void(icd::Checked<void>)> done) override {
+      auto kept = desk_.keep(desk_.maps, std::move(update), sender);
+      if (desk_.stores_at_once) return done(std::move(kept));
+      desk_.storing.emplace_back([kept = std::move(kept), done = std::move(done)] { done(kept); });
+    }
+
+   private:
+    FakeDesk& desk_;
+    icd::ChunkedBytes stored_;
+  };
+
   template <class Message>
   icd::Checked<void> keep(std::vector<Message>& kept, Message message, const Sender& sender) {
     if (full) return std::unexpected(*full);

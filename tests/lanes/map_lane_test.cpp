@@ -179,7 +179,8 @@ TEST(MapLane, PutsBackWhatCouldNotBeSentFirstInLine) {
   lane.add(2, cloud_update("R2", {1}), at(2));
   auto failed = *lane.take();
   lane.add(3, grid_update("R1", kElsewhere), at(3));
-  lane.put_back(failed);
+  EXPECT_FALSE(lane.is_replaced(failed.map));
+  EXPECT_THAT(lane.put_back(failed), ElementsAre());
   EXPECT_THAT(lane.take()->updates, ElementsAre(1));
 }
 
@@ -189,7 +190,8 @@ TEST(MapLane, PutsBackNoGridThatANewerOneCovers) {
   auto failed = *lane.take();
   lane.add(2, cloud_update("R2", {1}), at(2));
   lane.add(3, grid_update("R1", kLarge), at(3));
-  lane.put_back(failed);
+  EXPECT_TRUE(lane.is_replaced(failed.map));
+  EXPECT_THAT(lane.put_back(failed), ElementsAre(1)) << "nobody needs it any more";
   EXPECT_EQ(lane.count(), 2);
   const auto heir = lane.take();
   EXPECT_THAT(heir->updates, ElementsAre(1, 3));

@@ -54,8 +54,21 @@ TEST(StampShift, StartsAnewWhereAClockJumpedAhead) {
   StampShift shift;
   shift.shift("R1", 100.0, kNow);
   EXPECT_THAT(shift.shift("R1", 104.5, kNow), DoubleNear(kNow + 4.5, 1e-6)) << "no jump";
-  EXPECT_EQ(shift.shift("R1", 3600.0, kNow + 1), kNow + 1);
-  EXPECT_THAT(shift.shift("R1", 3601.0, kNow + 2), DoubleNear(kNow + 2, 1e-6));
+  EXPECT_THAT(shift.shift("R1", 3600.0, kNow + 1), DoubleNear(kNow + 4.5, 1e-6)) << "nor behind what it had";
+  EXPECT_THAT(shift.shift("R1", 3601.0, kNow + 2), DoubleNear(kNow + 5.5, 1e-6));
+  EXPECT_EQ(shift.shift("R1", 9000.0, kNow + 60), kNow + 60);
+}
+
+TEST(StampShift, PutsWhatAClockSaysAfterItWasSetBackBehindNothingThatItHasSaid) {
+  for (const double back : {2.0, 3.5, 4.9, 5.1, 3600.0}) {
+    SCOPED_TRACE(back);
+    StampShift shift;
+    shift.shift("R1", 10'000.0, kNow, 1);
+    const icd::Stamp ahead = shift.shift("R1", 10'004.0, kNow + 0.1, 1);
+    const icd::Stamp first = shift.shift("R1", 10'004.1 - back, kNow + 0.2, 1);
+    EXPECT_GE(first, ahead) << "its pose counts at once";
+    EXPECT_THAT(shift.shift("R1", 10'004.4 - back, kNow + 0.3, 1), DoubleNear(first + 0.3, 1e-6));
+  }
 }
 
 TEST(StampShift, KeepsTheSpacingOfStampsOfAnySize) {
@@ -88,6 +101,49 @@ TEST(StampShift, ForgetsTheSenderThatWasSilentLongest) {
   }
   EXPECT_THAT(shift.shift("busy", 100.5, kNow + 3), DoubleNear(kNow + 0.5, 1e-6));
   EXPECT_EQ(shift.shift("silent", 100.5, kNow + 3), kNow + 3) << "begun anew";
+}
+
+/// As one life hands over to the next, at any message: nobody can see that it did.
+TEST(StampShift, GoesOnInTheNextLifeAsIfNothingHadBeen) {
+  std::mt19937_64 random{1};
+  std::uniform_real_distribution<double> step{-6, 4};
+  StampShift uninterrupted, living;
+  double theirs = 9000;
+  for (int i = 0; i < 3000; ++i) {
+    const double now = kNow + i * 0.5;
+    const std::string sender = "R" + std::to_string(i % 3);
+    theirs = std::max(0.0, theirs + step(random) + 1.2);
+    ASSERT_EQ(living.shift(sender, theirs, now), uninterrupted.shift(sender, theirs, now)) << i;
+    StampShift next;
+    for (const auto& [each, clock] : living.clocks()) next.carry_on(each, clock);
+    living = std::move(next);
+  }
+}
+
+TEST(StampShift, MovesWithAClockThatWasSet) {
+  StampShift shift;
+  shift.shift("R1", 100.0, kNow);
+  shift.move(3600);
+  EXPECT_THAT(shift.shift("R1", 100.5, kNow + 3600.5), DoubleNear(kNow + 3600.5, 1e-6));
+}
+
+TEST(StampShift, ForgetsInTheNextLifeTheOneThatWasSilentLongest) {
+  StampShift shift;
+  for (std::size_t i = 0; i < StampShift::kMostSenders; ++i) shift.shift(std::to_string(i), 5.0, kNow);
+  shift.shift("0", 5.5, kNow);
+  StampShift next;
+  for (const auto& [sender, clock] : shift.clocks()) next.carry_on(sender, clock);
+  next.shift("new", 5.0, kNow + 9);
+  EXPECT_NE(next.clock_of("0"), nullptr);
+  EXPECT_EQ(next.clock_of("1"), nullptr);
+}
+
+TEST(StampOrder, GoesOnFromTheLastOfAnEarlierLife) {
+  StampOrder order;
+  order.carry_on(10);
+  EXPECT_EQ(order.next(9), 10);
+  order.carry_on(8);
+  EXPECT_EQ(order.next(9.5), 10);
 }
 
 TEST(StampOrder, NeverRunsBackward) {

@@ -17,8 +17,8 @@ namespace adit::ledger {
 /// A folder of the test's own, gone with it.
 class Folder {
  public:
-  Folder() {
-    std::string pattern = testing::TempDir() + "adit-ledger-XXXXXX";
+  explicit Folder(const std::string& below = testing::TempDir()) {
+    std::string pattern = below + "adit-ledger-XXXXXX";
     EXPECT_NE(::mkdtemp(pattern.data()), nullptr);
     path_ = pattern;
   }

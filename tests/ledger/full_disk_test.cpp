@@ -53,7 +53,7 @@ TEST(FullDiskOfALedger, IsSaidAndEndsByItself) {
   const auto ledger = open_or_fail(folder);
   EXPECT_EQ(ledger.damage(), "");
   EXPECT_THAT(*ledger.reports(), ElementsAreArray(reports));
-  EXPECT_EQ(*ledger.last_run(), std::nullopt);
+  EXPECT_TRUE(ledger.runs()->empty());
 }
 
 TEST(FullDiskOfALedger, LeavesNothingHalfWritten) {
@@ -87,6 +87,34 @@ TEST(FullDiskOfALedger, DoesNotKeepItFromBeingOpened) {
     EXPECT_TRUE(written.error().full) << written.error().what;
   }
   EXPECT_EQ(open_or_fail(folder).reports()->size(), 1u);
+}
+
+TEST(LedgerThatStandsIn, ShowsWhatCanBeReadAndTakesNothing) {
+  const Folder folder, scratch;
+  {
+    auto first = open_or_fail(folder);  // what is in its log alone is read, too
+    ASSERT_TRUE(write(first, backpack(1)));
+    auto stands_in = Ledger::stand_in(folder.text(), scratch.text(), "it is read-only");
+    ASSERT_TRUE(stands_in) << stands_in.error().what;
+    EXPECT_THAT(*stands_in->reports(), testing::ElementsAre(backpack(1)));
+    EXPECT_EQ(stands_in->history(1)->size(), 1u);
+    EXPECT_EQ(stands_in->refusal(), "it is read-only");
+    const auto written = write(*stands_in, backpack(2));
+    ASSERT_FALSE(written);
+    EXPECT_EQ(written.error().what, "it is read-only");
+    EXPECT_EQ(first.reports()->size(), 1u);
+  }
+  EXPECT_TRUE(std::filesystem::is_empty(scratch.text())) << "it leaves nothing";
+}
+
+TEST(LedgerThatStandsIn, IsEmptyWhereNothingCanBeRead) {
+  const Folder scratch;
+  const auto ledger = Ledger::stand_in("/nowhere", scratch.text(), "there is no folder");
+  ASSERT_TRUE(ledger) << ledger.error().what;
+  EXPECT_TRUE(ledger->reports()->empty());
+  EXPECT_EQ(ledger->refusal(), "there is no folder");
+  EXPECT_FALSE(Ledger::can_be_opened("/nowhere"));
+  EXPECT_TRUE(Ledger::can_be_opened(scratch.text()));
 }
 
 TEST(FullDiskOfALedger, IsSaidWhereThereIsNoLedgerYet) {

@@ -176,7 +176,7 @@ TEST(Ledger, NeverPutsAReportInThePlaceOfAnother) {
   EXPECT_EQ(ledger.history(1)->size(), 1u);
 }
 
-TEST(Ledger, KeepsTheLastRunAndWhatWasHeardInIt) {
+TEST(Ledger, KeepsAllRunsAndWhatWasHeardInThem) {
   const Folder folder;
   dispatch::Run first{1, "", 5, "the first status", std::nullopt, 0, ""};
   dispatch::Run second{2,
@@ -185,22 +185,29 @@ TEST(Ledger, KeepsTheLastRunAndWhatWasHeardInIt) {
                        "its clock ran backward",
                        icd::RunStatus{7, 0.5, 25, "adit"},
                        901,
-                       "somebody else reports too"};
+                       "a:1",
+                       "somebody else reports too",
+                       3,
+                       1,
+                       dispatch::Clock{0.5, true},
+                       dispatch::Clock{3.14, false}};
   {
     auto ledger = open_or_fail(folder);
-    EXPECT_EQ(*ledger.last_run(), std::nullopt);
+    EXPECT_THAT(*ledger.runs(), ElementsAre());
     ASSERT_TRUE(ledger.write(first));
-    EXPECT_EQ(*ledger.last_run(), first);
+    EXPECT_THAT(*ledger.runs(), ElementsAre(first));
     ASSERT_TRUE(ledger.write(second));
     first.id = "1";
     ASSERT_TRUE(ledger.write(first)) << "also an earlier one may change";
-    EXPECT_EQ(*ledger.last_run(), second);
+    EXPECT_THAT(*ledger.runs(), ElementsAre(first, second));
   }
   auto ledger = open_or_fail(folder);
-  EXPECT_EQ(*ledger.last_run(), second);
+  EXPECT_THAT(*ledger.runs(), ElementsAre(first, second));
   second.last.reset();
+  second.status_clock.reset();
+  second.may_be = 0;
   ASSERT_TRUE(ledger.write(second));
-  EXPECT_EQ(*ledger.last_run(), second);
+  EXPECT_THAT(*ledger.runs(), ElementsAre(first, second));
 }
 
 TEST(Ledger, KeepsHostileTextByteForByte) {
@@ -225,7 +232,7 @@ TEST(Ledger, KeepsHostileTextByteForByte) {
     EXPECT_EQ(ledger.history(number)->at(0).note, text);
     const dispatch::Run run{number, text, 0, text, report.before, 0, text};
     ASSERT_TRUE(ledger.write(run));
-    EXPECT_EQ(*ledger.last_run(), run);
+    EXPECT_EQ(ledger.runs()->back(), run);
   }
 }
 
@@ -239,7 +246,7 @@ TEST(Ledger, RefusesWhatIsNoNumber) {
   EXPECT_FALSE(ledger.write(dispatch::Run{1, "", 0, "", icd::RunStatus{0, std::nan(""), 0, ""}, 0, ""}));
   EXPECT_FALSE(ledger.write(dispatch::Run{.number = 0}));
   EXPECT_TRUE(ledger.reports()->empty());
-  EXPECT_EQ(*ledger.last_run(), std::nullopt);
+  EXPECT_THAT(*ledger.runs(), ElementsAre());
 }
 
 TEST(Ledger, IsReadableByItsOwnerAlone) {

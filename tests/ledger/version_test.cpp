@@ -52,7 +52,7 @@ void expect_the_three_reports(const Ledger& ledger) {
   EXPECT_THAT(*ledger.history(2),
               ElementsAre(Ledger::Step{2, 10, "waiting", ""}, Ledger::Step{2, 10.5, "sending", ""},
                           Ledger::Step{2, 11, "in doubt", "no answer came"}));
-  EXPECT_EQ(*ledger.last_run(), std::nullopt);
+  EXPECT_TRUE(ledger.runs()->empty());
 }
 
 TEST(LedgerOfVersion1, IsBroughtUpToThisOneWithAllThatIsInIt) {
@@ -64,7 +64,7 @@ TEST(LedgerOfVersion1, IsBroughtUpToThisOneWithAllThatIsInIt) {
     EXPECT_EQ(ledger.damage(), "");
     expect_the_three_reports(ledger);
   }
-  EXPECT_THAT(by_hand(folder, "PRAGMA user_version"), ElementsAre("3"));
+  EXPECT_THAT(by_hand(folder, "PRAGMA user_version"), ElementsAre("196612"));
   EXPECT_THAT(by_hand(folder, "SELECT name FROM sqlite_schema WHERE name LIKE 'old%'"), ElementsAre());
 }
 
@@ -89,7 +89,7 @@ void expect_the_tables_of_a_new_one(const char* sql) {
   open_or_fail(fresh);
   const char* tables = "SELECT sql FROM sqlite_schema WHERE name NOT LIKE 'sqlite_%' ORDER BY name";
   EXPECT_EQ(by_hand(old, tables), by_hand(fresh, tables));
-  EXPECT_EQ(by_hand(fresh, tables).size(), 2u);
+  EXPECT_EQ(by_hand(fresh, tables).size(), 6u) << "four tables and two triggers";
 }
 
 TEST(LedgerOfVersion1, HasTheSameTablesAfterwardsAsANewOne) {
@@ -170,8 +170,9 @@ TEST(LedgerOfVersion2, IsBroughtUpToThisOneWithAllThatIsInIt) {
               ElementsAre(Ledger::Step{1, 10, "waiting", ""}, Ledger::Step{1, 11, "sending", ""},
                           Ledger::Step{1, 12, "settled", "it was \"there\""}));
   EXPECT_THAT(*ledger.history(2), ElementsAre());
-  const auto run = *ledger.last_run();
-  ASSERT_TRUE(run);
+  const auto runs = *ledger.runs();
+  ASSERT_EQ(runs.size(), 1u);
+  const dispatch::Run* const run = &runs.front();
   EXPECT_EQ(run->number, 3);
   EXPECT_EQ(run->id, "1.5.2");
   EXPECT_EQ(run->last, (icd::RunStatus{2, 100, 19, "adit"}));
@@ -182,13 +183,125 @@ TEST(LedgerOfVersion2, HasTheSameTablesAfterwardsAsANewOne) {
   expect_the_tables_of_a_new_one(kVersion2);
 }
 
-/// What a later version might add, and say that version 3 can live with.
+/// This version's tables without what it added.
+constexpr const char* kBackToVersion3 = R"(
+  DROP TRIGGER report_without_proof;
+  DROP TRIGGER run_without_proof;
+  DROP TABLE mark;
+  DROP TABLE sighting;
+  ALTER TABLE report DROP COLUMN proof;
+  ALTER TABLE run DROP COLUMN proof;
+  PRAGMA user_version = 3;
+)";
+
+TEST(LedgerOfVersion3, KeepsItsRunsOfWhichNothingMoreWasSeen) {
+  const dispatch::Run run{.number = 1, .id = "1", .last = icd::RunStatus{2, 100, 19, "adit"}, .post = "a:1"};
+  const Folder folder;
+  {
+    auto ledger = open_or_fail(folder);
+    ASSERT_TRUE(write(ledger, backpack(1)));
+    ASSERT_TRUE(ledger.write(run));
+  }
+  by_hand(folder, kBackToVersion3);
+  {
+    auto ledger = open_or_fail(folder);
+    EXPECT_EQ(ledger.damage(), "");
+    EXPECT_THAT(*ledger.reports(), ElementsAre(backpack(1)));
+    EXPECT_THAT(*ledger.runs(), ElementsAre(run));
+    dispatch::Run seen = run;
+    seen.answer_clock = dispatch::Clock{3.14, false};
+    ASSERT_TRUE(ledger.write(seen));
+    EXPECT_THAT(*ledger.runs(), ElementsAre(seen));
+  }
+  EXPECT_EQ(open_or_fail(folder).damage(), "");
+}
+
+TEST(LedgerOfVersion3, HasTheSameTablesAfterwardsAsANewOne) {
+  const Folder folder;
+  {
+    auto ledger = open_or_fail(folder);
+  }
+  const char* const kSchema = "SELECT sql FROM sqlite_schema WHERE name NOT LIKE 'sqlite%' ORDER BY name";
+  const auto tables = by_hand(folder, kSchema);
+  by_hand(folder, kBackToVersion3);
+  {
+    auto ledger = open_or_fail(folder);
+  }
+  EXPECT_EQ(by_hand(folder, kSchema), tables);
+}
+
+/// What version 3 does to two reports and a run.
+constexpr const char* kWrittenByVersion3 = R"(
+    INSERT INTO report(number, type, x, y, z, sender, received, changed, state, note, status, content_type,
+      answer, history)
+    VALUES (1, 'Backpack', 1.5, -2.25, 0.125, '10.0.0.7', 10, 11, 'sending', '', 0, '', x'', '11 7:sending 0:' || char(10)),
+      (3, 'Backpack', 1.5, -2.25, 0.125, '10.0.0.7', 10, 10, 'waiting', '', 0, '', x'', '10 7:waiting 0:' || char(10))
+    ON CONFLICT(number) DO UPDATE SET state = excluded.state, changed = excluded.changed,
+      history = history || excluded.history;
+    UPDATE run SET heard = 12)";
+
+/// An update that was taken back, and made again: what wrote in between knew no proofs.
+TEST(LedgerOfThisVersion, IsWorkedWithByVersion3) {
+  const Folder folder;
+  {
+    auto ledger = open_or_fail(folder);
+    ASSERT_TRUE(ledger.write(std::vector{backpack(1), backpack(2)}));
+    ASSERT_TRUE(ledger.write(dispatch::Run{.number = 1, .post = "a:1"}));
+  }
+  by_hand(folder, kWrittenByVersion3);
+  EXPECT_THAT(
+      by_hand(folder,
+              "SELECT number || (proof = 1) FROM report UNION ALL SELECT 'run' || (proof = 1) FROM run"),
+      ElementsAre("11", "20", "31", "run1"));
+  {
+    const auto ledger = open_or_fail(folder);
+    EXPECT_EQ(ledger.damage(), "");
+    EXPECT_EQ(find_or_fail(ledger, 1).state, ReportState::Sending);
+    EXPECT_EQ(ledger.runs()->back().heard, 12);
+  }
+  EXPECT_THAT(by_hand(folder, "SELECT number FROM report WHERE proof = 1"), ElementsAre());
+}
+
+/// Its rows have no proof, and the mark does not know of them.
+TEST(LedgerOfThisVersion, KeepsWhatVersion3WroteWhenItIsSalvaged) {
+  const Folder folder;
+  {
+    auto ledger = open_or_fail(folder);
+    ASSERT_TRUE(ledger.write(std::vector{backpack(1), backpack(2)}));
+    ASSERT_TRUE(ledger.write(dispatch::Run{.number = 1, .post = "a:1"}));
+  }
+  by_hand(folder, kWrittenByVersion3);
+  by_hand(folder, "PRAGMA application_id = 7");
+  const auto ledger = open_or_fail(folder);
+  EXPECT_THAT(ledger.damage(), HasSubstr("3 reports were taken over"));
+  EXPECT_THAT(ledger.damage(), HasSubstr("from 4 on may be lost"));
+  EXPECT_EQ(find_or_fail(ledger, 1).state, ReportState::InDoubt);
+  EXPECT_EQ(find_or_fail(ledger, 3).report, backpack(3).report);
+  EXPECT_EQ(ledger.runs()->back().heard, 12);
+}
+
+TEST(LedgerOfThisVersion, IsOpenedWhicheverBitOfItsVersionIsFlipped) {
+  for (int bit = 0; bit < 31; ++bit) {
+    SCOPED_TRACE(bit);
+    const Folder folder;
+    {
+      auto ledger = open_or_fail(folder);
+      ASSERT_TRUE(write(ledger, backpack(1)));
+    }
+    by_hand(folder, "PRAGMA user_version = " + std::to_string((3 << 16 | 4) ^ (1 << bit)));
+    const auto ledger = Ledger::open(folder.text());
+    ASSERT_TRUE(ledger) << ledger.error().what;
+    EXPECT_EQ(find_or_fail(*ledger, 1).report, backpack(1).report);
+  }
+}
+
+/// What a later version might add, and say that this one can live with.
 constexpr const char* kAdditions = R"(
   ALTER TABLE report ADD COLUMN robot TEXT NOT NULL DEFAULT '';
   CREATE TABLE more(thing TEXT NOT NULL) STRICT;
   INSERT INTO more VALUES ('kept');
   UPDATE report SET robot = 'ugv1';
-  PRAGMA user_version = 196612; -- 3 << 16 | 4
+  PRAGMA user_version = 196613; -- 3 << 16 | 5
 )";
 
 TEST(LedgerOfALaterVersionThatOnlyAdds, IsWorkedWithAndKeepsItsAdditions) {
@@ -207,7 +320,7 @@ TEST(LedgerOfALaterVersionThatOnlyAdds, IsWorkedWithAndKeepsItsAdditions) {
     ASSERT_TRUE(write(ledger, first));
     ASSERT_TRUE(write(ledger, backpack(2)));
   }
-  EXPECT_THAT(by_hand(folder, "PRAGMA user_version"), ElementsAre("196612"));
+  EXPECT_THAT(by_hand(folder, "PRAGMA user_version"), ElementsAre("196613"));
   EXPECT_THAT(by_hand(folder, "SELECT thing FROM more"), ElementsAre("kept"));
   EXPECT_THAT(by_hand(folder, "SELECT number || state || robot FROM report ORDER BY number"),
               ElementsAre("1sendingugv1", "2waiting"));
@@ -218,11 +331,11 @@ TEST(LedgerOfALaterVersionThatOnlyAdds, IsRefusedWhereThatIsToAVersionLaterThanT
   {
     auto ledger = open_or_fail(folder);
   }
-  by_hand(folder, "PRAGMA user_version = 262149");  // 4 << 16 | 5
+  by_hand(folder, "PRAGMA user_version = 327686");  // 5 << 16 | 6
   const auto refused = Ledger::open(folder.text());
   ASSERT_FALSE(refused);
-  EXPECT_THAT(refused.error().what, HasSubstr("version 5, and this one reads up to 3"));
-  EXPECT_THAT(by_hand(folder, "PRAGMA user_version"), ElementsAre("262149"));
+  EXPECT_THAT(refused.error().what, HasSubstr("version 6, and this one reads up to 4"));
+  EXPECT_THAT(by_hand(folder, "PRAGMA user_version"), ElementsAre("327686"));
 }
 
 TEST(LedgerOfALaterVersion, IsRefusedWithASentenceAndStaysAsItIs) {
@@ -232,7 +345,7 @@ TEST(LedgerOfALaterVersion, IsRefusedWithASentenceAndStaysAsItIs) {
     ASSERT_TRUE(write(ledger, backpack(1)));
   }
   // A table that this version's SQLite, too, would understand, so that the number alone decides.
-  by_hand(folder, "CREATE TABLE crew(name TEXT) STRICT; DROP TABLE run; PRAGMA user_version = 4");
+  by_hand(folder, "CREATE TABLE crew(name TEXT) STRICT; DROP TABLE run; PRAGMA user_version = 5");
   const auto bytes = [&folder] {
     std::ifstream file(folder.file(), std::ios::binary);
     return std::string(std::istreambuf_iterator<char>(file), {});
@@ -240,7 +353,7 @@ TEST(LedgerOfALaterVersion, IsRefusedWithASentenceAndStaysAsItIs) {
   const std::string before = bytes();
   const auto ledger = Ledger::open(folder.text());
   ASSERT_FALSE(ledger);
-  EXPECT_THAT(ledger.error().what, HasSubstr("a later Adit wrote this ledger (version 4"));
+  EXPECT_THAT(ledger.error().what, HasSubstr("a later Adit wrote this ledger (version 5"));
   EXPECT_FALSE(ledger.error().full);
   EXPECT_EQ(bytes(), before);
   EXPECT_FALSE(std::filesystem::exists(folder.file() + ".damaged-1"));

@@ -178,8 +178,8 @@ TEST(Loop, ServesSocketsWhileTasksPostTasksForEver) {
   const SocketPair pair;
   bool read = false;
   const Source source = loop.watch(pair.ours.get(), EPOLLIN, [&](std::uint32_t) { read = true; });
-  std::function<void()> again = [&] { loop.post(again); };
-  loop.post(again);
+  std::function<void()> again = [&] { loop.post(std::function(again)); };
+  loop.post(std::function(again));
   pair.tell();
   for (int i = 0; i < 5; ++i) loop.turn(milliseconds(10));
   EXPECT_TRUE(read);
@@ -230,6 +230,14 @@ TEST(Loop, CarriesTheStampOnWithTheMonotonicClock) {
   EXPECT_NEAR(first, wall, 10.0);
   std::this_thread::sleep_for(milliseconds(2));
   EXPECT_GE(loop.stamp_now() - first, 0.002);
+}
+
+TEST(Loop, GoesOnWithTheStampsOfAnEarlierProcess) {
+  Loop loop;
+  const double due = loop.stamp_now() + 1000;
+  loop.set_stamp(due);
+  EXPECT_GE(loop.stamp_now(), due);
+  EXPECT_LT(loop.stamp_now(), due + 500);
 }
 
 }  // namespace

@@ -65,25 +65,25 @@ TEST_F(WatchdogTest, IsFedByNobodyButTheLoop) {
 
 TEST_F(WatchdogTest, IsFedWhileEveryWorkerAnswers) {
   Workers workers(loop, 3);
-  watchdog.ask_also(&workers);
+  watchdog.ask_also({&workers});
   EXPECT_TRUE(is_fed_often());
-  watchdog.ask_also(nullptr);
+  watchdog.ask_also({});
 }
 
 TEST_F(WatchdogTest, IsFedWhileWorkersNeverRest) {
   Workers workers(loop, 2);
-  watchdog.ask_also(&workers);
+  watchdog.ask_also({&workers});
   std::function<void()> again = [&] {
     workers.submit([] { std::this_thread::sleep_for(milliseconds(1)); }, [&again] { again(); });
   };
   for (int i = 0; i < 8; ++i) again();
   EXPECT_TRUE(is_fed_often());
-  watchdog.ask_also(nullptr);
+  watchdog.ask_also({});
 }
 
 TEST_F(WatchdogTest, IsFedDuringALongJobButStarvesWhenItDoesNotEnd) {
   Workers workers(loop, 2);
-  watchdog.ask_also(&workers);
+  watchdog.ask_also({&workers});
   turn(kWithin);
   const auto let_go = hang(workers);
   EXPECT_TRUE(turn_until_fed(2)) << "a job may take a while";
@@ -91,21 +91,34 @@ TEST_F(WatchdogTest, IsFedDuringALongJobButStarvesWhenItDoesNotEnd) {
   EXPECT_EQ(fed_in(kWithin * 3), 0) << "the other worker answers, this one does not";
   let_go->set_value();
   EXPECT_TRUE(is_fed_often()) << "it was only slow";
-  watchdog.ask_also(nullptr);
+  watchdog.ask_also({});
+}
+
+TEST_F(WatchdogTest, StarvesWhereAWriterHangsThoughTheWorkersAnswer) {
+  Workers workers(loop, 2);
+  Writer writer(loop);
+  watchdog.ask_also({&workers, &writer});
+  EXPECT_TRUE(is_fed_often());
+  const auto let_go = hang(writer);
+  turn(kLongestJob);
+  EXPECT_EQ(fed_in(kWithin * 3), 0);
+  let_go->set_value();
+  EXPECT_TRUE(is_fed_often());
+  watchdog.ask_also({});
 }
 
 TEST_F(WatchdogTest, AsksThoseThatTookOver) {
   Workers before(loop, 1);
-  watchdog.ask_also(&before);
+  watchdog.ask_also({&before});
   const auto let_go = hang(before);
   EXPECT_TRUE(turn_until_fed(1));
   turn(kLongestJob);
   EXPECT_EQ(fed_in(kWithin), 0);
   Workers after(loop, 1);
-  watchdog.ask_also(&after);
+  watchdog.ask_also({&after});
   EXPECT_TRUE(is_fed_often());
   let_go->set_value();
-  watchdog.ask_also(nullptr);
+  watchdog.ask_also({});
 }
 
 }  // namespace

@@ -102,6 +102,28 @@ TEST(Workers, WaitForARunningJobAndDropTheRestWhenDestroyed) {
   EXPECT_FALSE(second_ran);
 }
 
+TEST(Writer, DoesAllThatWasSubmittedInOrderBeforeItEnds) {
+  Loop loop;
+  std::vector<int> written;
+  bool finished = false;
+  {
+    Writer writer(loop);
+    for (int i = 0; i < 50; ++i) {
+      writer.submit(
+          [&written, i] {
+            std::this_thread::sleep_for(std::chrono::milliseconds(1));
+            written.push_back(i);
+          },
+          [&] { finished = true; });
+    }
+  }
+  std::vector<int> expected(50);
+  std::iota(expected.begin(), expected.end(), 0);
+  EXPECT_EQ(written, expected);
+  for (int i = 0; i < 3; ++i) loop.turn(std::chrono::milliseconds(1));
+  EXPECT_FALSE(finished) << "a `done` ran after the writer was destroyed";
+}
+
 TEST(Workers, AreAtLeastOne) {
   Loop loop;
   Workers workers(loop, 0);

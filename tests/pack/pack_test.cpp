@@ -129,7 +129,7 @@ TEST(WithoutInvalidPoints, CopiesNothingWhereAllPointsAreFinite) {
   const auto kept = without_invalid_points(cloud_of(layout), data, dropped);
   ASSERT_EQ(kept.bytes.chunks().size(), data.bytes.chunks().size());
   for (std::size_t i = 0; i < data.bytes.chunks().size(); ++i) {
-    EXPECT_EQ(kept.bytes.chunks()[i], data.bytes.chunks()[i]) << "shared";
+    EXPECT_EQ(kept.bytes.chunks()[i]->data(), data.bytes.chunks()[i]->data()) << "shared";
   }
 }
 

@@ -61,7 +61,7 @@ function secretsIn(folder) {
 /** aditd at work, both passwords set; `ask(method, path, {role, body, headers})` asks as an operator's script by default. */
 export async function box(t, rates = {}) {
   const folder = mkdtempSync(join(tmpdir(), "adit-page-"));
-  t.after(() => rmSync(folder, { recursive: true }));
+  t.after(() => rmSync(folder, { recursive: true, maxRetries: 20, retryDelay: 50 }));
   const secrets = secretsIn(join(folder, "secrets"));
   const post = new Program(t, folder, "adit-rehearsal", "--scoring", "127.0.0.1:0", "--mapping", "127.0.0.1:0", "--secrets", secrets, "--verbose");
   const address = async (name) => ({ address: "127.0.0.1", port: Number(await post.said(new RegExp(`${name} 127\\.0\\.0\\.1:(\\d+)`))) });

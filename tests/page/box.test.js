@@ -60,7 +60,7 @@ test("the support bundle holds all that helps, and no token, password, code or c
   assert.equal(answer.status, 200);
   const bytes = Buffer.from(await answer.arrayBuffer());
   const folder = mkdtempSync(join(tmpdir(), "adit-bundle-"));
-  t.after(() => rmSync(folder, { recursive: true }));
+  t.after(() => rmSync(folder, { recursive: true, maxRetries: 20, retryDelay: 50 }));
   writeFileSync(join(folder, "bundle.tar.gz"), bytes);
   execFileSync("tar", ["-xzf", "bundle.tar.gz"], { cwd: folder });
   const [inside] = readdirSync(folder).filter((name) => name.startsWith("adit-support-"));

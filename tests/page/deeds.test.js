@@ -9,6 +9,7 @@ const becomes = (page, number, words) =>
 
 test("offers at each report what its state allows, and nothing else", async (t) => {
   const { page } = await watch(t, "reports");
+  await page.getByRole("button", { name: "Other runs" }).click();
   const expected = {
     28: ["Hold", "Withdraw"], 27: [], 26: ["Send once more", "Call it done"], 25: ["Send once more", "Call it done"], 24: ["Send", "Withdraw"],
     23: ["Resubmit"], 22: ["Resubmit"], 21: ["Send once more"], 20: ["Send"], 19: ["Send again"], 18: ["Resubmit"],

@@ -64,6 +64,11 @@ struct FakeOperator final : Operator {
     reported.emplace_back(report, resubmit);
     return outcome ? *outcome : 41;
   }
+  std::expected<void, std::string> aside(std::uint64_t number, AsideDeed deed) override {
+    set_aside.emplace_back(number, deed);
+    if (!aside_trouble.empty()) return std::unexpected(aside_trouble);
+    return {};
+  }
   std::int64_t begin_run() override { return ++run; }
   Time identify(double seconds) override {
     identified = seconds;
@@ -74,6 +79,8 @@ struct FakeOperator final : Operator {
   std::vector<std::pair<icd::ArtifactReport, bool>> reported;
   std::optional<std::expected<std::int64_t, std::string>>
       outcome;  // of judge() and report(), where it is not the same number or 41
+  std::vector<std::pair<std::uint64_t, AsideDeed>> set_aside;
+  std::string aside_trouble;  // of aside(), where there is any
   std::int64_t run = 1;
   double identified = 0;  // seconds
 };
@@ -104,6 +111,7 @@ class FakeHead final : public intake::RequestHead {
   std::optional<std::uint64_t> content_length() const override { return length_; }
   const std::string& peer() const override { return peer_; }
   const std::string& local() const override { return local_; }
+  std::uint64_t connection() const override { return 1; }
   FakeHead& to(std::string local) {
     local_ = std::move(local);
     return *this;

@@ -100,7 +100,7 @@ class FreshBox {
 
   async close() {
     for (const name of Object.keys(this.#programs)) await this.end(name, "SIGKILL");
-    rmSync(this.folder, { recursive: true, force: true });
+    rmSync(this.folder, { recursive: true, force: true, maxRetries: 20, retryDelay: 50 });
   }
 }
 

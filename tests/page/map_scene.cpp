@@ -24,7 +24,8 @@ icd::MapUpdate explored(double reach) {
   grid.origin.position = {-10, -30, 0};
   std::vector<std::uint8_t> cells;
   for (int i = 0; i < kSide * kSide; ++i) {
-    const double x = i % kSide * 0.5, y = i / kSide * 0.5, off = off_the_way(x, y);
+    const int column = i % kSide, row = i / kSide;
+    const double x = column * 0.5, y = row * 0.5, off = off_the_way(x, y);
     const bool seen = x + std::max(0.0, y - 60) < reach && off < 4;
     cells.push_back(!seen ? icd::kUnknownCell : off < 3.2 ? std::uint8_t{0} : icd::kMostOccupied);
   }
@@ -73,22 +74,60 @@ void draw_scene(picture::Mosaic& map, double now) {
   }
 }
 
+/// What the shapes that are made of points get, around their pose.
+std::vector<icd::Point> points_of(icd::MarkerType type) {
+  std::vector<icd::Point> points;
+  switch (type) {
+    case icd::MarkerType::LineStrip:
+      for (int i = 0; i < 3000; ++i) points.push_back({i / 100.0, 2 * std::sin(i / 400.0), 0});
+      return points;
+    case icd::MarkerType::TriangleList:
+      return {{0, 0, 0}, {2, 0, 0}, {2, 3, 0}, {0, 0, 0}, {2, 3, 0}, {0, 3, 0}};
+    case icd::MarkerType::LineList:
+    case icd::MarkerType::CubeList:
+    case icd::MarkerType::SphereList:
+    case icd::MarkerType::Points:
+      for (const double x : {0.0, 2.5, 5.0}) points.insert(points.end(), {{x, 0, 0}, {x, 3, 0}});
+      return points;
+    default:
+      return {};
+  }
+}
+
+icd::Marker scene_marker(icd::MarkerType type) {
+  icd::Marker marker;
+  marker.ns = "scene";
+  marker.id = marker.type = static_cast<std::int32_t>(type);
+  const double x = marker.type * 10.0;
+  marker.pose.position = {x, 40 + 12 * std::sin(x / 23) + 6, 0};
+  marker.pose.orientation = {0, 0, 0.38, 0.92};
+  marker.scale = {4, 2, 2};
+  marker.color = {1, 0.2, 1, 1};
+  marker.points = points_of(type);
+  if (!marker.points.empty()) marker.scale = {1, 1, 1};
+  if (marker.is(icd::MarkerType::LineStrip)) marker.scale.x = 0.3;
+  if (marker.is(icd::MarkerType::LineList)) marker.scale.x = 0.6;
+  if (marker.is(icd::MarkerType::SphereList)) {
+    for (int i = 0; i < 6; ++i) marker.colors.push_back({i / 6.0, 0.4, 1, 1});
+  }
+  marker.text = marker.is(icd::MarkerType::TextViewFacing) ? "camp" : "";
+  marker.mesh_resource =
+      marker.is(icd::MarkerType::MeshResource) ? "package://artifacts/meshes/drill.dae" : "";
+  return marker;
+}
+
 MarkerNews scene_markers(double now) {
   MarkerNews news{.version = 1, .whole = true, .left_out = 3, .markers = {}, .gone = {}};
   for (std::int32_t type = 0; type <= icd::kLastMarkerType; ++type) {
-    icd::Marker marker;
-    marker.ns = "scene";
-    marker.id = type;
-    marker.type = type;
-    marker.pose.position = {type * 10.0, 40 + 12 * std::sin(type * 10.0 / 23) + 6, 0};
-    marker.pose.orientation = {0, 0, 0.38, 0.92};
-    marker.scale = {4, 2, 2};
-    marker.color = {1, 0.2, 1, 1};
-    marker.text = type == 9 ? "camp" : "";
-    news.markers.push_back({marker, now - 300 + type});
+    news.markers.push_back({drawn(scene_marker(static_cast<icd::MarkerType>(type))), now - 300 + type});
   }
   news.markers[2].marker.color.a = 0;
   news.markers[1].marker.lifetime = 10;
+  icd::Marker arrow = scene_marker(icd::MarkerType::Arrow);
+  arrow.id = 20;
+  arrow.points = {{0, -8, 0}, {6, -8, 0}};
+  arrow.scale = {0.4, 1.5, 1.5};
+  news.markers.push_back({drawn(arrow), now - 280});
   return news;
 }
 

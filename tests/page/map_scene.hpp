@@ -11,7 +11,8 @@ namespace adit::page {
 /// clouds of its floor, which climbs from 0 to 6 m.
 void draw_scene(picture::Mosaic& map, double now);
 
-/// A marker of each type, along the tunnel; one that cannot be seen, and one that has expired.
+/// A marker of each type, along the tunnel, and an arrow by two points; one that cannot be seen, one that has
+/// expired, and a line of more points than are drawn.
 MarkerNews scene_markers(double now);
 
 /// Two robots on their ways, the last ten minutes up to `now`.

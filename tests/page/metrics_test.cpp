@@ -50,7 +50,8 @@ TEST(Metrics, CarryWhatTheViewSays) {
   all.view.sent_mbit = 8;
   all.view.budget_mbit = 20;
   all.view.attention = {"look", "here"};
-  all.usage.refused = {{.uri = "/map/update", .status = 422, .count = 5}};
+  all.usage.refused = {{.uri = "/map/update", .status = 422, .count = 5},
+                       {.uri = "/state/update", .status = 422, .count = 2, .parts = 15}};
   all.usage.resident_bytes = 12'000'000;
   all.operators = 2;
   const std::string text = write_metrics(all);
@@ -66,7 +67,8 @@ TEST(Metrics, CarryWhatTheViewSays) {
         R"(adit_updates_forwarded_age_seconds{kind="cloud",robot="ugv1"} 8)",
         "adit_link_rate_bytes_per_second 1e+06", "adit_link_budget_bytes_per_second 2500000",
         "adit_attention 2", R"(adit_refused_total{uri="/map/update",status="422"} 5)",
-        "adit_process_resident_memory_bytes 1.2e+07", R"(adit_sessions{role="operator"} 2)"}) {
+        R"(adit_refused_parts_total{uri="/state/update"} 15)", "adit_process_resident_memory_bytes 1.2e+07",
+        R"(adit_sessions{role="operator"} 2)"}) {
     EXPECT_THAT(text, HasSubstr(icd::sentence("\n", sample, "\n")));
   }
   EXPECT_THAT(text, Not(HasSubstr("adit_updates_accepted_age_seconds{"))) << "none was accepted";

@@ -122,6 +122,6 @@ export class NetworkedBox {
       await once(program, "exit");
     }
     for (const name of [BOX, STATION]) spawnSync("ip", ["netns", "delete", name]);
-    rmSync(this.folder, { recursive: true, force: true });
+    rmSync(this.folder, { recursive: true, force: true, maxRetries: 20, retryDelay: 50 });
   }
 }

@@ -107,6 +107,7 @@ test("every path and method does as it is described to an operator", async (t) =
   const bodies = { "POST /adit/settings": async () => (({ settings, tag }) => ({ settings, base: tag }))(await current()) };
   const restarts = ["POST /adit/tokens"];
   const never = ["POST /adit/reports/{number}/done", // no report is in doubt: 409
+    "POST /adit/aside/{number}/send", "POST /adit/aside/{number}/discard", // and nothing is set aside
     "POST /adit/network", "POST /adit/network/confirm", "POST /adit/network/back", // no change can be made here
     "POST /adit/update", "POST /adit/update/stick", "POST /adit/update/restart"]; // nor an update
   for (const each of operations) {

@@ -51,8 +51,23 @@ test("tells every state by a shape and a word, not by colour alone", async (t) =
   }
 });
 
+test("has what is done of other runs behind one press, and says how many there are", async (t) => {
+  const { page } = await watch(t, "reports");
+  const others = page.getByRole("button", { name: "Other runs" });
+  const shown = () => page.locator("#reports .rows li").count();
+  assert.match(await text(page, "#reports .count"), /^10, 5 open, 1 of other runs$/);
+  assert.equal(await shown(), 10);
+  assert.equal(await others.getAttribute("aria-pressed"), "false");
+  await others.click();
+  assert.equal(await shown(), 11);
+  assert.equal(await others.getAttribute("aria-pressed"), "true");
+  await others.click();
+  assert.equal(await shown(), 10);
+});
+
 test("tells where each report is in its life, and what waits for the operator's word", async (t) => {
   const { page } = await watch(t, "reports");
+  await page.getByRole("button", { name: "Other runs" }).click();
   const rows = await page.$$eval("#reports .rows li", (items) => items.map((item) => [item.dataset.level, item.innerText.replace(/More of report \d+/, "").replace(/\s+/g, " ").trim()]));
   const expected = [
     ["wait", /^waiting Drill/],
@@ -72,7 +87,7 @@ test("tells where each report is in its life, and what waits for the operator's 
     assert.equal(rows[i][0], level, rows[i][1]);
     assert.match(rows[i][1], words);
   });
-  assert.match(await text(page, "#reports .count"), /^11, 5 open$/);
+  assert.match(await text(page, "#reports .count"), /^10, 5 open, 1 of other runs$/);
   assert.deepEqual(page.complaints, []);
 });
 

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <expected>
 #include <map>
+#include <set>
 #include <string>
 #include <vector>
 
@@ -34,6 +35,13 @@ class Played {
     return add(view, report.type, report.position);
   }
 
+  std::expected<void, std::string> aside(const RunView& view, std::uint64_t number) {
+    const auto found = std::ranges::find(view.aside, number, &AsideRow::number);
+    if (found == view.aside.end()) return std::unexpected("nothing of that number is set aside");
+    judged_aside_.insert(number);
+    return {};
+  }
+
   std::int64_t begin_run(const RunView& view) {
     for (const ReportRow& row : view.reports) {
       if (row.state == "waiting") states_[row.number] = "received";
@@ -44,6 +52,7 @@ class Played {
 
   void apply(RunView& view) const {
     view.run_number += runs_;
+    std::erase_if(view.aside, [this](const AsideRow& row) { return judged_aside_.contains(row.number); });
     for (ReportRow& row : view.reports) {
       if (const auto state = states_.find(row.number); state != states_.end()) {
         row.state = state->second;
@@ -67,6 +76,7 @@ class Played {
     return row.number;
   }
 
+  std::set<std::uint64_t> judged_aside_;
   std::map<std::int64_t, std::string> states_;
   std::int64_t runs_ = 0;         // that the operator declared
   std::vector<ReportRow> added_;  // oldest first

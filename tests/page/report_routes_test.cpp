@@ -68,6 +68,27 @@ class ReportRoutesTest : public testing::Test {
   Page page{loop, source, judge, keys, {token("team-1"), token("scoring-1")}};
 };
 
+TEST_F(ReportRoutesTest, GiveThoseOfOneRun) {
+  source.details[7].row.run = 1;
+  source.now.run_number = 2;
+  const auto numbers = [&](const std::string& run) {
+    std::vector<std::int64_t> listed;
+    for (const json& report : json::parse(ask("GET", "/adit/reports?run=" + run).body)) {
+      listed.push_back(report["number"]);
+    }
+    return listed;
+  };
+  EXPECT_THAT(numbers("1"), ElementsAre(7));
+  EXPECT_THAT(numbers("present"), ElementsAre(12));
+  EXPECT_THAT(numbers("all"), ElementsAre(7, 12));
+  EXPECT_THAT(numbers("3"), IsEmpty());
+  for (const char* path : {"/adit/reports?run=last", "/adit/reports.csv?run=1.5"}) {
+    const auto refused = ask("GET", path);
+    EXPECT_EQ(refused.status, icd::Status::BadRequest) << path;
+    EXPECT_EQ(json::parse(refused.body), "run: expected a run's number, present or all");
+  }
+}
+
 TEST_F(ReportRoutesTest, GiveAllReportsAsJsonThatNobodyKeeps) {
   const auto answer = ask("GET", "/adit/reports");
   EXPECT_EQ(answer.status, icd::Status::Ok);

@@ -47,6 +47,13 @@ TEST(ReportsCsv, HasALineOfNamesAndOneForEachReport) {
                                             "2019-08-20T14:03:06.000Z,answered,no,no,,201,scored,1,\r\n");
 }
 
+TEST(ReportsCsv, GivesAReportThatIsLostNoPlace) {
+  ReportRow lost = row();
+  lost.position = {};
+  lost.lost = true;
+  EXPECT_THAT(write_reports_csv({lost}), HasSubstr("7,1,Survivor,,,,10.0.0.5,"));
+}
+
 TEST(ReportsCsv, TellsFoundOutAnswersZeroPointsAndRepeats) {
   ReportRow settled = row();
   settled.state = "settled";

@@ -11,9 +11,18 @@ namespace {
 
 using nlohmann::json;
 
+TEST(RunView, HasNoPlaceForAReportThatIsLost) {
+  RunView view = *scene("trouble", 1000.5, 3);
+  view.reports[0].lost = true;
+  const json parsed = json::parse(write_run_view(view));
+  EXPECT_EQ(parsed["reports"][0]["position"], nullptr);
+  EXPECT_TRUE(parsed["reports"][1]["position"].is_object());
+}
+
 TEST(RunViewJson, NamesEachMemberAsTheViewDoes) {
   const RunView view = *scene("trouble", 1000.5, 3);
   const json parsed = json::parse(write_run_view(view));
+  EXPECT_EQ(parsed["refusals"][0]["parts"], 0);
   EXPECT_EQ(parsed["now"], 1000.5);
   EXPECT_EQ(parsed["run"]["score"], 7);
   EXPECT_EQ(parsed["run"]["run_clock"], 757.0);

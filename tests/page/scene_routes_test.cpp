@@ -23,15 +23,19 @@ class SceneRoutesTest : public OnPage {
 };
 
 TEST_F(SceneRoutesTest, GiveTheMarkersThatChanged) {
-  icd::Marker marker;
-  marker.ns = "path";
-  marker.id = -3;
-  marker.type = 1;
-  marker.pose = {{1, 2, 3}, {0, 0, 1, 1}};
-  marker.scale = {4, 5, 6};
-  marker.color = {0.5, 0.25, 1, 0.126};
-  marker.text = "here";
-  marker.lifetime = 2.5;
+  const DrawnMarker marker{.ns = "path",
+                           .id = -3,
+                           .type = 4,
+                           .position = {1, 2, 3},
+                           .heading = 1.5708,
+                           .scale = {4, 5, 6},
+                           .color = {0.5, 0.25, 1, 0.126},
+                           .lifetime = 2.5,
+                           .text = "here",
+                           .mesh = "drill",
+                           .points = {{1, 2}, {-3.456F, 4}},
+                           .colors = {{1, 0, 0.5, 1}, {0, 0, 0, 0.25}},
+                           .point_count = 7000};
   source.marker_news = {.version = 1'793'000'123'456,
                         .whole = false,
                         .left_out = 2,
@@ -42,12 +46,16 @@ TEST_F(SceneRoutesTest, GiveTheMarkersThatChanged) {
   EXPECT_EQ(header(answer, "Cache-Control"), "no-store");
   const json expected = {{"ns", "path"},
                          {"id", -3},
-                         {"type", 1},
+                         {"type", 4},
                          {"position", {{"x", 1.0}, {"y", 2.0}, {"z", 3.0}}},
                          {"heading", 1.57},
                          {"scale", {{"x", 4.0}, {"y", 5.0}, {"z", 6.0}}},
                          {"color", {{"r", 0.5}, {"g", 0.25}, {"b", 1.0}, {"a", 0.13}}},
+                         {"points", {1.0, 2.0, -3.46, 4.0}},
+                         {"colors", {"#ff0080ff", "#00000040"}},
+                         {"point_count", 7000},
                          {"text", "here"},
+                         {"mesh", "drill"},
                          {"lifetime", 2.5},
                          {"at", 99.5}};
   EXPECT_EQ(json::parse(answer.body), (json{{"version", 1'793'000'123'456},

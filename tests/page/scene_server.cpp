@@ -55,6 +55,9 @@ class Stage final : public Source, public Operator {
   std::expected<std::int64_t, std::string> report(const icd::ArtifactReport& report, bool resubmit) override {
     return played_.report(view(), report, resubmit);
   }
+  std::expected<void, std::string> aside(std::uint64_t number, AsideDeed) override {
+    return played_.aside(view(), number);
+  }
   std::int64_t begin_run() override { return played_.begin_run(view()); }
   Time identify(double seconds) override {
     identify_until_ = loop_.stamp_now() + seconds;

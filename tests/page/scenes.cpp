@@ -118,6 +118,9 @@ RunView trouble(Time now, double elapsed) {
                                              report(9, "Cube", now - 3, "sending", 0, {}),
                                              report(8, "Vent", now - 42, "in doubt", 0, {})});
   view.reports[2].note = "the connection was lost before an answer came";
+  view.refusals.push_back(
+      {began - 20, "/state/update", "10.0.0.8", 422,
+       R"(msg.header.frame_id: expected "darpa", got "map" (the setting rules.rewrite_frame_id takes any))"});
   view.attention = {"1 report is in doubt: the answer was lost", "the queue of maps is nearly full"};
   return view;
 }

@@ -29,6 +29,7 @@ struct FakeSetup final : Setup {
   bool applying() const override { return saves > 0; }
   std::vector<TokenRow> tokens() const override { return {{"scoring", true}, {"course.A.mapping", false}}; }
   std::vector<std::string> warnings(const settings::Settings& next) const override {
+    if (next.command_post.course != now.command_post.course) return {"reports go elsewhere"};
     if (next.team.require_token) return {};
     return {"no token is asked for"};
   }
@@ -165,14 +166,15 @@ TEST_F(SettingsRoutesTest, SaveWhatIsGoodAndSayWhatChanges) {
   const auto answer = post("/adit/settings", {{"settings", said["settings"]}, {"base", said["tag"]}});
   EXPECT_EQ(answer.status, Status::Ok);
   EXPECT_EQ(json::parse(answer.body),
-            (json{{"changes", {{{"path", "team.connections"}, {"from", 64}, {"to", 65}}}}}));
+            (json{{"changes", {{{"path", "team.connections"}, {"from", 64}, {"to", 65}}}},
+                  {"warnings", json::array()}}));
   EXPECT_EQ(setup.now.team.connections, 65u);
   EXPECT_EQ(post("/adit/settings", {{"settings", said["settings"]}, {"base", said["tag"]}}).status,
             Status::Conflict)
       << "made from settings that are no more";
   said["tag"] = shown()["tag"];
   EXPECT_EQ(json::parse(post("/adit/settings", {{"settings", said["settings"]}, {"base", said["tag"]}}).body),
-            (json{{"changes", json::array()}}));
+            (json{{"changes", json::array()}, {"warnings", json::array()}}));
   EXPECT_EQ(setup.saves, 1) << "the same settings need not be applied again";
 }
 
@@ -254,7 +256,8 @@ TEST_F(SettingsRoutesTest, SetAndRemoveATokenWithoutShowingIt) {
 
 TEST_F(SettingsRoutesTest, SwitchTheCourseByItsNameAndBackToNone) {
   EXPECT_EQ(json::parse(post("/adit/course", {{"name", "A"}}).body),
-            (json{{"changes", {{{"path", "command_post.course"}, {"from", ""}, {"to", "A"}}}}}));
+            (json{{"changes", {{{"path", "command_post.course"}, {"from", ""}, {"to", "A"}}}},
+                  {"warnings", {"reports go elsewhere"}}}));
   EXPECT_EQ(setup.now.command_post.course, "A");
   EXPECT_EQ(post("/adit/course", {{"name", ""}}).status, Status::Ok);
   EXPECT_EQ(setup.now.command_post.course, "");

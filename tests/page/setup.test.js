@@ -46,6 +46,7 @@ test("leads from an empty box to a first report through it", async (t) => {
   const before = JSON.stringify(await record());
   assert.doesNotMatch(before, /"type": ?"Drill"/, "the test spent no report");
   await page.getByRole("button", { name: "New report" }).click();
+  await page.locator("#compose input[value=Drill]:not([data-moving])").waitFor({ state: "attached" });
   await page.locator("#compose").getByRole("radio", { name: "Drill" }).check({ force: true });
   for (const [name, value] of [["x", "12.5"], ["y", "-3"], ["z", "0"]]) await page.fill(`#compose input[name=${name}]`, value);
   await page.locator("#compose .go").click();
@@ -146,6 +147,7 @@ test("switches to another course by one press, once it was said what that change
     ["scoring address", "127.0.0.1:1", `127.0.0.1:${box.scoring}`], ["mapping address", "127.0.0.1:2", `127.0.0.1:${box.mapping}`],
     ["scoring token", "the common one", "its own"], ["mapping token", "the common one", "the common one"],
   ]);
+  await page.locator("#review").getByText(`reports go to 127.0.0.1:${box.scoring} from then on; none waits, is in doubt or is held now`).waitFor();
   await page.getByRole("button", { name: "Switch", exact: true }).click();
   await page.getByText("Course B is in use.").waitFor();
   await until(async () => (await ask("/adit/run")).said.endpoints.every(({ last_status: status }) => status === 200 || status === 0) && (await ask("/adit/run")).said.endpoints[0].last_status === 200, "the scoring endpoint's answer");
@@ -225,7 +227,11 @@ test("says where the page goes when it moves, and takes back what the box cannot
   await type(page, "team.listen[0].address", "203.0.113.7");
   await page.getByRole("button", { name: "Look and apply" }).click();
   await page.locator("#review .warnings").getByText("this page move").waitFor();
-  const movesTo = page.locator("#typed a", { hasText: "http://203.0.113.7:" }).waitFor(); // shown until it is taken back
+  const movesTo = page.evaluate(() => new Promise((found, missed) => { // shown until it is taken back, which may be soon
+    const says = () => [...document.querySelectorAll("#typed a")].some((link) => link.textContent.includes("http://203.0.113.7:"));
+    new MutationObserver(() => says() && found()).observe(document.body, { subtree: true, childList: true, characterData: true });
+    setTimeout(missed, 30000, new Error("the page did not say where it goes"));
+  }));
   await Promise.all([movesTo, page.getByRole("button", { name: "Apply", exact: true }).click()]);
   await page.locator("#typed").getByText("the last change was taken back").waitFor();
   const port = await freePort();

@@ -168,3 +168,11 @@ test("loses nothing that was typed when the box is lost in the middle of it", as
   await hears(page, /Applied\./);
   assert.equal((await ask("/adit/settings")).said.settings.robots[0].name, "ugv1");
 });
+
+test("is opened at the setting that a refusal names", async (t) => {
+  const { page } = await ready(t, "setup?setting=rules.rewrite_frame_id#all");
+  await focusIsAt(page, "rules.rewrite_frame_id");
+  await page.keyboard.press("Space");
+  await page.getByRole("button", { name: "Look and apply" }).click();
+  assert.deepEqual(await review(page), [["rules.rewrite_frame_id", "false", "true"]]);
+});

@@ -176,6 +176,15 @@ class Mapping(unittest.TestCase):
 
 
 class Scoring(unittest.TestCase):
+    def test_its_clocks_stand_and_its_run_is_named_alike_throughout(self):
+        with CommandPost("--as-measured") as post:
+            for _ in range(2):
+                self.assertEqual(post.status().json()["run_clock"], 25.98)
+                answer = post.report(REPORT).json()
+                self.assertEqual((answer["run_clock"], answer["run"]), (3.14, "1"))
+                self.assertEqual(post.tell("new-run").json()["run"], "1")
+            self.assertEqual(post.tell("new-run", {"run": "1.5.2"}).json()["run"], "1.5.2", "where it is told so")
+
     def test_each_row_of_the_table(self):
         bearer = f"bEARER {SCORING_TOKEN}"
         table = [

@@ -56,6 +56,12 @@ class Taken(unittest.TestCase):
         self.assertEqual(taken, {("pose", "X1"): 2, ("pose", "X2"): 2, ("pose", "A_long_one"): 2,
                                  ("marker", "artifacts"): 8})
 
+    def test_colors_count_only_where_a_marker_has_a_use_for_them(self):
+        for kind in (0, 1, 2, 3, 9, 10):
+            self.expect_taken("/markers/update", marker(type=kind, colors=[COLOR]))
+        for kind in (4, 5, 6, 7, 8, 11):
+            self.expect_taken("/markers/update", marker(type=kind, points=[POINT] * 3, colors=[COLOR] * 3))
+
     def test_cbor_in_any_of_its_lengths(self):
         # An indefinite map, a half float, a byte string in two chunks (RFC 8949 3.2, 3.3).
         body = cbor2.dumps(grid(cbor=True))
@@ -111,7 +117,13 @@ def cloud_refusals():
     yield cloud(schema=mixed, point_step=16, data=bytes(32))
 
 
+COLOR = {"r": 1, "g": 0.5, "b": 0, "a": 1}
+POINT = {"x": 1, "y": 2, "z": 3}
+
+
 def marker_refusals():
+    for kind in (4, 5, 6, 7, 8, 11):
+        yield marker(type=kind, colors=[COLOR] * 2, points=[POINT] * 3)
     for name in ("type", "action", "pose", "scale", "color"):
         yield marker(**{name: DROP})
     for changes in ({"type": 12}, {"type": -1}, {"type": "2"}, {"action": 1}, {"action": 4}, {"action": 0.0},

@@ -1,5 +1,6 @@
 """Below the messages: HTTP, connections, signals, the command line, and whatever a broken peer sends."""
 
+import contextlib
 import json
 import os
 import random
@@ -54,6 +55,25 @@ class Http(unittest.TestCase):
         data = random.Random(1).randbytes(12 * 2_000_000)
         with CommandPost() as post:
             self.assertEqual(post.map_cbor(cloud(data=data, cbor=True)).status_code, 200)
+
+    def test_no_memory_is_taken_for_a_length_that_is_only_announced(self):
+        def data_of(post):
+            with open(f"/proc/{post.process.pid}/status", encoding="ascii") as file:
+                return next(int(line.split()[1]) * 1024 for line in file if line.startswith("VmData:"))
+
+        with CommandPost() as post, contextlib.ExitStack() as streams:
+            before = data_of(post)
+            for _ in range(20):
+                stream = streams.enter_context(connect(post.mapping))
+                stream.sendall(map_header(f"Content-Length: {250 << 20}", "Expect: 100-continue"))
+                self.assertEqual(stream.recv(1000), b"HTTP/1.1 100 Continue\r\n\r\n")
+                stream.sendall(b"\xa1")
+            self.assertLess(data_of(post) - before, 1 << 30, "a stack of 8 MiB each, but not 250 MiB")
+            for length in (30_000_000_000, 2**64):
+                with connect(post.mapping) as stream:
+                    stream.sendall(map_header(f"Content-Length: {length}"))
+                    self.assertIn(read_answer(stream)[0], (400, 413))
+            self.assertEqual(post.map(grid()).status_code, 200)
 
     def test_what_is_no_http_is_answered_and_closed(self):
         table = [(400, b"hello\r\n\r\n"), (400, b"\x16\x03\x01\x02\x00\x01\x00\x01\xfc\x03\x03\r\n\r\n"),

@@ -45,7 +45,8 @@ TEST(Settings, SetEveryMemberByItsKey) {
       "interface": "team0", "require_token": false, "connections": 40, "connections_per_address": 4},
     "reports": {"answer_within_ms": 5000, "doubt_for_ms": 100, "doubt_asks": 100, "review": "duplicates",
                 "near_metres": 0.5},
-    "queues": {"map_bytes": 2000000, "merge_bytes": 0, "markers_per_message": 7},
+    "queues": {"map_bytes": 2000000, "merge_bytes": 0, "marker_bytes": 3000000,
+               "markers_per_message": 7, "marker_bytes_per_message": 8000},
     "rules": {"rewrite_frame_id": true, "forward_unknown_types": true, "map_bytes": 4096},
     "panel": {"chip": "/dev/gpiochip1", "health": "H", "scoring": "S", "mapping": "M", "attention": "A",
               "active_low": true, "button": "B", "button_active_low": false},
@@ -78,7 +79,9 @@ TEST(Settings, SetEveryMemberByItsKey) {
   EXPECT_EQ(settings.reports.near_metres, 0.5);
   EXPECT_EQ(settings.queues.map_bytes, 2000000u);
   EXPECT_EQ(settings.queues.merge_bytes, 0u);
+  EXPECT_EQ(settings.queues.marker_bytes, 3000000u);
   EXPECT_EQ(settings.queues.markers_per_message, 7u);
+  EXPECT_EQ(settings.queues.marker_bytes_per_message, 8000u);
   EXPECT_TRUE(settings.rules.rewrite_frame_id);
   EXPECT_TRUE(settings.rules.forward_unknown_types);
   EXPECT_EQ(settings.rules.map_bytes, 4096u);

@@ -85,7 +85,7 @@ TEST(SettingsChanges, NameEachSettingThatDiffers) {
   after.reports.review = dispatch::Review::All;
   after.command_post.budget_mbit = 20.5;
   EXPECT_THAT(sentences(changes(before, after)),
-              ElementsAre("command_post.budget_mbit: 100 -> 20.5", "team.listen[0].port: 8000 -> 8080",
+              ElementsAre("command_post.budget_mbit: 100.0 -> 20.5", "team.listen[0].port: 8000 -> 8080",
                           R"(reports.review: "off" -> "all")"));
 }
 

@@ -8,6 +8,7 @@ namespace adit::uplink {
 namespace {
 
 using State = AnswerParser::State;
+constexpr std::size_t kLongest = Request::kLongestAnswer;
 using testing::HasSubstr;
 
 // NOLINTNEXTLINE(clang-analyzer-optin.performance.Padding): in the order in which a case reads
@@ -65,6 +66,18 @@ const Case kCases[] = {
     {"a length of 2^64", "HTTP/1.1 200 OK\r\nContent-Length: 18446744073709551616\r\n\r\n", false,
      State::Malformed},
     {"a length of 5 GB", "HTTP/1.1 200 OK\r\nContent-Length: 5000000000\r\n\r\n", false, State::Malformed},
+    {"a length of 30 GB, which no memory holds", "HTTP/1.1 200 OK\r\nContent-Length: 30000000000\r\n\r\n",
+     false, State::Malformed},
+    {"a length just beyond the limit", "HTTP/1.1 200 OK\r\nContent-Length: 65537\r\n\r\n", false,
+     State::Malformed},
+    {"a length of 2^63", "HTTP/1.1 200 OK\r\nContent-Length: 9223372036854775808\r\n\r\n", false,
+     State::Malformed},
+    {"1xx of 30 GB", "HTTP/1.1 100 Continue\r\nContent-Length: 30000000000\r\n\r\n", false,
+     State::Incomplete},
+    {"a chunk of 30 GB", "HTTP/1.1 200 OK\r\nTransfer-Encoding: chunked\r\n\r\n6fc23ac00\r\nab", false,
+     State::Malformed},
+    {"a chunk of 2^64", "HTTP/1.1 200 OK\r\nTransfer-Encoding: chunked\r\n\r\n10000000000000000\r\nab", false,
+     State::Malformed},
     {"a chunk of no size", "HTTP/1.1 200 OK\r\nTransfer-Encoding: chunked\r\n\r\nxyz\r\n", false,
      State::Malformed},
     {"101", "HTTP/1.1 101 Switching Protocols\r\nUpgrade: x\r\n\r\n", false, State::Malformed},
@@ -87,7 +100,7 @@ TEST_P(AnswerParserCases, AreReadAlikeHoweverTheyAreCut) {
   const Case& c = GetParam();
   for (std::size_t portion = 1; portion <= c.bytes.size() + 1; ++portion) {
     SCOPED_TRACE(portion);
-    AnswerParser parser;
+    AnswerParser parser(kLongest);
     ASSERT_EQ(feed(parser, c, portion), c.state) << parser.fault();
     if (c.state == State::Malformed) {
       EXPECT_NE(parser.fault(), "");
@@ -107,7 +120,7 @@ TEST_P(AnswerParserCases, AreReadAlikeHoweverTheyAreCut) {
 INSTANTIATE_TEST_SUITE_P(, AnswerParserCases, testing::ValuesIn(kCases));
 
 std::optional<std::chrono::seconds> retry_after(const std::string& value) {
-  AnswerParser parser;
+  AnswerParser parser(kLongest);
   EXPECT_EQ(parser.feed("HTTP/1.1 429 Slow\r\nContent-Length: 0\r\nRetry-After: " + value + "\r\n\r\n"),
             State::Whole);
   return parser.take().retry_after;
@@ -122,7 +135,7 @@ TEST(AnswerParser, ReadsRetryAfterInSecondsAndIgnoresDates) {
 }
 
 TEST(AnswerParser, GivesTheContentTypeAsItCame) {
-  AnswerParser parser;
+  AnswerParser parser(kLongest);
   ASSERT_EQ(
       parser.feed("HTTP/1.1 500 Oops\r\ncontent-TYPE: text/html; charset=utf-8\r\nContent-Length: 0\r\n\r\n"),
       State::Whole);
@@ -130,12 +143,29 @@ TEST(AnswerParser, GivesTheContentTypeAsItCame) {
 }
 
 TEST(AnswerParser, TakesAnAnswerThatIsLongButNotTooLong) {
-  const std::string body(Connection::kLongestAnswer - 100, 'x');
-  AnswerParser parser;
+  const std::string body(kLongest, 'x');
+  AnswerParser parser(kLongest);
   EXPECT_EQ(
       parser.feed("HTTP/1.1 200 OK\r\nContent-Length: " + std::to_string(body.size()) + "\r\n\r\n" + body),
       State::Whole);
   EXPECT_EQ(parser.take().body, body);
+}
+
+/// Who answered is told by it.
+TEST(AnswerParser, KnowsTheStatusOfAnAnswerThatIsTooLong) {
+  const std::string long_body(2 * kLongest, 'x');
+  const std::pair<std::string, int> cases[] = {
+      {"HTTP/1.1 302 Found\r\nContent-Length: 30000000000\r\n\r\n", 302},
+      {"HTTP/1.1 200 OK\r\n\r\n" + long_body, 200},
+      {"HTTP/1.1 403 No\r\nTransfer-Encoding: chunked\r\n\r\nffffff\r\n" + long_body, 403},
+      {"HTTP/1.1 200 OK\r\nX: " + std::string(AnswerParser::kLongestHead, 'x'), 0},
+      {"HTTP/1.1 200 what\r\nno field\r\n\r\n", 0}};
+  for (const auto& [bytes, status] : cases) {
+    SCOPED_TRACE(bytes.substr(0, 60));
+    AnswerParser parser(kLongest);
+    EXPECT_EQ(parser.feed(bytes), State::Malformed);
+    EXPECT_EQ(parser.too_long_status(), status);
+  }
 }
 
 TEST(AnswerParser, RefusesAnswersThatNeverEnd) {
@@ -147,7 +177,7 @@ TEST(AnswerParser, RefusesAnswersThatNeverEnd) {
       {"HTTP/1.1 200 OK\r\nTransfer-Encoding: chunked\r\n\r\n1;", "extension"}};
   for (const auto& [begin, more] : endless) {
     SCOPED_TRACE(begin + more.substr(0, 30));
-    AnswerParser parser;
+    AnswerParser parser(kLongest);
     State state = parser.feed(begin.empty() ? more : begin);
     std::size_t fed = begin.size();
     for (; state == State::Incomplete && fed < (2u << 20); fed += more.size()) state = parser.feed(more);

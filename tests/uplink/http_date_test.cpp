@@ -25,7 +25,7 @@ TEST(AnHttpDate, IsNothingElse) {
 }
 
 TEST(AnHttpDate, ComesWithAnAnswer) {
-  AnswerParser parser;
+  AnswerParser parser(Request::kLongestAnswer);
   ASSERT_EQ(
       parser.feed("HTTP/1.1 200 OK\r\nDate: Sun, 06 Nov 1994 08:49:37 GMT\r\nContent-Length: 0\r\n\r\n"),
       AnswerParser::State::Whole);

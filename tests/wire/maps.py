@@ -34,6 +34,9 @@ class Grid:
         return {"info": {"resolution": self.resolution, "width": self.width, "height": self.height,
                          "origin": {"position": {"x": x, "y": y, "z": z}, "orientation": dict(IDENTITY)}}}
 
+    def little_endian(self):
+        return self
+
 
 @dataclasses.dataclass
 class Cloud:
@@ -47,6 +50,17 @@ class Cloud:
 
     def head(self):
         return {"fields": self.fields, "is_bigendian": self.is_bigendian, "point_step": self.point_step}
+
+    def little_endian(self):
+        """The same points as they go up; fields of one value alone are known here."""
+        if not self.is_bigendian:
+            return self
+        data = bytearray(self.data)
+        for start in range(0, len(data), self.point_step):
+            for one in self.fields:
+                at, size = start + one["offset"], {7: 4, 8: 8}[one["datatype"]]
+                data[at:at + size] = data[at:at + size][::-1]
+        return dataclasses.replace(self, data=bytes(data), is_bigendian=False)
 
 
 def field(name, offset, datatype, count=1):

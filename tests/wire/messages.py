@@ -112,8 +112,9 @@ def pieces(content):
         yield content[at:at + 30000]
 
 
-def post(session, url, uri, message, style, token=programs.TEAM_TOKEN, timeout=60):
-    content = body(message, style)
+def post(session, url, uri, message, style, token=programs.TEAM_TOKEN, timeout=60, content=None):
+    """`content`: its bytes, where they are not as body() makes them."""
+    content = body(message, style) if content is None else content
     if style.chunked:
         content = pieces(content)
     return session.post(url + uri + ("/" if style.browser else ""), data=content, headers=headers(style, token),

@@ -71,22 +71,25 @@ class Program:
 
 
 class CommandPost(Program):
-    """adit-rehearsal on both of its addresses; what it received is in requests()."""
+    """adit-rehearsal on both of its addresses; what it received is in requests(). Another one has other ports, and a
+    folder of its own below `folder`."""
 
-    def __init__(self, network, folder, *options):
-        self.transcript = folder / "transcript"
-        command = [BIN / "adit-rehearsal", "--scoring", f"{hosts.SCORING}:{PORT}", "--mapping",
-                   f"{hosts.MAPPING}:{PORT}", "--control", f"127.0.0.1:{CONTROL_PORT}", "--secrets", folder / "secrets",
+    def __init__(self, network, folder, *options, name="", port=PORT, control_port=CONTROL_PORT):
+        self.transcript = folder / name / "transcript"
+        self.transcript.parent.mkdir(exist_ok=True)
+        self.control_port = control_port
+        command = [BIN / "adit-rehearsal", "--scoring", f"{hosts.SCORING}:{port}", "--mapping",
+                   f"{hosts.MAPPING}:{port}", "--control", f"127.0.0.1:{control_port}", "--secrets", folder / "secrets",
                    "--artifacts", ARTIFACTS, "--transcript", self.transcript, *options]
         self.network = network
-        super().__init__(network, network.post, folder / "rehearsal.log", command)
+        super().__init__(network, network.post, folder / name / "rehearsal.log", command)
         wait_until(lambda: "adit-rehearsal: scoring" in self.said(), "adit-rehearsal to listen")
 
     def control(self, request, body=None):
         """Asks the control port: control("POST /new-run", {"run": "2"})."""
         method, _, path = request.partition(" ")
-        connection = http.client.HTTPConnection("127.0.0.1", CONTROL_PORT)
-        connection.sock = self.network.connect(self.network.post, "127.0.0.1", CONTROL_PORT, 30)
+        connection = http.client.HTTPConnection("127.0.0.1", self.control_port)
+        connection.sock = self.network.connect(self.network.post, "127.0.0.1", self.control_port, 30)
         with contextlib.closing(connection):
             connection.request(method, path, None if body is None else json.dumps(body))
             answer = connection.getresponse()

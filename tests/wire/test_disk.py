@@ -1,12 +1,19 @@
 """A disk that is full and a ledger that is damaged: no report is taken that is not written down, and it is said."""
 
+import contextlib
 import errno
 import os
 import pathlib
 import signal
+import subprocess
+import tempfile
 import unittest
+from unittest import mock
+
+import requests
 
 import hosts
+import programs
 from programs import Stage, wait_until
 from reporting import QUICK, REPORT, another, began, submit
 
@@ -113,9 +120,54 @@ class Disk(unittest.TestCase):
             self.assertIn("damaged", stage.box.attention())
             aside = stage.box.state / "ledger.sqlite.damaged-1"
             self.assertEqual(aside.read_bytes(), damaged, "kept for whoever wants to read it")
-            self.assertEqual(submit(stage, another(1)).status_code, 201)
-            self.assertEqual(stage.box.on_disk(), ["answered"])
+            self.may_be_lost(stage)
+
+    def may_be_lost(self, stage):
+        """What is posted may be what was lost: the operator decides, and then all is as before."""
+        self.assertIn("reports from 1 on may be lost from the ledger", stage.box.attention())
+        with self.assertRaises(requests.Timeout):
+            submit(stage, timeout=1)
+        self.assertIn("report 1001 is held: ", stage.box.attention())
+        self.assertEqual(stage.box.judge(1001, "withdraw")[0], 200)
+        self.assertEqual(len(stage.post.recorded()), 1, "it was sent before")
+        self.assertEqual(stage.box.judge(1000, "done")[0], 200)
+        self.assertEqual(submit(stage, another(1)).status_code, 201)
+        self.assertEqual(stage.box.on_disk(), ["settled", "withdrawn", "answered"])
+        self.assertEqual(len(stage.post.recorded()), 2)
+
+    def test_a_state_folder_that_is_read_only(self):
+        runtime = self.enterContext(tempfile.TemporaryDirectory())  # elsewhere, as with systemd
+        self.enterContext(mock.patch.dict(os.environ, RUNTIME_DIRECTORY=runtime))
+        with Stage(**FULL) as stage:
+            self.assertEqual(submit(began(stage)).status_code, 201)
+            stage.box.stop(signal.SIGKILL)
+            self.remount(stage, "ro")  # as the kernel does where a disk fails
+            stage.restart_box()
+            self.assertIn("no report is taken, the ledger cannot be written: ", stage.box.attention())
+            self.assertIn("Read-only file system", stage.box.attention())
+            self.assertEqual([row["state"] for row in stage.box.reports()], ["answered"], "what can be read is shown")
+            refused = submit(stage, another(1))
+            self.assertEqual(refused.status_code, 503, refused.text)
+            self.assertIn("could not be written down and was not taken", refused.json())
+            self.assertEqual(submit(stage).status_code, 201, "it is known")
+            headers = {"Authorization": f"Bearer {programs.TEAM_TOKEN}", "Content-Type": "application/json"}
+            state = {"header": {"stamp": 1.0, "frame_id": "darpa"}, "poses": []}
+            taken = requests.post(f"{stage.box.url}/state/update", json=state, headers=headers, timeout=10)
+            self.assertEqual(taken.status_code, 200, taken.text)
+            self.remount(stage, "rw")
+            self.remount(stage, "rw", "nsenter", "--mount", f"--target={stage.box.process.pid}")
+            wait_until(lambda: self.taken(stage, another(1)), "it to recover by itself")
             self.assertEqual(len(stage.post.recorded()), 2)
+            self.assertNotIn("the ledger", stage.box.attention())
+
+    @staticmethod
+    def taken(stage, report):
+        with contextlib.suppress(requests.RequestException):  # it begins anew
+            return submit(stage, report).status_code == 201
+
+    @staticmethod
+    def remount(stage, how, *where):
+        subprocess.run([*where, "mount", "-o", f"remount,{how}", stage.box.state], check=True)
 
     @staticmethod
     def damage(path: pathlib.Path):

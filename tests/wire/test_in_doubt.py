@@ -66,10 +66,11 @@ class InDoubt(unittest.TestCase):
             self.is_in_doubt(stage, "somebody else reports with this token")
 
     def test_a_count_that_contradicts(self):
-        for fault in ("remaining=+3,drop", "remaining=-3,record-then-drop"):
+        for fault, why in (("remaining=+3,drop", "a new run began"),
+                           ("remaining=-3,record-then-drop", "does somebody else report with this token?")):
             with self.subTest(fault), self.stage() as stage:
                 stage.post.will(fault)
-                self.is_in_doubt(stage, "does somebody else report with this token?")
+                self.is_in_doubt(stage, why)
 
     def test_a_new_run_meanwhile(self):
         for body in ({}, {"team": "other"}):  # the run clock goes back; another team

@@ -1,17 +1,13 @@
 """Every URI x format x compression x client style reaches the Command Post, and means there what its sender meant."""
 
-import time
 import unittest
-import zlib
-
-import requests
 
 import hosts
 import maps
 import messages
 import programs
+from delivered import Delivered
 from messages import Style
-from programs import Stage, wait_until
 
 POSITION = {"x": 1.25, "y": -2.5, "z": 0.125}
 TURNED = {"x": 0.0, "y": 0.0, "z": 0.6, "w": 0.8}
@@ -21,59 +17,15 @@ def setUpModule():
     hosts.needs_namespaces()
 
 
-def data_sent(data):
-    return {"bytes": len(data), "crc32": zlib.crc32(data)}
-
-
-class Matrix(unittest.TestCase):
+class Matrix(Delivered):
     """Against a Command Post that is strict; MatrixAsMeasured repeats it against one that behaves as the real ones do."""
-
-    post_options = ("--rate", "0")
-
-    @classmethod
-    def setUpClass(cls):
-        cls.stage = cls.enterClassContext(Stage(post_options=cls.post_options))
-        cls.session = requests.Session()
-        cls.seconds = time.time()
-
-    def tearDown(self):
-        self.assertEqual(self.stage.post.violations(), [])
-
-    def deliver(self, uri, message, style):
-        """Posts it and gives the one request that reached the Command Post for it."""
-        before = len(self.stage.post.requests(uri))
-        self.seconds += 0.5
-        answer = messages.post(self.session, self.stage.box.url, uri, message, style)
-        self.assertEqual((answer.status_code, answer.text), (200, "null"))
-        self.assertEqual(answer.headers["Access-Control-Allow-Origin"], "*")
-        arrived = wait_until(lambda: self.stage.post.requests(uri)[before:], f"{style} to arrive", 30)
-        self.assertEqual(len(arrived), 1)
-        self.check_canonical(arrived[0])
-        return arrived[0]["message"]
-
-    def check_canonical(self, request):
-        self.assertEqual(request["status"], 200, request["answer"])
-        self.assertEqual(request["content_type"], "application/cbor")
-        self.assertIsNone(request["content_encoding"])
-        self.assertFalse(request["expect"])
 
     def check_map(self, source, style, name):
         update = messages.map_update(source, name, self.seconds, style)
         arrived = self.deliver("/map/update", update, style)
-        self.assertEqual((arrived["type"], arrived["name"]), (source.type, name or ""))
-        message = arrived["msg"]
-        expected = data_sent(source.data)
-        self.assertEqual({key: message["data"][key] for key in expected}, expected)
-        self.assertEqual(message["header"]["frame_id"], "darpa")
-        self.assertIsInstance(message["header"]["stamp"], float)
-        for key, value in source.head().items():
-            if key != "info":
-                self.assertEqual(message[key], value, key)
-                continue
-            orientation = message["info"]["origin"]["orientation"]
-            self.assertEqual(orientation, maps.IDENTITY, "zeros have become the identity")
-            self.assertEqual(message["info"] | {"origin": None}, value | {"origin": None})
-            self.assertEqual(message["info"]["origin"]["position"], value["origin"]["position"])
+        update["name"] = name or ""
+        sent = source.little_endian()
+        self.same_map(arrived, update, sent.data, sent.head())  # zeros in an orientation have become the identity
 
     def test_maps_in_every_style(self):
         sources = [maps.made_grid(80, 60), maps.made_cloud(500, padding=4)]
@@ -109,8 +61,8 @@ class Matrix(unittest.TestCase):
                     del update["header"]
                 arrived = self.deliver("/state/update", update, style)
                 self.assertEqual(arrived["header"]["frame_id"], "darpa")
-                self.assertEqual(arrived["poses"], [{"name": "r1", "position": POSITION,
-                                                     "orientation": maps.IDENTITY if style.ros else TURNED}])
+                self.same(arrived["poses"], [{"name": "r1", "position": POSITION,
+                                              "orientation": maps.IDENTITY if style.ros else TURNED}])
 
     def test_markers_in_every_style(self):
         for number, style in enumerate(messages.text_styles()):
@@ -121,8 +73,8 @@ class Matrix(unittest.TestCase):
                           "lifetime": {"secs": 2, "nsecs": 500000000} if style.ros else 2.5, "text": "n\u00f6de \u2714"}
                 arrived = self.deliver("/markers/update", {"markers": [marker]}, style)["markers"][0]
                 del arrived["header"]
-                self.assertEqual(arrived, {key: value for key, value in marker.items() if key != "header"}
-                                 | {"lifetime": 2.5})
+                self.same(arrived, {key: value for key, value in marker.items() if key != "header"} | {"lifetime": 2.5}
+                          | {"scale": {"x": 1.0, "y": 2.0, "z": 3.0}, "color": {"r": 1.0, "g": 0.5, "b": 0.0, "a": 1.0}})
 
     def test_markers_with_nothing_but_what_the_icd_asks_for(self):
         bare = {"type": 1, "action": 0, "pose": {"position": POSITION, "orientation": TURNED},

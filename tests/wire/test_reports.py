@@ -71,7 +71,7 @@ class Answers(unittest.TestCase):
             self.assertEqual(stage.box.on_disk(), ["answered"])
 
     def test_a_report_that_the_command_post_will_not_have_is_refused_and_may_be_posted_again(self):
-        for word, said in (("422:Missing field: 'y'", "Missing field: 'y'"), ("400", "something other than JSON"),
+        for word, said in (("422:Missing field: 'y'", "Missing field: 'y'"), ("400:No JSON.", "No JSON."),
                            ("413:too large", "too large")):
             with self.subTest(word), scripted(word) as stage:
                 answer = submit(stage)
@@ -93,7 +93,7 @@ class Answers(unittest.TestCase):
                 self.assertEqual(len(stage.scripted.reports()), 2)
 
     def test_an_answer_that_may_be_anybodys_is_not_believed(self):
-        for word in ("302", "408", "502", "503", "200", "201"):
+        for word in ("302", "400", "408", "502", "503", "200", "201"):
             with self.subTest(word), scripted(word) as stage:
                 self.is_json(submit(stage), 201)
                 self.assertEqual(stage.box.on_disk("SELECT tries FROM report"), [1])

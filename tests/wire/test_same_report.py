@@ -121,14 +121,15 @@ class Held(unittest.TestCase):
         with playing() as stage:
             wait_until(lambda: stage.post.control("GET /record")["run_clock"] > 1.5, "the run to go on")
             self.assertEqual(submit(stage, another(1)).status_code, 201)
-            stage.post.will("429,retry-after=30")
+            wait_until(lambda: stage.box.on_disk("SELECT remaining_reports FROM run") == [44], "the first to be counted")
+            stage.post.will("429,retry-after=8")  # which is heeded by the box's next life, too
             with self.assertRaises(OSError):
                 submit(stage, timeout=1)
             wait_until(lambda: sendings(stage) == 1 and stage.box.on_disk() == ["answered", "waiting"], "it to be put off")
             stage.box.stop(signal.SIGKILL)
             stage.post.control("POST /new-run")
             stage.restart_box()
-            wait_until(lambda: "a new run began (the run clock went back" in stage.box.attention(), "it to be held")
+            wait_until(lambda: "a new run began (the reports left went up from 44 to 45" in stage.box.attention(), "it to be held")
             self.assertEqual(submit(stage, another(2)).json()["run"], "2", "what is posted now is for this run")
             self.assertEqual(stage.post.recorded(REPORT), [])
             held = next(row for row in stage.box.reports() if row["state"] == "received")
@@ -154,6 +155,7 @@ class Held(unittest.TestCase):
         with playing() as stage:
             wait_until(lambda: stage.post.control("GET /record")["run_clock"] > 1.5, "the run to go on")
             first = submit(stage)
+            wait_until(lambda: stage.box.ask("GET /adit/run")[1]["run"]["remaining_reports"] == 44, "it to be counted")
             stage.post.control("POST /new-run")
             wait_until(lambda: stage.box.ask("GET /adit/run")[1]["run_number"] == 2, "the new run to be noticed")
             second = submit(stage)

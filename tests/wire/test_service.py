@@ -114,7 +114,7 @@ class Service(unittest.TestCase):
     def test_sets_a_damaged_ledger_aside_and_shows_it(self):
         (self.folder / "state" / "ledger.sqlite").write_bytes(b"no ledger at all" * 100)
         self.start()
-        self.assertIn("damaged", self.heard("READY=1"))
+        self.assertIn("may be lost from the ledger", self.heard("READY=1"))
         self.assertTrue(list((self.folder / "state").glob("ledger.sqlite.damaged*")))
 
     def test_shows_its_lights_where_there_are_none(self):

@@ -4,6 +4,7 @@ import json
 import pathlib
 import random
 import signal
+import socket
 import struct
 import subprocess
 import sys
@@ -29,6 +30,10 @@ def setUpModule():
 
 def pose(name, x):
     return {"poses": [{"name": name, "position": {"x": x, "y": 0.0, "z": 0.0}, "orientation": TURNED}]}
+
+
+def one_point(x):
+    return maps.Cloud("one", maps.XYZ, 12, struct.pack("<3f", x, 0, 0))
 
 
 class Waiting(unittest.TestCase):
@@ -166,7 +171,7 @@ class Waiting(unittest.TestCase):
         self.post(stage, "/state/update", pose("r3", 4.0))
         self.post(stage, "/markers/update", {"markers": [{"action": 2, "ns": "a", "id": 1}]})
         kept = stage.box.state / "waiting"
-        wait_until(lambda: len(list(kept.glob("*.cbor"))) == 4, "what waits to be kept")
+        wait_until(lambda: len(list(kept.glob("*.cbor"))) == 2, "the maps to be kept")
         stage.box.stop(number)
         stage.post = programs.CommandPost(stage.network, stage.folder, "--rate", "0")
         stage.restart_box()
@@ -193,23 +198,71 @@ class Waiting(unittest.TestCase):
             stamps = [at(request["message"])["header"]["stamp"] for request in stage.post.requests(uri)]
             self.assertEqual(stamps, sorted(stamps))
 
-    def test_one_cloud_that_is_refused_takes_no_other_with_it(self):
-        stage = self.stage(post_options=None, command_post__rates__map_hz=4)
+    def picky_post(self, stage):
+        """What gives its log: the status and the points of each request."""
         log = stage.folder / "picky.jsonl"
         picky = programs.Program(stage.network, stage.network.post, stage.folder / "picky.log",
                                  [sys.executable, "-B", pathlib.Path(__file__).with_name("picky_post.py"),
                                   f"{hosts.MAPPING}:{programs.PORT}", log, 422])
         self.addCleanup(picky.stop, signal.SIGKILL)
         wait_until(lambda: "listening" in picky.said(), "the picky Command Post")
+        return lambda: [json.loads(line) for line in log.read_text().splitlines()] if log.exists() else []
+
+    def test_one_cloud_that_is_refused_takes_no_other_with_it(self):
+        stage = self.stage(post_options=None, command_post__rates__map_hz=4)
+        log = self.picky_post(stage)
         for number in range(1, 31):
-            self.post_map(stage, maps.Cloud("one", maps.XYZ, 12, struct.pack("<3f", number, 0, 0)), "r1")
+            self.post_map(stage, one_point(number), "r1")
 
         def arrived():
-            lines = [json.loads(line) for line in log.read_text().splitlines()] if log.exists() else []
-            return sorted(point for status, points in lines if status == 200 for point in points)
+            return sorted(point for status, points in log() if status == 200 for point in points)
 
         wait_until(lambda: len(arrived()) == 29, "all clouds but one")
         self.assertEqual(arrived(), [float(number) for number in range(1, 31) if number != 13])
+
+    def test_a_cloud_that_is_refused_waits_or_is_set_aside_whenever_the_box_is_killed(self):
+        stage = self.stage(post_options=None, command_post__rates__map_hz=4)
+        log = self.picky_post(stage)
+        chance = random.Random(5)
+        for number in range(6):
+            before = len(log())
+            self.post_map(stage, one_point(13), f"k{number}")
+            while len(log()) == before:
+                time.sleep(0.0005)
+            time.sleep(chance.random() * 0.004)
+            stage.box.stop(signal.SIGKILL)
+            stage.restart_box()
+        wait_until(lambda: {row["robot"] for row in stage.box.ask("GET /adit/run")[1]["aside"]} ==
+                   {f"k{number}" for number in range(6)}, "each to be set aside, sooner or later")
+        numbers = [row["number"] for row in stage.box.ask("GET /adit/run")[1]["aside"]]
+        for number in numbers:
+            self.assertEqual(stage.box.ask(f"POST /adit/aside/{number}/send", body={})[0], 200)
+            stage.box.stop(signal.SIGKILL)
+            stage.restart_box()
+        wait_until(lambda: {row["robot"] for row in stage.box.ask("GET /adit/run")[1]["aside"]} ==
+                   {f"k{number}" for number in range(6)}, "each to be refused and set aside again")
+
+    def test_a_large_map_is_in_its_file_as_it_comes_and_leaves_none_where_it_is_cut_off(self):
+        stage = self.stage(post_options=None)
+        content = messages.body(messages.map_update(maps.made_cloud(100_000), "r1", time.time(), CBOR), CBOR)
+        fields = {**messages.headers(CBOR), "Host": "adit", "Content-Length": len(content)}
+        head = "POST /map/update HTTP/1.1\r\n" + "".join(f"{name}: {value}\r\n" for name, value in fields.items())
+
+        def files():
+            return sorted(path.name for path in (stage.box.state / "waiting").iterdir())
+
+        for end in ("the sender", "the box"):
+            with self.subTest(end), socket.create_connection((stage.network.box_address, programs.PORT), 20) as sender:
+                sender.sendall(head.encode() + b"\r\n" + content[: len(content) // 4 * 3])
+                wait_until(lambda: [name for name in files() if name.endswith(".part")], "its data to be written")
+                if end == "the box":
+                    stage.box.stop(signal.SIGKILL)
+                    stage.restart_box()
+                else:
+                    sender.close()
+                wait_until(lambda: not files(), "nothing to be left")
+        self.post_map(stage, maps.made_cloud(100_000), "r1")
+        self.assertEqual(files(), ["map-00000001.cbor"])
 
     def test_a_full_queue_is_told_to_the_sender(self):
         stage = self.stage(post_options=None, queues__map_bytes=1 << 20)

@@ -1,7 +1,8 @@
 // Applying what was typed, or a file: shown first, and never over what somebody else saved meanwhile.
+import { answered } from "./dialog.js";
 import { beginFrom, check, differs, draft, drop, flat, merged, onDraft, onVerdict, refresh, same, verdict } from "./draft.js";
 import { make, say } from "./dom.js";
-import { blameAll } from "./field.js";
+import { blameAll, fieldOf } from "./field.js";
 import { get, post } from "./session.js";
 import { clip } from "./words.js";
 
@@ -41,18 +42,7 @@ export function reviewed({ title, text = "", columns = ["From", "To"], changes =
   dialog.querySelector(".warnings").replaceChildren(...warnings.map((warning) => make("li", warning)));
   yes.textContent = word;
   no.textContent = other || "Leave it";
-  dialog.showModal();
-  no.focus();
-  return new Promise((resolve) => {
-    let answer = null;
-    const end = (value) => () => {
-      answer = value;
-      dialog.close();
-    };
-    yes.onclick = end(true);
-    no.onclick = end(other ? false : null);
-    dialog.onclose = () => resolve(answer);
-  });
+  return answered(dialog, [[no, other ? false : null], [yes, true]]);
 }
 
 export const fromTo = (changes) => changes.map(({ path, from, to }) => [path, from, to]);
@@ -157,8 +147,9 @@ export async function apply() {
   return yes === true && save(settings);
 }
 
-function goTo({ path }) {
-  const { field } = blameAll(verdict.errors).find((error) => error.path === path) ?? {};
+/** To the field of a setting, in whichever step it is. */
+export function goTo({ path }) {
+  const field = fieldOf(path);
   if (!field) return;
   const step = field.closest("section").id.replace("step-", "#");
   if (location.hash !== step) location.hash = step;

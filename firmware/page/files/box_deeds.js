@@ -13,10 +13,11 @@ const named = (reports) => reports.map(({ number }) => `#${number}`).join(", ");
 
 /** What will happen, in sentences. */
 function consequences({ reports, run_number }) {
-  const waiting = reports.filter(({ state }) => state === "waiting");
-  const doubts = reports.filter(({ state }) => state === "in doubt" || state === "sending");
+  const ofRun = reports.filter(({ run }) => run === run_number);
+  const waiting = ofRun.filter(({ state }) => state === "waiting");
+  const doubts = ofRun.filter(({ state }) => state === "in doubt" || state === "sending");
   return [
-    `Run ${run_number} ends, and run ${run_number + 1} begins.`,
+    `Run ${run_number} ends, and a new one begins.`,
     waiting.length
       ? `What waits is held, and goes only when you send it: ${named(waiting)}. Only what was posted in the last 10 s goes on into the new run.`
       : "No report waits to be sent.",

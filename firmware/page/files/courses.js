@@ -114,8 +114,9 @@ async function switchTo(name) {
   const rows = (what, value) => ENDPOINTS.map((endpoint) => [`${endpoint} ${what}`, value(now, endpoint), value(name, endpoint)]);
   const addressOf = (course, endpoint) => at(postOf(base, course)[endpoint]);
   const changes = [["course", nameOf(now), nameOf(name)], ...rows("address", addressOf), ...rows("token", tokenOf)];
-  const text = "Reports that were not sent to the old Command Post are held until you say; maps that wait go to the new one.";
-  if (!(await reviewed({ title: `Switch to ${nameOf(name)}?`, text, changes, word: "Switch" }))) return;
+  const settings = { ...base, command_post: { ...base.command_post, course: name } };
+  const { warnings } = await insist(() => post("/adit/settings/check", { settings })).catch((error) => ({ warnings: [error.message] }));
+  if (!(await reviewed({ title: `Switch to ${nameOf(name)}?`, changes, warnings, word: "Switch" }))) return;
   say(outcome, "It is being applied.");
   outcome.dataset.bad = false;
   try {

@@ -23,7 +23,9 @@ const DEEDS = {
 };
 
 export function deedsOf(report) {
+  if (!report.position) return report.state === "in doubt" ? [DONE] : []; // it is lost
   if (report.state === "withdrawn" && report.same_as) return [COSTLY_SEND];
+  if (report.state === "received" && report.same_as) return [COSTLY_SEND, WITHDRAW];
   return DEEDS[report.state] ?? [];
 }
 

@@ -128,7 +128,7 @@ export function blameAll(errors) {
 }
 
 /** The field of a path, or the first one under it ("team.listen[1]"). */
-function fieldOf(path) {
+export function fieldOf(path) {
   const all = [...known].filter((field) => field.isConnected);
   return all.find((field) => field.dataset.path === path) ?? all.find((field) => field.dataset.path.startsWith(path));
 }

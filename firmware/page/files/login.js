@@ -1,4 +1,5 @@
 // The door: a password, or a new one: at the first start with the code of the box, without while set-up is open.
+import "./presses.js";
 import { missingTokens } from "./draft.js";
 import { get, post, session } from "./session.js";
 

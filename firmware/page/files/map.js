@@ -1,7 +1,8 @@
 // The map: the picture of what was forwarded, and on it robots, their tracks, markers and reports. Drawn again only when something changed.
 import { listenTo } from "./map_input.js";
 import { coloursOf, drawCross, drawPairRings, drawReports, drawRobots, drawScale, isStale, keepOffRobots, labelsOn } from "./map_marks.js";
-import { drawMarkers, Markers, writeMarkers } from "./map_markers.js";
+import { Markers, writeMarkers } from "./map_markers.js";
+import { Shapes } from "./map_shapes.js";
 import { drawLayer, Tiles } from "./map_tiles.js";
 import { drawTracks, Tracks } from "./map_tracks.js";
 import { MapView } from "./map_view.js";
@@ -14,6 +15,7 @@ export class MapOfRun {
   #view = new MapView();
   #tiles = new Tiles(() => this.redraw());
   #markers = new Markers(() => this.redraw());
+  #shapes = new Shapes();
   #tracks = new Tracks(() => this.redraw());
   #run = null;
   #at = null; // the time that is shown; null: now
@@ -68,7 +70,7 @@ export class MapOfRun {
     this.#markers.follow(run.marker_version);
     this.#tracks.follow(run);
     const places = JSON.stringify([run.reports.map(({ number, state, asking }) => [number, state, asking]), run.near_metres,
-      run.robots.map((robot) => [robot.name, robot.position, robot.heading, isStale(robot, run.now)])]);
+      run.robots.map((robot) => [robot.name, robot.position, robot.heading, isStale(robot, run.now)]), this.#markers.at(run.now).length]);
     if (places === this.#drawn) return;
     this.#drawn = places;
     this.redraw();
@@ -163,7 +165,7 @@ export class MapOfRun {
     const { reports = [], robots = [], run_number } = this.#run ?? {};
     const until = this.#at ?? Infinity;
     return {
-      reports: this.#shown.reports ? reports.filter((report) => report.run === run_number && report.received <= until) : [],
+      reports: this.#shown.reports ? reports.filter((report) => report.position && report.run === run_number && report.received <= until) : [],
       robots: !this.#shown.robots ? [] : this.isLive() ? robots : this.#tracks.robotsAt(until),
       tracks: this.#shown.tracks ? this.#tracks.until(until) : [],
       markers: this.#shown.markers ? this.#markers.at(this.#at ?? this.#run?.now ?? 0) : [],
@@ -194,7 +196,7 @@ export class MapOfRun {
     const labels = labelsOn(paint, this.#colours, size, view.width);
     const unit = size / 14;
     drawTracks(paint, this.#colours, view, places.tracks, unit);
-    drawMarkers(paint, this.#colours, view, places.markers, unit);
+    this.#shapes.draw(paint, this.#colours, view, places.markers, unit);
     drawScale(paint, this.#colours, labels, view, size);
     keepOffRobots(labels, view, places.robots, size / 1.8);
     if (this.#pair) drawPairRings(paint, this.#colours, labels, view, this.#pair, size);

@@ -83,8 +83,12 @@ export function showMap(view, time) {
   now = time;
   stretchSlider();
   map.show(view);
-  const { count, leftOut } = map.markers();
-  say(section.querySelector(".leftout"), leftOut ? `Of the markers the newest ${count} are shown; ${leftOut} older ones are not.` : "");
+  const { count, leftOut, thinned } = map.markers();
+  const words = [
+    leftOut ? `Of the markers the newest ${count} are shown; ${leftOut} older ones are not.` : "",
+    thinned ? `Of the points of ${thinned === 1 ? "one marker" : `${thinned} markers`} only some are drawn.` : "",
+  ];
+  say(section.querySelector(".leftout"), words.filter(Boolean).join(" "));
 }
 
 /** Lets a place be picked; gives {x, y}, or null where it was given up. */

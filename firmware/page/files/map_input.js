@@ -1,12 +1,12 @@
 // Fingers, mouse and keys on the map.
 
-const TAP = 8; // pixels: what moves less is a tap
+const TAP = 8; // pixels: one finger that moves less is a tap
 const STEP = 60; // pixels a key press moves
 
 /** Moves `view` as it is told; `moved` after each change, `tapped({x, y})` for a tap. */
 export function listenTo(canvas, view, { moved, tapped, fit }) {
   const fingers = new Map(); // pointerId to [left, top]
-  let travelled = 0;
+  let travelled = 0, alone = true;
 
   const at = (event) => {
     const box = canvas.getBoundingClientRect();
@@ -17,7 +17,8 @@ export function listenTo(canvas, view, { moved, tapped, fit }) {
 
   canvas.addEventListener("pointerdown", (event) => {
     if (event.button > 0) return;
-    if (!fingers.size) travelled = 0;
+    alone = !fingers.size;
+    if (alone) travelled = 0;
     fingers.set(event.pointerId, at(event));
     canvas.setPointerCapture(event.pointerId);
   });
@@ -35,7 +36,7 @@ export function listenTo(canvas, view, { moved, tapped, fit }) {
   });
   const up = (event) => {
     const was = fingers.delete(event.pointerId);
-    if (was && !fingers.size && travelled < TAP && event.type === "pointerup") tapped(view.toMetres(...at(event)));
+    if (was && alone && travelled < TAP && event.type === "pointerup") tapped(view.toMetres(...at(event)));
   };
   canvas.addEventListener("pointerup", up);
   canvas.addEventListener("pointercancel", up);

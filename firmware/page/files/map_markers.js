@@ -1,16 +1,31 @@
 // The team's markers as the Command Post was last told of them, seen from above. Only what changed is fetched
 // (README.md: GET /adit/markers).
+import { css } from "./map_shapes.js";
 import { clip } from "./words.js";
 
-const LEAST = 3; // units from the middle: what is smaller could not be seen
-const TEXT = 9; // of visualization_msgs/Marker
+const TEXT = 9, MESH = 10; // of visualization_msgs/Marker
+const MADE_OF_POINTS = [4, 5, 6, 7, 8, 11];
 const LONGEST = 40; // letters
+
+/** What of the map a marker may cover, in metres. */
+function boundsOf({ position, points, scale }) {
+  let [left, right, bottom, top] = points.length ? [Infinity, -Infinity, Infinity, -Infinity] : [position.x, position.x, position.y, position.y];
+  for (let i = 0; i < points.length; i += 2) {
+    left = Math.min(left, points[i]);
+    right = Math.max(right, points[i]);
+    bottom = Math.min(bottom, points[i + 1]);
+    top = Math.max(top, points[i + 1]);
+  }
+  const rim = Math.max(Math.abs(scale.x), Math.abs(scale.y));
+  return { left: left - rim, right: right + rim, bottom: bottom - rim, top: top + rim };
+}
 
 export class Markers {
   leftOut = 0;
   #all = new Map(); // "ns id" to marker
   #version = 0;
   #asked = false;
+  #taken = 0;
   #changed;
 
   /** `changed` is called when there is something new to draw. */
@@ -38,7 +53,8 @@ export class Markers {
     for (const marker of gone) this.#all.delete(key(marker));
     for (const marker of markers) {
       this.#all.delete(key(marker)); // the newest is drawn last, and so on top
-      this.#all.set(key(marker), marker);
+      const needsPoints = !marker.points.length && MADE_OF_POINTS.includes(marker.type);
+      this.#all.set(key(marker), { ...marker, needsPoints, bounds: boundsOf(marker), mark: ++this.#taken });
     }
     this.#version = version;
     this.leftOut = left_out;
@@ -49,64 +65,24 @@ export class Markers {
     return this.#all.size;
   }
 
+  /** How many have more points than are drawn. */
+  get thinned() {
+    return [...this.#all.values()].filter(({ points, point_count }) => points.length < 2 * point_count).length;
+  }
+
   /** Those that stood then, as they are now: what they were before is not kept. */
   at(time) {
     return [...this.#all.values()].filter(({ at, lifetime }) => at <= time && (!lifetime || time < at + lifetime));
   }
 }
 
-const two = (value) => Math.round(255 * Math.min(1, Math.max(0, value)));
-const css = ({ r, g, b, a }) => `rgb(${two(r)} ${two(g)} ${two(b)} / ${a})`;
 /** The colour that sets a text off from what is around it. */
 const rimOf = ({ r, g, b }) => (0.3 * r + 0.6 * g + 0.1 * b > 0.5 ? "#000" : "#fff");
 
-function polygon(paint, points) {
-  paint.beginPath();
-  for (const [x, y] of points) paint.lineTo(x, y);
-  paint.closePath();
-}
-function round(paint, x, y) {
-  paint.beginPath();
-  paint.ellipse(0, 0, x, y, 0, 0, 2 * Math.PI);
-}
-
-/** By type; x and y: half its size in units, along and across. */
-const SHAPES = {
-  0: (paint, x, y) => polygon(paint, [[0, -y / 3], [1.3 * x, -y / 3], [1.3 * x, -y], [2 * x, 0], [1.3 * x, y], [1.3 * x, y / 3], [0, y / 3]]),
-  1: (paint, x, y) => polygon(paint, [[-x, -y], [x, -y], [x, y], [-x, y]]),
-  2: round,
-  // The ICD has no points for strips and lists: they are where their pose is.
-  4: (paint) => polygon(paint, [[-8, -1], [8, -1], [8, 1], [-8, 1]]),
-  8: (paint) => polygon(paint, [[0, -LEAST], [LEAST, 0], [0, LEAST], [-LEAST, 0]]),
-  11: (paint, x, y) => polygon(paint, [[x, y], [-x, y], [0, -y]]),
-};
-const LIKE = { 3: 2, 5: 4, 6: 8, 7: 8, 10: 11 };
-
-function drawMarker(paint, colours, view, { type, position, heading, scale, color }, unit) {
-  const half = (size) => Math.max(LEAST, (Math.abs(size) * view.scale) / 2 / unit);
-  paint.save();
-  paint.translate(...view.toPixel(position));
-  paint.rotate(-heading);
-  paint.scale(unit, unit);
-  (SHAPES[LIKE[type] ?? type] ?? SHAPES[8])(paint, half(scale.x), half(scale.y || scale.x));
-  paint.fillStyle = css(color);
-  paint.lineWidth = 1;
-  paint.strokeStyle = color.a ? colours.ground : colours.soft; // one that cannot be seen shows as its outline
-  paint.fill();
-  paint.stroke();
-  paint.restore();
-}
-
-/** `unit`: pixels, by the size of the page's letters. */
-export function drawMarkers(paint, colours, view, markers, unit) {
-  for (const marker of markers) {
-    if (marker.type !== TEXT) drawMarker(paint, colours, view, marker, unit);
-  }
-}
-
-/** Their texts, where reports and robots have left room for them. */
+/** Their texts, and what meshes are, where reports and robots have left room for them. */
 export function writeMarkers(labels, view, markers) {
-  for (const { type, position, color, scale, text } of markers) {
+  for (const { type, position, color, scale, text, mesh } of markers) {
+    if (type === MESH) labels.write(clip(mesh, LONGEST), ...view.toPixel(position), { colour: labels.colours.soft });
     if (type !== TEXT) continue;
     const size = Math.min(48, Math.max(labels.size, scale.z * view.scale));
     const colours = color.a ? { colour: css({ ...color, a: 1 }), rim: rimOf(color) } : { colour: labels.colours.soft };

@@ -1,4 +1,6 @@
 // The one live page. Each part draws itself from the last view of the run that came from the box.
+import "./presses.js";
+import { showAside } from "./aside.js";
 import { badge, mark, say } from "./dom.js";
 import { follow } from "./live.js";
 import { showBoxDeeds } from "./box_deeds.js";
@@ -39,6 +41,7 @@ function show({ view, time, lost }) {
   showPair(view, time);
   sampleLink(view, time, lost);
   showPost(view, lost);
+  showAside(view.aside, time);
   showRefusals(view.refusals, time);
   say(document.getElementById("about"), `Adit ${clip(view.version, 40)} · the box's clock ${timeOfDay(time)}`);
   const title = lost ? "Box lost – Adit" : view.attention.length ? `(${view.attention.length}) Adit` : "Adit";

@@ -1,13 +1,29 @@
 // What this box refused to its senders, newest first, with the sentence that they got.
+import { cureOf, wayTo } from "./cure.js";
+import { barred } from "./deeds.js";
 import { list, make, say } from "./dom.js";
 import { ago, clip } from "./words.js";
+
+/** For who may change settings: the way to the one that would have had it taken. */
+function showCure(link, sentence) {
+  const key = barred() ? "" : cureOf(sentence);
+  link.hidden = !key;
+  if (!key || link.dataset.of === key) return;
+  link.dataset.of = key;
+  link.href = wayTo(key);
+  say(link, `Set ${key}`);
+}
+
+/** How many poses or markers it was, or 1: a message as a whole. */
+const weightOf = (row) => row.parts || 1;
+const partsOf = (row) => (row.parts ? `${row.parts} ${row.parts === 1 ? "part" : "parts"} of ` : "");
 
 const section = document.getElementById("refusals");
 
 export function showRefusals(refusals, now) {
   section.querySelector(".rows").hidden = refusals.length === 0;
   section.querySelector(".empty").hidden = refusals.length > 0;
-  say(section.querySelector(".count"), refusals.length ? String(refusals.length) : "");
+  say(section.querySelector(".count"), refusals.length ? String(refusals.reduce((sum, row) => sum + weightOf(row), 0)) : "");
   // Two of one moment are told apart by how many stand before them.
   const seen = new Map();
   const key = (row) => {
@@ -15,12 +31,13 @@ export function showRefusals(refusals, now) {
     seen.set(name, (seen.get(name) ?? 0) + 1);
     return `${name} ${seen.get(name)}`;
   };
-  const create = () => make("li", make("span.status"), make("span.sentence"), make("span.who"), make("span.since"));
+  const create = () => make("li", make("span.status"), make("span.sentence"), make("span.who"), make("span.since"), make("a.cure"));
   list(section.querySelector(".rows"), refusals, key, create, (node, row) => {
-    const [status, sentence, who, since] = node.children;
+    const [status, sentence, who, since, cure] = node.children;
     say(status, String(row.status));
-    say(sentence, clip(row.sentence));
-    say(who, `${clip(row.uri, 60)} from ${clip(row.sender, 60)}`);
+    say(sentence, clip(row.sentence, 1200)); // ten of them, where parts of a message were refused
+    say(who, `${partsOf(row)}${clip(row.uri, 60)} from ${clip(row.sender, 60)}`);
     say(since, ago(now - row.at));
+    showCure(cure, row.sentence);
   });
 }

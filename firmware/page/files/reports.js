@@ -8,9 +8,13 @@ import { life } from "./verdict.js";
 import { ago, clip, metres } from "./words.js";
 
 const section = document.getElementById("reports");
-const rows = section.querySelector(".rows");
+const rows = section.querySelector(".rows"), others = section.querySelector(".others");
 const opened = new Set();
 let last = null; // what was shown: {view, now}
+let showsOthers = false; // what is done of other runs: of earlier ones, and of those at other Command Posts
+
+const isOpen = (report) => ["received", "waiting", "sending", "in doubt"].includes(report.state);
+const isOfOther = (report, view) => report.run !== view.run_number && !isOpen(report);
 
 const again = () => last && showReports(last.view, last.now);
 
@@ -30,9 +34,15 @@ function toggle(number) {
   again();
 }
 
+others.addEventListener("click", () => {
+  showsOthers = !showsOthers;
+  again();
+});
+
 /** Opens a report, brings it into view and puts the focus there. */
 export function reveal(number) {
   opened.add(number);
+  showsOthers ||= Boolean(last?.view.reports.some((report) => report.number === number && isOfOther(report, last.view)));
   again();
   const row = rows.querySelector(`[data-key="${number}"]`);
   row?.scrollIntoView({ block: "nearest" });
@@ -40,7 +50,10 @@ export function reveal(number) {
   return row !== null;
 }
 
-const nearestOf = (report, view) => (report.run === view.run_number && report.state !== "withdrawn" ? nearTo(view, report)[0] : undefined);
+const nearestOf = (report, view) => (report.position && report.run === view.run_number && report.state !== "withdrawn" ? nearTo(view, report)[0] : undefined);
+
+/** A report without a position is one that damage took from the ledger. */
+const placeOf = ({ position }) => (position ? `${metres(position.x)}, ${metres(position.y)}, ${metres(position.z)} m` : "lost from the ledger");
 
 /** What else there is to know: the Command Post's words, or why it is where it is. */
 function more(report, nearest) {
@@ -78,36 +91,44 @@ function showDeeds(node, report, view, isShown) {
 
 function update(node, report, view, now) {
   const { level, word } = life(report);
-  const isOpen = opened.has(report.number);
+  const isMore = opened.has(report.number);
   const [verdict, what, where, since, rest, open, acts, outcome, story] = node.children;
   const [near, deeds] = acts.children;
   mark(node, "level", level);
   badge(verdict, level, clip(word, 40));
   say(what, clip(report.type, 40));
-  const { x, y, z } = report.position;
-  say(where, `${metres(x)}, ${metres(y)}, ${metres(z)} m`);
+  say(where, placeOf(report));
   const earlier = report.run === view.run_number ? "" : ` · run ${report.run}`;
   say(since, `#${report.number} · ${ago(now - report.received)}${earlier}`);
   const nearest = nearestOf(report, view);
   say(rest, clip(more(report, nearest)));
-  showNear(near, report, isOpen || level === "ask" ? nearest : undefined);
-  open.setAttribute("aria-expanded", String(isOpen));
+  showNear(near, report, isMore || level === "ask" ? nearest : undefined);
+  open.setAttribute("aria-expanded", String(isMore));
   say(open.lastChild, `More of report ${report.number}`);
-  showDeeds(deeds, report, view, isOpen || level === "ask");
+  showDeeds(deeds, report, view, isMore || level === "ask");
   const came = outcomeOf(report.number);
   say(outcome, came ? clip(came.text) : isBusy(report.number) ? "…" : "");
   mark(outcome, "bad", String(Boolean(came?.bad)));
-  story.hidden = !isOpen;
-  if (isOpen) showStory(story, report);
+  story.hidden = !isMore;
+  if (isMore) showStory(story, report);
+}
+
+/** "12, 2 open, 7 of other runs" */
+function counted(reports, othersCount) {
+  const open = reports.filter(isOpen).length;
+  return [reports.length || "", open ? `${open} open` : "", othersCount ? `${othersCount} of other runs` : ""].filter(Boolean).join(", ");
 }
 
 export function showReports(view, now) {
   last = { view, now };
-  const { reports } = view;
-  const open = reports.filter((report) => ["received", "waiting", "sending", "in doubt"].includes(report.state)).length;
-  say(section.querySelector(".count"), !reports.length ? "" : open ? `${reports.length}, ${open} open` : `${reports.length}`);
-  rows.hidden = reports.length === 0;
-  section.querySelector(".empty").hidden = reports.length > 0;
+  const elsewhere = view.reports.filter((report) => isOfOther(report, view)).length;
+  const shown = view.reports.filter((report) => showsOthers || !isOfOther(report, view));
+  say(section.querySelector(".count"), counted(view.reports.filter((report) => !isOfOther(report, view)), elsewhere));
+  others.hidden = elsewhere === 0;
+  others.setAttribute("aria-pressed", String(showsOthers));
+  say(others, "Other runs");
+  rows.hidden = shown.length === 0;
+  section.querySelector(".empty").hidden = shown.length > 0;
   say(section.querySelector(".barred"), barred());
-  list(rows, reports, (report) => report.number, create, (node, report) => update(node, report, view, now));
+  list(rows, shown, (report) => report.number, create, (node, report) => update(node, report, view, now));
 }

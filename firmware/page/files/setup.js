@@ -1,6 +1,7 @@
 // Set-up: the box's addresses, the Command Post's, tokens, robots, courses and all else, in steps: in order at first, in
 // any order later.
-import { apply, offerApply, offerImport } from "./apply.js";
+import "./presses.js";
+import { apply, goTo, offerApply, offerImport } from "./apply.js";
 import { setTyped, showCourses, showTokens } from "./courses.js";
 import { badge, list, make, mark, say } from "./dom.js";
 import { checkAsTyped, draft, missingTokens, onDraft, onVerdict, refresh, verdict } from "./draft.js";
@@ -124,6 +125,8 @@ async function begin() {
   document.querySelector(".choose").hidden = isViewer;
   leadThrough();
   offerApply();
+  const wanted = new URLSearchParams(location.search).get("setting"); // a way from elsewhere: cure.js
+  if (wanted) goTo({ path: wanted });
   followNetwork((network, error) => {
     if (network) showNetwork(network);
     if (error !== undefined) linkIs(error !== null && !error.status);

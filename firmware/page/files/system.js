@@ -1,4 +1,5 @@
 // The box itself: its log, who is logged in, passwords, what to send to whoever is to help, and what it is made of.
+import "./presses.js";
 import { badge } from "./dom.js";
 import { followLog } from "./log.js";
 import { offerBundle, offerReset, offerUpdate, showAbout } from "./box.js";

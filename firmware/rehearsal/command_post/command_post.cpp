@@ -95,7 +95,7 @@ Outcome CommandPost::mapping(const Request& request) {
 }
 
 Outcome CommandPost::receive(Side& side, std::optional<Aim> aim, const Request& request) {
-  const Fault fault = aim ? faults_.next(*aim) : Fault{};
+  const Fault fault = aim ? faults_.next(*aim, request.body, Clock::now()) : Fault{};
   if (!fault.record_after) return decide(side, aim, fault, request);
   return later(*fault.record_after, [this, &side, aim, fault, &request] {
     Request late = request;

@@ -6,16 +6,16 @@
 #include <array>
 #include <boost/asio/buffer.hpp>
 #include <boost/beast/http/parser.hpp>
-#include <boost/beast/http/string_body.hpp>
 #include <cerrno>
 
+#include "rehearsal/command_post/held_body.hpp"
 #include "rehearsal/command_post/sockets.hpp"
 
 namespace adit::rehearsal {
 namespace {
 
 namespace http = boost::beast::http;
-using Parser = http::request_parser<http::string_body>;
+using Parser = http::request_parser<HeldBody>;
 
 constexpr std::uint32_t kMostHeader = 16 * 1024;
 constexpr std::size_t kPiece = std::size_t{64} << 10;

@@ -15,7 +15,7 @@ struct DeedWord {
   Deed deed;
 };
 
-constexpr std::array<DeedWord, 10> kDeeds = {{{"drop", Deed::Drop},
+constexpr std::array<DeedWord, 20> kDeeds = {{{"drop", Deed::Drop},
                                               {"record-then-drop", Deed::RecordThenDrop},
                                               {"half-answer", Deed::HalfAnswer},
                                               {"reset", Deed::Reset},
@@ -24,7 +24,17 @@ constexpr std::array<DeedWord, 10> kDeeds = {{{"drop", Deed::Drop},
                                               {"401", Deed::Unauthorized},
                                               {"429", Deed::TooMany},
                                               {"500", Deed::Fail},
-                                              {"500-recorded", Deed::RecordThenFail}}};
+                                              {"500-recorded", Deed::RecordThenFail},
+                                              {"html-200", Deed::PageOk},
+                                              {"html-302", Deed::PageElsewhere},
+                                              {"html-400", Deed::PageBad},
+                                              {"html-422", Deed::PageUnprocessable},
+                                              {"length-huge", Deed::LengthHuge},
+                                              {"chunk-huge", Deed::ChunkHuge},
+                                              {"header-flood", Deed::HeaderFlood},
+                                              {"endless-body", Deed::EndlessBody},
+                                              {"1xx-flood", Deed::InterimFlood},
+                                              {"json-deep", Deed::JsonDeep}}};
 
 /// Of any deed but Behave.
 std::string_view word_for(Deed deed) {
@@ -34,6 +44,8 @@ std::string_view word_for(Deed deed) {
 constexpr int kMostTimes = 10'000;
 constexpr int kMostOffset = 1'000'000;
 constexpr int kMostSeconds = 3600;
+constexpr int kMostRetryAfter = 2'000'000'000;
+constexpr std::size_t kLongestName = 100;
 
 /// A word as it was given: its name, and what stands behind the first '='.
 struct Word {
@@ -110,10 +122,17 @@ Taken take_deed(const Word& word, Deed deed, Fault& fault) {
 Taken take(const Word& word, Fault& fault) {
   if (word.name == "record-after") return take_seconds(word, fault.record_after);
   if (word.name == "answer-after") return take_seconds(word, fault.answer_after);
+  if (word.name == "for") return take_seconds(word, fault.lasts);
+  if (word.name == "robot") {
+    const std::string_view name = word.argument.value_or("");
+    if (name.empty() || name.size() > kLongestName) return wanted(word, "a robot's name, as in robot=ugv1");
+    fault.robot = name;
+    return {};
+  }
   if (word.name == "remaining") return take_remaining(word, fault);
   if (word.name == "retry-after") {
-    const auto seconds = number_of<int>(word.argument.value_or(""), 0, kMostSeconds);
-    if (!seconds) return wanted(word, "whole seconds from 0 to 3600, as in retry-after=2");
+    const auto seconds = number_of<int>(word.argument.value_or(""), 0, kMostRetryAfter);
+    if (!seconds) return wanted(word, "whole seconds from 0 to 2000000000, as in retry-after=2");
     return set_once(fault.retry_after, *seconds, word);
   }
   if (word.name == "other-sender") {
@@ -125,7 +144,8 @@ Taken take(const Word& word, Fault& fault) {
   if (found != kDeeds.end()) return take_deed(word, found->deed, fault);
   std::string sentence = "no such fault: " + quoted(word.name) + "; there are ok";
   for (const DeedWord& deed : kDeeds) sentence.append(", ").append(deed.word);
-  return std::unexpected(sentence + ", answer-after, record-after, remaining, other-sender, retry-after");
+  return std::unexpected(sentence +
+                         ", answer-after, record-after, remaining, other-sender, retry-after, for, robot");
 }
 
 std::string text_of(double number) {
@@ -137,8 +157,9 @@ std::string text_of(double number) {
 }  // namespace
 
 bool Fault::records() const {
-  constexpr std::array unrecorded = {Deed::Drop, Deed::ResetUnrecorded, Deed::Unauthorized, Deed::TooMany,
-                                     Deed::Fail};
+  constexpr std::array unrecorded = {
+      Deed::Drop,   Deed::ResetUnrecorded, Deed::Unauthorized, Deed::TooMany,          Deed::Fail,
+      Deed::PageOk, Deed::PageElsewhere,   Deed::PageBad,      Deed::PageUnprocessable};
   return std::ranges::find(unrecorded, deed) == unrecorded.end();
 }
 
@@ -165,10 +186,13 @@ std::string words_of(const Fault& fault) {
   if (fault.remaining) {
     add(*fault.remaining < 0 ? "remaining=" : "remaining=+") += std::to_string(*fault.remaining);
   }
+  if (fault.clock_stands) add("clock:constant");
   if (fault.record_after) add("record-after=") += text_of(fault.record_after->count());
   if (fault.answer_after) add("answer-after=") += text_of(fault.answer_after->count());
   if (fault.deed != Deed::Behave) add(word_for(fault.deed));
   if (fault.times > 1) words.append("=").append(std::to_string(fault.times));
+  if (fault.lasts) add("for=") += text_of(fault.lasts->count());
+  if (!fault.robot.empty()) add("robot=") += fault.robot;
   if (fault.retry_after) add("retry-after=") += std::to_string(*fault.retry_after);
   return words.empty() ? "ok" : words;
 }

@@ -23,17 +23,32 @@ struct Fault {
     Unauthorized,
     TooMany,
     Fail,
-    RecordThenFail
+    RecordThenFail,
+    // A page of HTML in place of an answer, as of a captive portal.
+    PageOk,
+    PageElsewhere,
+    PageBad,
+    PageUnprocessable,
+    // What would end a client that takes a peer at its word.
+    LengthHuge,
+    ChunkHuge,
+    HeaderFlood,
+    EndlessBody,
+    InterimFlood,
+    JsonDeep
   };
   using Seconds = std::chrono::duration<double>;
 
   Deed deed = Deed::Behave;
-  int times = 1;  // that many requests, one after the other (429=COUNT)
+  int times = 1;                 // that many requests, one after the other (429=COUNT)
+  std::optional<Seconds> lasts;  // from its first request on, all those of its aim
+  std::string robot;             // of whose messages alone; "": of all
   bool other_sender = false;
   std::optional<std::int64_t> remaining;  // added to remaining_reports, from then on
   std::optional<Seconds> record_after;
   std::optional<Seconds> answer_after;
   std::optional<int> retry_after;  // seconds, in a header of the answer
+  bool clock_stands = false;       // run_clock is what the measured server always says
 
   /// Whether the request is judged at all.
   bool records() const;

@@ -6,6 +6,10 @@
 namespace adit::rehearsal {
 namespace {
 
+constexpr const char* kClock = "clock";
+constexpr std::string_view kClockAim = "clock:";
+constexpr const char* kConstant = "constant";
+constexpr const char* kRunning = "running";
 constexpr const char* kTooMany = "no more than 10000 faults can wait";
 
 std::optional<Aim> aim_named(std::string_view name) {
@@ -18,7 +22,21 @@ std::string no_such_aim(std::string_view name) {
   constexpr std::size_t longest = 80;
   return std::string("no such aim: '")
       .append(name.substr(0, longest))
-      .append("'; there are reports, status, mapping");
+      .append("'; there are reports, status, mapping, clock");
+}
+
+/// Whether the fault may happen to the request of that body: one of its robot, or of any.
+bool is_of(const Fault& fault, std::string_view body) {
+  return fault.robot.empty() || body.find(fault.robot) != std::string_view::npos;
+}
+
+/// Of the word behind "clock:".
+std::expected<bool, std::string> clocks_stand_by(std::string_view word) {
+  if (word == kConstant) return true;
+  if (word == kRunning) return false;
+  constexpr std::size_t longest = 80;
+  return std::unexpected(
+      std::string("expected constant or running, got '").append(word.substr(0, longest)).append("'"));
 }
 
 }  // namespace
@@ -36,19 +54,25 @@ std::expected<Faults::Aimed, std::string> Faults::read_aimed(std::string_view te
   return Aimed{*aim, *fault};
 }
 
-Faults::Told Faults::append(const std::vector<Aimed>& aimed) {
+Faults::Told Faults::obey(const Orders& orders) {
   const std::lock_guard lock(mutex_);
-  std::size_t waiting = aimed.size();
+  std::size_t waiting = orders.aimed.size();
   for (const auto& queue : queues_) waiting += queue.size();
   if (waiting > kMost) return std::unexpected(kTooMany);
-  for (const auto& [aim, fault] : aimed) queue(aim).push_back(fault);
+  for (const auto& [aim, fault] : orders.aimed) queue(aim).push_back(fault);
+  clocks_stand_ = orders.clocks_stand.value_or(clocks_stand_);
   return {};
 }
 
 Faults::Told Faults::tell(std::string_view aim_and_fault) {
+  if (aim_and_fault.starts_with(kClockAim)) {
+    const auto stand = clocks_stand_by(aim_and_fault.substr(kClockAim.size()));
+    if (!stand) return std::unexpected("clock: " + stand.error());
+    return obey({.aimed = {}, .clocks_stand = *stand});
+  }
   const auto aimed = read_aimed(aim_and_fault);
   if (!aimed) return std::unexpected(aimed.error());
-  return append({*aimed});
+  return obey({.aimed = {*aimed}, .clocks_stand = {}});
 }
 
 Faults::Told Faults::tell_rate(std::string_view aim_fault_and_rate) {
@@ -74,62 +98,95 @@ Faults::Told Faults::tell_rate(std::string_view aim_fault_and_rate) {
   return {};
 }
 
-Faults::Told Faults::tell_all(const Json& told) {
-  if (!told.is_object()) return std::unexpected(R"(expected an object, as in {"reports": ["drop"]})");
-  std::vector<Aimed> aimed;
-  for (const auto& [name, list] : told.items()) {
-    const auto aim = aim_named(name);
-    if (!aim) return std::unexpected(no_such_aim(name));
-    if (!list.is_array()) return std::unexpected(name + ": expected an array of faults");
-    for (std::size_t i = 0; i < list.size(); ++i) {
-      const std::string where = name + "[" + std::to_string(i) + "]: ";
-      if (!list[i].is_string()) return std::unexpected(where + R"(expected a text, as in "drop")");
-      const auto fault = read_fault(list[i].get_ref<const std::string&>());
+/// The array `list` that stands under `name`.
+Faults::Told Faults::read_list(const std::string& name, const Json& list, Orders& orders) {
+  const bool of_clocks = name == kClock;
+  const auto aim = aim_named(name);
+  if (!aim && !of_clocks) return std::unexpected(no_such_aim(name));
+  if (!list.is_array()) return std::unexpected(name + ": expected an array of faults");
+  for (std::size_t i = 0; i < list.size(); ++i) {
+    const std::string where = name + "[" + std::to_string(i) + "]: ";
+    if (!list[i].is_string()) return std::unexpected(where + R"(expected a text, as in "drop")");
+    const auto& words = list[i].get_ref<const std::string&>();
+    if (of_clocks) {
+      const auto stand = clocks_stand_by(words);
+      if (!stand) return std::unexpected(where + stand.error());
+      orders.clocks_stand = *stand;
+    } else {
+      const auto fault = read_fault(words);
       if (!fault) return std::unexpected(where + fault.error());
-      aimed.emplace_back(*aim, *fault);
+      orders.aimed.emplace_back(*aim, *fault);
     }
   }
-  return append(aimed);
+  return {};
+}
+
+Faults::Told Faults::tell_all(const Json& told) {
+  if (!told.is_object()) return std::unexpected(R"(expected an object, as in {"reports": ["drop"]})");
+  Orders orders;
+  for (const auto& [name, list] : told.items()) {
+    if (const auto read = read_list(name, list, orders); !read) return read;
+  }
+  return obey(orders);
 }
 
 void Faults::clear() {
   const std::lock_guard lock(mutex_);
   for (auto& queue : queues_) queue.clear();
+  until_ = {};
   rates_.clear();
   remaining_offset_ = 0;
+  clocks_stand_ = false;
 }
 
-Fault Faults::at_random(Aim aim) {
+/// One that is to happen to more than one request waits for the others, as if it had been told just now.
+Fault Faults::at_random(Aim aim, std::string_view body, Clock::time_point now) {
   constexpr double part = 0x1p-53;  // the upper 53 bits as a number from 0 to 1
   if (std::ranges::find(rates_, aim, &Rate::aim) == rates_.end()) return {};
   double drawn = static_cast<double>(chance_() >> 11) * part;
   for (const Rate& rate : rates_) {
     if (rate.aim != aim) continue;
-    if (drawn < rate.rate) return rate.fault;
-    drawn -= rate.rate;
+    if (drawn >= rate.rate) {
+      drawn -= rate.rate;
+      continue;
+    }
+    if (!is_of(rate.fault, body)) return {};
+    if (rate.fault.times == 1 && !rate.fault.lasts) return rate.fault;
+    queue(aim).push_front(rate.fault);
+    return *from_queue(aim, body, now);
   }
   return {};
 }
 
-Fault Faults::next(Aim aim) {
+/// The first in the queue that has not lasted for its time, and whose robot's this is; nothing: none waits.
+std::optional<Fault> Faults::from_queue(Aim aim, std::string_view body, Clock::time_point now) {
+  auto& waiting = queue(aim);
+  auto& until = until_[static_cast<std::size_t>(aim)];
+  if (until && now >= *until) {
+    waiting.pop_front();
+    until.reset();
+  }
+  if (waiting.empty()) return std::nullopt;
+  Fault& front = waiting.front();
+  if (front.lasts && !until) until = now + std::chrono::duration_cast<Clock::duration>(*front.lasts);
+  if (!is_of(front, body)) return Fault{};
+  Fault fault = front;
+  fault.times = 1;
+  if (front.lasts) return fault;
+  if (--front.times == 0) waiting.pop_front();
+  return fault;
+}
+
+Fault Faults::next(Aim aim, std::string_view body, Clock::time_point now) {
   const std::lock_guard lock(mutex_);
-  Fault fault;
-  if (queue(aim).empty()) {
-    fault = at_random(aim);
-  } else {
-    fault = queue(aim).front();
-    queue(aim).pop_front();
-  }
-  if (fault.times > 1) {
-    --fault.times;
-    queue(aim).push_front(fault);
-    fault.times = 1;
-  }
+  const auto waited = from_queue(aim, body, now);
+  Fault fault = waited ? *waited : at_random(aim, body, now);
   if (fault.remaining) {
     remaining_offset_ = *fault.remaining;
   } else if (aim == Aim::Status && remaining_offset_ != 0) {
     fault.remaining = remaining_offset_;
   }
+  fault.clock_stands = clocks_stand_ && aim != Aim::Mapping;
   return fault;
 }
 
@@ -147,6 +204,7 @@ OrderedJson Faults::left() const {
                      {"rate", rate.rate}});
   }
   left["remaining_offset"] = remaining_offset_;
+  left[kClock] = clocks_stand_ ? kConstant : kRunning;
   return left;
 }
 

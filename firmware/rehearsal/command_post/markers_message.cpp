@@ -5,7 +5,8 @@
 namespace adit::rehearsal {
 namespace {
 
-constexpr std::int64_t kLastType = 11;  // TRIANGLE_LIST of visualization_msgs/Marker
+// Of visualization_msgs/Marker.
+constexpr std::int64_t kLineStrip = 4, kPoints = 8, kTriangleList = 11, kLastType = kTriangleList;
 
 bool read_color(const Field& color) {
   for (const char* const name : {"r", "g", "b", "a"}) {
@@ -43,6 +44,40 @@ std::optional<std::string> read_identity(const Field& marker) {
   return ns ? ns->text() : std::string();
 }
 
+/// ROS's Marker has none, or one for each point, where its type is made of points and so has a use for them;
+/// rviz takes one for each triangle too.
+void check_colors(const Field& colors, std::size_t points, std::int64_t type) {
+  const auto elements = colors.elements();
+  if (!elements) return;
+  for (const Field& color : *elements) {
+    if (!read_color(color)) return;
+  }
+  const bool has_use = (type >= kLineStrip && type <= kPoints) || type == kTriangleList;
+  const bool for_triangles = type == kTriangleList && elements->size() == points / 3;
+  if (has_use && !elements->empty() && elements->size() != points && !for_triangles) {
+    colors.breaks("expected none or one for each point", Measured::Takes);
+  }
+}
+
+/// What the ICD means by "further documented in the ROS MarkerArray message documentation": the rest of
+/// visualization_msgs/Marker. The measured server publishes it.
+void check_geometry(const Field& marker, std::int64_t type) {
+  std::size_t count = 0;
+  if (const auto points = marker.optional_member("points")) {
+    const auto elements = points->elements();
+    if (!elements) return;
+    count = elements->size();
+    for (const Field& point : *elements) {
+      if (!read_point(point)) return;
+    }
+  }
+  if (const auto colors = marker.optional_member("colors")) check_colors(*colors, count, type);
+  if (const auto mesh = marker.optional_member("mesh_resource")) mesh->text();
+  for (const char* const name : {"frame_locked", "mesh_use_embedded_materials"}) {
+    if (const auto flag = marker.optional_member(name)) flag->boolean();
+  }
+}
+
 /// Members that the ICD wants in each marker and the measured server does not miss.
 void check_looks(const Field& marker) {
   if (const auto scale = marker.member("scale", Measured::Takes)) read_point(*scale);
@@ -59,11 +94,13 @@ bool read_marker(const Field& marker, MarkersMessage& message) {
   const auto action = marker.member("action");
   const auto pose = marker.member("pose");
   if (!ns || !type || !action || !pose) return false;
-  if (!type->integer(0, kLastType)) return false;
+  const auto shape = type->integer(0, kLastType);
+  if (!shape) return false;
   const auto deed = action->integer(0, 3);
   if (!deed || !read_pose(*pose)) return false;
   if (*deed == 1) action->breaks("expected 0, 2 or 3 (ICD 6.6)", Measured::Takes);
   check_looks(marker);
+  check_geometry(marker, *shape);
   message.namespaces.push_back(*ns);
   return true;
 }

@@ -30,7 +30,8 @@ const char* const kUsage =
     "                          GET, POST and DELETE /faults\n"
     "  [--verbose]             a line for each request, also where stdout is no terminal\n"
     "\n"
-    "AIM: reports, status, mapping. FAULT: ok, or words with a comma between them:\n"
+    "AIM: reports, status, mapping; clock:constant and clock:running: of all answers from then on.\n"
+    "FAULT: ok, or words with a comma between them:\n"
     "  drop, reset-unrecorded, 401, 429[=COUNT], 500     not recorded\n"
     "  record-then-drop, reset, half-answer, garbage, 500-recorded\n"
     "                                                    recorded, and the answer is lost\n"
@@ -113,7 +114,11 @@ std::map<std::string, Setter, std::less<>> setters(Options& options) {
 
 std::map<std::string, std::function<void()>, std::less<>> switches(Options& options) {
   return {
-      {"--as-measured", [&] { options.manner = Manner::AsMeasured; }},
+      {"--as-measured",
+       [&] {
+         options.manner = Manner::AsMeasured;
+         options.run.renames = false;
+       }},
       {"--not-started", [&] { options.not_started = true; }},
       {"--verbose", [&] { options.verbose = true; }},
       {"--help", [&] { options.help = true; }},

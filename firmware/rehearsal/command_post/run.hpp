@@ -12,14 +12,20 @@
 
 namespace adit::rehearsal {
 
+/// What the public test server's clocks always show, whatever the time: /api/status and answers to reports.
+inline constexpr double kMeasuredStatusClock = 25.98;
+inline constexpr double kMeasuredReportClock = 3.14;
+
 struct RunPlan {
   std::string team = "adit";
   std::string id = "1";
+  bool renames = true;  // a new run has another id by itself
   std::chrono::duration<double> length{3600};
   std::int64_t reports = 45;  // the allotment
 };
 
-/// What is different in a new run; what is not said stays, but for the run's id, which counts up.
+/// What is different in a new run; what is not said stays, but for the run's id, which counts up
+/// where the plan has it so.
 struct NewRun {
   std::optional<std::string> id;
   std::optional<std::string> team;

@@ -71,7 +71,9 @@ void MeasuredScoring::judge_known(const Request& request, Judgement& judgement) 
   } else if (request.method != (judgement.uri == kStatusUri ? "GET" : "POST")) {
     judgement.outcome = detailed(405, "Method \"" + request.method + "\" not allowed.");
   } else if (judgement.uri == kStatusUri) {
-    judgement.outcome = answered(200, status_body(run_, Clock::now()));
+    OrderedJson body = status_body(run_, Clock::now());
+    body["run_clock"] = kMeasuredStatusClock;
+    judgement.outcome = answered(200, body);
   } else {
     judge_report(request, judgement);
   }
@@ -114,7 +116,8 @@ void MeasuredScoring::judge_report(const Request& request, Judgement& judgement)
   if (!is_artifact_type(type)) {
     judgement.findings.breaks("type: no artifact type of the final event (ICD 5.2)", Measured::Takes);
   }
-  const Run::Ruling ruling = run_.submit(type, position, Clock::now());
+  Run::Ruling ruling = run_.submit(type, position, Clock::now());
+  ruling.clock = kMeasuredReportClock;
   judgement.report = report_body(ruling, sent, kNoAuthority);
   judgement.outcome = answered(201, *judgement.report);
   judgement.accepted.push_back({"report", ""});

@@ -13,6 +13,13 @@
 #include "rehearsal/command_post/sockets.hpp"
 
 namespace adit::rehearsal {
+namespace {
+
+void given_up(const char* why) {
+  std::fprintf(stderr, "adit-rehearsal: a connection was given up: %s\n", why);
+}
+
+}  // namespace
 
 std::expected<std::unique_ptr<Server>, std::string> Server::listen(const Address& address, WireManner manner,
                                                                    Decide decide) {
@@ -68,7 +75,17 @@ void Server::accept_all() {
       if (connections_ == kMostConnections) continue;  // closes it
       ++connections_;
     }
+    begin(std::move(socket));
+  }
+}
+
+/// Where there is no thread to be had, the connection is closed, and others are accepted.
+void Server::begin(loop::FileDescriptor socket) {
+  try {
     std::thread([this, held = std::move(socket)]() mutable { serve(std::move(held)); }).detach();
+  } catch (const std::exception& error) {
+    given_up(error.what());
+    over();
   }
 }
 
@@ -77,9 +94,13 @@ void Server::serve(loop::FileDescriptor socket) {
     Connection connection(std::move(socket), stop_event_.get(), manner_, decide_);
     if (connection.serve() == Connection::End::EndpointDies) stop();
   } catch (const std::exception& error) {  // memory that has run out
-    std::fprintf(stderr, "adit-rehearsal: a connection was given up: %s\n", error.what());
+    given_up(error.what());
   }
-  // The last touch of this object: whoever waits for it may end it once the lock is free.
+  over();
+}
+
+/// The last touch of this object by a connection: whoever waits for it may end it once the lock is free.
+void Server::over() {
   const std::lock_guard lock(mutex_);
   --connections_;
   ended_.notify_all();

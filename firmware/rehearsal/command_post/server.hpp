@@ -52,7 +52,9 @@ class Server {
   Server(loop::FileDescriptor listener, loop::FileDescriptor stop_event, Address address, WireManner manner,
          Decide decide);
   void accept_all();
+  void begin(loop::FileDescriptor socket);
   void serve(loop::FileDescriptor socket);
+  void over();
 
   loop::FileDescriptor listener_;
   loop::FileDescriptor stop_event_;  // readable from stop() on

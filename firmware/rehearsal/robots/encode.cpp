@@ -93,6 +93,12 @@ class Body {
 
   Json vector(const Vector3& v) const { return {{"x", number(v.x)}, {"y", number(v.y)}, {"z", number(v.z)}}; }
 
+  Json vectors(const std::vector<Vector3>& all) const {
+    Json array = Json::array();
+    for (const Vector3& one : all) array.push_back(vector(one));
+    return array;
+  }
+
   Json placement(const Placement& placement) const {
     const Rotation& q = placement.orientation;
     return {
@@ -142,13 +148,18 @@ class Body {
                    {"a", number(marker.color.a)}}},
                  {"lifetime", marker.lifetime},
                  {"text", marker.text}};
+    if (!marker.points.empty()) json["points"] = vectors(marker.points);
+    if (!marker.mesh_resource.empty()) {
+      json["mesh_resource"] = marker.mesh_resource;
+      json["mesh_use_embedded_materials"] = true;
+    }
     if (style_.ros) {
       json["lifetime"] = secs_and_nsecs(marker.lifetime);
       json["frame_locked"] = false;
-      json["points"] = Json::array();
+      json["points"] = vectors(marker.points);
       json["colors"] = Json::array();
-      json["mesh_resource"] = "";
-      json["mesh_use_embedded_materials"] = false;
+      json["mesh_resource"] = marker.mesh_resource;
+      json["mesh_use_embedded_materials"] = !marker.mesh_resource.empty();
     }
     return json;
   }

@@ -79,7 +79,7 @@ struct Color {
 
 /// ICD 6.6; types and actions are ROS's numbers.
 struct Marker {
-  enum Type : int { Cube = 1, Sphere = 2, Text = 9 };
+  enum Type : int { Cube = 1, Sphere = 2, LineStrip = 4, Text = 9, Mesh = 10 };
   enum Action : int { Add = 0, Delete = 2 };
   std::string ns;
   int id = 0;
@@ -90,6 +90,8 @@ struct Marker {
   Color color;
   double lifetime = 0;  // seconds
   std::string text;
+  std::vector<Vector3> points = {};  // of a LineStrip
+  std::string mesh_resource = {};    // of a Mesh
 };
 
 struct Markers {

@@ -7,6 +7,7 @@ constexpr double kPathEvery = 2;     // metres
 constexpr double kCommsEvery = 12;   // metres
 constexpr int kPathNodes = 60;       // that stand at a time
 constexpr double kCandidateFor = 8;  // seconds
+constexpr std::size_t kWayPoints = 400;
 
 }  // namespace
 
@@ -20,9 +21,30 @@ void MarkerScene::change(Marker marker) {
   changes_.push_back(std::move(marker));
 }
 
+/// A trajectory, as the ICD names them (2.2), and where it ends the robot's own shape.
+void MarkerScene::draw_way(const Vector3& position) {
+  way_.push_back(position);
+  if (way_.size() > kWayPoints) way_.erase(way_.begin());
+  change({.ns = robot_ + "/way",
+          .type = Marker::LineStrip,
+          .position = {},
+          .size = 0.05,
+          .color = {.r = 0, .g = 1, .b = 0},
+          .text = {},
+          .points = way_});
+  change({.ns = robot_ + "/shape",
+          .type = Marker::Mesh,
+          .position = position,
+          .size = 1,
+          .color = {.r = 0.8, .g = 0.8, .b = 0.8},
+          .text = {},
+          .mesh_resource = "package://rehearsal/meshes/robot.dae"});
+}
+
 void MarkerScene::pass(const Vector3& position, double walked, double seconds) {
   const std::string path = robot_ + "/path";
   if (walked >= path_nodes_ * kPathEvery) {
+    draw_way(position);
     change({.ns = path,
             .id = path_nodes_++,
             .position = position,

@@ -9,9 +9,9 @@
 
 namespace adit::robots {
 
-/// The markers of one robot: the nodes of its path, the communication nodes that it drops, the artifacts
-/// that it believes to see. Candidates are deleted when the operator has dealt with them, and path nodes
-/// when they are old.
+/// The markers of one robot: its shape, the way it has gone as a line and as nodes, the communication nodes
+/// that it drops, the artifacts that it believes to see. Candidates are deleted when the operator has dealt
+/// with them, and path nodes when they are old.
 class MarkerScene {
  public:
   explicit MarkerScene(std::string robot) : robot_(std::move(robot)) {}
@@ -25,11 +25,13 @@ class MarkerScene {
 
  private:
   void change(Marker marker);
+  void draw_way(const Vector3& position);
 
   std::string robot_;
   int path_nodes_ = 0, oldest_node_ = 0, comm_nodes_ = 0, candidates_ = 0, calls_ = 0;
   std::map<std::pair<std::string, int>, Marker> standing_;  // by ns and id
   std::vector<Marker> changes_;
+  std::vector<Vector3> way_;
   std::map<int, double> candidates_until_;  // id: seconds
 };
 

@@ -1,5 +1,6 @@
 #include "dispatch/model/command_post.hpp"
 
+#include <algorithm>
 #include <cmath>
 
 #include "icd/sentence.hpp"
@@ -24,15 +25,20 @@ HttpAnswer CommandPost::record(const icd::ArtifactReport& report, Seconds now) {
   if (scored) --remaining_;
   score_ += points;
   recorded_.push_back({report.position.x, run_, scored, points, started_, now});
+  const bool stands = clocks_ == Clocks::Standing;
+  const double late = clocks_ == Clocks::Differing ? 50 : 0;
+  const double clock = stands ? 3.14 : std::max(0.0, now - started_ - late);
   return {201, "application/json",
-          icd::sentence("{\"id\": ", recorded_.size(), ", \"run\": \"", run_,
-                        "\", \"team\": \"adit\", \"run_clock\": ", now - started_, ", \"report_status\": \"",
-                        status, "\", \"score_change\": ", points, "}")};
+          icd::sentence("{\"id\": ", recorded_.size(), ", \"run\": \"", stands ? 1 : run_,
+                        "\", \"team\": \"adit\", \"run_clock\": ", clock, ", \"report_status\": \"", status,
+                        "\", \"score_change\": ", points, "}")};
 }
 
 icd::RunStatus CommandPost::status(Seconds now) const {
   return {.score = score_,
-          .run_clock = phase_ == Phase::NotStarted ? 0 : now - started_,
+          .run_clock = clocks_ == Clocks::Standing   ? 25.98
+                       : phase_ == Phase::NotStarted ? 0
+                                                     : now - started_,
           .remaining_reports = remaining_,
           .current_team = "adit"};
 }

@@ -25,6 +25,11 @@ struct Recorded {
 class CommandPost {
  public:
   enum class Phase { NotStarted, Running, AdminStop };
+  /// Running: both URIs show one clock. Differing: each has one of its own. Standing: as the public test
+  /// server does, each shows always the same, and every run is called "1".
+  enum class Clocks { Running, Differing, Standing };
+
+  explicit CommandPost(Clocks clocks = Clocks::Running) : clocks_(clocks) {}
 
   HttpAnswer record(const icd::ArtifactReport& report, Seconds now);
   icd::RunStatus status(Seconds now) const;
@@ -37,8 +42,9 @@ class CommandPost {
   const std::vector<Recorded>& recorded() const { return recorded_; }
 
  private:
+  const Clocks clocks_;
   Phase phase_ = Phase::Running;
-  std::int64_t run_ = 1;
+  std::int64_t run_ = 1;  // as it is told apart here
   Seconds started_ = 0;
   std::int64_t remaining_ = 25, score_ = 0;
   std::vector<Recorded> recorded_;

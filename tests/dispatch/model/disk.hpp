@@ -18,14 +18,14 @@ class Disk {
  public:
   struct Content {
     std::map<std::int64_t, Report> reports;
-    std::optional<Run> last_run;
+    std::map<std::int64_t, Run> runs;
   };
 
   bool write(std::span<const Report> steps, const Run* run, bool flushes) {
     if (full) return false;
     cut();
     for (const Report& report : steps) written_.reports[report.number] = report;
-    if (run != nullptr) written_.last_run = *run;
+    if (run != nullptr) written_.runs[run->number] = *run;
     if (flushes) flush();
     cut();
     return true;
@@ -38,6 +38,12 @@ class Disk {
     std::vector<Report> list;
     list.reserve(written_.reports.size());
     for (const auto& [number, report] : written_.reports) list.push_back(report);
+    return list;
+  }
+
+  std::vector<Run> runs() const {
+    std::vector<Run> list;
+    for (const auto& [number, run] : written_.runs) list.push_back(run);
     return list;
   }
 

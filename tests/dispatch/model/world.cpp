@@ -25,7 +25,8 @@ constexpr double kRefusedWrite = 0.02;
 
 }  // namespace
 
-World::World(const Trouble& trouble, std::uint64_t seed) : trouble_(trouble), random_(seed) {
+World::World(const Trouble& trouble, std::uint64_t seed)
+    : trouble_(trouble), random_(seed), posts_there_(trouble.courses ? 2 : 1, CommandPost(trouble.clocks)) {
   tells_ = std::getenv("ADIT_MODEL_STORY") != nullptr;
   disk_.cut = [this] {
     if (!calm_ && reports_ && chance() < trouble_.power_cut) throw PowerCut{};
@@ -35,10 +36,11 @@ World::World(const Trouble& trouble, std::uint64_t seed) : trouble_(trouble), ra
     clients_.push_back({.key = static_cast<double>(i) + 100,
                         .patience = chance() < 0.5 ? 0.3 : between(1, 30),
                         .pause = between(0.01, 3),
-                        .posted_at = {}});
+                        .posted = {}});
     later(between(0, kTrouble * 0.8), [this, i] { post(i); }, false);
   }
   later(between(1, 30), [this] { make_trouble(); }, false);
+  if (trouble_.courses) later(between(5, 60), [this] { switch_course(); }, false);
   later(20, [this] { take_operators_word(); }, false);
 }
 
@@ -79,7 +81,7 @@ void World::live() {
   tell_story("calm");
   run_until(kTrouble + kCalm);
   for (const Client& client : clients_) tally_.acknowledged += client.acknowledged ? 1 : 0;
-  tally_.recorded = static_cast<std::int64_t>(post_.recorded().size());
+  tally_.recorded = static_cast<std::int64_t>(recorded().size());
   for (const auto& [number, report] : disk_.content().reports) {
     tally_.undecided += report.state == ReportState::InDoubt ? 1 : 0;
     tally_.held += report.state == ReportState::Received ? 1 : 0;
@@ -129,7 +131,7 @@ void World::post(std::size_t who) {
   Client& client = clients_[who];
   if (client.done || client.waiting != 0) return;
   if (client.tries_left-- <= 0) return;
-  client.posted_at.push_back(now_);
+  client.posted.push_back({now_, place_, reports_ && reports_->run().was_heard()});
   ++tally_.posts;
   if (!reports_) return heard(who, false, false);
   const ClientId id = ++last_post_;
@@ -181,7 +183,29 @@ void World::start() {
   };
   alive(alive);
   tell_story("start");
-  reports_->open(disk_.reports(), disk_.content().last_run, time());
+  reports_->open(disk_.reports(), disk_.runs(), time(), icd::sentence("post ", place_, ":8000"));
+}
+
+/// The program begins anew, in good order, with another place in its settings. Whoever reported before does
+/// so again, whatever he was told: a robot that was started anew, or an operator who is not sure.
+void World::switch_course() {
+  if (calm_) return;
+  later(between(5, 90), [this] { switch_course(); }, false);
+  if (!reports_ || busy_) return;
+  place_ = static_cast<std::size_t>(between(0, static_cast<double>(posts_there_.size()) + 0.999));
+  tell_story(icd::sentence("the settings name place ", place_));
+  ++tally_.switches;
+  disk_.flush();
+  reports_->dismiss(true);
+  reports_.reset();
+  ++life_;
+  start();
+  for (std::size_t i = 0; i < clients_.size(); ++i) {
+    if (clients_[i].posted.empty() || chance() < 0.5) continue;
+    clients_[i].done = false;
+    clients_[i].tries_left += 3;
+    later(between(0, 20), [this, i] { post(i); }, false);
+  }
 }
 
 void World::cut_power() {
@@ -231,7 +255,7 @@ void World::record_at(const std::shared_ptr<Pending>& pending) {
         if (pending->done || pending->at > now_ + 1e-9) return;
         pending->done = true;
         tell_story(icd::sentence("recorded ", pending->report.position.x));
-        HttpAnswer answer = post_.record(pending->report, now_);
+        HttpAnswer answer = pending->post->record(pending->report, now_);
         if (pending->then) pending->then(std::move(answer));
       },
       false);
@@ -239,7 +263,7 @@ void World::record_at(const std::shared_ptr<Pending>& pending) {
 
 void World::record_later(Seconds delay, const icd::ArtifactReport& report,
                          std::function<void(HttpAnswer)> then) {
-  auto pending = std::make_shared<Pending>(Pending{report, now_ + delay, std::move(then)});
+  auto pending = std::make_shared<Pending>(Pending{report, &post(), now_ + delay, std::move(then)});
   pending_.push_back(pending);
   record_at(pending);
 }
@@ -261,6 +285,13 @@ void World::transmit(const Report& report) {
       reports_->lost("no answer", time());
     });
   };
+  if (!is_anybody_there()) {
+    later(between(0, 3), [this] {
+      busy_ = false;
+      reports_->never_left("nobody is there", time());
+    });
+    return;
+  }
   double dice = calm_ ? 1 : chance();
   const auto falls = [&dice](double probability) { return (dice -= probability) < 0; };
   const Seconds lost_after = chance() < 0.5 ? kRoundTrip : between(0.1, 10);
@@ -298,15 +329,16 @@ void World::ask() {
   busy_ = true;
   status_ready_ = now_ + 1;
   poll_at_ = now_ + 10;
-  if (!calm_ && chance() < trouble_.status_fails) {
-    later(between(0, 3), [this, reached = chance() < 0.5] {
+  const bool fails = !calm_ && chance() < trouble_.status_fails;
+  if (fails || !is_anybody_there()) {
+    later(between(0, 3), [this, reached = chance() < 0.5 && is_anybody_there()] {
       busy_ = false;
       reports_->status_failed(reached, time());
     });
     return;
   }
   later(kRoundTrip / 2, [this] {
-    later(kRoundTrip / 2, [this, status = post_.status(now_)] {
+    later(kRoundTrip / 2, [this, status = post().status(now_)] {
       busy_ = false;
       tell_story(icd::sentence("status: ", status.remaining_reports, " left, score ", status.score));
       reports_->status_heard(status, time());
@@ -340,7 +372,7 @@ void World::take_operators_word() {
 }
 
 void World::declare_run() {
-  if (reports_->run().began >= kEpoch + post_.run_began()) return;
+  if (reports_->run().began >= kEpoch + post().run_began()) return;
   declared_ = true;
   reports_->declare_new_run(time());
 }
@@ -353,14 +385,14 @@ void World::make_trouble() {
   if (trouble_.other_sender && chance() < 0.2) {
     tell_story("another sender reports");
     others_.push_back(now_);
-    post_.other_sender(now_);
+    post().other_sender(now_);
   }
   if (trouble_.admin_stops) {
-    post_.set(chance() < 0.3 ? CommandPost::Phase::AdminStop : CommandPost::Phase::Running);
+    post().set(chance() < 0.3 ? CommandPost::Phase::AdminStop : CommandPost::Phase::Running);
   }
-  if (trouble_.new_runs && chance() < 0.15 && now_ > post_.run_began() + kShortestRun) {
+  if (trouble_.new_runs && chance() < 0.15 && now_ > post().run_began() + kShortestRun) {
     tell_story("a new run");
-    post_.new_run(now_);
+    post().new_run(now_);
     if (trouble_.operator_acts) later(between(0, 3), [this] { declare_run(); });
   }
   if (chance() < trouble_.disk_full) {

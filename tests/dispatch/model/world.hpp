@@ -1,5 +1,6 @@
 #pragma once
 
+#include <algorithm>
 #include <cstdint>
 #include <functional>
 #include <map>
@@ -28,6 +29,8 @@ struct Trouble {
   double power_cut = 0;  // at each write, before or after it; and as often at any other event
   double disk_full = 0;  // for some seconds
   bool other_sender = false, admin_stops = false, new_runs = false;
+  CommandPost::Clocks clocks = CommandPost::Clocks::Running;
+  bool courses = false;        // the settings name one Command Post, another, or none that is there; and back
   bool operator_acts = false;  // and declares a new run that Adit has not noticed yet
   Review review = Review::Off;
 };
@@ -35,7 +38,7 @@ struct Trouble {
 /// What the product does, for tests that must not be vacuous.
 struct Tally {
   std::int64_t steps = 0, posts = 0, acknowledged = 0, recorded = 0, settled = 0, sent_again = 0,
-               power_cuts = 0, undecided = 0, held = 0, held_back = 0;
+               power_cuts = 0, undecided = 0, held = 0, held_back = 0, switches = 0;
 };
 
 /// Adit's rules, clients, a Command Post and what lies between, on simulated time. Everything comes from the
@@ -63,17 +66,24 @@ class World final : public Deeds {
     std::function<void()> happen;
     bool operator<(const Event& other) const { return at != other.at ? at > other.at : order > other.order; }
   };
+  struct Posting {
+    Seconds at = 0;
+    std::size_t place = 0;
+    bool heard = false;  // something was heard of a run at that place
+  };
   struct Client {
     double key = 0;
     Seconds patience = 20, pause = 1;
     std::int64_t tries_left = 20;
     ClientId waiting = 0;  // the post under way
     bool done = false, acknowledged = false;
-    std::vector<Seconds> posted_at;
+    std::vector<Posting> posted;
   };
 
   // The judge (judge.cpp): each adds what it finds broken.
   bool was_recorded(double key) const;
+  std::vector<Recorded> recorded() const;
+  bool was_meant(const Recorded& record, std::size_t place) const;
   void judge_records(std::vector<std::string>& broken) const;
   void judge_ledger(std::vector<std::string>& broken) const;
   void judge_clients(std::vector<std::string>& broken) const;
@@ -94,6 +104,9 @@ class World final : public Deeds {
 
   // The box.
   void start();
+  void switch_course();
+  CommandPost& post() { return posts_there_[std::min(place_, posts_there_.size() - 1)]; }
+  bool is_anybody_there() const { return place_ < posts_there_.size(); }
   void cut_power();
   void pump();
   void transmit(const Report& report);
@@ -115,7 +128,8 @@ class World final : public Deeds {
   std::priority_queue<Event> events_;
 
   Disk disk_;
-  CommandPost post_;
+  std::vector<CommandPost> posts_there_;  // by their places; at the one after the last nobody is
+  std::size_t place_ = 0;                 // that the settings name
   std::unique_ptr<Reports> reports_;
   std::int64_t life_ = 0;
   bool busy_ = false;
@@ -124,6 +138,7 @@ class World final : public Deeds {
   /// A request that the Command Post has read, and will record; shared with its event.
   struct Pending {
     icd::ArtifactReport report;
+    CommandPost* post = nullptr;
     Seconds at = 0;
     std::function<void(HttpAnswer)> then;
     bool done = false;

@@ -95,7 +95,7 @@ class Box {
 
   async end() {
     for (const program of Object.values(this.#programs).reverse()) await stop(program, "SIGKILL");
-    rmSync(this.folder, { recursive: true, force: true });
+    rmSync(this.folder, { recursive: true, force: true, maxRetries: 20, retryDelay: 50 });
   }
 }
 

@@ -120,7 +120,7 @@ test("begins a new run on the operator's word, and says before what becomes of w
   const question = page.getByRole("alertdialog");
   const press = () => page.getByRole("button", { name: "New run" }).first().click();
   await press();
-  assert.match(await question.innerText(), new RegExp(`Run ${before} ends, and run ${before + 1} begins\\. What waits is held, and goes only when you send it: #${number}\\.`));
+  assert.match(await question.innerText(), new RegExp(`Run ${before} ends, and a new one begins\\. What waits is held, and goes only when you send it: #${number}\\.`));
   await question.getByRole("button", { name: "Leave it" }).click();
   assert.equal((await made.run()).run_number, before);
   assert.equal(await made.state(number), "waiting");

@@ -1,0 +1,75 @@
+#include "cli/aside.hpp"
+
+#include <algorithm>
+
+#include "cli/ask.hpp"
+#include "cli/run_view.hpp"
+#include "cli/table.hpp"
+#include "cli/where.hpp"
+#include "cli/words.hpp"
+#include "codec/json.hpp"
+#include "page/as_json.hpp"
+
+namespace adit::cli {
+namespace {
+
+using Align = Table::Align;
+
+std::string table_of(const page::RunView& view, bool colour) {
+  if (view.aside.empty()) return "nothing is set aside\n";
+  Table table({{"number", Align::Right},
+               {"kind"},
+               {"robot"},
+               {"set aside", Align::Right},
+               {"size", Align::Right},
+               {"the Command Post said"},
+               {""}});
+  for (const page::AsideRow& row : view.aside) {
+    table.add({{std::to_string(row.number), Tone::Strong},
+               {row.kind},
+               {row.robot.empty() ? "(all)" : row.robot},
+               {duration(view.now - row.at) + " ago"},
+               {size(row.bytes)},
+               {std::to_string(row.status) + ": " + row.why, row.overtaken ? Tone::Faint : Tone::Bad},
+               {row.overtaken ? "something newer was sent" : "", Tone::Faint}});
+  }
+  return table.written(colour);
+}
+
+Outcome list(const Adit& adit, const Options& options, bool colour) {
+  const auto json = get(adit, "/adit/run");
+  if (!json) return unable(json.error());
+  const auto view = read_run_view(*json);
+  if (!view) return unable("Adit at " + written(adit.address) + " cannot be understood: " + view.error());
+  const bool waits =
+      std::ranges::any_of(view->aside, [](const page::AsideRow& row) { return !row.overtaken; });
+  const Exit exit = waits ? Exit::Attention : Exit::Fine;
+  if (options.json) return {exit, codec::write_json(page::json(view->aside)) + '\n', ""};
+  return {exit, table_of(*view, colour), ""};
+}
+
+}  // namespace
+
+Outcome aside(const Options& options, bool colour) {
+  const auto adit = adit_of(options);
+  if (!adit) return unable(adit.error());
+  if (options.word == "show") return list(*adit, options, colour);
+  Outcome outcome;
+  for (const std::int64_t number : options.numbers) {
+    const std::string text = std::to_string(number);
+    const auto answer = post(*adit, "/adit/aside/" + text + "/" + options.word, "", "adit aside");
+    if (!answer) {
+      outcome.exit = std::max(outcome.exit, answer.error().exit);
+      outcome.err += unable(answer.error().sentence).err;
+      if (answer.error().exit == Exit::Unable) break;
+    } else if (options.json) {
+      outcome.out += *answer + '\n';
+    } else {
+      outcome.out +=
+          text + (options.word == "send" ? " is sent again when its turn comes\n" : " is discarded\n");
+    }
+  }
+  return outcome;
+}
+
+}  // namespace adit::cli

@@ -1,0 +1,72 @@
+#include "dispatch/another_post.hpp"
+
+#include <algorithm>
+
+#include "icd/sentence.hpp"
+
+namespace adit::dispatch {
+namespace {
+
+/// What is not done, of the runs at the present Command Post.
+struct Open {
+  std::size_t waiting = 0, in_doubt = 0, held = 0;
+  std::size_t all() const { return waiting + in_doubt + held; }
+};
+
+Open open_here(const Reports& reports) {
+  Open open;
+  for (const auto& [number, report] : reports.book().all()) {
+    if (!reports.runs().is_here(report.run)) continue;
+    open.waiting += report.state == ReportState::Waiting ? 1 : 0;
+    open.held += report.state == ReportState::Received ? 1 : 0;
+    // What is under way now is in doubt where it has no answer by then.
+    const bool unclear = report.state == ReportState::InDoubt || report.state == ReportState::Sending;
+    open.in_doubt += unclear ? 1 : 0;
+  }
+  return open;
+}
+
+/// "2 reports wait, 1 is in doubt"
+std::string counted(const Open& open) {
+  std::string text;
+  const auto add = [&text](std::size_t count, const char* one, const char* many) {
+    if (count == 0) return;
+    const char* const what = text.empty() ? (count == 1 ? " report " : " reports ") : " ";
+    text += icd::sentence(text.empty() ? "" : ", ", count, what, count == 1 ? one : many);
+  };
+  add(open.waiting, "waits", "wait");
+  add(open.in_doubt, "is in doubt", "are in doubt");
+  add(open.held, "is held", "are held");
+  return text;
+}
+
+std::string what_is_known_at(const Reports& reports, const std::string& post) {
+  const Run* known = nullptr;
+  for (const auto& [number, run] : reports.runs().all()) {
+    if (run.post == post && (known == nullptr || run.place() > known->place())) known = &run;
+  }
+  if (known == nullptr) return "";
+  const auto count = std::ranges::count_if(
+      reports.book().all(), [known](const auto& item) { return item.second.run == known->number; });
+  return icd::sentence("; run ", known->number, " there is taken up again, with ", count,
+                       count == 1 ? " report" : " reports");
+}
+
+}  // namespace
+
+std::string meaning_of_another_post(const Reports& reports, const std::string& post) {
+  const std::string& here = reports.run().post;
+  std::string text = "reports go to " + post + " from then on" + what_is_known_at(reports, post);
+  const Open open = open_here(reports);
+  if (open.all() == 0) return text + "; none waits, is in doubt or is held now";
+  text += "; " + counted(open);
+  if (!reports.run().was_heard()) {
+    return text + ": nothing was heard from " + here +
+           " yet, so what waits is sent to the first Command Post that answers";
+  }
+  const char* const kept =
+      open.all() == 1 ? ": it is kept for the run at " : ": they are kept for the run at ";
+  return text + kept + here + ", and not sent to the new one unless you say so";
+}
+
+}  // namespace adit::dispatch

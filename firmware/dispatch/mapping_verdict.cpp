@@ -1,0 +1,41 @@
+#include "dispatch/mapping_verdict.hpp"
+
+#include <algorithm>
+
+#include "codec/json.hpp"
+
+namespace adit::dispatch {
+namespace {
+
+/// What a Command Post answers whose handler fails at a message; other 5xx come from something in between,
+/// and pass.
+constexpr int kHandlerFailed = 500;
+
+bool is_success(int status) {
+  return status >= 200 && status < 300;
+}
+
+}  // namespace
+
+Body body_of(std::string_view body) {
+  constexpr std::string_view kSpace = " \t\r\n";
+  if (body.find_first_not_of(kSpace) == std::string_view::npos) return Body::Empty;
+  return codec::is_json(body) ? Body::Json : Body::Other;
+}
+
+bool may_be_the_command_post(int status, Body body) {
+  if (status >= 300 && status < 400) return false;
+  return body != Body::Other || status == 404 || status == 429 || status >= 500;
+}
+
+MappingVerdict mapping_verdict(int status, Body body) {
+  if (is_success(status)) return body == Body::Other ? MappingVerdict::Failing : MappingVerdict::Taken;
+  if (status == 429) return MappingVerdict::Throttled;
+  if (status == kHandlerFailed) return MappingVerdict::Suspect;
+  if (status == 400 || status == 413 || status == 422) {
+    return body == Body::Other ? MappingVerdict::Suspect : MappingVerdict::Refused;
+  }
+  return MappingVerdict::Failing;
+}
+
+}  // namespace adit::dispatch

@@ -1,0 +1,201 @@
+// The run that all reports belong to: when it is another one, and what that does to them.
+#include "dispatch/report_verdict.hpp"
+#include "dispatch/reports.hpp"
+#include "dispatch/same_report.hpp"
+#include "icd/sentence.hpp"
+
+namespace adit::dispatch {
+namespace {
+
+/// It reached the Command Post, or may have.
+bool was_sent(const Report& report) {
+  return report.state == ReportState::Answered || report.state == ReportState::Settled ||
+         report.state == ReportState::InDoubt;
+}
+
+}  // namespace
+
+/// The settings name another Command Post: its run is on, and what is meant for the old one is kept for that.
+void Reports::change_post(const std::string& post, Time time) {
+  const std::string from = run().post;
+  const Run* const known = account_.at_post(post);
+  const std::int64_t next = known != nullptr ? known->number : account_.runs().next_number();
+  // What was taken before any word of a run is meant for the first one that is heard of.
+  std::vector<Report> steps;
+  for (const std::int64_t number : book_.waiting()) {
+    const Report& report = book_.at(number);
+    const Run* const meant = account_.runs().find(report.run);
+    const bool stays = meant == nullptr || meant->was_heard();
+    if (stays && (meant != &run() || from.empty())) continue;
+    Report& changed = steps.emplace_back(report);
+    changed.changed = time.stamp;
+    changed.note = stays ? "kept for the Command Post at " + from : "";
+    if (!stays) changed.run = next;
+  }
+  const std::vector<const Report*> doubts = book_.doubts(run().number);
+  if (known != nullptr) {
+    account_.take_up(next, steps, time);
+  } else {
+    account_.begin("the Command Post is at " + post + ", it was at " + from, 0, std::nullopt, steps, time);
+  }
+  explain(doubts, "", time);
+  doubt_began(time.now);
+}
+
+/// A status that is not of the present run.
+void Reports::meet(const AnotherRun& another, const icd::RunStatus& status, Time time) {
+  const bool other_team = run().last && are_other_teams(run().last->current_team, status.current_team);
+  const Run* const known = other_team ? account_.of_team(status.current_team) : nullptr;
+  if (known != nullptr) {
+    const auto differs = another_run(*known, status, time.stamp - known->heard);
+    if (!differs) return take_up_run(*known, another.why, time);
+    return begin_run(another.why, differs->certain ? 0 : known->number, status, time);
+  }
+  // More reports left than in the run that this one may be: it is another, and is the one that begins.
+  if (run().may_be != 0 && another.certain && !other_team && !anything_was_sent_here()) {
+    account_.is_another(time.stamp);
+    return clear_held(time);
+  }
+  begin_run(another.why, another.certain ? 0 : run().number, status, time);
+}
+
+/// An answer names the run that is on.
+void Reports::meet(const icd::ReportReply& reply, Time time) {
+  if (const auto another = account_.another(reply, time)) {
+    const Run* const known = another->certain ? account_.of_name(reply.run) : nullptr;
+    if (known != nullptr) return take_up_run(*known, another->why, time);
+    return begin_run(another->why, another->certain ? 0 : run().number, std::nullopt, time);
+  }
+  const Run* const before = account_.named_before();
+  if (before == nullptr || reply.run.empty() || !run().id.empty()) return;
+  if (before->id == reply.run) return return_to(*before, time);
+  account_.is_another(time.stamp);
+  clear_held(time);
+}
+
+bool Reports::anything_was_sent_here() const {
+  for (const auto& [number, report] : book_.all()) {
+    if (report.run == run().number && report.sending != 0) return true;
+  }
+  return false;
+}
+
+/// What waits was meant for the run before, but for what was posted just now. What is in doubt and was sent
+/// since shortly before the old run was last heard of may have been recorded in either: from now on it stands
+/// for the same report in the new one.
+std::vector<Report> Reports::steps_into(std::int64_t next, const std::string& why, Time time) {
+  const std::chrono::duration<double> late = rules_.patience.doubt_for + kYoung;
+  const double last_word = run().heard - late.count();
+  std::vector<Report> steps;
+  const auto step_of = [&](const Report& report, bool enters) {
+    Report& changed = steps.emplace_back(report);
+    changed.changed = time.stamp;
+    if (enters) {
+      changed.run = next;
+      changed.before.reset();
+    } else {
+      changed.state = transition(report.state, ReportEvent::Held)->to;
+      changed.note = "held: a new run began (" + why + ")";
+    }
+  };
+  for (const Report* const doubt : book_.doubts(run().number)) {
+    if (doubt->sent >= last_word) step_of(*doubt, true);
+  }
+  for (const std::int64_t number : book_.waiting()) {
+    const Report& report = book_.at(number);
+    if (!account_.runs().is_here(report.run)) continue;
+    const bool enters = is_young(report, time.now);
+    step_of(report, enters);
+    if (enters) unchecked_.insert(number);
+  }
+  return steps;
+}
+
+void Reports::begin_run(const std::string& why, std::int64_t may_be,
+                        const std::optional<icd::RunStatus>& status, Time time) {
+  const auto doubts = book_.doubts(run().number);
+  const auto steps = steps_into(account_.runs().next_number(), why, time);
+  inquiry_.reset();
+  account_.begin(why, may_be, status, steps, time);
+  explain(doubts, "", time);
+}
+
+/// One that was seen before goes on.
+void Reports::take_up_run(const Run& known, const std::string& why, Time time) {
+  const std::int64_t number = known.number;
+  const auto doubts = book_.doubts(run().number);
+  const auto steps = steps_into(number, why, time);
+  account_.take_up(number, steps, time);
+  explain(doubts, "", time);
+  doubt_began(time.now);
+}
+
+/// What was taken for a new run is `known` still: all that belongs to it is of that one, and what was held as
+/// a repeat of one of its reports is one.
+void Reports::return_to(const Run& known, Time time) {
+  const std::int64_t number = known.number;
+  std::vector<Report> steps;
+  std::vector<std::pair<std::int64_t, std::int64_t>> joined;
+  for (const auto& [each, report] : book_.all()) {
+    if (report.run != run().number) continue;
+    Report& changed = steps.emplace_back(report);
+    changed.run = number;
+    changed.changed = time.stamp;
+    if (report.state == ReportState::InDoubt) changed.before.reset();
+    if (report.state == ReportState::Waiting) unchecked_.insert(each);
+    if (report.state != ReportState::Received || report.same_as == 0) continue;
+    changed.state = transition(report.state, ReportEvent::Joined)->to;
+    changed.note = icd::sentence("the same as report ", report.same_as);
+    joined.emplace_back(each, report.same_as);
+  }
+  account_.merge_into(number, steps, time);
+  for (const auto& [each, original] : joined) hand_clients_over(each, book_.at(original));
+  doubt_began(time.now);
+}
+
+/// The present run is another for certain: what was held because that was not known is none of its repeats.
+void Reports::clear_held(Time time) {
+  std::vector<ReportBook::Step> steps;
+  for (const auto& [number, report] : book_.all()) {
+    const bool held = report.state == ReportState::Received && report.same_as != 0;
+    if (!held || report.run != run().number) continue;
+    steps.push_back({number, ReportEvent::Cleared,
+                     icd::sentence("report ", report.same_as, " is another run's"),
+                     [](Report& cleared) { cleared.same_as = 0; }});
+    unchecked_.insert(number);
+  }
+  if (!steps.empty()) take_steps(steps, time);
+}
+
+/// The same report as this one that was sent in another run of which `counts` is true; nothing: there is
+/// none.
+const Report* Reports::sent_elsewhere(const Report& report,
+                                      const std::function<bool(const Run&)>& counts) const {
+  for (const std::int64_t number : book_.at_position(report.report.position)) {
+    const Report& other = book_.at(number);
+    const Run* const its = account_.runs().find(other.run);
+    if (its == nullptr || its->number == run().number || other.number == report.number) continue;
+    const bool stands = was_sent(other) && !effect_of(other).again;
+    if (stands && is_same(other.report, report.report) && counts(*its)) return &other;
+  }
+  return nullptr;
+}
+
+/// The same report that was sent in the run that the present one may be still.
+const Report* Reports::maybe_same(const Report& report) const {
+  return sent_elsewhere(report,
+                        [this](const Run& its) { return account_.runs().may_be_present(its.number); });
+}
+
+/// The same report that was sent to a Command Post at another place, while nothing was heard of this one.
+const Report* Reports::sent_to_another_post(const Report& report) const {
+  if (run().was_heard() || report.asked) return nullptr;
+  return sent_elsewhere(report, [this](const Run& its) { return its.post != run().post; });
+}
+
+std::int64_t Reports::declare_new_run(Time time) {
+  begin_run("the operator says so", 0, std::nullopt, time);
+  return run().number;
+}
+
+}  // namespace adit::dispatch

@@ -1,0 +1,65 @@
+#include "dispatch/runs.hpp"
+
+#include <algorithm>
+#include <utility>
+
+namespace adit::dispatch {
+
+void Runs::open(std::vector<Run> all, std::int64_t latest) {
+  runs_.clear();
+  for (Run& run : all) runs_[run.number] = std::move(run);
+  if (runs_.empty() || runs_.rbegin()->first < latest) runs_[latest] = {.number = latest};
+  // One after all others, without a turn: it was begun by an Adit that knew of no turns.
+  present_ = runs_.rbegin()->first;
+  if (runs_.at(present_).turn == 0) return take_up(present_);
+  present_ = std::ranges::max_element(runs_, {}, [](const auto& item) { return item.second.place(); })->first;
+}
+
+const Run* Runs::find(std::int64_t number) const {
+  const auto found = runs_.find(number);
+  return found == runs_.end() ? nullptr : &found->second;
+}
+
+const Run* Runs::latest(const std::function<bool(const Run&)>& fits) const {
+  const Run* found = nullptr;
+  for (const auto& [number, run] : runs_) {
+    if (number == present_ || !fits(run)) continue;
+    if (found == nullptr || run.place() > found->place()) found = &run;
+  }
+  return found;
+}
+
+std::int64_t Runs::next_turn() const {
+  std::int64_t last = 0;
+  for (const auto& [number, run] : runs_) last = std::max(last, run.place());
+  return last + 1;
+}
+
+void Runs::begin(Run run) {
+  run.number = next_number();
+  run.turn = next_turn();
+  present_ = run.number;
+  runs_[present_] = std::move(run);
+}
+
+void Runs::take_up(std::int64_t number) {
+  runs_.at(number).turn = next_turn();
+  present_ = number;
+}
+
+bool Runs::is_here(std::int64_t number) const {
+  const Run* const run = find(number);
+  return run == nullptr || run->post.empty() || run->post == present().post;
+}
+
+bool Runs::may_be_present(std::int64_t number) const {
+  // Each is of an earlier number than the one that it may be.
+  const Run* run = &present();
+  while (run != nullptr && run->may_be != 0 && run->may_be < run->number) {
+    if (run->may_be == number) return true;
+    run = find(run->may_be);
+  }
+  return false;
+}
+
+}  // namespace adit::dispatch

@@ -1,0 +1,164 @@
+#include "intake/markers_upload.hpp"
+
+#include <optional>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "icd/sentence.hpp"
+#include "intake/take_parts.hpp"
+#include "loop/guard.hpp"
+
+namespace adit::intake {
+namespace {
+
+using Body = std::vector<std::vector<std::uint8_t>>;
+using Parts = icd::Checked<codec::InParts<icd::MarkersUpdate>>;
+
+Parts read_parts(codec::BodyDecoder& decoder, const icd::Rules& rules) {
+  const auto document = decoder.finish();
+  if (!document) return std::unexpected(document.error());
+  return codec::read_markers_parts(*document, rules);
+}
+
+/// The worker's part. What has been fed is freed.
+Parts read_large(codec::BodyKind kind, const icd::Rules& rules, Body& body) {
+  codec::BodyDecoder decoder(kind, codec::Split::Nothing, {.text_bytes = MarkersUpload::kMost});
+  for (auto& piece : body) {
+    if (auto fed = decoder.feed(piece); !fed) return std::unexpected(std::move(fed.error()));
+    std::vector<std::uint8_t>().swap(piece);
+  }
+  return read_parts(decoder, rules);
+}
+
+}  // namespace
+
+/// Outlives the exchange for as long as a worker is at it.
+class MarkersUpload::State : public std::enable_shared_from_this<State> {
+ public:
+  State(Visit visit, codec::BodyKind kind, const icd::Rules& rules, loop::Workers& workers,
+        std::shared_ptr<UploadBudget> budget)
+      : visit_(std::move(visit)),
+        kind_(kind),
+        rules_(rules),
+        workers_(workers),
+        budget_(std::move(budget)),
+        small_(std::in_place, kind, codec::Split::Nothing, codec::Limits{}) {
+    visit_.sender.bytes = 0;
+  }
+  State(const State&) = delete;
+  State& operator=(const State&) = delete;
+  ~State() { budget_->give_back(taken_); }
+
+  void take(std::span<const std::uint8_t> piece);
+  void whole();
+  void abandon() {
+    over_ = true;
+    body_.clear();
+  }
+  void turn_away(const icd::Refusal& refusal) {
+    if (over_) return;
+    abandon();
+    visit_.refuse(refusal);
+  }
+
+ private:
+  void feed(std::span<const std::uint8_t> piece);
+  /// False: it has been refused.
+  bool charge(std::size_t bytes);
+  void give_to_worker();
+  void decoded(const Parts& parts) {
+    if (over_) return;
+    abandon();
+    take_parts(visit_, parts);
+  }
+  void failed() {
+    turn_away(
+        {icd::Status::ServiceUnavailable, "the gateway could not hold these markers; send them again later"});
+  }
+
+  Visit visit_;
+  codec::BodyKind kind_;
+  icd::Rules rules_;
+  loop::Workers& workers_;
+  std::shared_ptr<UploadBudget> budget_;
+  std::size_t taken_ = 0;                    // of the budget
+  Body body_;                                // as it came
+  std::optional<codec::BodyDecoder> small_;  // nothing: it is large
+  bool over_ = false;                        // answered, the client is gone, or it is the desk's
+};
+
+bool MarkersUpload::State::charge(std::size_t bytes) {
+  if (budget_->take(bytes)) {
+    taken_ += bytes;
+    return true;
+  }
+  turn_away({icd::Status::TooManyRequests, "too much is being sent at once; send these markers again later"});
+  return false;
+}
+
+void MarkersUpload::State::take(std::span<const std::uint8_t> piece) {
+  if (over_) return;
+  visit_.sender.bytes += piece.size();
+  if (visit_.sender.bytes > kMost) {
+    return turn_away(
+        {icd::Status::ContentTooLarge, icd::sentence("body: expected at most ", kMost, " bytes")});
+  }
+  if (!charge(piece.size())) return;
+  body_.emplace_back(piece.begin(), piece.end());
+  if (small_) feed(piece);
+}
+
+void MarkersUpload::State::feed(std::span<const std::uint8_t> piece) {
+  const auto fed = small_->feed(piece);
+  if (fed) return;
+  if (fed.error().status != icd::Status::ContentTooLarge) return turn_away(fed.error());
+  small_.reset();
+  (void)charge(kReading);
+}
+
+void MarkersUpload::State::whole() {
+  if (over_) return;
+  if (!small_) return give_to_worker();
+  const Parts parts = read_parts(*small_, rules_);
+  decoded(parts);
+}
+
+void MarkersUpload::State::give_to_worker() {
+  auto body = std::make_shared<Body>(std::exchange(body_, {}));
+  auto parts = std::make_shared<Parts>();
+  workers_.submit([kind = kind_, rules = rules_, body, parts] { *parts = read_large(kind, rules, *body); },
+                  [self = shared_from_this(), parts] {
+                    if (!loop::guarded("taking markers", [&] { self->decoded(*parts); })) self->failed();
+                  },
+                  [self = shared_from_this()] { self->failed(); });
+}
+
+MarkersUpload::MarkersUpload(Visit visit, codec::BodyKind kind, const icd::Rules& rules,
+                             loop::Workers& workers, std::shared_ptr<UploadBudget> budget,
+                             std::shared_ptr<UnderWay> under_way)
+    : Upload(std::move(under_way)),
+      state_(std::make_shared<State>(std::move(visit), kind, rules, workers, std::move(budget))) {}
+
+MarkersUpload::~MarkersUpload() {
+  state_->abandon();
+}
+
+bool MarkersUpload::on_body(std::span<const std::uint8_t> piece) {
+  state_->take(piece);
+  return true;
+}
+
+void MarkersUpload::on_end() {
+  state_->whole();
+}
+
+void MarkersUpload::on_gone() {
+  state_->abandon();
+}
+
+void MarkersUpload::turn_away(const icd::Refusal& refusal) {
+  state_->turn_away(refusal);
+}
+
+}  // namespace adit::intake

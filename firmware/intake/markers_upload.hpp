@@ -1,0 +1,45 @@
+#pragma once
+
+#include <memory>
+
+#include "codec/body_decoder.hpp"
+#include "icd/rules.hpp"
+#include "intake/upload.hpp"
+#include "intake/upload_budget.hpp"
+#include "intake/visit.hpp"
+#include "loop/workers.hpp"
+
+namespace adit::intake {
+
+/// Takes a markers update of at most kMost bytes, compressed or not.
+///
+/// Nearly all are small: they are decoded on the loop as they arrive, and wait for nobody. One that turns out
+/// to be larger than codec::Limits::text_bytes (a marker may have icd::kMostMarkerPoints) is kept as it came,
+/// and decoded on a worker once it is whole.
+///
+/// Once whole and checked it is the desk's, also where the client has hung up meanwhile; until then a client
+/// that hangs up takes it back.
+class MarkersUpload final : public Upload {
+ public:
+  /// Room for every marker there can be: one of 100,000 points and as many colors takes 7.9 MB of CBOR.
+  static constexpr std::size_t kMost = 8u << 20;
+  /// What reading a large one is counted as in the budget, whatever its size.
+  static constexpr std::size_t kReading = 64u << 20;
+
+  MarkersUpload(Visit visit, codec::BodyKind kind, const icd::Rules& rules, loop::Workers& workers,
+                std::shared_ptr<UploadBudget> budget, std::shared_ptr<UnderWay> under_way);
+  ~MarkersUpload() override;
+  MarkersUpload(const MarkersUpload&) = delete;
+  MarkersUpload& operator=(const MarkersUpload&) = delete;
+
+  bool on_body(std::span<const std::uint8_t> piece) override;
+  void on_end() override;
+  void on_gone() override;
+  void turn_away(const icd::Refusal& refusal) override;
+
+ private:
+  class State;
+  std::shared_ptr<State> state_;
+};
+
+}  // namespace adit::intake

@@ -1,0 +1,282 @@
+#include "journal/carried.hpp"
+
+#include <algorithm>
+#include <utility>
+
+#include "codec/body_decoder.hpp"
+#include "codec/read.hpp"
+#include "codec/write.hpp"
+
+namespace adit::journal {
+namespace {
+
+/// A snapshot's messages are no larger than those that it is made of.
+constexpr std::size_t kMarkersInARecord = 500;
+
+/// By the ICD's own rules: a team's (aliases, frames) were applied before.
+template <class Message>
+std::optional<Message> message_in(std::string_view said,
+                                  icd::Checked<Message> (*read)(const codec::Document&, const icd::Rules&)) {
+  const auto document = codec::decode({codec::Format::Cbor, codec::ContentCoding::Identity},
+                                      codec::Split::Nothing, said, {.text_bytes = said.size()});
+  auto message = document ? read(*document, {}) : std::unexpected(document.error());
+  if (!message) return std::nullopt;
+  return std::move(*message);
+}
+
+std::optional<icd::Uri> uri_in(Reader& reader) {
+  const auto uri = static_cast<icd::Uri>(reader.number());
+  const bool known = std::ranges::find(icd::kUris, uri) != std::end(icd::kUris);
+  return reader.ok() && known ? std::optional(uri) : std::nullopt;
+}
+
+pace::Duration duration_in(Reader& reader) {
+  return pace::Duration(static_cast<std::int64_t>(reader.number()));
+}
+
+std::uint64_t number_of(pace::Duration duration) {
+  return static_cast<std::uint64_t>(std::int64_t{duration.count()});
+}
+
+}  // namespace
+
+bool Carried::apply(Kind kind, std::string_view said) {
+  switch (kind) {
+    case Kind::Clock:
+      return read_clock(said);
+    case Kind::LifeBegins:
+      state_comes_back(), markers_come_back();
+      return true;
+    case Kind::Sender:
+      return read_sender(said);
+    case Kind::State:
+      return read_state(said);
+    case Kind::StateSent:
+      return read_state_sent(said);
+    case Kind::StateDone:
+      state_is_done();
+      return true;
+    case Kind::StateBack:
+      state_comes_back();
+      return true;
+    case Kind::Markers:
+      return read_markers(said);
+    case Kind::MarkersSent:
+      return read_sent(said);
+    case Kind::MarkersDone:
+      markers_under_way_.clear();
+      return true;
+    case Kind::MarkersBack:
+      markers_come_back();
+      return true;
+    case Kind::Pace:
+      return read_pace(said);
+    case Kind::Stamp:
+      return read_stamp(said);
+    case Kind::End:
+      return true;
+  }
+  return false;
+}
+
+bool Carried::read_clock(std::string_view said) {
+  Reader reader(said);
+  Clock clock{.boot = std::string(reader.text()), .at = pace::Instant(duration_in(reader)), .stamp = 0};
+  clock.stamp = reader.real();
+  if (!reader.ok()) return false;
+  machine_is(clock.boot);
+  clock_ = std::move(clock);
+  return true;
+}
+
+void Carried::machine_is(const std::string& boot) {
+  if (!clock_ || clock_->boot == boot) return;
+  clock_.reset();
+  paces_.clear();
+  senders_ = {};
+}
+
+bool Carried::read_sender(std::string_view said) {
+  Reader reader(said);
+  const std::string sender(reader.text());
+  lanes::SenderClock clock;
+  clock.theirs = reader.real();
+  clock.ours = reader.real();
+  clock.latest = reader.real();
+  if (reader.ok()) senders_.carry_on(sender, clock);
+  return reader.ok();
+}
+
+/// As lanes::StateLane takes it.
+bool Carried::read_state(std::string_view said) {
+  const auto update = message_in<icd::StateUpdate>(said, codec::read_state_update);
+  if (!update) return false;
+  const auto stamp = update->header.stamp;
+  for (const icd::NamedPose& named : update->poses) {
+    Robot& held = robots_.try_emplace(named.name, Robot{named.pose, stamp}).first->second;
+    held.news = true;
+    const bool replaces = !held.stamp || !stamp || *held.stamp <= *stamp;
+    if (replaces) held.pose = named.pose, held.stamp = stamp;
+  }
+  return true;
+}
+
+/// One state is under way at a time: what was before, and of which no answer is known, was not taken.
+bool Carried::read_state_sent(std::string_view said) {
+  Reader reader(said);
+  state_comes_back();
+  for (std::uint64_t left = reader.number(); left > 0 && reader.ok(); --left) {
+    const auto name = icd::RobotName::parse(std::string(reader.text()));
+    const auto held = name ? robots_.find(*name) : robots_.end();
+    if (held != robots_.end()) held->second.under_way = std::exchange(held->second.news, false);
+  }
+  return reader.ok();
+}
+
+bool Carried::read_markers(std::string_view said) {
+  const auto update = message_in<icd::MarkersUpdate>(said, codec::read_markers_update);
+  if (!update) return false;
+  for (const icd::Marker& marker : update->markers) markers_.apply(marker);
+  return true;
+}
+
+/// The markers that went are those that wait now; newer changes of them come later. Those before, of which no
+/// answer is known, wait again.
+bool Carried::read_sent(std::string_view said) {
+  Reader reader(said);
+  markers_come_back();
+  std::vector<icd::Marker> sent;
+  for (std::uint64_t left = reader.number(); left > 0 && reader.ok(); --left) {
+    icd::Marker like;
+    like.ns = reader.text();
+    like.id = static_cast<std::int32_t>(reader.number());
+    like.action = static_cast<icd::MarkerAction>(reader.number());
+    if (auto marker = markers_.remove(like)) sent.push_back(std::move(*marker));
+  }
+  markers_under_way_ = std::move(sent);
+  return reader.ok();
+}
+
+bool Carried::read_pace(std::string_view said) {
+  Reader reader(said);
+  const auto uri = uri_in(reader);
+  pace::Learned learned{.next = pace::Instant(duration_in(reader)), .spacing = {}, .under_way = false};
+  learned.spacing = duration_in(reader);
+  learned.under_way = reader.number() != 0;
+  if (uri && reader.ok()) paces_[*uri] = learned;
+  return uri && reader.ok();
+}
+
+bool Carried::read_stamp(std::string_view said) {
+  Reader reader(said);
+  const auto uri = uri_in(reader);
+  const double stamp = reader.real();
+  if (uri && reader.ok()) stamps_[*uri] = stamp;
+  return uri && reader.ok();
+}
+
+void Carried::state_is_done() {
+  for (auto& [name, robot] : robots_) robot.under_way = false;
+  std::erase_if(robots_, [](const auto& robot) { return !robot.second.news; });
+}
+
+void Carried::state_comes_back() {
+  for (auto& [name, robot] : robots_) robot.news = std::exchange(robot.under_way, false) || robot.news;
+}
+
+/// As lanes::MarkerLane::put_back().
+void Carried::markers_come_back() {
+  if (markers_under_way_.empty()) return;
+  lanes::MarkerChanges all;
+  for (const icd::Marker& marker : std::exchange(markers_under_way_, {})) all.apply(marker);
+  for (const auto& [place, marker] : markers_.in_order()) all.apply(marker);
+  markers_ = std::move(all);
+}
+
+icd::MarkersUpdate Carried::markers() const {
+  Carried ended = *this;
+  ended.markers_come_back();
+  icd::MarkersUpdate update;
+  update.markers.reserve(ended.markers_.size().count);
+  for (const auto& [place, marker] : ended.markers_.in_order()) update.markers.push_back(marker);
+  return update;
+}
+
+void Carried::write(const std::function<void(Kind, std::string_view)>& to) const {
+  if (clock_) to(Kind::Clock, said(*clock_));
+  for (const auto& [sender, clock] : senders_.clocks()) to(Kind::Sender, said(sender, clock));
+  for (const auto& [uri, learned] : paces_) to(Kind::Pace, said(uri, learned));
+  for (const auto& [uri, stamp] : stamps_) to(Kind::Stamp, said(uri, stamp));
+  const auto write_robots = [&](bool Robot::* these) {
+    std::vector<icd::RobotName> names;
+    for (const auto& [name, robot] : robots_) {
+      if (!(robot.*these)) continue;
+      to(Kind::State, said(icd::StateUpdate{.header = {robot.stamp}, .poses = {{name, robot.pose}}}));
+      names.push_back(name);
+    }
+    return names;
+  };
+  to(Kind::StateSent, said_sent(write_robots(&Robot::under_way)));
+  write_robots(&Robot::news);
+  const auto write_markers = [&to](const std::vector<icd::Marker>& markers) {
+    for (std::size_t i = 0; i < markers.size(); i += kMarkersInARecord) {
+      const auto first = markers.begin() + static_cast<std::ptrdiff_t>(i);
+      const auto count = static_cast<std::ptrdiff_t>(std::min(markers.size() - i, kMarkersInARecord));
+      to(Kind::Markers, said(icd::MarkersUpdate{.markers = {first, first + count}}));
+    }
+  };
+  write_markers(markers_under_way_);
+  to(Kind::MarkersSent, said_sent(markers_under_way_));
+  std::vector<icd::Marker> waiting;
+  for (const auto& [place, marker] : markers_.in_order()) waiting.push_back(marker);
+  write_markers(waiting);
+}
+
+std::string said(const Clock& clock) {
+  return Writer().text(clock.boot).number(number_of(clock.at.time_since_epoch())).real(clock.stamp).finish();
+}
+
+std::string said(const std::string& sender, const lanes::SenderClock& clock) {
+  return Writer().text(sender).real(clock.theirs).real(clock.ours).real(clock.latest).finish();
+}
+
+std::string said(icd::Uri uri, const pace::Learned& learned) {
+  return Writer()
+      .number(static_cast<std::uint64_t>(uri))
+      .number(number_of(learned.next.time_since_epoch()))
+      .number(number_of(learned.spacing))
+      .number(learned.under_way ? 1 : 0)
+      .finish();
+}
+
+std::string said(icd::Uri uri, icd::Stamp stamp) {
+  return Writer().number(static_cast<std::uint64_t>(uri)).real(stamp).finish();
+}
+
+std::string said(const icd::StateUpdate& update) {
+  return codec::write_state_update(update).to_string();
+}
+
+std::string said(const icd::MarkersUpdate& update) {
+  return codec::write_markers_update(update).to_string();
+}
+
+std::string said_sent(const std::vector<icd::RobotName>& robots) {
+  Writer out;
+  out.number(robots.size());
+  for (const icd::RobotName& robot : robots) out.text(robot.text());
+  return out.finish();
+}
+
+std::string said_sent(const std::vector<icd::Marker>& markers) {
+  Writer out;
+  out.number(markers.size());
+  for (const icd::Marker& marker : markers) {
+    out.text(marker.ns)
+        .number(static_cast<std::uint64_t>(std::int64_t{marker.id}))
+        .number(static_cast<std::uint64_t>(marker.action));
+  }
+  return out.finish();
+}
+
+}  // namespace adit::journal

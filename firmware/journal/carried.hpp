@@ -1,0 +1,92 @@
+#pragma once
+
+#include <functional>
+#include <map>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "icd/markers_update.hpp"
+#include "icd/robot_name.hpp"
+#include "icd/state_update.hpp"
+#include "icd/uri.hpp"
+#include "journal/record.hpp"
+#include "lanes/marker_changes.hpp"
+#include "lanes/stamps.hpp"
+#include "pace/rate_limit.hpp"
+
+namespace adit::journal {
+
+/// The gateway's clock for stamps at one instant of a start of the machine.
+struct Clock {
+  std::string boot;  // host::boot()
+  pace::Instant at{};
+  double stamp = 0;
+};
+
+/// What one life of the gateway hands on to the next: what the records of a journal come to.
+class Carried {
+ public:
+  /// Its pose is news, or an earlier one of it was sent and no answer is known.
+  struct Robot {
+    icd::Pose pose;
+    std::optional<icd::Stamp> stamp;
+    bool news = true, under_way = false;
+  };
+
+  /// False: the record could not be understood, and changed nothing.
+  bool apply(Kind kind, std::string_view said);
+
+  /// The same as few records.
+  void write(const std::function<void(Kind, std::string_view)>& to) const;
+
+  /// This is the start of the machine: instants, and stamps by them, of another one say nothing now.
+  void machine_is(const std::string& boot);
+
+  /// Absent: nothing is known, this is the first life of this start of the machine.
+  const std::optional<Clock>& clock() const { return clock_; }
+  const lanes::StampShift& senders() const { return senders_; }
+  const std::map<icd::Uri, pace::Learned>& paces() const { return paces_; }
+  const std::map<icd::Uri, icd::Stamp>& stamps() const { return stamps_; }
+  /// Those whose pose the Command Post has not taken as it is. One that it has taken is no business of a life
+  /// to come, which may serve another Command Post.
+  const std::map<icd::RobotName, Robot>& robots() const { return robots_; }
+  /// What it has not taken, in order.
+  icd::MarkersUpdate markers() const;
+
+ private:
+  bool read_clock(std::string_view said);
+  bool read_sender(std::string_view said);
+  bool read_state(std::string_view said);
+  bool read_state_sent(std::string_view said);
+  bool read_markers(std::string_view said);
+  bool read_sent(std::string_view said);
+  bool read_pace(std::string_view said);
+  bool read_stamp(std::string_view said);
+  void state_is_done();
+  void state_comes_back();
+  void markers_come_back();
+
+  std::optional<Clock> clock_;
+  lanes::StampShift senders_;
+  std::map<icd::Uri, pace::Learned> paces_;
+  std::map<icd::Uri, icd::Stamp> stamps_;
+  std::map<icd::RobotName, Robot> robots_;
+  lanes::MarkerChanges markers_;
+  std::vector<icd::Marker> markers_under_way_;
+};
+
+/// What the records say.
+std::string said(const Clock& clock);
+std::string said(const std::string& sender, const lanes::SenderClock& clock);
+std::string said(icd::Uri uri, const pace::Learned& learned);
+std::string said(icd::Uri uri, icd::Stamp stamp);
+std::string said(const icd::StateUpdate& update);
+std::string said(const icd::MarkersUpdate& update);
+/// Whose poses were sent.
+std::string said_sent(const std::vector<icd::RobotName>& robots);
+/// Which markers were sent: ns, id and action of each.
+std::string said_sent(const std::vector<icd::Marker>& markers);
+
+}  // namespace adit::journal

@@ -1,0 +1,143 @@
+#include "journal/folder.hpp"
+
+#include <algorithm>
+#include <array>
+#include <charconv>
+#include <cstdio>
+#include <filesystem>
+#include <fstream>
+#include <iterator>
+#include <optional>
+#include <string_view>
+
+#include "host/log.hpp"
+
+namespace adit::journal {
+namespace {
+
+namespace fs = std::filesystem;
+
+constexpr std::string_view kJournal = "journal-", kSnapshot = "snapshot-", kPart = ".part";
+
+/// The number in "journal-00000012"; nothing for another file.
+std::optional<std::uint64_t> number_in(std::string_view name, std::string_view kind) {
+  if (!name.starts_with(kind)) return std::nullopt;
+  name.remove_prefix(kind.size());
+  std::uint64_t number = 0;
+  const auto [end, error] = std::from_chars(name.data(), name.data() + name.size(), number);
+  if (name.empty() || error != std::errc() || end != name.data() + name.size()) return std::nullopt;
+  return number;
+}
+
+std::string bytes_of(const std::string& path) {
+  std::ifstream file(path, std::ios::binary);
+  return {std::istreambuf_iterator<char>(file), std::istreambuf_iterator<char>()};
+}
+
+/// Whether the records end as those of a whole snapshot do.
+bool replay(const std::string& path, Carried& carried, const std::atomic<bool>& enough) {
+  bool whole = false;
+  std::size_t unknown = 0;
+  for_each_record(bytes_of(path), [&](Kind kind, std::string_view said) {
+    whole = kind == Kind::End;
+    if (!carried.apply(kind, said)) ++unknown;
+    return !enough;
+  });
+  if (unknown > 0) {
+    host::log(host::Level::Error, "kept records could not be understood and are passed over",
+              {{"file", path}, {"records", std::to_string(unknown)}});
+  }
+  return whole;
+}
+
+}  // namespace
+
+Folder::Folder(std::string path) : path_(std::move(path)) {
+  std::error_code error;
+  fs::create_directories(path_, error);
+  fs::permissions(path_, fs::perms::owner_all, error);
+}
+
+std::string Folder::file(const char* kind, std::uint64_t number) const {
+  std::array<char, 24> digits{};
+  std::snprintf(digits.data(), digits.size(), "%08llu", static_cast<unsigned long long>(number));
+  return path_ + '/' + kind + digits.data();
+}
+
+Folder::Files Folder::files() const {
+  Files files;
+  std::error_code error;
+  for (fs::directory_iterator entry(path_, error), end; !error && entry != end; entry.increment(error)) {
+    const std::string name = entry->path().filename().string();
+    if (const auto number = number_in(name, kJournal)) files.journals.push_back(*number);
+    if (const auto number = number_in(name, kSnapshot)) files.snapshots.push_back(*number);
+    if (name.ends_with(kPart)) files.parts.push_back(entry->path().string());
+  }
+  std::ranges::sort(files.journals);
+  std::ranges::sort(files.snapshots);
+  return files;
+}
+
+std::uint64_t Folder::last() const {
+  const Files all = files();
+  return std::max(all.journals.empty() ? 0 : all.journals.back(),
+                  all.snapshots.empty() ? 0 : all.snapshots.back());
+}
+
+Carried Folder::read() const {
+  return read(last(), false);
+}
+
+Carried Folder::read(std::uint64_t last, const std::atomic<bool>& enough) const {
+  const Files all = files();
+  Carried carried;
+  std::uint64_t first = 0;
+  for (auto number = all.snapshots.rbegin(); number != all.snapshots.rend() && first == 0; ++number) {
+    Carried kept;
+    if (!replay(snapshot(*number), kept, enough)) continue;
+    carried = std::move(kept);
+    first = *number;
+  }
+  for (const std::uint64_t number : all.journals) {
+    if (number >= first && number <= last && !enough) replay(journal(number), carried, enough);
+  }
+  return carried;
+}
+
+std::expected<std::size_t, std::string> Folder::compact(std::uint64_t last,
+                                                        const std::atomic<bool>& enough) const {
+  const Carried carried = read(last, enough);
+  const std::string path = snapshot(last + 1), part = path + std::string(kPart);
+  std::ofstream file(part, std::ios::binary | std::ios::trunc);
+  std::size_t size = 0;
+  const auto write = [&](Kind kind, std::string_view said) {
+    const std::string record = framed(kind, said);
+    file.write(record.data(), static_cast<std::streamsize>(record.size()));
+    size += record.size();
+  };
+  if (!enough) carried.write(write);
+  write(Kind::End, {});
+  file.close();
+  std::error_code error;
+  if (file && !enough) fs::rename(part, path, error);
+  if (file && !enough && !error) {
+    remove_before(last + 1);
+    return size;
+  }
+  fs::remove(part, error);
+  return std::unexpected(enough ? "the gateway ends" : path + ": it cannot be written");
+}
+
+void Folder::remove_before(std::uint64_t number) const {
+  const Files all = files();
+  std::error_code error;
+  for (const std::string& part : all.parts) fs::remove(part, error);  // death came while it was written
+  for (const std::uint64_t each : all.journals) {
+    if (each < number) fs::remove(journal(each), error);
+  }
+  for (const std::uint64_t each : all.snapshots) {
+    if (each < number) fs::remove(snapshot(each), error);
+  }
+}
+
+}  // namespace adit::journal

@@ -1,0 +1,140 @@
+#include "journal/journal.hpp"
+
+#include <fcntl.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <cerrno>
+#include <memory>
+#include <utility>
+
+#include "host/files.hpp"
+#include "host/log.hpp"
+
+namespace adit::journal {
+
+Journal::Journal(loop::Loop& loop, std::string folder)
+    : folder_(std::move(folder)), number_(folder_.last()), compactor_(loop, 1) {}
+
+Journal::~Journal() {
+  ending_ = true;
+}
+
+void Journal::begin(const Clock& clock) {
+  const std::uint64_t last = number_;
+  if (open_next() && last > 0) compact(last);
+  unsaid_ = framed(Kind::LifeBegins, {}) + framed(Kind::Clock, said(clock));
+  (void)append({});
+}
+
+/// Never a file of an earlier life: its last record may be torn.
+bool Journal::open_next() {
+  const std::string path = folder_.journal(number_ + 1);
+  loop::FileDescriptor next(::open(path.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_APPEND | O_CLOEXEC, 0600));
+  if (!next) {
+    (void)failed(host::trouble(path, errno));
+    return false;
+  }
+  ++number_;
+  size_ = 0;
+  file_ = std::move(next);
+  return true;
+}
+
+Journal::Kept Journal::accepted(const icd::StateUpdate& update) {
+  return append(framed(Kind::State, said(update)));
+}
+
+Journal::Kept Journal::accepted(const icd::MarkersUpdate& update) {
+  return append(framed(Kind::Markers, said(update)));
+}
+
+void Journal::sender(const std::string& sender, const lanes::SenderClock& clock) {
+  note(Kind::Sender, said(sender, clock));
+}
+
+void Journal::state_sent(const icd::StateUpdate& update) {
+  std::vector<icd::RobotName> robots;
+  robots.reserve(update.poses.size());
+  for (const icd::NamedPose& pose : update.poses) robots.push_back(pose.name);
+  note(Kind::StateSent, said_sent(robots));
+}
+
+void Journal::markers_sent(const icd::MarkersUpdate& update) {
+  note(Kind::MarkersSent, said_sent(update.markers));
+}
+
+void Journal::state_answered(bool done) {
+  note(done ? Kind::StateDone : Kind::StateBack, {});
+}
+
+void Journal::markers_answered(bool done) {
+  note(done ? Kind::MarkersDone : Kind::MarkersBack, {});
+}
+
+void Journal::paced(icd::Uri uri, const pace::Learned& learned) {
+  note(Kind::Pace, said(uri, learned));
+}
+
+void Journal::stamped(icd::Uri uri, icd::Stamp stamp) {
+  note(Kind::Stamp, said(uri, stamp));
+}
+
+Journal::Kept Journal::append(std::string record) {
+  if (!file_ && !open_next()) return std::unexpected(trouble_);
+  record.insert(0, unsaid_);
+  if (auto written = write(record); !written) return written;
+  unsaid_.clear();
+  trouble_.clear();
+  if (size_ > std::max(least_, snapshot_)) turn_over();
+  return {};
+}
+
+/// All of it or nothing: a record that is half there would end the file for who reads it.
+Journal::Kept Journal::write(std::string_view bytes) {
+  ssize_t count = -1;
+  do {
+    count = ::write(file_.get(), bytes.data(), bytes.size());
+  } while (count < 0 && errno == EINTR);
+  if (count == static_cast<ssize_t>(bytes.size())) {
+    size_ += bytes.size();
+    return {};
+  }
+  const int error = count < 0 ? errno : ENOSPC;
+  if (count > 0 && ::ftruncate(file_.get(), static_cast<off_t>(size_)) != 0) file_ = {};
+  return failed(host::trouble(folder_.journal(number_), error));
+}
+
+Journal::Kept Journal::failed(const std::string& why) {
+  if (trouble_.empty()) {
+    host::log(host::Level::Error, "states and markers cannot be kept and are not taken", {{"why", why}});
+  }
+  trouble_ = why;
+  return std::unexpected(why);
+}
+
+/// What was written so far becomes a snapshot, aside, while the next file is written.
+void Journal::turn_over() {
+  const std::uint64_t last = number_;
+  if (!compacting_ && open_next()) compact(last);
+}
+
+void Journal::compact(std::uint64_t last) {
+  compacting_ = true;
+  auto outcome =
+      std::make_shared<std::expected<std::size_t, std::string>>(std::unexpected("there is no memory for it"));
+  compactor_.submit([this, outcome, last] { *outcome = folder_.compact(last, ending_); },
+                    [this, outcome] {
+                      compacting_ = false;
+                      least_ = kLeastTurn;
+                      if (*outcome) {
+                        snapshot_ = **outcome;
+                        return;
+                      }
+                      host::log(host::Level::Warning, "the journal cannot be made smaller",
+                                {{"why", outcome->error()}});
+                      least_ = size_ + kLeastTurn;  // to be tried again after as much
+                    });
+}
+
+}  // namespace adit::journal

@@ -1,0 +1,82 @@
+#pragma once
+
+#include <atomic>
+#include <cstdint>
+#include <expected>
+#include <string>
+#include <string_view>
+
+#include "icd/markers_update.hpp"
+#include "icd/state_update.hpp"
+#include "icd/uri.hpp"
+#include "journal/carried.hpp"
+#include "journal/folder.hpp"
+#include "loop/file_descriptor.hpp"
+#include "loop/loop.hpp"
+#include "loop/workers.hpp"
+
+namespace adit::journal {
+
+/// What must outlive any death of the service, though not of the machine: telemetry that was answered and is
+/// not yet taken, when each URI was asked last, the stamps given out, and the senders' clocks. (README.md)
+///
+/// Each call is one write() by the loop to a file that is in memory, and what it wrote is there for the next
+/// life when it has returned, whatever happens to this one.
+class Journal {
+ public:
+  /// A journal is begun anew, beside its snapshot, once it is as large as that, and at least so large.
+  static constexpr std::size_t kLeastTurn = 1u << 20;
+
+  Journal(loop::Loop& loop, std::string folder);
+  ~Journal();
+  Journal(const Journal&) = delete;
+  Journal& operator=(const Journal&) = delete;
+
+  /// What the lives before left.
+  Carried read() const { return folder_.read(); }
+  /// This life begins; nothing is told before. Where there is no room to say so, it is said before what comes
+  /// next.
+  void begin(const Clock& clock);
+
+  /// An error: it is not kept, and must not be answered as if it were.
+  using Kept = std::expected<void, std::string>;
+  Kept accepted(const icd::StateUpdate& update);
+  Kept accepted(const icd::MarkersUpdate& update);
+
+  void sender(const std::string& sender, const lanes::SenderClock& clock);
+
+  /// These poses, or these markers, are about to be sent.
+  void state_sent(const icd::StateUpdate& update);
+  void markers_sent(const icd::MarkersUpdate& update);
+  /// They need no more care, or wait again.
+  void state_answered(bool done);
+  void markers_answered(bool done);
+
+  void paced(icd::Uri uri, const pace::Learned& learned);
+  void stamped(icd::Uri uri, icd::Stamp stamp);
+
+  /// Why the last record could not be kept, or "".
+  const std::string& trouble() const { return trouble_; }
+
+ private:
+  void note(Kind kind, std::string_view said) { (void)append(framed(kind, said)); }
+  Kept append(std::string record);
+  Kept write(std::string_view bytes);
+  bool open_next();
+  void turn_over();
+  void compact(std::uint64_t last);
+  Kept failed(const std::string& why);
+
+  Folder folder_;
+  std::uint64_t number_;  // of the file that is written
+  loop::FileDescriptor file_;
+  std::string unsaid_;                   // how this life began, until it is written
+  std::size_t size_ = 0, snapshot_ = 0;  // of the file, and of the last snapshot, in bytes
+  std::size_t least_ = kLeastTurn;
+  bool compacting_ = false;
+  std::string trouble_;
+  std::atomic<bool> ending_ = false;
+  loop::Workers compactor_;  // a thread of its own: it may take a second, and nobody waits for it
+};
+
+}  // namespace adit::journal

@@ -1,0 +1,101 @@
+#include "lanes/set_aside.hpp"
+
+#include <algorithm>
+#include <utility>
+
+#include "lanes/map_lane.hpp"
+
+namespace adit::lanes {
+namespace {
+
+bool says_all(const icd::MapUpdate& newer, const icd::MapUpdate& older) {
+  const auto* const new_grid = std::get_if<icd::OccupancyGrid>(&newer.msg);
+  const auto* const old_grid = std::get_if<icd::OccupancyGrid>(&older.msg);
+  return new_grid != nullptr && old_grid != nullptr && newer.name == older.name &&
+         covers(*new_grid, *old_grid);
+}
+
+bool says_all(const icd::StateUpdate& newer, const icd::StateUpdate& older) {
+  return std::ranges::all_of(older.poses, [&](const icd::NamedPose& pose) {
+    return std::ranges::find(newer.poses, pose.name, &icd::NamedPose::name) != newer.poses.end();
+  });
+}
+
+bool says_all(const icd::MarkersUpdate& newer, const icd::MarkersUpdate& older) {
+  return std::ranges::all_of(older.markers, [&](const icd::Marker& change) {
+    return std::ranges::any_of(newer.markers, [&](const icd::Marker& later) {
+      if (later.action == icd::MarkerAction::DeleteAll) return true;
+      return change.action != icd::MarkerAction::DeleteAll && later.ns == change.ns && later.id == change.id;
+    });
+  });
+}
+
+/// To delete all would delete what came since, too.
+bool deletes_newer(const Message& older, const Message& newer) {
+  const auto* const markers = std::get_if<icd::MarkersUpdate>(&older);
+  return markers != nullptr && std::holds_alternative<icd::MarkersUpdate>(newer) &&
+         std::ranges::find(markers->markers, icd::MarkerAction::DeleteAll, &icd::Marker::action) !=
+             markers->markers.end();
+}
+
+}  // namespace
+
+bool says_all_of(const Message& newer, const Message& older) {
+  return newer.index() == older.index() &&
+         std::visit([&]<class Kind>(const Kind& message) { return says_all(message, std::get<Kind>(older)); },
+                    newer);
+}
+
+std::vector<std::uint64_t> SetAside::add(AsideItem item) {
+  std::vector<std::uint64_t> gone;
+  const auto drop = [&](const AsideItem& each) {
+    bytes_ -= each.bytes;
+    gone.push_back(each.number);
+  };
+  std::erase_if(items_, [&](const AsideItem& older) {
+    const bool said = says_all_of(item.message, older.message);
+    if (said) drop(older);
+    return said;
+  });
+  while (!items_.empty() && (items_.size() >= kMostItems || bytes_ + item.bytes > kMostBytes)) {
+    drop(items_.front());
+    items_.pop_front();
+  }
+  item.number = ++numbers_;
+  bytes_ += item.bytes;
+  items_.push_back(std::move(item));
+  return gone;
+}
+
+void SetAside::restore(AsideItem item) {
+  numbers_ = std::max(numbers_, item.number);
+  bytes_ += item.bytes;
+  items_.push_back(std::move(item));
+}
+
+std::vector<std::uint64_t> SetAside::taken(const Message& message) {
+  std::vector<std::uint64_t> overtaken;
+  for (AsideItem& item : items_) {
+    if (item.overtaken) continue;
+    if (!says_all_of(message, item.message) && !deletes_newer(item.message, message)) continue;
+    item.overtaken = true;
+    overtaken.push_back(item.number);
+  }
+  return overtaken;
+}
+
+const AsideItem* SetAside::find(std::uint64_t number) const {
+  const auto found = std::ranges::find(items_, number, &AsideItem::number);
+  return found == items_.end() ? nullptr : &*found;
+}
+
+std::optional<AsideItem> SetAside::take(std::uint64_t number) {
+  const auto found = std::ranges::find(items_, number, &AsideItem::number);
+  if (found == items_.end()) return std::nullopt;
+  AsideItem item = std::move(*found);
+  bytes_ -= item.bytes;
+  items_.erase(found);
+  return item;
+}
+
+}  // namespace adit::lanes

@@ -1,0 +1,145 @@
+#include "ledger/files.hpp"
+
+#include <fcntl.h>
+#include <sys/stat.h>
+#include <unistd.h>
+
+#include <array>
+#include <cerrno>
+#include <cstdio>
+#include <cstring>
+
+#include "loop/file_descriptor.hpp"
+
+namespace adit::ledger {
+namespace {
+
+constexpr std::array kBeside = {"-wal", "-shm", "-journal"};
+
+Attempt<void> set_mode(const std::string& path) {
+  if (::chmod(path.c_str(), 0600) == 0) return {};
+  return std::unexpected(system_error("chmod 0600 " + path));
+}
+
+}  // namespace
+
+Failure system_error(const std::string& doing) {
+  const int code = errno;
+  Failure failure;
+  failure.what = doing + ": " + std::strerror(code);
+  failure.full = code == ENOSPC || code == EDQUOT || code == EFBIG;
+  failure.read_only = code == EROFS || code == EACCES || code == EPERM;
+  return failure;
+}
+
+bool exists(const std::string& path) {
+  struct stat found{};
+  return ::lstat(path.c_str(), &found) == 0;
+}
+
+Attempt<std::string> read_file(const std::string& path) {
+  const loop::FileDescriptor file(::open(path.c_str(), O_RDONLY | O_CLOEXEC));
+  if (!file && errno == ENOENT) return std::string();
+  struct stat found{};
+  if (!file || ::fstat(file.get(), &found) != 0) return std::unexpected(system_error("reading " + path));
+  std::string bytes(static_cast<std::size_t>(found.st_size), '\0');
+  std::size_t had = 0;
+  while (had < bytes.size()) {
+    const ssize_t more = ::pread(file.get(), bytes.data() + had, bytes.size() - had, static_cast<off_t>(had));
+    if (more < 0 && errno == EINTR) continue;
+    if (more < 0) return std::unexpected(system_error("reading " + path));
+    if (more == 0) break;
+    had += static_cast<std::size_t>(more);
+  }
+  bytes.resize(had);
+  return bytes;
+}
+
+Attempt<void> make_file(const std::string& path) {
+  const loop::FileDescriptor made(::open(path.c_str(), O_CREAT | O_EXCL | O_WRONLY | O_CLOEXEC, 0600));
+  if (!made && errno != EEXIST) return std::unexpected(system_error("making " + path));
+  return set_mode(path);
+}
+
+Attempt<void> sync_folder(const std::string& folder) {
+  const loop::FileDescriptor opened(::open(folder.c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC));
+  if (!opened || ::fsync(opened.get()) != 0) return std::unexpected(system_error("syncing " + folder));
+  return {};
+}
+
+Attempt<void> try_writing(const std::string& folder) {
+  auto tried = try_room(folder, 0);
+  if (tried || !tried.error().read_only) return {};  // what else there is says whoever writes
+  return tried;
+}
+
+Attempt<void> try_room(const std::string& folder, std::int64_t bytes) {
+  std::string path = folder + "/ledger.try-XXXXXX";
+  const loop::FileDescriptor made(::mkostemp(path.data(), O_CLOEXEC));
+  if (!made) return std::unexpected(system_error("writing to " + folder));
+  ::unlink(path.c_str());
+  const int failed = bytes == 0 ? 0 : ::posix_fallocate(made.get(), 0, bytes);
+  errno = failed;
+  if (failed != 0) return std::unexpected(system_error("writing to " + folder));
+  return {};
+}
+
+Attempt<void> try_opening(const std::string& path) {
+  const loop::FileDescriptor file(::open(path.c_str(), O_RDWR | O_CLOEXEC));
+  if (!file && errno == ENOENT) return {};
+  if (!file) return std::unexpected(system_error("opening " + path));
+  return set_mode(path);
+}
+
+std::int64_t size_of(const std::string& path) {
+  struct stat found{};
+  return ::lstat(path.c_str(), &found) == 0 ? found.st_size : 0;
+}
+
+Attempt<void> rename_file(const std::string& from, const std::string& to) {
+  if (::rename(from.c_str(), to.c_str()) == 0) return {};
+  return std::unexpected(system_error("renaming " + from));
+}
+
+Attempt<void> copy_database(const std::string& from, const std::string& to) {
+  for (const char* suffix : {"", "-wal", "-journal", ".salvaged"}) {
+    if (!exists(from + suffix)) continue;
+    const auto bytes = read_file(from + suffix);
+    if (!bytes) return std::unexpected(bytes.error());
+    const loop::FileDescriptor file(
+        ::open((to + suffix).c_str(), O_CREAT | O_TRUNC | O_WRONLY | O_CLOEXEC, 0600));
+    if (!file) return std::unexpected(system_error("copying " + from + suffix));
+    for (std::size_t had = 0; had < bytes->size();) {
+      const ssize_t more = ::write(file.get(), bytes->data() + had, bytes->size() - had);
+      if (more < 0) return std::unexpected(system_error("copying " + from + suffix));
+      had += static_cast<std::size_t>(more);
+    }
+  }
+  return {};
+}
+
+void remove_database(const std::string& path) {
+  ::unlink(path.c_str());
+  for (const char* suffix : kBeside) ::unlink((path + suffix).c_str());
+}
+
+Attempt<std::string> set_aside(const std::string& folder, const std::string& path) {
+  for (int n = 1;; ++n) {
+    const std::string aside = path + ".damaged-" + std::to_string(n);
+    bool is_free = !exists(aside);
+    for (const char* suffix : kBeside) is_free = is_free && !exists(aside + suffix);
+    if (!is_free) continue;
+    if (exists(path)) {
+      if (auto moved = rename_file(path, aside); !moved) return std::unexpected(moved.error());
+    }
+    for (const char* suffix : kBeside) {  // one left behind would be taken for the new file's
+      if (!exists(path + suffix)) continue;
+      if (auto moved = rename_file(path + suffix, aside + suffix); !moved)
+        return std::unexpected(moved.error());
+    }
+    if (auto synced = sync_folder(folder); !synced) return std::unexpected(synced.error());
+    return aside;
+  }
+}
+
+}  // namespace adit::ledger

@@ -1,0 +1,34 @@
+#pragma once
+
+#include <cstdint>
+#include <exception>
+
+namespace adit::loop {
+
+/// Notes an exception that got as far as the edge of the program: counted, and told to whoever asked to be
+/// told, else to stderr. Thread-safe. `where`: what ended by it, as in "a job of a worker".
+void caught(const char* where, const char* what) noexcept;
+
+/// How many were caught since the program began.
+std::uint64_t caught_so_far() noexcept;
+
+/// Who is told of them from now on; called on the thread that caught it, and may throw.
+void tell_of_caught(void (*told)(const char* where, const char* what)) noexcept;
+
+/// Calls `work`; an exception, whichever library it is from, ends `work` and nothing else. False: it did.
+/// What calls back from C (sd-event, libmicrohttpd) and what runs on a thread goes through here, so that no
+/// request and no answer ends the process.
+template <class Work>
+bool guarded(const char* where, Work&& work) noexcept {
+  try {
+    work();
+    return true;
+  } catch (const std::exception& error) {
+    caught(where, error.what());
+  } catch (...) {
+    caught(where, "an exception of no known kind");
+  }
+  return false;
+}
+
+}  // namespace adit::loop

@@ -1,0 +1,103 @@
+// A press belongs to what was there when it began. A tap's click comes after all that the tap opened or moved, and the
+// second one of a double tap finds something else in the same place: so what has appeared, or moved, takes no press until
+// it has stood still for a while, and a press that began elsewhere is dropped. Every page has this; nothing has to ask for it.
+
+const STILL = 350; // ms: the second tap of a double tap comes sooner
+const MOVED = 8; // pixels: what moves less is where it was
+const FOLLOWS = 150; // ms: a page that scrolls so soon after a press was scrolled by that press
+const CONTROLS = "button, a[href], input, select, textarea, label, summary, canvas[tabindex]";
+const ACT = ["Enter", " ", "Escape"];
+
+let places = null; // what can be pressed to where its middle is; null: the page has just been loaded
+const moving = new Map(); // what must not be pressed yet to when it moved
+let scrolled = false; // by hand: what moved with it was followed by the eye
+let timer = 0, ended = -Infinity;
+
+const opened = new Set(document.querySelectorAll("dialog[open]")); // the last one opened lies on top
+
+function stack(records) {
+  for (const { target, attributeName } of records) {
+    if (attributeName !== "open" || target.localName !== "dialog") continue;
+    opened.delete(target);
+    if (target.open) opened.add(target);
+  }
+}
+
+/** Behind an open dialog nothing can be pressed: it appears when that closes. */
+const reachable = () => ([...opened].filter((dialog) => dialog.isConnected).at(-1) ?? document).querySelectorAll(CONTROLS);
+
+/** Finds what appeared or moved since the last look. */
+function look() {
+  const before = places;
+  places = new Map();
+  for (const control of reachable()) {
+    const { x, y, width, height } = control.getBoundingClientRect();
+    if (!width || control.disabled) continue;
+    const place = [x + width / 2, y + height / 2], last = before?.get(control);
+    places.set(control, place);
+    if (!before || (last && (scrolled || Math.hypot(place[0] - last[0], place[1] - last[1]) < MOVED))) continue;
+    moving.set(control, performance.now());
+    control.dataset.moving = ""; // page.css lets no pointer reach it
+  }
+  scrolled = false;
+  observer.takeRecords(); // of these marks
+  if (moving.size && !timer) timer = setTimeout(settle, STILL);
+}
+
+function settle() {
+  const until = performance.now() - STILL;
+  for (const [control, since] of moving) {
+    if (since > until && control.isConnected) continue;
+    moving.delete(control);
+    delete control.dataset.moving;
+  }
+  observer.takeRecords();
+  timer = moving.size ? setTimeout(settle, STILL / 4) : 0;
+}
+
+// It is told before any further input is, the click of a tap that is being handled included.
+const observer = new MutationObserver((records) => {
+  stack(records);
+  look();
+});
+observer.observe(document, { subtree: true, childList: true, characterData: true, attributes: true });
+addEventListener("resize", look);
+addEventListener("scroll", () => {
+  if (performance.now() - ended < FOLLOWS) look();
+  else scrolled = true;
+}, { capture: true, passive: true });
+look();
+
+function drop(event) {
+  event.preventDefault();
+  event.stopImmediatePropagation();
+}
+
+/** A label and what it labels are one. */
+function controlAt(node) {
+  const control = node.closest?.(CONTROLS);
+  return control?.control ?? control;
+}
+
+let press; // what the pointer came down on (null: on nothing); undefined: no press is under way
+
+addEventListener("pointerdown", ({ target }) => (press = controlAt(target) ?? null), true);
+addEventListener("pointercancel", () => (press = undefined), true);
+for (const name of ["mousedown", "click"]) {
+  addEventListener(name, (event) => {
+    if (!event.isTrusted || !event.detail) return; // a script's, a key's or a screen reader's
+    const control = controlAt(event.target);
+    if (control && press !== undefined && control !== press) drop(event);
+    if (name !== "click") return;
+    press = undefined;
+    ended = performance.now();
+  }, true);
+}
+
+let held = null; // what had the focus when a key went down
+
+/** A key that is held acts on nothing that gets the focus meanwhile. */
+addEventListener("keydown", (event) => {
+  if (!event.repeat) held = event.target;
+  else if (event.target !== held && ACT.includes(event.key)) drop(event);
+}, true);

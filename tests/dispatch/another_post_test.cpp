@@ -1,0 +1,69 @@
+#include "dispatch/another_post.hpp"
+
+#include <gmock/gmock.h>
+
+#include "dispatch/scene.hpp"
+
+namespace adit::dispatch {
+namespace {
+
+using testing::AllOf;
+using testing::EndsWith;
+using testing::HasSubstr;
+
+constexpr const char* kHere = "10.100.1.200:8000";
+constexpr const char* kThere = "10.100.2.200:8000";
+
+std::string meaning(const Scene& scene, const std::string& post = kThere) {
+  return meaning_of_another_post(scene.reports(), post);
+}
+
+TEST(AnotherPost, MeansNothingForReportsThatAreDone) {
+  Scene scene;
+  scene.post(1);
+  scene.answer(recorded());
+  EXPECT_EQ(meaning(scene),
+            "reports go to 10.100.2.200:8000 from then on; none waits, is in doubt or is held now");
+}
+
+TEST(AnotherPost, KeepsWhatIsNotDoneForTheOldOne) {
+  Scene scene;
+  scene.post_to_wait(1);
+  scene.post_to_wait(2);
+  ASSERT_TRUE(scene.reports().hold(1, scene.time()));
+  EXPECT_EQ(
+      meaning(scene),
+      "reports go to 10.100.2.200:8000 from then on; 1 report waits, 1 is held: they are kept for the run "
+      "at 10.100.1.200:8000, and not sent to the new one unless you say so");
+  scene.send_next();
+  EXPECT_THAT(meaning(scene), HasSubstr("; 1 report is in doubt, 1 is held: "));
+  scene.lose();
+  scene.post_to_wait(3);
+  scene.post_to_wait(4);
+  EXPECT_THAT(meaning(scene), HasSubstr("; 2 reports wait, 1 is in doubt, 1 is held: "));
+}
+
+TEST(AnotherPost, IsGoneBackToWithItsReports) {
+  Scene scene;
+  scene.post(1);
+  scene.answer(recorded());
+  scene.post_to_wait(2);
+  scene.restart(kThere);
+  scene.hear(20, 0);
+  EXPECT_EQ(
+      meaning(scene, kHere),
+      "reports go to 10.100.1.200:8000 from then on; run 1 there is taken up again, with 2 reports; none "
+      "waits, is in doubt or is held now");
+}
+
+TEST(AnotherPost, IsSentWhatWaitsWhereNothingWasHeardOfTheOldOne) {
+  Scene scene;
+  scene.restart(kThere);
+  scene.post_to_wait(1);
+  EXPECT_THAT(meaning(scene, kHere),
+              AllOf(HasSubstr("1 report waits: nothing was heard from 10.100.2.200:8000"),
+                    EndsWith("is sent to the first Command Post that answers")));
+}
+
+}  // namespace
+}  // namespace adit::dispatch

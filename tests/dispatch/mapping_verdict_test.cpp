@@ -1,0 +1,86 @@
+#include "dispatch/mapping_verdict.hpp"
+
+#include <gtest/gtest.h>
+
+#include <ostream>
+#include <string>
+
+namespace adit::dispatch {
+namespace {
+
+using Verdict = MappingVerdict;
+
+constexpr const char* kPage = "<!DOCTYPE html><html>log in to the network</html>";
+constexpr const char* kSentence = R"("Cloud updates too frequent.")";
+
+struct Case {
+  int status;
+  std::string body;
+  Verdict verdict;
+  bool may_be_the_command_post;
+};
+void PrintTo(const Case& one, std::ostream* out) {
+  *out << one.status << " " << one.body;
+}
+
+const Case kCases[] = {
+    // Taken: what the body is decides.
+    {200, "null", Verdict::Taken, true},
+    {200, "", Verdict::Taken, true},
+    {200, " \r\n", Verdict::Taken, true},
+    {200, "{}", Verdict::Taken, true},
+    {200, kSentence, Verdict::Taken, true},
+    {201, "null\n", Verdict::Taken, true},
+    {204, "", Verdict::Taken, true},
+    {200, kPage, Verdict::Failing, false},
+    {200, "OK", Verdict::Failing, false},
+    {200, "null null", Verdict::Failing, false},
+    {200, "{\"a\":", Verdict::Failing, false},
+    {200, std::string(100, '['), Verdict::Failing, false},
+    {200, std::string("\0\x01", 2), Verdict::Failing, false},
+    {204, kPage, Verdict::Failing, false},
+    // Somebody else's.
+    {301, "", Verdict::Failing, false},
+    {302, kPage, Verdict::Failing, false},
+    {307, "null", Verdict::Failing, false},
+    // Refused for good by the Command Post alone.
+    {400, kSentence, Verdict::Refused, true},
+    {413, "", Verdict::Refused, true},
+    {422, kSentence, Verdict::Refused, true},
+    {422, R"({"detail": "no"})", Verdict::Refused, true},
+    {400, kPage, Verdict::Suspect, false},
+    {413, kPage, Verdict::Suspect, false},
+    {422, kPage, Verdict::Suspect, false},
+    // Slower, whoever says so.
+    {429, kSentence, Verdict::Throttled, true},
+    {429, kPage, Verdict::Throttled, true},
+    {429, "", Verdict::Throttled, true},
+    // A handler that fails, and everything in between that does.
+    {500, kPage, Verdict::Suspect, true},
+    {500, "", Verdict::Suspect, true},
+    {500, kSentence, Verdict::Suspect, true},
+    {401, kSentence, Verdict::Failing, true},
+    {401, kPage, Verdict::Failing, false},
+    {403, kPage, Verdict::Failing, false},
+    {404, kPage, Verdict::Failing, true},
+    {404, kSentence, Verdict::Failing, true},
+    {405, kPage, Verdict::Failing, false},
+    {407, kPage, Verdict::Failing, false},
+    {408, "", Verdict::Failing, true},
+    {501, "", Verdict::Failing, true},
+    {502, kPage, Verdict::Failing, true},
+    {503, kPage, Verdict::Failing, true},
+    {511, kPage, Verdict::Failing, true},
+};
+
+class MappingAnswers : public testing::TestWithParam<Case> {};
+
+TEST_P(MappingAnswers, MeanThisForAMessage) {
+  const Body body = body_of(GetParam().body);
+  EXPECT_EQ(mapping_verdict(GetParam().status, body), GetParam().verdict);
+  EXPECT_EQ(may_be_the_command_post(GetParam().status, body), GetParam().may_be_the_command_post);
+}
+INSTANTIATE_TEST_SUITE_P(, MappingAnswers, testing::ValuesIn(kCases));
+
+}  // namespace
+}  // namespace adit::dispatch

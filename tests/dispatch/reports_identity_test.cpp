@@ -1,0 +1,324 @@
+// Which run one is: by the place of the Command Post, the team, the name, and what its status proves.
+#include <gmock/gmock.h>
+
+#include "dispatch/scene.hpp"
+
+namespace adit::dispatch {
+namespace {
+
+using enum ReportState;
+using testing::HasSubstr;
+using testing::IsEmpty;
+
+constexpr const char* kThere = "10.100.2.200:8000";
+
+/// The organiser's test server: its status always says 25.98 s, its answers 3.14 s, and the run is "1".
+class StandingClocks : public testing::Test {
+ protected:
+  StandingClocks() {
+    hear(20);
+    record(1);
+    hear(19);
+  }
+  void hear(std::int64_t remaining) { scene_.hear(remaining, 0, 25.98); }
+  void record(double x) {
+    scene_.post(x);
+    scene_.answer(recorded(0, "scored", "1", 3.14));
+  }
+  Scene scene_;
+};
+
+TEST_F(StandingClocks, AreOneRunThroughout) {
+  record(2);
+  hear(18);
+  scene_.wait(3600);
+  hear(18);
+  EXPECT_EQ(scene_.reports().run().number, 1);
+}
+
+TEST_F(StandingClocks, TheSameReportAgainGetsTheRecordedAnswer) {
+  record(2);
+  const ClientId again = scene_.post(1);
+  EXPECT_EQ(scene_.count(), 2u);
+  EXPECT_EQ(scene_.told(again).body, recorded(0, "scored", "1", 3.14).body);
+}
+
+TEST_F(StandingClocks, AreOneRunOverARestart) {
+  scene_.restart();
+  scene_.wait(3600);
+  hear(19);
+  scene_.post(1);
+  EXPECT_EQ(scene_.count(), 1u);
+  EXPECT_EQ(scene_.reports().run().number, 1);
+}
+
+TEST_F(StandingClocks, AreAnotherRunWhereMoreReportsAreLeft) {
+  hear(20);
+  EXPECT_EQ(scene_.reports().run().number, 2);
+  scene_.post(1);
+  EXPECT_EQ(scene_.state(2), Sending);
+}
+
+/// A clock that ran goes back; as many reports are left as before.
+class OnlyTheClock : public testing::Test {
+ protected:
+  OnlyTheClock() {
+    record(1, "1");
+    for (int i = 0; i < 2; ++i) {
+      scene_.wait(1);
+      scene_.hear(19, 0);
+    }
+    scene_.hear(19, 0, 3);
+  }
+  void record(double x, const std::string& run) {
+    scene_.post(x);
+    scene_.answer(recorded(0, "scored", run));
+  }
+  Scene scene_;
+};
+
+TEST_F(OnlyTheClock, MakesANewRunLikelyAndHoldsTheSameReport) {
+  EXPECT_EQ(scene_.reports().run().number, 2);
+  EXPECT_EQ(scene_.deeds().run->may_be, 1) << "on disk";
+  const ClientId again = scene_.post(1);
+  EXPECT_EQ(scene_.state(2), Received);
+  EXPECT_THAT(scene_.report(2).note, HasSubstr("the same as report 1"));
+  EXPECT_THAT(scene_.report(2).note, HasSubstr("the run clock went back"));
+  scene_.wait(21);
+  EXPECT_THAT(scene_.told(again).sentence, HasSubstr("waits for the operator's word"));
+  EXPECT_THAT(scene_.reports().attention(), testing::Contains(HasSubstr("the same as report 1")));
+}
+
+TEST_F(OnlyTheClock, HoldsItOverARestart) {
+  scene_.restart();
+  scene_.hear(19, 0, 4);
+  scene_.post(1);
+  EXPECT_EQ(scene_.state(2), Received);
+}
+
+TEST_F(OnlyTheClock, HoldsWhatWasPostedBeforeTheRunWasKnown) {
+  scene_.wait(16);
+  scene_.post(1);
+  EXPECT_EQ(scene_.state(2), Waiting);
+  scene_.hear(19, 0, 20);
+  EXPECT_EQ(scene_.send_next(), 0);
+  EXPECT_EQ(scene_.state(2), Received);
+  EXPECT_EQ(scene_.report(2).same_as, 1);
+}
+
+TEST_F(OnlyTheClock, SendsWhatIsNew) {
+  scene_.post(2);
+  EXPECT_EQ(scene_.state(2), Sending);
+}
+
+TEST_F(OnlyTheClock, LetsItGoOnceAnAnswerNamesAnotherRun) {
+  scene_.post(1);
+  record(2, "2");
+  EXPECT_EQ(scene_.state(2), Waiting);
+  EXPECT_EQ(scene_.report(2).same_as, 0);
+  EXPECT_EQ(scene_.reports().run().may_be, 0);
+  EXPECT_EQ(scene_.send_next(), 2);
+}
+
+TEST_F(OnlyTheClock, LetsItGoOnceMoreReportsAreLeft) {
+  scene_.post(1);
+  scene_.hear(25, 0, 4);
+  EXPECT_EQ(scene_.reports().run().number, 2) << "it is the run that had begun";
+  EXPECT_EQ(scene_.send_next(), 2);
+}
+
+TEST_F(OnlyTheClock, LetsItGoOnTheOperatorsWord) {
+  scene_.post(1);
+  ASSERT_TRUE(scene_.reports().send(2, scene_.time()));
+  EXPECT_EQ(scene_.send_next(), 2);
+}
+
+TEST_F(OnlyTheClock, IsNoNewRunWhereAnAnswerGivesItsOldName) {
+  const ClientId again = scene_.post(1);
+  record(2, "1");
+  EXPECT_EQ(scene_.reports().run().number, 1);
+  EXPECT_EQ(scene_.state(2), Withdrawn);
+  EXPECT_EQ(scene_.report(2).same_as, 1);
+  EXPECT_EQ(scene_.report(3).run, 1) << "all that was recorded is of the one run";
+  EXPECT_EQ(scene_.told(again).status, 201) << "whoever still waits for it gets the recorded answer";
+  EXPECT_EQ(scene_.told(scene_.post(1)).status, 201);
+  EXPECT_EQ(scene_.told(scene_.post(2)).status, 201);
+  EXPECT_EQ(scene_.count(), 3u);
+}
+
+TEST_F(OnlyTheClock, TheRunThatIsBackIsSoAfterARestart) {
+  record(2, "1");
+  scene_.restart();
+  scene_.hear(18, 0, 5);
+  EXPECT_EQ(scene_.reports().run().number, 1);
+  scene_.post(2);
+  scene_.post(1);
+  EXPECT_EQ(scene_.count(), 2u);
+}
+
+TEST_F(OnlyTheClock, DoesNotReleaseWhatTheReviewHolds) {
+  ReportRules rules;
+  rules.review = Review::All;
+  Scene scene(rules);
+  scene.post(1);
+  scene.post(2);
+  ASSERT_TRUE(scene.reports().send(1, scene.time()));
+  ASSERT_EQ(scene.send_next(), 1);
+  scene.answer(recorded(0, "scored", "1"));
+  EXPECT_EQ(scene.state(2), Received);
+}
+
+/// One report is recorded at the first place, then the settings name another.
+class AnotherPlace : public testing::Test {
+ protected:
+  AnotherPlace() {
+    scene_.post(1);
+    scene_.answer(recorded(1));
+    scene_.hear(19, 1);
+  }
+  void go() { scene_.restart(kThere); }
+  void come_back() { scene_.restart(); }
+  void expect_one_recording() {
+    const ClientId again = scene_.post(1);
+    scene_.wait(1);
+    scene_.hear(19, 1);
+    while (scene_.send_next() != 0) FAIL() << "it is sent again";
+    EXPECT_EQ(scene_.told(again).body, recorded(1).body);
+  }
+  Scene scene_;
+};
+
+TEST_F(AnotherPlace, IsAnotherRun) {
+  go();
+  EXPECT_EQ(scene_.reports().run().number, 2);
+  EXPECT_EQ(scene_.reports().run().post, kThere);
+}
+
+TEST_F(AnotherPlace, TheSameReportWaitsUntilItHasAnswered) {
+  go();
+  scene_.post(1);
+  EXPECT_EQ(scene_.state(2), Waiting);
+  EXPECT_THAT(scene_.report(2).note, HasSubstr("the same as report 1"));
+  EXPECT_THAT(scene_.report(2).note, HasSubstr("10.100.2.200:8000 has answered"));
+  scene_.reports().status_failed(true, scene_.time());
+  EXPECT_EQ(scene_.send_next(), 0) << "who answered is not known";
+  scene_.hear(20, 0);
+  EXPECT_EQ(scene_.send_next(), 2) << "another Command Post, another run";
+}
+
+TEST_F(AnotherPlace, BackAtTheFirstItsRunIsTakenUpWithItsReports) {
+  go();
+  scene_.hear(20, 0);
+  come_back();
+  EXPECT_EQ(scene_.reports().run().number, 1);
+  expect_one_recording();
+}
+
+TEST_F(AnotherPlace, BackAtTheFirstItIsSoAlsoAfterARestart) {
+  go();
+  come_back();
+  scene_.hear(19, 1);
+  scene_.restart();
+  EXPECT_EQ(scene_.reports().run().number, 1);
+  expect_one_recording();
+}
+
+TEST_F(AnotherPlace, ThatWasMistypedIsPutRight) {
+  go();
+  scene_.post(1);
+  scene_.post(2);
+  come_back();
+  scene_.wait(1);
+  scene_.hear(19, 1);
+  EXPECT_EQ(scene_.send_next(), 3) << "what is new was for the first that is heard of";
+  EXPECT_EQ(scene_.state(2), Withdrawn);
+  EXPECT_EQ(scene_.report(2).same_as, 1);
+  scene_.answer(recorded());
+  expect_one_recording();
+}
+
+TEST_F(AnotherPlace, WhatWaitedForTheFirstIsKeptForIt) {
+  scene_.post_to_wait(3);
+  go();
+  EXPECT_EQ(scene_.state(2), Waiting);
+  EXPECT_EQ(scene_.report(2).run, 1);
+  scene_.hear(20, 0);
+  EXPECT_EQ(scene_.send_next(), 0);
+  EXPECT_THAT(scene_.reports().waiting_here(), IsEmpty());
+  EXPECT_EQ(scene_.report(2).note, "kept for the Command Post at 10.100.1.200:8000");
+  EXPECT_THAT(
+      scene_.reports().attention(),
+      testing::ElementsAre("1 report waits for the Command Post at 10.100.1.200:8000, which the settings do "
+                           "not name now"));
+  come_back();
+  scene_.wait(1);
+  scene_.hear(19, 1);
+  EXPECT_EQ(scene_.send_next(), 2);
+}
+
+TEST_F(AnotherPlace, WhatWaitedForTheFirstIsHeldWhereAnotherRunHasBegunThere) {
+  scene_.post_to_wait(3);
+  go();
+  come_back();
+  scene_.hear(25, 0, 4);
+  EXPECT_EQ(scene_.state(2), Received);
+}
+
+TEST_F(AnotherPlace, ADoubtStaysWithTheFirstAndIsFoundOutThere) {
+  scene_.post(4);
+  scene_.lose();
+  go();
+  EXPECT_EQ(scene_.report(2).run, 1) << "the other one cannot have it";
+  EXPECT_THAT(scene_.report(2).note, HasSubstr("10.100.1.200:8000"));
+  scene_.keep_hearing(3, 18, 0);
+  EXPECT_EQ(scene_.state(2), InDoubt);
+  come_back();
+  scene_.keep_hearing(3, 18, 1);
+  EXPECT_EQ(scene_.state(2), Settled);
+}
+
+TEST_F(AnotherPlace, TheOperatorsWordOnADoubtThereBlursTheOthersThere) {
+  scene_.post(4);
+  scene_.lose();
+  scene_.hear_stop(16);
+  scene_.post(5);
+  scene_.lose();
+  go();
+  ASSERT_TRUE(scene_.reports().call_done(2, scene_.time()));
+  EXPECT_EQ(scene_.report(3).before, std::nullopt);
+}
+
+TEST(AnotherTeam, ThatIsBackGoesOnWithItsRun) {
+  Scene scene;
+  scene.post(1);
+  scene.answer(recorded(1));
+  scene.hear(19, 1);
+  scene.wait(1);
+  scene.reports().status_heard({0, 5, 25, "other"}, scene.time());
+  EXPECT_EQ(scene.reports().run().number, 2);
+  scene.wait(1);
+  scene.hear(19, 1);
+  EXPECT_EQ(scene.reports().run().number, 1);
+  scene.post(1);
+  EXPECT_EQ(scene.count(), 1u);
+}
+
+TEST(AnotherName, ThatIsBackIsTheRunThatHadIt) {
+  Scene scene;
+  const auto record = [&scene](double x, const std::string& run) {
+    scene.post(x);
+    scene.answer(recorded(0, "scored", run));
+  };
+  record(1, "1");
+  record(2, "2");
+  EXPECT_EQ(scene.reports().run().number, 2);
+  record(3, "1");
+  EXPECT_EQ(scene.reports().run().number, 1);
+  scene.post(1);
+  EXPECT_EQ(scene.count(), 3u);
+  scene.post(2);
+  EXPECT_EQ(scene.state(4), Sending) << "of run 2 the first knows nothing";
+}
+
+}  // namespace
+}  // namespace adit::dispatch

@@ -1,0 +1,97 @@
+// Reports that damage took from the ledger.
+#include <gmock/gmock.h>
+
+#include "dispatch/scene.hpp"
+
+namespace adit::dispatch {
+namespace {
+
+using enum ReportState;
+using testing::ElementsAre;
+using testing::HasSubstr;
+
+constexpr const char* kNote = "report 2 is lost from the ledger: it may have been sent";
+
+/// Report 1 is answered; report 2 is lost, in the present run.
+class Lost : public testing::Test {
+ protected:
+  Lost() {
+    scene_.post(1);
+    scene_.answer(recorded());
+    Report lost = scene_.report(1);
+    lost = {.number = 2, .report = {"?", {}}, .sender = std::string(Report::kLost), .state = InDoubt};
+    lost.run = 1;
+    lost.note = kNote;
+    scene_.deeds().ledger[2] = lost;
+    scene_.restart();
+    scene_.keep_hearing(2, 19, 0);
+  }
+  Scene scene_;
+};
+
+TEST_F(Lost, WhatIsPostedInItsRunIsHeldAsItMayBeTheSame) {
+  const ClientId client = scene_.post(2);
+  EXPECT_EQ(scene_.state(3), Received);
+  EXPECT_THAT(scene_.report(3).note, HasSubstr(kNote));
+  scene_.wait(21);
+  EXPECT_THAT(scene_.deeds().told[client].at(0).sentence, HasSubstr("waits for the operator's word"));
+  EXPECT_TRUE(scene_.reports().send(3, scene_.time()));
+  scene_.keep_hearing(1, 19, 0);
+  EXPECT_EQ(scene_.send_next(), 3);
+}
+
+TEST_F(Lost, WhatIsKnownIsNotHeld) {
+  scene_.post(1);
+  EXPECT_EQ(scene_.count(), 2u) << "it joins the first";
+}
+
+TEST_F(Lost, HoldsWhatCameBeforeTheRunWasKnown) {
+  scene_.restart();
+  scene_.post(2);
+  scene_.hear(19, 0);
+  EXPECT_EQ(scene_.send_next(), 0);
+  EXPECT_EQ(scene_.state(3), Received);
+}
+
+TEST_F(Lost, NothingIsHeldOnceItIsCalledDone) {
+  EXPECT_THAT(scene_.reports().attention(), ElementsAre(HasSubstr(kNote)));
+  ASSERT_TRUE(scene_.reports().call_done(2, scene_.time()));
+  EXPECT_THAT(scene_.reports().attention(), ElementsAre());
+  scene_.keep_hearing(1, 19, 0);
+  scene_.post(2);
+  EXPECT_EQ(scene_.state(3), Sending);
+}
+
+TEST_F(Lost, NothingIsHeldInAnotherRun) {
+  scene_.reports().declare_new_run(scene_.time());
+  scene_.hear(20, 0);
+  scene_.post(2);
+  EXPECT_EQ(scene_.state(3), Sending);
+  EXPECT_THAT(scene_.reports().attention(), ElementsAre(HasSubstr(kNote))) << "he still has to know";
+}
+
+TEST_F(Lost, ItCannotBeSent) {
+  for (const auto& said :
+       {scene_.reports().send(2, scene_.time()), scene_.reports().resubmit(2, scene_.time())}) {
+    ASSERT_FALSE(said);
+    EXPECT_THAT(said.error(), HasSubstr("report 2 is in doubt"));
+  }
+  ASSERT_TRUE(scene_.reports().call_done(2, scene_.time()));
+  const auto again = scene_.reports().resubmit(2, scene_.time());
+  ASSERT_FALSE(again);
+  EXPECT_THAT(again.error(), HasSubstr("lost from the ledger"));
+}
+
+TEST_F(Lost, ItKeepsItsNoteWhateverIsHeard) {
+  scene_.post(3);
+  ASSERT_TRUE(scene_.reports().send(3, scene_.time()));
+  scene_.keep_hearing(1, 19, 0);
+  ASSERT_EQ(scene_.send_next(), 3);
+  scene_.lose();
+  scene_.keep_hearing(20, 18, 0);
+  EXPECT_EQ(scene_.report(2).note, kNote);
+  EXPECT_EQ(scene_.state(3), InDoubt) << "the count includes what the lost one may have used up";
+}
+
+}  // namespace
+}  // namespace adit::dispatch

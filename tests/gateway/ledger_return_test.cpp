@@ -1,0 +1,69 @@
+#include "gateway/ledger_return.hpp"
+
+#include <gtest/gtest.h>
+
+#include <filesystem>
+#include <future>
+
+#include "host/folder.hpp"
+
+namespace adit::gateway {
+namespace {
+
+namespace fs = std::filesystem;
+
+class LedgerReturnTest : public testing::Test {
+ protected:
+  template <class Condition>
+  bool comes(const Condition& condition) {
+    const auto end = loop_.now() + std::chrono::seconds{20};
+    while (!condition() && loop_.now() < end) loop_.turn(std::chrono::milliseconds{5});
+    return condition();
+  }
+
+  host::Folder folder_;
+  loop::Loop loop_;
+  loop::Writer writer_{loop_};
+  int back_ = 0;
+};
+
+TEST_F(LedgerReturnTest, IsSaidOnceWhereTheFolderTakesAWriteAgain) {
+  const LedgerReturn waits(loop_, writer_, folder_.path(), std::chrono::seconds{0}, [&] { ++back_; });
+  EXPECT_TRUE(comes([&] { return back_ > 0; }));
+  for (int i = 0; i < 20; ++i) loop_.turn(std::chrono::milliseconds{5});
+  EXPECT_EQ(back_, 1);
+}
+
+/// Room alone is not enough: a gateway that begins anew for nothing turns clients away.
+TEST_F(LedgerReturnTest, IsNotSaidWhereTheLedgerItselfCannotBeOpened) {
+  const std::string in_the_way = folder_.path() + "/ledger.sqlite";
+  fs::create_directory(in_the_way);
+  const LedgerReturn waits(loop_, writer_, folder_.path(), std::chrono::seconds{0}, [&] { ++back_; });
+  for (int i = 0; i < 40; ++i) loop_.turn(std::chrono::milliseconds{5});
+  EXPECT_EQ(back_, 0);
+  fs::remove(in_the_way);
+  EXPECT_TRUE(comes([&] { return back_ > 0; }));
+}
+
+TEST_F(LedgerReturnTest, IsWaitedForByADiskThatTakesLongAndNotByTheLoop) {
+  bool turned = false;
+  std::promise<void> let_go;
+  writer_.submit([until = let_go.get_future().share()] { until.wait(); }, [] {});
+  const LedgerReturn waits(loop_, writer_, folder_.path(), std::chrono::seconds{0}, [&] { ++back_; });
+  auto other = loop_.timer([&] { turned = true; });
+  other.call_at(loop_.now());
+  EXPECT_TRUE(comes([&] { return turned; }));
+  EXPECT_EQ(back_, 0);
+  let_go.set_value();
+  EXPECT_TRUE(comes([&] { return back_ > 0; }));
+}
+
+TEST(LedgerRest, IsTwiceAsLongEachTimeAndBounded) {
+  std::chrono::seconds rest = LedgerReturn::kRest;
+  EXPECT_EQ(longer(rest), 2 * rest);
+  for (int i = 0; i < 20; ++i) rest = longer(rest);
+  EXPECT_EQ(rest, LedgerReturn::kLongestRest);
+}
+
+}  // namespace
+}  // namespace adit::gateway

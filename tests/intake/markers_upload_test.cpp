@@ -1,0 +1,152 @@
+#include "intake/markers_upload.hpp"
+
+#include <gtest/gtest.h>
+
+#include "codec/deflated.hpp"
+#include "icd/markers_update.hpp"
+#include "intake/team.hpp"
+
+namespace adit::intake {
+namespace {
+
+using codec::test::gzipped;
+using nlohmann::json;
+
+const std::string kGzip = "Content-Encoding: gzip\r\n";
+
+/// A marker of so many points, and of as many colors where `colored`.
+json marker(std::size_t points, bool colored) {
+  json marker = {{"ns", "voxels"},
+                 {"id", 1},
+                 {"type", 6},
+                 {"action", 0},
+                 {"pose",
+                  {{"position", {{"x", 0}, {"y", 0}, {"z", 0}}},
+                   {"orientation", {{"x", 0}, {"y", 0}, {"z", 0}, {"w", 1}}}}},
+                 {"scale", {{"x", 0.1}, {"y", 0.1}, {"z", 0.1}}},
+                 {"color", {{"r", 0}, {"g", 0}, {"b", 1}, {"a", 1}}},
+                 {"points", json::array()}};
+  for (std::size_t n = 0; n < points; ++n) {
+    const double along = static_cast<double>(n) / 7;
+    marker["points"].push_back({{"x", along}, {"y", -along}, {"z", 0.3}});
+    if (colored) marker["colors"].push_back({{"r", 0.1}, {"g", 0.2}, {"b", 0.3}, {"a", 0.9}});
+  }
+  return marker;
+}
+
+std::string cbor_of(const json& message) {
+  std::string bytes;
+  json::to_cbor(message, bytes);
+  return bytes;
+}
+
+TEST(MarkersUpload, HasRoomForTheLargestMarkerThereCanBe) {
+  Team team;
+  const std::string cbor = cbor_of({{"markers", {marker(icd::kMostMarkerPoints, true)}}});
+  const std::string text = json{{"markers", {marker(icd::kMostMarkerPoints, false)}}}.dump();
+  ASSERT_GT(cbor.size(), 7u << 20);
+  ASSERT_GT(text.size(), 5u << 20);
+  for (const std::string& sent :
+       {authorized("POST", "/markers/update", kCborType, cbor),
+        authorized("POST", "/markers/update", std::string(kCborType) + kGzip, gzipped(cbor)),
+        authorized("POST", "/markers/update", kJsonType, text)}) {
+    const auto reply = team.ask(sent);
+    ASSERT_TRUE(reply);
+    EXPECT_EQ(reply->status, 200) << reply->body;
+  }
+  team.served.on_loop([&] {
+    ASSERT_EQ(team.desk.markers.size(), 3u);
+    for (const icd::MarkersUpdate& update : team.desk.markers) {
+      ASSERT_EQ(update.markers.size(), 1u);
+      const icd::Marker& taken = update.markers[0];
+      EXPECT_EQ(taken.points.size(), icd::kMostMarkerPoints);
+      EXPECT_EQ(taken.points.at(70).x, 10.0);
+    }
+    EXPECT_EQ(team.desk.markers[0].markers[0].colors.size(), icd::kMostMarkerPoints);
+    EXPECT_EQ(team.desk.senders.at(0).bytes, cbor.size());
+  });
+}
+
+TEST(MarkersUpload, IsRefusedAboveItsLimitHoweverItComes) {
+  Team team;
+  const std::string head = std::string(kJsonType) + "Content-Length: 8388609\r\n";
+  EXPECT_EQ(team.ask(authorized("POST", "/markers/update", head))->body,
+            "\"Content-Length: expected at most 8388608, got 8388609\"");
+  const std::string blanks = "{\"markers\": [" + std::string(MarkersUpload::kMost, ' ') + "]}";
+  const auto reply =
+      team.ask(authorized("POST", "/markers/update", std::string(kJsonType) + kGzip, gzipped(blanks)));
+  ASSERT_TRUE(reply);
+  EXPECT_EQ(reply->status, 413) << reply->body;
+  EXPECT_EQ(team.served.on_loop([&] { return team.desk.refusals.size(); }), 2u);
+}
+
+TEST(MarkersUpload, WaitsForAWorkerOnlyWhereItIsLarge) {
+  Team team;
+  Team::Busy busy(team);
+  RawClient large(team.served.port());
+  const std::string body = cbor_of({{"markers", {marker(50'000, false)}}});
+  large.send(authorized("POST", "/markers/update", kCborType, body));
+  EXPECT_EQ(team.ask(authorized("POST", "/markers/update", kJsonType, kMarkersBody))->status, 200);
+  team.served.on_loop([&] {
+    ASSERT_EQ(team.desk.markers.size(), 1u);
+    EXPECT_EQ(team.desk.markers[0].markers.size(), 1u);
+  });
+  busy.end();
+  EXPECT_EQ(large.reply()->status, 200);
+}
+
+TEST(MarkersUpload, OfALargeOneWithBadPartsTheGoodOnesAreTaken) {
+  Team team;
+  json markers = {marker(40'000, false), 7, marker(3, false)};
+  markers[2]["id"] = 2;
+  const auto reply =
+      team.ask(authorized("POST", "/markers/update", kCborType, cbor_of({{"markers", markers}})));
+  ASSERT_TRUE(reply);
+  EXPECT_EQ(reply->status, 422);
+  EXPECT_EQ(reply->body, "\"markers[1]: expected an object, got a whole number (the other 2 were taken)\"");
+  EXPECT_EQ(team.served.on_loop([&] { return team.desk.markers.at(0).markers.size(); }), 2u);
+}
+
+TEST(MarkersUpload, IsNotTakenOnceItsClientIsGoneOrAStopHasBegun) {
+  Team team;
+  const std::string body = cbor_of({{"markers", {marker(50'000, false)}}});
+  const std::string sent = authorized("POST", "/markers/update", kCborType, body);
+  Team::Busy busy(team);
+  {
+    RawClient gone(team.served.port());
+    gone.send(sent);
+    team.served.turn_often();
+    gone.reset();
+    ASSERT_TRUE(team.served.eventually([&] { return team.served.server().connections() == 0; }));
+  }
+  RawClient late(team.served.port());
+  late.send(sent);
+  team.served.turn_often();
+  team.served.on_loop([&] { team.front.routes->stop(); });
+  EXPECT_EQ(late.reply()->status, 503);
+  busy.end();
+  team.served.turn_often();
+  team.served.on_loop([&] { EXPECT_TRUE(team.desk.markers.empty()); });
+}
+
+TEST(MarkersUpload, AsksForTheMemoryThatReadingItTakes) {
+  IcdOptions options = Team::with_tokens();
+  options.upload_bytes = MarkersUpload::kReading + (4u << 20);
+  Team team(options);
+  const std::string body = cbor_of({{"markers", {marker(50'000, false)}}});
+  const std::string sent = authorized("POST", "/markers/update", kCborType, body);
+  Team::Busy busy(team);
+  RawClient first(team.served.port());
+  first.send(sent);
+  team.served.turn_often();
+  const auto refused = team.ask(sent);
+  ASSERT_TRUE(refused);
+  EXPECT_EQ(refused->status, 429) << refused->body;
+  EXPECT_EQ(team.ask(authorized("POST", "/markers/update", kJsonType, kMarkersBody))->status, 200);
+  busy.end();
+  EXPECT_EQ(first.reply()->status, 200);
+  EXPECT_EQ(team.ask(sent)->status, 200) << "it was given back";
+}
+
+}  // namespace
+}  // namespace adit::intake

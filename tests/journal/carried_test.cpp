@@ -1,0 +1,213 @@
+#include "journal/carried.hpp"
+
+#include <gmock/gmock.h>
+
+#include <chrono>
+#include <random>
+#include <string>
+
+#include "lanes/marker_lane.hpp"
+
+namespace adit::journal {
+namespace {
+
+using testing::ElementsAre;
+using testing::IsEmpty;
+using testing::Pair;
+using testing::SizeIs;
+
+icd::StateUpdate state(const char* name, double x, double stamp) {
+  return {.header = {stamp},
+          .poses = {{*icd::RobotName::parse(name), {.position = {x, 0, 0}, .orientation = {}}}}};
+}
+
+icd::Marker marker(const std::string& ns, std::int32_t id, icd::MarkerAction action, double x) {
+  icd::Marker made;
+  made.header.stamp = 5.0 + x;
+  made.ns = ns;
+  made.id = id;
+  made.action = action;
+  made.pose.position.x = x;
+  return made;
+}
+
+void tell(Carried& carried, Kind kind, const std::string& said = {}) {
+  ASSERT_TRUE(carried.apply(kind, said)) << static_cast<int>(kind);
+}
+
+std::string sent(std::initializer_list<const char*> robots) {
+  std::vector<icd::RobotName> names;
+  for (const char* robot : robots) names.push_back(*icd::RobotName::parse(robot));
+  return said_sent(names);
+}
+
+std::vector<std::string> names_in(const Carried& carried) {
+  std::vector<std::string> names;
+  for (const auto& [name, robot] : carried.robots()) names.push_back(name.text());
+  return names;
+}
+
+/// What a life to come makes of a snapshot.
+Carried again(const Carried& carried) {
+  Carried other;
+  carried.write([&](Kind kind, std::string_view said) { ASSERT_TRUE(other.apply(kind, said)); });
+  return other;
+}
+
+TEST(Carried, HasPosesUntilTheyWereTaken) {
+  Carried carried;
+  tell(carried, Kind::State, said(state("r1", 1, 10)));
+  tell(carried, Kind::State, said(state("r2", 2, 11)));
+  EXPECT_THAT(names_in(carried), ElementsAre("r1", "r2"));
+  tell(carried, Kind::StateSent, sent({"r1", "r2"}));
+  EXPECT_THAT(names_in(again(carried)), ElementsAre("r1", "r2")) << "no answer has come";
+  tell(carried, Kind::StateDone);
+  EXPECT_THAT(carried.robots(), IsEmpty()) << "the next life may serve another Command Post";
+}
+
+TEST(Carried, HasThePosesThatWaitWhileOthersAreTaken) {
+  Carried carried;
+  tell(carried, Kind::State, said(state("r1", 1, 10)));
+  tell(carried, Kind::State, said(state("r2", 2, 11)));
+  tell(carried, Kind::StateSent, sent({"r1"}));
+  carried = again(carried);
+  tell(carried, Kind::StateDone);
+  EXPECT_THAT(names_in(carried), ElementsAre("r2"));
+}
+
+TEST(Carried, HasNewsThatCameWhileOthersWereUnderWay) {
+  Carried carried;
+  tell(carried, Kind::State, said(state("r1", 1, 10)));
+  tell(carried, Kind::StateSent, sent({"r1"}));
+  tell(carried, Kind::State, said(state("r1", 2, 11)));
+  carried = again(carried);
+  tell(carried, Kind::StateDone);
+  ASSERT_THAT(carried.robots(), SizeIs(1));
+  EXPECT_EQ(carried.robots().begin()->second.pose.position.x, 2);
+}
+
+TEST(Carried, HoldsWhatWasUnderWayForNotTakenWhereALifeEnded) {
+  Carried carried;
+  tell(carried, Kind::State, said(state("r1", 1, 10)));
+  tell(carried, Kind::Markers, said(icd::MarkersUpdate{{marker("a", 1, icd::MarkerAction::Add, 1)}}));
+  tell(carried, Kind::StateSent, sent({"r1"}));
+  tell(carried, Kind::MarkersSent, said_sent({marker("a", 1, icd::MarkerAction::Add, 1)}));
+  tell(carried, Kind::LifeBegins);
+  tell(carried, Kind::StateDone);  // of the next life: nothing is under way there
+  tell(carried, Kind::MarkersDone);
+  EXPECT_THAT(carried.robots(), SizeIs(1));
+  EXPECT_THAT(carried.markers().markers, SizeIs(1));
+}
+
+TEST(Carried, HoldsForNotTakenWhatWasSentAndOfWhichNoAnswerWasWrittenDown) {
+  Carried carried;
+  tell(carried, Kind::State, said(state("r1", 1, 10)));
+  tell(carried, Kind::State, said(state("r2", 1, 10)));
+  const auto a = marker("a", 1, icd::MarkerAction::Add, 1), b = marker("b", 1, icd::MarkerAction::Add, 1);
+  tell(carried, Kind::Markers, said(icd::MarkersUpdate{{a, b}}));
+  tell(carried, Kind::StateSent, sent({"r1"}));
+  tell(carried, Kind::StateSent, sent({"r2"}));
+  tell(carried, Kind::MarkersSent, said_sent({a}));
+  tell(carried, Kind::MarkersSent, said_sent({b}));
+  tell(carried, Kind::StateDone);
+  tell(carried, Kind::MarkersDone);
+  EXPECT_THAT(names_in(carried), ElementsAre("r1"));
+  EXPECT_THAT(carried.markers().markers, ElementsAre(a));
+}
+
+TEST(Carried, HasClocksPacesAndStamps) {
+  using std::chrono::seconds;
+  const pace::Learned learned{.next = pace::Instant(seconds(7)), .spacing = seconds(3), .under_way = true};
+  Carried carried;
+  EXPECT_FALSE(carried.clock());
+  tell(carried, Kind::Clock, said(Clock{.boot = "b1", .at = pace::Instant(seconds(5)), .stamp = 1.5e9}));
+  tell(carried, Kind::Sender, said("10.0.0.5/state/r1", {.theirs = 100, .ours = 1.5e9, .latest = 104}));
+  tell(carried, Kind::Pace, said(icd::Uri::MapUpdate, learned));
+  tell(carried, Kind::Stamp, said(icd::Uri::StateUpdate, 1.5e9 + 4));
+  for (const Carried& each : {carried, again(carried)}) {
+    EXPECT_EQ(each.clock()->boot, "b1");
+    EXPECT_EQ(each.clock()->at, pace::Instant(seconds(5)));
+    EXPECT_EQ(each.clock()->stamp, 1.5e9);
+    EXPECT_THAT(each.paces(), ElementsAre(Pair(icd::Uri::MapUpdate, learned)));
+    EXPECT_THAT(each.stamps(), ElementsAre(Pair(icd::Uri::StateUpdate, 1.5e9 + 4)));
+    ASSERT_NE(each.senders().clock_of("10.0.0.5/state/r1"), nullptr);
+    EXPECT_EQ(each.senders().clock_of("10.0.0.5/state/r1")->latest_given(), 1.5e9 + 4);
+  }
+  tell(carried, Kind::Clock, said(Clock{.boot = "b2", .at = pace::Instant(seconds(1)), .stamp = 1.6e9}));
+  EXPECT_THAT(carried.paces(), IsEmpty()) << "instants of another start of the machine";
+  EXPECT_THAT(carried.senders().clocks(), IsEmpty());
+  EXPECT_THAT(carried.stamps(), SizeIs(1));
+}
+
+TEST(Carried, KnowsNoInstantsOfAnotherStartOfTheMachine) {
+  using std::chrono::seconds;
+  Carried carried;
+  tell(carried, Kind::Clock, said(Clock{.boot = "b1", .at = pace::Instant(seconds(5)), .stamp = 1.5e9}));
+  tell(carried, Kind::Pace, said(icd::Uri::MapUpdate, pace::Learned{.next = pace::Instant(seconds(7))}));
+  carried.machine_is("b1");
+  EXPECT_TRUE(carried.clock());
+  EXPECT_THAT(carried.paces(), SizeIs(1));
+  carried.machine_is("b2");
+  EXPECT_FALSE(carried.clock());
+  EXPECT_THAT(carried.paces(), IsEmpty()) << "its clock may have said anything";
+}
+
+TEST(Carried, PassesOverWhatItDoesNotUnderstand) {
+  Carried carried;
+  for (int kind = 0; kind < 256; ++kind) {
+    for (const std::string said : {"", "?", "\x01\0\0\0\0\0\0\0"})
+      (void)carried.apply(static_cast<Kind>(kind), said);
+  }
+  EXPECT_FALSE(carried.apply(static_cast<Kind>(99), ""));
+  EXPECT_THAT(carried.robots(), IsEmpty());
+  EXPECT_THAT(carried.markers().markers, IsEmpty());
+}
+
+/// The law: what a journal comes to is what waits in the lanes, however sending goes and wherever a snapshot
+/// was made.
+TEST(Carried, IsWhatWaitsInTheLanes) {
+  std::mt19937_64 random{1};
+  const auto pick = [&](int below) { return std::uniform_int_distribution{0, below - 1}(random); };
+  const auto any = [&](double x) {
+    const int dice = pick(20);
+    const auto action = dice == 0  ? icd::MarkerAction::DeleteAll
+                        : dice < 5 ? icd::MarkerAction::Delete
+                                   : icd::MarkerAction::Add;
+    return action == icd::MarkerAction::DeleteAll ? marker("", 0, action, x)
+                                                  : marker(pick(2) == 0 ? "a" : "b", pick(6), action, x);
+  };
+  Carried carried;
+  std::vector<icd::Marker> waiting, under_way;
+  for (int i = 0; i < 4000; ++i) {
+    switch (pick(5)) {
+      case 0: {  // accepted
+        icd::MarkersUpdate update;
+        for (int left = pick(4); left >= 0; --left) update.markers.push_back(any(i));
+        tell(carried, Kind::Markers, said(update));
+        waiting = lanes::merge(waiting, update.markers);
+        break;
+      }
+      case 1:  // sent
+        if (!under_way.empty() || waiting.empty()) break;
+        under_way.assign(waiting.begin(), waiting.begin() + 1 + pick(static_cast<int>(waiting.size())));
+        waiting.erase(waiting.begin(), waiting.begin() + static_cast<std::ptrdiff_t>(under_way.size()));
+        tell(carried, Kind::MarkersSent, said_sent(under_way));
+        break;
+      case 2:
+        under_way.clear();
+        tell(carried, Kind::MarkersDone);
+        break;
+      case 3:
+        waiting = lanes::merge(under_way, waiting);
+        under_way.clear();
+        tell(carried, Kind::MarkersBack);
+        break;
+      default:
+        carried = again(carried);
+    }
+    ASSERT_EQ(carried.markers().markers, lanes::merge(under_way, waiting)) << i;
+  }
+}
+
+}  // namespace
+}  // namespace adit::journal

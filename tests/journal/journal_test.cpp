@@ -1,0 +1,266 @@
+#include "journal/journal.hpp"
+
+#include <gmock/gmock.h>
+#include <sys/resource.h>
+#include <sys/stat.h>
+
+#include <csignal>
+#include <filesystem>
+#include <fstream>
+#include <iterator>
+#include <memory>
+
+namespace adit::journal {
+namespace {
+
+namespace fs = std::filesystem;
+
+icd::StateUpdate pose(double x) {
+  return {.header = {x},
+          .poses = {{*icd::RobotName::parse("r1"), {.position = {x, 0, 0}, .orientation = {}}}}};
+}
+
+icd::MarkersUpdate one_marker(std::int32_t id, std::size_t text = 0) {
+  icd::Marker marker;
+  marker.header.stamp = 5;
+  marker.ns = "path";
+  marker.id = id;
+  marker.text = std::string(text, 'x');
+  return {.markers = {marker}};
+}
+
+class JournalTest : public testing::Test {
+ protected:
+  JournalTest() {
+    std::string pattern = fs::temp_directory_path() / "adit-journal-XXXXXX";
+    folder_ = ::mkdtemp(pattern.data());
+  }
+  ~JournalTest() override { fs::remove_all(folder_); }
+
+  /// A life that goes on until it is dropped; a death is no different, for it has nothing left to do.
+  std::unique_ptr<Journal> life() {
+    auto journal = std::make_unique<Journal>(loop_, folder_ / "journal");
+    journal->begin({.boot = "b", .at = loop_.now(), .stamp = 1e9});
+    return journal;
+  }
+  Carried left() const { return Folder(folder_ / "journal").read(); }
+  std::vector<std::string> files(const std::string& kind) const {
+    std::vector<std::string> names;
+    for (const auto& file : fs::directory_iterator(folder_ / "journal")) {
+      if (file.path().filename().string().starts_with(kind)) names.push_back(file.path());
+    }
+    return names;
+  }
+  /// Until there is one snapshot and one journal.
+  void wait_for_snapshot() {
+    for (int i = 0; i < 6000 && (files("snapshot").size() != 1 || files("journal").size() != 1); ++i) {
+      loop_.turn(std::chrono::milliseconds(10));
+    }
+    ASSERT_EQ(files("snapshot").size(), 1u);
+    ASSERT_EQ(files("journal").size(), 1u);
+  }
+
+  loop::Loop loop_;
+  fs::path folder_;
+};
+
+TEST_F(JournalTest, GivesTheNextLifeWhatWasAcceptedAndNotTaken) {
+  {
+    const auto journal = life();
+    EXPECT_TRUE(journal->accepted(pose(1)));
+    EXPECT_TRUE(journal->accepted(one_marker(1)));
+    journal->markers_sent(one_marker(1));
+    EXPECT_TRUE(journal->accepted(one_marker(2)));
+    journal->markers_answered(true);
+  }
+  for (int lives = 0; lives < 3; ++lives) {
+    SCOPED_TRACE(lives);
+    EXPECT_EQ(left().robots().size(), 1u);
+    EXPECT_EQ(left().markers(), one_marker(2));
+    (void)life();
+  }
+}
+
+TEST_F(JournalTest, IsReadableByNobodyElse) {
+  const auto journal = life();
+  struct stat status{};
+  ASSERT_EQ(::stat((folder_ / "journal").c_str(), &status), 0);
+  EXPECT_EQ(status.st_mode & 0777, 0700u);
+  ASSERT_EQ(::stat(files("journal").front().c_str(), &status), 0);
+  EXPECT_EQ(status.st_mode & 0777, 0600u);
+}
+
+/// A kill in the middle of a write: what was answered before is there, what was not may be absent, nothing
+/// else is there.
+TEST_F(JournalTest, HoldsAllThatWasAnsweredWhereverItsFileIsCut) {
+  constexpr int kAnswered = 3;
+  std::vector<std::uintmax_t> sizes;
+  {
+    const auto journal = life();
+    const std::string file = files("journal").front();
+    sizes.push_back(fs::file_size(file));
+    for (int i = 1; i <= kAnswered; ++i) {
+      ASSERT_TRUE(journal->accepted(pose(i)));
+      ASSERT_TRUE(journal->accepted(one_marker(i)));
+      sizes.push_back(fs::file_size(file));
+    }
+  }
+  const std::string file = files("journal").front();
+  std::ifstream stream(file, std::ios::binary);
+  const std::string whole{std::istreambuf_iterator<char>(stream), std::istreambuf_iterator<char>()};
+  for (std::size_t cut = 0; cut <= whole.size(); ++cut) {
+    fs::remove(file);  // ext4 flushes what takes the place of a file's content
+    std::ofstream(file, std::ios::binary) << whole.substr(0, cut);
+    std::size_t answered = 0;
+    while (answered + 1 < sizes.size() && sizes[answered + 1] <= cut) ++answered;
+    const Carried carried = left();
+    const auto markers = carried.markers().markers;
+    ASSERT_EQ(markers.size(), answered) << "cut at " << cut;
+    for (std::size_t i = 0; i < markers.size(); ++i) ASSERT_EQ(markers[i].id, static_cast<int>(i) + 1);
+    const double x = carried.robots().empty() ? 0 : carried.robots().begin()->second.pose.position.x;
+    ASSERT_GE(x, static_cast<double>(answered));
+    ASSERT_LE(x, static_cast<double>(answered) + 1) << "the one that was being written";
+  }
+}
+
+TEST_F(JournalTest, GoesOnInAnotherFileWhereALifeEndedInTheMiddleOfAWrite) {
+  ASSERT_TRUE(life()->accepted(pose(1)));
+  std::ofstream(files("journal").front(), std::ios::binary | std::ios::app)
+      << framed(Kind::State, "torn").substr(0, 9);
+  ASSERT_TRUE(life()->accepted(one_marker(7)));
+  EXPECT_EQ(left().markers(), one_marker(7));
+  EXPECT_EQ(left().robots().size(), 1u);
+}
+
+TEST_F(JournalTest, StaysSmallAndLosesNothingWhenItIsBegunAnew) {
+  constexpr int kMarkers = 40;
+  auto journal = life();
+  for (int round = 0; round < 100; ++round) {
+    for (int id = 0; id < kMarkers; ++id) {
+      const icd::MarkersUpdate update = one_marker(id, 1000 + static_cast<std::size_t>(round));
+      ASSERT_TRUE(journal->accepted(update));
+    }
+    loop_.turn(std::chrono::nanoseconds(0));
+  }
+  wait_for_snapshot();
+  EXPECT_LT(fs::file_size(files("snapshot").front()), 4 * kMarkers * 1100u) << "as much as waits";
+  const auto check = [&] {
+    const auto markers = left().markers().markers;
+    ASSERT_EQ(markers.size(), static_cast<std::size_t>(kMarkers));
+    for (const icd::Marker& marker : markers) EXPECT_EQ(marker.text.size(), 1099u);
+  };
+  check();
+  journal = nullptr;
+  journal = life();
+  check();
+}
+
+TEST_F(JournalTest, TakesASnapshotThatIsNotWholeForNone) {
+  ASSERT_TRUE(life()->accepted(pose(1)));
+  const Folder folder(folder_ / "journal");
+  std::ofstream(folder.snapshot(folder.last() + 1), std::ios::binary)
+      << framed(Kind::Markers, said(one_marker(1)));
+  EXPECT_TRUE(left().markers().markers.empty());
+  EXPECT_EQ(left().robots().size(), 1u);
+}
+
+TEST_F(JournalTest, LeavesNothingOfASnapshotInTheMiddleOfWhichALifeEnded) {
+  ASSERT_TRUE(life()->accepted(pose(1)));
+  std::ofstream(folder_ / "journal" / "snapshot-00000009.part") << "half";
+  const auto journal = life();
+  wait_for_snapshot();
+  EXPECT_FALSE(fs::exists(folder_ / "journal" / "snapshot-00000009.part"));
+  EXPECT_EQ(left().robots().size(), 1u);
+}
+
+/// Files that may be no larger than so many bytes, as if the folder were full.
+class NoRoom {
+ public:
+  explicit NoRoom(std::uintmax_t bytes) {
+    ::getrlimit(RLIMIT_FSIZE, &before_);
+    const struct rlimit small{bytes, before_.rlim_max};
+    handler_ = ::signal(SIGXFSZ, SIG_IGN);
+    ::setrlimit(RLIMIT_FSIZE, &small);
+  }
+  ~NoRoom() {
+    ::setrlimit(RLIMIT_FSIZE, &before_);
+    ::signal(SIGXFSZ, handler_);
+  }
+  NoRoom(const NoRoom&) = delete;
+  NoRoom& operator=(const NoRoom&) = delete;
+
+ private:
+  struct rlimit before_{};
+  sighandler_t handler_ = nullptr;
+};
+
+TEST_F(JournalTest, SaysThatThereIsNoRoomAndKeepsWhatItHas) {
+  const auto journal = life();
+  ASSERT_TRUE(journal->accepted(one_marker(1)));
+  const auto size = fs::file_size(files("journal").front());
+  for (std::uintmax_t room = 0; room < 40; ++room) {
+    const NoRoom none(size + room);
+    const auto kept = journal->accepted(one_marker(2));
+    ASSERT_FALSE(kept) << "with room for " << room << " bytes";
+    EXPECT_THAT(kept.error(), testing::HasSubstr("journal-"));
+    EXPECT_EQ(journal->trouble(), kept.error());
+  }
+  ASSERT_TRUE(journal->accepted(one_marker(3)));
+  EXPECT_EQ(journal->trouble(), "");
+  std::vector<std::int32_t> ids;
+  for (const icd::Marker& marker : left().markers().markers) ids.push_back(marker.id);
+  EXPECT_THAT(ids, testing::ElementsAre(1, 3));
+}
+
+/// What the life before had sent, and of which it knew no answer, waits again; and instants are read by the
+/// clock of this start of the machine.
+TEST_F(JournalTest, SaysThatALifeBeganAlsoWhereThereIsRoomOnlyLater) {
+  {
+    const auto journal = life();
+    ASSERT_TRUE(journal->accepted(one_marker(1)));
+    journal->markers_sent(one_marker(1));
+  }
+  std::unique_ptr<Journal> journal;
+  {
+    const NoRoom none(1);
+    journal = std::make_unique<Journal>(loop_, folder_ / "journal");
+    journal->begin({.boot = "after", .at = loop_.now(), .stamp = 2e9});
+    EXPECT_FALSE(journal->accepted(one_marker(2)));
+  }
+  ASSERT_TRUE(journal->accepted(one_marker(3)));
+  journal->markers_answered(true);  // of what this life sent: nothing
+  journal = nullptr;
+  std::vector<std::int32_t> ids;
+  for (const icd::Marker& marker : left().markers().markers) ids.push_back(marker.id);
+  EXPECT_THAT(ids, testing::ElementsAre(1, 3));
+  EXPECT_EQ(left().clock()->boot, "after");
+}
+
+TEST_F(JournalTest, SaysSoWhereItsFolderCannotBeWritten) {
+  std::ofstream(folder_ / "journal") << "";
+  const auto journal = life();
+  EXPECT_FALSE(journal->accepted(pose(1)));
+  fs::remove(folder_ / "journal");
+  fs::create_directory(folder_ / "journal");
+  EXPECT_TRUE(journal->accepted(pose(1))) << "once it can";
+}
+
+/// What a post pays for it. Printed, not asserted: machines differ.
+TEST_F(JournalTest, CostsLittle) {
+  const auto journal = life();
+  constexpr int kPosts = 2000;
+  std::vector<double> micros;
+  for (int i = 0; i < kPosts; ++i) {
+    const auto began = std::chrono::steady_clock::now();
+    journal->sender("10.0.0.5/state/r1", {.theirs = 1, .ours = 2, .latest = 3});
+    ASSERT_TRUE(journal->accepted(pose(i)));
+    micros.push_back(
+        std::chrono::duration<double, std::micro>(std::chrono::steady_clock::now() - began).count());
+  }
+  std::ranges::sort(micros);
+  std::printf("a state and its sender's clock in %s: p50 %.1f us, p99 %.1f us\n", folder_.c_str(),
+              micros[kPosts / 2], micros[kPosts * 99 / 100]);
+}
+
+}  // namespace
+}  // namespace adit::journal

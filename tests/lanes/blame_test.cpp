@@ -1,0 +1,192 @@
+// Whose fault a 500 is: Blame and the lanes, against servers of several kinds, on simulated time.
+#include "lanes/blame.hpp"
+
+#include <gtest/gtest.h>
+
+#include <functional>
+#include <map>
+#include <random>
+#include <string>
+#include <vector>
+
+#include "lanes/map_lane.hpp"
+#include "lanes/maps.hpp"
+
+namespace adit::lanes {
+namespace {
+
+/// Whether a server takes the map whose points are that value, at that second.
+using Server = std::function<bool(std::uint8_t, double)>;
+
+struct Outcome {
+  std::vector<std::uint8_t> taken, set_aside;
+  std::size_t waiting = 0;
+  int tries_of_first = 0;
+};
+
+/// `senders` robots post a cloud each second, numbered 1, 2, 3...: the first posts 1, the second 2, and so
+/// on. One is sent each second, as the gateway sends them.
+Outcome played(const Server& server, int clouds, int senders, double until) {
+  MapLane lane(0);  // nothing is merged
+  Blame blame;
+  Outcome outcome;
+  int posted = 0;
+  for (double now = 0; now < until; now += 1) {
+    for (int i = 0; i < 1 && posted < clouds; ++i, ++posted) {
+      const std::string name = "ugv" + std::to_string(posted % senders);
+      lane.add(static_cast<std::uint64_t>(posted) + 1,
+               cloud_update(name, {static_cast<std::uint8_t>(posted + 1)}), at(now));
+    }
+    auto map = lane.take(at(now));
+    if (!map) continue;
+    const std::uint8_t which = points_of(map->map).front();
+    const std::string name = map->map.name->text();
+    outcome.tries_of_first += which == 1 ? 1 : 0;
+    if (server(which, now)) {
+      blame.passed(name, at(now));
+      outcome.taken.push_back(which);
+    } else if (blame.failed(name, map->trial, at(now)) == Blame::Verdict::SetAside) {
+      outcome.set_aside.push_back(which);
+    } else {
+      lane.put_back(std::move(*map));
+    }
+  }
+  outcome.waiting = lane.count();
+  return outcome;
+}
+
+TEST(Blame, SetsNothingAsideInAnOutageHoweverLongItIs) {
+  for (const double length : {3.0, 30.0, 600.0}) {
+    const Server outage = [&](std::uint8_t, double now) { return now < 5 || now >= 5 + length; };
+    const Outcome outcome = played(outage, 20, 3, 5 + length + 30);
+    EXPECT_TRUE(outcome.set_aside.empty()) << length;
+    EXPECT_EQ(outcome.taken.size(), 20) << length;
+    EXPECT_EQ(outcome.waiting, 0) << length;
+  }
+}
+
+TEST(Blame, SetsTheOneAsideThatFailsAloneAndLetsOthersPass) {
+  for (const int senders : {1, 2, 5}) {
+    const Outcome outcome = played([](std::uint8_t which, double) { return which != 1; }, 30, senders, 60);
+    EXPECT_EQ(outcome.set_aside, std::vector<std::uint8_t>{1}) << senders;
+    EXPECT_EQ(outcome.taken.size(), 29) << senders;
+    EXPECT_GE(outcome.tries_of_first, 4) << senders << ": its tries are few";
+    EXPECT_LE(outcome.tries_of_first, 6) << senders << ": it holds others up";
+  }
+}
+
+TEST(Blame, SetsSeveralAsideThatFailWhileOthersPass) {
+  const Outcome outcome = played([](std::uint8_t which, double) { return which % 5 != 0; }, 30, 5, 200);
+  EXPECT_GE(outcome.set_aside.size(), 5) << "a robot whose every map fails";
+  EXPECT_EQ(outcome.set_aside.size() + outcome.waiting, 6) << "the last waits until another passes";
+  EXPECT_EQ(outcome.taken.size(), 24);
+}
+
+TEST(Blame, SpacesTheTries) {
+  Blame blame;
+  Trial trial;
+  std::vector<double> rests;
+  double now = 0;
+  while (blame.failed("ugv1", trial, at(now)) == Blame::Verdict::Again) {
+    blame.passed("ugv2", at(now + 0.5));
+    const double rest = std::chrono::duration<double>(trial.rests_until - at(now)).count();
+    rests.push_back(rest);
+    now += std::max(rest, 1.0);
+  }
+  EXPECT_EQ(rests, (std::vector<double>{0, 2, 4}));
+}
+
+TEST(Blame, TakesAFailureBeforeAnyOtherPassedForNoStrike) {
+  Blame blame;
+  Trial trial;
+  blame.passed("ugv2", at(0));
+  for (int i = 1; i < 100; ++i) {
+    ASSERT_EQ(blame.failed("ugv1", trial, at(i)), Blame::Verdict::Again);
+  }
+  EXPECT_EQ(trial.strikes, 0);
+}
+
+TEST(Blame, AcceptsNoStrikeWhereSomebodyElsesMessagesWaver) {
+  Blame blame;
+  Trial trial, other;
+  blame.passed("ugv2", at(0));
+  blame.failed("ugv1", trial, at(1));
+  blame.passed("ugv3", at(2));
+  blame.failed("ugv2", other, at(3));  // it passed before
+  blame.failed("ugv1", trial, at(4));
+  EXPECT_EQ(trial.strikes, 0);
+  blame.passed("ugv3", at(5));
+  blame.failed("ugv2", other, at(6));  // on trial itself: it says nothing of others
+  blame.failed("ugv1", trial, at(7));
+  EXPECT_EQ(trial.strikes, 1);
+}
+
+TEST(Blame, SetsHardlyAnythingAsideWhereHalfFailsByChance) {
+  std::size_t aside = 0, taken = 0;
+  for (unsigned seed = 1; seed <= 20; ++seed) {
+    std::mt19937_64 random{seed};
+    const Outcome outcome = played([&](std::uint8_t, double) { return random() % 2 == 0; }, 60, 4, 400);
+    aside += outcome.set_aside.size();
+    taken += outcome.taken.size();
+    EXPECT_EQ(outcome.waiting, 0);
+  }
+  EXPECT_LE(aside, taken / 50);
+}
+
+TEST(MapLaneOnTrial, LetsOneOtherGoFirst) {
+  MapLane lane(0);
+  lane.add(1, cloud_update("ugv1", {1}), at(0));
+  lane.add(2, cloud_update("ugv2", {2}), at(1));
+  lane.add(3, cloud_update("ugv2", {3}), at(2));
+  Blame blame;
+  auto first = lane.take(at(3));
+  ASSERT_EQ(points_of(first->map).front(), 1);
+  blame.failed("ugv1", first->trial, at(3));
+  lane.put_back(std::move(*first));
+  EXPECT_EQ(points_of(lane.take(at(4))->map).front(), 2);
+  EXPECT_EQ(points_of(lane.take(at(5))->map).front(), 1) << "one other, not all";
+}
+
+TEST(MapLaneOnTrial, KeepsLaterGridsOfItsNameBehindItAtFirst) {
+  MapLane lane(0);
+  lane.add(1, grid_update("ugv1", grid(0, 0, 10, 10)), at(0));
+  lane.add(2, grid_update("ugv1", grid(0.25, 0, 10, 10)), at(1));  // overlaps it, and does not cover it
+  Blame blame;
+  for (int i = 0; i < MapLane::kInPlace; ++i) {
+    auto taken = lane.take(at(10 * i));
+    ASSERT_EQ(taken->updates.front(), 1) << i;
+    blame.failed("ugv1", taken->trial, at(10 * i));
+    lane.put_back(std::move(*taken));
+  }
+  EXPECT_EQ(lane.take(at(100))->updates.front(), 2) << "to see whether others pass";
+}
+
+TEST(MapLaneOnTrial, MergesNothingWithWhatFailed) {
+  MapLane lane(1000);
+  lane.add(1, cloud_update("ugv1", {1}), at(0));
+  Blame blame;
+  auto first = lane.take(at(1));
+  blame.failed("ugv1", first->trial, at(1));
+  lane.put_back(std::move(*first));
+  lane.add(2, cloud_update("ugv1", {2}), at(2));
+  lane.add(3, cloud_update("ugv1", {3}), at(2));
+  EXPECT_EQ(points_of(lane.take(at(3))->map), (std::vector<std::uint8_t>{2, 3}));
+  EXPECT_EQ(points_of(lane.take(at(4))->map), (std::vector<std::uint8_t>{1}));
+}
+
+TEST(MapLaneOnTrial, HandsItsPlaceToANewerGridThatCoversIt) {
+  MapLane lane(0);
+  lane.add(1, grid_update("ugv1", grid(0, 0, 10, 10)), at(0));
+  auto first = lane.take(at(1));
+  first->trial.failures = 4;
+  first->trial.strikes = Blame::kMostStrikes - 1;
+  first->trial.failed = at(1);
+  lane.put_back(std::move(*first));
+  lane.add(2, grid_update("ugv1", grid(0, 0, 20, 20)), at(2));
+  const auto newer = lane.take(at(3));
+  EXPECT_EQ(newer->updates, (std::vector<std::uint64_t>{1, 2}));
+  EXPECT_LE(newer->trial.strikes, Blame::kMostStrikes - 2) << "it is to fail by itself";
+}
+
+}  // namespace
+}  // namespace adit::lanes

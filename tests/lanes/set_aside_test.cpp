@@ -1,0 +1,270 @@
+#include "lanes/set_aside.hpp"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <string>
+
+#include "lanes/maps.hpp"
+#include "lanes/marker_lane.hpp"
+#include "lanes/state_lane.hpp"
+
+namespace adit::lanes {
+namespace {
+
+icd::StateUpdate state_of(const std::vector<std::string>& names, double x = 0) {
+  icd::StateUpdate update;
+  icd::Pose pose;
+  pose.position.x = x;
+  for (const std::string& name : names) update.poses.push_back({*robot(name), pose});
+  return update;
+}
+
+icd::Marker marker(const std::string& ns, std::int32_t id,
+                   icd::MarkerAction action = icd::MarkerAction::Add) {
+  icd::Marker marker;
+  marker.ns = ns;
+  marker.id = id;
+  marker.action = action;
+  return marker;
+}
+
+AsideItem item(Message message, std::size_t bytes = 100) {
+  AsideItem item;
+  item.message = std::move(message);
+  item.status = 422;
+  item.why = "no";
+  item.bytes = bytes;
+  return item;
+}
+
+TEST(SetAside, KnowsWhatSaysAllOfAnother) {
+  const Message small = grid_update("ugv1", grid(0, 0, 10, 10)),
+                large = grid_update("ugv1", grid(0, 0, 20, 20)),
+                others = grid_update("ugv2", grid(0, 0, 20, 20)), cloud = cloud_update("ugv1", {1});
+  EXPECT_TRUE(says_all_of(large, small));
+  EXPECT_TRUE(says_all_of(small, small));
+  EXPECT_FALSE(says_all_of(small, large));
+  EXPECT_FALSE(says_all_of(others, small));
+  EXPECT_FALSE(says_all_of(cloud, cloud)) << "nothing covers a cloud";
+  EXPECT_FALSE(says_all_of(cloud, small));
+
+  const Message one = state_of({"ugv1"}), both = state_of({"ugv1", "ugv2"});
+  EXPECT_TRUE(says_all_of(both, one));
+  EXPECT_FALSE(says_all_of(one, both));
+  EXPECT_FALSE(says_all_of(both, small));
+
+  const Message a = icd::MarkersUpdate{{marker("a", 1)}},
+                ab = icd::MarkersUpdate{{marker("a", 1), marker("b", 1)}},
+                gone = icd::MarkersUpdate{{marker("a", 1, icd::MarkerAction::Delete)}},
+                all_gone = icd::MarkersUpdate{{marker("", 0, icd::MarkerAction::DeleteAll)}};
+  EXPECT_TRUE(says_all_of(ab, a));
+  EXPECT_FALSE(says_all_of(a, ab));
+  EXPECT_TRUE(says_all_of(gone, a));
+  EXPECT_TRUE(says_all_of(all_gone, ab));
+  EXPECT_FALSE(says_all_of(ab, all_gone));
+}
+
+TEST(SetAside, MarksWhatSomethingNewerSaysAllOf) {
+  SetAside aside;
+  aside.add(item(grid_update("ugv1", grid(0, 0, 10, 10))));
+  aside.add(item(cloud_update("ugv1", {1})));
+  EXPECT_TRUE(aside.taken(grid_update("ugv1", grid(5, 5, 10, 10))).empty());
+  EXPECT_EQ(aside.taken(grid_update("ugv1", grid(0, 0, 30, 30))), std::vector<std::uint64_t>{1});
+  EXPECT_TRUE(aside.taken(grid_update("ugv1", grid(0, 0, 30, 30))).empty()) << "it was marked before";
+  EXPECT_TRUE(aside.find(1)->overtaken);
+  EXPECT_FALSE(aside.find(2)->overtaken);
+}
+
+TEST(SetAside, MarksADeleteAllThatWouldDeleteSomethingNewer) {
+  SetAside aside;
+  aside.add(item(icd::MarkersUpdate{{marker("", 0, icd::MarkerAction::DeleteAll)}}));
+  EXPECT_TRUE(aside.taken(state_of({"ugv1"})).empty());
+  EXPECT_EQ(aside.taken(icd::MarkersUpdate{{marker("a", 1)}}), std::vector<std::uint64_t>{1});
+}
+
+TEST(SetAside, HoldsOneForEachThatWouldSayTheSame) {
+  SetAside aside;
+  for (int i = 0; i < 1000; ++i) aside.add(item(state_of({"ugv1", "ugv2"}, i)));
+  EXPECT_EQ(aside.items().size(), 1);
+  EXPECT_EQ(aside.items().front().number, 1000);
+}
+
+TEST(SetAside, IsBounded) {
+  SetAside aside;
+  for (std::size_t i = 0; i < 3 * SetAside::kMostItems; ++i) aside.add(item(cloud_update("ugv1", {1})));
+  EXPECT_EQ(aside.items().size(), SetAside::kMostItems);
+  EXPECT_EQ(aside.items().front().number, 2 * SetAside::kMostItems + 1) << "the oldest go";
+
+  aside.add(item(cloud_update("ugv1", {1}), SetAside::kMostBytes + 1));
+  EXPECT_EQ(aside.items().size(), 1) << "one is always kept";
+}
+
+TEST(SetAside, GivesAwayWhatIsTakenOnce) {
+  SetAside aside;
+  aside.add(item(cloud_update("ugv1", {1})));
+  EXPECT_TRUE(aside.take(1));
+  EXPECT_FALSE(aside.take(1));
+  EXPECT_EQ(aside.find(1), nullptr);
+}
+
+TEST(StateLaneApart, FindsTheRobotThatIsAtFaultAndSendsTheOthers) {
+  StateLane lane;
+  lane.add(state_of({"ugv1", "ugv2", "ugv3"}), at(0));
+  lane.put_back_apart(*lane.take());
+  std::vector<std::string> passed;
+  for (int i = 0; i < 3; ++i) {
+    const auto taken = lane.take(at(1 + i));
+    ASSERT_EQ(taken->update.poses.size(), 1);
+    const icd::RobotName& name = taken->update.poses.front().name;
+    if (name.text() == "ugv2") {
+      lane.give_up(name, at(1 + i));
+    } else {
+      lane.passed(*taken);
+      passed.push_back(name.text());
+    }
+  }
+  EXPECT_EQ(passed, (std::vector<std::string>{"ugv1", "ugv3"}));
+  EXPECT_TRUE(lane.empty());
+
+  lane.add(state_of({"ugv1", "ugv2", "ugv3"}), at(5));
+  const auto together = lane.take(at(6));
+  ASSERT_EQ(together->update.poses.size(), 2) << "those that passed go together again";
+  const auto apart = lane.take(at(20));
+  ASSERT_EQ(apart->update.poses.size(), 1);
+  EXPECT_EQ(apart->update.poses.front().name.text(), "ugv2");
+  lane.passed(*apart);
+  lane.add(state_of({"ugv1"}), at(21));
+  EXPECT_EQ(lane.take(at(22))->update.poses.size(), 3);
+}
+
+TEST(StateLaneApart, LetsARobotOnTrialRestWhileOthersHaveNews) {
+  StateLane lane;
+  lane.add(state_of({"ugv1", "ugv2"}), at(0));
+  lane.give_up(*robot("ugv2"), at(0));
+  EXPECT_EQ(lane.take(at(1))->update.poses.front().name.text(), "ugv1");
+  EXPECT_FALSE(lane.empty()) << "ugv2 has news still";
+  EXPECT_EQ(lane.unsent().poses.size(), 1) << "and ugv1 is under way";
+}
+
+TEST(MarkerLaneNarrower, FindsTheOneThatIsAtFault) {
+  MarkerLane lane({.per_message = 64});
+  icd::MarkersUpdate update;
+  for (int id = 0; id < 64; ++id) update.markers.push_back(marker("a", id));
+  lane.add(update, at(0));
+  std::vector<std::int32_t> refused;
+  std::size_t taken = 0;
+  int messages = 0;
+  while (auto waiting = lane.take()) {
+    ++messages;
+    const auto& markers = waiting->update.markers;
+    const bool bad = std::ranges::find(markers, 37, &icd::Marker::id) != markers.end();
+    if (!bad) {
+      lane.passed();
+      taken += markers.size();
+    } else if (markers.size() > 1) {
+      lane.put_back_narrower(*waiting);
+    } else {
+      refused.push_back(markers.front().id);
+    }
+  }
+  EXPECT_EQ(refused, std::vector<std::int32_t>{37});
+  EXPECT_EQ(taken, 63);
+  EXPECT_LE(messages, 30);
+}
+
+TEST(MarkerLaneBehind, LetsOthersGoFirstAndLosesNothing) {
+  MarkerLane lane({.per_message = 1});
+  lane.add({{marker("a", 1)}}, at(0));
+  lane.add({{marker("b", 1)}}, at(0));
+  const auto first = lane.take();
+  lane.put_behind(*first);
+  EXPECT_EQ(lane.take()->update.markers.front().ns, "b");
+  const auto again = lane.take();
+  EXPECT_EQ(again->update.markers.front().ns, "a");
+  EXPECT_EQ(again->updates, 1);
+}
+
+TEST(MarkerLaneBehind, LeavesTheNewerChangeOfTheSameMarkerInItsPlace) {
+  MarkerLane lane({.per_message = 1});
+  lane.add({{marker("a", 1)}}, at(0));
+  const auto first = lane.take();
+  icd::Marker newer = marker("a", 1);
+  newer.text = "newer";
+  lane.add({{newer}}, at(1));
+  lane.put_behind(*first);
+  EXPECT_EQ(lane.count(), 1);
+  const auto taken = lane.take();
+  EXPECT_EQ(taken->update.markers.front().text, "newer");
+  EXPECT_EQ(taken->updates, 2);
+}
+
+TEST(MarkerLaneBehind, NeverPutsADeleteAllBehindWhatFollowsIt) {
+  MarkerLane lane({.per_message = 1});
+  lane.add({{marker("", 0, icd::MarkerAction::DeleteAll), marker("a", 1)}}, at(0));
+  for (int round = 0; round < 3; ++round) {
+    const auto first = lane.take();
+    ASSERT_EQ(first->update.markers.front().action, icd::MarkerAction::DeleteAll);
+    lane.put_behind(*first);
+    (void)lane.take();  // what goes ahead of it once
+  }
+  lane.passed();
+  EXPECT_EQ(lane.take()->update.markers.front().action, icd::MarkerAction::DeleteAll);
+  EXPECT_EQ(lane.take()->update.markers.front().ns, "a") << "in its own turn too";
+}
+
+TEST(MarkerLaneBehind, TriesWhetherOthersPassAheadOfADeleteAll) {
+  MarkerLane lane({.per_message = 1});
+  lane.add({{marker("", 0, icd::MarkerAction::DeleteAll), marker("a", 1), marker("b", 1)}}, at(0));
+  std::vector<std::string> ahead;
+  for (int round = 0; round < 3; ++round) {
+    lane.put_behind(*lane.take());
+    const auto other = lane.take();
+    EXPECT_TRUE(other->is_ahead);
+    EXPECT_EQ(other->updates, 0u) << "it waits still";
+    ahead.push_back(other->update.markers.front().ns);
+  }
+  EXPECT_EQ(ahead, (std::vector<std::string>{"a", "b", "a"})) << "one of them may be at fault too";
+  EXPECT_EQ(lane.count(), 3u);
+}
+
+TEST(MarkerLaneBehind, HasNothingToSendAheadOfADeleteAllThatIsAlone) {
+  MarkerLane lane({.per_message = 1});
+  lane.add({{marker("", 0, icd::MarkerAction::DeleteAll)}}, at(0));
+  lane.put_behind(*lane.take());
+  const auto again = lane.take();
+  EXPECT_FALSE(again->is_ahead);
+  EXPECT_EQ(again->updates, 1u);
+}
+
+/// It would go to another Command Post, hours later.
+TEST(StateLane, MakesNoNewsOfWhatWasNoneWhenSendingFails) {
+  StateLane lane;
+  lane.add(state_of({"ugv1"}), at(0));
+  lane.passed(*lane.take());
+  lane.add(state_of({"ugv2"}), at(1));
+  const auto both = *lane.take();
+  ASSERT_EQ(both.update.poses.size(), 2u);
+  lane.put_back(both);
+  ASSERT_EQ(lane.unsent().poses.size(), 1u);
+  EXPECT_EQ(lane.unsent().poses.front().name.text(), "ugv2");
+}
+
+TEST(StateLane, ForgetsRobotsWithoutNewsWhereItIsFull) {
+  StateLane lane;
+  icd::StateUpdate many;
+  for (std::size_t i = 0; i < StateLane::kMostRobots; ++i) {
+    many.poses.push_back({*robot("r" + std::to_string(i)), {}});
+  }
+  lane.add(many, at(0));
+  const auto under_way = *lane.take();
+  EXPECT_FALSE(lane.has_room_for(state_of({"ugv1"}))) << "they may come back";
+  lane.passed(under_way);
+  lane.add(state_of({"r7"}), at(1));
+  ASSERT_TRUE(lane.has_room_for(state_of({"ugv1"})));
+  lane.add(state_of({"ugv1"}), at(2));
+  EXPECT_EQ(lane.take()->update.poses.size(), 2u);
+}
+
+}  // namespace
+}  // namespace adit::lanes

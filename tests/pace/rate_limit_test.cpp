@@ -1,0 +1,157 @@
+// RateLimit against servers of several kinds, on simulated time.
+#include "pace/rate_limit.hpp"
+
+#include <gtest/gtest.h>
+
+#include <deque>
+#include <functional>
+#include <memory>
+#include <string>
+#include <vector>
+
+namespace adit::pace {
+namespace {
+
+using Seconds = std::chrono::duration<double>;
+constexpr double kAnswerTakes = 0.03;
+
+Instant at(double s) {
+  return Instant{std::chrono::duration_cast<Duration>(Seconds{s})};
+}
+
+/// Whether a server takes a request that comes at that second.
+using Server = std::function<bool(double)>;
+
+/// Nothing is taken from `begin` to `end`.
+Server storm(double begin, double end) {
+  return [=](double now) { return now < begin || now >= end; };
+}
+
+/// At least `apart` seconds since the last request, or since the last that was taken.
+Server spaced(double apart, bool counts_refused) {
+  return [=, last = -1e9](double now) mutable {
+    const bool takes = now - last >= apart;
+    if (takes || counts_refused) last = now;
+    return takes;
+  };
+}
+
+/// At most `most` that were taken in any `window` seconds.
+Server window(std::size_t most, double length) {
+  return [=, taken = std::deque<double>{}](double now) mutable {
+    while (!taken.empty() && taken.front() <= now - length) taken.pop_front();
+    if (taken.size() >= most) return false;
+    taken.push_back(now);
+    return true;
+  };
+}
+
+struct Request {
+  double at = 0;
+  bool taken = false;
+};
+
+/// Somebody who always has something to send.
+std::vector<Request> played(Server server, double until,
+                            std::optional<std::chrono::seconds> retry_after = {}) {
+  RateLimit limit{1};
+  std::vector<Request> all;
+  double now = 0;
+  while (now < until) {
+    limit.sent(at(now));
+    all.push_back({now, server(now)});
+    const double answered = now + kAnswerTakes;
+    all.back().taken ? limit.taken(at(answered)) : limit.throttled(at(answered), retry_after);
+    now = std::max(answered, Seconds(limit.next().time_since_epoch()).count());
+  }
+  return all;
+}
+
+struct Counts {
+  int taken = 0, refused = 0;
+};
+Counts counted(const std::vector<Request>& all, double from, double to) {
+  Counts counts;
+  for (const Request& request : all) {
+    if (request.at >= from && request.at < to) ++(request.taken ? counts.taken : counts.refused);
+  }
+  return counts;
+}
+
+TEST(RateLimitServers, TheAllowedRateIsBackWithinFiveSecondsOfAStormsEnd) {
+  for (const double length : {1.0, 2.5, 4.0, 9.0, 15.0, 30.0, 55.0, 90.0, 600.0}) {
+    for (const double begin : {0.0, 3.3, 10.7}) {
+      const double end = begin + length;
+      const auto all = played(storm(begin, end), end + 40);
+      const Counts after = counted(all, end + 5, end + 35);
+      EXPECT_EQ(after.refused, 0) << length << " s from " << begin;
+      EXPECT_GE(after.taken, 28) << length << " s from " << begin << ": it is not at 1 Hz again";
+    }
+  }
+}
+
+TEST(RateLimitServers, TwentyOneMapsAreThroughSoonAfterANineSecondStorm) {
+  const auto all = played(storm(0, 9), 9 + 5 + 22);
+  EXPECT_GE(counted(all, 9, 1000).taken, 21);
+}
+
+TEST(RateLimitServers, AStormIsAskedOftenEnoughAndNotMore) {
+  const Counts asked = counted(played(storm(0, 55), 55), 0, 55);
+  EXPECT_LE(asked.refused, 18);
+  EXPECT_GE(asked.refused, 12);
+}
+
+TEST(RateLimitServers, AfterTwoStormsTheAllowedRateIsBackToo) {
+  const auto twice = [](double now) { return !(now < 9) && !(now >= 25 && now < 34); };
+  const auto all = played(twice, 80);
+  EXPECT_GE(counted(all, 39, 69).taken, 28);
+}
+
+TEST(RateLimitServers, RetryAfterIsWaitedForAndThenTheRateIsBack) {
+  const auto all = played(storm(0, 9), 60, std::chrono::seconds(8));
+  ASSERT_GE(all.size(), 3);
+  EXPECT_NEAR(all[1].at, 8, 0.1);
+  EXPECT_NEAR(all[2].at, 16, 0.2);
+  EXPECT_GE(counted(all, 17, 47).taken, 28);
+}
+
+struct Limited {
+  const char* what;
+  Server server;
+  double hertz;
+};
+
+TEST(RateLimitServers, ALimitThatLastsIsLearnedAndUsed) {
+  const Limited cases[] = {
+      {"0.9 a second, counted from the last request", spaced(1 / 0.9, true), 0.9},
+      {"0.9 a second, counted from the last taken", spaced(1 / 0.9, false), 0.9},
+      {"0.5 a second, counted from the last request", spaced(2, true), 0.5},
+      {"0.5 a second, counted from the last taken", spaced(2, false), 0.5},
+      {"0.25 a second, counted from the last request", spaced(4, true), 0.25},
+      {"9 in 10 seconds", window(9, 10), 0.9},
+      {"5 in 10 seconds", window(5, 10), 0.5},
+      {"30 in a minute", window(30, 60), 0.5},
+  };
+  for (const Limited& each : cases) {
+    SCOPED_TRACE(each.what);
+    const auto all = played(each.server, 780);
+    const Counts late = counted(all, 180, 780);  // three minutes are for learning
+    EXPECT_LE(late.refused, late.taken / 10) << "it hammers";
+    EXPECT_GE(late.taken, 0.6 * each.hertz * 600) << "it uses too little";
+  }
+}
+
+TEST(RateLimitServers, ALimitThatIsLiftedIsFoundOut) {
+  const auto slow = std::make_shared<Server>(spaced(2, true));
+  const auto all = played([slow](double now) { return now >= 120 || (*slow)(now); }, 420);
+  EXPECT_GE(counted(all, 360, 420).taken, 56);
+}
+
+TEST(RateLimitServers, AStormThatDoesNotEndIsAskedAsOftenAsItsEndIsToBeFound) {
+  const Counts asked = counted(played(storm(0, 1e9), 600), 120, 600);
+  EXPECT_LE(asked.refused, 480 / 4 + 1);
+  EXPECT_GE(asked.refused, 480 / 5);
+}
+
+}  // namespace
+}  // namespace adit::pace

@@ -1,0 +1,67 @@
+// What is set aside, as a phone shows it and a screen reader reads it.
+import assert from "node:assert/strict";
+import { test } from "node:test";
+import { axeFindsNothing, text, watch } from "./watch.js";
+
+const WHY = "msg.data: expected 4800 cells for a width of 80 and a height of 60, got 4799, and the last row is cut short";
+const ROWS = [7, 8, 9].map((number) =>
+  ({ number, kind: "cloud", robot: "ANYmal1", at: Date.now() / 1000 - 40, status: 422, why: WHY, bytes: 412_000, overtaken: number === 8 }));
+
+/** A page of a box that has set `globalThis.setAside` of the page aside. */
+async function withRows(t, options) {
+  const prepare = (page) => page.addInitScript((rows) => {
+    globalThis.setAside = rows;
+    const { parse } = JSON;
+    JSON.parse = (...words) => {
+      const view = parse(...words);
+      return view?.endpoints && view.aside ? { ...view, aside: globalThis.setAside } : view;
+    };
+  }, ROWS);
+  const { page } = await watch(t, "calm", { prepare, ...options });
+  await page.locator("#aside .why").first().waitFor();
+  return page;
+}
+
+const boxes = (page, part) =>
+  page.$$eval(`#aside li:first-child ${part}`, (nodes) => nodes.map((node) => node.getBoundingClientRect().toJSON()));
+
+for (const [name, width] of [["a phone", 360], ["a narrow column", 1056]]) {
+  test(`gives the sentence the whole width on ${name}, and the buttons a line below it`, async (t) => {
+    const page = await withRows(t, { viewport: { width, height: 740 } });
+    const [row] = await boxes(page, ""), [why] = await boxes(page, ".why"), [what] = await boxes(page, ".what");
+    assert.ok(why.width > 0.95 * row.width, `${why.width} of ${row.width} pixels`);
+    assert.ok(what.width > 0.95 * row.width, `${what.width} of ${row.width} pixels`);
+    const buttons = await boxes(page, "button");
+    assert.equal(buttons.length, 2);
+    for (const button of buttons) assert.ok(button.top >= why.bottom && button.right <= row.right);
+    assert.equal(buttons[0].top, buttons[1].top);
+  });
+}
+
+test("keeps the buttons beside the sentence where there is room", async (t) => {
+  const page = await withRows(t, { viewport: { width: 1000, height: 740 } });
+  const [why] = await boxes(page, ".why");
+  for (const button of await boxes(page, "button")) assert.ok(button.left >= why.right);
+});
+
+test("names each button by what it is for, and counts what nothing newer has replaced", async (t) => {
+  const page = await withRows(t, { bypassCSP: true });
+  for (const { number } of ROWS) {
+    for (const word of ["Send again", "Discard"]) assert.equal(await page.getByRole("button", { name: `${word}: ${number}`, exact: true }).count(), 1);
+  }
+  assert.equal(await text(page, "#aside .count"), "2");
+  await axeFindsNothing(page, "what is set aside");
+});
+
+test("has its title gone with the last row, and the last word once it could be read", async (t) => {
+  const page = await withRows(t);
+  await page.route("**/adit/aside/*/discard", async (route) => {
+    await page.evaluate(() => (globalThis.setAside = []));
+    await route.fulfill({ json: { aside: 7 } });
+  });
+  await page.getByRole("button", { name: "Discard: 7" }).click();
+  await page.locator("#aside .said", { hasText: "7 is discarded." }).waitFor();
+  await page.locator("#aside-title").waitFor({ state: "hidden" });
+  await page.locator("#aside").waitFor({ state: "hidden" });
+  assert.equal(await text(page, "#aside .said"), "");
+});

@@ -1,0 +1,40 @@
+// A report that damage took from the ledger has no place: the list says so, the map does not draw it at the origin.
+import assert from "node:assert/strict";
+import { test } from "node:test";
+import { text, watch } from "./watch.js";
+
+/** The page of a box whose report 8 (in doubt) has lost its position, or has it at the origin. */
+async function withReport(t, position) {
+  const prepare = (page) => page.addInitScript((place) => {
+    const { parse } = JSON;
+    JSON.parse = (...words) => {
+      const view = parse(...words);
+      for (const report of view?.reports ?? []) if (report.number === 8) Object.assign(report, { type: "", position: place, sender: "lost" });
+      return view;
+    };
+    globalThis.written = new Set();
+    const { fillText } = CanvasRenderingContext2D.prototype;
+    CanvasRenderingContext2D.prototype.fillText = function (words, ...more) {
+      globalThis.written.add(String(words));
+      return fillText.call(this, words, ...more);
+    };
+  }, position);
+  const { page } = await watch(t, "trouble", { prepare });
+  await page.locator('#reports [data-key="8"]').waitFor();
+  return page;
+}
+
+const names = (page) => page.evaluate(() => [...globalThis.written].map((name) => name.trim()));
+
+test("says that it is lost, and draws it nowhere", async (t) => {
+  const page = await withReport(t, null);
+  assert.equal(await text(page, '#reports [data-key="8"] .where'), "lost from the ledger");
+  assert.deepEqual(await page.locator('#reports [data-key="8"] button:visible').allTextContents(), ["More of report 8", "Call it done"]);
+  await page.waitForFunction(() => [...globalThis.written].some((name) => name.startsWith("#10")));
+  assert.deepEqual((await names(page)).filter((name) => name.startsWith("#8")), []);
+});
+
+test("draws one that is in truth at the origin", async (t) => {
+  const page = await withReport(t, { x: 0, y: 0, z: 0 });
+  await page.waitForFunction(() => [...globalThis.written].some((name) => name.startsWith("#8")));
+});

@@ -1,0 +1,75 @@
+"""One message after the other through a box, and what of each reached the Command Post."""
+
+import copy
+import time
+import unittest
+import zlib
+
+import requests
+
+import messages
+from programs import Stage, wait_until
+
+
+class Delivered(unittest.TestCase):
+    """A class of tests over one network; what a Command Post that is strict finds fault with, fails them."""
+
+    post_options = ("--rate", "0")
+
+    @classmethod
+    def setUpClass(cls):
+        cls.stage = cls.enterClassContext(Stage(post_options=cls.post_options))
+        cls.session = requests.Session()
+        cls.seconds = time.time()
+
+    def tearDown(self):
+        self.assertEqual(self.stage.post.violations(), [])
+
+    def deliver(self, uri, message, style, content=None, answered=(200, "null")):
+        """Posts it, or `content` in its place, and gives the one request that reached the Command Post for it."""
+        before = len(self.stage.post.requests(uri))
+        answer = messages.post(self.session, self.stage.box.url, uri, message, style, content=content)
+        self.assertEqual((answer.status_code, answer.text), answered)
+        self.assertEqual(answer.headers["Access-Control-Allow-Origin"], "*")
+        arrived = wait_until(lambda: self.stage.post.requests(uri)[before:], f"{style} to arrive", 30)
+        self.assertEqual(len(arrived), 1)
+        self.check_canonical(arrived[0])
+        type(self).seconds = max(self.seconds + 0.5, time.time())  # later than what Adit stamped itself
+        return arrived[0]["message"]
+
+    def check_canonical(self, request):
+        self.assertEqual(request["status"], 200, request["answer"])
+        self.assertEqual(request["content_type"], "application/cbor")
+        self.assertIsNone(request["content_encoding"])
+        self.assertFalse(request["expect"])
+
+    def same(self, arrived, expected, where=""):
+        """Every value of it, each of its kind: 11.0 is not 11."""
+        self.assertIs(type(arrived), type(expected), f"{where}: {arrived} for {expected}")
+        if isinstance(expected, dict):
+            self.assertEqual(sorted(arrived), sorted(expected), where)
+            for key, value in expected.items():
+                self.same(arrived[key], value, f"{where}.{key}")
+        elif isinstance(expected, list):
+            self.assertEqual(len(arrived), len(expected), where)
+            for at, value in enumerate(expected):
+                self.same(arrived[at], value, f"{where}[{at}]")
+        else:
+            self.assertEqual(arrived, expected, where)
+            self.assertEqual(str(arrived), str(expected), where)  # -0.0 is not 0.0
+
+    def without_stamp(self, header):
+        header = dict(header)
+        self.assertIs(type(header.pop("stamp")), float)
+        return header
+
+    def same_map(self, arrived, update, data, head):
+        """`head`: the members of msg, but for header and data."""
+        arrived = copy.deepcopy(arrived)
+        msg = arrived["msg"]
+        msg["header"] = self.without_stamp(msg["header"])
+        self.assertIn(msg.pop("compression"), ("gzip", "none"))
+        msg["data"].pop("file", None)  # where the transcript has its picture
+        self.same(arrived, {"type": update["type"], "name": update.get("name", ""),
+                            "msg": {**head, "header": {"frame_id": "darpa"},
+                                    "data": {"bytes": len(data), "crc32": zlib.crc32(data)}}})

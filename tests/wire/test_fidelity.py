@@ -1,0 +1,296 @@
+"""Every value of every kind of message, on both sides: what goes up says what came in, and nothing else."""
+
+import copy
+import itertools
+import struct
+import unittest
+
+import cbor2
+import requests
+
+import hosts
+import maps
+import messages
+from delivered import Delivered
+from messages import Style
+from programs import wait_until
+
+POSITION = {"x": 1.25, "y": -2.0, "z": 11.0}
+TURNED = {"x": 0.0, "y": -0.0, "z": 0.6, "w": 0.8}
+POSE = {"position": POSITION, "orientation": TURNED}
+NOWHERE = {"position": dict.fromkeys("xyz", 0.0), "orientation": maps.IDENTITY}
+JSON, CBOR, CBOR_IN_GZIP = Style(), Style("cbor"), Style("cbor", body="gzip")
+
+# struct's letter, and a value that has a fraction where there can be one, by PointField's datatype.
+DATATYPES = {1: ("b", -5), 2: ("B", 250), 3: ("h", -300), 4: ("H", 60000), 5: ("i", -70000), 6: ("I", 4000000000),
+             7: ("f", 0.5), 8: ("d", 1e-3)}
+
+
+def setUpModule():
+    hosts.needs_namespaces()
+
+
+def as_bytes(value):
+    """Every text as a byte string, as CBOR libraries of Python 2 write it."""
+    if isinstance(value, str):
+        return value.encode()
+    if isinstance(value, dict):
+        return {as_bytes(key): as_bytes(member) for key, member in value.items()}
+    return [as_bytes(element) for element in value] if isinstance(value, list) else value
+
+
+def as_whole_numbers(value):
+    """Every 11.0 as 11, as programs without types write it."""
+    if isinstance(value, dict):
+        return {key: as_whole_numbers(member) for key, member in value.items()}
+    if isinstance(value, list):
+        return [as_whole_numbers(element) for element in value]
+    whole = isinstance(value, float) and value.is_integer() and abs(value) < 2**53 and str(value) != "-0.0"
+    return int(value) if whole else value
+
+
+REMARKS = (0, 1, 21, 22, 23, 32, 33, 34, 35, 36, 55799)
+OTHER_TAGS = (2, 3, 4, 5, 6, 16, 19, 20, 24, 25, 31, 37, 63, 64, 258, 55798, 55800, 2**40)
+
+
+def tagged(value, tags):
+    """Each value under the next tag that only remarks on it, and a key now and then."""
+    if isinstance(value, dict):
+        value = {tagged(key, tags) if number % 3 == 2 else key: tagged(member, tags)
+                 for number, (key, member) in enumerate(value.items())}
+    elif isinstance(value, list):
+        value = [tagged(element, tags) for element in value]
+    return cbor2.CBORTag(next(tags), value)
+
+
+# All the ways in which the same message may come: a name, its style, and what makes bytes of it.
+ENCODINGS = (
+    ("json", JSON, lambda message: messages.body(message, JSON)),
+    ("cbor", CBOR, cbor2.dumps),
+    ("cbor in gzip", CBOR_IN_GZIP, lambda message: messages.body(message, CBOR_IN_GZIP)),
+    ("shortest floats", CBOR, lambda message: cbor2.dumps(message, canonical=True)),
+    ("texts as bytes", CBOR, lambda message: cbor2.dumps(as_bytes(message))),
+    ("tags", CBOR, lambda message: cbor2.dumps(tagged(message, itertools.cycle(REMARKS)))),
+    ("whole numbers in json", JSON, lambda message: messages.body(as_whole_numbers(message), JSON)),
+    ("whole numbers in cbor", CBOR, lambda message: cbor2.dumps(as_whole_numbers(message))),
+)
+
+
+def whole_marker(kind):
+    """With every member of ROS's Marker, none of them its default but where `kind` is even."""
+    color = {"r": 1.0, "g": 0.5, "b": 0.25, "a": 1.0}
+    odd = kind % 2 == 1
+    return {"header": {"frame_id": "darpa"}, "ns": f"paths/{kind}", "id": kind - 6, "type": kind, "action": 0,
+            "pose": POSE, "scale": {"x": 0.05, "y": 11.0, "z": 1e-3}, "color": color, "lifetime": 3.0,
+            "text": "n\u00f6de \u2714", "frame_locked": odd,
+            "points": [{"x": float(n), "y": -0.1 * n, "z": 1e6} for n in range(6)], "colors": [color] * 6,
+            "mesh_resource": "package://robots/husky.dae", "mesh_use_embedded_materials": odd}
+
+
+def said(marker):
+    """Without what is ROS's default anyhow: that is not sent."""
+    return {name: value for name, value in marker.items() if value is not False}
+
+
+def fields_of(datatypes, counts):
+    fields, offset = [], 0
+    for number, (datatype, count) in enumerate(zip(datatypes, counts, strict=True)):
+        fields.append(maps.field(f"f{number}" if number > 2 else "xyz"[number], offset, datatype, count))
+        offset += struct.calcsize(DATATYPES[datatype][0]) * count
+    return fields, offset
+
+
+def every_datatype(order):
+    """A cloud of 60 points with a field of each datatype, one of them of several values, and three bytes of padding."""
+    datatypes = (7, 7, 7, 1, 2, 3, 4, 5, 6, 8)
+    counts = (1, 1, 1, 1, 3, 2, 1, 1, 1, 2)
+    fields, step = fields_of(datatypes, counts)
+    data = b""
+    for n in range(60):
+        for datatype, count in zip(datatypes, counts, strict=True):
+            letter, value = DATATYPES[datatype]
+            data += struct.pack(f"{order}{count}{letter}", *[value + (n if datatype > 6 else n % 5)] * count)
+        data += b"\xa5\x00\x5a"
+    return maps.Cloud(f"every datatype {order}", fields, step + 3, data, is_bigendian=order == ">")
+
+
+class Fidelity(Delivered):
+    """Against a Command Post that is strict; FidelityAsMeasured repeats it against one that behaves as the real ones do."""
+
+    def test_grids(self):
+        grid = maps.made_grid(80, 60)
+        info = {"resolution": 0.25, "width": 80, "height": 60, "origin": POSE}
+        update = {"type": "OccupancyGrid", "name": "r1", "msg": {"header": {"frame_id": "darpa"}, "info": info}}
+        for name, style, encode in ENCODINGS:
+            message = copy.deepcopy(update)
+            message["msg"]["data"] = messages.bulk(grid, style)
+            with self.subTest(name):
+                arrived = self.deliver("/map/update", None, style, encode(message))
+                self.same_map(arrived, update, grid.data, {"info": info})
+
+    def check_cloud(self, cloud, origin, going_up):
+        """It comes as `cloud` says and goes up as `going_up`, bytes, with that origin; None: without one."""
+        message = {"type": "PointCloud2", "name": "r1",
+                   "msg": {"header": {"frame_id": "darpa"}, **cloud.head(), **({"origin": origin} if origin else {})}}
+        head = {"fields": cloud.fields, "is_bigendian": False, "point_step": cloud.point_step,
+                **({"origin": origin} if origin else {})}
+        for name, style, encode in ENCODINGS:
+            whole = copy.deepcopy(message)
+            whole["msg"]["data"] = messages.bulk(cloud, style)
+            with self.subTest(name, cloud=cloud.label, origin=bool(origin)):
+                self.same_map(self.deliver("/map/update", None, style, encode(whole)), message, going_up, head)
+
+    def test_clouds_of_either_byte_order_with_an_origin_and_without(self):
+        little, big = every_datatype("<"), every_datatype(">")
+        for cloud in (little, big):
+            for origin in (None, POSE):
+                self.check_cloud(cloud, origin, little.data)
+
+    def test_states(self):
+        poses = [{"name": "r1", **POSE}, {"name": "R_2", "position": {"x": 1e-300, "y": 1e300, "z": 0.1}, "orientation":
+                 {"x": 0.5, "y": -0.5, "z": 0.7071067811865476, "w": 0.001}}]
+        update = {"header": {"frame_id": "darpa"}, "poses": poses}
+        for name, style, encode in ENCODINGS:
+            with self.subTest(name):
+                arrived = self.deliver("/state/update", None, style, encode(update))
+                arrived["header"] = self.without_stamp(arrived["header"])
+                others = [pose for pose in arrived["poses"] if pose["name"] not in ("r1", "R_2")]
+                arrived["poses"] = sorted((pose for pose in arrived["poses"] if pose not in others),
+                                          key=lambda pose: pose["name"] != "r1")
+                self.same(arrived, update)
+
+    def test_markers_of_every_type(self):
+        update = {"markers": [whole_marker(kind) for kind in range(12)]}
+        for name, style, encode in ENCODINGS:
+            with self.subTest(name):
+                arrived = self.deliver("/markers/update", None, style, encode(update))
+                for marker in arrived["markers"]:
+                    marker["header"] = self.without_stamp(marker["header"])
+                self.same(arrived, {"markers": [said(marker) for marker in update["markers"]]})
+
+    def test_markers_that_are_deleted(self):
+        markers = [{"action": 2, "ns": "paths/1", "id": -5}, {"action": 3}, {"action": 2, "ns": "", "id": 2**31 - 1}]
+        arrived = self.deliver("/markers/update", {"markers": markers[:1]}, CBOR)["markers"]
+        arrived += self.deliver("/markers/update", {"markers": markers[1:2]}, JSON)["markers"]
+        arrived += self.deliver("/markers/update", {"markers": markers[2:]}, JSON)["markers"]
+        for marker, sent in zip(arrived, markers, strict=True):
+            marker["header"] = self.without_stamp(marker["header"])
+            self.same(marker, {"header": {"frame_id": "darpa"}, "ns": sent.get("ns", ""), "id": sent.get("id", 0),
+                               "type": 0, "action": sent["action"], "pose": NOWHERE,
+                               "scale": dict.fromkeys("xyz", 0.0), "color": dict.fromkeys("rgba", 0.0),
+                               "lifetime": 0.0, "text": ""})
+
+    def test_durations_and_stamps_in_both_forms(self):
+        marker = said(whole_marker(1)) | {"ns": "spacing"}
+        arrived = []
+        for stamp, lifetime in ((1000.25, 2.5), ({"secs": 1001, "nsecs": 0}, {"secs": 2, "nsecs": 500000000})):
+            marker |= {"header": {"stamp": stamp}, "lifetime": lifetime}
+            arrived += self.deliver("/markers/update", {"markers": [marker]}, JSON)["markers"]
+        self.same([one["lifetime"] for one in arrived], [2.5, 2.5])
+        stamps = [one["header"]["stamp"] for one in arrived]
+        self.assertAlmostEqual(stamps[1] - stamps[0], 0.75, places=5)
+
+    def test_an_empty_frame_is_none(self):
+        for header in ({"frame_id": ""}, {"frame_id": None}, {}, None):
+            for style in (JSON, CBOR):
+                with self.subTest(header=header, style=str(style)):
+                    update = {"header": header, "poses": [{"name": "r1", **POSE}]}
+                    self.assertEqual(self.deliver("/state/update", update, style)["header"]["frame_id"], "darpa")
+                    markers = {"markers": [said(whole_marker(2)) | {"header": header}]}
+                    arrived = self.deliver("/markers/update", markers, style)["markers"][0]
+                    self.assertEqual(arrived["header"]["frame_id"], "darpa")
+                    grid = messages.map_update(maps.made_grid(3, 2), "r1", 0, style)
+                    grid["msg"]["header"] = header
+                    arrived = self.deliver("/map/update", grid, style)["msg"]
+                    self.assertEqual(arrived["header"]["frame_id"], "darpa")
+
+    def test_a_tag_that_changes_a_meaning_is_named_and_refused(self):
+        for tag in OTHER_TAGS:
+            for at, value in (("x", cbor2.CBORTag(tag, 5)), ("z", cbor2.CBORTag(1, cbor2.CBORTag(tag, b"\x05")))):
+                update = {"poses": [{"name": "r1", "position": {**POSITION, at: value}, "orientation": TURNED}]}
+                answer = messages.post(self.session, self.stage.box.url, "/state/update", update, CBOR)
+                with self.subTest(tag=tag, at=at):
+                    self.assertEqual(answer.status_code, 422)
+                    self.assertIn(f"CBOR tag {tag} ", answer.json())
+
+    def test_the_good_parts_of_a_state(self):
+        bad = {"name": "r9", "position": {**POSITION, "y": "far"}, "orientation": TURNED}
+        good = [{"name": f"r{n}", "position": {**POSITION, "x": float(n)}, "orientation": TURNED} for n in (1, 2, 3)]
+        update = {"poses": [good[0], bad, good[1], POSE, *[bad] * 10, good[2]]}
+        # As from a relay under Python 2, too: every text of it, keys too, is a byte string.
+        for style, content, got in ((JSON, messages.body(update, JSON), "a string"),
+                                    (CBOR, cbor2.dumps(as_bytes(update)), "a byte string")):
+            far = f"position.y: expected a number, got {got}"
+            sentences = [f"poses[1].{far}", "poses[3].name: missing", *[f"poses[{n}].{far}" for n in range(4, 12)]]
+            refused = "; ".join([*sentences, "and 2 more like these (the other 3 were taken)"])
+            with self.subTest(str(style)):
+                poses = self.deliver("/state/update", None, style, content, (422, f'"{refused}"'))["poses"]
+                self.assertNotIn("r9", [pose["name"] for pose in poses])
+                names = [pose["name"] for pose in good]
+                self.same(sorted((pose for pose in poses if pose["name"] in names), key=lambda pose: pose["name"]), good)
+
+    def test_the_good_parts_of_markers(self):
+        good = [said(whole_marker(kind)) for kind in (4, 5)]
+        bad = {**good[0], "points": [{"x": 1, "y": 2}]}
+        answered = (422, '"markers[1].points[0].z: missing (the other 2 were taken)"')
+        arrived = self.deliver("/markers/update", {"markers": [good[0], bad, good[1]]}, CBOR, answered=answered)
+        for marker in arrived["markers"]:
+            marker["header"] = self.without_stamp(marker["header"])
+        self.same(arrived, {"markers": good})
+
+    def test_reports_and_their_answers(self):
+        coordinates = ([11.0, -7.0, 0.0], [1e3, 1e21, -0.0], [0.1, 1e-7, 123456789.125])
+        for at, kind in zip(coordinates, ("Rope", "drill", "VENT"), strict=True):
+            report = dict(zip("xyz", at, strict=True)) | {"type": kind}
+            for sent in (report, {**as_whole_numbers(report), "name": "r1"}):
+                resubmit = {"Adit-Resubmit": "yes"}
+                answer = self.session.post(self.stage.box.url + "/api/artifact_reports", json=sent, timeout=60,
+                                           headers={**messages.headers(JSON), **resubmit})
+                self.assertEqual(answer.status_code, 201, answer.text)
+                arrived = self.stage.post.requests("/api/artifact_reports")[-1]
+                self.same(arrived["message"], report)
+                self.assertEqual(answer.text, arrived["answer"])
+
+    def test_the_status(self):
+        answer = requests.get(self.stage.box.url + "/api/status", headers=messages.headers(JSON), timeout=30)
+        self.assertIn(answer.text, [request["answer"] for request in self.stage.post.requests("/api/status")])
+
+
+class FidelityAsMeasured(Fidelity):
+    post_options = ("--rate", "0", "--as-measured")
+
+
+def large_marker(points, colors):
+    """Of a transcript's line, long lists are how many elements they have."""
+    marker = said(whole_marker(5)) | {"type": 6, "ns": "voxels"}
+    marker["points"] = [{"x": n / 7, "y": -n / 3, "z": 0.3} for n in range(points)]
+    marker["colors"] = [{"r": n % 256 / 255, "g": 0.2, "b": 0.3, "a": 1.0} for n in range(colors)]
+    return marker
+
+
+class LargeMarkers(Delivered):
+    def test_the_largest_marker_there_can_be_goes_up(self):
+        marker = large_marker(100_000, 100_000)
+        for style in (CBOR, CBOR_IN_GZIP):
+            with self.subTest(str(style)):
+                arrived = self.deliver("/markers/update", {"markers": [marker]}, style)["markers"]
+                arrived[0]["header"] = self.without_stamp(arrived[0]["header"])
+                many = {"elements": 100_000}
+                self.same(arrived, [{**marker, "points": many, "colors": many}])
+
+    def test_a_large_one_outlives_the_service(self):
+        self.stage.post.will(mapping=["500,for=60"])
+        marker = {"markers": [large_marker(60_000, 0)]}
+        answer = messages.post(self.session, self.stage.box.url, "/markers/update", marker, CBOR)
+        self.assertEqual((answer.status_code, answer.text), (200, "null"))
+        self.stage.box.process.kill()
+        self.stage.box.process.wait()
+        self.stage.post.control("DELETE /faults")
+        self.stage.restart_box()
+        taken = wait_until(lambda: [request for request in self.stage.post.requests("/markers/update")
+                                    if request["status"] == 200], "the marker to be taken")
+        self.assertEqual(taken[-1]["message"]["markers"][-1]["points"], {"elements": 60_000})
+
+
+if __name__ == "__main__":
+    unittest.main()

@@ -1,0 +1,168 @@
+"""A Command Post that is none, that lies about lengths, that storms, that fails at one robot's messages: nothing counts
+as taken that was not, nothing is lost, and the box serves on."""
+
+import concurrent.futures
+import json
+import time
+import unittest
+
+import requests
+
+import hosts
+import maps
+import messages
+import programs
+from messages import Style
+from programs import Stage, wait_until
+from reporting import QUICK, REPORT, began, submit
+
+CBOR = Style("cbor")
+OVERWHELMING = ("length-huge", "chunk-huge", "header-flood", "endless-body", "1xx-flood", "json-deep")
+
+
+def setUpModule():
+    hosts.needs_namespaces()
+
+
+def state(name, x=1.0):
+    return {"poses": [{"name": name, "position": {"x": x, "y": 0.0, "z": 0.0},
+                       "orientation": {"x": 0.0, "y": 0.0, "z": 0.0, "w": 1.0}}]}
+
+
+def marker(number):
+    pose = {key: value for key, value in state("r1")["poses"][0].items() if key != "name"}
+    return {"markers": [{"ns": "m", "id": number, "type": 1, "action": 0, "pose": pose,
+                         "scale": {"x": 1.0, "y": 1.0, "z": 1.0}, "color": {"r": 1.0, "g": 0.0, "b": 0.0, "a": 1.0}}]}
+
+
+class HostilePost(unittest.TestCase):
+    def stage(self, **overrides):
+        stage = self.enterContext(Stage(**overrides))
+        self.session = requests.Session()
+        return stage
+
+    def send(self, stage, uri, message):
+        answer = messages.post(self.session, stage.box.url, uri, message, CBOR)
+        self.assertEqual((answer.status_code, answer.text), (200, "null"))
+
+    def send_map(self, stage, name, seed=1):
+        self.send(stage, "/map/update", messages.map_update(maps.made_cloud(100, seed=seed), name, time.time(), CBOR))
+
+    def taken(self, stage, uri):
+        return [request for request in stage.post.requests(uri)
+                if request["status"] == 200 and not request["rehearsed_fault"]]
+
+    def view(self, stage):
+        return stage.box.ask("GET /adit/run")[1]
+
+    def metric(self, stage, name):
+        text = requests.get(stage.box.url + "/metrics", headers={"Authorization": f"Bearer {programs.TEAM_TOKEN}"},
+                            timeout=30).text
+        return [float(line.rsplit(" ", 1)[1]) for line in text.splitlines() if line.startswith(name)]
+
+    def test_a_page_of_html_is_no_command_post_and_takes_nothing(self):
+        stage = self.stage()
+        stage.post.will(mapping=["html-200,for=3"])
+        for seed in range(4):
+            self.send_map(stage, "r1", seed)
+        self.send(stage, "/state/update", state("r1"))
+        self.send(stage, "/markers/update", marker(1))
+        wait_until(lambda: "no Command Post (mapping)" in stage.box.attention(), "the alarm")
+        mapping = next(row for row in self.view(stage)["endpoints"] if row["name"] == "mapping")
+        self.assertIn("no Command Post", mapping["trouble"])
+        self.assertGreater(mapping["foreign"], 0)
+        self.assertGreater(sum(self.metric(stage, "adit_endpoint_foreign_total")), 0)
+        size = sum(len(maps.made_cloud(100, seed=seed).data) for seed in range(4))
+        wait_until(lambda: sum(request["message"]["msg"]["data"]["bytes"]
+                               for request in self.taken(stage, "/map/update")) == size, "all maps")
+        wait_until(lambda: self.taken(stage, "/state/update") and self.taken(stage, "/markers/update"),
+                   "state and markers")
+        wait_until(lambda: "no Command Post" not in stage.box.attention(), "the end of the alarm")
+
+    def test_no_answer_of_any_kind_ends_the_box(self):
+        stage = began(self.stage(**QUICK))
+        before = stage.box.process.pid
+        for fault in OVERWHELMING:
+            with self.subTest(fault):
+                stage.post.will(status=[fault], mapping=[fault])
+                stage.box.ask("GET /api/status")
+                self.send_map(stage, "r1")
+                wait_until(lambda: not any(stage.post.control("GET /faults")[aim] for aim in ("status", "mapping")),
+                           f"{fault} to come")
+        wait_until(lambda: len(self.taken(stage, "/map/update")) > 0 and
+                   next(row for row in self.view(stage)["activities"] if row["kind"] == "cloud")["waiting"] == 0,
+                   "the maps to be taken")
+        self.assertEqual((stage.box.process.poll(), stage.box.process.pid), (None, before))
+
+    def test_a_report_whose_answer_is_huge_is_found_out_and_recorded_once(self):
+        stage = began(self.stage(**QUICK))
+        for number, fault in enumerate(("length-huge", "endless-body", "json-deep"), 1):
+            with self.subTest(fault):
+                report = {**REPORT, "x": 100.0 * number}
+                stage.post.will(fault)
+                answer = submit(stage, report)
+                self.assertEqual(answer.status_code, 201, answer.text)
+                self.assertEqual(len(stage.post.recorded(report)), 1)
+        self.assertIsNone(stage.box.process.poll())
+
+    def test_the_message_that_fails_alone_is_set_aside_and_sent_again_by_hand(self):
+        stage = self.stage()
+        stage.post.will(mapping=["500,robot=r2,for=60"])
+        self.send_map(stage, "r2")
+        aside = []
+        for seed in range(300):  # others pass all the while
+            self.send_map(stage, f"r{3 + seed % 3}", seed)
+            aside = self.view(stage)["aside"]
+            if aside:
+                break
+            time.sleep(0.2)
+        self.assertEqual([(row["kind"], row["robot"], row["status"], row["overtaken"]) for row in aside],
+                         [("cloud", "r2", 500, False)])
+        self.assertIn("set aside", stage.box.attention())
+        self.assertGreaterEqual(len([request for request in stage.post.requests("/map/update")
+                                     if request["status"] == 500]), 4)
+        stage.box.stop()
+        stage.restart_box()
+        self.assertEqual(self.view(stage)["aside"], aside, "it outlives the service")
+        stage.post.control("DELETE /faults")
+        number = aside[0]["number"]
+        self.assertEqual(stage.box.ask(f"POST /adit/aside/{number}/send", body={}), (200, {"aside": number}))
+        wait_until(lambda: any(request["message"]["name"] == "r2" for request in self.taken(stage, "/map/update")),
+                   "the map, sent again")
+        self.assertEqual(self.view(stage)["aside"], [])
+        self.assertEqual(stage.box.ask(f"POST /adit/aside/{number}/discard", body={})[0], 409)
+
+    def test_an_outage_sets_nothing_aside(self):
+        stage = self.stage()
+        stage.post.will(mapping=["500,for=8"])
+        self.send_map(stage, "r1")
+        self.send_map(stage, "r2")
+        self.send(stage, "/state/update", state("r1"))
+        self.send(stage, "/markers/update", marker(1))
+        wait_until(lambda: {request["message"]["name"] for request in self.taken(stage, "/map/update")} ==
+                   {"r1", "r2"}, "both maps")
+        wait_until(lambda: self.taken(stage, "/state/update") and self.taken(stage, "/markers/update"),
+                   "state and markers")
+        self.assertEqual(self.view(stage)["aside"], [])
+
+    def test_the_status_is_known_at_once_while_a_report_waits_for_its_answer(self):
+        stage = began(self.stage())
+        self.assertEqual(stage.box.ask("GET /api/status")[0], 200)
+        time.sleep(1.1)  # so that it is not fresh
+        stage.post.will("answer-after=4")
+        with self.subTest("while a report is sent"):
+            with concurrent.futures.ThreadPoolExecutor(1) as pool:
+                report = pool.submit(submit, stage)
+                wait_until(lambda: any(row["state"] == "sending" for row in stage.box.reports()), "it to be sent")
+                asked = time.monotonic()
+                answer = requests.get(stage.box.url + "/api/status", timeout=30,
+                                      headers={"Authorization": f"Bearer {programs.TEAM_TOKEN}"})
+                self.assertEqual(answer.status_code, 200)
+                self.assertLess(int(answer.headers["Age"]), 16)
+                self.assertIn("remaining_reports", json.loads(answer.text))
+                self.assertFalse(report.done(), f"it took {time.monotonic() - asked:.1f} s: the report was waited for")
+                self.assertEqual(report.result().status_code, 201)
+
+
+if __name__ == "__main__":
+    unittest.main()

@@ -1,0 +1,71 @@
+"""The operator of these tests, against a box that finds something out between his look and his word."""
+
+import types
+import unittest
+
+from insisting import Operator, Posted, last_answers
+
+FOUND_OUT = "report 1 is settled: only a report in doubt can be called done"
+
+
+class Box:
+    """Has one report, in doubt when it is looked at first and `then` from his word on, which it answers so."""
+
+    def __init__(self, then, answer):
+        self.row = {"number": 1, "state": "in doubt", "changed": 10.0, "position": {"x": 1.0, "y": 2.0}}
+        self.then, self.answer = then, answer
+
+    def reports(self):
+        return [dict(self.row)]
+
+    def judge(self, number, deed):
+        self.row.update(self.then)
+        return self.answer
+
+
+class TheOperator(unittest.TestCase):
+    def operator(self, *box):
+        post = types.SimpleNamespace(recorded=lambda: [{"x": 1.0, "y": 2.0}])
+        return Operator(types.SimpleNamespace(box=Box(*box), post=post))
+
+    def test_takes_it_that_the_box_found_out_first(self):
+        for then in ({"state": "settled", "changed": 12.0}, {"changed": 12.0}):  # and in doubt anew
+            operator = self.operator(then, (409, FOUND_OUT))
+            operator.looks()
+            self.assertEqual(operator.judged, {}, "that was not his word")
+
+    def test_does_not_take_a_refusal_of_what_he_saw(self):
+        with self.assertRaisesRegex(AssertionError, "only a report in doubt"):
+            self.operator({}, (409, FOUND_OUT)).looks()
+
+    def test_does_not_take_another_failure(self):
+        with self.assertRaisesRegex(AssertionError, "500"):
+            self.operator({"state": "settled"}, (500, "no")).looks()
+
+    def test_is_obeyed(self):
+        operator = self.operator({"state": "settled"}, (200, {"report": 1}))
+        operator.looks()
+        self.assertEqual(operator.judged, {1: "done"})
+
+
+class TheLastAnswers(unittest.TestCase):
+    """Before power cuts."""
+
+    @staticmethod
+    def posted(x, life, status=201):
+        answer = types.SimpleNamespace(status_code=status) if status else None
+        return Posted({"x": x, "y": 0.0}, answer=answer, life=life)
+
+    def test_are_one_of_each_life_by_the_order_of_the_sendings(self):
+        recorded = [{"x": x, "y": 0.0} for x in (1.0, 2.0, 4.0, 3.0, 5.0)]
+        posted = [self.posted(1.0, 0), self.posted(2.0, 1), self.posted(3.0, 1), self.posted(4.0, 1), self.posted(5.0, 2)]
+        self.assertEqual(last_answers(posted, recorded), [(1.0, 0.0), (3.0, 0.0), (5.0, 0.0)])
+
+    def test_are_not_those_that_nobody_was_told(self):
+        recorded = [{"x": x, "y": 0.0} for x in (1.0, 2.0, 3.0)]
+        posted = [self.posted(1.0, 0), self.posted(2.0, 0, status=409), self.posted(3.0, 0, status=None)]
+        self.assertEqual(last_answers(posted, recorded), [(1.0, 0.0)])
+
+
+if __name__ == "__main__":
+    unittest.main()

@@ -17,6 +17,7 @@ import programs
 from programs import wait_until
 
 SERVICES = pathlib.Path(os.environ["ADIT_SOURCE"]) / "services"
+SYN_ACK = 0x12  # of a segment that takes a connection
 SILENT_FOR = 1.5  # seconds, after which nobody answers any more
 RETRIES = 10.0  # seconds from one try to the next, at most, where nobody notices the cable
 PORTS = [*range(1, 1200), 5353, 5355, 8000, 8080, 9100, 40000, 65535]

@@ -47,14 +47,15 @@ std::expected<void, std::string> make_folder(const std::string& folder) {
 /// refused, and those that can be read are shown.
 adit::ledger::Result<adit::ledger::Ledger> open_ledger(const Options& options) {
   using adit::ledger::Ledger;
-  auto opened = Ledger::open(options.state);
   std::error_code unknown;
+  const char* const runtime = std::getenv("RUNTIME_DIRECTORY");
+  const std::string scratch = runtime != nullptr ? runtime : std::filesystem::temp_directory_path(unknown);
+  Ledger::sweep(options.state, scratch);
+  auto opened = Ledger::open(options.state);
   const bool is_there = std::filesystem::exists(options.state, unknown);
   if (!opened && (opened.error().full || opened.error().read_only || !is_there)) {
     adit::host::log(adit::host::Level::Error, "no report is taken, the ledger cannot be written",
                     {{"why", opened.error().what}});
-    const char* const runtime = std::getenv("RUNTIME_DIRECTORY");
-    const std::string scratch = runtime != nullptr ? runtime : std::filesystem::temp_directory_path(unknown);
     opened = Ledger::stand_in(options.state, scratch, opened.error().what);
   }
   if (opened && !opened->damage().empty()) adit::host::log(adit::host::Level::Error, opened->damage());

@@ -8,6 +8,8 @@
 #include <cerrno>
 #include <cstdio>
 #include <cstring>
+#include <filesystem>
+#include <vector>
 
 #include "loop/file_descriptor.hpp"
 
@@ -15,6 +17,7 @@ namespace adit::ledger {
 namespace {
 
 constexpr std::array kBeside = {"-wal", "-shm", "-journal"};
+constexpr const char *kTrial = "ledger.try-", *kUnique = "XXXXXX";
 
 Attempt<void> set_mode(const std::string& path) {
   if (::chmod(path.c_str(), 0600) == 0) return {};
@@ -74,7 +77,7 @@ Attempt<void> try_writing(const std::string& folder) {
 }
 
 Attempt<void> try_room(const std::string& folder, std::int64_t bytes) {
-  std::string path = folder + "/ledger.try-XXXXXX";
+  std::string path = folder + "/" + kTrial + kUnique;
   const loop::FileDescriptor made(::mkostemp(path.data(), O_CLOEXEC));
   if (!made) return std::unexpected(system_error("writing to " + folder));
   ::unlink(path.c_str());
@@ -82,6 +85,16 @@ Attempt<void> try_room(const std::string& folder, std::int64_t bytes) {
   errno = failed;
   if (failed != 0) return std::unexpected(system_error("writing to " + folder));
   return {};
+}
+
+void remove_trials(const std::string& folder) {
+  std::vector<std::string> left;
+  std::error_code error;
+  for (std::filesystem::directory_iterator each(folder, error), end; !error && each != end;
+       each.increment(error)) {
+    if (each->path().filename().string().starts_with(kTrial)) left.push_back(each->path().string());
+  }
+  for (const std::string& path : left) ::unlink(path.c_str());
 }
 
 Attempt<void> try_opening(const std::string& path) {

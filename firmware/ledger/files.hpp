@@ -22,6 +22,8 @@ Attempt<void> sync_folder(const std::string& folder);
 Attempt<void> try_writing(const std::string& folder);
 /// A failure where `bytes` have no room in it.
 Attempt<void> try_room(const std::string& folder, std::int64_t bytes);
+/// Of try_writing() and try_room() a program that was killed in the middle has left a file.
+void remove_trials(const std::string& folder);
 /// A failure where the file is there and cannot be written to, or is not ours.
 Attempt<void> try_opening(const std::string& path);
 /// In bytes; 0: it is not there.

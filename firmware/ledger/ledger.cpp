@@ -1,7 +1,5 @@
 #include "ledger/ledger.hpp"
 
-#include <cstdlib>
-#include <filesystem>
 #include <utility>
 
 #include "ledger/database.hpp"
@@ -9,6 +7,7 @@
 #include "ledger/mark.hpp"
 #include "ledger/opening.hpp"
 #include "ledger/rows.hpp"
+#include "ledger/scratch.hpp"
 
 namespace adit::ledger {
 namespace {
@@ -16,31 +15,6 @@ namespace {
 /// A ledger is some kilobytes, and begins with a few.
 constexpr const char* kFile = "/ledger.sqlite";
 constexpr std::int64_t kRoomToBegin = 1 << 20;
-
-/// A folder that goes with this; "": none.
-class Scratch {
- public:
-  Scratch() = default;
-  explicit Scratch(const std::string& below) {
-    std::string path = below + "/ledger-XXXXXX";
-    if (::mkdtemp(path.data()) != nullptr) path_ = path;
-  }
-  ~Scratch() { clear(); }
-  Scratch(Scratch&& other) noexcept : path_(std::exchange(other.path_, "")) {}
-  Scratch& operator=(Scratch&& other) noexcept {
-    std::swap(path_, other.path_);
-    return *this;
-  }
-
-  const std::string& path() const { return path_; }
-  void clear() const {
-    std::error_code ignored;
-    if (!path_.empty()) std::filesystem::remove_all(path_, ignored);
-  }
-
- private:
-  std::string path_;
-};
 
 }  // namespace
 
@@ -234,6 +208,11 @@ Result<Ledger> Ledger::stand_in(const std::string& folder, const std::string& sc
   if (!opened) return opened;
   opened->impl_->refuse(why + unread, std::move(made));
   return opened;
+}
+
+void Ledger::sweep(const std::string& folder, const std::string& scratch) {
+  remove_trials(folder);
+  sweep_scratch(scratch);
 }
 
 bool Ledger::can_be_opened(const std::string& folder) {

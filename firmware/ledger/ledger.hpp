@@ -38,6 +38,9 @@ class Ledger {
   /// its ledger, as a copy in a folder that is made below `scratch` and goes with this. It takes no write.
   static Result<Ledger> stand_in(const std::string& folder, const std::string& scratch,
                                  const std::string& why);
+  /// Removes what a program that was killed has left of stand_in() below `scratch`, and of trials of
+  /// `folder`; nothing of a ledger that is open.
+  static void sweep(const std::string& folder, const std::string& scratch);
   /// Whether a folder that was full or could not be written to can be now, also for an upgrade or a salvage
   /// of the ledger in it. Waits for the disk.
   static bool can_be_opened(const std::string& folder);

@@ -107,6 +107,36 @@ TEST(LedgerThatStandsIn, ShowsWhatCanBeReadAndTakesNothing) {
   EXPECT_TRUE(std::filesystem::is_empty(scratch.text())) << "it leaves nothing";
 }
 
+/// What a program that was killed has left: its folder, though nobody holds it any more.
+std::filesystem::path left_by_a_dead_program(const Folder& scratch) {
+  const auto live = Ledger::stand_in("/nowhere", scratch.text(), "for its name");
+  const std::filesystem::path made = std::filesystem::directory_iterator(scratch.text())->path();
+  const auto left = made.parent_path() /
+                    (made.filename().string().substr(0, made.filename().string().size() - 6) + "killed");
+  std::filesystem::copy(made, left);
+  return left;
+}
+
+TEST(LedgerThatStandsIn, IsSweptAwayOnceItsProgramIsDeadAndNotBefore) {
+  const Folder folder, scratch;
+  const auto left = left_by_a_dead_program(scratch);
+  ASSERT_TRUE(std::filesystem::exists(left / "ledger.sqlite"));
+  std::filesystem::create_directory(scratch / "of-another-program");
+  std::ofstream(folder / "ledger.try-a1b2c3") << "left by a trial";
+  std::ofstream(folder / "ledger.sqlite.damaged-1") << "kept for whoever can read it";
+  const auto live = Ledger::stand_in(folder.text(), scratch.text(), "it is read-only");
+  ASSERT_TRUE(live) << live.error().what;
+  Ledger::sweep(folder.text(), scratch.text());
+  EXPECT_FALSE(std::filesystem::exists(left));
+  EXPECT_FALSE(std::filesystem::exists(folder / "ledger.try-a1b2c3"));
+  EXPECT_TRUE(std::filesystem::exists(folder / "ledger.sqlite.damaged-1"));
+  EXPECT_TRUE(std::filesystem::exists(scratch / "of-another-program"));
+  EXPECT_EQ(std::distance(std::filesystem::directory_iterator(scratch.text()), {}), 2)
+      << "the live one is there";
+  EXPECT_TRUE(live->reports());
+  Ledger::sweep("/nowhere", "/nowhere");
+}
+
 TEST(LedgerThatStandsIn, IsEmptyWhereNothingCanBeRead) {
   const Folder scratch;
   const auto ledger = Ledger::stand_in("/nowhere", scratch.text(), "there is no folder");

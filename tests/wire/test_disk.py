@@ -143,6 +143,9 @@ class Disk(unittest.TestCase):
             stage.box.stop(signal.SIGKILL)
             self.remount(stage, "ro")  # as the kernel does where a disk fails
             stage.restart_box()
+            stage.box.stop(signal.SIGKILL)
+            stage.restart_box()
+            self.assertEqual(len(self.stand_ins(runtime)), 1, "the copy of the one that was killed is gone")
             self.assertIn("no report is taken, the ledger cannot be written: ", stage.box.attention())
             self.assertIn("Read-only file system", stage.box.attention())
             self.assertEqual([row["state"] for row in stage.box.reports()], ["answered"], "what can be read is shown")
@@ -159,6 +162,11 @@ class Disk(unittest.TestCase):
             wait_until(lambda: self.taken(stage, another(1)), "it to recover by itself")
             self.assertEqual(len(stage.post.recorded()), 2)
             self.assertNotIn("the ledger", stage.box.attention())
+            self.assertEqual(self.stand_ins(runtime), [])
+
+    @staticmethod
+    def stand_ins(runtime):
+        return list(pathlib.Path(runtime).glob("adit-stand-in-*"))
 
     @staticmethod
     def taken(stage, report):

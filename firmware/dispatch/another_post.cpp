@@ -41,10 +41,7 @@ std::string counted(const Open& open) {
 }
 
 std::string what_is_known_at(const Reports& reports, const std::string& post) {
-  const Run* known = nullptr;
-  for (const auto& [number, run] : reports.runs().all()) {
-    if (run.post == post && (known == nullptr || run.place() > known->place())) known = &run;
-  }
+  const Run* const known = reports.runs().at_post(post);
   if (known == nullptr) return "";
   const auto count = std::ranges::count_if(
       reports.book().all(), [known](const auto& item) { return item.second.run == known->number; });

@@ -18,7 +18,7 @@ bool was_sent(const Report& report) {
 /// The settings name another Command Post: its run is on, and what is meant for the old one is kept for that.
 void Reports::change_post(const std::string& post, Time time) {
   const std::string from = run().post;
-  const Run* const known = account_.at_post(post);
+  const Run* const known = account_.runs().at_post(post);
   const std::int64_t next = known != nullptr ? known->number : account_.runs().next_number();
   // What was taken before any word of a run is meant for the first one that is heard of.
   std::vector<Report> steps;

@@ -44,10 +44,6 @@ const Run* RunAccount::of_name(const std::string& id) const {
   });
 }
 
-const Run* RunAccount::at_post(const std::string& post) const {
-  return runs_.latest([&](const Run& run) { return run.post == post; });
-}
-
 const Run* RunAccount::named_before() const {
   const Run* named = nullptr;
   for (const auto& [number, run] : runs_.all()) {

@@ -44,8 +44,6 @@ class RunAccount {
   const Run* of_team(const std::string& team) const;
   /// A run of that name here, from before one of another name.
   const Run* of_name(const std::string& id) const;
-  /// The run that was the present one last at `post`.
-  const Run* at_post(const std::string& post) const;
   /// The first run that has a name, of those that the present one may be.
   const Run* named_before() const;
 

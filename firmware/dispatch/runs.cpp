@@ -29,6 +29,10 @@ const Run* Runs::latest(const std::function<bool(const Run&)>& fits) const {
   return found;
 }
 
+const Run* Runs::at_post(const std::string& post) const {
+  return latest([&post](const Run& run) { return run.post == post; });
+}
+
 std::int64_t Runs::next_turn() const {
   std::int64_t last = 0;
   for (const auto& [number, run] : runs_) last = std::max(last, run.place());

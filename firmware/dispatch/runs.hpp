@@ -25,6 +25,8 @@ class Runs {
 
   /// Of those that fit, the one that was the present one last, but not now; nothing: none fits.
   const Run* latest(const std::function<bool(const Run&)>& fits) const;
+  /// The latest() at `post`: it is taken up again where the settings name that Command Post.
+  const Run* at_post(const std::string& post) const;
   /// The number of the run that begins next.
   std::int64_t next_number() const { return runs_.rbegin()->first + 1; }
   /// It is the present one from now on; its number and turn are given to it.

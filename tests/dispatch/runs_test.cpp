@@ -53,8 +53,7 @@ TEST(TheRuns, FindTheLatestOfAPlace) {
   Runs runs;
   runs.open({run(1, 1), run(2, 2, "b:1"), run(3, 3), run(4, 4, "b:1")}, 4);
   const auto at = [&](const std::string& post) {
-    const dispatch::Run* const found =
-        runs.latest([&](const dispatch::Run& each) { return each.post == post; });
+    const dispatch::Run* const found = runs.at_post(post);
     return found == nullptr ? 0 : found->number;
   };
   EXPECT_EQ(at("a:1"), 3);

@@ -74,14 +74,11 @@ class MapUpload::State : public std::enable_shared_from_this<State> {
         options_(options),
         flow_(std::move(flow)),
         workers_(workers),
-        budget_(std::move(budget)),
+        share_(std::move(budget)),
         arrival_(visit_.desk.map_arrives()),
         decoding_(std::make_shared<Decoding>(options.kind, options.rules)) {
     visit_.sender.bytes = 0;
   }
-  State(const State&) = delete;
-  State& operator=(const State&) = delete;
-  ~State() { budget_->give_back(taken_); }
 
   bool take(std::span<const std::uint8_t> piece);
   void whole() {
@@ -120,10 +117,9 @@ class MapUpload::State : public std::enable_shared_from_this<State> {
   MapUploadOptions options_;
   std::shared_ptr<Flow> flow_;
   loop::Workers& workers_;
-  std::shared_ptr<UploadBudget> budget_;
+  UploadShare share_;
   std::shared_ptr<MapArrival> arrival_;  // null once over
   std::shared_ptr<Decoding> decoding_;
-  std::size_t taken_ = 0;  // of the budget
   Pieces pending_;
   std::size_t pending_bytes_ = 0;
   bool at_work_ = false;  // a worker is, and decoding_ is its own
@@ -143,11 +139,10 @@ bool MapUpload::State::take(std::span<const std::uint8_t> piece) {
            icd::sentence("body: expected at most ", options_.most_bytes, " bytes"));
     return true;
   }
-  if (!budget_->take(piece.size())) {
+  if (!share_.take(piece.size())) {
     refuse(icd::Status::TooManyRequests, "too many maps are being sent at once; send this one again later");
     return true;
   }
-  taken_ += piece.size();
   pending_.emplace_back(piece.begin(), piece.end());
   pending_bytes_ += piece.size();
   if (options_.kind.coding != codec::ContentCoding::Identity) return true;

@@ -42,13 +42,10 @@ class MarkersUpload::State : public std::enable_shared_from_this<State> {
         kind_(kind),
         rules_(rules),
         workers_(workers),
-        budget_(std::move(budget)),
+        share_(std::move(budget)),
         small_(std::in_place, kind, codec::Split::Nothing, codec::Limits{}) {
     visit_.sender.bytes = 0;
   }
-  State(const State&) = delete;
-  State& operator=(const State&) = delete;
-  ~State() { budget_->give_back(taken_); }
 
   void take(std::span<const std::uint8_t> piece);
   void whole();
@@ -81,18 +78,14 @@ class MarkersUpload::State : public std::enable_shared_from_this<State> {
   codec::BodyKind kind_;
   icd::Rules rules_;
   loop::Workers& workers_;
-  std::shared_ptr<UploadBudget> budget_;
-  std::size_t taken_ = 0;                    // of the budget
+  UploadShare share_;
   Body body_;                                // as it came
   std::optional<codec::BodyDecoder> small_;  // nothing: it is large
   bool over_ = false;                        // answered, the client is gone, or it is the desk's
 };
 
 bool MarkersUpload::State::charge(std::size_t bytes) {
-  if (budget_->take(bytes)) {
-    taken_ += bytes;
-    return true;
-  }
+  if (share_.take(bytes)) return true;
   turn_away({icd::Status::TooManyRequests, "too much is being sent at once; send these markers again later"});
   return false;
 }

@@ -1,6 +1,8 @@
 #pragma once
 
 #include <cstddef>
+#include <memory>
+#include <utility>
 
 namespace adit::intake {
 
@@ -18,6 +20,26 @@ class UploadBudget {
 
  private:
   std::size_t left_;
+};
+
+/// What one upload has taken of the budget. Its end gives it back.
+class UploadShare {
+ public:
+  explicit UploadShare(std::shared_ptr<UploadBudget> budget) : budget_(std::move(budget)) {}
+  ~UploadShare() { budget_->give_back(taken_); }
+  UploadShare(const UploadShare&) = delete;
+  UploadShare& operator=(const UploadShare&) = delete;
+
+  /// False: not so much is left, and nothing more is taken.
+  bool take(std::size_t bytes) {
+    if (!budget_->take(bytes)) return false;
+    taken_ += bytes;
+    return true;
+  }
+
+ private:
+  std::shared_ptr<UploadBudget> budget_;
+  std::size_t taken_ = 0;
 };
 
 }  // namespace adit::intake

@@ -1,7 +1,6 @@
 #include "gateway/aside.hpp"
 
 #include <algorithm>
-#include <charconv>
 #include <filesystem>
 #include <memory>
 #include <optional>
@@ -12,6 +11,7 @@
 #include "gateway/kept_message.hpp"
 #include "gateway/record.hpp"
 #include "host/log.hpp"
+#include "host/numbered_name.hpp"
 #include "host/service.hpp"
 #include "icd/sentence.hpp"
 
@@ -110,11 +110,8 @@ void Aside::restore() {
   std::vector<std::uint64_t> numbers;
   std::error_code error;
   for (const auto& file : fs::directory_iterator(folder_, error)) {
-    const std::string name = file.path().stem().string();
-    std::uint64_t number = 0;
-    const auto [end, fault] = std::from_chars(name.data(), name.data() + name.size(), number);
-    if (file.path().extension() == kReason && fault == std::errc() && end == name.data() + name.size())
-      numbers.push_back(number);
+    const auto number = host::number_in_name(file.path().filename().string(), "", kReason);
+    if (number) numbers.push_back(*number);
   }
   std::ranges::sort(numbers);
   for (const std::uint64_t number : numbers) {

@@ -4,10 +4,7 @@
 #include <unistd.h>
 
 #include <algorithm>
-#include <array>
 #include <cerrno>
-#include <charconv>
-#include <cstdio>
 #include <cstring>
 #include <filesystem>
 #include <optional>
@@ -15,6 +12,7 @@
 
 #include "gateway/kept_message.hpp"
 #include "host/log.hpp"
+#include "host/numbered_name.hpp"
 #include "icd/sentence.hpp"
 
 namespace adit::gateway {
@@ -26,17 +24,6 @@ constexpr std::string_view kState = "/state.cbor", kMarkers = "/markers.cbor";
 /// What a map's file takes beside the map's data, in whole pages.
 constexpr std::uint64_t kBeside = 8192;
 constexpr std::string_view kMap = "map-", kEnding = ".cbor";
-
-/// The number in "map-00000012.cbor"; nothing for another file.
-std::optional<std::uint64_t> number_in(std::string_view name) {
-  if (!name.starts_with(kMap) || !name.ends_with(kEnding)) return std::nullopt;
-  name.remove_prefix(kMap.size());
-  name.remove_suffix(kEnding.size());
-  std::uint64_t number = 0;
-  const auto [end, error] = std::from_chars(name.data(), name.data() + name.size(), number);
-  if (error != std::errc() || end != name.data() + name.size()) return std::nullopt;
-  return number;
-}
 
 std::unexpected<icd::Refusal> not_kept(const std::string& why) {
   return std::unexpected(icd::Refusal{icd::Status::ServiceUnavailable,
@@ -78,9 +65,7 @@ std::string Spool::trouble() const {
 }
 
 std::string Spool::file_of(std::uint64_t number) const {
-  std::array<char, 24> digits{};
-  std::snprintf(digits.data(), digits.size(), "%08llu", static_cast<unsigned long long>(number));
-  return folder_ + "/" + std::string(kMap) + digits.data() + std::string(kEnding);
+  return folder_ + "/" + host::numbered_name(kMap, number, kEnding);
 }
 
 bool Spool::has_room(std::uint64_t bytes) const {
@@ -127,7 +112,8 @@ Spool::Kept Spool::read() const {
   std::vector<std::uint64_t> numbers;
   std::error_code error;
   for (const auto& file : fs::directory_iterator(folder_, error)) {
-    if (const auto number = number_in(file.path().filename().string())) numbers.push_back(*number);
+    const auto number = host::number_in_name(file.path().filename().string(), kMap, kEnding);
+    if (number) numbers.push_back(*number);
   }
   std::ranges::sort(numbers);
   Kept kept;

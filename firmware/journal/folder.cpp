@@ -1,16 +1,13 @@
 #include "journal/folder.hpp"
 
 #include <algorithm>
-#include <array>
-#include <charconv>
-#include <cstdio>
 #include <filesystem>
 #include <fstream>
 #include <iterator>
-#include <optional>
 #include <string_view>
 
 #include "host/log.hpp"
+#include "host/numbered_name.hpp"
 
 namespace adit::journal {
 namespace {
@@ -18,16 +15,6 @@ namespace {
 namespace fs = std::filesystem;
 
 constexpr std::string_view kJournal = "journal-", kSnapshot = "snapshot-", kPart = ".part";
-
-/// The number in "journal-00000012"; nothing for another file.
-std::optional<std::uint64_t> number_in(std::string_view name, std::string_view kind) {
-  if (!name.starts_with(kind)) return std::nullopt;
-  name.remove_prefix(kind.size());
-  std::uint64_t number = 0;
-  const auto [end, error] = std::from_chars(name.data(), name.data() + name.size(), number);
-  if (name.empty() || error != std::errc() || end != name.data() + name.size()) return std::nullopt;
-  return number;
-}
 
 std::string bytes_of(const std::string& path) {
   std::ifstream file(path, std::ios::binary);
@@ -59,9 +46,7 @@ Folder::Folder(std::string path) : path_(std::move(path)) {
 }
 
 std::string Folder::file(const char* kind, std::uint64_t number) const {
-  std::array<char, 24> digits{};
-  std::snprintf(digits.data(), digits.size(), "%08llu", static_cast<unsigned long long>(number));
-  return path_ + '/' + kind + digits.data();
+  return path_ + '/' + host::numbered_name(kind, number);
 }
 
 Folder::Files Folder::files() const {
@@ -69,8 +54,8 @@ Folder::Files Folder::files() const {
   std::error_code error;
   for (fs::directory_iterator entry(path_, error), end; !error && entry != end; entry.increment(error)) {
     const std::string name = entry->path().filename().string();
-    if (const auto number = number_in(name, kJournal)) files.journals.push_back(*number);
-    if (const auto number = number_in(name, kSnapshot)) files.snapshots.push_back(*number);
+    if (const auto number = host::number_in_name(name, kJournal)) files.journals.push_back(*number);
+    if (const auto number = host::number_in_name(name, kSnapshot)) files.snapshots.push_back(*number);
     if (name.ends_with(kPart)) files.parts.push_back(entry->path().string());
   }
   std::ranges::sort(files.journals);

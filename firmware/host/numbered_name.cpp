@@ -1,0 +1,28 @@
+#include "host/numbered_name.hpp"
+
+#include <array>
+#include <charconv>
+#include <cinttypes>
+#include <cstdio>
+
+namespace adit::host {
+
+std::string numbered_name(std::string_view prefix, std::uint64_t number, std::string_view ending) {
+  std::array<char, 24> digits{};
+  std::snprintf(digits.data(), digits.size(), "%08" PRIu64, number);
+  return std::string(prefix).append(digits.data()).append(ending);
+}
+
+std::optional<std::uint64_t> number_in_name(std::string_view name, std::string_view prefix,
+                                            std::string_view ending) {
+  if (!name.starts_with(prefix)) return std::nullopt;
+  name.remove_prefix(prefix.size());
+  if (!name.ends_with(ending)) return std::nullopt;
+  name.remove_suffix(ending.size());
+  std::uint64_t number = 0;
+  const auto [end, error] = std::from_chars(name.data(), name.data() + name.size(), number);
+  if (error != std::errc() || end != name.data() + name.size()) return std::nullopt;
+  return number;
+}
+
+}  // namespace adit::host

@@ -1,0 +1,17 @@
+#pragma once
+
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <string_view>
+
+namespace adit::host {
+
+/// The name of a file that is one of many, with at least eight digits: "map-00000012.cbor".
+std::string numbered_name(std::string_view prefix, std::uint64_t number, std::string_view ending = "");
+
+/// The number in such a name, however many digits it has; nothing for another file's name.
+std::optional<std::uint64_t> number_in_name(std::string_view name, std::string_view prefix,
+                                            std::string_view ending = "");
+
+}  // namespace adit::host

@@ -10,6 +10,7 @@
 
 #include "gateway/messages.hpp"
 #include "host/folder.hpp"
+#include "loop/turn_until.hpp"
 
 namespace adit::gateway {
 namespace {
@@ -58,13 +59,7 @@ class AsideTest : public testing::Test {
     held_.reset();
   }
   /// The writer has done all that it was given, and its word has come.
-  void settle() {
-    bool over = false;
-    writer_->submit([] {}, [&] { over = true; });
-    const auto end = loop_.now() + std::chrono::seconds{20};
-    while (!over && loop_.now() < end) loop_.turn(std::chrono::milliseconds{5});
-    ASSERT_TRUE(over);
-  }
+  void settle() { ASSERT_TRUE(loop::turn_until_idle(loop_, *writer_)); }
 
   host::Folder folder_;
   loop::Loop loop_;

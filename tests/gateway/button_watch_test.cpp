@@ -8,6 +8,7 @@
 
 #include "gateway/watched_lines.hpp"
 #include "loop/file_descriptor.hpp"
+#include "loop/turn_until.hpp"
 
 namespace adit::gateway {
 namespace {
@@ -54,20 +55,12 @@ class ButtonWatchTest : public testing::Test {
     button.emplace(loop, std::make_unique<WireLine>(wire), lights,
                    [this](Press press) { presses.push_back(press); });
   }
-  template <class Done>
-  void turn_until(Done done) {
-    for (const auto end = loop.now() + 20s; !done() && loop.now() < end;) loop.turn(10ms);
-    EXPECT_TRUE(done());
-  }
   /// Until it has been seen, and for longer than it may bounce.
   void set(bool pressed) {
     const int before = wire.looked;
     wire.set(pressed);
-    turn_until([&] { return wire.looked > before; });
-    turn_for(100ms);
-  }
-  void turn_for(loop::Duration length) {
-    for (const auto until = loop.now() + length; loop.now() < until;) loop.turn(until - loop.now());
+    EXPECT_TRUE(loop::turn_until(loop, [&] { return wire.looked > before; }));
+    loop::turn_for(loop, 100ms);
   }
 
   loop::Loop loop;
@@ -83,10 +76,10 @@ TEST_F(ButtonWatchTest, TellsOfAPressOnceItIsOver) {
   set(true);
   EXPECT_TRUE(presses.empty());
   wire.set(false);
-  turn_until([&] { return !presses.empty(); });
+  EXPECT_TRUE(loop::turn_until(loop, [&] { return !presses.empty(); }));
   EXPECT_EQ(presses, std::vector{Press::Identify});
   const int looked = wire.looked;
-  turn_for(100ms);
+  loop::turn_for(loop, 100ms);
   EXPECT_EQ(wire.looked, looked) << "nobody looks at a button that nobody touches";
 }
 
@@ -101,7 +94,7 @@ TEST_F(ButtonWatchTest, IgnoresABounce) {
       loop.turn(0ms);
     }
     was_one = loop.now() - began < panel::Button::kBounce;
-    turn_for(100ms);
+    loop::turn_for(loop, 100ms);
   }
   EXPECT_TRUE(was_one);
   EXPECT_TRUE(presses.empty());
@@ -111,11 +104,11 @@ TEST_F(ButtonWatchTest, ShowsWhenItIsTimeToLetGoAndWhenItIsNot) {
   watch();
   lights.set(State::Serving, true);
   set(true);
-  turn_for(2400ms);
+  loop::turn_for(loop, 2400ms);
   EXPECT_FALSE(lights.has(State::ButtonHeld));
-  turn_until([&] { return lights.has(State::ButtonHeld); });
+  EXPECT_TRUE(loop::turn_until(loop, [&] { return lights.has(State::ButtonHeld); }));
   wire.set(false);
-  turn_until([&] { return !presses.empty(); });
+  EXPECT_TRUE(loop::turn_until(loop, [&] { return !presses.empty(); }));
   EXPECT_FALSE(lights.has(State::ButtonHeld));
   EXPECT_EQ(presses, std::vector{Press::ShowAddress});
 }
@@ -123,7 +116,7 @@ TEST_F(ButtonWatchTest, ShowsWhenItIsTimeToLetGoAndWhenItIsNot) {
 TEST_F(ButtonWatchTest, DoesNothingWhileTheButtonIsStuck) {
   wire.pressed = true;
   watch();
-  turn_for(3200ms);
+  loop::turn_for(loop, 3200ms);
   EXPECT_FALSE(lights.has(State::ButtonHeld));
   set(false);
   EXPECT_TRUE(presses.empty());
@@ -138,13 +131,13 @@ TEST_F(ButtonWatchTest, LeavesAButtonAloneThatCannotBeRead) {
   EXPECT_FALSE(lights.has(State::ButtonHeld));
   const int looked = wire.looked;
   wire.set(true);
-  turn_for(200ms);
+  loop::turn_for(loop, 200ms);
   EXPECT_EQ(wire.looked, looked) << "or it would be asked for ever";
 }
 
 TEST_F(ButtonWatchTest, IsNoneWhereThereIsNoLine) {
   button.emplace(loop, nullptr, lights, [this](Press press) { presses.push_back(press); });
-  turn_for(50ms);
+  loop::turn_for(loop, 50ms);
   EXPECT_TRUE(presses.empty());
 }
 

@@ -8,6 +8,7 @@
 #include <string>
 
 #include "../uplink/peer.hpp"
+#include "loop/turn_until.hpp"
 
 namespace adit::gateway {
 namespace {
@@ -21,9 +22,7 @@ class ChannelTest : public testing::Test {
                                              icd::BearerToken::parse("a-token"), std::chrono::seconds{20});
     bool done = false;
     channel->send(uri, "", {}, [&done](const uplink::Outcome&) { done = true; });
-    const auto end = loop_.now() + std::chrono::seconds{20};
-    while (!done && loop_.now() < end) loop_.turn(std::chrono::milliseconds{5});
-    EXPECT_TRUE(done);
+    EXPECT_TRUE(loop::turn_until(loop_, [&] { return done; }));
     return channel;
   }
 

@@ -6,6 +6,7 @@
 #include <future>
 
 #include "host/folder.hpp"
+#include "loop/turn_until.hpp"
 
 namespace adit::gateway {
 namespace {
@@ -14,13 +15,6 @@ namespace fs = std::filesystem;
 
 class LedgerReturnTest : public testing::Test {
  protected:
-  template <class Condition>
-  bool comes(const Condition& condition) {
-    const auto end = loop_.now() + std::chrono::seconds{20};
-    while (!condition() && loop_.now() < end) loop_.turn(std::chrono::milliseconds{5});
-    return condition();
-  }
-
   host::Folder folder_;
   loop::Loop loop_;
   loop::Writer writer_{loop_};
@@ -29,7 +23,7 @@ class LedgerReturnTest : public testing::Test {
 
 TEST_F(LedgerReturnTest, IsSaidOnceWhereTheFolderTakesAWriteAgain) {
   const LedgerReturn waits(loop_, writer_, folder_.path(), std::chrono::seconds{0}, [&] { ++back_; });
-  EXPECT_TRUE(comes([&] { return back_ > 0; }));
+  EXPECT_TRUE(loop::turn_until(loop_, [&] { return back_ > 0; }));
   for (int i = 0; i < 20; ++i) loop_.turn(std::chrono::milliseconds{5});
   EXPECT_EQ(back_, 1);
 }
@@ -42,7 +36,7 @@ TEST_F(LedgerReturnTest, IsNotSaidWhereTheLedgerItselfCannotBeOpened) {
   for (int i = 0; i < 40; ++i) loop_.turn(std::chrono::milliseconds{5});
   EXPECT_EQ(back_, 0);
   fs::remove(in_the_way);
-  EXPECT_TRUE(comes([&] { return back_ > 0; }));
+  EXPECT_TRUE(loop::turn_until(loop_, [&] { return back_ > 0; }));
 }
 
 TEST_F(LedgerReturnTest, IsWaitedForByADiskThatTakesLongAndNotByTheLoop) {
@@ -52,10 +46,10 @@ TEST_F(LedgerReturnTest, IsWaitedForByADiskThatTakesLongAndNotByTheLoop) {
   const LedgerReturn waits(loop_, writer_, folder_.path(), std::chrono::seconds{0}, [&] { ++back_; });
   auto other = loop_.timer([&] { turned = true; });
   other.call_at(loop_.now());
-  EXPECT_TRUE(comes([&] { return turned; }));
+  EXPECT_TRUE(loop::turn_until(loop_, [&] { return turned; }));
   EXPECT_EQ(back_, 0);
   let_go.set_value();
-  EXPECT_TRUE(comes([&] { return back_ > 0; }));
+  EXPECT_TRUE(loop::turn_until(loop_, [&] { return back_ > 0; }));
 }
 
 TEST(LedgerRest, IsTwiceAsLongEachTimeAndBounded) {

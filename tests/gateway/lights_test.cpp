@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "gateway/watched_lines.hpp"
+#include "loop/turn_until.hpp"
 
 namespace adit::gateway {
 namespace {
@@ -25,12 +26,6 @@ class LightsTest : public testing::Test {
     for (const State state : {State::Serving, State::ScoringConnected, State::MappingConnected}) {
       lights.set(state, true);
     }
-  }
-  template <class Done>
-  void turn_until(Done done) {
-    const auto until = loop.now() + 20s;
-    while (!done() && loop.now() < until) loop.turn(50ms);
-    EXPECT_TRUE(done());
   }
 
   loop::Loop loop;
@@ -61,7 +56,7 @@ TEST_F(LightsTest, BlinkByTheLoopsTimer) {
   for (int attempt = 0; attempt < 10 && took > 1500ms; ++attempt) {
     const auto began = loop.now();
     seen.shown.clear();
-    turn_until([&] { return seen.shown.size() >= 9; });
+    EXPECT_TRUE(loop::turn_until(loop, [&] { return seen.shown.size() >= 9; }));
     for (std::size_t i = 1; i < 9; ++i) EXPECT_NE(seen.shown[i][kAttention], seen.shown[i - 1][kAttention]);
     took = loop.now() - began;
     EXPECT_GT(took, 800ms);
@@ -73,11 +68,11 @@ TEST_F(LightsTest, KeepTheirTimeWhileTheyAreToldTheSameOverAndOver) {
   lights.set(State::NeedsOperator, true);
   seen.shown.clear();
   const auto began = loop.now();
-  turn_until([&] {
+  EXPECT_TRUE(loop::turn_until(loop, [&] {
     lights.set(State::NeedsOperator, true);
     loop.turn(10ms);
     return seen.shown.size() >= 6 && loop.now() - began > 1s;
-  });
+  }));
   EXPECT_LE(static_cast<long>(seen.shown.size()), 1 + (loop.now() - began) / 125ms);
 }
 
@@ -90,9 +85,9 @@ TEST_F(LightsTest, AllFlashTogetherWhileTheBoxIsIdentifiedAndThenTellOfTheOthers
   EXPECT_EQ(lights.shown(), kTwice) << "whatever happens meanwhile";
   EXPECT_GT(lights.left(State::Identify).value_or(0ms), 0ms);
   const auto showed = [&](const Lit& lit) { return std::ranges::find(seen.shown, lit) != seen.shown.end(); };
-  turn_until([&] { return showed(Lit{}) && showed(Lit{true, true, true, true}); });
+  EXPECT_TRUE(loop::turn_until(loop, [&] { return showed(Lit{}) && showed(Lit{true, true, true, true}); }));
   lights.set_for(State::Identify, 100ms);
-  turn_until([&] { return lights.shown() != kTwice; });
+  EXPECT_TRUE(loop::turn_until(loop, [&] { return lights.shown() != kTwice; }));
   EXPECT_EQ(lights.left(State::Identify), std::nullopt);
   EXPECT_FALSE(lights.has(State::Identify));
   EXPECT_EQ(lights.shown()[kMapping], Pattern::Off);
@@ -110,7 +105,7 @@ TEST_F(LightsTest, PlayDigitsOnceFromTheirBeginningOnAttentionAlone) {
     seen.shown.clear();
     lights.play_digits({{false, 100ms}, {true, 100ms}, {false, 100ms}, {true, 200ms}, {false, 100ms}});
     EXPECT_EQ(lights.shown()[kAttention], Pattern::Digits);
-    turn_until([&] { return !lights.has(State::Address); });
+    EXPECT_TRUE(loop::turn_until(loop, [&] { return !lights.has(State::Address); }));
   }
   EXPECT_EQ(seen.shown, all);
 }

@@ -9,6 +9,7 @@
 #include "gateway/no_file_above.hpp"
 #include "host/folder.hpp"
 #include "host/service.hpp"
+#include "loop/turn_until.hpp"
 
 namespace adit::gateway {
 namespace {
@@ -28,18 +29,11 @@ class MapArrivalTest : public testing::Test {
   icd::ChunkedBytes store(MapArrival& arrival, icd::ChunkedBytes bytes) {
     std::optional<icd::ChunkedBytes> said;
     arrival.store(std::move(bytes), [&](icd::ChunkedBytes left) { said = std::move(left); });
-    const auto end = loop_.now() + std::chrono::seconds{20};
-    while (!said && loop_.now() < end) loop_.turn(std::chrono::milliseconds{5});
+    EXPECT_TRUE(loop::turn_until(loop_, [&] { return said.has_value(); }));
     return said.value();
   }
   /// The writer has done all that it was given.
-  void settle() {
-    bool over = false;
-    writer_->submit([] {}, [&] { over = true; });
-    const auto end = loop_.now() + std::chrono::seconds{20};
-    while (!over && loop_.now() < end) loop_.turn(std::chrono::milliseconds{5});
-    ASSERT_TRUE(over);
-  }
+  void settle() { ASSERT_TRUE(loop::turn_until_idle(loop_, *writer_)); }
   std::vector<std::string> names() const { return host::names_in(folder_.path()).value(); }
 
   host::Folder folder_;

@@ -5,6 +5,7 @@
 #include <utility>
 
 #include "codec/gzip.hpp"
+#include "loop/turn_until.hpp"
 
 namespace adit::gateway {
 namespace {
@@ -36,16 +37,6 @@ icd::MapUpdate cloud(const char* robot, std::size_t points) {
 
 class MapPictureTest : public testing::Test {
  protected:
-  void run_for(std::chrono::milliseconds time) {
-    for (const auto end = loop.now() + time; loop.now() < end;) loop.turn(std::chrono::milliseconds{5});
-  }
-  bool run_until(const std::function<bool()>& reached) {
-    for (const auto end = loop.now() + std::chrono::seconds{20}; loop.now() < end;) {
-      if (reached()) return true;
-      loop.turn(std::chrono::milliseconds{5});
-    }
-    return reached();
-  }
   bool drawn(const char* robot, const TileAt& at, Kind kind = Kind::Grid) const {
     return picture.mosaic().tile({robot, kind}, at, {}).tile != nullptr;
   }
@@ -61,19 +52,20 @@ TEST_F(MapPictureTest, DrawsEachMapThatWasForwardedAndSaysThatThePictureChanged)
   picture.forwarded(grid("r1", 0, 4, 0));
   picture.forwarded(grid("r2", 64, 4, 0));
   picture.forwarded(cloud("r1", 3));
-  ASSERT_TRUE(run_until([&] { return drawn("r1", {0, 0, 0}, Kind::Cloud); })) << "the last that came";
+  ASSERT_TRUE(loop::turn_until(loop, [&] { return drawn("r1", {0, 0, 0}, Kind::Cloud); }))
+      << "the last that came";
   EXPECT_TRUE(drawn("r1", {0, 0, 0}));
   EXPECT_TRUE(drawn("r2", {0, 1, 0}));
   EXPECT_EQ(changes, 3);
   picture.forwarded(grid("r1", 0, 4, 0));
   picture.forwarded(grid("r3", 0, 4, 0));
-  ASSERT_TRUE(run_until([&] { return drawn("r3", {0, 0, 0}); }));
+  ASSERT_TRUE(loop::turn_until(loop, [&] { return drawn("r3", {0, 0, 0}); }));
   EXPECT_EQ(changes, 4) << "the same grid again changed nothing";
 }
 
 TEST_F(MapPictureTest, IsHandedOnWithWhatItHasDrawnAndCountsWhatItHasNot) {
   picture.forwarded(grid("r1", 0, 4, 0));
-  ASSERT_TRUE(run_until([&] { return drawn("r1", {0, 0, 0}); }));
+  ASSERT_TRUE(loop::turn_until(loop, [&] { return drawn("r1", {0, 0, 0}); }));
   picture.forwarded(grid("r2", 0, 4, 0));
   const picture::Mosaic handed = picture.hand_over();
   const auto layers = handed.layers();
@@ -87,15 +79,15 @@ TEST_F(MapPictureTest, WaitsWhileAMapIsPackedThoughNotForEver) {
   packing = true;
   const auto began = loop.now();
   picture.forwarded(grid("r1", 0, 4, 0));
-  run_for(std::chrono::milliseconds{200});
+  loop::turn_for(loop, std::chrono::milliseconds{200});
   EXPECT_FALSE(drawn("r1", {0, 0, 0}));
-  ASSERT_TRUE(run_until([&] { return drawn("r1", {0, 0, 0}); }));
+  ASSERT_TRUE(loop::turn_until(loop, [&] { return drawn("r1", {0, 0, 0}); }));
   EXPECT_GE(loop.now() - began, MapPicture::kPatience);
   picture.forwarded(grid("r2", 0, 4, 0));
-  run_for(std::chrono::milliseconds{100});
+  loop::turn_for(loop, std::chrono::milliseconds{100});
   EXPECT_FALSE(drawn("r2", {0, 0, 0}));
   packing = false;
-  EXPECT_TRUE(run_until([&] { return drawn("r2", {0, 0, 0}); }));
+  EXPECT_TRUE(loop::turn_until(loop, [&] { return drawn("r2", {0, 0, 0}); }));
 }
 
 TEST_F(MapPictureTest, DoesNotDrawAGridThatTheNextOneCoversWhileItWaits) {
@@ -104,7 +96,7 @@ TEST_F(MapPictureTest, DoesNotDrawAGridThatTheNextOneCoversWhileItWaits) {
   picture.forwarded(grid("r2", 64, 4, 0));
   picture.forwarded(grid("r1", 0, 5, 100));
   packing = false;
-  ASSERT_TRUE(run_until([&] { return drawn("r1", {0, 0, 0}); }));
+  ASSERT_TRUE(loop::turn_until(loop, [&] { return drawn("r1", {0, 0, 0}); }));
   EXPECT_TRUE(drawn("r2", {0, 1, 0}));
   EXPECT_EQ(changes, 2);
 }
@@ -116,7 +108,7 @@ TEST_F(MapPictureTest, DrawsEveryCloudAndEveryGridThatIsNotCovered) {
   picture.forwarded(cloud("r1", 3));
   picture.forwarded(cloud("r2", 3));
   packing = false;
-  ASSERT_TRUE(run_until([&] { return drawn("r2", {0, 0, 0}, Kind::Cloud); }));
+  ASSERT_TRUE(loop::turn_until(loop, [&] { return drawn("r2", {0, 0, 0}, Kind::Cloud); }));
   EXPECT_TRUE(drawn("r1", {0, 0, 0}));
   EXPECT_TRUE(drawn("r1", {0, 1, 0}));
   EXPECT_TRUE(drawn("r1", {0, 0, 0}, Kind::Cloud));
@@ -133,22 +125,23 @@ TEST_F(MapPictureTest, CountsWhatItCouldNotKeepUntilItsTurn) {
   ASSERT_EQ(layers.size(), 1U);
   EXPECT_EQ(layers[0].missed, 2U) << "two of them do not fit together";
   packing = false;
-  EXPECT_TRUE(run_until([&] { return drawn("r1", {0, 0, 0}, Kind::Cloud); })) << "the last one is drawn";
+  EXPECT_TRUE(loop::turn_until(loop, [&] { return drawn("r1", {0, 0, 0}, Kind::Cloud); }))
+      << "the last one is drawn";
 }
 
 TEST_F(MapPictureTest, CountsAMapThatCannotBeDrawn) {
   auto damaged = grid("r1", 0, 4, 0);
   damaged.data.compression = icd::Compression::Gzip;
   picture.forwarded(damaged);
-  ASSERT_TRUE(run_until([&] { return !picture.mosaic().layers().empty(); }));
+  ASSERT_TRUE(loop::turn_until(loop, [&] { return !picture.mosaic().layers().empty(); }));
   EXPECT_EQ(picture.mosaic().layers()[0].missed, 1U);
   picture.forwarded(grid("r1", 0, 4, 0));
-  EXPECT_TRUE(run_until([&] { return drawn("r1", {0, 0, 0}); })) << "and goes on";
+  EXPECT_TRUE(loop::turn_until(loop, [&] { return drawn("r1", {0, 0, 0}); })) << "and goes on";
 }
 
 TEST_F(MapPictureTest, ANewRunBeginsBlankWhateverWaitsOrIsBeingDrawn) {
   picture.forwarded(grid("r1", 0, 4, 0));
-  ASSERT_TRUE(run_until([&] { return drawn("r1", {0, 0, 0}); }));
+  ASSERT_TRUE(loop::turn_until(loop, [&] { return drawn("r1", {0, 0, 0}); }));
   packing = true;
   picture.forwarded(grid("r2", 0, 4, 0));
   changes = 0;
@@ -156,14 +149,14 @@ TEST_F(MapPictureTest, ANewRunBeginsBlankWhateverWaitsOrIsBeingDrawn) {
   packing = false;
   EXPECT_EQ(changes, 1);
   EXPECT_FALSE(drawn("r1", {0, 0, 0}));
-  run_for(std::chrono::milliseconds{100});
+  loop::turn_for(loop, std::chrono::milliseconds{100});
   EXPECT_FALSE(drawn("r2", {0, 0, 0}));
 
   picture.forwarded(grid("r3", 0, 1000, 0));
   loop.turn(std::chrono::milliseconds{5});  // handed to the worker
   picture.begin_run();
   picture.forwarded(grid("r4", 0, 4, 0));
-  ASSERT_TRUE(run_until([&] { return drawn("r4", {0, 0, 0}); }));
+  ASSERT_TRUE(loop::turn_until(loop, [&] { return drawn("r4", {0, 0, 0}); }));
   EXPECT_FALSE(drawn("r3", {0, 0, 0}));
 }
 

@@ -8,6 +8,7 @@
 
 #include "gateway/messages.hpp"
 #include "host/folder.hpp"
+#include "loop/turn_until.hpp"
 
 namespace adit::gateway {
 namespace {
@@ -39,8 +40,7 @@ class MapsTest : public testing::Test {
       said = std::move(taken);
     });
     writer_.submit(std::move(behind), [] {});
-    const auto end = loop_.now() + std::chrono::seconds{20};
-    while (!said && loop_.now() < end) loop_.turn(std::chrono::milliseconds{5});
+    EXPECT_TRUE(loop::turn_until(loop_, [&] { return said.has_value(); }));
     return said.value_or(std::unexpected(icd::Refusal{icd::Status::Ok, "nothing was said"}));
   }
   std::size_t files() const {
@@ -52,9 +52,7 @@ class MapsTest : public testing::Test {
     return count;
   }
   bool comes_to(std::size_t count) {
-    const auto end = loop_.now() + std::chrono::seconds{20};
-    while (files() != count && loop_.now() < end) loop_.turn(std::chrono::milliseconds{5});
-    return files() == count;
+    return loop::turn_until(loop_, [&] { return files() == count; });
   }
   static icd::Status status(const icd::Checked<void>& said) {
     return said ? icd::Status::Ok : said.error().status;
@@ -100,9 +98,7 @@ TEST_F(MapsTest, AreNotAnsweredWhileTheWriterIsAtSomethingElse) {
   EXPECT_FALSE(maps_.all_kept());
   EXPECT_EQ(maps_.queued_bytes(), 0u) << "it does not wait to be sent before it is kept";
   let_go.set_value();
-  const auto end = loop_.now() + std::chrono::seconds{20};
-  while (!said && loop_.now() < end) loop_.turn(std::chrono::milliseconds{5});
-  EXPECT_TRUE(said);
+  EXPECT_TRUE(loop::turn_until(loop_, [&] { return said; }));
   EXPECT_TRUE(maps_.all_kept());
 }
 
@@ -145,8 +141,7 @@ TEST_F(MapsTest, AreBoundedInNumberHoweverSmallTheyAre) {
     });
     loop_.turn(std::chrono::milliseconds{0});
   }
-  const auto end = loop_.now() + std::chrono::seconds{60};
-  while (!maps_.all_kept() && loop_.now() < end) loop_.turn(std::chrono::milliseconds{5});
+  EXPECT_TRUE(loop::turn_until(loop_, [&] { return maps_.all_kept(); }, std::chrono::seconds{60}));
   EXPECT_EQ(taken, static_cast<int>(Maps::kMostMaps));
   EXPECT_EQ(full, 1);
 }
@@ -179,8 +174,7 @@ TEST_F(MapsTest, ThatAreSentAgainByHandAreKeptBeforeWhoSetThemAsideIsTold) {
   EXPECT_FALSE(kept);
   EXPECT_FALSE(maps_.all_kept());
   let_go.set_value();
-  const auto end = loop_.now() + std::chrono::seconds{20};
-  while (!kept && loop_.now() < end) loop_.turn(std::chrono::milliseconds{5});
+  EXPECT_TRUE(loop::turn_until(loop_, [&] { return kept.has_value(); }));
   EXPECT_EQ(kept, true);
   EXPECT_EQ(files_then, 1u);
   EXPECT_GT(maps_.queued_bytes(), 0u);
@@ -193,8 +187,7 @@ TEST_F(MapsTest, ThatCannotBeKeptStayWhereTheyWereSetAside) {
   }
   std::optional<bool> kept;
   maps_.send_again(grid("r1", 10, 500), [&](bool well) { kept = well; });
-  const auto end = loop_.now() + std::chrono::seconds{20};
-  while (!kept && loop_.now() < end) loop_.turn(std::chrono::milliseconds{5});
+  EXPECT_TRUE(loop::turn_until(loop_, [&] { return kept.has_value(); }));
   EXPECT_EQ(kept, false);
   EXPECT_EQ(maps_.queued_bytes(), 0u);
   fs::remove(folder_.path());

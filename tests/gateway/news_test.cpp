@@ -9,6 +9,7 @@
 
 #include "../uplink/peer.hpp"
 #include "host/folder.hpp"
+#include "loop/turn_until.hpp"
 
 namespace adit::gateway {
 namespace {
@@ -76,12 +77,11 @@ class NewsTest : public testing::Test {
   /// After failures it is tried again at once.
   template <class Done>
   bool comes(Life& life, Done done) {
-    const auto end = loop_.now() + std::chrono::seconds{20};
-    while (!done() && loop_.now() < end) {
-      loop_.turn(std::chrono::milliseconds{5});
+    return loop::turn_until(loop_, [&] {
+      if (done()) return true;
       life.news.link_is_back();
-    }
-    return done();
+      return false;
+    });
   }
   journal::Carried left() const { return journal::Folder(folder_.path() + "/journal").read(); }
 

@@ -5,6 +5,7 @@
 
 #include "host/folder.hpp"
 #include "host/log.hpp"
+#include "loop/turn_until.hpp"
 
 namespace {
 /// How much the log had said at each flush of a file.
@@ -20,7 +21,6 @@ extern "C" int fdatasync(int file) {
 namespace adit::gateway {
 namespace {
 
-using namespace std::chrono_literals;
 using dispatch::Flush;
 using dispatch::ReportState;
 
@@ -43,9 +43,8 @@ class ReportDeedsTest : public testing::Test {
   }
   /// Turns the loop until the log has said so much more; whether it has.
   bool says(std::uint64_t more) {
-    const auto end = loop_.now() + 20s;
-    while (host::logged() < said_ + more && loop_.now() < end) loop_.turn(5ms);
-    return host::logged() == said_ + more;
+    return loop::turn_until(loop_, [&] { return host::logged() >= said_ + more; }) &&
+           host::logged() == said_ + more;
   }
 
   host::Folder folder_;

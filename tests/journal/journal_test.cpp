@@ -10,6 +10,8 @@
 #include <iterator>
 #include <memory>
 
+#include "loop/turn_until.hpp"
+
 namespace adit::journal {
 namespace {
 
@@ -53,11 +55,8 @@ class JournalTest : public testing::Test {
   }
   /// Until there is one snapshot and one journal.
   void wait_for_snapshot() {
-    for (int i = 0; i < 6000 && (files("snapshot").size() != 1 || files("journal").size() != 1); ++i) {
-      loop_.turn(std::chrono::milliseconds(10));
-    }
-    ASSERT_EQ(files("snapshot").size(), 1u);
-    ASSERT_EQ(files("journal").size(), 1u);
+    const auto is_done = [this] { return files("snapshot").size() == 1 && files("journal").size() == 1; };
+    ASSERT_TRUE(loop::turn_until(loop_, is_done, std::chrono::seconds{60}));
   }
 
   loop::Loop loop_;

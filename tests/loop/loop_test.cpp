@@ -15,6 +15,7 @@
 #include <vector>
 
 #include "loop/file_descriptor.hpp"
+#include "loop/turn_until.hpp"
 
 namespace adit::loop {
 namespace {
@@ -31,14 +32,6 @@ struct SocketPair {
   }
   void tell() const { EXPECT_EQ(::write(theirs.get(), "x", 1), 1); }
 };
-
-/// Turns the loop until `done`, at most twenty seconds.
-template <class Done>
-bool turn_until(Loop& loop, Done done) {
-  const Instant end = loop.now() + std::chrono::seconds(20);
-  while (!done() && loop.now() < end) loop.turn(milliseconds(10));
-  return done();
-}
 
 TEST(Loop, CallsAWatchWhenBytesCome) {
   Loop loop;

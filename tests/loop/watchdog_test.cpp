@@ -5,6 +5,8 @@
 #include <future>
 #include <thread>
 
+#include "loop/turn_until.hpp"
+
 namespace adit::loop {
 namespace {
 
@@ -14,20 +16,15 @@ constexpr milliseconds kWithin{200}, kLongestJob{800};
 
 class WatchdogTest : public testing::Test {
  protected:
-  void turn(Duration length) {
-    for (const Instant end = loop.now() + length; loop.now() < end;) loop.turn(milliseconds(5));
-  }
   /// How often it is fed while the loop turns for that long.
   int fed_in(Duration length) {
     fed = 0;
-    turn(length);
+    turn_for(loop, length);
     return fed;
   }
   bool turn_until_fed(int times) {
     fed = 0;
-    for (const Instant end = loop.now() + std::chrono::seconds(20); fed < times && loop.now() < end;)
-      loop.turn(milliseconds(5));
-    return fed >= times;
+    return turn_until(loop, [&] { return fed >= times; });
   }
   /// Whether it is fed three times in each `within` and more; on a busy machine, after some time.
   bool is_fed_often() {
@@ -84,10 +81,10 @@ TEST_F(WatchdogTest, IsFedWhileWorkersNeverRest) {
 TEST_F(WatchdogTest, IsFedDuringALongJobButStarvesWhenItDoesNotEnd) {
   Workers workers(loop, 2);
   watchdog.ask_also({&workers});
-  turn(kWithin);
+  turn_for(loop, kWithin);
   const auto let_go = hang(workers);
   EXPECT_TRUE(turn_until_fed(2)) << "a job may take a while";
-  turn(kLongestJob);
+  turn_for(loop, kLongestJob);
   EXPECT_EQ(fed_in(kWithin * 3), 0) << "the other worker answers, this one does not";
   let_go->set_value();
   EXPECT_TRUE(is_fed_often()) << "it was only slow";
@@ -100,7 +97,7 @@ TEST_F(WatchdogTest, StarvesWhereAWriterHangsThoughTheWorkersAnswer) {
   watchdog.ask_also({&workers, &writer});
   EXPECT_TRUE(is_fed_often());
   const auto let_go = hang(writer);
-  turn(kLongestJob);
+  turn_for(loop, kLongestJob);
   EXPECT_EQ(fed_in(kWithin * 3), 0);
   let_go->set_value();
   EXPECT_TRUE(is_fed_often());
@@ -112,7 +109,7 @@ TEST_F(WatchdogTest, AsksThoseThatTookOver) {
   watchdog.ask_also({&before});
   const auto let_go = hang(before);
   EXPECT_TRUE(turn_until_fed(1));
-  turn(kLongestJob);
+  turn_for(loop, kLongestJob);
   EXPECT_EQ(fed_in(kWithin), 0);
   Workers after(loop, 1);
   watchdog.ask_also({&after});

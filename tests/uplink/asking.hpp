@@ -6,6 +6,7 @@
 #include <string>
 #include <utility>
 
+#include "loop/turn_until.hpp"
 #include "peer.hpp"
 #include "uplink/connection.hpp"
 
@@ -24,13 +25,6 @@ class Asking : public testing::Test {
  protected:
   static constexpr std::chrono::seconds kPatience{20};
 
-  template <class Done>
-  bool turn_until(Done done) {
-    const loop::Instant end = loop_.now() + std::chrono::seconds(30);
-    while (!done() && loop_.now() < end) loop_.turn(std::chrono::milliseconds(5));
-    return done();
-  }
-
   /// Sends and waits for the outcome, which never comes from within send() and never tells the token.
   Outcome ask(Connection& connection, Request request) {
     Outcome outcome;
@@ -38,7 +32,7 @@ class Asking : public testing::Test {
     connection.send(std::move(request), [&](Outcome got) { outcome = std::move(got), came = true; });
     EXPECT_FALSE(came) << "done was called from within send()";
     EXPECT_TRUE(connection.busy());
-    if (!turn_until([&] { return came; })) throw std::runtime_error("there is no outcome");
+    if (!loop::turn_until(loop_, [&] { return came; })) throw std::runtime_error("there is no outcome");
     EXPECT_FALSE(connection.busy());
     EXPECT_THAT(why(outcome), testing::Not(testing::HasSubstr(kToken)));
     return outcome;

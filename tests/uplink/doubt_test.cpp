@@ -83,7 +83,7 @@ TEST_P(RequestsInDoubt, AreSentOnceAndSayWhy) {
   EXPECT_THAT(why(outcome), AllOf(HasSubstr("POST /map/update to 127.0.0.1:"),
                                   HasSubstr(std::string(GetParam().sentence))));
   EXPECT_FALSE(connection.connected());
-  EXPECT_TRUE(turn_until([&] { return peer.begun() > 0; }));
+  EXPECT_TRUE(loop::turn_until(loop_, [&] { return peer.begun() > 0; }));
   for (int i = 0; i < 5; ++i) loop_.turn(milliseconds(2));
   EXPECT_EQ(peer.begun(), 1) << "it was sent again";
 }
@@ -171,7 +171,7 @@ TEST_F(Endings, LeaveNothingOfARequestThatNobodyWaitsForAnyMore) {
   const auto silent = [&](Wire& wire) { wire.read_request(), came = true; };
   EXPECT_TRUE(was_reset(silent, [&](Connection& connection) {
     connection.send(post("a report"), [](const Outcome&) { ADD_FAILURE() << "done was called"; });
-    EXPECT_TRUE(turn_until([&] { return came.load(); }));
+    EXPECT_TRUE(loop::turn_until(loop_, [&] { return came.load(); }));
   }));
 }
 

@@ -180,7 +180,7 @@ TEST_F(UnsentRequests, AreThoseWhosePeerClosesTheNewConnectionAtOnce) {
   });
   while (peer.ended() == 0)
     std::this_thread::sleep_for(milliseconds(1));  // before the loop sees it connected
-  EXPECT_TRUE(turn_until([&] { return !connection.busy(); }));
+  EXPECT_TRUE(loop::turn_until(loop_, [&] { return !connection.busy(); }));
   EXPECT_THAT(sentence, AllOf(HasSubstr("closed the new connection"), HasSubstr("(0 of ")));
 }
 

@@ -125,7 +125,7 @@ TEST_F(ConnectionRequests, CanBeSentFromWithinDone) {
     if (++answers < 5) connection.send(get(), next);
   };
   connection.send(get(), next);
-  EXPECT_TRUE(turn_until([&] { return answers == 5; }));
+  EXPECT_TRUE(loop::turn_until(loop_, [&] { return answers == 5; }));
 }
 
 TEST_F(ConnectionRequests, MayDestroyTheirConnectionInDone) {
@@ -137,7 +137,7 @@ TEST_F(ConnectionRequests, MayDestroyTheirConnectionInDone) {
       connection.reset();
       calls += kept.size() == 100 ? 1 : 100;  // the callback itself still lives
     });
-    EXPECT_TRUE(turn_until([&] { return calls > 0; }));
+    EXPECT_TRUE(loop::turn_until(loop_, [&] { return calls > 0; }));
     for (int i = 0; i < 3; ++i) loop_.turn(std::chrono::milliseconds(1));
     EXPECT_EQ(calls, 1);
   };
@@ -175,7 +175,7 @@ TEST_F(ConnectionRequests, GoByIpv6Too) {
     const ListeningPeer peer(std::vector{listener.script()}, "::1");
     const auto port = std::to_string(peer.endpoint().port);
     EXPECT_EQ(answered(ask(peer.endpoint(), get())).status, 200);
-    while (peer.ended() == 0) loop_.turn(std::chrono::milliseconds(1));
+    EXPECT_TRUE(loop::turn_until(loop_, [&] { return peer.ended() > 0; }));
     EXPECT_THAT(listener.request, HasSubstr("\r\nHost: [::1]:" + port + "\r\n"));
   } catch (const std::runtime_error& error) {
     GTEST_SKIP() << "no IPv6 here: " << error.what();

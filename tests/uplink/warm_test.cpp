@@ -17,7 +17,7 @@ class WarmConnection : public Asking {
     Peer peer({always(answer("200 OK", "null"))});
     Connection connection(loop_, peer.endpoint(), token());
     connection.keep_warm();
-    EXPECT_TRUE(turn_until([&] { return !connection.trouble().empty(); }));
+    EXPECT_TRUE(loop::turn_until(loop_, [&] { return !connection.trouble().empty(); }));
     peer.listen();
     const loop::Instant before = loop_.now();
     then(connection);
@@ -37,7 +37,7 @@ TEST_F(WarmConnection, ConnectsAheadOfNeed) {
   Connection connection(loop_, peer.endpoint(), token());
   EXPECT_FALSE(connection.connected());
   connection.keep_warm();
-  EXPECT_TRUE(turn_until([&] { return connection.connected(); }));
+  EXPECT_TRUE(loop::turn_until(loop_, [&] { return connection.connected(); }));
   EXPECT_EQ(answered(ask(connection, get())).status, 200);
   EXPECT_EQ(peer.begun(), 1);
 }
@@ -54,18 +54,18 @@ TEST_F(WarmConnection, SaysItsTroubleAndConnectsOnceItCan) {
   Peer peer({always(answer("200 OK", "null"))});
   Connection connection(loop_, peer.endpoint(), token());
   connection.keep_warm();
-  EXPECT_TRUE(turn_until([&] { return !connection.trouble().empty(); }));
+  EXPECT_TRUE(loop::turn_until(loop_, [&] { return !connection.trouble().empty(); }));
   EXPECT_THAT(connection.trouble(), HasSubstr("Connection refused"));
   EXPECT_FALSE(connection.busy());
   peer.listen();
-  EXPECT_TRUE(turn_until([&] { return connection.connected(); }));
+  EXPECT_TRUE(loop::turn_until(loop_, [&] { return connection.connected(); }));
   EXPECT_EQ(connection.trouble(), "");
 }
 
 TEST_F(WarmConnection, WaitsForNoPauseWhereTheWayMayBeBack) {
   EXPECT_TRUE(is_quick([&](Connection& connection) {
     connection.hurry();
-    EXPECT_TRUE(turn_until([&] { return connection.connected(); }));
+    EXPECT_TRUE(loop::turn_until(loop_, [&] { return connection.connected(); }));
     connection.hurry();
     EXPECT_TRUE(connection.connected()) << "what is there stays";
   }));
@@ -76,7 +76,8 @@ TEST_F(WarmConnection, DoesNotHammerAPeerThatClosesAtOnce) {
   Connection connection(loop_, peer.endpoint(), token());
   const loop::Instant began = loop_.now();
   connection.keep_warm();
-  EXPECT_TRUE(turn_until([&] { return peer.begun() > 0 && loop_.now() - began > milliseconds(300); }));
+  EXPECT_TRUE(
+      loop::turn_until(loop_, [&] { return peer.begun() > 0 && loop_.now() - began > milliseconds(300); }));
   EXPECT_LE(peer.begun(), 1 + (loop_.now() - began) / std::chrono::seconds(1));
 }
 
@@ -86,7 +87,7 @@ TEST_F(WarmConnection, ConnectsAgainAfterAnAnswerThatEndsIt) {
   connection.keep_warm();
   EXPECT_EQ(answered(ask(connection, get())).status, 422);
   EXPECT_FALSE(connection.connected());
-  EXPECT_TRUE(turn_until([&] { return connection.connected(); }));
+  EXPECT_TRUE(loop::turn_until(loop_, [&] { return connection.connected(); }));
 }
 
 TEST_F(WarmConnection, DoesNotMakeARequestWaitForItsPause) {

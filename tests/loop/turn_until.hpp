@@ -1,0 +1,32 @@
+#pragma once
+
+#include <chrono>
+#include <memory>
+
+#include "loop/workers.hpp"
+
+namespace adit::loop {
+
+/// More than anything takes that a test waits for, on a busy machine too.
+inline constexpr std::chrono::seconds kTestPatience{30};
+
+/// Turns the loop until `done`, or until `patience` is at its end. Whether it is done.
+template <class Done>
+[[nodiscard]] bool turn_until(Loop& loop, const Done& done, Duration patience = kTestPatience) {
+  const Instant end = loop.now() + patience;
+  while (!done() && loop.now() < end) loop.turn(std::chrono::milliseconds{5});
+  return done();
+}
+
+/// The same, until the only thread of `workers` has done all that it was given, and its word has come.
+[[nodiscard]] inline bool turn_until_idle(Loop& loop, Workers& workers) {
+  const auto idle = std::make_shared<bool>(false);
+  workers.submit([] {}, [idle] { *idle = true; });
+  return turn_until(loop, [&idle] { return *idle; });
+}
+
+inline void turn_for(Loop& loop, Duration length) {
+  for (const Instant end = loop.now() + length; loop.now() < end;) loop.turn(end - loop.now());
+}
+
+}  // namespace adit::loop

@@ -102,23 +102,36 @@ class World final : public Deeds {
   }
   void tell_story(const std::string& sentence);
 
-  // The box.
+  // The box and its clients.
   void start();
-  void switch_course();
   CommandPost& post() { return posts_there_[std::min(place_, posts_there_.size() - 1)]; }
   bool is_anybody_there() const { return place_ < posts_there_.size(); }
+  void post(std::size_t client);
+  void heard(std::size_t client, bool done, bool acknowledged);
+
+  // Trouble, and the operator (trouble.cpp).
+  void switch_course();
   void cut_power();
+  void take_operators_word();
+  void declare_run();
+  void make_trouble();
+
+  // The wire (wire.cpp).
+  /// A request that the Command Post has read, and will record; shared with its event.
+  struct Pending {
+    icd::ArtifactReport report;
+    CommandPost* post = nullptr;
+    Seconds at = 0;
+    std::function<void(HttpAnswer)> then;
+    bool done = false;
+  };
   void pump();
   void transmit(const Report& report);
   void ask();
-  void take_operators_word();
-  void declare_run();
-
-  // What is outside.
-  void post(std::size_t client);
-  void heard(std::size_t client, bool done, bool acknowledged);
-  void make_trouble();
   void record_later(Seconds delay, const icd::ArtifactReport& report, std::function<void(HttpAnswer)> then);
+  void record_at(const std::shared_ptr<Pending>& pending);
+  /// What has been read is recorded soon.
+  void drop_connections();
 
   const Trouble trouble_;
   std::mt19937_64 random_;
@@ -135,16 +148,7 @@ class World final : public Deeds {
   bool busy_ = false;
   Seconds report_ready_ = 0, status_ready_ = 0, poll_at_ = 0;
 
-  /// A request that the Command Post has read, and will record; shared with its event.
-  struct Pending {
-    icd::ArtifactReport report;
-    CommandPost* post = nullptr;
-    Seconds at = 0;
-    std::function<void(HttpAnswer)> then;
-    bool done = false;
-  };
   std::vector<std::shared_ptr<Pending>> pending_;
-  void record_at(const std::shared_ptr<Pending>& pending);
 
   std::vector<Client> clients_;
   std::map<ClientId, std::size_t> posts_;

@@ -65,38 +65,28 @@ class Decoding {
 
 }  // namespace
 
-/// The loop's part: outlives the exchange for as long as a worker is at it.
-class MapUpload::State : public std::enable_shared_from_this<State> {
+class MapUpload::State final : public Taking, public std::enable_shared_from_this<State> {
  public:
   State(Visit visit, MapUploadOptions options, std::shared_ptr<Flow> flow, loop::Workers& workers,
         std::shared_ptr<UploadBudget> budget)
-      : visit_(std::move(visit)),
+      : Taking(std::move(visit), std::move(budget)),
         options_(options),
         flow_(std::move(flow)),
         workers_(workers),
-        share_(std::move(budget)),
         arrival_(visit_.desk.map_arrives()),
-        decoding_(std::make_shared<Decoding>(options.kind, options.rules)) {
-    visit_.sender.bytes = 0;
-  }
+        decoding_(std::make_shared<Decoding>(options.kind, options.rules)) {}
 
-  bool take(std::span<const std::uint8_t> piece);
-  void whole() {
+  bool take(std::span<const std::uint8_t> piece) override;
+  void whole() override {
     whole_ = true;
     give_to_worker();
   }
-  void abandon() {
-    over_ = true;
+
+ private:
+  void let_go() override {
     pending_.clear();
     arrival_.reset();
   }
-  void turn_away(const icd::Refusal& refusal) {
-    if (over_) return;
-    abandon();
-    visit_.refuse(refusal);
-  }
-
- private:
   void give_to_worker();
   void worked();
   void take_result(icd::Checked<icd::MapUpdate> result);
@@ -105,19 +95,12 @@ class MapUpload::State : public std::enable_shared_from_this<State> {
   void go_on();
   void failed() {
     at_work_ = false;
-    if (!over_)
-      refuse(icd::Status::ServiceUnavailable, "the gateway could not hold this map; send it again later");
-  }
-  void refuse(icd::Status status, std::string sentence) {
-    abandon();
-    visit_.refuse({status, std::move(sentence)});
+    turn_away({icd::Status::ServiceUnavailable, "the gateway could not hold this map; send it again later"});
   }
 
-  Visit visit_;
   MapUploadOptions options_;
   std::shared_ptr<Flow> flow_;
   loop::Workers& workers_;
-  UploadShare share_;
   std::shared_ptr<MapArrival> arrival_;  // null once over
   std::shared_ptr<Decoding> decoding_;
   Pieces pending_;
@@ -128,19 +111,19 @@ class MapUpload::State : public std::enable_shared_from_this<State> {
   icd::ChunkedBytes left_;  // there was no room for it
   bool held_back_ = false;
   bool whole_ = false;
-  bool over_ = false;  // answered, the client is gone, or it is the desk's
 };
 
 bool MapUpload::State::take(std::span<const std::uint8_t> piece) {
   if (over_) return true;
   visit_.sender.bytes += piece.size();
   if (visit_.sender.bytes > options_.most_bytes) {
-    refuse(icd::Status::ContentTooLarge,
-           icd::sentence("body: expected at most ", options_.most_bytes, " bytes"));
+    turn_away({icd::Status::ContentTooLarge,
+               icd::sentence("body: expected at most ", options_.most_bytes, " bytes")});
     return true;
   }
   if (!share_.take(piece.size())) {
-    refuse(icd::Status::TooManyRequests, "too many maps are being sent at once; send this one again later");
+    turn_away(
+        {icd::Status::TooManyRequests, "too many maps are being sent at once; send this one again later"});
     return true;
   }
   pending_.emplace_back(piece.begin(), piece.end());
@@ -210,28 +193,8 @@ void MapUpload::State::stored(icd::ChunkedBytes left) {
 MapUpload::MapUpload(Visit visit, MapUploadOptions options, std::shared_ptr<Flow> flow,
                      loop::Workers& workers, std::shared_ptr<UploadBudget> budget,
                      std::shared_ptr<UnderWay> under_way)
-    : Upload(std::move(under_way)),
-      state_(
-          std::make_shared<State>(std::move(visit), options, std::move(flow), workers, std::move(budget))) {}
-
-MapUpload::~MapUpload() {
-  state_->abandon();
-}
-
-bool MapUpload::on_body(std::span<const std::uint8_t> piece) {
-  return state_->take(piece);
-}
-
-void MapUpload::on_end() {
-  state_->whole();
-}
-
-void MapUpload::on_gone() {
-  state_->abandon();
-}
-
-void MapUpload::turn_away(const icd::Refusal& refusal) {
-  state_->turn_away(refusal);
-}
+    : WorkerUpload(
+          std::make_shared<State>(std::move(visit), options, std::move(flow), workers, std::move(budget)),
+          std::move(under_way)) {}
 
 }  // namespace adit::intake

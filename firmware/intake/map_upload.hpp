@@ -5,9 +5,7 @@
 
 #include "codec/body_decoder.hpp"
 #include "icd/rules.hpp"
-#include "intake/upload.hpp"
-#include "intake/upload_budget.hpp"
-#include "intake/visit.hpp"
+#include "intake/worker_upload.hpp"
 #include "loop/workers.hpp"
 
 namespace adit::intake {
@@ -28,24 +26,15 @@ struct MapUploadOptions {
 ///
 /// Once whole and checked it is the desk's, which answers when it is kept, also where the client has hung up
 /// meanwhile; until then a client that hangs up takes its map back.
-class MapUpload final : public Upload {
+class MapUpload final : public WorkerUpload {
  public:
   static constexpr std::size_t kPending = 256 * 1024, kStored = 256 * 1024;
 
   MapUpload(Visit visit, MapUploadOptions options, std::shared_ptr<Flow> flow, loop::Workers& workers,
             std::shared_ptr<UploadBudget> budget, std::shared_ptr<UnderWay> under_way);
-  ~MapUpload() override;
-  MapUpload(const MapUpload&) = delete;
-  MapUpload& operator=(const MapUpload&) = delete;
-
-  bool on_body(std::span<const std::uint8_t> piece) override;
-  void on_end() override;
-  void on_gone() override;
-  void turn_away(const icd::Refusal& refusal) override;
 
  private:
   class State;
-  std::shared_ptr<State> state_;
 };
 
 }  // namespace adit::intake

@@ -33,33 +33,25 @@ Parts read_large(codec::BodyKind kind, const icd::Rules& rules, Body& body) {
 
 }  // namespace
 
-/// Outlives the exchange for as long as a worker is at it.
-class MarkersUpload::State : public std::enable_shared_from_this<State> {
+class MarkersUpload::State final : public Taking, public std::enable_shared_from_this<State> {
  public:
   State(Visit visit, codec::BodyKind kind, const icd::Rules& rules, loop::Workers& workers,
         std::shared_ptr<UploadBudget> budget)
-      : visit_(std::move(visit)),
+      : Taking(std::move(visit), std::move(budget)),
         kind_(kind),
         rules_(rules),
         workers_(workers),
-        share_(std::move(budget)),
-        small_(std::in_place, kind, codec::Split::Nothing, codec::Limits{}) {
-    visit_.sender.bytes = 0;
-  }
+        small_(std::in_place, kind, codec::Split::Nothing, codec::Limits{}) {}
 
-  void take(std::span<const std::uint8_t> piece);
-  void whole();
-  void abandon() {
-    over_ = true;
-    body_.clear();
+  bool take(std::span<const std::uint8_t> piece) override {
+    if (!over_) keep(piece);
+    return true;
   }
-  void turn_away(const icd::Refusal& refusal) {
-    if (over_) return;
-    abandon();
-    visit_.refuse(refusal);
-  }
+  void whole() override;
 
  private:
+  void let_go() override { body_.clear(); }
+  void keep(std::span<const std::uint8_t> piece);
   void feed(std::span<const std::uint8_t> piece);
   /// False: it has been refused.
   bool charge(std::size_t bytes);
@@ -74,14 +66,11 @@ class MarkersUpload::State : public std::enable_shared_from_this<State> {
         {icd::Status::ServiceUnavailable, "the gateway could not hold these markers; send them again later"});
   }
 
-  Visit visit_;
   codec::BodyKind kind_;
   icd::Rules rules_;
   loop::Workers& workers_;
-  UploadShare share_;
   Body body_;                                // as it came
   std::optional<codec::BodyDecoder> small_;  // nothing: it is large
-  bool over_ = false;                        // answered, the client is gone, or it is the desk's
 };
 
 bool MarkersUpload::State::charge(std::size_t bytes) {
@@ -90,8 +79,7 @@ bool MarkersUpload::State::charge(std::size_t bytes) {
   return false;
 }
 
-void MarkersUpload::State::take(std::span<const std::uint8_t> piece) {
-  if (over_) return;
+void MarkersUpload::State::keep(std::span<const std::uint8_t> piece) {
   visit_.sender.bytes += piece.size();
   if (visit_.sender.bytes > kMost) {
     return turn_away(
@@ -130,28 +118,7 @@ void MarkersUpload::State::give_to_worker() {
 MarkersUpload::MarkersUpload(Visit visit, codec::BodyKind kind, const icd::Rules& rules,
                              loop::Workers& workers, std::shared_ptr<UploadBudget> budget,
                              std::shared_ptr<UnderWay> under_way)
-    : Upload(std::move(under_way)),
-      state_(std::make_shared<State>(std::move(visit), kind, rules, workers, std::move(budget))) {}
-
-MarkersUpload::~MarkersUpload() {
-  state_->abandon();
-}
-
-bool MarkersUpload::on_body(std::span<const std::uint8_t> piece) {
-  state_->take(piece);
-  return true;
-}
-
-void MarkersUpload::on_end() {
-  state_->whole();
-}
-
-void MarkersUpload::on_gone() {
-  state_->abandon();
-}
-
-void MarkersUpload::turn_away(const icd::Refusal& refusal) {
-  state_->turn_away(refusal);
-}
+    : WorkerUpload(std::make_shared<State>(std::move(visit), kind, rules, workers, std::move(budget)),
+                   std::move(under_way)) {}
 
 }  // namespace adit::intake

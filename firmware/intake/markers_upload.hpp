@@ -4,9 +4,7 @@
 
 #include "codec/body_decoder.hpp"
 #include "icd/rules.hpp"
-#include "intake/upload.hpp"
-#include "intake/upload_budget.hpp"
-#include "intake/visit.hpp"
+#include "intake/worker_upload.hpp"
 #include "loop/workers.hpp"
 
 namespace adit::intake {
@@ -19,7 +17,7 @@ namespace adit::intake {
 ///
 /// Once whole and checked it is the desk's, also where the client has hung up meanwhile; until then a client
 /// that hangs up takes it back.
-class MarkersUpload final : public Upload {
+class MarkersUpload final : public WorkerUpload {
  public:
   /// Room for every marker there can be: one of 100,000 points and as many colors takes 7.9 MB of CBOR.
   static constexpr std::size_t kMost = 8u << 20;
@@ -28,18 +26,9 @@ class MarkersUpload final : public Upload {
 
   MarkersUpload(Visit visit, codec::BodyKind kind, const icd::Rules& rules, loop::Workers& workers,
                 std::shared_ptr<UploadBudget> budget, std::shared_ptr<UnderWay> under_way);
-  ~MarkersUpload() override;
-  MarkersUpload(const MarkersUpload&) = delete;
-  MarkersUpload& operator=(const MarkersUpload&) = delete;
-
-  bool on_body(std::span<const std::uint8_t> piece) override;
-  void on_end() override;
-  void on_gone() override;
-  void turn_away(const icd::Refusal& refusal) override;
 
  private:
   class State;
-  std::shared_ptr<State> state_;
 };
 
 }  // namespace adit::intake

@@ -107,14 +107,7 @@ std::string Aside::path(std::uint64_t number, const char* ending) const {
 
 void Aside::restore() {
   remove_parts(folder_);
-  std::vector<std::uint64_t> numbers;
-  std::error_code error;
-  for (const auto& file : fs::directory_iterator(folder_, error)) {
-    const auto number = host::number_in_name(file.path().filename().string(), "", kReason);
-    if (number) numbers.push_back(*number);
-  }
-  std::ranges::sort(numbers);
-  for (const std::uint64_t number : numbers) {
+  for (const std::uint64_t number : host::numbers_in(folder_, "", kReason)) {
     if (restore_one(number)) continue;
     host::log(host::Level::Warning, "what was set aside could not be read and is gone",
               {{"file", path(number, kMessage)}});

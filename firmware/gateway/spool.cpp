@@ -109,15 +109,8 @@ void Spool::forget_markers() const {
 
 Spool::Kept Spool::read() const {
   remove_parts(folder_);
-  std::vector<std::uint64_t> numbers;
-  std::error_code error;
-  for (const auto& file : fs::directory_iterator(folder_, error)) {
-    const auto number = host::number_in_name(file.path().filename().string(), kMap, kEnding);
-    if (number) numbers.push_back(*number);
-  }
-  std::ranges::sort(numbers);
   Kept kept;
-  for (const std::uint64_t number : numbers) {
+  for (const std::uint64_t number : host::numbers_in(folder_, kMap, kEnding)) {
     auto map = message_in(file_of(number), read_map);
     if (!map) continue;
     MapFile::show(*map, file_of(number));

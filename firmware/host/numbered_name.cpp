@@ -1,9 +1,11 @@
 #include "host/numbered_name.hpp"
 
+#include <algorithm>
 #include <array>
 #include <charconv>
 #include <cinttypes>
 #include <cstdio>
+#include <filesystem>
 
 namespace adit::host {
 
@@ -23,6 +25,18 @@ std::optional<std::uint64_t> number_in_name(std::string_view name, std::string_v
   const auto [end, error] = std::from_chars(name.data(), name.data() + name.size(), number);
   if (error != std::errc() || end != name.data() + name.size()) return std::nullopt;
   return number;
+}
+
+std::vector<std::uint64_t> numbers_in(const std::string& folder, std::string_view prefix,
+                                      std::string_view ending) {
+  std::vector<std::uint64_t> numbers;
+  std::error_code error;
+  for (const auto& file : std::filesystem::directory_iterator(folder, error)) {
+    const auto number = number_in_name(file.path().filename().string(), prefix, ending);
+    if (number) numbers.push_back(*number);
+  }
+  std::ranges::sort(numbers);
+  return numbers;
 }
 
 }  // namespace adit::host

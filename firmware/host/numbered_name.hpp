@@ -4,6 +4,7 @@
 #include <optional>
 #include <string>
 #include <string_view>
+#include <vector>
 
 namespace adit::host {
 
@@ -13,5 +14,9 @@ std::string numbered_name(std::string_view prefix, std::uint64_t number, std::st
 /// The number in such a name, however many digits it has; nothing for another file's name.
 std::optional<std::uint64_t> number_in_name(std::string_view name, std::string_view prefix,
                                             std::string_view ending = "");
+
+/// The numbers of the files of such names in a folder, in order; none where it cannot be read.
+std::vector<std::uint64_t> numbers_in(const std::string& folder, std::string_view prefix,
+                                      std::string_view ending = "");
 
 }  // namespace adit::host

@@ -4,6 +4,8 @@
 
 #include <limits>
 
+#include "host/folder.hpp"
+
 namespace adit::host {
 namespace {
 
@@ -51,6 +53,15 @@ TEST(NumberedName, IsNotOneWhoseNumberIsTooLarge) {
   EXPECT_EQ(number_in("map-18446744073709551615.cbor"), kLargest);
   EXPECT_EQ(number_in("map-18446744073709551616.cbor"), std::nullopt);
   EXPECT_EQ(number_in("map-99999999999999999999999.cbor"), std::nullopt);
+}
+
+TEST(NumberedName, IsFoundInAFolderInTheOrderOfNumbers) {
+  const Folder folder;
+  for (const char* name : {"map-10.cbor", "map-00000009.cbor", "map-100000000.cbor", "map-x.cbor", "map-1"}) {
+    folder.put(name, "");
+  }
+  EXPECT_EQ(numbers_in(folder.path(), "map-", ".cbor"), (std::vector<std::uint64_t>{9, 10, 100'000'000}));
+  EXPECT_EQ(numbers_in(folder / "none", "map-", ".cbor"), std::vector<std::uint64_t>());
 }
 
 }  // namespace

@@ -2,15 +2,14 @@
 
 #include <unistd.h>
 
-#include <cstdlib>
 #include <cstring>
 #include <filesystem>
 #include <memory>
-#include <span>
 #include <utility>
 
 #include "access/password.hpp"
 #include "host/log.hpp"
+#include "host/random.hpp"
 #include "host/service.hpp"
 
 namespace adit::gateway {
@@ -18,13 +17,6 @@ namespace {
 
 using access::Role;
 using host::Level;
-
-/// The kernel's, which cannot fail once the machine has begun (getentropy(3)).
-void fill_random(std::span<std::uint8_t> bytes) {
-  if (getentropy(bytes.data(), bytes.size()) == 0) return;
-  host::log(Level::Error, "the kernel gives no random bytes");
-  std::abort();
-}
 
 access::Accounts read(const std::string& file) {
   std::error_code unknown;
@@ -88,7 +80,7 @@ icd::BearerToken Accounts::kept_code() {
   if (const auto kept = host::read_file(code_file())) code = kept->substr(0, kept->find('\n'));
   if (!access::is_code(code)) {
     std::uint64_t random = 0;
-    fill_random({reinterpret_cast<std::uint8_t*>(&random), sizeof random});
+    host::fill_random({reinterpret_cast<std::uint8_t*>(&random), sizeof random});
     code = access::code_from(random);
     if (const auto written = host::write_file(code_file(), code + "\n", host::kOursAlone); !written) {
       host::log(Level::Warning, "the code of the first start is good until the next start only",
@@ -126,7 +118,7 @@ void Accounts::set(Role role, std::optional<std::string> password,
     return done(refuse(icd::Status::Conflict, "another password is being set: try again"));
   }
   access::Salt salt{};
-  fill_random(salt);
+  host::fill_random(salt);
   auto changed = std::make_shared<icd::Checked<access::Accounts>>(
       refuse(icd::Status::ServiceUnavailable, "the password could not be set: try again"));
   const auto change = [changed, role, password = std::move(password), salt, accounts = accounts_] {
@@ -167,7 +159,7 @@ void Accounts::open_set_up() {
 
 access::Secret Accounts::draw() {
   access::Secret secret;
-  fill_random(secret);
+  host::fill_random(secret);
   return secret;
 }
 

@@ -3,9 +3,8 @@
 #include <unistd.h>
 
 #include <cstdint>
-#include <cstdlib>
 
-#include "host/log.hpp"
+#include "host/random.hpp"
 #include "host/service.hpp"
 
 namespace adit::gateway {
@@ -47,10 +46,7 @@ void NetworkRequests::forget_wanted() const {
 std::string NetworkRequests::draw_nonce() {
   static constexpr char kDigits[] = "0123456789abcdef";
   std::uint8_t bytes[16];
-  if (getentropy(bytes, sizeof bytes) != 0) {  // cannot be, once the machine has begun (getentropy(3))
-    host::log(host::Level::Error, "the kernel gives no random bytes");
-    std::abort();
-  }
+  host::fill_random(bytes);
   std::string nonce;
   for (const std::uint8_t byte : bytes) {
     nonce += kDigits[byte >> 4];

@@ -27,6 +27,7 @@ class Connection::Impl : public std::enable_shared_from_this<Impl> {
   Impl(loop::Loop& loop, Endpoint endpoint, icd::BearerToken token)
       : loop_(loop), endpoint_(std::move(endpoint)), token_(std::move(token)) {
     timer_ = loop_.timer([this] { guard(&Impl::time_came); });
+    tell_ = loop_.timer([this] { guard(&Impl::tell); });
   }
 
   void keep_warm() {
@@ -46,7 +47,9 @@ class Connection::Impl : public std::enable_shared_from_this<Impl> {
   }
 
   void send(Request request, std::function<void(Outcome)> done) {
+    InDoubt undealt{.why = "what the peer sent could not be dealt with"};
     auto exchange = std::make_unique<Exchange>(endpoint_, token_, std::move(request));
+    undealt_ = std::move(undealt);
     exchange_ = std::move(exchange);
     done_ = std::move(done);
     sent_ = 0;
@@ -62,6 +65,7 @@ class Connection::Impl : public std::enable_shared_from_this<Impl> {
     done_ = nullptr;
     exchange_.reset();
     timer_ = {};
+    tell_ = {};
     close();
   }
 
@@ -74,11 +78,13 @@ class Connection::Impl : public std::enable_shared_from_this<Impl> {
  private:
   enum class Phase : std::uint8_t { Closed, Connecting, Open };
 
-  /// Calls one of its own parts. What throws there ends the request under way, of which bytes may have left.
+  /// Calls one of its own parts. What throws there ends the request under way, of which bytes may have left,
+  /// and the connection. That takes no memory, for there may be none.
   void guard(void (Impl::*part)()) {
     const auto alive = shared_from_this();
     if (loop::guarded("a connection to the Command Post", [&] { (this->*part)(); })) return;
-    if (exchange_) in_doubt({.why = "what the peer sent could not be dealt with"});
+    if (!exchange_) return drop();
+    loop::guarded("the loss of an answer", [&] { in_doubt(std::move(undealt_)); });
   }
 
   void begin_sending() {
@@ -115,8 +121,8 @@ class Connection::Impl : public std::enable_shared_from_this<Impl> {
     gives_up_after_ = {};
     phase_ = Phase::Connecting;
     watched_ = EPOLLOUT;
-    source_ = loop_.watch(fd_.get(), watched_, [this](std::uint32_t) { guard(&Impl::ready); });
     timer_.call_at(began_ + endpoint_.connect_within);
+    source_ = loop_.watch(fd_.get(), watched_, [this](std::uint32_t) { guard(&Impl::ready); });
   }
 
   /// Now, or when the pause since the last time is over.
@@ -238,13 +244,13 @@ class Connection::Impl : public std::enable_shared_from_this<Impl> {
   void deliver(Outcome outcome) {
     sent_ = exchange_->sent();
     exchange_.reset();
-    if (within_send_) {
-      loop_.post([weak = weak_from_this(), outcome = std::move(outcome)]() mutable {
-        if (const auto alive = weak.lock()) alive->call_done(std::move(outcome));
-      });
-      return;
-    }
-    call_done(std::move(outcome));
+    if (!within_send_) return call_done(std::move(outcome));
+    outcome_ = std::move(outcome);
+    tell_.call_at(loop_.now());
+  }
+
+  void tell() {
+    if (auto outcome = std::exchange(outcome_, std::nullopt)) call_done(std::move(*outcome));
   }
 
   void call_done(Outcome outcome) {
@@ -286,6 +292,9 @@ class Connection::Impl : public std::enable_shared_from_this<Impl> {
   std::unique_ptr<Exchange> exchange_;
   std::function<void(Outcome)> done_;
   bool within_send_ = false;
+  InDoubt undealt_;                 // for guard()
+  std::optional<Outcome> outcome_;  // known within send(), to be told after it
+  loop::Source tell_;
   std::size_t sent_ = 0;
   std::size_t total_ = 0;
 };

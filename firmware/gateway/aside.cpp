@@ -153,7 +153,6 @@ void Aside::add(lanes::Message message, int status, const std::string& why, std:
 
 void Aside::keep(const lanes::AsideItem& item, Origin origin) {
   const auto well = std::make_shared<bool>(false);
-  ++being_kept_;
   writer_.submit(
       [well, message = item.message, reason = reason_of(item), message_file = path(item.number, kMessage),
        reason_file = path(item.number, kReason)] {
@@ -165,6 +164,7 @@ void Aside::keep(const lanes::AsideItem& item, Origin origin) {
         host::log(host::Level::Warning, "what is set aside is in memory alone", {{"why", written.error()}});
       },
       [this, well, number = item.number, origin = std::move(origin)] { kept(number, *well, origin); });
+  ++being_kept_;  // only now: where it could not be submitted, nothing is
 }
 
 void Aside::kept(std::uint64_t number, bool well, const Origin& origin) {

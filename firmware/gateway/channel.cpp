@@ -3,6 +3,7 @@
 #include "dispatch/mapping_verdict.hpp"
 #include "dispatch/said.hpp"
 #include "icd/sentence.hpp"
+#include "loop/guard.hpp"
 
 namespace adit::gateway {
 
@@ -43,7 +44,7 @@ void Channel::send(icd::Uri uri, std::string_view content_type, icd::ChunkedByte
                      .answer_within = answer_within_,
                      .longest_answer = longest_answer_to(uri)},
                     [this, done = std::move(done)](uplink::Outcome outcome) {
-                      note(outcome);
+                      loop::guarded("noting an answer", [&] { note(outcome); });
                       done(std::move(outcome));
                     });
 }

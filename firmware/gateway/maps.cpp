@@ -139,24 +139,36 @@ std::vector<std::uint64_t> Maps::add(std::uint64_t number, icd::MapUpdate update
   return replaced;
 }
 
+/// What cannot be told to the writer just now is told with the next.
 void Maps::forget(std::vector<std::uint64_t> numbers) {
-  if (numbers.empty()) return;
-  writer_.submit(
-      [&spool = spool_, numbers = std::move(numbers)] {
-        for (const std::uint64_t number : numbers) spool.forget(number);
-      },
-      [] {});
+  if (to_forget_.empty()) {
+    to_forget_ = std::move(numbers);
+  } else {
+    to_forget_.insert(to_forget_.end(), numbers.begin(), numbers.end());
+  }
+  if (to_forget_.empty()) return;
+  const bool told = loop::guarded("forgetting maps", [this] {
+    writer_.submit(
+        [&spool = spool_, gone = to_forget_] {
+          for (const std::uint64_t number : gone) spool.forget(number);
+        },
+        [] {});
+  });
+  if (told) to_forget_.clear();
 }
 
-/// The map under way needs no more care.
-void Maps::done() {
-  forget(prepared_->waiting.updates);
-  prepared_.reset();
-}
-
+/// What fails is tried again by itself: nobody else may come for a while.
 void Maps::pump() {
   if (stopping_ || preparing_ || channel_.busy() || !channel_.has_token()) return;
+  if (loop::guarded("sending a map", [this] { go_on(); })) return;
+  pace_.failed(loop_.now());
+  wake_.call_at(pace_.ready());
+}
+
+void Maps::go_on() {
+  forget({});
   const loop::Instant now = loop_.now();
+  if (prepared_ && prepared_->body.empty()) return pack();
   if (prepared_) {
     if (now >= pace_.ready()) return send();
     wake_.call_at(pace_.ready());
@@ -169,12 +181,19 @@ void Maps::pump() {
 }
 
 void Maps::prepare() {
+  auto prepared = std::make_shared<Prepared>();
   auto waiting = lane_.take(loop_.now());
   if (!waiting) return;
-  waiting->map.header().stamp = stamps_.next(waiting->map.header().stamp.value_or(loop_.stamp_now()));
-  journal_.stamped(icd::Uri::MapUpdate, *waiting->map.header().stamp);
-  prepared_ = std::make_shared<Prepared>(Prepared{std::move(*waiting), {}});
-  preparing_ = true;
+  prepared->waiting = std::move(*waiting);
+  prepared_ = std::move(prepared);
+  pack();
+}
+
+/// Where it throws, prepared_ waits to be packed.
+void Maps::pack() {
+  icd::Header& header = prepared_->waiting.map.header();
+  header.stamp = stamps_.next(header.stamp.value_or(loop_.stamp_now()));
+  journal_.stamped(icd::Uri::MapUpdate, *header.stamp);
   const loop::Instant began = loop_.now();
   workers_.submit(
       [prepared = prepared_] { prepared->body = codec::write_map_update(pack::pack(prepared->waiting.map)); },
@@ -186,10 +205,15 @@ void Maps::prepare() {
       [this] {
         preparing_ = false;
         pace_.failed(loop_.now());
-        record_.not_taken(traffic_of(prepared_->waiting.map), NotTaken::Failed, 0, "it could not be packed");
-        again();
-        pump();
+        prepared_->body = {};
+        loop::guarded("putting a map back", [this] {
+          record_.not_taken(traffic_of(prepared_->waiting.map), NotTaken::Failed, 0,
+                            "it could not be packed");
+          again();
+        });
+        wake_.call_at(pace_.ready());
       });
+  preparing_ = true;  // only now: where it could not be submitted, it is not
 }
 
 void Maps::send() {
@@ -198,13 +222,9 @@ void Maps::send() {
                 [this](const uplink::Outcome& outcome) { answered(outcome); });
 }
 
-/// An answer that cannot be dealt with is as good as none: the map is sent again.
+/// An answer that cannot be dealt with is as good as none: the map is sent again, as it is.
 void Maps::answered(const uplink::Outcome& outcome) {
-  const bool judged = loop::guarded("the answer to a map", [&] { judge(outcome); });
-  if (!judged && prepared_) {
-    pace_.failed(loop_.now());
-    again();
-  }
+  if (!loop::guarded("the answer to a map", [&] { judge(outcome); })) pace_.failed(loop_.now());
   pump();
 }
 
@@ -217,12 +237,14 @@ void Maps::judge(const uplink::Outcome& outcome) {
 
 void Maps::taken(int status) {
   pace_.taken(loop_.now());
-  blame_.passed(whose(prepared_->waiting.map), loop_.now());
-  aside_.taken(prepared_->waiting.map);
-  record_.forwarded(traffic_of(prepared_->waiting.map), prepared_->waiting.updates.size(),
-                    prepared_->body.size(), status, loop_.stamp_now());
-  taken_(std::move(prepared_->waiting.map));
-  done();
+  const auto sent = std::exchange(prepared_, nullptr);  // whatever fails from here on, it has arrived
+  icd::MapUpdate& map = sent->waiting.map;
+  const std::size_t updates = sent->waiting.updates.size();
+  forget(std::move(sent->waiting.updates));
+  blame_.passed(whose(map), loop_.now());
+  aside_.taken(map);
+  record_.forwarded(traffic_of(map), updates, sent->body.size(), status, loop_.stamp_now());
+  taken_(std::move(map));
 }
 
 void Maps::verdict(const uplink::Answered& answered) {
@@ -253,9 +275,11 @@ void Maps::verdict(const uplink::Answered& answered) {
   }
 }
 
+/// Where it throws, prepared_ is as it was.
 void Maps::again() {
-  forget(lane_.put_back(std::move(prepared_->waiting)));
+  auto replaced = lane_.put_back(prepared_->waiting);
   prepared_.reset();
+  forget(std::move(replaced));
 }
 
 /// A map that will not be taken is set aside; of a merged cloud each part is tried by itself.
@@ -266,7 +290,7 @@ void Maps::give_up(int status, const std::string& sentence) {
                {.let_go = [this, numbers = prepared_->waiting.updates] { forget(numbers); }});
     return prepared_.reset();
   }
-  lane_.put_back_apart(std::move(prepared_->waiting));
+  lane_.put_back_apart(prepared_->waiting);
   prepared_.reset();
 }
 

@@ -72,7 +72,7 @@ class Maps {
   /// A map out of the lane, in the form that goes upstream.
   struct Prepared {
     lanes::WaitingMap waiting;
-    icd::ChunkedBytes body;
+    icd::ChunkedBytes body;  // empty: not packed
   };
 
   std::vector<std::uint64_t> add(std::uint64_t number, icd::MapUpdate update);
@@ -90,9 +90,10 @@ class Maps {
   void kept(Keeping& keeping);
   void kept_again(Keeping& keeping, const std::function<void(bool kept)>& done);
   void forget(std::vector<std::uint64_t> numbers);
-  void done();
   void pump();
+  void go_on();
   void prepare();
+  void pack();
   void send();
   void answered(const uplink::Outcome& outcome);
   void judge(const uplink::Outcome& outcome);
@@ -123,7 +124,8 @@ class Maps {
   std::string trouble_;
   bool preparing_ = false;
   loop::Duration packing_took_{0};
-  std::shared_ptr<Prepared> prepared_;  // while it is packed, waits for its time, or is under way
+  std::shared_ptr<Prepared> prepared_;    // while it is packed, waits for its time, or is under way
+  std::vector<std::uint64_t> to_forget_;  // that the writer could not be told of
   lanes::Blame blame_;
   bool stopping_ = false;
 };

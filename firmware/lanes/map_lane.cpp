@@ -116,55 +116,66 @@ MapLane::Place MapLane::choose(Instant now) {
 std::optional<WaitingMap> MapLane::take(Instant now) {
   if (waiting_.empty()) return {};
   const auto chosen = choose(now);
-  WaitingMap next = std::move(*chosen);
-  waiting_.erase(chosen);
+  std::vector<bool> leaves(
+      waiting_.size());  // it, and what is merged into it: at last, when nothing can fail
+  leaves[static_cast<std::size_t>(chosen - waiting_.begin())] = true;
+  WaitingMap next = *chosen;
+  merge_followers(next, leaves);
+  auto leaving = leaves.begin();
+  std::erase_if(waiting_, [&](const WaitingMap& waiting) {
+    if (!*leaving++) return false;
+    bytes_ -= bytes_held(waiting);
+    return true;
+  });
   for (WaitingMap& other : waiting_) other.trial.steps_behind = false;
-  bytes_ -= bytes_held(next);
-  merge_followers(next);
   return next;
 }
 
-void MapLane::merge_followers(WaitingMap& next) {
+void MapLane::merge_followers(WaitingMap& next, std::vector<bool>& leaves) const {
   const icd::PointCloud2* first = loose_cloud_in(next.map);
   bool open = first != nullptr && !next.alone && next.trial.failures == 0;
-  std::erase_if(waiting_, [&](const WaitingMap& other) {
-    if (!open || other.map.is_grid() || other.map.name != next.map.name) return false;
-    if (other.trial.failures > 0) return false;  // what is on trial goes by itself
+  for (std::size_t i = 0; i < waiting_.size() && open; ++i) {
+    const WaitingMap& other = waiting_[i];
+    if (leaves[i] || other.map.is_grid() || other.map.name != next.map.name) continue;
+    if (other.trial.failures > 0) continue;  // what is on trial goes by itself
     const icd::PointCloud2* cloud = loose_cloud_in(other.map);
     open = cloud && !other.alone && mergeable(*first, *cloud) &&
            next.map.data.raw_size + other.map.data.raw_size <= merge_bytes_;
-    if (!open) return false;
-    bytes_ -= bytes_held(other);
+    if (!open) return;
+    leaves[i] = true;
     join_parts(next, other);
     next.map = merge(std::move(next.map), other.map);
     first = loose_cloud_in(next.map);
     next.updates.insert(next.updates.end(), other.updates.begin(), other.updates.end());
     next.accepted = std::min(next.accepted, other.accepted);
-    return true;
-  });
+  }
 }
 
 std::vector<std::uint64_t> MapLane::put_back(WaitingMap map) {
   const auto newer = std::ranges::find_if(
       waiting_, [&](const WaitingMap& waiting) { return replaces(waiting.map, map.map); });
   if (newer == waiting_.end()) {
-    bytes_ += bytes_held(map);
+    const std::size_t bytes = bytes_held(map);
     waiting_.push_front(std::move(map));
+    bytes_ += bytes;
     return {};
   }
-  const std::uint64_t replaced = map.updates.back();
-  bytes_ -= bytes_held(*newer);
+  std::vector<std::uint64_t> replaced{map.updates.back()};
+  const std::size_t before = bytes_held(*newer);
   take_over(*newer, std::move(map));
-  bytes_ += bytes_held(*newer);
-  return {replaced};
+  bytes_ += bytes_held(*newer) - before;
+  return replaced;
 }
 
 void MapLane::put_back_apart(WaitingMap map) {
-  for (std::size_t i = map.parts.size(); i-- > 0;) {
-    WaitingMap part{std::move(map.parts[i]), map.accepted, {map.updates[i]}, {}, true};
-    bytes_ += bytes_held(part);
-    waiting_.push_front(std::move(part));
+  std::deque<WaitingMap> all;
+  std::size_t bytes = 0;
+  for (std::size_t i = 0; i < map.parts.size(); ++i) {
+    all.push_back({std::move(map.parts[i]), map.accepted, {map.updates[i]}, {}, true});
+    bytes += bytes_held(all.back());
   }
+  waiting_.insert(waiting_.begin(), std::move_iterator(all.begin()), std::move_iterator(all.end()));
+  bytes_ += bytes;
 }
 
 bool MapLane::replaces_any(const icd::MapUpdate& map) const {

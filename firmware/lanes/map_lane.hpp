@@ -45,6 +45,8 @@ struct WaitingMap {
 ///
 /// What is on trial (Blame) lets others go first while it rests. A grid on trial keeps the later grids of its
 /// name waiting behind it for its first kInPlace failures; then they pass it, to see whether they can.
+///
+/// Where take() and what puts back throw, for want of memory, all waits as before.
 class MapLane {
  public:
   /// Most bytes of points that take() merges into one message.
@@ -81,7 +83,8 @@ class MapLane {
  private:
   using Place = std::deque<WaitingMap>::iterator;
   Place choose(Instant now);
-  void merge_followers(WaitingMap& next);
+  /// Adds to `leaves`, in the order of waiting_, what it merged.
+  void merge_followers(WaitingMap& next, std::vector<bool>& leaves) const;
 
   std::deque<WaitingMap> waiting_;
   std::size_t merge_bytes_;

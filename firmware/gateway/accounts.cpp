@@ -3,7 +3,6 @@
 #include <unistd.h>
 
 #include <cstring>
-#include <filesystem>
 #include <memory>
 #include <utility>
 
@@ -19,8 +18,7 @@ using access::Role;
 using host::Level;
 
 access::Accounts read(const std::string& file) {
-  std::error_code unknown;
-  if (!std::filesystem::exists(file, unknown) && !unknown) return {};
+  if (!host::may_exist(file)) return {};
   const auto text = host::read_file(file);
   if (!text) {
     host::log(Level::Error, "the passwords cannot be read: they have to be set anew",

@@ -1,6 +1,5 @@
 #include "gateway/open_panel.hpp"
 
-#include <filesystem>
 #include <utility>
 
 #include "host/log.hpp"
@@ -35,8 +34,7 @@ std::unique_ptr<panel::ButtonLine> open_button(const settings::Panel& settings, 
 }  // namespace
 
 KnownBoard read_board(const std::string& file) {
-  std::error_code unknown;
-  if (file.empty() || (!std::filesystem::exists(file, unknown) && !unknown)) return {};
+  if (file.empty() || !host::may_exist(file)) return {};
   const auto text = host::read_file(file);
   auto board =
       text ? settings::parse_board(*text) : std::unexpected(std::vector<settings::Error>{{"", text.error()}});

@@ -1,6 +1,5 @@
 #include "gateway/session_keeper.hpp"
 
-#include <filesystem>
 #include <utility>
 
 #include "access/session_file.hpp"
@@ -11,8 +10,7 @@ namespace adit::gateway {
 namespace {
 
 std::expected<access::KeptSessions, std::string> read(const std::string& file) {
-  std::error_code unknown;
-  if (!std::filesystem::exists(file, unknown) && !unknown) return {};
+  if (!host::may_exist(file)) return {};
   const auto text = host::read_file(file);
   if (!text) return std::unexpected(text.error());
   auto kept = access::read_sessions(*text);

@@ -34,8 +34,7 @@ void remove_unfinished(const std::filesystem::path& file) {
 
 double StampFloor::read() const {
   remove_unfinished(file_);
-  std::error_code unknown;
-  if (!std::filesystem::exists(file_, unknown) && !unknown) return 0;
+  if (!host::may_exist(file_)) return 0;
   const auto text = host::read_file(file_);
   double floor = -1;
   if (text) std::from_chars(text->data(), text->data() + text->size(), floor);

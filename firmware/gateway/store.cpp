@@ -14,11 +14,6 @@ namespace fs = std::filesystem;
 
 constexpr const char* kDamaged = ".damaged";
 
-bool exists(const std::string& path) {
-  std::error_code unknown;
-  return fs::exists(path, unknown) || unknown;
-}
-
 /// So that the box still serves a page on which it can be set right.
 void set_aside(const std::string& path, const std::string& why) {
   std::error_code error;
@@ -59,9 +54,10 @@ Store::Store(std::string given_settings, std::string given_secrets, std::string 
 
 std::expected<Store::Loaded, std::string> Store::load() const {
   Loaded loaded;
-  auto settings = exists(file()) ? read_saved(file(), loaded.trouble) : read_settings(given_settings_);
-  loaded.saved = settings.has_value() && exists(file());
-  if (!settings && exists(file())) {
+  auto settings =
+      host::may_exist(file()) ? read_saved(file(), loaded.trouble) : read_settings(given_settings_);
+  loaded.saved = settings.has_value() && host::may_exist(file());
+  if (!settings && host::may_exist(file())) {
     loaded.trouble =
         "the saved settings are set aside, those that the box was given are in use: " + settings.error();
     set_aside(file(), loaded.trouble);
@@ -84,9 +80,9 @@ std::expected<Store::Loaded, std::string> Store::load() const {
 
 /// An empty file of settings before stands for none.
 std::expected<void, std::string> Store::save(const settings::Settings& settings) const {
-  if (!exists(file_before())) {
+  if (!host::may_exist(file_before())) {
     const auto before =
-        exists(file()) ? host::read_file(file()) : std::expected<std::string, std::string>("");
+        host::may_exist(file()) ? host::read_file(file()) : std::expected<std::string, std::string>("");
     if (!before) return std::unexpected(before.error());
     if (const auto kept = host::write_file(file_before(), *before, host::kOursAlone); !kept) return kept;
   }

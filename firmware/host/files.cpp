@@ -68,6 +68,11 @@ std::expected<File, int> slurp(const std::string& path) {
   }
 }
 
+bool may_exist(const std::string& path) {
+  std::error_code unknown;
+  return std::filesystem::exists(path, unknown) || unknown;
+}
+
 std::expected<std::string, std::string> read_file(const std::string& path) {
   auto file = slurp(path);
   if (!file) return std::unexpected(trouble(path, file.error()));

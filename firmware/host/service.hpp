@@ -25,6 +25,10 @@ void notify_alive();  // WATCHDOG=1
 /// does not wait for any.
 std::optional<std::chrono::microseconds> watchdog_within();
 
+/// Whether there is a file or folder of that name, or nobody can say: what cannot be looked for is not
+/// absent.
+bool may_exist(const std::string& path);
+
 /// A small text file, at most 1 MiB.
 std::expected<std::string, std::string> read_file(const std::string& path);
 

@@ -1,6 +1,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 #include <sys/stat.h>
+#include <unistd.h>
 
 #include "host/folder.hpp"
 #include "host/service.hpp"
@@ -34,6 +35,16 @@ TEST(ReadFile, TakesAMebibyteAndNoByteMore) {
   EXPECT_THAT(read_file(folder.put("more", std::string((1u << 20) + 1, 'x'))).error(),
               HasSubstr("too large"));
   EXPECT_THAT(read_file("/dev/zero").error(), HasSubstr("too large"));
+}
+
+TEST(MayExist, IsFalseOnlyWhereNothingIsThereForCertain) {
+  const Folder folder;
+  EXPECT_FALSE(may_exist(folder / "none"));
+  EXPECT_FALSE(may_exist(folder / "none/none"));
+  EXPECT_TRUE(may_exist(folder.put("empty", "")));
+  EXPECT_TRUE(may_exist(folder.path()));
+  ASSERT_EQ(symlink("round", (folder / "round").c_str()), 0);
+  EXPECT_TRUE(may_exist(folder / "round")) << "who cannot look there does not know";
 }
 
 TEST(WriteFile, MakesANewFileOfTheModeAskedFor) {

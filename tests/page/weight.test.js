@@ -10,8 +10,9 @@ const MOST = 80_000;
 const files = readdirSync(FOLDER);
 const read = (name) => readFileSync(FOLDER + name);
 
-/** As toolchain/cmake/embed.cmake puts it into aditd: scripts without the lines that are a comment. */
+/** As toolchain/cmake/embed.cmake puts it into aditd: scripts without the lines that are a comment, style without comments. */
 function embedded(name) {
+  if (name.endsWith(".css")) return `${read(name)}`.replaceAll(/ *\/\*[^*]*\*\//g, "");
   if (!name.endsWith(".js")) return read(name);
   return `\n${read(name)}`.replaceAll(/\n *(\/\/[^\n]*|\/\*\*[^\n]*\*\/)/g, "\n").slice(1);
 }

@@ -22,6 +22,12 @@ async function withRows(t, options) {
   return page;
 }
 
+/** What the box tells from now on. */
+const become = (page, rows) => page.evaluate((rows) => (globalThis.setAside = rows), rows);
+const discard = (page, number) => page.getByRole("button", { name: `Discard: ${number}`, exact: true });
+const hasFocus = (page, number) =>
+  page.waitForFunction((number) => document.activeElement.matches(`#aside li[data-key="${number}"] .discard`), number);
+
 const boxes = (page, part) =>
   page.$$eval(`#aside li:first-child ${part}`, (nodes) => nodes.map((node) => node.getBoundingClientRect().toJSON()));
 
@@ -64,4 +70,44 @@ test("has its title gone with the last row, and the last word once it could be r
   await page.locator("#aside-title").waitFor({ state: "hidden" });
   await page.locator("#aside").waitFor({ state: "hidden" });
   assert.equal(await text(page, "#aside .said"), "");
+});
+
+test("keeps the focus where it is while other rows come and go", async (t) => {
+  const page = await withRows(t);
+  await page.evaluate(() => {
+    globalThis.lost = 0;
+    document.getElementById("aside").addEventListener("focusout", () => ++globalThis.lost);
+  });
+  await discard(page, 9).focus();
+  await become(page, [{ ...ROWS[0], number: 6 }, ROWS[2], { ...ROWS[0], number: 11 }]);
+  await page.locator('#aside li[data-key="11"]').waitFor();
+  assert.equal(await page.locator("#aside li").count(), 3);
+  await hasFocus(page, 9);
+  assert.equal(await page.evaluate(() => globalThis.lost), 0, "not even for a moment");
+});
+
+test("hands the focus of a row that somebody else discards to the next, to the one before, and to the title", async (t) => {
+  const page = await withRows(t);
+  await discard(page, 8).focus();
+  await become(page, [ROWS[0], ROWS[2]]);
+  await hasFocus(page, 9);
+  await become(page, [ROWS[0]]);
+  await hasFocus(page, 7);
+  await become(page, []);
+  await page.waitForFunction(() => document.activeElement.id === "post-title");
+});
+
+test("lets a key that is pressed twice discard one row, not the next one too", async (t) => {
+  const page = await withRows(t);
+  await page.evaluate(() => {
+    const press = (node) => node.dispatchEvent(new KeyboardEvent("keydown", { key: "Enter", bubbles: true, cancelable: true }));
+    globalThis.pressNow = () => press(document.activeElement);
+    document.addEventListener("focusin", ({ target }) => (globalThis.atOnce = press(target)));
+  });
+  await discard(page, 7).focus();
+  assert.equal(await page.evaluate(() => globalThis.atOnce), true, "who goes there himself need not wait");
+  await become(page, ROWS.slice(1));
+  await hasFocus(page, 8);
+  assert.equal(await page.evaluate(() => globalThis.atOnce), false);
+  await page.waitForFunction(() => globalThis.pressNow());
 });

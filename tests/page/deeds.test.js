@@ -107,3 +107,16 @@ test("has nothing to press that is smaller than a gloved finger", async (t) => {
     assert.deepEqual(small, [], `${viewport.width}`);
   }
 });
+
+test("leaves the focus in the row whose buttons change by what was done", async (t) => {
+  const { page } = await watch(t, "reports");
+  await row(page, 28).locator(".open").click();
+  for (const [number, deed, words] of [[24, "Withdraw", "Withdrawn."], [28, "Hold", "Held: "], [25, "Call it done", "Called done."]]) {
+    await button(page, deed, number).focus();
+    await page.waitForSelector("[data-given]", { state: "detached" });
+    await page.keyboard.press("Enter");
+    await becomes(page, number, words);
+    await button(page, deed, number).waitFor({ state: "detached" });
+    await page.waitForFunction((number) => document.activeElement.closest("li")?.dataset.key === String(number), number);
+  }
+});

@@ -150,6 +150,7 @@ test("switches to another course by one press, once it was said what that change
   await page.locator("#review").getByText(`reports go to 127.0.0.1:${box.scoring} from then on; none waits, is in doubt or is held now`).waitFor();
   await page.getByRole("button", { name: "Switch", exact: true }).click();
   await page.getByText("Course B is in use.").waitFor();
+  await page.waitForFunction(() => document.activeElement.id === "courses-title"); // the button that had it is gone
   await until(async () => (await ask("/adit/run")).said.endpoints.every(({ last_status: status }) => status === 200 || status === 0) && (await ask("/adit/run")).said.endpoints[0].last_status === 200, "the scoring endpoint's answer");
   await step(page, "Command Post").click();
   await page.getByText("Course B is in use: these count again without a course.").waitFor();

@@ -89,6 +89,7 @@ test("lists who is logged in, and ends a session, whose page goes to the login",
   await row.getByRole("button", { name: "End: viewer" }).click();
   await page.getByRole("button", { name: "End it" }).click();
   await row.waitFor({ state: "detached" });
+  await page.waitForFunction(() => document.activeElement.matches("#sessions li button"));
   await other.waitForURL(/login\.html/);
   assert.equal(await page.locator("#sessions li").count(), 1);
 });

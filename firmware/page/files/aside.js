@@ -1,6 +1,6 @@
 // What the Command Post would not take: set aside until the operator sends it again or discards it.
 import { barred } from "./deeds.js";
-import { list, make, say } from "./dom.js";
+import { giveFocus, list, make, say } from "./dom.js";
 import { post } from "./session.js";
 import { ago, clip } from "./words.js";
 
@@ -43,9 +43,10 @@ function update(node, row, now) {
   say(what, `${row.number}: ${row.kind} of ${row.robot ? clip(row.robot, 40) : "all"}, ${kilobytes} kB`);
   say(since, ago(now - row.at));
   say(why, row.overtaken ? "Something newer that says all of it was sent since." : `${row.status}: ${clip(row.why)}`);
-  const because = barred() || (underWay.has(row.number) ? "It is being done." : "");
-  send.disabled = Boolean(because) || row.overtaken;
-  discard.disabled = Boolean(because);
+  if (row.overtaken && send === document.activeElement) giveFocus(discard);
+  // Not while it is under way: what is disabled loses the focus.
+  discard.disabled = Boolean(barred());
+  send.disabled = discard.disabled || row.overtaken;
   send.onclick = () => judge(row, "send");
   discard.onclick = () => judge(row, "discard");
 }

@@ -1,6 +1,6 @@
 // What lets the box in at a Command Post: tokens, which are set and never shown again; and the switch between courses.
 import { applied, insist, reviewed } from "./apply.js";
-import { badge, list, make, say } from "./dom.js";
+import { badge, giveFocus, list, make, say } from "./dom.js";
 import { differs, draft, ENDPOINTS, onDraft, refresh } from "./draft.js";
 import { blame, labelled } from "./field.js";
 import { post } from "./session.js";
@@ -145,6 +145,7 @@ function updateCourse(node, name) {
   badge(state, inUse ? "good" : "quiet", inUse ? "in use" : "not in use");
   say(note, `${at(scoring)}, ${at(mapping)}`);
   button.setAttribute("aria-label", `Switch to ${nameOf(name)}`);
+  if (inUse && button === document.activeElement) giveFocus(document.getElementById("courses-title"));
   button.hidden = inUse || document.body.dataset.role !== "operator";
   button.disabled = differs();
   button.onclick = () => switchTo(name);

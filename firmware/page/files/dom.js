@@ -30,22 +30,52 @@ export function badge(node, level, word) {
   return node;
 }
 
-/** Makes the children of `parent` those of `items`, in order: known ones (by `key`) are kept and updated. */
+/** Makes the children of `parent` those of `items`, in order: known ones (by `key`) are kept and updated, and stay where they
+ *  are unless the order changed, for what is moved loses the focus. */
 export function list(parent, items, key, create, update) {
+  const names = items.map((item) => String(key(item)));
   const known = new Map([...parent.children].map((node) => [node.dataset.key, node]));
+  const going = new Set([...known.keys()].filter((name) => !names.includes(name)));
+  for (const name of going) {
+    const node = known.get(name), focused = document.activeElement;
+    if (node.contains(focused)) giveFocus(heirOf(node, focused, going));
+    node.remove();
+  }
   let before = parent.firstElementChild;
-  for (const item of items) {
-    const name = String(key(item));
-    let node = known.get(name);
-    if (node) {
-      known.delete(name);
-    } else {
+  items.forEach((item, i) => {
+    let node = known.get(names[i]);
+    if (!node) {
       node = create(item);
-      node.dataset.key = name;
+      node.dataset.key = names[i];
     }
     update(node, item);
     if (node === before) before = before.nextElementSibling;
     else parent.insertBefore(node, before);
-  }
-  for (const node of known.values()) node.remove();
+  });
+}
+
+const usable = (node) => [...node.querySelectorAll("button:enabled")].filter((button) => button.checkVisibility());
+
+/** What has the focus once an item went with it: the same control of the next item, or of the one before; else the title. */
+function heirOf(node, focused, going) {
+  const items = [...node.parentNode.children], at = items.indexOf(node);
+  const near = [...items.slice(at), ...items.slice(0, at).reverse()].filter(({ dataset }) => !going.has(dataset.key));
+  const heirs = near.flatMap(usable);
+  // Where the item is a button of a row:
+  const row = node.parentNode.closest("li");
+  if (row) heirs.push(...usable(row).filter((button) => button !== node));
+  return heirs.find(({ className }) => className === focused.className) ?? heirs[0] ?? node.closest("section")?.querySelector("h2");
+}
+
+// ms: as long as presses.js lets no finger press what has just come under it
+const TWICE = 350;
+
+/** Gives the focus to what nobody chose. As long as it is marked, presses.js lets no key act on it: it may be one pressed twice. */
+export function giveFocus(node) {
+  if (!node) return;
+  // A title:
+  if (node.tabIndex < 0) node.tabIndex = -1;
+  node.dataset.given = "";
+  setTimeout(() => delete node.dataset.given, TWICE);
+  node.focus();
 }

@@ -29,7 +29,7 @@ function update(node, each, now) {
   say(times, `logged in ${ago(now - each.made)}, seen ${ago(now - each.seen)}`);
   say(button, each.own ? "Log out" : "End");
   button.setAttribute("aria-label", `${each.own ? "Log out" : "End"}: ${each.role} at ${each.address}, session ${each.number}`);
-  button.onclick = () => end(each, button);
+  button.onclick = () => end(each);
 }
 
 async function show() {
@@ -38,10 +38,9 @@ async function show() {
   list(rows, sessions, ({ number }) => number, create, (node, each) => update(node, each, now));
 }
 
-async function end(each, button) {
+async function end(each) {
   const text = each.own ? "You have to log in again after that." : "Whoever it is has to log in again.";
   if (!(await confirmed({ title: `End session ${each.number}, ${each.role}?`, text, word: "End it" }))) return;
-  button.disabled = true;
   trouble.textContent = "";
   try {
     await post(each.own ? "/adit/logout" : `/adit/sessions/${each.number}/end`);
@@ -49,7 +48,6 @@ async function end(each, button) {
     await show();
   } catch (error) {
     trouble.textContent = error.message;
-    button.disabled = false;
   }
 }
 

@@ -96,8 +96,9 @@ for (const name of ["mousedown", "click"]) {
 
 let held = null; // what had the focus when a key went down
 
-/** A key that is held acts on nothing that gets the focus meanwhile. */
+/** A key that is held acts on nothing that gets the focus meanwhile, and one pressed twice on nothing that was just given it. */
 addEventListener("keydown", (event) => {
-  if (!event.repeat) held = event.target;
-  else if (event.target !== held && ACT.includes(event.key)) drop(event);
+  const isNew = "given" in event.target.dataset;
+  if (!event.repeat && !isNew) held = event.target;
+  else if ((isNew || event.target !== held) && ACT.includes(event.key)) drop(event);
 }, true);

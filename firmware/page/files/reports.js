@@ -84,7 +84,7 @@ function showDeeds(node, report, view, isShown) {
     return button;
   };
   list(node, isShown ? deedsOf(report) : [], (deed) => deed.label, createDeed, (button, deed) => {
-    button.disabled = Boolean(reason) || isBusy(report.number);
+    button.disabled = Boolean(reason);
     button.onclick = () => perform(deed, report, last.view.run?.remaining_reports, again);
   });
 }

@@ -45,6 +45,7 @@ class Box {
       "--secrets", secrets, "--artifacts", truth, ...post);
     const line = await until(() => /scoring \S+:(\d+) mapping \S+:(\d+) control \S+:(\d+)/.exec(rehearsal.log().replaceAll(",", "")), "the rehearsal");
     const [scoring, mapping, control] = line.slice(1).map(Number);
+    this.mapping = mapping;
     this.control = `http://127.0.0.1:${control}`;
     this.port = await freePort();
     const at = (port) => ({ address: "127.0.0.1", port });
@@ -86,6 +87,7 @@ class Box {
   /** What the Command Post was sent and recorded, and how it is to behave. */
   record = async () => (await fetch(`${this.control}/record`)).json();
   misbehave = (faults) => fetch(`${this.control}/faults`, { method: "POST", body: JSON.stringify(faults) });
+  behave = () => fetch(`${this.control}/faults`, { method: "DELETE" });
 
   /** What the lights of the simulated panel show at this moment: {health: true, ...}. */
   lights() {

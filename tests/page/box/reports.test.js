@@ -1,7 +1,7 @@
 import assert from "node:assert/strict";
 import { test } from "node:test";
 import { until } from "../box.js";
-import { box, deed, logIn, look, row, says } from "./visits.js";
+import { box, canBeDeaf, deed, logIn, look, row, says } from "./visits.js";
 
 /** The second report waits for so many seconds. */
 const slow = (seconds) => ({ settings: { command_post: { rates: { reports_hz: 1 / seconds } } } });
@@ -14,16 +14,6 @@ async function waiting(made, x = 50, type = "Drill") {
   await made.becomes(number, "waiting");
   return number;
 }
-
-/** Lets a page see nothing of what others do, while `globalThis.deaf`. */
-const canBeDeaf = (page) => page.addInitScript(() => {
-  const { set } = Object.getOwnPropertyDescriptor(EventSource.prototype, "onmessage");
-  Object.defineProperty(EventSource.prototype, "onmessage", {
-    set(heard) {
-      set.call(this, (event) => globalThis.deaf || heard(event));
-    },
-  });
-});
 
 test("holds a report that waits, and sends it on the operator's further word", async (t) => {
   const made = await box(t, slow(300));

@@ -17,8 +17,8 @@ export async function box(t, options) {
 }
 
 /** A page of the box's, for who has the team's token. */
-export async function look(t, made, path = "", options = {}) {
-  const page = await visit(browser, made.url + path, { extraHTTPHeaders: { Authorization: `Bearer ${TOKENS.team}` }, ...options });
+export async function look(t, made, path = "", { prepare, ...options } = {}) {
+  const page = await visit(browser, made.url + path, { extraHTTPHeaders: { Authorization: `Bearer ${TOKENS.team}` }, ...options }, prepare);
   t.after(() => page.context().close());
   await page.waitForSelector("body[data-link=live]");
   return page;
@@ -33,6 +33,16 @@ export async function logIn(t, made, prepare) {
   await page.waitForSelector("body[data-link=live]");
   return page;
 }
+
+/** Lets a page see nothing of what others do, while `globalThis.deaf`. */
+export const canBeDeaf = (page) => page.addInitScript(() => {
+  const { set } = Object.getOwnPropertyDescriptor(EventSource.prototype, "onmessage");
+  Object.defineProperty(EventSource.prototype, "onmessage", {
+    set(heard) {
+      set.call(this, (event) => globalThis.deaf || heard(event));
+    },
+  });
+});
 
 /** Kept beside the build, for people to look at. */
 export async function shoot(page, name) {

@@ -65,6 +65,37 @@ test("has what is done of other runs behind one press, and says how many there a
   assert.equal(await shown(), 10);
 });
 
+test("goes to the first report of another run where it shows them, however many are before it", async (t) => {
+  const prepare = (page) => page.addInitScript(() => {
+    const { parse } = JSON;
+    JSON.parse = (...words) => {
+      const view = parse(...words);
+      if (!view?.endpoints) return view;
+      const reports = Array.from({ length: 200 }, (_, i) => ({ ...view.reports.at(-1), number: 200 - i, run: 1 + Math.floor((199 - i) / 70) }));
+      return { ...view, reports, run_number: 3 };
+    };
+  });
+  for (const viewport of [{ width: 1280, height: 720 }, { width: 360, height: 740 }]) {
+    const { page } = await watch(t, "reports", { prepare, viewport });
+    const others = page.getByRole("button", { name: "Other runs" });
+    const look = () => others.evaluate((button) => [getComputedStyle(button).borderColor, getComputedStyle(button).boxShadow].join());
+    assert.match(await text(page, "#reports .count"), /^60, 140 of other runs$/);
+    const off = await look();
+    await others.press("Enter");
+    assert.notEqual(await look(), off, "it is seen to be pressed");
+    const first = page.locator('#reports li[data-key="140"]');
+    await page.waitForFunction((row) => {
+      const { top, bottom } = row.getBoundingClientRect(), list = row.parentNode.getBoundingClientRect();
+      return top >= list.top - 1 && bottom <= list.bottom + 1;
+    }, await first.elementHandle());
+    assert.ok(await others.evaluate((button) => button === document.activeElement));
+    assert.match(await text(page, "#reports .count"), /^60, 140 of other runs$/);
+    await first.locator(".open").press("Enter");
+    await others.press("Enter");
+    assert.equal(await page.locator("#reports li").count(), 60);
+  }
+});
+
 test("tells where each report is in its life, and what waits for the operator's word", async (t) => {
   const { page } = await watch(t, "reports");
   await page.getByRole("button", { name: "Other runs" }).click();

@@ -16,6 +16,7 @@ let showsOthers = false; // what is done of other runs: of earlier ones, and of 
 const isOpen = (report) => ["received", "waiting", "sending", "in doubt"].includes(report.state);
 const isOfOther = (report, view) => report.run !== view.run_number && !isOpen(report);
 
+const rowOf = (number) => rows.querySelector(`[data-key="${number}"]`);
 const again = () => last && showReports(last.view, last.now);
 
 function create(report) {
@@ -37,6 +38,9 @@ function toggle(number) {
 others.addEventListener("click", () => {
   showsOthers = !showsOthers;
   again();
+  const first = showsOthers && last.view.reports.find((report) => isOfOther(report, last.view));
+  // They may be far down:
+  if (first) rowOf(first.number).scrollIntoView({ block: "nearest" });
 });
 
 /** Opens a report, brings it into view and puts the focus there. */
@@ -44,7 +48,7 @@ export function reveal(number) {
   opened.add(number);
   showsOthers ||= Boolean(last?.view.reports.some((report) => report.number === number && isOfOther(report, last.view)));
   again();
-  const row = rows.querySelector(`[data-key="${number}"]`);
+  const row = rowOf(number);
   row?.scrollIntoView({ block: "nearest" });
   row?.querySelector(".open").focus({ preventScroll: true });
   return row !== null;

@@ -33,6 +33,23 @@ test("fits 720p, 1080p and 4K whole, and nothing on it is too small to read", as
   }
 });
 
+test("shows each report whole or not at all: nobody can scroll there", async (t) => {
+  const { page } = await watch(t, "trouble", { path: "display" });
+  await page.locator("#reports li").nth(9).waitFor();
+  for (const [width, height] of [[360, 740], ...SCREENS]) {
+    await page.setViewportSize({ width, height });
+    const [shown, halves, cut] = await page.evaluate(() => {
+      const list = document.querySelector("#reports ol"), { right, bottom } = document.getElementById("reports").getBoundingClientRect();
+      const inSight = [...list.children].filter((row) => row.getBoundingClientRect().left < right);
+      const isCut = (row) => [...row.children].some((part) => part.scrollWidth > part.clientWidth + 1);
+      const names = (rows) => rows.map((row) => row.textContent);
+      return [inSight.length, names(inSight.filter((row) => row.getBoundingClientRect().bottom > bottom + 1)), names(inSight.filter(isCut))];
+    });
+    assert.ok(shown >= 4, `${shown} at ${width}`);
+    assert.deepEqual([halves, cut], [[], []], `${width} x ${height}`);
+  }
+});
+
 test("cuts no figure short, not even on a phone", async (t) => {
   const { page } = await watch(t, "reports", { path: "display" });
   for (const [width, height] of [[390, 844], [844, 390], [768, 1024], ...SCREENS]) {

@@ -16,7 +16,7 @@ export function comparePair(one, other, from) {
   map.showPair([one, other]);
   panel.hidden = false;
   showPair(last.view, last.now);
-  panel.closest("section").scrollIntoView({ block: "nearest" });
+  panel.parentNode.scrollIntoView({ block: "nearest" });
   panel.querySelector("button").focus({ preventScroll: true });
 }
 

@@ -1,0 +1,54 @@
+// The smallest phones: nothing is cut, and no text lies on another.
+import assert from "node:assert/strict";
+import { test } from "node:test";
+import { watch } from "./watch.js";
+
+const PHONES = [[320, 640], [360, 740]];
+
+/** Texts of one row that lie on each other, leave their section or are cut short. */
+const faults = (page) => page.evaluate(() => {
+  const linesOf = (node) => {
+    const range = document.createRange();
+    range.selectNodeContents(node);
+    return [...range.getClientRects()];
+  };
+  const isText = (node) => [...node.childNodes].some((child) => child.nodeType === Node.TEXT_NODE && child.data.trim());
+  const textsIn = (node) => [...node.querySelectorAll("*")].filter((each) => isText(each) && each.checkVisibility() && !each.closest(".spoken, .pattern"));
+  const meet = (a, b) => Math.min(a.right, b.right) - Math.max(a.left, b.left) > 1 && Math.min(a.bottom, b.bottom) - Math.max(a.top, b.top) > 4;
+  const found = [];
+  for (const row of document.querySelectorAll("main :is(li, tr, dl)")) {
+    const texts = textsIn(row).map((node) => [node.textContent, linesOf(node)]);
+    texts.forEach(([text, lines], i) => texts.slice(0, i).forEach(([other, under]) =>
+      lines.some((line) => under.some((each) => meet(line, each))) && found.push(`"${text}" on "${other}"`)));
+  }
+  for (const section of document.querySelectorAll("main > .board > section")) {
+    const { right } = section.getBoundingClientRect();
+    for (const node of textsIn(section)) if (linesOf(node).some((line) => line.right > right)) found.push(`"${node.textContent}" leaves ${section.id}`);
+  }
+  const isCut = (node) => getComputedStyle(node).textOverflow === "ellipsis" && node.scrollWidth > node.clientWidth;
+  return found.concat(textsIn(document.body).filter(isCut).map((node) => `"${node.textContent}" is cut`));
+});
+
+for (const [width, height] of PHONES) {
+  test(`nothing is cut or lies on another at ${width} x ${height}`, async (t) => {
+    for (const scene of ["trouble", "reports"]) {
+      const { page } = await watch(t, scene, { viewport: { width, height }, hasTouch: true });
+      await page.locator("#reports li").first().waitFor();
+      assert.deepEqual(await faults(page), [], scene);
+      await page.getByRole("button", { name: "Keyboard" }).tap();
+      await page.locator("#help[open]").waitFor();
+      assert.deepEqual(await faults(page), [], `${scene}, the help`);
+      assert.ok(await page.evaluate(() => document.documentElement.scrollWidth <= innerWidth));
+    }
+  });
+}
+
+test("brings both reports of a pair into sight, and the button that closes them", async (t) => {
+  const { page } = await watch(t, "reports", { viewport: { width: 360, height: 740 }, hasTouch: true });
+  await page.getByRole("button", { name: /^Show both on the map/ }).first().tap();
+  const close = page.locator("#map .pair button");
+  await close.waitFor();
+  const { y, height } = await page.locator("#map .frame").boundingBox();
+  assert.ok(y >= -1 && y + height <= 741, `from ${y} to ${y + height}`);
+  assert.ok(await close.evaluate((button) => button === document.activeElement));
+});

@@ -8,6 +8,7 @@ function(adit_room name)
     add_library(adit_${name} STATIC ${ROOM_SOURCES})
     set(scope PUBLIC)
     target_link_libraries(adit_${name} PRIVATE adit_options)
+    target_precompile_headers(adit_${name} REUSE_FROM adit_room_headers)
   else()
     add_library(adit_${name} INTERFACE)
     set(scope INTERFACE)
@@ -24,9 +25,10 @@ function(adit_room_test name)
   add_executable(adit_${name}_test ${TEST_SOURCES})
   target_include_directories(adit_${name}_test PRIVATE ${PROJECT_SOURCE_DIR}/tests)
   target_compile_definitions(adit_${name}_test PRIVATE ADIT_SOURCE_DIR="${PROJECT_SOURCE_DIR}")
-  target_compile_options(adit_${name}_test PRIVATE -O0)  # of the tests alone: they are run once for each time they are compiled
+  target_compile_options(adit_${name}_test PRIVATE -O0 -fno-sanitize=undefined)  # of the tests alone: read once, run once
   target_link_libraries(adit_${name}_test PRIVATE
     adit_options adit_${name} ${TEST_ROOMS} ${TEST_LIBRARIES} GTest::gmock GTest::gtest_main)
+  target_precompile_headers(adit_${name}_test REUSE_FROM adit_test_headers)
   gtest_discover_tests(adit_${name}_test TEST_PREFIX "${name}: " NO_PRETTY_VALUES DISCOVERY_TIMEOUT 60
     PROPERTIES TIMEOUT 120 LABELS ${name})
 endfunction()

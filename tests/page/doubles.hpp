@@ -169,9 +169,11 @@ inline std::string file_on_disk(std::string_view path) {
   return {std::istreambuf_iterator<char>(file), {}};
 }
 
-/// Scripts are embedded without the lines that are a comment.
+/// Scripts are embedded without the lines that are a comment, style without its comments.
 inline std::string as_embedded(std::string_view path) {
   std::string text = file_on_disk(path);
+  static const std::regex style_comment(R"( */\*[^*]*\*/)");
+  if (path.ends_with(".css")) return std::regex_replace(text, style_comment, "");
   if (!path.ends_with(".js")) return text;
   static const std::regex comment(R"((^|\n) *(//[^\n]*|/\*\*[^\n]*\*/))");
   return std::regex_replace(text, comment, "$1");

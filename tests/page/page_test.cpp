@@ -126,7 +126,7 @@ TEST(PageOnAServer, ServesABrowser) {
   const auto style = client.reply();
   ASSERT_TRUE(style);
   EXPECT_EQ(style->status, 200);
-  EXPECT_EQ(style->body, file_on_disk("/page.css"));
+  EXPECT_EQ(style->body, as_embedded("/page.css"));
   client.send(intake::request("GET", "/page.css", "If-None-Match: " + style->header("etag") + "\r\n"));
   const auto again = client.reply();
   ASSERT_TRUE(again);

@@ -11,9 +11,10 @@
 namespace adit::codec {
 namespace {
 
-std::unique_ptr<Splitter> splitter_for(Format format, Split split, std::size_t most_text, BulkData& data) {
-  if (format == Format::Cbor) return std::make_unique<CborSplitter>(split, most_text, data);
-  return std::make_unique<JsonSplitter>(split, most_text, data);
+std::unique_ptr<Splitter> splitter_for(Format format, Split split, const Limits& limits, BulkData& data) {
+  const Most most{.text = limits.text_bytes, .values = limits.values};
+  if (format == Format::Cbor) return std::make_unique<CborSplitter>(split, most, data);
+  return std::make_unique<JsonSplitter>(split, most, data);
 }
 
 /// What a body may inflate to. Most that data takes is four characters for a byte, as the integers of an
@@ -31,7 +32,7 @@ class BodyDecoder::Impl {
  public:
   Impl(BodyKind kind, Split split, const Limits& limits)
       : data_(limits.data_bytes),
-        splitter_(splitter_for(kind.format, split, limits.text_bytes, data_)),
+        splitter_(splitter_for(kind.format, split, limits, data_)),
         content_(kind.coding, most_inflated(split, limits),
                  [this](std::string_view bytes) { return splitter_->feed(bytes); }) {}
 

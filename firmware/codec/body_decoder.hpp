@@ -2,6 +2,7 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <limits>
 #include <memory>
 #include <optional>
 #include <span>
@@ -28,7 +29,9 @@ std::optional<Format> format_of(std::string_view content_type);
 std::optional<ContentCoding> coding_of(std::string_view content_encoding);
 
 struct Limits {
-  std::size_t text_bytes = 1u << 20;    // the document without its bulk data, after inflating
+  std::size_t text_bytes = 1u << 20;  // the document without its bulk data, after inflating
+  /// In it: to parse one takes up to 250 bytes, however short it is.
+  std::size_t values = std::numeric_limits<std::size_t>::max();
   std::size_t data_bytes = 256u << 20;  // bulk data, after inflating the body, before inflating the data
 };
 
@@ -53,8 +56,9 @@ struct Document {
 ///
 /// Well-formedness is checked as the bytes arrive (RFC 8259 strictly, RFC 8949 5.3.1), nesting is at most 64,
 /// and no step holds the whole body. A map's data goes to Document::data in chunks; the rest, at most
-/// text_bytes, is parsed at the end by cJSON or libcbor. Refusals: 400 not well-formed, 413 over a limit, 422
-/// bulk data of another kind than the format allows. After a refusal the decoder is spent.
+/// text_bytes and so many values, is parsed at the end by cJSON or libcbor. Refusals: 400 not well-formed,
+/// 413 over a limit, 422 bulk data of another kind than the format allows. After a refusal the decoder is
+/// spent.
 class BodyDecoder {
  public:
   static constexpr int kDeepest = 64;

@@ -16,8 +16,7 @@ bool is_remark(std::uint64_t tag) {
 
 }  // namespace
 
-CborSplitter::CborSplitter(Split split, std::size_t most_text, BulkData& data)
-    : most_text_(most_text), data_(data), path_(split) {
+CborSplitter::CborSplitter(Split split, Most most, BulkData& data) : most_(most), data_(data), path_(split) {
   nests_.reserve(BodyDecoder::kDeepest);
 }
 
@@ -27,7 +26,7 @@ icd::Checked<void> CborSplitter::feed(std::string_view bytes) {
     if (!taken) return std::unexpected(taken.error());
     bytes.remove_prefix(*taken);
     at_ += *taken;
-    if (rest_.size() > most_text_) return std::unexpected(text_too_large(most_text_));
+    if (rest_.size() > most_.text) return std::unexpected(text_too_large(most_.text));
   }
   return {};
 }
@@ -86,6 +85,9 @@ icd::Checked<void> CborSplitter::item() {
     if (auto diverted = divert(); !diverted) return diverted;
     into = Into::Data;
   }
+  if (!elements() && into == Into::Rest) {
+    if (auto counted = count(); !counted) return counted;
+  }
   switch (head_.major()) {
     case Major::Bytes:
     case Major::Text:
@@ -102,6 +104,11 @@ icd::Checked<void> CborSplitter::item() {
   }
   keep(head_.raw());
   item_ended();
+  return {};
+}
+
+icd::Checked<void> CborSplitter::count() {
+  if (++values_ > most_.values) return std::unexpected(too_many_values(most_.values));
   return {};
 }
 

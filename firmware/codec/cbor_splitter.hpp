@@ -21,7 +21,7 @@ namespace adit::codec {
 class CborSplitter final : public Splitter {
  public:
   /// `data` must outlive this.
-  CborSplitter(Split split, std::size_t most_text, BulkData& data);
+  CborSplitter(Split split, Most most, BulkData& data);
 
   icd::Checked<void> feed(std::string_view bytes) override;
   icd::Checked<Value> finish() override;
@@ -41,6 +41,7 @@ class CborSplitter final : public Splitter {
   icd::Checked<std::size_t> string(std::string_view in);
 
   icd::Checked<void> item();
+  icd::Checked<void> count();
   icd::Checked<void> check_head() const;
   icd::Checked<void> check_tag() const;
   icd::Checked<void> begin_string(Into into);
@@ -66,7 +67,8 @@ class CborSplitter final : public Splitter {
   icd::Refusal fault(std::string_view what) const { return fault_at(head_at_, what); }
   static icd::Refusal fault_at(std::size_t at, std::string_view what);
 
-  std::size_t most_text_;
+  const Most most_;
+  std::size_t values_ = 0;  // kept, with the chunks of strings
   BulkData& data_;
   DataPath path_;
 

@@ -82,7 +82,10 @@ icd::Checked<void> CborSplitter::chunk_of_string() {
   if (!head_.is_break() && (head_.indefinite() || string_ != head_.major())) {
     return std::unexpected(fault("a string in chunks holds something else"));
   }
-  if (into_ != Into::Data) rest_ += head_.raw();
+  if (into_ != Into::Data) {
+    if (auto counted = count(); !counted) return counted;
+    rest_ += head_.raw();
+  }
   if (!head_.is_break()) return begin_piece();
   string_ended();
   return {};

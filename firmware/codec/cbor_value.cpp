@@ -92,6 +92,7 @@ Value value_of(const cbor_item_t& item) {
       return {text_of(item)};
     case CBOR_TYPE_ARRAY: {
       Value::Array array;
+      array.reserve(cbor_array_size(&item));
       for (const cbor_item_t* element : std::span(cbor_array_handle(&item), cbor_array_size(&item))) {
         array.push_back(value_of(*element));
       }
@@ -99,6 +100,7 @@ Value value_of(const cbor_item_t& item) {
     }
     case CBOR_TYPE_MAP: {
       Value::Object object;
+      object.reserve(cbor_map_size(&item));
       for (const cbor_pair& pair : std::span(cbor_map_handle(&item), cbor_map_size(&item))) {
         if (auto name = name_of(*pair.key)) object.emplace_back(*std::move(name), value_of(*pair.value));
       }

@@ -90,7 +90,7 @@ std::expected<Value, std::string> parse_json(std::string_view text) {
   }
   // Else it says what is wrong, and where.
   BulkData none(0);
-  JsonSplitter splitter(Split::Nothing, text.size(), none);
+  JsonSplitter splitter(Split::Nothing, {.text = text.size()}, none);
   if (auto fed = splitter.feed(text); !fed) return std::unexpected(std::move(fed.error().sentence));
   auto root = splitter.finish();
   if (!root) return std::unexpected(std::move(root.error().sentence));
@@ -99,7 +99,7 @@ std::expected<Value, std::string> parse_json(std::string_view text) {
 
 bool is_json(std::string_view text) {
   BulkData none(0);
-  JsonSplitter splitter(Split::Nothing, text.size(), none);
+  JsonSplitter splitter(Split::Nothing, {.text = text.size()}, none);
   return splitter.feed(text) && splitter.end();
 }
 

@@ -23,8 +23,7 @@ bool starts_number(char c) {
 
 }  // namespace
 
-JsonSplitter::JsonSplitter(Split split, std::size_t most_text, BulkData& data)
-    : most_text_(most_text), data_(data), path_(split) {}
+JsonSplitter::JsonSplitter(Split split, Most most, BulkData& data) : most_(most), data_(data), path_(split) {}
 
 icd::Checked<void> JsonSplitter::feed(std::string_view bytes) {
   if (at_ == 0) rest_.reserve(std::min(bytes.size(), kSmallText));
@@ -33,7 +32,7 @@ icd::Checked<void> JsonSplitter::feed(std::string_view bytes) {
     if (!taken) return std::unexpected(taken.error());
     bytes.remove_prefix(*taken);
     at_ += *taken;
-    if (rest_.size() + number_.size() > most_text_) return std::unexpected(text_too_large(most_text_));
+    if (rest_.size() + number_.size() > most_.text) return std::unexpected(text_too_large(most_.text));
   }
   return {};
 }
@@ -114,6 +113,9 @@ icd::Checked<std::size_t> JsonSplitter::separator(char c) {
 icd::Checked<std::size_t> JsonSplitter::value(char first) {
   if (path_.at_data() || diverted_ == Diverted::Elements) {
     if (auto diverted = divert(first); !diverted) return std::unexpected(diverted.error());
+  }
+  if (diverted_ == Diverted::No && ++values_ > most_.values) {
+    return std::unexpected(too_many_values(most_.values));
   }
   if (starts_number(first)) {
     number_grammar_ = {};

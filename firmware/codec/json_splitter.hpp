@@ -21,7 +21,7 @@ namespace adit::codec {
 class JsonSplitter final : public Splitter {
  public:
   /// `data` must outlive this.
-  JsonSplitter(Split split, std::size_t most_text, BulkData& data);
+  JsonSplitter(Split split, Most most, BulkData& data);
 
   icd::Checked<void> feed(std::string_view bytes) override;
   icd::Checked<Value> finish() override;
@@ -61,7 +61,8 @@ class JsonSplitter final : public Splitter {
   static icd::Refusal fault_at(std::size_t at, std::string_view what);
   icd::Refusal expected(std::string_view what, char got) const;
 
-  std::size_t most_text_;
+  const Most most_;
+  std::size_t values_ = 0;  // kept
   BulkData& data_;
   DataPath path_;
 

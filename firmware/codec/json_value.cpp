@@ -26,6 +26,10 @@ Value number_of(double number) {
   return {number};
 }
 
+std::size_t children_of(const cJSON& item) {
+  return static_cast<std::size_t>(cJSON_GetArraySize(&item));
+}
+
 /// Recursion ends at BodyDecoder::kDeepest.
 Value value_of(const cJSON& item) {
   if (cJSON_IsBool(&item)) return {static_cast<bool>(cJSON_IsTrue(&item))};
@@ -33,6 +37,7 @@ Value value_of(const cJSON& item) {
   if (cJSON_IsString(&item)) return {text_of(item.valuestring)};
   if (cJSON_IsArray(&item)) {
     Value::Array array;
+    array.reserve(children_of(item));
     for (const cJSON* element = item.child; element != nullptr; element = element->next) {
       array.push_back(value_of(*element));
     }
@@ -40,6 +45,7 @@ Value value_of(const cJSON& item) {
   }
   if (cJSON_IsObject(&item)) {
     Value::Object object;
+    object.reserve(children_of(item));
     for (const cJSON* member = item.child; member != nullptr; member = member->next) {
       object.emplace_back(text_of(member->string), value_of(*member));
     }

@@ -178,8 +178,13 @@ icd::Checked<InParts<icd::MarkersUpdate>> read_markers_parts(const Document& doc
   icd::MarkersUpdate update;
   RefusedParts refused;
   const Field body(document.root, reading);
+  const Field markers = body.member("markers");
+  if (const std::size_t count = markers.size(); count > icd::kMostMarkers) {
+    return icd::unprocessable("markers: expected at most ", icd::kMostMarkers, " in one message, got ",
+                              count);
+  }
   read_each(
-      body.member("markers"), refused,
+      markers, refused,
       [&](const Field& field) { return field.reading().outcome(read_marker(field, rules)); },
       [&](icd::Marker marker) { update.markers.push_back(std::move(marker)); });
   return sorted(reading, std::move(update), std::move(refused));

@@ -26,6 +26,11 @@ icd::Refusal text_too_large(std::size_t most) {
           icd::sentence("the document without its bulk data is larger than the ", most, " bytes taken")};
 }
 
+icd::Refusal too_many_values(std::size_t most) {
+  return {icd::Status::ContentTooLarge,
+          icd::sentence("the document without its bulk data has more than the ", most, " values taken")};
+}
+
 void mark_split_out(Value& root) {
   // A body with a second "msg.data" has been refused, so that at most one is found.
   each_member(root, "msg",

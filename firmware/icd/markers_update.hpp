@@ -30,6 +30,7 @@ enum class MarkerType : std::int32_t {
 };
 inline constexpr auto kLastMarkerType = static_cast<std::int32_t>(MarkerType::TriangleList);
 
+inline constexpr std::size_t kMostMarkers = 100'000;  // in one update
 inline constexpr std::size_t kMostMarkerPoints = 100'000;
 inline constexpr std::size_t kLongestMeshResource = 4096;  // bytes
 

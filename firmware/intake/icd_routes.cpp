@@ -146,7 +146,7 @@ std::unique_ptr<Exchange> IcdRoutes::take_in(Visit visit, const RequestHead& hea
   }
   if (visit.uri == icd::Uri::MarkersUpdate) {
     return std::make_unique<MarkersUpload>(std::move(visit), *kind, options_.rules, workers_, budget_,
-                                           under_way_);
+                                           large_markers_, under_way_);
   }
   if (visit.uri != icd::Uri::MapUpdate) {
     return std::make_unique<SmallUpload>(std::move(visit), *kind, options_.rules, under_way_);

@@ -9,6 +9,7 @@
 #include "icd/bearer_token.hpp"
 #include "icd/rules.hpp"
 #include "intake/desk.hpp"
+#include "intake/one_at_a_time.hpp"
 #include "intake/server.hpp"
 #include "intake/upload.hpp"
 #include "loop/workers.hpp"
@@ -56,6 +57,7 @@ class IcdRoutes final : public Handler {
   loop::Workers& workers_;
   Handler& other_;
   std::shared_ptr<UploadBudget> budget_;
+  std::shared_ptr<OneAtATime> large_markers_ = std::make_shared<OneAtATime>();
   std::shared_ptr<Upload::UnderWay> under_way_ = std::make_shared<Upload::UnderWay>();
   bool stopping_ = false;
 };

@@ -18,7 +18,8 @@ using Pieces = std::vector<std::vector<std::uint8_t>>;
 class Decoding {
  public:
   Decoding(codec::BodyKind kind, const icd::Rules& rules)
-      : rules_(rules), decoder_(kind, codec::Split::MapData, {.data_bytes = rules.map_bytes}) {}
+      : rules_(rules),
+        decoder_(kind, codec::Split::MapData, {.values = kSmallValues, .data_bytes = rules.map_bytes}) {}
 
   /// What was taken out of it before the end.
   struct Before {
@@ -93,9 +94,12 @@ class MapUpload::State final : public Taking, public std::enable_shared_from_thi
   void store_what_came();
   void stored(icd::ChunkedBytes left);
   void go_on();
+  static icd::Refusal not_held() {
+    return {icd::Status::ServiceUnavailable, "the gateway could not hold this map; send it again later"};
+  }
   void failed() {
     at_work_ = false;
-    turn_away({icd::Status::ServiceUnavailable, "the gateway could not hold this map; send it again later"});
+    turn_away(not_held());
   }
 
   MapUploadOptions options_;
@@ -156,7 +160,7 @@ void MapUpload::State::worked() {
     if (auto& result = decoding_->result()) return take_result(std::move(*result));
     go_on();
   });
-  if (!well) failed();
+  if (!well) fail(not_held());
 }
 
 void MapUpload::State::take_result(icd::Checked<icd::MapUpdate> result) {

@@ -1,5 +1,7 @@
 #include "intake/markers_upload.hpp"
 
+#include <malloc.h>
+
 #include <optional>
 #include <string>
 #include <utility>
@@ -21,9 +23,19 @@ Parts read_parts(codec::BodyDecoder& decoder, const icd::Rules& rules) {
   return codec::read_markers_parts(*document, rules);
 }
 
+/// What is freed in many small pieces stays the process's own, for each worker once, unless it is asked for.
+struct MemoryGivenBack {
+  MemoryGivenBack() = default;
+  MemoryGivenBack(const MemoryGivenBack&) = delete;
+  MemoryGivenBack& operator=(const MemoryGivenBack&) = delete;
+  ~MemoryGivenBack() { ::malloc_trim(0); }
+};
+
 /// The worker's part. What has been fed is freed.
 Parts read_large(codec::BodyKind kind, const icd::Rules& rules, Body& body) {
-  codec::BodyDecoder decoder(kind, codec::Split::Nothing, {.text_bytes = MarkersUpload::kMost});
+  const MemoryGivenBack at_the_end;
+  codec::BodyDecoder decoder(kind, codec::Split::Nothing,
+                             {.text_bytes = MarkersUpload::kMost, .values = MarkersUpload::kMostValues});
   for (auto& piece : body) {
     if (auto fed = decoder.feed(piece); !fed) return std::unexpected(std::move(fed.error()));
     std::vector<std::uint8_t>().swap(piece);
@@ -36,12 +48,13 @@ Parts read_large(codec::BodyKind kind, const icd::Rules& rules, Body& body) {
 class MarkersUpload::State final : public Taking, public std::enable_shared_from_this<State> {
  public:
   State(Visit visit, codec::BodyKind kind, const icd::Rules& rules, loop::Workers& workers,
-        std::shared_ptr<UploadBudget> budget)
+        std::shared_ptr<UploadBudget> budget, const std::shared_ptr<OneAtATime>& turns)
       : Taking(std::move(visit), std::move(budget)),
         kind_(kind),
         rules_(rules),
         workers_(workers),
-        small_(std::in_place, kind, codec::Split::Nothing, codec::Limits{}) {}
+        turns_(turns),
+        small_(std::in_place, kind, codec::Split::Nothing, codec::Limits{.values = kSmallValues}) {}
 
   bool take(std::span<const std::uint8_t> piece) override {
     if (!over_) keep(piece);
@@ -55,20 +68,32 @@ class MarkersUpload::State final : public Taking, public std::enable_shared_from
   void feed(std::span<const std::uint8_t> piece);
   /// False: it has been refused.
   bool charge(std::size_t bytes);
+  void read();
   void give_to_worker();
-  void decoded(const Parts& parts) {
+  void read_by_worker(const Parts& parts) {
+    end_turn();
     if (over_) return;
+    if (!loop::guarded("taking markers", [&] { decoded(parts); })) fail(not_held());
+  }
+  void end_turn() {
+    if (std::exchange(reads_, false)) share_.give_back(kReading);
+    if (const auto turns = turns_.lock()) turns->end();
+  }
+  void decoded(const Parts& parts) {
     abandon();
     take_parts(visit_, parts);
   }
-  void failed() {
-    turn_away(
-        {icd::Status::ServiceUnavailable, "the gateway could not hold these markers; send them again later"});
+  static icd::Refusal not_held() {
+    return {icd::Status::ServiceUnavailable,
+            "the gateway could not hold these markers; send them again later"};
   }
+  void failed() { turn_away(not_held()); }
 
   codec::BodyKind kind_;
   icd::Rules rules_;
   loop::Workers& workers_;
+  std::weak_ptr<OneAtATime> turns_;          // whose turns hold this
+  bool reads_ = false;                       // and has taken kReading for that
   Body body_;                                // as it came
   std::optional<codec::BodyDecoder> small_;  // nothing: it is large
 };
@@ -95,30 +120,45 @@ void MarkersUpload::State::feed(std::span<const std::uint8_t> piece) {
   if (fed) return;
   if (fed.error().status != icd::Status::ContentTooLarge) return turn_away(fed.error());
   small_.reset();
-  (void)charge(kReading);
 }
 
 void MarkersUpload::State::whole() {
   if (over_) return;
-  if (!small_) return give_to_worker();
+  if (!small_) {
+    if (const auto turns = turns_.lock()) turns->wait([self = shared_from_this()] { self->read(); });
+    return;
+  }
   const Parts parts = read_parts(*small_, rules_);
   decoded(parts);
+}
+
+/// It is its turn.
+void MarkersUpload::State::read() {
+  const bool well = loop::guarded("reading markers", [this] {
+    reads_ = !over_ && charge(kReading);
+    if (!reads_) return end_turn();
+    give_to_worker();
+  });
+  if (well) return;
+  end_turn();
+  failed();
 }
 
 void MarkersUpload::State::give_to_worker() {
   auto body = std::make_shared<Body>(std::exchange(body_, {}));
   auto parts = std::make_shared<Parts>();
   workers_.submit([kind = kind_, rules = rules_, body, parts] { *parts = read_large(kind, rules, *body); },
-                  [self = shared_from_this(), parts] {
-                    if (!loop::guarded("taking markers", [&] { self->decoded(*parts); })) self->failed();
-                  },
-                  [self = shared_from_this()] { self->failed(); });
+                  [self = shared_from_this(), parts] { self->read_by_worker(*parts); },
+                  [self = shared_from_this()] {
+                    self->end_turn();
+                    self->failed();
+                  });
 }
 
 MarkersUpload::MarkersUpload(Visit visit, codec::BodyKind kind, const icd::Rules& rules,
                              loop::Workers& workers, std::shared_ptr<UploadBudget> budget,
-                             std::shared_ptr<UnderWay> under_way)
-    : WorkerUpload(std::make_shared<State>(std::move(visit), kind, rules, workers, std::move(budget)),
+                             const std::shared_ptr<OneAtATime>& turns, std::shared_ptr<UnderWay> under_way)
+    : WorkerUpload(std::make_shared<State>(std::move(visit), kind, rules, workers, std::move(budget), turns),
                    std::move(under_way)) {}
 
 }  // namespace adit::intake

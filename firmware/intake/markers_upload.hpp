@@ -4,6 +4,7 @@
 
 #include "codec/body_decoder.hpp"
 #include "icd/rules.hpp"
+#include "intake/one_at_a_time.hpp"
 #include "intake/worker_upload.hpp"
 #include "loop/workers.hpp"
 
@@ -12,8 +13,9 @@ namespace adit::intake {
 /// Takes a markers update of at most kMost bytes, compressed or not.
 ///
 /// Nearly all are small: they are decoded on the loop as they arrive, and wait for nobody. One that turns out
-/// to be larger than codec::Limits::text_bytes (a marker may have icd::kMostMarkerPoints) is kept as it came,
-/// and decoded on a worker once it is whole.
+/// to be larger than codec::Limits::text_bytes (a marker may have icd::kMostMarkerPoints), or to have more
+/// than kSmallValues, is kept as it came, and decoded on a worker once it is whole: one at a time, for what
+/// that takes.
 ///
 /// Once whole and checked it is the desk's, also where the client has hung up meanwhile; until then a client
 /// that hangs up takes it back.
@@ -21,11 +23,15 @@ class MarkersUpload final : public WorkerUpload {
  public:
   /// Room for every marker there can be: one of 100,000 points and as many colors takes 7.9 MB of CBOR.
   static constexpr std::size_t kMost = 8u << 20;
-  /// What reading a large one is counted as in the budget, whatever its size.
-  static constexpr std::size_t kReading = 64u << 20;
+  /// And for its values: 900,000, without their names.
+  static constexpr std::size_t kMostValues = 1'000'000;
+  /// What reading a large one is counted as in the budget while it is read: what was measured for the worst
+  /// that kMostValues can be, members without a name, is 236 MiB.
+  static constexpr std::size_t kReading = 256u << 20;
 
   MarkersUpload(Visit visit, codec::BodyKind kind, const icd::Rules& rules, loop::Workers& workers,
-                std::shared_ptr<UploadBudget> budget, std::shared_ptr<UnderWay> under_way);
+                std::shared_ptr<UploadBudget> budget, const std::shared_ptr<OneAtATime>& turns,
+                std::shared_ptr<UnderWay> under_way);
 
  private:
   class State;

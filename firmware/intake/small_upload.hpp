@@ -14,7 +14,7 @@ class SmallUpload final : public Upload {
       : Upload(std::move(under_way)),
         visit_(std::move(visit)),
         rules_(rules),
-        decoder_(kind, codec::Split::Nothing, {}) {
+        decoder_(kind, codec::Split::Nothing, {.values = kSmallValues}) {
     visit_.sender.bytes = 0;
   }
 

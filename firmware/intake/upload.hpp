@@ -1,5 +1,6 @@
 #pragma once
 
+#include <cstddef>
 #include <memory>
 #include <set>
 
@@ -7,6 +8,9 @@
 #include "intake/server.hpp"
 
 namespace adit::intake {
+
+/// How many values a document may have that is read like any small one (codec::Limits): 25 MiB at the worst.
+inline constexpr std::size_t kSmallValues = 100'000;
 
 /// Takes the body of a message, and can be told in the middle of it that nothing more is taken.
 class Upload : public Exchange {

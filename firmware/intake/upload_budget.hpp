@@ -36,6 +36,11 @@ class UploadShare {
     taken_ += bytes;
     return true;
   }
+  /// Of what it has taken.
+  void give_back(std::size_t bytes) {
+    taken_ -= bytes;
+    budget_->give_back(bytes);
+  }
 
  private:
   std::shared_ptr<UploadBudget> budget_;

@@ -37,6 +37,12 @@ class WorkerUpload : public Upload {
     }
 
    protected:
+    /// What was to end it has failed, be it the desk: whoever has not been answered yet is told so now.
+    void fail(const icd::Refusal& refusal) {
+      abandon();
+      visit_.refuse(refusal);
+    }
+
     Visit visit_;
     UploadShare share_;
     bool over_ = false;  // answered, the client is gone, or it is the desk's

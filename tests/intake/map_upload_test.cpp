@@ -110,6 +110,39 @@ TEST(MapUpload, IsAnsweredWhenTheDeskHasKeptItAndNotBefore) {
   EXPECT_EQ(client.reply()->status, 200);
 }
 
+/// It is the desk's by then: nothing else would ever answer its client.
+TEST(MapUpload, IsRefusedWhereTheDeskFailsAtIt) {
+  Team team;
+  const std::string sent = authorized("POST", "/map/update", kJsonType, grid_body(300, 300));
+  team.served.on_loop([&] { team.desk.fails = true; });
+  const auto reply = team.ask(sent);
+  ASSERT_TRUE(reply) << "its client waits for ever";
+  EXPECT_EQ(reply->status, 503);
+  EXPECT_TRUE(team.served.eventually([&] { return team.desk.arriving == 0; })) << "its file is let go";
+  team.served.on_loop([&] { team.desk.fails = false; });
+  EXPECT_EQ(team.ask(sent)->status, 200);
+  EXPECT_EQ(team.served.on_loop([&] { return team.desk.maps.size(); }), 1u);
+}
+
+TEST(MapUpload, StaysTakenWhereItsClientIsGoneWhileTheDeskKeepsIt) {
+  Team team;
+  team.served.on_loop([&] { team.desk.stores_at_once = false; });
+  const std::string body = grid_body(300, 300);
+  {
+    RawClient client(team.served.port());
+    client.send(head_of(body) + body);
+    ASSERT_TRUE(team.served.eventually([&] { return team.desk.storing.size() == 1; }));
+    client.reset();
+    ASSERT_TRUE(team.served.eventually([&] { return team.served.server().connections() == 0; }));
+  }
+  team.served.on_loop([&] {
+    team.desk.storing.front()();
+    EXPECT_EQ(team.desk.maps.size(), 1u);
+    EXPECT_TRUE(team.desk.refusals.empty());
+    EXPECT_EQ(team.desk.arriving, 0);
+  });
+}
+
 /// A cloud of that many points, as the ICD's clients write it in JSON.
 std::string cloud_body(std::size_t points) {
   const auto field = [](const char* name, int offset) {

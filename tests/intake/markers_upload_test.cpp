@@ -129,23 +129,92 @@ TEST(MarkersUpload, IsNotTakenOnceItsClientIsGoneOrAStopHasBegun) {
   team.served.on_loop([&] { EXPECT_TRUE(team.desk.markers.empty()); });
 }
 
-TEST(MarkersUpload, AsksForTheMemoryThatReadingItTakes) {
+TEST(MarkersUpload, WaitsForTheMemoryThatReadingAnotherTakes) {
   IcdOptions options = Team::with_tokens();
-  options.upload_bytes = MarkersUpload::kReading + (4u << 20);
+  options.upload_bytes = MarkersUpload::kReading + (6u << 20);
   Team team(options);
   const std::string body = cbor_of({{"markers", {marker(50'000, false)}}});
   const std::string sent = authorized("POST", "/markers/update", kCborType, body);
   Team::Busy busy(team);
-  RawClient first(team.served.port());
+  RawClient first(team.served.port()), second(team.served.port());
   first.send(sent);
-  team.served.turn_often();
-  const auto refused = team.ask(sent);
-  ASSERT_TRUE(refused);
-  EXPECT_EQ(refused->status, 429) << refused->body;
+  second.send(sent);
+  {
+    RawClient gone(team.served.port());
+    gone.send(sent);
+    ASSERT_TRUE(team.served.eventually([&] { return team.served.server().connections() == 3; }));
+    team.served.turn_often();
+    gone.reset();
+    ASSERT_TRUE(team.served.eventually([&] { return team.served.server().connections() == 2; }));
+  }
   EXPECT_EQ(team.ask(authorized("POST", "/markers/update", kJsonType, kMarkersBody))->status, 200);
   busy.end();
   EXPECT_EQ(first.reply()->status, 200);
+  EXPECT_EQ(second.reply()->status, 200);
   EXPECT_EQ(team.ask(sent)->status, 200) << "it was given back";
+}
+
+TEST(MarkersUpload, IsRefusedWhereTheMemoryForReadingItIsNotThere) {
+  IcdOptions options = Team::with_tokens();
+  options.upload_bytes = MarkersUpload::kReading;
+  Team team(options);
+  const std::string body = cbor_of({{"markers", {marker(50'000, false)}}});
+  for (int again = 0; again < 2; ++again) {
+    const auto refused = team.ask(authorized("POST", "/markers/update", kCborType, body));
+    ASSERT_TRUE(refused);
+    EXPECT_EQ(refused->status, 429) << refused->body;
+  }
+}
+
+TEST(MarkersUpload, IsRefusedWhereTheDeskFailsAtIt) {
+  Team team;
+  const std::string large = cbor_of({{"markers", {marker(50'000, false)}}});
+  team.served.on_loop([&] { team.desk.fails = true; });
+  const auto reply = team.ask(authorized("POST", "/markers/update", kCborType, large));
+  ASSERT_TRUE(reply) << "its client waits for ever";
+  EXPECT_EQ(reply->status, 503);
+  ASSERT_TRUE(team.ask(authorized("POST", "/markers/update", kJsonType, kMarkersBody)));
+  team.served.on_loop([&] { team.desk.fails = false; });
+  EXPECT_EQ(team.ask(authorized("POST", "/markers/update", kCborType, large))->status, 200);
+}
+
+/// Whatever is short in the body and long in memory.
+TEST(MarkersUpload, IsRefusedWhereItHasMoreValuesThanAnyMarkerHas) {
+  Team team;
+  const auto many = [](const std::string& head, const std::string& one, const std::string& tail) {
+    std::string body = head;
+    while (body.size() + one.size() + tail.size() < MarkersUpload::kMost) body += one;
+    return body + tail;
+  };
+  const std::string_view kChunks("\x7f\x60", 2);
+  const std::string zero("\0", 1), cbor_head("\xa1\x67markers\x9f", 10);
+  const std::pair<std::string_view, std::string> bodies[] = {
+      {kJsonType, many("{\"markers\":[0", ",0", "]}")},
+      {kJsonType, many("{\"markers\":[{}", ",{}", "]}")},
+      {kJsonType, many("{\"markers\":[{\"\":0", ",\"\":0", "}]}")},
+      {kCborType, many(cbor_head, zero, "\xff")},
+      {kCborType, many(cbor_head, "\xa0", "\xff")},
+      {kCborType, many(cbor_head + "\xbf", "\x60" + zero, "\xff\xff")},
+      {kCborType, many(cbor_head + std::string(kChunks), "\x60", "\xff\xff")}};
+  for (const auto& [type, body] : bodies) {
+    for (const bool zipped : {false, true}) {
+      const auto reply =
+          team.ask(authorized("POST", "/markers/update", std::string(type) + (zipped ? kGzip : ""),
+                              zipped ? gzipped(body) : body));
+      ASSERT_TRUE(reply);
+      EXPECT_EQ(reply->status, 413) << reply->body;
+      EXPECT_NE(reply->body.find("1000000 values"), std::string::npos) << reply->body;
+    }
+  }
+  for (const std::string_view path : {"/state/update", "/map/update"}) {
+    const auto reply = team.ask(authorized(
+        "POST", path, kJsonType, "{\"poses\":[0" + std::string(bodies[0].second, 13, 300'000) + "]}"));
+    ASSERT_TRUE(reply);
+    EXPECT_EQ(reply->status, 413) << reply->body;
+  }
+  const std::string deletes =
+      many("{\"markers\":[{\"action\":2}", ",{\"action\":2}", "]}").substr(0, 24 + 13 * 110'000);
+  EXPECT_EQ(team.ask(authorized("POST", "/markers/update", kJsonType, deletes + "]}"))->status, 422);
 }
 
 }  // namespace

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <new>
 #include <nlohmann/json.hpp>
 #include <optional>
 #include <string>
@@ -30,6 +31,7 @@ class FakeDesk final : public Desk {
 
   std::vector<std::function<void()>> storing;  // answers of maps that wait until the test lets them be kept
   bool stores_at_once = true;
+  bool fails = false;  // take() throws
 
   int arriving = 0;             // maps on their way
   std::size_t stored = 0;       // bytes of their data that were stored, ever
@@ -92,6 +94,7 @@ class FakeDesk final : public Desk {
 
   template <class Message>
   icd::Checked<void> keep(std::vector<Message>& kept, Message message, const Sender& sender) {
+    if (fails) throw std::bad_alloc();
     if (full) return std::unexpected(*full);
     kept.push_back(std::move(message));
     senders.push_back(sender);

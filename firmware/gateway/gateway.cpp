@@ -5,6 +5,7 @@
 #include "dispatch/another_post.hpp"
 #include "gateway/report_rows.hpp"
 #include "host/log.hpp"
+#include "host/random.hpp"
 #include "loop/guard.hpp"
 #include "settings/written.hpp"
 
@@ -25,13 +26,19 @@ std::uint64_t beside_maps(const settings::Settings& settings) {
   return 4 * std::uint64_t{settings.queues.marker_bytes} + lanes::SetAside::kMostBytes + kOthers;
 }
 
+std::uint64_t seed() {
+  std::uint64_t seed = 0;
+  host::fill_random({reinterpret_cast<std::uint8_t*>(&seed), sizeof seed});
+  return seed;
+}
+
 }  // namespace
 
 Gateway::Gateway(loop::Loop& loop, Parts parts)
     : loop_(loop),
       parts_(std::move(parts)),
       settings_(settings::in_use(parts_.loaded.settings)),
-      random_(std::random_device{}()),
+      random_(seed()),
       spool_(parts_.runtime_folder + "/waiting", beside_maps(settings_)),
       stamp_floor_(parts_.state_folder),
       writer_(loop),

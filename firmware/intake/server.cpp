@@ -5,9 +5,9 @@
 
 #include <algorithm>
 #include <map>
-#include <unordered_map>
 #include <utility>
 
+#include "intake/accept.hpp"
 #include "intake/client.hpp"
 #include "intake/head.hpp"
 #include "intake/listen_socket.hpp"
@@ -75,7 +75,8 @@ class Server::Impl final : public Engine {
   bool stopping_ = false;
   bool listening_ = false;
   bool run_is_due_ = false;
-  std::unordered_map<Client*, std::unique_ptr<Client>> clients_;
+  std::map<std::uint64_t, std::unique_ptr<Client>> clients_;  // by Client::number(): the oldest first
+  std::shared_ptr<void> accepts_;
   loop::Instant look_due_ = loop::Instant::max();
   loop::Source readable_, deadline_timer_;
   const std::shared_ptr<Impl*> alive_ = std::make_shared<Impl*>(this);  // for what is posted
@@ -95,6 +96,9 @@ std::expected<void, std::string> Server::Impl::start(loop::FileDescriptor given)
       MHD_OPTION_NOTIFY_COMPLETED, &Impl::request_completed, this, MHD_OPTION_URI_LOG_CALLBACK,
       &Impl::head_begun, this, MHD_OPTION_UNESCAPE_CALLBACK, &Impl::leave_escaped, nullptr, MHD_OPTION_END);
   if (daemon_ == nullptr) return std::unexpected("the HTTP server did not start");
+  accepts_ = accept_instead(socket->get(), [this](int fd, const sockaddr* peer, unsigned size) {
+    MHD_add_connection(daemon_, fd, peer, size);
+  });
   socket->release();  // NOLINT(bugprone-unused-return-value): libmicrohttpd's, until stop_listening()
   listening_ = true;
 
@@ -111,13 +115,14 @@ Server::Impl::~Impl() {
   stopping_ = true;
   readable_ = {};
   stop_listening();
-  for (const auto& [client, owned] : clients_) client->resume();  // else libmicrohttpd aborts
+  for (const auto& [number, client] : clients_) client->resume();  // else libmicrohttpd aborts
   MHD_stop_daemon(daemon_);
 }
 
 /// libmicrohttpd may not end it: a socket that it shuts down is deaf for everybody who has a copy.
 void Server::Impl::stop_listening() {
   if (!std::exchange(listening_, false)) return;
+  accepts_.reset();
   const MHD_socket socket = MHD_quiesce_daemon(daemon_);
   if (socket != MHD_INVALID_SOCKET) ::close(socket);
 }
@@ -146,11 +151,11 @@ void Server::Impl::look_at(loop::Instant when) {
 void Server::Impl::look_at_deadlines() {
   look_due_ = loop::Instant::max();
   const loop::Instant now = loop_.now();
-  for (const auto& [client, owned] : clients_) {
+  for (const auto& [number, client] : clients_) {
     if (client->deadline() <= now) client->late();
   }
   loop::Instant next = loop::Instant::max();
-  for (const auto& [client, owned] : clients_) next = std::min(next, client->deadline());
+  for (const auto& [number, client] : clients_) next = std::min(next, client->deadline());
   if (next != loop::Instant::max()) look_at(next);
   make_room();
 }
@@ -162,7 +167,7 @@ void Server::Impl::connected(MHD_Connection* connection, void** client_cls) {
       std::make_unique<Client>(*this, loop_, connection, socket->connect_fd,
                                address_text(address->client_addr), local_address(socket->connect_fd));
   Client* const known = client.get();
-  clients_.emplace(known, std::move(client));
+  clients_.emplace(known->number(), std::move(client));
   *client_cls = known;
   make_room();
 }
@@ -172,15 +177,15 @@ void Server::Impl::connected(MHD_Connection* connection, void** client_cls) {
 /// the connection that has asked for nothing for longest.
 void Server::Impl::make_room() {
   std::map<std::string_view, std::uint32_t> of_address;
-  for (const auto& [client, owned] : clients_) ++of_address[client->peer()];
+  for (const auto& [number, client] : clients_) ++of_address[client->peer()];
   for (const auto& [address, count] : of_address) {
     if (count >= listen_.connections_per_address) give_way(address);
   }
   if (clients_.size() < listen_.connections || give_way({})) return;
   Client* longest = nullptr;
-  for (const auto& [client, owned] : clients_) {
+  for (const auto& [number, client] : clients_) {
     if (client->phase() == Client::Phase::Request) continue;
-    if (longest == nullptr || client->since() < longest->since()) longest = client;
+    if (longest == nullptr || client->since() < longest->since()) longest = client.get();
   }
   if (longest == nullptr) return;
   const loop::Instant gives_way = longest->since() + kGivesWayAfter;
@@ -194,9 +199,9 @@ void Server::Impl::make_room() {
 /// The one of `address` (or, "", of any) that has waited longest since it ended its own direction ends.
 bool Server::Impl::give_way(std::string_view address) {
   Client* oldest = nullptr;
-  for (const auto& [client, owned] : clients_) {
+  for (const auto& [number, client] : clients_) {
     if (!client->may_give_way() || (!address.empty() && client->peer() != address)) continue;
-    if (oldest == nullptr || client->since() < oldest->since()) oldest = client;
+    if (oldest == nullptr || client->since() < oldest->since()) oldest = client.get();
   }
   if (oldest != nullptr) oldest->cut();
   return oldest != nullptr;
@@ -268,7 +273,7 @@ void Server::Impl::connection_changed(void* cls, MHD_Connection* connection, voi
     loop::guarded("a connection of the team", [&] { server.connected(connection, client_cls); });
   } else if (auto* client = static_cast<Client*>(std::exchange(*client_cls, nullptr)); client != nullptr) {
     loop::guarded("a connection of the team", [&] {
-      server.clients_.erase(client);
+      server.clients_.erase(client->number());
       server.run_soon();  // libmicrohttpd looks only then whether there is room for another connection
     });
   }

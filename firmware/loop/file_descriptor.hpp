@@ -1,10 +1,10 @@
 #pragma once
 
-#include <unistd.h>
-
 #include <utility>
 
 namespace adit::loop {
+
+void close_descriptor(int fd) noexcept;
 
 /// Owns a file descriptor.
 class FileDescriptor {
@@ -17,7 +17,7 @@ class FileDescriptor {
     return *this;
   }
   ~FileDescriptor() {
-    if (fd_ >= 0) ::close(fd_);
+    if (fd_ >= 0) close_descriptor(fd_);
   }
   int get() const { return fd_; }
   int release() { return std::exchange(fd_, -1); }

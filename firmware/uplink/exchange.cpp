@@ -1,8 +1,5 @@
 #include "uplink/exchange.hpp"
 
-#include <sys/socket.h>
-#include <sys/uio.h>
-
 #include <algorithm>
 #include <array>
 #include <cerrno>
@@ -54,17 +51,15 @@ int Exchange::write(int fd) {
     const std::size_t skip = i == chunk_ ? within_chunk_ : 0;
     pieces[count++] = piece(chunks[i]->data() + skip, chunks[i]->size() - skip);
   }
-  msghdr message{};
-  message.msg_iov = pieces.data();
-  message.msg_iovlen = count;
-  const ssize_t taken = ::sendmsg(fd, &message, MSG_NOSIGNAL | MSG_DONTWAIT);
-  if (taken >= 0) {
-    advance(static_cast<std::size_t>(taken));
+  const auto taken = uplink::write(fd, std::span(pieces).first(count));
+  if (taken) {
+    advance(*taken);
     return 0;
   }
-  if (errno == EAGAIN || errno == EWOULDBLOCK || errno == EINTR) return 0;
+  const int error = taken.error();
+  if (error == EAGAIN || error == EWOULDBLOCK || error == EINTR) return 0;
   write_broken_ = true;
-  return errno;
+  return error;
 }
 
 void Exchange::advance(std::size_t bytes) {
@@ -82,17 +77,17 @@ Exchange::Answer Exchange::lost(const std::string& why) {
 }
 
 Exchange::Answer Exchange::read(int fd) {
-  std::array<char, 16384> bytes;  // NOLINT(cppcoreguidelines-pro-type-member-init): recv fills it
+  std::array<char, 16384> bytes;  // NOLINT(cppcoreguidelines-pro-type-member-init): read() fills it
   while (true) {
-    const ssize_t got = ::recv(fd, bytes.data(), bytes.size(), MSG_DONTWAIT);
-    if (got < 0 && errno == EINTR) continue;
-    if (got < 0 && (errno == EAGAIN || errno == EWOULDBLOCK)) return Answer::Waiting;
-    if (got < 0) return lost(std::strerror(errno));
+    const auto got = uplink::read(fd, bytes);
+    const int error = got ? 0 : got.error();
+    if (error == EINTR) continue;
+    if (error == EAGAIN || error == EWOULDBLOCK) return Answer::Waiting;
+    if (error != 0) return lost(std::strerror(error));
     // The failed write has taken the connection's error with it, so that this end may be a reset, and no
     // honest end of an answer without a length.
-    if (got == 0 && write_broken_) return lost("the peer closed the connection while the request was sent");
-    const auto state =
-        got == 0 ? parser_.feed_end() : parser_.feed({bytes.data(), static_cast<std::size_t>(got)});
+    if (*got == 0 && write_broken_) return lost("the peer closed the connection while the request was sent");
+    const auto state = *got == 0 ? parser_.feed_end() : parser_.feed({bytes.data(), *got});
     if (state == AnswerParser::State::Whole) return Answer::Whole;
     if (state == AnswerParser::State::Malformed) return lost(parser_.fault());
   }

@@ -81,13 +81,6 @@ std::unexpected<NoSocket> failure(const std::string& doing, int error) {
 
 }  // namespace
 
-std::string authority_of(const Endpoint& endpoint) {
-  // A zone ("fe80::1%darpa0") is this machine's own affair (RFC 6874 4).
-  const std::string address = endpoint.address.substr(0, endpoint.address.find('%'));
-  const bool is_ipv6 = address.find(':') != std::string::npos;
-  return (is_ipv6 ? "[" + address + "]" : address) + ":" + std::to_string(endpoint.port);
-}
-
 std::expected<loop::FileDescriptor, NoSocket> begin_connect(const Endpoint& endpoint) {
   const Addresses address = parse(endpoint);
   if (!address) return std::unexpected(NoSocket{"\"" + endpoint.address + "\" is no IP address"});
@@ -105,6 +98,21 @@ std::expected<loop::FileDescriptor, NoSocket> begin_connect(const Endpoint& endp
   const int result = ::connect(fd.get(), address->ai_addr, address->ai_addrlen);
   if (result != 0 && errno != EINPROGRESS) return failure("", errno);
   return fd;
+}
+
+std::expected<std::size_t, int> write(int fd, std::span<const iovec> pieces) {
+  msghdr message{};
+  message.msg_iov = const_cast<iovec*>(pieces.data());
+  message.msg_iovlen = pieces.size();
+  const ssize_t taken = ::sendmsg(fd, &message, MSG_NOSIGNAL | MSG_DONTWAIT);
+  if (taken >= 0) return static_cast<std::size_t>(taken);
+  return std::unexpected(errno);
+}
+
+std::expected<std::size_t, int> read(int fd, std::span<char> bytes) {
+  const ssize_t got = ::recv(fd, bytes.data(), bytes.size(), MSG_DONTWAIT);
+  if (got >= 0) return static_cast<std::size_t>(got);
+  return std::unexpected(errno);
 }
 
 int connect_error(int fd) {

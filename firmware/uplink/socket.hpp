@@ -1,8 +1,11 @@
 #pragma once
 
+#include <sys/uio.h>
+
 #include <chrono>
 #include <cstddef>
 #include <expected>
+#include <span>
 #include <string>
 
 #include "loop/file_descriptor.hpp"
@@ -21,6 +24,13 @@ struct NoSocket {
 /// A non-blocking TCP socket of the endpoint's settings that has begun to connect, or why there is none:
 /// "Connection refused", "binding to interface darpa0: No such device".
 std::expected<loop::FileDescriptor, NoSocket> begin_connect(const Endpoint& endpoint);
+
+/// Gives the kernel as much of `pieces` as it takes at once: how many bytes that were, or an errno (EAGAIN:
+/// none now).
+std::expected<std::size_t, int> write(int fd, std::span<const iovec> pieces);
+
+/// What has come: how many bytes, 0 once the peer has ended its direction, or an errno (EAGAIN: nothing yet).
+std::expected<std::size_t, int> read(int fd, std::span<char> bytes);
 
 /// How connecting ended: 0 or an errno.
 int connect_error(int fd);

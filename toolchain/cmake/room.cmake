@@ -1,8 +1,11 @@
 # A room: one folder of firmware/, one static library adit_<name>, one namespace adit::<name>.
 #   adit_room(codec SOURCES json.cpp cbor.cpp ROOMS icd LIBRARIES PkgConfig::cbor)
 # ROOMS are the rooms whose headers it includes, all of them named before it in firmware/CMakeLists.txt.
+# SEAM are sources that meet the machine (time, threads, sockets, randomness). They are a library of their own,
+# adit_<name>_linux, which comes with adit_<name> into every program but those with the property ADIT_SIMULATED: such a
+# program implements their headers itself.
 function(adit_room name)
-  cmake_parse_arguments(ROOM "" "" "SOURCES;ROOMS;LIBRARIES" ${ARGN})
+  cmake_parse_arguments(ROOM "" "" "SOURCES;SEAM;ROOMS;LIBRARIES" ${ARGN})
   list(TRANSFORM ROOM_ROOMS PREPEND adit_)
   if(ROOM_SOURCES)
     add_library(adit_${name} STATIC ${ROOM_SOURCES})
@@ -15,6 +18,11 @@ function(adit_room name)
   endif()
   target_include_directories(adit_${name} ${scope} ${PROJECT_SOURCE_DIR}/firmware)
   target_link_libraries(adit_${name} ${scope} ${ROOM_ROOMS} ${ROOM_LIBRARIES})
+  if(ROOM_SEAM)
+    add_library(adit_${name}_linux STATIC ${ROOM_SEAM})
+    target_link_libraries(adit_${name}_linux PRIVATE adit_options PUBLIC adit_${name})
+    target_link_libraries(adit_${name} PUBLIC $<$<NOT:$<BOOL:$<TARGET_PROPERTY:ADIT_SIMULATED>>>:adit_${name}_linux>)
+  endif()
 endfunction()
 
 # The tests of a room: tests/<name>/*.cpp become the one program adit_<name>_test.

@@ -1,0 +1,161 @@
+#include "gateway/service.hpp"
+
+#include <csignal>
+#include <cstdlib>
+#include <filesystem>
+#include <utility>
+
+#include "gateway/notices.hpp"
+#include "gateway/open_panel.hpp"
+#include "host/inherited.hpp"
+#include "host/log.hpp"
+
+namespace adit::gateway {
+namespace {
+
+/// Where what need not outlive the box is kept.
+std::string runtime_folder(const Options& options) {
+  const char* const runtime = std::getenv("RUNTIME_DIRECTORY");
+  return runtime != nullptr ? runtime : options.state;
+}
+
+/// The state folder, made where it is not there yet, for this user alone.
+std::expected<void, std::string> make_folder(const std::string& folder) {
+  std::error_code error;
+  if (std::filesystem::create_directories(folder, error)) {
+    std::filesystem::permissions(folder, std::filesystem::perms::owner_all, error);
+  }
+  if (error) return std::unexpected(folder + ": " + error.message());
+  return {};
+}
+
+/// Where the state folder is full, or cannot be written to, maps and states flow all the same; reports are
+/// refused, and those that can be read are shown.
+ledger::Result<ledger::Ledger> open_ledger(const Options& options) {
+  using ledger::Ledger;
+  std::error_code unknown;
+  const char* const runtime = std::getenv("RUNTIME_DIRECTORY");
+  const std::string scratch = runtime != nullptr ? runtime : std::filesystem::temp_directory_path(unknown);
+  Ledger::sweep(options.state, scratch);
+  auto opened = Ledger::open(options.state);
+  const bool is_there = std::filesystem::exists(options.state, unknown);
+  if (!opened && (opened.error().full || opened.error().read_only || !is_there)) {
+    host::log(host::Level::Error, "no report is taken, the ledger cannot be written",
+              {{"why", opened.error().what}});
+    opened = Ledger::stand_in(options.state, scratch, opened.error().what);
+  }
+  if (opened && !opened->damage().empty()) host::log(host::Level::Error, opened->damage());
+  return opened;
+}
+
+std::expected<Parts, std::string> gather(const Options& options, const Store& store,
+                                         const FactoryReset& reset, ListenSockets& sockets) {
+  auto loaded = store.load();
+  if (!loaded) return std::unexpected(loaded.error());
+  auto ledger = open_ledger(options);
+  if (!ledger) return std::unexpected(ledger.error().what);
+  auto known = read_board(options.board);
+  auto panel = open_panel(known.board.panel.value_or(loaded->settings.panel), runtime_folder(options));
+  return Parts{.store = store,
+               .reset = reset,
+               .sockets = sockets,
+               .loaded = std::move(*loaded),
+               .trouble = "",
+               .ledger = std::move(*ledger),
+               .ledger_rest = LedgerReturn::kRest,
+               .board = std::move(known.board),
+               .board_trouble = std::move(known.trouble),
+               .notices = read_notices(options.notices),
+               .lines = std::move(panel.lines),
+               .button = std::move(panel.button),
+               .runtime_folder = runtime_folder(options),
+               .state_folder = options.state,
+               .update_folder = options.update,
+               .network_folder = options.network,
+               .legacy = std::nullopt};
+}
+
+int fail(const std::string& why) {
+  host::log(host::Level::Error, "cannot start", {{"why", why}});
+  return 1;
+}
+
+}  // namespace
+
+Service::Service(const Options& options)
+    : options_(options),
+      store_(options.settings, options.secrets, options.state),
+      reset_(store_, options.state, runtime_folder(options)) {}
+
+int Service::run() {
+  if (auto taken = take_over_sockets(); !taken) return fail(taken.error());
+  if (auto made = make_folder(options_.state); !made) {
+    host::log(host::Level::Error, "the state folder cannot be made", {{"why", made.error()}});
+  }
+  const auto terminated = loop_.signal(SIGTERM, [this] { running_->stop(); });
+  const auto interrupted = loop_.signal(SIGINT, [this] { running_->stop(); });
+  while (true) {
+    const auto anew = run_one();
+    if (anew && !*anew) break;
+    trouble_.clear();
+    if (anew) continue;
+    if (!store_.take_back()) return fail(anew.error());
+    trouble_ = "the last change was taken back: " + anew.error();
+    host::log(host::Level::Error, "the last change of the settings is taken back", {{"why", anew.error()}});
+  }
+  host::log(host::Level::Notice, "stopped");
+  return 0;
+}
+
+/// Whether another is to follow; an error: it could not start.
+std::expected<bool, std::string> Service::run_one() {
+  if (const auto done = reset_.finish(); !done) {
+    trouble_ = "the factory reset is not finished: " + done.error();
+    host::log(host::Level::Error, trouble_);
+  } else if (*done) {
+    legacy_.reset();  // the team's before: its map, its robots
+  }
+  auto parts = gather(options_, store_, reset_, sockets_);
+  if (!parts) return std::unexpected(parts.error());
+  const settings::Settings settings = parts->loaded.settings;
+  parts->trouble = trouble_;
+  const bool waits_for_ledger = !parts->ledger.refusal().empty();
+  parts->ledger_rest =
+      std::exchange(ledger_rest_, waits_for_ledger ? longer(ledger_rest_) : LedgerReturn::kRest);
+  parts->legacy = std::exchange(legacy_, std::nullopt);
+  Gateway gateway(loop_, std::move(*parts));
+  const auto ran = run(gateway, settings);
+  legacy_ = gateway.hand_over();
+  return ran;
+}
+
+std::expected<bool, std::string> Service::run(Gateway& gateway, const settings::Settings& settings) {
+  if (const auto started = gateway.start(); !started) return std::unexpected(started.error());
+  store_.settle(settings);
+  sockets_.settle();
+  host::notify_ready(gateway.status_line());
+  begin_watchdog();
+  if (watchdog_) watchdog_->ask_also(gateway.threads());
+  running_ = &gateway;
+  loop_.run();
+  if (watchdog_) watchdog_->ask_also({});
+  return gateway.makes_way();
+}
+
+void Service::begin_watchdog() {
+  if (watchdog_) return;
+  if (const auto within = host::watchdog_within()) {
+    watchdog_.emplace(loop_, *within, &host::notify_alive);
+  }
+}
+
+std::expected<void, std::string> Service::take_over_sockets() {
+  auto given = host::inherited();
+  if (!given) return std::unexpected(std::move(given.error()));
+  auto sockets = ListenSockets::take_over(std::move(*given));
+  if (!sockets) return std::unexpected(std::move(sockets.error()));
+  sockets_ = std::move(*sockets);
+  return {};
+}
+
+}  // namespace adit::gateway

@@ -1,0 +1,47 @@
+#pragma once
+
+#include <chrono>
+#include <expected>
+#include <optional>
+#include <string>
+
+#include "gateway/factory_reset.hpp"
+#include "gateway/gateway.hpp"
+#include "gateway/ledger_return.hpp"
+#include "gateway/listen_sockets.hpp"
+#include "gateway/options.hpp"
+#include "gateway/store.hpp"
+#include "loop/loop.hpp"
+#include "loop/watchdog.hpp"
+
+namespace adit::gateway {
+
+/// The life of aditd. Gateways, one after the other on one loop: each runs until it is stopped, or makes way
+/// for one of changed settings.
+class Service {
+ public:
+  /// `options` outlive this.
+  explicit Service(const Options& options);
+
+  /// Until SIGTERM or SIGINT: 0; 1: it could not start, and has said why.
+  int run();
+
+ private:
+  std::expected<bool, std::string> run_one();
+  std::expected<bool, std::string> run(Gateway& gateway, const settings::Settings& settings);
+  void begin_watchdog();
+  std::expected<void, std::string> take_over_sockets();
+
+  const Options& options_;
+  Store store_;
+  FactoryReset reset_;
+  ListenSockets sockets_;
+  loop::Loop loop_;
+  std::optional<loop::Watchdog> watchdog_;  // where systemd wants one
+  Gateway* running_ = nullptr;              // signals come while the loop runs, and so does it
+  std::string trouble_;                     // what came of the last change
+  std::optional<Legacy> legacy_;
+  std::chrono::seconds ledger_rest_ = LedgerReturn::kRest;
+};
+
+}  // namespace adit::gateway

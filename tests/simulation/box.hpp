@@ -1,0 +1,42 @@
+#pragma once
+
+#include <filesystem>
+#include <string>
+
+#include "simulation/random.hpp"
+
+namespace adit::simulation {
+
+class World;
+
+/// The box: its folders, and the lives of aditd, one after the other.
+class Box {
+ public:
+  /// Makes a folder in memory, which goes with this. `world` outlives it.
+  explicit Box(World& world);
+  ~Box();
+  Box(const Box&) = delete;
+  Box& operator=(const Box&) = delete;
+
+  /// Lives until finish() was called and the process has ended.
+  void live();
+  /// SIGTERM, for good.
+  void finish();
+  void terminate();
+  /// The process dies at a drawn call of the seam from now on.
+  void kill();
+
+  std::string state() const { return (folder_ / "state").string(); }
+
+ private:
+  void one_life();
+  void died();
+
+  World& world_;
+  Random random_;
+  std::filesystem::path top_, folder_, next_;
+  int folders_ = 0;
+  bool finished_ = false;
+};
+
+}  // namespace adit::simulation

@@ -1,0 +1,37 @@
+#pragma once
+
+#include <cstdint>
+#include <functional>
+#include <map>
+
+namespace adit::simulation {
+
+/// The descriptors that are real: libmicrohttpd's, and the clients' ends of their connections. They are asked
+/// without waiting, and called in the order in which they were added.
+class Descriptors {
+ public:
+  Descriptors();
+  ~Descriptors();
+  Descriptors(const Descriptors&) = delete;
+  Descriptors& operator=(const Descriptors&) = delete;
+
+  using Ready = std::function<void(std::uint32_t)>;
+  /// Its number, for the other calls.
+  std::uint64_t add(int fd, std::uint32_t events, Ready ready);
+  void wait_for(std::uint64_t number, std::uint32_t events);
+  void remove(std::uint64_t number);
+  /// Calls those that are ready; false: none was.
+  bool dispatch();
+
+ private:
+  struct Watched {
+    int fd;
+    bool added;
+    Ready ready;
+  };
+  int epoll_;
+  std::uint64_t last_ = 0;
+  std::map<std::uint64_t, Watched> watched_;
+};
+
+}  // namespace adit::simulation

@@ -1,0 +1,56 @@
+#include "simulation/door.hpp"
+
+#include <arpa/inet.h>
+#include <netinet/in.h>
+#include <sys/socket.h>
+
+#include <cstdlib>
+
+#include "simulation/world.hpp"
+
+namespace adit::simulation {
+namespace {
+
+constexpr std::chrono::microseconds kAccepting{50};
+
+}  // namespace
+
+int Door::connect(const std::string& address) {
+  int ends[2];
+  if (::socketpair(AF_UNIX, SOCK_STREAM | SOCK_NONBLOCK | SOCK_CLOEXEC, 0, ends) != 0) std::abort();
+  in_addr parsed{};
+  ::inet_pton(AF_INET, address.c_str(), &parsed);
+  waiting_.push_back({ends[1], parsed.s_addr});
+  world_.after(kAccepting, [this] { admit_all(); });
+  return ends[0];
+}
+
+std::shared_ptr<void> Door::open(intake::Admit admit) {
+  admit_ = std::move(admit);
+  const auto token = std::make_shared<int>(0);
+  token_ = token;
+  world_.after(kAccepting, [this] { admit_all(); });
+  return token;
+}
+
+void Door::admit_all() {
+  while (!waiting_.empty() && admit_ && !token_.expired()) {
+    const Waiting next = waiting_.front();
+    waiting_.pop_front();
+    sockaddr_in peer{};
+    peer.sin_family = AF_INET;
+    peer.sin_addr.s_addr = next.address;
+    peer.sin_port = htons(40000);
+    admit_(next.fd, reinterpret_cast<const sockaddr*>(&peer), sizeof peer);
+  }
+}
+
+}  // namespace adit::simulation
+
+namespace adit::intake {
+
+std::shared_ptr<void> accept_instead(int, Admit admit) {
+  return simulation::World::current().door().open(std::move(admit));
+}
+
+}  // namespace adit::intake

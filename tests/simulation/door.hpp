@@ -1,0 +1,44 @@
+#pragma once
+
+#include <cstdint>
+#include <deque>
+#include <functional>
+#include <memory>
+#include <string>
+
+#include "intake/accept.hpp"
+
+namespace adit::simulation {
+
+class World;
+
+/// The team's side: who connects waits here until a server takes connections, as in the queue of a socket
+/// that systemd keeps.
+class Door {
+ public:
+  explicit Door(World& world) : world_(world) {}
+
+  /// The client's end of a new connection from `address` (IPv4). It is not blocking.
+  int connect(const std::string& address);
+  /// A server takes connections until the token is let go of.
+  std::shared_ptr<void> open(intake::Admit admit);
+  /// The process is over.
+  void cut() {
+    token_.reset();
+    admit_ = nullptr;
+  }
+
+ private:
+  struct Waiting {
+    int fd;
+    std::uint32_t address;
+  };
+  void admit_all();
+
+  World& world_;
+  std::deque<Waiting> waiting_;
+  intake::Admit admit_;
+  std::weak_ptr<void> token_;
+};
+
+}  // namespace adit::simulation

@@ -1,0 +1,60 @@
+#include "simulation/history.hpp"
+
+#include <cmath>
+#include <cstdio>
+#include <string_view>
+
+namespace adit::simulation {
+namespace {
+
+constexpr const char* kWords[] = {
+    "asks", "hears", "hears nothing", "sends",   "has sent", "reads", "takes", "begins", "is told to stop",
+    "dies", "ended", "saved",         "new run", "fault",    "calm",  ""};
+
+void mix(std::uint64_t& hash, std::uint64_t number) {
+  for (int i = 0; i < 8; ++i, number >>= 8) hash = (hash ^ (number & 0xFF)) * 0x100000001B3u;
+}
+void mix(std::uint64_t& hash, std::string_view text) {
+  for (const char letter : text) hash = (hash ^ static_cast<unsigned char>(letter)) * 0x100000001B3u;
+}
+
+}  // namespace
+
+void History::note(Event event) {
+  if (event.kind != Kind::Said) {
+    mix(hash_, static_cast<std::uint64_t>(std::llround(event.at * 1e6)));
+    mix(hash_, static_cast<std::uint64_t>(event.kind) << 8 | static_cast<std::uint64_t>(event.actor));
+    mix(hash_, event.what);
+    mix(hash_, event.who);
+    mix(hash_, static_cast<std::uint64_t>(event.serial));
+    mix(hash_, static_cast<std::uint64_t>(event.status));
+    mix(hash_, static_cast<std::uint64_t>(std::llround(event.stamp * 1e6)));
+  }
+  if (event.kind == Kind::Fault) ++faults_;
+  if (tells) std::puts(line_of(event).c_str());
+  events_.push_back(std::move(event));
+}
+
+std::string line_of(const Event& event) {
+  char time[32];
+  std::snprintf(time, sizeof time, "%10.6f ", event.at);
+  std::string said = kWords[static_cast<int>(event.kind)];
+  const auto add = [&said](const std::string& word) {
+    said.append(said.empty() || word.empty() ? 0 : 1, ' ').append(word);
+  };
+  if (event.status != 0) add(std::to_string(event.status));
+  add(event.what);
+  add(event.who);
+  if (event.serial != 0) add(std::to_string(event.serial));
+  if (event.stamp != 0) {
+    char stamp[32];
+    std::snprintf(stamp, sizeof stamp, "(%.6f)", event.stamp);
+    add(stamp);
+  }
+  add(event.text);
+  constexpr std::size_t kColumn = 44;
+  const std::size_t column = static_cast<std::size_t>(event.actor) * kColumn;
+  return time + std::string(column, ' ') + said;
+}
+
+}  // namespace adit::simulation

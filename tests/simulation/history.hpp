@@ -1,0 +1,64 @@
+#pragma once
+
+#include <cstdint>
+#include <string>
+#include <vector>
+
+namespace adit::simulation {
+
+enum class Actor : std::uint8_t { Team, Adit, Post };
+
+/// What may happen. Each that has a serial says of which message.
+enum class Kind : std::uint8_t {
+  Invoke,    // the last byte of a client's request is on its way
+  Answered,  // the client has heard a whole answer, of that status
+  Gone,      // the client has not, and the connection is over: it hung up, or was cut
+  Leaves,    // the first byte of a request upstream is given to the network
+  Left,      // the last one: the message it carries
+  Replied,   // Adit has read the last byte of an answer of that status
+  Taken,     // the Command Post has recorded a report, or taken a message
+  Begins,    // a life of aditd
+  Stops,     // it was told to, by SIGTERM
+  Dies,      // by SIGKILL
+  Ended,     // the process is over
+  Saved,     // settings were saved
+  NewRun,
+  Fault,
+  Calm,  // no fault begins any more
+  Said   // a line of the log
+};
+
+struct Event {
+  double at = 0;  // seconds since the run began
+  int life = 0;
+  Actor actor = Actor::Adit;
+  Kind kind = Kind::Said;
+  std::string what;         // a path, as in "/state/update", or a client's
+  std::string who;          // a robot
+  std::int64_t serial = 0;  // 0: none
+  int status = 0;
+  double stamp = 0;           // of a message upstream; of an answer: its Retry-After
+  std::string text = {};      // for the story alone
+  std::uint64_t request = 0;  // of a client: which
+};
+
+/// All that both sides saw, in order.
+class History {
+ public:
+  void note(Event event);
+  const std::vector<Event>& events() const { return events_; }
+  /// Of all that the events say but their texts.
+  std::uint64_t hash() const { return hash_; }
+  std::size_t faults() const { return faults_; }
+  bool tells = false;  // each event as it comes, on standard output
+
+ private:
+  std::vector<Event> events_;
+  std::uint64_t hash_ = 0xCBF29CE484222325u;
+  std::size_t faults_ = 0;
+};
+
+/// One line: time, and in the column of its actor what happened.
+std::string line_of(const Event& event);
+
+}  // namespace adit::simulation

@@ -1,0 +1,146 @@
+#include "simulation/network.hpp"
+
+#include <sys/epoll.h>
+
+#include <algorithm>
+#include <cerrno>
+#include <vector>
+
+#include "simulation/world.hpp"
+
+namespace adit::simulation {
+
+Link::Link(World& world, uplink::Endpoint endpoint, Random random)
+    : world_(world),
+      endpoint_(std::move(endpoint)),
+      random_(random),
+      typical_(random_.chance(0.8) ? random_.between(0.0001, 0.002) : random_.between(0.002, 0.15)),
+      window_(static_cast<std::size_t>(random_.chance(0.7) ? 65536 : random_.between(1000, 8000))) {}
+
+loop::Duration Link::latency() {
+  return seconds(typical_ * random_.between(0.8, 1.5));
+}
+
+void Link::connect(Host& host) {
+  const auto how = host.connecting(endpoint_);
+  if (!how) return;
+  world_.after(2 * latency(), [self = shared_from_this(), error = *how, &host] {
+    if (self->closed_) return;
+    self->error = error;
+    self->open = error == 0;
+    self->reset = error != 0;
+    if (self->open) self->peer_ = host.connected(self->endpoint_, self);
+  });
+}
+
+std::size_t Link::write(std::string_view bytes) {
+  if (reset) return 0;
+  std::size_t left = std::min(bytes.size(), window_ - std::min(window_, unacknowledged_));
+  const std::size_t taken = left;
+  unacknowledged_ += taken;
+  while (left > 0) {
+    const std::size_t size = random_.chance(0.8) ? left : 1 + random_.below(left);
+    last_there_ = std::max(last_there_, world_.now() + latency());
+    world_.at(last_there_,
+              [self = shared_from_this(), piece = std::string(bytes.substr(taken - left, size))] {
+                if (self->lost_) return;
+                self->unacknowledged_ -= piece.size();
+                if (self->peer_) self->peer_->came(piece);
+              });
+    left -= size;
+  }
+  return taken;
+}
+
+std::uint32_t Link::ready() const {
+  if (!open && error == 0) return 0;
+  std::uint32_t events = 0;
+  if (!inbox.empty() || ended || reset) events |= EPOLLIN;
+  if (ended || reset) events |= EPOLLRDHUP;
+  if (reset) events |= EPOLLERR | EPOLLHUP;
+  if (unacknowledged_ < window_ || reset) events |= EPOLLOUT;
+  return events;
+}
+
+/// A reset throws away what has not left, and may overtake nothing that has.
+void Link::close() {
+  if (std::exchange(closed_, true)) return;
+  if (resets_on_close && random_.chance(0.5)) lost_ = true;
+  last_there_ = std::max(last_there_, world_.now() + latency());
+  world_.at(last_there_, [self = shared_from_this()] {
+    if (const auto peer = std::move(self->peer_)) peer->ended();
+  });
+}
+
+void Link::send(std::string bytes, loop::Duration delay) {
+  while (!bytes.empty()) {
+    const std::size_t size = random_.chance(0.7) ? bytes.size() : 1 + random_.below(bytes.size());
+    last_here_ = std::max(last_here_, world_.now() + delay + latency());
+    world_.at(last_here_, [self = shared_from_this(), piece = bytes.substr(0, size)] {
+      if (!self->closed_ && !self->reset) self->inbox += piece;
+    });
+    bytes.erase(0, size);
+  }
+}
+
+void Link::end(How how, loop::Duration delay) {
+  last_here_ = std::max(last_here_, world_.now() + delay + latency());
+  world_.at(last_here_,
+            [self = shared_from_this(), how] { (how == How::End ? self->ended : self->reset) = true; });
+}
+
+Network::Network(World& world) : world_(world) {}
+
+int Network::connect(const uplink::Endpoint& endpoint) {
+  const int fd = ++last_fd_;
+  const auto link =
+      std::make_shared<Link>(world_, endpoint, world_.random("link " + std::to_string(fd - kFirst)));
+  links_.emplace(fd, link);
+  link->connect(*host_);
+  return fd;
+}
+
+Link* Network::find(int fd) {
+  const auto found = links_.find(fd);
+  return found == links_.end() ? nullptr : found->second.get();
+}
+
+void Network::close(int fd) {
+  const auto found = links_.find(fd);
+  if (found == links_.end()) return;
+  found->second->close();
+  links_.erase(found);
+}
+
+void Network::cut() {
+  for (const auto& [fd, link] : std::exchange(links_, {})) link->close();
+}
+
+std::uint64_t Network::watch(int fd, std::uint32_t events, Ready ready) {
+  watched_.emplace(++last_, Watched{fd, events, std::move(ready)});
+  return last_;
+}
+
+void Network::wait_for(std::uint64_t number, std::uint32_t events) {
+  watched_.at(number).events = events;
+}
+
+bool Network::dispatch() {
+  std::vector<std::uint64_t> numbers;
+  for (const auto& [number, watched] : watched_) numbers.push_back(number);
+  bool any = false;
+  for (const std::uint64_t number : numbers) {
+    const auto found = watched_.find(number);
+    if (found == watched_.end() || found->second.events == 0) continue;
+    const Link* const link = find(found->second.fd);
+    if (link == nullptr) continue;
+    const std::uint32_t events = link->ready() & (found->second.events | EPOLLERR | EPOLLHUP);
+    if (events == 0) continue;
+    any = true;
+    const Ready call = found->second.ready;
+    call(events);
+  }
+  return any;
+}
+
+}  // namespace adit::simulation

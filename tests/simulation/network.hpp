@@ -1,0 +1,116 @@
+#pragma once
+
+#include <cstdint>
+#include <deque>
+#include <functional>
+#include <map>
+#include <memory>
+#include <optional>
+#include <string>
+#include <string_view>
+
+#include "loop/loop.hpp"
+#include "simulation/random.hpp"
+#include "simulation/upstream_view.hpp"
+#include "uplink/connection.hpp"
+
+namespace adit::simulation {
+
+class World;
+class Link;
+
+/// The Command Post's end of a connection.
+class Peer {
+ public:
+  virtual ~Peer() = default;
+  virtual void came(std::string_view bytes) = 0;
+  /// Adit's end is over; nothing comes any more.
+  virtual void ended() = 0;
+};
+
+/// Who is there to be connected to.
+class Host {
+ public:
+  virtual ~Host() = default;
+  /// How connecting goes on: 0, an errno, or nothing for silence.
+  virtual std::optional<int> connecting(const uplink::Endpoint& endpoint) = 0;
+  virtual std::unique_ptr<Peer> connected(const uplink::Endpoint& endpoint, std::shared_ptr<Link> link) = 0;
+};
+
+/// One TCP connection to the Command Post, in memory.
+class Link : public std::enable_shared_from_this<Link> {
+ public:
+  Link(World& world, uplink::Endpoint endpoint, Random random);
+
+  // Adit's end.
+  std::size_t write(std::string_view bytes);  // how many the window took
+  std::string inbox;
+  UpstreamView view;                  // of what Adit gives and takes
+  bool ended = false, reset = false;  // what Adit finds at the end of its inbox
+  bool open = false;
+  int error = 0;  // of connecting
+  bool resets_on_close = false;
+  std::size_t unacknowledged() const { return unacknowledged_; }
+  std::uint32_t ready() const;
+  void close();
+  void connect(Host& host);
+
+  // The Command Post's end.
+  /// Bytes on their way to Adit, in the order of the calls.
+  void send(std::string bytes, loop::Duration delay = {});
+  enum class How : std::uint8_t { End, Reset };
+  void end(How how, loop::Duration delay = {});
+  const uplink::Endpoint& endpoint() const { return endpoint_; }
+  bool is_closed() const { return closed_; }
+
+ private:
+  loop::Duration latency();
+
+  World& world_;
+  const uplink::Endpoint endpoint_;
+  Random random_;
+  double typical_;  // latency, in seconds
+  std::size_t window_;
+  std::size_t unacknowledged_ = 0;
+  bool closed_ = false, lost_ = false;
+  loop::Instant last_there_{}, last_here_{};
+  std::unique_ptr<Peer> peer_;
+};
+
+/// Adit's connections to the Command Post by their descriptors, which are no real ones.
+class Network {
+ public:
+  static constexpr int kFirst = 1 << 20;
+  static bool is_simulated(int fd) { return fd >= kFirst; }
+
+  explicit Network(World& world);
+  void serve(Host* host) { host_ = host; }
+
+  /// A descriptor.
+  int connect(const uplink::Endpoint& endpoint);
+  Link* find(int fd);
+  void close(int fd);
+  /// The process is over: what it had open is closed by the kernel.
+  void cut();
+
+  using Ready = std::function<void(std::uint32_t)>;
+  std::uint64_t watch(int fd, std::uint32_t events, Ready ready);
+  void wait_for(std::uint64_t number, std::uint32_t events);
+  void unwatch(std::uint64_t number) { watched_.erase(number); }
+  bool dispatch();
+
+ private:
+  struct Watched {
+    int fd;
+    std::uint32_t events;
+    Ready ready;
+  };
+  World& world_;
+  Host* host_ = nullptr;
+  int last_fd_ = kFirst;
+  std::uint64_t last_ = 0;
+  std::map<int, std::shared_ptr<Link>> links_;
+  std::map<std::uint64_t, Watched> watched_;
+};
+
+}  // namespace adit::simulation

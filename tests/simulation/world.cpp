@@ -1,0 +1,96 @@
+#include "simulation/world.hpp"
+
+#include <cassert>
+#include <utility>
+
+namespace adit::simulation {
+namespace {
+
+constexpr Instant kBeginning{std::chrono::seconds{1000}};
+World* the_world = nullptr;
+
+}  // namespace
+
+World::World(std::uint64_t seed) : seed_(seed), now_(kBeginning), network_(*this), door_(*this) {
+  the_world = this;
+}
+
+World::~World() {
+  the_world = nullptr;
+}
+
+World& World::current() {
+  assert(the_world != nullptr);
+  return *the_world;
+}
+
+double World::time() const {
+  return std::chrono::duration<double>(now_ - kBeginning).count();
+}
+
+void World::at(Instant when, std::function<void()> happen) {
+  planned_.push({std::max(when, now_), ++order_, std::move(happen)});
+}
+
+bool World::step() {
+  if (planned_.empty()) return false;
+  auto happen = std::move(const_cast<Planned&>(planned_.top()).happen);
+  now_ = planned_.top().at;
+  planned_.pop();
+  ++steps_;
+  happen();
+  return true;
+}
+
+void World::run_for(Duration duration) {
+  const Instant end = now_ + duration;
+  while (!planned_.empty() && planned_.top().at <= end) {
+    step();
+    while (descriptors_.dispatch()) {
+    }
+  }
+  now_ = std::max(now_, end);
+}
+
+void World::note(Event event) {
+  event.at = time();
+  event.life = life_;
+  history_.note(std::move(event));
+}
+
+void World::begin_life() {
+  ++life_;
+  dead_ = false;
+  dies_ = nullptr;
+  note({.kind = Kind::Begins, .what = "aditd", .who = "", .serial = life_});
+}
+
+void World::end_life() {
+  dies_ = nullptr;
+  dead_ = true;
+  network_.cut();
+  door_.cut();
+  note({.kind = Kind::Ended, .what = "aditd", .who = "", .serial = life_});
+}
+
+void World::die_after(std::uint64_t crossings, std::function<void()> dies) {
+  crossings_left_ = crossings;
+  dies_ = std::move(dies);
+  if (crossings == 0) die();
+}
+
+void World::crossing() {
+  if (dead_ || !dies_) return;
+  if (crossings_left_ == 0 || --crossings_left_ == 0) die();
+}
+
+void World::die() {
+  const auto dies = std::exchange(dies_, nullptr);
+  note({.kind = Kind::Dies, .what = "aditd", .who = "", .serial = life_});
+  dead_ = true;
+  network_.cut();
+  door_.cut();
+  dies();
+}
+
+}  // namespace adit::simulation

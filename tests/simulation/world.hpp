@@ -1,0 +1,102 @@
+#pragma once
+
+#include <chrono>
+#include <cstdint>
+#include <functional>
+#include <memory>
+#include <queue>
+#include <string_view>
+#include <vector>
+
+#include "loop/loop.hpp"
+#include "simulation/descriptors.hpp"
+#include "simulation/door.hpp"
+#include "simulation/history.hpp"
+#include "simulation/network.hpp"
+#include "simulation/random.hpp"
+
+namespace adit::simulation {
+
+using loop::Duration;
+using loop::Instant;
+
+/// Thrown out of Loop::run() where the process was killed.
+struct Killed {};
+
+inline Duration seconds(double seconds) {
+  return std::chrono::duration_cast<Duration>(std::chrono::duration<double>(seconds));
+}
+
+/// One run: simulated time, what is to happen, and all that stands behind the seam. Everything comes from the
+/// seed. There is one at a time, current().
+class World {
+ public:
+  static constexpr double kEpoch = 1.7e9;  // by the box's clock, when a run begins
+
+  explicit World(std::uint64_t seed);
+  ~World();
+  World(const World&) = delete;
+  World& operator=(const World&) = delete;
+  static World& current();
+
+  Random random(std::string_view name) const { return {seed_, name}; }
+  Instant now() const { return now_; }
+  double time() const;                              // seconds since the run began
+  double stamp() const { return kEpoch + time(); }  // the box's clock
+
+  void at(Instant when, std::function<void()> happen);
+  void after(Duration delay, std::function<void()> happen) { at(now_ + delay, std::move(happen)); }
+  /// Time jumps to the next event, which happens. False: there is none.
+  bool step();
+  /// While no process lives.
+  void run_for(Duration duration);
+  std::uint64_t steps() const { return steps_; }
+  /// Counts the draws of what is random to the box.
+  std::uint64_t entropy() { return ++entropy_; }
+
+  void note(Event event);
+  History& history() { return history_; }
+  Descriptors& descriptors() { return descriptors_; }
+  Network& network() { return network_; }
+  Door& door() { return door_; }
+
+  int life() const { return life_; }
+  /// A process begins.
+  void begin_life();
+  /// It is over: its connections are cut.
+  void end_life();
+  /// A call of the seam: the process may die in it, before or after its effect.
+  void crossing();
+  /// The process dies at the call of the seam after `crossings` of them. `dies` is called at that instant.
+  void die_after(std::uint64_t crossings, std::function<void()> dies);
+  /// From here on nothing that the process does has an effect.
+  bool is_dead() const { return dead_; }
+
+  std::function<void()> on_sigterm;
+
+ private:
+  struct Planned {
+    Instant at;
+    std::uint64_t order = 0;
+    std::function<void()> happen;
+    bool operator<(const Planned& other) const {
+      return at != other.at ? at > other.at : order > other.order;
+    }
+  };
+  void die();
+
+  const std::uint64_t seed_;
+  Instant now_;
+  std::uint64_t order_ = 0, steps_ = 0, entropy_ = 0;
+  std::priority_queue<Planned> planned_;
+  History history_;
+  Descriptors descriptors_;
+  Network network_;
+  Door door_;
+  int life_ = 0;
+  bool dead_ = true;
+  std::uint64_t crossings_left_ = 0;
+  std::function<void()> dies_;
+};
+
+}  // namespace adit::simulation

@@ -1,0 +1,58 @@
+// host/log.hpp and host/random.hpp over the simulated world.
+#include "host/log.hpp"
+#include "host/memory.hpp"
+#include "host/random.hpp"
+#include "host/record.hpp"
+#include "simulation/world.hpp"
+
+namespace adit::host {
+namespace {
+
+using simulation::World;
+
+Memory& memory() {
+  static Memory records;
+  return records;
+}
+
+void say(Level level, std::string_view message, std::span<const Field> fields) {
+  World& world = World::current();
+  if (world.is_dead()) return;
+  simulation::Event event;
+  event.text = std::string(name_of(level)) + ": " + sentence(message, fields);
+  world.note(std::move(event));
+}
+
+}  // namespace
+
+void log(Level level, std::string_view message, std::initializer_list<Field> fields) {
+  if (level > Level::Info) return;
+  memory().keep(World::current().stamp(), level, message, fields);
+  say(level, message, fields);
+}
+
+void tell_console(Level level, std::string_view message, std::initializer_list<Field> fields) {
+  memory().keep(World::current().stamp(), level, message, {});
+  say(level, message, fields);
+}
+
+std::vector<Record> remembered(std::uint64_t after) {
+  return memory().after(after);
+}
+
+std::uint64_t logged() {
+  return memory().last();
+}
+
+std::string line_of(const Record& record) {
+  const std::vector<Field> fields(record.fields.begin(), record.fields.end());
+  return plain_line(time_text(record.at), record.level, record.message, fields);
+}
+
+void fill_random(std::span<std::uint8_t> bytes) {
+  World& world = World::current();
+  simulation::Random random = world.random("random " + std::to_string(world.entropy()));
+  for (std::uint8_t& byte : bytes) byte = static_cast<std::uint8_t>(random.next());
+}
+
+}  // namespace adit::host

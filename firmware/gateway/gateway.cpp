@@ -49,7 +49,7 @@ Gateway::Gateway(loop::Loop& loop, Parts parts)
       aside_(loop, writer_, parts_.runtime_folder + "/aside"),
       record_([this] { changed(); }),
       scoring_(loop, parts_.ledger, settings_, token_for("scoring", settings_, parts_.loaded.secrets),
-               record_, random_, journal_),
+               record_, random_, journal_, [this] { make_way(); }),
       picture_(
           loop, workers_, [this] { return maps_.packing(); }, [this] { changed(); },
           parts_.legacy ? std::move(parts_.legacy->picture) : picture::Mosaic()),
@@ -58,7 +58,7 @@ Gateway::Gateway(loop::Loop& loop, Parts parts)
             [this](icd::MapUpdate map) { picture_.forwarded(std::move(map)); }),
       as_forwarded_(parts_.legacy ? std::move(parts_.legacy->as_forwarded) : AsForwarded()),
       news_(loop, settings_, token_for("mapping", settings_, parts_.loaded.secrets), record_, aside_, random_,
-            journal_, as_forwarded_),
+            journal_, as_forwarded_, [this] { make_way(); }),
       lights_(loop, std::move(parts_.lines)),
       links_(
           loop, settings_, host::carrier, [this] { changed(); }, [this] { link_is_back(); }),

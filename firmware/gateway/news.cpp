@@ -3,11 +3,13 @@
 #include <algorithm>
 #include <array>
 #include <iterator>
+#include <utility>
 
 #include "codec/write.hpp"
 #include "dispatch/mapping_verdict.hpp"
 #include "dispatch/turn.hpp"
 #include "gateway/upstream_answer.hpp"
+#include "gateway/whole.hpp"
 #include "loop/guard.hpp"
 
 namespace adit::gateway {
@@ -47,12 +49,13 @@ std::size_t updates_in(const lanes::WaitingMarkers& markers) {
 
 News::News(loop::Loop& loop, const settings::Settings& settings, std::optional<icd::BearerToken> token,
            Record& record, Aside& aside, std::mt19937_64& random, journal::Journal& journal,
-           AsForwarded& as_forwarded)
+           AsForwarded& as_forwarded, std::function<void()> anew)
     : loop_(loop),
       record_(record),
       aside_(aside),
       journal_(journal),
       as_forwarded_(as_forwarded),
+      anew_(std::move(anew)),
       channel_(loop, "mapping", endpoint_of(settings.command_post, settings.command_post.mapping, 0),
                std::move(token), settings.command_post.timeouts.mapping_answer),
       state_pace_(icd::Uri::StateUpdate, settings.command_post.rates.state_hz, random, journal),
@@ -82,10 +85,12 @@ void News::carry_on(const journal::Carried& carried) {
 icd::Checked<void> News::take(const icd::StateUpdate& update, std::size_t bytes_received) {
   if (!state_.has_room_for(update)) return full("more robots than can be kept apart");
   if (const auto kept = journal_.accepted(update); !kept) return not_kept(kept.error());
-  for (const icd::NamedPose& pose : update.poses) {
-    record_.accepted({Kind::State, pose.name.text()}, bytes_received, loop_.stamp_now());
-  }
-  state_.add(update, loop_.now());
+  whole(anew_, [&] {
+    for (const icd::NamedPose& pose : update.poses) {
+      record_.accepted({Kind::State, pose.name.text()}, bytes_received, loop_.stamp_now());
+    }
+    state_.add(update, loop_.now());
+  });
   pump();
   return {};
 }
@@ -93,14 +98,20 @@ icd::Checked<void> News::take(const icd::StateUpdate& update, std::size_t bytes_
 icd::Checked<void> News::take(const icd::MarkersUpdate& update, std::size_t bytes_received) {
   if (!markers_.has_room_for(update)) return full("more markers than can wait (queues.marker_bytes)");
   if (const auto kept = journal_.accepted(update); !kept) return not_kept(kept.error());
-  record_.accepted({Kind::Markers, ""}, bytes_received, loop_.stamp_now());
-  markers_.add(update, loop_.now());
+  whole(anew_, [&] {
+    record_.accepted({Kind::Markers, ""}, bytes_received, loop_.stamp_now());
+    markers_.add(update, loop_.now());
+  });
   pump();
   return {};
 }
 
 void News::pump() {
   if (stopping_ || setting_aside_ || channel_.busy() || !channel_.has_token()) return;
+  whole(anew_, [this] { send_next(); });
+}
+
+void News::send_next() {
   const std::array candidates = {dispatch::Candidate{state_.oldest(), state_pace_.ready()},
                                  dispatch::Candidate{markers_.oldest(), markers_pace_.ready()}};
   const dispatch::Turn turn = dispatch::oldest_first(candidates, loop_.now());
@@ -144,12 +155,12 @@ void News::send_markers() {
 
 /// An answer that cannot be dealt with is as good as none: the message is sent again.
 template <class Waiting>
-void News::answered(Kind kind, UriPace& pace, Waiting sent, std::size_t bytes,
+void News::answered(Kind kind, UriPace& pace, const Waiting& sent, std::size_t bytes,
                     const uplink::Outcome& outcome) {
   if (kind == Kind::Markers) markers_under_way_ = {};
   if (!loop::guarded("the answer to a state or markers", [&] { judge(kind, pace, sent, bytes, outcome); })) {
     pace.failed(loop_.now());
-    put_back(sent);
+    loop::guarded("putting a state or markers back", [&] { whole(anew_, [&] { put_back(sent); }); });
   }
   pump();
 }

@@ -23,10 +23,11 @@ namespace adit::gateway {
 /// has the older news first.
 class News {
  public:
-  /// `as_forwarded` is told what the Command Post took. What is accepted is in the journal first, until then.
+  /// `as_forwarded` is told what the Command Post took. What is accepted is in the journal first, until then;
+  /// `anew`: see whole.hpp.
   News(loop::Loop& loop, const settings::Settings& settings, std::optional<icd::BearerToken> token,
        Record& record, Aside& aside, std::mt19937_64& random, journal::Journal& journal,
-       AsForwarded& as_forwarded);
+       AsForwarded& as_forwarded, std::function<void()> anew);
 
   /// Takes up what the lives before have left.
   void carry_on(const journal::Carried& carried);
@@ -58,10 +59,12 @@ class News {
 
  private:
   void pump();
+  void send_next();
   void send_state();
   void send_markers();
   template <class Waiting>
-  void answered(Kind kind, UriPace& pace, Waiting sent, std::size_t bytes, const uplink::Outcome& outcome);
+  void answered(Kind kind, UriPace& pace, const Waiting& sent, std::size_t bytes,
+                const uplink::Outcome& outcome);
   std::vector<Traffic> traffic_of(const lanes::WaitingState& state) const;
   std::vector<Traffic> traffic_of(const lanes::WaitingMarkers& markers) const;
   void put_back(const lanes::WaitingState& state) {
@@ -101,6 +104,7 @@ class News {
   Aside& aside_;
   journal::Journal& journal_;
   AsForwarded& as_forwarded_;
+  std::function<void()> anew_;
   Channel channel_;
   UriPace state_pace_, markers_pace_;
   loop::Source wake_;

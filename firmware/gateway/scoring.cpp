@@ -8,6 +8,7 @@
 #include "codec/write.hpp"
 #include "dispatch/turn.hpp"
 #include "gateway/upstream_answer.hpp"
+#include "gateway/whole.hpp"
 #include "intake/icd_routes.hpp"
 #include "loop/guard.hpp"
 
@@ -25,11 +26,12 @@ dispatch::ReportRules rules_of(const settings::Reports& reports) {
 
 Scoring::Scoring(loop::Loop& loop, ledger::Ledger& ledger, const settings::Settings& settings,
                  std::optional<icd::BearerToken> token, Record& record, std::mt19937_64& random,
-                 journal::Journal& journal)
+                 journal::Journal& journal, std::function<void()> anew)
     : loop_(loop),
       ledger_(ledger),
       settings_(settings),
       record_(record),
+      anew_(std::move(anew)),
       deeds_(loop, ledger),
       reports_(rules_of(settings.reports), deeds_),
       channel_(loop, "scoring", endpoint_of(settings.command_post, settings.command_post.scoring, 0),
@@ -64,7 +66,9 @@ void Scoring::take(const icd::ArtifactReport& report, const intake::Sender& send
 
 void Scoring::take(const dispatch::Posted& posted, dispatch::ClientId client) {
   const bool may_send = !channel_.busy() && channel_.connected() && report_pace_.ready() <= loop_.now();
-  if (reports_.take(posted, client, may_send, time())) send(*reports_.sending());
+  whole(anew_, [&] {
+    if (reports_.take(posted, client, may_send, time())) send(*reports_.sending());
+  });
   watch_deadlines();
   record_.changed();
   pump();
@@ -130,7 +134,12 @@ void Scoring::pump() {
 }
 
 void Scoring::send_next() {
-  if (const dispatch::Report* const chosen = reports_.choose(time())) return send(*chosen);
+  const bool is_sent = whole(anew_, [&] {
+    const dispatch::Report* const chosen = reports_.choose(time());
+    if (chosen != nullptr) send(*chosen);
+    return chosen != nullptr;
+  });
+  if (is_sent) return;
   // The disk refused it (or it was the same as another one): it must not leave.
   if (!trouble().empty()) report_pace_.failed(loop_.now());
   wake_.call_at(std::max(report_pace_.ready(), loop_.now()));
@@ -145,13 +154,11 @@ void Scoring::send(const dispatch::Report& report) {
   ledger_.expect(dispatch::Flush::Soon);  // its answer is what comes next
 }
 
-/// An answer that cannot be dealt with is as good as one that cannot be read.
+/// An answer that cannot be dealt with is as good as none: the report is in doubt in the next life.
 void Scoring::report_answered(const uplink::Outcome& outcome) {
-  const bool judged = loop::guarded("the answer to a report", [&] { judge_report(outcome); });
-  if (!judged && reports_.sending() != nullptr) {
-    loop::guarded("the loss of a report's answer",
-                  [&] { reports_.lost("its answer could not be dealt with", time()); });
-  }
+  const bool judged =
+      loop::guarded("the answer to a report", [&] { whole(anew_, [&] { judge_report(outcome); }); });
+  if (!judged) return;
   known_status_.no_longer_fresh();  // score and remaining reports have changed, or may have
   poll_.call_at(loop_.now() + kAskAfterReport);
   watch_deadlines();
@@ -208,12 +215,12 @@ void Scoring::tell_askers(loop::Instant now) {
 
 void Scoring::deadline_came() {
   tell_askers(loop_.now());
-  reports_.tick(time());
+  whole(anew_, [&] { reports_.tick(time()); });
   watch_deadlines();
 }
 
 void Scoring::tick() {
-  reports_.tick(time());
+  whole(anew_, [&] { reports_.tick(time()); });
   pump();
 }
 
@@ -254,9 +261,10 @@ void Scoring::judge_status(const uplink::Outcome& outcome) {
     run_ = *run;
     run_heard_ = loop_.stamp_now();
     known_status_.heard(answered->body, now);
-    reports_.status_heard(*run, time());
+    whole(anew_, [&] { reports_.status_heard(*run, time()); });
   } else {
-    reports_.status_failed(!std::holds_alternative<uplink::NeverSent>(outcome), time());
+    const bool left = !std::holds_alternative<uplink::NeverSent>(outcome);
+    whole(anew_, [&] { reports_.status_failed(left, time()); });
   }
 }
 
@@ -270,12 +278,13 @@ void Scoring::answer_askers(const intake::Answer& answer) {
 }
 
 dispatch::Reports::Outcome Scoring::judge(std::int64_t number, page::Deed deed) {
-  const dispatch::Reports::Outcome outcome =
-      deed == page::Deed::Send       ? reports_.send(number, time())
-      : deed == page::Deed::Hold     ? reports_.hold(number, time())
-      : deed == page::Deed::Withdraw ? reports_.withdraw(number, time())
-      : deed == page::Deed::CallDone ? reports_.call_done(number, time())
-                                     : reports_.resubmit(number, time());
+  const dispatch::Reports::Outcome outcome = whole(anew_, [&] {
+    return deed == page::Deed::Send       ? reports_.send(number, time())
+           : deed == page::Deed::Hold     ? reports_.hold(number, time())
+           : deed == page::Deed::Withdraw ? reports_.withdraw(number, time())
+           : deed == page::Deed::CallDone ? reports_.call_done(number, time())
+                                          : reports_.resubmit(number, time());
+  });
   record_.changed();
   pump();
   return outcome;
@@ -292,7 +301,7 @@ dispatch::Reports::Outcome Scoring::report(const icd::ArtifactReport& report, bo
 }
 
 std::int64_t Scoring::begin_run() {
-  const std::int64_t number = reports_.declare_new_run(time());
+  const std::int64_t number = whole(anew_, [&] { return reports_.declare_new_run(time()); });
   record_.changed();
   poll();
   return number;

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <deque>
+#include <functional>
 #include <memory>
 #include <optional>
 #include <random>
@@ -34,9 +35,10 @@ class Scoring {
   /// After a report the status is asked for once its client has been answered.
   static constexpr std::chrono::milliseconds kAskAfterReport{50};
 
+  /// `anew`: see whole.hpp; what is here is not to be gone on with.
   Scoring(loop::Loop& loop, ledger::Ledger& ledger, const settings::Settings& settings,
           std::optional<icd::BearerToken> token, Record& record, std::mt19937_64& random,
-          journal::Journal& journal);
+          journal::Journal& journal, std::function<void()> anew);
 
   void carry_on(const journal::Carried& carried) {
     report_pace_.carry_on(carried, loop_.now());
@@ -110,6 +112,7 @@ class Scoring {
   ledger::Ledger& ledger_;
   const settings::Settings& settings_;
   Record& record_;
+  std::function<void()> anew_;
   ReportDeeds deeds_;
   dispatch::Reports reports_;
   Channel channel_;

@@ -5,11 +5,13 @@
 #include <atomic>
 #include <memory>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "../uplink/peer.hpp"
 #include "host/folder.hpp"
 #include "loop/turn_until.hpp"
+#include "scarce_memory.hpp"
 
 namespace adit::gateway {
 namespace {
@@ -46,7 +48,8 @@ struct Life {
       : writer(loop),
         journal(loop, folder + "/journal"),
         aside(loop, writer, folder + "/aside"),
-        news(loop, settings, std::move(token), record, aside, random, journal, as_forwarded) {
+        news(loop, settings, std::move(token), record, aside, random, journal, as_forwarded,
+             [this] { anew = true; }) {
     const journal::Carried carried = journal.read();
     journal.begin({.boot = "b", .at = loop.now(), .stamp = loop.stamp_now()});
     news.carry_on(carried);
@@ -59,6 +62,7 @@ struct Life {
   journal::Journal journal;
   Aside aside;
   AsForwarded as_forwarded;
+  bool anew = false;  // another life is to follow
   News news;
 };
 
@@ -165,6 +169,38 @@ TEST_F(NewsTest, HoldsADeleteAllWhereEverythingFails) {
   ASSERT_TRUE(comes(*life, [&] { return post.requests >= 20; }));
   EXPECT_THAT(life->aside.rows(), IsEmpty());
   EXPECT_THAT(texts(left().markers()), ElementsAre("wipe", "1", "2"));
+}
+
+/// From the moment it is taken on, each allocation in turn, and all from each on.
+TEST_F(NewsTest, LosesNothingWhereMemoryRunsOutOnTheWay) {
+  Post post(true);
+  auto life = life_before(post.peer);
+  for (const std::size_t count : {std::size_t{1}, ScarceMemory::kAll}) {
+    for (std::size_t n = 0;; ++n) {
+      SCOPED_TRACE(n);
+      const int before = post.requests;
+      ASSERT_TRUE(life->news.take(pose("r1", static_cast<double>(n)), 10));
+      ASSERT_TRUE(
+          life->news.take(icd::MarkersUpdate{.markers = {marker("path", std::to_string(n).c_str())}}, 10));
+      ScarceMemory scarce(n, count);
+      const auto all_there = [&] {
+        return life->news.waiting(Kind::State) + life->news.waiting(Kind::Markers) == 0 &&
+               !life->news.channel().busy();
+      };
+      while (!all_there() && ScarceMemory::failed() == 0) loop_.turn(std::chrono::milliseconds{2});
+      const std::size_t failed = scarce.end();
+      ASSERT_TRUE(loop::turn_until(loop_, [&] {
+        if (std::exchange(life->anew, false)) {
+          life.reset();
+          life = life_before(post.peer);
+        }
+        life->news.link_is_back();
+        return all_there() && left().robots().empty() && left().markers().markers.empty();
+      }));
+      EXPECT_GE(post.requests, before + 2);
+      if (failed == 0) break;
+    }
+  }
 }
 
 }  // namespace

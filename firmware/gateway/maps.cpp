@@ -224,13 +224,13 @@ void Maps::send() {
 
 /// An answer that cannot be dealt with is as good as none: the map is sent again, as it is.
 void Maps::answered(const uplink::Outcome& outcome) {
-  if (!loop::guarded("the answer to a map", [&] { judge(outcome); })) pace_.failed(loop_.now());
+  if (!loop::guarded("the answer to a map", [&] { judge(outcome); })) pace_.lost(loop_.now());
   pump();
 }
 
 void Maps::judge(const uplink::Outcome& outcome) {
   if (const auto* answer = std::get_if<uplink::Answered>(&outcome)) return verdict(*answer);
-  pace_.failed(loop_.now());
+  pace_.failed(outcome, loop_.now());
   record_.not_taken(traffic_of(prepared_->waiting.map), NotTaken::Failed, 0, sentence_of(outcome));
   again();
 }
@@ -262,14 +262,14 @@ void Maps::verdict(const uplink::Answered& answered) {
       pace_.taken(now);
       return give_up(answered.status, sentence);
     case MappingVerdict::Suspect:
-      pace_.failed(now);
+      pace_.lost(now);
       if (blame_.failed(whose(prepared_->waiting.map), prepared_->waiting.trial, now) ==
           lanes::Blame::Verdict::SetAside)
         return give_up(answered.status, sentence + " (others passed, this one failed again and again)");
       record_.not_taken(traffic, NotTaken::Failed, answered.status, sentence);
       return again();
     case MappingVerdict::Failing:
-      pace_.failed(now);
+      pace_.lost(now);
       record_.not_taken(traffic, NotTaken::Failed, answered.status, sentence);
       return again();
   }

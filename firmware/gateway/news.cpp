@@ -159,7 +159,7 @@ void News::answered(Kind kind, UriPace& pace, const Waiting& sent, std::size_t b
                     const uplink::Outcome& outcome) {
   if (kind == Kind::Markers) markers_under_way_ = {};
   if (!loop::guarded("the answer to a state or markers", [&] { judge(kind, pace, sent, bytes, outcome); })) {
-    pace.failed(loop_.now());
+    pace.lost(loop_.now());
     loop::guarded("putting a state or markers back", [&] { whole(anew_, [&] { put_back(sent); }); });
   }
   pump();
@@ -195,7 +195,7 @@ void News::judge(Kind kind, UriPace& pace, const Waiting& sent, std::size_t byte
       give_up(sent, status, sentence, bytes);
       break;
     case MappingVerdict::Suspect:
-      pace.failed(now);
+      pace.lost(now);
       if (is_to_blame(sent)) give_up(sent, status, sentence, bytes);
       break;
     case MappingVerdict::Throttled:
@@ -203,7 +203,7 @@ void News::judge(Kind kind, UriPace& pace, const Waiting& sent, std::size_t byte
       put_back(sent);
       break;
     case MappingVerdict::Failing:
-      pace.failed(now);
+      pace.failed(outcome, now);
       put_back(sent);
       break;
   }

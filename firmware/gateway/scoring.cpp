@@ -174,7 +174,7 @@ void Scoring::judge_report(const uplink::Outcome& outcome) {
     if (event == dispatch::ReportEvent::Throttled) {
       report_pace_.throttled(now, answered->retry_after);
     } else if (event == dispatch::ReportEvent::Barred) {
-      report_pace_.failed(now);
+      report_pace_.lost(now);
     } else {
       report_pace_.taken(now);
     }
@@ -245,7 +245,7 @@ void Scoring::judge_status(const uplink::Outcome& outcome) {
   const loop::Instant now = loop_.now();
   const auto* answered = std::get_if<uplink::Answered>(&outcome);
   if (answered == nullptr) {
-    status_pace_.failed(now);
+    status_pace_.failed(outcome, now);
     answer_askers(known_or(intake::error_answer(icd::Status::BadGateway, sentence_of(outcome))));
   } else if (answered->status == 429) {
     status_pace_.throttled(now, answered->retry_after);

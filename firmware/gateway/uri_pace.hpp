@@ -9,6 +9,7 @@
 #include "journal/journal.hpp"
 #include "pace/backoff.hpp"
 #include "pace/rate_limit.hpp"
+#include "uplink/connection.hpp"
 
 namespace adit::gateway {
 
@@ -44,6 +45,16 @@ class UriPace {
     rate_.throttled(now, retry_after);
     keep();
   }
+  /// It failed after it may have been heard.
+  void lost(pace::Instant now) {
+    rate_.lost(now);
+    keep();
+    failed(now);
+  }
+  void failed(const uplink::Outcome& outcome, pace::Instant now) {
+    std::holds_alternative<uplink::NeverSent>(outcome) ? failed(now) : lost(now);
+  }
+  /// It never left.
   void failed(pace::Instant now) {
     retry_at_ = now + backoff_.failed(std::uniform_real_distribution<double>(0, 1)(random_));
   }

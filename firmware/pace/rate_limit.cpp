@@ -53,6 +53,11 @@ void RateLimit::taken(Instant now) {
   next_ = now + spacing_;
 }
 
+void RateLimit::lost(Instant now) {
+  under_way_ = false;
+  next_ = std::max(next_, now + spacing_);
+}
+
 void RateLimit::throttled(Instant now, std::optional<std::chrono::seconds> retry_after) {
   under_way_ = false;
   if (!storm_) {

@@ -45,6 +45,9 @@ class RateLimit {
   /// The request sent last was answered: spacing counts from the later of the two for a server that measures
   /// at its own end.
   void taken(Instant now);
+  /// No answer of it counts, and it may have been heard: spacing counts from now, for its connection may have
+  /// been long in coming.
+  void lost(Instant now);
   /// 429; `retry_after` as the server gave it, heeded up to kLongestPause: more is no use in a run of half an
   /// hour.
   void throttled(Instant now, std::optional<std::chrono::seconds> retry_after);

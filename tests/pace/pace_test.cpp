@@ -169,5 +169,12 @@ TEST(Budget, IsNeverZero) {
   EXPECT_GT(map_bytes_per_second(std::numeric_limits<double>::max()), 0);
 }
 
+TEST(RateLimit, AfterARequestWhoseConnectionWasLongInComingTheSpacingCountsFromItsEnd) {
+  RateLimit limit(1);
+  limit.sent(at(10));  // its bytes left at 12.8, and nothing came back
+  limit.lost(at(12.9));
+  EXPECT_EQ(limit.next(), at(13.9));
+}
+
 }  // namespace
 }  // namespace adit::pace

@@ -29,6 +29,20 @@ std::string settings() {
          R"(}}, "team": {"listen": [{"address": "127.0.0.1", "port": 0}]}})";
 }
 
+/// With their modes; what is no file is left out.
+void copy_folder(const fs::path& from, const fs::path& to) {
+  fs::create_directory(to, from);
+  for (const auto& entry : fs::directory_iterator(from)) {
+    const fs::path there = to / entry.path().filename();
+    if (entry.is_directory()) {
+      copy_folder(entry.path(), there);
+    } else if (entry.is_regular_file()) {
+      std::ofstream(there, std::ios::binary) << std::ifstream(entry.path(), std::ios::binary).rdbuf();
+      fs::permissions(there, entry.status().permissions());
+    }
+  }
+}
+
 }  // namespace
 
 Box::Box(World& world) : world_(world), random_(world.random("box")) {
@@ -94,7 +108,7 @@ void Box::kill() {
 /// to the old ones.
 void Box::died() {
   next_ = top_ / std::to_string(++folders_);
-  fs::copy(folder_, next_, fs::copy_options::recursive);
+  copy_folder(folder_, next_);
 }
 
 }  // namespace adit::simulation

@@ -39,9 +39,14 @@ class CommandPost::Conversation final : public Peer {
 };
 
 CommandPost::CommandPost(World& world, double trouble_for)
-    : world_(world), faults_(world.random("faults")), random_(world.random("command post")) {
+    : world_(world),
+      faults_(world.random("faults")),
+      random_(world.random("command post")),
+      run_began_(-random_.between(300, 3000)) {
   for (const Fault fault : {Fault::Storm, Fault::PoliteStorm, Fault::Refused, Fault::Deaf, Fault::NewRun}) {
-    if (faults_.has(fault)) plan_periods(fault, trouble_for);
+    // Nobody can tell one run from the next by clocks that stand.
+    const bool untold = fault == Fault::NewRun && faults_.has(Fault::ConstantClocks);
+    if (faults_.has(fault) && !untold) plan_periods(fault, trouble_for);
   }
 }
 
@@ -112,7 +117,7 @@ void CommandPost::misbehave(Fault fault, const HttpMessage& request, Link& link)
     case Fault::LostBefore:
       return link.end(Link::How::Reset, soon);
     case Fault::LostAfter:
-      random_.chance(0.5) ? take_later(request, kLatest) : void(take(request));
+      request.path() == kReports&& random_.chance(0.5) ? take_later(request, kLatest) : void(take(request));
       return link.end(Link::How::Reset, soon);
     case Fault::CutAnswer: {
       const std::string answer = take(request);
@@ -121,6 +126,7 @@ void CommandPost::misbehave(Fault fault, const HttpMessage& request, Link& link)
     }
     case Fault::Delay: {
       const auto late = seconds(random_.between(0.1, kLatest));
+      if (request.path() != kReports) return link.send(take(request), late);
       world_.after(late, [this, request, self = link.shared_from_this()] { self->send(take(request)); });
       return;
     }

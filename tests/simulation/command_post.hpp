@@ -47,7 +47,7 @@ class CommandPost final : public Host {
   bool calm_ = false;
   bool storm_ = false, polite_ = false, refused_ = false, deaf_ = false;
   std::int64_t run_ = 1, remaining_ = 25, score_ = 0, id_ = 0;
-  double run_began_ = 0;
+  double run_began_;
 };
 
 }  // namespace adit::simulation

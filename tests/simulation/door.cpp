@@ -20,7 +20,7 @@ int Door::connect(const std::string& address) {
   if (::socketpair(AF_UNIX, SOCK_STREAM | SOCK_NONBLOCK | SOCK_CLOEXEC, 0, ends) != 0) std::abort();
   in_addr parsed{};
   ::inet_pton(AF_INET, address.c_str(), &parsed);
-  waiting_.push_back({ends[1], parsed.s_addr});
+  waiting_.push_back({ends[1], ends[0], parsed.s_addr});
   world_.after(kAccepting, [this] { admit_all(); });
   return ends[0];
 }
@@ -33,10 +33,18 @@ std::shared_ptr<void> Door::open(intake::Admit admit) {
   return token;
 }
 
+void Door::cut() {
+  token_.reset();
+  admit_ = nullptr;
+  for (const int fd : clients_) ::shutdown(fd, SHUT_RD);
+  clients_.clear();
+}
+
 void Door::admit_all() {
   while (!waiting_.empty() && admit_ && !token_.expired()) {
     const Waiting next = waiting_.front();
     waiting_.pop_front();
+    clients_.insert(next.client);
     sockaddr_in peer{};
     peer.sin_family = AF_INET;
     peer.sin_addr.s_addr = next.address;

@@ -4,6 +4,7 @@
 #include <deque>
 #include <functional>
 #include <memory>
+#include <set>
 #include <string>
 
 #include "intake/accept.hpp"
@@ -22,20 +23,20 @@ class Door {
   int connect(const std::string& address);
   /// A server takes connections until the token is let go of.
   std::shared_ptr<void> open(intake::Admit admit);
-  /// The process is over.
-  void cut() {
-    token_.reset();
-    admit_ = nullptr;
-  }
+  /// The client has closed its end.
+  void closed(int fd) { clients_.erase(fd); }
+  /// The process is over: what it said before is still heard, and nothing of what it says now.
+  void cut();
 
  private:
   struct Waiting {
-    int fd;
+    int fd, client;
     std::uint32_t address;
   };
   void admit_all();
 
   World& world_;
+  std::set<int> clients_;  // their ends of connections that were admitted
   std::deque<Waiting> waiting_;
   intake::Admit admit_;
   std::weak_ptr<void> token_;

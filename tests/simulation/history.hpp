@@ -10,7 +10,8 @@ enum class Actor : std::uint8_t { Team, Adit, Post };
 
 /// What may happen. Each that has a serial says of which message.
 enum class Kind : std::uint8_t {
-  Invoke,    // the last byte of a client's request is on its way
+  Invoke,    // a client begins to ask
+  Whole,     // the last byte of its request is on its way
   Answered,  // the client has heard a whole answer, of that status
   Gone,      // the client has not, and the connection is over: it hung up, or was cut
   Leaves,    // the first byte of a request upstream is given to the network

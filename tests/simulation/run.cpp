@@ -1,10 +1,34 @@
 #include "simulation/run.hpp"
 
+#include "ledger/ledger.hpp"
 #include "simulation/box.hpp"
+#include "simulation/checks.hpp"
 #include "simulation/command_post.hpp"
+#include "simulation/team.hpp"
 #include "simulation/world.hpp"
 
 namespace adit::simulation {
+namespace {
+
+constexpr double kRest = 120;  // seconds after the last fault, in which all that waits goes
+
+/// In three of four runs: up to four ends of the process, by SIGTERM or SIGKILL.
+void plan_ends(World& world, Box& box, double trouble_for) {
+  Random random = world.random("ends");
+  for (std::uint64_t i = random.chance(0.25) ? 0 : 1 + random.below(4); i > 0; --i) {
+    const bool killed = random.chance(0.6);
+    world.after(seconds(random.between(0.5, trouble_for)),
+                [&box, killed] { killed ? box.kill() : box.terminate(); });
+  }
+}
+
+std::vector<dispatch::Report> reports_in(const std::string& folder) {
+  const auto ledger = ledger::Ledger::open(folder);
+  if (!ledger) return {};
+  return ledger->reports().value_or(std::vector<dispatch::Report>());
+}
+
+}  // namespace
 
 Outcome play(std::uint64_t seed, bool log) {
   World world(seed);
@@ -13,15 +37,17 @@ Outcome play(std::uint64_t seed, bool log) {
   const double trouble_for = world.random("length").between(10, 60);
   CommandPost post(world, trouble_for);
   world.network().serve(&post);
+  const Team team(world, trouble_for);
+  plan_ends(world, box, trouble_for);
   world.after(seconds(trouble_for), [&] { post.calm(); });
-  world.after(seconds(trouble_for + 60), [&] { box.finish(); });
+  world.after(seconds(trouble_for + kRest), [&] { box.finish(); });
   box.live();
   return {.hash = world.history().hash(),
           .seconds = world.time(),
           .steps = world.steps(),
           .faults = world.history().faults(),
           .drawn = post.faults().names(),
-          .broken = {}};
+          .broken = all_checks({world.history().events(), reports_in(box.state())})};
 }
 
 }  // namespace adit::simulation

@@ -1,0 +1,32 @@
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "dispatch/deeds.hpp"
+#include "simulation/history.hpp"
+
+namespace adit::simulation {
+
+/// What both sides saw, and what the box holds in the end, long after the last fault.
+struct Evidence {
+  const std::vector<Event>& events;
+  const std::vector<dispatch::Report>& reports;  // of the ledger
+};
+
+/// Each adds a sentence for what it finds broken, which begins with its name. Their rules are in README.md.
+using Broken = std::vector<std::string>;
+void once(const Evidence& evidence, Broken& broken);
+void not_lost(const Evidence& evidence, Broken& broken);
+void paced(const Evidence& evidence, Broken& broken);
+void stamps(const Evidence& evidence, Broken& broken);
+void kept(const Evidence& evidence, Broken& broken);
+void answered(const Evidence& evidence, Broken& broken);
+void pose_arrived(const Evidence& evidence, Broken& broken);
+void grid_arrived(const Evidence& evidence, Broken& broken);
+void marker_arrived(const Evidence& evidence, Broken& broken);
+void live(const Evidence& evidence, Broken& broken);
+
+Broken all_checks(const Evidence& evidence);
+
+}  // namespace adit::simulation

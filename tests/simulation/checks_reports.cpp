@@ -1,0 +1,87 @@
+// Once, NotLost and Live: of reports.
+#include <algorithm>
+#include <cmath>
+#include <map>
+#include <set>
+
+#include "icd/sentence.hpp"
+#include "simulation/checks.hpp"
+#include "simulation/messages.hpp"
+
+namespace adit::simulation {
+namespace {
+
+/// A report posted so shortly before a run began may be meant for it, and so long nobody may have noticed
+/// that it began.
+constexpr double kShortly = 25;
+
+using dispatch::ReportState;
+
+std::map<std::int64_t, double> first_records(const Evidence& evidence) {
+  std::map<std::int64_t, double> records;
+  for (const Event& event : evidence.events) {
+    if (event.kind == Kind::Taken && event.what == kReports) records.emplace(event.serial, event.at);
+  }
+  return records;
+}
+
+std::int64_t serial_of(const dispatch::Report& report) {
+  return std::llround(report.report.position.x / 100);
+}
+
+bool is_report(const Event& event, Kind kind) {
+  return event.kind == kind && event.what == kReports;
+}
+
+}  // namespace
+
+void once(const Evidence& evidence, Broken& broken) {
+  std::map<std::int64_t, double> posted;  // last
+  std::set<std::pair<std::int64_t, std::string>> records;
+  double run_began = 0;
+  for (const Event& event : evidence.events) {
+    if (event.kind == Kind::NewRun) run_began = event.at;
+    if (is_report(event, Kind::Invoke)) posted[event.serial] = event.at;
+    if (!is_report(event, Kind::Taken)) continue;
+    if (!records.insert({event.serial, event.who}).second) {
+      broken.push_back(icd::sentence("Once: report ", event.serial, " was recorded again in ", event.who,
+                                     " at ", event.at));
+    }
+    const bool meant = !posted.contains(event.serial) ? false : posted[event.serial] >= run_began - kShortly;
+    const bool unnoticed = event.at < run_began + kShortly;
+    if (run_began > 0 && !meant && !unnoticed) {
+      broken.push_back(icd::sentence("Once: report ", event.serial, " was sent into ", event.who,
+                                     " unasked at ", event.at));
+    }
+  }
+}
+
+void not_lost(const Evidence& evidence, Broken& broken) {
+  const auto records = first_records(evidence);
+  for (const Event& event : evidence.events) {
+    if (!is_report(event, Kind::Answered) || event.status >= 300) continue;
+    const auto record = records.find(event.serial);
+    if (record == records.end() || record->second > event.at) {
+      broken.push_back(icd::sentence("NotLost: a client was told that report ", event.serial,
+                                     " is recorded, and it was not, at ", event.at));
+    }
+  }
+  for (const dispatch::Report& report : evidence.reports) {
+    const bool claimed =
+        report.state == ReportState::Answered || (report.state == ReportState::Settled && report.reconciled);
+    if (claimed && !records.contains(serial_of(report))) {
+      broken.push_back(icd::sentence("NotLost: report ", serial_of(report), " is ",
+                                     dispatch::name_of(report.state), ", and was not recorded"));
+    }
+  }
+}
+
+void live(const Evidence& evidence, Broken& broken) {
+  for (const dispatch::Report& report : evidence.reports) {
+    if (report.state != ReportState::Waiting && report.state != ReportState::Sending) continue;
+    broken.push_back(
+        icd::sentence("Live: report ", serial_of(report), " is still ", dispatch::name_of(report.state)));
+  }
+}
+
+}  // namespace adit::simulation

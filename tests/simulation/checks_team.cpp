@@ -1,0 +1,89 @@
+// Kept, Answered and what arrived: of what the team's clients heard.
+#include <map>
+
+#include "icd/sentence.hpp"
+#include "simulation/checks.hpp"
+#include "simulation/messages.hpp"
+
+namespace adit::simulation {
+namespace {
+
+/// Seconds within which a whole request is answered, or its connection closed.
+constexpr double kReportWithin = 21, kOtherWithin = 8;
+
+void arrived(const Evidence& evidence, const char* path, const char* name, Broken& broken) {
+  std::map<std::string, std::int64_t> accepted, taken;
+  for (const Event& event : evidence.events) {
+    if (event.what != path) continue;
+    if (event.kind == Kind::Answered && event.status == 200)
+      accepted[event.who] = std::max(accepted[event.who], event.serial);
+    if (event.kind == Kind::Taken) taken[event.who] = event.serial;
+  }
+  for (const auto& [who, serial] : accepted) {
+    const std::int64_t last = taken.contains(who) ? taken[who] : 0;
+    if (last < serial) {
+      broken.push_back(icd::sentence(name, ": ", who, "'s ", serial,
+                                     " was answered 200, and the last one taken is ", last));
+    }
+  }
+}
+
+}  // namespace
+
+void kept(const Evidence& evidence, Broken& broken) {
+  std::map<std::uint64_t, double> began;
+  double stopped = -1;
+  int life = 0;
+  for (const Event& event : evidence.events) {
+    if (event.kind == Kind::Stops) {
+      stopped = event.at;
+      life = event.life;
+    }
+    if (event.kind == Kind::Invoke) began[event.request] = event.at;
+    const bool taken = event.kind == Kind::Answered && event.status == 200 && event.what != kReports;
+    if (taken && event.life == life && began[event.request] > stopped) {
+      broken.push_back(icd::sentence("Kept: ", event.what, " ", event.serial, " of ", event.who, " came at ",
+                                     began[event.request], ", after the stop at ", stopped,
+                                     ", and was answered 200"));
+    }
+  }
+}
+
+void answered(const Evidence& evidence, Broken& broken) {
+  std::map<std::uint64_t, std::pair<double, int>> whole;
+  std::map<int, double> begun;
+  for (const Event& event : evidence.events) {
+    if (event.kind == Kind::Begins) begun[event.life] = event.at;
+    if (event.kind == Kind::Whole) whole[event.request] = {event.at, event.life};
+    if (event.kind != Kind::Answered && event.kind != Kind::Gone) continue;
+    const auto asked = whole.find(event.request);
+    if (asked == whole.end()) continue;
+    const double since = std::max(asked->second.first, begun[event.life]);  // it may have waited at the door
+    const double within = event.what == kReports ? kReportWithin : kOtherWithin;
+    if (event.at - since > within) {
+      broken.push_back(icd::sentence("Answered: ", event.what, " ", event.serial, " of ", event.who,
+                                     " waited ", event.at - since, " s until ", event.at));
+    }
+  }
+}
+
+void pose_arrived(const Evidence& evidence, Broken& broken) {
+  arrived(evidence, kState, "PoseArrived", broken);
+}
+void grid_arrived(const Evidence& evidence, Broken& broken) {
+  arrived(evidence, kMap, "GridArrived", broken);
+}
+void marker_arrived(const Evidence& evidence, Broken& broken) {
+  arrived(evidence, kMarkers, "MarkerArrived", broken);
+}
+
+Broken all_checks(const Evidence& evidence) {
+  Broken broken;
+  for (const auto check :
+       {once, not_lost, paced, stamps, kept, answered, pose_arrived, grid_arrived, marker_arrived, live}) {
+    check(evidence, broken);
+  }
+  return broken;
+}
+
+}  // namespace adit::simulation

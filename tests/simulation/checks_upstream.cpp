@@ -1,0 +1,65 @@
+// Paced and Stamps: of what goes to the Command Post.
+#include <algorithm>
+#include <map>
+#include <optional>
+
+#include "icd/sentence.hpp"
+#include "simulation/checks.hpp"
+#include "simulation/world.hpp"
+
+namespace adit::simulation {
+namespace {
+
+constexpr double kSpacing = 1;        // seconds between two requests of a URI: the settings' default
+constexpr double kRounding = 1e-6;    // of the history's times
+constexpr double kAhead = 5;          // seconds that a stamp may be after the box's clock
+constexpr double kLongestPause = 30;  // that a Retry-After is heeded for
+
+}  // namespace
+
+void paced(const Evidence& evidence, Broken& broken) {
+  std::map<std::string, double> last;
+  struct Asked {
+    double at, pause;
+    int life;
+  };
+  std::map<std::string, Asked> asked;
+  for (const Event& event : evidence.events) {
+    if (event.kind == Kind::Dies) asked.clear();  // the answer may have been read and not yet understood
+    if (event.kind == Kind::Replied && event.status == 429)
+      asked[event.what] = {event.at, std::min(event.stamp, kLongestPause), event.life};
+    if (event.kind != Kind::Leaves) continue;
+    const auto before = last.find(event.what);
+    if (before != last.end() && event.at - before->second < kSpacing - kRounding) {
+      broken.push_back(icd::sentence("Paced: ", event.what, " was asked ", event.at - before->second,
+                                     " s after the last time, at ", event.at));
+    }
+    const auto pause = asked.find(event.what);
+    if (pause != asked.end() && event.at - pause->second.at < pause->second.pause - kRounding) {
+      broken.push_back(icd::sentence("Paced: ", event.what, " was asked ", event.at - pause->second.at,
+                                     " s after a 429 that asked for ", pause->second.pause, " s, at ",
+                                     event.at));
+    }
+    last[event.what] = event.at;
+    asked.erase(event.what);
+  }
+}
+
+void stamps(const Evidence& evidence, Broken& broken) {
+  std::map<std::string, double> last;
+  for (const Event& event : evidence.events) {
+    if (event.kind != Kind::Left || event.stamp == 0) continue;
+    double& before = last[event.what];
+    if (event.stamp < before) {
+      broken.push_back(icd::sentence("Stamps: of ", event.what, " ran back by ", before - event.stamp,
+                                     " s at ", event.at));
+    }
+    before = std::max(before, event.stamp);
+    if (event.stamp > World::kEpoch + event.at + kAhead + kRounding) {
+      broken.push_back(icd::sentence("Stamps: of ", event.what, " is ",
+                                     event.stamp - World::kEpoch - event.at, " s ahead at ", event.at));
+    }
+  }
+}
+
+}  // namespace adit::simulation

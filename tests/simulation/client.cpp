@@ -1,0 +1,114 @@
+#include "simulation/client.hpp"
+
+#include <sys/epoll.h>
+#include <sys/socket.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <array>
+#include <cerrno>
+#include <utility>
+
+#include "simulation/world.hpp"
+
+namespace adit::simulation {
+
+Client::Client(World& world, std::string address, Manners manners, Random random)
+    : world_(world), address_(std::move(address)), manners_(manners), random_(random) {}
+
+Client::~Client() {
+  close();
+}
+
+void Client::connect() {
+  fd_ = world_.door().connect(address_);
+  watch_ =
+      world_.descriptors().add(fd_, EPOLLIN | EPOLLRDHUP, [this](std::uint32_t events) { ready(events); });
+}
+
+void Client::close() {
+  if (fd_ < 0) return;
+  world_.descriptors().remove(watch_);
+  world_.door().closed(fd_);
+  ::close(std::exchange(fd_, -1));
+  answers_ = {};
+}
+
+void Client::ask(std::string request, Event about, std::function<void(int)> done) {
+  request_ = std::move(request);
+  about_ = std::move(about);
+  about_.actor = Actor::Team;
+  about_.request = world_.entropy();
+  done_ = std::move(done);
+  written_ = 0;
+  hang_up_at_ = random_.chance(manners_.hangs_up) ? 1 + random_.below(request_.size()) : 0;
+  const std::uint64_t number = ++number_;
+  if (fd_ < 0) connect();
+  Event event = about_;
+  event.kind = Kind::Invoke;
+  world_.note(std::move(event));
+  world_.after(seconds(manners_.patience), [this, number] {
+    if (number == number_ && done_) ended(Kind::Gone, 0, "out of patience");
+  });
+  go_on();
+}
+
+void Client::go_on() {
+  if (!done_ || fd_ < 0 || written_ == request_.size()) return;
+  const std::size_t left = request_.size() - written_;
+  const bool dribbles = random_.chance(manners_.dribbles);
+  write(dribbles ? 1 + random_.below(left) : left);
+  if (!done_ || written_ == request_.size()) return;
+  const std::uint64_t number = number_;
+  world_.after(seconds(random_.between(0.0005, dribbles ? 0.5 : 0.01)), [this, number] {
+    if (number == number_) go_on();
+  });
+}
+
+void Client::write(std::size_t most) {
+  if (hang_up_at_ != 0) most = std::min(most, hang_up_at_ - written_);
+  const ssize_t taken = ::send(fd_, request_.data() + written_, most, MSG_NOSIGNAL | MSG_DONTWAIT);
+  if (taken < 0 && errno == EAGAIN) return;
+  if (taken < 0) return ended(Kind::Gone, 0, "reset");
+  written_ += static_cast<std::size_t>(taken);
+  if (written_ == request_.size()) {
+    Event event = about_;
+    event.kind = Kind::Whole;
+    world_.note(std::move(event));
+  }
+  if (hang_up_at_ != 0 && written_ == hang_up_at_) ended(Kind::Gone, 0, "hung up");
+}
+
+void Client::ready(std::uint32_t) {
+  read();
+}
+
+void Client::read() {
+  std::array<char, 16384> bytes{};
+  const ssize_t got = ::recv(fd_, bytes.data(), bytes.size(), MSG_DONTWAIT);
+  if (got < 0 && errno == EAGAIN) return;
+  if (got <= 0) return done_ ? ended(Kind::Gone, 0, "cut") : close();
+  answers_.feed({bytes.data(), static_cast<std::size_t>(got)});
+  while (const auto answer = answers_.next()) {
+    if (answer->status() < 200 || !done_) continue;
+    const bool stays = manners_.keeps_alive && answer->header("connection") != "close";
+    ended(Kind::Answered, answer->status(), answer->status() < 300 ? "" : answer->body);
+    if (!stays) close();
+  }
+}
+
+/// A client that heard nothing has done with the connection.
+void Client::ended(Kind kind, int status, const std::string& why) {
+  if (kind == Kind::Gone) close();
+  Event event = about_;
+  event.kind = kind;
+  event.status = status;
+  event.text = why;
+  world_.note(std::move(event));
+  const auto done = std::exchange(done_, nullptr);
+  ++number_;
+  // Not from within this call: it may ask again.
+  world_.after({}, [done, status] { done(status); });
+}
+
+}  // namespace adit::simulation

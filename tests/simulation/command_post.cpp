@@ -10,6 +10,7 @@
 namespace adit::simulation {
 namespace {
 
+constexpr int kSeenToRun = 4;  // statuses that were answered
 constexpr double kLatest = 8;  // seconds after which nothing is recorded any more
 constexpr const char* kJson = "Content-Type: application/json\r\n";
 constexpr const char* kHtml = "<html><body>Please log in</body></html>";
@@ -57,16 +58,7 @@ void CommandPost::note(Fault fault, const std::string& path) {
 void CommandPost::plan_periods(Fault fault, double trouble_for) {
   for (std::uint64_t i = 1 + random_.below(2); i > 0; --i) {
     const double begins = random_.between(1, trouble_for), takes = random_.between(0.5, 8);
-    if (fault == Fault::NewRun) {
-      world_.after(seconds(begins), [this] {
-        ++run_;
-        remaining_ = 25;
-        score_ = 0;
-        run_began_ = world_.time();
-        world_.note({.actor = Actor::Post, .kind = Kind::NewRun, .what = "", .who = "", .serial = run_});
-      });
-      return;
-    }
+    if (fault == Fault::NewRun) return world_.after(seconds(begins), [this] { begin_run(); });
     bool& is = fault == Fault::Storm         ? storm_
                : fault == Fault::PoliteStorm ? polite_
                : fault == Fault::Refused     ? refused_
@@ -78,6 +70,17 @@ void CommandPost::plan_periods(Fault fault, double trouble_for) {
     });
     world_.after(seconds(begins + takes), [&is] { is = false; });
   }
+}
+
+/// Not before its clock was seen to run: nothing would tell the one from the other.
+void CommandPost::begin_run() {
+  if (calm_) return;
+  if (statuses_ < kSeenToRun) return world_.after(seconds(5), [this] { begin_run(); });
+  ++run_;
+  remaining_ = 25;
+  score_ = 0;
+  run_began_ = world_.time();
+  world_.note({.actor = Actor::Post, .kind = Kind::NewRun, .what = "", .who = "", .serial = run_});
 }
 
 void CommandPost::calm() {
@@ -103,6 +106,7 @@ void CommandPost::asked(const HttpMessage& request, Link& link) {
   }
   const Fault fault = calm_ ? Fault::End : faults_.of_request();
   if (fault != Fault::End) return misbehave(fault, request, link);
+  if (request.path() == kStatus) ++statuses_;
   link.send(take(request), seconds(random_.between(0, 0.01)));
 }
 

@@ -38,6 +38,7 @@ class CommandPost final : public Host {
   std::string status() const;
   std::string record(const Item& item);
   void take_later(const HttpMessage& request, double within);
+  void begin_run();
   void plan_periods(Fault fault, double trouble_for);
   void note(Fault fault, const std::string& path);
 
@@ -48,6 +49,7 @@ class CommandPost final : public Host {
   bool storm_ = false, polite_ = false, refused_ = false, deaf_ = false;
   std::int64_t run_ = 1, remaining_ = 25, score_ = 0, id_ = 0;
   double run_began_;
+  int statuses_ = 0;  // that were answered
 };
 
 }  // namespace adit::simulation

@@ -1,4 +1,5 @@
 // The whole gateway in a simulated world, from seeds.
+#include <algorithm>
 #include <cstdio>
 #include <cstdlib>
 #include <ctime>
@@ -14,10 +15,11 @@ struct Options {
   std::uint64_t runs = 1;
   double cpu = 0;  // seconds, after which no run begins; 0: no such limit
   bool log = false;
+  std::string until;  // the check that ends it all where it finds something
 };
 
 int usage() {
-  std::fputs("adit_simulation [--seed N] [--runs N] [--cpu SECONDS] [--log]\n", stderr);
+  std::fputs("adit_simulation [--seed N] [--runs N] [--cpu SECONDS] [--until CHECK] [--log]\n", stderr);
   return 2;
 }
 
@@ -33,6 +35,8 @@ bool read(Options& options, int argc, char** argv) {
       options.seed = std::strtoull(argv[i], nullptr, 10);
     } else if (word == "--runs") {
       options.runs = std::strtoull(argv[i], nullptr, 10);
+    } else if (word == "--until") {
+      options.until = argv[i];
     } else if (word == "--cpu") {
       options.cpu = std::strtod(argv[i], nullptr);
     } else {
@@ -79,6 +83,11 @@ int main(int argc, char** argv) {
                   static_cast<unsigned long long>(outcome.hash), static_cast<unsigned long long>(seed));
     }
     if (!good) ++failed;
+    const auto is_sought = [&](const std::string& broken) { return broken.starts_with(options.until + ":"); };
+    if (std::ranges::any_of(outcome.broken, is_sought)) {
+      ++runs;
+      break;
+    }
   }
   std::printf(
       "%llu runs from seed %llu: %.2f simulated hours, %llu events, %llu faults, %.1f s of CPU, %llu "

@@ -87,7 +87,7 @@ sqlite3_int64 reserve_log(Database& database) {
 Attempt<void> begin_log(Database& database) {
   const sqlite3_int64 size = reserve_log(database);
   if (auto marked = write_mark(database, true, size); !marked) {
-    if (marked.error().read_only) return std::unexpected(damaged(marked.error().what));
+    if (marked.error().read_only) return marked;
     return {};
   }
   sqlite3_wal_checkpoint_v2(database.get(), nullptr, SQLITE_CHECKPOINT_PASSIVE, nullptr, nullptr);
@@ -182,6 +182,8 @@ class Opening {
     if (auto ready = set_up(*database); !ready) {
       // The damaged file stays as it was found, for whoever looks into it; its log with what was put right.
       sqlite3_db_config(database->get(), SQLITE_DBCONFIG_NO_CKPT_ON_CLOSE, 1, nullptr);
+      // Its folder takes a write: that SQLite may not write is what the file's own header says.
+      if (ready.error().read_only) return std::unexpected(damaged(std::move(ready.error().what)));
       return std::unexpected(std::move(ready.error()));
     }
     return std::move(*database);

@@ -45,10 +45,10 @@ class UriPace {
     rate_.throttled(now, retry_after);
     keep();
   }
-  /// It failed after it may have been heard.
+  /// It failed after it may have been heard. Takes no memory: what sent() has kept holds a life to come back
+  /// as long.
   void lost(pace::Instant now) {
     rate_.lost(now);
-    keep();
     failed(now);
   }
   void failed(const uplink::Outcome& outcome, pace::Instant now) {

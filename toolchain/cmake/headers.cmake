@@ -14,6 +14,6 @@ function(adit_test_headers)
   target_compile_options(adit_test_headers PRIVATE -O0)
   target_link_libraries(adit_test_headers PRIVATE adit_options GTest::gmock)
   target_precompile_headers(adit_test_headers PRIVATE
-    <gmock/gmock.h> <gtest/gtest.h> <algorithm> <array> <chrono> <expected> <filesystem> <fstream> <functional> <map> <memory>
+    <gmock/gmock.h> <gtest/gtest.h> <nlohmann/json.hpp> <algorithm> <array> <chrono> <expected> <filesystem> <fstream> <functional> <map> <memory>
     <optional> <random> <span> <string> <string_view> <utility> <vector>)
 endfunction()

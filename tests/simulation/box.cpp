@@ -22,7 +22,7 @@ void write(const fs::path& path, const std::string& text) {
 }
 
 /// Nobody connects to the socket in which the team's server listens: the clients come in by the door.
-std::string settings() {
+std::string first_settings() {
   return R"({"version": 1, "command_post": {"scoring": {"address": "10.100.1.200", "port": )" +
          std::to_string(CommandPost::kScoring) + R"(}, "mapping": {"address": "10.100.1.201", "port": )" +
          std::to_string(CommandPost::kMapping) +
@@ -56,7 +56,7 @@ Box::Box(World& world) : world_(world), random_(world.random("box")) {
   for (const char* each : {"scoring", "mapping"})
     write(folder_ / "secrets" / (std::string(each) + ".token"), "flux230{showroom\n");
   write(folder_ / "secrets" / "team.token", "token-of-the-team\n");
-  write(folder_ / "settings.json", settings());
+  write(folder_ / "settings.json", first_settings());
 }
 
 Box::~Box() {

@@ -27,6 +27,9 @@ class Box {
   void kill();
 
   std::string state() const { return (folder_ / "state").string(); }
+  std::string runtime() const { return (folder_ / "runtime").string(); }
+  std::string secrets() const { return (folder_ / "secrets").string(); }
+  std::string settings() const { return (folder_ / "settings.json").string(); }
 
  private:
   void one_life();

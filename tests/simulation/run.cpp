@@ -4,6 +4,7 @@
 #include "simulation/box.hpp"
 #include "simulation/checks.hpp"
 #include "simulation/command_post.hpp"
+#include "simulation/operator.hpp"
 #include "simulation/team.hpp"
 #include "simulation/world.hpp"
 
@@ -38,6 +39,7 @@ Outcome play(std::uint64_t seed, bool log) {
   CommandPost post(world, trouble_for);
   world.network().serve(&post);
   const Team team(world, trouble_for);
+  const Operator operator_(world, box, trouble_for);
   plan_ends(world, box, trouble_for);
   world.after(seconds(trouble_for), [&] { post.calm(); });
   world.after(seconds(trouble_for + kRest), [&] { box.finish(); });

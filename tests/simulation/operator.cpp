@@ -1,0 +1,67 @@
+#include "simulation/operator.hpp"
+
+#include <algorithm>
+#include <cstdlib>
+#include <utility>
+
+#include "access/session_file.hpp"
+#include "access/sessions.hpp"
+#include "access/verdict.hpp"
+#include "codec/json.hpp"
+#include "gateway/session_keeper.hpp"
+#include "gateway/store.hpp"
+#include "host/service.hpp"
+#include "settings/written.hpp"
+#include "simulation/http.hpp"
+#include "simulation/world.hpp"
+
+namespace adit::simulation {
+namespace {
+
+constexpr const char* kSettings = "/adit/settings";
+
+access::Secret secret(Random& random) {
+  access::Secret secret{};
+  std::ranges::generate(secret, [&random] { return static_cast<std::uint8_t>(random.next()); });
+  return secret;
+}
+
+}  // namespace
+
+Operator::Operator(World& world, const Box& box, double until)
+    : world_(world),
+      box_(box),
+      client_(world, "10.0.0.10", {.keeps_alive = false, .patience = 20},
+              world.random("client of the operator")) {
+  Random random = world.random("operator");
+  access::Sessions sessions;
+  const auto& mine = sessions.begin(secret(random), secret(random), access::Role::Operator,
+                                    {"10.0.0.10", "page"}, world.now());
+  id_ = mine.id.reveal();
+  csrf_ = mine.csrf.reveal();
+  const access::KeptSessions kept{
+      .boot = host::boot(), .last = sessions.last(), .sessions = sessions.in_order()};
+  if (!host::write_file(box.runtime() + '/' + gateway::SessionKeeper::kFile, access::write_sessions(kept),
+                        host::kOursAlone))
+    std::abort();
+  for (std::uint64_t i = random.chance(0.3) ? 1 + random.below(3) : 0; i > 0; --i)
+    world.after(seconds(random.between(0.5, until)), [this] { save(); });
+}
+
+void Operator::save() {
+  const auto loaded = gateway::Store(box_.settings(), box_.secrets(), box_.state()).load();
+  if (!loaded || client_.busy()) return;
+  settings::Settings next = loaded->settings;
+  next.reports.near_metres = next.reports.near_metres > 5 ? 5 : 6;
+  const std::string body = codec::write_json({codec::Value::Object{
+      {"base", {settings::tag_of(loaded->settings)}}, {"settings", settings::value_of(next)}}});
+  const std::string headers =
+      "Host: 10.0.0.1\r\nContent-Type: application/json\r\nCookie: " + std::string(access::kCookie) + "=" +
+      id_ + "\r\n" + std::string(access::kCsrfHeader) + ": " + csrf_ + "\r\n";
+  client_.ask(http_request("POST", kSettings, headers, body), {.what = kSettings, .who = "operator"},
+              [this](int status) {
+                if (status == 200) world_.note({.kind = Kind::Saved, .what = "settings", .who = ""});
+              });
+}
+
+}  // namespace adit::simulation

@@ -26,16 +26,16 @@ std::string number(double value) {
 /// One connection. The requests that it reads are answered one after the other.
 class CommandPost::Conversation final : public Peer {
  public:
-  Conversation(CommandPost& post, std::shared_ptr<Link> link) : post_(post), link_(std::move(link)) {}
+  Conversation(CommandPost& post, Link& link) : post_(post), link_(link) {}
   void came(std::string_view bytes) override {
     stream_.feed(bytes);
-    while (const auto request = stream_.next()) post_.asked(*request, *link_);
+    while (const auto request = stream_.next()) post_.asked(*request, link_);
   }
   void ended() override {}
 
  private:
   CommandPost& post_;
-  std::shared_ptr<Link> link_;
+  Link& link_;  // whose this is
   HttpStream stream_;
 };
 
@@ -94,8 +94,8 @@ std::optional<int> CommandPost::connecting(const uplink::Endpoint&) {
   return refused_ ? ECONNREFUSED : 0;
 }
 
-std::unique_ptr<Peer> CommandPost::connected(const uplink::Endpoint&, std::shared_ptr<Link> link) {
-  return std::make_unique<Conversation>(*this, std::move(link));
+std::unique_ptr<Peer> CommandPost::connected(const uplink::Endpoint&, Link& link) {
+  return std::make_unique<Conversation>(*this, link);
 }
 
 void CommandPost::asked(const HttpMessage& request, Link& link) {

@@ -27,7 +27,7 @@ class CommandPost final : public Host {
   void calm();
 
   std::optional<int> connecting(const uplink::Endpoint& endpoint) override;
-  std::unique_ptr<Peer> connected(const uplink::Endpoint& endpoint, std::shared_ptr<Link> link) override;
+  std::unique_ptr<Peer> connected(const uplink::Endpoint& endpoint, Link& link) override;
 
  private:
   class Conversation;

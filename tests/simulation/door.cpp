@@ -3,6 +3,7 @@
 #include <arpa/inet.h>
 #include <netinet/in.h>
 #include <sys/socket.h>
+#include <unistd.h>
 
 #include <cstdlib>
 
@@ -14,6 +15,10 @@ namespace {
 constexpr std::chrono::microseconds kAccepting{50};
 
 }  // namespace
+
+Door::~Door() {
+  for (const Waiting& each : waiting_) ::close(each.fd);
+}
 
 int Door::connect(const std::string& address) {
   int ends[2];

@@ -18,6 +18,9 @@ class World;
 class Door {
  public:
   explicit Door(World& world) : world_(world) {}
+  ~Door();
+  Door(const Door&) = delete;
+  Door& operator=(const Door&) = delete;
 
   /// The client's end of a new connection from `address` (IPv4). It is not blocking.
   int connect(const std::string& address);

@@ -29,7 +29,7 @@ void Link::connect(Host& host) {
     self->error = error;
     self->open = error == 0;
     self->reset = error != 0;
-    if (self->open) self->peer_ = host.connected(self->endpoint_, self);
+    if (self->open) self->peer_ = host.connected(self->endpoint_, *self);
   });
 }
 
@@ -127,6 +127,7 @@ void Network::wait_for(std::uint64_t number, std::uint32_t events) {
 
 bool Network::dispatch() {
   std::vector<std::uint64_t> numbers;
+  numbers.reserve(watched_.size());
   for (const auto& [number, watched] : watched_) numbers.push_back(number);
   bool any = false;
   for (const std::uint64_t number : numbers) {

@@ -34,7 +34,8 @@ class Host {
   virtual ~Host() = default;
   /// How connecting goes on: 0, an errno, or nothing for silence.
   virtual std::optional<int> connecting(const uplink::Endpoint& endpoint) = 0;
-  virtual std::unique_ptr<Peer> connected(const uplink::Endpoint& endpoint, std::shared_ptr<Link> link) = 0;
+  /// `link` outlives the peer.
+  virtual std::unique_ptr<Peer> connected(const uplink::Endpoint& endpoint, Link& link) = 0;
 };
 
 /// One TCP connection to the Command Post, in memory.

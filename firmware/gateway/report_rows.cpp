@@ -1,6 +1,7 @@
 #include "gateway/report_rows.hpp"
 
 #include <algorithm>
+#include <ranges>
 
 #include "codec/read.hpp"
 
@@ -37,12 +38,25 @@ std::vector<page::ReportRow> all_rows(const dispatch::Reports& reports) {
   return rows;
 }
 
+std::vector<const dispatch::Report*> latest_of(const std::map<std::int64_t, dispatch::Report>& all,
+                                               std::size_t most) {
+  const auto is_open = [](const auto& item) { return !dispatch::is_final(item.second.state); };
+  const auto open = static_cast<std::size_t>(std::ranges::count_if(all, is_open));
+  std::size_t room = most - std::min(most, open);  // for those that are done
+  std::vector<const dispatch::Report*> chosen;
+  for (const auto& item : all | std::views::reverse) {
+    if (chosen.size() == most) break;
+    if (!is_open(item) && room == 0) continue;
+    if (!is_open(item)) --room;
+    chosen.push_back(&item.second);
+  }
+  return chosen;
+}
+
 std::vector<page::ReportRow> latest_rows(const dispatch::Reports& reports, std::size_t most) {
-  const auto& all = reports.book().all();
   std::vector<page::ReportRow> rows;
-  rows.reserve(std::min(all.size(), most));
-  for (auto item = all.rbegin(); item != all.rend() && rows.size() < most; ++item) {
-    rows.push_back(row_of(reports, item->second));
+  for (const dispatch::Report* const report : latest_of(reports.book().all(), most)) {
+    rows.push_back(row_of(reports, *report));
   }
   return rows;
 }

@@ -129,7 +129,7 @@ struct RunView {
   std::string run_id;           // the Command Post's; "": it names none
   std::vector<EndpointRow> endpoints;
   std::vector<RobotRow> robots;    // by name
-  std::vector<ReportRow> reports;  // newest first
+  std::vector<ReportRow> reports;  // newest first: all that are not done, and the newest others
   double near_metres = 0;          // of one type and this near, two reports may be of one artifact
   std::vector<ActivityRow> activities;
   std::vector<RefusalRow> refusals;  // newest first, the last 50

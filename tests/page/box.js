@@ -24,11 +24,10 @@ export async function until(look, what, within = 60_000) {
 }
 
 class Program {
-  constructor(t, log, name, ...args) {
-    this.log = "";
+  log = "";
+  constructor(name, ...args) {
     this.process = spawn(join(BIN, name), args, { stdio: ["ignore", "pipe", "pipe"] });
     for (const output of [this.process.stdout, this.process.stderr]) output.on("data", (bytes) => (this.log += bytes));
-    t.after(() => this.end());
   }
   /** The first group of `pattern` in what it printed. */
   said = (pattern) => until(() => pattern.exec(this.log)?.[1], `${pattern} in:\n${this.log}`);
@@ -61,9 +60,14 @@ function secretsIn(folder) {
 /** aditd at work, both passwords set; `ask(method, path, {role, body, headers})` asks as an operator's script by default. */
 export async function box(t, rates = {}) {
   const folder = mkdtempSync(join(tmpdir(), "adit-page-"));
-  t.after(() => rmSync(folder, { recursive: true, maxRetries: 20, retryDelay: 50 }));
+  const programs = [];
+  const start = (...words) => programs[programs.push(new Program(...words)) - 1];
+  t.after(async () => {
+    for (const program of programs.reverse()) await program.end();
+    rmSync(folder, { recursive: true }); // only now: a box at work writes to it
+  });
   const secrets = secretsIn(join(folder, "secrets"));
-  const post = new Program(t, folder, "adit-rehearsal", "--scoring", "127.0.0.1:0", "--mapping", "127.0.0.1:0", "--secrets", secrets, "--verbose");
+  const post = start("adit-rehearsal", "--scoring", "127.0.0.1:0", "--mapping", "127.0.0.1:0", "--secrets", secrets, "--verbose");
   const address = async (name) => ({ address: "127.0.0.1", port: Number(await post.said(new RegExp(`${name} 127\\.0\\.0\\.1:(\\d+)`))) });
   const settings = {
     version: 1,
@@ -72,7 +76,7 @@ export async function box(t, rates = {}) {
   };
   writeFileSync(join(folder, "settings.json"), JSON.stringify(settings));
   const state = join(folder, "state");
-  const aditd = new Program(t, folder, "aditd", "--settings", join(folder, "settings.json"), "--secrets", secrets, "--state", state);
+  const aditd = start("aditd", "--settings", join(folder, "settings.json"), "--secrets", secrets, "--state", state);
   const url = `http://127.0.0.1:${await aditd.said(/listening .*port=(\d+)/)}`;
 
   const who = { operator: { Authorization: `Bearer ${TOKENS.team}` }, nobody: {} };

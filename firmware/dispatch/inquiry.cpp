@@ -2,7 +2,7 @@
 
 namespace adit::dispatch {
 
-Finding Inquiry::hear(const Evidence& evidence, double run_clock, Instant now) {
+Finding Inquiry::hear(const Evidence& evidence, double run_clock, Instant asked, Instant now) {
   Finding finding = evidence.finding;
   if (finding == Finding::NotRecorded && stands_still(run_clock, now)) finding = Finding::Silent;
   if (!first_heard_) {
@@ -14,7 +14,7 @@ Finding Inquiry::hear(const Evidence& evidence, double run_clock, Instant now) {
   finding_ = finding;
   in_vain_ = !is_pending(now);
   if (finding == Finding::Recorded && agreeing_ < kRecordedAsks) return Finding::Silent;
-  const bool late_enough = now - lost_ >= patience_.doubt_for && agreeing_ >= patience_.asks;
+  const bool late_enough = asked - lost_ >= patience_.doubt_for && agreeing_ >= patience_.asks;
   if (finding == Finding::NotRecorded && !late_enough) return Finding::Silent;
   return finding;
 }

@@ -11,7 +11,7 @@ namespace adit::dispatch {
 /// How patiently Adit finds out what became of a report whose answer was lost.
 struct Patience {
   /// How late a Command Post may still record what it has read: a report counts as not recorded only where a
-  /// status says so this long after its answer was lost.
+  /// status says so that was asked for this long after its answer was lost.
   std::chrono::milliseconds doubt_for{10000};
   std::int64_t asks = 3;  // statuses in a row that must say "not recorded"
 };
@@ -25,8 +25,9 @@ class Inquiry {
 
   Inquiry(const Patience& patience, Instant lost) : patience_(patience), lost_(lost) {}
 
-  /// One status, weighed. Gives what is now certain: Recorded, NotRecorded, Contradicts, or Silent.
-  Finding hear(const Evidence& evidence, double run_clock, Instant now);
+  /// One status, weighed; it may be of the moment at which it was asked for. Gives what is now certain:
+  /// Recorded, NotRecorded, Contradicts, or Silent.
+  Finding hear(const Evidence& evidence, double run_clock, Instant asked, Instant now);
   void asked(Instant now) { asked_ = now; }
   /// An asking that brought no status.
   void failed(Instant now) { in_vain_ = !is_pending(now); }

@@ -83,7 +83,8 @@ class Reports {
   ReportEvent answered(const HttpAnswer& answer, Time time);
   void never_left(const std::string& why, Time time);
   void lost(const std::string& why, Time time);
-  void status_heard(const icd::RunStatus& status, Time time);
+  /// `asked`: when it was asked for.
+  void status_heard(const icd::RunStatus& status, Instant asked, Time time);
   /// `reached`: the Command Post answered, but nothing that helps.
   void status_failed(bool reached, Time time);
 
@@ -152,7 +153,7 @@ class Reports {
 
   // Doubts.
   void doubt_began(Instant now);
-  void inquire(const icd::RunStatus& status, Time time);
+  void inquire(const icd::RunStatus& status, Instant asked, Time time);
   SentSince sent_since(const Report& doubt) const;
   void settle(const std::vector<const Report*>& doubts, const Evidence& evidence, Time time);
   void send_again(const std::vector<const Report*>& doubts, const Evidence& evidence, Time time);

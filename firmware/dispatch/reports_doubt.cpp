@@ -53,7 +53,7 @@ SentSince Reports::sent_since(const Report& doubt) const {
   return since;
 }
 
-void Reports::status_heard(const icd::RunStatus& status, Time time) {
+void Reports::status_heard(const icd::RunStatus& status, Instant asked, Time time) {
   if (const auto another = account_.another(status, time)) meet(*another, status, time);
   account_.heard(status, time);
   barred_ = false;
@@ -61,7 +61,7 @@ void Reports::status_heard(const icd::RunStatus& status, Time time) {
   if (book_.doubts(run().number).empty()) {
     account_.settle(status, time);
   } else {
-    inquire(status, time);
+    inquire(status, asked, time);
   }
 }
 
@@ -73,13 +73,13 @@ void Reports::status_failed(bool reached, Time time) {
   if (inquiry_->is_in_vain()) explain(book_.doubts(run().number), "the run's status cannot be had", time);
 }
 
-void Reports::inquire(const icd::RunStatus& status, Time time) {
+void Reports::inquire(const icd::RunStatus& status, Instant asked, Time time) {
   const auto doubts = book_.doubts(run().number);
   if (!inquiry_) return explain(doubts, "", time);
   const Report& first = *doubts.front();
   const Evidence evidence =
       weigh(*first.before, static_cast<std::int64_t>(doubts.size()), sent_since(first), status);
-  switch (inquiry_->hear(evidence, status.run_clock, time.now)) {
+  switch (inquiry_->hear(evidence, status.run_clock, asked, time.now)) {
     case Finding::Recorded:
       settle(doubts, evidence, time);
       break;

@@ -6,19 +6,19 @@
 
 namespace adit::gateway {
 
-void KnownStatus::heard(std::string body, loop::Instant now) {
+void KnownStatus::heard(std::string body, loop::Instant asked) {
   body_ = std::move(body);
-  heard_ = now;
+  asked_ = asked;
   fresh_ = true;
 }
 
 bool KnownStatus::is_fresh(loop::Instant now) const {
-  return fresh_ && heard_ && now - *heard_ < kFresh;
+  return fresh_ && asked_ && now - *asked_ < kFresh;
 }
 
 std::optional<intake::Answer> KnownStatus::answer(loop::Instant now) const {
-  if (!heard_ || now - *heard_ > kOldest) return std::nullopt;
-  const auto age = std::chrono::floor<std::chrono::seconds>(now - *heard_).count();
+  if (!asked_ || now - *asked_ > kOldest) return std::nullopt;
+  const auto age = std::chrono::floor<std::chrono::seconds>(now - *asked_).count();
   return intake::Answer{.status = icd::Status::Ok,
                         .content_type = std::string(codec::kJson),
                         .body = body_,

@@ -17,7 +17,7 @@ class KnownStatus {
   static constexpr std::chrono::seconds kOldest{15};  // so long it is better than no answer
 
   /// `body`: JSON.
-  void heard(std::string body, loop::Instant now);
+  void heard(std::string body, loop::Instant asked);
   /// It is known to have changed, or may have: still an answer, but not a fresh one.
   void no_longer_fresh() { fresh_ = false; }
 
@@ -27,7 +27,7 @@ class KnownStatus {
 
  private:
   std::string body_;
-  std::optional<loop::Instant> heard_;
+  std::optional<loop::Instant> asked_;
   bool fresh_ = false;
 };
 

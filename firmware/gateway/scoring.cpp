@@ -233,15 +233,15 @@ void Scoring::ask_status() {
 }
 
 void Scoring::status_answered(const uplink::Outcome& outcome) {
-  asked_status_.reset();
+  const loop::Instant asked = *std::exchange(asked_status_, std::nullopt);
   poll_.call_at(loop_.now() + kAskEvery);
-  loop::guarded("the answer to a status", [&] { judge_status(outcome); });
+  loop::guarded("the answer to a status", [&] { judge_status(outcome, asked); });
   watch_deadlines();
   record_.changed();
   pump();
 }
 
-void Scoring::judge_status(const uplink::Outcome& outcome) {
+void Scoring::judge_status(const uplink::Outcome& outcome, loop::Instant asked) {
   const loop::Instant now = loop_.now();
   const auto* answered = std::get_if<uplink::Answered>(&outcome);
   if (answered == nullptr) {
@@ -260,8 +260,8 @@ void Scoring::judge_status(const uplink::Outcome& outcome) {
   if (run) {
     run_ = *run;
     run_heard_ = loop_.stamp_now();
-    known_status_.heard(answered->body, now);
-    whole(anew_, [&] { reports_.status_heard(*run, time()); });
+    known_status_.heard(answered->body, asked);
+    whole(anew_, [&] { reports_.status_heard(*run, asked, time()); });
   } else {
     const bool left = !std::holds_alternative<uplink::NeverSent>(outcome);
     whole(anew_, [&] { reports_.status_failed(left, time()); });

@@ -98,7 +98,7 @@ class Scoring {
   void judge_report(const uplink::Outcome& outcome);
   void ask_status();
   void status_answered(const uplink::Outcome& outcome);
-  void judge_status(const uplink::Outcome& outcome);
+  void judge_status(const uplink::Outcome& outcome, loop::Instant asked);
   void answer_askers(const intake::Answer& answer);
   void watch_deadlines();
   void tell_askers(loop::Instant now);

@@ -16,8 +16,10 @@ Inquiry::Instant at(double s) {
 class InquiryTest : public testing::Test {
  protected:
   Finding hear(double now, Finding finding) { return hear(now, finding, 500 + now); }
-  Finding hear(double now, Finding finding, double run_clock) {
-    return inquiry_.hear({.finding = finding, .why = "", .points_each = std::nullopt}, run_clock, at(now));
+  Finding hear(double now, Finding finding, double run_clock) { return hear(now, finding, run_clock, now); }
+  Finding hear(double now, Finding finding, double run_clock, double asked) {
+    return inquiry_.hear({.finding = finding, .why = "", .points_each = std::nullopt}, run_clock, at(asked),
+                         at(now));
   }
   /// Each second from `from` to `to`: what was said at last.
   Finding hear_from(int from, int to, Finding finding) {
@@ -37,6 +39,13 @@ TEST_F(InquiryTest, BelievesRecordedAtTheSecondStatusThatSaysSo) {
 TEST_F(InquiryTest, BelievesNotRecordedOnlyOnceTheCommandPostHadTheTimeToRecordIt) {
   EXPECT_EQ(hear_from(1, 9, Finding::NotRecorded), Finding::Silent);
   EXPECT_EQ(hear(10, Finding::NotRecorded), Finding::NotRecorded);
+}
+
+/// The Command Post may have made it the moment it was asked for, and recorded the report since.
+TEST_F(InquiryTest, TakesAStatusThatWasLongInComingForAsOldAsItsQuestion) {
+  hear_from(1, 5, Finding::NotRecorded);
+  EXPECT_EQ(hear(12, Finding::NotRecorded, 512, 6), Finding::Silent);
+  EXPECT_EQ(hear(13, Finding::NotRecorded, 513, 12), Finding::NotRecorded);
 }
 
 TEST_F(InquiryTest, BelievesNotRecordedOnlyAfterEnoughStatusesInARow) {

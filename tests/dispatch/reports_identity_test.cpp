@@ -294,7 +294,7 @@ TEST(AnotherTeam, ThatIsBackGoesOnWithItsRun) {
   scene.answer(recorded(1));
   scene.hear(19, 1);
   scene.wait(1);
-  scene.reports().status_heard({0, 5, 25, "other"}, scene.time());
+  scene.reports().status_heard({0, 5, 25, "other"}, scene.time().now, scene.time());
   EXPECT_EQ(scene.reports().run().number, 2);
   scene.wait(1);
   scene.hear(19, 1);

@@ -31,7 +31,7 @@ TEST(ANewRun, IsNoticedByMoreReportsLeft) {
 
 TEST(ANewRun, IsNoticedByAnotherTeam) {
   Scene scene;
-  scene.reports().status_heard({0, 101, 20, "other"}, scene.time());
+  scene.reports().status_heard({0, 101, 20, "other"}, scene.time().now, scene.time());
   EXPECT_EQ(scene.reports().run().number, 2);
 }
 

@@ -122,7 +122,7 @@ class Scene {
   /// The run's status, with the run clock at what it should be.
   void hear(std::int64_t remaining, std::int64_t score) { hear(remaining, score, run_clock()); }
   void hear(std::int64_t remaining, std::int64_t score, double clock) {
-    reports_->status_heard({score, clock, remaining, "adit"}, time());
+    reports_->status_heard({score, clock, remaining, "adit"}, time().now, time());
   }
   double run_clock() const { return now_; }
   /// The same status each second, for so long.

@@ -114,11 +114,11 @@ void World::ask() {
     });
     return;
   }
-  later(kRoundTrip / 2, [this] {
-    later(kRoundTrip / 2, [this, status = post().status(now_)] {
+  later(kRoundTrip / 2, [this, asked = time().now] {
+    later(kRoundTrip / 2, [this, asked, status = post().status(now_)] {
       busy_ = false;
       tell_story(icd::sentence("status: ", status.remaining_reports, " left, score ", status.score));
-      reports_->status_heard(status, time());
+      reports_->status_heard(status, asked, time());
     });
   });
 }

@@ -80,40 +80,48 @@ void Maps::take(icd::MapUpdate update, std::size_t bytes_received, std::shared_p
                                    " MiB wait already; this one was not taken, send it again later")}));
   }
   const auto keeping = std::make_shared<Keeping>();
-  keeping->number = ++numbers_;
   keeping->bytes_received = bytes_received;
-  keeping->size = update.data.bytes.size();
   // Only a grid is ever replaced, and the newer one must find room beside it.
-  if (!replaces) keeping->spare = std::max(lane_.largest_grid(), update.is_grid() ? keeping->size : 0);
+  const std::uint64_t of_its_own = update.is_grid() ? update.data.bytes.size() : 0;
+  if (!replaces) keeping->spare = std::max<std::uint64_t>(lane_.largest_grid(), of_its_own);
   keeping->update = std::move(update);
   keeping->file = std::move(file);
-  keeping->done = std::move(done);
+  keep(keeping, [this, done = std::move(done)](Keeping& it) { kept(it, done); });
+}
+
+/// By the writer, under the next number; then `told` has it, kept or not.
+void Maps::keep(const std::shared_ptr<Keeping>& keeping, const std::function<void(Keeping&)>& told) {
+  keeping->number = ++numbers_;
+  keeping->size = keeping->update.data.bytes.size();
+  const auto over = [this, keeping, told] {
+    --being_kept_;
+    bytes_being_kept_ -= keeping->size;
+    told(*keeping);
+  };
   writer_.submit(
       [&spool = spool_, keeping] {
         keeping->kept =
             spool.keep(keeping->number, std::move(keeping->update), keeping->spare, std::move(keeping->file));
       },
-      [this, keeping] { kept(*keeping); },
-      [this, keeping] {
+      over,
+      [keeping, over] {
         keeping->kept = std::unexpected(not_kept());
-        kept(*keeping);
+        over();
       });
   ++being_kept_;  // only now: where it could not be submitted, nothing is
   bytes_being_kept_ += keeping->size;
 }
 
 /// It waits from now on, and its sender may know.
-void Maps::kept(Keeping& keeping) {
-  --being_kept_;
-  bytes_being_kept_ -= keeping.size;
+void Maps::kept(Keeping& keeping, const std::function<void(icd::Checked<void>)>& done) {
   const std::string before = std::exchange(trouble_, keeping.kept ? "" : keeping.kept.error().sentence);
   if (!keeping.kept) {
     if (before.empty()) host::log(host::Level::Error, "a map was not taken", {{"why", trouble_}});
-    return keeping.done(std::unexpected(std::move(keeping.kept.error())));
+    return done(std::unexpected(std::move(keeping.kept.error())));
   }
   record_.accepted(traffic_of(*keeping.kept), keeping.bytes_received, loop_.stamp_now());
   forget(add(keeping.number, std::move(*keeping.kept)));
-  keeping.done({});
+  done({});
   pump();
 }
 
@@ -300,23 +308,11 @@ void Maps::send_again(icd::MapUpdate update, std::function<void(bool kept)> done
   if (lane_.is_replaced(update)) return done(true);
   update.header().stamp = loop_.stamp_now();
   const auto keeping = std::make_shared<Keeping>();
-  keeping->number = ++numbers_;
-  keeping->size = update.data.bytes.size();
   keeping->update = std::move(update);
-  writer_.submit([&spool = spool_,
-                  keeping] { keeping->kept = spool.keep(keeping->number, std::move(keeping->update), 0); },
-                 [this, keeping, done] { kept_again(*keeping, done); },
-                 [this, keeping, done] {
-                   keeping->kept = std::unexpected(not_kept());
-                   kept_again(*keeping, done);
-                 });
-  ++being_kept_;
-  bytes_being_kept_ += keeping->size;
+  keep(keeping, [this, done = std::move(done)](Keeping& it) { kept_again(it, done); });
 }
 
 void Maps::kept_again(Keeping& keeping, const std::function<void(bool kept)>& done) {
-  --being_kept_;
-  bytes_being_kept_ -= keeping.size;
   done(keeping.kept.has_value());
   if (!keeping.kept) {
     return host::log(host::Level::Error, "what was set aside is not sent again",

@@ -84,10 +84,10 @@ class Maps {
     icd::MapUpdate update;
     std::shared_ptr<MapFile> file;  // where its data was stored as it came
     icd::Checked<icd::MapUpdate> kept;
-    std::function<void(icd::Checked<void>)> done;
   };
   bool has_room_for(const icd::MapUpdate& update, bool replaces) const;
-  void kept(Keeping& keeping);
+  void keep(const std::shared_ptr<Keeping>& keeping, const std::function<void(Keeping&)>& told);
+  void kept(Keeping& keeping, const std::function<void(icd::Checked<void>)>& done);
   void kept_again(Keeping& keeping, const std::function<void(bool kept)>& done);
   void forget(std::vector<std::uint64_t> numbers);
   void pump();

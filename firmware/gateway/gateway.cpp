@@ -56,7 +56,7 @@ Gateway::Gateway(loop::Loop& loop, Parts parts)
       maps_(loop, workers_, writer_, spool_, settings_,
             token_for("mapping", settings_, parts_.loaded.secrets), record_, aside_, random_, journal_,
             [this](icd::MapUpdate map) { picture_.forwarded(std::move(map)); }),
-      as_forwarded_(parts_.legacy ? std::move(parts_.legacy->as_forwarded) : AsForwarded()),
+      as_forwarded_(parts_.legacy ? std::move(parts_.legacy->as_forwarded) : forward::AsForwarded()),
       news_(loop, settings_, token_for("mapping", settings_, parts_.loaded.secrets), record_, aside_, random_,
             journal_, as_forwarded_, [this] { make_way(); }),
       lights_(loop, std::move(parts_.lines)),
@@ -200,7 +200,7 @@ void Gateway::carry_on() {
 /// that sent last, and when, is not known.
 void Gateway::restore(bool is_first) {
   aside_.restore();
-  Spool::Kept kept = spool_.read();
+  spool::Spool::Kept kept = spool_.read();
   const double now = loop_.stamp_now();
   const bool is_left = !kept.maps.empty() || !kept.state.poses.empty() || !kept.markers.markers.empty();
   if (is_first && is_left) hold_back();
@@ -270,12 +270,13 @@ void Gateway::keep_clock(const std::string& clock) {
 
 std::shared_ptr<intake::MapArrival> Gateway::map_arrives() {
   return maps_.arrives([this](icd::MapUpdate update, const intake::Sender& sender,
-                              std::shared_ptr<MapFile> file, std::function<void(icd::Checked<void>)> done) {
+                              std::shared_ptr<spool::MapFile> file,
+                              std::function<void(icd::Checked<void>)> done) {
     take(std::move(update), sender, std::move(file), std::move(done));
   });
 }
 
-void Gateway::take(icd::MapUpdate update, const intake::Sender& sender, std::shared_ptr<MapFile> file,
+void Gateway::take(icd::MapUpdate update, const intake::Sender& sender, std::shared_ptr<spool::MapFile> file,
                    std::function<void(icd::Checked<void>)> done) {
   const std::string clock = sender.address + "/map/" + (update.name ? update.name->text() : "");
   if (update.name) note_robot(update.name->text());

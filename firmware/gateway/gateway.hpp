@@ -7,27 +7,26 @@
 #include <string>
 #include <vector>
 
+#include "forward/as_forwarded.hpp"
+#include "forward/aside.hpp"
+#include "forward/map_picture.hpp"
+#include "forward/maps.hpp"
+#include "forward/news.hpp"
+#include "forward/record.hpp"
+#include "forward/scoring.hpp"
+#include "forward/stamp_floor.hpp"
 #include "gateway/accounts.hpp"
-#include "gateway/as_forwarded.hpp"
-#include "gateway/aside.hpp"
 #include "gateway/button_watch.hpp"
 #include "gateway/ledger_return.hpp"
 #include "gateway/lights.hpp"
 #include "gateway/links.hpp"
 #include "gateway/listen_sockets.hpp"
-#include "gateway/map_picture.hpp"
-#include "gateway/maps.hpp"
 #include "gateway/network_change.hpp"
 #include "gateway/network_requests.hpp"
-#include "gateway/news.hpp"
-#include "gateway/record.hpp"
 #include "gateway/roster.hpp"
-#include "gateway/scoring.hpp"
 #include "gateway/self_test.hpp"
 #include "gateway/session_keeper.hpp"
 #include "gateway/setup.hpp"
-#include "gateway/spool.hpp"
-#include "gateway/stamp_floor.hpp"
 #include "gateway/store.hpp"
 #include "gateway/this_box.hpp"
 #include "gateway/updates.hpp"
@@ -42,6 +41,7 @@
 #include "panel/lines.hpp"
 #include "settings/board.hpp"
 #include "settings/settings.hpp"
+#include "spool/spool.hpp"
 
 namespace adit::gateway {
 
@@ -49,7 +49,7 @@ namespace adit::gateway {
 struct Legacy {
   picture::Mosaic picture;
   std::int64_t pictured_run = 0;  // whose maps it shows; 0: none yet
-  AsForwarded as_forwarded;
+  forward::AsForwarded as_forwarded;
 };
 
 /// What the gateway is made of: all of it has passed its checks.
@@ -118,7 +118,7 @@ class Gateway final : public intake::Desk, public page::Source, public page::Ope
   }
 
  private:
-  void take(icd::MapUpdate update, const intake::Sender& sender, std::shared_ptr<MapFile> file,
+  void take(icd::MapUpdate update, const intake::Sender& sender, std::shared_ptr<spool::MapFile> file,
             std::function<void(icd::Checked<void>)> done);
   void hold_back();
   void link_is_back();
@@ -160,21 +160,21 @@ class Gateway final : public intake::Desk, public page::Source, public page::Ope
   Parts parts_;
   const settings::Settings settings_;  // with the course in use
   std::mt19937_64 random_;
-  Spool spool_;  // before its writer, whose jobs use it to the end
-  StampFloor stamp_floor_;
+  spool::Spool spool_;  // before its writer, whose jobs use it to the end
+  forward::StampFloor stamp_floor_;
   loop::Writer writer_;       // of the runtime folder, in memory: an answer to a map waits for it
   loop::Writer disk_writer_;  // of the state folder, on the disk, for which no map waits
   loop::Workers workers_;     // after the writers: what a job holds is the writers' to the end
   loop::Workers log_ins_;     // of their own: nobody who logs in waits behind maps, nor maps behind him
   journal::Journal journal_;
-  Aside aside_;
-  Record record_;
+  forward::Aside aside_;
+  forward::Record record_;
   lanes::StampShift stamps_;
-  Scoring scoring_;
-  MapPicture picture_;
-  Maps maps_;
-  AsForwarded as_forwarded_;
-  News news_;
+  forward::Scoring scoring_;
+  forward::MapPicture picture_;
+  forward::Maps maps_;
+  forward::AsForwarded as_forwarded_;
+  forward::News news_;
   Lights lights_;
   Links links_;
   ButtonWatch button_;

@@ -19,15 +19,17 @@ std::vector<std::string> Gateway::attention() const {
   if (!maps_.trouble().empty()) sentences.push_back("the last map was not taken: " + maps_.trouble());
   say_what_is_missing(sentences);
   if (!parts_.ledger.damage().empty()) sentences.push_back(parts_.ledger.damage());
-  const auto token_refused = [&](const Channel& channel, const char* name) {
+  const auto token_refused = [&](const forward::Channel& channel, const char* name) {
     if (channel.last_status() == 401 && !channel.is_foreign()) {
       sentences.push_back(std::string("the Command Post refuses the ") + name + " token");
     }
   };
-  const auto foreign = [&](const Channel& channel, const char* name, const settings::Address& address) {
+  const auto foreign = [&](const forward::Channel& channel, const char* name,
+                           const settings::Address& address) {
     if (!channel.is_foreign()) return false;
-    sentences.push_back(icd::sentence("what answers at ", address_text(address), " is no Command Post (",
-                                      name, "): nothing counts as taken there; is the address right?"));
+    sentences.push_back(icd::sentence("what answers at ", forward::address_text(address),
+                                      " is no Command Post (", name,
+                                      "): nothing counts as taken there; is the address right?"));
     return true;
   };
   foreign(scoring_.channel(), "scoring", settings_.command_post.scoring);

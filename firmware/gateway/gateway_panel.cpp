@@ -18,7 +18,7 @@ constexpr std::chrono::seconds kIdentify{10};  // by the button
 }  // namespace
 
 void Gateway::assert_states() {
-  const Channel& scoring = scoring_.channel();
+  const forward::Channel& scoring = scoring_.channel();
   const bool serving = !servers_.empty() && scoring_.trouble().empty();
   lights_.set(State::Serving, serving);
   lights_.set(State::NotServing, !serving);

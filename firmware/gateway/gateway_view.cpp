@@ -17,13 +17,13 @@ double Gateway::sent_mbit() const {
 }
 
 std::vector<page::EndpointRow> Gateway::endpoints() const {
-  const Channel& scoring = scoring_.channel();
-  const Channel& maps = maps_.channel();
-  const Channel& news = news_.channel();
-  const Channel& latest = maps.heard() > news.heard() ? maps : news;
+  const forward::Channel& scoring = scoring_.channel();
+  const forward::Channel& maps = maps_.channel();
+  const forward::Channel& news = news_.channel();
+  const forward::Channel& latest = maps.heard() > news.heard() ? maps : news;
   const settings::CommandPost& command_post = settings_.command_post;
   return {{.name = "scoring",
-           .address = address_text(command_post.scoring),
+           .address = forward::address_text(command_post.scoring),
            .connected = scoring.connected(),
            .trouble = scoring.trouble(),
            .last_status = scoring.last_status(),
@@ -31,7 +31,7 @@ std::vector<page::EndpointRow> Gateway::endpoints() const {
            .throttled = scoring.throttled(),
            .foreign = scoring.foreign()},
           {.name = "mapping",
-           .address = address_text(command_post.mapping),
+           .address = forward::address_text(command_post.mapping),
            .connected = maps.connected() || news.connected(),
            .trouble = maps.trouble().empty() ? news.trouble() : maps.trouble(),
            .last_status = latest.last_status(),
@@ -65,10 +65,10 @@ page::RunView Gateway::view() const {
                      .marker_version = as_forwarded_.markers().version(),
                      .attention = attention()};
   for (page::ActivityRow& row : view.activities) {
-    if (row.kind == "state") row.waiting = news_.waiting(Kind::State);
-    if (row.kind == "markers") row.waiting = news_.waiting(Kind::Markers);
-    if (row.kind == "grid") row.waiting = maps_.waiting({Kind::Grid, row.robot});
-    if (row.kind == "cloud") row.waiting = maps_.waiting({Kind::Cloud, row.robot});
+    if (row.kind == "state") row.waiting = news_.waiting(forward::Kind::State);
+    if (row.kind == "markers") row.waiting = news_.waiting(forward::Kind::Markers);
+    if (row.kind == "grid") row.waiting = maps_.waiting({forward::Kind::Grid, row.robot});
+    if (row.kind == "cloud") row.waiting = maps_.waiting({forward::Kind::Cloud, row.robot});
   }
   for (const panel::Light light : panel::kLights) {
     view.lights.push_back({.name = std::string(panel::name_of(light)),

@@ -8,7 +8,7 @@
 
 #include "codec/read.hpp"
 #include "codec/write.hpp"
-#include "gateway/channel.hpp"
+#include "forward/channel.hpp"
 #include "host/own_address.hpp"
 #include "host/service.hpp"
 #include "icd/uri.hpp"
@@ -51,7 +51,7 @@ bool SelfTest::begin_test() {
   const settings::CommandPost& post = settings_.command_post;
   for (const auto& [name, address] :
        {std::pair("scoring", &post.scoring), std::pair("mapping", &post.mapping)}) {
-    page::TestedEndpoint endpoint{.name = name, .address = address_text(*address), .steps = {}};
+    page::TestedEndpoint endpoint{.name = name, .address = forward::address_text(*address), .steps = {}};
     for (const char* step : kSteps) endpoint.steps.push_back({.name = step, .said = "", .advice = ""});
     view_.endpoints.push_back(std::move(endpoint));
   }
@@ -156,7 +156,7 @@ void SelfTest::look_at_cables() {
 
 uplink::Endpoint SelfTest::there() const {
   const settings::CommandPost& post = settings_.command_post;
-  auto endpoint = endpoint_of(post, tested_ == 0 ? post.scoring : post.mapping, 0);
+  auto endpoint = forward::endpoint_of(post, tested_ == 0 ? post.scoring : post.mapping, 0);
   endpoint.connect_within = kReachWithin;
   return endpoint;
 }

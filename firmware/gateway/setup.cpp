@@ -2,7 +2,7 @@
 
 #include <algorithm>
 
-#include "gateway/channel.hpp"
+#include "forward/channel.hpp"
 #include "host/log.hpp"
 #include "icd/sentence.hpp"
 #include "settings/written.hpp"
@@ -24,7 +24,7 @@ icd::Checked<void> being_applied() {
 std::string listed(const std::vector<settings::Address>& addresses) {
   std::string text;
   for (const settings::Address& address : addresses)
-    text.append(text.empty() ? "" : ", ").append(address_text(address));
+    text.append(text.empty() ? "" : ", ").append(forward::address_text(address));
   return text;
 }
 
@@ -66,11 +66,11 @@ std::vector<std::string> Setup::warnings(const Settings& next) const {
                                       ": open it there, and point robots and stations there"));
   }
   if (now.command_post.scoring != then.command_post.scoring) {
-    sentences.push_back(for_reports_(address_text(then.command_post.scoring)));
+    sentences.push_back(for_reports_(forward::address_text(then.command_post.scoring)));
   }
   if (now.command_post.mapping != then.command_post.mapping) {
     sentences.push_back(icd::sentence("maps, states and markers go to ",
-                                      address_text(then.command_post.mapping),
+                                      forward::address_text(then.command_post.mapping),
                                       " from then on, also those that wait"));
   }
   if (!next.team.require_token && settings_.team.require_token) {

@@ -1,0 +1,36 @@
+#include "forward/as_forwarded.hpp"
+
+#include <algorithm>
+
+namespace adit::forward {
+
+void AsForwarded::forwarded(const icd::StateUpdate& update, page::Time now) {
+  for (const icd::NamedPose& named : update.poses) {
+    const std::string& name = named.name.text();
+    if (robots_.size() >= kMostRobots && !robots_.contains(name)) forget_the_oldest();
+    const double heading = page::heading_of(named.pose.orientation);
+    robots_[name] = {.name = name, .position = named.pose.position, .heading = heading, .at = now};
+    tracks_.forwarded(name, {.at = now, .position = named.pose.position, .heading = heading});
+  }
+}
+
+/// The one that was silent for longest: a robot that goes on posting keeps its place.
+void AsForwarded::forget_the_oldest() {
+  const auto oldest = std::ranges::min_element(robots_, {}, [](const auto& item) { return item.second.at; });
+  tracks_.forget(oldest->first);
+  robots_.erase(oldest);
+}
+
+void AsForwarded::begin_run(page::Time now) {
+  markers_.wipe(now);
+  tracks_.wipe();
+}
+
+std::vector<page::RobotRow> AsForwarded::robots() const {
+  std::vector<page::RobotRow> rows;
+  rows.reserve(robots_.size());
+  for (const auto& [name, row] : robots_) rows.push_back(row);
+  return rows;
+}
+
+}  // namespace adit::forward

@@ -1,0 +1,38 @@
+#pragma once
+
+#include <map>
+#include <string>
+#include <vector>
+
+#include "forward/marker_scene.hpp"
+#include "forward/tracks.hpp"
+#include "icd/markers_update.hpp"
+#include "icd/state_update.hpp"
+#include "page/page.hpp"
+
+namespace adit::forward {
+
+/// Robots and markers as the Command Post knows them: what it took, and nothing that waits.
+class AsForwarded {
+ public:
+  static constexpr std::size_t kMostRobots = 100;  // those heard of last
+
+  void forwarded(const icd::StateUpdate& update, page::Time now);
+  void forwarded(const icd::MarkersUpdate& update, page::Time now) { markers_.forwarded(update, now); }
+  /// A new run begins without tracks and markers; where each robot is, it still is.
+  void begin_run(page::Time now);
+
+  /// Each robot's last pose, by name.
+  std::vector<page::RobotRow> robots() const;
+  const MarkerScene& markers() const { return markers_; }
+  const Tracks& tracks() const { return tracks_; }
+
+ private:
+  void forget_the_oldest();
+
+  std::map<std::string, page::RobotRow> robots_;
+  MarkerScene markers_;
+  Tracks tracks_;
+};
+
+}  // namespace adit::forward

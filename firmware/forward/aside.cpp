@@ -1,0 +1,241 @@
+#include "forward/aside.hpp"
+
+#include <algorithm>
+#include <filesystem>
+#include <memory>
+#include <optional>
+
+#include "codec/field.hpp"
+#include "codec/json.hpp"
+#include "codec/write.hpp"
+#include "forward/record.hpp"
+#include "host/log.hpp"
+#include "host/numbered_name.hpp"
+#include "host/service.hpp"
+#include "icd/sentence.hpp"
+#include "spool/kept_message.hpp"
+
+namespace adit::forward {
+namespace {
+
+namespace fs = std::filesystem;
+using codec::Value;
+
+constexpr const char *kMessage = ".cbor", *kReason = ".json";
+
+icd::ChunkedBytes bytes_of(const icd::MapUpdate& map) {
+  return codec::write_map_update(map);
+}
+icd::ChunkedBytes bytes_of(const icd::StateUpdate& state) {
+  return codec::write_state_update(state);
+}
+icd::ChunkedBytes bytes_of(const icd::MarkersUpdate& markers) {
+  return codec::write_markers_update(markers);
+}
+
+constexpr std::string_view kKinds[] = {"map", "state", "markers"};  // as the alternatives of lanes::Message
+
+std::string reason_of(const lanes::AsideItem& item) {
+  return codec::write_json({Value::Object{{"kind", {std::string(kKinds[item.message.index()])}},
+                                          {"status", {std::int64_t{item.status}}},
+                                          {"why", {item.why}},
+                                          {"at", {item.at}},
+                                          {"bytes", {static_cast<std::uint64_t>(item.bytes)}},
+                                          {"overtaken", {item.overtaken}}}});
+}
+
+icd::ChunkedBytes text_bytes(const std::string& text) {
+  return icd::ChunkedBytes({reinterpret_cast<const std::uint8_t*>(text.data()), text.size()});
+}
+
+template <class Message>
+std::optional<lanes::Message> any(icd::Checked<Message> message) {
+  if (!message) return std::nullopt;
+  return lanes::Message(std::move(*message));
+}
+
+std::optional<lanes::Message> read_message(const std::string& path, std::string_view kind) {
+  if (kind == kKinds[0]) return any(spool::read_map(path));
+  if (kind == kKinds[1]) return any(spool::read_state(path));
+  if (kind == kKinds[2]) return any(spool::read_markers(path));
+  return std::nullopt;
+}
+
+/// All but number and message.
+std::optional<std::pair<std::string, lanes::AsideItem>> read_reason(const std::string& path) {
+  const auto text = host::read_file(path);
+  const auto value = codec::parse_json(text.value_or(""));
+  if (!text || !value) return std::nullopt;
+  codec::Reading reading;
+  const codec::Field root(*value, reading);
+  lanes::AsideItem item;
+  const std::string kind(root.member("kind").text());
+  item.status = static_cast<int>(root.member("status").whole(0, 999));
+  item.why = root.member("why").text();
+  item.at = root.member("at").number();
+  item.bytes = static_cast<std::size_t>(root.member("bytes").whole<std::int64_t>(0, std::int64_t{1} << 40));
+  item.overtaken = root.member("overtaken").truth();
+  if (!reading.outcome(0)) return std::nullopt;
+  return std::pair(kind, std::move(item));
+}
+
+std::string who(const lanes::Message& message) {
+  if (const auto* map = std::get_if<icd::MapUpdate>(&message)) return map->name ? map->name->text() : "";
+  const auto* state = std::get_if<icd::StateUpdate>(&message);
+  return state != nullptr && state->poses.size() == 1 ? state->poses.front().name.text() : "";
+}
+
+std::string kind_of(const lanes::Message& message) {
+  if (const auto* map = std::get_if<icd::MapUpdate>(&message)) return map->is_grid() ? "grid" : "cloud";
+  return std::string(kKinds[message.index()]);
+}
+
+std::string no_such(std::uint64_t number) {
+  return icd::sentence("nothing of number ", number, " is set aside");
+}
+
+}  // namespace
+
+Aside::Aside(const loop::Loop& loop, loop::Writer& writer, std::string folder)
+    : loop_(loop), writer_(writer), folder_(std::move(folder)) {
+  spool::make_folder_of_ours(folder_);
+}
+
+std::string Aside::path(std::uint64_t number, const char* ending) const {
+  return folder_ + "/" + std::to_string(number) + ending;
+}
+
+void Aside::restore() {
+  spool::remove_parts(folder_);
+  for (const std::uint64_t number : host::numbers_in(folder_, "", kReason)) {
+    if (restore_one(number)) continue;
+    host::log(host::Level::Warning, "what was set aside could not be read and is gone",
+              {{"file", path(number, kMessage)}});
+    forget(number);
+  }
+}
+
+bool Aside::restore_one(std::uint64_t number) {
+  auto reason = read_reason(path(number, kReason));
+  if (!reason) return false;
+  auto message = read_message(path(number, kMessage), reason->first);
+  if (!message) return false;
+  lanes::AsideItem& item = reason->second;
+  item.number = number;
+  item.message = std::move(*message);
+  items_.restore(std::move(item));
+  return true;
+}
+
+void Aside::add(lanes::Message message, int status, const std::string& why, std::size_t bytes,
+                Origin origin) {
+  lanes::AsideItem item{
+      .message = std::move(message), .status = status, .why = why, .at = loop_.stamp_now(), .bytes = bytes};
+  host::log(host::Level::Warning, "the Command Post would not take a message: it is set aside",
+            {{"kind", kind_of(item.message)},
+             {"robot", who(item.message)},
+             {"status", std::to_string(status)},
+             {"why", why}});
+  const auto said_anew = [&](std::uint64_t number) {
+    const lanes::AsideItem* const older = items_.find(number);
+    return older == nullptr || older->overtaken || lanes::says_all_of(item.message, older->message);
+  };
+  std::vector<std::uint64_t> covered;
+  for (const lanes::AsideItem& older : items_.items()) {
+    if (said_anew(older.number)) covered.push_back(older.number);
+  }
+  for (const std::uint64_t gone : items_.add(std::move(item))) {
+    if (std::ranges::find(covered, gone) == covered.end()) ++dropped_;
+    forget(gone);
+  }
+  keep(items_.items().back(), std::move(origin));
+}
+
+void Aside::keep(const lanes::AsideItem& item, Origin origin) {
+  const auto well = std::make_shared<bool>(false);
+  writer_.submit(
+      [well, message = item.message, reason = reason_of(item), message_file = path(item.number, kMessage),
+       reason_file = path(item.number, kReason)] {
+        auto written = spool::write_whole(
+            message_file, std::visit([](const auto& each) { return bytes_of(each); }, message));
+        if (written) written = spool::write_whole(reason_file, text_bytes(reason));
+        *well = written.has_value();
+        if (*well) return;
+        host::log(host::Level::Warning, "what is set aside is in memory alone", {{"why", written.error()}});
+      },
+      [this, well, number = item.number, origin = std::move(origin)] { kept(number, *well, origin); });
+  ++being_kept_;  // only now: where it could not be submitted, nothing is
+}
+
+void Aside::kept(std::uint64_t number, bool well, const Origin& origin) {
+  --being_kept_;
+  origin.told(well);
+  if (well || items_.find(number) == nullptr) return origin.let_go();
+  in_memory_[number] = origin.let_go;
+}
+
+/// Of memory it has gone.
+void Aside::forget(std::uint64_t number) {
+  writer_.submit(
+      [reason = path(number, kReason), message = path(number, kMessage)] {
+        std::error_code error;
+        fs::remove(reason, error);
+        fs::remove(message, error);
+      },
+      [] {});
+  leaving_.erase(number);
+  if (const auto origin = in_memory_.extract(number)) origin.mapped()();
+}
+
+void Aside::taken(const lanes::Message& message) {
+  for (const std::uint64_t number : items_.taken(message)) {
+    if (in_memory_.contains(number)) continue;
+    writer_.submit(
+        [file = path(number, kReason), reason = reason_of(*items_.find(number))] {
+          (void)spool::write_whole(file,
+                                   text_bytes(reason));  // without it, it can be sent again after a restart
+        },
+        [] {});
+  }
+}
+
+std::expected<lanes::Message, std::string> Aside::to_be_sent(std::uint64_t number) {
+  const lanes::AsideItem* const item = items_.find(number);
+  if (item == nullptr || leaving_.contains(number)) return std::unexpected(no_such(number));
+  if (item->overtaken) {
+    return std::unexpected(
+        "something newer that says all of it was sent since: sent now, it would only put the "
+        "older in its place");
+  }
+  leaving_.insert(number);
+  return item->message;
+}
+
+void Aside::sent_again(std::uint64_t number, bool kept) {
+  if (kept && items_.take(number)) return forget(number);
+  leaving_.erase(number);
+}
+
+std::expected<void, std::string> Aside::discard(std::uint64_t number) {
+  if (leaving_.contains(number) || !items_.take(number)) return std::unexpected(no_such(number));
+  forget(number);
+  return {};
+}
+
+std::vector<page::AsideRow> Aside::rows() const {
+  std::vector<page::AsideRow> rows;
+  for (const lanes::AsideItem& item : items_.items()) {
+    if (leaving_.contains(item.number)) continue;
+    rows.push_back({.number = item.number,
+                    .kind = kind_of(item.message),
+                    .robot = who(item.message),
+                    .at = item.at,
+                    .status = item.status,
+                    .why = item.why,
+                    .bytes = item.bytes,
+                    .overtaken = item.overtaken});
+  }
+  return rows;
+}
+
+}  // namespace adit::forward

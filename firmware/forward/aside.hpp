@@ -1,0 +1,73 @@
+#pragma once
+
+#include <cstdint>
+#include <expected>
+#include <functional>
+#include <map>
+#include <set>
+#include <string>
+#include <vector>
+
+#include "lanes/set_aside.hpp"
+#include "loop/loop.hpp"
+#include "loop/workers.hpp"
+#include "page/page.hpp"
+
+namespace adit::forward {
+
+/// Maps, states and markers that the Command Post would not take (lanes::SetAside), on the page and in a
+/// folder that outlives the service: `N.cbor`, the message as it goes upstream, and `N.json`, why it is
+/// there. Its files are written by the writer, in order.
+///
+/// A message that comes here or goes from here is never without a file: whoever had it keeps its own until it
+/// is told that there is one here, and the one here stays until it has one again.
+class Aside {
+ public:
+  /// Who kept a message before it was set aside. Both are called on the loop, and never from within add().
+  struct Origin {
+    /// Once: whether it is kept here now. If not, it is set aside in memory alone.
+    std::function<void(bool kept)> told = [](bool) {};
+    /// Once: it is kept here, or has gone from here, so that the origin's own file can go.
+    std::function<void()> let_go = [] {};
+  };
+
+  /// `writer` outlives this.
+  Aside(const loop::Loop& loop, loop::Writer& writer, std::string folder);
+
+  /// What an earlier service kept.
+  void restore();
+
+  void add(lanes::Message message, int status, const std::string& why, std::size_t bytes, Origin origin);
+  /// The Command Post took it: what it says all of need not be sent again.
+  void taken(const lanes::Message& message);
+  /// What made place for newer ones and was not overtaken, ever.
+  std::uint64_t dropped() const { return dropped_; }
+  /// Whether every origin has been told.
+  bool all_kept() const { return being_kept_ == 0; }
+
+  /// For whoever sends it again and then says so by sent_again(). An error: a sentence why it is not sent.
+  std::expected<lanes::Message, std::string> to_be_sent(std::uint64_t number);
+  /// `kept`: it waits, and is kept elsewhere. Otherwise it is set aside as before.
+  void sent_again(std::uint64_t number, bool kept);
+  std::expected<void, std::string> discard(std::uint64_t number);
+
+  std::vector<page::AsideRow> rows() const;
+
+ private:
+  std::string path(std::uint64_t number, const char* ending) const;
+  void keep(const lanes::AsideItem& item, Origin origin);
+  void kept(std::uint64_t number, bool well, const Origin& origin);
+  void forget(std::uint64_t number);
+  bool restore_one(std::uint64_t number);
+
+  const loop::Loop& loop_;
+  loop::Writer& writer_;
+  const std::string folder_;
+  lanes::SetAside items_;
+  int being_kept_ = 0;
+  std::set<std::uint64_t> leaving_;                           // between to_be_sent() and sent_again()
+  std::map<std::uint64_t, std::function<void()>> in_memory_;  // those without a file, and who is let go then
+  std::uint64_t dropped_ = 0;
+};
+
+}  // namespace adit::forward

@@ -1,0 +1,98 @@
+#include "forward/channel.hpp"
+
+#include "dispatch/mapping_verdict.hpp"
+#include "dispatch/said.hpp"
+#include "icd/sentence.hpp"
+#include "loop/guard.hpp"
+
+namespace adit::forward {
+
+namespace {
+
+/// Bytes of a body. A status is four numbers and a name; a report's answer a dozen of them; a mapping answer
+/// null, or whatever a wrong address says.
+std::size_t longest_answer_to(icd::Uri uri) {
+  return uri == icd::Uri::Status ? 16u << 10 : uplink::Request::kLongestAnswer;
+}
+
+/// No Command Post says so much; what it says is not looked at.
+bool comes_from_another(const uplink::Outcome& outcome) {
+  if (const auto* answered = std::get_if<uplink::Answered>(&outcome)) {
+    return !dispatch::may_be_the_command_post(answered->status, dispatch::body_of(answered->body));
+  }
+  const auto* doubt = std::get_if<uplink::InDoubt>(&outcome);
+  return doubt != nullptr && doubt->too_long_status != 0 &&
+         !dispatch::may_be_the_command_post(doubt->too_long_status, dispatch::Body::Other);
+}
+
+}  // namespace
+
+Channel::Channel(loop::Loop& loop, const char* name, uplink::Endpoint endpoint,
+                 std::optional<icd::BearerToken> token, std::chrono::milliseconds answer_within)
+    : loop_(loop), name_(name), answer_within_(answer_within) {
+  if (token) connection_.emplace(loop, std::move(endpoint), std::move(*token));
+}
+
+void Channel::send(icd::Uri uri, std::string_view content_type, icd::ChunkedBytes body,
+                   std::function<void(uplink::Outcome)> done) {
+  finished_bytes_ += connection_->sent_bytes();
+  sent_at_ = loop_.now();
+  connection_->send({.method = std::string(icd::method_of(uri)),
+                     .target = std::string(icd::path_of(uri)),
+                     .content_type = std::string(content_type),
+                     .body = std::move(body),
+                     .answer_within = answer_within_,
+                     .longest_answer = longest_answer_to(uri)},
+                    [this, done = std::move(done)](uplink::Outcome outcome) {
+                      loop::guarded("noting an answer", [&] { note(outcome); });
+                      done(std::move(outcome));
+                    });
+}
+
+void Channel::note(const uplink::Outcome& outcome) {
+  heard_ = loop_.now();
+  last_status_ = 0;
+  foreign_now_ = comes_from_another(outcome);
+  if (foreign_now_) ++foreign_;
+  const auto* answered = std::get_if<uplink::Answered>(&outcome);
+  if (answered != nullptr) {
+    last_status_ = answered->status;
+    if (last_status_ == 429) ++throttled_;
+    answer_ms_ = std::chrono::duration<double, std::milli>(heard_ - sent_at_).count();
+  }
+  const bool is_well = answered != nullptr && !foreign_now_ && last_status_ < 400;
+  trouble_ = is_well ? "" : forward::sentence_of(outcome);
+}
+
+std::string Channel::trouble() const {
+  if (!connection_) return std::string("no ") + name_ + " token is set";
+  if (!trouble_.empty()) return trouble_;
+  return connected() ? "" : connection_->trouble();
+}
+
+uplink::Endpoint endpoint_of(const settings::CommandPost& command_post, const settings::Address& address,
+                             std::uint64_t bytes_per_second) {
+  return {.address = address.address,
+          .port = address.port,
+          .interface = command_post.interface,
+          .bytes_per_second = bytes_per_second,
+          .connect_within = command_post.timeouts.connect};
+}
+
+std::string address_text(const settings::Address& address) {
+  return address.address + ":" + std::to_string(address.port);
+}
+
+std::string sentence_of(const uplink::Outcome& outcome) {
+  if (const auto* never = std::get_if<uplink::NeverSent>(&outcome)) return never->why;
+  if (const auto* doubt = std::get_if<uplink::InDoubt>(&outcome)) return doubt->why;
+  const auto& answered = std::get<uplink::Answered>(outcome);
+  if (dispatch::may_be_the_command_post(answered.status, dispatch::body_of(answered.body)))
+    return dispatch::said(answered.status, answered.body);
+  return icd::sentence("what answered ", answered.status,
+                       answered.status < 400 && answered.status >= 300 ? " (look elsewhere)"
+                                                                       : " with something other than JSON",
+                       " is no Command Post");
+}
+
+}  // namespace adit::forward

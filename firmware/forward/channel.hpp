@@ -1,0 +1,74 @@
+#pragma once
+
+#include <functional>
+#include <optional>
+#include <string>
+
+#include "icd/uri.hpp"
+#include "loop/loop.hpp"
+#include "settings/settings.hpp"
+#include "uplink/connection.hpp"
+
+namespace adit::forward {
+
+/// One connection to the Command Post, and what there is to say of it. Without a token there is none.
+class Channel {
+ public:
+  /// `name`: of the endpoint, "scoring" or "mapping".
+  Channel(loop::Loop& loop, const char* name, uplink::Endpoint endpoint,
+          std::optional<icd::BearerToken> token, std::chrono::milliseconds answer_within);
+
+  bool has_token() const { return connection_.has_value(); }
+  /// Requires has_token() and !busy(). `content_type` is empty without a body.
+  void send(icd::Uri uri, std::string_view content_type, icd::ChunkedBytes body,
+            std::function<void(uplink::Outcome)> done);
+  bool busy() const { return connection_ && connection_->busy(); }
+  bool connected() const { return connection_ && connection_->connected(); }
+  /// uplink::Connection::hurry()
+  void hurry() {
+    if (connection_) connection_->hurry();
+  }
+  void keep_warm() {
+    if (connection_) connection_->keep_warm();
+  }
+
+  /// Why the last request failed or was refused, or why there is no connection; "" where all is well.
+  std::string trouble() const;
+  int last_status() const { return last_status_; }
+  std::optional<double> answer_ms() const { return answer_ms_; }
+  /// Whether the last answer was one that no Command Post gives, and how many were.
+  bool is_foreign() const { return foreign_now_; }
+  std::uint64_t foreign() const { return foreign_; }
+  /// How many answers were 429.
+  std::uint64_t throttled() const { return throttled_; }
+  /// When last_status() was heard.
+  loop::Instant heard() const { return heard_; }
+  /// All bytes of bodies that were handed to the kernel, those under way included.
+  std::uint64_t bytes_sent() const { return finished_bytes_ + (connection_ ? connection_->sent_bytes() : 0); }
+
+ private:
+  void note(const uplink::Outcome& outcome);
+
+  loop::Loop& loop_;
+  const char* name_;
+  std::optional<uplink::Connection> connection_;
+  std::chrono::milliseconds answer_within_;
+  loop::Instant sent_at_{}, heard_{};
+  std::uint64_t finished_bytes_ = 0, throttled_ = 0, foreign_ = 0;
+  bool foreign_now_ = false;
+  int last_status_ = 0;
+  std::optional<double> answer_ms_;
+  std::string trouble_;
+};
+
+/// Where the settings say an endpoint is; maps are paced within the link's budget.
+uplink::Endpoint endpoint_of(const settings::CommandPost& command_post, const settings::Address& address,
+                             std::uint64_t bytes_per_second);
+
+/// "10.100.1.200:8000"
+std::string address_text(const settings::Address& address);
+
+/// Why an outcome is no answer, or what the Command Post said in it.
+std::string sentence_of(const uplink::Outcome& outcome);
+
+}  // namespace adit::forward

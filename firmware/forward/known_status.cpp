@@ -1,0 +1,28 @@
+#include "forward/known_status.hpp"
+
+#include <utility>
+
+#include "codec/write.hpp"
+
+namespace adit::forward {
+
+void KnownStatus::heard(std::string body, loop::Instant asked) {
+  body_ = std::move(body);
+  asked_ = asked;
+  fresh_ = true;
+}
+
+bool KnownStatus::is_fresh(loop::Instant now) const {
+  return fresh_ && asked_ && now - *asked_ < kFresh;
+}
+
+std::optional<intake::Answer> KnownStatus::answer(loop::Instant now) const {
+  if (!asked_ || now - *asked_ > kOldest) return std::nullopt;
+  const auto age = std::chrono::floor<std::chrono::seconds>(now - *asked_).count();
+  return intake::Answer{.status = icd::Status::Ok,
+                        .content_type = std::string(codec::kJson),
+                        .body = body_,
+                        .headers = {{"Age", std::to_string(age)}}};
+}
+
+}  // namespace adit::forward

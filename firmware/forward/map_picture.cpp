@@ -1,0 +1,108 @@
+#include "forward/map_picture.hpp"
+
+#include <utility>
+#include <variant>
+
+#include "host/log.hpp"
+#include "lanes/map_lane.hpp"
+
+namespace adit::forward {
+namespace {
+
+constexpr std::chrono::milliseconds kLookAgain{20};  // whether packing is done
+
+/// Whether `newer` shows all that `older` showed. A cloud never does: senders post what is new alone.
+bool covers(const icd::MapUpdate& newer, const icd::MapUpdate& older) {
+  const auto* grid = std::get_if<icd::OccupancyGrid>(&newer.msg);
+  const auto* old = std::get_if<icd::OccupancyGrid>(&older.msg);
+  return grid != nullptr && old != nullptr && newer.name == older.name && lanes::covers(*grid, *old);
+}
+
+}  // namespace
+
+/// One drawing: the worker reads the map and the canvas, and writes `drawing`.
+struct MapPicture::Job {
+  Waiting waiting;
+  picture::Canvas canvas;
+  icd::Checked<picture::Drawing> drawing{};
+};
+
+MapPicture::MapPicture(loop::Loop& loop, loop::Workers& workers, std::function<bool()> packing,
+                       std::function<void()> changed, picture::Mosaic mosaic)
+    : loop_(loop),
+      workers_(workers),
+      packing_(std::move(packing)),
+      changed_(std::move(changed)),
+      wake_(loop.timer([this] { pump(); })),
+      mosaic_(std::move(mosaic)) {}
+
+void MapPicture::forwarded(icd::MapUpdate map) {
+  std::erase_if(waiting_, [&](const Waiting& older) {
+    const bool overtaken = covers(map, older.map);
+    if (overtaken) waiting_bytes_ -= older.map.data.bytes.size();
+    return overtaken;
+  });
+  waiting_bytes_ += map.data.bytes.size();
+  waiting_.push_back({.map = std::move(map), .stamp = loop_.stamp_now(), .since = loop_.now()});
+  while (waiting_bytes_ > kMostWaiting && waiting_.size() > 1) {
+    mosaic_.missed(picture::layer_of(waiting_.front().map), waiting_.front().stamp);
+    waiting_bytes_ -= waiting_.front().map.data.bytes.size();
+    waiting_.pop_front();
+  }
+  wake_.call_at(loop_.now());  // not at once: the next map may begin to be packed first
+}
+
+void MapPicture::begin_run() {
+  waiting_.clear();
+  waiting_bytes_ = 0;
+  mosaic_.wipe(loop_.stamp_now());
+  changed_();
+}
+
+picture::Mosaic MapPicture::hand_over() {
+  if (drawing_) mosaic_.missed(drawing_->layer, drawing_->stamp);
+  for (const Waiting& waiting : waiting_) mosaic_.missed(picture::layer_of(waiting.map), waiting.stamp);
+  waiting_.clear();
+  return std::move(mosaic_);
+}
+
+void MapPicture::pump() {
+  if (drawing_ || waiting_.empty()) return;
+  if (packing_() && loop_.now() < waiting_.front().since + kPatience) {
+    wake_.call_at(loop_.now() + kLookAgain);
+    return;
+  }
+  Waiting next = std::move(waiting_.front());
+  waiting_.pop_front();
+  waiting_bytes_ -= next.map.data.bytes.size();
+  draw(std::move(next));
+}
+
+void MapPicture::draw(Waiting waiting) {
+  drawing_ = Drawn{picture::layer_of(waiting.map), waiting.stamp};
+  auto job = std::make_shared<Job>(Job{std::move(waiting), {}});
+  job->canvas = mosaic_.canvas(picture::layer_of(job->waiting.map));
+  workers_.submit(
+      [job] { job->drawing = picture::draw(job->waiting.map, job->canvas); }, [this, job] { drawn(*job); },
+      [this, job] {
+        job->drawing = std::unexpected(icd::Refusal{icd::Status::ServiceUnavailable, "no memory"});
+        drawn(*job);
+      });
+}
+
+void MapPicture::drawn(Job& job) {
+  drawing_.reset();
+  const picture::Layer layer = picture::layer_of(job.waiting.map);
+  const auto before = mosaic_.version();
+  if (job.drawing) {
+    mosaic_.apply(std::move(*job.drawing), job.waiting.stamp);
+  } else {
+    mosaic_.missed(layer, job.waiting.stamp);
+    host::log(host::Level::Warning, "a map could not be drawn",
+              {{"robot", layer.robot}, {"why", job.drawing.error().sentence}});
+  }
+  if (mosaic_.version() != before) changed_();
+  pump();
+}
+
+}  // namespace adit::forward

@@ -1,0 +1,345 @@
+#include "forward/maps.hpp"
+
+#include <algorithm>
+
+#include "codec/write.hpp"
+#include "dispatch/mapping_verdict.hpp"
+#include "forward/upstream_answer.hpp"
+#include "host/log.hpp"
+#include "icd/sentence.hpp"
+#include "loop/guard.hpp"
+#include "pace/budget.hpp"
+#include "pack/pack.hpp"
+
+namespace adit::forward {
+namespace {
+
+using dispatch::MappingVerdict;
+
+/// Packing begins early by what it took last time, but not so early that much newer data could not replace
+/// it.
+constexpr std::chrono::milliseconds kLongestLead{500};
+
+/// For a writer that threw.
+icd::Refusal not_kept() {
+  return {icd::Status::ServiceUnavailable, "this map cannot be kept; send it again later"};
+}
+
+/// For lanes::Blame: a robot's maps of one kind.
+std::string whose(const icd::MapUpdate& map) {
+  return (map.is_grid() ? "grid " : "cloud ") + (map.name ? map.name->text() : "");
+}
+
+}  // namespace
+
+Maps::Maps(loop::Loop& loop, loop::Workers& workers, loop::Writer& writer, const spool::Spool& spool,
+           const settings::Settings& settings, std::optional<icd::BearerToken> token, Record& record,
+           Aside& aside, std::mt19937_64& random, journal::Journal& journal,
+           std::function<void(icd::MapUpdate)> taken)
+    : loop_(loop),
+      workers_(workers),
+      writer_(writer),
+      while_alive_(&writer, [](loop::Writer*) {}),
+      spool_(spool),
+      settings_(settings),
+      record_(record),
+      journal_(journal),
+      aside_(aside),
+      taken_(std::move(taken)),
+      channel_(loop, "mapping",
+               endpoint_of(settings.command_post, settings.command_post.mapping,
+                           pace::map_bytes_per_second(settings.command_post.budget_mbit)),
+               std::move(token), settings.command_post.timeouts.mapping_answer),
+      pace_(icd::Uri::MapUpdate, settings.command_post.rates.map_hz, random, journal),
+      wake_(loop.timer([this] { pump(); })),
+      lane_(settings.queues.merge_bytes),
+      trouble_(spool.trouble()) {}
+
+/// What replaces something that waits is taken by a full queue too.
+bool Maps::has_room_for(const icd::MapUpdate& update, bool replaces) const {
+  const std::size_t waiting = lane_.bytes() + bytes_being_kept_;
+  if (!replaces && lane_.count() + static_cast<std::size_t>(being_kept_) >= kMostMaps) return false;
+  return replaces || waiting == 0 || waiting + update.data.bytes.size() <= settings_.queues.map_bytes;
+}
+
+/// What arrives leaves room for a grid that replaces one.
+std::shared_ptr<intake::MapArrival> Maps::arrives(MapArrival::Take take) {
+  return std::make_shared<MapArrival>(
+      while_alive_, spool_, [this] { return lane_.largest_grid(); }, std::move(take));
+}
+
+void Maps::take(icd::MapUpdate update, std::size_t bytes_received, std::shared_ptr<spool::MapFile> file,
+                std::function<void(icd::Checked<void>)> done) {
+  const bool replaces = lane_.replaces_any(update);
+  if (!has_room_for(update, replaces)) {
+    if (file) writer_.submit([file = std::move(file)]() mutable { file.reset(); }, [] {});
+    return done(std::unexpected(
+        icd::Refusal{icd::Status::TooManyRequests,
+                     icd::sentence(lane_.count() + static_cast<std::size_t>(being_kept_), " maps of ",
+                                   (lane_.bytes() + bytes_being_kept_) >> 20,
+                                   " MiB wait already; this one was not taken, send it again later")}));
+  }
+  const auto keeping = std::make_shared<Keeping>();
+  keeping->bytes_received = bytes_received;
+  // Only a grid is ever replaced, and the newer one must find room beside it.
+  const std::uint64_t of_its_own = update.is_grid() ? update.data.bytes.size() : 0;
+  if (!replaces) keeping->spare = std::max<std::uint64_t>(lane_.largest_grid(), of_its_own);
+  keeping->update = std::move(update);
+  keeping->file = std::move(file);
+  keep(keeping, [this, done = std::move(done)](Keeping& it) { kept(it, done); });
+}
+
+/// By the writer, under the next number; then `told` has it, kept or not.
+void Maps::keep(const std::shared_ptr<Keeping>& keeping, const std::function<void(Keeping&)>& told) {
+  keeping->number = ++numbers_;
+  keeping->size = keeping->update.data.bytes.size();
+  const auto over = [this, keeping, told] {
+    --being_kept_;
+    bytes_being_kept_ -= keeping->size;
+    told(*keeping);
+  };
+  writer_.submit(
+      [&spool = spool_, keeping] {
+        keeping->kept =
+            spool.keep(keeping->number, std::move(keeping->update), keeping->spare, std::move(keeping->file));
+      },
+      over,
+      [keeping, over] {
+        keeping->kept = std::unexpected(not_kept());
+        over();
+      });
+  ++being_kept_;  // only now: where it could not be submitted, nothing is
+  bytes_being_kept_ += keeping->size;
+}
+
+/// It waits from now on, and its sender may know.
+void Maps::kept(Keeping& keeping, const std::function<void(icd::Checked<void>)>& done) {
+  const std::string before = std::exchange(trouble_, keeping.kept ? "" : keeping.kept.error().sentence);
+  if (!keeping.kept) {
+    if (before.empty()) host::log(host::Level::Error, "a map was not taken", {{"why", trouble_}});
+    return done(std::unexpected(std::move(keeping.kept.error())));
+  }
+  record_.accepted(traffic_of(*keeping.kept), keeping.bytes_received, loop_.stamp_now());
+  forget(add(keeping.number, std::move(*keeping.kept)));
+  done({});
+  pump();
+}
+
+void Maps::carry_on(const journal::Carried& carried) {
+  pace_.carry_on(carried, loop_.now());
+  if (const auto last = carried.stamps().find(icd::Uri::MapUpdate); last != carried.stamps().end()) {
+    stamps_.carry_on(last->second);
+  }
+}
+
+void Maps::restore(std::uint64_t number, icd::MapUpdate update) {
+  numbers_ = std::max(numbers_, number);
+  record_.accepted(traffic_of(update), update.data.bytes.size(), loop_.stamp_now());
+  forget(add(number, std::move(update)));
+  pump();
+}
+
+/// The numbers of the maps that this one replaced.
+std::vector<std::uint64_t> Maps::add(std::uint64_t number, icd::MapUpdate update) {
+  const Traffic traffic = traffic_of(update);
+  auto replaced = lane_.add(number, std::move(update), loop_.now());
+  record_.replaced(traffic, replaced.size());
+  return replaced;
+}
+
+/// What cannot be told to the writer just now is told with the next.
+void Maps::forget(std::vector<std::uint64_t> numbers) {
+  if (to_forget_.empty()) {
+    to_forget_ = std::move(numbers);
+  } else {
+    to_forget_.insert(to_forget_.end(), numbers.begin(), numbers.end());
+  }
+  if (to_forget_.empty()) return;
+  const bool told = loop::guarded("forgetting maps", [this] {
+    writer_.submit(
+        [&spool = spool_, gone = to_forget_] {
+          for (const std::uint64_t number : gone) spool.forget(number);
+        },
+        [] {});
+  });
+  if (told) to_forget_.clear();
+}
+
+/// What fails is tried again by itself: nobody else may come for a while.
+void Maps::pump() {
+  if (stopping_ || preparing_ || channel_.busy() || !channel_.has_token()) return;
+  if (loop::guarded("sending a map", [this] { go_on(); })) return;
+  pace_.failed(loop_.now());
+  wake_.call_at(pace_.ready());
+}
+
+void Maps::go_on() {
+  forget({});
+  const loop::Instant now = loop_.now();
+  if (prepared_ && prepared_->body.empty()) return pack();
+  if (prepared_) {
+    if (now >= pace_.ready()) return send();
+    wake_.call_at(pace_.ready());
+    return;
+  }
+  if (lane_.count() == 0) return;
+  const loop::Instant begin = pace_.ready() - std::min<loop::Duration>(packing_took_, kLongestLead);
+  if (now >= begin) return prepare();
+  wake_.call_at(begin);
+}
+
+void Maps::prepare() {
+  auto prepared = std::make_shared<Prepared>();
+  auto waiting = lane_.take(loop_.now());
+  if (!waiting) return;
+  prepared->waiting = std::move(*waiting);
+  prepared_ = std::move(prepared);
+  pack();
+}
+
+/// Where it throws, prepared_ waits to be packed.
+void Maps::pack() {
+  icd::Header& header = prepared_->waiting.map.header();
+  header.stamp = stamps_.next(header.stamp.value_or(loop_.stamp_now()));
+  journal_.stamped(icd::Uri::MapUpdate, *header.stamp);
+  const loop::Instant began = loop_.now();
+  workers_.submit(
+      [prepared = prepared_] { prepared->body = codec::write_map_update(pack::pack(prepared->waiting.map)); },
+      [this, began] {
+        preparing_ = false;
+        packing_took_ = loop_.now() - began;
+        pump();
+      },
+      [this] {
+        preparing_ = false;
+        pace_.failed(loop_.now());
+        prepared_->body = {};
+        loop::guarded("putting a map back", [this] {
+          record_.not_taken(traffic_of(prepared_->waiting.map), NotTaken::Failed, 0,
+                            "it could not be packed");
+          again();
+        });
+        wake_.call_at(pace_.ready());
+      });
+  preparing_ = true;  // only now: where it could not be submitted, it is not
+}
+
+void Maps::send() {
+  pace_.sent(loop_.now());
+  channel_.send(icd::Uri::MapUpdate, codec::kCbor, prepared_->body,
+                [this](const uplink::Outcome& outcome) { answered(outcome); });
+}
+
+/// An answer that cannot be dealt with is as good as none: the map is sent again, as it is.
+void Maps::answered(const uplink::Outcome& outcome) {
+  if (!loop::guarded("the answer to a map", [&] { judge(outcome); })) pace_.lost(loop_.now());
+  pump();
+}
+
+void Maps::judge(const uplink::Outcome& outcome) {
+  if (const auto* answer = std::get_if<uplink::Answered>(&outcome)) return verdict(*answer);
+  pace_.failed(outcome, loop_.now());
+  record_.not_taken(traffic_of(prepared_->waiting.map), NotTaken::Failed, 0, sentence_of(outcome));
+  again();
+}
+
+void Maps::taken(int status) {
+  pace_.taken(loop_.now());
+  const auto sent = std::exchange(prepared_, nullptr);  // whatever fails from here on, it has arrived
+  icd::MapUpdate& map = sent->waiting.map;
+  const std::size_t updates = sent->waiting.updates.size();
+  forget(std::move(sent->waiting.updates));
+  blame_.passed(whose(map), loop_.now());
+  aside_.taken(map);
+  record_.forwarded(traffic_of(map), updates, sent->body.size(), status, loop_.stamp_now());
+  taken_(std::move(map));
+}
+
+void Maps::verdict(const uplink::Answered& answered) {
+  const loop::Instant now = loop_.now();
+  const Traffic traffic = traffic_of(prepared_->waiting.map);
+  const std::string sentence = sentence_of(answered);
+  switch (dispatch::mapping_verdict(answered.status, dispatch::body_of(answered.body))) {
+    case MappingVerdict::Taken:
+      return taken(answered.status);
+    case MappingVerdict::Throttled:
+      pace_.throttled(now, answered.retry_after);
+      record_.not_taken(traffic, NotTaken::Throttled, answered.status, sentence);
+      return again();
+    case MappingVerdict::Refused:
+      pace_.taken(now);
+      return give_up(answered.status, sentence);
+    case MappingVerdict::Suspect:
+      pace_.lost(now);
+      if (blame_.failed(whose(prepared_->waiting.map), prepared_->waiting.trial, now) ==
+          lanes::Blame::Verdict::SetAside)
+        return give_up(answered.status, sentence + " (others passed, this one failed again and again)");
+      record_.not_taken(traffic, NotTaken::Failed, answered.status, sentence);
+      return again();
+    case MappingVerdict::Failing:
+      pace_.lost(now);
+      record_.not_taken(traffic, NotTaken::Failed, answered.status, sentence);
+      return again();
+  }
+}
+
+/// Where it throws, prepared_ is as it was.
+void Maps::again() {
+  auto replaced = lane_.put_back(prepared_->waiting);
+  prepared_.reset();
+  forget(std::move(replaced));
+}
+
+/// A map that will not be taken is set aside; of a merged cloud each part is tried by itself.
+void Maps::give_up(int status, const std::string& sentence) {
+  record_.not_taken(traffic_of(prepared_->waiting.map), NotTaken::Refused, status, sentence);
+  if (prepared_->waiting.parts.empty()) {
+    aside_.add(prepared_->waiting.map, status, sentence, prepared_->waiting.map.data.bytes.size(),
+               {.let_go = [this, numbers = prepared_->waiting.updates] { forget(numbers); }});
+    return prepared_.reset();
+  }
+  lane_.put_back_apart(prepared_->waiting);
+  prepared_.reset();
+}
+
+/// One that waits may cover it by now: that one says all of it, and a life to come, which reads the maps in
+/// the order of their numbers, must not find it the newer one.
+void Maps::send_again(icd::MapUpdate update, std::function<void(bool kept)> done) {
+  if (lane_.is_replaced(update)) return done(true);
+  update.header().stamp = loop_.stamp_now();
+  const auto keeping = std::make_shared<Keeping>();
+  keeping->update = std::move(update);
+  keep(keeping, [this, done = std::move(done)](Keeping& it) { kept_again(it, done); });
+}
+
+void Maps::kept_again(Keeping& keeping, const std::function<void(bool kept)>& done) {
+  done(keeping.kept.has_value());
+  if (!keeping.kept) {
+    return host::log(host::Level::Error, "what was set aside is not sent again",
+                     {{"why", keeping.kept.error().sentence}});
+  }
+  forget(lane_.put_back({.map = std::move(*keeping.kept),
+                         .accepted = loop_.now(),
+                         .updates = {keeping.number},
+                         .alone = true}));
+  pump();
+}
+
+void Maps::link_is_back() {
+  pace_.link_is_back();
+  channel_.hurry();
+  pump();
+}
+
+bool Maps::stop() {
+  stopping_ = true;
+  return !channel_.busy();
+}
+
+std::size_t Maps::waiting(const Traffic& traffic) const {
+  const auto of_it = [&](const lanes::WaitingMap& waiting) { return traffic_of(waiting.map) == traffic; };
+  return static_cast<std::size_t>(std::ranges::count_if(lane_.waiting(), of_it)) +
+         (prepared_ && of_it(prepared_->waiting) ? 1 : 0);
+}
+
+}  // namespace adit::forward

@@ -1,0 +1,133 @@
+#pragma once
+
+#include <functional>
+#include <memory>
+#include <optional>
+#include <random>
+#include <string>
+#include <vector>
+
+#include "forward/aside.hpp"
+#include "forward/channel.hpp"
+#include "forward/map_arrival.hpp"
+#include "forward/record.hpp"
+#include "forward/uri_pace.hpp"
+#include "icd/map_update.hpp"
+#include "icd/status.hpp"
+#include "lanes/map_lane.hpp"
+#include "lanes/stamps.hpp"
+#include "loop/workers.hpp"
+#include "spool/spool.hpp"
+
+namespace adit::forward {
+
+/// Maps on their way to the mapping endpoint: are kept by the writer before they are taken, wait in their
+/// lane, are packed on a worker, and go out one at a time on a connection of their own, paced within the
+/// link's budget.
+class Maps {
+ public:
+  /// So many may wait, however small: each has a file that is mapped (vm.max_map_count is 65,530).
+  static constexpr std::size_t kMostMaps = 20'000;
+
+  /// `taken` is given each map that the Command Post took. `spool` outlives the writer.
+  Maps(loop::Loop& loop, loop::Workers& workers, loop::Writer& writer, const spool::Spool& spool,
+       const settings::Settings& settings, std::optional<icd::BearerToken> token, Record& record,
+       Aside& aside, std::mt19937_64& random, journal::Journal& journal,
+       std::function<void(icd::MapUpdate)> taken);
+
+  void carry_on(const journal::Carried& carried);
+  /// As if something had just been sent, by whoever sent before.
+  void hold_back() { pace_.sent(loop_.now()); }
+  /// A map that the spool kept under this number.
+  void restore(std::uint64_t number, icd::MapUpdate update);
+
+  /// For a map that begins to arrive. What is stored of it goes to the writer until this ends.
+  std::shared_ptr<intake::MapArrival> arrives(MapArrival::Take take);
+  /// `update`'s stamp is on the gateway's clock; `file`: where its data was stored, or null. `done` is told
+  /// once it is kept and waits, or why not: 429 where the queue is full and it replaces nothing, 503 where
+  /// there is no room for it.
+  void take(icd::MapUpdate update, std::size_t bytes_received, std::shared_ptr<spool::MapFile> file,
+            std::function<void(icd::Checked<void>)> done);
+
+  /// What was set aside, on the operator's word: before all that waits. `done` is told whether it is kept and
+  /// waits; if not, nothing has become of it.
+  void send_again(icd::MapUpdate update, std::function<void(bool kept)> done);
+
+  /// Sends nothing more. False while an answer is awaited.
+  bool stop();
+  /// Whether nothing that was to be taken has still to be kept.
+  bool all_kept() const { return being_kept_ == 0; }
+  /// Why the last map could not be kept, or "".
+  const std::string& trouble() const { return trouble_; }
+  /// The cable is: nothing waits any more for what failed without it.
+  void link_is_back();
+
+  bool packing() const { return preparing_; }
+  const Channel& channel() const { return channel_; }
+  std::size_t queued_bytes() const { return lane_.bytes(); }
+  bool nearly_full() const { return lane_.bytes() > settings_.queues.map_bytes / 5 * 4; }
+  std::size_t waiting(const Traffic& traffic) const;
+
+ private:
+  /// A map out of the lane, in the form that goes upstream.
+  struct Prepared {
+    lanes::WaitingMap waiting;
+    icd::ChunkedBytes body;  // empty: not packed
+  };
+
+  std::vector<std::uint64_t> add(std::uint64_t number, icd::MapUpdate update);
+  /// A map on its way to its file: the writer's, until it is handed back.
+  struct Keeping {
+    std::uint64_t number = 0;
+    std::size_t bytes_received = 0, size = 0;
+    std::uint64_t spare = 0;  // that is to be left
+    icd::MapUpdate update;
+    std::shared_ptr<spool::MapFile> file;  // where its data was stored as it came
+    icd::Checked<icd::MapUpdate> kept;
+  };
+  bool has_room_for(const icd::MapUpdate& update, bool replaces) const;
+  void keep(const std::shared_ptr<Keeping>& keeping, const std::function<void(Keeping&)>& told);
+  void kept(Keeping& keeping, const std::function<void(icd::Checked<void>)>& done);
+  void kept_again(Keeping& keeping, const std::function<void(bool kept)>& done);
+  void forget(std::vector<std::uint64_t> numbers);
+  void pump();
+  void go_on();
+  void prepare();
+  void pack();
+  void send();
+  void answered(const uplink::Outcome& outcome);
+  void judge(const uplink::Outcome& outcome);
+  void verdict(const uplink::Answered& answered);
+  void taken(int status);
+  void again();
+  void give_up(int status, const std::string& sentence);
+
+  loop::Loop& loop_;
+  loop::Workers& workers_;
+  loop::Writer& writer_;
+  const std::shared_ptr<loop::Writer> while_alive_;  // the same, for arrivals, which may outlive this
+  const spool::Spool& spool_;
+  const settings::Settings& settings_;
+  Record& record_;
+  journal::Journal& journal_;
+  Aside& aside_;
+  std::function<void(icd::MapUpdate)> taken_;
+  Channel channel_;
+  UriPace pace_;
+  loop::Source wake_;
+
+  lanes::MapLane lane_;
+  lanes::StampOrder stamps_;
+  std::uint64_t numbers_ = 0;
+  int being_kept_ = 0;
+  std::size_t bytes_being_kept_ = 0;
+  std::string trouble_;
+  bool preparing_ = false;
+  loop::Duration packing_took_{0};
+  std::shared_ptr<Prepared> prepared_;    // while it is packed, waits for its time, or is under way
+  std::vector<std::uint64_t> to_forget_;  // that the writer could not be told of
+  lanes::Blame blame_;
+  bool stopping_ = false;
+};
+
+}  // namespace adit::forward

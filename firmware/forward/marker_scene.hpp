@@ -1,0 +1,59 @@
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <map>
+#include <string>
+#include <utility>
+
+#include "icd/markers_update.hpp"
+#include "page/scene.hpp"
+
+namespace adit::forward {
+
+/// The markers as the Command Post was last told of them, by ns and id, and which of them changed after any
+/// version, as a map draws them. At most kMost, and kMostBytes of them; where there are more, those forwarded
+/// longest ago are left out and counted.
+class MarkerScene {
+ public:
+  static constexpr std::size_t kMost = 2000;
+  static constexpr std::size_t kMostBytes = 1'000'000;  // as DrawnMarker::size() has it
+
+  /// The Command Post took these, at `now`; the first is at number 1, later ones never run backward.
+  void forwarded(const icd::MarkersUpdate& update, page::Time now);
+  /// A new run begins with none.
+  void wipe(page::Time now);
+
+  std::uint64_t version() const { return version_; }
+  /// What changed after `since`; all there is where that cannot be told any more.
+  page::MarkerNews news(std::uint64_t since) const;
+
+ private:
+  using Key = std::pair<std::string, std::int32_t>;
+  struct Entry {
+    page::DrawnMarker marker;
+    page::Time at = 0;
+    std::uint64_t version = 0;
+    bool gone = false;  // of the marker only the ns is left, which counts
+  };
+  using InOrder = std::map<std::uint64_t, Key>;
+
+  void begin_change(page::Time now);
+  void apply(const icd::Marker& marker, page::Time now);
+  void remove(const Key& key);
+  void clear();
+  void keep_bounds();
+  InOrder::const_iterator oldest(bool gone) const;
+  void put(const Key& key, Entry entry);
+  void erase(const Key& key);
+
+  std::map<Key, Entry> entries_;  // those that are gone too, as long as there is room
+  InOrder in_order_;              // the entries by version
+  struct Held {
+    std::size_t count = 0, bytes = 0;
+  } standing_, gone_;
+  std::uint64_t version_ = 0, forgotten_ = 0;  // all that went up to this version is not told any more
+  std::uint64_t left_out_ = 0;
+};
+
+}  // namespace adit::forward

@@ -1,0 +1,346 @@
+#include "forward/news.hpp"
+
+#include <algorithm>
+#include <array>
+#include <iterator>
+#include <utility>
+
+#include "codec/write.hpp"
+#include "dispatch/mapping_verdict.hpp"
+#include "dispatch/turn.hpp"
+#include "forward/upstream_answer.hpp"
+#include "forward/whole.hpp"
+#include "loop/guard.hpp"
+
+namespace adit::forward {
+
+using dispatch::MappingVerdict;
+
+namespace {
+
+std::unexpected<icd::Refusal> full(const char* of) {
+  return std::unexpected(
+      icd::Refusal{icd::Status::TooManyRequests, std::string("not taken: ") + of + "; send it again later"});
+}
+
+std::unexpected<icd::Refusal> not_kept(const std::string& why) {
+  return std::unexpected(icd::Refusal{icd::Status::ServiceUnavailable,
+                                      "not taken: it cannot be kept: " + why + "; send it again later"});
+}
+/// A state or markers of several fail so often together before the one at fault is looked for.
+constexpr int kTriesTogether = 3;
+/// Markers on trial; beyond them all trials begin anew.
+constexpr std::size_t kMostTrials = 1000;
+
+/// For a verdict that is not Taken.
+NotTaken why_not(MappingVerdict verdict) {
+  if (verdict == MappingVerdict::Throttled) return NotTaken::Throttled;
+  return verdict == MappingVerdict::Refused ? NotTaken::Refused : NotTaken::Failed;
+}
+
+std::size_t updates_in(const lanes::WaitingState& state) {
+  return state.updates;
+}
+std::size_t updates_in(const lanes::WaitingMarkers& markers) {
+  return markers.updates;
+}
+
+}  // namespace
+
+News::News(loop::Loop& loop, const settings::Settings& settings, std::optional<icd::BearerToken> token,
+           Record& record, Aside& aside, std::mt19937_64& random, journal::Journal& journal,
+           AsForwarded& as_forwarded, std::function<void()> anew)
+    : loop_(loop),
+      record_(record),
+      aside_(aside),
+      journal_(journal),
+      as_forwarded_(as_forwarded),
+      anew_(std::move(anew)),
+      channel_(loop, "mapping", endpoint_of(settings.command_post, settings.command_post.mapping, 0),
+               std::move(token), settings.command_post.timeouts.mapping_answer),
+      state_pace_(icd::Uri::StateUpdate, settings.command_post.rates.state_hz, random, journal),
+      markers_pace_(icd::Uri::MarkersUpdate, settings.command_post.rates.markers_hz, random, journal),
+      wake_(loop.timer([this] { pump(); })),
+      markers_({.per_message = settings.queues.markers_per_message,
+                .bytes_per_message = settings.queues.marker_bytes_per_message,
+                .bytes = settings.queues.marker_bytes}) {}
+
+void News::carry_on(const journal::Carried& carried) {
+  state_pace_.carry_on(carried, loop_.now());
+  markers_pace_.carry_on(carried, loop_.now());
+  for (const auto& [uri, stamp] : carried.stamps()) {
+    if (uri == icd::Uri::StateUpdate) state_stamps_.carry_on(stamp);
+    if (uri == icd::Uri::MarkersUpdate) marker_stamps_.carry_on(stamp);
+  }
+  for (const auto& [name, robot] : carried.robots()) {
+    state_.add({.header = {robot.stamp}, .poses = {{name, robot.pose}}}, loop_.now());
+    record_.accepted({Kind::State, name.text()}, 0, loop_.stamp_now());
+  }
+  if (const icd::MarkersUpdate markers = carried.markers(); !markers.markers.empty()) {
+    record_.accepted({Kind::Markers, ""}, 0, loop_.stamp_now());
+    markers_.add(markers, loop_.now());
+  }
+}
+
+icd::Checked<void> News::take(const icd::StateUpdate& update, std::size_t bytes_received) {
+  if (!state_.has_room_for(update)) return full("more robots than can be kept apart");
+  if (const auto kept = journal_.accepted(update); !kept) return not_kept(kept.error());
+  whole(anew_, [&] {
+    for (const icd::NamedPose& pose : update.poses) {
+      record_.accepted({Kind::State, pose.name.text()}, bytes_received, loop_.stamp_now());
+    }
+    state_.add(update, loop_.now());
+  });
+  pump();
+  return {};
+}
+
+icd::Checked<void> News::take(const icd::MarkersUpdate& update, std::size_t bytes_received) {
+  if (!markers_.has_room_for(update)) return full("more markers than can wait (queues.marker_bytes)");
+  if (const auto kept = journal_.accepted(update); !kept) return not_kept(kept.error());
+  whole(anew_, [&] {
+    record_.accepted({Kind::Markers, ""}, bytes_received, loop_.stamp_now());
+    markers_.add(update, loop_.now());
+  });
+  pump();
+  return {};
+}
+
+void News::pump() {
+  if (stopping_ || setting_aside_ || channel_.busy() || !channel_.has_token()) return;
+  whole(anew_, [this] { send_next(); });
+}
+
+void News::send_next() {
+  const std::array candidates = {dispatch::Candidate{state_.oldest(), state_pace_.ready()},
+                                 dispatch::Candidate{markers_.oldest(), markers_pace_.ready()}};
+  const dispatch::Turn turn = dispatch::oldest_first(candidates, loop_.now());
+  if (turn.wake) wake_.call_at(*turn.wake);
+  if (turn.candidate == 0) send_state();
+  if (turn.candidate == 1) send_markers();
+}
+
+void News::send_state() {
+  auto waiting = state_.take(loop_.now());
+  if (!waiting) return;
+  waiting->update.header.stamp = state_stamps_.next(waiting->update.header.stamp.value_or(loop_.stamp_now()));
+  journal_.stamped(icd::Uri::StateUpdate, *waiting->update.header.stamp);
+  journal_.state_sent(waiting->update);
+  const icd::ChunkedBytes body = codec::write_state_update(waiting->update);
+  state_pace_.sent(loop_.now());
+  channel_.send(icd::Uri::StateUpdate, codec::kCbor, body,
+                [this, sent = std::move(*waiting), bytes = body.size()](const uplink::Outcome& outcome) {
+                  answered(Kind::State, state_pace_, sent, bytes, outcome);
+                });
+}
+
+void News::send_markers() {
+  auto waiting = markers_.take();
+  if (!waiting) return;
+  for (icd::Marker& marker : waiting->update.markers) {
+    marker.header.stamp = marker_stamps_.next(marker.header.stamp.value_or(loop_.stamp_now()));
+  }
+  if (!waiting->update.markers.empty()) {
+    journal_.stamped(icd::Uri::MarkersUpdate, *waiting->update.markers.back().header.stamp);
+  }
+  if (!waiting->is_ahead) journal_.markers_sent(waiting->update);
+  for (const icd::Marker& marker : waiting->update.markers) markers_under_way_.apply(marker);
+  const icd::ChunkedBytes body = codec::write_markers_update(waiting->update);
+  markers_pace_.sent(loop_.now());
+  channel_.send(icd::Uri::MarkersUpdate, codec::kCbor, body,
+                [this, sent = std::move(*waiting), bytes = body.size()](const uplink::Outcome& outcome) {
+                  answered(Kind::Markers, markers_pace_, sent, bytes, outcome);
+                });
+}
+
+/// An answer that cannot be dealt with is as good as none: the message is sent again.
+template <class Waiting>
+void News::answered(Kind kind, UriPace& pace, const Waiting& sent, std::size_t bytes,
+                    const uplink::Outcome& outcome) {
+  if (kind == Kind::Markers) markers_under_way_ = {};
+  if (!loop::guarded("the answer to a state or markers", [&] { judge(kind, pace, sent, bytes, outcome); })) {
+    pace.lost(loop_.now());
+    loop::guarded("putting a state or markers back", [&] { whole(anew_, [&] { put_back(sent); }); });
+  }
+  pump();
+}
+
+template <class Waiting>
+void News::judge(Kind kind, UriPace& pace, const Waiting& sent, std::size_t bytes,
+                 const uplink::Outcome& outcome) {
+  const loop::Instant now = loop_.now();
+  const auto* answer = std::get_if<uplink::Answered>(&outcome);
+  const int status = answer != nullptr ? answer->status : 0;
+  auto verdict = answer != nullptr ? dispatch::mapping_verdict(status, dispatch::body_of(answer->body))
+                                   : MappingVerdict::Failing;
+  const std::string sentence = verdict == MappingVerdict::Taken ? "" : sentence_of(outcome);
+  for (const Traffic& traffic : traffic_of(sent)) {
+    if (verdict == MappingVerdict::Taken) {
+      record_.forwarded(traffic, updates_in(sent), bytes, status, loop_.stamp_now());
+    } else {
+      record_.not_taken(traffic, why_not(verdict), status, sentence);
+    }
+  }
+  int& failed = kind == Kind::State ? state_failed_ : markers_failed_;
+  failed = verdict == MappingVerdict::Suspect ? failed + 1 : 0;
+  switch (verdict) {
+    case MappingVerdict::Taken:
+      pace.taken(now);
+      passed(sent);
+      aside_.taken(sent.update);
+      as_forwarded_.forwarded(sent.update, loop_.stamp_now());
+      break;
+    case MappingVerdict::Refused:
+      pace.taken(now);
+      give_up(sent, status, sentence, bytes);
+      break;
+    case MappingVerdict::Suspect:
+      pace.lost(now);
+      if (is_to_blame(sent)) give_up(sent, status, sentence, bytes);
+      break;
+    case MappingVerdict::Throttled:
+      pace.throttled(now, answer->retry_after);
+      put_back(sent);
+      break;
+    case MappingVerdict::Failing:
+      pace.failed(outcome, now);
+      put_back(sent);
+      break;
+  }
+}
+
+void News::passed(const lanes::WaitingState& state) {
+  state_.passed(state);
+  done(state);
+  for (const icd::NamedPose& pose : state.update.poses) state_blame_.passed(pose.name.text(), loop_.now());
+}
+
+void News::passed(const lanes::WaitingMarkers& markers) {
+  marker_blame_.passed("", loop_.now());
+  if (markers.is_ahead) return;
+  markers_.passed();
+  done(markers);
+  for (const icd::Marker& marker : markers.update.markers) marker_trials_.erase({marker.ns, marker.id});
+}
+
+void News::give_up(const lanes::WaitingState& state, int status, const std::string& sentence,
+                   std::size_t bytes) {
+  if (state.update.poses.size() > 1) {
+    journal_.state_answered(false);
+    return state_.put_back_apart(state);
+  }
+  for (const icd::NamedPose& pose : state.update.poses) state_.give_up(pose.name, loop_.now());
+  set_aside(state.update, status, sentence, bytes,
+            [this, state](bool kept) { kept ? done(state) : journal_.state_answered(false); });
+}
+
+void News::give_up(const lanes::WaitingMarkers& markers, int status, const std::string& sentence,
+                   std::size_t bytes) {
+  if (markers.is_ahead) return;  // it has its own turn
+  if (markers.update.markers.size() > 1) {
+    journal_.markers_answered(false);
+    return markers_.put_back_narrower(markers);
+  }
+  for (const icd::Marker& marker : markers.update.markers) marker_trials_.erase({marker.ns, marker.id});
+  set_aside(markers.update, status, sentence, bytes,
+            [this, markers](bool kept) { kept ? done(markers) : journal_.markers_answered(false); });
+}
+
+void News::set_aside(const lanes::Message& message, int status, const std::string& sentence,
+                     std::size_t bytes, std::function<void(bool kept)> told) {
+  const auto go_on = [this, told = std::move(told)](bool kept) {
+    setting_aside_ = false;
+    told(kept);
+    pump();
+  };
+  aside_.add(message, status, sentence, bytes, {.told = go_on});
+  setting_aside_ = true;
+}
+
+bool News::is_to_blame(const lanes::WaitingState& state) {
+  bool to_blame = state_failed_ >= kTriesTogether;
+  if (state.update.poses.size() == 1) {
+    const icd::RobotName& name = state.update.poses.front().name;
+    to_blame = state_blame_.failed(name.text(), state_.trial_of(name), loop_.now()) ==
+               lanes::Blame::Verdict::SetAside;
+  }
+  if (!to_blame) put_back(state);
+  return to_blame;
+}
+
+bool News::is_to_blame(const lanes::WaitingMarkers& markers) {
+  if (markers.is_ahead) return false;
+  if (markers.update.markers.size() != 1) {
+    const bool narrow = markers_failed_ >= kTriesTogether;
+    if (!narrow) put_back(markers);
+    return narrow;
+  }
+  const icd::Marker& marker = markers.update.markers.front();
+  if (marker_trials_.size() >= kMostTrials) marker_trials_.clear();
+  const bool to_blame = marker_blame_.failed("", marker_trials_[{marker.ns, marker.id}], loop_.now()) ==
+                        lanes::Blame::Verdict::SetAside;
+  if (!to_blame) {
+    journal_.markers_answered(false);
+    markers_.put_behind(markers);
+  }
+  return to_blame;
+}
+
+bool News::send_again(const lanes::Message& message) {
+  const bool kept = std::visit([this](const auto& each) { return wait_again(each); }, message);
+  pump();
+  return kept;
+}
+
+bool News::wait_again(const icd::StateUpdate& state) {
+  state_.add_unless_known(state, loop_.now());  // of a robot that posted since, its newer pose goes
+  return journal_.accepted(state_.unsent()).has_value();
+}
+
+/// In the journal what comes last is the newest: the one that deletes all stands there before what waits.
+bool News::wait_again(icd::MarkersUpdate markers) {
+  const auto deletes_all = [](const icd::Marker& marker) {
+    return marker.action == icd::MarkerAction::DeleteAll;
+  };
+  const bool wipes = std::ranges::any_of(markers.markers, deletes_all);
+  if (wipes && !markers_under_way_.empty()) return false;
+  std::erase_if(markers.markers, [this](const icd::Marker& marker) {
+    return markers_.says_more_than(marker) || markers_under_way_.says_more_than(marker);
+  });
+  if (markers.markers.empty()) return true;
+  icd::MarkersUpdate in_order = markers;
+  if (wipes) std::ranges::copy(markers_.pending(), std::back_inserter(in_order.markers));
+  if (!journal_.accepted(in_order)) return false;
+  markers_.put_back({.update = std::move(markers), .accepted = loop_.now(), .updates = 1});
+  return true;
+}
+
+std::vector<Traffic> News::traffic_of(const lanes::WaitingState& state) const {
+  std::vector<Traffic> all;
+  all.reserve(state.update.poses.size());
+  for (const icd::NamedPose& pose : state.update.poses) all.push_back({Kind::State, pose.name.text()});
+  return all;
+}
+
+std::vector<Traffic> News::traffic_of(const lanes::WaitingMarkers&) const {
+  return {{Kind::Markers, ""}};
+}
+
+void News::link_is_back() {
+  state_pace_.link_is_back();
+  markers_pace_.link_is_back();
+  channel_.hurry();
+  pump();
+}
+
+bool News::stop() {
+  stopping_ = true;
+  return !channel_.busy();
+}
+
+std::size_t News::waiting(Kind kind) const {
+  if (kind == Kind::State) return state_.empty() ? 0 : 1;
+  return markers_.count();
+}
+
+}  // namespace adit::forward

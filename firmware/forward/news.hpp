@@ -1,0 +1,122 @@
+#pragma once
+
+#include <functional>
+#include <map>
+#include <optional>
+#include <random>
+#include <utility>
+#include <vector>
+
+#include "forward/as_forwarded.hpp"
+#include "forward/aside.hpp"
+#include "forward/channel.hpp"
+#include "forward/record.hpp"
+#include "forward/uri_pace.hpp"
+#include "icd/status.hpp"
+#include "lanes/marker_lane.hpp"
+#include "lanes/stamps.hpp"
+#include "lanes/state_lane.hpp"
+
+namespace adit::forward {
+
+/// Robots' states and markers on their way to the mapping endpoint, on one connection of their own, whichever
+/// has the older news first.
+class News {
+ public:
+  /// `as_forwarded` is told what the Command Post took. What is accepted is in the journal first, until then;
+  /// `anew`: see whole.hpp.
+  News(loop::Loop& loop, const settings::Settings& settings, std::optional<icd::BearerToken> token,
+       Record& record, Aside& aside, std::mt19937_64& random, journal::Journal& journal,
+       AsForwarded& as_forwarded, std::function<void()> anew);
+
+  /// Takes up what the lives before have left.
+  void carry_on(const journal::Carried& carried);
+  /// As if something had just been sent, by whoever sent before.
+  void hold_back() {
+    state_pace_.sent(loop_.now());
+    markers_pace_.sent(loop_.now());
+  }
+  void start() {
+    channel_.keep_warm();
+    pump();
+  }
+  /// Stamps are on the gateway's clock. Refused with 429 where the lane is full, and with 503 where it cannot
+  /// be kept.
+  icd::Checked<void> take(const icd::StateUpdate& update, std::size_t bytes_received);
+  icd::Checked<void> take(const icd::MarkersUpdate& update, std::size_t bytes_received);
+
+  /// What was set aside, on the operator's word: before what came since, and not what that says more than.
+  /// Not a map. False: it stays aside, for it is not kept, or newer markers that it would delete are under
+  /// way.
+  bool send_again(const lanes::Message& message);
+
+  /// Sends nothing more. False while an answer is still awaited.
+  bool stop();
+  /// The cable is: nothing waits any more for what failed without it.
+  void link_is_back();
+  const Channel& channel() const { return channel_; }
+  std::size_t waiting(Kind kind) const;
+
+ private:
+  void pump();
+  void send_next();
+  void send_state();
+  void send_markers();
+  template <class Waiting>
+  void answered(Kind kind, UriPace& pace, const Waiting& sent, std::size_t bytes,
+                const uplink::Outcome& outcome);
+  std::vector<Traffic> traffic_of(const lanes::WaitingState& state) const;
+  std::vector<Traffic> traffic_of(const lanes::WaitingMarkers& markers) const;
+  void put_back(const lanes::WaitingState& state) {
+    journal_.state_answered(false);
+    state_.put_back(state);
+  }
+  void put_back(const lanes::WaitingMarkers& markers) {
+    if (markers.is_ahead) return;
+    journal_.markers_answered(false);
+    markers_.put_back(markers);
+  }
+  /// They need no more care.
+  void done(const lanes::WaitingState&) { journal_.state_answered(true); }
+  void done(const lanes::WaitingMarkers&) { journal_.markers_answered(true); }
+
+  template <class Waiting>
+  void judge(Kind kind, UriPace& pace, const Waiting& sent, std::size_t bytes,
+             const uplink::Outcome& outcome);
+  void passed(const lanes::WaitingState& state);
+  void passed(const lanes::WaitingMarkers& markers);
+  /// Refused, or failed alone: the one at fault is looked for among several, and set aside by itself.
+  void give_up(const lanes::WaitingState& state, int status, const std::string& sentence, std::size_t bytes);
+  void give_up(const lanes::WaitingMarkers& markers, int status, const std::string& sentence,
+               std::size_t bytes);
+  /// Nothing else is sent until the origin has been told: the journal knows of one answer at a time.
+  void set_aside(const lanes::Message& message, int status, const std::string& sentence, std::size_t bytes,
+                 std::function<void(bool kept)> told);
+  /// The handler failed: true where it is this message's fault, and else it is put back.
+  bool is_to_blame(const lanes::WaitingState& state);
+  bool is_to_blame(const lanes::WaitingMarkers& markers);
+  bool wait_again(const icd::StateUpdate& state);
+  bool wait_again(icd::MarkersUpdate markers);
+  bool wait_again(const icd::MapUpdate&) { return false; }
+
+  loop::Loop& loop_;
+  Record& record_;
+  Aside& aside_;
+  journal::Journal& journal_;
+  AsForwarded& as_forwarded_;
+  std::function<void()> anew_;
+  Channel channel_;
+  UriPace state_pace_, markers_pace_;
+  loop::Source wake_;
+  lanes::StateLane state_;
+  lanes::MarkerLane markers_;
+  lanes::MarkerChanges markers_under_way_;
+  lanes::StampOrder state_stamps_, marker_stamps_;
+  int state_failed_ = 0, markers_failed_ = 0;  // answers in a row of a handler that failed
+  lanes::Blame state_blame_, marker_blame_;
+  std::map<std::pair<std::string, std::int32_t>, lanes::Trial> marker_trials_;  // by ns and id
+  bool setting_aside_ = false;
+  bool stopping_ = false;
+};
+
+}  // namespace adit::forward

@@ -1,0 +1,105 @@
+#include "forward/record.hpp"
+
+namespace adit::forward {
+namespace {
+
+const char* name_of(Kind kind) {
+  switch (kind) {
+    case Kind::Grid:
+      return "grid";
+    case Kind::Cloud:
+      return "cloud";
+    case Kind::State:
+      return "state";
+    case Kind::Markers:
+      return "markers";
+  }
+  return "";
+}
+
+}  // namespace
+
+Traffic traffic_of(const icd::MapUpdate& update) {
+  return {update.is_grid() ? Kind::Grid : Kind::Cloud, update.name ? update.name->text() : ""};
+}
+
+page::ActivityRow& Record::row(const Traffic& traffic) {
+  const auto known = rows_.find(traffic);
+  if (known != rows_.end()) return known->second;
+  const bool full = rows_.size() >= kMostRows;
+  page::ActivityRow& made = rows_[full ? Traffic{traffic.kind, "(others)"} : traffic];
+  made.kind = name_of(traffic.kind);
+  made.robot = full ? "(others)" : traffic.robot;
+  return made;
+}
+
+void Record::accepted(const Traffic& traffic, std::size_t bytes, page::Time now) {
+  page::ActivityRow& activity = row(traffic);
+  ++activity.accepted;
+  activity.last_accepted = now;
+  activity.bytes_received = bytes;
+  changed_();
+}
+
+void Record::replaced(const Traffic& traffic, std::size_t updates) {
+  row(traffic).replaced += updates;
+}
+
+void Record::forwarded(const Traffic& traffic, std::size_t updates, std::size_t bytes, int status,
+                       page::Time now) {
+  page::ActivityRow& activity = row(traffic);
+  ++activity.forwarded;
+  if (traffic.kind == Kind::Cloud && updates > 1) activity.merged += updates - 1;
+  activity.last_forwarded = now;
+  activity.bytes_sent = bytes;
+  activity.last_status = status;
+  activity.last_sentence.clear();
+  changed_();
+}
+
+void Record::not_taken(const Traffic& traffic, NotTaken how, int status, const std::string& sentence) {
+  page::ActivityRow& activity = row(traffic);
+  ++(how == NotTaken::Throttled ? activity.throttled
+     : how == NotTaken::Failed  ? activity.failed
+                                : activity.refused_upstream);
+  activity.last_status = status;
+  activity.last_sentence = sentence;
+  changed_();
+}
+
+void Record::refused(icd::Uri uri, const intake::Sender& sender, const icd::Refusal& refusal,
+                     page::Time now) {
+  page::RefusedCount& counted = refused_[{uri, refusal.status}];
+  ++counted.count;
+  counted.parts += refusal.parts;
+  refusals_.push_front({.at = now,
+                        .uri = std::string(icd::path_of(uri)),
+                        .sender = sender.address,
+                        .status = static_cast<int>(refusal.status),
+                        .sentence = refusal.sentence,
+                        .parts = refusal.parts});
+  if (refusals_.size() > kMostRefusals) refusals_.pop_back();
+  changed_();
+}
+
+std::vector<page::RefusedCount> Record::refused_counts() const {
+  std::vector<page::RefusedCount> all;
+  all.reserve(refused_.size());
+  for (const auto& [what, counted] : refused_) {
+    const auto& [uri, status] = what;
+    all.push_back({.uri = std::string(icd::path_of(uri)),
+                   .status = static_cast<int>(status),
+                   .count = counted.count,
+                   .parts = counted.parts});
+  }
+  return all;
+}
+
+std::vector<page::ActivityRow> Record::activities() const {
+  std::vector<page::ActivityRow> all;
+  all.reserve(rows_.size());
+  for (const auto& [traffic, activity] : rows_) all.push_back(activity);
+  return all;
+}
+
+}  // namespace adit::forward

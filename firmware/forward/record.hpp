@@ -1,0 +1,69 @@
+#pragma once
+
+#include <cstdint>
+#include <deque>
+#include <functional>
+#include <map>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "icd/status.hpp"
+#include "icd/uri.hpp"
+#include "intake/desk.hpp"
+#include "page/box.hpp"
+#include "page/page.hpp"
+
+namespace adit::forward {
+
+enum class Kind : std::uint8_t { Grid, Cloud, State, Markers };
+
+/// Why a message was not taken upstream: sent too often, failed (both are sent again), or refused for good.
+enum class NotTaken : std::uint8_t { Throttled, Failed, Refused };
+
+/// Whose messages of which kind: "" is a merged map, or markers.
+struct Traffic {
+  Kind kind = Kind::Grid;
+  std::string robot;
+  friend auto operator<=>(const Traffic&, const Traffic&) = default;
+};
+
+/// What happened to the team's messages, counted and remembered for the page: what was accepted, forwarded,
+/// replaced, delayed, refused, and why (promise 7). Holds at most kMostRows rows and kMostRefusals refusals.
+class Record {
+ public:
+  static constexpr std::size_t kMostRows = 200;
+  static constexpr std::size_t kMostRefusals = 50;
+
+  /// `changed` is called whenever something is noted.
+  explicit Record(std::function<void()> changed) : changed_(std::move(changed)) {}
+
+  void accepted(const Traffic& traffic, std::size_t bytes, page::Time now);
+  void replaced(const Traffic& traffic, std::size_t updates);
+  /// The Command Post took a message of `bytes` that stands for `updates` accepted ones.
+  void forwarded(const Traffic& traffic, std::size_t updates, std::size_t bytes, int status, page::Time now);
+  /// The Command Post did not take it; 0: no status came.
+  void not_taken(const Traffic& traffic, NotTaken how, int status, const std::string& sentence);
+
+  void refused(icd::Uri uri, const intake::Sender& sender, const icd::Refusal& refusal, page::Time now);
+
+  /// Without `waiting`, which the lanes know.
+  std::vector<page::ActivityRow> activities() const;
+  /// What was ever refused, by URI and status.
+  std::vector<page::RefusedCount> refused_counts() const;
+  /// Newest first.
+  std::vector<page::RefusalRow> refusals() const { return {refusals_.begin(), refusals_.end()}; }
+  void changed() const { changed_(); }
+
+ private:
+  page::ActivityRow& row(const Traffic& traffic);
+
+  std::function<void()> changed_;
+  std::map<Traffic, page::ActivityRow> rows_;
+  std::deque<page::RefusalRow> refusals_;
+  std::map<std::pair<icd::Uri, icd::Status>, page::RefusedCount> refused_;  // its counts
+};
+
+Traffic traffic_of(const icd::MapUpdate& update);
+
+}  // namespace adit::forward

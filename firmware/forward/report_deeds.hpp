@@ -1,0 +1,60 @@
+#pragma once
+
+#include <map>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "dispatch/deeds.hpp"
+#include "intake/server.hpp"
+#include "ledger/ledger.hpp"
+#include "loop/loop.hpp"
+
+namespace adit::forward {
+
+/// What the rules of reports want done: steps into the ledger and the log, answers to the clients.
+class ReportDeeds final : public dispatch::Deeds {
+ public:
+  /// What can follow once a report has left, or its client has its answer, follows so soon: Flush::Soon, and
+  /// the log.
+  static constexpr std::chrono::milliseconds kSoon{2};
+
+  ReportDeeds(loop::Loop& loop, ledger::Ledger& ledger);
+
+  /// A client that waits from now on.
+  dispatch::ClientId add(std::shared_ptr<intake::Responder> responder);
+  /// One that is told nothing: the operator watches the report itself.
+  dispatch::ClientId add_nobody() { return ++last_client_; }
+  /// What the last one was told, whoever it was.
+  const dispatch::ClientAnswer& last_told() const { return last_told_; }
+
+  bool write(std::span<const dispatch::Report> steps, const dispatch::Run* run,
+             dispatch::Flush flush) override;
+  void tell(dispatch::ClientId client, const dispatch::ClientAnswer& answer,
+            const dispatch::Report& report) override;
+
+  /// Why the last write failed, or "".
+  const std::string& trouble() const { return trouble_; }
+
+ private:
+  /// A step as the log tells of it.
+  struct Step {
+    std::int64_t number;
+    std::string type, sender;
+    dispatch::ReportState state;
+    int status;
+    std::string note;
+  };
+  void follow_up();
+
+  loop::Loop& loop_;
+  ledger::Ledger& ledger_;
+  loop::Source follow_up_;
+  std::vector<Step> unlogged_;
+  std::map<dispatch::ClientId, std::shared_ptr<intake::Responder>> clients_;
+  dispatch::ClientId last_client_ = 0;
+  dispatch::ClientAnswer last_told_;
+  std::string trouble_;
+};
+
+}  // namespace adit::forward

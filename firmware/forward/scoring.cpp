@@ -1,0 +1,329 @@
+#include "forward/scoring.hpp"
+
+#include <algorithm>
+#include <array>
+#include <utility>
+
+#include "codec/read.hpp"
+#include "codec/write.hpp"
+#include "dispatch/turn.hpp"
+#include "forward/upstream_answer.hpp"
+#include "forward/whole.hpp"
+#include "intake/icd_routes.hpp"
+#include "loop/guard.hpp"
+
+namespace adit::forward {
+namespace {
+
+dispatch::ReportRules rules_of(const settings::Reports& reports) {
+  return {.answer_within = reports.answer_within,
+          .review = reports.review,
+          .near_metres = reports.near_metres,
+          .patience = {.doubt_for = reports.doubt_for, .asks = reports.doubt_asks}};
+}
+
+}  // namespace
+
+Scoring::Scoring(loop::Loop& loop, ledger::Ledger& ledger, const settings::Settings& settings,
+                 std::optional<icd::BearerToken> token, Record& record, std::mt19937_64& random,
+                 journal::Journal& journal, std::function<void()> anew)
+    : loop_(loop),
+      ledger_(ledger),
+      settings_(settings),
+      record_(record),
+      anew_(std::move(anew)),
+      deeds_(loop, ledger),
+      reports_(rules_of(settings.reports), deeds_),
+      channel_(loop, "scoring", endpoint_of(settings.command_post, settings.command_post.scoring, 0),
+               std::move(token), settings.command_post.timeouts.scoring_answer),
+      report_pace_(icd::Uri::ArtifactReports, settings.command_post.rates.reports_hz, random, journal),
+      status_pace_(icd::Uri::Status, settings.command_post.rates.status_hz, random, journal),
+      wake_(loop.timer([this] { pump(); })),
+      poll_(loop.timer([this] { poll(); })),
+      deadline_(loop.timer([this] { deadline_came(); })) {}
+
+std::expected<void, std::string> Scoring::start() {
+  auto all = ledger_.reports();
+  if (!all) return std::unexpected(all.error().what);
+  auto runs = ledger_.runs();
+  if (!runs) return std::unexpected(runs.error().what);
+  reports_.open(std::move(*all), std::move(*runs), time(), address_text(settings_.command_post.scoring));
+  channel_.keep_warm();
+  poll();
+  return {};
+}
+
+void Scoring::take(const icd::ArtifactReport& report, const intake::Sender& sender,
+                   std::shared_ptr<intake::Responder> responder) {
+  if (stopping_) {
+    responder->answer(intake::error_answer(
+        icd::Status::ServiceUnavailable, "the gateway is stopping; the report was not taken, send it again"));
+    return;
+  }
+  take({.report = report, .sender = sender.address, .resubmit = sender.resubmits},
+       deeds_.add(std::move(responder)));
+}
+
+void Scoring::take(const dispatch::Posted& posted, dispatch::ClientId client) {
+  const bool may_send = !channel_.busy() && channel_.connected() && report_pace_.ready() <= loop_.now();
+  whole(anew_, [&] {
+    if (reports_.take(posted, client, may_send, time())) send(*reports_.sending());
+  });
+  watch_deadlines();
+  record_.changed();
+  pump();
+}
+
+void Scoring::status(std::shared_ptr<intake::Responder> responder) {
+  if (stopping_) {
+    responder->answer(intake::error_answer(icd::Status::ServiceUnavailable, "the gateway is stopping"));
+    return;
+  }
+  if (!channel_.has_token()) {
+    responder->answer(intake::error_answer(icd::Status::ServiceUnavailable, channel_.trouble()));
+    return;
+  }
+  const loop::Instant now = loop_.now();
+  if (known_status_.is_fresh(now)) {
+    responder->answer(*known_status_.answer(now));
+    return;
+  }
+  askers_.push_back({std::move(responder), now + kAskerWaits});
+  pump();
+  if (!askers_.empty() && !asked_status_ && !may_ask_soon(now)) tell_askers(now + kAskerWaits);
+  watch_deadlines();
+}
+
+/// Neither does a report go first, nor is the pace in the way for longer than an asker waits.
+bool Scoring::may_ask_soon(loop::Instant now) const {
+  return !channel_.busy() && !reports_.wish(time()).report && status_pace_.ready() <= now + kAskerWaits;
+}
+
+void Scoring::poll() {
+  poll_due_ = true;
+  pump();
+}
+
+/// Why nothing is known that is young enough.
+intake::Answer Scoring::no_status() const {
+  const std::string why = !channel_.trouble().empty() ? channel_.trouble()
+                          : asked_status_             ? "it has not answered yet"
+                                                      : "reports go first";
+  intake::Answer answer = intake::error_answer(icd::Status::ServiceUnavailable,
+                                               "the status of the run is not known just now: " + why);
+  answer.headers.push_back({"Retry-After", "1"});
+  return answer;
+}
+
+void Scoring::pump() {
+  if (stopping_ || channel_.busy() || !channel_.has_token()) return;
+  const dispatch::Time at = time();
+  const loop::Instant now = at.now;
+  const dispatch::Wish wish = reports_.wish(at);
+  std::array<dispatch::Candidate, 2> candidates;
+  if (wish.report) candidates[0] = {now, report_pace_.ready()};
+  if (!askers_.empty() || poll_due_) {
+    candidates[1] = {now, status_pace_.ready()};
+  } else if (wish.status) {
+    candidates[1] = {now, std::max(status_pace_.ready(), *wish.status)};
+  }
+  const dispatch::Turn turn = dispatch::in_order(candidates, now);
+  if (turn.wake) wake_.call_at(*turn.wake);
+  if (turn.candidate == 0) send_next();
+  if (turn.candidate == 1) ask_status();
+}
+
+void Scoring::send_next() {
+  const bool is_sent = whole(anew_, [&] {
+    const dispatch::Report* const chosen = reports_.choose(time());
+    if (chosen != nullptr) send(*chosen);
+    return chosen != nullptr;
+  });
+  if (is_sent) return;
+  // The disk refused it (or it was the same as another one): it must not leave.
+  if (!trouble().empty()) report_pace_.failed(loop_.now());
+  wake_.call_at(std::max(report_pace_.ready(), loop_.now()));
+}
+
+void Scoring::send(const dispatch::Report& report) {
+  report_pace_.sent(loop_.now());
+  const std::string body = codec::write_artifact_report(report.report);
+  channel_.send(icd::Uri::ArtifactReports, codec::kJson,
+                icd::ChunkedBytes({reinterpret_cast<const std::uint8_t*>(body.data()), body.size()}),
+                [this](const uplink::Outcome& outcome) { report_answered(outcome); });
+  ledger_.expect(dispatch::Flush::Soon);  // its answer is what comes next
+}
+
+/// An answer that cannot be dealt with is as good as none: the report is in doubt in the next life.
+void Scoring::report_answered(const uplink::Outcome& outcome) {
+  const bool judged =
+      loop::guarded("the answer to a report", [&] { whole(anew_, [&] { judge_report(outcome); }); });
+  if (!judged) return;
+  known_status_.no_longer_fresh();  // score and remaining reports have changed, or may have
+  poll_.call_at(loop_.now() + kAskAfterReport);
+  watch_deadlines();
+  record_.changed();
+  pump();
+}
+
+void Scoring::judge_report(const uplink::Outcome& outcome) {
+  const loop::Instant now = loop_.now();
+  if (const auto* answered = std::get_if<uplink::Answered>(&outcome)) {
+    const dispatch::ReportEvent event = reports_.answered(
+        {.status = answered->status, .content_type = answered->content_type, .body = answered->body}, time());
+    if (event == dispatch::ReportEvent::Throttled) {
+      report_pace_.throttled(now, answered->retry_after);
+    } else if (event == dispatch::ReportEvent::Barred) {
+      report_pace_.lost(now);
+    } else {
+      report_pace_.taken(now);
+    }
+  } else if (const auto* never = std::get_if<uplink::NeverSent>(&outcome)) {
+    reports_.never_left(never->why, time());
+    report_pace_.failed(now);
+  } else {
+    reports_.lost(sentence_of(outcome), time());
+    report_pace_.taken(now);
+  }
+}
+
+void Scoring::watch_deadlines() {
+  std::optional<loop::Instant> first = reports_.next_deadline();
+  if (const auto asker = first_asker()) first = std::min(first.value_or(*asker), *asker);
+  if (first) deadline_.call_at(*first);
+}
+
+std::optional<loop::Instant> Scoring::first_asker() const {
+  if (askers_.empty()) return std::nullopt;
+  return std::ranges::min_element(askers_, {}, &Asker::until)->until;
+}
+
+/// Those who have waited until `now`: what is known, or else what is under way is waited for a little longer.
+void Scoring::tell_askers(loop::Instant now) {
+  const auto known = known_status_.answer(loop_.now());
+  const loop::Instant longest = asked_status_ ? *asked_status_ + kSlow : now;
+  std::erase_if(askers_, [&](Asker& asker) {
+    if (asker.until > now) return false;
+    if (!known && longest > now) {
+      asker.until = longest;
+      return false;
+    }
+    asker.responder->answer(known ? *known : no_status());
+    return true;
+  });
+}
+
+void Scoring::deadline_came() {
+  tell_askers(loop_.now());
+  whole(anew_, [&] { reports_.tick(time()); });
+  watch_deadlines();
+}
+
+void Scoring::tick() {
+  whole(anew_, [&] { reports_.tick(time()); });
+  pump();
+}
+
+void Scoring::ask_status() {
+  poll_due_ = false;
+  asked_status_ = loop_.now();
+  status_pace_.sent(loop_.now());
+  channel_.send(icd::Uri::Status, "", {},
+                [this](const uplink::Outcome& outcome) { status_answered(outcome); });
+}
+
+void Scoring::status_answered(const uplink::Outcome& outcome) {
+  const loop::Instant asked = *std::exchange(asked_status_, std::nullopt);
+  poll_.call_at(loop_.now() + kAskEvery);
+  loop::guarded("the answer to a status", [&] { judge_status(outcome, asked); });
+  watch_deadlines();
+  record_.changed();
+  pump();
+}
+
+void Scoring::judge_status(const uplink::Outcome& outcome, loop::Instant asked) {
+  const loop::Instant now = loop_.now();
+  const auto* answered = std::get_if<uplink::Answered>(&outcome);
+  if (answered == nullptr) {
+    status_pace_.failed(outcome, now);
+    answer_askers(known_or(intake::error_answer(icd::Status::BadGateway, sentence_of(outcome))));
+  } else if (answered->status == 429) {
+    status_pace_.throttled(now, answered->retry_after);
+    answer_askers(known_or(client_answer(*answered)));
+  } else {
+    status_pace_.taken(now);
+    const bool failed = answered->status >= 500 || channel_.is_foreign();
+    answer_askers(failed ? known_or(client_answer(*answered)) : client_answer(*answered));
+  }
+  const auto run = answered != nullptr && answered->status == 200 ? codec::read_run_status(answered->body)
+                                                                  : std::unexpected<std::string>("");
+  if (run) {
+    run_ = *run;
+    run_heard_ = loop_.stamp_now();
+    known_status_.heard(answered->body, asked);
+    whole(anew_, [&] { reports_.status_heard(*run, asked, time()); });
+  } else {
+    const bool left = !std::holds_alternative<uplink::NeverSent>(outcome);
+    whole(anew_, [&] { reports_.status_failed(left, time()); });
+  }
+}
+
+/// Better than a failure that may be over in a second.
+intake::Answer Scoring::known_or(intake::Answer failure) const {
+  return known_status_.answer(loop_.now()).value_or(std::move(failure));
+}
+
+void Scoring::answer_askers(const intake::Answer& answer) {
+  for (const Asker& asker : std::exchange(askers_, {})) asker.responder->answer(answer);
+}
+
+dispatch::Reports::Outcome Scoring::judge(std::int64_t number, page::Deed deed) {
+  const dispatch::Reports::Outcome outcome = whole(anew_, [&] {
+    return deed == page::Deed::Send       ? reports_.send(number, time())
+           : deed == page::Deed::Hold     ? reports_.hold(number, time())
+           : deed == page::Deed::Withdraw ? reports_.withdraw(number, time())
+           : deed == page::Deed::CallDone ? reports_.call_done(number, time())
+                                          : reports_.resubmit(number, time());
+  });
+  record_.changed();
+  pump();
+  return outcome;
+}
+
+dispatch::Reports::Outcome Scoring::report(const icd::ArtifactReport& report, bool resubmit) {
+  if (stopping_) return std::unexpected("the gateway is stopping; the report was not taken");
+  const dispatch::ClientId nobody = deeds_.add_nobody();
+  take({.report = report, .sender = "operator", .resubmit = resubmit}, nobody);
+  if (const auto number = reports_.awaited_by(nobody)) return *number;
+  const dispatch::ClientAnswer told = deeds_.last_told();
+  if (told.number == 0) return std::unexpected(told.sentence);
+  return told.number;
+}
+
+std::int64_t Scoring::begin_run() {
+  const std::int64_t number = whole(anew_, [&] { return reports_.declare_new_run(time()); });
+  record_.changed();
+  poll();
+  return number;
+}
+
+void Scoring::link_is_back() {
+  report_pace_.link_is_back();
+  status_pace_.link_is_back();
+  channel_.hurry();
+  poll();  // what the Command Post says now is news
+}
+
+bool Scoring::stop() {
+  stopping_ = true;
+  answer_askers(intake::error_answer(icd::Status::ServiceUnavailable, "the gateway is stopping"));
+  reports_.dismiss(false);
+  return reports_.sending() == nullptr;
+}
+
+void Scoring::dismiss() {
+  stop();
+  reports_.dismiss(true);
+}
+
+}  // namespace adit::forward

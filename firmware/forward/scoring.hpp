@@ -1,0 +1,132 @@
+#pragma once
+
+#include <deque>
+#include <functional>
+#include <memory>
+#include <optional>
+#include <random>
+#include <string>
+
+#include "dispatch/reports.hpp"
+#include "forward/channel.hpp"
+#include "forward/known_status.hpp"
+#include "forward/record.hpp"
+#include "forward/report_deeds.hpp"
+#include "forward/uri_pace.hpp"
+#include "icd/artifact_report.hpp"
+#include "icd/run_status.hpp"
+#include "intake/desk.hpp"
+#include "ledger/ledger.hpp"
+#include "loop/loop.hpp"
+#include "page/page.hpp"
+#include "settings/settings.hpp"
+
+namespace adit::forward {
+
+/// The scoring endpoint: reports, one at a time, by the rules of dispatch::Reports (promise 1), and the run's
+/// status, never asked for ahead of a report that may go.
+class Scoring {
+ public:
+  /// Who asks for the status is told the last known one where the Command Post says nothing for so long.
+  static constexpr std::chrono::milliseconds kAskerWaits{100};
+  /// Where none is known, an answer that is under way is waited for: so long since it was asked for.
+  static constexpr std::chrono::seconds kSlow{2};
+  static constexpr std::chrono::seconds kAskEvery{10};  // the status is asked for at least this often
+  /// After a report the status is asked for once its client has been answered.
+  static constexpr std::chrono::milliseconds kAskAfterReport{50};
+
+  /// `anew`: see whole.hpp; what is here is not to be gone on with.
+  Scoring(loop::Loop& loop, ledger::Ledger& ledger, const settings::Settings& settings,
+          std::optional<icd::BearerToken> token, Record& record, std::mt19937_64& random,
+          journal::Journal& journal, std::function<void()> anew);
+
+  void carry_on(const journal::Carried& carried) {
+    report_pace_.carry_on(carried, loop_.now());
+    status_pace_.carry_on(carried, loop_.now());
+  }
+  /// As if something had just been sent, by whoever sent before.
+  void hold_back() {
+    report_pace_.sent(loop_.now());
+    status_pace_.sent(loop_.now());
+  }
+  /// Takes up what the ledger holds from before, and connects. An error: the ledger cannot be read.
+  std::expected<void, std::string> start();
+
+  void take(const icd::ArtifactReport& report, const intake::Sender& sender,
+            std::shared_ptr<intake::Responder> responder);
+  void status(std::shared_ptr<intake::Responder> responder);
+  /// Once a second.
+  void tick();
+
+  /// The operator's word on a report; gives the number of the report that it moved, or a sentence why not.
+  dispatch::Reports::Outcome judge(std::int64_t number, page::Deed deed);
+  /// The operator's own report, as if a client had posted it; gives its number once it is on disk.
+  dispatch::Reports::Outcome report(const icd::ArtifactReport& report, bool resubmit);
+  std::int64_t begin_run();
+
+  /// Sends and takes nothing more; clients whose reports wait are told so. False while an answer is still
+  /// awaited. Called again until it is true or there is no more time.
+  bool stop();
+  /// The cable is: nothing waits any more for what failed without it.
+  void link_is_back();
+  /// Tells the client whose report is still under way, too.
+  void dismiss();
+
+  const Channel& channel() const { return channel_; }
+  const std::optional<icd::RunStatus>& run() const { return run_; }
+  std::optional<page::Time> run_heard() const { return run_heard_; }
+  const dispatch::Reports& reports() const { return reports_; }
+  /// Why the ledger cannot be written, or "".
+  const std::string& trouble() const {
+    return ledger_.refusal().empty() ? deeds_.trouble() : ledger_.refusal();
+  }
+
+ private:
+  /// Somebody who asked for the status.
+  struct Asker {
+    std::shared_ptr<intake::Responder> responder;
+    loop::Instant until;  // then it is told what is known
+  };
+
+  dispatch::Time time() const { return {loop_.now(), loop_.stamp_now()}; }
+  void take(const dispatch::Posted& posted, dispatch::ClientId client);
+  void poll();
+  void pump();
+  void send(const dispatch::Report& report);
+  void send_next();
+  void report_answered(const uplink::Outcome& outcome);
+  void judge_report(const uplink::Outcome& outcome);
+  void ask_status();
+  void status_answered(const uplink::Outcome& outcome);
+  void judge_status(const uplink::Outcome& outcome, loop::Instant asked);
+  void answer_askers(const intake::Answer& answer);
+  void watch_deadlines();
+  void tell_askers(loop::Instant now);
+  std::optional<loop::Instant> first_asker() const;
+  bool may_ask_soon(loop::Instant now) const;
+  void deadline_came();
+  intake::Answer no_status() const;
+  intake::Answer known_or(intake::Answer failure) const;
+
+  loop::Loop& loop_;
+  ledger::Ledger& ledger_;
+  const settings::Settings& settings_;
+  Record& record_;
+  std::function<void()> anew_;
+  ReportDeeds deeds_;
+  dispatch::Reports reports_;
+  Channel channel_;
+  UriPace report_pace_, status_pace_;
+  loop::Source wake_, poll_, deadline_;
+
+  std::deque<Asker> askers_;
+  bool poll_due_ = false;  // Adit itself wants to know the status
+
+  std::optional<icd::RunStatus> run_;
+  std::optional<page::Time> run_heard_;
+  KnownStatus known_status_;
+  std::optional<loop::Instant> asked_status_;  // when that which is under way was asked for
+  bool stopping_ = false;
+};
+
+}  // namespace adit::forward

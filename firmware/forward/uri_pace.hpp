@@ -1,0 +1,79 @@
+#pragma once
+
+#include <algorithm>
+#include <chrono>
+#include <optional>
+#include <random>
+
+#include "icd/uri.hpp"
+#include "journal/journal.hpp"
+#include "pace/backoff.hpp"
+#include "pace/rate_limit.hpp"
+#include "uplink/connection.hpp"
+
+namespace adit::forward {
+
+/// When one URI may be asked next: its rate limit, which the journal keeps for the next life, and its
+/// back-off after failures.
+class UriPace {
+ public:
+  UriPace(icd::Uri uri, double hertz, std::mt19937_64& random, journal::Journal& journal)
+      : uri_(uri),
+        journal_(journal),
+        rate_(hertz),
+        backoff_(std::chrono::milliseconds(500), std::chrono::milliseconds(4000)),
+        random_(random) {}
+
+  pace::Instant ready() const { return std::max(rate_.next(), retry_at_); }
+
+  void carry_on(const journal::Carried& carried, pace::Instant now) {
+    const auto learned = carried.paces().find(uri_);
+    if (learned != carried.paces().end()) rate_.carry_on(learned->second, now);
+  }
+
+  /// Before it leaves: no death may come in between.
+  void sent(pace::Instant now) {
+    rate_.sent(now);
+    keep();
+  }
+  void taken(pace::Instant now) {
+    rate_.taken(now);
+    keep();
+    backoff_.succeeded();
+  }
+  void throttled(pace::Instant now, std::optional<std::chrono::seconds> retry_after) {
+    rate_.throttled(now, retry_after);
+    keep();
+  }
+  /// It failed after it may have been heard. Takes no memory: what sent() has kept holds a life to come back
+  /// as long.
+  void lost(pace::Instant now) {
+    rate_.lost(now);
+    failed(now);
+  }
+  void failed(const uplink::Outcome& outcome, pace::Instant now) {
+    std::holds_alternative<uplink::NeverSent>(outcome) ? failed(now) : lost(now);
+  }
+  /// It never left.
+  void failed(pace::Instant now) {
+    retry_at_ = now + backoff_.failed(std::uniform_real_distribution<double>(0, 1)(random_));
+  }
+
+  /// What failed may well succeed now.
+  void link_is_back() {
+    backoff_.succeeded();
+    retry_at_ = {};
+  }
+
+ private:
+  void keep() { journal_.paced(uri_, rate_.learned()); }
+
+  icd::Uri uri_;
+  journal::Journal& journal_;
+  pace::RateLimit rate_;
+  pace::Backoff backoff_;
+  pace::Instant retry_at_{};
+  std::mt19937_64& random_;
+};
+
+}  // namespace adit::forward

@@ -1,0 +1,78 @@
+#include "spool/kept_message.hpp"
+
+#include <filesystem>
+#include <fstream>
+#include <system_error>
+#include <vector>
+
+#include "codec/body_decoder.hpp"
+#include "codec/read.hpp"
+#include "spool/part_file.hpp"
+
+namespace adit::spool {
+namespace {
+
+namespace fs = std::filesystem;
+
+/// Of a message without its bulk data: more than any that is taken.
+constexpr std::size_t kMostText = 64u << 20;
+
+icd::Rules as_kept() {
+  return {.map_bytes = icd::kMostMapBytes};
+}
+
+icd::Checked<codec::Document> decode(const std::string& path, codec::Split split) {
+  codec::BodyDecoder decoder({codec::Format::Cbor, codec::ContentCoding::Identity}, split,
+                             {.text_bytes = kMostText, .data_bytes = icd::kMostMapBytes});
+  std::ifstream file(path, std::ios::binary);
+  std::vector<char> piece(icd::ChunkedBytes::kChunk);
+  while (file.read(piece.data(), static_cast<std::streamsize>(piece.size())) || file.gcount() > 0) {
+    const auto fed = decoder.feed(
+        {reinterpret_cast<const std::uint8_t*>(piece.data()), static_cast<std::size_t>(file.gcount())});
+    if (!fed) return std::unexpected(fed.error());
+  }
+  return decoder.finish();
+}
+
+}  // namespace
+
+void make_folder_of_ours(const std::string& folder) {
+  std::error_code error;
+  fs::create_directories(folder, error);
+  fs::permissions(folder, fs::perms::owner_all, error);
+}
+
+std::expected<void, std::string> write_whole(const std::string& path, icd::ChunkedBytes bytes) {
+  PartFile file(path);
+  int error = file.append(bytes);
+  if (error == 0) error = file.name(path);
+  if (error == 0) return {};
+  return std::unexpected(path + ": " + std::system_category().message(error));
+}
+
+void remove_parts(const std::string& folder) {
+  std::error_code error;
+  for (const auto& file : fs::directory_iterator(folder, error)) {
+    if (file.path().extension() == PartFile::kEnding) fs::remove(file.path(), error);
+  }
+}
+
+icd::Checked<icd::MapUpdate> read_map(const std::string& path) {
+  auto document = decode(path, codec::Split::MapData);
+  if (!document) return std::unexpected(std::move(document.error()));
+  return codec::read_map_update(std::move(*document), as_kept());
+}
+
+icd::Checked<icd::StateUpdate> read_state(const std::string& path) {
+  const auto document = decode(path, codec::Split::Nothing);
+  if (!document) return std::unexpected(document.error());
+  return codec::read_state_update(*document, as_kept());
+}
+
+icd::Checked<icd::MarkersUpdate> read_markers(const std::string& path) {
+  const auto document = decode(path, codec::Split::Nothing);
+  if (!document) return std::unexpected(document.error());
+  return codec::read_markers_update(*document, as_kept());
+}
+
+}  // namespace adit::spool

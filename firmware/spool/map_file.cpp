@@ -1,0 +1,75 @@
+#include "spool/map_file.hpp"
+
+#include <algorithm>
+#include <cerrno>
+#include <string_view>
+
+#include "codec/write.hpp"
+
+namespace adit::spool {
+namespace {
+
+constexpr std::size_t kBefore = codec::DataFirst::kBefore;
+
+icd::ChunkedBytes data_in(const MappedFile& file, std::size_t size) {
+  icd::ChunkedBytes data;
+  if (file.owner) data.append(file.owner, file.bytes.subspan(kBefore, size));
+  return data;
+}
+
+bool same(std::span<const std::uint8_t> bytes, std::string_view text) {
+  return std::ranges::equal(bytes, text, {}, {}, [](char c) { return static_cast<std::uint8_t>(c); });
+}
+
+}  // namespace
+
+MapFile::MapFile(const std::string& path) : file_(path), error_(file_.append(std::string(kBefore, '\0'))) {}
+
+int MapFile::append(icd::ChunkedBytes& data) {
+  return error_ != 0 ? error_ : file_.append(data);
+}
+
+std::size_t MapFile::stored_bytes() const {
+  return file_.size() - std::min(file_.size(), kBefore);
+}
+
+icd::ChunkedBytes MapFile::stored() {
+  shown_ = file_.map();
+  return data_in(shown_, stored_bytes());
+}
+
+bool MapFile::begins(const icd::ChunkedBytes& data) const {
+  std::size_t ours = 0;
+  for (const auto& chunk : data.chunks()) {
+    if (chunk.owner() != shown_.owner) break;
+    ours += chunk->size();
+  }
+  return shown_.owner && ours == stored_bytes();
+}
+
+int MapFile::finish(icd::MapUpdate& map, const std::string& path) {
+  const codec::DataFirst message = codec::write_data_first(map);
+  const std::size_t size = map.data.bytes.size();
+  for (std::size_t left = stored_bytes(); left > 0;) left -= map.data.bytes.pop_front()->size();
+  int error = append(map.data.bytes);
+  if (error == 0) error = file_.append(message.after);
+  if (error == 0) error = file_.begin_with(message.before);
+  const MappedFile whole = error == 0 ? file_.map() : MappedFile{};
+  if (error == 0 && !whole.owner) error = errno;
+  if (error == 0) error = file_.name(path);
+  if (error == 0) map.data.bytes = data_in(whole, size);
+  return error;
+}
+
+void MapFile::show(icd::MapUpdate& map, const std::string& path) {
+  const codec::DataFirst message = codec::write_data_first(map);
+  const MappedFile file = map_file(path);
+  const std::size_t size = map.data.bytes.size();
+  if (!file.owner || file.bytes.size() != kBefore + size + message.after.size()) return;
+  if (!same(file.bytes.first(kBefore), message.before)) return;
+  if (icd::ChunkedBytes data = data_in(file, size); data == map.data.bytes) {
+    map.data.bytes = std::move(data);
+  }
+}
+
+}  // namespace adit::spool

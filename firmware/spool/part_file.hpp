@@ -1,0 +1,57 @@
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <memory>
+#include <span>
+#include <string>
+#include <string_view>
+
+#include "icd/chunked_bytes.hpp"
+#include "loop/file_descriptor.hpp"
+
+namespace adit::spool {
+
+/// A file's bytes in memory: on a tmpfs they are the file itself. They live as long as their owner; without
+/// one, and with errno, the file cannot be read or is empty.
+struct MappedFile {
+  std::shared_ptr<const void> owner;
+  std::span<const std::uint8_t> bytes;
+};
+MappedFile map_file(const std::string& path);
+
+/// A file of this user alone that is not whole yet: it has another name until name(), and is gone with this
+/// object if it never comes to that. For one thread at a time. What fails gives the errno, else 0.
+class PartFile {
+ public:
+  /// Files that end so, and that nobody writes, were left by a kill.
+  static constexpr std::string_view kEnding = ".part";
+
+  /// `path`: what it is named after meanwhile, but as no other is.
+  explicit PartFile(const std::string& path);
+  ~PartFile();
+  PartFile(const PartFile&) = delete;
+  PartFile& operator=(const PartFile&) = delete;
+
+  std::size_t size() const { return size_; }
+  /// Writes at the end, and frees each chunk as it is written. Where it fails, `bytes` is what is left to
+  /// write.
+  int append(icd::ChunkedBytes& bytes);
+  int append(std::string_view bytes);
+  /// Overwrites what stands at the beginning.
+  int begin_with(std::string_view bytes);
+  MappedFile map() const;
+  /// From now on it is that file, in the place of the one before.
+  int name(const std::string& path);
+
+ private:
+  int write(std::span<const std::uint8_t> bytes, std::size_t place);
+
+  std::string part_;
+  loop::FileDescriptor fd_;
+  int error_ = 0;  // of its making
+  std::size_t size_ = 0;
+  bool named_ = false;
+};
+
+}  // namespace adit::spool

@@ -1,0 +1,124 @@
+#include "spool/spool.hpp"
+
+#include <sys/statvfs.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <cerrno>
+#include <cstring>
+#include <filesystem>
+#include <optional>
+#include <string_view>
+
+#include "host/log.hpp"
+#include "host/numbered_name.hpp"
+#include "icd/sentence.hpp"
+#include "spool/kept_message.hpp"
+
+namespace adit::spool {
+namespace {
+
+namespace fs = std::filesystem;
+
+constexpr std::string_view kState = "/state.cbor", kMarkers = "/markers.cbor";
+/// What a map's file takes beside the map's data, in whole pages.
+constexpr std::uint64_t kBeside = 8192;
+constexpr std::string_view kMap = "map-", kEnding = ".cbor";
+
+std::unexpected<icd::Refusal> not_kept(const std::string& why) {
+  return std::unexpected(icd::Refusal{icd::Status::ServiceUnavailable,
+                                      "this map cannot be kept: " + why + "; send it again later"});
+}
+
+/// What is left in the folder's file system for this user and for maps; an error is its errno.
+std::expected<std::uint64_t, int> room_in(const std::string& folder, std::uint64_t left_to_others) {
+  struct statvfs room{};
+  if (::statvfs(folder.c_str(), &room) != 0) return std::unexpected(errno);
+  const std::uint64_t left = std::uint64_t{room.f_bavail} * room.f_frsize;
+  return left - std::min({left, left_to_others, std::uint64_t{room.f_blocks} * room.f_frsize / 4});
+}
+
+/// The message in one file, which is set aside where it cannot be understood.
+template <class Message>
+std::optional<Message> message_in(const std::string& path,
+                                  icd::Checked<Message> (*read)(const std::string&)) {
+  std::error_code error;
+  if (!fs::exists(path, error)) return std::nullopt;
+  icd::Checked<Message> message = read(path);
+  if (message) return std::move(*message);
+  host::log(host::Level::Error, "a kept message could not be read and is set aside",
+            {{"file", path}, {"why", message.error().sentence}});
+  fs::rename(path, path + ".damaged", error);
+  return std::nullopt;
+}
+
+}  // namespace
+
+Spool::Spool(std::string folder, std::uint64_t left_to_others)
+    : folder_(std::move(folder)), left_to_others_(left_to_others) {
+  make_folder_of_ours(folder_);
+}
+
+std::string Spool::trouble() const {
+  if (::access(folder_.c_str(), W_OK | X_OK) == 0) return "";
+  return folder_ + ": " + std::strerror(errno);
+}
+
+std::string Spool::file_of(std::uint64_t number) const {
+  return folder_ + "/" + host::numbered_name(kMap, number, kEnding);
+}
+
+bool Spool::has_room(std::uint64_t bytes) const {
+  const auto room = room_in(folder_, left_to_others_);
+  return room && *room >= bytes;
+}
+
+std::shared_ptr<MapFile> Spool::begin() const {
+  return std::make_shared<MapFile>(folder_ + "/arriving");
+}
+
+icd::Checked<icd::MapUpdate> Spool::keep(std::uint64_t number, icd::MapUpdate map, std::uint64_t spare,
+                                         std::shared_ptr<MapFile> begun) const {
+  if (::access(folder_.c_str(), F_OK) != 0) make_folder_of_ours(folder_);
+  const std::string path = file_of(number);
+  if (!begun || !begun->begins(map.data.bytes)) begun = std::make_shared<MapFile>(path);
+  const auto room = room_in(folder_, left_to_others_);
+  if (!room) return not_kept(folder_ + ": " + std::strerror(room.error()));
+  if (*room < map.data.bytes.size() - begun->stored_bytes() + kBeside + spare) {
+    return not_kept(icd::sentence("the room for maps that wait is full (", *room >> 20, " MiB are left)"));
+  }
+  if (const int error = begun->finish(map, path); error != 0)
+    return not_kept(path + ": " + std::strerror(error));
+  return map;
+}
+
+void Spool::forget(std::uint64_t number) const {
+  std::error_code error;
+  fs::remove(file_of(number), error);
+}
+
+void Spool::forget_state() const {
+  std::error_code error;
+  fs::remove(folder_ + std::string(kState), error);
+}
+
+void Spool::forget_markers() const {
+  std::error_code error;
+  fs::remove(folder_ + std::string(kMarkers), error);
+}
+
+Spool::Kept Spool::read() const {
+  remove_parts(folder_);
+  Kept kept;
+  for (const std::uint64_t number : host::numbers_in(folder_, kMap, kEnding)) {
+    auto map = message_in(file_of(number), read_map);
+    if (!map) continue;
+    MapFile::show(*map, file_of(number));
+    kept.maps.emplace_back(number, std::move(*map));
+  }
+  kept.state = message_in(folder_ + std::string(kState), read_state).value_or(icd::StateUpdate{});
+  kept.markers = message_in(folder_ + std::string(kMarkers), read_markers).value_or(icd::MarkersUpdate{});
+  return kept;
+}
+
+}  // namespace adit::spool

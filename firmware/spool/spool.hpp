@@ -1,0 +1,61 @@
+#pragma once
+
+#include <cstdint>
+#include <memory>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "icd/map_update.hpp"
+#include "icd/markers_update.hpp"
+#include "icd/state_update.hpp"
+#include "spool/map_file.hpp"
+
+namespace adit::spool {
+
+/// Keeps what waits across an end of the service, also a sudden one (not across an end of the box: the folder
+/// is in memory), each message in the form that goes upstream, a map with its data first. A message is there
+/// whole or not at all. What cannot be written is logged, and waits in memory alone.
+class Spool {
+ public:
+  struct Kept {
+    std::vector<std::pair<std::uint64_t, icd::MapUpdate>> maps;  // by number
+    icd::StateUpdate state;
+    icd::MarkersUpdate markers;
+  };
+
+  /// Makes the folder, for this user alone. Of the room that its file system has, so much is left to others,
+  /// but no more than a quarter of all: what is to be written there beside maps must not be refused for them.
+  explicit Spool(std::string folder, std::uint64_t left_to_others = 0);
+
+  /// For a map whose data is put into its file as it arrives. For the writer, which is to have the last of
+  /// it, too.
+  std::shared_ptr<MapFile> begin() const;
+  /// Whether there is room for so much.
+  bool has_room(std::uint64_t bytes) const;
+  /// Keeps a map until forget(), and gives it back with its data in the file, each chunk freed as it is
+  /// written; in `begun`, where its data begins with what was stored there. Refused with 503, and no file
+  /// left, where there is no room for it and `spare` bytes more, or the folder cannot be written. Once it
+  /// returns, the map outlives any death of the process. For the writer.
+  icd::Checked<icd::MapUpdate> keep(std::uint64_t number, icd::MapUpdate map, std::uint64_t spare,
+                                    std::shared_ptr<MapFile> begun = nullptr) const;
+  /// For the writer. The data lives on for as long as somebody has it.
+  void forget(std::uint64_t number) const;
+  /// Why no map could be kept, or "".
+  std::string trouble() const;
+
+  /// Forgets the state, or the markers, that a release before the journal kept.
+  void forget_state() const;
+  void forget_markers() const;
+
+  /// All that is kept. What cannot be understood is logged and set aside.
+  Kept read() const;
+
+ private:
+  std::string file_of(std::uint64_t number) const;
+
+  std::string folder_;
+  std::uint64_t left_to_others_;
+};
+
+}  // namespace adit::spool

@@ -1,0 +1,65 @@
+#include "forward/as_forwarded.hpp"
+
+#include <gmock/gmock.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "icd/sentence.hpp"
+
+namespace adit::forward {
+namespace {
+
+using testing::IsEmpty;
+using testing::SizeIs;
+
+icd::StateUpdate state(const std::string& robot, double x, icd::Quaternion orientation = {}) {
+  return {.header = {}, .poses = {{*icd::RobotName::parse(robot), {{x, 2, 3}, orientation}}}};
+}
+
+TEST(AsForwarded, HasEachRobotWhereItWasLast) {
+  AsForwarded all;
+  all.forwarded(state("b", 1), 100);
+  all.forwarded(state("a", 5, {0, 0, 2, 2}), 101);
+  all.forwarded(state("b", 4), 102);
+  const auto robots = all.robots();
+  ASSERT_THAT(robots, SizeIs(2));
+  EXPECT_EQ(robots[0].name, "a");
+  EXPECT_NEAR(robots[0].heading, M_PI / 2, 1e-9) << "a quaternion need not be of length one";
+  EXPECT_EQ(robots[1].position.x, 4);
+  EXPECT_EQ(robots[1].at, 102);
+  EXPECT_THAT(all.tracks().since(0), SizeIs(2));
+}
+
+TEST(AsForwarded, ShowsARunFromItsBeginning) {
+  AsForwarded all;
+  all.forwarded(state("a", 1), 100);
+  all.forwarded(icd::MarkersUpdate{{icd::Marker{}}}, 100);
+  all.begin_run(200);
+  EXPECT_THAT(all.robots(), SizeIs(1)) << "the robots are still where they are";
+  EXPECT_THAT(all.tracks().since(0), IsEmpty());
+  EXPECT_THAT(all.markers().news(0).markers, IsEmpty());
+}
+
+TEST(AsForwarded, HasRoomForSoManyRobots) {
+  AsForwarded all;
+  for (int i = 0; i < 150; ++i) all.forwarded(state(icd::sentence("r", i), i), 100);
+  EXPECT_THAT(all.robots(), SizeIs(AsForwarded::kMostRobots));
+  EXPECT_THAT(all.tracks().since(0), SizeIs(AsForwarded::kMostRobots));
+}
+
+TEST(AsForwarded, ForgetsTheRobotThatWasSilentForLongestForOneMore) {
+  AsForwarded all;
+  all.forwarded(state("ours", 1), 99);
+  for (int i = 0; i < 300; ++i) {
+    all.forwarded(state(icd::sentence("r", i), i), 100 + i);
+    if (i % 50 == 0) all.forwarded(state("ours", i), 100 + i);
+  }
+  const auto robots = all.robots();
+  EXPECT_THAT(robots, SizeIs(AsForwarded::kMostRobots));
+  EXPECT_EQ(std::ranges::count(robots, "ours", &page::RobotRow::name), 1);
+  EXPECT_EQ(std::ranges::count(robots, "r0", &page::RobotRow::name), 0);
+}
+
+}  // namespace
+}  // namespace adit::forward

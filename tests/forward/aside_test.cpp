@@ -1,0 +1,219 @@
+#include "forward/aside.hpp"
+
+#include <gtest/gtest.h>
+
+#include <chrono>
+#include <filesystem>
+#include <future>
+#include <memory>
+#include <optional>
+
+#include "host/folder.hpp"
+#include "loop/turn_until.hpp"
+#include "spool/messages.hpp"
+
+namespace adit::forward {
+namespace {
+
+namespace fs = std::filesystem;
+using spool::markers;
+using spool::state;
+
+/// What an origin has been told.
+struct Told {
+  int kept = 0, not_kept = 0, let_go = 0;
+};
+
+class AsideTest : public testing::Test {
+ protected:
+  AsideTest() { anew(); }
+  ~AsideTest() override { let_go(); }
+
+  /// As another service finds what this one left, which has ended as it should.
+  void anew() {
+    let_go();
+    aside_.reset();
+    writer_ = std::make_unique<loop::Writer>(loop_);  // the one before finishes first
+    aside_ = std::make_unique<Aside>(loop_, *writer_, folder_.path());
+    aside_->restore();
+  }
+  /// What another service would find if this one were killed now.
+  std::vector<page::AsideRow> found_after_a_kill() {
+    loop::Writer writer(loop_);
+    Aside other(loop_, writer, folder_.path());
+    other.restore();
+    return other.rows();
+  }
+
+  void add(lanes::Message message, int status = 422, const std::string& why = "no", std::size_t bytes = 100) {
+    aside_->add(std::move(message), status, why, bytes,
+                {.told = [this](bool kept) { ++(kept ? told_.kept : told_.not_kept); },
+                 .let_go = [this] { ++told_.let_go; }});
+  }
+
+  /// The writer does nothing until let_go().
+  void hold() {
+    held_.emplace();
+    writer_->submit([until = held_->get_future().share()] { until.wait(); }, [] {});
+  }
+  void let_go() {
+    if (held_) held_->set_value();
+    held_.reset();
+  }
+  /// The writer has done all that it was given, and its word has come.
+  void settle() { ASSERT_TRUE(loop::turn_until_idle(loop_, *writer_)); }
+
+  host::Folder folder_;
+  loop::Loop loop_;
+  Told told_;
+  std::optional<std::promise<void>> held_;
+  std::unique_ptr<loop::Writer> writer_;
+  std::unique_ptr<Aside> aside_;
+};
+
+icd::MapUpdate grid(double x = 0, std::uint32_t side = 2) {
+  icd::OccupancyGrid grid;
+  grid.resolution = 0.1;
+  grid.width = grid.height = side;
+  grid.origin.position = {x, 0, 0};
+  const std::vector<std::uint8_t> cells(std::size_t{side} * side, 7);
+  return {
+      icd::RobotName::parse("r1"), grid, {icd::ChunkedBytes{cells}, icd::Compression::None, cells.size()}};
+}
+
+TEST_F(AsideTest, OutlivesTheServiceWithItsReason) {
+  add(grid(), 422, "no \"such\" robot", 100);
+  add(state(), 500, "it failed", 200);
+  add(markers(), 413, "too long", 300);
+  const auto before = aside_->rows();
+  anew();
+  const auto rows = aside_->rows();
+  ASSERT_EQ(rows.size(), 3);
+  for (std::size_t i = 0; i < rows.size(); ++i) {
+    EXPECT_EQ(rows[i].number, i + 1);
+    EXPECT_EQ(rows[i].kind, before[i].kind);
+    EXPECT_EQ(rows[i].robot, before[i].robot);
+    EXPECT_EQ(rows[i].status, before[i].status);
+    EXPECT_EQ(rows[i].why, before[i].why);
+    EXPECT_EQ(rows[i].bytes, before[i].bytes);
+    EXPECT_NEAR(rows[i].at, before[i].at, 1e-3);
+  }
+  EXPECT_EQ(rows[0].kind, "grid");
+  EXPECT_EQ(rows[1].robot, "r2");
+  const auto map = aside_->to_be_sent(1);
+  ASSERT_TRUE(map);
+  EXPECT_EQ(std::get<icd::MapUpdate>(*map).data.raw_size, 4);
+}
+
+TEST_F(AsideTest, ForgetsWhatIsSentAgainOrDiscarded) {
+  add(grid());
+  add(state(), 500);
+  EXPECT_TRUE(aside_->to_be_sent(1));
+  EXPECT_FALSE(aside_->to_be_sent(1));
+  EXPECT_FALSE(aside_->discard(1));
+  aside_->sent_again(1, true);
+  EXPECT_FALSE(aside_->to_be_sent(1));
+  EXPECT_TRUE(aside_->discard(2));
+  EXPECT_EQ(aside_->discard(2).error(), "nothing of number 2 is set aside");
+  settle();
+  EXPECT_TRUE(fs::is_empty(folder_.path()));
+  anew();
+  EXPECT_TRUE(aside_->rows().empty());
+}
+
+TEST_F(AsideTest, RefusesToSendWhatSomethingNewerSaysAllOf) {
+  add(grid());
+  aside_->taken(grid(0, 5));
+  EXPECT_TRUE(aside_->rows().front().overtaken);
+  const auto sent = aside_->to_be_sent(1);
+  ASSERT_FALSE(sent);
+  EXPECT_NE(sent.error().find("newer"), std::string::npos);
+  anew();
+  EXPECT_TRUE(aside_->rows().front().overtaken) << "over a restart, too";
+  EXPECT_TRUE(aside_->discard(1));
+}
+
+TEST_F(AsideTest, CountsWhatMadePlaceAndWasNotSaidAnew) {
+  for (int i = 0; i < 5; ++i) add(state());
+  EXPECT_EQ(aside_->dropped(), 0) << "the newer state says all of it";
+  for (std::size_t i = 0; i < lanes::SetAside::kMostItems + 3; ++i) {
+    add(grid(static_cast<double>(i)));
+  }
+  EXPECT_EQ(aside_->dropped(), 4);
+}
+
+TEST_F(AsideTest, PassesOverWhatCannotBeRead) {
+  add(grid());
+  add(state());
+  settle();
+  folder_.put("1.json", "{");
+  folder_.put("9.json", "{}");
+  folder_.put("x.json.part", "{}");
+  anew();
+  ASSERT_EQ(aside_->rows().size(), 1);
+  EXPECT_EQ(aside_->rows().front().number, 2);
+}
+
+TEST_F(AsideTest, LetsTheOriginGoOnceItIsKeptAndNotBefore) {
+  hold();
+  add(grid());
+  for (int i = 0; i < 10; ++i) loop_.turn(std::chrono::milliseconds{5});
+  EXPECT_EQ(aside_->rows().size(), 1u) << "it is seen at once";
+  EXPECT_FALSE(aside_->all_kept());
+  EXPECT_EQ(told_.kept + told_.let_go, 0);
+  EXPECT_TRUE(found_after_a_kill().empty()) << "so the origin's is the one to be found";
+  let_go();
+  settle();
+  EXPECT_TRUE(aside_->all_kept());
+  EXPECT_EQ(told_.kept, 1);
+  EXPECT_EQ(told_.let_go, 1);
+  EXPECT_EQ(found_after_a_kill().size(), 1u);
+}
+
+TEST_F(AsideTest, IsFinishedWhenTheServiceStops) {
+  hold();
+  add(grid());
+  anew();
+  EXPECT_EQ(aside_->rows().size(), 1u);
+}
+
+TEST_F(AsideTest, KeepsWhatIsSentAgainUntilItIsKeptElsewhere) {
+  add(grid());
+  settle();
+  ASSERT_TRUE(aside_->to_be_sent(1));
+  EXPECT_TRUE(aside_->rows().empty()) << "nobody sends it twice";
+  settle();
+  EXPECT_EQ(found_after_a_kill().size(), 1u);
+  aside_->sent_again(1, true);
+  settle();
+  EXPECT_TRUE(found_after_a_kill().empty());
+}
+
+TEST_F(AsideTest, TakesBackWhatCouldNotBeSentAgain) {
+  add(grid());
+  settle();
+  ASSERT_TRUE(aside_->to_be_sent(1));
+  aside_->sent_again(1, false);
+  EXPECT_EQ(aside_->rows().size(), 1u);
+  EXPECT_TRUE(aside_->to_be_sent(1));
+}
+
+TEST_F(AsideTest, LetsTheOriginOfWhatCannotBeKeptGoOnlyWhenTheMessageGoes) {
+  folder_.put("in the way", "");
+  aside_ = std::make_unique<Aside>(loop_, *writer_, folder_ / "in the way/aside");
+  add(grid());
+  add(state());
+  settle();
+  EXPECT_EQ(aside_->rows().size(), 2u) << "in memory alone";
+  EXPECT_EQ(told_.not_kept, 2);
+  EXPECT_EQ(told_.let_go, 0);
+  ASSERT_TRUE(aside_->discard(1));
+  EXPECT_EQ(told_.let_go, 1);
+  ASSERT_TRUE(aside_->to_be_sent(2));
+  EXPECT_EQ(told_.let_go, 1);
+  aside_->sent_again(2, true);
+  EXPECT_EQ(told_.let_go, 2);
+}
+
+}  // namespace
+}  // namespace adit::forward

@@ -1,0 +1,164 @@
+#include "forward/map_picture.hpp"
+
+#include <gtest/gtest.h>
+
+#include <utility>
+
+#include "codec/gzip.hpp"
+#include "loop/turn_until.hpp"
+
+namespace adit::forward {
+namespace {
+
+using picture::Kind;
+using picture::TileAt;
+
+icd::MapUpdate grid(const char* robot, double x, std::uint32_t width, std::uint8_t value) {
+  icd::OccupancyGrid grid;
+  grid.width = grid.height = width;
+  grid.resolution = 0.25;
+  grid.origin.position = {x, 0, 0};
+  const std::vector<std::uint8_t> cells(std::size_t{width} * width, value);
+  return {
+      icd::RobotName::parse(robot), grid, {icd::ChunkedBytes{cells}, icd::Compression::None, cells.size()}};
+}
+
+/// Points at the frame's origin.
+icd::MapUpdate cloud(const char* robot, std::size_t points) {
+  icd::PointCloud2 cloud;
+  cloud.fields = {{"x", 0, icd::Datatype::Float32, 1},
+                  {"y", 4, icd::Datatype::Float32, 1},
+                  {"z", 8, icd::Datatype::Float32, 1}};
+  cloud.point_step = 12;
+  const std::vector<std::uint8_t> bytes(points * 12);
+  return {
+      icd::RobotName::parse(robot), cloud, {icd::ChunkedBytes{bytes}, icd::Compression::None, bytes.size()}};
+}
+
+class MapPictureTest : public testing::Test {
+ protected:
+  bool drawn(const char* robot, const TileAt& at, Kind kind = Kind::Grid) const {
+    return picture.mosaic().tile({robot, kind}, at, {}).tile != nullptr;
+  }
+
+  loop::Loop loop;
+  loop::Workers workers{loop, 1};
+  bool packing = false;
+  int changes = 0;
+  MapPicture picture{loop, workers, [this] { return packing; }, [this] { ++changes; }};
+};
+
+TEST_F(MapPictureTest, DrawsEachMapThatWasForwardedAndSaysThatThePictureChanged) {
+  picture.forwarded(grid("r1", 0, 4, 0));
+  picture.forwarded(grid("r2", 64, 4, 0));
+  picture.forwarded(cloud("r1", 3));
+  ASSERT_TRUE(loop::turn_until(loop, [&] { return drawn("r1", {0, 0, 0}, Kind::Cloud); }))
+      << "the last that came";
+  EXPECT_TRUE(drawn("r1", {0, 0, 0}));
+  EXPECT_TRUE(drawn("r2", {0, 1, 0}));
+  EXPECT_EQ(changes, 3);
+  picture.forwarded(grid("r1", 0, 4, 0));
+  picture.forwarded(grid("r3", 0, 4, 0));
+  ASSERT_TRUE(loop::turn_until(loop, [&] { return drawn("r3", {0, 0, 0}); }));
+  EXPECT_EQ(changes, 4) << "the same grid again changed nothing";
+}
+
+TEST_F(MapPictureTest, IsHandedOnWithWhatItHasDrawnAndCountsWhatItHasNot) {
+  picture.forwarded(grid("r1", 0, 4, 0));
+  ASSERT_TRUE(loop::turn_until(loop, [&] { return drawn("r1", {0, 0, 0}); }));
+  picture.forwarded(grid("r2", 0, 4, 0));
+  const picture::Mosaic handed = picture.hand_over();
+  const auto layers = handed.layers();
+  ASSERT_EQ(layers.size(), 2u);
+  EXPECT_EQ(layers[0].missed, 0u);
+  EXPECT_FALSE(layers[0].tiles.empty());
+  EXPECT_EQ(layers[1].missed, 1u);
+}
+
+TEST_F(MapPictureTest, WaitsWhileAMapIsPackedThoughNotForEver) {
+  packing = true;
+  const auto began = loop.now();
+  picture.forwarded(grid("r1", 0, 4, 0));
+  loop::turn_for(loop, std::chrono::milliseconds{200});
+  EXPECT_FALSE(drawn("r1", {0, 0, 0}));
+  ASSERT_TRUE(loop::turn_until(loop, [&] { return drawn("r1", {0, 0, 0}); }));
+  EXPECT_GE(loop.now() - began, MapPicture::kPatience);
+  picture.forwarded(grid("r2", 0, 4, 0));
+  loop::turn_for(loop, std::chrono::milliseconds{100});
+  EXPECT_FALSE(drawn("r2", {0, 0, 0}));
+  packing = false;
+  EXPECT_TRUE(loop::turn_until(loop, [&] { return drawn("r2", {0, 0, 0}); }));
+}
+
+TEST_F(MapPictureTest, DoesNotDrawAGridThatTheNextOneCoversWhileItWaits) {
+  packing = true;
+  picture.forwarded(grid("r1", 0, 4, 0));
+  picture.forwarded(grid("r2", 64, 4, 0));
+  picture.forwarded(grid("r1", 0, 5, 100));
+  packing = false;
+  ASSERT_TRUE(loop::turn_until(loop, [&] { return drawn("r1", {0, 0, 0}); }));
+  EXPECT_TRUE(drawn("r2", {0, 1, 0}));
+  EXPECT_EQ(changes, 2);
+}
+
+TEST_F(MapPictureTest, DrawsEveryCloudAndEveryGridThatIsNotCovered) {
+  packing = true;
+  picture.forwarded(grid("r1", 0, 4, 0));
+  picture.forwarded(grid("r1", 64, 4, 0));
+  picture.forwarded(cloud("r1", 3));
+  picture.forwarded(cloud("r2", 3));
+  packing = false;
+  ASSERT_TRUE(loop::turn_until(loop, [&] { return drawn("r2", {0, 0, 0}, Kind::Cloud); }));
+  EXPECT_TRUE(drawn("r1", {0, 0, 0}));
+  EXPECT_TRUE(drawn("r1", {0, 1, 0}));
+  EXPECT_TRUE(drawn("r1", {0, 0, 0}, Kind::Cloud));
+}
+
+TEST_F(MapPictureTest, CountsWhatItCouldNotKeepUntilItsTurn) {
+  packing = true;
+  auto large = cloud("r1", 0);
+  const icd::ChunkedBytes piece{std::vector<std::uint8_t>(60'000)};
+  while (large.data.bytes.size() < MapPicture::kMostWaiting / 2) large.data.bytes.append(piece);
+  large.data.raw_size = large.data.bytes.size();
+  for (int i = 0; i < 3; ++i) picture.forwarded(large);
+  const auto layers = picture.mosaic().layers();
+  ASSERT_EQ(layers.size(), 1U);
+  EXPECT_EQ(layers[0].missed, 2U) << "two of them do not fit together";
+  packing = false;
+  EXPECT_TRUE(loop::turn_until(loop, [&] { return drawn("r1", {0, 0, 0}, Kind::Cloud); }))
+      << "the last one is drawn";
+}
+
+TEST_F(MapPictureTest, CountsAMapThatCannotBeDrawn) {
+  auto damaged = grid("r1", 0, 4, 0);
+  damaged.data.compression = icd::Compression::Gzip;
+  picture.forwarded(damaged);
+  ASSERT_TRUE(loop::turn_until(loop, [&] { return !picture.mosaic().layers().empty(); }));
+  EXPECT_EQ(picture.mosaic().layers()[0].missed, 1U);
+  picture.forwarded(grid("r1", 0, 4, 0));
+  EXPECT_TRUE(loop::turn_until(loop, [&] { return drawn("r1", {0, 0, 0}); })) << "and goes on";
+}
+
+TEST_F(MapPictureTest, ANewRunBeginsBlankWhateverWaitsOrIsBeingDrawn) {
+  picture.forwarded(grid("r1", 0, 4, 0));
+  ASSERT_TRUE(loop::turn_until(loop, [&] { return drawn("r1", {0, 0, 0}); }));
+  packing = true;
+  picture.forwarded(grid("r2", 0, 4, 0));
+  changes = 0;
+  picture.begin_run();
+  packing = false;
+  EXPECT_EQ(changes, 1);
+  EXPECT_FALSE(drawn("r1", {0, 0, 0}));
+  loop::turn_for(loop, std::chrono::milliseconds{100});
+  EXPECT_FALSE(drawn("r2", {0, 0, 0}));
+
+  picture.forwarded(grid("r3", 0, 1000, 0));
+  loop.turn(std::chrono::milliseconds{5});  // handed to the worker
+  picture.begin_run();
+  picture.forwarded(grid("r4", 0, 4, 0));
+  ASSERT_TRUE(loop::turn_until(loop, [&] { return drawn("r4", {0, 0, 0}); }));
+  EXPECT_FALSE(drawn("r3", {0, 0, 0}));
+}
+
+}  // namespace
+}  // namespace adit::forward

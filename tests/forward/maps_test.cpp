@@ -1,0 +1,198 @@
+#include "forward/maps.hpp"
+
+#include <gtest/gtest.h>
+
+#include <filesystem>
+#include <future>
+#include <vector>
+
+#include "host/folder.hpp"
+#include "loop/turn_until.hpp"
+#include "spool/messages.hpp"
+
+namespace adit::forward {
+namespace {
+
+namespace fs = std::filesystem;
+using spool::cloud;
+
+icd::MapUpdate grid(const char* robot, std::uint32_t width, std::size_t bytes) {
+  icd::OccupancyGrid grid;
+  grid.header.stamp = 1;
+  grid.width = grid.height = width;
+  grid.resolution = 0.25;
+  return {icd::RobotName::parse(robot),
+          grid,
+          {icd::ChunkedBytes{std::vector<std::uint8_t>(bytes, 1)}, icd::Compression::Gzip,
+           std::size_t{width} * width}};
+}
+
+/// Without a token nothing leaves: what is taken waits.
+class MapsTest : public testing::Test {
+ protected:
+  MapsTest() { settings_.queues.map_bytes = 100'000; }
+
+  /// What is said of it, once it is said; `files_`: how many maps were kept at that moment. `behind`: what
+  /// the writer does right after it has kept the map.
+  icd::Checked<void> take(icd::MapUpdate update, std::function<void()> behind = [] {}) {
+    std::optional<icd::Checked<void>> said;
+    maps_.take(std::move(update), 10, nullptr, [&](icd::Checked<void> taken) {
+      files_ = files();
+      said = std::move(taken);
+    });
+    writer_.submit(std::move(behind), [] {});
+    EXPECT_TRUE(loop::turn_until(loop_, [&] { return said.has_value(); }));
+    return said.value_or(std::unexpected(icd::Refusal{icd::Status::Ok, "nothing was said"}));
+  }
+  std::size_t files() const {
+    std::size_t count = 0;
+    std::error_code none;  // a test may have taken the folder away
+    for (const auto& entry : fs::directory_iterator(folder_.path(), none)) {
+      count += entry.path().extension() == ".cbor" ? 1 : 0;
+    }
+    return count;
+  }
+  bool comes_to(std::size_t count) {
+    return loop::turn_until(loop_, [&] { return files() == count; });
+  }
+  static icd::Status status(const icd::Checked<void>& said) {
+    return said ? icd::Status::Ok : said.error().status;
+  }
+
+  host::Folder folder_, journal_folder_, aside_folder_;
+  loop::Loop loop_;
+  settings::Settings settings_;
+  std::mt19937_64 random_{1};
+  Record record_{[] {}};
+  spool::Spool spool_{folder_.path()};
+  loop::Workers workers_{loop_, 1};
+  loop::Writer writer_{loop_};
+  journal::Journal journal_{loop_, journal_folder_.path()};
+  Aside aside_{loop_, writer_, aside_folder_.path()};
+  Maps maps_{loop_,
+             workers_,
+             writer_,
+             spool_,
+             settings_,
+             std::nullopt,
+             record_,
+             aside_,
+             random_,
+             journal_,
+             [](const icd::MapUpdate&) {}};
+  std::size_t files_ = 0;
+};
+
+TEST_F(MapsTest, AreAnsweredOnceTheirFileIsThere) {
+  EXPECT_EQ(status(take(grid("r1", 10, 500))), icd::Status::Ok);
+  EXPECT_EQ(files_, 1u);
+}
+
+TEST_F(MapsTest, AreNotAnsweredWhileTheWriterIsAtSomethingElse) {
+  std::promise<void> let_go;
+  writer_.submit([until = let_go.get_future().share()] { until.wait(); }, [] {});
+  bool said = false;
+  maps_.take(grid("r1", 10, 500), 10, nullptr,
+             [&](const icd::Checked<void>& taken) { said = taken.has_value(); });
+  for (int i = 0; i < 10; ++i) loop_.turn(std::chrono::milliseconds{5});
+  EXPECT_FALSE(said);
+  EXPECT_FALSE(maps_.all_kept());
+  EXPECT_EQ(maps_.queued_bytes(), 0u) << "it does not wait to be sent before it is kept";
+  let_go.set_value();
+  EXPECT_TRUE(loop::turn_until(loop_, [&] { return said; }));
+  EXPECT_TRUE(maps_.all_kept());
+}
+
+TEST_F(MapsTest, ThatWereReplacedAreForgottenOnceTheNewerOneIsKept) {
+  std::promise<void> let_go;
+  EXPECT_EQ(status(take(grid("r1", 10, 500))), icd::Status::Ok);
+  const auto waits = [until = let_go.get_future().share()] { until.wait(); };
+  EXPECT_EQ(status(take(grid("r1", 20, 700), waits)), icd::Status::Ok);
+  EXPECT_EQ(files_, 2u) << "the older one goes only after";
+  let_go.set_value();
+  EXPECT_TRUE(comes_to(1));
+}
+
+/// The next life takes the one of the higher number for the newer one.
+TEST_F(MapsTest, ThatAreSentAgainByHandStayBehindANewerOneThatCoversThem) {
+  EXPECT_EQ(status(take(grid("r1", 20, 700))), icd::Status::Ok);
+  std::optional<bool> kept;
+  maps_.send_again(grid("r1", 10, 500), [&](bool is_kept) { kept = is_kept; });
+  EXPECT_EQ(kept, true) << "the newer one says all of it";
+  EXPECT_TRUE(comes_to(1));
+  EXPECT_TRUE(maps_.all_kept());
+}
+
+TEST_F(MapsTest, ThatReplaceWhatWaitsAreTakenByAFullQueueAndOthersAreNot) {
+  EXPECT_EQ(status(take(grid("r1", 10, 50'000))), icd::Status::Ok);
+  EXPECT_EQ(status(take(grid("r2", 10, 40'000))), icd::Status::Ok);
+  EXPECT_EQ(status(take(grid("r3", 10, 20'000))), icd::Status::TooManyRequests);
+  EXPECT_EQ(status(take(grid("r1", 20, 60'000))), icd::Status::Ok);
+  EXPECT_TRUE(comes_to(2));
+}
+
+TEST_F(MapsTest, AreBoundedInNumberHoweverSmallTheyAre) {
+  settings_.queues.map_bytes = std::size_t{1} << 30;
+  int taken = 0, full = 0;
+  for (std::size_t i = 0; i <= Maps::kMostMaps; ++i) {
+    icd::MapUpdate map = cloud(1);
+    maps_.take(std::move(map), 10, nullptr, [&](const icd::Checked<void>& said) {
+      if (said) ++taken;
+      if (status(said) == icd::Status::TooManyRequests) ++full;
+    });
+    loop_.turn(std::chrono::milliseconds{0});
+  }
+  EXPECT_TRUE(loop::turn_until(loop_, [&] { return maps_.all_kept(); }, std::chrono::seconds{60}));
+  EXPECT_EQ(taken, static_cast<int>(Maps::kMostMaps));
+  EXPECT_EQ(full, 1);
+}
+
+TEST_F(MapsTest, ThatCannotBeKeptAreRefusedAndItIsSaidWhy) {
+  fs::remove_all(folder_.path());
+  const std::string path = folder_.path();
+  {
+    std::ofstream(path) << "in the way";
+  }
+  const auto said = take(grid("r1", 10, 500));
+  ASSERT_FALSE(said);
+  EXPECT_EQ(said.error().status, icd::Status::ServiceUnavailable);
+  EXPECT_EQ(maps_.trouble(), said.error().sentence);
+  fs::remove(path);
+  EXPECT_EQ(status(take(grid("r1", 10, 500))), icd::Status::Ok) << "the folder is made again";
+  EXPECT_EQ(maps_.trouble(), "");
+}
+
+TEST_F(MapsTest, ThatAreSentAgainByHandAreKeptBeforeWhoSetThemAsideIsTold) {
+  std::promise<void> let_go;
+  writer_.submit([until = let_go.get_future().share()] { until.wait(); }, [] {});
+  std::optional<bool> kept;
+  std::size_t files_then = 0;
+  maps_.send_again(grid("r1", 10, 500), [&](bool well) {
+    kept = well;
+    files_then = files();
+  });
+  for (int i = 0; i < 10; ++i) loop_.turn(std::chrono::milliseconds{5});
+  EXPECT_FALSE(kept);
+  EXPECT_FALSE(maps_.all_kept());
+  let_go.set_value();
+  EXPECT_TRUE(loop::turn_until(loop_, [&] { return kept.has_value(); }));
+  EXPECT_EQ(kept, true);
+  EXPECT_EQ(files_then, 1u);
+  EXPECT_GT(maps_.queued_bytes(), 0u);
+}
+
+TEST_F(MapsTest, ThatCannotBeKeptStayWhereTheyWereSetAside) {
+  fs::remove_all(folder_.path());
+  {
+    std::ofstream(folder_.path()) << "in the way";
+  }
+  std::optional<bool> kept;
+  maps_.send_again(grid("r1", 10, 500), [&](bool well) { kept = well; });
+  EXPECT_TRUE(loop::turn_until(loop_, [&] { return kept.has_value(); }));
+  EXPECT_EQ(kept, false);
+  EXPECT_EQ(maps_.queued_bytes(), 0u);
+  fs::remove(folder_.path());
+}
+
+}  // namespace
+}  // namespace adit::forward

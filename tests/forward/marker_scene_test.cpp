@@ -1,0 +1,162 @@
+#include "forward/marker_scene.hpp"
+
+#include <gmock/gmock.h>
+
+#include <random>
+
+namespace adit::forward {
+namespace {
+
+using icd::MarkerAction;
+using testing::ElementsAre;
+using testing::IsEmpty;
+using testing::Pair;
+using testing::SizeIs;
+
+icd::Marker marker(const std::string& ns, std::int32_t id, double x = 0,
+                   MarkerAction action = MarkerAction::Add) {
+  icd::Marker marker;
+  marker.ns = ns;
+  marker.id = id;
+  marker.action = action;
+  marker.pose.position.x = x;
+  return marker;
+}
+
+std::vector<std::string> names(const page::MarkerNews& news) {
+  std::vector<std::string> names;
+  for (const auto& row : news.markers) names.push_back(row.marker.ns + std::to_string(row.marker.id));
+  return names;
+}
+
+TEST(MarkerScene, HasEachMarkerAsItWasLastForwarded) {
+  MarkerScene scene;
+  scene.forwarded({{marker("a", 1, 5), marker("a", 2), marker("b", 1)}}, 100);
+  scene.forwarded({{marker("a", 1, 7)}}, 101);
+  const auto news = scene.news(0);
+  EXPECT_TRUE(news.whole);
+  EXPECT_THAT(names(news), ElementsAre("a2", "b1", "a1"));
+  EXPECT_EQ(news.markers[2].marker.position.x, 7);
+  EXPECT_EQ(news.markers[2].at, 101);
+}
+
+TEST(MarkerScene, TellsWhatChangedSinceAVersionAndNothingElse) {
+  MarkerScene scene;
+  scene.forwarded({{marker("a", 1), marker("a", 2)}}, 100);
+  const auto before = scene.version();
+  EXPECT_THAT(scene.news(before).markers, IsEmpty());
+  scene.forwarded({{marker("a", 2, 9), marker("a", 1, 0, MarkerAction::Delete)}}, 101);
+  const auto news = scene.news(before);
+  EXPECT_FALSE(news.whole);
+  EXPECT_THAT(names(news), ElementsAre("a2"));
+  EXPECT_THAT(news.gone, ElementsAre(Pair("a", 1)));
+  EXPECT_EQ(news.version, scene.version());
+}
+
+TEST(MarkerScene, TellsAllAfterAllWereDeletedAndToWhoeverComesFromElsewhere) {
+  MarkerScene scene;
+  scene.forwarded({{marker("a", 1), marker("a", 2)}}, 100);
+  const auto before = scene.version();
+  scene.forwarded({{marker("", 0, 0, MarkerAction::DeleteAll), marker("c", 1)}}, 101);
+  EXPECT_TRUE(scene.news(before).whole);
+  EXPECT_THAT(names(scene.news(before)), ElementsAre("c1"));
+  EXPECT_TRUE(scene.news(scene.version() + 5000).whole) << "a version of a box that was started anew";
+}
+
+TEST(MarkerScene, DeletingWhatIsNotThereChangesNothing) {
+  MarkerScene scene;
+  scene.forwarded({{marker("a", 1)}}, 100);
+  const auto before = scene.version();
+  scene.forwarded({{marker("a", 2, 0, MarkerAction::Delete)}}, 101);
+  EXPECT_THAT(scene.news(before).gone, IsEmpty());
+  EXPECT_THAT(names(scene.news(0)), ElementsAre("a1"));
+}
+
+TEST(MarkerScene, IsBlankInANewRun) {
+  MarkerScene scene;
+  scene.forwarded({{marker("a", 1)}}, 100);
+  const auto before = scene.version();
+  scene.wipe(200);
+  EXPECT_GT(scene.version(), before);
+  EXPECT_TRUE(scene.news(before).whole);
+  EXPECT_THAT(scene.news(before).markers, IsEmpty());
+}
+
+TEST(MarkerScene, LeavesOutTheOldestOfTooManyAndSaysHowMany) {
+  MarkerScene scene;
+  for (std::int32_t id = 0; id < 2003; ++id) scene.forwarded({{marker("a", id)}}, 100 + id);
+  const auto news = scene.news(0);
+  EXPECT_THAT(news.markers, SizeIs(MarkerScene::kMost));
+  EXPECT_EQ(news.left_out, 3u);
+  EXPECT_EQ(news.markers.front().marker.id, 3);
+}
+
+TEST(MarkerScene, LeavesOutTheOldestWhereTheyAreTooLarge) {
+  MarkerScene scene;
+  icd::Marker line = marker("a", 0);
+  line.type = static_cast<std::int32_t>(icd::MarkerType::LineStrip);
+  for (int i = 0; i < 5000; ++i) line.points.push_back({i * 1.0, 0, 0});
+  for (; line.id < 100; ++line.id) {
+    scene.forwarded({{line}}, 100 + line.id);
+  }
+  const auto news = scene.news(0);
+  std::size_t bytes = 0;
+  for (const auto& row : news.markers) bytes += row.marker.size();
+  EXPECT_LE(bytes, MarkerScene::kMostBytes);
+  EXPECT_GT(news.markers.size(), 50u);
+  EXPECT_EQ(news.left_out, 100 - news.markers.size());
+  EXPECT_EQ(news.markers.back().marker.id, 99);
+  const auto first = news.markers.front().marker.id;
+  for (std::int32_t id = first; id < 100; ++id) scene.forwarded({{marker("a", id)}}, 300);
+  line.id = 0;
+  scene.forwarded({{line}}, 301);
+  EXPECT_THAT(scene.news(0).markers, SizeIs(101 - first)) << "what has become small has made room";
+}
+
+TEST(MarkerScene, ForgetsTheLongNamesOfThoseThatAreGone) {
+  MarkerScene scene;
+  const auto begun = (scene.forwarded({{marker("b", 0)}}, 99), scene.version());
+  for (char name = 'a'; name < 'z'; ++name) {
+    const std::string longest(200'000, name);
+    scene.forwarded({{marker(longest, 1), marker(longest, 1, 0, MarkerAction::Delete)}}, 100);
+  }
+  EXPECT_TRUE(scene.news(begun).whole) << "what went since then is not told any more";
+  EXPECT_THAT(names(scene.news(0)), ElementsAre("b0"));
+}
+
+/// Whoever follows the news has the scene at each moment, however it changed in between.
+TEST(MarkerScene, GivesNewsThatAddUpToTheWhole) {
+  std::mt19937 random(7);
+  const auto below = [&random](std::uint32_t most) {
+    return std::uniform_int_distribution<std::uint32_t>(0, most - 1)(random);
+  };
+  MarkerScene scene;
+  using Shown = std::map<std::pair<std::string, std::int32_t>, double>;
+  Shown followed;
+  std::uint64_t known = 0;
+  for (int step = 0; step < 4000; ++step) {
+    for (std::uint32_t i = below(40); i > 0; --i) {
+      const auto action = below(2000) == 0 ? MarkerAction::DeleteAll
+                          : below(3) == 0  ? MarkerAction::Delete
+                                           : MarkerAction::Add;
+      scene.forwarded({{marker("n", static_cast<std::int32_t>(below(6000)), step, action)}}, step / 10.0);
+    }
+    if (below(20) != 0) continue;
+    const auto news = scene.news(known);
+    if (news.whole) followed.clear();
+    for (const auto& key : news.gone) followed.erase(key);
+    for (const auto& row : news.markers) {
+      followed[{row.marker.ns, row.marker.id}] = row.marker.position.x;
+    }
+    known = news.version;
+    Shown whole;
+    for (const auto& row : scene.news(0).markers) {
+      whole[{row.marker.ns, row.marker.id}] = row.marker.position.x;
+    }
+    ASSERT_EQ(followed, whole) << "after step " << step;
+    ASSERT_LE(whole.size(), MarkerScene::kMost);
+  }
+}
+
+}  // namespace
+}  // namespace adit::forward

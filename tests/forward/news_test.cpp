@@ -1,0 +1,207 @@
+#include "forward/news.hpp"
+
+#include <gmock/gmock.h>
+
+#include <atomic>
+#include <memory>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "../uplink/peer.hpp"
+#include "host/folder.hpp"
+#include "loop/turn_until.hpp"
+#include "scarce_memory.hpp"
+
+namespace adit::forward {
+namespace {
+
+using testing::ElementsAre;
+using testing::IsEmpty;
+using testing::UnorderedElementsAre;
+
+icd::StateUpdate pose(const char* robot, double stamp) {
+  return {.header = {stamp}, .poses = {{*icd::RobotName::parse(robot), {}}}};
+}
+
+icd::Marker marker(const char* ns, const char* text, icd::MarkerAction action = icd::MarkerAction::Add) {
+  icd::Marker made;
+  made.header.stamp = 5;
+  made.ns = ns;
+  made.text = text;
+  made.action = action;
+  return made;
+}
+
+std::vector<std::string> texts(const icd::MarkersUpdate& update) {
+  std::vector<std::string> all;
+  for (const icd::Marker& each : update.markers) all.push_back(each.text);
+  return all;
+}
+
+const icd::Marker kWipe = marker("", "wipe", icd::MarkerAction::DeleteAll);
+
+/// What a gateway has of it, for one life of it.
+struct Life {
+  Life(loop::Loop& loop, const std::string& folder, const settings::Settings& settings,
+       std::optional<icd::BearerToken> token)
+      : writer(loop),
+        journal(loop, folder + "/journal"),
+        aside(loop, writer, folder + "/aside"),
+        news(loop, settings, std::move(token), record, aside, random, journal, as_forwarded,
+             [this] { anew = true; }) {
+    const journal::Carried carried = journal.read();
+    journal.begin({.boot = "b", .at = loop.now(), .stamp = loop.stamp_now()});
+    news.carry_on(carried);
+    news.start();
+  }
+
+  std::mt19937_64 random{1};
+  Record record{[] {}};
+  loop::Writer writer;
+  journal::Journal journal;
+  Aside aside;
+  AsForwarded as_forwarded;
+  bool anew = false;  // another life is to follow
+  News news;
+};
+
+class NewsTest : public testing::Test {
+ protected:
+  NewsTest() { settings_.command_post.rates.markers_hz = settings_.command_post.rates.state_hz = 50; }
+
+  /// Nothing leaves: what is taken waits.
+  std::unique_ptr<Life> life_without_a_token() {
+    return std::make_unique<Life>(loop_, folder_.path(), settings_, std::nullopt);
+  }
+  std::unique_ptr<Life> life_before(const uplink::Peer& post) {
+    settings_.command_post.mapping = {post.endpoint().address, post.endpoint().port};
+    return std::make_unique<Life>(loop_, folder_.path(), settings_, icd::BearerToken::parse("a-token"));
+  }
+  /// After failures it is tried again at once.
+  template <class Done>
+  bool comes(Life& life, Done done) {
+    return loop::turn_until(loop_, [&] {
+      if (done()) return true;
+      life.news.link_is_back();
+      return false;
+    });
+  }
+  journal::Carried left() const { return journal::Folder(folder_.path() + "/journal").read(); }
+
+  host::Folder folder_;
+  loop::Loop loop_;
+  settings::Settings settings_;
+};
+
+/// Takes all but what deletes all, or nothing.
+struct Post {
+  explicit Post(bool takes_others)
+      : peer([this, takes_others](uplink::Wire& wire) {
+          for (auto request = wire.read_request(); !request.empty(); request = wire.read_request()) {
+            ++requests;
+            const bool takes = takes_others && request.find("wipe") == std::string::npos;
+            if (!wire.write(uplink::answer(takes ? "200 OK" : "500 Oops", "null"))) return;
+          }
+        }) {}
+  std::atomic<int> requests = 0;
+  uplink::ListeningPeer peer;
+};
+
+TEST_F(NewsTest, LeavesNoPoseThatWasTakenToTheNextLife) {
+  Post post(true);
+  auto life = life_before(post.peer);
+  ASSERT_TRUE(life->news.take(pose("r1", 1), 10));
+  ASSERT_TRUE(comes(*life, [&] { return !life->as_forwarded.robots().empty(); }));
+  life = life_without_a_token();
+  EXPECT_EQ(life->news.waiting(Kind::State), 0u);
+  ASSERT_TRUE(life->news.take(pose("r2", 2), 10));
+  ASSERT_EQ(left().robots().size(), 1u);
+  EXPECT_EQ(left().robots().begin()->first.text(), "r2");
+}
+
+TEST_F(NewsTest, SendsNoMarkerAgainOfWhichSomethingNewerWaits) {
+  const auto life = life_without_a_token();
+  ASSERT_TRUE(life->news.take(icd::MarkersUpdate{{marker("a", "newer"), marker("b", "other")}}, 10));
+  EXPECT_TRUE(life->news.send_again(icd::MarkersUpdate{{marker("a", "older")}}));
+  EXPECT_THAT(texts(left().markers()), ElementsAre("newer", "other"));
+  EXPECT_EQ(life->news.waiting(Kind::Markers), 2u);
+}
+
+TEST_F(NewsTest, SendsNoMarkerAgainThatWasDeletedSince) {
+  const auto life = life_without_a_token();
+  ASSERT_TRUE(life->news.take(icd::MarkersUpdate{{kWipe}}, 10));
+  EXPECT_TRUE(life->news.send_again(icd::MarkersUpdate{{marker("a", "older")}}));
+  EXPECT_THAT(texts(left().markers()), ElementsAre("wipe"));
+  EXPECT_EQ(life->news.waiting(Kind::Markers), 1u);
+}
+
+TEST_F(NewsTest, DeletesNothingThatCameSinceWhereItDeletesAllOnceMore) {
+  const auto life = life_without_a_token();
+  ASSERT_TRUE(life->news.take(icd::MarkersUpdate{{marker("", "newer")}}, 10));
+  EXPECT_TRUE(life->news.send_again(icd::MarkersUpdate{{kWipe}}));
+  EXPECT_THAT(texts(left().markers()), ElementsAre("wipe", "newer"));
+  EXPECT_EQ(life->news.waiting(Kind::Markers), 2u);
+}
+
+TEST_F(NewsTest, SendsAMarkerAgainThatNothingSaysMoreThan) {
+  const auto life = life_without_a_token();
+  ASSERT_TRUE(life->news.take(icd::MarkersUpdate{{marker("b", "other")}}, 10));
+  EXPECT_TRUE(life->news.send_again(icd::MarkersUpdate{{marker("a", "older")}}));
+  EXPECT_THAT(texts(left().markers()), UnorderedElementsAre("older", "other"));
+}
+
+TEST_F(NewsTest, SetsAsideADeleteAllThatAloneFails) {
+  Post post(true);
+  const auto life = life_before(post.peer);
+  ASSERT_TRUE(life->news.take(icd::MarkersUpdate{{kWipe, marker("a", "1"), marker("b", "2")}}, 10));
+  ASSERT_TRUE(comes(*life, [&] { return life->news.waiting(Kind::Markers) == 0; }));
+  ASSERT_TRUE(comes(*life, [&] { return !life->aside.rows().empty() && left().markers().markers.empty(); }));
+  EXPECT_EQ(life->aside.rows().size(), 1u);
+  EXPECT_EQ(life->as_forwarded.markers().news(0).markers.size(), 2u);
+}
+
+TEST_F(NewsTest, HoldsADeleteAllWhereEverythingFails) {
+  Post post(false);
+  const auto life = life_before(post.peer);
+  const icd::MarkersUpdate all{{kWipe, marker("a", "1"), marker("b", "2")}};
+  ASSERT_TRUE(life->news.take(all, 10));
+  ASSERT_TRUE(comes(*life, [&] { return post.requests >= 20; }));
+  EXPECT_THAT(life->aside.rows(), IsEmpty());
+  EXPECT_THAT(texts(left().markers()), ElementsAre("wipe", "1", "2"));
+}
+
+/// From the moment it is taken on, each allocation in turn, and all from each on.
+TEST_F(NewsTest, LosesNothingWhereMemoryRunsOutOnTheWay) {
+  Post post(true);
+  auto life = life_before(post.peer);
+  for (const std::size_t count : {std::size_t{1}, ScarceMemory::kAll}) {
+    for (std::size_t n = 0;; ++n) {
+      SCOPED_TRACE(n);
+      const int before = post.requests;
+      ASSERT_TRUE(life->news.take(pose("r1", static_cast<double>(n)), 10));
+      ASSERT_TRUE(
+          life->news.take(icd::MarkersUpdate{.markers = {marker("path", std::to_string(n).c_str())}}, 10));
+      ScarceMemory scarce(n, count);
+      const auto all_there = [&] {
+        return life->news.waiting(Kind::State) + life->news.waiting(Kind::Markers) == 0 &&
+               !life->news.channel().busy();
+      };
+      while (!all_there() && ScarceMemory::failed() == 0) loop_.turn(std::chrono::milliseconds{2});
+      const std::size_t failed = scarce.end();
+      ASSERT_TRUE(loop::turn_until(loop_, [&] {
+        if (std::exchange(life->anew, false)) {
+          life.reset();
+          life = life_before(post.peer);
+        }
+        life->news.link_is_back();
+        return all_there() && left().robots().empty() && left().markers().markers.empty();
+      }));
+      EXPECT_GE(post.requests, before + 2);
+      if (failed == 0) break;
+    }
+  }
+}
+
+}  // namespace
+}  // namespace adit::forward

@@ -1,0 +1,95 @@
+#include "forward/record.hpp"
+
+#include <gtest/gtest.h>
+
+namespace adit::forward {
+namespace {
+
+const Traffic kCloudOfR1{Kind::Cloud, "r1"};
+
+TEST(Record, TellsWhatBecameOfEachRobotsMaps) {
+  int changes = 0;
+  Record record([&] { ++changes; });
+  record.accepted(kCloudOfR1, 1000, 10.0);
+  record.accepted(kCloudOfR1, 1100, 11.0);
+  record.forwarded(kCloudOfR1, 2, 900, 200, 12.0);
+  record.accepted({Kind::Grid, "r1"}, 5, 13.0);
+  record.not_taken({Kind::Grid, "r1"}, NotTaken::Throttled, 429, "too frequent");
+
+  const auto rows = record.activities();
+  ASSERT_EQ(rows.size(), 2u);
+  EXPECT_EQ(rows[0].kind, "grid");
+  EXPECT_EQ(rows[0].throttled, 1u);
+  EXPECT_EQ(rows[0].last_sentence, "too frequent");
+  EXPECT_FALSE(rows[0].last_forwarded);
+  EXPECT_EQ(rows[1].kind, "cloud");
+  EXPECT_EQ(rows[1].accepted, 2u);
+  EXPECT_EQ(rows[1].forwarded, 1u);
+  EXPECT_EQ(rows[1].merged, 1u);
+  EXPECT_EQ(rows[1].last_forwarded, 12.0);
+  EXPECT_EQ(rows[1].bytes_received, 1100u);
+  EXPECT_EQ(rows[1].bytes_sent, 900u);
+  EXPECT_EQ(rows[1].last_status, 200);
+  EXPECT_EQ(changes, 5);
+}
+
+TEST(Record, ForgetsAnOldSentenceOnceAMessageIsTaken) {
+  Record record([] {});
+  record.not_taken(kCloudOfR1, NotTaken::Failed, 0, "connection reset");
+  record.forwarded(kCloudOfR1, 1, 10, 200, 1.0);
+  EXPECT_EQ(record.activities().front().last_sentence, "");
+  EXPECT_EQ(record.activities().front().failed, 1u);
+}
+
+TEST(Record, CountsRobotsBeyondTheLastRowTogether) {
+  Record record([] {});
+  for (std::size_t i = 0; i < 2 * Record::kMostRows; ++i)
+    record.accepted({Kind::State, std::to_string(i)}, 1, 0.0);
+  const auto rows = record.activities();
+  EXPECT_LE(rows.size(), Record::kMostRows + 1);
+  std::uint64_t accepted = 0;
+  for (const auto& row : rows) accepted += row.accepted;
+  EXPECT_EQ(accepted, 2 * Record::kMostRows);
+}
+
+TEST(Record, KeepsTheLastRefusalsNewestFirst) {
+  Record record([] {});
+  for (std::size_t i = 0; i < Record::kMostRefusals + 5; ++i) {
+    record.refused(icd::Uri::MapUpdate, {"10.0.0.5", 3},
+                   {icd::Status::UnprocessableEntity, std::to_string(i)}, double(i));
+  }
+  const auto rows = record.refusals();
+  ASSERT_EQ(rows.size(), Record::kMostRefusals);
+  EXPECT_EQ(rows.front().sentence, std::to_string(Record::kMostRefusals + 4));
+  EXPECT_EQ(rows.front().uri, "/map/update");
+  EXPECT_EQ(rows.front().sender, "10.0.0.5");
+  EXPECT_EQ(rows.front().status, 422);
+}
+
+TEST(Record, CountsWhatWasEverRefusedByUriAndStatus) {
+  Record record([] {});
+  for (std::size_t i = 0; i < Record::kMostRefusals + 5; ++i) {
+    record.refused(icd::Uri::MapUpdate, {"10.0.0.5", 3}, {icd::Status::UnprocessableEntity, "why"}, 0);
+  }
+  record.refused(icd::Uri::StateUpdate, {"10.0.0.5", 3}, {icd::Status::Unauthorized, "why"}, 0);
+  std::map<std::pair<std::string, int>, std::uint64_t> counts;
+  for (const auto& row : record.refused_counts()) counts[{row.uri, row.status}] = row.count;
+  EXPECT_EQ(counts.size(), 2);
+  EXPECT_EQ((counts[{"/map/update", 422}]), Record::kMostRefusals + 5);
+  EXPECT_EQ((counts[{"/state/update", 401}]), 1);
+}
+
+TEST(Record, CountsRefusedPartsEach) {
+  Record record([] {});
+  for (const std::size_t parts : {3u, 12u}) {
+    record.refused(icd::Uri::StateUpdate, {"10.0.0.5", 3},
+                   {icd::Status::UnprocessableEntity, "poses[1].name: missing", parts}, 0);
+  }
+  ASSERT_EQ(record.refused_counts().size(), 1u);
+  EXPECT_EQ(record.refused_counts()[0].count, 2u);
+  EXPECT_EQ(record.refused_counts()[0].parts, 15u);
+  EXPECT_EQ(record.refusals()[0].parts, 12u);
+}
+
+}  // namespace
+}  // namespace adit::forward

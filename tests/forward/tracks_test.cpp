@@ -1,0 +1,64 @@
+#include "forward/tracks.hpp"
+
+#include <gmock/gmock.h>
+
+namespace adit::forward {
+namespace {
+
+using testing::IsEmpty;
+using testing::SizeIs;
+
+page::TrackPose pose(double at, double x, double heading = 0) {
+  return {.at = at, .position = {x, 0, 0}, .heading = heading};
+}
+
+std::vector<double> times(const Tracks& tracks, double since = 0) {
+  std::vector<double> times;
+  for (const auto& track : tracks.since(since)) {
+    for (const auto& each : track.poses) times.push_back(each.at);
+  }
+  return times;
+}
+
+TEST(Tracks, KeepAPoseASecondOfARobotThatMoves) {
+  Tracks tracks;
+  for (int i = 0; i <= 50; ++i) tracks.forwarded("r", pose(100 + i * 0.1, i));
+  EXPECT_THAT(times(tracks), SizeIs(6));
+  EXPECT_EQ(times(tracks).front(), 100);
+}
+
+TEST(Tracks, KeepOneEachTenSecondsOfARobotThatStandsStill) {
+  Tracks tracks;
+  for (int i = 0; i <= 60; ++i) tracks.forwarded("r", pose(100 + i, 0));
+  EXPECT_THAT(times(tracks), SizeIs(7));
+}
+
+TEST(Tracks, KnowARobotThatTurnsOnTheSpotAsMoving) {
+  Tracks tracks;
+  for (int i = 0; i <= 10; ++i) tracks.forwarded("r", pose(100 + i, 0, i));
+  EXPECT_THAT(times(tracks), SizeIs(11));
+}
+
+TEST(Tracks, GiveWhatCameAfterATime) {
+  Tracks tracks;
+  for (int i = 0; i < 5; ++i) tracks.forwarded("r", pose(100 + i, i));
+  tracks.forwarded("old", pose(90, 0));
+  EXPECT_EQ(times(tracks, 102), (std::vector<double>{103, 104}));
+  EXPECT_THAT(tracks.since(102), SizeIs(1)) << "a robot without any is left out";
+  EXPECT_THAT(tracks.since(200), IsEmpty());
+  tracks.wipe();
+  EXPECT_THAT(tracks.since(0), IsEmpty());
+}
+
+TEST(Tracks, AreBoundedAndStillBeginWhereTheRobotDid) {
+  Tracks tracks;
+  for (int i = 0; i < 30000; ++i) tracks.forwarded("r", pose(100 + i, i));
+  const auto kept = times(tracks);
+  EXPECT_LE(kept.size(), Tracks::kMostPoses);
+  EXPECT_GE(kept.size(), Tracks::kMostPoses / 2);
+  EXPECT_EQ(kept.front(), 100);
+  EXPECT_GT(kept.back(), 100 + 30000 - 20);
+}
+
+}  // namespace
+}  // namespace adit::forward

@@ -1,0 +1,56 @@
+#include "forward/upstream_answer.hpp"
+
+#include <gtest/gtest.h>
+
+namespace adit::forward {
+namespace {
+
+uplink::Answered answered(int status, std::string type, std::string body) {
+  return {.status = status,
+          .content_type = std::move(type),
+          .body = std::move(body),
+          .retry_after = std::nullopt};
+}
+
+TEST(ClientAnswer, IsTheCommandPostsOwnBytesWhereTheseAreJson) {
+  const std::string body = R"({"id": 7,  "report_status":"scored","score_change":1})";
+  const intake::Answer answer = client_answer(answered(201, "application/json", body));
+  EXPECT_EQ(answer.status, icd::Status::Created);
+  EXPECT_EQ(answer.body, body);
+  EXPECT_EQ(answer.content_type, "application/json");
+}
+
+TEST(ClientAnswer, KeepsAnObjectWithDetailAsItCame) {
+  const intake::Answer answer =
+      client_answer(answered(401, "application/json", R"({"detail": "Invalid token."})"));
+  EXPECT_EQ(answer.status, icd::Status::Unauthorized);
+  EXPECT_EQ(answer.body, R"({"detail": "Invalid token."})");
+}
+
+struct NotJson {
+  int status;
+  std::string body;
+  int told;
+  std::string sentence;
+};
+
+TEST(ClientAnswer, IsAJsonStringWhateverElseCame) {
+  for (const NotJson& row : {
+           NotJson{404, "<h1>Not Found</h1>", 404,
+                   "\"the Command Post answered 404 with something other than JSON\""},
+           NotJson{500, "<html>oops</html>", 500,
+                   "\"the Command Post answered 500 with something other than JSON\""},
+           NotJson{501, "", 501, "\"the Command Post answered 501 with an empty body\""},
+           NotJson{201, "recorded", 502, "\"the Command Post answered 201 with something other than JSON\""},
+           NotJson{200, "{\"a\":1} trailing", 502,
+                   "\"the Command Post answered 200 with something other than JSON\""},
+       }) {
+    const intake::Answer answer = client_answer(answered(row.status, "text/html", row.body));
+    EXPECT_EQ(static_cast<int>(answer.status), row.told) << row.body;
+    EXPECT_EQ(answer.body, row.sentence);
+    EXPECT_EQ(answer.content_type, "application/json");
+  }
+}
+
+}  // namespace
+}  // namespace adit::forward

@@ -1,0 +1,84 @@
+#include "spool/kept_message.hpp"
+
+#include <gtest/gtest.h>
+#include <sys/stat.h>
+
+#include <filesystem>
+
+#include "codec/write.hpp"
+#include "host/folder.hpp"
+#include "host/service.hpp"
+#include "spool/messages.hpp"
+#include "spool/no_file_above.hpp"
+
+namespace adit::spool {
+namespace {
+
+namespace fs = std::filesystem;
+
+icd::ChunkedBytes bytes(const std::string& text) {
+  return icd::ChunkedBytes({reinterpret_cast<const std::uint8_t*>(text.data()), text.size()});
+}
+
+class KeptMessageTest : public testing::Test {
+ protected:
+  host::Folder folder_;
+  const std::string file_ = folder_ / "message.cbor";
+};
+
+TEST_F(KeptMessageTest, IsReadBackAsItWasWritten) {
+  const icd::MapUpdate map = cloud(40'000);
+  ASSERT_TRUE(write_whole(file_, codec::write_map_update(map)));
+  EXPECT_EQ(read_map(file_), map);
+  ASSERT_TRUE(write_whole(file_, codec::write_state_update(state())));
+  EXPECT_EQ(read_state(file_), state());
+  ASSERT_TRUE(write_whole(file_, codec::write_markers_update(markers())));
+  EXPECT_EQ(read_markers(file_), markers());
+  struct stat status{};
+  ASSERT_EQ(::stat(file_.c_str(), &status), 0);
+  EXPECT_EQ(status.st_mode & 07777, 0600u);
+}
+
+TEST_F(KeptMessageTest, ThatHasNoRoomLeavesTheFileOfThatNameAsItWasAndNoOther) {
+  ASSERT_TRUE(write_whole(file_, bytes("older")));
+  const NoFileAbove small(4096);
+  const auto written = write_whole(file_, codec::write_map_update(cloud(1000)));
+  ASSERT_FALSE(written);
+  EXPECT_TRUE(written.error().starts_with(file_ + ": ")) << written.error();
+  EXPECT_EQ(host::read_file(file_), "older");
+  EXPECT_EQ(host::names_in(folder_.path())->size(), 1u);
+}
+
+TEST_F(KeptMessageTest, ThatCannotHaveItsNameLeavesNoFile) {
+  fs::create_directory(file_);
+  EXPECT_FALSE(write_whole(file_, bytes("newer")));
+  EXPECT_EQ(host::names_in(folder_.path())->size(), 1u);
+}
+
+TEST_F(KeptMessageTest, ThatWasNotWrittenToItsEndIsRemovedAndNothingElse) {
+  folder_.put("message.cbor.part", "half");
+  folder_.put("message.cbor", "whole");
+  remove_parts(folder_.path());
+  EXPECT_EQ(host::names_in(folder_.path()), std::vector<std::string>{"message.cbor"});
+  remove_parts(folder_ / "none");
+}
+
+TEST_F(KeptMessageTest, IsRefusedWhereItIsCutShortOrOfAnotherKind) {
+  const std::string whole = codec::write_map_update(cloud(10)).to_string();
+  ASSERT_TRUE(write_whole(file_, bytes(whole.substr(0, whole.size() - 1))));
+  EXPECT_FALSE(read_map(file_));
+  ASSERT_TRUE(write_whole(file_, bytes(whole)));
+  EXPECT_FALSE(read_state(file_));
+  EXPECT_FALSE(read_markers(file_));
+  EXPECT_FALSE(read_map(folder_ / "none"));
+}
+
+TEST_F(KeptMessageTest, StandsInAFolderThatNobodyElseCanRead) {
+  make_folder_of_ours(folder_ / "a/b");
+  struct stat status{};
+  ASSERT_EQ(::stat((folder_ / "a/b").c_str(), &status), 0);
+  EXPECT_EQ(status.st_mode & 07777, 0700u);
+}
+
+}  // namespace
+}  // namespace adit::spool

@@ -1,0 +1,172 @@
+#include "spool/spool.hpp"
+
+#include <gtest/gtest.h>
+#include <sys/stat.h>
+#include <sys/statvfs.h>
+
+#include <filesystem>
+#include <fstream>
+
+#include "codec/body_decoder.hpp"
+#include "codec/read.hpp"
+#include "codec/write.hpp"
+#include "spool/messages.hpp"
+
+namespace adit::spool {
+namespace {
+
+namespace fs = std::filesystem;
+
+class SpoolTest : public testing::Test {
+ protected:
+  SpoolTest() {
+    std::string pattern = fs::temp_directory_path() / "adit-spool-XXXXXX";
+    folder_ = ::mkdtemp(pattern.data());
+  }
+  ~SpoolTest() override { fs::remove_all(folder_); }
+
+  fs::path folder_;
+};
+
+icd::MapUpdate grid(const char* name, std::uint8_t value) {
+  const std::string body =
+      std::string(R"({"type":"OccupancyGrid","name":")") + name +
+      R"(","msg":{"header":{"stamp":5},"info":{"resolution":0.1,"width":2,"height":2,"origin":)"
+      R"({"position":{"x":1,"y":2,"z":3},"orientation":{"x":0,"y":0,"z":0,"w":1}}},"data":[0,100,-1,)" +
+      std::to_string(value) + "]}}";
+  auto document =
+      codec::decode({codec::Format::Json, codec::ContentCoding::Identity}, codec::Split::MapData, body);
+  return codec::read_map_update(std::move(*document), {}).value();
+}
+
+TEST_F(SpoolTest, GivesBackWhatItKeptByNumberUntilItIsForgotten) {
+  const Spool spool(folder_ / "waiting");
+  for (const std::uint64_t number : {9, 100'000'000, 10})
+    ASSERT_TRUE(spool.keep(number, grid("r1", static_cast<std::uint8_t>(number % 100)), 0));
+  spool.forget(10);
+  spool.forget(11);
+  const auto kept = Spool(folder_ / "waiting").read();
+  ASSERT_EQ(kept.maps.size(), 2u);
+  EXPECT_EQ(kept.maps[0].first, 9u);
+  EXPECT_EQ(kept.maps[0].second, grid("r1", 9));
+  EXPECT_EQ(kept.maps[1].first, 100'000'000u);
+}
+
+TEST_F(SpoolTest, ReadsTheStateAndMarkersOfAReleaseBeforeTheJournalUntilTheyAreForgotten) {
+  const Spool spool(folder_);
+  std::ofstream(folder_ / "state.cbor", std::ios::binary) << codec::write_state_update(state()).to_string();
+  std::ofstream(folder_ / "markers.cbor", std::ios::binary)
+      << codec::write_markers_update(markers()).to_string();
+  EXPECT_EQ(spool.read().state, state());
+  EXPECT_EQ(spool.read().markers, markers());
+  spool.forget_state();
+  EXPECT_TRUE(spool.read().state.poses.empty());
+  EXPECT_EQ(spool.read().markers, markers()) << "each by itself";
+  spool.forget_markers();
+  EXPECT_TRUE(spool.read().markers.markers.empty());
+  EXPECT_TRUE(fs::is_empty(folder_));
+}
+
+TEST_F(SpoolTest, ReadsTheMapsOfAReleaseThatWroteTheirDataLast) {
+  const Spool spool(folder_);
+  std::ofstream(folder_ / "map-00000004.cbor", std::ios::binary)
+      << codec::write_map_update(cloud(1000)).to_string();
+  const auto kept = spool.read();
+  ASSERT_EQ(kept.maps.size(), 1u);
+  EXPECT_EQ(kept.maps[0].second, cloud(1000));
+}
+
+TEST_F(SpoolTest, IsReadableByNobodyElse) {
+  const Spool spool(folder_ / "waiting");
+  struct stat status{};
+  ASSERT_EQ(::stat((folder_ / "waiting").c_str(), &status), 0);
+  EXPECT_EQ(status.st_mode & 0777, 0700u);
+}
+
+TEST_F(SpoolTest, SetsAsideWhatItCannotReadAndGoesOn) {
+  const Spool spool(folder_);
+  ASSERT_TRUE(spool.keep(1, grid("r1", 1), 0));
+  ASSERT_TRUE(spool.keep(2, grid("r2", 2), 0));
+  std::ofstream(folder_ / "map-00000001.cbor") << "not a map";
+  const auto kept = spool.read();
+  ASSERT_EQ(kept.maps.size(), 1u);
+  EXPECT_EQ(kept.maps[0].second.name->text(), "r2");
+  EXPECT_TRUE(fs::exists(folder_ / "map-00000001.cbor.damaged"));
+}
+
+TEST_F(SpoolTest, TakesNothingForAMapThatWasNotWrittenToItsEnd) {
+  const Spool spool(folder_);
+  std::ofstream(folder_ / "map-00000003.cbor.part") << "half";
+  std::ofstream(folder_ / "map-x.cbor") << "no number";
+  EXPECT_TRUE(spool.read().maps.empty());
+}
+
+TEST_F(SpoolTest, GivesAMapBackWithItsDataInTheFileWhichLivesOnWhenItIsForgotten) {
+  const Spool spool(folder_);
+  const icd::MapUpdate whole = cloud(40'000);
+  const auto kept = spool.keep(7, whole, 0);
+  ASSERT_TRUE(kept) << kept.error().sentence;
+  EXPECT_EQ(*kept, whole);
+  EXPECT_NE(kept->data.bytes.chunks()[0]->data(), whole.data.bytes.chunks()[0]->data());
+  EXPECT_EQ(kept->data.bytes.chunks()[0].owner(), kept->data.bytes.chunks()[1].owner()) << "one mapping";
+  const auto again = Spool(folder_).read();
+  ASSERT_EQ(again.maps.size(), 1u);
+  EXPECT_EQ(again.maps[0].second, whole);
+  EXPECT_EQ(again.maps[0].second.data.bytes.chunks()[0].owner(),
+            again.maps[0].second.data.bytes.chunks()[1].owner())
+      << "in the file again, and not beside it";
+  spool.forget(7);
+  EXPECT_TRUE(fs::is_empty(folder_));
+  EXPECT_EQ(*kept, whole);
+}
+
+TEST_F(SpoolTest, KeepsACloudWithoutPoints) {
+  const Spool spool(folder_);
+  const auto kept = spool.keep(1, cloud(0), 0);
+  ASSERT_TRUE(kept);
+  EXPECT_EQ(*kept, cloud(0));
+}
+
+TEST_F(SpoolTest, RefusesAMapForWhichThereIsNoRoomAndLeavesNoFile) {
+  const Spool spool(folder_);
+  const auto kept = spool.keep(1, cloud(1000), std::uint64_t{1} << 62);
+  ASSERT_FALSE(kept);
+  EXPECT_EQ(kept.error().status, icd::Status::ServiceUnavailable);
+  EXPECT_NE(kept.error().sentence.find("room"), std::string::npos) << kept.error().sentence;
+  EXPECT_TRUE(fs::is_empty(folder_));
+}
+
+TEST_F(SpoolTest, LeavesRoomForWhatOthersWriteBesideMaps) {
+  struct statvfs room{};
+  ASSERT_EQ(::statvfs(folder_.c_str(), &room), 0);
+  const std::uint64_t left = room.f_bavail * room.f_frsize, quarter = room.f_blocks * room.f_frsize / 4;
+  const std::uint64_t all_but_half_of_theirs = left - std::min(left, quarter) / 2;
+  EXPECT_TRUE(Spool(folder_).has_room(all_but_half_of_theirs));
+  EXPECT_TRUE(Spool(folder_).keep(1, cloud(10), all_but_half_of_theirs));
+  const Spool polite(folder_, std::uint64_t{1} << 62);
+  EXPECT_FALSE(polite.has_room(all_but_half_of_theirs));
+  EXPECT_FALSE(polite.keep(2, cloud(10), all_but_half_of_theirs));
+  if (left > quarter + quarter / 4) {
+    EXPECT_TRUE(polite.keep(3, cloud(10), 0)) << "a quarter, and no more";
+  }
+}
+
+TEST_F(SpoolTest, RemovesTheFileOfAMapThatWasNotWrittenToItsEnd) {
+  std::ofstream(folder_ / "map-00000003.cbor.part") << "half";
+  Spool(folder_).read();
+  EXPECT_TRUE(fs::is_empty(folder_));
+}
+
+TEST_F(SpoolTest, RefusesEveryMapWhereItsFolderCannotBeWritten) {
+  std::ofstream(folder_ / "file") << "";
+  const Spool spool(folder_ / "file" / "waiting");
+  EXPECT_NE(spool.trouble(), "");
+  const auto kept = spool.keep(1, grid("r1", 1), 0);
+  ASSERT_FALSE(kept);
+  EXPECT_EQ(kept.error().status, icd::Status::ServiceUnavailable);
+  EXPECT_TRUE(spool.read().maps.empty());
+  EXPECT_EQ(Spool(folder_ / "waiting").trouble(), "");
+}
+
+}  // namespace
+}  // namespace adit::spool

@@ -19,6 +19,11 @@ void mix(std::uint64_t& hash, std::string_view text) {
   for (const char letter : text) hash = (hash ^ static_cast<unsigned char>(letter)) * 0x100000001B3u;
 }
 
+bool is_of_the_story(const Event& event) {
+  if (event.kind == Kind::Said) return !event.text.starts_with("info");
+  return event.what != "/api/status" || event.kind == Kind::Fault || event.actor == Actor::Team;
+}
+
 }  // namespace
 
 void History::note(Event event) {
@@ -32,7 +37,8 @@ void History::note(Event event) {
     mix(hash_, static_cast<std::uint64_t>(std::llround(event.stamp * 1e6)));
   }
   if (event.kind == Kind::Fault) ++faults_;
-  if (tells) std::puts(line_of(event).c_str());
+  if (tells == Telling::All || (tells == Telling::Story && is_of_the_story(event)))
+    std::puts(line_of(event).c_str());
   events_.push_back(std::move(event));
 }
 

@@ -43,6 +43,14 @@ struct Event {
   std::uint64_t request = 0;  // of a client: which
 };
 
+/// What of a run is told on standard output, as it happens.
+enum class Telling : std::uint8_t {
+  Nothing,
+  Story,  // all but what is of every run: the status that is asked for over and over, what the log says of no
+          // trouble
+  All
+};
+
 /// All that both sides saw, in order.
 class History {
  public:
@@ -51,7 +59,7 @@ class History {
   /// Of all that the events say but their texts.
   std::uint64_t hash() const { return hash_; }
   std::size_t faults() const { return faults_; }
-  bool tells = false;  // each event as it comes, on standard output
+  Telling tells = Telling::Nothing;
 
  private:
   std::vector<Event> events_;

@@ -1,99 +1,139 @@
 // The whole gateway in a simulated world, from seeds.
+#include <sys/wait.h>
+#include <unistd.h>
+
 #include <algorithm>
+#include <array>
+#include <chrono>
 #include <cstdio>
-#include <cstdlib>
 #include <ctime>
-#include <random>
 #include <string>
 
+#include "simulation/options.hpp"
 #include "simulation/run.hpp"
+#include "simulation/shrink.hpp"
+#include "simulation/tally.hpp"
 
+namespace adit::simulation {
 namespace {
 
-struct Options {
-  std::uint64_t seed = std::random_device{}();
-  std::uint64_t runs = 1;
-  double cpu = 0;  // seconds, after which no run begins; 0: no such limit
-  bool log = false;
-  std::string until;  // the check that ends it all where it finds something
-};
-
-int usage() {
-  std::fputs("adit_simulation [--seed N] [--runs N] [--cpu SECONDS] [--until CHECK] [--log]\n", stderr);
-  return 2;
-}
-
-bool read(Options& options, int argc, char** argv) {
-  for (int i = 1; i < argc; ++i) {
-    const std::string word = argv[i];
-    if (word == "--log") {
-      options.log = true;
-      continue;
-    }
-    if (++i == argc) return false;
-    if (word == "--seed") {
-      options.seed = std::strtoull(argv[i], nullptr, 10);
-    } else if (word == "--runs") {
-      options.runs = std::strtoull(argv[i], nullptr, 10);
-    } else if (word == "--until") {
-      options.until = argv[i];
-    } else if (word == "--cpu") {
-      options.cpu = std::strtod(argv[i], nullptr);
-    } else {
-      return false;
-    }
-  }
-  return true;
-}
-
-/// Every hundredth run is played twice.
-bool replays(std::uint64_t seed, std::uint64_t hash) {
-  const std::uint64_t again = adit::simulation::play(seed, false).hash;
-  if (again == hash) return true;
-  std::printf("seed %llu: played twice, it was not the same\n", static_cast<unsigned long long>(seed));
-  return false;
-}
+constexpr int kMostPlays = 400;  // to shrink one
+constexpr std::uint64_t kPlayedTwice = 100;
 
 double cpu_seconds() {
   return static_cast<double>(std::clock()) / CLOCKS_PER_SEC;
 }
 
-}  // namespace
+std::string name_of_check(const std::string& broken) {
+  return broken.substr(0, broken.find(':'));
+}
 
-int main(int argc, char** argv) {
-  Options options;
-  if (!read(options, argc, argv)) return usage();
-  double hours = 0;
-  std::uint64_t events = 0, faults = 0, failed = 0, runs = 0;
-  for (; runs < options.runs; ++runs) {
-    if (options.cpu > 0 && cpu_seconds() > options.cpu) break;
-    const std::uint64_t seed = options.seed + runs;
-    const auto outcome = adit::simulation::play(seed, options.log);
-    hours += outcome.seconds / 3600;
-    events += outcome.steps;
-    faults += outcome.faults;
+std::string replay(std::uint64_t seed, const Omissions& without) {
+  std::string command = "tests/simulation/run --seed " + std::to_string(seed);
+  if (!without.empty()) command += " --without \"" + without.words() + '"';
+  return command + " --log";
+}
+
+/// One of several processes: every `jobs`th seed from its own first on.
+class Job {
+ public:
+  Job(const Options& options, std::uint64_t number) : options_(options), number_(number) {}
+
+  Tally result() {
+    const std::uint64_t jobs = options_.jobs;
+    for (std::uint64_t i = number_; i < options_.runs && has_time() && !found_; i += jobs)
+      one(options_.seed + i);
+    tally_.cpu = cpu_seconds();
+    return tally_;
+  }
+
+ private:
+  bool has_time() const {
+    const std::chrono::duration<double> took = std::chrono::steady_clock::now() - began_;
+    if (options_.hours > 0 && took.count() > options_.hours * 3600) return false;
+    return options_.cpu <= 0 || cpu_seconds() <= options_.cpu;
+  }
+
+  void one(std::uint64_t seed) {
+    const Telling tells = options_.log ? Telling::All : options_.story ? Telling::Story : Telling::Nothing;
+    const Outcome outcome = play({.seed = seed, .without = options_.without, .tells = tells});
+    tally_.add(outcome);
     for (const std::string& broken : outcome.broken) {
       std::printf("seed %llu: %s\n", static_cast<unsigned long long>(seed), broken.c_str());
+      found_ = found_ || broken.starts_with(options_.until + ':');
     }
-    bool good = outcome.broken.empty();
-    if (runs % 100 == 0) good = replays(seed, outcome.hash) && good;
-    if (options.log || !good) {
-      std::printf("seed %llu: faults %s; history %016llx; replay: tests/simulation/run --seed %llu --log\n",
+    const bool same = tally_.runs % kPlayedTwice != 1 || is_the_same_again(seed, outcome.hash);
+    const bool good = outcome.broken.empty() && same;
+    if (!good || tells != Telling::Nothing) {
+      std::printf("seed %llu: faults %s; history %016llx; replay: %s\n",
                   static_cast<unsigned long long>(seed), outcome.drawn.c_str(),
-                  static_cast<unsigned long long>(outcome.hash), static_cast<unsigned long long>(seed));
+                  static_cast<unsigned long long>(outcome.hash), replay(seed, options_.without).c_str());
     }
-    if (!good) ++failed;
-    const auto is_sought = [&](const std::string& broken) { return broken.starts_with(options.until + ":"); };
-    if (std::ranges::any_of(outcome.broken, is_sought)) {
-      ++runs;
-      break;
-    }
+    if (good) return;
+    ++tally_.failed;
+    if (!outcome.broken.empty() && !options_.as_it_is && !shrunk_) tell_shrunk(seed, outcome.broken.front());
+    std::fflush(stdout);
   }
-  std::printf(
-      "%llu runs from seed %llu: %.2f simulated hours, %llu events, %llu faults, %.1f s of CPU, %llu "
-      "failed\n",
-      static_cast<unsigned long long>(runs), static_cast<unsigned long long>(options.seed), hours,
-      static_cast<unsigned long long>(events), static_cast<unsigned long long>(faults), cpu_seconds(),
-      static_cast<unsigned long long>(failed));
-  return failed == 0 ? 0 : 1;
+
+  bool is_the_same_again(std::uint64_t seed, std::uint64_t hash) const {
+    if (play({.seed = seed, .without = options_.without}).hash == hash) return true;
+    std::printf("seed %llu: played twice, it was not the same\n", static_cast<unsigned long long>(seed));
+    return false;
+  }
+
+  /// The first one only: it takes as long as hundreds of runs.
+  void tell_shrunk(std::uint64_t seed, const std::string& broken) {
+    shrunk_ = true;
+    const Omissions without = shrunk(seed, options_.without, name_of_check(broken), kMostPlays);
+    std::printf("\nseed %llu, shrunk:\n", static_cast<unsigned long long>(seed));
+    for (const std::string& each : play({.seed = seed, .without = without, .tells = Telling::Story}).broken)
+      std::printf("%s\n", each.c_str());
+    std::printf("replay: %s\n\n", replay(seed, without).c_str());
+  }
+
+  const Options& options_;
+  const std::uint64_t number_;
+  const std::chrono::steady_clock::time_point began_ = std::chrono::steady_clock::now();
+  Tally tally_;
+  bool found_ = false;  // what --until seeks
+  bool shrunk_ = false;
+};
+
+/// In processes of their own, for there is one world in each.
+bool play_all(const Options& options, Tally& tally) {
+  std::array<int, 2> results{};
+  if (::pipe(results.data()) != 0) return false;
+  for (std::uint64_t number = 0; number < options.jobs; ++number) {
+    if (::fork() != 0) continue;
+    const Tally mine = Job(options, number).result();
+    std::fflush(stdout);
+    _exit(::write(results[1], &mine, sizeof mine) == sizeof mine ? 0 : 1);
+  }
+  bool well = true;
+  int status = 0;
+  while (::wait(&status) > 0) well = well && status == 0;
+  ::close(results[1]);
+  for (Tally each; ::read(results[0], &each, sizeof each) == sizeof each;) tally.add(each);
+  return well;
+}
+
+}  // namespace
+}  // namespace adit::simulation
+
+int main(int argc, char** argv) {
+  using namespace adit::simulation;
+  const auto options = read_options(argc, argv);
+  if (!options) {
+    std::fputs(kUsage, stderr);
+    return 2;
+  }
+  Tally tally;
+  bool well = true;
+  if (options->jobs > 1) {
+    well = play_all(*options, tally);
+  } else {
+    tally = Job(*options, 0).result();
+  }
+  std::printf("%s\n", tally.sentence(options->seed).c_str());
+  return well && tally.failed == 0 ? 0 : 1;
 }

@@ -18,8 +18,9 @@ void plan_ends(World& world, Box& box, double trouble_for) {
   Random random = world.random("ends");
   for (std::uint64_t i = random.chance(0.25) ? 0 : 1 + random.below(4); i > 0; --i) {
     const bool killed = random.chance(0.6);
-    world.after(seconds(random.between(0.5, trouble_for)),
-                [&box, killed] { killed ? box.kill() : box.terminate(); });
+    const auto when = seconds(random.between(0.5, trouble_for));
+    if (world.omits("ends")) continue;
+    world.after(when, [&box, killed] { killed ? box.kill() : box.terminate(); });
   }
 }
 
@@ -31,9 +32,9 @@ std::vector<dispatch::Report> reports_in(const std::string& folder) {
 
 }  // namespace
 
-Outcome play(std::uint64_t seed, bool log) {
-  World world(seed);
-  world.history().tells = log;
+Outcome play(const Plan& plan) {
+  World world(plan.seed, plan.without);
+  world.history().tells = plan.tells;
   Box box(world);
   const double trouble_for = world.random("length").between(10, 60);
   CommandPost post(world, trouble_for);
@@ -49,7 +50,8 @@ Outcome play(std::uint64_t seed, bool log) {
           .steps = world.steps(),
           .faults = world.history().faults(),
           .drawn = post.faults().names(),
-          .broken = all_checks({world.history().events(), reports_in(box.state())})};
+          .broken = all_checks({world.history().events(), reports_in(box.state())}),
+          .deeds = world.deeds()};
 }
 
 }  // namespace adit::simulation

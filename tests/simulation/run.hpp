@@ -5,8 +5,15 @@
 #include <vector>
 
 #include "simulation/history.hpp"
+#include "simulation/omissions.hpp"
 
 namespace adit::simulation {
+
+struct Plan {
+  std::uint64_t seed = 0;
+  Omissions without = {};
+  Telling tells = Telling::Nothing;
+};
 
 struct Outcome {
   std::uint64_t hash = 0;
@@ -15,9 +22,9 @@ struct Outcome {
   std::size_t faults = 0;
   std::string drawn;                // which faults exist
   std::vector<std::string> broken;  // "Once: ..."
+  Deeds deeds;
 };
 
-/// Plays the run of that seed. `log`: each event as it comes.
-Outcome play(std::uint64_t seed, bool log);
+Outcome play(const Plan& plan);
 
 }  // namespace adit::simulation

@@ -11,7 +11,8 @@ World* the_world = nullptr;
 
 }  // namespace
 
-World::World(std::uint64_t seed) : seed_(seed), now_(kBeginning), network_(*this), door_(*this) {
+World::World(std::uint64_t seed, Omissions without)
+    : seed_(seed), without_(std::move(without)), now_(kBeginning), network_(*this), door_(*this) {
   the_world = this;
 }
 
@@ -50,6 +51,10 @@ void World::run_for(Duration duration) {
     }
   }
   now_ = std::max(now_, end);
+}
+
+bool World::omits(const std::string& actor) {
+  return without_.has(actor, ++deeds_[actor]);
 }
 
 void World::note(Event event) {

@@ -13,6 +13,7 @@
 #include "simulation/door.hpp"
 #include "simulation/history.hpp"
 #include "simulation/network.hpp"
+#include "simulation/omissions.hpp"
 #include "simulation/random.hpp"
 
 namespace adit::simulation {
@@ -33,7 +34,7 @@ class World {
  public:
   static constexpr double kEpoch = 1.7e9;  // by the box's clock, when a run begins
 
-  explicit World(std::uint64_t seed);
+  explicit World(std::uint64_t seed, Omissions without = {});
   ~World();
   World(const World&) = delete;
   World& operator=(const World&) = delete;
@@ -53,6 +54,10 @@ class World {
   std::uint64_t steps() const { return steps_; }
   /// Counts the draws of what is random to the box.
   std::uint64_t entropy() { return ++entropy_; }
+
+  /// For each thing that an actor may leave undone, before it does it: whether this one is left out.
+  bool omits(const std::string& actor);
+  const Deeds& deeds() const { return deeds_; }
 
   void note(Event event);
   History& history() { return history_; }
@@ -86,6 +91,8 @@ class World {
   void die();
 
   const std::uint64_t seed_;
+  const Omissions without_;
+  Deeds deeds_;
   Instant now_;
   std::uint64_t order_ = 0, steps_ = 0, entropy_ = 0;
   std::priority_queue<Planned> planned_;

@@ -1,0 +1,75 @@
+#include "simulation/shrink.hpp"
+
+#include <algorithm>
+
+#include "simulation/run.hpp"
+
+namespace adit::simulation {
+namespace {
+
+class Shrinking {
+ public:
+  Shrinking(std::uint64_t seed, Omissions from, std::string check, int most_plays)
+      : seed_(seed), without_(std::move(from)), check_(std::move(check) + ':'), plays_left_(most_plays) {}
+
+  Omissions result() {
+    for (const auto& [actor, deeds] : deeds()) try_without_all(actor);
+    for (bool smaller = true; smaller && plays_left_ > 0;) {
+      smaller = false;
+      for (const auto& [actor, deeds] : deeds()) smaller = try_ranges(actor, deeds) || smaller;
+    }
+    return without_;
+  }
+
+ private:
+  Deeds deeds() const { return play({.seed = seed_, .without = without_}).deeds; }
+
+  /// Keeps `next` where the run breaks the check all the same.
+  bool still_breaks(Omissions next) {
+    if (plays_left_-- <= 0) return false;
+    const auto broken = play({.seed = seed_, .without = next}).broken;
+    const bool breaks =
+        std::ranges::any_of(broken, [&](const std::string& each) { return each.starts_with(check_); });
+    if (breaks) without_ = std::move(next);
+    return breaks;
+  }
+
+  void try_without_all(const std::string& actor) {
+    Omissions next = without_;
+    next.add_all(actor);
+    still_breaks(std::move(next));
+  }
+
+  /// Halves, quarters and so on, down to single ones.
+  bool try_ranges(const std::string& actor, std::uint64_t deeds) {
+    bool smaller = false;
+    for (std::uint64_t size = (deeds + 1) / 2; size > 0 && plays_left_ > 0;
+         size = size == 1 ? 0 : (size + 1) / 2) {
+      for (std::uint64_t first = 1; first <= deeds; first += size)
+        smaller = try_range(actor, first, std::min(first + size - 1, deeds)) || smaller;
+    }
+    return smaller;
+  }
+
+  bool try_range(const std::string& actor, std::uint64_t first, std::uint64_t last) {
+    while (first <= last && without_.has(actor, first)) ++first;
+    while (first <= last && without_.has(actor, last)) --last;
+    if (first > last) return false;
+    Omissions next = without_;
+    next.add(actor, first, last);
+    return still_breaks(std::move(next));
+  }
+
+  const std::uint64_t seed_;
+  Omissions without_;
+  const std::string check_;
+  int plays_left_;
+};
+
+}  // namespace
+
+Omissions shrunk(std::uint64_t seed, const Omissions& from, const std::string& check, int most_plays) {
+  return Shrinking(seed, from, check, most_plays).result();
+}
+
+}  // namespace adit::simulation

@@ -85,7 +85,7 @@ void write_endpoints(Exposition& out, const RunView& view) {
   for (const EndpointRow& row : view.endpoints) {
     if (row.answer_ms) out.sample({{"endpoint", row.name}}, *row.answer_ms / 1000);
   }
-  out.gauge("adit_endpoint_last_status", "The HTTP status of the endpoint's last answer; 0: none yet.");
+  out.gauge("adit_endpoint_last_status", "The HTTP status of the last request's answer; 0: none came.");
   for (const EndpointRow& row : view.endpoints) out.sample({{"endpoint", row.name}}, row.last_status);
   out.counter("adit_endpoint_throttled_total", "Answers of 429.");
   for (const EndpointRow& row : view.endpoints) out.sample({{"endpoint", row.name}}, number(row.throttled));

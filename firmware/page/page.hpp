@@ -65,7 +65,7 @@ struct ActivityRow {
   std::uint64_t waiting = 0;
   std::optional<Time> last_accepted, last_forwarded;
   std::size_t bytes_received = 0, bytes_sent = 0;  // of the last of each
-  int last_status = 0;                             // the Command Post's last answer; 0: none yet
+  int last_status = 0;                             // the Command Post's, to the last try; 0: none came
   std::string last_sentence;                       // what it said, or why nothing came
 };
 

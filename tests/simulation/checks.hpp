@@ -5,6 +5,7 @@
 
 #include "dispatch/deeds.hpp"
 #include "simulation/history.hpp"
+#include "simulation/reader.hpp"
 
 namespace adit::simulation {
 
@@ -12,6 +13,7 @@ namespace adit::simulation {
 struct Evidence {
   const std::vector<Event>& events;
   const std::vector<dispatch::Report>& reports;  // of the ledger
+  const std::vector<Reading>& readings;          // of the page
 };
 
 /// Each adds a sentence for what it finds broken, which begins with its name. Their rules are in README.md.
@@ -26,6 +28,9 @@ void pose_arrived(const Evidence& evidence, Broken& broken);
 void grid_arrived(const Evidence& evidence, Broken& broken);
 void marker_arrived(const Evidence& evidence, Broken& broken);
 void live(const Evidence& evidence, Broken& broken);
+void honest(const Evidence& evidence, Broken& broken);
+void lights(const Evidence& evidence, Broken& broken);
+void alive(const Evidence& evidence, Broken& broken);
 
 Broken all_checks(const Evidence& evidence);
 

@@ -79,8 +79,8 @@ void marker_arrived(const Evidence& evidence, Broken& broken) {
 
 Broken all_checks(const Evidence& evidence) {
   Broken broken;
-  for (const auto check :
-       {once, not_lost, paced, stamps, kept, answered, pose_arrived, grid_arrived, marker_arrived, live}) {
+  for (const auto check : {once, not_lost, paced, stamps, kept, answered, pose_arrived, grid_arrived,
+                           marker_arrived, live, honest, lights, alive}) {
     check(evidence, broken);
   }
   return broken;

@@ -93,6 +93,7 @@ void Client::read() {
   while (const auto answer = answers_.next()) {
     if (answer->status() < 200 || !done_) continue;
     const bool stays = manners_.keeps_alive && answer->header("connection") != "close";
+    heard_ = answer->body;
     ended(Kind::Answered, answer->status(), answer->status() < 300 ? "" : answer->body);
     if (!stays) close();
   }

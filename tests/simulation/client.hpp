@@ -32,6 +32,8 @@ class Client {
   /// `done` gets the status, or 0 where there was no whole answer. Requires !busy().
   void ask(std::string request, Event about, std::function<void(int status)> done);
   bool busy() const { return static_cast<bool>(done_); }
+  /// The body of the last whole answer.
+  const std::string& heard() const { return heard_; }
 
  private:
   void connect();
@@ -54,6 +56,7 @@ class Client {
   std::size_t hang_up_at_ = 0;  // bytes; 0: not
   Event about_;
   std::function<void(int)> done_;
+  std::string heard_;
   std::uint64_t number_ = 0;  // of the request
 };
 

@@ -190,7 +190,8 @@ std::string CommandPost::record(const Item& item) {
                .kind = Kind::Taken,
                .what = kReports,
                .who = "run " + std::to_string(run_),
-               .serial = item.serial});
+               .serial = item.serial,
+               .stamp = static_cast<double>(points)});
   const bool stands = faults_.has(Fault::ConstantClocks);
   const double clock = stands ? 3.14 : world_.time() - run_began_;
   return http_answer("201 Created", kJson,

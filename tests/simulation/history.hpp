@@ -25,8 +25,10 @@ enum class Kind : std::uint8_t {
   Saved,     // settings were saved
   NewRun,
   Fault,
-  Calm,  // no fault begins any more
-  Said   // a line of the log
+  Calm,   // no fault begins any more
+  Told,   // to systemd: "READY", "STATUS", "STOPPING", "WATCHDOG"
+  Shows,  // the panel: its lights are lit as `who` says, "1000" for health alone
+  Said    // a line of the log
 };
 
 struct Event {
@@ -38,8 +40,8 @@ struct Event {
   std::string who;          // a robot
   std::int64_t serial = 0;  // 0: none
   int status = 0;
-  double stamp = 0;           // of a message upstream; of an answer: its Retry-After
-  std::string text = {};      // for the story alone
+  double stamp = 0;  // of a message upstream; of an answer: its Retry-After; of a recorded report: its points
+  std::string text = {};      // for the story; of an answer to a status its body, of "STATUS" the line
   std::uint64_t request = 0;  // of a client: which
 };
 

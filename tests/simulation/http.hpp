@@ -26,6 +26,9 @@ class HttpStream {
   std::optional<HttpMessage> next();
   /// No byte of a message that is not whole has come.
   bool is_between() const { return bytes_.empty() && !head_; }
+  /// Of the one that is not whole: its head, once that has come, and how long its body is to be.
+  const std::optional<HttpMessage>& head() const { return head_; }
+  std::size_t length() const { return length_; }
   /// What has come of the first line of the one that is not whole.
   std::string_view begun() const { return bytes_; }
 

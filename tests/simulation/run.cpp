@@ -5,6 +5,7 @@
 #include "simulation/checks.hpp"
 #include "simulation/command_post.hpp"
 #include "simulation/operator.hpp"
+#include "simulation/reader.hpp"
 #include "simulation/team.hpp"
 #include "simulation/world.hpp"
 
@@ -41,6 +42,7 @@ Outcome play(const Plan& plan) {
   world.network().serve(&post);
   const Team team(world, trouble_for);
   const Operator operator_(world, box, trouble_for);
+  const Reader reader(world, trouble_for, trouble_for + kRest - 5);
   plan_ends(world, box, trouble_for);
   world.after(seconds(trouble_for), [&] { post.calm(); });
   world.after(seconds(trouble_for + kRest), [&] { box.finish(); });
@@ -50,7 +52,7 @@ Outcome play(const Plan& plan) {
           .steps = world.steps(),
           .faults = world.history().faults(),
           .drawn = post.faults().names(),
-          .broken = all_checks({world.history().events(), reports_in(box.state())}),
+          .broken = all_checks({world.history().events(), reports_in(box.state()), reader.readings()}),
           .deeds = world.deeds()};
 }
 

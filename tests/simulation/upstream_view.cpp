@@ -6,6 +6,11 @@
 #include "simulation/world.hpp"
 
 namespace adit::simulation {
+namespace {
+
+constexpr std::size_t kLongest = 64u << 10;  // bytes of an answer's body
+
+}  // namespace
 
 void UpstreamView::left(std::string_view bytes) {
   World& world = World::current();
@@ -28,10 +33,14 @@ void UpstreamView::came(std::string_view bytes) {
   while (const auto answer = answers_.next()) {
     World::current().note({.kind = Kind::Replied,
                            .what = path_,
-                           .who = "",
+                           .who = answer->body.starts_with('<') ? kForeign : "",
                            .status = answer->status(),
-                           .stamp = std::atof(answer->header("retry-after").c_str())});
+                           .stamp = std::atof(answer->header("retry-after").c_str()),
+                           .text = path_ == kStatus ? answer->body : ""});
   }
+  if (!answers_.head() || answers_.length() <= kLongest) return;
+  World::current().note(
+      {.kind = Kind::Replied, .what = path_, .who = kTooLong, .status = answers_.head()->status()});
 }
 
 }  // namespace adit::simulation

@@ -7,6 +7,11 @@
 
 namespace adit::simulation {
 
+/// `who` of an answer that is a page of HTML.
+inline constexpr const char* kForeign = "foreign";
+/// `who` of one that is longer than any Command Post's: of its head, for the rest is not read.
+inline constexpr const char* kTooLong = "too long";
+
 /// What Adit gives a connection to the Command Post, and takes from it, as events of the history.
 class UpstreamView {
  public:

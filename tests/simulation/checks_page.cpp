@@ -1,0 +1,273 @@
+// Honest, Lights and Alive: of what the page, the panel and systemd are told.
+#include <cmath>
+#include <optional>
+#include <set>
+
+#include "icd/sentence.hpp"
+#include "simulation/checks.hpp"
+#include "simulation/messages.hpp"
+#include "simulation/page_account.hpp"
+#include "simulation/page_words.hpp"
+#include "simulation/upstream_view.hpp"
+
+namespace adit::simulation {
+namespace {
+
+using Json = nlohmann::json;
+using Moment = PageAccount::Moment;
+
+constexpr double kWatchdog = 10;  // seconds within which systemd hears that aditd lives
+constexpr double kRounding = 0.05;
+
+Moment moment_of(const Reading& reading) {
+  return {reading.asked, reading.heard};
+}
+
+/// What a view counts of each stream: grids and clouds of one robot together.
+std::map<Stream, std::int64_t> counts(const Json& view, const char* member) {
+  std::map<Stream, std::int64_t> all;
+  for (const Json& row : view.at("activities")) {
+    const std::string kind = row.at("kind");
+    const char* const path = kind == "state" ? kState : kind == "markers" ? kMarkers : kMap;
+    all[stream_of(path, row.at("robot"))] += row.at(member).get<std::int64_t>();
+  }
+  return all;
+}
+
+/// Between two readings of one gateway.
+class Difference {
+ public:
+  Difference(const PageAccount& account, const Reading& from, const Reading& to, Broken& broken)
+      : account_(account), from_(from), to_(to), broken_(broken) {}
+
+  void streams() {
+    const Moment from = moment_of(from_), to = moment_of(to_);
+    auto accepted = counts(from_.view, "accepted"), forwarded = counts(from_.view, "forwarded");
+    for (const auto& [stream, count] : counts(to_.view, "accepted"))
+      compare(stream.path + " of " + stream.who + " accepted", count - accepted[stream],
+              account_.accepted(stream, from, to));
+    for (const auto& [stream, count] : counts(to_.view, "forwarded"))
+      compare(stream.path + " of " + stream.who + " forwarded", count - forwarded[stream],
+              account_.forwarded(stream, from, to));
+  }
+  void endpoints() {
+    const Moment from = moment_of(from_), to = moment_of(to_);
+    for (std::size_t i = 0; i < to_.view.at("endpoints").size(); ++i) {
+      const Json &now = to_.view.at("endpoints").at(i), &then = from_.view.at("endpoints").at(i);
+      const std::string name = now.at("name");
+      const auto grown = [&](const char* member) {
+        return now.at(member).get<std::int64_t>() - then.at(member).get<std::int64_t>();
+      };
+      compare(name + ": throttled", grown("throttled"), account_.throttled(name, from, to));
+      compare(name + ": foreign", grown("foreign"), account_.foreign(name, from, to));
+    }
+  }
+
+ private:
+  void compare(const std::string& what, std::int64_t shown, Range range) {
+    if (range.has(shown)) return;
+    broken_.push_back(icd::sentence("Honest: ", what, " ", shown, " times between ", from_.at, " and ",
+                                    to_.at, " by the page, and ", range.least, " to ", range.most,
+                                    " times by the history"));
+  }
+
+  const PageAccount& account_;
+  const Reading &from_, &to_;
+  Broken& broken_;
+};
+
+/// The last status that was heard before a moment and after another.
+const Event* last_status(const std::vector<Event>& events, std::size_t from, std::size_t to) {
+  while (to-- > from) {
+    const Event& event = events[to];
+    if (event.kind != Kind::Replied || event.what != kStatus || event.status != 200) continue;
+    const Json status = Json::parse(event.text, nullptr, false);
+    const auto is_number = [&](const char* name) {
+      return status.contains(name) && status.at(name).is_number();
+    };
+    if (status.is_object() && is_number("score") && is_number("run_clock") && is_number("remaining_reports"))
+      return &event;
+  }
+  return nullptr;
+}
+
+/// Score, reports left and their age are those of the last status.
+void judge_run(const Evidence& evidence, std::size_t begun, const Reading& reading, Broken& broken) {
+  const Event* const heard = last_status(evidence.events, begun, reading.asked);
+  if (heard != last_status(evidence.events, begun, reading.heard) || heard == nullptr) return;
+  const Json status = Json::parse(heard->text), &run = reading.view.at("run");
+  const auto differs = [&](const char* name) {
+    return run.at(name).get<std::int64_t>() != status.at(name).get<std::int64_t>();
+  };
+  if (run.is_null() || differs("score") || differs("remaining_reports")) {
+    broken.push_back(icd::sentence("Honest: at ", reading.at, " the page says of the run ", run.dump(),
+                                   ", and the Command Post ", heard->text));
+    return;
+  }
+  const double age = reading.view.at("now").get<double>() - reading.view.at("run_heard").get<double>();
+  if (std::abs(age - (reading.at - heard->at)) > kRounding)
+    broken.push_back(icd::sentence("Honest: at ", reading.at, " the page calls the status ", age,
+                                   " s old, and it came at ", heard->at));
+}
+
+/// A report that is called recorded is, with the points that it got.
+void judge_reports(const Evidence& evidence, const Reading& reading, Broken& broken) {
+  for (const Json& row : reading.view.at("reports")) {
+    const std::string state = row.at("state");
+    if (state != "answered" && !(state == "settled" && row.at("reconciled"))) continue;
+    const auto serial = std::llround(row.at("position").at("x").get<double>() / 100);
+    bool recorded = false, right = row.at("score_change").is_null();
+    for (std::size_t i = 0; i < reading.heard; ++i) {
+      const Event& event = evidence.events[i];
+      if (event.kind != Kind::Taken || event.what != kReports || event.serial != serial) continue;
+      recorded = true;
+      right = right || row.at("score_change") == std::llround(event.stamp);
+    }
+    if (!recorded)
+      broken.push_back(icd::sentence("Honest: at ", reading.at, " the page calls report ", serial, " ", state,
+                                     ", and it is not recorded"));
+    if (recorded && !right)
+      broken.push_back(icd::sentence("Honest: at ", reading.at, " the page gives report ", serial,
+                                     " a score that it has not"));
+  }
+}
+
+/// With nothing under way, an endpoint's last status is that of its last answer, or trouble says why none
+/// came.
+void judge_last_answers(const Evidence& evidence, std::size_t begun, const Reading& reading, Broken& broken) {
+  std::map<std::string, std::string> under_way;  // path by endpoint
+  std::map<std::string, const Event*> last;
+  for (std::size_t i = begun; i < reading.heard; ++i) {
+    const Event& event = evidence.events[i];
+    const std::string endpoint = endpoint_of(event.what);
+    if (event.kind == Kind::Leaves || (i >= reading.asked && event.kind == Kind::Replied))
+      last[endpoint] = nullptr;
+    if (event.kind == Kind::Replied && i < reading.asked) last[endpoint] = &event;
+  }
+  for (const Json& row : reading.view.at("endpoints")) {
+    if (row.at("name") != "scoring") continue;  // the mapping endpoint has two connections
+    const Event* const heard = last["scoring"];
+    const int status = row.at("last_status");
+    const bool none = status == 0 && row.at("trouble") != "";  // the last request got no answer
+    if (heard == nullptr || none || status == heard->status) continue;
+    broken.push_back(icd::sentence("Honest: at ", reading.at, " the page says that scoring answered ",
+                                   row.at("last_status").dump(), " last, and it was ", heard->status));
+  }
+}
+
+/// The number of a metric, with its labels.
+std::optional<double> metric(const std::string& text, const std::string& name) {
+  const std::size_t at = text.find("\n" + name + " ");
+  if (at == std::string::npos) return std::nullopt;
+  return std::strtod(text.c_str() + at + name.size() + 2, nullptr);
+}
+
+/// The metrics say what the view says, where nothing happened between the two.
+void judge_metrics(const Evidence& evidence, const Reading& reading, Broken& broken) {
+  if (reading.metrics.empty()) return;
+  for (std::size_t i = reading.asked; i < reading.measured; ++i) {
+    const Event& event = evidence.events[i];
+    const bool ours = event.what == "/adit/run" || event.what == "/metrics";
+    if (!ours && event.kind != Kind::Shows && event.kind != Kind::Told) return;
+  }
+  const auto compare = [&](const std::string& name, double shown) {
+    const auto told = metric(reading.metrics, name);
+    if (told && std::abs(*told - shown) < 1e-6) return;
+    broken.push_back(icd::sentence("Honest: at ", reading.at, " ", name, " is ", told.value_or(-1),
+                                   ", and by the view ", shown));
+  };
+  for (const Json& row : reading.view.at("activities")) {
+    const std::string labels = "{kind=" + row.at("kind").dump() + ",robot=" + row.at("robot").dump() + "}";
+    for (const char* const count : {"accepted", "forwarded", "replaced", "merged", "throttled", "failed"})
+      compare("adit_updates_" + std::string(count) + "_total" + labels, row.at(count));
+    compare("adit_updates_waiting" + labels, row.at("waiting"));
+  }
+  compare("adit_attention", static_cast<double>(reading.view.at("attention").size()));
+  for (const Json& row : reading.view.at("endpoints")) {
+    const std::string labels = "{endpoint=" + row.at("name").dump() + "}";
+    compare("adit_endpoint_up" + labels, row.at("connected") ? 1 : 0);
+    compare("adit_endpoint_last_status" + labels, row.at("last_status"));
+  }
+  if (!reading.view.at("run").is_null()) compare("adit_run_score", reading.view.at("run").at("score"));
+}
+
+/// Long after the last fault nothing waits, and nobody is called but for what only the operator can judge.
+void judge_rest(const Reading& reading, Broken& broken) {
+  for (const auto& [stream, count] : counts(reading.view, "waiting")) {
+    if (count > 0)
+      broken.push_back(icd::sentence("Honest: at rest ", count, " of ", stream.path, " of ", stream.who,
+                                     " are said to wait"));
+  }
+  const auto& reports = reading.view.at("reports");
+  const auto judged = std::ranges::count_if(reports, [](const Json& row) {
+    return row.at("state") == "received" || row.at("state") == "in doubt";
+  });
+  const std::size_t called = reading.view.at("attention").size();
+  if (called > 0 && judged == 0 && reading.view.at("aside").empty())
+    broken.push_back(
+        icd::sentence("Honest: at rest the operator is called: ", reading.view.at("attention").dump()));
+  if (called < static_cast<std::size_t>(judged))
+    broken.push_back(icd::sentence("Honest: at rest ", judged,
+                                   " reports wait for the operator, and he is called ", called, " times"));
+}
+
+}  // namespace
+
+void honest(const Evidence& evidence, Broken& broken) {
+  const PageAccount account(evidence.events);
+  const Reading* before = nullptr;
+  for (const Reading& reading : evidence.readings) {
+    const std::size_t begun = account.begun(moment_of(reading));
+    if (before != nullptr && begun <= before->asked) {
+      Difference difference(account, *before, reading, broken);
+      difference.streams();
+      difference.endpoints();
+    }
+    before = &reading;
+    if (begun > reading.asked) continue;
+    judge_run(evidence, begun, reading, broken);
+    judge_reports(evidence, reading, broken);
+    judge_last_answers(evidence, begun, reading, broken);
+    judge_metrics(evidence, reading, broken);
+    if (reading.lie.starts_with("Honest")) broken.push_back(reading.lie);
+  }
+  if (!evidence.readings.empty()) judge_rest(evidence.readings.back(), broken);
+}
+
+void lights(const Evidence& evidence, Broken& broken) {
+  for (const Reading& reading : evidence.readings) {
+    if (reading.lie.starts_with("Lights")) broken.push_back(icd::sentence(reading.lie, ", at ", reading.at));
+  }
+}
+
+void alive(const Evidence& evidence, Broken& broken) {
+  double last = 0;
+  bool ready = false, stopping = false;
+  for (const Event& event : evidence.events) {
+    if (event.kind == Kind::Begins) {
+      ready = stopping = false;
+      last = event.at;
+    }
+    if (event.kind == Kind::Stops) stopping = true;
+    if (event.kind == Kind::Answered && event.status == 200 && !ready)
+      broken.push_back(
+          icd::sentence("Alive: ", event.what, " was answered 200 at ", event.at, ", before READY"));
+    if (event.kind == Kind::Told && event.what == "STOPPING" && !stopping)
+      broken.push_back(icd::sentence("Alive: STOPPING at ", event.at, ", and nobody asked for it"));
+    const bool sign = event.kind == Kind::Told && event.what == "WATCHDOG";
+    const bool over = event.kind == Kind::Dies || event.kind == Kind::Ended;
+    if (event.kind == Kind::Told && event.what == "READY") {
+      if (!ready) last = event.at;
+      ready = true;
+    }
+    if ((sign || over) && ready && event.at - last > kWatchdog)
+      broken.push_back(icd::sentence("Alive: no sign of life between ", last, " and ", event.at));
+    if (sign) last = event.at;
+    if (over) ready = event.kind == Kind::Dies && ready;
+  }
+  for (const Reading& reading : evidence.readings) {
+    if (reading.lie.starts_with("Alive")) broken.push_back(icd::sentence(reading.lie, ", at ", reading.at));
+  }
+}
+
+}  // namespace adit::simulation

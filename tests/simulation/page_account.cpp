@@ -1,0 +1,103 @@
+#include "simulation/page_account.hpp"
+
+#include <algorithm>
+
+#include "simulation/messages.hpp"
+#include "simulation/upstream_view.hpp"
+
+namespace adit::simulation {
+
+std::string endpoint_of(const std::string& path) {
+  return path == kReports || path == kStatus ? "scoring" : "mapping";
+}
+
+Stream stream_of(const std::string& path, const std::string& who) {
+  return {path, path == kMarkers ? "" : who};
+}
+
+PageAccount::PageAccount(const std::vector<Event>& events) {
+  for (std::size_t i = 0; i < events.size(); ++i) {
+    const Event& event = events[i];
+    // A gateway that begins listens.
+    const bool begins = event.kind == Kind::Begins ||
+                        (event.kind == Kind::Said && event.text.starts_with("notice: listening"));
+    if (begins) begun_.push_back(i);
+    read_team(i, event);
+    read_upstream(i, event);
+  }
+}
+
+void PageAccount::read_team(std::size_t place, const Event& event) {
+  const bool is_of_a_kind = event.what == kState || event.what == kMap || event.what == kMarkers;
+  if (event.actor != Actor::Team || !is_of_a_kind) return;
+  const Stream stream = stream_of(event.what, event.who);
+  if (event.kind == Kind::Invoke) {
+    auto& all = posted_[stream];
+    open_[event.request] = {stream, all.size()};
+    all.push_back({.asked = place});
+  }
+  if (event.kind != Kind::Answered && event.kind != Kind::Gone) return;
+  const auto& [whose, which] = open_.at(event.request);
+  Posted& posted = posted_[whose][which];
+  posted.ended = place;
+  posted.status = event.status;
+}
+
+void PageAccount::read_upstream(std::size_t place, const Event& event) {
+  if (event.kind == Kind::Leaves) under_way_[event.what].clear();
+  if (event.kind == Kind::Left) {
+    auto& all = under_way_[event.what];
+    const Stream stream = stream_of(event.what, event.who);
+    if (std::ranges::find(all, stream) == all.end()) all.push_back(stream);
+  }
+  if (event.kind != Kind::Replied) return;
+  const bool is_page = event.who == kForeign || event.who == kTooLong;
+  const std::string endpoint = endpoint_of(event.what);
+  if (event.status == 429) throttled_[endpoint].push_back(place);
+  const bool never = event.status >= 300 && event.status < 400;
+  const bool allowed = event.status == 404 || event.status == 429 || event.status >= 500;
+  if (never || (is_page && !allowed)) foreign_[endpoint].push_back(place);
+  if (event.status >= 300 || is_page) return;
+  for (const Stream& stream : under_way_[event.what]) forwarded_[stream].push_back(place);
+}
+
+Range PageAccount::accepted(const Stream& stream, Moment from, Moment to) const {
+  Range range;
+  const auto found = posted_.find(stream);
+  if (found == posted_.end()) return range;
+  for (const Posted& each : found->second) {
+    if (each.asked >= from.heard && each.status == 200 && each.ended < to.asked) ++range.least;
+    const bool refused = each.status >= 300;
+    if (each.asked < to.heard && each.ended >= from.asked && !refused) ++range.most;
+  }
+  return range;
+}
+
+Range PageAccount::between(const Places& places, Moment from, Moment to) {
+  const auto count = [&](std::size_t first, std::size_t end) {
+    return std::ranges::count_if(places, [&](std::size_t each) { return each >= first && each < end; });
+  };
+  return {count(from.heard, to.asked), count(from.asked, to.heard)};
+}
+
+Range PageAccount::forwarded(const Stream& stream, Moment from, Moment to) const {
+  const auto found = forwarded_.find(stream);
+  return found == forwarded_.end() ? Range{} : between(found->second, from, to);
+}
+
+Range PageAccount::throttled(const std::string& endpoint, Moment from, Moment to) const {
+  const auto found = throttled_.find(endpoint);
+  return found == throttled_.end() ? Range{} : between(found->second, from, to);
+}
+
+Range PageAccount::foreign(const std::string& endpoint, Moment from, Moment to) const {
+  const auto found = foreign_.find(endpoint);
+  return found == foreign_.end() ? Range{} : between(found->second, from, to);
+}
+
+std::size_t PageAccount::begun(Moment at) const {
+  const auto after = std::ranges::upper_bound(begun_, at.heard);
+  return after == begun_.begin() ? 0 : *std::prev(after);
+}
+
+}  // namespace adit::simulation

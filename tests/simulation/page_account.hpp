@@ -1,0 +1,70 @@
+#pragma once
+
+#include <compare>
+#include <cstddef>
+#include <cstdint>
+#include <limits>
+#include <map>
+#include <string>
+#include <vector>
+
+#include "simulation/history.hpp"
+
+namespace adit::simulation {
+
+/// Whose messages of which URI; markers are nobody's.
+struct Stream {
+  std::string path, who;
+  friend auto operator<=>(const Stream&, const Stream&) = default;
+};
+Stream stream_of(const std::string& path, const std::string& who);
+
+/// What happened between two moments, at least and at most: what the events do not order counts as either.
+struct Range {
+  std::int64_t least = 0, most = 0;
+  bool has(std::int64_t number) const { return least <= number && number <= most; }
+};
+
+/// What the history says of the team's messages and of the Command Post's answers, to be counted between two
+/// readings of the page.
+class PageAccount {
+ public:
+  /// `events` outlive this.
+  explicit PageAccount(const std::vector<Event>& events);
+
+  /// Moments: a reading was asked for before event `asked`, and its answer heard before event `heard`.
+  struct Moment {
+    std::size_t asked = 0, heard = 0;
+  };
+  Range accepted(const Stream& stream, Moment from, Moment to) const;
+  Range forwarded(const Stream& stream, Moment from, Moment to) const;
+  /// Answers of that kind of an endpoint, "scoring" or "mapping".
+  Range throttled(const std::string& endpoint, Moment from, Moment to) const;
+  Range foreign(const std::string& endpoint, Moment from, Moment to) const;
+
+  /// Where its counts began anew, or may have: the last time before a moment.
+  std::size_t begun(Moment at) const;
+
+ private:
+  static constexpr std::size_t kNever = std::numeric_limits<std::size_t>::max();
+  struct Posted {
+    std::size_t asked = 0, ended = kNever;
+    int status = 0;  // 0: no answer was heard
+  };
+  using Places = std::vector<std::size_t>;  // of events, in order
+  static Range between(const Places& places, Moment from, Moment to);
+  void read_team(std::size_t place, const Event& event);
+  void read_upstream(std::size_t place, const Event& event);
+
+  std::map<Stream, std::vector<Posted>> posted_;
+  std::map<std::uint64_t, std::pair<Stream, std::size_t>> open_;  // requests: where in posted_
+  std::map<std::string, std::vector<Stream>> under_way_;          // by path: whose messages
+  std::map<Stream, Places> forwarded_;
+  std::map<std::string, Places> throttled_, foreign_;
+  Places begun_;
+};
+
+/// "scoring" or "mapping".
+std::string endpoint_of(const std::string& path);
+
+}  // namespace adit::simulation

@@ -1,0 +1,85 @@
+#include "simulation/reader.hpp"
+
+#include <string_view>
+#include <utility>
+
+#include "simulation/page_words.hpp"
+#include "simulation/world.hpp"
+
+namespace adit::simulation {
+namespace {
+
+constexpr const char* kView = "/adit/run";
+constexpr const char* kMetrics = "/metrics";
+constexpr double kEvery = 5;
+/// Lights and STATUS are told each second: what they say may be as old.
+constexpr double kTold = 1.1;
+constexpr int kOften = 3;
+
+/// Events that change nothing that the page shows.
+bool is_silent(const Event& event) {
+  return event.kind == Kind::Told || event.kind == Kind::Shows || event.what == kView ||
+         event.what == kMetrics;
+}
+
+}  // namespace
+
+Reader::Reader(World& world, double until, double end)
+    : world_(world),
+      client_(world, "10.0.0.11", {.keeps_alive = false, .patience = 20, .dribbles = 0},
+              world.random("client of the reader")),
+      until_(until) {
+  world.after(seconds(world.random("reader").between(0, kEvery)), [this] { look(); });
+  world.after(seconds(end), [this] { look_at(kView, [this](const std::string& body) { viewed(body); }); });
+}
+
+void Reader::look() {
+  if (world_.time() > until_) return;
+  world_.after(seconds(kEvery), [this] { look(); });
+  again_ = 0;
+  look_at(kView, [this](const std::string& body) { viewed(body); });
+}
+
+void Reader::look_at(const char* path, std::function<void(const std::string&)> got) {
+  if (client_.busy()) return;
+  const std::string headers = "Host: 10.0.0.1\r\nAuthorization: Bearer token-of-the-team\r\n";
+  asked_ = world_.history().events().size();
+  client_.ask(http_request("GET", path, headers, ""), {.what = path, .who = "reader"},
+              [this, got = std::move(got)](int status) {
+                if (status == 200) got(client_.heard());
+              });
+}
+
+void Reader::viewed(const std::string& body) {
+  const auto& events = world_.history().events();
+  Reading reading{.asked = asked_,
+                  .heard = events.size(),
+                  .at = events[asked_].at,
+                  .life = events[asked_].life,
+                  .view = nlohmann::json::parse(body)};
+  const std::string lie = disagreement(reading.view, events, reading.asked);
+  readings_.push_back(std::move(reading));
+  look_at(kMetrics, [this](const std::string& text) {
+    readings_.back().metrics = text;
+    readings_.back().measured = world_.history().events().size();
+  });
+  look_again(lie);
+}
+
+/// What disagrees may have changed just now; it is one where nothing happens meanwhile and it stays.
+void Reader::look_again(const std::string& lie) {
+  const auto& events = world_.history().events();
+  const std::size_t since = readings_.size() > 1 ? readings_[readings_.size() - 2].asked : 0;
+  const bool is_quiet =
+      std::all_of(events.begin() + static_cast<std::ptrdiff_t>(since), events.end(), is_silent);
+  again_ = lie.empty() ? 0 : lie == lie_ && is_quiet ? again_ + 1 : 1;
+  lie_ = lie;
+  if (again_ >= kOften) {
+    readings_.back().lie = lie;
+  } else if (again_ > 0) {
+    world_.after(seconds(kTold),
+                 [this] { look_at(kView, [this](const std::string& body) { viewed(body); }); });
+  }
+}
+
+}  // namespace adit::simulation

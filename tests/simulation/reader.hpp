@@ -1,0 +1,47 @@
+#pragma once
+
+#include <cstddef>
+#include <nlohmann/json.hpp>
+#include <string>
+#include <vector>
+
+#include "simulation/client.hpp"
+
+namespace adit::simulation {
+
+class World;
+
+/// What the page said at one moment.
+struct Reading {
+  std::size_t asked = 0, heard = 0;  // so many events had happened
+  double at = 0;
+  int life = 0;
+  nlohmann::json view;       // of /adit/run
+  std::string metrics = {};  // read right after it
+  std::size_t measured = 0;  // events that had happened by then
+  std::string lie = {};      // in what lights or STATUS disagreed with it for as long as they may not
+};
+
+/// Somebody who looks at the page every few seconds, and once more at the end.
+class Reader {
+ public:
+  /// `world` outlives this.
+  Reader(World& world, double until, double end);
+  const std::vector<Reading>& readings() const { return readings_; }
+
+ private:
+  void look();
+  void look_at(const char* path, std::function<void(const std::string& body)> got);
+  void viewed(const std::string& body);
+  void look_again(const std::string& lie);
+
+  World& world_;
+  Client client_;
+  double until_;
+  int again_ = 0;  // how often the same lie was seen
+  std::string lie_;
+  std::size_t asked_ = 0;
+  std::vector<Reading> readings_;
+};
+
+}  // namespace adit::simulation

@@ -1,0 +1,43 @@
+// panel/lines.hpp's simulated panel over the simulated world: what it shows is of the history.
+#include <optional>
+
+#include "panel/lines.hpp"
+#include "simulation/world.hpp"
+
+namespace adit::panel {
+namespace {
+
+using simulation::World;
+
+class Shown final : public Lines {
+ public:
+  Shown() = default;
+  Shown(const Shown&) = delete;
+  Shown& operator=(const Shown&) = delete;
+  ~Shown() override { show({}); }
+
+  std::expected<void, std::string> set(const Lit& lit) override {
+    show(lit);
+    return {};
+  }
+
+ private:
+  void show(const Lit& lit) {
+    World& world = World::current();
+    if (shown_ == lit || world.is_dead()) return;
+    shown_ = lit;
+    std::string bits;
+    for (const bool each : lit) bits += each ? '1' : '0';
+    world.note({.kind = simulation::Kind::Shows, .what = "the panel", .who = bits});
+  }
+
+  std::optional<Lit> shown_;
+};
+
+}  // namespace
+
+std::unique_ptr<Lines> simulated(std::string) {
+  return std::make_unique<Shown>();
+}
+
+}  // namespace adit::panel

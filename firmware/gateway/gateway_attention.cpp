@@ -8,15 +8,16 @@
 namespace adit::gateway {
 
 std::vector<std::string> Gateway::attention() const {
-  std::vector<std::string> sentences = scoring_.reports().attention();
+  std::vector<std::string> sentences = flow_.reports().attention();
   if (std::string change = network_.attention(); !change.empty()) {
     sentences.insert(sentences.begin(), std::move(change));  // it is the one that has a deadline
   }
   std::ranges::move(links_.attention(), std::back_inserter(sentences));
-  if (!scoring_.trouble().empty()) {
-    sentences.push_back("no report is taken, the ledger cannot be written: " + scoring_.trouble());
+  if (!flow_.scoring().trouble().empty()) {
+    sentences.push_back("no report is taken, the ledger cannot be written: " + flow_.scoring().trouble());
   }
-  if (!maps_.trouble().empty()) sentences.push_back("the last map was not taken: " + maps_.trouble());
+  if (!flow_.maps().trouble().empty())
+    sentences.push_back("the last map was not taken: " + flow_.maps().trouble());
   say_what_is_missing(sentences);
   if (!parts_.ledger.damage().empty()) sentences.push_back(parts_.ledger.damage());
   const auto token_refused = [&](const forward::Channel& channel, const char* name) {
@@ -32,21 +33,22 @@ std::vector<std::string> Gateway::attention() const {
                                       "): nothing counts as taken there; is the address right?"));
     return true;
   };
-  foreign(scoring_.channel(), "scoring", settings_.command_post.scoring);
-  if (!foreign(maps_.channel(), "mapping", settings_.command_post.mapping)) {
-    foreign(news_.channel(), "mapping", settings_.command_post.mapping);
+  foreign(flow_.scoring().channel(), "scoring", settings_.command_post.scoring);
+  if (!foreign(flow_.maps().channel(), "mapping", settings_.command_post.mapping)) {
+    foreign(flow_.news().channel(), "mapping", settings_.command_post.mapping);
   }
   say_what_is_set_aside(sentences);
-  token_refused(scoring_.channel(), "scoring");
-  token_refused(maps_.channel().last_status() == 401 ? maps_.channel() : news_.channel(), "mapping");
+  token_refused(flow_.scoring().channel(), "scoring");
+  token_refused(flow_.maps().channel().last_status() == 401 ? flow_.maps().channel() : flow_.news().channel(),
+                "mapping");
   std::ranges::move(roster_.attention(loop_.now()), std::back_inserter(sentences));
-  if (maps_.nearly_full()) sentences.emplace_back("the queue of maps is nearly full");
+  if (flow_.maps().nearly_full()) sentences.emplace_back("the queue of maps is nearly full");
   return sentences;
 }
 
 /// Why the box should not be started anew just now, or "".
 std::string Gateway::report_under_way() const {
-  const dispatch::Reports& reports = scoring_.reports();
+  const dispatch::Reports& reports = flow_.reports();
   if (const auto* report = reports.sending())
     return icd::sentence("report ", report->number, " is being sent: its answer would have to be found out");
   const std::size_t waiting = reports.waiting_here().size();
@@ -56,7 +58,7 @@ std::string Gateway::report_under_way() const {
 
 /// What the Command Post would not take, and is for the operator to look at.
 void Gateway::say_what_is_set_aside(std::vector<std::string>& sentences) const {
-  const auto rows = aside_.rows();
+  const auto rows = flow_.aside().rows();
   const auto count = std::ranges::count(rows, false, &page::AsideRow::overtaken);
   if (count == 0) return;
   sentences.push_back(icd::sentence(count, count == 1 ? " message is" : " messages are",
@@ -70,12 +72,12 @@ void Gateway::say_what_is_missing(std::vector<std::string>& sentences) const {
     if (!trouble->empty()) sentences.push_back(*trouble);
   }
   std::ranges::copy(parts_.notices, std::back_inserter(sentences));
-  if (!journal_.trouble().empty()) {
-    sentences.push_back("states and markers are not taken, they cannot be kept: " + journal_.trouble());
+  if (!flow_.journal_trouble().empty()) {
+    sentences.push_back("states and markers are not taken, they cannot be kept: " + flow_.journal_trouble());
   }
-  if (!scoring_.channel().has_token())
+  if (!flow_.scoring().channel().has_token())
     sentences.emplace_back("no scoring token is set: reports wait until one is");
-  if (!maps_.channel().has_token()) {
+  if (!flow_.maps().channel().has_token()) {
     sentences.emplace_back("no mapping token is set: maps, states and markers wait until one is");
   }
   if (settings_.team.require_token && parts_.loaded.secrets.tokens.empty()) {

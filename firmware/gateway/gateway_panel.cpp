@@ -18,16 +18,16 @@ constexpr std::chrono::seconds kIdentify{10};  // by the button
 }  // namespace
 
 void Gateway::assert_states() {
-  const forward::Channel& scoring = scoring_.channel();
-  const bool serving = !servers_.empty() && scoring_.trouble().empty();
+  const forward::Channel& scoring = flow_.scoring().channel();
+  const bool serving = !servers_.empty() && flow_.scoring().trouble().empty();
   lights_.set(State::Serving, serving);
   lights_.set(State::NotServing, !serving);
   lights_.set(State::ScoringConnected, scoring.connected());
   lights_.set(State::ScoringFailing, !scoring.trouble().empty());
-  lights_.set(State::ReportWaiting, !scoring_.reports().waiting_here().empty());
-  lights_.set(State::MappingConnected, news_.channel().connected());
+  lights_.set(State::ReportWaiting, !flow_.reports().waiting_here().empty());
+  lights_.set(State::MappingConnected, flow_.news().channel().connected());
   lights_.set(State::MappingFailing,
-              !news_.channel().trouble().empty() || !maps_.channel().trouble().empty());
+              !flow_.news().channel().trouble().empty() || !flow_.maps().channel().trouble().empty());
   lights_.set(State::NeedsOperator, !attention().empty());
   lights_.set(State::UpdateRunning, updates_.running());
   for (const page::LinkRow& link : links_.rows()) {

@@ -10,16 +10,10 @@ constexpr std::size_t kMostReportRows = 200;
 
 }  // namespace
 
-double Gateway::sent_mbit() const {
-  if (bytes_sent_.size() < 2) return 0;
-  const auto bytes = static_cast<double>(bytes_sent_.back() - bytes_sent_.front());
-  return bytes * 8 / 1e6 / static_cast<double>(bytes_sent_.size() - 1);
-}
-
 std::vector<page::EndpointRow> Gateway::endpoints() const {
-  const forward::Channel& scoring = scoring_.channel();
-  const forward::Channel& maps = maps_.channel();
-  const forward::Channel& news = news_.channel();
+  const forward::Channel& scoring = flow_.scoring().channel();
+  const forward::Channel& maps = flow_.maps().channel();
+  const forward::Channel& news = flow_.news().channel();
   const forward::Channel& latest = maps.heard() > news.heard() ? maps : news;
   const settings::CommandPost& command_post = settings_.command_post;
   return {{.name = "scoring",
@@ -43,33 +37,27 @@ std::vector<page::EndpointRow> Gateway::endpoints() const {
 page::RunView Gateway::view() const {
   page::RunView view{.now = loop_.stamp_now(),
                      .version = kVersion,
-                     .run = scoring_.run(),
-                     .run_heard = scoring_.run_heard(),
-                     .run_number = scoring_.reports().run().number,
-                     .run_id = scoring_.reports().run().id,
+                     .run = flow_.scoring().run(),
+                     .run_heard = flow_.scoring().run_heard(),
+                     .run_number = flow_.reports().run().number,
+                     .run_id = flow_.reports().run().id,
                      .endpoints = endpoints(),
-                     .robots = as_forwarded_.robots(),
-                     .reports = latest_rows(scoring_.reports(), kMostReportRows),
+                     .robots = flow_.as_forwarded().robots(),
+                     .reports = latest_rows(flow_.reports(), kMostReportRows),
                      .near_metres = settings_.reports.near_metres,
-                     .activities = record_.activities(),
-                     .refusals = record_.refusals(),
-                     .aside = aside_.rows(),
+                     .activities = flow_.activities(),
+                     .refusals = flow_.record().refusals(),
+                     .aside = flow_.aside().rows(),
                      .lights = {},
                      .links = links_.rows(),
                      .identify_until = {},
                      .setup_open_until = {},
                      .budget_mbit = settings_.command_post.budget_mbit,
-                     .sent_mbit = sent_mbit(),
-                     .queued_bytes = maps_.queued_bytes(),
-                     .map_version = picture_.mosaic().version(),
-                     .marker_version = as_forwarded_.markers().version(),
+                     .sent_mbit = flow_.sent_mbit(),
+                     .queued_bytes = flow_.maps().queued_bytes(),
+                     .map_version = flow_.picture().version(),
+                     .marker_version = flow_.as_forwarded().markers().version(),
                      .attention = attention()};
-  for (page::ActivityRow& row : view.activities) {
-    if (row.kind == "state") row.waiting = news_.waiting(forward::Kind::State);
-    if (row.kind == "markers") row.waiting = news_.waiting(forward::Kind::Markers);
-    if (row.kind == "grid") row.waiting = maps_.waiting({forward::Kind::Grid, row.robot});
-    if (row.kind == "cloud") row.waiting = maps_.waiting({forward::Kind::Cloud, row.robot});
-  }
   for (const panel::Light light : panel::kLights) {
     view.lights.push_back({.name = std::string(panel::name_of(light)),
                            .pattern = std::string(panel::name_of(lights_.shown()[panel::index_of(light)]))});
@@ -83,10 +71,11 @@ page::RunView Gateway::view() const {
 }
 
 std::string Gateway::status_line() const {
-  std::string line = scoring_.run() ? "score " + std::to_string(scoring_.run()->score) + ", " +
-                                          std::to_string(scoring_.run()->remaining_reports) + " reports left"
-                                    : "no word from the Command Post yet";
-  if (const std::size_t waiting = scoring_.reports().waiting_here().size(); waiting > 0) {
+  std::string line = flow_.scoring().run()
+                         ? "score " + std::to_string(flow_.scoring().run()->score) + ", " +
+                               std::to_string(flow_.scoring().run()->remaining_reports) + " reports left"
+                         : "no word from the Command Post yet";
+  if (const std::size_t waiting = flow_.reports().waiting_here().size(); waiting > 0) {
     line += ", " + std::to_string(waiting) + " reports waiting";
   }
   if (const auto sentences = attention(); !sentences.empty()) line += "; " + sentences.front();

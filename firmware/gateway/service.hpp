@@ -40,7 +40,7 @@ class Service {
   std::optional<loop::Watchdog> watchdog_;  // where systemd wants one
   Gateway* running_ = nullptr;              // signals come while the loop runs, and so does it
   std::string trouble_;                     // what came of the last change
-  std::optional<Legacy> legacy_;
+  std::optional<forward::Legacy> legacy_;
   std::chrono::seconds ledger_rest_ = LedgerReturn::kRest;
 };
 

@@ -1,0 +1,104 @@
+// What the flow takes in, and what it shows. Its begin and end are in flow_life.cpp.
+#include "forward/flow.hpp"
+
+#include <utility>
+
+#include "host/log.hpp"
+
+namespace adit::forward {
+
+std::shared_ptr<intake::MapArrival> Flow::map_arrives() {
+  return maps_.arrives([this](icd::MapUpdate update, const intake::Sender& sender,
+                              std::shared_ptr<spool::MapFile> file,
+                              std::function<void(icd::Checked<void>)> done) {
+    take(std::move(update), sender, std::move(file), std::move(done));
+  });
+}
+
+void Flow::take(icd::MapUpdate update, const intake::Sender& sender, std::shared_ptr<spool::MapFile> file,
+                std::function<void(icd::Checked<void>)> done) {
+  const std::string clock = sender.address + "/map/" + (update.name ? update.name->text() : "");
+  if (update.name) told_.posted(update.name->text());
+  update.header().stamp = clocks_.stamped(clock, update.header().stamp, sender.connection);
+  maps_.take(std::move(update), sender.bytes, std::move(file), std::move(done));
+}
+
+icd::Checked<void> Flow::take(const icd::StateUpdate& update, const intake::Sender& sender) {
+  const std::string robot = update.poses.size() == 1 ? update.poses.front().name.text() : "";
+  for (const icd::NamedPose& pose : update.poses) told_.posted(pose.name.text());
+  icd::StateUpdate shifted = update;
+  shifted.header.stamp =
+      clocks_.stamped(sender.address + "/state/" + robot, update.header.stamp, sender.connection);
+  return news_.take(shifted, sender.bytes);
+}
+
+icd::Checked<void> Flow::take(const icd::MarkersUpdate& update, const intake::Sender& sender) {
+  icd::MarkersUpdate shifted = update;
+  clocks_.stamp(shifted, sender.address);
+  return news_.take(shifted, sender.bytes);
+}
+
+void Flow::take(const icd::ArtifactReport& report, const intake::Sender& sender,
+                std::shared_ptr<intake::Responder> responder) {
+  scoring_.take(report, sender, std::move(responder));
+}
+
+void Flow::status(const intake::Sender&, std::shared_ptr<intake::Responder> responder) {
+  scoring_.status(std::move(responder));
+}
+
+/// The sentence quotes what was sent, which may be a token that was put into a wrong field.
+void Flow::refused(icd::Uri uri, const intake::Sender& sender, const icd::Refusal& told) {
+  icd::Refusal refusal = told;
+  for (const icd::BearerToken& token : tokens_.all) token.strike_from(refusal.sentence);
+  host::log(host::Level::Info, "refused",
+            {{"uri", std::string(icd::path_of(uri))},
+             {"sender", sender.address},
+             {"status", std::to_string(static_cast<int>(refusal.status))},
+             {"why", refusal.sentence}});
+  record_.refused(uri, sender, refusal, loop_.stamp_now());
+}
+
+std::expected<void, std::string> Flow::aside(std::uint64_t number, page::AsideDeed deed) {
+  if (is_ending()) return std::unexpected("the gateway is stopping: nothing is sent any more");
+  if (deed == page::AsideDeed::Discard) return aside_.discard(number);
+  auto message = aside_.to_be_sent(number);
+  if (!message) return std::unexpected(message.error());
+  if (auto* const map = std::get_if<icd::MapUpdate>(&*message)) {
+    maps_.send_again(std::move(*map), [this, number](bool kept) { aside_.sent_again(number, kept); });
+  } else {
+    aside_.sent_again(number, news_.send_again(*message));
+  }
+  return {};
+}
+
+void Flow::changed() {
+  picture_the_run();
+  told_.changed();
+}
+
+/// A new run begins with a blank picture.
+void Flow::picture_the_run() {
+  const std::int64_t run = reports().run().number;
+  const std::int64_t before = std::exchange(pictured_run_, run);
+  if (before == 0 || before == run) return;
+  as_forwarded_.begin_run(loop_.stamp_now());
+  picture_.begin_run();
+}
+
+std::vector<page::ActivityRow> Flow::activities() const {
+  std::vector<page::ActivityRow> rows = record_.activities();
+  for (page::ActivityRow& row : rows) {
+    if (row.kind == "state") row.waiting = news_.waiting(Kind::State);
+    if (row.kind == "markers") row.waiting = news_.waiting(Kind::Markers);
+    if (row.kind == "grid") row.waiting = maps_.waiting({Kind::Grid, row.robot});
+    if (row.kind == "cloud") row.waiting = maps_.waiting({Kind::Cloud, row.robot});
+  }
+  return rows;
+}
+
+std::uint64_t Flow::sent_bytes() const {
+  return scoring_.channel().bytes_sent() + maps_.channel().bytes_sent() + news_.channel().bytes_sent();
+}
+
+}  // namespace adit::forward

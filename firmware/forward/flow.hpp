@@ -1,0 +1,149 @@
+#pragma once
+
+#include <cstdint>
+#include <expected>
+#include <functional>
+#include <memory>
+#include <optional>
+#include <random>
+#include <string>
+#include <vector>
+
+#include "forward/as_forwarded.hpp"
+#include "forward/aside.hpp"
+#include "forward/clocks.hpp"
+#include "forward/ending.hpp"
+#include "forward/map_picture.hpp"
+#include "forward/maps.hpp"
+#include "forward/meter.hpp"
+#include "forward/news.hpp"
+#include "forward/record.hpp"
+#include "forward/scoring.hpp"
+#include "icd/bearer_token.hpp"
+#include "intake/desk.hpp"
+#include "journal/journal.hpp"
+#include "ledger/ledger.hpp"
+#include "loop/loop.hpp"
+#include "loop/workers.hpp"
+#include "page/page.hpp"
+#include "settings/settings.hpp"
+#include "spool/spool.hpp"
+
+namespace adit::forward {
+
+/// What one flow hands on to the next that takes its place.
+struct Legacy {
+  picture::Mosaic picture;
+  std::int64_t pictured_run = 0;  // whose maps it shows; 0: none yet
+  AsForwarded as_forwarded;
+};
+
+/// The flow's, and all that there are: no sentence may quote one.
+struct Tokens {
+  std::optional<icd::BearerToken> scoring, mapping;
+  std::vector<icd::BearerToken> all;
+};
+
+/// The way of the team's messages from intake to uplink: they come in as to a Desk, and leave by Scoring,
+/// Maps and News.
+class Flow final : public intake::Desk {
+ public:
+  struct Folders {
+    std::string runtime, state;
+  };
+  /// Who is told what. Each is called on the loop.
+  struct Told {
+    std::function<void()> changed;                        // what the page shows
+    std::function<void()> anew;                           // see whole.hpp
+    std::function<void(const std::string& name)> posted;  // a robot posts
+  };
+
+  /// `settings`: with the course in use. All references outlive this.
+  Flow(loop::Loop& loop, ledger::Ledger& ledger, const settings::Settings& settings, Tokens tokens,
+       const Folders& folders, std::optional<Legacy> legacy, Told told);
+
+  /// Goes on as the life before left off, and connects. An error: the ledger cannot be read.
+  std::expected<void, std::string> start();
+  /// Once a second. `disk`: the writer of the state folder.
+  void tick(loop::Writer& disk);
+  /// The Command Post's cable is: nothing waits for what it would have waited for without one.
+  void link_is_back();
+  /// Takes nothing new, waits for the answers under way and keeps what waits; `over` is called then.
+  void end(std::function<void()> over);
+  bool is_ending() const { return ending_.has_begun(); }
+  /// Once it is over, or could not start.
+  Legacy hand_over() { return {picture_.hand_over(), pictured_run_, std::move(as_forwarded_)}; }
+
+  std::shared_ptr<intake::MapArrival> map_arrives() override;
+  icd::Checked<void> take(const icd::StateUpdate& update, const intake::Sender& sender) override;
+  icd::Checked<void> take(const icd::MarkersUpdate& update, const intake::Sender& sender) override;
+  void take(const icd::ArtifactReport& report, const intake::Sender& sender,
+            std::shared_ptr<intake::Responder> responder) override;
+  void status(const intake::Sender& sender, std::shared_ptr<intake::Responder> responder) override;
+  void refused(icd::Uri uri, const intake::Sender& sender, const icd::Refusal& told) override;
+
+  /// The operator's word: page::Operator.
+  std::expected<std::int64_t, std::string> judge(std::int64_t number, page::Deed deed) {
+    return scoring_.judge(number, deed);
+  }
+  std::expected<std::int64_t, std::string> report(const icd::ArtifactReport& report, bool resubmit) {
+    return scoring_.report(report, resubmit);
+  }
+  std::expected<void, std::string> aside(std::uint64_t number, page::AsideDeed deed);
+  std::int64_t begin_run() { return scoring_.begin_run(); }
+
+  const Scoring& scoring() const { return scoring_; }
+  const dispatch::Reports& reports() const { return scoring_.reports(); }
+  const Maps& maps() const { return maps_; }
+  const News& news() const { return news_; }
+  const Aside& aside() const { return aside_; }
+  const Record& record() const { return record_; }
+  const AsForwarded& as_forwarded() const { return as_forwarded_; }
+  const picture::Mosaic& picture() const { return picture_.mosaic(); }
+  /// Record's, with what waits.
+  std::vector<page::ActivityRow> activities() const;
+  /// Why states and markers cannot be kept, or "".
+  const std::string& journal_trouble() const { return journal_.trouble(); }
+  std::uint64_t sent_bytes() const;
+  double sent_mbit() const { return meter_.mbit(); }
+
+  /// For whatever takes long; they end before anything that the flow holds.
+  loop::Workers& workers() { return workers_; }
+  /// All its threads, to be asked for signs of life.
+  std::vector<loop::Workers*> threads() { return {&workers_, &writer_}; }
+
+ private:
+  void carry_on();
+  void hold_back();
+  void restore(bool is_first);
+  void take(icd::MapUpdate update, const intake::Sender& sender, std::shared_ptr<spool::MapFile> file,
+            std::function<void(icd::Checked<void>)> done);
+  void changed();
+  void picture_the_run();
+  void drain();
+
+  loop::Loop& loop_;
+  Tokens tokens_;
+  Told told_;
+  const bool follows_;  // another flow of this process, which may have sent a moment ago
+  std::mt19937_64 random_;
+  spool::Spool spool_;     // before its writer, whose jobs use it to the end
+  loop::Writer writer_;    // of the runtime folder, in memory: an answer to a map waits for it
+  loop::Workers workers_;  // after the writer: what a job holds is the writer's to the end
+  journal::Journal journal_;
+  Clocks clocks_;
+  Aside aside_;
+  Record record_;
+  Scoring scoring_;
+  MapPicture picture_;
+  Maps maps_;
+  AsForwarded as_forwarded_;
+  News news_;
+  Meter meter_;
+  std::int64_t pictured_run_;  // Legacy's
+  Ending ending_;
+  std::function<void()> over_;
+  loop::Source drained_;
+};
+
+}  // namespace adit::forward

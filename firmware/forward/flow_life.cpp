@@ -1,0 +1,129 @@
+// How the flow begins, goes on and ends.
+#include <utility>
+
+#include "forward/flow.hpp"
+#include "host/random.hpp"
+#include "host/service.hpp"
+#include "loop/guard.hpp"
+
+namespace adit::forward {
+namespace {
+
+/// What is in the runtime folder beside maps: of the journal, which is made smaller beside itself, four times
+/// what waits, what is set aside, and what others keep there.
+std::uint64_t beside_maps(const settings::Settings& settings) {
+  constexpr std::uint64_t kOthers = 8u << 20;
+  return 4 * std::uint64_t{settings.queues.marker_bytes} + lanes::SetAside::kMostBytes + kOthers;
+}
+
+std::uint64_t seed() {
+  std::uint64_t seed = 0;
+  host::fill_random({reinterpret_cast<std::uint8_t*>(&seed), sizeof seed});
+  return seed;
+}
+
+}  // namespace
+
+Flow::Flow(loop::Loop& loop, ledger::Ledger& ledger, const settings::Settings& settings, Tokens tokens,
+           const Folders& folders, std::optional<Legacy> legacy, Told told)
+    : loop_(loop),
+      tokens_(std::move(tokens)),
+      told_(std::move(told)),
+      follows_(legacy.has_value()),
+      random_(seed()),
+      spool_(folders.runtime + "/waiting", beside_maps(settings)),
+      writer_(loop),
+      workers_(loop, 0),
+      journal_(loop, folders.runtime + "/journal"),
+      clocks_(loop, journal_, folders.state),
+      aside_(loop, writer_, folders.runtime + "/aside"),
+      record_([this] { changed(); }),
+      scoring_(loop, ledger, settings, tokens_.scoring, record_, random_, journal_, told_.anew),
+      picture_(
+          loop, workers_, [this] { return maps_.packing(); }, [this] { changed(); },
+          legacy ? std::move(legacy->picture) : picture::Mosaic()),
+      maps_(loop, workers_, writer_, spool_, settings, tokens_.mapping, record_, aside_, random_, journal_,
+            [this](icd::MapUpdate map) { picture_.forwarded(std::move(map)); }),
+      as_forwarded_(legacy ? std::move(legacy->as_forwarded) : AsForwarded()),
+      news_(loop, settings, tokens_.mapping, record_, aside_, random_, journal_, as_forwarded_, told_.anew),
+      pictured_run_(legacy ? legacy->pictured_run : 0),
+      drained_(loop.timer([this] { drain(); })) {}
+
+std::expected<void, std::string> Flow::start() {
+  carry_on();
+  if (auto started = scoring_.start(); !started) return started;
+  news_.start();
+  return {};
+}
+
+/// Takes up what the life before left, in this process or another: rates and stamps go on as if nothing had
+/// been.
+void Flow::carry_on() {
+  journal::Carried carried = journal_.read();
+  const bool is_first = !carried.clock();
+  clocks_.carry_on(carried, host::boot());
+  if (is_first && follows_) hold_back();
+  scoring_.carry_on(carried);
+  maps_.carry_on(carried);
+  news_.carry_on(carried);
+  restore(is_first);
+}
+
+/// When the flow before sent last is not known, and the Command Post sees too much of neither.
+void Flow::hold_back() {
+  scoring_.hold_back();
+  maps_.hold_back();
+  news_.hold_back();
+}
+
+/// What is kept in files of its own. What a release before the journal left is stamped anew, and waits: what
+/// that sent last, and when, is not known.
+void Flow::restore(bool is_first) {
+  aside_.restore();
+  spool::Spool::Kept kept = spool_.read();
+  const double now = loop_.stamp_now();
+  const bool is_left = !kept.maps.empty() || !kept.state.poses.empty() || !kept.markers.markers.empty();
+  if (is_first && is_left) hold_back();
+  for (auto& [number, map] : kept.maps) {
+    if (is_first) map.header().stamp = now;
+    maps_.restore(number, std::move(map));
+  }
+  kept.state.header.stamp = now;
+  for (icd::Marker& marker : kept.markers.markers) marker.header.stamp = now;
+  // The lanes are empty: there is room. What cannot be kept in the journal stays in its file; the other is
+  // not taken twice, for what came since is newer.
+  if (kept.state.poses.empty() || news_.take(kept.state, 0)) spool_.forget_state();
+  if (kept.markers.markers.empty() || news_.take(kept.markers, 0)) spool_.forget_markers();
+}
+
+void Flow::link_is_back() {
+  scoring_.link_is_back();
+  maps_.link_is_back();
+  news_.link_is_back();
+}
+
+void Flow::tick(loop::Writer& disk) {
+  meter_.second(sent_bytes());
+  scoring_.tick();
+  clocks_.keep_floor(disk);
+}
+
+void Flow::end(std::function<void()> over) {
+  if (is_ending()) return;
+  ending_.begin(loop_.now());
+  over_ = std::move(over);
+  drained_.call_at(loop_.now() + Ending::kStep);  // first: whatever fails below, the end comes
+  loop::guarded("ending", [this] { drain(); });
+}
+
+void Flow::drain() {
+  if (ending_.is_over(loop_.now())) return over_();
+  drained_.call_at(loop_.now() + Ending::kStep);
+  const bool scoring = scoring_.stop(), maps = maps_.stop(), news = news_.stop();
+  const bool kept = maps_.all_kept() && aside_.all_kept();
+  if (!ending_.dismisses(loop_.now(), scoring && maps && news, kept)) return;
+  drained_.call_at(loop_.now() + Ending::kFlush);
+  scoring_.dismiss();
+}
+
+}  // namespace adit::forward

@@ -1,0 +1,87 @@
+#include "forward/clocks.hpp"
+
+#include <gtest/gtest.h>
+
+#include <filesystem>
+#include <optional>
+
+#include "host/folder.hpp"
+#include "loop/turn_until.hpp"
+
+namespace adit::forward {
+namespace {
+
+constexpr double kFarAhead = 1000;  // seconds
+
+class ClocksTest : public testing::Test {
+ protected:
+  /// A life that goes on from what the one before left.
+  void live(const std::string& boot = "b") {
+    clocks_.reset();
+    journal_.reset();
+    journal_.emplace(loop_, folder_.path() + "/journal");
+    journal::Carried carried = journal_->read();
+    clocks_.emplace(loop_, *journal_, folder_.path());
+    clocks_->carry_on(carried, boot);
+  }
+  double now() const { return loop_.stamp_now(); }
+
+  host::Folder folder_;
+  loop::Loop loop_;
+  loop::Writer disk_{loop_};
+  std::optional<journal::Journal> journal_;
+  std::optional<Clocks> clocks_;
+};
+
+TEST_F(ClocksTest, ASenderGoesOnAsItDidInTheLifeBefore) {
+  live();
+  const icd::Stamp first = clocks_->stamped("10.0.0.5/state/r1", 50, 1);
+  EXPECT_NEAR(first, now(), 0.1);
+  live();
+  EXPECT_NEAR(clocks_->stamped("10.0.0.5/state/r1", 50.3, 2), first + 0.3, 1e-6);
+}
+
+TEST_F(ClocksTest, TheGatewaysClockDoesNotFollowTheSystemsBack) {
+  live();
+  const double before = now();
+  loop_.set_stamp(before - kFarAhead);  // as of a start with a clock that was set back
+  live();
+  EXPECT_GE(now(), before);
+}
+
+TEST_F(ClocksTest, AllSendersGoWithAClockThatWasSetAhead) {
+  live();
+  const icd::Stamp first = clocks_->stamped("10.0.0.5/state/r1", 50, 1);
+  loop_.set_stamp(now() + kFarAhead);
+  live();
+  EXPECT_NEAR(clocks_->stamped("10.0.0.5/state/r1", 50.3, 2), first + kFarAhead + 0.3, 0.1);
+}
+
+TEST_F(ClocksTest, AMachineWithoutAClockGoesOnFromTheFloor) {
+  live();
+  const double before = now();
+  clocks_->keep_floor(disk_);
+  ASSERT_TRUE(loop::turn_until(
+      loop_, [&] { return std::filesystem::exists(folder_.path() + '/' + StampFloor::kFile); }));
+  loop_.set_stamp(before - kFarAhead);
+  live("another start");
+  EXPECT_GE(now(), before);
+}
+
+TEST_F(ClocksTest, EachNamespaceOfMarkersHasAClockOfItsOwn) {
+  live();
+  icd::MarkersUpdate update;
+  for (const auto& [ns, stamp] : {std::pair{"a", 50.0}, std::pair{"b", 900.0}, std::pair{"a", 50.5}}) {
+    icd::Marker marker;
+    marker.ns = ns;
+    marker.header.stamp = stamp;
+    update.markers.push_back(marker);
+  }
+  clocks_->stamp(update, "10.0.0.5");
+  EXPECT_NEAR(*update.markers[0].header.stamp, now(), 0.1);
+  EXPECT_NEAR(*update.markers[1].header.stamp, now(), 0.1);
+  EXPECT_NEAR(*update.markers[2].header.stamp, *update.markers[0].header.stamp + 0.5, 1e-6);
+}
+
+}  // namespace
+}  // namespace adit::forward

@@ -1,0 +1,27 @@
+#include "forward/meter.hpp"
+
+#include <gtest/gtest.h>
+
+namespace adit::forward {
+namespace {
+
+TEST(MeterTest, KnowsNothingBeforeASecondHasPassed) {
+  Meter meter;
+  EXPECT_EQ(meter.mbit(), 0);
+  meter.second(1'000'000);
+  EXPECT_EQ(meter.mbit(), 0);
+}
+
+TEST(MeterTest, TellsTheMeanOfTheLastSeconds) {
+  Meter meter;
+  meter.second(7);
+  meter.second(7 + 1'000'000);
+  EXPECT_DOUBLE_EQ(meter.mbit(), 8);
+  for (std::size_t i = 1; i < Meter::kSeconds; ++i) meter.second(7 + 1'000'000);
+  EXPECT_DOUBLE_EQ(meter.mbit(), 8.0 / Meter::kSeconds);
+  meter.second(7 + 1'000'000);
+  EXPECT_DOUBLE_EQ(meter.mbit(), 0);  // what was before is forgotten
+}
+
+}  // namespace
+}  // namespace adit::forward

@@ -1,4 +1,4 @@
-// Kept, Answered and what arrived: of what the team's clients heard.
+// Kept and Answered: of what the team's clients heard.
 #include <map>
 
 #include "icd/sentence.hpp"
@@ -10,23 +10,6 @@ namespace {
 
 /// Seconds within which a whole request is answered, or its connection closed.
 constexpr double kReportWithin = 21, kOtherWithin = 8;
-
-void arrived(const Evidence& evidence, const char* path, const char* name, Broken& broken) {
-  std::map<std::string, std::int64_t> accepted, taken;
-  for (const Event& event : evidence.events) {
-    if (event.what != path) continue;
-    if (event.kind == Kind::Answered && event.status == 200)
-      accepted[event.who] = std::max(accepted[event.who], event.serial);
-    if (event.kind == Kind::Taken) taken[event.who] = event.serial;
-  }
-  for (const auto& [who, serial] : accepted) {
-    const std::int64_t last = taken.contains(who) ? taken[who] : 0;
-    if (last < serial) {
-      broken.push_back(icd::sentence(name, ": ", who, "'s ", serial,
-                                     " was answered 200, and the last one taken is ", last));
-    }
-  }
-}
 
 }  // namespace
 
@@ -67,20 +50,10 @@ void answered(const Evidence& evidence, Broken& broken) {
   }
 }
 
-void pose_arrived(const Evidence& evidence, Broken& broken) {
-  arrived(evidence, kState, "PoseArrived", broken);
-}
-void grid_arrived(const Evidence& evidence, Broken& broken) {
-  arrived(evidence, kMap, "GridArrived", broken);
-}
-void marker_arrived(const Evidence& evidence, Broken& broken) {
-  arrived(evidence, kMarkers, "MarkerArrived", broken);
-}
-
 Broken all_checks(const Evidence& evidence) {
   Broken broken;
   for (const auto check : {once, not_lost, paced, stamps, kept, answered, pose_arrived, grid_arrived,
-                           marker_arrived, live, honest, lights, alive}) {
+                           cloud_arrived, markers_arrived, live, honest, lights, alive}) {
     check(evidence, broken);
   }
   return broken;

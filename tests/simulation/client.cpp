@@ -7,8 +7,10 @@
 #include <algorithm>
 #include <array>
 #include <cerrno>
+#include <cstdlib>
 #include <utility>
 
+#include "simulation/messages.hpp"
 #include "simulation/world.hpp"
 
 namespace adit::simulation {
@@ -34,22 +36,25 @@ void Client::close() {
   answers_ = {};
 }
 
-void Client::ask(std::string request, Event about, std::function<void(int)> done) {
+void Client::ask_several(std::string request, std::vector<Event> about, std::function<void(int)> done) {
   if (world_.omits("client " + address_)) return world_.after({}, [done = std::move(done)] { done(0); });
   request_ = std::move(request);
-  about_ = std::move(about);
-  about_.actor = Actor::Team;
-  about_.request = world_.entropy();
+  const std::uint64_t id = world_.entropy();
   done_ = std::move(done);
   written_ = 0;
   hang_up_at_ = random_.chance(manners_.hangs_up) ? 1 + random_.below(request_.size()) : 0;
+  half_close_ = random_.chance(manners_.half_closes);
   const std::uint64_t number = ++number_;
   if (fd_ < 0) connect();
-  Event event = about_;
-  event.kind = Kind::Invoke;
-  world_.note(std::move(event));
+  for (Event& event : about) {
+    event.actor = Actor::Team;
+    event.kind = Kind::Invoke;
+    event.request = id;
+    world_.note(event);
+  }
+  about_ = std::move(about.front());
   world_.after(seconds(manners_.patience), [this, number] {
-    if (number == number_ && done_) ended(Kind::Gone, 0, "out of patience");
+    if (number == number_ && done_) gone("out of patience");
   });
   go_on();
 }
@@ -70,14 +75,15 @@ void Client::write(std::size_t most) {
   if (hang_up_at_ != 0) most = std::min(most, hang_up_at_ - written_);
   const ssize_t taken = ::send(fd_, request_.data() + written_, most, MSG_NOSIGNAL | MSG_DONTWAIT);
   if (taken < 0 && errno == EAGAIN) return;
-  if (taken < 0) return ended(Kind::Gone, 0, "reset");
+  if (taken < 0) return gone("reset");
   written_ += static_cast<std::size_t>(taken);
   if (written_ == request_.size()) {
     Event event = about_;
     event.kind = Kind::Whole;
     world_.note(std::move(event));
+    if (half_close_) ::shutdown(fd_, SHUT_WR);
   }
-  if (hang_up_at_ != 0 && written_ == hang_up_at_) ended(Kind::Gone, 0, "hung up");
+  if (hang_up_at_ != 0 && written_ == hang_up_at_) gone("hung up");
 }
 
 void Client::ready(std::uint32_t) {
@@ -88,24 +94,40 @@ void Client::read() {
   std::array<char, 16384> bytes{};
   const ssize_t got = ::recv(fd_, bytes.data(), bytes.size(), MSG_DONTWAIT);
   if (got < 0 && errno == EAGAIN) return;
-  if (got <= 0) return done_ ? ended(Kind::Gone, 0, "cut") : close();
+  if (got <= 0) return done_ ? gone("cut") : close();
   answers_.feed({bytes.data(), static_cast<std::size_t>(got)});
   while (const auto answer = answers_.next()) {
     if (answer->status() < 200 || !done_) continue;
-    const bool stays = manners_.keeps_alive && answer->header("connection") != "close";
+    const bool stays = manners_.keeps_alive && !half_close_ && answer->header("connection") != "close";
     heard_ = answer->body;
-    ended(Kind::Answered, answer->status(), answer->status() < 300 ? "" : answer->body);
+    heard(*answer);
     if (!stays) close();
   }
 }
 
-/// A client that heard nothing has done with the connection.
-void Client::ended(Kind kind, int status, const std::string& why) {
-  if (kind == Kind::Gone) close();
+void Client::heard(const HttpMessage& answer) {
   Event event = about_;
-  event.kind = kind;
-  event.status = status;
+  event.kind = Kind::Answered;
+  event.status = answer.status();
+  if (event.status >= 300) event.text = answer.body;
+  if (event.what == kStatus && event.status == 200) {
+    event.says = status_in(answer.body);
+    event.stamp = std::atof(answer.header("age").c_str());
+  }
+  ended(std::move(event));
+}
+
+/// A client that heard nothing has done with the connection.
+void Client::gone(const std::string& why) {
+  close();
+  Event event = about_;
+  event.kind = Kind::Gone;
   event.text = why;
+  ended(std::move(event));
+}
+
+void Client::ended(Event event) {
+  const int status = event.status;
   world_.note(std::move(event));
   const auto done = std::exchange(done_, nullptr);
   ++number_;

@@ -168,7 +168,8 @@ std::string CommandPost::take(const HttpMessage& request) {
                  .what = path,
                  .who = item.who,
                  .serial = item.serial,
-                 .stamp = item.stamp});
+                 .stamp = item.stamp,
+                 .says = item.says});
   }
   return http_answer("200 OK", kJson, "null");
 }

@@ -37,6 +37,7 @@ void History::note(Event event) {
     mix(hash_, static_cast<std::uint64_t>(event.serial));
     mix(hash_, static_cast<std::uint64_t>(event.status));
     mix(hash_, static_cast<std::uint64_t>(std::llround(event.stamp * 1e6)));
+    for (const int number : event.says) mix(hash_, static_cast<std::uint64_t>(number));
   }
   if (event.kind == Kind::Fault) ++faults_;
   if (tells == Telling::All || (tells == Telling::Story && is_of_the_story(event)))
@@ -60,6 +61,7 @@ std::string line_of(const Event& event) {
     std::snprintf(stamp, sizeof stamp, "(%.6f)", event.stamp);
     add(stamp);
   }
+  for (const int number : event.says) add(std::to_string(number));
   add(event.text);
   constexpr std::size_t kColumn = 44;
   const std::size_t column = static_cast<std::size_t>(event.actor) * kColumn;

@@ -10,7 +10,7 @@ enum class Actor : std::uint8_t { Team, Adit, Post };
 
 /// What may happen. Each that has a serial says of which message.
 enum class Kind : std::uint8_t {
-  Invoke,    // a client begins to ask
+  Invoke,    // a client begins to ask; one for each thing that its request says
   Whole,     // the last byte of its request is on its way
   Answered,  // the client has heard a whole answer, of that status
   Gone,      // the client has not, and the connection is over: it hung up, or was cut
@@ -31,6 +31,9 @@ enum class Kind : std::uint8_t {
   Said    // a line of the log
 };
 
+/// What a message says beside its serial, in numbers: see messages.hpp.
+using Says = std::vector<int>;
+
 struct Event {
   double at = 0;  // seconds since the run began
   int life = 0;
@@ -43,6 +46,7 @@ struct Event {
   double stamp = 0;  // of a message upstream; of an answer: its Retry-After; of a recorded report: its points
   std::string text = {};      // for the story; of an answer to a status its body, of "STATUS" the line
   std::uint64_t request = 0;  // of a client: which
+  Says says = {};
 };
 
 /// What of a run is told on standard output, as it happens.

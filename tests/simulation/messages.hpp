@@ -4,8 +4,8 @@
 #include <string>
 #include <vector>
 
+#include "simulation/history.hpp"
 #include "simulation/http.hpp"
-#include "simulation/random.hpp"
 
 namespace adit::simulation {
 
@@ -13,27 +13,48 @@ inline constexpr const char *kReports = "/api/artifact_reports", *kStatus = "/ap
                             *kMap = "/map/update", *kState = "/state/update", *kMarkers = "/markers/update";
 
 /// What one message says of one thing, by the serial that rides in a field which nothing changes: a report's
-/// x, a pose's x, a marker's scale, the first cells of a grid.
+/// x, a pose's x, a marker's scale, the first cells of a grid, the points' intensity.
 struct Item {
-  std::string who;  // a robot, or a marker's ns and id, or "" of a report
+  std::string who;  // a map's or a pose's name, a marker's ns, "" of a report
   std::int64_t serial = 0;
   double stamp = 0;  // 0: none
+  Says says = {};    // of a grid its Extent, of a cloud its points, of a marker action and id
 };
+
+/// Where a grid lies.
+struct Extent {
+  int centimetres = 50;       // of a cell
+  int x = 0, y = 0;           // of the origin, in half cells
+  int width = 8, height = 8;  // cells
+
+  static Extent from(const Says& says) { return {says[0], says[1], says[2], says[3], says[4]}; }
+  Says says() const { return {centimetres, x, y, width, height}; }
+};
+inline bool is_grid(const Says& says) {
+  return says.size() == 5;
+}
+inline bool is_cloud(const Says& says) {
+  return says.size() == 1;
+}
+inline constexpr int kStrange = -1;  // points: some are none that anybody posted
+
+enum MarkerAction { kAdd = 0, kDelete = 2, kDeleteAll = 3 };
 
 /// Of a request to the Command Post; none where it is no message of the ICD.
 std::vector<Item> items_of(const HttpMessage& request);
+/// Of a status: its score, its remaining reports, and its run clock in milliseconds.
+Says status_in(const std::string& body);
 
 /// A client's message before it is put into bytes.
 struct Posting {
   std::string path;
-  std::string who;
-  std::int64_t serial = 0;
-  double stamp = 0;  // by the sender's clock; 0: it gives none
-  int size = 16;     // of a grid, in cells
+  std::vector<Item> items;  // of one of the same stamp: several markers, or one
 };
 
 struct Style {
   bool cbor = false, gzip = false, gzip_data = false;
+  bool big_endian = false;  // clouds
+  int point_step = 16;      // of clouds, in bytes
 };
 
 /// The whole request, in the bytes of that style. Reports are JSON.

@@ -22,8 +22,12 @@ void UpstreamView::left(std::string_view bytes) {
   requests_.feed(bytes);
   while (const auto request = requests_.next()) {
     for (const Item& item : items_of(*request)) {
-      world.note(
-          {.kind = Kind::Left, .what = path_, .who = item.who, .serial = item.serial, .stamp = item.stamp});
+      world.note({.kind = Kind::Left,
+                  .what = path_,
+                  .who = item.who,
+                  .serial = item.serial,
+                  .stamp = item.stamp,
+                  .says = item.says});
     }
   }
 }
@@ -36,7 +40,8 @@ void UpstreamView::came(std::string_view bytes) {
                            .who = answer->body.starts_with('<') ? kForeign : "",
                            .status = answer->status(),
                            .stamp = std::atof(answer->header("retry-after").c_str()),
-                           .text = path_ == kStatus ? answer->body : ""});
+                           .text = path_ == kStatus ? answer->body : "",
+                           .says = path_ == kStatus ? status_in(answer->body) : Says()});
   }
   if (!answers_.head() || answers_.length() <= kLongest) return;
   World::current().note(

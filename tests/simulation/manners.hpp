@@ -1,0 +1,24 @@
+#pragma once
+
+#include <string>
+
+#include "simulation/client.hpp"
+#include "simulation/random.hpp"
+
+namespace adit::simulation {
+
+/// Of the team's network.
+inline std::string address(int number) {
+  return std::string("10.0.0.").append(std::to_string(20 + number));
+}
+
+/// As the seed draws them.
+inline Manners manners(Random random) {
+  return {.keeps_alive = random.chance(0.6),
+          .patience = random.chance(0.5) ? random.between(0.3, 3) : random.between(3, 30),
+          .hangs_up = random.chance(0.3) ? random.between(0.02, 0.3) : 0,
+          .dribbles = random.chance(0.3) ? 0.5 : 0.05,
+          .half_closes = random.chance(0.1) ? 0.3 : 0};
+}
+
+}  // namespace adit::simulation

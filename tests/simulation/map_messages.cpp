@@ -1,0 +1,186 @@
+// Grids and clouds, each with its serial in its data.
+#include "simulation/map_messages.hpp"
+
+#include <algorithm>
+#include <array>
+#include <bit>
+#include <cmath>
+#include <cstring>
+#include <limits>
+#include <map>
+#include <set>
+
+#include "simulation/bytes.hpp"
+
+namespace adit::simulation {
+namespace {
+
+constexpr std::size_t kSerialCells = 4;     // of a grid, each a digit of base 100
+constexpr std::int64_t kPointsApart = 512;  // a point's intensity: so many times the serial, and its index
+constexpr std::int64_t kInvalidEvery = 17;
+constexpr double kPacking = 0.0013;  // metres by which packing may move a point
+
+/// Where a point lies.
+std::array<float, 3> place_of(std::int64_t serial, std::int64_t index) {
+  return {static_cast<float>(index) * 0.37F, static_cast<float>(serial % 97) * 1.5F,
+          static_cast<float>((serial * 7 + index * 13) % 100) * -0.01F};
+}
+
+void put(std::string& bytes, std::size_t at, float value, bool big_endian) {
+  auto raw = std::bit_cast<std::array<char, 4>>(value);
+  if (big_endian) std::ranges::reverse(raw);
+  std::ranges::copy(raw, bytes.begin() + static_cast<std::ptrdiff_t>(at));
+}
+
+float get(const std::string& bytes, std::size_t at, bool big_endian) {
+  std::array<char, 4> raw{};
+  std::memcpy(raw.data(), bytes.data() + at, raw.size());
+  if (big_endian) std::ranges::reverse(raw);
+  return std::bit_cast<float>(raw);
+}
+
+void put_data(Json& msg, std::string data, const Style& style) {
+  if (style.gzip_data) {
+    msg["compression"] = "gzip";
+    data = deflated(data);
+  }
+  if (style.cbor) {
+    msg["data"] = Json::binary({data.begin(), data.end()});
+  } else {
+    msg["data"] = base64(data);
+  }
+}
+
+std::string data_in(const Json& msg) {
+  const auto& bytes = msg.at("data").get_binary();
+  std::string data(bytes.begin(), bytes.end());
+  return msg.value("compression", "none") == "gzip" ? inflated(data) : data;
+}
+
+Json grid(const Item& item, const Style& style) {
+  const Extent extent = Extent::from(item.says);
+  std::string cells(static_cast<std::size_t>(extent.width) * static_cast<std::size_t>(extent.height), '\0');
+  std::int64_t serial = item.serial;
+  for (std::size_t i = kSerialCells; i-- > 0; serial /= 100) cells[i] = static_cast<char>(serial % 100);
+  const double cell = extent.centimetres / 100.0;
+  Json msg = {{"header", header_of(item.stamp)},
+              {"info",
+               {{"resolution", cell},
+                {"width", extent.width},
+                {"height", extent.height},
+                {"origin", pose_at(extent.x * cell / 2, extent.y * cell / 2)}}}};
+  put_data(msg, std::move(cells), style);
+  return msg;
+}
+
+Json field(const char* name, std::size_t offset) {
+  return {{"name", name}, {"offset", offset}, {"datatype", 7}, {"count", 1}};
+}
+
+/// In a third of them an invalid point comes before each kInvalidEvery valid ones.
+Json cloud(const Item& item, const Style& style) {
+  const auto step = static_cast<std::size_t>(style.point_step);
+  std::string points;
+  const auto add = [&](std::array<float, 3> place, std::int64_t index) {
+    const std::size_t at = points.size();
+    points.resize(at + step);
+    for (std::size_t i = 0; i < 3; ++i) put(points, at + 4 * i, place[i], style.big_endian);
+    put(points, at + 12, static_cast<float>(item.serial * kPointsApart + index), style.big_endian);
+  };
+  for (std::int64_t index = 0; index < item.says.front(); ++index) {
+    auto place = place_of(item.serial, index);
+    if (item.serial % 3 == 0 && index % kInvalidEvery == 0) {
+      auto invalid = place;
+      invalid[static_cast<std::size_t>(item.serial / 3 % 3)] = std::numeric_limits<float>::quiet_NaN();
+      add(invalid, index);
+    }
+    add(place, index);
+  }
+  Json msg = {{"header", header_of(item.stamp)},
+              {"fields", {field("x", 0), field("y", 4), field("z", 8), field("intensity", 12)}},
+              {"point_step", step}};
+  if (style.big_endian) msg["is_bigendian"] = true;
+  put_data(msg, std::move(points), style);
+  return msg;
+}
+
+Item grid_item(const Json& msg) {
+  const Json& info = msg.at("info");
+  const double cell = info.at("resolution");
+  const Json& origin = info.at("origin").at("position");
+  const auto halves = [cell](double metres) { return static_cast<int>(std::lround(metres / cell * 2)); };
+  const Extent extent{static_cast<int>(std::lround(cell * 100)), halves(origin.at("x")),
+                      halves(origin.at("y")), info.at("width"), info.at("height")};
+  const std::string cells = data_in(msg);
+  std::int64_t serial = 0;
+  for (std::size_t i = 0; i < kSerialCells; ++i) serial = serial * 100 + (cells.size() > i ? cells[i] : 0);
+  return {.who = "", .serial = serial, .says = extent.says()};
+}
+
+/// In order of their first points. A point that is there already begins another copy of its cloud.
+std::vector<Item> cloud_items(const Json& msg) {
+  const std::string data = data_in(msg);
+  const auto step = msg.at("point_step").get<std::size_t>();
+  const bool big_endian = msg.value("is_bigendian", false);
+  std::map<std::string, std::size_t> offsets;
+  for (const Json& each : msg.at("fields")) offsets[each.at("name")] = each.at("offset").get<std::size_t>();
+  std::vector<Item> items;
+  std::map<std::int64_t, std::pair<std::size_t, std::set<std::int64_t>>> copies;  // the last of each
+  bool strange = data.size() % step != 0;
+  for (std::size_t at = 0; at + step <= data.size(); at += step) {
+    const auto value = [&](const char* name) { return get(data, at + offsets.at(name), big_endian); };
+    const auto number = static_cast<std::int64_t>(value("intensity"));
+    const std::int64_t serial = number / kPointsApart, index = number % kPointsApart;
+    const auto place = place_of(serial, index);
+    strange = strange || std::abs(value("x") - place[0]) > kPacking ||
+              std::abs(value("y") - place[1]) > kPacking || std::abs(value("z") - place[2]) > kPacking;
+    auto& [item, points] = copies[serial];
+    if (points.empty() || points.contains(index)) {
+      points.clear();
+      item = items.size();
+      items.push_back({.who = "", .serial = serial, .says = {0}});
+    }
+    points.insert(index);
+    ++items[item].says.front();
+  }
+  if (strange) items.push_back({.who = "", .says = {kStrange}});
+  return items;
+}
+
+}  // namespace
+
+Json header_of(double stamp) {
+  Json header = {{"frame_id", "darpa"}};
+  if (stamp != 0) header["stamp"] = stamp;
+  return header;
+}
+
+double stamp_of(const Json& message) {
+  return message.contains("header") ? message["header"].value("stamp", 0.0) : 0.0;
+}
+
+Json pose_at(double x, double y) {
+  return {{"position", {{"x", x}, {"y", y}, {"z", 0.0}}},
+          {"orientation", {{"x", 0.0}, {"y", 0.0}, {"z", 0.0}, {"w", 1.0}}}};
+}
+
+Json map_of(const Item& item, const Style& style) {
+  const bool is_of_cells = is_grid(item.says);
+  Json message = {{"type", is_of_cells ? "OccupancyGrid" : "PointCloud2"},
+                  {"msg", is_of_cells ? grid(item, style) : cloud(item, style)}};
+  if (!item.who.empty()) message["name"] = item.who;
+  return message;
+}
+
+std::vector<Item> map_items(const Json& message) {
+  const Json& msg = message.at("msg");
+  const bool is_of_cells = message.at("type") == "OccupancyGrid";
+  std::vector<Item> items = is_of_cells ? std::vector{grid_item(msg)} : cloud_items(msg);
+  for (Item& item : items) {
+    item.who = message.value("name", "");
+    item.stamp = stamp_of(msg);
+  }
+  return items;
+}
+
+}  // namespace adit::simulation

@@ -1,0 +1,21 @@
+#pragma once
+
+#include <nlohmann/json.hpp>
+#include <vector>
+
+#include "simulation/messages.hpp"
+
+namespace adit::simulation {
+
+using Json = nlohmann::json;
+
+Json header_of(double stamp);  // 0: without one
+double stamp_of(const Json& message);
+Json pose_at(double x, double y);
+
+/// The body of a map.
+Json map_of(const Item& item, const Style& style);
+/// What it says: a grid, or each of the clouds that were merged into it.
+std::vector<Item> map_items(const Json& message);
+
+}  // namespace adit::simulation

@@ -1,0 +1,118 @@
+#include "simulation/robot.hpp"
+
+#include <utility>
+#include <vector>
+
+#include "simulation/manners.hpp"
+#include "simulation/world.hpp"
+
+namespace adit::simulation {
+namespace {
+
+constexpr int kLargest = 64;  // cells of a side
+constexpr double kJump = 6;   // seconds: less may be messages that overtook each other
+
+Style style(Random random) {
+  return {.cbor = random.chance(0.5),
+          .gzip = random.chance(0.3),
+          .gzip_data = random.chance(0.3),
+          .big_endian = random.chance(0.2),
+          .point_step = random.chance(0.7) ? 16 : 24};
+}
+
+int between(Random& random, int low, int high) {
+  return low + static_cast<int>(random.below(static_cast<std::uint64_t>(high - low + 1)));
+}
+
+}  // namespace
+
+Robot::Robot(World& world, int number)
+    : world_(world),
+      random_(world.random("robot " + std::to_string(number))),
+      name_(std::string("R").append(std::to_string(number))),
+      client_(world, address(number), manners(random_), world.random("client " + name_)),
+      style_(style(world.random("style " + name_))),
+      clock_(random_.between(-1000, 1000)),
+      jump_(random_.chance(0.3) ? (random_.chance(0.5) ? 1 : -1) * random_.between(kJump, 2000) : 0),
+      jumps_at_(random_.between(1, 60)),
+      stamps_(random_.chance(0.7)),
+      every_(random_.between(0.1, 2)),
+      wipes_(random_.chance(0.5) ? 0.1 : 0),
+      serial_(number * kSerials) {}
+
+void Robot::post_until(double end) {
+  end_ = end;
+  world_.after(seconds(random_.between(0, every_)), [this] { post(); });
+}
+
+void Robot::post() {
+  if (world_.time() > end_) return;
+  Posting posting = next();
+  std::vector<Event> about;
+  about.reserve(posting.items.size());
+  for (const Item& item : posting.items) {
+    about.push_back({.what = posting.path,
+                     .who = item.who,
+                     .serial = item.serial,
+                     .stamp = item.stamp,
+                     .says = item.says});
+  }
+  client_.ask_several(request_of(posting, style_), std::move(about), [this](int) {
+    const double pause = row_ > 0 ? 0.01 : every_ * random_.between(0.2, 1.8);
+    world_.after(seconds(pause), [this] { post(); });
+  });
+}
+
+Posting Robot::next() {
+  if (row_ > 0) {
+    --row_;
+    return {kMap, {cloud()}};
+  }
+  const double kind = random_.unit();
+  if (kind < 0.35) return {kState, {item(name_)}};
+  if (kind < 0.55) return {kMap, {grid()}};
+  if (kind < 0.8) return markers();
+  if (random_.chance(0.4)) row_ = 1 + random_.below(5);
+  return {kMap, {cloud()}};
+}
+
+Item Robot::item(std::string who, Says says) {
+  const double off = clock_ + (world_.time() > jumps_at_ ? jump_ : 0);
+  return {.who = std::move(who),
+          .serial = ++serial_,
+          .stamp = stamps_ ? world_.stamp() + off : 0,
+          .says = std::move(says)};
+}
+
+/// Half of them are its whole map, which grows; the others are patches anywhere, some on another lattice.
+Item Robot::grid() {
+  if (random_.chance(0.5)) {
+    if (random_.chance(0.2) && extent_.width < kLargest) ++extent_.width, ++extent_.height;
+    if (random_.chance(0.1)) extent_.x -= 2, ++extent_.width;
+    return item(name_, extent_.says());
+  }
+  const Extent patch{.centimetres = random_.chance(0.8) ? 50 : 25,
+                     .x = 2 * between(random_, -8, 8) + (random_.chance(0.1) ? 1 : 0),
+                     .y = 2 * between(random_, -8, 8),
+                     .width = between(random_, 2, 12),
+                     .height = between(random_, 2, 12)};
+  return item(name_, patch.says());
+}
+
+/// Some are of no robot.
+Item Robot::cloud() {
+  return item(random_.chance(0.8) ? name_ : "", {between(random_, 5, random_.chance(0.1) ? 300 : 60)});
+}
+
+/// Up to four changes in one message, of its own namespaces; in some runs it deletes all, others' too.
+Posting Robot::markers() {
+  Posting posting{kMarkers, {}};
+  for (std::uint64_t i = 1 + random_.below(4); i > 0; --i) {
+    const int action = random_.chance(wipes_) ? kDeleteAll : random_.chance(0.25) ? kDelete : kAdd;
+    const std::string ns = name_ + (random_.chance(0.5) ? " path" : " finds");
+    posting.items.push_back(item(ns, {action, between(random_, 0, 5)}));
+  }
+  return posting;
+}
+
+}  // namespace adit::simulation

@@ -1,0 +1,49 @@
+#pragma once
+
+#include <cstdint>
+#include <string>
+
+#include "simulation/client.hpp"
+#include "simulation/messages.hpp"
+#include "simulation/random.hpp"
+
+namespace adit::simulation {
+
+class World;
+
+/// A robot: posts where it is, grids that cover earlier ones or do not, clouds by themselves or several in a
+/// row, and markers that it changes and deletes. Its serials rise.
+class Robot {
+ public:
+  static constexpr std::int64_t kSerials = 4096;  // of one robot, from `number` times as many on
+
+  Robot(World& world, int number);
+  /// Until then, on the run's clock.
+  void post_until(double end);
+
+ private:
+  void post();
+  Item item(std::string who, Says says = {});
+  Item grid();
+  Item cloud();
+  Posting markers();
+  Posting next();
+
+  World& world_;
+  Random random_;
+  const std::string name_;
+  Client client_;
+  const Style style_;
+  const double clock_;  // seconds by which its clock is off
+  const double jump_;   // and by which it is set once
+  const double jumps_at_;
+  const bool stamps_;
+  const double every_;  // seconds between two messages, about
+  const double wipes_;  // how likely a change of markers deletes all
+  double end_ = 0;
+  std::int64_t serial_;
+  Extent extent_;          // of its own map, which grows
+  std::uint64_t row_ = 0;  // clouds still to come in this row
+};
+
+}  // namespace adit::simulation

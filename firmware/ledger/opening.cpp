@@ -259,8 +259,14 @@ class Opening {
 
 }  // namespace
 
+/// Where SQLite can make no file, it says that there is none: the folder itself is asked for the reason.
 Attempt<Opened> open_database(const std::string& folder) {
-  return Opening(folder).open();
+  auto opened = Opening(folder).open();
+  if (!opened && !opened.error().full) {
+    const auto room = try_room(folder, 0);
+    opened.error().full = !room && room.error().full;
+  }
+  return opened;
 }
 
 void take_over_log(Database& database) {

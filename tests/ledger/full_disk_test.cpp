@@ -162,7 +162,7 @@ TEST(FullDiskOfALedger, IsSaidWhereThereIsNoLedgerYet) {
 class SmallDisk {
  public:
   explicit SmallDisk(const Folder& folder) : path_(folder.text()) {
-    mounted_ = ::mount("adit-test", path_.c_str(), "tmpfs", 0, "size=6m") == 0;
+    mounted_ = ::mount("adit-test", path_.c_str(), "tmpfs", 0, "size=6m,nr_inodes=20") == 0;
   }
   ~SmallDisk() {
     if (mounted_) ::umount2(path_.c_str(), MNT_DETACH);
@@ -172,6 +172,11 @@ class SmallDisk {
 
   bool mounted() const { return mounted_; }
   std::string filler() const { return path_ + "/filler"; }
+
+  /// No file can be made in it any more.
+  void use_up_names() const {
+    for (int i = 0; std::ofstream(filler() + std::to_string(i)).is_open();) ++i;
+  }
 
   /// Takes all room that is left.
   void fill_up() const {
@@ -184,6 +189,18 @@ class SmallDisk {
   std::string path_;
   bool mounted_ = false;
 };
+
+/// SQLite then looks for a file that it might at least read, and says that there is none.
+TEST(FullDiskOfALedger, IsSaidWhereNoFileCanBeMadeBesideIt) {
+  const Folder folder;
+  const SmallDisk disk(folder);
+  if (!disk.mounted()) GTEST_SKIP() << "this needs the right to mount: " << std::strerror(errno);
+  open_or_fail(folder);  // and ended in order: its log is gone
+  disk.use_up_names();
+  const auto ledger = Ledger::open(folder.text());
+  ASSERT_FALSE(ledger);
+  EXPECT_TRUE(ledger.error().full) << ledger.error().what;
+}
 
 TEST(FullDiskOfALedger, LeavesTheRoomThatItReservedForReportsUnderWay) {
   const Folder folder;

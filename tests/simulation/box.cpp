@@ -3,9 +3,11 @@
 #include <cstdio>
 #include <cstdlib>
 #include <fstream>
+#include <utility>
 
 #include "gateway/options.hpp"
 #include "gateway/service.hpp"
+#include "gateway/session_keeper.hpp"
 #include "simulation/command_post.hpp"
 #include "simulation/world.hpp"
 
@@ -14,7 +16,9 @@ namespace {
 
 namespace fs = std::filesystem;
 
-constexpr std::uint64_t kMostCrossings = 40;
+constexpr std::uint64_t kSoon = 40, kMostCrossings = 400;
+/// Seconds until a process is started again, and until a machine is.
+constexpr double kRestart[] = {0.05, 2}, kBoot[] = {5, 20};
 
 void write(const fs::path& path, const std::string& text) {
   std::ofstream(path) << text;
@@ -57,6 +61,7 @@ Box::Box(World& world) : world_(world), random_(world.random("box")) {
     write(folder_ / "secrets" / (std::string(each) + ".token"), "flux230{showroom\n");
   write(folder_ / "secrets" / "team.token", "token-of-the-team\n");
   write(folder_ / "settings.json", first_settings());
+  world_.disk().mount(folder_);
 }
 
 Box::~Box() {
@@ -78,14 +83,20 @@ void Box::one_life() {
   options.notices = folder_ / "notices";
   ::setenv("RUNTIME_DIRECTORY", (folder_ / "runtime").c_str(), 1);
   world_.begin_life();
+  if (const auto how = std::exchange(dies_at_start_, std::nullopt)) die_soon(*how);
   try {
-    if (gateway::Service(options).run() != 0) std::abort();
+    const bool began = gateway::Service(options).run() == 0;
+    if (!began && !world_.is_dead()) world_.note({.kind = Kind::Fails, .what = "aditd", .who = ""});
   } catch (const Killed&) {
+  }
+  if (world_.is_dead()) {
     fs::remove_all(folder_);
     folder_ = next_;
+    world_.disk().mount(folder_);
   }
   world_.end_life();
-  if (!finished_) world_.run_for(seconds(random_.between(0.05, 2)));
+  const auto& [least, most] = std::exchange(boots_, false) ? kBoot : kRestart;
+  if (!finished_) world_.run_for(seconds(random_.between(least, most)));
 }
 
 void Box::finish() {
@@ -94,14 +105,21 @@ void Box::finish() {
 }
 
 void Box::terminate() {
-  if (world_.is_dead() || !world_.on_sigterm) return;
-  world_.note({.kind = Kind::Stops, .what = "aditd", .who = "", .serial = world_.life()});
-  world_.on_sigterm();
+  world_.when_moving([this] {
+    if (world_.is_dead() || !world_.on_sigterm) return;
+    world_.note({.kind = Kind::Stops, .what = "aditd", .who = "", .serial = world_.life()});
+    world_.on_sigterm();
+  });
 }
 
-void Box::kill() {
-  if (world_.is_dead()) return;
-  world_.die_after(random_.below(kMostCrossings), [this] { died(); });
+void Box::die(World::How how) {
+  if (!world_.is_dead()) return die_soon(how);
+  dies_at_start_ = how;
+}
+
+void Box::die_soon(World::How how) {
+  const std::uint64_t calls = random_.below(random_.chance(0.5) ? kSoon : kMostCrossings);
+  world_.die_after(calls, how, [this, how] { how == World::How::PowerCut ? lost_power() : died(); });
 }
 
 /// The files as they are at this instant are the next life's: what the objects of this one still write goes
@@ -109,6 +127,21 @@ void Box::kill() {
 void Box::died() {
   next_ = top_ / std::to_string(++folders_);
   copy_folder(folder_, next_);
+}
+
+/// What was in memory is gone, but for who is logged in: as if the operator had logged in again. Some
+/// machines have a clock that goes on without power, others begin where they always do.
+void Box::lost_power() {
+  died();
+  world_.note({.kind = Kind::PowerCut, .what = "", .who = "", .serial = world_.life()});
+  world_.disk().cut_power(next_);
+  const fs::path runtime = next_ / Disk::kRuntime;
+  const fs::path sessions = folder_ / Disk::kRuntime / gateway::SessionKeeper::kFile;
+  fs::remove_all(runtime);
+  fs::create_directory(runtime);
+  if (fs::exists(sessions)) fs::copy_file(sessions, runtime / gateway::SessionKeeper::kFile);
+  if (random_.chance(0.5)) world_.set_clock_back(world_.time());
+  boots_ = true;
 }
 
 }  // namespace adit::simulation

@@ -1,13 +1,13 @@
 #pragma once
 
 #include <filesystem>
+#include <optional>
 #include <string>
 
 #include "simulation/random.hpp"
+#include "simulation/world.hpp"
 
 namespace adit::simulation {
-
-class World;
 
 /// The box: its folders, and the lives of aditd, one after the other.
 class Box {
@@ -23,8 +23,8 @@ class Box {
   /// SIGTERM, for good.
   void finish();
   void terminate();
-  /// The process dies at a drawn call of the seam from now on.
-  void kill();
+  /// At a drawn call of the seam from now on, or from the next start on.
+  void die(World::How how);
 
   std::string state() const { return (folder_ / "state").string(); }
   std::string runtime() const { return (folder_ / "runtime").string(); }
@@ -33,13 +33,16 @@ class Box {
 
  private:
   void one_life();
+  void die_soon(World::How how);
   void died();
+  void lost_power();
 
   World& world_;
   Random random_;
   std::filesystem::path top_, folder_, next_;
   int folders_ = 0;
-  bool finished_ = false;
+  bool finished_ = false, boots_ = false;
+  std::optional<World::How> dies_at_start_;
 };
 
 }  // namespace adit::simulation

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <set>
 #include <string>
 #include <vector>
 
@@ -18,6 +19,7 @@ struct Evidence {
 
 /// Each adds a sentence for what it finds broken, which begins with its name. Their rules are in README.md.
 using Broken = std::vector<std::string>;
+void starts(const Evidence& evidence, Broken& broken);
 void once(const Evidence& evidence, Broken& broken);
 void not_lost(const Evidence& evidence, Broken& broken);
 void paced(const Evidence& evidence, Broken& broken);
@@ -32,6 +34,22 @@ void live(const Evidence& evidence, Broken& broken);
 void honest(const Evidence& evidence, Broken& broken);
 void lights(const Evidence& evidence, Broken& broken);
 void alive(const Evidence& evidence, Broken& broken);
+
+/// Which faults of the disk there were, of events in their order.
+class DiskFaultsSeen {
+ public:
+  void add(const Event& event);
+  bool in_this_life(const std::string& fault) const { return this_life_.contains(fault); }
+  /// Whether a gateway begins after one that could not keep in the runtime folder what the next one is to
+  /// know.
+  bool forgets_at(const Event& event) const;
+  /// Any, now or less than so many seconds ago.
+  bool within(double seconds, double now) const;
+
+ private:
+  std::set<std::string> on_, this_life_;
+  double last_ = -1e9;
+};
 
 Broken all_checks(const Evidence& evidence);
 

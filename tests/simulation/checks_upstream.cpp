@@ -10,9 +10,13 @@
 namespace adit::simulation {
 namespace {
 
-constexpr double kSpacing = 1;        // seconds between two requests of a URI: the settings' default
-constexpr double kRounding = 1e-6;    // of the history's times
-constexpr double kAhead = 5;          // seconds that a stamp may be after the box's clock
+constexpr double kSpacing = 1;      // seconds between two requests of a URI: the settings' default
+constexpr double kRounding = 1e-6;  // of the history's times
+constexpr double kAhead = 5;        // seconds that a stamp may be after the box's clock
+/// Seconds: a start of the machine begins where no stamp has been, so much ahead at the most; what was
+/// written of that holds so long.
+constexpr double kFloorAhead = 30, kFloorHolds = 35;
+constexpr double kMakesWay = 1;       // seconds until the next gateway has begun
 constexpr double kLongestPause = 30;  // that a Retry-After is heeded for
 
 }  // namespace
@@ -24,7 +28,15 @@ void paced(const Evidence& evidence, Broken& broken) {
     int life;
   };
   std::map<std::string, Asked> asked;
+  DiskFaultsSeen disk;
+  double forgotten_until = 0;
   for (const Event& event : evidence.events) {
+    if (disk.forgets_at(event)) forgotten_until = event.at + kMakesWay;
+    if (event.at < forgotten_until) {
+      last.clear();
+      asked.clear();
+    }
+    disk.add(event);
     if (event.kind == Kind::Dies) asked.clear();  // the answer may have been read and not yet understood
     if (event.kind == Kind::Replied && event.status == 429)
       asked[event.what] = {event.at, std::min(event.stamp, kLongestPause), event.life};
@@ -47,7 +59,19 @@ void paced(const Evidence& evidence, Broken& broken) {
 
 void stamps(const Evidence& evidence, Broken& broken) {
   std::map<std::string, double> last;
+  DiskFaultsSeen disk;
+  double ahead = kAhead, forgotten_until = 0;
   for (const Event& event : evidence.events) {
+    if (disk.forgets_at(event)) {
+      ahead += kFloorAhead;
+      forgotten_until = event.at + kMakesWay;
+    }
+    if (event.at < forgotten_until) last.clear();
+    disk.add(event);
+    if (event.kind == Kind::PowerCut) {
+      ahead += kFloorAhead;
+      if (disk.within(kFloorHolds, event.at)) last.clear();
+    }
     if (event.kind != Kind::Left || event.stamp == 0) continue;
     double& before = last[event.what];
     if (event.stamp < before) {
@@ -55,7 +79,7 @@ void stamps(const Evidence& evidence, Broken& broken) {
                                      " s at ", event.at));
     }
     before = std::max(before, event.stamp);
-    if (event.stamp > World::kEpoch + event.at + kAhead + kRounding) {
+    if (event.stamp > World::kEpoch + event.at + ahead + kRounding) {
       broken.push_back(icd::sentence("Stamps: of ", event.what, " is ",
                                      event.stamp - World::kEpoch - event.at, " s ahead at ", event.at));
     }

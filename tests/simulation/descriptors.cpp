@@ -18,8 +18,8 @@ Descriptors::~Descriptors() {
   ::close(epoll_);
 }
 
-std::uint64_t Descriptors::add(int fd, std::uint32_t events, Ready ready) {
-  watched_.emplace(++last_, Watched{fd, false, std::move(ready)});
+std::uint64_t Descriptors::add(int fd, std::uint32_t events, Ready ready, Whose whose) {
+  watched_.emplace(++last_, Watched{fd, whose, false, std::move(ready)});
   wait_for(last_, events);
   return last_;
 }
@@ -44,19 +44,21 @@ void Descriptors::remove(std::uint64_t number) {
   watched_.erase(found);
 }
 
-bool Descriptors::dispatch() {
+bool Descriptors::dispatch(Whose whose) {
   std::array<epoll_event, 256> events{};
   const int count = ::epoll_wait(epoll_, events.data(), static_cast<int>(events.size()), 0);
   if (count <= 0) return false;
   const auto ready = std::span(events).first(static_cast<std::size_t>(count));
   std::ranges::sort(ready, {}, [](const epoll_event& event) { return event.data.u64; });
+  bool any = false;
   for (const epoll_event& event : ready) {
     const auto found = watched_.find(event.data.u64);
-    if (found == watched_.end()) continue;
+    if (found == watched_.end() || (whose != Whose::All && found->second.whose != whose)) continue;
+    any = true;
     const Ready call = found->second.ready;  // it may remove itself
     call(event.events);
   }
-  return true;
+  return any;
 }
 
 }  // namespace adit::simulation

@@ -16,16 +16,18 @@ class Descriptors {
   Descriptors& operator=(const Descriptors&) = delete;
 
   using Ready = std::function<void(std::uint32_t)>;
+  enum class Whose : std::uint8_t { Adits, Others, All };
   /// Its number, for the other calls.
-  std::uint64_t add(int fd, std::uint32_t events, Ready ready);
+  std::uint64_t add(int fd, std::uint32_t events, Ready ready, Whose whose = Whose::Others);
   void wait_for(std::uint64_t number, std::uint32_t events);
   void remove(std::uint64_t number);
   /// Calls those that are ready; false: none was.
-  bool dispatch();
+  bool dispatch(Whose whose);
 
  private:
   struct Watched {
     int fd;
+    Whose whose;
     bool added;
     Ready ready;
   };

@@ -26,7 +26,7 @@ int Door::connect(const std::string& address) {
   in_addr parsed{};
   ::inet_pton(AF_INET, address.c_str(), &parsed);
   waiting_.push_back({ends[1], ends[0], parsed.s_addr});
-  world_.after(kAccepting, [this] { admit_all(); });
+  world_.after(kAccepting, [this] { world_.when_moving([this] { admit_all(); }); });
   return ends[0];
 }
 

@@ -6,7 +6,7 @@
 
 namespace adit::simulation {
 
-enum class Actor : std::uint8_t { Team, Adit, Post };
+enum class Actor : std::uint8_t { Team, Adit, Post, Disk };
 
 /// What may happen. Each that has a serial says of which message.
 enum class Kind : std::uint8_t {
@@ -20,15 +20,19 @@ enum class Kind : std::uint8_t {
   Taken,     // the Command Post has recorded a report, or taken a message
   Begins,    // a life of aditd
   Stops,     // it was told to, by SIGTERM
-  Dies,      // by SIGKILL
+  Dies,      // by SIGKILL, or as the power is cut
+  PowerCut,  // which follows
+  Fails,     // a life did not begin
   Ended,     // the process is over
   Saved,     // settings were saved
   NewRun,
   Fault,
-  Calm,   // no fault begins any more
-  Told,   // to systemd: "READY", "STATUS", "STOPPING", "WATCHDOG"
-  Shows,  // the panel: its lights are lit as `who` says, "1000" for health alone
-  Said    // a line of the log
+  Mended,  // a fault of the disk is over
+  Slow,    // the process stands still for its disk, so many seconds (as a stamp)
+  Calm,    // no fault begins any more
+  Told,    // to systemd: "READY", "STATUS", "STOPPING", "WATCHDOG"
+  Shows,   // the panel: its lights are lit as `who` says, "1000" for health alone
+  Said     // a line of the log
 };
 
 /// What a message says beside its serial, in numbers: see messages.hpp.

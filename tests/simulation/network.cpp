@@ -4,7 +4,6 @@
 
 #include <algorithm>
 #include <cerrno>
-#include <vector>
 
 #include "simulation/world.hpp"
 
@@ -114,6 +113,13 @@ void Network::close(int fd) {
 
 void Network::cut() {
   for (const auto& [fd, link] : std::exchange(links_, {})) link->close();
+}
+
+void Network::vanish() {
+  for (const auto& [fd, link] : std::exchange(links_, {})) {
+    link->vanish();
+    vanished_.push_back(link);
+  }
 }
 
 std::uint64_t Network::watch(int fd, std::uint32_t events, Ready ready) {

@@ -8,6 +8,7 @@
 #include <optional>
 #include <string>
 #include <string_view>
+#include <vector>
 
 #include "loop/loop.hpp"
 #include "simulation/random.hpp"
@@ -54,6 +55,8 @@ class Link : public std::enable_shared_from_this<Link> {
   std::size_t unacknowledged() const { return unacknowledged_; }
   std::uint32_t ready() const;
   void close();
+  /// Adit's machine has no power: nothing tells the other end, and what was sent arrives.
+  void vanish() { closed_ = true; }
   void connect(Host& host);
 
   // The Command Post's end.
@@ -93,6 +96,8 @@ class Network {
   void close(int fd);
   /// The process is over: what it had open is closed by the kernel.
   void cut();
+  /// The machine has no power.
+  void vanish();
 
   using Ready = std::function<void(std::uint32_t)>;
   std::uint64_t watch(int fd, std::uint32_t events, Ready ready);
@@ -111,6 +116,7 @@ class Network {
   int last_fd_ = kFirst;
   std::uint64_t last_ = 0;
   std::map<int, std::shared_ptr<Link>> links_;
+  std::vector<std::shared_ptr<Link>> vanished_;
   std::map<std::uint64_t, Watched> watched_;
 };
 

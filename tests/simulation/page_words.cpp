@@ -16,7 +16,13 @@ constexpr const char* kLights[] = {"health", "scoring", "mapping", "attention"};
 std::string pattern_of(const std::string& light, const Json& view) {
   if (!view.at("identify_until").is_null()) return "twice";
   if (light == "attention") return view.at("attention").empty() ? "off" : "fast";
-  if (light == "health") return "on";
+  if (light == "health") {
+    const auto& called = view.at("attention");
+    const bool no_ledger = std::ranges::any_of(called, [](const Json& sentence) {
+      return sentence.get<std::string>().starts_with("no report is taken");
+    });
+    return no_ledger ? "fast" : "on";
+  }
   const auto row =
       std::ranges::find_if(view.at("endpoints"), [&](const Json& each) { return each.at("name") == light; });
   if (row->at("trouble") != "") return "fast";

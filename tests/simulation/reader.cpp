@@ -73,8 +73,9 @@ void Reader::look_again(const std::string& lie) {
   const bool is_quiet =
       std::all_of(events.begin() + static_cast<std::ptrdiff_t>(since), events.end(), is_silent);
   again_ = lie.empty() ? 0 : lie == lie_ && is_quiet ? again_ + 1 : 1;
+  if (again_ == 1) since_ = world_.time();
   lie_ = lie;
-  if (again_ >= kOften) {
+  if (again_ >= kOften && world_.time() - since_ > kTold) {
     readings_.back().lie = lie;
   } else if (again_ > 0) {
     world_.after(seconds(kTold),

@@ -38,7 +38,8 @@ class Reader {
   World& world_;
   Client client_;
   double until_;
-  int again_ = 0;  // how often the same lie was seen
+  int again_ = 0;     // how often the same lie was seen
+  double since_ = 0;  // first
   std::string lie_;
   std::size_t asked_ = 0;
   std::vector<Reading> readings_;

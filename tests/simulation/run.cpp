@@ -14,14 +14,17 @@ namespace {
 
 constexpr double kRest = 120;  // seconds after the last fault, in which all that waits goes
 
-/// In three of four runs: up to four ends of the process, by SIGTERM or SIGKILL.
+/// In three of four runs: up to four ends of the process, by SIGTERM, SIGKILL or a power cut.
 void plan_ends(World& world, Box& box, double trouble_for) {
   Random random = world.random("ends");
   for (std::uint64_t i = random.chance(0.25) ? 0 : 1 + random.below(4); i > 0; --i) {
-    const bool killed = random.chance(0.6);
+    const double how = random.unit();
     const auto when = seconds(random.between(0.5, trouble_for));
     if (world.omits("ends")) continue;
-    world.after(when, [&box, killed] { killed ? box.kill() : box.terminate(); });
+    world.after(when, [&box, how] {
+      if (how < 0.3) return box.terminate();
+      box.die(how < 0.7 ? World::How::Killed : World::How::PowerCut);
+    });
   }
 }
 
@@ -44,6 +47,7 @@ Outcome play(const Plan& plan) {
   const Operator operator_(world, box, trouble_for);
   const Reader reader(world, trouble_for, trouble_for + kRest - 5);
   plan_ends(world, box, trouble_for);
+  world.disk().faults().plan(trouble_for);
   world.after(seconds(trouble_for), [&] { post.calm(); });
   world.after(seconds(trouble_for + kRest), [&] { box.finish(); });
   box.live();
@@ -51,7 +55,7 @@ Outcome play(const Plan& plan) {
           .seconds = world.time(),
           .steps = world.steps(),
           .faults = world.history().faults(),
-          .drawn = post.faults().names(),
+          .drawn = post.faults().names() + world.disk().faults().names(),
           .broken = all_checks({world.history().events(), reports_in(box.state()), reader.readings()}),
           .deeds = world.deeds()};
 }

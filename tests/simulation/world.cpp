@@ -12,7 +12,12 @@ World* the_world = nullptr;
 }  // namespace
 
 World::World(std::uint64_t seed, Omissions without)
-    : seed_(seed), without_(std::move(without)), now_(kBeginning), network_(*this), door_(*this) {
+    : seed_(seed),
+      without_(std::move(without)),
+      now_(kBeginning),
+      network_(*this),
+      door_(*this),
+      disk_(*this) {
   the_world = this;
 }
 
@@ -36,7 +41,7 @@ void World::at(Instant when, std::function<void()> happen) {
 bool World::step() {
   if (planned_.empty()) return false;
   auto happen = std::move(const_cast<Planned&>(planned_.top()).happen);
-  now_ = planned_.top().at;
+  now_ = std::max(now_, planned_.top().at);
   planned_.pop();
   ++steps_;
   happen();
@@ -47,7 +52,7 @@ void World::run_for(Duration duration) {
   const Instant end = now_ + duration;
   while (!planned_.empty() && planned_.top().at <= end) {
     step();
-    while (descriptors_.dispatch()) {
+    while (descriptors_.dispatch(Descriptors::Whose::All)) {
     }
   }
   now_ = std::max(now_, end);
@@ -55,6 +60,40 @@ void World::run_for(Duration duration) {
 
 bool World::omits(const std::string& actor) {
   return without_.has(actor, ++deeds_[actor]);
+}
+
+void World::stand_still(Duration duration) {
+  if (in_worker_) {
+    worker_waited_ += duration;
+    return;
+  }
+  if (now_ < stands_until_) return;  // it does already
+  note({.actor = Actor::Disk,
+        .kind = Kind::Slow,
+        .what = "",
+        .who = "",
+        .stamp = std::chrono::duration<double>(duration).count()});
+  const Instant end = stands_until_ = now_ + duration;
+  while (!dead_ && !planned_.empty() && planned_.top().at < end) {
+    step();
+    while (!dead_ && descriptors_.dispatch(Descriptors::Whose::Others)) {
+    }
+  }
+  if (!dead_) now_ = std::max(now_, end);
+  stands_until_ = now_;
+}
+
+void World::when_moving(std::function<void()> happen) {
+  if (now_ >= stands_until_) return happen();
+  at(stands_until_, [this, happen = std::move(happen)]() mutable { when_moving(std::move(happen)); });
+}
+
+Duration World::in_worker(const std::function<void()>& work) {
+  worker_waited_ = {};
+  in_worker_ = true;
+  work();
+  in_worker_ = false;
+  return worker_waited_;
 }
 
 void World::note(Event event) {
@@ -75,10 +114,12 @@ void World::end_life() {
   dead_ = true;
   network_.cut();
   door_.cut();
+  disk_.let_go();
   note({.kind = Kind::Ended, .what = "aditd", .who = "", .serial = life_});
 }
 
-void World::die_after(std::uint64_t crossings, std::function<void()> dies) {
+void World::die_after(std::uint64_t crossings, How how, std::function<void()> dies) {
+  how_ = how;
   crossings_left_ = crossings;
   dies_ = std::move(dies);
   if (crossings == 0) die();
@@ -93,8 +134,9 @@ void World::die() {
   const auto dies = std::exchange(dies_, nullptr);
   note({.kind = Kind::Dies, .what = "aditd", .who = "", .serial = life_});
   dead_ = true;
-  network_.cut();
+  how_ == How::PowerCut ? network_.vanish() : network_.cut();
   door_.cut();
+  disk_.let_go();
   dies();
 }
 

@@ -10,6 +10,7 @@
 
 #include "loop/loop.hpp"
 #include "simulation/descriptors.hpp"
+#include "simulation/disk.hpp"
 #include "simulation/door.hpp"
 #include "simulation/history.hpp"
 #include "simulation/network.hpp"
@@ -42,8 +43,11 @@ class World {
 
   Random random(std::string_view name) const { return {seed_, name}; }
   Instant now() const { return now_; }
-  double time() const;                              // seconds since the run began
-  double stamp() const { return kEpoch + time(); }  // the box's clock
+  double time() const;  // seconds since the run began
+  /// The box's clock, as it is told at a start of the machine.
+  double stamp() const { return kEpoch + time() - clock_back_; }
+  /// The machine starts with a clock that is behind by so many seconds.
+  void set_clock_back(double seconds) { clock_back_ = seconds; }
 
   void at(Instant when, std::function<void()> happen);
   void after(Duration delay, std::function<void()> happen) { at(now_ + delay, std::move(happen)); }
@@ -51,6 +55,12 @@ class World {
   bool step();
   /// While no process lives.
   void run_for(Duration duration);
+  /// The process waits for its disk, and all others go on; a worker alone just takes longer.
+  void stand_still(Duration duration);
+  /// Something of the process's that is due: it happens when the process does not stand still.
+  void when_moving(std::function<void()> happen);
+  /// A worker runs `work`: how long it waited for the disk meanwhile.
+  Duration in_worker(const std::function<void()>& work);
   std::uint64_t steps() const { return steps_; }
   /// Counts the draws of what is random to the box.
   std::uint64_t entropy() { return ++entropy_; }
@@ -64,6 +74,7 @@ class World {
   Descriptors& descriptors() { return descriptors_; }
   Network& network() { return network_; }
   Door& door() { return door_; }
+  Disk& disk() { return disk_; }
 
   int life() const { return life_; }
   /// A process begins.
@@ -72,8 +83,11 @@ class World {
   void end_life();
   /// A call of the seam: the process may die in it, before or after its effect.
   void crossing();
+  enum class How : std::uint8_t { Killed, PowerCut };
   /// The process dies at the call of the seam after `crossings` of them. `dies` is called at that instant.
-  void die_after(std::uint64_t crossings, std::function<void()> dies);
+  void die_after(std::uint64_t crossings, How how, std::function<void()> dies);
+  /// It dies in the next call of the seam.
+  bool dies_next() const { return !dead_ && dies_ && crossings_left_ <= 1; }
   /// From here on nothing that the process does has an effect.
   bool is_dead() const { return dead_; }
 
@@ -100,6 +114,12 @@ class World {
   Descriptors descriptors_;
   Network network_;
   Door door_;
+  Disk disk_;
+  double clock_back_ = 0;
+  Instant stands_until_;
+  bool in_worker_ = false;
+  Duration worker_waited_{};
+  How how_ = How::Killed;
   int life_ = 0;
   bool dead_ = true;
   std::uint64_t crossings_left_ = 0;

@@ -82,7 +82,11 @@ void Source::call_at(Instant when) {
   const auto late = simulation::seconds(state_->lateness->between(0, kLatest));
   world.at(std::max(when, world.now()) + late, [weak = std::weak_ptr(state_), setting] {
     const auto alive = weak.lock();
-    if (alive && alive->setting == setting) State::run(alive, 0);
+    if (!alive || alive->setting != setting) return;
+    alive->world.when_moving([weak, setting] {
+      const auto still = weak.lock();
+      if (still && still->setting == setting) State::run(still, 0);
+    });
   });
 }
 
@@ -114,7 +118,7 @@ class Loop::Impl {
     for (const auto& task : tasks) {
       if (!world.is_dead()) guarded("a task of the loop", task);
     }
-    const bool any = world.descriptors().dispatch();
+    const bool any = world.descriptors().dispatch(simulation::Descriptors::Whose::All);
     return world.network().dispatch() || any || !tasks.empty();
   }
 
@@ -154,7 +158,8 @@ Source Loop::watch(int fd, std::uint32_t events, std::function<void(std::uint32_
   if (simulation::Network::is_simulated(fd)) {
     state->link = impl_->world.network().watch(fd, events, call);
   } else {
-    state->descriptor = impl_->world.descriptors().add(fd, events, call);
+    state->descriptor =
+        impl_->world.descriptors().add(fd, events, call, simulation::Descriptors::Whose::Adits);
   }
   return Source(std::move(state));
 }

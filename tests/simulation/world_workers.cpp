@@ -49,7 +49,11 @@ class Pool : public std::enable_shared_from_this<Pool> {
     ++waking_;
     const double busy = random_.chance(0.02) ? kBusy : 0;
     world_.after(simulation::seconds(random_.between(0, kBegins + busy)), [weak = weak_from_this()] {
-      if (const auto self = weak.lock(); self && !self->over_) self->work();
+      if (const auto self = weak.lock()) {
+        self->world_.when_moving([weak] {
+          if (const auto still = weak.lock(); still && !still->over_) still->work();
+        });
+      }
     });
   }
 
@@ -58,17 +62,19 @@ class Pool : public std::enable_shared_from_this<Pool> {
     Job job = std::move(jobs_.front());
     jobs_.pop_front();
     world_.crossing();
-    const bool well = guarded("a job of a worker", job.work);
+    bool well = false;
+    const Duration waited = world_.in_worker([&] { well = guarded("a job of a worker", job.work); });
     world_.crossing();
     job.work = nullptr;
     const double busy = random_.chance(0.02) ? kBusy : 0;
     world_.after(
-        simulation::seconds(random_.between(0, kTakes + busy)),
+        waited + simulation::seconds(random_.between(0, kTakes + busy)),
         [weak = weak_from_this(), end = well ? std::move(job.done) : std::move(job.failed)]() mutable {
           if (const auto self = weak.lock(); self && !self->over_) self->hand_back(std::move(end));
         });
   }
 
+  /// The loop takes it up when it does not stand still.
   void hand_back(std::function<void()> end) {
     ++idle_;
     loop_.post([weak = weak_from_this(), end = std::move(end)] {

@@ -1,0 +1,38 @@
+// All of them, and what a power cut may cost.
+#include "simulation/checks.hpp"
+
+#include "simulation/messages.hpp"
+
+namespace adit::simulation {
+namespace {
+
+/// What was accepted before the last power cut, but for reports, may have been lost, or not: what waited was
+/// in memory. It is as if its client had heard nothing.
+std::vector<Event> with_losses(const std::vector<Event>& events) {
+  int lives = 0;  // that ended by the last cut, and before
+  for (const Event& event : events) {
+    if (event.kind == Kind::PowerCut) lives = event.life;
+  }
+  std::vector<Event> told = events;
+  for (Event& event : told) {
+    if (event.kind != Kind::Answered || event.what == kReports || event.life > lives) continue;
+    event.kind = Kind::Gone;
+    event.status = 0;
+  }
+  return told;
+}
+
+}  // namespace
+
+Broken all_checks(const Evidence& evidence) {
+  Broken broken;
+  for (const auto check :
+       {starts, once, not_lost, paced, stamps, kept, answered, live, honest, lights, alive})
+    check(evidence, broken);
+  const std::vector<Event> told = with_losses(evidence.events);
+  for (const auto check : {pose_arrived, grid_arrived, cloud_arrived, markers_arrived})
+    check({told, evidence.reports, evidence.readings}, broken);
+  return broken;
+}
+
+}  // namespace adit::simulation

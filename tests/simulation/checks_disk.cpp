@@ -1,0 +1,38 @@
+// Starts, and what the checks know of the disk.
+#include "icd/sentence.hpp"
+#include "simulation/checks.hpp"
+
+namespace adit::simulation {
+
+/// A life may end before it has begun where it met a fault that leaves it no ledger, nor a stand-in for it.
+void starts(const Evidence& evidence, Broken& broken) {
+  DiskFaultsSeen seen;
+  for (const Event& event : evidence.events) {
+    seen.add(event);
+    const bool may = seen.in_this_life("RuntimeFull") || seen.in_this_life("SyncFails");
+    if (event.kind == Kind::Fails && !may)
+      broken.push_back(icd::sentence("Starts: life ", event.life, " did not begin, at ", event.at));
+  }
+}
+
+void DiskFaultsSeen::add(const Event& event) {
+  if (event.kind == Kind::Begins) {
+    this_life_ = on_;
+  } else if (event.kind == Kind::Mended) {
+    on_.erase(event.who);
+    last_ = event.at;
+  } else if (event.kind == Kind::Fault && event.actor == Actor::Disk) {
+    on_.insert(event.who);
+    this_life_.insert(event.who);
+  }
+}
+
+bool DiskFaultsSeen::forgets_at(const Event& event) const {
+  return (event.kind == Kind::Begins || event.kind == Kind::Saved) && in_this_life("RuntimeFull");
+}
+
+bool DiskFaultsSeen::within(double seconds, double now) const {
+  return !on_.empty() || now - last_ < seconds;
+}
+
+}  // namespace adit::simulation

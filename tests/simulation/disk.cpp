@@ -1,0 +1,279 @@
+#include "simulation/disk.hpp"
+
+#include <sqlite3.h>
+#include <sys/stat.h>
+
+#include <algorithm>
+#include <cerrno>
+#include <fstream>
+#include <iterator>
+#include <utility>
+
+#include "simulation/real_calls.hpp"
+#include "simulation/world.hpp"
+
+namespace adit::simulation {
+namespace {
+
+Disk* the_disk = nullptr;
+
+int fail(int error) {
+  errno = error;
+  return -1;
+}
+
+std::uint64_t size_of(int fd) {
+  struct stat found{};
+  return ::fstat(fd, &found) == 0 ? static_cast<std::uint64_t>(found.st_size) : 0;
+}
+
+std::string read(int fd, off_t at, std::uint64_t size) {
+  std::string bytes(size, '\0');
+  // The box may have it open for writing alone.
+  const int reader = real::open(AT_FDCWD, ("/proc/self/fd/" + std::to_string(fd)).c_str(), O_RDONLY, 0);
+  const ssize_t count = ::pread(reader, bytes.data(), size, at);
+  real::close(reader);
+  bytes.resize(static_cast<std::size_t>(std::max<ssize_t>(0, count)));
+  return bytes;
+}
+
+bool is_folder(const std::string& path) {
+  struct stat found{};
+  return ::lstat(path.c_str(), &found) == 0 && S_ISDIR(found.st_mode);
+}
+
+/// The salts of the ledger's log, and so its bytes, come from the run's seed.
+int seed_sqlite(sqlite3_vfs*, int size, char* bytes) {
+  Random random = World::current().random("sqlite");
+  std::generate_n(bytes, size, [&random] { return static_cast<char>(random.next()); });
+  return size;
+}
+
+}  // namespace
+
+Disk::Disk(World& world)
+    : world_(world), random_(world.random("disk")), unique_(world.random("names")), faults_(world) {
+  the_disk = this;
+  sqlite3_vfs_find(nullptr)->xRandomness = &seed_sqlite;
+  sqlite3_randomness(0, nullptr);  // of the run before nothing is left
+}
+
+Disk::~Disk() {
+  the_disk = nullptr;
+}
+
+Disk* Disk::of(int folder, const char* path) {
+  if (the_disk == nullptr || the_disk->world_.is_dead() || path == nullptr) return nullptr;
+  return the_disk->name_of(folder, path).empty() ? nullptr : the_disk;
+}
+
+Disk* Disk::of(int fd) {
+  if (the_disk == nullptr || the_disk->world_.is_dead()) return nullptr;
+  const auto open = the_disk->open_.find(fd);
+  struct stat found{};
+  if (open == the_disk->open_.end()) return nullptr;
+  const bool is_it =
+      ::fstat(fd, &found) == 0 && found.st_dev == open->second.device && found.st_ino == open->second.number;
+  if (!is_it) the_disk->open_.erase(open);
+  return is_it ? the_disk : nullptr;
+}
+
+void Disk::forget(int fd) {
+  if (the_disk != nullptr) the_disk->open_.erase(fd);
+}
+
+void Disk::mount(const std::filesystem::path& folder) {
+  folder_ = folder.string() + '/';
+}
+
+void Disk::cut_power(const std::filesystem::path& tree) {
+  unsynced_.cut(tree, random_);
+}
+
+/// Nothing: it is not in the box's folder.
+std::string Disk::name_of(int folder, const char* path) const {
+  if (path[0] != '/') {
+    const auto open = open_.find(folder);
+    return open == open_.end() ? "" : open->second.name + '/' + path;
+  }
+  const std::string whole = path;
+  return whole.starts_with(folder_) ? whole.substr(folder_.size()) : "";
+}
+
+bool Disk::is_in_memory(const std::string& name) {
+  return name == kRuntime || name.starts_with(std::string(kRuntime) + '/');
+}
+
+bool Disk::is_read_only(const std::string& name) const {
+  return !is_in_memory(name) && faults_.is(DiskFaults::Kind::ReadOnly);
+}
+
+bool Disk::is_full(const std::string& name) const {
+  return faults_.is(is_in_memory(name) ? DiskFaults::Kind::RuntimeFull : DiskFaults::Kind::Full);
+}
+
+std::uint64_t Disk::take_room(const std::string& name, std::uint64_t bytes) {
+  if (!is_full(name)) return bytes;
+  std::uint64_t& left = faults_.room(is_in_memory(name));
+  const std::uint64_t taken = std::min(left, bytes);
+  left -= taken;
+  return taken;
+}
+
+std::uint64_t Disk::room(int folder, const char* path) {
+  const std::string name = name_of(folder, path);
+  return is_full(name) ? faults_.room(is_in_memory(name)) : kRoom;
+}
+
+std::optional<std::string> Disk::bytes_of(const std::string& name) const {
+  if (is_in_memory(name) || is_folder(folder_ + name)) return std::nullopt;
+  std::ifstream file(folder_ + name, std::ios::binary);
+  if (!file) return std::nullopt;
+  return std::string(std::istreambuf_iterator<char>(file), std::istreambuf_iterator<char>());
+}
+
+int Disk::open(int folder, const char* path, int flags, mode_t mode) {
+  const std::string name = name_of(folder, path);
+  const bool writes = (flags & O_ACCMODE) != O_RDONLY;
+  struct stat found{};
+  const bool is_there = ::fstatat(folder, path, &found, 0) == 0;
+  const bool makes = (flags & O_CREAT) != 0 && !is_there;
+  const bool cuts = writes && (flags & O_TRUNC) != 0 && is_there && found.st_size > 0;
+  if ((writes || makes) && is_read_only(name)) return fail(EROFS);
+  if (makes && is_full(name) && faults_.room(is_in_memory(name)) == 0) return fail(ENOSPC);
+  if (makes || cuts) world_.crossing();
+  const int fd = real::open(folder, path, flags & ~O_TRUNC, mode);
+  if (fd < 0 || world_.is_dead()) return fd;
+  ::fstat(fd, &found);
+  Open open{.name = name,
+            .file = nullptr,
+            .appends = (flags & O_APPEND) != 0,
+            .is_folder = S_ISDIR(found.st_mode),
+            .device = found.st_dev,
+            .number = found.st_ino};
+  if (!is_in_memory(name)) {
+    if (makes) unsynced_.made(name);
+    if (writes) open.file = unsynced_.file(name);
+  }
+  if (writes || open.is_folder) open_[fd] = std::move(open);
+  if (cuts) truncate(fd, 0);
+  if (makes) world_.crossing();
+  return fd;
+}
+
+ssize_t Disk::write(int fd, std::span<const char> bytes, std::optional<off_t> at) {
+  const Open open = open_.at(fd);
+  world_.crossing();
+  if (is_read_only(open.name)) return fail(EROFS);
+  const auto size = static_cast<off_t>(size_of(fd));
+  const off_t place = at ? *at : open.appends ? size : ::lseek(fd, 0, SEEK_CUR);
+  const std::uint64_t there = std::min<std::uint64_t>(bytes.size(), std::max<off_t>(0, size - place));
+  bytes = bytes.first(there + take_room(open.name, bytes.size() - there));
+  if (bytes.empty()) return fail(ENOSPC);
+  if (world_.dies_next()) {  // in the midst of it
+    put(fd, open, bytes.first(random_.below(bytes.size())), place);
+    world_.crossing();
+  }
+  const ssize_t count = put(fd, open, bytes, place);
+  if (!at && count > 0) ::lseek(fd, place + count, SEEK_SET);
+  world_.crossing();
+  return count;
+}
+
+ssize_t Disk::put(int fd, const Open& open, std::span<const char> bytes, off_t at) {
+  if (open.file && !world_.is_dead() && !bytes.empty()) {
+    open.file->wrote(at, std::string(bytes.data(), bytes.size()), read(fd, at, bytes.size()), size_of(fd));
+  }
+  return real::write_at(fd, bytes.data(), bytes.size(), at);
+}
+
+int Disk::truncate(int fd, off_t size) {
+  const Open open = open_.at(fd);
+  if (is_read_only(open.name)) return fail(EROFS);
+  world_.crossing();
+  const std::uint64_t before = size_of(fd), after = static_cast<std::uint64_t>(size);
+  if (open.file && !world_.is_dead() && before != after)
+    open.file->resized(before, after, after < before ? read(fd, size, before - after) : "");
+  return real::truncate(fd, size);
+}
+
+int Disk::allocate(int fd, int mode, off_t at, off_t size) {
+  const Open open = open_.at(fd);
+  if (is_read_only(open.name)) return fail(EROFS);
+  const std::uint64_t before = size_of(fd), end = static_cast<std::uint64_t>(at + size);
+  if (end > before && take_room(open.name, end - before) < end - before) return fail(ENOSPC);
+  world_.crossing();
+  if (open.file && !world_.is_dead() && end > before) open.file->resized(before, end, "");
+  return real::allocate(fd, mode, at, size);
+}
+
+/// What is in memory has nothing to wait for.
+int Disk::sync(int fd) {
+  const Open open = open_.at(fd);
+  if (is_in_memory(open.name)) return 0;
+  world_.crossing();
+  if (const double takes = faults_.sync_takes(); takes > 0) world_.stand_still(seconds(takes));
+  if (world_.is_dead()) return 0;
+  if (is_read_only(open.name)) return fail(EROFS);
+  if (faults_.sync_fails()) {
+    if (open.file) open.file->sync_failed();
+    return fail(EIO);
+  }
+  open.is_folder ? unsynced_.synced_folder(open.name) : open.file->synced();
+  world_.crossing();
+  return 0;
+}
+
+int Disk::rename(int from_folder, const char* from, int to_folder, const char* to) {
+  const std::string old_name = name_of(from_folder, from), name = name_of(to_folder, to);
+  if (is_read_only(name)) return fail(EROFS);
+  world_.crossing();
+  auto replaced = bytes_of(name);
+  const int result = real::rename(from_folder, from, to_folder, to);
+  if (result != 0 || world_.is_dead()) return result;
+  if (!is_in_memory(name)) unsynced_.renamed(old_name, name, std::move(replaced));
+  for (auto& [fd, open] : open_) {
+    if (open.name == old_name) open.name = name;
+  }
+  world_.crossing();
+  return result;
+}
+
+int Disk::unlink(int folder, const char* path, int flags) {
+  const std::string name = name_of(folder, path);
+  if (is_read_only(name)) return fail(EROFS);
+  world_.crossing();
+  auto bytes = bytes_of(name);
+  struct stat found{};
+  const bool is_there = ::fstatat(folder, path, &found, AT_SYMLINK_NOFOLLOW) == 0;
+  const int result = real::unlink(folder, path, flags);
+  if (result != 0 || !is_there || world_.is_dead()) return result;
+  if (S_ISREG(found.st_mode)) faults_.room(is_in_memory(name)) += static_cast<std::uint64_t>(found.st_size);
+  if (!is_in_memory(name)) unsynced_.removed(name, std::move(bytes));
+  world_.crossing();
+  return result;
+}
+
+int Disk::make_folder(int folder, const char* path, mode_t mode) {
+  const std::string name = name_of(folder, path);
+  struct stat found{};
+  if (::fstatat(folder, path, &found, 0) == 0) return fail(EEXIST);
+  if (is_read_only(name)) return fail(EROFS);
+  if (is_full(name) && faults_.room(is_in_memory(name)) == 0) return fail(ENOSPC);
+  world_.crossing();
+  const int result = real::make_folder(folder, path, mode);
+  if (result == 0 && !world_.is_dead() && !is_in_memory(name)) unsynced_.made(name);
+  return result;
+}
+
+int Disk::may_change(int folder, const char* path) {
+  return is_read_only(name_of(folder, path)) ? fail(EROFS) : 0;
+}
+
+std::string Disk::unique() {
+  std::string letters(6, ' ');
+  for (char& letter : letters) letter = static_cast<char>('a' + unique_.below(26));
+  return letters;
+}
+
+}  // namespace adit::simulation

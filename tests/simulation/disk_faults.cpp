@@ -1,0 +1,57 @@
+#include "simulation/disk_faults.hpp"
+
+#include <utility>
+
+#include "simulation/world.hpp"
+
+namespace adit::simulation {
+namespace {
+
+constexpr const char* kNames[] = {"Full", "SyncFails", "ReadOnly", "Slow", "RuntimeFull"};
+constexpr double kSlowest = 5;  // seconds that a sync takes
+
+}  // namespace
+
+DiskFaults::DiskFaults(World& world) : world_(world), random_(world.random("disk faults")) {}
+
+/// A time of trouble may begin with the run.
+void DiskFaults::plan(double trouble_for) {
+  const std::uint64_t kinds = random_.chance(0.6) ? 0 : 1 + random_.below(2);
+  for (std::uint64_t i = 0; i < kinds; ++i) {
+    const auto kind = static_cast<Kind>(random_.below(static_cast<std::uint64_t>(Kind::End)));
+    names_.append(names_.empty() ? "; disk: " : " ").append(kNames[static_cast<int>(kind)]);
+    for (std::uint64_t times = 1 + random_.below(2); times > 0; --times) {
+      const double begins = random_.chance(0.2) ? 0 : random_.between(0, trouble_for);
+      const double ends = std::min(trouble_for, begins + random_.between(0.5, 15));
+      world_.after(seconds(begins), [this, kind] { begin(kind); });
+      world_.after(seconds(ends), [this, kind] { end(kind); });
+    }
+  }
+}
+
+void DiskFaults::begin(Kind kind) {
+  const auto index = static_cast<int>(kind);
+  is_[index] = true;
+  fails_once_ = random_.chance(0.5);
+  room_[kind == Kind::RuntimeFull ? 1 : 0] = random_.chance(0.5) ? 0 : random_.below(20000);
+  world_.note(
+      {.actor = Actor::Disk, .kind = simulation::Kind::Fault, .what = "begins", .who = kNames[index]});
+}
+
+void DiskFaults::end(Kind kind) {
+  const auto index = static_cast<int>(kind);
+  if (!std::exchange(is_[index], false)) return;
+  world_.note({.actor = Actor::Disk, .kind = simulation::Kind::Mended, .what = "", .who = kNames[index]});
+}
+
+bool DiskFaults::sync_fails() {
+  if (!is(Kind::SyncFails)) return false;
+  if (fails_once_) end(Kind::SyncFails);
+  return true;
+}
+
+double DiskFaults::sync_takes() {
+  return is(Kind::Slow) && random_.chance(0.3) ? random_.between(0.01, kSlowest) : 0;
+}
+
+}  // namespace adit::simulation

@@ -1,0 +1,184 @@
+#include "simulation/unsynced.hpp"
+
+#include <algorithm>
+#include <fstream>
+#include <iterator>
+#include <utility>
+
+namespace adit::simulation {
+namespace {
+
+namespace fs = std::filesystem;
+
+constexpr std::uint64_t kSector = 512;
+
+std::string folder_of(const std::string& name) {
+  const auto slash = name.rfind('/');
+  return slash == std::string::npos ? "" : name.substr(0, slash);
+}
+
+std::string read(const fs::path& path) {
+  std::ifstream file(path, std::ios::binary);
+  return {std::istreambuf_iterator<char>(file), std::istreambuf_iterator<char>()};
+}
+
+/// A file that was gone has the mode of all of the box's.
+void write(const fs::path& path, const std::string& bytes) {
+  const bool is_new = !fs::exists(path);
+  std::ofstream(path, std::ios::binary | std::ios::trunc)
+      .write(bytes.data(), static_cast<std::streamsize>(bytes.size()));
+  if (is_new) fs::permissions(path, fs::perms::owner_read | fs::perms::owner_write);
+}
+
+}  // namespace
+
+void UnsyncedFile::wrote(std::uint64_t at, std::string bytes, std::string before, std::uint64_t size) {
+  if (gone_) return;
+  const std::uint64_t end = std::max<std::uint64_t>(size, at + bytes.size());
+  changes_.push_back({false, at, end, size, std::move(bytes), std::move(before)});
+}
+
+void UnsyncedFile::resized(std::uint64_t from, std::uint64_t to, std::string cut) {
+  if (gone_) return;
+  changes_.push_back({true, std::min(from, to), to, from, "", std::move(cut)});
+}
+
+void UnsyncedFile::synced() {
+  if (std::ranges::none_of(changes_, [](const Change& change) { return change.fate == Fate::Lost; }))
+    return changes_.clear();
+  for (Change& change : changes_) {
+    if (change.fate == Fate::Open) change.fate = Fate::Kept;
+  }
+}
+
+void UnsyncedFile::sync_failed() {
+  for (Change& change : changes_) {
+    if (change.fate == Fate::Open) change.fate = Fate::Lost;
+  }
+}
+
+void UnsyncedFile::take_back(const Change& change, std::string& bytes) {
+  bytes.resize(std::max<std::uint64_t>(bytes.size(), change.at + change.before.size()));
+  bytes.replace(change.at, change.before.size(), change.before);
+  bytes.resize(change.size_before);
+}
+
+/// Its sectors all or each by itself, and the file's size where they are, or as it was to be.
+void UnsyncedFile::apply(const Change& change, std::string& bytes, Random& random) {
+  if (change.resizes) return bytes.resize(change.size);
+  const bool whole = change.fate == Fate::Kept || random.chance(0.6);
+  for (std::uint64_t done = 0; done < change.bytes.size();) {
+    const std::uint64_t at = change.at + done;
+    const std::uint64_t size = std::min(kSector - at % kSector, change.bytes.size() - done);
+    if (whole || random.chance(0.5)) {
+      bytes.resize(std::max<std::uint64_t>(bytes.size(), at + size));
+      bytes.replace(at, size, change.bytes, done, size);
+    }
+    done += size;
+  }
+  if (!whole && random.chance(0.5)) bytes.resize(std::max<std::uint64_t>(bytes.size(), change.size));
+}
+
+/// In a third of the cuts nothing was written out, in a third all up to some change, and else any of them.
+std::string UnsyncedFile::after_power_cut(std::string now, Random& random) const {
+  for (auto change = changes_.rbegin(); change != changes_.rend(); ++change) take_back(*change, now);
+  const std::uint64_t how = random.below(3), first = random.below(changes_.size() + 1);
+  for (std::size_t i = 0; i < changes_.size(); ++i) {
+    const Change& change = changes_[i];
+    const bool is_out = how == 1 ? i < first : how == 2 && random.chance(0.5);
+    if (change.fate == Fate::Kept || (change.fate == Fate::Open && is_out)) {
+      apply(change, now, random);
+    } else if (change.fate == Fate::Open && how == 2 && random.chance(0.3)) {
+      now.resize(std::max<std::uint64_t>(now.size(), change.size));  // its size alone
+    }
+  }
+  return now;
+}
+
+Unsynced::File Unsynced::file(const std::string& name) {
+  File& file = files_[name];
+  if (!file) file = std::make_shared<UnsyncedFile>();
+  return file;
+}
+
+Unsynced::File Unsynced::let_go(const std::string& name) {
+  const auto found = files_.extract(name);
+  if (!found) return nullptr;
+  found.mapped()->is_gone();
+  return found.mapped();
+}
+
+void Unsynced::made(const std::string& name) {
+  let_go(name);
+  namings_.push_back({Kind::Made, name, "", std::nullopt, nullptr});
+}
+
+void Unsynced::removed(const std::string& name, std::optional<std::string> bytes) {
+  namings_.push_back({Kind::Removed, name, "", std::move(bytes), let_go(name)});
+}
+
+/// What was renamed in a folder that itself gets another name is taken for synced, and so is what was in the
+/// folder that a name leaves.
+void Unsynced::renamed(const std::string& from, const std::string& to, std::optional<std::string> replaced) {
+  namings_.push_back({Kind::Renamed, to, from, std::move(replaced), let_go(to)});
+  if (auto file = files_.extract(from)) {
+    file.key() = to;
+    files_.insert(std::move(file));
+  }
+  forget_below(from);
+  if (folder_of(from) != folder_of(to)) synced_folder(folder_of(from));
+}
+
+void Unsynced::forget_below(const std::string& folder) {
+  const std::string begins = folder + '/';
+  std::erase_if(files_, [&](const auto& each) { return each.first.starts_with(begins); });
+  std::erase_if(namings_, [&](const Naming& each) { return each.name.starts_with(begins); });
+}
+
+void Unsynced::synced_folder(const std::string& name) {
+  std::erase_if(namings_, [&](const Naming& each) { return folder_of(each.name) == name; });
+}
+
+void Unsynced::take_back(const Naming& naming, const fs::path& tree) {
+  const fs::path path = tree / naming.name;
+  if (naming.kind == Kind::Made) {
+    fs::remove_all(path);
+    files_.erase(naming.name);
+    return;
+  }
+  if (naming.kind == Kind::Renamed) {
+    fs::rename(path, tree / naming.from);
+    if (auto file = files_.extract(naming.name)) {
+      file.key() = naming.from;
+      files_.insert(std::move(file));
+    }
+  }
+  if (naming.bytes) {
+    write(path, *naming.bytes);
+    if (naming.file) files_[naming.name] = naming.file;
+  } else if (naming.kind == Kind::Removed) {
+    fs::create_directory(path);
+  }
+}
+
+void Unsynced::cut(const fs::path& tree, Random& random) {
+  std::map<std::string, std::uint64_t> changed, kept;
+  for (const Naming& each : namings_) ++changed[folder_of(each.name)];
+  for (const auto& [folder, count] : changed) {
+    const double how = random.unit();
+    kept[folder] = how < 0.4 ? 0 : how < 0.6 ? count : random.below(count + 1);
+  }
+  while (!namings_.empty()) {
+    const Naming last = std::move(namings_.back());
+    namings_.pop_back();
+    const std::string folder = folder_of(last.name);
+    if (changed[folder]-- > kept[folder]) take_back(last, tree);
+  }
+  for (const auto& [name, file] : std::exchange(files_, {})) {
+    const fs::path path = tree / name;
+    if (file->is_synced() || !fs::is_regular_file(path)) continue;
+    write(path, file->after_power_cut(read(path), random));
+  }
+}
+
+}  // namespace adit::simulation

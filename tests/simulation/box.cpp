@@ -83,6 +83,8 @@ void Box::one_life() {
   options.notices = folder_ / "notices";
   ::setenv("RUNTIME_DIRECTORY", (folder_ / "runtime").c_str(), 1);
   world_.begin_life();
+  world_.note(
+      {.actor = Actor::Disk, .kind = Kind::Serves, .what = "settings", .who = world_.disk().settings()});
   if (const auto how = std::exchange(dies_at_start_, std::nullopt)) die_soon(*how);
   try {
     const bool began = gateway::Service(options).run() == 0;

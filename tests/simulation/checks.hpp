@@ -19,6 +19,7 @@ struct Evidence {
 
 /// Each adds a sentence for what it finds broken, which begins with its name. Their rules are in README.md.
 using Broken = std::vector<std::string>;
+void settings_kept(const Evidence& evidence, Broken& broken);
 void starts(const Evidence& evidence, Broken& broken);
 void once(const Evidence& evidence, Broken& broken);
 void not_lost(const Evidence& evidence, Broken& broken);

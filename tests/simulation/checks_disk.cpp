@@ -1,4 +1,4 @@
-// Starts, and what the checks know of the disk.
+// Starts and SettingsKept, and what the checks know of the disk.
 #include "icd/sentence.hpp"
 #include "simulation/checks.hpp"
 
@@ -12,6 +12,24 @@ void starts(const Evidence& evidence, Broken& broken) {
     const bool may = seen.in_this_life("RuntimeFull") || seen.in_this_life("SyncFails");
     if (event.kind == Kind::Fails && !may)
       broken.push_back(icd::sentence("Starts: life ", event.life, " did not begin, at ", event.at));
+  }
+}
+
+void settings_kept(const Evidence& evidence, Broken& broken) {
+  std::set<std::string> may_be = {""};
+  std::string last;
+  for (const Event& event : evidence.events) {
+    if (event.kind == Kind::Written) {
+      last = event.who;
+      may_be.insert(last);
+    }
+    if (event.kind == Kind::Saved) may_be = {last};
+    if (event.kind != Kind::Serves) continue;
+    if (!may_be.contains(event.who))
+      broken.push_back(icd::sentence("SettingsKept: life ", event.life,
+                                     " begins with settings of before the ones that an operator saved"));
+    last = event.who;
+    may_be = {last};
   }
 }
 

@@ -66,6 +66,14 @@ void not_lost(const Evidence& evidence, Broken& broken) {
                                      " is recorded, and it was not, at ", event.at));
     }
   }
+  std::set<std::int64_t> known;
+  for (const dispatch::Report& report : evidence.reports) known.insert(serial_of(report));
+  for (const Event& event : evidence.events) {
+    if (is_report(event, Kind::Left) && known.insert(event.serial).second) {
+      broken.push_back(icd::sentence("NotLost: report ", event.serial, " was sent at ", event.at,
+                                     ", and the ledger does not know it"));
+    }
+  }
   for (const dispatch::Report& report : evidence.reports) {
     const bool claimed =
         report.state == ReportState::Answered || (report.state == ReportState::Settled && report.reconciled);

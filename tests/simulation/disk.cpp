@@ -42,6 +42,12 @@ bool is_folder(const std::string& path) {
   return ::lstat(path.c_str(), &found) == 0 && S_ISDIR(found.st_mode);
 }
 
+std::string mark_of(const std::string& bytes) {
+  std::uint64_t hash = 0xCBF29CE484222325u;
+  for (const char byte : bytes) hash = (hash ^ static_cast<unsigned char>(byte)) * 0x100000001B3u;
+  return std::to_string(hash % 1000000);
+}
+
 /// The salts of the ledger's log, and so its bytes, come from the run's seed.
 int seed_sqlite(sqlite3_vfs*, int size, char* bytes) {
   Random random = World::current().random("sqlite");
@@ -227,6 +233,7 @@ int Disk::sync(int fd) {
 int Disk::rename(int from_folder, const char* from, int to_folder, const char* to) {
   const std::string old_name = name_of(from_folder, from), name = name_of(to_folder, to);
   if (is_read_only(name)) return fail(EROFS);
+  if (name == kSettings) note_settings(mark_of(bytes_of(old_name).value_or("")));
   world_.crossing();
   auto replaced = bytes_of(name);
   const int result = real::rename(from_folder, from, to_folder, to);
@@ -242,6 +249,7 @@ int Disk::rename(int from_folder, const char* from, int to_folder, const char* t
 int Disk::unlink(int folder, const char* path, int flags) {
   const std::string name = name_of(folder, path);
   if (is_read_only(name)) return fail(EROFS);
+  if (name == kSettings) note_settings("");
   world_.crossing();
   auto bytes = bytes_of(name);
   struct stat found{};
@@ -264,6 +272,15 @@ int Disk::make_folder(int folder, const char* path, mode_t mode) {
   const int result = real::make_folder(folder, path, mode);
   if (result == 0 && !world_.is_dead() && !is_in_memory(name)) unsynced_.made(name);
   return result;
+}
+
+std::string Disk::settings() const {
+  const auto bytes = bytes_of(kSettings);
+  return bytes ? mark_of(*bytes) : "";
+}
+
+void Disk::note_settings(const std::string& mark) {
+  world_.note({.actor = Actor::Disk, .kind = Kind::Written, .what = "settings", .who = mark});
 }
 
 int Disk::may_change(int folder, const char* path) {

@@ -22,6 +22,7 @@ class World;
 class Disk {
  public:
   static constexpr const char* kRuntime = "runtime";
+  static constexpr const char* kSettings = "state/settings.json";
   static constexpr std::uint64_t kRoom = 256 << 20;  // bytes, of each file system
 
   explicit Disk(World& world);
@@ -39,6 +40,8 @@ class Disk {
   /// The folder that is the box's from now on.
   void mount(const std::filesystem::path& folder);
   /// No process has anything open any more.
+  /// Stands for what the saved settings say; "": there are none.
+  std::string settings() const;
   void let_go() { open_.clear(); }
   /// Changes `tree`, a copy of the folder, into what a power cut leaves of it.
   void cut_power(const std::filesystem::path& tree);
@@ -75,6 +78,7 @@ class Disk {
   std::uint64_t take_room(const std::string& name, std::uint64_t bytes);
   ssize_t put(int fd, const Open& open, std::span<const char> bytes, off_t at);
   std::optional<std::string> bytes_of(const std::string& name) const;
+  void note_settings(const std::string& mark);
 
   World& world_;
   Random random_, unique_;

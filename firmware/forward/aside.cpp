@@ -211,9 +211,15 @@ std::expected<lanes::Message, std::string> Aside::to_be_sent(std::uint64_t numbe
   return item->message;
 }
 
-void Aside::sent_again(std::uint64_t number, bool kept) {
-  if (kept && items_.take(number)) return forget(number);
-  leaving_.erase(number);
+bool Aside::sent_again(std::uint64_t number, bool kept) {
+  const lanes::AsideItem* const item = items_.find(number);
+  const bool is_wanted = item == nullptr || !item->overtaken;
+  if (kept && items_.take(number)) {
+    forget(number);
+  } else {
+    leaving_.erase(number);
+  }
+  return is_wanted;
 }
 
 std::expected<void, std::string> Aside::discard(std::uint64_t number) {

@@ -47,8 +47,9 @@ class Aside {
 
   /// For whoever sends it again and then says so by sent_again(). An error: a sentence why it is not sent.
   std::expected<lanes::Message, std::string> to_be_sent(std::uint64_t number);
-  /// `kept`: it waits, and is kept elsewhere. Otherwise it is set aside as before.
-  void sent_again(std::uint64_t number, bool kept);
+  /// `kept`: it waits, and is kept elsewhere. Otherwise it is set aside as before. False: something newer
+  /// that says all of it was taken meanwhile.
+  bool sent_again(std::uint64_t number, bool kept);
   std::expected<void, std::string> discard(std::uint64_t number);
 
   std::vector<page::AsideRow> rows() const;

@@ -65,7 +65,7 @@ std::expected<void, std::string> Flow::aside(std::uint64_t number, page::AsideDe
   auto message = aside_.to_be_sent(number);
   if (!message) return std::unexpected(message.error());
   if (auto* const map = std::get_if<icd::MapUpdate>(&*message)) {
-    maps_.send_again(std::move(*map), [this, number](bool kept) { aside_.sent_again(number, kept); });
+    maps_.send_again(std::move(*map), [this, number](bool kept) { return aside_.sent_again(number, kept); });
   } else {
     aside_.sent_again(number, news_.send_again(*message));
   }

@@ -7,6 +7,7 @@
 #include "forward/upstream_answer.hpp"
 #include "host/log.hpp"
 #include "icd/sentence.hpp"
+#include "lanes/set_aside.hpp"
 #include "loop/guard.hpp"
 #include "pace/budget.hpp"
 #include "pack/pack.hpp"
@@ -302,27 +303,35 @@ void Maps::give_up(int status, const std::string& sentence) {
   prepared_.reset();
 }
 
-/// One that waits may cover it by now: that one says all of it, and a life to come, which reads the maps in
-/// the order of their numbers, must not find it the newer one.
-void Maps::send_again(icd::MapUpdate update, std::function<void(bool kept)> done) {
-  if (lane_.is_replaced(update)) return done(true);
+/// What waits or is under way may say all of it by now: it must neither follow that, nor be found by a life
+/// to come, which reads the maps in the order of their numbers and would take it for the newer one.
+void Maps::send_again(icd::MapUpdate update, std::function<bool(bool kept)> done) {
+  if (lane_.is_replaced(update) || is_said_by_what_goes(update)) {
+    done(true);
+    return;
+  }
   update.header().stamp = loop_.stamp_now();
   const auto keeping = std::make_shared<Keeping>();
   keeping->update = std::move(update);
   keep(keeping, [this, done = std::move(done)](Keeping& it) { kept_again(it, done); });
 }
 
-void Maps::kept_again(Keeping& keeping, const std::function<void(bool kept)>& done) {
-  done(keeping.kept.has_value());
+void Maps::kept_again(Keeping& keeping, const std::function<bool(bool kept)>& done) {
+  const bool is_wanted = done(keeping.kept.has_value());
   if (!keeping.kept) {
     return host::log(host::Level::Error, "what was set aside is not sent again",
                      {{"why", keeping.kept.error().sentence}});
   }
+  if (!is_wanted || is_said_by_what_goes(*keeping.kept)) return forget({keeping.number});
   forget(lane_.put_back({.map = std::move(*keeping.kept),
                          .accepted = loop_.now(),
                          .updates = {keeping.number},
                          .alone = true}));
   pump();
+}
+
+bool Maps::is_said_by_what_goes(const icd::MapUpdate& older) const {
+  return prepared_ && lanes::says_all_of(prepared_->waiting.map, older);
 }
 
 void Maps::link_is_back() {

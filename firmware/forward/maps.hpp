@@ -49,9 +49,10 @@ class Maps {
   void take(icd::MapUpdate update, std::size_t bytes_received, std::shared_ptr<spool::MapFile> file,
             std::function<void(icd::Checked<void>)> done);
 
-  /// What was set aside, on the operator's word: before all that waits. `done` is told whether it is kept and
-  /// waits; if not, nothing has become of it.
-  void send_again(icd::MapUpdate update, std::function<void(bool kept)> done);
+  /// What was set aside, on the operator's word: before all that waits. `done` is told whether it is kept; if
+  /// not, nothing has become of it. It says whether it is still to go: nothing newer that says all of it was
+  /// taken since.
+  void send_again(icd::MapUpdate update, std::function<bool(bool kept)> done);
 
   /// Sends nothing more. False while an answer is awaited.
   bool stop();
@@ -88,7 +89,8 @@ class Maps {
   bool has_room_for(const icd::MapUpdate& update, bool replaces) const;
   void keep(const std::shared_ptr<Keeping>& keeping, const std::function<void(Keeping&)>& told);
   void kept(Keeping& keeping, const std::function<void(icd::Checked<void>)>& done);
-  void kept_again(Keeping& keeping, const std::function<void(bool kept)>& done);
+  void kept_again(Keeping& keeping, const std::function<bool(bool kept)>& done);
+  bool is_said_by_what_goes(const icd::MapUpdate& older) const;
   void forget(std::vector<std::uint64_t> numbers);
   void pump();
   void go_on();

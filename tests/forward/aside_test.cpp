@@ -189,6 +189,16 @@ TEST_F(AsideTest, KeepsWhatIsSentAgainUntilItIsKeptElsewhere) {
   EXPECT_TRUE(found_after_a_kill().empty());
 }
 
+TEST_F(AsideTest, SaysWhatWasOvertakenOnItsWay) {
+  add(grid());
+  add(state());
+  ASSERT_TRUE(aside_->to_be_sent(1));
+  ASSERT_TRUE(aside_->to_be_sent(2));
+  aside_->taken(grid());
+  EXPECT_FALSE(aside_->sent_again(1, true));
+  EXPECT_TRUE(aside_->sent_again(2, true));
+}
+
 TEST_F(AsideTest, TakesBackWhatCouldNotBeSentAgain) {
   add(grid());
   settle();

@@ -117,10 +117,54 @@ TEST_F(MapsTest, ThatWereReplacedAreForgottenOnceTheNewerOneIsKept) {
 TEST_F(MapsTest, ThatAreSentAgainByHandStayBehindANewerOneThatCoversThem) {
   EXPECT_EQ(status(take(grid("r1", 20, 700))), icd::Status::Ok);
   std::optional<bool> kept;
-  maps_.send_again(grid("r1", 10, 500), [&](bool is_kept) { kept = is_kept; });
+  maps_.send_again(grid("r1", 10, 500), [&](bool is_kept) {
+    kept = is_kept;
+    return true;
+  });
   EXPECT_EQ(kept, true) << "the newer one says all of it";
   EXPECT_TRUE(comes_to(1));
   EXPECT_TRUE(maps_.all_kept());
+}
+
+/// While it is packed or under way it is not among what waits.
+TEST_F(MapsTest, ThatAreSentAgainByHandStayBehindANewerOneThatIsOnItsWay) {
+  Maps maps{loop_,
+            workers_,
+            writer_,
+            spool_,
+            settings_,
+            icd::BearerToken::parse("a-token"),
+            record_,
+            aside_,
+            random_,
+            journal_,
+            [](const icd::MapUpdate&) {}};
+  std::promise<void> let_go;
+  workers_.submit([until = let_go.get_future().share()] { until.wait(); }, [] {});
+  bool taken = false;
+  maps.take(grid("r1", 20, 700), 10, nullptr,
+            [&](const icd::Checked<void>& said) { taken = said.has_value(); });
+  ASSERT_TRUE(loop::turn_until(loop_, [&] { return taken && maps.packing(); }));
+  std::optional<bool> kept;
+  maps.send_again(grid("r1", 10, 500), [&](bool well) {
+    kept = well;
+    return true;
+  });
+  EXPECT_EQ(kept, true) << "the newer one says all of it";
+  EXPECT_EQ(maps.waiting({Kind::Grid, "r1"}), 1u);
+  EXPECT_EQ(files(), 1u);
+  let_go.set_value();
+}
+
+TEST_F(MapsTest, ThatAreSentAgainByHandStayBehindANewerOneThatWasTakenMeanwhile) {
+  std::optional<bool> kept;
+  maps_.send_again(grid("r1", 10, 500), [&](bool well) {
+    kept = well;
+    return false;
+  });
+  EXPECT_TRUE(loop::turn_until(loop_, [&] { return kept.has_value(); }));
+  EXPECT_EQ(maps_.queued_bytes(), 0u);
+  EXPECT_TRUE(comes_to(0));
 }
 
 TEST_F(MapsTest, ThatReplaceWhatWaitsAreTakenByAFullQueueAndOthersAreNot) {
@@ -170,6 +214,7 @@ TEST_F(MapsTest, ThatAreSentAgainByHandAreKeptBeforeWhoSetThemAsideIsTold) {
   maps_.send_again(grid("r1", 10, 500), [&](bool well) {
     kept = well;
     files_then = files();
+    return true;
   });
   for (int i = 0; i < 10; ++i) loop_.turn(std::chrono::milliseconds{5});
   EXPECT_FALSE(kept);
@@ -187,7 +232,10 @@ TEST_F(MapsTest, ThatCannotBeKeptStayWhereTheyWereSetAside) {
     std::ofstream(folder_.path()) << "in the way";
   }
   std::optional<bool> kept;
-  maps_.send_again(grid("r1", 10, 500), [&](bool well) { kept = well; });
+  maps_.send_again(grid("r1", 10, 500), [&](bool well) {
+    kept = well;
+    return true;
+  });
   EXPECT_TRUE(loop::turn_until(loop_, [&] { return kept.has_value(); }));
   EXPECT_EQ(kept, false);
   EXPECT_EQ(maps_.queued_bytes(), 0u);

@@ -34,6 +34,7 @@ void markers_arrived(const Evidence& evidence, Broken& broken);
 void live(const Evidence& evidence, Broken& broken);
 void honest(const Evidence& evidence, Broken& broken);
 void lights(const Evidence& evidence, Broken& broken);
+void obeyed(const Evidence& evidence, Broken& broken);
 void alive(const Evidence& evidence, Broken& broken);
 
 /// Which faults of the disk there were, of events in their order.
@@ -51,6 +52,7 @@ class DiskFaultsSeen {
   std::set<std::string> on_, this_life_;
   double last_ = -1e9;
 };
+std::int64_t serial_of(const dispatch::Report& report);
 
 Broken all_checks(const Evidence& evidence);
 

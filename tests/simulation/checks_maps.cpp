@@ -6,6 +6,7 @@
 #include "icd/sentence.hpp"
 #include "simulation/asked.hpp"
 #include "simulation/checks.hpp"
+#include "simulation/judge.hpp"
 #include "simulation/messages.hpp"
 #include "simulation/upstream_view.hpp"
 
@@ -64,6 +65,8 @@ std::map<Name, std::vector<Posted>> posted_in(const Evidence& evidence, const st
     const Event& event = evidence.events[i];
     if (event.what != kMap) continue;
     if (event.kind == Kind::Replied && event.status >= 500 && sent != nullptr) ++sent->failures;
+    // It is set aside, and follows later at the operator's word.
+    if (event.kind == Kind::Replied && event.status == 422 && sent != nullptr) sent->failures = kInPlace;
     if (event.kind != Kind::Taken && event.kind != Kind::Left) continue;
     sent = nullptr;
     const auto found = by_serial.find(event.serial);
@@ -102,15 +105,22 @@ void check_grids(const Name& name, const std::vector<Posted>& all, Broken& broke
   }
 }
 
-/// Between one taking and the next the process was killed, or the first one's answer was lost or no 200.
+/// Between one taking and the next the process was killed, or the first one's answer was lost or no 200; or
+/// the operator sent again what was still set aside after a kill, though it waited by then.
 bool may_be_double(const std::vector<Event>& events, std::size_t first, std::size_t second) {
+  const auto is_kill = [](const Event& event) { return event.kind == Kind::Dies; };
+  const auto is_word = [](const Event& event) {
+    return event.kind == Kind::Invoke && event.what == kSendAside;
+  };
+  const auto at = [&](std::size_t place) { return events.begin() + static_cast<std::ptrdiff_t>(place); };
+  if (std::any_of(at(first), at(second), is_word) && std::any_of(at(0), at(first), is_kill)) return true;
   int status = -1;
   for (std::size_t i = first; i < second; ++i) {
     const Event& event = events[i];
     if (event.kind == Kind::Dies) return true;
     if (event.what != kMap || status >= 0) continue;
     if (event.kind == Kind::Leaves) status = 0;
-    if (event.kind == Kind::Replied && event.who != kTooLong) status = event.status;
+    if (event.kind == Kind::Replied && event.who.empty()) status = event.status;
   }
   return status != 200;
 }

@@ -1,4 +1,5 @@
 // Honest, Lights and Alive: of what the page, the panel and systemd are told.
+#include <algorithm>
 #include <cmath>
 #include <optional>
 #include <set>
@@ -8,7 +9,9 @@
 #include "simulation/messages.hpp"
 #include "simulation/page_account.hpp"
 #include "simulation/page_words.hpp"
+#include "simulation/scoreboard.hpp"
 #include "simulation/upstream_view.hpp"
+#include "simulation/world.hpp"
 
 namespace adit::simulation {
 namespace {
@@ -18,6 +21,7 @@ using Moment = PageAccount::Moment;
 
 constexpr double kWatchdog = 10;  // seconds within which systemd hears that aditd lives
 constexpr double kRounding = 0.05;
+constexpr double kLongestDoubt = 60;
 
 Moment moment_of(const Reading& reading) {
   return {reading.asked, reading.heard};
@@ -80,13 +84,8 @@ class Difference {
 const Event* last_status(const std::vector<Event>& events, std::size_t from, std::size_t to) {
   while (to-- > from) {
     const Event& event = events[to];
-    if (event.kind != Kind::Replied || event.what != kStatus || event.status != 200) continue;
-    const Json status = Json::parse(event.text, nullptr, false);
-    const auto is_number = [&](const char* name) {
-      return status.contains(name) && status.at(name).is_number();
-    };
-    if (status.is_object() && is_number("score") && is_number("run_clock") && is_number("remaining_reports"))
-      return &event;
+    const bool is_status = event.kind == Kind::Replied && event.what == kStatus;
+    if (is_status && event.status == 200 && !event.says.empty()) return &event;
   }
   return nullptr;
 }
@@ -111,6 +110,15 @@ void judge_run(const Evidence& evidence, std::size_t begun, const Reading& readi
                                    " s old, and it came at ", heard->at));
 }
 
+/// What somebody else recorded meanwhile looks the same.
+bool is_blurred(const Evidence& evidence, const Json& row) {
+  return std::ranges::any_of(evidence.events, [&](const Event& event) {
+    const double at = World::kEpoch + event.at;
+    return event.kind == Kind::Another && at > row.at("received").get<double>() - kLongestDoubt &&
+           at < row.at("changed");
+  });
+}
+
 /// A report that is called recorded is, with the points that it got.
 void judge_reports(const Evidence& evidence, const Reading& reading, Broken& broken) {
   for (const Json& row : reading.view.at("reports")) {
@@ -124,10 +132,10 @@ void judge_reports(const Evidence& evidence, const Reading& reading, Broken& bro
       recorded = true;
       right = right || row.at("score_change") == std::llround(event.stamp);
     }
-    if (!recorded)
+    if (!recorded && !is_blurred(evidence, row))
       broken.push_back(icd::sentence("Honest: at ", reading.at, " the page calls report ", serial, " ", state,
                                      ", and it is not recorded"));
-    if (recorded && !right)
+    if (recorded && !right && !is_blurred(evidence, row))
       broken.push_back(icd::sentence("Honest: at ", reading.at, " the page gives report ", serial,
                                      " a score that it has not"));
   }
@@ -181,7 +189,6 @@ void judge_metrics(const Evidence& evidence, const Reading& reading, Broken& bro
     const std::string labels = "{kind=" + row.at("kind").dump() + ",robot=" + row.at("robot").dump() + "}";
     for (const char* const count : {"accepted", "forwarded", "replaced", "merged", "throttled", "failed"})
       compare("adit_updates_" + std::string(count) + "_total" + labels, row.at(count));
-    compare("adit_updates_waiting" + labels, row.at("waiting"));
   }
   compare("adit_attention", static_cast<double>(reading.view.at("attention").size()));
   for (const Json& row : reading.view.at("endpoints")) {
@@ -202,7 +209,7 @@ bool is_of_the_past(const Json& sentence) {
 }
 
 /// Long after the last fault nothing waits, and nobody is called but for what only the operator can judge.
-void judge_rest(const Reading& reading, Broken& broken) {
+void judge_rest(const Evidence& evidence, const Reading& reading, Broken& broken) {
   for (const auto& [stream, count] : counts(reading.view, "waiting")) {
     if (count > 0)
       broken.push_back(icd::sentence("Honest: at rest ", count, " of ", stream.path, " of ", stream.who,
@@ -214,7 +221,11 @@ void judge_rest(const Reading& reading, Broken& broken) {
   });
   const auto called = static_cast<std::size_t>(std::ranges::count_if(
       reading.view.at("attention"), [](const Json& sentence) { return !is_of_the_past(sentence); }));
-  if (called > 0 && judged == 0 && reading.view.at("aside").empty())
+  // Of reports that Adit cannot account for he is told.
+  const bool beside = std::ranges::any_of(evidence.events, [](const Event& event) {
+    return event.kind == Kind::Another || (event.kind == Kind::NewRun && event.who.ends_with(kNameless));
+  });
+  if (called > 0 && judged == 0 && !beside && reading.view.at("aside").empty())
     broken.push_back(
         icd::sentence("Honest: at rest the operator is called: ", reading.view.at("attention").dump()));
   if (called < static_cast<std::size_t>(judged))
@@ -242,7 +253,7 @@ void honest(const Evidence& evidence, Broken& broken) {
     judge_metrics(evidence, reading, broken);
     if (reading.lie.starts_with("Honest")) broken.push_back(reading.lie);
   }
-  if (!evidence.readings.empty()) judge_rest(evidence.readings.back(), broken);
+  if (!evidence.readings.empty()) judge_rest(evidence, evidence.readings.back(), broken);
 }
 
 void lights(const Evidence& evidence, Broken& broken) {

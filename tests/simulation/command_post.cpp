@@ -1,24 +1,30 @@
 #include "simulation/command_post.hpp"
 
 #include <cerrno>
-#include <cstdio>
 #include <utility>
 
 #include "simulation/messages.hpp"
+#include "simulation/odd_answers.hpp"
 #include "simulation/world.hpp"
 
 namespace adit::simulation {
 namespace {
 
-constexpr int kSeenToRun = 4;  // statuses that were answered
 constexpr double kLatest = 8;  // seconds after which nothing is recorded any more
+constexpr double kLongest = 8, kLongestOutage = 25;
 constexpr const char* kJson = "Content-Type: application/json\r\n";
+constexpr const char* kPage = "Content-Type: text/html\r\n";
 constexpr const char* kHtml = "<html><body>Please log in</body></html>";
+constexpr Fault kPeriods[] = {Fault::Storm,       Fault::PoliteStorm, Fault::Refused, Fault::Deaf,
+                              Fault::Mute,        Fault::Outage,      Fault::NewRun,  Fault::StatusDown,
+                              Fault::OtherSender, Fault::AdminStop};
 
-std::string number(double value) {
-  char text[32];
-  std::snprintf(text, sizeof text, "%.3f", value);
-  return text;
+std::string numbered(const char* name, int place) {
+  return place == 0 ? name : std::string(name) + " " + std::to_string(place);
+}
+
+bool is_mapping(const HttpMessage& request) {
+  return request.path() != kReports && request.path() != kStatus;
 }
 
 }  // namespace
@@ -39,12 +45,12 @@ class CommandPost::Conversation final : public Peer {
   HttpStream stream_;
 };
 
-CommandPost::CommandPost(World& world, double trouble_for)
+CommandPost::CommandPost(World& world, const Faults& faults, double trouble_for, int place)
     : world_(world),
-      faults_(world.random("faults")),
-      random_(world.random("command post")),
-      run_began_(-random_.between(300, 3000)) {
-  for (const Fault fault : {Fault::Storm, Fault::PoliteStorm, Fault::Refused, Fault::Deaf, Fault::NewRun}) {
+      faults_(faults),
+      random_(world.random(numbered("command post", place))),
+      scoreboard_(world, faults_, random_, place) {
+  for (const Fault fault : kPeriods) {
     // Nobody can tell one run from the next by clocks that stand.
     const bool untold = fault == Fault::NewRun && faults_.has(Fault::ConstantClocks);
     if (faults_.has(fault) && !untold) plan_periods(fault, trouble_for);
@@ -56,58 +62,72 @@ void CommandPost::note(Fault fault, const std::string& path) {
 }
 
 void CommandPost::plan_periods(Fault fault, double trouble_for) {
+  const bool is_long = fault == Fault::Outage || fault == Fault::Mute || fault == Fault::StatusDown;
   for (std::uint64_t i = 1 + random_.below(2); i > 0; --i) {
-    const double begins = random_.between(1, trouble_for), takes = random_.between(0.5, 8);
+    const double begins = random_.between(1, trouble_for);
+    const double takes = random_.between(0.5, is_long ? kLongestOutage : kLongest);
     if (world_.omits(name_of(fault))) continue;
-    if (fault == Fault::NewRun) return world_.after(seconds(begins), [this] { begin_run(); });
-    bool& is = fault == Fault::Storm         ? storm_
-               : fault == Fault::PoliteStorm ? polite_
-               : fault == Fault::Refused     ? refused_
-                                             : deaf_;
-    world_.after(seconds(begins), [this, fault, &is] {
-      if (calm_) return;
-      is = true;
-      note(fault, "begins");
-    });
-    world_.after(seconds(begins + takes), [&is] { is = false; });
+    world_.after(seconds(begins), [this, fault, takes] { begin(fault, takes); });
   }
 }
 
-/// Not before its clock was seen to run: nothing would tell the one from the other.
+void CommandPost::begin(Fault period, double takes) {
+  if (calm_) return;
+  if (period == Fault::NewRun) return begin_run();
+  note(period, "begins");
+  if (period == Fault::OtherSender) return scoreboard_.record_another();
+  on_.insert(period);
+  if (period == Fault::AdminStop) scoreboard_.stop(true);
+  if (period == Fault::Outage) cut_all();
+  world_.after(seconds(takes), [this, period] {
+    on_.erase(period);
+    if (period == Fault::AdminStop) scoreboard_.stop(false);
+  });
+}
+
 void CommandPost::begin_run() {
   if (calm_) return;
-  if (statuses_ < kSeenToRun) return world_.after(seconds(5), [this] { begin_run(); });
-  ++run_;
-  remaining_ = 25;
-  score_ = 0;
-  run_began_ = world_.time();
-  world_.note({.actor = Actor::Post, .kind = Kind::NewRun, .what = "", .who = "", .serial = run_});
+  if (scoreboard_.may_begin_run()) return scoreboard_.begin_run();
+  world_.after(seconds(5), [this] { begin_run(); });
+}
+
+void CommandPost::cut_all() {
+  for (const auto& each : std::exchange(links_, {})) {
+    if (const auto link = each.lock()) link->end(Link::How::Reset);
+  }
 }
 
 void CommandPost::calm() {
   calm_ = true;
-  storm_ = polite_ = refused_ = deaf_ = false;
+  on_.clear();
+  scoreboard_.stop(false);
   world_.note({.actor = Actor::Post, .kind = Kind::Calm, .what = "", .who = ""});
 }
 
 std::optional<int> CommandPost::connecting(const uplink::Endpoint&) {
-  if (deaf_) return std::nullopt;
-  return refused_ ? ECONNREFUSED : 0;
+  if (is_on(Fault::Deaf) || is_on(Fault::Mute)) return std::nullopt;
+  return is_on(Fault::Refused) || is_on(Fault::Outage) ? ECONNREFUSED : 0;
 }
 
 std::unique_ptr<Peer> CommandPost::connected(const uplink::Endpoint&, Link& link) {
+  links_.push_back(link.weak_from_this());
   return std::make_unique<Conversation>(*this, link);
 }
 
 void CommandPost::asked(const HttpMessage& request, Link& link) {
-  if (storm_ || polite_) {
-    const std::string after =
-        polite_ ? "Retry-After: " + std::to_string(1 + random_.below(4)) + "\r\n" : std::string();
+  if (is_on(Fault::Mute) || is_on(Fault::Outage)) return;
+  if (is_on(Fault::StatusDown) && request.path() == kStatus) return;
+  if (is_on(Fault::Storm) || is_on(Fault::PoliteStorm)) {
+    const std::string after = is_on(Fault::PoliteStorm)
+                                  ? "Retry-After: " + std::to_string(1 + random_.below(4)) + "\r\n"
+                                  : std::string();
     return link.send(http_answer("429 Too Many Requests", kJson + after, "\"too many requests\""));
   }
   const Fault fault = calm_ ? Fault::End : faults_.of_request();
-  if (fault != Fault::End && !world_.omits(name_of(fault))) return misbehave(fault, request, link);
-  if (request.path() == kStatus) ++statuses_;
+  const bool befalls = fault == Fault::Unwanted         ? request.path() == kMap || request.path() == kState
+                       : fault == Fault::TakenThrottled ? is_mapping(request)
+                                                        : true;
+  if (fault != Fault::End && befalls && !world_.omits(name_of(fault))) return misbehave(fault, request, link);
   link.send(take(request), seconds(random_.between(0, 0.01)));
 }
 
@@ -115,6 +135,7 @@ void CommandPost::take_later(const HttpMessage& request, double within) {
   world_.after(seconds(random_.between(0, within)), [this, request] { take(request); });
 }
 
+/// By when it answers, and what becomes of the connection.
 void CommandPost::misbehave(Fault fault, const HttpMessage& request, Link& link) {
   note(fault, request.path());
   const auto soon = seconds(random_.between(0, 0.5));
@@ -124,11 +145,6 @@ void CommandPost::misbehave(Fault fault, const HttpMessage& request, Link& link)
     case Fault::LostAfter:
       request.path() == kReports&& random_.chance(0.5) ? take_later(request, kLatest) : void(take(request));
       return link.end(Link::How::Reset, soon);
-    case Fault::CutAnswer: {
-      const std::string answer = take(request);
-      link.send(answer.substr(0, random_.below(answer.size())), soon);
-      return link.end(random_.chance(0.5) ? Link::How::End : Link::How::Reset, soon);
-    }
     case Fault::Delay: {
       const auto late = seconds(random_.between(0.1, kLatest));
       if (request.path() != kReports) return link.send(take(request), late);
@@ -138,30 +154,72 @@ void CommandPost::misbehave(Fault fault, const HttpMessage& request, Link& link)
     case Fault::Silence:
       if (random_.chance(0.5)) take(request);
       return;
-    case Fault::Error:
-      if (random_.chance(0.5)) take(request);
-      return link.send(random_.chance(0.5)
-                           ? http_answer("500 Internal Server Error", kJson, "\"failed\"")
-                           : http_answer("500 Internal Server Error", "Content-Type: text/html\r\n", kHtml),
-                       soon);
-    case Fault::Html:
-      return link.send(http_answer("200 OK", "Content-Type: text/html\r\n", kHtml), soon);
-    case Fault::HugeLength:
-      if (random_.chance(0.5)) take(request);
-      return link.send(
-          "HTTP/1.1 200 OK\r\nContent-Type: application/json\r\nContent-Length: 1000000000000\r\n\r\n{",
-          soon);
+    case Fault::CutAnswer:
+    case Fault::HugeChunk:
+    case Fault::WrongLength:
+    case Fault::Garbage:
+    case Fault::ClosesAfter:
+      link.send(bad_answer(fault, request), soon);
+      return link.end(random_.chance(0.5) ? Link::How::End : Link::How::Reset, soon);
     default:
-      return;
+      return link.send(bad_answer(fault, request), soon);
+  }
+}
+
+/// Its bytes, and whether it was recorded.
+std::string CommandPost::bad_answer(Fault fault, const HttpMessage& request) {
+  const auto maybe_take = [&] {
+    if (random_.chance(0.5)) take(request);
+  };
+  switch (fault) {
+    case Fault::CutAnswer: {
+      const std::string answer = take(request);
+      return answer.substr(0, random_.below(answer.size()));
+    }
+    case Fault::Error:
+      maybe_take();
+      return random_.chance(0.5) ? http_answer("500 Internal Server Error", kJson, "\"failed\"")
+                                 : http_answer("500 Internal Server Error", kPage, kHtml);
+    case Fault::Html:
+      return http_answer("200 OK", kPage, kHtml);
+    case Fault::HugeLength:
+      maybe_take();
+      return "HTTP/1.1 200 OK\r\nContent-Type: application/json\r\nContent-Length: 1000000000000\r\n\r\n{";
+    case Fault::HugeChunk:
+      take(request);
+      return "HTTP/1.1 200 OK\r\nContent-Type: application/json\r\nTransfer-Encoding: "
+             "chunked\r\n\r\n6fc23ac00\r\n{";
+    case Fault::WrongLength:
+      return with_wrong_length(take(request), random_);
+    case Fault::Garbage:
+      take(request);
+      return "\x16\x03\x01 this is no HTTP at all\r\n\r\n";
+    case Fault::WrongTypes:
+      take(request);
+      return with_wrong_types(random_);
+    case Fault::Redirect:
+      return redirect(random_);
+    case Fault::Between:
+      maybe_take();
+      return from_between(random_);
+    case Fault::Unwanted:
+      return http_answer("422 Unprocessable Entity", kJson, "\"Unknown field: 'x'\"");
+    case Fault::TakenThrottled:
+      take(request);
+      return http_answer("429 Too Many Requests", kJson, "\"Cloud updates too frequent. Reduce to <1Hz.\"");
+    case Fault::OddAnswer:
+      return said_oddly(take(request), random_);
+    default:
+      return take(request);
   }
 }
 
 std::string CommandPost::take(const HttpMessage& request) {
   const std::string path = request.path();
-  if (path == kStatus) return status();
+  if (path == kStatus) return scoreboard_.status();
   const auto items = items_of(request);
   if (items.empty()) return http_answer("422 Unprocessable Entity", kJson, "\"what is this?\"");
-  if (path == kReports) return record(items.front());
+  if (path == kReports) return scoreboard_.record(items.front());
   for (const Item& item : items) {
     world_.note({.actor = Actor::Post,
                  .kind = Kind::Taken,
@@ -172,36 +230,6 @@ std::string CommandPost::take(const HttpMessage& request) {
                  .says = item.says});
   }
   return http_answer("200 OK", kJson, "null");
-}
-
-std::string CommandPost::status() const {
-  const double clock = faults_.has(Fault::ConstantClocks) ? 25.98 : world_.time() - run_began_;
-  return http_answer("200 OK", kJson,
-                     "{\"score\": " + std::to_string(score_) + ", \"run_clock\": " + number(clock) +
-                         ", \"remaining_reports\": " + std::to_string(remaining_) +
-                         ", \"current_team\": \"adit\"}");
-}
-
-std::string CommandPost::record(const Item& item) {
-  const bool scored = remaining_ > 0;
-  const int points = scored && item.serial % 3 == 1 ? 1 : 0;
-  if (scored) --remaining_;
-  score_ += points;
-  world_.note({.actor = Actor::Post,
-               .kind = Kind::Taken,
-               .what = kReports,
-               .who = "run " + std::to_string(run_),
-               .serial = item.serial,
-               .stamp = static_cast<double>(points)});
-  const bool stands = faults_.has(Fault::ConstantClocks);
-  const double clock = stands ? 3.14 : world_.time() - run_began_;
-  return http_answer("201 Created", kJson,
-                     "{\"url\": \"\", \"id\": " + std::to_string(++id_) +
-                         ", \"x\": " + number(static_cast<double>(item.serial) * 100) + ", \"run\": \"" +
-                         std::to_string(stands ? 1 : run_) +
-                         "\", \"team\": \"adit\", \"run_clock\": " + number(clock) +
-                         ", \"report_status\": \"" + (scored ? "scored" : "report limit exceeded") +
-                         "\", \"score_change\": " + std::to_string(points) + "}");
 }
 
 }  // namespace adit::simulation

@@ -3,26 +3,27 @@
 #include <cstdint>
 #include <memory>
 #include <optional>
+#include <set>
 #include <string>
+#include <vector>
 
 #include "simulation/faults.hpp"
 #include "simulation/http.hpp"
 #include "simulation/messages.hpp"
 #include "simulation/network.hpp"
 #include "simulation/random.hpp"
+#include "simulation/scoreboard.hpp"
 
 namespace adit::simulation {
 
-/// Both endpoints of a Command Post by the letter of the ICD, with the faults of one run. It records whatever
-/// reaches it, and cannot tell a report from the same one again.
+/// Both endpoints of a Command Post by the letter of the ICD, with the faults of one run.
 class CommandPost final : public Host {
  public:
   static constexpr std::uint16_t kScoring = 8000, kMapping = 8001;  // ports
 
-  /// `world` outlives this.
-  CommandPost(World& world, double trouble_for);
+  /// `place`: which one it is, from 0 on. `world` outlives this.
+  CommandPost(World& world, const Faults& faults, double trouble_for, int place = 0);
 
-  const Faults& faults() const { return faults_; }
   /// No fault begins any more.
   void calm();
 
@@ -33,23 +34,24 @@ class CommandPost final : public Host {
   class Conversation;
   void asked(const HttpMessage& request, Link& link);
   void misbehave(Fault fault, const HttpMessage& request, Link& link);
+  std::string bad_answer(Fault fault, const HttpMessage& request);
   /// Records what the request says: its answer.
   std::string take(const HttpMessage& request);
-  std::string status() const;
-  std::string record(const Item& item);
   void take_later(const HttpMessage& request, double within);
-  void begin_run();
   void plan_periods(Fault fault, double trouble_for);
+  void begin(Fault period, double takes);
+  void begin_run();
+  void cut_all();
+  bool is_on(Fault period) const { return on_.contains(period); }
   void note(Fault fault, const std::string& path);
 
   World& world_;
   Faults faults_;
   Random random_;
+  Scoreboard scoreboard_;
   bool calm_ = false;
-  bool storm_ = false, polite_ = false, refused_ = false, deaf_ = false;
-  std::int64_t run_ = 1, remaining_ = 25, score_ = 0, id_ = 0;
-  double run_began_;
-  int statuses_ = 0;  // that were answered
+  std::set<Fault> on_;  // periods
+  std::vector<std::weak_ptr<Link>> links_;
 };
 
 }  // namespace adit::simulation

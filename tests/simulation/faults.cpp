@@ -4,9 +4,12 @@ namespace adit::simulation {
 namespace {
 
 constexpr auto kKinds = static_cast<std::size_t>(Fault::End);
-constexpr const char* kNames[kKinds] = {"LostBefore", "LostAfter",   "CutAnswer",      "Delay", "Silence",
-                                        "Storm",      "PoliteStorm", "Error",          "Html",  "HugeLength",
-                                        "Refused",    "Deaf",        "ConstantClocks", "NewRun"};
+constexpr const char* kNames[kKinds] = {
+    "LostBefore",  "LostAfter",      "CutAnswer",    "Delay",      "Silence",     "Storm",
+    "PoliteStorm", "Error",          "Html",         "HugeLength", "HugeChunk",   "WrongLength",
+    "Garbage",     "WrongTypes",     "Redirect",     "Between",    "Unwanted",    "TakenThrottled",
+    "OddAnswer",   "ClosesAfter",    "Refused",      "Deaf",       "Mute",        "Outage",
+    "StatusDown",  "ConstantClocks", "NamelessRuns", "NewRun",     "OtherSender", "AdminStop"};
 
 }  // namespace
 
@@ -19,12 +22,12 @@ Faults::Faults(Random random) : random_(random), odds_(kKinds, 0.0) {
   if (random_.chance(0.5)) {
     for (std::uint64_t i = random_.below(3); i > 0; --i) odds_[random_.below(kKinds)] = odds;
   } else {
-    for (double& each : odds_) each = random_.chance(0.35) ? odds / 2 : 0;
+    for (double& each : odds_) each = random_.chance(0.2) ? odds / 2 : 0;
   }
 }
 
 Fault Faults::of_request() {
-  for (std::size_t i = 0; i <= static_cast<std::size_t>(Fault::HugeLength); ++i) {
+  for (std::size_t i = 0; i <= static_cast<std::size_t>(Fault::ClosesAfter); ++i) {
     const auto fault = static_cast<Fault>(i);
     if (fault == Fault::Storm || fault == Fault::PoliteStorm) continue;
     if (odds_[i] > 0 && random_.chance(odds_[i])) return fault;

@@ -20,10 +20,26 @@ enum class Fault : std::uint8_t {
   Error,           // 500, recorded or not
   Html,            // a 200 of somebody else
   HugeLength,      // an answer that says it has 10^12 bytes; recorded or not
+  HugeChunk,       // recorded; the answer's first chunk is to have 3 * 10^10 bytes
+  WrongLength,     // recorded; the answer has more bytes than it says, or fewer
+  Garbage,         // recorded; what comes is no HTTP
+  WrongTypes,      // recorded; JSON that says nothing of what was asked
+  Redirect,        // look elsewhere; not recorded
+  Between,         // 502, 503 or 504 of something in between; recorded or not
+  Unwanted,        // 422 to a map or state, for nothing
+  TakenThrottled,  // 429 to one that is taken all the same
+  OddAnswer,       // right, in chunks or behind an interim answer
+  ClosesAfter,     // right, and the connection is closed or reset behind it
   Refused,         // nobody listens for some seconds
   Deaf,            // connecting is not answered for some seconds
+  Mute,            // nor is anything else
+  Outage,          // all connections are reset, and nobody listens for up to 25 s
+  StatusDown,      // the status alone is not answered
   ConstantClocks,  // as the public test server's
+  NamelessRuns,    // answers to reports do not name the run
   NewRun,
+  OtherSender,  // somebody else reports with the same token
+  AdminStop,    // records do not count for some seconds
   End
 };
 std::string name_of(Fault fault);

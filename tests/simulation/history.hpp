@@ -25,6 +25,7 @@ enum class Kind : std::uint8_t {
   Fails,     // a life did not begin
   Ended,     // the process is over
   Saved,     // settings were saved
+  Another,   // it has recorded somebody else's report
   NewRun,
   Fault,
   Written,  // settings are put in place; `who` stands for what they say

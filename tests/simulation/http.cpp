@@ -42,11 +42,28 @@ std::optional<HttpMessage> HttpStream::next() {
     length_ = std::strtoull(head.header("content-length").c_str(), nullptr, 10);
     head_ = std::move(head);
   }
-  if (bytes_.size() < length_) return std::nullopt;
-  HttpMessage whole = *std::exchange(head_, std::nullopt);
-  whole.body = bytes_.substr(0, length_);
+  const bool is_whole = head_->header("transfer-encoding") == "chunked" ? take_chunks() : take_body();
+  return is_whole ? std::exchange(head_, std::nullopt) : std::nullopt;
+}
+
+/// Whether all of it is there.
+bool HttpStream::take_body() {
+  if (bytes_.size() < length_) return false;
+  head_->body = bytes_.substr(0, length_);
   bytes_.erase(0, length_);
-  return whole;
+  return true;
+}
+
+bool HttpStream::take_chunks() {
+  while (true) {
+    const std::size_t end = bytes_.find("\r\n");
+    if (end == std::string::npos) return false;
+    length_ = std::strtoull(bytes_.c_str(), nullptr, 16);
+    if (bytes_.size() - end - 2 < length_ || bytes_.size() - end - 2 - length_ < 2) return false;
+    head_->body += bytes_.substr(end + 2, length_);
+    bytes_.erase(0, end + 2 + length_ + 2);
+    if (length_ == 0) return true;
+  }
 }
 
 std::string http_request(std::string_view method, std::string_view path, std::string_view headers,

@@ -7,7 +7,7 @@
 
 namespace adit::simulation {
 
-/// A request or an answer of HTTP/1.1 that says its length.
+/// A request or an answer of HTTP/1.1 that says its length, comes in chunks, or is an interim one.
 struct HttpMessage {
   std::string first;                           // its first line
   std::map<std::string, std::string> headers;  // by names in lower case
@@ -28,11 +28,14 @@ class HttpStream {
   bool is_between() const { return bytes_.empty() && !head_; }
   /// Of the one that is not whole: its head, once that has come, and how long its body is to be.
   const std::optional<HttpMessage>& head() const { return head_; }
-  std::size_t length() const { return length_; }
+  std::size_t length() const { return length_; }  // or of its next chunk
   /// What has come of the first line of the one that is not whole.
   std::string_view begun() const { return bytes_; }
 
  private:
+  bool take_body();
+  bool take_chunks();
+
   std::string bytes_;
   std::optional<HttpMessage> head_;
   std::size_t length_ = 0;

@@ -79,7 +79,12 @@ std::vector<Item> items_of(const HttpMessage& request) {
 
 Says status_in(const std::string& body) {
   const Json status = Json::parse(body, nullptr, false);
-  if (!status.is_object() || !status.contains("score")) return {};
+  const auto is_number = [&](const char* name) {
+    return status.contains(name) && status.at(name).is_number();
+  };
+  if (!status.is_object() || !is_number("score") || !is_number("remaining_reports") ||
+      !is_number("run_clock"))
+    return {};
   return {status["score"], status.at("remaining_reports"),
           static_cast<int>(std::lround(status.at("run_clock").get<double>() * 1000))};
 }

@@ -18,8 +18,6 @@
 namespace adit::simulation {
 namespace {
 
-constexpr const char* kSettings = "/adit/settings";
-
 access::Secret secret(Random& random) {
   access::Secret secret{};
   std::ranges::generate(secret, [&random] { return static_cast<std::uint8_t>(random.next()); });
@@ -31,6 +29,7 @@ access::Secret secret(Random& random) {
 Operator::Operator(World& world, const Box& box, double until)
     : world_(world),
       box_(box),
+      random_(world.random("changes of the operator")),
       client_(world, "10.0.0.10", {.keeps_alive = false, .patience = 20},
               world.random("client of the operator")) {
   Random random = world.random("operator");
@@ -48,19 +47,34 @@ Operator::Operator(World& world, const Box& box, double until)
     world.after(seconds(random.between(0.5, until)), [this] { save(); });
 }
 
+/// Something in one or several of the sections.
+void Operator::change(settings::Settings& next) {
+  next.reports.near_metres = next.reports.near_metres > 5 ? 5 : 6;
+  if (random_.chance(0.5)) next.reports.review = static_cast<dispatch::Review>(random_.below(3));
+  if (random_.chance(0.3))
+    next.reports.answer_within = std::chrono::milliseconds(8000 + random_.below(12000));
+  if (random_.chance(0.3))
+    next.command_post.timeouts.connect = std::chrono::milliseconds(1000 + random_.below(3000));
+  if (random_.chance(0.3)) next.command_post.budget_mbit = random_.between(20, 200);
+  if (random_.chance(0.3))
+    next.team.connections_per_address = static_cast<std::uint32_t>(8 + random_.below(9));
+  if (random_.chance(0.3)) next.queues.map_bytes = (128u + random_.below(128)) << 20;
+}
+
 void Operator::save() {
   const auto loaded = gateway::Store(box_.settings(), box_.secrets(), box_.state()).load();
   if (!loaded || client_.busy()) return;
   settings::Settings next = loaded->settings;
-  next.reports.near_metres = next.reports.near_metres > 5 ? 5 : 6;
+  change(next);
+  const char* const name = next.reports.review == dispatch::Review::All ? kReviewAll : kReviewElse;
   const std::string body = codec::write_json({codec::Value::Object{
       {"base", {settings::tag_of(loaded->settings)}}, {"settings", settings::value_of(next)}}});
   const std::string headers =
       "Host: 10.0.0.1\r\nContent-Type: application/json\r\nCookie: " + std::string(access::kCookie) + "=" +
       id_ + "\r\n" + std::string(access::kCsrfHeader) + ": " + csrf_ + "\r\n";
   client_.ask(http_request("POST", kSettings, headers, body), {.what = kSettings, .who = "operator"},
-              [this](int status) {
-                if (status == 200) world_.note({.kind = Kind::Saved, .what = "settings", .who = ""});
+              [this, name](int status) {
+                if (status == 200) world_.note({.kind = Kind::Saved, .what = name, .who = ""});
               });
 }
 

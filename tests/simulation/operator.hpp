@@ -2,6 +2,7 @@
 
 #include <string>
 
+#include "settings/settings.hpp"
 #include "simulation/box.hpp"
 #include "simulation/client.hpp"
 #include "simulation/random.hpp"
@@ -10,6 +11,10 @@ namespace adit::simulation {
 
 class World;
 
+inline constexpr const char* kSettings = "/adit/settings";
+/// Event::what of Kind::Saved: with review as "all", or as anything else.
+inline constexpr const char *kReviewAll = "review all", *kReviewElse = "settings";
+
 /// Saves settings by the page's API, whereupon the gateway begins anew within its process.
 class Operator {
  public:
@@ -17,10 +22,12 @@ class Operator {
   Operator(World& world, const Box& box, double until);
 
  private:
+  void change(settings::Settings& next);
   void save();
 
   World& world_;
   const Box& box_;
+  Random random_;
   Client client_;
   std::string id_, csrf_;
 };

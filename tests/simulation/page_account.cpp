@@ -33,14 +33,18 @@ void PageAccount::read_team(std::size_t place, const Event& event) {
   const Stream stream = stream_of(event.what, event.who);
   if (event.kind == Kind::Invoke) {
     auto& all = posted_[stream];
-    open_[event.request] = {stream, all.size()};
+    auto& open = open_[event.request];
+    // A message of several markers counts once, each pose of a state by itself.
+    if (event.what == kMarkers && !open.empty()) return;
+    open.emplace_back(stream, all.size());
     all.push_back({.asked = place});
   }
   if (event.kind != Kind::Answered && event.kind != Kind::Gone) return;
-  const auto& [whose, which] = open_.at(event.request);
-  Posted& posted = posted_[whose][which];
-  posted.ended = place;
-  posted.status = event.status;
+  for (const auto& [whose, which] : open_[event.request]) {
+    Posted& posted = posted_[whose][which];
+    posted.ended = std::min(posted.ended, place);
+    posted.status = event.status;
+  }
 }
 
 void PageAccount::read_upstream(std::size_t place, const Event& event) {

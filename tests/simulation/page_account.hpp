@@ -57,8 +57,8 @@ class PageAccount {
   void read_upstream(std::size_t place, const Event& event);
 
   std::map<Stream, std::vector<Posted>> posted_;
-  std::map<std::uint64_t, std::pair<Stream, std::size_t>> open_;  // requests: where in posted_
-  std::map<std::string, std::vector<Stream>> under_way_;          // by path: whose messages
+  std::map<std::uint64_t, std::vector<std::pair<Stream, std::size_t>>> open_;  // requests: where in posted_
+  std::map<std::string, std::vector<Stream>> under_way_;                       // by path: whose messages
   std::map<Stream, Places> forwarded_;
   std::map<std::string, Places> throttled_, foreign_;
   Places begun_;

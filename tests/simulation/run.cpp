@@ -4,6 +4,7 @@
 #include "simulation/box.hpp"
 #include "simulation/checks.hpp"
 #include "simulation/command_post.hpp"
+#include "simulation/judge.hpp"
 #include "simulation/operator.hpp"
 #include "simulation/reader.hpp"
 #include "simulation/team.hpp"
@@ -41,10 +42,12 @@ Outcome play(const Plan& plan) {
   world.history().tells = plan.tells;
   Box box(world);
   const double trouble_for = world.random("length").between(10, 60);
-  CommandPost post(world, trouble_for);
+  const Faults faults(world.random("faults"));
+  CommandPost post(world, faults, trouble_for);
   world.network().serve(&post);
   const Team team(world, trouble_for);
   const Operator operator_(world, box, trouble_for);
+  const Judge judge(world, trouble_for);
   const Reader reader(world, trouble_for, trouble_for + kRest - 5);
   plan_ends(world, box, trouble_for);
   world.disk().faults().plan(trouble_for);
@@ -55,7 +58,7 @@ Outcome play(const Plan& plan) {
           .seconds = world.time(),
           .steps = world.steps(),
           .faults = world.history().faults(),
-          .drawn = post.faults().names() + world.disk().faults().names(),
+          .drawn = faults.names() + world.disk().faults().names(),
           .broken = all_checks({world.history().events(), reports_in(box.state()), reader.readings()}),
           .deeds = world.deeds()};
 }

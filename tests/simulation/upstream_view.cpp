@@ -1,6 +1,7 @@
 #include "simulation/upstream_view.hpp"
 
 #include <cstdlib>
+#include <nlohmann/json.hpp>
 
 #include "simulation/messages.hpp"
 #include "simulation/world.hpp"
@@ -9,6 +10,11 @@ namespace adit::simulation {
 namespace {
 
 constexpr std::size_t kLongest = 64u << 10;  // bytes of an answer's body
+
+/// Neither JSON nor nothing.
+bool is_page(const std::string& body) {
+  return !body.empty() && !nlohmann::json::accept(body);
+}
 
 }  // namespace
 
@@ -35,9 +41,10 @@ void UpstreamView::left(std::string_view bytes) {
 void UpstreamView::came(std::string_view bytes) {
   answers_.feed(bytes);
   while (const auto answer = answers_.next()) {
+    if (answer->status() < 200) continue;
     World::current().note({.kind = Kind::Replied,
                            .what = path_,
-                           .who = answer->body.starts_with('<') ? kForeign : "",
+                           .who = is_page(answer->body) ? kForeign : "",
                            .status = answer->status(),
                            .stamp = std::atof(answer->header("retry-after").c_str()),
                            .text = path_ == kStatus ? answer->body : "",

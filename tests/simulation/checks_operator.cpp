@@ -1,0 +1,81 @@
+// Obeyed: of the operator's word.
+#include <algorithm>
+#include <cmath>
+#include <map>
+#include <set>
+
+#include "icd/sentence.hpp"
+#include "simulation/checks.hpp"
+#include "simulation/judge.hpp"
+#include "simulation/messages.hpp"
+#include "simulation/operator.hpp"
+
+namespace adit::simulation {
+namespace {
+
+/// Seconds after which settings that were saved are those that count.
+constexpr double kApplied = 5;
+
+bool is_word(const Event& event, const char* what) {
+  return event.what == what && event.who == "operator";
+}
+
+/// What he held or withdrew stays with the box until he sends it, or another run is on.
+void judge_held(const Evidence& evidence, Broken& broken) {
+  std::map<std::int64_t, const Event*> kept;
+  std::map<std::int64_t, int> reports;  // of a serial: in several runs there are several
+  for (const dispatch::Report& report : evidence.reports) ++reports[serial_of(report)];
+  for (const Event& event : evidence.events) {
+    const bool is_done = event.kind == Kind::Answered && event.status == 200;
+    if (is_done && (is_word(event, kHold) || is_word(event, kWithdraw))) kept[event.serial] = &event;
+    if (event.kind == Kind::Invoke && is_word(event, kSend)) kept.erase(event.serial);
+    if (event.kind == Kind::NewRun) kept.clear();
+    if (event.kind != Kind::Left || event.what != kReports || !kept.contains(event.serial) ||
+        reports[event.serial] > 1)
+      continue;
+    broken.push_back(icd::sentence("Obeyed: report ", event.serial, " was sent at ", event.at,
+                                   ", and the operator's last word was '", kept[event.serial]->what, "', at ",
+                                   kept[event.serial]->at));
+  }
+}
+
+/// With `review` as "all", what is posted goes at his word alone.
+void judge_review(const Evidence& evidence, Broken& broken) {
+  std::map<std::int64_t, double> posted;  // first
+  std::set<std::int64_t> sent;
+  double all_since = -1;
+  for (const Event& event : evidence.events) {
+    if (event.kind == Kind::Invoke && event.what == kSettings) all_since = -1;
+    if (event.kind == Kind::Saved) all_since = event.what == kReviewAll ? event.at + kApplied : -1;
+    if (event.kind == Kind::Invoke && is_word(event, kSend)) sent.insert(event.serial);
+    if (event.kind == Kind::Invoke && (event.what == kReports || is_word(event, kCompose)))
+      posted.emplace(event.serial, event.at);
+    const bool goes = event.kind == Kind::Left && event.what == kReports;
+    if (!goes || all_since < 0 || sent.contains(event.serial) || posted[event.serial] < all_since) continue;
+    broken.push_back(icd::sentence("Obeyed: report ", event.serial, " was sent unseen at ", event.at,
+                                   ", and every report is to be held"));
+  }
+}
+
+/// What he composed and was told of is kept.
+void judge_composed(const Evidence& evidence, Broken& broken) {
+  std::set<std::int64_t> kept;
+  for (const dispatch::Report& report : evidence.reports) kept.insert(serial_of(report));
+  for (const Event& event : evidence.events) {
+    if (event.kind != Kind::Answered || event.status != 202 || !is_word(event, kCompose) ||
+        kept.contains(event.serial))
+      continue;
+    broken.push_back(
+        icd::sentence("Obeyed: the operator's report ", event.serial, " was answered 202, and is nowhere"));
+  }
+}
+
+}  // namespace
+
+void obeyed(const Evidence& evidence, Broken& broken) {
+  judge_held(evidence, broken);
+  judge_review(evidence, broken);
+  judge_composed(evidence, broken);
+}
+
+}  // namespace adit::simulation

@@ -1,0 +1,122 @@
+#include "simulation/judge.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <utility>
+
+#include "simulation/http.hpp"
+#include "simulation/messages.hpp"
+#include "simulation/scoreboard.hpp"
+#include "simulation/world.hpp"
+
+namespace adit::simulation {
+namespace {
+
+using Json = nlohmann::json;
+
+constexpr double kSure = 20;         // seconds after which nothing is recorded any more that was lost
+constexpr double kAfter = 90;        // that he stays once the trouble is over
+constexpr std::int64_t kOwn = 9000;  // serials of his own reports
+constexpr const char* kHeaders =
+    "Host: 10.0.0.1\r\nAuthorization: Bearer token-of-the-team\r\nContent-Type: application/json\r\n";
+
+std::string number(std::int64_t value) {
+  return std::to_string(value);
+}
+
+}  // namespace
+
+Judge::Judge(World& world, double trouble_for)
+    : world_(world),
+      random_(world.random("judge")),
+      client_(world, "10.0.0.12", {.keeps_alive = false, .patience = 20, .dribbles = 0.1},
+              world.random("client of the judge")),
+      trouble_for_(trouble_for),
+      looks_(random_.chance(0.4)),
+      composes_(looks_ && random_.chance(0.3)) {
+  world_.after(seconds(looks_ ? random_.between(1, 8) : trouble_for), [this] { look(); });
+}
+
+bool Judge::is_over() const {
+  return world_.time() > trouble_for_;
+}
+
+void Judge::look() {
+  if (world_.time() > trouble_for_ + kAfter) return;
+  world_.after(seconds(is_over() ? 10 : random_.between(2, 12)), [this] { look(); });
+  if (client_.busy() || !words_.empty()) return;
+  if (!is_over() && composes_ && random_.chance(0.3)) compose();
+  client_.ask(http_request("GET", "/adit/run", kHeaders, ""), {.what = "/adit/run", .who = "reader"},
+              [this](int status) {
+                if (status == 200) viewed(Json::parse(client_.heard()));
+                say_next();
+              });
+}
+
+void Judge::viewed(const Json& view) {
+  const double now = view.at("now");
+  if (looks_) {
+    for (const Json& row : view.at("reports")) judge_report(row, now);
+    if (random_.chance(0.05)) words_.push_back({"/adit/identify", "identify", R"({"seconds": 4})", 0});
+  }
+  for (const Json& row : view.at("aside")) judge_aside(row);
+}
+
+void Judge::judge_report(const Json& row, double now) {
+  const std::string state = row.at("state");
+  const std::int64_t id = row.at("number"),
+                     serial = std::llround(row.at("position").at("x").get<double>() / 100);
+  const double age = now - row.at("changed").get<double>();
+  if (!is_over() && random_.chance(0.4)) return;
+  if (state == "in doubt" && !row.at("asking") && age > kSure)
+    say(id, is_recorded(serial) ? kDone : kSend, serial);
+  if (state == "received") judge_held(id, serial);
+  if (state == "waiting" && !is_over() && random_.chance(0.2)) say(id, kHold, serial);
+}
+
+/// It is worth sending where the present run has no record of it.
+void Judge::judge_held(std::int64_t id, std::int64_t serial) {
+  const bool sends = !is_recorded(serial) && random_.chance(0.6);
+  say(id, sends ? kSend : kWithdraw, serial);
+}
+
+void Judge::judge_aside(const Json& row) {
+  const bool overtaken = row.at("overtaken");
+  if (!is_over() && !looks_) return;
+  if (overtaken && random_.chance(0.5)) return;
+  const std::string path = "/adit/aside/" + number(row.at("number"));
+  words_.push_back({path + (overtaken ? "/discard" : "/send"), overtaken ? "discard" : kSendAside, "", 0});
+}
+
+/// A report of his own.
+void Judge::compose() {
+  const std::int64_t serial = kOwn + ++composed_;
+  words_.push_back(
+      {"/adit/reports", kCompose,
+       Json{{"type", "Drill"}, {"x", static_cast<double>(serial) * 100}, {"y", 2.5}, {"z", -1.0}}.dump(),
+       serial});
+}
+
+void Judge::say(std::int64_t id, const char* what, std::int64_t serial) {
+  words_.push_back({"/adit/reports/" + number(id) + "/" + what, what, "", serial});
+}
+
+void Judge::say_next() {
+  if (words_.empty()) return;
+  const Word word = std::move(words_.front());
+  words_.pop_front();
+  client_.ask(http_request("POST", word.path, kHeaders, word.body),
+              {.what = word.what, .who = "operator", .serial = word.serial}, [this](int) { say_next(); });
+}
+
+/// In the run that is on.
+bool Judge::is_recorded(std::int64_t serial) const {
+  const auto& events = world_.history().events();
+  for (auto event = events.rbegin(); event != events.rend(); ++event) {
+    if (event->kind == Kind::NewRun) return false;
+    if (event->kind == Kind::Taken && event->what == kReports && event->serial == serial) return true;
+  }
+  return false;
+}
+
+}  // namespace adit::simulation

@@ -1,0 +1,77 @@
+#include "simulation/odd_answers.hpp"
+
+#include <algorithm>
+#include <cstdio>
+
+#include "simulation/http.hpp"
+
+namespace adit::simulation {
+namespace {
+
+constexpr const char* kJson = "Content-Type: application/json\r\n";
+constexpr const char* kHtml = "<html><body>Look elsewhere</body></html>";
+constexpr const char* kLength = "Content-Length: ";
+
+struct Parts {
+  std::string head, body;  // the head without its length and its empty line
+};
+
+Parts parts_of(const std::string& answer) {
+  const std::size_t end = answer.find("\r\n\r\n"), length = answer.find(kLength);
+  return {answer.substr(0, length), answer.substr(end + 4)};
+}
+
+std::string chunked(const Parts& parts, Random& random) {
+  std::string text = parts.head + "Transfer-Encoding: chunked\r\n\r\n";
+  for (std::size_t at = 0; at < parts.body.size();) {
+    const std::size_t size = 1 + random.below(parts.body.size() - at);
+    char head[32];
+    std::snprintf(head, sizeof head, "%zx\r\n", size);
+    text += head + parts.body.substr(at, size) + "\r\n";
+    at += size;
+  }
+  return text + "0\r\n\r\n";
+}
+
+}  // namespace
+
+std::string said_oddly(const std::string& answer, Random& random) {
+  if (random.chance(0.5)) return chunked(parts_of(answer), random);
+  constexpr const char* kInterim[] = {"HTTP/1.1 100 Continue\r\n\r\n", "HTTP/1.1 102 Processing\r\n\r\n",
+                                      "HTTP/1.1 103 Early Hints\r\nLink: </a>; rel=preload\r\n\r\n"};
+  return kInterim[random.below(std::size(kInterim))] + answer;
+}
+
+std::string with_wrong_length(const std::string& answer, Random& random) {
+  const Parts parts = parts_of(answer);
+  const std::size_t off = 1 + random.below(std::max<std::size_t>(parts.body.size(), 2) - 1);
+  const std::size_t length =
+      random.chance(0.5) ? parts.body.size() + off : parts.body.size() - std::min(off, parts.body.size());
+  return parts.head + kLength + std::to_string(length) + "\r\n\r\n" + parts.body;
+}
+
+std::string with_wrong_types(Random& random) {
+  constexpr const char* kBodies[] = {
+      "[]",
+      "{}",
+      "\"ok\"",
+      "{\"score\": \"many\", \"run_clock\": null}",
+      "{\"id\": [], \"report_status\": 3, \"score_change\": \"1\", \"run\": {}}",
+      "true"};
+  return http_answer(random.chance(0.5) ? "200 OK" : "201 Created", kJson,
+                     kBodies[random.below(std::size(kBodies))]);
+}
+
+std::string redirect(Random& random) {
+  constexpr const char* kLines[] = {"301 Moved Permanently", "302 Found", "307 Temporary Redirect"};
+  return http_answer(kLines[random.below(std::size(kLines))],
+                     "Location: http://portal.example/\r\nContent-Type: text/html\r\n",
+                     random.chance(0.5) ? kHtml : "");
+}
+
+std::string from_between(Random& random) {
+  constexpr const char* kLines[] = {"502 Bad Gateway", "503 Service Unavailable", "504 Gateway Timeout"};
+  return http_answer(kLines[random.below(std::size(kLines))], "Content-Type: text/html\r\n", kHtml);
+}
+
+}  // namespace adit::simulation

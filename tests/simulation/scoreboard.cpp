@@ -1,0 +1,99 @@
+#include "simulation/scoreboard.hpp"
+
+#include <cstdio>
+
+#include "simulation/world.hpp"
+
+namespace adit::simulation {
+namespace {
+
+constexpr int kSeenToRun = 4;  // statuses that were answered
+constexpr const char* kJson = "Content-Type: application/json\r\n";
+
+std::string number(double value) {
+  char text[32];
+  std::snprintf(text, sizeof text, "%.3f", value);
+  return text;
+}
+
+}  // namespace
+
+Scoreboard::Scoreboard(World& world, const Faults& faults, Random& random, int place)
+    : world_(world),
+      faults_(faults),
+      place_(place),
+      numbers_runs_(random.chance(0.3)),
+      run_began_(-random.between(300, 3000)) {}
+
+bool Scoreboard::may_begin_run() const {
+  return statuses_ >= kSeenToRun;
+}
+
+void Scoreboard::begin_run() {
+  ++run_;
+  remaining_ = 25;
+  score_ = 0;
+  run_began_ = world_.time();
+  stopped_ = false;
+  world_.note({.actor = Actor::Post,
+               .kind = Kind::NewRun,
+               .what = "",
+               .who = run_name(place_, run_) + (faults_.has(Fault::NamelessRuns) ? kNameless : ""),
+               .serial = run_});
+}
+
+std::string Scoreboard::status() {
+  ++statuses_;
+  const double clock = faults_.has(Fault::ConstantClocks) ? 25.98 : world_.time() - run_began_;
+  return http_answer("200 OK", kJson,
+                     "{\"score\": " + std::to_string(score_) + ", \"run_clock\": " + number(clock) +
+                         ", \"remaining_reports\": " + std::to_string(remaining_) +
+                         ", \"current_team\": \"adit\"}");
+}
+
+/// Counts one more report.
+const char* Scoreboard::score(int points) {
+  if (stopped_) return "admin stop";
+  if (remaining_ == 0) return "report limit exceeded";
+  --remaining_;
+  score_ += points;
+  return kScored;
+}
+
+std::string Scoreboard::record(const Item& item) {
+  const bool counts = remaining_ > 0 && !stopped_;
+  const int points = counts && item.serial % 3 == 1 ? 1 : 0;
+  const char* const state = score(points);
+  world_.note({.actor = Actor::Post,
+               .kind = Kind::Taken,
+               .what = kReports,
+               .who = run_name(place_, run_) + (stopped_ ? kInAStop : ""),
+               .serial = item.serial,
+               .stamp = static_cast<double>(points)});
+  return reply(static_cast<double>(item.serial) * 100, state, points);
+}
+
+void Scoreboard::record_another() {
+  score(0);
+  world_.note({.actor = Actor::Post, .kind = Kind::Another, .what = kReports, .who = run_name(place_, run_)});
+}
+
+std::string Scoreboard::reply(double x, const char* state, int points) {
+  const bool stands = faults_.has(Fault::ConstantClocks);
+  const double clock = stands ? 3.14 : world_.time() - run_began_;
+  const std::string name = std::to_string(stands ? 1 : run_);
+  std::string run = faults_.has(Fault::NamelessRuns) ? ""
+                    : numbers_runs_                  ? "\"run\": " + name + ", "
+                                                     : "\"run\": \"" + name + "\", ";
+  return http_answer("201 Created", kJson,
+                     "{\"url\": \"\", \"id\": " + std::to_string(++id_) + ", \"x\": " + number(x) + ", " +
+                         run + "\"team\": \"adit\", \"run_clock\": " + number(clock) +
+                         ", \"report_status\": \"" + state +
+                         "\", \"score_change\": " + std::to_string(points) + "}");
+}
+
+std::string run_name(int place, std::int64_t run) {
+  return (place == 0 ? "run " : "other run ") + std::to_string(run);
+}
+
+}  // namespace adit::simulation

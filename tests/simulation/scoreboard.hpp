@@ -1,0 +1,52 @@
+#pragma once
+
+#include <cstdint>
+#include <string>
+
+#include "simulation/faults.hpp"
+#include "simulation/messages.hpp"
+#include "simulation/random.hpp"
+
+namespace adit::simulation {
+
+class World;
+
+inline constexpr const char *kScored = "scored", *kInAStop = " in a stop",
+                            *kNameless = ", which nothing names";
+/// "run 3", as the history calls it.
+std::string run_name(int place, std::int64_t run);
+
+/// The runs of a Command Post, one after the other: it records whatever reaches it, and cannot tell a report
+/// from the same one again.
+class Scoreboard {
+ public:
+  /// `place`: which Command Post this is, from 0 on. All outlive this.
+  Scoreboard(World& world, const Faults& faults, Random& random, int place);
+
+  /// The answer to a status.
+  std::string status();
+  /// Records a report: the answer to it.
+  std::string record(const Item& item);
+  /// Somebody else's.
+  void record_another();
+  /// Not before its clock was seen to run: nothing would tell the one run from the other.
+  bool may_begin_run() const;
+  void begin_run();
+  /// What is recorded does not count.
+  void stop(bool stopped) { stopped_ = stopped; }
+
+ private:
+  std::string reply(double x, const char* state, int points);
+  const char* score(int points);
+
+  World& world_;
+  const Faults& faults_;
+  const int place_;
+  const bool numbers_runs_;  // it names them by numbers, not by texts
+  std::int64_t run_ = 1, remaining_ = 25, score_ = 0, id_ = 0;
+  double run_began_;
+  int statuses_ = 0;  // that were answered
+  bool stopped_ = false;
+};
+
+}  // namespace adit::simulation

@@ -29,8 +29,8 @@ std::expected<void, std::string> make_folder(const std::string& folder) {
   return {};
 }
 
-/// Where the state folder is full, or cannot be written to, maps and states flow all the same; reports are
-/// refused, and those that can be read are shown.
+/// Where the state folder is full, cannot be written to, or fails, maps and states flow all the same; reports
+/// are refused, and those that can be read are shown.
 ledger::Result<ledger::Ledger> open_ledger(const Options& options) {
   using ledger::Ledger;
   std::error_code unknown;
@@ -39,7 +39,10 @@ ledger::Result<ledger::Ledger> open_ledger(const Options& options) {
   Ledger::sweep(options.state, scratch);
   auto opened = Ledger::open(options.state);
   const bool is_there = std::filesystem::exists(options.state, unknown);
-  if (!opened && (opened.error().full || opened.error().read_only || !is_there)) {
+  const auto is_the_disk = [](const ledger::Error& error) {
+    return error.full || error.read_only || error.failing;
+  };
+  if (!opened && (is_the_disk(opened.error()) || !is_there)) {
     host::log(host::Level::Error, "no report is taken, the ledger cannot be written",
               {{"why", opened.error().what}});
     opened = Ledger::stand_in(options.state, scratch, opened.error().what);

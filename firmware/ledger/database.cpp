@@ -72,7 +72,8 @@ Failure Database::error(std::string_view doing) const {
   const int system_error = code == SQLITE_IOERR || code == SQLITE_CANTOPEN ? errno_behind(get()) : 0;
   if (system_error != 0) what += std::string(" (") + std::strerror(system_error) + ")";
   const bool damaged = code == SQLITE_CORRUPT || code == SQLITE_NOTADB || code == SQLITE_ERROR;
-  return {{what, is_full(code, system_error), code == SQLITE_READONLY}, damaged};
+  const bool full = is_full(code, system_error);
+  return {{what, full, code == SQLITE_READONLY, code == SQLITE_IOERR && !full}, damaged};
 }
 
 sqlite3_file* Database::log() const {

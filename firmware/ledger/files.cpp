@@ -31,6 +31,7 @@ Failure system_error(const std::string& doing) {
   Failure failure;
   failure.what = doing + ": " + std::strerror(code);
   failure.full = code == ENOSPC || code == EDQUOT || code == EFBIG;
+  failure.failing = code == EIO;
   failure.read_only = code == EROFS || code == EACCES || code == EPERM;
   return failure;
 }

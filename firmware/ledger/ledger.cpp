@@ -217,7 +217,8 @@ void Ledger::sweep(const std::string& folder, const std::string& scratch) {
 
 bool Ledger::can_be_opened(const std::string& folder) {
   // Tables of an earlier version are written anew, and so is a ledger that is salvaged.
-  return try_opening(folder + kFile) && try_room(folder, kRoomToBegin + 2 * size_of(folder + kFile));
+  return try_opening(folder + kFile) && try_room(folder, kRoomToBegin + 2 * size_of(folder + kFile)) &&
+         sync_folder(folder);
 }
 
 Result<void> Ledger::write(std::span<const dispatch::Report> steps, const dispatch::Run* run,

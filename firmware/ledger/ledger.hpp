@@ -18,6 +18,7 @@ struct Error {
   std::string what;
   bool full = false;       // the disk is full
   bool read_only = false;  // the folder cannot be written to
+  bool failing = false;    // the disk itself reports errors
 };
 
 template <class T>

@@ -1,6 +1,7 @@
 #include "ledger/full_disk.hpp"
 
 #include <gmock/gmock.h>
+#include <sqlite3.h>
 #include <sys/mount.h>
 
 #include <cerrno>
@@ -154,6 +155,35 @@ TEST(FullDiskOfALedger, IsSaidWhereThereIsNoLedgerYet) {
     const auto ledger = Ledger::open(folder.text());
     ASSERT_FALSE(ledger);
     EXPECT_TRUE(ledger.error().full) << ledger.error().what;
+  }
+  EXPECT_EQ(open_or_fail(folder).damage(), "");
+}
+
+/// As a disk that fails: nothing that SQLite writes gets there.
+class FailingDisk {
+ public:
+  FailingDisk() { vfs()->xSetSystemCall(vfs(), kWrite, reinterpret_cast<sqlite3_syscall_ptr>(&fail)); }
+  ~FailingDisk() { vfs()->xSetSystemCall(vfs(), kWrite, nullptr); }
+  FailingDisk(const FailingDisk&) = delete;
+  FailingDisk& operator=(const FailingDisk&) = delete;
+
+ private:
+  static constexpr const char* kWrite = "pwrite64";
+  static sqlite3_vfs* vfs() { return sqlite3_vfs_find(nullptr); }
+  static ssize_t fail(int, const void*, std::size_t, off_t) {
+    errno = EIO;
+    return -1;
+  }
+};
+
+TEST(FailingDiskOfALedger, IsSaidWhereItIsOpened) {
+  const Folder folder;
+  {
+    const FailingDisk disk;
+    const auto ledger = Ledger::open(folder.text());
+    ASSERT_FALSE(ledger);
+    EXPECT_TRUE(ledger.error().failing) << ledger.error().what;
+    EXPECT_FALSE(ledger.error().full);
   }
   EXPECT_EQ(open_or_fail(folder).damage(), "");
 }

@@ -16,7 +16,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-constexpr std::uint64_t kSoon = 40, kMostCrossings = 400;
+constexpr std::uint64_t kRightThen = 4, kSoon = 40, kMostCrossings = 400;
 /// Seconds until a process is started again, and until a machine is.
 constexpr double kRestart[] = {0.05, 2}, kBoot[] = {5, 20};
 
@@ -120,8 +120,9 @@ void Box::die(World::How how) {
 }
 
 void Box::die_soon(World::How how) {
-  const std::uint64_t calls = random_.below(random_.chance(0.5) ? kSoon : kMostCrossings);
-  world_.die_after(calls, how, [this, how] { how == World::How::PowerCut ? lost_power() : died(); });
+  const auto dies = [this, how] { how == World::How::PowerCut ? lost_power() : died(); };
+  if (random_.chance(0.25)) return world_.die_after_report(random_.below(kRightThen), how, dies);
+  world_.die_after(random_.below(random_.chance(0.5) ? kSoon : kMostCrossings), how, dies);
 }
 
 /// The files as they are at this instant are the next life's: what the objects of this one still write goes

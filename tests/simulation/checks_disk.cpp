@@ -4,13 +4,12 @@
 
 namespace adit::simulation {
 
-/// A life may end before it has begun where it met a fault that leaves it no ledger, nor a stand-in for it.
+/// A life may end before it has begun where it finds no room for what would stand in for the ledger.
 void starts(const Evidence& evidence, Broken& broken) {
   DiskFaultsSeen seen;
   for (const Event& event : evidence.events) {
     seen.add(event);
-    const bool may = seen.in_this_life("RuntimeFull") || seen.in_this_life("SyncFails");
-    if (event.kind == Kind::Fails && !may)
+    if (event.kind == Kind::Fails && !seen.in_this_life("RuntimeFull"))
       broken.push_back(icd::sentence("Starts: life ", event.life, " did not begin, at ", event.at));
   }
 }

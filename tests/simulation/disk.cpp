@@ -5,8 +5,6 @@
 
 #include <algorithm>
 #include <cerrno>
-#include <fstream>
-#include <iterator>
 #include <utility>
 
 #include "simulation/real_calls.hpp"
@@ -29,10 +27,7 @@ std::uint64_t size_of(int fd) {
 
 std::string read(int fd, off_t at, std::uint64_t size) {
   std::string bytes(size, '\0');
-  // The box may have it open for writing alone.
-  const int reader = real::open(AT_FDCWD, ("/proc/self/fd/" + std::to_string(fd)).c_str(), O_RDONLY, 0);
-  const ssize_t count = ::pread(reader, bytes.data(), size, at);
-  real::close(reader);
+  const ssize_t count = size == 0 ? 0 : ::pread(fd, bytes.data(), size, at);
   bytes.resize(static_cast<std::size_t>(std::max<ssize_t>(0, count)));
   return bytes;
 }
@@ -133,9 +128,11 @@ std::uint64_t Disk::room(int folder, const char* path) {
 
 std::optional<std::string> Disk::bytes_of(const std::string& name) const {
   if (is_in_memory(name) || is_folder(folder_ + name)) return std::nullopt;
-  std::ifstream file(folder_ + name, std::ios::binary);
-  if (!file) return std::nullopt;
-  return std::string(std::istreambuf_iterator<char>(file), std::istreambuf_iterator<char>());
+  const int file = real::open(AT_FDCWD, (folder_ + name).c_str(), O_RDONLY | O_CLOEXEC, 0);
+  if (file < 0) return std::nullopt;
+  std::string bytes = read(file, 0, size_of(file));
+  real::close(file);
+  return bytes;
 }
 
 int Disk::open(int folder, const char* path, int flags, mode_t mode) {
@@ -148,7 +145,9 @@ int Disk::open(int folder, const char* path, int flags, mode_t mode) {
   if ((writes || makes) && is_read_only(name)) return fail(EROFS);
   if (makes && is_full(name) && faults_.room(is_in_memory(name)) == 0) return fail(ENOSPC);
   if (makes || cuts) world_.crossing();
-  const int fd = real::open(folder, path, flags & ~O_TRUNC, mode);
+  // What is overwritten is read before.
+  const int how = (flags & O_ACCMODE) == O_WRONLY ? (flags & ~O_ACCMODE) | O_RDWR : flags;
+  const int fd = real::open(folder, path, how & ~O_TRUNC, mode);
   if (fd < 0 || world_.is_dead()) return fd;
   ::fstat(fd, &found);
   Open open{.name = name,
@@ -188,7 +187,9 @@ ssize_t Disk::write(int fd, std::span<const char> bytes, std::optional<off_t> at
 
 ssize_t Disk::put(int fd, const Open& open, std::span<const char> bytes, off_t at) {
   if (open.file && !world_.is_dead() && !bytes.empty()) {
-    open.file->wrote(at, std::string(bytes.data(), bytes.size()), read(fd, at, bytes.size()), size_of(fd));
+    const std::uint64_t size = size_of(fd), place = static_cast<std::uint64_t>(at);
+    const std::uint64_t there = std::min<std::uint64_t>(bytes.size(), size - std::min(size, place));
+    open.file->wrote(place, std::string(bytes.data(), bytes.size()), read(fd, at, there), size);
   }
   return real::write_at(fd, bytes.data(), bytes.size(), at);
 }

@@ -16,14 +16,19 @@ DiskFaults::DiskFaults(World& world) : world_(world), random_(world.random("disk
 
 /// A time of trouble may begin with the run.
 void DiskFaults::plan(double trouble_for) {
-  const std::uint64_t kinds = random_.chance(0.6) ? 0 : 1 + random_.below(2);
+  const std::uint64_t kinds = random_.chance(0.5) ? 0 : 1 + random_.below(2);
   for (std::uint64_t i = 0; i < kinds; ++i) {
     const auto kind = static_cast<Kind>(random_.below(static_cast<std::uint64_t>(Kind::End)));
     names_.append(names_.empty() ? "; disk: " : " ").append(kNames[static_cast<int>(kind)]);
     for (std::uint64_t times = 1 + random_.below(2); times > 0; --times) {
-      const double begins = random_.chance(0.2) ? 0 : random_.between(0, trouble_for);
+      const bool at_once = random_.chance(0.2);
+      const double begins = at_once ? 0 : random_.between(0, trouble_for);
       const double ends = std::min(trouble_for, begins + random_.between(0.5, 15));
-      world_.after(seconds(begins), [this, kind] { begin(kind); });
+      if (at_once) {
+        begin(kind);
+      } else {
+        world_.after(seconds(begins), [this, kind] { begin(kind); });
+      }
       world_.after(seconds(ends), [this, kind] { end(kind); });
     }
   }

@@ -3,6 +3,8 @@
 #include <cassert>
 #include <utility>
 
+#include "simulation/messages.hpp"
+
 namespace adit::simulation {
 namespace {
 
@@ -97,6 +99,8 @@ Duration World::in_worker(const std::function<void()>& work) {
 }
 
 void World::note(Event event) {
+  if (crossings_after_report_ && event.kind == Kind::Left && event.what == kReports)
+    crossings_left_ = 1 + *std::exchange(crossings_after_report_, std::nullopt);
   event.at = time();
   event.life = life_;
   history_.note(std::move(event));
@@ -106,6 +110,7 @@ void World::begin_life() {
   ++life_;
   dead_ = false;
   dies_ = nullptr;
+  crossings_after_report_.reset();
   note({.kind = Kind::Begins, .what = "aditd", .who = "", .serial = life_});
 }
 
@@ -120,13 +125,20 @@ void World::end_life() {
 
 void World::die_after(std::uint64_t crossings, How how, std::function<void()> dies) {
   how_ = how;
+  crossings_after_report_.reset();
   crossings_left_ = crossings;
   dies_ = std::move(dies);
   if (crossings == 0) die();
 }
 
+void World::die_after_report(std::uint64_t crossings, How how, std::function<void()> dies) {
+  how_ = how;
+  crossings_after_report_ = crossings;
+  dies_ = std::move(dies);
+}
+
 void World::crossing() {
-  if (dead_ || !dies_) return;
+  if (dead_ || !dies_ || crossings_after_report_) return;
   if (crossings_left_ == 0 || --crossings_left_ == 0) die();
 }
 

@@ -4,6 +4,7 @@
 #include <cstdint>
 #include <functional>
 #include <memory>
+#include <optional>
 #include <queue>
 #include <string_view>
 #include <vector>
@@ -86,8 +87,10 @@ class World {
   enum class How : std::uint8_t { Killed, PowerCut };
   /// The process dies at the call of the seam after `crossings` of them. `dies` is called at that instant.
   void die_after(std::uint64_t crossings, How how, std::function<void()> dies);
+  /// The same, counted from the next report on that is sent.
+  void die_after_report(std::uint64_t crossings, How how, std::function<void()> dies);
   /// It dies in the next call of the seam.
-  bool dies_next() const { return !dead_ && dies_ && crossings_left_ <= 1; }
+  bool dies_next() const { return !dead_ && dies_ && !crossings_after_report_ && crossings_left_ <= 1; }
   /// From here on nothing that the process does has an effect.
   bool is_dead() const { return dead_; }
 
@@ -123,6 +126,7 @@ class World {
   int life_ = 0;
   bool dead_ = true;
   std::uint64_t crossings_left_ = 0;
+  std::optional<std::uint64_t> crossings_after_report_;
   std::function<void()> dies_;
 };
 

@@ -172,8 +172,8 @@ WHAT IT DOES
   show    the settings that differ from what is by default, and which tokens are set; with --json all, and what each
           key means
   check   what is wrong with FILE, or what it would change and what to mind. Nothing is changed
-  apply   saves FILE on the box and applies it at once: Adit begins anew within a second. Reports, what waits and who
-          is logged in are kept. Where the new settings cannot be used, those before are in use again, and
+  apply   saves FILE on the box and applies it at once: within a second it is in use, and nobody is cut but who is
+          connected to an address that goes. Where the new settings cannot be used, those before are in use still, and
           'adit status' says why
   export  the whole settings file, for 'apply'. Tokens are never in it
 

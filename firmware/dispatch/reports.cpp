@@ -36,6 +36,13 @@ void Reports::open(std::vector<Report> all, std::vector<Run> runs, Time time, co
   if (!post.empty() && run().post != post) change_post(post, time);
 }
 
+void Reports::open(std::vector<Report> all, std::vector<Run> runs, Time time, const std::string& post,
+                   Reports& before) {
+  clients_ = std::exchange(before.clients_, {});  // first: what is found out now, they are told
+  taken_at_ = std::exchange(before.taken_at_, {});
+  open(std::move(all), std::move(runs), time, post);
+}
+
 /// Takes a step, and does what the table says follows from it. False: it is not on disk, and not taken.
 bool Reports::step(std::int64_t number, ReportEvent event, const std::string& note, Time time,
                    const ReportBook::Edit& edit) {

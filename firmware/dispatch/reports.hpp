@@ -72,6 +72,13 @@ class Reports {
   /// another run: the last one there, taken up again, or a new one.
   void open(std::vector<Report> all, std::vector<Run> runs, Time time, const std::string& post = "");
 
+  /// The same, in the place of others that end here: their clients wait on, no longer than they would have.
+  /// Requires that the others have nothing under way.
+  void open(std::vector<Report> all, std::vector<Run> runs, Time time, const std::string& post,
+            Reports& before);
+  /// These count from now on: each client waits as long as it was to when it came.
+  void go_by(const ReportRules& rules) { rules_ = rules; }
+
   /// A client posts a report; it is told by Deeds, at once or later. `may_send`: nothing is under way and
   /// the rate allows it. True: it is on disk as sending(): send it.
   bool take(const Posted& posted, ClientId client, bool may_send, Time time);
@@ -176,7 +183,7 @@ class Reports {
   const Report* maybe_same(const Report& report) const;
   const Report* sent_to_another_post(const Report& report) const;
 
-  const ReportRules rules_;
+  ReportRules rules_;
   ReportBook book_;
   RunAccount account_;
   WaitingClients clients_;

@@ -1,5 +1,7 @@
 #include "forward/channel.hpp"
 
+#include <utility>
+
 #include "dispatch/mapping_verdict.hpp"
 #include "dispatch/said.hpp"
 #include "icd/sentence.hpp"
@@ -25,12 +27,45 @@ bool comes_from_another(const uplink::Outcome& outcome) {
          !dispatch::may_be_the_command_post(doubt->too_long_status, dispatch::Body::Other);
 }
 
+bool same(const std::optional<icd::BearerToken>& one, const std::optional<icd::BearerToken>& other) {
+  return one && other ? one->matches(other->reveal()) : one.has_value() == other.has_value();
+}
+
 }  // namespace
 
 Channel::Channel(loop::Loop& loop, const char* name, uplink::Endpoint endpoint,
                  std::optional<icd::BearerToken> token, std::chrono::milliseconds answer_within)
-    : loop_(loop), name_(name), answer_within_(answer_within) {
-  if (token) connection_.emplace(loop, std::move(endpoint), std::move(*token));
+    : loop_(loop), name_(name) {
+  take({std::move(endpoint), std::move(token), answer_within});
+}
+
+void Channel::lead_to(uplink::Endpoint endpoint, std::optional<icd::BearerToken> token,
+                      std::chrono::milliseconds answer_within) {
+  next_ = {std::move(endpoint), std::move(token), answer_within};
+}
+
+bool Channel::turns() {
+  if (!next_ || busy()) return false;
+  if (connection_) finished_bytes_ += connection_->sent_bytes();
+  const std::string address = address_;
+  const auto token = token_;
+  take(*std::exchange(next_, std::nullopt));
+  if (address == address_ && same(token, token_)) return false;
+  last_status_ = 0;
+  foreign_now_ = false;
+  answer_ms_.reset();
+  trouble_.clear();
+  return true;
+}
+
+void Channel::take(Way way) {
+  connection_.reset();
+  address_ = address_text({way.endpoint.address, way.endpoint.port});
+  token_ = way.token;
+  answer_within_ = way.answer_within;
+  if (!way.token) return;
+  connection_.emplace(loop_, std::move(way.endpoint), std::move(*way.token));
+  if (keeps_warm_) connection_->keep_warm();
 }
 
 void Channel::send(icd::Uri uri, std::string_view content_type, icd::ChunkedBytes body,

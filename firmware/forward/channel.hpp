@@ -18,7 +18,17 @@ class Channel {
   Channel(loop::Loop& loop, const char* name, uplink::Endpoint endpoint,
           std::optional<icd::BearerToken> token, std::chrono::milliseconds answer_within);
 
+  /// It is to lead there, by a connection of its own, once the request under way has ended.
+  void lead_to(uplink::Endpoint endpoint, std::optional<icd::BearerToken> token,
+               std::chrono::milliseconds answer_within);
+  /// Whoever sends asks first: true where it leads to another address from this call on, or with another
+  /// token. What was heard before is of the other place. Another way to the same place is taken without a
+  /// word.
+  bool turns();
+
   bool has_token() const { return connection_.has_value(); }
+  /// Where it leads: "10.100.1.200:8000"
+  const std::string& address() const { return address_; }
   /// Requires has_token() and !busy(). `content_type` is empty without a body.
   void send(icd::Uri uri, std::string_view content_type, icd::ChunkedBytes body,
             std::function<void(uplink::Outcome)> done);
@@ -29,6 +39,7 @@ class Channel {
     if (connection_) connection_->hurry();
   }
   void keep_warm() {
+    keeps_warm_ = true;
     if (connection_) connection_->keep_warm();
   }
 
@@ -47,12 +58,22 @@ class Channel {
   std::uint64_t bytes_sent() const { return finished_bytes_ + (connection_ ? connection_->sent_bytes() : 0); }
 
  private:
+  struct Way {
+    uplink::Endpoint endpoint;
+    std::optional<icd::BearerToken> token;
+    std::chrono::milliseconds answer_within;
+  };
+  void take(Way way);
   void note(const uplink::Outcome& outcome);
 
   loop::Loop& loop_;
   const char* name_;
+  std::string address_;
+  std::optional<icd::BearerToken> token_;
   std::optional<uplink::Connection> connection_;
-  std::chrono::milliseconds answer_within_;
+  std::chrono::milliseconds answer_within_{};
+  bool keeps_warm_ = false;
+  std::optional<Way> next_;
   loop::Instant sent_at_{}, heard_{};
   std::uint64_t finished_bytes_ = 0, throttled_ = 0, foreign_ = 0;
   bool foreign_now_ = false;

@@ -26,6 +26,7 @@
 #include "loop/loop.hpp"
 #include "loop/workers.hpp"
 #include "page/page.hpp"
+#include "settings/anew.hpp"
 #include "settings/settings.hpp"
 #include "spool/spool.hpp"
 
@@ -64,6 +65,8 @@ class Flow final : public intake::Desk {
 
   /// Goes on as the life before left off, and connects. An error: the ledger cannot be read.
   std::expected<void, std::string> start();
+  /// The settings are others; of these endpoints the place, the way or the token. Whoever waits waits on.
+  void settings_changed(const settings::Anew& anew, Tokens tokens);
   /// Once a second. `disk`: the writer of the state folder.
   void tick(loop::Writer& disk);
   /// The Command Post's cable is: nothing waits for what it would have waited for without one.
@@ -123,6 +126,7 @@ class Flow final : public intake::Desk {
   void drain();
 
   loop::Loop& loop_;
+  const settings::Settings& settings_;
   Tokens tokens_;
   Told told_;
   const bool follows_;  // another flow of this process, which may have sent a moment ago

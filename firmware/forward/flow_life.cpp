@@ -27,6 +27,7 @@ std::uint64_t seed() {
 Flow::Flow(loop::Loop& loop, ledger::Ledger& ledger, const settings::Settings& settings, Tokens tokens,
            const Folders& folders, std::optional<Legacy> legacy, Told told)
     : loop_(loop),
+      settings_(settings),
       tokens_(std::move(tokens)),
       told_(std::move(told)),
       follows_(legacy.has_value()),
@@ -94,6 +95,17 @@ void Flow::restore(bool is_first) {
   // not taken twice, for what came since is newer.
   if (kept.state.poses.empty() || news_.take(kept.state, 0)) spool_.forget_state();
   if (kept.markers.markers.empty() || news_.take(kept.markers, 0)) spool_.forget_markers();
+}
+
+void Flow::settings_changed(const settings::Anew& anew, Tokens tokens) {
+  tokens_ = std::move(tokens);
+  spool_.leave_to_others(beside_maps(settings_));
+  if (anew.scoring) scoring_.endpoint_changed(tokens_.scoring);  // first: nothing more goes to the old one
+  if (anew.mapping) maps_.endpoint_changed(tokens_.mapping);
+  if (anew.mapping) news_.endpoint_changed(tokens_.mapping);
+  scoring_.settings_changed();
+  maps_.settings_changed();
+  news_.settings_changed();
 }
 
 void Flow::link_is_back() {

@@ -133,6 +133,19 @@ void Maps::carry_on(const journal::Carried& carried) {
   }
 }
 
+void Maps::settings_changed() {
+  lane_.merge_at_most(settings_.queues.merge_bytes);
+  pace_.allow(settings_.command_post.rates.map_hz, loop_.now());
+  pump();
+}
+
+void Maps::endpoint_changed(std::optional<icd::BearerToken> token) {
+  const settings::CommandPost& post = settings_.command_post;
+  channel_.lead_to(endpoint_of(post, post.mapping, pace::map_bytes_per_second(post.budget_mbit)),
+                   std::move(token), post.timeouts.mapping_answer);
+  pump();
+}
+
 void Maps::restore(std::uint64_t number, icd::MapUpdate update) {
   numbers_ = std::max(numbers_, number);
   record_.accepted(traffic_of(update), update.data.bytes.size(), loop_.stamp_now());
@@ -168,6 +181,10 @@ void Maps::forget(std::vector<std::uint64_t> numbers) {
 
 /// What fails is tried again by itself: nobody else may come for a while.
 void Maps::pump() {
+  if (!stopping_ && channel_.turns()) {
+    pace_.link_is_back();
+    blame_ = {};
+  }
   if (stopping_ || preparing_ || channel_.busy() || !channel_.has_token()) return;
   if (loop::guarded("sending a map", [this] { go_on(); })) return;
   pace_.failed(loop_.now());

@@ -38,6 +38,11 @@ class Maps {
   void carry_on(const journal::Carried& carried);
   /// As if something had just been sent, by whoever sent before.
   void hold_back() { pace_.sent(loop_.now()); }
+  /// The settings are others, by which it goes from now on.
+  void settings_changed();
+  /// The endpoint is, or its token, or the way there: what is under way is taken by the one that it was sent
+  /// to, or sent again.
+  void endpoint_changed(std::optional<icd::BearerToken> token);
   /// A map that the spool kept under this number.
   void restore(std::uint64_t number, icd::MapUpdate update);
 

@@ -45,12 +45,19 @@ std::size_t updates_in(const lanes::WaitingMarkers& markers) {
   return markers.updates;
 }
 
+lanes::MarkerBounds bounds_of(const settings::Queues& queues) {
+  return {.per_message = queues.markers_per_message,
+          .bytes_per_message = queues.marker_bytes_per_message,
+          .bytes = queues.marker_bytes};
+}
+
 }  // namespace
 
 News::News(loop::Loop& loop, const settings::Settings& settings, std::optional<icd::BearerToken> token,
            Record& record, Aside& aside, std::mt19937_64& random, journal::Journal& journal,
            AsForwarded& as_forwarded, std::function<void()> anew)
     : loop_(loop),
+      settings_(settings),
       record_(record),
       aside_(aside),
       journal_(journal),
@@ -61,9 +68,7 @@ News::News(loop::Loop& loop, const settings::Settings& settings, std::optional<i
       state_pace_(icd::Uri::StateUpdate, settings.command_post.rates.state_hz, random, journal),
       markers_pace_(icd::Uri::MarkersUpdate, settings.command_post.rates.markers_hz, random, journal),
       wake_(loop.timer([this] { pump(); })),
-      markers_({.per_message = settings.queues.markers_per_message,
-                .bytes_per_message = settings.queues.marker_bytes_per_message,
-                .bytes = settings.queues.marker_bytes}) {}
+      markers_(bounds_of(settings.queues)) {}
 
 void News::carry_on(const journal::Carried& carried) {
   state_pace_.carry_on(carried, loop_.now());
@@ -80,6 +85,29 @@ void News::carry_on(const journal::Carried& carried) {
     record_.accepted({Kind::Markers, ""}, 0, loop_.stamp_now());
     markers_.add(markers, loop_.now());
   }
+}
+
+void News::settings_changed() {
+  markers_.keep_within(bounds_of(settings_.queues));
+  state_pace_.allow(settings_.command_post.rates.state_hz, loop_.now());
+  markers_pace_.allow(settings_.command_post.rates.markers_hz, loop_.now());
+  pump();
+}
+
+void News::endpoint_changed(std::optional<icd::BearerToken> token) {
+  const settings::CommandPost& post = settings_.command_post;
+  channel_.lead_to(endpoint_of(post, post.mapping, 0), std::move(token), post.timeouts.mapping_answer);
+  pump();
+}
+
+/// It may serve another Command Post, which knows of no robot yet.
+void News::endpoint_turned() {
+  state_pace_.link_is_back();
+  markers_pace_.link_is_back();
+  state_.forget_what_was_taken();
+  state_failed_ = markers_failed_ = 0;
+  state_blame_ = marker_blame_ = {};
+  marker_trials_.clear();
 }
 
 icd::Checked<void> News::take(const icd::StateUpdate& update, std::size_t bytes_received) {
@@ -107,6 +135,7 @@ icd::Checked<void> News::take(const icd::MarkersUpdate& update, std::size_t byte
 }
 
 void News::pump() {
+  if (!stopping_ && !setting_aside_ && channel_.turns()) endpoint_turned();
   if (stopping_ || setting_aside_ || channel_.busy() || !channel_.has_token()) return;
   whole(anew_, [this] { send_next(); });
 }

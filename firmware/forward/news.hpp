@@ -36,6 +36,11 @@ class News {
     state_pace_.sent(loop_.now());
     markers_pace_.sent(loop_.now());
   }
+  /// The settings are others, by which it goes from now on.
+  void settings_changed();
+  /// The endpoint is, or its token, or the way there: what is under way is taken by the one that it was sent
+  /// to, or sent again.
+  void endpoint_changed(std::optional<icd::BearerToken> token);
   void start() {
     channel_.keep_warm();
     pump();
@@ -59,6 +64,7 @@ class News {
 
  private:
   void pump();
+  void endpoint_turned();
   void send_next();
   void send_state();
   void send_markers();
@@ -100,6 +106,7 @@ class News {
   bool wait_again(const icd::MapUpdate&) { return false; }
 
   loop::Loop& loop_;
+  const settings::Settings& settings_;
   Record& record_;
   Aside& aside_;
   journal::Journal& journal_;

@@ -9,6 +9,7 @@
 #include "dispatch/turn.hpp"
 #include "forward/upstream_answer.hpp"
 #include "forward/whole.hpp"
+#include "host/log.hpp"
 #include "intake/icd_routes.hpp"
 #include "loop/guard.hpp"
 
@@ -33,7 +34,7 @@ Scoring::Scoring(loop::Loop& loop, ledger::Ledger& ledger, const settings::Setti
       record_(record),
       anew_(std::move(anew)),
       deeds_(loop, ledger),
-      reports_(rules_of(settings.reports), deeds_),
+      reports_(std::make_unique<dispatch::Reports>(rules_of(settings.reports), deeds_)),
       channel_(loop, "scoring", endpoint_of(settings.command_post, settings.command_post.scoring, 0),
                std::move(token), settings.command_post.timeouts.scoring_answer),
       report_pace_(icd::Uri::ArtifactReports, settings.command_post.rates.reports_hz, random, journal),
@@ -43,14 +44,51 @@ Scoring::Scoring(loop::Loop& loop, ledger::Ledger& ledger, const settings::Setti
       deadline_(loop.timer([this] { deadline_came(); })) {}
 
 std::expected<void, std::string> Scoring::start() {
+  if (auto opened = open_reports(); !opened) return opened;
+  channel_.keep_warm();
+  poll();
+  return {};
+}
+
+/// Where it fails, those before go on.
+std::expected<void, std::string> Scoring::open_reports() {
   auto all = ledger_.reports();
   if (!all) return std::unexpected(all.error().what);
   auto runs = ledger_.runs();
   if (!runs) return std::unexpected(runs.error().what);
-  reports_.open(std::move(*all), std::move(*runs), time(), address_text(settings_.command_post.scoring));
-  channel_.keep_warm();
-  poll();
+  auto next = std::make_unique<dispatch::Reports>(rules_of(settings_.reports), deeds_);
+  next->open(std::move(*all), std::move(*runs), time(), channel_.address(), *reports_);
+  reports_ = std::move(next);
   return {};
+}
+
+void Scoring::settings_changed() {
+  reports_->go_by(rules_of(settings_.reports));
+  report_pace_.allow(settings_.command_post.rates.reports_hz, loop_.now());
+  status_pace_.allow(settings_.command_post.rates.status_hz, loop_.now());
+  pump();
+}
+
+void Scoring::endpoint_changed(std::optional<icd::BearerToken> token) {
+  const settings::CommandPost& post = settings_.command_post;
+  channel_.lead_to(endpoint_of(post, post.scoring, 0), std::move(token), post.timeouts.scoring_answer);
+  pump();
+}
+
+void Scoring::endpoint_turned() {
+  report_pace_.link_is_back();
+  status_pace_.link_is_back();
+  run_.reset();
+  run_heard_.reset();
+  known_status_ = {};
+  poll_due_ = true;
+  const auto opened = whole(anew_, [this] { return open_reports(); });
+  if (!opened) {
+    host::log(host::Level::Error, "the ledger cannot be read: beginning anew", {{"why", opened.error()}});
+    anew_();
+  }
+  watch_deadlines();
+  record_.changed();
 }
 
 void Scoring::take(const icd::ArtifactReport& report, const intake::Sender& sender,
@@ -67,7 +105,7 @@ void Scoring::take(const icd::ArtifactReport& report, const intake::Sender& send
 void Scoring::take(const dispatch::Posted& posted, dispatch::ClientId client) {
   const bool may_send = !channel_.busy() && channel_.connected() && report_pace_.ready() <= loop_.now();
   whole(anew_, [&] {
-    if (reports_.take(posted, client, may_send, time())) send(*reports_.sending());
+    if (reports_->take(posted, client, may_send, time())) send(*reports_->sending());
   });
   watch_deadlines();
   record_.changed();
@@ -96,7 +134,7 @@ void Scoring::status(std::shared_ptr<intake::Responder> responder) {
 
 /// Neither does a report go first, nor is the pace in the way for longer than an asker waits.
 bool Scoring::may_ask_soon(loop::Instant now) const {
-  return !channel_.busy() && !reports_.wish(time()).report && status_pace_.ready() <= now + kAskerWaits;
+  return !channel_.busy() && !reports_->wish(time()).report && status_pace_.ready() <= now + kAskerWaits;
 }
 
 void Scoring::poll() {
@@ -116,10 +154,11 @@ intake::Answer Scoring::no_status() const {
 }
 
 void Scoring::pump() {
+  if (!stopping_ && channel_.turns()) endpoint_turned();
   if (stopping_ || channel_.busy() || !channel_.has_token()) return;
   const dispatch::Time at = time();
   const loop::Instant now = at.now;
-  const dispatch::Wish wish = reports_.wish(at);
+  const dispatch::Wish wish = reports_->wish(at);
   std::array<dispatch::Candidate, 2> candidates;
   if (wish.report) candidates[0] = {now, report_pace_.ready()};
   if (!askers_.empty() || poll_due_) {
@@ -135,7 +174,7 @@ void Scoring::pump() {
 
 void Scoring::send_next() {
   const bool is_sent = whole(anew_, [&] {
-    const dispatch::Report* const chosen = reports_.choose(time());
+    const dispatch::Report* const chosen = reports_->choose(time());
     if (chosen != nullptr) send(*chosen);
     return chosen != nullptr;
   });
@@ -169,7 +208,7 @@ void Scoring::report_answered(const uplink::Outcome& outcome) {
 void Scoring::judge_report(const uplink::Outcome& outcome) {
   const loop::Instant now = loop_.now();
   if (const auto* answered = std::get_if<uplink::Answered>(&outcome)) {
-    const dispatch::ReportEvent event = reports_.answered(
+    const dispatch::ReportEvent event = reports_->answered(
         {.status = answered->status, .content_type = answered->content_type, .body = answered->body}, time());
     if (event == dispatch::ReportEvent::Throttled) {
       report_pace_.throttled(now, answered->retry_after);
@@ -179,16 +218,16 @@ void Scoring::judge_report(const uplink::Outcome& outcome) {
       report_pace_.taken(now);
     }
   } else if (const auto* never = std::get_if<uplink::NeverSent>(&outcome)) {
-    reports_.never_left(never->why, time());
+    reports_->never_left(never->why, time());
     report_pace_.failed(now);
   } else {
-    reports_.lost(sentence_of(outcome), time());
+    reports_->lost(sentence_of(outcome), time());
     report_pace_.taken(now);
   }
 }
 
 void Scoring::watch_deadlines() {
-  std::optional<loop::Instant> first = reports_.next_deadline();
+  std::optional<loop::Instant> first = reports_->next_deadline();
   if (const auto asker = first_asker()) first = std::min(first.value_or(*asker), *asker);
   if (first) deadline_.call_at(*first);
 }
@@ -215,12 +254,12 @@ void Scoring::tell_askers(loop::Instant now) {
 
 void Scoring::deadline_came() {
   tell_askers(loop_.now());
-  whole(anew_, [&] { reports_.tick(time()); });
+  whole(anew_, [&] { reports_->tick(time()); });
   watch_deadlines();
 }
 
 void Scoring::tick() {
-  whole(anew_, [&] { reports_.tick(time()); });
+  whole(anew_, [&] { reports_->tick(time()); });
   pump();
 }
 
@@ -261,10 +300,10 @@ void Scoring::judge_status(const uplink::Outcome& outcome, loop::Instant asked) 
     run_ = *run;
     run_heard_ = loop_.stamp_now();
     known_status_.heard(answered->body, asked);
-    whole(anew_, [&] { reports_.status_heard(*run, asked, time()); });
+    whole(anew_, [&] { reports_->status_heard(*run, asked, time()); });
   } else {
     const bool left = !std::holds_alternative<uplink::NeverSent>(outcome);
-    whole(anew_, [&] { reports_.status_failed(left, time()); });
+    whole(anew_, [&] { reports_->status_failed(left, time()); });
   }
 }
 
@@ -279,11 +318,11 @@ void Scoring::answer_askers(const intake::Answer& answer) {
 
 dispatch::Reports::Outcome Scoring::judge(std::int64_t number, page::Deed deed) {
   const dispatch::Reports::Outcome outcome = whole(anew_, [&] {
-    return deed == page::Deed::Send       ? reports_.send(number, time())
-           : deed == page::Deed::Hold     ? reports_.hold(number, time())
-           : deed == page::Deed::Withdraw ? reports_.withdraw(number, time())
-           : deed == page::Deed::CallDone ? reports_.call_done(number, time())
-                                          : reports_.resubmit(number, time());
+    return deed == page::Deed::Send       ? reports_->send(number, time())
+           : deed == page::Deed::Hold     ? reports_->hold(number, time())
+           : deed == page::Deed::Withdraw ? reports_->withdraw(number, time())
+           : deed == page::Deed::CallDone ? reports_->call_done(number, time())
+                                          : reports_->resubmit(number, time());
   });
   record_.changed();
   pump();
@@ -294,14 +333,14 @@ dispatch::Reports::Outcome Scoring::report(const icd::ArtifactReport& report, bo
   if (stopping_) return std::unexpected("the gateway is stopping; the report was not taken");
   const dispatch::ClientId nobody = deeds_.add_nobody();
   take({.report = report, .sender = "operator", .resubmit = resubmit}, nobody);
-  if (const auto number = reports_.awaited_by(nobody)) return *number;
+  if (const auto number = reports_->awaited_by(nobody)) return *number;
   const dispatch::ClientAnswer told = deeds_.last_told();
   if (told.number == 0) return std::unexpected(told.sentence);
   return told.number;
 }
 
 std::int64_t Scoring::begin_run() {
-  const std::int64_t number = whole(anew_, [&] { return reports_.declare_new_run(time()); });
+  const std::int64_t number = whole(anew_, [&] { return reports_->declare_new_run(time()); });
   record_.changed();
   poll();
   return number;
@@ -317,13 +356,13 @@ void Scoring::link_is_back() {
 bool Scoring::stop() {
   stopping_ = true;
   answer_askers(intake::error_answer(icd::Status::ServiceUnavailable, "the gateway is stopping"));
-  reports_.dismiss(false);
-  return reports_.sending() == nullptr;
+  reports_->dismiss(false);
+  return reports_->sending() == nullptr;
 }
 
 void Scoring::dismiss() {
   stop();
-  reports_.dismiss(true);
+  reports_->dismiss(true);
 }
 
 }  // namespace adit::forward

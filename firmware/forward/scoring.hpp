@@ -49,6 +49,12 @@ class Scoring {
     report_pace_.sent(loop_.now());
     status_pace_.sent(loop_.now());
   }
+  /// The settings are others, by which it goes from now on.
+  void settings_changed();
+  /// The endpoint is, or its token, or the way there: once the answer under way is there, which counts for
+  /// the one that it was asked of. At another place what is known of the run begins anew, and clients whose
+  /// reports wait wait on.
+  void endpoint_changed(std::optional<icd::BearerToken> token);
   /// Takes up what the ledger holds from before, and connects. An error: the ledger cannot be read.
   std::expected<void, std::string> start();
 
@@ -75,7 +81,7 @@ class Scoring {
   const Channel& channel() const { return channel_; }
   const std::optional<icd::RunStatus>& run() const { return run_; }
   std::optional<page::Time> run_heard() const { return run_heard_; }
-  const dispatch::Reports& reports() const { return reports_; }
+  const dispatch::Reports& reports() const { return *reports_; }
   /// Why the ledger cannot be written, or "".
   const std::string& trouble() const {
     return ledger_.refusal().empty() ? deeds_.trouble() : ledger_.refusal();
@@ -89,6 +95,8 @@ class Scoring {
   };
 
   dispatch::Time time() const { return {loop_.now(), loop_.stamp_now()}; }
+  std::expected<void, std::string> open_reports();
+  void endpoint_turned();
   void take(const dispatch::Posted& posted, dispatch::ClientId client);
   void poll();
   void pump();
@@ -114,7 +122,7 @@ class Scoring {
   Record& record_;
   std::function<void()> anew_;
   ReportDeeds deeds_;
-  dispatch::Reports reports_;
+  std::unique_ptr<dispatch::Reports> reports_;  // never null
   Channel channel_;
   UriPace report_pace_, status_pace_;
   loop::Source wake_, poll_, deadline_;

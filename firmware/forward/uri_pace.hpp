@@ -31,6 +31,9 @@ class UriPace {
     if (learned != carried.paces().end()) rate_.carry_on(learned->second, now);
   }
 
+  /// So often is allowed from now on.
+  void allow(double hertz, pace::Instant now) { rate_.allow(hertz, now); }
+
   /// Before it leaves: no death may come in between.
   void sent(pace::Instant now) {
     rate_.sent(now);

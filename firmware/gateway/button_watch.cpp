@@ -12,19 +12,32 @@ using panel::Button;
 
 ButtonWatch::ButtonWatch(loop::Loop& loop, std::unique_ptr<panel::ButtonLine> line, Lights& lights,
                          std::function<void(panel::Press)> pressed)
-    : loop_(loop), line_(std::move(line)), lights_(lights), pressed_(std::move(pressed)) {
+    : loop_(loop), lights_(lights), pressed_(std::move(pressed)) {
+  take(std::move(line));
+}
+
+void ButtonWatch::let_go() {
+  edges_ = {};
+  due_ = {};
+  line_.reset();
+  button_ = Button(false, loop_.now());
+  show();
+}
+
+void ButtonWatch::take(std::unique_ptr<panel::ButtonLine> line) {
+  line_ = std::move(line);
   if (!line_) return;
   const auto first = line_->pressed();
   if (!first) {
     give_up(first.error());
     return;
   }
-  button_ = Button(*first, loop.now());
+  button_ = Button(*first, loop_.now());
   if (*first) {
     host::log(host::Level::Warning, "the button is held since before the start: let it go before it is used");
   }
-  edges_ = loop.watch(line_->descriptor(), EPOLLIN, [this](std::uint32_t) { look(); });
-  due_ = loop.timer([this] { look(); });
+  edges_ = loop_.watch(line_->descriptor(), EPOLLIN, [this](std::uint32_t) { look(); });
+  due_ = loop_.timer([this] { look(); });
 }
 
 /// The line is looked at also when time alone calls: what it says by now may not have been told yet.

@@ -18,6 +18,10 @@ class ButtonWatch {
   ButtonWatch(loop::Loop& loop, std::unique_ptr<panel::ButtonLine> line, Lights& lights,
               std::function<void(panel::Press)> pressed);
 
+  /// Lets go of the line: another, which may be the same, is taken next.
+  void let_go();
+  void take(std::unique_ptr<panel::ButtonLine> line);
+
  private:
   void look();
   void give_up(const std::string& why);

@@ -12,6 +12,7 @@ namespace adit::gateway {
 namespace {
 
 constexpr std::chrono::minutes kKeepSessionsEvery{1};
+constexpr std::chrono::seconds kAnswerLeaves{1};
 
 }  // namespace
 
@@ -40,7 +41,7 @@ Gateway::Gateway(loop::Loop& loop, Parts parts)
           [this](const std::string& post) {
             return dispatch::meaning_of_another_post(flow_.reports(), post);
           },
-          [this] { make_way(); }),
+          [this] { change_.call_at(loop_.now()); }, [this] { make_way(); }),
       box_(loop, flow_.workers(), parts_.board, settings::file_of(parts_.loaded.settings),
            [this](page::Usage& usage) { add_to(usage); }),
       network_(loop, settings_, network_requests_),
@@ -50,7 +51,9 @@ Gateway::Gateway(loop::Loop& loop, Parts parts)
                [this] { return report_under_way(); }),
       page_(loop, *this, *this, accounts_, tokens().all),
       routes_(icd_options(), flow_, flow_.workers(), page_),
-      second_(loop.timer([this] { every_second(); })) {
+      listeners_(loop, parts_.sockets, routes_),
+      second_(loop.timer([this] { every_second(); })),
+      change_(loop.timer([this] { apply_change(); })) {
   if (!parts_.ledger.refusal().empty()) {
     ledger_return_.emplace(loop, disk_writer_, parts_.state_folder, parts_.ledger_rest,
                            [this] { ledger_is_back(); });
@@ -92,31 +95,14 @@ void Gateway::ledger_is_back() {
 
 std::expected<void, std::string> Gateway::start() {
   if (auto started = flow_.start(); !started) return started;
-  if (auto listening = listen(); !listening) return listening;
+  if (auto listening = listen(settings_.team); !listening) return listening;
   every_second();
   return {};
 }
 
-std::expected<void, std::string> Gateway::listen() {
-  const settings::Team& team = settings_.team;
-  auto open = parts_.sockets.open(team);
-  if (!open) return std::unexpected(std::move(open.error()));
-  for (ListenSockets::Open& each : *open) {
-    auto server = intake::Server::start(loop_,
-                                        {.address = each.at.address,
-                                         .port = each.at.port,
-                                         .interface = each.at.interface,
-                                         .connections = team.connections,
-                                         .connections_per_address = team.connections_per_address},
-                                        routes_, std::move(each.socket));
-    if (!server) return std::unexpected(server.error());
-    host::log(host::Level::Notice, "listening",
-              {{"address", each.at.address},
-               {"port", std::to_string(each.at.port)},
-               {"interface", each.at.interface}});
-    servers_.push_back(std::move(*server));
-  }
-  return {};
+std::expected<void, std::string> Gateway::listen(const settings::Team& team) {
+  listeners_.let_go_within(settings_.reports.answer_within + kAnswerLeaves);
+  return listeners_.serve(team);
 }
 
 void Gateway::stop() {
@@ -136,7 +122,7 @@ void Gateway::make_way() {
 void Gateway::end() {
   if (flow_.is_ending()) return;
   flow_.end([this] { finish(); });  // first: whatever fails below, the end comes
-  for (const auto& server : servers_) server->stop_listening();
+  listeners_.stop();
   routes_.stop();
 }
 
@@ -165,6 +151,7 @@ void Gateway::every_second() {
   network_.lead_to_endpoints();
   keep_sessions();
   look_at_sockets();
+  listeners_.tick();
   if (std::string line = status_line(); line != notified_) {
     host::notify_status(line);
     notified_ = std::move(line);
@@ -187,7 +174,7 @@ void Gateway::keep_sessions() {
 }
 
 void Gateway::add_to(page::Usage& usage) const {
-  for (const auto& server : servers_) usage.connections += server->connections();
+  usage.connections += listeners_.connections();
   usage.sent_bytes = flow_.sent_bytes();
   usage.exceptions = loop::caught_so_far();
   usage.aside_dropped = flow_.aside().dropped();

@@ -12,6 +12,7 @@
 #include "gateway/lights.hpp"
 #include "gateway/links.hpp"
 #include "gateway/listen_sockets.hpp"
+#include "gateway/listeners.hpp"
 #include "gateway/network_change.hpp"
 #include "gateway/network_requests.hpp"
 #include "gateway/roster.hpp"
@@ -105,7 +106,12 @@ class Gateway final : public page::Source, public page::Operator {
   void ledger_is_back();
   void show_lights();
   void add_to(page::Usage& usage) const;
-  std::expected<void, std::string> listen();
+  std::expected<void, std::string> listen(const settings::Team& team);
+  void apply_change();
+  std::expected<void, std::string> take_over(Store::Loaded next);
+  void tell_of_settings(const settings::Anew& anew);
+  void reopen_panel();
+  void take_back(const std::string& why);
   intake::IcdOptions icd_options() const;
   forward::Tokens tokens() const;
   void note_robot(const std::string& name);
@@ -121,10 +127,10 @@ class Gateway final : public page::Source, public page::Operator {
 
   loop::Loop& loop_;
   Parts parts_;
-  const settings::Settings settings_;  // with the course in use
-  loop::Writer disk_writer_;           // of the state folder, on the disk, for which no map waits
-  forward::Flow flow_;                 // its workers' jobs end before that writer
-  loop::Workers log_ins_;  // of their own: nobody who logs in waits behind maps, nor maps behind him
+  settings::Settings settings_;  // with the course in use
+  loop::Writer disk_writer_;     // of the state folder, on the disk, for which no map waits
+  forward::Flow flow_;           // its workers' jobs end before that writer
+  loop::Workers log_ins_;        // of their own: nobody who logs in waits behind maps, nor maps behind him
   Lights lights_;
   Links links_;
   ButtonWatch button_;
@@ -139,8 +145,8 @@ class Gateway final : public page::Source, public page::Operator {
   Updates updates_;
   page::Page page_;
   intake::IcdRoutes routes_;
-  std::vector<std::unique_ptr<intake::Server>> servers_;
-  loop::Source second_;
+  Listeners listeners_;
+  loop::Source second_, change_;
   loop::Instant sessions_kept_{};
   std::optional<LedgerReturn> ledger_return_;
   bool makes_way_ = false;

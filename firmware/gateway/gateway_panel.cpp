@@ -19,7 +19,7 @@ constexpr std::chrono::seconds kIdentify{10};  // by the button
 
 void Gateway::assert_states() {
   const forward::Channel& scoring = flow_.scoring().channel();
-  const bool serving = !servers_.empty() && flow_.scoring().trouble().empty();
+  const bool serving = listeners_.serves() && flow_.scoring().trouble().empty();
   lights_.set(State::Serving, serving);
   lights_.set(State::NotServing, !serving);
   lights_.set(State::ScoringConnected, scoring.connected());

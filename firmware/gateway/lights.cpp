@@ -14,6 +14,13 @@ Lights::Lights(loop::Loop& loop, std::unique_ptr<panel::Lines> lines)
       digits_began_(began_),
       tick_(loop.timer([this] { paint(); })) {}
 
+void Lights::take(std::unique_ptr<panel::Lines> lines) {
+  lines_ = std::move(lines);
+  lit_.reset();
+  broken_ = false;
+  paint();
+}
+
 void Lights::set(panel::State state, bool asserted) {
   until(state).reset();
   if (states_.set(state, asserted) || !lit_) paint();
@@ -71,6 +78,7 @@ void Lights::paint() {
 }
 
 void Lights::light_up(const panel::Lit& lit) {
+  if (!lines_) return;
   const auto set = lines_->set(lit);
   if (!set && !std::exchange(broken_, true)) {
     host::log(host::Level::Error, "the panel's lights cannot be set", {{"why", set.error()}});

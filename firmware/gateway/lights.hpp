@@ -16,6 +16,10 @@ class Lights {
  public:
   Lights(loop::Loop& loop, std::unique_ptr<panel::Lines> lines);
 
+  /// Lets go of the lines: others, which may be the same, are taken next.
+  void let_go() { lines_.reset(); }
+  void take(std::unique_ptr<panel::Lines> lines);
+
   /// Asserts or clears a state.
   void set(panel::State state, bool asserted);
   /// Asserts it for so long from now on.

@@ -22,6 +22,15 @@ Links::Links(loop::Loop& loop, const settings::Settings& settings, Look look, st
   timer_.call_at(loop_.now() + kEvery);
 }
 
+void Links::look_at(const settings::Settings& settings) {
+  const std::string* const interfaces[] = {&settings.team.interface, &settings.command_post.interface};
+  for (std::size_t i = 0; i < links_.size(); ++i) {
+    if (links_[i].interface == *interfaces[i]) continue;
+    links_[i].interface = *interfaces[i];
+    links_[i].carrier = look_(links_[i].interface);
+  }
+}
+
 void Links::look() {
   bool changed = false, back = false;
   for (Link& link : links_) {

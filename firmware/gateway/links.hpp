@@ -24,6 +24,9 @@ class Links {
   Links(loop::Loop& loop, const settings::Settings& settings, Look look, std::function<void()> changed,
         std::function<void()> back);
 
+  /// The settings may name others from now on.
+  void look_at(const settings::Settings& settings);
+
   /// The team's, then the Command Post's; without one whose interface the settings do not name.
   std::vector<page::LinkRow> rows() const;
   /// For the operator: which cable is out.

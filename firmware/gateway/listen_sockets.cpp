@@ -30,7 +30,10 @@ std::string name_of(const intake::Listen& listen) {
 std::expected<ListenSockets, std::string> ListenSockets::take_over(std::vector<host::Inherited> given) {
   ListenSockets sockets;
   for (host::Inherited& each : given) {
-    Held held{.name = std::move(each.name), .socket = std::move(each.descriptor), .at = {}};
+    Held held{.number = ++sockets.last_,
+              .name = std::move(each.name),
+              .socket = std::move(each.descriptor),
+              .at = {}};
     held.stored = held.name.starts_with(kStored);
     held.door = !held.stored;
     if (intake::is_deaf(held.socket.get())) {
@@ -70,8 +73,11 @@ std::expected<std::vector<ListenSockets::Open>, std::string> ListenSockets::open
     if (!socket) return std::unexpected(std::move(socket.error()));
     auto at = intake::bound_at(socket->get());
     if (!at) return std::unexpected(std::move(at.error()));
-    held_.push_back(
-        {.name = name_of(listen), .socket = std::move(*socket), .at = std::move(*at), .wanted = true});
+    held_.push_back({.number = ++last_,
+                     .name = name_of(listen),
+                     .socket = std::move(*socket),
+                     .at = std::move(*at),
+                     .wanted = true});
   }
   std::vector<Open> open;
   for (const Held& held : held_) {
@@ -81,7 +87,7 @@ std::expected<std::vector<ListenSockets::Open>, std::string> ListenSockets::open
     if (auto adopted = intake::adopt_listen_socket(copy.get(), {}); !adopted) {
       return std::unexpected(std::move(adopted.error()));
     }
-    open.push_back({std::move(copy), held.at});
+    open.push_back({held.number, std::move(copy), held.at});
   }
   return open;
 }

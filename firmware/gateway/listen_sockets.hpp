@@ -1,5 +1,6 @@
 #pragma once
 
+#include <cstdint>
 #include <expected>
 #include <string>
 #include <vector>
@@ -26,6 +27,7 @@ class ListenSockets {
 
   /// A copy of one to serve, and where it listens.
   struct Open {
+    std::uint64_t number = 0;  // the socket's: no two of a process alike
     loop::FileDescriptor socket;
     intake::Bound at;
   };
@@ -48,6 +50,7 @@ class ListenSockets {
 
  private:
   struct Held {
+    std::uint64_t number = 0;
     std::string name;  // the store's, which says what it was opened for; a door's: the unit's
     loop::FileDescriptor socket;
     intake::Bound at;
@@ -61,6 +64,7 @@ class ListenSockets {
   static void end(const Held& held);
 
   std::vector<Held> held_;
+  std::uint64_t last_ = 0;
 };
 
 }  // namespace adit::gateway

@@ -7,7 +7,15 @@
 namespace adit::gateway {
 
 Roster::Roster(const std::vector<settings::Robot>& robots) {
+  set_up(robots);
+}
+
+void Roster::set_up(const std::vector<settings::Robot>& robots) {
+  names_.clear();
   for (const settings::Robot& robot : robots) names_.push_back(robot.name);
+  std::erase_if(unknown_, [this](const auto& entry) {
+    return names_.empty() || std::ranges::find(names_, entry.first) != names_.end();
+  });
 }
 
 bool Roster::posted(const std::string& name, loop::Instant now) {

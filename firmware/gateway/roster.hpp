@@ -18,6 +18,8 @@ class Roster {
 
   explicit Roster(const std::vector<settings::Robot>& robots);
 
+  /// These were set up, and no others, from now on.
+  void set_up(const std::vector<settings::Robot>& robots);
   /// A robot's message was taken. True: an unknown one's first.
   bool posted(const std::string& name, loop::Instant now);
   /// "unknown robot 'x' is posting; set-up has ugv1, ugv2"

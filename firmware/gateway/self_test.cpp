@@ -48,9 +48,10 @@ SelfTest::SelfTest(loop::Loop& loop, const settings::Settings& settings, Tokens 
 bool SelfTest::begin_test() {
   if (view_.running) return false;
   view_ = {.running = true, .endpoints = {}};
-  const settings::CommandPost& post = settings_.command_post;
+  post_ = settings_.command_post;
+  shown_ = tokens_;
   for (const auto& [name, address] :
-       {std::pair("scoring", &post.scoring), std::pair("mapping", &post.mapping)}) {
+       {std::pair("scoring", &post_.scoring), std::pair("mapping", &post_.mapping)}) {
     page::TestedEndpoint endpoint{.name = name, .address = forward::address_text(*address), .steps = {}};
     for (const char* step : kSteps) endpoint.steps.push_back({.name = step, .said = "", .advice = ""});
     view_.endpoints.push_back(std::move(endpoint));
@@ -65,7 +66,7 @@ bool SelfTest::begin_test() {
 void SelfTest::run_step() {
   endpoint().steps[static_cast<std::size_t>(at_)].state = "running";
   changed_();
-  const std::string& interface = settings_.command_post.interface;
+  const std::string& interface = post_.interface;
   switch (at_) {
     case At::Link:
       return finish(steps::link(interface, host::carrier(interface)));
@@ -120,7 +121,7 @@ void SelfTest::next() {
 void SelfTest::ask_address() {
   if (tested_ > 0 && view_.endpoints.front().steps[1].state != "skipped")
     return finish(view_.endpoints.front().steps[1]);
-  const std::string& interface = settings_.command_post.interface;
+  const std::string& interface = post_.interface;
   const auto own = host::own_address(interface);
   const auto status = requests_.status();
   std::string why = !status ? "adit-network does not run here: " + status.error()
@@ -145,18 +146,17 @@ void SelfTest::wait_for_probe() {
     when_due_ = [this] { wait_for_probe(); };
     return timer_.call_at(loop_.now() + kProbePoll);
   }
-  const std::string& interface = settings_.command_post.interface;
+  const std::string& interface = post_.interface;
   probed_ = probed;
   finish(steps::address(interface, host::own_address(interface), probed, "adit-network did not answer"));
 }
 
 void SelfTest::look_at_cables() {
-  finish(steps::cables(settings_.command_post.interface, settings_.team.interface, probe_.sought, probed_));
+  finish(steps::cables(post_.interface, settings_.team.interface, probe_.sought, probed_));
 }
 
 uplink::Endpoint SelfTest::there() const {
-  const settings::CommandPost& post = settings_.command_post;
-  auto endpoint = forward::endpoint_of(post, tested_ == 0 ? post.scoring : post.mapping, 0);
+  auto endpoint = forward::endpoint_of(post_, tested_ == 0 ? post_.scoring : post_.mapping, 0);
   endpoint.connect_within = kReachWithin;
   return endpoint;
 }

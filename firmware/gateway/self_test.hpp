@@ -35,6 +35,9 @@ class SelfTest final : public page::SelfTest {
   SelfTest(loop::Loop& loop, const settings::Settings& settings, Tokens tokens,
            const NetworkRequests& requests, const NetworkChange& network, std::function<void()> changed);
 
+  /// For tests that begin from now on.
+  void use(Tokens tokens) { tokens_ = std::move(tokens); }
+
   page::TestView test() const override { return view_; }
   bool begin_test() override;
 
@@ -60,13 +63,15 @@ class SelfTest final : public page::SelfTest {
 
   steps::Asked kind() const { return tested_ == 0 ? steps::Asked::Scoring : steps::Asked::Mapping; }
   const std::optional<icd::BearerToken>& token() const {
-    return tested_ == 0 ? tokens_.scoring : tokens_.mapping;
+    return tested_ == 0 ? shown_.scoring : shown_.mapping;
   }
   uplink::Endpoint there() const;
 
   loop::Loop& loop_;
   const settings::Settings& settings_;
   Tokens tokens_;
+  settings::CommandPost post_;  // that is tested, whatever the settings say by now
+  Tokens shown_;                // to it
   const NetworkRequests& requests_;
   const NetworkChange& network_;
   std::function<void()> changed_;

@@ -17,7 +17,7 @@
 namespace adit::gateway {
 
 /// The life of aditd. Gateways, one after the other on one loop: each runs until it is stopped, or makes way
-/// for one of changed settings.
+/// for another: after a factory reset, or where the ledger can be written to again.
 class Service {
  public:
   /// `options` outlive this.

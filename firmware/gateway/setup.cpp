@@ -38,14 +38,21 @@ std::optional<icd::BearerToken> token_for(const std::string& endpoint, const Set
 }
 
 Setup::Setup(const Store& store, const FactoryReset& reset, const Store::Loaded& loaded, Meaning for_reports,
-             std::function<void()> apply)
+             std::function<void()> apply, std::function<void()> anew)
     : store_(store),
       reset_(reset),
-      settings_(loaded.settings),
-      saved_(loaded.saved),
       for_reports_(std::move(for_reports)),
-      apply_(std::move(apply)) {
+      apply_(std::move(apply)),
+      anew_(std::move(anew)) {
+  runs_with(loaded);
+}
+
+void Setup::runs_with(const Store::Loaded& loaded) {
+  settings_ = loaded.settings;
+  saved_ = loaded.saved;
+  tokens_set_.clear();
   for (const auto& [name, token] : loaded.secrets.tokens) tokens_set_.push_back(name);
+  applying_ = false;
 }
 
 std::vector<page::TokenRow> Setup::tokens() const {
@@ -79,14 +86,15 @@ std::vector<std::string> Setup::warnings(const Settings& next) const {
   return sentences;
 }
 
-icd::Checked<void> Setup::applied(const std::expected<void, std::string>& written, const char* what) {
+icd::Checked<void> Setup::applied(const std::expected<void, std::string>& written, const char* what,
+                                  const std::function<void()>& apply) {
   if (!written) {
     host::log(host::Level::Error, "a change cannot be kept", {{"what", what}, {"why", written.error()}});
     return refuse(icd::Status::ServiceUnavailable, "the change cannot be kept: " + written.error());
   }
   host::log(host::Level::Notice, "a change is applied", {{"what", what}});
   applying_ = true;
-  apply_();
+  apply();
   return {};
 }
 
@@ -95,17 +103,17 @@ icd::Checked<void> Setup::save(const Settings& next) {
   for (const settings::Change& change : settings::changes(settings_, next)) {
     host::log(host::Level::Notice, "a setting is changed", {{"setting", change.path}});
   }
-  return applied(store_.save(next), "settings");
+  return applied(store_.save(next), "settings", apply_);
 }
 
 icd::Checked<void> Setup::set_token(const std::string& name, const std::optional<icd::BearerToken>& token) {
   if (applying_) return being_applied();
-  return applied(store_.save_token(name, token), "a token");
+  return applied(store_.save_token(name, token), "a token", apply_);
 }
 
 icd::Checked<void> Setup::reset() {
   if (applying_) return being_applied();
-  return applied(reset_.begin(), "a factory reset");
+  return applied(reset_.begin(), "a factory reset", anew_);
 }
 
 }  // namespace adit::gateway

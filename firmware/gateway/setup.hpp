@@ -11,15 +11,19 @@
 
 namespace adit::gateway {
 
-/// What this gateway was built from, and how it comes to be built anew.
+/// What the gateway runs with, and how that is changed.
 class Setup final : public page::Setup {
  public:
   /// What it means for the reports where the scoring endpoint is at this address and port from then on.
   using Meaning = std::function<std::string(const std::string& post)>;
 
-  /// `apply` ends the gateway, so that another begins. `store` and `reset` outlive this.
+  /// `apply` is called once a change is on the disk, and sees to it that runs_with() is told what came of it;
+  /// `anew` ends the gateway, so that another begins. `store` and `reset` outlive this.
   Setup(const Store& store, const FactoryReset& reset, const Store::Loaded& loaded, Meaning for_reports,
-        std::function<void()> apply);
+        std::function<void()> apply, std::function<void()> anew);
+
+  /// A change was applied, or taken back: the gateway runs with these.
+  void runs_with(const Store::Loaded& loaded);
 
   const settings::Settings& settings() const override { return settings_; }
   bool saved() const override { return saved_; }
@@ -32,16 +36,17 @@ class Setup final : public page::Setup {
   icd::Checked<void> reset() override;
 
  private:
-  /// Applies what `written` has on the disk.
-  icd::Checked<void> applied(const std::expected<void, std::string>& written, const char* what);
+  /// What `written` has on the disk is brought about by `apply`.
+  icd::Checked<void> applied(const std::expected<void, std::string>& written, const char* what,
+                             const std::function<void()>& apply);
 
   const Store& store_;
   const FactoryReset& reset_;
   settings::Settings settings_;
-  bool saved_;
+  bool saved_ = false;
   std::vector<std::string> tokens_set_;
   Meaning for_reports_;
-  std::function<void()> apply_;
+  std::function<void()> apply_, anew_;
   bool applying_ = false;
 };
 

@@ -23,6 +23,7 @@ class ThisBox final : public page::Box {
   page::About about() const override;
   page::NetworkState network() const override;
   std::string settings() const override { return settings_; }
+  void runs_with(std::string settings) { settings_ = std::move(settings); }
   void work(std::function<void()> work, std::function<void()> done) override;
 
  private:

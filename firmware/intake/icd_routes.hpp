@@ -4,6 +4,7 @@
 #include <memory>
 #include <optional>
 #include <string_view>
+#include <utility>
 #include <vector>
 
 #include "icd/bearer_token.hpp"
@@ -41,6 +42,9 @@ class IcdRoutes final : public Handler {
 
   std::unique_ptr<Exchange> open(const RequestHead& head, std::shared_ptr<Responder> responder,
                                  std::shared_ptr<Flow> flow) override;
+
+  /// Whoever comes from now on is served so. `upload_bytes` stays what it was.
+  void serve_with(IcdOptions options) { options_ = std::move(options); }
 
   /// Takes no message in any more: who is in the middle of one, or comes with a map, a state or markers, is
   /// told 503. (A report whose body is whole is the desk's to refuse.)

@@ -52,6 +52,8 @@ class MapLane {
   /// Most bytes of points that take() merges into one message.
   explicit MapLane(std::size_t merge_bytes) : merge_bytes_(merge_bytes) {}
 
+  void merge_at_most(std::size_t bytes) { merge_bytes_ = bytes; }
+
   /// The numbers of the updates whose maps `map` replaced; it stands for them from now on. No number is given
   /// twice.
   std::vector<std::uint64_t> add(std::uint64_t number, icd::MapUpdate map, Instant now);

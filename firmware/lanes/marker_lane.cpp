@@ -48,6 +48,12 @@ void MarkerLane::join_updates() {
   updates_ = std::move(joined);
 }
 
+void MarkerLane::keep_within(MarkerBounds bounds) {
+  const bool is_narrow = most_now_ < bounds_.per_message;
+  bounds_ = bounds;
+  if (!is_narrow || most_now_ > bounds.per_message) most_now_ = bounds.per_message;
+}
+
 std::optional<WaitingMarkers> MarkerLane::take() {
   if (!oldest_) return {};
   WaitingMarkers taken;

@@ -41,6 +41,9 @@ class MarkerLane {
 
   explicit MarkerLane(MarkerBounds bounds) : bounds_(bounds), most_now_(bounds.per_message) {}
 
+  /// These count from now on; what waits, waits.
+  void keep_within(MarkerBounds bounds);
+
   /// So that no sender can fill the memory while the Command Post is away. What only replaces changes that
   /// wait has a quarter of the bytes to itself: a path that grows is taken when new markers are not. Where
   /// nothing waits there is room for any update.

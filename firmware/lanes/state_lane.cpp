@@ -33,6 +33,10 @@ void StateLane::add(const icd::StateUpdate& update, Instant now) {
   ++updates_;
 }
 
+void StateLane::forget_what_was_taken() {
+  std::erase_if(robots_, [](const auto& robot) { return !robot.second.waits(); });
+}
+
 void StateLane::add_unless_known(const icd::StateUpdate& update, Instant now) {
   for (const icd::NamedPose& named : update.poses) {
     Held& held = robots_.try_emplace(named.name, Held{named.pose, std::nullopt}).first->second;

@@ -40,6 +40,9 @@ class StateLane {
   /// All robots' newest poses, but for those that go apart, or one of these; nothing where no news came since
   /// the last take(). Without `now`, nobody rests.
   std::optional<WaitingState> take(Instant now = Instant::max());
+  /// Whoever is sent to next knows of no robot, and is told of those alone that have news. Nothing is under
+  /// way.
+  void forget_what_was_taken();
   /// What was news and could not be sent is news again; newer poses that came meanwhile stay.
   void put_back(const WaitingState& state);
   /// The same, and from now on each of its robots goes apart.

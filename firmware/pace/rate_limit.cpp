@@ -27,6 +27,20 @@ Duration times(Duration duration, double factor) {
 
 RateLimit::RateLimit(double hertz) : allowed_(spacing(hertz)), spacing_(allowed_) {}
 
+void RateLimit::allow(double hertz, Instant now) {
+  const Duration before = std::exchange(allowed_, spacing(hertz));
+  if (allowed_ == before) return;
+  const bool is_learned = spacing_ > before;
+  const Instant by_the_rate = counted_.value_or(Instant{}) + spacing_;
+  spacing_ = is_learned ? std::max(spacing_, allowed_) : allowed_;
+  if (tried_from_ && *tried_from_ <= allowed_) tried_from_.reset();
+  if (counted_ && next_ == by_the_rate) {
+    next_ = *counted_ + spacing_;
+  } else {  // a server asked for the pause, or it is of an earlier life
+    next_ = std::min(next_, now + std::max<Duration>(spacing_, kLongestPause));
+  }
+}
+
 double RateLimit::hertz() const {
   return 1 / Seconds{spacing_}.count();
 }
@@ -35,7 +49,7 @@ void RateLimit::sent(Instant now) {
   if (storm_ && sent_) worked_ = now - *sent_;
   sent_ = now;
   under_way_ = true;
-  next_ = std::max(next_, now + spacing_);
+  space_from(now);
 }
 
 void RateLimit::taken(Instant now) {
@@ -50,12 +64,19 @@ void RateLimit::taken(Instant now) {
     ++taken_since_;
     speed_up(now);
   }
-  next_ = now + spacing_;
+  next_ = {};
+  space_from(now);
 }
 
 void RateLimit::lost(Instant now) {
   under_way_ = false;
-  next_ = std::max(next_, now + spacing_);
+  space_from(now);
+}
+
+void RateLimit::space_from(Instant now) {
+  if (now + spacing_ < next_) return;
+  next_ = now + spacing_;
+  counted_ = now;
 }
 
 void RateLimit::throttled(Instant now, std::optional<std::chrono::seconds> retry_after) {

@@ -52,6 +52,10 @@ class RateLimit {
   /// hour.
   void throttled(Instant now, std::optional<std::chrono::seconds> retry_after);
 
+  /// So often is allowed, also since the last request. What was learned of the server stays, and a pause that
+  /// it asked for.
+  void allow(double hertz, Instant now);
+
   /// What is learned: never more than is allowed.
   double hertz() const;
 
@@ -67,6 +71,7 @@ class RateLimit {
     Duration pause;
   };
 
+  void space_from(Instant now);
   void begin_storm(Instant now);
   bool is_a_limit() const;
   void slow_down(Instant now);
@@ -75,6 +80,7 @@ class RateLimit {
   Duration allowed_;  // between two requests, as all that follow
   Duration spacing_;  // learned
   Instant next_{};
+  std::optional<Instant> counted_;  // from when the spacing was counted that gave next_
   std::optional<Storm> storm_;
   std::optional<Instant> sent_;  // last
   bool under_way_ = false;

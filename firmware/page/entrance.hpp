@@ -17,6 +17,9 @@ class Entrance {
   Entrance(loop::Loop& loop, access::Sessions& sessions, std::vector<icd::BearerToken> tokens)
       : loop_(loop), sessions_(sessions), tokens_(std::move(tokens)) {}
 
+  /// These let a script in from now on.
+  void let_in(std::vector<icd::BearerToken> tokens) { tokens_ = std::move(tokens); }
+
   /// Visitor::session is valid until the next call of anything here.
   icd::Checked<access::Visitor> admit(const intake::RequestHead& head, access::Role role);
   std::optional<access::Visitor> who(const intake::RequestHead& head);

@@ -98,6 +98,7 @@ class Page::Impl {
   }
   void serve(Box& box) { box_.emplace(source_, box, entrance_, loop_); }
   void changed() { live_.changed(); }
+  void let_in(std::vector<icd::BearerToken> tokens) { entrance_.let_in(std::move(tokens)); }
 
  private:
   static bool is_guarded(std::string_view path) {
@@ -161,6 +162,9 @@ void Page::serve(Network& network, SelfTest& test) {
   impl_->serve(network, test);
 }
 
+void Page::let_in(std::vector<icd::BearerToken> tokens) {
+  impl_->let_in(std::move(tokens));
+}
 void Page::changed() {
   impl_->changed();
 }

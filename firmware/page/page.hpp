@@ -218,6 +218,9 @@ class Page final : public intake::Handler {
   /// Serves what is known of the box, too; it outlives this. Once, before anything is opened.
   void serve(Box& box);
 
+  /// These tokens let a script in from now on.
+  void let_in(std::vector<icd::BearerToken> tokens);
+
   /// Something that the page shows has changed.
   void changed();
 

@@ -17,8 +17,8 @@ struct TokenRow {
 };
 
 /// The settings and tokens that the box runs with, and what changes them: each change is on the disk and
-/// about to be applied once it is answered, and the gateway begins anew. Refused: 409 while another is being
-/// applied, 503 where it cannot be written.
+/// about to be applied once it is answered; after a reset the gateway begins anew. Refused: 409 while another
+/// is being applied, 503 where it cannot be written.
 class Setup {
  public:
   virtual ~Setup() = default;

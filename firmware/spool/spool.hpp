@@ -1,5 +1,6 @@
 #pragma once
 
+#include <atomic>
 #include <cstdint>
 #include <memory>
 #include <string>
@@ -28,6 +29,9 @@ class Spool {
   /// but no more than a quarter of all: what is to be written there beside maps must not be refused for them.
   explicit Spool(std::string folder, std::uint64_t left_to_others = 0);
 
+  /// So much from now on, whoever asks.
+  void leave_to_others(std::uint64_t bytes) { left_to_others_ = bytes; }
+
   /// For a map whose data is put into its file as it arrives. For the writer, which is to have the last of
   /// it, too.
   std::shared_ptr<MapFile> begin() const;
@@ -55,7 +59,7 @@ class Spool {
   std::string file_of(std::uint64_t number) const;
 
   std::string folder_;
-  std::uint64_t left_to_others_;
+  std::atomic<std::uint64_t> left_to_others_;  // the writer asks, too
 };
 
 }  // namespace adit::spool

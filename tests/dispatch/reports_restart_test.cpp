@@ -140,5 +140,55 @@ TEST(AfterARestart, ACommandPostAtAnotherPlaceIsAnotherRun) {
   EXPECT_THAT(scene.report(1).note, HasSubstr("the operator decides"));
 }
 
+TEST(AtAnotherPlace, ClientsOfWhatIsMeantForItWaitOnAndAreAnswered) {
+  Scene scene;
+  scene.restart("10.0.0.1:1");  // nothing is heard there: what waits is meant for the first that answers
+  const ClientId client = scene.post_to_wait();
+  scene.move_to("10.0.0.2:1");
+  EXPECT_FALSE(scene.is_told(client));
+  scene.hear(20, 0);
+  ASSERT_EQ(scene.send_next(), 1);
+  scene.answer(recorded(1));
+  EXPECT_EQ(scene.told(client).status, 201);
+}
+
+TEST(AtAnotherPlace, ClientsOfWhatIsKeptForThePlaceBeforeAreToldInTheirTime) {
+  Scene scene;
+  const ClientId client = scene.post_to_wait();
+  scene.move_to("10.0.0.2:1");
+  scene.hear(20, 0);
+  EXPECT_EQ(scene.send_next(), 0);
+  EXPECT_FALSE(scene.is_told(client));
+  scene.wait(20);
+  EXPECT_EQ(scene.told(client).status, 503);
+  scene.move_to("10.100.1.200:8000");
+  scene.hear(20, 0);
+  EXPECT_EQ(scene.send_next(), 1);
+}
+
+TEST(AtAnotherPlace, AReportInDoubtStaysOfTheOneThatItWasSentTo) {
+  Scene scene;
+  scene.post();
+  scene.lose();
+  scene.move_to("10.0.0.2:1");
+  scene.keep_hearing(30, 19, 1);
+  EXPECT_EQ(scene.state(1), InDoubt);
+  EXPECT_NE(scene.report(1).run, scene.reports().run().number);
+}
+
+TEST(OtherRules, CountForWhoeverComesFromThenOn) {
+  Scene scene;
+  const ClientId before = scene.post_to_wait(1);
+  ReportRules rules;
+  rules.answer_within = std::chrono::seconds{5};
+  rules.review = Review::All;
+  scene.reports().go_by(rules);
+  const ClientId after = scene.post_to_wait(100);
+  EXPECT_EQ(scene.state(2), Received) << "held for review";
+  scene.wait(5);
+  EXPECT_TRUE(scene.is_told(after));
+  EXPECT_FALSE(scene.is_told(before));
+}
+
 }  // namespace
 }  // namespace adit::dispatch

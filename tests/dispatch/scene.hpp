@@ -2,6 +2,7 @@
 
 #include <chrono>
 #include <map>
+#include <memory>
 #include <optional>
 #include <string>
 #include <vector>
@@ -93,13 +94,14 @@ class Scene {
 
   /// The program ends at once, and begins again with what is on disk.
   void restart(const std::string& post = "10.100.1.200:8000") {
-    std::vector<Report> all;
-    all.reserve(deeds_.ledger.size());
-    for (const auto& [number, report] : deeds_.ledger) all.push_back(report);
-    reports_.emplace(rules_, deeds_);
-    std::vector<Run> runs;
-    for (const auto& [number, run] : deeds_.runs) runs.push_back(run);
-    reports_->open(std::move(all), std::move(runs), time(), post);
+    reports_ = std::make_unique<Reports>(rules_, deeds_);
+    reports_->open(all_reports(), all_runs(), time(), post);
+  }
+  /// The settings name another place, and the program goes on.
+  void move_to(const std::string& post) {
+    auto next = std::make_unique<Reports>(rules_, deeds_);
+    next->open(all_reports(), all_runs(), time(), post, *reports_);
+    reports_ = std::move(next);
   }
 
   /// A client posts; nothing is in the way of sending it at once, unless something is under way.
@@ -153,6 +155,18 @@ class Scene {
   }
 
  private:
+  std::vector<Report> all_reports() const {
+    std::vector<Report> all;
+    all.reserve(deeds_.ledger.size());
+    for (const auto& [number, report] : deeds_.ledger) all.push_back(report);
+    return all;
+  }
+  std::vector<Run> all_runs() const {
+    std::vector<Run> runs;
+    for (const auto& [number, run] : deeds_.runs) runs.push_back(run);
+    return runs;
+  }
+
   ClientId post(double x, const std::string& type, bool resubmit, bool may_send) {
     Posted posted;
     posted.report.type = type;
@@ -165,7 +179,7 @@ class Scene {
 
   const ReportRules rules_;
   RecordingDeeds deeds_;
-  std::optional<Reports> reports_;
+  std::unique_ptr<Reports> reports_;
   double now_ = 100;
   double clock_set_by_ = 0;
   ClientId last_client_ = 0;

@@ -54,5 +54,58 @@ TEST_F(ChannelTest, TakesTheServersOwnPageForTheCommandPosts) {
   }
 }
 
+TEST_F(ChannelTest, LeadsElsewhereOnceTheRequestUnderWayHasEnded) {
+  uplink::ListeningPeer there([](uplink::Wire& wire) {
+    wire.read_request();
+    wire.write(uplink::answer("200 OK", "2"));
+  });
+  peer_.emplace([](uplink::Wire& wire) {
+    wire.read_request();
+    wire.write(uplink::answer("429 TOO MANY REQUESTS", R"("slowly")"));
+  });
+  const auto token = icd::BearerToken::parse("a-token");
+  Channel channel(loop_, "mapping", peer_->endpoint(), token, std::chrono::seconds{20});
+  std::vector<int> answers;
+  const auto ask = [&] {
+    channel.send(icd::Uri::Status, "", {}, [&](const uplink::Outcome& outcome) {
+      const auto* answered = std::get_if<uplink::Answered>(&outcome);
+      answers.push_back(answered != nullptr ? answered->status : 0);
+    });
+  };
+  ask();
+  channel.lead_to(there.endpoint(), token, std::chrono::seconds{20});
+  EXPECT_FALSE(channel.turns());
+  EXPECT_TRUE(loop::turn_until(loop_, [&] { return answers.size() == 1; }));
+  EXPECT_EQ(channel.last_status(), 429);
+  EXPECT_TRUE(channel.turns());
+  EXPECT_FALSE(channel.turns());
+  EXPECT_EQ(channel.last_status(), 0) << "that was of the other place";
+  EXPECT_EQ(channel.address(), "127.0.0.1:" + std::to_string(there.endpoint().port));
+  ask();
+  EXPECT_TRUE(loop::turn_until(loop_, [&] { return answers.size() == 2; }));
+  EXPECT_THAT(answers, testing::ElementsAre(429, 200));
+}
+
+TEST_F(ChannelTest, LeadsNowhereWithoutAToken) {
+  peer_.emplace([](uplink::Wire&) {});
+  Channel channel(loop_, "mapping", peer_->endpoint(), std::nullopt, std::chrono::seconds{20});
+  EXPECT_FALSE(channel.has_token());
+  channel.lead_to(peer_->endpoint(), icd::BearerToken::parse("a-token"), std::chrono::seconds{20});
+  EXPECT_TRUE(channel.turns());
+  EXPECT_TRUE(channel.has_token());
+}
+
+TEST_F(ChannelTest, TakesAnotherWayToTheSamePlaceAndKnowsWhatItKnew) {
+  const auto channel = asked(icd::Uri::Status, uplink::answer("200 OK", "1"));
+  uplink::Endpoint slower = peer_->endpoint();
+  slower.connect_within = std::chrono::seconds{7};
+  channel->lead_to(slower, icd::BearerToken::parse("a-token"), std::chrono::seconds{20});
+  EXPECT_FALSE(channel->turns());
+  EXPECT_EQ(channel->last_status(), 200);
+  channel->lead_to(slower, icd::BearerToken::parse("another-token"), std::chrono::seconds{20});
+  EXPECT_TRUE(channel->turns());
+  EXPECT_EQ(channel->last_status(), 0);
+}
+
 }  // namespace
 }  // namespace adit::forward

@@ -148,5 +148,16 @@ TEST_F(ButtonWatchTest, LetsItsLineGo) {
   EXPECT_FALSE(wire.open);
 }
 
+TEST_F(ButtonWatchTest, GoesOnWithAnotherLine) {
+  watch();
+  button->let_go();
+  EXPECT_FALSE(wire.open);
+  button->take(std::make_unique<WireLine>(wire));
+  set(true);
+  wire.set(false);
+  EXPECT_TRUE(loop::turn_until(loop, [&] { return !presses.empty(); }));
+  EXPECT_EQ(presses, std::vector{Press::Identify});
+}
+
 }  // namespace
 }  // namespace adit::gateway

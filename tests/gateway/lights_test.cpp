@@ -135,5 +135,14 @@ TEST_F(LightsTest, AreTriedAgainAfterThePanelFailed) {
   EXPECT_EQ(seen.shown, (std::vector{Lit{true, false, false, false}}));
 }
 
+TEST_F(LightsTest, ShowTheSameOnOtherLines) {
+  be_well();
+  WatchedLines::Seen other;
+  lights.let_go();
+  lights.set(State::NeedsOperator, true);  // nothing can be shown meanwhile
+  lights.take(std::make_unique<WatchedLines>(other));
+  EXPECT_EQ(other.shown, (std::vector<Lit>{{true, true, true, true}}));
+}
+
 }  // namespace
 }  // namespace adit::gateway

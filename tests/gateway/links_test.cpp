@@ -78,5 +78,14 @@ TEST_F(LinksTest, TellWhenTheCommandPostsCableIsBack) {
   EXPECT_EQ(backs, 1) << "nothing waits for the team's";
 }
 
+TEST_F(LinksTest, AreThoseThatTheSettingsNameByNow) {
+  Links links = make();
+  settings.command_post.interface = "darpa1";
+  carriers["darpa1"] = false;
+  links.look_at(settings);
+  EXPECT_THAT(links.attention(), ElementsAre("the Command Post's cable is out: darpa1 has no carrier"));
+  EXPECT_EQ(backs, 0);
+}
+
 }  // namespace
 }  // namespace adit::gateway

@@ -39,5 +39,16 @@ TEST(Roster, RemembersOnlySoManyAndForgetsTheSilentFirst) {
               ElementsAre("unknown robot 'y' is posting; set-up has ugv1"));
 }
 
+TEST(Roster, ForgetsThatARobotWasUnknownOnceItIsSetUp) {
+  Roster roster(std::vector<settings::Robot>{{"ugv1", ""}});
+  roster.posted("ugv2", kStart);
+  roster.posted("x", kStart);
+  roster.set_up({{"ugv1", ""}, {"ugv2", ""}});
+  EXPECT_FALSE(roster.posted("ugv2", kStart));
+  EXPECT_THAT(roster.attention(kStart), ElementsAre("unknown robot 'x' is posting; set-up has ugv1, ugv2"));
+  roster.set_up({});
+  EXPECT_THAT(roster.attention(kStart), IsEmpty());
+}
+
 }  // namespace
 }  // namespace adit::gateway

@@ -307,5 +307,23 @@ TEST_P(MarkerLaneLaws, TheDisplayEndsAsIfEveryUpdateHadBeenReplayedAndEveryOneIs
 
 INSTANTIATE_TEST_SUITE_P(Courses, MarkerLaneLaws, testing::Range(std::uint64_t{1}, std::uint64_t{61}));
 
+TEST(MarkerLane, KeepsWithinOtherBoundsFromNowOn) {
+  MarkerLane lane({.per_message = 2});
+  lane.add({{add(1), add(2), add(3), add(4), add(5)}}, at(1));
+  lane.keep_within({.per_message = 3});
+  EXPECT_THAT(lane.take()->update.markers, SizeIs(3));
+  lane.keep_within({.per_message = 1, .bytes = 1});
+  EXPECT_THAT(lane.take()->update.markers, SizeIs(1));
+  EXPECT_FALSE(lane.has_room_for({{add(6)}}));
+}
+
+TEST(MarkerLane, StaysAsNarrowAsItHadToBecome) {
+  MarkerLane lane({.per_message = 4});
+  lane.add({{add(1), add(2), add(3), add(4)}}, at(1));
+  lane.put_back_narrower(*lane.take());
+  lane.keep_within({.per_message = 8});
+  EXPECT_THAT(lane.take()->update.markers, SizeIs(2));
+}
+
 }  // namespace
 }  // namespace adit::lanes

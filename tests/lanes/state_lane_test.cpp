@@ -131,5 +131,16 @@ TEST(StateLane, ShowsEachRobotsNewestPoseAndCountsEveryUpdateOnceHoweverSendingG
   ASSERT_EQ(out, number);
 }
 
+TEST(StateLane, ForgetsRobotsThatNobodyNeedBeToldOf) {
+  StateLane lane;
+  lane.add(state(10, {pose("R1", 1), pose("R2", 2)}), at(1));
+  lane.passed(*lane.take());
+  lane.add(state(12, {pose("R2", 3)}), at(2));
+  lane.forget_what_was_taken();
+  EXPECT_TRUE(lane.take());
+  lane.add(state(13, {pose("R3", 4)}), at(3));
+  EXPECT_THAT(lane.take()->update.poses, ElementsAre(pose("R2", 3), pose("R3", 4)));
+}
+
 }  // namespace
 }  // namespace adit::lanes

@@ -153,5 +153,41 @@ TEST(RateLimitServers, AStormThatDoesNotEndIsAskedAsOftenAsItsEndIsToBeFound) {
   EXPECT_GE(asked.refused, 480 / 5);
 }
 
+TEST(RateLimit, GoesByARateThatIsAllowedFromNowOn) {
+  RateLimit rate(1);
+  rate.sent(at(0));
+  rate.taken(at(0));
+  rate.allow(4, at(0.1));
+  EXPECT_EQ(rate.next(), at(0.25));
+  rate.allow(0.5, at(0.1));
+  EXPECT_EQ(rate.next(), at(2));
+}
+
+TEST(RateLimit, KeepsAPauseThatTheServerAskedFor) {
+  RateLimit rate(1);
+  rate.sent(at(0));
+  rate.throttled(at(0), std::chrono::seconds{10});
+  rate.allow(4, at(1));
+  EXPECT_EQ(rate.next(), at(10));
+}
+
+TEST(RateLimit, KeepsAPauseOfAnEarlierLifeForAsLongAsAServerMayAskFor) {
+  RateLimit rate(0.001);
+  rate.carry_on({.next = at(900), .spacing = {}, .under_way = false}, at(0));
+  rate.allow(1, at(5));
+  EXPECT_EQ(rate.next(), at(5) + RateLimit::kLongestPause);
+}
+
+TEST(RateLimit, KeepsWhatItLearnedOfTheServer) {
+  RateLimit rate(10);
+  rate.carry_on({.next = {}, .spacing = std::chrono::seconds{2}, .under_way = false}, at(0));
+  rate.allow(5, at(0));
+  EXPECT_DOUBLE_EQ(rate.hertz(), 0.5);
+  rate.allow(0.1, at(0));
+  EXPECT_DOUBLE_EQ(rate.hertz(), 0.1) << "never more than is allowed";
+  rate.allow(10, at(0));
+  EXPECT_DOUBLE_EQ(rate.hertz(), 10);
+}
+
 }  // namespace
 }  // namespace adit::pace

@@ -11,7 +11,7 @@ const BIN = process.env.ADIT_BIN ?? dirname(process.env.SCENE_SERVER);
 export const TOKENS = { scoring: "scoring-token-1", mapping: "mapping-token-1", team: "team-token-1" };
 export const OPERATOR = "correct horse battery", VIEWER = "look, do not touch";
 
-/** A connection of its own for a request: a box that begins anew closes those that are kept. */
+/** A connection of its own for a request: a box that begins anew, after a reset, closes those that are kept. */
 export const ONCE = { Connection: "close" };
 
 /** What `look()` gives, once it is something. */
@@ -99,7 +99,7 @@ export async function box(t, rates = {}) {
   await ask("POST", "/adit/password", { body: { role: "viewer", current: OPERATOR, password: VIEWER } });
   who.viewer = await logIn(VIEWER);
   let listened = 1;
-  /** When what was saved is applied. */
+  /** After a reset. */
   const begunAnew = () => until(() => (aditd.log.match(/: listening /g) ?? []).length > listened && ++listened, "the box to begin anew");
   return { url, ask, logIn, code, begunAnew };
 }

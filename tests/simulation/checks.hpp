@@ -32,6 +32,7 @@ void grid_arrived(const Evidence& evidence, Broken& broken);
 void cloud_arrived(const Evidence& evidence, Broken& broken);
 void markers_arrived(const Evidence& evidence, Broken& broken);
 void live(const Evidence& evidence, Broken& broken);
+void not_cut(const Evidence& evidence, Broken& broken);
 void honest(const Evidence& evidence, Broken& broken);
 void lights(const Evidence& evidence, Broken& broken);
 void obeyed(const Evidence& evidence, Broken& broken);

@@ -80,6 +80,7 @@ void Client::write(std::size_t most) {
   if (written_ == request_.size()) {
     Event event = about_;
     event.kind = Kind::Whole;
+    if (half_close_) event.text = "and ends its direction";
     world_.note(std::move(event));
     if (half_close_) ::shutdown(fd_, SHUT_WR);
   }

@@ -15,7 +15,7 @@ inline constexpr const char* kSettings = "/adit/settings";
 /// Event::what of Kind::Saved: with review as "all", or as anything else.
 inline constexpr const char *kReviewAll = "review all", *kReviewElse = "settings";
 
-/// Saves settings by the page's API, whereupon the gateway begins anew within its process.
+/// Saves settings by the page's API, which the gateway takes over in place.
 class Operator {
  public:
   /// Logged in from the beginning. Both outlive this.

@@ -140,6 +140,26 @@ class Page:
             answer = connection.getresponse()
             return answer.status, json.loads(answer.read())
 
+    def apply(self, request, body):
+        """Asks for a change of what it runs with, as ask() does, and waits until it is applied, or taken back."""
+        status, said = self.ask(request, body=body)
+        if status != 200:
+            raise AssertionError(f"{request}: {status} {said}")
+        wait_until(self._is_settled, "it to be applied")
+        return said
+
+    def _is_settled(self):
+        try:
+            return not self.ask("GET /adit/settings")[1]["applying"]
+        except OSError:  # a release that begins anew
+            return False
+
+    def save(self, change):
+        """Saves settings that `change` was called with. What the answer says."""
+        held = self.ask("GET /adit/settings")[1]
+        change(held["settings"])
+        return self.apply("POST /adit/settings", {"settings": held["settings"], "base": held["tag"]})
+
     def reports(self):
         """All reports as the page shows them, oldest first."""
         return self.ask("GET /adit/reports")[1]

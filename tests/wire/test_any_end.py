@@ -1,5 +1,6 @@
-"""Whatever ends a life of the service (a kill, a stop, saved settings, another course), the Command Post sees none of it:
-no URI is asked sooner than its rate allows, and stamps go on as their sender spaces them, also of one who runs ahead."""
+"""Whatever ends a life of the service (a kill, a stop) or changes what it runs with (saved settings, another course), the
+Command Post sees none of it: no URI is asked sooner than its rate allows, and stamps go on as their sender spaces them, also
+of one who runs ahead."""
 
 import itertools
 import shutil
@@ -70,20 +71,14 @@ class AnyEnd(unittest.TestCase):
         self.stage.box.stop()
         self.stage.restart_box()
 
-    def applied(self, request, body):
-        begun = self.stage.box.said().count(" listening ")
-        status, said = self.stage.box.ask(request, body=body)
-        self.assertEqual(status, 200, said)
-        wait_until(lambda: self.stage.box.said().count(" listening ") > begun, "it to begin anew")
-
     def saved(self):
-        held = self.stage.box.ask("GET /adit/settings")[1]
-        settings = held["settings"]
-        settings["reports"] = {"near_metres": 3 + settings.get("reports", {}).get("near_metres", 5)}
-        self.applied("POST /adit/settings", {"settings": settings, "base": held["tag"]})
+        def nearer(settings):
+            settings["reports"] = {"near_metres": 3 + settings.get("reports", {}).get("near_metres", 5)}
+
+        self.stage.box.save(nearer)
 
     def switched(self):
-        self.applied("POST /adit/course", {"name": "B"})
+        self.stage.box.apply("POST /adit/course", {"name": "B"})
 
     def test_is_not_seen_upstream(self):
         self.robot.posts(2.5)
@@ -106,7 +101,7 @@ class AnyEnd(unittest.TestCase):
         self.assertLess(max(apart) - min(apart), 0.001, "as far apart as the robot's own")
         for uri in ("/state/update", "/api/status"):
             asked = [request["at"] for request in self.stage.post.requests(uri)]
-            self.assertGreater(len(asked), 5)
+            self.assertGreater(len(asked), 3)
             self.assertGreater(min(later - earlier for earlier, later in itertools.pairwise(asked)), 1 / RATE - JITTER, uri)
         self.assertEqual(self.stage.post.violations(), [])
 

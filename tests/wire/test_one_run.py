@@ -24,25 +24,15 @@ def endpoints(port):
     return {"scoring": {"address": hosts.SCORING, "port": port}, "mapping": {"address": hosts.MAPPING, "port": port}}
 
 
-def applied(stage, request, body):
-    """Once the box has begun anew with it."""
-    begun = stage.box.said().count(" listening ")
-    status, said = stage.box.ask(request, body=body)
-    if status != 200:
-        raise AssertionError(f"{request}: {status} {said}")
-    wait_until(lambda: stage.box.said().count(" listening ") > begun, "it to begin anew")
-    return said
-
-
 def switch(stage, course):
-    return applied(stage, "POST /adit/course", {"name": course})
+    return stage.box.apply("POST /adit/course", {"name": course})
 
 
 def save_scoring_port(stage, port):
-    held = stage.box.ask("GET /adit/settings")[1]
-    settings = held["settings"]
-    settings["command_post"]["scoring"]["port"] = port
-    applied(stage, "POST /adit/settings", {"settings": settings, "base": held["tag"]})
+    def elsewhere(settings):
+        settings["command_post"]["scoring"]["port"] = port
+
+    stage.box.save(elsewhere)
 
 
 def kill(stage):

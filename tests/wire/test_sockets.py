@@ -203,11 +203,10 @@ class Sockets(unittest.TestCase):
             each.start()
         for ports in ((moved, free_port()), (moved,), (free_port(), moved)):
             document = settings(*(("127.0.0.1", each) for each in (port, *ports)))
-            begun = manager.log().count("listening ")
             base = json.loads(ask(port, path="/adit/settings")[1])["tag"]
             status, said = ask(port, "POST", "/adit/settings", {"settings": document, "base": base})
             self.assertEqual(status, 200, said)
-            programs.wait_until(lambda: manager.log().count("listening ") >= begun + 2, "it to begin anew")
+            programs.wait_until(lambda: not json.loads(ask(port, path="/adit/settings")[1])["applying"], "it to be applied")
             time.sleep(0.3)
         for each in clients:
             each.stop()

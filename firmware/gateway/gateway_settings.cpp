@@ -1,0 +1,86 @@
+// Settings and tokens that are saved while the gateway runs: it takes them over in place, and begins anew
+// what they change.
+#include <utility>
+
+#include "gateway/gateway.hpp"
+#include "gateway/open_panel.hpp"
+#include "host/log.hpp"
+#include "settings/written.hpp"
+
+namespace adit::gateway {
+namespace {
+
+bool same(const std::optional<icd::BearerToken>& one, const std::optional<icd::BearerToken>& other) {
+  return one && other ? one->matches(other->reveal()) : one.has_value() == other.has_value();
+}
+
+}  // namespace
+
+/// What the disk holds by now is run with, or taken back. Where that ends halfway (no memory), another
+/// gateway reads it.
+void Gateway::apply_change() {
+  if (flow_.is_ending()) return;
+  try {
+    auto loaded = parts_.store.load();
+    const auto done = loaded ? take_over(std::move(*loaded)) : std::unexpected(std::move(loaded.error()));
+    if (!done) take_back(done.error());
+  } catch (...) {
+    make_way();
+    throw;
+  }
+  page_.changed();
+}
+
+/// An error: all is as it was, but that sockets may be closed.
+std::expected<void, std::string> Gateway::take_over(Store::Loaded next) {
+  settings::Settings in_use = settings::in_use(next.settings);
+  settings::Anew anew = settings::anew_by(settings_, in_use);
+  if (anew.listeners) {
+    if (auto listening = listen(in_use.team); !listening) return listening;
+  }
+  const forward::Tokens before = tokens();
+  settings_ = std::move(in_use);
+  parts_.loaded = std::move(next);
+  parts_.trouble.clear();
+  anew.scoring = anew.scoring || !same(before.scoring, tokens().scoring);
+  anew.mapping = anew.mapping || !same(before.mapping, tokens().mapping);
+  tell_of_settings(anew);
+  parts_.store.settle(parts_.loaded.settings);
+  parts_.sockets.settle();
+  return {};
+}
+
+void Gateway::tell_of_settings(const settings::Anew& anew) {
+  flow_.settings_changed(anew, tokens());
+  routes_.serve_with(icd_options());
+  page_.let_in(tokens().all);
+  self_test_.use({tokens().scoring, tokens().mapping});
+  roster_.set_up(settings_.robots);
+  links_.look_at(settings_);
+  box_.runs_with(settings::file_of(parts_.loaded.settings));
+  if (anew.panel && !parts_.board.panel) reopen_panel();
+  setup_.runs_with(parts_.loaded);
+}
+
+/// A line can be had once: the old ones are let go of first.
+void Gateway::reopen_panel() {
+  lights_.let_go();
+  button_.let_go();
+  auto panel = open_panel(settings_.panel, parts_.runtime_folder);
+  lights_.take(std::move(panel.lines));
+  button_.take(std::move(panel.button));
+}
+
+/// The settings before are in use still. Where they cannot be served either, another gateway may.
+void Gateway::take_back(const std::string& why) {
+  const bool is_back = parts_.store.take_back();
+  parts_.trouble = (is_back ? "the last change was taken back: " : "the last change cannot be used: ") + why;
+  host::log(host::Level::Error,
+            is_back ? "the last change of the settings is taken back" : "the last change cannot be used",
+            {{"why", why}});
+  setup_.runs_with(parts_.loaded);
+  if (auto listening = listen(settings_.team); !listening) return make_way();
+  parts_.sockets.settle();
+}
+
+}  // namespace adit::gateway

@@ -1,0 +1,64 @@
+#pragma once
+
+#include <cstdint>
+#include <expected>
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "gateway/listen_sockets.hpp"
+#include "intake/server.hpp"
+#include "loop/loop.hpp"
+#include "settings/settings.hpp"
+
+namespace adit::gateway {
+
+/// The servers at the team's sockets. Where the settings change, those whose socket stays go on, and whoever
+/// is connected to another is served for as long as he can be waiting for an answer.
+class Listeners {
+ public:
+  /// All outlive this.
+  Listeners(loop::Loop& loop, ListenSockets& sockets, intake::Handler& handler)
+      : loop_(loop), sockets_(sockets), handler_(handler) {}
+
+  /// From now on at these. An error says what cannot be listened at: then sockets that were in the way may be
+  /// closed, and it has to be told again what was served before.
+  std::expected<void, std::string> serve(const settings::Team& team);
+  /// Who is connected to a socket that is served no more is served for so long.
+  void let_go_within(loop::Duration longest) { longest_ = longest; }
+  /// Lets go of servers that nobody needs any more; called now and then.
+  void tick();
+  /// Takes no new connections.
+  void stop();
+
+  bool serves() const { return !serving_.empty(); }
+  std::size_t connections() const;
+
+ private:
+  struct Bounds {
+    std::uint32_t connections = 0, per_address = 0;
+    friend bool operator==(const Bounds&, const Bounds&) = default;
+  };
+  struct Serving {
+    std::uint64_t socket = 0;  // ListenSockets::Open::number
+    Bounds bounds;
+    std::unique_ptr<intake::Server> server;
+  };
+  /// Takes no new connections.
+  struct Leaving {
+    std::unique_ptr<intake::Server> server;
+    std::optional<loop::Instant> until;  // nothing: its socket is served by another, with other bounds
+  };
+  std::expected<Serving, std::string> start(ListenSockets::Open open, const Bounds& bounds);
+  bool has(std::uint64_t socket) const;
+
+  loop::Loop& loop_;
+  ListenSockets& sockets_;
+  intake::Handler& handler_;
+  loop::Duration longest_{};
+  std::vector<Serving> serving_;
+  std::vector<Leaving> leaving_;
+};
+
+}  // namespace adit::gateway

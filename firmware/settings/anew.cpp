@@ -1,0 +1,45 @@
+#include "settings/anew.hpp"
+
+#include <string_view>
+
+#include "settings/written.hpp"
+
+namespace adit::settings {
+namespace {
+
+struct Row {
+  std::string_view begins;  // the path of a setting
+  Anew anew;
+};
+
+constexpr Row kRows[] = {
+    {"team.listen", {.listeners = true}},
+    {"team.interface", {.listeners = true}},
+    {"team.connections", {.listeners = true}},  // and team.connections_per_address
+    {"command_post.scoring.", {.scoring = true}},
+    {"command_post.mapping.", {.mapping = true}},
+    {"command_post.interface", {.scoring = true, .mapping = true}},
+    {"command_post.budget_mbit", {.mapping = true}},
+    {"command_post.timeouts.connect_ms", {.scoring = true, .mapping = true}},
+    {"command_post.timeouts.scoring_answer_ms", {.scoring = true}},
+    {"command_post.timeouts.mapping_answer_ms", {.mapping = true}},
+    {"panel.", {.panel = true}},
+};
+
+}  // namespace
+
+Anew anew_by(const Settings& running, const Settings& next) {
+  Anew all;
+  for (const Change& change : changes(running, next)) {
+    for (const auto& [begins, anew] : kRows) {
+      if (!change.path.starts_with(begins)) continue;
+      all.listeners = all.listeners || anew.listeners;
+      all.scoring = all.scoring || anew.scoring;
+      all.mapping = all.mapping || anew.mapping;
+      all.panel = all.panel || anew.panel;
+    }
+  }
+  return all;
+}
+
+}  // namespace adit::settings

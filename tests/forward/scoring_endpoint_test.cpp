@@ -1,0 +1,157 @@
+// The scoring endpoint is changed while reports are under way and wait: each is answered by the Command Post
+// that it was sent to, and no client is sent away.
+#include <gmock/gmock.h>
+
+#include <atomic>
+#include <semaphore>
+
+#include "../uplink/peer.hpp"
+#include "forward/scoring.hpp"
+#include "host/folder.hpp"
+#include "loop/turn_until.hpp"
+
+namespace adit::forward {
+namespace {
+
+using testing::ElementsAre;
+
+/// What a client was answered.
+class Client final : public intake::Responder {
+ public:
+  explicit Client(std::vector<int>& told) : told_(told) {}
+  void answer(intake::Answer answer) override { told_.push_back(static_cast<int>(answer.status)); }
+  std::shared_ptr<intake::Stream> stream(std::string_view) override { return nullptr; }
+  bool client_gone() const override { return false; }
+
+ private:
+  std::vector<int>& told_;
+};
+
+/// A Command Post that records every report; its answer to one comes when the test says so.
+class Post {
+ public:
+  ~Post() { let.release(1000); }
+  settings::Address address() const { return {peer_.endpoint().address, peer_.endpoint().port}; }
+
+  std::atomic<int> recorded = 0;
+  std::counting_semaphore<> let{0};
+
+ private:
+  void serve(uplink::Wire& wire) {
+    for (auto request = wire.read_request(); !request.empty(); request = wire.read_request()) {
+      const bool is_report = request.starts_with("POST");
+      const int all = is_report ? ++recorded : recorded.load();
+      if (is_report) let.acquire();
+      const std::string run = R"(,"run_clock":10.0,"remaining_reports":)" + std::to_string(100 - all);
+      if (!wire.write(
+              is_report
+                  ? uplink::answer("201 CREATED",
+                                   R"({"url":"","id":1,"x":1.0,"y":2.0,"z":3.0,"type":"Backpack",)"
+                                   R"("submitted_datetime":"","team":"a","run":"","report_status":"scored",)"
+                                   R"("score_change":1)" +
+                                       run + "}")
+                  : uplink::answer("200 OK", R"({"score":)" + std::to_string(all) + R"(,"current_team":"a")" +
+                                                 run + "}")))
+        return;
+    }
+  }
+  uplink::ListeningPeer peer_{
+      std::vector<uplink::Peer::Script>(1, [this](uplink::Wire& wire) { serve(wire); })};
+};
+
+class ScoringEndpoint : public testing::Test {
+ protected:
+  ScoringEndpoint() {
+    settings_.command_post.rates.reports_hz = settings_.command_post.rates.status_hz = 1000;
+    settings_.command_post.scoring = here_.address();
+    journal_.begin({.boot = "b", .at = loop_.now(), .stamp = loop_.stamp_now()});
+    scoring_.emplace(loop_, ledger_, settings_, token_, record_, random_, journal_, [this] { anew_ = true; });
+    EXPECT_TRUE(scoring_->start());
+    EXPECT_TRUE(comes([this] { return scoring_->run().has_value(); }));
+  }
+  void TearDown() override { EXPECT_FALSE(anew_); }
+
+  bool comes(const std::function<bool()>& done) {
+    return loop::turn_until(loop_, [&] {
+      scoring_->tick();
+      return done();
+    });
+  }
+  void post(double x, std::vector<int>& told) {
+    scoring_->take(icd::ArtifactReport{.type = "Backpack", .position = {x, 2, 3}},
+                   intake::Sender{.address = "10.0.0.5"}, std::make_shared<Client>(told));
+  }
+  void move() {
+    settings_.command_post.scoring = there_.address();
+    scoring_->endpoint_changed(token_);
+    scoring_->settings_changed();
+  }
+  const dispatch::Report& report(std::int64_t number) const { return scoring_->reports().book().at(number); }
+
+  const std::optional<icd::BearerToken> token_ = icd::BearerToken::parse("a-token");
+  host::Folder folder_, journal_folder_;
+  loop::Loop loop_;
+  settings::Settings settings_;
+  std::mt19937_64 random_{1};
+  Record record_{[] {}};
+  journal::Journal journal_{loop_, journal_folder_.path()};
+  ledger::Ledger ledger_ = std::move(*ledger::Ledger::open(folder_.path()));
+  Post here_, there_;
+  bool anew_ = false;
+  std::vector<int> first_, second_;
+  std::optional<Scoring> scoring_;
+};
+
+TEST_F(ScoringEndpoint, IsLeftOnlyOnceTheAnswerUnderWayIsThere) {
+  post(1, first_);
+  ASSERT_TRUE(comes([this] { return here_.recorded == 1; }));
+  move();
+  const auto run = report(1).run;
+  loop::turn_for(loop_, std::chrono::milliseconds{50});
+  EXPECT_THAT(first_, testing::IsEmpty());
+  here_.let.release();
+  ASSERT_TRUE(comes([this] { return !first_.empty(); }));
+  EXPECT_THAT(first_, ElementsAre(201));
+  EXPECT_EQ(report(1).state, dispatch::ReportState::Answered);
+  EXPECT_EQ(report(1).run, run);
+  ASSERT_TRUE(comes([&] { return scoring_->reports().run().number != run && scoring_->run().has_value(); }));
+  post(100, second_);
+  there_.let.release();
+  ASSERT_TRUE(comes([this] { return !second_.empty(); }));
+  EXPECT_THAT(second_, ElementsAre(201));
+  EXPECT_EQ(here_.recorded, 1);
+  EXPECT_EQ(there_.recorded, 1);
+}
+
+TEST_F(ScoringEndpoint, WhatWaitsForItIsKeptForItAndItsClientIsNotSentAway) {
+  post(1, first_);
+  ASSERT_TRUE(comes([this] { return here_.recorded == 1; }));
+  post(100, second_);
+  move();
+  here_.let.release();
+  ASSERT_TRUE(comes([this] { return !first_.empty() && scoring_->run().has_value(); }));
+  loop::turn_for(loop_, std::chrono::milliseconds{100});
+  EXPECT_THAT(second_, testing::IsEmpty());
+  EXPECT_EQ(there_.recorded, 0) << "it is meant for the run that was on when it was posted";
+  settings_.command_post.scoring = here_.address();
+  scoring_->endpoint_changed(token_);
+  here_.let.release();
+  ASSERT_TRUE(comes([this] { return !second_.empty(); }));
+  EXPECT_THAT(second_, ElementsAre(201));
+}
+
+TEST_F(ScoringEndpoint, IsTheSameWithAnotherToken) {
+  const auto run = scoring_->reports().run().number;
+  scoring_->endpoint_changed(std::nullopt);
+  EXPECT_FALSE(scoring_->channel().has_token());
+  post(1, first_);
+  EXPECT_THAT(first_, testing::IsEmpty()) << "it waits";
+  scoring_->endpoint_changed(token_);
+  here_.let.release();
+  ASSERT_TRUE(comes([this] { return !first_.empty(); }));
+  EXPECT_THAT(first_, ElementsAre(201));
+  EXPECT_EQ(report(1).run, run);
+}
+
+}  // namespace
+}  // namespace adit::forward

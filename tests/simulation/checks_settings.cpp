@@ -1,0 +1,46 @@
+// NotCut: what saved settings do to those who are connected.
+#include <cstdint>
+#include <map>
+#include <string>
+
+#include "icd/sentence.hpp"
+#include "simulation/checks.hpp"
+
+namespace adit::simulation {
+namespace {
+
+/// The gateway was told to end, or begins anew for another reason than settings.
+bool ends_the_gateway(const Event& event) {
+  const bool is_anew = event.kind == Kind::Said &&
+                       (event.text.contains("beginning anew") || event.text.contains("listening anew"));
+  return event.kind == Kind::Stops || event.kind == Kind::Dies || is_anew;
+}
+
+/// The box cut the connection, or said that it stops; not the client.
+bool is_sent_away(const Event& event) {
+  if (event.kind == Kind::Gone) return event.text == "cut" || event.text == "reset";
+  return event.kind == Kind::Answered && event.status == 503 && event.text.contains("is stopping");
+}
+
+}  // namespace
+
+void not_cut(const Evidence& evidence, Broken& broken) {
+  std::map<std::uint64_t, bool> asking;  // the requests under way, and whether settings were saved since
+  double saved = 0;
+  for (const Event& event : evidence.events) {
+    if (ends_the_gateway(event)) asking.clear();
+    if (event.kind == Kind::Invoke) asking[event.request] = false;
+    if (event.kind == Kind::Whole && !event.text.empty()) asking.erase(event.request);  // ends its direction
+    if (event.kind == Kind::Saved) {
+      saved = event.at;
+      for (auto& [request, met] : asking) met = true;
+    }
+    if (event.kind != Kind::Gone && event.kind != Kind::Answered) continue;
+    const auto asked = asking.extract(event.request);
+    if (!asked || !asked.mapped() || !is_sent_away(event)) continue;
+    broken.push_back(icd::sentence("NotCut: ", event.what, " ", event.serial, " of ", event.who,
+                                   " was sent away at ", event.at, ", after settings were saved at ", saved));
+  }
+}
+
+}  // namespace adit::simulation

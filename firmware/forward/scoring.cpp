@@ -6,6 +6,7 @@
 
 #include "codec/read.hpp"
 #include "codec/write.hpp"
+#include "dispatch/said.hpp"
 #include "dispatch/turn.hpp"
 #include "forward/upstream_answer.hpp"
 #include "forward/whole.hpp"
@@ -21,6 +22,13 @@ dispatch::ReportRules rules_of(const settings::Reports& reports) {
           .review = reports.review,
           .near_metres = reports.near_metres,
           .patience = {.doubt_for = reports.doubt_for, .asks = reports.doubt_asks}};
+}
+
+/// For who asked, where the Command Post has answered, and not with a status.
+intake::Answer no_status_in(const uplink::Answered& answered) {
+  if (answered.status >= 400) return client_answer(answered);
+  return intake::error_answer(icd::Status::BadGateway, dispatch::answered_with(answered.status) +
+                                                           " with something other than a status");
 }
 
 }  // namespace
@@ -283,6 +291,9 @@ void Scoring::status_answered(const uplink::Outcome& outcome) {
 void Scoring::judge_status(const uplink::Outcome& outcome, loop::Instant asked) {
   const loop::Instant now = loop_.now();
   const auto* answered = std::get_if<uplink::Answered>(&outcome);
+  const auto run = answered != nullptr && answered->status == 200 ? codec::read_run_status(answered->body)
+                                                                  : std::unexpected<std::string>("");
+  if (run) known_status_.heard(answered->body, asked);  // and so told with its age
   if (answered == nullptr) {
     status_pace_.failed(outcome, now);
     answer_askers(known_or(intake::error_answer(icd::Status::BadGateway, sentence_of(outcome))));
@@ -291,15 +302,12 @@ void Scoring::judge_status(const uplink::Outcome& outcome, loop::Instant asked) 
     answer_askers(known_or(client_answer(*answered)));
   } else {
     status_pace_.taken(now);
-    const bool failed = answered->status >= 500 || channel_.is_foreign();
-    answer_askers(failed ? known_or(client_answer(*answered)) : client_answer(*answered));
+    const bool refused = answered->status >= 400 && answered->status < 500 && !channel_.is_foreign();
+    answer_askers(refused ? client_answer(*answered) : known_or(no_status_in(*answered)));
   }
-  const auto run = answered != nullptr && answered->status == 200 ? codec::read_run_status(answered->body)
-                                                                  : std::unexpected<std::string>("");
   if (run) {
     run_ = *run;
     run_heard_ = loop_.stamp_now();
-    known_status_.heard(answered->body, asked);
     whole(anew_, [&] { reports_->status_heard(*run, asked, time()); });
   } else {
     const bool left = !std::holds_alternative<uplink::NeverSent>(outcome);

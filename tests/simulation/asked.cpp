@@ -2,20 +2,15 @@
 
 #include <map>
 
+#include "simulation/bad_messages.hpp"
+
 namespace adit::simulation {
-namespace {
-
-/// Seconds in which what nobody waits for any more may still be accepted: it may stand at the door until the
-/// next life begins, and be read by it.
-constexpr double kForgotten = 12;
-
-}  // namespace
-
 std::vector<Asked> asked_in(const std::vector<Event>& events, const std::string& path) {
   std::vector<Asked> all;
   std::map<std::uint64_t, std::size_t> by_request;
   for (const Event& event : events) {
     if (event.actor != Actor::Team || event.what != path) continue;
+    if (event.serial >= kBadSerials) continue;
     const auto [found, is_new] = by_request.try_emplace(event.request, all.size());
     if (is_new) all.push_back({.path = path, .items = {}, .began = event.at, .ended = event.at});
     Asked& asked = all[found->second];

@@ -2,6 +2,7 @@
 
 #include <zlib.h>
 
+#include <algorithm>
 #include <cstdint>
 #include <cstdlib>
 
@@ -9,6 +10,14 @@ namespace adit::simulation {
 namespace {
 
 constexpr std::size_t kMostInflated = 256 << 10;  // bytes
+
+/// As its last four bytes say (RFC 1952 2.3.1).
+std::size_t size_inflated(const std::string& member) {
+  std::size_t size = 0;
+  for (std::size_t i = 1; i <= 4; ++i)
+    size = size << 8 | static_cast<unsigned char>(member[member.size() - i]);
+  return std::min(size, kMostInflated);
+}
 
 }  // namespace
 
@@ -27,9 +36,10 @@ std::string deflated(const std::string& bytes) {
 }
 
 std::string inflated(const std::string& bytes) {
+  if (bytes.size() < 18) return "";
   z_stream stream{};
-  if (inflateInit2(&stream, 15 + 32) != Z_OK) std::abort();
-  std::string out(kMostInflated, '\0');
+  if (inflateInit2(&stream, 15 + 16) != Z_OK) std::abort();
+  std::string out(size_inflated(bytes), '\0');
   stream.next_in = reinterpret_cast<Bytef*>(const_cast<char*>(bytes.data()));
   stream.avail_in = static_cast<uInt>(bytes.size());
   stream.next_out = reinterpret_cast<Bytef*>(out.data());

@@ -27,7 +27,7 @@ std::vector<Event> with_losses(const std::vector<Event>& events) {
 Broken all_checks(const Evidence& evidence) {
   Broken broken;
   for (const auto check : {starts, settings_kept, once, not_lost, paced, stamps, kept, answered, not_cut,
-                           live, honest, lights, alive, obeyed})
+                           refused, clean, status_true, live, honest, lights, alive, obeyed})
     check(evidence, broken);
   const std::vector<Event> told = with_losses(evidence.events);
   for (const auto check : {pose_arrived, grid_arrived, cloud_arrived, markers_arrived})

@@ -148,6 +148,12 @@ void grid_arrived(const Evidence& evidence, Broken& broken) {
 }
 
 void cloud_arrived(const Evidence& evidence, Broken& broken) {
+  for (const Event& event : evidence.events) {
+    const bool taken = event.kind == Kind::Taken && event.what == kMap && is_cloud(event.says);
+    if (taken && event.says.front() == kStrange)
+      broken.push_back(
+          icd::sentence("CloudArrived: points that nobody posted were taken from '", event.who, "'"));
+  }
   const auto all = asked_in(evidence.events, kMap);
   for (const auto& [name, clouds] : posted_in(evidence, all, false))
     check_clouds(evidence, name, clouds, broken);

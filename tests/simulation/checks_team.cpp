@@ -10,6 +10,8 @@ namespace {
 
 /// Seconds within which a whole request is answered, or its connection closed.
 constexpr double kReportWithin = 21, kOtherWithin = 8;
+/// And one that is not whole, from its last byte on.
+constexpr double kBodyWithin = 17, kHeadWithin = 62;
 
 }  // namespace
 
@@ -38,20 +40,25 @@ void answered(const Evidence& evidence, Broken& broken) {
   bool is_on = false;
   double slow = 0;  // seconds that it stood still for its disk
   std::map<std::uint64_t, double> slow_before;
+  std::map<std::uint64_t, int> stalled;
   for (const Event& event : evidence.events) {
     if (event.kind == Kind::Begins) begun[event.life] = event.at;
     if (event.kind == Kind::Begins || event.kind == Kind::Ended) is_on = event.kind == Kind::Begins;
     if (event.kind == Kind::Slow) slow += event.stamp;
-    if (event.kind == Kind::Whole) {
+    if (event.kind == Kind::Whole || event.kind == Kind::Stalls) {
       whole[event.request] = {event.at, event.life};
       slow_before[event.request] = slow;
+      if (event.kind == Kind::Stalls) stalled[event.request] = event.status;
     }
     if (event.kind != Kind::Answered && event.kind != Kind::Gone) continue;
     const auto asked = whole.find(event.request);
     if (asked == whole.end() || !is_on) continue;
     const double since = std::max(asked->second.first, begun[event.life]);  // it may have waited at the door
-    const double within =
-        (event.what == kReports ? kReportWithin : kOtherWithin) + slow - slow_before[event.request];
+    const double rule = stalled[event.request] == kInBody   ? kBodyWithin
+                        : stalled[event.request] == kInHead ? kHeadWithin
+                        : event.what == kReports            ? kReportWithin
+                                                            : kOtherWithin;
+    const double within = rule + slow - slow_before[event.request];
     if (event.at - since > within) {
       broken.push_back(icd::sentence("Answered: ", event.what, " ", event.serial, " of ", event.who,
                                      " waited ", event.at - since, " s until ", event.at));

@@ -44,6 +44,7 @@ void Client::ask_several(std::string request, std::vector<Event> about, std::fun
   written_ = 0;
   hang_up_at_ = random_.chance(manners_.hangs_up) ? 1 + random_.below(request_.size()) : 0;
   half_close_ = random_.chance(manners_.half_closes);
+  stalls_at_ = random_.chance(manners_.stalls) ? 1 + random_.below(request_.size() - 1) : 0;
   const std::uint64_t number = ++number_;
   if (fd_ < 0) connect();
   for (Event& event : about) {
@@ -61,6 +62,7 @@ void Client::ask_several(std::string request, std::vector<Event> about, std::fun
 
 void Client::go_on() {
   if (!done_ || fd_ < 0 || written_ == request_.size()) return;
+  if (stalls_at_ != 0 && written_ >= stalls_at_) return stall();
   const std::size_t left = request_.size() - written_;
   const bool dribbles = random_.chance(manners_.dribbles);
   write(dribbles ? 1 + random_.below(left) : left);
@@ -71,7 +73,15 @@ void Client::go_on() {
   });
 }
 
+void Client::stall() {
+  Event event = about_;
+  event.kind = Kind::Stalls;
+  event.status = request_.find("\r\n\r\n") + 4 < written_ ? kInBody : kInHead;
+  world_.note(std::move(event));
+}
+
 void Client::write(std::size_t most) {
+  if (stalls_at_ != 0) most = std::min(most, stalls_at_ - written_);
   if (hang_up_at_ != 0) most = std::min(most, hang_up_at_ - written_);
   const ssize_t taken = ::send(fd_, request_.data() + written_, most, MSG_NOSIGNAL | MSG_DONTWAIT);
   if (taken < 0 && errno == EAGAIN) return;

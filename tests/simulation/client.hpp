@@ -21,6 +21,7 @@ struct Manners {
   double hangs_up = 0;     // how likely at any byte, for each request
   double dribbles = 0.1;   // how likely it sends a request in pieces
   double half_closes = 0;  // how likely it ends its direction once the request is sent
+  double stalls = 0;       // how likely it stops within a request, and stays
 };
 
 /// An HTTP client of the team: one request at a time.
@@ -46,6 +47,7 @@ class Client {
   void connect();
   void close();
   void go_on();
+  void stall();
   void write(std::size_t most);
   void ready(std::uint32_t events);
   void read();
@@ -63,6 +65,7 @@ class Client {
   std::string request_;
   std::size_t written_ = 0;
   std::size_t hang_up_at_ = 0;  // bytes; 0: not
+  std::size_t stalls_at_ = 0;   // as hang_up_at_
   bool half_close_ = false;
   Event about_;  // the first of what the request says
   std::function<void(int)> done_;

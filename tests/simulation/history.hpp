@@ -10,22 +10,24 @@ enum class Actor : std::uint8_t { Team, Adit, Post, Disk };
 
 /// What may happen. Each that has a serial says of which message.
 enum class Kind : std::uint8_t {
-  Invoke,    // a client begins to ask; one for each thing that its request says
-  Whole,     // the last byte of its request is on its way
-  Answered,  // the client has heard a whole answer, of that status
-  Gone,      // the client has not, and the connection is over: it hung up, or was cut
-  Leaves,    // the first byte of a request upstream is given to the network
-  Left,      // the last one: the message it carries
-  Replied,   // Adit has read the last byte of an answer of that status
-  Taken,     // the Command Post has recorded a report, or taken a message
-  Begins,    // a life of aditd
-  Stops,     // it was told to, by SIGTERM
-  Dies,      // by SIGKILL, or as the power is cut
-  PowerCut,  // which follows
-  Fails,     // a life did not begin
-  Ended,     // the process is over
-  Saved,     // settings were saved
-  Another,   // it has recorded somebody else's report
+  Invoke,     // a client begins to ask; one for each thing that its request says
+  Whole,      // the last byte of its request is on its way
+  Stalls,     // it sends no more of it, and waits
+  Answered,   // the client has heard a whole answer, of that status
+  Gone,       // the client has not, and the connection is over: it hung up, or was cut
+  Leaves,     // the first byte of a request upstream is given to the network
+  Left,       // the last one: the message it carries
+  Forbidden,  // it was one that the ICD forbids; the text says why
+  Replied,    // Adit has read the last byte of an answer of that status
+  Taken,      // the Command Post has recorded a report, or taken a message
+  Begins,     // a life of aditd
+  Stops,      // it was told to, by SIGTERM
+  Dies,       // by SIGKILL, or as the power is cut
+  PowerCut,   // which follows
+  Fails,      // a life did not begin
+  Ended,      // the process is over
+  Saved,      // settings were saved
+  Another,    // it has recorded somebody else's report
   NewRun,
   Fault,
   Written,  // settings are put in place; `who` stands for what they say
@@ -49,12 +51,15 @@ struct Event {
   std::string what;         // a path, as in "/state/update", or a client's
   std::string who;          // a robot
   std::int64_t serial = 0;  // 0: none
-  int status = 0;
+  int status = 0;           // of Invoke: that the ICD has for a bad message
   double stamp = 0;  // of a message upstream; of an answer: its Retry-After; of a recorded report: its points
   std::string text = {};      // for the story; of an answer to a status its body, of "STATUS" the line
   std::uint64_t request = 0;  // of a client: which
   Says says = {};
 };
+
+/// Of Stalls, as its status.
+inline constexpr int kInHead = 1, kInBody = 2;
 
 /// What of a run is told on standard output, as it happens.
 enum class Telling : std::uint8_t {

@@ -132,8 +132,10 @@ std::vector<Item> cloud_items(const Json& msg) {
     const auto number = static_cast<std::int64_t>(value("intensity"));
     const std::int64_t serial = number / kPointsApart, index = number % kPointsApart;
     const auto place = place_of(serial, index);
-    strange = strange || std::abs(value("x") - place[0]) > kPacking ||
-              std::abs(value("y") - place[1]) > kPacking || std::abs(value("z") - place[2]) > kPacking;
+    const auto is_at = [&](const char* name, float where) {
+      return std::abs(value(name) - where) <= kPacking;
+    };
+    strange = strange || !is_at("x", place[0]) || !is_at("y", place[1]) || !is_at("z", place[2]);
     auto& [item, points] = copies[serial];
     if (points.empty() || points.contains(index)) {
       points.clear();

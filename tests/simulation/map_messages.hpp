@@ -13,7 +13,9 @@ Json header_of(double stamp);  // 0: without one
 double stamp_of(const Json& message);
 Json pose_at(double x, double y);
 
-/// The body of a map.
+/// The body of any message.
+Json message_of(const Posting& posting, const Style& style);
+/// Of a map.
 Json map_of(const Item& item, const Style& style);
 /// What it says: a grid, or each of the clouds that were merged into it.
 std::vector<Item> map_items(const Json& message);

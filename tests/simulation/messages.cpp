@@ -25,6 +25,15 @@ Json marker_of(const Item& item) {
           {"color", {{"r", 1.0}, {"g", 0.0}, {"b", 0.0}, {"a", 1.0}}}};
 }
 
+Item marker_item(const Json& marker) {
+  return {.who = marker.value("ns", ""),
+          .serial = whole(marker.at("scale").at("x")),
+          .stamp = stamp_of(marker),
+          .says = {marker.at("action"), marker.value("id", 0)}};
+}
+
+}  // namespace
+
 Json message_of(const Posting& posting, const Style& style) {
   const Item& item = posting.items.front();
   const auto serial = static_cast<double>(item.serial);
@@ -47,15 +56,6 @@ Json message_of(const Posting& posting, const Style& style) {
   for (const Item& each : posting.items) markers.push_back(marker_of(each));
   return {{"markers", std::move(markers)}};
 }
-
-Item marker_item(const Json& marker) {
-  return {.who = marker.value("ns", ""),
-          .serial = whole(marker.at("scale").at("x")),
-          .stamp = stamp_of(marker),
-          .says = {marker.at("action"), marker.value("id", 0)}};
-}
-
-}  // namespace
 
 std::vector<Item> items_of(const HttpMessage& request) {
   std::vector<Item> items;

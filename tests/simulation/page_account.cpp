@@ -2,6 +2,7 @@
 
 #include <algorithm>
 
+#include "simulation/asked.hpp"
 #include "simulation/messages.hpp"
 #include "simulation/upstream_view.hpp"
 
@@ -22,6 +23,7 @@ PageAccount::PageAccount(const std::vector<Event>& events) {
     const bool begins = event.kind == Kind::Begins ||
                         (event.kind == Kind::Said && event.text.starts_with("notice: listening"));
     if (begins) begun_.push_back(i);
+    end_forgotten(i, event);
     read_team(i, event);
     read_upstream(i, event);
   }
@@ -39,7 +41,19 @@ void PageAccount::read_team(std::size_t place, const Event& event) {
     open.emplace_back(stream, all.size());
     all.push_back({.asked = place});
   }
-  if (event.kind != Kind::Answered && event.kind != Kind::Gone) return;
+  if (event.kind == Kind::Gone) gone_.emplace_back(event.at, event.request);
+  if (event.kind == Kind::Answered) end(place, event);
+}
+
+/// What nobody waits for any more may still be accepted for a while.
+void PageAccount::end_forgotten(std::size_t place, const Event& event) {
+  while (!gone_.empty() && gone_.front().first + kForgotten < event.at) {
+    end(place, {.what = "", .who = "", .request = gone_.front().second});
+    gone_.pop_front();
+  }
+}
+
+void PageAccount::end(std::size_t place, const Event& event) {
   for (const auto& [whose, which] : open_[event.request]) {
     Posted& posted = posted_[whose][which];
     posted.ended = std::min(posted.ended, place);

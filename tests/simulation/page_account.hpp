@@ -3,6 +3,7 @@
 #include <compare>
 #include <cstddef>
 #include <cstdint>
+#include <deque>
 #include <limits>
 #include <map>
 #include <string>
@@ -54,10 +55,13 @@ class PageAccount {
   using Places = std::vector<std::size_t>;  // of events, in order
   static Range between(const Places& places, Moment from, Moment to);
   void read_team(std::size_t place, const Event& event);
+  void end_forgotten(std::size_t place, const Event& event);
+  void end(std::size_t place, const Event& event);
   void read_upstream(std::size_t place, const Event& event);
 
   std::map<Stream, std::vector<Posted>> posted_;
   std::map<std::uint64_t, std::vector<std::pair<Stream, std::size_t>>> open_;  // requests: where in posted_
+  std::deque<std::pair<double, std::uint64_t>> gone_;                          // when, and which request
   std::map<std::string, std::vector<Stream>> under_way_;                       // by path: whose messages
   std::map<Stream, Places> forwarded_;
   std::map<std::string, Places> throttled_, foreign_;

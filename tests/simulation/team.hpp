@@ -6,6 +6,8 @@
 #include <vector>
 
 #include "simulation/client.hpp"
+#include "simulation/flood.hpp"
+#include "simulation/others.hpp"
 #include "simulation/random.hpp"
 #include "simulation/robot.hpp"
 
@@ -13,7 +15,7 @@ namespace adit::simulation {
 
 class World;
 
-/// Somebody who reports artifacts, each until he hears that it is recorded.
+/// Somebody who reports artifacts, each until he hears that it is recorded; some press the button twice.
 class Reporter {
  public:
   Reporter(World& world, int number);
@@ -21,11 +23,13 @@ class Reporter {
 
  private:
   void report();
+  void report_too();
   void answered(int status);
 
   World& world_;
   Random random_;
-  Client client_;
+  Client client_, twin_;
+  const double twins_;  // how likely it is posted a second time before the first is answered
   const int number_;
   const double every_;
   double end_ = 0;
@@ -41,6 +45,10 @@ class Team {
  private:
   std::vector<std::unique_ptr<Robot>> robots_;
   std::vector<std::unique_ptr<Reporter>> reporters_;
+  std::vector<std::unique_ptr<Blunderer>> blunderers_;
+  std::vector<std::unique_ptr<Watcher>> watchers_;
+  std::vector<std::unique_ptr<Staller>> stallers_;
+  std::vector<std::unique_ptr<Flood>> floods_;
 };
 
 }  // namespace adit::simulation

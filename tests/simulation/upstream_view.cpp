@@ -3,6 +3,7 @@
 #include <cstdlib>
 #include <nlohmann/json.hpp>
 
+#include "simulation/icd_reading.hpp"
 #include "simulation/messages.hpp"
 #include "simulation/world.hpp"
 
@@ -27,6 +28,10 @@ void UpstreamView::left(std::string_view bytes) {
   }
   requests_.feed(bytes);
   while (const auto request = requests_.next()) {
+    if (const std::string fault = fault_of(*request); !fault.empty()) {
+      world.note({.kind = Kind::Forbidden, .what = path_, .who = "", .text = fault});
+      continue;
+    }
     for (const Item& item : items_of(*request)) {
       world.note({.kind = Kind::Left,
                   .what = path_,

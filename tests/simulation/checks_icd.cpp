@@ -1,0 +1,89 @@
+// Refused, Clean and StatusTrue: of what the ICD says that either side may see.
+#include <cmath>
+#include <map>
+#include <set>
+
+#include "icd/sentence.hpp"
+#include "simulation/bad_messages.hpp"
+#include "simulation/checks.hpp"
+#include "simulation/messages.hpp"
+
+namespace adit::simulation {
+namespace {
+
+constexpr double kOldest = 15;     // seconds since a status was asked for that is still told
+constexpr double kOnItsWay = 1;    // second, in which an answer reaches its client
+constexpr double kConnecting = 3;  // seconds that a question may wait before its first byte leaves
+constexpr int kTimeout = 408, kTooMany = 429, kStops = 503;
+
+/// What the Command Post said of the run, as it was understood.
+struct Known {
+  double asked;
+  double slow;  // seconds that the box had stood still by then, for its disk
+  const Says* says;
+};
+
+/// `slow`: as Known's, by the time of the answer.
+bool may_be(const Known& known, const Event& answer, double slow) {
+  const double oldest = answer.at - known.asked;
+  const double youngest = oldest - kOnItsWay - (slow - known.slow);
+  return *known.says == answer.says && youngest <= kOldest && answer.stamp <= oldest + kConnecting + slow &&
+         answer.stamp >= std::floor(youngest);
+}
+
+}  // namespace
+
+void refused(const Evidence& evidence, Broken& broken) {
+  std::map<std::uint64_t, const Event*> bad;
+  for (const Event& event : evidence.events) {
+    if (event.kind == Kind::Invoke && event.status != 0) bad[event.request] = &event;
+    const bool went = event.kind == Kind::Left || event.kind == Kind::Taken;
+    if (went && event.serial >= kBadSerials && event.actor != Actor::Team)
+      broken.push_back(icd::sentence("Refused: a bad message went to ", event.what, ", ", event.serial));
+    if (event.kind != Kind::Answered || !bad.contains(event.request)) continue;
+    const Event& asked = *bad[event.request];
+    const bool elsewhere = event.status == kTimeout || event.status == kTooMany || event.status == kStops;
+    if (event.status == asked.status || elsewhere) continue;
+    broken.push_back(icd::sentence("Refused: ", asked.text, " (", asked.what, ", ", asked.serial,
+                                   ") was answered ", event.status, ", not ", asked.status));
+  }
+}
+
+void clean(const Evidence& evidence, Broken& broken) {
+  for (const Event& event : evidence.events) {
+    if (event.kind == Kind::Forbidden)
+      broken.push_back(icd::sentence("Clean: ", event.what, " at ", event.at, ": ", event.text));
+  }
+}
+
+void status_true(const Evidence& evidence, Broken& broken) {
+  std::vector<Known> known;                         // of this life
+  std::map<std::uint64_t, std::size_t> known_then;  // when a client asked
+  double asked = 0, slow = 0;
+  for (const Event& event : evidence.events) {
+    if (event.kind == Kind::Begins) known.clear(), known_then.clear();
+    if (event.kind == Kind::Slow) slow += event.stamp;
+    if (event.what != kStatus) continue;
+    if (event.kind == Kind::Leaves) asked = event.at;
+    if (event.kind == Kind::Replied && event.status == 200 && !event.says.empty())
+      known.push_back({asked, slow, &event.says});
+    if (event.kind == Kind::Invoke) known_then[event.request] = known.size();
+    if (event.kind != Kind::Answered || event.status != 200) continue;
+    // Nothing older than what was known when it asked.
+    const std::size_t newest = known_then.contains(event.request) ? known_then[event.request] : 0;
+    bool found = false;
+    for (std::size_t i = newest == 0 ? 0 : newest - 1; i < known.size(); ++i)
+      found = found || may_be(known[i], event, slow);
+    if (found) continue;
+    if (event.says.empty()) {
+      broken.push_back(
+          icd::sentence("StatusTrue: at ", event.at, " a client was told 200 with what is no status"));
+      continue;
+    }
+    broken.push_back(icd::sentence("StatusTrue: at ", event.at, " a client was told score ", event.says.at(0),
+                                   ", ", event.says.at(1), " reports and clock ", event.says.at(2) / 1000.0,
+                                   " of age ", event.stamp, ": not the last that was known"));
+  }
+}
+
+}  // namespace adit::simulation

@@ -25,12 +25,23 @@ void write(const fs::path& path, const std::string& text) {
   fs::permissions(path, fs::perms::owner_read | fs::perms::owner_write);
 }
 
+/// Some are so small that they fill, and that messages are divided.
+std::string queues(Random random) {
+  std::string queues =
+      R"("markers_per_message": )" + std::to_string(random.chance(0.3) ? 1 + random.below(4) : 2000);
+  if (random.chance(0.3)) queues += R"(, "map_bytes": 1048576)";
+  if (random.chance(0.3)) queues += R"(, "merge_bytes": )" + std::to_string(random.chance(0.5) ? 0 : 4000);
+  if (random.chance(0.2)) queues += R"(, "marker_bytes_per_message": 1024)";
+  return queues;
+}
+
 /// Nobody connects to the socket in which the team's server listens: the clients come in by the door.
-std::string first_settings() {
+std::string first_settings(Random random) {
   return R"({"version": 1, "command_post": {"scoring": {"address": "10.100.1.200", "port": )" +
          std::to_string(CommandPost::kScoring) + R"(}, "mapping": {"address": "10.100.1.201", "port": )" +
          std::to_string(CommandPost::kMapping) +
-         R"(}}, "team": {"listen": [{"address": "127.0.0.1", "port": 0}]}})";
+         R"(}}, "team": {"listen": [{"address": "127.0.0.1", "port": 0}]}, "queues": {)" + queues(random) +
+         "}}";
 }
 
 /// With their modes; what is no file is left out.
@@ -60,7 +71,7 @@ Box::Box(World& world) : world_(world), random_(world.random("box")) {
   for (const char* each : {"scoring", "mapping"})
     write(folder_ / "secrets" / (std::string(each) + ".token"), "flux230{showroom\n");
   write(folder_ / "secrets" / "team.token", "token-of-the-team\n");
-  write(folder_ / "settings.json", first_settings());
+  write(folder_ / "settings.json", first_settings(world.random("settings")));
   world_.disk().mount(folder_);
 }
 

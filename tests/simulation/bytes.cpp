@@ -9,7 +9,7 @@
 namespace adit::simulation {
 namespace {
 
-constexpr std::size_t kMostInflated = 256 << 10;  // bytes
+constexpr std::size_t kMostInflated = 16 << 20;  // bytes
 
 /// As its last four bytes say (RFC 1952 2.3.1).
 std::size_t size_inflated(const std::string& member) {

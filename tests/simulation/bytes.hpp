@@ -6,7 +6,7 @@ namespace adit::simulation {
 
 /// One member of gzip.
 std::string deflated(const std::string& bytes);
-/// What a member of gzip holds, up to 256 KiB; "" where it is none.
+/// What a member of gzip holds, up to 16 MiB; "" where it is none.
 std::string inflated(const std::string& bytes);
 std::string base64(const std::string& bytes);
 

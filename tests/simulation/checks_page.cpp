@@ -19,6 +19,7 @@ namespace {
 using Json = nlohmann::json;
 using Moment = PageAccount::Moment;
 
+constexpr double kRests = 100;    // seconds after the last fault
 constexpr double kWatchdog = 10;  // seconds within which systemd hears that aditd lives
 constexpr double kRounding = 0.05;
 constexpr double kLongestDoubt = 60;
@@ -208,6 +209,13 @@ bool is_of_the_past(const Json& sentence) {
          said.starts_with("The ledger's log was damaged; its checksums told ");
 }
 
+/// The last reading may be none of the rest, where a death that was due came as late as that.
+bool is_at_rest(const Evidence& evidence, const Reading& reading) {
+  return std::ranges::any_of(evidence.events, [&](const Event& event) {
+    return event.kind == Kind::Calm && event.at + kRests < reading.at;
+  });
+}
+
 /// Long after the last fault nothing waits, and nobody is called but for what only the operator can judge.
 void judge_rest(const Evidence& evidence, const Reading& reading, Broken& broken) {
   for (const auto& [stream, count] : counts(reading.view, "waiting")) {
@@ -253,7 +261,8 @@ void honest(const Evidence& evidence, Broken& broken) {
     judge_metrics(evidence, reading, broken);
     if (reading.lie.starts_with("Honest")) broken.push_back(reading.lie);
   }
-  if (!evidence.readings.empty()) judge_rest(evidence, evidence.readings.back(), broken);
+  if (!evidence.readings.empty() && is_at_rest(evidence, evidence.readings.back()))
+    judge_rest(evidence, evidence.readings.back(), broken);
 }
 
 void lights(const Evidence& evidence, Broken& broken) {

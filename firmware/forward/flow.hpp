@@ -37,6 +37,7 @@ struct Legacy {
   picture::Mosaic picture;
   std::int64_t pictured_run = 0;  // whose maps it shows; 0: none yet
   AsForwarded as_forwarded;
+  icd::Stamp map_stamp = 0, state_stamp = 0, markers_stamp = 0;  // the last ones sent
 };
 
 /// The flow's, and all that there are: no sentence may quote one.
@@ -75,7 +76,7 @@ class Flow final : public intake::Desk {
   void end(std::function<void()> over);
   bool is_ending() const { return ending_.has_begun(); }
   /// Once it is over, or could not start.
-  Legacy hand_over() { return {picture_.hand_over(), pictured_run_, std::move(as_forwarded_)}; }
+  Legacy hand_over();
 
   std::shared_ptr<intake::MapArrival> map_arrives() override;
   icd::Checked<void> take(const icd::StateUpdate& update, const intake::Sender& sender) override;
@@ -129,7 +130,7 @@ class Flow final : public intake::Desk {
   const settings::Settings& settings_;
   Tokens tokens_;
   Told told_;
-  const bool follows_;  // another flow of this process, which may have sent a moment ago
+  std::optional<Legacy> legacy_;  // of a flow of this process, which may have sent a moment ago
   std::mt19937_64 random_;
   spool::Spool spool_;     // before its writer, whose jobs use it to the end
   loop::Writer writer_;    // of the runtime folder, in memory: an answer to a map waits for it

@@ -30,7 +30,7 @@ Flow::Flow(loop::Loop& loop, ledger::Ledger& ledger, const settings::Settings& s
       settings_(settings),
       tokens_(std::move(tokens)),
       told_(std::move(told)),
-      follows_(legacy.has_value()),
+      legacy_(std::move(legacy)),
       random_(seed()),
       spool_(folders.runtime + "/waiting", beside_maps(settings)),
       writer_(loop),
@@ -42,12 +42,12 @@ Flow::Flow(loop::Loop& loop, ledger::Ledger& ledger, const settings::Settings& s
       scoring_(loop, ledger, settings, tokens_.scoring, record_, random_, journal_, told_.anew),
       picture_(
           loop, workers_, [this] { return maps_.packing(); }, [this] { changed(); },
-          legacy ? std::move(legacy->picture) : picture::Mosaic()),
+          legacy_ ? std::move(legacy_->picture) : picture::Mosaic()),
       maps_(loop, workers_, writer_, spool_, settings, tokens_.mapping, record_, aside_, random_, journal_,
             [this](icd::MapUpdate map) { picture_.forwarded(std::move(map)); }),
-      as_forwarded_(legacy ? std::move(legacy->as_forwarded) : AsForwarded()),
+      as_forwarded_(legacy_ ? std::move(legacy_->as_forwarded) : AsForwarded()),
       news_(loop, settings, tokens_.mapping, record_, aside_, random_, journal_, as_forwarded_, told_.anew),
-      pictured_run_(legacy ? legacy->pictured_run : 0),
+      pictured_run_(legacy_ ? legacy_->pictured_run : 0),
       drained_(loop.timer([this] { drain(); })) {}
 
 std::expected<void, std::string> Flow::start() {
@@ -57,20 +57,34 @@ std::expected<void, std::string> Flow::start() {
   return {};
 }
 
+Legacy Flow::hand_over() {
+  return {.picture = picture_.hand_over(),
+          .pictured_run = pictured_run_,
+          .as_forwarded = std::move(as_forwarded_),
+          .map_stamp = maps_.last_stamp(),
+          .state_stamp = news_.last_state_stamp(),
+          .markers_stamp = news_.last_markers_stamp()};
+}
+
 /// Takes up what the life before left, in this process or another: rates and stamps go on as if nothing had
 /// been.
 void Flow::carry_on() {
   journal::Carried carried = journal_.read();
   const bool is_first = !carried.clock();
   clocks_.carry_on(carried, host::boot());
-  if (is_first && follows_) hold_back();
+  if (legacy_) hold_back();
   scoring_.carry_on(carried);
   maps_.carry_on(carried);
   news_.carry_on(carried);
+  if (legacy_) {
+    maps_.go_on_from(legacy_->map_stamp);
+    news_.go_on_from(legacy_->state_stamp, legacy_->markers_stamp);
+  }
   restore(is_first);
 }
 
-/// When the flow before sent last is not known, and the Command Post sees too much of neither.
+/// When the flow before sent last may not have been written down, and the Command Post sees too much of
+/// neither.
 void Flow::hold_back() {
   scoring_.hold_back();
   maps_.hold_back();

@@ -36,6 +36,9 @@ class Maps {
        std::function<void(icd::MapUpdate)> taken);
 
   void carry_on(const journal::Carried& carried);
+  /// What the flow before has sent, where the journal may not know.
+  void go_on_from(icd::Stamp last) { stamps_.carry_on(last); }
+  icd::Stamp last_stamp() const { return stamps_.last(); }
   /// As if something had just been sent, by whoever sent before.
   void hold_back() { pace_.sent(loop_.now()); }
   /// The settings are others, by which it goes from now on.

@@ -2,6 +2,11 @@
 
 #include <gmock/gmock.h>
 
+#include <bit>
+#include <memory>
+#include <mutex>
+
+#include "../uplink/peer.hpp"
 #include "host/folder.hpp"
 #include "loop/turn_until.hpp"
 #include "spool/messages.hpp"
@@ -77,6 +82,90 @@ TEST_F(FlowTest, EndsAndSendsNothingSetAsideFromThenOn) {
   EXPECT_FALSE(flow_->aside(1, page::AsideDeed::Discard));
   EXPECT_TRUE(loop::turn_until(loop_, [&] { return over; }));
   EXPECT_FALSE(anew_);
+}
+
+/// The last state that the Command Post was sent, and when.
+class Seen {
+ public:
+  void saw(const std::string& request) {
+    const std::scoped_lock lock(mutex_);
+    last_ = request;
+    ++states_;
+    at_ = std::chrono::steady_clock::now();
+  }
+  int states() const { return of(states_); }
+  loop::Instant at() const { return of(at_); }
+  /// In CBOR: the key, a byte that says that a double follows, and its bytes, the highest first.
+  double stamp() const {
+    constexpr std::string_view kKey = "stamp\xfb";
+    const std::string request = of(last_);
+    const std::size_t key = request.find(kKey);
+    std::uint64_t bits = 0;
+    for (std::size_t i = 0; key != std::string::npos && i < sizeof bits; ++i) {
+      bits = bits << 8 | static_cast<std::uint8_t>(request.at(key + kKey.size() + i));
+    }
+    return std::bit_cast<double>(bits);
+  }
+
+ private:
+  template <class What>
+  What of(const What& what) const {
+    const std::scoped_lock lock(mutex_);
+    return what;
+  }
+  mutable std::mutex mutex_;
+  std::string last_;
+  int states_ = 0;
+  loop::Instant at_{};
+};
+
+class FlowAfterAnother : public testing::Test {
+ protected:
+  FlowAfterAnother() { settings_.command_post.mapping = {post_.endpoint().address, post_.endpoint().port}; }
+  std::unique_ptr<Flow> flow(const host::Folder& folder, std::optional<Legacy> legacy) {
+    auto flow = std::make_unique<Flow>(
+        loop_, ledger_, settings_,
+        Tokens{.scoring = {}, .mapping = icd::BearerToken::parse("a-token"), .all = {}},
+        Flow::Folders{folder.path(), folder.path()}, std::move(legacy),
+        Flow::Told{.changed = [] {}, .anew = [] {}, .posted = [](const std::string&) {}});
+    EXPECT_TRUE(flow->start());
+    return flow;
+  }
+  void sends(Flow& flow, const char* sender, double stamp) {
+    icd::StateUpdate update = spool::state();
+    update.header.stamp = stamp;
+    const int before = seen_.states();
+    ASSERT_TRUE(flow.take(update, {.address = sender}));
+    ASSERT_TRUE(loop::turn_until(loop_, [&] { return seen_.states() > before; }));
+  }
+
+  Seen seen_;
+  uplink::ListeningPeer post_{std::vector<uplink::Peer::Script>(1, [this](uplink::Wire& wire) {
+    for (auto request = wire.read_request(); !request.empty(); request = wire.read_request()) {
+      seen_.saw(request);
+      if (!wire.write(uplink::answer("200 OK", "null"))) return;
+    }
+  })};
+  host::Folder first_, second_, ledger_folder_;
+  loop::Loop loop_;
+  settings::Settings settings_;
+  ledger::Ledger ledger_ = std::move(*ledger::Ledger::open(ledger_folder_.path()));
+};
+
+/// A full runtime folder takes no record: what is in memory alone goes from one flow to the next.
+TEST_F(FlowAfterAnother, SendsNoEarlierStampAndNoSoonerThoughNothingWasWrittenDown) {
+  auto before = flow(first_, std::nullopt);
+  sends(*before, "10.0.0.5", 50);
+  sends(*before, "10.0.0.5", 54);  // its clock runs ahead
+  const double last = seen_.stamp();
+  EXPECT_GT(last, loop_.stamp_now() + 1);
+  auto legacy = before->hand_over();
+  before.reset();
+  const loop::Instant began = loop_.now();
+  const auto after = flow(second_, std::move(legacy));
+  sends(*after, "10.0.0.6", 7);
+  EXPECT_GE(seen_.stamp(), last);
+  EXPECT_GE(seen_.at() - began, std::chrono::milliseconds{990});
 }
 
 }  // namespace

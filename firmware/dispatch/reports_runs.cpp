@@ -53,7 +53,7 @@ void Reports::meet(const AnotherRun& another, const icd::RunStatus& status, Time
   }
   // More reports left than in the run that this one may be: it is another, and is the one that begins.
   if (run().may_be != 0 && another.certain && !other_team && !anything_was_sent_here()) {
-    account_.is_another(time.stamp);
+    account_.has_begun(time.stamp);
     return clear_held(time);
   }
   begin_run(another.why, another.certain ? 0 : run().number, status, time);

@@ -1,5 +1,6 @@
 #include "dispatch/run_account.hpp"
 
+#include <algorithm>
 #include <utility>
 
 #include "icd/sentence.hpp"
@@ -53,9 +54,11 @@ const Run* RunAccount::named_before() const {
 }
 
 /// In seconds. Over a restart by the box's clock, which may be set in between; else not, so that a clock that
-/// is set makes no new run.
+/// is set makes no new run. Over a restart of the machine it may begin ahead of all stamps before: what is
+/// left is silence for certain.
 double RunAccount::silence(Time time) const {
-  return clock_at_ ? std::chrono::duration<double>(time.now - *clock_at_).count() : time.stamp - run().heard;
+  if (clock_at_) return std::chrono::duration<double>(time.now - *clock_at_).count();
+  return std::max(0.0, time.stamp - run().heard - kClockAhead);
 }
 
 void RunAccount::begin(const std::string& why, std::int64_t may_be,
@@ -98,6 +101,11 @@ void RunAccount::merge_into(std::int64_t number, std::span<const Report> steps, 
 void RunAccount::is_another(double stamp) {
   runs_.present().may_be = 0;
   write_down(stamp);
+}
+
+void RunAccount::has_begun(double stamp) {
+  forget_counts();
+  is_another(stamp);
 }
 
 void RunAccount::forget_counts() {

@@ -12,6 +12,8 @@ namespace adit::dispatch {
 inline constexpr double kClockJitter = 1.0;  // seconds
 /// Within a shorter silence than this no run ends and another overtakes its clock unnoticed.
 inline constexpr double kShortSilence = 30.0;  // seconds
+/// By so much a box's clock may begin ahead after a restart of the machine.
+inline constexpr double kClockAhead = 30.0;  // seconds
 
 /// Another run than the one that was known.
 struct AnotherRun {

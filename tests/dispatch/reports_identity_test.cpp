@@ -127,6 +127,15 @@ TEST_F(OnlyTheClock, LetsItGoOnceMoreReportsAreLeft) {
   EXPECT_EQ(scene_.send_next(), 2);
 }
 
+TEST_F(OnlyTheClock, CountsAnewOnceMoreReportsAreLeft) {
+  scene_.hear(25, 0, 4);
+  for (int i = 0; i < 3; ++i) {
+    scene_.wait(1);
+    scene_.hear(25, 0, 5 + i);
+  }
+  EXPECT_EQ(scene_.reports().run().unreliable, "") << "nobody else reports";
+}
+
 TEST_F(OnlyTheClock, LetsItGoOnTheOperatorsWord) {
   scene_.post(1);
   ASSERT_TRUE(scene_.reports().send(2, scene_.time()));

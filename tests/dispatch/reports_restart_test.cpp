@@ -191,4 +191,15 @@ TEST(OtherRules, CountForWhoeverComesFromThenOn) {
 }
 
 }  // namespace
+/// The box's clock begins ahead of all stamps before: it is no silence in which another run could have begun.
+TEST(ARestartOfTheMachine, MakesNoNewRunByTheClock) {
+  Scene scene;
+  scene.keep_hearing(12, 20, 0);
+  scene.wait(10);
+  scene.set_box_clock_forward(30);
+  scene.restart();
+  scene.hear(20, 0);
+  EXPECT_EQ(scene.reports().run().number, 1) << scene.reports().run().why;
+}
+
 }  // namespace adit::dispatch

@@ -12,6 +12,9 @@ namespace adit::simulation {
 /// The box: its folders, and the lives of aditd, one after the other.
 class Box {
  public:
+  static constexpr const char* kUpstream =
+      "lo";  // the interface to the Command Post: one that every machine has
+
   /// Makes a folder in memory, which goes with this. `world` outlives it.
   explicit Box(World& world);
   ~Box();

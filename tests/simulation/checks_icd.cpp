@@ -51,8 +51,13 @@ void refused(const Evidence& evidence, Broken& broken) {
 
 void clean(const Evidence& evidence, Broken& broken) {
   for (const Event& event : evidence.events) {
-    if (event.kind == Kind::Forbidden)
+    if (event.kind != Kind::Forbidden) continue;
+    if (event.what == kConnect) {
+      broken.push_back(
+          icd::sentence("Apart: at ", event.at, " a socket to the Command Post is ", event.text));
+    } else {
       broken.push_back(icd::sentence("Clean: ", event.what, " at ", event.at, ": ", event.text));
+    }
   }
 }
 

@@ -17,7 +17,7 @@ enum class Kind : std::uint8_t {
   Gone,       // the client has not, and the connection is over: it hung up, or was cut
   Leaves,     // the first byte of a request upstream is given to the network
   Left,       // the last one: the message it carries
-  Forbidden,  // it was one that the ICD forbids; the text says why
+  Forbidden,  // it was one that the ICD forbids, or a connection that must not be; the text says why
   Replied,    // Adit has read the last byte of an answer of that status
   Taken,      // the Command Post has recorded a report, or taken a message
   Begins,     // a life of aditd
@@ -58,6 +58,8 @@ struct Event {
   Says says = {};
 };
 
+/// Of Forbidden, where it is a connection.
+inline constexpr const char* kConnect = "connect";
 /// Of Stalls, as its status.
 inline constexpr int kInHead = 1, kInBody = 2;
 

@@ -2,6 +2,7 @@
 #include <cerrno>
 #include <cstring>
 
+#include "simulation/box.hpp"
 #include "simulation/world.hpp"
 #include "uplink/socket.hpp"
 
@@ -23,6 +24,12 @@ std::expected<loop::FileDescriptor, NoSocket> begin_connect(const Endpoint& endp
   World& world = World::current();
   world.crossing();
   if (world.is_dead()) return std::unexpected(NoSocket{"dead", ENETDOWN});
+  if (endpoint.interface != simulation::Box::kUpstream) {
+    world.note({.kind = simulation::Kind::Forbidden,
+                .what = simulation::kConnect,
+                .who = "",
+                .text = "bound to '" + endpoint.interface + "'"});
+  }
   return loop::FileDescriptor(world.network().connect(endpoint));
 }
 

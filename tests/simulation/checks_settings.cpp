@@ -31,6 +31,7 @@ void not_cut(const Evidence& evidence, Broken& broken) {
     if (ends_the_gateway(event)) asking.clear();
     if (event.kind == Kind::Invoke) asking[event.request] = false;
     if (event.kind == Kind::Whole && !event.text.empty()) asking.erase(event.request);  // ends its direction
+    if (event.kind == Kind::Stalls) asking.erase(event.request);  // is waited for only so long
     if (event.kind == Kind::Saved) {
       saved = event.at;
       for (auto& [request, met] : asking) met = true;

@@ -38,16 +38,19 @@ void answered(const Evidence& evidence, Broken& broken) {
   std::map<std::uint64_t, std::pair<double, int>> whole;
   std::map<int, double> begun;
   bool is_on = false;
-  double slow = 0;  // seconds that it stood still for its disk
+  double slow = 0, slow_until = 0;  // seconds that it stood still for its disk, and until when
   std::map<std::uint64_t, double> slow_before;
   std::map<std::uint64_t, int> stalled;
   for (const Event& event : evidence.events) {
     if (event.kind == Kind::Begins) begun[event.life] = event.at;
     if (event.kind == Kind::Begins || event.kind == Kind::Ended) is_on = event.kind == Kind::Begins;
-    if (event.kind == Kind::Slow) slow += event.stamp;
+    if (event.kind == Kind::Slow) {
+      slow += event.stamp;
+      slow_until = event.at + event.stamp;
+    }
     if (event.kind == Kind::Whole || event.kind == Kind::Stalls) {
       whole[event.request] = {event.at, event.life};
-      slow_before[event.request] = slow;
+      slow_before[event.request] = slow - std::max(0.0, slow_until - event.at);
       if (event.kind == Kind::Stalls) stalled[event.request] = event.status;
     }
     if (event.kind != Kind::Answered && event.kind != Kind::Gone) continue;

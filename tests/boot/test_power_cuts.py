@@ -10,7 +10,7 @@ from insisting import Client, Operator, end, judge
 from reporting import QUICK
 from stage import Stage, Story, load_tests, note, setUpModule  # unittest looks for them here
 
-CUTS = int(os.environ.get("ADIT_CUTS", "8"))
+CUTS = int(os.environ.get("ADIT_CUTS", "4"))
 SEED = 20210924
 FAULTS = {"reports:record-then-drop": 0.05, "reports:drop": 0.05, "reports:answer-after=0.3": 0.4, "status:drop": 0.02}
 LIFE = (0.3, 4.0)  # seconds from a start to its cut

@@ -63,6 +63,7 @@ void Judge::viewed(const Json& view) {
 }
 
 void Judge::judge_report(const Json& row, double now) {
+  if (row.at("position").is_null()) return;  // of a damaged ledger: nobody knows what it was
   const std::string state = row.at("state");
   const std::int64_t id = row.at("number"),
                      serial = std::llround(row.at("position").at("x").get<double>() / 100);

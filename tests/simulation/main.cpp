@@ -7,6 +7,7 @@
 #include <chrono>
 #include <cstdio>
 #include <ctime>
+#include <exception>
 #include <string>
 
 #include "simulation/options.hpp"
@@ -42,7 +43,7 @@ class Job {
   Tally result() {
     const std::uint64_t jobs = options_.jobs;
     for (std::uint64_t i = number_; i < options_.runs && has_time() && !found_; i += jobs)
-      one(options_.seed + i);
+      try_one(options_.seed + i);
     tally_.cpu = cpu_seconds();
     return tally_;
   }
@@ -52,6 +53,16 @@ class Job {
     const std::chrono::duration<double> took = std::chrono::steady_clock::now() - began_;
     if (options_.hours > 0 && took.count() > options_.hours * 3600) return false;
     return options_.cpu <= 0 || cpu_seconds() <= options_.cpu;
+  }
+
+  /// What the simulation itself did not expect is a failure as well.
+  void try_one(std::uint64_t seed) {
+    try {
+      one(seed);
+    } catch (const std::exception& unexpected) {
+      ++tally_.failed;
+      std::printf("seed %llu: broke off: %s\n", static_cast<unsigned long long>(seed), unexpected.what());
+    }
   }
 
   void one(std::uint64_t seed) {
@@ -111,7 +122,10 @@ bool play_all(const Options& options, Tally& tally) {
   }
   bool well = true;
   int status = 0;
-  while (::wait(&status) > 0) well = well && status == 0;
+  while (::wait(&status) > 0) {
+    if (WIFSIGNALED(status)) std::printf("a job died of signal %d\n", WTERMSIG(status));
+    well = well && status == 0;
+  }
   ::close(results[1]);
   for (Tally each; ::read(results[0], &each, sizeof each) == sizeof each;) tally.add(each);
   return well;

@@ -138,7 +138,7 @@ void Aside::add(lanes::Message message, int status, const std::string& why, std:
              {"why", why}});
   const auto said_anew = [&](std::uint64_t number) {
     const lanes::AsideItem* const older = items_.find(number);
-    return older == nullptr || older->overtaken || lanes::says_all_of(item.message, older->message);
+    return older == nullptr || older->overtaken || lanes::overtakes(item.message, older->message);
   };
   std::vector<std::uint64_t> covered;
   for (const lanes::AsideItem& older : items_.items()) {

@@ -26,6 +26,10 @@ icd::Refusal not_kept() {
   return {icd::Status::ServiceUnavailable, "this map cannot be kept; send it again later"};
 }
 
+icd::Stamp stamp_of(const icd::MapUpdate& map) {
+  return map.header().stamp.value_or(0);
+}
+
 /// For lanes::Blame: a robot's maps of one kind.
 std::string whose(const icd::MapUpdate& map) {
   return (map.is_grid() ? "grid " : "cloud ") + (map.name ? map.name->text() : "");
@@ -90,9 +94,15 @@ void Maps::take(icd::MapUpdate update, std::size_t bytes_received, std::shared_p
   keep(keeping, [this, done = std::move(done)](Keeping& it) { kept(it, done); });
 }
 
+/// What is sent again is older than what waits, and has the lower numbers also for a life to come, which
+/// reads the maps in their order.
+std::uint64_t Maps::next_number(bool again) {
+  return again && again_numbers_ < kFirstNumber - 1 ? ++again_numbers_ : ++numbers_;
+}
+
 /// By the writer, under the next number; then `told` has it, kept or not.
 void Maps::keep(const std::shared_ptr<Keeping>& keeping, const std::function<void(Keeping&)>& told) {
-  keeping->number = ++numbers_;
+  keeping->number = next_number(keeping->again.has_value());
   keeping->size = keeping->update.data.bytes.size();
   const auto over = [this, keeping, told] {
     --being_kept_;
@@ -147,8 +157,14 @@ void Maps::endpoint_changed(std::optional<icd::BearerToken> token) {
 }
 
 void Maps::restore(std::uint64_t number, icd::MapUpdate update) {
-  numbers_ = std::max(numbers_, number);
+  const bool again = number < kFirstNumber;
+  std::uint64_t& last = again ? again_numbers_ : numbers_;
+  last = std::max(last, number);
   record_.accepted(traffic_of(update), update.data.bytes.size(), loop_.stamp_now());
+  if (again) {
+    const icd::Stamp stamp = stamp_of(update);
+    return wait_again(number, std::move(update), stamp);
+  }
   forget(add(number, std::move(update)));
   pump();
 }
@@ -268,6 +284,7 @@ void Maps::taken(int status) {
   const std::size_t updates = sent->waiting.updates.size();
   forget(std::move(sent->waiting.updates));
   blame_.passed(whose(map), loop_.now());
+  if (sent->waiting.again) map.header().stamp = sent->waiting.again;
   aside_.taken(map);
   record_.forwarded(traffic_of(map), updates, sent->body.size(), status, loop_.stamp_now());
   taken_(std::move(map));
@@ -311,6 +328,7 @@ void Maps::again() {
 /// A map that will not be taken is set aside; of a merged cloud each part is tried by itself.
 void Maps::give_up(int status, const std::string& sentence) {
   record_.not_taken(traffic_of(prepared_->waiting.map), NotTaken::Refused, status, sentence);
+  if (prepared_->waiting.again) prepared_->waiting.map.header().stamp = prepared_->waiting.again;
   if (prepared_->waiting.parts.empty()) {
     aside_.add(prepared_->waiting.map, status, sentence, prepared_->waiting.map.data.bytes.size(),
                {.let_go = [this, numbers = prepared_->waiting.updates] { forget(numbers); }});
@@ -323,12 +341,13 @@ void Maps::give_up(int status, const std::string& sentence) {
 /// What waits or is under way may say all of it by now: it must neither follow that, nor be found by a life
 /// to come, which reads the maps in the order of their numbers and would take it for the newer one.
 void Maps::send_again(icd::MapUpdate update, std::function<bool(bool kept)> done) {
-  if (lane_.is_replaced(update) || is_said_by_what_goes(update)) {
+  if (lane_.is_replaced(update) || is_said_by_what_goes(update, stamp_of(update))) {
     done(true);
     return;
   }
-  update.header().stamp = loop_.stamp_now();
   const auto keeping = std::make_shared<Keeping>();
+  keeping->again = stamp_of(update);
+  update.header().stamp = loop_.stamp_now();
   keeping->update = std::move(update);
   keep(keeping, [this, done = std::move(done)](Keeping& it) { kept_again(it, done); });
 }
@@ -339,16 +358,22 @@ void Maps::kept_again(Keeping& keeping, const std::function<bool(bool kept)>& do
     return host::log(host::Level::Error, "what was set aside is not sent again",
                      {{"why", keeping.kept.error().sentence}});
   }
-  if (!is_wanted || is_said_by_what_goes(*keeping.kept)) return forget({keeping.number});
-  forget(lane_.put_back({.map = std::move(*keeping.kept),
+  if (!is_wanted || is_said_by_what_goes(*keeping.kept, *keeping.again)) return forget({keeping.number});
+  wait_again(keeping.number, std::move(*keeping.kept), *keeping.again);
+}
+
+void Maps::wait_again(std::uint64_t number, icd::MapUpdate update, icd::Stamp again) {
+  forget(lane_.put_back({.map = std::move(update),
                          .accepted = loop_.now(),
-                         .updates = {keeping.number},
-                         .alone = true}));
+                         .updates = {number},
+                         .alone = true,
+                         .again = again}));
   pump();
 }
 
-bool Maps::is_said_by_what_goes(const icd::MapUpdate& older) const {
-  return prepared_ && lanes::says_all_of(prepared_->waiting.map, older);
+bool Maps::is_said_by_what_goes(const icd::MapUpdate& older, icd::Stamp again) const {
+  return prepared_ &&
+         lanes::replaces(prepared_->waiting, {.map = older, .accepted = {}, .updates = {}, .again = again});
 }
 
 void Maps::link_is_back() {

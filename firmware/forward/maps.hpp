@@ -28,6 +28,8 @@ class Maps {
  public:
   /// So many may wait, however small: each has a file that is mapped (vm.max_map_count is 65,530).
   static constexpr std::size_t kMostMaps = 20'000;
+  /// In the spool those below are sent again by hand.
+  static constexpr std::uint64_t kFirstNumber = 1u << 20;
 
   /// `taken` is given each map that the Command Post took. `spool` outlives the writer.
   Maps(loop::Loop& loop, loop::Workers& workers, loop::Writer& writer, const spool::Spool& spool,
@@ -89,7 +91,8 @@ class Maps {
   struct Keeping {
     std::uint64_t number = 0;
     std::size_t bytes_received = 0, size = 0;
-    std::uint64_t spare = 0;  // that is to be left
+    std::uint64_t spare = 0;          // that is to be left
+    std::optional<icd::Stamp> again;  // lanes::WaitingMap's
     icd::MapUpdate update;
     std::shared_ptr<spool::MapFile> file;  // where its data was stored as it came
     icd::Checked<icd::MapUpdate> kept;
@@ -98,7 +101,9 @@ class Maps {
   void keep(const std::shared_ptr<Keeping>& keeping, const std::function<void(Keeping&)>& told);
   void kept(Keeping& keeping, const std::function<void(icd::Checked<void>)>& done);
   void kept_again(Keeping& keeping, const std::function<bool(bool kept)>& done);
-  bool is_said_by_what_goes(const icd::MapUpdate& older) const;
+  bool is_said_by_what_goes(const icd::MapUpdate& older, icd::Stamp again) const;
+  void wait_again(std::uint64_t number, icd::MapUpdate update, icd::Stamp again);
+  std::uint64_t next_number(bool again);
   void forget(std::vector<std::uint64_t> numbers);
   void pump();
   void go_on();
@@ -128,7 +133,7 @@ class Maps {
 
   lanes::MapLane lane_;
   lanes::StampOrder stamps_;
-  std::uint64_t numbers_ = 0;
+  std::uint64_t numbers_ = kFirstNumber, again_numbers_ = 0;
   int being_kept_ = 0;
   std::size_t bytes_being_kept_ = 0;
   std::string trouble_;

@@ -30,6 +30,11 @@ bool replaces(const icd::MapUpdate& newer, const icd::MapUpdate& older) {
   return new_grid && old_grid && newer.name == older.name && covers(*new_grid, *old_grid);
 }
 
+/// Of one that waits, and one that comes back to the lane.
+bool is_newer(const WaitingMap& waiting, const WaitingMap& back) {
+  return !waiting.again || (back.again && *waiting.again >= *back.again);
+}
+
 /// What is merged keeps what it was merged of: the bytes are shared, so that this costs next to nothing.
 void join_parts(WaitingMap& to, const WaitingMap& from) {
   if (to.parts.empty()) to.parts.push_back(to.map);
@@ -54,6 +59,10 @@ void take_over(WaitingMap& to, WaitingMap from) {
 }
 
 }  // namespace
+
+bool replaces(const WaitingMap& newer, const WaitingMap& older) {
+  return is_newer(newer, older) && replaces(newer.map, older.map);
+}
 
 bool mergeable(const icd::PointCloud2& a, const icd::PointCloud2& b) {
   return a.fields == b.fields && a.point_step == b.point_step && a.is_bigendian == b.is_bigendian &&
@@ -152,11 +161,13 @@ void MapLane::merge_followers(WaitingMap& next, std::vector<bool>& leaves) const
 }
 
 std::vector<std::uint64_t> MapLane::put_back(WaitingMap map) {
-  const auto newer = std::ranges::find_if(
-      waiting_, [&](const WaitingMap& waiting) { return replaces(waiting.map, map.map); });
+  const auto newer =
+      std::ranges::find_if(waiting_, [&](const WaitingMap& waiting) { return replaces(waiting, map); });
   if (newer == waiting_.end()) {
     const std::size_t bytes = bytes_held(map);
-    waiting_.push_front(std::move(map));
+    const auto place =
+        std::ranges::find_if(waiting_, [&](const WaitingMap& waiting) { return is_newer(waiting, map); });
+    waiting_.insert(place, std::move(map));
     bytes_ += bytes;
     return {};
   }
@@ -182,8 +193,10 @@ bool MapLane::replaces_any(const icd::MapUpdate& map) const {
   return std::ranges::any_of(waiting_, [&](const WaitingMap& waiting) { return replaces(map, waiting.map); });
 }
 
-bool MapLane::is_replaced(const icd::MapUpdate& map) const {
-  return std::ranges::any_of(waiting_, [&](const WaitingMap& waiting) { return replaces(waiting.map, map); });
+bool MapLane::is_replaced(const icd::MapUpdate& again) const {
+  return std::ranges::any_of(waiting_, [&, stamp = again.header().stamp](const WaitingMap& waiting) {
+    return (!waiting.again || *waiting.again >= stamp) && replaces(waiting.map, again);
+  });
 }
 
 std::size_t MapLane::largest_grid() const {

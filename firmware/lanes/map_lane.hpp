@@ -34,7 +34,13 @@ struct WaitingMap {
       parts{};         // the clouds that were merged into it, one for each update; else empty
   bool alone = false;  // not to be merged with others
   Trial trial{};       // where the Command Post's handler failed at it
+  /// What was set aside and is sent again by hand: the stamp that it had, by which it is older than all that
+  /// was never set aside, and told from others that are sent again.
+  std::optional<icd::Stamp> again{};
 };
+
+/// Whether `newer`, which is under way or waits, is newer and says all that `older` said, which comes back.
+bool replaces(const WaitingMap& newer, const WaitingMap& older);
 
 /// The maps that wait for the Command Post.
 ///
@@ -63,8 +69,9 @@ class MapLane {
   /// The next to be sent, taken out of the lane. Without `now`, nothing rests.
   std::optional<WaitingMap> take(Instant now = Instant::max());
 
-  /// Puts back what could not be sent: first in line, unless a newer grid that covers it came meanwhile (then
-  /// that one takes its updates and its age). The numbers of those that are needed no more, as from add().
+  /// Puts back what could not be sent, or is sent again: first in line, behind older ones that are sent
+  /// again, unless a newer grid covers it that waits (then that one takes its updates and its age). The
+  /// numbers of those that are needed no more, as from add().
   std::vector<std::uint64_t> put_back(WaitingMap map);
 
   /// Puts back the parts of a merged cloud, first in line and never to be merged again, so that the one that
@@ -73,8 +80,8 @@ class MapLane {
 
   /// Whether add() would replace one that waits.
   bool replaces_any(const icd::MapUpdate& map) const;
-  /// Whether put_back() would find a newer grid that covers it.
-  bool is_replaced(const icd::MapUpdate& map) const;
+  /// Whether put_back() would find a newer grid that covers it, where it is sent again.
+  bool is_replaced(const icd::MapUpdate& again) const;
 
   std::size_t count() const { return waiting_.size(); }
   std::size_t bytes() const { return bytes_; }  // of memory held by all that wait

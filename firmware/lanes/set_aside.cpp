@@ -38,12 +38,22 @@ bool deletes_newer(const Message& older, const Message& newer) {
              markers->markers.end();
 }
 
+bool is_older_map(const Message& message, const Message& other) {
+  const auto* const map = std::get_if<icd::MapUpdate>(&message);
+  const auto* const other_map = std::get_if<icd::MapUpdate>(&other);
+  return map != nullptr && other_map != nullptr && map->header().stamp < other_map->header().stamp;
+}
+
 }  // namespace
 
 bool says_all_of(const Message& newer, const Message& older) {
   return newer.index() == older.index() &&
          std::visit([&]<class Kind>(const Kind& message) { return says_all(message, std::get<Kind>(older)); },
                     newer);
+}
+
+bool overtakes(const Message& newer, const Message& older) {
+  return says_all_of(newer, older) && !is_older_map(newer, older);
 }
 
 std::vector<std::uint64_t> SetAside::add(AsideItem item) {
@@ -53,7 +63,7 @@ std::vector<std::uint64_t> SetAside::add(AsideItem item) {
     gone.push_back(each.number);
   };
   std::erase_if(items_, [&](const AsideItem& older) {
-    const bool said = says_all_of(item.message, older.message);
+    const bool said = overtakes(item.message, older.message);
     if (said) drop(older);
     return said;
   });
@@ -77,7 +87,7 @@ std::vector<std::uint64_t> SetAside::taken(const Message& message) {
   std::vector<std::uint64_t> overtaken;
   for (AsideItem& item : items_) {
     if (item.overtaken) continue;
-    if (!says_all_of(message, item.message) && !deletes_newer(item.message, message)) continue;
+    if (!overtakes(message, item.message) && !deletes_newer(item.message, message)) continue;
     item.overtaken = true;
     overtaken.push_back(item.number);
   }

@@ -20,6 +20,10 @@ using Message = std::variant<icd::MapUpdate, icd::StateUpdate, icd::MarkersUpdat
 /// all its robots, changes of all its markers. Nothing covers a cloud.
 bool says_all_of(const Message& newer, const Message& older);
 
+/// Says all of it, and is no older map: what is sent again by hand may be older than others that were set
+/// aside.
+bool overtakes(const Message& newer, const Message& older);
+
 /// A message that the Command Post would not take, and why.
 struct AsideItem {
   std::uint64_t number = 0;

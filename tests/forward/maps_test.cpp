@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "host/folder.hpp"
+#include "host/numbered_name.hpp"
 #include "loop/turn_until.hpp"
 #include "spool/messages.hpp"
 
@@ -124,6 +125,28 @@ TEST_F(MapsTest, ThatAreSentAgainByHandStayBehindANewerOneThatCoversThem) {
   EXPECT_EQ(kept, true) << "the newer one says all of it";
   EXPECT_TRUE(comes_to(1));
   EXPECT_TRUE(maps_.all_kept());
+}
+
+TEST_F(MapsTest, ThatAreSentAgainByHandAreOlderThanWhatWaitsForALifeToComeAsWell) {
+  EXPECT_EQ(status(take(grid("r1", 10, 500))), icd::Status::Ok);
+  bool kept = false;
+  maps_.send_again(grid("r1", 20, 700), [&](bool well) { return kept = well; });
+  ASSERT_TRUE(loop::turn_until(loop_, [&] { return kept; }));
+  EXPECT_EQ(maps_.waiting({Kind::Grid, "r1"}), 2u);
+  Maps next{loop_,
+            workers_,
+            writer_,
+            spool_,
+            settings_,
+            std::nullopt,
+            record_,
+            aside_,
+            random_,
+            journal_,
+            [](const icd::MapUpdate&) {}};
+  for (const std::uint64_t number : host::numbers_in(folder_.path(), "map-", ".cbor"))
+    next.restore(number, number == 1 ? grid("r1", 20, 700) : grid("r1", 10, 500));
+  EXPECT_EQ(next.waiting({Kind::Grid, "r1"}), 2u) << "it says all of the newer one, but is not newer";
 }
 
 /// While it is packed or under way it is not among what waits.

@@ -199,6 +199,30 @@ TEST(MapLane, PutsBackNoGridThatANewerOneCovers) {
   EXPECT_EQ(std::get<icd::OccupancyGrid>(heir->map.msg), kLarge);
 }
 
+WaitingMap sent_again(std::uint64_t number, const icd::OccupancyGrid& grid, icd::Stamp stamp) {
+  WaitingMap map{grid_update("R1", grid), at(9), {number}};
+  map.again = stamp;
+  return map;
+}
+
+TEST(MapLane, SendsAgainInTheOrderInWhichTheyWereMadeAndDropsNoneForAnOlderOne) {
+  MapLane lane{kPlenty};
+  EXPECT_THAT(lane.put_back(sent_again(3, kSmall, 30)), IsEmpty());
+  EXPECT_THAT(lane.put_back(sent_again(1, kLarge, 10)), IsEmpty());
+  EXPECT_THAT(lane.put_back(sent_again(2, kLarge, 20)), IsEmpty());
+  for (const std::uint64_t number : {1, 2, 3}) EXPECT_THAT(lane.take()->updates, ElementsAre(number));
+}
+
+TEST(MapLane, TakesNothingThatIsSentAgainForNewerThanWhatNeverWasSetAside) {
+  MapLane lane{kPlenty};
+  lane.add(7, grid_update("R1", kSmall), at(1));
+  auto failed = *lane.take();
+  lane.put_back(sent_again(1, kLarge, 10));
+  EXPECT_THAT(lane.put_back(failed), IsEmpty());
+  EXPECT_THAT(lane.take()->updates, ElementsAre(1));
+  EXPECT_THAT(lane.take()->updates, ElementsAre(7));
+}
+
 TEST(MapLane, CountsTheMemoryThatIsHeld) {
   MapLane lane{kPlenty};
   EXPECT_EQ(lane.bytes(), 0);

@@ -76,6 +76,19 @@ TEST(SetAside, MarksWhatSomethingNewerSaysAllOf) {
   EXPECT_FALSE(aside.find(2)->overtaken);
 }
 
+TEST(SetAside, IsNotOvertakenByAnOlderGridThatIsSentAgain) {
+  const auto made_at = [](icd::Stamp stamp, std::uint32_t cells) {
+    icd::MapUpdate map = grid_update("ugv1", grid(0, 0, cells, cells));
+    map.header().stamp = stamp;
+    return map;
+  };
+  SetAside aside;
+  aside.add(item(made_at(20, 10)));
+  EXPECT_TRUE(aside.taken(made_at(10, 30)).empty());
+  EXPECT_TRUE(aside.add(item(made_at(10, 30))).empty()) << "nor where that is set aside again";
+  EXPECT_EQ(aside.taken(made_at(30, 30)), (std::vector<std::uint64_t>{1, 2}));
+}
+
 TEST(SetAside, MarksADeleteAllThatWouldDeleteSomethingNewer) {
   SetAside aside;
   aside.add(item(icd::MarkersUpdate{{marker("", 0, icd::MarkerAction::DeleteAll)}}));

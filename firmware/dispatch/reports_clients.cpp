@@ -106,11 +106,13 @@ const Report* Reports::earlier(const Report& report) const {
   return nullptr;
 }
 
-/// Another one of the present run that is the same, and was sent or is under way.
+/// Another one of the present run that is the same, and was sent, is under way or waits for its turn.
 const Report* Reports::twin(const Report& report) const {
   for (const Report* const other : same_in_run(report.report)) {
-    const bool held_back = other->state == ReportState::Received || other->state == ReportState::Waiting ||
-                           other->state == ReportState::Withdrawn;
+    const bool is_compared_later =
+        other->state == ReportState::Waiting && !other->asked && unchecked_.contains(other->number);
+    const bool held_back =
+        other->state == ReportState::Received || other->state == ReportState::Withdrawn || is_compared_later;
     if (other->number != report.number && !held_back && stands_for_others(*other)) return other;
   }
   return nullptr;

@@ -290,5 +290,24 @@ TEST(Sending, IsRefusedWhereTheSameWasRecordedInThisRun) {
   EXPECT_EQ(scene.state(2), Received);
 }
 
+/// Nobody compares what was asked for with what waits.
+TEST(Sending, IsRefusedWhereTheSameWaitsToBeSentInThisRun) {
+  ReportRules rules;
+  rules.review = Review::Duplicates;
+  Scene scene(rules);
+  scene.post(1);
+  scene.answer(recorded());
+  scene.post(2);
+  ASSERT_EQ(scene.state(2), Received) << "2 is near 1";
+  scene.reports().declare_new_run(scene.time());
+  scene.hear(20, 0, 1);
+  scene.post_to_wait(2);
+  ASSERT_EQ(scene.state(3), Waiting);
+  const auto sent = scene.reports().send(2, scene.time());
+  ASSERT_FALSE(sent);
+  EXPECT_THAT(sent.error(), HasSubstr("report 3 is the same, and is waiting in this run"));
+  EXPECT_EQ(scene.send_next(), 3);
+}
+
 }  // namespace
 }  // namespace adit::dispatch

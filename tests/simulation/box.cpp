@@ -40,7 +40,10 @@ std::string first_settings(Random random) {
   return R"({"version": 1, "command_post": {"scoring": {"address": "10.100.1.200", "port": )" +
          std::to_string(CommandPost::kScoring) + R"(}, "mapping": {"address": "10.100.1.201", "port": )" +
          std::to_string(CommandPost::kMapping) + R"(}, "interface": ")" + Box::kUpstream +
-         R"("}, "team": {"listen": [{"address": "127.0.0.1", "port": 0}]}, "queues": {)" + queues(random) +
+         R"("}, "courses": [{"name": "B", "scoring": {"address": "10.100.2.200", "port": )" +
+         std::to_string(CommandPost::kScoring) + R"(}, "mapping": {"address": "10.100.2.201", "port": )" +
+         std::to_string(CommandPost::kMapping) +
+         R"(}}], "team": {"listen": [{"address": "127.0.0.1", "port": 0}]}, "queues": {)" + queues(random) +
          "}}";
 }
 

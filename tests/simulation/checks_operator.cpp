@@ -6,6 +6,7 @@
 
 #include "icd/sentence.hpp"
 #include "simulation/checks.hpp"
+#include "simulation/courses.hpp"
 #include "simulation/judge.hpp"
 #include "simulation/messages.hpp"
 #include "simulation/operator.hpp"
@@ -46,7 +47,8 @@ void judge_review(const Evidence& evidence, Broken& broken) {
   double all_since = -1;
   for (const Event& event : evidence.events) {
     if (event.kind == Kind::Invoke && event.what == kSettings) all_since = -1;
-    if (event.kind == Kind::Saved) all_since = event.what == kReviewAll ? event.at + kApplied : -1;
+    if (event.kind == Kind::Saved && event.what != kCourse)
+      all_since = event.what == kReviewAll ? event.at + kApplied : -1;
     if (event.kind == Kind::Invoke && is_word(event, kSend)) sent.insert(event.serial);
     if (event.kind == Kind::Invoke && (event.what == kReports || is_word(event, kCompose)))
       posted.emplace(event.serial, event.at);

@@ -6,6 +6,7 @@
 
 #include "icd/sentence.hpp"
 #include "simulation/checks.hpp"
+#include "simulation/courses.hpp"
 #include "simulation/messages.hpp"
 #include "simulation/page_account.hpp"
 #include "simulation/page_words.hpp"
@@ -22,6 +23,7 @@ using Moment = PageAccount::Moment;
 constexpr double kRests = 100;    // seconds after the last fault
 constexpr double kWatchdog = 10;  // seconds within which systemd hears that aditd lives
 constexpr double kRounding = 0.05;
+constexpr double kSwitching = 12;  // seconds within which a course is switched
 constexpr double kLongestDoubt = 60;
 
 Moment moment_of(const Reading& reading) {
@@ -81,20 +83,21 @@ class Difference {
   Broken& broken_;
 };
 
-/// The last status that was heard before a moment and after another.
-const Event* last_status(const std::vector<Event>& events, std::size_t from, std::size_t to) {
+/// The last status of that Command Post that was heard before a moment and after another.
+const Event* last_status(const std::vector<Event>& events, std::size_t from, std::size_t to, int place) {
   while (to-- > from) {
     const Event& event = events[to];
     const bool is_status = event.kind == Kind::Replied && event.what == kStatus;
-    if (is_status && event.status == 200 && !event.says.empty()) return &event;
+    if (is_status && event.status == 200 && !event.says.empty() && event.serial == place) return &event;
   }
   return nullptr;
 }
 
 /// Score, reports left and their age are those of the last status.
 void judge_run(const Evidence& evidence, std::size_t begun, const Reading& reading, Broken& broken) {
-  const Event* const heard = last_status(evidence.events, begun, reading.asked);
-  if (heard != last_status(evidence.events, begun, reading.heard) || heard == nullptr) return;
+  const int place = place_at(reading.view.at("endpoints").front().at("address"));
+  const Event* const heard = last_status(evidence.events, begun, reading.asked, place);
+  if (heard != last_status(evidence.events, begun, reading.heard, place) || heard == nullptr) return;
   const Json status = Json::parse(heard->text), &run = reading.view.at("run");
   const auto differs = [&](const char* name) {
     return run.at(name).get<std::int64_t>() != status.at(name).get<std::int64_t>();
@@ -124,6 +127,7 @@ bool is_blurred(const Evidence& evidence, const Json& row) {
 void judge_reports(const Evidence& evidence, const Reading& reading, Broken& broken) {
   for (const Json& row : reading.view.at("reports")) {
     const std::string state = row.at("state");
+    if (row.at("position").is_null()) continue;
     if (state != "answered" && !(state == "settled" && row.at("reconciled"))) continue;
     const auto serial = std::llround(row.at("position").at("x").get<double>() / 100);
     bool recorded = false, right = row.at("score_change").is_null();
@@ -147,12 +151,13 @@ void judge_reports(const Evidence& evidence, const Reading& reading, Broken& bro
 void judge_last_answers(const Evidence& evidence, std::size_t begun, const Reading& reading, Broken& broken) {
   std::map<std::string, std::string> under_way;  // path by endpoint
   std::map<std::string, const Event*> last;
+  const int place = place_at(reading.view.at("endpoints").front().at("address"));
   for (std::size_t i = begun; i < reading.heard; ++i) {
     const Event& event = evidence.events[i];
     const std::string endpoint = endpoint_of(event.what);
     if (event.kind == Kind::Leaves || (i >= reading.asked && event.kind == Kind::Replied))
       last[endpoint] = nullptr;
-    if (event.kind == Kind::Replied && i < reading.asked) last[endpoint] = &event;
+    if (event.kind == Kind::Replied && i < reading.asked && event.serial == place) last[endpoint] = &event;
   }
   for (const Json& row : reading.view.at("endpoints")) {
     if (row.at("name") != "scoring") continue;  // the mapping endpoint has two connections
@@ -206,7 +211,8 @@ bool is_of_the_past(const Json& sentence) {
   const std::string said = sentence;
   return said.starts_with("the last map was not taken: ") ||
          said.starts_with("states and markers are not taken, ") ||
-         said.starts_with("The ledger's log was damaged; its checksums told ");
+         said.starts_with("The ledger's log was damaged; its checksums told ") ||
+         said.starts_with("the ledger was damaged: ");
 }
 
 /// The last reading may be none of the rest, where a death that was due came as late as that.
@@ -241,6 +247,13 @@ void judge_rest(const Evidence& evidence, const Reading& reading, Broken& broken
                                    " reports wait for the operator, and he is called ", called, " times"));
 }
 
+/// Another course was asked for just now: which Command Post it speaks of is not known.
+bool is_switching(const Evidence& evidence, const Reading& reading) {
+  return std::ranges::any_of(evidence.events, [&](const Event& event) {
+    return event.what == kCourse && event.at <= reading.at && event.at > reading.at - kSwitching;
+  });
+}
+
 }  // namespace
 
 void honest(const Evidence& evidence, Broken& broken) {
@@ -248,13 +261,13 @@ void honest(const Evidence& evidence, Broken& broken) {
   const Reading* before = nullptr;
   for (const Reading& reading : evidence.readings) {
     const std::size_t begun = account.begun(moment_of(reading));
-    if (before != nullptr && begun <= before->asked) {
+    if (before != nullptr && begun <= before->asked && !is_switching(evidence, *before)) {
       Difference difference(account, *before, reading, broken);
       difference.streams();
       difference.endpoints();
     }
     before = &reading;
-    if (begun > reading.asked) continue;
+    if (begun > reading.asked || is_switching(evidence, reading)) continue;
     judge_run(evidence, begun, reading, broken);
     judge_reports(evidence, reading, broken);
     judge_last_answers(evidence, begun, reading, broken);

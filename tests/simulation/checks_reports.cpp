@@ -6,7 +6,7 @@
 
 #include "icd/sentence.hpp"
 #include "simulation/checks.hpp"
-#include "simulation/judge.hpp"
+#include "simulation/meant.hpp"
 #include "simulation/messages.hpp"
 #include "simulation/scoreboard.hpp"
 #include "simulation/world.hpp"
@@ -14,9 +14,6 @@
 namespace adit::simulation {
 namespace {
 
-/// A report posted so shortly before a run began may be meant for it, and so long nobody may have noticed
-/// that it began.
-constexpr double kShortly = 25;
 constexpr double kLongestDoubt = 60;
 
 using dispatch::ReportState;
@@ -48,25 +45,19 @@ std::int64_t serial_of(const dispatch::Report& report) {
 }
 
 void once(const Evidence& evidence, Broken& broken) {
-  std::map<std::int64_t, double> posted;  // last
   std::set<std::pair<std::int64_t, std::string>> records;
-  double run_began = 0;
+  Meant meant;
   for (const Event& event : evidence.events) {
-    if (event.kind == Kind::NewRun) run_began = event.at;
-    const bool is_asked = event.what == kReports || event.what == kSend || event.what == kCompose;
-    if (event.kind == Kind::Invoke && is_asked) posted[event.serial] = event.at;
+    meant.add(event);
     if (!is_report(event, Kind::Taken)) continue;
     const bool costs = !event.who.ends_with(kInAStop);
     if (costs && !records.insert({event.serial, event.who}).second) {
       broken.push_back(icd::sentence("Once: report ", event.serial, " was recorded again in ", event.who,
                                      " at ", event.at));
     }
-    const bool meant = !posted.contains(event.serial) ? false : posted[event.serial] >= run_began - kShortly;
-    const bool unnoticed = event.at < run_began + kShortly;
-    if (run_began > 0 && !meant && !unnoticed) {
-      broken.push_back(icd::sentence("Once: report ", event.serial, " was sent into ", event.who,
-                                     " unasked at ", event.at));
-    }
+    if (meant.is_meant(event.serial, place_of(event.who), event.at)) continue;
+    broken.push_back(
+        icd::sentence("Once: report ", event.serial, " was sent into ", event.who, " unasked at ", event.at));
   }
 }
 

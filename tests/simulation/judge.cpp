@@ -4,7 +4,9 @@
 #include <cmath>
 #include <utility>
 
+#include "simulation/courses.hpp"
 #include "simulation/http.hpp"
+#include "simulation/meant.hpp"
 #include "simulation/messages.hpp"
 #include "simulation/scoreboard.hpp"
 #include "simulation/world.hpp"
@@ -55,8 +57,13 @@ void Judge::look() {
 
 void Judge::viewed(const Json& view) {
   const double now = view.at("now");
+  place_ = place_at(view.at("endpoints").front().at("address"));
   if (looks_) {
-    for (const Json& row : view.at("reports")) judge_report(row, now);
+    for (const Json& row : view.at("reports")) {
+      // What is in doubt elsewhere is found out there.
+      const bool elsewhere = row.at("run") != view.at("run_number") && row.at("state") == "in doubt";
+      if (!elsewhere) judge_report(row, now);
+    }
     if (random_.chance(0.05)) words_.push_back({"/adit/identify", "identify", R"({"seconds": 4})", 0});
   }
   for (const Json& row : view.at("aside")) judge_aside(row);
@@ -65,6 +72,10 @@ void Judge::viewed(const Json& view) {
 void Judge::judge_report(const Json& row, double now) {
   if (row.at("position").is_null()) return;  // of a damaged ledger: nobody knows what it was
   const std::string state = row.at("state");
+  if (row.at("position").is_null()) {  // what it said nobody knows
+    if (state == "in doubt") say(row.at("number"), kDone, 0);
+    return;
+  }
   const std::int64_t id = row.at("number"),
                      serial = std::llround(row.at("position").at("x").get<double>() / 100);
   const double age = now - row.at("changed").get<double>();
@@ -110,12 +121,12 @@ void Judge::say_next() {
               {.what = word.what, .who = "operator", .serial = word.serial}, [this](int) { say_next(); });
 }
 
-/// In the run that is on.
 bool Judge::is_recorded(std::int64_t serial) const {
   const auto& events = world_.history().events();
   for (auto event = events.rbegin(); event != events.rend(); ++event) {
-    if (event->kind == Kind::NewRun) return false;
-    if (event->kind == Kind::Taken && event->what == kReports && event->serial == serial) return true;
+    const bool is_record = event->kind == Kind::Taken && event->what == kReports && event->serial == serial;
+    if ((!is_record && event->kind != Kind::NewRun) || place_of(event->who) != place_) continue;
+    return is_record;
   }
   return false;
 }

@@ -36,6 +36,7 @@ class Judge {
   void compose();
   void say(std::int64_t number, const char* what, std::int64_t serial);
   void say_next();
+  /// In the run that is on at the Command Post that the settings name.
   bool is_recorded(std::int64_t serial) const;
   bool is_over() const;
 
@@ -46,6 +47,7 @@ class Judge {
   const bool looks_;  // while there is trouble
   const bool composes_;
   std::int64_t composed_ = 0;
+  int place_ = 0;           // of the Command Post that the view names
   std::deque<Word> words_;  // to be said
 };
 

@@ -5,12 +5,14 @@
 #include <algorithm>
 #include <cerrno>
 
+#include "simulation/courses.hpp"
 #include "simulation/world.hpp"
 
 namespace adit::simulation {
 
 Link::Link(World& world, uplink::Endpoint endpoint, Random random)
-    : world_(world),
+    : view(place_at(endpoint.address)),
+      world_(world),
       endpoint_(std::move(endpoint)),
       random_(random),
       typical_(random_.chance(0.8) ? random_.between(0.0001, 0.002) : random_.between(0.002, 0.15)),

@@ -3,6 +3,7 @@
 #include <algorithm>
 
 #include "simulation/asked.hpp"
+#include "simulation/courses.hpp"
 #include "simulation/messages.hpp"
 #include "simulation/upstream_view.hpp"
 
@@ -22,7 +23,7 @@ PageAccount::PageAccount(const std::vector<Event>& events) {
     // A gateway that begins listens.
     const bool begins = event.kind == Kind::Begins ||
                         (event.kind == Kind::Said && event.text.starts_with("notice: listening"));
-    if (begins) begun_.push_back(i);
+    if (begins || event.what == kCourse) begun_.push_back(i);  // or asks another Command Post
     end_forgotten(i, event);
     read_team(i, event);
     read_upstream(i, event);

@@ -3,7 +3,7 @@
 #include "ledger/ledger.hpp"
 #include "simulation/box.hpp"
 #include "simulation/checks.hpp"
-#include "simulation/command_post.hpp"
+#include "simulation/courses.hpp"
 #include "simulation/judge.hpp"
 #include "simulation/operator.hpp"
 #include "simulation/reader.hpp"
@@ -43,15 +43,16 @@ Outcome play(const Plan& plan) {
   Box box(world);
   const double trouble_for = world.random("length").between(10, 60);
   const Faults faults(world.random("faults"));
-  CommandPost post(world, faults, trouble_for);
-  world.network().serve(&post);
+  Courses posts(world, faults, trouble_for);
+  world.network().serve(&posts);
   const Team team(world, trouble_for);
   const Operator operator_(world, box, trouble_for);
   const Judge judge(world, trouble_for);
+  const Switcher switcher(world, trouble_for);
   const Reader reader(world, trouble_for, trouble_for + kRest - 5);
   plan_ends(world, box, trouble_for);
   world.disk().faults().plan(trouble_for);
-  world.after(seconds(trouble_for), [&] { post.calm(); });
+  world.after(seconds(trouble_for), [&] { posts.calm(); });
   world.after(seconds(trouble_for + kRest), [&] { box.finish(); });
   box.live();
   return {.hash = world.history().hash(),

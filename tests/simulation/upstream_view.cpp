@@ -50,6 +50,7 @@ void UpstreamView::came(std::string_view bytes) {
     World::current().note({.kind = Kind::Replied,
                            .what = path_,
                            .who = is_page(answer->body) ? kForeign : "",
+                           .serial = place_,
                            .status = answer->status(),
                            .stamp = std::atof(answer->header("retry-after").c_str()),
                            .text = path_ == kStatus ? answer->body : "",

@@ -15,10 +15,12 @@ inline constexpr const char* kTooLong = "too long";
 /// What Adit gives a connection to the Command Post, and takes from it, as events of the history.
 class UpstreamView {
  public:
+  explicit UpstreamView(int place) : place_(place) {}
   void left(std::string_view bytes);
   void came(std::string_view bytes);
 
  private:
+  const int place_;  // of the Command Post
   HttpStream requests_, answers_;
   std::string path_;
 };

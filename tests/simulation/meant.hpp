@@ -1,0 +1,45 @@
+#pragma once
+
+#include <cstdint>
+#include <map>
+#include <set>
+#include <string>
+#include <vector>
+
+#include "simulation/history.hpp"
+
+namespace adit::simulation {
+
+/// Which run a report was meant for: what is posted is meant for the Command Post that the settings name, and
+/// for the run that is on there.
+class Meant {
+ public:
+  /// Each event in its order.
+  void add(const Event& event);
+  /// Whether a report that is recorded at that moment, in the run of that Command Post that is on, was meant
+  /// for it; or nobody may have noticed yet that the run before is over.
+  bool is_meant(std::int64_t serial, int place, double now) const;
+
+ private:
+  struct Posting {
+    double at = 0;
+    std::set<int> places;
+    bool unheard = false;  // nothing had been heard of a run there: it is meant for the first that is
+  };
+  void switched(const Event& event);
+  void posted(const Event& event);
+  std::set<int> places(double now) const;
+
+  std::map<std::int64_t, std::vector<Posting>> postings_;
+  std::map<std::uint64_t, std::int64_t> open_;  // requests, and their serials
+  std::map<int, double> run_began_;
+  std::set<int> heard_;
+  int place_ = 0, before_ = 0;
+  double switched_ = -1e9;
+  bool unsure_ = false;  // whether the last switch was made
+};
+
+/// Of a run's name.
+int place_of(const std::string& run);
+
+}  // namespace adit::simulation

@@ -13,6 +13,7 @@
 namespace adit::simulation {
 namespace {
 
+constexpr std::uint64_t kPage = 4096;
 Disk* the_disk = nullptr;
 
 int fail(int error) {
@@ -176,13 +177,22 @@ ssize_t Disk::write(int fd, std::span<const char> bytes, std::optional<off_t> at
   bytes = bytes.first(there + take_room(open.name, bytes.size() - there));
   if (bytes.empty()) return fail(ENOSPC);
   if (world_.dies_next()) {  // in the midst of it
-    put(fd, open, bytes.first(random_.below(bytes.size())), place);
+    put(fd, open, bytes.first(cut(open, bytes.size(), place)), place);
     world_.crossing();
   }
   const ssize_t count = put(fd, open, bytes, place);
   if (!at && count > 0) ::lseek(fd, place + count, SEEK_SET);
   world_.crossing();
   return count;
+}
+
+/// How much of a write there is where the process dies in it. The kernel ends one only between two pages;
+/// what is in memory is cut anywhere, which is harder.
+std::uint64_t Disk::cut(const Open& open, std::uint64_t size, off_t at) {
+  const std::uint64_t part = random_.below(size), place = static_cast<std::uint64_t>(at);
+  if (is_in_memory(open.name)) return part;
+  const std::uint64_t end = (place + part) / kPage * kPage;
+  return end > place ? end - place : 0;
 }
 
 ssize_t Disk::put(int fd, const Open& open, std::span<const char> bytes, off_t at) {

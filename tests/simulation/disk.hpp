@@ -76,6 +76,7 @@ class Disk {
   bool is_full(const std::string& name) const;
   /// How many of so many new bytes there is room for.
   std::uint64_t take_room(const std::string& name, std::uint64_t bytes);
+  std::uint64_t cut(const Open& open, std::uint64_t size, off_t at);
   ssize_t put(int fd, const Open& open, std::span<const char> bytes, off_t at);
   std::optional<std::string> bytes_of(const std::string& name) const;
   void note_settings(const std::string& mark);

@@ -13,7 +13,7 @@
 namespace adit::simulation {
 namespace {
 
-constexpr double kRest = 120;  // seconds after the last fault, in which all that waits goes
+constexpr double kRest = 240;  // seconds after the last fault, in which all that waits goes
 
 /// In three of four runs: up to four ends of the process, by SIGTERM, SIGKILL or a power cut.
 void plan_ends(World& world, Box& box, double trouble_for) {

@@ -9,7 +9,8 @@
 namespace adit::simulation {
 namespace {
 
-/// The gateway was told to end, or begins anew for another reason than settings.
+/// The gateway was told to end, or begins anew for another reason than settings: until it listens again,
+/// it is that which cuts.
 bool ends_the_gateway(const Event& event) {
   const bool is_anew = event.kind == Kind::Said &&
                        (event.text.contains("beginning anew") || event.text.contains("listening anew"));
@@ -27,12 +28,17 @@ bool is_sent_away(const Event& event) {
 void not_cut(const Evidence& evidence, Broken& broken) {
   std::map<std::uint64_t, bool> asking;  // the requests under way, and whether settings were saved since
   double saved = 0;
+  bool is_ending = false;
   for (const Event& event : evidence.events) {
-    if (ends_the_gateway(event)) asking.clear();
+    if (ends_the_gateway(event)) {
+      asking.clear();
+      is_ending = true;
+    }
+    if (event.kind == Kind::Said && event.text.contains("listening address")) is_ending = false;
     if (event.kind == Kind::Invoke) asking[event.request] = false;
     if (event.kind == Kind::Whole && !event.text.empty()) asking.erase(event.request);  // ends its direction
     if (event.kind == Kind::Stalls) asking.erase(event.request);  // is waited for only so long
-    if (event.kind == Kind::Saved) {
+    if (event.kind == Kind::Saved && !is_ending) {
       saved = event.at;
       for (auto& [request, met] : asking) met = true;
     }

@@ -1,6 +1,7 @@
 #include "simulation/door.hpp"
 
 #include <arpa/inet.h>
+#include <fcntl.h>
 #include <netinet/in.h>
 #include <sys/socket.h>
 #include <unistd.h>
@@ -30,6 +31,11 @@ int Door::connect(const std::string& address) {
   return ends[0];
 }
 
+void Door::closed(int fd) {
+  clients_.erase(fd);
+  refused_.erase(fd);
+}
+
 std::shared_ptr<void> Door::open(intake::Admit admit) {
   admit_ = std::move(admit);
   const auto token = std::make_shared<int>(0);
@@ -55,6 +61,7 @@ void Door::admit_all() {
     peer.sin_addr.s_addr = next.address;
     peer.sin_port = htons(40000);
     admit_(next.fd, reinterpret_cast<const sockaddr*>(&peer), sizeof peer);
+    if (::fcntl(next.fd, F_GETFD) < 0) refused_.insert(next.client);
   }
 }
 

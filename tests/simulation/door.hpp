@@ -27,7 +27,9 @@ class Door {
   /// A server takes connections until the token is let go of.
   std::shared_ptr<void> open(intake::Admit admit);
   /// The client has closed its end.
-  void closed(int fd) { clients_.erase(fd); }
+  void closed(int fd);
+  /// The server did not take in the client's connection: its address had as many as it may.
+  bool has_refused(int fd) const { return refused_.contains(fd); }
   /// The process is over: what it said before is still heard, and nothing of what it says now.
   void cut();
 
@@ -40,6 +42,7 @@ class Door {
 
   World& world_;
   std::set<int> clients_;  // their ends of connections that were admitted
+  std::set<int> refused_;  // and of those that were closed at once
   std::deque<Waiting> waiting_;
   intake::Admit admit_;
   std::weak_ptr<void> token_;

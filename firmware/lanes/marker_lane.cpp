@@ -111,9 +111,16 @@ void MarkerLane::put_behind(const WaitingMarkers& markers) {
     may_go_ahead_ = true;
     return put_back(markers);
   }
-  const auto last =
-      changes_.says_more_than(marker) ? changes_.in_order().rbegin()->first : changes_.apply(marker);
-  if (markers.updates > 0) add_to(updates_, last, {markers.updates, markers.accepted});
+  const bool is_needless = changes_.says_more_than(marker);
+  const auto last = is_needless ? changes_.in_order().rbegin()->first : changes_.apply(marker);
+  if (markers.updates > 0) {
+    add_to(updates_, last, {markers.updates, markers.accepted});
+  } else if (!is_needless && !updates_.empty()) {
+    // It is the end of the update that it came in, which is the first that waits: otherwise nothing would
+    // wait for it any more when the others have gone.
+    const auto its = updates_.extract(updates_.begin());
+    add_to(updates_, last, its.mapped());
+  }
   find_oldest();
 }
 

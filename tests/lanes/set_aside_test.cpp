@@ -198,6 +198,17 @@ TEST(MarkerLaneBehind, LetsOthersGoFirstAndLosesNothing) {
   EXPECT_EQ(again->updates, 1);
 }
 
+TEST(MarkerLaneBehind, GivesOutTheFirstOfAnUpdateWhenTheOthersHaveGone) {
+  MarkerLane lane({.per_message = 1});
+  lane.add({{marker("a", 1), marker("b", 1)}}, at(0));
+  lane.put_behind(*lane.take());
+  EXPECT_EQ(lane.take()->updates, 0u) << "its update has not gone whole";
+  ASSERT_TRUE(lane.oldest());
+  const auto again = lane.take();
+  EXPECT_EQ(again->update.markers.front().ns, "a");
+  EXPECT_EQ(again->updates, 1u);
+}
+
 TEST(MarkerLaneBehind, LeavesTheNewerChangeOfTheSameMarkerInItsPlace) {
   MarkerLane lane({.per_message = 1});
   lane.add({{marker("a", 1)}}, at(0));

@@ -14,6 +14,8 @@ namespace {
 constexpr double kShortly = 25;
 /// Seconds within which a switch that was asked for is made.
 constexpr double kSwitching = 6;
+/// Seconds within which what a client asked may still count that heard nothing.
+constexpr double kUnknown = 12;
 
 }  // namespace
 
@@ -40,12 +42,26 @@ void Meant::switched(const Event& event) {
 
 void Meant::posted(const Event& event) {
   if (event.kind == Kind::Invoke) {
-    open_[event.request] = event.serial;
-    const std::set<int> there = places(event.at);
-    const bool unheard = !std::ranges::all_of(there, [this](int place) { return heard_.contains(place); });
-    postings_[event.serial].push_back({event.at, there, unheard});
-  } else if ((event.kind == Kind::Answered || event.kind == Kind::Gone) && open_.contains(event.request)) {
-    postings_[event.serial].back().places.merge(places(event.at));
+    postings_[event.serial].push_back({event.at, {}, false, event.request});
+    open_[event.request] = {event.serial, 1e9};
+  }
+  const auto found = open_.find(event.request);
+  if (found == open_.end()) return;
+  if (event.kind == Kind::Answered) found->second.until = event.at;
+  if (event.kind == Kind::Gone) found->second.until = event.at + kUnknown;
+  reach(event.at);
+}
+
+void Meant::reach(double now) {
+  const std::set<int> there = places(now);
+  const bool unheard = !std::ranges::all_of(there, [this](int place) { return heard_.contains(place); });
+  std::erase_if(open_, [now](const auto& each) { return each.second.until < now; });
+  for (const auto& [request, open] : open_) {
+    for (Posting& posting : postings_[open.serial]) {
+      if (posting.request != request) continue;
+      posting.places.insert(there.begin(), there.end());
+      posting.unheard = posting.unheard || unheard;
+    }
   }
 }
 
@@ -54,7 +70,10 @@ void Meant::add(const Event& event) {
   const bool is_status = event.kind == Kind::Replied && event.what == kStatus && !event.says.empty();
   if (is_status) heard_.insert(static_cast<int>(event.serial));
   if (event.actor != Actor::Team) return;
-  if (event.what == kCourse) switched(event);
+  if (event.what == kCourse) {
+    switched(event);
+    reach(event.at);
+  }
   if (event.what == kReports || event.what == kSend || event.what == kCompose) posted(event);
 }
 

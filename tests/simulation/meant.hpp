@@ -25,13 +25,20 @@ class Meant {
     double at = 0;
     std::set<int> places;
     bool unheard = false;  // nothing had been heard of a run there: it is meant for the first that is
+    std::uint64_t request = 0;
+  };
+  struct Open {
+    std::int64_t serial = 0;
+    double until = 0;
   };
   void switched(const Event& event);
   void posted(const Event& event);
+  /// Adds the places that the settings name now to what is posted at this time.
+  void reach(double now);
   std::set<int> places(double now) const;
 
   std::map<std::int64_t, std::vector<Posting>> postings_;
-  std::map<std::uint64_t, std::int64_t> open_;  // requests, and their serials
+  std::map<std::uint64_t, Open> open_;  // requests that may still count
   std::map<int, double> run_began_;
   std::set<int> heard_;
   int place_ = 0, before_ = 0;

@@ -259,12 +259,16 @@ class Opening {
 
 }  // namespace
 
-/// Where SQLite can make no file, it says that there is none: the folder itself is asked for the reason.
+/// Where SQLite can make no file, it says that there is none: the folder itself is asked for the reason,
+/// which may have come up since the opening began.
 Attempt<Opened> open_database(const std::string& folder) {
   auto opened = Opening(folder).open();
-  if (!opened && !opened.error().full) {
-    const auto room = try_room(folder, 0);
-    opened.error().full = !room && room.error().full;
+  if (opened || opened.error().full) return opened;
+  if (const auto room = try_room(folder, 0); !room) {
+    Failure& failure = opened.error();
+    failure.full = room.error().full;
+    failure.read_only = failure.read_only || room.error().read_only;
+    failure.failing = failure.failing || room.error().failing;
   }
   return opened;
 }

@@ -1,5 +1,6 @@
 #include "ledger/full_disk.hpp"
 
+#include <fcntl.h>
 #include <gmock/gmock.h>
 #include <sqlite3.h>
 #include <sys/mount.h>
@@ -7,6 +8,8 @@
 #include <cerrno>
 #include <cstring>
 #include <fstream>
+#include <string>
+#include <string_view>
 #include <vector>
 
 #include "ledger/folder.hpp"
@@ -230,6 +233,42 @@ TEST(FullDiskOfALedger, IsSaidWhereNoFileCanBeMadeBesideIt) {
   const auto ledger = Ledger::open(folder.text());
   ASSERT_FALSE(ledger);
   EXPECT_TRUE(ledger.error().full) << ledger.error().what;
+}
+
+/// The folder's file system is read-only from when SQLite opens its log. Needs the right to mount.
+class TurnsReadOnly {
+ public:
+  explicit TurnsReadOnly(const Folder& folder) {
+    path = folder.text();
+    vfs()->xSetSystemCall(vfs(), kOpen, reinterpret_cast<sqlite3_syscall_ptr>(&open));
+  }
+  ~TurnsReadOnly() {
+    vfs()->xSetSystemCall(vfs(), kOpen, nullptr);
+    if (mounted) ::umount2(path.c_str(), MNT_DETACH);
+  }
+  TurnsReadOnly(const TurnsReadOnly&) = delete;
+  TurnsReadOnly& operator=(const TurnsReadOnly&) = delete;
+
+ private:
+  static constexpr const char* kOpen = "open";
+  static sqlite3_vfs* vfs() { return sqlite3_vfs_find(nullptr); }
+  /// What is open for writing keeps the kernel from remounting it: an empty one is mounted over it.
+  static int open(const char* file, int flags, int mode) {
+    if (!mounted && std::string_view(file).ends_with("-wal"))
+      mounted = ::mount("adit-test", path.c_str(), "tmpfs", MS_RDONLY, nullptr) == 0;
+    return ::open(file, flags, mode);
+  }
+  static inline std::string path;
+  static inline bool mounted = false;
+};
+
+TEST(ReadOnlyDiskOfALedger, IsSaidWhereItTurnsSoWhileItIsOpened) {
+  const Folder folder;
+  open_or_fail(folder);
+  const TurnsReadOnly turns(folder);
+  const auto ledger = Ledger::open(folder.text());
+  if (ledger) GTEST_SKIP() << "this needs the right to mount";
+  EXPECT_TRUE(ledger.error().read_only) << ledger.error().what;
 }
 
 TEST(FullDiskOfALedger, LeavesTheRoomThatItReservedForReportsUnderWay) {

@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <cerrno>
+#include <iterator>
 #include <memory>
 #include <utility>
 
@@ -23,8 +24,8 @@ Journal::~Journal() {
 void Journal::begin(const Clock& clock) {
   const std::uint64_t last = number_;
   if (open_next() && last > 0) compact(last);
-  unsaid_ = framed(Kind::LifeBegins, {}) + framed(Kind::Clock, said(clock));
-  (void)append({});
+  note(Kind::LifeBegins, {});
+  note(Kind::Clock, said(clock));
 }
 
 /// Never a file of an earlier life: its last record may be torn.
@@ -65,11 +66,11 @@ void Journal::markers_sent(const icd::MarkersUpdate& update) {
 }
 
 void Journal::state_answered(bool done) {
-  note(done ? Kind::StateDone : Kind::StateBack, {});
+  done ? note(Kind::StateDone, {}) : comes_back(Kind::StateSent, Kind::StateBack);
 }
 
 void Journal::markers_answered(bool done) {
-  note(done ? Kind::MarkersDone : Kind::MarkersBack, {});
+  done ? note(Kind::MarkersDone, {}) : comes_back(Kind::MarkersSent, Kind::MarkersBack);
 }
 
 void Journal::paced(icd::Uri uri, const pace::Learned& learned) {
@@ -80,11 +81,28 @@ void Journal::stamped(icd::Uri uri, icd::Stamp stamp) {
   note(Kind::Stamp, said(uri, stamp));
 }
 
-Journal::Kept Journal::append(std::string record) {
+void Journal::note(Kind kind, std::string_view said) {
+  std::string record = framed(kind, said);
+  if (append(record) || unsaid_size_ + record.size() > kMostUnsaid) return;
+  unsaid_size_ += record.size();
+  unsaid_.push_back({kind, std::move(record)});
+}
+
+void Journal::comes_back(Kind sent, Kind back) {
+  const auto last = std::find_if(unsaid_.rbegin(), unsaid_.rend(),
+                                 [&](const Unsaid& unsaid) { return unsaid.kind == sent; });
+  if (last == unsaid_.rend()) return note(back, {});
+  unsaid_size_ -= last->record.size();
+  unsaid_.erase(std::next(last).base());
+}
+
+Journal::Kept Journal::append(const std::string& record) {
   if (!file_ && !open_next()) return std::unexpected(trouble_);
-  record.insert(0, unsaid_);
-  if (auto written = write(record); !written) return written;
+  std::string bytes;
+  for (const Unsaid& unsaid : unsaid_) bytes += unsaid.record;
+  if (auto written = write(bytes + record); !written) return written;
   unsaid_.clear();
+  unsaid_size_ = 0;
   trouble_.clear();
   if (size_ > std::max(least_, snapshot_)) turn_over();
   return {};

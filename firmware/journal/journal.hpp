@@ -5,6 +5,7 @@
 #include <expected>
 #include <string>
 #include <string_view>
+#include <vector>
 
 #include "icd/markers_update.hpp"
 #include "icd/state_update.hpp"
@@ -21,9 +22,12 @@ namespace adit::journal {
 /// not yet taken, when each URI was asked last, the stamps given out, and the senders' clocks. (README.md)
 ///
 /// Each call is one write() by the loop to a file that is in memory, and what it wrote is there for the next
-/// life when it has returned, whatever happens to this one.
+/// life when it has returned, whatever happens to this one. What there is no room for and nobody is answered
+/// for is said before what comes next: nothing is accepted where it is not known what became of all before.
 class Journal {
  public:
+  /// What waits to be said, at most: all that comes beyond is lost.
+  static constexpr std::size_t kMostUnsaid = 8u << 20;
   /// A journal is begun anew, beside its snapshot, once it is as large as that, and at least so large.
   static constexpr std::size_t kLeastTurn = 1u << 20;
 
@@ -34,8 +38,7 @@ class Journal {
 
   /// What the lives before left.
   Carried read() const { return folder_.read(); }
-  /// This life begins; nothing is told before. Where there is no room to say so, it is said before what comes
-  /// next.
+  /// This life begins; nothing is told before.
   void begin(const Clock& clock);
 
   /// An error: it is not kept, and must not be answered as if it were.
@@ -59,8 +62,10 @@ class Journal {
   const std::string& trouble() const { return trouble_; }
 
  private:
-  void note(Kind kind, std::string_view said) { (void)append(framed(kind, said)); }
-  Kept append(std::string record);
+  void note(Kind kind, std::string_view said);
+  /// What was sent waits again: nothing has happened, as long as it is unsaid that it was sent.
+  void comes_back(Kind sent, Kind back);
+  Kept append(const std::string& record);
   Kept write(std::string_view bytes);
   bool open_next();
   void turn_over();
@@ -70,7 +75,12 @@ class Journal {
   Folder folder_;
   std::uint64_t number_;  // of the file that is written
   loop::FileDescriptor file_;
-  std::string unsaid_;                   // how this life began, until it is written
+  struct Unsaid {
+    Kind kind;
+    std::string record;
+  };
+  std::vector<Unsaid> unsaid_;  // in order
+  std::size_t unsaid_size_ = 0;
   std::size_t size_ = 0, snapshot_ = 0;  // of the file, and of the last snapshot, in bytes
   std::size_t least_ = kLeastTurn;
   bool compacting_ = false;

@@ -235,6 +235,42 @@ TEST_F(JournalTest, SaysThatALifeBeganAlsoWhereThereIsRoomOnlyLater) {
   EXPECT_EQ(left().clock()->boot, "after");
 }
 
+/// A DeleteAll that was taken would come again after what was accepted and taken since.
+TEST_F(JournalTest, SaysWhatWasTakenBeforeWhatIsAcceptedOnceThereIsRoom) {
+  const auto journal = life();
+  ASSERT_TRUE(journal->accepted(one_marker(1)));
+  {
+    const NoRoom none(1);
+    journal->markers_sent(one_marker(1));
+    journal->markers_answered(false);
+    journal->markers_sent(one_marker(1));
+    journal->markers_answered(true);
+  }
+  ASSERT_TRUE(journal->accepted(one_marker(2)));
+  std::vector<std::int32_t> ids;
+  for (const icd::Marker& marker : left().markers().markers) ids.push_back(marker.id);
+  EXPECT_THAT(ids, testing::ElementsAre(2));
+}
+
+TEST_F(JournalTest, SaysNothingOfWhatWasSentAndCameBackWhereThereWasNoRoom) {
+  const auto journal = life();
+  ASSERT_TRUE(journal->accepted(one_marker(1)));
+  {
+    const NoRoom none(1);
+    // Together more than waits to be said at most.
+    icd::MarkersUpdate sent = one_marker(1);
+    sent.markers.front().ns = std::string(Journal::kMostUnsaid / 3, 'n');
+    for (int round = 0; round < 10; ++round) {
+      journal->markers_sent(sent);
+      journal->markers_answered(false);
+    }
+    journal->markers_sent(one_marker(1));
+    journal->markers_answered(true);
+  }
+  journal->paced(icd::Uri::StateUpdate, {});
+  EXPECT_TRUE(left().markers().markers.empty());
+}
+
 TEST_F(JournalTest, SaysSoWhereItsFolderCannotBeWritten) {
   std::ofstream(folder_ / "journal") << "";
   const auto journal = life();

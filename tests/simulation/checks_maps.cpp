@@ -106,14 +106,16 @@ void check_grids(const Name& name, const std::vector<Posted>& all, Broken& broke
 }
 
 /// Between one taking and the next the process was killed, or the first one's answer was lost or no 200; or
-/// the operator sent again what was still set aside after a kill, though it waited by then.
+/// the operator sent again what was still set aside after a kill, though it waited by then, or was set aside
+/// twice.
 bool may_be_double(const std::vector<Event>& events, std::size_t first, std::size_t second) {
   const auto is_kill = [](const Event& event) { return event.kind == Kind::Dies; };
   const auto is_word = [](const Event& event) {
     return event.kind == Kind::Invoke && event.what == kSendAside;
   };
   const auto at = [&](std::size_t place) { return events.begin() + static_cast<std::ptrdiff_t>(place); };
-  if (std::any_of(at(first), at(second), is_word) && std::any_of(at(0), at(first), is_kill)) return true;
+  const auto kill = std::find_if(at(0), at(second), is_kill);
+  if (std::any_of(kill, at(second), is_word)) return true;
   int status = -1;
   for (std::size_t i = first; i < second; ++i) {
     const Event& event = events[i];

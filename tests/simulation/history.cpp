@@ -8,11 +8,12 @@ namespace adit::simulation {
 namespace {
 
 constexpr const char* kWords[] = {
-    "asks",     "has asked",     "stalls at",    "hears",  "hears nothing", "sends",
-    "has sent", "must not send", "reads",        "takes",  "begins",        "is told to stop",
-    "dies",     "power cut",     "cannot begin", "ended",  "saved",         "records another's",
-    "new run",  "fault",         "written",      "serves", "mended",        "slow",
-    "calm",     "tells",         "shows",        ""};
+    "asks",      "has asked",    "stalls at",     "hears",           "hears nothing",
+    "sends",     "has sent",     "must not send", "reads",           "opens",
+    "closes",    "takes",        "begins",        "is told to stop", "dies",
+    "power cut", "cannot begin", "ended",         "saved",           "records another's",
+    "new run",   "fault",        "written",       "serves",          "mended",
+    "slow",      "calm",         "tells",         "shows",           ""};
 
 void mix(std::uint64_t& hash, std::uint64_t number) {
   for (int i = 0; i < 8; ++i, number >>= 8) hash = (hash ^ (number & 0xFF)) * 0x100000001B3u;
@@ -23,6 +24,7 @@ void mix(std::uint64_t& hash, std::string_view text) {
 
 bool is_of_the_story(const Event& event) {
   if (event.kind == Kind::Told || event.kind == Kind::Shows) return false;
+  if (event.kind == Kind::Opens || event.kind == Kind::Closes) return false;
   if (event.actor == Actor::Team && event.who == "reader") return false;
   if (event.kind == Kind::Said) return !event.text.starts_with("info");
   return event.what != "/api/status" || event.kind == Kind::Fault || event.actor == Actor::Team;

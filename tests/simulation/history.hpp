@@ -19,6 +19,8 @@ enum class Kind : std::uint8_t {
   Left,       // the last one: the message it carries
   Forbidden,  // it was one that the ICD forbids, or a connection that must not be; the text says why
   Replied,    // Adit has read the last byte of an answer of that status
+  Opens,      // it finds a connection upstream open
+  Closes,     // it closes one: what was under way there has failed
   Taken,      // the Command Post has recorded a report, or taken a message
   Begins,     // a life of aditd
   Stops,      // it was told to, by SIGTERM
@@ -60,6 +62,8 @@ struct Event {
 
 /// Of Forbidden, where it is a connection.
 inline constexpr const char* kConnect = "connect";
+/// Of Opens and Closes.
+inline constexpr const char* kConnection = "a connection";
 /// Of Stalls, as its status.
 inline constexpr int kInHead = 1, kInBody = 2;
 

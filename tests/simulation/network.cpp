@@ -109,6 +109,7 @@ Link* Network::find(int fd) {
 void Network::close(int fd) {
   const auto found = links_.find(fd);
   if (found == links_.end()) return;
+  world_.note({.kind = Kind::Closes, .what = kConnection, .who = ""});
   found->second->close();
   links_.erase(found);
 }

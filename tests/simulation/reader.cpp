@@ -18,8 +18,8 @@ constexpr int kOften = 3;
 
 /// Events that change nothing that the page shows.
 bool is_silent(const Event& event) {
-  return event.kind == Kind::Told || event.kind == Kind::Shows || event.what == kView ||
-         event.what == kMetrics;
+  return event.kind == Kind::Told || event.kind == Kind::Shows || event.kind == Kind::Opens ||
+         event.kind == Kind::Closes || event.what == kView || event.what == kMetrics;
 }
 
 }  // namespace

@@ -62,7 +62,10 @@ std::expected<std::size_t, int> read(int fd, std::span<char> bytes) {
 
 int connect_error(int fd) {
   const Link* const link = link_of(fd);
-  return link == nullptr ? ECONNRESET : link->error;
+  if (link == nullptr) return ECONNRESET;
+  if (link->error == 0)
+    World::current().note({.kind = simulation::Kind::Opens, .what = simulation::kConnection, .who = ""});
+  return link->error;
 }
 
 /// The exchange itself looks at what is not acknowledged, and gives up as soon.

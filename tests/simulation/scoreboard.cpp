@@ -7,7 +7,8 @@
 namespace adit::simulation {
 namespace {
 
-constexpr int kSeenToRun = 4;  // statuses that were answered
+constexpr int kSeenToRun = 4;       // statuses that were answered
+constexpr double kSeenToBeOn = 30;  // seconds: a new run may be seen when it has been on for so long
 constexpr const char* kJson = "Content-Type: application/json\r\n";
 
 std::string number(double value) {
@@ -26,13 +27,14 @@ Scoreboard::Scoreboard(World& world, const Faults& faults, Random& random, int p
       run_began_(-random.between(300, 3000)) {}
 
 bool Scoreboard::may_begin_run() const {
-  return statuses_ >= kSeenToRun;
+  return statuses_ >= kSeenToRun && shown_ >= kSeenToBeOn;
 }
 
 void Scoreboard::begin_run() {
   ++run_;
   remaining_ = 25;
   score_ = 0;
+  shown_ = 0;
   run_began_ = world_.time();
   stopped_ = false;
   world_.note({.actor = Actor::Post,
@@ -45,6 +47,7 @@ void Scoreboard::begin_run() {
 std::string Scoreboard::status() {
   ++statuses_;
   const double clock = faults_.has(Fault::ConstantClocks) ? 25.98 : world_.time() - run_began_;
+  shown_ = clock;
   return http_answer("200 OK", kJson,
                      "{\"score\": " + std::to_string(score_) + ", \"run_clock\": " + number(clock) +
                          ", \"remaining_reports\": " + std::to_string(remaining_) +

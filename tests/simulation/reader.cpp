@@ -1,5 +1,6 @@
 #include "simulation/reader.hpp"
 
+#include <algorithm>
 #include <string_view>
 #include <utility>
 
@@ -22,15 +23,37 @@ bool is_silent(const Event& event) {
          event.kind == Kind::Closes || event.what == kView || event.what == kMetrics;
 }
 
+bool anything_waits(const nlohmann::json& view) {
+  const auto is_going = [](const nlohmann::json& report) {
+    return report.at("state") == "waiting" || report.at("state") == "sending";
+  };
+  return std::ranges::any_of(view.at("activities"), [](const auto& row) { return row.at("waiting") > 0; }) ||
+         std::ranges::any_of(view.at("reports"), is_going);
+}
+
 }  // namespace
 
-Reader::Reader(World& world, double until, double end)
+Reader::Reader(World& world, double until)
     : world_(world),
       client_(world, "10.0.0.11", {.keeps_alive = false, .patience = 20, .dribbles = 0},
               world.random("client of the reader")),
       until_(until) {
   world.after(seconds(world.random("reader").between(0, kEvery)), [this] { look(); });
-  world.after(seconds(end), [this] { look_at(kView, [this](const std::string& body) { viewed(body); }); });
+}
+
+void Reader::wait_for_rest(double from, double end, std::function<void()> rested) {
+  end_ = end;
+  rested_ = std::move(rested);
+  world_.after(seconds(from), [this] { look_at_rest(); });
+}
+
+void Reader::look_at_rest() {
+  const std::size_t before = readings_.size();
+  look_at(kView, [this](const std::string& body) { viewed(body); });
+  world_.after(seconds(kEvery), [this, before] {
+    const bool nothing_waits = readings_.size() > before && !anything_waits(readings_.back().view);
+    nothing_waits || world_.time() >= end_ ? rested_() : look_at_rest();
+  });
 }
 
 void Reader::look() {

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cstddef>
+#include <functional>
 #include <nlohmann/json.hpp>
 #include <string>
 #include <vector>
@@ -22,22 +23,26 @@ struct Reading {
   std::string lie = {};      // in what lights or STATUS disagreed with it for as long as they may not
 };
 
-/// Somebody who looks at the page every few seconds, and once more at the end.
+/// Somebody who looks at the page every few seconds.
 class Reader {
  public:
-  /// `world` outlives this.
-  Reader(World& world, double until, double end);
+  /// Looks until then. `world` outlives this.
+  Reader(World& world, double until);
+  /// From `from` on looks whether anything waits still, and tells when nothing does, or when it is `end`.
+  void wait_for_rest(double from, double end, std::function<void()> rested);
   const std::vector<Reading>& readings() const { return readings_; }
 
  private:
   void look();
+  void look_at_rest();
   void look_at(const char* path, std::function<void(const std::string& body)> got);
   void viewed(const std::string& body);
   void look_again(const std::string& lie);
 
   World& world_;
   Client client_;
-  double until_;
+  double until_, end_ = 0;
+  std::function<void()> rested_;
   int again_ = 0;     // how often the same lie was seen
   double since_ = 0;  // first
   std::string lie_;

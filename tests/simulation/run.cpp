@@ -13,7 +13,9 @@
 namespace adit::simulation {
 namespace {
 
-constexpr double kRest = 240;  // seconds after the last fault, in which all that waits goes
+/// Seconds after the last fault: all that waits goes, and operators have had their say, at the soonest; a
+/// robot posts faster than its maps go, so that it may be at the latest.
+constexpr double kLeastRest = 120, kMostRest = 600;
 
 /// In three of four runs: up to four ends of the process, by SIGTERM, SIGKILL or a power cut.
 void plan_ends(World& world, Box& box, double trouble_for) {
@@ -49,11 +51,11 @@ Outcome play(const Plan& plan) {
   const Operator operator_(world, box, trouble_for);
   const Judge judge(world, trouble_for);
   const Switcher switcher(world, trouble_for);
-  const Reader reader(world, trouble_for, trouble_for + kRest - 5);
+  Reader reader(world, trouble_for);
   plan_ends(world, box, trouble_for);
   world.disk().faults().plan(trouble_for);
   world.after(seconds(trouble_for), [&] { posts.calm(); });
-  world.after(seconds(trouble_for + kRest), [&] { box.finish(); });
+  reader.wait_for_rest(trouble_for + kLeastRest, trouble_for + kMostRest, [&] { box.finish(); });
   box.live();
   return {.hash = world.history().hash(),
           .seconds = world.time(),

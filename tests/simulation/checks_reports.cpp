@@ -51,7 +51,8 @@ void once(const Evidence& evidence, Broken& broken) {
     meant.add(event);
     if (!is_report(event, Kind::Taken)) continue;
     const bool costs = !event.who.ends_with(kInAStop);
-    if (costs && !records.insert({event.serial, event.who}).second) {
+    const bool again = !records.insert({event.serial, event.who}).second;
+    if (costs && again && !meant.is_sent_across(event.serial)) {
       broken.push_back(icd::sentence("Once: report ", event.serial, " was recorded again in ", event.who,
                                      " at ", event.at));
     }

@@ -42,7 +42,7 @@ void Meant::switched(const Event& event) {
 
 void Meant::posted(const Event& event) {
   if (event.kind == Kind::Invoke) {
-    postings_[event.serial].push_back({event.at, {}, false, event.request});
+    postings_[event.serial].push_back({event.at, {}, false, event.request, event.what == kSend});
     open_[event.request] = {event.serial, 1e9};
   }
   const auto found = open_.find(event.request);
@@ -87,6 +87,13 @@ bool Meant::is_meant(std::int64_t serial, int place, double now) const {
     const bool there = posting.unheard || posting.places.contains(place);
     return there && (posting.at >= since - kShortly || unnoticed);
   });
+}
+
+bool Meant::is_sent_across(std::int64_t serial) const {
+  const auto found = postings_.find(serial);
+  return found != postings_.end() && std::ranges::any_of(found->second, [](const Posting& posting) {
+           return posting.is_word && posting.places.size() > 1;
+         });
 }
 
 }  // namespace adit::simulation

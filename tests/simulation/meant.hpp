@@ -19,6 +19,9 @@ class Meant {
   /// Whether a report that is recorded at that moment, in the run of that Command Post that is on, was meant
   /// for it; or nobody may have noticed yet that the run before is over.
   bool is_meant(std::int64_t serial, int place, double now) const;
+  /// Whether the operator's *send* was on its way while the course was switched: he had judged it for the one
+  /// before.
+  bool is_sent_across(std::int64_t serial) const;
 
  private:
   struct Posting {
@@ -26,6 +29,7 @@ class Meant {
     std::set<int> places;
     bool unheard = false;  // nothing had been heard of a run there: it is meant for the first that is
     std::uint64_t request = 0;
+    bool is_word = false;  // the operator's
   };
   struct Open {
     std::int64_t serial = 0;

@@ -16,6 +16,7 @@ constexpr double kShortly = 25;
 constexpr double kSwitching = 6;
 /// Seconds within which what a client asked may still count that heard nothing.
 constexpr double kUnknown = 12;
+constexpr const char* kLedgerIsBack = "beginning anew with its ledger";
 
 }  // namespace
 
@@ -69,6 +70,9 @@ void Meant::add(const Event& event) {
   if (event.kind == Kind::NewRun) run_began_[place_of(event.who)] = event.at;
   const bool is_status = event.kind == Kind::Replied && event.what == kStatus && !event.says.empty();
   if (is_status) heard_.insert(static_cast<int>(event.serial));
+  if (event.kind == Kind::Begins) heard_before_ = heard_;
+  // What stood in for the ledger is gone, and what was heard meanwhile with it.
+  if (event.kind == Kind::Said && event.text.contains(kLedgerIsBack)) heard_ = heard_before_;
   if (event.actor != Actor::Team) return;
   if (event.what == kCourse) {
     switched(event);

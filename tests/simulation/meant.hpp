@@ -44,7 +44,7 @@ class Meant {
   std::map<std::int64_t, std::vector<Posting>> postings_;
   std::map<std::uint64_t, Open> open_;  // requests that may still count
   std::map<int, double> run_began_;
-  std::set<int> heard_;
+  std::set<int> heard_, heard_before_;  // before this life
   int place_ = 0, before_ = 0;
   double switched_ = -1e9;
   bool unsure_ = false;  // whether the last switch was made

@@ -63,13 +63,19 @@ class SetUp(unittest.TestCase):
         return said
 
     def applied(self, request, body):
-        """Asks for a change, and waits until the box serves anew."""
-        before = self.box.said().count("listening ")
+        """Asks for a change, and waits until it is applied, at whichever port that is."""
         status, said, _ = self.box.ask(request, body, **self.me)
         self.assertEqual(status, 200, said)
-        wait_until(lambda: self.box.said().count("listening ") > before, "aditd to listen anew")
-        self.box.port = int(re.findall(r"listening .*port=(\d+)", self.box.said())[-1])
+        wait_until(self.is_applied, "the change to be applied")
         return said
+
+    def is_applied(self):
+        self.box.port = int(re.findall(r"listening .*port=(\d+)", self.box.said())[-1])
+        try:
+            status, said, _ = self.box.ask("GET /adit/settings", **self.me)
+        except OSError:
+            return False
+        return status == 401 or not said["applying"]  # a reset ends all sessions
 
     def change(self, edit):
         """Changes the settings as `edit` does; what it says has changed."""

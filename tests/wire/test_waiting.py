@@ -262,7 +262,7 @@ class Waiting(unittest.TestCase):
                     sender.close()
                 wait_until(lambda: not files(), "nothing to be left")
         self.post_map(stage, maps.made_cloud(100_000), "r1")
-        self.assertEqual(files(), ["map-00000001.cbor"])
+        self.assertEqual(len(files()), 1)
 
     def test_a_full_queue_is_told_to_the_sender(self):
         stage = self.stage(post_options=None, queues__map_bytes=1 << 20)

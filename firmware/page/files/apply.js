@@ -111,12 +111,12 @@ export async function save(settings) {
     if (link) report("Within a second the page moves to");
     const said = await applied();
     const isDone = said && (said.tag !== tag || !changes.length);
-    if (said) link = "";
+    if (said && !isDone) link = "";
     if (isDone) beginFrom(said);
     if (said) await refresh();
-    if (isDone) report("Applied.");
-    else if (said) report((await whyNot()) || "It was taken back.");
-    else report(link ? "The page has moved to" : "The box does not answer.");
+    if (link) report("The page has moved to");
+    else if (isDone) report("Applied.");
+    else report(said ? (await whyNot()) || "It was taken back." : "The box does not answer.");
     return isDone;
   } catch (error) {
     if (error.status === 409) await refresh();
@@ -190,7 +190,7 @@ export function offerApply() {
   });
   applyIt.addEventListener("click", apply);
   onDraft((what) => {
-    if (what === "typed") outcome = "";
+    if (what === "typed") outcome = link = "";
     show();
   });
   onVerdict(show);

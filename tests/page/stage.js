@@ -41,7 +41,7 @@ export async function look(browser, url, options = {}, prepare = () => {}) {
 /** Opens a page; what it complained of and where it went is in `page.complaints` and `page.requests`. */
 export async function visit(browser, url, options = {}, prepare = () => {}) {
   const context = await browser.newContext({ viewport: { width: 1280, height: 720 }, ...options });
-  context.setDefaultTimeout(30_000);
+  context.setDefaultTimeout(120_000);
   const page = await context.newPage();
   page.complaints = [];
   page.requests = [];

@@ -1,10 +1,10 @@
 #pragma once
 
 #include <expected>
-#include <span>
 #include <string>
 
 #include "applier/card.hpp"
+#include "command_line/program.hpp"
 #include "host/untrusted_folder.hpp"
 
 namespace adit::applier {
@@ -19,10 +19,7 @@ struct ImportOptions {
   bool help = false, version = false;
 };
 
-extern const char* const kImportUsage;
-
-/// What is wrong names the word it is about.
-std::expected<ImportOptions, std::string> parse_import_options(std::span<char* const> arguments);
+[[gnu::cold]] command_line::Program import_command_line_of(ImportOptions& options);
 
 /// Takes what was put on the boot partition into the box's state, all of it or nothing, and leaves there
 /// what became of it, in taken.txt.

@@ -4,7 +4,7 @@
 
 #include "applier/applier.hpp"
 #include "applier/options.hpp"
-#include "host/command_line.hpp"
+#include "command_line/answer.hpp"
 #include "host/log.hpp"
 #include "loop/loop.hpp"
 
@@ -34,9 +34,8 @@ int run(const adit::applier::Options& options) {
 }  // namespace
 
 int main(int argc, char** argv) {
-  const auto options =
-      adit::applier::parse_options(std::span<char* const>(argv + 1, static_cast<std::size_t>(argc - 1)));
-  if (const auto exit = adit::host::answered("adit-network", ADIT_VERSION, adit::applier::kUsage, options))
-    return *exit;
+  using adit::applier::command_line_of;
+  const auto options = adit::applier::parse_options({argv + 1, argv + argc});
+  if (const auto exit = adit::command_line::answer(command_line_of, ADIT_VERSION, options)) return *exit;
   return options->start ? start(*options) : run(*options);
 }

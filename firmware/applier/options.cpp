@@ -3,18 +3,8 @@
 #include <string_view>
 #include <utility>
 
-#include "host/command_line.hpp"
-
 namespace adit::applier {
 namespace {
-
-constexpr host::Flag<Options> kFlags[] = {
-    {"--start", &Options::start}, {"--help", &Options::help}, {"--version", &Options::version}};
-constexpr host::Value<Options> kValues[] = {
-    {"--wanted", &Options::wanted},   {"--status", &Options::status},
-    {"--state", &Options::state},     {"--networkd", &Options::networkd},
-    {"--factory", &Options::factory}, {"--networkctl", &Options::networkctl},
-    {"--team", &Options::team},       {"--command-post", &Options::command_post}};
 
 /// The kernel's dev_valid_name(), and nothing that means more to systemd.network(5): a pattern, a list, a
 /// negation.
@@ -26,31 +16,35 @@ bool is_interface(std::string_view name) {
 
 }  // namespace
 
-const char* const kUsage =
-    "Usage: adit-network [OPTION VALUE]...\n"
-    "\n"
-    "Changes the addresses of Adit's two network interfaces, as aditd asks, by systemd-networkd; and takes "
-    "a\n"
-    "change back by itself unless it is confirmed in time. Ends once nothing is left to do.\n"
-    "\n"
-    "  --team NAME          the interface to the team (team0)\n"
-    "  --command-post NAME  the interface to the Command Post (darpa0)\n"
-    "  --wanted DIR         where aditd asks (/var/lib/private/adit)\n"
-    "  --status DIR         where it is answered (/run/adit-network)\n"
-    "  --state DIR          where what was confirmed is kept (/var/lib/adit-network)\n"
-    "  --factory FILE       the addresses where none were confirmed (/usr/share/adit/network.json)\n"
-    "  --networkd DIR       networkd's folder until the next start (/run/systemd/network)\n"
-    "  --networkctl CMD     what makes networkd read them, called with the word reload (networkctl)\n"
-    "  --start              only writes networkd's files: before networkd starts\n"
-    "  --version            prints the version\n"
-    "  --help               prints this\n"
-    "\n"
-    "Exits 0 once nothing is pending, 1 where it cannot do its work, or what is asked for cannot be taken "
-    "away (and\n"
-    "says why), 2 on a wrong command line.\n";
+command_line::Program command_line_of(Options& options) {
+  return {
+      .name = "adit-network",
+      .usage = "",
+      .about =
+          "Changes the addresses of Adit's two network interfaces, as aditd asks, by systemd-networkd; and "
+          "takes a "
+          "change back by itself unless it is confirmed in time. Ends once nothing is left to do.",
+      .rows = {{"--team", "NAME", "the interface to the team", &options.team},
+               {"--command-post", "NAME", "the interface to the Command Post", &options.command_post},
+               {"--wanted", "DIR", "where aditd asks", &options.wanted},
+               {"--status", "DIR", "where it is answered", &options.status},
+               {"--state", "DIR", "where what was confirmed is kept", &options.state},
+               {"--factory", "FILE", "the addresses where none were confirmed", &options.factory},
+               {"--networkd", "DIR", "networkd's folder until the next start", &options.networkd},
+               {"--networkctl", "CMD", "what makes networkd read them, called with the word reload",
+                &options.networkctl},
+               {"--start", "", "only writes networkd's files: before networkd starts", &options.start},
+               {"--version", "", "prints the version", &options.version},
+               {"--help", "", "prints this", &options.help}},
+      .ending =
+          "Exits 0 once nothing is pending, 1 where it cannot do its work, or what is asked for cannot be "
+          "taken "
+          "away (and says why), 2 on a wrong command line.",
+  };
+}
 
-std::expected<Options, std::string> parse_options(std::span<char* const> arguments) {
-  const auto options = host::read_command_line<Options>(arguments, kFlags, kValues);
+std::expected<Options, std::string> parse_options(std::span<const char* const> arguments) {
+  const auto options = command_line::read(command_line_of, arguments);
   if (!options) return options;
   for (const auto& [word, name] :
        {std::pair("--team", options->team), std::pair("--command-post", options->command_post)}) {

@@ -1,8 +1,6 @@
 #pragma once
 
-#include <expected>
-#include <span>
-#include <string>
+#include "command_line/read.hpp"
 
 namespace adit::applier {
 
@@ -20,9 +18,9 @@ struct Options {
   bool help = false, version = false;
 };
 
-extern const char* const kUsage;
+[[gnu::cold]] command_line::Program command_line_of(Options& options);
 
 /// What is wrong names the word it is about.
-std::expected<Options, std::string> parse_options(std::span<char* const> arguments);
+[[gnu::cold]] std::expected<Options, std::string> parse_options(std::span<const char* const> arguments);
 
 }  // namespace adit::applier

@@ -3,14 +3,13 @@
 #include "applier/health_watch.hpp"
 #include "applier/update_options.hpp"
 #include "applier/updater.hpp"
-#include "host/command_line.hpp"
+#include "command_line/answer.hpp"
 #include "host/log.hpp"
 
 int main(int argc, char** argv) {
-  const auto options = adit::applier::parse_update_options(
-      std::span<char* const>(argv + 1, static_cast<std::size_t>(argc - 1)));
-  if (const auto exit =
-          adit::host::answered("adit-update", ADIT_VERSION, adit::applier::kUpdateUsage, options))
+  using adit::applier::update_command_line_of;
+  const auto options = adit::command_line::read(update_command_line_of, {argv + 1, argv + argc});
+  if (const auto exit = adit::command_line::answer(update_command_line_of, ADIT_VERSION, options))
     return *exit;
   const auto done =
       options->good ? adit::applier::watch_health(*options) : adit::applier::Updater(*options).work();

@@ -1,9 +1,6 @@
 #pragma once
 
-#include <expected>
-#include <span>
-#include <string>
-
+#include "command_line/program.hpp"
 #include "update/health.hpp"
 
 namespace adit::applier {
@@ -22,9 +19,6 @@ struct UpdateOptions {
   bool help = false, version = false;
 };
 
-extern const char* const kUpdateUsage;
-
-/// What is wrong names the word it is about.
-std::expected<UpdateOptions, std::string> parse_update_options(std::span<char* const> arguments);
+[[gnu::cold]] command_line::Program update_command_line_of(UpdateOptions& options);
 
 }  // namespace adit::applier

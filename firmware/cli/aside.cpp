@@ -2,20 +2,20 @@
 
 #include <algorithm>
 
+#include "api/as_json.hpp"
 #include "cli/ask.hpp"
 #include "cli/run_view.hpp"
 #include "cli/table.hpp"
 #include "cli/where.hpp"
 #include "cli/words.hpp"
 #include "codec/json.hpp"
-#include "page/as_json.hpp"
 
 namespace adit::cli {
 namespace {
 
 using Align = Table::Align;
 
-std::string table_of(const page::RunView& view, bool colour) {
+std::string table_of(const api::RunView& view, bool colour) {
   if (view.aside.empty()) return "nothing is set aside\n";
   Table table({{"number", Align::Right},
                {"kind"},
@@ -24,7 +24,7 @@ std::string table_of(const page::RunView& view, bool colour) {
                {"size", Align::Right},
                {"the Command Post said"},
                {""}});
-  for (const page::AsideRow& row : view.aside) {
+  for (const api::AsideRow& row : view.aside) {
     table.add({{std::to_string(row.number), Tone::Strong},
                {row.kind},
                {row.robot.empty() ? "(all)" : row.robot},
@@ -42,9 +42,9 @@ Outcome list(const Adit& adit, const Options& options, bool colour) {
   const auto view = read_run_view(*json);
   if (!view) return unable("Adit at " + written(adit.address) + " cannot be understood: " + view.error());
   const bool waits =
-      std::ranges::any_of(view->aside, [](const page::AsideRow& row) { return !row.overtaken; });
+      std::ranges::any_of(view->aside, [](const api::AsideRow& row) { return !row.overtaken; });
   const Exit exit = waits ? Exit::Attention : Exit::Fine;
-  if (options.json) return {exit, codec::write_json(page::json(view->aside)) + '\n', ""};
+  if (options.json) return {exit, codec::write_json(api::json(view->aside)) + '\n', ""};
   return {exit, table_of(*view, colour), ""};
 }
 
@@ -53,11 +53,12 @@ Outcome list(const Adit& adit, const Options& options, bool colour) {
 Outcome aside(const Options& options, bool colour) {
   const auto adit = adit_of(options);
   if (!adit) return unable(adit.error());
-  if (options.word == "show") return list(*adit, options, colour);
+  if (options.verb == Verb::Show) return list(*adit, options, colour);
   Outcome outcome;
   for (const std::int64_t number : options.numbers) {
     const std::string text = std::to_string(number);
-    const auto answer = post(*adit, "/adit/aside/" + text + "/" + options.word, "", "adit aside");
+    const auto answer = post(
+        *adit, "/adit/aside/" + text + (options.verb == Verb::Send ? "/send" : "/discard"), "", "adit aside");
     if (!answer) {
       outcome.exit = std::max(outcome.exit, answer.error().exit);
       outcome.err += unable(answer.error().sentence).err;
@@ -66,7 +67,7 @@ Outcome aside(const Options& options, bool colour) {
       outcome.out += *answer + '\n';
     } else {
       outcome.out +=
-          text + (options.word == "send" ? " is sent again when its turn comes\n" : " is discarded\n");
+          text + (options.verb == Verb::Send ? " is sent again when its turn comes\n" : " is discarded\n");
     }
   }
   return outcome;

@@ -16,9 +16,9 @@ namespace {
 constexpr std::chrono::seconds kPatience{3};
 constexpr std::chrono::seconds kDeedPatience{10};  // a deed is on the disk before it is answered
 
-bool all_is_well(const page::RunView& view) {
+bool all_is_well(const api::RunView& view) {
   return view.attention.empty() &&
-         std::ranges::all_of(view.endpoints, &std::string::empty, &page::EndpointRow::trouble);
+         std::ranges::all_of(view.endpoints, &std::string::empty, &api::EndpointRow::trouble);
 }
 
 /// The file that was named, or else the one that counts.

@@ -1,11 +1,13 @@
 #pragma once
 
-#include "cli/options.hpp"
+#include <string>
+
+#include "cli/commands.hpp"
 
 namespace adit::cli {
 
 /// What `adit --help`, or `adit COMMAND --help`, prints.
-const char* help_about(Command command);
+[[gnu::cold]] std::string help_about(Command command);
 
 /// One line, for standard error.
 extern const char* const kSeeHelp;

@@ -168,8 +168,8 @@ Outcome say(const Adit& adit, const Options& options, bool confirms) {
 Outcome network(const Options& options) {
   const auto adit = adit_of(options);
   if (!adit) return unable(adit.error());
-  if (options.word == "show") return show(*adit, options);
-  return say(*adit, options, options.word == "confirm");
+  if (options.verb == Verb::Show) return show(*adit, options);
+  return say(*adit, options, options.verb == Verb::Confirm);
 }
 
 }  // namespace adit::cli

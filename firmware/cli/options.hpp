@@ -1,6 +1,5 @@
 #pragma once
 
-#include <cstdint>
 #include <expected>
 #include <optional>
 #include <span>
@@ -8,30 +7,11 @@
 #include <string_view>
 #include <vector>
 
+#include "cli/commands.hpp"
 #include "cli/token.hpp"
+#include "command_line/program.hpp"
 
 namespace adit::cli {
-
-enum class Command : std::uint8_t {
-  Status,
-  Reports,
-  Aside,
-  Run,
-  Settings,
-  Course,
-  Identify,
-  Network,
-  Test,
-  Update,
-  Check,
-  Help
-};
-
-/// What `adit reports` is to do.
-enum class Verb : std::uint8_t { List, Show, Export, Send, Hold, Withdraw, Done, Resubmit };
-
-/// What `adit settings` is to do.
-enum class Setting : std::uint8_t { Show, Check, Apply, Export };
 
 /// What aditd is given with the box, and what it keeps that was saved since and then counts.
 inline constexpr const char* kGivenSettings = "/etc/adit/settings.json";
@@ -41,15 +21,14 @@ inline constexpr const char* kSavedSettings = "/var/lib/adit/settings.json";
 struct Options {
   Command command = Command::Help;
   Command about = Command::Help;  // of Help: the command to explain
+  bool help = false;
   Verb verb = Verb::List;
-  std::string word;  // of Network: "show", "confirm", "back"; of Aside: "show", "send", "discard"
   std::vector<std::int64_t> numbers;  // of reports, or of what is set aside
   std::optional<std::int64_t> run;    // whose reports to list; nothing: the present one's
   bool all_runs = false;
   std::int64_t seconds = 10;  // how long the lights are to blink
   bool json = false, csv = false;
-  std::string at;  // "ADDR:PORT"; empty: as the settings say
-  Setting setting = Setting::Show;
+  std::string at;    // "ADDR:PORT"; empty: as the settings say
   std::string file;  // of settings: to check or apply; of Update: the bundle
   bool restart = false, stick = false, again = false, anyway = false;  // of Update
   std::string course;                                                  // to switch to; "": none
@@ -59,7 +38,11 @@ struct Options {
   std::string secrets = kSecrets, saved_secrets = kSavedSecrets;
 };
 
+[[gnu::cold]] command_line::Program command_line_of(Options& options);
+/// Whether a command, as it was said, has a use for the option.
+bool takes(const CommandRow& command, const Form& form, std::string_view option);
+
 /// What is wrong names the word it is about.
-std::expected<Options, std::string> parse_options(std::span<const std::string_view> words);
+[[gnu::cold]] std::expected<Options, std::string> parse_options(std::span<const std::string_view> words);
 
 }  // namespace adit::cli

@@ -10,20 +10,20 @@ using codec::Field;
 using dispatch::ReportState;
 
 /// A state that this adit does not know is one that only the operator can judge.
-ReportState state_of(const page::ReportRow& report) {
+ReportState state_of(const api::ReportRow& report) {
   return dispatch::state_named(report.state).value_or(ReportState::InDoubt);
 }
 
-page::ReportStep step(const Field& row) {
+api::ReportStep step(const Field& row) {
   return {.at = number(row, "at"), .state = text(row, "state"), .note = text(row, "note")};
 }
 
 }  // namespace
 
-page::ReportRow read_report(const Field& row) {
+api::ReportRow read_report(const Field& row) {
   const Field position = row.member("position");
   const Field score = row.member("score_change");
-  page::ReportRow read;
+  api::ReportRow read;
   read.number = whole<std::int64_t>(row, "number");
   read.type = text(row, "type");
   read.lost = position.is_absent();
@@ -43,25 +43,24 @@ page::ReportRow read_report(const Field& row) {
   return read;
 }
 
-std::expected<std::vector<page::ReportRow>, std::string> read_reports(std::string_view json) {
-  return read<std::vector<page::ReportRow>>(json,
-                                            [](const Field& array) { return rows(array, read_report); });
+std::expected<std::vector<api::ReportRow>, std::string> read_reports(std::string_view json) {
+  return read<std::vector<api::ReportRow>>(json, [](const Field& array) { return rows(array, read_report); });
 }
 
-std::expected<page::ReportDetail, std::string> read_report_detail(std::string_view json) {
-  return read<page::ReportDetail>(json, [](const Field& object) {
-    return page::ReportDetail{.row = read_report(object),
-                              .history = rows(object.member("history"), step),
-                              .answer = text(object, "answer")};
+std::expected<api::ReportDetail, std::string> read_report_detail(std::string_view json) {
+  return read<api::ReportDetail>(json, [](const Field& object) {
+    return api::ReportDetail{.row = read_report(object),
+                             .history = rows(object.member("history"), step),
+                             .answer = text(object, "answer")};
   });
 }
 
-bool needs_the_operator(const page::ReportRow& report) {
+bool needs_the_operator(const api::ReportRow& report) {
   const ReportState state = state_of(report);
   return state == ReportState::Received || (state == ReportState::InDoubt && !report.asking);
 }
 
-bool is_finished(const page::ReportRow& report) {
+bool is_finished(const api::ReportRow& report) {
   return dispatch::is_final(state_of(report));
 }
 

@@ -5,20 +5,20 @@
 #include <string_view>
 #include <vector>
 
+#include "api/run_view.hpp"
 #include "codec/field.hpp"
-#include "page/page.hpp"
 
 namespace adit::cli {
 
-page::ReportRow read_report(const codec::Field& row);
+api::ReportRow read_report(const codec::Field& row);
 
-/// What page::write_reports and page::write_report wrote, or why it is none.
-std::expected<std::vector<page::ReportRow>, std::string> read_reports(std::string_view json);
-std::expected<page::ReportDetail, std::string> read_report_detail(std::string_view json);
+/// What api::write_reports and api::write_report wrote, or why it is none.
+std::expected<std::vector<api::ReportRow>, std::string> read_reports(std::string_view json);
+std::expected<api::ReportDetail, std::string> read_report_detail(std::string_view json);
 
 /// It stays where it is until the operator decides.
-bool needs_the_operator(const page::ReportRow& report);
+bool needs_the_operator(const api::ReportRow& report);
 /// Nothing more happens to it, nor is there anything to decide.
-bool is_finished(const page::ReportRow& report);
+bool is_finished(const api::ReportRow& report);
 
 }  // namespace adit::cli

@@ -1,9 +1,9 @@
 #include "cli/report_text.hpp"
 
+#include "api/reports_csv.hpp"
 #include "cli/reports_text.hpp"
 #include "cli/table.hpp"
 #include "dispatch/report_life.hpp"
-#include "page/reports_csv.hpp"
 
 namespace adit::cli {
 namespace {
@@ -11,7 +11,7 @@ namespace {
 using dispatch::ReportEvent;
 
 /// The deeds that the table of a report's life has for where it is.
-std::string deeds_for(const page::ReportRow& report) {
+std::string deeds_for(const api::ReportRow& report) {
   const auto state = dispatch::state_named(report.state);
   if (!state) return "";
   std::string text;
@@ -30,8 +30,8 @@ std::string place_of(const icd::Point& point) {
   return decimal(point.x, 3) + ", " + decimal(point.y, 3) + ", " + decimal(point.z, 3) + " m";
 }
 
-std::string facts(const page::ReportDetail& detail, bool colour) {
-  const page::ReportRow& report = detail.row;
+std::string facts(const api::ReportDetail& detail, bool colour) {
+  const api::ReportRow& report = detail.row;
   Table table({{}, {}});
   const auto add = [&table](const char* name, const std::string& text, Tone tone = Tone::Plain) {
     if (!text.empty()) table.add({{name, Tone::Faint}, {text, tone}});
@@ -45,23 +45,23 @@ std::string facts(const page::ReportDetail& detail, bool colour) {
   add("score", gained_by(report));
   add("run", std::to_string(report.run));
   add("sender", report.sender);
-  add("received", page::iso_time(report.received));
+  add("received", api::iso_time(report.received));
   add("answer", detail.answer);
   add("deeds", deeds_for(report));
   return table.written(colour);
 }
 
-std::string history(const page::ReportDetail& detail, bool colour) {
+std::string history(const api::ReportDetail& detail, bool colour) {
   Table table({{}, {}, {}});
-  for (const page::ReportStep& step : detail.history) {
-    table.add({{page::iso_time(step.at), Tone::Faint}, {step.state, Tone::Strong}, {step.note}});
+  for (const api::ReportStep& step : detail.history) {
+    table.add({{api::iso_time(step.at), Tone::Faint}, {step.state, Tone::Strong}, {step.note}});
   }
   return table.empty() ? "" : "\nHistory\n" + table.written(colour);
 }
 
 }  // namespace
 
-std::string report_text(const page::ReportDetail& detail, bool colour) {
+std::string report_text(const api::ReportDetail& detail, bool colour) {
   return facts(detail, colour) + history(detail, colour);
 }
 

@@ -2,11 +2,11 @@
 
 #include <string>
 
-#include "page/page.hpp"
+#include "api/run_view.hpp"
 
 namespace adit::cli {
 
 /// What `adit reports show` prints.
-std::string report_text(const page::ReportDetail& detail, bool colour);
+std::string report_text(const api::ReportDetail& detail, bool colour);
 
 }  // namespace adit::cli

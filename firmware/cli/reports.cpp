@@ -2,6 +2,7 @@
 
 #include <algorithm>
 
+#include "api/reports_json.hpp"
 #include "cli/ask.hpp"
 #include "cli/deeds.hpp"
 #include "cli/report_rows.hpp"
@@ -9,7 +10,6 @@
 #include "cli/reports_text.hpp"
 #include "cli/run_view.hpp"
 #include "cli/where.hpp"
-#include "page/reports_json.hpp"
 
 namespace adit::cli {
 namespace {
@@ -18,12 +18,12 @@ std::string not_understood(const Adit& adit, const std::string& why) {
   return "Adit at " + written(adit.address) + " cannot be understood: " + why;
 }
 
-Exit exit_for(const std::vector<page::ReportRow>& reports) {
+Exit exit_for(const std::vector<api::ReportRow>& reports) {
   return std::ranges::any_of(reports, needs_the_operator) ? Exit::Attention : Exit::Fine;
 }
 
 /// The present run's, and whatever is left of earlier ones: nothing that needs the operator is left out.
-bool is_listed(const page::ReportRow& report, const Options& options, std::int64_t present) {
+bool is_listed(const api::ReportRow& report, const Options& options, std::int64_t present) {
   if (options.all_runs) return true;
   return options.run ? report.run == *options.run : report.run == present || !is_finished(report);
 }
@@ -40,10 +40,10 @@ Outcome list(const Adit& adit, const Options& options, bool colour) {
 
   const Exit exit = exit_for(*rows);
   const std::size_t others = std::erase_if(
-      *rows, [&](const page::ReportRow& row) { return !is_listed(row, options, run->run_number); });
+      *rows, [&](const api::ReportRow& row) { return !is_listed(row, options, run->run_number); });
   std::ranges::reverse(*rows);  // the newest first
   const std::string text =
-      options.json ? page::write_reports(*rows) + '\n' : reports_text(*rows, others, run->now, colour);
+      options.json ? api::write_reports(*rows) + '\n' : reports_text(*rows, others, run->now, colour);
   return {exit, text, ""};
 }
 

@@ -24,13 +24,13 @@ std::string of_other_runs(std::size_t count) {
          " not listed: adit reports --run all\n";
 }
 
-std::string coordinate(const page::ReportRow& report, double icd::Point::* axis) {
+std::string coordinate(const api::ReportRow& report, double icd::Point::* axis) {
   return report.lost ? "lost" : decimal(report.position.*axis, 2);
 }
 
 }  // namespace
 
-std::string life_of(const page::ReportRow& report) {
+std::string life_of(const api::ReportRow& report) {
   switch (dispatch::state_named(report.state).value_or(ReportState::Waiting)) {
     case ReportState::Received:
       return "held";
@@ -45,7 +45,7 @@ std::string life_of(const page::ReportRow& report) {
   }
 }
 
-Tone tone_of(const page::ReportRow& report) {
+Tone tone_of(const api::ReportRow& report) {
   if (needs_the_operator(report)) return Tone::Bad;
   switch (dispatch::state_named(report.state).value_or(ReportState::InDoubt)) {
     case ReportState::Refused:
@@ -61,19 +61,19 @@ Tone tone_of(const page::ReportRow& report) {
   }
 }
 
-std::string said_of(const page::ReportRow& report) {
+std::string said_of(const api::ReportRow& report) {
   return joined({report.reconciled ? "found out" : "",
                  report.status == 0 || report.reconciled ? "" : std::to_string(report.status),
                  report.report_status});
 }
 
-std::string gained_by(const page::ReportRow& report) {
+std::string gained_by(const api::ReportRow& report) {
   if (!report.score_change) return "";
   std::string text = *report.score_change > 0 ? "+" : "";
   return text.append(std::to_string(*report.score_change));
 }
 
-std::string reports_text(const std::vector<page::ReportRow>& reports, std::size_t others, page::Time now,
+std::string reports_text(const std::vector<api::ReportRow>& reports, std::size_t others, api::Time now,
                          bool colour) {
   const std::string elsewhere = of_other_runs(others);
   if (reports.empty())
@@ -89,7 +89,7 @@ std::string reports_text(const std::vector<page::ReportRow>& reports, std::size_
                {"the Command Post said, or why"},
                {"sender"},
                {"received", Align::Right}});
-  for (const page::ReportRow& report : reports) {
+  for (const api::ReportRow& report : reports) {
     table.add({{std::to_string(report.number)},
                {std::to_string(report.run)},
                {report.type, Tone::Strong},

@@ -8,7 +8,7 @@ namespace {
 
 using codec::Field;
 
-page::EndpointRow endpoint(const Field& row) {
+api::EndpointRow endpoint(const Field& row) {
   return {.name = text(row, "name"),
           .address = text(row, "address"),
           .connected = row.member("connected").truth(),
@@ -17,8 +17,8 @@ page::EndpointRow endpoint(const Field& row) {
           .answer_ms = number_or_null(row, "answer_ms")};
 }
 
-page::ActivityRow activity(const Field& row) {
-  page::ActivityRow read;
+api::ActivityRow activity(const Field& row) {
+  api::ActivityRow read;
   read.kind = text(row, "kind");
   read.robot = text(row, "robot");
   read.accepted = count(row, "accepted");
@@ -38,7 +38,7 @@ page::ActivityRow activity(const Field& row) {
   return read;
 }
 
-page::AsideRow aside(const Field& row) {
+api::AsideRow aside(const Field& row) {
   return {.number = count(row, "number"),
           .kind = text(row, "kind"),
           .robot = text(row, "robot"),
@@ -49,7 +49,7 @@ page::AsideRow aside(const Field& row) {
           .overtaken = row.member("overtaken").truth()};
 }
 
-page::RefusalRow refusal(const Field& row) {
+api::RefusalRow refusal(const Field& row) {
   return {.at = number(row, "at"),
           .uri = text(row, "uri"),
           .sender = text(row, "sender"),
@@ -73,9 +73,9 @@ std::optional<icd::RunStatus> run(const Field& object) {
 
 }  // namespace
 
-std::expected<page::RunView, std::string> read_run_view(std::string_view json) {
-  return read<page::RunView>(json, [](const Field& object) {
-    page::RunView view;
+std::expected<api::RunView, std::string> read_run_view(std::string_view json) {
+  return read<api::RunView>(json, [](const Field& object) {
+    api::RunView view;
     view.now = number(object, "now");
     view.version = text(object, "version");
     view.run = run(object);

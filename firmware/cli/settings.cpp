@@ -157,9 +157,9 @@ Outcome apply(const Adit& adit, const Options& options, bool colour) {
 Outcome settings(const Options& options, bool colour) {
   const auto adit = adit_of(options);
   if (!adit) return unable(adit.error());
-  if (options.setting == Setting::Check) return check(*adit, options, colour);
-  if (options.setting == Setting::Apply) return apply(*adit, options, colour);
-  const bool exports = options.setting == Setting::Export;
+  if (options.verb == Verb::Check) return check(*adit, options, colour);
+  if (options.verb == Verb::Apply) return apply(*adit, options, colour);
+  const bool exports = options.verb == Verb::Export;
   const auto body = get(*adit, exports ? "/adit/settings/export" : "/adit/settings");
   if (!body) return unable(body.error());
   return exports ? Outcome{Exit::Fine, *body, ""} : show(*body, options, colour);

@@ -12,7 +12,7 @@
 namespace adit::cli {
 namespace {
 
-using page::RunView;
+using api::RunView;
 using Align = Table::Align;
 
 std::string attention_lines(const RunView& view, bool colour) {
@@ -44,7 +44,7 @@ std::string link_line(const RunView& view) {
 std::string reports_line(const RunView& view, bool colour) {
   std::map<std::string, int> states;
   std::set<std::string> urgent;
-  for (const page::ReportRow& report : view.reports) {
+  for (const api::ReportRow& report : view.reports) {
     const std::string state = report.same_as == 0 ? life_of(report) : report.state;
     ++states[state];
     if (needs_the_operator(report)) urgent.insert(state);
@@ -58,7 +58,7 @@ std::string reports_line(const RunView& view, bool colour) {
   return text + '\n';
 }
 
-std::string last_answer(const page::EndpointRow& endpoint) {
+std::string last_answer(const api::EndpointRow& endpoint) {
   if (endpoint.last_status == 0) return "";
   std::string text = "last answer " + std::to_string(endpoint.last_status);
   if (endpoint.answer_ms)
@@ -68,7 +68,7 @@ std::string last_answer(const page::EndpointRow& endpoint) {
 
 std::string endpoints_table(const RunView& view, bool colour) {
   Table table({{}, {}, {}, {}, {}});
-  for (const page::EndpointRow& endpoint : view.endpoints) {
+  for (const api::EndpointRow& endpoint : view.endpoints) {
     const bool well = endpoint.connected && endpoint.trouble.empty();
     table.add({{endpoint.name, Tone::Strong},
                {endpoint.address},
@@ -95,16 +95,16 @@ Cell arrival_cell(Arrival arrival) {
   return {"not yet", Tone::Faint};
 }
 
-std::string ago(const std::optional<page::Time>& time, page::Time now) {
+std::string ago(const std::optional<api::Time>& time, api::Time now) {
   return time ? duration(now - *time) + " ago" : "never";
 }
 
-std::string sent_size(const page::ActivityRow& row) {
+std::string sent_size(const api::ActivityRow& row) {
   if (!row.last_forwarded) return "";
   return size(row.bytes_received) + " > " + size(row.bytes_sent);
 }
 
-std::string said(const page::ActivityRow& row) {
+std::string said(const api::ActivityRow& row) {
   std::string status = row.last_status == 0 ? "" : std::to_string(row.last_status);
   if (row.last_sentence.empty()) return status;
   return status.empty() ? row.last_sentence : status + ": " + row.last_sentence;
@@ -120,7 +120,7 @@ std::string activities_table(const RunView& view, bool colour) {
                {"last sent", Align::Right},
                {"size", Align::Right},
                {"the Command Post said"}});
-  for (const page::ActivityRow& row : view.activities) {
+  for (const api::ActivityRow& row : view.activities) {
     const Arrival arrival = arrival_of(row, view.now);
     table.add({{row.robot.empty() ? "(all)" : row.robot, Tone::Strong},
                {row.kind},
@@ -139,7 +139,7 @@ std::string refusals_table(const RunView& view, bool colour) {
   static constexpr std::size_t kShown = 5;
   Table table({{}, {}, {}, {}, {}});
   for (std::size_t i = 0; i < view.refusals.size() && i < kShown; ++i) {
-    const page::RefusalRow& refusal = view.refusals[i];
+    const api::RefusalRow& refusal = view.refusals[i];
     table.add({{ago(refusal.at, view.now), Tone::Faint},
                {refusal.sender},
                {refusal.uri},
@@ -151,11 +151,11 @@ std::string refusals_table(const RunView& view, bool colour) {
 
 }  // namespace
 
-Arrival arrival_of(const page::ActivityRow& row, page::Time now) {
+Arrival arrival_of(const api::ActivityRow& row, api::Time now) {
   const bool answered = row.last_status != 0;
   const bool taken = row.last_status >= 200 && row.last_status < 300;
   if (answered ? !taken : !row.last_sentence.empty()) return Arrival::No;
-  const auto older = [now](const std::optional<page::Time>& time, double seconds) {
+  const auto older = [now](const std::optional<api::Time>& time, double seconds) {
     return time && now - *time > seconds;
   };
   if (row.waiting > 0) {

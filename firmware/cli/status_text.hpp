@@ -2,18 +2,18 @@
 
 #include <string>
 
-#include "page/page.hpp"
+#include "api/run_view.hpp"
 
 namespace adit::cli {
 
 /// Whether the updates of one row reach the Command Post.
 enum class Arrival : std::uint8_t { Yes, Late, No, Silent, NotYet };
-Arrival arrival_of(const page::ActivityRow& row, page::Time now);
+Arrival arrival_of(const api::ActivityRow& row, api::Time now);
 
 inline constexpr double kLateAfter = 10;    // seconds that an update may wait
 inline constexpr double kSilentAfter = 30;  // seconds without anything new from the robot
 
 /// What `adit status` prints.
-std::string status_text(const page::RunView& view, bool colour);
+std::string status_text(const api::RunView& view, bool colour);
 
 }  // namespace adit::cli

@@ -4,13 +4,13 @@
 #include <thread>
 #include <vector>
 
+#include "api/self_test.hpp"
 #include "cli/ask.hpp"
 #include "cli/http_client.hpp"
 #include "cli/reading.hpp"
 #include "cli/where.hpp"
 #include "cli/words.hpp"
 #include "host/log.hpp"
-#include "page/self_test.hpp"
 
 namespace adit::cli {
 namespace {
@@ -19,29 +19,29 @@ constexpr std::chrono::seconds kPatience{10};
 constexpr std::chrono::milliseconds kEvery{250};
 constexpr int kTimes = 480;  // two minutes, far longer than all steps may take
 
-page::TestStep read_step(const codec::Field& step) {
+api::TestStep read_step(const codec::Field& step) {
   return {.name = text(step, "name"),
           .state = text(step, "state"),
           .said = text(step, "said"),
           .advice = text(step, "advice")};
 }
 
-page::TestedEndpoint read_endpoint(const codec::Field& endpoint) {
+api::TestedEndpoint read_endpoint(const codec::Field& endpoint) {
   const codec::Field steps = endpoint.member("steps");
   return {
       .name = text(endpoint, "name"), .address = text(endpoint, "address"), .steps = rows(steps, &read_step)};
 }
 
-page::TestView read_view(const codec::Field& root) {
+api::TestView read_view(const codec::Field& root) {
   const codec::Field endpoints = root.member("endpoints");
   return {.running = root.member("running").truth(), .endpoints = rows(endpoints, &read_endpoint)};
 }
 
-bool has_ended(const page::TestStep& step) {
+bool has_ended(const api::TestStep& step) {
   return step.state == "good" || step.state == "bad" || step.state == "skipped";
 }
 
-std::string line_of(const page::TestStep& step, bool colour) {
+std::string line_of(const api::TestStep& step, bool colour) {
   const Tone tone = step.state == "good" ? Tone::Good : step.state == "bad" ? Tone::Bad : Tone::Faint;
   const std::string word = step.state == "bad" ? "BAD" : step.state;
   std::string line =
@@ -58,10 +58,10 @@ class Progress {
   Progress(bool colour, const std::function<void(const std::string&)>& print)
       : colour_(colour), print_(print) {}
 
-  void show(const page::TestView& view) {
+  void show(const api::TestView& view) {
     std::size_t number = 0;
-    for (const page::TestedEndpoint& endpoint : view.endpoints) {
-      for (const page::TestStep& step : endpoint.steps) {
+    for (const api::TestedEndpoint& endpoint : view.endpoints) {
+      for (const api::TestStep& step : endpoint.steps) {
         if (number++ < printed_) continue;
         if (!has_ended(step)) return;
         if (&step == &endpoint.steps.front())
@@ -78,10 +78,9 @@ class Progress {
   std::size_t printed_ = 0;
 };
 
-bool is_bad(const page::TestView& view) {
-  return std::ranges::any_of(view.endpoints, [](const page::TestedEndpoint& endpoint) {
-    return std::ranges::any_of(endpoint.steps,
-                               [](const page::TestStep& step) { return step.state == "bad"; });
+bool is_bad(const api::TestView& view) {
+  return std::ranges::any_of(view.endpoints, [](const api::TestedEndpoint& endpoint) {
+    return std::ranges::any_of(endpoint.steps, [](const api::TestStep& step) { return step.state == "bad"; });
   });
 }
 
@@ -104,7 +103,7 @@ Outcome test(const Options& options, bool colour, const std::function<void(const
   for (int i = 0; i < kTimes; ++i) {
     const auto json = get(*adit, "/adit/test");
     if (!json) return unable(json.error());
-    const auto view = read<page::TestView>(*json, read_view);
+    const auto view = read<api::TestView>(*json, read_view);
     if (!view) return unable("Adit at " + written(adit->address) + " cannot be understood: " + view.error());
     if (!options.json) progress.show(*view);
     if (!view->running) {

@@ -7,7 +7,7 @@
 namespace adit::dispatch {
 namespace {
 
-/// What is not done, of the runs at the present Command Post.
+/// What is not done, of the runs at the Command Post that the settings name.
 struct Open {
   std::size_t waiting = 0, in_doubt = 0, held = 0;
   std::size_t all() const { return waiting + in_doubt + held; }
@@ -16,7 +16,7 @@ struct Open {
 Open open_here(const Reports& reports) {
   Open open;
   for (const auto& [number, report] : reports.book().all()) {
-    if (!reports.runs().is_here(report.run)) continue;
+    if (!reports.runs().is_at(report.run, reports.meant_run().post)) continue;
     open.waiting += report.state == ReportState::Waiting ? 1 : 0;
     open.held += report.state == ReportState::Received ? 1 : 0;
     // What is under way now is in doubt where it has no answer by then.
@@ -52,12 +52,12 @@ std::string what_is_known_at(const Reports& reports, const std::string& post) {
 }  // namespace
 
 std::string meaning_of_another_post(const Reports& reports, const std::string& post) {
-  const std::string& here = reports.run().post;
+  const std::string& here = reports.meant_run().post;
   std::string text = "reports go to " + post + " from then on" + what_is_known_at(reports, post);
   const Open open = open_here(reports);
   if (open.all() == 0) return text + "; none waits, is in doubt or is held now";
   text += "; " + counted(open);
-  if (!reports.run().was_heard()) {
+  if (!reports.meant_run().was_heard()) {
     return text + ": nothing was heard from " + here +
            " yet, so what waits is sent to the first Command Post that answers";
   }

@@ -98,18 +98,22 @@ bool Reports::may_go(const Report& report, Instant now) const {
 
 /// Those that wait for the Command Post that the settings name. Others are kept for theirs.
 std::vector<std::int64_t> Reports::waiting_here() const {
-  std::vector<std::int64_t> here;
+  return waiting_at(run().post);
+}
+
+std::vector<std::int64_t> Reports::waiting_at(const std::string& post) const {
+  std::vector<std::int64_t> there;
   for (const std::int64_t number : book_.waiting()) {
-    if (account_.runs().is_here(book_.at(number).run)) here.push_back(number);
+    if (account_.runs().is_at(book_.at(number).run, post)) there.push_back(number);
   }
-  return here;
+  return there;
 }
 
 std::map<std::string, std::size_t> Reports::waiting_elsewhere() const {
   std::map<std::string, std::size_t> counts;
   for (const std::int64_t number : book_.waiting()) {
     const std::int64_t its = book_.at(number).run;
-    if (!account_.runs().is_here(its)) ++counts[account_.runs().find(its)->post];
+    if (!account_.runs().is_at(its, meant_run().post)) ++counts[account_.runs().find(its)->post];
   }
   return counts;
 }

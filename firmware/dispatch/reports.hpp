@@ -76,6 +76,9 @@ class Reports {
   /// Requires that the others have nothing under way.
   void open(std::vector<Report> all, std::vector<Run> runs, Time time, const std::string& post,
             Reports& before);
+  /// The settings name `post`, and open() there follows once the request under way has ended: what comes
+  /// meanwhile is meant for the run there, which a restart finds, too.
+  void will_move(const std::string& post, Time time);
   /// These count from now on: each client waits as long as it was to when it came.
   void go_by(const ReportRules& rules) { rules_ = rules; }
 
@@ -117,9 +120,11 @@ class Reports {
   const ReportBook& book() const { return book_; }
   const Run& run() const { return account_.run(); }
   const Runs& runs() const { return account_.runs(); }
+  /// The one that a report is meant for that is posted now: run(), or that of will_move().
+  const Run& meant_run() const { return will_be_ != 0 ? *account_.runs().find(will_be_) : run(); }
   /// Those that wait for the Command Post that the settings name, oldest first.
   std::vector<std::int64_t> waiting_here() const;
-  /// How many wait for each of the other Command Posts.
+  /// How many wait for each Command Post that the settings do not name.
   std::map<std::string, std::size_t> waiting_elsewhere() const;
   const Report* sending() const { return sending_ ? &book_.at(*sending_) : nullptr; }
   /// It is in doubt, and Adit can find out by itself.
@@ -135,6 +140,8 @@ class Reports {
 
   // Taking and choosing.
   bool is_of_run(const Report& report) const;
+  bool is_fresh(Instant now) const { return will_be_ == 0 && account_.is_fresh(now); }
+  std::vector<std::int64_t> waiting_at(const std::string& post) const;
   std::vector<const Report*> same_in_run(const icd::ArtifactReport& report) const;
   const Report* earlier(const Report& report) const;
   const Report* twin(const Report& report) const;
@@ -190,6 +197,7 @@ class Reports {
   std::map<std::int64_t, Instant> taken_at_;  // when somebody last posted it, in this program's life
   std::set<std::int64_t> unchecked_;          // not yet compared with earlier ones: the run was not known
   std::optional<std::int64_t> sending_;
+  std::int64_t will_be_ = 0;       // the run that will_move() leads to; 0: none
   std::int64_t last_sending_ = 0;  // Report::sending of the last one sent
   std::optional<Inquiry> inquiry_;
   bool barred_ = false;    // nothing is sent before a status is answered

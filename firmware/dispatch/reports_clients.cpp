@@ -28,9 +28,9 @@ bool stands_for_others(const Report& report) {
 bool Reports::take(const Posted& posted, ClientId client, bool may_send, Time time) {
   Report report{
       .report = posted.report, .sender = posted.sender, .received = time.stamp, .changed = time.stamp};
-  report.run = run().number;
+  report.run = meant_run().number;
   report.asked = posted.resubmit;
-  const bool fresh = account_.is_fresh(time.now);
+  const bool fresh = is_fresh(time.now);
   const Report* const same = earlier(report);
   // What is finished may be of a run that has ended unnoticed: then it is compared later (check()).
   const bool repeats = same != nullptr && (fresh || !is_final(same->state));
@@ -38,7 +38,7 @@ bool Reports::take(const Posted& posted, ClientId client, bool may_send, Time ti
     join(client, *same, time);
     return false;
   }
-  if (waiting_here().size() >= rules_.most_waiting) {
+  if (waiting_at(meant_run().post).size() >= rules_.most_waiting) {
     deeds_.tell(
         client,
         {.status = icd::Status::TooManyRequests,
@@ -56,7 +56,7 @@ bool Reports::take(const Posted& posted, ClientId client, bool may_send, Time ti
 }
 
 bool Reports::take_new(Report report, const Hold& hold, ClientId client, bool may_send, Time time) {
-  const bool fresh = account_.is_fresh(time.now);
+  const bool fresh = is_fresh(time.now);
   // Received and chosen in one write: the disk is flushed once before it leaves.
   const bool now = may_send && hold.why.empty() && fresh && !sending_ && waiting_here().empty() &&
                    may_go(report, time.now);
@@ -79,12 +79,13 @@ bool Reports::take_new(Report report, const Hold& hold, ClientId client, bool ma
   return now;
 }
 
-/// What is under way counts for a run that was declared meanwhile, too: it may be recorded in it.
+/// What is under way counts for a run that was declared meanwhile, too: it may be recorded in it. Where the
+/// settings name another Command Post meanwhile, who posts it again asks after it.
 bool Reports::is_of_run(const Report& report) const {
-  return report.run == run().number || report.number == sending_;
+  return report.run == meant_run().number || report.number == sending_;
 }
 
-/// Those of the present run that are the same, oldest first.
+/// Those of the run that is meant that are the same, oldest first.
 std::vector<const Report*> Reports::same_in_run(const icd::ArtifactReport& report) const {
   std::vector<const Report*> same;
   for (const std::int64_t number : book_.at_position(report.position)) {
@@ -109,8 +110,8 @@ const Report* Reports::earlier(const Report& report) const {
 /// Another one of the present run that is the same, and was sent, is under way or waits for its turn.
 const Report* Reports::twin(const Report& report) const {
   for (const Report* const other : same_in_run(report.report)) {
-    const bool is_compared_later =
-        other->state == ReportState::Waiting && !other->asked && unchecked_.contains(other->number);
+    const bool is_compared_later = other->state == ReportState::Waiting && !other->asked &&
+                                   other->number > report.number && unchecked_.contains(other->number);
     const bool held_back =
         other->state == ReportState::Received || other->state == ReportState::Withdrawn || is_compared_later;
     if (other->number != report.number && !held_back && stands_for_others(*other)) return other;

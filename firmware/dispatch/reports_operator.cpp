@@ -40,7 +40,7 @@ Reports::Outcome Reports::send(std::int64_t number, Time time) {
     sent.asked = true;
     sent.same_as = 0;
     sent.tries = 0;
-    sent.run = run().number;
+    sent.run = meant_run().number;
   });
   if (!moved) return std::unexpected(kDisk);
   if (judged) ask_for_others(time);
@@ -98,7 +98,7 @@ Reports::Outcome Reports::resubmit(std::int64_t number, Time time) {
   }
   Report again{.report = report->report, .sender = "operator", .received = time.stamp, .changed = time.stamp};
   again.note = icd::sentence("report ", number, " once more");
-  again.run = run().number;
+  again.run = meant_run().number;
   again.asked = true;
   const std::int64_t made = book_.add(std::move(again), {}, "");
   if (made == 0) return std::unexpected(kDisk);

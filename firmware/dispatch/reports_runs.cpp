@@ -13,30 +13,61 @@ bool was_sent(const Report& report) {
          report.state == ReportState::InDoubt;
 }
 
+/// What was taken before any word of its run is meant for the first one that is heard of. The operator's word
+/// on it was for the other one.
+Report passed_on(Report report, std::int64_t run, Time time) {
+  if (report.run != run) report.asked = false;
+  report.run = run;
+  report.note = "";
+  report.changed = time.stamp;
+  return report;
+}
+
+std::string why_at(const std::string& post, const std::string& before) {
+  return "the Command Post is at " + post + ", it was at " + before;
+}
+
 }  // namespace
+
+void Reports::will_move(const std::string& post, Time time) {
+  will_be_ = 0;
+  if (post != run().post) {
+    const Run* const known = account_.runs().at_post(post);
+    will_be_ = known != nullptr ? known->number : account_.announce(why_at(post, run().post), post, time);
+    return;
+  }
+  std::vector<Report> steps;
+  for (const std::int64_t number : book_.waiting()) {
+    const Run* const meant = account_.runs().find(book_.at(number).run);
+    if (meant == nullptr || meant->was_heard() || meant == &run()) continue;
+    steps.push_back(passed_on(book_.at(number), run().number, time));
+    unchecked_.insert(number);
+  }
+  if (!steps.empty()) book_.change(steps, run());
+}
 
 /// The settings name another Command Post: its run is on, and what is meant for the old one is kept for that.
 void Reports::change_post(const std::string& post, Time time) {
   const std::string from = run().post;
   const Run* const known = account_.runs().at_post(post);
   const std::int64_t next = known != nullptr ? known->number : account_.runs().next_number();
-  // What was taken before any word of a run is meant for the first one that is heard of.
   std::vector<Report> steps;
   for (const std::int64_t number : book_.waiting()) {
     const Report& report = book_.at(number);
     const Run* const meant = account_.runs().find(report.run);
-    const bool stays = meant == nullptr || meant->was_heard();
-    if (stays && (meant != &run() || from.empty())) continue;
-    Report& changed = steps.emplace_back(report);
-    changed.changed = time.stamp;
-    changed.note = stays ? "kept for the Command Post at " + from : "";
-    if (!stays) changed.run = next;
+    if (meant != nullptr && !meant->was_heard()) {
+      steps.push_back(passed_on(report, next, time));
+    } else if (meant == &run() && !from.empty()) {
+      Report& kept = steps.emplace_back(report);
+      kept.changed = time.stamp;
+      kept.note = "kept for the Command Post at " + from;
+    }
   }
   const std::vector<const Report*> doubts = book_.doubts(run().number);
   if (known != nullptr) {
     account_.take_up(next, steps, time);
   } else {
-    account_.begin("the Command Post is at " + post + ", it was at " + from, 0, std::nullopt, steps, time);
+    account_.begin(why_at(post, from), 0, std::nullopt, steps, time);
   }
   explain(doubts, "", time);
   doubt_began(time.now);
@@ -194,7 +225,9 @@ const Report* Reports::sent_to_another_post(const Report& report) const {
 }
 
 std::int64_t Reports::declare_new_run(Time time) {
-  begin_run("the operator says so", 0, std::nullopt, time);
+  constexpr const char* kWhy = "the operator says so";
+  if (will_be_ != 0) return will_be_ = account_.announce(kWhy, meant_run().post, time);
+  begin_run(kWhy, 0, std::nullopt, time);
   return run().number;
 }
 

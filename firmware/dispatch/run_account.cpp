@@ -9,9 +9,11 @@ namespace adit::dispatch {
 
 void RunAccount::open(std::vector<Run> all, std::int64_t latest, const std::string& post) {
   runs_.open(std::move(all), latest);
-  if (runs_.present().post.empty()) runs_.present().post = post;
-  post_ = post.empty() ? run().post : post;
   written_ = run().heard;
+  post_ = post.empty() ? run().post : post;
+  if (post.empty() || !run().post.empty()) return;
+  runs_.present().post = post;
+  book_.write(run());  // before any report of it: who finds none there takes it for that of the next place
 }
 
 std::optional<icd::RunStatus> RunAccount::expected(Instant now) const {
@@ -72,6 +74,17 @@ void RunAccount::begin(const std::string& why, std::int64_t may_be,
   forget_counts();
   book_.change(steps, run());
   written_ = time.stamp;
+}
+
+std::int64_t RunAccount::announce(const std::string& why, const std::string& post, Time time) {
+  const std::int64_t present = run().number;
+  runs_.begin({.began = time.stamp, .why = why, .heard = time.stamp, .post = post});
+  const Run next = run();
+  runs_.take_up(present);
+  book_.write(run());  // first: the other one never is the latest
+  book_.write(next);
+  written_ = time.stamp;
+  return next.number;
 }
 
 void RunAccount::take_up(std::int64_t number, std::span<const Report> steps, Time time) {

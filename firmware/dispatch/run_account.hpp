@@ -51,6 +51,8 @@ class RunAccount {
   /// does to the reports is written down with it. `may_be`: the run that it may be still; 0: none.
   void begin(const std::string& why, std::int64_t may_be, const std::optional<icd::RunStatus>& status,
              std::span<const Report> steps, Time time);
+  /// Another run, at `post`, will be the present one: a restart finds it. Gives its number.
+  std::int64_t announce(const std::string& why, const std::string& post, Time time);
   /// An earlier one is the present one again.
   void take_up(std::int64_t number, std::span<const Report> steps, Time time);
   /// The present one is one that it may be: that one is the present one again, with all that is known of

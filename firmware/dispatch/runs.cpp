@@ -51,9 +51,9 @@ void Runs::take_up(std::int64_t number) {
   present_ = number;
 }
 
-bool Runs::is_here(std::int64_t number) const {
+bool Runs::is_at(std::int64_t number, const std::string& post) const {
   const Run* const run = find(number);
-  return run == nullptr || run->post.empty() || run->post == present().post;
+  return run == nullptr || run->post.empty() || run->post == post;
 }
 
 bool Runs::may_be_present(std::int64_t number) const {

@@ -34,8 +34,10 @@ class Runs {
   /// An earlier one is the present one again.
   void take_up(std::int64_t number);
 
-  /// What is at the present run's Command Post; a run that is not known counts as being there.
-  bool is_here(std::int64_t number) const;
+  /// `number` is a run at `post`; one that is not known counts as being there.
+  bool is_at(std::int64_t number, const std::string& post) const;
+  /// It is at the present run's Command Post.
+  bool is_here(std::int64_t number) const { return is_at(number, present().post); }
   /// `number` is a run that the present one may still be, or one that that may be.
   bool may_be_present(std::int64_t number) const;
 

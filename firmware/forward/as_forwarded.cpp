@@ -4,11 +4,11 @@
 
 namespace adit::forward {
 
-void AsForwarded::forwarded(const icd::StateUpdate& update, page::Time now) {
+void AsForwarded::forwarded(const icd::StateUpdate& update, api::Time now) {
   for (const icd::NamedPose& named : update.poses) {
     const std::string& name = named.name.text();
     if (robots_.size() >= kMostRobots && !robots_.contains(name)) forget_the_oldest();
-    const double heading = page::heading_of(named.pose.orientation);
+    const double heading = api::heading_of(named.pose.orientation);
     robots_[name] = {.name = name, .position = named.pose.position, .heading = heading, .at = now};
     tracks_.forwarded(name, {.at = now, .position = named.pose.position, .heading = heading});
   }
@@ -21,13 +21,13 @@ void AsForwarded::forget_the_oldest() {
   robots_.erase(oldest);
 }
 
-void AsForwarded::begin_run(page::Time now) {
+void AsForwarded::begin_run(api::Time now) {
   markers_.wipe(now);
   tracks_.wipe();
 }
 
-std::vector<page::RobotRow> AsForwarded::robots() const {
-  std::vector<page::RobotRow> rows;
+std::vector<api::RobotRow> AsForwarded::robots() const {
+  std::vector<api::RobotRow> rows;
   rows.reserve(robots_.size());
   for (const auto& [name, row] : robots_) rows.push_back(row);
   return rows;

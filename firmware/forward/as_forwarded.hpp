@@ -4,11 +4,11 @@
 #include <string>
 #include <vector>
 
+#include "api/run_view.hpp"
 #include "forward/marker_scene.hpp"
 #include "forward/tracks.hpp"
 #include "icd/markers_update.hpp"
 #include "icd/state_update.hpp"
-#include "page/page.hpp"
 
 namespace adit::forward {
 
@@ -17,20 +17,20 @@ class AsForwarded {
  public:
   static constexpr std::size_t kMostRobots = 100;  // those heard of last
 
-  void forwarded(const icd::StateUpdate& update, page::Time now);
-  void forwarded(const icd::MarkersUpdate& update, page::Time now) { markers_.forwarded(update, now); }
+  void forwarded(const icd::StateUpdate& update, api::Time now);
+  void forwarded(const icd::MarkersUpdate& update, api::Time now) { markers_.forwarded(update, now); }
   /// A new run begins without tracks and markers; where each robot is, it still is.
-  void begin_run(page::Time now);
+  void begin_run(api::Time now);
 
   /// Each robot's last pose, by name.
-  std::vector<page::RobotRow> robots() const;
+  std::vector<api::RobotRow> robots() const;
   const MarkerScene& markers() const { return markers_; }
   const Tracks& tracks() const { return tracks_; }
 
  private:
   void forget_the_oldest();
 
-  std::map<std::string, page::RobotRow> robots_;
+  std::map<std::string, api::RobotRow> robots_;
   MarkerScene markers_;
   Tracks tracks_;
 };

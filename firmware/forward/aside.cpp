@@ -228,8 +228,8 @@ std::expected<void, std::string> Aside::discard(std::uint64_t number) {
   return {};
 }
 
-std::vector<page::AsideRow> Aside::rows() const {
-  std::vector<page::AsideRow> rows;
+std::vector<api::AsideRow> Aside::rows() const {
+  std::vector<api::AsideRow> rows;
   for (const lanes::AsideItem& item : items_.items()) {
     if (leaving_.contains(item.number)) continue;
     rows.push_back({.number = item.number,

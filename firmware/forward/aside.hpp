@@ -8,10 +8,10 @@
 #include <string>
 #include <vector>
 
+#include "api/run_view.hpp"
 #include "lanes/set_aside.hpp"
 #include "loop/loop.hpp"
 #include "loop/workers.hpp"
-#include "page/page.hpp"
 
 namespace adit::forward {
 
@@ -52,7 +52,7 @@ class Aside {
   bool sent_again(std::uint64_t number, bool kept);
   std::expected<void, std::string> discard(std::uint64_t number);
 
-  std::vector<page::AsideRow> rows() const;
+  std::vector<api::AsideRow> rows() const;
 
  private:
   std::string path(std::uint64_t number, const char* ending) const;

@@ -27,10 +27,6 @@ bool comes_from_another(const uplink::Outcome& outcome) {
          !dispatch::may_be_the_command_post(doubt->too_long_status, dispatch::Body::Other);
 }
 
-bool same(const std::optional<icd::BearerToken>& one, const std::optional<icd::BearerToken>& other) {
-  return one && other ? one->matches(other->reveal()) : one.has_value() == other.has_value();
-}
-
 }  // namespace
 
 Channel::Channel(loop::Loop& loop, const char* name, uplink::Endpoint endpoint,
@@ -44,13 +40,23 @@ void Channel::lead_to(uplink::Endpoint endpoint, std::optional<icd::BearerToken>
   next_ = {std::move(endpoint), std::move(token), answer_within};
 }
 
+bool Channel::leads_elsewhere(const Way& way) const {
+  return address_text({way.endpoint.address, way.endpoint.port}) != address_ || !icd::same(way.token, token_);
+}
+
+void Channel::give_up() {
+  if (!next_ || !busy() || !leads_elsewhere(*next_)) return;
+  finished_bytes_ += connection_->sent_bytes();
+  connection_.reset();
+  ended(uplink::InDoubt{.why = "it was under way to " + address_ + ", where the settings lead no more"});
+}
+
 bool Channel::turns() {
   if (!next_ || busy()) return false;
   if (connection_) finished_bytes_ += connection_->sent_bytes();
-  const std::string address = address_;
-  const auto token = token_;
+  const bool is_elsewhere = leads_elsewhere(*next_);
   take(*std::exchange(next_, std::nullopt));
-  if (address == address_ && same(token, token_)) return false;
+  if (!is_elsewhere) return false;
   last_status_ = 0;
   foreign_now_ = false;
   answer_ms_.reset();
@@ -78,10 +84,13 @@ void Channel::send(icd::Uri uri, std::string_view content_type, icd::ChunkedByte
                      .body = std::move(body),
                      .answer_within = answer_within_,
                      .longest_answer = longest_answer_to(uri)},
-                    [this, done = std::move(done)](uplink::Outcome outcome) {
-                      loop::guarded("noting an answer", [&] { note(outcome); });
-                      done(std::move(outcome));
-                    });
+                    [this](uplink::Outcome outcome) { ended(std::move(outcome)); });
+  done_ = std::move(done);
+}
+
+void Channel::ended(uplink::Outcome outcome) {
+  loop::guarded("noting an answer", [&] { note(outcome); });
+  std::exchange(done_, nullptr)(std::move(outcome));
 }
 
 void Channel::note(const uplink::Outcome& outcome) {

@@ -21,6 +21,8 @@ class Channel {
   /// It is to lead there, by a connection of its own, once the request under way has ended.
   void lead_to(uplink::Endpoint endpoint, std::optional<icd::BearerToken> token,
                std::chrono::milliseconds answer_within);
+  /// Where that is elsewhere, the request under way ends now, in doubt: for what may be sent again.
+  void give_up();
   /// Whoever sends asks first: true where it leads to another address from this call on, or with another
   /// token. What was heard before is of the other place. Another way to the same place is taken without a
   /// word.
@@ -64,6 +66,8 @@ class Channel {
     std::chrono::milliseconds answer_within;
   };
   void take(Way way);
+  bool leads_elsewhere(const Way& way) const;
+  void ended(uplink::Outcome outcome);
   void note(const uplink::Outcome& outcome);
 
   loop::Loop& loop_;
@@ -74,6 +78,7 @@ class Channel {
   std::chrono::milliseconds answer_within_{};
   bool keeps_warm_ = false;
   std::optional<Way> next_;
+  std::function<void(uplink::Outcome)> done_;  // for the request under way
   loop::Instant sent_at_{}, heard_{};
   std::uint64_t finished_bytes_ = 0, throttled_ = 0, foreign_ = 0;
   bool foreign_now_ = false;

@@ -59,9 +59,9 @@ void Flow::refused(icd::Uri uri, const intake::Sender& sender, const icd::Refusa
   record_.refused(uri, sender, refusal, loop_.stamp_now());
 }
 
-std::expected<void, std::string> Flow::aside(std::uint64_t number, page::AsideDeed deed) {
+std::expected<void, std::string> Flow::aside(std::uint64_t number, api::AsideDeed deed) {
   if (is_ending()) return std::unexpected("the gateway is stopping: nothing is sent any more");
-  if (deed == page::AsideDeed::Discard) return aside_.discard(number);
+  if (deed == api::AsideDeed::Discard) return aside_.discard(number);
   auto message = aside_.to_be_sent(number);
   if (!message) return std::unexpected(message.error());
   if (auto* const map = std::get_if<icd::MapUpdate>(&*message)) {
@@ -86,9 +86,9 @@ void Flow::picture_the_run() {
   picture_.begin_run();
 }
 
-std::vector<page::ActivityRow> Flow::activities() const {
-  std::vector<page::ActivityRow> rows = record_.activities();
-  for (page::ActivityRow& row : rows) {
+std::vector<api::ActivityRow> Flow::activities() const {
+  std::vector<api::ActivityRow> rows = record_.activities();
+  for (api::ActivityRow& row : rows) {
     if (row.kind == "state") row.waiting = news_.waiting(Kind::State);
     if (row.kind == "markers") row.waiting = news_.waiting(Kind::Markers);
     if (row.kind == "grid") row.waiting = maps_.waiting({Kind::Grid, row.robot});

@@ -9,6 +9,7 @@
 #include <string>
 #include <vector>
 
+#include "api/source.hpp"
 #include "forward/as_forwarded.hpp"
 #include "forward/aside.hpp"
 #include "forward/clocks.hpp"
@@ -25,7 +26,6 @@
 #include "ledger/ledger.hpp"
 #include "loop/loop.hpp"
 #include "loop/workers.hpp"
-#include "page/page.hpp"
 #include "settings/anew.hpp"
 #include "settings/settings.hpp"
 #include "spool/spool.hpp"
@@ -86,14 +86,14 @@ class Flow final : public intake::Desk {
   void status(const intake::Sender& sender, std::shared_ptr<intake::Responder> responder) override;
   void refused(icd::Uri uri, const intake::Sender& sender, const icd::Refusal& told) override;
 
-  /// The operator's word: page::Operator.
-  std::expected<std::int64_t, std::string> judge(std::int64_t number, page::Deed deed) {
+  /// The operator's word: api::Operator.
+  std::expected<std::int64_t, std::string> judge(std::int64_t number, api::Deed deed) {
     return scoring_.judge(number, deed);
   }
   std::expected<std::int64_t, std::string> report(const icd::ArtifactReport& report, bool resubmit) {
     return scoring_.report(report, resubmit);
   }
-  std::expected<void, std::string> aside(std::uint64_t number, page::AsideDeed deed);
+  std::expected<void, std::string> aside(std::uint64_t number, api::AsideDeed deed);
   std::int64_t begin_run() { return scoring_.begin_run(); }
 
   const Scoring& scoring() const { return scoring_; }
@@ -105,7 +105,7 @@ class Flow final : public intake::Desk {
   const AsForwarded& as_forwarded() const { return as_forwarded_; }
   const picture::Mosaic& picture() const { return picture_.mosaic(); }
   /// Record's, with what waits.
-  std::vector<page::ActivityRow> activities() const;
+  std::vector<api::ActivityRow> activities() const;
   /// Why states and markers cannot be kept, or "".
   const std::string& journal_trouble() const { return journal_.trouble(); }
   std::uint64_t sent_bytes() const;

@@ -72,13 +72,13 @@ void Flow::carry_on() {
   journal::Carried carried = journal_.read();
   const bool is_first = !carried.clock();
   clocks_.carry_on(carried, host::boot());
-  if (legacy_) hold_back();
   scoring_.carry_on(carried);
   maps_.carry_on(carried);
   news_.carry_on(carried);
   if (legacy_) {
     maps_.go_on_from(legacy_->map_stamp);
     news_.go_on_from(legacy_->state_stamp, legacy_->markers_stamp);
+    hold_back();  // after what was carried on: it is written down, and must not put an earlier time there
   }
   restore(is_first);
 }

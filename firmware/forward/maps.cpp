@@ -7,7 +7,6 @@
 #include "forward/upstream_answer.hpp"
 #include "host/log.hpp"
 #include "icd/sentence.hpp"
-#include "lanes/set_aside.hpp"
 #include "loop/guard.hpp"
 #include "pace/budget.hpp"
 #include "pack/pack.hpp"
@@ -153,6 +152,7 @@ void Maps::endpoint_changed(std::optional<icd::BearerToken> token) {
   const settings::CommandPost& post = settings_.command_post;
   channel_.lead_to(endpoint_of(post, post.mapping, pace::map_bytes_per_second(post.budget_mbit)),
                    std::move(token), post.timeouts.mapping_answer);
+  channel_.give_up();
   pump();
 }
 
@@ -161,11 +161,9 @@ void Maps::restore(std::uint64_t number, icd::MapUpdate update) {
   std::uint64_t& last = again ? again_numbers_ : numbers_;
   last = std::max(last, number);
   record_.accepted(traffic_of(update), update.data.bytes.size(), loop_.stamp_now());
-  if (again) {
-    const icd::Stamp stamp = stamp_of(update);
-    return wait_again(number, std::move(update), stamp);
-  }
-  forget(add(number, std::move(update)));
+  const icd::Stamp stamp = stamp_of(update);
+  forget(again ? lane_.put_back(waiting_again(number, std::move(update), stamp))
+               : add(number, std::move(update)));
   pump();
 }
 
@@ -338,15 +336,16 @@ void Maps::give_up(int status, const std::string& sentence) {
   prepared_.reset();
 }
 
-/// What waits or is under way may say all of it by now: it must neither follow that, nor be found by a life
-/// to come, which reads the maps in the order of their numbers and would take it for the newer one.
+/// What waits or is under way may say all of it by now: it must not follow that.
 void Maps::send_again(icd::MapUpdate update, std::function<bool(bool kept)> done) {
-  if (lane_.is_replaced(update) || is_said_by_what_goes(update, stamp_of(update))) {
+  const icd::Stamp again = stamp_of(update);
+  const lanes::WaitingMap back = waiting_again(again_numbers_ + 1, update, again);
+  if (lane_.is_replaced(back) || is_said_by_what_goes(back)) {
     done(true);
     return;
   }
   const auto keeping = std::make_shared<Keeping>();
-  keeping->again = stamp_of(update);
+  keeping->again = again;
   update.header().stamp = loop_.stamp_now();
   keeping->update = std::move(update);
   keep(keeping, [this, done = std::move(done)](Keeping& it) { kept_again(it, done); });
@@ -358,22 +357,19 @@ void Maps::kept_again(Keeping& keeping, const std::function<bool(bool kept)>& do
     return host::log(host::Level::Error, "what was set aside is not sent again",
                      {{"why", keeping.kept.error().sentence}});
   }
-  if (!is_wanted || is_said_by_what_goes(*keeping.kept, *keeping.again)) return forget({keeping.number});
-  wait_again(keeping.number, std::move(*keeping.kept), *keeping.again);
-}
-
-void Maps::wait_again(std::uint64_t number, icd::MapUpdate update, icd::Stamp again) {
-  forget(lane_.put_back({.map = std::move(update),
-                         .accepted = loop_.now(),
-                         .updates = {number},
-                         .alone = true,
-                         .again = again}));
+  lanes::WaitingMap back = waiting_again(keeping.number, std::move(*keeping.kept), *keeping.again);
+  if (!is_wanted || is_said_by_what_goes(back)) return forget({keeping.number});
+  forget(lane_.put_back(std::move(back)));
   pump();
 }
 
-bool Maps::is_said_by_what_goes(const icd::MapUpdate& older, icd::Stamp again) const {
-  return prepared_ &&
-         lanes::replaces(prepared_->waiting, {.map = older, .accepted = {}, .updates = {}, .again = again});
+lanes::WaitingMap Maps::waiting_again(std::uint64_t number, icd::MapUpdate update, icd::Stamp again) const {
+  return {
+      .map = std::move(update), .accepted = loop_.now(), .updates = {number}, .alone = true, .again = again};
+}
+
+bool Maps::is_said_by_what_goes(const lanes::WaitingMap& back) const {
+  return prepared_ && lanes::replaces(prepared_->waiting, back);
 }
 
 void Maps::link_is_back() {

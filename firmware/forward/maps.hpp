@@ -45,8 +45,8 @@ class Maps {
   void hold_back() { pace_.sent(loop_.now()); }
   /// The settings are others, by which it goes from now on.
   void settings_changed();
-  /// The endpoint is, or its token, or the way there: what is under way is taken by the one that it was sent
-  /// to, or sent again.
+  /// The endpoint is, or its token, or the way there: what is under way to another place is given up, and
+  /// sent again to this one.
   void endpoint_changed(std::optional<icd::BearerToken> token);
   /// A map that the spool kept under this number.
   void restore(std::uint64_t number, icd::MapUpdate update);
@@ -101,8 +101,8 @@ class Maps {
   void keep(const std::shared_ptr<Keeping>& keeping, const std::function<void(Keeping&)>& told);
   void kept(Keeping& keeping, const std::function<void(icd::Checked<void>)>& done);
   void kept_again(Keeping& keeping, const std::function<bool(bool kept)>& done);
-  bool is_said_by_what_goes(const icd::MapUpdate& older, icd::Stamp again) const;
-  void wait_again(std::uint64_t number, icd::MapUpdate update, icd::Stamp again);
+  bool is_said_by_what_goes(const lanes::WaitingMap& back) const;
+  lanes::WaitingMap waiting_again(std::uint64_t number, icd::MapUpdate update, icd::Stamp again) const;
   std::uint64_t next_number(bool again);
   void forget(std::vector<std::uint64_t> numbers);
   void pump();

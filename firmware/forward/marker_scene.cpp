@@ -6,12 +6,12 @@
 namespace adit::forward {
 
 /// Versions grow over a restart too: a page that comes back with an older one gets all.
-void MarkerScene::begin_change(page::Time now) {
+void MarkerScene::begin_change(api::Time now) {
   const auto by_clock = now > 0 ? static_cast<std::uint64_t>(now * 1000) : 0;
   version_ = std::max(version_ + 1, by_clock);
 }
 
-void MarkerScene::forwarded(const icd::MarkersUpdate& update, page::Time now) {
+void MarkerScene::forwarded(const icd::MarkersUpdate& update, api::Time now) {
   for (const icd::Marker& marker : update.markers) {
     begin_change(now);
     apply(marker, now);
@@ -19,7 +19,7 @@ void MarkerScene::forwarded(const icd::MarkersUpdate& update, page::Time now) {
   }
 }
 
-void MarkerScene::wipe(page::Time now) {
+void MarkerScene::wipe(api::Time now) {
   begin_change(now);
   clear();
   left_out_ = 0;
@@ -32,7 +32,7 @@ void MarkerScene::clear() {
   forgotten_ = version_;
 }
 
-void MarkerScene::apply(const icd::Marker& marker, page::Time now) {
+void MarkerScene::apply(const icd::Marker& marker, api::Time now) {
   const Key key{marker.ns, marker.id};
   switch (marker.action) {
     case icd::MarkerAction::DeleteAll:
@@ -42,7 +42,7 @@ void MarkerScene::apply(const icd::Marker& marker, page::Time now) {
     case icd::MarkerAction::Delete:
       return remove(key);
     case icd::MarkerAction::Add:
-      return put(key, {.marker = page::drawn(marker), .at = now, .version = version_});
+      return put(key, {.marker = api::drawn(marker), .at = now, .version = version_});
   }
 }
 
@@ -92,10 +92,9 @@ void MarkerScene::keep_bounds() {
   }
 }
 
-page::MarkerNews MarkerScene::news(std::uint64_t since) const {
+api::MarkerNews MarkerScene::news(std::uint64_t since) const {
   const bool whole = since < forgotten_ || since > version_ || since == 0;
-  page::MarkerNews news{
-      .version = version_, .whole = whole, .left_out = left_out_, .markers = {}, .gone = {}};
+  api::MarkerNews news{.version = version_, .whole = whole, .left_out = left_out_, .markers = {}, .gone = {}};
   for (auto each = whole ? in_order_.begin() : in_order_.upper_bound(since); each != in_order_.end();
        ++each) {
     const Entry& entry = entries_.at(each->second);

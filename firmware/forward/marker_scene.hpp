@@ -6,8 +6,8 @@
 #include <string>
 #include <utility>
 
+#include "api/scene.hpp"
 #include "icd/markers_update.hpp"
-#include "page/scene.hpp"
 
 namespace adit::forward {
 
@@ -20,26 +20,26 @@ class MarkerScene {
   static constexpr std::size_t kMostBytes = 1'000'000;  // as DrawnMarker::size() has it
 
   /// The Command Post took these, at `now`; the first is at number 1, later ones never run backward.
-  void forwarded(const icd::MarkersUpdate& update, page::Time now);
+  void forwarded(const icd::MarkersUpdate& update, api::Time now);
   /// A new run begins with none.
-  void wipe(page::Time now);
+  void wipe(api::Time now);
 
   std::uint64_t version() const { return version_; }
   /// What changed after `since`; all there is where that cannot be told any more.
-  page::MarkerNews news(std::uint64_t since) const;
+  api::MarkerNews news(std::uint64_t since) const;
 
  private:
   using Key = std::pair<std::string, std::int32_t>;
   struct Entry {
-    page::DrawnMarker marker;
-    page::Time at = 0;
+    api::DrawnMarker marker;
+    api::Time at = 0;
     std::uint64_t version = 0;
     bool gone = false;  // of the marker only the ns is left, which counts
   };
   using InOrder = std::map<std::uint64_t, Key>;
 
-  void begin_change(page::Time now);
-  void apply(const icd::Marker& marker, page::Time now);
+  void begin_change(api::Time now);
+  void apply(const icd::Marker& marker, api::Time now);
   void remove(const Key& key);
   void clear();
   void keep_bounds();

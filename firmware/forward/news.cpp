@@ -97,6 +97,7 @@ void News::settings_changed() {
 void News::endpoint_changed(std::optional<icd::BearerToken> token) {
   const settings::CommandPost& post = settings_.command_post;
   channel_.lead_to(endpoint_of(post, post.mapping, 0), std::move(token), post.timeouts.mapping_answer);
+  channel_.give_up();
   pump();
 }
 

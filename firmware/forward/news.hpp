@@ -45,8 +45,8 @@ class News {
   }
   /// The settings are others, by which it goes from now on.
   void settings_changed();
-  /// The endpoint is, or its token, or the way there: what is under way is taken by the one that it was sent
-  /// to, or sent again.
+  /// The endpoint is, or its token, or the way there: what is under way to another place is given up, and
+  /// sent again to this one.
   void endpoint_changed(std::optional<icd::BearerToken> token);
   void start() {
     channel_.keep_warm();

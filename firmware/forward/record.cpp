@@ -23,18 +23,18 @@ Traffic traffic_of(const icd::MapUpdate& update) {
   return {update.is_grid() ? Kind::Grid : Kind::Cloud, update.name ? update.name->text() : ""};
 }
 
-page::ActivityRow& Record::row(const Traffic& traffic) {
+api::ActivityRow& Record::row(const Traffic& traffic) {
   const auto known = rows_.find(traffic);
   if (known != rows_.end()) return known->second;
   const bool full = rows_.size() >= kMostRows;
-  page::ActivityRow& made = rows_[full ? Traffic{traffic.kind, "(others)"} : traffic];
+  api::ActivityRow& made = rows_[full ? Traffic{traffic.kind, "(others)"} : traffic];
   made.kind = name_of(traffic.kind);
   made.robot = full ? "(others)" : traffic.robot;
   return made;
 }
 
-void Record::accepted(const Traffic& traffic, std::size_t bytes, page::Time now) {
-  page::ActivityRow& activity = row(traffic);
+void Record::accepted(const Traffic& traffic, std::size_t bytes, api::Time now) {
+  api::ActivityRow& activity = row(traffic);
   ++activity.accepted;
   activity.last_accepted = now;
   activity.bytes_received = bytes;
@@ -46,8 +46,8 @@ void Record::replaced(const Traffic& traffic, std::size_t updates) {
 }
 
 void Record::forwarded(const Traffic& traffic, std::size_t updates, std::size_t bytes, int status,
-                       page::Time now) {
-  page::ActivityRow& activity = row(traffic);
+                       api::Time now) {
+  api::ActivityRow& activity = row(traffic);
   ++activity.forwarded;
   if (traffic.kind == Kind::Cloud && updates > 1) activity.merged += updates - 1;
   activity.last_forwarded = now;
@@ -58,7 +58,7 @@ void Record::forwarded(const Traffic& traffic, std::size_t updates, std::size_t 
 }
 
 void Record::not_taken(const Traffic& traffic, NotTaken how, int status, const std::string& sentence) {
-  page::ActivityRow& activity = row(traffic);
+  api::ActivityRow& activity = row(traffic);
   ++(how == NotTaken::Throttled ? activity.throttled
      : how == NotTaken::Failed  ? activity.failed
                                 : activity.refused_upstream);
@@ -67,9 +67,8 @@ void Record::not_taken(const Traffic& traffic, NotTaken how, int status, const s
   changed_();
 }
 
-void Record::refused(icd::Uri uri, const intake::Sender& sender, const icd::Refusal& refusal,
-                     page::Time now) {
-  page::RefusedCount& counted = refused_[{uri, refusal.status}];
+void Record::refused(icd::Uri uri, const intake::Sender& sender, const icd::Refusal& refusal, api::Time now) {
+  api::RefusedCount& counted = refused_[{uri, refusal.status}];
   ++counted.count;
   counted.parts += refusal.parts;
   refusals_.push_front({.at = now,
@@ -82,8 +81,8 @@ void Record::refused(icd::Uri uri, const intake::Sender& sender, const icd::Refu
   changed_();
 }
 
-std::vector<page::RefusedCount> Record::refused_counts() const {
-  std::vector<page::RefusedCount> all;
+std::vector<api::RefusedCount> Record::refused_counts() const {
+  std::vector<api::RefusedCount> all;
   all.reserve(refused_.size());
   for (const auto& [what, counted] : refused_) {
     const auto& [uri, status] = what;
@@ -95,8 +94,8 @@ std::vector<page::RefusedCount> Record::refused_counts() const {
   return all;
 }
 
-std::vector<page::ActivityRow> Record::activities() const {
-  std::vector<page::ActivityRow> all;
+std::vector<api::ActivityRow> Record::activities() const {
+  std::vector<api::ActivityRow> all;
   all.reserve(rows_.size());
   for (const auto& [traffic, activity] : rows_) all.push_back(activity);
   return all;

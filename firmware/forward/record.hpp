@@ -8,11 +8,11 @@
 #include <utility>
 #include <vector>
 
+#include "api/box.hpp"
+#include "api/run_view.hpp"
 #include "icd/status.hpp"
 #include "icd/uri.hpp"
 #include "intake/desk.hpp"
-#include "page/box.hpp"
-#include "page/page.hpp"
 
 namespace adit::forward {
 
@@ -38,30 +38,30 @@ class Record {
   /// `changed` is called whenever something is noted.
   explicit Record(std::function<void()> changed) : changed_(std::move(changed)) {}
 
-  void accepted(const Traffic& traffic, std::size_t bytes, page::Time now);
+  void accepted(const Traffic& traffic, std::size_t bytes, api::Time now);
   void replaced(const Traffic& traffic, std::size_t updates);
   /// The Command Post took a message of `bytes` that stands for `updates` accepted ones.
-  void forwarded(const Traffic& traffic, std::size_t updates, std::size_t bytes, int status, page::Time now);
+  void forwarded(const Traffic& traffic, std::size_t updates, std::size_t bytes, int status, api::Time now);
   /// The Command Post did not take it; 0: no status came.
   void not_taken(const Traffic& traffic, NotTaken how, int status, const std::string& sentence);
 
-  void refused(icd::Uri uri, const intake::Sender& sender, const icd::Refusal& refusal, page::Time now);
+  void refused(icd::Uri uri, const intake::Sender& sender, const icd::Refusal& refusal, api::Time now);
 
   /// Without `waiting`, which the lanes know.
-  std::vector<page::ActivityRow> activities() const;
+  std::vector<api::ActivityRow> activities() const;
   /// What was ever refused, by URI and status.
-  std::vector<page::RefusedCount> refused_counts() const;
+  std::vector<api::RefusedCount> refused_counts() const;
   /// Newest first.
-  std::vector<page::RefusalRow> refusals() const { return {refusals_.begin(), refusals_.end()}; }
+  std::vector<api::RefusalRow> refusals() const { return {refusals_.begin(), refusals_.end()}; }
   void changed() const { changed_(); }
 
  private:
-  page::ActivityRow& row(const Traffic& traffic);
+  api::ActivityRow& row(const Traffic& traffic);
 
   std::function<void()> changed_;
-  std::map<Traffic, page::ActivityRow> rows_;
-  std::deque<page::RefusalRow> refusals_;
-  std::map<std::pair<icd::Uri, icd::Status>, page::RefusedCount> refused_;  // its counts
+  std::map<Traffic, api::ActivityRow> rows_;
+  std::deque<api::RefusalRow> refusals_;
+  std::map<std::pair<icd::Uri, icd::Status>, api::RefusedCount> refused_;  // its counts
 };
 
 Traffic traffic_of(const icd::MapUpdate& update);

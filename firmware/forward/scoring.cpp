@@ -80,6 +80,7 @@ void Scoring::settings_changed() {
 void Scoring::endpoint_changed(std::optional<icd::BearerToken> token) {
   const settings::CommandPost& post = settings_.command_post;
   channel_.lead_to(endpoint_of(post, post.scoring, 0), std::move(token), post.timeouts.scoring_answer);
+  if (channel_.busy()) whole(anew_, [&] { reports_->will_move(address_text(post.scoring), time()); });
   pump();
 }
 
@@ -324,13 +325,13 @@ void Scoring::answer_askers(const intake::Answer& answer) {
   for (const Asker& asker : std::exchange(askers_, {})) asker.responder->answer(answer);
 }
 
-dispatch::Reports::Outcome Scoring::judge(std::int64_t number, page::Deed deed) {
+dispatch::Reports::Outcome Scoring::judge(std::int64_t number, api::Deed deed) {
   const dispatch::Reports::Outcome outcome = whole(anew_, [&] {
-    return deed == page::Deed::Send       ? reports_->send(number, time())
-           : deed == page::Deed::Hold     ? reports_->hold(number, time())
-           : deed == page::Deed::Withdraw ? reports_->withdraw(number, time())
-           : deed == page::Deed::CallDone ? reports_->call_done(number, time())
-                                          : reports_->resubmit(number, time());
+    return deed == api::Deed::Send       ? reports_->send(number, time())
+           : deed == api::Deed::Hold     ? reports_->hold(number, time())
+           : deed == api::Deed::Withdraw ? reports_->withdraw(number, time())
+           : deed == api::Deed::CallDone ? reports_->call_done(number, time())
+                                         : reports_->resubmit(number, time());
   });
   record_.changed();
   pump();

@@ -7,6 +7,7 @@
 #include <random>
 #include <string>
 
+#include "api/source.hpp"
 #include "dispatch/reports.hpp"
 #include "forward/channel.hpp"
 #include "forward/known_status.hpp"
@@ -18,7 +19,6 @@
 #include "intake/desk.hpp"
 #include "ledger/ledger.hpp"
 #include "loop/loop.hpp"
-#include "page/page.hpp"
 #include "settings/settings.hpp"
 
 namespace adit::forward {
@@ -65,7 +65,7 @@ class Scoring {
   void tick();
 
   /// The operator's word on a report; gives the number of the report that it moved, or a sentence why not.
-  dispatch::Reports::Outcome judge(std::int64_t number, page::Deed deed);
+  dispatch::Reports::Outcome judge(std::int64_t number, api::Deed deed);
   /// The operator's own report, as if a client had posted it; gives its number once it is on disk.
   dispatch::Reports::Outcome report(const icd::ArtifactReport& report, bool resubmit);
   std::int64_t begin_run();
@@ -80,7 +80,7 @@ class Scoring {
 
   const Channel& channel() const { return channel_; }
   const std::optional<icd::RunStatus>& run() const { return run_; }
-  std::optional<page::Time> run_heard() const { return run_heard_; }
+  std::optional<api::Time> run_heard() const { return run_heard_; }
   const dispatch::Reports& reports() const { return *reports_; }
   /// Why the ledger cannot be written, or "".
   const std::string& trouble() const {
@@ -131,7 +131,7 @@ class Scoring {
   bool poll_due_ = false;  // Adit itself wants to know the status
 
   std::optional<icd::RunStatus> run_;
-  std::optional<page::Time> run_heard_;
+  std::optional<api::Time> run_heard_;
   KnownStatus known_status_;
   std::optional<loop::Instant> asked_status_;  // when that which is under way was asked for
   bool stopping_ = false;

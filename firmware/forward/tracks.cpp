@@ -9,15 +9,15 @@ namespace {
 
 constexpr double kEarly = 0.1;  // seconds: poses that come once a second come not quite so
 
-bool has_moved(const page::TrackPose& from, const page::TrackPose& to) {
+bool has_moved(const api::TrackPose& from, const api::TrackPose& to) {
   const double x = to.position.x - from.position.x, y = to.position.y - from.position.y,
                z = to.position.z - from.position.z;
   const double turned = std::abs(std::remainder(to.heading - from.heading, 2 * M_PI));
   return std::hypot(x, y, z) >= Tracks::kMoved || turned >= Tracks::kTurned;
 }
 
-std::vector<page::TrackPose> every_other(const std::vector<page::TrackPose>& poses) {
-  std::vector<page::TrackPose> kept;
+std::vector<api::TrackPose> every_other(const std::vector<api::TrackPose>& poses) {
+  std::vector<api::TrackPose> kept;
   kept.reserve(poses.size());
   for (std::size_t i = 0; i < poses.size(); i += 2) kept.push_back(poses[i]);
   return kept;
@@ -25,10 +25,10 @@ std::vector<page::TrackPose> every_other(const std::vector<page::TrackPose>& pos
 
 }  // namespace
 
-void Tracks::forwarded(const std::string& robot, const page::TrackPose& pose) {
+void Tracks::forwarded(const std::string& robot, const api::TrackPose& pose) {
   Kept& track = tracks_[robot];
   if (!track.poses.empty()) {
-    const page::TrackPose& last = track.poses.back();
+    const api::TrackPose& last = track.poses.back();
     const double least = has_moved(last, pose) ? track.spacing : std::max(kStill, track.spacing);
     if (pose.at < last.at + least - kEarly) return;
   }
@@ -39,10 +39,10 @@ void Tracks::forwarded(const std::string& robot, const page::TrackPose& pose) {
   track.poses.push_back(pose);
 }
 
-std::vector<page::Track> Tracks::since(page::Time since) const {
-  std::vector<page::Track> tracks;
+std::vector<api::Track> Tracks::since(api::Time since) const {
+  std::vector<api::Track> tracks;
   for (const auto& [robot, kept] : tracks_) {
-    const auto from = std::ranges::upper_bound(kept.poses, since, {}, &page::TrackPose::at);
+    const auto from = std::ranges::upper_bound(kept.poses, since, {}, &api::TrackPose::at);
     if (from != kept.poses.end()) tracks.push_back({robot, {from, kept.poses.end()}});
   }
   return tracks;

@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-#include "page/scene.hpp"
+#include "api/scene.hpp"
 
 namespace adit::forward {
 
@@ -19,16 +19,16 @@ class Tracks {
   static constexpr double kTurned = 0.2;              // radians
 
   /// The caller bounds the number of robots.
-  void forwarded(const std::string& robot, const page::TrackPose& pose);
+  void forwarded(const std::string& robot, const api::TrackPose& pose);
   void wipe() { tracks_.clear(); }
   void forget(const std::string& robot) { tracks_.erase(robot); }
 
   /// By name, the poses later than `since`; robots without any are left out.
-  std::vector<page::Track> since(page::Time since) const;
+  std::vector<api::Track> since(api::Time since) const;
 
  private:
   struct Kept {
-    std::vector<page::TrackPose> poses;
+    std::vector<api::TrackPose> poses;
     double spacing = kSpacing;
   };
   std::map<std::string, Kept> tracks_;

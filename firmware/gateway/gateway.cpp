@@ -23,16 +23,16 @@ Gateway::Gateway(loop::Loop& loop, Parts parts)
       disk_writer_(loop),
       flow_(loop, parts_.ledger, settings_, tokens(), {parts_.runtime_folder, parts_.state_folder},
             std::exchange(parts_.legacy, std::nullopt),
-            {.changed = [this] { page_.changed(); },
+            {.changed = [this] { api_.changed(); },
              .anew = [this] { make_way(); },
              .posted = [this](const std::string& name) { note_robot(name); }}),
       log_ins_(loop, 1),
       lights_(loop, std::move(parts_.lines)),
       links_(
-          loop, settings_, host::carrier, [this] { page_.changed(); }, [this] { flow_.link_is_back(); }),
+          loop, settings_, host::carrier, [this] { api_.changed(); }, [this] { flow_.link_is_back(); }),
       button_(loop, std::move(parts_.button), lights_, [this](panel::Press press) { pressed(press); }),
       roster_(settings_.robots),
-      sessions_(parts_.runtime_folder + '/' + SessionKeeper::kFile, loop.now()),
+      sessions_(parts_.runtime_folder + '/' + admin::SessionKeeper::kFile, loop.now()),
       accounts_(loop, log_ins_, disk_writer_, sessions_, parts_.state_folder,
                 parts_.loaded.secrets.label_code),
       network_requests_(parts_.state_folder, parts_.network_folder),
@@ -43,14 +43,14 @@ Gateway::Gateway(loop::Loop& loop, Parts parts)
           },
           [this] { change_.call_at(loop_.now()); }, [this] { make_way(); }),
       box_(loop, flow_.workers(), parts_.board, settings::file_of(parts_.loaded.settings),
-           [this](page::Usage& usage) { add_to(usage); }),
+           [this](api::Usage& usage) { add_to(usage); }),
       network_(loop, settings_, network_requests_),
       self_test_(loop, settings_, {tokens().scoring, tokens().mapping}, network_requests_, network_,
-                 [this] { page_.changed(); }),
-      updates_(loop, disk_writer_, UpdateRequests(parts_.state_folder, parts_.update_folder),
+                 [this] { api_.changed(); }),
+      updates_(loop, disk_writer_, admin::UpdateRequests(parts_.state_folder, parts_.update_folder),
                [this] { return report_under_way(); }),
-      page_(loop, *this, *this, accounts_, tokens().all),
-      routes_(icd_options(), flow_, flow_.workers(), page_),
+      api_(loop, *this, *this, accounts_, tokens().all),
+      routes_(icd_options(), flow_, flow_.workers(), api_),
       listeners_(loop, parts_.sockets, routes_),
       second_(loop.timer([this] { every_second(); })),
       change_(loop.timer([this] { apply_change(); })) {
@@ -58,10 +58,10 @@ Gateway::Gateway(loop::Loop& loop, Parts parts)
     ledger_return_.emplace(loop, disk_writer_, parts_.state_folder, parts_.ledger_rest,
                            [this] { ledger_is_back(); });
   }
-  page_.serve(setup_);
-  page_.serve(box_);
-  page_.serve(network_, self_test_);
-  page_.serve(updates_);
+  api_.serve(setup_);
+  api_.serve(box_);
+  api_.serve(network_, self_test_);
+  api_.serve(updates_);
 }
 
 Gateway::~Gateway() = default;
@@ -75,8 +75,8 @@ intake::IcdOptions Gateway::icd_options() const {
 }
 
 forward::Tokens Gateway::tokens() const {
-  forward::Tokens tokens{.scoring = token_for("scoring", settings_, parts_.loaded.secrets),
-                         .mapping = token_for("mapping", settings_, parts_.loaded.secrets),
+  forward::Tokens tokens{.scoring = admin::token_for("scoring", settings_, parts_.loaded.secrets),
+                         .mapping = admin::token_for("mapping", settings_, parts_.loaded.secrets),
                          .all = {}};
   for (const auto& [name, token] : parts_.loaded.secrets.tokens) tokens.all.push_back(token);
   return tokens;
@@ -135,11 +135,11 @@ void Gateway::note_robot(const std::string& name) {
   if (roster_.posted(name, loop_.now())) host::log(host::Level::Warning, roster_.sentence(name));
 }
 
-std::vector<page::ReportRow> Gateway::reports() const {
+std::vector<api::ReportRow> Gateway::reports() const {
   return all_rows(flow_.reports());
 }
 
-std::optional<page::ReportDetail> Gateway::report(std::int64_t number) const {
+std::optional<api::ReportDetail> Gateway::report(std::int64_t number) const {
   return detail_of(flow_.reports(), parts_.ledger, number);
 }
 
@@ -173,7 +173,7 @@ void Gateway::keep_sessions() {
   if (!sessions_.sessions().in_order().empty()) sessions_.keep();
 }
 
-void Gateway::add_to(page::Usage& usage) const {
+void Gateway::add_to(api::Usage& usage) const {
   usage.connections += listeners_.connections();
   usage.sent_bytes = flow_.sent_bytes();
   usage.exceptions = loop::caught_so_far();

@@ -5,29 +5,29 @@
 #include <string>
 #include <vector>
 
+#include "admin/accounts.hpp"
+#include "admin/network_change.hpp"
+#include "admin/network_requests.hpp"
+#include "admin/session_keeper.hpp"
+#include "admin/setup.hpp"
+#include "admin/store.hpp"
+#include "admin/updates.hpp"
+#include "api/api.hpp"
+#include "box/button_watch.hpp"
+#include "box/lights.hpp"
+#include "box/links.hpp"
+#include "box/self_test.hpp"
+#include "box/this_box.hpp"
 #include "forward/flow.hpp"
-#include "gateway/accounts.hpp"
-#include "gateway/button_watch.hpp"
 #include "gateway/ledger_return.hpp"
-#include "gateway/lights.hpp"
-#include "gateway/links.hpp"
 #include "gateway/listen_sockets.hpp"
 #include "gateway/listeners.hpp"
-#include "gateway/network_change.hpp"
-#include "gateway/network_requests.hpp"
 #include "gateway/roster.hpp"
-#include "gateway/self_test.hpp"
-#include "gateway/session_keeper.hpp"
-#include "gateway/setup.hpp"
-#include "gateway/store.hpp"
-#include "gateway/this_box.hpp"
-#include "gateway/updates.hpp"
 #include "host/service.hpp"
 #include "intake/icd_routes.hpp"
 #include "ledger/ledger.hpp"
 #include "loop/loop.hpp"
 #include "loop/workers.hpp"
-#include "page/page.hpp"
 #include "panel/lines.hpp"
 #include "settings/board.hpp"
 #include "settings/settings.hpp"
@@ -36,10 +36,10 @@ namespace adit::gateway {
 
 /// What the gateway is made of: all of it has passed its checks.
 struct Parts {
-  const Store& store;         // outlives the gateway
-  const FactoryReset& reset;  // so does this
-  ListenSockets& sockets;     // and this
-  Store::Loaded loaded;
+  const admin::Store& store;         // outlives the gateway
+  const admin::FactoryReset& reset;  // so does this
+  ListenSockets& sockets;            // and this
+  admin::Store::Loaded loaded;
   std::string trouble;  // for the operator: why the settings are not those that were wanted; or ""
   ledger::Ledger ledger;
   std::chrono::seconds ledger_rest;  // before it is looked whether one that takes no write does again
@@ -56,7 +56,7 @@ struct Parts {
 };
 
 /// The whole of Adit at work: the flow, the team's listeners, the page and the box, wired together.
-class Gateway final : public page::Source, public page::Operator {
+class Gateway final : public api::Source, public api::Operator {
  public:
   Gateway(loop::Loop& loop, Parts parts);
   ~Gateway() override;
@@ -74,25 +74,25 @@ class Gateway final : public page::Source, public page::Operator {
   /// What systemd shows: one line.
   std::string status_line() const;
 
-  page::RunView view() const override;
-  std::vector<page::ReportRow> reports() const override;
-  std::optional<page::ReportDetail> report(std::int64_t number) const override;
-  std::expected<std::int64_t, std::string> judge(std::int64_t number, page::Deed deed) override {
+  api::RunView view() const override;
+  std::vector<api::ReportRow> reports() const override;
+  std::optional<api::ReportDetail> report(std::int64_t number) const override;
+  std::expected<std::int64_t, std::string> judge(std::int64_t number, api::Deed deed) override {
     return flow_.judge(number, deed);
   }
   std::expected<std::int64_t, std::string> report(const icd::ArtifactReport& report, bool resubmit) override {
     return flow_.report(report, resubmit);
   }
-  std::expected<void, std::string> aside(std::uint64_t number, page::AsideDeed deed) override {
+  std::expected<void, std::string> aside(std::uint64_t number, api::AsideDeed deed) override {
     return flow_.aside(number, deed);
   }
   std::int64_t begin_run() override { return flow_.begin_run(); }
-  page::Time identify(double seconds) override;
+  api::Time identify(double seconds) override;
   const picture::Mosaic& map() const override { return flow_.picture(); }
-  page::MarkerNews markers(std::uint64_t since) const override {
+  api::MarkerNews markers(std::uint64_t since) const override {
     return flow_.as_forwarded().markers().news(since);
   }
-  std::vector<page::Track> tracks(page::Time since) const override {
+  std::vector<api::Track> tracks(api::Time since) const override {
     return flow_.as_forwarded().tracks().since(since);
   }
 
@@ -105,11 +105,11 @@ class Gateway final : public page::Source, public page::Operator {
   void look_at_sockets();
   void ledger_is_back();
   void show_lights();
-  void add_to(page::Usage& usage) const;
+  void add_to(api::Usage& usage) const;
   std::expected<void, std::string> listen(const settings::Team& team);
   void apply_change();
-  std::expected<void, std::string> take_over(Store::Loaded next);
-  void tell_of_settings(const settings::Anew& anew);
+  std::expected<void, std::string> take_over(admin::Store::Loaded next);
+  void tell_of_settings(const settings::Anew& anew, const forward::Tokens& tokens);
   void reopen_panel();
   void take_back(const std::string& why);
   intake::IcdOptions icd_options() const;
@@ -123,7 +123,7 @@ class Gateway final : public page::Source, public page::Operator {
   std::string report_under_way() const;
   void say_what_is_set_aside(std::vector<std::string>& sentences) const;
   void say_what_is_missing(std::vector<std::string>& sentences) const;
-  std::vector<page::EndpointRow> endpoints() const;
+  std::vector<api::EndpointRow> endpoints() const;
 
   loop::Loop& loop_;
   Parts parts_;
@@ -131,19 +131,19 @@ class Gateway final : public page::Source, public page::Operator {
   loop::Writer disk_writer_;     // of the state folder, on the disk, for which no map waits
   forward::Flow flow_;           // its workers' jobs end before that writer
   loop::Workers log_ins_;        // of their own: nobody who logs in waits behind maps, nor maps behind him
-  Lights lights_;
-  Links links_;
-  ButtonWatch button_;
+  box::Lights lights_;
+  box::Links links_;
+  box::ButtonWatch button_;
   Roster roster_;
-  SessionKeeper sessions_;
-  Accounts accounts_;
-  NetworkRequests network_requests_;
-  Setup setup_;
-  ThisBox box_;
-  NetworkChange network_;
-  SelfTest self_test_;
-  Updates updates_;
-  page::Page page_;
+  admin::SessionKeeper sessions_;
+  admin::Accounts accounts_;
+  admin::NetworkRequests network_requests_;
+  admin::Setup setup_;
+  box::ThisBox box_;
+  admin::NetworkChange network_;
+  box::SelfTest self_test_;
+  admin::Updates updates_;
+  api::Api api_;
   intake::IcdRoutes routes_;
   Listeners listeners_;
   loop::Source second_, change_;

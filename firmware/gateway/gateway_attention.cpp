@@ -59,7 +59,7 @@ std::string Gateway::report_under_way() const {
 /// What the Command Post would not take, and is for the operator to look at.
 void Gateway::say_what_is_set_aside(std::vector<std::string>& sentences) const {
   const auto rows = flow_.aside().rows();
-  const auto count = std::ranges::count(rows, false, &page::AsideRow::overtaken);
+  const auto count = std::ranges::count(rows, false, &api::AsideRow::overtaken);
   if (count == 0) return;
   sentences.push_back(icd::sentence(count, count == 1 ? " message is" : " messages are",
                                     " set aside: the Command Post would not take ",

@@ -30,7 +30,7 @@ void Gateway::assert_states() {
               !flow_.news().channel().trouble().empty() || !flow_.maps().channel().trouble().empty());
   lights_.set(State::NeedsOperator, !attention().empty());
   lights_.set(State::UpdateRunning, updates_.running());
-  for (const page::LinkRow& link : links_.rows()) {
+  for (const api::LinkRow& link : links_.rows()) {
     lights_.set(link.side == "team" ? State::TeamUnplugged : State::CommandPostUnplugged,
                 !link.carrier.value_or(false));
   }
@@ -42,13 +42,13 @@ void Gateway::assert_states() {
 
 void Gateway::show_lights() {
   assert_states();
-  if (std::exchange(told_lights_, lights_.shown()) != lights_.shown()) page_.changed();
+  if (std::exchange(told_lights_, lights_.shown()) != lights_.shown()) api_.changed();
 }
 
-page::Time Gateway::identify(double seconds) {
+api::Time Gateway::identify(double seconds) {
   const auto length = std::chrono::duration_cast<loop::Duration>(std::chrono::duration<double>(seconds));
   lights_.set_for(State::Identify, length);
-  page_.changed();
+  api_.changed();
   return loop_.stamp_now() + seconds;
 }
 

@@ -2,19 +2,12 @@
 // what they change.
 #include <utility>
 
+#include "box/open_panel.hpp"
 #include "gateway/gateway.hpp"
-#include "gateway/open_panel.hpp"
 #include "host/log.hpp"
 #include "settings/written.hpp"
 
 namespace adit::gateway {
-namespace {
-
-bool same(const std::optional<icd::BearerToken>& one, const std::optional<icd::BearerToken>& other) {
-  return one && other ? one->matches(other->reveal()) : one.has_value() == other.has_value();
-}
-
-}  // namespace
 
 /// What the disk holds by now is run with, or taken back. Where that ends halfway (no memory), another
 /// gateway reads it.
@@ -28,11 +21,11 @@ void Gateway::apply_change() {
     make_way();
     throw;
   }
-  page_.changed();
+  api_.changed();
 }
 
 /// An error: all is as it was, but that sockets may be closed.
-std::expected<void, std::string> Gateway::take_over(Store::Loaded next) {
+std::expected<void, std::string> Gateway::take_over(admin::Store::Loaded next) {
   settings::Settings in_use = settings::in_use(next.settings);
   settings::Anew anew = settings::anew_by(settings_, in_use);
   if (anew.listeners) {
@@ -42,19 +35,20 @@ std::expected<void, std::string> Gateway::take_over(Store::Loaded next) {
   settings_ = std::move(in_use);
   parts_.loaded = std::move(next);
   parts_.trouble.clear();
-  anew.scoring = anew.scoring || !same(before.scoring, tokens().scoring);
-  anew.mapping = anew.mapping || !same(before.mapping, tokens().mapping);
-  tell_of_settings(anew);
+  const forward::Tokens now = tokens();
+  anew.scoring = anew.scoring || !icd::same(before.scoring, now.scoring);
+  anew.mapping = anew.mapping || !icd::same(before.mapping, now.mapping);
+  tell_of_settings(anew, now);
   parts_.store.settle(parts_.loaded.settings);
   parts_.sockets.settle();
   return {};
 }
 
-void Gateway::tell_of_settings(const settings::Anew& anew) {
-  flow_.settings_changed(anew, tokens());
+void Gateway::tell_of_settings(const settings::Anew& anew, const forward::Tokens& tokens) {
+  flow_.settings_changed(anew, tokens);
   routes_.serve_with(icd_options());
-  page_.let_in(tokens().all);
-  self_test_.use({tokens().scoring, tokens().mapping});
+  api_.let_in(tokens.all);
+  self_test_.use({tokens.scoring, tokens.mapping});
   roster_.set_up(settings_.robots);
   links_.look_at(settings_);
   box_.runs_with(settings::file_of(parts_.loaded.settings));
@@ -66,7 +60,7 @@ void Gateway::tell_of_settings(const settings::Anew& anew) {
 void Gateway::reopen_panel() {
   lights_.let_go();
   button_.let_go();
-  auto panel = open_panel(settings_.panel, parts_.runtime_folder);
+  auto panel = box::open_panel(settings_.panel, parts_.runtime_folder);
   lights_.take(std::move(panel.lines));
   button_.take(std::move(panel.button));
 }

@@ -1,7 +1,7 @@
 // What the gateway shows of itself.
+#include "box/version.hpp"
 #include "gateway/gateway.hpp"
 #include "gateway/report_rows.hpp"
-#include "gateway/version.hpp"
 
 namespace adit::gateway {
 namespace {
@@ -10,7 +10,7 @@ constexpr std::size_t kMostReportRows = 200;
 
 }  // namespace
 
-std::vector<page::EndpointRow> Gateway::endpoints() const {
+std::vector<api::EndpointRow> Gateway::endpoints() const {
   const forward::Channel& scoring = flow_.scoring().channel();
   const forward::Channel& maps = flow_.maps().channel();
   const forward::Channel& news = flow_.news().channel();
@@ -34,30 +34,30 @@ std::vector<page::EndpointRow> Gateway::endpoints() const {
            .foreign = maps.foreign() + news.foreign()}};
 }
 
-page::RunView Gateway::view() const {
-  page::RunView view{.now = loop_.stamp_now(),
-                     .version = kVersion,
-                     .run = flow_.scoring().run(),
-                     .run_heard = flow_.scoring().run_heard(),
-                     .run_number = flow_.reports().run().number,
-                     .run_id = flow_.reports().run().id,
-                     .endpoints = endpoints(),
-                     .robots = flow_.as_forwarded().robots(),
-                     .reports = latest_rows(flow_.reports(), kMostReportRows),
-                     .near_metres = settings_.reports.near_metres,
-                     .activities = flow_.activities(),
-                     .refusals = flow_.record().refusals(),
-                     .aside = flow_.aside().rows(),
-                     .lights = {},
-                     .links = links_.rows(),
-                     .identify_until = {},
-                     .setup_open_until = {},
-                     .budget_mbit = settings_.command_post.budget_mbit,
-                     .sent_mbit = flow_.sent_mbit(),
-                     .queued_bytes = flow_.maps().queued_bytes(),
-                     .map_version = flow_.picture().version(),
-                     .marker_version = flow_.as_forwarded().markers().version(),
-                     .attention = attention()};
+api::RunView Gateway::view() const {
+  api::RunView view{.now = loop_.stamp_now(),
+                    .version = box::kVersion,
+                    .run = flow_.scoring().run(),
+                    .run_heard = flow_.scoring().run_heard(),
+                    .run_number = flow_.reports().run().number,
+                    .run_id = flow_.reports().run().id,
+                    .endpoints = endpoints(),
+                    .robots = flow_.as_forwarded().robots(),
+                    .reports = latest_rows(flow_.reports(), kMostReportRows),
+                    .near_metres = settings_.reports.near_metres,
+                    .activities = flow_.activities(),
+                    .refusals = flow_.record().refusals(),
+                    .aside = flow_.aside().rows(),
+                    .lights = {},
+                    .links = links_.rows(),
+                    .identify_until = {},
+                    .setup_open_until = {},
+                    .budget_mbit = settings_.command_post.budget_mbit,
+                    .sent_mbit = flow_.sent_mbit(),
+                    .queued_bytes = flow_.maps().queued_bytes(),
+                    .map_version = flow_.picture().version(),
+                    .marker_version = flow_.as_forwarded().markers().version(),
+                    .attention = attention()};
   for (const panel::Light light : panel::kLights) {
     view.lights.push_back({.name = std::string(panel::name_of(light)),
                            .pattern = std::string(panel::name_of(lights_.shown()[panel::index_of(light)]))});

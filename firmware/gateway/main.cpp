@@ -1,19 +1,16 @@
 /// aditd.
 
-#include <span>
-
+#include "box/version.hpp"
+#include "command_line/answer.hpp"
 #include "gateway/options.hpp"
 #include "gateway/service.hpp"
-#include "gateway/version.hpp"
-#include "host/command_line.hpp"
 #include "host/log.hpp"
 #include "loop/guard.hpp"
 
 int main(int argc, char** argv) {
-  const auto options =
-      adit::gateway::parse_options(std::span<char* const>(argv + 1, static_cast<std::size_t>(argc - 1)));
-  if (const auto exit =
-          adit::host::answered("aditd", adit::gateway::kVersion, adit::gateway::kUsage, options))
+  using adit::gateway::command_line_of;
+  const auto options = adit::command_line::read(command_line_of, {argv + 1, argv + argc});
+  if (const auto exit = adit::command_line::answer(command_line_of, adit::box::kVersion, options))
     return *exit;
   adit::loop::tell_of_caught([](const char* where, const char* what) {
     adit::host::log(adit::host::Level::Error, "an exception ended what it came from",

@@ -1,8 +1,6 @@
 #pragma once
 
-#include <expected>
-#include <span>
-#include <string>
+#include "command_line/read.hpp"
 
 namespace adit::gateway {
 
@@ -15,9 +13,6 @@ struct Options {
   bool help = false, version = false;
 };
 
-extern const char* const kUsage;
-
-/// What is wrong names the word it is about.
-std::expected<Options, std::string> parse_options(std::span<char* const> arguments);
+[[gnu::cold]] command_line::Program command_line_of(Options& options);
 
 }  // namespace adit::gateway

@@ -7,23 +7,23 @@
 
 namespace adit::gateway {
 
-page::ReportRow row_of(const dispatch::Reports& reports, const dispatch::Report& report) {
-  page::ReportRow row{.number = report.number,
-                      .type = report.report.type,
-                      .position = report.report.position,
-                      .sender = report.sender,
-                      .received = report.received,
-                      .changed = report.changed,
-                      .state = std::string(dispatch::name_of(report.state)),
-                      .status = report.status,
-                      .report_status = "",
-                      .score_change = std::nullopt,
-                      .note = report.note,
-                      .run = report.run,
-                      .asking = reports.is_asking(report),
-                      .reconciled = report.reconciled,
-                      .same_as = report.same_as,
-                      .lost = report.is_lost()};
+api::ReportRow row_of(const dispatch::Reports& reports, const dispatch::Report& report) {
+  api::ReportRow row{.number = report.number,
+                     .type = report.report.type,
+                     .position = report.report.position,
+                     .sender = report.sender,
+                     .received = report.received,
+                     .changed = report.changed,
+                     .state = std::string(dispatch::name_of(report.state)),
+                     .status = report.status,
+                     .report_status = "",
+                     .score_change = std::nullopt,
+                     .note = report.note,
+                     .run = report.run,
+                     .asking = reports.is_asking(report),
+                     .reconciled = report.reconciled,
+                     .same_as = report.same_as,
+                     .lost = report.is_lost()};
   if (report.answer.empty()) return row;
   if (const auto reply = codec::read_report_reply(report.answer)) {
     row.report_status = reply->report_status;
@@ -32,8 +32,8 @@ page::ReportRow row_of(const dispatch::Reports& reports, const dispatch::Report&
   return row;
 }
 
-std::vector<page::ReportRow> all_rows(const dispatch::Reports& reports) {
-  std::vector<page::ReportRow> rows;
+std::vector<api::ReportRow> all_rows(const dispatch::Reports& reports) {
+  std::vector<api::ReportRow> rows;
   for (const auto& [number, report] : reports.book().all()) rows.push_back(row_of(reports, report));
   return rows;
 }
@@ -53,19 +53,19 @@ std::vector<const dispatch::Report*> latest_of(const std::map<std::int64_t, disp
   return chosen;
 }
 
-std::vector<page::ReportRow> latest_rows(const dispatch::Reports& reports, std::size_t most) {
-  std::vector<page::ReportRow> rows;
+std::vector<api::ReportRow> latest_rows(const dispatch::Reports& reports, std::size_t most) {
+  std::vector<api::ReportRow> rows;
   for (const dispatch::Report* const report : latest_of(reports.book().all(), most)) {
     rows.push_back(row_of(reports, *report));
   }
   return rows;
 }
 
-std::optional<page::ReportDetail> detail_of(const dispatch::Reports& reports, const ledger::Ledger& ledger,
-                                            std::int64_t number) {
+std::optional<api::ReportDetail> detail_of(const dispatch::Reports& reports, const ledger::Ledger& ledger,
+                                           std::int64_t number) {
   const dispatch::Report* const report = reports.book().find(number);
   if (report == nullptr) return std::nullopt;
-  page::ReportDetail detail{.row = row_of(reports, *report), .history = {}, .answer = report->answer};
+  api::ReportDetail detail{.row = row_of(reports, *report), .history = {}, .answer = report->answer};
   if (const auto history = ledger.history(number)) {
     for (const auto& step : *history) detail.history.push_back({step.at, step.state, step.note});
   }

@@ -5,8 +5,8 @@
 #include <filesystem>
 #include <utility>
 
-#include "gateway/notices.hpp"
-#include "gateway/open_panel.hpp"
+#include "box/notices.hpp"
+#include "box/open_panel.hpp"
 #include "host/inherited.hpp"
 #include "host/log.hpp"
 
@@ -51,14 +51,14 @@ ledger::Result<ledger::Ledger> open_ledger(const Options& options) {
   return opened;
 }
 
-std::expected<Parts, std::string> gather(const Options& options, const Store& store,
-                                         const FactoryReset& reset, ListenSockets& sockets) {
+std::expected<Parts, std::string> gather(const Options& options, const admin::Store& store,
+                                         const admin::FactoryReset& reset, ListenSockets& sockets) {
   auto loaded = store.load();
   if (!loaded) return std::unexpected(loaded.error());
   auto ledger = open_ledger(options);
   if (!ledger) return std::unexpected(ledger.error().what);
-  auto known = read_board(options.board);
-  auto panel = open_panel(known.board.panel.value_or(loaded->settings.panel), runtime_folder(options));
+  auto known = box::read_board(options.board);
+  auto panel = box::open_panel(known.board.panel.value_or(loaded->settings.panel), runtime_folder(options));
   return Parts{.store = store,
                .reset = reset,
                .sockets = sockets,
@@ -68,7 +68,7 @@ std::expected<Parts, std::string> gather(const Options& options, const Store& st
                .ledger_rest = LedgerReturn::kRest,
                .board = std::move(known.board),
                .board_trouble = std::move(known.trouble),
-               .notices = read_notices(options.notices),
+               .notices = box::read_notices(options.notices),
                .lines = std::move(panel.lines),
                .button = std::move(panel.button),
                .runtime_folder = runtime_folder(options),

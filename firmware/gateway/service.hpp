@@ -5,12 +5,12 @@
 #include <optional>
 #include <string>
 
-#include "gateway/factory_reset.hpp"
+#include "admin/factory_reset.hpp"
+#include "admin/store.hpp"
 #include "gateway/gateway.hpp"
 #include "gateway/ledger_return.hpp"
 #include "gateway/listen_sockets.hpp"
 #include "gateway/options.hpp"
-#include "gateway/store.hpp"
 #include "loop/loop.hpp"
 #include "loop/watchdog.hpp"
 
@@ -33,8 +33,8 @@ class Service {
   std::expected<void, std::string> take_over_sockets();
 
   const Options& options_;
-  Store store_;
-  FactoryReset reset_;
+  admin::Store store_;
+  admin::FactoryReset reset_;
   ListenSockets sockets_;
   loop::Loop loop_;
   std::optional<loop::Watchdog> watchdog_;  // where systemd wants one

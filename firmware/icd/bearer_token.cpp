@@ -33,6 +33,10 @@ void BearerToken::strike_from(std::string& text) const {
   }
 }
 
+bool same(const std::optional<BearerToken>& one, const std::optional<BearerToken>& other) {
+  return one && other ? one->matches(other->reveal()) : one.has_value() == other.has_value();
+}
+
 std::string_view token_in(std::string_view authorization) {
   constexpr std::string_view kBlanks = " \t";
   const auto start = authorization.find_first_not_of(kBlanks);

@@ -29,6 +29,9 @@ class BearerToken {
   std::string text_;
 };
 
+/// Whether both are the same token, or none.
+bool same(const std::optional<BearerToken>& one, const std::optional<BearerToken>& other);
+
 /// The token in an Authorization header's value: `Bearer <token>`, the scheme in any letter case (RFC
 /// 9110 11.1). Empty where there is none.
 std::string_view token_in(std::string_view authorization);

@@ -96,11 +96,16 @@ void Journal::comes_back(Kind sent, Kind back) {
   unsaid_.erase(std::next(last).base());
 }
 
+std::string Journal::unsaid_and(const std::string& record) const {
+  std::string bytes;
+  bytes.reserve(unsaid_size_ + record.size());
+  for (const Unsaid& unsaid : unsaid_) bytes += unsaid.record;
+  return bytes += record;
+}
+
 Journal::Kept Journal::append(const std::string& record) {
   if (!file_ && !open_next()) return std::unexpected(trouble_);
-  std::string bytes;
-  for (const Unsaid& unsaid : unsaid_) bytes += unsaid.record;
-  if (auto written = write(bytes + record); !written) return written;
+  if (auto written = unsaid_.empty() ? write(record) : write(unsaid_and(record)); !written) return written;
   unsaid_.clear();
   unsaid_size_ = 0;
   trouble_.clear();

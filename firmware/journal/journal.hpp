@@ -66,6 +66,7 @@ class Journal {
   /// What was sent waits again: nothing has happened, as long as it is unsaid that it was sent.
   void comes_back(Kind sent, Kind back);
   Kept append(const std::string& record);
+  std::string unsaid_and(const std::string& record) const;
   Kept write(std::string_view bytes);
   bool open_next();
   void turn_over();

@@ -30,9 +30,12 @@ bool replaces(const icd::MapUpdate& newer, const icd::MapUpdate& older) {
   return new_grid && old_grid && newer.name == older.name && covers(*new_grid, *old_grid);
 }
 
-/// Of one that waits, and one that comes back to the lane.
+/// Of one that waits, and one that comes back to the lane. A clock that was set back gives many maps one
+/// stamp: of these, which are sent again oldest first, the later one is newer.
 bool is_newer(const WaitingMap& waiting, const WaitingMap& back) {
-  return !waiting.again || (back.again && *waiting.again >= *back.again);
+  if (!waiting.again) return true;
+  return back.again &&
+         std::pair(*waiting.again, waiting.updates.back()) > std::pair(*back.again, back.updates.back());
 }
 
 /// What is merged keeps what it was merged of: the bytes are shared, so that this costs next to nothing.
@@ -193,10 +196,8 @@ bool MapLane::replaces_any(const icd::MapUpdate& map) const {
   return std::ranges::any_of(waiting_, [&](const WaitingMap& waiting) { return replaces(map, waiting.map); });
 }
 
-bool MapLane::is_replaced(const icd::MapUpdate& again) const {
-  return std::ranges::any_of(waiting_, [&, stamp = again.header().stamp](const WaitingMap& waiting) {
-    return (!waiting.again || *waiting.again >= stamp) && replaces(waiting.map, again);
-  });
+bool MapLane::is_replaced(const WaitingMap& map) const {
+  return std::ranges::any_of(waiting_, [&](const WaitingMap& waiting) { return replaces(waiting, map); });
 }
 
 std::size_t MapLane::largest_grid() const {

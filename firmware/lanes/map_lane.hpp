@@ -50,7 +50,8 @@ bool replaces(const WaitingMap& newer, const WaitingMap& older);
 /// other while more than one wait. Nothing else is ever dropped.
 ///
 /// What is on trial (Blame) lets others go first while it rests. A grid on trial keeps the later grids of its
-/// name waiting behind it for its first kInPlace failures; then they pass it, to see whether they can.
+/// name waiting behind it for its first kInPlace failures, those of what it replaced included; then they pass
+/// it, to see whether they can.
 ///
 /// Where take() and what puts back throw, for want of memory, all waits as before.
 class MapLane {
@@ -80,8 +81,8 @@ class MapLane {
 
   /// Whether add() would replace one that waits.
   bool replaces_any(const icd::MapUpdate& map) const;
-  /// Whether put_back() would find a newer grid that covers it, where it is sent again.
-  bool is_replaced(const icd::MapUpdate& again) const;
+  /// Whether put_back() would find a newer grid that covers it.
+  bool is_replaced(const WaitingMap& map) const;
 
   std::size_t count() const { return waiting_.size(); }
   std::size_t bytes() const { return bytes_; }  // of memory held by all that wait

@@ -50,9 +50,11 @@ class Ledger::Impl {
     if (steps.empty() && run == nullptr) return {};
     if (!refusal_.empty()) return std::unexpected(Error{refusal_, false, true});
     const bool soon = flush == dispatch::Flush::Soon;
+    if (auto mended = mend_log(); !mended) return mended;
     if (auto set = flush_each(!soon); !set) return set;
     unflushed_ = unflushed_ || soon;
     auto written = write(steps, run);
+    has_hole_ = has_hole_ || (!written && unflushed_);
     if (pages_ >= kPagesOfLog) begin_log_anew();
     return written;
   }
@@ -62,9 +64,11 @@ class Ledger::Impl {
   }
 
   Result<void> flush() {
+    if (auto mended = mend_log(); !mended) return mended;
     if (!unflushed_) return {};
     sqlite3_file* const log = database_.log();
     if (log != nullptr && log->pMethods->xSync(log, SQLITE_SYNC_NORMAL) != SQLITE_OK) {
+      has_hole_ = true;
       return std::unexpected(Error{"the ledger's log could not be flushed", false});
     }
     unflushed_ = false;
@@ -114,9 +118,18 @@ class Ledger::Impl {
     return SQLITE_OK;
   }
 
-  void begin_log_anew() {
+  bool begin_log_anew() {
     (void)flush_each(false);  // taking it over flushes all that is in it
-    take_over_log(database_);
+    return take_over_log(database_);
+  }
+
+  /// What was not flushed when a flush failed never will be, though it reads well: a power cut would take all
+  /// that is in the log behind it.
+  Result<void> mend_log() {
+    if (!has_hole_) return {};
+    if (!begin_log_anew()) return std::unexpected(Error{"the ledger's log could not be begun anew", false});
+    has_hole_ = unflushed_ = false;
+    return flush_each(true);
   }
 
   /// NORMAL differs from FULL in this alone: the log is not flushed at the end of a transaction.
@@ -179,6 +192,7 @@ class Ledger::Impl {
   bool flushes_each_ = true;  // as it was opened
   int pages_ = 0;             // in the log
   bool unflushed_ = false;    // something was written whose flush was left for later
+  bool has_hole_ = false;     // and that failed
   Statement write_report_, write_run_, write_sighting_, read_reports_, read_history_, read_runs_;
 };
 

@@ -273,13 +273,16 @@ Attempt<Opened> open_database(const std::string& folder) {
   return opened;
 }
 
-void take_over_log(Database& database) {
+bool take_over_log(Database& database) {
   sqlite3_int64 size = 0;
   sqlite3_file* const log = database.log();
-  if (log == nullptr || log->pMethods->xFileSize(log, &size) != SQLITE_OK) return;
-  if (!write_mark(database, true, size >= kLogSize ? kLogSize : 0)) return;
-  sqlite3_wal_checkpoint_v2(database.get(), nullptr, SQLITE_CHECKPOINT_PASSIVE, nullptr, nullptr);
+  if (log == nullptr || log->pMethods->xFileSize(log, &size) != SQLITE_OK) return false;
+  if (!write_mark(database, true, size >= kLogSize ? kLogSize : 0)) return false;
+  int pages = 0, taken = -1;
+  const int result =
+      sqlite3_wal_checkpoint_v2(database.get(), nullptr, SQLITE_CHECKPOINT_PASSIVE, &pages, &taken);
   (void)write_mark(database, false, size >= kLogSize ? kLogSize : 0);
+  return result == SQLITE_OK && taken == pages;
 }
 
 }  // namespace adit::ledger

@@ -16,7 +16,8 @@ Attempt<Opened> open_database(const std::string& folder);
 
 /// At this many pages the log is taken over into the file.
 inline constexpr int kPagesOfLog = 960;
-/// Takes the log over into the file, so that it is written from its start again.
-void take_over_log(Database& database);
+/// Takes the log over into the file, so that it is written from its start again. False: it is not, or not
+/// all of it.
+bool take_over_log(Database& database);
 
 }  // namespace adit::ledger

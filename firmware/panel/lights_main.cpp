@@ -8,6 +8,7 @@
 #include <fstream>
 #include <iterator>
 
+#include "command_line/answer.hpp"
 #include "panel/lights_options.hpp"
 #include "panel/lines.hpp"
 #include "panel/states.hpp"
@@ -99,13 +100,8 @@ int run(const panel::LightsOptions& options) {
 }  // namespace
 
 int main(int argc, char** argv) {
-  const auto options =
-      panel::parse_lights_options(std::span<char* const>(argv + 1, static_cast<std::size_t>(argc - 1)));
-  if (!options) {
-    std::fprintf(stderr, "adit-lights: %s\n%s", options.error().c_str(), panel::kLightsUsage);
-    return 2;
-  }
-  if (options->help) return std::fputs(panel::kLightsUsage, stdout) < 0 ? 1 : 0;
-  if (options->version) return std::printf("adit-lights %s\n", ADIT_VERSION) < 0 ? 1 : 0;
+  const auto options = panel::parse_lights_options({argv + 1, argv + argc});
+  if (const auto exit = command_line::answer(panel::lights_command_line_of, ADIT_VERSION, options))
+    return *exit;
   return run(*options);
 }

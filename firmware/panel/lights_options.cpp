@@ -1,85 +1,55 @@
 #include "panel/lights_options.hpp"
 
-#include <charconv>
 #include <string_view>
 
+#include "command_line/number.hpp"
+
 namespace adit::panel {
-
-const char* const kLightsUsage =
-    "Usage: adit-lights fault|dark|ended [--board FILE] [--settings FILE]... [--simulated FILE] [--seconds "
-    "N]\n"
-    "\n"
-    "Sets the lights of the panel while aditd does not run.\n"
-    "\n"
-    "  fault             shows that Adit has died, until it is ended or N seconds are over; then dark\n"
-    "  dark              makes all lights dark\n"
-    "  ended             for ExecStopPost=: the one or the other, by $SERVICE_RESULT\n"
-    "\n"
-    "  --board FILE      what the board is (board.json); where it names a panel, that counts\n"
-    "  --settings FILE   aditd's settings; of several the first that can be read counts\n"
-    "  --simulated FILE  where the lights are shown if neither names a line\n"
-    "  --seconds N       1 to 3600\n"
-    "  --version         prints the version\n"
-    "  --help            prints this\n"
-    "\n"
-    "Exits 0, 1 where the lines cannot be had or are not known (and says why), 2 on a wrong command line.\n";
-
 namespace {
 
 using Word = LightsOptions::Word;
 
-std::optional<Word> word_of(std::string_view text) {
-  if (text == "fault") return Word::Fault;
-  if (text == "dark") return Word::Dark;
-  if (text == "ended") return Word::Ended;
-  return std::nullopt;
-}
-
-std::optional<std::chrono::seconds> seconds_of(std::string_view text) {
-  constexpr int kMost = 3600;
-  int number = 0;
-  const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), number);
-  if (error != std::errc() || end != text.data() + text.size() || number < 1 || number > kMost) {
+template <Word Which>
+command_line::Take one(std::optional<Word>& into) {
+  return command_line::take<[](std::optional<Word>& word, const std::string&) -> command_line::Wrong {
+    if (word) return "fault, dark and ended are three things: which one?";
+    word = Which;
     return std::nullopt;
-  }
-  return std::chrono::seconds(number);
-}
-
-/// Requires an option's name.
-std::expected<void, std::string> put(LightsOptions& options, std::string_view name, const char* value) {
-  if (name == "--board") options.board = value;
-  if (name == "--settings") options.settings.emplace_back(value);
-  if (name == "--simulated") options.simulated = value;
-  if (name != "--seconds") return {};
-  options.seconds = seconds_of(value);
-  if (options.seconds) return {};
-  return std::unexpected("--seconds: expected 1 to 3600, got '" + std::string(value) + "'");
-}
-
-bool is_option(std::string_view text) {
-  return text == "--board" || text == "--settings" || text == "--simulated" || text == "--seconds";
+  }>(into);
 }
 
 }  // namespace
 
-std::expected<LightsOptions, std::string> parse_lights_options(std::span<char* const> arguments) {
-  LightsOptions options;
-  std::optional<Word> word;
-  for (std::size_t i = 0; i < arguments.size(); ++i) {
-    const std::string_view text = arguments[i];
-    if (text == "--help" || text == "--version") {
-      (text == "--help" ? options.help : options.version) = true;
-    } else if (is_option(text)) {
-      if (++i == arguments.size()) return std::unexpected(std::string(text) + " wants a value");
-      if (const auto done = put(options, text, arguments[i]); !done) return std::unexpected(done.error());
-    } else if (!word && word_of(text)) {
-      word = word_of(text);
-    } else {
-      return std::unexpected("unknown word '" + std::string(text) + "'");
-    }
-  }
-  if (!word && !options.help && !options.version) return std::unexpected("fault, dark or ended is missing");
-  options.word = word.value_or(Word::Dark);
+command_line::Program lights_command_line_of(LightsOptions& options) {
+  return {
+      .name = "adit-lights",
+      .usage = "fault|dark|ended",
+      .about = "Sets the lights of the panel while aditd does not run.",
+      .rows = {{"fault", "", "shows that Adit has died, until it is ended or N seconds are over; then dark",
+                one<Word::Fault>(options.word)},
+               {"dark", "", "makes all lights dark", one<Word::Dark>(options.word)},
+               {"ended", "", "for ExecStopPost=: the one or the other, by $SERVICE_RESULT",
+                one<Word::Ended>(options.word)},
+               {"--board", "FILE", "what the board is (board.json); where it names a panel, that counts",
+                &options.board},
+               {"--settings", "FILE", "aditd's settings; of several the first that can be read counts",
+                &options.settings},
+               {"--simulated", "FILE", "where the lights are shown if neither names a line",
+                &options.simulated},
+               {"--seconds", "N", "1 to 3600", command_line::number<1, 3600>(options.seconds)},
+               {"--version", "", "prints the version", &options.version},
+               {"--help", "", "prints this", &options.help}},
+      .ending =
+          "Exits 0, 1 where the lines cannot be had or are not known (and says why), 2 on a wrong command "
+          "line.",
+      .empty = command_line::Empty::Taken,
+  };
+}
+
+std::expected<LightsOptions, std::string> parse_lights_options(std::span<const char* const> arguments) {
+  auto options = command_line::read(lights_command_line_of, arguments);
+  if (options && !options->word && !options->help && !options->version)
+    return std::unexpected("fault, dark or ended is missing");
   return options;
 }
 

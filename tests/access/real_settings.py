@@ -116,7 +116,7 @@ class SetUp(unittest.TestCase):
         port, old = free_port(), self.box.port
         changes = self.change(lambda settings: settings["team"]["listen"][0].update(port=port))
         self.assertEqual(changes, [{"path": "team.listen[0].port", "from": 0, "to": port}])
-        self.assertEqual(self.box.port, port)
+        wait_until(lambda: self.is_applied() and self.box.port == port, "the box at its new port")
         self.assertTrue(self.settings()["saved"])
         with self.assertRaises(ConnectionRefusedError):
             socket.create_connection(("127.0.0.1", old), 20)

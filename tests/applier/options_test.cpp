@@ -9,10 +9,8 @@ namespace {
 
 using testing::HasSubstr;
 
-std::expected<Options, std::string> parse(std::vector<std::string> words) {
-  std::vector<char*> arguments;
-  for (std::string& word : words) arguments.push_back(word.data());
-  return parse_options(arguments);
+std::expected<Options, std::string> parse(const std::vector<const char*>& words) {
+  return parse_options(words);
 }
 
 TEST(AditNetworkOptions, HaveTheServicesOwnFolders) {

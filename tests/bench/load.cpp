@@ -6,6 +6,7 @@
 #include <thread>
 
 #include "client.hpp"
+#include "command_line/answer.hpp"
 #include "figures.hpp"
 #include "machine.hpp"
 #include "options.hpp"
@@ -113,8 +114,8 @@ int fail(const std::string& why) {
 }  // namespace
 
 int main(int argc, char** argv) {
-  const auto options = parse_options(std::span<char* const>(argv + 1, static_cast<std::size_t>(argc - 1)));
-  if (!options) return fail(options.error() + "\n" + kUsage);
+  const auto options = parse_options({argv + 1, argv + argc});
+  if (const auto exit = adit::command_line::answer(command_line_of, "", options)) return *exit;
   auto race = Race::prepare(*options);
   if (!race) return fail(race.error());
   if (const auto ran = race->run(); !ran) return fail(ran.error());

@@ -1,10 +1,9 @@
 #include "options.hpp"
 
 #include <charconv>
-#include <optional>
 #include <string_view>
 
-#include "icd/sentence.hpp"
+#include "command_line/number.hpp"
 
 namespace adit::bench {
 namespace {
@@ -28,36 +27,39 @@ std::optional<Way> way(std::string_view word) {
   return Way{.name = std::string(word.substr(0, equals)), .port = *port, .process = process.value_or(0)};
 }
 
-/// False where the option is unknown or its value is none.
-bool set(Options& options, std::string_view name, std::string_view value) {
-  if (name == "--flush") options.flush = value;
-  if (name == "--token") options.token = value;
-  if (name == "--flush" || name == "--token") return !value.empty();
-  const auto number = whole<std::uint32_t>(value);
-  if (!number) return false;
-  if (name == "--reports") return options.reports = *number, true;
-  if (name == "--seconds") return options.most = std::chrono::seconds(*number), true;
-  if (name == "--pace") return options.pace = std::chrono::milliseconds(*number), true;
-  if (name == "--block") return options.block = *number, true;
-  return false;
+command_line::Wrong take_way(std::vector<Way>& ways, const std::string& word) {
+  auto made = way(word);
+  if (!made) return "'" + word + "' is no way: expected NAME=PORT or NAME=PORT:PID";
+  ways.push_back(*std::move(made));
+  return std::nullopt;
 }
 
 }  // namespace
 
-std::expected<Options, std::string> parse_options(std::span<char* const> arguments) {
-  Options options;
-  for (std::size_t i = 0; i < arguments.size(); ++i) {
-    const std::string_view word = arguments[i];
-    if (auto made = way(word); made) {
-      options.ways.push_back(*std::move(made));
-    } else if (i + 1 == arguments.size() || !set(options, word, arguments[i + 1])) {
-      return std::unexpected(icd::sentence("'", word, "' is unknown, or its value is wrong or missing"));
-    } else {
-      ++i;
-    }
-  }
-  if (options.ways.size() < 2 || options.flush.empty() || options.token.empty())
-    return std::unexpected("--flush, --token and two ways are needed");
+command_line::Program command_line_of(Options& options) {
+  using command_line::number;
+  using command_line::Wanted;
+  return {
+      .name = "adit_bench_load",
+      .usage = "direct=PORT NAME=PORT:PID...",
+      .about = "Sends reports to the Command Post by several ways, in turns, and compares what they take.",
+      .rows = {{"--flush", "FOLDER", "the ledger's", &options.flush, Wanted::Always},
+               {"--token", "TOKEN", "of the team and of scoring", &options.token, Wanted::Always},
+               {"--reports", "N", "on each way (2000)", number<1, 1'000'000>(options.reports)},
+               {"--seconds", "S", "at most (600)", number<1, 1'000'000>(options.most)},
+               {"--pace", "MS", "from the start of one report to that of the next (5)",
+                number<1, 1'000'000>(options.pace)},
+               {"--block", "N", "reports on one way before the next has its turn (20)",
+                number<1, 1'000'000>(options.block)},
+               {"--help", "", "prints this", &options.help}},
+      .ending = "",
+      .word = command_line::take<take_way>(options.ways),
+  };
+}
+
+std::expected<Options, std::string> parse_options(std::span<const char* const> arguments) {
+  auto options = command_line::read(command_line_of, arguments);
+  if (options && !options->help && options->ways.size() < 2) return std::unexpected("two ways are needed");
   return options;
 }
 

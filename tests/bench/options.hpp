@@ -3,11 +3,8 @@
 #include <sys/types.h>
 
 #include <chrono>
-#include <cstdint>
-#include <expected>
-#include <span>
-#include <string>
-#include <vector>
+
+#include "command_line/read.hpp"
 
 namespace adit::bench {
 
@@ -26,13 +23,10 @@ struct Options {
   std::string flush;                  // the ledger's folder
   std::string token;
   std::vector<Way> ways;  // the first without anything in between
+  bool help = false;
 };
 
-inline constexpr const char* kUsage =
-    "Usage: adit_bench_load --flush FOLDER --token TOKEN [--reports N] [--seconds S] [--pace MS] [--block "
-    "N]\n"
-    "                       direct=PORT NAME=PORT:PID...\n";
-
-std::expected<Options, std::string> parse_options(std::span<char* const> arguments);
+command_line::Program command_line_of(Options& options);
+std::expected<Options, std::string> parse_options(std::span<const char* const> arguments);
 
 }  // namespace adit::bench

@@ -64,7 +64,8 @@ class Everyday(Story):
         cls.tell(Contained())
 
     def asked(self, request, body=None, status=200):
-        got, said = self.box.ask(request, {**self.session, "Content-Type": "application/json"}, body, token=None)
+        headers = {**self.session, "Content-Type": "application/json"}
+        got, said = programs.insist(lambda: self.box.ask(request, headers, body, token=None))
         self.assertEqual(got, status, said)
         return said
 

@@ -21,12 +21,9 @@ class FirstStart(Story):
         cls.stage.box.power_on()
 
     def asked(self, request, body=None, status=200):
-        got, said = self.box.ask(
-            request,
-            body=body,
-            headers={**type(self).session, "Content-Type": "application/json"},
-            token=None,
-            timeout=20,
+        headers = {**type(self).session, "Content-Type": "application/json"}
+        got, said = programs.insist(
+            lambda: self.box.ask(request, body=body, headers=headers, token=None, timeout=20)
         )
         self.assertEqual(got, status, said)
         return said

@@ -49,7 +49,7 @@ TEST_F(Deeds, AreAskedForByTheirNames) {
 }
 
 TEST_F(Deeds, AreAskedForOfWhatIsSetAside) {
-  page::RunView view = sample_view();
+  api::RunView view = sample_view();
   view.aside = {{.number = 3,
                  .kind = "cloud",
                  .robot = "r2",
@@ -66,7 +66,7 @@ TEST_F(Deeds, AreAskedForOfWhatIsSetAside) {
                  .bytes = 90,
                  .overtaken = true}};
   const Server server(
-      {{"GET /adit/run", Server::ok(page::write_run_view(view))},
+      {{"GET /adit/run", Server::ok(api::write_run_view(view))},
        {"POST /adit/aside/3/send", Server::ok("{\"aside\":3}")},
        {"POST /adit/aside/3/discard", Server::ok("{\"aside\":3}")},
        {"POST /adit/aside/4/send", Server::reply("409 Conflict", "\"something newer was sent\"")}});

@@ -62,14 +62,14 @@ TEST(Options, TakeWhichReportsAndHow) {
 }
 
 TEST(Options, TakeWhatIsToBeDoneToTheSettings) {
-  EXPECT_EQ(parsed({"settings"}).setting, Setting::Show);
-  EXPECT_EQ(parsed({"settings", "show", "--json"}).setting, Setting::Show);
-  EXPECT_EQ(parsed({"settings", "export"}).setting, Setting::Export);
+  EXPECT_EQ(parsed({"settings"}).verb, Verb::Show);
+  EXPECT_EQ(parsed({"settings", "show", "--json"}).verb, Verb::Show);
+  EXPECT_EQ(parsed({"settings", "export"}).verb, Verb::Export);
   const Options options = parsed({"settings", "apply", "box.json", "--at", "10.0.0.1:80"});
   EXPECT_EQ(options.command, Command::Settings);
-  EXPECT_EQ(options.setting, Setting::Apply);
+  EXPECT_EQ(options.verb, Verb::Apply);
   EXPECT_EQ(options.file, "box.json");
-  EXPECT_EQ(parsed({"settings", "check", "box.json"}).setting, Setting::Check);
+  EXPECT_EQ(parsed({"settings", "check", "box.json"}).verb, Verb::Check);
   EXPECT_EQ(parsed({"course", "B"}).course, "B");
   EXPECT_EQ(parsed({"course", ""}).course, "");
 }
@@ -81,15 +81,13 @@ TEST(Options, NameTheWordThatIsWrong) {
   } cases[] = {
       {{},
        "a command is missing: status, reports, aside, run, settings, course, identify, network, test, update "
-       "or "
-       "check"},
+       "or check"},
       {{"--json"},
        "a command is missing: status, reports, aside, run, settings, course, identify, network, test, update "
-       "or "
-       "check"},
+       "or check"},
       {{"state"}, "no such command: state"},
-      {{"status", "--jsn"}, "no such option: --jsn"},
-      {{"status", "--at"}, "a value is missing after --at"},
+      {{"status", "--jsn"}, "unknown word '--jsn'"},
+      {{"status", "--at"}, "--at wants a value"},
       {{"status", "now"}, "one word too many: now"},
       {{"check", "a", "b"}, "one word too many: b"},
       {{"check", "--at", "10.0.0.1:80"}, "check does not take --at"},
@@ -112,12 +110,12 @@ TEST(Options, NameTheWordThatIsWrong) {
       {{"course", "A", "B"}, "one word too many: B"},
       {{"check", "--token-file", "x"}, "check does not take --token-file"},
       {{"reports", "show", "7", "--run", "2"}, "reports show does not take --run"},
-      {{"reports", "--run", "old"}, "expected --run and a run's number or all, got old"},
-      {{"reports", "--run"}, "a value is missing after --run"},
+      {{"reports", "--run", "old"}, "--run: expected a run's number or all, got old"},
+      {{"reports", "--run"}, "--run wants a value"},
       {{"reports", "export", "--csv", "--json"}, "--csv and --json are two formats: which one?"},
-      {{"reports", "send", "7", "--token-file", ""}, "a value is missing after --token-file"},
-      {{"run"}, "a word is missing: run new"},
-      {{"run", "old"}, "one word too many: old"},
+      {{"reports", "send", "7", "--token-file", ""}, "--token-file wants a value"},
+      {{"run"}, "a word is missing after run: new"},
+      {{"run", "old"}, "expected new, got old"},
       {{"run", "new", "new"}, "one word too many: new"},
       {{"identify", "0"}, "expected seconds, a whole number from 1 to 60, got 0"},
       {{"identify", "61"}, "expected seconds, a whole number from 1 to 60, got 61"},

@@ -3,21 +3,21 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include "api/reports_csv.hpp"
+#include "api/reports_json.hpp"
 #include "cli/command.hpp"
 #include "cli/reports_text.hpp"
 #include "cli/server.hpp"
 #include "cli/token_file.hpp"
 #include "cli/view.hpp"
-#include "page/reports_csv.hpp"
-#include "page/reports_json.hpp"
 
 namespace adit::cli {
 namespace {
 
 using testing::HasSubstr;
 
-page::ReportRow report(std::int64_t number, std::int64_t run, const std::string& state) {
-  page::ReportRow row = sample_view().reports[0];
+api::ReportRow report(std::int64_t number, std::int64_t run, const std::string& state) {
+  api::ReportRow row = sample_view().reports[0];
   row.number = number;
   row.run = run;
   row.state = state;
@@ -25,19 +25,19 @@ page::ReportRow report(std::int64_t number, std::int64_t run, const std::string&
 }
 
 /// Two runs, of which the second is the present one.
-std::vector<page::ReportRow> two_runs() {
+std::vector<api::ReportRow> two_runs() {
   return {report(1, 1, "answered"), report(2, 1, "received"), report(3, 2, "settled"),
           report(4, 2, "waiting")};
 }
 
-Outcome asked(const std::vector<page::ReportRow>& rows, std::vector<std::string_view> words) {
-  page::RunView view = sample_view();
+Outcome asked(const std::vector<api::ReportRow>& rows, std::vector<std::string_view> words) {
+  api::RunView view = sample_view();
   view.run_number = 2;
-  const page::ReportDetail detail{rows.back(), {{1000, "waiting", "posted"}}, "{}"};
-  const Server server({{"GET /adit/run", Server::ok(page::write_run_view(view))},
-                       {"GET /adit/reports", Server::ok(page::write_reports(rows))},
-                       {"GET /adit/reports.csv", Server::ok(page::write_reports_csv(rows))},
-                       {"GET /adit/reports/4", Server::ok(page::write_report(detail))},
+  const api::ReportDetail detail{rows.back(), {{1000, "waiting", "posted"}}, "{}"};
+  const Server server({{"GET /adit/run", Server::ok(api::write_run_view(view))},
+                       {"GET /adit/reports", Server::ok(api::write_reports(rows))},
+                       {"GET /adit/reports.csv", Server::ok(api::write_reports_csv(rows))},
+                       {"GET /adit/reports/4", Server::ok(api::write_report(detail))},
                        {"GET /adit/reports/5", Server::reply("404 Not Found", "\"there is no report 5\"")}});
   const std::string at = server.at();
   const TokenFile token;
@@ -64,7 +64,7 @@ TEST(Reports, ListAnotherRunOrAll) {
 
 TEST(Reports, AreAListForScripts) {
   const auto rows = two_runs();
-  EXPECT_EQ(asked(rows, {"reports", "--json"}).out, page::write_reports({rows[3], rows[2], rows[1]}) + "\n");
+  EXPECT_EQ(asked(rows, {"reports", "--json"}).out, api::write_reports({rows[3], rows[2], rows[1]}) + "\n");
 }
 
 TEST(Reports, NeedTheOperatorWhereOneWaitsForHisWord) {
@@ -72,7 +72,7 @@ TEST(Reports, NeedTheOperatorWhereOneWaitsForHisWord) {
       << "though it is of another run";
   EXPECT_EQ(asked({report(4, 2, "in doubt")}, {"reports"}).exit, Exit::Attention);
   EXPECT_EQ(asked({report(4, 2, "in doubt")}, {"reports", "show", "4"}).exit, Exit::Attention);
-  page::ReportRow asking = report(4, 2, "in doubt");
+  api::ReportRow asking = report(4, 2, "in doubt");
   asking.asking = true;
   EXPECT_EQ(asked({asking}, {"reports"}).exit, Exit::Fine);
   EXPECT_EQ(asked({report(4, 2, "answered")}, {"reports"}).exit, Exit::Fine);
@@ -91,14 +91,14 @@ TEST(Reports, ShowOneOrSayThatThereIsNone) {
 
 TEST(Reports, AreExportedAsTheyAre) {
   const auto rows = two_runs();
-  EXPECT_EQ(asked(rows, {"reports", "export"}).out, page::write_reports_csv(rows));
-  EXPECT_EQ(asked(rows, {"reports", "export", "--csv"}).out, page::write_reports_csv(rows));
-  EXPECT_EQ(asked(rows, {"reports", "export", "--json"}).out, page::write_reports(rows) + "\n");
+  EXPECT_EQ(asked(rows, {"reports", "export"}).out, api::write_reports_csv(rows));
+  EXPECT_EQ(asked(rows, {"reports", "export", "--csv"}).out, api::write_reports_csv(rows));
+  EXPECT_EQ(asked(rows, {"reports", "export", "--json"}).out, api::write_reports(rows) + "\n");
   EXPECT_EQ(asked(rows, {"reports", "export"}).exit, Exit::Fine);
 }
 
 TEST(Reports, OfAnotherVersionAreNotGuessedAt) {
-  const Server server({{"GET /adit/run", Server::ok(page::write_run_view(sample_view()))},
+  const Server server({{"GET /adit/run", Server::ok(api::write_run_view(sample_view()))},
                        {"GET /adit/reports", Server::ok("[{\"number\": 1}]")}});
   const TokenFile token;
   const std::string at = server.at();

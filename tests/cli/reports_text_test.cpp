@@ -14,14 +14,14 @@ namespace {
 
 using testing::HasSubstr;
 
-page::ReportRow in_state(const std::string& state) {
-  page::ReportRow report = sample_view().reports[0];
+api::ReportRow in_state(const std::string& state) {
+  api::ReportRow report = sample_view().reports[0];
   report.state = state;
   return report;
 }
 
 TEST(ReportsText, HasARowForEachReport) {
-  page::ReportRow doubtful = in_state("in doubt");
+  api::ReportRow doubtful = in_state("in doubt");
   doubtful.number = 14;
   doubtful.run = 2;
   doubtful.type = "Cell Phone";
@@ -41,7 +41,7 @@ TEST(ReportsText, HasARowForEachReport) {
 }
 
 TEST(ReportsText, HasNoPlaceForAReportThatIsLost) {
-  page::ReportRow lost = in_state("in doubt");
+  api::ReportRow lost = in_state("in doubt");
   lost.position = {};
   lost.lost = true;
   EXPECT_THAT(reports_text({lost}, 0, 1000, false), HasSubstr("lost  lost  lost"));
@@ -58,7 +58,7 @@ TEST(ReportsText, SaysThatThereAreNone) {
 }
 
 TEST(ReportsText, NeverLetsOthersSteerTheTerminal) {
-  page::ReportRow report = in_state("\x1b[2J");
+  api::ReportRow report = in_state("\x1b[2J");
   report.type = report.sender = report.note = "\x1b[2J\n";
   EXPECT_EQ(reports_text({report}, 0, 1000, false).find('\x1b'), std::string::npos);
   EXPECT_EQ(report_text({report, {{1000, "\x1b[2J", "\x1b[2J"}}, "\x1b[2J"}, false).find('\x1b'),
@@ -66,7 +66,7 @@ TEST(ReportsText, NeverLetsOthersSteerTheTerminal) {
 }
 
 TEST(LifeOf, TellsWhoseWordIsWaitedFor) {
-  page::ReportRow doubt = in_state("in doubt");
+  api::ReportRow doubt = in_state("in doubt");
   EXPECT_EQ(life_of(doubt), "in doubt");
   EXPECT_TRUE(needs_the_operator(doubt));
   doubt.asking = true;
@@ -77,7 +77,7 @@ TEST(LifeOf, TellsWhoseWordIsWaitedFor) {
 }
 
 TEST(LifeOf, TellsWhatBecameOfIt) {
-  page::ReportRow report = in_state("settled");
+  api::ReportRow report = in_state("settled");
   EXPECT_EQ(life_of(report), "called done");
   report.reconciled = true;
   EXPECT_EQ(life_of(report), "settled");
@@ -90,7 +90,7 @@ TEST(LifeOf, TellsWhatBecameOfIt) {
 
 TEST(LifeOf, IsExplainedInTheHelp) {
   for (const auto& row : dispatch::report_life()) {
-    page::ReportRow report = in_state(std::string(dispatch::name_of(row.from)));
+    api::ReportRow report = in_state(std::string(dispatch::name_of(row.from)));
     EXPECT_THAT(help_about(Command::Reports), HasSubstr("\n  " + life_of(report) + " "));
     report.reconciled = report.asking = true;
     EXPECT_THAT(help_about(Command::Reports), HasSubstr("\n  " + life_of(report) + " "));
@@ -98,14 +98,14 @@ TEST(LifeOf, IsExplainedInTheHelp) {
 }
 
 TEST(ReportText, TellsAllOfOneReport) {
-  page::ReportRow report = in_state("settled");
+  api::ReportRow report = in_state("settled");
   report.received = 1566309785.125;
   report.reconciled = true;
   report.note = "recorded: the count of reports fell by one";
   report.run = 2;
-  const page::ReportDetail detail{report,
-                                  {{1566309785.125, "waiting", ""}, {1566309786, "in doubt", "no answer"}},
-                                  "{\"score_change\": 1}"};
+  const api::ReportDetail detail{report,
+                                 {{1566309785.125, "waiting", ""}, {1566309786, "in doubt", "no answer"}},
+                                 "{\"score_change\": 1}"};
   EXPECT_EQ(report_text(detail, false),
             "  report    3\n"
             "  type      Survivor\n"

@@ -29,7 +29,7 @@ TEST(StatusText, TellsAGoodRunOnOneScreen) {
 }
 
 TEST(StatusText, BeginsWithWhatNeedsTheOperator) {
-  page::RunView view = sample_view();
+  api::RunView view = sample_view();
   view.attention = {"1 report is in doubt: the answer was lost",
                     "the Command Post refuses the mapping token"};
   view.reports[0].state = "in doubt";
@@ -40,7 +40,7 @@ TEST(StatusText, BeginsWithWhatNeedsTheOperator) {
 }
 
 TEST(StatusText, SaysWhyAnEndpointIsNotConnected) {
-  page::RunView view = sample_view();
+  api::RunView view = sample_view();
   view.endpoints[1] = {.name = "mapping",
                        .address = "10.100.1.201:8000",
                        .connected = false,
@@ -58,7 +58,7 @@ TEST(StatusText, OfAnAditThatHasHeardNothingIsStillWhole) {
 }
 
 TEST(StatusText, ShowsTheLatestRefusals) {
-  page::RunView view = sample_view();
+  api::RunView view = sample_view();
   view.refusals = {{.at = 998,
                     .uri = "/map/update",
                     .sender = "10.0.0.7",
@@ -70,7 +70,7 @@ TEST(StatusText, ShowsTheLatestRefusals) {
 }
 
 TEST(StatusText, NeverLetsOthersSteerTheTerminal) {
-  page::RunView view = sample_view();
+  api::RunView view = sample_view();
   view.run->current_team = "\x1b]0;a\x07";
   view.activities[0].robot = "\x1b[2J";
   view.activities[0].last_sentence = "\x1b[2J\nRun   99:99";
@@ -82,12 +82,12 @@ TEST(StatusText, NeverLetsOthersSteerTheTerminal) {
 }
 
 TEST(Arrival, IsWhatTheOperatorAsks) {
-  const auto row = [](void (*change)(page::ActivityRow&)) {
-    page::ActivityRow activity = sample_view().activities[0];
+  const auto row = [](void (*change)(api::ActivityRow&)) {
+    api::ActivityRow activity = sample_view().activities[0];
     change(activity);
     return arrival_of(activity, 1000);
   };
-  using Row = page::ActivityRow;
+  using Row = api::ActivityRow;
   EXPECT_EQ(row([](Row&) {}), Arrival::Yes);
   EXPECT_EQ(row([](Row& r) { r.waiting = 1; }), Arrival::Yes) << "the next one waits for its turn";
   EXPECT_EQ(row([](Row& r) { r.waiting = 1, r.last_forwarded = 980; }), Arrival::Late);

@@ -1,12 +1,12 @@
 #pragma once
 
-#include "page/page.hpp"
+#include "api/run_view.hpp"
 
 namespace adit::cli {
 
 /// A run as it might stand at 1000 s of the gateway's clock, with nothing that needs the operator.
-inline page::RunView sample_view() {
-  page::RunView view;
+inline api::RunView sample_view() {
+  api::RunView view;
   view.now = 1000;
   view.version = "0.1.0";
   view.run = {.score = 7, .run_clock = 754.5, .remaining_reports = 18, .current_team = "cave_club"};
@@ -26,7 +26,7 @@ inline page::RunView sample_view() {
                      .trouble = "",
                      .last_status = 200,
                      .answer_ms = 42.1}};
-  page::ReportRow report;
+  api::ReportRow report;
   report.number = 3;
   report.type = "Survivor";
   report.position = {12.125, -3, 0.5};
@@ -38,7 +38,7 @@ inline page::RunView sample_view() {
   report.report_status = "scored";
   report.score_change = 1;
   view.reports = {report};
-  page::ActivityRow grid;
+  api::ActivityRow grid;
   grid.kind = "grid";
   grid.robot = "r1";
   grid.accepted = 12;

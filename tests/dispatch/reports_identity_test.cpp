@@ -246,6 +246,29 @@ TEST_F(AnotherPlace, ThatWasMistypedIsPutRight) {
   expect_one_recording();
 }
 
+/// The operator's word was for the other one.
+TEST_F(AnotherPlace, ThatWasMistypedTakesNoWordWithIt) {
+  go();
+  scene_.post(1);
+  ASSERT_TRUE(scene_.reports().send(2, scene_.time()));
+  come_back();
+  scene_.wait(1);
+  scene_.hear(19, 1);
+  EXPECT_EQ(scene_.send_next(), 0);
+  EXPECT_EQ(scene_.state(2), Withdrawn);
+}
+
+TEST_F(AnotherPlace, WhatWaitsForTheFirstIsNotSentTwiceOnTheOperatorsWord) {
+  scene_.post_to_wait(3);
+  go();
+  scene_.post(3);
+  ASSERT_TRUE(scene_.reports().hold(3, scene_.time()));
+  come_back();
+  const auto sent = scene_.reports().send(3, scene_.time());
+  ASSERT_FALSE(sent);
+  EXPECT_THAT(sent.error(), HasSubstr("report 2 is the same, and is waiting in this run"));
+}
+
 TEST_F(AnotherPlace, WhatWaitedForTheFirstIsKeptForIt) {
   scene_.post_to_wait(3);
   go();
@@ -295,6 +318,22 @@ TEST_F(AnotherPlace, TheOperatorsWordOnADoubtThereBlursTheOthersThere) {
   go();
   ASSERT_TRUE(scene_.reports().call_done(2, scene_.time()));
   EXPECT_EQ(scene_.report(3).before, std::nullopt);
+}
+
+TEST(AnotherPlaceUnheard, LeavesADoubtOfBeforeAnyWordWhereItWasSent) {
+  const Time time{.now = {}, .stamp = Scene::kEpoch};
+  RecordingDeeds deeds;
+  Reports reports({}, deeds);
+  reports.open({}, {}, time, "10.100.1.200:8000");
+  reports.status_failed(true, time);
+  reports.take({.report = {.type = "Drill", .position = {1, 2, 3}}, .sender = "10.0.0.7"}, 1, true, time);
+  ASSERT_NE(reports.choose(time), nullptr);
+  reports.lost("no answer", time);
+  ASSERT_TRUE(deeds.runs.contains(1));
+  Reports there({}, deeds);
+  there.open({deeds.ledger.at(1)}, {deeds.runs.at(1)}, time, kThere);
+  EXPECT_NE(there.book().at(1).run, there.run().number);
+  EXPECT_EQ(there.runs().find(there.book().at(1).run)->post, "10.100.1.200:8000");
 }
 
 TEST(AnotherTeam, ThatIsBackGoesOnWithItsRun) {

@@ -272,16 +272,27 @@ TEST(Resubmitting, PressedTwiceIsSentOnce) {
   EXPECT_EQ(scene.reports().resubmit(1, scene.time()), 3) << "and that was answered";
 }
 
-TEST(Sending, IsRefusedWhereTheSameWasRecordedInThisRun) {
-  ReportRules rules;
-  rules.review = Review::Duplicates;
-  Scene scene(rules);
-  scene.post(1);
-  scene.answer(recorded());
-  scene.post(2);
-  ASSERT_EQ(scene.state(2), Received) << "2 is near 1";
-  scene.reports().declare_new_run(scene.time());
-  scene.hear(20, 0, 1);
+/// Report 2, which is near 1.
+class HeldSinceTheRunBefore : public testing::Test {
+ protected:
+  void SetUp() override {
+    scene.post(1);
+    scene.answer(recorded());
+    scene.post(2);
+    ASSERT_EQ(scene.state(2), Received);
+    scene.reports().declare_new_run(scene.time());
+    scene.hear(20, 0, 1);
+  }
+
+  static ReportRules rules() {
+    ReportRules rules;
+    rules.review = Review::Duplicates;
+    return rules;
+  }
+  Scene scene{rules()};
+};
+
+TEST_F(HeldSinceTheRunBefore, IsRefusedWhereTheSameWasRecordedInThisRun) {
   scene.post(2);
   scene.answer(recorded());
   const auto sent = scene.reports().send(2, scene.time());
@@ -291,16 +302,7 @@ TEST(Sending, IsRefusedWhereTheSameWasRecordedInThisRun) {
 }
 
 /// Nobody compares what was asked for with what waits.
-TEST(Sending, IsRefusedWhereTheSameWaitsToBeSentInThisRun) {
-  ReportRules rules;
-  rules.review = Review::Duplicates;
-  Scene scene(rules);
-  scene.post(1);
-  scene.answer(recorded());
-  scene.post(2);
-  ASSERT_EQ(scene.state(2), Received) << "2 is near 1";
-  scene.reports().declare_new_run(scene.time());
-  scene.hear(20, 0, 1);
+TEST_F(HeldSinceTheRunBefore, IsRefusedWhereTheSameWaitsToBeSentInThisRun) {
   scene.post_to_wait(2);
   ASSERT_EQ(scene.state(3), Waiting);
   const auto sent = scene.reports().send(2, scene.time());

@@ -163,6 +163,7 @@ class Scene {
   }
   std::vector<Run> all_runs() const {
     std::vector<Run> runs;
+    runs.reserve(deeds_.runs.size());
     for (const auto& [number, run] : deeds_.runs) runs.push_back(run);
     return runs;
   }

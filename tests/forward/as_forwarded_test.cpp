@@ -57,8 +57,8 @@ TEST(AsForwarded, ForgetsTheRobotThatWasSilentForLongestForOneMore) {
   }
   const auto robots = all.robots();
   EXPECT_THAT(robots, SizeIs(AsForwarded::kMostRobots));
-  EXPECT_EQ(std::ranges::count(robots, "ours", &page::RobotRow::name), 1);
-  EXPECT_EQ(std::ranges::count(robots, "r0", &page::RobotRow::name), 0);
+  EXPECT_EQ(std::ranges::count(robots, "ours", &api::RobotRow::name), 1);
+  EXPECT_EQ(std::ranges::count(robots, "r0", &api::RobotRow::name), 0);
 }
 
 }  // namespace

@@ -38,7 +38,7 @@ class AsideTest : public testing::Test {
     aside_->restore();
   }
   /// What another service would find if this one were killed now.
-  std::vector<page::AsideRow> found_after_a_kill() {
+  std::vector<api::AsideRow> found_after_a_kill() {
     loop::Writer writer(loop_);
     Aside other(loop_, writer, folder_.path());
     other.restore();

@@ -86,6 +86,29 @@ TEST_F(ChannelTest, LeadsElsewhereOnceTheRequestUnderWayHasEnded) {
   EXPECT_THAT(answers, testing::ElementsAre(429, 200));
 }
 
+TEST_F(ChannelTest, GivesUpWhatIsUnderWayOnlyWhereItIsToLeadElsewhere) {
+  peer_.emplace([](uplink::Wire& wire) { wire.read_request(), wire.read_request(); });  // and says nothing
+  const auto token = icd::BearerToken::parse("a-token"), another = icd::BearerToken::parse("another-token");
+  Channel channel(loop_, "mapping", peer_->endpoint(), token, std::chrono::seconds{20});
+  std::vector<uplink::Outcome> outcomes;
+  channel.send(icd::Uri::Status, "", {},
+               [&](const uplink::Outcome& outcome) { outcomes.push_back(outcome); });
+  channel.give_up();
+  channel.lead_to(peer_->endpoint(), token, std::chrono::seconds{10});
+  channel.give_up();
+  EXPECT_TRUE(channel.busy());
+  EXPECT_THAT(outcomes, testing::IsEmpty());
+  channel.lead_to(peer_->endpoint(), another, std::chrono::seconds{10});
+  channel.give_up();
+  EXPECT_FALSE(channel.busy());
+  ASSERT_EQ(outcomes.size(), 1u);
+  EXPECT_TRUE(std::holds_alternative<uplink::InDoubt>(outcomes.front()));
+  EXPECT_TRUE(channel.turns());
+  EXPECT_EQ(channel.trouble(), "") << "that was of the other place";
+  channel.give_up();
+  EXPECT_EQ(outcomes.size(), 1u);
+}
+
 TEST_F(ChannelTest, LeadsNowhereWithoutAToken) {
   peer_.emplace([](uplink::Wire&) {});
   Channel channel(loop_, "mapping", peer_->endpoint(), std::nullopt, std::chrono::seconds{20});

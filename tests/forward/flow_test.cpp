@@ -8,6 +8,7 @@
 
 #include "../uplink/peer.hpp"
 #include "host/folder.hpp"
+#include "host/service.hpp"
 #include "loop/turn_until.hpp"
 #include "spool/messages.hpp"
 
@@ -39,7 +40,7 @@ class FlowTest : public testing::Test {
   }
   std::vector<std::uint64_t> waiting() const {
     std::vector<std::uint64_t> waiting;
-    for (const page::ActivityRow& row : flow_->activities()) waiting.push_back(row.waiting);
+    for (const api::ActivityRow& row : flow_->activities()) waiting.push_back(row.waiting);
     return waiting;
   }
 
@@ -79,7 +80,7 @@ TEST_F(FlowTest, EndsAndSendsNothingSetAsideFromThenOn) {
   EXPECT_FALSE(flow_->is_ending());
   flow_->end([&] { over = true; });
   EXPECT_TRUE(flow_->is_ending());
-  EXPECT_FALSE(flow_->aside(1, page::AsideDeed::Discard));
+  EXPECT_FALSE(flow_->aside(1, api::AsideDeed::Discard));
   EXPECT_TRUE(loop::turn_until(loop_, [&] { return over; }));
   EXPECT_FALSE(anew_);
 }
@@ -166,6 +167,21 @@ TEST_F(FlowAfterAnother, SendsNoEarlierStampAndNoSoonerThoughNothingWasWrittenDo
   sends(*after, "10.0.0.6", 7);
   EXPECT_GE(seen_.stamp(), last);
   EXPECT_GE(seen_.at() - began, std::chrono::milliseconds{990});
+}
+
+/// As it may be asked to stop before it sends anything itself.
+TEST_F(FlowAfterAnother, LeavesThePauseThatACommandPostAskedForToTheNextLife) {
+  const std::string runtime = first_.path();
+  const auto end_of_pause = loop_.now() + std::chrono::seconds{20};
+  {
+    journal::Journal journal(loop_, runtime + "/journal");
+    journal.begin({.boot = host::boot(), .at = loop_.now(), .stamp = loop_.stamp_now()});
+    journal.paced(icd::Uri::MarkersUpdate, {.next = end_of_pause});
+  }
+  auto legacy = flow(second_, std::nullopt)->hand_over();
+  flow(first_, std::move(legacy));
+  const journal::Carried carried = journal::Journal(loop_, runtime + "/journal").read();
+  EXPECT_EQ(carried.paces().at(icd::Uri::MarkersUpdate).next, end_of_pause);
 }
 
 }  // namespace

@@ -6,6 +6,7 @@
 #include <semaphore>
 
 #include "../uplink/peer.hpp"
+#include "forward/around.hpp"
 #include "forward/maps.hpp"
 #include "host/folder.hpp"
 #include "loop/guard.hpp"
@@ -36,7 +37,8 @@ struct Post {
   std::counting_semaphore<> let{0};
 };
 
-class MapsWithoutMemory : public testing::TestWithParam<std::tuple<std::string, std::size_t>> {
+class MapsWithoutMemory : public testing::TestWithParam<std::tuple<std::string, std::size_t>>,
+                          protected AroundMaps {
  protected:
   MapsWithoutMemory() {
     settings_.command_post.rates.map_hz = 1e9;  // the next one is packed in the same turn
@@ -76,16 +78,6 @@ class MapsWithoutMemory : public testing::TestWithParam<std::tuple<std::string, 
            maps_->waiting({Kind::Cloud, "r1"}) == 0;
   }
 
-  host::Folder folder_, journal_folder_, aside_folder_;
-  loop::Loop loop_;
-  settings::Settings settings_;
-  std::mt19937_64 random_{1};
-  Record record_{[] {}};
-  spool::Spool spool_{folder_.path()};
-  loop::Workers workers_{loop_, 1};
-  loop::Writer writer_{loop_};
-  journal::Journal journal_{loop_, journal_folder_.path()};
-  Aside aside_{loop_, writer_, aside_folder_.path()};
   Post post_;
   uplink::ListeningPeer peer_{[this](uplink::Wire& wire) { post_.serve(wire); }};
   std::optional<Maps> maps_;

@@ -6,6 +6,7 @@
 #include <future>
 #include <vector>
 
+#include "forward/around.hpp"
 #include "host/folder.hpp"
 #include "host/numbered_name.hpp"
 #include "loop/turn_until.hpp"
@@ -29,7 +30,7 @@ icd::MapUpdate grid(const char* robot, std::uint32_t width, std::size_t bytes) {
 }
 
 /// Without a token nothing leaves: what is taken waits.
-class MapsTest : public testing::Test {
+class MapsTest : public testing::Test, protected AroundMaps {
  protected:
   MapsTest() { settings_.queues.map_bytes = 100'000; }
 
@@ -60,16 +61,6 @@ class MapsTest : public testing::Test {
     return said ? icd::Status::Ok : said.error().status;
   }
 
-  host::Folder folder_, journal_folder_, aside_folder_;
-  loop::Loop loop_;
-  settings::Settings settings_;
-  std::mt19937_64 random_{1};
-  Record record_{[] {}};
-  spool::Spool spool_{folder_.path()};
-  loop::Workers workers_{loop_, 1};
-  loop::Writer writer_{loop_};
-  journal::Journal journal_{loop_, journal_folder_.path()};
-  Aside aside_{loop_, writer_, aside_folder_.path()};
   Maps maps_{loop_,
              workers_,
              writer_,

@@ -23,7 +23,7 @@ icd::Marker marker(const std::string& ns, std::int32_t id, double x = 0,
   return marker;
 }
 
-std::vector<std::string> names(const page::MarkerNews& news) {
+std::vector<std::string> names(const api::MarkerNews& news) {
   std::vector<std::string> names;
   for (const auto& row : news.markers) names.push_back(row.marker.ns + std::to_string(row.marker.id));
   return names;

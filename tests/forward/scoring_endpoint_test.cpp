@@ -6,6 +6,7 @@
 #include <semaphore>
 
 #include "../uplink/peer.hpp"
+#include "forward/around.hpp"
 #include "forward/scoring.hpp"
 #include "host/folder.hpp"
 #include "loop/turn_until.hpp"
@@ -59,7 +60,7 @@ class Post {
       std::vector<uplink::Peer::Script>(1, [this](uplink::Wire& wire) { serve(wire); })};
 };
 
-class ScoringEndpoint : public testing::Test {
+class ScoringEndpoint : public testing::Test, protected AroundScoring {
  protected:
   ScoringEndpoint() {
     settings_.command_post.rates.reports_hz = settings_.command_post.rates.status_hz = 1000;
@@ -89,13 +90,6 @@ class ScoringEndpoint : public testing::Test {
   const dispatch::Report& report(std::int64_t number) const { return scoring_->reports().book().at(number); }
 
   const std::optional<icd::BearerToken> token_ = icd::BearerToken::parse("a-token");
-  host::Folder folder_, journal_folder_;
-  loop::Loop loop_;
-  settings::Settings settings_;
-  std::mt19937_64 random_{1};
-  Record record_{[] {}};
-  journal::Journal journal_{loop_, journal_folder_.path()};
-  ledger::Ledger ledger_ = std::move(*ledger::Ledger::open(folder_.path()));
   Post here_, there_;
   bool anew_ = false;
   std::vector<int> first_, second_;
@@ -138,6 +132,19 @@ TEST_F(ScoringEndpoint, WhatWaitsForItIsKeptForItAndItsClientIsNotSentAway) {
   here_.let.release();
   ASSERT_TRUE(comes([this] { return !second_.empty(); }));
   EXPECT_THAT(second_, ElementsAre(201));
+}
+
+TEST_F(ScoringEndpoint, IsTheOneThatAReportIsMeantForFromItsChangeOn) {
+  post(1, first_);
+  ASSERT_TRUE(comes([this] { return here_.recorded == 1; }));
+  move();
+  post(100, second_);
+  there_.let.release();
+  here_.let.release();
+  ASSERT_TRUE(comes([this] { return !second_.empty(); }));
+  EXPECT_THAT(second_, ElementsAre(201));
+  EXPECT_EQ(here_.recorded, 1);
+  EXPECT_EQ(there_.recorded, 1);
 }
 
 TEST_F(ScoringEndpoint, IsTheSameWithAnotherToken) {

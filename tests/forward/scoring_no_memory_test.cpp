@@ -6,6 +6,7 @@
 #include <semaphore>
 
 #include "../uplink/peer.hpp"
+#include "forward/around.hpp"
 #include "forward/scoring.hpp"
 #include "host/folder.hpp"
 #include "loop/turn_until.hpp"
@@ -41,7 +42,7 @@ struct Post {
   std::counting_semaphore<> let{0};
 };
 
-class ScoringWithoutMemory : public testing::TestWithParam<std::size_t> {
+class ScoringWithoutMemory : public testing::TestWithParam<std::size_t>, protected AroundScoring {
  protected:
   ScoringWithoutMemory() {
     settings_.command_post.rates.reports_hz = settings_.command_post.rates.status_hz = 1e9;
@@ -77,13 +78,6 @@ class ScoringWithoutMemory : public testing::TestWithParam<std::size_t> {
   }
   ReportState state_of(std::int64_t number) const { return scoring_->reports().book().at(number).state; }
 
-  host::Folder folder_, journal_folder_;
-  loop::Loop loop_;
-  settings::Settings settings_;
-  std::mt19937_64 random_{1};
-  Record record_{[] {}};
-  journal::Journal journal_{loop_, journal_folder_.path()};
-  ledger::Ledger ledger_ = std::move(*ledger::Ledger::open(folder_.path()));
   Post post_;
   uplink::ListeningPeer peer_{
       std::vector<uplink::Peer::Script>(1, [this](uplink::Wire& wire) { post_.serve(wire); })};

@@ -8,7 +8,7 @@ namespace {
 using testing::IsEmpty;
 using testing::SizeIs;
 
-page::TrackPose pose(double at, double x, double heading = 0) {
+api::TrackPose pose(double at, double x, double heading = 0) {
   return {.at = at, .position = {x, 0, 0}, .heading = heading};
 }
 

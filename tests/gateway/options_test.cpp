@@ -7,11 +7,8 @@
 namespace adit::gateway {
 namespace {
 
-std::expected<Options, std::string> parse(std::vector<std::string> words) {
-  std::vector<char*> arguments;
-  arguments.reserve(words.size());
-  for (std::string& word : words) arguments.push_back(word.data());
-  return parse_options(arguments);
+std::expected<Options, std::string> parse(const std::vector<const char*>& words) {
+  return command_line::read(command_line_of, words);
 }
 
 TEST(Options, AreTheThreeThatTheServiceNeeds) {

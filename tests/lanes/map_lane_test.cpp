@@ -179,7 +179,7 @@ TEST(MapLane, PutsBackWhatCouldNotBeSentFirstInLine) {
   lane.add(2, cloud_update("R2", {1}), at(2));
   auto failed = *lane.take();
   lane.add(3, grid_update("R1", kElsewhere), at(3));
-  EXPECT_FALSE(lane.is_replaced(failed.map));
+  EXPECT_FALSE(lane.is_replaced(failed));
   EXPECT_THAT(lane.put_back(failed), ElementsAre());
   EXPECT_THAT(lane.take()->updates, ElementsAre(1));
 }
@@ -190,7 +190,7 @@ TEST(MapLane, PutsBackNoGridThatANewerOneCovers) {
   auto failed = *lane.take();
   lane.add(2, cloud_update("R2", {1}), at(2));
   lane.add(3, grid_update("R1", kLarge), at(3));
-  EXPECT_TRUE(lane.is_replaced(failed.map));
+  EXPECT_TRUE(lane.is_replaced(failed));
   EXPECT_THAT(lane.put_back(failed), ElementsAre(1)) << "nobody needs it any more";
   EXPECT_EQ(lane.count(), 2);
   const auto heir = lane.take();
@@ -211,6 +211,17 @@ TEST(MapLane, SendsAgainInTheOrderInWhichTheyWereMadeAndDropsNoneForAnOlderOne) 
   EXPECT_THAT(lane.put_back(sent_again(1, kLarge, 10)), IsEmpty());
   EXPECT_THAT(lane.put_back(sent_again(2, kLarge, 20)), IsEmpty());
   for (const std::uint64_t number : {1, 2, 3}) EXPECT_THAT(lane.take()->updates, ElementsAre(number));
+}
+
+// A clock that was set back: the simulation's seed 60002763 lost the later one's area to the older one's.
+TEST(MapLane, TakesOfOneStampTheLaterThatIsSentAgainForTheNewer) {
+  MapLane lane{kPlenty};
+  EXPECT_THAT(lane.put_back(sent_again(1, kLarge, 10)), IsEmpty());
+  EXPECT_FALSE(lane.is_replaced(sent_again(2, kSmall, 10)));
+  EXPECT_THAT(lane.put_back(sent_again(2, kSmall, 10)), IsEmpty());
+  for (const std::uint64_t number : {1, 2}) EXPECT_THAT(lane.take()->updates, ElementsAre(number));
+  lane.put_back(sent_again(2, kLarge, 10));
+  EXPECT_TRUE(lane.is_replaced(sent_again(1, kSmall, 10)));
 }
 
 TEST(MapLane, TakesNothingThatIsSentAgainForNewerThanWhatNeverWasSetAside) {

@@ -2,6 +2,7 @@
 #include <gtest/gtest.h>
 #include <unistd.h>
 
+#include <cerrno>
 #include <filesystem>
 #include <vector>
 
@@ -9,9 +10,14 @@
 
 namespace {
 int flushes = 0;
+bool flushes_fail = false;
 
 int count_and_call(const char* name, int file) {
   ++flushes;
+  if (flushes_fail) {
+    errno = EIO;
+    return -1;
+  }
   return reinterpret_cast<int (*)(int)>(::dlsym(RTLD_NEXT, name))(file);
 }
 }  // namespace
@@ -66,6 +72,43 @@ TEST(LedgerFlushes, LaterWhereItIsToldTo) {
   EXPECT_EQ(flushes_of([&] { return ledger.write(answered, nullptr, dispatch::Flush::Soon); }), 0);
   EXPECT_EQ(flushes_of([&] { return ledger.flush(); }), 1);
   EXPECT_EQ(flushes_of([&] { return ledger.flush(); }), 0);
+}
+
+/// After a flush that failed the kernel takes what was to be flushed for written: the next one flushes none
+/// of it, and a power cut takes it, and with it all that is behind it in the log.
+class AFlushThatFailed : public testing::Test {
+ protected:
+  AFlushThatFailed() {
+    EXPECT_TRUE(write(ledger_, backpack(1)));
+    const std::vector<dispatch::Report> answered{backpack(2)};
+    EXPECT_TRUE(ledger_.write(answered, nullptr, dispatch::Flush::Soon));
+    flushes_fail = true;
+  }
+  void TearDown() override { flushes_fail = false; }
+
+  /// In the ledger's file, without its log.
+  std::vector<std::string> in_the_file_alone() {
+    const Folder other;
+    std::filesystem::copy_file(folder_.file(), other.file());
+    return by_hand(other, "SELECT count(*) FROM report");
+  }
+  const Folder folder_;
+  Ledger ledger_ = open_or_fail(folder_);
+};
+
+TEST_F(AFlushThatFailed, LaterIsMadeGoodBeforeAnythingElseIsWritten) {
+  EXPECT_FALSE(ledger_.flush());
+  EXPECT_FALSE(write(ledger_, backpack(3)));
+  flushes_fail = false;
+  EXPECT_TRUE(write(ledger_, backpack(3)));
+  EXPECT_EQ(in_the_file_alone(), std::vector<std::string>{"2"});
+}
+
+TEST_F(AFlushThatFailed, WithWhatWasLeftForLaterIsMadeGood) {
+  EXPECT_FALSE(write(ledger_, backpack(3)));
+  flushes_fail = false;
+  EXPECT_TRUE(ledger_.flush());
+  EXPECT_EQ(in_the_file_alone(), std::vector<std::string>{"2"});
 }
 
 TEST(LedgerFlushes, MoreThanOnceOnlyWhereTheLogBeginsAnew) {

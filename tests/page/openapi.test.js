@@ -6,7 +6,7 @@ import { test } from "node:test";
 import Ajv from "ajv/dist/2020.js";
 import { OPERATOR, box, play, until } from "./box.js";
 
-const read = (path) => readFileSync(new URL(`../../firmware/page/${path}`, import.meta.url), "utf8");
+const read = (path) => readFileSync(new URL(`../../firmware/api/${path}`, import.meta.url), "utf8");
 const api = JSON.parse(read("openapi.json"));
 const operations = Object.entries(api.paths).flatMap(([path, methods]) =>
   Object.entries(methods).map(([method, operation]) => ({ path, method: method.toUpperCase(), operation })));

@@ -9,15 +9,16 @@
 #include <string>
 #include <utility>
 
-#include "page/fake_box.hpp"
-#include "page/fake_keys.hpp"
-#include "page/fake_network.hpp"
-#include "page/map_scene.hpp"
-#include "page/played.hpp"
-#include "page/played_updates.hpp"
-#include "page/scenes.hpp"
+#include "api/api.hpp"
+#include "api/fake_box.hpp"
+#include "api/fake_keys.hpp"
+#include "api/fake_network.hpp"
+#include "api/map_scene.hpp"
+#include "api/played.hpp"
+#include "api/played_updates.hpp"
+#include "api/scenes.hpp"
 
-namespace adit::page {
+namespace adit::api {
 namespace {
 
 class Stage final : public Source, public Operator {
@@ -112,7 +113,7 @@ int serve(std::uint16_t port, const std::string& first, const std::string& more)
   FakeNetwork network;
   FakeTest test;
   PlayedUpdates updates;
-  Page page{loop, stage, stage, keys, {token()}};
+  Api page{loop, stage, stage, keys, {token()}};
   furnish(box, loop.stamp_now());
   page.serve(box);
   page.serve(network, test);
@@ -141,11 +142,11 @@ int serve(std::uint16_t port, const std::string& first, const std::string& more)
 }
 
 }  // namespace
-}  // namespace adit::page
+}  // namespace adit::api
 
 int main(int count, char** arguments) {
   const int port =
       count > 1 ? std::atoi(arguments[1]) : 0;  // NOLINT(cert-err34-c): 0, any port, is right then
-  return adit::page::serve(static_cast<std::uint16_t>(port), count > 2 ? arguments[2] : "calm",
-                           count > 3 ? arguments[3] : "");
+  return adit::api::serve(static_cast<std::uint16_t>(port), count > 2 ? arguments[2] : "calm",
+                          count > 3 ? arguments[3] : "");
 }

@@ -45,8 +45,8 @@ export async function watch(t, scene, { path = "", prepare, ...options } = {}) {
 }
 
 /** Whoever comes to `url` without a session, for the length of one test. */
-export async function visitor(t, url, options = {}) {
-  const page = await visit(browser, url, options);
+export async function visitor(t, url, options = {}, prepare = () => {}) {
+  const page = await visit(browser, url, options, prepare);
   t.after(() => page.context().close());
   return page;
 }

@@ -5,14 +5,16 @@ import { fileURLToPath } from "node:url";
 import { gzipSync } from "node:zlib";
 import { HtmlValidate } from "html-validate";
 
-const FOLDER = fileURLToPath(new URL("../../firmware/page/files/", import.meta.url));
+const FOLDER = fileURLToPath(new URL("../../firmware/site/files/", import.meta.url));
 const MOST = 80_000;
 const files = readdirSync(FOLDER);
 const read = (name) => readFileSync(FOLDER + name);
 
-/** As toolchain/cmake/embed.cmake puts it into aditd: scripts without the lines that are a comment, style without comments. */
+/** As toolchain/cmake/embed.cmake puts it into aditd: scripts without the lines that are a comment, style without
+ *  comments, pages without what indents their lines. */
 function embedded(name) {
   if (name.endsWith(".css")) return `${read(name)}`.replaceAll(/ *\/\*[^*]*\*\//g, "");
+  if (name.endsWith(".html")) return `${read(name)}`.replaceAll(/\n +/g, "\n");
   if (!name.endsWith(".js")) return read(name);
   return `\n${read(name)}`.replaceAll(/\n *(\/\/[^\n]*|\/\*\*[^\n]*\*\/)/g, "\n").slice(1);
 }
@@ -34,6 +36,7 @@ test("every page is valid HTML without script or style of its own", async () => 
     const report = await validator.validateString(read(page).toString(), page);
     const found = report.results.flatMap(({ messages }) => messages.map(({ line, message, ruleId }) => `${page}:${line}: ${message} (${ruleId})`));
     assert.deepEqual(found, []);
+    assert.ok(read(page).includes('<script src="again.js"></script>\n<link rel="stylesheet"'), `${page}: a part that does not come is asked for again`);
     assert.doesNotMatch(read(page).toString(), /<script>|<style|\sstyle=|\son\w+=|https?:/);
   }
 });

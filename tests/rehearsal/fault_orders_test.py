@@ -77,7 +77,7 @@ class Telling(unittest.TestCase):
             (["--fault-rate", "reports:drop=nan"], "--fault-rate: expected a rate from 0 to 1"),
             (["--fault-rate", "reports:drop=0.6", "--fault-rate", "reports:reset=0.6"],
              "--fault-rate: reports: the rates come to more than 1"),
-            (["--seed", "x"], "--seed: cannot take 'x'"),
+            (["--seed", "x"], "--seed: expected 0 to 18446744073709551615, got 'x'"),
         ]
         with CommandPost() as post:
             for more, sentence in table:

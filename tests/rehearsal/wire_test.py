@@ -193,11 +193,11 @@ class Process(unittest.TestCase):
             bad_csv = post.write("bad.csv", "type,x,y,z\nDrill,1,2,3\nSpoon,1,2,3\n")
             no_secrets = os.path.join(post.folder.name, "none")
             table = [
-                (["--as-measure"], "unknown option --as-measure"), (["--team"], "--team needs a value"),
+                (["--as-measure"], "unknown word '--as-measure'"), (["--team"], "--team wants a value"),
                 (["--mapping", "here:1"], "mapping: here:1: not a numeric address"),
                 (["--mapping", post.mapping], f"mapping: {post.mapping}: Address already in use"),
-                (["--scoring", "127.0.0.1"], "--scoring: cannot take '127.0.0.1'"),
-                (["--rate", "-1"], "--rate: cannot take '-1'"), (["--duration", "nan"], "--duration: cannot take"),
+                (["--scoring", "127.0.0.1"], "--scoring: expected ADDR:PORT, got '127.0.0.1'"),
+                (["--rate", "-1"], "--rate: expected 0 to 1e+09, got '-1'"), (["--duration", "nan"], "--duration: expected"),
                 (["--secrets", no_secrets], "none/scoring.token: cannot be read"),
                 (["--artifacts", bad_csv], "bad.csv:3: expected an artifact type"),
                 (["--transcript", "/proc/none"], "/proc/none"),

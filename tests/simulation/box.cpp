@@ -1,13 +1,20 @@
 #include "simulation/box.hpp"
 
+#include <fcntl.h>
+#include <sys/stat.h>
+#include <unistd.h>
+
 #include <cstdio>
 #include <cstdlib>
 #include <fstream>
 #include <utility>
+#include <vector>
 
+#include "admin/session_keeper.hpp"
 #include "gateway/options.hpp"
 #include "gateway/service.hpp"
-#include "gateway/session_keeper.hpp"
+#include "loop/file_descriptor.hpp"
+#include "settings/settings.hpp"
 #include "simulation/command_post.hpp"
 #include "simulation/world.hpp"
 
@@ -16,6 +23,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
+constexpr std::size_t kLargestMap = 64u << 10;  // as a robot or a flood posts it
 constexpr std::uint64_t kRightThen = 4, kSoon = 40, kMostCrossings = 400;
 /// Seconds until a process is started again, and until a machine is.
 constexpr double kRestart[] = {0.05, 2}, kBoot[] = {5, 20};
@@ -26,28 +34,57 @@ void write(const fs::path& path, const std::string& text) {
 }
 
 /// Some are so small that they fill, and that messages are divided.
-std::string queues(Random random) {
-  std::string queues =
+struct Queues {
+  std::string settings;
+  std::size_t most_map_bytes;  // that wait, one that comes back with them
+};
+
+Queues queues(Random random) {
+  Queues queues;
+  const settings::Settings usual;
+  std::size_t map_bytes = usual.queues.map_bytes, merge_bytes = usual.queues.merge_bytes;
+  queues.settings =
       R"("markers_per_message": )" + std::to_string(random.chance(0.3) ? 1 + random.below(4) : 2000);
-  if (random.chance(0.3)) queues += R"(, "map_bytes": 1048576)";
-  if (random.chance(0.3)) queues += R"(, "merge_bytes": )" + std::to_string(random.chance(0.5) ? 0 : 4000);
-  if (random.chance(0.2)) queues += R"(, "marker_bytes_per_message": 1024)";
+  if (random.chance(0.3)) map_bytes = 1u << 20;
+  if (random.chance(0.3)) merge_bytes = random.chance(0.5) ? 0 : 4000;
+  queues.settings += R"(, "map_bytes": )" + std::to_string(map_bytes);
+  queues.settings += R"(, "merge_bytes": )" + std::to_string(merge_bytes);
+  if (random.chance(0.2)) queues.settings += R"(, "marker_bytes_per_message": 1024)";
+  queues.most_map_bytes = map_bytes + merge_bytes + kLargestMap;
   return queues;
 }
 
 /// Nobody connects to the socket in which the team's server listens: the clients come in by the door.
-std::string first_settings(Random random) {
+std::string first_settings(const std::string& queues, const std::string& interface) {
   return R"({"version": 1, "command_post": {"scoring": {"address": "10.100.1.200", "port": )" +
          std::to_string(CommandPost::kScoring) + R"(}, "mapping": {"address": "10.100.1.201", "port": )" +
-         std::to_string(CommandPost::kMapping) + R"(}, "interface": ")" + Box::kUpstream +
+         std::to_string(CommandPost::kMapping) + R"(}, "interface": ")" + Box::kInterface +
          R"("}, "courses": [{"name": "B", "scoring": {"address": "10.100.2.200", "port": )" +
          std::to_string(CommandPost::kScoring) + R"(}, "mapping": {"address": "10.100.2.201", "port": )" +
          std::to_string(CommandPost::kMapping) +
-         R"(}}], "team": {"listen": [{"address": "127.0.0.1", "port": 0}]}, "queues": {)" + queues(random) +
-         "}}";
+         R"(}}], "team": {"listen": [{"address": "127.0.0.1", "port": 0}], "interface": ")" + interface +
+         R"("}, "queues": {)" + queues + "}}";
 }
 
-/// With their modes; what is no file is left out.
+/// With its mode, and what is a hole in it.
+void copy_one(const fs::path& from, const fs::path& to) {
+  const loop::FileDescriptor source(::open(from.c_str(), O_RDONLY | O_CLOEXEC));
+  struct stat found{};
+  if (::fstat(source.get(), &found) != 0) std::abort();
+  const loop::FileDescriptor copy(
+      ::open(to.c_str(), O_CREAT | O_EXCL | O_WRONLY | O_CLOEXEC, found.st_mode & 07777));
+  bool well = ::ftruncate(copy.get(), found.st_size) == 0;
+  for (off_t at = 0; well && (at = ::lseek(source.get(), at, SEEK_DATA)) >= 0;) {
+    std::vector<char> bytes(static_cast<std::size_t>(::lseek(source.get(), at, SEEK_HOLE) - at));
+    const auto size = static_cast<ssize_t>(bytes.size());
+    well = ::pread(source.get(), bytes.data(), bytes.size(), at) == size &&
+           ::pwrite(copy.get(), bytes.data(), bytes.size(), at) == size;
+    at += size;
+  }
+  if (!well) std::abort();
+}
+
+/// What is no file is left out.
 void copy_folder(const fs::path& from, const fs::path& to) {
   fs::create_directory(to, from);
   for (const auto& entry : fs::directory_iterator(from)) {
@@ -55,8 +92,7 @@ void copy_folder(const fs::path& from, const fs::path& to) {
     if (entry.is_directory()) {
       copy_folder(entry.path(), there);
     } else if (entry.is_regular_file()) {
-      std::ofstream(there, std::ios::binary) << std::ifstream(entry.path(), std::ios::binary).rdbuf();
-      fs::permissions(there, entry.status().permissions());
+      copy_one(entry.path(), there);
     }
   }
 }
@@ -74,7 +110,11 @@ Box::Box(World& world) : world_(world), random_(world.random("box")) {
   for (const char* each : {"scoring", "mapping"})
     write(folder_ / "secrets" / (std::string(each) + ".token"), "flux230{showroom\n");
   write(folder_ / "secrets" / "team.token", "token-of-the-team\n");
-  write(folder_ / "settings.json", first_settings(world.random("settings")));
+  const std::string interface = world.random("the team's interface").chance(0.5) ? kInterface : "";
+  world.door().belongs_to(interface);
+  const auto [queues, most_map_bytes] = simulation::queues(world.random("settings"));
+  most_map_bytes_ = most_map_bytes;
+  write(folder_ / "settings.json", first_settings(queues, interface));
   world_.disk().mount(folder_);
 }
 
@@ -153,10 +193,10 @@ void Box::lost_power() {
   world_.note({.kind = Kind::PowerCut, .what = "", .who = "", .serial = world_.life()});
   world_.disk().cut_power(next_);
   const fs::path runtime = next_ / Disk::kRuntime;
-  const fs::path sessions = folder_ / Disk::kRuntime / gateway::SessionKeeper::kFile;
+  const fs::path sessions = folder_ / Disk::kRuntime / admin::SessionKeeper::kFile;
   fs::remove_all(runtime);
   fs::create_directory(runtime);
-  if (fs::exists(sessions)) fs::copy_file(sessions, runtime / gateway::SessionKeeper::kFile);
+  if (fs::exists(sessions)) fs::copy_file(sessions, runtime / admin::SessionKeeper::kFile);
   if (random_.chance(0.5)) world_.set_clock_back(world_.time());
   boots_ = true;
 }

@@ -12,8 +12,8 @@ namespace adit::simulation {
 /// The box: its folders, and the lives of aditd, one after the other.
 class Box {
  public:
-  static constexpr const char* kUpstream =
-      "lo";  // the interface to the Command Post: one that every machine has
+  /// The interface to the Command Post, and in half of the runs the team's: one that every machine has.
+  static constexpr const char* kInterface = "lo";
 
   /// Makes a folder in memory, which goes with this. `world` outlives it.
   explicit Box(World& world);
@@ -32,6 +32,8 @@ class Box {
   std::string state() const { return (folder_ / "state").string(); }
   std::string runtime() const { return (folder_ / "runtime").string(); }
   std::string secrets() const { return (folder_ / "secrets").string(); }
+  /// Of maps that may wait by the first settings, one that comes back with them.
+  std::size_t most_map_bytes() const { return most_map_bytes_; }
   std::string settings() const { return (folder_ / "settings.json").string(); }
 
  private:
@@ -43,6 +45,7 @@ class Box {
   World& world_;
   Random random_;
   std::filesystem::path top_, folder_, next_;
+  std::size_t most_map_bytes_ = 0;
   int folders_ = 0;
   bool finished_ = false, boots_ = false;
   std::optional<World::How> dies_at_start_;

@@ -41,10 +41,10 @@ bool may_put_older_in_place(const Evidence& evidence) {
 Broken all_checks(const Evidence& evidence) {
   Broken broken;
   for (const auto check : {starts, settings_kept, once, not_lost, paced, stamps, kept, answered, not_cut,
-                           refused, clean, status_true, live, honest, lights, alive, obeyed})
+                           refused, clean, status_true, live, honest, lights, alive, obeyed, bounded})
     check(evidence, broken);
   const std::vector<Event> told = with_losses(evidence.events);
-  const Evidence with_them{told, evidence.reports, evidence.readings};
+  const Evidence with_them{told, evidence.reports, evidence.readings, evidence.most_map_bytes};
   for (const auto check : {cloud_arrived, markers_arrived}) check(with_them, broken);
   if (may_put_older_in_place(evidence)) return broken;
   for (const auto check : {pose_arrived, grid_arrived}) check(with_them, broken);

@@ -15,6 +15,7 @@ struct Evidence {
   const std::vector<Event>& events;
   const std::vector<dispatch::Report>& reports;  // of the ledger
   const std::vector<Reading>& readings;          // of the page
+  std::size_t most_map_bytes = 0;                // that wait at once, by the first settings
 };
 
 /// Each adds a sentence for what it finds broken, which begins with its name. Their rules are in README.md.
@@ -39,6 +40,7 @@ void not_cut(const Evidence& evidence, Broken& broken);
 void honest(const Evidence& evidence, Broken& broken);
 void lights(const Evidence& evidence, Broken& broken);
 void obeyed(const Evidence& evidence, Broken& broken);
+void bounded(const Evidence& evidence, Broken& broken);
 void alive(const Evidence& evidence, Broken& broken);
 
 /// Which faults of the disk there were, of events in their order.

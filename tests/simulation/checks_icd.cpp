@@ -51,10 +51,10 @@ void refused(const Evidence& evidence, Broken& broken) {
 
 void clean(const Evidence& evidence, Broken& broken) {
   for (const Event& event : evidence.events) {
-    if (event.kind != Kind::Forbidden) continue;
-    if (event.what == kConnect) {
-      broken.push_back(
-          icd::sentence("Apart: at ", event.at, " a socket to the Command Post is ", event.text));
+    if (event.kind != Kind::Forbidden || event.what == kTooMuch) continue;
+    if (event.what == kConnect || event.what == kListen) {
+      const auto whose = event.what == kConnect ? "a socket to the Command Post" : "the team's socket";
+      broken.push_back(icd::sentence("Apart: at ", event.at, " ", whose, " is ", event.text));
     } else {
       broken.push_back(icd::sentence("Clean: ", event.what, " at ", event.at, ": ", event.text));
     }

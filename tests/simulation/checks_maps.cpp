@@ -21,8 +21,15 @@ struct Posted {
   const Asked* asked;
   const Item* item;
   std::vector<std::size_t> taken = {};
-  int failures = 0;  // answers of 5xx to it
+  int failures = 0;         // answers of 5xx to it
+  bool is_taken = false;    // as an answer said
+  bool is_refused = false;  // it is set aside, and follows later at the operator's word
 
+  void answered(const Event& reply) {
+    if (reply.status >= 500) ++failures;
+    is_taken = is_taken || (reply.status == 200 && reply.who.empty());
+    is_refused = is_refused || reply.status == 422;
+  }
   bool is_before(const Posted& other) const { return asked->ended < other.asked->began; }
 };
 using Name = std::string;
@@ -64,9 +71,7 @@ std::map<Name, std::vector<Posted>> posted_in(const Evidence& evidence, const st
   for (std::size_t i = 0; i < evidence.events.size(); ++i) {
     const Event& event = evidence.events[i];
     if (event.what != kMap) continue;
-    if (event.kind == Kind::Replied && event.status >= 500 && sent != nullptr) ++sent->failures;
-    // It is set aside, and follows later at the operator's word.
-    if (event.kind == Kind::Replied && event.status == 422 && sent != nullptr) sent->failures = kInPlace;
+    if (event.kind == Kind::Replied && sent != nullptr) sent->answered(event);
     if (event.kind != Kind::Taken && event.kind != Kind::Left) continue;
     sent = nullptr;
     const auto found = by_serial.find(event.serial);
@@ -87,6 +92,18 @@ bool is_covered(const Posted& grid, const std::vector<Posted>& all, std::size_t 
   });
 }
 
+/// Its failures count with those of what it may have replaced.
+bool lets_newer_pass(const Posted& grid, const std::vector<Posted>& all) {
+  int failures = grid.failures;
+  for (const Posted& older : all) {
+    const bool may_be_replaced = &older != &grid && !grid.is_before(older) && !older.is_taken &&
+                                 !older.is_refused &&
+                                 covers(Extent::from(grid.item->says), Extent::from(older.item->says));
+    if (may_be_replaced) failures += older.failures;
+  }
+  return grid.is_refused || failures >= kInPlace;
+}
+
 /// Those of one name.
 void check_grids(const Name& name, const std::vector<Posted>& all, Broken& broken) {
   for (const Posted& grid : all) {
@@ -96,7 +113,7 @@ void check_grids(const Name& name, const std::vector<Posted>& all, Broken& broke
                                      " was answered 200, and none that covers it was taken"));
     }
     for (const Posted& older : all) {
-      const bool is_under = older.is_before(grid) && !older.taken.empty() && older.failures < kInPlace &&
+      const bool is_under = older.is_before(grid) && !older.taken.empty() && !lets_newer_pass(older, all) &&
                             overlap(Extent::from(older.item->says), Extent::from(grid.item->says));
       if (!is_under || is_covered(grid, all, older.taken.back())) continue;
       broken.push_back(icd::sentence("GridArrived: ", name, "'s ", older.item->serial,

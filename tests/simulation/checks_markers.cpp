@@ -1,4 +1,5 @@
 // PoseArrived and MarkersArrived: of what stands at rest, one value for each name.
+#include <algorithm>
 #include <cmath>
 #include <map>
 #include <optional>
@@ -14,6 +15,8 @@ namespace adit::simulation {
 namespace {
 
 constexpr double kOneClock = 1;  // second, by which stamps of one clock may be off
+/// Seconds: a message that is late by less never shows that its clock was set back, by more always.
+constexpr double kOutOfOrder = 1, kJump = 5;
 
 /// What may have set a value, and when.
 struct Change {
@@ -30,13 +33,25 @@ struct Change {
 };
 using Changes = std::vector<Change>;
 
+/// Whether `late`, which was posted after `early`, may have been overtaken by it as far as its stamp tells:
+/// the first late one of a clock that was set back may (`lanes/step_back.hpp`).
+bool seems_overtaken(const Change& late, const Change& early, const Changes& all) {
+  if (late.stamp == 0 || late.stamp >= early.stamp || late.stamp < early.stamp - kJump) return false;
+  if (late.stamp >= early.stamp - kOutOfOrder) return true;
+  return std::ranges::none_of(all, [&](const Change& first) {
+    return first.accepted && early.ended < first.began && first.ended < late.began &&
+           first.stamp < early.stamp - kOutOfOrder && first.stamp <= late.stamp;
+  });
+}
+
 /// The values that may stand in the end: of each change that none that was accepted came after.
 std::set<std::int64_t> last_of(const Changes& changes) {
   std::set<std::int64_t> last;
   bool any = false;
   for (const Change& change : changes) {
     bool over = false;
-    for (const Change& other : changes) over = over || (other.accepted && change.is_before(other));
+    for (const Change& other : changes)
+      over = over || (other.accepted && change.is_before(other) && !seems_overtaken(other, change, changes));
     if (!over) last.insert(change.serial);
     any = any || change.accepted;
   }

@@ -154,6 +154,7 @@ void judge_last_answers(const Evidence& evidence, std::size_t begun, const Readi
   const int place = place_at(reading.view.at("endpoints").front().at("address"));
   for (std::size_t i = begun; i < reading.heard; ++i) {
     const Event& event = evidence.events[i];
+    if (event.kind != Kind::Leaves && event.kind != Kind::Replied) continue;
     const std::string endpoint = endpoint_of(event.what);
     if (event.kind == Kind::Leaves || (i >= reading.asked && event.kind == Kind::Replied))
       last[endpoint] = nullptr;

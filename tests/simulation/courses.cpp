@@ -8,7 +8,7 @@
 namespace adit::simulation {
 namespace {
 
-constexpr double kStay = 40;  // seconds at each, at the end
+constexpr double kStay = 60;  // seconds at each, at the end: one may end and begin meanwhile
 constexpr int kMostTries = 10;
 
 }  // namespace
@@ -47,7 +47,7 @@ Switcher::Switcher(World& world, double trouble_for)
   const auto plan = [this, &other](double at) {
     other = !other;
     const char* const course = other ? kOtherCourse : "";
-    world_.after(seconds(at), [this, course] { switch_to(course, kMostTries); });
+    world_.after(seconds(at), [this, course] { switch_to(course); });
   };
   double at = 0;
   for (std::uint64_t i = 1 + random.below(3); i > 0; --i) {
@@ -58,14 +58,23 @@ Switcher::Switcher(World& world, double trouble_for)
   plan(trouble_for + kStay * 3 / 2);
 }
 
-void Switcher::switch_to(const std::string& course, int tries) {
-  if (client_.busy() || tries == 0) return;
+/// What he wanted before he wants no more.
+void Switcher::switch_to(const std::string& course) {
+  wanted_ = course;
+  tries_ = kMostTries;
+  go_on();
+}
+
+void Switcher::go_on() {
+  if (!wanted_ || tries_ == 0 || client_.busy()) return;
+  --tries_;
   const std::string headers =
       "Host: 10.0.0.1\r\nAuthorization: Bearer token-of-the-team\r\nContent-Type: application/json\r\n";
-  client_.ask(http_request("POST", "/adit/course", headers, nlohmann::json{{"name", course}}.dump()),
-              {.what = kCourse, .who = course}, [this, course, tries](int status) {
-                if (status == 200) return world_.note({.kind = Kind::Saved, .what = kCourse, .who = ""});
-                world_.after(seconds(1), [this, course, tries] { switch_to(course, tries - 1); });
+  client_.ask(http_request("POST", "/adit/course", headers, nlohmann::json{{"name", *wanted_}}.dump()),
+              {.what = kCourse, .who = *wanted_}, [this, asked = *wanted_](int status) {
+                if (status == 200) world_.note({.kind = Kind::Saved, .what = kCourse, .who = ""});
+                if (status == 200 && wanted_ == asked) wanted_.reset();
+                world_.after(seconds(1), [this] { go_on(); });
               });
 }
 

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <optional>
 #include <string>
 
 #include "simulation/client.hpp"
@@ -41,10 +42,13 @@ class Switcher {
   Switcher(World& world, double trouble_for);
 
  private:
-  void switch_to(const std::string& course, int tries);
+  void switch_to(const std::string& course);
+  void go_on();
 
   World& world_;
   Client client_;
+  std::optional<std::string> wanted_;  // the course that he is to be told of
+  int tries_ = 0;                      // that are left
 };
 
 }  // namespace adit::simulation

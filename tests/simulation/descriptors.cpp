@@ -45,7 +45,7 @@ void Descriptors::remove(std::uint64_t number) {
 }
 
 bool Descriptors::dispatch(Whose whose) {
-  std::array<epoll_event, 256> events{};
+  std::array<epoll_event, 256> events;  // NOLINT(cppcoreguidelines-pro-type-member-init): asked for so often
   const int count = ::epoll_wait(epoll_, events.data(), static_cast<int>(events.size()), 0);
   if (count <= 0) return false;
   const auto ready = std::span(events).first(static_cast<std::size_t>(count));

@@ -27,10 +27,17 @@ std::uint64_t size_of(int fd) {
 }
 
 std::string read(int fd, off_t at, std::uint64_t size) {
-  std::string bytes(size, '\0');
-  const ssize_t count = size == 0 ? 0 : ::pread(fd, bytes.data(), size, at);
-  bytes.resize(static_cast<std::size_t>(std::max<ssize_t>(0, count)));
+  std::string bytes;
+  bytes.resize_and_overwrite(size, [&](char* to, std::size_t room) {
+    return static_cast<std::size_t>(std::max<ssize_t>(0, ::pread(fd, to, room, at)));
+  });
   return bytes;
+}
+
+/// Where the hole at its end begins.
+std::uint64_t end_of_data(int fd, std::uint64_t size) {
+  const off_t hole = size == 0 ? 0 : ::lseek(fd, 0, SEEK_HOLE);
+  return ::lseek(fd, hole, SEEK_DATA) < 0 ? static_cast<std::uint64_t>(hole) : size;
 }
 
 bool is_folder(const std::string& path) {
@@ -81,7 +88,9 @@ Disk* Disk::of(int fd) {
 }
 
 void Disk::forget(int fd) {
-  if (the_disk != nullptr) the_disk->open_.erase(fd);
+  if (the_disk == nullptr) return;
+  the_disk->open_.erase(fd);
+  the_disk->world_.door().server_closed(fd);
 }
 
 void Disk::mount(const std::filesystem::path& folder) {
@@ -127,13 +136,14 @@ std::uint64_t Disk::room(int folder, const char* path) {
   return is_full(name) ? faults_.room(is_in_memory(name)) : kRoom;
 }
 
-std::optional<std::string> Disk::bytes_of(const std::string& name) const {
+std::optional<Content> Disk::content_of(const std::string& name) const {
   if (is_in_memory(name) || is_folder(folder_ + name)) return std::nullopt;
   const int file = real::open(AT_FDCWD, (folder_ + name).c_str(), O_RDONLY | O_CLOEXEC, 0);
   if (file < 0) return std::nullopt;
-  std::string bytes = read(file, 0, size_of(file));
+  const std::uint64_t size = size_of(file);
+  Content content{read(file, 0, end_of_data(file, size)), size};
   real::close(file);
-  return bytes;
+  return content;
 }
 
 int Disk::open(int folder, const char* path, int flags, mode_t mode) {
@@ -141,6 +151,7 @@ int Disk::open(int folder, const char* path, int flags, mode_t mode) {
   const bool writes = (flags & O_ACCMODE) != O_RDONLY;
   struct stat found{};
   const bool is_there = ::fstatat(folder, path, &found, 0) == 0;
+  if (!is_there && (flags & O_CREAT) == 0) return -1;
   const bool makes = (flags & O_CREAT) != 0 && !is_there;
   const bool cuts = writes && (flags & O_TRUNC) != 0 && is_there && found.st_size > 0;
   if ((writes || makes) && is_read_only(name)) return fail(EROFS);
@@ -199,9 +210,13 @@ ssize_t Disk::put(int fd, const Open& open, std::span<const char> bytes, off_t a
   if (open.file && !world_.is_dead() && !bytes.empty()) {
     const std::uint64_t size = size_of(fd), place = static_cast<std::uint64_t>(at);
     const std::uint64_t there = std::min<std::uint64_t>(bytes.size(), size - std::min(size, place));
-    open.file->wrote(place, std::string(bytes.data(), bytes.size()), read(fd, at, there), size);
+    if (real::may_be_hole(fd, bytes, at)) {
+      open.file->wrote_zeros(place, bytes.size(), size);
+    } else {
+      open.file->wrote(place, std::string(bytes.data(), bytes.size()), read(fd, at, there), size);
+    }
   }
-  return real::write_at(fd, bytes.data(), bytes.size(), at);
+  return real::write_at(fd, bytes, at);
 }
 
 int Disk::truncate(int fd, off_t size) {
@@ -244,9 +259,9 @@ int Disk::sync(int fd) {
 int Disk::rename(int from_folder, const char* from, int to_folder, const char* to) {
   const std::string old_name = name_of(from_folder, from), name = name_of(to_folder, to);
   if (is_read_only(name)) return fail(EROFS);
-  if (name == kSettings) note_settings(mark_of(bytes_of(old_name).value_or("")));
+  if (name == kSettings) note_settings(mark_of(content_of(old_name).value_or(Content()).bytes));
   world_.crossing();
-  auto replaced = bytes_of(name);
+  auto replaced = content_of(name);
   const int result = real::rename(from_folder, from, to_folder, to);
   if (result != 0 || world_.is_dead()) return result;
   if (!is_in_memory(name)) unsynced_.renamed(old_name, name, std::move(replaced));
@@ -262,13 +277,13 @@ int Disk::unlink(int folder, const char* path, int flags) {
   if (is_read_only(name)) return fail(EROFS);
   if (name == kSettings) note_settings("");
   world_.crossing();
-  auto bytes = bytes_of(name);
+  auto content = content_of(name);
   struct stat found{};
   const bool is_there = ::fstatat(folder, path, &found, AT_SYMLINK_NOFOLLOW) == 0;
   const int result = real::unlink(folder, path, flags);
   if (result != 0 || !is_there || world_.is_dead()) return result;
   if (S_ISREG(found.st_mode)) faults_.room(is_in_memory(name)) += static_cast<std::uint64_t>(found.st_size);
-  if (!is_in_memory(name)) unsynced_.removed(name, std::move(bytes));
+  if (!is_in_memory(name)) unsynced_.removed(name, std::move(content));
   world_.crossing();
   return result;
 }
@@ -286,8 +301,18 @@ int Disk::make_folder(int folder, const char* path, mode_t mode) {
 }
 
 std::string Disk::settings() const {
-  const auto bytes = bytes_of(kSettings);
-  return bytes ? mark_of(*bytes) : "";
+  const auto content = content_of(kSettings);
+  return content ? mark_of(content->bytes) : "";
+}
+
+std::uint64_t Disk::stored(const std::string& beginning) const {
+  std::uint64_t bytes = 0;
+  std::error_code gone;
+  for (const auto& entry : std::filesystem::recursive_directory_iterator(folder_, gone)) {
+    if (entry.is_regular_file(gone) && entry.path().native().starts_with(folder_ + beginning))
+      bytes += entry.file_size(gone);
+  }
+  return bytes;
 }
 
 void Disk::note_settings(const std::string& mark) {

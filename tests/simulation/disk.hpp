@@ -60,6 +60,8 @@ class Disk {
   int may_change(int folder, const char* path);
   /// Six letters for a new name.
   std::string unique();
+  /// The bytes of all files whose names below the folder begin so.
+  std::uint64_t stored(const std::string& beginning) const;
   /// Bytes that are left in the file system of that path.
   std::uint64_t room(int folder, const char* path);
 
@@ -78,7 +80,7 @@ class Disk {
   std::uint64_t take_room(const std::string& name, std::uint64_t bytes);
   std::uint64_t cut(const Open& open, std::uint64_t size, off_t at);
   ssize_t put(int fd, const Open& open, std::span<const char> bytes, off_t at);
-  std::optional<std::string> bytes_of(const std::string& name) const;
+  std::optional<Content> content_of(const std::string& name) const;
   void note_settings(const std::string& mark);
 
   World& world_;

@@ -12,33 +12,41 @@ constexpr double kSlowest = 5;  // seconds that a sync takes
 
 }  // namespace
 
-DiskFaults::DiskFaults(World& world) : world_(world), random_(world.random("disk faults")) {}
+DiskFaults::DiskFaults(World& world)
+    : world_(world), random_(world.random("disk faults")), delays_(random_) {}
 
-/// A time of trouble may begin with the run.
 void DiskFaults::plan(double trouble_for) {
   const std::uint64_t kinds = random_.chance(0.5) ? 0 : 1 + random_.below(2);
   for (std::uint64_t i = 0; i < kinds; ++i) {
     const auto kind = static_cast<Kind>(random_.below(static_cast<std::uint64_t>(Kind::End)));
     names_.append(names_.empty() ? "; disk: " : " ").append(kNames[static_cast<int>(kind)]);
-    for (std::uint64_t times = 1 + random_.below(2); times > 0; --times) {
-      const bool at_once = random_.chance(0.2);
-      const double begins = at_once ? 0 : random_.between(0, trouble_for);
-      const double ends = std::min(trouble_for, begins + random_.between(0.5, 15));
-      if (at_once) {
-        begin(kind);
-      } else {
-        world_.after(seconds(begins), [this, kind] { begin(kind); });
-      }
-      world_.after(seconds(ends), [this, kind] { end(kind); });
-    }
+    for (std::uint64_t times = 1 + random_.below(2); times > 0; --times) plan(kind, trouble_for);
   }
 }
 
-void DiskFaults::begin(Kind kind) {
+/// A time of trouble may begin with the run.
+void DiskFaults::plan(Kind kind, double trouble_for) {
+  const bool at_once = random_.chance(0.2);
+  const double begins = at_once ? 0 : random_.between(0, trouble_for);
+  const double ends = std::min(trouble_for, begins + random_.between(0.5, 15));
+  const Drawn drawn = {.fails_once = random_.chance(0.5),
+                       .room = random_.chance(0.5) ? 0 : random_.below(20000),
+                       .delays = world_.random("slow disk " + std::to_string(++planned_))};
+  if (world_.omits(kNames[static_cast<int>(kind)])) return;
+  if (at_once) {
+    begin(kind, drawn);
+  } else {
+    world_.after(seconds(begins), [this, kind, drawn] { begin(kind, drawn); });
+  }
+  world_.after(seconds(ends), [this, kind] { end(kind); });
+}
+
+void DiskFaults::begin(Kind kind, const Drawn& drawn) {
   const auto index = static_cast<int>(kind);
   is_[index] = true;
-  fails_once_ = random_.chance(0.5);
-  room_[kind == Kind::RuntimeFull ? 1 : 0] = random_.chance(0.5) ? 0 : random_.below(20000);
+  if (kind == Kind::SyncFails) fails_once_ = drawn.fails_once;
+  if (kind == Kind::Slow) delays_ = drawn.delays;
+  if (kind == Kind::Full || kind == Kind::RuntimeFull) room_[kind == Kind::RuntimeFull ? 1 : 0] = drawn.room;
   world_.note(
       {.actor = Actor::Disk, .kind = simulation::Kind::Fault, .what = "begins", .who = kNames[index]});
 }
@@ -56,7 +64,7 @@ bool DiskFaults::sync_fails() {
 }
 
 double DiskFaults::sync_takes() {
-  return is(Kind::Slow) && random_.chance(0.3) ? random_.between(0.01, kSlowest) : 0;
+  return is(Kind::Slow) && delays_.chance(0.3) ? delays_.between(0.01, kSlowest) : 0;
 }
 
 }  // namespace adit::simulation

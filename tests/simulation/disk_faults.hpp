@@ -22,7 +22,7 @@ class DiskFaults {
   };
 
   explicit DiskFaults(World& world);
-  /// Draws when they come.
+  /// Draws when they come. Each may be left out, by its name.
   void plan(double trouble_for);
   bool is(Kind kind) const { return is_[static_cast<int>(kind)]; }
   /// Bytes that are left while it is full.
@@ -34,13 +34,21 @@ class DiskFaults {
   const std::string& names() const { return names_; }
 
  private:
-  void begin(Kind kind);
+  /// What one that begins is like, drawn before.
+  struct Drawn {
+    bool fails_once = false;
+    std::uint64_t room = 0;
+    Random delays;  // while it is slow
+  };
+  void plan(Kind kind, double trouble_for);
+  void begin(Kind kind, const Drawn& drawn);
   void end(Kind kind);
 
   World& world_;
-  Random random_;
+  Random random_, delays_;
   bool is_[static_cast<int>(Kind::End)] = {};
   bool fails_once_ = false;
+  std::uint64_t planned_ = 0;
   std::uint64_t room_[2] = {};
   std::string names_;
 };

@@ -8,12 +8,14 @@
 
 #include <cstdlib>
 
+#include "intake/listen_socket.hpp"
 #include "simulation/world.hpp"
 
 namespace adit::simulation {
 namespace {
 
 constexpr std::chrono::microseconds kAccepting{50};
+constexpr std::size_t kMostConnections = 64, kMostOfAddress = 16;  // by the settings, at most
 
 }  // namespace
 
@@ -36,10 +38,18 @@ void Door::closed(int fd) {
   refused_.erase(fd);
 }
 
-std::shared_ptr<void> Door::open(intake::Admit admit) {
+std::shared_ptr<void> Door::open(int listening, intake::Admit admit) {
+  const auto bound = intake::bound_at(listening);
+  if (!bound || bound->interface != interface_) {
+    world_.note({.kind = Kind::Forbidden,
+                 .what = kListen,
+                 .who = "",
+                 .text = bound ? "bound to '" + bound->interface + "'" : bound.error()});
+  }
   admit_ = std::move(admit);
   const auto token = std::make_shared<int>(0);
   token_ = token;
+  ++server_;
   world_.after(kAccepting, [this] { admit_all(); });
   return token;
 }
@@ -61,16 +71,32 @@ void Door::admit_all() {
     peer.sin_addr.s_addr = next.address;
     peer.sin_port = htons(40000);
     admit_(next.fd, reinterpret_cast<const sockaddr*>(&peer), sizeof peer);
-    if (::fcntl(next.fd, F_GETFD) < 0) refused_.insert(next.client);
+    ::fcntl(next.fd, F_GETFD) < 0 ? void(refused_.insert(next.client)) : admitted(next);
   }
+}
+
+void Door::admitted(const Waiting& client) {
+  served_[client.fd] = {client.address, server_};
+  std::size_t all = 0, of_address = 0;
+  for (const auto& [fd, each] : served_) {
+    if (each.server != server_) continue;
+    ++all;
+    if (each.address == client.address) ++of_address;
+  }
+  if (all <= kMostConnections && of_address <= kMostOfAddress) return;
+  world_.note(
+      {.kind = Kind::Forbidden,
+       .what = kTooMuch,
+       .who = "",
+       .text = std::to_string(all) + " connections, " + std::to_string(of_address) + " of one address"});
 }
 
 }  // namespace adit::simulation
 
 namespace adit::intake {
 
-std::shared_ptr<void> accept_instead(int, Admit admit) {
-  return simulation::World::current().door().open(std::move(admit));
+std::shared_ptr<void> accept_instead(int listening, Admit admit) {
+  return simulation::World::current().door().open(listening, std::move(admit));
 }
 
 }  // namespace adit::intake

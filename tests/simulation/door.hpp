@@ -3,9 +3,11 @@
 #include <cstdint>
 #include <deque>
 #include <functional>
+#include <map>
 #include <memory>
 #include <set>
 #include <string>
+#include <utility>
 
 #include "intake/accept.hpp"
 
@@ -24,10 +26,14 @@ class Door {
 
   /// The client's end of a new connection from `address` (IPv4). It is not blocking.
   int connect(const std::string& address);
-  /// A server takes connections until the token is let go of.
-  std::shared_ptr<void> open(intake::Admit admit);
+  /// The settings name that interface for the team; "": any.
+  void belongs_to(std::string interface) { interface_ = std::move(interface); }
+  /// A server that listens there takes connections until the token is let go of.
+  std::shared_ptr<void> open(int listening, intake::Admit admit);
   /// The client has closed its end.
   void closed(int fd);
+  /// The server has closed its end.
+  void server_closed(int fd) { served_.erase(fd); }
   /// The server did not take in the client's connection: its address had as many as it may.
   bool has_refused(int fd) const { return refused_.contains(fd); }
   /// The process is over: what it said before is still heard, and nothing of what it says now.
@@ -39,10 +45,18 @@ class Door {
     std::uint32_t address;
   };
   void admit_all();
+  void admitted(const Waiting& client);
 
   World& world_;
+  std::string interface_;
   std::set<int> clients_;  // their ends of connections that were admitted
   std::set<int> refused_;  // and of those that were closed at once
+  struct Served {
+    std::uint32_t address;
+    int server;
+  };
+  std::map<int, Served> served_;  // the servers' ends that are open
+  int server_ = 0;                // the one that takes connections now
   std::deque<Waiting> waiting_;
   intake::Admit admit_;
   std::weak_ptr<void> token_;

@@ -17,7 +17,7 @@ enum class Kind : std::uint8_t {
   Gone,       // the client has not, and the connection is over: it hung up, or was cut
   Leaves,     // the first byte of a request upstream is given to the network
   Left,       // the last one: the message it carries
-  Forbidden,  // it was one that the ICD forbids, or a connection that must not be; the text says why
+  Forbidden,  // it was one that the ICD forbids, or what must not be in the box; the text says why
   Replied,    // Adit has read the last byte of an answer of that status
   Opens,      // it finds a connection upstream open
   Closes,     // it closes one: what was under way there has failed
@@ -60,8 +60,8 @@ struct Event {
   Says says = {};
 };
 
-/// Of Forbidden, where it is a connection.
-inline constexpr const char* kConnect = "connect";
+/// Of Forbidden, where it is a socket, or more of something than may be.
+inline constexpr const char *kConnect = "connect", *kListen = "listen", *kTooMuch = "too much";
 /// Of Opens and Closes.
 inline constexpr const char* kConnection = "a connection";
 /// Of Stalls, as its status.

@@ -72,10 +72,6 @@ void Judge::viewed(const Json& view) {
 void Judge::judge_report(const Json& row, double now) {
   if (row.at("position").is_null()) return;  // of a damaged ledger: nobody knows what it was
   const std::string state = row.at("state");
-  if (row.at("position").is_null()) {  // what it said nobody knows
-    if (state == "in doubt") say(row.at("number"), kDone, 0);
-    return;
-  }
   const std::int64_t id = row.at("number"),
                      serial = std::llround(row.at("position").at("x").get<double>() / 100);
   const double age = now - row.at("changed").get<double>();

@@ -10,6 +10,7 @@
 #include <exception>
 #include <string>
 
+#include "command_line/answer.hpp"
 #include "simulation/options.hpp"
 #include "simulation/run.hpp"
 #include "simulation/shrink.hpp"
@@ -136,11 +137,8 @@ bool play_all(const Options& options, Tally& tally) {
 
 int main(int argc, char** argv) {
   using namespace adit::simulation;
-  const auto options = read_options(argc, argv);
-  if (!options) {
-    std::fputs(kUsage, stderr);
-    return 2;
-  }
+  const auto options = read_options({argv + 1, argv + argc});
+  if (const auto exit = adit::command_line::answer(command_line_of, "", options)) return *exit;
   Tally tally;
   bool well = true;
   if (options->jobs > 1) {

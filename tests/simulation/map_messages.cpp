@@ -9,6 +9,7 @@
 #include <limits>
 #include <map>
 #include <set>
+#include <stdexcept>
 
 #include "simulation/bytes.hpp"
 
@@ -122,20 +123,25 @@ std::vector<Item> cloud_items(const Json& msg) {
   const std::string data = data_in(msg);
   const auto step = msg.at("point_step").get<std::size_t>();
   const bool big_endian = msg.value("is_bigendian", false);
-  std::map<std::string, std::size_t> offsets;
-  for (const Json& each : msg.at("fields")) offsets[each.at("name")] = each.at("offset").get<std::size_t>();
+  const auto offset_of = [&](const char* name) {
+    for (const Json& each : msg.at("fields")) {
+      if (each.at("name") == name) return each.at("offset").get<std::size_t>();
+    }
+    throw std::out_of_range(name);
+  };
+  const std::size_t x = offset_of("x"), y = offset_of("y"), z = offset_of("z");
+  const std::size_t intensity = offset_of("intensity");
   std::vector<Item> items;
   std::map<std::int64_t, std::pair<std::size_t, std::set<std::int64_t>>> copies;  // the last of each
   bool strange = data.size() % step != 0;
   for (std::size_t at = 0; at + step <= data.size(); at += step) {
-    const auto value = [&](const char* name) { return get(data, at + offsets.at(name), big_endian); };
-    const auto number = static_cast<std::int64_t>(value("intensity"));
+    const auto number = static_cast<std::int64_t>(get(data, at + intensity, big_endian));
     const std::int64_t serial = number / kPointsApart, index = number % kPointsApart;
     const auto place = place_of(serial, index);
-    const auto is_at = [&](const char* name, float where) {
-      return std::abs(value(name) - where) <= kPacking;
+    const auto is_at = [&](std::size_t offset, float where) {
+      return std::abs(get(data, at + offset, big_endian) - where) <= kPacking;
     };
-    strange = strange || !is_at("x", place[0]) || !is_at("y", place[1]) || !is_at("z", place[2]);
+    strange = strange || !is_at(x, place[0]) || !is_at(y, place[1]) || !is_at(z, place[2]);
     auto& [item, points] = copies[serial];
     if (points.empty() || points.contains(index)) {
       points.clear();

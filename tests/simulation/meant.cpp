@@ -12,10 +12,11 @@ namespace {
 /// A report posted so shortly before a run began may be meant for it, and so long nobody may have noticed
 /// that it began.
 constexpr double kShortly = 25;
-/// Seconds within which a switch that was asked for is made.
-constexpr double kSwitching = 6;
+/// Seconds within which a switch that was answered is made: by a timer.
+constexpr double kSwitching = 0.01;
 /// Seconds within which what a client asked may still count that heard nothing.
 constexpr double kUnknown = 12;
+constexpr const char* kStandsIn = "no report is taken, the ledger cannot be written";
 constexpr const char* kLedgerIsBack = "beginning anew with its ledger";
 
 }  // namespace
@@ -70,9 +71,13 @@ void Meant::add(const Event& event) {
   if (event.kind == Kind::NewRun) run_began_[place_of(event.who)] = event.at;
   const bool is_status = event.kind == Kind::Replied && event.what == kStatus && !event.says.empty();
   if (is_status) heard_.insert(static_cast<int>(event.serial));
-  if (event.kind == Kind::Begins) heard_before_ = heard_;
+  const bool is_said = event.kind == Kind::Said;
+  const bool is_back = is_said && event.text.contains(kLedgerIsBack);
   // What stood in for the ledger is gone, and what was heard meanwhile with it.
-  if (event.kind == Kind::Said && event.text.contains(kLedgerIsBack)) heard_ = heard_before_;
+  if (stands_in_ && (is_back || event.kind == Kind::Begins)) heard_ = heard_before_;
+  if (is_back || event.kind == Kind::Begins) stands_in_ = false;
+  if (is_said && event.text.contains(kStandsIn)) stands_in_ = true;
+  if (event.kind == Kind::Begins) heard_before_ = heard_;
   if (event.actor != Actor::Team) return;
   if (event.what == kCourse) {
     switched(event);

@@ -8,28 +8,55 @@
 namespace adit::simulation {
 namespace {
 
+constexpr std::size_t kLetters = 60'000;
 constexpr double kReportsApart = 100;  // metres, so that none is near another
 
 std::int64_t whole(double number) {
   return static_cast<std::int64_t>(std::llround(number));
 }
 
+/// Of a line that is added; what is found is a cube, and has none.
+std::size_t points_of(const Item& item) {
+  return item.says[0] == kAdd && item.who.ends_with(kPath) ? 2 + static_cast<std::size_t>(item.serial % 5)
+                                                           : 0;
+}
+
+/// Some say very much.
+std::size_t letters_of(const Item& item) {
+  return item.says[0] == kAdd && item.who.ends_with(kWriting) ? kLetters : 0;
+}
+
+int type_of(const Item& item) {
+  constexpr int kCube = 1, kLine = 4, kText = 9;
+  return points_of(item) > 0 ? kLine : letters_of(item) > 0 ? kText : kCube;
+}
+
 Json marker_of(const Item& item) {
+  Json points = Json::array();
+  for (std::size_t i = 0; i < points_of(item); ++i)
+    points.push_back({{"x", 0.1 * static_cast<double>(i)}, {"y", 1.0}, {"z", 0.0}});
   return {{"header", header_of(item.stamp)},
           {"ns", item.who},
           {"id", item.says[1]},
-          {"type", 1},
+          {"type", type_of(item)},
+          {"points", std::move(points)},
+          {"text", std::string(letters_of(item), 'x')},
           {"action", item.says[0]},
           {"pose", pose_at(0, 1)},
           {"scale", {{"x", static_cast<double>(item.serial)}, {"y", 1.0}, {"z", 1.0}}},
           {"color", {{"r", 1.0}, {"g", 0.0}, {"b", 0.0}, {"a", 1.0}}}};
 }
 
+/// One that has lost points or letters is none that anybody posted.
 Item marker_item(const Json& marker) {
-  return {.who = marker.value("ns", ""),
-          .serial = whole(marker.at("scale").at("x")),
-          .stamp = stamp_of(marker),
-          .says = {marker.at("action"), marker.value("id", 0)}};
+  Item item{.who = marker.value("ns", ""),
+            .serial = whole(marker.at("scale").at("x")),
+            .stamp = stamp_of(marker),
+            .says = {marker.at("action"), marker.value("id", 0)}};
+  const std::size_t points = marker.contains("points") ? marker.at("points").size() : 0;
+  const bool is_whole = points == points_of(item) && marker.value("text", "").size() == letters_of(item);
+  if (!is_whole) item.serial = kStrange;
+  return item;
 }
 
 }  // namespace
@@ -93,10 +120,11 @@ std::string request_of(const Posting& posting, const Style& style) {
   Style used = style;
   used.cbor = style.cbor && posting.path != kReports;
   const Json message = message_of(posting, used);
-  std::string body = message.dump();
+  std::string body;
   if (used.cbor) {
-    const auto bytes = Json::to_cbor(message);
-    body.assign(bytes.begin(), bytes.end());
+    Json::to_cbor(message, body);
+  } else {
+    body = message.dump();
   }
   std::string headers =
       std::string("Host: 10.0.0.1\r\nAuthorization: Bearer token-of-the-team\r\nContent-Type: ") +

@@ -36,8 +36,10 @@ inline bool is_grid(const Says& says) {
 inline bool is_cloud(const Says& says) {
   return says.size() == 1;
 }
-inline constexpr int kStrange = -1;  // points: some are none that anybody posted
+inline constexpr int kStrange = -1;  // points, or a marker: none that anybody posted
 
+/// How the namespaces of markers end: of lines, and of long texts.
+inline constexpr const char *kPath = " path", *kWriting = " writing";
 enum MarkerAction { kAdd = 0, kDelete = 2, kDeleteAll = 3 };
 
 /// Of a request to the Command Post; none where it is no message of the ICD.

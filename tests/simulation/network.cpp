@@ -22,10 +22,18 @@ loop::Duration Link::latency() {
   return seconds(typical_ * random_.between(0.8, 1.5));
 }
 
+/// When what is sent now is there. While the line is stalled it is held, and sent again ever less often (RFC
+/// 6298 5.5): it may come as long after the stall as that has lasted.
+loop::Instant Link::arrival() {
+  const Stalls& stalls = world_.network().stalls();
+  if (!stalls.is_on()) return world_.now() + latency();
+  return stalls.ends() + seconds(random_.between(0, stalls.length())) + latency();
+}
+
 void Link::connect(Host& host) {
   const auto how = host.connecting(endpoint_);
   if (!how) return;
-  world_.after(2 * latency(), [self = shared_from_this(), error = *how, &host] {
+  world_.at(arrival() + latency(), [self = shared_from_this(), error = *how, &host] {
     if (self->closed_) return;
     self->error = error;
     self->open = error == 0;
@@ -41,7 +49,8 @@ std::size_t Link::write(std::string_view bytes) {
   unacknowledged_ += taken;
   while (left > 0) {
     const std::size_t size = random_.chance(0.8) ? left : 1 + random_.below(left);
-    last_there_ = std::max(last_there_, world_.now() + latency());
+    last_there_ = std::max(last_there_, arrival());
+    if (world_.network().stalls().is_on()) held_until_ = last_there_;
     world_.at(last_there_,
               [self = shared_from_this(), piece = std::string(bytes.substr(taken - left, size))] {
                 if (self->lost_) return;
@@ -66,17 +75,22 @@ std::uint32_t Link::ready() const {
 /// A reset throws away what has not left, and may overtake nothing that has.
 void Link::close() {
   if (std::exchange(closed_, true)) return;
-  if (resets_on_close && random_.chance(0.5)) lost_ = true;
-  last_there_ = std::max(last_there_, world_.now() + latency());
+  if (resets_on_close && (world_.now() < held_until_ || random_.chance(0.5))) lost_ = true;
+  last_there_ = std::max(last_there_, arrival());
   world_.at(last_there_, [self = shared_from_this()] {
     if (const auto peer = std::move(self->peer_)) peer->ended();
   });
 }
 
+void Link::vanish() {
+  closed_ = true;
+  lost_ = world_.now() < held_until_;
+}
+
 void Link::send(std::string bytes, loop::Duration delay) {
   while (!bytes.empty()) {
     const std::size_t size = random_.chance(0.7) ? bytes.size() : 1 + random_.below(bytes.size());
-    last_here_ = std::max(last_here_, world_.now() + delay + latency());
+    last_here_ = std::max(last_here_, arrival() + delay);
     world_.at(last_here_, [self = shared_from_this(), piece = bytes.substr(0, size)] {
       if (!self->closed_ && !self->reset) self->inbox += piece;
     });
@@ -85,12 +99,12 @@ void Link::send(std::string bytes, loop::Duration delay) {
 }
 
 void Link::end(How how, loop::Duration delay) {
-  last_here_ = std::max(last_here_, world_.now() + delay + latency());
+  last_here_ = std::max(last_here_, arrival() + delay);
   world_.at(last_here_,
             [self = shared_from_this(), how] { (how == How::End ? self->ended : self->reset) = true; });
 }
 
-Network::Network(World& world) : world_(world) {}
+Network::Network(World& world) : world_(world), stalls_(world) {}
 
 int Network::connect(const uplink::Endpoint& endpoint) {
   const int fd = ++last_fd_;

@@ -12,6 +12,7 @@
 
 #include "loop/loop.hpp"
 #include "simulation/random.hpp"
+#include "simulation/stalls.hpp"
 #include "simulation/upstream_view.hpp"
 #include "uplink/connection.hpp"
 
@@ -55,8 +56,8 @@ class Link : public std::enable_shared_from_this<Link> {
   std::size_t unacknowledged() const { return unacknowledged_; }
   std::uint32_t ready() const;
   void close();
-  /// Adit's machine has no power: nothing tells the other end, and what was sent arrives.
-  void vanish() { closed_ = true; }
+  /// Adit's machine has no power: nothing tells the other end, and what has left arrives.
+  void vanish();
   void connect(Host& host);
 
   // The Command Post's end.
@@ -69,6 +70,7 @@ class Link : public std::enable_shared_from_this<Link> {
 
  private:
   loop::Duration latency();
+  loop::Instant arrival();
 
   World& world_;
   const uplink::Endpoint endpoint_;
@@ -77,7 +79,7 @@ class Link : public std::enable_shared_from_this<Link> {
   std::size_t window_;
   std::size_t unacknowledged_ = 0;
   bool closed_ = false, lost_ = false;
-  loop::Instant last_there_{}, last_here_{};
+  loop::Instant last_there_{}, last_here_{}, held_until_{};
   std::unique_ptr<Peer> peer_;
 };
 
@@ -89,6 +91,7 @@ class Network {
 
   explicit Network(World& world);
   void serve(Host* host) { host_ = host; }
+  Stalls& stalls() { return stalls_; }
 
   /// A descriptor.
   int connect(const uplink::Endpoint& endpoint);
@@ -112,6 +115,7 @@ class Network {
     Ready ready;
   };
   World& world_;
+  Stalls stalls_;
   Host* host_ = nullptr;
   int last_fd_ = kFirst;
   std::uint64_t last_ = 0;

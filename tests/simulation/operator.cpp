@@ -7,9 +7,9 @@
 #include "access/session_file.hpp"
 #include "access/sessions.hpp"
 #include "access/verdict.hpp"
+#include "admin/session_keeper.hpp"
+#include "admin/store.hpp"
 #include "codec/json.hpp"
-#include "gateway/session_keeper.hpp"
-#include "gateway/store.hpp"
 #include "host/service.hpp"
 #include "settings/written.hpp"
 #include "simulation/http.hpp"
@@ -40,7 +40,7 @@ Operator::Operator(World& world, const Box& box, double until)
   csrf_ = mine.csrf.reveal();
   const access::KeptSessions kept{
       .boot = host::boot(), .last = sessions.last(), .sessions = sessions.in_order()};
-  if (!host::write_file(box.runtime() + '/' + gateway::SessionKeeper::kFile, access::write_sessions(kept),
+  if (!host::write_file(box.runtime() + '/' + admin::SessionKeeper::kFile, access::write_sessions(kept),
                         host::kOursAlone))
     std::abort();
   for (std::uint64_t i = random.chance(0.3) ? 1 + random.below(3) : 0; i > 0; --i)
@@ -62,7 +62,7 @@ void Operator::change(settings::Settings& next) {
 }
 
 void Operator::save() {
-  const auto loaded = gateway::Store(box_.settings(), box_.secrets(), box_.state()).load();
+  const auto loaded = admin::Store(box_.settings(), box_.secrets(), box_.state()).load();
   if (!loaded || client_.busy()) return;
   settings::Settings next = loaded->settings;
   change(next);

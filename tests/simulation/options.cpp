@@ -1,57 +1,48 @@
 #include "simulation/options.hpp"
 
-#include <algorithm>
-#include <cstdlib>
 #include <random>
-#include <string_view>
+
+#include "command_line/number.hpp"
 
 namespace adit::simulation {
 namespace {
 
-bool set_flag(Options& options, std::string_view word) {
-  bool* const flag = word == "--log"        ? &options.log
-                     : word == "--story"    ? &options.story
-                     : word == "--as-it-is" ? &options.as_it_is
-                                            : nullptr;
-  if (flag != nullptr) *flag = true;
-  return flag != nullptr;
-}
-
-bool set(Options& options, std::string_view word, const char* value) {
-  const auto number = [value] { return std::strtoull(value, nullptr, 10); };
-  if (word == "--seed") {
-    options.seed = number();
-  } else if (word == "--runs") {
-    options.runs = number();
-  } else if (word == "--jobs") {
-    options.jobs = std::max<std::uint64_t>(1, number());
-  } else if (word == "--hours") {
-    options.hours = std::strtod(value, nullptr);
-  } else if (word == "--cpu") {
-    options.cpu = std::strtod(value, nullptr);
-  } else if (word == "--until") {
-    options.until = value;
-  } else if (word == "--without") {
-    options.without = Omissions(value);
-  } else {
-    return false;
-  }
-  return true;
+command_line::Wrong omit(Omissions& without, const std::string& words) {
+  without = Omissions(words);
+  return std::nullopt;
 }
 
 }  // namespace
 
-std::optional<Options> read_options(int argc, char** argv) {
-  Options options;
+command_line::Program command_line_of(Options& options) {
+  using command_line::number;
   options.seed = std::random_device{}();
-  bool runs = false;
-  for (int i = 1; i < argc; ++i) {
-    const std::string_view word = argv[i];
-    if (set_flag(options, word)) continue;
-    if (++i == argc || !set(options, word, argv[i])) return std::nullopt;
-    runs = runs || word == "--runs";
-  }
-  if (!runs && (options.hours > 0 || options.cpu > 0)) options.runs = UINT64_MAX;
+  return {
+      .name = "adit_simulation",
+      .usage = "",
+      .about = "Plays the whole gateway in a simulated world.",
+      .rows =
+          {{"--seed", "N", "the first seed; a fresh one without it", number<0UL, UINT64_MAX>(options.seed)},
+           {"--runs", "N", "so many runs; 1, or until the time is up", number<1UL, UINT64_MAX>(options.runs)},
+           {"--hours", "H", "no run begins after so much time", number<0.0, 1e6>(options.hours)},
+           {"--cpu", "SECONDS", "no run begins after so much CPU of one job", number<0.0, 1e9>(options.cpu)},
+           {"--jobs", "N", "so many processes, each with seeds of its own",
+            number<1UL, UINT64_MAX>(options.jobs)},
+           {"--without", "WORDS", "what is left out of the runs, as a shrunk run's replay says",
+            command_line::take<omit>(options.without)},
+           {"--log", "", "each event", &options.log},
+           {"--story", "", "each event without what is of every run", &options.story},
+           {"--until", "CHECK", "ends where that check finds something", &options.until},
+           {"--as-it-is", "", "a run that fails is not shrunk", &options.as_it_is},
+           {"--help", "", "prints this", &options.help}},
+      .ending = "Exits 0 where all runs were good, 1 where one was not, 2 on a wrong command line.",
+      .empty = command_line::Empty::Taken,
+  };
+}
+
+std::expected<Options, std::string> read_options(std::span<const char* const> arguments) {
+  auto options = command_line::read(command_line_of, arguments);
+  if (options && options->runs == 0) options->runs = options->hours > 0 || options->cpu > 0 ? UINT64_MAX : 1;
   return options;
 }
 

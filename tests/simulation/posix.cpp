@@ -39,8 +39,9 @@ int make_unique(char* path, int ending, int flags) {
 
 ssize_t write_to(int fd, const void* bytes, std::size_t size, std::optional<off_t> at) {
   Disk* const disk = Disk::of(fd);
-  if (disk != nullptr && size > 0) return disk->write(fd, {static_cast<const char*>(bytes), size}, at);
-  return at ? real::write_at(fd, bytes, size, *at) : real::write(fd, bytes, size);
+  const std::span all(static_cast<const char*>(bytes), size);
+  if (disk != nullptr && size > 0) return disk->write(fd, all, at);
+  return at ? real::write_at(fd, all, *at) : real::write(fd, bytes, size);
 }
 
 std::FILE* open_stream(const char* path, const char* mode) {

@@ -31,6 +31,14 @@ bool anything_waits(const nlohmann::json& view) {
          std::ranges::any_of(view.at("reports"), is_going);
 }
 
+Stored stored(const Disk& disk) {
+  const std::uint64_t waiting = disk.stored("runtime/waiting/"), journal = disk.stored("runtime/journal/");
+  return {.state = disk.stored("state/"),
+          .waiting = waiting,
+          .journal = journal,
+          .others = disk.stored("runtime/") - waiting - journal};
+}
+
 }  // namespace
 
 Reader::Reader(World& world, double until)
@@ -79,7 +87,9 @@ void Reader::viewed(const std::string& body) {
                   .heard = events.size(),
                   .at = events[asked_].at,
                   .life = events[asked_].life,
-                  .view = nlohmann::json::parse(body)};
+                  .view = nlohmann::json::parse(body),
+                  .stored = stored(world_.disk())};
+  world_.look_at_heap();
   const std::string lie = disagreement(reading.view, events, reading.asked);
   readings_.push_back(std::move(reading));
   look_at(kMetrics, [this](const std::string& text) {

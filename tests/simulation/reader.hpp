@@ -12,6 +12,11 @@ namespace adit::simulation {
 
 class World;
 
+/// What is in the box's folders, in bytes.
+struct Stored {
+  std::uint64_t state = 0, waiting = 0, journal = 0, others = 0;
+};
+
 /// What the page said at one moment.
 struct Reading {
   std::size_t asked = 0, heard = 0;  // so many events had happened
@@ -20,6 +25,7 @@ struct Reading {
   nlohmann::json view;       // of /adit/run
   std::string metrics = {};  // read right after it
   std::size_t measured = 0;  // events that had happened by then
+  Stored stored = {};        // when it was heard
   std::string lie = {};      // in what lights or STATUS disagreed with it for as long as they may not
 };
 

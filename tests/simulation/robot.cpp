@@ -9,6 +9,7 @@
 namespace adit::simulation {
 namespace {
 
+constexpr int kWritings = 80;
 constexpr int kLargest = 64;  // cells of a side
 constexpr double kJump = 6;   // seconds: less may be messages that overtook each other
 
@@ -38,6 +39,7 @@ Robot::Robot(World& world, int number)
       stamps_(random_.chance(0.7)),
       every_(random_.between(0.1, 2)),
       wipes_(random_.chance(0.5) ? 0.1 : 0),
+      writings_(world.random("writings of " + name_).chance(0.01) ? kWritings : 0),
       serial_(number * kSerials) {}
 
 void Robot::post_until(double end) {
@@ -68,6 +70,7 @@ Posting Robot::next() {
     --row_;
     return {kMap, {cloud()}};
   }
+  if (writings_ > 0 && random_.chance(0.5)) return markers();
   const double kind = random_.unit();
   if (kind < 0.35) return {kState, {item(name_)}};
   if (kind < 0.55) return {kMap, {grid()}};
@@ -109,7 +112,9 @@ Posting Robot::markers() {
   Posting posting{kMarkers, {}};
   for (std::uint64_t i = 1 + random_.below(4); i > 0; --i) {
     const int action = random_.chance(wipes_) ? kDeleteAll : random_.chance(0.25) ? kDelete : kAdd;
-    const std::string ns = name_ + (random_.chance(0.5) ? " path" : " finds");
+    const bool is_line = random_.chance(0.5), is_text = is_line && writings_ > 0;
+    if (is_text) --writings_;
+    const std::string ns = name_ + (is_text ? kWriting : is_line ? kPath : " finds");
     posting.items.push_back(item(ns, {action, between(random_, 0, 5)}));
   }
   return posting;

@@ -40,6 +40,7 @@ class Robot {
   const bool stamps_;
   const double every_;  // seconds between two messages, about
   const double wipes_;  // how likely a change of markers deletes all
+  int writings_;        // still to come: markers with texts so long that they fill the journal
   double end_ = 0;
   std::int64_t serial_;
   Extent extent_;          // of its own map, which grows

@@ -54,6 +54,7 @@ Outcome play(const Plan& plan) {
   Reader reader(world, trouble_for);
   plan_ends(world, box, trouble_for);
   world.disk().faults().plan(trouble_for);
+  world.network().stalls().plan(trouble_for);
   world.after(seconds(trouble_for), [&] { posts.calm(); });
   reader.wait_for_rest(trouble_for + kLeastRest, trouble_for + kMostRest, [&] { box.finish(); });
   box.live();
@@ -62,7 +63,8 @@ Outcome play(const Plan& plan) {
           .steps = world.steps(),
           .faults = world.history().faults(),
           .drawn = faults.names() + world.disk().faults().names(),
-          .broken = all_checks({world.history().events(), reports_in(box.state()), reader.readings()}),
+          .broken = all_checks(
+              {world.history().events(), reports_in(box.state()), reader.readings(), box.most_map_bytes()}),
           .deeds = world.deeds()};
 }
 

@@ -7,8 +7,11 @@
 namespace adit::simulation {
 namespace {
 
-constexpr int kSeenToRun = 4;       // statuses that were answered
+constexpr int kSeenToRun = 4;       // statuses that were heard
 constexpr double kSeenToBeOn = 30;  // seconds: a new run may be seen when it has been on for so long
+/// What is heard in between is forgotten.
+constexpr const char *kLedgerIsGone = "no report is taken, the ledger cannot be written",
+                     *kLedgerIsBack = "beginning anew with its ledger";
 constexpr const char* kJson = "Content-Type: application/json\r\n";
 
 std::string number(double value) {
@@ -27,14 +30,28 @@ Scoreboard::Scoreboard(World& world, const Faults& faults, Random& random, int p
       run_began_(-random.between(300, 3000)) {}
 
 bool Scoreboard::may_begin_run() const {
-  return statuses_ >= kSeenToRun && shown_ >= kSeenToBeOn;
+  const auto& events = world_.history().events();
+  bool is_kept = true;
+  int heard = 0;
+  double shown = 0;
+  for (std::size_t i = 0; i < events.size(); ++i) {
+    const Event& event = events[i];
+    const bool is_said = event.kind == Kind::Said;
+    if (event.kind == Kind::Begins || (is_said && event.text.contains(kLedgerIsBack))) is_kept = true;
+    if (is_said && event.text.contains(kLedgerIsGone)) is_kept = false;
+    const bool is_heard = event.kind == Kind::Replied && event.what == kStatus && event.status == 200 &&
+                          event.serial == place_ && event.says.size() == 3;
+    if (i < run_begins_ || !is_kept || !is_heard) continue;
+    ++heard;
+    shown = event.says[2] / 1000.0;
+  }
+  return heard >= kSeenToRun && shown >= kSeenToBeOn;
 }
 
 void Scoreboard::begin_run() {
   ++run_;
   remaining_ = 25;
   score_ = 0;
-  shown_ = 0;
   run_began_ = world_.time();
   stopped_ = false;
   world_.note({.actor = Actor::Post,
@@ -42,12 +59,11 @@ void Scoreboard::begin_run() {
                .what = "",
                .who = run_name(place_, run_) + (faults_.has(Fault::NamelessRuns) ? kNameless : ""),
                .serial = run_});
+  run_begins_ = world_.history().events().size();
 }
 
 std::string Scoreboard::status() {
-  ++statuses_;
   const double clock = faults_.has(Fault::ConstantClocks) ? 25.98 : world_.time() - run_began_;
-  shown_ = clock;
   return http_answer("200 OK", kJson,
                      "{\"score\": " + std::to_string(score_) + ", \"run_clock\": " + number(clock) +
                          ", \"remaining_reports\": " + std::to_string(remaining_) +

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <cstddef>
 #include <cstdint>
 #include <string>
 
@@ -29,8 +30,8 @@ class Scoreboard {
   std::string record(const Item& item);
   /// Somebody else's.
   void record_another();
-  /// Not before its clock was seen to run, and to be further on than the new run's when that is first seen:
-  /// nothing would tell the one run from the other.
+  /// Not before Adit saw its clock run, with the ledger at hand, and be further on than the new run's when
+  /// that is first seen: nothing would tell the one run from the other.
   bool may_begin_run() const;
   void begin_run();
   /// What is recorded does not count.
@@ -46,8 +47,7 @@ class Scoreboard {
   const bool numbers_runs_;  // it names them by numbers, not by texts
   std::int64_t run_ = 1, remaining_ = 25, score_ = 0, id_ = 0;
   double run_began_;
-  double shown_ = 0;  // the clock in the last status
-  int statuses_ = 0;  // that were answered
+  std::size_t run_begins_ = 0;  // in the history
   bool stopped_ = false;
 };
 

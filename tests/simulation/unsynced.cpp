@@ -18,8 +18,9 @@ std::string folder_of(const std::string& name) {
 }
 
 std::string read(const fs::path& path) {
-  std::ifstream file(path, std::ios::binary);
-  return {std::istreambuf_iterator<char>(file), std::istreambuf_iterator<char>()};
+  std::string bytes(fs::file_size(path), '\0');
+  std::ifstream(path, std::ios::binary).read(bytes.data(), static_cast<std::streamsize>(bytes.size()));
+  return bytes;
 }
 
 /// A file that was gone has the mode of all of the box's.
@@ -34,13 +35,18 @@ void write(const fs::path& path, const std::string& bytes) {
 
 void UnsyncedFile::wrote(std::uint64_t at, std::string bytes, std::string before, std::uint64_t size) {
   if (gone_) return;
-  const std::uint64_t end = std::max<std::uint64_t>(size, at + bytes.size());
-  changes_.push_back({false, at, end, size, std::move(bytes), std::move(before)});
+  const std::uint64_t length = bytes.size(), end = std::max(size, at + length);
+  changes_.push_back({false, at, length, end, size, std::move(bytes), std::move(before)});
+}
+
+void UnsyncedFile::wrote_zeros(std::uint64_t at, std::uint64_t length, std::uint64_t size) {
+  if (gone_) return;
+  changes_.push_back({false, at, length, at + length, size, "", ""});
 }
 
 void UnsyncedFile::resized(std::uint64_t from, std::uint64_t to, std::string cut) {
   if (gone_) return;
-  changes_.push_back({true, std::min(from, to), to, from, "", std::move(cut)});
+  changes_.push_back({true, std::min(from, to), 0, to, from, "", std::move(cut)});
 }
 
 void UnsyncedFile::synced() {
@@ -67,12 +73,13 @@ void UnsyncedFile::take_back(const Change& change, std::string& bytes) {
 void UnsyncedFile::apply(const Change& change, std::string& bytes, Random& random) {
   if (change.resizes) return bytes.resize(change.size);
   const bool whole = change.fate == Fate::Kept || random.chance(0.6);
-  for (std::uint64_t done = 0; done < change.bytes.size();) {
+  for (std::uint64_t done = 0; done < change.length;) {
     const std::uint64_t at = change.at + done;
-    const std::uint64_t size = std::min(kSector - at % kSector, change.bytes.size() - done);
+    const std::uint64_t size = std::min(kSector - at % kSector, change.length - done);
     if (whole || random.chance(0.5)) {
       bytes.resize(std::max<std::uint64_t>(bytes.size(), at + size));
-      bytes.replace(at, size, change.bytes, done, size);
+      change.bytes.empty() ? bytes.replace(at, size, size, '\0')
+                           : bytes.replace(at, size, change.bytes, done, size);
     }
     done += size;
   }
@@ -113,13 +120,13 @@ void Unsynced::made(const std::string& name) {
   namings_.push_back({Kind::Made, name, "", std::nullopt, nullptr});
 }
 
-void Unsynced::removed(const std::string& name, std::optional<std::string> bytes) {
-  namings_.push_back({Kind::Removed, name, "", std::move(bytes), let_go(name)});
+void Unsynced::removed(const std::string& name, std::optional<Content> content) {
+  namings_.push_back({Kind::Removed, name, "", std::move(content), let_go(name)});
 }
 
 /// What was renamed in a folder that itself gets another name is taken for synced, and so is what was in the
 /// folder that a name leaves.
-void Unsynced::renamed(const std::string& from, const std::string& to, std::optional<std::string> replaced) {
+void Unsynced::renamed(const std::string& from, const std::string& to, std::optional<Content> replaced) {
   namings_.push_back({Kind::Renamed, to, from, std::move(replaced), let_go(to)});
   if (auto file = files_.extract(from)) {
     file.key() = to;
@@ -153,8 +160,9 @@ void Unsynced::take_back(const Naming& naming, const fs::path& tree) {
       files_.insert(std::move(file));
     }
   }
-  if (naming.bytes) {
-    write(path, *naming.bytes);
+  if (naming.content) {
+    write(path, naming.content->bytes);
+    fs::resize_file(path, naming.content->size);
     if (naming.file) files_[naming.name] = naming.file;
   } else if (naming.kind == Kind::Removed) {
     fs::create_directory(path);

@@ -12,11 +12,19 @@
 
 namespace adit::simulation {
 
+/// What is in a file.
+struct Content {
+  std::string bytes;       // but for the hole at its end
+  std::uint64_t size = 0;  // with it
+};
+
 /// What was done to one file and may be gone after a power cut.
 class UnsyncedFile {
  public:
   /// `before`: what it had there; `size`: its size until then.
   void wrote(std::uint64_t at, std::string bytes, std::string before, std::uint64_t size);
+  /// So many zeros, from its end or farther on.
+  void wrote_zeros(std::uint64_t at, std::uint64_t length, std::uint64_t size);
   /// `cut`: what was behind the new end.
   void resized(std::uint64_t from, std::uint64_t to, std::string cut);
   void synced();
@@ -32,8 +40,8 @@ class UnsyncedFile {
   enum class Fate : std::uint8_t { Open, Kept, Lost };
   struct Change {
     bool resizes;
-    std::uint64_t at, size, size_before;
-    std::string bytes, before;
+    std::uint64_t at, length, size, size_before;
+    std::string bytes, before;  // bytes: none where they are zeros behind the end
     Fate fate = Fate::Open;
   };
   static void take_back(const Change& change, std::string& bytes);
@@ -52,10 +60,10 @@ class Unsynced {
   File file(const std::string& name);
 
   void made(const std::string& name);
-  /// `bytes`: what was in it, where it was a file.
-  void removed(const std::string& name, std::optional<std::string> bytes);
+  /// `content`: what was in it, where it was a file.
+  void removed(const std::string& name, std::optional<Content> content);
   /// `replaced`: what was in the file that had the name until then.
-  void renamed(const std::string& from, const std::string& to, std::optional<std::string> replaced);
+  void renamed(const std::string& from, const std::string& to, std::optional<Content> replaced);
   void synced_folder(const std::string& name);
 
   /// Changes `tree`, a copy of the folder, into what is left of it, which is on the disk for good.
@@ -66,8 +74,8 @@ class Unsynced {
   struct Naming {
     Kind kind;
     std::string name, from;
-    std::optional<std::string> bytes;  // of what had the name before
-    File file;                         // so, too
+    std::optional<Content> content;  // of what had the name before
+    File file;                       // so, too
   };
   /// Of the file that loses this name; null: none is known.
   File let_go(const std::string& name);

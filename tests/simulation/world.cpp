@@ -1,14 +1,18 @@
 #include "simulation/world.hpp"
 
+#include <algorithm>
 #include <cassert>
 #include <utility>
 
+#include "simulation/heap.hpp"
 #include "simulation/messages.hpp"
 
 namespace adit::simulation {
 namespace {
 
 constexpr Instant kBeginning{std::chrono::seconds{1000}};
+/// Bytes that one life may take, with what is simulated beside it, and ask for at once.
+constexpr std::size_t kMostHeap = 24u << 20, kMostAtOnce = 8u << 20;
 World* the_world = nullptr;
 
 }  // namespace
@@ -112,9 +116,21 @@ void World::begin_life() {
   dies_ = nullptr;
   crossings_after_report_.reset();
   note({.kind = Kind::Begins, .what = "aditd", .who = "", .serial = life_});
+  heap_at_begin_ = heap();
+  most_wanted();
+}
+
+void World::look_at_heap() {
+  const std::size_t now = heap(), taken = now - std::min(now, heap_at_begin_), wanted = most_wanted();
+  if (taken <= kMostHeap && wanted <= kMostAtOnce) return;
+  note({.kind = Kind::Forbidden,
+        .what = kTooMuch,
+        .who = "",
+        .text = "memory: " + std::to_string(taken) + " bytes, " + std::to_string(wanted) + " at once"});
 }
 
 void World::end_life() {
+  look_at_heap();
   dies_ = nullptr;
   dead_ = true;
   network_.cut();

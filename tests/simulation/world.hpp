@@ -94,6 +94,9 @@ class World {
   /// From here on nothing that the process does has an effect.
   bool is_dead() const { return dead_; }
 
+  /// Notes where the process takes more memory than it may.
+  void look_at_heap();
+
   std::function<void()> on_sigterm;
 
  private:
@@ -124,6 +127,7 @@ class World {
   Duration worker_waited_{};
   How how_ = How::Killed;
   int life_ = 0;
+  std::size_t heap_at_begin_ = 0;
   bool dead_ = true;
   std::uint64_t crossings_left_ = 0;
   std::optional<std::uint64_t> crossings_after_report_;

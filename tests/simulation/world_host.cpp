@@ -1,8 +1,10 @@
-// host/log.hpp and host/random.hpp over the simulated world.
+// host/log.hpp, host/process.hpp, host/random.hpp and host/service.hpp's carrier() over the simulated world.
 #include "host/log.hpp"
 #include "host/memory.hpp"
+#include "host/process.hpp"
 #include "host/random.hpp"
 #include "host/record.hpp"
+#include "host/service.hpp"
 #include "simulation/world.hpp"
 
 namespace adit::host {
@@ -47,6 +49,22 @@ std::uint64_t logged() {
 std::string line_of(const Record& record) {
   const std::vector<Field> fields(record.fields.begin(), record.fields.end());
   return plain_line(time_text(record.at), record.level, record.message, fields);
+}
+
+/// All cables are in.
+std::optional<bool> carrier(const std::string&) {
+  return true;
+}
+
+/// The same on any machine.
+Process process() {
+  return {};
+}
+std::string kernel() {
+  return "";
+}
+std::string model() {
+  return "";
 }
 
 void fill_random(std::span<std::uint8_t> bytes) {

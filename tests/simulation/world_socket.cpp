@@ -24,7 +24,7 @@ std::expected<loop::FileDescriptor, NoSocket> begin_connect(const Endpoint& endp
   World& world = World::current();
   world.crossing();
   if (world.is_dead()) return std::unexpected(NoSocket{"dead", ENETDOWN});
-  if (endpoint.interface != simulation::Box::kUpstream) {
+  if (endpoint.interface != simulation::Box::kInterface) {
     world.note({.kind = simulation::Kind::Forbidden,
                 .what = simulation::kConnect,
                 .who = "",

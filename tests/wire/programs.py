@@ -38,6 +38,14 @@ def wait_until(condition, what, within=60.0):
     raise AssertionError(f"waited {within:g} s in vain for {what}")
 
 
+def insist(ask):
+    """What `ask` is told, which is asked again while the change before is being applied: that is answered 'try again'."""
+    def answer():
+        status, said = ask()
+        return None if status == 409 and "being applied" in said else (status, said)
+    return wait_until(answer, "the change before to be applied")
+
+
 def secrets_folder(folder):
     folder.mkdir(mode=0o700)
     for name, token in (("scoring", SCORING_TOKEN), ("mapping", MAPPING_TOKEN), ("team", TEAM_TOKEN)):

@@ -1,11 +1,12 @@
 # A room: one folder of firmware/, one static library adit_<name>, one namespace adit::<name>.
 #   adit_room(codec SOURCES json.cpp cbor.cpp ROOMS icd LIBRARIES PkgConfig::cbor)
 # ROOMS are the rooms whose headers it includes, all of them named before it in firmware/CMakeLists.txt.
+# DOOR are the headers that other rooms may include: tests/house/rooms sees to it.
 # SEAM are sources that meet the machine (time, threads, sockets, randomness). They are a library of their own,
 # adit_<name>_linux, which comes with adit_<name> into every program but those with the property ADIT_SIMULATED: such a
 # program implements their headers itself.
 function(adit_room name)
-  cmake_parse_arguments(ROOM "" "" "SOURCES;SEAM;ROOMS;LIBRARIES" ${ARGN})
+  cmake_parse_arguments(ROOM "" "" "SOURCES;SEAM;DOOR;ROOMS;LIBRARIES" ${ARGN})
   list(TRANSFORM ROOM_ROOMS PREPEND adit_)
   if(ROOM_SOURCES)
     add_library(adit_${name} STATIC ${ROOM_SOURCES})

@@ -7,8 +7,8 @@
 #include <cstdio>
 #include <cstdlib>
 #include <memory>
-#include <span>
 
+#include "command_line/answer.hpp"
 #include "rehearsal/command_post/command_post.hpp"
 #include "rehearsal/command_post/control.hpp"
 #include "rehearsal/command_post/options.hpp"
@@ -134,13 +134,8 @@ int run(const Options& options) {
 
 int main(int count, char** arguments) {
   using namespace adit::rehearsal;
-  auto options =
-      read_options(std::span<const char* const>(arguments, static_cast<std::size_t>(count)).subspan(1));
-  if (!options) return complain(options.error() + "\n\n" + kUsage);
-  if (options->help) {
-    print(kUsage);
-    return EXIT_SUCCESS;
-  }
+  auto options = adit::command_line::read(command_line_of, {arguments + 1, arguments + count});
+  if (const auto exit = adit::command_line::answer(command_line_of, "", options)) return *exit;
   options->verbose = options->verbose || ::isatty(STDOUT_FILENO) == 1;
   return run(*options);
 }

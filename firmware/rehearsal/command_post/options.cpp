@@ -1,159 +1,92 @@
 #include "rehearsal/command_post/options.hpp"
 
-#include <charconv>
-#include <cmath>
-#include <functional>
-#include <map>
-#include <string_view>
+#include "command_line/number.hpp"
 
 namespace adit::rehearsal {
-
-const char* const kUsage =
-    "adit-rehearsal: a Command Post to rehearse against\n"
-    "  --scoring ADDR:PORT     scoring endpoint (port 0: any)\n"
-    "  --mapping ADDR:PORT     mapping endpoint\n"
-    "  --secrets DIR           scoring.token and mapping.token\n"
-    "  [--artifacts CSV]       true artifacts: type,x,y,z\n"
-    "  [--transcript DIR]      write down all that comes in\n"
-    "  [--transcript-mb N]     then no more pictures of maps, only lines (2048)\n"
-    "  [--as-measured]         behave as the public test servers do, not as the ICD says\n"
-    "  [--team NAME]           (adit)\n"
-    "  [--run ID]              (1)\n"
-    "  [--duration SECONDS]    length of the run (3600)\n"
-    "  [--reports N]           allotment of artifact reports (45)\n"
-    "  [--rate HZ]             429 above it, for each URI (1; 0: no limit)\n"
-    "  [--not-started]         the run waits for POST /start on the control port\n"
-    "  [--fault AIM:FAULT]     what goes wrong with the next request of an aim; may be given often\n"
-    "  [--fault-rate AIM:FAULT=RATE]  what goes wrong with that part of them (0 to 1), at random\n"
-    "  [--seed N]              of that randomness (1)\n"
-    "  [--control ADDR:PORT]   POST /start /stop /resume /end /new-run /other-sender, GET /record,\n"
-    "                          GET, POST and DELETE /faults\n"
-    "  [--verbose]             a line for each request, also where stdout is no terminal\n"
-    "\n"
-    "AIM: reports, status, mapping; clock:constant and clock:running: of all answers from then on.\n"
-    "FAULT: ok, or words with a comma between them:\n"
-    "  drop, reset-unrecorded, 401, 429[=COUNT], 500     not recorded\n"
-    "  record-then-drop, reset, half-answer, garbage, 500-recorded\n"
-    "                                                    recorded, and the answer is lost\n"
-    "  record-after=SECONDS, answer-after=SECONDS        late\n"
-    "  other-sender                                      another sender's report comes just before\n"
-    "  remaining=+N, remaining=-N                        remaining_reports is wrong from then on\n"
-    "  retry-after=SECONDS                               in a header\n";
-
 namespace {
 
-using Error = std::optional<std::string>;
-using Setter = std::function<bool(const std::string&)>;
+using command_line::number;
+using command_line::take;
+using command_line::Wanted;
+using command_line::Wrong;
 
-template <class Number>
-bool read_number(const std::string& text, Number& number) {
-  const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), number);
-  return error == std::errc() && end == text.data() + text.size();
-}
+constexpr double kMost = 1e9;
 
-bool read_not_negative(const std::string& text, double& number) {
-  return read_number(text, number) && std::isfinite(number) && number >= 0;
-}
-
-bool read_address(const std::string& text, Address& address) {
+/// Into an Address, or an optional one.
+template <class Into>
+Wrong take_address(Into& into, const std::string& text) {
   const auto colon = text.rfind(':');
-  if (colon == std::string::npos || colon == 0) return false;
-  address.host = text.substr(0, colon);
-  if (address.host.starts_with('[') && address.host.ends_with(']')) {
+  Address address{.host = text.substr(0, colon)};
+  if (address.host.starts_with('[') && address.host.ends_with(']'))
     address.host = address.host.substr(1, address.host.size() - 2);
-  }
-  return !address.host.empty() && read_number(text.substr(colon + 1), address.port);
+  if (colon == std::string::npos || address.host.empty()) return "expected ADDR:PORT, got '" + text + "'";
+  std::uint64_t port = 0;
+  auto wrong = command_line::read_number(text.substr(colon + 1), 0, UINT16_MAX, port);
+  address.port = static_cast<std::uint16_t>(port);
+  if (!wrong) into = std::move(address);
+  return wrong;
 }
 
-std::map<std::string, Setter, std::less<>> setters(Options& options) {
-  const auto text = [](std::string& place) {
-    return [&place](const std::string& value) {
-      place = value;
-      return !value.empty();
-    };
-  };
-  const auto listed = [](std::vector<std::string>& list) {
-    return [&list](const std::string& value) {
-      list.push_back(value);
-      return true;
-    };
-  };
-  return {
-      {"--scoring", [&](const auto& value) { return read_address(value, options.scoring); }},
-      {"--mapping", [&](const auto& value) { return read_address(value, options.mapping); }},
-      {"--control", [&](const auto& value) { return read_address(value, options.control.emplace()); }},
-      {"--secrets", text(options.secrets)},
-      {"--artifacts", text(options.artifacts)},
-      {"--transcript", text(options.transcript)},
-      {"--team", text(options.run.team)},
-      {"--run", text(options.run.id)},
-      {"--reports",
-       [&](const auto& value) {
-         return read_number(value, options.run.reports) && options.run.reports >= 0;
-       }},
-      {"--rate", [&](const auto& value) { return read_not_negative(value, options.rate.emplace()); }},
-      {"--fault", listed(options.faults)},
-      {"--fault-rate", listed(options.fault_rates)},
-      {"--seed", [&](const auto& value) { return read_number(value, options.seed); }},
-      {"--duration",
-       [&](const auto& value) {
-         double seconds = 0;
-         const bool good = read_not_negative(value, seconds);
-         options.run.length = std::chrono::duration<double>(seconds);
-         return good;
-       }},
-      {"--transcript-mb",
-       [&](const auto& value) {
-         std::uint32_t mb = 0;
-         const bool good = read_number(value, mb);
-         options.transcript_bytes = std::uint64_t{mb} << 20;
-         return good;
-       }},
-  };
+Wrong take_megabytes(std::uint64_t& bytes, const std::string& text) {
+  auto wrong = command_line::read_number(text, 0, UINT32_MAX, bytes);
+  bytes <<= 20;
+  return wrong;
 }
 
-std::map<std::string, std::function<void()>, std::less<>> switches(Options& options) {
-  return {
-      {"--as-measured",
-       [&] {
-         options.manner = Manner::AsMeasured;
-         options.run.renames = false;
-       }},
-      {"--not-started", [&] { options.not_started = true; }},
-      {"--verbose", [&] { options.verbose = true; }},
-      {"--help", [&] { options.help = true; }},
-  };
-}
-
-Error missing(const Options& options) {
-  if (options.help) return std::nullopt;
-  if (options.scoring.host.empty()) return "--scoring ADDR:PORT is missing";
-  if (options.mapping.host.empty()) return "--mapping ADDR:PORT is missing";
-  if (options.secrets.empty()) return "--secrets DIR is missing";
+Wrong take_as_measured(Options& options, const std::string&) {
+  options.manner = Manner::AsMeasured;
+  options.run.renames = false;
   return std::nullopt;
 }
 
 }  // namespace
 
-std::expected<Options, std::string> read_options(std::span<const char* const> arguments) {
-  Options options;
-  const auto with_value = setters(options);
-  const auto alone = switches(options);
-  for (std::size_t i = 0; i < arguments.size(); ++i) {
-    const std::string_view name = arguments[i];
-    if (const auto found = alone.find(name); found != alone.end()) {
-      found->second();
-      continue;
-    }
-    const auto found = with_value.find(name);
-    if (found == with_value.end()) return std::unexpected("unknown option " + std::string(name));
-    if (++i == arguments.size()) return std::unexpected(std::string(name) + " needs a value");
-    if (!found->second(arguments[i])) {
-      return std::unexpected(std::string(name) + ": cannot take '" + arguments[i] + "'");
-    }
-  }
-  if (auto error = missing(options)) return std::unexpected(std::move(*error));
-  return options;
+command_line::Program command_line_of(Options& options) {
+  return {
+      .name = "adit-rehearsal",
+      .usage = "",
+      .about = "A Command Post to rehearse against.",
+      .rows =
+          {{"--scoring", "ADDR:PORT", "scoring endpoint (port 0: any)",
+            take<take_address<Address>>(options.scoring), Wanted::Always},
+           {"--mapping", "ADDR:PORT", "mapping endpoint", take<take_address<Address>>(options.mapping),
+            Wanted::Always},
+           {"--secrets", "DIR", "scoring.token and mapping.token", &options.secrets, Wanted::Always},
+           {"--artifacts", "CSV", "true artifacts: type,x,y,z", &options.artifacts},
+           {"--transcript", "DIR", "write down all that comes in", &options.transcript},
+           {"--transcript-mb", "N", "then no more pictures of maps, only lines (2048)",
+            take<take_megabytes>(options.transcript_bytes)},
+           {"--as-measured", "", "behave as the public test servers do, not as the ICD says",
+            take<take_as_measured>(options)},
+           {"--team", "NAME", "the team's name", &options.run.team},
+           {"--run", "ID", "the run's name", &options.run.id},
+           {"--duration", "SECONDS", "length of the run (3600)", number<0.0, kMost>(options.run.length)},
+           {"--reports", "N", "allotment of artifact reports (45)",
+            number<0L, INT64_MAX>(options.run.reports)},
+           {"--rate", "HZ", "429 above it, for each URI (1; 0: no limit)", number<0.0, kMost>(options.rate)},
+           {"--not-started", "", "the run waits for POST /start on the control port", &options.not_started},
+           {"--fault", "AIM:FAULT", "what goes wrong with the next request of an aim; may be given often",
+            &options.faults},
+           {"--fault-rate", "AIM:FAULT=RATE", "what goes wrong with that part of them (0 to 1), at random",
+            &options.fault_rates},
+           {"--seed", "N", "of that randomness (1)", number<0UL, UINT64_MAX>(options.seed)},
+           {"--control", "ADDR:PORT",
+            "POST /start /stop /resume /end /new-run /other-sender, GET /record, GET, POST and DELETE "
+            "/faults",
+            take<take_address<std::optional<Address>>>(options.control)},
+           {"--verbose", "", "a line for each request, also where stdout is no terminal", &options.verbose},
+           {"--help", "", "prints this", &options.help}},
+      .ending =
+          "AIM: reports, status, mapping; clock:constant and clock:running: of all answers from then on.\n"
+          "FAULT: ok, or words with a comma between them:\n"
+          "  drop, reset-unrecorded, 401, 429[=COUNT], 500     not recorded\n"
+          "  record-then-drop, reset, half-answer, garbage, 500-recorded\n"
+          "                                                    recorded, and the answer is lost\n"
+          "  record-after=SECONDS, answer-after=SECONDS        late\n"
+          "  other-sender                                      another sender's report comes just before\n"
+          "  remaining=+N, remaining=-N                        remaining_reports is wrong from then on\n"
+          "  retry-after=SECONDS                               in a header",
+  };
 }
 
 }  // namespace adit::rehearsal

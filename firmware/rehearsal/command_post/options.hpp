@@ -1,12 +1,11 @@
 #pragma once
 
 #include <cstdint>
-#include <expected>
 #include <optional>
-#include <span>
 #include <string>
 #include <vector>
 
+#include "command_line/program.hpp"
 #include "rehearsal/command_post/address.hpp"
 #include "rehearsal/command_post/findings.hpp"
 #include "rehearsal/command_post/run.hpp"
@@ -33,9 +32,6 @@ struct Options {
   bool help = false;
 };
 
-extern const char* const kUsage;
-
-/// `arguments` without the program's name. An error is a sentence for the terminal.
-std::expected<Options, std::string> read_options(std::span<const char* const> arguments);
+[[gnu::cold]] command_line::Program command_line_of(Options& options);
 
 }  // namespace adit::rehearsal

@@ -6,6 +6,7 @@
 #include <fstream>
 #include <vector>
 
+#include "command_line/answer.hpp"
 #include "rehearsal/robots/cave.hpp"
 #include "rehearsal/robots/console.hpp"
 #include "rehearsal/robots/maps/map_file.hpp"
@@ -93,7 +94,7 @@ int run(const Options& options, const Cave& cave) {
   if (!options.maps.empty()) {
     auto found = find_maps(options.maps);
     if (!found) return complain("--maps: " + found.error());
-    if (found->empty()) return complain("--maps: no .pgm, .pcd or .ply under " + options.maps.string());
+    if (found->empty()) return complain("--maps: no .pgm, .pcd or .ply under " + options.maps);
     maps = *std::move(found);
   }
   const std::vector<Kind> kinds = kinds_to_post(options, maps);
@@ -117,14 +118,10 @@ int run(const Options& options, const Cave& cave) {
 
 int main_of(std::span<const char* const> arguments) {
   const auto options = parse_options(arguments);
-  if (!options) return complain(options.error() + " (see --help)");
-  if (options->help) {
-    (void)std::fputs(kUsage, stdout);
-    return kGood;
-  }
+  if (const auto exit = command_line::answer(command_line_of, "", options)) return *exit;
   const Cave cave = Cave::generate(options->seed);
   if (!options->truth.empty() && !write_truth(cave, options->truth)) {
-    return complain("--truth: cannot write " + options->truth.string());
+    return complain("--truth: cannot write " + options->truth);
   }
   return options->generate_only ? kGood : run(*options, cave);
 }

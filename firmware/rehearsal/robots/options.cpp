@@ -1,108 +1,29 @@
 #include "rehearsal/robots/options.hpp"
 
 #include <algorithm>
-#include <cmath>
-#include <string_view>
 
+#include "command_line/number.hpp"
 #include "rehearsal/robots/maps/bytes.hpp"
 
 namespace adit::robots {
 
-const char* const kUsage =
-    R"(adit-robots: a simulated team that explores a generated cave and posts what real teams post
-
-  adit-robots --post http://ADDR:PORT --secrets DIR [options]
-  adit-robots --generate-only --truth CSV [--seed N]
-
-  --post URL           where everything goes: Adit
-  --scoring URL        where reports and status go instead, to speak to a Command Post without Adit
-  --secrets DIR        team.token in it is what the team presents
-  --robots N           how many explore, 0 to 30 (3)
-  --style STYLE        cbor, cbor-body-gzip, json-base64, json-array, ros, browser, or mixed: each robot the
-                       next one (mixed)
-  --maps DIR           also post the map files under DIR (.pgm with .yaml, .pcd, .ply) as a robot `replay`
-  --for SECONDS        how long; without it, until SIGINT or SIGTERM
-  --stop-when-posted   stop as soon as one of every kind was accepted, and every map file was posted
-  --seed N             which cave, and which walk through it (1)
-  --truth CSV          write the cave's artifacts there, as type,x,y,z
-  --generate-only      write that, and do no more
-  --speed X            robots walk 2 X metres a second (1)
-  --quiet              print the last summary alone
-
-Ends with 0 if one of every kind at least was accepted and nothing was refused but for going too fast (429).
-)";
-
 namespace {
 
-using Taken = std::expected<void, std::string>;
+using command_line::number;
+using command_line::take;
+using command_line::Wrong;
 
-Taken take_number(std::string_view text, double low, double high, double& into) {
-  const auto number = parse_number<double>(text);
-  if (!number || !std::isfinite(*number) || *number < low || *number > high) {
-    return std::unexpected("expected a number from " + std::to_string(low) + " to " + std::to_string(high) +
-                           ", got '" + std::string(text) + "'");
-  }
-  into = *number;
-  return {};
-}
-
-Taken take_whole(std::string_view text, std::uint64_t most, std::uint64_t& into) {
-  const auto number = parse_number<std::uint64_t>(text);
-  if (!number || *number > most) {
-    return std::unexpected("expected a whole number from 0 to " + std::to_string(most) + ", got '" +
-                           std::string(text) + "'");
-  }
-  into = *number;
-  return {};
-}
-
-Taken take_url(std::string_view text, Endpoint& into) {
+Wrong take_url(Endpoint& into, const std::string& text) {
   auto endpoint = parse_url(text);
-  if (!endpoint) return std::unexpected(endpoint.error());
+  if (!endpoint) return endpoint.error();
   into = *std::move(endpoint);
-  return {};
+  return std::nullopt;
 }
 
-Taken take_path(std::string_view text, std::filesystem::path& into) {
-  if (text.empty()) return std::unexpected("expected a path");
-  into = text;
-  return {};
-}
-
-Taken take_style(std::string_view text, TeamStyle& into) {
+Wrong take_style(TeamStyle& into, const std::string& text) {
   const auto style = TeamStyle::parse(text);
-  if (!style) return std::unexpected("no style is named '" + std::string(text) + "'");
+  if (!style) return "no style is named '" + text + "'";
   into = *style;
-  return {};
-}
-
-Taken take_seconds(std::string_view text, std::optional<std::chrono::duration<double>>& into) {
-  double seconds = 0;
-  Taken taken = take_number(text, 0, 1e6, seconds);
-  if (taken) into = std::chrono::duration<double>(seconds);
-  return taken;
-}
-
-bool* flag_of(Options& options, std::string_view name) {
-  if (name == "--quiet") return &options.quiet;
-  if (name == "--stop-when-posted") return &options.stop_when_posted;
-  if (name == "--generate-only") return &options.generate_only;
-  if (name == "--help" || name == "-h") return &options.help;
-  return nullptr;
-}
-
-std::optional<Taken> take(Options& options, std::string_view name, std::string_view value) {
-  constexpr std::uint64_t kMostRobots = 30;
-  if (name == "--post") return take_url(value, options.post);
-  if (name == "--scoring") return take_url(value, options.scoring);
-  if (name == "--secrets") return take_path(value, options.secrets);
-  if (name == "--robots") return take_whole(value, kMostRobots, options.robots);
-  if (name == "--style") return take_style(value, options.style);
-  if (name == "--maps") return take_path(value, options.maps);
-  if (name == "--for") return take_seconds(value, options.run_for);
-  if (name == "--seed") return take_whole(value, UINT64_MAX, options.seed);
-  if (name == "--truth") return take_path(value, options.truth);
-  if (name == "--speed") return take_number(value, 0.1, 20, options.speed);
   return std::nullopt;
 }
 
@@ -122,22 +43,48 @@ std::expected<Options, std::string> complete(Options options) {
 
 }  // namespace
 
+command_line::Program command_line_of(Options& options) {
+  constexpr double kLongest = 1e6;  // seconds
+  return {
+      .name = "adit-robots",
+      .usage = "--post URL --secrets DIR | --generate-only --truth CSV",
+      .about = "A simulated team that explores a generated cave and posts what real teams post.",
+      .rows =
+          {{"--post", "URL", "where everything goes: Adit, http://ADDR:PORT", take<take_url>(options.post)},
+           {"--scoring", "URL",
+            "where reports and status go instead, to speak to a Command Post without Adit",
+            take<take_url>(options.scoring)},
+           {"--secrets", "DIR", "team.token in it is what the team presents", &options.secrets},
+           {"--robots", "N", "how many explore, 0 to 30 (3)", number<0, 30>(options.robots)},
+           {"--style", "STYLE",
+            "cbor, cbor-body-gzip, json-base64, json-array, ros, browser, or mixed: each robot the next one "
+            "(mixed)",
+            take<take_style>(options.style)},
+           {"--maps", "DIR",
+            "also post the map files under DIR (.pgm with .yaml, .pcd, .ply) as a robot `replay`",
+            &options.maps},
+           {"--for", "SECONDS", "how long; without it, until SIGINT or SIGTERM",
+            number<0.0, kLongest>(options.run_for)},
+           {"--stop-when-posted", "",
+            "stop as soon as one of every kind was accepted, and every map file was posted",
+            &options.stop_when_posted},
+           {"--seed", "N", "which cave, and which walk through it (1)",
+            number<0UL, UINT64_MAX>(options.seed)},
+           {"--truth", "CSV", "write the cave's artifacts there, as type,x,y,z", &options.truth},
+           {"--generate-only", "", "write that, and do no more", &options.generate_only},
+           {"--speed", "X", "robots walk 2 X metres a second (1)", number<0.1, 20.0>(options.speed)},
+           {"--quiet", "", "print the last summary alone", &options.quiet},
+           {"--help", "", "prints this", &options.help}},
+      .ending =
+          "Ends with 0 if one of every kind at least was accepted and nothing was refused but for going too "
+          "fast "
+          "(429).",
+  };
+}
+
 std::expected<Options, std::string> parse_options(std::span<const char* const> arguments) {
-  Options options;
-  for (std::size_t i = 0; i < arguments.size(); ++i) {
-    const std::string name = arguments[i];
-    if (bool* const flag = flag_of(options, name)) {
-      *flag = true;
-      continue;
-    }
-    const bool last = i + 1 == arguments.size();
-    const auto taken = take(options, name, last ? "" : arguments[i + 1]);
-    if (!taken) return std::unexpected(name + ": no such option");
-    if (last) return std::unexpected(name + ": needs a value");
-    if (!*taken) return std::unexpected(name + ": " + taken->error());
-    ++i;
-  }
-  return complete(std::move(options));
+  auto options = command_line::read(command_line_of, arguments);
+  return options ? complete(*std::move(options)) : options;
 }
 
 std::expected<std::string, std::string> read_team_token(const std::filesystem::path& secrets) {

@@ -5,33 +5,33 @@
 #include <expected>
 #include <filesystem>
 #include <optional>
-#include <span>
 #include <string>
 
+#include "command_line/read.hpp"
 #include "rehearsal/robots/http.hpp"
 #include "rehearsal/robots/style.hpp"
 
 namespace adit::robots {
 
-extern const char* const kUsage;
-
 /// The command line of adit-robots.
 struct Options {
   Endpoint post;
   Endpoint scoring;  // the same as `post` unless it is given
-  std::filesystem::path secrets;
+  std::string secrets;
   std::size_t robots = 3;
   TeamStyle style;
-  std::filesystem::path maps;   // empty: none
-  std::filesystem::path truth;  // empty: not written
+  std::string maps;   // "": none
+  std::string truth;  // "": not written
   std::optional<std::chrono::duration<double>> run_for;
   std::uint64_t seed = 1;
   double speed = 1;
   bool quiet = false, stop_when_posted = false, generate_only = false, help = false;
 };
 
+[[gnu::cold]] command_line::Program command_line_of(Options& options);
+
 /// Or a sentence that names the argument.
-std::expected<Options, std::string> parse_options(std::span<const char* const> arguments);
+[[gnu::cold]] std::expected<Options, std::string> parse_options(std::span<const char* const> arguments);
 
 /// What DIR/team.token holds, without the line's end.
 std::expected<std::string, std::string> read_team_token(const std::filesystem::path& secrets);

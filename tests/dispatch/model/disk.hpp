@@ -43,6 +43,7 @@ class Disk {
 
   std::vector<Run> runs() const {
     std::vector<Run> list;
+    list.reserve(written_.runs.size());
     for (const auto& [number, run] : written_.runs) list.push_back(run);
     return list;
   }

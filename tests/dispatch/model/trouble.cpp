@@ -44,17 +44,18 @@ void World::cut_power() {
     clients_[who].waiting = 0;
     heard(who, false, false);
   }
-  const auto restart = [this](auto&& again) -> void {
-    try {
-      start();
-    } catch (const PowerCut&) {
-      ++tally_.power_cuts;
-      reports_.reset();
-      ++life_;
-      later(1, [again] { again(again); }, false);
-    }
-  };
-  later(chance() < 0.8 ? between(0.1, 5) : between(5, 90), [restart] { restart(restart); }, false);
+  later(chance() < 0.8 ? between(0.1, 5) : between(5, 90), [this] { switch_on(); }, false);
+}
+
+void World::switch_on() {
+  try {
+    start();
+  } catch (const PowerCut&) {
+    ++tally_.power_cuts;
+    reports_.reset();
+    ++life_;
+    later(1, [this] { switch_on(); }, false);
+  }
 }
 
 void World::take_operators_word() {

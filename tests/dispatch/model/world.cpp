@@ -25,7 +25,7 @@ World::World(const Trouble& trouble, std::uint64_t seed)
   disk_.cut = [this] {
     if (!calm_ && reports_ && chance() < trouble_.power_cut) throw PowerCut{};
   };
-  start();
+  switch_on();
   for (std::size_t i = 0; i < kClients; ++i) {
     clients_.push_back({.key = static_cast<double>(i) + 100,
                         .patience = chance() < 0.5 ? 0.3 : between(1, 30),

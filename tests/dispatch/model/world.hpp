@@ -112,6 +112,7 @@ class World final : public Deeds {
   // Trouble, and the operator (trouble.cpp).
   void switch_course();
   void cut_power();
+  void switch_on();
   void take_operators_word();
   void declare_run();
   void make_trouble();

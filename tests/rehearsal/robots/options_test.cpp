@@ -38,18 +38,18 @@ TEST(Options, NameTheArgumentThatIsWrong) {
   const std::pair<std::vector<const char*>, const char*> cases[] = {
       {{}, "--post"},
       {{"--post", "http://127.0.0.1:80"}, "--secrets"},
-      {{"--post"}, "--post: needs a value"},
+      {{"--post"}, "--post wants a value"},
       {{"--post", "127.0.0.1:80"}, "does not start with http://"},
       {{"--post", "http://127.0.0.1"}, "no port"},
       {{"--post", "http://127.0.0.1:0"}, "1 to 65535"},
       {{"--post", "http://127.0.0.1:65536"}, "1 to 65535"},
       {{"--post", "http://cave:80"}, "no IP address"},
-      {{"--robots", "-1"}, "--robots: expected a whole number"},
+      {{"--robots", "-1"}, "--robots: expected 0 to 30"},
       {{"--robots", "31"}, "--robots"},
-      {{"--for", "nan"}, "--for: expected a number"},
+      {{"--for", "nan"}, "--for: expected 0 to 1e+06"},
       {{"--speed", "0"}, "--speed"},
       {{"--style", "morse"}, "no style is named 'morse'"},
-      {{"--frobnicate", "1"}, "--frobnicate: no such option"},
+      {{"--frobnicate", "1"}, "unknown word '--frobnicate'"},
       {{"--generate-only"}, "needs --truth"},
   };
   for (const auto& [arguments, sentence] : cases) {

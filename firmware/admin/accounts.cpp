@@ -1,0 +1,164 @@
+#include "admin/accounts.hpp"
+
+#include <unistd.h>
+
+#include <cstring>
+#include <memory>
+#include <utility>
+
+#include "access/password.hpp"
+#include "host/log.hpp"
+#include "host/random.hpp"
+#include "host/service.hpp"
+
+namespace adit::admin {
+namespace {
+
+using access::Role;
+using host::Level;
+
+access::Accounts read(const std::string& file) {
+  if (!host::may_exist(file)) return {};
+  const auto text = host::read_file(file);
+  if (!text) {
+    host::log(Level::Error, "the passwords cannot be read: they have to be set anew",
+              {{"why", text.error()}});
+    return {};
+  }
+  auto accounts = access::read_accounts(*text);
+  if (accounts) return std::move(*accounts);
+  host::log(Level::Error, "the passwords cannot be read: they have to be set anew",
+            {{"why", file + ": " + accounts.error()}});
+  return {};
+}
+
+std::unexpected<icd::Refusal> refuse(icd::Status status, std::string sentence) {
+  return std::unexpected(icd::Refusal{status, std::move(sentence)});
+}
+
+/// `accounts` with a role's password set. Slow.
+icd::Checked<access::Accounts> with(access::Accounts accounts, Role role,
+                                    const std::optional<std::string>& password, const access::Salt& salt) {
+  accounts.of(role).reset();
+  if (!password) return accounts;
+  if (access::role_of(*password, accounts)) {
+    return refuse(icd::Status::UnprocessableEntity,
+                  "password: expected another than the other role's, as it alone says who comes");
+  }
+  auto hashed = access::hash(*password, salt);
+  if (!hashed) return refuse(icd::Status::ServiceUnavailable, hashed.error());
+  accounts.of(role) = std::move(*hashed);
+  return accounts;
+}
+
+}  // namespace
+
+Accounts::Accounts(const loop::Loop& loop, loop::Workers& workers, loop::Writer& writer,
+                   SessionKeeper& sessions, std::string folder, std::optional<icd::BearerToken> label_code)
+    : loop_(loop),
+      workers_(workers),
+      writer_(writer),
+      sessions_(sessions),
+      folder_(std::move(folder)),
+      accounts_(read(file())) {
+  if (!first_start()) return;
+  const bool on_label = label_code.has_value();
+  code_ = on_label ? std::move(label_code) : kept_code();
+  if (on_label) {
+    host::log(Level::Notice, "no password is set: the page asks for the code on the label");
+  } else {
+    host::tell_console(Level::Notice, "no password is set: the page asks for this code",
+                       {{"code", code_->reveal()}});
+  }
+}
+
+/// The one that an earlier start drew, or a new one.
+icd::BearerToken Accounts::kept_code() {
+  std::string code;
+  if (const auto kept = host::read_file(code_file())) code = kept->substr(0, kept->find('\n'));
+  if (!access::is_code(code)) {
+    std::uint64_t random = 0;
+    host::fill_random({reinterpret_cast<std::uint8_t*>(&random), sizeof random});
+    code = access::code_from(random);
+    if (const auto written = host::write_file(code_file(), code + "\n", host::kOursAlone); !written) {
+      host::log(Level::Warning, "the code of the first start is good until the next start only",
+                {{"why", written.error()}});
+    }
+  }
+  return *icd::BearerToken::parse(code);
+}
+
+bool Accounts::is_code(std::string_view presented) const {
+  return first_start() && code_ && code_->matches(presented);
+}
+
+void Accounts::check(std::string password, std::string address,
+                     std::function<void(std::optional<Role>)> done) {
+  auto role = std::make_shared<std::optional<Role>>();
+  workers_.submit([role, password = std::move(password),
+                   accounts = accounts_] { *role = access::role_of(password, accounts); },
+                  [this, role, address = std::move(address), done = std::move(done)] {
+                    if (*role && !accounts_.of(**role)) role->reset();  // forgotten while it was checked
+                    if (*role) {
+                      host::log(Level::Notice, "a password was shown",
+                                {{"role", std::string(name_of(**role))}, {"sender", address}});
+                    } else {
+                      host::log(Level::Warning, "a wrong password was shown", {{"sender", address}});
+                    }
+                    done(*role);
+                  },
+                  [] {});  // who waits for it is told by being dropped
+}
+
+void Accounts::set(Role role, std::optional<std::string> password,
+                   std::function<void(icd::Checked<void>)> done) {
+  if (std::exchange(setting_, true)) {
+    return done(refuse(icd::Status::Conflict, "another password is being set: try again"));
+  }
+  access::Salt salt{};
+  host::fill_random(salt);
+  auto changed = std::make_shared<icd::Checked<access::Accounts>>(
+      refuse(icd::Status::ServiceUnavailable, "the password could not be set: try again"));
+  const auto change = [changed, role, password = std::move(password), salt, accounts = accounts_] {
+    *changed = with(accounts, role, password, salt);
+  };
+  const auto keep = [changed, file = file(), code_file = code_file()] {
+    if (!*changed) return;
+    if (const auto written = host::write_file(file, access::write_accounts(**changed), host::kOursAlone);
+        !written) {
+      *changed = refuse(icd::Status::ServiceUnavailable, "the password cannot be kept: " + written.error());
+    } else {
+      unlink(code_file.c_str());  // if there was one, it has done its service
+    }
+  };
+  const auto ended = [this, changed, role, done = std::move(done)] { was_set(role, *changed, done); };
+  workers_.submit(change, [this, keep, ended] { writer_.submit(keep, ended); });
+}
+
+void Accounts::was_set(Role role, const icd::Checked<access::Accounts>& changed,
+                       const std::function<void(icd::Checked<void>)>& done) {
+  setting_ = false;
+  if (!changed) {
+    host::log(Level::Warning, "a password was not set", {{"why", changed.error().sentence}});
+    return done(std::unexpected(changed.error()));
+  }
+  accounts_ = *changed;
+  if (role == Role::Operator) set_up_.close();
+  host::log(Level::Notice, accounts_.of(role) ? "a password was set" : "a password was taken away",
+            {{"role", std::string(name_of(role))}});
+  done({});
+}
+
+void Accounts::open_set_up() {
+  set_up_.open(loop_.now());
+  host::log(Level::Warning, "set-up is opened at the box: a new password may be set without the present one",
+            {{"minutes", std::to_string(access::SetUpWindow::kLength.count())}});
+}
+
+access::Secret Accounts::draw() {
+  access::Secret secret;
+  host::fill_random(secret);
+  return secret;
+}
+
+}  // namespace adit::admin

@@ -1,0 +1,61 @@
+#pragma once
+
+#include <optional>
+#include <string>
+
+#include "access/accounts.hpp"
+#include "access/set_up_window.hpp"
+#include "admin/session_keeper.hpp"
+#include "api/keys.hpp"
+#include "icd/bearer_token.hpp"
+#include "loop/loop.hpp"
+#include "loop/workers.hpp"
+
+namespace adit::admin {
+
+/// The passwords. What is wrong with the state folder is logged, and keeps nothing else from working.
+class Accounts final : public api::Keys {
+ public:
+  /// In the state folder: the passwords' hashes, and until there is one the code that sets it, where the
+  /// box's label has none.
+  static constexpr const char* kFile = "access.json";
+  static constexpr const char* kCodeFile = "first-start.code";
+
+  /// Logs the code of a first start, unless it is on the label. `loop`, `workers` (which hash, and are asked
+  /// for nothing else), `writer` and `sessions` outlive this.
+  Accounts(const loop::Loop& loop, loop::Workers& workers, loop::Writer& writer, SessionKeeper& sessions,
+           std::string folder, std::optional<icd::BearerToken> label_code);
+
+  bool first_start() const override { return !accounts_.operator_; }
+  bool is_code(std::string_view presented) const override;
+  bool set_up_open() const override { return set_up_left().has_value(); }
+  void check(std::string password, std::string address,
+             std::function<void(std::optional<access::Role>)> done) override;
+  void set(access::Role role, std::optional<std::string> password,
+           std::function<void(icd::Checked<void>)> done) override;
+  access::Sessions& sessions() override { return sessions_.sessions(); }
+  access::Secret draw() override;
+
+  /// On the word of the box's own button. Nothing else calls it.
+  void open_set_up();
+  std::optional<access::Duration> set_up_left() const { return set_up_.left(loop_.now()); }
+
+ private:
+  std::string file() const { return folder_ + '/' + kFile; }
+  std::string code_file() const { return folder_ + '/' + kCodeFile; }
+  icd::BearerToken kept_code();
+  void was_set(access::Role role, const icd::Checked<access::Accounts>& changed,
+               const std::function<void(icd::Checked<void>)>& done);
+
+  const loop::Loop& loop_;
+  loop::Workers& workers_;
+  loop::Writer& writer_;
+  SessionKeeper& sessions_;
+  std::string folder_;
+  access::Accounts accounts_;
+  std::optional<icd::BearerToken> code_;
+  access::SetUpWindow set_up_;
+  bool setting_ = false;
+};
+
+}  // namespace adit::admin

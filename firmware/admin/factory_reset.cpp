@@ -1,0 +1,43 @@
+#include "admin/factory_reset.hpp"
+
+#include <filesystem>
+#include <utility>
+
+#include "admin/accounts.hpp"
+#include "admin/network_requests.hpp"
+#include "host/log.hpp"
+#include "host/service.hpp"
+
+namespace adit::admin {
+
+FactoryReset::FactoryReset(const Store& store, std::string state_folder, std::string runtime_folder)
+    : store_(store), state_(std::move(state_folder)), runtime_(std::move(runtime_folder)) {}
+
+std::expected<void, std::string> FactoryReset::begin() const {
+  return host::write_file(begun(), "", host::kOursAlone);
+}
+
+std::expected<bool, std::string> FactoryReset::finish() const {
+  std::error_code unknown;
+  const bool is_begun = std::filesystem::exists(begun(), unknown);
+  if (unknown) return std::unexpected(begun() + ": " + unknown.message());
+  if (!is_begun) return false;
+  if (const auto done = store_.forget(); !done) return std::unexpected(done.error());
+  const NetworkRequests network(state_, "");
+  if (const auto asked = network.ask(network::Forget{NetworkRequests::draw_nonce()}); !asked)
+    return std::unexpected(asked.error());
+  for (const char* kept : {"journal", "waiting", "aside"}) {
+    std::error_code error;
+    std::filesystem::remove_all(runtime_ + '/' + kept, error);
+    if (error) return std::unexpected(runtime_ + '/' + kept + ": cannot be removed: " + error.message());
+  }
+  // Last: until then the box does not look as if it were reset.
+  for (const std::string& file : {runtime_ + '/' + SessionKeeper::kFile, state_ + '/' + Accounts::kCodeFile,
+                                  state_ + '/' + Accounts::kFile, begun()}) {
+    if (const auto done = host::remove_file(file); !done) return std::unexpected(done.error());
+  }
+  host::log(host::Level::Notice, "all that was set up is forgotten");
+  return true;
+}
+
+}  // namespace adit::admin

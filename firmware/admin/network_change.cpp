@@ -1,0 +1,204 @@
+#include "admin/network_change.hpp"
+
+#include <algorithm>
+
+#include "host/log.hpp"
+#include "host/own_address.hpp"
+#include "icd/sentence.hpp"
+
+namespace adit::admin {
+namespace {
+
+std::unexpected<icd::Refusal> conflict(std::string sentence) {
+  return std::unexpected(icd::Refusal{icd::Status::Conflict, std::move(sentence)});
+}
+
+}  // namespace
+
+void NetworkChange::refresh() const {
+  const loop::Instant now = loop_.now();
+  if (read_at_ && now < *read_at_ + kFresh) return;
+  read_at_ = now;
+  status_ = requests_.status();
+  if (!asked_) return;
+  const std::string& nonce = asked_->wanted.nonce;
+  const bool seen =
+      status_ && ((status_->pending && status_->pending->nonce == nonce) || status_->ended_nonce == nonce);
+  if (seen) {
+    asked_.reset();
+  } else if (now >= asked_->at + kTakenUpWithin) {
+    requests_.forget_wanted();
+    asked_.reset();
+    not_taken_up_ = "adit-network did not take it up: see journalctl -u adit-network";
+    host::log(host::Level::Error, "a change of the network was not taken up by adit-network");
+  }
+}
+
+std::string NetworkChange::hindrance() const {
+  const std::string& team = settings_.team.interface;
+  const std::string& post = settings_.command_post.interface;
+  if (team.empty() || post.empty()) {
+    return icd::sentence("the settings name no ", team.empty() ? "team.interface" : "command_post.interface",
+                         ": its address is set elsewhere");
+  }
+  if (!status_) return "adit-network does not run here: " + status_.error();
+  if (status_->team_interface != team || status_->command_post_interface != post) {
+    return icd::sentence("adit-network has ", status_->team_interface, " and ",
+                         status_->command_post_interface, ", and the settings name ", team, " and ", post);
+  }
+  return "";
+}
+
+std::optional<network::Pending> NetworkChange::pending() const {
+  refresh();
+  if (status_ && status_->pending) return status_->pending;
+  if (!asked_) return std::nullopt;
+  const network::Wanted& wanted = asked_->wanted;
+  return network::Pending{wanted.nonce, wanted.numbers, asked_->at + wanted.confirm_within,
+                          wanted.confirm_within};
+}
+
+std::optional<network::Numbers> NetworkChange::present() const {
+  if (status_ && status_->kept) return status_->kept;
+  const auto team = host::own_address(settings_.team.interface);
+  if (!team) return std::nullopt;
+  return network::Numbers{.team = *team,
+                          .command_post = host::own_addresses(settings_.command_post.interface)};
+}
+
+api::NetworkView NetworkChange::network() const {
+  refresh();
+  api::NetworkView view;
+  view.why = hindrance();
+  view.managed = view.why.empty();
+  view.team_interface = settings_.team.interface;
+  view.command_post_interface = settings_.command_post.interface;
+  view.team = host::own_address(view.team_interface);
+  view.command_post = host::own_addresses(view.command_post_interface);
+  if (status_ && status_->kept) {
+    view.mode = status_->kept->mode;
+    view.gateway = status_->kept->gateway;
+  }
+  if (const auto waits = pending()) {
+    const double left = std::chrono::duration<double>(waits->until - loop_.now()).count();
+    view.pending = {.until = loop_.stamp_now() + left,
+                    .wanted = waits->wanted,
+                    .previous = status_ ? status_->kept : std::nullopt,
+                    .page = network::page_at(waits->wanted, settings_.team.listen)};
+  }
+  if (view.pending) return view;  // how the one before ended says nothing of this one
+  if (!not_taken_up_.empty()) {
+    view.last = name_of(network::Ended::TakenBack);
+    view.last_why = not_taken_up_;
+  } else if (status_) {
+    view.last = name_of(status_->ended);
+    view.last_why = status_->why;
+  }
+  return view;
+}
+
+network::Verdict NetworkChange::check(const network::Numbers& wanted, const std::string& asker) const {
+  refresh();
+  return network::check(wanted, present(),
+                        {.allow_overlap = settings_.network.allow_overlap,
+                         .confirm_within = settings_.network.confirm_within,
+                         .command_post = settings_.command_post,
+                         .listen = settings_.team.listen,
+                         .asker = asker});
+}
+
+icd::Checked<void> NetworkChange::change(const network::Numbers& wanted) {
+  if (pending()) return conflict("a change waits to be confirmed or taken back");
+  if (const std::string why = hindrance(); !why.empty()) return conflict(why);
+  network::Wanted request{NetworkRequests::draw_nonce(), settings_.network.confirm_within, wanted};
+  if (const auto asked = requests_.ask(request); !asked)
+    return conflict("it cannot be asked for: " + asked.error());
+  host::log(host::Level::Notice, "a change of the network is asked for",
+            {{"team", network::team_text(wanted)}, {"command_post", network::command_post_text(wanted)}});
+  asked_ = Asked{std::move(request), loop_.now()};
+  not_taken_up_.clear();
+  return {};
+}
+
+icd::Checked<void> NetworkChange::confirm(const std::string& local) {
+  const auto waits = pending();
+  if (!waits) return conflict("no change waits to be confirmed");
+  if (auto may = check_confirmable(waits->wanted, local); !may) return may;
+  return say(network::Word::What::Confirm, *waits);
+}
+
+/// Which address DHCP gave, or the box chose, nobody knows beforehand: it is any but the one that went.
+icd::Checked<void> NetworkChange::check_confirmable(const network::Numbers& wanted,
+                                                    const std::string& local) const {
+  const bool fixed = wanted.mode == network::Mode::Static;
+  const auto kept = status_ ? status_->kept : std::nullopt;
+  const bool stays = kept && kept->mode == wanted.mode && kept->team.address == wanted.team.address;
+  if ((stays || !fixed) && asked_) return conflict("the change is not made yet: try again in a few seconds");
+  const bool new_one = fixed ? local == settings::ipv4_text(wanted.team.address)
+                             : !kept || local != settings::ipv4_text(kept->team.address);
+  if (stays || new_one) return {};
+  return conflict(icd::sentence("confirm it at ", network::page_at(wanted, settings_.team.listen),
+                                ": this came to ", local, ", and says nothing of the new address"));
+}
+
+void NetworkChange::lead_to_endpoints() {
+  refresh();
+  if (!hindrance().empty()) return;
+  network::Endpoints all;
+  const auto add = [&all](const settings::Address& address) {
+    if (const auto number = settings::ipv4_of(address.address)) all.addresses.push_back(*number);
+  };
+  add(settings_.command_post.scoring);
+  add(settings_.command_post.mapping);
+  for (const settings::Course& course : settings_.courses) {
+    add(course.scoring);
+    add(course.mapping);
+  }
+  std::ranges::sort(all.addresses);
+  const auto twice = std::ranges::unique(all.addresses);
+  all.addresses.erase(twice.begin(), twice.end());
+  if (status_->endpoints == all || (told_at_ && loop_.now() < *told_at_ + kTellAgain)) return;
+  told_at_ = loop_.now();
+  if (const auto asked = requests_.ask(all); !asked) {
+    host::log(host::Level::Error, "adit-network cannot be told where the endpoints are",
+              {{"why", asked.error()}});
+  }
+}
+
+std::string NetworkChange::next_hop() const {
+  refresh();
+  const auto endpoint = settings::ipv4_of(settings_.command_post.scoring.address);
+  const auto numbers = present();
+  if (!endpoint || !numbers) return "";
+  if (network::on_link(*numbers, *endpoint) != nullptr) return settings_.command_post.scoring.address;
+  return numbers->gateway ? settings::ipv4_text(*numbers->gateway) : "";
+}
+
+icd::Checked<void> NetworkChange::take_back() {
+  const auto waits = pending();
+  if (!waits) return conflict("no change waits: there is nothing to take back");
+  return say(network::Word::What::Back, *waits);
+}
+
+icd::Checked<void> NetworkChange::say(network::Word::What what, const network::Pending& pending) const {
+  if (const auto asked = requests_.ask(network::Word{pending.nonce, what}); !asked) {
+    return conflict("it cannot be said: " + asked.error());
+  }
+  return {};
+}
+
+std::string NetworkChange::attention() const {
+  const auto waits = pending();
+  const bool bare = status_ && status_->kept && status_->kept->command_post.empty();
+  if (!waits && bare && hindrance().empty()) {
+    return icd::sentence("there is no address on ", settings_.command_post.interface,
+                         " yet: set one in the Command Post's subnet");
+  }
+  if (!waits) return "";
+  const auto left = std::chrono::ceil<std::chrono::seconds>(waits->until - loop_.now()).count();
+  if (left <= 0) return "network change: it is being taken back";
+  return icd::sentence("network change: confirm within ", left, " s at ",
+                       network::page_at(waits->wanted, settings_.team.listen));
+}
+
+}  // namespace adit::admin

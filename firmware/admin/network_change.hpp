@@ -1,0 +1,67 @@
+#pragma once
+
+#include <optional>
+#include <string>
+
+#include "admin/network_requests.hpp"
+#include "api/network.hpp"
+#include "loop/loop.hpp"
+#include "settings/settings.hpp"
+
+namespace adit::admin {
+
+/// The operator's changes of the box's own addresses, as adit-network makes them.
+class NetworkChange final : public api::Network {
+ public:
+  /// adit-network asks the network first whether an address is free, which takes some seconds.
+  static constexpr std::chrono::seconds kTakenUpWithin{30};
+  /// How old what was read of its status may be.
+  static constexpr std::chrono::milliseconds kFresh{50};
+  /// adit-network is told again where the endpoints are, where it does not know, this long after the last
+  /// time.
+  static constexpr std::chrono::seconds kTellAgain{10};
+
+  /// All outlive this.
+  NetworkChange(loop::Loop& loop, const settings::Settings& settings, const NetworkRequests& requests)
+      : loop_(loop), settings_(settings), requests_(requests) {}
+
+  api::NetworkView network() const override;
+  network::Verdict check(const network::Numbers& wanted, const std::string& asker) const override;
+  icd::Checked<void> change(const network::Numbers& wanted) override;
+  icd::Checked<void> confirm(const std::string& local) override;
+  icd::Checked<void> take_back() override;
+
+  /// Sees to it that there are ways to the endpoints of the settings, and of all courses; called each second.
+  void lead_to_endpoints();
+  /// Who answers for them: the first endpoint, or the gateway to it; "": there is no way to it.
+  std::string next_hop() const;
+
+  /// What the operator is to do while a change waits; "" where none does.
+  std::string attention() const;
+
+ private:
+  /// What was asked for and is not in the status yet.
+  struct Asked {
+    network::Wanted wanted;
+    loop::Instant at;
+  };
+  void refresh() const;
+  /// Why nothing can be changed here; "" where it can.
+  std::string hindrance() const;
+  std::optional<network::Pending> pending() const;
+  std::optional<network::Numbers> present() const;
+  /// Where `local` is an address by which the confirmation of a change to `wanted` may come.
+  icd::Checked<void> check_confirmable(const network::Numbers& wanted, const std::string& local) const;
+  icd::Checked<void> say(network::Word::What what, const network::Pending& pending) const;
+
+  loop::Loop& loop_;
+  const settings::Settings& settings_;
+  const NetworkRequests& requests_;
+  mutable std::expected<network::Status, std::string> status_;
+  mutable std::optional<loop::Instant> read_at_;
+  mutable std::optional<Asked> asked_;
+  std::optional<loop::Instant> told_at_;  // where the endpoints are
+  mutable std::string not_taken_up_;      // why the last change came to nothing
+};
+
+}  // namespace adit::admin

@@ -1,0 +1,58 @@
+#include "admin/network_requests.hpp"
+
+#include <unistd.h>
+
+#include <cstdint>
+
+#include "host/random.hpp"
+#include "host/service.hpp"
+
+namespace adit::admin {
+
+std::expected<network::Status, std::string> NetworkRequests::status() const {
+  const auto text = host::read_file(status_ + '/' + network::kStatusFile);
+  if (!text) return std::unexpected(text.error());
+  return network::read_status(*text);
+}
+
+std::optional<network::Probed> NetworkRequests::probed() const {
+  const auto text = host::read_file(status_ + '/' + network::kProbedFile);
+  if (!text) return std::nullopt;
+  auto probed = network::read_probed(*text);
+  return probed ? std::optional(std::move(*probed)) : std::nullopt;
+}
+
+std::expected<void, std::string> NetworkRequests::ask(const network::Wanted& wanted) const {
+  return host::write_file(state_ + '/' + network::kWantedFile, network::write(wanted), host::kOursAlone);
+}
+std::expected<void, std::string> NetworkRequests::ask(const network::Word& word) const {
+  return host::write_file(state_ + '/' + network::kWordFile, network::write(word), host::kOursAlone);
+}
+std::expected<void, std::string> NetworkRequests::ask(const network::Probe& probe) const {
+  return host::write_file(state_ + '/' + network::kProbeFile, network::write(probe), host::kOursAlone);
+}
+std::expected<void, std::string> NetworkRequests::ask(const network::Endpoints& endpoints) const {
+  return host::write_file(state_ + '/' + network::kEndpointsFile, network::write(endpoints),
+                          host::kOursAlone);
+}
+std::expected<void, std::string> NetworkRequests::ask(const network::Forget& forget) const {
+  return host::write_file(state_ + '/' + network::kForgetFile, network::write(forget), host::kOursAlone);
+}
+
+void NetworkRequests::forget_wanted() const {
+  unlink((state_ + '/' + network::kWantedFile).c_str());
+}
+
+std::string NetworkRequests::draw_nonce() {
+  static constexpr char kDigits[] = "0123456789abcdef";
+  std::uint8_t bytes[16];
+  host::fill_random(bytes);
+  std::string nonce;
+  for (const std::uint8_t byte : bytes) {
+    nonce += kDigits[byte >> 4];
+    nonce += kDigits[byte & 15];
+  }
+  return nonce;
+}
+
+}  // namespace adit::admin

@@ -1,0 +1,38 @@
+#pragma once
+
+#include <expected>
+#include <optional>
+#include <string>
+
+#include "network/messages.hpp"
+
+namespace adit::admin {
+
+/// How aditd speaks with adit-network: by files (firmware/network/README.md).
+class NetworkRequests {
+ public:
+  /// `state_folder`: where requests are left; `status_folder`: where they are answered.
+  NetworkRequests(std::string state_folder, std::string status_folder)
+      : state_(std::move(state_folder)), status_(std::move(status_folder)) {}
+
+  /// How it stands, or why nobody says so.
+  std::expected<network::Status, std::string> status() const;
+  /// The last answer to a Probe, if any.
+  std::optional<network::Probed> probed() const;
+
+  std::expected<void, std::string> ask(const network::Wanted& wanted) const;
+  std::expected<void, std::string> ask(const network::Word& word) const;
+  std::expected<void, std::string> ask(const network::Probe& probe) const;
+  std::expected<void, std::string> ask(const network::Endpoints& endpoints) const;
+  std::expected<void, std::string> ask(const network::Forget& forget) const;
+  /// It is not to be done any more, where it has not been begun.
+  void forget_wanted() const;
+
+  /// Never the same twice.
+  static std::string draw_nonce();
+
+ private:
+  std::string state_, status_;
+};
+
+}  // namespace adit::admin

@@ -1,0 +1,42 @@
+#include "admin/session_keeper.hpp"
+
+#include <utility>
+
+#include "access/session_file.hpp"
+#include "host/log.hpp"
+#include "host/service.hpp"
+
+namespace adit::admin {
+namespace {
+
+std::expected<access::KeptSessions, std::string> read(const std::string& file) {
+  if (!host::may_exist(file)) return {};
+  const auto text = host::read_file(file);
+  if (!text) return std::unexpected(text.error());
+  auto kept = access::read_sessions(*text);
+  if (!kept) return std::unexpected(file + ": " + kept.error());
+  return kept;
+}
+
+}  // namespace
+
+SessionKeeper::SessionKeeper(std::string file, access::Instant now)
+    : file_(std::move(file)), boot_(host::boot()), sessions_([this] { keep(); }) {
+  auto kept = read(file_);
+  if (!kept) {
+    host::log(host::Level::Warning, "who is logged in cannot be read: all have to log in again",
+              {{"why", kept.error()}});
+  } else if (kept->boot == boot_) {
+    sessions_.restore(std::move(kept->sessions), kept->last, now);
+  }
+}
+
+void SessionKeeper::keep() {
+  access::KeptSessions kept{.boot = boot_, .last = sessions_.last(), .sessions = sessions_.in_order()};
+  const auto written = host::write_file(file_, access::write_sessions(kept), host::kOursAlone);
+  const bool failed_before = std::exchange(failed_, !written.has_value());
+  if (written || failed_before) return;
+  host::log(host::Level::Warning, "who is logged in is kept in memory alone", {{"why", written.error()}});
+}
+
+}  // namespace adit::admin

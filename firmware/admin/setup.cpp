@@ -1,0 +1,123 @@
+#include "admin/setup.hpp"
+
+#include <algorithm>
+
+#include "forward/channel.hpp"
+#include "host/log.hpp"
+#include "icd/sentence.hpp"
+#include "settings/written.hpp"
+
+namespace adit::admin {
+namespace {
+
+using settings::Settings;
+
+std::unexpected<icd::Refusal> refuse(icd::Status status, std::string sentence) {
+  return std::unexpected(icd::Refusal{status, std::move(sentence)});
+}
+
+icd::Checked<void> being_applied() {
+  return refuse(icd::Status::Conflict, "another change is being applied: try again");
+}
+
+/// "10.0.0.1:8000, [::]:8000"
+std::string listed(const std::vector<settings::Address>& addresses) {
+  std::string text;
+  for (const settings::Address& address : addresses)
+    text.append(text.empty() ? "" : ", ").append(forward::address_text(address));
+  return text;
+}
+
+}  // namespace
+
+std::optional<icd::BearerToken> token_for(const std::string& endpoint, const Settings& settings,
+                                          const host::Secrets& secrets) {
+  const std::string& course = settings.command_post.course;
+  auto own = course.empty() ? std::nullopt : secrets.token(icd::sentence("course.", course, ".", endpoint));
+  return own ? std::move(own) : secrets.token(endpoint);
+}
+
+Setup::Setup(const Store& store, const FactoryReset& reset, const Store::Loaded& loaded, Meaning for_reports,
+             std::function<void()> apply, std::function<void()> anew)
+    : store_(store),
+      reset_(reset),
+      for_reports_(std::move(for_reports)),
+      apply_(std::move(apply)),
+      anew_(std::move(anew)) {
+  runs_with(loaded);
+}
+
+void Setup::runs_with(const Store::Loaded& loaded) {
+  settings_ = loaded.settings;
+  saved_ = loaded.saved;
+  tokens_set_.clear();
+  for (const auto& [name, token] : loaded.secrets.tokens) tokens_set_.push_back(name);
+  applying_ = false;
+}
+
+std::vector<api::TokenRow> Setup::tokens() const {
+  std::vector<api::TokenRow> rows;
+  for (std::string& name : token_names(settings_)) {
+    const bool set = std::ranges::find(tokens_set_, name) != tokens_set_.end();
+    rows.push_back({std::move(name), set});
+  }
+  return rows;
+}
+
+std::vector<std::string> Setup::warnings(const Settings& next) const {
+  std::vector<std::string> sentences;
+  const auto now = settings::in_use(settings_), then = settings::in_use(next);
+  if (now.team.listen != then.team.listen || now.team.interface != then.team.interface) {
+    sentences.push_back(icd::sentence("Adit and this page move from ", listed(now.team.listen), " to ",
+                                      listed(then.team.listen),
+                                      ": open it there, and point robots and stations there"));
+  }
+  if (now.command_post.scoring != then.command_post.scoring) {
+    sentences.push_back(for_reports_(forward::address_text(then.command_post.scoring)));
+  }
+  if (now.command_post.mapping != then.command_post.mapping) {
+    sentences.push_back(icd::sentence("maps, states and markers go to ",
+                                      forward::address_text(then.command_post.mapping),
+                                      " from then on, also those that wait"));
+  }
+  if (!next.team.require_token && settings_.team.require_token) {
+    sentences.emplace_back("whoever is on the team's network may post reports, without a token");
+  }
+  return sentences;
+}
+
+icd::Checked<void> Setup::applied(const std::expected<void, std::string>& written, const char* what,
+                                  const std::function<void()>& apply) {
+  if (!written) {
+    host::log(host::Level::Error, "a change cannot be kept", {{"what", what}, {"why", written.error()}});
+    return refuse(icd::Status::ServiceUnavailable, "the change cannot be kept: " + written.error());
+  }
+  host::log(host::Level::Notice, "a change is applied", {{"what", what}});
+  applying_ = true;
+  apply();
+  return {};
+}
+
+icd::Checked<void> Setup::save(const Settings& next) {
+  if (applying_) return being_applied();
+  const auto changes = settings::changes(settings_, next);
+  if (changes.empty() && is_kept_) return {};
+  for (const settings::Change& change : changes) {
+    host::log(host::Level::Notice, "a setting is changed", {{"setting", change.path}});
+  }
+  const auto written = store_.save(next);
+  is_kept_ = written || store_.take_back();
+  return applied(written, "settings", apply_);
+}
+
+icd::Checked<void> Setup::set_token(const std::string& name, const std::optional<icd::BearerToken>& token) {
+  if (applying_) return being_applied();
+  return applied(store_.save_token(name, token), "a token", apply_);
+}
+
+icd::Checked<void> Setup::reset() {
+  if (applying_) return being_applied();
+  return applied(reset_.begin(), "a factory reset", anew_);
+}
+
+}  // namespace adit::admin

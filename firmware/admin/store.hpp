@@ -1,0 +1,57 @@
+#pragma once
+
+#include <expected>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "host/service.hpp"
+#include "icd/bearer_token.hpp"
+#include "settings/saved.hpp"
+#include "settings/settings.hpp"
+
+namespace adit::admin {
+
+using settings::token_names;
+
+/// Where settings and tokens are kept, and which of them count: those that were saved in the state folder, or
+/// else those that the box was given.
+///
+/// What is saved is on trial until settle(): take_back() makes those before it count again, also after a
+/// crash or a power cut in between.
+class Store {
+ public:
+  Store(std::string given_settings, std::string given_secrets, std::string state_folder);
+
+  struct Loaded {
+    settings::Settings settings;
+    bool saved = false;
+    host::Secrets secrets;
+    std::string trouble;  // why saved settings or tokens do not count, though there are any
+  };
+  /// What counts. An error: neither can be used. Damaged saved settings or tokens are set aside.
+  std::expected<Loaded, std::string> load() const;
+
+  std::expected<void, std::string> save(const settings::Settings& settings) const;
+  std::expected<void, std::string> save_token(const std::string& name,
+                                              const std::optional<icd::BearerToken>& token) const;
+  /// What counts works. Tokens of courses that there are no more are removed: nobody could see them.
+  void settle(const settings::Settings& settings) const;
+  /// False: nothing is on trial.
+  bool take_back() const;
+  /// Forgets all that was saved.
+  std::expected<void, std::string> forget() const;
+
+ private:
+  std::string file() const { return state_ + '/' + settings::kSavedFile; }
+  std::string file_before() const { return state_ + '/' + settings::kFileBefore; }
+  std::string secrets_folder() const { return state_ + '/' + settings::kSecretsFolder; }
+  std::string token_file(const std::string& name) const {
+    return secrets_folder() + "/" + name + settings::kTokenEnding;
+  }
+  std::expected<void, std::string> make_secrets_folder() const;
+
+  std::string given_settings_, given_secrets_, state_;
+};
+
+}  // namespace adit::admin

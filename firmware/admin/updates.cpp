@@ -1,0 +1,135 @@
+#include "admin/updates.hpp"
+
+#include <sys/statvfs.h>
+
+#include <cerrno>
+#include <cstring>
+#include <utility>
+
+#include "admin/network_requests.hpp"
+#include "host/log.hpp"
+#include "icd/sentence.hpp"
+
+namespace adit::admin {
+namespace {
+
+icd::Refusal conflict(std::string sentence) {
+  return {icd::Status::Conflict, std::move(sentence)};
+}
+
+/// Why a bundle of that size has no place in the folder.
+std::optional<icd::Refusal> no_room(const std::string& folder, std::uint64_t size) {
+  struct statvfs disk{};
+  if (statvfs(folder.c_str(), &disk) != 0) {
+    return icd::Refusal{icd::Status::ServiceUnavailable,
+                        "the disk cannot be asked for its room: " + std::string(std::strerror(errno))};
+  }
+  const std::uint64_t free = std::uint64_t{disk.f_bavail} * disk.f_frsize;
+  if (free >= size + Updates::kSpared) return std::nullopt;
+  return icd::Refusal{icd::Status::ServiceUnavailable,
+                      icd::sentence("the bundle has ", size, " bytes, and the disk has room for ",
+                                    free > Updates::kSpared ? free - Updates::kSpared : 0)};
+}
+
+}  // namespace
+
+Updates::Updates(loop::Loop& loop, loop::Writer& writer, UpdateRequests requests,
+                 std::function<std::string()> under_way)
+    : loop_(loop), writer_(writer), requests_(std::move(requests)), under_way_(std::move(under_way)) {
+  unlink(requests_.part_file().c_str());  // of an upload that a power cut broke off
+}
+
+void Updates::refresh() const {
+  const loop::Instant now = loop_.now();
+  if (read_at_ && now < *read_at_ + kFresh) return;
+  read_at_ = now;
+  status_ = requests_.status();
+  if (!asked_) return;
+  if (status_ && status_->nonce == asked_->request.nonce) {
+    asked_.reset();
+  } else if (now >= asked_->at + kTakenUpWithin) {
+    requests_.forget();
+    asked_.reset();
+    not_taken_up_ = "adit-update did not take it up: see journalctl -u adit-update";
+    host::log(host::Level::Error, "an update was not taken up by adit-update");
+  }
+}
+
+api::UpdateView Updates::update() const {
+  refresh();
+  api::UpdateView view;
+  view.why = status_ ? status_->trouble : "adit-update does not run here: " + status_.error();
+  view.managed = view.why.empty();
+  if (status_) {
+    view.running = status_->running;
+    view.doing = status_->doing;
+    view.progress = status_->progress;
+    view.refusal = status_->refusal;
+    view.last = status_->last;
+    view.trial = status_->trial;
+    view.stick = status_->stick;
+    view.stick_why = status_->stick_trouble;
+  }
+  if (!not_taken_up_.empty()) view.refusal = not_taken_up_;
+  if (receiving_ != nullptr) {
+    view.doing = "receiving";
+    view.progress = static_cast<int>(100 * receiving_->received() / expected_);
+    view.refusal.clear();
+  } else if (asked_) {
+    view.doing = asked_->request.what == update::Request::What::Restart ? "restarting" : "checking";
+    view.refusal.clear();
+  }
+  return view;
+}
+
+std::optional<icd::Refusal> Updates::hindrance() const {
+  const api::UpdateView view = update();
+  if (!view.managed) return conflict(view.why);
+  if (!view.doing.empty())
+    return conflict(icd::sentence("the box is ", view.doing, " already: wait for its end"));
+  return std::nullopt;
+}
+
+icd::Checked<std::unique_ptr<api::Upload>> Updates::receive(std::uint64_t size, bool again,
+                                                            std::function<void()> resume) {
+  if (auto why = hindrance()) return std::unexpected(std::move(*why));
+  if (auto why = no_room(requests_.state_folder(), size)) return std::unexpected(std::move(*why));
+  auto upload = UpdateUpload::begin(
+      writer_, {.part = requests_.part_file(),
+                .whole = requests_.bundle_file(),
+                .size = size,
+                .resume = std::move(resume),
+                .asked = [this, again] { return ask(update::Request::What::Install, again); },
+                .over = [this] { receiving_ = nullptr; }});
+  if (!upload) return std::unexpected(std::move(upload.error()));
+  host::log(host::Level::Notice, "an update is being received", {{"bytes", std::to_string(size)}});
+  receiving_ = upload->get();
+  expected_ = size;
+  not_taken_up_.clear();
+  return std::unique_ptr<api::Upload>(std::move(*upload));
+}
+
+icd::Checked<void> Updates::install_from_stick(bool again) {
+  if (auto why = hindrance()) return std::unexpected(std::move(*why));
+  return ask(update::Request::What::Stick, again);
+}
+
+icd::Checked<void> Updates::restart(bool anyway) {
+  if (auto why = hindrance()) return std::unexpected(std::move(*why));
+  const std::string report = anyway ? "" : under_way_();
+  if (!report.empty()) return std::unexpected(conflict(report));
+  return ask(update::Request::What::Restart, false);
+}
+
+icd::Checked<void> Updates::ask(update::Request::What what, bool again) {
+  update::Request request{.nonce = NetworkRequests::draw_nonce(), .what = what, .again = again};
+  if (const auto asked = requests_.ask(request); !asked) {
+    return std::unexpected(
+        icd::Refusal{icd::Status::ServiceUnavailable, "it cannot be asked for: " + asked.error()});
+  }
+  asked_ = Asked{std::move(request), loop_.now()};
+  not_taken_up_.clear();
+  return {};
+}
+
+}  // namespace adit::admin

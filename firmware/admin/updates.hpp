@@ -1,0 +1,61 @@
+#pragma once
+
+#include <functional>
+#include <optional>
+#include <string>
+
+#include "admin/update_requests.hpp"
+#include "admin/update_upload.hpp"
+#include "api/updates.hpp"
+#include "loop/loop.hpp"
+#include "loop/workers.hpp"
+
+namespace adit::admin {
+
+/// The operator's updates of the box, as adit-update makes them.
+class Updates final : public api::Updates {
+ public:
+  /// adit-update begins within that time, unless it does not run here.
+  static constexpr std::chrono::seconds kTakenUpWithin{60};
+  /// How old what was read of its status may be.
+  static constexpr std::chrono::milliseconds kFresh{100};
+  /// What stays free on the disk beside a bundle: for the ledger above all.
+  static constexpr std::uint64_t kSpared = 16 << 20;
+
+  /// `under_way`: a sentence about the report that the Command Post is being sent, or "". All outlive this.
+  Updates(loop::Loop& loop, loop::Writer& writer, UpdateRequests requests,
+          std::function<std::string()> under_way);
+
+  api::UpdateView update() const override;
+  icd::Checked<std::unique_ptr<api::Upload>> receive(std::uint64_t size, bool again,
+                                                     std::function<void()> resume) override;
+  icd::Checked<void> install_from_stick(bool again) override;
+  icd::Checked<void> restart(bool anyway) override;
+
+  /// Something is being received, checked or installed, or the box is about to be started anew.
+  bool running() const { return !update().doing.empty(); }
+
+ private:
+  /// What was asked for and is not in the status yet.
+  struct Asked {
+    update::Request request;
+    loop::Instant at;
+  };
+  void refresh() const;
+  /// Why nothing can be asked for now; nothing: it can.
+  std::optional<icd::Refusal> hindrance() const;
+  icd::Checked<void> ask(update::Request::What what, bool again);
+
+  loop::Loop& loop_;
+  loop::Writer& writer_;
+  UpdateRequests requests_;
+  std::function<std::string()> under_way_;
+  std::uint64_t expected_ = 0;               // bytes of what is being received; 0: nothing is
+  const UpdateUpload* receiving_ = nullptr;  // while it is
+  mutable std::expected<update::Status, std::string> status_;
+  mutable std::optional<loop::Instant> read_at_;
+  mutable std::optional<Asked> asked_;
+  mutable std::string not_taken_up_;  // why the last request came to nothing
+};
+
+}  // namespace adit::admin

@@ -1,0 +1,46 @@
+#include "api/answers.hpp"
+
+#include <utility>
+
+#include "icd/sentence.hpp"
+#include "intake/icd_routes.hpp"
+
+namespace adit::api {
+namespace {
+
+/// Nothing but the page's own files may be loaded or called, and nothing may frame it.
+constexpr const char* kContentSecurityPolicy =
+    "default-src 'none'; script-src 'self'; style-src 'self'; img-src 'self'; connect-src 'self'; "
+    "base-uri 'none'; frame-ancestors 'none'; form-action 'none'";
+
+}  // namespace
+
+intake::Answer guarded(intake::Answer answer) {
+  answer.headers.push_back({"Content-Security-Policy", kContentSecurityPolicy});
+  answer.headers.push_back({"X-Content-Type-Options", "nosniff"});
+  answer.headers.push_back({"Referrer-Policy", "no-referrer"});
+  return answer;
+}
+
+intake::Answer fresh(std::string content_type, std::string body) {
+  return guarded({.content_type = std::move(content_type),
+                  .body = std::move(body),
+                  .headers = {{"Cache-Control", "no-store"}}});
+}
+
+intake::Answer refusal(icd::Status status, std::string_view sentence) {
+  return guarded(intake::error_answer(status, sentence));
+}
+
+intake::Answer nothing_here() {
+  return refusal(icd::Status::NotFound, "there is nothing at this path");
+}
+
+intake::Answer wrong_method(std::string_view allowed) {
+  const auto first = allowed.substr(0, allowed.find(','));
+  auto answer = refusal(icd::Status::MethodNotAllowed, icd::sentence("expected ", first));
+  answer.headers.push_back({"Allow", std::string(allowed)});
+  return answer;
+}
+
+}  // namespace adit::api

@@ -1,0 +1,94 @@
+#pragma once
+
+#include <cstdint>
+#include <functional>
+#include <optional>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "api/run_view.hpp"
+
+namespace adit::api {
+
+/// A record of the log. All text is visible ASCII: what was not is escaped.
+struct LogRecord {
+  std::uint64_t seq = 0;  // counts all that was ever logged since the start
+  Time at = 0;            // on the wall clock
+  int severity = 6;       // syslog's (RFC 5424): 0 is the worst
+  std::string level;      // its name: "error", "warning", "notice", "info", "debug"
+  std::string message;
+  std::vector<std::pair<std::string, std::string>> fields;
+  std::string line;  // all of it, as the log has it
+};
+
+/// What is refused to the team, counted since the start.
+struct RefusedCount {
+  std::string uri;
+  int status = 0;
+  std::uint64_t count = 0;  // messages
+  std::uint64_t parts = 0;  // of states and markers: poses and markers
+};
+
+/// What the process has used and done since the start.
+struct Usage {
+  Time started = 0;
+  double cpu_seconds = 0;
+  std::uint64_t resident_bytes = 0, open_files = 0, most_files = 0, threads = 0;
+  std::uint64_t connections = 0;    // of the team's side, now
+  std::uint64_t sent_bytes = 0;     // of bodies, to both endpoints
+  std::uint64_t aside_dropped = 0;  // what was set aside and made place for newer ones
+  std::uint64_t exceptions = 0;     // that were caught at the program's edge: loop/guard.hpp
+  std::vector<RefusedCount> refused;
+};
+
+/// A library that is in the program.
+struct PartRow {
+  std::string name, version, licence;  // licence: SPDX
+};
+
+struct About {
+  std::string version, build;  // build: "9f1c2ab0d3e4, GCC 12.2.0, Release"
+  std::string licence;         // of Adit itself
+  Time started = 0;
+  std::string kernel, model;                 // "": not known
+  std::string board = "", board_title = "";  // of the board's file; "": there is none
+  std::vector<PartRow> parts;
+};
+
+struct InterfaceRow {
+  std::string name;
+  bool up = false;
+  std::optional<bool> carrier;
+  std::vector<std::string> addresses;  // "10.0.0.1/24"
+};
+
+struct RouteRow {
+  std::string destination, gateway, interface;  // gateway "": on the link
+  unsigned metric = 0;
+};
+
+struct NetworkState {
+  std::vector<InterfaceRow> interfaces;
+  std::vector<RouteRow> routes;
+  std::string trouble;  // why the interfaces cannot be told, or ""
+};
+
+/// The box and its service, as the page tells of them.
+class Box {
+ public:
+  virtual ~Box() = default;
+  /// The records after the one of that number that are remembered, oldest first. Never a token in them.
+  virtual std::vector<LogRecord> log(std::uint64_t after) const = 0;
+  /// The number of the last record there was.
+  virtual std::uint64_t logged() const = 0;
+  virtual Usage usage() const = 0;
+  virtual About about() const = 0;
+  virtual NetworkState network() const = 0;
+  /// The settings that it runs with: JSON without a token.
+  virtual std::string settings() const = 0;
+  /// Runs `work`, which takes long, beside the loop, then `done` on it.
+  virtual void work(std::function<void()> work, std::function<void()> done) = 0;
+};
+
+}  // namespace adit::api

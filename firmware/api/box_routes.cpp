@@ -1,0 +1,115 @@
+#include "api/box_routes.hpp"
+
+#include <ctime>
+#include <utility>
+
+#include "api/answers.hpp"
+#include "api/box_json.hpp"
+#include "api/bundle.hpp"
+#include "api/exposition.hpp"
+#include "api/metrics.hpp"
+#include "api/reports_json.hpp"
+#include "api/small_body.hpp"
+
+namespace adit::api {
+namespace {
+
+constexpr std::string_view kMetrics = "/metrics", kLog = "/adit/log", kLogText = "/adit/log.txt",
+                           kAbout = "/adit/about", kBundle = "/adit/bundle";
+
+/// "adit-support-20260131T120000Z"
+std::string bundle_name(Time now) {
+  const auto seconds = static_cast<std::time_t>(now);
+  std::tm parts{};
+  gmtime_r(&seconds, &parts);
+  char text[48];
+  return {text, std::strftime(text, sizeof text, "adit-support-%Y%m%dT%H%M%SZ", &parts)};
+}
+
+intake::Answer download(intake::Answer answer, const std::string& name) {
+  answer.headers.push_back({"Content-Disposition", "attachment; filename=\"" + name + "\""});
+  return answer;
+}
+
+}  // namespace
+
+bool BoxRoutes::has(std::string_view path) {
+  return path == kMetrics || path == kLog || path == kLogText || path == kAbout || path == kBundle;
+}
+
+std::unique_ptr<intake::Exchange> BoxRoutes::open(const intake::RequestHead& head,
+                                                  const std::shared_ptr<intake::Responder>& responder) {
+  const bool is_bundle = head.path() == kBundle;
+  const auto visitor = entrance_.admit(head, is_bundle ? access::Role::Operator : access::Role::Viewer);
+  if (visitor && only_reads(head) && is_bundle) {
+    return std::make_unique<SmallBody>(responder, 0,
+                                       [this, responder](const std::string&) { bundle(responder); });
+  }
+  responder->answer(!visitor            ? turned_away(visitor.error())
+                    : !only_reads(head) ? wrong_method(kReading)
+                                        : shown(head));
+  return nullptr;
+}
+
+intake::Answer BoxRoutes::shown(const intake::RequestHead& head) const {
+  if (head.path() == kMetrics) return metrics();
+  if (head.path() == kLog) return log(head);
+  if (head.path() == kLogText) return log_text(head);
+  return fresh("application/json", write_about(box_.about(), loop_.stamp_now()));
+}
+
+std::string BoxRoutes::metrics_text() const {
+  Measured measured{
+      .view = source_.view(), .reports = source_.reports(), .usage = box_.usage(), .about = box_.about()};
+  for (const access::Session& session : entrance_.sessions().all(loop_.now())) {
+    ++(session.role == access::Role::Operator ? measured.operators : measured.viewers);
+  }
+  return write_metrics(measured);
+}
+
+intake::Answer BoxRoutes::metrics() const {
+  return fresh(Exposition::kContentType, metrics_text());
+}
+
+intake::Answer BoxRoutes::log(const intake::RequestHead& head) const {
+  const auto filter = read_log_filter(head);
+  if (!filter) return refusal(filter.error().status, filter.error().sentence);
+  auto records = box_.log(filter->after);
+  const std::uint64_t last = box_.logged();
+  std::erase_if(records, [&](const LogRecord& record) { return !filter->lets(record); });
+  return fresh("application/json", write_log(records, last));
+}
+
+std::string BoxRoutes::log_lines(const LogFilter& filter) const {
+  std::string lines;
+  for (const LogRecord& record : box_.log(filter.after)) {
+    if (filter.lets(record)) lines += record.line + "\n";
+  }
+  return lines;
+}
+
+intake::Answer BoxRoutes::log_text(const intake::RequestHead& head) const {
+  const auto filter = read_log_filter(head);
+  if (!filter) return refusal(filter.error().status, filter.error().sentence);
+  return download(fresh("text/plain; charset=utf-8", log_lines(*filter)), "adit-log.txt");
+}
+
+void BoxRoutes::bundle(const std::shared_ptr<intake::Responder>& responder) {
+  const Time now = loop_.stamp_now();
+  auto files = std::make_shared<std::vector<BundleFile>>();
+  files->push_back({"about.json", write_about(box_.about(), now)});
+  files->push_back({"run.json", write_run_view(source_.view())});
+  files->push_back({"reports.json", write_reports(source_.reports())});
+  files->push_back({"settings.json", box_.settings()});
+  files->push_back({"network.json", write_network(box_.network())});
+  files->push_back({"metrics.txt", metrics_text()});
+  files->push_back({"log.txt", log_lines({})});
+  auto packed = std::make_shared<std::string>();
+  box_.work([files, packed, now] { *packed = write_bundle(std::move(*files), bundle_name(now), now); },
+            [responder, packed, now] {
+              responder->answer(
+                  download(fresh("application/gzip", std::move(*packed)), bundle_name(now) + ".tar.gz"));
+            });
+}
+
+}  // namespace adit::api

@@ -1,0 +1,41 @@
+#pragma once
+
+#include <memory>
+#include <string_view>
+
+#include "api/box.hpp"
+#include "api/entrance.hpp"
+#include "api/log_filter.hpp"
+#include "api/source.hpp"
+#include "intake/server.hpp"
+
+namespace adit::api {
+
+/// Of the box itself: metrics, log, about and support bundle. README.md has the routes.
+class BoxRoutes {
+ public:
+  /// All outlive this, and whatever `box` still works on.
+  BoxRoutes(const Source& source, Box& box, Entrance& entrance, loop::Loop& loop)
+      : source_(source), box_(box), entrance_(entrance), loop_(loop) {}
+
+  static bool has(std::string_view path);
+  /// Requires has(head.path()). Judges itself who may come in.
+  std::unique_ptr<intake::Exchange> open(const intake::RequestHead& head,
+                                         const std::shared_ptr<intake::Responder>& responder);
+
+ private:
+  intake::Answer shown(const intake::RequestHead& head) const;
+  intake::Answer metrics() const;
+  intake::Answer log(const intake::RequestHead& head) const;
+  intake::Answer log_text(const intake::RequestHead& head) const;
+  void bundle(const std::shared_ptr<intake::Responder>& responder);
+  std::string metrics_text() const;
+  std::string log_lines(const LogFilter& filter) const;
+
+  const Source& source_;
+  Box& box_;
+  Entrance& entrance_;
+  loop::Loop& loop_;
+};
+
+}  // namespace adit::api

@@ -1,0 +1,31 @@
+#pragma once
+
+#include <initializer_list>
+#include <string>
+#include <string_view>
+#include <utility>
+
+namespace adit::api {
+
+/// Metrics in Prometheus' text exposition format, version 0.0.4. The samples of a metric follow it at once.
+class Exposition {
+ public:
+  static constexpr const char* kContentType = "text/plain; version=0.0.4; charset=utf-8";
+  using Label = std::pair<std::string_view, std::string_view>;
+
+  /// Begins a metric. A counter's name ends in "_total".
+  void counter(std::string_view name, std::string_view help) { begin(name, "counter", help); }
+  void gauge(std::string_view name, std::string_view help) { begin(name, "gauge", help); }
+  /// A sample of the metric that was begun last; each set of labels once.
+  void sample(std::initializer_list<Label> labels, double value);
+  void sample(double value) { sample({}, value); }
+
+  const std::string& text() const { return text_; }
+
+ private:
+  void begin(std::string_view name, std::string_view type, std::string_view help);
+
+  std::string text_, name_;
+};
+
+}  // namespace adit::api

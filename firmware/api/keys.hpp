@@ -1,0 +1,46 @@
+#pragma once
+
+#include <functional>
+#include <optional>
+#include <string>
+#include <string_view>
+
+#include "access/role.hpp"
+#include "access/sessions.hpp"
+#include "icd/status.hpp"
+
+namespace adit::api {
+
+/// The passwords, who is logged in, and what is random: what the login needs of the box. For the loop;
+/// hashing takes tens of milliseconds, so what hashes answers later, on the loop.
+class Keys {
+ public:
+  virtual ~Keys() = default;
+
+  /// No operator's password is set: the code sets it.
+  virtual bool first_start() const = 0;
+  /// False where it is not the first start.
+  virtual bool is_code(std::string_view presented) const = 0;
+
+  /// Somebody at the box itself opened set-up with its button: who comes may set the operator's password
+  /// without the present one or the code, until one is set.
+  virtual bool set_up_open() const = 0;
+
+  /// Tells whose password it is, if anybody's. `address`: who says so, for the log.
+  virtual void check(std::string password, std::string address,
+                     std::function<void(std::optional<access::Role>)> done) = 0;
+
+  /// Sets a role's password, which has passed access::check_new(), or takes it away (nothing; the viewer's
+  /// alone). Refused: 409 while another is being set, 422 where it is the other role's, 503 where it cannot
+  /// be kept.
+  virtual void set(access::Role role, std::optional<std::string> password,
+                   std::function<void(icd::Checked<void>)> done) = 0;
+
+  /// Those who are logged in; kept where they outlive the page.
+  virtual access::Sessions& sessions() = 0;
+
+  /// Never the same twice.
+  virtual access::Secret draw() = 0;
+};
+
+}  // namespace adit::api

@@ -1,0 +1,46 @@
+#include "api/log_filter.hpp"
+
+#include <algorithm>
+#include <array>
+#include <utility>
+
+#include "api/number_in.hpp"
+
+namespace adit::api {
+namespace {
+
+constexpr std::array<std::pair<std::string_view, int>, 5> kLevels = {
+    {{"error", 3}, {"warning", 4}, {"notice", 5}, {"info", 6}, {"debug", 7}}};
+
+char lower(char c) {
+  return c >= 'A' && c <= 'Z' ? static_cast<char>(c - 'A' + 'a') : c;
+}
+
+std::unexpected<icd::Refusal> wrong(std::string sentence) {
+  return std::unexpected(icd::Refusal{icd::Status::BadRequest, std::move(sentence)});
+}
+
+}  // namespace
+
+bool LogFilter::lets(const LogRecord& record) const {
+  if (record.severity > severity || record.seq <= after) return false;
+  const auto same = [](char a, char b) { return lower(a) == lower(b); };
+  return text.empty() || !std::ranges::search(record.line, text, same).empty();
+}
+
+icd::Checked<LogFilter> read_log_filter(const intake::RequestHead& head) {
+  LogFilter filter{.text = std::string(head.query("text"))};
+  if (const auto level = head.query("level"); !level.empty()) {
+    const auto known = std::ranges::find(kLevels, level, [](const auto& each) { return each.first; });
+    if (known == kLevels.end()) return wrong("level: expected error, warning, notice, info or debug");
+    filter.severity = known->second;
+  }
+  if (const auto since = head.query("since"); !since.empty()) {
+    const auto number = number_in<std::uint64_t>(since);
+    if (!number) return wrong("since: expected the number of a record");
+    filter.after = *number;
+  }
+  return filter;
+}
+
+}  // namespace adit::api

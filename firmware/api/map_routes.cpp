@@ -1,0 +1,112 @@
+#include "api/map_routes.hpp"
+
+#include <cmath>
+#include <optional>
+#include <vector>
+
+#include "api/answers.hpp"
+#include "api/map_json.hpp"
+#include "api/number_in.hpp"
+#include "icd/sentence.hpp"
+#include "picture/png.hpp"
+
+namespace adit::api {
+namespace {
+
+constexpr std::string_view kMap = "/adit/map", kTiles = "/adit/map/", kPng = ".png";
+constexpr std::string_view kMerged = "-";  // for the robot "", which no path could name
+
+std::vector<std::string_view> parts_of(std::string_view path) {
+  std::vector<std::string_view> parts;
+  while (true) {
+    const auto slash = path.find('/');
+    parts.push_back(path.substr(0, slash));
+    if (slash == std::string_view::npos) return parts;
+    path.remove_prefix(slash + 1);
+  }
+}
+
+struct TilePath {
+  picture::Layer layer;
+  picture::TileAt at;
+};
+
+/// "grid/ugv1/0/3/-2.png".
+std::optional<TilePath> tile_path(std::string_view path) {
+  if (!path.ends_with(kPng)) return {};
+  const auto parts = parts_of(path.substr(0, path.size() - kPng.size()));
+  if (parts.size() != 5 || (parts[0] != "grid" && parts[0] != "cloud") || parts[1].empty()) return {};
+  const auto level = number_in<int>(parts[2]), x = number_in<int>(parts[3]), y = number_in<int>(parts[4]);
+  if (!level || !x || !y) return {};
+  return TilePath{{.robot = parts[1] == kMerged ? "" : std::string(parts[1]),
+                   .kind = parts[0] == "grid" ? picture::Kind::Grid : picture::Kind::Cloud},
+                  {*level, *x, *y}};
+}
+
+/// A number of the query: absent, or a finite one, or no number at all.
+struct Asked {
+  std::optional<double> number;
+  bool wrong = false;
+};
+Asked asked(const intake::RequestHead& head, std::string_view name) {
+  const std::string_view text = head.query(name);
+  if (text.empty()) return {};
+  const auto number = number_in<double>(text);
+  if (!number || !std::isfinite(*number)) return {.number = {}, .wrong = true};
+  return {.number = number};
+}
+
+intake::Answer bad_query(std::string_view sentence) {
+  return refusal(icd::Status::BadRequest, sentence);
+}
+
+/// Says which state of a tile it is, whatever the box was restarted for since.
+std::string etag_of(const picture::Packed& tile) {
+  return icd::sentence("\"", tile.crc, "-", tile.deflated.size(), "\"");
+}
+
+}  // namespace
+
+bool MapRoutes::has(std::string_view path) {
+  return path == kMap || path.starts_with(kTiles);
+}
+
+intake::Answer MapRoutes::answer(const intake::RequestHead& head) const {
+  if (!only_reads(head)) return wrong_method(kReading);
+  return head.path() == kMap ? layers(head) : tile(head);
+}
+
+intake::Answer MapRoutes::layers(const intake::RequestHead& head) const {
+  const std::string_view text = head.query("since");
+  const auto since = text.empty() ? 0 : number_in<std::uint64_t>(text);
+  if (!since) return bad_query("since: expected a version, a whole number");
+  return fresh("application/json", write_map(source_.map(), *since));
+}
+
+intake::Answer MapRoutes::tile(const intake::RequestHead& head) const {
+  const auto path = tile_path(head.path().substr(kTiles.size()));
+  if (!path) return nothing_here();
+  const Asked at = asked(head, "at"), low = asked(head, "low"), high = asked(head, "high");
+  if (at.wrong) return bad_query("at: expected seconds since 1970");
+  if (low.wrong || high.wrong) return bad_query("low and high: expected metres");
+  const auto shown = source_.map().tile(path->layer, path->at, at.number);
+  if (shown.tile == nullptr) return refusal(icd::Status::NotFound, "nothing is drawn here");
+
+  intake::Answer answer{.content_type = "image/png", .body = {}, .headers = {}};
+  const std::string etag = etag_of(*shown.tile);
+  answer.headers.push_back({"ETag", etag});
+  // What was followed by another state does not change any more; the newest is asked for each time.
+  answer.headers.push_back({"Cache-Control", shown.newest ? "no-cache" : "max-age=3600"});
+  if (head.header("If-None-Match").contains(etag)) {
+    answer.status = kNotModified;
+  } else if (path->layer.kind == picture::Kind::Grid) {
+    answer.body = picture::write_png(*shown.tile, picture::grid_palette());
+  } else {
+    answer.body =
+        picture::write_png(*shown.tile, picture::cloud_palette(low.number.value_or(picture::kLowest),
+                                                               high.number.value_or(picture::kHighest)));
+  }
+  return guarded(std::move(answer));
+}
+
+}  // namespace adit::api

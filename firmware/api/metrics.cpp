@@ -1,0 +1,190 @@
+#include "api/metrics.hpp"
+
+#include <algorithm>
+#include <map>
+
+#include "api/exposition.hpp"
+
+namespace adit::api {
+namespace {
+
+constexpr double kBytesPerMbit = 1e6 / 8;
+constexpr const char* kStates[] = {"received", "waiting", "sending", "in doubt",
+                                   "answered", "settled", "refused", "withdrawn"};
+
+double number(std::uint64_t value) {
+  return static_cast<double>(value);
+}
+
+void write_box(Exposition& out, const Measured& measured) {
+  const Usage& usage = measured.usage;
+  out.gauge("adit_build_info", "The program that runs; always 1.");
+  out.sample({{"version", measured.about.version}, {"build", measured.about.build}}, 1);
+  out.gauge("adit_process_start_time_seconds", "When the process began, in seconds since 1970.");
+  out.sample(usage.started);
+  out.counter("adit_process_cpu_seconds_total", "Processor time that the process used.");
+  out.sample(usage.cpu_seconds);
+  out.gauge("adit_process_resident_memory_bytes", "Memory that the process holds.");
+  out.sample(number(usage.resident_bytes));
+  out.gauge("adit_process_open_fds", "File descriptors that are open.");
+  out.sample(number(usage.open_files));
+  out.gauge("adit_process_max_fds", "File descriptors that may be open.");
+  out.sample(number(usage.most_files));
+  out.gauge("adit_process_threads", "Threads of the process.");
+  out.sample(number(usage.threads));
+  out.gauge("adit_connections", "Connections of the team's side.");
+  out.sample(number(usage.connections));
+  out.counter("adit_exceptions_total", "Requests, answers and jobs that were ended by an exception.");
+  out.sample(number(usage.exceptions));
+  out.gauge("adit_sessions", "Logins that have not ended.");
+  out.sample({{"role", "operator"}}, number(measured.operators));
+  out.sample({{"role", "viewer"}}, number(measured.viewers));
+  out.gauge("adit_attention", "What waits for the operator: sentences on the page.");
+  out.sample(number(measured.view.attention.size()));
+  out.gauge("adit_light", "The lights on the box, each with its pattern; always 1.");
+  for (const LightRow& light : measured.view.lights) {
+    out.sample({{"light", light.name}, {"pattern", light.pattern}}, 1);
+  }
+}
+
+void write_run(Exposition& out, const RunView& view) {
+  out.gauge("adit_run_number", "The run, as Adit counts them.");
+  out.sample(static_cast<double>(view.run_number));
+  if (!view.run) return;
+  out.gauge("adit_run_info", "The run as the Command Post names it; always 1.");
+  out.sample({{"team", view.run->current_team}, {"run", view.run_id}}, 1);
+  out.gauge("adit_run_clock_seconds", "The run's clock, as last heard.");
+  out.sample(static_cast<double>(view.run->run_clock));
+  out.gauge("adit_run_score", "The team's score, as last heard.");
+  out.sample(static_cast<double>(view.run->score));
+  out.gauge("adit_run_remaining_reports", "Reports that are left, as last heard.");
+  out.sample(static_cast<double>(view.run->remaining_reports));
+  if (!view.run_heard) return;
+  out.gauge("adit_run_heard_age_seconds", "How long ago the run's status was heard.");
+  out.sample(view.now - *view.run_heard);
+}
+
+void write_reports(Exposition& out, const std::vector<ReportRow>& reports) {
+  std::map<std::string, std::uint64_t> states;
+  for (const char* state : kStates) states[state] = 0;
+  std::uint64_t asking = 0;
+  for (const ReportRow& report : reports) {
+    ++states[report.state];
+    if (report.asking) ++asking;
+  }
+  out.gauge("adit_reports", "Artifact reports of all runs, by where they are in their lives.");
+  for (const auto& [state, count] : states) out.sample({{"state", state}}, number(count));
+  out.gauge("adit_reports_asking", "Reports in doubt of which Adit is finding out what became.");
+  out.sample(number(asking));
+}
+
+void write_endpoints(Exposition& out, const RunView& view) {
+  out.gauge("adit_endpoint_up", "1 where there is a connection to the Command Post's endpoint, else 0.");
+  for (const EndpointRow& row : view.endpoints) out.sample({{"endpoint", row.name}}, row.connected ? 1 : 0);
+  out.gauge("adit_endpoint_answer_seconds", "How long the endpoint's last answer took.");
+  for (const EndpointRow& row : view.endpoints) {
+    if (row.answer_ms) out.sample({{"endpoint", row.name}}, *row.answer_ms / 1000);
+  }
+  out.gauge("adit_endpoint_last_status", "The HTTP status of the last request's answer; 0: none came.");
+  for (const EndpointRow& row : view.endpoints) out.sample({{"endpoint", row.name}}, row.last_status);
+  out.counter("adit_endpoint_throttled_total", "Answers of 429.");
+  for (const EndpointRow& row : view.endpoints) out.sample({{"endpoint", row.name}}, number(row.throttled));
+  out.counter("adit_endpoint_foreign_total", "Answers that no Command Post gives: pages of HTML, redirects.");
+  for (const EndpointRow& row : view.endpoints) out.sample({{"endpoint", row.name}}, number(row.foreign));
+}
+
+void write_link(Exposition& out, const Measured& measured) {
+  out.counter("adit_link_sent_bytes_total", "Bytes of bodies sent to both endpoints.");
+  out.sample(number(measured.usage.sent_bytes));
+  out.gauge("adit_link_rate_bytes_per_second", "The same over the last seconds.");
+  out.sample(measured.view.sent_mbit * kBytesPerMbit);
+  out.gauge("adit_link_budget_bytes_per_second", "What the link may be used for; 0: no limit is set.");
+  out.sample(measured.view.budget_mbit * kBytesPerMbit);
+  out.gauge("adit_queue_bytes", "Bytes of maps that wait.");
+  out.sample(number(measured.view.queued_bytes));
+  out.gauge("adit_set_aside",
+            "Messages that the Command Post would not take and nothing newer has replaced.");
+  out.sample(
+      number(static_cast<std::size_t>(std::ranges::count(measured.view.aside, false, &AsideRow::overtaken))));
+  out.counter("adit_set_aside_dropped_total", "Messages set aside that made place for newer ones.");
+  out.sample(number(measured.usage.aside_dropped));
+}
+
+/// A counter of each robot and kind.
+void write_counter(Exposition& out, const RunView& view, const char* name, const char* help,
+                   std::uint64_t ActivityRow::* count) {
+  out.counter(name, help);
+  for (const ActivityRow& row : view.activities) {
+    out.sample({{"kind", row.kind}, {"robot", row.robot}}, number(row.*count));
+  }
+}
+
+void write_age(Exposition& out, const RunView& view, const char* name, const char* help,
+               std::optional<Time> ActivityRow::* at) {
+  out.gauge(name, help);
+  for (const ActivityRow& row : view.activities) {
+    if (row.*at) out.sample({{"kind", row.kind}, {"robot", row.robot}}, view.now - *(row.*at));
+  }
+}
+
+void write_updates(Exposition& out, const RunView& view) {
+  write_counter(out, view, "adit_updates_accepted_total", "Updates taken from the team.",
+                &ActivityRow::accepted);
+  write_counter(out, view, "adit_updates_forwarded_total", "Updates that the Command Post took.",
+                &ActivityRow::forwarded);
+  write_counter(out, view, "adit_updates_replaced_total", "Updates that newer ones covered before they went.",
+                &ActivityRow::replaced);
+  write_counter(out, view, "adit_updates_merged_total", "Updates that went as parts of others.",
+                &ActivityRow::merged);
+  write_counter(out, view, "adit_updates_throttled_total", "Answers of 429, after which it went again.",
+                &ActivityRow::throttled);
+  write_counter(out, view, "adit_updates_failed_total", "Tries without an answer, after which it went again.",
+                &ActivityRow::failed);
+  write_counter(out, view, "adit_updates_refused_total", "Updates that the Command Post refused for good.",
+                &ActivityRow::refused_upstream);
+  out.gauge("adit_updates_waiting", "Updates that wait.");
+  for (const ActivityRow& row : view.activities) {
+    out.sample({{"kind", row.kind}, {"robot", row.robot}}, number(row.waiting));
+  }
+  write_age(out, view, "adit_updates_accepted_age_seconds", "How long ago the last one was accepted.",
+            &ActivityRow::last_accepted);
+  write_age(out, view, "adit_updates_forwarded_age_seconds",
+            "How long ago the Command Post took the last one.", &ActivityRow::last_forwarded);
+  out.gauge("adit_updates_received_bytes", "Size of the last one that was accepted.");
+  for (const ActivityRow& row : view.activities) {
+    out.sample({{"kind", row.kind}, {"robot", row.robot}}, number(row.bytes_received));
+  }
+  out.gauge("adit_updates_sent_bytes", "Size of the last one that the Command Post took.");
+  for (const ActivityRow& row : view.activities) {
+    out.sample({{"kind", row.kind}, {"robot", row.robot}}, number(row.bytes_sent));
+  }
+}
+
+void write_refused(Exposition& out, const Usage& usage) {
+  out.counter("adit_refused_total", "Messages of the team that Adit refused to their senders.");
+  for (const RefusedCount& row : usage.refused) {
+    out.sample({{"uri", row.uri}, {"status", std::to_string(row.status)}}, number(row.count));
+  }
+  out.counter(
+      "adit_refused_parts_total",
+      "Poses and markers that Adit refused to their senders, each by itself or with all of its message.");
+  for (const RefusedCount& row : usage.refused) {
+    if (row.parts > 0) out.sample({{"uri", row.uri}}, number(row.parts));
+  }
+}
+
+}  // namespace
+
+std::string write_metrics(const Measured& measured) {
+  Exposition out;
+  write_box(out, measured);
+  write_run(out, measured.view);
+  write_reports(out, measured.reports);
+  write_endpoints(out, measured.view);
+  write_link(out, measured);
+  write_updates(out, measured.view);
+  write_refused(out, measured.usage);
+  return out.text();
+}
+
+}  // namespace adit::api

@@ -1,0 +1,51 @@
+#pragma once
+
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "icd/status.hpp"
+#include "network/check.hpp"
+#include "network/numbers.hpp"
+
+namespace adit::api {
+
+/// The box's own addresses, and a change of them that waits to be confirmed.
+struct NetworkView {
+  bool managed = false;  // they can be changed here
+  std::string why;       // why not; "" where they can
+  std::string team_interface, command_post_interface;
+  /// What the interfaces have now, whoever set it.
+  std::optional<settings::Subnet> team;  // the first
+  std::vector<settings::Subnet> command_post;
+  /// As they were confirmed, or as the box came.
+  network::Mode mode = network::Mode::Static;
+  std::optional<std::uint32_t> gateway;
+
+  struct Pending {
+    double until = 0;  // seconds since 1970
+    network::Numbers wanted;
+    std::optional<network::Numbers> previous;  // what it goes back to; nothing: as the box came
+    std::string page;                          // where to confirm it: "http://192.168.8.11:8000"
+  };
+  std::optional<Pending> pending;
+  std::string last;      // "confirmed" or "taken back"; "" where none was made since the box started
+  std::string last_why;  // of it
+};
+
+/// What changes them. A refusal says why not.
+class Network {
+ public:
+  virtual ~Network() = default;
+  virtual NetworkView network() const = 0;
+  /// `asker`: the address of whoever asks.
+  virtual network::Verdict check(const network::Numbers& wanted, const std::string& asker) const = 0;
+  /// Requires that check() has nothing against it. It is tried at once, and waits to be confirmed.
+  virtual icd::Checked<void> change(const network::Numbers& wanted) = 0;
+  /// `local`: the box's address by which the confirmation came. It must be the new one, or one could confirm
+  /// what one cannot reach.
+  virtual icd::Checked<void> confirm(const std::string& local) = 0;
+  virtual icd::Checked<void> take_back() = 0;
+};
+
+}  // namespace adit::api

@@ -1,0 +1,175 @@
+#include "api/network_routes.hpp"
+
+#include <utility>
+
+#include "api/answers.hpp"
+#include "api/as_json.hpp"
+#include "api/small_body.hpp"
+#include "codec/body_decoder.hpp"
+#include "codec/json.hpp"
+
+namespace adit::api {
+namespace {
+
+using codec::Value;
+
+constexpr std::string_view kNetwork = "/adit/network", kCheck = "/adit/network/check",
+                           kConfirm = "/adit/network/confirm", kBack = "/adit/network/back",
+                           kTest = "/adit/test";
+constexpr std::size_t kMostBody = 4096;
+
+intake::Answer object(Value::Object members) {
+  return fresh("application/json", codec::write_json({std::move(members)}));
+}
+
+Value team_json(const NetworkView& view) {
+  Value address, prefix;
+  if (view.team) {
+    address = json(settings::ipv4_text(view.team->address));
+    prefix = json(std::int64_t{view.team->prefix});
+  }
+  return {Value::Object{{"interface", json(view.team_interface)},
+                        {"mode", json(std::string(network::name_of(view.mode)))},
+                        {"address", std::move(address)},
+                        {"prefix", std::move(prefix)}}};
+}
+
+Value command_post_json(const NetworkView& view) {
+  Value numbers = network::to_json({.command_post = view.command_post, .gateway = view.gateway});
+  for (auto& [name, value] : std::get<Value::Object>(numbers.is)) {
+    if (name != "command_post") continue;
+    auto& members = std::get<Value::Object>(value.is);
+    members.insert(members.begin(), {"interface", json(view.command_post_interface)});
+    return std::move(value);
+  }
+  return {};
+}
+
+Value pending_json(const NetworkView::Pending& pending) {
+  Value all = network::to_json(pending.wanted);
+  auto& members = std::get<Value::Object>(all.is);
+  members.insert(members.begin(), {"until", json(pending.until)});
+  members.emplace_back("previous", pending.previous ? network::to_json(*pending.previous) : Value{});
+  members.emplace_back("page", json(pending.page));
+  return all;
+}
+
+/// The numbers, or all that is wrong with the body.
+std::expected<network::Numbers, std::vector<settings::Error>> read_body(const std::string& body) {
+  const auto value = codec::parse_json(body);
+  if (value) return network::read_numbers(*value);
+  return std::unexpected(std::vector<settings::Error>{{"", "expected JSON: " + value.error()}});
+}
+
+Value errors_json(const std::vector<settings::Error>& errors) {
+  Value::Array rows;
+  for (const settings::Error& error : errors) {
+    rows.push_back({Value::Object{{"path", json(error.path)}, {"what", json(error.what)}}});
+  }
+  return {std::move(rows)};
+}
+
+intake::Answer unfit(const std::vector<settings::Error>& errors) {
+  std::string sentences;
+  for (const settings::Error& error : errors) sentences += (sentences.empty() ? "" : "; ") + error.sentence();
+  return refusal(icd::Status::UnprocessableEntity, sentences);
+}
+
+Value step_json(const TestStep& step) {
+  return {Value::Object{{"name", json(step.name)},
+                        {"state", json(step.state)},
+                        {"said", json(step.said)},
+                        {"advice", json(step.advice)}}};
+}
+
+bool both(std::string_view path) {
+  return path == kNetwork || path == kTest;
+}
+
+}  // namespace
+
+bool NetworkRoutes::has(std::string_view path) {
+  return both(path) || path == kCheck || path == kConfirm || path == kBack;
+}
+
+std::unique_ptr<intake::Exchange> NetworkRoutes::open(const intake::RequestHead& head,
+                                                      std::shared_ptr<intake::Responder> responder) {
+  const auto answer = [&responder](intake::Answer with) {
+    responder->answer(std::move(with));
+    return nullptr;
+  };
+  if (both(head.path()) && only_reads(head)) return answer(head.path() == kNetwork ? shown() : tested());
+  if (head.method() != "POST") return answer(wrong_method(both(head.path()) ? "GET, HEAD, POST" : "POST"));
+  if (codec::format_of(head.header("Content-Type")) != codec::Format::Json) {
+    return answer(refusal(icd::Status::UnprocessableEntity, "Content-Type: expected application/json"));
+  }
+  if (head.content_length().value_or(0) > kMostBody) return answer(SmallBody::too_long(kMostBody));
+  return std::make_unique<SmallBody>(
+      responder, kMostBody,
+      [this, path = std::string(head.path()), peer = head.peer(), local = head.local(),
+       responder](const std::string& body) { responder->answer(post(path, body, peer, local)); });
+}
+
+intake::Answer NetworkRoutes::post(std::string_view path, const std::string& body, const std::string& peer,
+                                   const std::string& local) {
+  if (path == kCheck) return check(body, peer);
+  auto answer = path == kNetwork   ? change(body, peer)
+                : path == kConfirm ? after(network_.confirm(local))
+                : path == kBack    ? after(network_.take_back())
+                : test_.begin_test()
+                    ? tested()
+                    : refusal(icd::Status::Conflict, "a test is running: see GET /adit/test");
+  changed_();
+  return answer;
+}
+
+intake::Answer NetworkRoutes::shown() const {
+  const NetworkView view = network_.network();
+  return object({{"managed", json(view.managed)},
+                 {"why", json(view.why)},
+                 {"team", team_json(view)},
+                 {"command_post", command_post_json(view)},
+                 {"pending", view.pending ? pending_json(*view.pending) : Value{}},
+                 {"last", view.last.empty() ? Value{} : json(view.last)},
+                 {"last_why", json(view.last_why)}});
+}
+
+intake::Answer NetworkRoutes::check(const std::string& body, const std::string& peer) const {
+  const auto wanted = read_body(body);
+  const auto verdict = wanted ? network_.check(*wanted, peer) : network::Verdict{wanted.error(), {}, {}};
+  Value::Array changes, warnings;
+  for (const network::Difference& each : verdict.changes) {
+    changes.push_back(
+        {Value::Object{{"path", json(each.path)}, {"from", json(each.from)}, {"to", json(each.to)}}});
+  }
+  for (const std::string& each : verdict.warnings) warnings.push_back(json(each));
+  return object({{"errors", errors_json(verdict.errors)},
+                 {"changes", {std::move(changes)}},
+                 {"warnings", {std::move(warnings)}}});
+}
+
+intake::Answer NetworkRoutes::change(const std::string& body, const std::string& peer) {
+  const auto wanted = read_body(body);
+  if (!wanted) return unfit(wanted.error());
+  const auto verdict = network_.check(*wanted, peer);
+  if (!verdict.errors.empty()) return unfit(verdict.errors);
+  return after(network_.change(*wanted));
+}
+
+intake::Answer NetworkRoutes::after(const icd::Checked<void>& done) const {
+  return done ? shown() : refusal(done.error().status, done.error().sentence);
+}
+
+intake::Answer NetworkRoutes::tested() const {
+  const TestView view = test_.test();
+  Value::Array endpoints;
+  for (const TestedEndpoint& endpoint : view.endpoints) {
+    Value::Array steps;
+    for (const TestStep& step : endpoint.steps) steps.push_back(step_json(step));
+    endpoints.push_back({Value::Object{
+        {"name", json(endpoint.name)}, {"address", json(endpoint.address)}, {"steps", {std::move(steps)}}}});
+  }
+  return object({{"running", json(view.running)}, {"endpoints", {std::move(endpoints)}}});
+}
+
+}  // namespace adit::api

@@ -1,0 +1,126 @@
+#include "api/reports_csv.hpp"
+
+#include <algorithm>
+#include <charconv>
+#include <cmath>
+#include <cstdio>
+#include <ctime>
+#include <string_view>
+
+#include "codec/utf8.hpp"
+
+namespace adit::api {
+namespace {
+
+constexpr std::string_view kHeader =
+    "number,run,type,x,y,z,sender,received,changed,state,asking,reconciled,same_as,status,report_status,"
+    "score_change,note\r\n";
+
+/// How many bytes the first character of `text` has; 0 where it begins with none (no UTF-8).
+std::size_t first_character(std::string_view text) {
+  codec::Utf8Checker checker;
+  for (std::size_t i = 0; i < text.size() && checker.next(static_cast<std::uint8_t>(text[i])); ++i) {
+    if (checker.complete()) return i + 1;
+  }
+  return 0;
+}
+
+/// Of the first set (and DEL), or of the second, U+0080 to U+009F, which some terminals obey, too.
+bool is_control(std::string_view character) {
+  const auto last = static_cast<unsigned char>(character.back());
+  if (character.size() == 1) return last < 0x20 || last == 0x7f;
+  return character.size() == 2 && character.front() == '\xc2' && last < 0xa0;
+}
+
+/// As UTF-8, with a space for each control character: RFC 4180 has none in its text.
+std::string plain(std::string_view text) {
+  std::string all;
+  while (!text.empty()) {
+    const std::size_t size = first_character(text);
+    const std::string_view character = text.substr(0, std::max<std::size_t>(size, 1));
+    all.append(size == 0 ? "\xef\xbf\xbd" : is_control(character) ? " " : character);
+    text.remove_prefix(character.size());
+  }
+  return all;
+}
+
+/// Whether a spreadsheet would compute the cell; some take the wide forms of the signs, too.
+bool is_formula(std::string_view text) {
+  text.remove_prefix(std::min(text.find_first_not_of(' '), text.size()));
+  constexpr std::string_view kSigns[] = {"=", "+", "-", "@", "\uff1d", "\uff0b", "\uff0d", "\uff20"};
+  return std::ranges::any_of(kSigns, [text](std::string_view sign) { return text.starts_with(sign); });
+}
+
+std::string cell(std::string_view text) {
+  std::string clean = plain(text);
+  if (is_formula(clean)) clean.insert(clean.begin(), '\'');
+  if (clean.find_first_of(",\"") == std::string::npos) return clean;
+  std::string quoted = "\"";
+  for (const char letter : clean) quoted.append(letter == '"' ? 2 : 1, letter);
+  return quoted.append("\"");
+}
+
+std::string cell(double number) {
+  char text[32];  // the shortest form that reads back has at most 24 characters
+  return {text, std::to_chars(text, text + sizeof text, number).ptr};
+}
+
+/// Empty where it is lost: a report without a place is at no place.
+std::string coordinate(const ReportRow& row, double icd::Point::* axis) {
+  return row.lost ? "" : cell(row.position.*axis);
+}
+
+std::string cell(bool value) {
+  return value ? "yes" : "no";
+}
+
+/// A number that is 0 where there is none.
+std::string or_empty(std::int64_t number) {
+  return number == 0 ? "" : std::to_string(number);
+}
+
+std::string line(const ReportRow& row) {
+  const std::string cells[] = {std::to_string(row.number),
+                               std::to_string(row.run),
+                               cell(row.type),
+                               coordinate(row, &icd::Point::x),
+                               coordinate(row, &icd::Point::y),
+                               coordinate(row, &icd::Point::z),
+                               cell(row.sender),
+                               iso_time(row.received),
+                               iso_time(row.changed),
+                               cell(row.state),
+                               cell(row.asking),
+                               cell(row.reconciled),
+                               or_empty(row.same_as),
+                               or_empty(row.status),
+                               cell(row.report_status),
+                               row.score_change ? std::to_string(*row.score_change) : "",
+                               cell(row.note)};
+  std::string text;
+  for (const std::string& each : cells) text.append(&each == cells ? "" : ",").append(each);
+  return text.append("\r\n");
+}
+
+}  // namespace
+
+std::string write_reports_csv(const std::vector<ReportRow>& reports) {
+  std::string text(kHeader);
+  for (const ReportRow& row : reports) text.append(line(row));
+  return text;
+}
+
+std::string iso_time(Time time) {
+  static constexpr Time kYear10000 = 253402300800.0;
+  if (!(time >= 0 && time < kYear10000)) return "";
+  const auto whole = static_cast<std::time_t>(time);
+  const int milliseconds = static_cast<int>((time - std::floor(time)) * 1000);
+  std::tm date{};
+  gmtime_r(&whole, &date);
+  char text[64];
+  std::snprintf(text, sizeof text, "%04d-%02d-%02dT%02d:%02d:%02d.%03dZ", date.tm_year + 1900,
+                date.tm_mon + 1, date.tm_mday, date.tm_hour, date.tm_min, date.tm_sec, milliseconds);
+  return text;
+}
+
+}  // namespace adit::api

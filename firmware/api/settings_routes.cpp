@@ -1,0 +1,199 @@
+#include "api/settings_routes.hpp"
+
+#include <algorithm>
+#include <optional>
+#include <utility>
+
+#include "api/answers.hpp"
+#include "api/settings_json.hpp"
+#include "api/small_body.hpp"
+#include "codec/body_decoder.hpp"
+#include "codec/field.hpp"
+#include "codec/json.hpp"
+#include "icd/sentence.hpp"
+
+namespace adit::api {
+namespace {
+
+using codec::Field;
+using codec::Value;
+
+constexpr std::string_view kSettings = "/adit/settings", kCheck = "/adit/settings/check",
+                           kExport = "/adit/settings/export", kTokens = "/adit/tokens",
+                           kCourse = "/adit/course";
+constexpr std::size_t kMostBody = 262144;
+constexpr std::size_t kShortestTeamToken = 8;
+
+intake::Answer refused(const icd::Refusal& why) {
+  return refusal(why.status, why.sentence);
+}
+
+/// What `read` makes of a body, which is one JSON object.
+template <class Message, class Read>
+icd::Checked<Message> read_body(const std::string& body, Read read) {
+  const auto root = codec::parse_json(body);
+  if (!root) return std::unexpected(icd::Refusal{icd::Status::BadRequest, "expected JSON: " + root.error()});
+  codec::Reading reading;
+  return reading.outcome<Message>(read(Field(*root, reading)));
+}
+
+/// What is posted to kSettings and kCheck: settings that need not be good, and the version they began from.
+struct Posted {
+  Value settings;
+  std::string base;
+};
+
+icd::Checked<Posted> read_posted(const std::string& body, bool with_base) {
+  auto root = codec::parse_json(body);
+  if (!root) return std::unexpected(icd::Refusal{icd::Status::BadRequest, "expected JSON: " + root.error()});
+  codec::Reading reading;
+  Posted posted;
+  const Field object(*root, reading);
+  const Field settings = object.member("settings");
+  if (!settings.is<Value::Object>()) settings.refuse_kind("an object");
+  if (with_base) posted.base = object.member("base").text();
+  if (auto* const members = std::get_if<Value::Object>(&root->is)) {
+    const auto found = std::ranges::find(*members, "settings", &Value::Member::first);
+    if (found != members->end()) posted.settings = found->second;
+  }
+  return reading.outcome(std::move(posted));
+}
+
+/// What may not be saved here, though a file may say it: a port that is another one after each change.
+std::vector<settings::Error> unfit_to_save(const settings::Settings& now, const settings::Settings& next) {
+  std::vector<settings::Error> errors;
+  for (std::size_t i = 0; i < next.team.listen.size(); ++i) {
+    const settings::Address& listen = next.team.listen[i];
+    if (listen.port != 0 || std::ranges::find(now.team.listen, listen) != now.team.listen.end()) continue;
+    errors.push_back({icd::sentence("team.listen[", i, "].port"),
+                      "expected 1 to 65535, got 0: nobody could tell where this page would be"});
+  }
+  return errors;
+}
+
+struct PostedToken {
+  std::string name;
+  std::optional<icd::BearerToken> token;
+};
+
+icd::Checked<PostedToken> read_token(const std::string& body) {
+  return read_body<PostedToken>(body, [](const Field& root) {
+    PostedToken posted{.name = std::string(root.member("name").text()), .token = {}};
+    const Field token = root.member("token");
+    if (token.is<std::nullptr_t>()) return posted;
+    posted.token = icd::BearerToken::parse(token.text());
+    if (!posted.token) token.refuse("expected null or 1 to 256 visible ASCII characters");
+    // The others are the Command Post's to choose.
+    if (posted.token && posted.name == "team" && posted.token->reveal().size() < kShortestTeamToken) {
+      token.refuse("expected at least ", kShortestTeamToken, " characters: it is as good as the password");
+    }
+    return posted;
+  });
+}
+
+}  // namespace
+
+SettingsRoutes::Deed SettingsRoutes::deed_at(std::string_view path) {
+  if (path == kSettings) return &SettingsRoutes::save;
+  if (path == kCheck) return &SettingsRoutes::check;
+  if (path == kTokens) return &SettingsRoutes::set_token;
+  if (path == kCourse) return &SettingsRoutes::switch_course;
+  return nullptr;
+}
+
+bool SettingsRoutes::has(std::string_view path) {
+  return path == kExport || deed_at(path) != nullptr;
+}
+
+bool SettingsRoutes::is_for_viewers(std::string_view path) {
+  return path == kSettings || path == kExport;
+}
+
+std::unique_ptr<intake::Exchange> SettingsRoutes::open(const intake::RequestHead& head,
+                                                       std::shared_ptr<intake::Responder> responder) {
+  const auto refuse = [&responder](intake::Answer answer) {
+    responder->answer(std::move(answer));
+    return nullptr;
+  };
+  const bool is_shown = head.path() == kSettings || head.path() == kExport;
+  if (is_shown && only_reads(head)) return refuse(shown(head.path()));
+  const Deed deed = deed_at(head.path());
+  if (deed == nullptr || head.method() != "POST") {
+    return refuse(wrong_method(deed == nullptr ? kReading : is_shown ? "GET, HEAD, POST" : "POST"));
+  }
+  if (codec::format_of(head.header("Content-Type")) != codec::Format::Json) {
+    return refuse(refusal(icd::Status::UnprocessableEntity, "Content-Type: expected application/json"));
+  }
+  if (head.content_length().value_or(0) > kMostBody) return refuse(SmallBody::too_long(kMostBody));
+  return std::make_unique<SmallBody>(responder, kMostBody, [this, deed, responder](const std::string& body) {
+    responder->answer((this->*deed)(body));
+  });
+}
+
+intake::Answer SettingsRoutes::shown(std::string_view path) const {
+  if (path == kSettings) return fresh("application/json", write_setup(setup_));
+  auto answer = fresh("application/json", settings::file_of(setup_.settings()));
+  answer.headers.push_back({"Content-Disposition", "attachment; filename=\"adit-settings.json\""});
+  return answer;
+}
+
+intake::Answer SettingsRoutes::check(const std::string& body) {
+  const auto posted = read_posted(body, false);
+  if (!posted) return refused(posted.error());
+  const auto next = settings::parse(posted->settings);
+  if (!next) return fresh("application/json", write_check(next.error(), {}, {}));
+  const auto unfit = unfit_to_save(setup_.settings(), *next);
+  if (!unfit.empty()) return fresh("application/json", write_check(unfit, {}, {}));
+  return fresh("application/json",
+               write_check({}, settings::changes(setup_.settings(), *next), setup_.warnings(*next)));
+}
+
+intake::Answer SettingsRoutes::save(const std::string& body) {
+  const auto posted = read_posted(body, true);
+  if (!posted) return refused(posted.error());
+  if (posted->base != settings::tag_of(setup_.settings())) {
+    return refusal(icd::Status::Conflict,
+                   "somebody else has changed the settings meanwhile: look at them again");
+  }
+  const auto next = settings::parse(posted->settings);
+  if (!next) return refusal(icd::Status::UnprocessableEntity, settings::sentence_of(next.error()));
+  const auto unfit = unfit_to_save(setup_.settings(), *next);
+  if (!unfit.empty()) return refusal(icd::Status::UnprocessableEntity, settings::sentence_of(unfit));
+  return apply(*next);
+}
+
+intake::Answer SettingsRoutes::switch_course(const std::string& body) {
+  const auto name =
+      read_body<std::string>(body, [](const Field& root) { return std::string(root.member("name").text()); });
+  if (!name) return refused(name.error());
+  settings::Settings next = setup_.settings();
+  next.command_post.course = *name;
+  const auto checked = settings::parse(settings::value_of(next));
+  if (!checked) return refusal(icd::Status::UnprocessableEntity, settings::sentence_of(checked.error()));
+  return apply(*checked);
+}
+
+intake::Answer SettingsRoutes::apply(const settings::Settings& next) {
+  const auto changes = settings::changes(setup_.settings(), next);
+  const auto warnings = setup_.warnings(next);
+  if (const auto saved = setup_.save(next); !saved) return refused(saved.error());
+  return fresh("application/json", write_changes(changes, warnings));
+}
+
+intake::Answer SettingsRoutes::set_token(const std::string& body) {
+  const auto posted = read_token(body);
+  if (!posted) return refused(posted.error());
+  const auto rows = setup_.tokens();
+  if (std::ranges::find(rows, posted->name, &TokenRow::name) == rows.end()) {
+    std::string known;
+    for (const TokenRow& row : rows) known.append(known.empty() ? "" : ", ").append(row.name);
+    return refusal(icd::Status::UnprocessableEntity,
+                   icd::sentence("name: expected one of ", known, ", got ", icd::in_quotes(posted->name)));
+  }
+  if (const auto kept = setup_.set_token(posted->name, posted->token); !kept) return refused(kept.error());
+  return fresh(
+      "application/json",
+      codec::write_json({Value::Object{{"name", {posted->name}}, {"set", {posted->token.has_value()}}}}));
+}
+
+}  // namespace adit::api

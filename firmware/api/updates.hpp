@@ -1,0 +1,53 @@
+#pragma once
+
+#include <cstdint>
+#include <functional>
+#include <memory>
+#include <optional>
+#include <span>
+#include <string>
+
+#include "icd/status.hpp"
+#include "update/messages.hpp"
+
+namespace adit::api {
+
+/// The box's version, and how an update of it stands.
+struct UpdateView {
+  bool managed = false;  // it can be updated here
+  std::string why;       // why not; "" where it can
+  update::Running running;
+  std::string doing;            // "", "receiving", "checking", "installing", "restarting"
+  std::optional<int> progress;  // per cent of receiving and installing
+  std::string refusal;          // why the last one was not installed; "" where it was, or there was none
+  update::Story last;
+  bool trial = false;  // what runs was installed last, and has not been healthy for long yet
+  std::optional<update::Offer> stick;
+  std::string stick_why;  // why what is on a stick cannot be installed; "" where there is none
+};
+
+/// A bundle on its way in. Dropping it before finish() forgets it.
+class Upload {
+ public:
+  virtual ~Upload() = default;
+  /// Takes a piece, valid during the call. False: no more until `resume` (Updates::receive()) is called.
+  virtual bool write(std::span<const std::uint8_t> piece) = 0;
+  /// It is whole: asks for its installation once it is on the disk, and says whether that could be asked for.
+  virtual void finish(std::function<void(icd::Checked<void>)> done) = 0;
+};
+
+/// What updates the box. A refusal says why not.
+class Updates {
+ public:
+  virtual ~Updates() = default;
+  virtual UpdateView update() const = 0;
+  /// Begins to receive a bundle of `size` bytes; one at a time. `again`: also the version that runs.
+  virtual icd::Checked<std::unique_ptr<Upload>> receive(std::uint64_t size, bool again,
+                                                        std::function<void()> resume) = 0;
+  /// Installs what the USB stick has.
+  virtual icd::Checked<void> install_from_stick(bool again) = 0;
+  /// Starts the box anew. Unless `anyway`, not while a report is under way.
+  virtual icd::Checked<void> restart(bool anyway) = 0;
+};
+
+}  // namespace adit::api

@@ -1,0 +1,105 @@
+#include "box/lights.hpp"
+
+#include <algorithm>
+#include <utility>
+
+#include "host/log.hpp"
+
+namespace adit::box {
+
+Lights::Lights(loop::Loop& loop, std::unique_ptr<panel::Lines> lines)
+    : loop_(loop),
+      lines_(std::move(lines)),
+      began_(loop.now()),
+      digits_began_(began_),
+      tick_(loop.timer([this] { paint(); })) {}
+
+void Lights::take(std::unique_ptr<panel::Lines> lines) {
+  lines_ = std::move(lines);
+  lit_.reset();
+  broken_ = false;
+  paint();
+}
+
+void Lights::set(panel::State state, bool asserted) {
+  until(state).reset();
+  if (states_.set(state, asserted) || !lit_) paint();
+}
+
+void Lights::set_for(panel::State state, loop::Duration length) {
+  until(state) = loop_.now() + length;
+  states_.set(state, true);
+  paint();
+}
+
+void Lights::play_digits(std::vector<panel::Step> steps) {
+  digits_ = std::move(steps);
+  digits_began_ = loop_.now();
+  set_for(panel::State::Address, panel::length_of(digits_));
+}
+
+std::optional<loop::Duration> Lights::left(panel::State state) const {
+  const auto& until = until_[static_cast<std::size_t>(state)];
+  const loop::Instant now = loop_.now();
+  return until && now < *until ? std::optional(*until - now) : std::nullopt;
+}
+
+void Lights::clear_what_is_over() {
+  const loop::Instant now = loop_.now();
+  for (const panel::StateRow& row : panel::state_table()) {
+    auto& end = until(row.state);
+    if (!end || now < *end) continue;
+    end.reset();
+    states_.set(row.state, false);
+  }
+}
+
+Lights::Milliseconds Lights::since(loop::Instant then) const {
+  return std::chrono::duration_cast<Milliseconds>(loop_.now() - then);
+}
+
+panel::Frame Lights::frame() const {
+  panel::Frame frame = panel::frame_of(shown_, since(began_));
+  for (const panel::Light light : panel::kLights) {
+    if (shown_[panel::index_of(light)] != panel::Pattern::Digits) continue;
+    const panel::Moment moment = panel::once(digits_, since(digits_began_));
+    frame.lit[panel::index_of(light)] = moment.lit;
+    if (moment.lasts) frame.lasts = std::min(*moment.lasts, frame.lasts.value_or(*moment.lasts));
+  }
+  return frame;
+}
+
+void Lights::paint() {
+  clear_what_is_over();
+  shown_ = states_.shown();
+  const panel::Frame now = frame();
+  if (lit_ != now.lit) light_up(now.lit);
+  wake_for_what_is_next(now);
+}
+
+void Lights::light_up(const panel::Lit& lit) {
+  if (!lines_) return;
+  const auto set = lines_->set(lit);
+  if (!set && !std::exchange(broken_, true)) {
+    host::log(host::Level::Error, "the panel's lights cannot be set", {{"why", set.error()}});
+  }
+  if (set) broken_ = false;
+  lit_ = set ? std::optional(lit) : std::nullopt;
+}
+
+void Lights::wake_for_what_is_next(const panel::Frame& frame) {
+  std::optional<loop::Instant> next;
+  const auto no_later_than = [&next](loop::Instant when) { next = std::min(when, next.value_or(when)); };
+  // A millisecond more: what is left of one was cut off.
+  if (frame.lasts) no_later_than(loop_.now() + *frame.lasts + Milliseconds(1));
+  for (const auto& end : until_) {
+    if (end) no_later_than(*end);
+  }
+  if (next) {
+    tick_.call_at(*next);
+  } else {
+    tick_.cancel();
+  }
+}
+
+}  // namespace adit::box

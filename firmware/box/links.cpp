@@ -1,0 +1,70 @@
+#include "box/links.hpp"
+
+#include <utility>
+
+#include "host/log.hpp"
+#include "icd/sentence.hpp"
+
+namespace adit::box {
+
+Links::Links(loop::Loop& loop, const settings::Settings& settings, Look look, std::function<void()> changed,
+             std::function<void()> back)
+    : loop_(loop),
+      look_(std::move(look)),
+      changed_(std::move(changed)),
+      back_(std::move(back)),
+      links_{{{.side = "team", .whose = "team's", .interface = settings.team.interface},
+              {.side = "command_post",
+               .whose = "Command Post's",
+               .interface = settings.command_post.interface}}},
+      timer_(loop.timer([this] { this->look(); })) {
+  for (Link& link : links_) link.carrier = look_(link.interface);
+  timer_.call_at(loop_.now() + kEvery);
+}
+
+void Links::look_at(const settings::Settings& settings) {
+  const std::string* const interfaces[] = {&settings.team.interface, &settings.command_post.interface};
+  for (std::size_t i = 0; i < links_.size(); ++i) {
+    if (links_[i].interface == *interfaces[i]) continue;
+    links_[i].interface = *interfaces[i];
+    links_[i].carrier = look_(links_[i].interface);
+  }
+}
+
+void Links::look() {
+  bool changed = false, back = false;
+  for (Link& link : links_) {
+    const auto before = std::exchange(link.carrier, look_(link.interface));
+    if (link.carrier == before) continue;
+    changed = true;
+    const bool is_up = link.carrier.value_or(false);
+    back = back || (is_up && &link == &links_.back());
+    host::log(is_up ? host::Level::Notice : host::Level::Warning, is_up ? "a cable is in" : "a cable is out",
+              {{"interface", link.interface}});
+  }
+  if (changed) changed_();
+  if (back) back_();
+  timer_.call_at(loop_.now() + kEvery);
+}
+
+std::vector<api::LinkRow> Links::rows() const {
+  std::vector<api::LinkRow> rows;
+  for (const Link& link : links_) {
+    if (!link.interface.empty())
+      rows.push_back({.side = link.side, .interface = link.interface, .carrier = link.carrier});
+  }
+  return rows;
+}
+
+std::vector<std::string> Links::attention() const {
+  std::vector<std::string> sentences;
+  for (const Link& link : links_) {
+    if (link.interface.empty() || link.carrier == true) continue;
+    sentences.push_back(
+        link.carrier ? icd::sentence("the ", link.whose, " cable is out: ", link.interface, " has no carrier")
+                     : icd::sentence("there is no interface ", link.interface));
+  }
+  return sentences;
+}
+
+}  // namespace adit::box

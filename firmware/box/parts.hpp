@@ -1,0 +1,16 @@
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "api/box.hpp"
+
+namespace adit::box {
+
+/// The libraries in the program: the version of each as it tells it now, or else as of the build.
+std::vector<api::PartRow> parts();
+
+/// "9f1c2ab0d3e4, GNU 12.2.0, Release"
+std::string build_text();
+
+}  // namespace adit::box

@@ -1,0 +1,233 @@
+#include "box/self_test.hpp"
+
+#include <sys/epoll.h>
+
+#include <cerrno>
+#include <cstring>
+#include <utility>
+
+#include "codec/read.hpp"
+#include "codec/write.hpp"
+#include "forward/channel.hpp"
+#include "host/own_address.hpp"
+#include "host/service.hpp"
+#include "icd/uri.hpp"
+#include "uplink/socket.hpp"
+
+namespace adit::box {
+namespace {
+
+constexpr const char* kSteps[] = {"link", "address", "cables", "reach", "token", "clock"};
+constexpr int kTooMany = 429;
+
+/// Of an answer to GET /api/status.
+std::optional<double> run_clock_in(const uplink::Answered& answer) {
+  if (answer.status != 200) return std::nullopt;
+  const auto status = codec::read_run_status(answer.body);
+  return status ? std::optional(status->run_clock) : std::nullopt;
+}
+
+icd::ChunkedBytes empty_object() {
+  static constexpr std::uint8_t kBytes[] = {'{', '}'};
+  return icd::ChunkedBytes(kBytes);
+}
+
+}  // namespace
+
+SelfTest::SelfTest(loop::Loop& loop, const settings::Settings& settings, Tokens tokens,
+                   const admin::NetworkRequests& requests, const admin::NetworkChange& network,
+                   std::function<void()> changed)
+    : loop_(loop),
+      settings_(settings),
+      tokens_(std::move(tokens)),
+      requests_(requests),
+      network_(network),
+      changed_(std::move(changed)),
+      timer_(loop.timer([this] { std::exchange(when_due_, {})(); })) {}
+
+bool SelfTest::begin_test() {
+  if (view_.running) return false;
+  view_ = {.running = true, .endpoints = {}};
+  post_ = settings_.command_post;
+  shown_ = tokens_;
+  for (const auto& [name, address] :
+       {std::pair("scoring", &post_.scoring), std::pair("mapping", &post_.mapping)}) {
+    api::TestedEndpoint endpoint{.name = name, .address = forward::address_text(*address), .steps = {}};
+    for (const char* step : kSteps) endpoint.steps.push_back({.name = step, .said = "", .advice = ""});
+    view_.endpoints.push_back(std::move(endpoint));
+  }
+  tested_ = 0;
+  probed_.reset();
+  at_ = At::Link;
+  run_step();
+  return true;
+}
+
+void SelfTest::run_step() {
+  endpoint().steps[static_cast<std::size_t>(at_)].state = "running";
+  changed_();
+  const std::string& interface = post_.interface;
+  switch (at_) {
+    case At::Link:
+      return finish(steps::link(interface, host::carrier(interface)));
+    case At::Address:
+      return ask_address();
+    case At::Cables:
+      return look_at_cables();
+    case At::Reach:
+      return connect();
+    case At::Token:
+      return ask_token();
+    case At::Clock:
+      return ask_clock();
+    case At::End:
+      return;
+  }
+}
+
+/// On to the next step, in a later turn of the loop.
+void SelfTest::finish(api::TestStep step) {
+  const bool is_bad = step.state == "bad";
+  const std::string said = step.said;
+  endpoint().steps[static_cast<std::size_t>(at_)] = std::move(step);
+  if (is_bad && at_ != At::Address && at_ != At::Cables && at_ != At::Token)
+    return skip_the_rest("not tried: " + said);
+  at_ = static_cast<At>(static_cast<int>(at_) + 1);
+  next();
+}
+
+void SelfTest::skip_the_rest(const std::string& why) {
+  for (api::TestStep& step : endpoint().steps) {
+    if (step.state == "waiting") step = steps::skipped(step.name, why);
+  }
+  at_ = At::End;
+  next();
+}
+
+void SelfTest::next() {
+  if (at_ == At::End) {
+    connection_.reset();
+    if (++tested_ == view_.endpoints.size()) {
+      view_.running = false;
+      return changed_();
+    }
+    at_ = At::Link;
+  }
+  when_due_ = [this] { run_step(); };
+  timer_.call_at(loop_.now());
+}
+
+/// Both endpoints are on the same interface: it is asked about once.
+void SelfTest::ask_address() {
+  if (tested_ > 0 && view_.endpoints.front().steps[1].state != "skipped")
+    return finish(view_.endpoints.front().steps[1]);
+  const std::string& interface = post_.interface;
+  const auto own = host::own_address(interface);
+  const auto status = requests_.status();
+  std::string why = !status ? "adit-network does not run here: " + status.error()
+                    : status->command_post_interface != interface ? "adit-network has " +
+                                                                        status->command_post_interface +
+                                                                        " instead"
+                                                                  : "";
+  if (own && why.empty()) {
+    probe_ = {admin::NetworkRequests::draw_nonce(), network_.next_hop()};
+    const auto asked = requests_.ask(probe_);
+    until_ = loop_.now() + kProbeWithin;
+    if (asked) return wait_for_probe();
+    why = asked.error();
+  }
+  finish(steps::address(interface, own, std::nullopt, why));
+}
+
+void SelfTest::wait_for_probe() {
+  auto probed = requests_.probed();
+  if (!probed || probed->nonce != probe_.nonce) probed.reset();
+  if (!probed && loop_.now() < until_) {
+    when_due_ = [this] { wait_for_probe(); };
+    return timer_.call_at(loop_.now() + kProbePoll);
+  }
+  const std::string& interface = post_.interface;
+  probed_ = probed;
+  finish(steps::address(interface, host::own_address(interface), probed, "adit-network did not answer"));
+}
+
+void SelfTest::look_at_cables() {
+  finish(steps::cables(post_.interface, settings_.team.interface, probe_.sought, probed_));
+}
+
+uplink::Endpoint SelfTest::there() const {
+  auto endpoint = forward::endpoint_of(post_, tested_ == 0 ? post_.scoring : post_.mapping, 0);
+  endpoint.connect_within = kReachWithin;
+  return endpoint;
+}
+
+void SelfTest::connect() {
+  auto socket = uplink::begin_connect(there());
+  if (!socket) return connected(socket.error().error, socket.error().why);
+  socket_ = std::move(*socket);
+  connecting_ = loop_.watch(socket_.get(), EPOLLOUT, [this](std::uint32_t) {
+    const int error = uplink::connect_error(socket_.get());
+    connected(error, error == 0 ? "" : std::strerror(error));
+  });
+  when_due_ = [this] { connected(ETIMEDOUT, std::strerror(ETIMEDOUT)); };
+  timer_.call_at(loop_.now() + kReachWithin);
+}
+
+void SelfTest::connected(int error, const std::string& why) {
+  timer_.cancel();
+  connecting_ = {};
+  socket_ = loop::FileDescriptor();
+  finish(steps::reach(endpoint().address, error, why));
+}
+
+void SelfTest::ask(std::function<void(uplink::Outcome)> done) {
+  const bool scoring = kind() == steps::Asked::Scoring;
+  const icd::Uri uri = scoring ? icd::Uri::Status : icd::Uri::StateUpdate;
+  connection_ = std::make_unique<uplink::Connection>(loop_, there(), *token());
+  connection_->send({.method = std::string(icd::method_of(uri)),
+                     .target = std::string(icd::path_of(uri)),
+                     .content_type = scoring ? "" : std::string(codec::kJson),
+                     .body = scoring ? icd::ChunkedBytes() : empty_object(),
+                     .answer_within = kAnswerWithin},
+                    std::move(done));
+}
+
+void SelfTest::ask_token() {
+  date_.reset();
+  run_clock_.reset();
+  asked_again_ = false;
+  if (!token()) return finish(steps::no_token(kind()));
+  ask([this](const uplink::Outcome& outcome) { token_answered(outcome); });
+}
+
+/// Adit itself asks for the run's status, too: asked too often in all, it is asked once more.
+void SelfTest::token_answered(const uplink::Outcome& outcome) {
+  const auto* answer = std::get_if<uplink::Answered>(&outcome);
+  answered_at_ = loop_.stamp_now();
+  if (answer != nullptr) {
+    date_ = answer->date;
+    run_clock_ = run_clock_in(*answer);
+  }
+  if (answer != nullptr && answer->status == kTooMany && !std::exchange(asked_again_, true)) {
+    when_due_ = [this] { ask([this](const uplink::Outcome& again) { token_answered(again); }); };
+    return timer_.call_at(loop_.now() + kAskAgain);
+  }
+  finish(steps::token(kind(), outcome));
+}
+
+void SelfTest::ask_clock() {
+  if (date_ || kind() == steps::Asked::Mapping || !token() || !run_clock_) {
+    return finish(steps::clock(date_, answered_at_));
+  }
+  when_due_ = [this] { ask_again(); };
+  timer_.call_at(loop_.now() + kAskAgain);
+}
+
+void SelfTest::ask_again() {
+  ask([this](const uplink::Outcome& outcome) {
+    const auto* answer = std::get_if<uplink::Answered>(&outcome);
+    finish(steps::run_clock(run_clock_, answer != nullptr ? run_clock_in(*answer) : std::nullopt));
+  });
+}
+
+}  // namespace adit::box

@@ -1,0 +1,27 @@
+#pragma once
+
+#include <cstdio>
+
+#include "command_line/read.hpp"
+
+namespace adit::command_line {
+
+/// What main() returns at once: 2 and the help for a wrong command line, 0 where only help or the version was
+/// wanted (1 where that cannot be printed); nothing: the program is to do its work.
+template <class Options>
+std::optional<int> answer(Program (*program_of)(Options&), const char* version,
+                          const std::expected<Options, std::string>& options) {
+  Options usual;
+  const Program program = program_of(usual);
+  if (!options) {
+    std::fprintf(stderr, "%s: %s\n%s", program.name.c_str(), options.error().c_str(), help(program).c_str());
+    return 2;
+  }
+  if (options->help) return std::fputs(help(program).c_str(), stdout) < 0 ? 1 : 0;
+  if constexpr (requires { options->version; }) {
+    if (options->version) return std::printf("%s %s\n", program.name.c_str(), version) < 0 ? 1 : 0;
+  }
+  return std::nullopt;
+}
+
+}  // namespace adit::command_line

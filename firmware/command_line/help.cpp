@@ -1,0 +1,73 @@
+#include <algorithm>
+#include <string_view>
+
+#include "command_line/program.hpp"
+
+namespace adit::command_line {
+namespace {
+
+constexpr std::size_t kWidth = 100;
+
+/// What comes before the next `end` of `text`, which then begins behind that; all of it where there is none.
+std::string_view cut(std::string_view& text, char end) {
+  const std::string_view piece = text.substr(0, text.find(end));
+  text.remove_prefix(std::min(text.size(), piece.size() + 1));
+  return piece;
+}
+
+/// A line's words in lines of the width, all but the first behind `indent` blanks.
+std::string wrapped(std::string_view line, std::size_t indent) {
+  std::string all(cut(line, ' '));
+  std::size_t column = indent + all.size();
+  while (!line.empty()) {
+    const std::string_view word = cut(line, ' ');
+    const bool fits = column + 1 + word.size() <= kWidth;
+    all.append(fits ? "" : "\n").append(fits ? 1 : indent, ' ').append(word);
+    column = (fits ? column + 1 : indent) + word.size();
+  }
+  return all;
+}
+
+/// Each line wrapped, but those that begin with a blank.
+std::string paragraphs(std::string_view text) {
+  std::string all;
+  while (!text.empty()) {
+    const std::string_view line = cut(text, '\n');
+    all.append(line.starts_with(' ') ? std::string(line) : wrapped(line, 0)).append("\n");
+  }
+  return all;
+}
+
+std::string head_of(const Row& row) {
+  std::string head = row.word;
+  return *row.value == '\0' ? head : head.append(" ").append(row.value);
+}
+
+std::string sentence_of(const Row& row) {
+  std::string sentence = row.help;
+  const auto* const text = std::get_if<std::string*>(&row.into);
+  if (text != nullptr && !(*text)->empty()) sentence.append(" (").append(**text).append(")");
+  return sentence;
+}
+
+}  // namespace
+
+std::string help(const Program& program) {
+  std::string text = "Usage: ";
+  text += program.name;
+  std::size_t column = 0;
+  for (const Row& row : program.rows) {
+    column = std::max(column, head_of(row).size() + 4);
+    if (row.wanted == Wanted::Always) text.append(" ").append(head_of(row));
+  }
+  if (!program.usage.empty()) text.append(" ").append(program.usage);
+  text.append(" [OPTION]...\n\n").append(paragraphs(program.about)).append("\n");
+  for (const Row& row : program.rows) {
+    std::string head = "  ";
+    head.append(head_of(row)).resize(column, ' ');
+    text.append(head).append(wrapped(sentence_of(row), column)).append("\n");
+  }
+  return text.append("\n").append(paragraphs(program.ending));
+}
+
+}  // namespace adit::command_line

@@ -1,0 +1,114 @@
+#include "command_line/read.hpp"
+
+#include <getopt.h>
+
+#include <algorithm>
+#include <string_view>
+
+namespace adit::command_line {
+namespace {
+
+constexpr int kFirst = 256;  // of what getopt_long calls the rows: above all characters
+
+/// The rows as getopt_long wants them; those without "--" stand alone and are none of its options.
+std::vector<option> options_of(const Program& program) {
+  std::vector<option> options;
+  int number = kFirst;
+  for (const Row& row : program.rows) {
+    const bool is_option = std::string_view(row.word).starts_with("--");
+    const int value = *row.value == '\0' ? no_argument : required_argument;
+    if (is_option) options.push_back({row.word + 2, value, nullptr, number});
+    ++number;
+  }
+  options.push_back({});
+  return options;
+}
+
+class Reading {
+ public:
+  explicit Reading(const Program& program) : program_(program), given_(program.rows.size()) {}
+
+  Wrong words(std::span<const char* const> arguments) {
+    // getopt_long wants the program's name before them and null after them. It changes none of them: "-"
+    // keeps their order.
+    std::vector<char*> all{const_cast<char*>(program_.name.c_str())};
+    for (const char* const word : arguments) all.push_back(const_cast<char*>(word));
+    const int count = static_cast<int>(all.size());
+    all.push_back(nullptr);
+    const std::vector<option> options = options_of(program_);
+    optind = 0;  // from the beginning, also where another command line was read before
+    opterr = 0;
+    while (true) {
+      const char* const at = all[static_cast<std::size_t>(std::max(optind, 1))];
+      const int found = getopt_long(count, all.data(), "-:h", options.data(), nullptr);
+      if (found == -1) break;
+      if (auto wrong = take(found, at)) return wrong;
+    }
+    for (; optind < count; ++optind) {
+      if (auto wrong = word(all[static_cast<std::size_t>(optind)])) return wrong;
+    }
+    return missing();
+  }
+
+ private:
+  /// Requires what getopt_long found at the word `at`.
+  Wrong take(int found, std::string_view at) {
+    if (found == 1) return word(optarg);
+    if (found == 'h') return word("--help");
+    const std::string name(at.substr(0, at.find('=')));
+    const int number = found == '?' || found == ':' ? optopt : found;
+    const Row* const row =
+        number < kFirst ? nullptr : &program_.rows[static_cast<std::size_t>(number - kFirst)];
+    if (row == nullptr || name != row->word)  // a word that was cut short is none
+      return "unknown word '" + name + "'";
+    if (found == '?') return name + " takes no value";
+    if (found == ':') return name + " wants a value";
+    return put(*row, optarg == nullptr ? "" : optarg);
+  }
+
+  Wrong word(const char* text) {
+    const auto row = std::ranges::find_if(program_.rows, [text](const Row& each) {
+      return *each.value == '\0' && std::string_view(each.word) == text;
+    });
+    if (row != program_.rows.end()) return put(*row, "");
+    if (program_.word.take != nullptr) return program_.word.take(program_.word.into, text);
+    return "unknown word '" + std::string(text) + "'";
+  }
+
+  Wrong put(const Row& row, const std::string& value) {
+    const std::string name = row.word;
+    if (program_.given != nullptr) program_.given->push_back(name);
+    if (*row.value != '\0' && value.empty() && program_.empty == Empty::Refused)
+      return name + " wants a value";
+    given_[static_cast<std::size_t>(&row - program_.rows.data())] = *row.value == '\0' || !value.empty();
+    asked_ = asked_ || name == "--help" || name == "--version";
+    if (auto* const flag = std::get_if<bool*>(&row.into)) **flag = true;
+    if (auto* const text = std::get_if<std::string*>(&row.into)) **text = value;
+    if (auto* const list = std::get_if<std::vector<std::string>*>(&row.into)) (*list)->push_back(value);
+    if (const auto* const take = std::get_if<Take>(&row.into)) {
+      if (const auto why = take->take(take->into, value)) return name + ": " + *why;
+    }
+    return std::nullopt;
+  }
+
+  Wrong missing() const {
+    for (std::size_t i = 0; i < given_.size() && !asked_; ++i) {
+      const Row& row = program_.rows[i];
+      if (row.wanted == Wanted::Always && !given_[i])
+        return std::string(row.word) + " " + row.value + " is missing";
+    }
+    return std::nullopt;
+  }
+
+  const Program& program_;
+  std::vector<bool> given_;  // by row
+  bool asked_ = false;       // for help or the version: nothing is missing
+};
+
+}  // namespace
+
+Wrong read(const Program& program, std::span<const char* const> arguments) {
+  return Reading(program).words(arguments);
+}
+
+}  // namespace adit::command_line

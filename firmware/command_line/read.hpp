@@ -1,0 +1,24 @@
+#pragma once
+
+#include <expected>
+#include <span>
+#include <string>
+
+#include "command_line/program.hpp"
+
+namespace adit::command_line {
+
+/// Reads the words after the program's name, `--word value` and `--word=value`; what comes back is wrong, and
+/// names the word it is about. Not for two threads at once: getopt_long(3).
+[[gnu::cold]] Wrong read(const Program& program, std::span<const char* const> arguments);
+
+/// The options of `program_of`, a table whose rows lead into what it is given.
+template <class Options>
+std::expected<Options, std::string> read(Program (*program_of)(Options&),
+                                         std::span<const char* const> arguments) {
+  Options options;
+  if (auto wrong = read(program_of(options), arguments)) return std::unexpected(*std::move(wrong));
+  return options;
+}
+
+}  // namespace adit::command_line

@@ -1,0 +1,144 @@
+// The box's own addresses: changed for now, and for good only once that is confirmed from the new one.
+import { fromTo, insist, reviewed } from "./apply.js";
+import { make, say } from "./dom.js";
+import { blame, labelled } from "./field.js";
+import { left, told } from "./pending.js";
+import { post } from "./session.js";
+
+const PAUSE = 300; // ms without a key
+const form = document.getElementById("addresses");
+const state = form.querySelector(".state"), outcome = form.querySelector(".outcome"), warned = form.querySelector(".warnings");
+const pendingPlace = document.getElementById("pending"), change = form.querySelector(".try");
+const MODE = "team.mode";
+const FIELDS = [
+  [MODE, "Mode", "By DHCP, or with a link-local address alone, the box is found as adit.local."],
+  ["team.address", "Address", "Robots and stations post here: 10.0.0.1/24."],
+  ["command_post.addresses", "Addresses", "The box’s own there, not an endpoint’s: 10.100.1.10/24; several with commas."],
+  ["command_post.gateway", "Gateway", "The way to endpoints outside of these subnets; empty: none."],
+];
+const fields = new Map();
+let isTyped = false, asked = 0, timer = 0;
+
+const text = ({ address, prefix }) => (address ? `${address}/${prefix}` : "");
+const host = (typed) => {
+  const [address, prefix = ""] = typed.trim().split("/");
+  return { address, prefix: /^\d{1,3}$/.test(prefix) ? Number(prefix) : prefix };
+};
+/** What the fields show of a network, and the network that they show. */
+const shown = ({ team, command_post: post }) => [team.mode, text(team), post.addresses.map(text).join(", "), post.gateway];
+function wanted() {
+  const [mode, address, addresses, gateway] = [...fields.values()].map(({ control }) => control.value.trim());
+  return {
+    team: { mode, ...(mode === "static" && host(address)) },
+    command_post: { addresses: addresses ? addresses.split(",").map(host) : [], gateway },
+  };
+}
+const fieldAt = (path) => [...fields].find(([own]) => path.replace("prefix", "address").startsWith(own))?.[1];
+
+function report(text, bad = false) {
+  outcome.dataset.bad = bad;
+  say(outcome, text);
+}
+
+async function check() {
+  const mine = ++asked;
+  const verdict = await insist(() => post("/adit/network/check", wanted()));
+  if (mine !== asked) return null;
+  const left = verdict.errors.filter(({ path }) => !fieldAt(path));
+  for (const field of fields.values()) blame(field, verdict.errors.filter(({ path }) => fieldAt(path) === field).map(({ what }) => what).join("; "));
+  warned.replaceChildren(...left.map(({ path, what }) => make("li", `${path}: ${what}`)), ...verdict.warnings.map((warning) => make("li", warning)));
+  return verdict;
+}
+
+function typed() {
+  isTyped = true;
+  showMode();
+  report("");
+  clearTimeout(timer);
+  timer = setTimeout(() => check().catch((error) => report(`${error.message} What you typed is kept.`, true)), PAUSE);
+}
+
+async function tryIt() {
+  clearTimeout(timer);
+  const verdict = await check();
+  if (!verdict) return;
+  if (verdict.errors.length) {
+    return fieldAt(verdict.errors[0].path)?.control.focus();
+  }
+  if (!verdict.changes.length) return report("The box has these addresses already.");
+  const yes = await reviewed({
+    title: "Change the addresses for now?",
+    text: "It takes itself back unless it is confirmed in time, from the new address.",
+    changes: fromTo(verdict.changes),
+    warnings: verdict.warnings,
+    word: "Change for now",
+  });
+  if (!yes) return;
+  told(await post("/adit/network", wanted()));
+  isTyped = false;
+  warned.replaceChildren();
+  report("");
+}
+
+/** Does what a button says, and says what came of it. */
+function on(button, deed) {
+  button.addEventListener("click", async (event) => {
+    event.preventDefault();
+    button.disabled = true;
+    await deed().catch((error) => report(error.message, true));
+    button.disabled = false;
+  });
+}
+
+function showPending(network) {
+  const { pending } = network;
+  pendingPlace.hidden = !pending;
+  if (!pending) return;
+  say(pendingPlace.querySelector(".left"), left(network));
+  const url = `${pending.page}/setup#network`, where = pendingPlace.querySelector(".where"), isHere = new URL(url).host === location.host;
+  const words = isHere ? "You are at the new address: confirm, and it is kept." : "Open the page at its new address and confirm it there: ";
+  if (where.dataset.url === url) return;
+  where.dataset.url = url;
+  where.replaceChildren(words, ...(isHere ? [] : [Object.assign(make("a", url), { href: url })]));
+}
+
+/** How the last change ended. */
+function lastOf({ last, last_why: why }) {
+  if (!last) return "";
+  return last === "confirmed" ? "The last change was confirmed." : `The last change was taken back${why ? `: ${why}` : ""}.`;
+}
+
+/** Shows what the box says of its network. */
+export function showNetwork(network) {
+  const isOperator = document.body.dataset.role === "operator";
+  say(state, network.managed ? lastOf(network) : `The addresses are not set by this page: ${network.why}`);
+  showPending(network);
+  const barred = !network.managed || !isOperator || network.pending !== null;
+  change.hidden = !network.managed || !isOperator;
+  change.disabled = barred;
+  for (const button of pendingPlace.querySelectorAll("button")) button.hidden = !isOperator;
+  [...fields.values()].forEach(({ control }, at) => {
+    control.disabled = barred;
+    if (!isTyped && document.activeElement !== control) control.value = shown(network)[at];
+  });
+  showMode();
+}
+
+const showMode = () => (fields.get("team.address").hidden = fields.get(MODE).control.value !== "static");
+
+export function offerNetwork() {
+  for (const [path, label, hint] of FIELDS) {
+    const control = path === MODE ? make("select", ...["static", "dhcp", "link-local"].map((mode) => make("option", mode)))
+      : Object.assign(make("input"), { type: "text", autocomplete: "off", spellcheck: false });
+    const field = labelled(label, control, hint);
+    field.dataset.path = path;
+    control.addEventListener("input", typed);
+    fields.set(path, field);
+    form.querySelector(`[data-side=${path.split(".")[0]}]`).append(field);
+  }
+  form.noValidate = true;
+  form.addEventListener("submit", (event) => event.preventDefault());
+  on(change, tryIt);
+  on(pendingPlace.querySelector(".confirm"), async () => told(await post("/adit/network/confirm")));
+  on(pendingPlace.querySelector(".back"), async () => told(await post("/adit/network/back")));
+}

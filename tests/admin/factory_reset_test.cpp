@@ -1,0 +1,89 @@
+#include "admin/factory_reset.hpp"
+
+#include <gmock/gmock.h>
+
+#include <filesystem>
+
+#include "host/folder.hpp"
+
+namespace adit::admin {
+namespace {
+
+using testing::HasSubstr;
+
+class FactoryResetTest : public testing::Test {
+ protected:
+  void SetUp() override {
+    for (const char* file : {"access.json", "first-start.code", "settings.json", "ledger.sqlite"})
+      state_.put(file, "something");
+    std::filesystem::create_directory(state_ / "secrets");
+    state_.put("secrets/team.token", "secret");
+    runtime_.put("sessions.json", "who is logged in");
+    for (const char* folder : {"journal", "waiting", "aside"}) {
+      std::filesystem::create_directory(runtime_ / folder);
+      runtime_.put(std::string(folder) + "/1", "a message of the team before");
+    }
+  }
+  bool kept(const char* name) const { return std::filesystem::exists(state_ / name); }
+  void expect_first_start() const {
+    for (const char* gone : {"access.json", "first-start.code", "settings.json", "secrets", "reset"})
+      EXPECT_FALSE(kept(gone)) << gone;
+    EXPECT_FALSE(std::filesystem::exists(runtime_ / "sessions.json"));
+    for (const char* gone : {"journal", "waiting", "aside"}) {
+      EXPECT_FALSE(std::filesystem::exists(runtime_ / gone)) << "the next team would send it";
+    }
+    EXPECT_TRUE(kept("forget.json")) << "adit-network is asked to forget the addresses";
+    EXPECT_TRUE(kept("ledger.sqlite"));
+  }
+
+  host::Folder state_, runtime_, given_;
+  Store store_{given_ / "settings.json", given_.path(), state_.path()};
+  FactoryReset reset_{store_, state_.path(), runtime_.path()};
+};
+
+TEST_F(FactoryResetTest, ForgetsNothingUnlessItWasBegun) {
+  EXPECT_EQ(reset_.finish(), false);
+  EXPECT_TRUE(kept("access.json") && kept("settings.json") && kept("secrets/team.token"));
+  EXPECT_FALSE(kept("forget.json"));
+}
+
+TEST_F(FactoryResetTest, ForgetsAllButTheReportsAndOnce) {
+  ASSERT_TRUE(reset_.begin());
+  EXPECT_TRUE(kept("access.json")) << "nothing is taken away while others use it";
+  EXPECT_EQ(reset_.finish(), true);
+  expect_first_start();
+  state_.put("access.json", "a new password");
+  EXPECT_EQ(reset_.finish(), false);
+  EXPECT_TRUE(kept("access.json"));
+}
+
+TEST_F(FactoryResetTest, GoesOnAfterItCameToNoEnd) {
+  std::filesystem::remove(state_ / "access.json");
+  std::filesystem::create_directory(state_ / "access.json");  // stands for a file that cannot be removed
+  ASSERT_TRUE(reset_.begin());
+  const auto done = reset_.finish();
+  ASSERT_FALSE(done);
+  EXPECT_THAT(done.error(), HasSubstr("access.json: cannot be removed"));
+  EXPECT_FALSE(kept("secrets"));
+  std::filesystem::remove(state_ / "access.json");
+  const FactoryReset at_the_next_start(store_, state_.path(), runtime_.path());
+  ASSERT_TRUE(at_the_next_start.finish());
+  expect_first_start();
+}
+
+TEST_F(FactoryResetTest, ForgetsNothingWhereItIsNotKnownWhetherItWasBegun) {
+  const FactoryReset unknown(store_, state_ / std::string(300, 'x'), runtime_.path());
+  EXPECT_THAT(unknown.finish().error(), HasSubstr("/reset: File name too long"));
+  EXPECT_TRUE(kept("settings.json") && kept("secrets/team.token"));
+  EXPECT_TRUE(std::filesystem::exists(runtime_ / "sessions.json"));
+}
+
+TEST_F(FactoryResetTest, IsRefusedWhereItCannotBeWrittenDown) {
+  const FactoryReset nowhere(store_, state_ / "none", runtime_.path());
+  EXPECT_THAT(nowhere.begin().error(), HasSubstr("No such file or directory"));
+  ASSERT_TRUE(reset_.finish());
+  EXPECT_TRUE(kept("access.json"));
+}
+
+}  // namespace
+}  // namespace adit::admin

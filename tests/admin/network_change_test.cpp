@@ -1,0 +1,123 @@
+#include "admin/network_change.hpp"
+
+#include <gmock/gmock.h>
+
+#include <filesystem>
+#include <fstream>
+
+#include "host/folder.hpp"
+#include "network/doubles.hpp"
+
+namespace adit::admin {
+namespace {
+
+using network::Mode;
+using network::numbers;
+using testing::HasSubstr;
+
+class NetworkChangeTest : public testing::Test {
+ protected:
+  NetworkChangeTest() {
+    settings.team.interface = "team0";
+    settings.team.listen = {{"0.0.0.0", 8000}};
+    settings.command_post.interface = "darpa0";
+    settings.command_post.scoring = {"10.100.1.201", 8000};
+    settings.command_post.mapping = {"10.100.1.200", 8000};
+    status.kept = numbers();
+    tell();
+  }
+
+  /// As adit-network does; it is read again once it is no longer fresh.
+  void tell() {
+    std::ofstream(folder / network::kStatusFile) << network::write(status);
+    const auto end = loop.now() + 2 * NetworkChange::kFresh;
+    while (loop.now() < end) loop.turn(std::chrono::milliseconds(10));
+  }
+  std::optional<network::Endpoints> asked() const {
+    std::ifstream file(folder / network::kEndpointsFile);
+    const std::string text(std::istreambuf_iterator<char>(file), {});
+    const auto read = network::read_endpoints(text);
+    return read ? std::optional(*read) : std::nullopt;
+  }
+  void wait(const network::Numbers& wanted) {
+    status.pending = network::Pending{std::string(32, 'a'), wanted, loop.now() + std::chrono::seconds(60),
+                                      std::chrono::seconds(60)};
+    tell();
+  }
+
+  host::Folder folder;
+  loop::Loop loop;
+  settings::Settings settings;
+  network::Status status{.team_interface = "team0", .command_post_interface = "darpa0"};
+  const NetworkRequests requests{folder.path(), folder.path()};
+  NetworkChange change{loop, settings, requests};
+};
+
+TEST_F(NetworkChangeTest, TellsWhereAllEndpointsAreUntilAditNetworkKnows) {
+  settings.courses = {{"B", {"10.100.2.200", 8000}, {"10.100.1.201", 8000}},
+                      {"C", {"fd00::1", 8000}, {"10.0.0.9", 8000}}};
+  change.lead_to_endpoints();
+  const network::Endpoints all{{0x0a000009, 0x0a6401c8, 0x0a6401c9, 0x0a6402c8}};
+  EXPECT_EQ(asked(), all) << "in order, none twice, of IPv4";
+  std::filesystem::remove(folder / network::kEndpointsFile);
+  change.lead_to_endpoints();
+  EXPECT_EQ(asked(), std::nullopt) << "not again at once";
+  status.endpoints = all;
+  tell();
+  NetworkChange another(loop, settings, requests);
+  another.lead_to_endpoints();
+  EXPECT_EQ(asked(), std::nullopt) << "it is known";
+}
+
+TEST_F(NetworkChangeTest, AsksNobodyWhereAditNetworkHasOtherInterfaces) {
+  status.team_interface = "eth7";
+  tell();
+  change.lead_to_endpoints();
+  EXPECT_EQ(asked(), std::nullopt);
+}
+
+TEST_F(NetworkChangeTest, IsConfirmedAtTheNewAddressAlone) {
+  wait(numbers("192.168.8.11/24"));
+  EXPECT_THAT(change.confirm("192.168.7.11").error().sentence,
+              HasSubstr("confirm it at http://192.168.8.11:8000"));
+  EXPECT_TRUE(change.confirm("192.168.8.11"));
+}
+
+TEST_F(NetworkChangeTest, OfTheModeIsConfirmedAtAnyAddressButTheOneThatGoes) {
+  for (const Mode mode : {Mode::Dhcp, Mode::LinkLocal}) {
+    wait(network::with_mode(mode));
+    EXPECT_THAT(change.confirm("192.168.7.11").error().sentence,
+                HasSubstr("confirm it at http://adit.local:8000"));
+    EXPECT_TRUE(change.confirm("169.254.8.11"));
+  }
+}
+
+TEST_F(NetworkChangeTest, SaysNothingOfTheLastOneWhileAnotherWaits) {
+  status.ended = network::Ended::Confirmed;
+  tell();
+  EXPECT_EQ(change.network().last, "confirmed");
+  wait(numbers("192.168.8.11/24"));
+  EXPECT_EQ(change.network().last, "");
+}
+
+TEST_F(NetworkChangeTest, KnowsWhoAnswersForTheCommandPost) {
+  EXPECT_EQ(change.next_hop(), "10.100.1.201");
+  status.kept = numbers("192.168.7.11/24", "10.100.3.10/24", "10.100.3.1");
+  tell();
+  EXPECT_EQ(change.next_hop(), "10.100.3.1");
+  status.kept = numbers("192.168.7.11/24", "10.100.3.10/24");
+  tell();
+  EXPECT_EQ(change.next_hop(), "") << "there is no way to it";
+}
+
+TEST_F(NetworkChangeTest, TellsTheOperatorThatTheCommandPostsSideHasNoAddressYet) {
+  EXPECT_EQ(change.attention(), "");
+  status.kept->command_post.clear();
+  tell();
+  EXPECT_THAT(change.attention(), HasSubstr("no address on darpa0 yet"));
+  wait(numbers());
+  EXPECT_THAT(change.attention(), HasSubstr("network change: confirm within"));
+}
+
+}  // namespace
+}  // namespace adit::admin

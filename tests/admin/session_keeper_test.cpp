@@ -1,0 +1,74 @@
+#include "admin/session_keeper.hpp"
+
+#include <gtest/gtest.h>
+
+#include <filesystem>
+
+#include "host/folder.hpp"
+#include "host/service.hpp"
+
+namespace adit::admin {
+namespace {
+
+using namespace std::chrono_literals;
+
+constexpr access::Instant kStart{100h};
+
+class SessionKeeperTest : public testing::Test {
+ protected:
+  /// The id of somebody who logs in.
+  std::string log_in(SessionKeeper& keeper) {
+    const access::Secret id{++drawn_}, csrf{++drawn_};
+    return keeper.sessions()
+        .begin(id, csrf, access::Role::Operator, {"10.0.0.5", "browser"}, kStart)
+        .id.reveal();
+  }
+  bool knows(SessionKeeper& keeper, const std::string& id) {
+    return keeper.sessions().find(id, kStart) != nullptr;
+  }
+
+  host::Folder folder_;
+  const std::string file_ = folder_ / "sessions.json";
+  std::uint8_t drawn_ = 0;
+};
+
+TEST_F(SessionKeeperTest, KeepsWhoIsLoggedInWithoutBeingAsked) {
+  SessionKeeper before(file_, kStart);
+  const std::string mine = log_in(before), other = log_in(before);
+  before.sessions().end(before.sessions().all(kStart).front().number);
+  SessionKeeper after(file_, kStart);
+  EXPECT_TRUE(knows(after, mine));
+  EXPECT_FALSE(knows(after, other)) << "who left has left";
+  struct stat status{};
+  ASSERT_EQ(stat(file_.c_str(), &status), 0);
+  EXPECT_EQ(status.st_mode & 07777, 0600u);
+}
+
+TEST_F(SessionKeeperTest, ForgetsThoseOfAnotherStartOfTheMachine) {
+  SessionKeeper before(file_, kStart);
+  const std::string mine = log_in(before);
+  std::string text = host::read_file(file_).value();
+  const std::string boot = "\"boot\":\"" + host::boot();
+  text.replace(text.find(boot), boot.size(), "\"boot\":\"another");
+  folder_.put("sessions.json", text);
+  SessionKeeper after(file_, kStart);
+  EXPECT_FALSE(knows(after, mine));
+}
+
+TEST_F(SessionKeeperTest, StartsWithNobodyWhereTheFileIsDamaged) {
+  folder_.put("sessions.json", "{\"version\":1,");
+  SessionKeeper keeper(file_, kStart);
+  EXPECT_TRUE(keeper.sessions().all(kStart).empty());
+  const std::string mine = log_in(keeper);
+  SessionKeeper after(file_, kStart);
+  EXPECT_TRUE(knows(after, mine));
+}
+
+TEST_F(SessionKeeperTest, GoesOnInMemoryWhereNothingCanBeWritten) {
+  SessionKeeper keeper(folder_ / "none/sessions.json", kStart);
+  const std::string mine = log_in(keeper);
+  EXPECT_TRUE(knows(keeper, mine));
+}
+
+}  // namespace
+}  // namespace adit::admin

@@ -1,0 +1,60 @@
+#include "admin/setup.hpp"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <filesystem>
+
+#include "host/folder.hpp"
+#include "settings/sample.hpp"
+
+namespace adit::admin {
+namespace {
+
+class SetupTest : public testing::Test {
+ protected:
+  /// What the box was given.
+  struct Given : host::Folder {
+    Given() { put("settings.json", settings::sample()); }
+  };
+  settings::Settings with_connections(std::uint32_t connections) const {
+    settings::Settings next = setup_.settings();
+    next.team.connections = connections;
+    return next;
+  }
+  std::string saved_file() const { return state_ / settings::kSavedFile; }
+
+  Given given_;
+  host::Folder state_, runtime_;
+  Store store_{given_ / "settings.json", given_.path(), state_.path()};
+  FactoryReset reset_{store_, state_.path(), runtime_.path()};
+  int applied_ = 0;
+  admin::Setup setup_{
+      store_, reset_, store_.load().value(), [](const std::string&) { return ""; }, [this] { ++applied_; },
+      [] {}};
+};
+
+TEST_F(SetupTest, AppliesNothingWhereTheBoxRunsWithTheSameSettings) {
+  EXPECT_TRUE(setup_.save(setup_.settings()).has_value());
+  EXPECT_EQ(applied_, 0);
+  EXPECT_FALSE(std::filesystem::exists(saved_file()));
+}
+
+TEST_F(SetupTest, RefusesAnythingWhileAChangeIsBeingApplied) {
+  ASSERT_TRUE(setup_.save(with_connections(30)).has_value());
+  EXPECT_EQ(setup_.save(setup_.settings()).error().status, icd::Status::Conflict);
+}
+
+// A save that fails halfway may leave its settings on the disk: whoever then asks for those that the box runs
+// with has them written, lest the next start has the others.
+TEST_F(SetupTest, WritesTheSettingsThatItRunsWithAfterASaveThatFailed) {
+  std::filesystem::create_directories(saved_file() + "/in the way");
+  EXPECT_EQ(setup_.save(with_connections(30)).error().status, icd::Status::ServiceUnavailable);
+  std::filesystem::remove_all(saved_file());
+  ASSERT_TRUE(setup_.save(setup_.settings()).has_value());
+  EXPECT_EQ(applied_, 1);
+  EXPECT_TRUE(std::filesystem::exists(saved_file()));
+}
+
+}  // namespace
+}  // namespace adit::admin

@@ -1,0 +1,164 @@
+#include "admin/store.hpp"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <filesystem>
+
+#include "host/folder.hpp"
+#include "settings/sample.hpp"
+
+namespace adit::admin {
+namespace {
+
+using testing::ElementsAre;
+using testing::HasSubstr;
+using testing::Not;
+
+constexpr const char* kCourse =
+    R"(, "courses": [{"name": "A", "scoring": {"address": "10.100.2.200", "port": 8000},)"
+    R"( "mapping": {"address": "10.100.2.201", "port": 8000}}])";
+
+class StoreTest : public testing::Test {
+ protected:
+  StoreTest() {
+    given_.put("settings.json", settings::sample("", R"(, "connections": 20)"));
+    given_.put("scoring.token", "given-1");
+  }
+  static settings::Settings with_connections(std::uint32_t connections) {
+    auto settings = settings::parse(settings::sample("", "", kCourse)).value();
+    settings.team.connections = connections;
+    return settings;
+  }
+  std::uint32_t connections() const { return store_.load().value().settings.team.connections; }
+  bool kept(const std::string& name) const { return std::filesystem::exists(state_ / name); }
+
+  host::Folder given_, state_;
+  Store store_{given_ / "settings.json", given_.path(), state_.path()};
+};
+
+TEST_F(StoreTest, GivesWhatTheBoxWasGivenUntilSomethingIsSaved) {
+  const auto given = store_.load().value();
+  EXPECT_FALSE(given.saved);
+  EXPECT_EQ(given.settings.team.connections, 20u);
+  EXPECT_EQ(given.secrets.token("scoring")->reveal(), "given-1");
+  ASSERT_TRUE(store_.save(with_connections(30)).has_value());
+  const auto saved = store_.load().value();
+  EXPECT_TRUE(saved.saved);
+  EXPECT_EQ(saved.settings.team.connections, 30u);
+  EXPECT_EQ(saved.trouble, "");
+}
+
+TEST_F(StoreTest, TakesBackWhatWasSavedUntilItIsSettled) {
+  EXPECT_FALSE(store_.take_back()) << "nothing is on trial";
+  (void)store_.save(with_connections(30));
+  store_.settle(with_connections(30));
+  EXPECT_FALSE(store_.take_back());
+  (void)store_.save(with_connections(40));
+  (void)store_.save(with_connections(50));
+  EXPECT_TRUE(store_.take_back());
+  EXPECT_EQ(connections(), 30u) << "the last that had proven itself";
+  EXPECT_FALSE(store_.take_back());
+}
+
+TEST_F(StoreTest, TakesTheFirstBackToWhatTheBoxWasGiven) {
+  (void)store_.save(with_connections(30));
+  EXPECT_TRUE(store_.take_back());
+  EXPECT_FALSE(store_.load().value().saved);
+  EXPECT_EQ(connections(), 20u);
+}
+
+TEST_F(StoreTest, SetsSavedSettingsAsideThatCannotBeUnderstood) {
+  state_.put("settings.json", R"({"version": 1, "team": 7})");
+  const auto loaded = store_.load().value();
+  EXPECT_FALSE(loaded.saved);
+  EXPECT_EQ(loaded.settings.team.connections, 20u);
+  EXPECT_THAT(loaded.trouble, HasSubstr("team: expected an object, got 7"));
+  EXPECT_TRUE(kept("settings.json.damaged"));
+  EXPECT_EQ(store_.load().value().trouble, "");
+}
+
+TEST_F(StoreTest, PassesOverWhatALaterAditSavedBeside) {
+  ASSERT_TRUE(store_.save(with_connections(30)));
+  std::string text = host::read_file(state_ / "settings.json").value();
+  text.insert(text.find('{') + 1, R"("beacons": {"port": 7}, )");
+  const std::string team = R"("team":)";
+  ASSERT_NE(text.find(team), std::string::npos) << text;
+  text.insert(text.find('{', text.find(team)) + 1, R"("mesh": [1, 2], )");
+  state_.put("settings.json", text);
+  const auto loaded = store_.load().value();
+  EXPECT_TRUE(loaded.saved);
+  EXPECT_EQ(loaded.settings.team.connections, 30u);
+  EXPECT_EQ(loaded.trouble, "a later Adit saved the settings, and these are passed over: beacons team.mesh");
+  EXPECT_EQ(host::read_file(state_ / "settings.json"), text) << "the later Adit finds it as it was";
+}
+
+TEST_F(StoreTest, SaysWhyNothingCanBeUsed) {
+  std::filesystem::remove(given_ / "settings.json");
+  EXPECT_EQ(store_.load().error(), (given_ / "settings.json") + ": No such file or directory");
+}
+
+TEST_F(StoreTest, PrefersSavedTokensAndKeepsThemForAditdAlone) {
+  ASSERT_TRUE(store_.save_token("scoring", icd::BearerToken::parse("saved-1")).has_value());
+  EXPECT_EQ(store_.load()->secrets.token("scoring")->reveal(), "saved-1");
+  struct stat status{};
+  ASSERT_EQ(stat((state_ / "secrets").c_str(), &status), 0);
+  EXPECT_EQ(status.st_mode & 07777, 0700u);
+  ASSERT_EQ(stat((state_ / "secrets/scoring.token").c_str(), &status), 0);
+  EXPECT_EQ(status.st_mode & 07777, 0600u);
+  ASSERT_TRUE(store_.save_token("scoring", std::nullopt).has_value());
+  EXPECT_EQ(store_.load()->secrets.token("scoring")->reveal(), "given-1");
+  EXPECT_TRUE(store_.save_token("scoring", std::nullopt).has_value()) << "there is none, and that is well";
+}
+
+TEST_F(StoreTest, KnowsTheTokensOfEachCourse) {
+  EXPECT_THAT(token_names(with_connections(30)),
+              ElementsAre("scoring", "mapping", "team", "course.A.scoring", "course.A.mapping"));
+  (void)store_.save(with_connections(30));
+  (void)store_.save_token("course.A.mapping", icd::BearerToken::parse("of-a"));
+  EXPECT_EQ(store_.load()->secrets.token("course.A.mapping")->reveal(), "of-a");
+}
+
+TEST_F(StoreTest, RemovesTheTokensOfCoursesThatAreNoMoreOnceThatIsSettled) {
+  (void)store_.save_token("course.A.mapping", icd::BearerToken::parse("of-a"));
+  (void)store_.save_token("course.B.mapping", icd::BearerToken::parse("of-b"));
+  (void)store_.save_token("team", icd::BearerToken::parse("team-1"));
+  (void)store_.save(with_connections(30));
+  EXPECT_TRUE(kept("secrets/course.B.mapping.token")) << "it may be taken back yet";
+  store_.settle(with_connections(30));
+  EXPECT_FALSE(kept("secrets/course.B.mapping.token"));
+  EXPECT_TRUE(kept("secrets/course.A.mapping.token") && kept("secrets/team.token"));
+}
+
+TEST_F(StoreTest, SetsSavedTokensAsideThatCannotBeRead) {
+  (void)store_.save_token("scoring", icd::BearerToken::parse("saved-1"));
+  std::filesystem::create_directory(state_ / "secrets/mapping.token");
+  const auto loaded = store_.load();
+  ASSERT_TRUE(loaded.has_value()) << loaded.error();
+  EXPECT_THAT(loaded->trouble, HasSubstr("the saved tokens are set aside"));
+  EXPECT_THAT(loaded->trouble, Not(HasSubstr("saved-1")));
+  EXPECT_TRUE(kept("secrets.damaged/scoring.token"));
+}
+
+TEST_F(StoreTest, SaysThatItCannotBeWritten) {
+  const Store nowhere(given_ / "settings.json", given_.path(), state_ / "none");
+  EXPECT_THAT(nowhere.save(with_connections(30)).error(), HasSubstr("No such file or directory"));
+}
+
+TEST_F(StoreTest, ForgetsAllThatWasSavedAndNothingElse) {
+  state_.put("ledger.sqlite", "reports");
+  (void)store_.save(with_connections(30));
+  (void)store_.save_token("scoring", icd::BearerToken::parse("saved-1"));
+  state_.put("settings.json.damaged", "what nobody could read");
+  std::filesystem::create_directory(state_ / "secrets.damaged");
+  state_.put("secrets.damaged/mapping.token", "saved-2");
+  ASSERT_TRUE(store_.forget().has_value());
+  for (const char* gone :
+       {"settings.json", "settings.json.before", "settings.json.damaged", "secrets", "secrets.damaged"})
+    EXPECT_FALSE(kept(gone)) << gone;
+  EXPECT_TRUE(kept("ledger.sqlite"));
+  EXPECT_EQ(connections(), 20u);
+}
+
+}  // namespace
+}  // namespace adit::admin

@@ -1,0 +1,173 @@
+#include "admin/updates.hpp"
+
+#include <gmock/gmock.h>
+
+#include <fstream>
+#include <thread>
+
+#include "host/folder.hpp"
+#include "host/service.hpp"
+
+namespace adit::admin {
+namespace {
+
+using namespace std::chrono_literals;
+using testing::HasSubstr;
+namespace fs = std::filesystem;
+
+std::string content_of(const std::string& path) {
+  std::ifstream file(path, std::ios::binary);
+  return {std::istreambuf_iterator<char>(file), {}};
+}
+
+class UpdatesTest : public testing::Test {
+ protected:
+  UpdatesTest() { say({.running = {"adit-board", "0.1.0", "A", "B"}}); }
+
+  void say(const update::Status& status) const {
+    ASSERT_TRUE(host::write_file(run_ / update::kStatusFile, update::write(status), 0644));
+  }
+  /// Until what was read of the status is too old.
+  static void wait() { std::this_thread::sleep_for(Updates::kFresh + 20ms); }
+  std::optional<update::Request> asked() const {
+    const auto text = host::read_file(state_ / update::kRequestFile);
+    const auto request = text ? update::read_request(*text) : std::unexpected(text.error());
+    return request ? std::optional(*request) : std::nullopt;
+  }
+  /// Sends `bytes` in pieces; what it ended in.
+  icd::Checked<void> upload(const std::string& bytes, std::uint64_t announced, bool again = false) {
+    bool may_go_on = true;
+    auto upload = updates_.receive(announced, again, [&may_go_on] { may_go_on = true; });
+    if (!upload) return std::unexpected(upload.error());
+    constexpr std::size_t kPiece = 100'000;
+    for (std::size_t at = 0; at < bytes.size(); at += kPiece) {
+      while (!may_go_on) loop_.turn(100ms);
+      const auto* data = reinterpret_cast<const std::uint8_t*>(bytes.data()) + at;
+      may_go_on = (*upload)->write({data, std::min(kPiece, bytes.size() - at)});
+    }
+    std::optional<icd::Checked<void>> ended;
+    (*upload)->finish([&ended](icd::Checked<void> outcome) { ended = std::move(outcome); });
+    while (!ended) loop_.turn(100ms);
+    return *ended;
+  }
+
+  host::Folder state_, run_;
+  loop::Loop loop_;
+  loop::Writer writer_{loop_};
+  std::string under_way_;
+  Updates updates_{loop_, writer_, UpdateRequests(state_.path(), run_.path()), [this] { return under_way_; }};
+};
+
+TEST_F(UpdatesTest, LeaveNothingOfAnUploadThatAPowerCutBrokeOff) {
+  const std::string half = state_.put(std::string(update::kBundleFile) + ".part", "half of a bundle");
+  const Updates after(loop_, writer_, UpdateRequests(state_.path(), run_.path()), [] { return ""; });
+  EXPECT_FALSE(fs::exists(half));
+}
+
+TEST_F(UpdatesTest, TellWhatAditUpdateTells) {
+  say({.running = {"adit-board", "0.1.0", "A", "B"},
+       .refusal = "it is older",
+       .doing = "installing",
+       .progress = 40,
+       .last = {update::Stage::Installing, "0.2.0", "B", "boot", ""}});
+  const auto view = updates_.update();
+  EXPECT_TRUE(view.managed);
+  EXPECT_EQ(view.running.version, "0.1.0");
+  EXPECT_EQ(view.doing, "installing");
+  EXPECT_EQ(view.progress, 40);
+  EXPECT_EQ(view.refusal, "it is older");
+  EXPECT_TRUE(updates_.running());
+}
+
+TEST_F(UpdatesTest, SayWhereThereAreNone) {
+  fs::remove(run_ / update::kStatusFile);
+  EXPECT_FALSE(updates_.update().managed);
+  EXPECT_THAT(updates_.update().why, HasSubstr("adit-update does not run here"));
+  for (const auto& refused : {upload("x", 1), updates_.install_from_stick(false), updates_.restart(true)}) {
+    ASSERT_FALSE(refused);
+    EXPECT_EQ(refused.error().status, icd::Status::Conflict);
+  }
+  wait();
+  say({.trouble = "RAUC does not run here: no"});
+  EXPECT_EQ(updates_.restart(true).error().sentence, "RAUC does not run here: no");
+  EXPECT_FALSE(asked());
+}
+
+TEST_F(UpdatesTest, LeaveAWholeBundleAndAskForIt) {
+  std::string bundle;
+  for (int i = 0; i < 300'000; ++i) bundle += std::to_string(i);
+  ASSERT_TRUE(upload(bundle, bundle.size(), true));
+  EXPECT_EQ(content_of(state_ / update::kBundleFile), bundle);
+  EXPECT_EQ(fs::status(state_ / update::kBundleFile).permissions(), fs::perms(0600));
+  ASSERT_TRUE(asked());
+  EXPECT_EQ(asked()->what, update::Request::What::Install);
+  EXPECT_TRUE(asked()->again);
+  EXPECT_EQ(updates_.update().doing, "checking");
+  EXPECT_FALSE(fs::exists(state_ / "update.raucb.part"));
+}
+
+TEST_F(UpdatesTest, TakeOneAtATime) {
+  auto first = updates_.receive(100, false, [] {});
+  ASSERT_TRUE(first);
+  EXPECT_EQ(updates_.update().doing, "receiving");
+  EXPECT_EQ(updates_.update().progress, 0);
+  const std::uint8_t piece[50] = {};
+  EXPECT_TRUE((*first)->write(piece));
+  EXPECT_EQ(updates_.update().progress, 50);
+  EXPECT_EQ(updates_.receive(100, false, [] {}).error().sentence,
+            "the box is receiving already: wait for its end");
+  EXPECT_EQ(updates_.restart(true).error().status, icd::Status::Conflict);
+  first->reset();
+  EXPECT_EQ(updates_.update().doing, "");
+  EXPECT_FALSE(fs::exists(state_ / "update.raucb.part"));
+  EXPECT_TRUE(updates_.receive(100, false, [] {}));
+}
+
+TEST_F(UpdatesTest, AskForNothingWhereABundleCameShort) {
+  EXPECT_THAT(upload("abc", 5).error().sentence, HasSubstr("3 of 5 bytes came"));
+  EXPECT_FALSE(asked());
+  EXPECT_TRUE(fs::is_empty(state_.path()));
+  EXPECT_EQ(updates_.update().doing, "");
+}
+
+TEST_F(UpdatesTest, RefuseWhatTheDiskHasNoRoomFor) {
+  const std::uint64_t free = fs::space(state_.path()).available;
+  const auto refused = updates_.receive(free, false, [] {});
+  ASSERT_FALSE(refused);
+  EXPECT_EQ(refused.error().status, icd::Status::ServiceUnavailable);
+  EXPECT_THAT(refused.error().sentence, HasSubstr("the disk has room for"));
+}
+
+TEST_F(UpdatesTest, SayThatABundleCannotBeWritten) {
+  fs::create_directory(state_ / "update.raucb.part");
+  EXPECT_THAT(upload("abc", 3).error().sentence, HasSubstr("the bundle cannot be written"));
+  EXPECT_FALSE(asked());
+}
+
+TEST_F(UpdatesTest, AreOverOnceAditUpdateHasAnswered) {
+  ASSERT_TRUE(updates_.install_from_stick(true));
+  const auto request = asked();
+  ASSERT_TRUE(request);
+  EXPECT_EQ(request->what, update::Request::What::Stick);
+  EXPECT_EQ(updates_.update().doing, "checking");
+  say({.nonce = request->nonce, .refusal = "there is no update on a stick"});
+  wait();
+  EXPECT_EQ(updates_.update().doing, "");
+  EXPECT_EQ(updates_.update().refusal, "there is no update on a stick");
+}
+
+TEST_F(UpdatesTest, RestartOnlyOnTheOperatorsWordWhileAReportIsUnderWay) {
+  under_way_ = "report 7 is being sent";
+  EXPECT_EQ(updates_.restart(false).error().sentence, "report 7 is being sent");
+  EXPECT_FALSE(asked());
+  ASSERT_TRUE(updates_.restart(true));
+  EXPECT_EQ(asked()->what, update::Request::What::Restart);
+  EXPECT_EQ(updates_.update().doing, "restarting");
+}
+
+TEST_F(UpdatesTest, RestartWhereNothingIsUnderWay) {
+  EXPECT_TRUE(updates_.restart(false));
+}
+
+}  // namespace
+}  // namespace adit::admin

@@ -1,0 +1,68 @@
+#include "api/bundle.hpp"
+
+#include <gmock/gmock.h>
+
+#include <numeric>
+#include <random>
+
+namespace adit::api {
+namespace {
+
+using testing::EndsWith;
+using testing::StartsWith;
+
+std::size_t size_of(const std::vector<BundleFile>& files) {
+  return std::accumulate(files.begin(), files.end(), std::size_t{0},
+                         [](std::size_t sum, const BundleFile& file) { return sum + file.body.size(); });
+}
+
+TEST(CutTo, LeavesAloneWhatFits) {
+  std::vector<BundleFile> files = {{"a", std::string(600, 'a')}, {"b", std::string(400, 'b')}};
+  cut_to(files, 1000);
+  EXPECT_EQ(files[0].body, std::string(600, 'a'));
+  EXPECT_EQ(files[1].body, std::string(400, 'b'));
+}
+
+TEST(CutTo, CutsTheLargestFromTheirBeginningAndSaysSo) {
+  std::vector<BundleFile> files = {{"small", "all of it"},
+                                   {"log", std::string(5000, 'l') + "the end"},
+                                   {"reports", std::string(9000, 'r')}};
+  cut_to(files, 2009);
+  EXPECT_EQ(files[0].body, "all of it");
+  EXPECT_THAT(files[1].body, StartsWith("[the first 40"));
+  EXPECT_THAT(files[1].body, EndsWith("lthe end"));
+  EXPECT_THAT(files[2].body, StartsWith("[the first 80"));
+  EXPECT_LE(size_of(files), 2009);
+  EXPECT_GT(size_of(files), 1950);
+  const std::string& cut = files[2].body;
+  const std::size_t left = cut.size() - cut.find('\n') - 1;
+  EXPECT_THAT(cut, StartsWith("[the first " + std::to_string(9000 - left) + " of 9000 bytes are cut off"));
+}
+
+TEST(CutTo, CutsNoCharacterInTwo) {
+  std::string body;
+  for (int i = 0; i < 1000; ++i) body += "\xe2\x82\xac";
+  for (std::size_t most = 500; most < 506; ++most) {
+    std::vector<BundleFile> files = {{"euros", body}};
+    cut_to(files, most);
+    const std::string rest = files[0].body.substr(files[0].body.find('\n') + 1);
+    EXPECT_THAT(rest, StartsWith("\xe2\x82\xac")) << most;
+    EXPECT_EQ(rest.size() % 3, 0) << most;
+  }
+}
+
+TEST(Bundle, IsNeverLargerThanItsLimitEvenWhereNothingCanBePacked) {
+  std::mt19937_64 random(1);
+  std::vector<BundleFile> files;
+  for (const char* name : {"log.txt", "reports.json", "run.json"}) {
+    std::string body(7'000'000, '\0');
+    for (char& byte : body) byte = static_cast<char>(random());
+    files.push_back({name, std::move(body)});
+  }
+  const std::string bundle = write_bundle(std::move(files), "adit", 1'780'000'000);
+  EXPECT_LE(bundle.size(), kMostBundle);
+  EXPECT_GT(bundle.size(), kMostBundle - 100'000);
+}
+
+}  // namespace
+}  // namespace adit::api

@@ -1,0 +1,164 @@
+#pragma once
+
+#include <algorithm>
+#include <map>
+#include <memory>
+#include <optional>
+#include <sstream>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "api/fake_keys.hpp"
+#include "api/fake_network.hpp"
+#include "api/source.hpp"
+#include "intake/server.hpp"
+#include "picture/mosaic.hpp"
+
+namespace adit::api {
+
+struct FakeSource final : Source {
+  RunView view() const override {
+    ++asked;
+    return now;
+  }
+  std::vector<ReportRow> reports() const override {
+    std::vector<ReportRow> rows;
+    for (const auto& [number, detail] : details) rows.push_back(detail.row);
+    return rows;
+  }
+  std::optional<ReportDetail> report(std::int64_t number) const override {
+    const auto found = details.find(number);
+    return found == details.end() ? std::nullopt : std::optional(found->second);
+  }
+
+  const picture::Mosaic& map() const override { return mosaic; }
+  MarkerNews markers(std::uint64_t since) const override {
+    since_version = since;
+    return marker_news;
+  }
+  std::vector<Track> tracks(Time since) const override {
+    since_time = since;
+    return robot_tracks;
+  }
+
+  RunView now;
+  std::map<std::int64_t, ReportDetail> details;
+  picture::Mosaic mosaic;
+  MarkerNews marker_news;
+  std::vector<Track> robot_tracks;
+  mutable std::uint64_t since_version = 0;
+  mutable Time since_time = 0;
+  mutable int asked = 0;
+};
+
+/// Does as it is told, and remembers what it was.
+struct FakeOperator final : Operator {
+  std::expected<std::int64_t, std::string> judge(std::int64_t number, Deed deed) override {
+    judged.emplace_back(number, deed);
+    return outcome ? *outcome : number;
+  }
+  std::expected<std::int64_t, std::string> report(const icd::ArtifactReport& report, bool resubmit) override {
+    reported.emplace_back(report, resubmit);
+    return outcome ? *outcome : 41;
+  }
+  std::expected<void, std::string> aside(std::uint64_t number, AsideDeed deed) override {
+    set_aside.emplace_back(number, deed);
+    if (!aside_trouble.empty()) return std::unexpected(aside_trouble);
+    return {};
+  }
+  std::int64_t begin_run() override { return ++run; }
+  Time identify(double seconds) override {
+    identified = seconds;
+    return 1000 + seconds;
+  }
+
+  std::vector<std::pair<std::int64_t, Deed>> judged;
+  std::vector<std::pair<icd::ArtifactReport, bool>> reported;
+  std::optional<std::expected<std::int64_t, std::string>>
+      outcome;  // of judge() and report(), where it is not the same number or 41
+  std::vector<std::pair<std::uint64_t, AsideDeed>> set_aside;
+  std::string aside_trouble;  // of aside(), where there is any
+  std::int64_t run = 1;
+  double identified = 0;  // seconds
+};
+
+class FakeHead final : public intake::RequestHead {
+ public:
+  /// `target`: a path, and after it a query, if any.
+  FakeHead(std::string method, const std::string& target, std::vector<intake::Header> headers = {},
+           std::optional<std::uint64_t> length = 0)
+      : method_(std::move(method)), headers_(std::move(headers)), length_(length) {
+    std::istringstream rest(target);
+    std::getline(rest, path_, '?');
+    for (std::string name, value; std::getline(rest, name, '=') && std::getline(rest, value, '&');) {
+      query_[name] = value;
+    }
+    if (header("Host").empty()) headers_.push_back({"Host", "10.0.0.1:8000"});
+  }
+  std::string_view method() const override { return method_; }
+  std::string_view path() const override { return path_; }
+  std::string_view query(std::string_view name) const override {
+    const auto found = query_.find(name);
+    return found == query_.end() ? std::string_view{} : found->second;
+  }
+  std::string_view header(std::string_view name) const override {
+    const auto found = std::ranges::find(headers_, name, &intake::Header::name);
+    return found == headers_.end() ? std::string_view{} : found->value;
+  }
+  std::optional<std::uint64_t> content_length() const override { return length_; }
+  const std::string& peer() const override { return peer_; }
+  const std::string& local() const override { return local_; }
+  std::uint64_t connection() const override { return 1; }
+  FakeHead& to(std::string local) {
+    local_ = std::move(local);
+    return *this;
+  }
+
+ private:
+  std::string method_, path_, peer_ = "10.0.0.5", local_ = "10.0.0.1";
+  std::map<std::string, std::string, std::less<>> query_;
+  std::vector<intake::Header> headers_;
+  std::optional<std::uint64_t> length_;
+};
+
+struct FakeStream final : intake::Stream {
+  bool send(std::string_view bytes) override {
+    if (!gone) sent.emplace_back(bytes);
+    return !gone;
+  }
+  std::vector<std::string> sent;
+  bool gone = false;
+};
+
+struct FakeResponder final : intake::Responder {
+  void answer(intake::Answer answer) override { answered = std::move(answer); }
+  std::shared_ptr<intake::Stream> stream(std::string_view content_type) override {
+    stream_type = content_type;
+    return streaming = std::make_shared<FakeStream>();
+  }
+  bool client_gone() const override { return false; }
+
+  std::optional<intake::Answer> answered;
+  std::shared_ptr<FakeStream> streaming;
+  std::string stream_type;
+};
+
+inline const intake::Header kByToken{"Authorization", "Bearer team-1"};
+
+inline std::string header(const intake::Answer& answer, std::string_view name) {
+  const auto found = std::ranges::find(answer.headers, name, &intake::Header::name);
+  return found == answer.headers.end() ? "" : found->value;
+}
+
+/// Hands requests on to a handler that is made later.
+struct Forward final : intake::Handler {
+  std::unique_ptr<intake::Exchange> open(const intake::RequestHead& head,
+                                         std::shared_ptr<intake::Responder> responder,
+                                         std::shared_ptr<intake::Flow> flow) override {
+    return to->open(head, std::move(responder), std::move(flow));
+  }
+  intake::Handler* to = nullptr;
+};
+
+}  // namespace adit::api

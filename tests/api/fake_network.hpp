@@ -1,0 +1,47 @@
+#pragma once
+
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "api/network.hpp"
+#include "api/self_test.hpp"
+
+namespace adit::api {
+
+/// Has the addresses that it is told to have, and remembers what it was asked for.
+struct FakeNetwork final : Network {
+  NetworkView network() const override { return view; }
+  network::Verdict check(const network::Numbers&, const std::string& asker) const override {
+    askers.push_back(asker);
+    return verdict;
+  }
+  icd::Checked<void> change(const network::Numbers& numbers) override {
+    wanted.push_back(numbers);
+    return outcome;
+  }
+  icd::Checked<void> confirm(const std::string& local) override {
+    confirmed.push_back(local);
+    return outcome;
+  }
+  icd::Checked<void> take_back() override {
+    ++taken_back;
+    return outcome;
+  }
+
+  NetworkView view;
+  network::Verdict verdict;
+  icd::Checked<void> outcome;
+  mutable std::vector<std::string> askers;
+  std::vector<network::Numbers> wanted;
+  std::vector<std::string> confirmed;
+  int taken_back = 0;
+};
+
+struct FakeTest final : SelfTest {
+  TestView test() const override { return view; }
+  bool begin_test() override { return !std::exchange(view.running, true); }
+  TestView view;
+};
+
+}  // namespace adit::api

@@ -1,0 +1,191 @@
+#include "api/map_routes.hpp"
+
+#include <gmock/gmock.h>
+
+#include <nlohmann/json.hpp>
+
+#include "api/api.hpp"
+#include "api/doubles.hpp"
+#include "api/map_scene.hpp"
+#include "intake/raw_client.hpp"
+#include "intake/served.hpp"
+#include "picture/palette.hpp"
+
+namespace adit::api {
+namespace {
+
+using nlohmann::json;
+using testing::StartsWith;
+
+class MapRoutesTest : public testing::Test {
+ protected:
+  void SetUp() override { draw_scene(source.mosaic, 2000); }
+
+  intake::Answer get(const std::string& target, std::string if_none_match = "", std::string method = "GET") {
+    auto responder = std::make_shared<FakeResponder>();
+    EXPECT_EQ(
+        api.open(FakeHead{std::move(method), target, {{"If-None-Match", std::move(if_none_match)}, kByToken}},
+                 responder, {}),
+        nullptr);
+    EXPECT_TRUE(responder->answered) << "the picture is there, or it is not";
+    return responder->answered.value_or(intake::Answer{});
+  }
+
+  loop::Loop loop;
+  FakeSource source;
+  FakeOperator judge;
+  FakeKeys keys;
+  Api api{loop, source, judge, keys, {token()}};
+};
+
+TEST_F(MapRoutesTest, TellsHowTilesAreCutAndColoured) {
+  const json map = json::parse(get("/adit/map").body);
+  EXPECT_EQ(map["version"], source.mosaic.version());
+  EXPECT_EQ(map["tile_side"], 256);
+  EXPECT_EQ(map["metres_per_pixel"], (json{0.25, 1.0, 4.0}));
+  EXPECT_EQ(map["colours"]["free"], "#c8d2da");
+  EXPECT_EQ(map["colours"]["occupied"], "#a8321e");
+  EXPECT_EQ(map["colours"]["heights"].size(), picture::height_ramp().size());
+  EXPECT_EQ(map["spacing"], 1.0);
+  EXPECT_TRUE(map["wiped"].is_null());
+}
+
+TEST_F(MapRoutesTest, TellsEachLayerAndItsTiles) {
+  const json layers = json::parse(get("/adit/map").body)["layers"];
+  ASSERT_EQ(layers.size(), 2);
+  EXPECT_EQ(layers[0]["robot"], "");
+  EXPECT_EQ(layers[0]["kind"], "grid");
+  EXPECT_TRUE(layers[0]["heights"].is_null());
+  EXPECT_EQ(layers[0]["first"], 1429.0);
+  EXPECT_EQ(layers[0]["last"], 1999.0);
+  EXPECT_EQ(layers[0]["missed"], 0);
+  EXPECT_EQ(layers[0]["left_out"], 0);
+  EXPECT_LT(layers[0]["bounds"]["left"], layers[0]["bounds"]["right"]);
+  EXPECT_LT(layers[0]["bounds"]["bottom"], layers[0]["bounds"]["top"]);
+  EXPECT_EQ(layers[1]["robot"], "ugv1");
+  EXPECT_EQ(layers[1]["kind"], "cloud");
+  EXPECT_LT(layers[1]["heights"]["low"], layers[1]["heights"]["high"]);
+  for (const json& tile : layers[0]["tiles"]) {
+    EXPECT_GE(tile["first"], 1429.0);
+    EXPECT_LE(tile["first"], tile["stamp"]);
+    EXPECT_EQ(tile["blank"], false);
+    EXPECT_LE(tile["version"], source.mosaic.version());
+  }
+}
+
+TEST_F(MapRoutesTest, EveryTileThatItTellsOfIsThere) {
+  const json map = json::parse(get("/adit/map").body);
+  for (const json& layer : map["layers"]) {
+    ASSERT_FALSE(layer["tiles"].empty());
+    const std::string robot = layer["robot"].get<std::string>();
+    for (const json& tile : layer["tiles"]) {
+      const std::string path = "/adit/map/" + layer["kind"].get<std::string>() + "/" +
+                               (robot.empty() ? "-" : robot) + "/" + tile["level"].dump() + "/" +
+                               tile["x"].dump() + "/" + tile["y"].dump() + ".png";
+      const auto answer = get(path);
+      ASSERT_EQ(answer.status, icd::Status::Ok) << path;
+      EXPECT_EQ(answer.content_type, "image/png");
+      EXPECT_THAT(answer.body, StartsWith("\x89PNG\r\n"));
+      EXPECT_EQ(get(path + "?at=" + tile["first"].dump()).status, icd::Status::Ok) << path;
+      EXPECT_EQ(get(path + "?at=1000").status, icd::Status::NotFound) << "before anything was drawn";
+    }
+  }
+}
+
+TEST_F(MapRoutesTest, TellsOnlyOfWhatChangedSince) {
+  const auto before = source.mosaic.version();
+  const json same = json::parse(get("/adit/map?since=" + std::to_string(before)).body);
+  EXPECT_TRUE(same["layers"][0]["tiles"].empty());
+  source.mosaic.wipe(3000);
+  const json wiped = json::parse(get("/adit/map?since=" + std::to_string(before)).body);
+  EXPECT_EQ(wiped["wiped"], 3000.0);
+  EXPECT_TRUE(wiped["layers"][0]["bounds"].is_null());
+  ASSERT_FALSE(wiped["layers"][0]["tiles"].empty());
+  EXPECT_EQ(wiped["layers"][0]["tiles"][0]["blank"], true);
+}
+
+TEST_F(MapRoutesTest, SendsATileAgainOnlyWhereItChanged) {
+  const auto first = get("/adit/map/grid/-/1/0/0.png");
+  ASSERT_EQ(first.status, icd::Status::Ok);
+  EXPECT_EQ(header(first, "Cache-Control"), "no-cache");
+  const auto again = get("/adit/map/grid/-/1/0/0.png", header(first, "ETag"));
+  EXPECT_EQ(static_cast<int>(again.status), 304);
+  EXPECT_EQ(again.body, "");
+  const auto earlier = get("/adit/map/grid/-/1/0/0.png?at=1700", header(first, "ETag"));
+  EXPECT_EQ(earlier.status, icd::Status::Ok);
+  EXPECT_NE(earlier.body, first.body);
+  EXPECT_EQ(header(earlier, "Cache-Control"), "max-age=3600") << "it has been followed by others";
+}
+
+TEST_F(MapRoutesTest, SpreadsAnyHeightsAskedForOverTheColours) {
+  const auto usual = get("/adit/map/cloud/ugv1/0/0/0.png");
+  const auto spread = get("/adit/map/cloud/ugv1/0/0/0.png?low=-1&high=7");
+  ASSERT_EQ(spread.status, icd::Status::Ok);
+  EXPECT_NE(spread.body, usual.body);
+  EXPECT_EQ(spread.body.substr(900), usual.body.substr(900)) << "only the palette differs";
+}
+
+TEST_F(MapRoutesTest, HasNothingElsewhere) {
+  for (const char* path :
+       {"/adit/map/", "/adit/map/grid", "/adit/map/grid/-/0/0/0", "/adit/map/grid/-/0/0/0.jpg",
+        "/adit/map/state/-/0/0/0.png", "/adit/map/grid/-/0/0/0/0.png", "/adit/map/grid/-/0/0/.png",
+        "/adit/map/grid/-/9/0/0.png", "/adit/map/grid/-/-1/0/0.png", "/adit/map/grid/-/0/99999999999/0.png",
+        "/adit/map/grid/nobody/0/0/0.png", "/adit/map/cloud/-/0/0/0.png", "/adit/map/grid/-/0/50/50.png",
+        "/adit/map/grid//0/0/0.png", "/adit/maps"}) {
+    const auto answer = get(path);
+    EXPECT_EQ(answer.status, icd::Status::NotFound) << path;
+    EXPECT_TRUE(json::parse(answer.body).is_string()) << path;
+  }
+}
+
+TEST_F(MapRoutesTest, RefusesNumbersThatAreNone) {
+  for (const char* target :
+       {"/adit/map?since=x", "/adit/map?since=-1", "/adit/map?since=1.5", "/adit/map/grid/-/0/0/0.png?at=now",
+        "/adit/map/grid/-/0/0/0.png?at=nan", "/adit/map/cloud/ugv1/0/0/0.png?low=inf",
+        "/adit/map/cloud/ugv1/0/0/0.png?high=1e999"}) {
+    EXPECT_EQ(get(target).status, icd::Status::BadRequest) << target;
+  }
+}
+
+TEST_F(MapRoutesTest, TakesNothingButGet) {
+  for (const char* path : {"/adit/map", "/adit/map/grid/-/0/0/0.png"}) {
+    EXPECT_EQ(get(path, "", "POST").status, icd::Status::MethodNotAllowed);
+    EXPECT_EQ(get(path, "", "HEAD").status, icd::Status::Ok);
+  }
+}
+
+TEST_F(MapRoutesTest, KeepsTheBrowserFromLoadingAnythingElse) {
+  for (const char* path : {"/adit/map", "/adit/map/grid/-/0/0/0.png", "/adit/map/nothing"}) {
+    EXPECT_THAT(header(get(path), "Content-Security-Policy"), StartsWith("default-src 'none'")) << path;
+  }
+}
+
+constexpr const char* kAuthorized = "Authorization: Bearer team-1\r\n";
+
+TEST(MapRoutesOnAServer, ReadsTheQueryOfARealRequest) {
+  std::unique_ptr<Api> api;
+  Forward forward;
+  FakeOperator judge;
+  FakeKeys keys;
+  intake::Served served{forward};
+  FakeSource source;
+  draw_scene(source.mosaic, 2000);
+  served.on_loop([&] {
+    api = std::make_unique<Api>(served.loop(), source, judge, keys, std::vector{token()});
+    forward.to = api.get();
+  });
+  intake::RawClient client{served.port()};
+  client.send(intake::request("GET", "/adit/map/cloud/ugv1/0/0/0.png?low=-1&high=7&at=1999.5", kAuthorized));
+  const auto reply = client.reply();
+  ASSERT_TRUE(reply);
+  EXPECT_EQ(reply->status, 200);
+  EXPECT_THAT(reply->body, StartsWith("\x89PNG"));
+  client.send(intake::request("GET", "/adit/map/grid/-/0/0/0.png?at=5", kAuthorized));
+  const auto none = client.reply();
+  ASSERT_TRUE(none);
+  EXPECT_EQ(none->status, 404);
+  served.on_loop([&] { forward.to = nullptr, api.reset(); });
+}
+
+}  // namespace
+}  // namespace adit::api

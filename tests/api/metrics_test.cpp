@@ -1,0 +1,113 @@
+#include "api/metrics.hpp"
+
+#include <gmock/gmock.h>
+
+#include "api/exposition.hpp"
+#include "api/exposition_grammar.hpp"
+#include "api/scenes.hpp"
+#include "icd/sentence.hpp"
+
+namespace adit::api {
+namespace {
+
+using testing::HasSubstr;
+using testing::IsEmpty;
+using testing::Not;
+
+Measured measured(const std::string& name) {
+  const Time now = 1'780'000'000;
+  Measured measured{.view = *scene(name, now, 60), .reports = {}, .usage = {}, .about = {}};
+  measured.reports = measured.view.reports;
+  return measured;
+}
+
+TEST(Metrics, KeepToTheFormatWhateverTheRunIsLike) {
+  for (const char* name : {"empty", "calm", "trouble", "reports", "hostile"}) {
+    EXPECT_THAT(faults_of(write_metrics(measured(name))), IsEmpty()) << name;
+  }
+}
+
+TEST(Metrics, CarryWhatTheViewSays) {
+  Measured all = measured("calm");
+  all.view.run =
+      icd::RunStatus{.score = 7, .run_clock = 750, .remaining_reports = 18, .current_team = "adit"};
+  all.view.run_heard = all.view.now - 2;
+  all.view.endpoints = {{.name = "scoring",
+                         .address = "",
+                         .connected = true,
+                         .trouble = "",
+                         .answer_ms = 12.5,
+                         .throttled = 3}};
+  ActivityRow clouds;
+  clouds.kind = "cloud";
+  clouds.robot = "ugv1";
+  clouds.accepted = 9;
+  clouds.forwarded = 4;
+  clouds.replaced = 1;
+  clouds.merged = 2;
+  clouds.last_forwarded = all.view.now - 8;
+  all.view.activities = {clouds};
+  all.view.sent_mbit = 8;
+  all.view.budget_mbit = 20;
+  all.view.attention = {"look", "here"};
+  all.usage.refused = {{.uri = "/map/update", .status = 422, .count = 5},
+                       {.uri = "/state/update", .status = 422, .count = 2, .parts = 15}};
+  all.usage.resident_bytes = 12'000'000;
+  all.operators = 2;
+  const std::string text = write_metrics(all);
+  for (const char* sample :
+       {"adit_run_score 7", "adit_run_clock_seconds 750", "adit_run_remaining_reports 18",
+        "adit_run_heard_age_seconds 2", R"(adit_endpoint_up{endpoint="scoring"} 1)",
+        R"(adit_endpoint_answer_seconds{endpoint="scoring"} 0.0125)",
+        R"(adit_endpoint_throttled_total{endpoint="scoring"} 3)",
+        R"(adit_updates_accepted_total{kind="cloud",robot="ugv1"} 9)",
+        R"(adit_updates_forwarded_total{kind="cloud",robot="ugv1"} 4)",
+        R"(adit_updates_replaced_total{kind="cloud",robot="ugv1"} 1)",
+        R"(adit_updates_merged_total{kind="cloud",robot="ugv1"} 2)",
+        R"(adit_updates_forwarded_age_seconds{kind="cloud",robot="ugv1"} 8)",
+        "adit_link_rate_bytes_per_second 1e+06", "adit_link_budget_bytes_per_second 2500000",
+        "adit_attention 2", R"(adit_refused_total{uri="/map/update",status="422"} 5)",
+        R"(adit_refused_parts_total{uri="/state/update"} 15)", "adit_process_resident_memory_bytes 1.2e+07",
+        R"(adit_sessions{role="operator"} 2)"}) {
+    EXPECT_THAT(text, HasSubstr(icd::sentence("\n", sample, "\n")));
+  }
+  EXPECT_THAT(text, Not(HasSubstr("adit_updates_accepted_age_seconds{"))) << "none was accepted";
+}
+
+TEST(Metrics, CountReportsByTheirStates) {
+  Measured all = measured("empty");
+  ReportRow waiting, doubtful;
+  waiting.state = "waiting";
+  doubtful.state = "in doubt";
+  doubtful.asking = true;
+  all.reports = {waiting, waiting, doubtful};
+  const std::string text = write_metrics(all);
+  EXPECT_THAT(text, HasSubstr("adit_reports{state=\"waiting\"} 2\n"));
+  EXPECT_THAT(text, HasSubstr("adit_reports{state=\"in doubt\"} 1\n"));
+  EXPECT_THAT(text, HasSubstr("adit_reports{state=\"settled\"} 0\n"))
+      << "so that it is known before there is one";
+  EXPECT_THAT(text, HasSubstr("adit_reports_asking 1\n"));
+}
+
+TEST(Exposition, EscapesWhatCouldForgeASample) {
+  Exposition out;
+  out.gauge("adit_x", "One line\nof \\ help.");
+  out.sample({{"robot", "a\"} 1\nadit_y 2\\"}}, 0.5);
+  EXPECT_EQ(out.text(),
+            "# HELP adit_x One line\\nof \\\\ help.\n# TYPE adit_x gauge\n"
+            "adit_x{robot=\"a\\\"} 1\\nadit_y 2\\\\\"} 0.5\n");
+  EXPECT_THAT(faults_of(out.text()), IsEmpty());
+}
+
+TEST(ExpositionGrammar, FindsWhatIsWrong) {
+  const std::string head = "# HELP a_x X.\n# TYPE a_x gauge\n";
+  EXPECT_THAT(faults_of(head + "a_x 1\n"), IsEmpty());
+  for (const char* wrong :
+       {"a_x 1\na_x 2\n", "a_y 1\n", "a_x one\n", "a_x{b=\"c} 1\n", "a_x{b=\"c\",} 1\n", "a_x{b=\"\"\"} 1\n",
+        "a_x  1\n", "a_x 1", "\n", "# HELP a_x X.\n", "# HELP a_y Y.\n# TYPE a_y counter\n"}) {
+    EXPECT_THAT(faults_of(head + wrong), Not(IsEmpty())) << wrong;
+  }
+}
+
+}  // namespace
+}  // namespace adit::api

@@ -1,0 +1,85 @@
+#pragma once
+
+#include <algorithm>
+#include <expected>
+#include <map>
+#include <set>
+#include <string>
+#include <vector>
+
+#include "api/source.hpp"
+
+namespace adit::api {
+
+/// What was done to a scene's reports, so that a browser sees it done.
+class Played {
+ public:
+  std::expected<std::int64_t, std::string> judge(const RunView& view, std::int64_t number, Deed deed) {
+    const auto found = std::ranges::find(view.reports, number, &ReportRow::number);
+    if (found == view.reports.end()) return std::unexpected("there is no such report");
+    if (found->state == "refused") return std::unexpected("the step could not be written down; try again");
+    if (deed == Deed::Resubmit) return add(view, found->type, found->position);
+    states_[number] = deed == Deed::Send       ? "waiting"
+                      : deed == Deed::Hold     ? "received"
+                      : deed == Deed::Withdraw ? "withdrawn"
+                                               : "settled";
+    return number;
+  }
+
+  std::expected<std::int64_t, std::string> report(const RunView& view, const icd::ArtifactReport& report,
+                                                  bool resubmit) {
+    if (report.position.x == 666) return std::unexpected("1000 reports wait already; this one was not taken");
+    for (const ReportRow& row : view.reports) {
+      if (row.type == report.type && row.position == report.position && !resubmit) return row.number;
+    }
+    return add(view, report.type, report.position);
+  }
+
+  std::expected<void, std::string> aside(const RunView& view, std::uint64_t number) {
+    const auto found = std::ranges::find(view.aside, number, &AsideRow::number);
+    if (found == view.aside.end()) return std::unexpected("nothing of that number is set aside");
+    judged_aside_.insert(number);
+    return {};
+  }
+
+  std::int64_t begin_run(const RunView& view) {
+    for (const ReportRow& row : view.reports) {
+      if (row.state == "waiting") states_[row.number] = "received";
+    }
+    ++runs_;
+    return view.run_number + 1;
+  }
+
+  void apply(RunView& view) const {
+    view.run_number += runs_;
+    std::erase_if(view.aside, [this](const AsideRow& row) { return judged_aside_.contains(row.number); });
+    for (ReportRow& row : view.reports) {
+      if (const auto state = states_.find(row.number); state != states_.end()) {
+        row.state = state->second;
+        row.changed = view.now;
+      }
+    }
+    for (const ReportRow& row : added_) view.reports.insert(view.reports.begin(), row);
+  }
+
+ private:
+  std::int64_t add(const RunView& view, const std::string& type, const icd::Point& position) {
+    ReportRow row;
+    row.number = (view.reports.empty() ? 0 : view.reports.front().number) + 1;
+    row.type = type;
+    row.position = position;
+    row.sender = "operator";
+    row.received = row.changed = view.now;
+    row.state = "waiting";
+    row.run = view.run_number;
+    added_.push_back(row);
+    return row.number;
+  }
+
+  std::set<std::uint64_t> judged_aside_;
+  std::map<std::int64_t, std::string> states_;
+  std::int64_t runs_ = 0;         // that the operator declared
+  std::vector<ReportRow> added_;  // oldest first
+};
+
+}  // namespace adit::api

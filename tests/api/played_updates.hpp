@@ -1,0 +1,51 @@
+#pragma once
+
+#include <string>
+
+#include "api/updates.hpp"
+
+namespace adit::api {
+
+/// A box that takes any update whose first byte is not 'x', and has a report that waits.
+struct PlayedUpdates final : Updates {
+  PlayedUpdates() {
+    view.managed = true;
+    view.running = {"adit-a-board", "0.1.0", "A", "B"};
+    view.last = {update::Stage::Left, "0.0.9", "B", "", "it did not come up healthy in three starts"};
+    view.stick = update::Offer{"adit-a-board-0.3.0.raucb", "0.3.0"};
+  }
+  UpdateView update() const override { return view; }
+  icd::Checked<std::unique_ptr<Upload>> receive(std::uint64_t, bool, std::function<void()>) override {
+    return std::make_unique<Taking>(view);
+  }
+  icd::Checked<void> install_from_stick(bool) override {
+    view.doing = "installing";
+    view.progress = 40;
+    return {};
+  }
+  icd::Checked<void> restart(bool anyway) override {
+    if (!anyway) return std::unexpected(icd::Refusal{icd::Status::Conflict, "1 report waits to be sent"});
+    view.doing = "restarting";
+    return {};
+  }
+
+  UpdateView view;
+
+ private:
+  struct Taking final : Upload {
+    explicit Taking(UpdateView& told) : view(told) {}
+    bool write(std::span<const std::uint8_t> piece) override {
+      if (first == 0) first = piece.front();
+      return true;
+    }
+    void finish(std::function<void(icd::Checked<void>)> done) override {
+      view.refusal = first == 'x' ? "Invalid bundle format: Signature size is 0" : "";
+      if (first != 'x') view.last = {update::Stage::Installed, "0.2.0", "B", "", ""};
+      done({});
+    }
+    UpdateView& view;
+    std::uint8_t first = 0;
+  };
+};
+
+}  // namespace adit::api

@@ -1,0 +1,102 @@
+#include "api/reports_csv.hpp"
+
+#include <gmock/gmock.h>
+
+#include <limits>
+
+namespace adit::api {
+namespace {
+
+using testing::HasSubstr;
+
+constexpr const char* kHeader =
+    "number,run,type,x,y,z,sender,received,changed,state,asking,reconciled,same_as,status,report_status,"
+    "score_change,note\r\n";
+
+ReportRow row() {
+  return {.number = 7,
+          .type = "Survivor",
+          .position = {85.75, -4.5, 0.25},
+          .sender = "10.0.0.5",
+          .received = 1566309785.125,
+          .changed = 1566309786,
+          .state = "answered",
+          .status = 201,
+          .report_status = "scored",
+          .score_change = 1,
+          .note = {}};
+}
+
+/// The row whose note is `note`, as far as that is all there is to it.
+std::string note_cell(std::string note) {
+  ReportRow noted;
+  noted.note = std::move(note);
+  const std::string text = write_reports_csv({noted});
+  const std::string before = std::string(kHeader) +
+                             "0,1,,0,0,0,,1970-01-01T00:00:00.000Z,"
+                             "1970-01-01T00:00:00.000Z,,no,no,,,,,";
+  EXPECT_THAT(text, testing::StartsWith(before));
+  EXPECT_THAT(text, testing::EndsWith("\r\n"));
+  return text.substr(before.size(), text.size() - before.size() - 2);
+}
+
+TEST(ReportsCsv, HasALineOfNamesAndOneForEachReport) {
+  EXPECT_EQ(write_reports_csv({}), kHeader);
+  EXPECT_EQ(write_reports_csv({row()}), std::string(kHeader) +
+                                            "7,1,Survivor,85.75,-4.5,0.25,10.0.0.5,2019-08-20T14:03:05.125Z,"
+                                            "2019-08-20T14:03:06.000Z,answered,no,no,,201,scored,1,\r\n");
+}
+
+TEST(ReportsCsv, GivesAReportThatIsLostNoPlace) {
+  ReportRow lost = row();
+  lost.position = {};
+  lost.lost = true;
+  EXPECT_THAT(write_reports_csv({lost}), HasSubstr("7,1,Survivor,,,,10.0.0.5,"));
+}
+
+TEST(ReportsCsv, TellsFoundOutAnswersZeroPointsAndRepeats) {
+  ReportRow settled = row();
+  settled.state = "settled";
+  settled.score_change = 0;
+  settled.reconciled = true;
+  settled.same_as = 3;
+  EXPECT_THAT(write_reports_csv({settled}), HasSubstr(",settled,no,yes,3,201,scored,0,"));
+  settled.state = "in doubt";
+  settled.asking = true;
+  EXPECT_THAT(write_reports_csv({settled}), HasSubstr(",in doubt,yes,yes,"));
+}
+
+TEST(ReportsCsv, QuotesWhatWouldEndACell) {
+  EXPECT_EQ(note_cell("a, b"), "\"a, b\"");
+  EXPECT_EQ(note_cell("said \"no\""), "\"said \"\"no\"\"\"");
+  EXPECT_EQ(note_cell("two\r\nlines\tand\x1b[2J"), "two  lines and [2J");
+}
+
+TEST(ReportsCsv, LetsNoSpreadsheetTakeATextForAFormula) {
+  for (const std::string formula : {"=1+1", "+1", "-1", "@SUM(A1)", "  =1", "\uff1d1+1"}) {
+    EXPECT_EQ(note_cell(formula), "'" + formula);
+  }
+  EXPECT_EQ(note_cell("\t=1"), "' =1");
+  EXPECT_EQ(note_cell("=HYPERLINK(\"http://x\",1)"), "\"'=HYPERLINK(\"\"http://x\"\",1)\"");
+  EXPECT_EQ(note_cell("1 = 1"), "1 = 1");
+}
+
+TEST(ReportsCsv, IsUtf8WhateverTheTextsHold) {
+  EXPECT_EQ(note_cell("caf\xc3\xa9"), "caf\xc3\xa9");
+  EXPECT_EQ(note_cell("\xff\xc3(\xe2\x82"), "\xef\xbf\xbd\xef\xbf\xbd(\xef\xbf\xbd\xef\xbf\xbd");
+  EXPECT_EQ(note_cell("a\xc2\x9b"
+                      "2J"),
+            "a 2J");
+}
+
+TEST(IsoTime, IsEmptyForNoTime) {
+  EXPECT_EQ(iso_time(0), "1970-01-01T00:00:00.000Z");
+  EXPECT_EQ(iso_time(253402300799.5), "9999-12-31T23:59:59.500Z");
+  for (const double none : {-1.0, 253402300800.0, std::numeric_limits<double>::quiet_NaN(),
+                            std::numeric_limits<double>::infinity()}) {
+    EXPECT_EQ(iso_time(none), "");
+  }
+}
+
+}  // namespace
+}  // namespace adit::api

@@ -1,0 +1,106 @@
+#include "api/run_view.hpp"
+
+#include <gmock/gmock.h>
+
+#include <limits>
+#include <nlohmann/json.hpp>
+
+#include "api/scenes.hpp"
+
+namespace adit::api {
+namespace {
+
+using nlohmann::json;
+
+TEST(RunView, HasNoPlaceForAReportThatIsLost) {
+  RunView view = *scene("trouble", 1000.5, 3);
+  view.reports[0].lost = true;
+  const json parsed = json::parse(write_run_view(view));
+  EXPECT_EQ(parsed["reports"][0]["position"], nullptr);
+  EXPECT_TRUE(parsed["reports"][1]["position"].is_object());
+}
+
+TEST(RunViewJson, NamesEachMemberAsTheViewDoes) {
+  const RunView view = *scene("trouble", 1000.5, 3);
+  const json parsed = json::parse(write_run_view(view));
+  EXPECT_EQ(parsed["refusals"][0]["parts"], 0);
+  EXPECT_EQ(parsed["now"], 1000.5);
+  EXPECT_EQ(parsed["run"]["score"], 7);
+  EXPECT_EQ(parsed["run"]["run_clock"], 757.0);
+  EXPECT_EQ(parsed["run"]["remaining_reports"], 18);
+  EXPECT_EQ(parsed["run"]["current_team"], "Cerberus");
+  EXPECT_EQ(parsed["endpoints"][1]["trouble"], "connecting to 10.100.1.201:8000: Connection refused");
+  EXPECT_EQ(parsed["endpoints"][0]["connected"], true);
+  EXPECT_EQ(parsed["endpoints"][0]["answer_ms"], 3.4);
+  EXPECT_EQ(parsed["reports"][0]["number"], 10);
+  EXPECT_EQ(parsed["reports"][2]["state"], "in doubt");
+  EXPECT_EQ(parsed["reports"][3]["position"], (json{{"x", 85.75}, {"y", -4.5}, {"z", 0.25}}));
+  EXPECT_EQ(parsed["reports"][3]["score_change"], 1);
+  EXPECT_EQ(parsed["activities"][2]["merged"], 96);
+  EXPECT_EQ(parsed["activities"][1]["waiting"], 12);
+  EXPECT_EQ(parsed["refusals"][0]["status"], 422);
+  EXPECT_EQ(parsed["lights"][3], (json{{"name", "attention"}, {"pattern", "fast"}}));
+  EXPECT_EQ(parsed["budget_mbit"], 100.0);
+  EXPECT_EQ(parsed["endpoints"][1]["throttled"], 3);
+  EXPECT_EQ(parsed["near_metres"], 5.0);
+  EXPECT_EQ(parsed["robots"][0], (json{{"name", "ANYmal1"},
+                                       {"position", {{"x", 24.0}, {"y", 6.0}, {"z", 0.5}}},
+                                       {"heading", 0.5},
+                                       {"at", 1000.0}}));
+  EXPECT_EQ(parsed["identify_until"], nullptr);
+  EXPECT_EQ(parsed["setup_open_until"], nullptr);
+  EXPECT_EQ(parsed["run_number"], 1);
+  EXPECT_EQ(parsed["run_id"], "");
+  EXPECT_EQ(parsed["queued_bytes"], 214'000'000);
+  EXPECT_EQ(parsed["attention"].size(), 2);
+}
+
+TEST(RunViewJson, TellsTheVersionsOfThePicturesToTheLastDigit) {
+  RunView view;
+  view.map_version = 1'793'000'123'456;
+  view.marker_version = 1'793'000'123'457;
+  view.identify_until = 12.5;
+  view.setup_open_until = 13.5;
+  const json parsed = json::parse(write_run_view(view));
+  EXPECT_EQ(parsed["map_version"], 1'793'000'123'456);
+  EXPECT_EQ(parsed["marker_version"], 1'793'000'123'457);
+  EXPECT_EQ(parsed["identify_until"], 12.5);
+  EXPECT_EQ(parsed["setup_open_until"], 13.5);
+}
+
+TEST(RunViewJson, TellsOfEachReportWhoseWordItWaitsFor) {
+  const json parsed = json::parse(write_run_view(*scene("reports", 1000, 0)));
+  EXPECT_EQ(parsed["run_number"], 2);
+  EXPECT_EQ(parsed["run_id"], "cave-2");
+  EXPECT_EQ(parsed["reports"][2]["asking"], true);
+  EXPECT_EQ(parsed["reports"][3]["asking"], false);
+  EXPECT_EQ(parsed["reports"][5]["reconciled"], true);
+  EXPECT_EQ(parsed["reports"][7]["same_as"], 17);
+  EXPECT_EQ(parsed["reports"][10]["run"], 1);
+}
+
+TEST(RunViewJson, WritesWhatIsAbsentAsNull) {
+  RunView view = *scene("empty", 0, 0);
+  view.activities.emplace_back();
+  view.reports.emplace_back();
+  const json parsed = json::parse(write_run_view(view));
+  EXPECT_TRUE(parsed.at("run").is_null());
+  EXPECT_TRUE(parsed.at("run_heard").is_null());
+  EXPECT_TRUE(parsed.at("endpoints")[0].at("answer_ms").is_null());
+  EXPECT_TRUE(parsed.at("activities")[0].at("last_forwarded").is_null());
+  EXPECT_TRUE(parsed.at("reports")[0].at("score_change").is_null());
+}
+
+TEST(RunViewJson, IsOneLineOfJsonWhateverTheTextsHold) {
+  RunView view = *scene("hostile", 1000, 0);
+  view.attention.emplace_back("two\nlines\r\n\n\xc3(\0\x01\x7f\xed\xa0\x80");
+  view.sent_mbit = std::numeric_limits<double>::quiet_NaN();
+  const std::string text = write_run_view(view);
+  EXPECT_EQ(text.find('\n'), std::string::npos);
+  EXPECT_EQ(text.find('\r'), std::string::npos);
+  EXPECT_TRUE(json::accept(text));
+  EXPECT_TRUE(json::parse(text)["sent_mbit"].is_null());
+}
+
+}  // namespace
+}  // namespace adit::api

@@ -1,0 +1,95 @@
+#include "api/scene_routes.hpp"
+
+#include <gmock/gmock.h>
+
+#include <cmath>
+#include <nlohmann/json.hpp>
+
+#include "api/on_page.hpp"
+
+namespace adit::api {
+namespace {
+
+using nlohmann::json;
+
+class SceneRoutesTest : public OnPage {
+ protected:
+  intake::Answer ask(const std::string& target, const std::string& method = "GET",
+                     std::vector<intake::Header> headers = {kByToken}) {
+    auto answer = request(method, target, std::move(headers));
+    EXPECT_FALSE(took_body) << target;
+    return answer;
+  }
+};
+
+TEST_F(SceneRoutesTest, GiveTheMarkersThatChanged) {
+  const DrawnMarker marker{.ns = "path",
+                           .id = -3,
+                           .type = 4,
+                           .position = {1, 2, 3},
+                           .heading = 1.5708,
+                           .scale = {4, 5, 6},
+                           .color = {0.5, 0.25, 1, 0.126},
+                           .lifetime = 2.5,
+                           .text = "here",
+                           .mesh = "drill",
+                           .points = {{1, 2}, {-3.456F, 4}},
+                           .colors = {{1, 0, 0.5, 1}, {0, 0, 0, 0.25}},
+                           .point_count = 7000};
+  source.marker_news = {.version = 1'793'000'123'456,
+                        .whole = false,
+                        .left_out = 2,
+                        .markers = {{marker, 99.5}},
+                        .gone = {{"path", 7}}};
+  const auto answer = ask("/adit/markers?since=1793000123400");
+  EXPECT_EQ(source.since_version, 1'793'000'123'400u);
+  EXPECT_EQ(header(answer, "Cache-Control"), "no-store");
+  const json expected = {{"ns", "path"},
+                         {"id", -3},
+                         {"type", 4},
+                         {"position", {{"x", 1.0}, {"y", 2.0}, {"z", 3.0}}},
+                         {"heading", 1.57},
+                         {"scale", {{"x", 4.0}, {"y", 5.0}, {"z", 6.0}}},
+                         {"color", {{"r", 0.5}, {"g", 0.25}, {"b", 1.0}, {"a", 0.13}}},
+                         {"points", {1.0, 2.0, -3.46, 4.0}},
+                         {"colors", {"#ff0080ff", "#00000040"}},
+                         {"point_count", 7000},
+                         {"text", "here"},
+                         {"mesh", "drill"},
+                         {"lifetime", 2.5},
+                         {"at", 99.5}};
+  EXPECT_EQ(json::parse(answer.body), (json{{"version", 1'793'000'123'456},
+                                            {"whole", false},
+                                            {"left_out", 2},
+                                            {"markers", {expected}},
+                                            {"gone", {{{"ns", "path"}, {"id", 7}}}}}));
+}
+
+TEST_F(SceneRoutesTest, GiveWhereRobotsWere) {
+  source.robot_tracks = {{"r1", {{.at = 100.126, .position = {1.234, 5, -6}, .heading = 3.14159}}}};
+  const auto answer = ask("/adit/tracks?since=90.5");
+  EXPECT_EQ(source.since_time, 90.5);
+  EXPECT_EQ(json::parse(answer.body),
+            (json{{"tracks", {{{"robot", "r1"}, {"poses", {{100.13, 1.23, 5.0, -6.0, 3.14}}}}}}}));
+}
+
+TEST_F(SceneRoutesTest, NameWhatIsNoNumber) {
+  for (const char* wrong : {"/adit/markers?since=x", "/adit/markers?since=-1", "/adit/markers?since=1.5",
+                            "/adit/tracks?since=x", "/adit/tracks?since=inf", "/adit/tracks?since=nan"}) {
+    const auto answer = ask(wrong);
+    EXPECT_EQ(answer.status, icd::Status::BadRequest) << wrong;
+    EXPECT_TRUE(answer.body.starts_with("\"since: expected")) << wrong;
+  }
+}
+
+TEST_F(SceneRoutesTest, AreReadByWhoeverMayLook) {
+  for (const char* path : {"/adit/markers", "/adit/tracks"}) {
+    EXPECT_EQ(ask(path).status, icd::Status::Ok);
+    EXPECT_EQ(ask(path, "POST").status, icd::Status::MethodNotAllowed);
+    EXPECT_EQ(ask(path, "GET", {}).status, icd::Status::Unauthorized);
+  }
+  EXPECT_EQ(ask("/adit/markersx").status, icd::Status::NotFound);
+}
+
+}  // namespace
+}  // namespace adit::api

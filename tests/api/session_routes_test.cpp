@@ -1,0 +1,363 @@
+#include "api/session_routes.hpp"
+
+#include <gmock/gmock.h>
+
+#include <nlohmann/json.hpp>
+
+#include "api/api.hpp"
+#include "api/doubles.hpp"
+
+namespace adit::api {
+namespace {
+
+using nlohmann::json;
+using testing::AllOf;
+using testing::EndsWith;
+using testing::HasSubstr;
+using testing::StartsWith;
+using Status = icd::Status;
+using Headers = std::vector<intake::Header>;
+
+/// Who asks, as a browser remembers it.
+struct Browser {
+  std::string cookie, csrf;
+};
+
+class SessionRoutesTest : public testing::Test {
+ protected:
+  std::shared_ptr<FakeResponder> begin(const std::string& method, const std::string& path, Headers headers,
+                                       const std::string& body = "") {
+    auto responder = std::make_shared<FakeResponder>();
+    const auto exchange = api.open(FakeHead{method, path, std::move(headers), body.size()}, responder, {});
+    if (exchange) {
+      exchange->on_body({reinterpret_cast<const std::uint8_t*>(body.data()), body.size()});
+      exchange->on_end();
+    }
+    return responder;
+  }
+  intake::Answer ask(const std::string& method, const std::string& path, Headers headers,
+                     const std::string& body = "") {
+    const auto responder = begin(method, path, std::move(headers), body);
+    EXPECT_TRUE(responder->answered.has_value() || responder->streaming);
+    return responder->answered.value_or(intake::Answer{});
+  }
+  static Headers of(const Browser& browser) {
+    return {{"Cookie", "adit=" + browser.cookie},
+            {"Adit-CSRF", browser.csrf},
+            {"Origin", "http://10.0.0.1:8000"},
+            {"Content-Type", "application/json"}};
+  }
+  intake::Answer get(const std::string& path, const Browser& browser = {}) {
+    return ask("GET", path, {{"Cookie", "adit=" + browser.cookie}});
+  }
+  intake::Answer post(const std::string& path, const json& body, const Browser& browser = {}) {
+    return ask("POST", path, of(browser), body.dump());
+  }
+  Browser log_in(const std::string& password) {
+    const auto answer = post("/adit/login", {{"password", password}});
+    EXPECT_EQ(answer.status, Status::Ok);
+    const std::string cookie = header(answer, "Set-Cookie");
+    return {cookie.substr(5, cookie.find(';') - 5), json::parse(answer.body)["csrf"]};
+  }
+  json session(const Browser& browser = {}) { return json::parse(get("/adit/session", browser).body); }
+
+  loop::Loop loop;
+  FakeSource source;
+  FakeOperator judge;
+  FakeKeys keys;
+  Api api{loop, source, judge, keys, {token("team-1")}};
+};
+
+TEST_F(SessionRoutesTest, TellAnybodyWhoHeIs) {
+  EXPECT_EQ(session(),
+            (json{{"role", nullptr}, {"csrf", nullptr}, {"first_start", false}, {"set_up_open", false}}));
+  const Browser mine = log_in("correct horse");
+  EXPECT_EQ(
+      session(mine),
+      (json{{"role", "operator"}, {"csrf", mine.csrf}, {"first_start", false}, {"set_up_open", false}}));
+  EXPECT_EQ(session(log_in("look, do not touch"))["role"], "viewer");
+  const json script = json::parse(ask("GET", "/adit/session", {kByToken}).body);
+  EXPECT_EQ(script,
+            (json{{"role", "operator"}, {"csrf", nullptr}, {"first_start", false}, {"set_up_open", false}}));
+}
+
+TEST_F(SessionRoutesTest, GiveACookieThatNoScriptReadsAndNoOtherSiteSends) {
+  const auto answer = post("/adit/login", {{"password", "correct horse"}});
+  EXPECT_THAT(header(answer, "Set-Cookie"),
+              AllOf(StartsWith("adit="), EndsWith("; HttpOnly; SameSite=Strict; Path=/; Max-Age=604800")));
+  EXPECT_EQ(header(answer, "Cache-Control"), "no-store");
+  EXPECT_EQ(json::parse(answer.body)["role"], "operator");
+}
+
+TEST_F(SessionRoutesTest, LetNobodySeeAnythingWhoIsNotLoggedIn) {
+  for (const char* path : {"/adit/run", "/adit/events", "/adit/reports", "/adit/reports.csv",
+                           "/adit/reports/7", "/adit/sessions", "/adit/", "/adit/nothing"}) {
+    const auto answer = get(path);
+    EXPECT_EQ(answer.status, Status::Unauthorized) << path;
+    EXPECT_TRUE(json::parse(answer.body).is_string()) << path;
+  }
+  for (const char* path :
+       {"/adit/runs", "/adit/reports/7/send", "/adit/logout", "/adit/password", "/adit/sessions/1/end"}) {
+    EXPECT_EQ(post(path, json::object()).status, Status::Unauthorized) << path;
+  }
+  for (const char* path : {"/", "/login.html", "/page.css", "/page.js", "/icon.svg"}) {
+    EXPECT_EQ(get(path).status, Status::Ok) << path << ", which holds nothing";
+  }
+}
+
+TEST_F(SessionRoutesTest, LetAViewerLookAndDoNothing) {
+  const Browser viewer = log_in("look, do not touch");
+  EXPECT_EQ(get("/adit/run", viewer).status, Status::Ok);
+  EXPECT_EQ(get("/adit/reports", viewer).status, Status::Ok);
+  EXPECT_EQ(get("/adit/sessions", viewer).status, Status::Forbidden);
+  for (const char* path : {"/adit/runs", "/adit/reports/7/send", "/adit/sessions/1/end"}) {
+    EXPECT_EQ(post(path, json::object(), viewer).status, Status::Forbidden) << path;
+  }
+  EXPECT_EQ(
+      post("/adit/password",
+           {{"role", "viewer"}, {"current", "look, do not touch"}, {"password", "of my own making"}}, viewer)
+          .status,
+      Status::Forbidden);
+  EXPECT_EQ(judge.run, 1);
+  EXPECT_EQ(keys.checked, 1) << "the login alone";
+}
+
+TEST_F(SessionRoutesTest, WantTheCsrfTokenForEveryDeedOfABrowser) {
+  Browser mine = log_in("correct horse");
+  EXPECT_EQ(post("/adit/runs", {}, mine).status, Status::Ok);
+  for (const std::string& csrf : {std::string(), std::string("wrong"), log_in("correct horse").csrf}) {
+    mine.csrf = csrf;
+    EXPECT_EQ(post("/adit/runs", {}, mine).status, Status::Forbidden) << csrf;
+    EXPECT_EQ(post("/adit/logout", {}, mine).status, Status::Forbidden) << csrf;
+    EXPECT_EQ(get("/adit/run", mine).status, Status::Ok);
+  }
+  EXPECT_EQ(judge.run, 2);
+}
+
+TEST_F(SessionRoutesTest, AnswerNoPageFromElsewhere) {
+  const Browser mine = log_in("correct horse");
+  for (const char* path : {"/adit/runs", "/adit/login", "/adit/session", "/adit/run"}) {
+    Headers headers = of(mine);
+    headers[2].value = "http://evil.example";
+    const bool reads =
+        std::string_view(path).starts_with("/adit/session") || std::string_view(path) == "/adit/run";
+    EXPECT_EQ(ask(reads ? "GET" : "POST", path, headers, R"({"password":"correct horse"})").status,
+              Status::Forbidden)
+        << path;
+    headers[2].value = "http://evil.example:8000";
+    headers.push_back({"Host", "evil.example:8000"});
+    EXPECT_EQ(ask(reads ? "GET" : "POST", path, headers, R"({"password":"correct horse"})").status,
+              Status::Forbidden)
+        << path << ", by a name of its own for this address";
+  }
+  EXPECT_EQ(judge.run, 1);
+  EXPECT_EQ(keys.checked, 1);
+}
+
+TEST_F(SessionRoutesTest, EndASessionWhenItLogsOut) {
+  const Browser mine = log_in("correct horse"), other = log_in("correct horse");
+  const auto answer = post("/adit/logout", json::object(), mine);
+  EXPECT_EQ(answer.status, Status::Ok);
+  EXPECT_EQ(header(answer, "Set-Cookie"), "adit=; HttpOnly; SameSite=Strict; Path=/; Max-Age=0");
+  EXPECT_EQ(get("/adit/run", mine).status, Status::Unauthorized);
+  EXPECT_EQ(get("/adit/run", other).status, Status::Ok);
+}
+
+TEST_F(SessionRoutesTest, ReplaceTheSessionOfABrowserThatLogsInAgain) {
+  const Browser mine = log_in("look, do not touch");
+  EXPECT_EQ(post("/adit/login", {{"password", "correct horse"}}, mine).status, Status::Ok);
+  EXPECT_EQ(get("/adit/run", mine).status, Status::Unauthorized);
+}
+
+TEST_F(SessionRoutesTest, SlowDownWhoGuessesWithoutEvenChecking) {
+  for (int i = 0; i < 5; ++i) {
+    const auto answer = post("/adit/login", {{"password", "guess"}});
+    EXPECT_EQ(answer.status, Status::Forbidden);
+    EXPECT_EQ(header(answer, "Set-Cookie"), "");
+  }
+  const auto answer = post("/adit/login", {{"password", "correct horse"}});
+  EXPECT_EQ(answer.status, Status::TooManyRequests);
+  EXPECT_EQ(header(answer, "Retry-After"), "1");
+  EXPECT_EQ(keys.checked, 5);
+}
+
+TEST_F(SessionRoutesTest, CheckFewPasswordsAtOnceAndAnswerEachWhenItIsChecked) {
+  keys.slow = true;
+  const Headers headers = of({});
+  std::vector<std::shared_ptr<FakeResponder>> all;
+  for (int i = 0; i < 4; ++i) {
+    all.push_back(begin("POST", "/adit/login", headers, R"({"password":"correct horse"})"));
+    EXPECT_FALSE(all.back()->answered) << "nobody waits for the hash";
+  }
+  EXPECT_EQ(post("/adit/login", {{"password", "correct horse"}}).status, Status::TooManyRequests);
+  keys.answer_all();
+  for (const auto& each : all) EXPECT_EQ(each->answered->status, Status::Ok);
+}
+
+TEST_F(SessionRoutesTest, SetTheFirstPasswordWithTheCodeAlone) {
+  keys.operator_.reset();
+  EXPECT_EQ(session()["first_start"], true);
+  EXPECT_EQ(post("/adit/login", {{"password", "anything"}}).status, Status::Conflict);
+  const json good = {{"role", "operator"}, {"code", "12345678"}, {"password", "a new password"}};
+  json body = good;
+  body["code"] = "11111111";
+  EXPECT_EQ(post("/adit/password", body).status, Status::Forbidden);
+  body.erase("code");
+  EXPECT_EQ(post("/adit/password", body).status, Status::Forbidden);
+  body = good;
+  body["password"] = "too short";
+  EXPECT_THAT(post("/adit/password", body).body, HasSubstr("password: expected 10 to 128 characters, got 9"));
+  body = good;
+  body["role"] = "viewer";
+  EXPECT_EQ(post("/adit/password", body).status, Status::Conflict);
+  EXPECT_EQ(keys.operator_, std::nullopt);
+
+  EXPECT_EQ(post("/adit/password", good).status, Status::Ok);
+  EXPECT_EQ(keys.operator_, "a new password");
+  EXPECT_EQ(post("/adit/password", good).status, Status::Unauthorized) << "the code is good once";
+  EXPECT_EQ(session(log_in("a new password"))["role"], "operator");
+}
+
+TEST_F(SessionRoutesTest, SetANewPasswordWithNothingElseOnceTheButtonOpenedSetUp) {
+  const Browser old = log_in("correct horse"), viewer = log_in("look, do not touch");
+  const json body = {{"role", "operator"}, {"password", "a new password"}};
+  EXPECT_EQ(post("/adit/password", body).status, Status::Unauthorized) << "not before";
+  EXPECT_EQ(session()["set_up_open"], false);
+  keys.set_up = true;
+  EXPECT_EQ(session()["set_up_open"], true);
+  EXPECT_EQ(get("/adit/run", old).status, Status::Ok) << "nothing has changed yet";
+  json wrong = body;
+  wrong["password"] = "too short";
+  EXPECT_EQ(post("/adit/password", wrong).status, Status::UnprocessableEntity);
+  wrong = {{"role", "viewer"}, {"password", "a new password"}};
+  EXPECT_EQ(post("/adit/password", wrong).status, Status::Unauthorized) << "the viewers' needs the operator";
+  wrong = {{"role", "operator"}, {"current", "wrong"}, {"password", "a new password"}};
+  EXPECT_EQ(post("/adit/password", wrong).status, Status::Unauthorized) << "who says one is asked for it";
+  EXPECT_EQ(keys.operator_, "correct horse");
+  EXPECT_EQ(get("/adit/run", old).status, Status::Ok);
+
+  EXPECT_EQ(post("/adit/password", body).status, Status::Ok);
+  EXPECT_EQ(keys.operator_, "a new password");
+  EXPECT_EQ(get("/adit/run", old).status, Status::Unauthorized) << "who knew the old one is out";
+  EXPECT_EQ(get("/adit/run", viewer).status, Status::Ok);
+  EXPECT_EQ(post("/adit/password", body).status, Status::Unauthorized) << "it is good once";
+}
+
+TEST_F(SessionRoutesTest, OpenNothingElseWhileSetUpIsOpen) {
+  keys.set_up = true;
+  for (const char* path : {"/adit/reset", "/adit/logout", "/adit/sessions/1/end", "/adit/runs"}) {
+    EXPECT_EQ(post(path, {{"password", "a new password"}}).status, Status::Unauthorized) << path;
+  }
+  EXPECT_EQ(get("/adit/run").status, Status::Unauthorized);
+  Headers headers = of({});
+  headers[2].value = "http://evil.example";
+  EXPECT_EQ(
+      ask("POST", "/adit/password", headers, R"({"role":"operator","password":"a new password"})").status,
+      Status::Forbidden)
+      << "a page from elsewhere";
+  EXPECT_EQ(ask("POST", "/adit/password", {{"Content-Type", "text/plain"}},
+                R"({"role":"operator","password":"a new password"})")
+                .status,
+            Status::UnprocessableEntity);
+  EXPECT_EQ(keys.operator_, "correct horse");
+}
+
+TEST_F(SessionRoutesTest, SetNoPasswordOnceSetUpIsClosedWhileItIsOnItsWay) {
+  keys.set_up = true;
+  auto responder = std::make_shared<FakeResponder>();
+  const auto late = api.open(FakeHead{"POST", "/adit/password", of({}), std::nullopt}, responder, {});
+  ASSERT_NE(late, nullptr);
+  keys.set_up = false;
+  const std::string body = R"({"role":"operator","password":"a new password"})";
+  late->on_body({reinterpret_cast<const std::uint8_t*>(body.data()), body.size()});
+  late->on_end();
+  EXPECT_EQ(responder->answered->status, Status::Unauthorized);
+  EXPECT_EQ(keys.operator_, "correct horse");
+}
+
+TEST_F(SessionRoutesTest, AskForNoCodeAtTheFirstStartWhileSetUpIsOpen) {
+  keys.operator_.reset();
+  keys.set_up = true;
+  EXPECT_EQ(
+      post("/adit/password", {{"role", "operator"}, {"code", "1"}, {"password", "a new password"}}).status,
+      Status::Forbidden)
+      << "but one that is shown has to be right";
+  EXPECT_EQ(post("/adit/password", {{"role", "operator"}, {"password", "a new password"}}).status,
+            Status::Ok);
+  EXPECT_EQ(keys.operator_, "a new password");
+}
+
+TEST_F(SessionRoutesTest, SlowDownWhoGuessesTheCode) {
+  keys.operator_.reset();
+  json body = {{"role", "operator"}, {"code", "11111111"}, {"password", "a new password"}};
+  for (int i = 0; i < 5; ++i) EXPECT_EQ(post("/adit/password", body).status, Status::Forbidden);
+  body["code"] = "12345678";
+  EXPECT_EQ(post("/adit/password", body).status, Status::TooManyRequests);
+}
+
+TEST_F(SessionRoutesTest, LetNobodyInBetweenTheCodeAndThePasswordWhileTheFirstIsSet) {
+  keys.operator_.reset();
+  auto responder = std::make_shared<FakeResponder>();
+  const auto late = api.open(FakeHead{"POST", "/adit/password", of({}), std::nullopt}, responder, {});
+  ASSERT_NE(late, nullptr);
+  keys.operator_ = "set by somebody else meanwhile";
+  const std::string body = R"({"role":"operator","code":"12345678","password":"a new password"})";
+  late->on_body({reinterpret_cast<const std::uint8_t*>(body.data()), body.size()});
+  late->on_end();
+  EXPECT_EQ(responder->answered->status, Status::Unauthorized);
+}
+
+TEST_F(SessionRoutesTest, LetTheOperatorChangeBothPasswordsWithHisOwn) {
+  const Browser mine = log_in("correct horse"), other = log_in("correct horse"),
+                viewer = log_in("look, do not touch");
+  json change = {{"role", "operator"}, {"current", "wrong"}, {"password", "a new password"}};
+  EXPECT_EQ(post("/adit/password", change, mine).status, Status::Forbidden);
+  change["current"] = "look, do not touch";
+  EXPECT_EQ(post("/adit/password", change, mine).status, Status::Forbidden) << "the viewers' is not enough";
+  change["current"] = "correct horse";
+  EXPECT_EQ(post("/adit/password", change, mine).status, Status::Ok);
+  EXPECT_EQ(keys.operator_, "a new password");
+  EXPECT_EQ(get("/adit/run", mine).status, Status::Ok);
+  EXPECT_EQ(get("/adit/run", other).status, Status::Unauthorized) << "the role's other sessions end";
+  EXPECT_EQ(get("/adit/run", viewer).status, Status::Ok);
+
+  change = {{"role", "viewer"}, {"current", "a new password"}, {"password", nullptr}};
+  EXPECT_EQ(post("/adit/password", change, mine).status, Status::Ok);
+  EXPECT_EQ(keys.viewer, std::nullopt);
+  EXPECT_EQ(get("/adit/run", viewer).status, Status::Unauthorized);
+  change["role"] = "operator";
+  EXPECT_EQ(post("/adit/password", change, mine).status, Status::UnprocessableEntity);
+}
+
+TEST_F(SessionRoutesTest, ShowTheOperatorAllSessionsAndEndWhichHeSays) {
+  const Browser viewer = log_in("look, do not touch"), mine = log_in("correct horse");
+  const json all = json::parse(get("/adit/sessions", mine).body);
+  ASSERT_EQ(all.size(), 2u);
+  EXPECT_EQ(all[0]["role"], "operator");
+  EXPECT_EQ(all[0]["own"], true);
+  EXPECT_EQ(all[1]["role"], "viewer");
+  EXPECT_EQ(all[1]["own"], false);
+  EXPECT_EQ(all[1]["address"], "10.0.0.5");
+  EXPECT_NEAR(all[1]["made"], loop.stamp_now(), 5);
+  EXPECT_EQ(all.dump().find(mine.cookie), std::string::npos);
+  const std::string path = "/adit/sessions/" + all[1]["number"].dump() + "/end";
+  EXPECT_EQ(post(path, json::object(), mine).status, Status::Ok);
+  EXPECT_EQ(get("/adit/run", viewer).status, Status::Unauthorized);
+  EXPECT_EQ(post(path, json::object(), mine).status, Status::NotFound);
+}
+
+TEST_F(SessionRoutesTest, RefuseWhatTheyDoNotUnderstand) {
+  for (const char* body : {"", "{", "[]", "{}", R"({"password":7})", R"({"password":null})"}) {
+    const auto answer = ask("POST", "/adit/login", of({}), body);
+    EXPECT_TRUE(answer.status == Status::BadRequest || answer.status == Status::UnprocessableEntity) << body;
+  }
+  EXPECT_EQ(ask("POST", "/adit/login", of({}), std::string(5000, ' ')).status, Status::ContentTooLarge);
+  EXPECT_EQ(ask("POST", "/adit/login", {{"Content-Type", "text/plain"}}, "{}").status,
+            Status::UnprocessableEntity);
+  EXPECT_EQ(header(ask("GET", "/adit/login", {}), "Allow"), "POST");
+  EXPECT_EQ(header(ask("DELETE", "/adit/session", {}), "Allow"), "GET, HEAD");
+  EXPECT_EQ(keys.checked, 0);
+}
+
+}  // namespace
+}  // namespace adit::api

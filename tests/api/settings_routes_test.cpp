@@ -1,0 +1,322 @@
+#include "api/settings_routes.hpp"
+
+#include <gmock/gmock.h>
+
+#include <nlohmann/json.hpp>
+
+#include "api/api.hpp"
+#include "api/doubles.hpp"
+#include "settings/sample.hpp"
+#include "settings/written.hpp"
+
+namespace adit::api {
+namespace {
+
+using nlohmann::json;
+using testing::ElementsAre;
+using testing::HasSubstr;
+using testing::Not;
+using Status = icd::Status;
+using Headers = std::vector<intake::Header>;
+
+constexpr const char* kCourses =
+    R"(, "courses": [{"name": "A", "scoring": {"address": "10.100.2.200", "port": 8000},)"
+    R"( "mapping": {"address": "10.100.2.201", "port": 8000}}])";
+
+/// Remembers what it was told, and refuses where it is to.
+struct FakeSetup final : Setup {
+  const settings::Settings& settings() const override { return now; }
+  bool saved() const override { return false; }
+  bool applying() const override { return is_applying; }
+  std::vector<TokenRow> tokens() const override { return {{"scoring", true}, {"course.A.mapping", false}}; }
+  std::vector<std::string> warnings(const settings::Settings& next) const override {
+    if (next.command_post.course != now.command_post.course) return {"reports go elsewhere"};
+    if (next.team.require_token) return {};
+    return {"no token is asked for"};
+  }
+  icd::Checked<void> save(const settings::Settings& next) override {
+    if (refusal) return std::unexpected(*refusal);
+    ++saves;
+    is_applying = !settings::changes(now, next).empty();
+    now = next;
+    return {};
+  }
+  icd::Checked<void> set_token(const std::string& name,
+                               const std::optional<icd::BearerToken>& token) override {
+    if (refusal) return std::unexpected(*refusal);
+    set.emplace_back(name, token ? token->reveal() : "removed");
+    return {};
+  }
+  icd::Checked<void> reset() override {
+    if (refusal) return std::unexpected(*refusal);
+    ++resets;
+    return {};
+  }
+
+  settings::Settings now = settings::parse(settings::sample("", "", kCourses)).value();
+  std::optional<icd::Refusal> refusal;
+  std::vector<std::pair<std::string, std::string>> set;
+  int saves = 0, resets = 0;
+  bool is_applying = false;
+};
+
+class SettingsRoutesTest : public testing::Test {
+ protected:
+  SettingsRoutesTest() { api.serve(setup); }
+
+  intake::Answer ask(const std::string& method, const std::string& path, Headers headers,
+                     const std::string& body = "") {
+    const auto responder = std::make_shared<FakeResponder>();
+    const auto exchange = api.open(FakeHead{method, path, std::move(headers), body.size()}, responder, {});
+    if (exchange) {
+      exchange->on_body({reinterpret_cast<const std::uint8_t*>(body.data()), body.size()});
+      exchange->on_end();
+    }
+    EXPECT_TRUE(responder->answered.has_value()) << path;
+    return responder->answered.value_or(intake::Answer{});
+  }
+  intake::Answer get(const std::string& path) { return ask("GET", path, {kByToken}); }
+  intake::Answer post(const std::string& path, const json& body) {
+    return ask("POST", path, {kByToken, {"Content-Type", "application/json"}}, body.dump());
+  }
+  json shown() { return json::parse(get("/adit/settings").body); }
+
+  loop::Loop loop;
+  FakeSource source;
+  FakeOperator judge;
+  FakeKeys keys;
+  FakeSetup setup;
+  Api api{loop, source, judge, keys, {token("team-1")}};
+};
+
+TEST_F(SettingsRoutesTest, ShowTheWholeSettingsWhatAFormNeedsAndNoToken) {
+  const json said = shown();
+  EXPECT_EQ(said["settings"], json::parse(settings::file_of(setup.now)));
+  EXPECT_EQ(said["tag"], settings::tag_of(setup.now));
+  EXPECT_EQ(said["saved"], false);
+  EXPECT_EQ(said["tokens"], (json{{"scoring", true}, {"course.A.mapping", false}}));
+  const auto key = [&](const std::string& path) {
+    for (const json& row : said["keys"]) {
+      if (row["path"] == path) return row;
+    }
+    return json();
+  };
+  EXPECT_EQ(key("team.connections"), (json{{"path", "team.connections"},
+                                           {"meaning", "Connections of the team at once, at most."},
+                                           {"kind", "whole"},
+                                           {"required", false},
+                                           {"default", 64},
+                                           {"range", "1 to 1024"},
+                                           {"least", 1},
+                                           {"most", 1024}}));
+  EXPECT_EQ(key("reports.review")["words"], (json{"off", "duplicates", "all"}));
+  EXPECT_EQ(key("command_post.scoring.address")["default"], nullptr);
+  EXPECT_EQ(key("command_post.budget_mbit")["kind"], "real");
+}
+
+TEST_F(SettingsRoutesTest, ExportTheFileForADownload) {
+  const auto answer = get("/adit/settings/export");
+  EXPECT_EQ(answer.body, settings::file_of(setup.now));
+  EXPECT_EQ(header(answer, "Content-Disposition"), "attachment; filename=\"adit-settings.json\"");
+}
+
+TEST_F(SettingsRoutesTest, AreShownToViewersAndChangedByOperatorsAlone) {
+  const auto login = ask("POST", "/adit/login", {{"Content-Type", "application/json"}},
+                         R"({"password":"look, do not touch"})");
+  const std::string cookie = header(login, "Set-Cookie");
+  const Headers viewer = {{"Cookie", cookie.substr(0, cookie.find(';'))},
+                          {"Adit-CSRF", json::parse(login.body)["csrf"]},
+                          {"Content-Type", "application/json"}};
+  for (const char* path : {"/adit/settings", "/adit/settings/export"}) {
+    EXPECT_EQ(ask("GET", path, {}).status, Status::Unauthorized) << path;
+    EXPECT_EQ(ask("GET", path, viewer).body, get(path).body) << path;
+  }
+  for (const char* path :
+       {"/adit/settings", "/adit/settings/check", "/adit/tokens", "/adit/course", "/adit/reset"}) {
+    EXPECT_EQ(ask("POST", path, {}).status == Status::Ok, false) << path;
+    EXPECT_EQ(ask("POST", path, viewer, "{}").status, Status::Forbidden) << path;
+  }
+  EXPECT_EQ(setup.saves + setup.resets, 0);
+}
+
+TEST_F(SettingsRoutesTest, TellThatAChangeIsBeingApplied) {
+  EXPECT_EQ(shown()["applying"], false);
+  EXPECT_EQ(post("/adit/course", {{"name", "A"}}).status, Status::Ok);
+  EXPECT_EQ(shown()["applying"], true);
+}
+
+TEST_F(SettingsRoutesTest, LeaveItToTheBoxWhetherAChangeThatIsNoneHasToBeSaved) {
+  setup.refusal = icd::Refusal{Status::Conflict, "another change is being applied: try again"};
+  EXPECT_EQ(post("/adit/course", {{"name", ""}}).status, Status::Conflict);
+}
+
+TEST_F(SettingsRoutesTest, CheckWithoutChangingAnything) {
+  json settings = shown()["settings"];
+  settings["team"]["require_token"] = false;
+  EXPECT_EQ(json::parse(post("/adit/settings/check", {{"settings", settings}}).body),
+            (json{{"errors", json::array()},
+                  {"changes", {{{"path", "team.require_token"}, {"from", true}, {"to", false}}}},
+                  {"warnings", {"no token is asked for"}}}));
+  settings["team"]["connections"] = 0;
+  settings["team"]["conections"] = 1;
+  const json wrong = json::parse(post("/adit/settings/check", {{"settings", settings}}).body);
+  EXPECT_EQ(wrong["errors"].size(), 2u);
+  EXPECT_EQ(wrong["errors"][0]["path"], "team.conections");
+  EXPECT_EQ(wrong["errors"][1],
+            (json{{"path", "team.connections"}, {"what", "expected a whole number from 1 to 1024, got 0"}}));
+  EXPECT_EQ(wrong["changes"], json::array());
+  EXPECT_EQ(setup.saves, 0);
+}
+
+TEST_F(SettingsRoutesTest, SaveWhatIsGoodAndSayWhatChanges) {
+  json said = shown();
+  said["settings"]["team"]["connections"] = 65;
+  const auto answer = post("/adit/settings", {{"settings", said["settings"]}, {"base", said["tag"]}});
+  EXPECT_EQ(answer.status, Status::Ok);
+  EXPECT_EQ(json::parse(answer.body),
+            (json{{"changes", {{{"path", "team.connections"}, {"from", 64}, {"to", 65}}}},
+                  {"warnings", json::array()}}));
+  EXPECT_EQ(setup.now.team.connections, 65u);
+  EXPECT_EQ(post("/adit/settings", {{"settings", said["settings"]}, {"base", said["tag"]}}).status,
+            Status::Conflict)
+      << "made from settings that are no more";
+  setup.is_applying = false;
+  said["tag"] = shown()["tag"];
+  EXPECT_EQ(json::parse(post("/adit/settings", {{"settings", said["settings"]}, {"base", said["tag"]}}).body),
+            (json{{"changes", json::array()}, {"warnings", json::array()}}));
+}
+
+TEST_F(SettingsRoutesTest, SaveNoPortThatNobodyWouldFindAgain) {
+  json said = shown();
+  said["settings"]["team"]["listen"].push_back({{"address", "10.0.0.1"}, {"port", 0}});
+  const auto checked = post("/adit/settings/check", {{"settings", said["settings"]}});
+  EXPECT_THAT(checked.body, HasSubstr("].port"));
+  EXPECT_THAT(checked.body, HasSubstr("expected 1 to 65535, got 0"));
+  const auto saved = post("/adit/settings", {{"settings", said["settings"]}, {"base", said["tag"]}});
+  EXPECT_EQ(saved.status, Status::UnprocessableEntity);
+  EXPECT_EQ(setup.saves, 0);
+}
+
+TEST_F(SettingsRoutesTest, RefuseWhatIsNotGoodWithEveryErrorAndSaveNothing) {
+  const json said = shown();
+  json settings = said["settings"];
+  settings["team"]["connections"] = "many";
+  settings["robots"] = {{{"name", "ugv-1"}}};
+  const auto answer = post("/adit/settings", {{"settings", settings}, {"base", said["tag"]}});
+  EXPECT_EQ(answer.status, Status::UnprocessableEntity);
+  EXPECT_THAT(std::string(json::parse(answer.body)),
+              HasSubstr("team.connections: expected a whole number from "));
+  EXPECT_THAT(std::string(json::parse(answer.body)), HasSubstr("; "));
+  EXPECT_THAT(std::string(json::parse(answer.body)), HasSubstr("robots[0].name: expected 1 to 10 letters"));
+  EXPECT_EQ(setup.saves, 0);
+}
+
+TEST_F(SettingsRoutesTest, RefuseBodiesThatAreNotWhatIsAskedForAndNameTheField) {
+  const json good = shown()["settings"];
+  const struct {
+    const char* path;
+    json body;
+    const char* word;
+  } rows[] = {
+      {"/adit/settings", {{"settings", good}}, "base: missing"},
+      {"/adit/settings", {{"settings", good}, {"base", 7}}, "base: expected a string"},
+      {"/adit/settings", {{"base", "x"}}, "settings: missing"},
+      {"/adit/settings", {{"settings", "x"}, {"base", "x"}}, "settings: expected an object"},
+      {"/adit/settings/check", json::object(), "settings: missing"},
+      {"/adit/settings/check", {{"settings", json::array()}}, "settings: expected an object"},
+      {"/adit/settings/check", json::array(), "expected an object"},
+      {"/adit/tokens", json::object(), "name: missing"},
+      {"/adit/tokens", {{"name", "scoring"}}, "token: missing"},
+      {"/adit/tokens", {{"name", "scoring"}, {"token", 5}}, "token: expected a string"},
+      {"/adit/tokens", {{"name", "scoring"}, {"token", ""}}, "token: expected null or 1 to 256 visible"},
+      {"/adit/tokens", {{"name", "scoring"}, {"token", "two words"}}, "token: expected null or 1 to 256"},
+      {"/adit/tokens", {{"name", "scoring"}, {"token", std::string(257, 'x')}}, "token: expected null or"},
+      {"/adit/tokens", {{"name", "team"}, {"token", "1234567"}}, "token: expected at least 8 characters"},
+      {"/adit/tokens",
+       {{"name", "../x"}, {"token", "x"}},
+       "name: expected one of scoring, course.A.mapping, got"},
+      {"/adit/course", json::object(), "name: missing"},
+      {"/adit/course", {{"name", nullptr}}, "name: expected a string"},
+      {"/adit/course", {{"name", "B"}}, "command_post.course: no course is called B; there are A"}};
+  for (const auto& row : rows) {
+    const auto answer = post(row.path, row.body);
+    EXPECT_EQ(answer.status, Status::UnprocessableEntity) << row.path << row.body;
+    EXPECT_THAT(answer.body, HasSubstr(row.word)) << row.path << row.body;
+    EXPECT_THAT(answer.body, Not(HasSubstr("two words"))) << "what was meant for a token is not repeated";
+  }
+  EXPECT_EQ(ask("POST", "/adit/course", {kByToken, {"Content-Type", "application/json"}}, "{").status,
+            Status::BadRequest);
+  EXPECT_EQ(ask("POST", "/adit/course", {kByToken, {"Content-Type", "text/plain"}}, "{}").status,
+            Status::UnprocessableEntity);
+  EXPECT_EQ(post("/adit/settings", {{"settings", std::string(300000, 'x')}}).status, Status::ContentTooLarge);
+  EXPECT_EQ(setup.saves, 0);
+  EXPECT_TRUE(setup.set.empty());
+}
+
+TEST_F(SettingsRoutesTest, SetAndRemoveATokenWithoutShowingIt) {
+  const auto answer = post("/adit/tokens", {{"name", "course.A.mapping"}, {"token", "rust871}backdoor"}});
+  EXPECT_EQ(json::parse(answer.body), (json{{"name", "course.A.mapping"}, {"set", true}}));
+  EXPECT_EQ(json::parse(post("/adit/tokens", {{"name", "scoring"}, {"token", nullptr}}).body),
+            (json{{"name", "scoring"}, {"set", false}}));
+  EXPECT_THAT(setup.set, ElementsAre(std::pair("course.A.mapping", "rust871}backdoor"),
+                                     std::pair("scoring", "removed")));
+}
+
+TEST_F(SettingsRoutesTest, SwitchTheCourseByItsNameAndBackToNone) {
+  EXPECT_EQ(json::parse(post("/adit/course", {{"name", "A"}}).body),
+            (json{{"changes", {{{"path", "command_post.course"}, {"from", ""}, {"to", "A"}}}},
+                  {"warnings", {"reports go elsewhere"}}}));
+  EXPECT_EQ(setup.now.command_post.course, "A");
+  EXPECT_EQ(post("/adit/course", {{"name", ""}}).status, Status::Ok);
+  EXPECT_EQ(setup.now.command_post.course, "");
+}
+
+TEST_F(SettingsRoutesTest, ResetWithTheOperatorsPasswordAlone) {
+  EXPECT_EQ(post("/adit/reset", {{"password", "look, do not touch"}}).status, Status::Forbidden)
+      << "the viewer's";
+  EXPECT_EQ(post("/adit/reset", json::object()).status, Status::UnprocessableEntity);
+  EXPECT_EQ(setup.resets, 0);
+  const auto answer = post("/adit/reset", {{"password", "correct horse"}});
+  EXPECT_EQ(answer.status, Status::Ok);
+  EXPECT_THAT(answer.body, HasSubstr("the reports are kept"));
+  EXPECT_THAT(header(answer, "Set-Cookie"), HasSubstr("Max-Age=0"));
+  EXPECT_EQ(setup.resets, 1);
+}
+
+TEST_F(SettingsRoutesTest, SlowDownWhoGuessesThePasswordByResetting) {
+  for (int i = 0; i < 5; ++i) {
+    EXPECT_EQ(post("/adit/reset", {{"password", "guess"}}).status, Status::Forbidden);
+  }
+  EXPECT_EQ(post("/adit/reset", {{"password", "correct horse"}}).status, Status::TooManyRequests);
+  EXPECT_EQ(setup.resets, 0);
+}
+
+TEST_F(SettingsRoutesTest, PassOnWhyAChangeIsNotMade) {
+  setup.refusal = {Status::ServiceUnavailable, "the change cannot be kept: No space left on device"};
+  json said = shown();
+  said["settings"]["team"]["connections"] = 65;
+  for (const auto& answer :
+       {post("/adit/settings", {{"settings", said["settings"]}, {"base", said["tag"]}}),
+        post("/adit/tokens", {{"name", "scoring"}, {"token", "x"}}), post("/adit/course", {{"name", "A"}}),
+        post("/adit/reset", {{"password", "correct horse"}})}) {
+    EXPECT_EQ(answer.status, Status::ServiceUnavailable);
+    EXPECT_EQ(json::parse(answer.body), setup.refusal->sentence);
+  }
+}
+
+TEST_F(SettingsRoutesTest, SayWhichMethodsThereAre) {
+  const auto allowed = [&](const std::string& method, const std::string& path) {
+    const auto answer = ask(method, path, {kByToken, {"Content-Type", "application/json"}});
+    EXPECT_EQ(answer.status, Status::MethodNotAllowed) << path;
+    return header(answer, "Allow");
+  };
+  EXPECT_EQ(allowed("PUT", "/adit/settings"), "GET, HEAD, POST");
+  EXPECT_EQ(allowed("GET", "/adit/settings/check"), "POST");
+  EXPECT_EQ(allowed("POST", "/adit/settings/export"), "GET, HEAD");
+  EXPECT_EQ(allowed("GET", "/adit/tokens"), "POST");
+  EXPECT_EQ(allowed("GET", "/adit/course"), "POST");
+  EXPECT_EQ(allowed("GET", "/adit/reset"), "POST");
+}
+
+}  // namespace
+}  // namespace adit::api

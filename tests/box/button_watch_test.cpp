@@ -1,0 +1,163 @@
+#include "box/button_watch.hpp"
+
+#include <gtest/gtest.h>
+#include <sys/eventfd.h>
+#include <unistd.h>
+
+#include <optional>
+
+#include "box/watched_lines.hpp"
+#include "loop/file_descriptor.hpp"
+#include "loop/turn_until.hpp"
+
+namespace adit::box {
+namespace {
+
+using namespace std::chrono_literals;
+using panel::Press;
+using panel::State;
+
+/// A wire that a test presses.
+struct Wire {
+  loop::FileDescriptor changed{eventfd(0, EFD_NONBLOCK | EFD_CLOEXEC)};
+  bool pressed = false, broken = false;
+  bool open = false;
+  int looked = 0;
+
+  void set(bool is_pressed) {
+    pressed = is_pressed;
+    eventfd_write(changed.get(), 1);
+  }
+};
+
+class WireLine final : public panel::ButtonLine {
+ public:
+  explicit WireLine(Wire& wire) : wire_(wire) { wire_.open = true; }
+  WireLine(const WireLine&) = delete;
+  WireLine& operator=(const WireLine&) = delete;
+  ~WireLine() override { wire_.open = false; }
+  int descriptor() const override { return wire_.changed.get(); }
+  std::expected<bool, std::string> pressed() override {
+    eventfd_t count = 0;
+    eventfd_read(wire_.changed.get(), &count);
+    ++wire_.looked;
+    if (wire_.broken) return std::unexpected("gpiochip0: gone");
+    return wire_.pressed;
+  }
+
+ private:
+  Wire& wire_;
+};
+
+class ButtonWatchTest : public testing::Test {
+ protected:
+  void watch() {
+    button.emplace(loop, std::make_unique<WireLine>(wire), lights,
+                   [this](Press press) { presses.push_back(press); });
+  }
+  /// Until it has been seen, and for longer than it may bounce.
+  void set(bool pressed) {
+    const int before = wire.looked;
+    wire.set(pressed);
+    EXPECT_TRUE(loop::turn_until(loop, [&] { return wire.looked > before; }));
+    loop::turn_for(loop, 100ms);
+  }
+
+  loop::Loop loop;
+  WatchedLines::Seen seen;
+  Lights lights{loop, std::make_unique<WatchedLines>(seen)};
+  Wire wire;
+  std::vector<Press> presses;
+  std::optional<ButtonWatch> button;
+};
+
+TEST_F(ButtonWatchTest, TellsOfAPressOnceItIsOver) {
+  watch();
+  set(true);
+  EXPECT_TRUE(presses.empty());
+  wire.set(false);
+  EXPECT_TRUE(loop::turn_until(loop, [&] { return !presses.empty(); }));
+  EXPECT_EQ(presses, std::vector{Press::Identify});
+  const int looked = wire.looked;
+  loop::turn_for(loop, 100ms);
+  EXPECT_EQ(wire.looked, looked) << "nobody looks at a button that nobody touches";
+}
+
+TEST_F(ButtonWatchTest, IgnoresABounce) {
+  watch();
+  bool was_one = false;  // on a busy machine it may last as long as a press
+  for (int attempt = 0; attempt < 100 && !was_one; ++attempt) {
+    presses.clear();
+    const auto began = loop.now();
+    for (int i = 0; i < 10; ++i) {
+      wire.set(i % 2 == 0);
+      loop.turn(0ms);
+    }
+    was_one = loop.now() - began < panel::Button::kBounce;
+    loop::turn_for(loop, 100ms);
+  }
+  EXPECT_TRUE(was_one);
+  EXPECT_TRUE(presses.empty());
+}
+
+TEST_F(ButtonWatchTest, ShowsWhenItIsTimeToLetGoAndWhenItIsNot) {
+  watch();
+  lights.set(State::Serving, true);
+  set(true);
+  loop::turn_for(loop, 2400ms);
+  EXPECT_FALSE(lights.has(State::ButtonHeld));
+  EXPECT_TRUE(loop::turn_until(loop, [&] { return lights.has(State::ButtonHeld); }));
+  wire.set(false);
+  EXPECT_TRUE(loop::turn_until(loop, [&] { return !presses.empty(); }));
+  EXPECT_FALSE(lights.has(State::ButtonHeld));
+  EXPECT_EQ(presses, std::vector{Press::ShowAddress});
+}
+
+TEST_F(ButtonWatchTest, DoesNothingWhileTheButtonIsStuck) {
+  wire.pressed = true;
+  watch();
+  loop::turn_for(loop, 3200ms);
+  EXPECT_FALSE(lights.has(State::ButtonHeld));
+  set(false);
+  EXPECT_TRUE(presses.empty());
+}
+
+TEST_F(ButtonWatchTest, LeavesAButtonAloneThatCannotBeRead) {
+  watch();
+  set(true);
+  wire.broken = true;
+  set(false);
+  EXPECT_TRUE(presses.empty());
+  EXPECT_FALSE(lights.has(State::ButtonHeld));
+  const int looked = wire.looked;
+  wire.set(true);
+  loop::turn_for(loop, 200ms);
+  EXPECT_EQ(wire.looked, looked) << "or it would be asked for ever";
+}
+
+TEST_F(ButtonWatchTest, IsNoneWhereThereIsNoLine) {
+  button.emplace(loop, nullptr, lights, [this](Press press) { presses.push_back(press); });
+  loop::turn_for(loop, 50ms);
+  EXPECT_TRUE(presses.empty());
+}
+
+TEST_F(ButtonWatchTest, LetsItsLineGo) {
+  watch();
+  EXPECT_TRUE(wire.open);
+  button.reset();
+  EXPECT_FALSE(wire.open);
+}
+
+TEST_F(ButtonWatchTest, GoesOnWithAnotherLine) {
+  watch();
+  button->let_go();
+  EXPECT_FALSE(wire.open);
+  button->take(std::make_unique<WireLine>(wire));
+  set(true);
+  wire.set(false);
+  EXPECT_TRUE(loop::turn_until(loop, [&] { return !presses.empty(); }));
+  EXPECT_EQ(presses, std::vector{Press::Identify});
+}
+
+}  // namespace
+}  // namespace adit::box

@@ -1,0 +1,76 @@
+#include "box/open_panel.hpp"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <cstdlib>
+#include <filesystem>
+#include <fstream>
+
+namespace adit::box {
+namespace {
+
+using testing::HasSubstr;
+
+class OpenPanelTest : public testing::Test {
+ protected:
+  OpenPanelTest() {
+    std::string name = (std::filesystem::temp_directory_path() / "adit-open-panel-XXXXXX").string();
+    folder_ = mkdtemp(name.data());
+  }
+  ~OpenPanelTest() override { std::filesystem::remove_all(folder_); }
+  std::string board(std::string_view text) const {
+    std::ofstream(folder_ / "board.json") << text;
+    return (folder_ / "board.json").string();
+  }
+  std::filesystem::path folder_;
+};
+
+TEST_F(OpenPanelTest, SimulatesLightsAndButtonWhereNoLineIsNamed) {
+  const OpenPanel opened = open_panel({}, folder_.string());
+  ASSERT_TRUE(opened.lines->set({true, false, false, false}).has_value());
+  EXPECT_TRUE(std::filesystem::exists(folder_ / "panel"));
+  ASSERT_NE(opened.button, nullptr);
+  EXPECT_TRUE(std::filesystem::is_fifo(folder_ / "panel.button"));
+}
+
+TEST_F(OpenPanelTest, SimulatesNoButtonInPlaceOfARealOneThatCannotBeHad) {
+  settings::Panel settings;
+  settings.chip = std::string("no-such-chip");  // GCC 12 warns of a plain literal here
+  settings.health = "H";
+  for (const std::string button : {"", "B"}) {
+    settings.button = button;
+    const OpenPanel opened = open_panel(settings, folder_.string());
+    ASSERT_TRUE(opened.lines->set({true, false, false, false}).has_value())
+        << "the page still sees its lights";
+    EXPECT_EQ(opened.button, nullptr) << "it would be no proof of anybody's presence";
+    EXPECT_FALSE(std::filesystem::exists(folder_ / "panel.button"));
+  }
+}
+
+TEST_F(OpenPanelTest, GoesWithoutABoardWhereThereIsNone) {
+  for (const char* const file : {"", "/absent/board.json"}) {
+    const KnownBoard known = read_board(file);
+    EXPECT_EQ(known.board.name, "");
+    EXPECT_EQ(known.trouble, "");
+  }
+}
+
+TEST_F(OpenPanelTest, ReadsWhatTheBoardIs) {
+  const KnownBoard known = read_board(board(R"({"name": "b", "title": "B", "panel": {"health": "H"}})"));
+  EXPECT_EQ(known.trouble, "");
+  EXPECT_EQ(known.board.name, "b");
+  EXPECT_EQ(known.board.panel->health, "H");
+}
+
+TEST_F(OpenPanelTest, SaysWhatIsWrongWithABoardAndGoesWithoutIt) {
+  const std::string file = board(R"({"name": "b", "title": "B", "panel": {"helth": "H"}})");
+  const KnownBoard known = read_board(file);
+  EXPECT_EQ(known.board.name, "");
+  EXPECT_FALSE(known.board.panel);
+  EXPECT_THAT(known.trouble, HasSubstr(file));
+  EXPECT_THAT(known.trouble, HasSubstr(": panel.helth: no such key; did you mean health?"));
+}
+
+}  // namespace
+}  // namespace adit::box

@@ -1,0 +1,126 @@
+#include "box/test_steps.hpp"
+
+#include <gmock/gmock.h>
+
+#include <cerrno>
+
+namespace adit::box::steps {
+namespace {
+
+using testing::HasSubstr;
+
+const settings::Subnet kOwn{0x0a64010a, 24};
+
+void expect(const TestStep& step, const std::string& state, const std::string& said) {
+  EXPECT_EQ(step.state, state) << step.said;
+  EXPECT_THAT(step.said, HasSubstr(said));
+  EXPECT_EQ(step.advice.empty(), state != "bad") << "what is bad can be helped: " << step.advice;
+}
+
+TEST(TheLinkStep, LooksForACarrier) {
+  expect(link("darpa0", true), "good", "darpa0 has a carrier");
+  expect(link("darpa0", false), "bad", "darpa0 has no carrier");
+  expect(link("darpa0", std::nullopt), "bad", "there is no interface darpa0");
+  expect(link("", true), "skipped", "command_post.interface");
+}
+
+TEST(TheAddressStep, LooksForOthersWhoHaveIt) {
+  network::Probed probed{.nonce = "", .address = "10.100.1.10"};
+  expect(address("darpa0", kOwn, probed, ""), "good", "darpa0 has 10.100.1.10/24, and nobody else has it");
+  probed.address = "10.100.1.11";
+  probed.claimant = "02:00:00:00:00:09";
+  expect(address("darpa0", kOwn, probed, ""), "bad", "darpa0 has 10.100.1.11, and so has the machine");
+  probed.address = "10.100.1.10";
+  expect(address("darpa0", kOwn, probed, ""), "bad", "and so has the machine 02:00:00:00:00:09");
+  probed.own = "team0";
+  expect(address("darpa0", kOwn, probed, ""), "bad", "the box's own team0 answers for it");
+  probed.trouble = "darpa0: Network is down";
+  expect(address("darpa0", kOwn, probed, ""), "skipped", "Network is down");
+  expect(address("darpa0", kOwn, std::nullopt, "adit-network does not run here"), "skipped",
+         "adit-network does not run");
+  expect(address("darpa0", std::nullopt, std::nullopt, ""), "bad", "darpa0 has no IPv4 address");
+  expect(address("", kOwn, std::nullopt, ""), "skipped", "command_post.interface");
+}
+
+TEST(TheCablesStep, LooksForTheCommandPostAtBothPorts) {
+  network::Probed probed{.nonce = "", .found_on = "darpa0"};
+  expect(cables("darpa0", "team0", "10.100.1.200", probed), "good", "10.100.1.200 is at darpa0");
+  probed.found_on = "team0";
+  expect(cables("darpa0", "team0", "10.100.1.200", probed), "bad",
+         "10.100.1.200 is not at darpa0 but at team0");
+  probed.found_on = "";
+  expect(cables("darpa0", "team0", "10.100.1.200", probed), "skipped", "nobody answers for 10.100.1.200");
+  expect(cables("darpa0", "team0", "", probed), "skipped", "nobody could be asked");
+  expect(cables("darpa0", "team0", "10.100.1.200", std::nullopt), "skipped", "nobody could be asked");
+}
+
+TEST(TheReachStep, TellsHowConnectingFails) {
+  const std::string at = "10.100.1.200:8000";
+  expect(reach(at, 0, ""), "good", "10.100.1.200:8000 takes a connection");
+  expect(reach(at, 0, "\"x\" is no IP address"), "bad", "is no IP address");
+  expect(reach(at, ECONNREFUSED, "Connection refused"), "bad", "no server at that port");
+  expect(reach(at, ENETUNREACH, "Network is unreachable"), "bad", "there is no way to");
+  expect(reach(at, EHOSTUNREACH, "No route to host"), "bad", "no machine answers");
+  expect(reach(at, ETIMEDOUT, "Connection timed out"), "bad", "does not answer");
+  expect(reach(at, ENODEV, "binding to interface darpa0: No such device"), "bad", "darpa0");
+  expect(reach(at, EACCES, "Permission denied"), "bad", "Permission denied");
+  std::vector<std::string> advice;
+  for (const int error : {ECONNREFUSED, ENETUNREACH, EHOSTUNREACH, ETIMEDOUT})
+    advice.push_back(reach(at, error, "").advice);
+  std::ranges::sort(advice);
+  EXPECT_EQ(std::ranges::adjacent_find(advice), advice.end()) << "each is helped in its own way";
+}
+
+TestStep with_status(Asked asked, int status, const std::string& body = "\"a sentence\"") {
+  uplink::Answered answered;
+  answered.status = status;
+  answered.body = body;
+  return token(asked, answered);
+}
+
+TEST(TheTokenStep, OfScoringReadsTheAnswerToAStatus) {
+  expect(with_status(Asked::Scoring, 200), "good", "the scoring token is taken");
+  expect(with_status(Asked::Scoring, 401), "bad", "the scoring token is refused");
+  expect(with_status(Asked::Scoring, 403), "bad", "the scoring token is refused");
+  expect(with_status(Asked::Scoring, 404, "<html>"), "bad", "404");
+  expect(with_status(Asked::Scoring, 422), "bad", "422");
+  expect(with_status(Asked::Scoring, 501, ""), "bad", "501");
+  expect(with_status(Asked::Scoring, 429), "skipped", "too often");
+  expect(with_status(Asked::Scoring, 500), "skipped", "failed");
+  expect(no_token(Asked::Scoring), "bad", "there is no scoring token");
+}
+
+TEST(TheTokenStep, OfMappingIsGoodWhereOnlyTheQuestionIsWrong) {
+  for (const int status : {200, 201, 400, 415, 422})
+    expect(with_status(Asked::Mapping, status), "good", "is taken");
+  for (const int status : {401, 403})
+    expect(with_status(Asked::Mapping, status), "bad", "the mapping token is refused");
+  for (const int status : {404, 405, 501})
+    expect(with_status(Asked::Mapping, status, ""), "bad", std::to_string(status));
+  EXPECT_THAT(with_status(Asked::Mapping, 404).advice, HasSubstr("no mapping endpoint"));
+  expect(with_status(Asked::Mapping, 429), "skipped", "too often");
+}
+
+TEST(TheTokenStep, TellsWhyNoAnswerCame) {
+  expect(token(Asked::Scoring, uplink::NeverSent{"connecting: Connection refused"}), "bad",
+         "Connection refused");
+  expect(token(Asked::Mapping, uplink::InDoubt{"the peer was silent"}), "bad", "the peer was silent");
+}
+
+TEST(TheClockStep, AllowsTwoSeconds) {
+  const auto at = [](double now) { return clock(std::chrono::sys_seconds(std::chrono::seconds(1000)), now); };
+  for (const double now : {998.0, 999.5, 1000.0, 1000.99, 1001.0, 1003.0}) expect(at(now), "good", "agrees");
+  expect(at(997.4), "bad", "3 s behind");
+  expect(at(1003.6), "bad", "3 s ahead of");
+  expect(at(1e9), "bad", "ahead of");
+  expect(clock(std::nullopt, 1000), "skipped", "tell no time");
+}
+
+TEST(TheClockStep, FallsBackOnTheRunClock) {
+  expect(run_clock(10.0, 11.5), "good", "the run clock moves");
+  expect(run_clock(0.0, 0.0), "skipped", "the run clock stands at 0 s");
+  expect(run_clock(10.0, std::nullopt), "skipped", "no run clock");
+}
+
+}  // namespace
+}  // namespace adit::box::steps

@@ -1,0 +1,29 @@
+#pragma once
+
+#include <expected>
+#include <string>
+#include <vector>
+
+#include "panel/lines.hpp"
+
+namespace adit::box {
+
+/// Lines that remember what they were told to show, and fail when asked to.
+class WatchedLines final : public panel::Lines {
+ public:
+  struct Seen {
+    std::vector<panel::Lit> shown;
+    bool fail = false;
+  };
+  explicit WatchedLines(Seen& seen) : seen_(seen) {}
+  std::expected<void, std::string> set(const panel::Lit& lit) override {
+    seen_.shown.push_back(lit);
+    if (seen_.fail) return std::unexpected("gpiochip0: gone");
+    return {};
+  }
+
+ private:
+  Seen& seen_;
+};
+
+}  // namespace adit::box

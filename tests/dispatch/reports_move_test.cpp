@@ -1,0 +1,119 @@
+// The settings name another Command Post while an answer of the present one is still awaited.
+#include <gmock/gmock.h>
+
+#include "dispatch/scene.hpp"
+
+namespace adit::dispatch {
+namespace {
+
+using enum ReportState;
+using testing::ElementsAre;
+using testing::HasSubstr;
+
+constexpr const char* kHere = "10.100.1.200:8000";
+constexpr const char* kThere = "10.100.2.200:8000";
+
+/// Report 1 is under way and report 2 waits when the settings change.
+class AMoveToCome : public testing::Test {
+ protected:
+  AMoveToCome() {
+    scene_.post(1);
+    scene_.post(2);
+    say(kThere);
+  }
+  void say(const std::string& post) { scene_.reports().will_move(post, scene_.time()); }
+  void be_there() {
+    scene_.answer(recorded());
+    scene_.move_to(kThere);
+    scene_.wait(1);
+    scene_.hear(20, 0);
+  }
+  void go_back() {
+    scene_.move_to(kHere);
+    scene_.wait(1);
+    scene_.hear(19, 0);
+  }
+  const std::string& post_of(std::int64_t number) {
+    return scene_.reports().runs().find(scene_.report(number).run)->post;
+  }
+  Scene scene_;
+};
+
+TEST_F(AMoveToCome, LeavesTheRunAsItIsUntilTheAnswerIsThere) {
+  EXPECT_EQ(scene_.reports().run().post, kHere);
+  scene_.answer(recorded());
+  EXPECT_EQ(scene_.state(1), Answered);
+  EXPECT_EQ(post_of(1), kHere);
+}
+
+TEST_F(AMoveToCome, MeansWhatIsPostedFromNowOnForTheOther) {
+  const ClientId client = scene_.post(3);
+  EXPECT_EQ(post_of(3), kThere);
+  EXPECT_EQ(scene_.state(3), Waiting);
+  be_there();
+  EXPECT_EQ(scene_.send_next(), 3);
+  scene_.answer(recorded(1));
+  EXPECT_EQ(scene_.told(client).status, 201);
+  EXPECT_EQ(scene_.send_next(), 0) << "what was posted before is kept";
+  EXPECT_EQ(post_of(2), kHere);
+}
+
+TEST_F(AMoveToCome, IsFoundByARestart) {
+  scene_.post(3);
+  scene_.restart(kThere);
+  EXPECT_EQ(scene_.reports().run().post, kThere);
+  EXPECT_EQ(scene_.state(1), InDoubt);
+  EXPECT_EQ(post_of(1), kHere);
+  scene_.hear(20, 0);
+  EXPECT_EQ(scene_.send_next(), 3);
+}
+
+TEST_F(AMoveToCome, LetsWhoAsksAgainHearTheAnswerUnderWay) {
+  const ClientId again = scene_.post(1);
+  scene_.answer(recorded(1));
+  EXPECT_EQ(scene_.count(), 2u);
+  EXPECT_EQ(scene_.told(again).body, recorded(1).body);
+}
+
+TEST_F(AMoveToCome, MeansWhatWaitsAndIsPostedAgainForBoth) {
+  scene_.post(2);
+  be_there();
+  EXPECT_EQ(scene_.send_next(), 3);
+  scene_.answer(recorded());
+  go_back();
+  EXPECT_EQ(scene_.send_next(), 2);
+}
+
+TEST_F(AMoveToCome, IsTakenBackWithWhatWasPostedMeanwhile) {
+  scene_.post(3);
+  say(kHere);
+  EXPECT_EQ(post_of(3), kHere) << "of the other nothing was heard";
+  scene_.answer(recorded());
+  EXPECT_EQ(scene_.send_next(), 2);
+}
+
+TEST_F(AMoveToCome, MeansWhatWasPostedMeanwhileForTheOtherThatIsKnown) {
+  be_there();
+  go_back();
+  ASSERT_EQ(scene_.send_next(), 2);
+  say(kThere);
+  scene_.post(3);
+  say(kHere);
+  EXPECT_EQ(post_of(3), kThere);
+}
+
+TEST_F(AMoveToCome, MeansTheOperatorsWordForTheOther) {
+  ASSERT_TRUE(scene_.reports().send(2, scene_.time()));
+  EXPECT_EQ(post_of(2), kThere);
+  const std::int64_t run = scene_.reports().declare_new_run(scene_.time());
+  be_there();
+  EXPECT_EQ(scene_.reports().run().number, run);
+}
+
+TEST_F(AMoveToCome, IsTold) {
+  EXPECT_THAT(scene_.reports().attention(),
+              ElementsAre(HasSubstr("1 report waits for the Command Post at 10.100.1.200:8000")));
+}
+
+}  // namespace
+}  // namespace adit::dispatch

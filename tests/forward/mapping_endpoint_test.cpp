@@ -1,0 +1,70 @@
+// The mapping endpoint is changed while a message is under way to one that is silent: it goes to the other.
+#include <gtest/gtest.h>
+
+#include <atomic>
+#include <string>
+
+#include "../uplink/peer.hpp"
+#include "forward/around.hpp"
+#include "forward/as_forwarded.hpp"
+#include "forward/maps.hpp"
+#include "forward/news.hpp"
+#include "loop/turn_until.hpp"
+#include "spool/messages.hpp"
+
+namespace adit::forward {
+namespace {
+
+/// A mapping endpoint that answers, or does not.
+class Post {
+ public:
+  explicit Post(bool answers) : answers_(answers) {}
+  settings::Address address() const { return {peer_.endpoint().address, peer_.endpoint().port}; }
+
+  std::atomic<int> came = 0;
+
+ private:
+  void serve(uplink::Wire& wire) {
+    while (!wire.read_request().empty()) {
+      ++came;
+      if (answers_ && !wire.write(uplink::answer("200 OK", "null"))) return;
+    }
+  }
+  const bool answers_;
+  uplink::ListeningPeer peer_{[this](uplink::Wire& wire) { serve(wire); }};
+};
+
+class MappingEndpoint : public testing::Test, protected AroundMaps {
+ protected:
+  MappingEndpoint() { settings_.command_post.mapping = silent_.address(); }
+
+  /// Whether what is under way to the silent one is at the other well before that would be given up.
+  template <class Sends>
+  bool is_left_at_once(Sends& sends) {
+    if (!loop::turn_until(loop_, [&] { return silent_.came == 1; })) return false;
+    settings_.command_post.mapping = there_.address();
+    sends.endpoint_changed(token_);
+    return loop::turn_until(
+        loop_, [&] { return there_.came == 1; }, settings_.command_post.timeouts.mapping_answer / 3);
+  }
+
+  const std::optional<icd::BearerToken> token_ = icd::BearerToken::parse("a-token");
+  Post silent_{false}, there_{true};
+};
+
+TEST_F(MappingEndpoint, IsLeftAtOnceByAMap) {
+  Maps maps(loop_, workers_, writer_, spool_, settings_, token_, record_, aside_, random_, journal_,
+            [](const icd::MapUpdate&) {});
+  maps.take(spool::cloud(3), 10, nullptr, [](const icd::Checked<void>&) {});
+  EXPECT_TRUE(is_left_at_once(maps));
+}
+
+TEST_F(MappingEndpoint, IsLeftAtOnceByAState) {
+  AsForwarded as_forwarded;
+  News news(loop_, settings_, token_, record_, aside_, random_, journal_, as_forwarded, [] {});
+  ASSERT_TRUE(news.take(spool::state(), 10));
+  EXPECT_TRUE(is_left_at_once(news));
+}
+
+}  // namespace
+}  // namespace adit::forward

@@ -1,0 +1,44 @@
+"""The rooms of firmware/: their floors; and as their CMakeLists.txt say their order, whom each names, and its door."""
+import pathlib
+import re
+
+FIRMWARE = pathlib.Path(__file__).resolve().parents[2] / "firmware"
+FLOORS = {
+    "the interface": "icd codec",
+    "the rules": "lanes pack picture pace dispatch settings network update access",
+    "the doors": "command_line loop ledger uplink intake panel host spool journal",
+    "the flow": "forward",
+    "the box": "admin box",
+    "the faces": "site api cli",
+    "the programs": "gateway applier rehearsal",
+}
+
+
+def order():
+    text = (FIRMWARE / "CMakeLists.txt").read_text()
+    return re.findall(r"add_subdirectory\((\w+)\)", text)
+
+
+def named_by(room):
+    """The rooms that a room's CMakeLists.txt names, and the headers of its own door."""
+    rooms, door = set(), set()
+    for file in (FIRMWARE / room).rglob("CMakeLists.txt"):
+        text = re.sub(r"#[^\n]*", "", file.read_text())
+        for call in re.findall(r"adit_room\(([^)]*)\)", text):
+            parts = re.split(r"\b(SOURCES|SEAM|DOOR|ROOMS|LIBRARIES)\b", call)
+            lists = dict(zip(parts[1::2], parts[2::2]))
+            rooms |= set(lists.get("ROOMS", "").split())
+            door |= set(lists.get("DOOR", "").split())
+        for call in re.findall(r"target_link_libraries\(([^)]*)\)", text):
+            rooms |= set(re.findall(r"\badit_(\w+)", call)) - {"options"}
+    return rooms - {room}, door
+
+
+def closure(room, named):
+    """The room, those that it names, and what these name."""
+    reached, ahead = set(), {room}
+    while ahead:
+        each = ahead.pop()
+        reached.add(each)
+        ahead |= named.get(each, set()) - reached
+    return reached

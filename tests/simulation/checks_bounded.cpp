@@ -1,0 +1,87 @@
+// Bounded: what the box holds, while it works and at rest.
+#include <algorithm>
+#include <string>
+
+#include "icd/sentence.hpp"
+#include "simulation/checks.hpp"
+
+namespace adit::simulation {
+namespace {
+
+constexpr std::uint64_t kMiB = 1u << 20;
+/// A ledger's file and its log, of which 4 MiB are reserved.
+constexpr std::uint64_t kLedger = 6 * kMiB;
+/// The journal that is written, and the one that is made smaller beside its snapshot.
+constexpr std::uint64_t kJournal = 5 * kMiB / 2;
+/// Who is logged in, and what is set aside in a run.
+constexpr std::uint64_t kBeside = kMiB;
+
+struct Most {
+  const char* list;
+  std::size_t rows;
+};
+constexpr Most kLists[] = {{"activities", 200}, {"refusals", 50}, {"reports", 200}, {"aside", 100}};
+
+class Looking {
+ public:
+  /// `ledgers`: that may be there: the one in use, and each damaged one that was set aside, with its log.
+  Looking(const Reading& reading, std::uint64_t ledgers, Broken& broken)
+      : reading_(reading), ledgers_(ledgers * kLedger), broken_(broken) {}
+
+  void at(const char* what, std::uint64_t bytes, std::uint64_t most) {
+    if (bytes > most)
+      broken_.push_back(
+          icd::sentence("Bounded: at ", reading_.at, " ", what, ": ", bytes, ", at most ", most));
+  }
+  void at_lists() {
+    for (const auto& [list, rows] : kLists) at(list, reading_.view.at(list).size(), rows);
+  }
+  void at_files() {
+    at("bytes in the state folder", reading_.stored.state, ledgers_);
+    at("bytes of the journal", reading_.stored.journal, kJournal);
+    // One may stand in for another until the gateway has begun anew.
+    at("bytes of what stands in for the ledger", reading_.stored.others, ledgers_ + kLedger + kBeside);
+  }
+  void at_rest() {
+    at("bytes of maps that wait no more", reading_.stored.waiting, 0);
+    at("bytes in the runtime folder", reading_.stored.others, kBeside);
+  }
+
+ private:
+  const Reading& reading_;
+  std::uint64_t ledgers_;
+  Broken& broken_;
+};
+
+std::uint64_t ledgers_at(double time, const Evidence& evidence) {
+  return 1 + static_cast<std::uint64_t>(std::ranges::count_if(evidence.events, [&](const Event& event) {
+           return event.at <= time && event.kind == Kind::Said &&
+                  event.text.contains("The ledger was damaged");
+         }));
+}
+
+bool nothing_waits(const nlohmann::json& view) {
+  return std::ranges::all_of(view.at("activities"), [](const auto& row) { return row.at("waiting") == 0; });
+}
+
+}  // namespace
+
+void bounded(const Evidence& evidence, Broken& broken) {
+  double changed = 1e9;  // when other settings came
+  for (const Event& event : evidence.events) {
+    if (event.kind == Kind::Written) changed = std::min(changed, event.at);
+    if (event.kind == Kind::Forbidden && event.what == kTooMuch)
+      broken.push_back(icd::sentence("Bounded: at ", event.at, " ", event.text));
+  }
+  for (const Reading& reading : evidence.readings) {
+    Looking looking(reading, ledgers_at(reading.at, evidence), broken);
+    looking.at_lists();
+    looking.at_files();
+    if (reading.at < changed)
+      looking.at("bytes of maps", reading.view.at("queued_bytes"), evidence.most_map_bytes);
+  }
+  if (evidence.readings.empty() || !nothing_waits(evidence.readings.back().view)) return;
+  Looking(evidence.readings.back(), 1, broken).at_rest();
+}
+
+}  // namespace adit::simulation

@@ -97,7 +97,7 @@ api::NetworkView NetworkChange::network() const {
   return view;
 }
 
-network::Verdict NetworkChange::check(const network::Numbers& wanted, const std::string& asker) const {
+network::Findings NetworkChange::check(const network::Numbers& wanted, const std::string& asker) const {
   refresh();
   return network::check(wanted, present(),
                         {.allow_overlap = settings_.network.allow_overlap,

@@ -26,7 +26,7 @@ class NetworkChange final : public api::Network {
       : loop_(loop), settings_(settings), requests_(requests) {}
 
   api::NetworkView network() const override;
-  network::Verdict check(const network::Numbers& wanted, const std::string& asker) const override;
+  network::Findings check(const network::Numbers& wanted, const std::string& asker) const override;
   icd::Checked<void> change(const network::Numbers& wanted) override;
   icd::Checked<void> confirm(const std::string& local) override;
   icd::Checked<void> take_back() override;

@@ -54,7 +54,7 @@ class Api::Impl {
         reports_(source, judge, [this] { live_.changed(); }),
         aside_(judge, [this] { live_.changed(); }) {}
 
-  std::unique_ptr<intake::Exchange> open(const intake::RequestHead& head,
+  std::unique_ptr<intake::BodySink> open(const intake::RequestHead& head,
                                          std::shared_ptr<intake::Responder> responder,
                                          std::shared_ptr<intake::Flow> flow) {
     if (!is_guarded(head.path())) {
@@ -144,7 +144,7 @@ void Api::serve(Setup& setup) {
   impl_->serve(setup);
 }
 
-std::unique_ptr<intake::Exchange> Api::open(const intake::RequestHead& head,
+std::unique_ptr<intake::BodySink> Api::open(const intake::RequestHead& head,
                                             std::shared_ptr<intake::Responder> responder,
                                             std::shared_ptr<intake::Flow> flow) {
   return impl_->open(head, std::move(responder), std::move(flow));

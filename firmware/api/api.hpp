@@ -34,7 +34,7 @@ class Api final : public intake::Handler {
   /// Serves the settings, too; `setup` outlives this. Once, before anything is opened.
   void serve(Setup& setup);
 
-  std::unique_ptr<intake::Exchange> open(const intake::RequestHead& head,
+  std::unique_ptr<intake::BodySink> open(const intake::RequestHead& head,
                                          std::shared_ptr<intake::Responder> responder,
                                          std::shared_ptr<intake::Flow> flow) override;
 

@@ -16,7 +16,7 @@ constexpr std::size_t kMostBody = 1024;
 
 struct Wanted {
   std::uint64_t number = 0;
-  AsideDeed deed = AsideDeed::Send;
+  AsideAction action = AsideAction::Send;
 };
 
 std::optional<Wanted> wanted_at(std::string_view path) {
@@ -26,12 +26,12 @@ std::optional<Wanted> wanted_at(std::string_view path) {
   const auto number = number_in<std::uint64_t>(path.substr(0, slash));
   const std::string_view word = path.substr(slash + 1);
   if (!number || (word != "send" && word != "discard")) return std::nullopt;
-  return Wanted{*number, word == "send" ? AsideDeed::Send : AsideDeed::Discard};
+  return Wanted{*number, word == "send" ? AsideAction::Send : AsideAction::Discard};
 }
 
 }  // namespace
 
-std::unique_ptr<intake::Exchange> AsideRoutes::open(const intake::RequestHead& head,
+std::unique_ptr<intake::BodySink> AsideRoutes::open(const intake::RequestHead& head,
                                                     std::shared_ptr<intake::Responder> responder) {
   const auto refuse = [&responder](intake::Answer answer) {
     responder->answer(std::move(answer));
@@ -46,7 +46,7 @@ std::unique_ptr<intake::Exchange> AsideRoutes::open(const intake::RequestHead& h
   if (head.content_length().value_or(0) > kMostBody) return refuse(SmallBody::too_long(kMostBody));
   return std::make_unique<SmallBody>(
       responder, kMostBody, [this, wanted = *wanted, responder](const std::string&) {
-        const auto done = operator_.aside(wanted.number, wanted.deed);
+        const auto done = operator_.aside(wanted.number, wanted.action);
         changed_();
         responder->answer(done
                               ? fresh("application/json", "{\"aside\":" + std::to_string(wanted.number) + "}")

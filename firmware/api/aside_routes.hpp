@@ -19,7 +19,7 @@ class AsideRoutes {
 
   static bool has(std::string_view path) { return path.starts_with("/adit/aside/"); }
   /// Requires has(head.path()).
-  std::unique_ptr<intake::Exchange> open(const intake::RequestHead& head,
+  std::unique_ptr<intake::BodySink> open(const intake::RequestHead& head,
                                          std::shared_ptr<intake::Responder> responder);
 
  private:

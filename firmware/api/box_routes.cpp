@@ -37,7 +37,7 @@ bool BoxRoutes::has(std::string_view path) {
   return path == kMetrics || path == kLog || path == kLogText || path == kAbout || path == kBundle;
 }
 
-std::unique_ptr<intake::Exchange> BoxRoutes::open(const intake::RequestHead& head,
+std::unique_ptr<intake::BodySink> BoxRoutes::open(const intake::RequestHead& head,
                                                   const std::shared_ptr<intake::Responder>& responder) {
   const bool is_bundle = head.path() == kBundle;
   const auto visitor = entrance_.admit(head, is_bundle ? access::Role::Operator : access::Role::Viewer);

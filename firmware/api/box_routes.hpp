@@ -20,7 +20,7 @@ class BoxRoutes {
 
   static bool has(std::string_view path);
   /// Requires has(head.path()). Judges itself who may come in.
-  std::unique_ptr<intake::Exchange> open(const intake::RequestHead& head,
+  std::unique_ptr<intake::BodySink> open(const intake::RequestHead& head,
                                          const std::shared_ptr<intake::Responder>& responder);
 
  private:

@@ -14,7 +14,7 @@ access::Request request_of(const intake::RequestHead& head) {
 }
 
 icd::Checked<access::Visitor> Entrance::admit(const intake::RequestHead& head, access::Role role) {
-  return access::judge(request_of(head), role, tokens_, sessions_, loop_.now());
+  return access::admit(request_of(head), role, tokens_, sessions_, loop_.now());
 }
 
 std::optional<access::Visitor> Entrance::who(const intake::RequestHead& head) {

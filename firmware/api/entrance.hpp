@@ -3,7 +3,7 @@
 #include <functional>
 #include <vector>
 
-#include "access/verdict.hpp"
+#include "access/admission.hpp"
 #include "icd/bearer_token.hpp"
 #include "intake/server.hpp"
 #include "loop/loop.hpp"

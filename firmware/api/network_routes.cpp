@@ -92,7 +92,7 @@ bool NetworkRoutes::has(std::string_view path) {
   return both(path) || path == kCheck || path == kConfirm || path == kBack;
 }
 
-std::unique_ptr<intake::Exchange> NetworkRoutes::open(const intake::RequestHead& head,
+std::unique_ptr<intake::BodySink> NetworkRoutes::open(const intake::RequestHead& head,
                                                       std::shared_ptr<intake::Responder> responder) {
   const auto answer = [&responder](intake::Answer with) {
     responder->answer(std::move(with));
@@ -136,14 +136,14 @@ intake::Answer NetworkRoutes::shown() const {
 
 intake::Answer NetworkRoutes::check(const std::string& body, const std::string& peer) const {
   const auto wanted = read_body(body);
-  const auto verdict = wanted ? network_.check(*wanted, peer) : network::Verdict{wanted.error(), {}, {}};
+  const auto findings = wanted ? network_.check(*wanted, peer) : network::Findings{wanted.error(), {}, {}};
   Value::Array changes, warnings;
-  for (const network::Difference& each : verdict.changes) {
+  for (const network::Difference& each : findings.changes) {
     changes.push_back(
         {Value::Object{{"path", json(each.path)}, {"from", json(each.from)}, {"to", json(each.to)}}});
   }
-  for (const std::string& each : verdict.warnings) warnings.push_back(json(each));
-  return object({{"errors", errors_json(verdict.errors)},
+  for (const std::string& each : findings.warnings) warnings.push_back(json(each));
+  return object({{"errors", errors_json(findings.errors)},
                  {"changes", {std::move(changes)}},
                  {"warnings", {std::move(warnings)}}});
 }
@@ -151,8 +151,8 @@ intake::Answer NetworkRoutes::check(const std::string& body, const std::string& 
 intake::Answer NetworkRoutes::change(const std::string& body, const std::string& peer) {
   const auto wanted = read_body(body);
   if (!wanted) return unfit(wanted.error());
-  const auto verdict = network_.check(*wanted, peer);
-  if (!verdict.errors.empty()) return unfit(verdict.errors);
+  const auto findings = network_.check(*wanted, peer);
+  if (!findings.errors.empty()) return unfit(findings.errors);
   return after(network_.change(*wanted));
 }
 

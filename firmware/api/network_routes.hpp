@@ -13,13 +13,13 @@ namespace adit::api {
 /// The box's own addresses and the Test, for those whom Entrance let in: README.md.
 class NetworkRoutes {
  public:
-  /// `changed` is called after each deed. All outlive this.
+  /// `changed` is called after each action. All outlive this.
   NetworkRoutes(Network& network, SelfTest& test, std::function<void()> changed)
       : network_(network), test_(test), changed_(std::move(changed)) {}
 
   static bool has(std::string_view path);
   /// Requires has(head.path()).
-  std::unique_ptr<intake::Exchange> open(const intake::RequestHead& head,
+  std::unique_ptr<intake::BodySink> open(const intake::RequestHead& head,
                                          std::shared_ptr<intake::Responder> responder);
 
  private:
@@ -29,7 +29,7 @@ class NetworkRoutes {
                       const std::string& local);
   intake::Answer check(const std::string& body, const std::string& peer) const;
   intake::Answer change(const std::string& body, const std::string& peer);
-  /// How it stands now, or why the deed was refused.
+  /// How it stands now, or why the action was refused.
   intake::Answer after(const icd::Checked<void>& done) const;
 
   Network& network_;

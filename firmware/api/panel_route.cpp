@@ -16,7 +16,7 @@ constexpr std::size_t kMostBody = 1024;
 
 }  // namespace
 
-std::unique_ptr<intake::Exchange> PanelRoute::open(const intake::RequestHead& head,
+std::unique_ptr<intake::BodySink> PanelRoute::open(const intake::RequestHead& head,
                                                    std::shared_ptr<intake::Responder> responder) {
   const auto refuse = [&responder](intake::Answer answer) {
     responder->answer(std::move(answer));

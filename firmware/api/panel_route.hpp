@@ -19,7 +19,7 @@ class PanelRoute {
 
   static bool has(std::string_view path) { return path == "/adit/identify"; }
   /// Requires has(head.path()).
-  std::unique_ptr<intake::Exchange> open(const intake::RequestHead& head,
+  std::unique_ptr<intake::BodySink> open(const intake::RequestHead& head,
                                          std::shared_ptr<intake::Responder> responder);
 
  private:

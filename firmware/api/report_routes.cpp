@@ -22,41 +22,41 @@ constexpr std::string_view kAll = "all", kPresent = "present";
 constexpr std::size_t kMostBody = 65536;
 constexpr auto kAccepted = static_cast<icd::Status>(202);  // RFC 9110 15.3.3; no ICD answer has it
 
-struct DeedName {
+struct ActionName {
   std::string_view name;
-  Deed deed;
+  Action action;
 };
-constexpr DeedName kDeeds[] = {{"send", Deed::Send},
-                               {"hold", Deed::Hold},
-                               {"withdraw", Deed::Withdraw},
-                               {"done", Deed::CallDone},
-                               {"resubmit", Deed::Resubmit}};
+constexpr ActionName kActions[] = {{"send", Action::Send},
+                                   {"hold", Action::Hold},
+                                   {"withdraw", Action::Withdraw},
+                                   {"done", Action::CallDone},
+                                   {"resubmit", Action::Resubmit}};
 
-std::optional<Deed> deed_named(std::string_view name) {
-  for (const DeedName& each : kDeeds) {
-    if (each.name == name) return each.deed;
+std::optional<Action> action_named(std::string_view name) {
+  for (const ActionName& each : kActions) {
+    if (each.name == name) return each.action;
   }
   return std::nullopt;
 }
 
 enum class Wanted : std::uint8_t { Judgement, Report, Run };
 
-/// The path of a deed: "/adit/reports/7/send", kReports or kRuns.
-struct DeedPath {
+/// The path of an action: "/adit/reports/7/send", kReports or kRuns.
+struct ActionPath {
   Wanted wanted = Wanted::Judgement;
   std::int64_t number = 0;  // of what is judged
-  Deed deed = Deed::Send;
+  Action action = Action::Send;
 };
 
-std::optional<DeedPath> deed_at(std::string_view path) {
-  if (path == kRuns) return DeedPath{.wanted = Wanted::Run};
-  if (path == kReports) return DeedPath{.wanted = Wanted::Report};
+std::optional<ActionPath> action_at(std::string_view path) {
+  if (path == kRuns) return ActionPath{.wanted = Wanted::Run};
+  if (path == kReports) return ActionPath{.wanted = Wanted::Report};
   const auto slash = path.rfind('/');
   if (!path.starts_with(kOne) || slash < kOne.size()) return std::nullopt;
   const auto number = number_in<std::int64_t>(path.substr(kOne.size(), slash - kOne.size()));
-  const auto deed = deed_named(path.substr(slash + 1));
-  if (!number || !deed) return std::nullopt;
-  return DeedPath{.number = *number, .deed = *deed};
+  const auto action = action_named(path.substr(slash + 1));
+  if (!number || !action) return std::nullopt;
+  return ActionPath{.number = *number, .action = *action};
 }
 
 intake::Answer no_such(std::int64_t number) {
@@ -72,14 +72,14 @@ bool ReportRoutes::has(std::string_view path) {
   return path == kReports || path == kCsv || path == kRuns || path.starts_with(kOne);
 }
 
-std::unique_ptr<intake::Exchange> ReportRoutes::open(const intake::RequestHead& head,
+std::unique_ptr<intake::BodySink> ReportRoutes::open(const intake::RequestHead& head,
                                                      std::shared_ptr<intake::Responder> responder) {
   const auto refuse = [&responder](intake::Answer answer) {
     responder->answer(std::move(answer));
     return nullptr;
   };
   const bool lists = head.path() == kReports && only_reads(head);
-  const auto path = lists ? std::nullopt : deed_at(head.path());
+  const auto path = lists ? std::nullopt : action_at(head.path());
   if (!path) return refuse(only_reads(head) ? shown(head) : wrong_method(kReading));
   if (head.method() != "POST") {
     return refuse(wrong_method(path->wanted == Wanted::Report ? "GET, HEAD, POST" : "POST"));
@@ -90,7 +90,7 @@ std::unique_ptr<intake::Exchange> ReportRoutes::open(const intake::RequestHead& 
   if (head.content_length().value_or(0) > kMostBody) return refuse(SmallBody::too_long(kMostBody));
   return std::make_unique<SmallBody>(
       responder, kMostBody, [this, path = *path, responder](const std::string& body) {
-        auto answer = path.wanted == Wanted::Judgement ? judge(path.number, path.deed)
+        auto answer = path.wanted == Wanted::Judgement ? judge(path.number, path.action)
                       : path.wanted == Wanted::Report  ? report(body)
                                                        : begin_run();
         changed_();
@@ -126,9 +126,9 @@ intake::Answer ReportRoutes::shown(const intake::RequestHead& head) const {
   return report ? fresh("application/json", write_report(*report)) : no_such(*number);
 }
 
-intake::Answer ReportRoutes::judge(std::int64_t number, Deed deed) {
+intake::Answer ReportRoutes::judge(std::int64_t number, Action action) {
   if (!source_.report(number)) return no_such(number);
-  const auto moved = operator_.judge(number, deed);
+  const auto moved = operator_.judge(number, action);
   if (!moved) return refusal(icd::Status::Conflict, moved.error());
   return fresh("application/json", "{\"report\":" + std::to_string(*moved) + "}");
 }

@@ -10,25 +10,25 @@
 
 namespace adit::api {
 
-/// What is known of reports, and the operator's deeds, for those whom Entrance let in: README.md.
+/// What is known of reports, and the operator's actions, for those whom Entrance let in: README.md.
 ///
-/// A deed is asked for by POST with JSON as its Content-Type: a web page from elsewhere, in a browser of the
-/// team's network, cannot send that without a preflight, which is refused.
+/// An action is asked for by POST with JSON as its Content-Type: a web page from elsewhere, in a browser of
+/// the team's network, cannot send that without a preflight, which is refused.
 class ReportRoutes {
  public:
-  /// `changed` is called after each deed. All outlive this.
+  /// `changed` is called after each action. All outlive this.
   ReportRoutes(const Source& source, Operator& judge, std::function<void()> changed);
 
   static bool has(std::string_view path);
   /// Requires has(head.path()).
-  std::unique_ptr<intake::Exchange> open(const intake::RequestHead& head,
+  std::unique_ptr<intake::BodySink> open(const intake::RequestHead& head,
                                          std::shared_ptr<intake::Responder> responder);
 
  private:
   intake::Answer shown(const intake::RequestHead& head) const;
   /// Of one run: its number, "present" or, as "", "all".
   icd::Checked<std::vector<ReportRow>> listed(std::string_view run) const;
-  intake::Answer judge(std::int64_t number, Deed deed);
+  intake::Answer judge(std::int64_t number, Action action);
   /// Of the body of a composed report.
   intake::Answer report(std::string_view body);
   intake::Answer begin_run();

@@ -20,7 +20,7 @@ struct MarkerRow {
 };
 
 /// The markers' scene, or what changed of it.
-struct MarkerNews {
+struct MarkerChanges {
   std::uint64_t version = 0;
   bool whole = true;           // all that there is; else what changed since the version that was asked for
   std::uint64_t left_out = 0;  // there were more than are kept
@@ -41,7 +41,7 @@ struct Track {
 };
 
 /// The JSON of /adit/markers and of /adit/tracks: see README.md.
-std::string write_markers(const MarkerNews& news);
+std::string write_markers(const MarkerChanges& news);
 std::string write_tracks(const std::vector<Track>& tracks);
 
 }  // namespace adit::api

@@ -83,15 +83,15 @@ Value array_of(const Each& each) {
 
 }  // namespace
 
-std::string write_markers(const MarkerNews& news) {
+std::string write_markers(const MarkerChanges& changes) {
   Value::Array gone;
-  for (const auto& [ns, id] : news.gone) {
+  for (const auto& [ns, id] : changes.gone) {
     gone.push_back({Value::Object{{"ns", api::json(ns)}, {"id", api::json(id)}}});
   }
-  return codec::write_json({Value::Object{{"version", api::json(news.version)},
-                                          {"whole", api::json(news.whole)},
-                                          {"left_out", api::json(news.left_out)},
-                                          {"markers", array_of(news.markers)},
+  return codec::write_json({Value::Object{{"version", api::json(changes.version)},
+                                          {"whole", api::json(changes.whole)},
+                                          {"left_out", api::json(changes.left_out)},
+                                          {"markers", array_of(changes.markers)},
                                           {"gone", {std::move(gone)}}}});
 }
 

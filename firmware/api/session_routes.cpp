@@ -77,7 +77,7 @@ bool SessionRoutes::has(std::string_view path) {
          path == kReset || ended_by(path).has_value();
 }
 
-std::unique_ptr<intake::Exchange> SessionRoutes::open(const intake::RequestHead& head,
+std::unique_ptr<intake::BodySink> SessionRoutes::open(const intake::RequestHead& head,
                                                       std::shared_ptr<intake::Responder> responder) {
   if (const auto whence = access::check_whence(request_of(head)); !whence) {
     responder->answer(turned_away(whence.error()));
@@ -134,7 +134,7 @@ intake::Answer SessionRoutes::sessions(const intake::RequestHead& head) {
   return fresh("application/json", codec::write_json({std::move(rows)}));
 }
 
-std::unique_ptr<intake::Exchange> SessionRoutes::post(const intake::RequestHead& head, Replies responder) {
+std::unique_ptr<intake::BodySink> SessionRoutes::post(const intake::RequestHead& head, Replies responder) {
   if (const auto number = ended_by(head.path())) {
     responder->answer(end(head, *number));
     return nullptr;

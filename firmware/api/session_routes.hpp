@@ -29,7 +29,7 @@ class SessionRoutes {
 
   static bool has(std::string_view path);
   /// Requires has(head.path()).
-  std::unique_ptr<intake::Exchange> open(const intake::RequestHead& head,
+  std::unique_ptr<intake::BodySink> open(const intake::RequestHead& head,
                                          std::shared_ptr<intake::Responder> responder);
 
  private:
@@ -51,7 +51,7 @@ class SessionRoutes {
   intake::Answer shown(const intake::RequestHead& head);
   intake::Answer session(const intake::RequestHead& head);
   intake::Answer sessions(const intake::RequestHead& head);
-  std::unique_ptr<intake::Exchange> post(const intake::RequestHead& head, Replies responder);
+  std::unique_ptr<intake::BodySink> post(const intake::RequestHead& head, Replies responder);
 
   void log_in(const Poster& poster, const std::string& body, const Replies& responder);
   intake::Answer logged_in(access::Role role, const Poster& poster);

@@ -93,7 +93,7 @@ icd::Checked<PostedToken> read_token(const std::string& body) {
 
 }  // namespace
 
-SettingsRoutes::Deed SettingsRoutes::deed_at(std::string_view path) {
+SettingsRoutes::Action SettingsRoutes::action_at(std::string_view path) {
   if (path == kSettings) return &SettingsRoutes::save;
   if (path == kCheck) return &SettingsRoutes::check;
   if (path == kTokens) return &SettingsRoutes::set_token;
@@ -102,14 +102,14 @@ SettingsRoutes::Deed SettingsRoutes::deed_at(std::string_view path) {
 }
 
 bool SettingsRoutes::has(std::string_view path) {
-  return path == kExport || deed_at(path) != nullptr;
+  return path == kExport || action_at(path) != nullptr;
 }
 
 bool SettingsRoutes::is_for_viewers(std::string_view path) {
   return path == kSettings || path == kExport;
 }
 
-std::unique_ptr<intake::Exchange> SettingsRoutes::open(const intake::RequestHead& head,
+std::unique_ptr<intake::BodySink> SettingsRoutes::open(const intake::RequestHead& head,
                                                        std::shared_ptr<intake::Responder> responder) {
   const auto refuse = [&responder](intake::Answer answer) {
     responder->answer(std::move(answer));
@@ -117,17 +117,17 @@ std::unique_ptr<intake::Exchange> SettingsRoutes::open(const intake::RequestHead
   };
   const bool is_shown = head.path() == kSettings || head.path() == kExport;
   if (is_shown && only_reads(head)) return refuse(shown(head.path()));
-  const Deed deed = deed_at(head.path());
-  if (deed == nullptr || head.method() != "POST") {
-    return refuse(wrong_method(deed == nullptr ? kReading : is_shown ? "GET, HEAD, POST" : "POST"));
+  const Action action = action_at(head.path());
+  if (action == nullptr || head.method() != "POST") {
+    return refuse(wrong_method(action == nullptr ? kReading : is_shown ? "GET, HEAD, POST" : "POST"));
   }
   if (codec::format_of(head.header("Content-Type")) != codec::Format::Json) {
     return refuse(refusal(icd::Status::UnprocessableEntity, "Content-Type: expected application/json"));
   }
   if (head.content_length().value_or(0) > kMostBody) return refuse(SmallBody::too_long(kMostBody));
-  return std::make_unique<SmallBody>(responder, kMostBody, [this, deed, responder](const std::string& body) {
-    responder->answer((this->*deed)(body));
-  });
+  return std::make_unique<SmallBody>(
+      responder, kMostBody,
+      [this, action, responder](const std::string& body) { responder->answer((this->*action)(body)); });
 }
 
 intake::Answer SettingsRoutes::shown(std::string_view path) const {

@@ -19,12 +19,12 @@ class SettingsRoutes {
   /// What a viewer may see, too: no token is in it.
   static bool is_for_viewers(std::string_view path);
   /// Requires has(head.path()).
-  std::unique_ptr<intake::Exchange> open(const intake::RequestHead& head,
+  std::unique_ptr<intake::BodySink> open(const intake::RequestHead& head,
                                          std::shared_ptr<intake::Responder> responder);
 
  private:
-  using Deed = intake::Answer (SettingsRoutes::*)(const std::string& body);
-  static Deed deed_at(std::string_view path);
+  using Action = intake::Answer (SettingsRoutes::*)(const std::string& body);
+  static Action action_at(std::string_view path);
 
   intake::Answer shown(std::string_view path) const;
   intake::Answer check(const std::string& body);

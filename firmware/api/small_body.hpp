@@ -12,7 +12,7 @@
 namespace adit::api {
 
 /// Gathers a body of at most so many bytes, and hands it over once it is whole.
-class SmallBody final : public intake::Exchange {
+class SmallBody final : public intake::BodySink {
  public:
   SmallBody(std::shared_ptr<intake::Responder> responder, std::size_t most,
             std::function<void(std::string body)> done)

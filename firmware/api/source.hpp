@@ -25,29 +25,29 @@ class Source {
   virtual std::optional<ReportDetail> report(std::int64_t number) const = 0;
   virtual const picture::Mosaic& map() const = 0;
   /// What changed after version `since`.
-  virtual MarkerNews markers(std::uint64_t since) const = 0;
+  virtual MarkerChanges markers(std::uint64_t since) const = 0;
   /// Where each robot was in this run after `since`.
   virtual std::vector<Track> tracks(Time since) const = 0;
 };
 
 /// The operator's word on a report: see dispatch::Reports.
-enum class Deed : std::uint8_t { Send, Hold, Withdraw, CallDone, Resubmit };
+enum class Action : std::uint8_t { Send, Hold, Withdraw, CallDone, Resubmit };
 
 /// The operator's word on a message that was set aside.
-enum class AsideDeed : std::uint8_t { Send, Discard };
+enum class AsideAction : std::uint8_t { Send, Discard };
 
 /// What does as the operator says.
 class Operator {
  public:
   virtual ~Operator() = default;
   /// Gives the number of the report that it moved, or a sentence why not.
-  virtual std::expected<std::int64_t, std::string> judge(std::int64_t number, Deed deed) = 0;
+  virtual std::expected<std::int64_t, std::string> judge(std::int64_t number, Action action) = 0;
   /// Takes a report that the operator composed, like one that a client posts; the number it has, or that the
   /// same one has already. A sentence: it was not taken.
   virtual std::expected<std::int64_t, std::string> report(const icd::ArtifactReport& report,
                                                           bool resubmit) = 0;
   /// A sentence: why not.
-  virtual std::expected<void, std::string> aside(std::uint64_t number, AsideDeed deed) = 0;
+  virtual std::expected<void, std::string> aside(std::uint64_t number, AsideAction action) = 0;
   /// Gives the new run's number.
   virtual std::int64_t begin_run() = 0;
   /// All lights blink for so long. Gives until when.

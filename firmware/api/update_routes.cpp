@@ -26,7 +26,7 @@ Value text_or_null(const std::string& text) {
 }
 
 /// A body that goes to an Upload as it comes.
-class Receiving final : public intake::Exchange {
+class Receiving final : public intake::BodySink {
  public:
   Receiving(std::unique_ptr<Upload> upload, std::function<void(icd::Checked<void>)> done)
       : upload_(std::move(upload)), done_(std::move(done)) {}
@@ -56,7 +56,7 @@ bool UpdateRoutes::has(std::string_view path) {
   return path == kUpdate || path == kStick || path == kRestart;
 }
 
-std::unique_ptr<intake::Exchange> UpdateRoutes::open(const intake::RequestHead& head,
+std::unique_ptr<intake::BodySink> UpdateRoutes::open(const intake::RequestHead& head,
                                                      const std::shared_ptr<intake::Responder>& responder,
                                                      std::shared_ptr<intake::Flow> flow) {
   const auto answer = [&responder](intake::Answer given) {
@@ -76,7 +76,7 @@ std::unique_ptr<intake::Exchange> UpdateRoutes::open(const intake::RequestHead& 
       });
 }
 
-std::unique_ptr<intake::Exchange> UpdateRoutes::receive(const intake::RequestHead& head,
+std::unique_ptr<intake::BodySink> UpdateRoutes::receive(const intake::RequestHead& head,
                                                         const std::shared_ptr<intake::Responder>& responder,
                                                         std::shared_ptr<intake::Flow> flow) {
   const auto refuse = [&responder](icd::Status status, std::string_view why) {
@@ -114,7 +114,7 @@ intake::Answer UpdateRoutes::post(std::string_view path, const std::string& body
 
 intake::Answer UpdateRoutes::shown() const {
   const UpdateView view = updates_.update();
-  const update::Story& last = view.last;
+  const update::LastUpdate& last = view.last;
   const Value none;
   return fresh("application/json",
                codec::write_json({Value::Object{

@@ -13,23 +13,23 @@ namespace adit::api {
 /// The update of the box, for those whom Entrance let in: README.md.
 class UpdateRoutes {
  public:
-  /// `changed` is called after each deed. All outlive this.
+  /// `changed` is called after each action. All outlive this.
   UpdateRoutes(Updates& updates, std::function<void()> changed)
       : updates_(updates), changed_(std::move(changed)) {}
 
   static bool has(std::string_view path);
   /// Requires has(head.path()).
-  std::unique_ptr<intake::Exchange> open(const intake::RequestHead& head,
+  std::unique_ptr<intake::BodySink> open(const intake::RequestHead& head,
                                          const std::shared_ptr<intake::Responder>& responder,
                                          std::shared_ptr<intake::Flow> flow);
 
  private:
-  std::unique_ptr<intake::Exchange> receive(const intake::RequestHead& head,
+  std::unique_ptr<intake::BodySink> receive(const intake::RequestHead& head,
                                             const std::shared_ptr<intake::Responder>& responder,
                                             std::shared_ptr<intake::Flow> flow);
   intake::Answer shown() const;
   intake::Answer post(std::string_view path, const std::string& body);
-  /// How it stands now, or why the deed was refused.
+  /// How it stands now, or why the action was refused.
   intake::Answer after(const icd::Checked<void>& done) const;
 
   Updates& updates_;

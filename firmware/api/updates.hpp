@@ -20,7 +20,7 @@ struct UpdateView {
   std::string doing;            // "", "receiving", "checking", "installing", "restarting"
   std::optional<int> progress;  // per cent of receiving and installing
   std::string refusal;          // why the last one was not installed; "" where it was, or there was none
-  update::Story last;
+  update::LastUpdate last;
   bool trial = false;  // what runs was installed last, and has not been healthy for long yet
   std::optional<update::Offer> stick;
   std::string stick_why;  // why what is on a stick cannot be installed; "" where there is none

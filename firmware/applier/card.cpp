@@ -87,13 +87,13 @@ class Reader {
     const auto numbers = numbers_of(*value, *text);
     if (!numbers) return refuse(kCardNetwork, numbers.error());
     const Settings settings = settings::in_use(counting());
-    const auto verdict = network::check(*numbers, std::nullopt,
-                                        {.allow_overlap = settings.network.allow_overlap,
-                                         .confirm_within = settings.network.confirm_within,
-                                         .command_post = settings.command_post,
-                                         .listen = settings.team.listen,
-                                         .asker = ""});
-    if (!verdict.errors.empty()) return refuse(kCardNetwork, verdict.errors);
+    const auto findings = network::check(*numbers, std::nullopt,
+                                         {.allow_overlap = settings.network.allow_overlap,
+                                          .confirm_within = settings.network.confirm_within,
+                                          .command_post = settings.command_post,
+                                          .listen = settings.team.listen,
+                                          .asker = ""});
+    if (!findings.errors.empty()) return refuse(kCardNetwork, findings.errors);
     found_.brought.numbers = *numbers;
   }
 

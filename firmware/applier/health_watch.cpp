@@ -3,8 +3,8 @@
 #include <chrono>
 #include <thread>
 
+#include "applier/last_update_file.hpp"
 #include "applier/rauc.hpp"
-#include "applier/story_file.hpp"
 #include "host/log.hpp"
 #include "host/output.hpp"
 #include "host/service.hpp"
@@ -38,11 +38,12 @@ std::expected<void, std::string> restart(const std::string& systemctl) {
 }
 
 /// adit-update tells everybody.
-std::expected<void, std::string> pass_trial(const UpdateOptions& options, update::Story story) {
-  host::log(Level::Notice, "the update is healthy", {{"version", story.version}, {"slot", story.slot}});
-  story.stage = update::Stage::Good;
-  story.why.clear();  // of a story that adit-update has not settled yet
-  if (!save_story(options.state, story)) return std::unexpected("the trial cannot be ended");
+std::expected<void, std::string> pass_trial(const UpdateOptions& options, update::LastUpdate last_update) {
+  host::log(Level::Notice, "the update is healthy",
+            {{"version", last_update.version}, {"slot", last_update.slot}});
+  last_update.stage = update::Stage::Good;
+  last_update.why.clear();  // of one that adit-update has not settled yet
+  if (!save_last_update(options.state, last_update)) return std::unexpected("the trial cannot be ended");
   host::output_of({options.systemctl, "start", "--no-block", "adit-update.service"}, kAnswer);
   return {};
 }
@@ -53,8 +54,8 @@ std::expected<void, std::string> watch_health(const UpdateOptions& options) {
   const Rauc rauc(options.rauc);
   const auto running = rauc.status();
   if (!running) return std::unexpected(running.error());
-  const update::Story story = load_story(options.state);
-  const bool trial = update::on_trial(story, running->slot, host::boot());
+  const update::LastUpdate last_update = load_last_update(options.state);
+  const bool trial = update::on_trial(last_update, running->slot, host::boot());
   const auto late_at = now() + options.within;
   while (true) {
     const auto health = update::judge(trial, ready(options.systemctl), now() >= late_at);
@@ -63,7 +64,7 @@ std::expected<void, std::string> watch_health(const UpdateOptions& options) {
     std::this_thread::sleep_for(trial ? kOnTrial : kElse);
   }
   if (auto marked = rauc.mark_good(); !marked) return marked;
-  return trial ? pass_trial(options, story) : std::expected<void, std::string>{};
+  return trial ? pass_trial(options, last_update) : std::expected<void, std::string>{};
 }
 
 }  // namespace adit::applier

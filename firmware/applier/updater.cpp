@@ -4,8 +4,8 @@
 
 #include <utility>
 
+#include "applier/last_update_file.hpp"
 #include "applier/stick.hpp"
-#include "applier/story_file.hpp"
 #include "host/log.hpp"
 #include "host/output.hpp"
 #include "host/service.hpp"
@@ -57,16 +57,16 @@ void Updater::find_out() {
     status_.trouble = "RAUC does not run here: " + running.error();
   }
   status_.running.version = version_in(options_.os_release);
-  const update::Story kept = load_story(options_.state);
-  update::Story story = running ? update::settled(kept, status_.running, boot_) : kept;
-  if (story.stage == Stage::Left && kept.stage != Stage::Left) {
+  const update::LastUpdate kept = load_last_update(options_.state);
+  update::LastUpdate last_update = running ? update::settled(kept, status_.running, boot_) : kept;
+  if (last_update.stage == Stage::Left && kept.stage != Stage::Left) {
     if (const auto left = rauc_.leave_other(); !left)
       host::log(Level::Error, "the boot loader would try it again", {{"why", left.error()}});
   }
-  if (story == kept) {
-    status_.last = std::move(story);
+  if (last_update == kept) {
+    status_.last = std::move(last_update);
   } else {
-    tell_of(std::move(story));
+    tell_of(std::move(last_update));
   }
   status_.trial = update::on_trial(status_.last, status_.running.slot, boot_);
 }
@@ -138,22 +138,23 @@ std::string Updater::install(const std::expected<BundleFile, std::string>& file,
 }
 
 std::string Updater::write(const BundleFile& file, const update::Bundle& bundle) {
-  update::Story story{
+  update::LastUpdate last_update{
       .stage = Stage::Installing, .version = bundle.version, .slot = status_.running.other, .boot = boot_};
   // Were that not kept, the slot would not be on trial.
-  if (!save_story(options_.state, story)) return "it cannot be written down that it is being installed";
+  if (!save_last_update(options_.state, last_update))
+    return "it cannot be written down that it is being installed";
   status_.doing = "installing";
   status_.progress = 0;
-  tell_of(story);
+  tell_of(last_update);
   tell();
   const auto installed = rauc_.install(file.path(), [this](int percent) {
     status_.progress = percent;
     tell();
   });
-  story.stage = installed ? Stage::Installed : Stage::Failed;
-  story.why = installed ? "" : installed.error();
-  tell_of(story);
-  return story.why;
+  last_update.stage = installed ? Stage::Installed : Stage::Failed;
+  last_update.why = installed ? "" : installed.error();
+  tell_of(last_update);
+  return last_update.why;
 }
 
 std::string Updater::restart() {
@@ -166,15 +167,16 @@ std::string Updater::restart() {
   return "it cannot be started anew: " + restarted.error();
 }
 
-void Updater::tell_of(update::Story story) {
-  host::log(story.stage == Stage::Left || story.stage == Stage::Failed ? Level::Error : Level::Notice,
-            "an update",
-            {{"version", story.version},
-             {"slot", story.slot},
-             {"stage", std::string(name_of(story.stage))},
-             {"why", story.why}});
-  save_story(options_.state, story);
-  status_.last = std::move(story);
+void Updater::tell_of(update::LastUpdate last_update) {
+  host::log(
+      last_update.stage == Stage::Left || last_update.stage == Stage::Failed ? Level::Error : Level::Notice,
+      "an update",
+      {{"version", last_update.version},
+       {"slot", last_update.slot},
+       {"stage", std::string(name_of(last_update.stage))},
+       {"why", last_update.why}});
+  save_last_update(options_.state, last_update);
+  status_.last = std::move(last_update);
 }
 
 bool Updater::tell() {

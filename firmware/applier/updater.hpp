@@ -32,7 +32,7 @@ class Updater {
   std::string install(const std::expected<BundleFile, std::string>& file, bool again);
   std::string write(const BundleFile& file, const update::Bundle& bundle);
   std::string restart();
-  void tell_of(update::Story story);
+  void tell_of(update::LastUpdate last_update);
   bool tell();
 
   const UpdateOptions& options_;

@@ -14,7 +14,7 @@ namespace adit::cli {
 namespace {
 
 constexpr std::chrono::seconds kPatience{3};
-constexpr std::chrono::seconds kDeedPatience{10};  // a deed is on the disk before it is answered
+constexpr std::chrono::seconds kActionPatience{10};  // an action is on the disk before it is answered
 
 bool all_is_well(const api::RunView& view) {
   return view.attention.empty() &&
@@ -87,7 +87,7 @@ std::expected<std::string, Failure> post(const Adit& adit, const std::string& ta
   auto reply = http_ask(
       adit.address,
       {.method = HttpRequest::Method::Post, .target = target, .token = adit.token.token, .body = body},
-      kDeedPatience);
+      kActionPatience);
   if (!reply) {
     const std::string unsure = reply.error().sent ? "; whether it was done is not known, see: " + check : "";
     return std::unexpected(Failure{Exit::Unable, reply.error().sentence + unsure});

@@ -22,13 +22,13 @@ std::expected<Adit, std::string> adit_of(const Options& options);
 /// The body of a 200, or a sentence.
 std::expected<std::string, std::string> get(const Adit& adit, const std::string& target);
 
-/// A deed that was not done, or of which that is not known.
+/// An action that was not done, or of which that is not known.
 struct Failure {
   Exit exit = Exit::Unable;  // Attention: Adit says that it cannot be
   std::string sentence;
 };
 
-/// The body of a deed's 200. `body`: JSON, or nothing. `check`: the command that tells whether a deed was
+/// The body of an action's 200. `body`: JSON, or nothing. `check`: the command that tells whether an action was
 /// done whose answer was lost.
 std::expected<std::string, Failure> post(const Adit& adit, const std::string& target, const std::string& body,
                                          const std::string& check);

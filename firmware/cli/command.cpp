@@ -1,9 +1,9 @@
 #include "cli/command.hpp"
 
+#include "cli/actions.hpp"
 #include "cli/aside.hpp"
 #include "cli/ask.hpp"
 #include "cli/check.hpp"
-#include "cli/deeds.hpp"
 #include "cli/help.hpp"
 #include "cli/network.hpp"
 #include "cli/options.hpp"

@@ -10,13 +10,13 @@ namespace {
 
 using dispatch::ReportEvent;
 
-/// The deeds that the table of a report's life has for where it is.
-std::string deeds_for(const api::ReportRow& report) {
+/// The actions that the table of a report's life has for where it is.
+std::string actions_for(const api::ReportRow& report) {
   const auto state = dispatch::state_named(report.state);
   if (!state) return "";
   std::string text;
-  const auto offer = [&text](bool possible, const char* deed) {
-    if (possible) text.append(text.empty() ? "" : ", ").append(deed);
+  const auto offer = [&text](bool possible, const char* action) {
+    if (possible) text.append(text.empty() ? "" : ", ").append(action);
   };
   offer(dispatch::transition(*state, ReportEvent::Released) != nullptr, "send");
   offer(dispatch::transition(*state, ReportEvent::HeldBack) != nullptr, "hold");
@@ -47,7 +47,7 @@ std::string facts(const api::ReportDetail& detail, bool colour) {
   add("sender", report.sender);
   add("received", api::iso_time(report.received));
   add("answer", detail.answer);
-  add("deeds", deeds_for(report));
+  add("actions", actions_for(report));
   return table.written(colour);
 }
 

@@ -3,8 +3,8 @@
 #include <algorithm>
 
 #include "api/reports_json.hpp"
+#include "cli/actions.hpp"
 #include "cli/ask.hpp"
-#include "cli/deeds.hpp"
 #include "cli/report_rows.hpp"
 #include "cli/report_text.hpp"
 #include "cli/reports_text.hpp"

@@ -80,7 +80,7 @@ void ReportBook::change(std::span<const Report> steps, const Run& run) {
 /// All but the one that changed last: what becomes of reports goes with that one.
 bool ReportBook::write_earlier_runs() {
   while (unwritten_runs_.size() > 1) {
-    if (!deeds_.write({}, &unwritten_runs_.front(), Flush::Now)) return false;
+    if (!output_.write({}, &unwritten_runs_.front(), Flush::Now)) return false;
     unwritten_runs_.erase(unwritten_runs_.begin());
   }
   return true;
@@ -93,13 +93,13 @@ bool ReportBook::write(std::span<const Report> steps, bool happened, Flush flush
   if (!written) {
     // The disk refuses.
   } else if (unwritten_.empty()) {
-    written = deeds_.write(steps, run, flush);
+    written = output_.write(steps, run, flush);
   } else {
     std::vector<Report> all;
     all.reserve(unwritten_.size() + steps.size());
     for (const std::int64_t number : unwritten_) all.push_back(reports_.at(number));
     all.insert(all.end(), steps.begin(), steps.end());
-    written = deeds_.write(all, run, Flush::Now);
+    written = output_.write(all, run, Flush::Now);
   }
   if (written) {
     unwritten_.clear();

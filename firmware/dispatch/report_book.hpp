@@ -9,12 +9,12 @@
 #include <string>
 #include <vector>
 
-#include "dispatch/deeds.hpp"
+#include "dispatch/output.hpp"
 #include "dispatch/report.hpp"
 
 namespace adit::dispatch {
 
-/// All reports and where each is in its life: in memory to be read, by Deeds on disk before anything follows
+/// All reports and where each is in its life: in memory to be read, by Output on disk before anything follows
 /// from a step.
 class ReportBook {
  public:
@@ -29,8 +29,8 @@ class ReportBook {
     Edit edit = nullptr;
   };
 
-  /// `deeds` outlives this.
-  explicit ReportBook(Deeds& deeds) : deeds_(deeds) {}
+  /// `output` outlives this.
+  explicit ReportBook(Output& output) : output_(output) {}
 
   void open(std::vector<Report> all);
 
@@ -69,7 +69,7 @@ class ReportBook {
   bool write_earlier_runs();
   void put(const Report& report);
 
-  Deeds& deeds_;
+  Output& output_;
   struct ByPlace {
     bool operator()(const icd::Point& one, const icd::Point& other) const;
   };

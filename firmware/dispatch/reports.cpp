@@ -11,8 +11,8 @@
 
 namespace adit::dispatch {
 
-Reports::Reports(const ReportRules& rules, Deeds& deeds)
-    : rules_(rules), book_(deeds), account_(book_), deeds_(deeds) {}
+Reports::Reports(const ReportRules& rules, Output& output)
+    : rules_(rules), book_(output), account_(book_), output_(output) {}
 
 void Reports::open(std::vector<Report> all, std::vector<Run> runs, Time time, const std::string& post) {
   book_.open(std::move(all));

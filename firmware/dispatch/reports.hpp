@@ -11,8 +11,8 @@
 #include <string>
 #include <vector>
 
-#include "dispatch/deeds.hpp"
 #include "dispatch/inquiry.hpp"
+#include "dispatch/output.hpp"
 #include "dispatch/report_book.hpp"
 #include "dispatch/run_account.hpp"
 #include "dispatch/waiting_clients.hpp"
@@ -52,7 +52,7 @@ struct Wish {
 };
 
 /// Every report's life, and every rule of it (promise 1): no I/O and no clock. Each step is on disk, by
-/// Deeds, before what follows from it.
+/// Output, before what follows from it.
 ///
 /// One request is under way at a time: after choose(), or a take() that gives true, comes exactly one of
 /// answered(), never_left() and lost() before anything else is sent or asked; a status that was asked for
@@ -65,8 +65,8 @@ class Reports {
   static constexpr std::chrono::seconds kYoung{10};  // how long a report is surely meant for the present run
   static constexpr std::int64_t kMostTries = 5;      // sent so often and never recorded, it is held
 
-  /// `deeds` outlives this.
-  Reports(const ReportRules& rules, Deeds& deeds);
+  /// `output` outlives this.
+  Reports(const ReportRules& rules, Output& output);
 
   /// Takes up what the ledger holds. `post`: where the Command Post is. At another place than before it is
   /// another run: the last one there, taken up again, or a new one.
@@ -82,7 +82,7 @@ class Reports {
   /// These count from now on: each client waits as long as it was to when it came.
   void go_by(const ReportRules& rules) { rules_ = rules; }
 
-  /// A client posts a report; it is told by Deeds, at once or later. `may_send`: nothing is under way and
+  /// A client posts a report; it is told by Output, at once or later. `may_send`: nothing is under way and
   /// the rate allows it. True: it is on disk as sending(): send it.
   bool take(const Posted& posted, ClientId client, bool may_send, Time time);
 
@@ -202,7 +202,7 @@ class Reports {
   std::optional<Inquiry> inquiry_;
   bool barred_ = false;    // nothing is sent before a status is answered
   bool stopping_ = false;  // for what clients are told
-  Deeds& deeds_;
+  Output& output_;
 };
 
 }  // namespace adit::dispatch

@@ -39,7 +39,7 @@ bool Reports::take(const Posted& posted, ClientId client, bool may_send, Time ti
     return false;
   }
   if (waiting_at(meant_run().post).size() >= rules_.most_waiting) {
-    deeds_.tell(
+    output_.tell(
         client,
         {.status = icd::Status::TooManyRequests,
          .sentence = icd::sentence(rules_.most_waiting, " reports wait already; this one was not taken")},
@@ -68,8 +68,9 @@ bool Reports::take_new(Report report, const Hold& hold, ClientId client, bool ma
     if (chosen.state == ReportState::Received) chosen.same_as = hold.same_as;
   });
   if (number == 0) {
-    deeds_.tell(client, {.sentence = "the report could not be written down and was not taken; post it again"},
-                report);
+    output_.tell(client,
+                 {.sentence = "the report could not be written down and was not taken; post it again"},
+                 report);
     return false;
   }
   taken_at_[number] = time.now;
@@ -229,7 +230,7 @@ void Reports::tell_how_it_stands(ClientId client, const Report& report) {
       answer.sentence = name + " is on its way, and may or may not have been recorded yet" + again;
       break;
   }
-  deeds_.tell(client, answer, report);
+  output_.tell(client, answer, report);
 }
 
 void Reports::dismiss(bool all) {

@@ -5,7 +5,7 @@
 #include <optional>
 #include <vector>
 
-#include "dispatch/deeds.hpp"
+#include "dispatch/output.hpp"
 
 namespace adit::dispatch {
 

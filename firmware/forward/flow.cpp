@@ -29,13 +29,13 @@ icd::Checked<void> Flow::take(const icd::StateUpdate& update, const intake::Send
   icd::StateUpdate shifted = update;
   shifted.header.stamp =
       clocks_.stamped(sender.address + "/state/" + robot, update.header.stamp, sender.connection);
-  return news_.take(shifted, sender.bytes);
+  return telemetry_.take(shifted, sender.bytes);
 }
 
 icd::Checked<void> Flow::take(const icd::MarkersUpdate& update, const intake::Sender& sender) {
   icd::MarkersUpdate shifted = update;
   clocks_.stamp(shifted, sender.address);
-  return news_.take(shifted, sender.bytes);
+  return telemetry_.take(shifted, sender.bytes);
 }
 
 void Flow::take(const icd::ArtifactReport& report, const intake::Sender& sender,
@@ -59,15 +59,15 @@ void Flow::refused(icd::Uri uri, const intake::Sender& sender, const icd::Refusa
   record_.refused(uri, sender, refusal, loop_.stamp_now());
 }
 
-std::expected<void, std::string> Flow::aside(std::uint64_t number, api::AsideDeed deed) {
+std::expected<void, std::string> Flow::aside(std::uint64_t number, api::AsideAction action) {
   if (is_ending()) return std::unexpected("the gateway is stopping: nothing is sent any more");
-  if (deed == api::AsideDeed::Discard) return aside_.discard(number);
+  if (action == api::AsideAction::Discard) return aside_.discard(number);
   auto message = aside_.to_be_sent(number);
   if (!message) return std::unexpected(message.error());
   if (auto* const map = std::get_if<icd::MapUpdate>(&*message)) {
     maps_.send_again(std::move(*map), [this, number](bool kept) { return aside_.sent_again(number, kept); });
   } else {
-    aside_.sent_again(number, news_.send_again(*message));
+    aside_.sent_again(number, telemetry_.send_again(*message));
   }
   return {};
 }
@@ -89,8 +89,8 @@ void Flow::picture_the_run() {
 std::vector<api::ActivityRow> Flow::activities() const {
   std::vector<api::ActivityRow> rows = record_.activities();
   for (api::ActivityRow& row : rows) {
-    if (row.kind == "state") row.waiting = news_.waiting(Kind::State);
-    if (row.kind == "markers") row.waiting = news_.waiting(Kind::Markers);
+    if (row.kind == "state") row.waiting = telemetry_.waiting(Kind::State);
+    if (row.kind == "markers") row.waiting = telemetry_.waiting(Kind::Markers);
     if (row.kind == "grid") row.waiting = maps_.waiting({Kind::Grid, row.robot});
     if (row.kind == "cloud") row.waiting = maps_.waiting({Kind::Cloud, row.robot});
   }
@@ -98,7 +98,7 @@ std::vector<api::ActivityRow> Flow::activities() const {
 }
 
 std::uint64_t Flow::sent_bytes() const {
-  return scoring_.channel().bytes_sent() + maps_.channel().bytes_sent() + news_.channel().bytes_sent();
+  return scoring_.channel().bytes_sent() + maps_.channel().bytes_sent() + telemetry_.channel().bytes_sent();
 }
 
 }  // namespace adit::forward

@@ -17,9 +17,9 @@
 #include "forward/map_picture.hpp"
 #include "forward/maps.hpp"
 #include "forward/meter.hpp"
-#include "forward/news.hpp"
 #include "forward/record.hpp"
 #include "forward/scoring.hpp"
+#include "forward/telemetry.hpp"
 #include "icd/bearer_token.hpp"
 #include "intake/desk.hpp"
 #include "journal/journal.hpp"
@@ -47,7 +47,7 @@ struct Tokens {
 };
 
 /// The way of the team's messages from intake to uplink: they come in as to a Desk, and leave by Scoring,
-/// Maps and News.
+/// Maps and Telemetry.
 class Flow final : public intake::Desk {
  public:
   struct Folders {
@@ -87,19 +87,19 @@ class Flow final : public intake::Desk {
   void refused(icd::Uri uri, const intake::Sender& sender, const icd::Refusal& told) override;
 
   /// The operator's word: api::Operator.
-  std::expected<std::int64_t, std::string> judge(std::int64_t number, api::Deed deed) {
-    return scoring_.judge(number, deed);
+  std::expected<std::int64_t, std::string> judge(std::int64_t number, api::Action action) {
+    return scoring_.judge(number, action);
   }
   std::expected<std::int64_t, std::string> report(const icd::ArtifactReport& report, bool resubmit) {
     return scoring_.report(report, resubmit);
   }
-  std::expected<void, std::string> aside(std::uint64_t number, api::AsideDeed deed);
+  std::expected<void, std::string> aside(std::uint64_t number, api::AsideAction action);
   std::int64_t begin_run() { return scoring_.begin_run(); }
 
   const Scoring& scoring() const { return scoring_; }
   const dispatch::Reports& reports() const { return scoring_.reports(); }
   const Maps& maps() const { return maps_; }
-  const News& news() const { return news_; }
+  const Telemetry& telemetry() const { return telemetry_; }
   const Aside& aside() const { return aside_; }
   const Record& record() const { return record_; }
   const AsForwarded& as_forwarded() const { return as_forwarded_; }
@@ -143,7 +143,7 @@ class Flow final : public intake::Desk {
   MapPicture picture_;
   Maps maps_;
   AsForwarded as_forwarded_;
-  News news_;
+  Telemetry telemetry_;
   Meter meter_;
   std::int64_t pictured_run_;  // Legacy's
   Ending ending_;

@@ -46,14 +46,15 @@ Flow::Flow(loop::Loop& loop, ledger::Ledger& ledger, const settings::Settings& s
       maps_(loop, workers_, writer_, spool_, settings, tokens_.mapping, record_, aside_, random_, journal_,
             [this](icd::MapUpdate map) { picture_.forwarded(std::move(map)); }),
       as_forwarded_(legacy_ ? std::move(legacy_->as_forwarded) : AsForwarded()),
-      news_(loop, settings, tokens_.mapping, record_, aside_, random_, journal_, as_forwarded_, told_.anew),
+      telemetry_(loop, settings, tokens_.mapping, record_, aside_, random_, journal_, as_forwarded_,
+                 told_.anew),
       pictured_run_(legacy_ ? legacy_->pictured_run : 0),
       drained_(loop.timer([this] { drain(); })) {}
 
 std::expected<void, std::string> Flow::start() {
   carry_on();
   if (auto started = scoring_.start(); !started) return started;
-  news_.start();
+  telemetry_.start();
   return {};
 }
 
@@ -62,8 +63,8 @@ Legacy Flow::hand_over() {
           .pictured_run = pictured_run_,
           .as_forwarded = std::move(as_forwarded_),
           .map_stamp = maps_.last_stamp(),
-          .state_stamp = news_.last_state_stamp(),
-          .markers_stamp = news_.last_markers_stamp()};
+          .state_stamp = telemetry_.last_state_stamp(),
+          .markers_stamp = telemetry_.last_markers_stamp()};
 }
 
 /// Takes up what the life before left, in this process or another: rates and stamps go on as if nothing had
@@ -74,10 +75,10 @@ void Flow::carry_on() {
   clocks_.carry_on(carried, host::boot());
   scoring_.carry_on(carried);
   maps_.carry_on(carried);
-  news_.carry_on(carried);
+  telemetry_.carry_on(carried);
   if (legacy_) {
     maps_.go_on_from(legacy_->map_stamp);
-    news_.go_on_from(legacy_->state_stamp, legacy_->markers_stamp);
+    telemetry_.go_on_from(legacy_->state_stamp, legacy_->markers_stamp);
     hold_back();  // after what was carried on: it is written down, and must not put an earlier time there
   }
   restore(is_first);
@@ -88,7 +89,7 @@ void Flow::carry_on() {
 void Flow::hold_back() {
   scoring_.hold_back();
   maps_.hold_back();
-  news_.hold_back();
+  telemetry_.hold_back();
 }
 
 /// What is kept in files of its own. What a release before the journal left is stamped anew, and waits: what
@@ -107,8 +108,8 @@ void Flow::restore(bool is_first) {
   for (icd::Marker& marker : kept.markers.markers) marker.header.stamp = now;
   // The lanes are empty: there is room. What cannot be kept in the journal stays in its file; the other is
   // not taken twice, for what came since is newer.
-  if (kept.state.poses.empty() || news_.take(kept.state, 0)) spool_.forget_state();
-  if (kept.markers.markers.empty() || news_.take(kept.markers, 0)) spool_.forget_markers();
+  if (kept.state.poses.empty() || telemetry_.take(kept.state, 0)) spool_.forget_state();
+  if (kept.markers.markers.empty() || telemetry_.take(kept.markers, 0)) spool_.forget_markers();
 }
 
 void Flow::settings_changed(const settings::Anew& anew, Tokens tokens) {
@@ -116,16 +117,16 @@ void Flow::settings_changed(const settings::Anew& anew, Tokens tokens) {
   spool_.leave_to_others(beside_maps(settings_));
   if (anew.scoring) scoring_.endpoint_changed(tokens_.scoring);  // first: nothing more goes to the old one
   if (anew.mapping) maps_.endpoint_changed(tokens_.mapping);
-  if (anew.mapping) news_.endpoint_changed(tokens_.mapping);
+  if (anew.mapping) telemetry_.endpoint_changed(tokens_.mapping);
   scoring_.settings_changed();
   maps_.settings_changed();
-  news_.settings_changed();
+  telemetry_.settings_changed();
 }
 
 void Flow::link_is_back() {
   scoring_.link_is_back();
   maps_.link_is_back();
-  news_.link_is_back();
+  telemetry_.link_is_back();
 }
 
 void Flow::tick(loop::Writer& disk) {
@@ -145,9 +146,9 @@ void Flow::end(std::function<void()> over) {
 void Flow::drain() {
   if (ending_.is_over(loop_.now())) return over_();
   drained_.call_at(loop_.now() + Ending::kStep);
-  const bool scoring = scoring_.stop(), maps = maps_.stop(), news = news_.stop();
+  const bool scoring = scoring_.stop(), maps = maps_.stop(), telemetry = telemetry_.stop();
   const bool kept = maps_.all_kept() && aside_.all_kept();
-  if (!ending_.dismisses(loop_.now(), scoring && maps && news, kept)) return;
+  if (!ending_.dismisses(loop_.now(), scoring && maps && telemetry, kept)) return;
   drained_.call_at(loop_.now() + Ending::kFlush);
   scoring_.dismiss();
 }

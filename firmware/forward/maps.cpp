@@ -305,7 +305,7 @@ void Maps::verdict(const uplink::Answered& answered) {
     case MappingVerdict::Suspect:
       pace_.lost(now);
       if (blame_.failed(whose(prepared_->waiting.map), prepared_->waiting.trial, now) ==
-          lanes::Blame::Verdict::SetAside)
+          lanes::Blame::Next::SetAside)
         return give_up(answered.status, sentence + " (others passed, this one failed again and again)");
       record_.not_taken(traffic, NotTaken::Failed, answered.status, sentence);
       return again();

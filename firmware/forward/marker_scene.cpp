@@ -92,19 +92,20 @@ void MarkerScene::keep_bounds() {
   }
 }
 
-api::MarkerNews MarkerScene::news(std::uint64_t since) const {
+api::MarkerChanges MarkerScene::changes(std::uint64_t since) const {
   const bool whole = since < forgotten_ || since > version_ || since == 0;
-  api::MarkerNews news{.version = version_, .whole = whole, .left_out = left_out_, .markers = {}, .gone = {}};
+  api::MarkerChanges changes{
+      .version = version_, .whole = whole, .left_out = left_out_, .markers = {}, .gone = {}};
   for (auto each = whole ? in_order_.begin() : in_order_.upper_bound(since); each != in_order_.end();
        ++each) {
     const Entry& entry = entries_.at(each->second);
     if (!entry.gone) {
-      news.markers.push_back({entry.marker, entry.at});
+      changes.markers.push_back({entry.marker, entry.at});
     } else if (!whole) {
-      news.gone.push_back(each->second);
+      changes.gone.push_back(each->second);
     }
   }
-  return news;
+  return changes;
 }
 
 }  // namespace adit::forward

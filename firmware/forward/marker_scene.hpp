@@ -26,7 +26,7 @@ class MarkerScene {
 
   std::uint64_t version() const { return version_; }
   /// What changed after `since`; all there is where that cannot be told any more.
-  api::MarkerNews news(std::uint64_t since) const;
+  api::MarkerChanges changes(std::uint64_t since) const;
 
  private:
   using Key = std::pair<std::string, std::int32_t>;

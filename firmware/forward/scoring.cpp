@@ -41,8 +41,8 @@ Scoring::Scoring(loop::Loop& loop, ledger::Ledger& ledger, const settings::Setti
       settings_(settings),
       record_(record),
       anew_(std::move(anew)),
-      deeds_(loop, ledger),
-      reports_(std::make_unique<dispatch::Reports>(rules_of(settings.reports), deeds_)),
+      output_(loop, ledger),
+      reports_(std::make_unique<dispatch::Reports>(rules_of(settings.reports), output_)),
       channel_(loop, "scoring", endpoint_of(settings.command_post, settings.command_post.scoring, 0),
                std::move(token), settings.command_post.timeouts.scoring_answer),
       report_pace_(icd::Uri::ArtifactReports, settings.command_post.rates.reports_hz, random, journal),
@@ -64,7 +64,7 @@ std::expected<void, std::string> Scoring::open_reports() {
   if (!all) return std::unexpected(all.error().what);
   auto runs = ledger_.runs();
   if (!runs) return std::unexpected(runs.error().what);
-  auto next = std::make_unique<dispatch::Reports>(rules_of(settings_.reports), deeds_);
+  auto next = std::make_unique<dispatch::Reports>(rules_of(settings_.reports), output_);
   next->open(std::move(*all), std::move(*runs), time(), channel_.address(), *reports_);
   reports_ = std::move(next);
   return {};
@@ -108,7 +108,7 @@ void Scoring::take(const icd::ArtifactReport& report, const intake::Sender& send
     return;
   }
   take({.report = report, .sender = sender.address, .resubmit = sender.resubmits},
-       deeds_.add(std::move(responder)));
+       output_.add(std::move(responder)));
 }
 
 void Scoring::take(const dispatch::Posted& posted, dispatch::ClientId client) {
@@ -325,13 +325,13 @@ void Scoring::answer_askers(const intake::Answer& answer) {
   for (const Asker& asker : std::exchange(askers_, {})) asker.responder->answer(answer);
 }
 
-dispatch::Reports::Outcome Scoring::judge(std::int64_t number, api::Deed deed) {
+dispatch::Reports::Outcome Scoring::judge(std::int64_t number, api::Action action) {
   const dispatch::Reports::Outcome outcome = whole(anew_, [&] {
-    return deed == api::Deed::Send       ? reports_->send(number, time())
-           : deed == api::Deed::Hold     ? reports_->hold(number, time())
-           : deed == api::Deed::Withdraw ? reports_->withdraw(number, time())
-           : deed == api::Deed::CallDone ? reports_->call_done(number, time())
-                                         : reports_->resubmit(number, time());
+    return action == api::Action::Send       ? reports_->send(number, time())
+           : action == api::Action::Hold     ? reports_->hold(number, time())
+           : action == api::Action::Withdraw ? reports_->withdraw(number, time())
+           : action == api::Action::CallDone ? reports_->call_done(number, time())
+                                             : reports_->resubmit(number, time());
   });
   record_.changed();
   pump();
@@ -340,10 +340,10 @@ dispatch::Reports::Outcome Scoring::judge(std::int64_t number, api::Deed deed) {
 
 dispatch::Reports::Outcome Scoring::report(const icd::ArtifactReport& report, bool resubmit) {
   if (stopping_) return std::unexpected("the gateway is stopping; the report was not taken");
-  const dispatch::ClientId nobody = deeds_.add_nobody();
+  const dispatch::ClientId nobody = output_.add_nobody();
   take({.report = report, .sender = "operator", .resubmit = resubmit}, nobody);
   if (const auto number = reports_->awaited_by(nobody)) return *number;
-  const dispatch::ClientAnswer told = deeds_.last_told();
+  const dispatch::ClientAnswer told = output_.last_told();
   if (told.number == 0) return std::unexpected(told.sentence);
   return told.number;
 }

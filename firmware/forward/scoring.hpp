@@ -12,7 +12,7 @@
 #include "forward/channel.hpp"
 #include "forward/known_status.hpp"
 #include "forward/record.hpp"
-#include "forward/report_deeds.hpp"
+#include "forward/report_output.hpp"
 #include "forward/uri_pace.hpp"
 #include "icd/artifact_report.hpp"
 #include "icd/run_status.hpp"
@@ -65,7 +65,7 @@ class Scoring {
   void tick();
 
   /// The operator's word on a report; gives the number of the report that it moved, or a sentence why not.
-  dispatch::Reports::Outcome judge(std::int64_t number, api::Deed deed);
+  dispatch::Reports::Outcome judge(std::int64_t number, api::Action action);
   /// The operator's own report, as if a client had posted it; gives its number once it is on disk.
   dispatch::Reports::Outcome report(const icd::ArtifactReport& report, bool resubmit);
   std::int64_t begin_run();
@@ -84,7 +84,7 @@ class Scoring {
   const dispatch::Reports& reports() const { return *reports_; }
   /// Why the ledger cannot be written, or "".
   const std::string& trouble() const {
-    return ledger_.refusal().empty() ? deeds_.trouble() : ledger_.refusal();
+    return ledger_.refusal().empty() ? output_.trouble() : ledger_.refusal();
   }
 
  private:
@@ -121,7 +121,7 @@ class Scoring {
   const settings::Settings& settings_;
   Record& record_;
   std::function<void()> anew_;
-  ReportDeeds deeds_;
+  ReportOutput output_;
   std::unique_ptr<dispatch::Reports> reports_;  // never null
   Channel channel_;
   UriPace report_pace_, status_pace_;

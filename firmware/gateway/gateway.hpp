@@ -77,20 +77,20 @@ class Gateway final : public api::Source, public api::Operator {
   api::RunView view() const override;
   std::vector<api::ReportRow> reports() const override;
   std::optional<api::ReportDetail> report(std::int64_t number) const override;
-  std::expected<std::int64_t, std::string> judge(std::int64_t number, api::Deed deed) override {
-    return flow_.judge(number, deed);
+  std::expected<std::int64_t, std::string> judge(std::int64_t number, api::Action action) override {
+    return flow_.judge(number, action);
   }
   std::expected<std::int64_t, std::string> report(const icd::ArtifactReport& report, bool resubmit) override {
     return flow_.report(report, resubmit);
   }
-  std::expected<void, std::string> aside(std::uint64_t number, api::AsideDeed deed) override {
-    return flow_.aside(number, deed);
+  std::expected<void, std::string> aside(std::uint64_t number, api::AsideAction action) override {
+    return flow_.aside(number, action);
   }
   std::int64_t begin_run() override { return flow_.begin_run(); }
   api::Time identify(double seconds) override;
   const picture::Mosaic& map() const override { return flow_.picture(); }
-  api::MarkerNews markers(std::uint64_t since) const override {
-    return flow_.as_forwarded().markers().news(since);
+  api::MarkerChanges markers(std::uint64_t since) const override {
+    return flow_.as_forwarded().markers().changes(since);
   }
   std::vector<api::Track> tracks(api::Time since) const override {
     return flow_.as_forwarded().tracks().since(since);

@@ -35,12 +35,13 @@ std::vector<std::string> Gateway::attention() const {
   };
   foreign(flow_.scoring().channel(), "scoring", settings_.command_post.scoring);
   if (!foreign(flow_.maps().channel(), "mapping", settings_.command_post.mapping)) {
-    foreign(flow_.news().channel(), "mapping", settings_.command_post.mapping);
+    foreign(flow_.telemetry().channel(), "mapping", settings_.command_post.mapping);
   }
   say_what_is_set_aside(sentences);
   token_refused(flow_.scoring().channel(), "scoring");
-  token_refused(flow_.maps().channel().last_status() == 401 ? flow_.maps().channel() : flow_.news().channel(),
-                "mapping");
+  token_refused(
+      flow_.maps().channel().last_status() == 401 ? flow_.maps().channel() : flow_.telemetry().channel(),
+      "mapping");
   std::ranges::move(roster_.attention(loop_.now()), std::back_inserter(sentences));
   if (flow_.maps().nearly_full()) sentences.emplace_back("the queue of maps is nearly full");
   return sentences;

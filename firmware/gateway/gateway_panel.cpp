@@ -25,9 +25,9 @@ void Gateway::assert_states() {
   lights_.set(State::ScoringConnected, scoring.connected());
   lights_.set(State::ScoringFailing, !scoring.trouble().empty());
   lights_.set(State::ReportWaiting, !flow_.reports().waiting_here().empty());
-  lights_.set(State::MappingConnected, flow_.news().channel().connected());
+  lights_.set(State::MappingConnected, flow_.telemetry().channel().connected());
   lights_.set(State::MappingFailing,
-              !flow_.news().channel().trouble().empty() || !flow_.maps().channel().trouble().empty());
+              !flow_.telemetry().channel().trouble().empty() || !flow_.maps().channel().trouble().empty());
   lights_.set(State::NeedsOperator, !attention().empty());
   lights_.set(State::UpdateRunning, updates_.running());
   for (const api::LinkRow& link : links_.rows()) {

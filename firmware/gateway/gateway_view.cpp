@@ -13,8 +13,8 @@ constexpr std::size_t kMostReportRows = 200;
 std::vector<api::EndpointRow> Gateway::endpoints() const {
   const forward::Channel& scoring = flow_.scoring().channel();
   const forward::Channel& maps = flow_.maps().channel();
-  const forward::Channel& news = flow_.news().channel();
-  const forward::Channel& latest = maps.heard() > news.heard() ? maps : news;
+  const forward::Channel& telemetry = flow_.telemetry().channel();
+  const forward::Channel& latest = maps.heard() > telemetry.heard() ? maps : telemetry;
   const settings::CommandPost& command_post = settings_.command_post;
   return {{.name = "scoring",
            .address = forward::address_text(command_post.scoring),
@@ -26,12 +26,12 @@ std::vector<api::EndpointRow> Gateway::endpoints() const {
            .foreign = scoring.foreign()},
           {.name = "mapping",
            .address = forward::address_text(command_post.mapping),
-           .connected = maps.connected() || news.connected(),
-           .trouble = maps.trouble().empty() ? news.trouble() : maps.trouble(),
+           .connected = maps.connected() || telemetry.connected(),
+           .trouble = maps.trouble().empty() ? telemetry.trouble() : maps.trouble(),
            .last_status = latest.last_status(),
            .answer_ms = latest.answer_ms(),
-           .throttled = maps.throttled() + news.throttled(),
-           .foreign = maps.foreign() + news.foreign()}};
+           .throttled = maps.throttled() + telemetry.throttled(),
+           .foreign = maps.foreign() + telemetry.foreign()}};
 }
 
 api::RunView Gateway::view() const {

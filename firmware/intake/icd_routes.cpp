@@ -22,7 +22,7 @@ std::string shown(std::string_view text) {
 }
 
 /// GET /api/status. A body, which means nothing there, is read away.
-class StatusVisit final : public Exchange {
+class StatusVisit final : public BodySink {
  public:
   explicit StatusVisit(Visit visit) : visit_(std::move(visit)) {}
   bool on_body(std::span<const std::uint8_t>) override { return true; }
@@ -86,7 +86,7 @@ std::size_t IcdRoutes::most_bytes(icd::Uri uri) const {
   return options_.rules.map_bytes / 3 * 4 + kSmallBody;  // base64
 }
 
-std::unique_ptr<Exchange> IcdRoutes::open(const RequestHead& head, std::shared_ptr<Responder> responder,
+std::unique_ptr<BodySink> IcdRoutes::open(const RequestHead& head, std::shared_ptr<Responder> responder,
                                           std::shared_ptr<Flow> flow) {
   const auto uri = icd::uri_of(head.path());
   if (!uri) return other_.open(head, std::move(responder), std::move(flow));
@@ -119,7 +119,7 @@ std::unique_ptr<Exchange> IcdRoutes::open(const RequestHead& head, std::shared_p
   return take_in(std::move(visit), head, std::move(flow));
 }
 
-std::unique_ptr<Exchange> IcdRoutes::take_in(Visit visit, const RequestHead& head,
+std::unique_ptr<BodySink> IcdRoutes::take_in(Visit visit, const RequestHead& head,
                                              std::shared_ptr<Flow> flow) {
   if (stopping_ && visit.uri != icd::Uri::ArtifactReports) {
     visit.refuse(stops());
@@ -162,7 +162,7 @@ void IcdRoutes::stop() {
   for (Upload* upload : all) upload->turn_away(stops());
 }
 
-std::unique_ptr<Exchange> NotFound::open(const RequestHead&, std::shared_ptr<Responder> responder,
+std::unique_ptr<BodySink> NotFound::open(const RequestHead&, std::shared_ptr<Responder> responder,
                                          std::shared_ptr<Flow>) {
   responder->answer(error_answer(icd::Status::NotFound, "there is nothing here"));
   return nullptr;

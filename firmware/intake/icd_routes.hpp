@@ -40,7 +40,7 @@ class IcdRoutes final : public Handler {
  public:
   IcdRoutes(IcdOptions options, Desk& desk, loop::Workers& workers, Handler& other);
 
-  std::unique_ptr<Exchange> open(const RequestHead& head, std::shared_ptr<Responder> responder,
+  std::unique_ptr<BodySink> open(const RequestHead& head, std::shared_ptr<Responder> responder,
                                  std::shared_ptr<Flow> flow) override;
 
   /// Whoever comes from now on is served so. `upload_bytes` stays what it was.
@@ -51,7 +51,7 @@ class IcdRoutes final : public Handler {
   void stop();
 
  private:
-  std::unique_ptr<Exchange> take_in(Visit visit, const RequestHead& head, std::shared_ptr<Flow> flow);
+  std::unique_ptr<BodySink> take_in(Visit visit, const RequestHead& head, std::shared_ptr<Flow> flow);
   bool may_enter(const RequestHead& head) const;
   /// The most that a body sent to `uri` may have.
   std::size_t most_bytes(icd::Uri uri) const;
@@ -72,7 +72,7 @@ Answer error_answer(icd::Status status, std::string_view sentence);
 /// Answers 404 to everything: for where nothing else is served.
 class NotFound final : public Handler {
  public:
-  std::unique_ptr<Exchange> open(const RequestHead& head, std::shared_ptr<Responder> responder,
+  std::unique_ptr<BodySink> open(const RequestHead& head, std::shared_ptr<Responder> responder,
                                  std::shared_ptr<Flow> flow) override;
 };
 

@@ -55,10 +55,10 @@ void Request::open(Handler& handler, std::string_view method, Target target, con
   head_.emplace(client_->connection(), method, std::move(target), client_->peer(), client_->local(),
                 client_->number(), framing.length);
   in_call_ = true;
-  exchange_ = handler.open(*head_, std::make_shared<Owed>(shared_from_this()), shared_from_this());
+  sink_ = handler.open(*head_, std::make_shared<Owed>(shared_from_this()), shared_from_this());
   in_call_ = false;
   stage_ = Stage::Body;
-  if (!exchange_ && !answered()) answer_ = error_answer(icd::Status::InternalServerError, "no answer");
+  if (!sink_ && !answered()) answer_ = error_answer(icd::Status::InternalServerError, "no answer");
   if (!framing.has_body) return;
   if (answered()) {
     turn_away();
@@ -82,7 +82,7 @@ Next Request::body(std::span<const std::uint8_t> piece) {
 
   resumed_ = false;
   in_call_ = true;
-  const bool more = exchange_->on_body(piece);
+  const bool more = sink_->on_body(piece);
   in_call_ = false;
   if (answered()) {
     turn_away();
@@ -104,7 +104,7 @@ Next Request::end() {
     client_->expect_nothing();
     if (!answered()) {
       in_call_ = true;
-      exchange_->on_end();
+      sink_->on_end();
       in_call_ = false;
     }
   }
@@ -174,8 +174,8 @@ void Request::completed() {
   stage_ = Stage::Over;
   client_ = nullptr;
   if (stream_) stream_->detach();
-  const std::unique_ptr<Exchange> exchange = std::move(exchange_);
-  if (exchange && !answered()) exchange->on_gone();
+  const std::unique_ptr<BodySink> sink = std::move(sink_);
+  if (sink && !answered()) sink->on_gone();
   head_.reset();
 }
 

@@ -60,7 +60,7 @@ class Request final : public Responder, public Flow, public std::enable_shared_f
 
   Client* client_;  // null once over
   std::optional<Head> head_;
-  std::unique_ptr<Exchange> exchange_;
+  std::unique_ptr<BodySink> sink_;
   std::optional<Answer> answer_;
   std::shared_ptr<ReplyStream> stream_;
   Stage stage_ = Stage::Head;

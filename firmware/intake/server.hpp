@@ -74,9 +74,9 @@ class Responder {
 };
 
 /// Takes the body of one request.
-class Exchange {
+class BodySink {
  public:
-  virtual ~Exchange() = default;
+  virtual ~BodySink() = default;
   /// A piece of the body, valid during the call. False: take no more for now (back-pressure: the connection
   /// is suspended until Flow::resume()). The piece itself has been taken either way.
   virtual bool on_body(std::span<const std::uint8_t> piece) = 0;
@@ -99,7 +99,7 @@ class Handler {
   virtual ~Handler() = default;
   /// Called when the headers are whole. May answer at once (a refusal: the body is then read away up to a
   /// limit, or the connection closed). Returning nothing is allowed only after answering.
-  virtual std::unique_ptr<Exchange> open(const RequestHead& head, std::shared_ptr<Responder> responder,
+  virtual std::unique_ptr<BodySink> open(const RequestHead& head, std::shared_ptr<Responder> responder,
                                          std::shared_ptr<Flow> flow) = 0;
 };
 

@@ -13,7 +13,7 @@ namespace adit::intake {
 inline constexpr std::size_t kSmallValues = 100'000;
 
 /// Takes the body of a message, and can be told in the middle of it that nothing more is taken.
-class Upload : public Exchange {
+class Upload : public BodySink {
  public:
   /// All that are under way. For the loop alone.
   using UnderWay = std::set<Upload*>;

@@ -23,7 +23,7 @@ class WorkerUpload : public Upload {
     Taking(const Taking&) = delete;
     Taking& operator=(const Taking&) = delete;
 
-    /// As Exchange::on_body().
+    /// As BodySink::on_body().
     virtual bool take(std::span<const std::uint8_t> piece) = 0;
     virtual void whole() = 0;
     void abandon() {

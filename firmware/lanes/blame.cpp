@@ -14,7 +14,7 @@ void Blame::passed(const std::string& whose, Instant now) {
   last_passed_ = now;
 }
 
-Blame::Verdict Blame::failed(const std::string& whose, Trial& trial, Instant now) {
+Blame::Next Blame::failed(const std::string& whose, Trial& trial, Instant now) {
   Sender& its = sender(whose);
   if (its.passes && trial.failures == 0) its.wavered = now;
   its.passes = false;
@@ -25,7 +25,7 @@ Blame::Verdict Blame::failed(const std::string& whose, Trial& trial, Instant now
   trial.failed = now;
   trial.steps_behind = true;
   trial.rests_until = trial.strikes == 0 ? now : now + kFirstRest * (1 << std::min(trial.strikes - 1, 8));
-  return trial.strikes >= kMostStrikes ? Verdict::SetAside : Verdict::Again;
+  return trial.strikes >= kMostStrikes ? Next::SetAside : Next::Again;
 }
 
 bool Blame::somebody_wavered(const std::string& but, Instant since) const {

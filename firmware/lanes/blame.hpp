@@ -32,12 +32,12 @@ class Blame {
   static constexpr std::chrono::seconds kFirstRest{2};  // after a strike; twice as long after each more
   static constexpr std::size_t kMostSenders = 1000;
 
-  enum class Verdict { Again, SetAside };
+  enum class Next { Again, SetAside };
 
   /// A message of `whose` (a robot's maps of one kind) was taken.
   void passed(const std::string& whose, Instant now);
   /// One failed; `trial` is its own.
-  Verdict failed(const std::string& whose, Trial& trial, Instant now);
+  Next failed(const std::string& whose, Trial& trial, Instant now);
 
  private:
   struct Sender {

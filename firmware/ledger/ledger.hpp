@@ -8,7 +8,7 @@
 #include <string>
 #include <vector>
 
-#include "dispatch/deeds.hpp"
+#include "dispatch/output.hpp"
 #include "dispatch/report.hpp"
 #include "dispatch/run.hpp"
 

@@ -52,9 +52,9 @@ Attempt<void> check_pages(Database& database) {
   const auto page_size = database.number("PRAGMA page_size");
   if (!page_size) return std::unexpected(page_size.error());
   if (*pages * *page_size > kMostChecked) return {};
-  const auto verdict = database.text("PRAGMA quick_check(1)");
-  if (!verdict) return std::unexpected(verdict.error());
-  if (*verdict != "ok") return std::unexpected(damaged(*verdict));
+  const auto sound = database.text("PRAGMA quick_check(1)");
+  if (!sound) return std::unexpected(sound.error());
+  if (*sound != "ok") return std::unexpected(damaged(*sound));
   return {};
 }
 

@@ -131,21 +131,21 @@ std::string page_at(const Numbers& numbers, const std::vector<Address>& listen) 
   return port == kHttp ? host : icd::sentence(host, ":", port);
 }
 
-Verdict check(const Numbers& wanted, const std::optional<Numbers>& present, const Circumstances& around) {
-  Verdict verdict;
-  verdict.changes = differences(wanted, present);
+Findings check(const Numbers& wanted, const std::optional<Numbers>& present, const Circumstances& around) {
+  Findings findings;
+  findings.changes = differences(wanted, present);
   for (std::string& what : overlaps_of(wanted, around)) {
     if (around.allow_overlap) {
-      verdict.warnings.push_back(what + "; that is allowed by network.allow_overlap");
+      findings.warnings.push_back(what + "; that is allowed by network.allow_overlap");
     } else {
-      verdict.errors.push_back(
+      findings.errors.push_back(
           {"team.address", what + "; choose another subnet, or allow it by network.allow_overlap"});
     }
   }
-  check_listening(wanted, around, verdict.errors);
-  warn_of_lost_endpoints(wanted, around, verdict.warnings);
-  warn_the_asker(wanted, present, around, verdict.warnings);
-  return verdict;
+  check_listening(wanted, around, findings.errors);
+  warn_of_lost_endpoints(wanted, around, findings.warnings);
+  warn_the_asker(wanted, present, around, findings.warnings);
+  return findings;
 }
 
 }  // namespace adit::network

@@ -23,15 +23,15 @@ struct Circumstances {
   std::string asker;                      // the address of the one who asks
 };
 
-struct Verdict {
+struct Findings {
   std::vector<settings::Error> errors;  // the change is refused
   std::vector<Difference> changes;
   std::vector<std::string> warnings;  // what it would do that may not be meant
 };
 
 /// `present`: what the interfaces have now, as far as it is known.
-Verdict check(const Numbers& wanted, const std::optional<Numbers>& present,
-              const Circumstances& circumstances);
+Findings check(const Numbers& wanted, const std::optional<Numbers>& present,
+               const Circumstances& circumstances);
 
 /// What the box is called where its address is not known beforehand (mDNS, RFC 6762).
 inline constexpr const char* kHostName = "adit.local";

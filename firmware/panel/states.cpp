@@ -11,7 +11,7 @@ constexpr auto kOff = Pattern::Off, kOn = Pattern::On, kSlow = Pattern::Slow, kF
                kDigits = Pattern::Digits;
 
 // What somebody at the box does comes before what the box would tell by itself, and of that what is worse
-// before what is better. An operator's deed that waits does not hide that set-up is open: who opened it has
+// before what is better. An operator's action that waits does not hide that set-up is open: who opened it has
 // to see until when, and the page tells of the other.
 constexpr StateRow kTable[] = {
     {State::Fault,

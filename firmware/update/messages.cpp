@@ -32,27 +32,27 @@ Read<Message> read(std::string_view json, std::initializer_list<std::string_view
   return network::file_object::read<Message>(json, kFormat, names, make);
 }
 
-Value story_json(const Story& story) {
-  return {Value::Object{{"stage", {std::string(name_of(story.stage))}},
-                        {"version", {story.version}},
-                        {"slot", {story.slot}},
-                        {"boot", {story.boot}},
-                        {"why", {story.why}}}};
+Value last_update_json(const LastUpdate& last_update) {
+  return {Value::Object{{"stage", {std::string(name_of(last_update.stage))}},
+                        {"version", {last_update.version}},
+                        {"slot", {last_update.slot}},
+                        {"boot", {last_update.boot}},
+                        {"why", {last_update.why}}}};
 }
 
-Story story_in(const Field& object) {
-  Story story{.version = text(object, "version"),
-              .slot = text(object, "slot"),
-              .boot = text(object, "boot"),
-              .why = text(object, "why")};
+LastUpdate last_update_in(const Field& object) {
+  LastUpdate last_update{.version = text(object, "version"),
+                         .slot = text(object, "slot"),
+                         .boot = text(object, "boot"),
+                         .why = text(object, "why")};
   const Field field = object.member("stage");
   const auto* found = std::ranges::find(kStages, field.text(), name_of);
   if (found == std::end(kStages)) {
     field.refuse("expected a stage");
   } else {
-    story.stage = *found;
+    last_update.stage = *found;
   }
-  return story;
+  return last_update;
 }
 
 Running running_in(const Field& object) {
@@ -71,10 +71,10 @@ std::optional<Offer> offer_in(const Field& object) {
   return Offer{text(field, "name"), text(field, "version")};
 }
 
-Story last_in(const Field& object) {
+LastUpdate last_in(const Field& object) {
   const Field field = object.member("last");
   only(field, {"stage", "version", "slot", "boot", "why"});
-  return story_in(field);
+  return last_update_in(field);
 }
 
 }  // namespace
@@ -98,7 +98,7 @@ std::string write(const Status& status) {
                   {"refusal", {status.refusal}},
                   {"doing", {status.doing}},
                   {"progress", status.progress ? Value{std::int64_t{*status.progress}} : Value{}},
-                  {"last", story_json(status.last)},
+                  {"last", last_update_json(status.last)},
                   {"trial", {status.trial}},
                   {"stick", status.stick ? Value{Value::Object{{"name", {status.stick->name}},
                                                                {"version", {status.stick->version}}}}
@@ -106,8 +106,8 @@ std::string write(const Status& status) {
                   {"stick_trouble", {status.stick_trouble}}});
 }
 
-std::string write(const Story& story) {
-  Value value = story_json(story);
+std::string write(const LastUpdate& last_update) {
+  Value value = last_update_json(last_update);
   return written(std::move(std::get<Value::Object>(value.is)));
 }
 
@@ -148,9 +148,9 @@ Read<Status> read_status_file(std::string_view json) {
                       });
 }
 
-Read<Story> read_story(std::string_view json) {
-  return read<Story>(json, {"stage", "version", "slot", "boot", "why"},
-                     [](const Field& root) { return story_in(root); });
+Read<LastUpdate> read_last_update(std::string_view json) {
+  return read<LastUpdate>(json, {"stage", "version", "slot", "boot", "why"},
+                          [](const Field& root) { return last_update_in(root); });
 }
 
 }  // namespace adit::update

@@ -7,7 +7,7 @@
 #include <string_view>
 
 #include "update/bundle.hpp"
-#include "update/story.hpp"
+#include "update/last_update.hpp"
 
 /// The files by which aditd, which has no privilege, and adit-update, which runs as root, speak with each
 /// other: README.md.
@@ -19,7 +19,7 @@ inline constexpr const char* kRequestFile = "update.json";
 inline constexpr const char* kBundleFile = "update.raucb";
 /// What adit-update tells everybody, in its runtime folder; and what it keeps, in its state folder.
 inline constexpr const char* kStatusFile = "status.json";
-inline constexpr const char* kStoryFile = "last.json";
+inline constexpr const char* kLastUpdateFile = "last.json";
 
 /// More than both slots hold.
 inline constexpr std::uint64_t kLargestBundle = 256U << 20;
@@ -45,7 +45,7 @@ struct Status {
   std::string refusal = "";          // why it was not done; "" where it was, or is being done
   std::string doing = "";            // "", "checking", "installing", "restarting"
   std::optional<int> progress = {};  // per cent of "installing"
-  Story last = {};
+  LastUpdate last = {};
   bool trial = false;  // on_trial()
   std::optional<Offer> stick = {};
   std::string stick_trouble = "";  // why what is on the stick cannot be installed; "" where there is none
@@ -54,13 +54,13 @@ struct Status {
 
 std::string write(const Request& request);
 std::string write(const Status& status);
-std::string write(const Story& story);
+std::string write(const LastUpdate& last_update);
 
 /// Strict: an unknown or a missing member, or a value that is not what it must be, is an error that names it.
 template <class Message>
 using Read = std::expected<Message, std::string>;
 Read<Request> read_request(std::string_view json);
 Read<Status> read_status_file(std::string_view json);
-Read<Story> read_story(std::string_view json);
+Read<LastUpdate> read_last_update(std::string_view json);
 
 }  // namespace adit::update

@@ -157,8 +157,8 @@ class SetUp(unittest.TestCase):
         self.assertEqual(report["state"], "waiting", "it is kept for the Command Post that it was meant for")
         self.assertIn("kept for the Command Post at ", report["note"])
         self.assertEqual(other.heard("/api/artifact_reports"), [])
-        for deed in ("hold", "send"):  # the operator wants it here
-            self.assertEqual(self.box.ask(f"POST /adit/reports/1/{deed}", {}, **self.me)[0], 200)
+        for action in ("hold", "send"):  # the operator wants it here
+            self.assertEqual(self.box.ask(f"POST /adit/reports/1/{action}", {}, **self.me)[0], 200)
         sent = wait_until(lambda: other.heard("/api/artifact_reports"), "the report at the Command Post")
         self.assertEqual(json.loads(sent[0][1]), REPORT)
         time.sleep(1.2)

@@ -25,7 +25,7 @@ TEST_F(AsideRoutesTest, PassTheOperatorsWordOn) {
   EXPECT_EQ(sent.status, icd::Status::Ok);
   EXPECT_EQ(sent.body, R"({"aside":7})");
   EXPECT_EQ(post("/adit/aside/8/discard").status, icd::Status::Ok);
-  EXPECT_THAT(judge.set_aside, ElementsAre(Pair(7, AsideDeed::Send), Pair(8, AsideDeed::Discard)));
+  EXPECT_THAT(judge.set_aside, ElementsAre(Pair(7, AsideAction::Send), Pair(8, AsideAction::Discard)));
 }
 
 TEST_F(AsideRoutesTest, SayWhyItIsNotDone) {

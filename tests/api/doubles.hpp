@@ -33,7 +33,7 @@ struct FakeSource final : Source {
   }
 
   const picture::Mosaic& map() const override { return mosaic; }
-  MarkerNews markers(std::uint64_t since) const override {
+  MarkerChanges markers(std::uint64_t since) const override {
     since_version = since;
     return marker_news;
   }
@@ -45,7 +45,7 @@ struct FakeSource final : Source {
   RunView now;
   std::map<std::int64_t, ReportDetail> details;
   picture::Mosaic mosaic;
-  MarkerNews marker_news;
+  MarkerChanges marker_news;
   std::vector<Track> robot_tracks;
   mutable std::uint64_t since_version = 0;
   mutable Time since_time = 0;
@@ -54,16 +54,16 @@ struct FakeSource final : Source {
 
 /// Does as it is told, and remembers what it was.
 struct FakeOperator final : Operator {
-  std::expected<std::int64_t, std::string> judge(std::int64_t number, Deed deed) override {
-    judged.emplace_back(number, deed);
+  std::expected<std::int64_t, std::string> judge(std::int64_t number, Action action) override {
+    judged.emplace_back(number, action);
     return outcome ? *outcome : number;
   }
   std::expected<std::int64_t, std::string> report(const icd::ArtifactReport& report, bool resubmit) override {
     reported.emplace_back(report, resubmit);
     return outcome ? *outcome : 41;
   }
-  std::expected<void, std::string> aside(std::uint64_t number, AsideDeed deed) override {
-    set_aside.emplace_back(number, deed);
+  std::expected<void, std::string> aside(std::uint64_t number, AsideAction action) override {
+    set_aside.emplace_back(number, action);
     if (!aside_trouble.empty()) return std::unexpected(aside_trouble);
     return {};
   }
@@ -73,11 +73,11 @@ struct FakeOperator final : Operator {
     return 1000 + seconds;
   }
 
-  std::vector<std::pair<std::int64_t, Deed>> judged;
+  std::vector<std::pair<std::int64_t, Action>> judged;
   std::vector<std::pair<icd::ArtifactReport, bool>> reported;
   std::optional<std::expected<std::int64_t, std::string>>
       outcome;  // of judge() and report(), where it is not the same number or 41
-  std::vector<std::pair<std::uint64_t, AsideDeed>> set_aside;
+  std::vector<std::pair<std::uint64_t, AsideAction>> set_aside;
   std::string aside_trouble;  // of aside(), where there is any
   std::int64_t run = 1;
   double identified = 0;  // seconds
@@ -153,7 +153,7 @@ inline std::string header(const intake::Answer& answer, std::string_view name) {
 
 /// Hands requests on to a handler that is made later.
 struct Forward final : intake::Handler {
-  std::unique_ptr<intake::Exchange> open(const intake::RequestHead& head,
+  std::unique_ptr<intake::BodySink> open(const intake::RequestHead& head,
                                          std::shared_ptr<intake::Responder> responder,
                                          std::shared_ptr<intake::Flow> flow) override {
     return to->open(head, std::move(responder), std::move(flow));

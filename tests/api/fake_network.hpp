@@ -12,9 +12,9 @@ namespace adit::api {
 /// Has the addresses that it is told to have, and remembers what it was asked for.
 struct FakeNetwork final : Network {
   NetworkView network() const override { return view; }
-  network::Verdict check(const network::Numbers&, const std::string& asker) const override {
+  network::Findings check(const network::Numbers&, const std::string& asker) const override {
     askers.push_back(asker);
-    return verdict;
+    return findings;
   }
   icd::Checked<void> change(const network::Numbers& numbers) override {
     wanted.push_back(numbers);
@@ -30,7 +30,7 @@ struct FakeNetwork final : Network {
   }
 
   NetworkView view;
-  network::Verdict verdict;
+  network::Findings findings;
   icd::Checked<void> outcome;
   mutable std::vector<std::string> askers;
   std::vector<network::Numbers> wanted;

@@ -116,19 +116,19 @@ icd::Marker scene_marker(icd::MarkerType type) {
   return marker;
 }
 
-MarkerNews scene_markers(double now) {
-  MarkerNews news{.version = 1, .whole = true, .left_out = 3, .markers = {}, .gone = {}};
+MarkerChanges scene_markers(double now) {
+  MarkerChanges changes{.version = 1, .whole = true, .left_out = 3, .markers = {}, .gone = {}};
   for (std::int32_t type = 0; type <= icd::kLastMarkerType; ++type) {
-    news.markers.push_back({drawn(scene_marker(static_cast<icd::MarkerType>(type))), now - 300 + type});
+    changes.markers.push_back({drawn(scene_marker(static_cast<icd::MarkerType>(type))), now - 300 + type});
   }
-  news.markers[2].marker.color.a = 0;
-  news.markers[1].marker.lifetime = 10;
+  changes.markers[2].marker.color.a = 0;
+  changes.markers[1].marker.lifetime = 10;
   icd::Marker arrow = scene_marker(icd::MarkerType::Arrow);
   arrow.id = 20;
   arrow.points = {{0, -8, 0}, {6, -8, 0}};
   arrow.scale = {0.4, 1.5, 1.5};
-  news.markers.push_back({drawn(arrow), now - 280});
-  return news;
+  changes.markers.push_back({drawn(arrow), now - 280});
+  return changes;
 }
 
 std::vector<Track> scene_tracks(double now) {

@@ -13,7 +13,7 @@ void draw_scene(picture::Mosaic& map, double now);
 
 /// A marker of each type, along the tunnel, and an arrow by two points; one that cannot be seen, one that has
 /// expired, and a line of more points than are drawn.
-MarkerNews scene_markers(double now);
+MarkerChanges scene_markers(double now);
 
 /// Two robots on their ways, the last ten minutes up to `now`.
 std::vector<Track> scene_tracks(double now);

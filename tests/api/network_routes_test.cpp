@@ -102,7 +102,7 @@ TEST_F(NetworkRoutesTest, TellOfAChangeThatWaits) {
 }
 
 TEST_F(NetworkRoutesTest, CheckWithoutChangingAnything) {
-  network.verdict = {{{"team.address", "overlaps"}}, {{"team.address", "a", "b"}}, {"this cuts you off"}};
+  network.findings = {{{"team.address", "overlaps"}}, {{"team.address", "a", "b"}}, {"this cuts you off"}};
   EXPECT_EQ(json::parse(ask("POST", "/adit/network/check", kNumbers).body), json::parse(R"({
     "errors": [{"path": "team.address", "what": "overlaps"}],
     "changes": [{"path": "team.address", "from": "a", "to": "b"}], "warnings": ["this cuts you off"]})"));
@@ -117,13 +117,13 @@ TEST_F(NetworkRoutesTest, CheckWithoutChangingAnything) {
 TEST_F(NetworkRoutesTest, ChangeWhatPassesTheCheck) {
   EXPECT_EQ(ask("POST", "/adit/network", kNumbers).status, icd::Status::Ok);
   EXPECT_THAT(network.wanted, ElementsAre(kRead));
-  network.verdict.errors = {{"team.address", "overlaps"}, {"team.prefix", "no"}};
+  network.findings.errors = {{"team.address", "overlaps"}, {"team.prefix", "no"}};
   const auto answer = ask("POST", "/adit/network", kNumbers);
   EXPECT_EQ(answer.status, icd::Status::UnprocessableEntity);
   EXPECT_EQ(json::parse(answer.body), "team.address: overlaps; team.prefix: no");
   EXPECT_EQ(ask("POST", "/adit/network", "{}").status, icd::Status::UnprocessableEntity);
   EXPECT_EQ(ask("POST", "/adit/network", "no").status, icd::Status::UnprocessableEntity);
-  network.verdict.errors.clear();
+  network.findings.errors.clear();
   network.outcome = std::unexpected(icd::Refusal{icd::Status::Conflict, "a change waits"});
   EXPECT_EQ(ask("POST", "/adit/network", kNumbers).status, icd::Status::Conflict);
 }

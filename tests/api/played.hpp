@@ -14,15 +14,15 @@ namespace adit::api {
 /// What was done to a scene's reports, so that a browser sees it done.
 class Played {
  public:
-  std::expected<std::int64_t, std::string> judge(const RunView& view, std::int64_t number, Deed deed) {
+  std::expected<std::int64_t, std::string> judge(const RunView& view, std::int64_t number, Action action) {
     const auto found = std::ranges::find(view.reports, number, &ReportRow::number);
     if (found == view.reports.end()) return std::unexpected("there is no such report");
     if (found->state == "refused") return std::unexpected("the step could not be written down; try again");
-    if (deed == Deed::Resubmit) return add(view, found->type, found->position);
-    states_[number] = deed == Deed::Send       ? "waiting"
-                      : deed == Deed::Hold     ? "received"
-                      : deed == Deed::Withdraw ? "withdrawn"
-                                               : "settled";
+    if (action == Action::Resubmit) return add(view, found->type, found->position);
+    states_[number] = action == Action::Send       ? "waiting"
+                      : action == Action::Hold     ? "received"
+                      : action == Action::Withdraw ? "withdrawn"
+                                                   : "settled";
     return number;
   }
 

@@ -127,13 +127,13 @@ TEST_F(ReportRoutesTest, PassOnTheOperatorsWord) {
   post("/adit/reports/12/withdraw");
   post("/adit/reports/12/hold");
   post("/adit/reports/7/done");
-  EXPECT_THAT(judge.judged, ElementsAre(Pair(7, Deed::Send), Pair(12, Deed::Withdraw), Pair(12, Deed::Hold),
-                                        Pair(7, Deed::CallDone)));
+  EXPECT_THAT(judge.judged, ElementsAre(Pair(7, Action::Send), Pair(12, Action::Withdraw),
+                                        Pair(12, Action::Hold), Pair(7, Action::CallDone)));
   judge.outcome = 13;
   const auto answer = post("/adit/reports/7/resubmit");
   EXPECT_EQ(answer.status, icd::Status::Ok);
   EXPECT_EQ(answer.body, "{\"report\":13}");
-  EXPECT_THAT(judge.judged.back(), Pair(7, Deed::Resubmit));
+  EXPECT_THAT(judge.judged.back(), Pair(7, Action::Resubmit));
 }
 
 TEST_F(ReportRoutesTest, DeclareANewRun) {
@@ -174,14 +174,14 @@ TEST_F(ReportRoutesTest, SayWhyAComposedReportWasNotTaken) {
   EXPECT_EQ(json::parse(answer.body), "1000 reports wait already; this one was not taken");
 }
 
-TEST_F(ReportRoutesTest, SayWhyADeedCannotBe) {
+TEST_F(ReportRoutesTest, SayWhyAActionCannotBe) {
   judge.outcome = std::unexpected("report 7 is answered: there is nothing to withdraw");
   const auto answer = post("/adit/reports/7/withdraw");
   EXPECT_EQ(answer.status, icd::Status::Conflict);
   EXPECT_EQ(json::parse(answer.body), "report 7 is answered: there is nothing to withdraw");
 }
 
-TEST_F(ReportRoutesTest, KnowNoOtherReportsAndNoOtherDeeds) {
+TEST_F(ReportRoutesTest, KnowNoOtherReportsAndNoOtherActions) {
   for (const auto& answer : {ask("GET", "/adit/reports/8"), post("/adit/reports/8/send")}) {
     EXPECT_EQ(answer.status, icd::Status::NotFound);
     EXPECT_EQ(json::parse(answer.body), "there is no report 8");
@@ -216,7 +216,7 @@ TEST_F(ReportRoutesTest, TakeAnyOfTheTokens) {
 }
 
 /// What a form or a script of another web page can send without being asked (Fetch, CORS-safelisted).
-TEST_F(ReportRoutesTest, LetNoOtherWebPageDoADeed) {
+TEST_F(ReportRoutesTest, LetNoOtherWebPageDoAAction) {
   for (const char* type :
        {"", "text/plain", "application/x-www-form-urlencoded", "multipart/form-data; boundary=x"}) {
     const auto answer = post("/adit/runs", {{"Authorization", "Bearer team-1"}, {"Content-Type", type}});
@@ -262,7 +262,7 @@ TEST_F(ReportRoutesTest, OnlyReadWhereTheyShow) {
   EXPECT_EQ(header(ask("PUT", "/adit/reports", kGood), "Allow"), "GET, HEAD, POST");
 }
 
-TEST(ReportRoutesOnAServer, DoADeedAndShowIt) {
+TEST(ReportRoutesOnAServer, DoAActionAndShowIt) {
   std::unique_ptr<Api> api;
   Forward forward;
   FakeOperator judge;

@@ -122,7 +122,7 @@ TEST_F(SessionRoutesTest, LetAViewerLookAndDoNothing) {
   EXPECT_EQ(keys.checked, 1) << "the login alone";
 }
 
-TEST_F(SessionRoutesTest, WantTheCsrfTokenForEveryDeedOfABrowser) {
+TEST_F(SessionRoutesTest, WantTheCsrfTokenForEveryActionOfABrowser) {
   Browser mine = log_in("correct horse");
   EXPECT_EQ(post("/adit/runs", {}, mine).status, Status::Ok);
   for (const std::string& csrf : {std::string(), std::string("wrong"), log_in("correct horse").csrf}) {

@@ -38,7 +38,7 @@ class UpdateRoutesTest : public testing::Test {
     EXPECT_TRUE(responder->answered) << target;
     return responder->answered.value_or(intake::Answer{});
   }
-  std::unique_ptr<intake::Exchange> open(const std::string& method, const std::string& target,
+  std::unique_ptr<intake::BodySink> open(const std::string& method, const std::string& target,
                                          std::vector<intake::Header> headers,
                                          std::optional<std::uint64_t> length) {
     responder = std::make_shared<FakeResponder>();
@@ -147,7 +147,7 @@ TEST_F(UpdateRoutesTest, InstallFromTheStickAndRestartOnTheOperatorsWord) {
   EXPECT_THAT(updates.restarts, ElementsAre(false, true));
 }
 
-TEST_F(UpdateRoutesTest, RefuseADeedThatIsNotWellSaid) {
+TEST_F(UpdateRoutesTest, RefuseAActionThatIsNotWellSaid) {
   for (const char* path : {"/adit/update/stick", "/adit/update/restart"}) {
     EXPECT_EQ(ask("GET", path).status, icd::Status::MethodNotAllowed) << path;
     EXPECT_EQ(ask("POST", path, "{", kJson).status, icd::Status::BadRequest) << path;

@@ -118,7 +118,7 @@ TEST(ReportText, TellsAllOfOneReport) {
             "  sender    10.0.0.7\n"
             "  received  2019-08-20T14:03:05.125Z\n"
             "  answer    {\"score_change\": 1}\n"
-            "  deeds     resubmit\n"
+            "  actions     resubmit\n"
             "\n"
             "History\n"
             "  2019-08-20T14:03:05.125Z  waiting\n"
@@ -126,18 +126,18 @@ TEST(ReportText, TellsAllOfOneReport) {
 }
 
 TEST(ReportText, OffersTheDeedsThatCanBe) {
-  const auto deeds = [](const std::string& state) {
+  const auto actions = [](const std::string& state) {
     const std::string text = report_text({in_state(state), {}, ""}, false);
-    const auto begin = text.find("deeds     ");
+    const auto begin = text.find("actions     ");
     return begin == std::string::npos ? "" : text.substr(begin + 10, text.find('\n', begin) - begin - 10);
   };
-  EXPECT_EQ(deeds("received"), "send, withdraw");
-  EXPECT_EQ(deeds("waiting"), "send, hold, withdraw");
-  EXPECT_EQ(deeds("sending"), "");
-  EXPECT_EQ(deeds("in doubt"), "send, done");
-  EXPECT_EQ(deeds("answered"), "resubmit");
-  EXPECT_EQ(deeds("refused"), "send, resubmit");
-  EXPECT_EQ(deeds("withdrawn"), "send, resubmit");
+  EXPECT_EQ(actions("received"), "send, withdraw");
+  EXPECT_EQ(actions("waiting"), "send, hold, withdraw");
+  EXPECT_EQ(actions("sending"), "");
+  EXPECT_EQ(actions("in doubt"), "send, done");
+  EXPECT_EQ(actions("answered"), "resubmit");
+  EXPECT_EQ(actions("refused"), "send, resubmit");
+  EXPECT_EQ(actions("withdrawn"), "send, resubmit");
 }
 
 }  // namespace

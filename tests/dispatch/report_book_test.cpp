@@ -20,30 +20,30 @@ class ReportBookTest : public testing::Test {
     report.report = {"Drill", {1, 2, 3}};
     return book_.add(report, events, "");
   }
-  RecordingDeeds deeds_;
-  ReportBook book_{deeds_};
+  RecordingActions output_;
+  ReportBook book_{output_};
 };
 
 TEST_F(ReportBookTest, NumbersReportsFromOneAndGoesOnAfterARestart) {
   EXPECT_EQ(add(), 1);
   EXPECT_EQ(add(), 2);
-  ReportBook again(deeds_);
+  ReportBook again(output_);
   again.open({book_.at(1), book_.at(2)});
   EXPECT_EQ(again.add(Report(), {}, ""), 3);
 }
 
 TEST_F(ReportBookTest, WritesAReportThatIsSentAtOnceWithBothStepsInOneGo) {
   add({ReportEvent::Chosen});
-  EXPECT_EQ(deeds_.writes, 1);
-  EXPECT_THAT(deeds_.lives[1], ElementsAre(Waiting, Sending));
+  EXPECT_EQ(output_.writes, 1);
+  EXPECT_THAT(output_.lives[1], ElementsAre(Waiting, Sending));
   EXPECT_EQ(book_.at(1).state, Sending);
 }
 
 TEST_F(ReportBookTest, HasNoReportThatTheDiskRefused) {
-  deeds_.full = true;
+  output_.full = true;
   EXPECT_EQ(add(), 0);
   EXPECT_THAT(book_.all(), IsEmpty());
-  deeds_.full = false;
+  output_.full = false;
   EXPECT_EQ(add(), 1);
 }
 
@@ -51,7 +51,7 @@ TEST_F(ReportBookTest, TakesNoStepThatIsNotInTheTable) {
   add();
   EXPECT_FALSE(book_.move({1, ReportEvent::Found}, 0));
   EXPECT_EQ(book_.at(1).state, Waiting);
-  EXPECT_EQ(deeds_.writes, 1);
+  EXPECT_EQ(output_.writes, 1);
 }
 
 /// Which steps of a report's life are taken though the disk refuses them.
@@ -80,46 +80,46 @@ const OnAFullDisk kFullDisk[] = {
 class ReportBookOnAFullDisk : public testing::TestWithParam<OnAFullDisk> {};
 
 TEST_P(ReportBookOnAFullDisk, TakesOnlyTheStepsThatHaveHappenedAnyway) {
-  RecordingDeeds deeds;
-  ReportBook book(deeds);
+  RecordingActions output;
+  ReportBook book(output);
   Report report;
   report.number = 1;
   report.state = GetParam().from;
   book.open({report});
-  deeds.full = true;
+  output.full = true;
   EXPECT_EQ(book.move({1, GetParam().event}, 0), GetParam().taken);
   const ReportState to = transition(GetParam().from, GetParam().event)->to;
   EXPECT_EQ(book.at(1).state, GetParam().taken ? to : GetParam().from);
   EXPECT_EQ(book.catch_up(), !GetParam().taken);
 
-  deeds.full = false;
+  output.full = false;
   EXPECT_TRUE(book.catch_up());
-  EXPECT_EQ(deeds.ledger.contains(1), GetParam().taken) << "what has happened is written later";
-  const auto writes = deeds.writes;
+  EXPECT_EQ(output.ledger.contains(1), GetParam().taken) << "what has happened is written later";
+  const auto writes = output.writes;
   EXPECT_TRUE(book.catch_up());
-  EXPECT_EQ(deeds.writes, writes) << "once";
+  EXPECT_EQ(output.writes, writes) << "once";
 }
 INSTANTIATE_TEST_SUITE_P(Steps, ReportBookOnAFullDisk, testing::ValuesIn(kFullDisk));
 
 TEST_F(ReportBookTest, WritesWhatHasHappenedBeforeALaterStep) {
   add({ReportEvent::Chosen});
   add();
-  deeds_.full = true;
+  output_.full = true;
   EXPECT_TRUE(book_.move({1, ReportEvent::Recorded}, 0));
   EXPECT_FALSE(book_.move({2, ReportEvent::Chosen}, 0));
-  deeds_.full = false;
+  output_.full = false;
   EXPECT_TRUE(book_.move({2, ReportEvent::Chosen}, 0));
-  EXPECT_EQ(deeds_.ledger.at(1).state, Answered);
-  EXPECT_EQ(deeds_.writes, 3) << "with it";
+  EXPECT_EQ(output_.ledger.at(1).state, Answered);
+  EXPECT_EQ(output_.writes, 3) << "with it";
 }
 
 TEST_F(ReportBookTest, WritesANewRunLaterWhereTheDiskRefusesIt) {
-  deeds_.full = true;
+  output_.full = true;
   book_.write(dispatch::Run{.number = 2});
-  EXPECT_EQ(deeds_.run, std::nullopt);
-  deeds_.full = false;
+  EXPECT_EQ(output_.run, std::nullopt);
+  output_.full = false;
   EXPECT_TRUE(book_.catch_up());
-  EXPECT_EQ(deeds_.run->number, 2);
+  EXPECT_EQ(output_.run->number, 2);
 }
 
 TEST_F(ReportBookTest, TakesTheStepsOfSeveralReportsInOneWriteOrNone) {
@@ -128,12 +128,12 @@ TEST_F(ReportBookTest, TakesTheStepsOfSeveralReportsInOneWriteOrNone) {
   all[1] = {.number = 2, .state = InDoubt};
   book_.open(all);
   const std::array steps = {ReportBook::Step{1, ReportEvent::Found}, ReportBook::Step{2, ReportEvent::Found}};
-  deeds_.full = true;
+  output_.full = true;
   EXPECT_FALSE(book_.move(steps, 0));
   EXPECT_THAT(book_.doubts(0), testing::SizeIs(2));
-  deeds_.full = false;
+  output_.full = false;
   EXPECT_TRUE(book_.move(steps, 0));
-  EXPECT_EQ(deeds_.writes, 1);
+  EXPECT_EQ(output_.writes, 1);
   EXPECT_THAT(book_.doubts(0), IsEmpty());
 }
 
@@ -142,13 +142,13 @@ TEST_F(ReportBookTest, NotesWhatIsKnownOfSeveralReportsInOneWriteOrNone) {
   add();
   std::vector<Report> noted = {book_.at(1), book_.at(2)};
   noted[0].note = noted[1].note = "why";
-  deeds_.full = true;
+  output_.full = true;
   EXPECT_FALSE(book_.note(noted));
   EXPECT_EQ(book_.at(1).note, "");
-  deeds_.full = false;
+  output_.full = false;
   EXPECT_TRUE(book_.note(noted));
-  EXPECT_EQ(deeds_.writes, 3);
-  EXPECT_EQ(deeds_.ledger.at(2).note, "why");
+  EXPECT_EQ(output_.writes, 3);
+  EXPECT_EQ(output_.ledger.at(2).note, "why");
 }
 
 TEST_F(ReportBookTest, FlushesAnAnswerSoonOnlyWhereItCouldBeFoundOutAgain) {
@@ -158,12 +158,12 @@ TEST_F(ReportBookTest, FlushesAnAnswerSoonOnlyWhereItCouldBeFoundOutAgain) {
     if (known) all[0].before = icd::RunStatus{};
     book_.open(all);
     EXPECT_TRUE(book_.move({1, ReportEvent::Recorded}, 0));
-    EXPECT_EQ(deeds_.last_flush, known ? Flush::Soon : Flush::Now);
+    EXPECT_EQ(output_.last_flush, known ? Flush::Soon : Flush::Now);
   }
   add({ReportEvent::Chosen});
-  EXPECT_EQ(deeds_.last_flush, Flush::Now);
+  EXPECT_EQ(output_.last_flush, Flush::Now);
   EXPECT_TRUE(book_.move({2, ReportEvent::Lost}, 0));
-  EXPECT_EQ(deeds_.last_flush, Flush::Now);
+  EXPECT_EQ(output_.last_flush, Flush::Now);
 }
 
 TEST_F(ReportBookTest, KnowsWhatWaitsAndWhatIsInDoubtInTheOrderOfSending) {

@@ -17,7 +17,7 @@ TEST(A2xx, IsTheClientsAnswerByteForByte) {
   EXPECT_EQ(scene.state(1), Answered);
   EXPECT_EQ(scene.told(client).status, 201);
   EXPECT_EQ(scene.told(client).body, recorded(1).body);
-  EXPECT_EQ(scene.deeds().ledger.at(1).answer, recorded(1).body) << "and on disk";
+  EXPECT_EQ(scene.output().ledger.at(1).answer, recorded(1).body) << "and on disk";
 }
 
 TEST(A2xx, ThatWasNotScoredSaysSoToTheOperator) {

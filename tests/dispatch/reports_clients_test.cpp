@@ -30,7 +30,7 @@ TEST(AClient, IsToldOnlyOnce) {
   const ClientId client = scene.post();
   scene.wait(20);
   scene.answer(recorded());
-  EXPECT_EQ(scene.deeds().told[client].size(), 1);
+  EXPECT_EQ(scene.output().told[client].size(), 1);
   EXPECT_EQ(scene.told(client).status, 504) << "and finds the answer by posting it again";
 }
 
@@ -60,7 +60,7 @@ TEST_P(AtItsDeadline, AClientIsToldTheTruth) {
   report.run = 1;
   report.state = GetParam().state;
   report.note = "why";
-  scene.deeds().ledger[1] = report;
+  scene.output().ledger[1] = report;
   scene.restart();
   const ClientId client = scene.post_to_wait(1);
   EXPECT_FALSE(scene.is_told(client));
@@ -137,7 +137,7 @@ TEST(AtAStop, TheLastClientsAreToldWhereNoAnswerCame) {
   scene.reports().dismiss(false);
   scene.reports().dismiss(true);
   EXPECT_EQ(scene.told(client).status, 504);
-  EXPECT_EQ(scene.deeds().told[client].size(), 1);
+  EXPECT_EQ(scene.output().told[client].size(), 1);
 }
 
 TEST(ManyClients, AreEachToldOnceWhateverBecomesOfTheirReports) {
@@ -154,7 +154,7 @@ TEST(ManyClients, AreEachToldOnceWhateverBecomesOfTheirReports) {
       scene.answer(recorded());
     }
   }
-  for (const ClientId client : clients) EXPECT_EQ(scene.deeds().told[client].size(), 1) << client;
+  for (const ClientId client : clients) EXPECT_EQ(scene.output().told[client].size(), 1) << client;
 }
 
 }  // namespace

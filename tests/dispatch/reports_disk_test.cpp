@@ -11,9 +11,9 @@ using testing::HasSubstr;
 
 class FullDisk : public testing::Test {
  protected:
-  void fill() { scene_.deeds().full = true; }
-  void make_room() { scene_.deeds().full = false; }
-  ReportState on_disk(std::int64_t number) { return scene_.deeds().ledger.at(number).state; }
+  void fill() { scene_.output().full = true; }
+  void make_room() { scene_.output().full = false; }
+  ReportState on_disk(std::int64_t number) { return scene_.output().ledger.at(number).state; }
   Scene scene_;
 };
 
@@ -50,7 +50,7 @@ TEST_F(FullDisk, TellsAnAnswerThatCameAndWritesItLater) {
   make_room();
   scene_.wait(1);
   EXPECT_EQ(on_disk(1), Answered);
-  EXPECT_EQ(scene_.deeds().ledger.at(1).answer, recorded(1).body);
+  EXPECT_EQ(scene_.output().ledger.at(1).answer, recorded(1).body);
 }
 
 TEST_F(FullDisk, AndAPowerCutLeaveAnAnsweredReportInDoubt) {
@@ -108,7 +108,7 @@ TEST_F(FullDisk, BeginsANewRunAndWritesItWithItsReportsLater) {
   EXPECT_EQ(scene_.state(1), Received);
   make_room();
   scene_.wait(1);
-  EXPECT_EQ(scene_.deeds().run->number, 2);
+  EXPECT_EQ(scene_.output().run->number, 2);
   EXPECT_EQ(on_disk(1), Received);
 }
 
@@ -129,14 +129,14 @@ TEST_F(FullDisk, TakesNoWordOfTheOperators) {
 TEST(ADiskThatFillsUp, NeverMakesAReportGoTwice) {
   for (std::int64_t writes = 0; writes < 12; ++writes) {
     Scene scene;
-    scene.deeds().writes_until_full = writes;
+    scene.output().writes_until_full = writes;
     const ClientId client = scene.post();
     const bool left = scene.reports().sending() != nullptr;
     EXPECT_EQ(left, writes >= 1);
     EXPECT_EQ(scene.told(client).status, left ? 0 : 503);
     if (left) scene.lose();
     scene.keep_hearing(2, left ? 19 : 20, 0);
-    scene.deeds().writes_until_full = -1;
+    scene.output().writes_until_full = -1;
     scene.restart();
     scene.keep_hearing(20, left ? 19 : 20, 0);
     EXPECT_EQ(scene.send_next(), 0) << writes;

@@ -169,12 +169,12 @@ TEST_F(TwoDoubts, StayWhereOneWasCounted) {
 
 TEST_F(TwoDoubts, AreDecidedInOneWriteOrNotAtAll) {
   keep_hearing_after_stop(1, 18, 0);
-  scene_.deeds().full = true;
+  scene_.output().full = true;
   keep_hearing_after_stop(1, 18, 0);
   EXPECT_EQ(scene_.state(1), InDoubt);
   EXPECT_EQ(scene_.state(2), InDoubt);
-  scene_.deeds().full = false;
-  scene_.deeds().writes_until_full = 1;
+  scene_.output().full = false;
+  scene_.output().writes_until_full = 1;
   keep_hearing_after_stop(1, 18, 0);
   EXPECT_EQ(scene_.state(1), Settled);
   EXPECT_EQ(scene_.state(2), Settled);

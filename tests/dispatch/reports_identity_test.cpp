@@ -79,7 +79,7 @@ class OnlyTheClock : public testing::Test {
 
 TEST_F(OnlyTheClock, MakesANewRunLikelyAndHoldsTheSameReport) {
   EXPECT_EQ(scene_.reports().run().number, 2);
-  EXPECT_EQ(scene_.deeds().run->may_be, 1) << "on disk";
+  EXPECT_EQ(scene_.output().run->may_be, 1) << "on disk";
   const ClientId again = scene_.post(1);
   EXPECT_EQ(scene_.state(2), Received);
   EXPECT_THAT(scene_.report(2).note, HasSubstr("the same as report 1"));
@@ -322,16 +322,16 @@ TEST_F(AnotherPlace, TheOperatorsWordOnADoubtThereBlursTheOthersThere) {
 
 TEST(AnotherPlaceUnheard, LeavesADoubtOfBeforeAnyWordWhereItWasSent) {
   const Time time{.now = {}, .stamp = Scene::kEpoch};
-  RecordingDeeds deeds;
-  Reports reports({}, deeds);
+  RecordingActions output;
+  Reports reports({}, output);
   reports.open({}, {}, time, "10.100.1.200:8000");
   reports.status_failed(true, time);
   reports.take({.report = {.type = "Drill", .position = {1, 2, 3}}, .sender = "10.0.0.7"}, 1, true, time);
   ASSERT_NE(reports.choose(time), nullptr);
   reports.lost("no answer", time);
-  ASSERT_TRUE(deeds.runs.contains(1));
-  Reports there({}, deeds);
-  there.open({deeds.ledger.at(1)}, {deeds.runs.at(1)}, time, kThere);
+  ASSERT_TRUE(output.runs.contains(1));
+  Reports there({}, output);
+  there.open({output.ledger.at(1)}, {output.runs.at(1)}, time, kThere);
   EXPECT_NE(there.book().at(1).run, there.run().number);
   EXPECT_EQ(there.runs().find(there.book().at(1).run)->post, "10.100.1.200:8000");
 }

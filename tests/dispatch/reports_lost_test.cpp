@@ -22,7 +22,7 @@ class Lost : public testing::Test {
     lost = {.number = 2, .report = {"?", {}}, .sender = std::string(Report::kLost), .state = InDoubt};
     lost.run = 1;
     lost.note = kNote;
-    scene_.deeds().ledger[2] = lost;
+    scene_.output().ledger[2] = lost;
     scene_.restart();
     scene_.keep_hearing(2, 19, 0);
   }
@@ -34,7 +34,7 @@ TEST_F(Lost, WhatIsPostedInItsRunIsHeldAsItMayBeTheSame) {
   EXPECT_EQ(scene_.state(3), Received);
   EXPECT_THAT(scene_.report(3).note, HasSubstr(kNote));
   scene_.wait(21);
-  EXPECT_THAT(scene_.deeds().told[client].at(0).sentence, HasSubstr("waits for the operator's word"));
+  EXPECT_THAT(scene_.output().told[client].at(0).sentence, HasSubstr("waits for the operator's word"));
   EXPECT_TRUE(scene_.reports().send(3, scene_.time()));
   scene_.keep_hearing(1, 19, 0);
   EXPECT_EQ(scene_.send_next(), 3);

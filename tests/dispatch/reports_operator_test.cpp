@@ -36,7 +36,7 @@ class OperatorsWord : public testing::TestWithParam<Words> {
     report.number = 1;
     report.run = 1;
     report.state = GetParam().state;
-    scene.deeds().ledger[1] = report;
+    scene.output().ledger[1] = report;
     if (report.state == Sending) {
       scene.post();
     } else {
@@ -129,7 +129,7 @@ TEST(Holding, SaysWhyItIsTooLate) {
 TEST(Holding, IsRefusedByAFullDisk) {
   Scene scene;
   scene.post_to_wait();
-  scene.deeds().full = true;
+  scene.output().full = true;
   EXPECT_FALSE(scene.reports().hold(1, scene.time()).has_value());
   EXPECT_EQ(scene.state(1), Waiting);
 }
@@ -212,9 +212,9 @@ TEST(CallingDone, NeverLeavesEvidenceThatMeansSomethingElse) {
     scene.hear_stop(16);
     scene.post(2);
     scene.lose();
-    scene.deeds().writes_until_full = writes;
+    scene.output().writes_until_full = writes;
     (void)scene.reports().call_done(2, scene.time());
-    scene.deeds().writes_until_full = -1;
+    scene.output().writes_until_full = -1;
     scene.restart();
     for (int i = 0; i < 15; ++i) {
       scene.wait(1);
@@ -242,7 +242,7 @@ TEST(Resubmitting, IsRefusedByAFullDisk) {
   Scene scene;
   scene.post(1);
   scene.answer(recorded());
-  scene.deeds().full = true;
+  scene.output().full = true;
   EXPECT_FALSE(scene.reports().resubmit(1, scene.time()).has_value());
   EXPECT_EQ(scene.count(), 1);
 }

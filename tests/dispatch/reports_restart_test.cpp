@@ -80,7 +80,7 @@ TEST(AfterARestart, EveryOtherStateIsAsItWas) {
     report.run = 1;
     report.state = state;
     report.note = "as it was";
-    scene.deeds().ledger[1] = report;
+    scene.output().ledger[1] = report;
     scene.restart();
     EXPECT_EQ(scene.report(1), report) << name_of(state);
   }

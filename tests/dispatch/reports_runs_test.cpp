@@ -16,8 +16,8 @@ TEST(ANewRun, IsNoticedByAClockThatRanBackward) {
   scene.hear(20, 0);
   scene.hear(20, 0, 3);
   EXPECT_EQ(scene.reports().run().number, 2);
-  EXPECT_EQ(scene.deeds().run->number, 2);
-  EXPECT_THAT(scene.deeds().run->why, HasSubstr("the run clock went back"));
+  EXPECT_EQ(scene.output().run->number, 2);
+  EXPECT_THAT(scene.output().run->why, HasSubstr("the run clock went back"));
 }
 
 TEST(ANewRun, IsNoticedByMoreReportsLeft) {
@@ -25,8 +25,8 @@ TEST(ANewRun, IsNoticedByMoreReportsLeft) {
   scene.wait(10);
   scene.hear(25, 0);
   EXPECT_EQ(scene.reports().run().number, 2);
-  EXPECT_THAT(scene.deeds().run->why, HasSubstr("the reports left went up from 20 to 25"));
-  EXPECT_EQ(scene.deeds().run->last->remaining_reports, 25);
+  EXPECT_THAT(scene.output().run->why, HasSubstr("the reports left went up from 20 to 25"));
+  EXPECT_EQ(scene.output().run->last->remaining_reports, 25);
 }
 
 TEST(ANewRun, IsNoticedByAnotherTeam) {
@@ -70,7 +70,7 @@ TEST(ANewRun, HoldsWhatWaitsFromTheRunBefore) {
   scene.hear(25, 0, 3);
   EXPECT_EQ(scene.state(1), Received);
   EXPECT_THAT(scene.report(1).note, HasSubstr("held: a new run began (the reports left went up"));
-  EXPECT_EQ(scene.deeds().ledger.at(1).state, Received) << "written down with the run";
+  EXPECT_EQ(scene.output().ledger.at(1).state, Received) << "written down with the run";
   ASSERT_TRUE(scene.reports().send(1, scene.time()).has_value());
   EXPECT_EQ(scene.send_next(), 1) << "the operator asks for it";
   EXPECT_EQ(scene.report(1).run, 2);
@@ -82,7 +82,7 @@ TEST(ANewRun, IsEnteredByWhatWasPostedJustNow) {
   scene.wait(9);
   scene.hear(25, 0, 3);
   EXPECT_EQ(scene.report(1).run, 2);
-  EXPECT_EQ(scene.deeds().ledger.at(1).run, 2);
+  EXPECT_EQ(scene.output().ledger.at(1).run, 2);
   EXPECT_EQ(scene.send_next(), 1);
 }
 
@@ -163,7 +163,7 @@ TEST(ADeclaredRun, BeginsLikeOneThatIsNoticed) {
   scene.wait(11);
   EXPECT_EQ(scene.reports().declare_new_run(scene.time()), 2);
   EXPECT_EQ(scene.state(1), Received);
-  EXPECT_EQ(scene.deeds().run->why, "the operator says so");
+  EXPECT_EQ(scene.output().run->why, "the operator says so");
   scene.hear(25, 0, 3);
   EXPECT_EQ(scene.reports().run().number, 2) << "the clock is no news";
 }

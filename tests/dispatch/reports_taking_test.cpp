@@ -18,10 +18,10 @@ ReportRules reviewing(Review review) {
 
 TEST(Taking, SendsAReportAtOnceAfterOneWriteOfBothSteps) {
   Scene scene;
-  const auto writes = scene.deeds().writes;
+  const auto writes = scene.output().writes;
   scene.post();
-  EXPECT_EQ(scene.deeds().writes, writes + 1);
-  EXPECT_THAT(scene.deeds().lives[1], ElementsAre(Waiting, Sending));
+  EXPECT_EQ(scene.output().writes, writes + 1);
+  EXPECT_THAT(scene.output().lives[1], ElementsAre(Waiting, Sending));
   ASSERT_NE(scene.reports().sending(), nullptr);
   EXPECT_EQ(scene.reports().sending()->before->remaining_reports, 20) << "for the case of a doubt";
 }
@@ -74,7 +74,7 @@ TEST(TheSameReport, JoinsTheOneThatWaitsOrIsUnderWay) {
   for (const ClientId client : {first, second}) {
     EXPECT_EQ(scene.told(client).status, 201);
     EXPECT_EQ(scene.told(client).body, recorded(1).body);
-    EXPECT_EQ(scene.deeds().told[client].size(), 1);
+    EXPECT_EQ(scene.output().told[client].size(), 1);
   }
 }
 

@@ -33,8 +33,8 @@ class RunAccountTest : public testing::Test {
     account_.answered(reply, time());
   }
 
-  RecordingDeeds deeds_;
-  ReportBook book_{deeds_};
+  RecordingActions output_;
+  ReportBook book_{output_};
   RunAccount account_{book_};
   double now_ = 100;
 };
@@ -89,7 +89,7 @@ TEST_F(RunAccountTest, DistrustsACountThatIsWrongTwiceInARow) {
   hear(19, 3);
   EXPECT_EQ(account_.expected(time().now), std::nullopt);
   EXPECT_THAT(account_.run().unreliable, HasSubstr("somebody else reports with this token"));
-  EXPECT_EQ(deeds_.run->unreliable, account_.run().unreliable) << "and has that on disk";
+  EXPECT_EQ(output_.run->unreliable, account_.run().unreliable) << "and has that on disk";
 }
 
 TEST_F(RunAccountTest, ForgivesACountThatLaggedBehind) {
@@ -141,21 +141,21 @@ TEST_F(RunAccountTest, WritesTheRunClockDownOnlyNowAndThen) {
   hear(20, 3);
   now_ = 101;
   hear(20, 3);
-  EXPECT_TRUE(deeds_.run->status_clock->runs) << "it was seen to run, which is news";
-  const auto writes = deeds_.writes;
+  EXPECT_TRUE(output_.run->status_clock->runs) << "it was seen to run, which is news";
+  const auto writes = output_.writes;
   for (now_ = 102; now_ < 130; ++now_) hear(20, 3);
-  EXPECT_EQ(deeds_.writes, writes);
+  EXPECT_EQ(output_.writes, writes);
   now_ = 132;
   hear(20, 3);
-  EXPECT_EQ(deeds_.writes, writes + 1);
-  EXPECT_EQ(deeds_.run->last->run_clock, 132);
+  EXPECT_EQ(output_.writes, writes + 1);
+  EXPECT_EQ(output_.run->last->run_clock, 132);
 }
 
 TEST_F(RunAccountTest, WritesTheReportsLeftDownAtOnce) {
   hear(20, 3);
   now_ = 101;
   hear(19, 3);
-  EXPECT_EQ(deeds_.run->last->remaining_reports, 19) << "by which a new run is told";
+  EXPECT_EQ(output_.run->last->remaining_reports, 19) << "by which a new run is told";
 }
 
 TEST_F(RunAccountTest, MeasuresASilenceByTheClockThatCannotBeSet) {
@@ -174,7 +174,7 @@ TEST_F(RunAccountTest, MeasuresASilenceOverARestartByWhatIsOnDisk) {
   now_ = 100;
   hear(20, 3);
   RunAccount again(book_);
-  again.open({*deeds_.run}, 1, "");
+  again.open({*output_.run}, 1, "");
   EXPECT_THAT(again.another(icd::RunStatus{3, 105, 20, "adit"}, at(3700))->why, HasSubstr("without word"));
   EXPECT_EQ(again.another(icd::RunStatus{3, 120, 20, "adit"}, at(120)), std::nullopt);
 }

@@ -13,7 +13,7 @@
 namespace adit::dispatch {
 
 /// A ledger and clients that remember.
-class RecordingDeeds final : public Deeds {
+class RecordingActions final : public Output {
  public:
   struct Told {
     int status = 0;
@@ -80,7 +80,7 @@ class Scene {
 
   Reports& reports() { return *reports_; }
   const Reports& reports() const { return *reports_; }
-  RecordingDeeds& deeds() { return deeds_; }
+  RecordingActions& output() { return output_; }
   Time time() const {
     return {Reports::Instant(std::chrono::milliseconds(static_cast<std::int64_t>(now_ * 1000))),
             kEpoch + now_ + clock_set_by_};
@@ -94,12 +94,12 @@ class Scene {
 
   /// The program ends at once, and begins again with what is on disk.
   void restart(const std::string& post = "10.100.1.200:8000") {
-    reports_ = std::make_unique<Reports>(rules_, deeds_);
+    reports_ = std::make_unique<Reports>(rules_, output_);
     reports_->open(all_reports(), all_runs(), time(), post);
   }
   /// The settings name another place, and the program goes on.
   void move_to(const std::string& post) {
-    auto next = std::make_unique<Reports>(rules_, deeds_);
+    auto next = std::make_unique<Reports>(rules_, output_);
     next->open(all_reports(), all_runs(), time(), post, *reports_);
     reports_ = std::move(next);
   }
@@ -147,24 +147,24 @@ class Scene {
   const Report& report(std::int64_t number) const { return reports_->book().at(number); }
   ReportState state(std::int64_t number) const { return report(number).state; }
   std::size_t count() const { return reports_->book().all().size(); }
-  bool is_told(ClientId client) const { return deeds_.told.contains(client); }
+  bool is_told(ClientId client) const { return output_.told.contains(client); }
   /// What a client was told, at last; status 0: nothing yet.
-  RecordingDeeds::Told told(ClientId client) const {
-    const auto found = deeds_.told.find(client);
-    return found == deeds_.told.end() ? RecordingDeeds::Told{} : found->second.back();
+  RecordingActions::Told told(ClientId client) const {
+    const auto found = output_.told.find(client);
+    return found == output_.told.end() ? RecordingActions::Told{} : found->second.back();
   }
 
  private:
   std::vector<Report> all_reports() const {
     std::vector<Report> all;
-    all.reserve(deeds_.ledger.size());
-    for (const auto& [number, report] : deeds_.ledger) all.push_back(report);
+    all.reserve(output_.ledger.size());
+    for (const auto& [number, report] : output_.ledger) all.push_back(report);
     return all;
   }
   std::vector<Run> all_runs() const {
     std::vector<Run> runs;
-    runs.reserve(deeds_.runs.size());
-    for (const auto& [number, run] : deeds_.runs) runs.push_back(run);
+    runs.reserve(output_.runs.size());
+    for (const auto& [number, run] : output_.runs) runs.push_back(run);
     return runs;
   }
 
@@ -179,7 +179,7 @@ class Scene {
   }
 
   const ReportRules rules_;
-  RecordingDeeds deeds_;
+  RecordingActions output_;
   std::unique_ptr<Reports> reports_;
   double now_ = 100;
   double clock_set_by_ = 0;

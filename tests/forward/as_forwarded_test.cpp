@@ -38,7 +38,7 @@ TEST(AsForwarded, ShowsARunFromItsBeginning) {
   all.begin_run(200);
   EXPECT_THAT(all.robots(), SizeIs(1)) << "the robots are still where they are";
   EXPECT_THAT(all.tracks().since(0), IsEmpty());
-  EXPECT_THAT(all.markers().news(0).markers, IsEmpty());
+  EXPECT_THAT(all.markers().changes(0).markers, IsEmpty());
 }
 
 TEST(AsForwarded, HasRoomForSoManyRobots) {

@@ -80,7 +80,7 @@ TEST_F(FlowTest, EndsAndSendsNothingSetAsideFromThenOn) {
   EXPECT_FALSE(flow_->is_ending());
   flow_->end([&] { over = true; });
   EXPECT_TRUE(flow_->is_ending());
-  EXPECT_FALSE(flow_->aside(1, api::AsideDeed::Discard));
+  EXPECT_FALSE(flow_->aside(1, api::AsideAction::Discard));
   EXPECT_TRUE(loop::turn_until(loop_, [&] { return over; }));
   EXPECT_FALSE(anew_);
 }

@@ -23,7 +23,7 @@ icd::Marker marker(const std::string& ns, std::int32_t id, double x = 0,
   return marker;
 }
 
-std::vector<std::string> names(const api::MarkerNews& news) {
+std::vector<std::string> names(const api::MarkerChanges& news) {
   std::vector<std::string> names;
   for (const auto& row : news.markers) names.push_back(row.marker.ns + std::to_string(row.marker.id));
   return names;
@@ -33,7 +33,7 @@ TEST(MarkerScene, HasEachMarkerAsItWasLastForwarded) {
   MarkerScene scene;
   scene.forwarded({{marker("a", 1, 5), marker("a", 2), marker("b", 1)}}, 100);
   scene.forwarded({{marker("a", 1, 7)}}, 101);
-  const auto news = scene.news(0);
+  const auto news = scene.changes(0);
   EXPECT_TRUE(news.whole);
   EXPECT_THAT(names(news), ElementsAre("a2", "b1", "a1"));
   EXPECT_EQ(news.markers[2].marker.position.x, 7);
@@ -44,9 +44,9 @@ TEST(MarkerScene, TellsWhatChangedSinceAVersionAndNothingElse) {
   MarkerScene scene;
   scene.forwarded({{marker("a", 1), marker("a", 2)}}, 100);
   const auto before = scene.version();
-  EXPECT_THAT(scene.news(before).markers, IsEmpty());
+  EXPECT_THAT(scene.changes(before).markers, IsEmpty());
   scene.forwarded({{marker("a", 2, 9), marker("a", 1, 0, MarkerAction::Delete)}}, 101);
-  const auto news = scene.news(before);
+  const auto news = scene.changes(before);
   EXPECT_FALSE(news.whole);
   EXPECT_THAT(names(news), ElementsAre("a2"));
   EXPECT_THAT(news.gone, ElementsAre(Pair("a", 1)));
@@ -58,9 +58,9 @@ TEST(MarkerScene, TellsAllAfterAllWereDeletedAndToWhoeverComesFromElsewhere) {
   scene.forwarded({{marker("a", 1), marker("a", 2)}}, 100);
   const auto before = scene.version();
   scene.forwarded({{marker("", 0, 0, MarkerAction::DeleteAll), marker("c", 1)}}, 101);
-  EXPECT_TRUE(scene.news(before).whole);
-  EXPECT_THAT(names(scene.news(before)), ElementsAre("c1"));
-  EXPECT_TRUE(scene.news(scene.version() + 5000).whole) << "a version of a box that was started anew";
+  EXPECT_TRUE(scene.changes(before).whole);
+  EXPECT_THAT(names(scene.changes(before)), ElementsAre("c1"));
+  EXPECT_TRUE(scene.changes(scene.version() + 5000).whole) << "a version of a box that was started anew";
 }
 
 TEST(MarkerScene, DeletingWhatIsNotThereChangesNothing) {
@@ -68,8 +68,8 @@ TEST(MarkerScene, DeletingWhatIsNotThereChangesNothing) {
   scene.forwarded({{marker("a", 1)}}, 100);
   const auto before = scene.version();
   scene.forwarded({{marker("a", 2, 0, MarkerAction::Delete)}}, 101);
-  EXPECT_THAT(scene.news(before).gone, IsEmpty());
-  EXPECT_THAT(names(scene.news(0)), ElementsAre("a1"));
+  EXPECT_THAT(scene.changes(before).gone, IsEmpty());
+  EXPECT_THAT(names(scene.changes(0)), ElementsAre("a1"));
 }
 
 TEST(MarkerScene, IsBlankInANewRun) {
@@ -78,14 +78,14 @@ TEST(MarkerScene, IsBlankInANewRun) {
   const auto before = scene.version();
   scene.wipe(200);
   EXPECT_GT(scene.version(), before);
-  EXPECT_TRUE(scene.news(before).whole);
-  EXPECT_THAT(scene.news(before).markers, IsEmpty());
+  EXPECT_TRUE(scene.changes(before).whole);
+  EXPECT_THAT(scene.changes(before).markers, IsEmpty());
 }
 
 TEST(MarkerScene, LeavesOutTheOldestOfTooManyAndSaysHowMany) {
   MarkerScene scene;
   for (std::int32_t id = 0; id < 2003; ++id) scene.forwarded({{marker("a", id)}}, 100 + id);
-  const auto news = scene.news(0);
+  const auto news = scene.changes(0);
   EXPECT_THAT(news.markers, SizeIs(MarkerScene::kMost));
   EXPECT_EQ(news.left_out, 3u);
   EXPECT_EQ(news.markers.front().marker.id, 3);
@@ -99,7 +99,7 @@ TEST(MarkerScene, LeavesOutTheOldestWhereTheyAreTooLarge) {
   for (; line.id < 100; ++line.id) {
     scene.forwarded({{line}}, 100 + line.id);
   }
-  const auto news = scene.news(0);
+  const auto news = scene.changes(0);
   std::size_t bytes = 0;
   for (const auto& row : news.markers) bytes += row.marker.size();
   EXPECT_LE(bytes, MarkerScene::kMostBytes);
@@ -110,7 +110,7 @@ TEST(MarkerScene, LeavesOutTheOldestWhereTheyAreTooLarge) {
   for (std::int32_t id = first; id < 100; ++id) scene.forwarded({{marker("a", id)}}, 300);
   line.id = 0;
   scene.forwarded({{line}}, 301);
-  EXPECT_THAT(scene.news(0).markers, SizeIs(101 - first)) << "what has become small has made room";
+  EXPECT_THAT(scene.changes(0).markers, SizeIs(101 - first)) << "what has become small has made room";
 }
 
 TEST(MarkerScene, ForgetsTheLongNamesOfThoseThatAreGone) {
@@ -120,8 +120,8 @@ TEST(MarkerScene, ForgetsTheLongNamesOfThoseThatAreGone) {
     const std::string longest(200'000, name);
     scene.forwarded({{marker(longest, 1), marker(longest, 1, 0, MarkerAction::Delete)}}, 100);
   }
-  EXPECT_TRUE(scene.news(begun).whole) << "what went since then is not told any more";
-  EXPECT_THAT(names(scene.news(0)), ElementsAre("b0"));
+  EXPECT_TRUE(scene.changes(begun).whole) << "what went since then is not told any more";
+  EXPECT_THAT(names(scene.changes(0)), ElementsAre("b0"));
 }
 
 /// Whoever follows the news has the scene at each moment, however it changed in between.
@@ -142,7 +142,7 @@ TEST(MarkerScene, GivesNewsThatAddUpToTheWhole) {
       scene.forwarded({{marker("n", static_cast<std::int32_t>(below(6000)), step, action)}}, step / 10.0);
     }
     if (below(20) != 0) continue;
-    const auto news = scene.news(known);
+    const auto news = scene.changes(known);
     if (news.whole) followed.clear();
     for (const auto& key : news.gone) followed.erase(key);
     for (const auto& row : news.markers) {
@@ -150,7 +150,7 @@ TEST(MarkerScene, GivesNewsThatAddUpToTheWhole) {
     }
     known = news.version;
     Shown whole;
-    for (const auto& row : scene.news(0).markers) {
+    for (const auto& row : scene.changes(0).markers) {
       whole[{row.marker.ns, row.marker.id}] = row.marker.position.x;
     }
     ASSERT_EQ(followed, whole) << "after step " << step;

@@ -27,7 +27,7 @@ class ScriptedHandler final : public Handler {
   std::atomic<std::size_t> body_bytes = 0;
   std::atomic<int> ends = 0, gone = 0, exchanges = 0;
 
-  std::unique_ptr<Exchange> open(const RequestHead& head, std::shared_ptr<Responder> responder,
+  std::unique_ptr<BodySink> open(const RequestHead& head, std::shared_ptr<Responder> responder,
                                  std::shared_ptr<Flow> flow) override {
     if (head.path() == "/refuse") {
       responder->answer(error_answer(icd::Status::Unauthorized, "no"));
@@ -39,7 +39,7 @@ class ScriptedHandler final : public Handler {
   }
 
  private:
-  class Scripted final : public Exchange {
+  class Scripted final : public BodySink {
    public:
     Scripted(ScriptedHandler& script, const RequestHead& head, std::shared_ptr<Responder> responder,
              std::shared_ptr<Flow> flow)

@@ -15,7 +15,7 @@ namespace {
 /// Throws where the path says: /open, /body, /end; drops its responder at /drop; answers anywhere else.
 class ThrowingHandler final : public Handler {
  public:
-  std::unique_ptr<Exchange> open(const RequestHead& head, std::shared_ptr<Responder> responder,
+  std::unique_ptr<BodySink> open(const RequestHead& head, std::shared_ptr<Responder> responder,
                                  std::shared_ptr<Flow>) override {
     const std::string path(head.path());
     if (path == "/open") throw std::bad_alloc();
@@ -24,7 +24,7 @@ class ThrowingHandler final : public Handler {
   }
 
  private:
-  class Throwing final : public Exchange {
+  class Throwing final : public BodySink {
    public:
     Throwing(std::string path, std::shared_ptr<Responder> responder)
         : path_(std::move(path)), responder_(std::move(responder)) {}

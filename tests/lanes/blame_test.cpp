@@ -45,7 +45,7 @@ Outcome played(const Server& server, int clouds, int senders, double until) {
     if (server(which, now)) {
       blame.passed(name, at(now));
       outcome.taken.push_back(which);
-    } else if (blame.failed(name, map->trial, at(now)) == Blame::Verdict::SetAside) {
+    } else if (blame.failed(name, map->trial, at(now)) == Blame::Next::SetAside) {
       outcome.set_aside.push_back(which);
     } else {
       lane.put_back(std::move(*map));
@@ -87,7 +87,7 @@ TEST(Blame, SpacesTheTries) {
   Trial trial;
   std::vector<double> rests;
   double now = 0;
-  while (blame.failed("ugv1", trial, at(now)) == Blame::Verdict::Again) {
+  while (blame.failed("ugv1", trial, at(now)) == Blame::Next::Again) {
     blame.passed("ugv2", at(now + 0.5));
     const double rest = std::chrono::duration<double>(trial.rests_until - at(now)).count();
     rests.push_back(rest);
@@ -101,7 +101,7 @@ TEST(Blame, TakesAFailureBeforeAnyOtherPassedForNoStrike) {
   Trial trial;
   blame.passed("ugv2", at(0));
   for (int i = 1; i < 100; ++i) {
-    ASSERT_EQ(blame.failed("ugv1", trial, at(i)), Blame::Verdict::Again);
+    ASSERT_EQ(blame.failed("ugv1", trial, at(i)), Blame::Next::Again);
   }
   EXPECT_EQ(trial.strikes, 0);
 }

@@ -30,22 +30,22 @@ std::vector<std::string> errors(const Numbers& wanted, const Circumstances& arou
 }
 
 TEST(NetworkCheck, HasNothingAgainstWhatIsThere) {
-  const Verdict verdict = check(numbers(), numbers(), usual());
-  EXPECT_THAT(verdict.errors, IsEmpty());
-  EXPECT_THAT(verdict.changes, IsEmpty());
-  EXPECT_THAT(verdict.warnings, IsEmpty());
+  const Findings findings = check(numbers(), numbers(), usual());
+  EXPECT_THAT(findings.errors, IsEmpty());
+  EXPECT_THAT(findings.changes, IsEmpty());
+  EXPECT_THAT(findings.warnings, IsEmpty());
 }
 
 TEST(NetworkCheck, TellsWhatBecomesAnother) {
-  const Verdict verdict =
+  const Findings findings =
       check(numbers("192.168.7.11/25", "10.100.1.10/24", "10.100.1.1"), numbers("192.168.7.10/24"), usual());
-  ASSERT_THAT(verdict.changes, SizeIs(3));
-  EXPECT_EQ(verdict.changes[0].path, "team.address");
-  EXPECT_EQ(verdict.changes[0].from, "192.168.7.10");
-  EXPECT_EQ(verdict.changes[0].to, "192.168.7.11");
-  EXPECT_EQ(verdict.changes[1].path, "team.prefix");
-  EXPECT_EQ(verdict.changes[2].path, "command_post.gateway");
-  EXPECT_EQ(verdict.changes[2].from, "");
+  ASSERT_THAT(findings.changes, SizeIs(3));
+  EXPECT_EQ(findings.changes[0].path, "team.address");
+  EXPECT_EQ(findings.changes[0].from, "192.168.7.10");
+  EXPECT_EQ(findings.changes[0].to, "192.168.7.11");
+  EXPECT_EQ(findings.changes[1].path, "team.prefix");
+  EXPECT_EQ(findings.changes[2].path, "command_post.gateway");
+  EXPECT_EQ(findings.changes[2].from, "");
   EXPECT_THAT(check(numbers(), std::nullopt, usual()).changes, SizeIs(4))
       << "all but the gateway, which stays none";
 }
@@ -67,9 +67,9 @@ TEST(NetworkCheck, RefusesATeamInTheCommandPostsSubnets) {
 TEST(NetworkCheck, AllowsAnOverlapOnPurposeAndSaysSo) {
   Circumstances around = usual();
   around.allow_overlap = true;
-  const Verdict verdict = check(numbers("10.100.7.7/24"), numbers(), around);
-  EXPECT_THAT(verdict.errors, IsEmpty());
-  EXPECT_THAT(verdict.warnings, Contains(HasSubstr("overlaps 10.100.0.0/16")));
+  const Findings findings = check(numbers("10.100.7.7/24"), numbers(), around);
+  EXPECT_THAT(findings.errors, IsEmpty());
+  EXPECT_THAT(findings.warnings, Contains(HasSubstr("overlaps 10.100.0.0/16")));
 }
 
 TEST(NetworkCheck, WarnsOneWhoCutsHimselfOff) {
@@ -125,14 +125,14 @@ TEST(NetworkCheck, LooksAtEachAddressOfTheCommandPostsSide) {
 
 TEST(NetworkCheck, WarnsThatWithoutAnAddressOfItsOwnTheBoxIsFoundByName) {
   for (const Mode mode : {Mode::Dhcp, Mode::LinkLocal}) {
-    const Verdict verdict = check(with_mode(mode), numbers(), usual());
-    EXPECT_THAT(verdict.errors, IsEmpty());
-    EXPECT_THAT(verdict.warnings,
+    const Findings findings = check(with_mode(mode), numbers(), usual());
+    EXPECT_THAT(findings.errors, IsEmpty());
+    EXPECT_THAT(findings.warnings,
                 ElementsAre(AllOf(HasSubstr("not known yet"), HasSubstr("http://adit.local:8000"))));
-    ASSERT_THAT(verdict.changes, SizeIs(3));
-    EXPECT_EQ(verdict.changes[0].path, "team.mode");
-    EXPECT_EQ(verdict.changes[0].to, name_of(mode));
-    EXPECT_EQ(verdict.changes[1].to, "");
+    ASSERT_THAT(findings.changes, SizeIs(3));
+    EXPECT_EQ(findings.changes[0].path, "team.mode");
+    EXPECT_EQ(findings.changes[0].to, name_of(mode));
+    EXPECT_EQ(findings.changes[1].to, "");
     EXPECT_THAT(check(with_mode(mode), with_mode(mode), usual()).warnings, IsEmpty());
   }
   Circumstances around = usual();

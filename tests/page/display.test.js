@@ -10,7 +10,7 @@ test("shows the run on one screen, without anything to press", async (t) => {
     await showsTheClock(page, began);
     assert.equal(await text(page, "#score"), "7");
     assert.equal(await text(page, "#remaining"), "18");
-    assert.match(await text(page, "#verdict"), /Yes, every map arrives/);
+    assert.match(await text(page, "#arriving"), /Yes, every map arrives/);
     assert.match(await text(page, "#reports ol"), /#28.*Drill.*waiting.*#27.*Cube.*sending/);
     assert.match(await text(page, "#attention"), /report 25 is in doubt/i);
     assert.equal(await page.locator("button, input, a, select, [tabindex]").count(), 0);
@@ -66,7 +66,7 @@ test("says that the box is lost, and comes back by itself", async (t) => {
   stage.freeze();
   await page.waitForSelector("body[data-link=lost]");
   await said(page, "The box does not answer");
-  assert.match(await text(page, "#verdict"), /Unknown/);
+  assert.match(await text(page, "#arriving"), /Unknown/);
   stage.thaw();
   await page.waitForSelector("body[data-link=live]");
   assert.equal(await text(page, "#attention"), "");

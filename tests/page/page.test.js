@@ -10,7 +10,7 @@ test("shows how the run stands, and that every map arrives", async (t) => {
   await showsTheClock(page, began);
   assert.equal(await text(page, "#score"), "7");
   assert.equal(await text(page, "#remaining"), "18");
-  assert.match(await text(page, "#verdict"), /Yes, every map arrives/);
+  assert.match(await text(page, "#arriving"), /Yes, every map arrives/);
   assert.equal(await page.getByRole("row", { name: /ANYmal2/ }).count(), 1);
   await page.getByRole("row", { name: /ANYmal2/ }).filter({ hasText: /7 s.*arriving/ }).waitFor(); // its age grows until the next event
   assert.match(await text(page, "#reports .rows li:first-child"), /scored \+1.*Survivor.*85\.8, −4\.5/);
@@ -25,13 +25,13 @@ test("follows what changes, and says so to those who only listen", async (t) => 
   assert.equal(await alert.textContent(), "");
   stage.play("trouble");
   await said(page, "1 report is in doubt");
-  assert.match(await text(page, "#verdict"), /No: ANYmal1 grid, ANYmal1 cloud/);
+  assert.match(await text(page, "#arriving"), /No: ANYmal1 grid, ANYmal1 cloud/);
   assert.match(await text(page, "#sayings"), /ANYmal2 cloud: 429 "Cloud updates too frequent/);
   assert.match(await text(page, "#post"), /not connected.*Connection refused/);
   assert.match(await text(page, "#reports .rows"), /waiting.*Helmet.*sending.*Cube.*in doubt.*Vent/);
   stage.play("calm");
   await page.waitForFunction(() => document.getElementById("attention").textContent === "");
-  assert.match(await text(page, "#verdict"), /Yes/);
+  assert.match(await text(page, "#arriving"), /Yes/);
 });
 
 test("tells every state by a shape and a word, not by colour alone", async (t) => {
@@ -207,12 +207,12 @@ test("says that a silent box is lost, and recovers by itself", async (t) => {
   await page.waitForSelector("body[data-link=lost]");
   await said(page, "The box does not answer");
   assert.match(await text(page, "#link"), /Box lost/);
-  assert.match(await text(page, "#verdict"), /Unknown/);
+  assert.match(await text(page, "#arriving"), /Unknown/);
   assert.match(await page.title(), /lost/);
   stage.thaw();
   await page.waitForSelector("body[data-link=live]");
   assert.equal(await text(page, "#attention"), "");
-  assert.match(await text(page, "#verdict"), /Yes/);
+  assert.match(await text(page, "#arriving"), /Yes/);
 });
 
 test("says at once that a box that stopped is lost, and finds the next one at its address", async (t) => {

@@ -50,13 +50,13 @@ class Stage final : public Source, public Operator {
     if (row == rows.end()) return {};
     return ReportDetail{*row, {{row->received, "received", ""}, {row->changed, row->state, row->note}}, {}};
   }
-  std::expected<std::int64_t, std::string> judge(std::int64_t number, Deed deed) override {
-    return played_.judge(view(), number, deed);
+  std::expected<std::int64_t, std::string> judge(std::int64_t number, Action action) override {
+    return played_.judge(view(), number, action);
   }
   std::expected<std::int64_t, std::string> report(const icd::ArtifactReport& report, bool resubmit) override {
     return played_.report(view(), report, resubmit);
   }
-  std::expected<void, std::string> aside(std::uint64_t number, AsideDeed) override {
+  std::expected<void, std::string> aside(std::uint64_t number, AsideAction) override {
     return played_.aside(view(), number);
   }
   std::int64_t begin_run() override { return played_.begin_run(view()); }
@@ -64,8 +64,8 @@ class Stage final : public Source, public Operator {
     identify_until_ = loop_.stamp_now() + seconds;
     return identify_until_;
   }
-  MarkerNews markers(std::uint64_t) const override {
-    return name_ == "empty" ? MarkerNews{} : scene_markers(began_);
+  MarkerChanges markers(std::uint64_t) const override {
+    return name_ == "empty" ? MarkerChanges{} : scene_markers(began_);
   }
   std::vector<Track> tracks(Time) const override {
     return name_ == "empty" ? std::vector<Track>{} : scene_tracks(began_);

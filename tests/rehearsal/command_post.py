@@ -101,8 +101,8 @@ class CommandPost:
             return session.request(method, f"http://{where}{path}", data=data, headers=headers, timeout=60)
 
     # The control port
-    def tell(self, deed, body=None):
-        return self.request(self.control, "POST", "/" + deed, body, {})
+    def tell(self, action, body=None):
+        return self.request(self.control, "POST", "/" + action, body, {})
 
     def faults(self, **queues):
         """post.faults(reports=["record-then-drop", "ok"], status=["500"])"""

@@ -69,8 +69,8 @@ class Reports(unittest.TestCase):
             self.assertEqual(post.tell("end").json(), {"state": "ended"})
             self.assertEqual(submit(), ("time limit exceeded", 0, 0))
             self.assertEqual([report["id"] for report in post.record()["reports"]], [1, 2, 3, 4, 5, 6])
-            for deed in ("start", "stop", "resume", "end"):
-                self.assertEqual(post.tell(deed).status_code, 409)
+            for action in ("start", "stop", "resume", "end"):
+                self.assertEqual(post.tell(action).status_code, 409)
 
     def test_a_run_ends_after_its_duration(self):
         with CommandPost("--duration", "0.2") as post:

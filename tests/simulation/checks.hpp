@@ -4,7 +4,7 @@
 #include <string>
 #include <vector>
 
-#include "dispatch/deeds.hpp"
+#include "dispatch/output.hpp"
 #include "simulation/history.hpp"
 #include "simulation/reader.hpp"
 

@@ -33,6 +33,6 @@ class Omissions {
 };
 
 /// How many things each actor of a run did, or would have done.
-using Deeds = std::map<std::string, std::uint64_t>;
+using Actions = std::map<std::string, std::uint64_t>;
 
 }  // namespace adit::simulation

@@ -4,9 +4,9 @@
 #include <cstdlib>
 #include <utility>
 
+#include "access/admission.hpp"
 #include "access/session_file.hpp"
 #include "access/sessions.hpp"
-#include "access/verdict.hpp"
 #include "admin/session_keeper.hpp"
 #include "admin/store.hpp"
 #include "codec/json.hpp"

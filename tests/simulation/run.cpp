@@ -65,7 +65,7 @@ Outcome play(const Plan& plan) {
           .drawn = faults.names() + world.disk().faults().names(),
           .broken = all_checks(
               {world.history().events(), reports_in(box.state()), reader.readings(), box.most_map_bytes()}),
-          .deeds = world.deeds()};
+          .actions = world.actions()};
 }
 
 }  // namespace adit::simulation

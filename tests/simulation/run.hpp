@@ -22,7 +22,7 @@ struct Outcome {
   std::size_t faults = 0;
   std::string drawn;                // which faults exist
   std::vector<std::string> broken;  // "Once: ..."
-  Deeds deeds;
+  Actions actions;
 };
 
 Outcome play(const Plan& plan);

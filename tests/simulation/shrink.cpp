@@ -13,16 +13,16 @@ class Shrinking {
       : seed_(seed), without_(std::move(from)), check_(std::move(check) + ':'), plays_left_(most_plays) {}
 
   Omissions result() {
-    for (const auto& [actor, deeds] : deeds()) try_without_all(actor);
+    for (const auto& [actor, actions] : actions()) try_without_all(actor);
     for (bool smaller = true; smaller && plays_left_ > 0;) {
       smaller = false;
-      for (const auto& [actor, deeds] : deeds()) smaller = try_ranges(actor, deeds) || smaller;
+      for (const auto& [actor, actions] : actions()) smaller = try_ranges(actor, actions) || smaller;
     }
     return without_;
   }
 
  private:
-  Deeds deeds() const { return play({.seed = seed_, .without = without_}).deeds; }
+  Actions actions() const { return play({.seed = seed_, .without = without_}).actions; }
 
   /// Keeps `next` where the run breaks the check all the same.
   bool still_breaks(Omissions next) {
@@ -41,12 +41,12 @@ class Shrinking {
   }
 
   /// Halves, quarters and so on, down to single ones.
-  bool try_ranges(const std::string& actor, std::uint64_t deeds) {
+  bool try_ranges(const std::string& actor, std::uint64_t actions) {
     bool smaller = false;
-    for (std::uint64_t size = (deeds + 1) / 2; size > 0 && plays_left_ > 0;
+    for (std::uint64_t size = (actions + 1) / 2; size > 0 && plays_left_ > 0;
          size = size == 1 ? 0 : (size + 1) / 2) {
-      for (std::uint64_t first = 1; first <= deeds; first += size)
-        smaller = try_range(actor, first, std::min(first + size - 1, deeds)) || smaller;
+      for (std::uint64_t first = 1; first <= actions; first += size)
+        smaller = try_range(actor, first, std::min(first + size - 1, actions)) || smaller;
     }
     return smaller;
   }

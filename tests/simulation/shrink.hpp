@@ -8,7 +8,7 @@
 namespace adit::simulation {
 
 /// A run that breaks the check of that name, made small: whatever it breaks without is left out, first whole
-/// actors, then ranges, then single deeds. Plays the run anew for each that it tries, `most_plays` times at
+/// actors, then ranges, then single actions. Plays the run anew for each that it tries, `most_plays` times at
 /// most.
 Omissions shrunk(std::uint64_t seed, const Omissions& from, const std::string& check, int most_plays);
 

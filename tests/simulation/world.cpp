@@ -65,7 +65,7 @@ void World::run_for(Duration duration) {
 }
 
 bool World::omits(const std::string& actor) {
-  return without_.has(actor, ++deeds_[actor]);
+  return without_.has(actor, ++actions_[actor]);
 }
 
 void World::stand_still(Duration duration) {

@@ -68,7 +68,7 @@ class World {
 
   /// For each thing that an actor may leave undone, before it does it: whether this one is left out.
   bool omits(const std::string& actor);
-  const Deeds& deeds() const { return deeds_; }
+  const Actions& actions() const { return actions_; }
 
   void note(Event event);
   History& history() { return history_; }
@@ -112,7 +112,7 @@ class World {
 
   const std::uint64_t seed_;
   const Omissions without_;
-  Deeds deeds_;
+  Actions actions_;
   Instant now_;
   std::uint64_t order_ = 0, steps_ = 0, entropy_ = 0;
   std::priority_queue<Planned> planned_;

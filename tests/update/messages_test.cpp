@@ -41,10 +41,10 @@ TEST(Messages, SayWhatTheyWereGiven) {
   EXPECT_EQ(*none, Status{});
   for (const Stage stage : {Stage::None, Stage::Installing, Stage::Interrupted, Stage::Failed,
                             Stage::Installed, Stage::Left, Stage::Good}) {
-    const Story story{stage, "0.2.0", "B", "boot", "why"};
-    const auto read = read_story(write(story));
+    const LastUpdate last_update{stage, "0.2.0", "B", "boot", "why"};
+    const auto read = read_last_update(write(last_update));
     ASSERT_TRUE(read) << read.error();
-    EXPECT_EQ(*read, story);
+    EXPECT_EQ(*read, last_update);
   }
 }
 
@@ -76,7 +76,7 @@ void expect_strict(const std::string& text, Read read) {
 TEST(Messages, AreReadStrictly) {
   expect_strict(write(Request{kNonce, Request::What::Install, false}), read_request);
   expect_strict(write(a_status()), read_status_file);
-  expect_strict(write(a_status().last), read_story);
+  expect_strict(write(a_status().last), read_last_update);
 }
 
 TEST(Messages, OfAnotherFormatOrWithAnotherWordAreRefused) {

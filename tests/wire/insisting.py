@@ -74,7 +74,7 @@ class Operator:
     """Of a stage: looks at what the Command Post shows as recorded, and judges by that what waits for him."""
 
     def __init__(self, stage):
-        self.stage, self.judged = stage, {}  # the deed by the report's number
+        self.stage, self.judged = stage, {}  # the action by the report's number
 
     def waiting(self):
         """Those held, and those in doubt of which nothing was found out for a while, by their numbers."""
@@ -91,16 +91,16 @@ class Operator:
             done = row["state"] == "in doubt" and at_of(row) in recorded
             self.judges(row, "done" if done else "send")
 
-    def judges(self, row, deed):
+    def judges(self, row, action):
         """What he saw is a moment old: a report of which the box found something out since is not his to judge."""
         number = row["number"]
-        status, said = self.stage.box.judge(number, deed)
+        status, said = self.stage.box.judge(number, action)
         if status == 200:
-            self.judged[number] = deed
+            self.judged[number] = action
             return
         now = next(each for each in self.stage.box.reports() if each["number"] == number)
         if status != 409 or (now["state"], now["changed"]) == (row["state"], row["changed"]):
-            raise AssertionError(f"report {number}, {deed}: {status} {said}; it is {now['state']}")
+            raise AssertionError(f"report {number}, {action}: {status} {said}; it is {now['state']}")
 
     def sees_all_at_rest(self):
         """Nothing moves any more by itself."""

@@ -176,9 +176,9 @@ class Page:
         """What the operator is to know or to decide, a sentence a line."""
         return "\n".join(self.ask("GET /adit/run")[1]["attention"])
 
-    def judge(self, number, deed):
+    def judge(self, number, action):
         """The operator's word on a report: send, done, withdraw or resubmit. Its status, and what its JSON says."""
-        return self.ask(f"POST /adit/reports/{number}/{deed}", {"Content-Type": "application/json"})
+        return self.ask(f"POST /adit/reports/{number}/{action}", {"Content-Type": "application/json"})
 
     def knows_the_run(self):
         return self.ask("GET /adit/run")[1]["run_heard"] is not None

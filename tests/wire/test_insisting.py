@@ -18,7 +18,7 @@ class Box:
     def reports(self):
         return [dict(self.row)]
 
-    def judge(self, number, deed):
+    def judge(self, number, action):
         self.row.update(self.then)
         return self.answer
 

@@ -61,13 +61,13 @@ class SameReport(unittest.TestCase):
             wait_until(lambda: len(stage.post.recorded()) == 3, "the operator's repeat")
 
     def test_what_a_repeat_does_after_an_answer_that_did_not_score(self):
-        for said, options, deed, is_new in (("run not started", ["--not-started"], None, True),
+        for said, options, action, is_new in (("run not started", ["--not-started"], None, True),
                                             ("admin stop", [], "POST /stop", True),
                                             ("report limit exceeded", ["--reports", "0"], None, False),
                                             ("time limit exceeded", [], "POST /end", False)):
             with self.subTest(said), playing(*options) as stage:
-                if deed is not None:
-                    stage.post.control(deed)
+                if action is not None:
+                    stage.post.control(action)
                 first, repeated = submit(stage), submit(stage)
                 self.assertEqual([first.status_code, repeated.status_code], [201, 201])
                 self.assertEqual([first.json()["report_status"], repeated.json()["report_status"]], [said, said])

@@ -19,9 +19,9 @@ std::expected<std::optional<Json>, std::string> body_of(const Request& request) 
   return std::move(document->value);
 }
 
-Outcome change_state(CommandPost& post, bool (Run::*deed)(Clock::time_point)) {
+Outcome change_state(CommandPost& post, bool (Run::*wanted)(Clock::time_point)) {
   const auto now = Clock::now();
-  const bool done = (post.run().*deed)(now);
+  const bool done = (post.run().*wanted)(now);
   const std::string state = post.run().standing(now).state;
   if (!done) return refused(409, "the run is: " + state);
   return answered(200, OrderedJson{{"state", state}});
@@ -94,19 +94,19 @@ Outcome control(CommandPost& post, const Request& request) {
     outcome.after = After::Close;
     return outcome;
   }
-  const std::string deed = request.method + " " + std::string(path_of(request.target));
+  const std::string wanted = request.method + " " + std::string(path_of(request.target));
   const auto body = body_of(request);
   if (!body) return refused(400, body.error());
-  if (deed == "GET /record") return answered(200, post.record());
-  if (deed == "GET /faults") return answered(200, post.faults().left());
-  if (deed == "POST /faults") return tell_faults(post, *body);
-  if (deed == "DELETE /faults") return clear_faults(post);
-  if (deed == "POST /new-run") return begin_new_run(post, *body);
-  if (deed == "POST /other-sender") return submit_by_other(post, *body);
-  if (deed == "POST /start") return change_state(post, &Run::start);
-  if (deed == "POST /stop") return change_state(post, &Run::admin_stop);
-  if (deed == "POST /resume") return change_state(post, &Run::resume);
-  if (deed == "POST /end") return change_state(post, &Run::end);
+  if (wanted == "GET /record") return answered(200, post.record());
+  if (wanted == "GET /faults") return answered(200, post.faults().left());
+  if (wanted == "POST /faults") return tell_faults(post, *body);
+  if (wanted == "DELETE /faults") return clear_faults(post);
+  if (wanted == "POST /new-run") return begin_new_run(post, *body);
+  if (wanted == "POST /other-sender") return submit_by_other(post, *body);
+  if (wanted == "POST /start") return change_state(post, &Run::start);
+  if (wanted == "POST /stop") return change_state(post, &Run::admin_stop);
+  if (wanted == "POST /resume") return change_state(post, &Run::resume);
+  if (wanted == "POST /end") return change_state(post, &Run::end);
   return refused(404,
                  "POST /start, /stop, /resume, /end, /new-run or /other-sender, GET /record, "
                  "GET, POST or DELETE /faults");

@@ -7,38 +7,38 @@
 namespace adit::rehearsal {
 namespace {
 
-using Deed = Fault::Deed;
+using Action = Fault::Action;
 using Taken = std::expected<void, std::string>;
 
-struct DeedWord {
+struct ActionWord {
   std::string_view word;
-  Deed deed;
+  Action action;
 };
 
-constexpr std::array<DeedWord, 20> kDeeds = {{{"drop", Deed::Drop},
-                                              {"record-then-drop", Deed::RecordThenDrop},
-                                              {"half-answer", Deed::HalfAnswer},
-                                              {"reset", Deed::Reset},
-                                              {"reset-unrecorded", Deed::ResetUnrecorded},
-                                              {"garbage", Deed::Garbage},
-                                              {"401", Deed::Unauthorized},
-                                              {"429", Deed::TooMany},
-                                              {"500", Deed::Fail},
-                                              {"500-recorded", Deed::RecordThenFail},
-                                              {"html-200", Deed::PageOk},
-                                              {"html-302", Deed::PageElsewhere},
-                                              {"html-400", Deed::PageBad},
-                                              {"html-422", Deed::PageUnprocessable},
-                                              {"length-huge", Deed::LengthHuge},
-                                              {"chunk-huge", Deed::ChunkHuge},
-                                              {"header-flood", Deed::HeaderFlood},
-                                              {"endless-body", Deed::EndlessBody},
-                                              {"1xx-flood", Deed::InterimFlood},
-                                              {"json-deep", Deed::JsonDeep}}};
+constexpr std::array<ActionWord, 20> kActions = {{{"drop", Action::Drop},
+                                                  {"record-then-drop", Action::RecordThenDrop},
+                                                  {"half-answer", Action::HalfAnswer},
+                                                  {"reset", Action::Reset},
+                                                  {"reset-unrecorded", Action::ResetUnrecorded},
+                                                  {"garbage", Action::Garbage},
+                                                  {"401", Action::Unauthorized},
+                                                  {"429", Action::TooMany},
+                                                  {"500", Action::Fail},
+                                                  {"500-recorded", Action::RecordThenFail},
+                                                  {"html-200", Action::PageOk},
+                                                  {"html-302", Action::PageElsewhere},
+                                                  {"html-400", Action::PageBad},
+                                                  {"html-422", Action::PageUnprocessable},
+                                                  {"length-huge", Action::LengthHuge},
+                                                  {"chunk-huge", Action::ChunkHuge},
+                                                  {"header-flood", Action::HeaderFlood},
+                                                  {"endless-body", Action::EndlessBody},
+                                                  {"1xx-flood", Action::InterimFlood},
+                                                  {"json-deep", Action::JsonDeep}}};
 
-/// Of any deed but Behave.
-std::string_view word_for(Deed deed) {
-  return std::ranges::find(kDeeds, deed, &DeedWord::deed)->word;
+/// Of any action but Behave.
+std::string_view word_for(Action action) {
+  return std::ranges::find(kActions, action, &ActionWord::action)->word;
 }
 
 constexpr int kMostTimes = 10'000;
@@ -105,14 +105,14 @@ Taken take_remaining(const Word& word, Fault& fault) {
   return set_once(fault.remaining, *offset, word);
 }
 
-Taken take_deed(const Word& word, Deed deed, Fault& fault) {
-  if (fault.deed != Deed::Behave) {
+Taken take_action(const Word& word, Action action, Fault& fault) {
+  if (fault.action != Action::Behave) {
     return std::unexpected(quoted(word.name) + " cannot happen to a request together with '" +
-                           std::string(word_for(fault.deed)) + "'");
+                           std::string(word_for(fault.action)) + "'");
   }
-  fault.deed = deed;
+  fault.action = action;
   if (!word.argument) return {};
-  if (deed != Deed::TooMany) return std::unexpected(quoted(word.name) + " takes no '='");
+  if (action != Action::TooMany) return std::unexpected(quoted(word.name) + " takes no '='");
   const auto times = number_of<int>(*word.argument, 1, kMostTimes);
   if (!times) return wanted(word, "how many requests, from 1 to 10000, as in 429=3");
   fault.times = *times;
@@ -140,10 +140,10 @@ Taken take(const Word& word, Fault& fault) {
     fault.other_sender = true;
     return {};
   }
-  const auto* const found = std::ranges::find(kDeeds, word.name, &DeedWord::word);
-  if (found != kDeeds.end()) return take_deed(word, found->deed, fault);
+  const auto* const found = std::ranges::find(kActions, word.name, &ActionWord::word);
+  if (found != kActions.end()) return take_action(word, found->action, fault);
   std::string sentence = "no such fault: " + quoted(word.name) + "; there are ok";
-  for (const DeedWord& deed : kDeeds) sentence.append(", ").append(deed.word);
+  for (const ActionWord& action : kActions) sentence.append(", ").append(action.word);
   return std::unexpected(sentence +
                          ", answer-after, record-after, remaining, other-sender, retry-after, for, robot");
 }
@@ -158,9 +158,9 @@ std::string text_of(double number) {
 
 bool Fault::records() const {
   constexpr std::array unrecorded = {
-      Deed::Drop,   Deed::ResetUnrecorded, Deed::Unauthorized, Deed::TooMany,          Deed::Fail,
-      Deed::PageOk, Deed::PageElsewhere,   Deed::PageBad,      Deed::PageUnprocessable};
-  return std::ranges::find(unrecorded, deed) == unrecorded.end();
+      Action::Drop,   Action::ResetUnrecorded, Action::Unauthorized, Action::TooMany,          Action::Fail,
+      Action::PageOk, Action::PageElsewhere,   Action::PageBad,      Action::PageUnprocessable};
+  return std::ranges::find(unrecorded, action) == unrecorded.end();
 }
 
 std::expected<Fault, std::string> read_fault(std::string_view words) {
@@ -189,7 +189,7 @@ std::string words_of(const Fault& fault) {
   if (fault.clock_stands) add("clock:constant");
   if (fault.record_after) add("record-after=") += text_of(fault.record_after->count());
   if (fault.answer_after) add("answer-after=") += text_of(fault.answer_after->count());
-  if (fault.deed != Deed::Behave) add(word_for(fault.deed));
+  if (fault.action != Action::Behave) add(word_for(fault.action));
   if (fault.times > 1) words.append("=").append(std::to_string(fault.times));
   if (fault.lasts) add("for=") += text_of(fault.lasts->count());
   if (!fault.robot.empty()) add("robot=") += fault.robot;

@@ -10,9 +10,9 @@
 
 namespace adit::rehearsal {
 
-/// What is wrong with one request's answer, on purpose. One deed at most, and what may go with any.
+/// What is wrong with one request's answer, on purpose. One action at most, and what may go with any.
 struct Fault {
-  enum class Deed : std::uint8_t {
+  enum class Action : std::uint8_t {
     Behave,
     Drop,
     RecordThenDrop,
@@ -39,7 +39,7 @@ struct Fault {
   };
   using Seconds = std::chrono::duration<double>;
 
-  Deed deed = Deed::Behave;
+  Action action = Action::Behave;
   int times = 1;                 // that many requests, one after the other (429=COUNT)
   std::optional<Seconds> lasts;  // from its first request on, all those of its aim
   std::string robot;             // of whose messages alone; "": of all

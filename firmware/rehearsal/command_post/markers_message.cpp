@@ -96,9 +96,9 @@ bool read_marker(const Field& marker, MarkersMessage& message) {
   if (!ns || !type || !action || !pose) return false;
   const auto shape = type->integer(0, kLastType);
   if (!shape) return false;
-  const auto deed = action->integer(0, 3);
-  if (!deed || !read_pose(*pose)) return false;
-  if (*deed == 1) action->breaks("expected 0, 2 or 3 (ICD 6.6)", Measured::Takes);
+  const auto kind = action->integer(0, 3);
+  if (!kind || !read_pose(*pose)) return false;
+  if (*kind == 1) action->breaks("expected 0, 2 or 3 (ICD 6.6)", Measured::Takes);
   check_looks(marker);
   check_geometry(marker, *shape);
   message.namespaces.push_back(*ns);

@@ -9,7 +9,7 @@
 namespace adit::rehearsal {
 namespace {
 
-using Deed = Fault::Deed;
+using Action = Fault::Action;
 
 /// Neither a status line nor the start of one.
 constexpr std::string_view kGarbage("\x16\x03\x01\x00\x05this is no HTTP\r\n\r\n\0\xff", 26);
@@ -32,21 +32,21 @@ std::string repeated(std::string_view text, std::size_t bytes) {
   return all;
 }
 
-/// The bytes of the deeds that would end a client which takes a peer at its word.
-std::string overwhelming(Deed deed) {
+/// The bytes of the actions that would end a client which takes a peer at its word.
+std::string overwhelming(Action action) {
   constexpr std::size_t kMuch = std::size_t{4} << 20;
-  switch (deed) {
-    case Deed::LengthHuge:
+  switch (action) {
+    case Action::LengthHuge:
       return "HTTP/1.1 200 OK\r\nContent-Type: application/json\r\nContent-Length: 30000000000\r\n\r\n{";
-    case Deed::ChunkHuge:
+    case Action::ChunkHuge:
       return "HTTP/1.1 200 OK\r\nTransfer-Encoding: chunked\r\n\r\n6fc23ac00\r\n{";
-    case Deed::HeaderFlood:
+    case Action::HeaderFlood:
       return "HTTP/1.1 200 OK\r\n" + repeated("X-Flood: 0123456789\r\n", kMuch);
-    case Deed::EndlessBody:
+    case Action::EndlessBody:
       return "HTTP/1.1 200 OK\r\nContent-Type: application/json\r\n\r\n[" + repeated("0,", kMuch);
-    case Deed::InterimFlood:
+    case Action::InterimFlood:
       return repeated("HTTP/1.1 100 Continue\r\n\r\n", kMuch);
-    case Deed::JsonDeep: {
+    case Action::JsonDeep: {
       const std::string body(15'000, '[');
       return "HTTP/1.1 200 OK\r\nContent-Type: application/json\r\nConnection: close\r\nContent-Length: " +
              std::to_string(body.size()) + "\r\n\r\n" + body;
@@ -79,38 +79,38 @@ Outcome broken(std::string bytes, After after = After::Close) {
   return outcome;
 }
 
-Outcome spoiled(Deed deed, const Request& request, Outcome decided) {
-  switch (deed) {
-    case Deed::Drop:
-    case Deed::RecordThenDrop:
+Outcome spoiled(Action action, const Request& request, Outcome decided) {
+  switch (action) {
+    case Action::Drop:
+    case Action::RecordThenDrop:
       return broken("");
-    case Deed::Reset:
-    case Deed::ResetUnrecorded:
+    case Action::Reset:
+    case Action::ResetUnrecorded:
       return broken("", After::Reset);
-    case Deed::Garbage:
+    case Action::Garbage:
       return broken(std::string(kGarbage));
-    case Deed::RecordThenFail:
+    case Action::RecordThenFail:
       return failure();
-    case Deed::HalfAnswer: {
+    case Action::HalfAnswer: {
       std::string bytes = bytes_of(decided, request.method == "HEAD");
       bytes.resize(bytes.size() / 2);
       return broken(std::move(bytes));
     }
-    case Deed::LengthHuge:
-    case Deed::ChunkHuge:
-    case Deed::HeaderFlood:
-    case Deed::EndlessBody:
-    case Deed::InterimFlood:
-    case Deed::JsonDeep:
-      return broken(overwhelming(deed));
-    case Deed::Behave:
-    case Deed::Unauthorized:
-    case Deed::TooMany:
-    case Deed::Fail:
-    case Deed::PageOk:
-    case Deed::PageElsewhere:
-    case Deed::PageBad:
-    case Deed::PageUnprocessable:
+    case Action::LengthHuge:
+    case Action::ChunkHuge:
+    case Action::HeaderFlood:
+    case Action::EndlessBody:
+    case Action::InterimFlood:
+    case Action::JsonDeep:
+      return broken(overwhelming(action));
+    case Action::Behave:
+    case Action::Unauthorized:
+    case Action::TooMany:
+    case Action::Fail:
+    case Action::PageOk:
+    case Action::PageElsewhere:
+    case Action::PageBad:
+    case Action::PageUnprocessable:
       break;
   }
   return decided;
@@ -158,13 +158,13 @@ Judgement unjudged(const Fault& fault, Aim aim, const Request& request, Manner m
   if (aim == Aim::Reports) {  // so that the transcript shows which report came to nothing
     if (auto document = read_document(request.body, Format::JsonText)) judgement.message = document->value;
   }
-  if (fault.deed == Deed::Unauthorized) judgement.outcome = refusal(401, aim, manner);
-  if (fault.deed == Deed::TooMany) judgement.outcome = refusal(429, aim, manner);
-  if (fault.deed == Deed::Fail) judgement.outcome = failure();
-  if (fault.deed == Deed::PageOk) judgement.outcome = portal(200);
-  if (fault.deed == Deed::PageElsewhere) judgement.outcome = portal(302);
-  if (fault.deed == Deed::PageBad) judgement.outcome = portal(400);
-  if (fault.deed == Deed::PageUnprocessable) judgement.outcome = portal(422);
+  if (fault.action == Action::Unauthorized) judgement.outcome = refusal(401, aim, manner);
+  if (fault.action == Action::TooMany) judgement.outcome = refusal(429, aim, manner);
+  if (fault.action == Action::Fail) judgement.outcome = failure();
+  if (fault.action == Action::PageOk) judgement.outcome = portal(200);
+  if (fault.action == Action::PageElsewhere) judgement.outcome = portal(302);
+  if (fault.action == Action::PageBad) judgement.outcome = portal(400);
+  if (fault.action == Action::PageUnprocessable) judgement.outcome = portal(422);
   return judgement;
 }
 
@@ -175,7 +175,7 @@ void spoil(const Fault& fault, const Request& request, Judgement& judgement) {
   if (fault.clock_stands) {
     stop_clock(judgement.uri == kStatusUri ? kMeasuredStatusClock : kMeasuredReportClock, outcome.answer);
   }
-  outcome = spoiled(fault.deed, request, std::move(outcome));
+  outcome = spoiled(fault.action, request, std::move(outcome));
   if (fault.retry_after) {
     outcome.answer.headers.emplace_back("Retry-After", std::to_string(*fault.retry_after));
   }

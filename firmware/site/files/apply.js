@@ -1,6 +1,6 @@
 // Applying what was typed, or a file: shown first, and never over what somebody else saved meanwhile.
 import { answered } from "./dialog.js";
-import { beginFrom, check, differs, draft, drop, flat, merged, onDraft, onVerdict, refresh, same, verdict } from "./draft.js";
+import { beginFrom, check, differs, draft, drop, flat, merged, onDraft, onFindings, refresh, same, findings } from "./draft.js";
 import { make, say } from "./dom.js";
 import { blameAll, fieldOf } from "./field.js";
 import { get, post } from "./session.js";
@@ -48,10 +48,10 @@ export function reviewed({ title, text = "", columns = ["From", "To"], changes =
 export const fromTo = (changes) => changes.map(({ path, from, to }) => [path, from, to]);
 
 /** Does something that the box applies: while another change is being applied, and where it is silent, again. */
-export async function insist(deed) {
+export async function insist(action) {
   for (const end = performance.now() + PATIENCE; ; await sleep(PAUSE)) {
     try {
-      return await deed();
+      return await action();
     } catch (error) {
       const passes = !error.status || (error.status === 409 && error.message.includes("being applied"));
       if (!passes || performance.now() > end) throw error;
@@ -164,7 +164,7 @@ function errorLink(error) {
 }
 
 function described() {
-  const { errors, changes, trouble } = verdict;
+  const { errors, changes, trouble } = findings;
   if (trouble) return `${trouble} What you typed is kept, and checked once it does.`;
   if (errors.length) return `${errors.length === 1 ? "1 error" : `${errors.length} errors`} to mend before it can be applied.`;
   return `${changes.length === 1 ? "1 change" : `${changes.length} changes`} not yet applied.`;
@@ -177,7 +177,7 @@ function show() {
   if (link) state.append(" ", Object.assign(make("a", link), { href: link }));
   for (const button of buttons) button.hidden = !typed || isBusy;
   const here = document.querySelector("#sheets > section:not([hidden])");
-  const others = blameAll(verdict.errors).filter(({ field }) => !field || !here?.contains(field));
+  const others = blameAll(findings.errors).filter(({ field }) => !field || !here?.contains(field));
   elsewhere.replaceChildren(...others.map(errorLink));
   document.body.dataset.typed = typed;
 }
@@ -193,7 +193,7 @@ export function offerApply() {
     if (what === "typed") outcome = link = "";
     show();
   });
-  onVerdict(show);
+  onFindings(show);
   addEventListener("hashchange", () => requestAnimationFrame(show));
   if (draft.newer) settle();
 }

@@ -1,5 +1,5 @@
 // What the Command Post would not take: set aside until the operator sends it again or discards it.
-import { barred } from "./deeds.js";
+import { barred } from "./actions.js";
 import { giveFocus, list, make, say } from "./dom.js";
 import { post } from "./session.js";
 import { ago, clip } from "./words.js";

@@ -97,9 +97,9 @@ export async function offerUpdate(operator) {
     await get("/adit/update").then(show, () => {});
     timer = setTimeout(look, 2000);
   }
-  function act(deed) {
+  function act(action) {
     look();
-    deed().then(look, (error) => {
+    action().then(look, (error) => {
       clearTimeout(timer);
       timer = setTimeout(look, 9000);
       outcome.textContent = error.message;

@@ -1,12 +1,12 @@
 // A report composed by hand: what and where, then a look at what is there already, then send.
-import { barred, tell } from "./deeds.js";
+import { barred, tell } from "./actions.js";
 import { open } from "./dialog.js";
 import { make, say } from "./dom.js";
 import { map, pick } from "./map_controls.js";
 import { nearTo, sameAs } from "./near.js";
 import { reveal } from "./reports.js";
 import { post } from "./session.js";
-import { life } from "./verdict.js";
+import { life } from "./arriving.js";
 import { ago, clip, metres } from "./words.js";
 
 // ICD 5.2.

@@ -4,7 +4,7 @@ import { follow } from "./live.js";
 import { MapOfRun } from "./map.js";
 import { showVerdict } from "./robots.js";
 import { showAttention, showRun } from "./run.js";
-import { life } from "./verdict.js";
+import { life } from "./arriving.js";
 import { clip, timeOfDay } from "./words.js";
 
 const MOST_REPORTS = 20; // more than fit any screen
@@ -19,10 +19,10 @@ function showReports(view) {
   const create = () => make("li", make("span.number"), make("span.what"), make("span.badge"));
   list(reports.querySelector("ol"), mine.slice(0, MOST_REPORTS), (report) => report.number, create, (node, report) => {
     const { level, word } = life(report);
-    const [number, what, verdict] = node.children;
+    const [number, what, badged] = node.children;
     mark(node, "level", level);
     say(what, clip(report.type, 40));
-    badge(verdict, level, clip(word, 20));
+    badge(badged, level, clip(word, 20));
     say(number, `#${report.number}`);
   });
 }

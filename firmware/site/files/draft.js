@@ -81,12 +81,12 @@ export function flat(value, path = "", into = new Map()) {
 let timer = 0, asked = 0;
 
 /** {errors, changes, warnings}, and `trouble` where the box could not be asked. */
-export let verdict = { errors: [], changes: [], warnings: [], trouble: "" };
-export const onVerdict = (hear) => judges.push(hear);
+export let findings = { errors: [], changes: [], warnings: [], trouble: "" };
+export const onFindings = (hear) => judges.push(hear);
 
 function set(next) {
-  verdict = { errors: [], changes: [], warnings: [], trouble: "", ...next };
-  for (const hear of judges) hear(verdict);
+  findings = { errors: [], changes: [], warnings: [], trouble: "", ...next };
+  for (const hear of judges) hear(findings);
 }
 
 function forget() {
@@ -102,11 +102,11 @@ export async function check() {
     const said = await post("/adit/settings/check", { settings: draft.settings });
     if (mine === asked) set(said);
   } catch (error) {
-    if (mine !== asked) return verdict;
-    set({ errors: verdict.errors, changes: verdict.changes, trouble: error.message });
+    if (mine !== asked) return findings;
+    set({ errors: findings.errors, changes: findings.changes, trouble: error.message });
     if (!error.status) timer = setTimeout(check, RETRY);
   }
-  return verdict;
+  return findings;
 }
 
 export function checkAsTyped() {

@@ -50,7 +50,7 @@ function startOver() {
 
 /** Shows what comes; `lost(true or false)` is told whether the box answers. */
 export function followLog(lost) {
-  const turn = (deed) => deed().then(() => lost(false), () => lost(true));
+  const turn = (action) => action().then(() => lost(false), () => lost(true));
   for (const filter of [level, text]) filter.addEventListener("input", () => turn(startOver));
   const follow = async () => {
     if (!document.hidden) await turn(ask);

@@ -23,15 +23,15 @@ async function goOn(isFirst) {
   location.replace(isReady ? wanted : "/setup");
 }
 
-/** Shows a form, and does `deed` with its fields when it is sent. */
-function show(form, deed) {
+/** Shows a form, and does `action` with its fields when it is sent. */
+function show(form, action) {
   const button = form.querySelector("button"), first = form.querySelector("input");
   form.addEventListener("submit", async (event) => {
     event.preventDefault();
     trouble.textContent = "";
     button.disabled = true;
     try {
-      await deed(Object.fromEntries(new FormData(form)));
+      await action(Object.fromEntries(new FormData(form)));
       await goOn(form.id === "first");
     } catch (error) {
       trouble.textContent = error.message;

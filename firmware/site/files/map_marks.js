@@ -1,6 +1,6 @@
 // What is drawn over the map: robots, reports with their state by shape and colour, near duplicates, a scale.
 import { nearPairs } from "./near.js";
-import { life } from "./verdict.js";
+import { life } from "./arriving.js";
 import { clip, metres } from "./words.js";
 
 const STALE = 10; // s without a newer pose

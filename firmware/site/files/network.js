@@ -42,12 +42,12 @@ function report(text, bad = false) {
 
 async function check() {
   const mine = ++asked;
-  const verdict = await insist(() => post("/adit/network/check", wanted()));
+  const findings = await insist(() => post("/adit/network/check", wanted()));
   if (mine !== asked) return null;
-  const left = verdict.errors.filter(({ path }) => !fieldAt(path));
-  for (const field of fields.values()) blame(field, verdict.errors.filter(({ path }) => fieldAt(path) === field).map(({ what }) => what).join("; "));
-  warned.replaceChildren(...left.map(({ path, what }) => make("li", `${path}: ${what}`)), ...verdict.warnings.map((warning) => make("li", warning)));
-  return verdict;
+  const left = findings.errors.filter(({ path }) => !fieldAt(path));
+  for (const field of fields.values()) blame(field, findings.errors.filter(({ path }) => fieldAt(path) === field).map(({ what }) => what).join("; "));
+  warned.replaceChildren(...left.map(({ path, what }) => make("li", `${path}: ${what}`)), ...findings.warnings.map((warning) => make("li", warning)));
+  return findings;
 }
 
 function typed() {
@@ -60,17 +60,17 @@ function typed() {
 
 async function tryIt() {
   clearTimeout(timer);
-  const verdict = await check();
-  if (!verdict) return;
-  if (verdict.errors.length) {
-    return fieldAt(verdict.errors[0].path)?.control.focus();
+  const findings = await check();
+  if (!findings) return;
+  if (findings.errors.length) {
+    return fieldAt(findings.errors[0].path)?.control.focus();
   }
-  if (!verdict.changes.length) return report("The box has these addresses already.");
+  if (!findings.changes.length) return report("The box has these addresses already.");
   const yes = await reviewed({
     title: "Change the addresses for now?",
     text: "It takes itself back unless it is confirmed in time, from the new address.",
-    changes: fromTo(verdict.changes),
-    warnings: verdict.warnings,
+    changes: fromTo(findings.changes),
+    warnings: findings.warnings,
     word: "Change for now",
   });
   if (!yes) return;
@@ -81,11 +81,11 @@ async function tryIt() {
 }
 
 /** Does what a button says, and says what came of it. */
-function on(button, deed) {
+function on(button, action) {
   button.addEventListener("click", async (event) => {
     event.preventDefault();
     button.disabled = true;
-    await deed().catch((error) => report(error.message, true));
+    await action().catch((error) => report(error.message, true));
     button.disabled = false;
   });
 }

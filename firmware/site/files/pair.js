@@ -2,7 +2,7 @@
 import { badge, list, make, mark, say } from "./dom.js";
 import { map } from "./map_controls.js";
 import { distance } from "./near.js";
-import { life } from "./verdict.js";
+import { life } from "./arriving.js";
 import { ago, clip, metres } from "./words.js";
 
 const panel = document.querySelector("#map .pair");
@@ -32,10 +32,10 @@ panel.addEventListener("keydown", (event) => event.key === "Escape" && close());
 
 function update(node, report, now) {
   const { level, word } = life(report);
-  const [name, verdict, where, whence] = node.children;
+  const [name, badged, where, whence] = node.children;
   mark(node, "level", level);
   say(name, `#${report.number} ${clip(report.type, 40)}`);
-  badge(verdict, level, clip(word, 40));
+  badge(badged, level, clip(word, 40));
   const { x, y, z } = report.position;
   say(where, `${metres(x)}, ${metres(y)}, ${metres(z)} m`);
   say(whence, `${ago(now - report.received)}, from ${clip(report.sender, 40)}`);

@@ -7,8 +7,8 @@ const DONE = {
   removed: "Removed: nobody can log in as viewer.",
 };
 
-/** Does one deed of a form, and says what came of it. */
-async function attempt(form, deed) {
+/** Does one action of a form, and says what came of it. */
+async function attempt(form, action) {
   const outcome = form.querySelector(".outcome"), buttons = form.querySelectorAll("button");
   const say = (text, bad) => {
     outcome.textContent = text;
@@ -17,7 +17,7 @@ async function attempt(form, deed) {
   say("", false);
   for (const button of buttons) button.disabled = true;
   try {
-    say(await deed(), false);
+    say(await action(), false);
     form.reset();
   } catch (error) {
     say(error.message, true);

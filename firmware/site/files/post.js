@@ -1,6 +1,6 @@
 // The Command Post: its two endpoints, and how much of the link is in use.
 import { badge, list, make, mark, say } from "./dom.js";
-import { endpoint } from "./verdict.js";
+import { endpoint } from "./arriving.js";
 import { clip, mbit } from "./words.js";
 
 const at = (id) => document.getElementById(id);
@@ -11,10 +11,10 @@ function createEndpoint() {
 
 function updateEndpoint(node, row, lost) {
   const { level, word } = lost ? { level: "quiet", word: "unknown" } : endpoint(row);
-  const [name, verdict, address, answer, trouble] = node.children;
+  const [name, badged, address, answer, trouble] = node.children;
   mark(node, "level", level);
   say(name, row.name);
-  badge(verdict, level, word);
+  badge(badged, level, word);
   const status = row.last_status ? `${row.last_status}` : "no answer yet";
   say(answer, row.answer_ms === null ? status : `${status} in ${row.answer_ms.toFixed(row.answer_ms < 10 ? 1 : 0)} ms`);
   say(address, clip(row.address, 60));

@@ -1,6 +1,6 @@
 // What this box refused to its senders, newest first, with the sentence that they got.
 import { cureOf, wayTo } from "./cure.js";
-import { barred } from "./deeds.js";
+import { barred } from "./actions.js";
 import { list, make, say } from "./dom.js";
 import { ago, clip } from "./words.js";
 

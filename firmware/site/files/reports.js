@@ -1,10 +1,10 @@
 // Artifact reports, newest first: where each is in its life, what the Command Post said, and what can be done.
-import { barred, deedsOf, isBusy, outcomeOf, perform } from "./deeds.js";
+import { barred, actionsOf, isBusy, outcomeOf, perform } from "./actions.js";
 import { badge, list, make, mark, say } from "./dom.js";
 import { nearTo } from "./near.js";
 import { comparePair } from "./pair.js";
-import { showStory } from "./story.js";
-import { life } from "./verdict.js";
+import { showHistory } from "./history.js";
+import { life } from "./arriving.js";
 import { ago, clip, metres } from "./words.js";
 
 const section = document.getElementById("reports");
@@ -27,7 +27,7 @@ function create(report) {
   const outcome = make("p.outcome");
   outcome.setAttribute("role", "status");
   return make("li", make("span.badge"), make("span.what"), make("span.where"), make("span.since"), make("span.more"), open,
-    make("div.acts", make("div.near"), make("div.deeds")), outcome, make("div.story"));
+    make("div.acts", make("div.near"), make("div.actions")), outcome, make("div.history"));
 }
 
 function toggle(number) {
@@ -79,27 +79,27 @@ function showNear(node, report, nearest) {
   });
 }
 
-function showDeeds(node, report, view, isShown) {
+function showActions(node, report, view, isShown) {
   const reason = barred();
-  const createDeed = (deed) => {
-    const button = make("button", deed.label);
+  const createAction = (action) => {
+    const button = make("button", action.label);
     button.type = "button";
-    button.setAttribute("aria-label", `${deed.label}: report ${report.number}`);
+    button.setAttribute("aria-label", `${action.label}: report ${report.number}`);
     return button;
   };
-  list(node, isShown ? deedsOf(report) : [], (deed) => deed.label, createDeed, (button, deed) => {
+  list(node, isShown ? actionsOf(report) : [], (action) => action.label, createAction, (button, action) => {
     button.disabled = Boolean(reason);
-    button.onclick = () => perform(deed, report, last.view.run?.remaining_reports, again);
+    button.onclick = () => perform(action, report, last.view.run?.remaining_reports, again);
   });
 }
 
 function update(node, report, view, now) {
   const { level, word } = life(report);
   const isMore = opened.has(report.number);
-  const [verdict, what, where, since, rest, open, acts, outcome, story] = node.children;
-  const [near, deeds] = acts.children;
+  const [badged, what, where, since, rest, open, acts, outcome, history] = node.children;
+  const [near, actions] = acts.children;
   mark(node, "level", level);
-  badge(verdict, level, clip(word, 40));
+  badge(badged, level, clip(word, 40));
   say(what, clip(report.type, 40));
   say(where, placeOf(report));
   const earlier = report.run === view.run_number ? "" : ` · run ${report.run}`;
@@ -109,12 +109,12 @@ function update(node, report, view, now) {
   showNear(near, report, isMore || level === "ask" ? nearest : undefined);
   open.setAttribute("aria-expanded", String(isMore));
   say(open.lastChild, `More of report ${report.number}`);
-  showDeeds(deeds, report, view, isMore || level === "ask");
+  showActions(actions, report, view, isMore || level === "ask");
   const came = outcomeOf(report.number);
   say(outcome, came ? clip(came.text) : isBusy(report.number) ? "…" : "");
   mark(outcome, "bad", String(Boolean(came?.bad)));
-  story.hidden = !isMore;
-  if (isMore) showStory(story, report);
+  history.hidden = !isMore;
+  if (isMore) showHistory(history, report);
 }
 
 /** "12, 2 open, 7 of other runs" */

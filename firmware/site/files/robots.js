@@ -1,7 +1,7 @@
 // Is my map arriving? One row a robot, one cell a kind of data: how long ago it
 // was last forwarded, and what that means.
 import { badge, list, make, mark, say } from "./dom.js";
-import { arrival, kindOf, overall, robotOf } from "./verdict.js";
+import { arrival, kindOf, overall, robotOf } from "./arriving.js";
 import { age, bytes, clip } from "./words.js";
 
 const COLUMNS = ["grid", "cloud", "state"];
@@ -36,9 +36,9 @@ const createCell = (what) => make(what, make("span.badge.age"), make("span.word"
 function updateCell(cell, row, now, lost) {
   const { level, word } = lost ? { level: "quiet", word: "unknown" } : arrival(row, now);
   mark(cell, "level", level);
-  const [since, verdict, more] = cell.children;
+  const [since, badged, more] = cell.children;
   badge(since, level, row.last_forwarded === null ? "never" : age(now - row.last_forwarded));
-  say(verdict, word);
+  say(badged, word);
   say(more, details(row));
   cell.title = counts(row);
 }
@@ -70,7 +70,7 @@ function showMarkers(row, now, lost) {
 /** The answer in one sentence. */
 export function showVerdict(activities, now, lost) {
   const { level, word } = lost ? { level: "bad", word: "Unknown: the box does not answer" } : overall(activities, now);
-  badge(document.getElementById("verdict"), level, clip(word, 120));
+  badge(document.getElementById("arriving"), level, clip(word, 120));
 }
 
 export function showRobots(activities, now, lost) {

@@ -4,7 +4,7 @@ import "./presses.js";
 import { apply, goTo, offerApply, offerImport } from "./apply.js";
 import { setTyped, showCourses, showTokens } from "./courses.js";
 import { badge, list, make, mark, say } from "./dom.js";
-import { checkAsTyped, draft, missingTokens, onDraft, onVerdict, refresh, verdict } from "./draft.js";
+import { checkAsTyped, draft, missingTokens, onDraft, onFindings, refresh, findings } from "./draft.js";
 import { blameAll, fillIn, listOf, onlyShow, showAll } from "./field.js";
 import { offerNetwork, showNetwork } from "./network.js";
 import { followNetwork } from "./pending.js";
@@ -51,7 +51,7 @@ function create(section) {
 }
 
 function show() {
-  const errors = blameAll(verdict.errors), at = here();
+  const errors = blameAll(findings.errors), at = here();
   list(place, sections, nameOf, create, (node, section) => update(node, section, errors));
   back.hidden = at === 0;
   next.hidden = at === sections.length - 1;
@@ -95,7 +95,7 @@ function leadThrough() {
     await goOn().finally(() => (next.disabled = false));
   });
   onDraft(show);
-  onVerdict(show);
+  onFindings(show);
   for (const each of [document.getElementById("steps"), document.getElementById("sheets")]) each.hidden = false;
   turnTo(false);
 }

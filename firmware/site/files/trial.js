@@ -19,9 +19,9 @@ const [button, outcome, rows] = ["button", ".outcome", ".endpoints"].map((part) 
 export let result = "";
 
 function updateStep(node, { name, state, said, advice }) {
-  const [verdict, title, sentence, help] = node.children;
+  const [badged, title, sentence, help] = node.children;
   node.dataset.level = LEVELS[state] ?? "quiet";
-  badge(verdict, node.dataset.level, state);
+  badge(badged, node.dataset.level, state);
   say(title, NAMES[name] ?? name);
   say(sentence, said ?? "");
   say(help, advice ?? "");

@@ -6,7 +6,7 @@
 #include <utility>
 #include <vector>
 
-#include "dispatch/deeds.hpp"
+#include "dispatch/output.hpp"
 
 namespace adit::dispatch::model {
 

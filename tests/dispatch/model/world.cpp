@@ -86,7 +86,7 @@ void World::tell_story(const std::string& sentence) {
   if (tells_) story_ += icd::sentence(now_, " ", sentence, "\n");
 }
 
-// Deeds.
+// Output.
 
 bool World::write(std::span<const Report> steps, const Run* run, Flush flush) {
   if (!calm_ && trouble_.disk_full > 0 && chance() < kRefusedWrite) return false;

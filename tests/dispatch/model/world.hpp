@@ -43,7 +43,7 @@ struct Tally {
 
 /// Adit's rules, clients, a Command Post and what lies between, on simulated time. Everything comes from the
 /// seed.
-class World final : public Deeds {
+class World final : public Output {
  public:
   static constexpr double kEpoch = 1.7e9;  // simulated time 0, as a stamp
 
@@ -88,7 +88,7 @@ class World final : public Deeds {
   void judge_ledger(std::vector<std::string>& broken) const;
   void judge_clients(std::vector<std::string>& broken) const;
 
-  // Deeds.
+  // Output.
   bool write(std::span<const Report> steps, const Run* run, Flush flush) override;
   void tell(ClientId client, const ClientAnswer& answer, const Report& report) override;
 

@@ -1,7 +1,7 @@
 import assert from "node:assert/strict";
 import { test } from "node:test";
 import { until } from "../box.js";
-import { box, canBeDeaf, deed, logIn, look, row, says } from "./visits.js";
+import { box, canBeDeaf, action, logIn, look, row, says } from "./visits.js";
 
 /** The second report waits for so many seconds. */
 const slow = (seconds) => ({ settings: { command_post: { rates: { reports_hz: 1 / seconds } } } });
@@ -20,16 +20,16 @@ test("holds a report that waits, and sends it on the operator's further word", a
   const number = await waiting(made);
   const page = await look(t, made);
   await row(page, number).locator(".open").click();
-  await deed(page, "Hold", number).click();
+  await action(page, "Hold", number).click();
   await says(page, number, "held");
   await says(page, number, "Held: it goes only when you send it.");
   assert.equal(await made.state(number), "received");
   await page.waitForFunction((words) => document.getElementById("attention").innerText.includes(words), `eport ${number} is held: the operator holds it`);
   assert.deepEqual(await made.ask(`/adit/reports/${number}/hold`, {}), { status: 409, said: `report ${number} is received: it is held already` });
-  await deed(page, "Send", number).click();
+  await action(page, "Send", number).click();
   await says(page, number, "It will be sent.");
   assert.equal(await made.state(number), "waiting");
-  await deed(page, "Withdraw", number).click();
+  await action(page, "Withdraw", number).click();
   await says(page, number, "withdrawn");
   assert.equal(await recorded(made, 50), 0);
   assert.deepEqual(page.complaints, []);
@@ -53,9 +53,9 @@ test("is sent once where two operators press send at once", async (t) => {
   const number = await waiting(made);
   await made.ask(`/adit/reports/${number}/hold`, {});
   const pages = [await logIn(t, made, canBeDeaf), await logIn(t, made, canBeDeaf)];
-  for (const page of pages) await deed(page, "Send", number).waitFor();
+  for (const page of pages) await action(page, "Send", number).waitFor();
   for (const page of pages) await page.evaluate(() => (globalThis.deaf = true)); // so that the one who is slower still has his button
-  await Promise.all(pages.map((page) => deed(page, "Send", number).click()));
+  await Promise.all(pages.map((page) => action(page, "Send", number).click()));
   for (const page of pages) {
     await page.evaluate(() => (globalThis.deaf = false));
     await says(page, number, "waiting");
@@ -71,16 +71,16 @@ test("tells the second of two operators why his send was not taken", async (t) =
   const number = await made.compose("Drill", 50);
   await made.becomes(number, "received");
   const first = await logIn(t, made), second = await logIn(t, made, canBeDeaf);
-  await deed(second, "Send", number).waitFor();
+  await action(second, "Send", number).waitFor();
   await second.evaluate(() => (globalThis.deaf = true));
-  await deed(first, "Send", number).click();
+  await action(first, "Send", number).click();
   await made.becomes(number, "answered");
-  await deed(second, "Send", number).click();
+  await action(second, "Send", number).click();
   await says(second, number, `report ${number} is answered: to send it once more, resubmit it`);
   assert.equal(await row(second, number).locator(".outcome").getAttribute("data-bad"), "true");
   await second.evaluate(() => (globalThis.deaf = false));
   await second.waitForFunction((number) => document.querySelector(`#reports li[data-key="${number}"] .badge`).textContent.match(/scored|points/), number);
-  assert.equal(await deed(second, "Send", number).count(), 0);
+  assert.equal(await action(second, "Send", number).count(), 0);
   assert.equal(await recorded(made, 50), 1);
 });
 
@@ -95,7 +95,7 @@ test("shows near duplicates side by side, on the map and in words", async (t) =>
   const pair = page.getByRole("group", { name: "Two reports side by side" });
   assert.match(await pair.innerText(), /2\.0 m apart: one artifact, or two\?/);
   assert.match((await pair.innerText()).replace(/\s+/g, " "), /#1 Gas .*(scored|points).* 40\.0, 10\.0, 1\.0 m .* #2 Gas held 42\.0, 10\.0, 1\.0 m/);
-  await deed(page, "Withdraw", second).click();
+  await action(page, "Withdraw", second).click();
   await page.waitForFunction(() => document.querySelector("#map .pair").innerText.includes("withdrawn"));
   await pair.getByRole("button", { name: "Close" }).press("Escape");
   assert.ok(await pair.isHidden());

@@ -52,6 +52,6 @@ export async function shoot(page, name) {
 }
 
 export const row = (page, number) => page.locator(`#reports li[data-key="${number}"]`);
-export const deed = (page, name, number) => page.getByRole("button", { name: `${name}: report ${number}` });
+export const action = (page, name, number) => page.getByRole("button", { name: `${name}: report ${number}` });
 export const says = (page, number, words) =>
   page.waitForFunction(([number, words]) => document.querySelector(`#reports li[data-key="${number}"]`)?.innerText.includes(words), [number, words]);

@@ -1,4 +1,4 @@
-#include "access/verdict.hpp"
+#include "access/admission.hpp"
 
 #include <gtest/gtest.h>
 
@@ -35,7 +35,7 @@ class VerdictTest : public testing::Test {
   }
   /// 200 for one who may come in.
   Status verdict(const Request& request, Role role, Instant now = kNow) {
-    const auto visitor = judge(request, role, tokens, sessions, now);
+    const auto visitor = admit(request, role, tokens, sessions, now);
     return visitor ? Status::Ok : visitor.error().status;
   }
 
@@ -130,7 +130,7 @@ TEST_F(VerdictTest, IsNoForPagesFromElsewhereWhateverTheyShow) {
 TEST_F(VerdictTest, IsNoOnceTheSessionHasEnded) {
   Request request = get();
   request.cookie = operators_cookie;
-  const auto visitor = judge(request, Role::Viewer, tokens, sessions, kNow);
+  const auto visitor = admit(request, Role::Viewer, tokens, sessions, kNow);
   ASSERT_TRUE(visitor && visitor->session);
   sessions.end(visitor->session->number);
   EXPECT_EQ(verdict(request, Role::Viewer), Status::Unauthorized);

@@ -28,9 +28,9 @@ enum class Flush : std::uint8_t {
 };
 
 /// What the rules of reports want done: the seam between them and the disk, the clients and the log.
-class Deeds {
+class Output {
  public:
-  virtual ~Deeds() = default;
+  virtual ~Output() = default;
 
   /// Writes all of these steps, in their order, and the run if there is one, as one transaction: after true
   /// they are on disk (a report may be there more than once, with one step each). After false none is, and

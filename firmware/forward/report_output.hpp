@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-#include "dispatch/deeds.hpp"
+#include "dispatch/output.hpp"
 #include "intake/server.hpp"
 #include "ledger/ledger.hpp"
 #include "loop/loop.hpp"
@@ -13,13 +13,13 @@
 namespace adit::forward {
 
 /// What the rules of reports want done: steps into the ledger and the log, answers to the clients.
-class ReportDeeds final : public dispatch::Deeds {
+class ReportOutput final : public dispatch::Output {
  public:
   /// What can follow once a report has left, or its client has its answer, follows so soon: Flush::Soon, and
   /// the log.
   static constexpr std::chrono::milliseconds kSoon{2};
 
-  ReportDeeds(loop::Loop& loop, ledger::Ledger& ledger);
+  ReportOutput(loop::Loop& loop, ledger::Ledger& ledger);
 
   /// A client that waits from now on.
   dispatch::ClientId add(std::shared_ptr<intake::Responder> responder);

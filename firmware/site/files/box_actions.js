@@ -1,5 +1,5 @@
 // What the operator may do with the run and the box: say that a new run begins, make the lights flash.
-import { barred } from "./deeds.js";
+import { barred } from "./actions.js";
 import { confirmed } from "./dialog.js";
 import { say } from "./dom.js";
 import { post } from "./session.js";
@@ -48,7 +48,7 @@ identify.addEventListener("click", async () => {
   await post("/adit/identify", { seconds: SECONDS }).catch((error) => say(identified, error.message));
 });
 
-export function showBoxDeeds(next, now) {
+export function showBoxActions(next, now) {
   view = next;
   const left = Math.ceil(view.identify_until - now); // null is long ago
   say(identify, left > 0 ? `Flashing, ${left} s` : "Identify");

@@ -20,21 +20,21 @@ test("offers at each report what its state allows, and nothing else", async (t) 
     28: ["Hold", "Withdraw"], 27: [], 26: ["Send once more", "Call it done"], 25: ["Send once more", "Call it done"], 24: ["Send", "Withdraw"],
     23: ["Resubmit"], 22: ["Resubmit"], 21: ["Send once more"], 20: ["Send"], 19: ["Send again"], 18: ["Resubmit"],
   };
-  for (const [number, deeds] of Object.entries(expected)) {
+  for (const [number, actions] of Object.entries(expected)) {
     await opened(page, number);
-    assert.deepEqual(await row(page, number).locator(".deeds button").allTextContents(), deeds, `report ${number}`);
+    assert.deepEqual(await row(page, number).locator(".actions button").allTextContents(), actions, `report ${number}`);
   }
 });
 
 test("has what waits for the operator's word at hand, and the rest behind one press", async (t) => {
   const { page } = await watch(t, "reports");
-  assert.equal(await row(page, 25).locator(".deeds button").count(), 2);
-  assert.equal(await row(page, 23).locator(".deeds button").count(), 0);
+  assert.equal(await row(page, 25).locator(".actions button").count(), 2);
+  assert.equal(await row(page, 23).locator(".actions button").count(), 0);
   await row(page, 23).locator(".open").click();
-  assert.equal(await row(page, 23).locator(".deeds button").count(), 1);
+  assert.equal(await row(page, 23).locator(".actions button").count(), 1);
   await becomes(page, 23, "From 10.0.0.5");
   await row(page, 23).locator(".open").click();
-  assert.equal(await row(page, 23).locator(".deeds button").count(), 0);
+  assert.equal(await row(page, 23).locator(".actions button").count(), 0);
 });
 
 test("does at once what costs nothing", async (t) => {
@@ -76,7 +76,7 @@ test("resubmits as a new report, and says its number", async (t) => {
   await becomes(page, 29, "waiting");
 });
 
-test("shows the box's sentence where a deed cannot be", async (t) => {
+test("shows the box's sentence where an action cannot be", async (t) => {
   const { page } = await watch(t, "reports");
   await row(page, 19).locator(".open").click();
   await button(page, "Send again", 19).click();
@@ -88,7 +88,7 @@ test("lets a viewer look, and says why no more", async (t) => {
   const prepare = (page) => page.route("**/adit/session", (route) => route.fulfill({ json: { role: "viewer", csrf: "x", first_start: false } }));
   const { page } = await watch(t, "reports", { prepare });
   await said(page, "Only an operator can do something");
-  for (const one of await page.locator("#reports .deeds button, #reports button.compose").all()) assert.ok(await one.isDisabled());
+  for (const one of await page.locator("#reports .actions button, #reports button.compose").all()) assert.ok(await one.isDisabled());
   await page.keyboard.press("n");
   assert.ok(await page.locator("#compose").isHidden());
 });
@@ -101,7 +101,7 @@ test("offers nothing while the box is lost, and again once it is back", async (t
   assert.ok(await button(page, "Send", 24).isDisabled());
   stage.thaw();
   await page.waitForSelector("body[data-link=live]");
-  await page.waitForFunction(() => !document.querySelector("#reports .deeds button").disabled);
+  await page.waitForFunction(() => !document.querySelector("#reports .actions button").disabled);
 });
 
 test("has nothing to press that is smaller than a gloved finger", async (t) => {
@@ -117,12 +117,12 @@ test("has nothing to press that is smaller than a gloved finger", async (t) => {
 test("leaves the focus in the row whose buttons change by what was done", async (t) => {
   const { page } = await watch(t, "reports");
   await row(page, 28).locator(".open").click();
-  for (const [number, deed, words] of [[24, "Withdraw", "Withdrawn."], [28, "Hold", "Held: "], [25, "Call it done", "Called done."]]) {
-    await button(page, deed, number).focus();
+  for (const [number, action, words] of [[24, "Withdraw", "Withdrawn."], [28, "Hold", "Held: "], [25, "Call it done", "Called done."]]) {
+    await button(page, action, number).focus();
     await page.waitForSelector("[data-given]", { state: "detached" });
     await page.keyboard.press("Enter");
     await becomes(page, number, words);
-    await button(page, deed, number).waitFor({ state: "detached" });
+    await button(page, action, number).waitFor({ state: "detached" });
     await page.waitForFunction((number) => document.activeElement.closest("li")?.dataset.key === String(number), number);
   }
 });

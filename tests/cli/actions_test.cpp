@@ -1,4 +1,4 @@
-#include "cli/deeds.hpp"
+#include "cli/actions.hpp"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -14,7 +14,7 @@ namespace {
 using testing::HasSubstr;
 using testing::Not;
 
-class Deeds : public testing::Test {
+class Actions : public testing::Test {
  protected:
   Outcome say(const Server& server, std::vector<std::string_view> words) const {
     const std::string at = server.at();
@@ -28,7 +28,7 @@ class Deeds : public testing::Test {
   const std::string token_file_ = file_.path();
 };
 
-TEST_F(Deeds, AreAskedForByTheirNames) {
+TEST_F(Actions, AreAskedForByTheirNames) {
   const Server server({{"POST /adit/reports/7/send", Server::ok("{\"report\":7}")},
                        {"POST /adit/reports/7/hold", Server::ok("{\"report\":7}")},
                        {"POST /adit/reports/7/withdraw", Server::ok("{\"report\":7}")},
@@ -48,7 +48,7 @@ TEST_F(Deeds, AreAskedForByTheirNames) {
   EXPECT_EQ(outcome.exit, Exit::Fine);
 }
 
-TEST_F(Deeds, AreAskedForOfWhatIsSetAside) {
+TEST_F(Actions, AreAskedForOfWhatIsSetAside) {
   api::RunView view = sample_view();
   view.aside = {{.number = 3,
                  .kind = "cloud",
@@ -84,7 +84,7 @@ TEST_F(Deeds, AreAskedForOfWhatIsSetAside) {
   EXPECT_THAT(say(server, {"aside", "keep", "3"}).err, HasSubstr("expected show, send or discard, got keep"));
 }
 
-TEST_F(Deeds, MakeTheLightsFlash) {
+TEST_F(Actions, MakeTheLightsFlash) {
   const Server server({{"POST /adit/identify", Server::ok("{\"identify_until\":1005.5}")}});
   EXPECT_EQ(say(server, {"identify", "5"}).out, "all lights flash twice a second, for 5 s\n");
   EXPECT_THAT(server.request(), testing::EndsWith("Content-Length: 13\r\n"
@@ -94,13 +94,13 @@ TEST_F(Deeds, MakeTheLightsFlash) {
   EXPECT_EQ(say(other, {"identify"}).exit, Exit::Unable);
 }
 
-TEST_F(Deeds, ShowTheTokenToAditAlone) {
+TEST_F(Actions, ShowTheTokenToAditAlone) {
   const Server server({{"POST /adit/runs", Server::ok("{\"run\":2}")}});
   say(server, {"run", "new"});
   EXPECT_THAT(server.request(), HasSubstr("\r\nAuthorization: Bearer sesame-1\r\n"));
 }
 
-TEST_F(Deeds, GoOnAfterOneThatCannotBe) {
+TEST_F(Actions, GoOnAfterOneThatCannotBe) {
   const Server server(
       {{"POST /adit/reports/7/send", Server::ok("{\"report\":7}")},
        {"POST /adit/reports/8/send",
@@ -112,7 +112,7 @@ TEST_F(Deeds, GoOnAfterOneThatCannotBe) {
   EXPECT_EQ(outcome.err, "adit: report 8 is answered: to send it once more, resubmit it\n");
 }
 
-TEST_F(Deeds, OfAReportThatIsNotThereAreRefused) {
+TEST_F(Actions, OfAReportThatIsNotThereAreRefused) {
   const Server server(
       {{"POST /adit/reports/8/done", Server::reply("404 Not Found", "\"there is no report 8\"")}});
   const Outcome outcome = say(server, {"reports", "done", "8"});
@@ -120,7 +120,7 @@ TEST_F(Deeds, OfAReportThatIsNotThereAreRefused) {
   EXPECT_EQ(outcome.err, "adit: there is no report 8\n");
 }
 
-TEST_F(Deeds, StopWhereTheTokenIsNotGood) {
+TEST_F(Actions, StopWhereTheTokenIsNotGood) {
   const Server server(
       Server::reply("401 Unauthorized", "\"Authorization: expected Bearer and the team's token\""));
   const Outcome outcome = say(server, {"reports", "send", "7", "8"});
@@ -128,7 +128,7 @@ TEST_F(Deeds, StopWhereTheTokenIsNotGood) {
   EXPECT_EQ(outcome.err, "adit: Adit does not know the token in " + token_file_ + "\n");
 }
 
-TEST_F(Deeds, WhoseAnswerIsLostMayHaveBeenDone) {
+TEST_F(Actions, WhoseAnswerIsLostMayHaveBeenDone) {
   const Server server("");
   const Outcome outcome = say(server, {"reports", "resubmit", "7"});
   EXPECT_EQ(outcome.exit, Exit::Unable);
@@ -136,7 +136,7 @@ TEST_F(Deeds, WhoseAnswerIsLostMayHaveBeenDone) {
   EXPECT_THAT(say(server, {"reports", "send", "7"}).err, HasSubstr("see: adit reports show 7\n"));
 }
 
-TEST_F(Deeds, OfAnAditThatIsNotThereWereNotDone) {
+TEST_F(Actions, OfAnAditThatIsNotThereWereNotDone) {
   std::string at;
   {
     at = Server("").at();
@@ -147,7 +147,7 @@ TEST_F(Deeds, OfAnAditThatIsNotThereWereNotDone) {
   EXPECT_THAT(outcome.err, Not(HasSubstr("not known")));
 }
 
-TEST_F(Deeds, AreNotAskedForWithATokenThatCannotBeRead) {
+TEST_F(Actions, AreNotAskedForWithATokenThatCannotBeRead) {
   const Server server({{"POST /adit/runs", Server::ok("{\"run\":2}")}});
   const Outcome outcome =
       run(std::vector<std::string_view>{"run", "new", "--at", server.at(), "--token-file", "/none"}, false);

@@ -21,13 +21,13 @@ namespace adit::forward {
 
 /// Robots' states and markers on their way to the mapping endpoint, on one connection of their own, whichever
 /// has the older news first.
-class News {
+class Telemetry {
  public:
   /// `as_forwarded` is told what the Command Post took. What is accepted is in the journal first, until then;
   /// `anew`: see whole.hpp.
-  News(loop::Loop& loop, const settings::Settings& settings, std::optional<icd::BearerToken> token,
-       Record& record, Aside& aside, std::mt19937_64& random, journal::Journal& journal,
-       AsForwarded& as_forwarded, std::function<void()> anew);
+  Telemetry(loop::Loop& loop, const settings::Settings& settings, std::optional<icd::BearerToken> token,
+            Record& record, Aside& aside, std::mt19937_64& random, journal::Journal& journal,
+            AsForwarded& as_forwarded, std::function<void()> anew);
 
   /// Takes up what the lives before have left.
   void carry_on(const journal::Carried& carried);

@@ -1,4 +1,4 @@
-#include "forward/report_deeds.hpp"
+#include "forward/report_output.hpp"
 
 #include <utility>
 
@@ -25,11 +25,11 @@ intake::Answer answer_of(const dispatch::ClientAnswer& answer, const dispatch::R
 
 }  // namespace
 
-ReportDeeds::ReportDeeds(loop::Loop& loop, ledger::Ledger& ledger)
+ReportOutput::ReportOutput(loop::Loop& loop, ledger::Ledger& ledger)
     : loop_(loop), ledger_(ledger), follow_up_(loop.timer([this] { follow_up(); })) {}
 
 /// The flush first: the log waits where its reader is slow.
-void ReportDeeds::follow_up() {
+void ReportOutput::follow_up() {
   const auto flushed = ledger_.flush();
   if (!flushed)
     host::log(host::Level::Error, "the ledger cannot be flushed", {{"why", flushed.error().what}});
@@ -45,13 +45,13 @@ void ReportDeeds::follow_up() {
   }
 }
 
-dispatch::ClientId ReportDeeds::add(std::shared_ptr<intake::Responder> responder) {
+dispatch::ClientId ReportOutput::add(std::shared_ptr<intake::Responder> responder) {
   clients_[++last_client_] = std::move(responder);
   return last_client_;
 }
 
-bool ReportDeeds::write(std::span<const dispatch::Report> steps, const dispatch::Run* run,
-                        dispatch::Flush flush) {
+bool ReportOutput::write(std::span<const dispatch::Report> steps, const dispatch::Run* run,
+                         dispatch::Flush flush) {
   const auto written = ledger_.write(steps, run, flush);
   if (!written) {
     if (trouble_ != written.error().what) {
@@ -70,8 +70,8 @@ bool ReportDeeds::write(std::span<const dispatch::Report> steps, const dispatch:
   return true;
 }
 
-void ReportDeeds::tell(dispatch::ClientId client, const dispatch::ClientAnswer& answer,
-                       const dispatch::Report& report) {
+void ReportOutput::tell(dispatch::ClientId client, const dispatch::ClientAnswer& answer,
+                        const dispatch::Report& report) {
   last_told_ = answer;
   const auto waiting = clients_.extract(client);
   if (!waiting) return;

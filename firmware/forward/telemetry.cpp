@@ -1,4 +1,4 @@
-#include "forward/news.hpp"
+#include "forward/telemetry.hpp"
 
 #include <algorithm>
 #include <array>
@@ -53,9 +53,10 @@ lanes::MarkerBounds bounds_of(const settings::Queues& queues) {
 
 }  // namespace
 
-News::News(loop::Loop& loop, const settings::Settings& settings, std::optional<icd::BearerToken> token,
-           Record& record, Aside& aside, std::mt19937_64& random, journal::Journal& journal,
-           AsForwarded& as_forwarded, std::function<void()> anew)
+Telemetry::Telemetry(loop::Loop& loop, const settings::Settings& settings,
+                     std::optional<icd::BearerToken> token, Record& record, Aside& aside,
+                     std::mt19937_64& random, journal::Journal& journal, AsForwarded& as_forwarded,
+                     std::function<void()> anew)
     : loop_(loop),
       settings_(settings),
       record_(record),
@@ -70,7 +71,7 @@ News::News(loop::Loop& loop, const settings::Settings& settings, std::optional<i
       wake_(loop.timer([this] { pump(); })),
       markers_(bounds_of(settings.queues)) {}
 
-void News::carry_on(const journal::Carried& carried) {
+void Telemetry::carry_on(const journal::Carried& carried) {
   state_pace_.carry_on(carried, loop_.now());
   markers_pace_.carry_on(carried, loop_.now());
   for (const auto& [uri, stamp] : carried.stamps()) {
@@ -87,14 +88,14 @@ void News::carry_on(const journal::Carried& carried) {
   }
 }
 
-void News::settings_changed() {
+void Telemetry::settings_changed() {
   markers_.keep_within(bounds_of(settings_.queues));
   state_pace_.allow(settings_.command_post.rates.state_hz, loop_.now());
   markers_pace_.allow(settings_.command_post.rates.markers_hz, loop_.now());
   pump();
 }
 
-void News::endpoint_changed(std::optional<icd::BearerToken> token) {
+void Telemetry::endpoint_changed(std::optional<icd::BearerToken> token) {
   const settings::CommandPost& post = settings_.command_post;
   channel_.lead_to(endpoint_of(post, post.mapping, 0), std::move(token), post.timeouts.mapping_answer);
   channel_.give_up();
@@ -102,7 +103,7 @@ void News::endpoint_changed(std::optional<icd::BearerToken> token) {
 }
 
 /// It may serve another Command Post, which knows of no robot yet.
-void News::endpoint_turned() {
+void Telemetry::endpoint_turned() {
   state_pace_.link_is_back();
   markers_pace_.link_is_back();
   state_.forget_what_was_taken();
@@ -111,7 +112,7 @@ void News::endpoint_turned() {
   marker_trials_.clear();
 }
 
-icd::Checked<void> News::take(const icd::StateUpdate& update, std::size_t bytes_received) {
+icd::Checked<void> Telemetry::take(const icd::StateUpdate& update, std::size_t bytes_received) {
   if (!state_.has_room_for(update)) return full("more robots than can be kept apart");
   if (const auto kept = journal_.accepted(update); !kept) return not_kept(kept.error());
   whole(anew_, [&] {
@@ -124,7 +125,7 @@ icd::Checked<void> News::take(const icd::StateUpdate& update, std::size_t bytes_
   return {};
 }
 
-icd::Checked<void> News::take(const icd::MarkersUpdate& update, std::size_t bytes_received) {
+icd::Checked<void> Telemetry::take(const icd::MarkersUpdate& update, std::size_t bytes_received) {
   if (!markers_.has_room_for(update)) return full("more markers than can wait (queues.marker_bytes)");
   if (const auto kept = journal_.accepted(update); !kept) return not_kept(kept.error());
   whole(anew_, [&] {
@@ -135,13 +136,13 @@ icd::Checked<void> News::take(const icd::MarkersUpdate& update, std::size_t byte
   return {};
 }
 
-void News::pump() {
+void Telemetry::pump() {
   if (!stopping_ && !setting_aside_ && channel_.turns()) endpoint_turned();
   if (stopping_ || setting_aside_ || channel_.busy() || !channel_.has_token()) return;
   whole(anew_, [this] { send_next(); });
 }
 
-void News::send_next() {
+void Telemetry::send_next() {
   const std::array candidates = {dispatch::Candidate{state_.oldest(), state_pace_.ready()},
                                  dispatch::Candidate{markers_.oldest(), markers_pace_.ready()}};
   const dispatch::Turn turn = dispatch::oldest_first(candidates, loop_.now());
@@ -150,7 +151,7 @@ void News::send_next() {
   if (turn.candidate == 1) send_markers();
 }
 
-void News::send_state() {
+void Telemetry::send_state() {
   auto waiting = state_.take(loop_.now());
   if (!waiting) return;
   waiting->update.header.stamp = state_stamps_.next(waiting->update.header.stamp.value_or(loop_.stamp_now()));
@@ -164,7 +165,7 @@ void News::send_state() {
                 });
 }
 
-void News::send_markers() {
+void Telemetry::send_markers() {
   auto waiting = markers_.take();
   if (!waiting) return;
   for (icd::Marker& marker : waiting->update.markers) {
@@ -185,8 +186,8 @@ void News::send_markers() {
 
 /// An answer that cannot be dealt with is as good as none: the message is sent again.
 template <class Waiting>
-void News::answered(Kind kind, UriPace& pace, const Waiting& sent, std::size_t bytes,
-                    const uplink::Outcome& outcome) {
+void Telemetry::answered(Kind kind, UriPace& pace, const Waiting& sent, std::size_t bytes,
+                         const uplink::Outcome& outcome) {
   if (kind == Kind::Markers) markers_under_way_ = {};
   if (!loop::guarded("the answer to a state or markers", [&] { judge(kind, pace, sent, bytes, outcome); })) {
     pace.lost(loop_.now());
@@ -196,8 +197,8 @@ void News::answered(Kind kind, UriPace& pace, const Waiting& sent, std::size_t b
 }
 
 template <class Waiting>
-void News::judge(Kind kind, UriPace& pace, const Waiting& sent, std::size_t bytes,
-                 const uplink::Outcome& outcome) {
+void Telemetry::judge(Kind kind, UriPace& pace, const Waiting& sent, std::size_t bytes,
+                      const uplink::Outcome& outcome) {
   const loop::Instant now = loop_.now();
   const auto* answer = std::get_if<uplink::Answered>(&outcome);
   const int status = answer != nullptr ? answer->status : 0;
@@ -239,13 +240,13 @@ void News::judge(Kind kind, UriPace& pace, const Waiting& sent, std::size_t byte
   }
 }
 
-void News::passed(const lanes::WaitingState& state) {
+void Telemetry::passed(const lanes::WaitingState& state) {
   state_.passed(state);
   done(state);
   for (const icd::NamedPose& pose : state.update.poses) state_blame_.passed(pose.name.text(), loop_.now());
 }
 
-void News::passed(const lanes::WaitingMarkers& markers) {
+void Telemetry::passed(const lanes::WaitingMarkers& markers) {
   marker_blame_.passed("", loop_.now());
   if (markers.is_ahead) return;
   markers_.passed();
@@ -253,8 +254,8 @@ void News::passed(const lanes::WaitingMarkers& markers) {
   for (const icd::Marker& marker : markers.update.markers) marker_trials_.erase({marker.ns, marker.id});
 }
 
-void News::give_up(const lanes::WaitingState& state, int status, const std::string& sentence,
-                   std::size_t bytes) {
+void Telemetry::give_up(const lanes::WaitingState& state, int status, const std::string& sentence,
+                        std::size_t bytes) {
   if (state.update.poses.size() > 1) {
     journal_.state_answered(false);
     return state_.put_back_apart(state);
@@ -264,8 +265,8 @@ void News::give_up(const lanes::WaitingState& state, int status, const std::stri
             [this, state](bool kept) { kept ? done(state) : journal_.state_answered(false); });
 }
 
-void News::give_up(const lanes::WaitingMarkers& markers, int status, const std::string& sentence,
-                   std::size_t bytes) {
+void Telemetry::give_up(const lanes::WaitingMarkers& markers, int status, const std::string& sentence,
+                        std::size_t bytes) {
   if (markers.is_ahead) return;  // it has its own turn
   if (markers.update.markers.size() > 1) {
     journal_.markers_answered(false);
@@ -276,8 +277,8 @@ void News::give_up(const lanes::WaitingMarkers& markers, int status, const std::
             [this, markers](bool kept) { kept ? done(markers) : journal_.markers_answered(false); });
 }
 
-void News::set_aside(const lanes::Message& message, int status, const std::string& sentence,
-                     std::size_t bytes, std::function<void(bool kept)> told) {
+void Telemetry::set_aside(const lanes::Message& message, int status, const std::string& sentence,
+                          std::size_t bytes, std::function<void(bool kept)> told) {
   const auto go_on = [this, told = std::move(told)](bool kept) {
     setting_aside_ = false;
     told(kept);
@@ -287,18 +288,18 @@ void News::set_aside(const lanes::Message& message, int status, const std::strin
   setting_aside_ = true;
 }
 
-bool News::is_to_blame(const lanes::WaitingState& state) {
+bool Telemetry::is_to_blame(const lanes::WaitingState& state) {
   bool to_blame = state_failed_ >= kTriesTogether;
   if (state.update.poses.size() == 1) {
     const icd::RobotName& name = state.update.poses.front().name;
-    to_blame = state_blame_.failed(name.text(), state_.trial_of(name), loop_.now()) ==
-               lanes::Blame::Verdict::SetAside;
+    to_blame =
+        state_blame_.failed(name.text(), state_.trial_of(name), loop_.now()) == lanes::Blame::Next::SetAside;
   }
   if (!to_blame) put_back(state);
   return to_blame;
 }
 
-bool News::is_to_blame(const lanes::WaitingMarkers& markers) {
+bool Telemetry::is_to_blame(const lanes::WaitingMarkers& markers) {
   if (markers.is_ahead) return false;
   if (markers.update.markers.size() != 1) {
     const bool narrow = markers_failed_ >= kTriesTogether;
@@ -308,7 +309,7 @@ bool News::is_to_blame(const lanes::WaitingMarkers& markers) {
   const icd::Marker& marker = markers.update.markers.front();
   if (marker_trials_.size() >= kMostTrials) marker_trials_.clear();
   const bool to_blame = marker_blame_.failed("", marker_trials_[{marker.ns, marker.id}], loop_.now()) ==
-                        lanes::Blame::Verdict::SetAside;
+                        lanes::Blame::Next::SetAside;
   if (!to_blame) {
     journal_.markers_answered(false);
     markers_.put_behind(markers);
@@ -316,19 +317,19 @@ bool News::is_to_blame(const lanes::WaitingMarkers& markers) {
   return to_blame;
 }
 
-bool News::send_again(const lanes::Message& message) {
+bool Telemetry::send_again(const lanes::Message& message) {
   const bool kept = std::visit([this](const auto& each) { return wait_again(each); }, message);
   pump();
   return kept;
 }
 
-bool News::wait_again(const icd::StateUpdate& state) {
+bool Telemetry::wait_again(const icd::StateUpdate& state) {
   state_.add_unless_known(state, loop_.now());  // of a robot that posted since, its newer pose goes
   return journal_.accepted(state_.unsent()).has_value();
 }
 
 /// In the journal what comes last is the newest: the one that deletes all stands there before what waits.
-bool News::wait_again(icd::MarkersUpdate markers) {
+bool Telemetry::wait_again(icd::MarkersUpdate markers) {
   const auto deletes_all = [](const icd::Marker& marker) {
     return marker.action == icd::MarkerAction::DeleteAll;
   };
@@ -345,30 +346,30 @@ bool News::wait_again(icd::MarkersUpdate markers) {
   return true;
 }
 
-std::vector<Traffic> News::traffic_of(const lanes::WaitingState& state) const {
+std::vector<Traffic> Telemetry::traffic_of(const lanes::WaitingState& state) const {
   std::vector<Traffic> all;
   all.reserve(state.update.poses.size());
   for (const icd::NamedPose& pose : state.update.poses) all.push_back({Kind::State, pose.name.text()});
   return all;
 }
 
-std::vector<Traffic> News::traffic_of(const lanes::WaitingMarkers&) const {
+std::vector<Traffic> Telemetry::traffic_of(const lanes::WaitingMarkers&) const {
   return {{Kind::Markers, ""}};
 }
 
-void News::link_is_back() {
+void Telemetry::link_is_back() {
   state_pace_.link_is_back();
   markers_pace_.link_is_back();
   channel_.hurry();
   pump();
 }
 
-bool News::stop() {
+bool Telemetry::stop() {
   stopping_ = true;
   return !channel_.busy();
 }
 
-std::size_t News::waiting(Kind kind) const {
+std::size_t Telemetry::waiting(Kind kind) const {
   if (kind == Kind::State) return state_.empty() ? 0 : 1;
   return markers_.count();
 }

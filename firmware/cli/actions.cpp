@@ -1,4 +1,4 @@
-#include "cli/deeds.hpp"
+#include "cli/actions.hpp"
 
 #include <algorithm>
 
@@ -9,8 +9,8 @@
 namespace adit::cli {
 namespace {
 
-/// Asks for a deed, and gives the number that Adit answers under `name`. `check`: the command that tells
-/// whether a deed was done whose answer was lost.
+/// Asks for an action, and gives the number that Adit answers under `name`. `check`: the command that tells
+/// whether an action was done whose answer was lost.
 std::expected<std::int64_t, Failure> ask(const Adit& adit, const std::string& target, const char* name,
                                          const std::string& check) {
   const auto body = post(adit, target, "", check);

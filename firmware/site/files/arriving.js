@@ -43,16 +43,16 @@ export function arrival(row, now) {
 }
 
 const RANK = ["quiet", "good", "wait", "bad"];
-const worst = (verdicts) =>
-  verdicts.reduce((a, b) => (RANK.indexOf(b.level) > RANK.indexOf(a.level) ? b : a), { level: "quiet" });
+const worst = (arrivals) =>
+  arrivals.reduce((a, b) => (RANK.indexOf(b.level) > RANK.indexOf(a.level) ? b : a), { level: "quiet" });
 
 /** One sentence over all maps: is my map arriving? */
 export function overall(activities, now) {
   const maps = activities.filter((row) => row.kind === "grid" || row.kind === "cloud");
   if (maps.length === 0) return { level: "quiet", word: "No robot has sent a map yet" };
-  const verdicts = maps.map((row) => ({ ...arrival(row, now), row }));
-  const { level } = worst(verdicts);
-  const those = verdicts.filter((verdict) => verdict.level === level);
+  const arrivals = maps.map((row) => ({ ...arrival(row, now), row }));
+  const { level } = worst(arrivals);
+  const those = arrivals.filter((arrival) => arrival.level === level);
   const names = [...new Set(those.map(({ row }) => `${robotOf(row)} ${kindOf(row)}`))];
   const who = names.length > 3 ? `${names.slice(0, 2).join(", ")} and ${names.length - 2} more` : names.join(", ");
   if (level === "bad") return { level, word: `No: ${who}` };

@@ -22,21 +22,21 @@ enum class Stage : std::uint8_t {
 std::string_view name_of(Stage stage);
 
 /// The last update. Kept over starts of the machine.
-struct Story {
+struct LastUpdate {
   Stage stage = Stage::None;
   std::string version = "";  // the update's; "": not known, the bundle could not be read
   std::string slot = "";     // that it was installed into
   std::string boot = "";     // the start of the machine in which it was (host::boot())
   std::string why = "";      // a sentence about the stage
-  friend bool operator==(const Story&, const Story&) = default;
+  friend bool operator==(const LastUpdate&, const LastUpdate&) = default;
 };
 
-/// What the story has come to, as found at a start of the program: `slot` runs, in the machine's start
+/// What the last update has come to, as found at a start of the program: `slot` runs, in the machine's start
 /// `boot`.
-Story settled(Story story, const Running& running, const std::string& boot);
+LastUpdate settled(LastUpdate last_update, const Running& running, const std::string& boot);
 
 /// The slot that runs is the one that was written last, and has not been healthy yet; whatever became known
 /// of the end of the writing, for what was cut off before its end does not start.
-bool on_trial(const Story& story, const std::string& slot, const std::string& boot);
+bool on_trial(const LastUpdate& last_update, const std::string& slot, const std::string& boot);
 
 }  // namespace adit::update

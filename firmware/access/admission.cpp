@@ -1,4 +1,4 @@
-#include "access/verdict.hpp"
+#include "access/admission.hpp"
 
 #include <string>
 
@@ -41,7 +41,7 @@ std::optional<Visitor> who(const Request& request, std::span<const icd::BearerTo
   return session == nullptr ? std::nullopt : std::optional(Visitor{session->role, session});
 }
 
-icd::Checked<Visitor> judge(const Request& request, Role role, std::span<const icd::BearerToken> tokens,
+icd::Checked<Visitor> admit(const Request& request, Role role, std::span<const icd::BearerToken> tokens,
                             Sessions& sessions, Instant now) {
   if (auto whence = check_whence(request); !whence) return std::unexpected(whence.error());
   const auto visitor = who(request, tokens, sessions, now);

@@ -2,7 +2,7 @@
 import { make } from "./dom.js";
 import { clip, timeOfDay } from "./words.js";
 
-export async function showStory(node, { number, changed }) {
+export async function showHistory(node, { number, changed }) {
   if (node.dataset.of === String(changed)) return;
   node.dataset.of = String(changed);
   try {

@@ -1,4 +1,4 @@
-#include "forward/report_deeds.hpp"
+#include "forward/report_output.hpp"
 
 #include <dlfcn.h>
 #include <gmock/gmock.h>
@@ -24,7 +24,7 @@ namespace {
 using dispatch::Flush;
 using dispatch::ReportState;
 
-class ReportDeedsTest : public testing::Test {
+class ReportOutputTest : public testing::Test {
  protected:
   dispatch::Report report(ReportState state) {
     return {.number = 1,
@@ -39,7 +39,7 @@ class ReportDeedsTest : public testing::Test {
   }
   bool write(ReportState state, Flush flush) {
     const std::vector<dispatch::Report> steps{report(state)};
-    return deeds_.write(steps, nullptr, flush);
+    return output_.write(steps, nullptr, flush);
   }
   /// Turns the loop until the log has said so much more; whether it has.
   bool says(std::uint64_t more) {
@@ -50,12 +50,12 @@ class ReportDeedsTest : public testing::Test {
   host::Folder folder_;
   loop::Loop loop_;
   ledger::Ledger ledger_ = std::move(*ledger::Ledger::open(folder_.path()));
-  ReportDeeds deeds_{loop_, ledger_};
+  ReportOutput output_{loop_, ledger_};
   const std::uint64_t said_ = host::logged();
 };
 
 /// Nothing need follow it, and nobody who reads the log slowly is waited for.
-TEST_F(ReportDeedsTest, FlushesByItselfWhatWasLeftForSoonAndThenLogs) {
+TEST_F(ReportOutputTest, FlushesByItselfWhatWasLeftForSoonAndThenLogs) {
   ASSERT_TRUE(write(ReportState::Sending, Flush::Now));
   ASSERT_TRUE(says(1));
   flushes.clear();

@@ -34,7 +34,7 @@ std::optional<Visitor> who(const Request& request, std::span<const icd::BearerTo
 
 /// Whether the request may do what needs `role`: 401 nobody is logged in, 403 from another page, without the
 /// session's CSRF token where it changes anything (all methods but GET and HEAD), or by a lower role.
-icd::Checked<Visitor> judge(const Request& request, Role role, std::span<const icd::BearerToken> tokens,
+icd::Checked<Visitor> admit(const Request& request, Role role, std::span<const icd::BearerToken> tokens,
                             Sessions& sessions, Instant now);
 
 }  // namespace adit::access

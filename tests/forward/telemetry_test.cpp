@@ -1,4 +1,4 @@
-#include "forward/news.hpp"
+#include "forward/telemetry.hpp"
 
 #include <gmock/gmock.h>
 
@@ -63,7 +63,7 @@ struct Life {
   Aside aside;
   AsForwarded as_forwarded;
   bool anew = false;  // another life is to follow
-  News news;
+  Telemetry news;
 };
 
 class NewsTest : public testing::Test {
@@ -158,7 +158,7 @@ TEST_F(NewsTest, SetsAsideADeleteAllThatAloneFails) {
   ASSERT_TRUE(comes(*life, [&] { return life->news.waiting(Kind::Markers) == 0; }));
   ASSERT_TRUE(comes(*life, [&] { return !life->aside.rows().empty() && left().markers().markers.empty(); }));
   EXPECT_EQ(life->aside.rows().size(), 1u);
-  EXPECT_EQ(life->as_forwarded.markers().news(0).markers.size(), 2u);
+  EXPECT_EQ(life->as_forwarded.markers().changes(0).markers.size(), 2u);
 }
 
 TEST_F(NewsTest, HoldsADeleteAllWhereEverythingFails) {

@@ -10,7 +10,7 @@ const WITHDRAW = { name: "withdraw", label: "Withdraw" };
 const DONE = { name: "done", label: "Call it done" };
 const RESUBMIT = { name: "resubmit", label: "Resubmit", costs: "It is sent once more, as a new report" };
 
-/** By the state that a report is in: the deeds that the box takes (README.md). */
+/** By the state that a report is in: the actions that the box takes (README.md). */
 const DEEDS = {
   received: [SEND, WITHDRAW],
   waiting: [HOLD, WITHDRAW],
@@ -22,7 +22,7 @@ const DEEDS = {
   settled: [RESUBMIT],
 };
 
-export function deedsOf(report) {
+export function actionsOf(report) {
   if (!report.position) return report.state === "in doubt" ? [DONE] : []; // it is lost
   if (report.state === "withdrawn" && report.same_as) return [COSTLY_SEND];
   if (report.state === "received" && report.same_as) return [COSTLY_SEND, WITHDRAW];
@@ -46,7 +46,7 @@ async function learnRole() {
 /** Ends once it is known who looks at this page. */
 export const learned = learnRole();
 
-// What came of the last deed at each report: {text, bad}.
+// What came of the last action at each report: {text, bad}.
 const outcomes = new Map();
 const underWay = new Set();
 export const outcomeOf = (number) => outcomes.get(number);
@@ -55,22 +55,22 @@ export const tell = (number, text, bad = false) => outcomes.set(number, { text, 
 
 const PAST = { send: "It will be sent.", hold: "Held: it goes only when you send it.", withdraw: "Withdrawn.", done: "Called done." };
 
-function question(deed, report, remaining) {
+function question(action, report, remaining) {
   const left = remaining === undefined ? "" : ` ${remaining} reports are left.`;
-  return { title: `${deed.label}: report ${report.number}, ${report.type}?`, text: `${deed.costs}, and costs a report.${left}`, word: deed.label };
+  return { title: `${action.label}: report ${report.number}, ${report.type}?`, text: `${action.costs}, and costs a report.${left}`, word: action.label };
 }
 
 /** Does it, asking first where it costs a report. `shown` is called whenever there is something new to show. */
-export async function perform(deed, report, remaining, shown) {
+export async function perform(action, report, remaining, shown) {
   const { number } = report;
   if (underWay.has(number) || barred()) return;
-  if (deed.costs && !(await confirmed(question(deed, report, remaining)))) return;
+  if (action.costs && !(await confirmed(question(action, report, remaining)))) return;
   underWay.add(number);
   outcomes.delete(number);
   shown();
   try {
-    const answer = await post(`/adit/reports/${number}/${deed.name}`);
-    tell(number, deed.name === "resubmit" ? `Sent once more, as report ${answer.report}.` : PAST[deed.name]);
+    const answer = await post(`/adit/reports/${number}/${action.name}`);
+    tell(number, action.name === "resubmit" ? `Sent once more, as report ${answer.report}.` : PAST[action.name]);
   } catch (error) {
     tell(number, error.message, true);
   } finally {

@@ -1,0 +1,63 @@
+#include "update/last_update.hpp"
+
+#include "icd/sentence.hpp"
+
+namespace adit::update {
+namespace {
+
+/// Whether RAUC came to its end is known for certain only of what it said in time: it goes on by itself where
+/// adit-update is killed or waits no longer, and the power may go before its answer is kept.
+bool may_be_whole(Stage stage) {
+  return stage == Stage::Installing || stage == Stage::Interrupted || stage == Stage::Failed ||
+         stage == Stage::Installed;
+}
+
+/// RAUC has the slot that it writes started next once all of it is written.
+bool waits_for_a_restart(const LastUpdate& last_update, const Running& running, const std::string& boot) {
+  return may_be_whole(last_update.stage) && last_update.boot == boot && last_update.slot == running.other &&
+         running.other_next;
+}
+
+}  // namespace
+
+std::string_view name_of(Stage stage) {
+  switch (stage) {
+    case Stage::Installing:
+      return "installing";
+    case Stage::Interrupted:
+      return "interrupted";
+    case Stage::Failed:
+      return "failed";
+    case Stage::Installed:
+      return "installed";
+    case Stage::Left:
+      return "left";
+    case Stage::Good:
+      return "good";
+    case Stage::None:
+      break;
+  }
+  return "";
+}
+
+LastUpdate settled(LastUpdate last_update, const Running& running, const std::string& boot) {
+  if (on_trial(last_update, running.slot, boot) || waits_for_a_restart(last_update, running, boot)) {
+    last_update.stage = Stage::Installed;
+    last_update.why.clear();
+  } else if (last_update.stage == Stage::Installing) {
+    last_update.stage = Stage::Interrupted;
+    last_update.why = "it was interrupted: what runs was not touched, install it again";
+  } else if (last_update.stage == Stage::Installed && last_update.boot != boot &&
+             last_update.slot != running.slot) {
+    last_update.stage = Stage::Left;
+    last_update.why =
+        icd::sentence("it did not come up healthy in three starts, and ", running.version, " runs again");
+  }
+  return last_update;
+}
+
+bool on_trial(const LastUpdate& last_update, const std::string& slot, const std::string& boot) {
+  return may_be_whole(last_update.stage) && last_update.boot != boot && last_update.slot == slot;
+}
+
+}  // namespace adit::update

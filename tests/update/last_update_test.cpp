@@ -1,0 +1,77 @@
+#include "update/last_update.hpp"
+
+#include <gtest/gtest.h>
+
+namespace adit::update {
+namespace {
+
+const Running kOld = {"adit-board", "0.1.0", "A", "B"}, kNew = {"adit-board", "0.2.0", "B", "A"};
+
+LastUpdate last_update(Stage stage) {
+  return {.stage = stage, .version = "0.2.0", .slot = "B", .boot = "first", .why = "because"};
+}
+
+TEST(LastUpdate, OfAnInstalledUpdateWaitsForTheRestart) {
+  EXPECT_EQ(settled(last_update(Stage::Installed), kOld, "first"), last_update(Stage::Installed));
+  EXPECT_FALSE(on_trial(last_update(Stage::Installed), "A", "first"));
+}
+
+TEST(LastUpdate, OfAnUpdateThatRunsIsATrial) {
+  EXPECT_EQ(settled(last_update(Stage::Installed), kNew, "second").stage, Stage::Installed);
+  EXPECT_TRUE(on_trial(last_update(Stage::Installed), "B", "second"));
+}
+
+TEST(LastUpdate, SaysThatAnUpdateWasLeftWhenTheOldSlotRunsAgain) {
+  const LastUpdate left = settled(last_update(Stage::Installed), kOld, "second");
+  EXPECT_EQ(left.stage, Stage::Left);
+  EXPECT_EQ(left.version, "0.2.0");
+  EXPECT_EQ(left.why, "it did not come up healthy in three starts, and 0.1.0 runs again");
+  EXPECT_FALSE(on_trial(left, "A", "second"));
+}
+
+TEST(LastUpdate, OfASlotThatRunsIsATrialWhateverWasSeenOfTheEndOfItsWriting) {
+  for (const Stage stage : {Stage::Installing, Stage::Interrupted, Stage::Failed}) {
+    EXPECT_TRUE(on_trial(last_update(stage), "B", "second")) << name_of(stage);
+    const LastUpdate whole = settled(last_update(stage), kNew, "second");
+    EXPECT_EQ(whole.stage, Stage::Installed) << name_of(stage);
+    EXPECT_EQ(whole.why, "") << name_of(stage);
+    EXPECT_TRUE(on_trial(whole, "B", "second"));
+    EXPECT_EQ(settled(whole, kOld, "third").stage, Stage::Left) << name_of(stage);
+    EXPECT_FALSE(on_trial(last_update(stage), "A", "second")) << name_of(stage);
+  }
+}
+
+TEST(LastUpdate, OfAnInterruptedInstallationIsOverInThisStartOrTheNext) {
+  for (const char* boot : {"first", "second"}) {
+    const LastUpdate broken = settled(last_update(Stage::Installing), kOld, boot);
+    EXPECT_EQ(broken.stage, Stage::Interrupted) << boot;
+    EXPECT_EQ(broken.why, "it was interrupted: what runs was not touched, install it again");
+  }
+}
+
+TEST(LastUpdate, OfAnInstallationThatRaucFinishedByItselfWaitsForTheRestart) {
+  Running finished = kOld;
+  finished.other_next = true;
+  for (const Stage stage : {Stage::Installing, Stage::Interrupted, Stage::Failed}) {
+    const LastUpdate whole = settled(last_update(stage), finished, "first");
+    EXPECT_EQ(whole.stage, Stage::Installed) << name_of(stage);
+    EXPECT_EQ(whole.why, "") << name_of(stage);
+    EXPECT_FALSE(on_trial(whole, "A", "first"));
+  }
+  EXPECT_EQ(settled(last_update(Stage::Good), finished, "first").stage, Stage::Good);
+}
+
+TEST(LastUpdate, ThatIsOverStaysAsItWas) {
+  for (const Stage stage : {Stage::None, Stage::Left, Stage::Good}) {
+    for (const Running& running : {kOld, kNew}) {
+      EXPECT_EQ(settled(last_update(stage), running, "third"), last_update(stage)) << name_of(stage);
+      EXPECT_FALSE(on_trial(last_update(stage), running.slot, "third")) << name_of(stage);
+    }
+  }
+  for (const Stage stage : {Stage::Interrupted, Stage::Failed}) {
+    EXPECT_EQ(settled(last_update(stage), kOld, "third"), last_update(stage)) << name_of(stage);
+  }
+}
+
+}  // namespace
+}  // namespace adit::update

@@ -74,11 +74,15 @@ test("shows the robots where they were, and the tracks and markers as far as the
 test("is moved by hand, wheel, keys and buttons, and fits again", async (t) => {
   const { page } = await watch(t, "empty");
   await settled(page);
-  await page.locator(canvas).scrollIntoViewIfNeeded();
-  const at = await page.locator(canvas).boundingBox();
-  const [x, y] = [at.x + at.width / 2, at.y + at.height / 2];
   const moves = {
-    wheel: async () => { await page.mouse.move(x, y); await page.mouse.wheel(0, -240); },
+    wheel: async () => {
+      const before = await picture(page);
+      await page.locator(canvas).hover(); // once it stands still
+      await until(async () => {
+        await page.mouse.wheel(0, -240); // again, as a hand does: a busy browser may lose one
+        return (await picture(page)) !== before;
+      }, "the wheel to be heard");
+    },
     "zoom in": () => page.getByRole("button", { name: "Zoom in" }).click(),
     "zoom out": () => page.getByRole("button", { name: "Zoom out" }).click(),
     plus: () => page.locator(canvas).press("+"),

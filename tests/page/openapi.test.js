@@ -7,7 +7,7 @@ import Ajv from "ajv/dist/2020.js";
 import { OPERATOR, box, play, until } from "./box.js";
 
 const read = (path) => readFileSync(new URL(`../../firmware/api/${path}`, import.meta.url), "utf8");
-const api = JSON.parse(read("openapi.json"));
+const api = JSON.parse(read("openapi.json.in").replace("@ADIT_SCHEMAS@", () => read("schemas.json")));
 const operations = Object.entries(api.paths).flatMap(([path, methods]) =>
   Object.entries(methods).map(([method, operation]) => ({ path, method: method.toUpperCase(), operation })));
 const named = (operation, where) => (operation.parameters ?? []).filter((each) => each.in === where);

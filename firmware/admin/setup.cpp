@@ -37,19 +37,20 @@ std::optional<icd::BearerToken> token_for(const std::string& endpoint, const Set
   return own ? std::move(own) : secrets.token(endpoint);
 }
 
-Setup::Setup(const Store& store, const FactoryReset& reset, const Store::Loaded& loaded, Meaning for_reports,
-             std::function<void()> apply, std::function<void()> anew)
+Setup::Setup(const Store& store, const FactoryReset& reset, const Store::Loaded& loaded, std::string trouble,
+             Meaning for_reports, std::function<void()> apply, std::function<void()> anew)
     : store_(store),
       reset_(reset),
       for_reports_(std::move(for_reports)),
       apply_(std::move(apply)),
       anew_(std::move(anew)) {
-  runs_with(loaded);
+  runs_with(loaded, std::move(trouble));
 }
 
-void Setup::runs_with(const Store::Loaded& loaded) {
+void Setup::runs_with(const Store::Loaded& loaded, std::string trouble) {
   settings_ = loaded.settings;
   saved_ = loaded.saved;
+  trouble_ = std::move(trouble);
   tokens_set_.clear();
   for (const auto& [name, token] : loaded.secrets.tokens) tokens_set_.push_back(name);
   applying_ = false;

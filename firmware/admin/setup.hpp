@@ -19,15 +19,16 @@ class Setup final : public api::Setup {
 
   /// `apply` is called once a change is on the disk, and sees to it that runs_with() is told what came of it;
   /// `anew` ends the gateway, so that another begins. `store` and `reset` outlive this.
-  Setup(const Store& store, const FactoryReset& reset, const Store::Loaded& loaded, Meaning for_reports,
-        std::function<void()> apply, std::function<void()> anew);
+  Setup(const Store& store, const FactoryReset& reset, const Store::Loaded& loaded, std::string trouble,
+        Meaning for_reports, std::function<void()> apply, std::function<void()> anew);
 
-  /// A change was applied, or taken back: the gateway runs with these.
-  void runs_with(const Store::Loaded& loaded);
+  /// A change was applied, or taken back: the gateway runs with these. `trouble`: see api::Setup.
+  void runs_with(const Store::Loaded& loaded, std::string trouble);
 
   const settings::Settings& settings() const override { return settings_; }
   bool saved() const override { return saved_; }
   bool applying() const override { return applying_; }
+  const std::string& trouble() const override { return trouble_; }
   std::vector<api::TokenRow> tokens() const override;
   std::vector<std::string> warnings(const settings::Settings& next) const override;
   icd::Checked<void> save(const settings::Settings& next) override;
@@ -44,6 +45,7 @@ class Setup final : public api::Setup {
   const FactoryReset& reset_;
   settings::Settings settings_;
   bool saved_ = false;
+  std::string trouble_;
   std::vector<std::string> tokens_set_;
   Meaning for_reports_;
   std::function<void()> apply_, anew_;

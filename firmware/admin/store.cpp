@@ -67,13 +67,13 @@ std::expected<Store::Loaded, std::string> Store::load() const {
   loaded.settings = std::move(*settings);
   const std::vector<std::string> names = token_names(loaded.settings);
   auto secrets = host::read_secrets(given_secrets_, secrets_folder(), names);
-  if (!secrets && secrets.error().starts_with(secrets_folder())) {
-    loaded.trouble =
-        "the saved tokens are set aside, those that the box was given are in use: " + secrets.error();
+  if (!secrets && secrets.error().in == host::SecretsError::In::Saved) {
+    loaded.trouble = "the saved tokens are set aside, those that the box was given are in use: " +
+                     secrets.error().sentence;
     set_aside(secrets_folder(), loaded.trouble);
     secrets = host::read_secrets(given_secrets_, secrets_folder(), names);
   }
-  if (!secrets) return std::unexpected(secrets.error());
+  if (!secrets) return std::unexpected(secrets.error().sentence);
   loaded.secrets = std::move(*secrets);
   return loaded;
 }

@@ -68,6 +68,7 @@ std::string write_setup(const Setup& setup) {
                                           {"tag", {settings::tag_of(setup.settings())}},
                                           {"saved", json(setup.saved())},
                                           {"applying", json(setup.applying())},
+                                          {"trouble", {setup.trouble()}},
                                           {"tokens", {std::move(tokens)}},
                                           {"keys", keys_value()}}});
 }

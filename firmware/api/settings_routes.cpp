@@ -28,6 +28,13 @@ intake::Answer refused(const icd::Refusal& why) {
   return refusal(why.status, why.sentence);
 }
 
+/// A change is refused with 409 only while another is being applied (api::Setup), which takes a second.
+intake::Answer refused_change(const icd::Refusal& why) {
+  auto answer = refused(why);
+  if (why.status == icd::Status::Conflict) answer.headers.push_back({"Retry-After", "1"});
+  return answer;
+}
+
 /// What `read` makes of a body, which is one JSON object.
 template <class Message, class Read>
 icd::Checked<Message> read_body(const std::string& body, Read read) {
@@ -176,7 +183,7 @@ intake::Answer SettingsRoutes::switch_course(const std::string& body) {
 intake::Answer SettingsRoutes::apply(const settings::Settings& next) {
   const auto changes = settings::changes(setup_.settings(), next);
   const auto warnings = setup_.warnings(next);
-  if (const auto saved = setup_.save(next); !saved) return refused(saved.error());
+  if (const auto saved = setup_.save(next); !saved) return refused_change(saved.error());
   return fresh("application/json", write_changes(changes, warnings));
 }
 
@@ -190,7 +197,8 @@ intake::Answer SettingsRoutes::set_token(const std::string& body) {
     return refusal(icd::Status::UnprocessableEntity,
                    icd::sentence("name: expected one of ", known, ", got ", icd::in_quotes(posted->name)));
   }
-  if (const auto kept = setup_.set_token(posted->name, posted->token); !kept) return refused(kept.error());
+  if (const auto kept = setup_.set_token(posted->name, posted->token); !kept)
+    return refused_change(kept.error());
   return fresh(
       "application/json",
       codec::write_json({Value::Object{{"name", {posted->name}}, {"set", {posted->token.has_value()}}}}));

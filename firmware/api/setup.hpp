@@ -29,6 +29,8 @@ class Setup {
   virtual bool saved() const = 0;
   /// Whether a change was taken and is about to be applied: all the rest is as it was before that.
   virtual bool applying() const = 0;
+  /// Why the last change is not in use (it was taken back, it is half done): a sentence, or "".
+  virtual const std::string& trouble() const = 0;
   /// All tokens that there can be, by the courses there are.
   virtual std::vector<TokenRow> tokens() const = 0;
   /// What the operator should know before `next` is applied.

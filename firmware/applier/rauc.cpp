@@ -12,23 +12,26 @@ namespace {
 /// A slot of a slow card is written in some minutes.
 constexpr std::chrono::minutes kInstall{20};
 constexpr std::chrono::seconds kAnswer{60};
-/// What its service says to whoever asks while it installs or marks; and how often it is asked again.
-constexpr std::string_view kBusy = "already processing a different method";
+/// How often it is asked again while it is busy.
 constexpr std::chrono::seconds kAgain{1};
 
-std::string fault(const host::Output& said) {
-  std::string fault = update::fault_in(said.out, said.err);
-  return fault.empty() ? "rauc: " + said.trouble : fault;
+using update::Fault;
+
+Fault fault_of(const host::Output& said) {
+  Fault fault = update::fault_in(said.out, said.err);
+  if (fault.sentence.empty()) fault.sentence = "rauc: " + said.trouble;
+  return fault;
 }
 
-std::expected<std::string, std::string> ask(const std::vector<std::string>& words) {
+std::expected<std::string, Fault> ask(const std::vector<std::string>& words) {
   host::Output said = host::output_of(words, kAnswer);
-  if (!said.trouble.empty()) return std::unexpected(fault(said));
+  if (!said.trouble.empty()) return std::unexpected(fault_of(said));
   return std::move(said.out);
 }
 
 std::expected<void, std::string> mark(const std::string& command, const char* how, const char* slot) {
-  if (const auto said = ask({command, "status", how, slot}); !said) return std::unexpected(said.error());
+  if (const auto said = ask({command, "status", how, slot}); !said)
+    return std::unexpected(said.error().sentence);
   return {};
 }
 
@@ -38,17 +41,17 @@ std::expected<update::Running, std::string> Rauc::status() const {
   const auto until = std::chrono::steady_clock::now() + kInstall;
   const std::vector<std::string> words = {command_, "status", "--output-format=json"};
   auto said = ask(words);
-  while (!said && said.error().find(kBusy) != std::string::npos && std::chrono::steady_clock::now() < until) {
+  while (!said && said.error().kind == Fault::Kind::Busy && std::chrono::steady_clock::now() < until) {
     std::this_thread::sleep_for(kAgain);
     said = ask(words);
   }
-  if (!said) return std::unexpected(said.error());
+  if (!said) return std::unexpected(said.error().sentence);
   return update::read_status(*said);
 }
 
 std::expected<update::Bundle, std::string> Rauc::info(const std::string& bundle) const {
   const auto said = ask({command_, "info", "--output-format=json", bundle});
-  if (!said) return std::unexpected(said.error());
+  if (!said) return std::unexpected(said.error().sentence);
   return update::read_info(*said);
 }
 
@@ -60,7 +63,7 @@ std::expected<void, std::string> Rauc::install(const std::string& bundle,
                                                 progress(*percent);
                                             });
   if (said.trouble.empty()) return {};
-  return std::unexpected(fault(said));
+  return std::unexpected(fault_of(said).sentence);
 }
 
 std::expected<void, std::string> Rauc::mark_good() const {

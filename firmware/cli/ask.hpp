@@ -28,8 +28,8 @@ struct Failure {
   std::string sentence;
 };
 
-/// The body of an action's 200. `body`: JSON, or nothing. `check`: the command that tells whether an action was
-/// done whose answer was lost.
+/// The body of an action's 200. `body`: JSON, or nothing. `check`: the command that tells whether an action
+/// was done whose answer was lost.
 std::expected<std::string, Failure> post(const Adit& adit, const std::string& target, const std::string& body,
                                          const std::string& check);
 

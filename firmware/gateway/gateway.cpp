@@ -37,7 +37,7 @@ Gateway::Gateway(loop::Loop& loop, Parts parts)
                 parts_.loaded.secrets.label_code),
       network_requests_(parts_.state_folder, parts_.network_folder),
       setup_(
-          parts_.store, parts_.reset, parts_.loaded,
+          parts_.store, parts_.reset, parts_.loaded, parts_.trouble,
           [this](const std::string& post) {
             return dispatch::meaning_of_another_post(flow_.reports(), post);
           },

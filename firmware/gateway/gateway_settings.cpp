@@ -53,7 +53,7 @@ void Gateway::tell_of_settings(const settings::Anew& anew, const forward::Tokens
   links_.look_at(settings_);
   box_.runs_with(settings::file_of(parts_.loaded.settings));
   if (anew.panel && !parts_.board.panel) reopen_panel();
-  setup_.runs_with(parts_.loaded);
+  setup_.runs_with(parts_.loaded, parts_.trouble);
 }
 
 /// A line can be had once: the old ones are let go of first.
@@ -72,7 +72,7 @@ void Gateway::take_back(const std::string& why) {
   host::log(host::Level::Error,
             is_back ? "the last change of the settings is taken back" : "the last change cannot be used",
             {{"why", why}});
-  setup_.runs_with(parts_.loaded);
+  setup_.runs_with(parts_.loaded, parts_.trouble);
   if (auto listening = listen(settings_.team); !listening) return make_way();
   parts_.sockets.settle();
 }

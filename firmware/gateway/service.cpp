@@ -40,7 +40,8 @@ ledger::Result<ledger::Ledger> open_ledger(const Options& options) {
   auto opened = Ledger::open(options.state);
   const bool is_there = std::filesystem::exists(options.state, unknown);
   const auto is_the_disk = [](const ledger::Error& error) {
-    return error.full || error.read_only || error.failing;
+    using enum ledger::Error::Kind;
+    return error.kind == Full || error.kind == ReadOnly || error.kind == Failing;
   };
   if (!opened && (is_the_disk(opened.error()) || !is_there)) {
     host::log(host::Level::Error, "no report is taken, the ledger cannot be written",

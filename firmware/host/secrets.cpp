@@ -42,22 +42,27 @@ std::expected<Token, std::string> read_token(const std::string& path, bool crede
   return token;
 }
 
+SecretsError of_given(std::string sentence) {
+  return {SecretsError::In::Given, std::move(sentence)};
+}
+
 }  // namespace
 
-std::expected<Secrets, std::string> read_secrets(const std::string& given, const std::string& saved,
-                                                 std::span<const std::string> names) {
+std::expected<Secrets, SecretsError> read_secrets(const std::string& given, const std::string& saved,
+                                                  std::span<const std::string> names) {
   const bool credentials = holds_credentials(given);
   Secrets secrets;
   for (const std::string& name : names) {
     auto token = read_token(saved + "/" + name + ".token", false);
-    if (token && !*token) token = read_token(given + "/" + name + ".token", credentials);
-    if (!token) return std::unexpected(token.error());
+    if (!token) return std::unexpected(SecretsError{SecretsError::In::Saved, std::move(token.error())});
+    if (!*token) token = read_token(given + "/" + name + ".token", credentials);
+    if (!token) return std::unexpected(of_given(std::move(token.error())));
     if (*token) secrets.tokens.emplace(name, std::move(**token));
   }
   auto label = read_token(given + "/label.code", credentials);
-  if (!label) return std::unexpected(label.error());
+  if (!label) return std::unexpected(of_given(std::move(label.error())));
   if (*label && !access::is_code((*label)->reveal())) {
-    return std::unexpected(given + "/label.code: expected 8 digits");
+    return std::unexpected(of_given(given + "/label.code: expected 8 digits"));
   }
   secrets.label_code = std::move(*label);
   return secrets;

@@ -58,12 +58,19 @@ struct Secrets {
   }
 };
 
+/// Why secrets cannot be used, and in which folder the fault is: the saved ones can be done without.
+struct SecretsError {
+  enum class In { Saved, Given };
+  In in = In::Given;
+  std::string sentence = "";
+};
+
 /// The tokens of these names, each in NAME.token in `saved` or else in `given` (a folder of systemd
 /// credentials, or one of mode 0700 with files of mode 0600); and `label.code` in `given`. White space around
 /// a token is cut; a missing or empty file is none. An error names the file, never what is in it: others may
 /// read it, or it holds no token.
-std::expected<Secrets, std::string> read_secrets(const std::string& given, const std::string& saved,
-                                                 std::span<const std::string> names);
+std::expected<Secrets, SecretsError> read_secrets(const std::string& given, const std::string& saved,
+                                                  std::span<const std::string> names);
 
 /// Names this start of the machine; "" where that cannot be known.
 std::string boot();

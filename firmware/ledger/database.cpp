@@ -9,9 +9,23 @@ namespace {
 
 /// SQLite reports a full disk as SQLITE_FULL where a write met it, and as an I/O error elsewhere (a quota, a
 /// limit of the file's size, growing a file).
-bool is_full(int code, int system_error) {
-  if (code == SQLITE_FULL) return true;
-  return code == SQLITE_IOERR && (system_error == ENOSPC || system_error == EDQUOT || system_error == EFBIG);
+/// `system_error`: the errno behind it, or 0. SQLITE_ERROR says that a table or a column is not there.
+Error::Kind kind_of(int code, int system_error) {
+  switch (code) {
+    case SQLITE_FULL:
+      return Error::Kind::Full;
+    case SQLITE_IOERR:
+      if (system_error == ENOSPC || system_error == EDQUOT || system_error == EFBIG) return Error::Kind::Full;
+      return Error::Kind::Failing;
+    case SQLITE_READONLY:
+      return Error::Kind::ReadOnly;
+    case SQLITE_CORRUPT:
+    case SQLITE_NOTADB:
+    case SQLITE_ERROR:
+      return Error::Kind::Damaged;
+    default:
+      return Error::Kind::Other;
+  }
 }
 
 sqlite3_file* log_of(sqlite3* database) {
@@ -33,7 +47,7 @@ int errno_behind(sqlite3* database) {
 
 }  // namespace
 
-Attempt<Database> Database::open(const std::string& path, int flags) {
+Result<Database> Database::open(const std::string& path, int flags) {
   Database database;
   sqlite3* handle = nullptr;
   // No mutexes: a ledger is used by one thread at a time.
@@ -43,12 +57,12 @@ Attempt<Database> Database::open(const std::string& path, int flags) {
   return database;
 }
 
-Attempt<void> Database::execute(const char* sql) {
+Result<void> Database::execute(const char* sql) {
   if (sqlite3_exec(get(), sql, nullptr, nullptr, nullptr) == SQLITE_OK) return {};
   return std::unexpected(error(sql));
 }
 
-Attempt<std::int64_t> Database::number(const char* sql) {
+Result<std::int64_t> Database::number(const char* sql) {
   const auto statement = Statement::prepare(*this, sql);
   if (!statement) return std::unexpected(statement.error());
   Query query(*statement);
@@ -56,7 +70,7 @@ Attempt<std::int64_t> Database::number(const char* sql) {
   return query.number(0);
 }
 
-Attempt<std::string> Database::text(const char* sql) {
+Result<std::string> Database::text(const char* sql) {
   const auto statement = Statement::prepare(*this, sql);
   if (!statement) return std::unexpected(statement.error());
   Query query(*statement);
@@ -64,23 +78,21 @@ Attempt<std::string> Database::text(const char* sql) {
   return query.bytes(0);
 }
 
-Failure Database::error(std::string_view doing) const {
-  if (get() == nullptr) return {{std::string(doing) + ": out of memory"}};
+Error Database::error(std::string_view doing) const {
+  if (get() == nullptr) return {Error::Kind::Other, std::string(doing) + ": out of memory"};
   const int code = sqlite3_errcode(get()) & 0xff;
   std::string what = std::string(doing) + ": " + sqlite3_errmsg(get());
   if (code == SQLITE_BUSY) what += ": another process has the ledger open";
   const int system_error = code == SQLITE_IOERR || code == SQLITE_CANTOPEN ? errno_behind(get()) : 0;
   if (system_error != 0) what += std::string(" (") + std::strerror(system_error) + ")";
-  const bool damaged = code == SQLITE_CORRUPT || code == SQLITE_NOTADB || code == SQLITE_ERROR;
-  const bool full = is_full(code, system_error);
-  return {{what, full, code == SQLITE_READONLY, code == SQLITE_IOERR && !full}, damaged};
+  return {kind_of(code, system_error), std::move(what)};
 }
 
 sqlite3_file* Database::log() const {
   return log_of(get());
 }
 
-Attempt<Statement> Statement::prepare(const Database& database, const char* sql) {
+Result<Statement> Statement::prepare(const Database& database, const char* sql) {
   Statement statement;
   sqlite3_stmt* handle = nullptr;
   const int result = sqlite3_prepare_v3(database.get(), sql, -1, SQLITE_PREPARE_PERSISTENT, &handle, nullptr);
@@ -140,7 +152,7 @@ Transaction::~Transaction() {
   if (open) sqlite3_exec(database_.get(), "ROLLBACK", nullptr, nullptr, nullptr);
 }
 
-Attempt<void> Transaction::run(Statement& statement, const char* sql) {
+Result<void> Transaction::run(Statement& statement, const char* sql) {
   if (statement.get() == nullptr) {
     auto prepared = Statement::prepare(database_, sql);
     if (!prepared) return std::unexpected(std::move(prepared.error()));

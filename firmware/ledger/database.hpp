@@ -11,14 +11,6 @@
 
 namespace adit::ledger {
 
-/// Why something could not be done, and whether the file itself is to blame: no database, a damaged one, or
-/// one that does not know what a ledger has (SQLITE_ERROR).
-struct Failure : Error {
-  bool damaged = false;
-};
-template <class T>
-using Attempt = std::expected<T, Failure>;
-
 struct CloseDatabase {
   void operator()(sqlite3* database) const { sqlite3_close_v2(database); }
 };
@@ -29,7 +21,7 @@ struct FinalizeStatement {
 /// A prepared statement, kept for the life of its database. Use it through a Query.
 class Statement {
  public:
-  static Attempt<Statement> prepare(const class Database& database, const char* sql);
+  static Result<Statement> prepare(const class Database& database, const char* sql);
   sqlite3_stmt* get() const { return handle_.get(); }
 
  private:
@@ -40,15 +32,15 @@ class Statement {
 class Database {
  public:
   /// Opens a file that exists.
-  static Attempt<Database> open(const std::string& path, int flags = SQLITE_OPEN_READWRITE);
+  static Result<Database> open(const std::string& path, int flags = SQLITE_OPEN_READWRITE);
 
-  Attempt<void> execute(const char* sql);
+  Result<void> execute(const char* sql);
   /// The first column of the first row, as a number and as text.
-  Attempt<std::int64_t> number(const char* sql);
-  Attempt<std::string> text(const char* sql);
+  Result<std::int64_t> number(const char* sql);
+  Result<std::string> text(const char* sql);
 
   /// What the last call failed with; `doing` begins its sentence ("recording a report").
-  Failure error(std::string_view doing) const;
+  Error error(std::string_view doing) const;
   sqlite3* get() const { return handle_.get(); }
   /// The write-ahead log, once something was read from or written to the database; else null.
   sqlite3_file* log() const;
@@ -99,11 +91,11 @@ class Transaction {
   Transaction(const Transaction&) = delete;
   Transaction& operator=(const Transaction&) = delete;
 
-  Attempt<void> begin() { return run(database_.begin_, "BEGIN IMMEDIATE"); }
-  Attempt<void> commit() { return run(database_.commit_, "COMMIT"); }
+  Result<void> begin() { return run(database_.begin_, "BEGIN IMMEDIATE"); }
+  Result<void> commit() { return run(database_.commit_, "COMMIT"); }
 
  private:
-  Attempt<void> run(Statement& statement, const char* sql);
+  Result<void> run(Statement& statement, const char* sql);
 
   Database& database_;
 };

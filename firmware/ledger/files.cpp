@@ -19,21 +19,33 @@ namespace {
 constexpr std::array kBeside = {"-wal", "-shm", "-journal"};
 constexpr const char *kTrial = "ledger.try-", *kUnique = "XXXXXX";
 
-Attempt<void> set_mode(const std::string& path) {
+Result<void> set_mode(const std::string& path) {
   if (::chmod(path.c_str(), 0600) == 0) return {};
   return std::unexpected(system_error("chmod 0600 " + path));
 }
 
+Error::Kind kind_of(int code) {
+  switch (code) {
+    case ENOSPC:
+    case EDQUOT:
+    case EFBIG:
+      return Error::Kind::Full;
+    case EROFS:
+    case EACCES:
+    case EPERM:
+      return Error::Kind::ReadOnly;
+    case EIO:
+      return Error::Kind::Failing;
+    default:
+      return Error::Kind::Other;
+  }
+}
+
 }  // namespace
 
-Failure system_error(const std::string& doing) {
+Error system_error(const std::string& doing) {
   const int code = errno;
-  Failure failure;
-  failure.what = doing + ": " + std::strerror(code);
-  failure.full = code == ENOSPC || code == EDQUOT || code == EFBIG;
-  failure.failing = code == EIO;
-  failure.read_only = code == EROFS || code == EACCES || code == EPERM;
-  return failure;
+  return {kind_of(code), doing + ": " + std::strerror(code)};
 }
 
 bool exists(const std::string& path) {
@@ -41,7 +53,7 @@ bool exists(const std::string& path) {
   return ::lstat(path.c_str(), &found) == 0;
 }
 
-Attempt<std::string> read_file(const std::string& path) {
+Result<std::string> read_file(const std::string& path) {
   const loop::FileDescriptor file(::open(path.c_str(), O_RDONLY | O_CLOEXEC));
   if (!file && errno == ENOENT) return std::string();
   struct stat found{};
@@ -59,25 +71,26 @@ Attempt<std::string> read_file(const std::string& path) {
   return bytes;
 }
 
-Attempt<void> make_file(const std::string& path) {
+Result<void> make_file(const std::string& path) {
   const loop::FileDescriptor made(::open(path.c_str(), O_CREAT | O_EXCL | O_WRONLY | O_CLOEXEC, 0600));
   if (!made && errno != EEXIST) return std::unexpected(system_error("making " + path));
   return set_mode(path);
 }
 
-Attempt<void> sync_folder(const std::string& folder) {
+Result<void> sync_folder(const std::string& folder) {
   const loop::FileDescriptor opened(::open(folder.c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC));
   if (!opened || ::fsync(opened.get()) != 0) return std::unexpected(system_error("syncing " + folder));
   return {};
 }
 
-Attempt<void> try_writing(const std::string& folder) {
+Result<void> try_writing(const std::string& folder) {
   auto tried = try_room(folder, 0);
-  if (tried || !tried.error().read_only) return {};  // what else there is says whoever writes
+  if (tried || tried.error().kind != Error::Kind::ReadOnly)
+    return {};  // what else there is says whoever writes
   return tried;
 }
 
-Attempt<void> try_room(const std::string& folder, std::int64_t bytes) {
+Result<void> try_room(const std::string& folder, std::int64_t bytes) {
   std::string path = folder + "/" + kTrial + kUnique;
   const loop::FileDescriptor made(::mkostemp(path.data(), O_CLOEXEC));
   if (!made) return std::unexpected(system_error("writing to " + folder));
@@ -98,7 +111,7 @@ void remove_trials(const std::string& folder) {
   for (const std::string& path : left) ::unlink(path.c_str());
 }
 
-Attempt<void> try_opening(const std::string& path) {
+Result<void> try_opening(const std::string& path) {
   const loop::FileDescriptor file(::open(path.c_str(), O_RDWR | O_CLOEXEC));
   if (!file && errno == ENOENT) return {};
   if (!file) return std::unexpected(system_error("opening " + path));
@@ -110,12 +123,12 @@ std::int64_t size_of(const std::string& path) {
   return ::lstat(path.c_str(), &found) == 0 ? found.st_size : 0;
 }
 
-Attempt<void> rename_file(const std::string& from, const std::string& to) {
+Result<void> rename_file(const std::string& from, const std::string& to) {
   if (::rename(from.c_str(), to.c_str()) == 0) return {};
   return std::unexpected(system_error("renaming " + from));
 }
 
-Attempt<void> copy_database(const std::string& from, const std::string& to) {
+Result<void> copy_database(const std::string& from, const std::string& to) {
   for (const char* suffix : {"", "-wal", "-journal", ".salvaged"}) {
     if (!exists(from + suffix)) continue;
     const auto bytes = read_file(from + suffix);
@@ -137,7 +150,7 @@ void remove_database(const std::string& path) {
   for (const char* suffix : kBeside) ::unlink((path + suffix).c_str());
 }
 
-Attempt<std::string> set_aside(const std::string& folder, const std::string& path) {
+Result<std::string> set_aside(const std::string& folder, const std::string& path) {
   for (int n = 1;; ++n) {
     const std::string aside = path + ".damaged-" + std::to_string(n);
     bool is_free = !exists(aside);

@@ -9,32 +9,32 @@
 namespace adit::ledger {
 
 /// By errno.
-Failure system_error(const std::string& doing);
+Error system_error(const std::string& doing);
 
 bool exists(const std::string& path);
 /// All of a file; one that is not there is empty.
-Attempt<std::string> read_file(const std::string& path);
+Result<std::string> read_file(const std::string& path);
 /// Makes an empty file of mode 0600 where there is none; SQLite gives its -wal the same mode.
-Attempt<void> make_file(const std::string& path);
+Result<void> make_file(const std::string& path);
 /// A new or renamed file outlives a power cut only once its folder is on disk too.
-Attempt<void> sync_folder(const std::string& folder);
+Result<void> sync_folder(const std::string& folder);
 /// A failure with `read_only`: no file can be made in it.
-Attempt<void> try_writing(const std::string& folder);
+Result<void> try_writing(const std::string& folder);
 /// A failure where `bytes` have no room in it.
-Attempt<void> try_room(const std::string& folder, std::int64_t bytes);
+Result<void> try_room(const std::string& folder, std::int64_t bytes);
 /// Of try_writing() and try_room() a program that was killed in the middle has left a file.
 void remove_trials(const std::string& folder);
 /// A failure where the file is there and cannot be written to, or is not ours.
-Attempt<void> try_opening(const std::string& path);
+Result<void> try_opening(const std::string& path);
 /// In bytes; 0: it is not there.
 std::int64_t size_of(const std::string& path);
-Attempt<void> rename_file(const std::string& from, const std::string& to);
+Result<void> rename_file(const std::string& from, const std::string& to);
 /// Copies a database with what SQLite keeps beside it, as far as it is there and can be read.
-Attempt<void> copy_database(const std::string& from, const std::string& to);
+Result<void> copy_database(const std::string& from, const std::string& to);
 /// A database with what SQLite keeps beside it.
 void remove_database(const std::string& path);
 /// Renames the file and what SQLite keeps beside it, as far as they are there, to the first `damaged-<n>`
 /// that is free, and gives that.
-Attempt<std::string> set_aside(const std::string& folder, const std::string& path);
+Result<std::string> set_aside(const std::string& folder, const std::string& path);
 
 }  // namespace adit::ledger

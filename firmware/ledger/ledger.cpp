@@ -48,7 +48,7 @@ class Ledger::Impl {
   Result<void> write(std::span<const dispatch::Report> steps, const dispatch::Run* run,
                      dispatch::Flush flush) {
     if (steps.empty() && run == nullptr) return {};
-    if (!refusal_.empty()) return std::unexpected(Error{refusal_, false, true});
+    if (!refusal_.empty()) return std::unexpected(Error{Error::Kind::ReadOnly, refusal_});
     const bool soon = flush == dispatch::Flush::Soon;
     if (auto mended = mend_log(); !mended) return mended;
     if (auto set = flush_each(!soon); !set) return set;
@@ -69,7 +69,7 @@ class Ledger::Impl {
     sqlite3_file* const log = database_.log();
     if (log != nullptr && log->pMethods->xSync(log, SQLITE_SYNC_NORMAL) != SQLITE_OK) {
       has_hole_ = true;
-      return std::unexpected(Error{"the ledger's log could not be flushed", false});
+      return std::unexpected(Error{.what = "the ledger's log could not be flushed"});
     }
     unflushed_ = false;
     return flush_each(true);  // here, where nobody waits for it
@@ -92,7 +92,7 @@ class Ledger::Impl {
     if (result == SQLITE_DONE) return std::vector<Step>();
     if (result != SQLITE_ROW) return std::unexpected(database_.error(doing()));
     auto steps = steps_of(number, query.bytes(0));
-    if (!steps) return std::unexpected(Error{doing() + ": it is damaged", false});
+    if (!steps) return std::unexpected(Error{.what = doing() + ": it is damaged"});
     return *std::move(steps);
   }
 
@@ -127,7 +127,7 @@ class Ledger::Impl {
   /// that is in the log behind it.
   Result<void> mend_log() {
     if (!has_hole_) return {};
-    if (!begin_log_anew()) return std::unexpected(Error{"the ledger's log could not be begun anew", false});
+    if (!begin_log_anew()) return std::unexpected(Error{.what = "the ledger's log could not be begun anew"});
     has_hole_ = unflushed_ = false;
     return flush_each(true);
   }
@@ -182,7 +182,7 @@ class Ledger::Impl {
     bind_report(row, steps.back(), history);
     if (row.step() != SQLITE_DONE) return std::unexpected(database_.error(doing()));
     if (sqlite3_changes(database_.get()) != 1)
-      return std::unexpected(Error{doing() + ": this number is another report's", false});
+      return std::unexpected(Error{.what = doing() + ": this number is another report's"});
     return {};
   }
 

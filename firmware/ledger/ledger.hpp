@@ -14,11 +14,17 @@
 
 namespace adit::ledger {
 
+/// Why something could not be read or written.
 struct Error {
-  std::string what;
-  bool full = false;       // the disk is full
-  bool read_only = false;  // the folder cannot be written to
-  bool failing = false;    // the disk itself reports errors
+  enum class Kind {
+    Other,
+    Full,      // the disk is full
+    ReadOnly,  // the folder cannot be written to
+    Failing,   // the disk itself reports errors
+    Damaged,   // the file itself: no database, a broken one, or one without a ledger's tables
+  };
+  Kind kind = Kind::Other;
+  std::string what = "";  // a sentence
 };
 
 template <class T>

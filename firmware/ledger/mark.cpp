@@ -33,7 +33,7 @@ std::string read_only_uri(const std::string& path) {
 
 }  // namespace
 
-Attempt<void> write_mark(Database& database, bool log_needed, std::int64_t log_size) {
+Result<void> write_mark(Database& database, bool log_needed, std::int64_t log_size) {
   const auto statement = Statement::prepare(database, kWriteMark);
   if (!statement) return std::unexpected(statement.error());
   Query query(*statement);

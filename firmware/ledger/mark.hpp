@@ -18,7 +18,7 @@ struct Mark {
 };
 
 /// As one transaction of the log.
-Attempt<void> write_mark(Database& database, bool log_needed, std::int64_t log_size);
+Result<void> write_mark(Database& database, bool log_needed, std::int64_t log_size);
 
 /// What the file at `path` says where nobody looks into its log; nothing: it says nothing that is proven.
 std::optional<Mark> mark_without_log(const std::string& path);

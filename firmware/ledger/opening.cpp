@@ -42,11 +42,11 @@ constexpr sqlite3_int64 kLogSize = 4 << 20;
 /// start-up stays short.
 constexpr std::int64_t kMostChecked = 64 << 20;
 
-Failure damaged(std::string what) {
-  return {{std::move(what), false, false}, true};
+Error damaged(std::string what) {
+  return {Error::Kind::Damaged, std::move(what)};
 }
 
-Attempt<void> check_pages(Database& database) {
+Result<void> check_pages(Database& database) {
   const auto pages = database.number("PRAGMA page_count");
   if (!pages) return std::unexpected(pages.error());
   const auto page_size = database.number("PRAGMA page_size");
@@ -59,7 +59,7 @@ Attempt<void> check_pages(Database& database) {
 }
 
 /// A row may have been changed so that it is still a row: only its proof tells.
-Attempt<void> check_rows(Database& database) {
+Result<void> check_rows(Database& database) {
   const auto unproven = database.text(kUnprovenRow);
   if (!unproven) return std::unexpected(database.error("reading all rows"));
   if (!unproven->empty()) return std::unexpected(damaged(*unproven + " is not as it was written"));
@@ -84,10 +84,10 @@ sqlite3_int64 reserve_log(Database& database) {
 }
 
 /// A ledger may be used also where there is no room for its mark; one that SQLite will not write to may not.
-Attempt<void> begin_log(Database& database) {
+Result<void> begin_log(Database& database) {
   const sqlite3_int64 size = reserve_log(database);
   if (auto marked = write_mark(database, true, size); !marked) {
-    if (marked.error().read_only) return marked;
+    if (marked.error().kind == Error::Kind::ReadOnly) return marked;
     return {};
   }
   sqlite3_wal_checkpoint_v2(database.get(), nullptr, SQLITE_CHECKPOINT_PASSIVE, nullptr, nullptr);
@@ -95,7 +95,7 @@ Attempt<void> begin_log(Database& database) {
   return {};
 }
 
-Attempt<void> set_up(Database& database) {
+Result<void> set_up(Database& database) {
   if (!database.execute(kPragmas)) return std::unexpected(database.error("opening the ledger"));
   if (auto taught = teach_proof(database); !taught) return taught;
   if (auto known = check_version(database); !known) return known;
@@ -105,7 +105,7 @@ Attempt<void> set_up(Database& database) {
   if (*tables == 0) return std::unexpected(damaged("it is empty"));
   const auto mode = database.text("PRAGMA journal_mode = WAL");
   if (!mode) return std::unexpected(mode.error());
-  if (*mode != "wal") return std::unexpected(Failure{{"the ledger's file system has no WAL: " + *mode}});
+  if (*mode != "wal") return std::unexpected(Error{.what = "the ledger's file system has no WAL: " + *mode});
   if (auto pages = check_pages(database); !pages) return pages;
   if (auto made = make_tables(database); !made) return made;
   if (auto rows = check_rows(database); !rows) return rows;
@@ -120,11 +120,11 @@ class Opening {
         new_(path_ + ".new"),
         salvaged_(path_ + ".salvaged") {}
 
-  Attempt<Opened> open() {
+  Result<Opened> open() {
     if (auto writable = try_writing(folder_); !writable) return std::unexpected(writable.error());
     if (auto there = have_file(); !there) return std::unexpected(there.error());
     auto database = open_file();
-    if (!database && database.error().damaged) {
+    if (!database && database.error().kind == Error::Kind::Damaged) {
       // What a log says that was put right is known for certain only where all rows prove it.
       tail_lost_ = tail_lost_ || repaired_;
       if (auto done = salvage_files(database.error().what); !done) return std::unexpected(done.error());
@@ -138,7 +138,7 @@ class Opening {
 
  private:
   /// A ledger under its name: the one that was salvaged when the box died, or a new one.
-  Attempt<void> have_file() {
+  Result<void> have_file() {
     if (exists(salvaged_)) {
       damage_ = "The ledger was damaged and set aside; what could be had was taken over from it.";
       return put_salvaged_in_place();
@@ -153,7 +153,7 @@ class Opening {
   }
 
   /// A whole ledger under its first name: empty, or with what was carved.
-  Attempt<void> make_new(const Carved* carved) {
+  Result<void> make_new(const Carved* carved) {
     remove_database(new_);
     auto made = make_file(new_);
     if (made) made = fill_new(carved);
@@ -161,7 +161,7 @@ class Opening {
     return made;
   }
 
-  Attempt<void> fill_new(const Carved* carved) {
+  Result<void> fill_new(const Carved* carved) {
     auto database = Database::open(new_);
     if (!database) return std::unexpected(database.error());
     if (auto set = database->execute("PRAGMA synchronous = FULL"); !set) return set;
@@ -174,7 +174,7 @@ class Opening {
     return {};
   }
 
-  Attempt<Database> open_file() {
+  Result<Database> open_file() {
     if (auto log = look_at_log(); !log) return std::unexpected(log.error());
     auto database = Database::open(path_);
     if (!database) return std::unexpected(database.error());
@@ -183,14 +183,15 @@ class Opening {
       // The damaged file stays as it was found, for whoever looks into it; its log with what was put right.
       sqlite3_db_config(database->get(), SQLITE_DBCONFIG_NO_CKPT_ON_CLOSE, 1, nullptr);
       // Its folder takes a write: that SQLite may not write is what the file's own header says.
-      if (ready.error().read_only) return std::unexpected(damaged(std::move(ready.error().what)));
+      if (ready.error().kind == Error::Kind::ReadOnly)
+        return std::unexpected(damaged(std::move(ready.error().what)));
       return std::unexpected(std::move(ready.error()));
     }
     return std::move(*database);
   }
 
   /// Before SQLite does, which says nothing of what it does not take.
-  Attempt<void> look_at_log() {
+  Result<void> look_at_log() {
     auto log = read_file(path_ + "-wal");
     if (!log) return std::unexpected(log.error());
     const LogReading reading = read_log(*log);
@@ -207,7 +208,7 @@ class Opening {
     return repair_log(reading.repairs);
   }
 
-  Attempt<void> repair_log(const std::vector<LogReading::Repair>& repairs) {
+  Result<void> repair_log(const std::vector<LogReading::Repair>& repairs) {
     if (repairs.empty()) return {};
     const std::string path = path_ + "-wal";
     const loop::FileDescriptor file(::open(path.c_str(), O_WRONLY | O_CLOEXEC));
@@ -225,7 +226,7 @@ class Opening {
   }
 
   /// Row by row, into a new ledger; the damaged one is kept aside.
-  Attempt<void> salvage_files(const std::string& why) {
+  Result<void> salvage_files(const std::string& why) {
     const auto file = read_file(path_);
     if (!file) return std::unexpected(file.error());
     auto log = read_file(path_ + "-wal");
@@ -241,7 +242,7 @@ class Opening {
     return {};
   }
 
-  Attempt<void> put_salvaged_in_place() {
+  Result<void> put_salvaged_in_place() {
     auto aside = set_aside(folder_, path_);
     if (!aside) return std::unexpected(aside.error());
     aside_ = *std::move(aside);
@@ -261,15 +262,11 @@ class Opening {
 
 /// Where SQLite can make no file, it says that there is none: the folder itself is asked for the reason,
 /// which may have come up since the opening began.
-Attempt<Opened> open_database(const std::string& folder) {
+Result<Opened> open_database(const std::string& folder) {
   auto opened = Opening(folder).open();
-  if (opened || opened.error().full) return opened;
-  if (const auto room = try_room(folder, 0); !room) {
-    Failure& failure = opened.error();
-    failure.full = room.error().full;
-    failure.read_only = failure.read_only || room.error().read_only;
-    failure.failing = failure.failing || room.error().failing;
-  }
+  if (opened || opened.error().kind == Error::Kind::Full) return opened;
+  const auto room = try_room(folder, 0);
+  if (!room && room.error().kind != Error::Kind::Other) opened.error().kind = room.error().kind;
   return opened;
 }
 

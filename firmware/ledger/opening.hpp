@@ -12,7 +12,7 @@ struct Opened {
 };
 
 /// Opens `folder`/ledger.sqlite, made, put right and salvaged as Ledger::open() says, with its tables there.
-Attempt<Opened> open_database(const std::string& folder);
+Result<Opened> open_database(const std::string& folder);
 
 /// At this many pages the log is taken over into the file.
 inline constexpr int kPagesOfLog = 960;

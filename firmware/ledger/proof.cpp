@@ -59,7 +59,7 @@ std::int64_t Proof::value() const {
   return hash_ == kNoProof ? kNoProof + 1 : static_cast<std::int64_t>(hash_);
 }
 
-Attempt<void> teach_proof(Database& database) {
+Result<void> teach_proof(Database& database) {
   constexpr int kHow = SQLITE_UTF8 | SQLITE_DETERMINISTIC | SQLITE_DIRECTONLY;
   const int result = sqlite3_create_function_v2(database.get(), "proof", -1, kHow, nullptr, prove, nullptr,
                                                 nullptr, nullptr);

@@ -32,6 +32,6 @@ class Proof {
 };
 
 /// Lets statements say proof(column, column...).
-Attempt<void> teach_proof(Database& database);
+Result<void> teach_proof(Database& database);
 
 }  // namespace adit::ledger

@@ -70,7 +70,7 @@ class Salvage {
  public:
   Salvage(Database& database, const Carved& carved) : database_(database), carved_(carved), now_(now()) {}
 
-  Attempt<std::string> run(bool tail_lost) {
+  Result<std::string> run(bool tail_lost) {
     Transaction transaction(database_);
     if (auto begun = transaction.begin(); !begun) return std::unexpected(begun.error());
     if (auto copied = copy("report", carved_.reports); !copied) return std::unexpected(copied.error());
@@ -101,7 +101,7 @@ class Salvage {
   }
 
  private:
-  Attempt<void> copy(const std::string& table, const std::map<std::int64_t, Row>& rows) {
+  Result<void> copy(const std::string& table, const std::map<std::int64_t, Row>& rows) {
     if (rows.empty()) return {};
     std::string sql = "INSERT INTO " + table + " VALUES(";
     for (std::size_t i = 0; i < rows.begin()->second.size(); ++i) sql += "?, ";
@@ -116,7 +116,7 @@ class Salvage {
   }
 
   template <class... Values>
-  Attempt<void> change(const char* sql, const Values&... values) {
+  Result<void> change(const char* sql, const Values&... values) {
     const auto statement = Statement::prepare(database_, sql);
     if (!statement) return std::unexpected(statement.error());
     Query query(*statement);
@@ -125,14 +125,14 @@ class Salvage {
     return {};
   }
 
-  Attempt<void> hold() {
+  Result<void> hold() {
     const std::string note = "the ledger was damaged: it may have been sent since; the operator decides";
     if (auto there = change(kPresentRun, now_); !there) return there;
     if (auto distrusted = change(kDistrust, std::string_view(kDamaged)); !distrusted) return distrusted;
     return change(kHold, now_, note, step_of(now_, note));
   }
 
-  Attempt<void> stand_in(std::int64_t number, const std::string& note) {
+  Result<void> stand_in(std::int64_t number, const std::string& note) {
     return change(kStandIn, number, now_, note, step_of(now_, note));
   }
 
@@ -162,7 +162,7 @@ class Salvage {
 
 }  // namespace
 
-Attempt<std::string> salvage(Database& database, const Carved& carved, bool tail_lost) {
+Result<std::string> salvage(Database& database, const Carved& carved, bool tail_lost) {
   return Salvage(database, carved).run(tail_lost);
 }
 

@@ -19,6 +19,6 @@ namespace adit::ledger {
 ///   which new ones go on.
 /// - no run's count of reports proves anything any more.
 /// Gives a sentence about what was taken over and what is missing.
-Attempt<std::string> salvage(Database& database, const Carved& carved, bool tail_lost);
+Result<std::string> salvage(Database& database, const Carved& carved, bool tail_lost);
 
 }  // namespace adit::ledger

@@ -106,7 +106,7 @@ struct Kind {
   bool is_ledger() const { return application == kApplicationId; }
 };
 
-Attempt<Kind> kind_of(Database& database) {
+Result<Kind> kind_of(Database& database) {
   const auto application = database.number("PRAGMA application_id");
   if (!application) return std::unexpected(application.error());
   const auto version = database.number("PRAGMA user_version");
@@ -115,13 +115,13 @@ Attempt<Kind> kind_of(Database& database) {
   return Kind{*application, oldest > 0 ? *version & kVersionBits : *version, oldest > 0 ? oldest : *version};
 }
 
-std::unexpected<Failure> no_ledger(std::string why) {
-  return std::unexpected(Failure{{std::move(why)}, true});
+std::unexpected<Error> no_ledger(std::string why) {
+  return std::unexpected(Error{Error::Kind::Damaged, std::move(why)});
 }
 
 }  // namespace
 
-Attempt<void> check_version(Database& database) {
+Result<void> check_version(Database& database) {
   const auto kind = kind_of(database);
   if (!kind) return std::unexpected(kind.error());
   if (!kind->is_ledger()) {
@@ -137,12 +137,12 @@ Attempt<void> check_version(Database& database) {
   if (kind->oldest > kVersion) {
     std::string sentence = "a later Adit wrote this ledger (" + version + ", and this one reads up to ";
     sentence += std::to_string(kVersion) + "): run that Adit, or move the ledger out of its folder";
-    return std::unexpected(Failure{{std::move(sentence)}, false});
+    return std::unexpected(Error{.what = std::move(sentence)});
   }
   return {};
 }
 
-Attempt<void> make_tables(Database& database) {
+Result<void> make_tables(Database& database) {
   const auto kind = kind_of(database);
   if (!kind) return std::unexpected(kind.error());
   if (kind->is_ledger() && kind->version >= kVersion) return {};

@@ -16,6 +16,8 @@ using codec::Value;
 
 constexpr std::size_t kLongestFault = 300;
 constexpr std::string_view kLastError = "LastError: ";
+/// Of its service (RAUC 1.8, src/service.c), while it installs or marks.
+constexpr std::string_view kBusy = "already processing a different method";
 
 /// RAUC lists slots as objects of one member, the slot's name. `next`: the name of the one that is started
 /// next.
@@ -81,7 +83,7 @@ std::optional<int> percent_in(std::string_view line) {
   return percent >= 0 && percent <= 100 ? std::optional(percent) : std::nullopt;
 }
 
-std::string fault_in(std::string_view out, std::string_view err) {
+Fault fault_in(std::string_view out, std::string_view err) {
   std::string_view fault;
   for_each_line(err, [&fault](std::string_view line) {
     if (!line.empty() && !line.starts_with("rauc-Message")) fault = line;
@@ -89,7 +91,8 @@ std::string fault_in(std::string_view out, std::string_view err) {
   for_each_line(out, [&fault](std::string_view line) {
     if (line.starts_with(kLastError)) fault = line.substr(kLastError.size());
   });
-  return std::string(fault.substr(0, kLongestFault));
+  const bool busy = fault.find(kBusy) != std::string_view::npos;
+  return {busy ? Fault::Kind::Busy : Fault::Kind::Other, std::string(fault.substr(0, kLongestFault))};
 }
 
 std::string hindrance(const Bundle& bundle, const Running& running, bool again) {

@@ -31,8 +31,19 @@ std::expected<Running, std::string> read_status(std::string_view json);
 /// The per cent in a line of `rauc install --progress`, " 40% Verifying signature done."
 std::optional<int> percent_in(std::string_view line);
 
-/// What RAUC says went wrong, out of its standard output and its standard error.
-std::string fault_in(std::string_view out, std::string_view err);
+/// What RAUC says went wrong. It tells its callers by sentences alone: the one that control hangs on is known
+/// here, and nowhere else.
+struct Fault {
+  enum class Kind {
+    Busy,  // it installs or marks, and answers nothing else meanwhile: ask again
+    Other,
+  };
+  Kind kind = Kind::Other;
+  std::string sentence = "";  // "": it says nothing
+  friend bool operator==(const Fault&, const Fault&) = default;
+};
+/// Out of its standard output and its standard error.
+Fault fault_in(std::string_view out, std::string_view err);
 
 /// Why the bundle must not be installed, or "". `again`: the version that runs already may be.
 std::string hindrance(const Bundle& bundle, const Running& running, bool again);

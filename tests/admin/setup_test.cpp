@@ -29,9 +29,13 @@ class SetupTest : public testing::Test {
   Store store_{given_ / "settings.json", given_.path(), state_.path()};
   FactoryReset reset_{store_, state_.path(), runtime_.path()};
   int applied_ = 0;
-  admin::Setup setup_{
-      store_, reset_, store_.load().value(), [](const std::string&) { return ""; }, [this] { ++applied_; },
-      [] {}};
+  admin::Setup setup_{store_,
+                      reset_,
+                      store_.load().value(),
+                      "",
+                      [](const std::string&) { return ""; },
+                      [this] { ++applied_; },
+                      [] {}};
 };
 
 TEST_F(SetupTest, AppliesNothingWhereTheBoxRunsWithTheSameSettings) {
@@ -43,6 +47,14 @@ TEST_F(SetupTest, AppliesNothingWhereTheBoxRunsWithTheSameSettings) {
 TEST_F(SetupTest, RefusesAnythingWhileAChangeIsBeingApplied) {
   ASSERT_TRUE(setup_.save(with_connections(30)).has_value());
   EXPECT_EQ(setup_.save(setup_.settings()).error().status, icd::Status::Conflict);
+}
+
+TEST_F(SetupTest, TellsWhyTheLastChangeIsNotInUseUntilOneIs) {
+  EXPECT_EQ(setup_.trouble(), "");
+  setup_.runs_with(store_.load().value(), "the last change was taken back: no room");
+  EXPECT_EQ(setup_.trouble(), "the last change was taken back: no room");
+  setup_.runs_with(store_.load().value(), "");
+  EXPECT_EQ(setup_.trouble(), "");
 }
 
 // A save that fails halfway may leave its settings on the disk: whoever then asks for those that the box runs

@@ -140,6 +140,14 @@ TEST_F(StoreTest, SetsSavedTokensAsideThatCannotBeRead) {
   EXPECT_TRUE(kept("secrets.damaged/scoring.token"));
 }
 
+TEST_F(StoreTest, KeepsSavedTokensWhereTheFaultIsInAFolderWhoseNameBeginsAsTheirs) {
+  (void)store_.save_token("scoring", icd::BearerToken::parse("saved-1"));
+  std::filesystem::create_directories(state_ / "secrets.given/mapping.token");
+  const Store store(given_ / "settings.json", state_ / "secrets.given", state_.path());
+  EXPECT_THAT(store.load().error(), HasSubstr("secrets.given/mapping.token"));
+  EXPECT_TRUE(kept("secrets/scoring.token"));
+}
+
 TEST_F(StoreTest, SaysThatItCannotBeWritten) {
   const Store nowhere(given_ / "settings.json", given_.path(), state_ / "none");
   EXPECT_THAT(nowhere.save(with_connections(30)).error(), HasSubstr("No such file or directory"));

@@ -28,6 +28,7 @@ struct FakeSetup final : Setup {
   const settings::Settings& settings() const override { return now; }
   bool saved() const override { return false; }
   bool applying() const override { return is_applying; }
+  const std::string& trouble() const override { return why; }
   std::vector<TokenRow> tokens() const override { return {{"scoring", true}, {"course.A.mapping", false}}; }
   std::vector<std::string> warnings(const settings::Settings& next) const override {
     if (next.command_post.course != now.command_post.course) return {"reports go elsewhere"};
@@ -56,6 +57,7 @@ struct FakeSetup final : Setup {
   settings::Settings now = settings::parse(settings::sample("", "", kCourses)).value();
   std::optional<icd::Refusal> refusal;
   std::vector<std::pair<std::string, std::string>> set;
+  std::string why;
   int saves = 0, resets = 0;
   bool is_applying = false;
 };
@@ -143,6 +145,27 @@ TEST_F(SettingsRoutesTest, TellThatAChangeIsBeingApplied) {
   EXPECT_EQ(shown()["applying"], false);
   EXPECT_EQ(post("/adit/course", {{"name", "A"}}).status, Status::Ok);
   EXPECT_EQ(shown()["applying"], true);
+}
+
+TEST_F(SettingsRoutesTest, TellWhyTheLastChangeIsNotInUse) {
+  EXPECT_EQ(shown()["trouble"], "");
+  setup.why = "the last change was taken back: no such interface";
+  EXPECT_EQ(shown()["trouble"], setup.why);
+}
+
+TEST_F(SettingsRoutesTest, SayWhenToTryAgainWhereAnotherChangeIsBeingAppliedAndThereAlone) {
+  json said = shown();
+  const json change = {{"settings", said["settings"]}, {"base", said["tag"]}};
+  const json stale = {{"settings", said["settings"]}, {"base", "another"}};
+  setup.refusal = icd::Refusal{Status::Conflict, "whatever the sentence is"};
+  for (const auto& answer : {post("/adit/settings", change), post("/adit/course", {{"name", "A"}}),
+                             post("/adit/tokens", {{"name", "scoring"}, {"token", nullptr}})}) {
+    EXPECT_EQ(answer.status, Status::Conflict);
+    EXPECT_THAT(answer.headers, testing::Contains(testing::FieldsAre("Retry-After", "1")));
+  }
+  const auto answer = post("/adit/settings", stale);
+  EXPECT_EQ(answer.status, Status::Conflict);
+  EXPECT_THAT(answer.headers, testing::Not(testing::Contains(testing::FieldsAre("Retry-After", "1"))));
 }
 
 TEST_F(SettingsRoutesTest, LeaveItToTheBoxWhetherAChangeThatIsNoneHasToBeSaved) {

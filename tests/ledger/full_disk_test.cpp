@@ -27,7 +27,7 @@ Error fill(Ledger& ledger, std::vector<dispatch::Report>& reports) {
     if (!written) return written.error();
     reports.push_back(next);
   }
-  return {"it never failed", false};
+  return Error{.what = "it never failed"};
 }
 
 TEST(FullDiskOfALedger, IsSaidAndEndsByItself) {
@@ -38,17 +38,17 @@ TEST(FullDiskOfALedger, IsSaidAndEndsByItself) {
     {
       const FullDisk full(100000);
       const Error error = fill(ledger, reports);
-      EXPECT_TRUE(error.full) << error.what;
+      EXPECT_EQ(error.kind, Error::Kind::Full) << error.what;
       EXPECT_GT(reports.size(), 3u);
       EXPECT_FALSE(write(ledger, backpack(20000))) << "it is still full";
       dispatch::Report step = reports[0];
       step.answer.assign(50000, 'x');
       const auto written = write(ledger, step);
       ASSERT_FALSE(written);
-      EXPECT_TRUE(written.error().full) << written.error().what;
+      EXPECT_EQ(written.error().kind, Error::Kind::Full) << written.error().what;
       const auto heard = ledger.write(dispatch::Run{.number = 1});
       ASSERT_FALSE(heard);
-      EXPECT_TRUE(heard.error().full) << heard.error().what;
+      EXPECT_EQ(heard.error().kind, Error::Kind::Full) << heard.error().what;
       EXPECT_THAT(*ledger.reports(), ElementsAreArray(reports)) << "what was written can still be read";
     }
     reports.push_back(backpack(30000));
@@ -88,7 +88,7 @@ TEST(FullDiskOfALedger, DoesNotKeepItFromBeingOpened) {
     EXPECT_EQ(ledger.reports()->size(), 1u);
     const auto written = write(ledger, backpack(2));
     ASSERT_FALSE(written);
-    EXPECT_TRUE(written.error().full) << written.error().what;
+    EXPECT_EQ(written.error().kind, Error::Kind::Full) << written.error().what;
   }
   EXPECT_EQ(open_or_fail(folder).reports()->size(), 1u);
 }
@@ -157,7 +157,7 @@ TEST(FullDiskOfALedger, IsSaidWhereThereIsNoLedgerYet) {
     const FullDisk full(0);
     const auto ledger = Ledger::open(folder.text());
     ASSERT_FALSE(ledger);
-    EXPECT_TRUE(ledger.error().full) << ledger.error().what;
+    EXPECT_EQ(ledger.error().kind, Error::Kind::Full) << ledger.error().what;
   }
   EXPECT_EQ(open_or_fail(folder).damage(), "");
 }
@@ -185,8 +185,8 @@ TEST(FailingDiskOfALedger, IsSaidWhereItIsOpened) {
     const FailingDisk disk;
     const auto ledger = Ledger::open(folder.text());
     ASSERT_FALSE(ledger);
-    EXPECT_TRUE(ledger.error().failing) << ledger.error().what;
-    EXPECT_FALSE(ledger.error().full);
+    EXPECT_EQ(ledger.error().kind, Error::Kind::Failing) << ledger.error().what;
+    EXPECT_NE(ledger.error().kind, Error::Kind::Full);
   }
   EXPECT_EQ(open_or_fail(folder).damage(), "");
 }
@@ -232,7 +232,7 @@ TEST(FullDiskOfALedger, IsSaidWhereNoFileCanBeMadeBesideIt) {
   disk.use_up_names();
   const auto ledger = Ledger::open(folder.text());
   ASSERT_FALSE(ledger);
-  EXPECT_TRUE(ledger.error().full) << ledger.error().what;
+  EXPECT_EQ(ledger.error().kind, Error::Kind::Full) << ledger.error().what;
 }
 
 /// The folder's file system is read-only from when SQLite opens its log. Needs the right to mount.
@@ -268,7 +268,7 @@ TEST(ReadOnlyDiskOfALedger, IsSaidWhereItTurnsSoWhileItIsOpened) {
   const TurnsReadOnly turns(folder);
   const auto ledger = Ledger::open(folder.text());
   if (ledger) GTEST_SKIP() << "this needs the right to mount";
-  EXPECT_TRUE(ledger.error().read_only) << ledger.error().what;
+  EXPECT_EQ(ledger.error().kind, Error::Kind::ReadOnly) << ledger.error().what;
 }
 
 TEST(FullDiskOfALedger, LeavesTheRoomThatItReservedForReportsUnderWay) {
@@ -280,7 +280,7 @@ TEST(FullDiskOfALedger, LeavesTheRoomThatItReservedForReportsUnderWay) {
     auto ledger = open_or_fail(folder);
     disk.fill_up();
     const Error error = fill(ledger, reports);
-    EXPECT_TRUE(error.full) << error.what;
+    EXPECT_EQ(error.kind, Error::Kind::Full) << error.what;
     EXPECT_GT(reports.size(), 300u) << "one run has 45";
     EXPECT_THAT(*ledger.reports(), ElementsAreArray(reports));
     ASSERT_TRUE(std::filesystem::remove(disk.filler()));

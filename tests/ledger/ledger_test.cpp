@@ -147,7 +147,7 @@ TEST(Ledger, WritesAllStepsOrNone) {
   const auto written = ledger.write(steps);
   ASSERT_FALSE(written);
   EXPECT_THAT(written.error().what, HasSubstr("report 0"));
-  EXPECT_FALSE(written.error().full);
+  EXPECT_NE(written.error().kind, Error::Kind::Full);
   EXPECT_THAT(*ledger.reports(), ElementsAre(backpack(1)));
   EXPECT_EQ(ledger.history(1)->size(), 1u);
   EXPECT_TRUE(write(ledger, backpack(2))) << "the failed steps still hold their transaction";

@@ -103,7 +103,7 @@ TEST(LedgerOfVersion1, StaysAsItIsWhereThereIsNoRoomToBringItUp) {
     const FullDisk full(20000);
     const auto ledger = Ledger::open(folder.text());
     ASSERT_FALSE(ledger);
-    EXPECT_TRUE(ledger.error().full) << ledger.error().what;
+    EXPECT_EQ(ledger.error().kind, Error::Kind::Full) << ledger.error().what;
   }
   EXPECT_THAT(by_hand(folder, "PRAGMA user_version"), ElementsAre("1"));
   const auto ledger = open_or_fail(folder);
@@ -354,7 +354,7 @@ TEST(LedgerOfALaterVersion, IsRefusedWithASentenceAndStaysAsItIs) {
   const auto ledger = Ledger::open(folder.text());
   ASSERT_FALSE(ledger);
   EXPECT_THAT(ledger.error().what, HasSubstr("a later Adit wrote this ledger (version 5"));
-  EXPECT_FALSE(ledger.error().full);
+  EXPECT_NE(ledger.error().kind, Error::Kind::Full);
   EXPECT_EQ(bytes(), before);
   EXPECT_FALSE(std::filesystem::exists(folder.file() + ".damaged-1"));
 }

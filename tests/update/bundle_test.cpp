@@ -72,13 +72,21 @@ TEST(Progress, IsTheNumberBeforeThePerCent) {
 TEST(Fault, IsTheLastThingThatRaucSays) {
   EXPECT_EQ(
       fault_in("",
-               "rauc-Message: 15:05:30.310: Reading bundle: x\nInvalid bundle format: Signature size is 0\n"),
+               "rauc-Message: 15:05:30.310: Reading bundle: x\nInvalid bundle format: Signature size is 0\n")
+          .sentence,
       "Invalid bundle format: Signature size is 0");
   EXPECT_EQ(fault_in("installing\n100% Installing failed.\nLastError: No space left on device\nidle\n",
                      "rauc-Message: 1\nInstalling `x` failed\n"),
-            "No space left on device");
-  EXPECT_EQ(fault_in("", "rauc-Message: 1\n"), "");
-  EXPECT_EQ(fault_in("", std::string(5000, 'x')).size(), 300u);
+            (Fault{Fault::Kind::Other, "No space left on device"}));
+  EXPECT_EQ(fault_in("", "rauc-Message: 1\n"), Fault{});
+  EXPECT_EQ(fault_in("", std::string(5000, 'x')).sentence.size(), 300u);
+}
+
+TEST(Fault, IsThatItIsBusyWhileItInstalls) {
+  const Fault fault =
+      fault_in("", "Error retrieving slot status via D-Bus: already processing a different method\n");
+  EXPECT_EQ(fault.kind, Fault::Kind::Busy);
+  EXPECT_THAT(fault.sentence, testing::HasSubstr("already processing"));
 }
 
 TEST(Hindrance, IsNoneToANewerVersionForThisBoard) {

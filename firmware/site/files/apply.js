@@ -53,7 +53,7 @@ export async function insist(action) {
     try {
       return await action();
     } catch (error) {
-      const passes = !error.status || (error.status === 409 && error.message.includes("being applied"));
+      const passes = !error.status || (error.status === 409 && error.isBusy);
       if (!passes || performance.now() > end) throw error;
     }
   }
@@ -74,12 +74,6 @@ function newAddress({ team }, before) {
   if (!listen || same(team.listen, before.team.listen)) return "";
   const host = listen.address === "0.0.0.0" || listen.address === "::" ? location.hostname : listen.address;
   return `http://${host.includes(":") ? `[${host}]` : host}:${listen.port}/setup${location.hash}`;
-}
-
-/** Why the box took a change back, in its words. */
-async function whyNot() {
-  const { attention = [] } = await get("/adit/run").catch(() => ({}));
-  return attention.find((each) => each.includes("taken back")) ?? "";
 }
 
 /** Two operators: theirs is in use, and one goes on from it. */
@@ -116,7 +110,7 @@ export async function save(settings) {
     if (said) await refresh();
     if (link) report("The page has moved to");
     else if (isDone) report("Applied.");
-    else report(said ? (await whyNot()) || "It was taken back." : "The box does not answer.");
+    else report(said ? said.trouble || "It was taken back." : "The box does not answer.");
     return isDone;
   } catch (error) {
     if (error.status === 409) await refresh();
@@ -198,9 +192,9 @@ export function offerApply() {
   if (draft.newer) settle();
 }
 
-function reportFile(text, errors = []) {
+function reportFile(text, { isBad = true, errors = [] } = {}) {
   const [said, wrong] = fileSection.querySelectorAll(".outcome, .warnings");
-  said.dataset.bad = text !== "Applied.";
+  said.dataset.bad = isBad;
   say(said, text);
   wrong.replaceChildren(...errors.map(({ path, what }) => make("li", `${path}: ${what}`)));
 }
@@ -217,13 +211,13 @@ async function readFile(file) {
 async function takeFile(file) {
   const settings = await readFile(file);
   const { errors, changes, warnings } = await post("/adit/settings/check", { settings });
-  if (errors.length) return reportFile("Nothing was applied: the file has errors.", errors);
+  if (errors.length) return reportFile("Nothing was applied: the file has errors.", { errors });
   if (!changes.length) return reportFile("Nothing to apply: the box runs with the same settings.");
   const text = differs() ? "What you typed and did not apply is dropped." : "";
   const yes = await reviewed({ title: `Apply ${file.name}?`, text, changes: fromTo(changes), warnings, word: "Apply" });
   if (!yes) return reportFile("Nothing was applied.");
   reportFile("");
-  if (await save(settings)) reportFile("Applied.");
+  if (await save(settings)) reportFile("Applied.", { isBad: false });
 }
 
 /** Settings from a file: checked by the box, shown, and only then applied. */

@@ -91,7 +91,7 @@ async function resultOf(answer) {
   const said = await answer.json().catch(() => null);
   if (answer.ok) return said;
   const sentence = typeof said === "string" ? said : `The box answered ${answer.status}.`;
-  throw Object.assign(new Error(sentence), { status: answer.status });
+  throw Object.assign(new Error(sentence), { status: answer.status, isBusy: answer.headers.has("Retry-After") });
 }
 
 /** Shows the role in `node`, which has a `.text` and a button to log out. */

@@ -2,6 +2,7 @@
 
 #include <utility>
 
+#include "codec/json.hpp"
 #include "icd/sentence.hpp"
 #include "intake/icd_routes.hpp"
 
@@ -26,6 +27,14 @@ intake::Answer fresh(std::string content_type, std::string body) {
   return guarded({.content_type = std::move(content_type),
                   .body = std::move(body),
                   .headers = {{"Cache-Control", "no-store"}}});
+}
+
+intake::Answer object(codec::Value::Object members) {
+  return fresh("application/json", codec::write_json({std::move(members)}));
+}
+
+intake::Answer refused(const icd::Refusal& why) {
+  return refusal(why.status, why.sentence);
 }
 
 intake::Answer refusal(icd::Status status, std::string_view sentence) {

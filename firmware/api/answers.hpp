@@ -3,6 +3,7 @@
 #include <string>
 #include <string_view>
 
+#include "codec/value.hpp"
 #include "intake/server.hpp"
 
 namespace adit::api {
@@ -13,7 +14,11 @@ intake::Answer guarded(intake::Answer answer);
 /// 200, for nobody to keep.
 intake::Answer fresh(std::string content_type, std::string body);
 
+/// The same, of a JSON object.
+intake::Answer object(codec::Value::Object members);
+
 intake::Answer refusal(icd::Status status, std::string_view sentence);
+intake::Answer refused(const icd::Refusal& why);
 intake::Answer nothing_here();
 /// 405; `allowed` as in RFC 9110 10.2.1: "GET, HEAD".
 intake::Answer wrong_method(std::string_view allowed);

@@ -4,145 +4,114 @@
 #include <utility>
 
 #include "api/answers.hpp"
-#include "api/aside_routes.hpp"
 #include "api/box_routes.hpp"
-#include "api/description.hpp"
 #include "api/entrance.hpp"
 #include "api/live.hpp"
 #include "api/map_routes.hpp"
 #include "api/network_routes.hpp"
-#include "api/panel_route.hpp"
+#include "api/page_routes.hpp"
 #include "api/report_routes.hpp"
-#include "api/scene_routes.hpp"
+#include "api/routes.hpp"
+#include "api/run_routes.hpp"
 #include "api/session_routes.hpp"
 #include "api/settings_routes.hpp"
+#include "api/small_body.hpp"
 #include "api/update_routes.hpp"
-#include "site/site.hpp"
+#include "codec/body_decoder.hpp"
+#include "icd/sentence.hpp"
 
 namespace adit::api {
 namespace {
 
-constexpr std::string_view kGuarded = "/adit/";  // and kMetrics; all else is the page's own files
-constexpr std::string_view kMetrics = "/metrics", kApi = "/adit/openapi.json";
+constexpr std::string_view kGuarded = "/adit/";  // what is not in the table of routes: a page's file, or this
 
-intake::Answer answer_with(const site::File& file, std::string_view if_none_match) {
-  intake::Answer answer{.content_type = std::string(site::content_type_of(file)), .body = {}, .headers = {}};
-  answer.headers.push_back({"ETag", std::string(file.etag)});
-  answer.headers.push_back({"Cache-Control", "no-cache"});  // asked for each time, sent only where it changed
-  if (if_none_match.contains(file.etag)) {
-    answer.status = kNotModified;
-  } else {
-    answer.body = file.body;
+/// Why a body is refused by its head.
+std::optional<intake::Answer> unfit(const Body& body, const intake::RequestHead& head) {
+  if (body.type.empty()) return std::nullopt;
+  const std::string_view type = head.header("Content-Type");
+  const bool fits = body.as_it_comes ? type == body.type : codec::format_of(type) == codec::Format::Json;
+  if (!fits) {
+    return refusal(icd::Status::UnprocessableEntity, icd::sentence("Content-Type: expected ", body.type));
   }
-  return guarded(std::move(answer));
+  if (head.content_length().value_or(0) <= body.most) return std::nullopt;
+  return SmallBody::too_long(body.most, body.as_it_comes ? "bundle" : "body");
 }
 
 }  // namespace
 
 class Api::Impl {
  public:
-  Impl(loop::Loop& loop, const Source& source, Operator& judge, Keys& keys,
-       std::vector<icd::BearerToken> tokens)
-      : loop_(loop),
-        source_(source),
-        entrance_(loop, keys.sessions(), std::move(tokens)),
-        sessions_(loop, entrance_, keys),
-        live_(loop, source),
-        maps_(source),
-        scene_(source),
-        panel_(judge),
-        reports_(source, judge, [this] { live_.changed(); }),
-        aside_(judge, [this] { live_.changed(); }) {}
+  Impl(loop::Loop& loop, const Served& served, std::vector<icd::BearerToken> tokens)
+      : entrance_(loop, served.keys, std::move(tokens)),
+        live_(loop, served.source),
+        sessions_(loop, entrance_, served.keys, served.setup),
+        run_(served.source, served.judge, live_, entrance_),
+        maps_(served.source),
+        reports_(served.source, served.judge, [this] { changed(); }) {
+    if (served.setup) settings_.emplace(*served.setup);
+    if (served.network) network_.emplace(*served.network, *served.test, [this] { changed(); });
+    if (served.updates) updates_.emplace(*served.updates, [this] { changed(); });
+    if (served.box) box_.emplace(served.source, *served.box, entrance_, loop);
+    handlers_ = {&pages_,       &sessions_,   &run_,        &maps_,  &reports_,
+                 at(settings_), at(network_), at(updates_), at(box_)};
+  }
 
   std::unique_ptr<intake::BodySink> open(const intake::RequestHead& head,
                                          std::shared_ptr<intake::Responder> responder,
                                          std::shared_ptr<intake::Flow> flow) {
-    if (!is_guarded(head.path())) {
-      responder->answer(file(head));
+    Match found = match(handlers_, head);
+    const auto refuse = [&responder](intake::Answer answer) {
+      responder->answer(std::move(answer));
       return nullptr;
+    };
+    if (found.allowed.empty() && !found.route && !head.path().starts_with(kGuarded)) {
+      return refuse(pages_.file(head));
     }
-    if (box_ && BoxRoutes::has(head.path())) return box_->open(head, responder);
-    if (SessionRoutes::has(head.path())) return sessions_.open(head, std::move(responder));
-    const bool sets_up = settings_ && SettingsRoutes::has(head.path());
-    const bool for_viewers = only_reads(head) && (!sets_up || SettingsRoutes::is_for_viewers(head.path()));
-    const auto visitor = entrance_.admit(head, for_viewers ? access::Role::Viewer : access::Role::Operator);
-    if (!visitor) {
-      responder->answer(turned_away(visitor.error()));
-      return nullptr;
-    }
-    if (sets_up) return settings_->open(head, std::move(responder));
-    if (ReportRoutes::has(head.path())) return reports_.open(head, std::move(responder));
-    if (AsideRoutes::has(head.path())) return aside_.open(head, std::move(responder));
-    if (PanelRoute::has(head.path())) return panel_.open(head, std::move(responder));
-    if (network_ && NetworkRoutes::has(head.path())) return network_->open(head, std::move(responder));
-    if (updates_ && UpdateRoutes::has(head.path())) return updates_->open(head, responder, std::move(flow));
-    if (MapRoutes::has(head.path())) {
-      responder->answer(maps_.answer(head));
-    } else if (SceneRoutes::has(head.path())) {
-      responder->answer(scene_.answer(head));
-    } else {
-      show(head, *visitor, *responder);
-    }
-    return nullptr;
+    const auto asker = entrance_.admit(head, found.who);
+    if (!asker) return refuse(turned_away(asker.error()));
+    if (!found.route) return refuse(found.allowed.empty() ? nothing_here() : wrong_method(found.allowed));
+    const Route& route = *found.route;
+    if (auto why = unfit(route.body, head)) return refuse(std::move(*why));
+    Call call{.head = head,
+              .responder = std::move(responder),
+              .flow = std::move(flow),
+              .asker = *asker,
+              .parameters = std::move(found.parameters),
+              .body = {}};
+    if (route.body.type.empty() || route.body.as_it_comes) return route.handle.call(handlers_, call);
+    return std::make_unique<SmallBody>(call.responder, route.body.most,
+                                       [this, &route, call](std::string body) mutable {
+                                         call.body = std::move(body);
+                                         route.handle.call(handlers_, call);
+                                       });
   }
 
-  void serve(Setup& setup) {
-    settings_.emplace(setup);
-    sessions_.serve(setup);
-  }
-  void serve(Network& network, SelfTest& test) {
-    network_.emplace(network, test, [this] { live_.changed(); });
-  }
-  void serve(Updates& updates) {
-    updates_.emplace(updates, [this] { live_.changed(); });
-  }
-  void serve(Box& box) { box_.emplace(source_, box, entrance_, loop_); }
   void changed() { live_.changed(); }
   void let_in(std::vector<icd::BearerToken> tokens) { entrance_.let_in(std::move(tokens)); }
 
  private:
-  static bool is_guarded(std::string_view path) {
-    return path == kMetrics || (path.starts_with(kGuarded) && path != kApi);
+  template <class Routes>
+  static Routes* at(std::optional<Routes>& routes) {
+    return routes ? &*routes : nullptr;
   }
 
-  static intake::Answer file(const intake::RequestHead& head) {
-    const auto* file = head.path() == kApi ? &open_api::description() : site::file_at(head.path());
-    if (file == nullptr) return nothing_here();
-    return only_reads(head) ? answer_with(*file, head.header("If-None-Match")) : wrong_method(kReading);
-  }
-
-  void show(const intake::RequestHead& head, const access::Visitor& visitor, intake::Responder& responder) {
-    const bool is_run = head.path() == "/adit/run", is_events = head.path() == "/adit/events";
-    if (!is_run && !is_events) return responder.answer(nothing_here());
-    if (!only_reads(head)) return responder.answer(wrong_method(kReading));
-    if (is_run) return responder.answer(fresh("application/json", write_run_view(source_.view())));
-    live_.open(responder, entrance_.may_stay(visitor));
-  }
-
-  loop::Loop& loop_;
-  const Source& source_;
   Entrance entrance_;
-  SessionRoutes sessions_;
-  std::optional<BoxRoutes> box_;
   Live live_;
+  PageRoutes pages_;
+  SessionRoutes sessions_;
+  RunRoutes run_;
   MapRoutes maps_;
-  SceneRoutes scene_;
-  PanelRoute panel_;
+  ReportRoutes reports_;
+  std::optional<SettingsRoutes> settings_;
   std::optional<NetworkRoutes> network_;
   std::optional<UpdateRoutes> updates_;
-  ReportRoutes reports_;
-  AsideRoutes aside_;
-  std::optional<SettingsRoutes> settings_;
+  std::optional<BoxRoutes> box_;
+  Handlers handlers_;
 };
 
-Api::Api(loop::Loop& loop, const Source& source, Operator& judge, Keys& keys,
-         std::vector<icd::BearerToken> tokens)
-    : impl_(std::make_unique<Impl>(loop, source, judge, keys, std::move(tokens))) {}
+Api::Api(loop::Loop& loop, const Served& served, std::vector<icd::BearerToken> tokens)
+    : impl_(std::make_unique<Impl>(loop, served, std::move(tokens))) {}
 Api::~Api() = default;
-
-void Api::serve(Setup& setup) {
-  impl_->serve(setup);
-}
 
 std::unique_ptr<intake::BodySink> Api::open(const intake::RequestHead& head,
                                             std::shared_ptr<intake::Responder> responder,
@@ -150,21 +119,10 @@ std::unique_ptr<intake::BodySink> Api::open(const intake::RequestHead& head,
   return impl_->open(head, std::move(responder), std::move(flow));
 }
 
-void Api::serve(Box& box) {
-  impl_->serve(box);
-}
-
-void Api::serve(Updates& updates) {
-  impl_->serve(updates);
-}
-
-void Api::serve(Network& network, SelfTest& test) {
-  impl_->serve(network, test);
-}
-
 void Api::let_in(std::vector<icd::BearerToken> tokens) {
   impl_->let_in(std::move(tokens));
 }
+
 void Api::changed() {
   impl_->changed();
 }

@@ -14,9 +14,6 @@
 namespace adit::api {
 namespace {
 
-constexpr std::string_view kMetrics = "/metrics", kLog = "/adit/log", kLogText = "/adit/log.txt",
-                           kAbout = "/adit/about", kBundle = "/adit/bundle";
-
 /// "adit-support-20260131T120000Z"
 std::string bundle_name(Time now) {
   const auto seconds = static_cast<std::time_t>(now);
@@ -33,31 +30,6 @@ intake::Answer download(intake::Answer answer, const std::string& name) {
 
 }  // namespace
 
-bool BoxRoutes::has(std::string_view path) {
-  return path == kMetrics || path == kLog || path == kLogText || path == kAbout || path == kBundle;
-}
-
-std::unique_ptr<intake::BodySink> BoxRoutes::open(const intake::RequestHead& head,
-                                                  const std::shared_ptr<intake::Responder>& responder) {
-  const bool is_bundle = head.path() == kBundle;
-  const auto visitor = entrance_.admit(head, is_bundle ? access::Role::Operator : access::Role::Viewer);
-  if (visitor && only_reads(head) && is_bundle) {
-    return std::make_unique<SmallBody>(responder, 0,
-                                       [this, responder](const std::string&) { bundle(responder); });
-  }
-  responder->answer(!visitor            ? turned_away(visitor.error())
-                    : !only_reads(head) ? wrong_method(kReading)
-                                        : shown(head));
-  return nullptr;
-}
-
-intake::Answer BoxRoutes::shown(const intake::RequestHead& head) const {
-  if (head.path() == kMetrics) return metrics();
-  if (head.path() == kLog) return log(head);
-  if (head.path() == kLogText) return log_text(head);
-  return fresh("application/json", write_about(box_.about(), loop_.stamp_now()));
-}
-
 std::string BoxRoutes::metrics_text() const {
   Measured measured{
       .view = source_.view(), .reports = source_.reports(), .usage = box_.usage(), .about = box_.about()};
@@ -73,7 +45,7 @@ intake::Answer BoxRoutes::metrics() const {
 
 intake::Answer BoxRoutes::log(const intake::RequestHead& head) const {
   const auto filter = read_log_filter(head);
-  if (!filter) return refusal(filter.error().status, filter.error().sentence);
+  if (!filter) return refused(filter.error());
   auto records = box_.log(filter->after);
   const std::uint64_t last = box_.logged();
   std::erase_if(records, [&](const LogRecord& record) { return !filter->lets(record); });
@@ -90,11 +62,20 @@ std::string BoxRoutes::log_lines(const LogFilter& filter) const {
 
 intake::Answer BoxRoutes::log_text(const intake::RequestHead& head) const {
   const auto filter = read_log_filter(head);
-  if (!filter) return refusal(filter.error().status, filter.error().sentence);
+  if (!filter) return refused(filter.error());
   return download(fresh("text/plain; charset=utf-8", log_lines(*filter)), "adit-log.txt");
 }
 
-void BoxRoutes::bundle(const std::shared_ptr<intake::Responder>& responder) {
+intake::Answer BoxRoutes::about() const {
+  return fresh("application/json", write_about(box_.about(), loop_.stamp_now()));
+}
+
+std::unique_ptr<intake::BodySink> BoxRoutes::bundle(const Call& call) {
+  return std::make_unique<SmallBody>(
+      call.responder, 0, [this, responder = call.responder](const std::string&) { pack(responder); });
+}
+
+void BoxRoutes::pack(const std::shared_ptr<intake::Responder>& responder) {
   const Time now = loop_.stamp_now();
   auto files = std::make_shared<std::vector<BundleFile>>();
   files->push_back({"about.json", write_about(box_.about(), now)});

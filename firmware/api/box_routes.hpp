@@ -1,7 +1,7 @@
 #pragma once
 
 #include <memory>
-#include <string_view>
+#include <string>
 
 #include "api/box.hpp"
 #include "api/entrance.hpp"
@@ -18,17 +18,14 @@ class BoxRoutes {
   BoxRoutes(const Source& source, Box& box, Entrance& entrance, loop::Loop& loop)
       : source_(source), box_(box), entrance_(entrance), loop_(loop) {}
 
-  static bool has(std::string_view path);
-  /// Requires has(head.path()). Judges itself who may come in.
-  std::unique_ptr<intake::BodySink> open(const intake::RequestHead& head,
-                                         const std::shared_ptr<intake::Responder>& responder);
-
- private:
-  intake::Answer shown(const intake::RequestHead& head) const;
   intake::Answer metrics() const;
   intake::Answer log(const intake::RequestHead& head) const;
   intake::Answer log_text(const intake::RequestHead& head) const;
-  void bundle(const std::shared_ptr<intake::Responder>& responder);
+  intake::Answer about() const;
+  std::unique_ptr<intake::BodySink> bundle(const Call& call);
+
+ private:
+  void pack(const std::shared_ptr<intake::Responder>& responder);
   std::string metrics_text() const;
   std::string log_lines(const LogFilter& filter) const;
 

@@ -1,17 +1,14 @@
 #pragma once
 
 #include <span>
+#include <string>
 
-#include "site/site.hpp"
+#include "api/route.hpp"
 
-/// The description of the API: OpenAPI 3.1, for programs that write clients.
-namespace adit::api::open_api {
+namespace adit::api {
 
-using site::File;
-std::span<const File> embedded_files();
+/// The API described for programs, by OpenAPI 3.1 (JSON): `paths` is made of the routes, what they have in
+/// common is openapi.json, the messages' schemas are schemas.json.
+std::string write_description(std::span<const Route> routes);
 
-inline const File& description() {
-  return embedded_files().front();
-}
-
-}  // namespace adit::api::open_api
+}  // namespace adit::api

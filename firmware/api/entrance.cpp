@@ -3,6 +3,7 @@
 #include "api/answers.hpp"
 
 namespace adit::api {
+namespace {
 
 access::Request request_of(const intake::RequestHead& head) {
   return {.method = head.method(),
@@ -13,21 +14,37 @@ access::Request request_of(const intake::RequestHead& head) {
           .csrf = head.header(access::kCsrfHeader)};
 }
 
-icd::Checked<access::Visitor> Entrance::admit(const intake::RequestHead& head, access::Role role) {
-  return access::admit(request_of(head), role, tokens_, sessions_, loop_.now());
+std::uint64_t session_of(const access::Visitor& visitor) {
+  return visitor.session == nullptr ? 0 : visitor.session->number;
+}
+
+}  // namespace
+
+icd::Checked<Asker> Entrance::admit(const intake::RequestHead& head, Who who) {
+  if (who == Who::Open) return Asker{};
+  const auto request = request_of(head);
+  const auto role = who == Who::Viewer ? access::Role::Viewer : access::Role::Operator;
+  const auto visitor = access::admit(request, role, tokens_, sessions(), loop_.now());
+  if (visitor) return Asker{.admitted = true, .session = session_of(*visitor)};
+  const bool for_anybody =
+      who == Who::OwnPage || (who == Who::OperatorOrSetUp && (keys_.first_start() || keys_.set_up_open()));
+  if (!for_anybody) return std::unexpected(visitor.error());
+  if (const auto whence = access::check_whence(request); !whence) return std::unexpected(whence.error());
+  const auto known = this->who(head);
+  return Asker{.admitted = false, .session = known ? session_of(*known) : 0};
 }
 
 std::optional<access::Visitor> Entrance::who(const intake::RequestHead& head) {
-  return access::who(request_of(head), tokens_, sessions_, loop_.now());
+  return access::who(request_of(head), tokens_, sessions(), loop_.now());
 }
 
-std::function<bool()> Entrance::may_stay(const access::Visitor& visitor) {
-  if (visitor.session == nullptr) return [] { return true; };
-  return [this, number = visitor.session->number] { return sessions_.still(number, loop_.now()); };
+std::function<bool()> Entrance::may_stay(const Asker& asker) {
+  if (asker.session == 0) return [] { return true; };
+  return [this, number = asker.session] { return sessions().still(number, loop_.now()); };
 }
 
 intake::Answer turned_away(const icd::Refusal& why) {
-  auto answer = refusal(why.status, why.sentence);
+  auto answer = refused(why);
   if (why.status == icd::Status::Unauthorized) answer.headers.push_back({"WWW-Authenticate", "Bearer"});
   return answer;
 }

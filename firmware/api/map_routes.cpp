@@ -13,32 +13,19 @@
 namespace adit::api {
 namespace {
 
-constexpr std::string_view kMap = "/adit/map", kTiles = "/adit/map/", kPng = ".png";
 constexpr std::string_view kMerged = "-";  // for the robot "", which no path could name
-
-std::vector<std::string_view> parts_of(std::string_view path) {
-  std::vector<std::string_view> parts;
-  while (true) {
-    const auto slash = path.find('/');
-    parts.push_back(path.substr(0, slash));
-    if (slash == std::string_view::npos) return parts;
-    path.remove_prefix(slash + 1);
-  }
-}
 
 struct TilePath {
   picture::Layer layer;
   picture::TileAt at;
 };
 
-/// "grid/ugv1/0/3/-2.png".
-std::optional<TilePath> tile_path(std::string_view path) {
-  if (!path.ends_with(kPng)) return {};
-  const auto parts = parts_of(path.substr(0, path.size() - kPng.size()));
-  if (parts.size() != 5 || (parts[0] != "grid" && parts[0] != "cloud") || parts[1].empty()) return {};
+/// Of kind, robot, level, x and y.
+std::optional<TilePath> tile_path(const std::vector<std::string>& parts) {
+  if (parts[0] != "grid" && parts[0] != "cloud") return {};
   const auto level = number_in<int>(parts[2]), x = number_in<int>(parts[3]), y = number_in<int>(parts[4]);
   if (!level || !x || !y) return {};
-  return TilePath{{.robot = parts[1] == kMerged ? "" : std::string(parts[1]),
+  return TilePath{{.robot = parts[1] == kMerged ? "" : parts[1],
                    .kind = parts[0] == "grid" ? picture::Kind::Grid : picture::Kind::Cloud},
                   {*level, *x, *y}};
 }
@@ -56,6 +43,13 @@ Asked asked(const intake::RequestHead& head, std::string_view name) {
   return {.number = number};
 }
 
+/// Of ?since=, 0 without it.
+std::optional<std::uint64_t> version_in(const intake::RequestHead& head) {
+  const std::string_view text = head.query("since");
+  return text.empty() ? 0 : number_in<std::uint64_t>(text);
+}
+constexpr std::string_view kNoVersion = "since: expected a version, a whole number";
+
 intake::Answer bad_query(std::string_view sentence) {
   return refusal(icd::Status::BadRequest, sentence);
 }
@@ -67,24 +61,27 @@ std::string etag_of(const picture::Packed& tile) {
 
 }  // namespace
 
-bool MapRoutes::has(std::string_view path) {
-  return path == kMap || path.starts_with(kTiles);
-}
-
-intake::Answer MapRoutes::answer(const intake::RequestHead& head) const {
-  if (!only_reads(head)) return wrong_method(kReading);
-  return head.path() == kMap ? layers(head) : tile(head);
-}
-
 intake::Answer MapRoutes::layers(const intake::RequestHead& head) const {
-  const std::string_view text = head.query("since");
-  const auto since = text.empty() ? 0 : number_in<std::uint64_t>(text);
-  if (!since) return bad_query("since: expected a version, a whole number");
+  const auto since = version_in(head);
+  if (!since) return bad_query(kNoVersion);
   return fresh("application/json", write_map(source_.map(), *since));
 }
 
-intake::Answer MapRoutes::tile(const intake::RequestHead& head) const {
-  const auto path = tile_path(head.path().substr(kTiles.size()));
+intake::Answer MapRoutes::markers(const intake::RequestHead& head) const {
+  const auto since = version_in(head);
+  if (!since) return bad_query(kNoVersion);
+  return fresh("application/json", write_markers(source_.markers(*since)));
+}
+
+intake::Answer MapRoutes::tracks(const intake::RequestHead& head) const {
+  const Asked since = asked(head, "since");
+  if (since.wrong) return bad_query("since: expected seconds since 1970");
+  return fresh("application/json", write_tracks(source_.tracks(since.number.value_or(0))));
+}
+
+intake::Answer MapRoutes::tile(const Call& call) const {
+  const intake::RequestHead& head = call.head;
+  const auto path = tile_path(call.parameters);
   if (!path) return nothing_here();
   const Asked at = asked(head, "at"), low = asked(head, "low"), high = asked(head, "high");
   if (at.wrong) return bad_query("at: expected seconds since 1970");

@@ -4,23 +4,12 @@
 
 #include "api/answers.hpp"
 #include "api/as_json.hpp"
-#include "api/small_body.hpp"
-#include "codec/body_decoder.hpp"
 #include "codec/json.hpp"
 
 namespace adit::api {
 namespace {
 
 using codec::Value;
-
-constexpr std::string_view kNetwork = "/adit/network", kCheck = "/adit/network/check",
-                           kConfirm = "/adit/network/confirm", kBack = "/adit/network/back",
-                           kTest = "/adit/test";
-constexpr std::size_t kMostBody = 4096;
-
-intake::Answer object(Value::Object members) {
-  return fresh("application/json", codec::write_json({std::move(members)}));
-}
 
 Value team_json(const NetworkView& view) {
   Value address, prefix;
@@ -82,46 +71,7 @@ Value step_json(const TestStep& step) {
                         {"advice", json(step.advice)}}};
 }
 
-bool both(std::string_view path) {
-  return path == kNetwork || path == kTest;
-}
-
 }  // namespace
-
-bool NetworkRoutes::has(std::string_view path) {
-  return both(path) || path == kCheck || path == kConfirm || path == kBack;
-}
-
-std::unique_ptr<intake::BodySink> NetworkRoutes::open(const intake::RequestHead& head,
-                                                      std::shared_ptr<intake::Responder> responder) {
-  const auto answer = [&responder](intake::Answer with) {
-    responder->answer(std::move(with));
-    return nullptr;
-  };
-  if (both(head.path()) && only_reads(head)) return answer(head.path() == kNetwork ? shown() : tested());
-  if (head.method() != "POST") return answer(wrong_method(both(head.path()) ? "GET, HEAD, POST" : "POST"));
-  if (codec::format_of(head.header("Content-Type")) != codec::Format::Json) {
-    return answer(refusal(icd::Status::UnprocessableEntity, "Content-Type: expected application/json"));
-  }
-  if (head.content_length().value_or(0) > kMostBody) return answer(SmallBody::too_long(kMostBody));
-  return std::make_unique<SmallBody>(
-      responder, kMostBody,
-      [this, path = std::string(head.path()), peer = head.peer(), local = head.local(),
-       responder](const std::string& body) { responder->answer(post(path, body, peer, local)); });
-}
-
-intake::Answer NetworkRoutes::post(std::string_view path, const std::string& body, const std::string& peer,
-                                   const std::string& local) {
-  if (path == kCheck) return check(body, peer);
-  auto answer = path == kNetwork   ? change(body, peer)
-                : path == kConfirm ? after(network_.confirm(local))
-                : path == kBack    ? after(network_.take_back())
-                : test_.begin_test()
-                    ? tested()
-                    : refusal(icd::Status::Conflict, "a test is running: see GET /adit/test");
-  changed_();
-  return answer;
-}
 
 intake::Answer NetworkRoutes::shown() const {
   const NetworkView view = network_.network();
@@ -134,9 +84,10 @@ intake::Answer NetworkRoutes::shown() const {
                  {"last_why", json(view.last_why)}});
 }
 
-intake::Answer NetworkRoutes::check(const std::string& body, const std::string& peer) const {
-  const auto wanted = read_body(body);
-  const auto findings = wanted ? network_.check(*wanted, peer) : network::Findings{wanted.error(), {}, {}};
+intake::Answer NetworkRoutes::check(const Call& call) const {
+  const auto wanted = read_body(call.body);
+  const auto findings =
+      wanted ? network_.check(*wanted, call.head.peer()) : network::Findings{wanted.error(), {}, {}};
   Value::Array changes, warnings;
   for (const network::Difference& each : findings.changes) {
     changes.push_back(
@@ -148,16 +99,39 @@ intake::Answer NetworkRoutes::check(const std::string& body, const std::string& 
                  {"warnings", {std::move(warnings)}}});
 }
 
-intake::Answer NetworkRoutes::change(const std::string& body, const std::string& peer) {
-  const auto wanted = read_body(body);
-  if (!wanted) return unfit(wanted.error());
-  const auto findings = network_.check(*wanted, peer);
-  if (!findings.errors.empty()) return unfit(findings.errors);
-  return after(network_.change(*wanted));
+intake::Answer NetworkRoutes::change(const Call& call) {
+  auto answer = changed_to(call);
+  changed_();
+  return answer;
 }
 
-intake::Answer NetworkRoutes::after(const icd::Checked<void>& done) const {
-  return done ? shown() : refusal(done.error().status, done.error().sentence);
+intake::Answer NetworkRoutes::changed_to(const Call& call) {
+  const auto wanted = read_body(call.body);
+  if (!wanted) return unfit(wanted.error());
+  const auto findings = network_.check(*wanted, call.head.peer());
+  if (!findings.errors.empty()) return unfit(findings.errors);
+  const auto done = network_.change(*wanted);
+  return done ? shown() : refused(done.error());
+}
+
+intake::Answer NetworkRoutes::confirm(const Call& call) {
+  return after(network_.confirm(call.head.local()));
+}
+
+intake::Answer NetworkRoutes::take_back() {
+  return after(network_.take_back());
+}
+
+intake::Answer NetworkRoutes::after(const icd::Checked<void>& done) {
+  auto answer = done ? shown() : refused(done.error());
+  changed_();
+  return answer;
+}
+
+intake::Answer NetworkRoutes::begin_test() {
+  const bool begun = test_.begin_test();
+  changed_();
+  return begun ? tested() : refusal(icd::Status::Conflict, "a test is running: see GET /adit/test");
 }
 
 intake::Answer NetworkRoutes::tested() const {

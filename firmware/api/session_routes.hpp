@@ -3,7 +3,6 @@
 #include <memory>
 #include <optional>
 #include <string>
-#include <string_view>
 
 #include "access/failures.hpp"
 #include "api/entrance.hpp"
@@ -21,25 +20,24 @@ class SessionRoutes {
       4;  // of passwords at once: each takes memory, and one after the other is checked
 
   /// All outlive this, and whatever `keys` still answers.
-  SessionRoutes(loop::Loop& loop, Entrance& entrance, Keys& keys)
-      : loop_(loop), entrance_(entrance), keys_(keys) {}
+  /// `setup`: null where nothing can be reset here.
+  SessionRoutes(loop::Loop& loop, Entrance& entrance, Keys& keys, Setup* setup)
+      : loop_(loop), entrance_(entrance), keys_(keys), setup_(setup) {}
 
-  /// Takes in /adit/reset, too: it needs a password like those here. `setup` outlives this.
-  void serve(Setup& setup) { setup_ = &setup; }
-
-  static bool has(std::string_view path);
-  /// Requires has(head.path()).
-  std::unique_ptr<intake::BodySink> open(const intake::RequestHead& head,
-                                         std::shared_ptr<intake::Responder> responder);
+  intake::Answer session(const intake::RequestHead& head);
+  intake::Answer sessions(const Call& call);
+  void log_in(const Call& call);
+  intake::Answer log_out(const Call& call);
+  intake::Answer end(std::uint64_t number);
+  void change_password(const Call& call);
+  void reset(const Call& call);
 
  private:
-  using Replies = std::shared_ptr<intake::Responder>;
-
   /// Who posts, kept while a password is checked.
   struct Poster {
     std::string address, agent;
-    bool admitted = false;      // as an operator
-    std::uint64_t session = 0;  // 0: none
+    Asker asker;
+    std::shared_ptr<intake::Responder> responder;
   };
   /// What is asked of /adit/password.
   struct Change {
@@ -48,32 +46,22 @@ class SessionRoutes {
     std::string current, code;
   };
 
-  intake::Answer shown(const intake::RequestHead& head);
-  intake::Answer session(const intake::RequestHead& head);
-  intake::Answer sessions(const intake::RequestHead& head);
-  std::unique_ptr<intake::BodySink> post(const intake::RequestHead& head, Replies responder);
-
-  void log_in(const Poster& poster, const std::string& body, const Replies& responder);
+  static Poster poster_of(const Call& call);
+  static icd::Checked<Change> read_change(const std::string& body);
   intake::Answer logged_in(access::Role role, const Poster& poster);
-  intake::Answer log_out(const intake::RequestHead& head);
-  intake::Answer end(const intake::RequestHead& head, std::uint64_t number);
-
-  void change_password(const Poster& poster, const std::string& body, const Replies& responder);
   bool is_by_button(const Change& change) const;
-  void reset(const Poster& poster, const std::string& body, const Replies& responder);
-  void set(const Change& change, const Poster& poster, const Replies& responder);
+  void set(const Change& change, const Poster& poster);
 
   /// Calls `done` with whose password it is; answers 429 instead where it is not to be checked now.
   template <class Done>
-  void check(const std::string& password, const Poster& poster, const Replies& responder, Done done);
+  void check(const std::string& password, const Poster& poster, Done done);
   /// False: it is answered 429.
-  bool may_try(const Poster& poster, const Replies& responder);
-  static icd::Checked<Change> read_change(const std::string& body);
+  bool may_try(const Poster& poster);
 
   loop::Loop& loop_;
   Entrance& entrance_;
   Keys& keys_;
-  Setup* setup_ = nullptr;
+  Setup* setup_;
   access::Failures failures_;
   int checking_ = 0;
 };

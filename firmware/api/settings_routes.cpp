@@ -5,9 +5,8 @@
 #include <utility>
 
 #include "api/answers.hpp"
+#include "api/read_body.hpp"
 #include "api/settings_json.hpp"
-#include "api/small_body.hpp"
-#include "codec/body_decoder.hpp"
 #include "codec/field.hpp"
 #include "codec/json.hpp"
 #include "icd/sentence.hpp"
@@ -18,15 +17,7 @@ namespace {
 using codec::Field;
 using codec::Value;
 
-constexpr std::string_view kSettings = "/adit/settings", kCheck = "/adit/settings/check",
-                           kExport = "/adit/settings/export", kTokens = "/adit/tokens",
-                           kCourse = "/adit/course";
-constexpr std::size_t kMostBody = 262144;
 constexpr std::size_t kShortestTeamToken = 8;
-
-intake::Answer refused(const icd::Refusal& why) {
-  return refusal(why.status, why.sentence);
-}
 
 /// A change is refused with 409 only while another is being applied (api::Setup), which takes a second.
 intake::Answer refused_change(const icd::Refusal& why) {
@@ -35,16 +26,7 @@ intake::Answer refused_change(const icd::Refusal& why) {
   return answer;
 }
 
-/// What `read` makes of a body, which is one JSON object.
-template <class Message, class Read>
-icd::Checked<Message> read_body(const std::string& body, Read read) {
-  const auto root = codec::parse_json(body);
-  if (!root) return std::unexpected(icd::Refusal{icd::Status::BadRequest, "expected JSON: " + root.error()});
-  codec::Reading reading;
-  return reading.outcome<Message>(read(Field(*root, reading)));
-}
-
-/// What is posted to kSettings and kCheck: settings that need not be good, and the version they began from.
+/// What is posted to be saved or checked: settings that need not be good, and the version they began from.
 struct Posted {
   Value settings;
   std::string base;
@@ -100,51 +82,17 @@ icd::Checked<PostedToken> read_token(const std::string& body) {
 
 }  // namespace
 
-SettingsRoutes::Action SettingsRoutes::action_at(std::string_view path) {
-  if (path == kSettings) return &SettingsRoutes::save;
-  if (path == kCheck) return &SettingsRoutes::check;
-  if (path == kTokens) return &SettingsRoutes::set_token;
-  if (path == kCourse) return &SettingsRoutes::switch_course;
-  return nullptr;
+intake::Answer SettingsRoutes::shown() const {
+  return fresh("application/json", write_setup(setup_));
 }
 
-bool SettingsRoutes::has(std::string_view path) {
-  return path == kExport || action_at(path) != nullptr;
-}
-
-bool SettingsRoutes::is_for_viewers(std::string_view path) {
-  return path == kSettings || path == kExport;
-}
-
-std::unique_ptr<intake::BodySink> SettingsRoutes::open(const intake::RequestHead& head,
-                                                       std::shared_ptr<intake::Responder> responder) {
-  const auto refuse = [&responder](intake::Answer answer) {
-    responder->answer(std::move(answer));
-    return nullptr;
-  };
-  const bool is_shown = head.path() == kSettings || head.path() == kExport;
-  if (is_shown && only_reads(head)) return refuse(shown(head.path()));
-  const Action action = action_at(head.path());
-  if (action == nullptr || head.method() != "POST") {
-    return refuse(wrong_method(action == nullptr ? kReading : is_shown ? "GET, HEAD, POST" : "POST"));
-  }
-  if (codec::format_of(head.header("Content-Type")) != codec::Format::Json) {
-    return refuse(refusal(icd::Status::UnprocessableEntity, "Content-Type: expected application/json"));
-  }
-  if (head.content_length().value_or(0) > kMostBody) return refuse(SmallBody::too_long(kMostBody));
-  return std::make_unique<SmallBody>(
-      responder, kMostBody,
-      [this, action, responder](const std::string& body) { responder->answer((this->*action)(body)); });
-}
-
-intake::Answer SettingsRoutes::shown(std::string_view path) const {
-  if (path == kSettings) return fresh("application/json", write_setup(setup_));
+intake::Answer SettingsRoutes::exported() const {
   auto answer = fresh("application/json", settings::file_of(setup_.settings()));
   answer.headers.push_back({"Content-Disposition", "attachment; filename=\"adit-settings.json\""});
   return answer;
 }
 
-intake::Answer SettingsRoutes::check(const std::string& body) {
+intake::Answer SettingsRoutes::check(const std::string& body) const {
   const auto posted = read_posted(body, false);
   if (!posted) return refused(posted.error());
   const auto next = settings::parse(posted->settings);
@@ -199,9 +147,7 @@ intake::Answer SettingsRoutes::set_token(const std::string& body) {
   }
   if (const auto kept = setup_.set_token(posted->name, posted->token); !kept)
     return refused_change(kept.error());
-  return fresh(
-      "application/json",
-      codec::write_json({Value::Object{{"name", {posted->name}}, {"set", {posted->token.has_value()}}}}));
+  return object({{"name", {posted->name}}, {"set", {posted->token.has_value()}}});
 }
 
 }  // namespace adit::api

@@ -18,9 +18,9 @@ class SmallBody final : public intake::BodySink {
             std::function<void(std::string body)> done)
       : responder_(std::move(responder)), most_(most), done_(std::move(done)) {}
 
-  static intake::Answer too_long(std::size_t most) {
+  static intake::Answer too_long(std::size_t most, std::string_view what = "body") {
     return refusal(icd::Status::ContentTooLarge,
-                   icd::sentence("expected a body of at most ", most, " bytes"));
+                   icd::sentence("expected a ", what, " of at most ", most, " bytes"));
   }
 
   bool on_body(std::span<const std::uint8_t> piece) override {

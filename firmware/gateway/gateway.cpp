@@ -49,7 +49,16 @@ Gateway::Gateway(loop::Loop& loop, Parts parts)
                  [this] { api_.changed(); }),
       updates_(loop, disk_writer_, admin::UpdateRequests(parts_.state_folder, parts_.update_folder),
                [this] { return report_under_way(); }),
-      api_(loop, *this, *this, accounts_, tokens().all),
+      api_(loop,
+           {.source = *this,
+            .judge = *this,
+            .keys = accounts_,
+            .setup = &setup_,
+            .network = &network_,
+            .test = &self_test_,
+            .updates = &updates_,
+            .box = &box_},
+           tokens().all),
       routes_(icd_options(), flow_, flow_.workers(), api_),
       listeners_(loop, parts_.sockets, routes_),
       second_(loop.timer([this] { every_second(); })),
@@ -58,10 +67,6 @@ Gateway::Gateway(loop::Loop& loop, Parts parts)
     ledger_return_.emplace(loop, disk_writer_, parts_.state_folder, parts_.ledger_rest,
                            [this] { ledger_is_back(); });
   }
-  api_.serve(setup_);
-  api_.serve(box_);
-  api_.serve(network_, self_test_);
-  api_.serve(updates_);
 }
 
 Gateway::~Gateway() = default;

@@ -4,10 +4,7 @@
 
 #include <nlohmann/json.hpp>
 
-#include "api/api.hpp"
-#include "api/description.hpp"
-#include "api/doubles.hpp"
-#include "api/fake_box.hpp"
+#include "api/on_page.hpp"
 #include "codec/gzip.hpp"
 
 namespace adit::api {
@@ -20,48 +17,21 @@ using testing::IsEmpty;
 using testing::Not;
 using testing::StartsWith;
 using Status = icd::Status;
-using Headers = std::vector<intake::Header>;
 
-class BoxRoutesTest : public testing::Test {
+class BoxRoutesTest : public OnPage {
  protected:
   BoxRoutesTest() {
-    api.serve(box);
     box.say(5, "notice", "listening");
     box.say(4, "warning", "the Command Post refused a state", "too fast");
     box.say(6, "info", "refused");
     box.say(3, "error", "the ledger cannot be written");
   }
-  intake::Answer ask(const std::string& method, const std::string& target, Headers headers = {kByToken}) {
-    auto responder = std::make_shared<FakeResponder>();
-    const auto exchange = api.open(FakeHead{method, target, std::move(headers)}, responder, {});
-    if (exchange) exchange->on_end();
-    EXPECT_TRUE(responder->answered) << target;
-    return responder->answered.value_or(intake::Answer{});
-  }
-  intake::Answer get(const std::string& target) { return ask("GET", target); }
   std::vector<std::string> log(const std::string& query) {
     std::vector<std::string> messages;
     const json said = json::parse(get("/adit/log" + query).body);
     for (const json& record : said["records"]) messages.push_back(record["message"]);
     return messages;
   }
-  Headers as_viewer() {
-    auto responder = std::make_shared<FakeResponder>();
-    const std::string body = R"({"password":"look, do not touch"})";
-    const auto exchange = api.open(
-        FakeHead{"POST", "/adit/login", {{"Content-Type", "application/json"}}, body.size()}, responder, {});
-    exchange->on_body({reinterpret_cast<const std::uint8_t*>(body.data()), body.size()});
-    exchange->on_end();
-    const std::string cookie = header(*responder->answered, "Set-Cookie");
-    return {{"Cookie", cookie.substr(0, cookie.find(';'))}};
-  }
-
-  loop::Loop loop;
-  FakeSource source;
-  FakeOperator judge;
-  FakeKeys keys;
-  FakeBox box;
-  Api api{loop, source, judge, keys, {token("team-1")}};
 };
 
 TEST_F(BoxRoutesTest, TellTheLogOldestFirst) {
@@ -121,6 +91,12 @@ TEST_F(BoxRoutesTest, TellWhatTheBoxIsMadeOf) {
   EXPECT_EQ(said["parts"], (json{{{"name", "zlib"}, {"version", "1.2.13"}, {"licence", "Zlib"}}}));
 }
 
+TEST_F(BoxRoutesTest, CountTheSessionsInTheMetrics) {
+  request("POST", "/adit/login", {{"Content-Type", "application/json"}},
+          R"({"password":"look, do not touch"})");
+  EXPECT_THAT(get("/metrics").body, HasSubstr("adit_sessions{role=\"viewer\"} 1\n"));
+}
+
 TEST_F(BoxRoutesTest, PackABundleOfAllThatIsKnown) {
   const auto answer = get("/adit/bundle");
   ASSERT_EQ(answer.status, Status::Ok);
@@ -141,34 +117,6 @@ TEST_F(BoxRoutesTest, PackABundleOfAllThatIsKnown) {
   EXPECT_THAT(archive, HasSubstr("adit_build_info"));
   for (const char* secret : {"team-1", "correct horse", "look, do not touch"})
     EXPECT_THAT(archive, Not(HasSubstr(secret)));
-}
-
-TEST_F(BoxRoutesTest, LetAViewerSeeAllButTheBundle) {
-  const Headers viewer = as_viewer();
-  for (const char* path : {"/metrics", "/adit/log", "/adit/log.txt", "/adit/about"}) {
-    EXPECT_EQ(ask("GET", path, viewer).status, Status::Ok) << path;
-  }
-  EXPECT_EQ(ask("GET", "/adit/bundle", viewer).status, Status::Forbidden);
-  EXPECT_THAT(ask("GET", "/metrics", viewer).body, HasSubstr("adit_sessions{role=\"viewer\"} 1\n"));
-}
-
-TEST_F(BoxRoutesTest, LetNobodyInWhoIsNotKnown) {
-  for (const char* path : {"/metrics", "/adit/log", "/adit/log.txt", "/adit/about", "/adit/bundle"}) {
-    EXPECT_EQ(ask("GET", path, {}).status, Status::Unauthorized) << path;
-    EXPECT_EQ(ask("GET", path, {{"Host", "evil.example"}, kByToken}).status, Status::Forbidden) << path;
-    EXPECT_EQ(ask("POST", path, Headers{kByToken}).status, Status::MethodNotAllowed) << path;
-  }
-}
-
-TEST_F(BoxRoutesTest, DescribeTheApiToAnybody) {
-  const auto answer = ask("GET", "/adit/openapi.json", {});
-  EXPECT_EQ(answer.status, Status::Ok);
-  EXPECT_EQ(answer.content_type, "application/json");
-  EXPECT_EQ(answer.body, open_api::description().body);
-  EXPECT_EQ(json::parse(answer.body)["openapi"], "3.1.0");
-  EXPECT_EQ(ask("POST", "/adit/openapi.json", {}).status, Status::MethodNotAllowed);
-  const Headers known = {{"If-None-Match", header(answer, "ETag")}};
-  EXPECT_EQ(static_cast<int>(ask("GET", "/adit/openapi.json", known).status), 304);
 }
 
 }  // namespace

@@ -4,9 +4,8 @@
 
 #include <nlohmann/json.hpp>
 
-#include "api/api.hpp"
-#include "api/doubles.hpp"
 #include "api/map_scene.hpp"
+#include "api/on_page.hpp"
 #include "intake/raw_client.hpp"
 #include "intake/served.hpp"
 #include "picture/palette.hpp"
@@ -17,25 +16,16 @@ namespace {
 using nlohmann::json;
 using testing::StartsWith;
 
-class MapRoutesTest : public testing::Test {
+class MapRoutesTest : public OnPage {
  protected:
   void SetUp() override { draw_scene(source.mosaic, 2000); }
 
-  intake::Answer get(const std::string& target, std::string if_none_match = "", std::string method = "GET") {
-    auto responder = std::make_shared<FakeResponder>();
-    EXPECT_EQ(
-        api.open(FakeHead{std::move(method), target, {{"If-None-Match", std::move(if_none_match)}, kByToken}},
-                 responder, {}),
-        nullptr);
-    EXPECT_TRUE(responder->answered) << "the picture is there, or it is not";
-    return responder->answered.value_or(intake::Answer{});
+  intake::Answer get(const std::string& target, std::string if_none_match = "",
+                     const std::string& method = "GET") {
+    auto answer = request(method, target, {{"If-None-Match", std::move(if_none_match)}, kByToken});
+    EXPECT_FALSE(took_body) << "the picture is there, or it is not";
+    return answer;
   }
-
-  loop::Loop loop;
-  FakeSource source;
-  FakeOperator judge;
-  FakeKeys keys;
-  Api api{loop, source, judge, keys, {token()}};
 };
 
 TEST_F(MapRoutesTest, TellsHowTilesAreCutAndColoured) {
@@ -147,9 +137,8 @@ TEST_F(MapRoutesTest, RefusesNumbersThatAreNone) {
   }
 }
 
-TEST_F(MapRoutesTest, TakesNothingButGet) {
+TEST_F(MapRoutesTest, TakesHeadForGet) {
   for (const char* path : {"/adit/map", "/adit/map/grid/-/0/0/0.png"}) {
-    EXPECT_EQ(get(path, "", "POST").status, icd::Status::MethodNotAllowed);
     EXPECT_EQ(get(path, "", "HEAD").status, icd::Status::Ok);
   }
 }
@@ -171,7 +160,7 @@ TEST(MapRoutesOnAServer, ReadsTheQueryOfARealRequest) {
   FakeSource source;
   draw_scene(source.mosaic, 2000);
   served.on_loop([&] {
-    api = std::make_unique<Api>(served.loop(), source, judge, keys, std::vector{token()});
+    api = std::make_unique<Api>(served.loop(), Served{source, judge, keys}, std::vector{token()});
     forward.to = api.get();
   });
   intake::RawClient client{served.port()};

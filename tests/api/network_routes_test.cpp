@@ -4,8 +4,7 @@
 
 #include <nlohmann/json.hpp>
 
-#include "api/api.hpp"
-#include "api/doubles.hpp"
+#include "api/on_page.hpp"
 #include "intake/raw_client.hpp"
 #include "intake/served.hpp"
 
@@ -17,38 +16,13 @@ using testing::ElementsAre;
 using testing::HasSubstr;
 using testing::IsEmpty;
 
-const std::vector<intake::Header> kGood = {kByToken, {"Content-Type", "application/json"}};
 const std::string kNumbers =
     R"({"team":{"mode":"static","address":"192.168.8.11","prefix":24},)"
     R"("command_post":{"addresses":[{"address":"10.100.1.10","prefix":24}],"gateway":"10.100.1.1"}})";
 const network::Numbers kRead = {
     .team = {0xc0a8080b, 24}, .command_post = {{0x0a64010a, 24}}, .gateway = 0x0a640101};
 
-class NetworkRoutesTest : public testing::Test {
- protected:
-  NetworkRoutesTest() { api.serve(network, test); }
-
-  intake::Answer ask(const std::string& method, const std::string& path, const std::string& body = "",
-                     std::vector<intake::Header> headers = kGood, const std::string& local = "10.0.0.1") {
-    auto responder = std::make_shared<FakeResponder>();
-    FakeHead head(method, path, std::move(headers), body.size());
-    const auto exchange = api.open(head.to(local), responder, {});
-    if (exchange) {
-      exchange->on_body({reinterpret_cast<const std::uint8_t*>(body.data()), body.size()});
-      exchange->on_end();
-    }
-    EXPECT_TRUE(responder->answered) << path;
-    return responder->answered.value_or(intake::Answer{});
-  }
-
-  loop::Loop loop;
-  FakeSource source;
-  FakeOperator judge;
-  FakeKeys keys;
-  FakeNetwork network;
-  FakeTest test;
-  Api api{loop, source, judge, keys, {token()}};
-};
+class NetworkRoutesTest : public OnPage {};
 
 TEST_F(NetworkRoutesTest, TellWhatTheInterfacesHave) {
   network.view = {.managed = true,
@@ -62,7 +36,7 @@ TEST_F(NetworkRoutesTest, TellWhatTheInterfacesHave) {
                   .pending = {},
                   .last = "",
                   .last_why = ""};
-  EXPECT_EQ(json::parse(ask("GET", "/adit/network", "", {kByToken}).body), json::parse(R"({
+  EXPECT_EQ(json::parse(get("/adit/network").body), json::parse(R"({
     "managed": true, "why": "", "team": {"interface": "team0", "mode": "dhcp", "address": "192.168.7.11", "prefix": 24},
     "command_post": {"interface": "darpa0", "addresses": [], "gateway": ""},
     "pending": null, "last": null, "last_why": ""})"));
@@ -71,7 +45,7 @@ TEST_F(NetworkRoutesTest, TellWhatTheInterfacesHave) {
 TEST_F(NetworkRoutesTest, TellEachAddressOfTheCommandPostsSide) {
   network.view.command_post = {{0x0a64010a, 24}, {0x0a64020a, 16}};
   network.view.gateway = 0x0a640101;
-  const json shown = json::parse(ask("GET", "/adit/network").body);
+  const json shown = json::parse(get("/adit/network").body);
   EXPECT_EQ(shown["command_post"]["addresses"],
             json::parse(R"([{"address":"10.100.1.10","prefix":24},{"address":"10.100.2.10","prefix":16}])"));
   EXPECT_EQ(shown["command_post"]["gateway"], "10.100.1.1");
@@ -80,9 +54,8 @@ TEST_F(NetworkRoutesTest, TellEachAddressOfTheCommandPostsSide) {
 }
 
 TEST_F(NetworkRoutesTest, TakeOneAddressAsItWasWrittenBeforeThereWereSeveral) {
-  ask("POST", "/adit/network",
-      R"({"team":{"address":"192.168.8.11","prefix":24},)"
-      R"("command_post":{"address":"10.100.1.10","prefix":24,"gateway":"10.100.1.1"}})");
+  post("/adit/network", R"({"team":{"address":"192.168.8.11","prefix":24},)"
+                        R"("command_post":{"address":"10.100.1.10","prefix":24,"gateway":"10.100.1.1"}})");
   EXPECT_THAT(network.wanted, ElementsAre(kRead));
 }
 
@@ -90,7 +63,7 @@ TEST_F(NetworkRoutesTest, TellOfAChangeThatWaits) {
   network.view.pending = NetworkView::Pending{1234.5, kRead, std::nullopt, "http://192.168.8.11:8000"};
   network.view.last = "taken back";
   network.view.last_why = "nobody confirmed it within 90 s";
-  const json shown = json::parse(ask("GET", "/adit/network").body);
+  const json shown = json::parse(get("/adit/network").body);
   EXPECT_EQ(shown["pending"]["until"], 1234.5);
   EXPECT_EQ(shown["pending"]["team"]["address"], "192.168.8.11");
   EXPECT_EQ(shown["pending"]["command_post"]["gateway"], "10.100.1.1");
@@ -98,75 +71,56 @@ TEST_F(NetworkRoutesTest, TellOfAChangeThatWaits) {
   EXPECT_EQ(shown["pending"]["page"], "http://192.168.8.11:8000");
   EXPECT_EQ(shown["last"], "taken back");
   network.view.pending->previous = kRead;
-  EXPECT_EQ(json::parse(ask("GET", "/adit/network").body)["pending"]["previous"]["team"]["prefix"], 24);
+  EXPECT_EQ(json::parse(get("/adit/network").body)["pending"]["previous"]["team"]["prefix"], 24);
 }
 
 TEST_F(NetworkRoutesTest, CheckWithoutChangingAnything) {
   network.findings = {{{"team.address", "overlaps"}}, {{"team.address", "a", "b"}}, {"this cuts you off"}};
-  EXPECT_EQ(json::parse(ask("POST", "/adit/network/check", kNumbers).body), json::parse(R"({
+  EXPECT_EQ(json::parse(post("/adit/network/check", kNumbers).body), json::parse(R"({
     "errors": [{"path": "team.address", "what": "overlaps"}],
     "changes": [{"path": "team.address", "from": "a", "to": "b"}], "warnings": ["this cuts you off"]})"));
   EXPECT_THAT(network.askers, ElementsAre("10.0.0.5"));
   EXPECT_THAT(network.wanted, IsEmpty());
-  const json wrong = json::parse(ask("POST", "/adit/network/check", R"({"team":{},"command_post":7})").body);
+  const json wrong = json::parse(post("/adit/network/check", R"({"team":{},"command_post":7})").body);
   EXPECT_EQ(wrong["errors"].size(), 3u);
   EXPECT_EQ(wrong["errors"][0]["path"], "team.address");
-  EXPECT_EQ(json::parse(ask("POST", "/adit/network/check", "{").body)["errors"][0]["path"], "");
+  EXPECT_EQ(json::parse(post("/adit/network/check", "{").body)["errors"][0]["path"], "");
 }
 
 TEST_F(NetworkRoutesTest, ChangeWhatPassesTheCheck) {
-  EXPECT_EQ(ask("POST", "/adit/network", kNumbers).status, icd::Status::Ok);
+  EXPECT_EQ(post("/adit/network", kNumbers).status, icd::Status::Ok);
   EXPECT_THAT(network.wanted, ElementsAre(kRead));
   network.findings.errors = {{"team.address", "overlaps"}, {"team.prefix", "no"}};
-  const auto answer = ask("POST", "/adit/network", kNumbers);
+  const auto answer = post("/adit/network", kNumbers);
   EXPECT_EQ(answer.status, icd::Status::UnprocessableEntity);
   EXPECT_EQ(json::parse(answer.body), "team.address: overlaps; team.prefix: no");
-  EXPECT_EQ(ask("POST", "/adit/network", "{}").status, icd::Status::UnprocessableEntity);
-  EXPECT_EQ(ask("POST", "/adit/network", "no").status, icd::Status::UnprocessableEntity);
+  EXPECT_EQ(post("/adit/network", "{}").status, icd::Status::UnprocessableEntity);
+  EXPECT_EQ(post("/adit/network", "no").status, icd::Status::UnprocessableEntity);
   network.findings.errors.clear();
   network.outcome = std::unexpected(icd::Refusal{icd::Status::Conflict, "a change waits"});
-  EXPECT_EQ(ask("POST", "/adit/network", kNumbers).status, icd::Status::Conflict);
+  EXPECT_EQ(post("/adit/network", kNumbers).status, icd::Status::Conflict);
 }
 
 TEST_F(NetworkRoutesTest, ConfirmByTheAddressThatWasAsked) {
-  ask("POST", "/adit/network/confirm", "", kGood, "192.168.8.11");
+  local = "192.168.8.11";
+  post("/adit/network/confirm");
   EXPECT_THAT(network.confirmed, ElementsAre("192.168.8.11"));
-  ask("POST", "/adit/network/back");
+  post("/adit/network/back");
   EXPECT_EQ(network.taken_back, 1);
   network.outcome = std::unexpected(icd::Refusal{icd::Status::Conflict, "no change waits to be confirmed"});
-  const auto answer = ask("POST", "/adit/network/confirm");
+  const auto answer = post("/adit/network/confirm");
   EXPECT_EQ(answer.status, icd::Status::Conflict);
   EXPECT_EQ(json::parse(answer.body), "no change waits to be confirmed");
 }
 
 TEST_F(NetworkRoutesTest, RunOneTestAtATime) {
-  EXPECT_EQ(ask("GET", "/adit/test").body, R"({"running":false,"endpoints":[]})");
+  EXPECT_EQ(get("/adit/test").body, R"({"running":false,"endpoints":[]})");
   test.view.endpoints = {{"scoring", "10.100.1.200:8000", {{"link", "bad", "no carrier", "plug it in"}}}};
-  const json begun = json::parse(ask("POST", "/adit/test").body);
+  const json begun = json::parse(post("/adit/test").body);
   EXPECT_EQ(begun["running"], true);
   EXPECT_EQ(begun["endpoints"][0]["steps"][0],
             json::parse(R"({"name":"link","state":"bad","said":"no carrier","advice":"plug it in"})"));
-  EXPECT_EQ(ask("POST", "/adit/test").status, icd::Status::Conflict);
-}
-
-TEST_F(NetworkRoutesTest, AreTheOperatorsAlone) {
-  for (const char* path : {"/adit/network", "/adit/network/check", "/adit/network/confirm",
-                           "/adit/network/back", "/adit/test"}) {
-    EXPECT_EQ(ask("POST", path, kNumbers, {{"Content-Type", "application/json"}}).status,
-              icd::Status::Unauthorized)
-        << path;
-    EXPECT_EQ(ask("POST", path, kNumbers, {kByToken}).status, icd::Status::UnprocessableEntity) << path;
-    EXPECT_EQ(ask("POST", path, std::string(4097, ' ')).status, icd::Status::ContentTooLarge) << path;
-    EXPECT_EQ(ask("DELETE", path).status, icd::Status::MethodNotAllowed) << path;
-  }
-  for (const char* path : {"/adit/network/check", "/adit/network/confirm", "/adit/network/back"}) {
-    EXPECT_EQ(header(ask("GET", path), "Allow"), "POST") << path;
-  }
-  EXPECT_EQ(ask("GET", "/adit/network/", "").status, icd::Status::NotFound);
-  EXPECT_THAT(network.wanted, IsEmpty());
-  EXPECT_THAT(network.confirmed, IsEmpty());
-  EXPECT_EQ(network.taken_back, 0);
-  EXPECT_FALSE(test.view.running);
+  EXPECT_EQ(post("/adit/test").status, icd::Status::Conflict);
 }
 
 TEST(NetworkRoutesOnAServer, SeeTheAddressThatAConnectionCameTo) {
@@ -179,8 +133,10 @@ TEST(NetworkRoutesOnAServer, SeeTheAddressThatAConnectionCameTo) {
   FakeTest test;
   intake::Served served{forward};
   served.on_loop([&] {
-    api = std::make_unique<Api>(served.loop(), source, judge, keys, std::vector{token()});
-    api->serve(network, test);
+    api = std::make_unique<Api>(
+        served.loop(),
+        Served{.source = source, .judge = judge, .keys = keys, .network = &network, .test = &test},
+        std::vector{token()});
     forward.to = api.get();
   });
   intake::RawClient client{served.port()};

@@ -2,39 +2,84 @@
 
 #include <gtest/gtest.h>
 
+#include <deque>
 #include <memory>
+#include <optional>
 #include <string>
 #include <utility>
 #include <vector>
 
 #include "api/api.hpp"
 #include "api/doubles.hpp"
+#include "api/fake_box.hpp"
+#include "api/fake_setup.hpp"
+#include "api/fake_updates.hpp"
 
 namespace adit::api {
 
+struct FakeFlow final : intake::Flow {
+  void resume() override { ++resumed; }
+  int resumed = 0;
+};
+
+inline const std::vector<intake::Header> kJsonByToken = {kByToken, {"Content-Type", "application/json"}};
+
 /// A page of doubles, asked without a server.
-class OnPage : public testing::Test {
- protected:
+struct Page {
+  /// Begins a request, to be answered by `responder`.
+  std::unique_ptr<intake::BodySink> open(const std::string& method, const std::string& target,
+                                         std::vector<intake::Header> headers,
+                                         std::optional<std::uint64_t> length) {
+    heads.emplace_back(method, target, std::move(headers), length).to(local);
+    responder = std::make_shared<FakeResponder>();
+    return api.open(heads.back(), responder, flow);
+  }
+  static void send(intake::BodySink* sink, const std::string& body) {
+    if (sink == nullptr) return;
+    if (!body.empty()) sink->on_body({reinterpret_cast<const std::uint8_t*>(body.data()), body.size()});
+    sink->on_end();
+  }
   /// The answer to a request; its body is handed over where the page takes one.
   intake::Answer request(const std::string& method, const std::string& target,
                          std::vector<intake::Header> headers, const std::string& body = "") {
-    auto responder = std::make_shared<FakeResponder>();
-    const auto exchange = api.open(FakeHead{method, target, std::move(headers), body.size()}, responder, {});
-    took_body = exchange != nullptr;
-    if (exchange) {
-      exchange->on_body({reinterpret_cast<const std::uint8_t*>(body.data()), body.size()});
-      exchange->on_end();
-    }
+    const auto sink = open(method, target, std::move(headers), body.size());
+    took_body = sink != nullptr;
+    send(sink.get(), body);
     EXPECT_TRUE(responder->answered.has_value()) << target;
     return responder->answered.value_or(intake::Answer{});
   }
+  intake::Answer get(const std::string& target) { return request("GET", target, {kByToken}); }
+  intake::Answer post(const std::string& target, const std::string& body = "{}") {
+    return request("POST", target, kJsonByToken, body);
+  }
+
+  std::deque<FakeHead> heads;  // each is asked until its request has ended
+  std::string local = "10.0.0.1";
   bool took_body = false;  // the last request's: it was not answered from its head alone
+  std::shared_ptr<FakeResponder> responder;
+  std::shared_ptr<FakeFlow> flow = std::make_shared<FakeFlow>();
 
   loop::Loop loop;
   FakeSource source;
   FakeOperator judge;
   FakeKeys keys;
-  Api api{loop, source, judge, keys, {token("team-1")}};
+  FakeSetup setup;
+  FakeNetwork network;
+  FakeTest test;
+  FakeUpdates updates;
+  FakeBox box;
+  Api api{loop,
+          {.source = source,
+           .judge = judge,
+           .keys = keys,
+           .setup = &setup,
+           .network = &network,
+           .test = &test,
+           .updates = &updates,
+           .box = &box},
+          {token("team-1"), token("scoring-1")}};
 };
+
+class OnPage : public testing::Test, protected Page {};
 
 }  // namespace adit::api

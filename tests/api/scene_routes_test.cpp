@@ -1,5 +1,3 @@
-#include "api/scene_routes.hpp"
-
 #include <gmock/gmock.h>
 
 #include <cmath>
@@ -12,15 +10,7 @@ namespace {
 
 using nlohmann::json;
 
-class SceneRoutesTest : public OnPage {
- protected:
-  intake::Answer ask(const std::string& target, const std::string& method = "GET",
-                     std::vector<intake::Header> headers = {kByToken}) {
-    auto answer = request(method, target, std::move(headers));
-    EXPECT_FALSE(took_body) << target;
-    return answer;
-  }
-};
+class SceneRoutesTest : public OnPage {};
 
 TEST_F(SceneRoutesTest, GiveTheMarkersThatChanged) {
   const DrawnMarker marker{.ns = "path",
@@ -41,7 +31,7 @@ TEST_F(SceneRoutesTest, GiveTheMarkersThatChanged) {
                         .left_out = 2,
                         .markers = {{marker, 99.5}},
                         .gone = {{"path", 7}}};
-  const auto answer = ask("/adit/markers?since=1793000123400");
+  const auto answer = get("/adit/markers?since=1793000123400");
   EXPECT_EQ(source.since_version, 1'793'000'123'400u);
   EXPECT_EQ(header(answer, "Cache-Control"), "no-store");
   const json expected = {{"ns", "path"},
@@ -67,7 +57,7 @@ TEST_F(SceneRoutesTest, GiveTheMarkersThatChanged) {
 
 TEST_F(SceneRoutesTest, GiveWhereRobotsWere) {
   source.robot_tracks = {{"r1", {{.at = 100.126, .position = {1.234, 5, -6}, .heading = 3.14159}}}};
-  const auto answer = ask("/adit/tracks?since=90.5");
+  const auto answer = get("/adit/tracks?since=90.5");
   EXPECT_EQ(source.since_time, 90.5);
   EXPECT_EQ(json::parse(answer.body),
             (json{{"tracks", {{{"robot", "r1"}, {"poses", {{100.13, 1.23, 5.0, -6.0, 3.14}}}}}}}));
@@ -76,19 +66,10 @@ TEST_F(SceneRoutesTest, GiveWhereRobotsWere) {
 TEST_F(SceneRoutesTest, NameWhatIsNoNumber) {
   for (const char* wrong : {"/adit/markers?since=x", "/adit/markers?since=-1", "/adit/markers?since=1.5",
                             "/adit/tracks?since=x", "/adit/tracks?since=inf", "/adit/tracks?since=nan"}) {
-    const auto answer = ask(wrong);
+    const auto answer = get(wrong);
     EXPECT_EQ(answer.status, icd::Status::BadRequest) << wrong;
     EXPECT_TRUE(answer.body.starts_with("\"since: expected")) << wrong;
   }
-}
-
-TEST_F(SceneRoutesTest, AreReadByWhoeverMayLook) {
-  for (const char* path : {"/adit/markers", "/adit/tracks"}) {
-    EXPECT_EQ(ask(path).status, icd::Status::Ok);
-    EXPECT_EQ(ask(path, "POST").status, icd::Status::MethodNotAllowed);
-    EXPECT_EQ(ask(path, "GET", {}).status, icd::Status::Unauthorized);
-  }
-  EXPECT_EQ(ask("/adit/markersx").status, icd::Status::NotFound);
 }
 
 }  // namespace

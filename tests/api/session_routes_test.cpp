@@ -4,8 +4,7 @@
 
 #include <nlohmann/json.hpp>
 
-#include "api/api.hpp"
-#include "api/doubles.hpp"
+#include "api/on_page.hpp"
 
 namespace adit::api {
 namespace {
@@ -23,23 +22,17 @@ struct Browser {
   std::string cookie, csrf;
 };
 
-class SessionRoutesTest : public testing::Test {
+class SessionRoutesTest : public OnPage {
  protected:
   std::shared_ptr<FakeResponder> begin(const std::string& method, const std::string& path, Headers headers,
                                        const std::string& body = "") {
-    auto responder = std::make_shared<FakeResponder>();
-    const auto exchange = api.open(FakeHead{method, path, std::move(headers), body.size()}, responder, {});
-    if (exchange) {
-      exchange->on_body({reinterpret_cast<const std::uint8_t*>(body.data()), body.size()});
-      exchange->on_end();
-    }
+    const auto sink = open(method, path, std::move(headers), body.size());
+    send(sink.get(), body);
     return responder;
   }
   intake::Answer ask(const std::string& method, const std::string& path, Headers headers,
                      const std::string& body = "") {
-    const auto responder = begin(method, path, std::move(headers), body);
-    EXPECT_TRUE(responder->answered.has_value() || responder->streaming);
-    return responder->answered.value_or(intake::Answer{});
+    return request(method, path, std::move(headers), body);
   }
   static Headers of(const Browser& browser) {
     return {{"Cookie", "adit=" + browser.cookie},
@@ -60,12 +53,6 @@ class SessionRoutesTest : public testing::Test {
     return {cookie.substr(5, cookie.find(';') - 5), json::parse(answer.body)["csrf"]};
   }
   json session(const Browser& browser = {}) { return json::parse(get("/adit/session", browser).body); }
-
-  loop::Loop loop;
-  FakeSource source;
-  FakeOperator judge;
-  FakeKeys keys;
-  Api api{loop, source, judge, keys, {token("team-1")}};
 };
 
 TEST_F(SessionRoutesTest, TellAnybodyWhoHeIs) {
@@ -87,71 +74,6 @@ TEST_F(SessionRoutesTest, GiveACookieThatNoScriptReadsAndNoOtherSiteSends) {
               AllOf(StartsWith("adit="), EndsWith("; HttpOnly; SameSite=Strict; Path=/; Max-Age=604800")));
   EXPECT_EQ(header(answer, "Cache-Control"), "no-store");
   EXPECT_EQ(json::parse(answer.body)["role"], "operator");
-}
-
-TEST_F(SessionRoutesTest, LetNobodySeeAnythingWhoIsNotLoggedIn) {
-  for (const char* path : {"/adit/run", "/adit/events", "/adit/reports", "/adit/reports.csv",
-                           "/adit/reports/7", "/adit/sessions", "/adit/", "/adit/nothing"}) {
-    const auto answer = get(path);
-    EXPECT_EQ(answer.status, Status::Unauthorized) << path;
-    EXPECT_TRUE(json::parse(answer.body).is_string()) << path;
-  }
-  for (const char* path :
-       {"/adit/runs", "/adit/reports/7/send", "/adit/logout", "/adit/password", "/adit/sessions/1/end"}) {
-    EXPECT_EQ(post(path, json::object()).status, Status::Unauthorized) << path;
-  }
-  for (const char* path : {"/", "/login.html", "/page.css", "/page.js", "/icon.svg"}) {
-    EXPECT_EQ(get(path).status, Status::Ok) << path << ", which holds nothing";
-  }
-}
-
-TEST_F(SessionRoutesTest, LetAViewerLookAndDoNothing) {
-  const Browser viewer = log_in("look, do not touch");
-  EXPECT_EQ(get("/adit/run", viewer).status, Status::Ok);
-  EXPECT_EQ(get("/adit/reports", viewer).status, Status::Ok);
-  EXPECT_EQ(get("/adit/sessions", viewer).status, Status::Forbidden);
-  for (const char* path : {"/adit/runs", "/adit/reports/7/send", "/adit/sessions/1/end"}) {
-    EXPECT_EQ(post(path, json::object(), viewer).status, Status::Forbidden) << path;
-  }
-  EXPECT_EQ(
-      post("/adit/password",
-           {{"role", "viewer"}, {"current", "look, do not touch"}, {"password", "of my own making"}}, viewer)
-          .status,
-      Status::Forbidden);
-  EXPECT_EQ(judge.run, 1);
-  EXPECT_EQ(keys.checked, 1) << "the login alone";
-}
-
-TEST_F(SessionRoutesTest, WantTheCsrfTokenForEveryActionOfABrowser) {
-  Browser mine = log_in("correct horse");
-  EXPECT_EQ(post("/adit/runs", {}, mine).status, Status::Ok);
-  for (const std::string& csrf : {std::string(), std::string("wrong"), log_in("correct horse").csrf}) {
-    mine.csrf = csrf;
-    EXPECT_EQ(post("/adit/runs", {}, mine).status, Status::Forbidden) << csrf;
-    EXPECT_EQ(post("/adit/logout", {}, mine).status, Status::Forbidden) << csrf;
-    EXPECT_EQ(get("/adit/run", mine).status, Status::Ok);
-  }
-  EXPECT_EQ(judge.run, 2);
-}
-
-TEST_F(SessionRoutesTest, AnswerNoPageFromElsewhere) {
-  const Browser mine = log_in("correct horse");
-  for (const char* path : {"/adit/runs", "/adit/login", "/adit/session", "/adit/run"}) {
-    Headers headers = of(mine);
-    headers[2].value = "http://evil.example";
-    const bool reads =
-        std::string_view(path).starts_with("/adit/session") || std::string_view(path) == "/adit/run";
-    EXPECT_EQ(ask(reads ? "GET" : "POST", path, headers, R"({"password":"correct horse"})").status,
-              Status::Forbidden)
-        << path;
-    headers[2].value = "http://evil.example:8000";
-    headers.push_back({"Host", "evil.example:8000"});
-    EXPECT_EQ(ask(reads ? "GET" : "POST", path, headers, R"({"password":"correct horse"})").status,
-              Status::Forbidden)
-        << path << ", by a name of its own for this address";
-  }
-  EXPECT_EQ(judge.run, 1);
-  EXPECT_EQ(keys.checked, 1);
 }
 
 TEST_F(SessionRoutesTest, EndASessionWhenItLogsOut) {
@@ -264,13 +186,11 @@ TEST_F(SessionRoutesTest, OpenNothingElseWhileSetUpIsOpen) {
 
 TEST_F(SessionRoutesTest, SetNoPasswordOnceSetUpIsClosedWhileItIsOnItsWay) {
   keys.set_up = true;
-  auto responder = std::make_shared<FakeResponder>();
-  const auto late = api.open(FakeHead{"POST", "/adit/password", of({}), std::nullopt}, responder, {});
+  const auto late = open("POST", "/adit/password", of({}), std::nullopt);
   ASSERT_NE(late, nullptr);
   keys.set_up = false;
   const std::string body = R"({"role":"operator","password":"a new password"})";
-  late->on_body({reinterpret_cast<const std::uint8_t*>(body.data()), body.size()});
-  late->on_end();
+  send(late.get(), body);
   EXPECT_EQ(responder->answered->status, Status::Unauthorized);
   EXPECT_EQ(keys.operator_, "correct horse");
 }
@@ -297,13 +217,11 @@ TEST_F(SessionRoutesTest, SlowDownWhoGuessesTheCode) {
 
 TEST_F(SessionRoutesTest, LetNobodyInBetweenTheCodeAndThePasswordWhileTheFirstIsSet) {
   keys.operator_.reset();
-  auto responder = std::make_shared<FakeResponder>();
-  const auto late = api.open(FakeHead{"POST", "/adit/password", of({}), std::nullopt}, responder, {});
+  const auto late = open("POST", "/adit/password", of({}), std::nullopt);
   ASSERT_NE(late, nullptr);
   keys.operator_ = "set by somebody else meanwhile";
   const std::string body = R"({"role":"operator","code":"12345678","password":"a new password"})";
-  late->on_body({reinterpret_cast<const std::uint8_t*>(body.data()), body.size()});
-  late->on_end();
+  send(late.get(), body);
   EXPECT_EQ(responder->answered->status, Status::Unauthorized);
 }
 
@@ -354,8 +272,6 @@ TEST_F(SessionRoutesTest, RefuseWhatTheyDoNotUnderstand) {
   EXPECT_EQ(ask("POST", "/adit/login", of({}), std::string(5000, ' ')).status, Status::ContentTooLarge);
   EXPECT_EQ(ask("POST", "/adit/login", {{"Content-Type", "text/plain"}}, "{}").status,
             Status::UnprocessableEntity);
-  EXPECT_EQ(header(ask("GET", "/adit/login", {}), "Allow"), "POST");
-  EXPECT_EQ(header(ask("DELETE", "/adit/session", {}), "Allow"), "GET, HEAD");
   EXPECT_EQ(keys.checked, 0);
 }
 

@@ -4,10 +4,7 @@
 
 #include <nlohmann/json.hpp>
 
-#include "api/api.hpp"
-#include "api/doubles.hpp"
-#include "settings/sample.hpp"
-#include "settings/written.hpp"
+#include "api/on_page.hpp"
 
 namespace adit::api {
 namespace {
@@ -17,78 +14,11 @@ using testing::ElementsAre;
 using testing::HasSubstr;
 using testing::Not;
 using Status = icd::Status;
-using Headers = std::vector<intake::Header>;
 
-constexpr const char* kCourses =
-    R"(, "courses": [{"name": "A", "scoring": {"address": "10.100.2.200", "port": 8000},)"
-    R"( "mapping": {"address": "10.100.2.201", "port": 8000}}])";
-
-/// Remembers what it was told, and refuses where it is to.
-struct FakeSetup final : Setup {
-  const settings::Settings& settings() const override { return now; }
-  bool saved() const override { return false; }
-  bool applying() const override { return is_applying; }
-  const std::string& trouble() const override { return why; }
-  std::vector<TokenRow> tokens() const override { return {{"scoring", true}, {"course.A.mapping", false}}; }
-  std::vector<std::string> warnings(const settings::Settings& next) const override {
-    if (next.command_post.course != now.command_post.course) return {"reports go elsewhere"};
-    if (next.team.require_token) return {};
-    return {"no token is asked for"};
-  }
-  icd::Checked<void> save(const settings::Settings& next) override {
-    if (refusal) return std::unexpected(*refusal);
-    ++saves;
-    is_applying = !settings::changes(now, next).empty();
-    now = next;
-    return {};
-  }
-  icd::Checked<void> set_token(const std::string& name,
-                               const std::optional<icd::BearerToken>& token) override {
-    if (refusal) return std::unexpected(*refusal);
-    set.emplace_back(name, token ? token->reveal() : "removed");
-    return {};
-  }
-  icd::Checked<void> reset() override {
-    if (refusal) return std::unexpected(*refusal);
-    ++resets;
-    return {};
-  }
-
-  settings::Settings now = settings::parse(settings::sample("", "", kCourses)).value();
-  std::optional<icd::Refusal> refusal;
-  std::vector<std::pair<std::string, std::string>> set;
-  std::string why;
-  int saves = 0, resets = 0;
-  bool is_applying = false;
-};
-
-class SettingsRoutesTest : public testing::Test {
+class SettingsRoutesTest : public OnPage {
  protected:
-  SettingsRoutesTest() { api.serve(setup); }
-
-  intake::Answer ask(const std::string& method, const std::string& path, Headers headers,
-                     const std::string& body = "") {
-    const auto responder = std::make_shared<FakeResponder>();
-    const auto exchange = api.open(FakeHead{method, path, std::move(headers), body.size()}, responder, {});
-    if (exchange) {
-      exchange->on_body({reinterpret_cast<const std::uint8_t*>(body.data()), body.size()});
-      exchange->on_end();
-    }
-    EXPECT_TRUE(responder->answered.has_value()) << path;
-    return responder->answered.value_or(intake::Answer{});
-  }
-  intake::Answer get(const std::string& path) { return ask("GET", path, {kByToken}); }
-  intake::Answer post(const std::string& path, const json& body) {
-    return ask("POST", path, {kByToken, {"Content-Type", "application/json"}}, body.dump());
-  }
+  intake::Answer post(const std::string& path, const json& body) { return Page::post(path, body.dump()); }
   json shown() { return json::parse(get("/adit/settings").body); }
-
-  loop::Loop loop;
-  FakeSource source;
-  FakeOperator judge;
-  FakeKeys keys;
-  FakeSetup setup;
-  Api api{loop, source, judge, keys, {token("team-1")}};
 };
 
 TEST_F(SettingsRoutesTest, ShowTheWholeSettingsWhatAFormNeedsAndNoToken) {
@@ -120,25 +50,6 @@ TEST_F(SettingsRoutesTest, ExportTheFileForADownload) {
   const auto answer = get("/adit/settings/export");
   EXPECT_EQ(answer.body, settings::file_of(setup.now));
   EXPECT_EQ(header(answer, "Content-Disposition"), "attachment; filename=\"adit-settings.json\"");
-}
-
-TEST_F(SettingsRoutesTest, AreShownToViewersAndChangedByOperatorsAlone) {
-  const auto login = ask("POST", "/adit/login", {{"Content-Type", "application/json"}},
-                         R"({"password":"look, do not touch"})");
-  const std::string cookie = header(login, "Set-Cookie");
-  const Headers viewer = {{"Cookie", cookie.substr(0, cookie.find(';'))},
-                          {"Adit-CSRF", json::parse(login.body)["csrf"]},
-                          {"Content-Type", "application/json"}};
-  for (const char* path : {"/adit/settings", "/adit/settings/export"}) {
-    EXPECT_EQ(ask("GET", path, {}).status, Status::Unauthorized) << path;
-    EXPECT_EQ(ask("GET", path, viewer).body, get(path).body) << path;
-  }
-  for (const char* path :
-       {"/adit/settings", "/adit/settings/check", "/adit/tokens", "/adit/course", "/adit/reset"}) {
-    EXPECT_EQ(ask("POST", path, {}).status == Status::Ok, false) << path;
-    EXPECT_EQ(ask("POST", path, viewer, "{}").status, Status::Forbidden) << path;
-  }
-  EXPECT_EQ(setup.saves + setup.resets, 0);
 }
 
 TEST_F(SettingsRoutesTest, TellThatAChangeIsBeingApplied) {
@@ -267,9 +178,9 @@ TEST_F(SettingsRoutesTest, RefuseBodiesThatAreNotWhatIsAskedForAndNameTheField) 
     EXPECT_THAT(answer.body, HasSubstr(row.word)) << row.path << row.body;
     EXPECT_THAT(answer.body, Not(HasSubstr("two words"))) << "what was meant for a token is not repeated";
   }
-  EXPECT_EQ(ask("POST", "/adit/course", {kByToken, {"Content-Type", "application/json"}}, "{").status,
+  EXPECT_EQ(request("POST", "/adit/course", {kByToken, {"Content-Type", "application/json"}}, "{").status,
             Status::BadRequest);
-  EXPECT_EQ(ask("POST", "/adit/course", {kByToken, {"Content-Type", "text/plain"}}, "{}").status,
+  EXPECT_EQ(request("POST", "/adit/course", {kByToken, {"Content-Type", "text/plain"}}, "{}").status,
             Status::UnprocessableEntity);
   EXPECT_EQ(post("/adit/settings", {{"settings", std::string(300000, 'x')}}).status, Status::ContentTooLarge);
   EXPECT_EQ(setup.saves, 0);
@@ -325,20 +236,6 @@ TEST_F(SettingsRoutesTest, PassOnWhyAChangeIsNotMade) {
     EXPECT_EQ(answer.status, Status::ServiceUnavailable);
     EXPECT_EQ(json::parse(answer.body), setup.refusal->sentence);
   }
-}
-
-TEST_F(SettingsRoutesTest, SayWhichMethodsThereAre) {
-  const auto allowed = [&](const std::string& method, const std::string& path) {
-    const auto answer = ask(method, path, {kByToken, {"Content-Type", "application/json"}});
-    EXPECT_EQ(answer.status, Status::MethodNotAllowed) << path;
-    return header(answer, "Allow");
-  };
-  EXPECT_EQ(allowed("PUT", "/adit/settings"), "GET, HEAD, POST");
-  EXPECT_EQ(allowed("GET", "/adit/settings/check"), "POST");
-  EXPECT_EQ(allowed("POST", "/adit/settings/export"), "GET, HEAD");
-  EXPECT_EQ(allowed("GET", "/adit/tokens"), "POST");
-  EXPECT_EQ(allowed("GET", "/adit/course"), "POST");
-  EXPECT_EQ(allowed("GET", "/adit/reset"), "POST");
 }
 
 }  // namespace

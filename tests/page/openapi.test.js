@@ -1,13 +1,23 @@
-// The description of the API (openapi.json), held against a real aditd: every path and method that it names, and every
-// route that the README names.
+// The description of the API, as a real aditd serves it, held against that aditd: every path and method that it names, and
+// every route that the README names.
 import assert from "node:assert/strict";
 import { readFileSync } from "node:fs";
 import { test } from "node:test";
 import Ajv from "ajv/dist/2020.js";
 import { OPERATOR, box, play, until } from "./box.js";
 
-const read = (path) => readFileSync(new URL(`../../firmware/api/${path}`, import.meta.url), "utf8");
-const api = JSON.parse(read("openapi.json.in").replace("@ADIT_SCHEMAS@", () => read("schemas.json")));
+/** What the box says of itself. */
+async function described() {
+  const ends = [];
+  const { ask } = await box({ after: (end) => ends.push(end) });
+  const answer = await ask("GET", "/adit/openapi.json", { role: "nobody" });
+  const description = await answer.json();
+  for (const end of ends) await end();
+  return description;
+}
+
+const readme = readFileSync(new URL("../../firmware/api/README.md", import.meta.url), "utf8");
+const api = await described();
 const operations = Object.entries(api.paths).flatMap(([path, methods]) =>
   Object.entries(methods).map(([method, operation]) => ({ path, method: method.toUpperCase(), operation })));
 const named = (operation, where) => (operation.parameters ?? []).filter((each) => each.in === where);
@@ -60,7 +70,7 @@ const bodyOf = ({ operation }) => {
 };
 
 test("describes every route of the README, and no route that is not there", () => {
-  const rows = [...read("README.md").matchAll(/^\| (GET|POST) `([^`]+)` \|/gm)].map(([, method, path]) => ({ method, path }));
+  const rows = [...readme.matchAll(/^\| (GET|POST) `([^`]+)` \|/gm)].map(([, method, path]) => ({ method, path }));
   assert.ok(rows.length > 20);
   const pattern = (path) => new RegExp(`^${path.replaceAll(".", "\\.").replaceAll(/\{\w+\}/g, "[^/]+")}$`);
   const fits = (row, each) => row.method === each.method && pattern(each.path).test(row.path);

@@ -113,11 +113,16 @@ int serve(std::uint16_t port, const std::string& first, const std::string& more)
   FakeNetwork network;
   FakeTest test;
   PlayedUpdates updates;
-  Api page{loop, stage, stage, keys, {token()}};
+  Api page{loop,
+           {.source = stage,
+            .judge = stage,
+            .keys = keys,
+            .network = &network,
+            .test = &test,
+            .updates = &updates,
+            .box = &box},
+           {token()}};
   furnish(box, loop.stamp_now());
-  page.serve(box);
-  page.serve(network, test);
-  page.serve(updates);
   auto server = intake::Server::start(loop, {.address = "127.0.0.1", .port = port, .interface = {}}, page);
   if (!server) return std::fprintf(stderr, "%s\n", server.error().c_str()), 1;
   std::printf("%d\n", (*server)->port());

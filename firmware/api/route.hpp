@@ -1,0 +1,88 @@
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <memory>
+#include <string>
+#include <string_view>
+#include <tuple>
+#include <vector>
+
+#include "intake/server.hpp"
+
+namespace adit::api {
+
+class BoxRoutes;
+class MapRoutes;
+class NetworkRoutes;
+class PageRoutes;
+class ReportRoutes;
+class RunRoutes;
+class SessionRoutes;
+class SettingsRoutes;
+class UpdateRoutes;
+
+/// What answers; null: not served here.
+using Handlers = std::tuple<PageRoutes*, SessionRoutes*, RunRoutes*, MapRoutes*, ReportRoutes*,
+                            SettingsRoutes*, NetworkRoutes*, UpdateRoutes*, BoxRoutes*>;
+
+/// Who may. A script that shows one of the tokens is an operator.
+enum class Who : std::uint8_t {
+  Open,             // anybody, from anywhere: nothing of the team's is in it
+  OwnPage,          // anybody, but no page from elsewhere
+  OperatorOrSetUp,  // an operator; at the first start, and while set-up is open, as OwnPage
+  Viewer,           // whoever is logged in
+  Operator,
+};
+
+/// The body that a route asks for.
+struct Body {
+  std::string_view type;     // Content-Type; "": none, and what comes is read away
+  std::size_t most = 0;      // bytes
+  bool as_it_comes = false;  // else the handler is called once it is whole
+};
+
+/// Who asks.
+struct Asker {
+  bool admitted = false;      // he has the role that the route asks for
+  std::uint64_t session = 0;  // 0: none
+};
+
+/// A request that its route lets through.
+struct Call {
+  const intake::RequestHead& head;
+  std::shared_ptr<intake::Responder> responder;  // for what answers later
+  std::shared_ptr<intake::Flow> flow;            // for what takes the body as it comes
+  Asker asker;
+  std::vector<std::string> parameters;  // of the path, in its order
+  std::string body;
+};
+
+/// A member of one of the Handlers.
+struct Handle {
+  bool (*served)(const Handlers& handlers);
+  /// Answers, now or later, or gives what takes the body.
+  std::unique_ptr<intake::BodySink> (*call)(const Handlers& handlers, Call& call);
+};
+
+/// What openapi.json's frame does not say of a route; lists are of words with a blank between them.
+struct Words {
+  std::string_view tag, summary;
+  std::string_view done;   // of the answer, where it is done
+  std::string_view gives;  // "202 " in front: its status. A schema, [schema], one of `answers`, or a type
+  std::string_view refusals = {};    // beside those that follow from who may and from the body
+  std::string_view takes = {};       // one of `bodies`
+  std::string_view parameters = {};  // of path and query, of `parameters`
+};
+
+/// A row of the table of routes.
+struct Route {
+  std::string_view method;  // HEAD goes with GET
+  std::string_view path;  // "/adit/reports/{number}/send": a parameter is of at least one letter, without '/'
+  Who who = Who::Operator;
+  Body body;
+  Handle handle;
+  Words words;
+};
+
+}  // namespace adit::api

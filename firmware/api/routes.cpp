@@ -1,0 +1,223 @@
+#include "api/routes.hpp"
+
+#include <optional>
+
+#include "api/box_routes.hpp"
+#include "api/handle.hpp"
+#include "api/map_routes.hpp"
+#include "api/network_routes.hpp"
+#include "api/page_routes.hpp"
+#include "api/report_routes.hpp"
+#include "api/run_routes.hpp"
+#include "api/session_routes.hpp"
+#include "api/settings_routes.hpp"
+#include "api/update_routes.hpp"
+
+namespace adit::api {
+namespace {
+
+using enum Who;
+
+template <std::size_t most>
+constexpr Body kJson{"application/json", most};
+/// No form of a page from elsewhere can send it without a CORS preflight, as with JSON.
+constexpr Body kBundle{"application/octet-stream", update::kLargestBundle, true};
+
+/// `refusals` and `parameters` as in Words.
+consteval Route get(std::string_view path, Who who, Handle handle, std::string_view tag,
+                    std::string_view summary, std::string_view done, std::string_view gives,
+                    std::string_view refusals = {}, std::string_view parameters = {}) {
+  return {"GET", path, who, {}, handle, {tag, summary, done, gives, refusals, {}, parameters}};
+}
+
+consteval Route post(std::string_view path, Who who, Body body, Handle handle, std::string_view takes,
+                     std::string_view tag, std::string_view summary, std::string_view done,
+                     std::string_view gives, std::string_view refusals = {},
+                     std::string_view parameters = {}) {
+  return {"POST", path, who, body, handle, {tag, summary, done, gives, refusals, takes, parameters}};
+}
+
+constexpr Route kRoutes[] = {
+    get("/", Open, by<&PageRoutes::file>(), "page", "The page.", "The page.", "text/html; charset=utf-8"),
+    get("/display", Open, by<&PageRoutes::file>(), "page", "The run for a wall: no controls.", "The page.",
+        "text/html; charset=utf-8"),
+    get("/setup", Open, by<&PageRoutes::file>(), "page", "What is set up.", "The page.",
+        "text/html; charset=utf-8"),
+    get("/system", Open, by<&PageRoutes::file>(), "page", "The page of the box itself.", "The page.",
+        "text/html; charset=utf-8"),
+    get("/metrics", Viewer, by<&BoxRoutes::metrics>(), "box",
+        "Metrics for Prometheus, in its text format 0.0.4.", "The metrics.",
+        "text/plain; version=0.0.4; charset=utf-8"),
+    get("/adit/openapi.json", Open, by<&PageRoutes::description>(), "box", "This description.",
+        "OpenAPI 3.1.", "Description"),
+    get("/adit/session", OwnPage, by<&SessionRoutes::session>(), "login",
+        "Who the one is that asks, for anybody.", "Who it is.", "WhoAsks"),
+    post("/adit/login", OwnPage, kJson<4096>, by<&SessionRoutes::log_in>(), "Login", "login",
+         "Shows a password; the cookie adit comes with the answer.", "Logged in.", "LoggedIn", "400 409 429"),
+    post("/adit/password", OperatorOrSetUp, kJson<4096>, by<&SessionRoutes::change_password>(), "NewPassword",
+         "login", "Sets a role's password, and ends the role's other sessions.", "It is set.", "PasswordSet",
+         "400 409 429"),
+    get("/adit/sessions", Operator, by<&SessionRoutes::sessions>(), "login",
+        "Who is logged in, the newest first.", "The sessions.", "[Session]"),
+    post("/adit/sessions/{session}/end", Operator, kJson<4096>, by<&SessionRoutes::end>(), "Nothing", "login",
+         "Ends a session.", "It is done.", "SessionNumber", "404", "session"),
+    get("/adit/run", Viewer, by<&RunRoutes::run>(), "run", "How all stands.", "The run.", "RunView"),
+    get("/adit/events", Viewer, by<&RunRoutes::events>(), "run",
+        "The same as server-sent events: at once, then as things change, at least every 2 s.",
+        "Each event's data is a RunView.", "text/event-stream", "503"),
+    get("/adit/markers", Viewer, by<&MapRoutes::markers>(), "map",
+        "The markers as the Command Post was last told of them.", "The markers.", "Markers", "400",
+        "since_version"),
+    get("/adit/tracks", Viewer, by<&MapRoutes::tracks>(), "map", "Where each robot was in this run.",
+        "The tracks.", "Tracks", "400", "since_time"),
+    get("/adit/map", Viewer, by<&MapRoutes::layers>(), "map", "The layers of the picture of the maps.",
+        "The layers.", "Map", "400", "since_map_version"),
+    get("/adit/map/{kind}/{robot}/{level}/{x}/{y}.png", Viewer, by<&MapRoutes::tile>(), "map",
+        "One tile; what is unknown is transparent.", "The tile.", "image/png", "400 404",
+        "kind robot level x y at low high"),
+    get("/adit/reports", Viewer, by<&ReportRoutes::list>(), "reports",
+        "Every report of every run, or of one, oldest first.", "The reports.", "[Report]", "400", "run"),
+    post("/adit/reports", Operator, kJson<65536>, by<&ReportRoutes::compose>(), "ComposedReport", "reports",
+         "A report that the operator composed.", "It is done.", "202 ReportNumber", "400 409 413"),
+    get("/adit/reports.csv", Viewer, by<&ReportRoutes::csv>(), "reports", "The same for spreadsheets.",
+        "RFC 4180.", "text/csv; charset=utf-8; header=present", "400", "run"),
+    get("/adit/reports/{number}", Viewer, by<&ReportRoutes::one>(), "reports",
+        "One report, with its history and the answer that is kept.", "The report.", "ReportDetail", "404",
+        "report"),
+    post("/adit/reports/{number}/withdraw", Operator, kJson<65536>,
+         by<&ReportRoutes::judge<Action::Withdraw>>(), "Nothing", "reports",
+         "Never send it: a held or waiting one.", "It is done.", "ReportNumber", "404 409", "report"),
+    post("/adit/reports/{number}/send", Operator, kJson<65536>, by<&ReportRoutes::judge<Action::Send>>(),
+         "Nothing", "reports",
+         "Send it, on the operator's word: a held or withdrawn one, one in doubt, a refused one.",
+         "It is done.", "ReportNumber", "404 409", "report"),
+    post("/adit/reports/{number}/hold", Operator, kJson<65536>, by<&ReportRoutes::judge<Action::Hold>>(),
+         "Nothing", "reports", "Keep it back until the operator's further word: a waiting one.",
+         "It is done.", "ReportNumber", "404 409", "report"),
+    post("/adit/reports/{number}/done", Operator, kJson<65536>, by<&ReportRoutes::judge<Action::CallDone>>(),
+         "Nothing", "reports", "Nothing is left to do about one in doubt.", "It is done.", "ReportNumber",
+         "404 409", "report"),
+    post("/adit/reports/{number}/resubmit", Operator, kJson<65536>,
+         by<&ReportRoutes::judge<Action::Resubmit>>(), "Nothing", "reports",
+         "The same once more, as a new report: a finished one.", "It is done.", "ReportNumber", "404 409",
+         "report"),
+    post("/adit/aside/{number}/send", Operator, kJson<1024>, by<&RunRoutes::aside<AsideAction::Send>>(),
+         "Nothing", "run",
+         "Sends what the Command Post would not take once more. 409 where something newer that says all of "
+         "it was sent since.",
+         "It is done.", "AsideNumber", "404 409", "aside"),
+    post("/adit/aside/{number}/discard", Operator, kJson<1024>, by<&RunRoutes::aside<AsideAction::Discard>>(),
+         "Nothing", "run", "Forgets what the Command Post would not take.", "It is done.", "AsideNumber",
+         "404 409", "aside"),
+    post("/adit/identify", Operator, kJson<1024>, by<&RunRoutes::identify>(), "Seconds", "run",
+         "All lights flash twice a second, to tell this box from others.", "They flash.", "IdentifyUntil",
+         "400"),
+    post("/adit/runs", Operator, kJson<65536>, by<&RunRoutes::begin_run>(), "Nothing", "run",
+         "A new run begins: what was not sent in the old one is held, but for what was posted in the last 10 "
+         "s.",
+         "It is done.", "RunNumber"),
+    get("/adit/log", Viewer, by<&BoxRoutes::log>(), "box",
+        "The last records of the log, oldest first: at most 2000.", "The records.", "Log", "400",
+        "log_level log_text log_since"),
+    get("/adit/log.txt", Viewer, by<&BoxRoutes::log_text>(), "box", "The same as a file.",
+        "A line for each record.", "text/plain; charset=utf-8", "400", "log_level log_text log_since"),
+    get("/adit/about", Viewer, by<&BoxRoutes::about>(), "box", "What the box and its program are made of.",
+        "About.", "About"),
+    get("/adit/bundle", Operator, by<&BoxRoutes::bundle>(), "box",
+        "All that helps to find a fault, without tokens and passwords: a .tar.gz of at most 10 MB.",
+        "The support bundle.", "application/gzip"),
+    get("/adit/settings", Viewer, by<&SettingsRoutes::shown>(), "settings",
+        "What the box runs with, and what a form for it needs.", "The settings.", "Setup"),
+    post("/adit/settings", Operator, kJson<262144>, by<&SettingsRoutes::save>(), "NewSettings", "settings",
+         "Saves and applies settings.", "They are saved, and about to be applied.", "Changes",
+         "400 409 413 503"),
+    post("/adit/settings/check", Operator, kJson<262144>, by<&SettingsRoutes::check>(), "SettingsToCheck",
+         "settings", "What is wrong with settings, and what they would change. Changes nothing.",
+         "Looked at.", "SettingsChecked", "400 413"),
+    get("/adit/settings/export", Viewer, by<&SettingsRoutes::exported>(), "settings",
+        "The settings file, for a download.", "The file. No token is in it.", "Settings"),
+    get("/adit/network", Viewer, by<&NetworkRoutes::shown>(), "network",
+        "The box's own addresses, and a change of them that waits.", "As they are.", "Network"),
+    post("/adit/network", Operator, kJson<4096>, by<&NetworkRoutes::change>(), "Numbers", "network",
+         "Changes them for now: taken back unless it is confirmed in time.", "It is tried.", "Network",
+         "409 413"),
+    post("/adit/network/check", Operator, kJson<4096>, by<&NetworkRoutes::check>(), "Numbers", "network",
+         "What is wrong with addresses, and what they would change. Changes nothing.", "Looked at.",
+         "NetworkChecked", "413"),
+    post("/adit/network/confirm", Operator, kJson<4096>, by<&NetworkRoutes::confirm>(), "Nothing", "network",
+         "The change stays. Only by the new address.", "It stays.", "Network", "409 413"),
+    post("/adit/network/back", Operator, kJson<4096>, by<&NetworkRoutes::take_back>(), "Nothing", "network",
+         "The change is taken back now.", "It is on its way back.", "Network", "409 413"),
+    get("/adit/update", Viewer, by<&UpdateRoutes::shown>(), "box",
+        "Which version runs, and how an update of the box stands.", "As it is.", "Update"),
+    post("/adit/update", Operator, kBundle, by<&UpdateRoutes::receive>(), "Bundle", "box",
+         "Takes an update, has it checked, and installed into the slot that does not run.",
+         "It is whole, and is being checked.", "Update", "409 413 503", "again"),
+    post("/adit/update/stick", Operator, kJson<1024>, by<&UpdateRoutes::install_from_stick>(), "FromStick",
+         "box", "Installs the update that is on the box's USB stick.", "It is being checked.", "Update",
+         "400 409 413 503"),
+    post("/adit/update/restart", Operator, kJson<1024>, by<&UpdateRoutes::restart>(), "Restart", "box",
+         "Starts the box anew, to use what was installed.", "It starts anew.", "Update", "400 409 413 503"),
+    get("/adit/test", Viewer, by<&NetworkRoutes::tested>(), "network", "The Test, step by step.",
+        "As far as it is.", "Test"),
+    post("/adit/test", Operator, kJson<4096>, by<&NetworkRoutes::begin_test>(), "Nothing", "network",
+         "Begins the Test. It spends no report.", "It has begun.", "Test", "409 413"),
+    post("/adit/tokens", Operator, kJson<262144>, by<&SettingsRoutes::set_token>(), "Token", "settings",
+         "Keeps and applies a token, or removes it.", "It is kept, and about to be applied.", "TokenSet",
+         "400 409 413 503"),
+    post("/adit/course", Operator, kJson<262144>, by<&SettingsRoutes::switch_course>(), "Course", "settings",
+         "Switches to a course's Command Post.", "It is about to be applied.", "Changes", "400 409 413 503"),
+    post("/adit/logout", Viewer, kJson<4096>, by<&SessionRoutes::log_out>(), "Nothing", "login",
+         "Ends the session of the one who asks.", "Nobody any more.", "LoggedOut"),
+    post("/adit/reset", Operator, kJson<4096>, by<&SessionRoutes::reset>(), "OwnPassword", "settings",
+         "Back to how the box was given. The reports stay.",
+         "Settings, tokens, passwords and sessions are gone.", "WasReset", "400 409 413 429 503"),
+};
+
+/// The parameters in `path`, where it is one of `pattern`.
+std::optional<std::vector<std::string>> parameters_in(std::string_view pattern, std::string_view path) {
+  std::vector<std::string> found;
+  while (true) {
+    const auto wanted = pattern.substr(0, pattern.find('/')), given = path.substr(0, path.find('/'));
+    if (wanted.starts_with('{')) {
+      const auto ending = wanted.substr(wanted.find('}') + 1);
+      if (!given.ends_with(ending) || given.size() == ending.size()) return std::nullopt;
+      found.emplace_back(given.substr(0, given.size() - ending.size()));
+    } else if (wanted != given) {
+      return std::nullopt;
+    }
+    const bool last = wanted.size() == pattern.size();
+    if (last != (given.size() == path.size())) return std::nullopt;
+    if (last) return found;
+    pattern.remove_prefix(wanted.size() + 1);
+    path.remove_prefix(given.size() + 1);
+  }
+}
+
+/// "GET, HEAD, POST": what reads comes first, as in the table.
+void allow(std::string& methods, std::string_view method) {
+  if (!methods.empty()) methods += ", ";
+  methods += method == "GET" ? kReading : method;
+}
+
+}  // namespace
+
+std::span<const Route> routes() {
+  return kRoutes;
+}
+
+Match match(const Handlers& handlers, const intake::RequestHead& head) {
+  Match match;
+  if (only_reads(head)) match.who = Who::Viewer;
+  for (const Route& route : kRoutes) {
+    auto parameters = parameters_in(route.path, head.path());
+    if (!parameters || !route.handle.served(handlers)) continue;
+    allow(match.allowed, route.method);
+    const bool fits = route.method == "GET" ? only_reads(head) : route.method == head.method();
+    if (fits) return {&route, std::move(*parameters), {}, route.who};
+    if (route.who < Who::OperatorOrSetUp) match.who = route.who;  // who may know it, may know that
+  }
+  return match;
+}
+
+}  // namespace adit::api

@@ -1,0 +1,25 @@
+#pragma once
+
+#include <span>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "api/route.hpp"
+
+namespace adit::api {
+
+/// The one table of routes: README.md has them in words, /adit/openapi.json for programs. Beside it are the
+/// page's files alone, which are for anybody.
+std::span<const Route> routes();
+
+/// What the table says of a request.
+struct Match {
+  const Route* route = nullptr;         // null: no such path, or another method
+  std::vector<std::string> parameters;  // of the path, in its order
+  std::string allowed;                  // of the path, as in RFC 9110 10.2.1: "GET, HEAD"; "": no such path
+  Who who = Who::Operator;              // may ask; where there is no route, and be told so
+};
+Match match(const Handlers& handlers, const intake::RequestHead& head);
+
+}  // namespace adit::api

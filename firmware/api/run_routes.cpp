@@ -1,0 +1,40 @@
+#include "api/run_routes.hpp"
+
+#include "api/as_json.hpp"
+#include "codec/body_decoder.hpp"
+#include "codec/field.hpp"
+#include "codec/json.hpp"
+
+namespace adit::api {
+
+intake::Answer RunRoutes::run() const {
+  return fresh("application/json", write_run_view(source_.view()));
+}
+
+void RunRoutes::events(const Call& call) {
+  live_.open(*call.responder, entrance_.may_stay(call.asker));
+}
+
+intake::Answer RunRoutes::begin_run() {
+  const std::int64_t number = operator_.begin_run();
+  live_.changed();
+  return object({{"run", json(number)}});
+}
+
+intake::Answer RunRoutes::aside(std::uint64_t number, AsideAction action) {
+  const auto done = operator_.aside(number, action);
+  live_.changed();
+  return done ? object({{"aside", json(number)}}) : refusal(icd::Status::Conflict, done.error());
+}
+
+intake::Answer RunRoutes::identify(const std::string& body) {
+  const auto document = codec::decode({}, codec::Split::Nothing, body);
+  if (!document) return refused(document.error());
+  codec::Reading reading;
+  const codec::Field root(document->root, reading);
+  const auto seconds = reading.outcome(root.member("seconds").number(kLeast, kMost));
+  if (!seconds) return refused(seconds.error());
+  return object({{"identify_until", json(operator_.identify(*seconds))}});
+}
+
+}  // namespace adit::api

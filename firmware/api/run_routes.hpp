@@ -1,0 +1,42 @@
+#pragma once
+
+#include <cstdint>
+#include <string>
+
+#include "api/answers.hpp"
+#include "api/entrance.hpp"
+#include "api/live.hpp"
+#include "api/source.hpp"
+
+namespace adit::api {
+
+/// How all stands, and the operator's word on what is no report.
+class RunRoutes {
+ public:
+  static constexpr double kLeast = 1, kMost = 60;  // seconds that the lights flash
+
+  /// All outlive this.
+  RunRoutes(const Source& source, Operator& judge, Live& live, Entrance& entrance)
+      : source_(source), operator_(judge), live_(live), entrance_(entrance) {}
+
+  intake::Answer run() const;
+  void events(const Call& call);
+  intake::Answer begin_run();
+  /// On a message that the Command Post would not take.
+  template <AsideAction action>
+  intake::Answer aside(std::uint64_t number) {
+    return aside(number, action);
+  }
+  /// The box's lights flash for some seconds, so that it can be told from others.
+  intake::Answer identify(const std::string& body);
+
+ private:
+  intake::Answer aside(std::uint64_t number, AsideAction action);
+
+  const Source& source_;
+  Operator& operator_;
+  Live& live_;
+  Entrance& entrance_;
+};
+
+}  // namespace adit::api

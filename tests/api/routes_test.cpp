@@ -1,0 +1,250 @@
+#include "api/routes.hpp"
+
+#include <gmock/gmock.h>
+
+#include <algorithm>
+#include <nlohmann/json.hpp>
+#include <regex>
+#include <set>
+
+#include "api/description.hpp"
+#include "api/on_page.hpp"
+
+namespace adit::api {
+namespace {
+
+using nlohmann::json;
+using testing::HasSubstr;
+using Status = icd::Status;
+using Headers = std::vector<intake::Header>;
+
+/// A path of the route's pattern.
+std::string path_of(const Route& route) {
+  static const std::regex kind(R"(\{kind\})"), any(R"(\{\w+\})");
+  return std::regex_replace(std::regex_replace(std::string(route.path), kind, "grid"), any, "1");
+}
+
+std::string name_of(const Route& route) {
+  return std::string(route.method) + ' ' + std::string(route.path);
+}
+
+/// A page, asked by somebody.
+struct Asked : Page {
+  /// Who is logged in, as his browser shows it.
+  Headers logged_in(const std::string& password, bool with_csrf = true) {
+    const auto answer = request("POST", "/adit/login", {{"Content-Type", "application/json"}},
+                                json{{"password", password}}.dump());
+    const std::string cookie = header(answer, "Set-Cookie");
+    Headers shown{{"Cookie", cookie.substr(0, cookie.find(';'))}, {"Origin", "http://10.0.0.1:8000"}};
+    if (with_csrf) shown.push_back({"Adit-CSRF", json::parse(answer.body)["csrf"]});
+    return shown;
+  }
+  /// Of the answer; 200 to what is answered by a stream.
+  int status_of(const Route& route, Headers headers, const std::string& body = "") {
+    headers.push_back({"Content-Type", std::string(route.body.type)});
+    send(open(std::string(route.method), path_of(route), std::move(headers), body.size()).get(), body);
+    return responder->answered ? static_cast<int>(responder->answered->status) : 200;
+  }
+};
+
+bool is_for(const Route& route, Who least) {
+  return route.who >= least;
+}
+
+/// Each who asks, and what he is told where the door is shut: 0 where it is open.
+struct Visitor {
+  const char* name;
+  Headers (*shows)(Asked&);
+  int (*told)(const Route&);
+};
+constexpr const char *kOperator = "correct horse", *kViewer = "look, do not touch";
+int only_anybody(const Route& route) {
+  return is_for(route, Who::OperatorOrSetUp) ? 401 : 0;
+}
+int only_viewers(const Route& route) {
+  const bool for_operators = route.who == Who::Operator || route.who == Who::OperatorOrSetUp;
+  return for_operators ? 403 : 0;
+}
+int nothing_by_cookie_alone(const Route& route) {
+  return is_for(route, Who::OperatorOrSetUp) && route.method == "POST" ? 403 : 0;
+}
+int only_what_is_open(const Route& route) {
+  return route.who == Who::Open ? 0 : 403;
+}
+const Visitor kVisitors[] = {
+    {"nobody", [](Asked&) { return Headers{}; }, only_anybody},
+    {"another token", [](Asked&) { return Headers{{"Authorization", "Bearer team-1x"}}; }, only_anybody},
+    {"a viewer", [](Asked& page) { return page.logged_in(kViewer); }, only_viewers},
+    {"a viewer without CSRF", [](Asked& page) { return page.logged_in(kViewer, false); },
+     [](const Route& route) { return std::max(only_viewers(route), nothing_by_cookie_alone(route)); }},
+    {"an operator", [](Asked& page) { return page.logged_in(kOperator); }, [](const Route&) { return 0; }},
+    {"an operator without CSRF", [](Asked& page) { return page.logged_in(kOperator, false); },
+     nothing_by_cookie_alone},
+    {"an operator with another session's CSRF",
+     [](Asked& page) {
+       auto shown = page.logged_in(kOperator, false);
+       shown.push_back(page.logged_in(kOperator).back());
+       return shown;
+     },
+     nothing_by_cookie_alone},
+    {"a script", [](Asked&) { return Headers{kByToken}; }, [](const Route&) { return 0; }},
+    {"a page from elsewhere",
+     [](Asked& page) {
+       auto shown = page.logged_in(kOperator);
+       shown[1].value = "http://evil.example";
+       return shown;
+     },
+     only_what_is_open},
+    {"a page by a name of its own for this address",
+     [](Asked& page) {
+       auto shown = page.logged_in(kOperator);
+       shown[1].value = "http://evil.example:8000";
+       shown.push_back({"Host", "evil.example:8000"});
+       return shown;
+     },
+     only_what_is_open},
+};
+
+TEST(Routes, LetInWhomTheTableSays) {
+  for (const Visitor& visitor : kVisitors) {
+    for (const Route& route : routes()) {
+      Asked page;
+      const int status = page.status_of(route, visitor.shows(page)), told = visitor.told(route);
+      const bool shut = status == 401 || status == 403;
+      EXPECT_EQ(shut ? status : 0, told) << visitor.name << ", " << name_of(route);
+      if (status != 401) continue;
+      EXPECT_EQ(header(*page.responder->answered, "WWW-Authenticate"), "Bearer");
+    }
+  }
+}
+
+TEST(Routes, DoNothingForWhomTheyDoNotLetIn) {
+  for (const Visitor& visitor : kVisitors) {
+    for (const Route& route : routes()) {
+      if (visitor.told(route) == 0) continue;
+      Asked page;
+      page.status_of(route, visitor.shows(page), R"({"seconds":1,"type":"Drill","x":1,"y":2,"z":3})");
+      EXPECT_FALSE(page.took_body && page.responder->answered->status == Status::Ok);
+      EXPECT_TRUE(page.judge.judged.empty() && page.judge.reported.empty() && page.judge.set_aside.empty());
+      EXPECT_EQ(page.judge.run, 1);
+      EXPECT_EQ(page.judge.identified, 0);
+      EXPECT_EQ(page.setup.saves + page.setup.resets + page.network.taken_back, 0);
+      EXPECT_TRUE(page.network.wanted.empty() && page.network.confirmed.empty());
+      EXPECT_FALSE(page.test.view.running);
+      EXPECT_TRUE(page.updates.sticks.empty() && page.updates.restarts.empty());
+    }
+  }
+}
+
+TEST(Routes, OpenThePasswordAloneToAnybodyWhileSetUpIsOpenAndAtTheFirstStart) {
+  for (const bool first_start : {false, true}) {
+    for (const Route& route : routes()) {
+      Asked page;
+      page.keys.set_up = !first_start;
+      if (first_start) page.keys.operator_.reset();
+      const int status = page.status_of(route, {});
+      EXPECT_EQ(status == 401, is_for(route, Who::Viewer)) << name_of(route);
+      EXPECT_EQ(page.status_of(route, {{"Origin", "http://evil.example"}}),
+                route.who == Who::Open ? status : 403);
+    }
+  }
+}
+
+TEST(Routes, TakeNoOtherMethodAndNameThoseThereAre) {
+  for (const Route& route : routes()) {
+    std::string allowed;
+    for (const Route& each : routes()) {
+      if (each.path == route.path) allowed += (allowed.empty() ? "" : ", ") + std::string(each.method);
+    }
+    if (allowed.starts_with("GET")) allowed.insert(3, ", HEAD");
+    Asked page;
+    for (const char* method : {"DELETE", "PUT", "OPTIONS"}) {
+      const auto answer = page.request(method, path_of(route), {kByToken});
+      EXPECT_EQ(answer.status, Status::MethodNotAllowed) << method << ' ' << route.path;
+      EXPECT_EQ(header(answer, "Allow"), allowed) << route.path;
+      const auto first = std::string(allowed.substr(0, allowed.find(',')));
+      EXPECT_EQ(json::parse(answer.body), "expected " + first);
+      for (const auto& [name, value] : answer.headers) EXPECT_FALSE(name.starts_with("Access-Control"));
+    }
+    const bool for_anybody = route.who < Who::OperatorOrSetUp;
+    EXPECT_EQ(page.request("DELETE", path_of(route), {}).status,
+              for_anybody ? Status::MethodNotAllowed : Status::Unauthorized)
+        << route.path;
+  }
+}
+
+TEST(Routes, TakeABodyOfTheirTypeAndNotALongerOne) {
+  for (const Route& route : routes()) {
+    if (route.method == "GET") continue;
+    Asked page;
+    const std::string path = path_of(route);
+    // What a form or a script of another web page can send without being asked (Fetch, CORS-safelisted).
+    for (const char* type :
+         {"", "text/plain", "application/x-www-form-urlencoded", "multipart/form-data; boundary=x"}) {
+      const auto answer = page.request("POST", path, {kByToken, {"Content-Type", type}}, "{}");
+      EXPECT_EQ(answer.status, Status::UnprocessableEntity) << path;
+      EXPECT_EQ(json::parse(answer.body), "Content-Type: expected " + std::string(route.body.type));
+    }
+    const Headers good{kByToken, {"Content-Type", std::string(route.body.type)}};
+    EXPECT_FALSE(page.open("POST", path, good, route.body.most + 1)) << path;
+    EXPECT_EQ(page.responder->answered->status, Status::ContentTooLarge) << path;
+    EXPECT_THAT(page.responder->answered->body,
+                HasSubstr(" of at most " + std::to_string(route.body.most) + " bytes"));
+    const auto sink = page.open("POST", path, good, route.body.most);
+    EXPECT_TRUE(sink) << path << ": it is to come";
+    if (route.body.most > 1u << 20) continue;
+    Page::send(page.open("POST", path, good, std::nullopt).get(), std::string(route.body.most + 1, ' '));
+    EXPECT_EQ(page.responder->answered->status, Status::ContentTooLarge) << path;
+  }
+}
+
+TEST(Routes, AreBehindTheLoginWhereThereAreNone) {
+  Asked page;
+  for (const char* path : {"/adit/", "/adit/nothing", "/adit/reports/7/history"}) {
+    EXPECT_EQ(page.request("GET", path, {}).status, Status::Unauthorized) << path;
+    EXPECT_EQ(page.get(path).status, Status::NotFound) << path;
+    EXPECT_EQ(page.request("POST", path, page.logged_in(kViewer)).status, Status::Forbidden) << path;
+  }
+}
+
+/// All the references in a document.
+void collect(const json& value, std::set<std::string>& references) {
+  if (value.is_object() && value.contains("$ref")) references.insert(value["$ref"]);
+  for (const json& each : value) {
+    if (each.is_structured()) collect(each, references);
+  }
+}
+
+TEST(Description, HasEachRouteWithTheParametersOfItsPath) {
+  const json whole = json::parse(write_description(routes()));
+  EXPECT_EQ(whole["openapi"], "3.1.0");
+  for (const Route& route : routes()) {
+    const json operation = whole["paths"][std::string(route.path)][route.method == "GET" ? "get" : "post"];
+    EXPECT_EQ(operation["summary"], std::string(route.words.summary));
+    std::string named;
+    for (const json& each : operation.value("parameters", json::array())) {
+      if (each["in"] == "path") named += "{" + each["name"].get<std::string>() + "}";
+    }
+    static const std::regex between(R"((^|\})[^{}]*(\{|$))");
+    const std::string braces = std::regex_replace(std::string(route.path), between, "$1$2");
+    EXPECT_EQ(named, braces) << route.path;
+  }
+  std::set<std::string> references;
+  collect(whole, references);
+  EXPECT_GT(references.size(), 20u);
+  for (const std::string& each : references) {
+    EXPECT_TRUE(whole.contains(json::json_pointer(each.substr(1)))) << each;
+  }
+}
+
+TEST(Description, IsForAnybodyAndSentOnce) {
+  Asked page;
+  const auto answer = page.request("GET", "/adit/openapi.json", {});
+  EXPECT_EQ(answer.content_type, "application/json");
+  EXPECT_EQ(answer.body, write_description(routes()));
+  const auto again = page.request("GET", "/adit/openapi.json", {{"If-None-Match", header(answer, "ETag")}});
+  EXPECT_EQ(static_cast<int>(again.status), 304);
+}
+
+}  // namespace
+}  // namespace adit::api

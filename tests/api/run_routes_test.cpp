@@ -1,0 +1,70 @@
+#include "api/run_routes.hpp"
+
+#include <gmock/gmock.h>
+
+#include <nlohmann/json.hpp>
+
+#include "api/on_page.hpp"
+
+namespace adit::api {
+namespace {
+
+using testing::ElementsAre;
+using testing::HasSubstr;
+using testing::Pair;
+
+class RunRoutesTest : public OnPage {
+ protected:
+  intake::Answer identify(const std::string& body) { return post("/adit/identify", body); }
+};
+
+TEST_F(RunRoutesTest, PassTheOperatorsWordOnWhatIsSetAside) {
+  const auto sent = post("/adit/aside/7/send");
+  EXPECT_EQ(sent.status, icd::Status::Ok);
+  EXPECT_EQ(sent.body, R"({"aside":7})");
+  EXPECT_EQ(post("/adit/aside/8/discard").status, icd::Status::Ok);
+  EXPECT_THAT(judge.set_aside, ElementsAre(Pair(7, AsideAction::Send), Pair(8, AsideAction::Discard)));
+}
+
+TEST_F(RunRoutesTest, SayWhyNothingIsDoneWithWhatIsSetAside) {
+  judge.aside_trouble = "something newer was sent since";
+  const auto answer = post("/adit/aside/7/send");
+  EXPECT_EQ(answer.status, icd::Status::Conflict);
+  EXPECT_EQ(answer.body, R"("something newer was sent since")");
+}
+
+TEST_F(RunRoutesTest, KnowNothingSetAsideByWhatIsNoNumber) {
+  for (const char* const wrong : {"/adit/aside/", "/adit/aside/7", "/adit/aside/x/send", "/adit/aside/7/hold",
+                                  "/adit/aside/-1/send", "/adit/aside/7/send/more"}) {
+    EXPECT_EQ(post(wrong).status, icd::Status::NotFound) << wrong;
+  }
+  EXPECT_TRUE(judge.set_aside.empty());
+}
+
+TEST_F(RunRoutesTest, MakeTheLightsBlinkAndSayUntilWhen) {
+  const auto answer = identify(R"({"seconds": 12.5})");
+  EXPECT_EQ(answer.status, icd::Status::Ok);
+  EXPECT_EQ(nlohmann::json::parse(answer.body)["identify_until"], 1012.5);
+  EXPECT_EQ(judge.identified, 12.5);
+}
+
+TEST_F(RunRoutesTest, NameTheFieldOfABlinkThatIsWrong) {
+  for (const char* wrong : {R"({"seconds": 0})", R"({"seconds": 60.5})", R"({"seconds": -1})",
+                            R"({"seconds": "10"})", R"({"seconds": null})", "{}"}) {
+    const auto answer = identify(wrong);
+    EXPECT_EQ(answer.status, icd::Status::UnprocessableEntity) << wrong;
+    EXPECT_THAT(answer.body, HasSubstr("seconds: ")) << wrong;
+  }
+  EXPECT_EQ(identify("").status, icd::Status::BadRequest);
+  EXPECT_EQ(identify("seconds=10").status, icd::Status::BadRequest);
+  EXPECT_EQ(identify("[10]").status, icd::Status::UnprocessableEntity);
+  EXPECT_EQ(judge.identified, 0);
+}
+
+TEST_F(RunRoutesTest, DeclareANewRun) {
+  EXPECT_EQ(post("/adit/runs").body, "{\"run\":2}");
+  EXPECT_EQ(judge.run, 2);
+}
+
+}  // namespace
+}  // namespace adit::api

@@ -10,20 +10,20 @@
 
 namespace adit::admin {
 
-FactoryReset::FactoryReset(const Store& store, std::string state_folder, std::string runtime_folder)
+FactoryReset::FactoryReset(Store& store, std::string state_folder, std::string runtime_folder)
     : store_(store), state_(std::move(state_folder)), runtime_(std::move(runtime_folder)) {}
 
-std::expected<void, std::string> FactoryReset::begin() const {
+std::expected<void, std::string> FactoryReset::begin() {
   return host::write_file(begun(), "", host::kOursAlone);
 }
 
-std::expected<bool, std::string> FactoryReset::finish() const {
+std::expected<bool, std::string> FactoryReset::finish() {
   std::error_code unknown;
   const bool is_begun = std::filesystem::exists(begun(), unknown);
   if (unknown) return std::unexpected(begun() + ": " + unknown.message());
   if (!is_begun) return false;
   if (const auto done = store_.forget(); !done) return std::unexpected(done.error());
-  const NetworkRequests network(state_, "");
+  NetworkRequests network(state_, "");
   if (const auto asked = network.ask(network::Forget{NetworkRequests::draw_nonce()}); !asked)
     return std::unexpected(asked.error());
   for (const char* kept : {"journal", "waiting", "aside"}) {

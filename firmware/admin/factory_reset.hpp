@@ -12,19 +12,19 @@ namespace adit::admin {
 class FactoryReset {
  public:
   /// `store` outlives this.
-  FactoryReset(const Store& store, std::string state_folder, std::string runtime_folder);
+  FactoryReset(Store& store, std::string state_folder, std::string runtime_folder);
 
   /// An error: nothing is forgotten.
-  std::expected<void, std::string> begin() const;
+  std::expected<void, std::string> begin();
   /// Forgets settings, tokens, passwords, the code, who is logged in, what waits or is set aside and, by
   /// adit-network, the box's addresses, where that was begun: then true. Called while nothing else uses them.
   /// An error says what is left, or why it is not known whether it was begun: then nothing is forgotten.
-  std::expected<bool, std::string> finish() const;
+  std::expected<bool, std::string> finish();
 
  private:
   std::string begun() const { return state_ + "/reset"; }
 
-  const Store& store_;
+  Store& store_;
   std::string state_, runtime_;
 };
 

@@ -20,18 +20,28 @@ void NetworkChange::refresh() const {
   if (read_at_ && now < *read_at_ + kFresh) return;
   read_at_ = now;
   status_ = requests_.status();
-  if (!asked_) return;
+}
+
+bool NetworkChange::is_asked() const {
+  if (!asked_) return false;
   const std::string& nonce = asked_->wanted.nonce;
-  const bool seen =
-      status_ && ((status_->pending && status_->pending->nonce == nonce) || status_->ended_nonce == nonce);
-  if (seen) {
-    asked_.reset();
-  } else if (now >= asked_->at + kTakenUpWithin) {
-    requests_.forget_wanted();
-    asked_.reset();
-    not_taken_up_ = "adit-network did not take it up: see journalctl -u adit-network";
-    host::log(host::Level::Error, "a change of the network was not taken up by adit-network");
-  }
+  return !status_ ||
+         ((!status_->pending || status_->pending->nonce != nonce) && status_->ended_nonce != nonce);
+}
+
+void NetworkChange::note_what_became_of_it() {
+  if (!is_asked()) return asked_.reset();
+  if (loop_.now() < asked_->at + kTakenUpWithin) return;
+  requests_.forget_wanted();
+  asked_.reset();
+  not_taken_up_ = "adit-network did not take it up: see journalctl -u adit-network";
+  host::log(host::Level::Error, "a change of the network was not taken up by adit-network");
+}
+
+void NetworkChange::every_second() {
+  refresh();
+  note_what_became_of_it();
+  lead_to_endpoints();
 }
 
 std::string NetworkChange::hindrance() const {
@@ -52,7 +62,7 @@ std::string NetworkChange::hindrance() const {
 std::optional<network::Pending> NetworkChange::pending() const {
   refresh();
   if (status_ && status_->pending) return status_->pending;
-  if (!asked_) return std::nullopt;
+  if (!is_asked()) return std::nullopt;
   const network::Wanted& wanted = asked_->wanted;
   return network::Pending{wanted.nonce, wanted.numbers, asked_->at + wanted.confirm_within,
                           wanted.confirm_within};
@@ -133,7 +143,8 @@ icd::Checked<void> NetworkChange::check_confirmable(const network::Numbers& want
   const bool fixed = wanted.mode == network::Mode::Static;
   const auto kept = status_ ? status_->kept : std::nullopt;
   const bool stays = kept && kept->mode == wanted.mode && kept->team.address == wanted.team.address;
-  if ((stays || !fixed) && asked_) return conflict("the change is not made yet: try again in a few seconds");
+  if ((stays || !fixed) && is_asked())
+    return conflict("the change is not made yet: try again in a few seconds");
   const bool new_one = fixed ? local == settings::ipv4_text(wanted.team.address)
                              : !kept || local != settings::ipv4_text(kept->team.address);
   if (stays || new_one) return {};
@@ -142,7 +153,6 @@ icd::Checked<void> NetworkChange::check_confirmable(const network::Numbers& want
 }
 
 void NetworkChange::lead_to_endpoints() {
-  refresh();
   if (!hindrance().empty()) return;
   network::Endpoints all;
   const auto add = [&all](const settings::Address& address) {

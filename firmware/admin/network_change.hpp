@@ -22,7 +22,7 @@ class NetworkChange final : public api::Network {
   static constexpr std::chrono::seconds kTellAgain{10};
 
   /// All outlive this.
-  NetworkChange(loop::Loop& loop, const settings::Settings& settings, const NetworkRequests& requests)
+  NetworkChange(loop::Loop& loop, const settings::Settings& settings, NetworkRequests& requests)
       : loop_(loop), settings_(settings), requests_(requests) {}
 
   api::NetworkView network() const override;
@@ -31,8 +31,9 @@ class NetworkChange final : public api::Network {
   icd::Checked<void> confirm(const std::string& local) override;
   icd::Checked<void> take_back() override;
 
-  /// Sees to it that there are ways to the endpoints of the settings, and of all courses; called each second.
-  void lead_to_endpoints();
+  /// Called each second. Takes note of what became of the last change, and sees to it that there are ways to
+  /// the endpoints of the settings, and of all courses.
+  void every_second();
   /// Who answers for them: the first endpoint, or the gateway to it; "": there is no way to it.
   std::string next_hop() const;
 
@@ -45,7 +46,12 @@ class NetworkChange final : public api::Network {
     network::Wanted wanted;
     loop::Instant at;
   };
+  /// Reads the status anew where what is known of it is old.
   void refresh() const;
+  /// Whether what was asked for is not in the status yet, and may still be.
+  bool is_asked() const;
+  void note_what_became_of_it();
+  void lead_to_endpoints();
   /// Why nothing can be changed here; "" where it can.
   std::string hindrance() const;
   std::optional<network::Pending> pending() const;
@@ -56,12 +62,12 @@ class NetworkChange final : public api::Network {
 
   loop::Loop& loop_;
   const settings::Settings& settings_;
-  const NetworkRequests& requests_;
+  NetworkRequests& requests_;
   mutable std::expected<network::Status, std::string> status_;
   mutable std::optional<loop::Instant> read_at_;
-  mutable std::optional<Asked> asked_;
+  std::optional<Asked> asked_;            // its last word is had by is_asked()
   std::optional<loop::Instant> told_at_;  // where the endpoints are
-  mutable std::string not_taken_up_;      // why the last change came to nothing
+  std::string not_taken_up_;              // why the last change came to nothing
 };
 
 }  // namespace adit::admin

@@ -22,24 +22,24 @@ std::optional<network::Probed> NetworkRequests::probed() const {
   return probed ? std::optional(std::move(*probed)) : std::nullopt;
 }
 
-std::expected<void, std::string> NetworkRequests::ask(const network::Wanted& wanted) const {
+std::expected<void, std::string> NetworkRequests::ask(const network::Wanted& wanted) {
   return host::write_file(state_ + '/' + network::kWantedFile, network::write(wanted), host::kOursAlone);
 }
-std::expected<void, std::string> NetworkRequests::ask(const network::Word& word) const {
+std::expected<void, std::string> NetworkRequests::ask(const network::Word& word) {
   return host::write_file(state_ + '/' + network::kWordFile, network::write(word), host::kOursAlone);
 }
-std::expected<void, std::string> NetworkRequests::ask(const network::Probe& probe) const {
+std::expected<void, std::string> NetworkRequests::ask(const network::Probe& probe) {
   return host::write_file(state_ + '/' + network::kProbeFile, network::write(probe), host::kOursAlone);
 }
-std::expected<void, std::string> NetworkRequests::ask(const network::Endpoints& endpoints) const {
+std::expected<void, std::string> NetworkRequests::ask(const network::Endpoints& endpoints) {
   return host::write_file(state_ + '/' + network::kEndpointsFile, network::write(endpoints),
                           host::kOursAlone);
 }
-std::expected<void, std::string> NetworkRequests::ask(const network::Forget& forget) const {
+std::expected<void, std::string> NetworkRequests::ask(const network::Forget& forget) {
   return host::write_file(state_ + '/' + network::kForgetFile, network::write(forget), host::kOursAlone);
 }
 
-void NetworkRequests::forget_wanted() const {
+void NetworkRequests::forget_wanted() {
   unlink((state_ + '/' + network::kWantedFile).c_str());
 }
 

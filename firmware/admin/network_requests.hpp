@@ -20,13 +20,13 @@ class NetworkRequests {
   /// The last answer to a Probe, if any.
   std::optional<network::Probed> probed() const;
 
-  std::expected<void, std::string> ask(const network::Wanted& wanted) const;
-  std::expected<void, std::string> ask(const network::Word& word) const;
-  std::expected<void, std::string> ask(const network::Probe& probe) const;
-  std::expected<void, std::string> ask(const network::Endpoints& endpoints) const;
-  std::expected<void, std::string> ask(const network::Forget& forget) const;
+  std::expected<void, std::string> ask(const network::Wanted& wanted);
+  std::expected<void, std::string> ask(const network::Word& word);
+  std::expected<void, std::string> ask(const network::Probe& probe);
+  std::expected<void, std::string> ask(const network::Endpoints& endpoints);
+  std::expected<void, std::string> ask(const network::Forget& forget);
   /// It is not to be done any more, where it has not been begun.
-  void forget_wanted() const;
+  void forget_wanted();
 
   /// Never the same twice.
   static std::string draw_nonce();

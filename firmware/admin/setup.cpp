@@ -37,7 +37,7 @@ std::optional<icd::BearerToken> token_for(const std::string& endpoint, const Set
   return own ? std::move(own) : secrets.token(endpoint);
 }
 
-Setup::Setup(const Store& store, const FactoryReset& reset, const Store::Loaded& loaded, std::string trouble,
+Setup::Setup(Store& store, FactoryReset& reset, const Store::Loaded& loaded, std::string trouble,
              Meaning for_reports, std::function<void()> apply, std::function<void()> anew)
     : store_(store),
       reset_(reset),

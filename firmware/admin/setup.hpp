@@ -19,7 +19,7 @@ class Setup final : public api::Setup {
 
   /// `apply` is called once a change is on the disk, and sees to it that runs_with() is told what came of it;
   /// `anew` ends the gateway, so that another begins. `store` and `reset` outlive this.
-  Setup(const Store& store, const FactoryReset& reset, const Store::Loaded& loaded, std::string trouble,
+  Setup(Store& store, FactoryReset& reset, const Store::Loaded& loaded, std::string trouble,
         Meaning for_reports, std::function<void()> apply, std::function<void()> anew);
 
   /// A change was applied, or taken back: the gateway runs with these. `trouble`: see api::Setup.
@@ -41,8 +41,8 @@ class Setup final : public api::Setup {
   icd::Checked<void> applied(const std::expected<void, std::string>& written, const char* what,
                              const std::function<void()>& apply);
 
-  const Store& store_;
-  const FactoryReset& reset_;
+  Store& store_;
+  FactoryReset& reset_;
   settings::Settings settings_;
   bool saved_ = false;
   std::string trouble_;

@@ -52,7 +52,7 @@ Store::Store(std::string given_settings, std::string given_secrets, std::string 
       given_secrets_(std::move(given_secrets)),
       state_(std::move(state_folder)) {}
 
-std::expected<Store::Loaded, std::string> Store::load() const {
+std::expected<Store::Loaded, std::string> Store::load() {
   Loaded loaded;
   auto settings =
       host::may_exist(file()) ? read_saved(file(), loaded.trouble) : read_settings(given_settings_);
@@ -79,7 +79,7 @@ std::expected<Store::Loaded, std::string> Store::load() const {
 }
 
 /// An empty file of settings before stands for none.
-std::expected<void, std::string> Store::save(const settings::Settings& settings) const {
+std::expected<void, std::string> Store::save(const settings::Settings& settings) {
   if (!host::may_exist(file_before())) {
     const auto before =
         host::may_exist(file()) ? host::read_file(file()) : std::expected<std::string, std::string>("");
@@ -89,7 +89,7 @@ std::expected<void, std::string> Store::save(const settings::Settings& settings)
   return host::write_file(file(), settings::file_of(settings), host::kOursAlone);
 }
 
-std::expected<void, std::string> Store::make_secrets_folder() const {
+std::expected<void, std::string> Store::make_secrets_folder() {
   std::error_code error;
   fs::create_directories(secrets_folder(), error);
   if (!error) fs::permissions(secrets_folder(), fs::perms::owner_all, error);
@@ -98,13 +98,13 @@ std::expected<void, std::string> Store::make_secrets_folder() const {
 }
 
 std::expected<void, std::string> Store::save_token(const std::string& name,
-                                                   const std::optional<icd::BearerToken>& token) const {
+                                                   const std::optional<icd::BearerToken>& token) {
   if (!token) return host::remove_file(token_file(name));
   if (auto made = make_secrets_folder(); !made) return made;
   return host::write_file(token_file(name), token->reveal() + "\n", host::kOursAlone);
 }
 
-void Store::settle(const settings::Settings& settings) const {
+void Store::settle(const settings::Settings& settings) {
   const std::vector<std::string> names = token_names(settings);
   const auto files = host::names_in(secrets_folder());
   if (!files)
@@ -118,7 +118,7 @@ void Store::settle(const settings::Settings& settings) const {
   }
 }
 
-bool Store::take_back() const {
+bool Store::take_back() {
   const auto before = host::read_file(file_before());
   if (!before) return false;
   if (before->empty()) {
@@ -130,7 +130,7 @@ bool Store::take_back() const {
   return host::remove_file(file_before()).has_value();
 }
 
-std::expected<void, std::string> Store::forget() const {
+std::expected<void, std::string> Store::forget() {
   std::error_code error;
   for (const std::string& folder : {secrets_folder(), secrets_folder() + kDamaged}) {
     fs::remove_all(folder, error);

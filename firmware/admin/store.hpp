@@ -30,17 +30,17 @@ class Store {
     std::string trouble;  // why saved settings or tokens do not count, though there are any
   };
   /// What counts. An error: neither can be used. Damaged saved settings or tokens are set aside.
-  std::expected<Loaded, std::string> load() const;
+  std::expected<Loaded, std::string> load();
 
-  std::expected<void, std::string> save(const settings::Settings& settings) const;
+  std::expected<void, std::string> save(const settings::Settings& settings);
   std::expected<void, std::string> save_token(const std::string& name,
-                                              const std::optional<icd::BearerToken>& token) const;
+                                              const std::optional<icd::BearerToken>& token);
   /// What counts works. Tokens of courses that there are no more are removed: nobody could see them.
-  void settle(const settings::Settings& settings) const;
+  void settle(const settings::Settings& settings);
   /// False: nothing is on trial.
-  bool take_back() const;
+  bool take_back();
   /// Forgets all that was saved.
-  std::expected<void, std::string> forget() const;
+  std::expected<void, std::string> forget();
 
  private:
   std::string file() const { return state_ + '/' + settings::kSavedFile; }
@@ -49,7 +49,7 @@ class Store {
   std::string token_file(const std::string& name) const {
     return secrets_folder() + "/" + name + settings::kTokenEnding;
   }
-  std::expected<void, std::string> make_secrets_folder() const;
+  std::expected<void, std::string> make_secrets_folder();
 
   std::string given_settings_, given_secrets_, state_;
 };

@@ -12,11 +12,11 @@ std::expected<update::Status, std::string> UpdateRequests::status() const {
   return update::read_status_file(*text);
 }
 
-std::expected<void, std::string> UpdateRequests::ask(const update::Request& request) const {
+std::expected<void, std::string> UpdateRequests::ask(const update::Request& request) {
   return host::write_file(state_ + '/' + update::kRequestFile, update::write(request), host::kOursAlone);
 }
 
-void UpdateRequests::forget() const {
+void UpdateRequests::forget() {
   unlink((state_ + '/' + update::kRequestFile).c_str());
   unlink(bundle_file().c_str());
 }

@@ -16,9 +16,9 @@ class UpdateRequests {
 
   /// How it stands, or why nobody says so.
   std::expected<update::Status, std::string> status() const;
-  std::expected<void, std::string> ask(const update::Request& request) const;
+  std::expected<void, std::string> ask(const update::Request& request);
   /// It is not to be done any more, where it has not been begun.
-  void forget() const;
+  void forget();
 
   /// Where a bundle is left, and where it is while it comes in.
   std::string bundle_file() const { return state_ + '/' + update::kBundleFile; }

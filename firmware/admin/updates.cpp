@@ -44,15 +44,20 @@ void Updates::refresh() const {
   if (read_at_ && now < *read_at_ + kFresh) return;
   read_at_ = now;
   status_ = requests_.status();
-  if (!asked_) return;
-  if (status_ && status_->nonce == asked_->request.nonce) {
-    asked_.reset();
-  } else if (now >= asked_->at + kTakenUpWithin) {
-    requests_.forget();
-    asked_.reset();
-    not_taken_up_ = "adit-update did not take it up: see journalctl -u adit-update";
-    host::log(host::Level::Error, "an update was not taken up by adit-update");
-  }
+}
+
+bool Updates::is_asked() const {
+  return asked_ && (!status_ || status_->nonce != asked_->request.nonce);
+}
+
+void Updates::every_second() {
+  refresh();
+  if (!is_asked()) return asked_.reset();
+  if (loop_.now() < asked_->at + kTakenUpWithin) return;
+  requests_.forget();
+  asked_.reset();
+  not_taken_up_ = "adit-update did not take it up: see journalctl -u adit-update";
+  host::log(host::Level::Error, "an update was not taken up by adit-update");
 }
 
 api::UpdateView Updates::update() const {
@@ -75,7 +80,7 @@ api::UpdateView Updates::update() const {
     view.doing = "receiving";
     view.progress = static_cast<int>(100 * receiving_->received() / expected_);
     view.refusal.clear();
-  } else if (asked_) {
+  } else if (is_asked()) {
     view.doing = asked_->request.what == update::Request::What::Restart ? "restarting" : "checking";
     view.refusal.clear();
   }

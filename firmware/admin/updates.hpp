@@ -32,6 +32,9 @@ class Updates final : public api::Updates {
   icd::Checked<void> install_from_stick(bool again) override;
   icd::Checked<void> restart(bool anyway) override;
 
+  /// Called each second: takes note of what became of the last request.
+  void every_second();
+
   /// Something is being received, checked or installed, or the box is about to be started anew.
   bool running() const { return !update().doing.empty(); }
 
@@ -41,7 +44,10 @@ class Updates final : public api::Updates {
     update::Request request;
     loop::Instant at;
   };
+  /// Reads the status anew where what is known of it is old.
   void refresh() const;
+  /// Whether what was asked for is not in the status yet, and may still be.
+  bool is_asked() const;
   /// Why nothing can be asked for now; nothing: it can.
   std::optional<icd::Refusal> hindrance() const;
   icd::Checked<void> ask(update::Request::What what, bool again);
@@ -54,8 +60,8 @@ class Updates final : public api::Updates {
   const UpdateUpload* receiving_ = nullptr;  // while it is
   mutable std::expected<update::Status, std::string> status_;
   mutable std::optional<loop::Instant> read_at_;
-  mutable std::optional<Asked> asked_;
-  mutable std::string not_taken_up_;  // why the last request came to nothing
+  std::optional<Asked> asked_;  // its last word is had by is_asked()
+  std::string not_taken_up_;    // why the last request came to nothing
 };
 
 }  // namespace adit::admin

@@ -40,7 +40,8 @@ class Network {
   virtual NetworkView network() const = 0;
   /// `asker`: the address of whoever asks.
   virtual network::Findings check(const network::Numbers& wanted, const std::string& asker) const = 0;
-  /// Requires that check() has nothing against it. It is tried at once, and waits to be confirmed.
+  /// What check() has nothing against; whoever applies it checks it again. It is tried at once, and waits to
+  /// be confirmed.
   virtual icd::Checked<void> change(const network::Numbers& wanted) = 0;
   /// `local`: the box's address by which the confirmation came. It must be the new one, or one could confirm
   /// what one cannot reach.

@@ -46,7 +46,7 @@ std::expected<void, std::string> make_ours(const loop::FileDescriptor& file, con
 
 }  // namespace
 
-std::expected<BundleFile, std::string> BundleFile::take(const host::UntrustedFolder& folder,
+std::expected<BundleFile, std::string> BundleFile::take(host::UntrustedFolder& folder,
                                                         const std::string& name) {
   const std::string path = folder.path_by_descriptor() + '/' + name;
   auto file = open_plain(path, name);

@@ -14,8 +14,7 @@ class BundleFile {
   /// Takes the file of that name out of a folder in which somebody else writes: its name is gone, it belongs
   /// to this user, and nobody has it open for writing. An error says what it is; it is gone all the same,
   /// where it can be taken away.
-  static std::expected<BundleFile, std::string> take(const host::UntrustedFolder& folder,
-                                                     const std::string& name);
+  static std::expected<BundleFile, std::string> take(host::UntrustedFolder& folder, const std::string& name);
   /// Opens one where nobody writes: a file system that is mounted read-only.
   static std::expected<BundleFile, std::string> open(const std::string& path);
 

@@ -30,7 +30,7 @@ constexpr mode_t kFolderOfOurs = 0700;
 
 /// Gives what root made to whom the folder belongs: systemd looks at no more than the folder itself before it
 /// starts aditd (systemd.exec(5), StateDirectory=).
-Done give_to_owner(const UntrustedFolder& folder, const std::string& path) {
+Done give_to_owner(UntrustedFolder& folder, const std::string& path) {
   struct stat owner{};
   if (stat(folder.path_by_descriptor().c_str(), &owner) == 0 &&
       lchown(path.c_str(), owner.st_uid, owner.st_gid) == 0) {
@@ -40,7 +40,7 @@ Done give_to_owner(const UntrustedFolder& folder, const std::string& path) {
 }
 
 /// A file of aditd's. The folder is aditd's too, so its path is not trusted.
-Done put(const UntrustedFolder& folder, const std::string& name, const std::string& text) {
+Done put(UntrustedFolder& folder, const std::string& name, const std::string& text) {
   const std::string path = folder.path_by_descriptor() + '/' + name;
   if (auto written = host::write_file(path, text, host::kOursAlone); !written) return written;
   return give_to_owner(folder, path);
@@ -87,13 +87,13 @@ std::string said_of(const Found& found, bool lasting) {
 }
 
 /// Not written anew at each start: a card wears out.
-Done tell(const UntrustedFolder& card, const std::string& text) {
+Done tell(UntrustedFolder& card, const std::string& text) {
   const auto told = card.read(kTakenText);
   if (told && *told == text) return {};
   return host::write_file(card.path_by_descriptor() + '/' + kTakenText, text, host::kOursAlone);
 }
 
-void rename_taken(const UntrustedFolder& folder, const std::string& name) {
+void rename_taken(UntrustedFolder& folder, const std::string& name) {
   const std::string path = folder.path_by_descriptor() + '/' + name, taken = path + kTakenEnding;
   if (rename(path.c_str(), taken.c_str()) == 0) return;
   // A folder of that name: what cannot be renamed would be taken again at each start.
@@ -104,8 +104,8 @@ void rename_taken(const UntrustedFolder& folder, const std::string& name) {
 
 /// Anybody who has the card could read them. One that was cut off while it was wiped is no token any more: so
 /// each is renamed first, and those of an earlier start are found here.
-void wipe_taken(const UntrustedFolder& card) {
-  const auto secrets = card.folder(kCardSecrets);
+void wipe_taken(UntrustedFolder& card) {
+  auto secrets = card.folder(kCardSecrets);
   if (!secrets || !*secrets) return;
   const std::vector<std::string> names = (*secrets)->names().value_or(std::vector<std::string>());
   for (const std::string& name : names) {
@@ -115,8 +115,8 @@ void wipe_taken(const UntrustedFolder& card) {
 }
 
 /// The settings last: without them, what is left is taken again as it was.
-void leave(const UntrustedFolder& card, const Brought& brought) {
-  if (const auto secrets = card.folder(kCardSecrets); secrets && *secrets) {
+void leave(UntrustedFolder& card, const Brought& brought) {
+  if (auto secrets = card.folder(kCardSecrets); secrets && *secrets) {
     for (const auto& [file, token] : brought.tokens) rename_taken(**secrets, file);
   }
   wipe_taken(card);
@@ -130,7 +130,7 @@ void leave(const UntrustedFolder& card, const Brought& brought) {
 }  // namespace
 
 Done Import::run() {
-  const auto card = UntrustedFolder::open(options_.card);
+  auto card = UntrustedFolder::open(options_.card);
   if (!card) {
     host::log(Level::Debug, "nothing was brought", {{"why", card.error()}});
     return {};
@@ -172,8 +172,8 @@ settings::Settings Import::in_force() const {
   return saved ? std::move(saved->settings) : settings::Settings{};
 }
 
-Done Import::save(const Brought& brought) const {
-  const auto state = open_state(options_.state);
+Done Import::save(const Brought& brought) {
+  auto state = open_state(options_.state);
   if (!state) return std::unexpected(state.error());
   if (auto saved = save_tokens(*state, brought); !saved) return saved;
   if (brought.numbers) {
@@ -186,14 +186,14 @@ Done Import::save(const Brought& brought) const {
   return brought.settings ? save_settings(*state, *brought.settings) : Done{};
 }
 
-Done Import::save_tokens(const UntrustedFolder& state, const Brought& brought) const {
+Done Import::save_tokens(UntrustedFolder& state, const Brought& brought) {
   if (brought.tokens.empty()) return {};
   const std::string path = state.path_by_descriptor() + '/' + settings::kSecretsFolder;
   if (mkdir(path.c_str(), kFolderOfOurs) != 0 && errno != EEXIST) {
     return std::unexpected(host::trouble(settings::kSecretsFolder, errno));
   }
   if (auto given = give_to_owner(state, path); !given) return given;
-  const auto secrets = state.folder(settings::kSecretsFolder);
+  auto secrets = state.folder(settings::kSecretsFolder);
   if (!secrets) return std::unexpected(secrets.error());
   for (const auto& [file, token] : brought.tokens) {
     if (auto saved = put(**secrets, file, token.reveal() + "\n"); !saved) return saved;
@@ -202,7 +202,7 @@ Done Import::save_tokens(const UntrustedFolder& state, const Brought& brought) c
 }
 
 /// On trial, as those that the page saves: aditd takes them back where it cannot start with them.
-Done Import::save_settings(const UntrustedFolder& state, const settings::Settings& settings) const {
+Done Import::save_settings(UntrustedFolder& state, const settings::Settings& settings) {
   const auto before = state.read(settings::kFileBefore);
   if (!before) return std::unexpected(before.error());
   if (!*before) {

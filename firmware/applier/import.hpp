@@ -38,11 +38,10 @@ class Import {
 
  private:
   settings::Settings in_force() const;
-  std::expected<void, std::string> save(const Brought& brought) const;
-  std::expected<void, std::string> save_tokens(const host::UntrustedFolder& state,
-                                               const Brought& brought) const;
-  std::expected<void, std::string> save_settings(const host::UntrustedFolder& state,
-                                                 const settings::Settings& settings) const;
+  std::expected<void, std::string> save(const Brought& brought);
+  std::expected<void, std::string> save_tokens(host::UntrustedFolder& state, const Brought& brought);
+  std::expected<void, std::string> save_settings(host::UntrustedFolder& state,
+                                                 const settings::Settings& settings);
 
   const ImportOptions& options_;
 };

@@ -119,7 +119,7 @@ std::expected<bool, std::string> NetworkdFiles::write() {
 }
 
 /// A change can be made all the same.
-std::expected<void, std::string> NetworkdFiles::set_aside(const std::string& why) const {
+std::expected<void, std::string> NetworkdFiles::set_aside(const std::string& why) {
   const std::string file = confirmed_file();
   host::log(host::Level::Error, "what was confirmed last is damaged and set aside",
             {{"file", file}, {"why", why}});
@@ -222,7 +222,7 @@ std::expected<void, std::string> NetworkdFiles::lead_to(const network::Endpoints
   return changed ? reload() : std::expected<void, std::string>{};
 }
 
-std::expected<bool, std::string> NetworkdFiles::write_kept(const network::Numbers& numbers) const {
+std::expected<bool, std::string> NetworkdFiles::write_kept(const network::Numbers& numbers) {
   bool changed = false;
   for (const Place& place : places(numbers)) {
     if (text_of(place.kept) == place.text) continue;
@@ -234,7 +234,7 @@ std::expected<bool, std::string> NetworkdFiles::write_kept(const network::Number
   return changed;
 }
 
-std::expected<bool, std::string> NetworkdFiles::remove_tried() const {
+std::expected<bool, std::string> NetworkdFiles::remove_tried() {
   bool removed = false;
   for (const Place& place : kept_ ? places(*kept_) : places()) {
     const auto tried = host::slurp(place.tried);

@@ -56,13 +56,13 @@ class NetworkdFiles final : public network::Hands {
   void use_factory();
   /// Whether anything changed.
   std::expected<bool, std::string> write();
-  std::expected<void, std::string> set_aside(const std::string& why) const;
-  std::expected<bool, std::string> write_kept(const network::Numbers& numbers) const;
+  std::expected<void, std::string> set_aside(const std::string& why);
+  std::expected<bool, std::string> write_kept(const network::Numbers& numbers);
   /// What networkd goes by; "": nothing.
   static std::string in_use_of(const Place& place);
   std::expected<void, std::string> check_unused(const Place& place) const;
   /// Whether any was there.
-  std::expected<bool, std::string> remove_tried() const;
+  std::expected<bool, std::string> remove_tried();
   std::expected<void, std::string> reload();
 
   const Options& options_;

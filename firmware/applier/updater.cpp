@@ -42,7 +42,7 @@ std::expected<void, std::string> Updater::work() {
   find_out();
   look_at_sticks();
   if (!tell()) return std::unexpected("the status cannot be told");
-  const auto folder = host::UntrustedFolder::open(options_.wanted);
+  auto folder = host::UntrustedFolder::open(options_.wanted);
   if (folder) return take_requests(*folder, first);
   host::log(Level::Info, "nobody asks for anything", {{"why", folder.error()}});
   return {};
@@ -80,7 +80,7 @@ void Updater::look_at_sticks() {
 }
 
 /// `drop`: they are taken away and not done.
-std::expected<void, std::string> Updater::take_requests(const host::UntrustedFolder& folder, bool drop) {
+std::expected<void, std::string> Updater::take_requests(host::UntrustedFolder& folder, bool drop) {
   while (true) {
     auto text = folder.take(update::kRequestFile);
     if (text && !*text) break;
@@ -101,7 +101,7 @@ std::expected<void, std::string> Updater::take_requests(const host::UntrustedFol
   return {};
 }
 
-void Updater::answer(const update::Request& request, const host::UntrustedFolder& folder) {
+void Updater::answer(const update::Request& request, host::UntrustedFolder& folder) {
   using What = update::Request::What;
   status_.nonce = request.nonce;
   status_.refusal.clear();

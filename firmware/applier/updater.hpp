@@ -26,8 +26,8 @@ class Updater {
  private:
   void find_out();
   void look_at_sticks();
-  std::expected<void, std::string> take_requests(const host::UntrustedFolder& folder, bool drop);
-  void answer(const update::Request& request, const host::UntrustedFolder& folder);
+  std::expected<void, std::string> take_requests(host::UntrustedFolder& folder, bool drop);
+  void answer(const update::Request& request, host::UntrustedFolder& folder);
   /// "", or why it is not done.
   std::string install(const std::expected<BundleFile, std::string>& file, bool again);
   std::string write(const BundleFile& file, const update::Bundle& bundle);

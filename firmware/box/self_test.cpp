@@ -35,7 +35,7 @@ icd::ChunkedBytes empty_object() {
 }  // namespace
 
 SelfTest::SelfTest(loop::Loop& loop, const settings::Settings& settings, Tokens tokens,
-                   const admin::NetworkRequests& requests, const admin::NetworkChange& network,
+                   admin::NetworkRequests& requests, const admin::NetworkChange& network,
                    std::function<void()> changed)
     : loop_(loop),
       settings_(settings),

@@ -33,7 +33,7 @@ class SelfTest final : public api::SelfTest {
 
   /// `changed` is called as steps end. All outlive this.
   SelfTest(loop::Loop& loop, const settings::Settings& settings, Tokens tokens,
-           const admin::NetworkRequests& requests, const admin::NetworkChange& network,
+           admin::NetworkRequests& requests, const admin::NetworkChange& network,
            std::function<void()> changed);
 
   /// For tests that begin from now on.
@@ -73,7 +73,7 @@ class SelfTest final : public api::SelfTest {
   Tokens tokens_;
   settings::CommandPost post_;  // that is tested, whatever the settings say by now
   Tokens shown_;                // to it
-  const admin::NetworkRequests& requests_;
+  admin::NetworkRequests& requests_;
   const admin::NetworkChange& network_;
   std::function<void()> changed_;
   api::TestView view_;

@@ -1,9 +1,10 @@
 #include "codec/byte_order.hpp"
 
 #include <algorithm>
-#include <cassert>
 #include <numeric>
 #include <span>
+
+#include "icd/require.hpp"
 
 namespace adit::codec {
 namespace {
@@ -34,6 +35,7 @@ std::optional<std::vector<std::uint32_t>> little_endian_order(const icd::PointCl
     const auto size = static_cast<std::uint32_t>(size_of(field.datatype));
     for (std::uint32_t i = 0; i < field.count; ++i) {
       const Place value{.begin = field.offset + i * size, .size = size};
+      icd::require(value.begin <= cloud.point_step && size <= cloud.point_step - value.begin);
       if (!take_place(bytes, value)) return std::nullopt;
       for (std::uint32_t byte = 0; byte < size; ++byte) {
         order[value.begin + byte] = value.begin + size - 1 - byte;
@@ -44,7 +46,7 @@ std::optional<std::vector<std::uint32_t>> little_endian_order(const icd::PointCl
 }
 
 icd::ChunkedBytes in_order(icd::ChunkedBytes points, const std::vector<std::uint32_t>& order) {
-  assert(!order.empty());
+  icd::require(!order.empty());
   icd::ChunkedBytes turned;
   std::vector<std::uint8_t> came, goes;  // whole points of one piece
   while (!points.empty()) {

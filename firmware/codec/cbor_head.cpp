@@ -4,6 +4,8 @@
 #include <cmath>
 #include <limits>
 
+#include "icd/require.hpp"
+
 namespace adit::codec {
 namespace {
 
@@ -26,6 +28,7 @@ double half(std::uint16_t bits) {
 }  // namespace
 
 std::size_t CborHead::next(std::string_view in) {
+  icd::require(!complete());
   std::size_t taken = 0;
   while (taken < in.size() && !complete()) bytes_[size_++] = static_cast<std::uint8_t>(in[taken++]);
   return taken;

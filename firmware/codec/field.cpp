@@ -3,6 +3,7 @@
 #include <cmath>
 
 #include "codec/utf8.hpp"
+#include "icd/require.hpp"
 
 namespace adit::codec {
 namespace {
@@ -72,6 +73,7 @@ std::size_t Field::size() const {
 }
 
 Field Field::element(std::size_t index, Reading& reading) const& {
+  icd::require(is<Value::Array>() && index < std::get<Value::Array>(value_->is).size());
   return {&std::get<Value::Array>(value_->is)[index], this, {}, index, reading};
 }
 

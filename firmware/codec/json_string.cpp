@@ -4,6 +4,7 @@
 #include <charconv>
 
 #include "codec/byte_name.hpp"
+#include "icd/require.hpp"
 
 namespace adit::codec {
 namespace {
@@ -26,7 +27,8 @@ bool is_hex(char c) {
 /// Requires four hex digits.
 char32_t unit(std::string_view digits) {
   unsigned value = 0;
-  std::from_chars(digits.data(), digits.data() + digits.size(), value, 16);
+  const char* const last = digits.data() + digits.size();
+  icd::require(digits.size() == 4 && std::from_chars(digits.data(), last, value, 16).ptr == last);
   return value;
 }
 
@@ -35,6 +37,7 @@ constexpr const char* kLone = "a surrogate without its partner in a string";
 }  // namespace
 
 std::expected<JsonString::Piece, Fault> JsonString::next(std::string_view in) {
+  icd::require(!in.empty());
   if (!escape_.empty()) return escape(in);
   auto run = plain(in);
   if (!run || run->taken > 0) return run;

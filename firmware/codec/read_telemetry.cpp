@@ -6,6 +6,7 @@
 
 #include "codec/read.hpp"
 #include "codec/read_parts.hpp"
+#include "icd/require.hpp"
 
 namespace adit::codec {
 namespace {
@@ -147,6 +148,7 @@ icd::Checked<Message> whole(icd::Checked<InParts<Message>> parts) {
 }  // namespace
 
 icd::Refusal RefusedParts::refusal() const {
+  icd::require(count > 0);
   std::string sentence;
   for (const char* between = ""; const std::string& one : sentences) {
     sentence += std::exchange(between, "; ");

@@ -1,5 +1,7 @@
 #include "codec/utf8.hpp"
 
+#include "icd/require.hpp"
+
 namespace adit::codec {
 
 bool Utf8Checker::next_of_several(std::uint8_t byte) {
@@ -32,6 +34,7 @@ bool is_utf8(std::string_view text) {
 }
 
 void append_utf8(std::string& text, char32_t character) {
+  icd::require(character <= 0x10FFFF && (character < 0xD800 || character > 0xDFFF));
   const auto continuation = [&](int shift) {
     text.push_back(static_cast<char>(0x80 | ((character >> shift) & 0x3F)));
   };

@@ -51,7 +51,7 @@ class Reading {
   }
 
  private:
-  /// Requires what getopt_long found at the word `at`.
+  /// `found`: what getopt_long found at the word `at`.
   Wrong take(int found, std::string_view at) {
     if (found == 1) return word(optarg);
     if (found == 'h') return word("--help");

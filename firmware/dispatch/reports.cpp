@@ -7,6 +7,7 @@
 #include "codec/read.hpp"
 #include "dispatch/report_verdict.hpp"
 #include "dispatch/said.hpp"
+#include "icd/require.hpp"
 #include "icd/sentence.hpp"
 
 namespace adit::dispatch {
@@ -38,6 +39,7 @@ void Reports::open(std::vector<Report> all, std::vector<Run> runs, Time time, co
 
 void Reports::open(std::vector<Report> all, std::vector<Run> runs, Time time, const std::string& post,
                    Reports& before) {
+  icd::require(before.sending() == nullptr);
   clients_ = std::exchange(before.clients_, {});  // first: what is found out now, they are told
   taken_at_ = std::exchange(before.taken_at_, {});
   open(std::move(all), std::move(runs), time, post);

@@ -72,8 +72,8 @@ class Reports {
   /// another run: the last one there, taken up again, or a new one.
   void open(std::vector<Report> all, std::vector<Run> runs, Time time, const std::string& post = "");
 
-  /// The same, in the place of others that end here: their clients wait on, no longer than they would have.
-  /// Requires that the others have nothing under way.
+  /// The same, taking over from `before`, whose clients wait on, no longer than they would have. Requires
+  /// that `before` has nothing under way.
   void open(std::vector<Report> all, std::vector<Run> runs, Time time, const std::string& post,
             Reports& before);
   /// The settings name `post`, and open() there follows once the request under way has ended: what comes
@@ -120,14 +120,14 @@ class Reports {
   const ReportBook& book() const { return book_; }
   const Run& run() const { return account_.run(); }
   const Runs& runs() const { return account_.runs(); }
-  /// The one that a report is meant for that is posted now: run(), or that of will_move().
+  /// The run that a report posted now is meant for: run(), or that of will_move().
   const Run& meant_run() const { return will_be_ != 0 ? *account_.runs().find(will_be_) : run(); }
   /// Those that wait for the Command Post that the settings name, oldest first.
   std::vector<std::int64_t> waiting_here() const;
   /// How many wait for each Command Post that the settings do not name.
   std::map<std::string, std::size_t> waiting_elsewhere() const;
   const Report* sending() const { return sending_ ? &book_.at(*sending_) : nullptr; }
-  /// It is in doubt, and Adit can find out by itself.
+  /// Whether it is in doubt and Adit can find out by itself.
   bool is_asking(const Report& report) const;
   /// What the operator must know or decide, a sentence each.
   std::vector<std::string> attention() const;

@@ -4,6 +4,7 @@
 
 #include "dispatch/mapping_verdict.hpp"
 #include "dispatch/said.hpp"
+#include "icd/require.hpp"
 #include "icd/sentence.hpp"
 #include "loop/guard.hpp"
 
@@ -76,6 +77,7 @@ void Channel::take(Way way) {
 
 void Channel::send(icd::Uri uri, std::string_view content_type, icd::ChunkedBytes body,
                    std::function<void(uplink::Outcome)> done) {
+  icd::require(has_token() && !busy());
   finished_bytes_ += connection_->sent_bytes();
   sent_at_ = loop_.now();
   connection_->send({.method = std::string(icd::method_of(uri)),

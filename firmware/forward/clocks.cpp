@@ -47,7 +47,7 @@ void Clocks::keep(const std::string& sender) {
 
 void Clocks::keep_floor(loop::Writer& writer) {
   const auto floor = floor_.due(loop_.stamp_now());
-  if (floor) writer.submit([kept = floor_, floor = *floor] { kept.write(floor); }, [] {});
+  if (floor) writer.submit([kept = floor_, floor = *floor]() mutable { kept.write(floor); }, [] {});
 }
 
 }  // namespace adit::forward

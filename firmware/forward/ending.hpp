@@ -22,7 +22,7 @@ class Ending {
   /// Requires has_begun().
   bool dismisses(loop::Instant now, bool quiet, bool kept);
   /// They were dismissed, or something fails again and again. Requires has_begun().
-  bool is_over(loop::Instant now) const { return dismissed_ || now >= *began_ + kAnswers + 2 * kKeepWithin; }
+  bool is_over(loop::Instant now) const;
 
  private:
   std::optional<loop::Instant> began_;

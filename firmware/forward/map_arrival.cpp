@@ -6,7 +6,7 @@
 
 namespace adit::forward {
 
-MapArrival::MapArrival(std::weak_ptr<loop::Writer> writer, const spool::Spool& spool,
+MapArrival::MapArrival(std::weak_ptr<loop::Writer> writer, spool::Spool& spool,
                        std::function<std::uint64_t()> spare, Take take)
     : writer_(std::move(writer)), spool_(spool), spare_(std::move(spare)), take_(std::move(take)) {}
 

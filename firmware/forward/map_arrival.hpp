@@ -22,8 +22,8 @@ class MapArrival final : public intake::MapArrival {
 
   /// `spare`: of bytes. `writer` and `spool` live as long as `writer`
   /// can be locked.
-  MapArrival(std::weak_ptr<loop::Writer> writer, const spool::Spool& spool,
-             std::function<std::uint64_t()> spare, Take take);
+  MapArrival(std::weak_ptr<loop::Writer> writer, spool::Spool& spool, std::function<std::uint64_t()> spare,
+             Take take);
   ~MapArrival() override;
   MapArrival(const MapArrival&) = delete;
   MapArrival& operator=(const MapArrival&) = delete;
@@ -40,7 +40,7 @@ class MapArrival final : public intake::MapArrival {
   };
 
   std::weak_ptr<loop::Writer> writer_;
-  const spool::Spool& spool_;
+  spool::Spool& spool_;
   std::function<std::uint64_t()> spare_;
   Take take_;
   std::shared_ptr<Stored> stored_ = std::make_shared<Stored>();

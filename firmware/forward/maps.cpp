@@ -36,7 +36,7 @@ std::string whose(const icd::MapUpdate& map) {
 
 }  // namespace
 
-Maps::Maps(loop::Loop& loop, loop::Workers& workers, loop::Writer& writer, const spool::Spool& spool,
+Maps::Maps(loop::Loop& loop, loop::Workers& workers, loop::Writer& writer, spool::Spool& spool,
            const settings::Settings& settings, std::optional<icd::BearerToken> token, Record& record,
            Aside& aside, std::mt19937_64& random, journal::Journal& journal,
            std::function<void(icd::MapUpdate)> taken)

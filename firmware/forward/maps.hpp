@@ -32,7 +32,7 @@ class Maps {
   static constexpr std::uint64_t kFirstNumber = 1u << 20;
 
   /// `taken` is given each map that the Command Post took. `spool` outlives the writer.
-  Maps(loop::Loop& loop, loop::Workers& workers, loop::Writer& writer, const spool::Spool& spool,
+  Maps(loop::Loop& loop, loop::Workers& workers, loop::Writer& writer, spool::Spool& spool,
        const settings::Settings& settings, std::optional<icd::BearerToken> token, Record& record,
        Aside& aside, std::mt19937_64& random, journal::Journal& journal,
        std::function<void(icd::MapUpdate)> taken);
@@ -121,7 +121,7 @@ class Maps {
   loop::Workers& workers_;
   loop::Writer& writer_;
   const std::shared_ptr<loop::Writer> while_alive_;  // the same, for arrivals, which may outlive this
-  const spool::Spool& spool_;
+  spool::Spool& spool_;
   const settings::Settings& settings_;
   Record& record_;
   journal::Journal& journal_;

@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <utility>
 
+#include "icd/require.hpp"
+
 namespace adit::forward {
 
 /// Versions grow over a restart too: a page that comes back with an older one gets all.
@@ -73,8 +75,10 @@ void MarkerScene::erase(const Key& key) {
 
 /// Requires that there is one.
 MarkerScene::InOrder::const_iterator MarkerScene::oldest(bool gone) const {
-  return std::ranges::find_if(in_order_,
-                              [&](const auto& one) { return entries_.at(one.second).gone == gone; });
+  const auto found =
+      std::ranges::find_if(in_order_, [&](const auto& one) { return entries_.at(one.second).gone == gone; });
+  icd::require(found != in_order_.end());
+  return found;
 }
 
 void MarkerScene::keep_bounds() {

@@ -20,15 +20,14 @@ class StampFloor {
 
   explicit StampFloor(const std::string& state_folder) : file_(state_folder + '/' + kFile) {}
 
-  /// Seconds since 1970; 0 where nothing is known. What is wrong with the file is logged. Called before the
-  /// first write(): what a write left beside the file in the midst of which death came is removed.
+  /// Seconds since 1970; 0 where nothing is known. What is wrong with the file is logged.
   double read() const;
 
   /// What is to be written by now, if anything.
   std::optional<double> due(double now);
   /// Safe to be called on a worker, one call after the other, and on copies. What cannot be written is
   /// logged, once until it can or fails otherwise.
-  void write(double floor) const;
+  void write(double floor);
 
  private:
   std::string file_;

@@ -153,7 +153,8 @@ void Gateway::every_second() {
                   std::chrono::seconds(1));  // first: whatever fails below, the next second comes
   flow_.tick(disk_writer_);
   show_lights();
-  network_.lead_to_endpoints();
+  network_.every_second();
+  updates_.every_second();
   keep_sessions();
   look_at_sockets();
   listeners_.tick();

@@ -36,9 +36,9 @@ namespace adit::gateway {
 
 /// What the gateway is made of: all of it has passed its checks.
 struct Parts {
-  const admin::Store& store;         // outlives the gateway
-  const admin::FactoryReset& reset;  // so does this
-  ListenSockets& sockets;            // and this
+  admin::Store& store;         // outlives the gateway
+  admin::FactoryReset& reset;  // so does this
+  ListenSockets& sockets;      // and this
   admin::Store::Loaded loaded;
   std::string trouble;  // for the operator: why the settings are not those that were wanted; or ""
   ledger::Ledger ledger;

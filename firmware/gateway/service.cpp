@@ -9,6 +9,8 @@
 #include "box/open_panel.hpp"
 #include "host/inherited.hpp"
 #include "host/log.hpp"
+#include "host/service.hpp"
+#include "settings/saved.hpp"
 
 namespace adit::gateway {
 namespace {
@@ -52,8 +54,8 @@ ledger::Result<ledger::Ledger> open_ledger(const Options& options) {
   return opened;
 }
 
-std::expected<Parts, std::string> gather(const Options& options, const admin::Store& store,
-                                         const admin::FactoryReset& reset, ListenSockets& sockets) {
+std::expected<Parts, std::string> gather(const Options& options, admin::Store& store,
+                                         admin::FactoryReset& reset, ListenSockets& sockets) {
   auto loaded = store.load();
   if (!loaded) return std::unexpected(loaded.error());
   auto ledger = open_ledger(options);
@@ -95,6 +97,10 @@ int Service::run() {
   if (auto taken = take_over_sockets(); !taken) return fail(taken.error());
   if (auto made = make_folder(options_.state); !made) {
     host::log(host::Level::Error, "the state folder cannot be made", {{"why", made.error()}});
+  }
+  for (const std::string& folder :
+       {options_.state, options_.state + '/' + settings::kSecretsFolder, runtime_folder(options_)}) {
+    host::remove_unwritten(folder);
   }
   const auto terminated = loop_.signal(SIGTERM, [this] { running_->stop(); });
   const auto interrupted = loop_.signal(SIGINT, [this] { running_->stop(); });

@@ -39,6 +39,16 @@ bool sync_folder(const std::string& path) {
   return folder && fsync(folder.get()) == 0;
 }
 
+constexpr const char* kBeingWritten = ".writing";
+
+/// A new file, for us alone; what an earlier process left under its name is removed.
+FileDescriptor make_new(const std::string& path) {
+  constexpr int kFlags = O_WRONLY | O_CREAT | O_EXCL | O_NOFOLLOW | O_CLOEXEC;
+  FileDescriptor fd(open(path.c_str(), kFlags, kOursAlone));
+  if (fd || errno != EEXIST || unlink(path.c_str()) != 0) return fd;
+  return FileDescriptor(open(path.c_str(), kFlags, kOursAlone));
+}
+
 bool fill(int fd, const std::string& text, int mode) {
   return fchmod(fd, static_cast<mode_t>(mode)) == 0 && write_all(fd, text) && fsync(fd) == 0;
 }
@@ -80,8 +90,8 @@ std::expected<std::string, std::string> read_file(const std::string& path) {
 }
 
 std::expected<void, std::string> write_file(const std::string& path, const std::string& text, int mode) {
-  std::string temporary = path + ".XXXXXX";
-  const FileDescriptor fd(mkostemp(temporary.data(), O_CLOEXEC));
+  const std::string temporary = path + kBeingWritten;
+  const FileDescriptor fd = make_new(temporary);
   if (!fd) return std::unexpected(trouble(path, errno));
   if (!fill(fd.get(), text, mode) || rename(temporary.c_str(), path.c_str()) != 0) {
     const int error = errno;
@@ -90,6 +100,13 @@ std::expected<void, std::string> write_file(const std::string& path, const std::
   }
   if (!sync_folder(path)) return std::unexpected(trouble(folder_of(path), errno));
   return {};
+}
+
+void remove_unwritten(const std::string& folder) {
+  const auto names = names_in(folder);
+  for (const std::string& name : names.value_or(std::vector<std::string>())) {
+    if (name.ends_with(kBeingWritten)) unlink((folder + '/' + name).c_str());
+  }
 }
 
 std::expected<std::vector<std::string>, std::string> names_in(const std::string& folder, std::size_t most) {

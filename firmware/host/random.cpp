@@ -2,15 +2,15 @@
 
 #include <unistd.h>
 
-#include <cassert>
 #include <cstdlib>
 
 #include "host/log.hpp"
+#include "icd/require.hpp"
 
 namespace adit::host {
 
 void fill_random(std::span<std::uint8_t> bytes) {
-  assert(bytes.size() <= 256);  // so many never fail once the machine has begun (getentropy(3))
+  icd::require(bytes.size() <= 256);  // so many never fail once the machine has begun (getentropy(3))
   if (getentropy(bytes.data(), bytes.size()) == 0) return;
   log(Level::Error, "the kernel gives no random bytes");
   std::abort();

@@ -35,9 +35,12 @@ std::expected<std::string, std::string> read_file(const std::string& path);
 /// Modes of files: readable for everybody, or for nobody else.
 inline constexpr int kForAll = 0644, kOursAlone = 0600;
 
-/// Writes `text` so that after a crash there is the old file or the new one: a temporary beside it, fsync,
-/// rename, fsync of the folder.
+/// Writes `text` so that after a crash there is the old file or the new one: a temporary beside it
+/// (PATH.writing), fsync, rename, fsync of the folder. One call at a time for a path.
 std::expected<void, std::string> write_file(const std::string& path, const std::string& text, int mode);
+/// Removes what write_file() leaves in a folder when the process dies before the rename. Before the first
+/// write there.
+void remove_unwritten(const std::string& folder);
 
 /// The names of what is in a folder, in order; none where there is no such folder. An error, without the
 /// folder's name: it cannot be read to its end, or holds more than `most`.

@@ -46,7 +46,7 @@ std::expected<UntrustedFolder, std::string> UntrustedFolder::open(const std::str
 }
 
 std::expected<std::optional<std::string>, UntrustedFolder::Untaken> UntrustedFolder::take(
-    const std::string& name) const {
+    const std::string& name) {
   // O_NONBLOCK: a FIFO without a writer must not hold this up.
   const loop::FileDescriptor fd(
       openat(folder_.get(), name.c_str(), O_RDONLY | O_NOFOLLOW | O_NONBLOCK | O_NOCTTY | O_CLOEXEC));
@@ -60,7 +60,7 @@ std::expected<std::optional<std::string>, UntrustedFolder::Untaken> UntrustedFol
   return std::move(*text);
 }
 
-std::expected<void, std::string> UntrustedFolder::remove(const std::string& name) const {
+std::expected<void, std::string> UntrustedFolder::remove(const std::string& name) {
   if (unlinkat(folder_.get(), name.c_str(), 0) == 0 || errno == ENOENT) return {};
   const auto stays = [&name] { return std::unexpected("it cannot be taken away: " + trouble(name, errno)); };
   if (errno != EISDIR) return stays();
@@ -101,7 +101,7 @@ std::expected<std::vector<std::string>, std::string> UntrustedFolder::names() co
   return names_in(path_by_descriptor());
 }
 
-bool UntrustedFolder::wipe(const std::string& name) const {
+bool UntrustedFolder::wipe(const std::string& name) {
   const loop::FileDescriptor fd(
       openat(folder_.get(), name.c_str(), O_WRONLY | O_NOFOLLOW | O_NONBLOCK | O_NOCTTY | O_CLOEXEC));
   struct stat status{};

@@ -25,11 +25,11 @@ class UntrustedFolder {
   };
   /// Takes a file away and gives what was in it; nothing where there is none of that name. An error: it was
   /// no plain file, too large or unreadable, and is gone all the same, or it stays.
-  std::expected<std::optional<std::string>, Untaken> take(const std::string& name) const;
+  std::expected<std::optional<std::string>, Untaken> take(const std::string& name);
 
   /// Takes away whatever has that name. Of a folder that cannot be deleted (it may be deeper than files can
   /// be opened) the name at least: what is left is beside it, as NAME.XXXXXX.
-  std::expected<void, std::string> remove(const std::string& name) const;
+  std::expected<void, std::string> remove(const std::string& name);
 
   /// What is in a file, which stays; nothing where there is none of that name. An error: it is no plain file,
   /// too large or unreadable.
@@ -43,7 +43,7 @@ class UntrustedFolder {
 
   /// Removes a file so that its text is not left on the disk: overwritten, then unlinked. False: it may still
   /// be there.
-  bool wipe(const std::string& name) const;
+  bool wipe(const std::string& name);
 
   /// For inotify(7): names the folder itself, whatever its path has come to mean.
   std::string path_by_descriptor() const;

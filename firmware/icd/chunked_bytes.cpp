@@ -4,6 +4,8 @@
 #include <atomic>
 #include <utility>
 
+#include "icd/require.hpp"
+
 namespace adit::icd {
 
 void ChunkedBytes::swap(ChunkedBytes& other) noexcept {
@@ -70,6 +72,7 @@ void ChunkedBytes::append(const std::shared_ptr<const void>& owner, std::span<co
 }
 
 ChunkedBytes::Chunk ChunkedBytes::pop_front() {
+  require(!empty());
   Chunk chunk = std::move(chunks_[first_++]);
   size_ -= chunk->size();
   if (first_ == chunks_.size()) {

@@ -5,6 +5,7 @@
 #include <cmath>
 #include <string>
 
+#include "icd/require.hpp"
 #include "icd/sentence.hpp"
 
 namespace adit::icd {
@@ -81,6 +82,7 @@ Checked<void> check(const OccupancyGrid& grid, const Rules& rules) {
 }
 
 Checked<void> check_size(const OccupancyGrid& grid, std::size_t bytes) {
+  require(grid.width > 0 && grid.height > 0);
   const std::size_t cells = cells_of(grid);
   if (bytes == cells) return {};
   return unprocessable("msg.info.width: expected ", grid.width, " x ", grid.height, " = ", cells,
@@ -112,6 +114,7 @@ Checked<void> check(const PointCloud2& cloud, const Rules& /*rules*/) {
 }
 
 Checked<void> check_size(const PointCloud2& cloud, std::size_t bytes) {
+  require(cloud.point_step > 0);
   if (bytes % cloud.point_step == 0) return {};
   return unprocessable("msg.data: expected a multiple of point_step ", cloud.point_step, ", got ", bytes,
                        " bytes");

@@ -89,8 +89,7 @@ Carried Folder::read(std::uint64_t last, const std::atomic<bool>& enough) const 
   return carried;
 }
 
-std::expected<std::size_t, std::string> Folder::compact(std::uint64_t last,
-                                                        const std::atomic<bool>& enough) const {
+std::expected<std::size_t, std::string> Folder::compact(std::uint64_t last, const std::atomic<bool>& enough) {
   const Carried carried = read(last, enough);
   const std::string path = snapshot(last + 1), part = path + std::string(kPart);
   std::ofstream file(part, std::ios::binary | std::ios::trunc);
@@ -113,7 +112,7 @@ std::expected<std::size_t, std::string> Folder::compact(std::uint64_t last,
   return std::unexpected(enough ? "the gateway ends" : path + ": it cannot be written");
 }
 
-void Folder::remove_before(std::uint64_t number) const {
+void Folder::remove_before(std::uint64_t number) {
   const Files all = files();
   std::error_code error;
   for (const std::string& part : all.parts) fs::remove(part, error);  // death came while it was written

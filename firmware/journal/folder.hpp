@@ -31,7 +31,7 @@ class Folder {
 
   /// Writes a snapshot of all up to `journal-last`, and removes what it stands for. Its size in bytes, or a
   /// sentence why not.
-  std::expected<std::size_t, std::string> compact(std::uint64_t last, const std::atomic<bool>& enough) const;
+  std::expected<std::size_t, std::string> compact(std::uint64_t last, const std::atomic<bool>& enough);
 
  private:
   struct Files {
@@ -40,7 +40,7 @@ class Folder {
   };
   std::string file(const char* kind, std::uint64_t number) const;
   Files files() const;
-  void remove_before(std::uint64_t number) const;
+  void remove_before(std::uint64_t number);
 
   std::string path_;
 };

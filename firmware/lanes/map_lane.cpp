@@ -5,6 +5,8 @@
 #include <set>
 #include <utility>
 
+#include "icd/require.hpp"
+
 namespace adit::lanes {
 namespace {
 
@@ -73,6 +75,7 @@ bool mergeable(const icd::PointCloud2& a, const icd::PointCloud2& b) {
 }
 
 icd::MapUpdate merge(icd::MapUpdate older, const icd::MapUpdate& newer) {
+  icd::require(older.name == newer.name && !older.is_grid() && !newer.is_grid());
   older.msg = newer.msg;
   older.data.bytes.append(newer.data.bytes);
   older.data.raw_size += newer.data.raw_size;
@@ -182,6 +185,7 @@ std::vector<std::uint64_t> MapLane::put_back(WaitingMap map) {
 }
 
 void MapLane::put_back_apart(WaitingMap map) {
+  icd::require(!map.parts.empty() && map.parts.size() == map.updates.size());
   std::deque<WaitingMap> all;
   std::size_t bytes = 0;
   for (std::size_t i = 0; i < map.parts.size(); ++i) {

@@ -33,7 +33,7 @@ class SimulatedLines final : public Lines {
 
  private:
   /// By a rename, so that a reader never sees half of it. It need not outlive a power cut.
-  bool write(const Lit& lit) const {
+  bool write(const Lit& lit) {
     const std::string temporary = file_ + ".new";
     std::ofstream stream(temporary, std::ios::trunc);
     stream << text_of(lit);

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "icd/require.hpp"
 #include "picture/draw.hpp"
 #include "picture/grid_cells.hpp"
 
@@ -58,6 +59,7 @@ AlignedGrid::AlignedGrid(const icd::OccupancyGrid& grid, const Placement& placem
       columns_(placement.shift.x, grid.resolution * placement.turn[0][0], grid.width),
       rows_(placement.shift.y, grid.resolution * placement.turn[1][1], grid.height),
       width_(grid.width) {
+  icd::require(suits(grid, placement));
   if (columns_.end() - columns_.begin() > kMostColumns) columns_.cells.clear();
   highest_.resize(columns_.end() - columns_.begin());
   line_.resize(columns_.cells.size());

@@ -4,6 +4,8 @@
 #include <cmath>
 #include <utility>
 
+#include "icd/require.hpp"
+
 namespace adit::picture {
 namespace {
 
@@ -20,6 +22,7 @@ std::size_t cost_of(const Version& version) {
 }
 
 void History::add(Version version, double spacing) {
+  icd::require(versions_.empty() || version.stamp >= newest().stamp);
   if (!versions_.empty() && in_one_span(newest().stamp, version.stamp, spacing)) {
     cost_ -= cost_of(newest());
     versions_.pop_back();

@@ -5,6 +5,7 @@
 #include <cmath>
 #include <map>
 
+#include "icd/require.hpp"
 #include "picture/palette.hpp"
 
 namespace adit::picture {
@@ -89,6 +90,7 @@ Area area_of(const Sheet::Part& part) {
     if (top < 0) top = row;
     bottom = row + 1;
   }
+  icd::require(top >= 0);
   const auto is_known = [](std::uint8_t index) { return index != 0; };
   const auto left = std::ranges::find_if(columns, is_known) - columns.begin();
   const auto right = std::find_if(columns.rbegin(), columns.rend(), is_known).base() - columns.begin();

@@ -14,7 +14,7 @@ struct Anew {
   friend bool operator==(const Anew&, const Anew&) = default;
 };
 
-/// Requires settings as in_use() gives them.
+/// `running`, `next`: as in_use() gives them.
 Anew anew_by(const Settings& running, const Settings& next);
 
 }  // namespace adit::settings

@@ -2,6 +2,8 @@
 
 #include <algorithm>
 
+#include "icd/require.hpp"
+
 namespace adit::settings {
 namespace {
 
@@ -28,8 +30,7 @@ const Key kKeys[] = {
      text<MEMBER(command_post.interface)>(Form::Interface)},
     {"command_post.budget_mbit",
      "Megabits a second for both endpoints together (ICD 3). Maps are paced within it, so that a report "
-     "never "
-     "waits behind one.",
+     "never waits behind one.",
      real<MEMBER(command_post.budget_mbit)>(0.1, 100000)},
     {"command_post.rates.reports_hz", "Artifact reports sent a second, at most (ICD 4.1).",
      real<MEMBER(command_post.rates.reports_hz)>(0.001, 1000)},
@@ -100,8 +101,7 @@ const Key kKeys[] = {
      whole<MEMBER(reports.answer_within)>(100, 600000)},
     {"reports.doubt_for_ms",
      "How late a Command Post may still record what it has read: a report whose answer was lost is sent "
-     "again "
-     "only where the run's status says, this long after, that it was not recorded.",
+     "again only where the run's status says, this long after, that it was not recorded.",
      whole<MEMBER(reports.doubt_for)>(100, 600000)},
     {"reports.doubt_asks",
      "How often in a row the run's status must say so before such a report is sent again.",
@@ -120,8 +120,7 @@ const Key kKeys[] = {
      whole<MEMBER(queues.merge_bytes)>(0, 256 * kMiB)},
     {"queues.marker_bytes",
      "Markers that may wait, in bytes; above three quarters of it new ones are refused with 429, above it "
-     "also "
-     "those that replace one that waits.",
+     "also those that replace one that waits.",
      whole<MEMBER(queues.marker_bytes)>(kMiB, 1024 * kMiB)},
     {"queues.markers_per_message", "Markers in one update, at most.",
      whole<MEMBER(queues.markers_per_message)>(1, 100000)},
@@ -174,7 +173,9 @@ std::span<const Key> keys() {
 }
 
 const List& list_at(std::string_view path) {
-  return *std::ranges::find(kLists, path, &List::path);
+  const List* const found = std::ranges::find(kLists, path, &List::path);
+  icd::require(found != std::end(kLists));
+  return *found;
 }
 
 Settings with_an_item_of_each() {

@@ -3,6 +3,7 @@
 #include <algorithm>
 
 #include "codec/json.hpp"
+#include "icd/require.hpp"
 #include "settings/consistency.hpp"
 #include "settings/reader.hpp"
 
@@ -59,7 +60,10 @@ Settings in_use(Settings settings) {
     settings.command_post.mapping = course->mapping;
   }
   for (const Robot& robot : settings.robots) {
-    if (!robot.alias.empty()) settings.rules.aliases.emplace(robot.alias, *icd::RobotName::parse(robot.name));
+    if (robot.alias.empty()) continue;
+    const auto name = icd::RobotName::parse(robot.name);
+    icd::require(name.has_value());
+    settings.rules.aliases.emplace(robot.alias, *name);
   }
   return settings;
 }

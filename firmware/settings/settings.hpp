@@ -129,7 +129,7 @@ struct Saved {
 std::expected<Saved, std::vector<Error>> parse_saved(std::string_view json);
 
 /// The settings as they work while their course is in use: its endpoints are the Command Post's, and each
-/// robot's alias is in the rules. Requires settings that parse() gave.
+/// robot's alias is in the rules. Requires names of robots that RobotName takes, as parse() sees to it.
 Settings in_use(Settings settings);
 
 /// "a: what; b: what"

@@ -73,12 +73,12 @@ bool Spool::has_room(std::uint64_t bytes) const {
   return room && *room >= bytes;
 }
 
-std::shared_ptr<MapFile> Spool::begin() const {
+std::shared_ptr<MapFile> Spool::begin() {
   return std::make_shared<MapFile>(folder_ + "/arriving");
 }
 
 icd::Checked<icd::MapUpdate> Spool::keep(std::uint64_t number, icd::MapUpdate map, std::uint64_t spare,
-                                         std::shared_ptr<MapFile> begun) const {
+                                         std::shared_ptr<MapFile> begun) {
   if (::access(folder_.c_str(), F_OK) != 0) make_folder_of_ours(folder_);
   const std::string path = file_of(number);
   if (!begun || !begun->begins(map.data.bytes)) begun = std::make_shared<MapFile>(path);
@@ -92,22 +92,22 @@ icd::Checked<icd::MapUpdate> Spool::keep(std::uint64_t number, icd::MapUpdate ma
   return map;
 }
 
-void Spool::forget(std::uint64_t number) const {
+void Spool::forget(std::uint64_t number) {
   std::error_code error;
   fs::remove(file_of(number), error);
 }
 
-void Spool::forget_state() const {
+void Spool::forget_state() {
   std::error_code error;
   fs::remove(folder_ + std::string(kState), error);
 }
 
-void Spool::forget_markers() const {
+void Spool::forget_markers() {
   std::error_code error;
   fs::remove(folder_ + std::string(kMarkers), error);
 }
 
-Spool::Kept Spool::read() const {
+Spool::Kept Spool::read() {
   remove_parts(folder_);
   Kept kept;
   for (const std::uint64_t number : host::numbers_in(folder_, kMap, kEnding)) {

@@ -34,7 +34,7 @@ class Spool {
 
   /// For a map whose data is put into its file as it arrives. For the writer, which is to have the last of
   /// it, too.
-  std::shared_ptr<MapFile> begin() const;
+  std::shared_ptr<MapFile> begin();
   /// Whether there is room for so much.
   bool has_room(std::uint64_t bytes) const;
   /// Keeps a map until forget(), and gives it back with its data in the file, each chunk freed as it is
@@ -42,18 +42,18 @@ class Spool {
   /// left, where there is no room for it and `spare` bytes more, or the folder cannot be written. Once it
   /// returns, the map outlives any death of the process. For the writer.
   icd::Checked<icd::MapUpdate> keep(std::uint64_t number, icd::MapUpdate map, std::uint64_t spare,
-                                    std::shared_ptr<MapFile> begun = nullptr) const;
+                                    std::shared_ptr<MapFile> begun = nullptr);
   /// For the writer. The data lives on for as long as somebody has it.
-  void forget(std::uint64_t number) const;
+  void forget(std::uint64_t number);
   /// Why no map could be kept, or "".
   std::string trouble() const;
 
   /// Forgets the state, or the markers, that a release before the journal kept.
-  void forget_state() const;
-  void forget_markers() const;
+  void forget_state();
+  void forget_markers();
 
   /// All that is kept. What cannot be understood is logged and set aside.
-  Kept read() const;
+  Kept read();
 
  private:
   std::string file_of(std::uint64_t number) const;

@@ -5,6 +5,7 @@
 #include <optional>
 #include <utility>
 
+#include "icd/require.hpp"
 #include "loop/guard.hpp"
 #include "uplink/http_date.hpp"
 
@@ -153,6 +154,7 @@ AnswerParser& AnswerParser::operator=(AnswerParser&&) noexcept = default;
 AnswerParser::~AnswerParser() = default;
 
 AnswerParser::State AnswerParser::feed(std::string_view bytes) {
+  icd::require(impl_->fault.empty() && !impl_->parser->is_done());
   impl_->read += bytes.size();
   // Interim answers and chunk extensions could go on for ever without ever reaching the body's limit.
   if (impl_->read > kMostBytes(impl_->longest_body)) return impl_->too_long({});

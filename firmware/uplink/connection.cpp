@@ -6,6 +6,7 @@
 #include <cstring>
 #include <utility>
 
+#include "icd/require.hpp"
 #include "loop/file_descriptor.hpp"
 #include "loop/guard.hpp"
 #include "uplink/exchange.hpp"
@@ -47,6 +48,7 @@ class Connection::Impl : public std::enable_shared_from_this<Impl> {
   }
 
   void send(Request request, std::function<void(Outcome)> done) {
+    icd::require(!busy());
     InDoubt undealt{.why = "what the peer sent could not be dealt with"};
     auto exchange = std::make_unique<Exchange>(endpoint_, token_, std::move(request));
     undealt_ = std::move(undealt);

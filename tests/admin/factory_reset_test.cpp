@@ -66,20 +66,20 @@ TEST_F(FactoryResetTest, GoesOnAfterItCameToNoEnd) {
   EXPECT_THAT(done.error(), HasSubstr("access.json: cannot be removed"));
   EXPECT_FALSE(kept("secrets"));
   std::filesystem::remove(state_ / "access.json");
-  const FactoryReset at_the_next_start(store_, state_.path(), runtime_.path());
+  FactoryReset at_the_next_start(store_, state_.path(), runtime_.path());
   ASSERT_TRUE(at_the_next_start.finish());
   expect_first_start();
 }
 
 TEST_F(FactoryResetTest, ForgetsNothingWhereItIsNotKnownWhetherItWasBegun) {
-  const FactoryReset unknown(store_, state_ / std::string(300, 'x'), runtime_.path());
+  FactoryReset unknown(store_, state_ / std::string(300, 'x'), runtime_.path());
   EXPECT_THAT(unknown.finish().error(), HasSubstr("/reset: File name too long"));
   EXPECT_TRUE(kept("settings.json") && kept("secrets/team.token"));
   EXPECT_TRUE(std::filesystem::exists(runtime_ / "sessions.json"));
 }
 
 TEST_F(FactoryResetTest, IsRefusedWhereItCannotBeWrittenDown) {
-  const FactoryReset nowhere(store_, state_ / "none", runtime_.path());
+  FactoryReset nowhere(store_, state_ / "none", runtime_.path());
   EXPECT_THAT(nowhere.begin().error(), HasSubstr("No such file or directory"));
   ASSERT_TRUE(reset_.finish());
   EXPECT_TRUE(kept("access.json"));

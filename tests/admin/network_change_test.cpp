@@ -49,30 +49,30 @@ class NetworkChangeTest : public testing::Test {
   loop::Loop loop;
   settings::Settings settings;
   network::Status status{.team_interface = "team0", .command_post_interface = "darpa0"};
-  const NetworkRequests requests{folder.path(), folder.path()};
+  NetworkRequests requests{folder.path(), folder.path()};
   NetworkChange change{loop, settings, requests};
 };
 
 TEST_F(NetworkChangeTest, TellsWhereAllEndpointsAreUntilAditNetworkKnows) {
   settings.courses = {{"B", {"10.100.2.200", 8000}, {"10.100.1.201", 8000}},
                       {"C", {"fd00::1", 8000}, {"10.0.0.9", 8000}}};
-  change.lead_to_endpoints();
+  change.every_second();
   const network::Endpoints all{{0x0a000009, 0x0a6401c8, 0x0a6401c9, 0x0a6402c8}};
   EXPECT_EQ(asked(), all) << "in order, none twice, of IPv4";
   std::filesystem::remove(folder / network::kEndpointsFile);
-  change.lead_to_endpoints();
+  change.every_second();
   EXPECT_EQ(asked(), std::nullopt) << "not again at once";
   status.endpoints = all;
   tell();
   NetworkChange another(loop, settings, requests);
-  another.lead_to_endpoints();
+  another.every_second();
   EXPECT_EQ(asked(), std::nullopt) << "it is known";
 }
 
 TEST_F(NetworkChangeTest, AsksNobodyWhereAditNetworkHasOtherInterfaces) {
   status.team_interface = "eth7";
   tell();
-  change.lead_to_endpoints();
+  change.every_second();
   EXPECT_EQ(asked(), std::nullopt);
 }
 

@@ -30,7 +30,7 @@ class StoreTest : public testing::Test {
     settings.team.connections = connections;
     return settings;
   }
-  std::uint32_t connections() const { return store_.load().value().settings.team.connections; }
+  std::uint32_t connections() { return store_.load().value().settings.team.connections; }
   bool kept(const std::string& name) const { return std::filesystem::exists(state_ / name); }
 
   host::Folder given_, state_;
@@ -143,13 +143,13 @@ TEST_F(StoreTest, SetsSavedTokensAsideThatCannotBeRead) {
 TEST_F(StoreTest, KeepsSavedTokensWhereTheFaultIsInAFolderWhoseNameBeginsAsTheirs) {
   (void)store_.save_token("scoring", icd::BearerToken::parse("saved-1"));
   std::filesystem::create_directories(state_ / "secrets.given/mapping.token");
-  const Store store(given_ / "settings.json", state_ / "secrets.given", state_.path());
+  Store store(given_ / "settings.json", state_ / "secrets.given", state_.path());
   EXPECT_THAT(store.load().error(), HasSubstr("secrets.given/mapping.token"));
   EXPECT_TRUE(kept("secrets/scoring.token"));
 }
 
 TEST_F(StoreTest, SaysThatItCannotBeWritten) {
-  const Store nowhere(given_ / "settings.json", given_.path(), state_ / "none");
+  Store nowhere(given_ / "settings.json", given_.path(), state_ / "none");
   EXPECT_THAT(nowhere.save(with_connections(30)).error(), HasSubstr("No such file or directory"));
 }
 

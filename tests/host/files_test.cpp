@@ -1,7 +1,12 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
+#include <signal.h>
 #include <sys/stat.h>
+#include <sys/wait.h>
 #include <unistd.h>
+
+#include <chrono>
+#include <thread>
 
 #include "host/folder.hpp"
 #include "host/service.hpp"
@@ -74,6 +79,35 @@ TEST(WriteFile, LeavesNothingBehindWhenItFails) {
   ASSERT_FALSE(written.has_value());
   EXPECT_THAT(written.error(), HasSubstr(folder / "taken"));
   EXPECT_EQ(std::distance(std::filesystem::directory_iterator(folder.path()), {}), 1);
+}
+
+TEST(WriteFile, LeavesNothingOfAWriteInTheMidstOfWhichDeathCame) {
+  const Folder folder;
+  folder.put("settings.json", "old");
+  folder.put("settings.json.writing", "the beginning of a text that is longer than the n");
+  ASSERT_TRUE(write_file(folder / "settings.json", "new", kOursAlone).has_value());
+  EXPECT_EQ(read_file(folder / "settings.json"), "new");
+  EXPECT_EQ(names_in(folder.path()), std::vector<std::string>{"settings.json"});
+  folder.put("access.json.writing", "half");
+  remove_unwritten(folder.path());
+  EXPECT_EQ(names_in(folder.path()), std::vector<std::string>{"settings.json"});
+  remove_unwritten(folder / "none");
+}
+
+TEST(WriteFile, LeavesOneTemporaryAtMostHoweverOftenDeathComes) {
+  const Folder folder;
+  for (int i = 0; i < 20; ++i) {
+    const pid_t child = fork();
+    if (child == 0) {
+      while (true) (void)write_file(folder / "a", std::string(100'000, 'x'), kForAll);
+    }
+    std::this_thread::sleep_for(std::chrono::milliseconds(3));
+    kill(child, SIGKILL);
+    waitpid(child, nullptr, 0);
+  }
+  const auto names = names_in(folder.path());
+  ASSERT_TRUE(names.has_value());
+  EXPECT_LE(names->size(), 2u);
 }
 
 TEST(WriteFile, SaysThatThereIsNoFolder) {

@@ -22,7 +22,7 @@ using testing::HasSubstr;
 class UntrustedFolderTest : public testing::Test {
  protected:
   std::expected<std::optional<std::string>, UntrustedFolder::Untaken> take(const std::string& name) {
-    const auto opened = UntrustedFolder::open(folder.path());
+    auto opened = UntrustedFolder::open(folder.path());
     EXPECT_TRUE(opened);
     return opened->take(name);
   }
@@ -127,7 +127,7 @@ TEST_F(UntrustedFolderTest, IsNoLinkItself) {
 
 TEST_F(UntrustedFolderTest, ReadsAFileThatStays) {
   folder.put("wanted.json", "{}");
-  const auto opened = UntrustedFolder::open(folder.path());
+  auto opened = UntrustedFolder::open(folder.path());
   ASSERT_TRUE(opened);
   EXPECT_EQ(opened->read("wanted.json").value(), "{}");
   EXPECT_EQ(opened->read("wanted.json").value(), "{}");
@@ -137,7 +137,7 @@ TEST_F(UntrustedFolderTest, ReadsAFileThatStays) {
 }
 
 TEST_F(UntrustedFolderTest, OpensFoldersInItAndNoLinksToOthers) {
-  const auto opened = UntrustedFolder::open(folder.path());
+  auto opened = UntrustedFolder::open(folder.path());
   ASSERT_TRUE(opened);
   EXPECT_FALSE(opened->folder("inside").value());
   ASSERT_EQ(mkdir((folder / "inside").c_str(), 0700), 0);
@@ -147,7 +147,7 @@ TEST_F(UntrustedFolderTest, OpensFoldersInItAndNoLinksToOthers) {
 }
 
 TEST_F(UntrustedFolderTest, NamesSoManyFilesInOrder) {
-  const auto opened = UntrustedFolder::open(folder.path());
+  auto opened = UntrustedFolder::open(folder.path());
   ASSERT_TRUE(opened);
   for (const char* name : {"b", "a"}) folder.put(name, "");
   EXPECT_EQ(opened->names().value(), (std::vector<std::string>{"a", "b"}));
@@ -158,7 +158,7 @@ TEST_F(UntrustedFolderTest, NamesSoManyFilesInOrder) {
 }
 
 TEST_F(UntrustedFolderTest, WipesAFileAndNothingElse) {
-  const auto opened = UntrustedFolder::open(folder.path());
+  auto opened = UntrustedFolder::open(folder.path());
   ASSERT_TRUE(opened);
   folder.put("token", std::string(5000, 'x'));
   ASSERT_EQ(link((folder / "token").c_str(), (folder / "same").c_str()), 0);

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <bit>
+#include <cassert>
 #include <cmath>
 #include <cstring>
 #include <numbers>
@@ -90,6 +91,7 @@ void RobotMap::sweep(const Cave& cave, const Vector3& from, Random& random) {
 }
 
 Grid RobotMap::grid(double stamp) const {
+  assert(low_.x <= high_.x);
   Grid grid;
   grid.stamp = stamp;
   grid.resolution = lattice().resolution;

@@ -8,10 +8,8 @@ command_line::Program import_command_line_of(ImportOptions& options) {
       .usage = "",
       .about =
           "Takes the settings, the network's numbers and the tokens that somebody put on Adit's boot "
-          "partition, all "
-          "of them or, where anything is wrong, nothing; taken.txt beside them says what became of each. "
-          "Runs before "
-          "aditd.",
+          "partition, all of them or, where anything is wrong, nothing; taken.txt beside them says what "
+          "became of each. Runs before aditd.",
       .rows = {{"--card", "DIR", "where they were put: settings.json, network.json, secrets/*.token",
                 &options.card},
                {"--state", "DIR", "aditd's state", &options.state},
@@ -24,8 +22,7 @@ command_line::Program import_command_line_of(ImportOptions& options) {
                {"--help", "", "prints this", &options.help}},
       .ending =
           "Exits 0 also where there was nothing, or what was there is wrong; 1 where what is right could not "
-          "be taken "
-          "(and says why); 2 on a wrong command line.",
+          "be taken (and says why); 2 on a wrong command line.",
   };
 }
 

@@ -22,8 +22,7 @@ command_line::Program command_line_of(Options& options) {
       .usage = "",
       .about =
           "Changes the addresses of Adit's two network interfaces, as aditd asks, by systemd-networkd; and "
-          "takes a "
-          "change back by itself unless it is confirmed in time. Ends once nothing is left to do.",
+          "takes a change back by itself unless it is confirmed in time. Ends once nothing is left to do.",
       .rows = {{"--team", "NAME", "the interface to the team", &options.team},
                {"--command-post", "NAME", "the interface to the Command Post", &options.command_post},
                {"--wanted", "DIR", "where aditd asks", &options.wanted},
@@ -38,8 +37,7 @@ command_line::Program command_line_of(Options& options) {
                {"--help", "", "prints this", &options.help}},
       .ending =
           "Exits 0 once nothing is pending, 1 where it cannot do its work, or what is asked for cannot be "
-          "taken "
-          "away (and says why), 2 on a wrong command line.",
+          "taken away (and says why), 2 on a wrong command line.",
   };
 }
 

@@ -21,10 +21,8 @@ constexpr Form kReportForms[] = {
      "all of one report: its history, the answer that is kept, and what you can do"},
     {"send", Verb::Send, kReports,
      "a held report: it is meant. One in doubt: only where you know that it was not recorded (ask the "
-     "Command Post, "
-     "or look at its count of reports), for else it uses up a second one of the allotment. A refused or "
-     "withdrawn "
-     "one: try it all the same"},
+     "Command Post, or look at its count of reports), for else it uses up a second one of the allotment. A "
+     "refused or withdrawn one: try it all the same"},
     {"hold", Verb::Hold, kReports, "a waiting report: it goes only when you send it"},
     {"withdraw", Verb::Withdraw, kReports,
      "a held or waiting report: it is not to be sent. It can still be sent later"},
@@ -34,27 +32,24 @@ constexpr Form kReportForms[] = {
      "a finished report once more on purpose, as a new one with a number of its own"},
     {"export", Verb::Export, kNothing, "all reports of all runs, as CSV for a spreadsheet or as JSON",
      "--csv"}};
-constexpr Form kAsideForms[] = {{"show", Verb::Show, kNothing, "lists them", "", true},
-                                {"send", Verb::Send, kSetAside,
-                                 "sends it once more, when its turn comes. Adit does not where something "
-                                 "newer that says all of it was sent "
-                                 "since: that would put the older in its place"},
-                                {"discard", Verb::Discard, kSetAside, "forgets it"}};
+constexpr Form kAsideForms[] = {
+    {"show", Verb::Show, kNothing, "lists them", "", true},
+    {"send", Verb::Send, kSetAside,
+     "sends it once more, when its turn comes. Adit does not where something newer that says all of it was "
+     "sent since: that would put the older in its place"},
+    {"discard", Verb::Discard, kSetAside, "forgets it"}};
 constexpr Form kRunForms[] = {{"new", Verb::New, kNothing, "declares that a new run begins"}};
 constexpr Form kSettingsForms[] = {
     {"show", Verb::Show, kNothing,
      "the settings that differ from what is by default, and which tokens are set; with --json all, and what "
-     "each key "
-     "means",
+     "each key means",
      "", true},
     {"check", Verb::Check, kFile,
      "what is wrong with FILE, or what it would change and what to mind. Nothing is changed"},
     {"apply", Verb::Apply, kFile,
      "saves FILE on the box and applies it at once: within a second it is in use, and nobody is cut but who "
-     "is "
-     "connected to an address that goes. Where the new settings cannot be used, those before are in use "
-     "still, and "
-     "`adit status` says why"},
+     "is connected to an address that goes. Where the new settings cannot be used, those before are in use "
+     "still, and `adit status` says why"},
     {"export", Verb::Export, kNothing, "the whole settings file, for `apply`. Tokens are never in it"}};
 constexpr Form kCourseForms[] = {{"", Verb::List, kName, "", "", true}};
 constexpr Form kIdentifyForms[] = {{"", Verb::List, kSeconds, "", "", true}};
@@ -63,8 +58,7 @@ constexpr Form kNetworkForms[] = {
      "which addresses the box has on its two sides, and which change waits to be confirmed", "", true},
     {"confirm", Verb::Confirm, kNothing,
      "the change is good and stays. It must be said at the new address, as what reaches Adit there shows "
-     "that the "
-     "address works: adit finds it by team.interface, or name it by --at"},
+     "that the address works: adit finds it by team.interface, or name it by --at"},
     {"back", Verb::Back, kNothing, "the change is taken back now"}};
 constexpr Form kUpdateForms[] = {{"", Verb::List, kBundle, "", "--stick --restart --again --anyway", true}};
 constexpr Form kCheckForms[] = {{"", Verb::List, kSettingsFile, "", "", true}};
@@ -73,8 +67,8 @@ constexpr CommandRow kCommands[] = {
     {Command::Status, "status", "the run, the Command Post, each robot's maps, and what the operator must do",
      kPlain,
      "First what needs the operator, then the run as the Command Post last told of it, the two endpoints, "
-     "how many "
-     "reports are in which state, and a row for each robot and kind of update. Its column 'arriving' says:\n"
+     "how many reports are in which state, and a row for each robot and kind of update. Its column "
+     "'arriving' says:\n"
      "  yes      the Command Post took the last one\n"
      "  late     one has waited for over 10 s\n"
      "  NO       the Command Post refused the last one, or could not be reached: the row says why\n"
@@ -88,12 +82,9 @@ constexpr CommandRow kCommands[] = {
     {Command::Reports, "reports",
      "every artifact report and what became of it; and your word on those that wait for it", kReportForms,
      "Without a word: a row for each report of the present run, and for those of other runs that are not "
-     "finished, "
-     "the newest first; with --run those of one run or of all. A line at the end says how many there are of "
-     "other "
-     "runs that are not listed: of earlier ones, and of those at other Command Posts. A report in doubt "
-     "holds up no "
-     "other: take your time.\n"
+     "finished, the newest first; with --run those of one run or of all. A line at the end says how many "
+     "there are of other runs that are not listed: of earlier ones, and of those at other Command Posts. A "
+     "report in doubt holds up no other: take your time.\n"
      "\n"
      "The states (as the JSON and the CSV name them, where that is another word):\n"
      "  held              waits for your word before it is sent; the row says why: a near duplicate,\n"
@@ -124,24 +115,17 @@ constexpr CommandRow kCommands[] = {
     {Command::Aside, "aside",
      "maps, states and markers that the Command Post would not take, and your word on them", kAsideForms,
      "Each message that was set aside: because the Command Post refused it (400, 413, 422), or because it "
-     "failed at "
-     "it again and again (500) while others passed. They are kept, the newest hundred, until you say what "
-     "becomes of "
-     "them.",
+     "failed at it again and again (500) while others passed. They are kept, the newest hundred, until you "
+     "say what becomes of them.",
      "nothing needs your word; of your word: it is done",
      "something is set aside that nothing newer has replaced, or your word could not be done", ""},
     {Command::Run, "run", "tells Adit that a new run begins", kRunForms,
      "Adit notices a new run by itself where the run's name or the team changes, where more reports are left "
-     "than "
-     "before, or where a run clock that was seen to run goes back. Where only that clock tells of it, the "
-     "same "
-     "report as one of the run before is held until an answer names the run. Where Adit cannot notice it "
-     "(the next "
-     "run went on from the same clock), this declares it. Reports that were not sent before are held, so "
-     "that none "
-     "of the old run is sent into the new one unless you say so: adit reports send. The same report as one "
-     "of an "
-     "earlier run is then a new report.",
+     "than before, or where a run clock that was seen to run goes back. Where only that clock tells of it, "
+     "the same report as one of the run before is held until an answer names the run. Where Adit cannot "
+     "notice it (the next run went on from the same clock), this declares it. Reports that were not sent "
+     "before are held, so that none of the old run is sent into the new one unless you say so: adit reports "
+     "send. The same report as one of an earlier run is then a new report.",
      "a new run has begun", "", "  sudo adit run new"},
     {Command::Settings, "settings", "what the running Adit is set to, and changes to it", kSettingsForms, "",
      "all is well", "something is wrong with FILE, or somebody else changed the settings at the same time",
@@ -149,27 +133,20 @@ constexpr CommandRow kCommands[] = {
      "  sudo adit settings check box.json && sudo adit settings apply box.json"},
     {Command::Course, "course", "switches to the Command Post of another course", kCourseForms,
      "NAME is one of the courses in the settings; \"\" means none, the endpoints of command_post itself. It "
-     "says how "
-     "many reports wait, are in doubt or are held: they are kept for the run at the old endpoint, and none "
-     "of them is "
-     "sent to the new one unless you say so (adit reports send). Back there, that run is taken up again with "
-     "its "
-     "reports: what waits goes, what is in doubt is found out, and the same report again gets the recorded "
-     "answer. "
-     "Where nothing was heard from the old endpoint (a mistyped address), what waits is sent to the first "
-     "that "
-     "answers.",
+     "says how many reports wait, are in doubt or are held: they are kept for the run at the old endpoint, "
+     "and none of them is sent to the new one unless you say so (adit reports send). Back there, that run is "
+     "taken up again with its reports: what waits goes, what is in doubt is found out, and the same report "
+     "again gets the recorded answer. Where nothing was heard from the old endpoint (a mistyped address), "
+     "what waits is sent to the first that answers.",
      "the course is in use", "there is no such course", "  sudo adit course B"},
     {Command::Identify, "identify", "makes the box's lights flash, to tell it from others", kIdentifyForms,
      "All lights flash twice a second, together, for SECONDS (1 to 60; 10 if not given): no condition shows "
-     "that. "
-     "Then they show again how things stand.",
+     "that. Then they show again how things stand.",
      "they flash", "", "  sudo adit identify 30"},
     {Command::Network, "network", "the box's own addresses, and your word on a change of them that waits",
      kNetworkForms,
      "A change is made on the page. It is tried at once, and takes itself back unless it is confirmed in "
-     "time "
-     "(network.confirm_within_ms), so that a wrong address costs a minute and not the box.",
+     "time (network.confirm_within_ms), so that a wrong address costs a minute and not the box.",
      "no change waits; of your word: it is done",
      "a change waits; of your word: none waits, or it cannot be said there",
      "  sudo adit network\n"
@@ -189,25 +166,19 @@ constexpr CommandRow kCommands[] = {
      "  sudo adit test --json | jq '.endpoints[].steps[] | select(.state == \"bad\")'"},
     {Command::Update, "update", "the box's version, and the installation of another", kUpdateForms,
      "Without a word it tells which version runs, in which of the two slots, and what became of the last "
-     "update. "
-     "FILE is an update, adit-BOARD-VERSION.raucb: it is sent to the box, checked there, and installed into "
-     "the slot "
-     "that does not run. That takes some minutes, and all goes on meanwhile.\n"
+     "update. FILE is an update, adit-BOARD-VERSION.raucb: it is sent to the box, checked there, and "
+     "installed into the slot that does not run. That takes some minutes, and all goes on meanwhile.\n"
      "\n"
      "What is installed is on trial: it stays once it has been healthy for a minute; where it does not come "
-     "up in "
-     "three starts, the box goes back to the version before by itself. Another board's update, one that is "
-     "not "
-     "signed with a key that the box knows, and an older version are refused.",
+     "up in three starts, the box goes back to the version before by itself. Another board's update, one "
+     "that is not signed with a key that the box knows, and an older version are refused.",
      "all is well",
      "the update was refused, failed or was left; a report is under way; nothing can be updated here",
      "  sudo adit update adit-qemu-virt-0.2.0.raucb && sudo adit update --restart"},
     {Command::Check, "check", "all that is wrong with a settings file, at once", kCheckForms,
      "Reads SETTINGS (/etc/adit/settings.json if not given) exactly as aditd would, and names each error by "
-     "the path "
-     "of its key, with what was expected and what was found. Of good settings it says what they come to. It "
-     "neither "
-     "asks nor changes a running Adit.",
+     "the path of its key, with what was expected and what was found. Of good settings it says what they "
+     "come to. It neither asks nor changes a running Adit.",
      "aditd would take the file", "it would not",
      "  adit check\n"
      "  adit check new.json && sudo install -m 644 new.json /etc/adit/settings.json"},

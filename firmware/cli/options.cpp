@@ -180,15 +180,12 @@ command_line::Program command_line_of(Options& options) {
                 &options.at},
                {"--settings", "FILE",
                 "the settings to find that in. If not given, those saved in /var/lib/adit/settings.json, or "
-                "else those that "
-                "came with the box",
+                "else those that came with the box",
                 &options.settings},
                {"--token-file", "FILE",
                 "what lets you in: a file that holds the team's token or the scoring token. If not given, "
-                "the first "
-                "of team.token and scoring.token in /var/lib/adit/secrets and /etc/adit/secrets that can be "
-                "read (by "
-                "root)",
+                "the first of team.token and scoring.token in /var/lib/adit/secrets and /etc/adit/secrets "
+                "that can be read (by root)",
                 &options.token_file},
                {"--json", "", "for scripts: what Adit itself says, as JSON", &options.json},
                {"--help", "", "this, or more about a command", &options.help}},

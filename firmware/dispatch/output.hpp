@@ -21,7 +21,7 @@ struct ClientAnswer {
   std::string sentence = "";
 };
 
-/// When what is written must outlive a power cut; the end of this program it outlives at once in either case.
+/// By when what is written must be safe from a power cut. From the end of this program it is safe at once.
 enum class Flush : std::uint8_t {
   Now,   // before anything follows from it
   Soon,  // within milliseconds: what has happened, and what the step before it lets Adit find out again

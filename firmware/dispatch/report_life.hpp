@@ -17,7 +17,7 @@ enum class ReportState : std::uint8_t {
   Refused,    // the Command Post said that it did not record it, and that asking again is no use
   InDoubt,    // its bytes may have left and no answer is known; only evidence or the operator moves it on
   Settled,    // no answer came, but it is known, or the operator says, that there is nothing left to do
-  Withdrawn,  // the operator took it back before it was sent, or it turned out to be another one again
+  Withdrawn,  // the operator took it back before it was sent, or it is a repeat of an earlier one
 };
 
 enum class ReportEvent : std::uint8_t {
@@ -36,7 +36,7 @@ enum class ReportEvent : std::uint8_t {
   CalledDone,  // the operator says that nothing is left to do
   Withdrawn,   // the operator takes it back
   Joined,      // it is the same as an earlier one, whose answer it gets
-  Cleared,     // it is none of an earlier run's again: it was held as long as that was not known
+  Cleared,     // it is no repeat of an earlier run's report; it was held until that was known
   Restarted,   // this program began anew and found it so
 };
 

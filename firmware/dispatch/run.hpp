@@ -20,9 +20,9 @@ struct Clock {
 /// `seen` after the clock shows `shows`.
 Clock seen_again(const std::optional<Clock>& seen, double shows);
 
-/// One run of the Command Post, as far as it is known. Which run one is, is told by where the Command Post
-/// is, by the team, and by the name that its answers give it; where those are the same, by what its status
-/// says (run_watch.hpp).
+/// One run of the Command Post, as far as it is known. Three things tell runs apart: where the Command Post
+/// is, the team, and the name that its answers give the run; where those are the same, its status does
+/// (run_watch.hpp).
 struct Run {
   std::int64_t number = 1;                            // Adit's own, from 1
   std::string id = "";                                // the Command Post's (ICD 5.2 `run`); "": not heard yet

@@ -10,23 +10,20 @@ command_line::Program command_line_of(Options& options) {
       .about = "Adit's gateway between a robot team and the Command Post.",
       .rows = {{"--settings", "FILE",
                 "the settings (JSON, version 1) unless others were saved; `adit check FILE` explains what is "
-                "wrong with "
-                "them",
+                "wrong with them",
                 &options.settings, Wanted::Always},
                {"--secrets", "DIR",
                 "may hold scoring.token, mapping.token, team.token and label.code, readable by nobody else",
                 &options.secrets, Wanted::Always},
                {"--state", "DIR",
                 "where the ledger of reports is kept, and what is set up by the page: settings.json and "
-                "secrets/, which "
-                "count before the other two; made where it is absent",
+                "secrets/, which count before the other two; made where it is absent",
                 &options.state, Wanted::Always},
                {"--network", "DIR", "where adit-network tells how it stands", &options.network},
                {"--update", "DIR", "where adit-update tells how it stands", &options.update},
                {"--board", "FILE",
                 "what the board is, and where its lights and its button are: counts before the settings' "
-                "panel; may be "
-                "absent",
+                "panel; may be absent",
                 &options.board},
                {"--notices", "DIR", "sentences for the operator, a file each, of whatever started the box",
                 &options.notices},
@@ -34,8 +31,7 @@ command_line::Program command_line_of(Options& options) {
                {"--help", "", "prints this", &options.help}},
       .ending =
           "What waits and who is logged in is kept across a restart in $RUNTIME_DIRECTORY, or else in the "
-          "state "
-          "folder.\n"
+          "state folder.\n"
           "Exits 0 after SIGTERM or SIGINT, 1 where it cannot start (and says why), 2 on a wrong command "
           "line.",
       .empty = command_line::Empty::Taken,

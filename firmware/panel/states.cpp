@@ -10,9 +10,9 @@ constexpr auto kOff = Pattern::Off, kOn = Pattern::On, kSlow = Pattern::Slow, kF
                kTwice = Pattern::Twice, kFlash = Pattern::Flash, kWink = Pattern::Wink, kRush = Pattern::Rush,
                kDigits = Pattern::Digits;
 
-// What somebody at the box does comes before what the box would tell by itself, and of that what is worse
-// before what is better. An operator's action that waits does not hide that set-up is open: who opened it has
-// to see until when, and the page tells of the other.
+// What somebody at the box has just done comes first, and then the worse before the better. Open set-up comes
+// before an operator's action that waits: whoever opened it must see how long it stays open, and the page
+// shows the action that waits.
 constexpr StateRow kTable[] = {
     {State::Fault,
      "fault",

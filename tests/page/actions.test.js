@@ -87,7 +87,7 @@ test("shows the box's sentence where an action cannot be", async (t) => {
 test("lets a viewer look, and says why no more", async (t) => {
   const prepare = (page) => page.route("**/adit/session", (route) => route.fulfill({ json: { role: "viewer", csrf: "x", first_start: false } }));
   const { page } = await watch(t, "reports", { prepare });
-  await said(page, "Only an operator can do something");
+  await said(page, "Only an operator can act");
   for (const one of await page.locator("#reports .actions button, #reports button.compose").all()) assert.ok(await one.isDisabled());
   await page.keyboard.press("n");
   assert.ok(await page.locator("#compose").isHidden());

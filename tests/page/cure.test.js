@@ -52,7 +52,7 @@ test("offers a viewer nothing", async (t) => {
     await page.route("**/adit/session", (route) => route.fulfill({ json: { role: "viewer", csrf: "x", first_start: false } }));
   };
   const { page } = await watch(t, "trouble", { prepare });
-  await said(page, "Only an operator can do something");
+  await said(page, "Only an operator can act");
   await said(page, "the setting rules.rewrite_frame_id takes any");
   assert.equal(await cures(page).count(), 0);
 });

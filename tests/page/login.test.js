@@ -65,10 +65,10 @@ test("sets the first password with the code of the box", async (t) => {
   const { page } = await come(t, "", ["first-start"]);
   await page.getByLabel("Code").fill("12345678");
   await page.getByLabel("New password").fill("a new password");
-  await page.getByLabel("The same once more").fill("another password");
+  await page.getByLabel("Repeat the password").fill("another password");
   await page.keyboard.press("Enter");
   await page.getByRole("alert").getByText("differ").waitFor();
-  await page.getByLabel("The same once more").fill("a new password");
+  await page.getByLabel("Repeat the password").fill("a new password");
   await page.getByLabel("Code").fill("11111111");
   await page.keyboard.press("Enter");
   await page.getByRole("alert").getByText("that is not the code").waitFor();
@@ -85,7 +85,7 @@ test("offers a new password without the code while set-up is open, beside the lo
   assert.equal(await page.getByLabel("Code").count(), 0);
   assert.ok(await page.locator("#login").isVisible());
   await first.getByLabel("New password").fill("a new password");
-  await first.getByLabel("The same once more").fill("a new password");
+  await first.getByLabel("Repeat the password").fill("a new password");
   await page.keyboard.press("Enter");
   await live(page);
   await isLoggedInAs(page, "operator");

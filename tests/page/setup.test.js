@@ -12,7 +12,7 @@ test("leads from an empty box to a first report through it", async (t) => {
   await page.waitForURL(/login\.html/);
   await page.getByLabel("Code").fill(box.code());
   await page.getByLabel("New password").fill(PASSWORD);
-  await page.getByLabel("The same once more").fill(PASSWORD);
+  await page.getByLabel("Repeat the password").fill(PASSWORD);
   await page.keyboard.press("Enter");
   await page.waitForURL(/\/setup$/);
   await hears(page, "Not set up yet: the scoring and the mapping token are missing.");
@@ -133,7 +133,7 @@ test("switches to another course by one press, once it was said what that change
     await type(page, `courses[1].${name}`, String(value));
   }
   assert.ok(await page.getByRole("button", { name: "Switch to Course A" }).isDisabled(), "what was typed comes first");
-  await page.getByRole("button", { name: "Look and apply" }).click();
+  await page.getByRole("button", { name: "Apply changes" }).click();
   await review(page);
   await page.getByRole("button", { name: "Apply", exact: true }).click();
   await hears(page, /Applied\./);
@@ -159,7 +159,7 @@ test("switches to another course by one press, once it was said what that change
   await page.locator("#review").getByRole("button", { name: "Leave it" }).click();
   assert.equal((await ask("/adit/settings")).said.settings.command_post.course, "B");
   await page.getByRole("button", { name: "Remove: Course 1" }).click();
-  await page.getByRole("button", { name: "Look and apply" }).click();
+  await page.getByRole("button", { name: "Apply changes" }).click();
   await page.getByRole("button", { name: "Apply", exact: true }).click();
   await hears(page, /Applied\./);
   assert.deepEqual((await ask("/adit/settings")).said.settings.courses.map(({ name }) => name), ["B"]);
@@ -174,7 +174,7 @@ test("gives all settings as a file, and takes one that is checked and shown firs
   assert.deepEqual(settings, (await ask("/adit/settings")).said.settings);
   const give = (what) => page.getByLabel("Settings from a file").setInputFiles({ name: "mine.json", mimeType: "application/json", buffer: Buffer.from(what) });
   await give("no JSON");
-  await page.getByText("That is no JSON").waitFor();
+  await page.getByText("That is not JSON").waitFor();
   await give(" ".repeat(300_000));
   await page.getByText("That is too long").waitFor();
   await give("[]");
@@ -206,17 +206,17 @@ test("finds a setting by its name or its meaning, and changes it", async (t) => 
   await page.getByText("1 found.").waitFor();
   await page.getByLabel("reports.review").selectOption("all");
   await search.fill("no such thing at all");
-  await page.getByText("No setting is called so").waitFor();
+  await page.getByText("No setting matches").waitFor();
   await search.fill("map_hz");
   await page.getByLabel("command_post.rates.map_hz").fill("0.5");
   await search.fill("require_token");
   await page.getByLabel("team.require_token").uncheck();
-  await page.getByRole("button", { name: "Look and apply" }).click();
+  await page.getByRole("button", { name: "Apply changes" }).click();
   assert.deepEqual(await review(page), [["command_post.rates.map_hz", "1", "0.5"], ["team.require_token", "true", "false"], ["reports.review", "off", "all"]]);
   await page.locator("#review .warnings").getByText("without a token").waitFor();
   await page.getByRole("button", { name: "Leave it" }).click();
   await hears(page, "3 changes not yet applied");
-  await page.getByRole("button", { name: "Look and apply" }).click();
+  await page.getByRole("button", { name: "Apply changes" }).click();
   await page.getByRole("button", { name: "Apply", exact: true }).click();
   await hears(page, /Applied\./);
   const { settings } = (await ask("/adit/settings")).said;
@@ -226,7 +226,7 @@ test("finds a setting by its name or its meaning, and changes it", async (t) => 
 test("says where the page goes when it moves, and takes back what the box cannot use", async (t) => {
   const { page } = await ready(t, "setup#network");
   await type(page, "team.listen[0].address", "203.0.113.7");
-  await page.getByRole("button", { name: "Look and apply" }).click();
+  await page.getByRole("button", { name: "Apply changes" }).click();
   await page.locator("#review .warnings").getByText("this page move").waitFor();
   const movesTo = page.evaluate(() => new Promise((found, missed) => { // shown until it is taken back, which may be soon
     const says = () => [...document.querySelectorAll("#typed a")].some((link) => link.textContent.includes("http://203.0.113.7:"));
@@ -238,7 +238,7 @@ test("says where the page goes when it moves, and takes back what the box cannot
   const port = await freePort();
   await type(page, "team.listen[0].address", "127.0.0.1");
   await type(page, "team.listen[0].port", String(port));
-  await page.getByRole("button", { name: "Look and apply" }).click();
+  await page.getByRole("button", { name: "Apply changes" }).click();
   await page.getByRole("button", { name: "Apply", exact: true }).click();
   const link = page.locator("#typed a", { hasText: `http://127.0.0.1:${port}/setup#network` });
   await link.waitFor();

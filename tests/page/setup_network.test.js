@@ -29,7 +29,7 @@ async function come(t, url) {
   if (await page.locator("#first").isVisible()) {
     await page.getByLabel("Code").fill(box.code());
     await page.getByLabel("New password").fill(PASSWORD);
-    await page.getByLabel("The same once more").fill(PASSWORD);
+    await page.getByLabel("Repeat the password").fill(PASSWORD);
   } else {
     await page.locator("#login").getByLabel("Password").fill(PASSWORD);
   }
@@ -75,7 +75,7 @@ test("says what is wrong with the addresses as they are typed, and what a change
   await team(page, "Address").fill("10.100.1.77/24");
   await page.locator("#addresses .wrong", { hasText: "10.100.1.0/24 overlaps 10.100.0.0/16" }).waitFor();
   await page.getByLabel("Allow the team’s subnet to overlap").check();
-  await page.getByRole("button", { name: "Look and apply" }).click();
+  await page.getByRole("button", { name: "Apply changes" }).click();
   await review(page);
   await page.getByRole("button", { name: "Apply", exact: true }).click();
   await hears(page, /Applied\./);

@@ -23,7 +23,7 @@ test("checks the names of robots as they are typed", async (t) => {
     await page.keyboard.type(name);
   }
   await page.locator("[data-path='robots[1].name'] .wrong", { hasText: "the same as robots[0].name" }).waitFor();
-  await page.getByRole("button", { name: "Look and apply" }).click();
+  await page.getByRole("button", { name: "Apply changes" }).click();
   await focusIsAt(page, "robots[1].name"); // the error
   await type(page, "robots[1].name", "uav1");
   await type(page, "robots[1].alias", "ugv1");
@@ -32,7 +32,7 @@ test("checks the names of robots as they are typed", async (t) => {
   await page.locator("[data-path='robots[1].alias'] .wrong", { hasText: "visible ASCII" }).waitFor();
   await type(page, "robots[1].alias", "drone-1");
   await hears(page, /changes? not yet applied/);
-  await page.getByRole("button", { name: "Look and apply" }).click();
+  await page.getByRole("button", { name: "Apply changes" }).click();
   await review(page);
   await page.getByRole("button", { name: "Apply", exact: true }).click();
   await hears(page, /Applied\./);
@@ -98,12 +98,12 @@ test("shows two operators what each has done, and lets one go on from the newer"
   await type(other, "command_post.scoring.port", "8002");
   await type(other, "command_post.mapping.port", "8003");
   for (const [each, port] of [[other, "8002"]]) {
-    await each.getByRole("button", { name: "Look and apply" }).click();
+    await each.getByRole("button", { name: "Apply changes" }).click();
     assert.match(JSON.stringify(await review(each)), new RegExp(port));
     await each.getByRole("button", { name: "Apply", exact: true }).click();
     await hears(each, /Applied\./);
   }
-  await page.getByRole("button", { name: "Look and apply" }).click();
+  await page.getByRole("button", { name: "Apply changes" }).click();
   await page.getByRole("heading", { name: "Somebody else has saved settings meanwhile" }).waitFor();
   assert.deepEqual(await review(page), [["command_post.scoring.port", "1", "8002", "8001"], ["command_post.mapping.port", "2", "8003", "2"]]);
   await page.getByRole("button", { name: "Go on with mine over theirs" }).click();
@@ -119,7 +119,7 @@ test("shows two operators what each has done, and lets one go on from the newer"
   await hears(other, /change/);
   await page.evaluate(() => (location.hash = "robots"));
   await page.getByRole("button", { name: "Remove: Robot 2" }).click();
-  await page.getByRole("button", { name: "Look and apply" }).click();
+  await page.getByRole("button", { name: "Apply changes" }).click();
   await review(page);
   const saved = await ask("/adit/settings/check", { settings: {} });
   assert.equal(saved.status, 200);
@@ -130,13 +130,13 @@ test("shows two operators what each has done, and lets one go on from the newer"
   await page.getByRole("button", { name: "Apply", exact: true }).click();
   await page.getByRole("heading", { name: "Somebody else has saved settings meanwhile" }).waitFor();
   await page.getByRole("button", { name: "Go on with mine over theirs" }).click();
-  await page.getByRole("button", { name: "Look and apply" }).click();
+  await page.getByRole("button", { name: "Apply changes" }).click();
   assert.deepEqual((await review(page)).map(([path]) => path.replace(/\..*/, "")), ["robots[ugv2]", "robots[ugv2]"]);
   await page.getByRole("button", { name: "Apply", exact: true }).click();
   await hears(page, /Applied\./);
   assert.deepEqual((await ask("/adit/settings")).said.settings.robots.map(({ name }) => name), ["ugv1", "uav1"]);
 
-  await other.getByRole("button", { name: "Look and apply" }).click();
+  await other.getByRole("button", { name: "Apply changes" }).click();
   await other.getByRole("button", { name: "Drop mine" }).click();
   await other.waitForFunction(() => document.querySelector("#typed").hidden);
   assert.equal(await field(other, "command_post.mapping.port").locator("input").inputValue(), "8003");
@@ -150,7 +150,7 @@ test("loses nothing that was typed when the box is lost in the middle of it", as
   await page.keyboard.type("v1");
   await hears(page, "Box lost");
   await hears(page, "What you typed is kept");
-  await page.getByRole("button", { name: "Look and apply" }).click();
+  await page.getByRole("button", { name: "Apply changes" }).click();
   assert.equal(await field(page, "robots[0].name").locator("input").inputValue(), "ugv1");
   await box.startAditd();
   await hears(page, "Live");
@@ -158,7 +158,7 @@ test("loses nothing that was typed when the box is lost in the middle of it", as
   await page.reload();
   await hears(page, /1 change|2 changes/);
   assert.equal(await field(page, "robots[0].name").locator("input").inputValue(), "ugv1", "kept through a reload, too");
-  await page.getByRole("button", { name: "Look and apply" }).click();
+  await page.getByRole("button", { name: "Apply changes" }).click();
   await review(page);
   await box.end("aditd", "SIGKILL");
   const isPost = (request) => request.method() === "POST" && request.url().endsWith("/adit/settings");
@@ -173,6 +173,6 @@ test("is opened at the setting that a refusal names", async (t) => {
   const { page } = await ready(t, "setup?setting=rules.rewrite_frame_id#all");
   await focusIsAt(page, "rules.rewrite_frame_id");
   await page.keyboard.press("Space");
-  await page.getByRole("button", { name: "Look and apply" }).click();
+  await page.getByRole("button", { name: "Apply changes" }).click();
   assert.deepEqual(await review(page), [["rules.rewrite_frame_id", "false", "true"]]);
 });

@@ -55,7 +55,7 @@ test("shows of the log what is asked for, and gives the same as a file", async (
   assert.equal(download.suggestedFilename(), "adit-log.txt");
   assert.equal(await readFile(await download.path(), "utf8"), "error: the ledger cannot be written note=disk I/O error\n");
   await page.getByLabel("Holding the text").fill("nobody said this & that");
-  await page.getByText("Nothing that is asked for.").waitFor();
+  await page.getByText("No record matches.").waitFor();
   await page.getByLabel("Holding the text").fill("");
   await page.getByLabel("Shown").selectOption("Everything");
   await untilRows(page, 4);

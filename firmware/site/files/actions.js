@@ -33,7 +33,7 @@ let role = null, lost = false; // null: not learned yet
 
 /** Why nothing can be done now, or "". */
 export const barred = () =>
-  lost ? "Nothing can be done while the box does not answer." : role === null ? "Asking who you are." : role !== "operator" ? "Only an operator can do something: log in as one." : "";
+  lost ? "Nothing can be done while the box does not answer." : role === null ? "Asking who you are." : role !== "operator" ? "Only an operator can act: log in as one." : "";
 
 export function linkIs(isLost) {
   if (lost && !isLost) learnRole();

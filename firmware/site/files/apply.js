@@ -84,7 +84,7 @@ async function settle() {
   const paths = [...new Set([...theirs.keys(), ...own.keys()])].filter(isOther);
   const answer = await reviewed({
     title: "Somebody else has saved settings meanwhile",
-    text: "What is in use now is in the column Theirs. Go on from it: what you changed yourself is put over it, and can still be changed.",
+    text: "Theirs is in use now. Go on from it: your own changes are put over it, and you can still edit them.",
     columns: ["Before", "Theirs", "Yours"],
     changes: paths.map((path) => [path, was.get(path), theirs.get(path), own.get(path)]),
     word: "Go on with mine over theirs",
@@ -200,11 +200,11 @@ function reportFile(text, { isBad = true, errors = [] } = {}) {
 }
 
 async function readFile(file) {
-  if (file.size > MOST) throw new Error("That is too long for a file of settings.");
+  if (file.size > MOST) throw new Error("That is too long for a settings file.");
   try {
     return JSON.parse(await file.text());
   } catch {
-    throw new Error("That is no JSON, and so no file of settings.");
+    throw new Error("That is not JSON, so no settings file.");
   }
 }
 

@@ -153,6 +153,6 @@ export function showAll() {
     for (const field of place.querySelectorAll(".field")) field.hidden = !words.every((word) => field.textContent.toLowerCase().includes(word));
     for (const group of place.children) group.hidden = !group.querySelector(".field:not([hidden])");
     const found = place.querySelectorAll(".field:not([hidden])").length;
-    say(empty, !search.value ? "" : found ? `${found} found.` : "No setting is called so, or means that.");
+    say(empty, !search.value ? "" : found ? `${found} found.` : "No setting matches.");
   });
 }

@@ -40,7 +40,7 @@ icd::MapUpdate grid(const char* name, std::uint8_t value) {
 }
 
 TEST_F(SpoolTest, GivesBackWhatItKeptByNumberUntilItIsForgotten) {
-  const Spool spool(folder_ / "waiting");
+  Spool spool(folder_ / "waiting");
   for (const std::uint64_t number : {9, 100'000'000, 10})
     ASSERT_TRUE(spool.keep(number, grid("r1", static_cast<std::uint8_t>(number % 100)), 0));
   spool.forget(10);
@@ -53,7 +53,7 @@ TEST_F(SpoolTest, GivesBackWhatItKeptByNumberUntilItIsForgotten) {
 }
 
 TEST_F(SpoolTest, ReadsTheStateAndMarkersOfAReleaseBeforeTheJournalUntilTheyAreForgotten) {
-  const Spool spool(folder_);
+  Spool spool(folder_);
   std::ofstream(folder_ / "state.cbor", std::ios::binary) << codec::write_state_update(state()).to_string();
   std::ofstream(folder_ / "markers.cbor", std::ios::binary)
       << codec::write_markers_update(markers()).to_string();
@@ -68,7 +68,7 @@ TEST_F(SpoolTest, ReadsTheStateAndMarkersOfAReleaseBeforeTheJournalUntilTheyAreF
 }
 
 TEST_F(SpoolTest, ReadsTheMapsOfAReleaseThatWroteTheirDataLast) {
-  const Spool spool(folder_);
+  Spool spool(folder_);
   std::ofstream(folder_ / "map-00000004.cbor", std::ios::binary)
       << codec::write_map_update(cloud(1000)).to_string();
   const auto kept = spool.read();
@@ -77,14 +77,14 @@ TEST_F(SpoolTest, ReadsTheMapsOfAReleaseThatWroteTheirDataLast) {
 }
 
 TEST_F(SpoolTest, IsReadableByNobodyElse) {
-  const Spool spool(folder_ / "waiting");
+  Spool spool(folder_ / "waiting");
   struct stat status{};
   ASSERT_EQ(::stat((folder_ / "waiting").c_str(), &status), 0);
   EXPECT_EQ(status.st_mode & 0777, 0700u);
 }
 
 TEST_F(SpoolTest, SetsAsideWhatItCannotReadAndGoesOn) {
-  const Spool spool(folder_);
+  Spool spool(folder_);
   ASSERT_TRUE(spool.keep(1, grid("r1", 1), 0));
   ASSERT_TRUE(spool.keep(2, grid("r2", 2), 0));
   std::ofstream(folder_ / "map-00000001.cbor") << "not a map";
@@ -95,14 +95,14 @@ TEST_F(SpoolTest, SetsAsideWhatItCannotReadAndGoesOn) {
 }
 
 TEST_F(SpoolTest, TakesNothingForAMapThatWasNotWrittenToItsEnd) {
-  const Spool spool(folder_);
+  Spool spool(folder_);
   std::ofstream(folder_ / "map-00000003.cbor.part") << "half";
   std::ofstream(folder_ / "map-x.cbor") << "no number";
   EXPECT_TRUE(spool.read().maps.empty());
 }
 
 TEST_F(SpoolTest, GivesAMapBackWithItsDataInTheFileWhichLivesOnWhenItIsForgotten) {
-  const Spool spool(folder_);
+  Spool spool(folder_);
   const icd::MapUpdate whole = cloud(40'000);
   const auto kept = spool.keep(7, whole, 0);
   ASSERT_TRUE(kept) << kept.error().sentence;
@@ -121,14 +121,14 @@ TEST_F(SpoolTest, GivesAMapBackWithItsDataInTheFileWhichLivesOnWhenItIsForgotten
 }
 
 TEST_F(SpoolTest, KeepsACloudWithoutPoints) {
-  const Spool spool(folder_);
+  Spool spool(folder_);
   const auto kept = spool.keep(1, cloud(0), 0);
   ASSERT_TRUE(kept);
   EXPECT_EQ(*kept, cloud(0));
 }
 
 TEST_F(SpoolTest, RefusesAMapForWhichThereIsNoRoomAndLeavesNoFile) {
-  const Spool spool(folder_);
+  Spool spool(folder_);
   const auto kept = spool.keep(1, cloud(1000), std::uint64_t{1} << 62);
   ASSERT_FALSE(kept);
   EXPECT_EQ(kept.error().status, icd::Status::ServiceUnavailable);
@@ -143,7 +143,7 @@ TEST_F(SpoolTest, LeavesRoomForWhatOthersWriteBesideMaps) {
   const std::uint64_t all_but_half_of_theirs = left - std::min(left, quarter) / 2;
   EXPECT_TRUE(Spool(folder_).has_room(all_but_half_of_theirs));
   EXPECT_TRUE(Spool(folder_).keep(1, cloud(10), all_but_half_of_theirs));
-  const Spool polite(folder_, std::uint64_t{1} << 62);
+  Spool polite(folder_, std::uint64_t{1} << 62);
   EXPECT_FALSE(polite.has_room(all_but_half_of_theirs));
   EXPECT_FALSE(polite.keep(2, cloud(10), all_but_half_of_theirs));
   if (left > quarter + quarter / 4) {
@@ -159,7 +159,7 @@ TEST_F(SpoolTest, RemovesTheFileOfAMapThatWasNotWrittenToItsEnd) {
 
 TEST_F(SpoolTest, RefusesEveryMapWhereItsFolderCannotBeWritten) {
   std::ofstream(folder_ / "file") << "";
-  const Spool spool(folder_ / "file" / "waiting");
+  Spool spool(folder_ / "file" / "waiting");
   EXPECT_NE(spool.trouble(), "");
   const auto kept = spool.keep(1, grid("r1", 1), 0);
   ASSERT_FALSE(kept);

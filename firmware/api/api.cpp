@@ -78,11 +78,11 @@ class Api::Impl {
               .asker = *asker,
               .parameters = std::move(found.parameters),
               .body = {}};
-    if (route.body.type.empty() || route.body.as_it_comes) return route.handle.call(handlers_, call);
+    if (route.body.type.empty() || route.body.as_it_comes) return handle(route, call);
     return std::make_unique<SmallBody>(call.responder, route.body.most,
                                        [this, &route, call](std::string body) mutable {
                                          call.body = std::move(body);
-                                         route.handle.call(handlers_, call);
+                                         handle(route, call);
                                        });
   }
 
@@ -90,6 +90,12 @@ class Api::Impl {
   void let_in(std::vector<icd::BearerToken> tokens) { entrance_.let_in(std::move(tokens)); }
 
  private:
+  std::unique_ptr<intake::BodySink> handle(const Route& route, const Call& call) const {
+    if (route.handle.answer == nullptr) return route.handle.begin(handlers_, call);
+    call.responder->answer(route.handle.answer(handlers_, call));
+    return nullptr;
+  }
+
   template <class Routes>
   static Routes* at(std::optional<Routes>& routes) {
     return routes ? &*routes : nullptr;

@@ -1,14 +1,17 @@
 #pragma once
 
 #include <span>
-#include <string>
 
-#include "api/route.hpp"
+#include "site/site.hpp"
 
-namespace adit::api {
+/// The description of the API, OpenAPI 3.1 under gzip: describe.jq writes it at build time.
+namespace adit::api::open_api {
 
-/// The API described for programs, by OpenAPI 3.1 (JSON): `paths` is made of the routes, what they have in
-/// common is openapi.json, the messages' schemas are schemas.json.
-std::string write_description(std::span<const Route> routes);
+using site::File;
+std::span<const File> embedded_files();
 
-}  // namespace adit::api
+inline const File& description() {
+  return embedded_files().front();
+}
+
+}  // namespace adit::api::open_api

@@ -2,10 +2,8 @@
 
 #include <concepts>
 #include <memory>
-#include <optional>
 #include <string>
 #include <type_traits>
-#include <utility>
 
 #include "api/answers.hpp"
 #include "api/number_in.hpp"
@@ -15,61 +13,66 @@ namespace adit::api {
 
 template <class Function>
 struct Signature;
-template <class Class, class Answers, class... Arguments>
-struct Signature<Answers (Class::*)(Arguments...)> {
+template <class Class, class Gives>
+struct Signature<Gives (Class::*)()> {
   using Handler = Class;
-
-  /// 404 where a number of the path is none.
-  template <auto function>
-  static std::unique_ptr<intake::BodySink> pass(Handler& handler, Call& call) {
-    if (!(has<std::remove_cvref_t<Arguments>>(call) && ...)) {
-      call.responder->answer(nothing_here());
-      return nullptr;
-    }
-    if constexpr (std::same_as<Answers, intake::Answer>) {
-      call.responder->answer((handler.*function)(argument<std::remove_cvref_t<Arguments>>(call)...));
-      return nullptr;
-    } else if constexpr (std::is_void_v<Answers>) {
-      (handler.*function)(argument<std::remove_cvref_t<Arguments>>(call)...);
-      return nullptr;
-    } else {
-      return (handler.*function)(argument<std::remove_cvref_t<Arguments>>(call)...);
-    }
-  }
-
- private:
-  template <class Argument>
-  static bool has(const Call& call) {
-    if constexpr (std::integral<Argument>) return number_in<Argument>(call.parameters.front()).has_value();
-    return true;
-  }
-  template <class Argument>
-  static decltype(auto) argument(Call& call) {
-    if constexpr (std::integral<Argument>) {
-      return number_in<Argument>(call.parameters.front()).value_or(0);
-    } else if constexpr (std::same_as<Argument, std::string>) {
-      return std::as_const(call.body);
-    } else if constexpr (std::same_as<Argument, intake::RequestHead>) {
-      return (call.head);
-    } else {
-      return std::as_const(call);
-    }
-  }
+  using Argument = void;
 };
-template <class Class, class Answers, class... Arguments>
-struct Signature<Answers (Class::*)(Arguments...) const> : Signature<Answers (Class::*)(Arguments...)> {};
+template <class Class, class Gives, class Parameter>
+struct Signature<Gives (Class::*)(Parameter)> {
+  using Handler = Class;
+  using Argument = std::remove_cvref_t<Parameter>;
+};
+template <class Class, class Gives>
+struct Signature<Gives (Class::*)() const> : Signature<Gives (Class::*)()> {};
+template <class Class, class Gives, class Parameter>
+struct Signature<Gives (Class::*)(Parameter) const> : Signature<Gives (Class::*)(Parameter)> {};
 
-/// Calls a member function of one of the Handlers with what it asks for by its parameters' types: a number is
-/// that of the path, a std::string the body, and there are the RequestHead and the whole Call. It gives the
-/// Answer; or nothing, and answers by Call::responder; or what takes the body.
+template <auto function>
+auto call_of(const Handlers& handlers, const Call& call) {
+  using Argument = Signature<decltype(function)>::Argument;
+  auto& handler = *std::get<typename Signature<decltype(function)>::Handler*>(handlers);
+  if constexpr (std::is_void_v<Argument>) {
+    return (handler.*function)();
+  } else if constexpr (std::integral<Argument>) {
+    const auto number = number_in<Argument>(call.parameters.front());
+    return number ? (handler.*function)(*number) : nothing_here();
+  } else if constexpr (std::same_as<Argument, std::string>) {
+    return (handler.*function)(call.body);
+  } else if constexpr (std::same_as<Argument, intake::RequestHead>) {
+    return (handler.*function)(call.head);
+  } else {
+    return (handler.*function)(call);
+  }
+}
+
+template <auto function>
+std::unique_ptr<intake::BodySink> begin_of(const Handlers& handlers, const Call& call) {
+  if constexpr (std::is_void_v<decltype(call_of<function>(handlers, call))>) {
+    call_of<function>(handlers, call);
+    return nullptr;
+  } else {
+    return call_of<function>(handlers, call);
+  }
+}
+
+template <class Handler>
+bool has(const Handlers& handlers) {
+  return std::get<Handler*>(handlers) != nullptr;
+}
+
+/// A member function of one of the Handlers, called with what it asks for by its parameter's type: a number
+/// is that of the path (404 where it is none), a std::string the body; or the RequestHead, or the whole Call.
+/// It gives the Answer; or nothing, and answers by Call::responder; or what takes the body.
 template <auto function>
 consteval Handle by() {
-  using Of = Signature<decltype(function)>;
-  using Handler = Of::Handler;
-  return {[](const Handlers& handlers) { return std::get<Handler*>(handlers) != nullptr; },
-          [](const Handlers& handlers, Call& call) {
-            return Of::template pass<function>(*std::get<Handler*>(handlers), call);
-          }};
+  constexpr auto served = has<typename Signature<decltype(function)>::Handler>;
+  using Gives = std::invoke_result_t<decltype(call_of<function>), const Handlers&, const Call&>;
+  if constexpr (std::same_as<Gives, intake::Answer>) {
+    return {served, call_of<function>, nullptr};
+  } else {
+    return {served, nullptr, begin_of<function>};
+  }
 }
 
 }  // namespace adit::api

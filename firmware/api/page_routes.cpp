@@ -1,16 +1,18 @@
 #include "api/page_routes.hpp"
 
-#include <functional>
+#include <span>
+#include <string>
 #include <utility>
 
 #include "api/answers.hpp"
 #include "api/description.hpp"
-#include "api/routes.hpp"
-#include "icd/sentence.hpp"
+#include "codec/gzip.hpp"
 #include "site/site.hpp"
 
 namespace adit::api {
 namespace {
+
+constexpr std::size_t kMostDescription = 1u << 20;
 
 intake::Answer answer_with(const site::File& file, std::string_view if_none_match) {
   intake::Answer answer{.content_type = std::string(site::content_type_of(file)), .body = {}, .headers = {}};
@@ -26,18 +28,23 @@ intake::Answer answer_with(const site::File& file, std::string_view if_none_matc
 
 }  // namespace
 
-intake::Answer PageRoutes::file(const intake::RequestHead& head) {
+intake::Answer PageRoutes::file(const intake::RequestHead& head) const {
   const auto* const file = site::file_at(head.path());
   if (file == nullptr) return nothing_here();
   return only_reads(head) ? answer_with(*file, head.header("If-None-Match")) : wrong_method(kReading);
 }
 
-intake::Answer PageRoutes::description(const intake::RequestHead& head) {
-  if (description_.empty()) {
-    description_ = write_description(routes());
-    description_etag_ = icd::sentence("\"", std::hash<std::string>{}(description_), "\"");
-  }
-  return answer_with({"/openapi.json", description_etag_, description_}, head.header("If-None-Match"));
+intake::Answer PageRoutes::description(const intake::RequestHead& head) const {
+  const site::File& packed = open_api::description();
+  const std::span bytes(reinterpret_cast<const std::uint8_t*>(packed.body.data()), packed.body.size());
+  std::string text;
+  const auto unpacked = codec::gunzip(icd::ChunkedBytes(bytes), kMostDescription, "openapi.json",
+                                      [&text](std::span<const std::uint8_t> piece) {
+                                        text.append(piece.begin(), piece.end());
+                                        return icd::Checked<void>{};
+                                      });
+  if (!unpacked) return refused(unpacked.error());
+  return answer_with({"/openapi.json", packed.etag, text}, head.header("If-None-Match"));
 }
 
 }  // namespace adit::api

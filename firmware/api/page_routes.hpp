@@ -1,7 +1,5 @@
 #pragma once
 
-#include <string>
-
 #include "intake/server.hpp"
 
 namespace adit::api {
@@ -10,11 +8,8 @@ namespace adit::api {
 class PageRoutes {
  public:
   /// Any of the files, by its path.
-  intake::Answer file(const intake::RequestHead& head);
-  intake::Answer description(const intake::RequestHead& head);
-
- private:
-  std::string description_, description_etag_;  // once it was asked for
+  intake::Answer file(const intake::RequestHead& head) const;
+  intake::Answer description(const intake::RequestHead& head) const;
 };
 
 }  // namespace adit::api

@@ -58,21 +58,12 @@ struct Call {
   std::string body;
 };
 
-/// A member of one of the Handlers.
+/// A member of one of the Handlers: one that answers, or one that begins to.
 struct Handle {
   bool (*served)(const Handlers& handlers);
-  /// Answers, now or later, or gives what takes the body.
-  std::unique_ptr<intake::BodySink> (*call)(const Handlers& handlers, Call& call);
-};
-
-/// What openapi.json's frame does not say of a route; lists are of words with a blank between them.
-struct Words {
-  std::string_view tag, summary;
-  std::string_view done;   // of the answer, where it is done
-  std::string_view gives;  // "202 " in front: its status. A schema, [schema], one of `answers`, or a type
-  std::string_view refusals = {};    // beside those that follow from who may and from the body
-  std::string_view takes = {};       // one of `bodies`
-  std::string_view parameters = {};  // of path and query, of `parameters`
+  intake::Answer (*answer)(const Handlers& handlers, const Call& call) = nullptr;
+  /// Answers later by Call::responder; may give what takes the body.
+  std::unique_ptr<intake::BodySink> (*begin)(const Handlers& handlers, const Call& call) = nullptr;
 };
 
 /// A row of the table of routes.
@@ -82,7 +73,6 @@ struct Route {
   Who who = Who::Operator;
   Body body;
   Handle handle;
-  Words words;
 };
 
 }  // namespace adit::api

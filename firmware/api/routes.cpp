@@ -23,18 +23,20 @@ constexpr Body kJson{"application/json", most};
 /// No form of a page from elsewhere can send it without a CORS preflight, as with JSON.
 constexpr Body kBundle{"application/octet-stream", update::kLargestBundle, true};
 
-/// `refusals` and `parameters` as in Words.
-consteval Route get(std::string_view path, Who who, Handle handle, std::string_view tag,
-                    std::string_view summary, std::string_view done, std::string_view gives,
-                    std::string_view refusals = {}, std::string_view parameters = {}) {
-  return {"GET", path, who, {}, handle, {tag, summary, done, gives, refusals, {}, parameters}};
+/// What follows the handle is for describe.jq, which reads it here; the program has none of it:
+/// of the body, which of openapi.json's `bodies` it is; tag and summary; of the answer, what it means and
+/// what it is: a schema, [schema], one of `answers` or a Content-Type, behind its status where that is not
+/// 200; the refusals beside those that follow from who may and from the body; the `parameters` of path and
+/// query.
+consteval Route get(std::string_view path, Who who, Handle handle, std::string_view, std::string_view,
+                    std::string_view, std::string_view, std::string_view = {}, std::string_view = {}) {
+  return {"GET", path, who, {}, handle};
 }
 
-consteval Route post(std::string_view path, Who who, Body body, Handle handle, std::string_view takes,
-                     std::string_view tag, std::string_view summary, std::string_view done,
-                     std::string_view gives, std::string_view refusals = {},
-                     std::string_view parameters = {}) {
-  return {"POST", path, who, body, handle, {tag, summary, done, gives, refusals, takes, parameters}};
+consteval Route post(std::string_view path, Who who, Body body, Handle handle, std::string_view,
+                     std::string_view, std::string_view, std::string_view, std::string_view,
+                     std::string_view = {}, std::string_view = {}) {
+  return {"POST", path, who, body, handle};
 }
 
 constexpr Route kRoutes[] = {

@@ -33,7 +33,7 @@ foreach(name IN LISTS FILES)
     file(READ ${FOLDER}/${name} text)
     string(REGEX REPLACE " */\\*[^*]*\\*/" "" text "${text}")
     string(HEX "${text}" bytes)
-  elseif(name MATCHES "\\.(html|json)$")  # without what indents its lines
+  elseif(name MATCHES "\\.html$")  # without what indents its lines
     file(READ ${FOLDER}/${name} text)
     string(REGEX REPLACE "\n +" "\n" text "${text}")
     string(HEX "${text}" bytes)

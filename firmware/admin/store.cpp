@@ -111,7 +111,9 @@ void Store::settle(const settings::Settings& settings) {
     host::log(host::Level::Warning, "tokens that nothing needs may be left", {{"why", files.error()}});
   for (const fs::path file : files.value_or(std::vector<std::string>())) {
     const bool known = std::ranges::find(names, file.stem().string()) != names.end();
-    if (!known && file.extension() == ".token") host::remove_file(secrets_folder() / file);
+    if (known || file.extension() != ".token") continue;
+    if (const auto removed = host::remove_file(secrets_folder() / file); !removed)
+      host::log(host::Level::Warning, "tokens that nothing needs may be left", {{"why", removed.error()}});
   }
   if (!host::remove_file(file_before())) {
     host::log(host::Level::Warning, "cannot be removed", {{"file", file_before()}});

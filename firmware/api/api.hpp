@@ -30,11 +30,11 @@ struct Served {
   Box* box = nullptr;
 };
 
-/// The local web page, on the team's side, and what it and scripts may ask, behind a login: routes.cpp is the
-/// table of it, README.md has it in words, firmware/access/README.md says what protects it.
+/// What the page and scripts may ask, on the team's side and behind a login, and the page's own files.
+/// routes.cpp is the table of it, README.md has it in words, firmware/access/README.md says what protects it.
 ///
-/// Every answer but the events carries a Content-Security-Policy of `default-src 'none'` with what the page
-/// needs, X-Content-Type-Options and Referrer-Policy; every error is a JSON string.
+/// Every answer but the events carries X-Content-Type-Options, Referrer-Policy and a Content-Security-Policy
+/// of `default-src 'none'` with what the page needs; every error is a JSON string.
 class Api final : public intake::Handler {
  public:
   /// `tokens`: any of them lets a script in as an operator; empty: none does. All others outlive this, and

@@ -8,18 +8,30 @@
 #include <vector>
 
 #include "api/run_view.hpp"
+#include "codec/row.hpp"
 
 namespace adit::api {
 
+using LogFields = std::vector<std::pair<std::string, std::string>>;
+
 /// A record of the log. All text is visible ASCII: what was not is escaped.
 struct LogRecord {
-  std::uint64_t seq = 0;  // counts all that was ever logged since the start
-  Time at = 0;            // on the wall clock
-  int severity = 6;       // syslog's (RFC 5424): 0 is the worst
-  std::string level;      // its name: "error", "warning", "notice", "info", "debug"
+  std::uint64_t seq = 0;
+  Time at = 0;
+  int severity = 6;   // syslog's (RFC 5424): 0 is the worst
+  std::string level;  // its name
   std::string message;
-  std::vector<std::pair<std::string, std::string>> fields;
+  LogFields fields;
   std::string line;  // all of it, as the log has it
+
+  static const codec::Row kRow;
+};
+
+struct LogPage {
+  std::uint64_t last = 0;  // the number of the last record there was, whether or not it is among them
+  std::vector<LogRecord> records;
+
+  static const codec::Row kRow;
 };
 
 /// What is refused to the team, counted since the start.
@@ -44,16 +56,28 @@ struct Usage {
 
 /// A library that is in the program.
 struct PartRow {
-  std::string name, version, licence;  // licence: SPDX
+  std::string name, version, licence;
+
+  static const codec::Row kRow;
+};
+
+/// Which board it is, by the board's file.
+struct BoardRow {
+  std::string name, title;
+
+  static const codec::Row kRow;
 };
 
 struct About {
   std::string version, build;  // build: "9f1c2ab0d3e4, GCC 12.2.0, Release"
   std::string licence;         // of Adit itself
   Time started = 0;
-  std::string kernel, model;                 // "": not known
-  std::string board = "", board_title = "";  // of the board's file; "": there is none
-  std::vector<PartRow> parts;
+  double uptime = 0;
+  std::string kernel, model;
+  std::optional<BoardRow> board = std::nullopt;  // nothing: it was not told
+  std::vector<PartRow> parts = {};
+
+  static const codec::Row kRow;
 };
 
 struct InterfaceRow {
@@ -61,17 +85,23 @@ struct InterfaceRow {
   bool up = false;
   std::optional<bool> carrier;
   std::vector<std::string> addresses;  // "10.0.0.1/24"
+
+  static const codec::Row kRow;
 };
 
 struct RouteRow {
   std::string destination, gateway, interface;  // gateway "": on the link
   unsigned metric = 0;
+
+  static const codec::Row kRow;
 };
 
 struct NetworkState {
   std::vector<InterfaceRow> interfaces;
   std::vector<RouteRow> routes;
   std::string trouble;  // why the interfaces cannot be told, or ""
+
+  static const codec::Row kRow;
 };
 
 /// The box and its service, as the page tells of them.

@@ -4,11 +4,9 @@
 #include <utility>
 
 #include "api/answers.hpp"
-#include "api/box_json.hpp"
 #include "api/bundle.hpp"
 #include "api/exposition.hpp"
 #include "api/metrics.hpp"
-#include "api/reports_json.hpp"
 #include "api/small_body.hpp"
 
 namespace adit::api {
@@ -47,9 +45,8 @@ intake::Answer BoxRoutes::log(const intake::RequestHead& head) const {
   const auto filter = read_log_filter(head);
   if (!filter) return refused(filter.error());
   auto records = box_.log(filter->after);
-  const std::uint64_t last = box_.logged();
   std::erase_if(records, [&](const LogRecord& record) { return !filter->lets(record); });
-  return fresh("application/json", write_log(records, last));
+  return fresh("application/json", codec::to_json(LogPage{box_.logged(), std::move(records)}));
 }
 
 std::string BoxRoutes::log_lines(const LogFilter& filter) const {
@@ -66,8 +63,14 @@ intake::Answer BoxRoutes::log_text(const intake::RequestHead& head) const {
   return download(fresh("text/plain; charset=utf-8", log_lines(*filter)), "adit-log.txt");
 }
 
+std::string BoxRoutes::about_json() const {
+  About about = box_.about();
+  about.uptime = loop_.stamp_now() - about.started;
+  return codec::to_json(about);
+}
+
 intake::Answer BoxRoutes::about() const {
-  return fresh("application/json", write_about(box_.about(), loop_.stamp_now()));
+  return fresh("application/json", about_json());
 }
 
 std::unique_ptr<intake::BodySink> BoxRoutes::bundle(const Call& call) {
@@ -78,11 +81,11 @@ std::unique_ptr<intake::BodySink> BoxRoutes::bundle(const Call& call) {
 void BoxRoutes::pack(const std::shared_ptr<intake::Responder>& responder) {
   const Time now = loop_.stamp_now();
   auto files = std::make_shared<std::vector<BundleFile>>();
-  files->push_back({"about.json", write_about(box_.about(), now)});
-  files->push_back({"run.json", write_run_view(source_.view())});
-  files->push_back({"reports.json", write_reports(source_.reports())});
+  files->push_back({"about.json", about_json()});
+  files->push_back({"run.json", codec::to_json(source_.view())});
+  files->push_back({"reports.json", codec::to_json(source_.reports())});
   files->push_back({"settings.json", box_.settings()});
-  files->push_back({"network.json", write_network(box_.network())});
+  files->push_back({"network.json", codec::to_json(box_.network())});
   files->push_back({"metrics.txt", metrics_text()});
   files->push_back({"log.txt", log_lines({})});
   auto packed = std::make_shared<std::string>();

@@ -26,6 +26,7 @@ class BoxRoutes {
 
  private:
   void pack(const std::shared_ptr<intake::Responder>& responder);
+  std::string about_json() const;
   std::string metrics_text() const;
   std::string log_lines(const LogFilter& filter) const;
 

@@ -16,7 +16,7 @@ Live::Live(loop::Loop& loop, const Source& source)
     : loop_(loop), source_(source), timer_(loop.timer([this] { send_to_all(); })) {}
 
 std::string Live::event() const {
-  return "data: " + write_run_view(source_.view()) + "\n\n";
+  return "data: " + codec::to_json(source_.view()) + "\n\n";
 }
 
 void Live::open(intake::Responder& responder, std::function<bool()> may_stay) {

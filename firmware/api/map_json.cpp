@@ -1,96 +1,137 @@
 #include "api/map_json.hpp"
 
-#include "api/as_json.hpp"
-#include "codec/json.hpp"
-#include "picture/palette.hpp"
+namespace adit::api {
+namespace {
+
+using codec::member;
+using codec::Member;
+using codec::Row;
+using picture::LayerView;
+using picture::TileView;
+
+constexpr Member kTileMembers[] = {
+    member<&TileView::at, &picture::TileAt::level>("level"),
+    member<&TileView::at, &picture::TileAt::x>("x"),
+    member<&TileView::at, &picture::TileAt::y>("y"),
+    member<&TileView::first>("first", "seconds since 1970"),
+    member<&TileView::stamp>("stamp", "seconds since 1970"),
+    member<&TileView::version>("version"),
+    member<&TileView::blank>("blank", "wiped since: 404 now"),
+};
+constexpr Row kTile = {"", kTileMembers};
+
+constexpr Member kAreaMembers[] = {
+    member<&picture::Area::left>("left"),
+    member<&picture::Area::bottom>("bottom"),
+    member<&picture::Area::right>("right"),
+    member<&picture::Area::top>("top"),
+};
+constexpr Row kArea = {"", kAreaMembers, "Metres."};
+
+constexpr Member kHeightsMembers[] = {
+    member<&picture::Heights::low>("low"),
+    member<&picture::Heights::high>("high"),
+};
+constexpr Row kHeights = {"", kHeightsMembers, "Metres."};
+
+}  // namespace
+}  // namespace adit::api
+
+namespace adit::codec {
+
+template <>
+struct KindOf<picture::TileView> : KindOfRow<picture::TileView, api::kTile> {};
+template <>
+struct KindOf<picture::Area> : KindOfRow<picture::Area, api::kArea> {};
+template <>
+struct KindOf<picture::Heights> : KindOfRow<picture::Heights, api::kHeights> {};
+
+template <>
+struct KindOf<picture::Kind> : OnlyWritten {
+  static Value write(picture::Kind kind) { return {kind == picture::Kind::Grid ? "grid" : "cloud"}; }
+  static Value::Object schema(Schemas& schemas) { return KindOf<std::string>::schema(schemas); }
+};
+
+/// As CSS has it: "#c8d2da".
+template <>
+struct KindOf<picture::Colour> : OnlyWritten {
+  static Value write(const picture::Colour& colour) {
+    constexpr std::string_view kDigits = "0123456789abcdef";
+    std::string text = "#";
+    for (const std::uint8_t part : {colour.red, colour.green, colour.blue}) {
+      text += kDigits[part >> 4];
+      text += kDigits[part & 15];
+    }
+    return {std::move(text)};
+  }
+  static Value::Object schema(Schemas& schemas) {
+    return schemas.named("Colour", {{"type", {"string"}}, {"pattern", {"^#[0-9a-f]{6}$"}}});
+  }
+};
+
+}  // namespace adit::codec
 
 namespace adit::api {
 namespace {
 
-using codec::Value;
+constexpr std::string_view kKinds[] = {"grid", "cloud"};
 
-Value json(const picture::Colour& colour) {  // as CSS has it: "#c8d2da"
-  constexpr std::string_view kDigits = "0123456789abcdef";
-  std::string text = "#";
-  for (const std::uint8_t part : {colour.red, colour.green, colour.blue}) {
-    text += kDigits[part >> 4];
-    text += kDigits[part & 15];
-  }
-  return {std::move(text)};
-}
+constexpr Member kLayerMembers[] = {
+    member<&LayerView::layer, &picture::Layer::robot>("robot", "empty: merged"),
+    member<&LayerView::layer, &picture::Layer::kind>("kind").one_of(kKinds),
+    member<&LayerView::bounds>("bounds"),
+    member<&LayerView::heights>("heights"),
+    member<&LayerView::first>("first"),
+    member<&LayerView::last>("last"),
+    member<&LayerView::version>("version"),
+    member<&LayerView::missed>("missed", "maps that are not in it"),
+    member<&LayerView::left_out>("left_out", "of the last map, out of reach"),
+    member<&LayerView::tiles>("tiles"),
+};
+constexpr Row kLayer = {"Layer", kLayerMembers};
 
-Value json(const picture::Area& area) {
-  return {Value::Object{{"left", api::json(area.left)},
-                        {"bottom", api::json(area.bottom)},
-                        {"right", api::json(area.right)},
-                        {"top", api::json(area.top)}}};
-}
+}  // namespace
+}  // namespace adit::api
 
-Value json(const picture::Heights& heights) {
-  return {Value::Object{{"low", api::json(heights.low)}, {"high", api::json(heights.high)}}};
-}
+template <>
+struct adit::codec::KindOf<adit::picture::LayerView>
+    : KindOfRow<adit::picture::LayerView, adit::api::kLayer> {};
 
-Value json(const picture::TileView& tile) {
-  return {Value::Object{{"level", api::json(tile.at.level)},
-                        {"x", api::json(tile.at.x)},
-                        {"y", api::json(tile.at.y)},
-                        {"first", api::json(tile.first)},
-                        {"stamp", api::json(tile.stamp)},
-                        {"version", api::json(tile.version)},
-                        {"blank", api::json(tile.blank)}}};
-}
+namespace adit::api {
+namespace {
 
-Value json(const picture::LayerView& view);
+constexpr Member kColours[] = {
+    member<&MapColours::free>("free"),
+    member<&MapColours::occupied>("occupied"),
+    member<&MapColours::heights>("heights", "evenly spaced, lowest first"),
+};
 
-template <class Each>
-Value array_of(const Each& each) {
-  Value::Array array;
-  for (const auto& one : each) array.push_back(json(one));
-  return {std::move(array)};
-}
-
-template <class T>
-Value or_null(const std::optional<T>& value) {
-  return value ? json(*value) : Value{};
-}
-
-Value json(const picture::LayerView& view) {
-  return {Value::Object{
-      {"robot", api::json(view.layer.robot)},
-      {"kind", api::json(std::string(view.layer.kind == picture::Kind::Grid ? "grid" : "cloud"))},
-      {"bounds", or_null(view.bounds)},
-      {"heights", or_null(view.heights)},
-      {"first", api::json(view.first)},
-      {"last", api::json(view.last)},
-      {"version", api::json(view.version)},
-      {"missed", api::json(view.missed)},
-      {"left_out", api::json(view.left_out)},
-      {"tiles", array_of(view.tiles)}}};
-}
-
-Value scales() {
-  Value::Array array;
-  for (const double metres : picture::kMetresPerPixel) array.push_back(api::json(metres));
-  return {std::move(array)};
-}
-
-Value colours() {
-  const auto grid = picture::grid_palette();
-  return {Value::Object{{"free", json(grid[1])},
-                        {"occupied", json(grid[picture::kMostOccupiedIndex])},
-                        {"heights", array_of(picture::height_ramp())}}};
-}
+constexpr Member kMap[] = {
+    member<&MapView::version>("version"),
+    member<&MapView::tile_side>("tile_side", "pixels"),
+    member<&MapView::metres_per_pixel>("metres_per_pixel", "for each level, the base first"),
+    member<&MapView::colours>("colours"),
+    member<&MapView::spacing>("spacing", "seconds between the states that are kept"),
+    member<&MapView::wiped>("wiped", "when the last run began, if the box saw it begin"),
+    member<&MapView::layers>("layers"),
+};
 
 }  // namespace
 
-std::string write_map(const picture::Mosaic& map, std::uint64_t since) {
-  return codec::write_json({Value::Object{{"version", api::json(map.version())},
-                                          {"tile_side", api::json(picture::kSide)},
-                                          {"metres_per_pixel", scales()},
-                                          {"colours", colours()},
-                                          {"spacing", api::json(map.spacing())},
-                                          {"wiped", api::json(map.wiped())},
-                                          {"layers", array_of(map.layers(since))}}});
+constinit const Row MapColours::kRow = {"", kColours};
+constinit const Row MapView::kRow = {"Map", kMap, "The layers of the picture of the maps."};
+
+MapView map_view(const picture::Mosaic& map, std::uint64_t since) {
+  const auto grid = picture::grid_palette();
+  const auto heights = picture::height_ramp();
+  return {.version = map.version(),
+          .metres_per_pixel = {picture::kMetresPerPixel.begin(), picture::kMetresPerPixel.end()},
+          .colours = {.free = grid[1],
+                      .occupied = grid[picture::kMostOccupiedIndex],
+                      .heights = {heights.begin(), heights.end()}},
+          .spacing = map.spacing(),
+          .wiped = map.wiped(),
+          .layers = map.layers(since)};
 }
 
 }  // namespace adit::api

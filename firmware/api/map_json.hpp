@@ -1,14 +1,36 @@
 #pragma once
 
 #include <cstdint>
-#include <string>
+#include <optional>
+#include <vector>
 
+#include "codec/row.hpp"
 #include "picture/mosaic.hpp"
+#include "picture/palette.hpp"
 
 namespace adit::api {
 
-/// The JSON of /adit/map: how tiles are cut and coloured, and every layer with the tiles that changed after
-/// version `since`. README.md names the members.
-std::string write_map(const picture::Mosaic& map, std::uint64_t since);
+struct MapColours {
+  picture::Colour free, occupied;
+  std::vector<picture::Colour> heights;
+
+  static const codec::Row kRow;
+};
+
+/// /adit/map: how tiles are cut and coloured, and every layer with the tiles that changed.
+struct MapView {
+  std::uint64_t version = 0;
+  int tile_side = picture::kSide;
+  std::vector<double> metres_per_pixel;
+  MapColours colours;
+  double spacing = 0;
+  std::optional<double> wiped;
+  std::vector<picture::LayerView> layers;
+
+  static const codec::Row kRow;
+};
+
+/// Of the tiles, those that changed after version `since`.
+MapView map_view(const picture::Mosaic& map, std::uint64_t since);
 
 }  // namespace adit::api

@@ -64,19 +64,19 @@ std::string etag_of(const picture::Packed& tile) {
 intake::Answer MapRoutes::layers(const intake::RequestHead& head) const {
   const auto since = version_in(head);
   if (!since) return bad_query(kNoVersion);
-  return fresh("application/json", write_map(source_.map(), *since));
+  return fresh("application/json", codec::to_json(map_view(source_.map(), *since)));
 }
 
 intake::Answer MapRoutes::markers(const intake::RequestHead& head) const {
   const auto since = version_in(head);
   if (!since) return bad_query(kNoVersion);
-  return fresh("application/json", write_markers(source_.markers(*since)));
+  return fresh("application/json", codec::to_json(source_.markers(*since)));
 }
 
 intake::Answer MapRoutes::tracks(const intake::RequestHead& head) const {
   const Asked since = asked(head, "since");
   if (since.wrong) return bad_query("since: expected seconds since 1970");
-  return fresh("application/json", write_tracks(source_.tracks(since.number.value_or(0))));
+  return fresh("application/json", codec::to_json(Tracks{source_.tracks(since.number.value_or(0))}));
 }
 
 intake::Answer MapRoutes::tile(const Call& call) const {

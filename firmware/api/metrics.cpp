@@ -4,13 +4,12 @@
 #include <map>
 
 #include "api/exposition.hpp"
+#include "dispatch/report_life.hpp"
 
 namespace adit::api {
 namespace {
 
 constexpr double kBytesPerMbit = 1e6 / 8;
-constexpr const char* kStates[] = {"received", "waiting", "sending", "in doubt",
-                                   "answered", "settled", "refused", "withdrawn"};
 
 double number(std::uint64_t value) {
   return static_cast<double>(value);
@@ -66,7 +65,7 @@ void write_run(Exposition& out, const RunView& view) {
 
 void write_reports(Exposition& out, const std::vector<ReportRow>& reports) {
   std::map<std::string, std::uint64_t> states;
-  for (const char* state : kStates) states[state] = 0;
+  for (const std::string_view state : dispatch::kStateWords) states[std::string(state)] = 0;
   std::uint64_t asking = 0;
   for (const ReportRow& report : reports) {
     ++states[report.state];

@@ -3,12 +3,13 @@
 #include <utility>
 
 #include "api/answers.hpp"
-#include "api/as_json.hpp"
 #include "codec/json.hpp"
+#include "codec/row.hpp"
 
 namespace adit::api {
 namespace {
 
+using codec::json;
 using codec::Value;
 
 Value team_json(const NetworkView& view) {
@@ -62,13 +63,6 @@ intake::Answer unfit(const std::vector<settings::Error>& errors) {
   std::string sentences;
   for (const settings::Error& error : errors) sentences += (sentences.empty() ? "" : "; ") + error.sentence();
   return refusal(icd::Status::UnprocessableEntity, sentences);
-}
-
-Value step_json(const TestStep& step) {
-  return {Value::Object{{"name", json(step.name)},
-                        {"state", json(step.state)},
-                        {"said", json(step.said)},
-                        {"advice", json(step.advice)}}};
 }
 
 }  // namespace
@@ -135,15 +129,7 @@ intake::Answer NetworkRoutes::begin_test() {
 }
 
 intake::Answer NetworkRoutes::tested() const {
-  const TestView view = test_.test();
-  Value::Array endpoints;
-  for (const TestedEndpoint& endpoint : view.endpoints) {
-    Value::Array steps;
-    for (const TestStep& step : endpoint.steps) steps.push_back(step_json(step));
-    endpoints.push_back({Value::Object{
-        {"name", json(endpoint.name)}, {"address", json(endpoint.address)}, {"steps", {std::move(steps)}}}});
-  }
-  return object({{"running", json(view.running)}, {"endpoints", {std::move(endpoints)}}});
+  return fresh("application/json", codec::to_json(test_.test()));
 }
 
 }  // namespace adit::api

@@ -3,16 +3,16 @@
 #include <utility>
 
 #include "api/answers.hpp"
-#include "api/as_json.hpp"
 #include "api/number_in.hpp"
 #include "api/reports_csv.hpp"
-#include "api/reports_json.hpp"
 #include "codec/body_decoder.hpp"
 #include "codec/field.hpp"
 #include "codec/read.hpp"
 #include "icd/sentence.hpp"
+#include "codec/row.hpp"
 
 namespace adit::api {
+using codec::json;
 namespace {
 
 constexpr std::string_view kAll = "all", kPresent = "present";
@@ -41,7 +41,7 @@ icd::Checked<std::vector<ReportRow>> ReportRoutes::listed(std::string_view run) 
 
 intake::Answer ReportRoutes::list(const intake::RequestHead& head) const {
   const auto rows = listed(head.query("run"));
-  return rows ? fresh("application/json", write_reports(*rows)) : refused(rows.error());
+  return rows ? fresh("application/json", codec::to_json(*rows)) : refused(rows.error());
 }
 
 intake::Answer ReportRoutes::csv(const intake::RequestHead& head) const {
@@ -54,7 +54,7 @@ intake::Answer ReportRoutes::csv(const intake::RequestHead& head) const {
 
 intake::Answer ReportRoutes::one(std::int64_t number) const {
   const auto report = source_.report(number);
-  return report ? fresh("application/json", write_report(*report)) : no_such(number);
+  return report ? fresh("application/json", codec::to_json(*report)) : no_such(number);
 }
 
 intake::Answer ReportRoutes::judge(std::int64_t number, Action action) {

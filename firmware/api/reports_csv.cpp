@@ -12,10 +12,6 @@
 namespace adit::api {
 namespace {
 
-constexpr std::string_view kHeader =
-    "number,run,type,x,y,z,sender,received,changed,state,asking,reconciled,same_as,status,report_status,"
-    "score_change,note\r\n";
-
 /// How many bytes the first character of `text` has; 0 where it begins with none (no UTF-8).
 std::size_t first_character(std::string_view text) {
   codec::Utf8Checker checker;
@@ -65,48 +61,52 @@ std::string cell(double number) {
   return {text, std::to_chars(text, text + sizeof text, number).ptr};
 }
 
-/// Empty where it is lost: a report without a place is at no place.
-std::string coordinate(const ReportRow& row, double icd::Point::* axis) {
-  return row.lost ? "" : cell(row.position.*axis);
+/// Empty where there is nothing.
+std::string cell(const codec::Value& value, codec::Cell form) {
+  if (const auto* const text = std::get_if<std::string>(&value.is)) return cell(*text);
+  if (const auto* const flag = std::get_if<bool>(&value.is)) return *flag ? "yes" : "no";
+  if (const auto* const real = std::get_if<double>(&value.is))
+    return form == codec::Cell::Time ? iso_time(*real) : cell(*real);
+  const auto* const whole = std::get_if<std::int64_t>(&value.is);
+  return whole == nullptr || (*whole == 0 && form == codec::Cell::NotZero) ? "" : std::to_string(*whole);
 }
 
-std::string cell(bool value) {
-  return value ? "yes" : "no";
+/// The members that have a column, in the order of their columns.
+std::vector<const codec::Member*> columns() {
+  std::vector<const codec::Member*> all;
+  for (const codec::Member& member : ReportRow::kRow.members) {
+    if (member.cell != codec::Cell::None) all.push_back(&member);
+  }
+  std::ranges::sort(all, {}, &codec::Member::column);
+  return all;
 }
 
-/// A number that is 0 where there is none.
-std::string or_empty(std::int64_t number) {
-  return number == 0 ? "" : std::to_string(number);
-}
-
-std::string line(const ReportRow& row) {
-  const std::string cells[] = {std::to_string(row.number),
-                               std::to_string(row.run),
-                               cell(row.type),
-                               coordinate(row, &icd::Point::x),
-                               coordinate(row, &icd::Point::y),
-                               coordinate(row, &icd::Point::z),
-                               cell(row.sender),
-                               iso_time(row.received),
-                               iso_time(row.changed),
-                               cell(row.state),
-                               cell(row.asking),
-                               cell(row.reconciled),
-                               or_empty(row.same_as),
-                               or_empty(row.status),
-                               cell(row.report_status),
-                               row.score_change ? std::to_string(*row.score_change) : "",
-                               cell(row.note)};
+/// A line of CSV: what `each` gives for each column; a row in a column has one for each of its members.
+std::string line(const auto& each) {
   std::string text;
-  for (const std::string& each : cells) text.append(&each == cells ? "" : ",").append(each);
+  for (const codec::Member* const member : columns()) {
+    const auto inner = member->kind->row == nullptr ? std::span(member, 1) : member->kind->row->members;
+    for (const codec::Member& one : inner) text.append(text.empty() ? "" : ",").append(each(*member, one));
+  }
   return text.append("\r\n");
+}
+
+std::string line(const codec::Value::Object& row) {
+  return line([&row](const codec::Member& member, const codec::Member& inner) {
+    const codec::Value& value = std::ranges::find(row, member.name, &codec::Value::Member::first)->second;
+    const auto* const members = std::get_if<codec::Value::Object>(&value.is);
+    return cell(members == nullptr
+                    ? value
+                    : std::ranges::find(*members, inner.name, &codec::Value::Member::first)->second,
+                member.cell);
+  });
 }
 
 }  // namespace
 
 std::string write_reports_csv(const std::vector<ReportRow>& reports) {
-  std::string text(kHeader);
-  for (const ReportRow& row : reports) text.append(line(row));
+  std::string text = line([](const codec::Member&, const codec::Member& inner) { return inner.name; });
+  for (const ReportRow& row : reports) text += line(std::get<codec::Value::Object>(codec::json(row).is));
   return text;
 }
 

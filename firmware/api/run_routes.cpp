@@ -1,14 +1,15 @@
 #include "api/run_routes.hpp"
 
-#include "api/as_json.hpp"
 #include "codec/body_decoder.hpp"
 #include "codec/field.hpp"
 #include "codec/json.hpp"
+#include "codec/row.hpp"
 
 namespace adit::api {
+using codec::json;
 
 intake::Answer RunRoutes::run() const {
-  return fresh("application/json", write_run_view(source_.view()));
+  return fresh("application/json", codec::to_json(source_.view()));
 }
 
 void RunRoutes::events(const Call& call) {

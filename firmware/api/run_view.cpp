@@ -1,108 +1,168 @@
 #include "api/run_view.hpp"
 
-#include "api/as_json.hpp"
-#include "codec/json.hpp"
+#include "dispatch/report_life.hpp"
 
 namespace adit::api {
-using codec::Value;
+namespace {
 
-Value json(const icd::RunStatus& run) {
-  return {Value::Object{{"score", json(run.score)},
-                        {"run_clock", json(run.run_clock)},
-                        {"remaining_reports", json(run.remaining_reports)},
-                        {"current_team", json(run.current_team)}}};
-}
+using codec::Cell;
+using codec::member;
+using codec::Member;
 
-Value json(const EndpointRow& row) {
-  return {Value::Object{{"name", json(row.name)},
-                        {"address", json(row.address)},
-                        {"connected", json(row.connected)},
-                        {"trouble", json(row.trouble)},
-                        {"last_status", json(row.last_status)},
-                        {"answer_ms", json(row.answer_ms)},
-                        {"throttled", json(row.throttled)},
-                        {"foreign", json(row.foreign)}}};
-}
+constexpr std::string_view kWhen = "seconds since 1970";
+constexpr std::string_view kKinds[] = {"grid", "cloud", "state", "markers"};
+constexpr std::string_view kEndpoints[] = {"scoring", "mapping"};
+constexpr std::string_view kPatterns[] = {"off",   "on",   "slow", "fast",  "twice",
+                                          "flash", "wink", "rush", "digits"};
+constexpr std::string_view kSides[] = {"team", "command_post"};
 
-Value json(const AsideRow& row) {
-  return {Value::Object{{"number", json(row.number)},
-                        {"kind", json(row.kind)},
-                        {"robot", json(row.robot)},
-                        {"at", json(row.at)},
-                        {"status", json(row.status)},
-                        {"why", json(row.why)},
-                        {"bytes", json(row.bytes)},
-                        {"overtaken", json(row.overtaken)}}};
-}
+constexpr Member kReport[] = {
+    member<&ReportRow::number>("number").csv(1),
+    member<&ReportRow::type>("type", "of the artifact, or what the client sent").csv(3),
+    member<&ReportRow::position>("position", "null: damage took from the ledger what it said").csv(4),
+    member<&ReportRow::sender>("sender").csv(5),
+    member<&ReportRow::received>("received", kWhen).csv(6, Cell::Time),
+    member<&ReportRow::changed>("changed", kWhen).csv(7, Cell::Time),
+    member<&ReportRow::state>("state").one_of(dispatch::kStateWords).csv(8),
+    member<&ReportRow::status>("status", "the Command Post's; 0: none yet").csv(12, Cell::NotZero),
+    member<&ReportRow::report_status>("report_status").csv(13),
+    member<&ReportRow::score_change>("score_change").csv(14),
+    member<&ReportRow::note>("note").csv(15),
+    member<&ReportRow::run>("run").csv(2),
+    member<&ReportRow::asking>("asking", "in doubt, and Adit is finding out").csv(9),
+    member<&ReportRow::reconciled>("reconciled", "its answer was found out from the run's status").csv(10),
+    member<&ReportRow::same_as>(
+        "same_as", "the earlier report that it turned out to be, of a held one: that it may be; or 0")
+        .csv(11, Cell::NotZero),
+};
 
-Value json(const RobotRow& row) {
-  return {Value::Object{{"name", json(row.name)},
-                        {"position", json(row.position)},
-                        {"heading", json(row.heading)},
-                        {"at", json(row.at)}}};
-}
+constexpr Member kStep[] = {
+    member<&ReportStep::at>("at", kWhen),
+    member<&ReportStep::state>("state"),
+    member<&ReportStep::note>("note"),
+};
 
-Value json(const ActivityRow& row) {
-  return {Value::Object{{"kind", json(row.kind)},
-                        {"robot", json(row.robot)},
-                        {"accepted", json(row.accepted)},
-                        {"forwarded", json(row.forwarded)},
-                        {"replaced", json(row.replaced)},
-                        {"merged", json(row.merged)},
-                        {"throttled", json(row.throttled)},
-                        {"failed", json(row.failed)},
-                        {"refused_upstream", json(row.refused_upstream)},
-                        {"waiting", json(row.waiting)},
-                        {"last_accepted", json(row.last_accepted)},
-                        {"last_forwarded", json(row.last_forwarded)},
-                        {"bytes_received", json(row.bytes_received)},
-                        {"bytes_sent", json(row.bytes_sent)},
-                        {"last_status", json(row.last_status)},
-                        {"last_sentence", json(row.last_sentence)}}};
-}
+constexpr Member kDetail[] = {
+    member<&ReportDetail::row>(""),
+    member<&ReportDetail::history>("history", "oldest first"),
+    member<&ReportDetail::answer>("answer", "the Command Post's body, byte for byte"),
+};
 
-Value json(const RefusalRow& row) {
-  return {Value::Object{{"at", json(row.at)},
-                        {"uri", json(row.uri)},
-                        {"sender", json(row.sender)},
-                        {"status", json(row.status)},
-                        {"sentence", json(row.sentence)},
-                        {"parts", json(row.parts)}}};
-}
+constexpr Member kActivity[] = {
+    member<&ActivityRow::kind>("kind").one_of(kKinds),
+    member<&ActivityRow::robot>("robot", "empty: merged maps, markers"),
+    member<&ActivityRow::accepted>("accepted"),
+    member<&ActivityRow::forwarded>("forwarded"),
+    member<&ActivityRow::replaced>("replaced"),
+    member<&ActivityRow::merged>("merged"),
+    member<&ActivityRow::throttled>("throttled"),
+    member<&ActivityRow::failed>("failed"),
+    member<&ActivityRow::refused_upstream>("refused_upstream"),
+    member<&ActivityRow::waiting>("waiting"),
+    member<&ActivityRow::last_accepted>("last_accepted", kWhen),
+    member<&ActivityRow::last_forwarded>("last_forwarded", kWhen),
+    member<&ActivityRow::bytes_received>("bytes_received", "of the last"),
+    member<&ActivityRow::bytes_sent>("bytes_sent", "of the last"),
+    member<&ActivityRow::last_status>("last_status", "the Command Post's, to the last try; 0: none came"),
+    member<&ActivityRow::last_sentence>("last_sentence", "what it said, or why nothing came"),
+};
 
-Value json(const LightRow& row) {
-  return {Value::Object{{"name", json(row.name)}, {"pattern", json(row.pattern)}}};
-}
+constexpr Member kRefusal[] = {
+    member<&RefusalRow::at>("at", kWhen),
+    member<&RefusalRow::uri>("uri"),
+    member<&RefusalRow::sender>("sender"),
+    member<&RefusalRow::status>("status"),
+    member<&RefusalRow::sentence>("sentence",
+                                  "as its sender got it: of bad parts, one for each of the first ten"),
+    member<&RefusalRow::parts>("parts",
+                               "how many parts of a state or of markers were refused; the others of it were "
+                               "taken, unless all were bad. 0: no parts"),
+};
 
-Value json(const LinkRow& row) {
-  return {Value::Object{
-      {"side", json(row.side)}, {"interface", json(row.interface)}, {"carrier", json(row.carrier)}}};
-}
+constexpr Member kEndpoint[] = {
+    member<&EndpointRow::name>("name").one_of(kEndpoints),
+    member<&EndpointRow::address>("address"),
+    member<&EndpointRow::connected>("connected"),
+    member<&EndpointRow::trouble>("trouble"),
+    member<&EndpointRow::last_status>("last_status", "to the last try; 0: none came"),
+    member<&EndpointRow::answer_ms>("answer_ms"),
+    member<&EndpointRow::throttled>("throttled", "answers of 429"),
+    member<&EndpointRow::foreign>("foreign", "answers that no Command Post gives: pages of HTML, redirects"),
+};
 
-std::string write_run_view(const RunView& view) {
-  return codec::write_json({Value::Object{{"now", json(view.now)},
-                                          {"version", json(view.version)},
-                                          {"run", json(view.run)},
-                                          {"run_heard", json(view.run_heard)},
-                                          {"run_number", json(view.run_number)},
-                                          {"run_id", json(view.run_id)},
-                                          {"endpoints", json(view.endpoints)},
-                                          {"robots", json(view.robots)},
-                                          {"reports", json(view.reports)},
-                                          {"near_metres", json(view.near_metres)},
-                                          {"activities", json(view.activities)},
-                                          {"refusals", json(view.refusals)},
-                                          {"aside", json(view.aside)},
-                                          {"lights", json(view.lights)},
-                                          {"links", json(view.links)},
-                                          {"identify_until", json(view.identify_until)},
-                                          {"setup_open_until", json(view.setup_open_until)},
-                                          {"budget_mbit", json(view.budget_mbit)},
-                                          {"sent_mbit", json(view.sent_mbit)},
-                                          {"queued_bytes", json(view.queued_bytes)},
-                                          {"map_version", json(view.map_version)},
-                                          {"marker_version", json(view.marker_version)},
-                                          {"attention", json(view.attention)}}});
-}
+constexpr Member kAside[] = {
+    member<&AsideRow::number>("number").from(1),
+    member<&AsideRow::kind>("kind").one_of(kKinds),
+    member<&AsideRow::robot>("robot", "empty: of several, or of none"),
+    member<&AsideRow::at>("at", "when it was set aside"),
+    member<&AsideRow::status>("status", "the Command Post's"),
+    member<&AsideRow::why>("why"),
+    member<&AsideRow::bytes>("bytes"),
+    member<&AsideRow::overtaken>("overtaken",
+                                 "something newer that says all of it was sent since: it is not sent again"),
+};
+
+constexpr Member kRobot[] = {
+    member<&RobotRow::name>("name"),
+    member<&RobotRow::position>("position"),
+    member<&RobotRow::heading>("heading", "radians about z"),
+    member<&RobotRow::at>("at", "when its pose was forwarded"),
+};
+
+constexpr Member kLight[] = {
+    member<&LightRow::name>("name"),
+    member<&LightRow::pattern>("pattern").one_of(kPatterns),
+};
+
+constexpr Member kLink[] = {
+    member<&LinkRow::side>("side").one_of(kSides),
+    member<&LinkRow::interface>("interface"),
+    member<&LinkRow::carrier>("carrier", "null: there is no such interface"),
+};
+
+constexpr Member kView[] = {
+    member<&RunView::now>("now", kWhen),
+    member<&RunView::version>("version"),
+    member<&RunView::run>("run"),
+    member<&RunView::run_heard>("run_heard", kWhen),
+    member<&RunView::run_number>("run_number"),
+    member<&RunView::run_id>("run_id", "the Command Post's; empty: it names none"),
+    member<&RunView::endpoints>("endpoints"),
+    member<&RunView::robots>("robots", "by name"),
+    member<&RunView::reports>("reports",
+                              "newest first, at most 200: those with which something is still to happen, "
+                              "and the newest others"),
+    member<&RunView::near_metres>("near_metres",
+                                  "of one type and this near, two reports may be of one artifact"),
+    member<&RunView::activities>("activities"),
+    member<&RunView::refusals>("refusals", "newest first, the last 50"),
+    member<&RunView::aside>("aside", "what the Command Post would not take, oldest first, at most 100"),
+    member<&RunView::lights>("lights"),
+    member<&RunView::links>("links", "of the interfaces that the settings name"),
+    member<&RunView::identify_until>("identify_until", "the lights flash so that the box can be found"),
+    member<&RunView::setup_open_until>(
+        "setup_open_until",
+        "the box's button opened set-up: a new password can be set without the present one"),
+    member<&RunView::budget_mbit>("budget_mbit"),
+    member<&RunView::sent_mbit>("sent_mbit", "over the last seconds, to both endpoints"),
+    member<&RunView::queued_bytes>("queued_bytes"),
+    member<&RunView::map_version>("map_version", "says whether /adit/map has changed"),
+    member<&RunView::marker_version>("marker_version", "says whether /adit/markers has changed"),
+    member<&RunView::attention>("attention", "for the operator, most urgent first"),
+};
+
+}  // namespace
+
+constinit const codec::Row ReportRow::kRow = {"Report", kReport};
+constinit const codec::Row ReportStep::kRow = {"", kStep};
+constinit const codec::Row ReportDetail::kRow = {"ReportDetail", kDetail};
+constinit const codec::Row ActivityRow::kRow = {"Activity", kActivity, "The traffic of one robot and kind."};
+constinit const codec::Row RefusalRow::kRow = {"Refusal", kRefusal, "What was refused to its sender."};
+constinit const codec::Row EndpointRow::kRow = {"Endpoint", kEndpoint};
+constinit const codec::Row AsideRow::kRow = {"Aside", kAside};
+constinit const codec::Row RobotRow::kRow = {"Robot", kRobot};
+constinit const codec::Row LightRow::kRow = {"Light", kLight};
+constinit const codec::Row LinkRow::kRow = {"Link", kLink};
+constinit const codec::Row RunView::kRow = {"RunView", kView, "How all stands."};
 
 }  // namespace adit::api

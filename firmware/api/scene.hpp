@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "api/drawn_marker.hpp"
+#include "codec/row.hpp"
 #include "icd/geometry.hpp"
 
 namespace adit::api {
@@ -17,6 +18,8 @@ using Time = double;
 struct MarkerRow {
   DrawnMarker marker;
   Time at = 0;  // when that was forwarded
+
+  static const codec::Row kRow;
 };
 
 /// The markers' scene, or what changed of it.
@@ -26,6 +29,8 @@ struct MarkerChanges {
   std::uint64_t left_out = 0;  // there were more than are kept
   std::vector<MarkerRow> markers;
   std::vector<std::pair<std::string, std::int32_t>> gone;  // ns and id
+
+  static const codec::Row kRow;
 };
 
 /// Where a robot was, in the frame "darpa".
@@ -38,10 +43,14 @@ struct TrackPose {
 struct Track {
   std::string robot;
   std::vector<TrackPose> poses;  // oldest first
+
+  static const codec::Row kRow;
 };
 
-/// The JSON of /adit/markers and of /adit/tracks: see README.md.
-std::string write_markers(const MarkerChanges& news);
-std::string write_tracks(const std::vector<Track>& tracks);
+struct Tracks {
+  std::vector<Track> tracks;
+
+  static const codec::Row kRow;
+};
 
 }  // namespace adit::api

@@ -4,16 +4,17 @@
 
 #include "access/password.hpp"
 #include "api/answers.hpp"
-#include "api/as_json.hpp"
 #include "api/read_body.hpp"
 #include "codec/field.hpp"
 #include "codec/json.hpp"
 #include "icd/sentence.hpp"
+#include "codec/row.hpp"
 
 namespace adit::api {
 namespace {
 
 using access::Role;
+using codec::json;
 using codec::Value;
 
 intake::Header cookie(const std::string& id, std::chrono::seconds age) {

@@ -2,13 +2,14 @@
 
 #include <utility>
 
-#include "api/as_json.hpp"
 #include "codec/json.hpp"
+#include "codec/row.hpp"
 #include "settings/keys.hpp"
 
 namespace adit::api {
 namespace {
 
+using codec::json;
 using codec::Value;
 
 Value words_of(const settings::Choice& choice) {

@@ -3,18 +3,15 @@
 #include <utility>
 
 #include "api/answers.hpp"
-#include "api/as_json.hpp"
 #include "codec/body_decoder.hpp"
 #include "codec/field.hpp"
+#include "codec/row.hpp"
 
 namespace adit::api {
 namespace {
 
+using codec::json;
 using codec::Value;
-
-Value text_or_null(const std::string& text) {
-  return text.empty() ? Value{} : json(text);
-}
 
 /// A body that goes to an Upload as it comes.
 class Receiving final : public intake::BodySink {
@@ -74,28 +71,7 @@ intake::Answer UpdateRoutes::restart(const std::string& body) {
 }
 
 intake::Answer UpdateRoutes::shown() const {
-  const UpdateView view = updates_.update();
-  const update::LastUpdate& last = view.last;
-  const Value none;
-  return object({{"managed", json(view.managed)},
-                 {"why", json(view.why)},
-                 {"board", json(view.running.compatible)},
-                 {"version", json(view.running.version)},
-                 {"slot", json(view.running.slot)},
-                 {"trial", json(view.trial)},
-                 {"doing", text_or_null(view.doing)},
-                 {"progress", json(view.progress)},
-                 {"refusal", text_or_null(view.refusal)},
-                 {"last", last.stage == update::Stage::None
-                              ? none
-                              : Value{Value::Object{{"stage", json(std::string(name_of(last.stage)))},
-                                                    {"version", json(last.version)},
-                                                    {"slot", json(last.slot)},
-                                                    {"why", json(last.why)}}}},
-                 {"stick", view.stick ? Value{Value::Object{{"name", json(view.stick->name)},
-                                                            {"version", json(view.stick->version)}}}
-                                      : none},
-                 {"stick_why", text_or_null(view.stick_why)}});
+  return fresh("application/json", codec::to_json(updates_.update()));
 }
 
 intake::Answer UpdateRoutes::after(const icd::Checked<void>& done) {

@@ -7,6 +7,7 @@
 #include <span>
 #include <string>
 
+#include "codec/row.hpp"
 #include "icd/status.hpp"
 #include "update/messages.hpp"
 
@@ -17,13 +18,15 @@ struct UpdateView {
   bool managed = false;  // it can be updated here
   std::string why;       // why not; "" where it can
   update::Running running;
-  std::string doing;            // "", "receiving", "checking", "installing", "restarting"
+  std::string doing;            // "": nothing
   std::optional<int> progress;  // per cent of receiving and installing
   std::string refusal;          // why the last one was not installed; "" where it was, or there was none
   update::LastUpdate last;
   bool trial = false;  // what runs was installed last, and has not been healthy for long yet
   std::optional<update::Offer> stick;
   std::string stick_why;  // why what is on a stick cannot be installed; "" where there is none
+
+  static const codec::Row kRow;
 };
 
 /// A bundle on its way in. Dropping it before finish() forgets it.

@@ -58,15 +58,15 @@ api::Usage ThisBox::usage() const {
 }
 
 api::About ThisBox::about() const {
-  return {.version = kVersion,
-          .build = build_text(),
-          .licence = "Apache-2.0",
-          .started = started_,
-          .kernel = host::kernel(),
-          .model = host::model(),
-          .board = board_.name,
-          .board_title = board_.title,
-          .parts = parts()};
+  return {
+      .version = kVersion,
+      .build = build_text(),
+      .licence = "Apache-2.0",
+      .started = started_,
+      .kernel = host::kernel(),
+      .model = host::model(),
+      .board = board_.name.empty() ? std::nullopt : std::optional(api::BoardRow{board_.name, board_.title}),
+      .parts = parts()};
 }
 
 api::NetworkState ThisBox::network() const {

@@ -16,10 +16,9 @@ std::expected<std::int64_t, Failure> ask(const Adit& adit, const std::string& ta
   const auto body = post(adit, target, "", check);
   if (!body) return std::unexpected(body.error());
   auto number = read<std::int64_t>(
-      *body, [name](const codec::Field& object) { return whole<std::int64_t>(object, name); });
+      adit, *body, [name](const codec::Field& object) { return whole<std::int64_t>(object, name); });
   if (number) return *number;
-  return std::unexpected(
-      Failure{Exit::Unable, "Adit at " + written(adit.address) + " cannot be understood: " + number.error()});
+  return std::unexpected(Failure{Exit::Unable, number.error()});
 }
 
 std::string path_of(Verb verb) {

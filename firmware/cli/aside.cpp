@@ -2,13 +2,12 @@
 
 #include <algorithm>
 
-#include "api/as_json.hpp"
+#include "api/run_view.hpp"
 #include "cli/ask.hpp"
-#include "cli/run_view.hpp"
+#include "cli/reading.hpp"
 #include "cli/table.hpp"
 #include "cli/where.hpp"
 #include "cli/words.hpp"
-#include "codec/json.hpp"
 
 namespace adit::cli {
 namespace {
@@ -39,12 +38,12 @@ std::string table_of(const api::RunView& view, bool colour) {
 Outcome list(const Adit& adit, const Options& options, bool colour) {
   const auto json = get(adit, "/adit/run");
   if (!json) return unable(json.error());
-  const auto view = read_run_view(*json);
-  if (!view) return unable("Adit at " + written(adit.address) + " cannot be understood: " + view.error());
+  const auto view = read<api::RunView>(adit, *json);
+  if (!view) return unable(view.error());
   const bool waits =
       std::ranges::any_of(view->aside, [](const api::AsideRow& row) { return !row.overtaken; });
   const Exit exit = waits ? Exit::Attention : Exit::Fine;
-  if (options.json) return {exit, codec::write_json(api::json(view->aside)) + '\n', ""};
+  if (options.json) return {exit, codec::to_json(view->aside) + '\n', ""};
   return {exit, table_of(*view, colour), ""};
 }
 

@@ -2,8 +2,9 @@
 
 #include <algorithm>
 
+#include "api/run_view.hpp"
 #include "cli/http_client.hpp"
-#include "cli/run_view.hpp"
+#include "cli/reading.hpp"
 #include "cli/status_text.hpp"
 #include "cli/where.hpp"
 #include "codec/json.hpp"
@@ -111,8 +112,8 @@ Outcome status(const Options& options, bool colour) {
   if (!adit) return unable(adit.error());
   const auto json = get(*adit, "/adit/run");
   if (!json) return unable(json.error());
-  const auto view = read_run_view(*json);
-  if (!view) return unable("Adit at " + written(adit->address) + " cannot be understood: " + view.error());
+  const auto view = read<api::RunView>(*adit, *json);
+  if (!view) return unable(view.error());
   const Exit exit = all_is_well(*view) ? Exit::Fine : Exit::Attention;
   return {exit, options.json ? *json + '\n' : status_text(*view, colour), ""};
 }

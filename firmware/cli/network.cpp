@@ -110,9 +110,7 @@ double time_now() {
 }
 
 std::expected<View, std::string> understood(const Adit& adit, const std::string& json) {
-  auto view = read<View>(json, read_view);
-  if (view) return view;
-  return std::unexpected("Adit at " + written(adit.address) + " cannot be understood: " + view.error());
+  return read<View>(adit, json, read_view);
 }
 
 Outcome show(const Adit& adit, const Options& options) {

@@ -38,7 +38,7 @@ std::string facts(const api::ReportDetail& detail, bool colour) {
   };
   add("report", std::to_string(report.number), Tone::Strong);
   add("type", report.type, Tone::Strong);
-  add("at", report.lost ? "lost" : place_of(report.position));
+  add("at", report.position ? place_of(*report.position) : "lost");
   add("state", life_of(report), tone_of(report));
   add("why", report.note);
   add("said", said_of(report));

@@ -2,21 +2,16 @@
 
 #include <algorithm>
 
-#include "api/reports_json.hpp"
+#include "api/run_view.hpp"
 #include "cli/actions.hpp"
 #include "cli/ask.hpp"
-#include "cli/report_rows.hpp"
+#include "cli/reading.hpp"
 #include "cli/report_text.hpp"
 #include "cli/reports_text.hpp"
-#include "cli/run_view.hpp"
 #include "cli/where.hpp"
 
 namespace adit::cli {
 namespace {
-
-std::string not_understood(const Adit& adit, const std::string& why) {
-  return "Adit at " + written(adit.address) + " cannot be understood: " + why;
-}
 
 Exit exit_for(const std::vector<api::ReportRow>& reports) {
   return std::ranges::any_of(reports, needs_the_operator) ? Exit::Attention : Exit::Fine;
@@ -31,27 +26,27 @@ bool is_listed(const api::ReportRow& report, const Options& options, std::int64_
 Outcome list(const Adit& adit, const Options& options, bool colour) {
   const auto run_json = get(adit, "/adit/run");
   if (!run_json) return unable(run_json.error());
-  const auto run = read_run_view(*run_json);
-  if (!run) return unable(not_understood(adit, run.error()));
+  const auto run = read<api::RunView>(adit, *run_json);
+  if (!run) return unable(run.error());
   const auto json = get(adit, "/adit/reports");
   if (!json) return unable(json.error());
-  auto rows = read_reports(*json);
-  if (!rows) return unable(not_understood(adit, rows.error()));
+  auto rows = read<std::vector<api::ReportRow>>(adit, *json);
+  if (!rows) return unable(rows.error());
 
   const Exit exit = exit_for(*rows);
   const std::size_t others = std::erase_if(
       *rows, [&](const api::ReportRow& row) { return !is_listed(row, options, run->run_number); });
   std::ranges::reverse(*rows);  // the newest first
   const std::string text =
-      options.json ? api::write_reports(*rows) + '\n' : reports_text(*rows, others, run->now, colour);
+      options.json ? codec::to_json(*rows) + '\n' : reports_text(*rows, others, run->now, colour);
   return {exit, text, ""};
 }
 
 Outcome show(const Adit& adit, const Options& options, bool colour) {
   const auto json = get(adit, "/adit/reports/" + std::to_string(options.numbers.front()));
   if (!json) return unable(json.error());
-  const auto detail = read_report_detail(*json);
-  if (!detail) return unable(not_understood(adit, detail.error()));
+  const auto detail = read<api::ReportDetail>(adit, *json);
+  if (!detail) return unable(detail.error());
   const Exit exit = exit_for({detail->row});
   return {exit, options.json ? *json + '\n' : report_text(*detail, colour), ""};
 }

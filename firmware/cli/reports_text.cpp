@@ -1,6 +1,5 @@
 #include "cli/reports_text.hpp"
 
-#include "cli/report_rows.hpp"
 #include "cli/table.hpp"
 #include "dispatch/report_life.hpp"
 
@@ -25,10 +24,24 @@ std::string of_other_runs(std::size_t count) {
 }
 
 std::string coordinate(const api::ReportRow& report, double icd::Point::* axis) {
-  return report.lost ? "lost" : decimal(report.position.*axis, 2);
+  return report.position ? decimal((*report.position).*axis, 2) : "lost";
+}
+
+/// A state that this adit does not know is one that only the operator can judge.
+ReportState state_of(const api::ReportRow& report) {
+  return dispatch::state_named(report.state).value_or(ReportState::InDoubt);
 }
 
 }  // namespace
+
+bool needs_the_operator(const api::ReportRow& report) {
+  const ReportState state = state_of(report);
+  return state == ReportState::Received || (state == ReportState::InDoubt && !report.asking);
+}
+
+bool is_finished(const api::ReportRow& report) {
+  return dispatch::is_final(state_of(report));
+}
 
 std::string life_of(const api::ReportRow& report) {
   switch (dispatch::state_named(report.state).value_or(ReportState::Waiting)) {
@@ -47,7 +60,7 @@ std::string life_of(const api::ReportRow& report) {
 
 Tone tone_of(const api::ReportRow& report) {
   if (needs_the_operator(report)) return Tone::Bad;
-  switch (dispatch::state_named(report.state).value_or(ReportState::InDoubt)) {
+  switch (state_of(report)) {
     case ReportState::Refused:
       return Tone::Bad;
     case ReportState::Answered:

@@ -8,6 +8,11 @@
 
 namespace adit::cli {
 
+/// It stays where it is until the operator decides.
+bool needs_the_operator(const api::ReportRow& report);
+/// Nothing more happens to it, nor is there anything to decide.
+bool is_finished(const api::ReportRow& report);
+
 /// Where a report is in its life, as the operator is told: "held", "in doubt, asking", "same as 3".
 std::string life_of(const api::ReportRow& report);
 Tone tone_of(const api::ReportRow& report);

@@ -3,7 +3,6 @@
 #include <map>
 #include <set>
 
-#include "cli/report_rows.hpp"
 #include "cli/reports_text.hpp"
 #include "cli/table.hpp"
 #include "cli/words.hpp"

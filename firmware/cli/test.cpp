@@ -19,24 +19,6 @@ constexpr std::chrono::seconds kPatience{10};
 constexpr std::chrono::milliseconds kEvery{250};
 constexpr int kTimes = 480;  // two minutes, far longer than all steps may take
 
-api::TestStep read_step(const codec::Field& step) {
-  return {.name = text(step, "name"),
-          .state = text(step, "state"),
-          .said = text(step, "said"),
-          .advice = text(step, "advice")};
-}
-
-api::TestedEndpoint read_endpoint(const codec::Field& endpoint) {
-  const codec::Field steps = endpoint.member("steps");
-  return {
-      .name = text(endpoint, "name"), .address = text(endpoint, "address"), .steps = rows(steps, &read_step)};
-}
-
-api::TestView read_view(const codec::Field& root) {
-  const codec::Field endpoints = root.member("endpoints");
-  return {.running = root.member("running").truth(), .endpoints = rows(endpoints, &read_endpoint)};
-}
-
 bool has_ended(const api::TestStep& step) {
   return step.state == "good" || step.state == "bad" || step.state == "skipped";
 }
@@ -103,8 +85,8 @@ Outcome test(const Options& options, bool colour, const std::function<void(const
   for (int i = 0; i < kTimes; ++i) {
     const auto json = get(*adit, "/adit/test");
     if (!json) return unable(json.error());
-    const auto view = read<api::TestView>(*json, read_view);
-    if (!view) return unable("Adit at " + written(adit->address) + " cannot be understood: " + view.error());
+    const auto view = read<api::TestView>(*adit, *json);
+    if (!view) return unable(view.error());
     if (!options.json) progress.show(*view);
     if (!view->running) {
       if (options.json) print(*json + '\n');

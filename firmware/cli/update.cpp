@@ -5,6 +5,7 @@
 #include <iterator>
 #include <thread>
 
+#include "api/updates.hpp"
 #include "cli/ask.hpp"
 #include "cli/http_client.hpp"
 #include "cli/reading.hpp"
@@ -20,87 +21,49 @@ namespace {
 constexpr std::chrono::minutes kUpload{30}, kInstall{25};
 constexpr std::chrono::milliseconds kEvery{500};
 
-/// What `adit update` shows of GET /adit/update.
-struct View {
-  bool managed = false, trial = false;
-  std::string why = "", board = "", version = "", slot = "", doing = "", refusal = "", stick_why = "";
-  std::optional<double> progress = {};
-  std::string stick = "", stick_name = "";
-  std::string stage = "", last_version = "", last_why = "";
-};
-
-/// "" where it is null
-std::string text_or_none(const codec::Field& object, std::string_view name) {
-  return object.member(name).is_absent() ? "" : text(object, name);
-}
-
-View read_view(const codec::Field& root) {
-  View view{.managed = root.member("managed").truth(),
-            .trial = root.member("trial").truth(),
-            .why = text(root, "why"),
-            .board = text(root, "board"),
-            .version = text(root, "version"),
-            .slot = text(root, "slot"),
-            .doing = text_or_none(root, "doing"),
-            .refusal = text_or_none(root, "refusal"),
-            .stick_why = text_or_none(root, "stick_why"),
-            .progress = number_or_null(root, "progress")};
-  const codec::Field stick = root.member("stick"), last = root.member("last");
-  if (!stick.is_absent()) {
-    view.stick_name = text(stick, "name");
-    view.stick = text(stick, "version");
-  }
-  if (!last.is_absent()) {
-    view.stage = text(last, "stage");
-    view.last_version = text(last, "version");
-    view.last_why = text(last, "why");
-  }
-  return view;
-}
+using api::UpdateView;
+using update::Stage;
 
 /// What became of the last update, or "".
-std::string last_line(const View& view) {
-  if (view.stage.empty()) return "";
-  const std::string name = icd::sentence("update ", view.last_version);
-  if (view.stage == "good") return icd::sentence(name, " came up healthy\n");
+std::string last_line(const UpdateView& view) {
+  if (view.last.stage == Stage::None) return "";
+  const std::string name = icd::sentence("update ", view.last.version);
+  if (view.last.stage == Stage::Good) return icd::sentence(name, " came up healthy\n");
   if (view.trial) return icd::sentence(name, " is on trial until it has been healthy for a minute\n");
-  if (view.stage == "installed")
+  if (view.last.stage == Stage::Installed)
     return icd::sentence(name, " is installed: restart to use it (adit update --restart)\n");
-  if (view.stage == "installing") return icd::sentence(name, " is being installed\n");
-  return host::escaped(icd::sentence(name, " was ", view.stage, ": ", view.last_why)) + '\n';
+  if (view.last.stage == Stage::Installing) return icd::sentence(name, " is being installed\n");
+  return host::escaped(icd::sentence(name, " was ", name_of(view.last.stage), ": ", view.last.why)) + '\n';
 }
 
-std::string text_of(const View& view) {
+std::string text_of(const UpdateView& view) {
   if (!view.managed) return icd::sentence("Nothing can be updated here: ", host::escaped(view.why), "\n");
-  std::string out =
-      host::escaped(icd::sentence(view.version, " runs, in slot ", view.slot, " of ", view.board)) + '\n';
+  const update::Running& running = view.running;
+  std::string out = host::escaped(icd::sentence(running.version, " runs, in slot ", running.slot, " of ",
+                                                running.compatible)) +
+                    '\n';
   if (!view.doing.empty()) out += icd::sentence("The box is ", host::escaped(view.doing), "\n");
   if (!view.refusal.empty())
     out += icd::sentence("The last one was refused: ", host::escaped(view.refusal), "\n");
   out += last_line(view);
-  if (!view.stick.empty())
-    out += host::escaped(icd::sentence("On the stick is ", view.stick, " (", view.stick_name,
+  if (view.stick)
+    out += host::escaped(icd::sentence("On the stick is ", view.stick->version, " (", view.stick->name,
                                        "): adit update --stick")) +
            '\n';
   if (!view.stick_why.empty()) out += icd::sentence("On the stick: ", host::escaped(view.stick_why), "\n");
   return out;
 }
 
-Exit exit_of(const View& view) {
-  const bool failed = view.stage == "failed" || view.stage == "left" || view.stage == "interrupted";
+Exit exit_of(const UpdateView& view) {
+  const Stage stage = view.last.stage;
+  const bool failed = stage == Stage::Failed || stage == Stage::Left || stage == Stage::Interrupted;
   return failed || !view.managed || !view.refusal.empty() ? Exit::Attention : Exit::Fine;
-}
-
-std::expected<View, std::string> understood(const Adit& adit, const std::string& json) {
-  auto view = read<View>(json, read_view);
-  if (view) return view;
-  return std::unexpected("Adit at " + written(adit.address) + " cannot be understood: " + view.error());
 }
 
 Outcome show(const Adit& adit, const Options& options) {
   const auto json = get(adit, "/adit/update");
   if (!json) return unable(json.error());
-  const auto view = understood(adit, *json);
+  const auto view = read<UpdateView>(adit, *json);
   if (!view) return unable(view.error());
   return {exit_of(*view), options.json ? *json + '\n' : text_of(*view), ""};
 }
@@ -125,7 +88,7 @@ Outcome follow(const Adit& adit, const Options& options,
   for (const auto until = std::chrono::steady_clock::now() + kInstall;;) {
     const auto json = get(adit, "/adit/update");
     if (!json) return unable(json.error());
-    const auto view = understood(adit, *json);
+    const auto view = read<UpdateView>(adit, *json);
     if (!view) return unable(view.error());
     if (view->doing.empty())
       return {exit_of(*view),

@@ -1,6 +1,8 @@
 #include "dispatch/report_life.hpp"
 
+#include <algorithm>
 #include <array>
+#include <iterator>
 
 namespace adit::dispatch {
 namespace {
@@ -46,17 +48,6 @@ constexpr std::array kLife = {
     ReportTransition{Withdrawn, Event::Restarted, Withdrawn, Action::Nothing},
     ReportTransition{Answered, Event::Restarted, Answered, Action::Nothing},
     ReportTransition{Settled, Event::Restarted, Settled, Action::Nothing},
-};
-
-struct StateName {
-  ReportState state;
-  std::string_view text;
-};
-
-constexpr std::array kStates = {
-    StateName{Received, "received"}, StateName{Waiting, "waiting"},     StateName{Sending, "sending"},
-    StateName{Answered, "answered"}, StateName{Refused, "refused"},     StateName{InDoubt, "in doubt"},
-    StateName{Settled, "settled"},   StateName{Withdrawn, "withdrawn"},
 };
 
 /// What an event is called in the diagram.
@@ -133,18 +124,10 @@ bool is_final(ReportState state) {
   return state == Answered || state == Refused || state == Settled || state == Withdrawn;
 }
 
-std::string_view name_of(ReportState state) {
-  for (const StateName& name : kStates) {
-    if (name.state == state) return name.text;
-  }
-  return "";
-}
-
 std::optional<ReportState> state_named(std::string_view text) {
-  for (const StateName& name : kStates) {
-    if (name.text == text) return name.state;
-  }
-  return std::nullopt;
+  const auto* const word = std::ranges::find(kStateWords, text);
+  if (word == std::end(kStateWords)) return std::nullopt;
+  return static_cast<ReportState>(word - std::begin(kStateWords));
 }
 
 std::string report_life_diagram() {
@@ -155,8 +138,9 @@ std::string report_life_diagram() {
     text.append("  ").append(id(row.from)).append(" --> ").append(id(row.to)).append(": ");
     text.append(words(row.event)).append(words(row.action)).append("\n");
   }
-  for (const StateName& name : kStates) {
-    if (is_final(name.state)) text.append("  ").append(id(name.state)).append(" --> [*]\n");
+  for (const std::string_view word : kStateWords) {
+    const auto state = state_named(word);
+    if (is_final(*state)) text.append("  ").append(id(*state)).append(" --> [*]\n");
   }
   return text;
 }

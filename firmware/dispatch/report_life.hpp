@@ -8,7 +8,7 @@
 
 namespace adit::dispatch {
 
-/// Where an artifact report is in its life (promise 1). The words of name_of() are what the ledger holds.
+/// Where an artifact report is in its life (promise 1).
 enum class ReportState : std::uint8_t {
   Received,   // on disk, and held: only the operator's word lets it go
   Waiting,    // to be sent when its turn comes
@@ -19,6 +19,12 @@ enum class ReportState : std::uint8_t {
   Settled,    // no answer came, but it is known, or the operator says, that there is nothing left to do
   Withdrawn,  // the operator took it back before it was sent, or it is a repeat of an earlier one
 };
+/// In the order of the states: the words of the ledger, the API, the metrics and `adit`.
+inline constexpr std::string_view kStateWords[] = {"received", "waiting",  "sending", "answered",
+                                                   "refused",  "in doubt", "settled", "withdrawn"};
+constexpr std::string_view name_of(ReportState state) {
+  return kStateWords[static_cast<std::size_t>(state)];
+}
 
 enum class ReportEvent : std::uint8_t {
   Held,       // the review, a new run or too many failures want the operator's word first
@@ -64,7 +70,7 @@ const ReportTransition* transition(ReportState state, ReportEvent event);
 /// Nothing more will happen to it by itself, nor is anything left to do.
 bool is_final(ReportState state);
 
-std::string_view name_of(ReportState state);
+/// Nothing where it is none of the words.
 std::optional<ReportState> state_named(std::string_view name);
 
 /// The table as a Mermaid state diagram, for the docs.

@@ -10,7 +10,7 @@ namespace adit::gateway {
 api::ReportRow row_of(const dispatch::Reports& reports, const dispatch::Report& report) {
   api::ReportRow row{.number = report.number,
                      .type = report.report.type,
-                     .position = report.report.position,
+                     .position = report.is_lost() ? std::nullopt : std::optional(report.report.position),
                      .sender = report.sender,
                      .received = report.received,
                      .changed = report.changed,
@@ -22,8 +22,7 @@ api::ReportRow row_of(const dispatch::Reports& reports, const dispatch::Report& 
                      .run = report.run,
                      .asking = reports.is_asking(report),
                      .reconciled = report.reconciled,
-                     .same_as = report.same_as,
-                     .lost = report.is_lost()};
+                     .same_as = report.same_as};
   if (report.answer.empty()) return row;
   if (const auto reply = codec::read_report_reply(report.answer)) {
     row.report_status = reply->report_status;

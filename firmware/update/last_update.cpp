@@ -20,26 +20,6 @@ bool waits_for_a_restart(const LastUpdate& last_update, const Running& running, 
 
 }  // namespace
 
-std::string_view name_of(Stage stage) {
-  switch (stage) {
-    case Stage::Installing:
-      return "installing";
-    case Stage::Interrupted:
-      return "interrupted";
-    case Stage::Failed:
-      return "failed";
-    case Stage::Installed:
-      return "installed";
-    case Stage::Left:
-      return "left";
-    case Stage::Good:
-      return "good";
-    case Stage::None:
-      break;
-  }
-  return "";
-}
-
 LastUpdate settled(LastUpdate last_update, const Running& running, const std::string& boot) {
   if (on_trial(last_update, running.slot, boot) || waits_for_a_restart(last_update, running, boot)) {
     last_update.stage = Stage::Installed;

@@ -18,8 +18,12 @@ enum class Stage : std::uint8_t {
   Left,         // it did not come up healthy in three starts, and the boot loader went back
   Good,         // it came up healthy
 };
-/// "", "installing", "interrupted", ...
-std::string_view name_of(Stage stage);
+/// In the order of the stages.
+inline constexpr std::string_view kStageWords[] = {"",          "installing", "interrupted", "failed",
+                                                   "installed", "left",       "good"};
+constexpr std::string_view name_of(Stage stage) {
+  return kStageWords[static_cast<std::size_t>(stage)];
+}
 
 /// The last update. Kept over starts of the machine.
 struct LastUpdate {

@@ -117,7 +117,7 @@ TEST_F(PageTest, GivesTheRunAsJsonThatNobodyKeeps) {
   const auto answer = get("/adit/run");
   EXPECT_EQ(answer.content_type, "application/json");
   EXPECT_EQ(header(answer, "Cache-Control"), "no-store");
-  EXPECT_EQ(answer.body, write_run_view(source.now));
+  EXPECT_EQ(answer.body, codec::to_json(source.now));
 }
 
 TEST(PageOnAServer, ServesABrowser) {

@@ -84,8 +84,7 @@ TEST_F(BoxRoutesTest, TellWhatTheBoxIsMadeOf) {
   EXPECT_EQ(said["version"], "0.1.0");
   EXPECT_NEAR(said["uptime"], 60, 5);
   EXPECT_EQ(said["board"], nullptr);
-  box.self.board = "qemu-virt";
-  box.self.board_title = "QEMU's virt machine";
+  box.self.board = {"qemu-virt", "QEMU's virt machine"};
   EXPECT_EQ(json::parse(get("/adit/about").body)["board"],
             (json{{"name", "qemu-virt"}, {"title", "QEMU's virt machine"}}));
   EXPECT_EQ(said["parts"], (json{{{"name", "zlib"}, {"version", "1.2.13"}, {"licence", "Zlib"}}}));

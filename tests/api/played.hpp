@@ -18,7 +18,7 @@ class Played {
     const auto found = std::ranges::find(view.reports, number, &ReportRow::number);
     if (found == view.reports.end()) return std::unexpected("there is no such report");
     if (found->state == "refused") return std::unexpected("the step could not be written down; try again");
-    if (action == Action::Resubmit) return add(view, found->type, found->position);
+    if (action == Action::Resubmit) return add(view, found->type, found->position.value_or(icd::Point{}));
     states_[number] = action == Action::Send       ? "waiting"
                       : action == Action::Hold     ? "received"
                       : action == Action::Withdraw ? "withdrawn"

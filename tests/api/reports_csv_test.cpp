@@ -16,7 +16,7 @@ constexpr const char* kHeader =
 ReportRow row() {
   return {.number = 7,
           .type = "Survivor",
-          .position = {85.75, -4.5, 0.25},
+          .position = icd::Point{85.75, -4.5, 0.25},
           .sender = "10.0.0.5",
           .received = 1566309785.125,
           .changed = 1566309786,
@@ -49,8 +49,7 @@ TEST(ReportsCsv, HasALineOfNamesAndOneForEachReport) {
 
 TEST(ReportsCsv, GivesAReportThatIsLostNoPlace) {
   ReportRow lost = row();
-  lost.position = {};
-  lost.lost = true;
+  lost.position.reset();
   EXPECT_THAT(write_reports_csv({lost}), HasSubstr("7,1,Survivor,,,,10.0.0.5,"));
 }
 

@@ -14,15 +14,15 @@ using nlohmann::json;
 
 TEST(RunView, HasNoPlaceForAReportThatIsLost) {
   RunView view = *scene("trouble", 1000.5, 3);
-  view.reports[0].lost = true;
-  const json parsed = json::parse(write_run_view(view));
+  view.reports[0].position.reset();
+  const json parsed = json::parse(codec::to_json(view));
   EXPECT_EQ(parsed["reports"][0]["position"], nullptr);
   EXPECT_TRUE(parsed["reports"][1]["position"].is_object());
 }
 
 TEST(RunViewJson, NamesEachMemberAsTheViewDoes) {
   const RunView view = *scene("trouble", 1000.5, 3);
-  const json parsed = json::parse(write_run_view(view));
+  const json parsed = json::parse(codec::to_json(view));
   EXPECT_EQ(parsed["refusals"][0]["parts"], 0);
   EXPECT_EQ(parsed["now"], 1000.5);
   EXPECT_EQ(parsed["run"]["score"], 7);
@@ -61,7 +61,7 @@ TEST(RunViewJson, TellsTheVersionsOfThePicturesToTheLastDigit) {
   view.marker_version = 1'793'000'123'457;
   view.identify_until = 12.5;
   view.setup_open_until = 13.5;
-  const json parsed = json::parse(write_run_view(view));
+  const json parsed = json::parse(codec::to_json(view));
   EXPECT_EQ(parsed["map_version"], 1'793'000'123'456);
   EXPECT_EQ(parsed["marker_version"], 1'793'000'123'457);
   EXPECT_EQ(parsed["identify_until"], 12.5);
@@ -69,7 +69,7 @@ TEST(RunViewJson, TellsTheVersionsOfThePicturesToTheLastDigit) {
 }
 
 TEST(RunViewJson, TellsOfEachReportWhoseWordItWaitsFor) {
-  const json parsed = json::parse(write_run_view(*scene("reports", 1000, 0)));
+  const json parsed = json::parse(codec::to_json(*scene("reports", 1000, 0)));
   EXPECT_EQ(parsed["run_number"], 2);
   EXPECT_EQ(parsed["run_id"], "cave-2");
   EXPECT_EQ(parsed["reports"][2]["asking"], true);
@@ -83,7 +83,7 @@ TEST(RunViewJson, WritesWhatIsAbsentAsNull) {
   RunView view = *scene("empty", 0, 0);
   view.activities.emplace_back();
   view.reports.emplace_back();
-  const json parsed = json::parse(write_run_view(view));
+  const json parsed = json::parse(codec::to_json(view));
   EXPECT_TRUE(parsed.at("run").is_null());
   EXPECT_TRUE(parsed.at("run_heard").is_null());
   EXPECT_TRUE(parsed.at("endpoints")[0].at("answer_ms").is_null());
@@ -95,7 +95,7 @@ TEST(RunViewJson, IsOneLineOfJsonWhateverTheTextsHold) {
   RunView view = *scene("hostile", 1000, 0);
   view.attention.emplace_back("two\nlines\r\n\n\xc3(\0\x01\x7f\xed\xa0\x80");
   view.sent_mbit = std::numeric_limits<double>::quiet_NaN();
-  const std::string text = write_run_view(view);
+  const std::string text = codec::to_json(view);
   EXPECT_EQ(text.find('\n'), std::string::npos);
   EXPECT_EQ(text.find('\r'), std::string::npos);
   EXPECT_TRUE(json::accept(text));

@@ -38,7 +38,7 @@ ReportRow report(std::int64_t number, std::string type, Time received, std::stri
                  std::optional<std::int64_t> change) {
   return {.number = number,
           .type = std::move(type),
-          .position = {12.25 * static_cast<double>(number), -4.5, 0.25},
+          .position = icd::Point{12.25 * static_cast<double>(number), -4.5, 0.25},
           .sender = "10.0.0.5",
           .received = received,
           .changed = received + 0.2,

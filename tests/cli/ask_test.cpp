@@ -27,7 +27,7 @@ Outcome asked(const std::string& json, const std::vector<std::string_view>& word
 }
 
 TEST(Status, ShowsWhatAditAnswers) {
-  const Outcome outcome = asked(api::write_run_view(sample_view()), {"status"});
+  const Outcome outcome = asked(codec::to_json(sample_view()), {"status"});
   EXPECT_EQ(outcome.err, "");
   EXPECT_EQ(outcome.exit, Exit::Fine);
   EXPECT_EQ(outcome.out, status_text(sample_view(), false));
@@ -43,7 +43,7 @@ TEST(Status, ReadsEveryMemberThatThePageWrites) {
   view.attention = {"1 report is in doubt: the answer was lost"};
   view.activities[0].waiting = 2;
   view.activities[0].last_sentence = "Cloud updates too frequent. Reduce to <1Hz.";
-  const Outcome outcome = asked(api::write_run_view(view), {"status"});
+  const Outcome outcome = asked(codec::to_json(view), {"status"});
   EXPECT_EQ(outcome.exit, Exit::Attention);
   EXPECT_EQ(outcome.out, status_text(view, false));
 }
@@ -51,11 +51,11 @@ TEST(Status, ReadsEveryMemberThatThePageWrites) {
 TEST(Status, IsNotFineWhereAnEndpointIsInTrouble) {
   api::RunView view = sample_view();
   view.endpoints[0].trouble = "connecting to 10.100.1.200:8000: Connection refused";
-  EXPECT_EQ(asked(api::write_run_view(view), {"status"}).exit, Exit::Attention);
+  EXPECT_EQ(asked(codec::to_json(view), {"status"}).exit, Exit::Attention);
 }
 
 TEST(Status, GivesScriptsWhatAditSaid) {
-  const std::string json = api::write_run_view(sample_view());
+  const std::string json = codec::to_json(sample_view());
   EXPECT_EQ(asked(json, {"status", "--json"}).out, json + "\n");
 }
 
@@ -84,7 +84,7 @@ TEST(Ask, PassesOnWhatAnErrorSays) {
 
 TEST(Ask, ShowsItsTokenToAditAlone) {
   const TokenFile token;
-  const Server server(Server::ok(api::write_run_view(sample_view())));
+  const Server server(Server::ok(codec::to_json(sample_view())));
   const std::string at = server.at();
   const Outcome outcome =
       run(std::vector<std::string_view>{"status", "--at", at, "--token-file", token.path()}, false);
@@ -93,7 +93,7 @@ TEST(Ask, ShowsItsTokenToAditAlone) {
 }
 
 TEST(Ask, WithoutATokenSaysHowToNameOneAndAsksNothing) {
-  const Server server(Server::ok(api::write_run_view(sample_view())));
+  const Server server(Server::ok(codec::to_json(sample_view())));
   Options options;
   options.at = server.at();
   options.secrets = "/nowhere";
@@ -108,7 +108,7 @@ TEST(Ask, WithoutATokenSaysHowToNameOneAndAsksNothing) {
 }
 
 TEST(Ask, LooksForAditWhereTheSavedSettingsHaveItBeforeTheGiven) {
-  const Server server(Server::ok(api::write_run_view(sample_view())));
+  const Server server(Server::ok(codec::to_json(sample_view())));
   const TokenFile token;
   char saved[] = "/tmp/adit-saved-XXXXXX";
   close(mkstemp(saved));

@@ -4,7 +4,6 @@
 #include <gtest/gtest.h>
 
 #include "api/reports_csv.hpp"
-#include "api/reports_json.hpp"
 #include "cli/command.hpp"
 #include "cli/reports_text.hpp"
 #include "cli/server.hpp"
@@ -34,10 +33,10 @@ Outcome asked(const std::vector<api::ReportRow>& rows, std::vector<std::string_v
   api::RunView view = sample_view();
   view.run_number = 2;
   const api::ReportDetail detail{rows.back(), {{1000, "waiting", "posted"}}, "{}"};
-  const Server server({{"GET /adit/run", Server::ok(api::write_run_view(view))},
-                       {"GET /adit/reports", Server::ok(api::write_reports(rows))},
+  const Server server({{"GET /adit/run", Server::ok(codec::to_json(view))},
+                       {"GET /adit/reports", Server::ok(codec::to_json(rows))},
                        {"GET /adit/reports.csv", Server::ok(api::write_reports_csv(rows))},
-                       {"GET /adit/reports/4", Server::ok(api::write_report(detail))},
+                       {"GET /adit/reports/4", Server::ok(codec::to_json(detail))},
                        {"GET /adit/reports/5", Server::reply("404 Not Found", "\"there is no report 5\"")}});
   const std::string at = server.at();
   const TokenFile token;
@@ -64,7 +63,8 @@ TEST(Reports, ListAnotherRunOrAll) {
 
 TEST(Reports, AreAListForScripts) {
   const auto rows = two_runs();
-  EXPECT_EQ(asked(rows, {"reports", "--json"}).out, api::write_reports({rows[3], rows[2], rows[1]}) + "\n");
+  EXPECT_EQ(asked(rows, {"reports", "--json"}).out,
+            codec::to_json(std::vector<api::ReportRow>{rows[3], rows[2], rows[1]}) + "\n");
 }
 
 TEST(Reports, NeedTheOperatorWhereOneWaitsForHisWord) {
@@ -93,12 +93,12 @@ TEST(Reports, AreExportedAsTheyAre) {
   const auto rows = two_runs();
   EXPECT_EQ(asked(rows, {"reports", "export"}).out, api::write_reports_csv(rows));
   EXPECT_EQ(asked(rows, {"reports", "export", "--csv"}).out, api::write_reports_csv(rows));
-  EXPECT_EQ(asked(rows, {"reports", "export", "--json"}).out, api::write_reports(rows) + "\n");
+  EXPECT_EQ(asked(rows, {"reports", "export", "--json"}).out, codec::to_json(rows) + "\n");
   EXPECT_EQ(asked(rows, {"reports", "export"}).exit, Exit::Fine);
 }
 
 TEST(Reports, OfAnotherVersionAreNotGuessedAt) {
-  const Server server({{"GET /adit/run", Server::ok(api::write_run_view(sample_view()))},
+  const Server server({{"GET /adit/run", Server::ok(codec::to_json(sample_view()))},
                        {"GET /adit/reports", Server::ok("[{\"number\": 1}]")}});
   const TokenFile token;
   const std::string at = server.at();

@@ -4,8 +4,8 @@
 #include <gtest/gtest.h>
 
 #include "cli/help.hpp"
-#include "cli/report_rows.hpp"
 #include "cli/report_text.hpp"
+#include "cli/reports_text.hpp"
 #include "cli/view.hpp"
 #include "dispatch/report_life.hpp"
 
@@ -43,7 +43,7 @@ TEST(ReportsText, HasARowForEachReport) {
 TEST(ReportsText, HasNoPlaceForAReportThatIsLost) {
   api::ReportRow lost = in_state("in doubt");
   lost.position = {};
-  lost.lost = true;
+  lost.position.reset();
   EXPECT_THAT(reports_text({lost}, 0, 1000, false), HasSubstr("lost  lost  lost"));
   EXPECT_THAT(report_text({.row = lost, .history = {}, .answer = ""}, false), HasSubstr("lost"));
 }
@@ -118,17 +118,17 @@ TEST(ReportText, TellsAllOfOneReport) {
             "  sender    10.0.0.7\n"
             "  received  2019-08-20T14:03:05.125Z\n"
             "  answer    {\"score_change\": 1}\n"
-            "  actions     resubmit\n"
+            "  actions   resubmit\n"
             "\n"
             "History\n"
             "  2019-08-20T14:03:05.125Z  waiting\n"
             "  2019-08-20T14:03:06.000Z  in doubt  no answer\n");
 }
 
-TEST(ReportText, OffersTheDeedsThatCanBe) {
+TEST(ReportText, OffersTheActionsThatCanBe) {
   const auto actions = [](const std::string& state) {
     const std::string text = report_text({in_state(state), {}, ""}, false);
-    const auto begin = text.find("actions     ");
+    const auto begin = text.find("actions   ");
     return begin == std::string::npos ? "" : text.substr(begin + 10, text.find('\n', begin) - begin - 10);
   };
   EXPECT_EQ(actions("received"), "send, withdraw");

@@ -1,0 +1,95 @@
+#include "api/box.hpp"
+
+namespace adit::codec {
+
+/// An object with a member for each.
+template <>
+struct KindOf<api::LogFields> : OnlyWritten {
+  static Value write(const api::LogFields& fields) {
+    Value::Object object;
+    for (const auto& [name, value] : fields) object.emplace_back(name, Value{value});
+    return {std::move(object)};
+  }
+  static Value::Object schema(Schemas& schemas) {
+    return {{"type", {"object"}}, {"additionalProperties", {KindOf<std::string>::schema(schemas)}}};
+  }
+};
+
+}  // namespace adit::codec
+
+namespace adit::api {
+namespace {
+
+using codec::member;
+using codec::Member;
+
+constexpr std::string_view kLevels[] = {"error", "warning", "notice", "info", "debug"};
+
+constexpr Member kRecord[] = {
+    member<&LogRecord::seq>("seq", "counts all that was logged since the start"),
+    member<&LogRecord::at>("at", "seconds since 1970"),
+    member<&LogRecord::level>("level").one_of(kLevels),
+    member<&LogRecord::message>("message"),
+    member<&LogRecord::fields>("fields"),
+};
+
+constexpr Member kPage[] = {
+    member<&LogPage::last>("last"),
+    member<&LogPage::records>("records"),
+};
+
+constexpr Member kPart[] = {
+    member<&PartRow::name>("name"),
+    member<&PartRow::version>("version"),
+    member<&PartRow::licence>("licence", "SPDX"),
+};
+
+constexpr Member kBoard[] = {
+    member<&BoardRow::name>("name"),
+    member<&BoardRow::title>("title"),
+};
+
+constexpr Member kAbout[] = {
+    member<&About::version>("version"),
+    member<&About::build>("build"),
+    member<&About::licence>("licence", "SPDX"),
+    member<&About::started>("started", "seconds since 1970"),
+    member<&About::uptime>("uptime", "seconds"),
+    member<&About::kernel>("kernel"),
+    member<&About::model>("model", "empty: not known"),
+    member<&About::board>("board", "null: it was not told"),
+    member<&About::parts>("parts"),
+};
+
+constexpr Member kInterface[] = {
+    member<&InterfaceRow::name>("name"),
+    member<&InterfaceRow::up>("up"),
+    member<&InterfaceRow::carrier>("carrier"),
+    member<&InterfaceRow::addresses>("addresses"),
+};
+
+constexpr Member kRoute[] = {
+    member<&RouteRow::destination>("destination"),
+    member<&RouteRow::gateway>("gateway"),
+    member<&RouteRow::interface>("interface"),
+    member<&RouteRow::metric>("metric"),
+};
+
+constexpr Member kNetwork[] = {
+    member<&NetworkState::interfaces>("interfaces"),
+    member<&NetworkState::routes>("routes"),
+    member<&NetworkState::trouble>("trouble"),
+};
+
+}  // namespace
+
+constinit const codec::Row LogRecord::kRow = {"LogRecord", kRecord};
+constinit const codec::Row LogPage::kRow = {"", kPage};
+constinit const codec::Row PartRow::kRow = {"", kPart, "A library in the program."};
+constinit const codec::Row BoardRow::kRow = {"", kBoard};
+constinit const codec::Row About::kRow = {"About", kAbout};
+constinit const codec::Row InterfaceRow::kRow = {"", kInterface};
+constinit const codec::Row RouteRow::kRow = {"", kRoute};
+constinit const codec::Row NetworkState::kRow = {"", kNetwork};
+
+}  // namespace adit::api

@@ -1,0 +1,154 @@
+#include "api/scene.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+namespace adit::api {
+namespace {
+
+using codec::Field;
+using codec::Kind;
+using codec::Member;
+using codec::member;
+using codec::Row;
+using codec::Schemas;
+using codec::Value;
+
+/// A hundredth is finer than any screen shows.
+Value rounded(double value) {
+  return {std::round(value * 100) / 100};
+}
+
+constexpr Kind kRounded = {
+    .write = [](const void* value) { return rounded(*static_cast<const double*>(value)); },
+    .read = codec::kind_of<double>.read,
+    .schema = codec::kind_of<double>.schema,
+    .row = nullptr};
+
+constexpr Member kColorMembers[] = {
+    member<&icd::Color::r>("r").as(kRounded), member<&icd::Color::g>("g").as(kRounded),
+    member<&icd::Color::b>("b").as(kRounded), member<&icd::Color::a>("a").as(kRounded)};
+constexpr Row kColor = {"", kColorMembers};
+
+using Gone = std::pair<std::string, std::int32_t>;
+constexpr Member kGoneMembers[] = {member<&Gone::first>("ns"), member<&Gone::second>("id")};
+constexpr Row kGone = {"", kGoneMembers};
+
+/// "#rrggbbaa": a list may have a thousand of them.
+Value as_hex(const icd::Color& color) {
+  constexpr std::string_view kDigits = "0123456789abcdef";
+  std::string text = "#";
+  for (const double part : {color.r, color.g, color.b, color.a}) {
+    const auto byte = static_cast<std::size_t>(std::lround(255 * std::clamp(part, 0.0, 1.0)));
+    text += {kDigits[byte / 16], kDigits[byte % 16]};
+  }
+  return {std::move(text)};
+}
+
+}  // namespace
+}  // namespace adit::api
+
+namespace adit::codec {
+
+template <>
+struct KindOf<icd::Color> : KindOfRow<icd::Color, api::kColor> {};
+template <>
+struct KindOf<api::Gone> : KindOfRow<api::Gone, api::kGone> {};
+
+template <>
+struct KindOf<std::vector<icd::Color>> : OnlyWritten {
+  static Value write(const std::vector<icd::Color>& colors) {
+    Value::Array array;
+    array.reserve(colors.size());
+    for (const icd::Color& color : colors) array.push_back(api::as_hex(color));
+    return {std::move(array)};
+  }
+  static Value::Object schema(Schemas& /*schemas*/) {
+    Value::Object color{{"type", {"string"}}, {"pattern", {"^#[0-9a-f]{8}$"}}};
+    return {{"type", {"array"}}, {"items", {std::move(color)}}};
+  }
+};
+
+/// x, y, x, y, ...
+template <>
+struct KindOf<std::vector<api::FlatPoint>> : OnlyWritten {
+  static Value write(const std::vector<api::FlatPoint>& points) {
+    Value::Array array;
+    array.reserve(2 * points.size());
+    for (const auto& [x, y] : points) {
+      array.push_back(api::rounded(x));
+      array.push_back(api::rounded(y));
+    }
+    return {std::move(array)};
+  }
+  static Value::Object schema(Schemas& schemas) {
+    Value::Object numbers = KindOf<std::vector<double>>::schema(schemas);
+    numbers.emplace_back("maxItems", Value{std::int64_t{2 * api::DrawnMarker::kMostPoints}});
+    return numbers;
+  }
+};
+
+/// Five numbers: a track has thousands of them.
+template <>
+struct KindOf<api::TrackPose> : OnlyWritten {
+  static Value write(const api::TrackPose& pose) {
+    return {Value::Array{api::rounded(pose.at), api::rounded(pose.position.x), api::rounded(pose.position.y),
+                         api::rounded(pose.position.z), api::rounded(pose.heading)}};
+  }
+  static Value::Object schema(Schemas& schemas) {
+    Value::Object numbers = KindOf<std::vector<double>>::schema(schemas);
+    for (const char* const bound : {"minItems", "maxItems"})
+      numbers.emplace_back(bound, Value{std::int64_t{5}});
+    return numbers;
+  }
+};
+
+}  // namespace adit::codec
+
+namespace adit::api {
+namespace {
+
+constexpr Member kMarker[] = {
+    member<&MarkerRow::marker, &DrawnMarker::ns>("ns"),
+    member<&MarkerRow::marker, &DrawnMarker::id>("id"),
+    member<&MarkerRow::marker, &DrawnMarker::type>("type").from(0).to(11),
+    member<&MarkerRow::marker, &DrawnMarker::position>("position"),
+    member<&MarkerRow::marker, &DrawnMarker::heading>("heading", "radians about z").as(kRounded),
+    member<&MarkerRow::marker, &DrawnMarker::scale>("scale"),
+    member<&MarkerRow::marker, &DrawnMarker::color>("color"),
+    member<&MarkerRow::marker, &DrawnMarker::points>(
+        "points",
+        "x, y, x, y, ... in metres of the frame darpa, seen from above: with the pose applied, thinned"),
+    member<&MarkerRow::marker, &DrawnMarker::colors>(
+        "colors", "none, or one for each point (LINE_LIST: line; TRIANGLE_LIST: triangle) of points"),
+    member<&MarkerRow::marker, &DrawnMarker::point_count>("point_count", "how many points it has"),
+    member<&MarkerRow::marker, &DrawnMarker::text>("text", "its first 120 bytes"),
+    member<&MarkerRow::marker, &DrawnMarker::mesh>(
+        "mesh", "the name of mesh_resource's file, without folder and ending"),
+    member<&MarkerRow::marker, &DrawnMarker::lifetime>("lifetime").from(0),
+    member<&MarkerRow::at>("at", "when it was forwarded"),
+};
+
+constexpr Member kChanges[] = {
+    member<&MarkerChanges::version>("version"),
+    member<&MarkerChanges::whole>("whole", "markers are all there are"),
+    member<&MarkerChanges::left_out>("left_out", "older ones than are kept"),
+    member<&MarkerChanges::markers>("markers"),
+    member<&MarkerChanges::gone>("gone"),
+};
+
+constexpr Member kTrack[] = {
+    member<&Track::robot>("robot"),
+    member<&Track::poses>("poses", "at, x, y, z, heading"),
+};
+
+constexpr Member kTracks[] = {member<&Tracks::tracks>("tracks")};
+
+}  // namespace
+
+constinit const Row MarkerRow::kRow = {"Marker", kMarker};
+constinit const Row MarkerChanges::kRow = {"Markers", kChanges};
+constinit const Row Track::kRow = {"", kTrack};
+constinit const Row Tracks::kRow = {"Tracks", kTracks};
+
+}  // namespace adit::api

@@ -1,0 +1,203 @@
+// The JSON of the API's rows, byte for byte: names, order and forms of numbers are what scripts and pages
+// know.
+#include <gmock/gmock.h>
+
+#include "api/box.hpp"
+#include "api/map_json.hpp"
+#include "api/map_scene.hpp"
+#include "api/run_view.hpp"
+
+namespace adit::api {
+namespace {
+
+ReportRow report() {
+  ReportRow row;
+  row.number = 7;
+  row.type = "Rope";
+  row.position = icd::Point{.x = 1, .y = -2.5, .z = 0};
+  row.sender = "10.0.0.7";
+  row.received = 940;
+  row.changed = 941.25;
+  row.state = "in doubt";
+  row.status = 500;
+  row.report_status = "scored";
+  row.score_change = -1;
+  row.note = "no \"answer\"";
+  row.run = 2;
+  row.asking = true;
+  row.reconciled = true;
+  row.same_as = 3;
+  return row;
+}
+
+RunView view() {
+  RunView view;
+  view.now = 1000.5;
+  view.version = "0.1";
+  view.run = {.score = 7, .run_clock = 754.5, .remaining_reports = 18, .current_team = "cave"};
+  view.run_heard = 999;
+  view.run_number = 2;
+  view.run_id = "beta";
+  view.endpoints = {{.name = "scoring",
+                     .address = "a:1",
+                     .connected = true,
+                     .trouble = "t",
+                     .last_status = 201,
+                     .answer_ms = 3.5,
+                     .throttled = 1,
+                     .foreign = 2},
+                    {.name = "mapping", .address = "b:1", .trouble = "", .answer_ms = std::nullopt}};
+  view.robots = {{.name = "r", .position = {1, 2, 3}, .heading = 0.5, .at = 990}};
+  view.reports = {report(), {}};
+  view.near_metres = 5;
+  ActivityRow activity;
+  activity.kind = "grid", activity.robot = "r", activity.accepted = 1, activity.forwarded = 2;
+  activity.replaced = 3, activity.merged = 4;
+  activity.throttled = 5, activity.failed = 6, activity.refused_upstream = 7, activity.waiting = 8;
+  activity.last_accepted = 9, activity.bytes_received = 10, activity.bytes_sent = 11;
+  activity.last_status = 12, activity.last_sentence = "said";
+  view.activities = {activity};
+  view.refusals = {{.at = 1, .uri = "/u", .sender = "s", .status = 422, .sentence = "no", .parts = 2}};
+  view.aside = {{.number = 1,
+                 .kind = "grid",
+                 .robot = "r",
+                 .at = 2,
+                 .status = 400,
+                 .why = "w",
+                 .bytes = 3,
+                 .overtaken = true}};
+  view.lights = {{.name = "health", .pattern = "on"}};
+  view.links = {{.side = "team", .interface = "team0", .carrier = true},
+                {.side = "command_post", .interface = "d", .carrier = std::nullopt}};
+  view.identify_until = 1001;
+  view.budget_mbit = 100, view.sent_mbit = 1.5, view.queued_bytes = 6;
+  view.map_version = 1'793'000'123'456, view.marker_version = 4;
+  view.attention = {"do"};
+  return view;
+}
+
+constexpr const char* kReport =
+    R"({"number":7,"type":"Rope","position":{"x":1.0,"y":-2.5,"z":0.0},"sender":"10.0.0.7",)"
+    R"("received":940.0,"changed":941.25,"state":"in doubt","status":500,)"
+    R"("report_status":"scored","score_change":-1,"note":"no \"answer\"","run":2,"asking":true,)"
+    R"("reconciled":true,"same_as":3})";
+
+TEST(Bytes, OfARun) {
+  EXPECT_EQ(codec::to_json(view()),
+            R"({"now":1000.5,"version":"0.1","run":{"score":7,"run_clock":754.5,"remaining_reports":18,)"
+            R"("current_team":"cave"},"run_heard":999.0,"run_number":2,"run_id":"beta",)"
+            R"("endpoints":[{"name":"scoring","address":"a:1","connected":true,"trouble":"t",)"
+            R"("last_status":201,"answer_ms":3.5,"throttled":1,"foreign":2},{"name":"mapping",)"
+            R"("address":"b:1","connected":false,"trouble":"","last_status":0,"answer_ms":null,)"
+            R"("throttled":0,"foreign":0}],"robots":[{"name":"r","position":{"x":1.0,"y":2.0,"z":3.0},)"
+            R"("heading":0.5,"at":990.0}],"reports":[{"number":7,"type":"Rope","position":{"x":1.0,)"
+            R"("y":-2.5,"z":0.0},"sender":"10.0.0.7","received":940.0,"changed":941.25,)"
+            R"("state":"in doubt","status":500,"report_status":"scored","score_change":-1,)"
+            R"("note":"no \"answer\"","run":2,"asking":true,"reconciled":true,"same_as":3},{"number":0,)"
+            R"("type":"","position":{"x":0.0,"y":0.0,"z":0.0},"sender":"","received":0.0,"changed":0.0,)"
+            R"("state":"","status":0,"report_status":"","score_change":null,"note":"","run":1,)"
+            R"("asking":false,"reconciled":false,"same_as":0}],"near_metres":5.0,)"
+            R"("activities":[{"kind":"grid","robot":"r","accepted":1,"forwarded":2,"replaced":3,)"
+            R"("merged":4,"throttled":5,"failed":6,"refused_upstream":7,"waiting":8,"last_accepted":9.0,)"
+            R"("last_forwarded":null,"bytes_received":10,"bytes_sent":11,"last_status":12,)"
+            R"("last_sentence":"said"}],"refusals":[{"at":1.0,"uri":"/u","sender":"s","status":422,)"
+            R"("sentence":"no","parts":2}],"aside":[{"number":1,"kind":"grid","robot":"r","at":2.0,)"
+            R"("status":400,"why":"w","bytes":3,"overtaken":true}],"lights":[{"name":"health",)"
+            R"("pattern":"on"}],"links":[{"side":"team","interface":"team0","carrier":true},)"
+            R"({"side":"command_post","interface":"d","carrier":null}],"identify_until":1001.0,)"
+            R"("setup_open_until":null,"budget_mbit":100.0,"sent_mbit":1.5,"queued_bytes":6,)"
+            R"("map_version":1793000123456,"marker_version":4,"attention":["do"]})");
+}
+
+TEST(Bytes, OfReports) {
+  EXPECT_EQ(codec::to_json(std::vector{report()}), std::string("[") + kReport + "]");
+  EXPECT_EQ(codec::to_json(std::vector<ReportRow>()), "[]");
+  EXPECT_EQ(codec::to_json(ReportDetail{
+                .row = report(), .history = {{.at = 1, .state = "waiting", .note = "n"}}, .answer = "{}"}),
+            R"({"number":7,"type":"Rope","position":{"x":1.0,"y":-2.5,"z":0.0},"sender":"10.0.0.7",)"
+            R"("received":940.0,"changed":941.25,"state":"in doubt","status":500,)"
+            R"("report_status":"scored","score_change":-1,"note":"no \"answer\"","run":2,"asking":true,)"
+            R"("reconciled":true,"same_as":3,"history":[{"at":1.0,"state":"waiting","note":"n"}],)"
+            R"("answer":"{}"})");
+}
+
+TEST(Bytes, OfTheBox) {
+  About about;
+  about.version = "1", about.build = "b", about.licence = "Apache-2.0", about.started = 10,
+  about.uptime = 2.5;
+  about.kernel = "k", about.model = "m";
+  about.parts = {{.name = "zlib", .version = "1.2", .licence = "Zlib"}};
+  EXPECT_EQ(codec::to_json(about),
+            R"({"version":"1","build":"b","licence":"Apache-2.0","started":10.0,"uptime":2.5,)"
+            R"("kernel":"k","model":"m","board":null,"parts":[{"name":"zlib","version":"1.2",)"
+            R"("licence":"Zlib"}]})");
+  about.board = {"rock-pi-e", "ROCK Pi E"};
+  EXPECT_EQ(codec::to_json(about),
+            R"({"version":"1","build":"b","licence":"Apache-2.0","started":10.0,"uptime":2.5,)"
+            R"("kernel":"k","model":"m","board":{"name":"rock-pi-e","title":"ROCK Pi E"},)"
+            R"("parts":[{"name":"zlib","version":"1.2","licence":"Zlib"}]})");
+  EXPECT_EQ(
+      codec::to_json(NetworkState{
+          .interfaces = {{.name = "e", .up = true, .carrier = std::nullopt, .addresses = {"10.0.0.1/24"}}},
+          .routes = {{.destination = "d", .gateway = "", .interface = "e", .metric = 5}},
+          .trouble = ""}),
+      R"({"interfaces":[{"name":"e","up":true,"carrier":null,"addresses":["10.0.0.1/24"]}],)"
+      R"("routes":[{"destination":"d","gateway":"","interface":"e","metric":5}],"trouble":""})");
+  EXPECT_EQ(codec::to_json(LogPage{.last = 9,
+                                   .records = {{.seq = 4,
+                                                .at = 1.5,
+                                                .severity = 6,
+                                                .level = "info",
+                                                .message = "m",
+                                                .fields = {{"k", "v"}},
+                                                .line = "l"}}}),
+            R"({"last":9,"records":[{"seq":4,"at":1.5,"level":"info","message":"m","fields":{"k":"v"}}]})");
+}
+
+TEST(Bytes, OfTheScene) {
+  const DrawnMarker marker{.ns = "path",
+                           .id = -3,
+                           .type = 4,
+                           .position = {1, 2, 3},
+                           .heading = 1.5708,
+                           .scale = {4, 5, 6},
+                           .color = {0.5, 0.25, 1, 0.126},
+                           .lifetime = 2.5,
+                           .text = "here",
+                           .mesh = "drill",
+                           .points = {{1, 2}, {-3.456F, 4}},
+                           .colors = {{1, 0, 0.5, 1}},
+                           .point_count = 7000};
+  EXPECT_EQ(
+      codec::to_json(MarkerChanges{
+          .version = 5, .whole = false, .left_out = 2, .markers = {{marker, 99.5}}, .gone = {{"path", 7}}}),
+      R"({"version":5,"whole":false,"left_out":2,"markers":[{"ns":"path","id":-3,"type":4,)"
+      R"("position":{"x":1.0,"y":2.0,"z":3.0},"heading":1.57,"scale":{"x":4.0,"y":5.0,"z":6.0},)"
+      R"("color":{"r":0.5,"g":0.25,"b":1.0,"a":0.13},"points":[1.0,2.0,-3.46,4.0],)"
+      R"("colors":["#ff0080ff"],"point_count":7000,"text":"here","mesh":"drill","lifetime":2.5,)"
+      R"("at":99.5}],"gone":[{"ns":"path","id":7}]})");
+  EXPECT_EQ(codec::to_json(
+                Tracks{{{.robot = "r", .poses = {{.at = 1.239, .position = {1, 2, 3}, .heading = 0.5}}}}}),
+            R"({"tracks":[{"robot":"r","poses":[[1.24,1.0,2.0,3.0,0.5]]}]})");
+}
+
+TEST(Bytes, OfTheMap) {
+  picture::Mosaic map;
+  draw_scene(map, 2000);
+  const std::string text = codec::to_json(map_view(map, 0));
+  EXPECT_THAT(
+      text,
+      testing::StartsWith(
+          R"({"version":2000000,"tile_side":256,"metres_per_pixel":[0.25,1.0,4.0],)"
+          R"("colours":{"free":"#c8d2da","occupied":"#a8321e","heights":["#472c7a","#3b518b","#2c718e",)"
+          R"("#21908d","#27ad81","#5cc863","#aadc32","#fde725"]},"spacing":1.0,"wiped":null,)"
+          R"("layers":[{"robot":"","kind":"grid","bounds":{"left":-10.0,"bottom":-5.5,"right":230.0,)"
+          R"("top":152.5},"heights":null,"first":1429.0,"last":1999.0,"version":1999000,"missed":0,)"
+          R"("left_out":0,"tiles":[{"level":0,"x":-1,"y":0,"first":1429.0,"stamp":1429.0,)"
+          R"("version":1429000,"blank":false})"));
+  EXPECT_THAT(text, testing::HasSubstr(R"("heights":{"low":)"));
+  EXPECT_EQ(text.size(), 3154u);
+}
+
+}  // namespace
+}  // namespace adit::api

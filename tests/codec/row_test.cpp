@@ -1,0 +1,103 @@
+#include "codec/row.hpp"
+
+#include <gmock/gmock.h>
+
+#include "codec/json.hpp"
+
+namespace adit::codec {
+namespace {
+
+struct Rope {
+  std::string colour;
+  icd::Point end = {};
+
+  static const Row kRow;
+};
+
+struct Climb {
+  std::int64_t number = 0;
+  Rope rope = {};
+  std::string note = "";
+  std::optional<double> height = std::nullopt;
+  std::vector<std::uint64_t> steps = {};
+  std::optional<icd::Point> top = std::nullopt;
+  bool done = false;
+
+  static const Row kRow;
+};
+
+constexpr std::string_view kColours[] = {"red", "blue"};
+constexpr Member kRope[] = {member<&Rope::colour>("colour").one_of(kColours),
+                            member<&Rope::end, &icd::Point::z>("z", "metres")};
+constexpr Member kClimb[] = {member<&Climb::number>("number").from(1).to(9),
+                             member<&Climb::rope>(""),
+                             member<&Climb::note>("note").as(kTextOrNull),
+                             member<&Climb::height>("height"),
+                             member<&Climb::steps>("steps"),
+                             member<&Climb::top>("top", "of the shaft"),
+                             member<&Climb::done>("done")};
+constinit const Row Rope::kRow = {"", kRope};
+constinit const Row Climb::kRow = {"Climb", kClimb, "One way up."};
+
+Climb climb() {
+  return {.number = 3,
+          .rope = {.colour = "red", .end = {.x = 0, .y = 0, .z = 1.5}},
+          .steps = {1, 2},
+          .done = true};
+}
+
+constexpr const char* kJson =
+    R"({"number":3,"colour":"red","z":1.5,"note":null,"height":null,"steps":[1,2],"top":null,"done":true})";
+
+std::string read_back(const std::string& json) {
+  Reading reading;
+  const Value root = parse_json(json).value();
+  Climb read;
+  KindOf<Climb>::read(Field(root, reading), read);
+  const auto outcome = reading.outcome(std::move(read));
+  return outcome ? to_json(*outcome) : outcome.error().sentence;
+}
+
+TEST(Row, IsWrittenInTheOrderOfItsMembers) {
+  EXPECT_EQ(to_json(climb()), kJson);
+  Climb high = climb();
+  high.note = "windy";
+  high.height = 2;
+  high.top = icd::Point{.x = 1, .y = 2, .z = 3};
+  EXPECT_EQ(to_json(high), R"({"number":3,"colour":"red","z":1.5,"note":"windy","height":2.0,"steps":[1,2],)"
+                           R"("top":{"x":1.0,"y":2.0,"z":3.0},"done":true})");
+}
+
+TEST(Row, IsReadAsItWasWritten) {
+  EXPECT_EQ(read_back(kJson), kJson);
+}
+
+TEST(Row, RefusesWithTheNameOfTheMember) {
+  EXPECT_EQ(read_back("{}"), "number: missing");
+  EXPECT_EQ(read_back(R"({"number":3,"colour":"red","z":1.5,"note":null,"height":"up"})"),
+            "height: expected a number, got a string");
+  EXPECT_EQ(read_back(R"({"number":3,"colour":"red","z":1.5,"note":null,"height":1,"steps":[-1]})"),
+            "steps[0]: expected a whole number from 0 to 9223372036854775807, got -1");
+}
+
+TEST(Row, IsDescribedWithUnitsWordsAndBounds) {
+  Schemas schemas;
+  EXPECT_EQ(write_json({schemas.of(Climb::kRow)}), R"({"$ref":"#/components/schemas/Climb"})");
+  EXPECT_EQ(write_json({schemas.all()}),
+            R"({"Point":{"type":"object","description":"Metres, in the frame darpa.","properties":{)"
+            R"("x":{"type":"number"},"y":{"type":"number"},"z":{"type":"number"}},)"
+            R"("required":["x","y","z"],"additionalProperties":false},)"
+            R"("Climb":{"type":"object","description":"One way up.","properties":{)"
+            R"("number":{"type":"integer","minimum":1,"maximum":9},)"
+            R"("colour":{"type":"string","enum":["red","blue"]},)"
+            R"("z":{"type":"number","description":"metres"},"note":{"type":["string","null"]},)"
+            R"("height":{"type":["number","null"]},)"
+            R"("steps":{"type":"array","items":{"type":"integer","minimum":0}},)"
+            R"("top":{"oneOf":[{"type":"null"},{"$ref":"#/components/schemas/Point"}],)"
+            R"("description":"of the shaft"},"done":{"type":"boolean"}},)"
+            R"("required":["number","colour","z","note","height","steps","top","done"],)"
+            R"("additionalProperties":false}})");
+}
+
+}  // namespace
+}  // namespace adit::codec

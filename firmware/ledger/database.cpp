@@ -92,10 +92,11 @@ sqlite3_file* Database::log() const {
   return log_of(get());
 }
 
-Result<Statement> Statement::prepare(const Database& database, const char* sql) {
+Result<Statement> Statement::prepare(const Database& database, const std::string& sql) {
   Statement statement;
   sqlite3_stmt* handle = nullptr;
-  const int result = sqlite3_prepare_v3(database.get(), sql, -1, SQLITE_PREPARE_PERSISTENT, &handle, nullptr);
+  const int result =
+      sqlite3_prepare_v3(database.get(), sql.c_str(), -1, SQLITE_PREPARE_PERSISTENT, &handle, nullptr);
   statement.handle_.reset(handle);
   if (result != SQLITE_OK) return std::unexpected(database.error(sql));
   return statement;

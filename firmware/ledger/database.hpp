@@ -21,7 +21,7 @@ struct FinalizeStatement {
 /// A prepared statement, kept for the life of its database. Use it through a Query.
 class Statement {
  public:
-  static Result<Statement> prepare(const class Database& database, const char* sql);
+  static Result<Statement> prepare(const class Database& database, const std::string& sql);
   sqlite3_stmt* get() const { return handle_.get(); }
 
  private:

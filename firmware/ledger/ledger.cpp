@@ -22,7 +22,7 @@ class Ledger::Impl {
  public:
   static Result<std::unique_ptr<Impl>> make(Opened opened) {
     auto impl = std::make_unique<Impl>(std::move(opened));
-    const std::pair<Statement*, const char*> statements[] = {
+    const std::pair<Statement*, const std::string&> statements[] = {
         {&impl->write_report_, kWriteReport},     {&impl->write_run_, kWriteRun},
         {&impl->write_sighting_, kWriteSighting}, {&impl->read_reports_, kReadReports},
         {&impl->read_history_, kReadHistory},     {&impl->read_runs_, kReadRuns}};

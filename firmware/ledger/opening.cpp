@@ -60,13 +60,14 @@ Result<void> check_pages(Database& database) {
 
 /// A row may have been changed so that it is still a row: only its proof tells.
 Result<void> check_rows(Database& database) {
-  const auto unproven = database.text(kUnprovenRow);
+  const auto unproven = database.text(kUnprovenRow.c_str());
   if (!unproven) return std::unexpected(database.error("reading all rows"));
   if (!unproven->empty()) return std::unexpected(damaged(*unproven + " is not as it was written"));
-  for (const char* sql : {kWriteReport, kWriteRun, kWriteSighting, kReadReports, kReadHistory, kReadRuns}) {
-    if (const auto known = Statement::prepare(database, sql); !known) return std::unexpected(known.error());
+  for (const std::string* sql :
+       {&kWriteReport, &kWriteRun, &kWriteSighting, &kReadReports, &kReadHistory, &kReadRuns}) {
+    if (const auto known = Statement::prepare(database, *sql); !known) return std::unexpected(known.error());
   }
-  return database.execute(kProveRows);
+  return database.execute(kProveRows.c_str());
 }
 
 /// Fills the write-ahead log up with zeros, which SQLite takes for its end. Where there is no room for that

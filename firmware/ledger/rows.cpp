@@ -1,139 +1,238 @@
 #include "ledger/rows.hpp"
 
+#include <algorithm>
 #include <charconv>
 
 #include "icd/sentence.hpp"
 
 namespace adit::ledger {
-
-// The order of the columns in a statement is that of the bindings, and of the readings, below it; in a proof
-// it is that of the table.
-
-const char* const kWriteReport = R"(
-  INSERT INTO report(number, type, x, y, z, sender, received, changed, state, note, run, asked, same_as,
-    tries, sending, sent, before_score, before_run_clock, before_remaining_reports, before_current_team,
-    status, content_type, answer, reconciled, history, proof)
-  VALUES(?1, ?2, ?3, ?4, ?5, ?6, ?7, ?8, ?9, ?10, ?11, ?12, ?13, ?14, ?15, ?16, ?17, ?18, ?19, ?20, ?21, ?22,
-    ?23, ?24, ?25,
-    proof(?1, ?2, ?3, ?4, ?5, ?6, ?7, ?8, ?9, ?10, ?11, ?12, ?13, ?14, ?15, ?16, ?17, ?18, ?19, ?20, ?21, ?22,
-      ?23, ?24, ?25))
-  ON CONFLICT(number) DO UPDATE SET
-    sender = excluded.sender, changed = excluded.changed, state = excluded.state, note = excluded.note,
-    run = excluded.run, asked = excluded.asked, same_as = excluded.same_as, tries = excluded.tries,
-    sending = excluded.sending, sent = excluded.sent, before_score = excluded.before_score,
-    before_run_clock = excluded.before_run_clock,
-    before_remaining_reports = excluded.before_remaining_reports,
-    before_current_team = excluded.before_current_team, status = excluded.status,
-    content_type = excluded.content_type, answer = excluded.answer, reconciled = excluded.reconciled,
-    history = history || excluded.history,
-    proof = proof(?1, ?2, ?3, ?4, ?5, ?6, ?7, ?8, ?9, ?10, ?11, ?12, ?13, ?14, ?15, ?16, ?17, ?18, ?19, ?20, ?21,
-      ?22, ?23, ?24, history || excluded.history)
-  WHERE type = excluded.type AND x = excluded.x AND y = excluded.y AND z = excluded.z
-    AND received = excluded.received)";
-
-const char* const kReadReports = R"(
-  SELECT number, type, x, y, z, sender, received, changed, state, note, run, asked, same_as,
-    tries, sending, sent, before_score, before_run_clock, before_remaining_reports, before_current_team,
-    status, content_type, answer, reconciled
-  FROM report ORDER BY number)";
-
-const char* const kReadHistory = "SELECT history FROM report WHERE number = ?";
-
-const char* const kWriteRun = R"(
-  INSERT INTO run(number, id, began, why, score, run_clock, remaining_reports, current_team, heard, post,
-    unreliable, proof)
-  VALUES(?1, ?2, ?3, ?4, ?5, ?6, ?7, ?8, ?9, ?10, ?11, proof(?1, ?2, ?3, ?4, ?5, ?6, ?7, ?8, ?9, ?10, ?11))
-  ON CONFLICT(number) DO UPDATE SET
-    id = excluded.id, began = excluded.began, why = excluded.why, score = excluded.score,
-    run_clock = excluded.run_clock, remaining_reports = excluded.remaining_reports,
-    current_team = excluded.current_team, heard = excluded.heard, post = excluded.post,
-    unreliable = excluded.unreliable, proof = excluded.proof)";
-
-const char* const kWriteSighting = R"(
-  REPLACE INTO sighting(number, turn, may_be, status_clock, status_clock_runs, answer_clock, answer_clock_runs,
-    heard, proof)
-  VALUES(?1, ?2, ?3, ?4, ?5, ?6, ?7, ?8, proof(?1, ?2, ?3, ?4, ?5, ?6, ?7, ?8)))";
-
-const char* const kReadRuns = R"(
-  SELECT number, id, began, why, score, run_clock, remaining_reports, current_team, run.heard, post, unreliable,
-    coalesce(turn, 0), coalesce(may_be, 0), status_clock, status_clock_runs, answer_clock, answer_clock_runs
-  FROM run LEFT JOIN sighting USING(number) ORDER BY number)";
-
-const char* const kProveRows = R"(
-  UPDATE report SET proof = proof(number, type, x, y, z, sender, received, changed, state, note, run, asked,
-    same_as, tries, sending, sent, before_score, before_run_clock, before_remaining_reports,
-    before_current_team, status, content_type, answer, reconciled, history) WHERE proof = 1;
-  UPDATE run SET proof = proof(number, id, began, why, score, run_clock, remaining_reports, current_team,
-    heard, post, unreliable) WHERE proof = 1;
-  UPDATE sighting SET proof = proof(number, turn, may_be, status_clock, status_clock_runs, answer_clock,
-    answer_clock_runs, heard) WHERE proof = 1)";
-
-const char* const kUnprovenRow = R"(
-  SELECT 'report ' || number FROM report WHERE proof NOT IN (1, proof(number, type, x, y, z, sender, received,
-    changed, state, note, run, asked, same_as, tries, sending, sent, before_score, before_run_clock,
-    before_remaining_reports, before_current_team, status, content_type, answer, reconciled, history))
-  UNION ALL SELECT 'run ' || number FROM run WHERE proof NOT IN (1, proof(number, id, began, why, score,
-    run_clock, remaining_reports, current_team, heard, post, unreliable))
-  UNION ALL SELECT 'what was seen of run ' || number FROM sighting WHERE proof NOT IN (1, proof(number, turn,
-    may_be, status_clock, status_clock_runs, answer_clock, answer_clock_runs, heard))
-  UNION ALL SELECT 'the mark' FROM mark WHERE proof != proof(number, log_needed, log_size, highest)
-  UNION ALL SELECT 'report ' || highest FROM mark
-    WHERE highest > (SELECT coalesce(max(number), 0) FROM report)
-  UNION ALL SELECT '' LIMIT 1)";
-
 namespace {
 
-/// The columns of a row, one after the other.
+using dispatch::Report;
+using dispatch::Run;
+
+/// The columns of a row that is read, one after the other.
 class Columns {
  public:
   explicit Columns(const Query& row) : row_(row) {}
 
-  std::int64_t number() { return row_.number(next_++); }
-  double real() { return row_.real(next_++); }
-  std::string bytes() { return row_.bytes(next_++); }
-  bool flag() { return number() != 0; }
-
-  /// What it shows, NULL where none was seen, and whether it runs.
-  std::optional<dispatch::Clock> clock() {
+  void take(std::int64_t& number) { number = row_.number(next_++); }
+  void take(int& number) { number = static_cast<int>(row_.number(next_++)); }
+  void take(bool& flag) { flag = row_.number(next_++) != 0; }
+  void take(double& real) { real = row_.real(next_++); }
+  void take(std::string& bytes) { bytes = row_.bytes(next_++); }
+  void take(dispatch::ReportState& state) {
+    unknown_ = row_.bytes(next_++);
+    const auto known = dispatch::state_named(unknown_);
+    state = known.value_or(dispatch::ReportState::InDoubt);
+    if (known) unknown_.clear();
+  }
+  void take(std::optional<dispatch::Clock>& clock) {
     const bool none = row_.is_null(next_);
-    const double shows = real();
-    const bool runs = flag();
-    if (none) return std::nullopt;
-    return dispatch::Clock{.shows = shows, .runs = runs};
+    dispatch::Clock taken;
+    take(taken.shows);
+    take(taken.runs);
+    if (!none) clock = taken;
+  }
+  void take(std::optional<icd::RunStatus>& status) {
+    const bool none = row_.is_null(next_);
+    icd::RunStatus taken;
+    take(taken.score);
+    take(taken.run_clock);
+    take(taken.remaining_reports);
+    take(taken.current_team);
+    if (!none) status = std::move(taken);
   }
 
-  /// The four columns of a status; all of them are NULL where there is none.
-  std::optional<icd::RunStatus> status() {
-    const bool none = row_.is_null(next_);
-    icd::RunStatus status;
-    status.score = number();
-    status.run_clock = real();
-    status.remaining_reports = number();
-    status.current_team = bytes();
-    if (none) return std::nullopt;
-    return status;
-  }
+  /// The word of a state that this version does not know, or "".
+  const std::string& unknown_state() const { return unknown_; }
 
  private:
   const Query& row_;
   int next_ = 0;
+  std::string unknown_;
 };
 
-void bind_status(Query& query, const std::optional<icd::RunStatus>& status) {
-  if (status) {
-    query.bind(status->score).bind(status->run_clock).bind(status->remaining_reports);
-    query.bind(status->current_team);
-  } else {
+void put(Query& query, std::integral auto number) {
+  query.bind(std::int64_t{number});
+}
+void put(Query& query, double real) {
+  query.bind(real);
+}
+void put(Query& query, const std::string& text) {
+  query.bind(text);
+}
+void put(Query& query, dispatch::ReportState state) {
+  query.bind(dispatch::name_of(state));
+}
+void put(Query& query, const std::optional<dispatch::Clock>& clock) {
+  clock ? query.bind(clock->shows) : query.bind_null();
+  query.bind(std::int64_t{clock && clock->runs});
+}
+void put(Query& query, const std::optional<icd::RunStatus>& status) {
+  if (!status) {
     query.bind_null().bind_null().bind_null().bind_null();
+    return;
   }
+  query.bind(status->score).bind(status->run_clock).bind(status->remaining_reports);
+  query.bind(status->current_team);
 }
 
-void bind_clock(Query& query, const std::optional<dispatch::Clock>& clock) {
-  if (clock) {
-    query.bind(clock->shows).bind(std::int64_t{clock->runs});
-  } else {
-    query.bind_null().bind(std::int64_t{0});
+/// What stands behind the name of a member that takes several columns.
+constexpr std::string_view kOne[] = {""}, kOfClock[] = {"", "_runs"},
+                           kOfStatus[] = {"score", "run_clock", "remaining_reports", "current_team"};
+
+template <class T>
+constexpr std::span<const std::string_view> kParts = kOne;
+template <>
+constexpr std::span<const std::string_view> kParts<std::optional<dispatch::Clock>> = kOfClock;
+template <>
+constexpr std::span<const std::string_view> kParts<std::optional<icd::RunStatus>> = kOfStatus;
+
+/// What an update does with a column of a row that is there: it names the row, must be as it was, or is new.
+enum class On : std::uint8_t { Key, Fixed, New };
+
+/// A member of a row and its column, or columns.
+template <class Row>
+struct Column {
+  std::string_view name;
+  std::span<const std::string_view> parts;
+  void (*bind)(Query& query, const Row& row);
+  void (*read)(Columns& from, Row& row);
+  On update = On::New;
+
+  constexpr Column on(On does) const { return {name, parts, bind, read, does}; }
+};
+
+/// The member at the end of a way of pointers to members.
+template <auto first, auto... rest>
+constexpr auto column(std::string_view name) {
+  return [=]<class Row, class T>(T Row::* /*first*/) {
+    using Last = std::remove_cvref_t<decltype(((std::declval<Row&>().*first).*....*rest))>;
+    return Column<Row>{name, kParts<Last>,
+                       [](Query& query, const Row& row) { put(query, ((row.*first).*....*rest)); },
+                       [](Columns& from, Row& row) { from.take(((row.*first).*....*rest)); }};
+  }(first);
+}
+
+using icd::ArtifactReport;
+using icd::Point;
+
+// The members in the order of their columns: that of the bindings, of the readings, and in a proof.
+
+constexpr Column<Report> kReport[] = {
+    column<&Report::number>("number").on(On::Key),
+    column<&Report::report, &ArtifactReport::type>("type").on(On::Fixed),
+    column<&Report::report, &ArtifactReport::position, &Point::x>("x").on(On::Fixed),
+    column<&Report::report, &ArtifactReport::position, &Point::y>("y").on(On::Fixed),
+    column<&Report::report, &ArtifactReport::position, &Point::z>("z").on(On::Fixed),
+    column<&Report::sender>("sender"),
+    column<&Report::received>("received").on(On::Fixed),
+    column<&Report::changed>("changed"),
+    column<&Report::state>("state"),
+    column<&Report::note>("note"),
+    column<&Report::run>("run"),
+    column<&Report::asked>("asked"),
+    column<&Report::same_as>("same_as"),
+    column<&Report::tries>("tries"),
+    column<&Report::sending>("sending"),
+    column<&Report::sent>("sent"),
+    column<&Report::before>("before_"),
+    column<&Report::status>("status"),
+    column<&Report::content_type>("content_type"),
+    {"answer", kOne, [](Query& query, const Report& report) { query.bind_blob(report.answer); },
+     [](Columns& from, Report& report) { from.take(report.answer); }},
+    column<&Report::reconciled>("reconciled"),
+};
+
+constexpr Column<Run> kRun[] = {
+    column<&Run::number>("number").on(On::Key),
+    column<&Run::id>("id"),
+    column<&Run::began>("began"),
+    column<&Run::why>("why"),
+    column<&Run::last>(""),
+    column<&Run::heard>("heard"),
+    column<&Run::post>("post"),
+    column<&Run::unreliable>("unreliable"),
+};
+
+constexpr Column<Run> kSighting[] = {
+    column<&Run::number>("number").on(On::Key),
+    column<&Run::turn>("turn"),
+    column<&Run::may_be>("may_be"),
+    column<&Run::status_clock>("status_clock"),
+    column<&Run::answer_clock>("answer_clock"),
+    column<&Run::heard>("heard"),
+};
+
+using Names = std::vector<std::string>;
+
+template <class Row, std::size_t count>
+Names names_of(const Column<Row> (&columns)[count],
+               std::initializer_list<On> of = {On::Key, On::Fixed, On::New}) {
+  Names names;
+  for (const Column<Row>& column : columns) {
+    if (std::ranges::find(of, column.update) == of.end()) continue;
+    for (const std::string_view part : column.parts) names.push_back(std::string(column.name).append(part));
   }
+  return names;
+}
+
+Names with(Names names, std::string_view more) {
+  names.emplace_back(more);
+  return names;
+}
+
+/// "a, b": `each` makes a piece of a name and its place, from 1.
+std::string list(const Names& names, const auto& each, std::string_view between = ", ") {
+  std::string text;
+  for (std::size_t i = 0; i < names.size(); ++i)
+    text.append(i == 0 ? "" : between).append(each(names[i], i + 1));
+  return text;
+}
+std::string list(const Names& names) {
+  return list(names, [](const std::string& name, std::size_t) { return name; });
+}
+/// "run.number, run.id"
+std::string list_of(std::string_view table, const Names& names) {
+  return list(names, [=](const std::string& name, std::size_t) { return icd::sentence(table, ".", name); });
+}
+/// "?1, ?2"
+std::string places(const Names& names) {
+  return list(names, [](const std::string&, std::size_t place) { return icd::sentence("?", place); });
+}
+/// "a = excluded.a"
+std::string excluded(const Names& names, std::string_view between) {
+  return list(
+      names, [](const std::string& name, std::size_t) { return icd::sentence(name, " = excluded.", name); },
+      between);
+}
+
+/// "number, a, proof) VALUES(?1, ?2, proof(?1, ?2))": of an INSERT.
+std::string values(const Names& names) {
+  return icd::sentence(list(names), ", proof) VALUES(", places(names), ", proof(", places(names), "))");
+}
+
+const Names kReportNames = names_of(kReport), kKept = with(kReportNames, "history"),
+            kRunNames = names_of(kRun), kSightingNames = names_of(kSighting);
+
+std::string prove(std::string_view table, const Names& names) {
+  return icd::sentence("UPDATE ", table, " SET proof = proof(", list(names), ") WHERE proof = 1;");
+}
+
+std::string unproven(std::string_view what, std::string_view table, const Names& names) {
+  return icd::sentence("SELECT '", what, "' || number FROM ", table, " WHERE proof NOT IN (1, proof(",
+                       list(names), ")) UNION ALL ");
+}
+
+template <class Row, std::size_t count>
+void bind_row(Query& query, const Column<Row> (&columns)[count], const Row& row) {
+  for (const Column<Row>& column : columns) column.bind(query, row);
+}
+
+template <class Row, std::size_t count>
+void read_row(Columns& from, const Column<Row> (&columns)[count], Row& row) {
+  for (const Column<Row>& column : columns) column.read(from, row);
 }
 
 // Each takes something from the start of `text`, or gives false.
@@ -163,16 +262,41 @@ bool take_text(std::string_view& text, std::string& taken) {
 
 }  // namespace
 
-void bind_report(Query& query, const dispatch::Report& report, const std::string& history) {
-  const icd::Point& position = report.report.position;
-  query.bind(report.number).bind(report.report.type).bind(position.x).bind(position.y).bind(position.z);
-  query.bind(report.sender).bind(report.received).bind(report.changed);
-  query.bind(dispatch::name_of(report.state)).bind(report.note);
-  query.bind(report.run).bind(std::int64_t{report.asked}).bind(report.same_as);
-  query.bind(report.tries).bind(report.sending).bind(report.sent);
-  bind_status(query, report.before);
-  query.bind(std::int64_t{report.status}).bind(report.content_type).bind_blob(report.answer);
-  query.bind(std::int64_t{report.reconciled}).bind(history);
+const std::string kWriteReport =
+    icd::sentence("INSERT INTO report(", values(kKept), " ON CONFLICT(number) DO UPDATE SET ",
+                  excluded(names_of(kReport, {On::New}), ", "),
+                  ", history = history || excluded.history, proof = proof(", places(kReportNames),
+                  ", history || excluded.history) WHERE ", excluded(names_of(kReport, {On::Fixed}), " AND "));
+
+const std::string kReadReports = icd::sentence("SELECT ", list(kReportNames), " FROM report ORDER BY number");
+
+const std::string kReadHistory = "SELECT history FROM report WHERE number = ?";
+
+const std::string kWriteRun =
+    icd::sentence("INSERT INTO run(", values(kRunNames), " ON CONFLICT(number) DO UPDATE SET ",
+                  excluded(with(names_of(kRun, {On::New}), "proof"), ", "));
+
+const std::string kWriteSighting = icd::sentence("REPLACE INTO sighting(", values(kSightingNames));
+
+// A run that nothing was seen of has NULL in each column of its sighting: its own number and time come after.
+const std::string kReadRuns =
+    icd::sentence("SELECT ", list_of("sighting", kSightingNames), ", ", list_of("run", kRunNames),
+                  " FROM run LEFT JOIN sighting USING(number) ORDER BY run.number");
+
+const std::string kProveRows =
+    prove("report", kKept) + prove("run", kRunNames) + prove("sighting", kSightingNames);
+
+const std::string kUnprovenRow =
+    icd::sentence(unproven("report ", "report", kKept), unproven("run ", "run", kRunNames),
+                  unproven("what was seen of run ", "sighting", kSightingNames), R"(
+  SELECT 'the mark' FROM mark WHERE proof != proof(number, log_needed, log_size, highest)
+  UNION ALL SELECT 'report ' || highest FROM mark
+    WHERE highest > (SELECT coalesce(max(number), 0) FROM report)
+  UNION ALL SELECT '' LIMIT 1)");
+
+void bind_report(Query& query, const Report& report, const std::string& history) {
+  bind_row(query, kReport, report);
+  query.bind(history);
 }
 
 std::string history_of(std::span<const dispatch::Report> steps) {
@@ -198,67 +322,30 @@ std::optional<std::vector<Ledger::Step>> steps_of(std::int64_t number, std::stri
   return steps;
 }
 
-dispatch::Report report_of(const Query& row) {
-  Columns column(row);
-  dispatch::Report report;
-  report.number = column.number();
-  report.report.type = column.bytes();
-  report.report.position.x = column.real();
-  report.report.position.y = column.real();
-  report.report.position.z = column.real();
-  report.sender = column.bytes();
-  report.received = column.real();
-  report.changed = column.real();
-  const std::string state = column.bytes();
-  const auto known = dispatch::state_named(state);
-  report.state = known.value_or(dispatch::ReportState::InDoubt);
-  report.note = column.bytes();
-  report.run = column.number();
-  report.asked = column.flag();
-  report.same_as = column.number();
-  report.tries = column.number();
-  report.sending = column.number();
-  report.sent = column.real();
-  report.before = column.status();
-  report.status = static_cast<int>(column.number());
-  report.content_type = column.bytes();
-  report.answer = column.bytes();
-  report.reconciled = column.flag();
-  if (!known) {  // only the operator can judge it: without `before` nobody else does
-    report.note = "its state '" + state + "' is none that this version knows; " + report.note;
+Report report_of(const Query& row) {
+  Columns from(row);
+  Report report;
+  read_row(from, kReport, report);
+  if (!from.unknown_state().empty()) {  // only the operator can judge it: without `before` nobody else does
+    report.note = "its state '" + from.unknown_state() + "' is none that this version knows; " + report.note;
     report.before.reset();
   }
   return report;
 }
 
-void bind_run(Query& query, const dispatch::Run& run) {
-  query.bind(run.number).bind(run.id).bind(run.began).bind(run.why);
-  bind_status(query, run.last);
-  query.bind(run.heard).bind(run.post).bind(run.unreliable);
+void bind_run(Query& query, const Run& run) {
+  bind_row(query, kRun, run);
 }
 
-void bind_sighting(Query& query, const dispatch::Run& run) {
-  query.bind(run.number).bind(run.turn).bind(run.may_be);
-  bind_clock(query, run.status_clock);
-  bind_clock(query, run.answer_clock);
-  query.bind(run.heard);
+void bind_sighting(Query& query, const Run& run) {
+  bind_row(query, kSighting, run);
 }
 
-dispatch::Run run_of(const Query& row) {
-  Columns column(row);
-  dispatch::Run run;
-  run.number = column.number();
-  run.id = column.bytes();
-  run.began = column.real();
-  run.why = column.bytes();
-  run.last = column.status();
-  run.heard = column.real();
-  run.post = column.bytes();
-  run.unreliable = column.bytes();
-  run.turn = column.number();
-  run.may_be = column.number();
-  run.status_clock = column.clock();
-  run.answer_clock = column.clock();
+Run run_of(const Query& row) {
+  Columns from(row);
+  Run run;
+  read_row(from, kSighting, run);
+  read_row(from, kRun, run);
   return run;
 }
 

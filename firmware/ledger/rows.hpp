@@ -24,7 +24,7 @@ inline constexpr std::string_view kMarkKinds = "iiii";
 
 /// Inserts a report, or updates the same one under its number and adds to its history; changes no row where
 /// the number is another's.
-extern const char* const kWriteReport;
+extern const std::string kWriteReport;
 void bind_report(Query& query, const dispatch::Report& report, const std::string& history);
 
 /// A history is a line for each step, "1763632493.25 7:sending 4:note": when, and each text after its length
@@ -33,26 +33,26 @@ std::string history_of(std::span<const dispatch::Report> steps);
 /// Nothing where that is no history.
 std::optional<std::vector<Ledger::Step>> steps_of(std::int64_t number, std::string_view history);
 
-extern const char* const kReadReports;
+extern const std::string kReadReports;
 dispatch::Report report_of(const Query& row);
 
 /// Of the report whose number is its one parameter.
-extern const char* const kReadHistory;
+extern const std::string kReadHistory;
 
 /// Inserts a run, or updates the one of its number.
-extern const char* const kWriteRun;
+extern const std::string kWriteRun;
 void bind_run(Query& query, const dispatch::Run& run);
 /// The same of what tells it from other runs, which is in a table of its own.
-extern const char* const kWriteSighting;
+extern const std::string kWriteSighting;
 void bind_sighting(Query& query, const dispatch::Run& run);
 
 /// Gives a proof to the rows that an Adit wrote that knew none.
-extern const char* const kProveRows;
+extern const std::string kProveRows;
 /// The name of a row whose proof is another's, or that is not there ("report 7"), or "".
-extern const char* const kUnprovenRow;
+extern const std::string kUnprovenRow;
 
 /// All runs, with what tells them from others.
-extern const char* const kReadRuns;
+extern const std::string kReadRuns;
 dispatch::Run run_of(const Query& row);
 
 }  // namespace adit::ledger

@@ -94,7 +94,7 @@ class Salvage {
       }
       missing += (missing.empty() ? "" : ", ") + said;
     }
-    if (auto proven = database_.execute(kProveRows); !proven) return std::unexpected(proven.error());
+    if (auto proven = database_.execute(kProveRows.c_str()); !proven) return std::unexpected(proven.error());
     if (auto committed = transaction.commit(); !committed) return std::unexpected(committed.error());
     return icd::sentence(carved_.reports.size(), " reports were taken over from it",
                          missing.empty() ? "" : "; " + missing);

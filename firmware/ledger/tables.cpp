@@ -150,7 +150,7 @@ Result<void> make_tables(Database& database) {
   if (auto begun = transaction.begin(); !begun) return begun;
   const auto old = static_cast<std::size_t>(kind->is_ledger() ? kind->version : 0);
   const char* const tables = old == 3 ? "" : kTables;
-  for (const char* sql : {kSetAside[old], tables, kTakeOver[old], kAddProofs, kProveRows}) {
+  for (const char* sql : {kSetAside[old], tables, kTakeOver[old], kAddProofs, kProveRows.c_str()}) {
     if (auto done = database.execute(sql); !done) return done;
   }
   return transaction.commit();

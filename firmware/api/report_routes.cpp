@@ -8,8 +8,8 @@
 #include "codec/body_decoder.hpp"
 #include "codec/field.hpp"
 #include "codec/read.hpp"
-#include "icd/sentence.hpp"
 #include "codec/row.hpp"
+#include "icd/sentence.hpp"
 
 namespace adit::api {
 using codec::json;

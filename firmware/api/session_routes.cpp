@@ -7,8 +7,8 @@
 #include "api/read_body.hpp"
 #include "codec/field.hpp"
 #include "codec/json.hpp"
-#include "icd/sentence.hpp"
 #include "codec/row.hpp"
+#include "icd/sentence.hpp"
 
 namespace adit::api {
 namespace {

@@ -53,19 +53,20 @@ struct Member {
   Cell cell = Cell::None;
   int column = 0;  // of CSV, from 1
 
+  /// The same but for one of these; before those that call it, for clang.
+  template <class T>
+  constexpr Member with(T Member::* which, T value) const {
+    Member other = *this;
+    other.*which = value;
+    return other;
+  }
+
   constexpr Member as(const Kind& other) const { return with(&Member::kind, &other); }
   constexpr Member one_of(std::span<const std::string_view> all) const { return with(&Member::words, all); }
   constexpr Member from(std::int64_t bound) const { return with(&Member::least, std::optional(bound)); }
   constexpr Member to(std::int64_t bound) const { return with(&Member::most, std::optional(bound)); }
   constexpr Member csv(int place, Cell form = Cell::Plain) const {
     return with(&Member::cell, form).with(&Member::column, place);
-  }
-
-  template <class T>
-  constexpr Member with(T Member::* which, T value) const {
-    Member other = *this;
-    other.*which = value;
-    return other;
   }
 };
 

@@ -2,11 +2,11 @@
 
 #include <chrono>
 #include <expected>
-#include <optional>
 #include <string>
 
 #include "icd/bearer_token.hpp"
 #include "settings/settings.hpp"
+#include "uplink/exchange.hpp"
 
 namespace adit::cli {
 
@@ -15,15 +15,12 @@ inline constexpr std::size_t kLargestBody = 8u << 20;
 struct HttpRequest {
   enum class Method : std::uint8_t { Get, Post } method = Method::Get;
   std::string target;  // "/adit/run"
-  std::optional<icd::BearerToken> token = std::nullopt;
+  icd::BearerToken token;
   std::string body = "";  // of a POST: JSON, or nothing
   std::string content_type = "application/json";
 };
 
-struct HttpReply {
-  unsigned status = 0;
-  std::string body;
-};
+using HttpReply = uplink::Answered;
 
 struct NoReply {
   std::string sentence;  // names the address
@@ -32,7 +29,7 @@ struct NoReply {
 
 /// One blocking request (RFC 9112) on a connection of its own: the whole reply, or why there is none. All of
 /// it within `within`.
-std::expected<HttpReply, NoReply> http_ask(const settings::Address& address, const HttpRequest& request,
+std::expected<HttpReply, NoReply> http_ask(const settings::Address& address, HttpRequest request,
                                            std::chrono::milliseconds within);
 
 }  // namespace adit::cli

@@ -2,7 +2,6 @@
 
 #include <map>
 #include <string>
-#include <vector>
 
 namespace adit::panel {
 
@@ -28,7 +27,6 @@ struct FakeChip {
 struct FakeGpio {
   std::map<std::string, FakeChip> chips;  // by path: "/dev/gpiochip0"
   int open = 0;                           // chips and requests that are not closed yet
-  std::vector<std::string> history;       // "request HEALTH", "release HEALTH"
 
   FakeLine& line(const std::string& name);
   /// The wire of an input changes, and its user is told.

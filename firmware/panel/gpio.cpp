@@ -2,12 +2,43 @@
 #include <gpiod.h>
 
 #include <array>
+#include <cerrno>
+#include <system_error>
 #include <utility>
 
-#include "panel/gpio_lines.hpp"
+#include "panel/lines.hpp"
 
 namespace adit::panel {
 namespace {
+
+const std::string& line_of(const settings::Panel& settings, Light light) {
+  switch (light) {
+    case Light::Health:
+      return settings.health;
+    case Light::Scoring:
+      return settings.scoring;
+    case Light::Mapping:
+      return settings.mapping;
+    case Light::Attention:
+      break;
+  }
+  return settings.attention;
+}
+
+/// "line H (health) of chip gpiochip0"
+std::string about(const settings::Panel& settings, const std::string& line, std::string_view what) {
+  const std::string chip = settings.chip.empty() ? " of any chip" : " of chip " + settings.chip;
+  return "line " + line + " (" + std::string(what) + ")" + chip;
+}
+
+std::unexpected<std::string> gpio_trouble(const std::string& about, int error) {
+  return std::unexpected("panel: " + about + ": " + std::system_category().message(error));
+}
+
+/// What is left in errno by libgpiod, which says nothing where it merely did not find something.
+int gpio_error() {
+  return errno == 0 ? ENOENT : errno;
+}
 
 struct CloseChip {
   void operator()(gpiod_chip* chip) const { gpiod_chip_close(chip); }
@@ -73,6 +104,29 @@ std::expected<Output, std::string> request_output(const settings::Panel& setting
   return Output(std::move(*found));
 }
 
+class GpioLines final : public Lines {
+ public:
+  using Outputs = std::array<Output, kLights.size()>;
+
+  GpioLines(settings::Panel settings, Outputs outputs)
+      : settings_(std::move(settings)), outputs_(std::move(outputs)) {}
+
+  /// Every light is set, also after one that fails; the first failure is told.
+  std::expected<void, std::string> set(const Lit& lit) override {
+    std::expected<void, std::string> result;
+    for (const Light light : kLights) {
+      Output& output = outputs_[index_of(light)];
+      if (!output.is_there() || output.set(lit[index_of(light)])) continue;
+      if (result) result = gpio_trouble(about(settings_, line_of(settings_, light), name_of(light)), errno);
+    }
+    return result;
+  }
+
+ private:
+  settings::Panel settings_;
+  Outputs outputs_;
+};
+
 class GpioButton final : public ButtonLine {
  public:
   GpioButton(Found found, std::string about) : found_(std::move(found)), about_(std::move(about)) {}
@@ -105,9 +159,15 @@ class GpioButton final : public ButtonLine {
 
 std::expected<std::unique_ptr<Lines>, std::string> open_gpio(const settings::Panel& settings,
                                                              const std::string& consumer) {
-  return open_lines<Output>(settings, [&](const std::string& line, const std::string& about) {
-    return request_output(settings, line, about, consumer);
-  });
+  GpioLines::Outputs outputs;
+  for (const Light light : kLights) {
+    const std::string& line = line_of(settings, light);
+    if (line.empty()) continue;
+    auto output = request_output(settings, line, about(settings, line, name_of(light)), consumer);
+    if (!output) return std::unexpected(output.error());
+    outputs[index_of(light)] = std::move(*output);
+  }
+  return std::make_unique<GpioLines>(settings, std::move(outputs));
 }
 
 std::expected<std::unique_ptr<ButtonLine>, std::string> open_gpio_button(const settings::Panel& settings,

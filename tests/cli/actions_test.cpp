@@ -66,7 +66,7 @@ TEST_F(Actions, AreAskedForOfWhatIsSetAside) {
                  .bytes = 90,
                  .overtaken = true}};
   const Server server(
-      {{"GET /adit/run", Server::ok(api::write_run_view(view))},
+      {{"GET /adit/run", Server::ok(codec::to_json(view))},
        {"POST /adit/aside/3/send", Server::ok("{\"aside\":3}")},
        {"POST /adit/aside/3/discard", Server::ok("{\"aside\":3}")},
        {"POST /adit/aside/4/send", Server::reply("409 Conflict", "\"something newer was sent\"")}});

@@ -4,8 +4,8 @@
 #include <gtest/gtest.h>
 
 #include "cli/help.hpp"
-#include "cli/report_rows.hpp"
 #include "cli/report_text.hpp"
+#include "cli/reports_text.hpp"
 #include "cli/view.hpp"
 #include "dispatch/report_life.hpp"
 
@@ -43,7 +43,7 @@ TEST(ReportsText, HasARowForEachReport) {
 TEST(ReportsText, HasNoPlaceForAReportThatIsLost) {
   api::ReportRow lost = in_state("in doubt");
   lost.position = {};
-  lost.lost = true;
+  lost.position.reset();
   EXPECT_THAT(reports_text({lost}, 0, 1000, false), HasSubstr("lost  lost  lost"));
   EXPECT_THAT(report_text({.row = lost, .history = {}, .answer = ""}, false), HasSubstr("lost"));
 }

@@ -8,10 +8,8 @@
 #include <sys/ioctl.h>
 #include <sys/socket.h>
 
-#include <algorithm>
 #include <cerrno>
 #include <cstring>
-#include <utility>
 
 #include "applier/arp.hpp"
 #include "host/files.hpp"

@@ -21,11 +21,8 @@ constexpr std::chrono::seconds kRestart{30};
 
 /// VERSION_ID of os-release(5), with or without quotation marks; "" where there is none.
 std::string version_in(const std::string& path) {
-  constexpr std::string_view kName = "\nVERSION_ID=";
-  const std::string text = icd::sentence("\n", host::read_file(path).value_or(""));
-  const std::size_t at = text.find(kName);
-  if (at == std::string::npos) return "";
-  std::string value = text.substr(at + kName.size(), text.find('\n', at + 1) - at - kName.size());
+  const auto text = host::read_file(path);
+  std::string value(text ? update::value_of("VERSION_ID", *text) : "");
   std::erase(value, '"');
   return value;
 }

@@ -6,6 +6,7 @@
 
 #include "codec/json.hpp"
 #include "icd/sentence.hpp"
+#include "settings/keys.hpp"
 
 namespace adit::network {
 namespace {
@@ -14,17 +15,7 @@ using codec::Value;
 using settings::Error;
 using settings::Subnet;
 
-constexpr std::size_t kLongestShown = 48;
-
-/// A value as a sentence shows it.
-std::string shown(const Value& value) {
-  if (std::holds_alternative<Value::Array>(value.is) || std::holds_alternative<Value::Object>(value.is)) {
-    return value.kind();
-  }
-  std::string text = codec::write_json(value);
-  if (text.size() > kLongestShown) text = text.substr(0, kLongestShown) + "...";
-  return text;
-}
+using settings::shown;
 
 /// The members of one object, each asked for by its name; what is wrong with them is gathered.
 class Members {

@@ -1,13 +1,69 @@
 #include "pack/pack.hpp"
 
+#include <algorithm>
+#include <array>
+#include <span>
+#include <string_view>
 #include <utility>
 #include <variant>
+#include <vector>
 
 #include "codec/gzip.hpp"
-#include "pack/points.hpp"
 
 namespace adit::pack {
 namespace {
+
+/// Gives each point of `bytes` (point_step bytes) to `visit`, in order, wherever chunks end.
+template <class Visit>
+void for_each_point(const icd::ChunkedBytes& bytes, std::size_t point_step, Visit visit) {
+  std::vector<std::uint8_t> cut;  // a point of which only the first bytes have come
+  for (const auto& chunk : bytes.chunks()) {
+    std::span<const std::uint8_t> rest{*chunk};
+    if (!cut.empty()) {
+      const auto more = rest.first(std::min(rest.size(), point_step - cut.size()));
+      cut.insert(cut.end(), more.begin(), more.end());
+      rest = rest.subspan(more.size());
+      if (cut.size() < point_step) continue;
+      visit(std::span<const std::uint8_t>{cut});
+      cut.clear();
+    }
+    for (; rest.size() >= point_step; rest = rest.subspan(point_step)) visit(rest.first(point_step));
+    cut.assign(rest.begin(), rest.end());
+  }
+}
+
+/// Tells whether a point's x, y and z are all finite, by their exponents alone (IEEE 754): no alignment and
+/// no swapping of bytes is needed.
+class FiniteCheck {
+ public:
+  explicit FiniteCheck(const icd::PointCloud2& cloud) {
+    std::size_t axis = 0;
+    for (const std::string_view name : {"x", "y", "z"}) {
+      const auto field = std::ranges::find(cloud.fields, name, &icd::FieldSchema::name);
+      const std::size_t size = icd::size_of(field->datatype);
+      low_bits_ = field->datatype == icd::Datatype::Float64 ? 0xf0 : 0x80;
+      const std::size_t first = field->offset, last = field->offset + size - 1;
+      exponents_[axis++] = cloud.is_bigendian ? Exponent{first, first + 1} : Exponent{last, last - 1};
+    }
+  }
+
+  bool operator()(std::span<const std::uint8_t> point) const {
+    for (const Exponent& exponent : exponents_) {
+      if ((point[exponent.high] & kHighBits) == kHighBits && (point[exponent.low] & low_bits_) == low_bits_) {
+        return false;  // infinite or not a number: all bits of the exponent are set
+      }
+    }
+    return true;
+  }
+
+ private:
+  struct Exponent {
+    std::size_t high = 0, low = 0;  // where its two bytes stand in a point
+  };
+  static constexpr std::uint8_t kHighBits = 0x7f;
+  std::uint8_t low_bits_ = 0;  // 1 bit in a float32, 4 in a float64
+  std::array<Exponent, 3> exponents_;
+};
 
 icd::MapData compressed(icd::MapData data, codec::GzipStrategy strategy) {
   icd::ChunkedBytes member = codec::gzip(data.bytes, strategy);
@@ -19,11 +75,11 @@ icd::MapData compressed(icd::MapData data, codec::GzipStrategy strategy) {
 
 }  // namespace
 
-icd::MapData without_invalid_points(const icd::PointCloud2& cloud, icd::MapData data, std::size_t& dropped) {
+icd::MapData without_invalid_points(const icd::PointCloud2& cloud, icd::MapData data) {
   const FiniteCheck is_finite{cloud};
-  dropped = 0;
-  for_each_point(data.bytes, cloud.point_step, [&](auto point) { dropped += is_finite(point) ? 0 : 1; });
-  if (dropped == 0) return data;
+  bool all_are = true;
+  for_each_point(data.bytes, cloud.point_step, [&](auto point) { all_are = is_finite(point) && all_are; });
+  if (all_are) return data;
 
   icd::MapData kept;
   for_each_point(data.bytes, cloud.point_step, [&](auto point) {
@@ -40,9 +96,7 @@ icd::MapUpdate pack(icd::MapUpdate map) {
     map.data = compressed(std::move(map.data), codec::GzipStrategy::Runs);
     return map;
   }
-  std::size_t dropped = 0;
-  map.data =
-      compressed(without_invalid_points(*cloud, std::move(map.data), dropped), codec::GzipStrategy::Default);
+  map.data = compressed(without_invalid_points(*cloud, std::move(map.data)), codec::GzipStrategy::Default);
   return map;
 }
 

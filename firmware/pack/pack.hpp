@@ -11,8 +11,7 @@ namespace adit::pack {
 /// smaller. CPU-bound in the size of the map: meant for a worker.
 icd::MapUpdate pack(icd::MapUpdate map);
 
-/// `data` without the points whose x, y or z is not finite; how many went is put to `dropped`. `data` must be
-/// uncompressed.
-icd::MapData without_invalid_points(const icd::PointCloud2& cloud, icd::MapData data, std::size_t& dropped);
+/// `data` without the points whose x, y or z is not finite. `data` must be uncompressed.
+icd::MapData without_invalid_points(const icd::PointCloud2& cloud, icd::MapData data);
 
 }  // namespace adit::pack

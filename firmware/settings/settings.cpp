@@ -6,6 +6,7 @@
 #include "icd/require.hpp"
 #include "settings/consistency.hpp"
 #include "settings/reader.hpp"
+#include "settings/saved.hpp"
 
 namespace adit::settings {
 namespace {
@@ -72,6 +73,15 @@ std::string sentence_of(const std::vector<Error>& errors) {
   std::string sentences;
   for (const Error& error : errors) sentences += (sentences.empty() ? "" : "; ") + error.sentence();
   return sentences;
+}
+
+std::vector<std::string> token_names(const Settings& settings) {
+  std::vector<std::string> names = {"scoring", "mapping", "team"};
+  for (const Course& course : settings.courses) {
+    names.push_back("course." + course.name + ".scoring");
+    names.push_back("course." + course.name + ".mapping");
+  }
+  return names;
 }
 
 }  // namespace adit::settings

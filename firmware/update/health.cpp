@@ -4,9 +4,7 @@
 #include <cstdint>
 
 namespace adit::update {
-namespace {
 
-/// The value of NAME=VALUE in one of the lines, or "".
 std::string_view value_of(std::string_view name, std::string_view lines) {
   while (!lines.empty()) {
     const std::size_t end = lines.find('\n');
@@ -18,8 +16,6 @@ std::string_view value_of(std::string_view name, std::string_view lines) {
   }
   return "";
 }
-
-}  // namespace
 
 Ready read_ready(std::string_view properties, std::chrono::microseconds now) {
   if (value_of("ActiveState", properties) != "active") return std::nullopt;

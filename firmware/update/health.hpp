@@ -7,6 +7,9 @@
 
 namespace adit::update {
 
+/// The value of NAME=VALUE in one of the lines, or "".
+std::string_view value_of(std::string_view name, std::string_view lines);
+
 /// What systemd says of aditd: nothing while it is not ready, or how long it has been since.
 using Ready = std::optional<std::chrono::microseconds>;
 

@@ -7,7 +7,6 @@
 
 #include "codec/json.hpp"
 #include "settings/keys.hpp"
-#include "settings/reference.hpp"
 #include "settings/settings.hpp"
 
 namespace adit::settings {
@@ -17,6 +16,18 @@ std::string text_of(const std::string& file) {
   std::ifstream stream(ADIT_SOURCE_DIR "/firmware/settings/" + file);
   EXPECT_TRUE(stream.is_open()) << file;
   return {std::istreambuf_iterator<char>(stream), {}};
+}
+
+/// The table of all keys in Markdown, as README.md has it: key, meaning, default, range.
+std::string reference() {
+  const Settings defaults = with_an_item_of_each();
+  std::string table = "| key | meaning | default | allowed |\n| --- | --- | --- | --- |\n";
+  for (const Key& key : keys()) {
+    const std::string value = key.required ? "required" : "`" + written(key.kind, defaults) + "`";
+    table.append("| `").append(key.path).append("` | ").append(key.meaning).append(" | ").append(value);
+    table.append(" | ").append(range_of(key.kind)).append(" |\n");
+  }
+  return table;
 }
 
 TEST(SettingsReadme, HoldsTheTableOfAllKeysAsTheParserHasThem) {

@@ -2,8 +2,8 @@
 
 #include <algorithm>
 
+#include "host/interfaces.hpp"
 #include "host/log.hpp"
-#include "host/own_address.hpp"
 #include "icd/sentence.hpp"
 
 namespace adit::admin {

@@ -9,8 +9,8 @@
 #include <utility>
 
 #include "applier/arp_probe.hpp"
+#include "host/interfaces.hpp"
 #include "host/log.hpp"
-#include "host/own_address.hpp"
 #include "host/service.hpp"
 #include "network/messages.hpp"
 

@@ -9,7 +9,7 @@
 #include "codec/read.hpp"
 #include "codec/write.hpp"
 #include "forward/channel.hpp"
-#include "host/own_address.hpp"
+#include "host/interfaces.hpp"
 #include "host/service.hpp"
 #include "icd/uri.hpp"
 #include "uplink/socket.hpp"

@@ -3,8 +3,8 @@
 #include <vector>
 
 #include "gateway/gateway.hpp"
+#include "host/interfaces.hpp"
 #include "host/log.hpp"
-#include "host/own_address.hpp"
 #include "panel/address_digits.hpp"
 #include "settings/subnet.hpp"
 

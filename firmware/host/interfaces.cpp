@@ -20,6 +20,8 @@
 namespace adit::host {
 namespace {
 
+constexpr settings::Subnet kLinkLocal{0xa9fe0000, 16};  // RFC 3927
+
 int ones_in(const void* bytes, std::size_t count) {
   const auto* each = static_cast<const std::uint8_t*>(bytes);
   int ones = 0;
@@ -71,6 +73,24 @@ std::expected<std::vector<Interface>, std::string> interfaces() {
     }
   }
   return interfaces;
+}
+
+std::vector<settings::Subnet> own_addresses(const std::string& interface) {
+  std::vector<settings::Subnet> all;
+  for (const Interface& each : interfaces().value_or(std::vector<Interface>{})) {
+    if (each.name != interface) continue;
+    for (const std::string& address : each.addresses) {
+      if (const auto subnet = settings::parse_subnet(address)) all.push_back(*subnet);
+    }
+  }
+  std::ranges::stable_partition(
+      all, [](const settings::Subnet& each) { return !kLinkLocal.contains(each.address); });
+  return all;
+}
+
+std::optional<settings::Subnet> own_address(const std::string& interface) {
+  const auto all = own_addresses(interface);
+  return all.empty() ? std::nullopt : std::optional(all.front());
 }
 
 std::vector<Route> routes_in(const std::string& table) {

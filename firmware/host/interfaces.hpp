@@ -5,6 +5,8 @@
 #include <string>
 #include <vector>
 
+#include "settings/subnet.hpp"
+
 namespace adit::host {
 
 /// A network interface as the kernel has it now.
@@ -17,6 +19,13 @@ struct Interface {
 
 /// All of them in the kernel's order, or why they cannot be told (getifaddrs(3)).
 std::expected<std::vector<Interface>, std::string> interfaces();
+
+/// All IPv4 addresses of an interface, link-local ones last (the kernel has them first); none where there is
+/// no such interface.
+std::vector<settings::Subnet> own_addresses(const std::string& interface);
+
+/// The first of them.
+std::optional<settings::Subnet> own_address(const std::string& interface);
 
 /// A route of IPv4.
 struct Route {

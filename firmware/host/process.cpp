@@ -4,7 +4,7 @@
 #include <sys/utsname.h>
 #include <unistd.h>
 
-#include <ctime>
+#include <chrono>
 #include <filesystem>
 #include <sstream>
 
@@ -35,26 +35,13 @@ std::uint64_t resident_pages() {
   return resident;
 }
 
-/// By the ticks since boot at which it began, the 22nd word of proc_pid_stat(5); the second, a name in
-/// brackets, may hold anything.
-double age_seconds() {
-  const auto file = slurp("/proc/self/stat");
-  timespec now{};
-  if (!file || clock_gettime(CLOCK_BOOTTIME, &now) != 0) return 0;
-  std::istringstream words(file->text.substr(file->text.rfind(')') + 1));
-  std::string word;
-  for (int i = 3; i < 22; ++i) words >> word;
-  std::uint64_t ticks = 0;
-  words >> ticks;
-  return static_cast<double>(now.tv_sec) + static_cast<double>(now.tv_nsec) / 1e9 -
-         static_cast<double>(ticks) / static_cast<double>(sysconf(_SC_CLK_TCK));
-}
+const auto kBegan = std::chrono::steady_clock::now();  // before main()
 
 }  // namespace
 
 Process process() {
   Process process;
-  process.age_seconds = age_seconds();
+  process.age_seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - kBegan).count();
   rusage usage{};
   if (getrusage(RUSAGE_SELF, &usage) == 0) {
     process.cpu_seconds = seconds(usage.ru_utime) + seconds(usage.ru_stime);

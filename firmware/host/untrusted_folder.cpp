@@ -18,6 +18,12 @@
 namespace adit::host {
 namespace {
 
+/// Neither followed elsewhere nor waited for: O_NONBLOCK, because a FIFO may have no writer.
+loop::FileDescriptor open_file(const loop::FileDescriptor& folder, const std::string& name, int how) {
+  return loop::FileDescriptor(
+      openat(folder.get(), name.c_str(), how | O_NOFOLLOW | O_NONBLOCK | O_NOCTTY | O_CLOEXEC));
+}
+
 /// All of a plain file.
 std::expected<std::string, std::string> read_all(int fd, const std::string& name) {
   struct stat status{};
@@ -47,9 +53,7 @@ std::expected<UntrustedFolder, std::string> UntrustedFolder::open(const std::str
 
 std::expected<std::optional<std::string>, UntrustedFolder::Untaken> UntrustedFolder::take(
     const std::string& name) {
-  // O_NONBLOCK: a FIFO without a writer must not hold this up.
-  const loop::FileDescriptor fd(
-      openat(folder_.get(), name.c_str(), O_RDONLY | O_NOFOLLOW | O_NONBLOCK | O_NOCTTY | O_CLOEXEC));
+  const loop::FileDescriptor fd = open_file(folder_, name, O_RDONLY);
   const int error = errno;
   if (!fd && error == ENOENT) return std::nullopt;
   if (auto gone = remove(name); !gone)
@@ -79,8 +83,7 @@ std::expected<void, std::string> UntrustedFolder::remove(const std::string& name
 }
 
 std::expected<std::optional<std::string>, std::string> UntrustedFolder::read(const std::string& name) const {
-  const loop::FileDescriptor fd(
-      openat(folder_.get(), name.c_str(), O_RDONLY | O_NOFOLLOW | O_NONBLOCK | O_NOCTTY | O_CLOEXEC));
+  const loop::FileDescriptor fd = open_file(folder_, name, O_RDONLY);
   if (!fd && errno == ENOENT) return std::nullopt;
   if (!fd) return std::unexpected(trouble(name, errno));
   auto text = read_all(fd.get(), name);
@@ -90,8 +93,7 @@ std::expected<std::optional<std::string>, std::string> UntrustedFolder::read(con
 
 std::expected<std::optional<UntrustedFolder>, std::string> UntrustedFolder::folder(
     const std::string& name) const {
-  loop::FileDescriptor fd(
-      openat(folder_.get(), name.c_str(), O_RDONLY | O_DIRECTORY | O_NOFOLLOW | O_CLOEXEC));
+  loop::FileDescriptor fd = open_file(folder_, name, O_RDONLY | O_DIRECTORY);
   if (!fd && errno == ENOENT) return std::nullopt;
   if (!fd) return std::unexpected(trouble(name, errno));
   return UntrustedFolder(std::move(fd));
@@ -102,8 +104,7 @@ std::expected<std::vector<std::string>, std::string> UntrustedFolder::names() co
 }
 
 bool UntrustedFolder::wipe(const std::string& name) {
-  const loop::FileDescriptor fd(
-      openat(folder_.get(), name.c_str(), O_WRONLY | O_NOFOLLOW | O_NONBLOCK | O_NOCTTY | O_CLOEXEC));
+  const loop::FileDescriptor fd = open_file(folder_, name, O_WRONLY);
   struct stat status{};
   bool blank = fd && fstat(fd.get(), &status) == 0 && S_ISREG(status.st_mode);
   const std::string zeros(4096, '\0');

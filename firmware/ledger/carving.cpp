@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <bit>
 #include <cctype>
-#include <functional>
 #include <utility>
 
 #include "ledger/log_file.hpp"

@@ -101,14 +101,18 @@ Result<void> try_room(const std::string& folder, std::int64_t bytes) {
   return {};
 }
 
-void remove_trials(const std::string& folder) {
-  std::vector<std::string> left;
+std::vector<std::string> beginning_with(const std::string& folder, std::string_view begins) {
+  std::vector<std::string> paths;
   std::error_code error;
   for (std::filesystem::directory_iterator each(folder, error), end; !error && each != end;
        each.increment(error)) {
-    if (each->path().filename().string().starts_with(kTrial)) left.push_back(each->path().string());
+    if (each->path().filename().string().starts_with(begins)) paths.push_back(each->path().string());
   }
-  for (const std::string& path : left) ::unlink(path.c_str());
+  return paths;
+}
+
+void remove_trials(const std::string& folder) {
+  for (const std::string& path : beginning_with(folder, kTrial)) ::unlink(path.c_str());
 }
 
 Result<void> try_opening(const std::string& path) {

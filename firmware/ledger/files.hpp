@@ -22,6 +22,8 @@ Result<void> sync_folder(const std::string& folder);
 Result<void> try_writing(const std::string& folder);
 /// A failure where `bytes` have no room in it.
 Result<void> try_room(const std::string& folder, std::int64_t bytes);
+/// The paths of what is in a folder whose names begin so, as far as it can be read.
+std::vector<std::string> beginning_with(const std::string& folder, std::string_view begins);
 /// Of try_writing() and try_room() a program that was killed in the middle has left a file.
 void remove_trials(const std::string& folder);
 /// A failure where the file is there and cannot be written to, or is not ours.

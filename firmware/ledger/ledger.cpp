@@ -16,6 +16,18 @@ namespace {
 constexpr const char* kFile = "/ledger.sqlite";
 constexpr std::int64_t kRoomToBegin = 1 << 20;
 
+/// All that a statement without parameters reads.
+template <class Row>
+Result<std::vector<Row>> rows_of(const Database& database, const Statement& statement,
+                                 Row (*row_of)(const Query&), const char* doing) {
+  Query query(statement);
+  std::vector<Row> all;
+  int result = SQLITE_OK;
+  while ((result = query.step()) == SQLITE_ROW) all.push_back(row_of(query));
+  if (result != SQLITE_DONE) return std::unexpected(database.error(doing));
+  return all;
+}
+
 }  // namespace
 
 class Ledger::Impl {
@@ -59,10 +71,6 @@ class Ledger::Impl {
     return written;
   }
 
-  void expect(dispatch::Flush flush) {
-    flush_each(flush == dispatch::Flush::Now);  // where that fails, so will write(), and say so
-  }
-
   Result<void> flush() {
     if (auto mended = mend_log(); !mended) return mended;
     if (!unflushed_) return {};
@@ -75,44 +83,6 @@ class Ledger::Impl {
     return flush_each(true);  // here, where nobody waits for it
   }
 
-  Result<std::vector<dispatch::Report>> reports() {
-    Query query(read_reports_);
-    std::vector<dispatch::Report> all;
-    int result = SQLITE_OK;
-    while ((result = query.step()) == SQLITE_ROW) all.push_back(report_of(query));
-    if (result != SQLITE_DONE) return std::unexpected(database_.error("reading the reports"));
-    return all;
-  }
-
-  Result<std::vector<Step>> history(std::int64_t number) {
-    const auto doing = [number] { return "reading the history of report " + std::to_string(number); };
-    Query query(read_history_);
-    query.bind(number);
-    const int result = query.step();
-    if (result == SQLITE_DONE) return std::vector<Step>();
-    if (result != SQLITE_ROW) return std::unexpected(database_.error(doing()));
-    auto steps = steps_of(number, query.bytes(0));
-    if (!steps) return std::unexpected(Error{.what = doing() + ": it is damaged"});
-    return *std::move(steps);
-  }
-
-  Result<std::vector<dispatch::Run>> runs() {
-    Query query(read_runs_);
-    std::vector<dispatch::Run> all;
-    int result = SQLITE_OK;
-    while ((result = query.step()) == SQLITE_ROW) all.push_back(run_of(query));
-    if (result != SQLITE_DONE) return std::unexpected(database_.error("reading the runs"));
-    return all;
-  }
-
-  const std::string& damage() const { return damage_; }
-  const std::string& refusal() const { return refusal_; }
-  void refuse(const std::string& why, Scratch scratch) {
-    refusal_ = why;
-    scratch_ = std::move(scratch);
-  }
-
- private:
   static int note_pages(void* self, sqlite3*, const char*, int pages) {
     static_cast<Impl*>(self)->pages_ = pages;
     return SQLITE_OK;
@@ -220,7 +190,8 @@ Result<Ledger> Ledger::stand_in(const std::string& folder, const std::string& sc
   }
   auto opened = open(made.path());
   if (!opened) return opened;
-  opened->impl_->refuse(why + unread, std::move(made));
+  opened->impl_->refusal_ = why + unread;
+  opened->impl_->scratch_ = std::move(made);
   return opened;
 }
 
@@ -240,26 +211,36 @@ Result<void> Ledger::write(std::span<const dispatch::Report> steps, const dispat
   return impl_->write(steps, run, flush);
 }
 void Ledger::expect(dispatch::Flush flush) {
-  impl_->expect(flush);
+  impl_->flush_each(flush == dispatch::Flush::Now);  // where that fails, so will write(), and say so
 }
 
 Result<void> Ledger::flush() {
   return impl_->flush();
 }
 Result<std::vector<dispatch::Report>> Ledger::reports() const {
-  return impl_->reports();
+  return rows_of(impl_->database_, impl_->read_reports_, report_of, "reading the reports");
 }
 Result<std::vector<dispatch::Run>> Ledger::runs() const {
-  return impl_->runs();
+  return rows_of(impl_->database_, impl_->read_runs_, run_of, "reading the runs");
 }
+
 Result<std::vector<Ledger::Step>> Ledger::history(std::int64_t number) const {
-  return impl_->history(number);
+  const auto doing = [number] { return "reading the history of report " + std::to_string(number); };
+  Query query(impl_->read_history_);
+  query.bind(number);
+  const int result = query.step();
+  if (result == SQLITE_DONE) return std::vector<Step>();
+  if (result != SQLITE_ROW) return std::unexpected(impl_->database_.error(doing()));
+  auto steps = steps_of(number, query.bytes(0));
+  if (!steps) return std::unexpected(Error{.what = doing() + ": it is damaged"});
+  return *std::move(steps);
 }
+
 const std::string& Ledger::damage() const {
-  return impl_->damage();
+  return impl_->damage_;
 }
 const std::string& Ledger::refusal() const {
-  return impl_->refusal();
+  return impl_->refusal_;
 }
 
 }  // namespace adit::ledger

@@ -13,7 +13,7 @@ namespace adit::ledger {
 namespace {
 
 /// https://www.sqlite.org/fileformat2.html#walformat
-constexpr std::uint32_t kMagic = 0x377f0682;  // the last bit: the words of a checksum are big-endian
+constexpr std::uint32_t kMagic = 0x377f0682;  // of a log whose checksums have little-endian words
 constexpr std::uint32_t kFormat = 3007000;
 constexpr std::size_t kMagicAt = 0, kFormatAt = 4, kPageSizeAt = 8, kLogSaltAt = 16, kLogSumAt = 24;
 constexpr std::size_t kCommitAt = 4, kSaltAt = 8, kSumAt = 16;
@@ -38,34 +38,26 @@ Sum stored_sum(const char* at) {
   return {big_endian(at), big_endian(at + 4)};
 }
 
-/// The words of a checksum in the log's own byte order.
-class Words {
- public:
-  explicit Words(bool big_endian) : swap_(big_endian == (std::endian::native == std::endian::little)) {}
+/// The words of a checksum are in the byte order of the machine that wrote the log: this one.
+static_assert(std::endian::native == std::endian::little);
 
-  std::uint32_t get(const char* at) const {
-    std::uint32_t word = 0;
-    std::memcpy(&word, at, sizeof word);
-    return swap_ ? __builtin_bswap32(word) : word;
-  }
-  void put(char* at, std::uint32_t word) const {
-    if (swap_) word = __builtin_bswap32(word);
-    std::memcpy(at, &word, sizeof word);
-  }
-  Sum sum(Sum sum, const char* at, std::size_t size) const {
-    for (std::size_t i = 0; i < size; i += 8) {
-      sum.first += get(at + i) + sum.second;
-      sum.second += get(at + i + 4) + sum.first;
-    }
-    return sum;
-  }
-  Sum of_frame(Sum before, const char* frame) const {
-    return sum(sum(before, frame, kSummed), frame + kFrameHeader, kPage);
-  }
+std::uint32_t word_at(const char* at) {
+  std::uint32_t word = 0;
+  std::memcpy(&word, at, sizeof word);
+  return word;
+}
 
- private:
-  bool swap_;
-};
+Sum sum_on(Sum sum, const char* at, std::size_t size) {
+  for (std::size_t i = 0; i < size; i += 8) {
+    sum.first += word_at(at + i) + sum.second;
+    sum.second += word_at(at + i + 4) + sum.first;
+  }
+  return sum;
+}
+
+Sum sum_of_frame(Sum before, const char* frame) {
+  return sum_on(sum_on(before, frame, kSummed), frame + kFrameHeader, kPage);
+}
 
 /// How many of four bytes differ.
 int bytes_apart(std::uint32_t one, std::uint32_t other) {
@@ -124,12 +116,9 @@ class Reader {
   }
 
   bool header_is_right() const {
-    const std::uint32_t magic = big_endian(log_.data() + kMagicAt);
-    if ((magic & ~1U) != kMagic || big_endian(log_.data() + kFormatAt) != kFormat ||
-        big_endian(log_.data() + kPageSizeAt) != kPage) {
-      return false;
-    }
-    return Words(magic % 2 == 1).sum({}, log_.data(), kLogSumAt) == stored_sum(log_.data() + kLogSumAt);
+    return big_endian(log_.data() + kMagicAt) == kMagic && big_endian(log_.data() + kFormatAt) == kFormat &&
+           big_endian(log_.data() + kPageSizeAt) == kPage &&
+           sum_on({}, log_.data(), kLogSumAt) == stored_sum(log_.data() + kLogSumAt);
   }
 
   /// As it is, or with one byte put right. Its last salt and its checksum may each be what explains the
@@ -138,7 +127,6 @@ class Reader {
     if (log_.size() < kLogHeader) return false;
     const bool followed = has_frame(kLogHeader);
     if (!header_is_right() && !(followed && repair_header(true)) && !repair_header(false)) return false;
-    words_ = Words(big_endian(log_.data() + kMagicAt) % 2 == 1);
     sum_ = stored_sum(log_.data() + kLogSumAt);
     return true;
   }
@@ -160,7 +148,7 @@ class Reader {
 
   /// Whether the frame goes on from the one before, as it is or once it is put right.
   bool is_next(std::size_t at) {
-    const Sum right = words_.of_frame(sum_, frame(at));
+    const Sum right = sum_of_frame(sum_, frame(at));
     const Sum stored = stored_sum(frame(at) + kSumAt);
     const bool salt = has_salt(at);
     if (right == stored) {
@@ -169,7 +157,7 @@ class Reader {
       return true;
     }
     if (!salt || !put_right(at, right, stored)) return false;
-    sum_ = words_.of_frame(sum_, frame(at));
+    sum_ = sum_of_frame(sum_, frame(at));
     return true;
   }
 
@@ -177,7 +165,7 @@ class Reader {
     const bool followed = has_frame(at + kFrame) && has_salt(at + kFrame);
     const char* const next = frame(at + kFrame);
     const auto goes_on = [&](Sum sum) {
-      return !followed || words_.of_frame(sum, next) == stored_sum(next + kSumAt);
+      return !followed || sum_of_frame(sum, next) == stored_sum(next + kSumAt);
     };
     const bool sum_is_bad =
         bytes_apart(right.first, stored.first) + bytes_apart(right.second, stored.second) == 1;
@@ -203,7 +191,7 @@ class Reader {
     if (found.size() > 1) reading_.damage = damage_of(at);
     if (found.size() != 1) return false;
     std::array<char, 4> bytes{};
-    words_.put(bytes.data(), found[0].right);
+    std::memcpy(bytes.data(), &found[0].right, bytes.size());
     repair(found[0].place, bytes);
     return true;
   }
@@ -230,7 +218,7 @@ class Reader {
   std::optional<std::uint32_t> word_that_explains(std::size_t place, Sum off, Sum weight) const {
     const auto shift = shift_of_word(off, weight);
     if (!shift) return std::nullopt;
-    const std::uint32_t word = words_.get(log_.data() + place);
+    const std::uint32_t word = word_at(log_.data() + place);
     if (bytes_apart(word, word + *shift) != 1) return std::nullopt;
     return word + *shift;
   }
@@ -245,7 +233,7 @@ class Reader {
       if (!has_salt(behind)) continue;
       const char* const bytes = frame(behind);
       const bool goes_on =
-          words_.of_frame(stored_sum(frame(next) + kSumAt), bytes) == stored_sum(bytes + kSumAt);
+          sum_of_frame(stored_sum(frame(next) + kSumAt), bytes) == stored_sum(bytes + kSumAt);
       if (goes_on && big_endian(bytes + kCommitAt) != 0) ++whole;
     }
     // One more was perhaps under way, while the flush of the one before was left for later.
@@ -258,7 +246,6 @@ class Reader {
 
   std::string& log_;
   LogReading reading_;
-  Words words_{false};
   Sum sum_;
 };
 

@@ -8,7 +8,8 @@
 #include <cstdlib>
 #include <filesystem>
 #include <utility>
-#include <vector>
+
+#include "ledger/files.hpp"
 
 namespace adit::ledger {
 namespace {
@@ -51,12 +52,8 @@ Scratch& Scratch::operator=(Scratch&& other) noexcept {
 }
 
 void sweep_scratch(const std::string& below) {
-  std::vector<std::string> left;
   std::error_code error;
-  for (fs::directory_iterator each(below, error), end; !error && each != end; each.increment(error)) {
-    if (each->path().filename().string().starts_with(kName)) left.push_back(each->path().string());
-  }
-  for (const std::string& path : left) {
+  for (const std::string& path : beginning_with(below, kName)) {
     if (const auto ours = lock(path)) fs::remove_all(path, error);
   }
 }

@@ -12,25 +12,14 @@
 namespace adit::spool {
 namespace {
 
-class Mapping {
- public:
-  Mapping(void* begin, std::size_t size) : begin_(begin), size_(size) {}
-  Mapping(const Mapping&) = delete;
-  Mapping& operator=(const Mapping&) = delete;
-  ~Mapping() { ::munmap(begin_, size_); }
-
- private:
-  void* begin_;
-  std::size_t size_;
-};
-
 MappedFile map_file(int fd) {
   struct stat status{};
   if (::fstat(fd, &status) != 0 || status.st_size == 0) return {};
   const auto size = static_cast<std::size_t>(status.st_size);
   void* const begin = ::mmap(nullptr, size, PROT_READ, MAP_SHARED, fd, 0);
   if (begin == MAP_FAILED) return {};
-  return {std::make_shared<const Mapping>(begin, size), {static_cast<const std::uint8_t*>(begin), size}};
+  const auto unmap = [size](void* mapped) { ::munmap(mapped, size); };
+  return {std::shared_ptr<void>(begin, unmap), {static_cast<const std::uint8_t*>(begin), size}};
 }
 
 std::span<const std::uint8_t> as_bytes(std::string_view text) {

@@ -149,8 +149,6 @@ struct AnswerParser::Impl {
 };
 
 AnswerParser::AnswerParser(std::size_t longest_body) : impl_(std::make_unique<Impl>(longest_body)) {}
-AnswerParser::AnswerParser(AnswerParser&&) noexcept = default;
-AnswerParser& AnswerParser::operator=(AnswerParser&&) noexcept = default;
 AnswerParser::~AnswerParser() = default;
 
 AnswerParser::State AnswerParser::feed(std::string_view bytes) {

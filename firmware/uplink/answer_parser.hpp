@@ -20,8 +20,6 @@ class AnswerParser {
 
   /// `longest_body`: bytes; a longer one is Malformed, as soon as that is known.
   explicit AnswerParser(std::size_t longest_body);
-  AnswerParser(AnswerParser&&) noexcept;
-  AnswerParser& operator=(AnswerParser&&) noexcept;
   ~AnswerParser();
 
   /// Requires that no call before said Whole or Malformed.

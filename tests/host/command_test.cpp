@@ -1,7 +1,7 @@
 #include <gmock/gmock.h>
 
+#include "host/interfaces.hpp"
 #include "host/output.hpp"
-#include "host/own_address.hpp"
 
 namespace adit::host {
 namespace {

@@ -1,19 +1,27 @@
-# The library headers that most files include, read once for all of them: half of the time of a build would go into them. A file
-# includes what it uses all the same: the box's build and the linter read each by itself.
-file(CONFIGURE OUTPUT ${CMAKE_BINARY_DIR}/headers/room.cpp CONTENT "")
-add_library(adit_room_headers OBJECT EXCLUDE_FROM_ALL ${CMAKE_BINARY_DIR}/headers/room.cpp)
-target_link_libraries(adit_room_headers PRIVATE adit_options)
-target_precompile_headers(adit_room_headers PRIVATE
-  <algorithm> <array> <charconv> <chrono> <cmath> <cstdint> <expected> <functional> <map> <memory> <optional> <span> <string>
-  <string_view> <utility> <vector>)
-
-# Those of the tests: programs, whose code is compiled as a program's is.
-function(adit_test_headers)
-  file(CONFIGURE OUTPUT ${CMAKE_BINARY_DIR}/headers/test.cpp CONTENT "int main() {}\n")
-  add_executable(adit_test_headers EXCLUDE_FROM_ALL ${CMAKE_BINARY_DIR}/headers/test.cpp)
-  target_compile_options(adit_test_headers PRIVATE -O0)
-  target_link_libraries(adit_test_headers PRIVATE adit_options GTest::gmock)
-  target_precompile_headers(adit_test_headers PRIVATE
-    <gmock/gmock.h> <gtest/gtest.h> <nlohmann/json.hpp> <algorithm> <array> <chrono> <expected> <filesystem> <fstream> <functional> <map> <memory>
-    <optional> <random> <span> <string> <string_view> <utility> <vector>)
+# The ways to be compiled: options, and the library headers that most files include, read once for all of them, for half of the time
+# of a build would go into them. A file includes what it uses all the same: the linter reads each by itself.
+#   adit_way(fast HEADERS <vector> OPTIONS -O3 LIBRARIES ZLIB::ZLIB)
+# OPTIONS hold for every target of that way (adit_compiled), and are those of the headers.
+function(adit_way name)
+  cmake_parse_arguments(WAY "" "" "HEADERS;OPTIONS;LIBRARIES" ${ARGN})
+  file(CONFIGURE OUTPUT ${CMAKE_BINARY_DIR}/headers/${name}.cpp CONTENT "")
+  add_library(adit_way_${name} OBJECT EXCLUDE_FROM_ALL ${CMAKE_BINARY_DIR}/headers/${name}.cpp)
+  target_compile_options(adit_way_${name} PUBLIC ${WAY_OPTIONS})
+  target_link_libraries(adit_way_${name} PRIVATE adit_options ${WAY_LIBRARIES})
+  target_precompile_headers(adit_way_${name} PRIVATE ${WAY_HEADERS}
+    <algorithm> <array> <charconv> <chrono> <cmath> <cstdint> <expected> <functional> <map> <memory> <optional> <span> <string>
+    <string_view> <utility> <vector>)
 endfunction()
+
+function(adit_compiled target way)
+  target_compile_options(${target} PRIVATE $<TARGET_PROPERTY:adit_way_${way},INTERFACE_COMPILE_OPTIONS>)
+  target_precompile_headers(${target} REUSE_FROM adit_way_${way})
+endfunction()
+
+adit_way(small)
+adit_way(fast OPTIONS $<$<CONFIG:Release>:-O3>)  # what works on a map's bytes
+if(ADIT_TESTS OR ADIT_REHEARSAL)
+  find_package(nlohmann_json REQUIRED)
+  adit_way(soon HEADERS <nlohmann/json.hpp> LIBRARIES nlohmann_json::nlohmann_json
+    OPTIONS $<$<CONFIG:Release>:-O1> $<$<CONFIG:Release>:-Wno-maybe-uninitialized>)  # which GCC raises falsely at -O1
+endif()

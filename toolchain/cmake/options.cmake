@@ -3,12 +3,11 @@ add_library(adit_options INTERFACE)
 target_compile_options(adit_options INTERFACE
   -Wall -Wextra -Wpedantic -Wshadow -Wconversion -Wno-sign-conversion -Wnon-virtual-dtor
   -Woverloaded-virtual -Wimplicit-fallthrough -Werror
-  -fstack-protector-strong -fstack-clash-protection -ffunction-sections -fdata-sections)
+  -fstack-protector-strong -fstack-clash-protection -ffunction-sections -fdata-sections -fPIE)
 target_compile_definitions(adit_options INTERFACE _GLIBCXX_ASSERTIONS)
-target_link_options(adit_options INTERFACE -Wl,-z,relro,-z,now -Wl,--gc-sections)
-set(CMAKE_POSITION_INDEPENDENT_CODE ON)
-include(CheckPIESupported)
-check_pie_supported()
+target_link_options(adit_options INTERFACE -pie -Wl,-z,relro,-z,now -Wl,--gc-sections)
+# Small, but for what says otherwise: headers.cmake has the ways to be compiled.
+set(CMAKE_CXX_FLAGS_RELEASE "-Os -DNDEBUG")
 
 set(ADIT_SANITIZE "" CACHE STRING "Sanitizers to build with, as -fsanitize takes them (address,undefined or thread)")
 if(ADIT_SANITIZE)

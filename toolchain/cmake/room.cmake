@@ -1,18 +1,22 @@
 # A room: one folder of firmware/, one static library adit_<name>, one namespace adit::<name>.
-#   adit_room(codec SOURCES json.cpp cbor.cpp ROOMS icd LIBRARIES PkgConfig::cbor)
+#   adit_room(codec WAY fast SOURCES json.cpp cbor.cpp ROOMS icd LIBRARIES PkgConfig::cbor)
+# WAY: how it is compiled (headers.cmake); small, where it does not say.
 # ROOMS are the rooms whose headers it includes, all of them named before it in firmware/CMakeLists.txt.
 # DOOR are the headers that other rooms may include: tests/house/rooms sees to it.
 # SEAM are sources that meet the machine (time, threads, sockets, randomness). They are a library of their own,
 # adit_<name>_linux, which comes with adit_<name> into every program but those with the property ADIT_SIMULATED: such a
 # program implements their headers itself.
 function(adit_room name)
-  cmake_parse_arguments(ROOM "" "" "SOURCES;SEAM;DOOR;ROOMS;LIBRARIES" ${ARGN})
+  cmake_parse_arguments(ROOM "" "WAY" "SOURCES;SEAM;DOOR;ROOMS;LIBRARIES" ${ARGN})
   list(TRANSFORM ROOM_ROOMS PREPEND adit_)
+  if(NOT ROOM_WAY)
+    set(ROOM_WAY small)
+  endif()
   if(ROOM_SOURCES)
     add_library(adit_${name} STATIC ${ROOM_SOURCES})
     set(scope PUBLIC)
     target_link_libraries(adit_${name} PRIVATE adit_options)
-    target_precompile_headers(adit_${name} REUSE_FROM adit_room_headers)
+    adit_compiled(adit_${name} ${ROOM_WAY})
   else()
     add_library(adit_${name} INTERFACE)
     set(scope INTERFACE)
@@ -34,10 +38,9 @@ function(adit_room_test name)
   add_executable(adit_${name}_test ${TEST_SOURCES})
   target_include_directories(adit_${name}_test PRIVATE ${PROJECT_SOURCE_DIR}/tests)
   target_compile_definitions(adit_${name}_test PRIVATE ADIT_SOURCE_DIR="${PROJECT_SOURCE_DIR}")
-  target_compile_options(adit_${name}_test PRIVATE -O0 -fno-sanitize=undefined)  # of the tests alone: read once, run once
   target_link_libraries(adit_${name}_test PRIVATE
     adit_options adit_${name} ${TEST_ROOMS} ${TEST_LIBRARIES} GTest::gmock GTest::gtest_main)
-  target_precompile_headers(adit_${name}_test REUSE_FROM adit_test_headers)
+  adit_compiled(adit_${name}_test test)
   gtest_discover_tests(adit_${name}_test TEST_PREFIX "${name}: " NO_PRETTY_VALUES DISCOVERY_TIMEOUT 60
     PROPERTIES TIMEOUT 120 LABELS ${name})
 endfunction()

@@ -27,8 +27,8 @@ bool is_hex(char c) {
 /// Requires four hex digits.
 char32_t unit(std::string_view digits) {
   unsigned value = 0;
-  const char* const last = digits.data() + digits.size();
-  icd::require(digits.size() == 4 && std::from_chars(digits.data(), last, value, 16).ptr == last);
+  const auto [end, error] = std::from_chars(digits.data(), digits.data() + digits.size(), value, 16);
+  icd::require(digits.size() == 4 && end == digits.data() + digits.size());
   return value;
 }
 

@@ -109,13 +109,17 @@ void write_link(Exposition& out, const Measured& measured) {
   out.sample(number(measured.usage.aside_dropped));
 }
 
-/// A counter of each robot and kind.
-void write_counter(Exposition& out, const RunView& view, const char* name, const char* help,
-                   std::uint64_t ActivityRow::* count) {
-  out.counter(name, help);
+/// Of each robot and kind.
+void sample_each(Exposition& out, const RunView& view, std::uint64_t ActivityRow::* count) {
   for (const ActivityRow& row : view.activities) {
     out.sample({{"kind", row.kind}, {"robot", row.robot}}, number(row.*count));
   }
+}
+
+void write_counter(Exposition& out, const RunView& view, const char* name, const char* help,
+                   std::uint64_t ActivityRow::* count) {
+  out.counter(name, help);
+  sample_each(out, view, count);
 }
 
 void write_age(Exposition& out, const RunView& view, const char* name, const char* help,
@@ -142,21 +146,15 @@ void write_updates(Exposition& out, const RunView& view) {
   write_counter(out, view, "adit_updates_refused_total", "Updates that the Command Post refused for good.",
                 &ActivityRow::refused_upstream);
   out.gauge("adit_updates_waiting", "Updates that wait.");
-  for (const ActivityRow& row : view.activities) {
-    out.sample({{"kind", row.kind}, {"robot", row.robot}}, number(row.waiting));
-  }
+  sample_each(out, view, &ActivityRow::waiting);
   write_age(out, view, "adit_updates_accepted_age_seconds", "How long ago the last one was accepted.",
             &ActivityRow::last_accepted);
   write_age(out, view, "adit_updates_forwarded_age_seconds",
             "How long ago the Command Post took the last one.", &ActivityRow::last_forwarded);
   out.gauge("adit_updates_received_bytes", "Size of the last one that was accepted.");
-  for (const ActivityRow& row : view.activities) {
-    out.sample({{"kind", row.kind}, {"robot", row.robot}}, number(row.bytes_received));
-  }
+  sample_each(out, view, &ActivityRow::bytes_received);
   out.gauge("adit_updates_sent_bytes", "Size of the last one that the Command Post took.");
-  for (const ActivityRow& row : view.activities) {
-    out.sample({{"kind", row.kind}, {"robot", row.robot}}, number(row.bytes_sent));
-  }
+  sample_each(out, view, &ActivityRow::bytes_sent);
 }
 
 void write_refused(Exposition& out, const Usage& usage) {

@@ -170,6 +170,7 @@ class Reports {
   void inquire(const icd::RunStatus& status, Instant asked, Time time);
   SentSince sent_since(const Report& doubt) const;
   void settle(const std::vector<const Report*>& doubts, const Evidence& evidence, Time time);
+  ReportBook::Step after_loss(const Report& doubt, const Evidence& evidence) const;
   void send_again(const std::vector<const Report*>& doubts, const Evidence& evidence, Time time);
   void explain(const std::vector<const Report*>& doubts, const std::string& why, Time time);
   bool blur_doubts(std::int64_t judged, Time time);

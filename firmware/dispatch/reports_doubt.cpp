@@ -112,19 +112,28 @@ void Reports::settle(const std::vector<const Report*>& doubts, const Evidence& e
   take_steps(steps, time);
 }
 
+/// What became of a report in doubt that was not recorded. The same may have been sent meanwhile, at the
+/// operator's word, when another run seemed to have begun.
+ReportBook::Step Reports::after_loss(const Report& doubt, const Evidence& evidence) const {
+  const Report* const same = doubt.asked ? nullptr : twin(doubt);
+  if (same != nullptr) {
+    return {.number = doubt.number,
+            .event = ReportEvent::Held,
+            .note = icd::sentence("held: not recorded, and report ", same->number, " is the same, and is ",
+                                  name_of(same->state), " in this run")};
+  }
+  if (doubt.tries >= kMostTries) {
+    return {
+        .number = doubt.number,
+        .event = ReportEvent::Held,
+        .note = icd::sentence("held: sent ", doubt.tries, " times without an answer, and never recorded")};
+  }
+  return {.number = doubt.number, .event = ReportEvent::Missing, .note = "not recorded: " + evidence.why};
+}
+
 void Reports::send_again(const std::vector<const Report*>& doubts, const Evidence& evidence, Time time) {
   std::vector<ReportBook::Step> steps;
-  for (const Report* const doubt : doubts) {
-    if (doubt->tries < kMostTries) {
-      steps.push_back(
-          {.number = doubt->number, .event = ReportEvent::Missing, .note = "not recorded: " + evidence.why});
-    } else {
-      steps.push_back({.number = doubt->number,
-                       .event = ReportEvent::Held,
-                       .note = icd::sentence("held: sent ", doubt->tries,
-                                             " times without an answer, and never recorded")});
-    }
-  }
+  for (const Report* const doubt : doubts) steps.push_back(after_loss(*doubt, evidence));
   take_steps(steps, time);
 }
 

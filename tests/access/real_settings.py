@@ -69,11 +69,16 @@ class SetUp(unittest.TestCase):
         wait_until(self.is_applied, "the change to be applied")
         return said
 
+    def listens_at(self):
+        return int(re.findall(r"listening .*port=(\d+)", self.box.said())[-1])
+
     def is_applied(self):
-        self.box.port = int(re.findall(r"listening .*port=(\d+)", self.box.said())[-1])
+        self.box.port = self.listens_at()
         try:
             status, said, _ = self.box.ask("GET /adit/settings", **self.me)
         except OSError:
+            return False
+        if self.box.port != self.listens_at():  # asked at the old one, which answered what it held
             return False
         return status == 401 or not said["applying"]  # a reset ends all sessions
 

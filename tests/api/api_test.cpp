@@ -38,22 +38,14 @@ std::string as_embedded(std::string_view path) {
 using testing::HasSubstr;
 using testing::StartsWith;
 
-class PageTest : public OnPage {
- protected:
-  intake::Answer get(const std::string& path, std::string if_none_match = "",
-                     const std::string& method = "GET") {
-    auto answer = request(method, path, {{"If-None-Match", std::move(if_none_match)}, kByToken});
-    EXPECT_FALSE(took_body) << "a page answers at once";
-    return answer;
-  }
-};
+class PageTest : public OnPage {};
 
 TEST_F(PageTest, ServesItsFilesWithTheirTypes) {
-  EXPECT_EQ(get("/").content_type, "text/html; charset=utf-8");
-  EXPECT_THAT(get("/").body, StartsWith("<!doctype html>"));
-  EXPECT_EQ(get("/page.css").content_type, "text/css; charset=utf-8");
-  EXPECT_EQ(get("/page.js").content_type, "text/javascript; charset=utf-8");
-  EXPECT_EQ(get("/icon.svg").content_type, "image/svg+xml");
+  EXPECT_EQ(get_file("/").content_type, "text/html; charset=utf-8");
+  EXPECT_THAT(get_file("/").body, StartsWith("<!doctype html>"));
+  EXPECT_EQ(get_file("/page.css").content_type, "text/css; charset=utf-8");
+  EXPECT_EQ(get_file("/page.js").content_type, "text/javascript; charset=utf-8");
+  EXPECT_EQ(get_file("/icon.svg").content_type, "image/svg+xml");
 }
 
 TEST_F(PageTest, EmbedsItsFilesByteForByte) {
@@ -64,19 +56,19 @@ TEST_F(PageTest, EmbedsItsFilesByteForByte) {
 }
 
 TEST_F(PageTest, SendsAFileAgainOnlyWhereItChanged) {
-  const auto first = get("/page.css");
+  const auto first = get_file("/page.css");
   EXPECT_EQ(header(first, "Cache-Control"), "no-cache");
-  const auto again = get("/page.css", header(first, "ETag"));
+  const auto again = get_file("/page.css", header(first, "ETag"));
   EXPECT_EQ(static_cast<int>(again.status), 304);
   EXPECT_EQ(again.body, "");
   EXPECT_EQ(header(again, "ETag"), header(first, "ETag"));
-  EXPECT_EQ(get("/page.css", "W/\"old\", " + header(first, "ETag")).body, "");
-  EXPECT_EQ(get("/page.css", "\"old\"").body, first.body);
+  EXPECT_EQ(get_file("/page.css", "W/\"old\", " + header(first, "ETag")).body, "");
+  EXPECT_EQ(get_file("/page.css", "\"old\"").body, first.body);
 }
 
 TEST_F(PageTest, EveryAnswerKeepsTheBrowserFromLoadingAnythingElse) {
   for (const char* path : {"/", "/page.js", "/adit/run", "/nothing"}) {
-    const auto answer = get(path);
+    const auto answer = get_file(path);
     EXPECT_THAT(header(answer, "Content-Security-Policy"), StartsWith("default-src 'none'")) << path;
     EXPECT_EQ(header(answer, "Content-Security-Policy").find("unsafe"), std::string::npos);
     EXPECT_EQ(header(answer, "X-Content-Type-Options"), "nosniff") << path;
@@ -85,7 +77,7 @@ TEST_F(PageTest, EveryAnswerKeepsTheBrowserFromLoadingAnythingElse) {
 }
 
 TEST_F(PageTest, HasNoScriptAndNoStyleThatItsPolicyWouldForbid) {
-  const std::string html = get("/").body;
+  const std::string html = get_file("/").body;
   EXPECT_EQ(html.find("<style"), std::string::npos);
   EXPECT_EQ(html.find(" style="), std::string::npos);
   EXPECT_EQ(html.find("<script>"), std::string::npos);
@@ -95,7 +87,7 @@ TEST_F(PageTest, HasNoScriptAndNoStyleThatItsPolicyWouldForbid) {
 TEST_F(PageTest, AnswersAnythingElseWithAJsonString) {
   for (const char* path :
        {"/nothing", "/page", "/../page.css", "/files/page.css", "/adit/", "/adit/run/", ""}) {
-    const auto answer = get(path);
+    const auto answer = get_file(path);
     EXPECT_EQ(answer.status, icd::Status::NotFound) << path;
     EXPECT_EQ(answer.content_type, "application/json");
     EXPECT_TRUE(nlohmann::json::parse(answer.body).is_string());
@@ -105,7 +97,7 @@ TEST_F(PageTest, AnswersAnythingElseWithAJsonString) {
 TEST_F(PageTest, TakesNothingButGet) {
   for (const char* path : {"/", "/page.css"}) {
     for (const char* method : {"POST", "DELETE", "OPTIONS"}) {
-      const auto answer = get(path, "", method);
+      const auto answer = get_file(path, "", method);
       EXPECT_EQ(answer.status, icd::Status::MethodNotAllowed) << method << ' ' << path;
       EXPECT_EQ(header(answer, "Allow"), "GET, HEAD");
     }
@@ -114,7 +106,7 @@ TEST_F(PageTest, TakesNothingButGet) {
 
 TEST_F(PageTest, GivesTheRunAsJsonThatNobodyKeeps) {
   source.now = *scene("calm", 1000, 0);
-  const auto answer = get("/adit/run");
+  const auto answer = get_file("/adit/run");
   EXPECT_EQ(answer.content_type, "application/json");
   EXPECT_EQ(header(answer, "Cache-Control"), "no-store");
   EXPECT_EQ(answer.body, codec::to_json(source.now));

@@ -155,27 +155,16 @@ TEST(Bytes, OfTheBox) {
 }
 
 TEST(Bytes, OfTheScene) {
-  const DrawnMarker marker{.ns = "path",
-                           .id = -3,
-                           .type = 4,
-                           .position = {1, 2, 3},
-                           .heading = 1.5708,
-                           .scale = {4, 5, 6},
-                           .color = {0.5, 0.25, 1, 0.126},
-                           .lifetime = 2.5,
-                           .text = "here",
-                           .mesh = "drill",
-                           .points = {{1, 2}, {-3.456F, 4}},
-                           .colors = {{1, 0, 0.5, 1}},
-                           .point_count = 7000};
-  EXPECT_EQ(
-      codec::to_json(MarkerChanges{
-          .version = 5, .whole = false, .left_out = 2, .markers = {{marker, 99.5}}, .gone = {{"path", 7}}}),
-      R"({"version":5,"whole":false,"left_out":2,"markers":[{"ns":"path","id":-3,"type":4,)"
-      R"("position":{"x":1.0,"y":2.0,"z":3.0},"heading":1.57,"scale":{"x":4.0,"y":5.0,"z":6.0},)"
-      R"("color":{"r":0.5,"g":0.25,"b":1.0,"a":0.13},"points":[1.0,2.0,-3.46,4.0],)"
-      R"("colors":["#ff0080ff"],"point_count":7000,"text":"here","mesh":"drill","lifetime":2.5,)"
-      R"("at":99.5}],"gone":[{"ns":"path","id":7}]})");
+  EXPECT_EQ(codec::to_json(MarkerChanges{.version = 5,
+                                         .whole = false,
+                                         .left_out = 2,
+                                         .markers = {{drawn_marker(), 99.5}},
+                                         .gone = {{"path", 7}}}),
+            R"({"version":5,"whole":false,"left_out":2,"markers":[{"ns":"path","id":-3,"type":4,)"
+            R"("position":{"x":1.0,"y":2.0,"z":3.0},"heading":1.57,"scale":{"x":4.0,"y":5.0,"z":6.0},)"
+            R"("color":{"r":0.5,"g":0.25,"b":1.0,"a":0.13},"points":[1.0,2.0,-3.46,4.0],)"
+            R"("colors":["#ff0080ff"],"point_count":7000,"text":"here","mesh":"drill","lifetime":2.5,)"
+            R"("at":99.5}],"gone":[{"ns":"path","id":7}]})");
   EXPECT_EQ(codec::to_json(
                 Tracks{{{.robot = "r", .poses = {{.at = 1.239, .position = {1, 2, 3}, .heading = 0.5}}}}}),
             R"({"tracks":[{"robot":"r","poses":[[1.24,1.0,2.0,3.0,0.5]]}]})");

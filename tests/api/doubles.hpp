@@ -35,7 +35,7 @@ struct FakeSource final : Source {
   const picture::Mosaic& map() const override { return mosaic; }
   MarkerChanges markers(std::uint64_t since) const override {
     since_version = since;
-    return marker_news;
+    return marker_changes;
   }
   std::vector<Track> tracks(Time since) const override {
     since_time = since;
@@ -45,7 +45,7 @@ struct FakeSource final : Source {
   RunView now;
   std::map<std::int64_t, ReportDetail> details;
   picture::Mosaic mosaic;
-  MarkerChanges marker_news;
+  MarkerChanges marker_changes;
   std::vector<Track> robot_tracks;
   mutable std::uint64_t since_version = 0;
   mutable Time since_time = 0;

@@ -19,17 +19,10 @@ using testing::StartsWith;
 class MapRoutesTest : public OnPage {
  protected:
   void SetUp() override { draw_scene(source.mosaic, 2000); }
-
-  intake::Answer get(const std::string& target, std::string if_none_match = "",
-                     const std::string& method = "GET") {
-    auto answer = request(method, target, {{"If-None-Match", std::move(if_none_match)}, kByToken});
-    EXPECT_FALSE(took_body) << "the picture is there, or it is not";
-    return answer;
-  }
 };
 
 TEST_F(MapRoutesTest, TellsHowTilesAreCutAndColoured) {
-  const json map = json::parse(get("/adit/map").body);
+  const json map = json::parse(get_file("/adit/map").body);
   EXPECT_EQ(map["version"], source.mosaic.version());
   EXPECT_EQ(map["tile_side"], 256);
   EXPECT_EQ(map["metres_per_pixel"], (json{0.25, 1.0, 4.0}));
@@ -41,7 +34,7 @@ TEST_F(MapRoutesTest, TellsHowTilesAreCutAndColoured) {
 }
 
 TEST_F(MapRoutesTest, TellsEachLayerAndItsTiles) {
-  const json layers = json::parse(get("/adit/map").body)["layers"];
+  const json layers = json::parse(get_file("/adit/map").body)["layers"];
   ASSERT_EQ(layers.size(), 2);
   EXPECT_EQ(layers[0]["robot"], "");
   EXPECT_EQ(layers[0]["kind"], "grid");
@@ -64,7 +57,7 @@ TEST_F(MapRoutesTest, TellsEachLayerAndItsTiles) {
 }
 
 TEST_F(MapRoutesTest, EveryTileThatItTellsOfIsThere) {
-  const json map = json::parse(get("/adit/map").body);
+  const json map = json::parse(get_file("/adit/map").body);
   for (const json& layer : map["layers"]) {
     ASSERT_FALSE(layer["tiles"].empty());
     const std::string robot = layer["robot"].get<std::string>();
@@ -72,22 +65,22 @@ TEST_F(MapRoutesTest, EveryTileThatItTellsOfIsThere) {
       const std::string path = "/adit/map/" + layer["kind"].get<std::string>() + "/" +
                                (robot.empty() ? "-" : robot) + "/" + tile["level"].dump() + "/" +
                                tile["x"].dump() + "/" + tile["y"].dump() + ".png";
-      const auto answer = get(path);
+      const auto answer = get_file(path);
       ASSERT_EQ(answer.status, icd::Status::Ok) << path;
       EXPECT_EQ(answer.content_type, "image/png");
       EXPECT_THAT(answer.body, StartsWith("\x89PNG\r\n"));
-      EXPECT_EQ(get(path + "?at=" + tile["first"].dump()).status, icd::Status::Ok) << path;
-      EXPECT_EQ(get(path + "?at=1000").status, icd::Status::NotFound) << "before anything was drawn";
+      EXPECT_EQ(get_file(path + "?at=" + tile["first"].dump()).status, icd::Status::Ok) << path;
+      EXPECT_EQ(get_file(path + "?at=1000").status, icd::Status::NotFound) << "before anything was drawn";
     }
   }
 }
 
 TEST_F(MapRoutesTest, TellsOnlyOfWhatChangedSince) {
   const auto before = source.mosaic.version();
-  const json same = json::parse(get("/adit/map?since=" + std::to_string(before)).body);
+  const json same = json::parse(get_file("/adit/map?since=" + std::to_string(before)).body);
   EXPECT_TRUE(same["layers"][0]["tiles"].empty());
   source.mosaic.wipe(3000);
-  const json wiped = json::parse(get("/adit/map?since=" + std::to_string(before)).body);
+  const json wiped = json::parse(get_file("/adit/map?since=" + std::to_string(before)).body);
   EXPECT_EQ(wiped["wiped"], 3000.0);
   EXPECT_TRUE(wiped["layers"][0]["bounds"].is_null());
   ASSERT_FALSE(wiped["layers"][0]["tiles"].empty());
@@ -95,21 +88,21 @@ TEST_F(MapRoutesTest, TellsOnlyOfWhatChangedSince) {
 }
 
 TEST_F(MapRoutesTest, SendsATileAgainOnlyWhereItChanged) {
-  const auto first = get("/adit/map/grid/-/1/0/0.png");
+  const auto first = get_file("/adit/map/grid/-/1/0/0.png");
   ASSERT_EQ(first.status, icd::Status::Ok);
   EXPECT_EQ(header(first, "Cache-Control"), "no-cache");
-  const auto again = get("/adit/map/grid/-/1/0/0.png", header(first, "ETag"));
+  const auto again = get_file("/adit/map/grid/-/1/0/0.png", header(first, "ETag"));
   EXPECT_EQ(static_cast<int>(again.status), 304);
   EXPECT_EQ(again.body, "");
-  const auto earlier = get("/adit/map/grid/-/1/0/0.png?at=1700", header(first, "ETag"));
+  const auto earlier = get_file("/adit/map/grid/-/1/0/0.png?at=1700", header(first, "ETag"));
   EXPECT_EQ(earlier.status, icd::Status::Ok);
   EXPECT_NE(earlier.body, first.body);
   EXPECT_EQ(header(earlier, "Cache-Control"), "max-age=3600") << "it has been followed by others";
 }
 
 TEST_F(MapRoutesTest, SpreadsAnyHeightsAskedForOverTheColours) {
-  const auto usual = get("/adit/map/cloud/ugv1/0/0/0.png");
-  const auto spread = get("/adit/map/cloud/ugv1/0/0/0.png?low=-1&high=7");
+  const auto usual = get_file("/adit/map/cloud/ugv1/0/0/0.png");
+  const auto spread = get_file("/adit/map/cloud/ugv1/0/0/0.png?low=-1&high=7");
   ASSERT_EQ(spread.status, icd::Status::Ok);
   EXPECT_NE(spread.body, usual.body);
   EXPECT_EQ(spread.body.substr(900), usual.body.substr(900)) << "only the palette differs";
@@ -122,7 +115,7 @@ TEST_F(MapRoutesTest, HasNothingElsewhere) {
         "/adit/map/grid/-/9/0/0.png", "/adit/map/grid/-/-1/0/0.png", "/adit/map/grid/-/0/99999999999/0.png",
         "/adit/map/grid/nobody/0/0/0.png", "/adit/map/cloud/-/0/0/0.png", "/adit/map/grid/-/0/50/50.png",
         "/adit/map/grid//0/0/0.png", "/adit/maps"}) {
-    const auto answer = get(path);
+    const auto answer = get_file(path);
     EXPECT_EQ(answer.status, icd::Status::NotFound) << path;
     EXPECT_TRUE(json::parse(answer.body).is_string()) << path;
   }
@@ -133,19 +126,19 @@ TEST_F(MapRoutesTest, RefusesNumbersThatAreNone) {
        {"/adit/map?since=x", "/adit/map?since=-1", "/adit/map?since=1.5", "/adit/map/grid/-/0/0/0.png?at=now",
         "/adit/map/grid/-/0/0/0.png?at=nan", "/adit/map/cloud/ugv1/0/0/0.png?low=inf",
         "/adit/map/cloud/ugv1/0/0/0.png?high=1e999"}) {
-    EXPECT_EQ(get(target).status, icd::Status::BadRequest) << target;
+    EXPECT_EQ(get_file(target).status, icd::Status::BadRequest) << target;
   }
 }
 
 TEST_F(MapRoutesTest, TakesHeadForGet) {
   for (const char* path : {"/adit/map", "/adit/map/grid/-/0/0/0.png"}) {
-    EXPECT_EQ(get(path, "", "HEAD").status, icd::Status::Ok);
+    EXPECT_EQ(get_file(path, "", "HEAD").status, icd::Status::Ok);
   }
 }
 
 TEST_F(MapRoutesTest, KeepsTheBrowserFromLoadingAnythingElse) {
   for (const char* path : {"/adit/map", "/adit/map/grid/-/0/0/0.png", "/adit/map/nothing"}) {
-    EXPECT_THAT(header(get(path), "Content-Security-Policy"), StartsWith("default-src 'none'")) << path;
+    EXPECT_THAT(header(get_file(path), "Content-Security-Policy"), StartsWith("default-src 'none'")) << path;
   }
 }
 

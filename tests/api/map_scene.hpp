@@ -18,4 +18,21 @@ MarkerChanges scene_markers(double now);
 /// Two robots on their ways, the last ten minutes up to `now`.
 std::vector<Track> scene_tracks(double now);
 
+/// A marker that has a bit of everything, as the box keeps it to be drawn.
+inline DrawnMarker drawn_marker() {
+  return {.ns = "path",
+          .id = -3,
+          .type = 4,
+          .position = {1, 2, 3},
+          .heading = 1.5708,
+          .scale = {4, 5, 6},
+          .color = {0.5, 0.25, 1, 0.126},
+          .lifetime = 2.5,
+          .text = "here",
+          .mesh = "drill",
+          .points = {{1, 2}, {-3.456F, 4}},
+          .colors = {{1, 0, 0.5, 1}},
+          .point_count = 7000};
+}
+
 }  // namespace adit::api

@@ -3,6 +3,7 @@
 #include <cmath>
 #include <nlohmann/json.hpp>
 
+#include "api/map_scene.hpp"
 #include "api/on_page.hpp"
 
 namespace adit::api {
@@ -13,24 +14,13 @@ using nlohmann::json;
 class SceneRoutesTest : public OnPage {};
 
 TEST_F(SceneRoutesTest, GiveTheMarkersThatChanged) {
-  const DrawnMarker marker{.ns = "path",
-                           .id = -3,
-                           .type = 4,
-                           .position = {1, 2, 3},
-                           .heading = 1.5708,
-                           .scale = {4, 5, 6},
-                           .color = {0.5, 0.25, 1, 0.126},
-                           .lifetime = 2.5,
-                           .text = "here",
-                           .mesh = "drill",
-                           .points = {{1, 2}, {-3.456F, 4}},
-                           .colors = {{1, 0, 0.5, 1}, {0, 0, 0, 0.25}},
-                           .point_count = 7000};
-  source.marker_news = {.version = 1'793'000'123'456,
-                        .whole = false,
-                        .left_out = 2,
-                        .markers = {{marker, 99.5}},
-                        .gone = {{"path", 7}}};
+  DrawnMarker marker = drawn_marker();
+  marker.colors.push_back({0, 0, 0, 0.25});
+  source.marker_changes = {.version = 1'793'000'123'456,
+                           .whole = false,
+                           .left_out = 2,
+                           .markers = {{marker, 99.5}},
+                           .gone = {{"path", 7}}};
   const auto answer = get("/adit/markers?since=1793000123400");
   EXPECT_EQ(source.since_version, 1'793'000'123'400u);
   EXPECT_EQ(header(answer, "Cache-Control"), "no-store");

@@ -155,6 +155,34 @@ TEST_F(OnlyTheClock, IsNoNewRunWhereAnAnswerGivesItsOldName) {
   EXPECT_EQ(scene_.count(), 3u);
 }
 
+/// Report 1 was never recorded, and the operator has sent the same as report 2 meanwhile.
+TEST(OnlyTheClockInDoubt, DoesNotSendAgainWhatTheOperatorSentOnceMore) {
+  Scene scene;
+  scene.post(7);
+  scene.answer(recorded(0, "scored", "1"));
+  scene.wait(1);
+  scene.hear(19, 0);
+  scene.post(1);
+  scene.lose();
+  for (int i = 0; i < 40; ++i) {
+    scene.wait(1);
+    scene.hear(19, 0, 102);
+  }
+  scene.hear(19, 0, 3);
+  ASSERT_EQ(scene.reports().run().number, 2);
+  scene.post(1);
+  ASSERT_EQ(scene.state(3), Received);
+  ASSERT_TRUE(scene.reports().send(3, scene.time()));
+  ASSERT_EQ(scene.send_next(), 3);
+  scene.answer(recorded(0, "scored", "1"));
+  ASSERT_EQ(scene.reports().run().number, 1) << "it is the run that was before";
+  ASSERT_EQ(scene.state(2), InDoubt);
+  scene.keep_hearing(30, 18, 0);
+  EXPECT_EQ(scene.send_next(), 0);
+  EXPECT_EQ(scene.state(2), Received);
+  EXPECT_THAT(scene.report(2).note, HasSubstr("report 3 is the same, and is answered in this run"));
+}
+
 TEST_F(OnlyTheClock, TheRunThatIsBackIsSoAfterARestart) {
   record(2, "1");
   scene_.restart();

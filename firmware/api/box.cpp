@@ -10,9 +10,7 @@ struct KindOf<api::LogFields> : OnlyWritten {
     for (const auto& [name, value] : fields) object.emplace_back(name, Value{value});
     return {std::move(object)};
   }
-  static Value::Object schema(Schemas& schemas) {
-    return {{"type", {"object"}}, {"additionalProperties", {KindOf<std::string>::schema(schemas)}}};
-  }
+  static constexpr Schema schema = {.type = "object", .more = R"("additionalProperties":{"type":"string"})"};
 };
 
 }  // namespace adit::codec
@@ -83,13 +81,13 @@ constexpr Member kNetwork[] = {
 
 }  // namespace
 
-constinit const codec::Row LogRecord::kRow = {"LogRecord", kRecord};
-constinit const codec::Row LogPage::kRow = {"", kPage};
-constinit const codec::Row PartRow::kRow = {"", kPart, "A library in the program."};
-constinit const codec::Row BoardRow::kRow = {"", kBoard};
-constinit const codec::Row About::kRow = {"About", kAbout};
-constinit const codec::Row InterfaceRow::kRow = {"", kInterface};
-constinit const codec::Row RouteRow::kRow = {"", kRoute};
-constinit const codec::Row NetworkState::kRow = {"", kNetwork};
+constexpr codec::Row LogRecord::kRow = {"LogRecord", kRecord};
+constexpr codec::Row LogPage::kRow = {"", kPage};
+constexpr codec::Row PartRow::kRow = {"", kPart, "A library in the program."};
+constexpr codec::Row BoardRow::kRow = {"", kBoard};
+constexpr codec::Row About::kRow = {"About", kAbout};
+constexpr codec::Row InterfaceRow::kRow = {"", kInterface};
+constexpr codec::Row RouteRow::kRow = {"", kRoute};
+constexpr codec::Row NetworkState::kRow = {"", kNetwork};
 
 }  // namespace adit::api

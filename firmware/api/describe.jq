@@ -1,5 +1,5 @@
 # Writes the description of the API, OpenAPI 3.1, at build time: `paths` from the rows of routes.cpp ($routes, its text), what
-# they name in openapi.json ($parts), and schemas.json ($schemas).
+# they name in openapi.json ($parts), and the schemas of the rows ($rows: described.cpp).
 def strings: [scan("\"(?:[^\"\\\\]|\\\\.)*\"") | fromjson];
 def words: (. // "") | split(" ") | map(select(. != ""));
 def known($what; $all): . as $name | $all[$name] // error("openapi.json has no \($name) among its \($what)");
@@ -17,7 +17,7 @@ def rows:
        + ([range($values | length) | {($names[.]): $values[.]}] | add)]
   | if length == ([$table | scan("(?:^|\n)    (?:get|post)\\(")] | length) then .[] else error("a row of routes.cpp is not understood") end;
 
-$parts[0] as $parts | $schemas[0] as $schemas
+$parts[0] as $parts | ($parts.schemas + $rows[0]) as $schemas
 
 # The schema of an object that has these members and no others.
 | def closed: {type: "object", properties: ., required: keys_unsorted, additionalProperties: false};

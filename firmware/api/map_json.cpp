@@ -49,7 +49,7 @@ struct KindOf<picture::Heights> : KindOfRow<picture::Heights, api::kHeights> {};
 template <>
 struct KindOf<picture::Kind> : OnlyWritten {
   static Value write(picture::Kind kind) { return {kind == picture::Kind::Grid ? "grid" : "cloud"}; }
-  static Value::Object schema(Schemas& schemas) { return KindOf<std::string>::schema(schemas); }
+  static constexpr Schema schema = KindOf<std::string>::schema;
 };
 
 /// As CSS has it: "#c8d2da".
@@ -64,9 +64,8 @@ struct KindOf<picture::Colour> : OnlyWritten {
     }
     return {std::move(text)};
   }
-  static Value::Object schema(Schemas& schemas) {
-    return schemas.named("Colour", {{"type", {"string"}}, {"pattern", {"^#[0-9a-f]{6}$"}}});
-  }
+  static constexpr Schema schema = {
+      .type = "string", .more = R"("pattern":"^#[0-9a-f]{6}$")", .name = "Colour"};
 };
 
 }  // namespace adit::codec
@@ -74,11 +73,11 @@ struct KindOf<picture::Colour> : OnlyWritten {
 namespace adit::api {
 namespace {
 
-constexpr std::string_view kKinds[] = {"grid", "cloud"};
+constexpr std::string_view kMapKinds[] = {"grid", "cloud"};
 
 constexpr Member kLayerMembers[] = {
     member<&LayerView::layer, &picture::Layer::robot>("robot", "empty: merged"),
-    member<&LayerView::layer, &picture::Layer::kind>("kind").one_of(kKinds),
+    member<&LayerView::layer, &picture::Layer::kind>("kind").one_of(kMapKinds),
     member<&LayerView::bounds>("bounds"),
     member<&LayerView::heights>("heights"),
     member<&LayerView::first>("first"),
@@ -118,8 +117,8 @@ constexpr Member kMap[] = {
 
 }  // namespace
 
-constinit const Row MapColours::kRow = {"", kColours};
-constinit const Row MapView::kRow = {"Map", kMap, "The layers of the picture of the maps."};
+constexpr Row MapColours::kRow = {"", kColours};
+constexpr Row MapView::kRow = {"Map", kMap, "The layers of the picture of the maps."};
 
 MapView map_view(const picture::Mosaic& map, std::uint64_t since) {
   const auto grid = picture::grid_palette();

@@ -85,7 +85,8 @@ std::vector<const codec::Member*> columns() {
 std::string line(const auto& each) {
   std::string text;
   for (const codec::Member* const member : columns()) {
-    const auto inner = member->kind->row == nullptr ? std::span(member, 1) : member->kind->row->members;
+    const auto inner =
+        member->kind->schema->row == nullptr ? std::span(member, 1) : member->kind->schema->row->members;
     for (const codec::Member& one : inner) text.append(text.empty() ? "" : ",").append(each(*member, one));
   }
   return text.append("\r\n");

@@ -11,7 +11,6 @@ using codec::Member;
 
 constexpr std::string_view kWhen = "seconds since 1970";
 constexpr std::string_view kKinds[] = {"grid", "cloud", "state", "markers"};
-constexpr std::string_view kEndpoints[] = {"scoring", "mapping"};
 constexpr std::string_view kPatterns[] = {"off",   "on",   "slow", "fast",  "twice",
                                           "flash", "wink", "rush", "digits"};
 constexpr std::string_view kSides[] = {"team", "command_post"};
@@ -153,16 +152,16 @@ constexpr Member kView[] = {
 
 }  // namespace
 
-constinit const codec::Row ReportRow::kRow = {"Report", kReport};
-constinit const codec::Row ReportStep::kRow = {"", kStep};
-constinit const codec::Row ReportDetail::kRow = {"ReportDetail", kDetail};
-constinit const codec::Row ActivityRow::kRow = {"Activity", kActivity, "The traffic of one robot and kind."};
-constinit const codec::Row RefusalRow::kRow = {"Refusal", kRefusal, "What was refused to its sender."};
-constinit const codec::Row EndpointRow::kRow = {"Endpoint", kEndpoint};
-constinit const codec::Row AsideRow::kRow = {"Aside", kAside};
-constinit const codec::Row RobotRow::kRow = {"Robot", kRobot};
-constinit const codec::Row LightRow::kRow = {"Light", kLight};
-constinit const codec::Row LinkRow::kRow = {"Link", kLink};
-constinit const codec::Row RunView::kRow = {"RunView", kView, "How all stands."};
+constexpr codec::Row ReportRow::kRow = {"Report", kReport};
+constexpr codec::Row ReportStep::kRow = {"", kStep};
+constexpr codec::Row ReportDetail::kRow = {"ReportDetail", kDetail};
+constexpr codec::Row ActivityRow::kRow = {"Activity", kActivity, "The traffic of one robot and kind."};
+constexpr codec::Row RefusalRow::kRow = {"Refusal", kRefusal, "What was refused to its sender."};
+constexpr codec::Row EndpointRow::kRow = {"Endpoint", kEndpoint};
+constexpr codec::Row AsideRow::kRow = {"Aside", kAside};
+constexpr codec::Row RobotRow::kRow = {"Robot", kRobot};
+constexpr codec::Row LightRow::kRow = {"Light", kLight};
+constexpr codec::Row LinkRow::kRow = {"Link", kLink};
+constexpr codec::Row RunView::kRow = {"RunView", kView, "How all stands."};
 
 }  // namespace adit::api

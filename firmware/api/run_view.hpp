@@ -3,6 +3,7 @@
 #include <cstdint>
 #include <optional>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "api/scene.hpp"
@@ -13,6 +14,9 @@
 namespace adit::api {
 
 // What each member says, and its bounds, is in the descriptions: run_view.cpp.
+
+/// The Command Post's two, as the API names them.
+inline constexpr std::string_view kEndpoints[] = {"scoring", "mapping"};
 
 /// One artifact report and where it is in its life.
 struct ReportRow {

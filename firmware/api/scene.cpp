@@ -11,7 +11,6 @@ using codec::Kind;
 using codec::Member;
 using codec::member;
 using codec::Row;
-using codec::Schemas;
 using codec::Value;
 
 /// A hundredth is finer than any screen shows.
@@ -22,8 +21,7 @@ Value rounded(double value) {
 constexpr Kind kRounded = {
     .write = [](const void* value) { return rounded(*static_cast<const double*>(value)); },
     .read = codec::kind_of<double>.read,
-    .schema = codec::kind_of<double>.schema,
-    .row = nullptr};
+    .schema = codec::kind_of<double>.schema};
 
 constexpr Member kColorMembers[] = {
     member<&icd::Color::r>("r").as(kRounded), member<&icd::Color::g>("g").as(kRounded),
@@ -63,10 +61,8 @@ struct KindOf<std::vector<icd::Color>> : OnlyWritten {
     for (const icd::Color& color : colors) array.push_back(api::as_hex(color));
     return {std::move(array)};
   }
-  static Value::Object schema(Schemas& /*schemas*/) {
-    Value::Object color{{"type", {"string"}}, {"pattern", {"^#[0-9a-f]{8}$"}}};
-    return {{"type", {"array"}}, {"items", {std::move(color)}}};
-  }
+  static constexpr Schema color = {.type = "string", .more = R"("pattern":"^#[0-9a-f]{8}$")"};
+  static constexpr Schema schema = {.type = "array", .items = &color};
 };
 
 /// x, y, x, y, ...
@@ -81,11 +77,8 @@ struct KindOf<std::vector<api::FlatPoint>> : OnlyWritten {
     }
     return {std::move(array)};
   }
-  static Value::Object schema(Schemas& schemas) {
-    Value::Object numbers = KindOf<std::vector<double>>::schema(schemas);
-    numbers.emplace_back("maxItems", Value{std::int64_t{2 * api::DrawnMarker::kMostPoints}});
-    return numbers;
-  }
+  static constexpr Schema schema = {
+      .type = "array", .items = &KindOf<double>::schema, .most = 2 * api::DrawnMarker::kMostPoints};
 };
 
 /// Five numbers: a track has thousands of them.
@@ -95,12 +88,8 @@ struct KindOf<api::TrackPose> : OnlyWritten {
     return {Value::Array{api::rounded(pose.at), api::rounded(pose.position.x), api::rounded(pose.position.y),
                          api::rounded(pose.position.z), api::rounded(pose.heading)}};
   }
-  static Value::Object schema(Schemas& schemas) {
-    Value::Object numbers = KindOf<std::vector<double>>::schema(schemas);
-    for (const char* const bound : {"minItems", "maxItems"})
-      numbers.emplace_back(bound, Value{std::int64_t{5}});
-    return numbers;
-  }
+  static constexpr Schema schema = {
+      .type = "array", .items = &KindOf<double>::schema, .fewest = 5, .most = 5};
 };
 
 }  // namespace adit::codec
@@ -146,9 +135,9 @@ constexpr Member kTracks[] = {member<&Tracks::tracks>("tracks")};
 
 }  // namespace
 
-constinit const Row MarkerRow::kRow = {"Marker", kMarker};
-constinit const Row MarkerChanges::kRow = {"Markers", kChanges};
-constinit const Row Track::kRow = {"", kTrack};
-constinit const Row Tracks::kRow = {"Tracks", kTracks};
+constexpr Row MarkerRow::kRow = {"Marker", kMarker};
+constexpr Row MarkerChanges::kRow = {"Markers", kChanges};
+constexpr Row Track::kRow = {"", kTrack};
+constexpr Row Tracks::kRow = {"Tracks", kTracks};
 
 }  // namespace adit::api

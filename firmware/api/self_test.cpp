@@ -1,23 +1,24 @@
 #include "api/self_test.hpp"
 
+#include "api/run_view.hpp"
+
 namespace adit::api {
 namespace {
 
 using codec::member;
 using codec::Member;
 
-constexpr std::string_view kEndpoints[] = {"scoring", "mapping"};
 constexpr std::string_view kSteps[] = {"link", "address", "cables", "reach", "token", "clock"};
 constexpr std::string_view kStates[] = {"waiting", "running", "good", "bad", "skipped"};
 
-constexpr Member kStep[] = {
+constexpr Member kTestStep[] = {
     member<&TestStep::name>("name").one_of(kSteps),
     member<&TestStep::state>("state").one_of(kStates),
     member<&TestStep::said>("said"),
     member<&TestStep::advice>("advice"),
 };
 
-constexpr Member kEndpoint[] = {
+constexpr Member kTestedEndpoint[] = {
     member<&TestedEndpoint::name>("name").one_of(kEndpoints),
     member<&TestedEndpoint::address>("address"),
     member<&TestedEndpoint::steps>("steps"),
@@ -30,8 +31,8 @@ constexpr Member kTest[] = {
 
 }  // namespace
 
-constinit const codec::Row TestStep::kRow = {"", kStep};
-constinit const codec::Row TestedEndpoint::kRow = {"", kEndpoint};
-constinit const codec::Row TestView::kRow = {"Test", kTest};
+constexpr codec::Row TestStep::kRow = {"", kTestStep};
+constexpr codec::Row TestedEndpoint::kRow = {"", kTestedEndpoint};
+constexpr codec::Row TestView::kRow = {"Test", kTest};
 
 }  // namespace adit::api

@@ -12,7 +12,7 @@ struct KindOf<update::Stage> {
     if (word == std::end(update::kStageWords)) return field.refuse("expected a stage");
     stage = static_cast<update::Stage>(word - std::begin(update::kStageWords));
   }
-  static Value::Object schema(Schemas& schemas) { return KindOf<std::string>::schema(schemas); }
+  static constexpr Schema schema = KindOf<std::string>::schema;
 };
 
 }  // namespace adit::codec
@@ -57,7 +57,7 @@ struct KindOf<update::LastUpdate> {
   static void read(const Field& field, update::LastUpdate& last) {
     if (!field.is_absent()) read_row(api::kLast, field, &last);
   }
-  static Value::Object schema(Schemas& schemas) { return or_null(schemas.of(api::kLast)); }
+  static constexpr Schema schema = {.row = &api::kLast, .or_null = true};
 };
 
 }  // namespace adit::codec
@@ -84,6 +84,6 @@ constexpr Member kUpdate[] = {
 
 }  // namespace
 
-constinit const Row UpdateView::kRow = {"Update", kUpdate};
+constexpr Row UpdateView::kRow = {"Update", kUpdate};
 
 }  // namespace adit::api

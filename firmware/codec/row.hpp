@@ -15,11 +15,10 @@
 #include "icd/geometry.hpp"
 #include "icd/run_status.hpp"
 
-/// Rows: structs whose members are described once. Their JSON, its reading, CSV and OpenAPI's schemas come
-/// from the description; a new member is a line of its struct and a line of its table.
+/// Rows: structs whose members are described once. Their JSON, its reading, CSV and OpenAPI's schemas
+/// (schemas.hpp) come from the description; a new member is a line of its struct and a line of its table.
 namespace adit::codec {
 
-class Schemas;
 struct Member;
 
 /// What a struct is to whoever reads its JSON.
@@ -29,14 +28,30 @@ struct Row {
   std::string_view meaning = "";
 };
 
+/// What OpenAPI says of the values of one C++ type.
+struct Schema {
+  std::string_view type = "";        // JSON's: "string"; of rows "", for it is their row's
+  const Row* row = nullptr;          // of a row, or of one that may be absent
+  const Schema* items = nullptr;     // of an array
+  std::size_t fewest = 0, most = 0;  // items; 0: any number
+  std::optional<std::int64_t> least = {};
+  std::string_view more = "";  // as JSON: R"("pattern":"^#[0-9a-f]{6}$")"
+  std::string_view name = "";  // among OpenAPI's schemas; "": it is described where it is used
+  bool or_null = false;
+
+  constexpr Schema nullable() const {
+    Schema other = *this;
+    other.or_null = true;
+    return other;
+  }
+};
+
 /// How the values of one C++ type are written, read and described.
 struct Kind {
   Value (*write)(const void* value);
   /// Refuses what is no such value, and leaves something harmless.
   void (*read)(const Field& field, void* value);
-  /// JSON Schema of it, as OpenAPI 3.1 has it.
-  Value::Object (*schema)(Schemas& schemas);
-  const Row* row;  // of a row, or of one that may be absent; else null
+  const Schema* schema;
 };
 
 /// How a member stands in CSV: not at all, as it is, as ISO 8601, or empty where it is 0.
@@ -70,22 +85,6 @@ struct Member {
   }
 };
 
-/// The schemas that have names, gathered as others refer to them: OpenAPI's components.schemas.
-class Schemas {
- public:
-  /// The schema of a row, or a reference to it where it has a name.
-  Value::Object of(const Row& row);
-  /// A reference to that schema by that name.
-  Value::Object named(std::string_view name, Value::Object schema);
-  Value::Object& all() { return all_; }
-
- private:
-  Value::Object all_;
-};
-
-/// A schema, or null.
-Value::Object or_null(Value::Object schema);
-
 Value write_row(const Row& row, const void* from);
 void read_row(const Row& row, const Field& field, void* into);
 
@@ -94,44 +93,37 @@ template <class T>
 struct KindOf;
 
 template <class T>
-constexpr const Row* row_in() {
-  if constexpr (requires { KindOf<T>::row(); }) return &KindOf<T>::row();
-  return nullptr;
-}
-
-template <class T>
 inline constexpr Kind kind_of = {
     .write = [](const void* value) -> Value { return KindOf<T>::write(*static_cast<const T*>(value)); },
     .read = [](const Field& field, void* value) { KindOf<T>::read(field, *static_cast<T*>(value)); },
-    .schema = &KindOf<T>::schema,
-    .row = row_in<T>()};
+    .schema = &KindOf<T>::schema};
 
 template <>
 struct KindOf<std::string> {
   static Value write(const std::string& text) { return {text}; }
   static void read(const Field& field, std::string& text) { text = field.text(); }
-  static Value::Object schema(Schemas& /*schemas*/) { return {{"type", {"string"}}}; }
+  static constexpr Schema schema = {.type = "string"};
 };
 
 template <>
 struct KindOf<bool> {
   static Value write(bool value) { return {value}; }
   static void read(const Field& field, bool& value) { value = field.truth(); }
-  static Value::Object schema(Schemas& /*schemas*/) { return {{"type", {"boolean"}}}; }
+  static constexpr Schema schema = {.type = "boolean"};
 };
 
 template <>
 struct KindOf<double> {
   static Value write(double number) { return {number}; }
   static void read(const Field& field, double& number) { number = field.number(); }
-  static Value::Object schema(Schemas& /*schemas*/) { return {{"type", {"number"}}}; }
+  static constexpr Schema schema = {.type = "number"};
 };
 
 template <std::signed_integral Whole>
 struct KindOf<Whole> {
   static Value write(Whole number) { return {std::int64_t{number}}; }
   static void read(const Field& field, Whole& number) { number = field.whole<Whole>(); }
-  static Value::Object schema(Schemas& /*schemas*/) { return {{"type", {"integer"}}}; }
+  static constexpr Schema schema = {.type = "integer"};
 };
 
 /// Counts: JSON's are below 2^63.
@@ -141,9 +133,7 @@ struct KindOf<Count> {
   static void read(const Field& field, Count& number) {
     number = static_cast<Count>(field.whole<std::int64_t>(0));
   }
-  static Value::Object schema(Schemas& /*schemas*/) {
-    return {{"type", {"integer"}}, {"minimum", {std::int64_t{0}}}};
-  }
+  static constexpr Schema schema = {.type = "integer", .least = 0};
 };
 
 /// Of a row whose description is `kRow`.
@@ -151,20 +141,13 @@ template <class T, const Row& kRow>
 struct KindOfRow {
   static Value write(const T& row) { return write_row(kRow, &row); }
   static void read(const Field& field, T& row) { read_row(kRow, field, &row); }
-  static Value::Object schema(Schemas& schemas) { return schemas.of(kRow); }
-  static constexpr const Row& row() { return kRow; }
+  static constexpr Schema schema = {.row = &kRow};
 };
 
 /// A struct that says so itself: static const codec::Row kRow.
 template <class T>
   requires requires { T::kRow; }
 struct KindOf<T> : KindOfRow<T, T::kRow> {};
-
-extern const Row kPoint, kRunStatus;
-template <>
-struct KindOf<icd::Point> : KindOfRow<icd::Point, kPoint> {};
-template <>
-struct KindOf<icd::RunStatus> : KindOfRow<icd::RunStatus, kRunStatus> {};
 
 /// For the Kind of what nobody reads.
 struct OnlyWritten {
@@ -174,17 +157,12 @@ struct OnlyWritten {
 /// null where there is nothing.
 template <class T>
 struct KindOf<std::optional<T>> {
-  static constexpr const Row& row()
-    requires requires { KindOf<T>::row(); }
-  {
-    return KindOf<T>::row();
-  }
   static Value write(const std::optional<T>& value) { return value ? KindOf<T>::write(*value) : Value{}; }
   static void read(const Field& field, std::optional<T>& value) {
     value.reset();
     if (!field.is_absent()) KindOf<T>::read(field, value.emplace());
   }
-  static Value::Object schema(Schemas& schemas) { return or_null(KindOf<T>::schema(schemas)); }
+  static constexpr Schema schema = KindOf<T>::schema.nullable();
 };
 
 template <class T>
@@ -202,13 +180,19 @@ struct KindOf<std::vector<T>> {
       KindOf<T>::read(element, all.emplace_back());
     }
   }
-  static Value::Object schema(Schemas& schemas) {
-    return {{"type", {"array"}}, {"items", {KindOf<T>::schema(schemas)}}};
-  }
+  static constexpr Schema schema = {.type = "array", .items = &KindOf<T>::schema};
 };
 
+inline constexpr Schema kTextOrNullSchema = KindOf<std::string>::schema.nullable();
 /// Text that is null where it is empty.
-extern const Kind kTextOrNull;
+inline constexpr Kind kTextOrNull = {
+    .write = [](const void* value) -> Value {
+      const auto& all = *static_cast<const std::string*>(value);
+      return all.empty() ? Value{} : Value{all};
+    },
+    .read = [](const Field& field,
+               void* value) { *static_cast<std::string*>(value) = field.is_absent() ? "" : field.text(); },
+    .schema = &kTextOrNullSchema};
 
 /// The member at the end of a way of pointers to members, of the row that the first one is of.
 template <auto first, auto... rest>
@@ -219,6 +203,22 @@ constexpr Member member(std::string_view name, std::string_view meaning = "") {
                   [](void* row) -> void* { return &((static_cast<In*>(row)->*first).*....*rest); }};
   }(first);
 }
+
+inline constexpr Member kPointMembers[] = {member<&icd::Point::x>("x"), member<&icd::Point::y>("y"),
+                                           member<&icd::Point::z>("z")};
+inline constexpr Row kPoint = {"Point", kPointMembers, "Metres, in the frame darpa."};
+template <>
+struct KindOf<icd::Point> : KindOfRow<icd::Point, kPoint> {};
+
+inline constexpr Member kRunStatusMembers[] = {
+    member<&icd::RunStatus::score>("score"),
+    member<&icd::RunStatus::run_clock>("run_clock", "seconds"),
+    member<&icd::RunStatus::remaining_reports>("remaining_reports"),
+    member<&icd::RunStatus::current_team>("current_team"),
+};
+inline constexpr Row kRunStatus = {"", kRunStatusMembers, "As last heard."};
+template <>
+struct KindOf<icd::RunStatus> : KindOfRow<icd::RunStatus, kRunStatus> {};
 
 template <class T>
 Value json(const T& value) {

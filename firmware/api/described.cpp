@@ -1,0 +1,27 @@
+// OpenAPI's schemas of the rows, which the compiler writes as it reads their descriptions: the section
+// "schemas" of this file's object is their text (CMakeLists.txt). It is linked into no program, and none has
+// to run for it, so that it can be built for another machine.
+#include "codec/schemas.hpp"
+
+// NOLINTBEGIN(bugprone-suspicious-include): where their descriptions stand.
+#include "api/box.cpp"
+#include "api/map_json.cpp"
+#include "api/run_view.cpp"
+#include "api/scene.cpp"
+#include "api/self_test.cpp"
+#include "api/updates.cpp"
+// NOLINTEND(bugprone-suspicious-include)
+
+namespace adit::api {
+namespace {
+
+template <class T>
+constexpr const codec::Schema* of = &codec::KindOf<T>::schema;
+
+constexpr codec::Schemas kSchemas({of<RunView>, of<ReportDetail>, of<MarkerChanges>, of<Tracks>, of<MapView>,
+                                   of<LogRecord>, of<UpdateView>, of<TestView>, of<About>});
+
+[[gnu::used, gnu::section("schemas")]] constexpr std::array kText = kSchemas.text();
+
+}  // namespace
+}  // namespace adit::api

@@ -4,10 +4,10 @@ import { once } from "node:events";
 import { createServer } from "node:net";
 import { chmodSync, mkdirSync, mkdtempSync, readFileSync, rmSync, writeFileSync } from "node:fs";
 import { tmpdir } from "node:os";
-import { dirname, join } from "node:path";
+import { join } from "node:path";
 import { setTimeout as sleep } from "node:timers/promises";
+import { BIN } from "./stage.js";
 
-const BIN = process.env.ADIT_BIN ?? dirname(process.env.SCENE_SERVER);
 export const TOKENS = { scoring: "scoring-token-1", mapping: "mapping-token-1", team: "team-token-1" };
 export const OPERATOR = "correct horse battery", VIEWER = "look, do not touch";
 
@@ -38,14 +38,15 @@ class Program {
   }
 }
 
-/** One that nobody listens at: a box whose settings are applied anew has to be found where it was. */
+/** One that nobody listens at, where a program is to be found however often it begins anew. Below those that the kernel gives
+ *  to whoever asks for any, or it might give this one away meanwhile. */
 export async function freePort() {
-  const server = createServer().listen(0, "127.0.0.1");
-  await once(server, "listening");
-  const { port } = server.address();
-  server.close();
-  await once(server, "close");
-  return port;
+  for (;;) {
+    const port = 11_000 + Math.floor(Math.random() * 21_000), server = createServer().listen(port, "127.0.0.1");
+    const isFree = await once(server, "listening").then(() => true, () => false);
+    await new Promise((closed) => server.close(closed));
+    if (isFree) return port;
+  }
 }
 
 function secretsIn(folder) {

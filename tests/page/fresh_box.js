@@ -2,26 +2,16 @@
 import { spawn } from "node:child_process";
 import { once } from "node:events";
 import { mkdirSync, mkdtempSync, readFileSync, rmSync, writeFileSync } from "node:fs";
-import { createServer } from "node:net";
 import { tmpdir } from "node:os";
-import { dirname, join } from "node:path";
+import { join } from "node:path";
 import { after, before } from "node:test";
-import { ONCE, until } from "./box.js";
-import { launch, visit } from "./stage.js";
+import { freePort, ONCE, until } from "./box.js";
+import { BIN, launch, visit } from "./stage.js";
 
-export { until };
+export { freePort, until };
 
-const BIN = process.env.ADIT_BIN ?? dirname(process.env.SCENE_SERVER);
 export const TOKENS = { scoring: "flux230{showroom", mapping: "rust871}backdoor", team: "team-own-token-1" };
 export const PASSWORD = "a long cave password", LOOKING = "look, do not touch";
-
-export async function freePort() {
-  const server = createServer().listen(0, "127.0.0.1");
-  await once(server, "listening");
-  const { port } = server.address();
-  await new Promise((closed) => server.close(closed));
-  return port;
-}
 
 class FreshBox {
   folder = mkdtempSync(join(tmpdir(), "adit-setup-"));

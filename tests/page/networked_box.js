@@ -3,13 +3,12 @@ import { execFileSync, spawn, spawnSync } from "node:child_process";
 import { once } from "node:events";
 import { chmodSync, existsSync, mkdirSync, mkdtempSync, readFileSync, rmSync, writeFileSync } from "node:fs";
 import { tmpdir } from "node:os";
-import { dirname, join, resolve } from "node:path";
+import { join } from "node:path";
 import { setTimeout as sleep } from "node:timers/promises";
 import { fileURLToPath } from "node:url";
 import { until } from "./box.js";
-import { launch, visit } from "./stage.js";
+import { BIN, CHROMIUM, launch, visit } from "./stage.js";
 
-const BIN = resolve(process.env.ADIT_BIN ?? dirname(process.env.SCENE_SERVER));
 const STAND_IN = fileURLToPath(new URL("../wire/stand_in_networkctl", import.meta.url));
 const BOX = `aditbox${process.pid}`, STATION = `aditsta${process.pid}`;
 const AS_IT_COMES = { team0: "192.168.7.11/24", darpa0: "10.100.1.10/24" };
@@ -98,7 +97,7 @@ export class NetworkedBox {
     const failed = () => aditd.exitCode !== null && Promise.reject(new Error(`aditd: ${aditd.said}`));
     await until(() => aditd.said.includes("listening") || failed(), "aditd");
     const chromium = join(this.folder, "chromium");
-    writeFileSync(chromium, `#!/bin/sh\nexec ip netns exec ${STATION} ${process.env.CHROMIUM ?? "/usr/bin/chromium"} "$@"\n`);
+    writeFileSync(chromium, `#!/bin/sh\nexec ip netns exec ${STATION} ${CHROMIUM} "$@"\n`);
     chmodSync(chromium, 0o755);
     this.browser = await launch(chromium);
     return this;

@@ -1,12 +1,19 @@
 // The stage for a test: a program that serves the page with a scene, and a browser that looks at it.
 import { spawn } from "node:child_process";
 import { once } from "node:events";
+import { mkdirSync } from "node:fs";
+import { join, resolve } from "node:path";
 import { createInterface } from "node:readline";
 import { chromium } from "playwright-core";
 
+/** The folder of the programs that are tested. */
+export const BIN = resolve(process.env.ADIT_BIN);
+/** Debian's shell of Chromium: the same engine in half the time that the whole browser takes. */
+export const CHROMIUM = process.env.CHROMIUM ?? "/usr/bin/chromium-headless-shell";
+
 /** Serves `scene` on `port` (0: any free one); `more`: "first-start" or "set-up-open". */
 export async function serve(scene, port = 0, ...more) {
-  const program = spawn(process.env.SCENE_SERVER, [String(port), scene, ...more], { stdio: ["pipe", "pipe", "inherit"] });
+  const program = spawn(join(BIN, "adit_page_scenes"), [String(port), scene, ...more], { stdio: ["pipe", "pipe", "inherit"] });
   const [line] = await once(createInterface({ input: program.stdout }), "line");
   return {
     port: Number(line),
@@ -22,7 +29,7 @@ export async function serve(scene, port = 0, ...more) {
   };
 }
 
-export const launch = (executablePath = process.env.CHROMIUM ?? "/usr/bin/chromium") =>
+export const launch = (executablePath = CHROMIUM) =>
   chromium.launch({
     executablePath,
     args: ["--disable-gpu", "--no-first-run", "--disable-background-networking", "--disable-component-update", "--disable-sync"]
@@ -54,4 +61,31 @@ export async function visit(browser, url, options = {}, prepare = () => {}) {
   await prepare(page);
   await page.goto(url);
   return page;
+}
+
+/** Counts, in the page, what it asked for and has not yet: an init script, for settled(). */
+export function countAwaited() {
+  globalThis.awaited = globalThis.still = 0;
+  const { prototype } = Response;
+  for (const [owner, name] of [[globalThis, "fetch"], [globalThis, "createImageBitmap"], [prototype, "json"], [prototype, "blob"]]) {
+    const real = owner[name];
+    owner[name] = function (...words) {
+      ++globalThis.awaited;
+      return real.apply(this, words).finally(() => --globalThis.awaited);
+    };
+  }
+}
+
+/** Until a page that is watched has all that it asked for, and has drawn it: for three frames nothing was awaited. */
+export const settled = (page) =>
+  page.waitForFunction(() => {
+    globalThis.still = globalThis.awaited ? 0 : (globalThis.still + 1) % 4;
+    return !globalThis.awaited && !globalThis.still;
+  });
+
+/** Kept beside the programs, for people to look at. */
+export async function shoot(page, name) {
+  const folder = join(BIN, "../screenshots");
+  mkdirSync(folder, { recursive: true });
+  await page.screenshot({ path: join(folder, `${name}.png`) });
 }

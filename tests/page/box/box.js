@@ -3,10 +3,10 @@ import { spawn } from "node:child_process";
 import { once } from "node:events";
 import { mkdirSync, mkdtempSync, readFileSync, rmSync, writeFileSync } from "node:fs";
 import { tmpdir } from "node:os";
-import { join, resolve } from "node:path";
+import { join } from "node:path";
 import { freePort, until } from "../box.js";
+import { BIN } from "../stage.js";
 
-const BIN = resolve(process.env.ADIT_BIN);
 export const TOKENS = { scoring: "flux230{showroom", mapping: "rust871}backdoor", team: "team-own-token-1" };
 export const PASSWORD = "a long cave password";
 

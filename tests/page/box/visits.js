@@ -1,9 +1,9 @@
 // What every test against the real box needs: a browser for the file, pages that look at the box, and their reports.
-import { mkdirSync } from "node:fs";
-import { join, resolve } from "node:path";
 import { after, before } from "node:test";
-import { launch, visit } from "../stage.js";
+import { countAwaited, launch, visit } from "../stage.js";
 import { begin, PASSWORD, TOKENS } from "./box.js";
+
+export { settled, shoot } from "../stage.js";
 
 let browser;
 before(async () => (browser = await launch()));
@@ -18,7 +18,10 @@ export async function box(t, options) {
 
 /** A page of the box's, for who has the team's token. */
 export async function look(t, made, path = "", { prepare, ...options } = {}) {
-  const page = await visit(browser, made.url + path, { extraHTTPHeaders: { Authorization: `Bearer ${TOKENS.team}` }, ...options }, prepare);
+  const page = await visit(browser, made.url + path, { extraHTTPHeaders: { Authorization: `Bearer ${TOKENS.team}` }, ...options }, async (page) => {
+    await page.addInitScript(countAwaited);
+    await prepare?.(page);
+  });
   t.after(() => page.context().close());
   await page.waitForSelector("body[data-link=live]");
   return page;
@@ -43,13 +46,6 @@ export const canBeDeaf = (page) => page.addInitScript(() => {
     },
   });
 });
-
-/** Kept beside the build, for people to look at. */
-export async function shoot(page, name) {
-  const folder = resolve(process.env.ADIT_BIN, "../screenshots");
-  mkdirSync(folder, { recursive: true });
-  await page.screenshot({ path: join(folder, `${name}.png`) });
-}
 
 export const row = (page, number) => page.locator(`#reports li[data-key="${number}"]`);
 export const action = (page, name, number) => page.getByRole("button", { name: `${name}: report ${number}` });

@@ -53,6 +53,11 @@ def left_unanswered(stage, report=None, patience=0.5):
         raise AssertionError(f"answered {answer.status_code}: {answer.text}")
 
 
+def is_taken(stage, report):
+    """Posts it until it is answered 201: on a busy machine its client may be told first that it is kept."""
+    return insist(stage, report, 30, until=lambda answer: answer.status_code == 201)
+
+
 def began(stage):
     """The stage, once reports can be sent."""
     programs.wait_until(stage.box.knows_the_run, "the box to know the run")

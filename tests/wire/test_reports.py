@@ -16,9 +16,8 @@ import maps
 import messages
 import programs
 from programs import Stage, wait_until
-from reporting import QUICK, REPORT, another, at_once, began, sendings, submit
+from reporting import QUICK, REPORT, another, at_once, began, left_unanswered, sendings, submit
 
-ANSWER_WITHIN = QUICK["reports__answer_within_ms"] / 1000  # seconds
 PATIENT = {**QUICK, "command_post__timeouts__scoring_answer_ms": 20000}  # towards the Command Post
 TOKEN = {"Authorization": f"Bearer {programs.TEAM_TOKEN}"}
 SILENCE = "answer-after=60"  # recorded, and no answer comes
@@ -44,7 +43,7 @@ class ScriptedPost(programs.Program):
 @contextlib.contextmanager
 def scripted(*words):
     """The box, and a Command Post that answers as these words say."""
-    with Stage(post_options=None, **QUICK) as stage:
+    with Stage(post_options=None, **{**QUICK, "reports__answer_within_ms": 600000}) as stage:
         stage.scripted = ScriptedPost(stage, *words)
         try:
             wait_until(lambda: requests.get(stage.box.url + "/api/status", headers=TOKEN, timeout=30).status_code == 200,
@@ -84,9 +83,7 @@ class Answers(unittest.TestCase):
     def test_where_nobody_may_enter_the_report_is_kept_and_its_client_told_at_once(self):
         for word in ("401:Invalid token.", "403", "404", "405", "407"):
             with self.subTest(word), scripted(word) as stage:
-                posted = time.monotonic()
-                told = submit(stage)
-                self.assertLess(time.monotonic() - posted, ANSWER_WITHIN)
+                told = submit(stage)  # which waits for less than the box would
                 self.is_json(told, 503)
                 self.assertIn("is kept and waiting", told.json())
                 self.is_json(submit(stage), 201)
@@ -102,12 +99,13 @@ class Answers(unittest.TestCase):
     def test_status_is_answered_from_what_is_known_for_a_second(self):
         with Stage() as stage:
             url = began(stage).box.url + "/api/status"
+            before, began_at = len(stage.post.requests("/api/status")), time.monotonic()
             first = requests.get(url, headers=TOKEN, timeout=30)
             self.assertEqual((first.status_code, first.json()["remaining_reports"]), (200, 45))
-            before, began_at = len(stage.post.requests("/api/status")), time.monotonic()
-            for _ in range(20):
-                self.assertEqual(requests.get(url, headers=TOKEN, timeout=30).json(), first.json())
-            self.assertLessEqual(len(stage.post.requests("/api/status")), before + 1 + time.monotonic() - began_at)
+            told = {requests.get(url, headers=TOKEN, timeout=30).text for _ in range(20)} - {first.text}
+            asked = len(stage.post.requests("/api/status")) - before
+            self.assertLessEqual(asked, 1 + time.monotonic() - began_at)
+            wait_until(lambda: len(stage.post.requests("/api/status")) - before >= len(told), "each new one to be the Command Post's")
 
     def test_status_without_a_command_post_is_a_json_error(self):
         with Stage(post_options=None) as stage:
@@ -127,7 +125,7 @@ class Order(unittest.TestCase):
             self.assertEqual([request["status"] for request in stage.post.requests("/api/artifact_reports")], [201] * 3)
 
     def test_a_report_overtakes_maps_that_fill_the_link(self):
-        with Stage(command_post__budget_mbit=2) as stage:
+        with Stage(command_post__budget_mbit=1) as stage:
             cbor = messages.Style("cbor")
             update = messages.map_update(maps.made_cloud(150000), "r1", 1.0, cbor)
             answer = messages.post(requests.Session(), stage.box.url, "/map/update", update, cbor)
@@ -141,10 +139,6 @@ class Order(unittest.TestCase):
 
 class Ends(unittest.TestCase):
     """The box, or the Command Post, comes and goes."""
-
-    def hang_up(self, stage):
-        with self.assertRaises(requests.RequestException):
-            submit(stage, timeout=1)
 
     def arrives(self, stage):
         wait_until(lambda: sendings(stage) == 1 or stage.post.control("GET /faults")["reports"] == [],
@@ -162,7 +156,7 @@ class Ends(unittest.TestCase):
 
     def test_a_report_survives_a_kill_and_goes_out_after_it(self):
         with Stage(post_options=None) as stage:
-            self.hang_up(stage)
+            left_unanswered(stage)
             wait_until(lambda: stage.box.on_disk() == ["waiting"], "the report to be on disk")
             stage.box.stop(signal.SIGKILL)
             stage.post = programs.CommandPost(stage.network, stage.folder, "--rate", "0")
@@ -174,7 +168,7 @@ class Ends(unittest.TestCase):
         for fault, ends in ((SILENCE, "settled"), (DEAF, "answered")):
             with self.subTest(fault), Stage(**PATIENT) as stage:
                 began(stage).post.will(fault)
-                self.hang_up(stage)
+                left_unanswered(stage)
                 self.arrives(stage)
                 stage.box.stop(signal.SIGKILL)
                 self.assertEqual(stage.box.on_disk(), ["sending"])

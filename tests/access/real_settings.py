@@ -5,6 +5,7 @@ import base64
 import contextlib
 import http.client
 import json
+import random
 import re
 import signal
 import socket
@@ -24,9 +25,12 @@ REPORT = {"type": "Drill", "x": 1.0, "y": 2.0, "z": 3.0}
 
 
 def free_port():
-    with contextlib.closing(socket.socket()) as free:
-        free.bind(("127.0.0.1", 0))
-        return free.getsockname()[1]
+    """One that nobody listens at. Below those that the kernel gives to whoever asks for any, or it might give this one away
+    meanwhile."""
+    while True:
+        with contextlib.suppress(OSError), contextlib.closing(socket.socket()) as tried:
+            tried.bind(("127.0.0.1", random.randrange(11000, 32000)))
+            return tried.getsockname()[1]
 
 
 def grid(name):
@@ -195,7 +199,7 @@ class SetUp(unittest.TestCase):
         port = free_port()
         self.change(lambda settings: settings["team"]["listen"][0].update(port=port))
         good = (self.box.state / "settings.json").read_text()
-        with contextlib.closing(socket.create_server(("127.0.0.1", 0))) as taken:
+        with contextlib.closing(socket.create_server(("127.0.0.1", free_port()))) as taken:
             other = taken.getsockname()[1]
             self.change(lambda settings: settings["team"]["listen"][0].update(port=other))
             self.assertEqual(self.box.port, port, "where it was before")

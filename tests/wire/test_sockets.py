@@ -1,9 +1,11 @@
 """aditd takes its sockets from systemd, has it keep the others, and so loses nobody who connects while it is started anew:
 the tests play systemd (activation.py). On loopback."""
 
+import contextlib
 import http.client
 import json
 import pathlib
+import random
 import signal
 import socket
 import tempfile
@@ -25,9 +27,13 @@ def settings(*listen):
                      "listen": [{"address": address, "port": port} for address, port in listen]}}
 
 
-def free_port(address="127.0.0.1"):
-    with listening(address) as found:
-        return found.getsockname()[1]
+def free_port():
+    """One that nobody listens at. Below those that the kernel gives to whoever asks for any, or it might give this one away
+    meanwhile."""
+    while True:
+        with contextlib.suppress(OSError), contextlib.closing(socket.socket()) as tried:
+            tried.bind(("127.0.0.1", random.randrange(11000, 32000)))
+            return tried.getsockname()[1]
 
 
 def ask(port, method="GET", path="/adit/run", body=None, address="127.0.0.1"):
@@ -186,11 +192,11 @@ class Sockets(unittest.TestCase):
 
     def test_an_address_that_is_not_there_yet_is_waited_for_where_there_is_a_door(self):
         door = listening()
-        document = settings(("127.0.0.1", door.getsockname()[1]), ("192.0.2.1", 8000))
+        document = settings(("127.0.0.1", door.getsockname()[1]), ("192.0.2.1", free_port()))
         self.started(document, door)
         self.assertEqual(ask(door.getsockname()[1])[0], 200)
         manager = self.manager()
-        manager.start(settings(("127.0.0.1", 0), ("192.0.2.1", 8000)))
+        manager.start(settings(("127.0.0.1", 0), ("192.0.2.1", free_port())))
         self.assertEqual(manager.process.wait(30), 1)
         self.assertIn("Cannot assign requested address", manager.log())
 
@@ -285,7 +291,10 @@ class TeamPort(unittest.TestCase):
         hosts.ip("-n", self.network.box, "link", "delete", "team0")
         time.sleep(1.5)
         self.assertIsNone(self.manager.process.poll(), "it goes on while the port is away")
+        # It sees the port once that has its address: without, and without systemd's sockets, it ends, and systemd begins it anew.
+        self.manager.process.send_signal(signal.SIGSTOP)
         self.network.plug_team()
+        self.manager.process.send_signal(signal.SIGCONT)
 
     def test_is_listened_at_anew(self):
         self.manager.ready(self.manager.start(self.settings()))

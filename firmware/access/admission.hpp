@@ -10,7 +10,7 @@
 
 namespace adit::access {
 
-inline constexpr std::string_view kCookie = "adit", kCsrfHeader = "Adit-CSRF";
+inline constexpr std::string_view kCookie = "adit", kDeviceCookie = "adit-device", kCsrfHeader = "Adit-CSRF";
 
 /// What a request says of where it comes from; the headers by their names, "" where absent.
 struct Request {

@@ -1,6 +1,6 @@
 #include "access/session_file.hpp"
 
-#include "codec/field.hpp"
+#include "access/fields.hpp"
 #include "codec/json.hpp"
 
 namespace adit::access {
@@ -34,22 +34,12 @@ Value value_of(const Session& session) {
                         {"agent", {session.agent}}}};
 }
 
-/// Refuses, and gives nothing, where the text cannot be one.
-std::optional<icd::BearerToken> token_in(const Field& object, std::string_view name) {
-  const Field field = object.member(name);
-  auto token = icd::BearerToken::parse(field.text());
-  if (!token) field.refuse("expected a token");
-  return token;
-}
-
 std::optional<Session> session_in(const Field& object) {
-  const Field role = object.member("role");
-  const auto named = role_named(role.text());
-  if (!named) role.refuse("expected operator or viewer");
+  const auto role = role_in(object);
   const auto id = token_in(object, "id"), csrf = token_in(object, "csrf");
-  if (!named || !id || !csrf) return std::nullopt;
+  if (!role || !id || !csrf) return std::nullopt;
   return Session{.number = number_in(object, "number"),
-                 .role = *named,
+                 .role = *role,
                  .id = *id,
                  .csrf = *csrf,
                  .made = instant_in(object, "made"),

@@ -32,6 +32,16 @@ access::Accounts read(const std::string& file) {
   return {};
 }
 
+std::vector<access::Device> read_known(const std::string& file) {
+  if (!host::may_exist(file)) return {};
+  const auto text = host::read_file(file);
+  auto devices = text ? access::read_devices(*text) : std::unexpected(text.error());
+  if (devices) return std::move(*devices);
+  host::log(Level::Warning, "the browsers that have been in cannot be read: they are strangers",
+            {{"why", devices.error()}});
+  return {};
+}
+
 std::unexpected<icd::Refusal> refuse(icd::Status status, std::string sentence) {
   return std::unexpected(icd::Refusal{status, std::move(sentence)});
 }
@@ -60,7 +70,8 @@ Accounts::Accounts(const loop::Loop& loop, loop::Workers& workers, loop::Writer&
       writer_(writer),
       sessions_(sessions),
       folder_(std::move(folder)),
-      accounts_(read(file())) {
+      accounts_(read(file())),
+      devices_(read_known(devices_file()), [this] { keep_devices(); }) {
   if (!first_start()) return;
   const bool on_label = label_code.has_value();
   code_ = on_label ? std::move(label_code) : kept_code();
@@ -149,10 +160,24 @@ void Accounts::was_set(Role role, const icd::Checked<access::Accounts>& changed,
   done({});
 }
 
+/// What a power cut takes of it costs a browser its precedence until it is in again.
+void Accounts::keep_devices() {
+  auto written = std::make_shared<std::expected<void, std::string>>();
+  writer_.submit(
+      [written, file = devices_file(), text = access::write_devices(devices_.all())] {
+        *written = host::write_file(file, text, host::kOursAlone);
+      },
+      [written] {
+        if (*written) return;
+        host::log(Level::Warning, "the browsers that have been in are known until the next start only",
+                  {{"why", written->error()}});
+      });
+}
+
 void Accounts::open_set_up() {
-  set_up_.open(loop_.now());
+  set_up_.open(loop_.now(), kSetUp);
   host::log(Level::Warning, "set-up is opened at the box: a new password may be set without the present one",
-            {{"minutes", std::to_string(access::SetUpWindow::kLength.count())}});
+            {{"minutes", std::to_string(kSetUp.count())}});
 }
 
 access::Secret Accounts::draw() {

@@ -4,7 +4,8 @@
 #include <string>
 
 #include "access/accounts.hpp"
-#include "access/set_up_window.hpp"
+#include "access/devices.hpp"
+#include "access/window.hpp"
 #include "admin/session_keeper.hpp"
 #include "api/keys.hpp"
 #include "icd/bearer_token.hpp"
@@ -20,6 +21,9 @@ class Accounts final : public api::Keys {
   /// box's label has none.
   static constexpr const char* kFile = "access.json";
   static constexpr const char* kCodeFile = "first-start.code";
+  /// Beside them: the browsers that have been in.
+  static constexpr const char* kDevicesFile = "devices.json";
+  static constexpr std::chrono::minutes kSetUp{10}, kAtBox{1};  // for how long the button's press is good
 
   /// Logs the code of a first start, unless it is on the label. `loop`, `workers` (which hash, and are asked
   /// for nothing else), `writer` and `sessions` outlive this.
@@ -34,16 +38,21 @@ class Accounts final : public api::Keys {
   void set(access::Role role, std::optional<std::string> password,
            std::function<void(icd::Checked<void>)> done) override;
   access::Sessions& sessions() override { return sessions_.sessions(); }
+  access::Devices& devices() override { return devices_; }
+  bool somebody_at_box() const override { return at_box_.left(loop_.now()).has_value(); }
   access::Secret draw() override;
 
-  /// On the word of the box's own button. Nothing else calls it.
+  /// On the word of the box's own button. Nothing else calls these.
   void open_set_up();
+  void button_pressed() { at_box_.open(loop_.now(), kAtBox); }
   std::optional<access::Duration> set_up_left() const { return set_up_.left(loop_.now()); }
 
  private:
   std::string file() const { return folder_ + '/' + kFile; }
   std::string code_file() const { return folder_ + '/' + kCodeFile; }
+  std::string devices_file() const { return folder_ + '/' + kDevicesFile; }
   icd::BearerToken kept_code();
+  void keep_devices();
   void was_set(access::Role role, const icd::Checked<access::Accounts>& changed,
                const std::function<void(icd::Checked<void>)>& done);
 
@@ -54,7 +63,8 @@ class Accounts final : public api::Keys {
   std::string folder_;
   access::Accounts accounts_;
   std::optional<icd::BearerToken> code_;
-  access::SetUpWindow set_up_;
+  access::Devices devices_;
+  access::Window set_up_, at_box_;
   bool setting_ = false;
 };
 

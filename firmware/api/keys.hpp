@@ -5,6 +5,7 @@
 #include <string>
 #include <string_view>
 
+#include "access/devices.hpp"
 #include "access/role.hpp"
 #include "access/sessions.hpp"
 #include "icd/status.hpp"
@@ -25,6 +26,8 @@ class Keys {
   /// Somebody at the box itself opened set-up with its button: who comes may set the operator's password
   /// without the present one or the code, until one is set.
   virtual bool set_up_open() const = 0;
+  /// Its button was pressed within the last minute.
+  virtual bool somebody_at_box() const = 0;
 
   /// Tells whose password it is, if anybody's. `address`: who says so, for the log.
   virtual void check(std::string password, std::string address,
@@ -38,6 +41,8 @@ class Keys {
 
   /// Those who are logged in; kept where they outlive the page.
   virtual access::Sessions& sessions() = 0;
+  /// The browsers that have been in; kept where they outlive the box.
+  virtual access::Devices& devices() = 0;
 
   /// Never the same twice.
   virtual access::Secret draw() = 0;

@@ -1,8 +1,10 @@
 #include "api/session_routes.hpp"
 
+#include <algorithm>
 #include <utility>
 
 #include "access/password.hpp"
+#include "access/whence.hpp"
 #include "api/answers.hpp"
 #include "api/read_body.hpp"
 #include "codec/field.hpp"
@@ -17,14 +19,24 @@ using access::Role;
 using codec::json;
 using codec::Value;
 
-intake::Header cookie(const std::string& id, std::chrono::seconds age) {
-  return {"Set-Cookie", std::string(access::kCookie) + "=" + id +
+intake::Header cookie(std::string_view name, const std::string& id, std::chrono::seconds age) {
+  return {"Set-Cookie", std::string(name) + "=" + id +
                             "; HttpOnly; SameSite=Strict; Path=/; Max-Age=" + std::to_string(age.count())};
 }
 
-intake::Answer slow_down(access::Duration wait) {
-  const auto seconds = std::chrono::ceil<std::chrono::seconds>(wait).count();
-  auto answer = refusal(icd::Status::TooManyRequests, icd::sentence("wait ", seconds, " s and try again"));
+intake::Header session_cookie(const std::string& id, std::chrono::seconds age) {
+  return cookie(access::kCookie, id, age);
+}
+
+constexpr std::chrono::hours kDeviceKept{400 * 24};  // no browser keeps one for longer (RFC 6265bis)
+
+intake::Answer slow_down(const access::Wait& wait) {
+  const auto seconds = std::chrono::ceil<std::chrono::seconds>(wait.left).count();
+  auto answer =
+      refusal(icd::Status::TooManyRequests,
+              wait.for_others ? icd::sentence("others are trying passwords: your turn is in ", seconds,
+                                              " s; or press the box's button, and try again at once")
+                              : icd::sentence("wait ", seconds, " s and try again"));
   answer.headers.push_back({"Retry-After", std::to_string(seconds)});
   return answer;
 }
@@ -74,27 +86,31 @@ intake::Answer SessionRoutes::sessions(const Call& call) {
 }
 
 SessionRoutes::Poster SessionRoutes::poster_of(const Call& call) {
-  return {.address = call.head.peer(),
+  const access::Device* const device =
+      keys_.devices().find(access::cookie_in(call.head.header("Cookie"), access::kDeviceCookie));
+  return {.guesser = {.address = call.head.peer(),
+                      .device = device == nullptr ? 0 : device->number,
+                      .at_box = keys_.somebody_at_box()},
           .agent = std::string(call.head.header("User-Agent")),
           .asker = call.asker,
           .responder = call.responder};
 }
 
 bool SessionRoutes::may_try(const Poster& poster) {
-  const auto wait = checking_ < kMostChecks ? failures_.begin(poster.address, loop_.now())
-                                            : access::Duration(std::chrono::seconds(1));
-  if (wait > access::Duration::zero()) poster.responder->answer(slow_down(wait));
-  return wait == access::Duration::zero();
+  const access::Wait wait = checking_ < kMostChecks ? guesses_.begin(poster.guesser, loop_.now())
+                                                    : access::Wait{.left = std::chrono::seconds(1)};
+  if (wait.left > access::Duration::zero()) poster.responder->answer(slow_down(wait));
+  return wait.left == access::Duration::zero();
 }
 
 template <class Done>
 void SessionRoutes::check(const std::string& password, const Poster& poster, Done done) {
   if (!may_try(poster)) return;
   ++checking_;
-  keys_.check(password, poster.address,
-              [this, address = poster.address, done = std::move(done)](std::optional<Role> role) {
+  keys_.check(password, poster.guesser.address,
+              [this, guesser = poster.guesser, done = std::move(done)](std::optional<Role> role) {
                 --checking_;
-                if (role) failures_.succeeded(address);
+                if (role) guesses_.succeeded(guesser, *role);
                 done(role);
               });
 }
@@ -114,17 +130,27 @@ void SessionRoutes::log_in(const Call& call) {
 
 intake::Answer SessionRoutes::logged_in(Role role, const Poster& poster) {
   entrance_.sessions().end(poster.asker.session);  // what the browser had before, it has no longer
-  const access::Session& session = entrance_.sessions().begin(keys_.draw(), keys_.draw(), role,
-                                                              {poster.address, poster.agent}, loop_.now());
+  const access::Session& session = entrance_.sessions().begin(
+      keys_.draw(), keys_.draw(), role, {poster.guesser.address, poster.agent}, loop_.now());
   auto answer = object({{"role", json(std::string(name_of(role)))}, {"csrf", json(session.csrf.reveal())}});
-  answer.headers.push_back(cookie(session.id.reveal(), access::Sessions::kLongest));
+  answer.headers.push_back(session_cookie(session.id.reveal(), access::Sessions::kLongest));
+  if (const auto known = known_as(poster); !known || *known < role) {
+    const access::Device& device = keys_.devices().add(keys_.draw(), role);
+    answer.headers.push_back(cookie(access::kDeviceCookie, device.id.reveal(), kDeviceKept));
+  }
   return answer;
+}
+
+std::optional<Role> SessionRoutes::known_as(const Poster& poster) {
+  const auto& devices = keys_.devices().all();
+  const auto device = std::ranges::find(devices, poster.guesser.device, &access::Device::number);
+  return device == devices.end() ? std::nullopt : std::optional(device->role);
 }
 
 intake::Answer SessionRoutes::log_out(const Call& call) {
   entrance_.sessions().end(call.asker.session);
   auto answer = object({{"role", {}}});
-  answer.headers.push_back(cookie("", std::chrono::seconds(0)));
+  answer.headers.push_back(session_cookie("", std::chrono::seconds(0)));
   return answer;
 }
 
@@ -168,7 +194,7 @@ void SessionRoutes::change_password(const Call& call) {
     }
     if (!may_try(poster)) return;
     if (!keys_.is_code(change->code)) return poster.responder->answer(wrong("the code"));
-    failures_.succeeded(poster.address);
+    guesses_.succeeded(poster.guesser, Role::Operator);
     return set(*change, poster);
   }
   if (!poster.asker.admitted) {  // somebody else set it while this was on its way, or it is the viewers'
@@ -195,7 +221,7 @@ void SessionRoutes::reset(const Call& call) {
     if (const auto done = setup_->reset(); !done) return poster.responder->answer(refused(done.error()));
     auto answer =
         object({{"said", {"settings, tokens, passwords and sessions are gone; the reports are kept"}}});
-    answer.headers.push_back(cookie("", std::chrono::seconds(0)));
+    answer.headers.push_back(session_cookie("", std::chrono::seconds(0)));
     poster.responder->answer(std::move(answer));
   });
 }
@@ -204,6 +230,7 @@ void SessionRoutes::set(const Change& change, const Poster& poster) {
   keys_.set(change.role, change.password, [this, role = change.role, poster](const icd::Checked<void>& kept) {
     if (!kept) return poster.responder->answer(refused(kept.error()));
     entrance_.sessions().end_all(role, poster.asker.session);
+    keys_.devices().end_all(role, poster.guesser.device);
     poster.responder->answer(object({{"role", json(std::string(name_of(role)))}}));
   });
 }

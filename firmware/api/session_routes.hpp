@@ -4,7 +4,7 @@
 #include <optional>
 #include <string>
 
-#include "access/failures.hpp"
+#include "access/guesses.hpp"
 #include "api/entrance.hpp"
 #include "api/keys.hpp"
 #include "api/setup.hpp"
@@ -35,7 +35,8 @@ class SessionRoutes {
  private:
   /// Who posts, kept while a password is checked.
   struct Poster {
-    std::string address, agent;
+    access::Guesser guesser;
+    std::string agent;
     Asker asker;
     std::shared_ptr<intake::Responder> responder;
   };
@@ -46,9 +47,11 @@ class SessionRoutes {
     std::string current, code;
   };
 
-  static Poster poster_of(const Call& call);
+  Poster poster_of(const Call& call);
   static icd::Checked<Change> read_change(const std::string& body);
   intake::Answer logged_in(access::Role role, const Poster& poster);
+  /// The role of the browser that has been in, if it has.
+  std::optional<access::Role> known_as(const Poster& poster);
   bool is_by_button(const Change& change) const;
   void set(const Change& change, const Poster& poster);
 
@@ -62,7 +65,7 @@ class SessionRoutes {
   Entrance& entrance_;
   Keys& keys_;
   Setup* setup_;
-  access::Failures failures_;
+  access::Guesses guesses_;
   int checking_ = 0;
 };
 

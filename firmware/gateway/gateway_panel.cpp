@@ -53,6 +53,7 @@ api::Time Gateway::identify(double seconds) {
 }
 
 void Gateway::pressed(panel::Press press) {
+  accounts_.button_pressed();
   switch (press) {
     case panel::Press::Identify:
       host::log(host::Level::Notice, "the button was pressed");

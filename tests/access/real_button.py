@@ -87,6 +87,17 @@ class Button(unittest.TestCase):
         self.assertFalse(self.is_open())
         self.assertEqual(self.set_password(), 401)
 
+    def test_a_short_press_lets_a_stranger_try_his_password_before_who_guesses(self):
+        box = self.start_box()
+        for number in range(1, 200):
+            box.ask("POST /adit/login", {"password": "an untrue password"}, whence=f"127.0.1.{number}")
+        status, said, _ = box.ask("POST /adit/login", {"password": OPERATOR}, whence="127.0.2.1")
+        self.assertEqual(status, 429)
+        self.assertIn("or press the box's button", said)
+        self.hold(0.2)
+        wait_until(lambda: "the button was pressed" in box.said(), "the press")
+        self.assertEqual(box.ask("POST /adit/login", {"password": OPERATOR}, whence="127.0.2.1")[0], 200)
+
     def test_three_seconds_open_set_up_for_whoever_forgot_the_password(self):
         box = self.start_box()
         self.write(b"press\n")

@@ -110,13 +110,14 @@ class FakeHead final : public intake::RequestHead {
   const std::string& peer() const override { return peer_; }
   const std::string& local() const override { return local_; }
   std::uint64_t connection() const override { return 1; }
-  FakeHead& to(std::string local) {
+  FakeHead& from_to(std::string peer, std::string local) {
+    peer_ = std::move(peer);
     local_ = std::move(local);
     return *this;
   }
 
  private:
-  std::string method_, path_, peer_ = "10.0.0.5", local_ = "10.0.0.1";
+  std::string method_, path_, peer_, local_;
   std::map<std::string, std::string, std::less<>> query_;
   std::vector<intake::Header> headers_;
   std::optional<std::uint64_t> length_;

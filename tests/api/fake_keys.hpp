@@ -22,6 +22,7 @@ struct FakeKeys final : Keys {
   bool first_start() const override { return !operator_; }
   bool is_code(std::string_view presented) const override { return first_start() && presented == "12345678"; }
   bool set_up_open() const override { return set_up; }
+  bool somebody_at_box() const override { return at_box; }
   void check(std::string password, std::string,
              std::function<void(std::optional<access::Role>)> done) override {
     ++checked;
@@ -37,6 +38,7 @@ struct FakeKeys final : Keys {
     later([done = std::move(done)] { done({}); });
   }
   access::Sessions& sessions() override { return sessions_; }
+  access::Devices& devices() override { return devices_; }
   access::Secret draw() override { return {++drawn}; }
 
   void later(std::function<void()> answer) {
@@ -51,12 +53,13 @@ struct FakeKeys final : Keys {
   }
 
   std::optional<std::string> operator_ = "correct horse", viewer = "look, do not touch";
-  bool set_up = false;
+  bool set_up = false, at_box = false;
   bool slow = false;
   std::vector<std::function<void()>> waiting;
   int checked = 0;
   std::uint8_t drawn = 0;
   access::Sessions sessions_;
+  access::Devices devices_;
 };
 
 }  // namespace adit::api

@@ -30,7 +30,7 @@ struct Page {
   std::unique_ptr<intake::BodySink> open(const std::string& method, const std::string& target,
                                          std::vector<intake::Header> headers,
                                          std::optional<std::uint64_t> length) {
-    heads.emplace_back(method, target, std::move(headers), length).to(local);
+    heads.emplace_back(method, target, std::move(headers), length).from_to(peer, local);
     responder = std::make_shared<FakeResponder>();
     return api.open(heads.back(), responder, flow);
   }
@@ -61,7 +61,7 @@ struct Page {
   }
 
   std::deque<FakeHead> heads;  // each is asked until its request has ended
-  std::string local = "10.0.0.1";
+  std::string peer = "10.0.0.5", local = "10.0.0.1";
   bool took_body = false;  // the last request's: it was not answered from its head alone
   std::shared_ptr<FakeResponder> responder;
   std::shared_ptr<FakeFlow> flow = std::make_shared<FakeFlow>();

@@ -2,6 +2,7 @@
 
 #include <gmock/gmock.h>
 
+#include <algorithm>
 #include <nlohmann/json.hpp>
 
 #include "api/on_page.hpp"
@@ -101,6 +102,74 @@ TEST_F(SessionRoutesTest, SlowDownWhoGuessesWithoutEvenChecking) {
   EXPECT_EQ(answer.status, Status::TooManyRequests);
   EXPECT_EQ(header(answer, "Retry-After"), "1");
   EXPECT_EQ(keys.checked, 5);
+}
+
+/// Whoever comes then has to wait for its turn, for minutes.
+class GuessedAtTest : public SessionRoutesTest {
+ protected:
+  void guess_from_everywhere() {
+    for (int i = 0; i < 200; ++i) {
+      peer = "10.0.1." + std::to_string(i);
+      post("/adit/login", {{"password", "guess"}});
+    }
+    peer = "10.0.0.7";
+  }
+  intake::Answer try_to(const std::string& device) {
+    return ask("POST", "/adit/login", {{"Cookie", device}, {"Content-Type", "application/json"}},
+               R"({"password":"correct horse"})");
+  }
+  std::string device_after_login() {
+    const auto answer = try_to("");
+    for (const auto& [name, value] : answer.headers) {
+      if (name == "Set-Cookie" && value.starts_with("adit-device=")) return value.substr(0, value.find(';'));
+    }
+    return "";
+  }
+};
+
+TEST_F(GuessedAtTest, SayToAStrangerWhenItsTurnIs) {
+  guess_from_everywhere();
+  const auto answer = try_to("");
+  EXPECT_EQ(answer.status, Status::TooManyRequests);
+  EXPECT_EQ(json::parse(answer.body).get<std::string>(),
+            "others are trying passwords: your turn is in " + header(answer, "Retry-After") +
+                " s; or press the box's button, and try again at once");
+}
+
+TEST_F(GuessedAtTest, LetInABrowserThatHasBeenInBefore) {
+  const std::string device = device_after_login();
+  ASSERT_THAT(device, StartsWith("adit-device="));
+  guess_from_everywhere();
+  const auto answer = try_to(device);
+  EXPECT_EQ(answer.status, Status::Ok);
+  EXPECT_EQ(std::ranges::count(answer.headers, "Set-Cookie", &intake::Header::name), 1)
+      << "it keeps the one it has";
+}
+
+TEST_F(GuessedAtTest, LetInWhoHasPressedTheButton) {
+  guess_from_everywhere();
+  keys.at_box = true;
+  EXPECT_EQ(try_to("").status, Status::Ok);
+}
+
+TEST_F(GuessedAtTest, KnowNoBrowserOnceThePasswordIsAnother) {
+  const std::string device = device_after_login();
+  const Browser mine = log_in("correct horse");
+  ASSERT_EQ(post("/adit/password",
+                 {{"role", "operator"}, {"current", "correct horse"}, {"password", "another horse"}}, mine)
+                .status,
+            Status::Ok);
+  guess_from_everywhere();
+  EXPECT_EQ(try_to(device).status, Status::TooManyRequests);
+}
+
+TEST_F(GuessedAtTest, GiveTheOperatorsBrowserItsOwnAfterTheViewers) {
+  auto answer = post("/adit/login", {{"password", "look, do not touch"}});
+  ASSERT_EQ(std::ranges::count(answer.headers, "Set-Cookie", &intake::Header::name), 2);
+  const std::string viewers = keys.devices_.all().back().id.reveal();
+  EXPECT_EQ(std::ranges::count(try_to("adit-device=" + viewers).headers, "Set-Cookie", &intake::Header::name),
+            2);
+  EXPECT_EQ(keys.devices_.all().back().role, access::Role::Operator);
 }
 
 TEST_F(SessionRoutesTest, CheckFewPasswordsAtOnceAndAnswerEachWhenItIsChecked) {

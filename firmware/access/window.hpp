@@ -6,14 +6,12 @@
 
 namespace adit::access {
 
-/// For how long somebody who was seen at the box itself may have its password set without the present one.
-/// Nothing that comes over a network opens it, and it is kept nowhere: a restart closes it.
-class SetUpWindow {
+/// For how long the word of somebody who was seen at the box itself is good. Nothing that comes over a
+/// network opens it, and it is kept nowhere: a restart closes it.
+class Window {
  public:
-  static constexpr std::chrono::minutes kLength{10};
-
   /// From now on; where it is open already, anew.
-  void open(Instant now) { until_ = now + kLength; }
+  void open(Instant now, Duration length) { until_ = now + length; }
   /// It has been used.
   void close() { until_.reset(); }
   /// For how much longer it is open; nothing: it is not.

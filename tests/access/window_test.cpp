@@ -1,4 +1,4 @@
-#include "access/set_up_window.hpp"
+#include "access/window.hpp"
 
 #include <gtest/gtest.h>
 
@@ -7,28 +7,28 @@ namespace {
 
 using namespace std::chrono_literals;
 
-TEST(SetUpWindow, IsOpenForTenMinutesOnceItWasOpened) {
+TEST(Window, IsOpenForItsLengthOnceItWasOpened) {
   const Instant start{};
-  SetUpWindow window;
+  Window window;
   EXPECT_EQ(window.left(start), std::nullopt);
-  window.open(start);
+  window.open(start, 10min);
   EXPECT_EQ(window.left(start), Duration(10min));
   EXPECT_EQ(window.left(start + 10min - 1ns), Duration(1ns));
   EXPECT_EQ(window.left(start + 10min), std::nullopt);
   EXPECT_EQ(window.left(start + 24h), std::nullopt);
 }
 
-TEST(SetUpWindow, IsClosedByItsUse) {
-  SetUpWindow window;
-  window.open(Instant{});
+TEST(Window, IsClosedByItsUse) {
+  Window window;
+  window.open(Instant{}, 10min);
   window.close();
   EXPECT_EQ(window.left(Instant{} + 1s), std::nullopt);
 }
 
-TEST(SetUpWindow, CountsAnewWhenItIsOpenedAgain) {
-  SetUpWindow window;
-  window.open(Instant{});
-  window.open(Instant{} + 9min);
+TEST(Window, CountsAnewWhenItIsOpenedAgain) {
+  Window window;
+  window.open(Instant{}, 10min);
+  window.open(Instant{} + 9min, 10min);
   EXPECT_EQ(window.left(Instant{} + 11min), Duration(8min));
 }
 

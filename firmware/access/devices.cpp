@@ -1,0 +1,79 @@
+#include "access/devices.hpp"
+
+#include <algorithm>
+
+#include "access/fields.hpp"
+#include "codec/json.hpp"
+
+namespace adit::access {
+namespace {
+
+using codec::Field;
+using codec::Value;
+
+constexpr std::int64_t kVersion = 1;
+
+}  // namespace
+
+Devices::Devices(std::vector<Device> kept, std::function<void()> changed)
+    : devices_(std::move(kept)), changed_(std::move(changed)) {
+  for (Device& device : devices_) device.number = ++last_;
+}
+
+const Device* Devices::find(std::string_view id) {
+  auto found = devices_.end();
+  for (auto each = devices_.begin(); each != devices_.end(); ++each) {
+    if (each->id.matches(id)) found = each;  // no early end: the time must not tell which
+  }
+  if (found == devices_.end()) return nullptr;
+  std::rotate(found, found + 1, devices_.end());
+  return &devices_.back();
+}
+
+const Device& Devices::add(const Secret& id, Role role) {
+  const auto is_of_role = [role](const Device& device) { return device.role == role; };
+  if (std::ranges::count_if(devices_, is_of_role) >= static_cast<std::ptrdiff_t>(kMostOfRole)) {
+    devices_.erase(std::ranges::find_if(devices_, is_of_role));
+  }
+  devices_.push_back({.number = ++last_, .role = role, .id = as_token(id)});
+  if (changed_) changed_();
+  return devices_.back();
+}
+
+void Devices::end_all(Role role, std::uint64_t but) {
+  const auto ended = std::erase_if(
+      devices_, [&](const Device& device) { return device.role == role && device.number != but; });
+  if (ended > 0 && changed_) changed_();
+}
+
+std::string write_devices(const std::vector<Device>& devices) {
+  Value::Array rows;
+  for (const Device& device : devices) {
+    rows.push_back(
+        {Value::Object{{"role", {std::string(name_of(device.role))}}, {"id", {device.id.reveal()}}}});
+  }
+  return codec::write_json({Value::Object{{"version", {kVersion}}, {"devices", {std::move(rows)}}}}) + '\n';
+}
+
+std::expected<std::vector<Device>, std::string> read_devices(std::string_view json) {
+  const auto root = codec::parse_json(json);
+  if (!root) return std::unexpected("it is no JSON: " + root.error());
+  codec::Reading reading;
+  const Field object(*root, reading);
+  const Field version = object.member("version");
+  if (version.whole<std::int64_t>() != kVersion) version.refuse("expected ", kVersion);
+  const Field rows = object.member("devices");
+  std::vector<Device> devices;
+  const std::size_t count = rows.size();
+  for (std::size_t i = 0; i < count && !reading.refused(); ++i) {
+    const Field row = rows.element(i);
+    const auto role = role_in(row);
+    const auto id = token_in(row, "id");
+    if (role && id) devices.push_back({.role = *role, .id = *id});
+  }
+  auto outcome = reading.outcome(std::move(devices));
+  if (!outcome) return std::unexpected(outcome.error().sentence);
+  return std::move(*outcome);
+}
+
+}  // namespace adit::access

@@ -1,0 +1,83 @@
+#include "access/devices.hpp"
+
+#include <gmock/gmock.h>
+
+namespace adit::access {
+namespace {
+
+using testing::HasSubstr;
+
+Secret secret(std::uint8_t first) {
+  return {first};
+}
+
+std::string id(std::uint8_t first) {
+  return as_token(secret(first)).reveal();
+}
+
+TEST(Devices, AreKnownByTheirIds) {
+  Devices devices;
+  EXPECT_EQ(devices.find(id(1)), nullptr);
+  const auto number = devices.add(secret(1), Role::Operator).number;
+  devices.add(secret(2), Role::Viewer);
+  ASSERT_NE(devices.find(id(1)), nullptr);
+  EXPECT_EQ(devices.find(id(1))->number, number);
+  EXPECT_EQ(devices.find(id(2))->role, Role::Viewer);
+  EXPECT_EQ(devices.find(""), nullptr);
+  EXPECT_EQ(devices.find(id(3)), nullptr);
+}
+
+TEST(Devices, OfARoleAreFewAndTheOneNotSeenForLongestGoes) {
+  Devices devices;
+  devices.add(secret(200), Role::Operator);
+  for (std::uint8_t i = 0; i < Devices::kMostOfRole; ++i) devices.add(secret(i), Role::Viewer);
+  EXPECT_NE(devices.find(id(0)), nullptr);  // seen now
+  devices.add(secret(100), Role::Viewer);
+  EXPECT_NE(devices.find(id(0)), nullptr);
+  EXPECT_EQ(devices.find(id(1)), nullptr);
+  EXPECT_NE(devices.find(id(200)), nullptr) << "viewers take no operator's place";
+}
+
+TEST(Devices, EndWithThePasswordOfTheirRole) {
+  int changes = 0;
+  Devices devices({}, [&] { ++changes; });
+  const auto own = devices.add(secret(1), Role::Operator).number;
+  devices.add(secret(2), Role::Operator);
+  devices.add(secret(3), Role::Viewer);
+  EXPECT_EQ(changes, 3);
+  devices.end_all(Role::Operator, own);
+  EXPECT_EQ(changes, 4);
+  EXPECT_NE(devices.find(id(1)), nullptr);
+  EXPECT_EQ(devices.find(id(2)), nullptr);
+  EXPECT_NE(devices.find(id(3)), nullptr);
+  devices.end_all(Role::Operator, own);
+  EXPECT_EQ(changes, 4) << "nothing to be kept";
+}
+
+TEST(Devices, AreReadAsTheyAreWritten) {
+  Devices devices;
+  devices.add(secret(1), Role::Operator);
+  devices.add(secret(2), Role::Viewer);
+  auto kept = read_devices(write_devices(devices.all()));
+  ASSERT_TRUE(kept) << kept.error();
+  Devices again(std::move(*kept));
+  ASSERT_EQ(again.all().size(), 2u);
+  EXPECT_EQ(again.all()[0].role, Role::Operator);
+  EXPECT_NE(again.all()[0].number, again.all()[1].number);
+  EXPECT_NE(again.find(id(1)), nullptr);
+}
+
+TEST(Devices, OfABrokenFileAreRefusedWithoutShowingThem) {
+  const std::string whole = write_devices({{.number = 1, .role = Role::Operator, .id = as_token(secret(7))}});
+  for (const std::string& text :
+       {std::string(), std::string("[]"), std::string(R"({"version":2,"devices":[]})"),
+        std::string(R"({"version":1,"devices":[{"role":"boss","id":"aaaaaaaaaaaaaaaa"}]})"),
+        std::string(R"({"version":1,"devices":[{"role":"viewer"}]})"), whole.substr(0, whole.size() / 2)}) {
+    const auto read = read_devices(text);
+    ASSERT_FALSE(read) << text;
+    EXPECT_THAT(read.error(), testing::Not(HasSubstr(id(7))));
+  }
+}
+
+}  // namespace
+}  // namespace adit::access

@@ -22,7 +22,7 @@ class WithAStandIn(Change):
         self.confirm_first()
 
     def test_a_change_takes_itself_back(self):
-        self.box.want(within_ms=5000, team="192.168.8.11")
+        self.box.want(within_ms=15000, team="192.168.8.11")
         self.has(NEW)
         pending = self.box.pending()
         self.assertEqual(pending["wanted"]["team"]["address"], "192.168.8.11")
@@ -30,7 +30,7 @@ class WithAStandIn(Change):
         self.has(OLD)
         status = self.box.status()
         self.assertEqual((status["pending"], status["last"]), (None, "taken back"))
-        self.assertEqual(status["why"], "nobody confirmed it within 5 s")
+        self.assertEqual(status["why"], "nobody confirmed it within 15 s")
         self.assertNotIn("40-adit-team.network", self.box.files("networkd"))
 
     def test_a_confirmed_change_stays(self):

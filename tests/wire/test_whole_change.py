@@ -18,7 +18,7 @@ class WholeBox(Change):
 
     def setUp(self):
         hosts.needs_namespaces()
-        self.stage = self.enterContext(programs.Stage(network__confirm_within_ms=10000, **{
+        self.stage = self.enterContext(programs.Stage(network__confirm_within_ms=20000, **{
             "team__listen": [{"address": "0.0.0.0", "port": programs.PORT}]}))
         self.network, self.folder = self.stage.network, self.stage.folder / "network"
         self.folder.mkdir()

@@ -142,11 +142,6 @@ const Report* ReportBook::find(std::int64_t number) const {
   return found == reports_.end() ? nullptr : &found->second;
 }
 
-std::size_t ReportBook::count(ReportState state) const {
-  return static_cast<std::size_t>(
-      std::ranges::count_if(reports_, [state](const auto& item) { return item.second.state == state; }));
-}
-
 std::vector<const Report*> ReportBook::doubts(std::int64_t run) const {
   std::vector<const Report*> found;
   for (const std::int64_t number : in_doubt_) {

@@ -60,7 +60,6 @@ class ReportBook {
   std::span<const std::int64_t> at_position(const icd::Point& position) const;
   /// Those in state Waiting, oldest first.
   const std::set<std::int64_t>& waiting() const { return waiting_; }
-  std::size_t count(ReportState state) const;
   /// Those in doubt in `run`, in the order in which they were sent.
   std::vector<const Report*> doubts(std::int64_t run) const;
 

@@ -50,63 +50,6 @@ constexpr std::array kLife = {
     ReportTransition{Settled, Event::Restarted, Settled, Action::Nothing},
 };
 
-/// What an event is called in the diagram.
-std::string_view words(ReportEvent event) {
-  switch (event) {
-    case Event::Held:
-      return "held for the operator";
-    case Event::HeldBack:
-      return "operator: hold";
-    case Event::Released:
-      return "operator: send";
-    case Event::Chosen:
-      return "its turn";
-    case Event::Recorded:
-      return "2xx";
-    case Event::Refused:
-      return "4xx";
-    case Event::Throttled:
-      return "429";
-    case Event::Barred:
-      return "401, 403, 404, 405, 407";
-    case Event::NeverLeft:
-      return "no byte left";
-    case Event::Lost:
-      return "no answer, 3xx, 408, 5xx";
-    case Event::Found:
-      return "status: recorded";
-    case Event::Missing:
-      return "status: not recorded";
-    case Event::CalledDone:
-      return "operator: done";
-    case Event::Withdrawn:
-      return "operator: withdraw";
-    case Event::Joined:
-      return "same as an earlier one";
-    case Event::Cleared:
-      return "another run";
-    case Event::Restarted:
-      return "restart";
-  }
-  return "";
-}
-
-std::string_view words(ReportAction action) {
-  switch (action) {
-    case Action::Nothing:
-      return "";
-    case Action::Send:
-      return " / send";
-    case Action::AnswerClients:
-      return " / answer its clients";
-    case Action::TellClients:
-      return " / tell its clients";
-    case Action::Ask:
-      return " / ask the status";
-  }
-  return "";
-}
-
 }  // namespace
 
 std::span<const ReportTransition> report_life() {
@@ -128,21 +71,6 @@ std::optional<ReportState> state_named(std::string_view text) {
   const auto* const word = std::ranges::find(kStateWords, text);
   if (word == std::end(kStateWords)) return std::nullopt;
   return static_cast<ReportState>(word - std::begin(kStateWords));
-}
-
-std::string report_life_diagram() {
-  std::string text = "stateDiagram-v2\n  state \"in doubt\" as in_doubt\n  [*] --> waiting: posted\n";
-  const auto id = [](ReportState state) { return state == InDoubt ? "in_doubt" : name_of(state); };
-  for (const ReportTransition& row : kLife) {
-    if (row.from == row.to) continue;  // nothing to see
-    text.append("  ").append(id(row.from)).append(" --> ").append(id(row.to)).append(": ");
-    text.append(words(row.event)).append(words(row.action)).append("\n");
-  }
-  for (const std::string_view word : kStateWords) {
-    const auto state = state_named(word);
-    if (is_final(*state)) text.append("  ").append(id(*state)).append(" --> [*]\n");
-  }
-  return text;
 }
 
 }  // namespace adit::dispatch

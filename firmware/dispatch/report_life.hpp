@@ -3,7 +3,6 @@
 #include <cstdint>
 #include <optional>
 #include <span>
-#include <string>
 #include <string_view>
 
 namespace adit::dispatch {
@@ -72,8 +71,5 @@ bool is_final(ReportState state);
 
 /// Nothing where it is none of the words.
 std::optional<ReportState> state_named(std::string_view name);
-
-/// The table as a Mermaid state diagram, for the docs.
-std::string report_life_diagram();
 
 }  // namespace adit::dispatch

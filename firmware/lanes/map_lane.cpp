@@ -212,9 +212,4 @@ std::size_t MapLane::largest_grid() const {
   return most;
 }
 
-std::optional<Instant> MapLane::oldest() const {
-  if (waiting_.empty()) return {};
-  return std::ranges::min_element(waiting_, {}, &WaitingMap::accepted)->accepted;
-}
-
 }  // namespace adit::lanes

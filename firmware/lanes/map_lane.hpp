@@ -87,7 +87,6 @@ class MapLane {
   std::size_t count() const { return waiting_.size(); }
   std::size_t bytes() const { return bytes_; }  // of memory held by all that wait
   std::size_t largest_grid() const;             // bytes of its data: what one that replaces it may need
-  std::optional<Instant> oldest() const;
   const std::deque<WaitingMap>& waiting() const { return waiting_; }  // in the order they were made
 
  private:

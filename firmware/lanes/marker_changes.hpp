@@ -12,8 +12,11 @@
 
 namespace adit::lanes {
 
-/// Changes of the markers' scene in the order in which they are to be sent, as few as say the same. Each has
-/// a place: a number that rises along the order. A DeleteAll can only be the first.
+/// Changes of the markers' scene (ICD 6.6) in the order in which they are to be sent, as few as say the same:
+/// a newer change of the same ns and id takes the place of an older one, DeleteAll takes the place of all
+/// before it, and nothing is deleted that a DeleteAll before it has deleted. Law: replaying them on any scene
+/// gives what replaying all that were applied gives. Each has a place: a number that rises along the order. A
+/// DeleteAll can only be the first.
 class MarkerChanges {
  public:
   using Place = std::int64_t;
@@ -32,7 +35,6 @@ class MarkerChanges {
   std::optional<icd::Marker> remove(const icd::Marker& like);
   /// Takes the first `most.count` out, and no more than `most.bytes` of them, but at least one.
   std::vector<icd::Marker> take(Size most);
-  std::vector<icd::Marker> take_all() { return take(size_); }
 
   Size size() const { return size_; }
   /// What size() would be after `newer` had been applied.

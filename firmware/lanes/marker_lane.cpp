@@ -6,14 +6,6 @@
 
 namespace adit::lanes {
 
-std::vector<icd::Marker> merge(const std::vector<icd::Marker>& pending,
-                               const std::vector<icd::Marker>& newer) {
-  MarkerChanges changes;
-  for (const icd::Marker& marker : pending) changes.apply(marker);
-  for (const icd::Marker& marker : newer) changes.apply(marker);
-  return changes.take_all();
-}
-
 bool MarkerLane::has_room_for(const icd::MarkersUpdate& update) const {
   if (empty()) return true;
   const MarkerChanges::Size now = changes_.size(), then = changes_.size_with(update.markers);

@@ -13,13 +13,6 @@
 
 namespace adit::lanes {
 
-/// The pending changes of the markers' scene (ICD 6.6), as few as say the same: `pending` followed by
-/// `newer`, where a newer change of the same ns and id takes the place of an older one, DeleteAll takes the
-/// place of all before it, and nothing is deleted that a DeleteAll before it has deleted. Law: replaying the
-/// result on any scene gives what replaying both in order gives.
-std::vector<icd::Marker> merge(const std::vector<icd::Marker>& pending,
-                               const std::vector<icd::Marker>& newer);
-
 struct WaitingMarkers {
   icd::MarkersUpdate update;
   Instant accepted;           // when the oldest news in it was accepted

@@ -44,13 +44,13 @@ bool is_older_map(const Message& message, const Message& other) {
   return map != nullptr && other_map != nullptr && map->header().stamp < other_map->header().stamp;
 }
 
-}  // namespace
-
 bool says_all_of(const Message& newer, const Message& older) {
   return newer.index() == older.index() &&
          std::visit([&]<class Kind>(const Kind& message) { return says_all(message, std::get<Kind>(older)); },
                     newer);
 }
+
+}  // namespace
 
 bool overtakes(const Message& newer, const Message& older) {
   return says_all_of(newer, older) && !is_older_map(newer, older);

@@ -17,11 +17,8 @@ namespace adit::lanes {
 using Message = std::variant<icd::MapUpdate, icd::StateUpdate, icd::MarkersUpdate>;
 
 /// Whether `newer` says all that `older` said (promise 2): a grid of the same name that covers it, poses of
-/// all its robots, changes of all its markers. Nothing covers a cloud.
-bool says_all_of(const Message& newer, const Message& older);
-
-/// Says all of it, and is no older map: what is sent again by hand may be older than others that were set
-/// aside.
+/// all its robots, changes of all its markers. Nothing covers a cloud; nor does an older map cover a newer
+/// one: what is sent again by hand may be older than others that were set aside.
 bool overtakes(const Message& newer, const Message& older);
 
 /// A message that the Command Post would not take, and why.

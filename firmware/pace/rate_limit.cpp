@@ -41,10 +41,6 @@ void RateLimit::allow(double hertz, Instant now) {
   }
 }
 
-double RateLimit::hertz() const {
-  return 1 / Seconds{spacing_}.count();
-}
-
 void RateLimit::sent(Instant now) {
   if (storm_ && sent_) worked_ = now - *sent_;
   sent_ = now;

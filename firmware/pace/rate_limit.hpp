@@ -56,9 +56,6 @@ class RateLimit {
   /// it asked for.
   void allow(double hertz, Instant now);
 
-  /// What is learned: never more than is allowed.
-  double hertz() const;
-
   Learned learned() const;
   /// What the gateway before has learned; this one begins at `now`. A request that was under way may have
   /// ended just before.

@@ -1,7 +1,5 @@
 #include "panel/states.hpp"
 
-#include <string>
-
 namespace adit::panel {
 namespace {
 
@@ -116,23 +114,6 @@ static_assert(is_in_order(), "shown() looks at the highest priority first");
 
 std::span<const StateRow> state_table() {
   return kTable;
-}
-
-std::string_view name_of(State state) {
-  return kTable[static_cast<std::size_t>(state)].name;
-}
-
-std::string state_table_text() {
-  std::string text = "| state | health | scoring | mapping | attention | priority | what it says |\n";
-  text += "| --- | --- | --- | --- | --- | --- | --- |\n";
-  for (const StateRow& row : kTable) {
-    text.append("| ").append(row.name).append(" |");
-    for (const auto& pattern : row.patterns) {
-      text.append(" ").append(pattern ? name_of(*pattern) : "").append(pattern ? " |" : "|");
-    }
-    text.append(" ").append(std::to_string(row.priority)).append(" | ").append(row.meaning).append(" |\n");
-  }
-  return text;
 }
 
 bool States::set(State state, bool asserted) {

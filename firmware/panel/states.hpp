@@ -4,7 +4,6 @@
 #include <cstdint>
 #include <optional>
 #include <span>
-#include <string>
 #include <string_view>
 
 #include "panel/panel.hpp"
@@ -44,10 +43,6 @@ struct StateRow {
 /// In the order of State, which is that of their priorities, the highest first.
 std::span<const StateRow> state_table();
 inline constexpr std::size_t kStates = static_cast<std::size_t>(State::MappingConnected) + 1;
-std::string_view name_of(State state);
-
-/// The table in Markdown, as README.md has it.
-std::string state_table_text();
 
 /// The states that are asserted. At first none is, and all lights are dark.
 class States {

@@ -156,10 +156,6 @@ codec::Value value_of(const Kind& kind, const Settings& settings) {
                     kind);
 }
 
-std::string written(const Kind& kind, const Settings& settings) {
-  return codec::write_json(value_of(kind, settings));
-}
-
 std::string_view name_of(const Kind& kind) {
   static constexpr std::string_view kNames[] = {"flag", "whole", "real", "text", "choice", "version"};
   return kNames[kind.index()];

@@ -62,8 +62,6 @@ std::string range_of(const Kind& kind);
 
 /// The member's value as the settings file has it.
 codec::Value value_of(const Kind& kind, const Settings& settings);
-/// The same in JSON.
-std::string written(const Kind& kind, const Settings& settings);
 
 /// "flag", "whole", "real", "text", "choice" or "version"
 std::string_view name_of(const Kind& kind);

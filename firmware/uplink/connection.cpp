@@ -55,7 +55,6 @@ class Connection::Impl : public std::enable_shared_from_this<Impl> {
     exchange_ = std::move(exchange);
     done_ = std::move(done);
     sent_ = 0;
-    total_ = exchange_->total();
     within_send_ = true;
     guard(&Impl::begin_sending);
     within_send_ = false;
@@ -75,7 +74,6 @@ class Connection::Impl : public std::enable_shared_from_this<Impl> {
   bool connected() const { return phase_ == Phase::Open; }
   const std::string& trouble() const { return trouble_; }
   std::size_t sent_bytes() const { return exchange_ ? exchange_->sent() : sent_; }
-  std::size_t total_bytes() const { return total_; }
 
  private:
   enum class Phase : std::uint8_t { Closed, Connecting, Open };
@@ -298,7 +296,6 @@ class Connection::Impl : public std::enable_shared_from_this<Impl> {
   std::optional<Outcome> outcome_;  // known within send(), to be told after it
   loop::Source tell_;
   std::size_t sent_ = 0;
-  std::size_t total_ = 0;
 };
 
 Connection::Connection(loop::Loop& loop, Endpoint endpoint, icd::BearerToken token)
@@ -328,8 +325,4 @@ const std::string& Connection::trouble() const {
 std::size_t Connection::sent_bytes() const {
   return impl_->sent_bytes();
 }
-std::size_t Connection::total_bytes() const {
-  return impl_->total_bytes();
-}
-
 }  // namespace adit::uplink

@@ -83,10 +83,8 @@ class Connection {
   /// Why the last connecting failed, or "".
   const std::string& trouble() const;
 
-  /// Bytes of the request under way, or of the last one, that the kernel has taken so far, and all of them,
-  /// head included: for progress.
+  /// Bytes of the request under way, or of the last one, that the kernel has taken so far, head included.
   std::size_t sent_bytes() const;
-  std::size_t total_bytes() const;
 
  private:
   class Impl;

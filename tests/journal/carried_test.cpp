@@ -6,7 +6,7 @@
 #include <random>
 #include <string>
 
-#include "lanes/marker_lane.hpp"
+#include "lanes/merged.hpp"
 
 namespace adit::journal {
 namespace {
@@ -184,7 +184,7 @@ TEST(Carried, IsWhatWaitsInTheLanes) {
         icd::MarkersUpdate update;
         for (int left = pick(4); left >= 0; --left) update.markers.push_back(any(i));
         tell(carried, Kind::Markers, said(update));
-        waiting = lanes::merge(waiting, update.markers);
+        waiting = lanes::merged(waiting, update.markers);
         break;
       }
       case 1:  // sent
@@ -198,14 +198,14 @@ TEST(Carried, IsWhatWaitsInTheLanes) {
         tell(carried, Kind::MarkersDone);
         break;
       case 3:
-        waiting = lanes::merge(under_way, waiting);
+        waiting = lanes::merged(under_way, waiting);
         under_way.clear();
         tell(carried, Kind::MarkersBack);
         break;
       default:
         carried = again(carried);
     }
-    ASSERT_EQ(carried.markers().markers, lanes::merge(under_way, waiting)) << i;
+    ASSERT_EQ(carried.markers().markers, lanes::merged(under_way, waiting)) << i;
   }
 }
 

@@ -166,9 +166,8 @@ TEST(MapLaneOrder, TheOldestNewsIsAlwaysTheNextUnlessAGridOfItsNameMustGoAhead) 
       const char* name = std::uniform_int_distribution{0, 1}(random) == 0 ? "R1" : "R2";
       lane.add(i, grid_update(name, grid(0, 0, width, 5 - width)), at(static_cast<double>(i)));
     }
-    while (const auto oldest = lane.oldest()) {
-      const auto waiting = std::ranges::find(lane.waiting(), *oldest, &WaitingMap::accepted);
-      const auto name = waiting->map.name;
+    while (lane.count() > 0) {
+      const auto name = std::ranges::min_element(lane.waiting(), {}, &WaitingMap::accepted)->map.name;
       EXPECT_EQ(lane.take()->map.name, name);
     }
   }

@@ -8,6 +8,7 @@
 #include <utility>
 
 #include "lanes/maps.hpp"
+#include "lanes/merged.hpp"
 
 namespace adit::lanes {
 namespace {
@@ -79,34 +80,34 @@ class AnyChanges {
   int text_ = 0;
 };
 
-TEST(MergeMarkers, TheNewerChangeTakesThePlaceOfTheOlder) {
-  EXPECT_THAT(merge({add(1, "old"), add(2)}, {add(1, "new")}), ElementsAre(add(1, "new"), add(2)));
-  EXPECT_THAT(merge({add(1), add(2)}, {remove(1)}), ElementsAre(remove(1), add(2)));
-  EXPECT_THAT(merge({remove(1)}, {add(1)}), ElementsAre(add(1)));
+TEST(MarkerChanges, TheNewerChangeTakesThePlaceOfTheOlder) {
+  EXPECT_THAT(merged({add(1, "old"), add(2)}, {add(1, "new")}), ElementsAre(add(1, "new"), add(2)));
+  EXPECT_THAT(merged({add(1), add(2)}, {remove(1)}), ElementsAre(remove(1), add(2)));
+  EXPECT_THAT(merged({remove(1)}, {add(1)}), ElementsAre(add(1)));
 }
 
-TEST(MergeMarkers, TellsNamespacesApart) {
+TEST(MarkerChanges, TellsNamespacesApart) {
   const auto a = marker(icd::MarkerAction::Add, "a", 1), b = marker(icd::MarkerAction::Add, "b", 1);
-  EXPECT_THAT(merge({a}, {b}), ElementsAre(a, b));
+  EXPECT_THAT(merged({a}, {b}), ElementsAre(a, b));
 }
 
-TEST(MergeMarkers, DeleteAllTakesThePlaceOfAllBeforeIt) {
-  EXPECT_THAT(merge({add(1), remove(2)}, {remove_all(), add(3)}), ElementsAre(remove_all(), add(3)));
+TEST(MarkerChanges, DeleteAllTakesThePlaceOfAllBeforeIt) {
+  EXPECT_THAT(merged({add(1), remove(2)}, {remove_all(), add(3)}), ElementsAre(remove_all(), add(3)));
 }
 
-TEST(MergeMarkers, DeletesNothingThatADeleteAllHasDeleted) {
-  EXPECT_THAT(merge({remove_all(), add(1)}, {remove(1), remove(2)}), ElementsAre(remove_all()));
+TEST(MarkerChanges, DeletesNothingThatADeleteAllHasDeleted) {
+  EXPECT_THAT(merged({remove_all(), add(1)}, {remove(1), remove(2)}), ElementsAre(remove_all()));
 }
 
-TEST(MergeMarkers, ReplayingTheMergedChangesGivesTheSameSceneAsReplayingBoth) {
+TEST(MarkerChanges, ReplayingTheMergedChangesGivesTheSameSceneAsReplayingBoth) {
   AnyChanges any{1};
   for (int i = 0; i < 20'000; ++i) {
     const Scene scene = replay({}, any.changes());
     const auto older = any.changes(), newer = any.changes();
-    const auto merged = merge(older, newer);
-    ASSERT_EQ(replay(scene, merged), replay(replay(scene, older), newer));
-    ASSERT_LE(merged.size(), older.size() + newer.size());
-    ASSERT_EQ(merge({}, merged), merged) << "as few as say the same";
+    const auto both = merged(older, newer);
+    ASSERT_EQ(replay(scene, both), replay(replay(scene, older), newer));
+    ASSERT_LE(both.size(), older.size() + newer.size());
+    ASSERT_EQ(merged({}, both), both) << "as few as say the same";
   }
 }
 

@@ -38,31 +38,31 @@ AsideItem item(Message message, std::size_t bytes = 100) {
   return item;
 }
 
-TEST(SetAside, KnowsWhatSaysAllOfAnother) {
+TEST(SetAside, KnowsWhatOvertakesAnother) {
   const Message small = grid_update("ugv1", grid(0, 0, 10, 10)),
                 large = grid_update("ugv1", grid(0, 0, 20, 20)),
                 others = grid_update("ugv2", grid(0, 0, 20, 20)), cloud = cloud_update("ugv1", {1});
-  EXPECT_TRUE(says_all_of(large, small));
-  EXPECT_TRUE(says_all_of(small, small));
-  EXPECT_FALSE(says_all_of(small, large));
-  EXPECT_FALSE(says_all_of(others, small));
-  EXPECT_FALSE(says_all_of(cloud, cloud)) << "nothing covers a cloud";
-  EXPECT_FALSE(says_all_of(cloud, small));
+  EXPECT_TRUE(overtakes(large, small));
+  EXPECT_TRUE(overtakes(small, small));
+  EXPECT_FALSE(overtakes(small, large));
+  EXPECT_FALSE(overtakes(others, small));
+  EXPECT_FALSE(overtakes(cloud, cloud)) << "nothing covers a cloud";
+  EXPECT_FALSE(overtakes(cloud, small));
 
   const Message one = state_of({"ugv1"}), both = state_of({"ugv1", "ugv2"});
-  EXPECT_TRUE(says_all_of(both, one));
-  EXPECT_FALSE(says_all_of(one, both));
-  EXPECT_FALSE(says_all_of(both, small));
+  EXPECT_TRUE(overtakes(both, one));
+  EXPECT_FALSE(overtakes(one, both));
+  EXPECT_FALSE(overtakes(both, small));
 
   const Message a = icd::MarkersUpdate{{marker("a", 1)}},
                 ab = icd::MarkersUpdate{{marker("a", 1), marker("b", 1)}},
                 gone = icd::MarkersUpdate{{marker("a", 1, icd::MarkerAction::Delete)}},
                 all_gone = icd::MarkersUpdate{{marker("", 0, icd::MarkerAction::DeleteAll)}};
-  EXPECT_TRUE(says_all_of(ab, a));
-  EXPECT_FALSE(says_all_of(a, ab));
-  EXPECT_TRUE(says_all_of(gone, a));
-  EXPECT_TRUE(says_all_of(all_gone, ab));
-  EXPECT_FALSE(says_all_of(ab, all_gone));
+  EXPECT_TRUE(overtakes(ab, a));
+  EXPECT_FALSE(overtakes(a, ab));
+  EXPECT_TRUE(overtakes(gone, a));
+  EXPECT_TRUE(overtakes(all_gone, ab));
+  EXPECT_FALSE(overtakes(ab, all_gone));
 }
 
 TEST(SetAside, MarksWhatSomethingNewerSaysAllOf) {

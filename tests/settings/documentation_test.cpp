@@ -23,7 +23,8 @@ std::string reference() {
   const Settings defaults = with_an_item_of_each();
   std::string table = "| key | meaning | default | allowed |\n| --- | --- | --- | --- |\n";
   for (const Key& key : keys()) {
-    const std::string value = key.required ? "required" : "`" + written(key.kind, defaults) + "`";
+    const std::string value =
+        key.required ? "required" : "`" + codec::write_json(value_of(key.kind, defaults)) + "`";
     table.append("| `").append(key.path).append("` | ").append(key.meaning).append(" | ").append(value);
     table.append(" | ").append(range_of(key.kind)).append(" |\n");
   }
@@ -65,7 +66,7 @@ TEST(SettingsKeys, EachTakeTheirOwnDefault) {
   const Settings defaults = with_an_item_of_each();
   for (const Key& key : keys()) {
     if (key.required) continue;
-    const auto value = codec::parse_json(written(key.kind, defaults));
+    const auto value = codec::parse_json(codec::write_json(value_of(key.kind, defaults)));
     ASSERT_TRUE(value.has_value()) << key.path;
     const auto settings = parse(codec::write_json(nested(key.path, *value)));
     ASSERT_FALSE(settings.has_value());  // version and addresses are missing

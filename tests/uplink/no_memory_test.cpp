@@ -22,7 +22,7 @@ class NoMemory : public Asking, public testing::WithParamInterface<std::string> 
   Outcome ask_scarcely(Connection& connection, std::size_t first, std::size_t count) {
     std::optional<Outcome> outcome;
     connection.send(get(), [&](Outcome got) { outcome = std::move(got); });
-    EXPECT_TRUE(loop::turn_until(loop_, [&] { return connection.sent_bytes() == connection.total_bytes(); }));
+    EXPECT_TRUE(loop::turn_until(loop_, [&] { return connection.sent_bytes() > 0; }));
     let_.release();
     const std::uint64_t before = loop::caught_so_far();
     ScarceMemory scarce(first, count);

@@ -1,8 +1,9 @@
 // POST /map/update (ICD 6.3, 6.4).
 #include "codec/byte_order.hpp"
+#include "codec/icd_members.hpp"
+#include "codec/parts.hpp"
 #include "codec/read.hpp"
 #include "codec/read_map_data.hpp"
-#include "codec/read_parts.hpp"
 
 namespace adit::codec {
 namespace {
@@ -25,42 +26,13 @@ void check_data_is_there(const Field& data) {
   if (!data.is<Value::SplitOut>()) data.refuse_kind("a base64 string (JSON) or a byte string (CBOR)");
 }
 
-icd::OccupancyGrid read_grid(const Field& msg, const icd::Rules& rules) {
-  icd::OccupancyGrid grid;
-  grid.header = read_header(msg, rules);
-  const Field info = msg.member("info");
-  grid.resolution = info.member("resolution").number();
-  grid.width = info.member("width").whole<std::uint32_t>(1, icd::kMostCellsASide);
-  grid.height = info.member("height").whole<std::uint32_t>(1, icd::kMostCellsASide);
-  grid.origin = read_pose(info.member("origin"));
-  if (!msg.reading().refused()) msg.reading().keep(icd::check(grid, rules));
-  return grid;
-}
-
-icd::FieldSchema read_schema(const Field& field) {
-  return {.name = std::string(field.member("name").text()),
-          .offset = field.member("offset").whole<std::uint32_t>(),
-          .datatype = static_cast<icd::Datatype>(field.member("datatype").whole<std::uint8_t>(1, 8)),
-          .count = field.member("count").whole<std::uint32_t>(1)};
-}
-
-icd::PointCloud2 read_cloud(const Field& msg, const icd::Rules& rules) {
-  icd::PointCloud2 cloud;
-  cloud.header = read_header(msg, rules);
-  if (const Field origin = msg.member("origin"); !origin.is_absent()) cloud.origin = read_pose(origin);
-  const Field fields = msg.member("fields");
-  const std::size_t count = fields.size();
-  if (count > icd::kMostFields) {
-    fields.refuse("expected at most ", icd::kMostFields, " fields, got ", count);
-  }
-  for (std::size_t i = 0; i < count && !msg.reading().refused(); ++i) {
-    cloud.fields.push_back(read_schema(fields.element(i)));
-  }
-  const Field is_bigendian = msg.member("is_bigendian");
-  cloud.is_bigendian = !is_bigendian.is_absent() && is_bigendian.truth();
-  cloud.point_step = msg.member("point_step").whole<std::uint32_t>(1, icd::kLargestPoint);
-  if (!msg.reading().refused()) msg.reading().keep(icd::check(cloud, rules));
-  return cloud;
+/// A grid or a cloud that has passed its rules.
+template <class Map>
+Map read_msg(const Field& msg, const icd::Rules& rules) {
+  Map map;
+  read_members(msg, map, rules);
+  if (!msg.reading().refused()) msg.reading().keep(icd::check(map, rules));
+  return map;
 }
 
 /// Everything but the data; what its `compression` is goes to `compression`.
@@ -77,9 +49,9 @@ icd::Checked<icd::MapUpdate> read_structure(const Document& document, const icd:
   update.name = read_map_name(body.member("name"), rules);
   const Field msg = body.member("msg");
   if (kind == "PointCloud2") {
-    update.msg = read_cloud(msg, rules);
+    update.msg = read_msg<icd::PointCloud2>(msg, rules);
   } else {
-    update.msg = read_grid(msg, rules);
+    update.msg = read_msg<icd::OccupancyGrid>(msg, rules);
   }
   check_data_is_there(msg.member("data"));
   compression = read_compression(msg.member("compression"), document.data_form);

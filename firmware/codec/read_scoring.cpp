@@ -2,6 +2,7 @@
 #include <algorithm>
 
 #include "codec/field.hpp"
+#include "codec/icd_members.hpp"
 #include "codec/json.hpp"
 #include "codec/read.hpp"
 
@@ -84,8 +85,7 @@ icd::Checked<icd::ArtifactReport> read_artifact_report(const Document& document,
   Reading reading;
   icd::ArtifactReport report;
   const Field body(document.root, reading);
-  report.position = {
-      .x = body.member("x").number(), .y = body.member("y").number(), .z = body.member("z").number()};
+  read_members(body, report.position, rules);
   report.type = read_type(body.member("type"), rules);
   return reading.outcome(std::move(report));
 }

@@ -1,93 +1,19 @@
 // POST /state/update and POST /markers/update (ICD 6.5, 6.6).
 #include <map>
-#include <type_traits>
 #include <utility>
 #include <vector>
 
+#include "codec/icd_members.hpp"
+#include "codec/parts.hpp"
 #include "codec/read.hpp"
-#include "codec/read_parts.hpp"
 #include "icd/require.hpp"
 
 namespace adit::codec {
 namespace {
 
-icd::MarkerAction read_action(const Field& field) {
-  const auto action = field.whole<std::int64_t>();
-  for (const auto known : {icd::MarkerAction::Add, icd::MarkerAction::Delete, icd::MarkerAction::DeleteAll}) {
-    if (action == static_cast<std::int64_t>(known)) return known;
-  }
-  field.refuse("expected 0 (add), 2 (delete) or 3 (delete all), got ", action);
-  return icd::MarkerAction::Add;
-}
-
-icd::Color read_color(const Field& field) {
-  return {.r = field.member("r").number(0, 1),
-          .g = field.member("g").number(0, 1),
-          .b = field.member("b").number(0, 1),
-          .a = field.member("a").number(0, 1)};
-}
-
-/// An array of at most kMostMarkerPoints, each read by `read`; absent: none.
-template <class Read>
-auto read_list(const Field& field, Read read) {
-  std::vector<std::invoke_result_t<Read, const Field&>> list;
-  if (field.is_absent()) return list;
-  const std::size_t count = field.size();
-  if (count > icd::kMostMarkerPoints) {
-    field.refuse("expected at most ", icd::kMostMarkerPoints, ", got ", count);
-    return list;
-  }
-  list.reserve(count);
-  for (std::size_t i = 0; i < count && !field.reading().refused(); ++i) {
-    list.push_back(read(field.element(i)));
-  }
-  return list;
-}
-
-std::string_view read_mesh_resource(const Field& field) {
-  const std::string_view url = field.text();
-  if (url.size() > icd::kLongestMeshResource) {
-    field.refuse("expected at most ", icd::kLongestMeshResource, " bytes, got ", url.size());
-  }
-  return url;
-}
-
-/// What ROS's Marker has and the ICD does not list. How many colors there are is the sender's business:
-/// whoever draws the marker ignores those that fit no points.
-void read_geometry(const Field& field, icd::Marker& marker) {
-  if (const Field frame_locked = field.member("frame_locked"); !frame_locked.is_absent()) {
-    marker.frame_locked = frame_locked.truth();
-  }
-  marker.points = read_list(field.member("points"), read_point);
-  marker.colors = read_list(field.member("colors"), read_color);
-  if (const Field mesh = field.member("mesh_resource"); !mesh.is_absent()) {
-    marker.mesh_resource = read_mesh_resource(mesh);
-  }
-  if (const Field materials = field.member("mesh_use_embedded_materials"); !materials.is_absent()) {
-    marker.mesh_use_embedded_materials = materials.truth();
-  }
-}
-
 icd::Marker read_marker(const Field& field, const icd::Rules& rules) {
   icd::Marker marker;
-  marker.header = read_header(field, rules);
-  if (const Field ns = field.member("ns"); !ns.is_absent()) marker.ns = ns.text();
-  if (const Field id = field.member("id"); !id.is_absent()) marker.id = id.whole<std::int32_t>();
-  marker.action = read_action(field.member("action"));
-
-  const bool adds = marker.action == icd::MarkerAction::Add;
-  const auto asked = [adds](const Field& member) { return adds || !member.is_absent(); };
-  if (const Field type = field.member("type"); asked(type)) {
-    marker.type = type.whole<std::int32_t>(0, icd::kLastMarkerType);
-  }
-  if (const Field pose = field.member("pose"); asked(pose)) marker.pose = read_pose(pose);
-  if (const Field scale = field.member("scale"); asked(scale)) marker.scale = read_point(scale);
-  if (const Field color = field.member("color"); asked(color)) marker.color = read_color(color);
-  if (const Field lifetime = field.member("lifetime"); !lifetime.is_absent()) {
-    marker.lifetime = lifetime.seconds();
-  }
-  if (const Field text = field.member("text"); !text.is_absent()) marker.text = text.text();
-  read_geometry(field, marker);
+  read_members(field, marker, rules);
   return marker;
 }
 
@@ -109,7 +35,8 @@ class PoseList {
 
 icd::Checked<icd::NamedPose> read_named_pose(const Field& field, const icd::Rules& rules) {
   const auto name = read_robot_name(field.member("name"), rules);
-  const icd::Pose pose = read_pose(field);
+  icd::Pose pose;
+  read_members(field, pose, rules);
   if (!name) return std::unexpected(field.reading().outcome(0).error());
   return field.reading().outcome(icd::NamedPose{.name = *name, .pose = pose});
 }

@@ -1,25 +1,31 @@
 #include "icd/uri.hpp"
 
+#include <iterator>
+#include <utility>
+
 namespace adit::icd {
+namespace {
+
+struct Function {
+  std::string_view method, path;
+};
+
+/// In the order of Uri.
+constexpr Function kFunctions[] = {{"GET", "/api/status"},
+                                   {"POST", "/api/artifact_reports"},
+                                   {"POST", "/map/update"},
+                                   {"POST", "/state/update"},
+                                   {"POST", "/markers/update"}};
+static_assert(std::size(kFunctions) == std::size(kUris));
+
+}  // namespace
 
 std::string_view path_of(Uri uri) {
-  switch (uri) {
-    case Uri::Status:
-      return "/api/status";
-    case Uri::ArtifactReports:
-      return "/api/artifact_reports";
-    case Uri::MapUpdate:
-      return "/map/update";
-    case Uri::StateUpdate:
-      return "/state/update";
-    case Uri::MarkersUpdate:
-      return "/markers/update";
-  }
-  return {};
+  return kFunctions[std::to_underlying(uri)].path;
 }
 
 std::string_view method_of(Uri uri) {
-  return uri == Uri::Status ? "GET" : "POST";
+  return kFunctions[std::to_underlying(uri)].method;
 }
 
 std::optional<Uri> uri_of(std::string_view path) {

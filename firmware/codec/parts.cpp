@@ -1,19 +1,6 @@
-#include "codec/read_parts.hpp"
+#include "codec/parts.hpp"
 
 namespace adit::codec {
-namespace {
-
-icd::Quaternion read_quaternion(const Field& field) {
-  const icd::Quaternion read = {.x = field.member("x").number(),
-                                .y = field.member("y").number(),
-                                .z = field.member("z").number(),
-                                .w = field.member("w").number()};
-  constexpr icd::Quaternion kAllZero = {.x = 0, .y = 0, .z = 0, .w = 0};
-  return read == kAllZero ? icd::Quaternion{} : read;
-}
-
-}  // namespace
-
 icd::Header read_header(const Field& message, const icd::Rules& rules) {
   icd::Header read;
   const Field header = message.member("header");
@@ -27,13 +14,24 @@ icd::Header read_header(const Field& message, const icd::Rules& rules) {
   return read;
 }
 
-icd::Point read_point(const Field& field) {
-  return {.x = field.member("x").number(), .y = field.member("y").number(), .z = field.member("z").number()};
+void write_header(CborWriter& out, const icd::Header& header) {
+  out.text("header");
+  out.map(header.stamp ? 2 : 1);
+  if (header.stamp) {
+    out.text("stamp");
+    out.real(*header.stamp);
+  }
+  out.text("frame_id");
+  out.text(icd::kFrame);
 }
 
-icd::Pose read_pose(const Field& field) {
-  return {.position = read_point(field.member("position")),
-          .orientation = read_quaternion(field.member("orientation"))};
+icd::MarkerAction read_action(const Field& field) {
+  const auto action = field.whole<std::int64_t>();
+  for (const auto known : {icd::MarkerAction::Add, icd::MarkerAction::Delete, icd::MarkerAction::DeleteAll}) {
+    if (action == static_cast<std::int64_t>(known)) return known;
+  }
+  field.refuse("expected 0 (add), 2 (delete) or 3 (delete all), got ", action);
+  return icd::MarkerAction::Add;
 }
 
 std::optional<icd::RobotName> read_robot_name(const Field& field, const icd::Rules& rules) {

@@ -1,23 +1,24 @@
 #pragma once
 
-#include <string_view>
+#include <optional>
 
+#include "codec/cbor_writer.hpp"
 #include "codec/field.hpp"
-#include "icd/geometry.hpp"
 #include "icd/header.hpp"
+#include "icd/markers_update.hpp"
 #include "icd/robot_name.hpp"
 #include "icd/rules.hpp"
 
+/// The parts of messages that have rules of their own.
 namespace adit::codec {
 
 /// The optional "header" of a message (ICD 6.1, 6.2). A frame_id "" is ROS's word for none.
 icd::Header read_header(const Field& message, const icd::Rules& rules);
 
-icd::Point read_point(const Field& field);
+/// With frame_id always: there are servers that refuse a message without a header.
+void write_header(CborWriter& out, const icd::Header& header);
 
-/// A pose's "position" and "orientation". An all-zero quaternion, as ROS leaves one that nobody set, becomes
-/// the identity.
-icd::Pose read_pose(const Field& field);
+icd::MarkerAction read_action(const Field& field);
 
 /// An alias gives the name it stands for. Refuses, and gives nothing, where the text is no robot's name
 /// (ICD 2).

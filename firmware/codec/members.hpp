@@ -1,0 +1,204 @@
+#pragma once
+
+#include <concepts>
+#include <cstdint>
+#include <limits>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <tuple>
+#include <type_traits>
+#include <vector>
+
+#include "codec/cbor_writer.hpp"
+#include "codec/field.hpp"
+#include "icd/geometry.hpp"
+#include "icd/markers_update.hpp"
+#include "icd/rules.hpp"
+
+/// The parts of a message, each member described once: its name, kind, bounds, and whether it may be absent.
+/// Reading JSON and CBOR and writing CBOR come from it; icd_members.hpp has the descriptions.
+namespace adit::codec {
+
+/// Whether a message may be without a member. What is absent is as in a new struct.
+enum class Need : std::uint8_t {
+  Always,
+  MayLack,  // and is written all the same
+  IfSaid,   // and is written only where it says something
+  ToAdd,    // of a marker: those that are added have it
+};
+
+/// The members of a struct, a tuple: each reads itself from its parent's Field, and writes itself.
+template <class Struct>
+inline constexpr std::nullptr_t members_of = nullptr;
+
+template <class T>
+using BoundOf =
+    std::conditional_t<std::is_enum_v<T>, std::uint8_t,
+                       std::conditional_t<std::is_arithmetic_v<T> && !std::same_as<T, bool>, T, std::size_t>>;
+
+/// A member that stands in the struct as it stands in the message.
+template <class Struct, class T>
+struct NamedMember {
+  using Bound = BoundOf<T>;
+  using Limits = std::numeric_limits<Bound>;
+
+  std::string_view name;
+  T Struct::* at;
+  Need need = Need::Always;
+  Bound least = Limits::has_infinity ? -Limits::infinity() : Limits::lowest();  // of a number
+  Bound most = Limits::has_infinity ? Limits::infinity() : Limits::max();  // of a number; how many; how long
+  std::string_view unit = "";  // of `most` in a sentence: " bytes"
+  bool is_time = false;        // seconds, or {secs, nsecs}
+
+  /// The same but for one of these.
+  template <class Value>
+  constexpr NamedMember with(Value NamedMember::* which, Value value) const {
+    NamedMember other = *this;
+    other.*which = value;
+    return other;
+  }
+  constexpr NamedMember needed(Need when) const { return with(&NamedMember::need, when); }
+  constexpr NamedMember from(Bound bound) const { return with(&NamedMember::least, bound); }
+  constexpr NamedMember to(Bound bound, std::string_view of = "") const {
+    return with(&NamedMember::most, bound).with(&NamedMember::unit, of);
+  }
+  constexpr NamedMember time() const { return with(&NamedMember::is_time, true); }
+
+  void read(const Field& parent, Struct& into, const icd::Rules& rules) const {
+    const Field field = parent.member(name);
+    if (!field.is_absent() || is_needed(into)) read_value(field, into.*at, rules);
+  }
+
+  bool is_written(const Struct& from) const {
+    if constexpr (requires { (from.*at).has_value(); })
+      return (from.*at).has_value();
+    else
+      return need != Need::IfSaid || from.*at != T();
+  }
+  std::size_t written(const Struct& from) const { return is_written(from) ? 1 : 0; }
+  void write(CborWriter& out, const Struct& from) const {
+    if (!is_written(from)) return;
+    out.text(name);
+    write_value(out, from.*at);
+  }
+
+ private:
+  bool is_needed(const Struct& into) const {
+    if constexpr (requires { into.action; }) {
+      if (need == Need::ToAdd) return into.action == icd::MarkerAction::Add;
+    }
+    return need == Need::Always;
+  }
+
+  template <class Value>
+  void read_value(const Field& field, Value& value, const icd::Rules& rules) const {
+    if constexpr (std::same_as<Value, bool>) {
+      value = field.truth();
+    } else if constexpr (std::floating_point<Value>) {
+      value = is_time ? field.seconds() : field.number(least, most);
+    } else if constexpr (std::is_enum_v<Value>) {
+      value = static_cast<Value>(field.whole<Bound>(least, most));
+    } else if constexpr (std::integral<Value>) {
+      value = field.whole<Value>(least, most);
+    } else if constexpr (std::same_as<Value, std::string>) {
+      const std::string_view text = field.text();
+      if (text.size() > most) return field.refuse("expected at most ", most, unit, ", got ", text.size());
+      value = text;
+    } else if constexpr (requires { value.emplace_back(); }) {
+      const std::size_t count = field.size();
+      if (count > most) return field.refuse("expected at most ", most, unit, ", got ", count);
+      value.reserve(count);
+      for (std::size_t i = 0; i < count && !field.reading().refused(); ++i) {
+        const Field element = field.element(i);
+        read_members(element, value.emplace_back(), rules);
+      }
+    } else if constexpr (requires { value.emplace(); }) {
+      read_members(field, value.emplace(), rules);
+    } else {
+      read_members(field, value, rules);
+    }
+  }
+
+  template <class Value>
+  static void write_value(CborWriter& out, const Value& value) {
+    if constexpr (std::same_as<Value, bool>) {
+      out.truth(value);
+    } else if constexpr (std::floating_point<Value>) {
+      out.real(value);
+    } else if constexpr (std::is_enum_v<Value> || std::integral<Value>) {
+      out.whole(static_cast<std::int64_t>(value));
+    } else if constexpr (std::same_as<Value, std::string>) {
+      out.text(value);
+    } else if constexpr (requires { value.begin(); }) {
+      out.array(value.size());
+      for (const auto& each : value) write_struct(out, each);
+    } else if constexpr (requires { value.has_value(); }) {
+      write_struct(out, *value);
+    } else {
+      write_struct(out, value);
+    }
+  }
+};
+
+template <class Struct, class T>
+constexpr NamedMember<Struct, T> named(std::string_view name, T Struct::* at) {
+  return {name, at};
+}
+
+/// Members of a struct that the message has as an object of their own.
+template <class... Members>
+struct Group {
+  std::string_view name;
+  std::tuple<Members...> members;
+
+  template <class Struct>
+  void read(const Field& parent, Struct& into, const icd::Rules& rules) const {
+    const Field field = parent.member(name);
+    std::apply([&](const auto&... each) { (each.read(field, into, rules), ...); }, members);
+  }
+  static std::size_t written(const auto& /*from*/) { return 1; }
+  template <class Struct>
+  void write(CborWriter& out, const Struct& from) const {
+    out.text(name);
+    std::apply(
+        [&](const auto&... each) {
+          out.map((each.written(from) + ...));
+          (each.write(out, from), ...);
+        },
+        members);
+  }
+};
+
+template <class... Members>
+constexpr Group<Members...> group(std::string_view name, Members... members) {
+  return {name, {members...}};
+}
+
+template <class Struct>
+void read_members(const Field& object, Struct& into, const icd::Rules& rules) {
+  std::apply([&](const auto&... each) { (each.read(object, into, rules), ...); }, members_of<Struct>);
+  if constexpr (std::same_as<Struct, icd::Quaternion>) {
+    if (into == icd::Quaternion{.x = 0, .y = 0, .z = 0, .w = 0})
+      into = {};  // as ROS leaves one that nobody set
+  }
+}
+
+/// How many members write_members() writes.
+template <class Struct>
+std::size_t written(const Struct& from) {
+  return std::apply([&](const auto&... each) { return (each.written(from) + ...); }, members_of<Struct>);
+}
+
+template <class Struct>
+void write_members(CborWriter& out, const Struct& from) {
+  std::apply([&](const auto&... each) { (each.write(out, from), ...); }, members_of<Struct>);
+}
+
+template <class Struct>
+void write_struct(CborWriter& out, const Struct& from) {
+  out.map(written(from));
+  write_members(out, from);
+}
+
+}  // namespace adit::codec

@@ -32,7 +32,8 @@ constexpr Member kRecord[] = {
 };
 
 constexpr Member kPage[] = {
-    member<&LogPage::last>("last"),
+    member<&LogPage::last>(
+        "last", "number of the last record there was: less than since, and the box was started anew"),
     member<&LogPage::records>("records"),
 };
 
@@ -82,7 +83,7 @@ constexpr Member kNetwork[] = {
 }  // namespace
 
 constexpr codec::Row LogRecord::kRow = {"LogRecord", kRecord};
-constexpr codec::Row LogPage::kRow = {"", kPage};
+constexpr codec::Row LogPage::kRow = {"Log", kPage};
 constexpr codec::Row PartRow::kRow = {"", kPart, "A library in the program."};
 constexpr codec::Row BoardRow::kRow = {"", kBoard};
 constexpr codec::Row About::kRow = {"About", kAbout};

@@ -9,6 +9,8 @@
 #include "api/run_view.cpp"
 #include "api/scene.cpp"
 #include "api/self_test.cpp"
+#include "api/session_rows.cpp"
+#include "api/settings_rows.cpp"
 #include "api/updates.cpp"
 // NOLINTEND(bugprone-suspicious-include)
 
@@ -19,7 +21,8 @@ template <class T>
 constexpr const codec::Schema* of = &codec::KindOf<T>::schema;
 
 constexpr codec::Schemas kSchemas({of<RunView>, of<ReportDetail>, of<MarkerChanges>, of<Tracks>, of<MapView>,
-                                   of<LogRecord>, of<UpdateView>, of<TestView>, of<About>});
+                                   of<LogPage>, of<UpdateView>, of<SessionRow>, of<WhoAsks>, of<SetupView>,
+                                   of<CheckView>, of<ChangesView>, of<TestView>, of<About>});
 
 [[gnu::used, gnu::section("schemas")]] constexpr std::array kText = kSchemas.text();
 

@@ -3,6 +3,7 @@
 #include <utility>
 
 #include "api/answers.hpp"
+#include "api/settings_rows.hpp"
 #include "codec/json.hpp"
 #include "codec/row.hpp"
 
@@ -51,14 +52,6 @@ std::expected<network::Numbers, std::vector<settings::Error>> read_body(const st
   return std::unexpected(std::vector<settings::Error>{{"", "expected JSON: " + value.error()}});
 }
 
-Value errors_json(const std::vector<settings::Error>& errors) {
-  Value::Array rows;
-  for (const settings::Error& error : errors) {
-    rows.push_back({Value::Object{{"path", json(error.path)}, {"what", json(error.what)}}});
-  }
-  return {std::move(rows)};
-}
-
 intake::Answer unfit(const std::vector<settings::Error>& errors) {
   std::string sentences;
   for (const settings::Error& error : errors) sentences += (sentences.empty() ? "" : "; ") + error.sentence();
@@ -82,15 +75,10 @@ intake::Answer NetworkRoutes::check(const Call& call) const {
   const auto wanted = read_body(call.body);
   const auto findings =
       wanted ? network_.check(*wanted, call.head.peer()) : network::Findings{wanted.error(), {}, {}};
-  Value::Array changes, warnings;
-  for (const network::Difference& each : findings.changes) {
-    changes.push_back(
-        {Value::Object{{"path", json(each.path)}, {"from", json(each.from)}, {"to", json(each.to)}}});
-  }
-  for (const std::string& each : findings.warnings) warnings.push_back(json(each));
-  return object({{"errors", errors_json(findings.errors)},
-                 {"changes", {std::move(changes)}},
-                 {"warnings", {std::move(warnings)}}});
+  CheckView checked{.errors = findings.errors, .changes = {.changes = {}, .warnings = findings.warnings}};
+  for (const network::Difference& each : findings.changes)
+    checked.changes.changes.push_back({each.path, {each.from}, {each.to}});
+  return fresh("application/json", codec::to_json(checked));
 }
 
 intake::Answer NetworkRoutes::change(const Call& call) {

@@ -2,11 +2,13 @@
 
 #include <algorithm>
 #include <utility>
+#include <vector>
 
 #include "access/password.hpp"
 #include "access/whence.hpp"
 #include "api/answers.hpp"
 #include "api/read_body.hpp"
+#include "api/session_rows.hpp"
 #include "codec/field.hpp"
 #include "codec/json.hpp"
 #include "codec/row.hpp"
@@ -17,7 +19,6 @@ namespace {
 
 using access::Role;
 using codec::json;
-using codec::Value;
 
 intake::Header cookie(std::string_view name, const std::string& id, std::chrono::seconds age) {
   return {"Set-Cookie", std::string(name) + "=" + id +
@@ -61,28 +62,30 @@ icd::Checked<std::string> read_password(const std::string& body) {
 intake::Answer SessionRoutes::session(const intake::RequestHead& head) {
   const auto visitor = entrance_.who(head);
   const auto* const session = visitor ? visitor->session : nullptr;
-  return object({{"role", visitor ? json(std::string(name_of(visitor->role))) : Value{}},
-                 {"csrf", session != nullptr ? json(session->csrf.reveal()) : Value{}},
-                 {"first_start", json(keys_.first_start())},
-                 {"set_up_open", json(keys_.set_up_open())}});
+  return fresh(
+      "application/json",
+      codec::to_json(WhoAsks{.role = visitor ? std::optional(visitor->role) : std::nullopt,
+                             .csrf = session != nullptr ? std::string(session->csrf.reveal()) : std::string(),
+                             .first_start = keys_.first_start(),
+                             .set_up_open = keys_.set_up_open()}));
 }
 
 intake::Answer SessionRoutes::sessions(const Call& call) {
   const auto now = loop_.now();
   const auto time = [&](access::Instant at) {
-    return json(loop_.stamp_now() - std::chrono::duration<double>(now - at).count());
+    return loop_.stamp_now() - std::chrono::duration<double>(now - at).count();
   };
-  Value::Array rows;
+  std::vector<SessionRow> rows;
   for (const access::Session& each : entrance_.sessions().all(now)) {
-    rows.push_back({Value::Object{{"number", json(each.number)},
-                                  {"role", json(std::string(name_of(each.role)))},
-                                  {"address", json(each.address)},
-                                  {"agent", json(each.agent)},
-                                  {"made", time(each.made)},
-                                  {"seen", time(each.seen)},
-                                  {"own", json(each.number == call.asker.session)}}});
+    rows.push_back({.number = each.number,
+                    .role = each.role,
+                    .address = each.address,
+                    .agent = each.agent,
+                    .made = time(each.made),
+                    .seen = time(each.seen),
+                    .own = each.number == call.asker.session});
   }
-  return fresh("application/json", codec::write_json({std::move(rows)}));
+  return fresh("application/json", codec::to_json(rows));
 }
 
 SessionRoutes::Poster SessionRoutes::poster_of(const Call& call) {

@@ -6,7 +6,7 @@
 
 #include "api/answers.hpp"
 #include "api/read_body.hpp"
-#include "api/settings_json.hpp"
+#include "api/settings_rows.hpp"
 #include "codec/field.hpp"
 #include "codec/json.hpp"
 #include "icd/sentence.hpp"
@@ -83,7 +83,7 @@ icd::Checked<PostedToken> read_token(const std::string& body) {
 }  // namespace
 
 intake::Answer SettingsRoutes::shown() const {
-  return fresh("application/json", write_setup(setup_));
+  return fresh("application/json", codec::to_json(setup_view(setup_)));
 }
 
 intake::Answer SettingsRoutes::exported() const {
@@ -96,11 +96,15 @@ intake::Answer SettingsRoutes::check(const std::string& body) const {
   const auto posted = read_posted(body, false);
   if (!posted) return refused(posted.error());
   const auto next = settings::parse(posted->settings);
-  if (!next) return fresh("application/json", write_check(next.error(), {}, {}));
+  if (!next)
+    return fresh("application/json", codec::to_json(CheckView{.errors = next.error(), .changes = {}}));
   const auto unfit = unfit_to_save(setup_.settings(), *next);
-  if (!unfit.empty()) return fresh("application/json", write_check(unfit, {}, {}));
-  return fresh("application/json",
-               write_check({}, settings::changes(setup_.settings(), *next), setup_.warnings(*next)));
+  if (!unfit.empty())
+    return fresh("application/json", codec::to_json(CheckView{.errors = unfit, .changes = {}}));
+  return fresh(
+      "application/json",
+      codec::to_json(CheckView{
+          .errors = {}, .changes = {settings::changes(setup_.settings(), *next), setup_.warnings(*next)}}));
 }
 
 intake::Answer SettingsRoutes::save(const std::string& body) {
@@ -132,7 +136,7 @@ intake::Answer SettingsRoutes::apply(const settings::Settings& next) {
   const auto changes = settings::changes(setup_.settings(), next);
   const auto warnings = setup_.warnings(next);
   if (const auto saved = setup_.save(next); !saved) return refused_change(saved.error());
-  return fresh("application/json", write_changes(changes, warnings));
+  return fresh("application/json", codec::to_json(ChangesView{changes, warnings}));
 }
 
 intake::Answer SettingsRoutes::set_token(const std::string& body) {

@@ -18,6 +18,7 @@ Value write_row(const Row& row, const void* from) {
   object.reserve(row.members.size());
   for (const Member& member : row.members) {
     Value value = member.kind->write(in(member, from));
+    if (!member.is_needed && std::holds_alternative<std::nullptr_t>(value.is)) continue;
     if (member.name.empty()) {
       std::ranges::move(std::get<Value::Object>(value.is), std::back_inserter(object));
     } else {

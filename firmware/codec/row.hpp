@@ -66,7 +66,8 @@ struct Member {
   std::span<const std::string_view> words = {};  // text that is one of these; empty: any
   std::optional<std::int64_t> least = {}, most = {};
   Cell cell = Cell::None;
-  int column = 0;  // of CSV, from 1
+  int column = 0;         // of CSV, from 1
+  bool is_needed = true;  // else it is left out where it would be null
 
   /// The same but for one of these; before those that call it, for clang.
   template <class T>
@@ -78,6 +79,7 @@ struct Member {
 
   constexpr Member as(const Kind& other) const { return with(&Member::kind, &other); }
   constexpr Member one_of(std::span<const std::string_view> all) const { return with(&Member::words, all); }
+  constexpr Member if_any() const { return with(&Member::is_needed, false); }
   constexpr Member from(std::int64_t bound) const { return with(&Member::least, std::optional(bound)); }
   constexpr Member to(std::int64_t bound) const { return with(&Member::most, std::optional(bound)); }
   constexpr Member csv(int place, Cell form = Cell::Plain) const {
@@ -110,6 +112,14 @@ struct KindOf<bool> {
   static Value write(bool value) { return {value}; }
   static void read(const Field& field, bool& value) { value = field.truth(); }
   static constexpr Schema schema = {.type = "boolean"};
+};
+
+/// Anything at all.
+template <>
+struct KindOf<Value> {
+  static Value write(const Value& value) { return value; }
+  static void read(const Field& field, Value& value) { value = field.value() ? *field.value() : Value{}; }
+  static constexpr Schema schema = {};
 };
 
 template <>

@@ -23,11 +23,9 @@ class Schemas {
     for (const Schema* const root : roots) remember(*root);
     add("{");
     for (std::size_t i = 0; i < count_; ++i) {
-      const Schema& schema = *named_[i];
-      add(i == 0 ? "" : ",");
-      add_text(name_of(schema));
-      add(":{");
-      add_body(schema, schema.least);
+      const Schema schema = named_[i];
+      begin(name_of(schema), "{");
+      add_body(schema);
       add("}");
     }
     add("}");
@@ -55,15 +53,25 @@ class Schemas {
   constexpr void add(std::string_view part) {
     for (const char letter : part) text_[size_++] = letter;
   }
+  /// What comes next in an object or an array.
+  constexpr void next() {
+    if (text_[size_ - 1] != '{' && text_[size_ - 1] != '[') add(",");
+  }
+  /// A member of an object, up to its value, which begins so.
+  constexpr void begin(std::string_view name, std::string_view value = "") {
+    next();
+    add_text(name);
+    add(":");
+    add(value);
+  }
   constexpr void add(std::string_view name, std::int64_t number) {
     std::array<char, 20> digits{};
-    add(name);
-    std::size_t begin = digits.size();
+    std::size_t first = digits.size();
     do {
-      digits[--begin] = static_cast<char>('0' + number % 10);
+      digits[--first] = static_cast<char>('0' + number % 10);
       number /= 10;
     } while (number > 0);
-    add({&digits[begin], digits.size() - begin});
+    begin(name, {&digits[first], digits.size() - first});
   }
   constexpr void add_text(std::string_view text) {
     if (text.find_first_of("\"\\") != text.npos) throw std::invalid_argument("not written here");
@@ -72,86 +80,91 @@ class Schemas {
     add("\"");
   }
 
-  constexpr void remember(const Schema& schema) {
-    const auto is_same = [&](const Schema* other) { return name_of(*other) == name_of(schema); };
-    if (!std::any_of(named_.begin(), named_.begin() + count_, is_same)) named_[count_++] = &schema;
+  constexpr void remember(Schema schema) {
+    schema.or_null = false;
+    const auto is_same = [&](const Schema& other) { return name_of(other) == name_of(schema); };
+    if (!std::any_of(named_.begin(), named_.begin() + count_, is_same)) named_[count_++] = schema;
   }
 
   /// The members of a schema where it is used.
-  constexpr void add_schema(const Schema& schema, std::optional<std::int64_t> least) {
+  constexpr void add_schema(const Schema& schema) {
     const bool is_simple = schema.row == nullptr && schema.name.empty();
-    if (schema.or_null && !is_simple) add(R"("oneOf":[{"type":"null"},{)");
+    if (schema.or_null && !is_simple) begin("oneOf", R"([{"type":"null"},{)");
     if (name_of(schema).empty()) {
-      add_body(schema, least);
+      add_body(schema);
     } else {
       remember(schema);
-      add(R"("$ref":"#/components/schemas/)");
+      begin("$ref", R"("#/components/schemas/)");
       add(name_of(schema));
       add("\"");
     }
     if (schema.or_null && !is_simple) add("}]");
   }
 
-  constexpr void add_body(const Schema& schema, std::optional<std::int64_t> least) {
+  constexpr void add_body(const Schema& schema) {
     if (schema.row != nullptr) return add_row(*schema.row);
-    add(schema.or_null ? R"("type":[)" : R"("type":)");
-    add_text(schema.type);
-    if (schema.or_null) add(R"(,"null"])");
+    if (!schema.type.empty()) {
+      begin("type", schema.or_null ? "[" : "");
+      add_text(schema.type);
+      if (schema.or_null) add(R"(,"null"])");
+    }
     if (schema.items != nullptr) {
-      add(R"(,"items":{)");
-      add_schema(*schema.items, schema.items->least);
+      begin("items", "{");
+      add_schema(*schema.items);
       add("}");
     }
-    if (least) add(R"(,"minimum":)", *least);
-    if (schema.fewest > 0) add(R"(,"minItems":)", static_cast<std::int64_t>(schema.fewest));
-    if (schema.most > 0) add(R"(,"maxItems":)", static_cast<std::int64_t>(schema.most));
-    if (!schema.more.empty()) add(",");
+    if (schema.least) add("minimum", *schema.least);
+    if (schema.fewest > 0) add("minItems", static_cast<std::int64_t>(schema.fewest));
+    if (schema.most > 0) add("maxItems", static_cast<std::int64_t>(schema.most));
+    if (schema.more.empty()) return;
+    next();
     add(schema.more);
   }
 
   constexpr void add_row(const Row& row) {
-    add(R"("type":"object")");
+    begin("type", R"("object")");
     add_meaning(row.meaning);
-    add(R"(,"properties":{)");
-    each_member(row, [this, first = true](const Member& member) mutable {
-      add(first ? "" : ",");
-      first = false;
-      add_text(member.name);
-      add(":{");
+    begin("properties", "{");
+    each_member(row, [this](const Member& member) {
+      begin(member.name, "{");
       add_member(member);
       add("}");
     });
-    add(R"(},"required":[)");
-    each_member(row, [this, first = true](const Member& member) mutable {
-      add(first ? "" : ",");
-      first = false;
+    add("}");
+    begin("required", "[");
+    each_member(row, [this](const Member& member) {
+      if (!member.is_needed) return;
+      next();
       add_text(member.name);
     });
-    add(R"(],"additionalProperties":false)");
+    add("]");
+    begin("additionalProperties", "false");
   }
 
   constexpr void add_member(const Member& member) {
-    const Schema& schema = *member.kind->schema;
-    add_schema(schema, member.least ? member.least : schema.least);
+    Schema schema = *member.kind->schema;
+    schema.or_null = schema.or_null && member.is_needed;
+    if (member.least) schema.least = member.least;
+    add_schema(schema);
     if (!member.words.empty()) {
-      add(R"(,"enum":)");
-      for (const std::string_view& word : member.words) {
-        add(&word == member.words.data() ? "[" : ",");
+      begin("enum", "[");
+      for (const std::string_view word : member.words) {
+        next();
         add_text(word);
       }
       add(schema.or_null ? ",null]" : "]");
     }
-    if (member.most) add(R"(,"maximum":)", *member.most);
+    if (member.most) add("maximum", *member.most);
     add_meaning(member.meaning);
   }
 
   constexpr void add_meaning(std::string_view meaning) {
     if (meaning.empty()) return;
-    add(R"(,"description":)");
+    begin("description");
     add_text(meaning);
   }
 
-  std::array<const Schema*, 64> named_{};
+  std::array<Schema, 64> named_{};
   std::size_t count_ = 0;
   std::array<char, kLongest> text_{};
   std::size_t size_ = 0;

@@ -6,6 +6,8 @@
 #include "api/map_json.hpp"
 #include "api/map_scene.hpp"
 #include "api/run_view.hpp"
+#include "api/session_rows.hpp"
+#include "api/settings_rows.hpp"
 
 namespace adit::api {
 namespace {
@@ -186,6 +188,55 @@ TEST(Bytes, OfTheMap) {
           R"("version":1429000,"blank":false})"));
   EXPECT_THAT(text, testing::HasSubstr(R"("heights":{"low":)"));
   EXPECT_EQ(text.size(), 3154u);
+}
+
+TEST(Bytes, OfWhoIsLoggedIn) {
+  EXPECT_EQ(codec::to_json(std::vector{SessionRow{.number = 3,
+                                                  .role = access::Role::Operator,
+                                                  .address = "10.0.0.7",
+                                                  .agent = "curl",
+                                                  .made = 940,
+                                                  .seen = 941.5,
+                                                  .own = true}}),
+            R"([{"number":3,"role":"operator","address":"10.0.0.7","agent":"curl","made":940.0,)"
+            R"("seen":941.5,"own":true}])");
+  EXPECT_EQ(codec::to_json(WhoAsks{.role = std::nullopt, .csrf = "", .first_start = true}),
+            R"({"role":null,"csrf":null,"first_start":true,"set_up_open":false})");
+  EXPECT_EQ(codec::to_json(WhoAsks{.role = access::Role::Viewer, .csrf = "c", .set_up_open = true}),
+            R"({"role":"viewer","csrf":"c","first_start":false,"set_up_open":true})");
+}
+
+TEST(Bytes, OfTheSettings) {
+  const KeyRow whole{.path = "p",
+                     .meaning = "m",
+                     .kind = "whole",
+                     .required = true,
+                     .default_value = {},
+                     .range = "1 to 2",
+                     .least = {std::int64_t{1}},
+                     .most = {std::int64_t{2}}};
+  const KeyRow choice{.path = "q",
+                      .meaning = "n",
+                      .kind = "choice",
+                      .default_value = {"a"},
+                      .range = "a or b",
+                      .words = std::vector<std::string>{"a", "b"}};
+  EXPECT_EQ(codec::to_json(SetupView{.settings = {codec::Value::Object{{"version", {std::int64_t{1}}}}},
+                                     .tag = "t",
+                                     .saved = true,
+                                     .trouble = "",
+                                     .tokens = {{"team", true}, {"scoring", false}},
+                                     .keys = {whole, choice}}),
+            R"({"settings":{"version":1},"tag":"t","saved":true,"applying":false,"trouble":"",)"
+            R"("tokens":{"team":true,"scoring":false},"keys":[{"path":"p","meaning":"m","kind":"whole",)"
+            R"("required":true,"default":null,"range":"1 to 2","least":1,"most":2},{"path":"q",)"
+            R"("meaning":"n","kind":"choice","required":false,"default":"a","range":"a or b",)"
+            R"("words":["a","b"]}]})");
+  const ChangesView changes{.changes = {{"p", {}, {0.5}}}, .warnings = {"w"}};
+  EXPECT_EQ(codec::to_json(changes), R"({"changes":[{"path":"p","from":null,"to":0.5}],"warnings":["w"]})");
+  EXPECT_EQ(
+      codec::to_json(CheckView{.errors = {{"p", "wrong"}}, .changes = changes}),
+      R"({"errors":[{"path":"p","what":"wrong"}],"changes":[{"path":"p","from":null,"to":0.5}],"warnings":["w"]})");
 }
 
 }  // namespace

@@ -1,0 +1,45 @@
+#include "api/session_rows.hpp"
+
+namespace adit::codec {
+
+template <>
+struct KindOf<access::Role> : OnlyWritten {
+  static Value write(access::Role role) { return {std::string(name_of(role))}; }
+  static constexpr Schema schema = {
+      .type = "string", .more = R"("enum":["operator","viewer"])", .name = "Role"};
+};
+
+}  // namespace adit::codec
+
+namespace adit::api {
+namespace {
+
+using codec::member;
+using codec::Member;
+
+constexpr Member kSession[] = {
+    member<&SessionRow::number>("number"),
+    member<&SessionRow::role>("role"),
+    member<&SessionRow::address>("address"),
+    member<&SessionRow::agent>("agent", "what the browser calls itself"),
+    member<&SessionRow::made>("made", "seconds since 1970"),
+    member<&SessionRow::seen>("seen", "seconds since 1970"),
+    member<&SessionRow::own>("own", "of the one who asks"),
+};
+
+constexpr Member kWhoAsks[] = {
+    member<&WhoAsks::role>("role"),
+    member<&WhoAsks::csrf>("csrf", "what actions by cookie send as Adit-CSRF; null: nobody, or by a token")
+        .as(codec::kTextOrNull),
+    member<&WhoAsks::first_start>("first_start", "no password is set: the code sets one"),
+    member<&WhoAsks::set_up_open>("set_up_open",
+                                  "the box's button opened set-up: the operator's password can be set "
+                                  "without the present one"),
+};
+
+}  // namespace
+
+constexpr codec::Row SessionRow::kRow = {"Session", kSession};
+constexpr codec::Row WhoAsks::kRow = {"WhoAsks", kWhoAsks};
+
+}  // namespace adit::api

@@ -1,0 +1,139 @@
+#include "api/settings_rows.hpp"
+
+#include <utility>
+
+#include "settings/keys.hpp"
+
+namespace adit::api {
+namespace {
+
+using codec::json;
+using codec::Kind;
+using codec::member;
+using codec::Member;
+using codec::Row;
+using codec::Schema;
+using codec::Value;
+
+constexpr Schema kSettingsSchema = {.type = "object",
+                                    .more =
+                                        R"("description":"The settings file: firmware/settings/README.md.",)"
+                                        R"("properties":{"version":{"const":1}},"required":["version"])",
+                                    .name = "Settings"};
+constexpr Kind kSettings = {
+    .write = codec::kind_of<Value>.write, .read = codec::kind_of<Value>.read, .schema = &kSettingsSchema};
+
+/// Whole or real, as the key is.
+constexpr Kind kNumber = {.write = codec::kind_of<Value>.write,
+                          .read = codec::kind_of<Value>.read,
+                          .schema = &codec::KindOf<double>::schema};
+
+constexpr std::string_view kKeyKinds[] = {"flag", "whole", "real", "text", "choice", "version"};
+
+constexpr Member kFault[] = {member<&settings::Error::path>("path"), member<&settings::Error::what>("what")};
+constexpr Row kFaultRow = {"Fault", kFault};
+
+constexpr Member kChange[] = {
+    member<&settings::Change::path>("path"),
+    member<&settings::Change::from>("from", "null: not there"),
+    member<&settings::Change::to>("to", "null: not there"),
+};
+constexpr Row kChangeRow = {"Change", kChange};
+
+}  // namespace
+}  // namespace adit::api
+
+namespace adit::codec {
+
+template <>
+struct KindOf<settings::Error> : KindOfRow<settings::Error, api::kFaultRow> {};
+template <>
+struct KindOf<settings::Change> : KindOfRow<settings::Change, api::kChangeRow> {};
+
+/// An object with a member for each.
+template <>
+struct KindOf<std::vector<api::TokenRow>> : OnlyWritten {
+  static Value write(const std::vector<api::TokenRow>& tokens) {
+    Value::Object object;
+    for (const api::TokenRow& token : tokens) object.emplace_back(token.name, Value{token.set});
+    return {std::move(object)};
+  }
+  static constexpr Schema schema = {.type = "object", .more = R"("additionalProperties":{"type":"boolean"})"};
+};
+
+}  // namespace adit::codec
+
+namespace adit::api {
+namespace {
+
+constexpr Member kKey[] = {
+    member<&KeyRow::path>("path"),
+    member<&KeyRow::meaning>("meaning"),
+    member<&KeyRow::kind>("kind").one_of(kKeyKinds),
+    member<&KeyRow::required>("required"),
+    member<&KeyRow::default_value>("default"),
+    member<&KeyRow::range>("range", "in words"),
+    member<&KeyRow::words>("words").if_any(),
+    member<&KeyRow::least>("least").as(kNumber).if_any(),
+    member<&KeyRow::most>("most").as(kNumber).if_any(),
+};
+
+constexpr Member kSetup[] = {
+    member<&SetupView::settings>("settings").as(kSettings),
+    member<&SetupView::tag>("tag", "names this version of them"),
+    member<&SetupView::saved>("saved", "here; else they are those that the box was given"),
+    member<&SetupView::applying>("applying", "a change was taken, and is in use within a second"),
+    member<&SetupView::trouble>("trouble", "why the last change is not in use (it was taken back), or empty"),
+    member<&SetupView::tokens>("tokens", "for each that there can be, whether there is one"),
+    member<&SetupView::keys>("keys"),
+};
+
+constexpr Member kChanged[] = {
+    member<&ChangesView::changes>("changes"),
+    member<&ChangesView::warnings>(
+        "warnings", "what they mean, also for the reports that wait, are in doubt or are held"),
+};
+
+constexpr Member kCheck[] = {
+    member<&CheckView::errors>("errors"),
+    member<&CheckView::changes>(""),
+};
+
+KeyRow row_of(const settings::Key& key, const settings::Settings& defaults) {
+  KeyRow row{.path = std::string(key.path),
+             .meaning = std::string(key.meaning),
+             .kind = std::string(settings::name_of(key.kind)),
+             .required = key.required,
+             .default_value = key.required ? Value{} : settings::value_of(key.kind, defaults),
+             .range = settings::range_of(key.kind)};
+  const auto bound = [&row](const auto& number) {
+    row.least = json(number.least);
+    row.most = json(number.most);
+  };
+  if (const auto* choice = std::get_if<settings::Choice>(&key.kind))
+    row.words.emplace(choice->words.begin(), choice->words.end());
+  if (const auto* whole = std::get_if<settings::Whole>(&key.kind)) bound(*whole);
+  if (const auto* real = std::get_if<settings::Real>(&key.kind)) bound(*real);
+  return row;
+}
+
+}  // namespace
+
+constexpr Row KeyRow::kRow = {"", kKey};
+constexpr Row SetupView::kRow = {"Setup", kSetup};
+constexpr Row ChangesView::kRow = {"Changes", kChanged};
+constexpr Row CheckView::kRow = {"Checked", kCheck};
+
+SetupView setup_view(const Setup& setup) {
+  SetupView view{.settings = settings::value_of(setup.settings()),
+                 .tag = settings::tag_of(setup.settings()),
+                 .saved = setup.saved(),
+                 .applying = setup.applying(),
+                 .trouble = setup.trouble(),
+                 .tokens = setup.tokens()};
+  const settings::Settings defaults = settings::with_an_item_of_each();
+  for (const settings::Key& key : settings::keys()) view.keys.push_back(row_of(key, defaults));
+  return view;
+}
+
+}  // namespace adit::api

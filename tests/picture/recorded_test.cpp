@@ -1,3 +1,4 @@
+#include <cstdlib>
 #include <filesystem>
 #include <fstream>
 #include <iterator>
@@ -10,7 +11,11 @@ namespace {
 
 namespace fs = std::filesystem;
 
-const fs::path kData = ADIT_SOURCE_DIR "/../shared/data";
+/// Of the recorded maps.
+fs::path folder() {
+  const char* const named = std::getenv("ADIT_MAPS");
+  return named == nullptr ? "" : named;
+}
 
 std::string content(const fs::path& path) {
   std::ifstream file(path, std::ios::binary);
@@ -45,13 +50,13 @@ icd::MapUpdate recorded_grid(const fs::path& path, double resolution) {
 class Recorded : public testing::Test {
  protected:
   void SetUp() override {
-    if (!fs::exists(kData)) GTEST_SKIP() << "no recorded maps at " << kData;
+    if (!fs::exists(folder())) GTEST_SKIP() << "ADIT_MAPS names no folder of recorded maps";
   }
   Easel easel;
 };
 
 TEST_F(Recorded, AGridsKnownPixelsAreThoseOfItsKnownCells) {
-  const auto map = recorded_grid(kData / "grids/ecn_batS.pgm", 0.02);
+  const auto map = recorded_grid(folder() / "grids/ecn_batS.pgm", 0.02);
   const auto& grid = std::get<icd::OccupancyGrid>(map.msg);
   ASSERT_EQ(grid.width, 1598U);
   const auto drawing = easel.draw(map);
@@ -74,7 +79,7 @@ TEST_F(Recorded, AGridsKnownPixelsAreThoseOfItsKnownCells) {
 }
 
 TEST_F(Recorded, AScanFillsATileAndItsHeightsAreARoomsHeights) {
-  const std::string bytes = content(kData / "clouds/fast_gicp_251370668.pcd");
+  const std::string bytes = content(folder() / "clouds/fast_gicp_251370668.pcd");
   const auto begin = bytes.find("DATA binary\n") + 12;
   icd::PointCloud2 cloud;
   cloud.fields = {{"x", 0, icd::Datatype::Float32, 1},

@@ -1,4 +1,4 @@
-"""Maps to send: recorded ones from ../shared/data where that is, and generated ones."""
+"""Maps to send: recorded ones from the folder that ADIT_MAPS names, and generated ones."""
 
 import dataclasses
 import math
@@ -8,7 +8,7 @@ import random
 import re
 import struct
 
-DATA = pathlib.Path(os.environ["ADIT_SOURCE"]).parent / "shared" / "data"
+RECORDED = os.environ.get("ADIT_MAPS")
 IDENTITY = {"x": 0.0, "y": 0.0, "z": 0.0, "w": 1.0}
 
 
@@ -108,12 +108,13 @@ def read_ply(path):
 
 
 def recorded():
-    """Every recorded map, the largest last; none where the folder is absent."""
-    if not DATA.is_dir():
+    """Every recorded map, the largest last; none where no folder of them is named."""
+    if not RECORDED:
         return []
-    found = [read_grid(path) for path in sorted((DATA / "grids").glob("*.pgm"))]
-    found += [read_pcd(path) for path in sorted((DATA / "clouds").glob("*.pcd"))]
-    found += [read_ply(path) for path in sorted((DATA / "clouds").glob("*.ply"))]
+    folder = pathlib.Path(RECORDED)
+    found = [read_grid(path) for path in sorted(folder.glob("grids/*.pgm"))]
+    found += [read_pcd(path) for path in sorted(folder.glob("clouds/*.pcd"))]
+    found += [read_ply(path) for path in sorted(folder.glob("clouds/*.ply"))]
     return sorted(found, key=lambda item: len(item.data))
 
 

@@ -86,6 +86,7 @@ class Api::Impl {
                                        });
   }
 
+  bool knows(const intake::RequestHead& head) { return entrance_.who(head).has_value(); }
   void changed() { live_.changed(); }
   void let_in(std::vector<icd::BearerToken> tokens) { entrance_.let_in(std::move(tokens)); }
 
@@ -118,6 +119,10 @@ class Api::Impl {
 Api::Api(loop::Loop& loop, const Served& served, std::vector<icd::BearerToken> tokens)
     : impl_(std::make_unique<Impl>(loop, served, std::move(tokens))) {}
 Api::~Api() = default;
+
+bool Api::knows(const intake::RequestHead& head) {
+  return impl_->knows(head);
+}
 
 std::unique_ptr<intake::BodySink> Api::open(const intake::RequestHead& head,
                                             std::shared_ptr<intake::Responder> responder,

@@ -42,6 +42,7 @@ class Api final : public intake::Handler {
   Api(loop::Loop& loop, const Served& served, std::vector<icd::BearerToken> tokens);
   ~Api() override;
 
+  bool knows(const intake::RequestHead& head) override;
   std::unique_ptr<intake::BodySink> open(const intake::RequestHead& head,
                                          std::shared_ptr<intake::Responder> responder,
                                          std::shared_ptr<intake::Flow> flow) override;

@@ -29,6 +29,12 @@ Answer error_answer(icd::Status status, std::string_view sentence) {
   return {.status = status, .body = codec::json_string(sentence), .headers = {}};
 }
 
+Answer no_room(std::string_view sentence) {
+  Answer answer = error_answer(icd::Status::ServiceUnavailable, sentence);
+  answer.headers.push_back({"Retry-After", "1"});
+  return answer;
+}
+
 bool is_field_value(std::string_view text) {
   return !text.empty() && std::ranges::all_of(text, [](char letter) {
     const auto byte = static_cast<unsigned char>(letter);

@@ -13,6 +13,9 @@ namespace adit::intake {
 /// 9110 5.5).
 bool is_field_value(std::string_view text);
 
+/// 503, with the sentence and when to try again.
+Answer no_room(std::string_view sentence);
+
 /// For libmicrohttpd; fields that are none are left out. Null where there is no memory.
 MHD_Response* make_response(const Answer& answer);
 

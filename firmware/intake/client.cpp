@@ -1,8 +1,8 @@
 #include "intake/client.hpp"
 
+#include <linux/tcp.h>
 #include <microhttpd.h>
 #include <netinet/in.h>
-#include <netinet/tcp.h>
 #include <sys/epoll.h>
 #include <sys/ioctl.h>
 #include <sys/socket.h>
@@ -41,7 +41,28 @@ Client::Client(Engine& engine, loop::Loop& loop, MHD_Connection* connection, int
   // together with the last bytes. Edge-triggered, because an ended direction would be reported over and over.
   hang_up_ = loop.watch(fd, EPOLLRDHUP | EPOLLET, [this](std::uint32_t events) { happened(events); });
   enter(Phase::Head);
-  expect_bytes(engine_.listen().headers_within);
+  expect_head();
+}
+
+std::optional<Held> Client::held() const {
+  if (leaving_ || hung_up_) return std::nullopt;
+  return Held{.number = number_, .address = peer_, .known = known_, .doing = doing(), .since = since_};
+}
+
+Held::Doing Client::doing() const {
+  if (phase_ == Phase::Idle) return Held::Doing::Idle;
+  if (phase_ == Phase::Head && unread() > 0) return Held::Doing::Fresh;
+  if (phase_ == Phase::Head || request_->is_sending()) return Held::Doing::Sending;
+  return ended_ && suspended_ ? Held::Doing::Left : Held::Doing::Waiting;
+}
+
+void Client::give_way() {
+  engine_.tell(phase_ == Phase::Idle ? Ended::Idle : Ended::GaveWay, peer_);
+  if (phase_ == Phase::Head || (phase_ == Phase::Request && request_->is_unanswered())) {
+    say_last(last_answer_text(
+        no_room("too many connections are open, and this one gave way to another; try again"), true));
+  }
+  cut();
 }
 
 void Client::happened(std::uint32_t events) {
@@ -50,7 +71,6 @@ void Client::happened(std::uint32_t events) {
     resume();
   } else if (!std::exchange(ended_, true)) {
     if (bytes_expected_) expect_bytes(kAfterEnd);
-    if (may_give_way()) engine_.may_have_hung_up();
   }
 }
 
@@ -63,7 +83,7 @@ void Client::head_begun(std::string_view target) {
   target_ = target;
   if (phase_ != Phase::Idle) return;
   enter(Phase::Head);
-  expect_bytes(engine_.listen().headers_within);
+  expect_head();
 }
 
 void Client::request_begun(std::shared_ptr<Request> request) {
@@ -78,29 +98,75 @@ void Client::request_over() {
   expect_bytes(engine_.listen().idle);
 }
 
+void Client::expect_head() {
+  const Listen& listen = engine_.listen();
+  expect_bytes(known_ ? listen.rate_over : listen.stranger_within);
+}
+
+void Client::expect_body() {
+  expect_bytes(engine_.listen().stranger_within);
+  if (!known_ || ended_) return;
+  rate_.emplace(engine_.listen().rate_over, engine_.now());
+  set_deadline(rate_->look_at());
+}
+
+void Client::body_came(std::size_t bytes) {
+  if (rate_) rate_->moved(bytes);
+}
+
+void Client::expect_steady_reading() {
+  expect_nothing();
+  taken_before_ = taken();
+  rate_.emplace(engine_.listen().rate_over, engine_.now());
+  set_deadline(rate_->look_at());
+}
+
 void Client::expect_bytes(std::chrono::milliseconds within) {
+  expect_nothing();
   bytes_expected_ = true;
-  set_deadline(ended_ ? std::min(within, kAfterEnd) : within);
+  set_deadline(engine_.now() + (ended_ ? std::min(within, kAfterEnd) : within));
 }
 
 void Client::expect_reading(std::chrono::milliseconds within) {
-  bytes_expected_ = false;
-  set_deadline(within);
+  expect_nothing();
+  set_deadline(engine_.now() + within);
 }
 
 void Client::expect_nothing() {
   bytes_expected_ = false;
+  rate_.reset();
   deadline_ = loop::Instant::max();
 }
 
-void Client::set_deadline(std::chrono::milliseconds within) {
-  deadline_ = engine_.now() + within;
+void Client::set_deadline(loop::Instant when) {
+  deadline_ = when;
   engine_.look_at(deadline_);
 }
 
-bool Client::has_said_all() const {
+std::uint64_t Client::taken() const {
+  tcp_info info{};
+  socklen_t size = sizeof info;
+  return ::getsockopt(fd_, IPPROTO_TCP, TCP_INFO, &info, &size) == 0 ? info.tcpi_bytes_acked : 0;
+}
+
+bool Client::keeps_up() {
+  if (!rate_) return false;
+  if (!bytes_expected_) {
+    const std::uint64_t before = std::exchange(taken_before_, taken());
+    rate_->moved(taken_before_ - before);
+  }
+  if (rate_->is_too_slow(engine_.now())) return false;
+  set_deadline(rate_->look_at());
+  return true;
+}
+
+int Client::unread() const {
   int unread = 0;
-  return ended_ && (::ioctl(fd_, FIONREAD, &unread) != 0 || unread == 0);
+  return ::ioctl(fd_, FIONREAD, &unread) == 0 ? unread : 0;
+}
+
+bool Client::has_said_all() const {
+  return ended_ && unread() == 0;
 }
 
 bool Client::heard_since(loop::Instant when) const {
@@ -116,6 +182,7 @@ void Client::late() {
     expect_bytes(kAfterEnd);
     return;
   }
+  if (keeps_up()) return;
   const bool said_all = bytes_expected_ && ended_;
   expect_nothing();
   switch (phase_) {
@@ -125,12 +192,13 @@ void Client::late() {
     case Phase::Idle:
       if (!said_all && heard_since(since_)) {  // a head has begun, but not its first line ended
         enter(Phase::Head);
-        expect_bytes(engine_.listen().headers_within);
+        expect_head();
       } else {
         cut();
       }
       return;
     case Phase::Head:
+      if (!said_all) engine_.tell(Ended::Slow, peer_);
       say_last(last_answer_text(
           error_answer(icd::Status::RequestTimeout, "the head of the request took too long"), true));
       cut();
@@ -157,6 +225,7 @@ void Client::say_last(std::string_view text) {
 }
 
 void Client::cut() {
+  leaving_ = true;
   ::shutdown(fd_, SHUT_RDWR);
   resume();
   engine_.run_soon();

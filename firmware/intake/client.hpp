@@ -2,9 +2,13 @@
 
 #include <cstdint>
 #include <memory>
+#include <optional>
 #include <string>
+#include <string_view>
 
+#include "intake/least_rate.hpp"
 #include "intake/server.hpp"
+#include "intake/shares.hpp"
 #include "loop/loop.hpp"
 
 struct MHD_Connection;
@@ -23,8 +27,7 @@ class Engine {
   virtual void run_soon() = 0;
   /// The server looks at its clients' deadlines no later than this.
   virtual void look_at(loop::Instant when) = 0;
-  /// A client has ended its own direction while it waits for an answer: it may have hung up.
-  virtual void may_have_hung_up() = 0;
+  virtual void tell(Ended why, const std::string& address) = 0;
 };
 
 /// One client's connection, from accept to close. Lives exactly as long as libmicrohttpd's own.
@@ -47,13 +50,15 @@ class Client {
   const std::string& peer() const { return peer_; }
   const std::string& local() const { return local_; }
   Engine& engine() const { return engine_; }
-  Phase phase() const { return phase_; }
-  loop::Instant since() const { return since_; }  // when the phase began
+  /// As the shares see it; nothing once it is on its way out.
+  std::optional<Held> held() const;
+  bool is_known() const { return known_; }
+  void is_known(bool known) { known_ = known; }
+  /// Ends for another, who has no room else; says so where a request is under way.
+  void give_way();
   /// Both directions are over, or the connection was reset. A client that only ends its own direction is not
   /// gone: it may still read.
   bool hung_up() const { return hung_up_; }
-  /// It waits for an answer and sends no more: it is the first to give way where there is no more room.
-  bool may_give_way() const { return phase_ == Phase::Request && ended_ && suspended_; }
 
   void head_begun(std::string_view target);
   const std::string& target() const { return target_; }
@@ -64,6 +69,11 @@ class Client {
   /// The client is to send something, or to take what it is sent, within that time.
   void expect_bytes(std::chrono::milliseconds within);
   void expect_reading(std::chrono::milliseconds within);
+  /// The rest of the body: a stranger's soon, that of who is known at the least rate.
+  void expect_body();
+  void body_came(std::size_t bytes);
+  /// The client is to take its answer at the least rate.
+  void expect_steady_reading();
   void expect_nothing();
   loop::Instant deadline() const { return deadline_; }
   /// The deadline has passed.
@@ -80,9 +90,15 @@ class Client {
   void cut();
 
  private:
+  Held::Doing doing() const;
   void enter(Phase phase);
+  void expect_head();
+  /// Of the answer: bytes that the client's machine has taken.
+  std::uint64_t taken() const;
+  bool keeps_up();
   void happened(std::uint32_t events);
-  void set_deadline(std::chrono::milliseconds within);
+  void set_deadline(loop::Instant when);
+  int unread() const;  // bytes
   /// The client has ended its direction, and all that it sent has been read.
   bool has_said_all() const;
   bool heard_since(loop::Instant when) const;
@@ -97,7 +113,11 @@ class Client {
   loop::Instant since_;
   loop::Instant deadline_ = loop::Instant::max();
   bool bytes_expected_ = false;  // rather than reading
-  bool ended_ = false;           // the client's direction
+  bool known_ = false;
+  bool leaving_ = false;            // cut
+  std::optional<LeastRate> rate_;   // of its body, or of its reading
+  std::uint64_t taken_before_ = 0;  // taken(), when that was looked at last
+  bool ended_ = false;              // the client's direction
   bool suspended_ = false;
   bool hung_up_ = false;
   std::shared_ptr<Request> request_;

@@ -86,6 +86,10 @@ std::size_t IcdRoutes::most_bytes(icd::Uri uri) const {
   return options_.rules.map_bytes / 3 * 4 + kSmallBody;  // base64
 }
 
+bool IcdRoutes::knows(const RequestHead& head) {
+  return icd::uri_of(head.path()) ? may_enter(head) : other_.knows(head);
+}
+
 std::unique_ptr<BodySink> IcdRoutes::open(const RequestHead& head, std::shared_ptr<Responder> responder,
                                           std::shared_ptr<Flow> flow) {
   const auto uri = icd::uri_of(head.path());

@@ -40,6 +40,7 @@ class IcdRoutes final : public Handler {
  public:
   IcdRoutes(IcdOptions options, Desk& desk, loop::Workers& workers, Handler& other);
 
+  bool knows(const RequestHead& head) override;
   std::unique_ptr<BodySink> open(const RequestHead& head, std::shared_ptr<Responder> responder,
                                  std::shared_ptr<Flow> flow) override;
 
@@ -72,6 +73,7 @@ Answer error_answer(icd::Status status, std::string_view sentence);
 /// Answers 404 to everything: for where nothing else is served.
 class NotFound final : public Handler {
  public:
+  bool knows(const RequestHead&) override { return false; }
   std::unique_ptr<BodySink> open(const RequestHead& head, std::shared_ptr<Responder> responder,
                                  std::shared_ptr<Flow> flow) override;
 };

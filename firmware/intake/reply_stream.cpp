@@ -46,14 +46,14 @@ ssize_t ReplyStream::read(char* into, std::size_t most) {
 }
 
 MHD_Response* ReplyStream::make_response(const std::shared_ptr<ReplyStream>& stream) {
-  using Held = std::shared_ptr<ReplyStream>;
-  auto held = std::make_unique<Held>(stream);
+  using Shared = std::shared_ptr<ReplyStream>;
+  auto held = std::make_unique<Shared>(stream);
   MHD_Response* response = MHD_create_response_from_callback(
       MHD_SIZE_UNKNOWN, kBlock,
       [](void* cls, std::uint64_t, char* into, std::size_t most) {
-        return (*static_cast<Held*>(cls))->read(into, most);
+        return (*static_cast<Shared*>(cls))->read(into, most);
       },
-      held.get(), [](void* cls) { const std::unique_ptr<Held> released(static_cast<Held*>(cls)); });
+      held.get(), [](void* cls) { const std::unique_ptr<Shared> released(static_cast<Shared*>(cls)); });
   if (response == nullptr) return nullptr;
   held.release();  // NOLINT(bugprone-unused-return-value): the response owns it now
   if (is_field_value(stream->content_type_)) {

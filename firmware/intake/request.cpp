@@ -50,25 +50,34 @@ class Owed final : public Responder {
 
 Request::Request(Client& client, std::string_view method) : client_(&client), is_head_(method == "HEAD") {}
 
-void Request::open(Handler& handler, std::string_view method, Target target, const Framing& framing) {
+void Request::begin(std::string_view method, Target target, const Framing& framing) {
   left_ = framing.length;
+  has_body_ = framing.has_body;
   head_.emplace(client_->connection(), method, std::move(target), client_->peer(), client_->local(),
                 client_->number(), framing.length);
+}
+
+void Request::open(Handler& handler) {
   in_call_ = true;
   sink_ = handler.open(*head_, std::make_shared<Owed>(shared_from_this()), shared_from_this());
   in_call_ = false;
   stage_ = Stage::Body;
   if (!sink_ && !answered()) answer_ = error_answer(icd::Status::InternalServerError, "no answer");
-  if (!framing.has_body) return;
+  if (!has_body_) return;
   if (answered()) {
     turn_away();
   } else {
-    client_->expect_bytes(client_->engine().listen().body_silence);
+    client_->expect_body();
   }
 }
 
 void Request::refuse_head(std::string_view sentence) {
   answer_ = error_answer(icd::Status::BadRequest, sentence);
+  refuse(*answer_);
+}
+
+void Request::refuse_for_room(std::string_view sentence) {
+  answer_ = no_room(sentence);
   refuse(*answer_);
 }
 
@@ -89,7 +98,7 @@ Next Request::body(std::span<const std::uint8_t> piece) {
     return Next::GoOn;
   }
   if (more || resumed_) {
-    client_->expect_bytes(client_->engine().listen().body_silence);
+    client_->body_came(piece.size());
   } else {
     client_->expect_nothing();
     client_->suspend();
@@ -143,7 +152,7 @@ Next Request::hand_over() {
   if (stream_) {
     client_->expect_nothing();
   } else {
-    client_->expect_reading(client_->engine().listen().idle);
+    client_->expect_steady_reading();
   }
   return Next::GoOn;
 }
@@ -153,6 +162,7 @@ void Request::late() {
     refuse(*answer_);
     return;
   }
+  if (stage_ != Stage::Refusing) client_->engine().tell(Ended::Slow, client_->peer());
   if (stage_ == Stage::Body) {
     refuse(error_answer(icd::Status::RequestTimeout, "the body of the request took too long"));
   }
@@ -211,7 +221,7 @@ bool Request::client_gone() const {
 void Request::resume() {
   resumed_ = true;
   if (stage_ != Stage::Body || !client_->suspended()) return;
-  client_->expect_bytes(client_->engine().listen().body_silence);
+  client_->expect_body();
   client_->resume();
 }
 

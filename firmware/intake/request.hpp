@@ -22,13 +22,24 @@ class Request final : public Responder, public Flow, public std::enable_shared_f
   Request(Client& client, std::string_view method);
 
   /// The connection's side.
-  void open(Handler& handler, std::string_view method, Target target, const Framing& framing);
+  /// Its head is whole.
+  void begin(std::string_view method, Target target, const Framing& framing);
+  const RequestHead& head() const { return *head_; }
+  void open(Handler& handler);
   /// Answers 400 without asking a handler, and ends the connection.
   void refuse_head(std::string_view sentence);
+  /// Answers 503 without asking a handler, and ends the connection.
+  void refuse_for_room(std::string_view sentence);
   Next body(std::span<const std::uint8_t> piece);
   /// The body is whole; called again each time that the connection has been resumed.
   Next end();
   void late();
+  /// Its head or body is not whole, and more of it is wanted.
+  bool is_sending() const {
+    return stage_ == Stage::Head || stage_ == Stage::Body || stage_ == Stage::Refusing;
+  }
+  /// libmicrohttpd has nothing of an answer to it yet.
+  bool is_unanswered() const { return !answered() && (stage_ == Stage::Body || stage_ == Stage::Whole); }
   /// A callback of the handler's threw: answered 500, unless an answer was on its way, and the connection
   /// ends.
   Next failed();
@@ -64,7 +75,8 @@ class Request final : public Responder, public Flow, public std::enable_shared_f
   std::optional<Answer> answer_;
   std::shared_ptr<ReplyStream> stream_;
   Stage stage_ = Stage::Head;
-  bool is_head_;                       // the method HEAD
+  bool is_head_;  // the method HEAD
+  bool has_body_ = false;
   bool in_call_ = false;               // of the handler
   bool resumed_ = false;               // since the last piece
   std::optional<std::uint64_t> left_;  // of the body; absent where chunked

@@ -6,12 +6,14 @@
 #include <algorithm>
 #include <map>
 #include <utility>
+#include <vector>
 
 #include "intake/accept.hpp"
 #include "intake/client.hpp"
 #include "intake/head.hpp"
 #include "intake/listen_socket.hpp"
 #include "intake/request.hpp"
+#include "intake/shares.hpp"
 #include "intake/target.hpp"
 #include "loop/guard.hpp"
 
@@ -22,15 +24,19 @@ namespace {
 /// request: more would cost a small one its place in the processor's caches.
 constexpr std::size_t kConnectionMemory = 32 * 1024;
 
-/// A connection that has sent nothing of a request for this long gives way where none is left for others.
-constexpr std::chrono::milliseconds kGivesWayAfter(250);
+/// Connections that gave way and that libmicrohttpd has not ended yet. It takes in no more than eleven at
+/// once.
+constexpr unsigned kOnTheirWayOut = 32;
 
 }  // namespace
 
 class Server::Impl final : public Engine {
  public:
   Impl(loop::Loop& loop, Listen listen, Handler& handler)
-      : loop_(loop), listen_(std::move(listen)), handler_(handler) {}
+      : loop_(loop),
+        listen_(std::move(listen)),
+        shares_(Shares::of(listen_.connections, listen_.connections_per_address)),
+        handler_(handler) {}
   Impl(const Impl&) = delete;
   Impl& operator=(const Impl&) = delete;
   ~Impl() override;
@@ -39,12 +45,13 @@ class Server::Impl final : public Engine {
   void stop_listening();
   std::uint16_t port() const { return port_; }
   std::size_t connections() const { return clients_.size(); }
+  std::size_t strangers() const;
 
   loop::Instant now() const override { return loop_.now(); }
   const Listen& listen() const override { return listen_; }
   void run_soon() override;
   void look_at(loop::Instant when) override;
-  void may_have_hung_up() override { make_room(); }
+  void tell(Ended why, const std::string& address) override;
 
  private:
   static MHD_Result request_came(void* cls, MHD_Connection* connection, const char* url, const char* method,
@@ -62,13 +69,17 @@ class Server::Impl final : public Engine {
   Next hear(Client& client, std::string_view method, std::string_view upload, void** request_cls);
   void first_call(Client& client, std::string_view method);
   void connected(MHD_Connection* connection, void** client_cls);
-  void make_room();
-  bool give_way(std::string_view address);
+  std::vector<Held> held_but(const Client* one) const;
+  /// Those who are more than their share.
+  void send_strangers_away();
+  /// For a request that shows a token. False: it is to be refused.
+  bool make_room_for(Client& client);
   void run();
   void look_at_deadlines();
 
   loop::Loop& loop_;
   const Listen listen_;
+  const Shares shares_;
   Handler& handler_;
   MHD_Daemon* daemon_ = nullptr;
   std::uint16_t port_ = 0;
@@ -90,11 +101,11 @@ std::expected<void, std::string> Server::Impl::start(loop::FileDescriptor given)
   daemon_ = MHD_start_daemon(
       MHD_USE_EPOLL | MHD_ALLOW_SUSPEND_RESUME | MHD_USE_ERROR_LOG, 0, nullptr, nullptr, &Impl::request_came,
       this, MHD_OPTION_EXTERNAL_LOGGER, &Impl::say_nothing, nullptr, MHD_OPTION_LISTEN_SOCKET, socket->get(),
-      MHD_OPTION_CONNECTION_LIMIT, listen_.connections, MHD_OPTION_PER_IP_CONNECTION_LIMIT,
-      listen_.connections_per_address, MHD_OPTION_CONNECTION_TIMEOUT, 0u, MHD_OPTION_CONNECTION_MEMORY_LIMIT,
-      kConnectionMemory, MHD_OPTION_NOTIFY_CONNECTION, &Impl::connection_changed, this,
-      MHD_OPTION_NOTIFY_COMPLETED, &Impl::request_completed, this, MHD_OPTION_URI_LOG_CALLBACK,
-      &Impl::head_begun, this, MHD_OPTION_UNESCAPE_CALLBACK, &Impl::leave_escaped, nullptr, MHD_OPTION_END);
+      MHD_OPTION_CONNECTION_LIMIT, shares_.strangers + shares_.known + kOnTheirWayOut,
+      MHD_OPTION_CONNECTION_TIMEOUT, 0u, MHD_OPTION_CONNECTION_MEMORY_LIMIT, kConnectionMemory,
+      MHD_OPTION_NOTIFY_CONNECTION, &Impl::connection_changed, this, MHD_OPTION_NOTIFY_COMPLETED,
+      &Impl::request_completed, this, MHD_OPTION_URI_LOG_CALLBACK, &Impl::head_begun, this,
+      MHD_OPTION_UNESCAPE_CALLBACK, &Impl::leave_escaped, nullptr, MHD_OPTION_END);
   if (daemon_ == nullptr) return std::unexpected("the HTTP server did not start");
   accepts_ = accept_instead(socket->get(), [this](int fd, const sockaddr* peer, unsigned size) {
     MHD_add_connection(daemon_, fd, peer, size);
@@ -138,6 +149,7 @@ void Server::Impl::run_soon() {
 void Server::Impl::run() {
   run_is_due_ = false;
   MHD_run(daemon_);
+  send_strangers_away();
   MHD_UNSIGNED_LONG_LONG wait_ms = 0;
   if (MHD_get_timeout(daemon_, &wait_ms) == MHD_YES && wait_ms == 0) run_soon();
 }
@@ -157,7 +169,6 @@ void Server::Impl::look_at_deadlines() {
   loop::Instant next = loop::Instant::max();
   for (const auto& [number, client] : clients_) next = std::min(next, client->deadline());
   if (next != loop::Instant::max()) look_at(next);
-  make_room();
 }
 
 void Server::Impl::connected(MHD_Connection* connection, void** client_cls) {
@@ -169,42 +180,35 @@ void Server::Impl::connected(MHD_Connection* connection, void** client_cls) {
   Client* const known = client.get();
   clients_.emplace(known->number(), std::move(client));
   *client_cls = known;
-  make_room();
 }
 
-/// At a limit libmicrohttpd takes nobody in: before that, a client that seems to have hung up while it waits
-/// for an answer gives way (a report that is tried again every 300 ms is one connection each time), and else
-/// the connection that has asked for nothing for longest.
-void Server::Impl::make_room() {
-  std::map<std::string_view, std::uint32_t> of_address;
-  for (const auto& [number, client] : clients_) ++of_address[client->peer()];
-  for (const auto& [address, count] : of_address) {
-    if (count >= listen_.connections_per_address) give_way(address);
-  }
-  if (clients_.size() < listen_.connections || give_way({})) return;
-  Client* longest = nullptr;
-  for (const auto& [number, client] : clients_) {
-    if (client->phase() == Client::Phase::Request) continue;
-    if (longest == nullptr || client->since() < longest->since()) longest = client.get();
-  }
-  if (longest == nullptr) return;
-  const loop::Instant gives_way = longest->since() + kGivesWayAfter;
-  if (loop_.now() >= gives_way) {
-    longest->cut();
-  } else {
-    look_at(gives_way);
-  }
+void Server::Impl::tell(Ended why, const std::string& address) {
+  if (listen_.ended) listen_.ended(why, address);
 }
 
-/// The one of `address` (or, "", of any) that has waited longest since it ended its own direction ends.
-bool Server::Impl::give_way(std::string_view address) {
-  Client* oldest = nullptr;
+std::size_t Server::Impl::strangers() const {
+  return static_cast<std::size_t>(
+      std::ranges::count_if(clients_, [](const auto& each) { return !each.second->is_known(); }));
+}
+
+std::vector<Held> Server::Impl::held_but(const Client* one) const {
+  std::vector<Held> all;
   for (const auto& [number, client] : clients_) {
-    if (!client->may_give_way() || (!address.empty() && client->peer() != address)) continue;
-    if (oldest == nullptr || client->since() < oldest->since()) oldest = client.get();
+    if (client.get() == one) continue;
+    if (const auto held = client->held()) all.push_back(*held);
   }
-  if (oldest != nullptr) oldest->cut();
-  return oldest != nullptr;
+  return all;
+}
+
+void Server::Impl::send_strangers_away() {
+  if (clients_.size() <= shares_.strangers) return;
+  while (const auto number = stranger_to_go(held_but(nullptr), shares_)) clients_.at(*number)->give_way();
+}
+
+bool Server::Impl::make_room_for(Client& client) {
+  const Room room = room_for(client.peer(), held_but(&client), shares_);
+  if (room.gives_way) clients_.at(*room.gives_way)->give_way();
+  return room.is_there;
 }
 
 void Server::Impl::first_call(Client& client, std::string_view method) {
@@ -217,7 +221,14 @@ void Server::Impl::first_call(Client& client, std::string_view method) {
   } else if (!target) {
     request->refuse_head("request target: expected a path of UTF-8, percent-encoded");
   } else {
-    request->open(handler_, method, std::move(*target), framing);
+    request->begin(method, std::move(*target), framing);
+    const bool known = handler_.knows(request->head());
+    const bool has_room = !known || client.is_known() || make_room_for(client);
+    client.is_known(known && has_room);
+    if (has_room) return request->open(handler_);
+    tell(Ended::NoRoom, client.peer());
+    request->refuse_for_room(
+        "too many requests are under way at once, from this address or in all; try again");
   }
 }
 
@@ -306,6 +317,9 @@ std::uint16_t Server::port() const {
 }
 std::size_t Server::connections() const {
   return impl_->connections();
+}
+std::size_t Server::strangers() const {
+  return impl_->strangers();
 }
 void Server::stop_listening() {
   impl_->stop_listening();

@@ -16,17 +16,26 @@
 
 namespace adit::intake {
 
+/// Why the server did not go on with a connection, or not with a request.
+enum class Ended : std::uint8_t {
+  NoRoom,   // refused: its address, or all together, have as many requests under way as they may
+  GaveWay,  // a stranger's, for another; or that of an address with more than its share
+  Idle,     // between requests, for another
+  Slow,     // its head, body or reading
+};
+inline constexpr std::size_t kEndedKinds = 4;
+
 /// Where and how the server listens.
 struct Listen {
   std::string address;
   std::uint16_t port = 0;  // 0: any free port, see Server::port()
   std::string interface;   // SO_BINDTODEVICE; "": not bound
   bool free_bind = false;  // also at an address that this machine does not have, or not yet
-  std::uint32_t connections = 64, connections_per_address = 16;
-  std::chrono::milliseconds headers_within{
-      10000};  // from connecting, or from the last answer's first byte since
-  std::chrono::milliseconds body_silence{15000};  // without a byte of the body
-  std::chrono::milliseconds idle{60000};          // between requests
+  std::uint32_t connections = 128, connections_per_address = 64;  // Shares
+  std::chrono::milliseconds stranger_within{5000};  // from connecting: the head; from there: the whole body
+  std::chrono::milliseconds rate_over{10000};       // LeastRate of bodies and of reading; a known one's head
+  std::chrono::milliseconds idle{60000};            // between requests
+  std::function<void(Ended why, const std::string& address)> ended = {};  // told of each; may be empty
 };
 
 /// The head of one request. Valid until the request ends.
@@ -97,6 +106,10 @@ class Flow {
 class Handler {
  public:
   virtual ~Handler() = default;
+  /// Asked before open(): whether he who asks has shown what lets him in (a token, a session), or what he
+  /// asks for needs none of the team. Who is known has room however many strangers come, and all the time
+  /// that a slow radio takes.
+  virtual bool knows(const RequestHead& head) = 0;
   /// Called when the headers are whole. May answer at once (a refusal: the body is then read away up to a
   /// limit, or the connection closed). Returning nothing is allowed only after answering.
   virtual std::unique_ptr<BodySink> open(const RequestHead& head, std::shared_ptr<Responder> responder,
@@ -105,8 +118,8 @@ class Handler {
 
 /// An HTTP/1.1 server by libmicrohttpd on the loop, for one listening address.
 ///
-/// Limits connections in all and per address, gives each connection's headers a deadline of its own (a slow
-/// writer of headers is closed), and keeps a body's bytes nowhere: a slow receiver is back-pressure.
+/// Who has room is shares.hpp's to say, and who is too slow least_rate.hpp's; a request for which there is no
+/// room is answered 503. It keeps a body's bytes nowhere: a slow receiver is back-pressure.
 class Server {
  public:
   /// `socket`: one that listens already, taken instead of opening one at `listen`.
@@ -119,6 +132,8 @@ class Server {
 
   std::uint16_t port() const;
   std::size_t connections() const;
+  /// Those of them that have shown no token.
+  std::size_t strangers() const;
   /// Takes no new connections; requests under way go on. A socket of which there is a copy elsewhere goes on
   /// to listen, and whoever connects waits for who has it.
   void stop_listening();

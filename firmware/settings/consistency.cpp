@@ -84,13 +84,6 @@ void check_listen(const Settings& settings, std::vector<Error>& errors) {
   }
 }
 
-void check_connections(const Team& team, std::vector<Error>& errors) {
-  if (team.connections_per_address <= team.connections) return;
-  errors.push_back({"team.connections_per_address", "expected at most team.connections, " +
-                                                        std::to_string(team.connections) + ", got " +
-                                                        std::to_string(team.connections_per_address)});
-}
-
 /// Names are unique, and an alias is nobody else's and no robot's name: who posts must be clear.
 void check_robots(const std::vector<Robot>& robots, std::vector<Error>& errors) {
   for (std::size_t i = 0; i < robots.size(); ++i) {
@@ -157,7 +150,6 @@ std::vector<Error> contradictions(const Settings& settings) {
   std::vector<Error> errors;
   check_endpoints(settings, errors);
   check_listen(settings, errors);
-  check_connections(settings.team, errors);
   check_panel(settings.panel, errors);
   check_robots(settings.robots, errors);
   check_courses(settings, errors);

@@ -75,9 +75,12 @@ const Key kKeys[] = {
      "Whether a client must present the team's token or one of the Command Post's; if not, any client of the "
      "team's network is served.",
      flag<MEMBER(team.require_token)>()},
-    {"team.connections", "Connections of the team at once, at most.",
+    {"team.connections",
+     "Connections of the team at once, at most; a quarter of them, at most 32, is for who has shown no "
+     "token.",
      whole<MEMBER(team.connections)>(1, 1024)},
-    {"team.connections_per_address", "Connections from one address at once, at most.",
+    {"team.connections_per_address",
+     "Connections from one address at once, at most, that have shown a token or need none.",
      whole<MEMBER(team.connections_per_address)>(1, 1024)},
 
     {"robots[].name",

@@ -45,7 +45,7 @@ struct Team {
   std::vector<Address> listen;  // at least one
   std::string interface;
   bool require_token = true;
-  std::uint32_t connections = 64, connections_per_address = 16;
+  std::uint32_t connections = 128, connections_per_address = 64;  // intake::Shares
 };
 
 struct Reports {

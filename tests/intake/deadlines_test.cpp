@@ -14,14 +14,17 @@ using Clock = std::chrono::steady_clock;
 class Deadlines : public testing::Test {
  protected:
   struct Near {
-    milliseconds headers_within{60000}, body_silence{60000}, idle{60000};
+    milliseconds stranger_within{60000}, rate_over{60000}, idle{60000};
+    bool asks_token = false;
   };
   explicit Deadlines(const Near& near)
       : served(handler, {.address = "127.0.0.1",
                          .interface = {},
-                         .headers_within = near.headers_within,
-                         .body_silence = near.body_silence,
-                         .idle = near.idle}) {}
+                         .stranger_within = near.stranger_within,
+                         .rate_over = near.rate_over,
+                         .idle = near.idle}) {
+    handler.asks_token = near.asks_token;
+  }
 
   ScriptedHandler handler;
   Served served;
@@ -43,15 +46,23 @@ class Deadlines : public testing::Test {
 
 class HeadDeadlines : public Deadlines {
  protected:
-  HeadDeadlines() : Deadlines({.headers_within = milliseconds(500)}) {}
+  HeadDeadlines() : Deadlines({.stranger_within = milliseconds(500)}) {}
 };
-class BodyDeadlines : public Deadlines {
+class StrangersBodyDeadlines : public Deadlines {
  protected:
-  BodyDeadlines() : Deadlines({.body_silence = milliseconds(1000)}) {}
+  StrangersBodyDeadlines() : Deadlines({.stranger_within = milliseconds(500), .asks_token = true}) {}
+};
+class RateDeadlines : public Deadlines {
+ protected:
+  RateDeadlines() : Deadlines({.rate_over = milliseconds(1000)}) {}
 };
 class IdleDeadlines : public Deadlines {
  protected:
-  IdleDeadlines() : Deadlines({.headers_within = milliseconds(500), .idle = milliseconds(600)}) {}
+  IdleDeadlines() : Deadlines({.rate_over = milliseconds(500), .idle = milliseconds(600)}) {}
+};
+class ReadingDeadlines : public Deadlines {
+ protected:
+  ReadingDeadlines() : Deadlines({.rate_over = milliseconds(2000), .idle = milliseconds(1000)}) {}
 };
 
 TEST_F(HeadDeadlines, CloseAClientThatSaysNothing) {
@@ -77,7 +88,7 @@ TEST_F(IdleDeadlines, CloseAClientThatDripsTheHeadersOfItsSecondRequest) {
   dripping.join();
 }
 
-TEST_F(BodyDeadlines, CloseAClientThatStopsInTheMiddleOfItsBody) {
+TEST_F(RateDeadlines, CloseAClientThatStopsInTheMiddleOfItsBody) {
   client.send("POST /echo HTTP/1.1\r\nHost: adit\r\nContent-Length: 100\r\n\r\nbegun");
   const auto reply = client.reply();
   ASSERT_TRUE(reply);
@@ -86,14 +97,66 @@ TEST_F(BodyDeadlines, CloseAClientThatStopsInTheMiddleOfItsBody) {
   EXPECT_TRUE(served.eventually([&] { return handler.gone == 1 && handler.exchanges == 0; }));
 }
 
-TEST_F(BodyDeadlines, LetABodyThatKeepsComingTakeItsTime) {
-  client.send("POST /echo HTTP/1.1\r\nHost: adit\r\nContent-Length: 24\r\n\r\n");
-  drip(client, "0123456789ab0123456789ab").join();
-  EXPECT_GE(passed(), milliseconds(1000));
-  EXPECT_EQ(client.reply()->body, "POST /echo  127.0.0.1 0123456789ab0123456789ab");
+TEST_F(RateDeadlines, LetABodyThatKeepsComingTakeItsTime) {
+  const std::string piece(4000, 'x');  // 80 kB a second, where a kilobyte would do
+  client.send("POST /echo HTTP/1.1\r\nHost: adit\r\nContent-Length: 120000\r\n\r\n");
+  for (int i = 0; i < 30; ++i) {
+    ASSERT_TRUE(client.send(piece));
+    std::this_thread::sleep_for(milliseconds(50));
+  }
+  EXPECT_GE(passed(), milliseconds(1500));
+  EXPECT_EQ(client.reply()->status, 200);
 }
 
-TEST_F(BodyDeadlines, DoNotRunWhileTheGatewayHoldsTheBodyBack) {
+TEST_F(RateDeadlines, CloseAClientThatDripsItsBody) {
+  client.send("POST /echo HTTP/1.1\r\nHost: adit\r\nContent-Length: 100000\r\n\r\n");
+  std::thread dripping = drip(client, std::string(400, 'x'));
+  const auto reply = client.reply();
+  ASSERT_TRUE(reply);
+  EXPECT_EQ(reply->status, 408);
+  client.close();
+  dripping.join();
+}
+
+TEST_F(StrangersBodyDeadlines, CloseAClientThatDripsItsBody) {
+  client.send("POST /echo HTTP/1.1\r\nHost: adit\r\nContent-Length: 100\r\n\r\n");
+  std::thread dripping = drip(client, std::string(100, 'x'));
+  const auto reply = client.reply();
+  ASSERT_TRUE(reply);
+  EXPECT_EQ(reply->status, 408);
+  client.close();
+  dripping.join();
+}
+
+TEST_F(StrangersBodyDeadlines, AreNotThoseOfWhoHasShownAToken) {
+  client.send("POST /echo HTTP/1.1\r\nHost: adit\r\nAuthorization: Bearer x\r\nContent-Length: 20\r\n\r\n");
+  drip(client, std::string(20, 'x')).join();
+  EXPECT_GE(passed(), milliseconds(1000));
+  EXPECT_EQ(client.reply()->status, 200);
+}
+
+/// 4 MB a second of an answer that is larger than all that the kernel keeps of it: longer than an idle
+/// connection is kept.
+TEST_F(ReadingDeadlines, LetAClientThatReadsSteadilyTakeItsTime) {
+  const std::string answer(12u << 20, 'x');
+  client.send(request("GET", "/later"));
+  ASSERT_TRUE(served.eventually([&] { return handler.responders.size() == 1; }));
+  served.on_loop([&] { handler.responders[0]->answer({.body = answer, .headers = {}}); });
+  EXPECT_EQ(client.read_slowly(200'000, milliseconds(50), answer.size()), answer.size());
+  EXPECT_GE(passed(), milliseconds(2000));
+  EXPECT_EQ(served.ended(Ended::Slow), 0u);
+}
+
+TEST_F(RateDeadlines, CloseAClientThatStopsReading) {
+  client.send(request("GET", "/later"));
+  ASSERT_TRUE(served.eventually([&] { return handler.responders.size() == 1; }));
+  served.on_loop(
+      [&] { handler.responders[0]->answer({.body = std::string(64u << 20, 'x'), .headers = {}}); });
+  EXPECT_TRUE(served.eventually([&] { return served.server().connections() == 0; }));
+  EXPECT_EQ(served.ended(Ended::Slow), 1u);
+}
+
+TEST_F(RateDeadlines, DoNotRunWhileTheGatewayHoldsTheBodyBack) {
   client.send("POST /held HTTP/1.1\r\nHost: adit\r\nContent-Length: 10\r\n\r\n01234");
   ASSERT_TRUE(served.eventually([&] { return handler.flows.size() == 1; }));
   std::this_thread::sleep_for(milliseconds(1200));
@@ -104,7 +167,7 @@ TEST_F(BodyDeadlines, DoNotRunWhileTheGatewayHoldsTheBodyBack) {
   EXPECT_EQ(client.reply()->status, 200);
 }
 
-TEST_F(BodyDeadlines, RunAgainOnceTheBodyMayFlow) {
+TEST_F(RateDeadlines, RunAgainOnceTheBodyMayFlow) {
   client.send("POST /held HTTP/1.1\r\nHost: adit\r\nContent-Length: 10\r\n\r\n01234");
   ASSERT_TRUE(served.eventually([&] { return handler.flows.size() == 1; }));
   served.on_loop([&] { handler.flows[0]->resume(); });
@@ -124,14 +187,6 @@ TEST_F(IdleDeadlines, CloseAConnection) {
   ASSERT_TRUE(client.reply());
   EXPECT_EQ(client.rest(), "");
   EXPECT_GE(passed(), milliseconds(595));
-}
-
-TEST_F(IdleDeadlines, CloseAClientThatDoesNotReadItsAnswer) {
-  client.send(request("GET", "/later"));
-  ASSERT_TRUE(served.eventually([&] { return handler.responders.size() == 1; }));
-  served.on_loop(
-      [&] { handler.responders[0]->answer({.body = std::string(64u << 20, 'x'), .headers = {}}); });
-  EXPECT_TRUE(served.eventually([&] { return served.server().connections() == 0; }));
 }
 
 TEST_F(HeadDeadlines, OfSomeLeaveOthersServed) {

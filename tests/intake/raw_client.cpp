@@ -10,6 +10,7 @@
 #include <array>
 #include <cctype>
 #include <charconv>
+#include <thread>
 
 namespace adit::intake {
 namespace {
@@ -75,8 +76,9 @@ RawClient::RawClient(std::uint16_t port, const std::string& source)
     : fd_(::socket(AF_INET, SOCK_STREAM | SOCK_CLOEXEC, 0)) {
   const sockaddr_in from = loopback(source, 0);
   const sockaddr_in to = loopback("127.0.0.1", port);
-  const int on = 1;
+  const int on = 1, small = 65536;
   ::setsockopt(fd_.get(), IPPROTO_TCP, TCP_NODELAY, &on, sizeof on);
+  ::setsockopt(fd_.get(), SOL_SOCKET, SO_RCVBUF, &small, sizeof small);
   connected_ = ::bind(fd_.get(), reinterpret_cast<const sockaddr*>(&from), sizeof from) == 0 &&
                ::connect(fd_.get(), reinterpret_cast<const sockaddr*>(&to), sizeof to) == 0;
 }
@@ -152,6 +154,21 @@ std::optional<std::string> RawClient::rest(std::chrono::milliseconds patience) {
     if (got == Got::End) return std::move(received_);
     if (got == Got::Nothing) return std::nullopt;
   }
+}
+
+std::size_t RawClient::read_slowly(std::size_t step, std::chrono::milliseconds every, std::size_t size) {
+  std::string bytes(step, ' ');
+  std::size_t total = 0, head = 0;
+  while (head == 0 || total < head + size) {
+    const ssize_t got =
+        ::recv(fd_.get(), bytes.data(), head == 0 ? step : std::min(step, head + size - total),
+               head == 0 ? 0 : MSG_WAITALL);
+    if (got <= 0) break;
+    if (head == 0) head = bytes.find("\r\n\r\n") + 4;
+    total += static_cast<std::size_t>(got);
+    std::this_thread::sleep_for(every);
+  }
+  return total - std::min(total, head);
 }
 
 void RawClient::half_close() {

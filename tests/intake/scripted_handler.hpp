@@ -26,6 +26,11 @@ class ScriptedHandler final : public Handler {
   std::vector<std::shared_ptr<Stream>> streams;
   std::atomic<std::size_t> body_bytes = 0;
   std::atomic<int> ends = 0, gone = 0, exchanges = 0;
+  bool asks_token = false;  // Authorization, whatever it says
+
+  bool knows(const RequestHead& head) override {
+    return !asks_token || !head.header("Authorization").empty();
+  }
 
   std::unique_ptr<BodySink> open(const RequestHead& head, std::shared_ptr<Responder> responder,
                                  std::shared_ptr<Flow> flow) override {

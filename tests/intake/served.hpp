@@ -1,5 +1,6 @@
 #pragma once
 
+#include <array>
 #include <future>
 #include <memory>
 #include <string>
@@ -16,6 +17,7 @@ class Served {
  public:
   explicit Served(Handler& handler, Listen listen = {}) {
     if (listen.address.empty()) listen.address = "127.0.0.1";
+    listen.ended = [this](Ended why, const std::string&) { ++ended_[static_cast<std::size_t>(why)]; };
     std::promise<void> started;
     thread_ = std::thread([this, &started, &handler, listen] {
       loop_ = std::make_unique<loop::Loop>();
@@ -73,6 +75,11 @@ class Served {
     for (int i = 0; i < 100; ++i) on_loop([] {});
   }
 
+  /// Connections that the server did not go on with.
+  std::uint64_t ended(Ended why) {
+    return on_loop([&] { return ended_[static_cast<std::size_t>(why)]; });
+  }
+
   std::uint16_t port() const { return port_; }
   const std::string& error() const { return error_; }
   loop::Loop& loop() { return *loop_; }
@@ -81,6 +88,7 @@ class Served {
   void destroy_server() { server_ = nullptr; }
 
  private:
+  std::array<std::uint64_t, kEndedKinds> ended_{};
   std::unique_ptr<loop::Loop> loop_;
   std::unique_ptr<Server> server_;
   std::uint16_t port_ = 0;

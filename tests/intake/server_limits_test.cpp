@@ -10,8 +10,6 @@
 namespace adit::intake {
 namespace {
 
-using std::chrono::milliseconds;
-
 /// What libmicrohttpd answers by itself, before it asks anybody: no JSON (ICD 4), but no more than these.
 bool is_libmicrohttpds_own(const Reply& reply) {
   const bool status = reply.status == 400 || reply.status == 413 || reply.status == 414 ||
@@ -35,7 +33,7 @@ TEST(ServerLimits, LeaveOthersServedThoughOneAddressOpensThousandsOfConnections)
     flood.back()->send("GET /echo HTTP/1.1\r\nX-Slow: ");
     if (i % 250 == 249) {
       EXPECT_TRUE(answers(served.port(), "127.0.0.1")) << i;
-      EXPECT_LE(served.on_loop([&] { return served.server().connections(); }), 17u);
+      EXPECT_TRUE(served.eventually([&] { return served.server().connections() <= 33; }));
     }
   }
 }
@@ -48,9 +46,8 @@ TEST(ServerLimits, MakeRoomWhereManyAddressesFillAllConnections) {
     flood.push_back(std::make_unique<RawClient>(served.port(), "127.0.1." + std::to_string(1 + i % 200)));
     flood.back()->send("GET /echo HTTP/1.1\r\nX-Slow: ");
   }
-  std::this_thread::sleep_for(milliseconds(300));
   EXPECT_TRUE(answers(served.port(), "127.0.0.1"));
-  EXPECT_LE(served.on_loop([&] { return served.server().connections(); }), 64u);
+  EXPECT_TRUE(served.eventually([&] { return served.server().connections() <= 33; }));
 }
 
 TEST(ServerLimits, DoNotEndARequestUnderWayToMakeRoom) {
@@ -62,7 +59,6 @@ TEST(ServerLimits, DoNotEndARequestUnderWayToMakeRoom) {
   std::vector<std::unique_ptr<RawClient>> idle;
   for (int i = 0; i < 3; ++i) {
     idle.push_back(std::make_unique<RawClient>(served.port()));
-    std::this_thread::sleep_for(milliseconds(300));
   }
   EXPECT_TRUE(answers(served.port(), "127.0.0.1"));
   EXPECT_TRUE(idle[0]->closes());

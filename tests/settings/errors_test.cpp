@@ -92,8 +92,6 @@ const Case kKeys[] = {
     {sample("", R"(, "listen": [{"address": "::", "port": 1}])"), "team.listen: given twice"}};
 
 const Case kContradictions[] = {
-    {sample("", R"(, "connections": 8)"),
-     "team.connections_per_address: expected at most team.connections, 8, got 16"},
     {sample("", "", R"(, "panel": {"chip": "gpiochip0"})"),
      "panel.chip: names a chip, but neither a light nor the button has a line"},
     {sample("", "", R"(, "panel": {"chip": "gpiochip0", "health": "H", "mapping": "H"})"),

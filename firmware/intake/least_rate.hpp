@@ -1,0 +1,37 @@
+#pragma once
+
+#include <cstdint>
+#include <utility>
+
+#include "loop/loop.hpp"
+
+namespace adit::intake {
+
+/// Whether bytes move as fast as a slow radio still moves them: kLeast over any `window`, looked at twice in
+/// each. Who stops altogether is found out within one and a half of them.
+class LeastRate {
+ public:
+  static constexpr std::uint64_t kLeast = 1000;  // bytes a second
+
+  LeastRate(loop::Duration window, loop::Instant now) : half_(window / 2), look_at_(now + half_) {}
+
+  void moved(std::uint64_t bytes) { in_this_half_ += bytes; }
+  loop::Instant look_at() const { return look_at_; }
+  /// At look_at() or later, once for each.
+  bool is_too_slow(loop::Instant now) {
+    const bool is_full = std::exchange(has_half_, true);
+    const std::uint64_t moved = in_last_half_ + in_this_half_;
+    in_last_half_ = std::exchange(in_this_half_, 0);
+    look_at_ = now + half_;
+    using Seconds = std::chrono::duration<double>;
+    return is_full && static_cast<double>(moved) < kLeast * Seconds(2 * half_).count();
+  }
+
+ private:
+  loop::Duration half_;
+  loop::Instant look_at_;
+  std::uint64_t in_last_half_ = 0, in_this_half_ = 0;
+  bool has_half_ = false;  // in_last_half_ is one
+};
+
+}  // namespace adit::intake

@@ -1,0 +1,94 @@
+#include "intake/shares.hpp"
+
+#include <algorithm>
+#include <iterator>
+#include <map>
+#include <tuple>
+#include <vector>
+
+namespace adit::intake {
+namespace {
+
+/// Of the whole. A browser that is not logged in opens six.
+constexpr std::uint32_t kPartOfStrangers = 4, kMostStrangers = 32;
+
+using Counts = std::map<std::string_view, std::size_t>;
+
+Counts by_address(const std::vector<Held>& held) {
+  Counts counts;
+  for (const Held& each : held) ++counts[each.address];
+  return counts;
+}
+
+std::optional<std::uint64_t> longest(const std::vector<Held>& held, Held::Doing doing) {
+  const Held* found = nullptr;
+  for (const Held& each : held) {
+    if (each.doing == doing && (found == nullptr || each.since < found->since)) found = &each;
+  }
+  return found == nullptr ? std::nullopt : std::optional(found->number);
+}
+
+/// Who costs least to send away.
+std::optional<std::uint64_t> easiest(const std::vector<Held>& held) {
+  const auto idle = longest(held, Held::Doing::Idle);
+  return idle ? idle : longest(held, Held::Doing::Left);
+}
+
+/// Of the address that has most, where one more of `address` would have less than its share.
+std::optional<std::uint64_t> of_greedy(std::string_view address, const std::vector<Held>& known) {
+  Counts counts = by_address(known);
+  const std::size_t own = counts[address] + 1;
+  const Held* found = nullptr;
+  for (const Held& each : known) {
+    if (each.doing != Held::Doing::Sending || counts[each.address] < own + 1) continue;
+    if (found == nullptr || counts[each.address] > counts[found->address] ||
+        (counts[each.address] == counts[found->address] && each.number < found->number)) {
+      found = &each;
+    }
+  }
+  return found == nullptr ? std::nullopt : std::optional(found->number);
+}
+
+std::vector<Held> those(std::span<const Held> held, const auto& which) {
+  std::vector<Held> found;
+  std::ranges::copy_if(held, std::back_inserter(found), which);
+  return found;
+}
+
+}  // namespace
+
+Shares Shares::of(std::uint32_t connections, std::uint32_t of_address) {
+  const std::uint32_t strangers = std::clamp(connections / kPartOfStrangers, 1u, kMostStrangers);
+  const std::uint32_t known = std::max(connections, strangers + 1) - strangers;
+  return {.strangers = strangers, .known = known, .known_of_address = std::min(of_address, known)};
+}
+
+std::optional<std::uint64_t> stranger_to_go(std::span<const Held> held, const Shares& shares) {
+  const auto strangers = those(held, [](const Held& each) { return !each.known; });
+  const auto seen = those(strangers, [](const Held& each) { return each.doing != Held::Doing::Fresh; });
+  if (strangers.size() <= shares.strangers || seen.empty()) return std::nullopt;
+  const Counts counts = by_address(strangers);
+  return std::ranges::min_element(seen, {},
+                                  [&](const Held& each) {
+                                    return std::tuple(-static_cast<std::int64_t>(counts.at(each.address)),
+                                                      each.doing != Held::Doing::Idle, each.number);
+                                  })
+      ->number;
+}
+
+Room room_for(std::string_view address, std::span<const Held> others, const Shares& shares) {
+  const auto known = those(others, &Held::known);
+  const auto own = those(others, [&](const Held& each) { return each.known && each.address == address; });
+  std::optional<std::uint64_t> gives_way;
+  if (own.size() >= shares.known_of_address) {
+    gives_way = easiest(own);
+  } else if (known.size() >= shares.known) {
+    gives_way = easiest(known);
+    if (!gives_way) gives_way = of_greedy(address, known);
+  } else {
+    return {};
+  }
+  return {.is_there = gives_way.has_value(), .gives_way = gives_way};
+}
+
+}  // namespace adit::intake

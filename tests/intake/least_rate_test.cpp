@@ -1,0 +1,55 @@
+#include "intake/least_rate.hpp"
+
+#include <gtest/gtest.h>
+
+namespace adit::intake {
+namespace {
+
+using namespace std::chrono_literals;
+
+constexpr loop::Instant kStart{100h};
+
+/// Moves `bytes` every `every` for `total`; when it was found too slow, or nothing.
+std::optional<loop::Duration> too_slow_after(std::uint64_t bytes, loop::Duration every,
+                                             loop::Duration total) {
+  LeastRate rate(10s, kStart);
+  for (loop::Duration passed{}; passed < total; passed += 100ms) {
+    if (kStart + passed >= rate.look_at() && rate.is_too_slow(kStart + passed)) return passed;
+    if (passed % every == 0ns) rate.moved(bytes);
+  }
+  return std::nullopt;
+}
+
+TEST(LeastRate, LetsASlowRadioTakeAnHour) {
+  EXPECT_FALSE(too_slow_after(1100, 1s, 1h));
+}
+
+TEST(LeastRate, LetsARadioThatComesInFitsTakeAnHour) {
+  EXPECT_FALSE(too_slow_after(12'000, 5s, 1h));
+}
+
+TEST(LeastRate, FindsAByteEachTenSecondsOut) {
+  EXPECT_EQ(too_slow_after(1, 10s, 1h), 10s);
+}
+
+TEST(LeastRate, FindsWhoIsABitTooSlowOut) {
+  EXPECT_EQ(too_slow_after(900, 1s, 1h), 10s);
+}
+
+TEST(LeastRate, FindsWhoStopsOutSoonHoweverMuchCameBefore) {
+  LeastRate rate(10s, kStart);
+  rate.moved(1'000'000);
+  EXPECT_FALSE(rate.is_too_slow(kStart + 5s));
+  EXPECT_FALSE(rate.is_too_slow(kStart + 10s));
+  EXPECT_TRUE(rate.is_too_slow(kStart + 15s));
+}
+
+TEST(LeastRate, IsLookedAtAgainHalfAWindowLater) {
+  LeastRate rate(10s, kStart);
+  EXPECT_EQ(rate.look_at(), kStart + 5s);
+  EXPECT_FALSE(rate.is_too_slow(kStart + 6s)) << "half a window tells nothing";
+  EXPECT_EQ(rate.look_at(), kStart + 11s);
+}
+
+}  // namespace
+}  // namespace adit::intake

@@ -1,0 +1,161 @@
+#include "intake/shares.hpp"
+
+#include <gtest/gtest.h>
+
+#include <random>
+#include <string>
+#include <vector>
+
+namespace adit::intake {
+namespace {
+
+using namespace std::chrono_literals;
+using Doing = Held::Doing;
+
+constexpr Shares kShares{.strangers = 4, .known = 6, .known_of_address = 3};
+constexpr std::string_view kNew = "new";
+
+std::vector<Held> several(std::uint64_t first, int count, std::string_view address, bool known, Doing doing) {
+  std::vector<Held> held;
+  for (int i = 0; i < count; ++i) {
+    const std::uint64_t number = first + static_cast<std::uint64_t>(i);
+    held.push_back({.number = number,
+                    .address = address,
+                    .known = known,
+                    .doing = doing,
+                    .since = loop::Instant(std::chrono::seconds(number))});
+  }
+  return held;
+}
+
+std::vector<Held> together(std::initializer_list<std::vector<Held>> parts) {
+  std::vector<Held> held;
+  for (const auto& part : parts) held.insert(held.end(), part.begin(), part.end());
+  return held;
+}
+
+TEST(Shares, AreAQuarterForStrangersAndTheRestForThoseWhoAreKnown) {
+  const auto usual = Shares::of(128, 64);
+  EXPECT_EQ(usual.strangers, 32u);
+  EXPECT_EQ(usual.known, 96u);
+  EXPECT_EQ(usual.known_of_address, 64u);
+  EXPECT_EQ(Shares::of(1024, 1024).strangers, 32u) << "however many there are";
+  EXPECT_EQ(Shares::of(20, 64).known_of_address, 15u);
+  EXPECT_EQ(Shares::of(1, 1).known, 1u);
+  EXPECT_EQ(Shares::of(1, 1).strangers, 1u);
+}
+
+TEST(StrangerToGo, IsNobodyWhileTheShareLasts) {
+  const auto held =
+      together({several(1, 4, "a", false, Doing::Sending), several(10, 6, "b", true, Doing::Idle)});
+  EXPECT_FALSE(stranger_to_go(held, kShares));
+}
+
+TEST(StrangerToGo, IsTheOldestOfTheAddressThatHasMost) {
+  const auto held =
+      together({several(1, 2, "a", false, Doing::Sending), several(5, 3, "b", false, Doing::Sending)});
+  EXPECT_EQ(stranger_to_go(held, kShares), 5u);
+  EXPECT_EQ(stranger_to_go(several(1, 5, "a", false, Doing::Waiting), kShares), 1u);
+}
+
+TEST(StrangerToGo, IsOneThatIsIdleWhereThereIsOne) {
+  const auto held =
+      together({several(1, 4, "a", false, Doing::Waiting), several(5, 1, "a", false, Doing::Idle)});
+  EXPECT_EQ(stranger_to_go(held, kShares), 5u);
+}
+
+TEST(StrangerToGo, IsNotOneWhoMayBeAboutToShowAToken) {
+  const auto fresh = several(1, 5, "a", false, Doing::Fresh);
+  EXPECT_FALSE(stranger_to_go(fresh, kShares));
+  EXPECT_EQ(stranger_to_go(together({fresh, several(10, 1, "b", false, Doing::Sending)}), kShares), 10u);
+}
+
+TEST(StrangerToGo, IsNeverOneWhoIsKnown) {
+  const auto held =
+      together({several(1, 6, "a", true, Doing::Idle), several(10, 5, "b", false, Doing::Sending)});
+  EXPECT_EQ(stranger_to_go(held, kShares), 10u);
+}
+
+TEST(RoomForWhoIsKnown, IsThereHoweverManyStrangersThereAre) {
+  const auto others = several(1, 200, "new", false, Doing::Sending);
+  EXPECT_TRUE(room_for(kNew, others, kShares).is_there);
+  EXPECT_FALSE(room_for(kNew, others, kShares).gives_way);
+}
+
+TEST(RoomForWhoIsKnown, IsMadeByTheLongestIdleOfAll) {
+  const auto others =
+      together({several(1, 3, "a", true, Doing::Waiting), several(7, 3, "b", true, Doing::Idle)});
+  EXPECT_EQ(room_for(kNew, others, kShares).gives_way, 7u);
+}
+
+TEST(RoomForWhoIsKnown, IsMadeByWhoMayHaveHungUpWhereNobodyIsIdle) {
+  const auto others =
+      together({several(1, 3, "a", true, Doing::Waiting), several(7, 3, "b", true, Doing::Left)});
+  EXPECT_EQ(room_for(kNew, others, kShares).gives_way, 7u);
+}
+
+TEST(RoomForWhoIsKnown, IsNotThereWhereAllWaitForAnswers) {
+  const auto others = several(1, 6, "a", true, Doing::Waiting);
+  EXPECT_FALSE(room_for(kNew, others, {.strangers = 4, .known = 6, .known_of_address = 6}).is_there);
+}
+
+TEST(RoomForWhoIsKnown, IsMadeByAnAddressWithMoreThanItsShareWhoseRequestIsNotWhole) {
+  const auto others =
+      together({several(1, 1, "a", true, Doing::Sending), several(3, 2, "b", true, Doing::Waiting),
+                several(5, 3, "c", true, Doing::Sending)});
+  EXPECT_EQ(room_for(kNew, others, kShares).gives_way, 5u);
+  const Shares even{.strangers = 4, .known = 2, .known_of_address = 2};
+  EXPECT_FALSE(
+      room_for(kNew,
+               together({several(1, 1, "a", true, Doing::Sending), several(3, 1, "b", true, Doing::Sending)}),
+               even)
+          .is_there)
+      << "nobody has more than his share";
+}
+
+TEST(RoomForWhoIsKnown, IsBoundedForOneAddressWhoseOwnIdleOnesGiveWay) {
+  const auto busy = several(1, 3, "new", true, Doing::Sending);
+  EXPECT_FALSE(room_for(kNew, busy, kShares).is_there);
+  const auto idle =
+      together({several(1, 2, "new", true, Doing::Sending), several(8, 1, "new", true, Doing::Idle),
+                several(4, 1, "a", true, Doing::Idle)});
+  EXPECT_EQ(room_for(kNew, idle, kShares).gives_way, 8u);
+}
+
+TEST(RoomFor, KeepsTheSharesWhateverComes) {
+  std::mt19937_64 random(20210917);
+  const auto any = [&](std::uint64_t below) { return random() % below; };
+  const std::string addresses[] = {"a", "b", "c", "d", "e"};
+  constexpr Doing kDoings[] = {Doing::Idle, Doing::Sending, Doing::Left, Doing::Waiting};
+  for (int round = 0; round < 200; ++round) {
+    std::vector<Held> held;
+    for (std::uint64_t number = 1; number < 60; ++number) {
+      for (Held& each : held) each.doing = kDoings[any(4)];
+      Held newcomer{.number = number,
+                    .address = addresses[any(5)],
+                    .known = any(2) == 0,
+                    .doing = Doing::Sending,
+                    .since = loop::Instant(std::chrono::seconds(number))};
+      const auto ends = [&](std::uint64_t gone) {
+        return std::erase_if(held, [&](const Held& each) { return each.number == gone; }) == 1;
+      };
+      const Room room = newcomer.known ? room_for(newcomer.address, held, kShares) : Room();
+      if (room.gives_way) {
+        ASSERT_TRUE(ends(*room.gives_way));
+      }
+      newcomer.known = newcomer.known && room.is_there;
+      held.push_back(newcomer);
+      while (const auto gone = stranger_to_go(held, kShares)) ASSERT_TRUE(ends(*gone));
+      const auto known = std::ranges::count(held, true, &Held::known);
+      ASSERT_LE(held.size() - static_cast<std::size_t>(known), kShares.strangers);
+      ASSERT_LE(static_cast<std::size_t>(known), kShares.known);
+      for (const std::string& address : addresses)
+        ASSERT_LE(std::ranges::count_if(
+                      held, [&](const Held& each) { return each.known && each.address == address; }),
+                  kShares.known_of_address);
+    }
+  }
+}
+
+}  // namespace
+}  // namespace adit::intake

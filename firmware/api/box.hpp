@@ -42,12 +42,20 @@ struct RefusedCount {
   std::uint64_t parts = 0;  // of states and markers: poses and markers
 };
 
+/// Connections of the team that were not gone on with, counted since the start.
+struct EndedCount {
+  std::string why;
+  std::uint64_t count = 0;
+};
+
 /// What the process has used and done since the start.
 struct Usage {
   Time started = 0;
   double cpu_seconds = 0;
   std::uint64_t resident_bytes = 0, open_files = 0, most_files = 0, threads = 0;
   std::uint64_t connections = 0;    // of the team's side, now
+  std::uint64_t strangers = 0;      // those of them that have shown no token
+  std::vector<EndedCount> ended;    // connections
   std::uint64_t sent_bytes = 0;     // of bodies, to both endpoints
   std::uint64_t aside_dropped = 0;  // what was set aside and made place for newer ones
   std::uint64_t exceptions = 0;     // that were caught at the program's edge: loop/guard.hpp

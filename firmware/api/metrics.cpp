@@ -33,6 +33,13 @@ void write_box(Exposition& out, const Measured& measured) {
   out.sample(number(usage.threads));
   out.gauge("adit_connections", "Connections of the team's side.");
   out.sample(number(usage.connections));
+  out.gauge("adit_connections_strangers", "Those of them that have shown no token and no session.");
+  out.sample(number(usage.strangers));
+  out.counter(
+      "adit_connections_ended_total",
+      "Connections that Adit did not go on with: no_room (the request was answered 503), gave_way and idle "
+      "(for another), slow.");
+  for (const EndedCount& row : usage.ended) out.sample({{"why", row.why}}, number(row.count));
   out.counter("adit_exceptions_total", "Requests, answers and jobs that were ended by an exception.");
   out.sample(number(usage.exceptions));
   out.gauge("adit_sessions", "Logins that have not ended.");

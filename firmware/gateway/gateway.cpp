@@ -60,7 +60,10 @@ Gateway::Gateway(loop::Loop& loop, Parts parts)
             .box = &box_},
            tokens().all),
       routes_(icd_options(), flow_, flow_.workers(), api_),
-      listeners_(loop, parts_.sockets, routes_),
+      listeners_(loop, parts_.sockets, routes_,
+                 [this](intake::Ended why, const std::string& address) {
+                   crowding_.ended(why, address, loop_.now());
+                 }),
       second_(loop.timer([this] { every_second(); })),
       change_(loop.timer([this] { apply_change(); })) {
   if (!parts_.ledger.refusal().empty()) {
@@ -158,6 +161,7 @@ void Gateway::every_second() {
   keep_sessions();
   look_at_sockets();
   listeners_.tick();
+  log_crowding();
   if (std::string line = status_line(); line != notified_) {
     host::notify_status(line);
     notified_ = std::move(line);
@@ -172,6 +176,11 @@ void Gateway::look_at_sockets() {
   reach == ListenSockets::Reach::Anew ? make_way() : stop();
 }
 
+void Gateway::log_crowding() {
+  for (const Crowding::Line& line : crowding_.to_log(loop_.now()))
+    host::log(host::Level::Warning, line.sentence, {{"times", std::to_string(line.times)}});
+}
+
 /// When somebody was seen last need not be known to the second.
 void Gateway::keep_sessions() {
   if (loop_.now() < sessions_kept_ + kKeepSessionsEvery) return;
@@ -181,6 +190,11 @@ void Gateway::keep_sessions() {
 
 void Gateway::add_to(api::Usage& usage) const {
   usage.connections += listeners_.connections();
+  usage.strangers = listeners_.strangers();
+  usage.ended = {{"no_room", crowding_.count(intake::Ended::NoRoom)},
+                 {"gave_way", crowding_.count(intake::Ended::GaveWay)},
+                 {"idle", crowding_.count(intake::Ended::Idle)},
+                 {"slow", crowding_.count(intake::Ended::Slow)}};
   usage.sent_bytes = flow_.sent_bytes();
   usage.exceptions = loop::caught_so_far();
   usage.aside_dropped = flow_.aside().dropped();

@@ -19,6 +19,7 @@
 #include "box/self_test.hpp"
 #include "box/this_box.hpp"
 #include "forward/flow.hpp"
+#include "gateway/crowding.hpp"
 #include "gateway/ledger_return.hpp"
 #include "gateway/listen_sockets.hpp"
 #include "gateway/listeners.hpp"
@@ -103,6 +104,7 @@ class Gateway final : public api::Source, public api::Operator {
   void every_second();
   void keep_sessions();
   void look_at_sockets();
+  void log_crowding();
   void ledger_is_back();
   void show_lights();
   void add_to(api::Usage& usage) const;
@@ -145,6 +147,7 @@ class Gateway final : public api::Source, public api::Operator {
   admin::Updates updates_;
   api::Api api_;
   intake::IcdRoutes routes_;
+  Crowding crowding_;
   Listeners listeners_;
   loop::Source second_, change_;
   loop::Instant sessions_kept_{};

@@ -43,6 +43,7 @@ std::vector<std::string> Gateway::attention() const {
       flow_.maps().channel().last_status() == 401 ? flow_.maps().channel() : flow_.telemetry().channel(),
       "mapping");
   std::ranges::move(roster_.attention(loop_.now()), std::back_inserter(sentences));
+  std::ranges::move(crowding_.attention(loop_.now()), std::back_inserter(sentences));
   if (flow_.maps().nearly_full()) sentences.emplace_back("the queue of maps is nearly full");
   return sentences;
 }

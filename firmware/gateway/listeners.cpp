@@ -44,7 +44,8 @@ std::expected<Listeners::Serving, std::string> Listeners::start(ListenSockets::O
                                        .port = open.at.port,
                                        .interface = open.at.interface,
                                        .connections = bounds.connections,
-                                       .connections_per_address = bounds.per_address},
+                                       .connections_per_address = bounds.per_address,
+                                       .ended = ended_},
                                       handler_, std::move(open.socket));
   if (!server) return std::unexpected(std::move(server.error()));
   host::log(host::Level::Notice, "listening",
@@ -69,11 +70,11 @@ void Listeners::stop() {
   for (const Serving& each : serving_) each.server->stop_listening();
 }
 
-std::size_t Listeners::connections() const {
-  std::size_t connections = 0;
-  for (const Serving& each : serving_) connections += each.server->connections();
-  for (const Leaving& each : leaving_) connections += each.server->connections();
-  return connections;
+std::size_t Listeners::sum(std::size_t (intake::Server::*count)() const) const {
+  std::size_t sum = 0;
+  for (const Serving& each : serving_) sum += (*each.server.*count)();
+  for (const Leaving& each : leaving_) sum += (*each.server.*count)();
+  return sum;
 }
 
 }  // namespace adit::gateway

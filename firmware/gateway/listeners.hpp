@@ -2,9 +2,11 @@
 
 #include <cstdint>
 #include <expected>
+#include <functional>
 #include <memory>
 #include <optional>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "gateway/listen_sockets.hpp"
@@ -18,9 +20,10 @@ namespace adit::gateway {
 /// is connected to another is served for as long as he can be waiting for an answer.
 class Listeners {
  public:
-  /// All outlive this.
-  Listeners(loop::Loop& loop, ListenSockets& sockets, intake::Handler& handler)
-      : loop_(loop), sockets_(sockets), handler_(handler) {}
+  /// All outlive this. `ended`: told of each connection that was not gone on with.
+  Listeners(loop::Loop& loop, ListenSockets& sockets, intake::Handler& handler,
+            std::function<void(intake::Ended why, const std::string& address)> ended)
+      : loop_(loop), sockets_(sockets), handler_(handler), ended_(std::move(ended)) {}
 
   /// From now on at these. An error says what cannot be listened at: then sockets that were in the way may be
   /// closed, and it has to be told again what was served before.
@@ -33,7 +36,9 @@ class Listeners {
   void stop();
 
   bool serves() const { return !serving_.empty(); }
-  std::size_t connections() const;
+  std::size_t connections() const { return sum(&intake::Server::connections); }
+  /// Those of them that have shown no token.
+  std::size_t strangers() const { return sum(&intake::Server::strangers); }
 
  private:
   struct Bounds {
@@ -52,10 +57,12 @@ class Listeners {
   };
   std::expected<Serving, std::string> start(ListenSockets::Open open, const Bounds& bounds);
   bool has(std::uint64_t socket) const;
+  std::size_t sum(std::size_t (intake::Server::*count)() const) const;
 
   loop::Loop& loop_;
   ListenSockets& sockets_;
   intake::Handler& handler_;
+  const std::function<void(intake::Ended why, const std::string& address)> ended_;
   loop::Duration longest_{};
   std::vector<Serving> serving_;
   std::vector<Leaving> leaving_;

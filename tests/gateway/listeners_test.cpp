@@ -83,7 +83,7 @@ class ListenersTest : public testing::Test {
   ListenSockets sockets_;
   intake::NotFound handler_;
   settings::Team team_;
-  Listeners listeners_{loop_, sockets_, handler_};
+  Listeners listeners_{loop_, sockets_, handler_, nullptr};
 };
 
 TEST_F(ListenersTest, ConnectionsOfASocketThatStaysLiveOn) {

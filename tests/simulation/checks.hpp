@@ -41,6 +41,7 @@ void honest(const Evidence& evidence, Broken& broken);
 void lights(const Evidence& evidence, Broken& broken);
 void obeyed(const Evidence& evidence, Broken& broken);
 void bounded(const Evidence& evidence, Broken& broken);
+void has_room(const Evidence& evidence, Broken& broken);
 void alive(const Evidence& evidence, Broken& broken);
 
 /// Which faults of the disk there were, of events in their order.

@@ -1,4 +1,4 @@
-// Kept and Answered: of what the team's clients heard.
+// Kept, Answered and HasRoom: of what the team's clients heard.
 #include <map>
 
 #include "icd/sentence.hpp"
@@ -66,6 +66,19 @@ void answered(const Evidence& evidence, Broken& broken) {
       broken.push_back(icd::sentence("Answered: ", event.what, " ", event.serial, " of ", event.who,
                                      " waited ", event.at - since, " s until ", event.at));
     }
+  }
+}
+
+/// But for a flood, which has more connections than an address may, nobody who shows a token is sent away for
+/// others.
+void has_room(const Evidence& evidence, Broken& broken) {
+  for (const Event& event : evidence.events) {
+    const bool is_sent_away =
+        event.kind == Kind::Answered && event.status == 503 &&
+        (event.text.contains("gave way to another") || event.text.contains("under way at once"));
+    if (!is_sent_away || event.who == "flood") continue;
+    broken.push_back(icd::sentence("HasRoom: ", event.what, " ", event.serial, " of ", event.who,
+                                   " found no room at ", event.at));
   }
 }
 

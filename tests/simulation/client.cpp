@@ -85,7 +85,7 @@ void Client::write(std::size_t most) {
   if (hang_up_at_ != 0) most = std::min(most, hang_up_at_ - written_);
   const ssize_t taken = ::send(fd_, request_.data() + written_, most, MSG_NOSIGNAL | MSG_DONTWAIT);
   if (taken < 0 && errno == EAGAIN) return;
-  if (taken < 0) return gone(world_.door().has_refused(fd_) ? "turned away" : "reset");
+  if (taken < 0) return gone("reset");
   written_ += static_cast<std::size_t>(taken);
   if (written_ == request_.size()) {
     Event event = about_;
@@ -105,7 +105,7 @@ void Client::read() {
   std::array<char, 16384> bytes{};
   const ssize_t got = ::recv(fd_, bytes.data(), bytes.size(), MSG_DONTWAIT);
   if (got < 0 && errno == EAGAIN) return;
-  if (got <= 0) return done_ ? gone(world_.door().has_refused(fd_) ? "turned away" : "cut") : close();
+  if (got <= 0) return done_ ? gone("cut") : close();
   answers_.feed({bytes.data(), static_cast<std::size_t>(got)});
   while (const auto answer = answers_.next()) {
     if (answer->status() < 200 || !done_) continue;

@@ -34,8 +34,6 @@ class Door {
   void closed(int fd);
   /// The server has closed its end.
   void server_closed(int fd) { served_.erase(fd); }
-  /// The server did not take in the client's connection: its address had as many as it may.
-  bool has_refused(int fd) const { return refused_.contains(fd); }
   /// The process is over: what it said before is still heard, and nothing of what it says now.
   void cut();
 
@@ -45,12 +43,12 @@ class Door {
     std::uint32_t address;
   };
   void admit_all();
-  void admitted(const Waiting& client);
+  /// The connections, of which one of `address` came just before.
+  void count(std::uint32_t address);
 
   World& world_;
   std::string interface_;
   std::set<int> clients_;  // their ends of connections that were admitted
-  std::set<int> refused_;  // and of those that were closed at once
   struct Served {
     std::uint32_t address;
     int server;

@@ -6,7 +6,7 @@
 namespace adit::simulation {
 namespace {
 
-constexpr std::uint64_t kMostConnections = 24;
+constexpr std::uint64_t kMostConnections = 40;
 constexpr std::int64_t kFirstSerial = 20'000;
 
 }  // namespace

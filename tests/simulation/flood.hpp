@@ -13,7 +13,7 @@ namespace adit::simulation {
 
 class World;
 
-/// A fleet behind one address that sends all at once: fifty states within a second, or clouds, by up to 24
+/// A fleet behind one address that sends all at once: fifty states within a second, or clouds, by up to 40
 /// connections.
 class Flood {
  public:

@@ -10,6 +10,7 @@
 #include "simulation/others.hpp"
 #include "simulation/random.hpp"
 #include "simulation/robot.hpp"
+#include "simulation/strangers.hpp"
 
 namespace adit::simulation {
 
@@ -49,6 +50,7 @@ class Team {
   std::vector<std::unique_ptr<Watcher>> watchers_;
   std::vector<std::unique_ptr<Staller>> stallers_;
   std::vector<std::unique_ptr<Flood>> floods_;
+  std::vector<std::unique_ptr<Strangers>> strangers_;
 };
 
 }  // namespace adit::simulation

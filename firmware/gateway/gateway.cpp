@@ -160,8 +160,8 @@ void Gateway::every_second() {
   updates_.every_second();
   keep_sessions();
   look_at_sockets();
-  listeners_.tick();
   log_crowding();
+  listeners_.tick();
   if (std::string line = status_line(); line != notified_) {
     host::notify_status(line);
     notified_ = std::move(line);

@@ -149,9 +149,9 @@ void Server::Impl::run_soon() {
 void Server::Impl::run() {
   run_is_due_ = false;
   MHD_run(daemon_);
-  send_strangers_away();
   MHD_UNSIGNED_LONG_LONG wait_ms = 0;
   if (MHD_get_timeout(daemon_, &wait_ms) == MHD_YES && wait_ms == 0) run_soon();
+  send_strangers_away();
 }
 
 void Server::Impl::look_at(loop::Instant when) {

@@ -51,7 +51,8 @@ std::optional<Held> Client::held() const {
 
 Held::Doing Client::doing() const {
   if (phase_ == Phase::Idle) return Held::Doing::Idle;
-  if (phase_ == Phase::Head && unread() > 0) return Held::Doing::Fresh;
+  // libmicrohttpd reads that in its next run.
+  if (phase_ == Phase::Head && !suspended_ && unread() > 0) return Held::Doing::Fresh;
   if (phase_ == Phase::Head || request_->is_sending()) return Held::Doing::Sending;
   return ended_ && suspended_ ? Held::Doing::Left : Held::Doing::Waiting;
 }

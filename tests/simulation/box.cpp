@@ -62,7 +62,7 @@ std::string first_settings(const std::string& queues, const std::string& interfa
          R"("}, "courses": [{"name": "B", "scoring": {"address": "10.100.2.200", "port": )" +
          std::to_string(CommandPost::kScoring) + R"(}, "mapping": {"address": "10.100.2.201", "port": )" +
          std::to_string(CommandPost::kMapping) +
-         R"(}}], "team": {"listen": [{"address": "127.0.0.1", "port": 0}], "connections": 64, "connections_per_address": 16, "interface": ")" +
+         R"(}}], "team": {"listen": [{"address": "127.0.0.1", "port": 0}], "connections": 64, "connections_per_address": 8, "interface": ")" +
          interface + R"("}, "queues": {)" + queues + "}}";
 }
 

@@ -16,7 +16,7 @@ namespace {
 constexpr std::chrono::microseconds kAccepting{50};
 /// By the settings (Box), at most: of one address those that may have shown a token, and the share of those
 /// who have not. Who gives way is gone this much later.
-constexpr std::size_t kMostConnections = 64, kMostOfAddress = 16 + 16;
+constexpr std::size_t kMostConnections = 64, kMostOfAddress = 8 + 16;
 constexpr std::chrono::milliseconds kGone{20};
 
 }  // namespace

@@ -21,6 +21,9 @@ namespace {
 /// How long libmicrohttpd has for the last bytes of a client that sends no more.
 constexpr std::chrono::milliseconds kAfterEnd(100);
 
+/// How long a client has to read why its head was refused.
+constexpr std::chrono::milliseconds kLingerWithin(2000);
+
 /// A process may have several servers, and tests have several loops.
 std::uint64_t next_number() {
   static std::atomic<std::uint64_t> last = 0;
@@ -32,14 +35,17 @@ std::uint64_t next_number() {
 Client::Client(Engine& engine, loop::Loop& loop, MHD_Connection* connection, int fd, std::string peer,
                std::string local)
     : engine_(engine),
+      loop_(loop),
       connection_(connection),
       fd_(fd),
       number_(next_number()),
       peer_(std::move(peer)),
-      local_(std::move(local)) {
+      local_(std::move(local)),
+      gate_(fd) {
   // libmicrohttpd does not look at the sockets of suspended connections, and misses an end that comes
-  // together with the last bytes. Edge-triggered, because an ended direction would be reported over and over.
-  hang_up_ = loop.watch(fd, EPOLLRDHUP | EPOLLET, [this](std::uint32_t events) { happened(events); });
+  // together with the last bytes. Edge-triggered, because what is not read would be reported over and over.
+  arrivals_ =
+      loop.watch(fd, EPOLLIN | EPOLLRDHUP | EPOLLET, [this](std::uint32_t events) { happened(events); });
   enter(Phase::Head);
   expect_head();
 }
@@ -51,8 +57,7 @@ std::optional<Held> Client::held() const {
 
 Held::Doing Client::doing() const {
   if (phase_ == Phase::Idle) return Held::Doing::Idle;
-  // libmicrohttpd reads that in its next run.
-  if (phase_ == Phase::Head && !suspended_ && unread() > 0) return Held::Doing::Fresh;
+  if (phase_ == Phase::Head && gate_.has_unseen()) return Held::Doing::Fresh;
   if (phase_ == Phase::Head || request_->is_sending()) return Held::Doing::Sending;
   return ended_ && suspended_ ? Held::Doing::Left : Held::Doing::Waiting;
 }
@@ -70,9 +75,52 @@ void Client::happened(std::uint32_t events) {
   if ((events & (EPOLLHUP | EPOLLERR)) != 0) {
     hung_up_ = true;
     resume();
-  } else if (!std::exchange(ended_, true)) {
+    return;
+  }
+  if ((events & EPOLLRDHUP) != 0 && !std::exchange(ended_, true)) {
     if (bytes_expected_) expect_bytes(kAfterEnd);
   }
+  look_at_head();
+}
+
+void Client::hold_back() {
+  if (hung_up_ || leaving_) return;
+  suspend();
+  look_at_head();
+}
+
+void Client::look_at_head() {
+  if (gate_.has_refused() && (!gate_.read_away() || ended_)) cut();
+  if (!gate_.is_waiting() || !suspended_) return;
+  switch (gate_.look(engine_.now(), ended_)) {
+    case Gate::Finding::Whole:
+      resume();
+      return;
+    case Gate::Finding::Refused:
+      refuse_head();
+      return;
+    case Gate::Finding::Later:
+      if (!look_again_) look_again_ = loop_.timer([this] { look_at_head(); });
+      look_again_.call_at(gate_.again_at());
+      break;
+    case Gate::Finding::Begun:
+      if (phase_ != Phase::Idle) break;
+      enter(Phase::Head);
+      expect_head();
+      break;
+    case Gate::Finding::Nothing:
+      break;
+  }
+  if (ended_) cut();
+}
+
+void Client::refuse_head() {
+  const HeadChecker& head = gate_.head();
+  const Answer answer = error_answer(head.refusal().status, head.refusal().sentence);
+  say_last(last_answer_text(answer, !head.is_head_method()));
+  enter(Phase::Head);
+  expect_reading(kLingerWithin);
+  look_at_head();
 }
 
 void Client::enter(Phase phase) {
@@ -82,9 +130,11 @@ void Client::enter(Phase phase) {
 
 void Client::head_begun(std::string_view target) {
   target_ = target;
-  if (phase_ != Phase::Idle) return;
-  enter(Phase::Head);
-  expect_head();
+  // A field before the client's own, which libmicrohttpd obeys: it knows no such coding, and gives the body
+  // as it comes. Its own reading of chunks takes more than RFC 9112 allows.
+  if (gate_.next_is_chunked()) {
+    MHD_set_connection_value(connection_, MHD_HEADER_KIND, MHD_HTTP_HEADER_TRANSFER_ENCODING, "as-it-comes");
+  }
 }
 
 void Client::request_begun(std::shared_ptr<Request> request) {
@@ -97,6 +147,8 @@ void Client::request_over() {
   request_ = nullptr;
   enter(Phase::Idle);
   expect_bytes(engine_.listen().idle);
+  gate_.request_over();
+  if (gate_.is_waiting()) engine_.hold_back_soon(number_);
 }
 
 void Client::expect_head() {
@@ -170,36 +222,23 @@ bool Client::has_said_all() const {
   return ended_ && unread() == 0;
 }
 
-bool Client::heard_since(loop::Instant when) const {
-  tcp_info info{};
-  socklen_t size = sizeof info;
-  if (::getsockopt(fd_, IPPROTO_TCP, TCP_INFO, &info, &size) != 0) return false;
-  constexpr std::chrono::milliseconds kTick(10);  // the kernel's clock for this is coarse
-  return engine_.now() - std::chrono::milliseconds(info.tcpi_last_data_recv) > when + kTick;
-}
-
 void Client::late() {
   if (bytes_expected_ && ended_ && !has_said_all()) {
     expect_bytes(kAfterEnd);
     return;
   }
   if (keeps_up()) return;
-  const bool said_all = bytes_expected_ && ended_;
   expect_nothing();
+  if (gate_.has_refused()) return cut();
   switch (phase_) {
     case Phase::Request:
       request_->late();
       return;
     case Phase::Idle:
-      if (!said_all && heard_since(since_)) {  // a head has begun, but not its first line ended
-        enter(Phase::Head);
-        expect_head();
-      } else {
-        cut();
-      }
+      cut();
       return;
     case Phase::Head:
-      if (!said_all) engine_.tell(Ended::Slow, peer_);
+      engine_.tell(Ended::Slow, peer_);
       say_last(last_answer_text(
           error_answer(icd::Status::RequestTimeout, "the head of the request took too long"), true));
       cut();
@@ -219,6 +258,7 @@ void Client::resume() {
 }
 
 void Client::say_last(std::string_view text) {
+  if (phase_ != Phase::Request) gate_.read_away();
   // A few hundred bytes into an empty send buffer: what does not fit at once is for a client that does not
   // read, and is lost to it.
   ::send(fd_, text.data(), text.size(), MSG_DONTWAIT | MSG_NOSIGNAL);

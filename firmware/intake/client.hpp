@@ -6,6 +6,7 @@
 #include <string>
 #include <string_view>
 
+#include "intake/gate.hpp"
 #include "intake/least_rate.hpp"
 #include "intake/server.hpp"
 #include "intake/shares.hpp"
@@ -28,6 +29,8 @@ class Engine {
   /// The server looks at its clients' deadlines no later than this.
   virtual void look_at(loop::Instant when) = 0;
   virtual void tell(Ended why, const std::string& address) = 0;
+  /// Once libmicrohttpd has run, the client of that number is held back.
+  virtual void hold_back_soon(std::uint64_t number) = 0;
 };
 
 /// One client's connection, from accept to close. Lives exactly as long as libmicrohttpd's own.
@@ -60,6 +63,11 @@ class Client {
   /// gone: it may still read.
   bool hung_up() const { return hung_up_; }
 
+  /// libmicrohttpd reads nothing more before the next request's head is whole and sound. Not from within its
+  /// callbacks.
+  void hold_back();
+  Gate& gate() { return gate_; }
+  /// libmicrohttpd has read the request's line.
   void head_begun(std::string_view target);
   const std::string& target() const { return target_; }
   void request_begun(std::shared_ptr<Request> request);
@@ -79,7 +87,7 @@ class Client {
   /// The deadline has passed.
   void late();
 
-  /// Both do nothing where it is so already; suspend() only from within libmicrohttpd's callbacks.
+  /// Both do nothing where it is so already; suspend() not while libmicrohttpd takes the connection in.
   void suspend();
   void resume();
   bool suspended() const { return suspended_; }
@@ -101,9 +109,11 @@ class Client {
   int unread() const;  // bytes
   /// The client has ended its direction, and all that it sent has been read.
   bool has_said_all() const;
-  bool heard_since(loop::Instant when) const;
+  void look_at_head();
+  void refuse_head();
 
   Engine& engine_;
+  loop::Loop& loop_;
   MHD_Connection* connection_;
   int fd_;
   std::uint64_t number_;
@@ -120,8 +130,9 @@ class Client {
   bool ended_ = false;              // the client's direction
   bool suspended_ = false;
   bool hung_up_ = false;
+  Gate gate_;
   std::shared_ptr<Request> request_;
-  loop::Source hang_up_;
+  loop::Source arrivals_, look_again_;
 };
 
 }  // namespace adit::intake

@@ -10,15 +10,6 @@ struct MHD_Connection;
 
 namespace adit::intake {
 
-/// How a request's body ends (RFC 9112 6).
-struct Framing {
-  bool has_body = false;
-  std::optional<std::uint64_t> length;  // absent where chunked
-  std::string trouble;  // why two readers could see two different bodies; "" where they cannot
-};
-
-Framing framing_of(MHD_Connection* connection);
-
 /// The head of a request as libmicrohttpd keeps it.
 class Head final : public RequestHead {
  public:

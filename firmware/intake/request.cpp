@@ -53,6 +53,7 @@ Request::Request(Client& client, std::string_view method) : client_(&client), is
 void Request::begin(std::string_view method, Target target, const Framing& framing) {
   left_ = framing.length;
   has_body_ = framing.has_body;
+  if (!framing.length) chunks_.emplace();
   head_.emplace(client_->connection(), method, std::move(target), client_->peer(), client_->local(),
                 client_->number(), framing.length);
 }
@@ -88,7 +89,22 @@ Next Request::body(std::span<const std::uint8_t> piece) {
   }
   if (left_) *left_ -= std::min<std::uint64_t>(piece.size(), *left_);
   if (answered()) return Next::GoOn;  // being read away
+  return chunks_ ? take_chunks(piece) : take(piece);
+}
 
+Next Request::take_chunks(std::span<const std::uint8_t> piece) {
+  std::string data;
+  const auto state = chunks_->feed({reinterpret_cast<const char*>(piece.data()), piece.size()}, data);
+  if (state == ChunkReader::State::Refused) {
+    refuse(error_answer(icd::Status::BadRequest, chunks_->trouble()));
+    return Next::GoOn;
+  }
+  if (!data.empty()) take({reinterpret_cast<const std::uint8_t*>(data.data()), data.size()});
+  if (state != ChunkReader::State::Whole || answered()) return Next::GoOn;
+  return client_->suspended() ? Next::Again : end();
+}
+
+Next Request::take(std::span<const std::uint8_t> piece) {
   resumed_ = false;
   in_call_ = true;
   const bool more = sink_->on_body(piece);
@@ -142,9 +158,15 @@ void Request::refuse(const Answer& answer) {
 }
 
 Next Request::hand_over() {
+  if (chunks_) {  // to libmicrohttpd, its body goes on for as long as the connection
+    turn_away();
+    return Next::GoOn;
+  }
   MHD_Response* response = stream_ ? ReplyStream::make_response(stream_) : make_response(*answer_);
   if (response == nullptr) return Next::Close;
   const unsigned status = stream_ ? MHD_HTTP_OK : static_cast<unsigned>(answer_->status);
+  // What has been read of the next request did not pass the gate.
+  if (client_->gate().is_passed_by()) MHD_add_response_header(response, MHD_HTTP_HEADER_CONNECTION, "close");
   const MHD_Result queued = MHD_queue_response(client_->connection(), status, response);
   MHD_destroy_response(response);
   if (queued != MHD_YES) return Next::Close;
@@ -207,7 +229,7 @@ std::shared_ptr<Stream> Request::stream(std::string_view content_type) {
 
 void Request::answer_came() {
   if (in_call_) return;  // the call under way sees to it
-  if (stage_ == Stage::Body) {
+  if (stage_ == Stage::Body || chunks_) {
     turn_away();
   } else {
     client_->resume();

@@ -4,7 +4,9 @@
 #include <optional>
 #include <span>
 
+#include "intake/chunk_reader.hpp"
 #include "intake/head.hpp"
+#include "intake/head_checker.hpp"
 #include "intake/reply_stream.hpp"
 #include "intake/server.hpp"
 
@@ -12,8 +14,9 @@ namespace adit::intake {
 
 class Client;
 
-/// What is to become of the connection after one of libmicrohttpd's callbacks.
-enum class Next : std::uint8_t { GoOn, Close };
+/// What is to become of the connection after one of libmicrohttpd's callbacks. Again: once the connection has
+/// been resumed, the piece's last byte comes again.
+enum class Next : std::uint8_t { GoOn, Again, Close };
 
 /// The life of one request: driven by libmicrohttpd's callbacks on one side, and by whoever holds it as a
 /// Responder or a Flow on the other. Outlives its connection for as long as they do.
@@ -30,6 +33,7 @@ class Request final : public Responder, public Flow, public std::enable_shared_f
   void refuse_head(std::string_view sentence);
   /// Answers 503 without asking a handler, and ends the connection.
   void refuse_for_room(std::string_view sentence);
+  /// A piece of it; of a chunked one, as it came.
   Next body(std::span<const std::uint8_t> piece);
   /// The body is whole; called again each time that the connection has been resumed.
   Next end();
@@ -63,6 +67,8 @@ class Request final : public Responder, public Flow, public std::enable_shared_f
   };
 
   bool answered() const { return answer_ || stream_; }
+  Next take(std::span<const std::uint8_t> piece);
+  Next take_chunks(std::span<const std::uint8_t> piece);
   /// The answer is there before the body is.
   void turn_away();
   void refuse(const Answer& answer);
@@ -79,6 +85,7 @@ class Request final : public Responder, public Flow, public std::enable_shared_f
   bool has_body_ = false;
   bool in_call_ = false;               // of the handler
   bool resumed_ = false;               // since the last piece
+  std::optional<ChunkReader> chunks_;  // where the body comes in chunks
   std::optional<std::uint64_t> left_;  // of the body; absent where chunked
   std::size_t thrown_away_ = 0;
 };

@@ -52,6 +52,7 @@ class Server::Impl final : public Engine {
   void run_soon() override;
   void look_at(loop::Instant when) override;
   void tell(Ended why, const std::string& address) override;
+  void hold_back_soon(std::uint64_t number) override { to_hold_back_.push_back(number); }
 
  private:
   static MHD_Result request_came(void* cls, MHD_Connection* connection, const char* url, const char* method,
@@ -75,6 +76,7 @@ class Server::Impl final : public Engine {
   /// For a request that shows a token. False: it is to be refused.
   bool make_room_for(Client& client);
   void run();
+  void hold_back();
   void look_at_deadlines();
 
   loop::Loop& loop_;
@@ -87,6 +89,7 @@ class Server::Impl final : public Engine {
   bool listening_ = false;
   bool run_is_due_ = false;
   std::map<std::uint64_t, std::unique_ptr<Client>> clients_;  // by Client::number(): the oldest first
+  std::vector<std::uint64_t> to_hold_back_;                   // numbers of clients
   std::shared_ptr<void> accepts_;
   loop::Instant look_due_ = loop::Instant::max();
   loop::Source readable_, deadline_timer_;
@@ -109,6 +112,7 @@ std::expected<void, std::string> Server::Impl::start(loop::FileDescriptor given)
   if (daemon_ == nullptr) return std::unexpected("the HTTP server did not start");
   accepts_ = accept_instead(socket->get(), [this](int fd, const sockaddr* peer, unsigned size) {
     MHD_add_connection(daemon_, fd, peer, size);
+    hold_back();
   });
   socket->release();  // NOLINT(bugprone-unused-return-value): libmicrohttpd's, until stop_listening()
   listening_ = true;
@@ -149,9 +153,17 @@ void Server::Impl::run_soon() {
 void Server::Impl::run() {
   run_is_due_ = false;
   MHD_run(daemon_);
+  hold_back();
   MHD_UNSIGNED_LONG_LONG wait_ms = 0;
   if (MHD_get_timeout(daemon_, &wait_ms) == MHD_YES && wait_ms == 0) run_soon();
   send_strangers_away();
+}
+
+/// Those that libmicrohttpd has taken in, or has answered: it has read nothing of them since.
+void Server::Impl::hold_back() {
+  for (const std::uint64_t number : std::exchange(to_hold_back_, {})) {
+    if (const auto found = clients_.find(number); found != clients_.end()) found->second->hold_back();
+  }
 }
 
 void Server::Impl::look_at(loop::Instant when) {
@@ -180,6 +192,7 @@ void Server::Impl::connected(MHD_Connection* connection, void** client_cls) {
   Client* const known = client.get();
   clients_.emplace(known->number(), std::move(client));
   *client_cls = known;
+  hold_back_soon(known->number());
 }
 
 void Server::Impl::tell(Ended why, const std::string& address) {
@@ -214,14 +227,11 @@ bool Server::Impl::make_room_for(Client& client) {
 void Server::Impl::first_call(Client& client, std::string_view method) {
   auto request = std::make_shared<Request>(client, method);
   client.request_begun(request);
-  const Framing framing = framing_of(client.connection());
   auto target = parse_target(client.target());
-  if (!framing.trouble.empty()) {
-    request->refuse_head(framing.trouble);
-  } else if (!target) {
+  if (!target) {
     request->refuse_head("request target: expected a path of UTF-8, percent-encoded");
   } else {
-    request->begin(method, std::move(*target), framing);
+    request->begin(method, std::move(*target), client.gate().framing());
     const bool known = handler_.knows(request->head());
     const bool has_room = !known || client.is_known() || make_room_for(client);
     client.is_known(known && has_room);
@@ -253,12 +263,14 @@ MHD_Result Server::Impl::request_came(void* cls, MHD_Connection* connection, con
       client->request()) {
     loop::guarded("the answer to a failed request", [&] { next = client->request()->failed(); });
   }
-  return next == Next::GoOn ? MHD_YES : MHD_NO;
+  if (next == Next::Again) *upload_size = 1;
+  return next == Next::Close ? MHD_NO : MHD_YES;
 }
 
 Next Server::Impl::hear(Client& client, std::string_view method, std::string_view upload,
                         void** request_cls) {
   if (*request_cls == nullptr) {
+    if (!client.gate().let_in()) return Next::Close;
     *request_cls = &client;
     first_call(client, method);
     return Next::GoOn;

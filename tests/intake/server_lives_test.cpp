@@ -61,7 +61,8 @@ TEST_F(ServerLives, ClientClosesInTheMiddleOfItsBody) {
 }
 
 TEST_F(ServerLives, ClientClosesRightBehindItsLastBytes) {
-  for (const std::string text : {"GET /echo HT", "POST /echo HTTP/1.1\r\nContent-Length: 100\r\n\r\nbegun"}) {
+  for (const std::string text :
+       {"GET /echo HT", "POST /echo HTTP/1.1\r\nHost: adit\r\nContent-Length: 100\r\n\r\nbegun"}) {
     RawClient brief(served.port());
     brief.send(text);
     brief.close();
@@ -129,7 +130,7 @@ TEST_F(ServerLives, ServerEndsWithARequestInEachPhase) {
        {std::string("GET /echo HT"), "POST /echo" + unfinished, "POST /held" + unfinished,
         "POST /midway" + unfinished, "POST /eager" + unfinished, request("GET", "/later"),
         request("GET", "/stream"), request("GET", "/echo"),
-        std::string("POST /refuse HTTP/1.1\r\nContent-Length: 10\r\n\r\n")}) {
+        std::string("POST /refuse HTTP/1.1\r\nHost: adit\r\nContent-Length: 10\r\n\r\n")}) {
     clients.push_back(std::make_unique<RawClient>(served.port()));
     clients.back()->send(text);
   }

@@ -1,0 +1,120 @@
+#include "intake/gate.hpp"
+
+#include <linux/tcp.h>
+#include <netinet/in.h>
+#include <sys/ioctl.h>
+#include <sys/socket.h>
+
+#include <array>
+#include <optional>
+
+namespace adit::intake {
+namespace {
+
+constexpr std::size_t kMostThrownAway = 256 * 1024;
+
+/// The kernel copies all that it shows, each time. What comes in small pieces is looked at again only where a
+/// sixteenth has been added, or after this time: 17 times the head, and 100 times a second, at the most.
+constexpr std::size_t kWorthALook = 16;
+constexpr std::chrono::milliseconds kBetweenLooks(10);
+
+std::size_t unread(int fd) {
+  int bytes = 0;
+  return ::ioctl(fd, FIONREAD, &bytes) == 0 && bytes > 0 ? static_cast<std::size_t>(bytes) : 0;
+}
+
+/// How much of all that the client has sent has been read from its socket, or more, where something comes in
+/// the middle of this; nothing where it is no TCP socket (a socketpair of the simulation).
+std::optional<std::uint64_t> read_so_far(int fd) {
+  const std::size_t waits = unread(fd);
+  tcp_info info{};
+  socklen_t size = sizeof info;
+  if (::getsockopt(fd, IPPROTO_TCP, TCP_INFO, &info, &size) != 0) return std::nullopt;
+  return info.tcpi_bytes_received - waits;
+}
+
+}  // namespace
+
+void Gate::request_over() {
+  if (stage_ == Stage::Refused) return;
+  if (next_ < sound_.size()) {
+    stage_ = Stage::Open;
+    return;
+  }
+  stage_ = Stage::Waiting;
+  head_ = {};
+  looked_at_ = 0;
+}
+
+bool Gate::has_unseen() const {
+  return stage_ == Stage::Open || (stage_ == Stage::Waiting && looked_at_ == 0 && unread(fd_) > 0);
+}
+
+Gate::Finding Gate::look(loop::Instant now, bool at_once) {
+  if (looked_at_ > 0 && !at_once) {
+    const std::size_t there = unread(fd_);
+    if (there == looked_at_) return Finding::Begun;
+    again_at_ = looked_ + kBetweenLooks;
+    if (there < looked_at_ + looked_at_ / kWorthALook && now < again_at_) return Finding::Later;
+  }
+  std::array<char, HeadChecker::kMostBytes> bytes;  // NOLINT(cppcoreguidelines-pro-type-member-init)
+  const ssize_t size = ::recv(fd_, bytes.data(), bytes.size(), MSG_PEEK | MSG_DONTWAIT);
+  if (size <= 0) return Finding::Nothing;
+  looked_at_ = static_cast<std::size_t>(size);
+  looked_ = now;
+  switch (head_.look({bytes.data(), looked_at_})) {
+    case HeadChecker::Verdict::More:
+      return Finding::Begun;
+    case HeadChecker::Verdict::Whole:
+      take_sound_heads({bytes.data(), looked_at_});
+      stage_ = Stage::Open;
+      return Finding::Whole;
+    case HeadChecker::Verdict::Refused:
+      break;
+  }
+  stage_ = Stage::Refused;
+  return Finding::Refused;
+}
+
+/// The first request's, and those of whole requests behind it: libmicrohttpd reads them together.
+void Gate::take_sound_heads(std::string_view bytes) {
+  sound_.clear();
+  next_ = 0;
+  HeadChecker head = head_;
+  while (true) {
+    sound_.push_back({.head_bytes = head.size(), .framing = head.framing()});
+    const std::size_t left = bytes.size() - head.size();
+    const auto length = head.framing().length;
+    if (!length || *length >= left) return;
+    bytes.remove_prefix(head.size() + static_cast<std::size_t>(*length));
+    head = {};
+    if (head.look(bytes) != HeadChecker::Verdict::Whole) return;
+  }
+}
+
+bool Gate::let_in() {
+  if (stage_ != Stage::Open) return false;
+  stage_ = Stage::Entered;
+  const Sound& sound = sound_[next_++];
+  framing_ = sound.framing;
+  requests_end_ += sound.head_bytes + framing_.length.value_or(0);
+  return true;
+}
+
+bool Gate::is_passed_by() const {
+  if (next_ < sound_.size()) return false;
+  const auto read = read_so_far(fd_);
+  return read && *read != requests_end_;
+}
+
+bool Gate::read_away() {
+  std::array<char, 16 * 1024> bytes;  // NOLINT(cppcoreguidelines-pro-type-member-init): never looked at
+  while (thrown_away_ <= kMostThrownAway) {
+    const ssize_t size = ::recv(fd_, bytes.data(), bytes.size(), MSG_DONTWAIT);
+    if (size <= 0) return true;
+    thrown_away_ += static_cast<std::size_t>(size);
+  }
+  return false;
+}
+
+}  // namespace adit::intake

@@ -1,0 +1,197 @@
+#include "intake/head_checker.hpp"
+
+#include <algorithm>
+#include <charconv>
+#include <string>
+#include <utility>
+
+#include "icd/sentence.hpp"
+#include "intake/field_text.hpp"
+
+namespace adit::intake {
+namespace {
+
+/// RFC 6585 5 and RFC 9110 15.6.6, which nobody else answers.
+constexpr icd::Status kFieldsTooLarge{431}, kVersionNotSupported{505};
+
+constexpr std::string_view kRequestLine =
+    "request line: expected a method, a target and HTTP/1.1, with one blank between them";
+
+/// Visible ASCII, and what is over it: parse_target() takes UTF-8.
+bool is_target_text(std::string_view text) {
+  return has_no_controls(text) && !text.contains('\t');
+}
+
+bool is_version(std::string_view text) {
+  const auto is_digit = [](char letter) { return letter >= '0' && letter <= '9'; };
+  return text.size() == 8 && text.starts_with("HTTP/") && is_digit(text[5]) && text[6] == '.' &&
+         is_digit(text[7]);
+}
+
+std::size_t count_of(std::string_view text, char letter) {
+  return static_cast<std::size_t>(std::ranges::count(text, letter));
+}
+
+}  // namespace
+
+HeadChecker::Verdict HeadChecker::look(std::string_view so_far) {
+  while (verdict_ == Verdict::More) {
+    const auto end = std::min(so_far.find('\n', looked_at_), so_far.size());
+    if (end >= kMostBytes) {
+      refuse("the head of the request: expected at most 16 KiB", kFieldsTooLarge);
+      break;
+    }
+    looked_at_ = end;
+    if (end == so_far.size()) break;
+    ++looked_at_;
+    line(so_far, so_far.substr(line_begin_, end - line_begin_));
+    line_begin_ = looked_at_;
+  }
+  return verdict_;
+}
+
+void HeadChecker::line(std::string_view so_far, std::string_view line) {
+  if (!line.ends_with('\r')) {  // RFC 9112 2.2 lets a recipient take it; others in front of this one may not
+    refuse("the head of the request: each line must end in CRLF");
+    return;
+  }
+  line.remove_suffix(1);
+  if (!request_line_came_) {
+    if (!line.empty()) request_line(so_far, line);  // RFC 9112 2.2: empty lines before it are ignored
+  } else if (line.empty()) {
+    end(so_far);
+  } else {
+    field(so_far, line);
+  }
+}
+
+/// RFC 9112 3
+void HeadChecker::request_line(std::string_view so_far, std::string_view line) {
+  request_line_came_ = true;
+  const auto first = line.find(' '), last = line.rfind(' ');
+  if (first == std::string_view::npos || first == last) {
+    refuse(kRequestLine);
+    return;
+  }
+  const std::string_view method = line.substr(0, first);
+  const std::string_view asked = line.substr(first + 1, last - first - 1);
+  const std::string_view version = line.substr(last + 1);
+  if (!is_token(method) || asked.empty() || asked.contains(' ') || !is_version(version)) {
+    refuse(kRequestLine);
+  } else if (!version.starts_with("HTTP/1.")) {  // RFC 9110 15.6.6
+    refuse(icd::sentence("request line: expected HTTP/1.1, got ", version), kVersionNotSupported);
+  } else {
+    is_version_1_0_ = version.ends_with('0');
+    is_head_method_ = method == "HEAD";
+    target(so_far, method, asked);
+  }
+}
+
+/// RFC 9112 3.2
+void HeadChecker::target(std::string_view so_far, std::string_view method, std::string_view target) {
+  constexpr std::string_view kScheme = "http://";
+  count(count_of(target, '&'));
+  if (!is_target_text(target)) {
+    refuse("request target: must have no control characters");
+  } else if (same_word(target.substr(0, kScheme.size()), kScheme)) {
+    const std::string_view after = target.substr(kScheme.size());
+    const std::string_view authority = after.substr(0, after.find_first_of("/?#"));
+    authority_ = {.at = static_cast<std::size_t>(authority.data() - so_far.data()), .size = authority.size()};
+  } else if (!target.starts_with('/') && (target != "*" || method != "OPTIONS")) {
+    refuse("request target: expected a path, percent-encoded");
+  }
+}
+
+void HeadChecker::field(std::string_view so_far, std::string_view line) {
+  const auto field = parse_field_line(line);
+  if (!field) {
+    refuse(field.error());
+    return;
+  }
+  count(1);
+  if (same_word(field->name, "Host")) {
+    host(so_far, field->value);
+  } else if (same_word(field->name, "Content-Length")) {
+    content_length(field->value);
+  } else if (same_word(field->name, "Transfer-Encoding")) {
+    transfer_encoding(field->value);
+  } else if (same_word(field->name, "Cookie")) {
+    cookie(field->value);
+  }
+}
+
+/// RFC 9112 3.2
+void HeadChecker::host(std::string_view so_far, std::string_view value) {
+  if (host_) {
+    refuse("Host: given twice");
+  } else if (!is_authority(value)) {
+    refuse("Host: expected an address or a name, and a port or none");
+  } else {
+    host_ = {.at = value.empty() ? 0 : static_cast<std::size_t>(value.data() - so_far.data()),
+             .size = value.size()};
+  }
+}
+
+/// RFC 9110 8.6, RFC 9112 6.3
+void HeadChecker::content_length(std::string_view value) {
+  if (std::exchange(has_length_, true)) {
+    refuse("Content-Length: given twice");
+    return;
+  }
+  std::uint64_t length = 0;
+  const auto [end, error] = std::from_chars(value.data(), value.data() + value.size(), length);
+  if (value.empty() || error != std::errc() || end != value.data() + value.size() ||
+      length > static_cast<std::uint64_t>(INT64_MAX)) {
+    refuse("Content-Length: expected a whole number");
+    return;
+  }
+  framing_ = {.has_body = length > 0, .length = length};
+}
+
+/// RFC 9112 6.1, 7
+void HeadChecker::transfer_encoding(std::string_view value) {
+  if (std::exchange(has_coding_, true) || !same_word(value, "chunked")) {
+    refuse("Transfer-Encoding: expected chunked and nothing else");
+  }
+}
+
+/// libmicrohttpd has one memory for the head, a record of each part, and a copy of the cookies.
+void HeadChecker::cookie(std::string_view value) {
+  count(count_of(value, ';') + count_of(value, ','));
+  cookie_bytes_ += value.size();
+  if (cookie_bytes_ > kMostCookieBytes) {
+    refuse("Cookie: expected at most 4 KiB", kFieldsTooLarge);
+  }
+}
+
+void HeadChecker::end(std::string_view so_far) {
+  const auto text = [&](const Place& place) { return so_far.substr(place.at, place.size); };
+  if (!host_ && !is_version_1_0_) {
+    refuse("Host: missing");  // RFC 9112 3.2
+  } else if (authority_ && (!host_ || !same_word(text(*authority_), text(*host_)))) {
+    refuse("request target: its address is not the one in Host");  // RFC 9112 3.2.2
+  } else if (has_coding_ && has_length_) {
+    refuse("Content-Length: must not stand beside Transfer-Encoding");  // RFC 9112 6.3
+  } else if (has_coding_ && is_version_1_0_) {
+    refuse("Transfer-Encoding: must not stand in HTTP/1.0");  // RFC 9112 6.1
+  } else if (verdict_ == Verdict::More) {
+    if (has_coding_) framing_ = {.has_body = true, .length = std::nullopt};
+    verdict_ = Verdict::Whole;
+  }
+}
+
+void HeadChecker::count(std::size_t parts) {
+  parts_ += parts;
+  if (parts_ > kMostParts) {
+    refuse("the head of the request: expected at most 128 header fields, query parameters and cookies",
+           kFieldsTooLarge);
+  }
+}
+
+/// The first trouble counts.
+void HeadChecker::refuse(std::string_view sentence, icd::Status status) {
+  if (std::exchange(verdict_, Verdict::Refused) == Verdict::Refused) return;
+  refusal_ = {.status = status, .sentence = std::string(sentence)};
+}
+
+}  // namespace adit::intake

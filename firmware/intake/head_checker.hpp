@@ -1,0 +1,72 @@
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <optional>
+#include <string_view>
+
+#include "icd/status.hpp"
+
+namespace adit::intake {
+
+/// How a request's body ends (RFC 9112 6).
+struct Framing {
+  bool has_body = false;
+  std::optional<std::uint64_t> length = 0;  // absent where chunked
+};
+
+/// Judges the head of one request as it comes, before libmicrohttpd reads it, which is more lenient than RFC
+/// 9112 allows: what two readers could read in two ways, it refuses. Keeps none of the bytes, and looks at
+/// each of them a fixed number of times, in however many pieces they come.
+class HeadChecker {
+ public:
+  static constexpr std::size_t kMostBytes = 16 * 1024;  // of the head, with the blank line that ends it
+  static constexpr std::size_t kMostParts = 128;        // fields, query parameters and cookies
+  static constexpr std::size_t kMostCookieBytes = 4096;
+
+  enum class Verdict : std::uint8_t { More, Whole, Refused };
+
+  /// `so_far`: what was looked at before, and what has come since. More: the head is not whole; what follows
+  /// a whole one is not looked at.
+  Verdict look(std::string_view so_far);
+
+  /// Once whole: bytes of the head, and how its body ends.
+  std::size_t size() const { return looked_at_; }
+  const Framing& framing() const { return framing_; }
+  /// Once refused: 400, 431 or 505.
+  const icd::Refusal& refusal() const { return refusal_; }
+  bool is_head_method() const { return is_head_method_; }
+
+ private:
+  /// A part of the head, as its offset: the bytes may lie elsewhere the next time.
+  struct Place {
+    std::size_t at = 0, size = 0;
+  };
+
+  void line(std::string_view so_far, std::string_view line);
+  void request_line(std::string_view so_far, std::string_view line);
+  void target(std::string_view so_far, std::string_view method, std::string_view target);
+  void field(std::string_view so_far, std::string_view line);
+  void host(std::string_view so_far, std::string_view value);
+  void content_length(std::string_view value);
+  void transfer_encoding(std::string_view value);
+  void cookie(std::string_view value);
+  void end(std::string_view so_far);
+  void count(std::size_t parts);
+  void refuse(std::string_view sentence, icd::Status status = icd::Status::BadRequest);
+
+  Verdict verdict_ = Verdict::More;
+  icd::Refusal refusal_;
+  std::size_t looked_at_ = 0;   // bytes
+  std::size_t line_begin_ = 0;  // offset
+  bool request_line_came_ = false;
+  bool is_version_1_0_ = false;
+  bool is_head_method_ = false;
+  std::optional<Place> authority_;  // of a target in absolute form
+  std::optional<Place> host_;
+  bool has_length_ = false, has_coding_ = false;
+  std::size_t parts_ = 0, cookie_bytes_ = 0;
+  Framing framing_;
+};
+
+}  // namespace adit::intake

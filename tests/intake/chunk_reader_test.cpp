@@ -1,0 +1,58 @@
+#include "intake/chunk_reader.hpp"
+
+#include <gtest/gtest.h>
+
+#include "intake/odd_heads.hpp"
+
+namespace adit::intake {
+namespace {
+
+using State = ChunkReader::State;
+
+struct Outcome {
+  State state;
+  std::string data;
+};
+
+Outcome read(std::string_view body, std::size_t piece) {
+  ChunkReader reader;
+  std::string data;
+  for (; !body.empty(); body.remove_prefix(std::min(piece, body.size()))) {
+    reader.feed(body.substr(0, piece), data);
+  }
+  return {reader.state(), data};
+}
+
+TEST(Chunks, ThatTheRfcHasRefusedAreRefusedHoweverTheyCome) {
+  for (const OddChunks& odd : odd_chunks()) {
+    for (const std::size_t piece : {odd.body.size(), std::size_t{1}, std::size_t{3}}) {
+      EXPECT_EQ(read(odd.body, piece).state, State::Refused) << odd.what << " in pieces of " << piece;
+    }
+  }
+}
+
+TEST(Chunks, AreReadHoweverTheyCome) {
+  const std::string bodies[] = {
+      "3\r\nin \r\n6\r\nchunks\r\n0\r\n\r\n",
+      "0003;ext=1;b\r\nin \r\n6 ; quoted=\"a;b\"\r\nchunks\r\n000\r\n\r\n",
+      "9\r\nin chunks\r\n0;last\r\nTrailer: x\r\nAnother:\r\n\r\n",
+      "1\r\ni\r\n8\r\nn chunks\r\n0\r\n\r\nGET / HTTP/1.1\r\n\r\n",
+  };
+  for (const std::string& body : bodies) {
+    for (const std::size_t piece : {body.size(), std::size_t{1}, std::size_t{2}, std::size_t{5}}) {
+      const Outcome outcome = read(body, piece);
+      EXPECT_EQ(outcome.state, State::Whole) << body;
+      EXPECT_EQ(outcome.data, "in chunks") << body;
+    }
+  }
+}
+
+TEST(Chunks, AreNotWholeBeforeTheirLastLine) {
+  const std::string body = "A\r\n0123456789\r\n0\r\n\r\n";
+  for (std::size_t size = 0; size < body.size(); ++size) {
+    EXPECT_EQ(read(std::string_view(body).substr(0, size), 1).state, State::More) << size;
+  }
+}
+
+}  // namespace
+}  // namespace adit::intake

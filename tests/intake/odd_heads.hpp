@@ -1,0 +1,27 @@
+#pragma once
+
+#include <string>
+#include <string_view>
+#include <vector>
+
+namespace adit::intake {
+
+/// A head that RFC 9110 or 9112 has refused.
+struct OddHead {
+  std::string_view clause, what;
+  std::string head;
+  int status;
+  std::string_view word;  // of the sentence
+};
+
+const std::vector<OddHead>& odd_heads();
+
+/// A chunked body that RFC 9112 7.1 has refused.
+struct OddChunks {
+  std::string_view what;
+  std::string body;
+};
+
+const std::vector<OddChunks>& odd_chunks();
+
+}  // namespace adit::intake

@@ -34,10 +34,12 @@ TEST_F(SettingsRoutesTest, ShowTheWholeSettingsWhatAFormNeedsAndNoToken) {
     return json();
   };
   EXPECT_EQ(key("team.connections"), (json{{"path", "team.connections"},
-                                           {"meaning", "Connections of the team at once, at most."},
+                                           {"meaning",
+                                            "Connections of the team at once, at most; a quarter of them, at "
+                                            "most 32, is for who has shown no token."},
                                            {"kind", "whole"},
                                            {"required", false},
-                                           {"default", 64},
+                                           {"default", 128},
                                            {"range", "1 to 1024"},
                                            {"least", 1},
                                            {"most", 1024}}));
@@ -108,7 +110,7 @@ TEST_F(SettingsRoutesTest, SaveWhatIsGoodAndSayWhatChanges) {
   const auto answer = post("/adit/settings", {{"settings", said["settings"]}, {"base", said["tag"]}});
   EXPECT_EQ(answer.status, Status::Ok);
   EXPECT_EQ(json::parse(answer.body),
-            (json{{"changes", {{{"path", "team.connections"}, {"from", 64}, {"to", 65}}}},
+            (json{{"changes", {{{"path", "team.connections"}, {"from", 128}, {"to", 65}}}},
                   {"warnings", json::array()}}));
   EXPECT_EQ(setup.now.team.connections, 65u);
   EXPECT_EQ(post("/adit/settings", {{"settings", said["settings"]}, {"base", said["tag"]}}).status,

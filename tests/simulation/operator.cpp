@@ -57,7 +57,7 @@ void Operator::change(settings::Settings& next) {
     next.command_post.timeouts.connect = std::chrono::milliseconds(1000 + random_.below(3000));
   if (random_.chance(0.3)) next.command_post.budget_mbit = random_.between(20, 200);
   if (random_.chance(0.3))
-    next.team.connections_per_address = static_cast<std::uint32_t>(8 + random_.below(9));
+    next.team.connections_per_address = static_cast<std::uint32_t>(4 + random_.below(5));
   if (random_.chance(0.3)) next.queues.map_bytes = (128u + random_.below(128)) << 20;
 }
 

@@ -7,6 +7,7 @@
 #include <array>
 #include <cstdlib>
 #include <span>
+#include <utility>
 
 namespace adit::simulation {
 
@@ -19,7 +20,11 @@ Descriptors::~Descriptors() {
 }
 
 std::uint64_t Descriptors::add(int fd, std::uint32_t events, Ready ready, Whose whose) {
-  watched_.emplace(++last_, Watched{fd, whose, false, std::move(ready)});
+  watched_.emplace(++last_, Watched{.fd = fd,
+                                    .whose = whose,
+                                    .edge = (events & EPOLLET) != 0,
+                                    .added = false,
+                                    .ready = std::move(ready)});
   wait_for(last_, events);
   return last_;
 }
@@ -47,16 +52,20 @@ void Descriptors::remove(std::uint64_t number) {
 bool Descriptors::dispatch(Whose whose) {
   std::array<epoll_event, 256> events;  // NOLINT(cppcoreguidelines-pro-type-member-init): asked for so often
   const int count = ::epoll_wait(epoll_, events.data(), static_cast<int>(events.size()), 0);
-  if (count <= 0) return false;
-  const auto ready = std::span(events).first(static_cast<std::size_t>(count));
-  std::ranges::sort(ready, {}, [](const epoll_event& event) { return event.data.u64; });
+  for (const epoll_event& event : std::span(events).first(static_cast<std::size_t>(std::max(count, 0)))) {
+    happened_[event.data.u64] |= event.events;
+  }
   bool any = false;
-  for (const epoll_event& event : ready) {
-    const auto found = watched_.find(event.data.u64);
-    if (found == watched_.end() || (whose != Whose::All && found->second.whose != whose)) continue;
+  for (const auto& [number, what] : std::exchange(happened_, {})) {
+    const auto found = watched_.find(number);
+    if (found == watched_.end()) continue;
+    if (whose != Whose::All && found->second.whose != whose) {
+      if (found->second.edge) happened_[number] |= what;  // which the kernel tells once
+      continue;
+    }
     any = true;
     const Ready call = found->second.ready;  // it may remove itself
-    call(event.events);
+    call(what);
   }
   return any;
 }

@@ -28,12 +28,14 @@ class Descriptors {
   struct Watched {
     int fd;
     Whose whose;
+    bool edge;
     bool added;
     Ready ready;
   };
   int epoll_;
   std::uint64_t last_ = 0;
   std::map<std::uint64_t, Watched> watched_;
+  std::map<std::uint64_t, std::uint32_t> happened_;  // and whoever watches was not told yet
 };
 
 }  // namespace adit::simulation

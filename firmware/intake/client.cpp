@@ -3,6 +3,7 @@
 #include <linux/tcp.h>
 #include <microhttpd.h>
 #include <netinet/in.h>
+#include <poll.h>
 #include <sys/epoll.h>
 #include <sys/ioctl.h>
 #include <sys/socket.h>
@@ -28,6 +29,13 @@ constexpr std::chrono::milliseconds kLingerWithin(2000);
 std::uint64_t next_number() {
   static std::atomic<std::uint64_t> last = 0;
   return ++last;
+}
+
+/// What epoll would tell: who hung up before he was let in holds no place of those who wait.
+std::uint32_t state_of(int fd) {
+  pollfd asked{.fd = fd, .events = POLLIN | POLLRDHUP, .revents = 0};
+  static_assert(POLLIN == EPOLLIN && POLLHUP == EPOLLHUP && POLLERR == EPOLLERR && POLLRDHUP == EPOLLRDHUP);
+  return ::poll(&asked, 1, 0) == 1 ? static_cast<std::uint32_t>(asked.revents) : 0;
 }
 
 }  // namespace
@@ -86,7 +94,7 @@ void Client::happened(std::uint32_t events) {
 void Client::hold_back() {
   if (hung_up_ || leaving_) return;
   suspend();
-  look_at_head();
+  happened(state_of(fd_));
 }
 
 void Client::look_at_head() {

@@ -37,6 +37,12 @@ intake::Answer refused(const icd::Refusal& why) {
   return refusal(why.status, why.sentence);
 }
 
+intake::Answer refused_change(const icd::Refusal& why) {
+  auto answer = refused(why);
+  if (why.status == icd::Status::Conflict) answer.headers.push_back({"Retry-After", "1"});
+  return answer;
+}
+
 intake::Answer refusal(icd::Status status, std::string_view sentence) {
   return guarded(intake::error_answer(status, sentence));
 }

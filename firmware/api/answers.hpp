@@ -19,6 +19,9 @@ intake::Answer object(codec::Value::Object members);
 
 intake::Answer refusal(icd::Status status, std::string_view sentence);
 intake::Answer refused(const icd::Refusal& why);
+/// Of a change of the set-up, which is refused with 409 only while another is being applied (api::Setup):
+/// that takes a second, and Retry-After says so.
+intake::Answer refused_change(const icd::Refusal& why);
 intake::Answer nothing_here();
 /// 405; `allowed` as in RFC 9110 10.2.1: "GET, HEAD".
 intake::Answer wrong_method(std::string_view allowed);

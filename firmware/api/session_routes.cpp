@@ -221,7 +221,8 @@ void SessionRoutes::reset(const Call& call) {
   }
   check(*password, poster, [this, poster](std::optional<Role> role) {
     if (role != Role::Operator) return poster.responder->answer(wrong("the operator's present password"));
-    if (const auto done = setup_->reset(); !done) return poster.responder->answer(refused(done.error()));
+    if (const auto done = setup_->reset(); !done)
+      return poster.responder->answer(refused_change(done.error()));
     auto answer =
         object({{"said", {"settings, tokens, passwords and sessions are gone; the reports are kept"}}});
     answer.headers.push_back(session_cookie("", std::chrono::seconds(0)));

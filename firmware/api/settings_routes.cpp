@@ -19,13 +19,6 @@ using codec::Value;
 
 constexpr std::size_t kShortestTeamToken = 8;
 
-/// A change is refused with 409 only while another is being applied (api::Setup), which takes a second.
-intake::Answer refused_change(const icd::Refusal& why) {
-  auto answer = refused(why);
-  if (why.status == icd::Status::Conflict) answer.headers.push_back({"Retry-After", "1"});
-  return answer;
-}
-
 /// What is posted to be saved or checked: settings that need not be good, and the version they began from.
 struct Posted {
   Value settings;

@@ -72,7 +72,8 @@ TEST_F(SettingsRoutesTest, SayWhenToTryAgainWhereAnotherChangeIsBeingAppliedAndT
   const json stale = {{"settings", said["settings"]}, {"base", "another"}};
   setup.refusal = icd::Refusal{Status::Conflict, "whatever the sentence is"};
   for (const auto& answer : {post("/adit/settings", change), post("/adit/course", {{"name", "A"}}),
-                             post("/adit/tokens", {{"name", "scoring"}, {"token", nullptr}})}) {
+                             post("/adit/tokens", {{"name", "scoring"}, {"token", nullptr}}),
+                             post("/adit/reset", {{"password", "correct horse"}})}) {
     EXPECT_EQ(answer.status, Status::Conflict);
     EXPECT_THAT(answer.headers, testing::Contains(testing::FieldsAre("Retry-After", "1")));
   }

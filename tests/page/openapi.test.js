@@ -78,6 +78,13 @@ test("describes every route of the README, and no route that is not there", () =
   assert.deepEqual(operations.filter((each) => !rows.some((row) => fits(row, each))).map(({ method, path }) => `${method} ${path}`), []);
 });
 
+test("describes what becomes of a body that is too long, or no good, wherever one is taken", () => {
+  const taking = operations.filter(({ operation }) => operation.requestBody);
+  assert.ok(taking.length > 20);
+  const without = (status) => taking.filter(({ operation }) => !operation.responses[status]).map(({ path }) => path);
+  assert.deepEqual([without(413), without(422)], [[], []]);
+});
+
 test("every example fits its schema", () => {
   for (const each of operations) {
     for (const parameter of each.operation.parameters ?? []) {

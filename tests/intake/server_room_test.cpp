@@ -96,6 +96,16 @@ TEST_F(ServerRoom, IsMadeByAnIdleConnectionOfTheSameAddress) {
   EXPECT_EQ(served.ended(Ended::Idle), 1u);
 }
 
+TEST_F(ServerRoom, IsNotHeldByWhoHungUpBeforeHeWasLetIn) {
+  std::promise<void> all_there;
+  served.loop().post([&] { all_there.get_future().wait(); });
+  for (int i = 0; i < 3; ++i) RawClient(served.port(), "127.0.0.2").send(request("GET", "/later", kToken));
+  RawClient stays(served.port(), "127.0.0.2");
+  stays.send(request("POST", "/echo", kToken, "1"));
+  all_there.set_value();
+  EXPECT_EQ(stays.reply()->status, 200);
+}
+
 TEST_F(ServerRoom, IsSharedByAddressesWhereEverybodyIsKnown) {
   handler.asks_token = false;
   Clients greedy;

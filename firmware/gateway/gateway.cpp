@@ -63,6 +63,7 @@ Gateway::Gateway(loop::Loop& loop, Parts parts)
       listeners_(loop, parts_.sockets, routes_,
                  [this](intake::Ended why, const std::string& address) {
                    crowding_.ended(why, address, loop_.now());
+                   log_crowding();
                  }),
       second_(loop.timer([this] { every_second(); })),
       change_(loop.timer([this] { apply_change(); })) {

@@ -71,8 +71,8 @@ void Door::admit_all() {
     peer.sin_family = AF_INET;
     peer.sin_addr.s_addr = next.address;
     peer.sin_port = htons(40000);
-    admit_(next.fd, reinterpret_cast<const sockaddr*>(&peer), sizeof peer);
     served_[next.fd] = {next.address, server_};
+    admit_(next.fd, reinterpret_cast<const sockaddr*>(&peer), sizeof peer);  // which may close it at once
     world_.after(kGone,
                  [this, address = next.address] { world_.when_moving([this, address] { count(address); }); });
   }

@@ -133,6 +133,7 @@ ReportBook::Step Reports::after_loss(const Report& doubt, const Evidence& eviden
 
 void Reports::send_again(const std::vector<const Report*>& doubts, const Evidence& evidence, Time time) {
   std::vector<ReportBook::Step> steps;
+  steps.reserve(doubts.size());
   for (const Report* const doubt : doubts) steps.push_back(after_loss(*doubt, evidence));
   take_steps(steps, time);
 }

@@ -4,14 +4,14 @@
 #include "codec/schemas.hpp"
 
 // NOLINTBEGIN(bugprone-suspicious-include): where their descriptions stand.
-#include "api/box.cpp" // NOLINT(bugprone-suspicious-include)
-#include "api/map_json.cpp" // NOLINT(bugprone-suspicious-include)
-#include "api/run_view.cpp" // NOLINT(bugprone-suspicious-include)
-#include "api/scene.cpp" // NOLINT(bugprone-suspicious-include)
-#include "api/self_test.cpp" // NOLINT(bugprone-suspicious-include)
-#include "api/session_rows.cpp" // NOLINT(bugprone-suspicious-include)
-#include "api/settings_rows.cpp" // NOLINT(bugprone-suspicious-include)
-#include "api/updates.cpp" // NOLINT(bugprone-suspicious-include)
+#include "api/box.cpp"
+#include "api/map_json.cpp"
+#include "api/run_view.cpp"
+#include "api/scene.cpp"
+#include "api/self_test.cpp"
+#include "api/session_rows.cpp"
+#include "api/settings_rows.cpp"
+#include "api/updates.cpp"
 // NOLINTEND(bugprone-suspicious-include)
 
 namespace adit::api {

@@ -1,5 +1,6 @@
 #include "access/accounts.hpp"
 
+#include "access/fields.hpp"
 #include "access/password.hpp"
 #include "codec/field.hpp"
 #include "codec/json.hpp"
@@ -9,7 +10,7 @@ namespace {
 
 using codec::Value;
 
-constexpr int kVersion = 1;
+constexpr std::int64_t kVersion = 1;
 
 std::optional<std::string> hash_in(const codec::Field& object, std::string_view name) {
   const codec::Field field = object.member(name);
@@ -33,20 +34,13 @@ std::optional<Role> role_of(const std::string& password, const Accounts& account
 }
 
 std::expected<Accounts, std::string> read_accounts(std::string_view json) {
-  const auto root = codec::parse_json(json);
-  if (!root) return std::unexpected("it is no JSON: " + root.error());
-  codec::Reading reading;
-  const codec::Field object(*root, reading);
-  const codec::Field version = object.member("version");
-  if (version.whole<int>() != kVersion) version.refuse("expected ", kVersion);
-  auto accounts = reading.outcome(
-      Accounts{.viewer = hash_in(object, "viewer"), .operator_ = hash_in(object, "operator")});
-  if (!accounts) return std::unexpected(accounts.error().sentence);
-  return std::move(*accounts);
+  return read_kept<Accounts>(json, kVersion, [](const codec::Field& object) {
+    return Accounts{.viewer = hash_in(object, "viewer"), .operator_ = hash_in(object, "operator")};
+  });
 }
 
 std::string write_accounts(const Accounts& accounts) {
-  return codec::write_json({Value::Object{{"version", {std::int64_t{kVersion}}},
+  return codec::write_json({Value::Object{{"version", {kVersion}},
                                           {"operator", value_of(accounts.operator_)},
                                           {"viewer", value_of(accounts.viewer)}}}) +
          '\n';

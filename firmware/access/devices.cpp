@@ -8,10 +8,16 @@
 namespace adit::access {
 namespace {
 
-using codec::Field;
 using codec::Value;
 
 constexpr std::int64_t kVersion = 1;
+
+std::optional<Device> device_in(const codec::Field& object) {
+  const auto role = role_in(object);
+  const auto id = token_in(object, "id");
+  if (!role || !id) return std::nullopt;
+  return Device{.role = *role, .id = *id};
+}
 
 }  // namespace
 
@@ -56,24 +62,9 @@ std::string write_devices(const std::vector<Device>& devices) {
 }
 
 std::expected<std::vector<Device>, std::string> read_devices(std::string_view json) {
-  const auto root = codec::parse_json(json);
-  if (!root) return std::unexpected("it is no JSON: " + root.error());
-  codec::Reading reading;
-  const Field object(*root, reading);
-  const Field version = object.member("version");
-  if (version.whole<std::int64_t>() != kVersion) version.refuse("expected ", kVersion);
-  const Field rows = object.member("devices");
-  std::vector<Device> devices;
-  const std::size_t count = rows.size();
-  for (std::size_t i = 0; i < count && !reading.refused(); ++i) {
-    const Field row = rows.element(i);
-    const auto role = role_in(row);
-    const auto id = token_in(row, "id");
-    if (role && id) devices.push_back({.role = *role, .id = *id});
-  }
-  auto outcome = reading.outcome(std::move(devices));
-  if (!outcome) return std::unexpected(outcome.error().sentence);
-  return std::move(*outcome);
+  return read_kept<std::vector<Device>>(json, kVersion, [](const codec::Field& object) {
+    return elements_of<Device>(object.member("devices"), device_in);
+  });
 }
 
 }  // namespace adit::access

@@ -1,13 +1,45 @@
 #pragma once
 
+#include <cstdint>
+#include <expected>
 #include <optional>
+#include <string>
 #include <string_view>
+#include <utility>
+#include <vector>
 
 #include "access/role.hpp"
 #include "codec/field.hpp"
+#include "codec/json.hpp"
 #include "icd/bearer_token.hpp"
 
 namespace adit::access {
+
+/// What `read` makes of a file's text, a JSON object with this "version". An error says what is wrong and
+/// shows nothing of what is in it.
+template <class Kept, class Read>
+std::expected<Kept, std::string> read_kept(std::string_view json, std::int64_t version, Read read) {
+  const auto root = codec::parse_json(json);
+  if (!root) return std::unexpected("it is no JSON: " + root.error());
+  codec::Reading reading;
+  const codec::Field object(*root, reading);
+  const codec::Field said = object.member("version");
+  if (said.whole<std::int64_t>() != version) said.refuse("expected ", version);
+  auto outcome = reading.outcome<Kept>(read(object));
+  if (!outcome) return std::unexpected(outcome.error().sentence);
+  return std::move(*outcome);
+}
+
+/// What `read_element` gives of each element of an array, up to the first that is refused.
+template <class Element, class Read>
+std::vector<Element> elements_of(const codec::Field& array, Read read_element) {
+  std::vector<Element> all;
+  const std::size_t count = array.size();
+  for (std::size_t i = 0; i < count && !array.reading().refused(); ++i) {
+    if (std::optional<Element> each = read_element(array.element(i))) all.push_back(std::move(*each));
+  }
+  return all;
+}
 
 /// Refuses, and gives nothing, where the text cannot be one.
 inline std::optional<icd::BearerToken> token_in(const codec::Field& object, std::string_view name) {

@@ -61,22 +61,11 @@ std::string write_sessions(const KeptSessions& kept) {
 }
 
 std::expected<KeptSessions, std::string> read_sessions(std::string_view json) {
-  const auto root = codec::parse_json(json);
-  if (!root) return std::unexpected("it is no JSON: " + root.error());
-  codec::Reading reading;
-  const Field object(*root, reading);
-  const Field version = object.member("version");
-  if (version.whole<std::int64_t>() != kVersion) version.refuse("expected ", kVersion);
-  KeptSessions kept{
-      .boot = std::string(object.member("boot").text()), .last = number_in(object, "last"), .sessions = {}};
-  const Field sessions = object.member("sessions");
-  const std::size_t count = sessions.size();
-  for (std::size_t i = 0; i < count && !reading.refused(); ++i) {
-    if (auto session = session_in(sessions.element(i))) kept.sessions.push_back(std::move(*session));
-  }
-  auto outcome = reading.outcome(std::move(kept));
-  if (!outcome) return std::unexpected(outcome.error().sentence);
-  return std::move(*outcome);
+  return read_kept<KeptSessions>(json, kVersion, [](const Field& object) {
+    return KeptSessions{.boot = std::string(object.member("boot").text()),
+                        .last = number_in(object, "last"),
+                        .sessions = elements_of<Session>(object.member("sessions"), session_in)};
+  });
 }
 
 }  // namespace adit::access

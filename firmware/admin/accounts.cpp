@@ -7,6 +7,7 @@
 #include <utility>
 
 #include "access/password.hpp"
+#include "admin/kept_file.hpp"
 #include "host/log.hpp"
 #include "host/random.hpp"
 #include "host/service.hpp"
@@ -18,24 +19,15 @@ using access::Role;
 using host::Level;
 
 access::Accounts read(const std::string& file) {
-  if (!host::may_exist(file)) return {};
-  const auto text = host::read_file(file);
-  if (!text) {
-    host::log(Level::Error, "the passwords cannot be read: they have to be set anew",
-              {{"why", text.error()}});
-    return {};
-  }
-  auto accounts = access::read_accounts(*text);
+  auto accounts = read_kept_file(file, &access::read_accounts);
   if (accounts) return std::move(*accounts);
   host::log(Level::Error, "the passwords cannot be read: they have to be set anew",
-            {{"why", file + ": " + accounts.error()}});
+            {{"why", accounts.error()}});
   return {};
 }
 
 std::vector<access::Device> read_known(const std::string& file) {
-  if (!host::may_exist(file)) return {};
-  const auto text = host::read_file(file);
-  auto devices = text ? access::read_devices(*text) : std::unexpected(text.error());
+  auto devices = read_kept_file(file, &access::read_devices);
   if (devices) return std::move(*devices);
   host::log(Level::Warning, "the browsers that have been in cannot be read: they are strangers",
             {{"why", devices.error()}});

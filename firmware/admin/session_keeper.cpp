@@ -3,26 +3,15 @@
 #include <utility>
 
 #include "access/session_file.hpp"
+#include "admin/kept_file.hpp"
 #include "host/log.hpp"
 #include "host/service.hpp"
 
 namespace adit::admin {
-namespace {
-
-std::expected<access::KeptSessions, std::string> read(const std::string& file) {
-  if (!host::may_exist(file)) return {};
-  const auto text = host::read_file(file);
-  if (!text) return std::unexpected(text.error());
-  auto kept = access::read_sessions(*text);
-  if (!kept) return std::unexpected(file + ": " + kept.error());
-  return kept;
-}
-
-}  // namespace
 
 SessionKeeper::SessionKeeper(std::string file, access::Instant now)
     : file_(std::move(file)), boot_(host::boot()), sessions_([this] { keep(); }) {
-  auto kept = read(file_);
+  auto kept = read_kept_file(file_, &access::read_sessions);
   if (!kept) {
     host::log(host::Level::Warning, "who is logged in cannot be read: all have to log in again",
               {{"why", kept.error()}});

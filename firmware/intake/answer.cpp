@@ -2,9 +2,8 @@
 
 #include <microhttpd.h>
 
-#include <algorithm>
-
 #include "codec/write.hpp"
+#include "intake/field_text.hpp"
 #include "intake/icd_routes.hpp"
 
 namespace adit::intake {
@@ -36,10 +35,7 @@ Answer no_room(std::string_view sentence) {
 }
 
 bool is_field_value(std::string_view text) {
-  return !text.empty() && std::ranges::all_of(text, [](char letter) {
-    const auto byte = static_cast<unsigned char>(letter);
-    return byte == '\t' || (byte >= 0x20 && byte != 0x7f);
-  });
+  return !text.empty() && has_no_controls(text);
 }
 
 MHD_Response* make_response(const Answer& answer) {

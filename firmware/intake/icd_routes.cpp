@@ -166,10 +166,4 @@ void IcdRoutes::stop() {
   for (Upload* upload : all) upload->turn_away(stops());
 }
 
-std::unique_ptr<BodySink> NotFound::open(const RequestHead&, std::shared_ptr<Responder> responder,
-                                         std::shared_ptr<Flow>) {
-  responder->answer(error_answer(icd::Status::NotFound, "there is nothing here"));
-  return nullptr;
-}
-
 }  // namespace adit::intake

@@ -70,12 +70,4 @@ class IcdRoutes final : public Handler {
 /// An error answer of this gateway: `sentence` as a JSON string.
 Answer error_answer(icd::Status status, std::string_view sentence);
 
-/// Answers 404 to everything: for where nothing else is served.
-class NotFound final : public Handler {
- public:
-  bool knows(const RequestHead&) override { return false; }
-  std::unique_ptr<BodySink> open(const RequestHead& head, std::shared_ptr<Responder> responder,
-                                 std::shared_ptr<Flow> flow) override;
-};
-
 }  // namespace adit::intake

@@ -214,7 +214,7 @@ std::vector<Held> Server::Impl::held_but(const Client* one) const {
 }
 
 void Server::Impl::send_strangers_away() {
-  if (clients_.size() <= shares_.strangers) return;
+  if (strangers() <= shares_.strangers) return;
   while (const auto number = stranger_to_go(held_but(nullptr), shares_)) clients_.at(*number)->give_way();
 }
 

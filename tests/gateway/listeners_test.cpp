@@ -7,7 +7,7 @@
 
 #include <string>
 
-#include "intake/icd_routes.hpp"
+#include "intake/not_found.hpp"
 #include "loop/file_descriptor.hpp"
 #include "loop/turn_until.hpp"
 

@@ -8,6 +8,7 @@
 
 #include "intake/desk.hpp"
 #include "intake/icd_routes.hpp"
+#include "intake/not_found.hpp"
 #include "intake/raw_client.hpp"
 #include "intake/served.hpp"
 #include "loop/workers.hpp"

@@ -1,0 +1,23 @@
+#pragma once
+
+#include <expected>
+#include <string>
+#include <string_view>
+
+#include "host/service.hpp"
+
+namespace adit::admin {
+
+/// What `read` makes of a file's text; a new one where there is no file. An error names the file.
+template <class Kept>
+std::expected<Kept, std::string> read_kept_file(const std::string& file,
+                                                std::expected<Kept, std::string> (*read)(std::string_view)) {
+  if (!host::may_exist(file)) return Kept{};
+  const auto text = host::read_file(file);
+  if (!text) return std::unexpected(text.error());
+  auto kept = read(*text);
+  if (!kept) return std::unexpected(file + ": " + kept.error());
+  return kept;
+}
+
+}  // namespace adit::admin

@@ -1,0 +1,20 @@
+#pragma once
+
+#include <memory>
+
+#include "intake/icd_routes.hpp"
+
+namespace adit::intake {
+
+/// Answers 404 to everything.
+class NotFound final : public Handler {
+ public:
+  bool knows(const RequestHead&) override { return false; }
+  std::unique_ptr<BodySink> open(const RequestHead&, std::shared_ptr<Responder> responder,
+                                 std::shared_ptr<Flow>) override {
+    responder->answer(error_answer(icd::Status::NotFound, "there is nothing here"));
+    return nullptr;
+  }
+};
+
+}  // namespace adit::intake

@@ -25,7 +25,7 @@ def named_by(room):
     for file in (FIRMWARE / room).rglob("CMakeLists.txt"):
         text = re.sub(r"#[^\n]*", "", file.read_text())
         for call in re.findall(r"adit_room\(([^)]*)\)", text):
-            parts = re.split(r"\b(SOURCES|SEAM|DOOR|ROOMS|LIBRARIES)\b", call)
+            parts = re.split(r"\b(SOURCES|FAST|SEAM|DOOR|ROOMS|LIBRARIES)\b", call)
             lists = dict(zip(parts[1::2], parts[2::2]))
             rooms |= set(lists.get("ROOMS", "").split())
             door |= set(lists.get("DOOR", "").split())

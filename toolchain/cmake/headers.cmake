@@ -19,7 +19,7 @@ function(adit_compiled target way)
 endfunction()
 
 adit_way(small)
-adit_way(fast OPTIONS $<$<CONFIG:Release>:-O3>)  # what works on a map's bytes
+adit_way(fast OPTIONS $<$<CONFIG:Release>:-O3>)  # what works on each byte of a map
 if(ADIT_TESTS OR ADIT_REHEARSAL)
   find_package(nlohmann_json REQUIRED)
   adit_way(soon HEADERS <nlohmann/json.hpp> LIBRARIES nlohmann_json::nlohmann_json

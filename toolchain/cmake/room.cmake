@@ -1,20 +1,28 @@
 # A room: one folder of firmware/, one static library adit_<name>, one namespace adit::<name>.
-#   adit_room(codec WAY fast SOURCES json.cpp cbor.cpp ROOMS icd LIBRARIES PkgConfig::cbor)
-# WAY: how it is compiled (headers.cmake); small, where it does not say.
+#   adit_room(codec SOURCES json.cpp cbor.cpp FAST base64.cpp ROOMS icd LIBRARIES PkgConfig::cbor)
+# SOURCES are compiled to be small (WAY: or as it says, headers.cmake), FAST ones to be fast: what works on each byte of a map.
 # ROOMS are the rooms whose headers it includes, all of them named before it in firmware/CMakeLists.txt.
 # DOOR are the headers that other rooms may include: tests/house/rooms sees to it.
 # SEAM are sources that meet the machine (time, threads, sockets, randomness). They are a library of their own,
 # adit_<name>_linux, which comes with adit_<name> into every program but those with the property ADIT_SIMULATED: such a
 # program implements their headers itself.
 function(adit_room name)
-  cmake_parse_arguments(ROOM "" "WAY" "SOURCES;SEAM;DOOR;ROOMS;LIBRARIES" ${ARGN})
+  cmake_parse_arguments(ROOM "" "WAY" "SOURCES;FAST;SEAM;DOOR;ROOMS;LIBRARIES" ${ARGN})
   list(TRANSFORM ROOM_ROOMS PREPEND adit_)
   if(NOT ROOM_WAY)
     set(ROOM_WAY small)
   endif()
+  set(scope PUBLIC)
+  if(ROOM_FAST)
+    add_library(adit_${name}_fast OBJECT ${ROOM_FAST})
+    target_include_directories(adit_${name}_fast PRIVATE ${PROJECT_SOURCE_DIR}/firmware)
+    target_link_libraries(adit_${name}_fast PRIVATE adit_options ${ROOM_ROOMS} ${ROOM_LIBRARIES})
+    adit_compiled(adit_${name}_fast fast)
+    list(APPEND ROOM_SOURCES $<TARGET_OBJECTS:adit_${name}_fast>)
+  endif()
   if(ROOM_SOURCES)
     add_library(adit_${name} STATIC ${ROOM_SOURCES})
-    set(scope PUBLIC)
+    set_target_properties(adit_${name} PROPERTIES LINKER_LANGUAGE CXX)
     target_link_libraries(adit_${name} PRIVATE adit_options)
     adit_compiled(adit_${name} ${ROOM_WAY})
   else()

@@ -26,6 +26,10 @@ Value value_of(const std::optional<std::string>& hash) {
 
 }  // namespace
 
+std::string_view salt_of(std::string_view hash) {
+  return hash.substr(0, hash.rfind('$'));
+}
+
 std::optional<Role> role_of(const std::string& password, const Accounts& accounts) {
   for (const Role role : {Role::Operator, Role::Viewer}) {
     if (accounts.of(role) && matches(password, *accounts.of(role))) return role;

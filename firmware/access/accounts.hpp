@@ -20,6 +20,9 @@ struct Accounts {
   friend bool operator==(const Accounts&, const Accounts&) = default;
 };
 
+/// Which password `hash` was made of, and nothing about it: its salt, which no other has.
+std::string_view salt_of(std::string_view hash);
+
 /// The role whose password this is. As slow as matches(): for a worker.
 std::optional<Role> role_of(const std::string& password, const Accounts& accounts);
 

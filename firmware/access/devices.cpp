@@ -10,12 +10,17 @@ namespace {
 
 using codec::Value;
 
-constexpr std::int64_t kVersion = 1;
+constexpr std::int64_t kVersion = 2;
 
-std::optional<Device> device_in(const codec::Field& object) {
+std::string_view password_of(Role role, const Accounts& accounts) {
+  return accounts.of(role) ? salt_of(*accounts.of(role)) : "";
+}
+
+std::optional<Device> device_in(const codec::Field& object, const Accounts& accounts) {
   const auto role = role_in(object);
   const auto id = token_in(object, "id");
-  if (!role || !id) return std::nullopt;
+  const std::string_view password = object.member("password").text();
+  if (!role || !id || !accounts.of(*role) || password != password_of(*role, accounts)) return std::nullopt;
   return Device{.role = *role, .id = *id};
 }
 
@@ -47,23 +52,27 @@ const Device& Devices::add(const Secret& id, Role role) {
 }
 
 void Devices::end_all(Role role, std::uint64_t but) {
-  const auto ended = std::erase_if(
-      devices_, [&](const Device& device) { return device.role == role && device.number != but; });
-  if (ended > 0 && changed_) changed_();
+  const auto is_of_role = [role](const Device& device) { return device.role == role; };
+  const bool concerns = std::ranges::any_of(devices_, is_of_role);
+  std::erase_if(devices_, [&](const Device& device) { return is_of_role(device) && device.number != but; });
+  if (concerns && changed_) changed_();
 }
 
-std::string write_devices(const std::vector<Device>& devices) {
+std::string write_devices(const std::vector<Device>& devices, const Accounts& accounts) {
   Value::Array rows;
   for (const Device& device : devices) {
-    rows.push_back(
-        {Value::Object{{"role", {std::string(name_of(device.role))}}, {"id", {device.id.reveal()}}}});
+    rows.push_back({Value::Object{{"role", {std::string(name_of(device.role))}},
+                                  {"password", {std::string(password_of(device.role, accounts))}},
+                                  {"id", {device.id.reveal()}}}});
   }
   return codec::write_json({Value::Object{{"version", {kVersion}}, {"devices", {std::move(rows)}}}}) + '\n';
 }
 
-std::expected<std::vector<Device>, std::string> read_devices(std::string_view json) {
-  return read_kept<std::vector<Device>>(json, kVersion, [](const codec::Field& object) {
-    return elements_of<Device>(object.member("devices"), device_in);
+std::expected<std::vector<Device>, std::string> read_devices(std::string_view json,
+                                                             const Accounts& accounts) {
+  return read_kept<std::vector<Device>>(json, kVersion, [&accounts](const codec::Field& object) {
+    return elements_of<Device>(object.member("devices"),
+                               [&](const codec::Field& each) { return device_in(each, accounts); });
   });
 }
 

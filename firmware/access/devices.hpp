@@ -8,6 +8,7 @@
 #include <utility>
 #include <vector>
 
+#include "access/accounts.hpp"
 #include "access/role.hpp"
 #include "access/sessions.hpp"
 #include "icd/bearer_token.hpp"
@@ -27,14 +28,14 @@ class Devices {
  public:
   static constexpr std::size_t kMostOfRole = 16;  // at one more, the one that was not seen for longest goes
 
-  /// `changed`, if given, is called whenever one is added or ended.
+  /// `changed`, if given, is called whenever one is added or ended, or another password is theirs.
   explicit Devices(std::vector<Device> kept = {}, std::function<void()> changed = {});
 
   /// The one whose id is presented, seen now, or null; valid until the next call.
   const Device* find(std::string_view id);
   /// `id` has never been used before; valid until the next call.
   const Device& add(const Secret& id, Role role);
-  /// Of a role, all but one (0: no exception).
+  /// Its password is another: of a role, all but one (0: no exception).
   void end_all(Role role, std::uint64_t but);
 
   /// Seen last comes last.
@@ -46,9 +47,12 @@ class Devices {
   std::uint64_t last_ = 0;
 };
 
-/// The text of devices.json, {"version": 1, "devices": [{"role", "id"}, ...]}.
-std::string write_devices(const std::vector<Device>& devices);
-/// An error says what is wrong and shows nothing of what is in it.
-std::expected<std::vector<Device>, std::string> read_devices(std::string_view json);
+/// The text of devices.json, {"version": 2, "devices": [{"role", "password", "id"}, ...]}, where "password"
+/// is salt_of() the one that the role has in `accounts`.
+std::string write_devices(const std::vector<Device>& devices, const Accounts& accounts);
+/// Without those that were written under another password than `accounts` has: whichever of the two files was
+/// written last, a device ends with the password. An error says what is wrong and shows nothing of what is in
+/// it.
+std::expected<std::vector<Device>, std::string> read_devices(std::string_view json, const Accounts& accounts);
 
 }  // namespace adit::access

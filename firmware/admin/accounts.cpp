@@ -26,8 +26,9 @@ access::Accounts read(const std::string& file) {
   return {};
 }
 
-std::vector<access::Device> read_known(const std::string& file) {
-  auto devices = read_kept_file(file, &access::read_devices);
+std::vector<access::Device> read_known(const std::string& file, const access::Accounts& accounts) {
+  auto devices =
+      read_kept_file(file, [&](std::string_view json) { return access::read_devices(json, accounts); });
   if (devices) return std::move(*devices);
   host::log(Level::Warning, "the browsers that have been in cannot be read: they are strangers",
             {{"why", devices.error()}});
@@ -63,7 +64,7 @@ Accounts::Accounts(const loop::Loop& loop, loop::Workers& workers, loop::Writer&
       sessions_(sessions),
       folder_(std::move(folder)),
       accounts_(read(file())),
-      devices_(read_known(devices_file()), [this] { keep_devices(); }) {
+      devices_(read_known(devices_file(), accounts_), [this] { keep_devices(); }) {
   if (!first_start()) return;
   const bool on_label = label_code.has_value();
   code_ = on_label ? std::move(label_code) : kept_code();
@@ -100,8 +101,9 @@ void Accounts::check(std::string password, std::string address,
   auto role = std::make_shared<std::optional<Role>>();
   workers_.submit([role, password = std::move(password),
                    accounts = accounts_] { *role = access::role_of(password, accounts); },
-                  [this, role, address = std::move(address), done = std::move(done)] {
-                    if (*role && !accounts_.of(**role)) role->reset();  // forgotten while it was checked
+                  [this, role, accounts = accounts_, address = std::move(address), done = std::move(done)] {
+                    // another was set while it was checked
+                    if (*role && accounts_.of(**role) != accounts.of(**role)) role->reset();
                     if (*role) {
                       host::log(Level::Notice, "a password was shown",
                                 {{"role", std::string(name_of(**role))}, {"sender", address}});
@@ -156,7 +158,7 @@ void Accounts::was_set(Role role, const icd::Checked<access::Accounts>& changed,
 void Accounts::keep_devices() {
   auto written = std::make_shared<std::expected<void, std::string>>();
   writer_.submit(
-      [written, file = devices_file(), text = access::write_devices(devices_.all())] {
+      [written, file = devices_file(), text = access::write_devices(devices_.all(), accounts_)] {
         *written = host::write_file(file, text, host::kOursAlone);
       },
       [written] {

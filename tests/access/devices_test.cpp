@@ -7,6 +7,8 @@ namespace {
 
 using testing::HasSubstr;
 
+const Accounts kAccounts{.viewer = "$y$j9T$view$a-hash", .operator_ = "$y$j9T$oper$a-hash"};
+
 Secret secret(std::uint8_t first) {
   return {first};
 }
@@ -51,14 +53,17 @@ TEST(Devices, EndWithThePasswordOfTheirRole) {
   EXPECT_EQ(devices.find(id(2)), nullptr);
   EXPECT_NE(devices.find(id(3)), nullptr);
   devices.end_all(Role::Operator, own);
-  EXPECT_EQ(changes, 4) << "nothing to be kept";
+  EXPECT_EQ(changes, 5) << "the own one is of the new password";
+  devices.end_all(Role::Operator, 0);
+  devices.end_all(Role::Operator, 0);
+  EXPECT_EQ(changes, 6) << "nothing to be kept";
 }
 
 TEST(Devices, AreReadAsTheyAreWritten) {
   Devices devices;
   devices.add(secret(1), Role::Operator);
   devices.add(secret(2), Role::Viewer);
-  auto kept = read_devices(write_devices(devices.all()));
+  auto kept = read_devices(write_devices(devices.all(), kAccounts), kAccounts);
   ASSERT_TRUE(kept) << kept.error();
   Devices again(std::move(*kept));
   ASSERT_EQ(again.all().size(), 2u);
@@ -67,13 +72,32 @@ TEST(Devices, AreReadAsTheyAreWritten) {
   EXPECT_NE(again.find(id(1)), nullptr);
 }
 
+TEST(Devices, WrittenUnderAnotherPasswordAreKnownNoMore) {
+  Devices devices;
+  devices.add(secret(1), Role::Operator);
+  devices.add(secret(2), Role::Viewer);
+  const std::string written = write_devices(devices.all(), kAccounts);
+  EXPECT_EQ(written.find("a-hash"), std::string::npos);
+  const auto known_to = [&written](const Accounts& accounts) {
+    std::vector<Role> roles;
+    const auto kept = read_devices(written, accounts).value();
+    for (const Device& device : kept) roles.push_back(device.role);
+    return roles;
+  };
+  EXPECT_EQ(known_to({.viewer = kAccounts.viewer, .operator_ = "$y$j9T$else$a-hash"}),
+            std::vector{Role::Viewer});
+  EXPECT_EQ(known_to({.viewer = {}, .operator_ = kAccounts.operator_}), std::vector{Role::Operator});
+  EXPECT_EQ(known_to({}), std::vector<Role>());
+}
+
 TEST(Devices, OfABrokenFileAreRefusedWithoutShowingThem) {
-  const std::string whole = write_devices({{.number = 1, .role = Role::Operator, .id = as_token(secret(7))}});
+  const std::string whole =
+      write_devices({{.number = 1, .role = Role::Operator, .id = as_token(secret(7))}}, kAccounts);
   for (const std::string& text :
-       {std::string(), std::string("[]"), std::string(R"({"version":2,"devices":[]})"),
-        std::string(R"({"version":1,"devices":[{"role":"boss","id":"aaaaaaaaaaaaaaaa"}]})"),
-        std::string(R"({"version":1,"devices":[{"role":"viewer"}]})"), whole.substr(0, whole.size() / 2)}) {
-    const auto read = read_devices(text);
+       {std::string(), std::string("[]"), std::string(R"({"version":1,"devices":[]})"),
+        std::string(R"({"version":2,"devices":[{"role":"boss","id":"aaaaaaaaaaaaaaaa"}]})"),
+        std::string(R"({"version":2,"devices":[{"role":"viewer"}]})"), whole.substr(0, whole.size() / 2)}) {
+    const auto read = read_devices(text, kAccounts);
     ASSERT_FALSE(read) << text;
     EXPECT_THAT(read.error(), testing::Not(HasSubstr(id(7))));
   }

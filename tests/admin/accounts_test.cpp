@@ -1,0 +1,95 @@
+#include "admin/accounts.hpp"
+
+#include <gtest/gtest.h>
+
+#include <future>
+
+#include "host/folder.hpp"
+#include "host/service.hpp"
+
+namespace adit::admin {
+namespace {
+
+using namespace std::chrono_literals;
+using access::Role;
+
+constexpr const char* kOld = "correct horse battery";
+constexpr const char* kNew = "another horse entirely";
+
+/// aditd's part that knows passwords, from start to end.
+struct Life {
+  explicit Life(const host::Folder& folder)
+      : sessions(folder / "sessions.json", loop.now()),
+        accounts(loop, workers, writer, sessions, folder.path(), icd::BearerToken::parse("12345678")) {}
+
+  void set(Role role, const std::string& password) {
+    bool done = false;
+    accounts.set(role, password, [&done](const icd::Checked<void>& kept) { done = kept.has_value(); });
+    while (!done) loop.turn(100ms);
+  }
+  std::string add_device(Role role) { return accounts.devices().add(accounts.draw(), role).id.reveal(); }
+  bool knows(const std::string& id) { return accounts.devices().find(id) != nullptr; }
+
+  loop::Loop loop;
+  loop::Workers workers{loop, 1};
+  loop::Writer writer{loop};
+  SessionKeeper sessions;
+  Accounts accounts;
+};
+
+TEST(Accounts, DevicesEndWithThePasswordThoughAKillKeptThemInTheirFile) {
+  const host::Folder folder;
+  std::string old_operators, viewers;
+  {
+    Life life(folder);
+    life.set(Role::Operator, kOld);
+    life.set(Role::Viewer, "look, do not touch");
+    old_operators = life.add_device(Role::Operator);
+    viewers = life.add_device(Role::Viewer);
+  }
+  const std::string before = host::read_file(folder / Accounts::kDevicesFile).value();
+  {
+    Life life(folder);
+    ASSERT_TRUE(life.knows(old_operators));
+    life.set(Role::Operator, kNew);
+    life.accounts.devices().end_all(Role::Operator, 0);
+  }
+  folder.put(Accounts::kDevicesFile, before);  // killed before the writer came to it
+  Life life(folder);
+  EXPECT_FALSE(life.knows(old_operators));
+  EXPECT_TRUE(life.knows(viewers));
+}
+
+TEST(Accounts, TheDeviceThatSetThePasswordStaysKnown) {
+  const host::Folder folder;
+  std::string own;
+  {
+    Life life(folder);
+    life.set(Role::Operator, kOld);
+    own = life.add_device(Role::Operator);
+    life.set(Role::Operator, kNew);
+    life.accounts.devices().end_all(Role::Operator, life.accounts.devices().find(own)->number);
+  }
+  Life life(folder);
+  EXPECT_TRUE(life.knows(own));
+}
+
+TEST(Accounts, APasswordIsNoneThatWasAnotherBeforeItWasChecked) {
+  const host::Folder folder;
+  Life life(folder);
+  life.set(Role::Operator, kOld);
+  bool is_set = false;
+  std::optional<std::optional<Role>> found;
+  life.accounts.set(Role::Operator, kNew, [&](const icd::Checked<void>&) { is_set = true; });
+  std::promise<void> held;
+  auto until = std::make_shared<std::shared_future<void>>(held.get_future());
+  life.workers.submit([until] { until->wait(); }, [] {});
+  life.accounts.check(kOld, "10.0.0.5", [&](std::optional<Role> role) { found = role; });
+  while (!is_set) life.loop.turn(100ms);
+  held.set_value();
+  while (!found) life.loop.turn(100ms);
+  EXPECT_EQ(*found, std::nullopt);
+}
+
+}  // namespace
+}  // namespace adit::admin

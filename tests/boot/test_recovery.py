@@ -3,6 +3,7 @@
 import time
 import unittest
 
+import figures
 import leds
 import machine
 from stage import Stage, Story, load_tests, note, setUpModule  # unittest looks for them here
@@ -76,8 +77,20 @@ class Recovery(Story):
         self.box.console.type("echo c > /proc/sysrq-trigger")
         self.restarts("a kernel panic")
 
-    def test_a_kernel_that_hangs_is_reset_by_the_hardware_watchdog(self):
+    def test_and_what_that_start_cost(self):
         self.box.console.wait_for_shell()
+        figures.of_a_later_start(self.box)
+        self.assertLessEqual(figures.memory_in_use(self.box), 64)
+
+    def test_the_image_is_small(self):
+        self.assertLessEqual(*figures.packed_image(self.box.board))
+
+    def test_no_unit_may_more_than_it_needs(self):
+        seen = list(figures.exposures(self.box))
+        self.assertIn("adit.service", [unit for unit, *_ in seen])
+        self.assertEqual([], [each for each in seen if each[1] > each[2]])
+
+    def test_a_kernel_that_hangs_is_reset_by_the_hardware_watchdog(self):
         self.box.console.ask("echo 0 > /proc/sys/kernel/panic")  # so that the panic itself starts nothing
         self.box.console.type("echo c > /proc/sysrq-trigger")
         self.restarts("a kernel that hangs")

@@ -1,0 +1,53 @@
+"""What a start of the machine costs, and what its units may do: printed, and kept for rootfs/README.md."""
+
+import lzma
+import re
+
+from stage import note
+
+QUIET = "SYSTEMD_COLORS=0 SYSTEMD_PAGER= "
+
+
+def of_a_later_start(box):
+    """What it was made of. The box has a shell."""
+    box.wait_until(lambda: box.console.run("systemd-analyze time")[0] == 0, "the start to be over", 400)
+    said = box.console.ask(QUIET + "systemd-analyze time --no-pager").splitlines()[0]
+    note("kernel and initrd, and user space, from the kernel's start", said)
+    chain = box.console.ask(QUIET + "systemd-analyze critical-chain adit.service --no-pager --fuzz=10s")
+    note("the units before aditd, and aditd", "\n" + re.sub(r"\x1b[^a-zA-Z]*[a-zA-Z]", "", chain))
+
+
+def memory_in_use(box):
+    """In MB, now."""
+    used = int(box.console.ask("free -m | grep Mem").split()[2])
+    note("RAM in use when idle", f"{used} MB of {box.memory}")
+    return used
+
+
+def packed_image(board):
+    """Its bytes under xz, and how many there may be."""
+    packed = board.image().with_suffix(".img.xz")
+    if packed.exists():
+        size, most = packed.stat().st_size, 40e6
+    else:
+        squeezer = lzma.LZMACompressor(preset=0)
+        size = sum(len(squeezer.compress(some)) for some in blocks(board.image())) + len(squeezer.flush())
+        most = 60e6
+    note("image, compressed", f"{size / 1e6:.1f} MB")
+    return size, most
+
+
+def exposures(box):
+    """What systemd-analyze says of each unit of Adit's that a boot starts, and the most that it may say."""
+    units = box.console.ask("cd /usr/lib/systemd/system; ls adit*.service").split()
+    for unit in (name for name in units if "@" not in name and name != "adit-console.service"):
+        said = box.console.ask(f"{QUIET} systemd-analyze security --no-pager {unit} | tail -n 1")
+        exposure = float(re.search(r"(\d+\.\d)", said).group(1))
+        note(f"exposure of {unit}", exposure)
+        yield unit, exposure, 1.5 if unit == "adit.service" else 3.0
+
+
+def blocks(path):
+    with open(path, "rb") as file:
+        while some := file.read(1 << 20):
+            yield some

@@ -15,7 +15,7 @@ bool same(std::string_view one, std::string_view other) {
 
 bool is_address(int family, std::string_view text) {
   unsigned char bytes[sizeof(in6_addr)];
-  return inet_pton(family, std::string(text).c_str(), bytes) == 1;
+  return !text.contains('\0') && inet_pton(family, std::string(text).c_str(), bytes) == 1;
 }
 
 bool is_port(std::string_view text) {

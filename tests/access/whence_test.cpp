@@ -5,6 +5,8 @@
 namespace adit::access {
 namespace {
 
+using namespace std::string_view_literals;
+
 TEST(Whence, OnlyWhatNoDnsCanForgeNamesThisBox) {
   for (const char* host :
        {"10.0.0.1", "10.0.0.1:8000", "192.168.7.11:80", "[fd00::1]", "[fd00::1]:8000", "[::1]:1", "localhost",
@@ -32,6 +34,10 @@ TEST(Whence, OnlyWhatNoDnsCanForgeNamesThisBox) {
                            "10.0.0.1 evil",
                            "[fd00::1]x"}) {
     EXPECT_FALSE(names_this_box(host)) << host;
+  }
+  // inet_pton() sees no more of these than the address before the NUL.
+  for (const std::string_view host : {"[fd00::1\0.evil.example]"sv, "10.0.0.1\0.evil.example"sv}) {
+    EXPECT_FALSE(names_this_box(host));
   }
 }
 

@@ -31,6 +31,8 @@ const Case kCases[] = {
     {"no reason phrase", "HTTP/1.1 200 \r\nContent-Length: 0\r\n\r\n", false, State::Whole, 200, "", true},
     {"chunked", "HTTP/1.1 200 OK\r\nTransfer-Encoding: chunked\r\n\r\n3\r\nabc\r\n2;x=y\r\nde\r\n0\r\n\r\n",
      false, State::Whole, 200, "abcde", true},
+    {"chunked, and empty", "HTTP/1.1 200 OK\r\nTransfer-Encoding: chunked\r\n\r\n0\r\n\r\n", false,
+     State::Whole, 200, "", true},
     {"204 without a length", "HTTP/1.1 204 No Content\r\n\r\n", false, State::Whole, 204, "", true},
     {"says close", "HTTP/1.1 200 OK\r\nConnection: close\r\nContent-Length: 2\r\n\r\nhi", false, State::Whole,
      200, "hi", false},

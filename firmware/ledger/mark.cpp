@@ -42,13 +42,16 @@ Result<void> write_mark(Database& database, bool log_needed, std::int64_t log_si
   return {};
 }
 
-std::optional<Mark> mark_without_log(const std::string& path) {
+std::expected<std::optional<Mark>, MarkIsLost> mark_without_log(const std::string& path) {
   auto database = Database::open(read_only_uri(path), SQLITE_OPEN_READONLY | SQLITE_OPEN_URI);
-  if (!database || !teach_proof(*database)) return std::nullopt;
+  if (!database || !teach_proof(*database)) return std::unexpected(MarkIsLost());
+  const auto any = Statement::prepare(*database, "SELECT 1 FROM mark");
+  const bool no_such_table = !any && sqlite3_errcode(database->get()) == SQLITE_ERROR;
+  if (no_such_table || (any && Query(*any).step() == SQLITE_DONE)) return std::nullopt;
   const auto statement = Statement::prepare(*database, kReadMark);
-  if (!statement) return std::nullopt;
+  if (!statement) return std::unexpected(MarkIsLost());
   Query query(*statement);
-  if (query.step() != SQLITE_ROW) return std::nullopt;
+  if (query.step() != SQLITE_ROW) return std::unexpected(MarkIsLost());
   return Mark{.log_needed = query.number(0) != 0, .log_size = query.number(1), .highest = query.number(2)};
 }
 

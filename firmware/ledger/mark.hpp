@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cstdint>
+#include <expected>
 #include <optional>
 #include <string>
 
@@ -17,10 +18,13 @@ struct Mark {
   std::int64_t highest = 0;   // number of a report in the file
 };
 
+struct MarkIsLost {};
+
 /// As one transaction of the log.
 Result<void> write_mark(Database& database, bool log_needed, std::int64_t log_size);
 
-/// What the file at `path` says where nobody looks into its log; nothing: it says nothing that is proven.
-std::optional<Mark> mark_without_log(const std::string& path);
+/// What the file at `path` says where nobody looks into its log; nothing: it has no mark, as one of
+/// version 3. The error: its mark is not to be had, or not proven.
+std::expected<std::optional<Mark>, MarkIsLost> mark_without_log(const std::string& path);
 
 }  // namespace adit::ledger

@@ -197,11 +197,14 @@ class Opening {
     if (!log) return std::unexpected(log.error());
     const LogReading reading = read_log(*log);
     std::string lost = reading.damage;
-    if (const auto mark = mark_without_log(path_); mark && mark->log_needed) {
-      const bool cut = static_cast<std::int64_t>(log->size()) < mark->log_size && !reading.ended;
+    const auto mark = mark_without_log(path_);
+    if (mark && *mark && (*mark)->log_needed) {
+      const bool cut = static_cast<std::int64_t>(log->size()) < (*mark)->log_size && !reading.ended;
       if (lost.empty() && reading.empty) lost = "it is gone";
       if (lost.empty() && cut) lost = "it was cut short";
     }
+    if (lost.empty() && !mark && !reading.ended)
+      lost = "its end is not there, and the file's mark is damaged";
     if (!lost.empty()) {
       tail_lost_ = true;
       return std::unexpected(damaged("its log: " + lost));

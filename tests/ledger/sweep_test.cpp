@@ -332,6 +332,17 @@ TEST(SweptLedger, SaysThatItsLogIsGone) {
   EXPECT_THAT(ledger.damage(), testing::HasSubstr("its log: it is gone"));
 }
 
+/// SQLite has all pages from what is left of the log, and misses none.
+TEST(SweptLedger, SaysThatItsLogIsCutWhereTheFileIsToo) {
+  const Files was = killed();
+  for (std::size_t pages = 0; 4096 * pages < was.file.size(); ++pages) {
+    SCOPED_TRACE(pages);
+    Verdict verdict;
+    judge(was, was.file.substr(0, 4096 * pages + 2000), was.log.substr(0, was.log.size() / 2), verdict);
+    EXPECT_EQ(verdict.said, 1);
+  }
+}
+
 TEST(SweptLedger, SaysNothingWhereNothingIsDamaged) {
   for (const Files& was : {killed(), killed(400), closed()}) {
     Verdict verdict;

@@ -1,48 +1,41 @@
-#include "body.hpp"
-
+// A request's body, whole and in pieces, plain and compressed, and the message in it.
 #include <algorithm>
-#include <cstdlib>
-#include <string_view>
 
+#include "codec/body_decoder.hpp"
 #include "codec/json.hpp"
 #include "codec/read.hpp"
 #include "codec/write.hpp"
 #include "icd/rules.hpp"
+#include "target.hpp"
 
 namespace adit::fuzz {
 namespace {
 
 constexpr codec::Limits kLimits{.text_bytes = 1 << 16, .data_bytes = 1 << 16};
 
-void require(bool law) {
-  if (!law) std::abort();
-}
-
 /// How to read the body.
 struct Choice {
   codec::BodyKind kind;
   codec::Split split = codec::Split::Nothing;
-  std::size_t chunk = 1;
+  std::size_t piece = 1;
   int message = 0;
 };
 
-Choice choice_of(codec::Format format, std::uint8_t how, std::uint8_t chunk) {
+Choice choice_of(codec::Format format, std::uint8_t how, std::size_t piece) {
   using codec::ContentCoding;
   const ContentCoding codings[] = {ContentCoding::Identity, ContentCoding::Identity, ContentCoding::Gzip,
                                    ContentCoding::Deflate};
   return {.kind = {format, codings[how & 3U]},
           .split = (how & 4U) == 0 ? codec::Split::MapData : codec::Split::Nothing,
-          .chunk = 1U + chunk % 32U,
+          .piece = piece,
           .message = how >> 3U & 3};
 }
 
-icd::Checked<codec::Document> decode_in_chunks(const Choice& choice, std::span<const std::uint8_t> body) {
+icd::Checked<codec::Document> decode_in_pieces(const Choice& choice, Input body) {
   codec::BodyDecoder decoder(choice.kind, choice.split, kLimits);
-  while (!body.empty()) {
-    const auto chunk = body.first(std::min(choice.chunk, body.size()));
-    if (const auto fed = decoder.feed(chunk); !fed) return std::unexpected(fed.error());
-    body = body.subspan(chunk.size());
-  }
+  icd::Checked<void> fed;
+  in_pieces(body, choice.piece, [&](Input each) { return (fed = decoder.feed(bytes_of(each))).has_value(); });
+  if (!fed) return std::unexpected(fed.error());
   return decoder.finish();
 }
 
@@ -91,42 +84,79 @@ void require_parts(const icd::Checked<codec::InParts<Message>>& parts, const icd
   require(!write(parts->message).empty());
 }
 
+/// What goes upstream says the same.
+template <class Message>
+void require_written(const icd::Checked<Message>& message, codec::Format format, codec::Split split,
+                     const auto& write, const auto& read) {
+  if (!message) return require(!message.error().sentence.empty());
+  const auto document = codec::decode({.format = format}, split, write(*message));
+  require(document.has_value());
+  require(read(*document, icd::Rules()) == message);
+}
+
+std::string written_map(const icd::MapUpdate& map) {
+  return codec::write_map_update(map).to_string();
+}
+std::string written_state(const icd::StateUpdate& state) {
+  return codec::write_state_update(state).to_string();
+}
+std::string written_markers(const icd::MarkersUpdate& markers) {
+  return codec::write_markers_update(markers).to_string();
+}
+
 void read_message(int message, const codec::Document& document) {
+  using enum codec::Format;
+  using enum codec::Split;
   const icd::Rules rules;
   switch (message) {
     case 0:
-      (void)codec::read_map_update(document, rules);
+      require_written(codec::read_map_update(document, rules), Cbor, MapData, written_map,
+                      codec::read_map_update);
       break;
     case 1:
       require_parts(codec::read_state_parts(document, rules), codec::read_state_update(document, rules),
                     codec::write_state_update);
+      require_written(codec::read_state_update(document, rules), Cbor, Nothing, written_state,
+                      codec::read_state_update);
       break;
     case 2:
       require_parts(codec::read_markers_parts(document, rules), codec::read_markers_update(document, rules),
                     codec::write_markers_update);
+      require_written(codec::read_markers_update(document, rules), Cbor, Nothing, written_markers,
+                      codec::read_markers_update);
       break;
     default:
-      (void)codec::read_artifact_report(document, rules);
+      require_written(codec::read_artifact_report(document, rules), Json, Nothing,
+                      codec::write_artifact_report, codec::read_artifact_report);
   }
 }
 
-}  // namespace
+/// Behind the body are two bytes that say how it is read.
+void try_body(codec::Format format, Input body) {
+  if (body.size() < 2) return;
+  const auto how = static_cast<std::uint8_t>(body.back());
+  body.remove_suffix(1);
+  const Choice choice = choice_of(format, how, take_piece(body));
 
-void try_body(codec::Format format, std::span<const std::uint8_t> input) {
-  if (input.size() < 2) return;
-  const auto body = input.first(input.size() - 2);
-  const Choice choice = choice_of(format, input[input.size() - 1], input[input.size() - 2]);
-  const std::string_view text(reinterpret_cast<const char*>(body.data()), body.size());
-
-  const auto whole = codec::decode(choice.kind, choice.split, text, kLimits);
-  require_same(whole, decode_in_chunks(choice, body));
+  const auto whole = codec::decode(choice.kind, choice.split, body, kLimits);
+  require_same(whole, decode_in_pieces(choice, body));
   const bool plain_json =
       format == codec::Format::Json && choice.kind.coding == codec::ContentCoding::Identity;
-  if (plain_json && choice.split == codec::Split::Nothing) require(codec::is_json(text) == whole.has_value());
+  if (plain_json && choice.split == codec::Split::Nothing) require(codec::is_json(body) == whole.has_value());
   if (!whole) return;
 
   require_settles(whole->root);
   read_message(choice.message, *whole);
+}
+
+}  // namespace
+
+void try_json(Input body) {
+  try_body(codec::Format::Json, body);
+}
+
+void try_cbor(Input body) {
+  try_body(codec::Format::Cbor, body);
 }
 
 }  // namespace adit::fuzz

@@ -1,17 +1,12 @@
-// The head of a request, in pieces: the input's last byte says how large they are.
-#include <cstdlib>
-#include <string>
-
+// The head of a request.
 #include "intake/head_checker.hpp"
+#include "target.hpp"
 
+namespace adit::fuzz {
 namespace {
 
-using adit::intake::HeadChecker;
+using intake::HeadChecker;
 using Verdict = HeadChecker::Verdict;
-
-void require(bool law) {
-  if (!law) std::abort();
-}
 
 /// What libmicrohttpd, or a proxy, could read in another way.
 void require_plain(std::string_view head) {
@@ -27,25 +22,24 @@ void require_plain(std::string_view head) {
 
 }  // namespace
 
-extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* bytes, std::size_t size) {
-  if (size == 0) return 0;
-  const std::string head(reinterpret_cast<const char*>(bytes), size - 1);
-  const std::size_t piece = 1U + bytes[size - 1] % 64U;
-  HeadChecker at_once, in_pieces;
+void try_heads(Input head) {
+  const std::size_t piece = take_piece(head);
+  HeadChecker at_once, cut;
   const Verdict verdict = at_once.look(head);
   Verdict so_far = Verdict::More;
   for (std::size_t here = piece; so_far == Verdict::More; here += piece) {
-    so_far = in_pieces.look(std::string(head.substr(0, here)));
+    so_far = cut.look(std::string(head.substr(0, here)));  // which lies elsewhere each time
     if (here >= head.size()) break;
   }
   require(so_far == verdict);
   if (verdict == Verdict::Refused) {
-    require(at_once.refusal() == in_pieces.refusal() && !at_once.refusal().sentence.empty());
+    require(at_once.refusal() == cut.refusal() && !at_once.refusal().sentence.empty());
   } else if (verdict == Verdict::Whole) {
-    require(at_once.size() == in_pieces.size());
-    require(at_once.framing().length == in_pieces.framing().length);
+    require(at_once.size() == cut.size());
+    require(at_once.framing().length == cut.framing().length);
     require(at_once.framing().has_body == (at_once.framing().length != 0));
-    require_plain(std::string_view(head).substr(0, at_once.size()));
+    require_plain(head.substr(0, at_once.size()));
   }
-  return 0;
 }
+
+}  // namespace adit::fuzz

@@ -1,32 +1,17 @@
-#include "intake/chunk_reader.hpp"
-
 #include <gtest/gtest.h>
 
 #include "intake/odd_heads.hpp"
+#include "intake/read_chunks.hpp"
 
 namespace adit::intake {
 namespace {
 
 using State = ChunkReader::State;
 
-struct Outcome {
-  State state;
-  std::string data;
-};
-
-Outcome read(std::string_view body, std::size_t piece) {
-  ChunkReader reader;
-  std::string data;
-  for (; !body.empty(); body.remove_prefix(std::min(piece, body.size()))) {
-    reader.feed(body.substr(0, piece), data);
-  }
-  return {reader.state(), data};
-}
-
 TEST(Chunks, ThatTheRfcHasRefusedAreRefusedHoweverTheyCome) {
   for (const OddChunks& odd : odd_chunks()) {
     for (const std::size_t piece : {odd.body.size(), std::size_t{1}, std::size_t{3}}) {
-      EXPECT_EQ(read(odd.body, piece).state, State::Refused) << odd.what << " in pieces of " << piece;
+      EXPECT_EQ(read_chunks(odd.body, piece).state, State::Refused) << odd.what << " in pieces of " << piece;
     }
   }
 }
@@ -40,7 +25,7 @@ TEST(Chunks, AreReadHoweverTheyCome) {
   };
   for (const std::string& body : bodies) {
     for (const std::size_t piece : {body.size(), std::size_t{1}, std::size_t{2}, std::size_t{5}}) {
-      const Outcome outcome = read(body, piece);
+      const ReadChunks outcome = read_chunks(body, piece);
       EXPECT_EQ(outcome.state, State::Whole) << body;
       EXPECT_EQ(outcome.data, "in chunks") << body;
     }
@@ -50,7 +35,7 @@ TEST(Chunks, AreReadHoweverTheyCome) {
 TEST(Chunks, AreNotWholeBeforeTheirLastLine) {
   const std::string body = "A\r\n0123456789\r\n0\r\n\r\n";
   for (std::size_t size = 0; size < body.size(); ++size) {
-    EXPECT_EQ(read(std::string_view(body).substr(0, size), 1).state, State::More) << size;
+    EXPECT_EQ(read_chunks(std::string_view(body).substr(0, size), 1).state, State::More) << size;
   }
 }
 

@@ -42,6 +42,9 @@ class Accounts final : public api::Keys {
   bool somebody_at_box() const override { return at_box_.left(loop_.now()).has_value(); }
   access::Secret draw() override;
 
+  /// What sets the first password, where none was set at the start.
+  const std::optional<icd::BearerToken>& code() const { return code_; }
+
   /// On the word of the box's own button. Nothing else calls these.
   void open_set_up();
   void button_pressed() { at_box_.open(loop_.now(), kAtBox); }

@@ -10,6 +10,7 @@
 #include "api/map_routes.hpp"
 #include "api/network_routes.hpp"
 #include "api/page_routes.hpp"
+#include "api/redacted.hpp"
 #include "api/report_routes.hpp"
 #include "api/routes.hpp"
 #include "api/run_routes.hpp"
@@ -41,8 +42,9 @@ std::optional<intake::Answer> unfit(const Body& body, const intake::RequestHead&
 
 class Api::Impl {
  public:
-  Impl(loop::Loop& loop, const Served& served, std::vector<icd::BearerToken> tokens)
-      : entrance_(loop, served.keys, std::move(tokens)),
+  Impl(loop::Loop& loop, const Served& served, std::vector<icd::BearerToken> tokens, icd::Redaction redaction)
+      : redaction_(std::make_shared<icd::Redaction>(std::move(redaction))),
+        entrance_(loop, served.keys, std::move(tokens)),
         live_(loop, served.source),
         sessions_(loop, entrance_, served.keys, served.setup),
         run_(served.source, served.judge, live_, entrance_),
@@ -51,14 +53,15 @@ class Api::Impl {
     if (served.setup) settings_.emplace(*served.setup);
     if (served.network) network_.emplace(*served.network, *served.test, [this] { changed(); });
     if (served.updates) updates_.emplace(*served.updates, [this] { changed(); });
-    if (served.box) box_.emplace(served.source, *served.box, entrance_, loop);
+    if (served.box) box_.emplace(served.source, *served.box, entrance_, redaction_, loop);
     handlers_ = {&pages_,       &sessions_,   &run_,        &maps_,  &reports_,
                  at(settings_), at(network_), at(updates_), at(box_)};
   }
 
   std::unique_ptr<intake::BodySink> open(const intake::RequestHead& head,
-                                         std::shared_ptr<intake::Responder> responder,
+                                         std::shared_ptr<intake::Responder> asked_by,
                                          std::shared_ptr<intake::Flow> flow) {
+    auto responder = redacted(std::move(asked_by), redaction_);
     Match found = match(handlers_, head);
     const auto refuse = [&responder](intake::Answer answer) {
       responder->answer(std::move(answer));
@@ -86,9 +89,12 @@ class Api::Impl {
                                        });
   }
 
-  bool knows(const intake::RequestHead& head) { return entrance_.who(head).has_value(); }
+  intake::Shown shown(const intake::RequestHead& head) { return entrance_.shown(head); }
   void changed() { live_.changed(); }
-  void let_in(std::vector<icd::BearerToken> tokens) { entrance_.let_in(std::move(tokens)); }
+  void let_in(std::vector<icd::BearerToken> tokens, icd::Redaction redaction) {
+    entrance_.let_in(std::move(tokens));
+    redaction_ = std::make_shared<icd::Redaction>(std::move(redaction));
+  }
 
  private:
   std::unique_ptr<intake::BodySink> handle(const Route& route, const Call& call) const {
@@ -102,6 +108,7 @@ class Api::Impl {
     return routes ? &*routes : nullptr;
   }
 
+  SharedRedaction redaction_;
   Entrance entrance_;
   Live live_;
   PageRoutes pages_;
@@ -116,12 +123,13 @@ class Api::Impl {
   Handlers handlers_;
 };
 
-Api::Api(loop::Loop& loop, const Served& served, std::vector<icd::BearerToken> tokens)
-    : impl_(std::make_unique<Impl>(loop, served, std::move(tokens))) {}
+Api::Api(loop::Loop& loop, const Served& served, std::vector<icd::BearerToken> tokens,
+         icd::Redaction redaction)
+    : impl_(std::make_unique<Impl>(loop, served, std::move(tokens), std::move(redaction))) {}
 Api::~Api() = default;
 
-bool Api::knows(const intake::RequestHead& head) {
-  return impl_->knows(head);
+intake::Shown Api::shown(const intake::RequestHead& head) {
+  return impl_->shown(head);
 }
 
 std::unique_ptr<intake::BodySink> Api::open(const intake::RequestHead& head,
@@ -130,8 +138,8 @@ std::unique_ptr<intake::BodySink> Api::open(const intake::RequestHead& head,
   return impl_->open(head, std::move(responder), std::move(flow));
 }
 
-void Api::let_in(std::vector<icd::BearerToken> tokens) {
-  impl_->let_in(std::move(tokens));
+void Api::let_in(std::vector<icd::BearerToken> tokens, icd::Redaction redaction) {
+  impl_->let_in(std::move(tokens), std::move(redaction));
 }
 
 void Api::changed() {

@@ -4,6 +4,7 @@
 #include <vector>
 
 #include "icd/bearer_token.hpp"
+#include "icd/redaction.hpp"
 #include "intake/server.hpp"
 #include "loop/loop.hpp"
 
@@ -37,18 +38,19 @@ struct Served {
 /// of `default-src 'none'` with what the page needs; every error is a JSON string.
 class Api final : public intake::Handler {
  public:
-  /// `tokens`: any of them lets a script in as an operator; empty: none does. All others outlive this, and
-  /// whatever is still worked on or answered.
-  Api(loop::Loop& loop, const Served& served, std::vector<icd::BearerToken> tokens);
+  /// `tokens`: any of them lets a script in as an operator; empty: none does. `redaction`: of all that is
+  /// answered. All others outlive this, and whatever is still worked on or answered.
+  Api(loop::Loop& loop, const Served& served, std::vector<icd::BearerToken> tokens,
+      icd::Redaction redaction = icd::Redaction());
   ~Api() override;
 
-  bool knows(const intake::RequestHead& head) override;
+  intake::Shown shown(const intake::RequestHead& head) override;
   std::unique_ptr<intake::BodySink> open(const intake::RequestHead& head,
                                          std::shared_ptr<intake::Responder> responder,
                                          std::shared_ptr<intake::Flow> flow) override;
 
-  /// These tokens let a script in from now on.
-  void let_in(std::vector<icd::BearerToken> tokens);
+  /// From now on.
+  void let_in(std::vector<icd::BearerToken> tokens, icd::Redaction redaction);
 
   /// Something that the page shows has changed.
   void changed();

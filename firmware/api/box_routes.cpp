@@ -89,11 +89,15 @@ void BoxRoutes::pack(const std::shared_ptr<intake::Responder>& responder) {
   files->push_back({"metrics.txt", metrics_text()});
   files->push_back({"log.txt", log_lines({})});
   auto packed = std::make_shared<std::string>();
-  box_.work([files, packed, now] { *packed = write_bundle(std::move(*files), bundle_name(now), now); },
-            [responder, packed, now] {
-              responder->answer(
-                  download(fresh("application/gzip", std::move(*packed)), bundle_name(now) + ".tar.gz"));
-            });
+  const auto write = [files, packed, now, redaction = redaction_] {
+    for (auto& [name, body] : *files) {
+      redact(*redaction, name.ends_with(".json") ? "application/json" : "text/plain", body);
+    }
+    *packed = write_bundle(std::move(*files), bundle_name(now), now);
+  };
+  box_.work(write, [responder, packed, now] {
+    responder->answer(download(fresh("application/gzip", std::move(*packed)), bundle_name(now) + ".tar.gz"));
+  });
 }
 
 }  // namespace adit::api

@@ -6,6 +6,7 @@
 #include "api/box.hpp"
 #include "api/entrance.hpp"
 #include "api/log_filter.hpp"
+#include "api/redacted.hpp"
 #include "api/source.hpp"
 #include "intake/server.hpp"
 
@@ -15,8 +16,9 @@ namespace adit::api {
 class BoxRoutes {
  public:
   /// All outlive this, and whatever `box` still works on.
-  BoxRoutes(const Source& source, Box& box, Entrance& entrance, loop::Loop& loop)
-      : source_(source), box_(box), entrance_(entrance), loop_(loop) {}
+  BoxRoutes(const Source& source, Box& box, Entrance& entrance, const SharedRedaction& redaction,
+            loop::Loop& loop)
+      : source_(source), box_(box), entrance_(entrance), redaction_(redaction), loop_(loop) {}
 
   intake::Answer metrics() const;
   intake::Answer log(const intake::RequestHead& head) const;
@@ -33,6 +35,7 @@ class BoxRoutes {
   const Source& source_;
   Box& box_;
   Entrance& entrance_;
+  const SharedRedaction& redaction_;  // of the bundle; of other answers it is the Api's
   loop::Loop& loop_;
 };
 

@@ -42,7 +42,7 @@ def responses:
   (.gives | startswith("202 ")) as $accepted
   | {(if $accepted then "202" else "200" end): {description: .done, content: (.gives | ltrimstr("202 ") | content)}}
   + ([(.refusals | words[]), (if .who != "Open" then "403" else empty end),
-      (if .who | IN("Open", "OwnPage") then empty else "401" end), (if .body then "413", "422" else empty end)]
+      (if .who | IN("Open", "OwnPage") then empty else "401", "429" end), (if .body then "413", "422" else empty end)]
      | sort | map({(.): reference("responses")}) | add);
 
 def operation:

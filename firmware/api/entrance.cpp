@@ -38,6 +38,13 @@ std::optional<access::Visitor> Entrance::who(const intake::RequestHead& head) {
   return access::who(request_of(head), tokens_, sessions(), loop_.now());
 }
 
+intake::Shown Entrance::shown(const intake::RequestHead& head) {
+  const auto visitor = who(head);
+  if (!head.header("Authorization").empty())
+    return visitor ? intake::Shown::Token : intake::Shown::WrongToken;
+  return visitor ? intake::Shown::Enough : intake::Shown::Nothing;
+}
+
 std::function<bool()> Entrance::may_stay(const Asker& asker) {
   if (asker.session == 0) return [] { return true; };
   return [this, number = asker.session] { return sessions().still(number, loop_.now()); };

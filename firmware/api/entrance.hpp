@@ -28,6 +28,7 @@ class Entrance {
   icd::Checked<Asker> admit(const intake::RequestHead& head, Who who);
   /// Visitor::session is valid until the next call of anything here.
   std::optional<access::Visitor> who(const intake::RequestHead& head);
+  intake::Shown shown(const intake::RequestHead& head);
   /// Whether he may still be given more of a long answer. This outlives the result.
   std::function<bool()> may_stay(const Asker& asker);
 

@@ -40,6 +40,11 @@ void write_box(Exposition& out, const Measured& measured) {
       "Connections that Adit did not go on with: no_room (the request was answered 503), gave_way and idle "
       "(for another), slow.");
   for (const EndedCount& row : usage.ended) out.sample({{"why", row.why}}, number(row.count));
+  out.counter(
+      "adit_wrong_tokens_total",
+      "Requests with a wrong token, with none where one is asked for, or with one that was not looked at "
+      "after too many of those.");
+  out.sample(number(usage.wrong_tokens));
   out.counter("adit_exceptions_total", "Requests, answers and jobs that were ended by an exception.");
   out.sample(number(usage.exceptions));
   out.gauge("adit_sessions", "Logins that have not ended.");

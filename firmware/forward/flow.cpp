@@ -47,15 +47,18 @@ void Flow::status(const intake::Sender&, std::shared_ptr<intake::Responder> resp
   scoring_.status(std::move(responder));
 }
 
-/// The sentence quotes what was sent, which may be a token that was put into a wrong field.
+/// The sentence quotes what was sent, which may be a token that was put into a wrong field. Wrong tokens are
+/// logged together (gateway::Crowding).
 void Flow::refused(icd::Uri uri, const intake::Sender& sender, const icd::Refusal& told) {
   icd::Refusal refusal = told;
   for (const icd::BearerToken& token : tokens_.all) token.strike_from(refusal.sentence);
-  host::log(host::Level::Info, "refused",
-            {{"uri", std::string(icd::path_of(uri))},
-             {"sender", sender.address},
-             {"status", std::to_string(static_cast<int>(refusal.status))},
-             {"why", refusal.sentence}});
+  if (refusal.status != icd::Status::Unauthorized) {
+    host::log(host::Level::Info, "refused",
+              {{"uri", std::string(icd::path_of(uri))},
+               {"sender", sender.address},
+               {"status", std::to_string(static_cast<int>(refusal.status))},
+               {"why", refusal.sentence}});
+  }
   record_.refused(uri, sender, refusal, loop_.stamp_now());
 }
 

@@ -40,6 +40,10 @@ std::string Crowding::sentence(intake::Ended why) const {
     return "requests are answered 503, most of " + most->first +
            ": too many are under way at once (team.connections, team.connections_per_address)";
   }
+  if (why == intake::Ended::WrongToken) {
+    return "requests show wrong tokens, most of " + most->first +
+           ": robots with an old one, or somebody who guesses; right ones are let in";
+  }
   return "too many connections are open without a token, most of " + most->first +
          ": the oldest are ended for new ones";
 }

@@ -11,8 +11,8 @@
 
 namespace adit::gateway {
 
-/// What becomes of the team's connections where there are too many: counted, told of for as long as it goes
-/// on, and logged once a minute.
+/// What becomes of the team's connections where there are too many, and of who shows wrong tokens: counted,
+/// told of for as long as it goes on, and logged once a minute.
 class Crowding {
  public:
   static constexpr std::chrono::minutes kRecent{1}, kLogEvery{1};
@@ -35,7 +35,7 @@ class Crowding {
     loop::Instant last{}, log_at{};
     std::map<std::string, std::uint64_t> by_address;  // since it began anew
   };
-  static constexpr std::array kTold{intake::Ended::NoRoom, intake::Ended::GaveWay};
+  static constexpr std::array kTold{intake::Ended::NoRoom, intake::Ended::GaveWay, intake::Ended::WrongToken};
 
   const Kind& at(intake::Ended why) const { return kinds_[static_cast<std::size_t>(why)]; }
   std::string sentence(intake::Ended why) const;

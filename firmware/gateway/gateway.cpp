@@ -58,9 +58,9 @@ Gateway::Gateway(loop::Loop& loop, Parts parts)
             .test = &self_test_,
             .updates = &updates_,
             .box = &box_},
-           tokens().all),
+           tokens().all, redaction()),
       routes_(icd_options(), flow_, flow_.workers(), api_),
-      listeners_(loop, parts_.sockets, routes_,
+      listeners_(loop, parts_.sockets, routes_, guesses_,
                  [this](intake::Ended why, const std::string& address) {
                    crowding_.ended(why, address, loop_.now());
                    log_crowding();
@@ -91,6 +91,14 @@ forward::Tokens Gateway::tokens() const {
   return tokens;
 }
 
+icd::Redaction Gateway::redaction() const {
+  std::vector<icd::BearerToken> secrets = tokens().all;
+  for (const auto& code : {parts_.loaded.secrets.label_code, accounts_.code()}) {
+    if (code) secrets.push_back(*code);
+  }
+  return icd::Redaction(std::move(secrets));
+}
+
 std::vector<loop::Workers*> Gateway::threads() {
   std::vector<loop::Workers*> threads = flow_.threads();
   threads.insert(threads.end(), {&log_ins_, &disk_writer_});
@@ -103,6 +111,7 @@ void Gateway::ledger_is_back() {
 }
 
 std::expected<void, std::string> Gateway::start() {
+  host::keep_out_of_log(redaction());
   if (auto started = flow_.start(); !started) return started;
   if (auto listening = listen(settings_.team); !listening) return listening;
   every_second();
@@ -196,6 +205,7 @@ void Gateway::add_to(api::Usage& usage) const {
                  {"gave_way", crowding_.count(intake::Ended::GaveWay)},
                  {"idle", crowding_.count(intake::Ended::Idle)},
                  {"slow", crowding_.count(intake::Ended::Slow)}};
+  usage.wrong_tokens = crowding_.count(intake::Ended::WrongToken);
   usage.sent_bytes = flow_.sent_bytes();
   usage.exceptions = loop::caught_so_far();
   usage.aside_dropped = flow_.aside().dropped();

@@ -116,6 +116,7 @@ class Gateway final : public api::Source, public api::Operator {
   void take_back(const std::string& why);
   intake::IcdOptions icd_options() const;
   forward::Tokens tokens() const;
+  icd::Redaction redaction() const;
   void note_robot(const std::string& name);
   void assert_states();
   void pressed(panel::Press press);
@@ -148,6 +149,7 @@ class Gateway final : public api::Source, public api::Operator {
   api::Api api_;
   intake::IcdRoutes routes_;
   Crowding crowding_;
+  intake::TokenGuesses guesses_;
   Listeners listeners_;
   loop::Source second_, change_;
   loop::Instant sessions_kept_{};

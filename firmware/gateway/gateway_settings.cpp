@@ -47,7 +47,9 @@ std::expected<void, std::string> Gateway::take_over(admin::Store::Loaded next) {
 void Gateway::tell_of_settings(const settings::Anew& anew, const forward::Tokens& tokens) {
   flow_.settings_changed(anew, tokens);
   routes_.serve_with(icd_options());
-  api_.let_in(tokens.all);
+  api_.let_in(tokens.all, redaction());
+  host::keep_out_of_log(redaction());
+  guesses_.forget();
   self_test_.use({tokens.scoring, tokens.mapping});
   roster_.set_up(settings_.robots);
   links_.look_at(settings_);

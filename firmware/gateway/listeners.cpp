@@ -45,6 +45,7 @@ std::expected<Listeners::Serving, std::string> Listeners::start(ListenSockets::O
                                        .interface = open.at.interface,
                                        .connections = bounds.connections,
                                        .connections_per_address = bounds.per_address,
+                                       .guesses = &guesses_,
                                        .ended = ended_},
                                       handler_, std::move(open.socket));
   if (!server) return std::unexpected(std::move(server.error()));

@@ -11,6 +11,7 @@
 
 #include "gateway/listen_sockets.hpp"
 #include "intake/server.hpp"
+#include "intake/token_guesses.hpp"
 #include "loop/loop.hpp"
 #include "settings/settings.hpp"
 
@@ -21,9 +22,9 @@ namespace adit::gateway {
 class Listeners {
  public:
   /// All outlive this. `ended`: told of each connection that was not gone on with.
-  Listeners(loop::Loop& loop, ListenSockets& sockets, intake::Handler& handler,
+  Listeners(loop::Loop& loop, ListenSockets& sockets, intake::Handler& handler, intake::TokenGuesses& guesses,
             std::function<void(intake::Ended why, const std::string& address)> ended)
-      : loop_(loop), sockets_(sockets), handler_(handler), ended_(std::move(ended)) {}
+      : loop_(loop), sockets_(sockets), handler_(handler), guesses_(guesses), ended_(std::move(ended)) {}
 
   /// From now on at these. An error says what cannot be listened at: then sockets that were in the way may be
   /// closed, and it has to be told again what was served before.
@@ -62,6 +63,7 @@ class Listeners {
   loop::Loop& loop_;
   ListenSockets& sockets_;
   intake::Handler& handler_;
+  intake::TokenGuesses& guesses_;
   const std::function<void(intake::Ended why, const std::string& address)> ended_;
   loop::Duration longest_{};
   std::vector<Serving> serving_;

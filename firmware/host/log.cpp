@@ -6,6 +6,8 @@
 
 #include <chrono>
 #include <cstdlib>
+#include <mutex>
+#include <utility>
 
 #include "host/memory.hpp"
 #include "host/record.hpp"
@@ -23,6 +25,28 @@ double time_now() {
 Memory& memory() {
   static Memory records;
   return records;
+}
+
+/// For any thread.
+class KeptOut {
+ public:
+  void are(icd::Redaction redaction) {
+    const std::scoped_lock lock(mutex_);
+    redaction_ = std::move(redaction);
+  }
+  void strike_from(std::string& text) {
+    const std::scoped_lock lock(mutex_);
+    redaction_.strike_from(text);
+  }
+
+ private:
+  std::mutex mutex_;
+  icd::Redaction redaction_;
+};
+
+KeptOut& kept_out() {
+  static KeptOut secrets;
+  return secrets;
 }
 
 bool to_journal(const std::vector<std::string>& entry) {
@@ -49,8 +73,20 @@ void write_down(double at, Level level, std::string_view message, std::span<cons
 void log(Level level, std::string_view message, std::initializer_list<Field> fields) {
   if (level > kLeast) return;
   const double at = time_now();
-  memory().keep(at, level, message, fields);
-  write_down(at, level, message, fields);
+  const std::string said = without_secrets(std::string(message));
+  std::vector<Field> struck(fields);
+  for (auto& [name, value] : struck) value = without_secrets(std::move(value));
+  memory().keep(at, level, said, struck);
+  write_down(at, level, said, struck);
+}
+
+void keep_out_of_log(icd::Redaction redaction) {
+  kept_out().are(std::move(redaction));
+}
+
+std::string without_secrets(std::string text) {
+  kept_out().strike_from(text);
+  return text;
 }
 
 void tell_console(Level level, std::string_view message, std::initializer_list<Field> fields) {

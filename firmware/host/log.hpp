@@ -7,6 +7,8 @@
 #include <utility>
 #include <vector>
 
+#include "icd/redaction.hpp"
+
 namespace adit::host {
 
 enum class Level : int { Error = 3, Warning = 4, Notice = 5, Info = 6, Debug = 7 };  // syslog's (RFC 5424)
@@ -34,6 +36,11 @@ void log(Level level, std::string_view message, std::initializer_list<Field> fie
 
 /// The same for whoever is at the console alone: the message is remembered without its fields.
 void tell_console(Level level, std::string_view message, std::initializer_list<Field> fields);
+
+/// From now on these are struck out of all that is logged, but not of what the console is told.
+void keep_out_of_log(icd::Redaction redaction);
+/// A text for whoever reads the log, without them.
+std::string without_secrets(std::string text);
 
 /// What is remembered of the records after the one of that number, oldest first.
 std::vector<Record> remembered(std::uint64_t after);

@@ -1,5 +1,6 @@
 #include <systemd/sd-daemon.h>
 
+#include "host/log.hpp"
 #include "host/record.hpp"
 #include "host/service.hpp"
 
@@ -8,7 +9,7 @@ namespace {
 
 /// Escaped, because a line end in `status` would begin another assignment (sd_notify(3)).
 std::string assignment(const std::string& status) {
-  return "STATUS=" + escaped(status);
+  return "STATUS=" + escaped(without_secrets(status));
 }
 
 }  // namespace

@@ -5,7 +5,40 @@
 namespace adit::icd {
 namespace {
 
-constexpr std::size_t kLongest = 256;
+constexpr std::string_view kStruck = "[token]";
+constexpr std::size_t kShortest = 4;
+constexpr std::size_t kLeast = 8;  // characters at its beginning, where it is cut
+
+void strike_whole(std::string& text, std::string_view token) {
+  for (std::size_t at = 0; (at = text.find(token, at)) != std::string::npos; at += kStruck.size()) {
+    text.replace(at, token.size(), kStruck);
+  }
+}
+
+/// With `mark` before each of `letters`.
+std::string doubled(std::string_view token, std::string_view letters, char mark) {
+  std::string text;
+  for (const char letter : token) {
+    if (letters.contains(letter)) text += mark;
+    text += letter;
+  }
+  return text;
+}
+
+/// in_quotes() shows the beginning of what is long, and "..." after it.
+void strike_cut(std::string& text, std::string_view token) {
+  const std::string_view beginning = token.substr(0, kLeast);
+  for (std::size_t at = 0; (at = text.find(beginning, at)) != std::string::npos; ++at) {
+    const auto differs = std::ranges::mismatch(std::string_view(text).substr(at), token).in1;
+    const auto size = static_cast<std::size_t>(differs - std::string_view(text).substr(at).begin());
+    if (std::string_view(text).substr(at + size).starts_with("...")) text.replace(at, size, kStruck);
+  }
+}
+
+/// How many of the first `most` characters are written everywhere as they are.
+std::size_t until_escaped(std::string_view token, std::size_t most) {
+  return std::min(token.find_first_of("\"\\"), most);
+}
 
 }  // namespace
 
@@ -24,17 +57,32 @@ bool BearerToken::matches(std::string_view presented) const {
   return difference == 0;
 }
 
+bool BearerToken::may_be_in(std::string_view text) const {
+  return text.contains(std::string_view(text_).substr(0, until_escaped(text_, kLeast)));
+}
+
 void BearerToken::strike_from(std::string& text) const {
-  constexpr std::string_view kStruck = "[token]";
-  constexpr std::size_t kShortest = 4;
-  if (text_.size() < kShortest) return;
-  for (std::size_t at = 0; (at = text.find(text_, at)) != std::string::npos; at += kStruck.size()) {
-    text.replace(at, text_.size(), kStruck);
+  if (text_.size() < kShortest || !may_be_in(text)) return;
+  strike_whole(text, text_);
+  if (text_.find_first_of("\"\\") != std::string::npos) {
+    const std::string in_json = doubled(text_, "\"\\", '\\');
+    strike_whole(text, doubled(in_json, "\"\\", '\\'));  // an answer that is kept, within JSON
+    strike_whole(text, in_json);
+    strike_whole(text, doubled(text_, "\"", '"'));  // CSV
   }
+  strike_cut(text, text_);
 }
 
 bool same(const std::optional<BearerToken>& one, const std::optional<BearerToken>& other) {
   return one && other ? one->matches(other->reveal()) : one.has_value() == other.has_value();
+}
+
+bool is_one_of(std::span<const BearerToken> tokens, std::string_view presented) {
+  bool found = false;
+  for (const BearerToken& token : tokens) {
+    if (token.matches(presented)) found = true;  // no early end: the time must not tell which
+  }
+  return found;
 }
 
 std::string_view token_in(std::string_view authorization) {

@@ -71,23 +71,18 @@ IcdRoutes::IcdRoutes(IcdOptions options, Desk& desk, loop::Workers& workers, Han
       other_(other),
       budget_(std::make_shared<UploadBudget>(options_.upload_bytes)) {}
 
-bool IcdRoutes::may_enter(const RequestHead& head) const {
+Shown IcdRoutes::shown(const RequestHead& head) {
+  if (!icd::uri_of(head.path())) return other_.shown(head);
+  if (!options_.asks_token) return Shown::Enough;
+  if (head.method() == "OPTIONS") return Shown::Nothing;  // a preflight has no token
   const std::string_view presented = icd::token_in(head.header("Authorization"));
-  bool known = !options_.asks_token;
-  for (const icd::BearerToken& token : options_.tokens) {
-    if (token.matches(presented)) known = true;  // no early end: the time must not tell which
-  }
-  return known;
+  return icd::is_one_of(options_.tokens, presented) ? Shown::Token : Shown::WrongToken;
 }
 
 std::size_t IcdRoutes::most_bytes(icd::Uri uri) const {
   if (uri == icd::Uri::MarkersUpdate) return MarkersUpload::kMost;
   if (uri != icd::Uri::MapUpdate) return kSmallBody;
   return options_.rules.map_bytes / 3 * 4 + kSmallBody;  // base64
-}
-
-bool IcdRoutes::knows(const RequestHead& head) {
-  return icd::uri_of(head.path()) ? may_enter(head) : other_.knows(head);
 }
 
 std::unique_ptr<BodySink> IcdRoutes::open(const RequestHead& head, std::shared_ptr<Responder> responder,
@@ -106,7 +101,7 @@ std::unique_ptr<BodySink> IcdRoutes::open(const RequestHead& head, std::shared_p
     visit.responder->answer(preflight_answer(*uri, head.header("Access-Control-Request-Headers")));
     return nullptr;
   }
-  if (!may_enter(head)) {
+  if (shown(head) == Shown::WrongToken) {
     visit.refuse({icd::Status::Unauthorized, options_.tokens.empty()
                                                  ? "Authorization: no token is set up on this gateway yet"
                                                  : "Authorization: expected Bearer and the team's token"});

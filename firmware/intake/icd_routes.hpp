@@ -40,7 +40,7 @@ class IcdRoutes final : public Handler {
  public:
   IcdRoutes(IcdOptions options, Desk& desk, loop::Workers& workers, Handler& other);
 
-  bool knows(const RequestHead& head) override;
+  Shown shown(const RequestHead& head) override;
   std::unique_ptr<BodySink> open(const RequestHead& head, std::shared_ptr<Responder> responder,
                                  std::shared_ptr<Flow> flow) override;
 
@@ -53,7 +53,6 @@ class IcdRoutes final : public Handler {
 
  private:
   std::unique_ptr<BodySink> take_in(Visit visit, const RequestHead& head, std::shared_ptr<Flow> flow);
-  bool may_enter(const RequestHead& head) const;
   /// The most that a body sent to `uri` may have.
   std::size_t most_bytes(icd::Uri uri) const;
 

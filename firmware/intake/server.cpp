@@ -15,6 +15,7 @@
 #include "intake/request.hpp"
 #include "intake/shares.hpp"
 #include "intake/target.hpp"
+#include "intake/turnstile.hpp"
 #include "loop/guard.hpp"
 
 namespace adit::intake {
@@ -36,7 +37,8 @@ class Server::Impl final : public Engine {
       : loop_(loop),
         listen_(std::move(listen)),
         shares_(Shares::of(listen_.connections, listen_.connections_per_address)),
-        handler_(handler) {}
+        turnstile_(loop, handler, listen_.guesses == nullptr ? own_guesses_ : *listen_.guesses, listen_.late,
+                   [this](const std::string& address) { tell(Ended::WrongToken, address); }) {}
   Impl(const Impl&) = delete;
   Impl& operator=(const Impl&) = delete;
   ~Impl() override;
@@ -82,7 +84,8 @@ class Server::Impl final : public Engine {
   loop::Loop& loop_;
   const Listen listen_;
   const Shares shares_;
-  Handler& handler_;
+  TokenGuesses own_guesses_;
+  Turnstile turnstile_;
   MHD_Daemon* daemon_ = nullptr;
   std::uint16_t port_ = 0;
   bool stopping_ = false;
@@ -232,10 +235,11 @@ void Server::Impl::first_call(Client& client, std::string_view method) {
     request->refuse_head("request target: expected a path of UTF-8, percent-encoded");
   } else {
     request->begin(method, std::move(*target), client.gate().framing());
-    const bool known = handler_.knows(request->head());
+    const Shown shown = turnstile_.shown(request->head());
+    const bool known = shown == Shown::Token || shown == Shown::Enough;
     const bool has_room = !known || client.is_known() || make_room_for(client);
     client.is_known(known && has_room);
-    if (has_room) return request->open(handler_);
+    if (has_room) return request->open(turnstile_);
     tell(Ended::NoRoom, client.peer());
     request->refuse_for_room(
         "too many requests are under way at once, from this address or in all; try again");

@@ -16,14 +16,17 @@
 
 namespace adit::intake {
 
+class TokenGuesses;
+
 /// Why the server did not go on with a connection, or not with a request.
 enum class Ended : std::uint8_t {
-  NoRoom,   // refused: its address, or all together, have as many requests under way as they may
-  GaveWay,  // a stranger's, for another; or that of an address with more than its share
-  Idle,     // between requests, for another
-  Slow,     // its head, body or reading
+  NoRoom,      // refused: its address, or all together, have as many requests under way as they may
+  GaveWay,     // a stranger's, for another; or that of an address with more than its share
+  Idle,        // between requests, for another
+  Slow,        // its head, body or reading
+  WrongToken,  // a request's, or one that was not looked at (TokenGuesses)
 };
-inline constexpr std::size_t kEndedKinds = 4;
+inline constexpr std::size_t kEndedKinds = 5;
 
 /// Where and how the server listens.
 struct Listen {
@@ -35,6 +38,8 @@ struct Listen {
   std::chrono::milliseconds stranger_within{5000};  // from connecting: the head; from there: the whole body
   std::chrono::milliseconds rate_over{10000};       // LeastRate of bodies and of reading; a known one's head
   std::chrono::milliseconds idle{60000};            // between requests
+  std::chrono::milliseconds late{1000};             // how late an answer comes that is to (TokenGuesses)
+  TokenGuesses* guesses = nullptr;                  // outlives the server; null: it has its own
   std::function<void(Ended why, const std::string& address)> ended = {};  // told of each; may be empty
 };
 
@@ -102,14 +107,21 @@ class Flow {
   virtual void resume() = 0;
 };
 
+/// What he who asks has shown.
+enum class Shown : std::uint8_t {
+  Nothing,     // but that he is a stranger
+  WrongToken,  // or none where one is asked for
+  Token,       // one that is good
+  Enough,      // a session; or what he asks for needs nothing of the team
+};
+
 /// What a request is given to.
 class Handler {
  public:
   virtual ~Handler() = default;
-  /// Asked before open(): whether he who asks has shown what lets him in (a token, a session), or what he
-  /// asks for needs none of the team. Who is known has room however many strangers come, and all the time
+  /// Asked before open(). Who is known (Token, Enough) has room however many strangers come, and all the time
   /// that a slow radio takes.
-  virtual bool knows(const RequestHead& head) = 0;
+  virtual Shown shown(const RequestHead& head) = 0;
   /// Called when the headers are whole. May answer at once (a refusal: the body is then read away up to a
   /// limit, or the connection closed). Returning nothing is allowed only after answering.
   virtual std::unique_ptr<BodySink> open(const RequestHead& head, std::shared_ptr<Responder> responder,

@@ -84,7 +84,8 @@ struct Page {
            .test = &test,
            .updates = &updates,
            .box = &box},
-          {token("team-1"), token("scoring-1")}};
+          {token("team-1"), token("scoring-1")},
+          icd::Redaction({token("team-1"), token("scoring-1")})};
 };
 
 class OnPage : public testing::Test, protected Page {};

@@ -33,6 +33,15 @@ TEST(Crowding, IsToldOfWhileItGoesOnWithTheAddressThatHasMost) {
       << "the rest is long ago";
 }
 
+TEST(Crowding, TellsOfWrongTokens) {
+  Crowding crowding;
+  for (int i = 0; i < 1786; ++i) crowding.ended(Ended::WrongToken, "10.0.0.7", kStart);
+  EXPECT_THAT(crowding.attention(kStart), ElementsAre(HasSubstr("wrong tokens, most of 10.0.0.7")));
+  const auto lines = crowding.to_log(kStart);
+  ASSERT_EQ(lines.size(), 1u);
+  EXPECT_EQ(lines.front().times, 1786u);
+}
+
 TEST(Crowding, IsLoggedAtOnceAndThenOnceAMinuteWithItsNumber) {
   Crowding crowding;
   const auto times = [&](loop::Instant now) {

@@ -83,7 +83,8 @@ class ListenersTest : public testing::Test {
   ListenSockets sockets_;
   intake::NotFound handler_;
   settings::Team team_;
-  Listeners listeners_{loop_, sockets_, handler_, nullptr};
+  intake::TokenGuesses guesses_;
+  Listeners listeners_{loop_, sockets_, handler_, guesses_, nullptr};
 };
 
 TEST_F(ListenersTest, ConnectionsOfASocketThatStaysLiveOn) {

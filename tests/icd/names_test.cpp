@@ -10,7 +10,9 @@
 #include "icd/artifact_report.hpp"
 #include "icd/bearer_token.hpp"
 #include "icd/map_update.hpp"
+#include "icd/redaction.hpp"
 #include "icd/robot_name.hpp"
+#include "icd/sentence.hpp"
 #include "icd/uri.hpp"
 
 namespace adit::icd {
@@ -45,6 +47,38 @@ TEST(BearerToken, IsStruckFromWhatOthersWrote) {
   EXPECT_EQ(text, "got \"[token]\", [token][token] and Team-7");
   BearerToken::parse("tok")->strike_from(text);
   EXPECT_EQ(text, "got \"[token]\", [token][token] and Team-7") << "too short to be a secret";
+}
+
+TEST(BearerToken, IsStruckHoweverItIsWritten) {
+  const auto token = *BearerToken::parse(R"(flux230{"show\room<&)");
+  std::string text =
+      R"(flux230{"show\room<& flux230{\"show\\room<& flux230{""show\room<& flux230{\\\"show\\\\room<&)";
+  token.strike_from(text);
+  EXPECT_EQ(text, "[token] [token] [token] [token]");
+}
+
+TEST(BearerToken, IsStruckWhereASentenceCutsIt) {
+  const std::string whole(64, 'k');
+  const auto token = *BearerToken::parse("0123456789" + whole);
+  std::string text = "type: expected one of ICD 3, got " + in_quotes("0123456789" + whole);
+  token.strike_from(text);
+  EXPECT_EQ(text, "type: expected one of ICD 3, got \"[token]...\"");
+  text = "0123456789 and 0123456789kk are something else";
+  token.strike_from(text);
+  EXPECT_EQ(text, "0123456789 and 0123456789kk are something else");
+}
+
+TEST(Redaction, StrikesSecretsOutOfJsonAndLeavesItJson) {
+  const Redaction redaction({*BearerToken::parse("12345678"), *BearerToken::parse("number\"s"),
+                             *BearerToken::parse("numbers_"), *BearerToken::parse("grid")});
+  std::string text = R"({"numbers_":12345678,"ns":"a12345678","kind":"grid","c":["number\"s","numbers_"]})";
+  redaction.strike_from_strings(text);
+  EXPECT_EQ(text, R"({"numbers_":12345678,"ns":"a[token]","kind":"grid","c":["[token]","[token]"]})");
+  for (const std::string other : {"", "\"", "\"12345678", "\"12345678\\"}) {
+    text = other;
+    redaction.strike_from_strings(text);
+    EXPECT_EQ(text.find("12345678"), std::string::npos) << other;
+  }
 }
 
 TEST(BearerToken, MatchesItselfAlone) {

@@ -5,6 +5,7 @@
 #include <string>
 #include <vector>
 
+#include "icd/bearer_token.hpp"
 #include "intake/icd_routes.hpp"
 #include "intake/server.hpp"
 
@@ -26,10 +27,12 @@ class ScriptedHandler final : public Handler {
   std::vector<std::shared_ptr<Stream>> streams;
   std::atomic<std::size_t> body_bytes = 0;
   std::atomic<int> ends = 0, gone = 0, exchanges = 0;
-  bool asks_token = false;  // Authorization, whatever it says
+  bool asks_token = false;  // any that does not begin with "wrong"
 
-  bool knows(const RequestHead& head) override {
-    return !asks_token || !head.header("Authorization").empty();
+  Shown shown(const RequestHead& head) override {
+    if (!asks_token) return Shown::Enough;
+    const std::string_view token = icd::token_in(head.header("Authorization"));
+    return token.empty() ? Shown::Nothing : token.starts_with("wrong") ? Shown::WrongToken : Shown::Token;
   }
 
   std::unique_ptr<BodySink> open(const RequestHead& head, std::shared_ptr<Responder> responder,

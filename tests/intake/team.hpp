@@ -149,7 +149,7 @@ class Team {
   /// Makes workers and routes on the loop, at the first request.
   struct Front final : Handler {
     explicit Front(Team& owner) : team(owner) {}
-    bool knows(const RequestHead& head) override { return routes->knows(head); }
+    Shown shown(const RequestHead& head) override { return routes->shown(head); }
     std::unique_ptr<BodySink> open(const RequestHead& head, std::shared_ptr<Responder> responder,
                                    std::shared_ptr<Flow> flow) override {
       return routes->open(head, std::move(responder), std::move(flow));
@@ -164,7 +164,7 @@ class Team {
  public:
   FakeDesk desk;
   Front front{*this};
-  Served served{front};
+  Served served{front, {.address = {}, .interface = {}, .late = std::chrono::milliseconds(0)}};
 
  private:
   const bool ready_ = served.on_loop([this] {

@@ -184,7 +184,8 @@ bool has_forgotten_crowd(const Reading& reading) {
   const Json& attention = reading.view.at("attention");
   const auto tells_of_crowd = [](const Json& sentence) {
     const auto& text = sentence.get_ref<const std::string&>();
-    return text.contains("are ended for new ones") || text.starts_with("requests are answered 503");
+    return text.contains("are ended for new ones") || text.starts_with("requests are answered 503") ||
+           text.starts_with("requests show wrong tokens");
   };
   const auto told = metric(reading.metrics, "adit_attention");
   const auto crowded = static_cast<double>(std::ranges::count_if(attention, tells_of_crowd));
@@ -228,7 +229,7 @@ bool is_of_the_past(const Json& sentence) {
   return said.starts_with("the last map was not taken: ") ||
          said.starts_with("states and markers are not taken, ") ||
          said.starts_with("The ledger's log was damaged; its checksums told ") ||
-         said.starts_with("the ledger was damaged: ");
+         said.starts_with("the ledger was damaged: ") || said.starts_with("requests show wrong tokens, ");
 }
 
 /// The last reading may be none of the rest, where a death that was due came as late as that.

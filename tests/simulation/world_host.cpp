@@ -38,6 +38,12 @@ void tell_console(Level level, std::string_view message, std::initializer_list<F
   say(level, message, fields);
 }
 
+/// Nothing here looks for secrets in a log.
+void keep_out_of_log(icd::Redaction) {}
+std::string without_secrets(std::string text) {
+  return text;
+}
+
 std::vector<Record> remembered(std::uint64_t after) {
   return memory().after(after);
 }

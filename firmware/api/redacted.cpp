@@ -1,0 +1,61 @@
+#include "api/redacted.hpp"
+
+#include <utility>
+
+namespace adit::api {
+namespace {
+
+constexpr std::string_view kEvents = "text/event-stream";
+
+class RedactedStream final : public intake::Stream {
+ public:
+  RedactedStream(std::shared_ptr<intake::Stream> stream, SharedRedaction redaction)
+      : stream_(std::move(stream)), redaction_(std::move(redaction)) {}
+  bool send(std::string_view bytes) override {
+    std::string text(bytes);
+    redact(*redaction_, kEvents, text);
+    return stream_->send(text);
+  }
+
+ private:
+  const std::shared_ptr<intake::Stream> stream_;
+  const SharedRedaction redaction_;
+};
+
+class RedactedResponder final : public intake::Responder {
+ public:
+  RedactedResponder(std::shared_ptr<intake::Responder> responder, SharedRedaction redaction)
+      : responder_(std::move(responder)), redaction_(std::move(redaction)) {}
+  void answer(intake::Answer answer) override {
+    redact(*redaction_, answer.content_type, answer.body);
+    responder_->answer(std::move(answer));
+  }
+  std::shared_ptr<intake::Stream> stream(std::string_view content_type) override {
+    auto stream = responder_->stream(content_type);
+    if (!stream || content_type != kEvents) return stream;
+    return std::make_shared<RedactedStream>(std::move(stream), redaction_);
+  }
+  bool client_gone() const override { return responder_->client_gone(); }
+
+ private:
+  const std::shared_ptr<intake::Responder> responder_;
+  const SharedRedaction redaction_;
+};
+
+}  // namespace
+
+void redact(const icd::Redaction& redaction, std::string_view content_type, std::string& body) {
+  const bool is_metrics = content_type.starts_with("text/plain; version=");
+  if (content_type == "application/json" || content_type == kEvents || is_metrics) {
+    redaction.strike_from_strings(body);
+  } else if (content_type.starts_with("text/csv") || content_type.starts_with("text/plain")) {
+    redaction.strike_from(body);
+  }
+}
+
+std::shared_ptr<intake::Responder> redacted(std::shared_ptr<intake::Responder> responder,
+                                            SharedRedaction redaction) {
+  return std::make_shared<RedactedResponder>(std::move(responder), std::move(redaction));
+}
+
+}  // namespace adit::api

@@ -1,0 +1,21 @@
+#pragma once
+
+#include <memory>
+#include <string>
+#include <string_view>
+
+#include "icd/redaction.hpp"
+#include "intake/server.hpp"
+
+namespace adit::api {
+
+using SharedRedaction = std::shared_ptr<const icd::Redaction>;
+
+/// Out of a body of that Content-Type; out of pictures, archives and the page's own files nothing.
+void redact(const icd::Redaction& redaction, std::string_view content_type, std::string& body);
+
+/// Passes answers and streams on, redacted.
+std::shared_ptr<intake::Responder> redacted(std::shared_ptr<intake::Responder> responder,
+                                            SharedRedaction redaction);
+
+}  // namespace adit::api

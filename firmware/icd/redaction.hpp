@@ -1,0 +1,32 @@
+#pragma once
+
+#include <span>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "icd/bearer_token.hpp"
+
+namespace adit::icd {
+
+/// Strikes the secrets that the box knows out of what others read, wherever somebody put one: a marker's
+/// text, a robot's name, a sentence of the Command Post.
+class Redaction {
+ public:
+  /// One of less than so many characters stays in strike_from_strings(): it may be a word that a page needs.
+  static constexpr std::size_t kShortest = 8;
+
+  explicit Redaction(std::vector<BearerToken> secrets = {}) : secrets_(std::move(secrets)) {}
+
+  /// Plain text or CSV: wherever they stand.
+  void strike_from(std::string& text) const;
+  /// JSON, a stream of it, or Prometheus' text format: within the strings that are values.
+  void strike_from_strings(std::string& text) const;
+
+ private:
+  bool may_be_in(std::string_view text) const;
+
+  std::vector<BearerToken> secrets_;
+};
+
+}  // namespace adit::icd

@@ -1,0 +1,99 @@
+#include "intake/turnstile.hpp"
+
+#include <optional>
+#include <utility>
+
+#include "icd/bearer_token.hpp"
+#include "intake/answer.hpp"
+#include "intake/icd_routes.hpp"
+#include "intake/visit.hpp"
+
+namespace adit::intake {
+namespace {
+
+using Looked = TokenGuesses::Looked;
+
+/// Passes the answer on after a while. Kept by its Late, which lives as long as the request.
+class LateResponder final : public Responder {
+ public:
+  LateResponder(loop::Loop& loop, std::shared_ptr<Responder> responder, std::chrono::milliseconds late)
+      : loop_(loop), responder_(std::move(responder)), late_(late) {}
+
+  void answer(Answer answer) override {
+    if (answer_) return;
+    answer_ = std::move(answer);
+    timer_ = loop_.timer([this] { responder_->answer(std::move(*answer_)); });
+    timer_.call_at(loop_.now() + late_);
+  }
+  std::shared_ptr<Stream> stream(std::string_view content_type) override {
+    return responder_->stream(content_type);
+  }
+  bool client_gone() const override { return responder_->client_gone(); }
+  bool has_answer() const { return answer_.has_value(); }
+
+ private:
+  loop::Loop& loop_;
+  const std::shared_ptr<Responder> responder_;
+  const std::chrono::milliseconds late_;
+  std::optional<Answer> answer_;
+  loop::Source timer_;
+};
+
+/// Takes the body for `sink`, or none of it once there is an answer.
+class Late final : public BodySink {
+ public:
+  Late(std::shared_ptr<LateResponder> responder, std::unique_ptr<BodySink> sink)
+      : responder_(std::move(responder)), sink_(std::move(sink)) {}
+  bool on_body(std::span<const std::uint8_t> piece) override {
+    const bool more = sink_ && !responder_->has_answer() && sink_->on_body(piece);
+    return more && !responder_->has_answer();
+  }
+  void on_end() override {
+    if (sink_ && !responder_->has_answer()) sink_->on_end();
+  }
+  void on_gone() override {
+    if (sink_ && !responder_->has_answer()) sink_->on_gone();
+  }
+
+ private:
+  const std::shared_ptr<LateResponder> responder_;
+  const std::unique_ptr<BodySink> sink_;
+};
+
+Answer not_looked_at() {
+  Answer answer =
+      error_answer(icd::Status::TooManyRequests,
+                   "too many wrong tokens came from this address, and this one was not looked at: "
+                   "try again in a second");
+  answer.headers.push_back({"Retry-After", "1"});
+  return answer;
+}
+
+}  // namespace
+
+Shown Turnstile::shown(const RequestHead& head) {
+  verdict_ = {};
+  const Shown shown = handler_.shown(head);
+  if (shown == Shown::Token) {
+    verdict_ = guesses_.right(head.peer(), loop_.now());
+  } else if (shown == Shown::WrongToken) {
+    const std::string_view token = icd::token_in(head.header("Authorization"));
+    verdict_ = guesses_.wrong(head.peer(), token, loop_.now());
+  }
+  if (verdict_.looked == Looked::Right) return shown;
+  wrong_(head.peer());
+  return Shown::WrongToken;
+}
+
+std::unique_ptr<BodySink> Turnstile::open(const RequestHead& head, std::shared_ptr<Responder> responder,
+                                          std::shared_ptr<Flow> flow) {
+  if (!verdict_.late) return handler_.open(head, std::move(responder), std::move(flow));
+  auto late = std::make_shared<LateResponder>(loop_, std::move(responder), late_);
+  if (verdict_.looked == Looked::Wrong) {
+    return std::make_unique<Late>(late, handler_.open(head, late, std::move(flow)));
+  }
+  (icd::uri_of(head.path()) ? with_cors(late) : late)->answer(not_looked_at());
+  return std::make_unique<Late>(std::move(late), nullptr);
+}
+
+}  // namespace adit::intake

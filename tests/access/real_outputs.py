@@ -1,0 +1,228 @@
+#!/usr/bin/python3
+"""No output of the real program shows a secret, wherever it was typed: real_outputs.py ADITD. On loopback. The routes are those of
+/adit/openapi.json, so that a new one is asked too."""
+
+import contextlib
+import gzip
+import http.client
+import io
+import json
+import pathlib
+import re
+import sys
+import tarfile
+import tempfile
+import unittest
+import urllib.parse
+
+import command_post
+import real_aditd
+from real_aditd import wait_until
+from real_settings import grid, state
+
+HERE = pathlib.Path(__file__).resolve().parents[2]
+SCORING = "scoring-" + "5c0f1e9a" * 8  # longer than a sentence quotes
+MAPPING = 'mapp"ing\\' + "7d31b2"  # JSON, CSV and metrics write it otherwise
+TEAM = "t3am_9f2c1"  # as a robot may be called
+CODE = "31415926"
+OPERATOR, VIEWER = "an operator, 91c4", "a viewer who looks, 3f0b"
+WRONG_TOKEN, WRONG_PASSWORD = "an-0ld-token-4b8e7", "an untrue password"
+CUT = 12  # so much of a secret's beginning tells it
+TYPED = f"{SCORING} {MAPPING} {TEAM} {CODE}"
+STRUCK = "[token] [token] [token] [token]"
+MARKER = {"ns": TYPED, "id": 1, "type": 9, "action": 0, "text": TYPED, "mesh_resource": TYPED,
+          "header": {"stamp": 1.0, "frame_id": "darpa"}, "color": {"r": 1, "g": 1, "b": 1, "a": 1},
+          "scale": {"x": 1, "y": 1, "z": 1},
+          "pose": {"position": {"x": 0, "y": 0, "z": 0}, "orientation": {"x": 0, "y": 0, "z": 0, "w": 1}}}
+
+
+def written(secret):
+    """As each kind of output would write it, to the place where a sentence may cut it."""
+    in_json = json.dumps(secret)[1:-1]
+    return {form[:CUT].encode() for form in (secret, in_json, json.dumps(in_json)[1:-1], secret.replace('"', '""'),
+                                             urllib.parse.quote(secret))}
+
+
+class Talkative(command_post.CommandPost):
+    """Says the secrets of the other side in all its answers, and takes no state."""
+
+    def _handler(self):
+        class Handler(super()._handler()):
+            def do_GET(self):
+                self.answer(200, {"score": 0, "remaining_reports": 25, "current_team": TYPED, "run_clock": 12.5})
+
+            def do_POST(self):
+                if self.path == "/api/artifact_reports":
+                    return self.answer(201, {
+                        "url": TYPED, "id": 1, "x": 1.0, "y": 2.0, "z": 3.0, "type": "Drill", "run": TYPED, "team": TYPED,
+                        "submitted_datetime": "2026-01-01T00:00:00Z", "run_clock": 12.5, "report_status": TYPED,
+                        "score_change": 1})
+                if self.path == "/state/update":
+                    return self.answer(422, f"no state for {TYPED}")
+                return self.answer(200, None)
+
+        return Handler
+
+
+class Outputs(unittest.TestCase):
+    @classmethod
+    def setUpClass(cls):
+        real_aditd.TOKENS.update(scoring=SCORING, mapping=MAPPING, team=TEAM)
+        cls.post = Talkative()
+        cls.addClassCleanup(cls.post.close)
+        real_aditd.NOWHERE.update(cls.post.address)
+        folder = tempfile.TemporaryDirectory(prefix="adit-outputs-")
+        cls.addClassCleanup(folder.cleanup)
+        cls.box = box = real_aditd.Box(folder.name, label=CODE)
+        cls.addClassCleanup(lambda: box.process.wait())
+        cls.addClassCleanup(lambda: box.process.kill())
+        cls.own = []  # what the box gave to one alone: cookies
+        cls.script = {"Authorization": f"Bearer {TEAM}"}
+        cls.type_all_into_wrong_places(box)
+        assert box.set_first(code=CODE, password=OPERATOR)[0] == 200
+        operator = cls.log_in(OPERATOR)
+        set_viewers = {"role": "viewer", "current": OPERATOR, "password": VIEWER}
+        assert box.ask("POST /adit/password", set_viewers, **operator)[0] == 200
+        cls.type_all_into_wrong_places(box)
+
+    @classmethod
+    def log_in(cls, password):
+        """The headers of a browser that calls itself by the secrets."""
+        status, said, headers = cls.box.ask("POST /adit/login", {"password": password}, User_Agent=TYPED)
+        assert status == 200, said
+        cookies = [each.partition(";")[0] for each in headers.get_all("Set-Cookie")]
+        cls.own += [cookie.partition("=")[2] for cookie in cookies]
+        return {"Cookie": "; ".join(cookies), "Adit_CSRF": said["csrf"]}
+
+    @classmethod
+    def type_all_into_wrong_places(cls, box):
+        before = cls.refused(box) if (box.state / "access.json").exists() else 0
+        assert box.ask("POST /api/artifact_reports", {"x": 1, "y": 2, "z": 3, "type": "Drill"}, **cls.script)[0] == 201
+        for word in (SCORING, MAPPING, TEAM, CODE, TYPED):
+            box.ask("POST /api/artifact_reports", {"x": 1, "y": 2, "z": 3, "type": word}, **cls.script)
+            box.ask("POST /map/update", {**grid("r1"), "type": word}, **cls.script)
+            box.ask("POST /markers/update", {"markers": [{**MARKER, "type": word}]}, **cls.script)
+            box.ask("POST /markers/update", {"markers": [MARKER]}, **{**cls.script, "Content-Encoding": word})
+            box.ask("POST /state/update", state(word), **cls.script)
+            box.ask("POST /api/artifact_reports", {}, **{**cls.script, "Adit_Resubmit": word})
+            box.ask("GET /" + urllib.parse.quote(word, safe=""), **cls.script)
+            box.ask("POST /adit/login", {"password": word}, whence="127.0.0.9")
+        assert box.ask("POST /markers/update", {"markers": [MARKER]}, **cls.script)[0] == 200
+        assert box.ask("POST /state/update", state(TEAM), **cls.script)[0] == 200
+        assert box.ask("POST /map/update", grid(TEAM), **cls.script)[0] == 200
+        for _ in range(20):
+            box.ask("POST /state/update", {}, whence="127.0.0.8", Authorization=f"Bearer {WRONG_TOKEN}")
+        box.ask("GET /adit/run", whence="127.0.0.8", Authorization=f"Bearer {WRONG_TOKEN}")
+        box.ask("POST /adit/login", {"password": WRONG_PASSWORD}, whence="127.0.0.8")
+        wait_until(lambda: cls.refused(box) > before, "the Command Post's refusal of a state")
+        wait_until(lambda: STRUCK in json.dumps(box.ask("GET /adit/markers", **cls.script)[1]), "the markers to be shown")
+
+    @classmethod
+    def refused(cls, box):
+        rows = box.ask("GET /adit/run", **cls.script)[1]["activities"]
+        return sum(row["refused_upstream"] for row in rows)
+
+    def shows_none(self, what, output, but=()):
+        if output[:2] == b"\x1f\x8b":
+            with contextlib.suppress(tarfile.TarError):
+                with tarfile.open(fileobj=io.BytesIO(output)) as archive:
+                    for each in archive:
+                        self.shows_none(f"{what}: {each.name}", archive.extractfile(each).read())
+            output = gzip.decompress(output)
+        secrets = {SCORING, MAPPING, TEAM, CODE, WRONG_TOKEN, WRONG_PASSWORD, OPERATOR, VIEWER, *self.own}
+        for secret in secrets - set(but):
+            for form in written(secret):
+                at = output.find(form)
+                if at >= 0:
+                    self.fail(f"{what} shows {secret}: {output[max(at - 60, 0):at + 80]}")
+
+    def raw(self, method, path, headers, body=None):
+        """Status, head and body; of events the first."""
+        connection = http.client.HTTPConnection("127.0.0.1", self.box.port, timeout=30)
+        with contextlib.closing(connection):
+            sent = {name.replace("_", "-"): value for name, value in headers.items()}
+            if body is not None:
+                sent["Content-Type"] = "application/json"
+            connection.request(method, path, body, sent)
+            answer = connection.getresponse()
+            if answer.headers["Content-Type"] == "text/event-stream":
+                lines = iter(answer.fp.readline, b"")
+                return answer.status, answer.headers, b"".join(next(lines) for _ in range(6))
+            return answer.status, answer.headers, answer.read()
+
+    def as_each_role(self):
+        yield "nobody", lambda: {}
+        for role, password in (("viewer", VIEWER), ("operator", OPERATOR)):
+            mine = {}
+
+            def browser(mine=mine, password=password):
+                if self.box.ask("GET /adit/session", **mine)[1]["role"] is None:
+                    mine.update(self.log_in(password))
+                return mine
+
+            yield role, browser
+        yield "script", lambda: self.script
+
+    def routes(self):
+        """Each method, with its path to what is there, and the same with a secret in each parameter of its query."""
+        described = self.box.ask("GET /adit/openapi.json")[1]
+        layer = self.box.ask("GET /adit/map", **self.script)[1]["layers"][0]
+        values = {"number": 1, "session": 1, "kind": layer["kind"], "robot": TEAM, "level": 0, "x": 0, "y": 0}
+        for path, methods in described["paths"].items():
+            filled = re.sub(r"{(\w+)}", lambda it: str(values[it.group(1)]), path)
+            for method, said in methods.items():
+                queries = [each["name"] for each in said.get("parameters", []) if each["in"] == "query"]
+                yield method.upper(), [filled] + [f"{filled}?{name}={urllib.parse.quote(TYPED)}" for name in queries]
+
+    def test_no_route_shows_one_to_anybody(self):
+        asked = set()
+        for role, headers in self.as_each_role():
+            for method, targets in self.routes():
+                bodies = [None] if method == "GET" else [json.dumps({TYPED: TYPED, "password": TYPED, "settings": TYPED}), TYPED]
+                for target in targets:
+                    for body in bodies:
+                        status, head, said = self.raw(method, target, headers(), body)
+                        what = f"{role}: {method} {target}: {status}"
+                        but = self.own if "Set-Cookie" in head else ()
+                        self.shows_none(what, str(head).encode(), but)
+                        self.shows_none(what, said)
+                        asked.add((role, method, target, status))
+        for role, path in (("viewer", "/metrics"), ("viewer", "/adit/run"), ("viewer", "/adit/events"), ("viewer", "/adit/log"),
+                           ("viewer", "/adit/markers"), ("viewer", "/adit/reports.csv"), ("operator", "/adit/bundle"),
+                           ("viewer", "/adit/settings/export"), ("script", "/adit/map")):
+            self.assertIn((role, "GET", path, 200), asked)
+
+    def test_what_was_typed_is_shown_struck(self):
+        self.assertIn(f"no state for {STRUCK}", json.dumps(self.box.ask("GET /adit/run", **self.script)[1]))
+
+    def test_what_goes_to_the_command_post_is_as_it_was_sent(self):
+        heard = wait_until(lambda: self.post.heard("/markers/update"), "markers to go up")
+        sent = b"".join(gzip.decompress(body) if body[:2] == b"\x1f\x8b" else body for _, body in heard)
+        self.assertIn(SCORING.encode(), sent)
+
+    def test_log_console_and_process_show_none(self):
+        self.shows_none("the log", self.box.log.read_bytes())
+        process = pathlib.Path(f"/proc/{self.box.process.pid}")
+        for file in ("cmdline", "environ", "comm", "status"):
+            self.shows_none(file, (process / file).read_bytes())
+        for task in (process / "task").iterdir():
+            self.shows_none("a thread's name", (task / "comm").read_bytes())
+
+    def test_wrong_tokens_are_counted_and_logged_once(self):
+        self.assertEqual(len(re.findall("requests show wrong tokens", self.box.said())), 1)
+        metrics = self.box.ask("GET /metrics", **self.script)[1].decode()
+        self.assertGreaterEqual(float(re.search(r"^adit_wrong_tokens_total (\S+)$", metrics, re.M).group(1)), 42)
+
+    def test_the_services_leave_no_core(self):
+        for unit in HERE.glob("services/*.service"):
+            text = unit.read_text()
+            if re.search(r"^ExecStart=\S*/adit", text, re.M):
+                self.assertIn("\nLimitCORE=0\n", text, unit.name)
+
+    def test_nobody_else_may_read_what_it_keeps(self):
+        self.assertEqual(self.box.state.stat().st_mode & 0o077, 0)
+
+
+if __name__ == "__main__":
+    real_aditd.aditd = sys.argv.pop(1)
+    unittest.main()

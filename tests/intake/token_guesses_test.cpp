@@ -1,0 +1,82 @@
+#include "intake/token_guesses.hpp"
+
+#include <gtest/gtest.h>
+
+namespace adit::intake {
+namespace {
+
+using namespace std::chrono_literals;
+using Looked = TokenGuesses::Looked;
+
+constexpr loop::Instant kBegin{100h};
+const TokenGuesses::Verdict kLetIn{Looked::Right, false}, kNotLookedAt{Looked::NotLookedAt, true};
+
+class TokenGuessesTest : public testing::Test {
+ protected:
+  /// A new guess each time. Whether it was looked at.
+  bool guess(const std::string& address, loop::Instant now) {
+    return guesses_.wrong(address, "guess " + std::to_string(++guessed_), now).looked == Looked::Wrong;
+  }
+  void guess_on(const std::string& address, int times, loop::Instant now) {
+    for (int i = 0; i < times; ++i) guess(address, now);
+  }
+  TokenGuesses guesses_;
+  int guessed_ = 0;
+};
+
+TEST_F(TokenGuessesTest, AreLookedAtOnceASecondAfterAFew) {
+  for (int i = 0; i < TokenGuesses::kFree; ++i) EXPECT_TRUE(guess("10.0.0.9", kBegin)) << i;
+  int looked_at = 0;
+  for (auto after = 0ms; after < 60s; after += 1ms) looked_at += guess("10.0.0.9", kBegin + after) ? 1 : 0;
+  EXPECT_EQ(looked_at, 59);
+  EXPECT_EQ(guesses_.wrong("10.0.0.9", "another", kBegin + 60s - 1ms), kNotLookedAt);
+}
+
+TEST_F(TokenGuessesTest, OfAStrangerTakeNothingFromAnotherAddress) {
+  guess_on("10.0.0.9", 10'000, kBegin);
+  EXPECT_EQ(guesses_.right("10.0.0.5", kBegin), kLetIn);
+  EXPECT_EQ(guesses_.wrong("10.0.0.6", "old", kBegin), (TokenGuesses::Verdict{Looked::Wrong, false}));
+}
+
+TEST_F(TokenGuessesTest, TakeNothingFromWhoHasShownARightOneBehindTheSameRouter) {
+  EXPECT_EQ(guesses_.right("10.0.0.9", kBegin), kLetIn);
+  for (int i = 0; i < 1000; ++i) {
+    guess("10.0.0.9", kBegin + i * 1ms);
+    EXPECT_EQ(guesses_.right("10.0.0.9", kBegin + i * 1ms), kLetIn);
+  }
+}
+
+TEST_F(TokenGuessesTest, HideARightOneAmongThemUntilTheyAreFewAgain) {
+  guess_on("10.0.0.9", 1000, kBegin);
+  EXPECT_EQ(guesses_.right("10.0.0.9", kBegin), kNotLookedAt) << "as a wrong one";
+  EXPECT_EQ(guesses_.right("10.0.0.9", kBegin + 1s), kLetIn) << "no more than a moment after the last guess";
+  guess_on("10.0.0.9", 1000, kBegin + 1s);
+  EXPECT_EQ(guesses_.right("10.0.0.9", kBegin + 1s), kLetIn) << "it is known now";
+}
+
+TEST_F(TokenGuessesTest, AreNotMadeByARobotWithAnOldToken) {
+  for (int i = 0; i < 1000; ++i) {
+    const TokenGuesses::Verdict verdict =
+        guesses_.wrong("10.0.0.9", i % 2 == 0 ? "old" : "", kBegin + i * 10ms);
+    EXPECT_EQ(verdict.looked, Looked::Wrong) << i;
+    EXPECT_EQ(verdict.late, i >= TokenGuesses::kFree && i % 100 != 0) << i;
+  }
+  EXPECT_EQ(guesses_.right("10.0.0.9", kBegin + 10s), kLetIn) << "of another robot behind the same router";
+}
+
+TEST_F(TokenGuessesTest, AreForgottenWhereWhatIsRightIsAnother) {
+  guess_on("10.0.0.9", 1000, kBegin);
+  guesses_.forget();
+  EXPECT_EQ(guesses_.right("10.0.0.9", kBegin), kLetIn);
+}
+
+TEST_F(TokenGuessesTest, OfManyAddressesMakeNoneForgottenThatWasRight) {
+  EXPECT_EQ(guesses_.right("10.0.0.9", kBegin), kLetIn);
+  guess_on("10.0.0.9", 1000, kBegin);
+  for (int i = 0; i < 10'000; ++i) guess(std::to_string(i), kBegin + 1ms);
+  EXPECT_EQ(guesses_.right("10.0.0.9", kBegin + 1ms), kLetIn);
+  EXPECT_EQ(guesses_.right("10.0.0.5", kBegin + 1ms), kLetIn) << "nor keep a new one out";
+}
+
+}  // namespace
+}  // namespace adit::intake

@@ -43,6 +43,7 @@ class BodyDecoder::Impl {
   }
 
   BulkData& data() { return data_; }
+  std::size_t size() const { return content_.given(); }
 
   icd::Checked<Document> finish() {
     if (!spent_) return std::unexpected(spent_.error());
@@ -69,6 +70,10 @@ BodyDecoder& BodyDecoder::operator=(BodyDecoder&&) noexcept = default;
 
 icd::Checked<void> BodyDecoder::feed(std::span<const std::uint8_t> chunk) {
   return impl_->feed({reinterpret_cast<const char*>(chunk.data()), chunk.size()});
+}
+
+std::size_t BodyDecoder::size() const {
+  return impl_->size();
 }
 
 std::size_t BodyDecoder::data_held() const {

@@ -69,6 +69,8 @@ class BodyDecoder {
   BodyDecoder& operator=(BodyDecoder&&) noexcept;
 
   icd::Checked<void> feed(std::span<const std::uint8_t> chunk);
+  /// How much of the document has come, inflated, with its bulk data.
+  std::size_t size() const;
   /// How much bulk data is held, and all of that, which the decoder is rid of then: for whoever puts it
   /// somewhere else as it comes. finish() gives the rest of it.
   std::size_t data_held() const;

@@ -14,11 +14,14 @@ icd::Checked<void> BulkData::appear() {
   return {};
 }
 
+icd::Checked<void> BulkData::fits(std::uint64_t bytes) const {
+  if (bytes <= most_ - taken_ - bytes_.size()) return {};
+  return std::unexpected(icd::Refusal{icd::Status::ContentTooLarge,
+                                      icd::sentence("msg.data: larger than the ", most_, " bytes taken")});
+}
+
 icd::Checked<void> BulkData::append(std::span<const std::uint8_t> bytes) {
-  if (bytes.size() > most_ - taken_ - bytes_.size()) {
-    return std::unexpected(icd::Refusal{icd::Status::ContentTooLarge,
-                                        icd::sentence("msg.data: larger than the ", most_, " bytes taken")});
-  }
+  if (auto fit = fits(bytes.size()); !fit) return fit;
   bytes_.append(bytes);
   return {};
 }

@@ -24,6 +24,8 @@ class BulkData {
   void begin(DataForm form) { form_ = form; }
 
   icd::Checked<void> append(std::span<const std::uint8_t> bytes);
+  /// Whether so many more may be appended.
+  icd::Checked<void> fits(std::uint64_t bytes) const;
 
   /// One element of an array: a whole number from -1 (as 255) to 255. `text` is how it stood in the body.
   icd::Checked<void> append_element(double value, std::string_view text);

@@ -93,6 +93,9 @@ icd::Checked<void> CborSplitter::chunk_of_string() {
 
 icd::Checked<void> CborSplitter::begin_piece() {
   piece_left_ = head_.argument();
+  if (into_ == Into::Data) {
+    if (auto fit = data_.fits(piece_left_); !fit) return fit;
+  }
   return piece_left_ == 0 ? end_of_piece() : icd::Checked<void>{};
 }
 

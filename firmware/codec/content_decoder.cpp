@@ -93,12 +93,12 @@ icd::Checked<void> ContentDecoder::inflate(std::string_view bytes) {
 
 icd::Checked<void> ContentDecoder::give(std::string_view bytes) {
   if (bytes.empty()) return {};
-  if (bytes.size() > most_) {
+  if (bytes.size() > most_ - given_) {
     return std::unexpected(icd::Refusal{
         icd::Status::ContentTooLarge,
         coding_ == ContentCoding::Identity ? "the body is too large" : "the inflated body is too large"});
   }
-  most_ -= bytes.size();
+  given_ += bytes.size();
   return sink_(bytes);
 }
 

@@ -24,6 +24,8 @@ class ContentDecoder {
 
   icd::Checked<void> feed(std::string_view bytes);
   icd::Checked<void> finish();
+  /// How many bytes `sink` was given.
+  std::size_t given() const { return given_; }
 
  private:
   struct End {
@@ -35,7 +37,7 @@ class ContentDecoder {
   icd::Refusal bad(std::string_view why) const;
 
   ContentCoding coding_;
-  std::size_t most_;
+  std::size_t most_, given_ = 0;
   Sink sink_;
   std::string head_;  // of a deflate body, until it tells which kind it is
   std::unique_ptr<z_stream_s, End> stream_;

@@ -3,6 +3,7 @@
 #include <zlib.h>
 
 #include <new>
+#include <ranges>
 
 #include "icd/sentence.hpp"
 
@@ -99,6 +100,21 @@ icd::ChunkedBytes gzip(icd::ChunkedBytes bytes, GzipStrategy strategy) {
   Gzipper gzipper(strategy);
   while (!bytes.empty()) gzipper.feed(*bytes.pop_front());
   return gzipper.finish();
+}
+
+std::size_t claimed_size(const icd::ChunkedBytes& bytes) {
+  constexpr std::size_t kSize = 4;
+  if (bytes.size() < kSize) return 0;
+  std::size_t claimed = 0;
+  std::size_t left = kSize;  // its last byte is the highest
+  for (const auto& chunk : std::views::reverse(bytes.chunks())) {
+    for (const std::uint8_t byte : std::views::reverse(*chunk) | std::views::take(left)) {
+      claimed = claimed << 8 | byte;
+      --left;
+    }
+    if (left == 0) break;
+  }
+  return claimed;
 }
 
 icd::Checked<std::size_t> gunzip(icd::ChunkedBytes bytes, std::size_t most, std::string_view path,

@@ -43,6 +43,10 @@ class Gzipper {
 /// One gzip member with nothing after it. `bytes` is consumed chunk by chunk.
 icd::ChunkedBytes gzip(icd::ChunkedBytes bytes, GzipStrategy strategy);
 
+/// How much a gzip member says that it holds (ISIZE, RFC 1952 2.3.1, modulo 2^32): what gunzip() has passed
+/// holds that. 0 for what is too short to say it.
+std::size_t claimed_size(const icd::ChunkedBytes& bytes);
+
 /// Takes what was inflated, piece by piece, and may refuse it.
 using Sink = std::function<icd::Checked<void>(std::span<const std::uint8_t>)>;
 

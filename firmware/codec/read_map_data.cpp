@@ -8,10 +8,10 @@ namespace {
 
 constexpr std::string_view kPath = "msg.data";
 
-/// Checks cells as they pass, on their way into the gzip member that goes upstream.
-class CellPress {
+/// Counts and checks cells as they are inflated.
+class CellCheck {
  public:
-  explicit CellPress(const icd::OccupancyGrid& grid) : grid_(grid) {}
+  explicit CellCheck(const icd::OccupancyGrid& grid) : grid_(grid) {}
 
   icd::Checked<void> take(std::span<const std::uint8_t> cells) {
     const std::size_t expected = icd::cells_of(grid_);
@@ -19,54 +19,78 @@ class CellPress {
       return icd::unprocessable("msg.info.width: expected ", grid_.width, " x ", grid_.height, " = ",
                                 expected, " bytes of data, got more");
     }
-    if (auto checked = icd::check_cells(cells, taken_); !checked) return checked;
-    gzipper_.feed(cells);
+    auto checked = icd::check_cells(cells, taken_);
     taken_ += cells.size();
-    return {};
+    return checked;
   }
 
-  icd::Checked<icd::MapData> finish() {
-    if (auto checked = icd::check_size(grid_, taken_); !checked) return std::unexpected(checked.error());
-    return icd::MapData{
-        .bytes = gzipper_.finish(), .compression = icd::Compression::Gzip, .raw_size = taken_};
-  }
+  icd::Checked<void> finish() const { return icd::check_size(grid_, taken_); }
 
  private:
   const icd::OccupancyGrid& grid_;
-  Gzipper gzipper_{GzipStrategy::Runs};
   std::size_t taken_ = 0;
 };
+
+/// Of a grid as it is sent.
+icd::MapData pressed(Gzipper& gzipper, const icd::OccupancyGrid& grid) {
+  return {.bytes = gzipper.finish(), .compression = icd::Compression::Gzip, .raw_size = icd::cells_of(grid)};
+}
+
+/// Where the data does not claim to have the right size it is refused in the end, and nothing of it is kept.
+icd::Checked<icd::MapData> read_gzipped_cells(const icd::OccupancyGrid& grid, icd::ChunkedBytes data,
+                                              const icd::Rules& rules) {
+  const bool is_kept = claimed_size(data) == icd::cells_of(grid);
+  CellCheck check(grid);
+  Gzipper gzipper(GzipStrategy::Runs);
+  const auto sink = [&](std::span<const std::uint8_t> cells) {
+    auto checked = check.take(cells);
+    if (checked && is_kept) gzipper.feed(cells);
+    return checked;
+  };
+  const auto inflated = gunzip(std::move(data), rules.map_bytes, kPath, sink);
+  if (!inflated) return std::unexpected(inflated.error());
+  if (auto checked = check.finish(); !checked) return std::unexpected(checked.error());
+  return pressed(gzipper, grid);
+}
+
+icd::Checked<icd::ChunkedBytes> inflated_points(const icd::PointCloud2& cloud, icd::ChunkedBytes data,
+                                                const icd::Rules& rules) {
+  const std::size_t claimed = claimed_size(data);
+  const bool is_kept = claimed <= rules.map_bytes && icd::check_size(cloud, claimed);  // as of a grid
+  icd::ChunkedBytes points;
+  const auto sink = [&](std::span<const std::uint8_t> piece) -> icd::Checked<void> {
+    if (is_kept && piece.size() <= claimed - points.size()) points.append(piece);
+    return {};
+  };
+  const auto size = gunzip(std::move(data), rules.map_bytes, kPath, sink);
+  if (!size) return std::unexpected(size.error());
+  if (auto checked = icd::check_size(cloud, *size); !checked) return std::unexpected(checked.error());
+  return points;
+}
 
 }  // namespace
 
 icd::Checked<icd::MapData> read_cells(const icd::OccupancyGrid& grid, icd::ChunkedBytes data,
                                       icd::Compression compression, const icd::Rules& rules) {
-  CellPress press(grid);
-  if (compression == icd::Compression::Gzip) {
-    const auto sink = [&](std::span<const std::uint8_t> cells) { return press.take(cells); };
-    const auto inflated = gunzip(std::move(data), rules.map_bytes, kPath, sink);
-    if (!inflated) return std::unexpected(inflated.error());
-    return press.finish();
-  }
+  if (compression == icd::Compression::Gzip) return read_gzipped_cells(grid, std::move(data), rules);
   if (auto checked = icd::check_size(grid, data.size()); !checked) return std::unexpected(checked.error());
-  while (!data.empty()) {
-    if (auto taken = press.take(*data.pop_front()); !taken) return std::unexpected(taken.error());
+  std::size_t at = 0;
+  for (const auto& chunk : data.chunks()) {
+    if (auto checked = icd::check_cells(*chunk, at); !checked) return std::unexpected(checked.error());
+    at += chunk->size();
   }
-  return press.finish();
+  Gzipper gzipper(GzipStrategy::Runs);
+  while (!data.empty()) gzipper.feed(*data.pop_front());
+  return pressed(gzipper, grid);
 }
 
 icd::Checked<icd::MapData> read_points(const icd::PointCloud2& cloud, icd::ChunkedBytes data,
                                        icd::Compression compression, const icd::Rules& rules) {
-  icd::ChunkedBytes points;
+  icd::ChunkedBytes points = std::move(data);
   if (compression == icd::Compression::Gzip) {
-    const auto sink = [&](std::span<const std::uint8_t> piece) -> icd::Checked<void> {
-      points.append(piece);
-      return {};
-    };
-    const auto inflated = gunzip(std::move(data), rules.map_bytes, kPath, sink);
+    auto inflated = inflated_points(cloud, std::move(points), rules);
     if (!inflated) return std::unexpected(inflated.error());
-  } else {
-    points = std::move(data);
+    points = *std::move(inflated);
   }
   if (points.size() > rules.map_bytes) {
     return icd::unprocessable(kPath, ": expected at most ", rules.map_bytes,

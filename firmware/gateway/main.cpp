@@ -1,10 +1,13 @@
 /// aditd.
 
+#include <malloc.h>
+
 #include "box/version.hpp"
 #include "command_line/answer.hpp"
 #include "gateway/options.hpp"
 #include "gateway/service.hpp"
 #include "host/log.hpp"
+#include "icd/chunked_bytes.hpp"
 #include "loop/guard.hpp"
 
 int main(int argc, char** argv) {
@@ -12,6 +15,8 @@ int main(int argc, char** argv) {
   const auto options = adit::command_line::read(command_line_of, {argv + 1, argv + argc});
   if (const auto exit = adit::command_line::answer(command_line_of, adit::box::kVersion, options))
     return *exit;
+  // The chunks of a map are mappings of their own: what is freed of it goes back to the machine at once.
+  ::mallopt(M_MMAP_THRESHOLD, int{adit::icd::ChunkedBytes::kChunk});
   adit::loop::tell_of_caught([](const char* where, const char* what) {
     adit::host::log(adit::host::Level::Error, "an exception ended what it came from",
                     {{"what", where}, {"why", what}});

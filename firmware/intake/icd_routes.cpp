@@ -69,7 +69,8 @@ IcdRoutes::IcdRoutes(IcdOptions options, Desk& desk, loop::Workers& workers, Han
       desk_(desk),
       workers_(workers),
       other_(other),
-      budget_(std::make_shared<UploadBudget>(options_.upload_bytes)) {}
+      budget_(std::make_shared<UploadBudget>(options_.upload_bytes)),
+      without_room_(std::make_shared<UploadBudget>(MapUpload::kWithoutRoom)) {}
 
 Shown IcdRoutes::shown(const RequestHead& head) {
   if (!icd::uri_of(head.path())) return other_.shown(head);
@@ -151,7 +152,9 @@ std::unique_ptr<BodySink> IcdRoutes::take_in(Visit visit, const RequestHead& hea
     return std::make_unique<SmallUpload>(std::move(visit), *kind, options_.rules, under_way_);
   }
   return std::make_unique<MapUpload>(
-      std::move(visit), MapUploadOptions{.kind = *kind, .rules = options_.rules, .most_bytes = most},
+      std::move(visit),
+      MapUploadOptions{
+          .kind = *kind, .rules = options_.rules, .most_bytes = most, .without_room = without_room_},
       std::move(flow), workers_, budget_, under_way_);
 }
 

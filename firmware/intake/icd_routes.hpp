@@ -61,6 +61,7 @@ class IcdRoutes final : public Handler {
   loop::Workers& workers_;
   Handler& other_;
   std::shared_ptr<UploadBudget> budget_;
+  std::shared_ptr<UploadBudget> without_room_;  // for maps that cannot be stored
   std::shared_ptr<OneAtATime> large_markers_ = std::make_shared<OneAtATime>();
   std::shared_ptr<Upload::UnderWay> under_way_ = std::make_shared<Upload::UnderWay>();
   bool stopping_ = false;

@@ -1,24 +1,31 @@
 #include "intake/map_upload.hpp"
 
+#include <algorithm>
+#include <deque>
+#include <limits>
 #include <optional>
+#include <span>
 #include <string>
 #include <utility>
 
 #include "codec/read.hpp"
 #include "icd/map_update.hpp"
 #include "icd/sentence.hpp"
+#include "intake/memory_given_back.hpp"
 #include "loop/guard.hpp"
 
 namespace adit::intake {
 namespace {
 
-using Pieces = std::vector<std::vector<std::uint8_t>>;
+using Pieces = std::deque<std::vector<std::uint8_t>>;
 
 /// The worker's part: touched by nobody else while a piece of work is under way.
 class Decoding {
  public:
   Decoding(codec::BodyKind kind, const icd::Rules& rules)
       : rules_(rules),
+        most_at_once_(kind.coding == codec::ContentCoding::Identity ? std::numeric_limits<std::size_t>::max()
+                                                                    : MapUpload::kStored / kGrowth),
         decoder_(kind, codec::Split::MapData, {.values = kSmallValues, .data_bytes = rules.map_bytes}) {}
 
   /// What was taken out of it before the end.
@@ -27,18 +34,22 @@ class Decoding {
     icd::ChunkedBytes left;              // follows what was stored
   };
 
+  /// Decodes kStored of data and little more; has_more() tells whether that was all that came.
   /// `before`: where the body is whole.
   void work(Pieces& pieces, std::optional<Before> before) {
-    for (auto& piece : pieces) {
-      if (auto fed = decoder_.feed(piece); !fed) {
+    for (auto& piece : pieces) pieces_.push_back(std::move(piece));
+    pieces.clear();
+    const std::size_t enough = decoder_.data_held() + MapUpload::kStored;
+    while (has_more() && decoder_.data_held() < enough) {
+      if (auto fed = feed_some(); !fed) {
         result_ = std::unexpected(std::move(fed.error()));
         return;
       }
-      std::vector<std::uint8_t>().swap(piece);
     }
-    if (before) result_ = finish(std::move(*before));
+    if (before && !has_more()) result_ = finish(std::move(*before));
   }
 
+  bool has_more() const { return !pieces_.empty(); }
   std::size_t data_held() const { return decoder_.data_held(); }
   icd::ChunkedBytes take_data() { return decoder_.take_data(); }
 
@@ -47,6 +58,7 @@ class Decoding {
 
  private:
   icd::Checked<icd::MapUpdate> finish(Before before) {
+    const MemoryGivenBack at_the_end(decoder_);
     auto document = decoder_.finish();
     if (!document) return std::unexpected(std::move(document.error()));
     if (before.stored) {
@@ -59,8 +71,26 @@ class Decoding {
     return codec::read_map_update(std::move(*document), rules_);
   }
 
+  icd::Checked<void> feed_some() {
+    const auto left = std::span(pieces_.front()).subspan(fed_);
+    const auto some = left.first(std::min(left.size(), most_at_once_));
+    auto fed = decoder_.feed(some);
+    fed_ += some.size();
+    if (some.size() == left.size()) {
+      pieces_.pop_front();
+      fed_ = 0;
+    }
+    return fed;
+  }
+
+  static constexpr std::size_t kGrowth =
+      1032;  // most that deflate makes of a byte (RFC 1951 3.2.5: 258 by 2 bits)
+
   icd::Rules rules_;
+  std::size_t most_at_once_;
   codec::BodyDecoder decoder_;
+  Pieces pieces_;        // of the body, in its order
+  std::size_t fed_ = 0;  // of the first
   std::optional<icd::Checked<icd::MapUpdate>> result_;
 };
 
@@ -71,11 +101,12 @@ class MapUpload::State final : public Taking, public std::enable_shared_from_thi
   State(Visit visit, MapUploadOptions options, std::shared_ptr<Flow> flow, loop::Workers& workers,
         std::shared_ptr<UploadBudget> budget)
       : Taking(std::move(visit), std::move(budget)),
-        options_(options),
+        options_(std::move(options)),
+        without_room_(options_.without_room),
         flow_(std::move(flow)),
         workers_(workers),
         arrival_(visit_.desk.map_arrives()),
-        decoding_(std::make_shared<Decoding>(options.kind, options.rules)) {}
+        decoding_(std::make_shared<Decoding>(options_.kind, options_.rules)) {}
 
   bool take(std::span<const std::uint8_t> piece) override;
   void whole() override {
@@ -86,8 +117,12 @@ class MapUpload::State final : public Taking, public std::enable_shared_from_thi
  private:
   void let_go() override {
     pending_.clear();
+    left_ = {};
+    decoding_.reset();
     arrival_.reset();
   }
+  bool charge();
+  bool is_held();
   void give_to_worker();
   void worked();
   void take_result(icd::Checked<icd::MapUpdate> result);
@@ -103,13 +138,18 @@ class MapUpload::State final : public Taking, public std::enable_shared_from_thi
   }
 
   MapUploadOptions options_;
+  UploadShare without_room_;
   std::shared_ptr<Flow> flow_;
   loop::Workers& workers_;
-  std::shared_ptr<MapArrival> arrival_;  // null once over
+  std::shared_ptr<MapArrival> arrival_;  // null once over, as the next
   std::shared_ptr<Decoding> decoding_;
   Pieces pending_;
   std::size_t pending_bytes_ = 0;
-  bool at_work_ = false;  // a worker is, and decoding_ is its own
+  std::size_t data_ = 0;  // what has been decoded of it, and how much of that was taken from decoding_
+  std::size_t taken_ = 0;
+  std::size_t charged_ = 0;  // of share_
+  std::size_t held_ = 0;     // of without_room_
+  bool at_work_ = false;     // a worker is, and decoding_ is its own
   bool storing_ = false;
   bool has_stored_ = false;
   icd::ChunkedBytes left_;  // there was no room for it
@@ -125,27 +165,52 @@ bool MapUpload::State::take(std::span<const std::uint8_t> piece) {
                icd::sentence("body: expected at most ", options_.most_bytes, " bytes")});
     return true;
   }
-  if (!share_.take(piece.size())) {
-    turn_away(
-        {icd::Status::TooManyRequests, "too many maps are being sent at once; send this one again later"});
-    return true;
-  }
+  if (!charge()) return true;
   pending_.emplace_back(piece.begin(), piece.end());
   pending_bytes_ += piece.size();
-  if (options_.kind.coding != codec::ContentCoding::Identity) return true;
   give_to_worker();
   held_back_ = pending_bytes_ > kPending;
   return !held_back_;
 }
 
+/// Takes of the budget what its body is, or where that is more what its data has grown to. False: it is
+/// refused.
+bool MapUpload::State::charge() {
+  const std::size_t takes = std::max(visit_.sender.bytes, data_);
+  if (takes <= charged_) return true;
+  if (!share_.take(takes - charged_)) {
+    turn_away(
+        {icd::Status::TooManyRequests, "too many maps are being sent at once; send this one again later"});
+    return false;
+  }
+  charged_ = takes;
+  return true;
+}
+
+/// The worker is not at it. Whether what there was no room for is held in memory; false: it is refused.
+bool MapUpload::State::is_held() {
+  const std::size_t holds = left_.empty() ? 0 : left_.size() + decoding_->data_held();
+  if (holds <= held_) return true;
+  if (!without_room_.take(holds - held_)) {
+    turn_away({icd::Status::ServiceUnavailable,
+               "there is no room for this map: the room for maps that wait is full; send it again later"});
+    return false;
+  }
+  held_ = holds;
+  return true;
+}
+
 void MapUpload::State::give_to_worker() {
-  if (at_work_ || over_ || (pending_.empty() && !whole_)) return;
+  if (at_work_ || over_ || (pending_.empty() && !whole_ && !decoding_->has_more())) return;
   if (storing_ && (whole_ || decoding_->data_held() >= kStored)) return;  // stored() goes on
   at_work_ = true;
-  auto pieces = std::make_shared<Pieces>(std::exchange(pending_, {}));
-  pending_bytes_ = 0;
+  auto pieces = std::make_shared<Pieces>();
+  if (!decoding_->has_more()) {
+    pieces->swap(pending_);
+    pending_bytes_ = 0;
+  }
   std::optional<Decoding::Before> before;
-  if (whole_) before.emplace(has_stored_ ? arrival_ : nullptr, left_);
+  if (whole_ && pending_.empty()) before.emplace(has_stored_ ? arrival_ : nullptr, left_);
   // What comes after holds the arrival, too, so that the loop is the last to do so.
   workers_.submit(
       [decoding = decoding_, pieces, before = std::move(before)] { decoding->work(*pieces, before); },
@@ -173,6 +238,8 @@ void MapUpload::State::take_result(icd::Checked<icd::MapUpdate> result) {
 
 /// The worker is not at it.
 void MapUpload::State::go_on() {
+  data_ = taken_ + decoding_->data_held();
+  if (!charge() || !is_held()) return;
   store_what_came();
   give_to_worker();
   if (pending_bytes_ <= kPending && std::exchange(held_back_, false)) flow_->resume();
@@ -181,16 +248,17 @@ void MapUpload::State::go_on() {
 /// Where there was no room, there is none for the rest: it is held until the end, which judges it.
 void MapUpload::State::store_what_came() {
   if (storing_ || !left_.empty() || decoding_->data_held() < kStored) return;
-  if (options_.kind.coding != codec::ContentCoding::Identity) return;
   has_stored_ = storing_ = true;
+  taken_ += decoding_->data_held();
   arrival_->store(decoding_->take_data(),
                   [self = shared_from_this()](icd::ChunkedBytes left) { self->stored(std::move(left)); });
 }
 
 void MapUpload::State::stored(icd::ChunkedBytes left) {
   storing_ = false;
+  if (over_) return;
   left_ = std::move(left);
-  if (over_ || at_work_) return;
+  if (at_work_) return;
   if (!loop::guarded("storing a map", [this] { go_on(); })) failed();
 }
 

@@ -1,13 +1,12 @@
 #include "intake/markers_upload.hpp"
 
-#include <malloc.h>
-
 #include <optional>
 #include <string>
 #include <utility>
 #include <vector>
 
 #include "icd/sentence.hpp"
+#include "intake/memory_given_back.hpp"
 #include "intake/take_parts.hpp"
 #include "loop/guard.hpp"
 
@@ -23,17 +22,9 @@ Parts read_parts(codec::BodyDecoder& decoder, const icd::Rules& rules) {
   return codec::read_markers_parts(*document, rules);
 }
 
-/// What is freed in many small pieces stays the process's own, for each worker once, unless it is asked for.
-struct MemoryGivenBack {
-  MemoryGivenBack() = default;
-  MemoryGivenBack(const MemoryGivenBack&) = delete;
-  MemoryGivenBack& operator=(const MemoryGivenBack&) = delete;
-  ~MemoryGivenBack() { ::malloc_trim(0); }
-};
-
 /// The worker's part. What has been fed is freed.
 Parts read_large(codec::BodyKind kind, const icd::Rules& rules, Body& body) {
-  const MemoryGivenBack at_the_end;
+  const MemoryGivenBack at_the_end(true);
   codec::BodyDecoder decoder(kind, codec::Split::Nothing,
                              {.text_bytes = MarkersUpload::kMost, .values = MarkersUpload::kMostValues});
   for (auto& piece : body) {
@@ -89,6 +80,7 @@ class MarkersUpload::State final : public Taking, public std::enable_shared_from
   }
   void failed() { turn_away(not_held()); }
 
+  MemoryGivenBack at_the_end_{false};  // the first, and so after the rest
   codec::BodyKind kind_;
   icd::Rules rules_;
   loop::Workers& workers_;
@@ -120,6 +112,7 @@ void MarkersUpload::State::feed(std::span<const std::uint8_t> piece) {
   if (fed) return;
   if (fed.error().status != icd::Status::ContentTooLarge) return turn_away(fed.error());
   small_.reset();
+  at_the_end_.expect_much();
 }
 
 void MarkersUpload::State::whole() {
@@ -128,6 +121,7 @@ void MarkersUpload::State::whole() {
     if (const auto turns = turns_.lock()) turns->wait([self = shared_from_this()] { self->read(); });
     return;
   }
+  const MemoryGivenBack at_the_end(*small_);
   const Parts parts = read_parts(*small_, rules_);
   decoded(parts);
 }

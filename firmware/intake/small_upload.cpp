@@ -1,6 +1,7 @@
 #include "intake/small_upload.hpp"
 
 #include "codec/read.hpp"
+#include "intake/memory_given_back.hpp"
 #include "intake/take_parts.hpp"
 
 namespace adit::intake {
@@ -13,6 +14,7 @@ bool SmallUpload::on_body(std::span<const std::uint8_t> piece) {
 
 void SmallUpload::on_end() {
   whole_ = true;
+  const MemoryGivenBack at_the_end(decoder_);
   const auto document = decoder_.finish();
   if (!document) {
     visit_.refuse(document.error());

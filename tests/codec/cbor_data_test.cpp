@@ -123,9 +123,8 @@ TEST(CborData, GivenTwiceIsRefused) {
 }
 
 TEST(CborData, ThatIsNotWellFormedIsRefusedWith400) {
-  for (const std::string_view hex :
-       {"5f6161ff", "5f00ff", "5f", "42 61", "82 01", "9f01", "81ff", "81c0ff", "81f800", "811c",
-        "5bffffffffffffffff00", "9bffffffffffffffff00", "8001"}) {
+  for (const std::string_view hex : {"5f6161ff", "5f00ff", "5f", "42 61", "82 01", "9f01", "81ff", "81c0ff",
+                                     "81f800", "811c", "9bffffffffffffffff00", "8001"}) {
     const auto document = decode(kCborBody, Split::MapData, map_with(hex));
     ASSERT_FALSE(document) << hex;
     EXPECT_EQ(document.error().status, icd::Status::BadRequest) << hex;
@@ -147,6 +146,17 @@ TEST(CborData, OverItsLimitIsRefusedWith413WhileTheRestHasItsOwn) {
     const auto document = decode(kCborBody, Split::MapData, body, limits);
     ASSERT_FALSE(document);
     EXPECT_EQ(document.error().status, icd::Status::ContentTooLarge);
+  }
+}
+
+TEST(CborData, ThatSaysItIsOverItsLimitIsRefusedBeforeItComes) {
+  const Limits limits{.data_bytes = 6000};
+  for (const char* const hex :
+       {"591771", "5b00000001ffffffff", "5bffffffffffffffff00", "5f591770 411a", "5f 591771"}) {
+    const auto document = decode(kCborBody, Split::MapData, map_with(hex), limits);
+    ASSERT_FALSE(document);
+    const bool two = std::string_view(hex).starts_with("5f591770");  // whose first piece alone fits
+    EXPECT_EQ(document.error().status, two ? icd::Status::BadRequest : icd::Status::ContentTooLarge) << hex;
   }
 }
 

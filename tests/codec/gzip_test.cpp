@@ -139,6 +139,15 @@ TEST(Gunzip, StopsAGzipBombSoonAfterItsLimit) {
   EXPECT_TRUE(inflated.bytes.empty());
 }
 
+TEST(ClaimedSize, IsWhatTheMemberHoldsHoweverItIsCut) {
+  for (const std::size_t size : {0, 1, 300, 100'000}) {
+    const Bytes member = gzip(icd::ChunkedBytes(runs(size)), GzipStrategy::Runs).to_vector();
+    for (const std::size_t piece : {1, 2, 3, 65536}) EXPECT_EQ(claimed_size(in_pieces(member, piece)), size);
+  }
+  EXPECT_EQ(claimed_size(icd::ChunkedBytes(Bytes{1, 2, 3})), 0u);
+  EXPECT_EQ(claimed_size(icd::ChunkedBytes(Bytes{1, 2, 3, 0xff})), 0xff030201u);
+}
+
 TEST(Gunzip, TakesWhatIsExactlyAtItsLimit) {
   const Bytes bytes = runs(100'000);
   EXPECT_EQ(inflate_all(icd::ChunkedBytes(test::compressed(bytes)), bytes.size()).sentence, "taken");

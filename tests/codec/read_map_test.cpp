@@ -6,6 +6,7 @@
 
 #include "codec/messages.hpp"
 #include "codec/read.hpp"
+#include "scarce_memory.hpp"
 
 namespace adit::codec {
 namespace {
@@ -275,6 +276,34 @@ TEST(ReadMapUpdate, RefusesACloudOverTheLargestMap) {
        "msg.data: expected at most 1600 bytes, got more"},
   };
   expect_answers(rows, test::good_cloud(), rules);
+}
+
+/// Data that says at its end that it is of a wrong size.
+TEST(ReadMapUpdate, KeepsNothingOfGzippedDataThatWillBeRefused) {
+  constexpr std::size_t kLarge = 16'000'000, kEnoughForTheRest = 300;  // bytes; allocations
+  icd::Rules rules;
+  rules.map_bytes = kLarge;
+  Bytes noise(kLarge + 1);
+  for (std::size_t i = 0; i < noise.size(); ++i)
+    noise[i] = static_cast<std::uint8_t>((i * 2654435761u >> 13) % 101);
+  json grid = test::good_grid(), cloud = test::good_cloud(), odd_cloud = cloud;
+  grid["msg"]["info"]["width"] = kLarge / 4000;
+  grid["msg"]["info"]["height"] = 4000;
+  const auto gzipped = [&](json& map, std::size_t size) {
+    map["msg"]["compression"] = "gzip";
+    map["msg"]["data"] = json::binary(test::compressed(Bytes(noise.begin(), noise.begin() + size)));
+  };
+  gzipped(grid, kLarge - 1);
+  gzipped(cloud, kLarge + 1);
+  gzipped(odd_cloud, kLarge - 1);
+  for (const json* const map : {&grid, &cloud, &odd_cloud}) {
+    auto document = decode({.format = Format::Cbor}, Split::MapData, test::as_cbor(*map));
+    ASSERT_TRUE(document);
+    ScarceMemory scarce(kEnoughForTheRest, ScarceMemory::kAll);
+    const auto read = read_map_update(*std::move(document), rules);
+    EXPECT_EQ(scarce.end(), 0u);
+    EXPECT_TRUE(test::sentence_of(read).starts_with("msg.")) << test::sentence_of(read);
+  }
 }
 
 TEST(ReadMapUpdate, RefusesDataOfAnotherKind) {  // ICD 6.3 (a), (b)

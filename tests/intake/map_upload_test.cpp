@@ -211,15 +211,48 @@ TEST(MapUpload, IsHeldInMemoryWhereThereIsNoRoomForMoreUntilTheDeskJudges) {
   }
 }
 
-TEST(MapUpload, ThatIsCompressedOrSmallIsNotStoredBeforeItIsWhole) {
+constexpr std::string_view kGzip = "Content-Encoding: gzip\r\n";
+
+TEST(MapUpload, ThatIsSmallIsNotStoredBeforeItIsWhole) {
   Team team;
-  const std::string body = gzipped(cloud_body(200'000));
-  EXPECT_EQ(
-      team.ask(authorized("POST", "/map/update", std::string(kJsonType) + "Content-Encoding: gzip\r\n", body))
-          ->status,
-      200);
   EXPECT_EQ(team.ask(authorized("POST", "/map/update", kJsonType, cloud_body(1000)))->status, 200);
   EXPECT_EQ(team.served.on_loop([&] { return team.desk.stored; }), 0u);
+}
+
+TEST(MapUpload, ThatIsCompressedIsStoredAsItIsInflatedAndNoMoreOfItHeld) {
+  Team team;
+  team.served.on_loop([&] { team.desk.stores_pieces = false; });
+  const std::string body = grid_body(6000, 6000);
+  const std::string sent = gzipped(body);
+  RawClient client(team.served.port());
+  client.send(head_of(sent, kGzip) + sent);
+  ASSERT_TRUE(team.served.eventually([&] { return team.desk.storing.size() == 1; }));
+  team.served.turn_often();
+  EXPECT_LT(team.served.on_loop([&] { return team.desk.stored; }), 2 * MapUpload::kStored);
+  team.served.on_loop([&] {
+    team.desk.stores_pieces = true;
+    team.desk.storing.front()();
+  });
+  const auto reply = client.reply(seconds(30));
+  ASSERT_TRUE(reply);
+  EXPECT_EQ(reply->status, 200) << reply->body;
+  expect_the_map_of(team, body);
+}
+
+TEST(MapUpload, IsRefusedWhereMoreOfItWouldBeHeldThanThereIsFor) {
+  Team team;
+  team.served.on_loop([&] { team.desk.room = 1'000'000; });
+  const std::string sent = gzipped(grid_body(8000, 4000));
+  ASSERT_GT(8000u * 4000u, MapUpload::kWithoutRoom);
+  for (int i = 0; i < 2; ++i) {
+    const auto reply = team.ask(head_of(sent, kGzip) + sent);
+    ASSERT_TRUE(reply);
+    EXPECT_EQ(reply->status, 503);
+    EXPECT_NE(reply->body.find("no room for this map"), std::string::npos) << reply->body;
+  }
+  EXPECT_TRUE(team.served.eventually([&] { return team.desk.arriving == 0; }));
+  const std::string small = gzipped(grid_body(4000, 4000));
+  EXPECT_EQ(team.ask(head_of(small, kGzip) + small)->status, 200) << "what was held is given back";
 }
 
 TEST(MapUpload, LeavesNothingStoredWhereItIsCutOffOrRefused) {
@@ -310,16 +343,21 @@ TEST(MapUpload, GivesItsBudgetBackWhenItIsRefusedOrLost) {
   EXPECT_EQ(status, 200);
 }
 
-TEST(MapUpload, HoldsACompressedBodyByTheBudgetToo) {
+TEST(MapUpload, CountsInTheBudgetWhatItHasGrownTo) {
   IcdOptions options = Team::with_tokens();
-  options.upload_bytes = 50'000;
+  options.upload_bytes = 1'500'000;
   Team team(options);
-  const std::string small = gzipped(grid_body(1000, 1000));
-  ASSERT_LT(small.size(), 50'000u);
-  EXPECT_EQ(team.ask(head_of(small, "Content-Encoding: gzip\r\n") + small)->status, 200);
-  std::string noise(60'000, '\0');
-  for (std::size_t i = 0; i < noise.size(); ++i) noise[i] = static_cast<char>(i * 2654435761u >> 13);
-  EXPECT_EQ(team.ask(head_of(noise, "Content-Encoding: gzip\r\n") + noise)->status, 429);
+  const auto status_of = [&team](const std::string& body) {
+    const std::string sent = gzipped(body);
+    EXPECT_LT(sent.size(), 50'000u);
+    return team.ask(head_of(sent, kGzip) + sent)->status;
+  };
+  for (int i = 0; i < 3; ++i) {
+    EXPECT_EQ(status_of(grid_body(1000, 1000)), 200);
+    EXPECT_EQ(status_of(grid_body(2000, 1000)), 429);
+  }
+  const std::string body = grid_body(1100, 1100);
+  EXPECT_EQ(team.ask(head_of(body) + body)->status, 429) << "the body is more";
 }
 
 TEST(MapUpload, RefusesAMapThatGrowsOverTheLimit) {

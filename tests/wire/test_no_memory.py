@@ -52,8 +52,8 @@ class NoMemory(unittest.TestCase):
         self.assertEqual(self.exceptions(), 0)
         large = maps.Cloud("large", maps.XYZ, 12, bytes(12 << 23))
         small = maps.made_cloud(100)
-        # What comes as it is goes into its file, and is refused where that cannot be mapped; the other is held while it comes.
-        for style, throws in ((CBOR, False), (Style("cbor", body="gzip"), True)):
+        # A body goes into its file as it comes, and is refused where that cannot be mapped; what its data inflates to is held.
+        for style, throws in ((CBOR, False), (Style("cbor", body="gzip"), False), (Style("cbor", data="gzip"), True)):
             with self.subTest(str(style)):
                 before = self.exceptions()
                 self.limit(LEFT)

@@ -1,0 +1,30 @@
+#pragma once
+
+#include <malloc.h>
+
+#include "codec/body_decoder.hpp"
+
+namespace adit::intake {
+
+/// At the end of what reads a large document: what was freed in many small pieces stays the process's own,
+/// for each thread once, unless it is asked for.
+class MemoryGivenBack {
+ public:
+  explicit MemoryGivenBack(bool is_large) : is_large_(is_large) {}
+  explicit MemoryGivenBack(const codec::BodyDecoder& decoder) : MemoryGivenBack(decoder.size() > kLarge) {}
+  ~MemoryGivenBack() {
+    if (is_large_) ::malloc_trim(0);
+  }
+  MemoryGivenBack(const MemoryGivenBack&) = delete;
+  MemoryGivenBack& operator=(const MemoryGivenBack&) = delete;
+
+  /// What is read turns out to be large.
+  void expect_much() { is_large_ = true; }
+
+ private:
+  static constexpr std::size_t kLarge = std::size_t{64} * 1024;
+
+  bool is_large_;
+};
+
+}  // namespace adit::intake

@@ -10,6 +10,7 @@ import requests
 
 import container
 import hosts
+import inside_unit
 import maps
 import messages
 import programs
@@ -114,6 +115,12 @@ class Everyday(Story):
     def shell(self, script):
         done = self.box.run("sh", "-euc", script)
         self.assertEqual(done.returncode, 0, done.stderr)
+        return done.stdout
+
+    def test_from_inside_its_unit_it_may_do_no_more_than_it_must(self):
+        # A container's systemd may load no filter of addresses into the kernel.
+        refused = inside_unit.check(self, self.shell, but={"connect to 203.0.113.1"})
+        note("container, refused from inside adit.service", f"{refused} attempts")
 
     def flows(self, uri, message):
         """What is posted is taken, and arrives."""

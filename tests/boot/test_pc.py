@@ -7,6 +7,7 @@ import unittest
 
 import boards
 import hosts
+import inside_unit
 import stage
 from bundles import bundle, bundle_of_nothing
 from stage import Stage, Story, load_tests, note  # unittest looks for them here
@@ -38,6 +39,10 @@ class Pc(Updating, Story):
         note("PC: first start, from power to the first answer on team0", self.box.start_took())
         self.box.console.wait_for_shell()
         self.assertEqual(self.box.console.ask("ls /sys/class/net").split(), ["darpa0", "lo", "team0"])
+
+    def test_from_inside_its_unit_it_may_do_no_more_than_it_must(self):
+        refused = inside_unit.check(self, self.box.console.ask)
+        note("PC: refused from inside adit.service", f"{refused} attempts")
 
     def test_no_update_is_installed_while_two_disks_hold_an_adit(self):
         self.box.plug_stick(boards.PC.image())

@@ -33,11 +33,11 @@ class Deadlines : public testing::Test {
 
   milliseconds passed() const { return std::chrono::duration_cast<milliseconds>(Clock::now() - started); }
 
-  /// Sends `text` a byte every 50 ms from a thread of its own.
-  std::thread drip(RawClient& dripper, std::string text) {
-    return std::thread([&dripper, text] {
+  /// Sends `text` a byte every 50 ms from a thread of its own, until that is let go of.
+  std::jthread drip(RawClient& dripper, std::string text) {
+    return std::jthread([&dripper, text](const std::stop_token& stop) {
       for (const char byte : text) {
-        if (!dripper.send({&byte, 1})) return;
+        if (stop.stop_requested() || !dripper.send({&byte, 1})) return;
         std::this_thread::sleep_for(milliseconds(50));
       }
     });
@@ -71,21 +71,20 @@ TEST_F(HeadDeadlines, CloseAClientThatSaysNothing) {
 }
 
 TEST_F(HeadDeadlines, CloseAClientThatDripsItsHeaders) {
-  std::thread dripping = drip(client, request("GET", "/echo", "X-Long: " + std::string(60, 'x') + "\r\n"));
+  const std::jthread dripping =
+      drip(client, request("GET", "/echo", "X-Long: " + std::string(60, 'x') + "\r\n"));
   const auto reply = client.reply();
   ASSERT_TRUE(reply);
   EXPECT_EQ(reply->status, 408);
   EXPECT_EQ(reply->body, "\"the head of the request took too long\"");
-  dripping.join();
   EXPECT_TRUE(client.closes());
 }
 
 TEST_F(IdleDeadlines, CloseAClientThatDripsTheHeadersOfItsSecondRequest) {
   client.send(request("GET", "/echo"));
   ASSERT_TRUE(client.reply());
-  std::thread dripping = drip(client, "GET /" + std::string(400, 'x'));  // for longer than it waits
+  const std::jthread dripping = drip(client, "GET /" + std::string(400, 'x'));  // for longer than it waits
   EXPECT_TRUE(client.closes());
-  dripping.join();
 }
 
 TEST_F(RateDeadlines, CloseAClientThatStopsInTheMiddleOfItsBody) {
@@ -110,22 +109,18 @@ TEST_F(RateDeadlines, LetABodyThatKeepsComingTakeItsTime) {
 
 TEST_F(RateDeadlines, CloseAClientThatDripsItsBody) {
   client.send("POST /echo HTTP/1.1\r\nHost: adit\r\nContent-Length: 100000\r\n\r\n");
-  std::thread dripping = drip(client, std::string(400, 'x'));
+  const std::jthread dripping = drip(client, std::string(400, 'x'));
   const auto reply = client.reply();
   ASSERT_TRUE(reply);
   EXPECT_EQ(reply->status, 408);
-  client.close();
-  dripping.join();
 }
 
 TEST_F(StrangersBodyDeadlines, CloseAClientThatDripsItsBody) {
   client.send("POST /echo HTTP/1.1\r\nHost: adit\r\nContent-Length: 100\r\n\r\n");
-  std::thread dripping = drip(client, std::string(100, 'x'));
+  const std::jthread dripping = drip(client, std::string(100, 'x'));
   const auto reply = client.reply();
   ASSERT_TRUE(reply);
   EXPECT_EQ(reply->status, 408);
-  client.close();
-  dripping.join();
 }
 
 TEST_F(StrangersBodyDeadlines, AreNotThoseOfWhoHasShownAToken) {

@@ -79,17 +79,25 @@ class Outputs(unittest.TestCase):
         cls.own = []  # what the box gave to one alone: cookies
         cls.script = {"Authorization": f"Bearer {TEAM}"}
         cls.type_all_into_wrong_places(box)
-        assert box.set_first(code=CODE, password=OPERATOR)[0] == 200
+        cls.in_turn("POST /adit/password", {"role": "operator", "code": CODE, "password": OPERATOR})
         operator = cls.log_in(OPERATOR)
-        set_viewers = {"role": "viewer", "current": OPERATOR, "password": VIEWER}
-        assert box.ask("POST /adit/password", set_viewers, **operator)[0] == 200
+        cls.in_turn("POST /adit/password", {"role": "viewer", "current": OPERATOR, "password": VIEWER}, **operator)
         cls.type_all_into_wrong_places(box)
+
+    @classmethod
+    def in_turn(cls, request, body, **headers):
+        """Shows a password, once those who guess let it: the answer."""
+        def ask():
+            answer = cls.box.ask(request, body, **headers)
+            return answer if answer[0] != 429 else None
+        status, said, told = wait_until(ask, "a turn among those who guess passwords", 60)
+        assert status == 200, said
+        return said, told
 
     @classmethod
     def log_in(cls, password):
         """The headers of a browser that calls itself by the secrets."""
-        status, said, headers = cls.box.ask("POST /adit/login", {"password": password}, User_Agent=TYPED)
-        assert status == 200, said
+        said, headers = cls.in_turn("POST /adit/login", {"password": password}, User_Agent=TYPED)
         cookies = [each.partition(";")[0] for each in headers.get_all("Set-Cookie")]
         cls.own += [cookie.partition("=")[2] for cookie in cookies]
         return {"Cookie": "; ".join(cookies), "Adit_CSRF": said["csrf"]}
@@ -110,7 +118,7 @@ class Outputs(unittest.TestCase):
         assert box.ask("POST /markers/update", {"markers": [MARKER]}, **cls.script)[0] == 200
         assert box.ask("POST /state/update", state(TEAM), **cls.script)[0] == 200
         assert box.ask("POST /map/update", grid(TEAM), **cls.script)[0] == 200
-        for _ in range(20):
+        for _ in range(12):
             box.ask("POST /state/update", {}, whence="127.0.0.8", Authorization=f"Bearer {WRONG_TOKEN}")
         box.ask("GET /adit/run", whence="127.0.0.8", Authorization=f"Bearer {WRONG_TOKEN}")
         box.ask("POST /adit/login", {"password": WRONG_PASSWORD}, whence="127.0.0.8")
@@ -208,10 +216,11 @@ class Outputs(unittest.TestCase):
         for task in (process / "task").iterdir():
             self.shows_none("a thread's name", (task / "comm").read_bytes())
 
-    def test_wrong_tokens_are_counted_and_logged_once(self):
-        self.assertEqual(len(re.findall("requests show wrong tokens", self.box.said())), 1)
+    def test_wrong_tokens_are_counted_and_logged_together(self):
+        lines = self.box.said().count("requests show wrong tokens")
+        self.assertTrue(1 <= lines <= 6, f"{lines}: one a minute")
         metrics = self.box.ask("GET /metrics", **self.script)[1].decode()
-        self.assertGreaterEqual(float(re.search(r"^adit_wrong_tokens_total (\S+)$", metrics, re.M).group(1)), 42)
+        self.assertGreaterEqual(float(re.search(r"^adit_wrong_tokens_total (\S+)$", metrics, re.M).group(1)), 26)
 
     def test_the_services_leave_no_core(self):
         for unit in HERE.glob("services/*.service"):

@@ -52,6 +52,11 @@ Store::Store(std::string given_settings, std::string given_secrets, std::string 
       given_secrets_(std::move(given_secrets)),
       state_(std::move(state_folder)) {}
 
+icd::Redaction Store::redaction() const {
+  const auto secrets = host::read_secrets(given_secrets_, secrets_folder(), token_names({}));
+  return secrets ? secrets->redaction() : icd::Redaction();
+}
+
 std::expected<Store::Loaded, std::string> Store::load() {
   Loaded loaded;
   auto settings =

@@ -7,6 +7,7 @@
 
 #include "host/service.hpp"
 #include "icd/bearer_token.hpp"
+#include "icd/redaction.hpp"
 #include "settings/saved.hpp"
 #include "settings/settings.hpp"
 
@@ -29,6 +30,9 @@ class Store {
     host::Secrets secrets;
     std::string trouble;  // why saved settings or tokens do not count, though there are any
   };
+  /// Of the secrets that there are whatever the settings say: a sentence on what is wrong with these quotes
+  /// them.
+  icd::Redaction redaction() const;
   /// What counts. An error: neither can be used. Damaged saved settings or tokens are set aside.
   std::expected<Loaded, std::string> load();
 

@@ -56,6 +56,7 @@ ledger::Result<ledger::Ledger> open_ledger(const Options& options) {
 
 std::expected<Parts, std::string> gather(const Options& options, admin::Store& store,
                                          admin::FactoryReset& reset, ListenSockets& sockets) {
+  host::keep_out_of_log(store.redaction());
   auto loaded = store.load();
   if (!loaded) return std::unexpected(loaded.error());
   auto ledger = open_ledger(options);

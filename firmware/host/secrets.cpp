@@ -48,6 +48,14 @@ SecretsError of_given(std::string sentence) {
 
 }  // namespace
 
+icd::Redaction Secrets::redaction() const {
+  std::vector<icd::BearerToken> all;
+  all.reserve(tokens.size() + 1);
+  for (const auto& [name, token] : tokens) all.push_back(token);
+  if (label_code) all.push_back(*label_code);
+  return icd::Redaction(std::move(all));
+}
+
 std::expected<Secrets, SecretsError> read_secrets(const std::string& given, const std::string& saved,
                                                   std::span<const std::string> names) {
   const bool credentials = holds_credentials(given);

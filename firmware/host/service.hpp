@@ -11,6 +11,7 @@
 #include <vector>
 
 #include "icd/bearer_token.hpp"
+#include "icd/redaction.hpp"
 
 namespace adit::host {
 
@@ -55,6 +56,7 @@ struct Secrets {
   std::map<std::string, icd::BearerToken, std::less<>> tokens;  // by name: "scoring", "course.A.mapping"
   std::optional<icd::BearerToken> label_code;  // what sets the first password; absent: one is drawn
 
+  icd::Redaction redaction() const;
   std::optional<icd::BearerToken> token(std::string_view name) const {
     const auto found = tokens.find(name);
     return found == tokens.end() ? std::nullopt : std::optional(found->second);

@@ -9,6 +9,7 @@ import io
 import json
 import pathlib
 import re
+import subprocess
 import sys
 import tarfile
 import tempfile
@@ -215,6 +216,16 @@ class Outputs(unittest.TestCase):
             self.shows_none(file, (process / file).read_bytes())
         for task in (process / "task").iterdir():
             self.shows_none("a thread's name", (task / "comm").read_bytes())
+
+    def test_what_is_wrong_with_settings_quotes_none(self):
+        with tempfile.TemporaryDirectory(prefix="adit-outputs-") as folder:
+            settings = pathlib.Path(folder) / "settings.json"
+            for word in (SCORING, MAPPING, TEAM, CODE):
+                settings.write_text(json.dumps({"version": 1, "team": {"interface": f"{word} {word}"}, word: word}))
+                ended = subprocess.run([real_aditd.aditd, "--settings", settings, "--secrets", self.box.folder / "secrets",
+                                        "--state", folder], capture_output=True, timeout=60)
+                self.assertNotEqual(ended.returncode, 0)
+                self.shows_none("why it does not start", ended.stdout + ended.stderr)
 
     def test_wrong_tokens_are_counted_and_logged_together(self):
         lines = self.box.said().count("requests show wrong tokens")

@@ -1,6 +1,7 @@
 """A PC, which GRUB starts: an update is installed, GRUB counts a start of it, and RAUC marks good what GRUB counted."""
 
 import pathlib
+import re
 import tempfile
 import time
 import unittest
@@ -43,6 +44,15 @@ class Pc(Updating, Story):
     def test_from_inside_its_unit_it_may_do_no_more_than_it_must(self):
         refused = inside_unit.check(self, self.box.console.ask)
         note("PC: refused from inside adit.service", f"{refused} attempts")
+
+    def test_its_memory_is_bounded_as_its_board_says(self):
+        """In the kernel, not only in the unit."""
+        ask = self.box.console.ask
+        most = int(ask("cat /sys/fs/cgroup/system.slice/adit.service/memory.max"))
+        total = int(ask("sed -n 's/^MemTotal: *\\([0-9]*\\) kB/\\1/p' /proc/meminfo")) << 10
+        said = re.search(r"^memory_max=(\d+)%$", (boards.SOURCE / "board" / boards.PC.name / "board.conf").read_text(), re.M)
+        self.assertAlmostEqual(most / total, int(said[1]) / 100, delta=0.05)
+        note("PC: adit.service, of its memory", f"{most >> 20} of {total >> 20} MiB")
 
     def test_no_update_is_installed_while_two_disks_hold_an_adit(self):
         self.box.plug_stick(boards.PC.image())

@@ -24,6 +24,7 @@ class Folders(unittest.TestCase):
             with self.subTest(board):
                 for name in "title", "architecture", "kernel_package", "bootloader", "console", "initrd_modules", "modules":
                     self.assertTrue(conf(board, name), f"board.conf: no {name}")
+                self.assertRegex(conf(board, "memory_max")[0], r"^[1-9]\d%$")
                 self.assertTrue((TOP / "board" / board / "README.md").exists())
 
     def test_what_the_box_reads_is_the_same_board_with_all_lines_of_a_panel_or_none(self):

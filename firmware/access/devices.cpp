@@ -10,7 +10,7 @@ namespace {
 
 using codec::Value;
 
-constexpr std::int64_t kVersion = 2;
+constexpr std::int64_t kDevicesVersion = 2;
 
 std::string_view password_of(Role role, const Accounts& accounts) {
   return accounts.of(role) ? salt_of(*accounts.of(role)) : "";
@@ -65,12 +65,13 @@ std::string write_devices(const std::vector<Device>& devices, const Accounts& ac
                                   {"password", {std::string(password_of(device.role, accounts))}},
                                   {"id", {device.id.reveal()}}}});
   }
-  return codec::write_json({Value::Object{{"version", {kVersion}}, {"devices", {std::move(rows)}}}}) + '\n';
+  return codec::write_json({Value::Object{{"version", {kDevicesVersion}}, {"devices", {std::move(rows)}}}}) +
+         '\n';
 }
 
 std::expected<std::vector<Device>, std::string> read_devices(std::string_view json,
                                                              const Accounts& accounts) {
-  return read_kept<std::vector<Device>>(json, kVersion, [&accounts](const codec::Field& object) {
+  return read_kept<std::vector<Device>>(json, kDevicesVersion, [&accounts](const codec::Field& object) {
     return elements_of<Device>(object.member("devices"),
                                [&](const codec::Field& each) { return device_in(each, accounts); });
   });

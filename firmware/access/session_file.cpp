@@ -9,7 +9,7 @@ namespace {
 using codec::Field;
 using codec::Value;
 
-constexpr std::int64_t kVersion = 1;
+constexpr std::int64_t kSessionFileVersion = 1;
 
 Value value_of(Instant at) {
   return {std::int64_t{std::chrono::duration_cast<Duration>(at.time_since_epoch()).count()}};
@@ -53,7 +53,7 @@ std::optional<Session> session_in(const Field& object) {
 std::string write_sessions(const KeptSessions& kept) {
   Value::Array sessions;
   for (const Session& session : kept.sessions) sessions.push_back(value_of(session));
-  return codec::write_json({Value::Object{{"version", {kVersion}},
+  return codec::write_json({Value::Object{{"version", {kSessionFileVersion}},
                                           {"boot", {kept.boot}},
                                           {"last", {kept.last}},
                                           {"sessions", {std::move(sessions)}}}}) +
@@ -61,7 +61,7 @@ std::string write_sessions(const KeptSessions& kept) {
 }
 
 std::expected<KeptSessions, std::string> read_sessions(std::string_view json) {
-  return read_kept<KeptSessions>(json, kVersion, [](const Field& object) {
+  return read_kept<KeptSessions>(json, kSessionFileVersion, [](const Field& object) {
     return KeptSessions{.boot = std::string(object.member("boot").text()),
                         .last = number_in(object, "last"),
                         .sessions = elements_of<Session>(object.member("sessions"), session_in)};

@@ -8,6 +8,7 @@
 
 #include "access/password.hpp"
 #include "admin/kept_file.hpp"
+#include "admin/refuse.hpp"
 #include "host/log.hpp"
 #include "host/random.hpp"
 #include "host/service.hpp"
@@ -18,7 +19,7 @@ namespace {
 using access::Role;
 using host::Level;
 
-access::Accounts read(const std::string& file) {
+access::Accounts accounts_in(const std::string& file) {
   auto accounts = read_kept_file(file, &access::read_accounts);
   if (accounts) return std::move(*accounts);
   host::log(Level::Error, "the passwords cannot be read: they have to be set anew",
@@ -33,10 +34,6 @@ std::vector<access::Device> read_known(const std::string& file, const access::Ac
   host::log(Level::Warning, "the browsers that have been in cannot be read: they are strangers",
             {{"why", devices.error()}});
   return {};
-}
-
-std::unexpected<icd::Refusal> refuse(icd::Status status, std::string sentence) {
-  return std::unexpected(icd::Refusal{status, std::move(sentence)});
 }
 
 /// `accounts` with a role's password set. Slow.
@@ -63,7 +60,7 @@ Accounts::Accounts(const loop::Loop& loop, loop::Workers& workers, loop::Writer&
       writer_(writer),
       sessions_(sessions),
       folder_(std::move(folder)),
-      accounts_(read(file())),
+      accounts_(accounts_in(file())),
       devices_(read_known(devices_file(), accounts_), [this] { keep_devices(); }) {
   if (!first_start()) return;
   const bool on_label = label_code.has_value();

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 
+#include "admin/refuse.hpp"
 #include "host/interfaces.hpp"
 #include "host/log.hpp"
 #include "icd/sentence.hpp"
@@ -10,7 +11,7 @@ namespace adit::admin {
 namespace {
 
 std::unexpected<icd::Refusal> conflict(std::string sentence) {
-  return std::unexpected(icd::Refusal{icd::Status::Conflict, std::move(sentence)});
+  return refuse(icd::Status::Conflict, std::move(sentence));
 }
 
 }  // namespace

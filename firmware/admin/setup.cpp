@@ -2,6 +2,7 @@
 
 #include <algorithm>
 
+#include "admin/refuse.hpp"
 #include "forward/channel.hpp"
 #include "host/log.hpp"
 #include "icd/sentence.hpp"
@@ -11,10 +12,6 @@ namespace adit::admin {
 namespace {
 
 using settings::Settings;
-
-std::unexpected<icd::Refusal> refuse(icd::Status status, std::string sentence) {
-  return std::unexpected(icd::Refusal{status, std::move(sentence)});
-}
 
 icd::Checked<void> being_applied() {
   return refuse(icd::Status::Conflict, "another change is being applied: try again");

@@ -13,7 +13,7 @@
 namespace adit::admin {
 namespace {
 
-icd::Refusal conflict(std::string sentence) {
+icd::Refusal conflicting(std::string sentence) {
   return {icd::Status::Conflict, std::move(sentence)};
 }
 
@@ -89,9 +89,9 @@ api::UpdateView Updates::update() const {
 
 std::optional<icd::Refusal> Updates::hindrance() const {
   const api::UpdateView view = update();
-  if (!view.managed) return conflict(view.why);
+  if (!view.managed) return conflicting(view.why);
   if (!view.doing.empty())
-    return conflict(icd::sentence("the box is ", view.doing, " already: wait for its end"));
+    return conflicting(icd::sentence("the box is ", view.doing, " already: wait for its end"));
   return std::nullopt;
 }
 
@@ -122,7 +122,7 @@ icd::Checked<void> Updates::install_from_stick(bool again) {
 icd::Checked<void> Updates::restart(bool anyway) {
   if (auto why = hindrance()) return std::unexpected(std::move(*why));
   const std::string report = anyway ? "" : under_way_();
-  if (!report.empty()) return std::unexpected(conflict(report));
+  if (!report.empty()) return std::unexpected(conflicting(report));
   return ask(update::Request::What::Restart, false);
 }
 

@@ -21,7 +21,7 @@ std::string escaped(std::string_view text, bool quoted) {
   return safe;
 }
 
-std::string number(double value) {
+std::string sample_text(double value) {
   if (std::isnan(value)) return "NaN";
   if (std::isinf(value)) return value > 0 ? "+Inf" : "-Inf";
   char text[32];
@@ -45,7 +45,7 @@ void Exposition::sample(std::initializer_list<Label> labels, double value) {
     before = ',';
   }
   if (labels.size() > 0) text_ += '}';
-  text_.append(" ").append(number(value)).append("\n");
+  text_.append(" ").append(sample_text(value)).append("\n");
 }
 
 }  // namespace adit::api

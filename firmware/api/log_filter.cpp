@@ -9,14 +9,14 @@
 namespace adit::api {
 namespace {
 
-constexpr std::array<std::pair<std::string_view, int>, 5> kLevels = {
+constexpr std::array<std::pair<std::string_view, int>, 5> kPriorities = {
     {{"error", 3}, {"warning", 4}, {"notice", 5}, {"info", 6}, {"debug", 7}}};
 
 char lower(char c) {
   return c >= 'A' && c <= 'Z' ? static_cast<char>(c - 'A' + 'a') : c;
 }
 
-std::unexpected<icd::Refusal> wrong(std::string sentence) {
+std::unexpected<icd::Refusal> bad_request(std::string sentence) {
   return std::unexpected(icd::Refusal{icd::Status::BadRequest, std::move(sentence)});
 }
 
@@ -31,13 +31,14 @@ bool LogFilter::lets(const LogRecord& record) const {
 icd::Checked<LogFilter> read_log_filter(const intake::RequestHead& head) {
   LogFilter filter{.text = std::string(head.query("text"))};
   if (const auto level = head.query("level"); !level.empty()) {
-    const auto known = std::ranges::find(kLevels, level, [](const auto& each) { return each.first; });
-    if (known == kLevels.end()) return wrong("level: expected error, warning, notice, info or debug");
+    const auto known = std::ranges::find(kPriorities, level, [](const auto& each) { return each.first; });
+    if (known == kPriorities.end())
+      return bad_request("level: expected error, warning, notice, info or debug");
     filter.severity = known->second;
   }
   if (const auto since = head.query("since"); !since.empty()) {
     const auto number = number_in<std::uint64_t>(since);
-    if (!number) return wrong("since: expected the number of a record");
+    if (!number) return bad_request("since: expected the number of a record");
     filter.after = *number;
   }
   return filter;

@@ -46,7 +46,7 @@ Value pending_json(const NetworkView::Pending& pending) {
 }
 
 /// The numbers, or all that is wrong with the body.
-std::expected<network::Numbers, std::vector<settings::Error>> read_body(const std::string& body) {
+std::expected<network::Numbers, std::vector<settings::Error>> numbers_in(const std::string& body) {
   const auto value = codec::parse_json(body);
   if (value) return network::read_numbers(*value);
   return std::unexpected(std::vector<settings::Error>{{"", "expected JSON: " + value.error()}});
@@ -72,7 +72,7 @@ intake::Answer NetworkRoutes::shown() const {
 }
 
 intake::Answer NetworkRoutes::check(const Call& call) const {
-  const auto wanted = read_body(call.body);
+  const auto wanted = numbers_in(call.body);
   const auto findings =
       wanted ? network_.check(*wanted, call.head.peer()) : network::Findings{wanted.error(), {}, {}};
   CheckView checked{.errors = findings.errors, .changes = {.changes = {}, .warnings = findings.warnings}};
@@ -88,7 +88,7 @@ intake::Answer NetworkRoutes::change(const Call& call) {
 }
 
 intake::Answer NetworkRoutes::changed_to(const Call& call) {
-  const auto wanted = read_body(call.body);
+  const auto wanted = numbers_in(call.body);
   if (!wanted) return unfit(wanted.error());
   const auto findings = network_.check(*wanted, call.head.peer());
   if (!findings.errors.empty()) return unfit(findings.errors);

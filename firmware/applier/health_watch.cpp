@@ -15,7 +15,7 @@ namespace {
 
 using host::Level;
 
-constexpr std::chrono::seconds kAnswer{30};
+constexpr std::chrono::seconds kSystemctlAnswer{30};
 /// How often systemd is asked: of a slot on trial; of one that only its settings keep from being ready.
 constexpr std::chrono::seconds kOnTrial{2}, kElse{10};
 
@@ -26,13 +26,14 @@ std::chrono::microseconds now() {
 
 update::Ready ready(const std::string& systemctl) {
   const auto said = host::output_of(
-      {systemctl, "show", "--property=ActiveState,ActiveEnterTimestampMonotonic", "adit.service"}, kAnswer);
+      {systemctl, "show", "--property=ActiveState,ActiveEnterTimestampMonotonic", "adit.service"},
+      kSystemctlAnswer);
   return update::read_ready(said.out, now());
 }
 
 std::expected<void, std::string> restart(const std::string& systemctl) {
   host::log(Level::Error, "this slot did not come up healthy in time: the machine is started anew");
-  auto restarted = host::run_command({systemctl, "reboot"}, kAnswer);
+  auto restarted = host::run_command({systemctl, "reboot"}, kSystemctlAnswer);
   if (restarted) return restarted;
   return std::unexpected("the machine cannot be started anew: " + restarted.error());
 }
@@ -44,7 +45,7 @@ std::expected<void, std::string> pass_trial(const UpdateOptions& options, update
   last_update.stage = update::Stage::Good;
   last_update.why.clear();  // of one that adit-update has not settled yet
   if (!save_last_update(options.state, last_update)) return std::unexpected("the trial cannot be ended");
-  host::output_of({options.systemctl, "start", "--no-block", "adit-update.service"}, kAnswer);
+  host::output_of({options.systemctl, "start", "--no-block", "adit-update.service"}, kSystemctlAnswer);
   return {};
 }
 

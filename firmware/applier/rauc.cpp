@@ -11,7 +11,7 @@ namespace {
 
 /// A slot of a slow card is written in some minutes.
 constexpr std::chrono::minutes kInstall{20};
-constexpr std::chrono::seconds kAnswer{60};
+constexpr std::chrono::seconds kRaucAnswer{60};
 /// How often it is asked again while it is busy.
 constexpr std::chrono::seconds kAgain{1};
 
@@ -24,7 +24,7 @@ Fault fault_of(const host::Output& said) {
 }
 
 std::expected<std::string, Fault> ask(const std::vector<std::string>& words) {
-  host::Output said = host::output_of(words, kAnswer);
+  host::Output said = host::output_of(words, kRaucAnswer);
   if (!said.trouble.empty()) return std::unexpected(fault_of(said));
   return std::move(said.out);
 }

@@ -35,7 +35,7 @@ std::string table_of(const api::RunView& view, bool colour) {
   return table.written(colour);
 }
 
-Outcome list(const Adit& adit, const Options& options, bool colour) {
+Outcome list_aside(const Adit& adit, const Options& options, bool colour) {
   const auto json = get(adit, "/adit/run");
   if (!json) return unable(json.error());
   const auto view = read<api::RunView>(adit, *json);
@@ -52,7 +52,7 @@ Outcome list(const Adit& adit, const Options& options, bool colour) {
 Outcome aside(const Options& options, bool colour) {
   const auto adit = adit_of(options);
   if (!adit) return unable(adit.error());
-  if (options.verb == Verb::Show) return list(*adit, options, colour);
+  if (options.verb == Verb::Show) return list_aside(*adit, options, colour);
   Outcome outcome;
   for (const std::int64_t number : options.numbers) {
     const std::string text = std::to_string(number);

@@ -14,7 +14,7 @@
 namespace adit::cli {
 namespace {
 
-constexpr std::chrono::seconds kPatience{3};
+constexpr std::chrono::seconds kReadPatience{3};
 constexpr std::chrono::seconds kActionPatience{10};  // an action is on the disk before it is answered
 
 bool all_is_well(const api::RunView& view) {
@@ -59,7 +59,7 @@ std::string unknown_token(const Adit& adit) {
 }
 
 std::expected<std::string, std::string> get(const Adit& adit, const std::string& target) {
-  auto reply = http_ask(adit.address, {.target = target, .token = adit.token.token}, kPatience);
+  auto reply = http_ask(adit.address, {.target = target, .token = adit.token.token}, kReadPatience);
   if (!reply) return std::unexpected(reply.error().sentence);
   if (reply->status == 200) return std::move(reply->body);
   if (reply->status == 401) return std::unexpected(unknown_token(adit));

@@ -15,10 +15,10 @@
 namespace adit::cli {
 namespace {
 
-constexpr std::chrono::seconds kPatience{10};
+constexpr std::chrono::seconds kConfirmPatience{10};
 /// How often, and how many times, Adit is asked what became of a word: for 5 s.
-constexpr std::chrono::milliseconds kEvery{200};
-constexpr int kTimes = 25;
+constexpr std::chrono::milliseconds kConfirmEvery{200};
+constexpr int kConfirmTimes = 25;
 
 struct Side {
   std::string interface, addresses, gateway;
@@ -113,7 +113,7 @@ std::expected<View, std::string> understood(const Adit& adit, const std::string&
   return read<View>(adit, json, read_view);
 }
 
-Outcome show(const Adit& adit, const Options& options) {
+Outcome show_network(const Adit& adit, const Options& options) {
   const auto json = get(adit, "/adit/network");
   if (!json) return unable(json.error());
   const auto view = understood(adit, *json);
@@ -139,10 +139,10 @@ Outcome say(const Adit& adit, const Options& options, bool confirms) {
                               {.method = HttpRequest::Method::Post,
                                .target = confirms ? "/adit/network/confirm" : "/adit/network/back",
                                .token = adit.token.token},
-                              kPatience);
+                              kConfirmPatience);
   if (!reply) return unable(reply.error().sentence);
   if (reply->status != 200) return said_no(adit, *reply);
-  for (int i = 0; i < kTimes; ++i) {
+  for (int i = 0; i < kConfirmTimes; ++i) {
     const auto json = get(adit, "/adit/network");
     if (!json && !confirms) break;
     if (!json) return unable(json.error());
@@ -155,7 +155,7 @@ Outcome say(const Adit& adit, const Options& options, bool confirms) {
       return {done ? Exit::Fine : Exit::Attention, options.json ? *json + '\n' : host::escaped(line) + '\n',
               ""};
     }
-    std::this_thread::sleep_for(kEvery);
+    std::this_thread::sleep_for(kConfirmEvery);
   }
   if (!confirms) return {Exit::Fine, options.json ? "" : "the change is being taken back\n", ""};
   return unable("the change still waits, though it was confirmed: see adit network show");
@@ -166,7 +166,7 @@ Outcome say(const Adit& adit, const Options& options, bool confirms) {
 Outcome network(const Options& options) {
   const auto adit = adit_of(options);
   if (!adit) return unable(adit.error());
-  if (options.verb == Verb::Show) return show(*adit, options);
+  if (options.verb == Verb::Show) return show_network(*adit, options);
   return say(*adit, options, options.verb == Verb::Confirm);
 }
 

@@ -23,7 +23,7 @@ bool is_listed(const api::ReportRow& report, const Options& options, std::int64_
   return options.run ? report.run == *options.run : report.run == present || !is_finished(report);
 }
 
-Outcome list(const Adit& adit, const Options& options, bool colour) {
+Outcome list_reports(const Adit& adit, const Options& options, bool colour) {
   const auto run_json = get(adit, "/adit/run");
   if (!run_json) return unable(run_json.error());
   const auto run = read<api::RunView>(adit, *run_json);
@@ -64,7 +64,7 @@ Outcome reports(const Options& options, bool colour) {
   if (!adit) return unable(adit.error());
   switch (options.verb) {
     case Verb::List:
-      return list(*adit, options, colour);
+      return list_reports(*adit, options, colour);
     case Verb::Show:
       return show(*adit, options, colour);
     case Verb::Export:

@@ -15,9 +15,9 @@
 namespace adit::cli {
 namespace {
 
-constexpr std::chrono::seconds kPatience{10};
-constexpr std::chrono::milliseconds kEvery{250};
-constexpr int kTimes = 480;  // two minutes, far longer than all steps may take
+constexpr std::chrono::seconds kTestPatience{10};
+constexpr std::chrono::milliseconds kTestEvery{250};
+constexpr int kTestTimes = 480;  // two minutes, far longer than all steps may take
 
 bool has_ended(const api::TestStep& step) {
   return step.state == "good" || step.state == "bad" || step.state == "skipped";
@@ -71,9 +71,10 @@ bool is_bad(const api::TestView& view) {
 Outcome test(const Options& options, bool colour, const std::function<void(const std::string&)>& print) {
   const auto adit = adit_of(options);
   if (!adit) return unable(adit.error());
-  const auto begun = http_ask(
-      adit->address,
-      {.method = HttpRequest::Method::Post, .target = "/adit/test", .token = adit->token.token}, kPatience);
+  const auto begun =
+      http_ask(adit->address,
+               {.method = HttpRequest::Method::Post, .target = "/adit/test", .token = adit->token.token},
+               kTestPatience);
   if (!begun) return unable(begun.error().sentence);
   if (begun->status == 401) return unable(unknown_token(*adit));
   if (begun->status != 200 && begun->status != 409) {  // 409: one runs already
@@ -82,7 +83,7 @@ Outcome test(const Options& options, bool colour, const std::function<void(const
                   (sentence.empty() ? " (is that Adit?)" : ": " + sentence));
   }
   Progress progress(colour, print);
-  for (int i = 0; i < kTimes; ++i) {
+  for (int i = 0; i < kTestTimes; ++i) {
     const auto json = get(*adit, "/adit/test");
     if (!json) return unable(json.error());
     const auto view = read<api::TestView>(*adit, *json);
@@ -92,7 +93,7 @@ Outcome test(const Options& options, bool colour, const std::function<void(const
       if (options.json) print(*json + '\n');
       return {is_bad(*view) ? Exit::Attention : Exit::Fine, "", ""};
     }
-    std::this_thread::sleep_for(kEvery);
+    std::this_thread::sleep_for(kTestEvery);
   }
   return unable("the test does not end: see journalctl -u adit");
 }

@@ -19,7 +19,7 @@ namespace {
 
 /// For a bundle over a slow link, and for a slot of a slow card.
 constexpr std::chrono::minutes kUpload{30}, kInstall{25};
-constexpr std::chrono::milliseconds kEvery{500};
+constexpr std::chrono::milliseconds kUpdateEvery{500};
 
 using api::UpdateView;
 using update::Stage;
@@ -60,7 +60,7 @@ Exit exit_of(const UpdateView& view) {
   return failed || !view.managed || !view.refusal.empty() ? Exit::Attention : Exit::Fine;
 }
 
-Outcome show(const Adit& adit, const Options& options) {
+Outcome show_update(const Adit& adit, const Options& options) {
   const auto json = get(adit, "/adit/update");
   if (!json) return unable(json.error());
   const auto view = read<UpdateView>(adit, *json);
@@ -101,7 +101,7 @@ Outcome follow(const Adit& adit, const Options& options,
     if (!options.json && line != told) print(line);
     told = line;
     if (std::chrono::steady_clock::now() >= until) return unable("the box is still at it: see adit update");
-    std::this_thread::sleep_for(kEvery);
+    std::this_thread::sleep_for(kUpdateEvery);
   }
 }
 
@@ -138,7 +138,7 @@ Outcome update(const Options& options, const std::function<void(const std::strin
   const auto adit = adit_of(options);
   if (!adit) return unable(adit.error());
   if (!options.file.empty()) return upload(*adit, options, print);
-  if (!options.stick && !options.restart) return show(*adit, options);
+  if (!options.stick && !options.restart) return show_update(*adit, options);
   const std::string flag = options.stick ? (options.again ? R"({"again": true})" : "{}")
                                          : (options.anyway ? R"({"anyway": true})" : "{}");
   const auto body =

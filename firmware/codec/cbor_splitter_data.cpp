@@ -7,7 +7,7 @@
 namespace adit::codec {
 namespace {
 
-std::string_view kind_of(const CborHead& head) {
+std::string_view element_kind(const CborHead& head) {
   switch (head.major()) {
     case Major::Bytes:
       return "a byte string";
@@ -66,7 +66,7 @@ icd::Checked<void> CborSplitter::element() {
     return data_.append_element(head_.number(), icd::number_text(head_.number()));
   }
   if (major == Major::Tag) return {};
-  return std::unexpected(data_.bad_element(kind_of(head_)));
+  return std::unexpected(data_.bad_element(element_kind(head_)));
 }
 
 icd::Checked<void> CborSplitter::begin_string(Into into) {

@@ -12,7 +12,7 @@
 namespace adit::codec {
 namespace {
 
-constexpr std::size_t kPiece = 32UL * 1024;
+constexpr std::size_t kInflatedPiece = 32UL * 1024;
 
 /// RFC 1950 2.2: method deflate, a window of at most 32 KiB, and a check of both bytes. No raw deflate that a
 /// compressor writes begins so.
@@ -65,16 +65,16 @@ icd::Checked<void> ContentDecoder::begin(int window_bits) {
 
 icd::Checked<void> ContentDecoder::inflate(std::string_view bytes) {
   if (ended_) return std::unexpected(bad("bytes after its end"));
-  std::array<char, kPiece> piece;  // not cleared: this is the hot path
+  std::array<char, kInflatedPiece> piece;  // not cleared: this is the hot path
   while (true) {
     const std::size_t some = std::min<std::size_t>(bytes.size(), std::numeric_limits<uInt>::max());
     stream_->next_in = reinterpret_cast<Bytef*>(const_cast<char*>(bytes.data()));  // zlib only reads it
     stream_->avail_in = static_cast<uInt>(some);
     stream_->next_out = reinterpret_cast<Bytef*>(piece.data());
-    stream_->avail_out = kPiece;
+    stream_->avail_out = kInflatedPiece;
     const int result = ::inflate(stream_.get(), Z_NO_FLUSH);
     bytes.remove_prefix(some - stream_->avail_in);
-    const std::size_t size = kPiece - stream_->avail_out;
+    const std::size_t size = kInflatedPiece - stream_->avail_out;
     if (auto given = give({piece.data(), size}); !given) return given;
     if (result == Z_STREAM_END) {
       ended_ = true;

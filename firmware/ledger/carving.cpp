@@ -5,6 +5,7 @@
 #include <cctype>
 #include <utility>
 
+#include "ledger/big_endian.hpp"
 #include "ledger/log_file.hpp"
 #include "ledger/proof.hpp"
 #include "ledger/rows.hpp"
@@ -31,12 +32,6 @@ std::optional<std::uint64_t> take_varint(std::string_view& text) {
     return value;
   }
   return std::nullopt;
-}
-
-std::uint64_t big_endian(std::string_view bytes) {
-  std::uint64_t value = 0;
-  for (const char byte : bytes) value = value << 8 | static_cast<unsigned char>(byte);
-  return value;
 }
 
 std::size_t size_of(std::uint64_t serial_type) {

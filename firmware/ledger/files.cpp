@@ -17,7 +17,7 @@ namespace adit::ledger {
 namespace {
 
 constexpr std::array kBeside = {"-wal", "-shm", "-journal"};
-constexpr const char *kTrial = "ledger.try-", *kUnique = "XXXXXX";
+constexpr const char* kTrial = "ledger.try-";
 
 Result<void> set_mode(const std::string& path) {
   if (::chmod(path.c_str(), 0600) == 0) return {};
@@ -91,7 +91,7 @@ Result<void> try_writing(const std::string& folder) {
 }
 
 Result<void> try_room(const std::string& folder, std::int64_t bytes) {
-  std::string path = folder + "/" + kTrial + kUnique;
+  std::string path = folder + "/" + kTrial + "XXXXXX";
   const loop::FileDescriptor made(::mkostemp(path.data(), O_CLOEXEC));
   if (!made) return std::unexpected(system_error("writing to " + folder));
   ::unlink(path.c_str());

@@ -9,6 +9,8 @@
 #include <utility>
 #include <vector>
 
+#include "ledger/big_endian.hpp"
+
 namespace adit::ledger {
 namespace {
 
@@ -24,10 +26,8 @@ struct Sum {
   friend bool operator==(const Sum&, const Sum&) = default;
 };
 
-std::uint32_t big_endian(const char* at) {
-  std::uint32_t value = 0;
-  for (int i = 0; i < 4; ++i) value = value << 8 | static_cast<unsigned char>(at[i]);
-  return value;
+std::uint32_t big_endian_at(const char* at) {
+  return static_cast<std::uint32_t>(big_endian({at, 4}));
 }
 
 void put_big_endian(char* at, std::uint32_t value) {
@@ -35,7 +35,7 @@ void put_big_endian(char* at, std::uint32_t value) {
 }
 
 Sum stored_sum(const char* at) {
-  return {big_endian(at), big_endian(at + 4)};
+  return {big_endian_at(at), big_endian_at(at + 4)};
 }
 
 /// The words of a checksum are in the byte order of the machine that wrote the log: this one.
@@ -116,8 +116,9 @@ class Reader {
   }
 
   bool header_is_right() const {
-    return big_endian(log_.data() + kMagicAt) == kMagic && big_endian(log_.data() + kFormatAt) == kFormat &&
-           big_endian(log_.data() + kPageSizeAt) == kPage &&
+    return big_endian_at(log_.data() + kMagicAt) == kMagic &&
+           big_endian_at(log_.data() + kFormatAt) == kFormat &&
+           big_endian_at(log_.data() + kPageSizeAt) == kPage &&
            sum_on({}, log_.data(), kLogSumAt) == stored_sum(log_.data() + kLogSumAt);
   }
 
@@ -234,7 +235,7 @@ class Reader {
       const char* const bytes = frame(behind);
       const bool goes_on =
           sum_of_frame(stored_sum(frame(next) + kSumAt), bytes) == stored_sum(bytes + kSumAt);
-      if (goes_on && big_endian(bytes + kCommitAt) != 0) ++whole;
+      if (goes_on && big_endian_at(bytes + kCommitAt) != 0) ++whole;
     }
     // One more was perhaps under way, while the flush of the one before was left for later.
     if (whole > 1) reading_.damage = damage_of(at);

@@ -17,7 +17,7 @@ namespace {
 namespace fs = std::filesystem;
 
 /// The folder it is in may be one that all programs share.
-constexpr const char *kName = "adit-stand-in-", *kUnique = "XXXXXX";
+constexpr const char* kName = "adit-stand-in-";
 
 /// Nothing where it is no folder of ours, or in use.
 loop::FileDescriptor lock(const std::string& path) {
@@ -31,7 +31,7 @@ loop::FileDescriptor lock(const std::string& path) {
 }  // namespace
 
 Scratch::Scratch(const std::string& below) {
-  std::string path = below + "/" + kName + kUnique;
+  std::string path = below + "/" + kName + "XXXXXX";
   if (::mkdtemp(path.data()) == nullptr) return;
   path_ = std::move(path);
   lock_ = lock(path_);

@@ -12,16 +12,16 @@ using codec::Field;
 using codec::Value;
 using file_object::text;
 
-constexpr std::string_view kFormat = "version";  // the member
+constexpr std::string_view kVersion = "version";  // the member
 constexpr std::size_t kNonceDigits = 32;
 
 std::string written(Value::Object members) {
-  return file_object::written(kFormat, std::move(members));
+  return file_object::written(kVersion, std::move(members));
 }
 
 template <class Message, class Make>
 Read<Message> read(std::string_view json, std::initializer_list<std::string_view> names, Make make) {
-  return file_object::read<Message>(json, kFormat, names, make);
+  return file_object::read<Message>(json, kVersion, names, make);
 }
 
 std::string nonce(const Field& object) {

@@ -5,8 +5,8 @@ namespace {
 
 using namespace std::chrono_literals;
 
-constexpr Milliseconds kFlash = 200ms, kBetween = 300ms, kAfter = 1200ms;  // after a digit or a dot
-constexpr Milliseconds kLong = 1000ms, kBefore = 1500ms;                   // before each time
+constexpr Milliseconds kDigitFlash = 200ms, kBetween = 300ms, kAfter = 1200ms;  // after a digit or a dot
+constexpr Milliseconds kLong = 1000ms, kBefore = 1500ms;                        // before each time
 
 void add_flashes(std::vector<Step>& steps, int count, Milliseconds length) {
   for (int i = 0; i < count; ++i) {
@@ -23,7 +23,7 @@ std::vector<Step> address_digits(std::string_view address) {
     steps.push_back({false, kBefore});
     for (const char c : address) {
       if (c == '.') add_flashes(steps, 1, kLong);
-      if (c >= '0' && c <= '9') add_flashes(steps, c == '0' ? 10 : c - '0', kFlash);
+      if (c >= '0' && c <= '9') add_flashes(steps, c == '0' ? 10 : c - '0', kDigitFlash);
     }
   }
   return steps;

@@ -10,14 +10,14 @@ using namespace std::chrono_literals;
 
 // A blink is a whole number of steps, and lit first. "Slow" and "fast" are four to one, "rush" is too fast to
 // count; "flash" is mostly dark, "wink" mostly lit.
-constexpr Step kOff[] = {{false, 1s}};
-constexpr Step kOn[] = {{true, 1s}};
-constexpr Step kSlow[] = {{true, 500ms}, {false, 500ms}};
-constexpr Step kFast[] = {{true, 125ms}, {false, 125ms}};
-constexpr Step kTwice[] = {{true, 125ms}, {false, 125ms}, {true, 125ms}, {false, 625ms}};
-constexpr Step kFlash[] = {{true, 125ms}, {false, 1875ms}};
-constexpr Step kWink[] = {{true, 1750ms}, {false, 250ms}};
-constexpr Step kRush[] = {{true, 50ms}, {false, 50ms}};
+constexpr Step kOffSteps[] = {{false, 1s}};
+constexpr Step kOnSteps[] = {{true, 1s}};
+constexpr Step kSlowSteps[] = {{true, 500ms}, {false, 500ms}};
+constexpr Step kFastSteps[] = {{true, 125ms}, {false, 125ms}};
+constexpr Step kTwiceSteps[] = {{true, 125ms}, {false, 125ms}, {true, 125ms}, {false, 625ms}};
+constexpr Step kFlashSteps[] = {{true, 125ms}, {false, 1875ms}};
+constexpr Step kWinkSteps[] = {{true, 1750ms}, {false, 250ms}};
+constexpr Step kRushSteps[] = {{true, 50ms}, {false, 50ms}};
 
 }  // namespace
 
@@ -36,21 +36,21 @@ std::string_view name_of(Pattern pattern) {
 std::span<const Step> steps_of(Pattern pattern) {
   switch (pattern) {
     case Pattern::Off:
-      return kOff;
+      return kOffSteps;
     case Pattern::On:
-      return kOn;
+      return kOnSteps;
     case Pattern::Slow:
-      return kSlow;
+      return kSlowSteps;
     case Pattern::Fast:
-      return kFast;
+      return kFastSteps;
     case Pattern::Twice:
-      return kTwice;
+      return kTwiceSteps;
     case Pattern::Flash:
-      return kFlash;
+      return kFlashSteps;
     case Pattern::Wink:
-      return kWink;
+      return kWinkSteps;
     case Pattern::Rush:
-      return kRush;
+      return kRushSteps;
     case Pattern::Digits:
       break;
   }

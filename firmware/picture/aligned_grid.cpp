@@ -10,7 +10,6 @@
 namespace adit::picture {
 namespace {
 
-constexpr double kPixel = kMetresPerPixel[0];
 /// How far the far end of a row or column may lie off its axis.
 constexpr double kMostSkew = kPixel / 10;
 /// A cell's centre on a pixel's border belongs to the pixel after it. What floating point makes of that

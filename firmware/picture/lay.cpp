@@ -95,7 +95,6 @@ Area area_of(const Sheet::Part& part) {
   const auto left = std::ranges::find_if(columns, is_known) - columns.begin();
   const auto right = std::find_if(columns.rbegin(), columns.rend(), is_known).base() - columns.begin();
   const double x = part.at.x * double{kSide}, y = (part.at.y + 1) * double{kSide};
-  constexpr double kPixel = kMetresPerPixel[0];
   return {(x + static_cast<double>(left)) * kPixel, (y - bottom) * kPixel,
           (x + static_cast<double>(right)) * kPixel, (y - top) * kPixel};
 }

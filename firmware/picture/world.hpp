@@ -17,6 +17,7 @@ inline constexpr int kSide = 256;
 inline constexpr int kStep = 4;
 inline constexpr int kLevels = 3;
 inline constexpr std::array<double, kLevels> kMetresPerPixel{0.25, 1, 4};
+inline constexpr double kPixel = kMetresPerPixel[0];
 
 /// What lies farther from the frame's origin along x or y is not drawn: in metres, pixels and tiles of the
 /// base.

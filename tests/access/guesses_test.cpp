@@ -4,13 +4,14 @@
 
 #include <random>
 
+#include "access/start.hpp"
+
 namespace adit::access {
 namespace {
 
 using namespace std::chrono_literals;
 
-constexpr Instant kStart{1000h};
-constexpr Wait kNow{};
+constexpr Wait kAtOnce{};
 
 const Guesser kOne{.address = "10.0.0.5"};
 
@@ -28,9 +29,9 @@ constexpr Wait turn(Duration left) {
 
 TEST(Guesses, LeaveFiveTriesFree) {
   Guesses guesses;
-  for (int i = 0; i < 5; ++i) EXPECT_EQ(guesses.begin(kOne, kStart), kNow) << i;
+  for (int i = 0; i < 5; ++i) EXPECT_EQ(guesses.begin(kOne, kStart), kAtOnce) << i;
   EXPECT_EQ(guesses.begin(kOne, kStart), pause(1s));
-  EXPECT_EQ(guesses.begin(stranger(1), kStart + 1s), kNow) << "another address";
+  EXPECT_EQ(guesses.begin(stranger(1), kStart + 1s), kAtOnce) << "another address";
 }
 
 TEST(Guesses, DoubleTheWaitUpToAMinute) {
@@ -41,16 +42,16 @@ TEST(Guesses, DoubleTheWaitUpToAMinute) {
     EXPECT_EQ(guesses.begin(kOne, now), pause(wait));
     EXPECT_EQ(guesses.begin(kOne, now + wait - 1ns), pause(1ns)) << "being told to wait costs nothing";
     now += wait;
-    EXPECT_EQ(guesses.begin(kOne, now), kNow);
+    EXPECT_EQ(guesses.begin(kOne, now), kAtOnce);
   }
 }
 
 TEST(Guesses, AreForgivenByTheOperatorsPassword) {
   Guesses guesses;
-  for (int i = 0; i < 5; ++i) EXPECT_EQ(guesses.begin(kOne, kStart), kNow);
+  for (int i = 0; i < 5; ++i) EXPECT_EQ(guesses.begin(kOne, kStart), kAtOnce);
   guesses.succeeded(kOne, Role::Operator);
-  for (int i = 0; i < 5; ++i) EXPECT_EQ(guesses.begin(kOne, kStart + 10s), kNow);
-  EXPECT_NE(guesses.begin(kOne, kStart + 10s), kNow);
+  for (int i = 0; i < 5; ++i) EXPECT_EQ(guesses.begin(kOne, kStart + 10s), kAtOnce);
+  EXPECT_NE(guesses.begin(kOne, kStart + 10s), kAtOnce);
 }
 
 TEST(Guesses, OfTheOperatorsAreNoneOfWhoHasTheViewers) {
@@ -59,7 +60,7 @@ TEST(Guesses, OfTheOperatorsAreNoneOfWhoHasTheViewers) {
     const Guesser viewer{.address = "10.0.0.5", .device = device};
     int tries = 0;
     for (Instant now = kStart; now < kStart + 1h; now += 10ms) {  // a guess, a right one, a guess, ...
-      if (guesses.begin(viewer, now) != kNow) continue;
+      if (guesses.begin(viewer, now) != kAtOnce) continue;
       if (++tries % 2 == 0) guesses.succeeded(viewer, Role::Viewer);
     }
     EXPECT_LT(tries, 150) << device;
@@ -71,7 +72,7 @@ TEST(Guesses, AreOneASecondInAll) {
   Guesses guesses;
   int tries = 0;
   for (auto now = kStart; now < kStart + 2h; now += 100ms) {
-    for (int i = 0; i < 10; ++i) tries += guesses.begin(stranger(random() % 60'000), now) == kNow ? 1 : 0;
+    for (int i = 0; i < 10; ++i) tries += guesses.begin(stranger(random() % 60'000), now) == kAtOnce ? 1 : 0;
   }
   EXPECT_LE(tries, 7200 + Guesses::kSaved);
 }
@@ -93,7 +94,7 @@ TEST(Guesses, GiveEachAddressItsTurnAndSayWhen) {
     all_ask(now);
     EXPECT_EQ(guesses.begin(kOne, now), turn(its - now)) << "asking again neither helps nor harms";
   }
-  EXPECT_EQ(guesses.begin(kOne, its), kNow);
+  EXPECT_EQ(guesses.begin(kOne, its), kAtOnce);
 }
 
 TEST(Guesses, KeepATurnForSomeSeconds) {
@@ -104,7 +105,7 @@ TEST(Guesses, KeepATurnForSomeSeconds) {
     ASSERT_EQ(told, turn(36s));
     const Instant then = kStart + told.left + late;
     for (int i = 100; i < 200; ++i) (void)guesses.begin(stranger(i), then);
-    EXPECT_EQ(guesses.begin(kOne, then) == kNow, late == Guesses::kLate) << late.count();
+    EXPECT_EQ(guesses.begin(kOne, then) == kAtOnce, late == Guesses::kLate) << late.count();
   }
 }
 
@@ -114,16 +115,16 @@ TEST(Guesses, LetAKnownDeviceTryAtOnce) {
     for (int i = 0; i < 300; ++i) (void)guesses.begin(stranger(i), now);
   }
   const Guesser known{.address = "10.0.0.5", .device = 1};
-  for (int i = 0; i < 5; ++i) EXPECT_EQ(guesses.begin(known, kStart + 1min), kNow);
+  for (int i = 0; i < 5; ++i) EXPECT_EQ(guesses.begin(known, kStart + 1min), kAtOnce);
   EXPECT_EQ(guesses.begin(known, kStart + 1min), pause(1s)) << "but it guesses no faster";
-  EXPECT_EQ(guesses.begin({.address = "10.0.0.5", .device = 2}, kStart + 1min), kNow) << "another device";
+  EXPECT_EQ(guesses.begin({.address = "10.0.0.5", .device = 2}, kStart + 1min), kAtOnce) << "another device";
 }
 
 TEST(Guesses, LetWhoIsAtTheBoxTryAtOnceAndNobodyWhoWasWrong) {
   Guesses guesses;
   for (int i = 0; i < 120; ++i) (void)guesses.begin(stranger(i), kStart);
   EXPECT_TRUE(guesses.begin(kOne, kStart).for_others);
-  EXPECT_EQ(guesses.begin({.address = kOne.address, .at_box = true}, kStart), kNow);
+  EXPECT_EQ(guesses.begin({.address = kOne.address, .at_box = true}, kStart), kAtOnce);
   Guesser guessing = stranger(0);
   guessing.at_box = true;
   EXPECT_TRUE(guesses.begin(guessing, kStart).for_others);
@@ -140,8 +141,8 @@ TEST(Guesses, HaveNoTurnFurtherAwayThanTheirNumber) {
 TEST(Guesses, AreForgottenAfterAQuietQuarterOfAnHour) {
   Guesses guesses;
   for (int i = 0; i < 5; ++i) (void)guesses.begin(kOne, kStart);
-  EXPECT_NE(guesses.begin(kOne, kStart), kNow);
-  for (int i = 0; i < 5; ++i) EXPECT_EQ(guesses.begin(kOne, kStart + 15min), kNow);
+  EXPECT_NE(guesses.begin(kOne, kStart), kAtOnce);
+  for (int i = 0; i < 5; ++i) EXPECT_EQ(guesses.begin(kOne, kStart + 15min), kAtOnce);
 }
 
 }  // namespace

@@ -5,6 +5,7 @@
 #include <random>
 
 #include "access/sessions.hpp"
+#include "access/start.hpp"
 
 namespace adit::access {
 namespace {
@@ -12,8 +13,6 @@ namespace {
 using namespace std::chrono_literals;
 using testing::HasSubstr;
 using testing::Not;
-
-constexpr Instant kStart{1000h};
 
 class SessionFileTest : public testing::Test {
  protected:

@@ -5,12 +5,12 @@
 #include <random>
 #include <set>
 
+#include "access/start.hpp"
+
 namespace adit::access {
 namespace {
 
 using namespace std::chrono_literals;
-
-constexpr Instant kStart{1000h};
 
 Secret secret(std::mt19937_64& random) {
   Secret secret;

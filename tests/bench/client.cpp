@@ -13,14 +13,15 @@
 #include "icd/sentence.hpp"
 
 namespace adit::bench {
-namespace {
-
-constexpr timeval kPatience{.tv_sec = 10, .tv_usec = 0};
-constexpr std::string_view kEndOfHead = "\r\n\r\n";
 
 std::unexpected<std::string> system_error(std::string_view doing) {
   return std::unexpected(icd::sentence(doing, ": ", std::strerror(errno)));
 }
+
+namespace {
+
+constexpr timeval kPatience{.tv_sec = 10, .tv_usec = 0};
+constexpr std::string_view kEndOfHead = "\r\n\r\n";
 
 /// On a lattice of 10 m. Halves are exact, so that any reader gives back these digits.
 std::string position(std::uint64_t number) {

@@ -12,6 +12,9 @@ namespace adit::bench {
 
 using Clock = std::chrono::steady_clock;
 
+/// With what errno says.
+std::unexpected<std::string> system_error(std::string_view doing);
+
 /// An artifact report that no other report of the run is like: every one lies 10 m from all others.
 std::string report_body(std::uint64_t number);
 

@@ -11,8 +11,6 @@
 #include <fstream>
 #include <string_view>
 
-#include "icd/sentence.hpp"
-
 namespace adit::bench {
 
 std::chrono::nanoseconds cpu_time(pid_t process) {
@@ -26,14 +24,6 @@ std::chrono::nanoseconds cpu_time(pid_t process) {
   }
   return std::chrono::nanoseconds(sum);
 }
-
-namespace {
-
-std::unexpected<std::string> system_error(std::string_view doing) {
-  return std::unexpected(icd::sentence(doing, ": ", std::strerror(errno)));
-}
-
-}  // namespace
 
 std::expected<FlushProbe, std::string> FlushProbe::begin(const std::string& folder) {
   const std::string path = folder + "/flush-probe";

@@ -16,7 +16,7 @@ icd::Checked<Document> decode_hex(std::string_view hex, std::size_t size = 10000
 
 /// RFC 8949 appendix A, and what it means in JSON: without tags, with null for undefined and for simple
 /// values, and without members whose keys are no text.
-const std::vector<std::pair<std::string, std::string>> kGood = {
+const std::vector<std::pair<std::string, std::string>> kGoodCbor = {
     {"00", "0"},
     {"01", "1"},
     {"0a", "10"},
@@ -109,7 +109,7 @@ const std::vector<std::pair<std::string, std::string>> kGood = {
 };
 
 TEST(CborBody, OfEachExampleOfTheRfcIsTakenAndMeansWhatItSays) {
-  for (const auto& [hex, meaning] : kGood) {
+  for (const auto& [hex, meaning] : kGoodCbor) {
     for (const std::size_t size : {1, 2, 7, 1000000}) {
       for (const Split split : {Split::Nothing, Split::MapData}) {
         const auto document = decode_hex(hex, size, split);
@@ -171,7 +171,7 @@ TEST(CborBody, KeepsNumbersThatAreNoneForTheReaderToRefuse) {
 }
 
 /// RFC 8949 appendix F, and more of each kind.
-const std::vector<std::pair<std::string, std::string>> kBad = {
+const std::vector<std::pair<std::string, std::string>> kBadCbor = {
     {"", "0: an empty document"},
     // The end comes too early in a head
     {"18", "1: the document is cut short"},
@@ -283,7 +283,7 @@ const std::vector<std::pair<std::string, std::string>> kBad = {
 };
 
 TEST(CborBody, ThatIsNotWellFormedIsRefusedWith400AndTheByteItIsAbout) {
-  for (const auto& [hex, why] : kBad) {
+  for (const auto& [hex, why] : kBadCbor) {
     for (const std::size_t size : {1, 2, 7, 1000000}) {
       for (const Split split : {Split::Nothing, Split::MapData}) {
         const auto document = decode_hex(hex, size, split);

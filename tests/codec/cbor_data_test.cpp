@@ -14,13 +14,13 @@ std::string map_with(std::string_view hex) {
   return from_hex(std::string("a1").append(kMsg).append("a1").append(kData).append(hex));
 }
 
-struct Case {
+struct CborCase {
   std::string body;
   std::string data;
   DataForm form = DataForm::ByteString;
 };
 
-const std::vector<Case> kGood = {
+const std::vector<CborCase> kGoodCborData = {
     {map_with("43616263"), "abc"},
     {map_with("40"), ""},
     {map_with("5f4161426263ff"), "abc"},  // in chunks
@@ -49,7 +49,7 @@ const std::vector<Case> kGood = {
 };
 
 TEST(CborData, OfEachFormIsGivenApartAndTheRestHasAMarkInItsPlace) {
-  for (const auto& [body, data, form] : kGood) {
+  for (const auto& [body, data, form] : kGoodCborData) {
     for (const std::size_t size : {1, 2, 7, 1000000}) {
       const auto document = decode_in_chunks(kCborBody, Split::MapData, body, size);
       ASSERT_TRUE(document) << document.error().sentence;

@@ -39,38 +39,41 @@ inline std::string from_hex(std::string_view digits) {
   return bytes;
 }
 
-/// Whether `value` says what `json` says: the same members in the same order, and numbers of the same value.
-inline bool says(const Value& value, const nlohmann::ordered_json& json) {
+/// Whether `value` says what `expected` says: the same members in the same order, and numbers of the same
+/// value.
+inline bool says(const Value& value, const nlohmann::ordered_json& expected) {
   if (const auto* whole = std::get_if<std::int64_t>(&value.is)) {
-    return json.is_number() && json.get<double>() == static_cast<double>(*whole) &&
-           (json.is_number_float() || json.get<std::int64_t>() == *whole);
+    return expected.is_number() && expected.get<double>() == static_cast<double>(*whole) &&
+           (expected.is_number_float() || expected.get<std::int64_t>() == *whole);
   }
   if (const auto* whole = std::get_if<std::uint64_t>(&value.is)) {
-    return json.is_number_unsigned() && json.get<std::uint64_t>() == *whole;
+    return expected.is_number_unsigned() && expected.get<std::uint64_t>() == *whole;
   }
   if (const auto* number = std::get_if<double>(&value.is)) {
-    return json.is_number() && json.get<double>() == *number;
+    return expected.is_number() && expected.get<double>() == *number;
   }
   if (const auto* text = std::get_if<std::string>(&value.is)) {
-    return json.is_string() && json.get_ref<const std::string&>() == *text;
+    return expected.is_string() && expected.get_ref<const std::string&>() == *text;
   }
-  if (const auto* boolean = std::get_if<bool>(&value.is)) return json.is_boolean() && json == *boolean;
+  if (const auto* boolean = std::get_if<bool>(&value.is))
+    return expected.is_boolean() && expected == *boolean;
   if (const auto* bytes = std::get_if<Value::Bytes>(&value.is)) {
-    return json.is_binary() && std::ranges::equal(json.get_binary(), bytes->bytes);
+    return expected.is_binary() && std::ranges::equal(expected.get_binary(), bytes->bytes);
   }
   if (const auto* array = std::get_if<Value::Array>(&value.is)) {
-    return json.is_array() && std::equal(array->begin(), array->end(), json.begin(), json.end(), says);
+    return expected.is_array() &&
+           std::equal(array->begin(), array->end(), expected.begin(), expected.end(), says);
   }
   if (const auto* object = std::get_if<Value::Object>(&value.is)) {
-    if (!json.is_object() || json.size() != object->size()) return false;
+    if (!expected.is_object() || expected.size() != object->size()) return false;
     auto member = object->begin();
-    for (const auto& [key, child] : json.items()) {
+    for (const auto& [key, child] : expected.items()) {
       if (member->first != key || !says(member->second, child)) return false;
       ++member;
     }
     return true;
   }
-  return std::holds_alternative<std::nullptr_t>(value.is) && json.is_null();
+  return std::holds_alternative<std::nullptr_t>(value.is) && expected.is_null();
 }
 
 /// The value at root.msg.data; nullptr where there is none.

@@ -9,7 +9,7 @@ namespace {
 
 using namespace std::string_literals;
 
-const std::vector<std::string> kGood = {
+const std::vector<std::string> kGoodJson = {
     // Documents of every kind
     "{}", "[]", "null", "true", "false", "0", "\"\"", " \t\r\n[ ] \n", "[null,true,false]",
     "{\"a\":1,\"b\":[2,{\"c\":{}}]}", "{\"\":0}", "{\"a\":{\"a\":{\"a\":[[[]]]}}}",
@@ -32,7 +32,7 @@ const std::vector<std::string> kGood = {
     R"({"msg":{"data":{"data":"!"}}})", R"({"msg":{"data":12}})", R"({"msg":{"data":true,"b":[1000]}})"};
 
 TEST(JsonBody, OfAnyGoodKindIsTakenAndMeansWhatAnotherParserReads) {
-  for (const std::string& text : kGood) {
+  for (const std::string& text : kGoodJson) {
     const auto expected = nlohmann::ordered_json::parse(text);
     for (const std::size_t size : {1, 2, 7, 1000000}) {
       for (const Split split : {Split::Nothing, Split::MapData}) {
@@ -45,7 +45,7 @@ TEST(JsonBody, OfAnyGoodKindIsTakenAndMeansWhatAnotherParserReads) {
   }
 }
 
-const std::vector<std::pair<std::string, std::string>> kBad = {
+const std::vector<std::pair<std::string, std::string>> kBadJson = {
     // Nothing, too little, too much
     {"", "0: an empty document"},
     {"  ", "2: the document is cut short"},
@@ -139,7 +139,7 @@ const std::vector<std::pair<std::string, std::string>> kBad = {
 };
 
 TEST(JsonBody, ThatIsNotWellFormedIsRefusedWith400AndTheByteItIsAbout) {
-  for (const auto& [text, why] : kBad) {
+  for (const auto& [text, why] : kBadJson) {
     for (const std::size_t size : {1, 2, 7, 1000000}) {
       for (const Split split : {Split::Nothing, Split::MapData}) {
         const auto document = decode_in_chunks(kJsonBody, split, text, size);

@@ -6,33 +6,34 @@
 namespace adit::codec::test {
 namespace {
 
-struct Case {
+struct JsonCase {
   std::string body;
   std::string data;
   DataForm form = DataForm::Base64;
 };
 
-const std::vector<Case> kGood = {
-    Case{R"({"msg":{"data":"Zm9vYmFy"}})", "foobar"},
-    Case{R"({"msg":{"data":""}})", ""},
-    Case{R"({"a":[1,{"msg":3}],"msg":{"b":{"data":7},"data":"Zg==","c":"d"},"e":0})", "f"},
-    Case{R"({"msg":{"data":"Zg"}})", "f"},                   // no padding
-    Case{R"({"msg":{"data":"\/\/\/\/"}})", "\xff\xff\xff"},  // as some escape slashes
-    Case{R"({"msg":{"data":"\u002B\u002bAAZg\u003d\u003d"}})",
-         std::string("\xfb\xe0\0f", 4)},  // as Gson does
-    Case{R"({"\u006Dsg":{"d\u0061ta":"Zm8="}})", "fo"},
-    Case{"\n{ \"msg\" : { \"data\" : \"Zm9v\" , \"x\" : 1 } }\n", "foo"},
-    Case{R"({"msg":{"data":[]}})", "", DataForm::Integers},
-    Case{R"({"msg":{"data":[0,100,-1,255,97]}})",
-         std::string("\0d\xff\xff"
-                     "a",
-                     5),
-         DataForm::Integers},
-    Case{"{\"msg\":{\"data\": [ 97 ,\n98\t, 99 ] , \"x\":[300]}}", "abc", DataForm::Integers},
-    Case{R"({"msg":{"data":[97.0,9.8e1,-1.0,-0,0.99E2]}})", std::string("ab\xff\0c", 5), DataForm::Integers}};
+const std::vector<JsonCase> kGoodJsonData = {
+    JsonCase{R"({"msg":{"data":"Zm9vYmFy"}})", "foobar"},
+    JsonCase{R"({"msg":{"data":""}})", ""},
+    JsonCase{R"({"a":[1,{"msg":3}],"msg":{"b":{"data":7},"data":"Zg==","c":"d"},"e":0})", "f"},
+    JsonCase{R"({"msg":{"data":"Zg"}})", "f"},                   // no padding
+    JsonCase{R"({"msg":{"data":"\/\/\/\/"}})", "\xff\xff\xff"},  // as some escape slashes
+    JsonCase{R"({"msg":{"data":"\u002B\u002bAAZg\u003d\u003d"}})",
+             std::string("\xfb\xe0\0f", 4)},  // as Gson does
+    JsonCase{R"({"\u006Dsg":{"d\u0061ta":"Zm8="}})", "fo"},
+    JsonCase{"\n{ \"msg\" : { \"data\" : \"Zm9v\" , \"x\" : 1 } }\n", "foo"},
+    JsonCase{R"({"msg":{"data":[]}})", "", DataForm::Integers},
+    JsonCase{R"({"msg":{"data":[0,100,-1,255,97]}})",
+             std::string("\0d\xff\xff"
+                         "a",
+                         5),
+             DataForm::Integers},
+    JsonCase{"{\"msg\":{\"data\": [ 97 ,\n98\t, 99 ] , \"x\":[300]}}", "abc", DataForm::Integers},
+    JsonCase{R"({"msg":{"data":[97.0,9.8e1,-1.0,-0,0.99E2]}})", std::string("ab\xff\0c", 5),
+             DataForm::Integers}};
 
 TEST(JsonData, OfEachFormIsGivenApartAndTheRestHasAMarkInItsPlace) {
-  for (const auto& [body, data, form] : kGood) {
+  for (const auto& [body, data, form] : kGoodJsonData) {
     for (const std::size_t size : {1, 2, 7, 1000000}) {
       const auto document = decode_in_chunks(kJsonBody, Split::MapData, body, size);
       ASSERT_TRUE(document) << document.error().sentence << " in " << body;
@@ -59,7 +60,7 @@ TEST(JsonData, MarksTheMemberThatHeldItWhenMsgIsGivenTwice) {
   EXPECT_TRUE(std::holds_alternative<Value::SplitOut>(std::get<Value::Object>(second.is)[0].second.is));
 }
 
-const std::vector<std::pair<std::string, std::string>> kBad = {
+const std::vector<std::pair<std::string, std::string>> kBadJsonData = {
     {R"("Zm9v YmFy")", ": character 4: a space is not of the base64 alphabet"},
     {R"("Zm9v\nYmFy")", ": character 4: byte 0x0a is not of the base64 alphabet"},
     {R"("Zm9-")", ": character 3: '-' is not of the base64 alphabet"},
@@ -85,7 +86,7 @@ const std::vector<std::pair<std::string, std::string>> kBad = {
 };
 
 TEST(JsonData, OfAnotherKindIsRefusedWith422AndTheElementItIsAbout) {
-  for (const auto& [data, why] : kBad) {
+  for (const auto& [data, why] : kBadJsonData) {
     for (const std::size_t size : {1, 2, 7, 1000000}) {
       const auto document =
           decode_in_chunks(kJsonBody, Split::MapData, R"({"msg":{"data":)" + data + "}}", size);

@@ -1,9 +1,9 @@
 // A row for each rule of the ICD about POST /map/update, sent as JSON and as CBOR.
 #include <gtest/gtest.h>
 
-#include <functional>
 #include <limits>
 
+#include "codec/icd_row.hpp"
 #include "codec/messages.hpp"
 #include "codec/read.hpp"
 #include "scarce_memory.hpp"
@@ -12,9 +12,10 @@ namespace adit::codec {
 namespace {
 
 using test::Bytes;
+using test::IcdRow;
 using test::json;
+using test::kNan;
 
-constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
 
 icd::Checked<icd::MapUpdate> read(Format format, const std::string& body, const icd::Rules& rules = {}) {
@@ -23,27 +24,21 @@ icd::Checked<icd::MapUpdate> read(Format format, const std::string& body, const 
   return read_map_update(std::move(*document), rules);
 }
 
-struct Row {
-  const char* section;
-  std::function<void(json&)> change;
-  const char* sentence;
-};
-
 /// What both formats answer to each row. NaN and infinities exist in CBOR alone.
-void expect_answers(std::span<const Row> rows, const json& good, const icd::Rules& rules = {}) {
-  for (const Row& row : rows) {
+void expect_answers(std::span<const IcdRow> rows, const json& good, const icd::Rules& rules = {}) {
+  for (const IcdRow& row : rows) {
     json message = good;
     row.change(message);
     EXPECT_EQ(test::sentence_of(read(Format::Cbor, test::as_cbor(message), rules)), row.sentence)
         << "ICD " << row.section << ", CBOR";
-    if (std::string(row.sentence).ends_with("nan") || std::string(row.sentence).ends_with("inf")) continue;
+    if (row.sentence.ends_with("nan") || row.sentence.ends_with("inf")) continue;
     EXPECT_EQ(test::sentence_of(read(Format::Json, test::as_json(message), rules)), row.sentence)
         << "ICD " << row.section << ", JSON";
   }
 }
 
 TEST(ReadMapUpdate, RefusesWhatTheIcdForbidsInAnyMap) {
-  const Row rows[] = {
+  const IcdRow rows[] = {
       {"6.4", [](json&) {}, "taken"},
       {"6.4", [](json& m) { m = json::array(); }, "the body: expected an object, got an array"},
       {"6.4", [](json& m) { m = "map"; }, "the body: expected an object, got a string"},
@@ -101,7 +96,7 @@ TEST(ReadMapUpdate, RefusesWhatTheIcdForbidsInAnyMap) {
 }
 
 TEST(ReadMapUpdate, RefusesWhatTheIcdForbidsInAGrid) {
-  const Row rows[] = {
+  const IcdRow rows[] = {
       {"6.3.1", [](json& m) { m["msg"].erase("info"); }, "msg.info: missing"},
       {"6.3.1", [](json& m) { m["msg"]["info"] = 3; }, "msg.info: expected an object, got a whole number"},
       {"6.3.1", [](json& m) { m["msg"]["info"].erase("resolution"); }, "msg.info.resolution: missing"},
@@ -192,7 +187,7 @@ TEST(ReadMapUpdate, RefusesWhatTheIcdForbidsInAGrid) {
 }
 
 TEST(ReadMapUpdate, RefusesWhatTheIcdForbidsInACloud) {
-  const Row rows[] = {
+  const IcdRow rows[] = {
       {"6.3.2", [](json& m) { m["msg"]["origin"] = 1; },
        "msg.origin: expected an object, got a whole number"},
       {"6.3.2", [](json& m) { m["msg"]["origin"]["orientation"]["w"] = nullptr; },
@@ -264,7 +259,7 @@ TEST(ReadMapUpdate, RefusesWhatTheIcdForbidsInACloud) {
 TEST(ReadMapUpdate, RefusesACloudOverTheLargestMap) {
   icd::Rules rules;
   rules.map_bytes = 1600;
-  const Row rows[] = {
+  const IcdRow rows[] = {
       {"setting", [](json& m) { m["msg"]["data"] = json::binary(Bytes(1600, 0)); }, "taken"},
       {"setting", [](json& m) { m["msg"]["data"] = json::binary(Bytes(1616, 0)); },
        "msg.data: expected at most 1600 bytes (the setting rules.map_bytes), got 1616"},
@@ -307,7 +302,7 @@ TEST(ReadMapUpdate, KeepsNothingOfGzippedDataThatWillBeRefused) {
 }
 
 TEST(ReadMapUpdate, RefusesDataOfAnotherKind) {  // ICD 6.3 (a), (b)
-  const Row rows[] = {
+  const IcdRow rows[] = {
       {"6.3", [](json& m) { m["msg"]["data"] = 5; },
        "msg.data: expected a base64 string (JSON) or a byte string (CBOR), got a whole number"},
       {"6.3", [](json& m) { m["msg"]["data"] = nullptr; },
@@ -340,7 +335,7 @@ TEST(ReadMapUpdate, RefusesAMemberGivenTwiceWhereTheIcdReadsIt) {
 }
 
 TEST(ReadMapUpdate, TakesWhatClientsSend) {
-  const Row rows[] = {
+  const IcdRow rows[] = {
       {"name absent", [](json& m) { m.erase("name"); }, "taken"},
       {"name null", [](json& m) { m["name"] = nullptr; }, "taken"},
       {"name empty", [](json& m) { m["name"] = ""; }, "taken"},
@@ -419,7 +414,7 @@ TEST(ReadMapUpdate, MakesAnAllZeroQuaternionTheIdentity) {
 TEST(ReadMapUpdate, TakesAnyFrameWhereTheSettingsRewriteIt) {
   icd::Rules rules;
   rules.rewrite_frame_id = true;
-  const Row rows[] = {{"6.1", [](json& m) { m["msg"]["header"]["frame_id"] = "map"; }, "taken"}};
+  const IcdRow rows[] = {{"6.1", [](json& m) { m["msg"]["header"]["frame_id"] = "map"; }, "taken"}};
   expect_answers(rows, test::good_grid(), rules);
 }
 

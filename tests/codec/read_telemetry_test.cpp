@@ -1,18 +1,16 @@
 // A row for each rule of the ICD about POST /state/update and POST /markers/update, as JSON and as CBOR.
 #include <gtest/gtest.h>
 
-#include <functional>
-#include <limits>
-
+#include "codec/icd_row.hpp"
 #include "codec/messages.hpp"
 #include "codec/read.hpp"
 
 namespace adit::codec {
 namespace {
 
+using test::IcdRow;
 using test::json;
-
-constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
+using test::kNan;
 
 template <class Message>
 using Reader = icd::Checked<Message> (*)(const Document&, const icd::Rules&);
@@ -25,28 +23,22 @@ icd::Checked<Message> read(Reader<Message> reader, Format format, const std::str
   return reader(*document, rules);
 }
 
-struct Row {
-  const char* section;
-  std::function<void(json&)> change;
-  const char* sentence;
-};
-
 template <class Message>
-void expect_answers(Reader<Message> reader, std::span<const Row> rows, const json& good,
+void expect_answers(Reader<Message> reader, std::span<const IcdRow> rows, const json& good,
                     const icd::Rules& rules = {}) {
-  for (const Row& row : rows) {
+  for (const IcdRow& row : rows) {
     json message = good;
     row.change(message);
     EXPECT_EQ(test::sentence_of(read(reader, Format::Cbor, test::as_cbor(message), rules)), row.sentence)
         << "ICD " << row.section << ", CBOR";
-    if (std::string(row.sentence).ends_with("nan")) continue;  // JSON has none
+    if (row.sentence.ends_with("nan")) continue;  // JSON has none
     EXPECT_EQ(test::sentence_of(read(reader, Format::Json, test::as_json(message), rules)), row.sentence)
         << "ICD " << row.section << ", JSON";
   }
 }
 
 TEST(ReadStateUpdate, RefusesWhatTheIcdForbids) {
-  const Row rows[] = {
+  const IcdRow rows[] = {
       {"6.5", [](json&) {}, "taken"},
       {"6.5", [](json& m) { m["poses"] = json::array(); }, "taken"},
       {"6.5", [](json& m) { m.erase("header"); }, "taken"},
@@ -137,7 +129,7 @@ TEST(ReadStateUpdate, RefusesAMemberGivenTwiceInAnyObjectThatItReads) {
 }
 
 TEST(ReadMarkersUpdate, RefusesWhatTheIcdForbids) {
-  const Row rows[] = {
+  const IcdRow rows[] = {
       {"6.6", [](json&) {}, "taken"},
       {"6.6", [](json& m) { m["markers"] = json::array(); }, "taken"},
       {"6.6", [](json& m) { m.erase("markers"); }, "markers: missing"},
@@ -230,7 +222,7 @@ TEST(ReadMarkersUpdate, KeepsWhatItSays) {
 TEST(ReadMarkersUpdate, RewritesTheFrameOfEachMarkerWhereTheSettingsSaySo) {
   icd::Rules rules;
   rules.rewrite_frame_id = true;
-  const Row rows[] = {{"6.1", [](json& m) { m["markers"][0]["header"]["frame_id"] = "map"; }, "taken"}};
+  const IcdRow rows[] = {{"6.1", [](json& m) { m["markers"][0]["header"]["frame_id"] = "map"; }, "taken"}};
   expect_answers(read_markers_update, rows, test::good_markers(), rules);
 }
 

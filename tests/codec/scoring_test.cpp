@@ -3,9 +3,9 @@
 
 #include <cmath>
 #include <cstring>
-#include <functional>
 #include <limits>
 
+#include "codec/icd_row.hpp"
 #include "codec/messages.hpp"
 #include "codec/read.hpp"
 #include "codec/write.hpp"
@@ -13,9 +13,10 @@
 namespace adit::codec {
 namespace {
 
+using test::IcdRow;
 using test::json;
 
-icd::Checked<icd::ArtifactReport> read(const std::string& body, const icd::Rules& rules = {}) {
+icd::Checked<icd::ArtifactReport> read_report(const std::string& body, const icd::Rules& rules = {}) {
   const auto document = decode({}, Split::Nothing, body);
   if (!document) return std::unexpected(document.error());
   return read_artifact_report(*document, rules);
@@ -26,19 +27,13 @@ std::string why_not(const std::expected<Reply, std::string>& reply) {
   return reply ? "understood" : reply.error();
 }
 
-struct Row {
-  const char* section;
-  std::function<void(json&)> change;
-  std::string sentence;
-};
-
 const std::string kTheTen =
     "type: expected one of Survivor, Cell Phone, Backpack, Drill, Fire Extinguisher, Gas, Vent, Helmet, "
     "Rope, "
     "Cube, got ";
 
 TEST(ReadArtifactReport, RefusesWhatTheIcdForbids) {
-  const Row rows[] = {
+  const IcdRow rows[] = {
       {"5.2", [](json&) {}, "taken"},
       {"5.2", [](json& m) { m["name"] = "robot1"; }, "taken"},  // as in the ICD's own example
       {"5.2", [](json& m) { m["x"] = 1011; }, "taken"},
@@ -57,16 +52,16 @@ TEST(ReadArtifactReport, RefusesWhatTheIcdForbids) {
       {"5.2", [](json& m) { m["type"] = ""; }, kTheTen + "\"\""},
       {"5.2", [](json& m) { m["type"] = "Cell\nPhone"; }, kTheTen + "\"Cell?Phone\""},
   };
-  for (const Row& row : rows) {
+  for (const IcdRow& row : rows) {
     json message = test::good_report();
     row.change(message);
-    EXPECT_EQ(test::sentence_of(read(message.dump())), row.sentence) << "ICD " << row.section;
+    EXPECT_EQ(test::sentence_of(read_report(message.dump())), row.sentence) << "ICD " << row.section;
   }
 }
 
 TEST(ReadArtifactReport, RefusesAMemberGivenTwice) {
-  EXPECT_EQ(test::sentence_of(read(R"({"x":1,"y":2,"z":3,"x":4,"type":"Rope"})")), "x: given twice");
-  EXPECT_EQ(test::sentence_of(read(R"({"x":1,"y":2,"z":3,"type":"Gas","type":"Rope"})")),
+  EXPECT_EQ(test::sentence_of(read_report(R"({"x":1,"y":2,"z":3,"x":4,"type":"Rope"})")), "x: given twice");
+  EXPECT_EQ(test::sentence_of(read_report(R"({"x":1,"y":2,"z":3,"type":"Gas","type":"Rope"})")),
             "type: given twice");
 }
 
@@ -76,7 +71,7 @@ TEST(ReadArtifactReport, TakesOtherTypesWhereTheSettingsForwardThem) {
   const auto answer = [&](const std::string& type) {
     json message = test::good_report();
     message["type"] = type;
-    return test::sentence_of(read(message.dump(), rules));
+    return test::sentence_of(read_report(message.dump(), rules));
   };
   EXPECT_EQ(answer("test"), "taken");
   EXPECT_EQ(answer(std::string(64, 'a')), "taken");
@@ -86,7 +81,7 @@ TEST(ReadArtifactReport, TakesOtherTypesWhereTheSettingsForwardThem) {
 }
 
 TEST(ReadArtifactReport, KeepsTheTypeAsItsSenderWroteIt) {
-  const auto report = read(test::good_report().dump());
+  const auto report = read_report(test::good_report().dump());
   ASSERT_TRUE(report.has_value());
   EXPECT_EQ(*report, (icd::ArtifactReport{.type = "backpack", .position = {1011.242, -244.433, -10.011}}));
 }
@@ -98,7 +93,7 @@ TEST(WriteArtifactReport, WritesTheIcdsExample) {
 
 TEST(WriteArtifactReport, WritesFloatsAsWhatTheyAre) {  // ICD 5.2; a whole number is not one to every server
   const auto written = [](const char* x) {
-    const auto report = read(std::string(R"({"x":)") + x + R"(,"y":0,"z":-0.0,"type":"Rope"})");
+    const auto report = read_report(std::string(R"({"x":)") + x + R"(,"y":0,"z":-0.0,"type":"Rope"})");
     return report ? write_artifact_report(*report) : report.error().sentence;
   };
   const auto expected = [](const char* x) {
@@ -128,7 +123,7 @@ TEST(WriteArtifactReport, GivesTheSameDoublesBack) {
     };
     const icd::ArtifactReport report{.type = "Rope", .position = {number(), number(), number()}};
     const std::string body = write_artifact_report(report);
-    const auto again = read(body);
+    const auto again = read_report(body);
     ASSERT_TRUE(again.has_value()) << body;
     EXPECT_EQ(*again, report) << body;
     const json by_another = json::parse(body);

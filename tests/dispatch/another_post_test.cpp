@@ -11,9 +11,6 @@ using testing::AllOf;
 using testing::EndsWith;
 using testing::HasSubstr;
 
-constexpr const char* kHere = "10.100.1.200:8000";
-constexpr const char* kThere = "10.100.2.200:8000";
-
 std::string meaning(const Scene& scene, const std::string& post = kThere) {
   return meaning_of_another_post(scene.reports(), post);
 }

@@ -11,7 +11,7 @@ icd::RunStatus status(std::int64_t remaining, std::int64_t score, double clock =
   return {score, clock, remaining, "adit"};
 }
 
-struct Case {
+struct EvidenceCase {
   const char* name;
   icd::RunStatus before;
   std::int64_t doubts;
@@ -20,11 +20,11 @@ struct Case {
   Finding finding;
   std::optional<std::int64_t> points_each;
 };
-void PrintTo(const Case& one, std::ostream* out) {
+void PrintTo(const EvidenceCase& one, std::ostream* out) {
   *out << one.name;
 }
 
-const Case kCases[] = {
+const EvidenceCase kEvidenceCases[] = {
     {"NothingChanged", status(20, 3), 1, {}, status(20, 3), Finding::NotRecorded, kUnknown},
     {"OneUsedAndNoPoint", status(20, 3), 1, {}, status(19, 3), Finding::Recorded, 0},
     {"OneUsedAndAPoint", status(20, 3), 1, {}, status(19, 4), Finding::Recorded, 1},
@@ -51,16 +51,16 @@ const Case kCases[] = {
     {"UsedUpBySentSince", status(2, 3), 1, {2, 0}, status(0, 3), Finding::Silent, kUnknown},
 };
 
-class EvidenceTable : public testing::TestWithParam<Case> {};
+class EvidenceTable : public testing::TestWithParam<EvidenceCase> {};
 
 TEST_P(EvidenceTable, SaysWhatTheCountsProve) {
-  const Case& one = GetParam();
+  const EvidenceCase& one = GetParam();
   const Evidence evidence = weigh(one.before, one.doubts, one.since, one.now);
   EXPECT_EQ(evidence.finding, one.finding) << evidence.why;
   EXPECT_EQ(evidence.points_each, one.points_each);
 }
 
-INSTANTIATE_TEST_SUITE_P(Counts, EvidenceTable, testing::ValuesIn(kCases),
+INSTANTIATE_TEST_SUITE_P(Counts, EvidenceTable, testing::ValuesIn(kEvidenceCases),
                          [](const auto& one) { return one.param.name; });
 
 TEST(Evidence, ShowsItsFigures) {

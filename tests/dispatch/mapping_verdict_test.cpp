@@ -13,17 +13,17 @@ using Verdict = MappingVerdict;
 constexpr const char* kPage = "<!DOCTYPE html><html>log in to the network</html>";
 constexpr const char* kSentence = R"("Cloud updates too frequent.")";
 
-struct Case {
+struct MappingCase {
   int status;
   std::string body;
   Verdict verdict;
   bool may_be_the_command_post;
 };
-void PrintTo(const Case& one, std::ostream* out) {
+void PrintTo(const MappingCase& one, std::ostream* out) {
   *out << one.status << " " << one.body;
 }
 
-const Case kCases[] = {
+const MappingCase kMappingCases[] = {
     // Taken: what the body is decides.
     {200, "null", Verdict::Taken, true},
     {200, "", Verdict::Taken, true},
@@ -73,14 +73,14 @@ const Case kCases[] = {
     {511, kPage, Verdict::Failing, true},
 };
 
-class MappingAnswers : public testing::TestWithParam<Case> {};
+class MappingAnswers : public testing::TestWithParam<MappingCase> {};
 
 TEST_P(MappingAnswers, MeanThisForAMessage) {
   const Body body = body_of(GetParam().body);
   EXPECT_EQ(mapping_verdict(GetParam().status, body), GetParam().verdict);
   EXPECT_EQ(may_be_the_command_post(GetParam().status, body), GetParam().may_be_the_command_post);
 }
-INSTANTIATE_TEST_SUITE_P(, MappingAnswers, testing::ValuesIn(kCases));
+INSTANTIATE_TEST_SUITE_P(, MappingAnswers, testing::ValuesIn(kMappingCases));
 
 }  // namespace
 }  // namespace adit::dispatch

@@ -9,16 +9,16 @@ namespace {
 
 constexpr const char* kReply = R"({"report_status": "scored", "score_change": 1})";
 
-struct Case {
+struct ReportCase {
   int status;
   const char* body;
   ReportEvent event;
 };
-void PrintTo(const Case& one, std::ostream* out) {
+void PrintTo(const ReportCase& one, std::ostream* out) {
   *out << one.status << " " << one.body;
 }
 
-const Case kCases[] = {
+const ReportCase kReportCases[] = {
     {200, kReply, ReportEvent::Recorded},
     {201, kReply, ReportEvent::Recorded},
     {201, "", ReportEvent::Lost},
@@ -53,14 +53,14 @@ const Case kCases[] = {
     {999, "", ReportEvent::Lost},
 };
 
-class VerdictTable : public testing::TestWithParam<Case> {};
+class VerdictTable : public testing::TestWithParam<ReportCase> {};
 
 TEST_P(VerdictTable, MeansThisForAReport) {
   const std::string body = GetParam().body;
   EXPECT_EQ(event_of(GetParam().status, codec::read_report_reply(body).has_value(), body_of(body)),
             GetParam().event);
 }
-INSTANTIATE_TEST_SUITE_P(Answers, VerdictTable, testing::ValuesIn(kCases));
+INSTANTIATE_TEST_SUITE_P(Answers, VerdictTable, testing::ValuesIn(kReportCases));
 
 Report with_answer(ReportState state, const std::string& answer, bool reconciled = false) {
   Report report{.state = state, .status = 201, .answer = answer};

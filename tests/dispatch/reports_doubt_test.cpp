@@ -14,8 +14,8 @@ using testing::IsEmpty;
 class Doubt : public testing::Test {
  protected:
   Doubt() : client_(scene_.post(1)) { scene_.lose(); }
-  void keep_hearing_after_stop(int seconds, std::int64_t remaining, std::int64_t score) {
-    for (int i = 0; i < seconds; ++i) {
+  void keep_hearing_after_stop(int times, std::int64_t remaining, std::int64_t score) {
+    for (int i = 0; i < times; ++i) {
       scene_.wait(1);
       scene_.hear(remaining, score, clock_++);
     }

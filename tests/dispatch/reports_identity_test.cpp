@@ -10,8 +10,6 @@ using enum ReportState;
 using testing::HasSubstr;
 using testing::IsEmpty;
 
-constexpr const char* kThere = "10.100.2.200:8000";
-
 /// The organiser's test server: its status always says 25.98 s, its answers 3.14 s, and the run is "1".
 class StandingClocks : public testing::Test {
  protected:

@@ -10,9 +10,6 @@ using enum ReportState;
 using testing::ElementsAre;
 using testing::HasSubstr;
 
-constexpr const char* kHere = "10.100.1.200:8000";
-constexpr const char* kThere = "10.100.2.200:8000";
-
 /// Report 1 is under way and report 2 waits when the settings change.
 class AMoveToCome : public testing::Test {
  protected:

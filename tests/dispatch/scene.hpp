@@ -12,6 +12,10 @@
 
 namespace adit::dispatch {
 
+/// Two Command Posts.
+constexpr const char* kHere = "10.100.1.200:8000";
+constexpr const char* kThere = "10.100.2.200:8000";
+
 /// A ledger and clients that remember.
 class RecordingActions final : public Output {
  public:

@@ -9,16 +9,16 @@ using testing::ElementsAre;
 using testing::IsEmpty;
 using testing::Pair;
 
-WaitingClients::Instant at(int s) {
+WaitingClients::Instant at_second(int s) {
   return WaitingClients::Instant{} + std::chrono::seconds(s);
 }
 
 class WaitingClientsTest : public testing::Test {
  protected:
   WaitingClientsTest() {
-    clients_.add(1, 7, at(20));
-    clients_.add(2, 8, at(21));
-    clients_.add(3, 7, at(22));
+    clients_.add(1, 7, at_second(20));
+    clients_.add(2, 8, at_second(21));
+    clients_.add(3, 7, at_second(22));
   }
   WaitingClients clients_;
 };
@@ -35,10 +35,10 @@ TEST_F(WaitingClientsTest, AreTakenOnceByTheirReport) {
 }
 
 TEST_F(WaitingClientsTest, AreTakenOnceTheirTimeIsUp) {
-  EXPECT_EQ(clients_.next_deadline(), at(20));
-  EXPECT_THAT(clients_.take_late(at(19)), IsEmpty());
-  EXPECT_THAT(clients_.take_late(at(21)), ElementsAre(Pair(1, 7), Pair(2, 8)));
-  EXPECT_EQ(clients_.next_deadline(), at(22));
+  EXPECT_EQ(clients_.next_deadline(), at_second(20));
+  EXPECT_THAT(clients_.take_late(at_second(19)), IsEmpty());
+  EXPECT_THAT(clients_.take_late(at_second(21)), ElementsAre(Pair(1, 7), Pair(2, 8)));
+  EXPECT_EQ(clients_.next_deadline(), at_second(22));
 }
 
 TEST_F(WaitingClientsTest, AreTakenButForThoseOfOneReport) {
@@ -49,7 +49,7 @@ TEST_F(WaitingClientsTest, AreTakenButForThoseOfOneReport) {
 
 TEST_F(WaitingClientsTest, KeepTheirTimeWhereTheyAreHandedOverToAnotherReport) {
   clients_.hand_over(7, 8);
-  EXPECT_EQ(clients_.next_deadline(), at(20));
+  EXPECT_EQ(clients_.next_deadline(), at_second(20));
   EXPECT_THAT(clients_.take(7), IsEmpty());
   EXPECT_THAT(clients_.take(8), ElementsAre(1, 2, 3));
 }

@@ -16,9 +16,9 @@ namespace adit::forward {
 namespace {
 
 /// A mapping endpoint that answers, or does not.
-class Post {
+class MappingPost {
  public:
-  explicit Post(bool answers) : answers_(answers) {}
+  explicit MappingPost(bool answers) : answers_(answers) {}
   settings::Address address() const { return {peer_.endpoint().address, peer_.endpoint().port}; }
 
   std::atomic<int> came = 0;
@@ -49,7 +49,7 @@ class MappingEndpoint : public testing::Test, protected AroundMaps {
   }
 
   const std::optional<icd::BearerToken> token_ = icd::BearerToken::parse("a-token");
-  Post silent_{false}, there_{true};
+  MappingPost silent_{false}, there_{true};
 };
 
 TEST_F(MappingEndpoint, IsLeftAtOnceByAMap) {

@@ -20,9 +20,9 @@ namespace {
 namespace fs = std::filesystem;
 using spool::cloud;
 
-/// The answers of a Command Post to one map after the other, each once the test lets it; without any left it
-/// takes what comes.
-struct Post {
+/// The answers of a Command HeldPost to one map after the other, each once the test lets it; without any left
+/// it takes what comes.
+struct HeldPost {
   void serve(uplink::Wire& wire) {
     for (auto request = wire.read_request(); !request.empty(); request = wire.read_request()) {
       ++requests;
@@ -78,7 +78,7 @@ class MapsWithoutMemory : public testing::TestWithParam<std::tuple<std::string, 
            maps_->waiting({Kind::Cloud, "r1"}) == 0;
   }
 
-  Post post_;
+  HeldPost post_;
   uplink::ListeningPeer peer_{[this](uplink::Wire& wire) { post_.serve(wire); }};
   std::optional<Maps> maps_;
 };

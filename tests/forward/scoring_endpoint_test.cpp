@@ -1,5 +1,5 @@
-// The scoring endpoint is changed while reports are under way and wait: each is answered by the Command Post
-// that it was sent to, and no client is sent away.
+// The scoring endpoint is changed while reports are under way and wait: each is answered by the Command
+// ScoringPost that it was sent to, and no client is sent away.
 #include <gmock/gmock.h>
 
 #include <atomic>
@@ -28,10 +28,10 @@ class Client final : public intake::Responder {
   std::vector<int>& told_;
 };
 
-/// A Command Post that records every report; its answer to one comes when the test says so.
-class Post {
+/// A Command ScoringPost that records every report; its answer to one comes when the test says so.
+class ScoringPost {
  public:
-  ~Post() { let.release(1000); }
+  ~ScoringPost() { let.release(1000); }
   settings::Address address() const { return {peer_.endpoint().address, peer_.endpoint().port}; }
 
   std::atomic<int> recorded = 0;
@@ -90,7 +90,7 @@ class ScoringEndpoint : public testing::Test, protected AroundScoring {
   const dispatch::Report& report(std::int64_t number) const { return scoring_->reports().book().at(number); }
 
   const std::optional<icd::BearerToken> token_ = icd::BearerToken::parse("a-token");
-  Post here_, there_;
+  ScoringPost here_, there_;
   bool anew_ = false;
   std::vector<int> first_, second_;
   std::optional<Scoring> scoring_;

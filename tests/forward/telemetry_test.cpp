@@ -95,8 +95,8 @@ class NewsTest : public testing::Test {
 };
 
 /// Takes all but what deletes all, or nothing.
-struct Post {
-  explicit Post(bool takes_others)
+struct TelemetryPost {
+  explicit TelemetryPost(bool takes_others)
       : peer([this, takes_others](uplink::Wire& wire) {
           for (auto request = wire.read_request(); !request.empty(); request = wire.read_request()) {
             ++requests;
@@ -109,7 +109,7 @@ struct Post {
 };
 
 TEST_F(NewsTest, LeavesNoPoseThatWasTakenToTheNextLife) {
-  Post post(true);
+  TelemetryPost post(true);
   auto life = life_before(post.peer);
   ASSERT_TRUE(life->news.take(pose("r1", 1), 10));
   ASSERT_TRUE(comes(*life, [&] { return !life->as_forwarded.robots().empty(); }));
@@ -152,7 +152,7 @@ TEST_F(NewsTest, SendsAMarkerAgainThatNothingSaysMoreThan) {
 }
 
 TEST_F(NewsTest, SetsAsideADeleteAllThatAloneFails) {
-  Post post(true);
+  TelemetryPost post(true);
   const auto life = life_before(post.peer);
   ASSERT_TRUE(life->news.take(icd::MarkersUpdate{{kWipe, marker("a", "1"), marker("b", "2")}}, 10));
   ASSERT_TRUE(comes(*life, [&] { return life->news.waiting(Kind::Markers) == 0; }));
@@ -162,7 +162,7 @@ TEST_F(NewsTest, SetsAsideADeleteAllThatAloneFails) {
 }
 
 TEST_F(NewsTest, HoldsADeleteAllWhereEverythingFails) {
-  Post post(false);
+  TelemetryPost post(false);
   const auto life = life_before(post.peer);
   const icd::MarkersUpdate all{{kWipe, marker("a", "1"), marker("b", "2")}};
   ASSERT_TRUE(life->news.take(all, 10));
@@ -173,7 +173,7 @@ TEST_F(NewsTest, HoldsADeleteAllWhereEverythingFails) {
 
 /// From the moment it is taken on, each allocation in turn, and all from each on.
 TEST_F(NewsTest, LosesNothingWhereMemoryRunsOutOnTheWay) {
-  Post post(true);
+  TelemetryPost post(true);
   auto life = life_before(post.peer);
   for (const std::size_t count : {std::size_t{1}, ScarceMemory::kAll}) {
     for (std::size_t n = 0;; ++n) {

@@ -9,20 +9,18 @@ namespace {
 using codec::test::gzipped;
 using std::chrono::milliseconds;
 
-std::string cbor_of(std::string_view json) {
+std::string cbor_of_json(std::string_view json) {
   std::string bytes;
   nlohmann::json::to_cbor(nlohmann::json::parse(json), bytes);
   return bytes;
 }
-
-const std::string kGzip = "Content-Encoding: gzip\r\n";
 
 TEST(IcdBodies, OfStateAndMarkersAreTakenInEveryForm) {
   Team team;
   const std::pair<std::string_view, std::string_view> posts[] = {{"/state/update", kStateBody},
                                                                  {"/markers/update", kMarkersBody}};
   for (const auto& [path, json] : posts) {
-    const std::string cbor = cbor_of(json);
+    const std::string cbor = cbor_of_json(json);
     for (const std::string& text :
          {authorized("POST", path, kJsonType, json), authorized("POST", path, kCborType, cbor),
           authorized("POST", path, std::string(kJsonType) + kGzip, gzipped(json)),

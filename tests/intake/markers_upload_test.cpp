@@ -12,8 +12,6 @@ namespace {
 using codec::test::gzipped;
 using nlohmann::json;
 
-const std::string kGzip = "Content-Encoding: gzip\r\n";
-
 /// A marker of so many points, and of as many colors where `colored`.
 json marker(std::size_t points, bool colored) {
   json marker = {{"ns", "voxels"},

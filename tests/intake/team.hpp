@@ -183,6 +183,7 @@ inline std::string authorized(std::string_view method, std::string_view path, st
 
 inline constexpr std::string_view kJsonType = "Content-Type: application/json\r\n";
 inline constexpr std::string_view kCborType = "Content-Type: application/cbor\r\n";
+inline const std::string kGzip = "Content-Encoding: gzip\r\n";
 
 inline constexpr std::string_view kReportBody = R"({"x": 1.5, "y": -2, "z": 0, "type": "Backpack"})";
 inline constexpr std::string_view kStateBody =

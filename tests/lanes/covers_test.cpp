@@ -23,7 +23,7 @@ icd::OccupancyGrid shifted(icd::OccupancyGrid older, double angle, double cells_
   return older;
 }
 
-struct Case {
+struct CoverCase {
   const char* what;
   icd::OccupancyGrid newer, older;
   bool covered;
@@ -41,7 +41,7 @@ icd::OccupancyGrid turned(icd::OccupancyGrid grid, double angle) {
 
 TEST(Covers, FollowsTheTableOfCases) {
   const double far = 1e300;
-  const Case cases[] = {
+  const CoverCase cases[] = {
       {"the same extent", grid(-5, 3, 40, 30), grid(-5, 3, 40, 30), true},
       {"grown on every side", grid(-1, -1, 80, 80), grid(0, 0, 40, 30), true},
       {"grown to the right only", grid(0, 0, 41, 30), grid(0, 0, 40, 30), true},

@@ -19,17 +19,17 @@ struct Said {
   Connection connection;
 };
 
-struct Case {
+struct StepBackCase {
   const char* what;
   std::vector<Said> said;
   int shown;  // by which of them, from 0; -1: by none
 };
 
-class StepBackCases : public testing::TestWithParam<Case> {};
+class StepBackCases : public testing::TestWithParam<StepBackCase> {};
 
 TEST_P(StepBackCases, AreTold) {
   StepBack step_back;
-  const Case& given = GetParam();
+  const StepBackCase& given = GetParam();
   for (std::size_t i = 0; i < given.said.size(); ++i) {
     EXPECT_EQ(step_back.shown_by(given.said[i].stamp, given.said[i].connection),
               static_cast<int>(i) == given.shown)
@@ -40,18 +40,21 @@ TEST_P(StepBackCases, AreTold) {
 INSTANTIATE_TEST_SUITE_P(
     Table, StepBackCases,
     testing::Values(
-        Case{"a clock that runs", {{10, 1}, {10.1, 1}, {13, 1}}, -1},
-        Case{"one connection keeps the order", {{10, 1}, {10.1, 1}, {8.2, 1}, {8.3, 1}}, 2},
-        Case{"by too little to matter", {{10, 1}, {9.1, 1}, {9.2, 1}, {10.1, 1}}, -1},
-        Case{
+        StepBackCase{"a clock that runs", {{10, 1}, {10.1, 1}, {13, 1}}, -1},
+        StepBackCase{"one connection keeps the order", {{10, 1}, {10.1, 1}, {8.2, 1}, {8.3, 1}}, 2},
+        StepBackCase{"by too little to matter", {{10, 1}, {9.1, 1}, {9.2, 1}, {10.1, 1}}, -1},
+        StepBackCase{
             "overtaken on the other of two", {{7, 2}, {7.1, 1}, {10, 1}, {7.2, 2}, {10.1, 1}, {10.2, 2}}, -1},
-        Case{"overtaken again and again", {{10, 1}, {7, 2}, {10.1, 1}, {7.2, 2}, {10.2, 1}, {7.4, 2}}, -1},
-        Case{"a connection that had said something later", {{9.9, 2}, {10, 1}, {7, 2}, {7.1, 1}}, 2},
-        Case{"a new connection for each message", {{9.9, 1}, {10, 2}, {7, 3}, {7.1, 4}, {7.2, 5}}, 3},
-        Case{"of which one was overtaken", {{9.9, 1}, {10.1, 2}, {8, 3}, {10.2, 4}, {8.1, 5}, {10.3, 6}}, -1},
-        Case{"the same again on a new connection proves nothing", {{10, 1}, {7, 2}, {7, 3}, {10.1, 4}}, -1},
-        Case{"one that was silent for long", {{6, 2}, {10, 1}, {7, 2}, {7.1, 2}}, 3},
-        Case{"connections that are not known", {{10, 0}, {7, 0}, {7.1, 0}}, -1}));
+        StepBackCase{
+            "overtaken again and again", {{10, 1}, {7, 2}, {10.1, 1}, {7.2, 2}, {10.2, 1}, {7.4, 2}}, -1},
+        StepBackCase{"a connection that had said something later", {{9.9, 2}, {10, 1}, {7, 2}, {7.1, 1}}, 2},
+        StepBackCase{"a new connection for each message", {{9.9, 1}, {10, 2}, {7, 3}, {7.1, 4}, {7.2, 5}}, 3},
+        StepBackCase{
+            "of which one was overtaken", {{9.9, 1}, {10.1, 2}, {8, 3}, {10.2, 4}, {8.1, 5}, {10.3, 6}}, -1},
+        StepBackCase{
+            "the same again on a new connection proves nothing", {{10, 1}, {7, 2}, {7, 3}, {10.1, 4}}, -1},
+        StepBackCase{"one that was silent for long", {{6, 2}, {10, 1}, {7, 2}, {7.1, 2}}, 3},
+        StepBackCase{"connections that are not known", {{10, 0}, {7, 0}, {7.1, 0}}, -1}));
 
 /// A robot whose clock runs and posts over several connections, each of which waits for its answer before it
 /// takes the next message, and holds it up for as long as it likes.

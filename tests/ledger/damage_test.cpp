@@ -15,15 +15,6 @@ namespace {
 
 using testing::HasSubstr;
 
-std::string bytes_of(const std::filesystem::path& path) {
-  std::ifstream file(path, std::ios::binary);
-  return {std::istreambuf_iterator<char>(file), {}};
-}
-
-void save(const std::filesystem::path& path, const std::string& bytes) {
-  std::ofstream(path, std::ios::binary) << bytes;
-}
-
 /// A whole ledger of some pages.
 std::string healthy_bytes() {
   const Folder folder;

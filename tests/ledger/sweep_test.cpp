@@ -27,15 +27,6 @@ int reports() {
   return static_cast<int>(told("ADIT_LEDGER_REPORTS", 40));
 }
 
-std::string bytes_of(const std::filesystem::path& path) {
-  std::ifstream file(path, std::ios::binary);
-  return {std::istreambuf_iterator<char>(file), {}};
-}
-
-void save(const std::filesystem::path& path, const std::string& bytes) {
-  std::ofstream(path, std::ios::binary | std::ios::trunc) << bytes;
-}
-
 /// In memory where there is some: the disk is not what is tried here.
 std::string below() {
   return ::access("/dev/shm", W_OK) == 0 ? "/dev/shm/" : testing::TempDir();

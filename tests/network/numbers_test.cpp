@@ -10,8 +10,8 @@ namespace {
 using testing::ElementsAre;
 using testing::StartsWith;
 
-std::vector<std::string> faults(const std::string& json) {
-  const auto value = codec::parse_json(json);
+std::vector<std::string> faults(const std::string& text) {
+  const auto value = codec::parse_json(text);
   if (!value) return {"no JSON"};
   const auto read = read_numbers(*value);
   std::vector<std::string> sentences;

@@ -3,6 +3,7 @@
 #include <limits>
 #include <random>
 
+#include "pace/at.hpp"
 #include "pace/backoff.hpp"
 #include "pace/budget.hpp"
 #include "pace/hertz.hpp"
@@ -14,10 +15,6 @@ namespace {
 using std::chrono::milliseconds;
 using std::chrono::seconds;
 using testing::DoubleNear;
-
-Instant at(double s) {
-  return Instant{std::chrono::duration_cast<Duration>(std::chrono::duration<double>{s})};
-}
 
 TEST(RateLimit, IsReadyAtOnceAndThenAfterItsSpacing) {
   RateLimit limit{2};

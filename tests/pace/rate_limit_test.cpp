@@ -9,6 +9,7 @@
 #include <string>
 #include <vector>
 
+#include "pace/at.hpp"
 #include "pace/hertz.hpp"
 
 namespace adit::pace {
@@ -16,10 +17,6 @@ namespace {
 
 using Seconds = std::chrono::duration<double>;
 constexpr double kAnswerTakes = 0.03;
-
-Instant at(double s) {
-  return Instant{std::chrono::duration_cast<Duration>(Seconds{s})};
-}
 
 /// Whether a server takes a request that comes at that second.
 using Server = std::function<bool(double)>;

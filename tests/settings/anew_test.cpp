@@ -18,13 +18,13 @@ using namespace std::chrono_literals;
 constexpr Anew kNothing{}, kListeners{.listeners = true}, kScoring{.scoring = true},
     kMapping{.mapping = true}, kBoth{.scoring = true, .mapping = true}, kPanel{.panel = true};
 
-struct Case {
+struct AnewCase {
   std::string path;  // as in keys()
   std::function<void(Settings&)> change;
   Anew anew;
 };
 
-const Case kCases[] = {
+const AnewCase kAnewCases[] = {
     {"command_post.scoring.address", [](Settings& s) { s.command_post.scoring.address = "10.9"; }, kScoring},
     {"command_post.scoring.port", [](Settings& s) { s.command_post.scoring.port = 9; }, kScoring},
     {"command_post.mapping.address", [](Settings& s) { s.command_post.mapping.address = "10.9"; }, kMapping},
@@ -91,7 +91,7 @@ Settings running() {
 }
 
 TEST(Anew, IsWhatASettingChangesAndNothingElse) {
-  for (const Case& each : kCases) {
+  for (const AnewCase& each : kAnewCases) {
     Settings next = running();
     each.change(next);
     EXPECT_EQ(anew_by(running(), next), each.anew) << each.path;
@@ -101,7 +101,7 @@ TEST(Anew, IsWhatASettingChangesAndNothingElse) {
 TEST(Anew, IsDecidedForEverySetting) {
   for (const Key& key : keys()) {
     if (key.path == "version") continue;
-    EXPECT_TRUE(std::ranges::find(kCases, key.path, &Case::path) != std::end(kCases)) << key.path;
+    EXPECT_TRUE(std::ranges::find(kAnewCases, key.path, &AnewCase::path) != std::end(kAnewCases)) << key.path;
   }
 }
 

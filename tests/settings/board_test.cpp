@@ -12,7 +12,7 @@ namespace {
 
 using testing::ElementsAre;
 
-std::vector<std::string> errors_of(const std::string& json) {
+std::vector<std::string> board_errors_of(const std::string& json) {
   const auto board = parse_board(json);
   std::vector<std::string> sentences;
   if (board) return sentences;
@@ -55,11 +55,11 @@ TEST(Board, MayNameLinesOfWhicheverChipHasThem) {
   EXPECT_FALSE(board->panel->is_simulated());
 }
 
-struct Case {
+struct BoardCase {
   std::string json, sentence;
 };
 
-const Case kCases[] = {
+const BoardCase kBoardCases[] = {
     {"", "not JSON: "},
     {"[]", "expected an object, got an array"},
     {R"({"title": "T"})", "name: missing"},
@@ -85,8 +85,8 @@ const Case kCases[] = {
 };
 
 TEST(Board, NamesWhatIsWrongByItsPath) {
-  for (const Case& row : kCases) {
-    const auto errors = errors_of(row.json);
+  for (const BoardCase& row : kBoardCases) {
+    const auto errors = board_errors_of(row.json);
     ASSERT_EQ(errors.size(), 1u) << row.json << " " << testing::PrintToString(errors);
     EXPECT_EQ(errors.front().substr(0, row.sentence.size()), row.sentence);
     EXPECT_TRUE(row.json.empty() || errors.front() == row.sentence) << errors.front();
@@ -94,7 +94,7 @@ TEST(Board, NamesWhatIsWrongByItsPath) {
 }
 
 TEST(Board, TellsAllThatIsWrongAtOnce) {
-  EXPECT_THAT(errors_of(R"({"panel": {"active_low": "no", "blink": 1}, "name": "A"})"),
+  EXPECT_THAT(board_errors_of(R"({"panel": {"active_low": "no", "blink": 1}, "name": "A"})"),
               ElementsAre("panel.active_low: expected true or false, got \"no\"",
                           "panel.blink: no such key (keys here: chip, health, scoring, mapping, attention, "
                           "active_low, button, button_active_low)",

@@ -10,6 +10,8 @@
 
 namespace adit::simulation {
 
+constexpr double kLongestDoubt = 60;  // seconds
+
 /// What both sides saw, and what the box holds in the end, long after the last fault.
 struct Evidence {
   const std::vector<Event>& events;

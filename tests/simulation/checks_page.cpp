@@ -20,11 +20,10 @@ namespace {
 using Json = nlohmann::json;
 using Moment = PageAccount::Moment;
 
-constexpr double kRests = 100;    // seconds after the last fault
-constexpr double kWatchdog = 10;  // seconds within which systemd hears that aditd lives
-constexpr double kRounding = 0.05;
-constexpr double kSwitching = 12;  // seconds within which a course is switched
-constexpr double kLongestDoubt = 60;
+constexpr double kRests = 100;     // seconds after the last fault
+constexpr double kHeartbeat = 10;  // seconds within which systemd hears that aditd lives
+constexpr double kAgeRounding = 0.05;
+constexpr double kLongestSwitch = 12;  // seconds within which a course is switched
 
 Moment moment_of(const Reading& reading) {
   return {reading.asked, reading.heard};
@@ -109,7 +108,7 @@ void judge_run(const Evidence& evidence, std::size_t begun, const Reading& readi
   }
   const double age = reading.view.at("now").get<double>() - reading.view.at("run_heard").get<double>();
   const double asked = reading.at - heard->at, told = evidence.events[reading.heard - 1].at - heard->at;
-  if (age < asked - kRounding || age > told + kRounding)
+  if (age < asked - kAgeRounding || age > told + kAgeRounding)
     broken.push_back(icd::sentence("Honest: at ", reading.at, " the page calls the status ", age,
                                    " s old, and it came at ", heard->at));
 }
@@ -267,7 +266,7 @@ void judge_rest(const Evidence& evidence, const Reading& reading, Broken& broken
 /// Another course was asked for just now: which Command Post it speaks of is not known.
 bool is_switching(const Evidence& evidence, const Reading& reading) {
   return std::ranges::any_of(evidence.events, [&](const Event& event) {
-    return event.what == kCourse && event.at <= reading.at && event.at > reading.at - kSwitching;
+    return event.what == kCourse && event.at <= reading.at && event.at > reading.at - kLongestSwitch;
   });
 }
 
@@ -322,7 +321,7 @@ void alive(const Evidence& evidence, Broken& broken) {
       if (!ready) last = event.at;
       ready = true;
     }
-    if ((sign || over) && ready && event.at - last > kWatchdog + slow)
+    if ((sign || over) && ready && event.at - last > kHeartbeat + slow)
       broken.push_back(icd::sentence("Alive: no sign of life between ", last, " and ", event.at));
     if (event.kind == Kind::Slow) slow += event.stamp;
     if (sign) {

@@ -14,8 +14,6 @@
 namespace adit::simulation {
 namespace {
 
-constexpr double kLongestDoubt = 60;
-
 using dispatch::ReportState;
 
 std::map<std::int64_t, double> first_records(const Evidence& evidence) {

@@ -12,7 +12,6 @@ namespace {
 
 constexpr double kLatest = 8;  // seconds after which nothing is recorded any more
 constexpr double kLongest = 8, kLongestOutage = 25;
-constexpr const char* kJson = "Content-Type: application/json\r\n";
 constexpr const char* kPage = "Content-Type: text/html\r\n";
 constexpr const char* kHtml = "<html><body>Please log in</body></html>";
 constexpr Fault kPeriods[] = {Fault::Storm,       Fault::PoliteStorm, Fault::Refused, Fault::Deaf,

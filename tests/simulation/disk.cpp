@@ -13,7 +13,7 @@
 namespace adit::simulation {
 namespace {
 
-constexpr std::uint64_t kPage = 4096;
+constexpr std::uint64_t kPageBytes = 4096;
 Disk* the_disk = nullptr;
 
 int fail(int error) {
@@ -202,7 +202,7 @@ ssize_t Disk::write(int fd, std::span<const char> bytes, std::optional<off_t> at
 std::uint64_t Disk::cut(const Open& open, std::uint64_t size, off_t at) {
   const std::uint64_t part = random_.below(size), place = static_cast<std::uint64_t>(at);
   if (is_in_memory(open.name)) return part;
-  const std::uint64_t end = (place + part) / kPage * kPage;
+  const std::uint64_t end = (place + part) / kPageBytes * kPageBytes;
   return end > place ? end - place : 0;
 }
 

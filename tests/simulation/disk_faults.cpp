@@ -7,7 +7,7 @@
 namespace adit::simulation {
 namespace {
 
-constexpr const char* kNames[] = {"Full", "SyncFails", "ReadOnly", "Slow", "RuntimeFull"};
+constexpr const char* kDiskFaults[] = {"Full", "SyncFails", "ReadOnly", "Slow", "RuntimeFull"};
 constexpr double kSlowest = 5;  // seconds that a sync takes
 
 }  // namespace
@@ -19,7 +19,7 @@ void DiskFaults::plan(double trouble_for) {
   const std::uint64_t kinds = random_.chance(0.5) ? 0 : 1 + random_.below(2);
   for (std::uint64_t i = 0; i < kinds; ++i) {
     const auto kind = static_cast<Kind>(random_.below(static_cast<std::uint64_t>(Kind::End)));
-    names_.append(names_.empty() ? "; disk: " : " ").append(kNames[static_cast<int>(kind)]);
+    names_.append(names_.empty() ? "; disk: " : " ").append(kDiskFaults[static_cast<int>(kind)]);
     for (std::uint64_t times = 1 + random_.below(2); times > 0; --times) plan(kind, trouble_for);
   }
 }
@@ -32,7 +32,7 @@ void DiskFaults::plan(Kind kind, double trouble_for) {
   const Drawn drawn = {.fails_once = random_.chance(0.5),
                        .room = random_.chance(0.5) ? 0 : random_.below(20000),
                        .delays = world_.random("slow disk " + std::to_string(++planned_))};
-  if (world_.omits(kNames[static_cast<int>(kind)])) return;
+  if (world_.omits(kDiskFaults[static_cast<int>(kind)])) return;
   if (at_once) {
     begin(kind, drawn);
   } else {
@@ -48,13 +48,14 @@ void DiskFaults::begin(Kind kind, const Drawn& drawn) {
   if (kind == Kind::Slow) delays_ = drawn.delays;
   if (kind == Kind::Full || kind == Kind::RuntimeFull) room_[kind == Kind::RuntimeFull ? 1 : 0] = drawn.room;
   world_.note(
-      {.actor = Actor::Disk, .kind = simulation::Kind::Fault, .what = "begins", .who = kNames[index]});
+      {.actor = Actor::Disk, .kind = simulation::Kind::Fault, .what = "begins", .who = kDiskFaults[index]});
 }
 
 void DiskFaults::end(Kind kind) {
   const auto index = static_cast<int>(kind);
   if (!std::exchange(is_[index], false)) return;
-  world_.note({.actor = Actor::Disk, .kind = simulation::Kind::Mended, .what = "", .who = kNames[index]});
+  world_.note(
+      {.actor = Actor::Disk, .kind = simulation::Kind::Mended, .what = "", .who = kDiskFaults[index]});
 }
 
 bool DiskFaults::sync_fails() {

@@ -6,14 +6,14 @@
 namespace adit::simulation {
 namespace {
 
-constexpr std::uint64_t kMostConnections = 40;
+constexpr std::uint64_t kMostFlooding = 40;
 constexpr std::int64_t kFirstSerial = 20'000;
 
 }  // namespace
 
 Flood::Flood(World& world, double until)
     : world_(world), random_(world.random("flood")), clouds_(random_.chance(0.5)), serial_(kFirstSerial) {
-  for (std::uint64_t i = 1 + random_.below(kMostConnections); i > 0; --i) {
+  for (std::uint64_t i = 1 + random_.below(kMostFlooding); i > 0; --i) {
     clients_.push_back(std::make_unique<Client>(world, address(80), Manners{.patience = 8},
                                                 world.random("flood " + std::to_string(i))));
   }

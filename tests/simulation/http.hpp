@@ -7,6 +7,8 @@
 
 namespace adit::simulation {
 
+constexpr const char* kJson = "Content-Type: application/json\r\n";
+
 /// A request or an answer of HTTP/1.1 that says its length, comes in chunks, or is an interim one.
 struct HttpMessage {
   std::string first;                           // its first line

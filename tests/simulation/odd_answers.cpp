@@ -8,8 +8,7 @@
 namespace adit::simulation {
 namespace {
 
-constexpr const char* kJson = "Content-Type: application/json\r\n";
-constexpr const char* kHtml = "<html><body>Look elsewhere</body></html>";
+constexpr const char* kElsewhere = "<html><body>Look elsewhere</body></html>";
 constexpr const char* kLength = "Content-Length: ";
 
 struct Parts {
@@ -66,12 +65,12 @@ std::string redirect(Random& random) {
   constexpr const char* kLines[] = {"301 Moved Permanently", "302 Found", "307 Temporary Redirect"};
   return http_answer(kLines[random.below(std::size(kLines))],
                      "Location: http://portal.example/\r\nContent-Type: text/html\r\n",
-                     random.chance(0.5) ? kHtml : "");
+                     random.chance(0.5) ? kElsewhere : "");
 }
 
 std::string from_between(Random& random) {
   constexpr const char* kLines[] = {"502 Bad Gateway", "503 Service Unavailable", "504 Gateway Timeout"};
-  return http_answer(kLines[random.below(std::size(kLines))], "Content-Type: text/html\r\n", kHtml);
+  return http_answer(kLines[random.below(std::size(kLines))], "Content-Type: text/html\r\n", kElsewhere);
 }
 
 }  // namespace adit::simulation

@@ -12,9 +12,8 @@ constexpr double kSeenToBeOn = 30;  // seconds: a new run may be seen when it ha
 /// What is heard in between is forgotten.
 constexpr const char *kLedgerIsGone = "no report is taken, the ledger cannot be written",
                      *kLedgerIsBack = "beginning anew with its ledger";
-constexpr const char* kJson = "Content-Type: application/json\r\n";
 
-std::string number(double value) {
+std::string json_number(double value) {
   char text[32];
   std::snprintf(text, sizeof text, "%.3f", value);
   return text;
@@ -65,7 +64,7 @@ void Scoreboard::begin_run() {
 std::string Scoreboard::status() {
   const double clock = faults_.has(Fault::ConstantClocks) ? 25.98 : world_.time() - run_began_;
   return http_answer("200 OK", kJson,
-                     "{\"score\": " + std::to_string(score_) + ", \"run_clock\": " + number(clock) +
+                     "{\"score\": " + std::to_string(score_) + ", \"run_clock\": " + json_number(clock) +
                          ", \"remaining_reports\": " + std::to_string(remaining_) +
                          ", \"current_team\": \"adit\"}");
 }
@@ -105,8 +104,8 @@ std::string Scoreboard::reply(double x, const char* state, int points) {
                     : numbers_runs_                  ? "\"run\": " + name + ", "
                                                      : "\"run\": \"" + name + "\", ";
   return http_answer("201 Created", kJson,
-                     "{\"url\": \"\", \"id\": " + std::to_string(++id_) + ", \"x\": " + number(x) + ", " +
-                         run + "\"team\": \"adit\", \"run_clock\": " + number(clock) +
+                     "{\"url\": \"\", \"id\": " + std::to_string(++id_) + ", \"x\": " + json_number(x) +
+                         ", " + run + "\"team\": \"adit\", \"run_clock\": " + json_number(clock) +
                          ", \"report_status\": \"" + state +
                          "\", \"score_change\": " + std::to_string(points) + "}");
 }

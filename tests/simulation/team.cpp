@@ -7,7 +7,7 @@
 namespace adit::simulation {
 namespace {
 
-constexpr int kMostTries = 12;
+constexpr int kMostPosts = 12;
 constexpr std::int64_t kReportsOfOne = 1000;  // serials of one reporter
 
 }  // namespace
@@ -46,7 +46,7 @@ void Reporter::report_too() {
 }
 
 void Reporter::answered(int status) {
-  const bool again = (status == 0 || status >= 500 || status == 429) && ++tries_ < kMostTries;
+  const bool again = (status == 0 || status >= 500 || status == 429) && ++tries_ < kMostPosts;
   if (again) return world_.after(seconds(random_.between(0.05, 2)), [this] { report(); });
   tries_ = 0;
   ++serial_;

@@ -17,14 +17,14 @@ std::string folder_of(const std::string& name) {
   return slash == std::string::npos ? "" : name.substr(0, slash);
 }
 
-std::string read(const fs::path& path) {
+std::string read_file(const fs::path& path) {
   std::string bytes(fs::file_size(path), '\0');
   std::ifstream(path, std::ios::binary).read(bytes.data(), static_cast<std::streamsize>(bytes.size()));
   return bytes;
 }
 
 /// A file that was gone has the mode of all of the box's.
-void write(const fs::path& path, const std::string& bytes) {
+void write_file(const fs::path& path, const std::string& bytes) {
   const bool is_new = !fs::exists(path);
   std::ofstream(path, std::ios::binary | std::ios::trunc)
       .write(bytes.data(), static_cast<std::streamsize>(bytes.size()));
@@ -161,7 +161,7 @@ void Unsynced::take_back(const Naming& naming, const fs::path& tree) {
     }
   }
   if (naming.content) {
-    write(path, naming.content->bytes);
+    write_file(path, naming.content->bytes);
     fs::resize_file(path, naming.content->size);
     if (naming.file) files_[naming.name] = naming.file;
   } else if (naming.kind == Kind::Removed) {
@@ -185,7 +185,7 @@ void Unsynced::cut(const fs::path& tree, Random& random) {
   for (const auto& [name, file] : std::exchange(files_, {})) {
     const fs::path path = tree / name;
     if (file->is_synced() || !fs::is_regular_file(path)) continue;
-    write(path, file->after_power_cut(read(path), random));
+    write_file(path, file->after_power_cut(read_file(path), random));
   }
 }
 

@@ -10,7 +10,7 @@
 namespace adit::simulation {
 namespace {
 
-constexpr std::size_t kLongest = 64u << 10;  // bytes of an answer's body
+constexpr std::size_t kLongestBody = 64u << 10;  // bytes of an answer's body
 
 /// Neither JSON nor nothing.
 bool is_page(const std::string& body) {
@@ -56,7 +56,7 @@ void UpstreamView::came(std::string_view bytes) {
                            .text = path_ == kStatus ? answer->body : "",
                            .says = path_ == kStatus ? status_in(answer->body) : Says()});
   }
-  if (!answers_.head() || answers_.length() <= kLongest) return;
+  if (!answers_.head() || answers_.length() <= kLongestBody) return;
   World::current().note(
       {.kind = Kind::Replied, .what = path_, .who = kTooLong, .status = answers_.head()->status()});
 }

@@ -18,7 +18,7 @@ namespace {
 using simulation::World;
 
 /// sd-event's timers fire at most this late.
-constexpr double kLatest = 0.001;
+constexpr double kLatestTimer = 0.001;
 /// So many turns without time going on are a loop that spins.
 constexpr int kMostTurns = 100000;
 
@@ -79,7 +79,7 @@ void Source::wait_for(std::uint32_t events) {
 void Source::call_at(Instant when) {
   World& world = state_->world;
   const std::uint64_t setting = ++state_->setting;
-  const auto late = simulation::seconds(state_->lateness->between(0, kLatest));
+  const auto late = simulation::seconds(state_->lateness->between(0, kLatestTimer));
   world.at(std::max(when, world.now()) + late, [weak = std::weak_ptr(state_), setting] {
     const auto alive = weak.lock();
     if (!alive || alive->setting != setting) return;

@@ -11,7 +11,7 @@ namespace {
 constexpr int kGzip = 15 + 16;
 constexpr int kZlib = 15;
 constexpr int kBare = -15;
-constexpr std::size_t kPiece = std::size_t{256} << 10;
+constexpr std::size_t kInflatedPiece = std::size_t{256} << 10;
 
 /// `window` as inflateInit2 takes it. Bodies are below 4 GiB, so that zlib's counters hold them.
 std::expected<std::string, InflateFault> inflate_one(std::string_view bytes, int window, std::size_t most) {
@@ -20,7 +20,7 @@ std::expected<std::string, InflateFault> inflate_one(std::string_view bytes, int
   // zlib does not write through next_in; its type is from before const.
   stream.next_in = reinterpret_cast<Bytef*>(const_cast<char*>(bytes.data()));
   stream.avail_in = static_cast<uInt>(bytes.size());
-  std::vector<char> piece(kPiece);
+  std::vector<char> piece(kInflatedPiece);
   std::string out;
   int state = Z_OK;
   while (state == Z_OK && out.size() <= most) {

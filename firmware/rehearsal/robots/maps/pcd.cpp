@@ -12,7 +12,7 @@
 namespace adit::robots {
 namespace {
 
-struct Header {
+struct PcdHeader {
   std::map<std::string_view, std::vector<std::string_view>> entries;
   std::size_t lines = 0;
 
@@ -22,9 +22,9 @@ struct Header {
   }
 };
 
-std::expected<Header, std::string> take_header(std::string_view& rest) {
+std::expected<PcdHeader, std::string> take_pcd_header(std::string_view& rest) {
   constexpr std::size_t kMostLines = 100;  // a PCD's header has 11
-  Header header;
+  PcdHeader header;
   while (const auto line = take_line(rest)) {
     if (++header.lines > kMostLines) break;
     auto words = words_of(*line);
@@ -45,7 +45,7 @@ int datatype_of(std::string_view type, std::string_view size) {
   return found == kDatatypes.end() ? 0 : found->second;
 }
 
-std::expected<PointTable, std::string> table_of(const Header& header) {
+std::expected<PointTable, std::string> table_of(const PcdHeader& header) {
   constexpr std::uint32_t kMostValues = 4096;
   constexpr std::size_t kMostFields = 256;
   const auto fields = header.find("FIELDS"), sizes = header.find("SIZE"), types = header.find("TYPE");
@@ -75,7 +75,7 @@ std::expected<PointTable, std::string> table_of(const Header& header) {
   return table;
 }
 
-std::expected<std::uint64_t, std::string> points_of(const Header& header) {
+std::expected<std::uint64_t, std::string> points_of(const PcdHeader& header) {
   const auto number = [&](std::string_view name) -> std::optional<std::uint32_t> {
     const auto words = header.find(name);
     return words.size() == 1 ? parse_number<std::uint32_t>(words[0]) : std::nullopt;
@@ -87,7 +87,7 @@ std::expected<std::uint64_t, std::string> points_of(const Header& header) {
 }
 
 /// VIEWPOINT: tx ty tz qw qx qy qz.
-std::expected<std::optional<Placement>, std::string> viewpoint_of(const Header& header) {
+std::expected<std::optional<Placement>, std::string> viewpoint_of(const PcdHeader& header) {
   const auto words = header.find("VIEWPOINT");
   if (words.empty()) return std::nullopt;
   std::vector<double> v;
@@ -105,7 +105,7 @@ std::expected<std::optional<Placement>, std::string> viewpoint_of(const Header& 
 
 std::expected<Cloud, std::string> parse_pcd(std::string_view bytes) {
   std::string_view rest = bytes;
-  const auto header = take_header(rest);
+  const auto header = take_pcd_header(rest);
   if (!header) return std::unexpected(header.error());
   const auto table = table_of(*header);
   if (!table) return std::unexpected(table.error());

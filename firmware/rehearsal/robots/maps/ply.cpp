@@ -23,7 +23,7 @@ int datatype_of(std::string_view type) {
 
 using Words = std::vector<std::string_view>;
 
-struct Header {
+struct PlyHeader {
   std::string format;
   std::optional<std::uint64_t> vertices;
   PointTable table;
@@ -55,10 +55,10 @@ struct Header {
   }
 };
 
-std::expected<Header, std::string> take_header(std::string_view& rest) {
+std::expected<PlyHeader, std::string> take_ply_header(std::string_view& rest) {
   constexpr std::size_t kMostLines = 1000;
   if (take_line(rest).value_or("") != "ply") return std::unexpected("no PLY: it does not begin with 'ply'");
-  Header header;
+  PlyHeader header;
   while (const auto line = take_line(rest)) {
     if (++header.lines > kMostLines) break;
     const Words words = words_of(*line);
@@ -77,7 +77,7 @@ std::expected<Header, std::string> take_header(std::string_view& rest) {
 
 std::expected<Cloud, std::string> parse_ply(std::string_view bytes) {
   std::string_view rest = bytes;
-  const auto header = take_header(rest);
+  const auto header = take_ply_header(rest);
   if (!header) return std::unexpected(header.error());
   const auto vertices = header->vertices;
   if (!vertices) return std::unexpected("no element vertex");

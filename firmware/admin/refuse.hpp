@@ -1,0 +1,15 @@
+#pragma once
+
+#include <expected>
+#include <string>
+#include <utility>
+
+#include "icd/status.hpp"
+
+namespace adit::admin {
+
+inline std::unexpected<icd::Refusal> refuse(icd::Status status, std::string sentence) {
+  return std::unexpected(icd::Refusal{status, std::move(sentence)});
+}
+
+}  // namespace adit::admin

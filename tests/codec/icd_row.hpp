@@ -1,0 +1,20 @@
+#pragma once
+
+#include <functional>
+#include <limits>
+#include <string>
+
+#include "codec/messages.hpp"
+
+namespace adit::codec::test {
+
+constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
+
+/// What is answered to a good message that is changed so, by that section of the ICD.
+struct IcdRow {
+  const char* section;
+  std::function<void(json&)> change;
+  std::string sentence;
+};
+
+}  // namespace adit::codec::test

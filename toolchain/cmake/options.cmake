@@ -3,6 +3,7 @@ add_library(adit_options INTERFACE)
 target_compile_options(adit_options INTERFACE
   -Wall -Wextra -Wpedantic -Wshadow -Wconversion -Wno-sign-conversion -Wnon-virtual-dtor
   -Woverloaded-virtual -Wimplicit-fallthrough -Werror
+  $<$<CXX_COMPILER_ID:GNU>:-Wno-subobject-linkage>  # GCC takes a batch's files, and what is in a template's argument, for headers
   -fstack-protector-strong -fstack-clash-protection -ffunction-sections -fdata-sections -fPIE)
 target_compile_definitions(adit_options INTERFACE _GLIBCXX_ASSERTIONS)
 target_link_options(adit_options INTERFACE -pie -Wl,-z,relro,-z,now -Wl,--gc-sections)

@@ -66,7 +66,7 @@ class Everyday(Story):
 
     def asked(self, request, body=None, status=200):
         headers = {**self.session, "Content-Type": "application/json"}
-        got, said = programs.insist(lambda: self.box.ask(request, headers, body, token=None))
+        got, said = self.box.insist(request, headers, body, token=None)
         self.assertEqual(got, status, said)
         return said
 

@@ -22,9 +22,7 @@ class FirstStart(Story):
 
     def asked(self, request, body=None, status=200):
         headers = {**type(self).session, "Content-Type": "application/json"}
-        got, said = programs.insist(
-            lambda: self.box.ask(request, body=body, headers=headers, token=None, timeout=20)
-        )
+        got, said = self.box.insist(request, headers, body, token=None, timeout=20)
         self.assertEqual(got, status, said)
         return said
 

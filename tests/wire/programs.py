@@ -38,14 +38,6 @@ def wait_until(condition, what, within=60.0):
     raise AssertionError(f"waited {within:g} s in vain for {what}")
 
 
-def insist(ask):
-    """What `ask` is told, which is asked again while the change before is being applied: that is answered 'try again'."""
-    def answer():
-        status, said = ask()
-        return None if status == 409 and "being applied" in said else (status, said)
-    return wait_until(answer, "the change before to be applied")
-
-
 def secrets_folder(folder):
     folder.mkdir(mode=0o700)
     for name, token in (("scoring", SCORING_TOKEN), ("mapping", MAPPING_TOKEN), ("team", TEAM_TOKEN)):
@@ -138,6 +130,16 @@ class Page:
 
     def ask(self, request, headers=(), body=None, token=TEAM_TOKEN, timeout=30):
         """Asks what the page asks: ask("GET /adit/run"). Its status, and what its JSON says."""
+        return self._answer(request, headers, body, token, timeout)[:2]
+
+    def insist(self, request, headers=(), body=None, token=TEAM_TOKEN, timeout=30):
+        """As ask(), again while the change before is being applied: that is answered 409 with Retry-After."""
+        def answer():
+            status, said, again_after = self._answer(request, headers, body, token, timeout)
+            return None if status == 409 and again_after else (status, said)
+        return wait_until(answer, "the change before to be applied")
+
+    def _answer(self, request, headers, body, token, timeout):
         method, _, path = request.partition(" ")
         sent = {"Authorization": f"Bearer {token}"} if token else {}
         if body is not None:
@@ -146,7 +148,7 @@ class Page:
         with contextlib.closing(connection):
             connection.request(method, path, None if body is None else json.dumps(body), {**sent, **dict(headers)})
             answer = connection.getresponse()
-            return answer.status, json.loads(answer.read())
+            return answer.status, json.loads(answer.read()), answer.getheader("Retry-After")
 
     def apply(self, request, body):
         """Asks for a change of what it runs with, as ask() does, and waits until it is applied, or taken back."""

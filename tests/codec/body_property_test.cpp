@@ -183,7 +183,9 @@ bool ends_for_nlohmann_json(const std::string& body) {
 TEST(AnyDamagedJson, IsJudgedWellFormedExactlyWhenAnotherParserSaysSo) {
   Randomness random(4);
   int taken = 0;
-  for (int round = 0; round < 30000; ++round) {
+  constexpr int kRounds = 30000;
+  RecordProperty("cases", kRounds);
+  for (int round = 0; round < kRounds; ++round) {
     std::string body = json_of(random_document(random), random);
     damage(body, random);
     if (ends_for_nlohmann_json(body)) continue;
@@ -198,7 +200,9 @@ TEST(AnyDamagedJson, IsJudgedWellFormedExactlyWhenAnotherParserSaysSo) {
 
 TEST(AnyDamagedBody, IsJudgedTheSameHoweverItIsCut) {
   Randomness random(5);
-  for (int round = 0; round < 20000; ++round) {
+  constexpr int kRounds = 20000;
+  RecordProperty("cases", kRounds);
+  for (int round = 0; round < kRounds; ++round) {
     ordered_json document = random_document(random);
     if (round % 2 == 0) {
       document = {{"msg",

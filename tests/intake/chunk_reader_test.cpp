@@ -9,6 +9,7 @@ namespace {
 using State = ChunkReader::State;
 
 TEST(Chunks, ThatTheRfcHasRefusedAreRefusedHoweverTheyCome) {
+  RecordProperty("cases", static_cast<int>(odd_chunks().size()));  // tests/hostile/run counts them
   for (const OddChunks& odd : odd_chunks()) {
     for (const std::size_t piece : {odd.body.size(), std::size_t{1}, std::size_t{3}}) {
       EXPECT_EQ(read_chunks(odd.body, piece).state, State::Refused) << odd.what << " in pieces of " << piece;

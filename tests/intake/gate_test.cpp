@@ -36,6 +36,7 @@ class GateTest : public testing::Test {
 };
 
 TEST_F(GateTest, OddHeadsAreRefusedAsTheFirstAndAsALaterOne) {
+  RecordProperty("cases", static_cast<int>(2 * odd_heads().size()));  // tests/hostile/run counts them
   for (const OddHead& odd : odd_heads()) {
     SCOPED_TRACE(std::string(odd.clause) + " " + std::string(odd.what));
     RawClient first(served.port());
@@ -51,6 +52,7 @@ TEST_F(GateTest, OddHeadsAreRefusedAsTheFirstAndAsALaterOne) {
 }
 
 TEST_F(GateTest, NothingFollowsAnOddHeadThatComesTogetherWithAPlainOne) {
+  RecordProperty("cases", static_cast<int>(odd_heads().size()));  // tests/hostile/run counts them
   for (const OddHead& odd : odd_heads()) {
     SCOPED_TRACE(odd.what);
     RawClient client(served.port());
@@ -66,6 +68,7 @@ TEST_F(GateTest, NothingFollowsAnOddHeadThatComesTogetherWithAPlainOne) {
 }
 
 TEST_F(GateTest, OddChunksAreRefused) {
+  RecordProperty("cases", static_cast<int>(odd_chunks().size()));  // tests/hostile/run counts them
   for (const OddChunks& odd : odd_chunks()) {
     SCOPED_TRACE(odd.what);
     RawClient client(served.port());

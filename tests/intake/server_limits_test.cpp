@@ -21,7 +21,9 @@ TEST(ServerLimits, LeaveOthersServedThoughOneAddressOpensThousandsOfConnections)
   ScriptedHandler handler;
   Served served(handler);
   std::vector<std::unique_ptr<RawClient>> flood;
-  for (int i = 0; i < 1500; ++i) {
+  constexpr int kFlood = 1500;
+  RecordProperty("cases", kFlood);
+  for (int i = 0; i < kFlood; ++i) {
     flood.push_back(std::make_unique<RawClient>(served.port(), "127.0.0.2"));
     flood.back()->send("GET /echo HTTP/1.1\r\nX-Slow: ");
     if (i % 250 == 249) {
@@ -85,6 +87,7 @@ TEST(ServerLimits, SurviveGarbage) {
       request("POST", "/echo", "Transfer-Encoding: chunked\r\n") + "ffffffffffffffffff\r\n",
       request("POST", "/echo", "Transfer-Encoding: chunked\r\n") + "5\r\nhelloXX",
   };
+  RecordProperty("cases", static_cast<int>(std::size(requests)));  // tests/hostile/run counts them
   for (const std::string& each : requests) {
     RawClient client(served.port());
     client.send(each);
@@ -132,9 +135,11 @@ TEST(ServerLimits, SurviveRequestsChangedAtRandom) {
     }
     return text;
   };
-  for (int round = 0; round < 20; ++round) {
+  constexpr int kRounds = 20, kAtOnce = 15;
+  RecordProperty("cases", kRounds * kAtOnce);
+  for (int round = 0; round < kRounds; ++round) {
     std::vector<std::pair<std::string, std::unique_ptr<RawClient>>> crowd;
-    for (int i = 0; i < 15; ++i) {
+    for (int i = 0; i < kAtOnce; ++i) {
       crowd.emplace_back(changed(), std::make_unique<RawClient>(served.port()));
       crowd.back().second->send(crowd.back().first);
       crowd.back().second->half_close();

@@ -12,7 +12,19 @@
 namespace adit::api {
 namespace {
 
-constexpr std::size_t kMostDescription = 1u << 20;
+constexpr std::size_t kMostInflated = 1u << 20;
+
+icd::Checked<std::string> inflated(const site::File& file) {
+  const std::span bytes(reinterpret_cast<const std::uint8_t*>(file.packed.data()), file.packed.size());
+  std::string text;
+  const auto size = codec::gunzip(icd::ChunkedBytes(bytes), kMostInflated, file.path,
+                                  [&text](std::span<const std::uint8_t> piece) {
+                                    text.append(piece.begin(), piece.end());
+                                    return icd::Checked<void>{};
+                                  });
+  if (!size) return std::unexpected(size.error());
+  return text;
+}
 
 intake::Answer answer_with(const site::File& file, std::string_view if_none_match) {
   intake::Answer answer{.content_type = std::string(site::content_type_of(file)), .body = {}, .headers = {}};
@@ -21,7 +33,9 @@ intake::Answer answer_with(const site::File& file, std::string_view if_none_matc
   if (if_none_match.contains(file.etag)) {
     answer.status = kNotModified;
   } else {
-    answer.body = file.body;
+    auto text = inflated(file);
+    if (!text) return refused(text.error());
+    answer.body = std::move(*text);
   }
   return guarded(std::move(answer));
 }
@@ -35,16 +49,7 @@ intake::Answer PageRoutes::file(const intake::RequestHead& head) const {
 }
 
 intake::Answer PageRoutes::description(const intake::RequestHead& head) const {
-  const site::File& packed = open_api::description();
-  const std::span bytes(reinterpret_cast<const std::uint8_t*>(packed.body.data()), packed.body.size());
-  std::string text;
-  const auto unpacked = codec::gunzip(icd::ChunkedBytes(bytes), kMostDescription, "openapi.json",
-                                      [&text](std::span<const std::uint8_t> piece) {
-                                        text.append(piece.begin(), piece.end());
-                                        return icd::Checked<void>{};
-                                      });
-  if (!unpacked) return refused(unpacked.error());
-  return answer_with({"/openapi.json", packed.etag, text}, head.header("If-None-Match"));
+  return answer_with(open_api::description(), head.header("If-None-Match"));
 }
 
 }  // namespace adit::api

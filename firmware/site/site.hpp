@@ -7,9 +7,9 @@ namespace adit::site {
 
 /// A file of the page, embedded in the program.
 struct File {
-  std::string_view path;  // "/page.css"
-  std::string_view etag;  // with its quotation marks (RFC 9110 8.8.3)
-  std::string_view body;
+  std::string_view path;    // "/page.css"
+  std::string_view etag;    // with its quotation marks (RFC 9110 8.8.3)
+  std::string_view packed;  // its bytes, under gzip
 };
 
 std::span<const File> embedded_files();

@@ -50,7 +50,7 @@ TEST_F(PageTest, ServesItsFilesWithTheirTypes) {
 
 TEST_F(PageTest, EmbedsItsFilesByteForByte) {
   for (const site::File& file : site::embedded_files()) {
-    EXPECT_EQ(file.body, as_embedded(file.path)) << file.path;
+    EXPECT_EQ(get_file(std::string(file.path)).body, as_embedded(file.path)) << file.path;
     EXPECT_NE(content_type_of(file), "application/octet-stream") << file.path;
   }
 }

@@ -1,5 +1,5 @@
-# Puts files into a program: a C++ source that defines `std::span<const File> embedded_files()` in NAMESPACE,
-# where HEADER declares it and `struct File {std::string_view path, etag, body;}`.
+# Puts files into a program, under gzip: a C++ source that defines `std::span<const File> embedded_files()` in NAMESPACE,
+# where HEADER declares it and `struct File {std::string_view path, etag, packed;}`.
 #   adit_embed(page_files.cpp HEADER page/site.hpp NAMESPACE adit::page FOLDER files FILES index.html page.css)
 # This file is also the script that writes that source at build time, whenever one of the files has changed.
 if(NOT CMAKE_SCRIPT_MODE_FILE)
@@ -24,22 +24,18 @@ set(bodies "")
 set(table "")
 foreach(name IN LISTS FILES)
   string(MAKE_C_IDENTIFIER "${name}" identifier)
+  file(READ ${FOLDER}/${name} text)
   if(name MATCHES "\\.js$")  # without the lines that are a comment; the others keep their numbers
-    file(READ ${FOLDER}/${name} text)
     string(REGEX REPLACE "\n *(//[^\n]*|/\\*\\*[^\n]*\\*/)" "\n" text "\n${text}")
     string(SUBSTRING "${text}" 1 -1 text)
-    string(HEX "${text}" bytes)
   elseif(name MATCHES "\\.css$")  # without its comments
-    file(READ ${FOLDER}/${name} text)
     string(REGEX REPLACE " */\\*[^*]*\\*/" "" text "${text}")
-    string(HEX "${text}" bytes)
   elseif(name MATCHES "\\.html$")  # without what indents its lines
-    file(READ ${FOLDER}/${name} text)
     string(REGEX REPLACE "\n +" "\n" text "${text}")
-    string(HEX "${text}" bytes)
-  else()
-    file(READ ${FOLDER}/${name} bytes HEX)
   endif()
+  file(WRITE ${OUTPUT}.packed "${text}")
+  execute_process(COMMAND gzip -n9f ${OUTPUT}.packed COMMAND_ERROR_IS_FATAL ANY)
+  file(READ ${OUTPUT}.packed.gz bytes HEX)
   file(SHA256 ${FOLDER}/${name} hash)
   string(SUBSTRING ${hash} 0 16 etag)
   string(REGEX REPLACE "(..)" "\\\\x\\1" bytes "${bytes}")

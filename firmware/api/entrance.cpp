@@ -1,5 +1,6 @@
 #include "api/entrance.hpp"
 
+#include "access/whence.hpp"
 #include "api/answers.hpp"
 
 namespace adit::api {
@@ -42,7 +43,10 @@ intake::Shown Entrance::shown(const intake::RequestHead& head) {
   const auto visitor = who(head);
   if (!head.header("Authorization").empty())
     return visitor ? intake::Shown::Token : intake::Shown::WrongToken;
-  return visitor ? intake::Shown::Enough : intake::Shown::Nothing;
+  if (visitor) return intake::Shown::Enough;
+  // Who logs in from where he has been in has room however many strangers guess.
+  const auto device = access::cookie_in(head.header("Cookie"), access::kDeviceCookie);
+  return keys_.devices().find(device) == nullptr ? intake::Shown::Nothing : intake::Shown::Enough;
 }
 
 std::function<bool()> Entrance::may_stay(const Asker& asker) {

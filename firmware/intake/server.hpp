@@ -112,7 +112,7 @@ enum class Shown : std::uint8_t {
   Nothing,     // but that he is a stranger
   WrongToken,  // or none where one is asked for
   Token,       // one that is good
-  Enough,      // a session; or what he asks for needs nothing of the team
+  Enough,      // a session, or that he has had one; or what he asks for needs nothing of the team
 };
 
 /// What a request is given to.

@@ -292,7 +292,7 @@ class SetUp(unittest.TestCase):
         self.assertEqual((status, said), (401, "Authorization: no token is set up on this gateway yet"))
         for name in ("scoring", "mapping", "team"):
             self.applied("POST /adit/tokens", {"name": name, "token": f"{name}-from-the-page"})
-        self.assertEqual(self.attention(), "")
+        self.assertNotIn("token is set", self.attention())
         self.assertEqual(self.box.ask("POST /state/update", state("ugv1"), Authorization="Bearer team-from-the-page")[0],
                          200)
 

@@ -146,6 +146,13 @@ TEST_F(GuessedAtTest, LetInABrowserThatHasBeenInBefore) {
       << "it keeps the one it has";
 }
 
+TEST_F(GuessedAtTest, KeepRoomForABrowserThatHasBeenInBefore) {
+  const std::string device = device_after_login();
+  EXPECT_EQ(api.shown(FakeHead("POST", "/adit/login", {{"Cookie", device}})), intake::Shown::Enough);
+  EXPECT_EQ(api.shown(FakeHead("POST", "/adit/login", {{"Cookie", "adit-device=guessed"}})),
+            intake::Shown::Nothing);
+}
+
 TEST_F(GuessedAtTest, LetInWhoHasPressedTheButton) {
   guess_from_everywhere();
   keys.at_box = true;

@@ -81,8 +81,8 @@ TEST(MarkersUpload, IsRefusedAboveItsLimitHoweverItComes) {
 TEST(MarkersUpload, WaitsForAWorkerOnlyWhereItIsLarge) {
   Team team;
   Team::Busy busy(team);
-  RawClient large(team.served.port());
   const std::string body = cbor_of({{"markers", {marker(50'000, false)}}});
+  RawClient large(team.served.port());  // from here on it has 5 s to say who it is
   large.send(authorized("POST", "/markers/update", kCborType, body));
   EXPECT_EQ(team.ask(authorized("POST", "/markers/update", kJsonType, kMarkersBody))->status, 200);
   team.served.on_loop([&] {

@@ -45,8 +45,11 @@ intake::Shown Entrance::shown(const intake::RequestHead& head) {
     return visitor ? intake::Shown::Token : intake::Shown::WrongToken;
   if (visitor) return intake::Shown::Enough;
   // Who logs in from where he has been in has room however many strangers guess.
-  const auto device = access::cookie_in(head.header("Cookie"), access::kDeviceCookie);
-  return keys_.devices().find(device) == nullptr ? intake::Shown::Nothing : intake::Shown::Enough;
+  return device(head) == nullptr ? intake::Shown::Nothing : intake::Shown::Enough;
+}
+
+const access::Device* Entrance::device(const intake::RequestHead& head) {
+  return keys_.devices().find(access::cookie_in(head.header("Cookie"), access::kDeviceCookie));
 }
 
 std::function<bool()> Entrance::may_stay(const Asker& asker) {

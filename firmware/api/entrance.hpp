@@ -29,6 +29,8 @@ class Entrance {
   /// Visitor::session is valid until the next call of anything here.
   std::optional<access::Visitor> who(const intake::RequestHead& head);
   intake::Shown shown(const intake::RequestHead& head);
+  /// The browser that asks, where somebody has been in from it, or null. As Devices::find().
+  const access::Device* device(const intake::RequestHead& head);
   /// Whether he may still be given more of a long answer. This outlives the result.
   std::function<bool()> may_stay(const Asker& asker);
 

@@ -5,7 +5,6 @@
 #include <vector>
 
 #include "access/password.hpp"
-#include "access/whence.hpp"
 #include "api/answers.hpp"
 #include "api/read_body.hpp"
 #include "api/session_rows.hpp"
@@ -89,8 +88,7 @@ intake::Answer SessionRoutes::sessions(const Call& call) {
 }
 
 SessionRoutes::Poster SessionRoutes::poster_of(const Call& call) {
-  const access::Device* const device =
-      keys_.devices().find(access::cookie_in(call.head.header("Cookie"), access::kDeviceCookie));
+  const access::Device* const device = entrance_.device(call.head);
   return {.guesser = {.address = call.head.peer(),
                       .device = device == nullptr ? 0 : device->number,
                       .at_box = keys_.somebody_at_box()},

@@ -92,11 +92,9 @@ forward::Tokens Gateway::tokens() const {
 }
 
 icd::Redaction Gateway::redaction() const {
-  std::vector<icd::BearerToken> secrets = tokens().all;
-  for (const auto& code : {parts_.loaded.secrets.label_code, accounts_.code()}) {
-    if (code) secrets.push_back(*code);
-  }
-  return icd::Redaction(std::move(secrets));
+  icd::Redaction redaction = parts_.loaded.secrets.redaction();
+  if (const auto& code = accounts_.code()) redaction.add(*code);
+  return redaction;
 }
 
 std::vector<loop::Workers*> Gateway::threads() {

@@ -18,6 +18,8 @@ class Redaction {
 
   explicit Redaction(std::vector<BearerToken> secrets = {}) : secrets_(std::move(secrets)) {}
 
+  void add(BearerToken secret) { secrets_.push_back(std::move(secret)); }
+
   /// Plain text or CSV: wherever they stand.
   void strike_from(std::string& text) const;
   /// JSON, a stream of it, or Prometheus' text format: within the strings that are values.

@@ -3,23 +3,15 @@
 #include "target.hpp"
 
 namespace adit::fuzz {
-namespace {
-
-template <class Message>
-void settles_as(Input text, network::Read<Message> (*read)(std::string_view)) {
-  settles(text, read, [](const Message& message) { return network::write(message); });
-}
-
-}  // namespace
 
 void try_network(Input text) {
-  settles_as(text, network::read_wanted);
-  settles_as(text, network::read_word);
-  settles_as(text, network::read_probe);
-  settles_as(text, network::read_endpoints);
-  settles_as(text, network::read_forget);
-  settles_as(text, network::read_status);
-  settles_as(text, network::read_probed);
+  settles(text, network::read_wanted);
+  settles(text, network::read_word);
+  settles(text, network::read_probe);
+  settles(text, network::read_endpoints);
+  settles(text, network::read_forget);
+  settles(text, network::read_status);
+  settles(text, network::read_probed);
   settles(text, network::read_kept, network::write_kept);
 }
 

@@ -5,6 +5,7 @@
 #include <cstdint>
 #include <cstdio>
 #include <cstdlib>
+#include <expected>
 #include <source_location>
 #include <span>
 #include <string>
@@ -51,6 +52,12 @@ void settles(Input text, Read read, Write write) {
   const std::string written = write(*kept);
   const auto again = read(written);
   require(again.has_value() && write(*again) == written);
+}
+
+/// The same of messages that their room's write() writes.
+template <class Message>
+void settles(Input text, std::expected<Message, std::string> (*read)(std::string_view)) {
+  settles(text, read, [](const Message& message) { return write(message); });
 }
 
 }  // namespace adit::fuzz

@@ -2,9 +2,7 @@
 
 #include <gtest/gtest.h>
 
-#include "codec/body_decoder.hpp"
 #include "codec/deflated.hpp"
-#include "codec/read.hpp"
 #include "intake/team.hpp"
 
 namespace adit::intake {
@@ -13,12 +11,6 @@ namespace {
 using codec::test::gzipped;
 using std::chrono::milliseconds;
 using std::chrono::seconds;
-
-std::string head_of(const std::string& body, std::string_view more = {}) {
-  return authorized(
-      "POST", "/map/update",
-      std::string(kJsonType) + std::string(more) + "Content-Length: " + std::to_string(body.size()) + "\r\n");
-}
 
 TEST(MapUpload, ReachesTheDeskDecoded) {
   Team team;
@@ -40,8 +32,7 @@ TEST(MapUpload, ReachesTheDeskDecoded) {
 TEST(MapUpload, TakesAWholeBodyThatIsCompressed) {
   Team team;
   const std::string body = gzipped(grid_body(1000, 1000));
-  const auto reply = team.ask(
-      authorized("POST", "/map/update", std::string(kJsonType) + "Content-Encoding: gzip\r\n", body));
+  const auto reply = team.ask(authorized("POST", "/map/update", std::string(kJsonType) + kGzip, body));
   ASSERT_TRUE(reply);
   EXPECT_EQ(reply->status, 200) << reply->body;
   EXPECT_EQ(team.served.on_loop([&] { return team.desk.maps.at(0).data.raw_size; }), 1000u * 1000u);
@@ -52,7 +43,7 @@ TEST(MapUpload, MakesTheClientWaitWhileTheWorkerIsBusy) {
   Team::Busy busy(team);
   const std::string body = grid_body(6000, 6000);
   RawClient client(team.served.port());
-  client.send(head_of(body));
+  client.send(map_head(body));
   const std::size_t sent = client.send_until_stalled(body, milliseconds(500));
   EXPECT_LT(sent, body.size()) << "taken into memory though nobody works on it";
   EXPECT_EQ(team.ask(authorized("POST", "/state/update", kJsonType, kStateBody))->status, 200)
@@ -70,9 +61,9 @@ TEST(MapUpload, IsNotTakenOnceItsClientIsGone) {
   {
     Team::Busy busy(team);
     RawClient whole(team.served.port());
-    whole.send(head_of(body) + body);
+    whole.send(map_head(body) + body);
     RawClient half(team.served.port());
-    half.send(head_of(body) + body.substr(0, body.size() / 2));
+    half.send(map_head(body) + body.substr(0, body.size() / 2));
     ASSERT_TRUE(team.served.eventually([&] { return team.served.server().connections() == 2; }));
     team.served.turn_often();
     whole.reset();
@@ -91,7 +82,7 @@ TEST(MapUpload, IsTakenWhereItsClientHasOnlyEndedItsOwnDirection) {
   const std::string body = grid_body(300, 300);
   Team::Busy busy(team);
   RawClient client(team.served.port());
-  client.send(head_of(body) + body);
+  client.send(map_head(body) + body);
   client.half_close();
   team.served.turn_often();
   busy.end();
@@ -103,7 +94,7 @@ TEST(MapUpload, IsAnsweredWhenTheDeskHasKeptItAndNotBefore) {
   team.served.on_loop([&] { team.desk.stores_at_once = false; });
   const std::string body = grid_body(300, 300);
   RawClient client(team.served.port());
-  client.send(head_of(body) + body);
+  client.send(map_head(body) + body);
   ASSERT_TRUE(team.served.eventually([&] { return team.desk.storing.size() == 1; }));
   EXPECT_FALSE(client.reply(milliseconds(200)));
   team.served.on_loop([&] { team.desk.storing.front()(); });
@@ -130,7 +121,7 @@ TEST(MapUpload, StaysTakenWhereItsClientIsGoneWhileTheDeskKeepsIt) {
   const std::string body = grid_body(300, 300);
   {
     RawClient client(team.served.port());
-    client.send(head_of(body) + body);
+    client.send(map_head(body) + body);
     ASSERT_TRUE(team.served.eventually([&] { return team.desk.storing.size() == 1; }));
     client.reset();
     ASSERT_TRUE(team.served.eventually([&] { return team.served.server().connections() == 0; }));
@@ -143,140 +134,14 @@ TEST(MapUpload, StaysTakenWhereItsClientIsGoneWhileTheDeskKeepsIt) {
   });
 }
 
-/// A cloud of that many points, as the ICD's clients write it in JSON.
-std::string cloud_body(std::size_t points) {
-  const auto field = [](const char* name, int offset) {
-    return std::string(R"({"name": ")") + name + R"(", "offset": )" + std::to_string(offset) +
-           R"(, "datatype": 7, "count": 1})";
-  };
-  std::string data;
-  for (std::size_t i = 0; i < points; ++i) data += i % 2 == 0 ? "AAAAAAAAgD8AAABA" : "AACAPwAAAEAAAAAA";
-  return R"({"type": "PointCloud2", "name": "r1", "msg": {"fields": [)" + field("x", 0) + ", " +
-         field("y", 4) + ", " + field("z", 8) + R"(], "point_step": 12, "data": ")" + data + R"("}})";
-}
-
-/// The one map that the desk has, as it is decoded in one go.
-void expect_the_map_of(Team& team, const std::string& body) {
-  auto document =
-      codec::decode({codec::Format::Json, codec::ContentCoding::Identity}, codec::Split::MapData, body);
-  const icd::MapUpdate map = codec::read_map_update(std::move(*document), {}).value();
-  team.served.on_loop([&] {
-    ASSERT_EQ(team.desk.maps.size(), 1u);
-    EXPECT_TRUE(team.desk.maps[0] == map) << "other points";
-  });
-}
-
-TEST(MapUpload, IsStoredAsItArrives) {
-  for (const std::string& body : {cloud_body(200'000), grid_body(2000, 1000)}) {
-    Team team;
-    RawClient client(team.served.port());
-    client.send(head_of(body) + body.substr(0, body.size() / 2));
-    EXPECT_TRUE(team.served.eventually([&] { return team.desk.stored > body.size() / 4; }));
-    EXPECT_EQ(team.served.on_loop([&] { return team.desk.arriving; }), 1);
-    client.send(body.substr(body.size() / 2));
-    EXPECT_EQ(client.reply()->status, 200);
-    expect_the_map_of(team, body);
-    EXPECT_TRUE(team.served.eventually([&] { return team.desk.arriving == 0; }));
-  }
-}
-
-TEST(MapUpload, MakesTheClientWaitWhileItCannotBeStored) {
-  Team team;
-  team.served.on_loop([&] { team.desk.stores_pieces = false; });
-  const std::string body = cloud_body(3'000'000);
-  RawClient client(team.served.port());
-  client.send(head_of(body));
-  const std::size_t sent = client.send_until_stalled(body, milliseconds(500));
-  EXPECT_LT(sent, body.size()) << "taken into memory though nobody stores it";
-  EXPECT_EQ(team.served.on_loop([&] { return team.desk.storing.size(); }), 1u);
-  team.served.on_loop([&] {
-    team.desk.stores_pieces = true;
-    team.desk.storing.front()();
-  });
-  client.send(std::string_view(body).substr(sent));
-  const auto reply = client.reply(seconds(30));
-  ASSERT_TRUE(reply);
-  EXPECT_EQ(reply->status, 200) << reply->body;
-  expect_the_map_of(team, body);
-}
-
-TEST(MapUpload, IsHeldInMemoryWhereThereIsNoRoomForMoreUntilTheDeskJudges) {
-  for (const std::size_t room : {std::size_t{0}, std::size_t{500'000}}) {
-    Team team;
-    team.served.on_loop([&] { team.desk.room = room; });
-    const std::string body = cloud_body(200'000);
-    EXPECT_EQ(team.ask(authorized("POST", "/map/update", kJsonType, body))->status, 200);
-    expect_the_map_of(team, body);
-    EXPECT_LE(team.served.on_loop([&] { return team.desk.stored; }), room);
-  }
-}
-
-constexpr std::string_view kGzip = "Content-Encoding: gzip\r\n";
-
-TEST(MapUpload, ThatIsSmallIsNotStoredBeforeItIsWhole) {
-  Team team;
-  EXPECT_EQ(team.ask(authorized("POST", "/map/update", kJsonType, cloud_body(1000)))->status, 200);
-  EXPECT_EQ(team.served.on_loop([&] { return team.desk.stored; }), 0u);
-}
-
-TEST(MapUpload, ThatIsCompressedIsStoredAsItIsInflatedAndNoMoreOfItHeld) {
-  Team team;
-  team.served.on_loop([&] { team.desk.stores_pieces = false; });
-  const std::string body = grid_body(6000, 6000);
-  const std::string sent = gzipped(body);
-  RawClient client(team.served.port());
-  client.send(head_of(sent, kGzip) + sent);
-  ASSERT_TRUE(team.served.eventually([&] { return team.desk.storing.size() == 1; }));
-  team.served.turn_often();
-  EXPECT_LT(team.served.on_loop([&] { return team.desk.stored; }), 2 * MapUpload::kStored);
-  team.served.on_loop([&] {
-    team.desk.stores_pieces = true;
-    team.desk.storing.front()();
-  });
-  const auto reply = client.reply(seconds(30));
-  ASSERT_TRUE(reply);
-  EXPECT_EQ(reply->status, 200) << reply->body;
-  expect_the_map_of(team, body);
-}
-
-TEST(MapUpload, IsRefusedWhereMoreOfItWouldBeHeldThanThereIsFor) {
-  Team team;
-  team.served.on_loop([&] { team.desk.room = 1'000'000; });
-  const std::string sent = gzipped(grid_body(8000, 4000));
-  ASSERT_GT(8000u * 4000u, MapUpload::kWithoutRoom);
-  for (int i = 0; i < 2; ++i) {
-    const auto reply = team.ask(head_of(sent, kGzip) + sent);
-    ASSERT_TRUE(reply);
-    EXPECT_EQ(reply->status, 503);
-    EXPECT_NE(reply->body.find("no room for this map"), std::string::npos) << reply->body;
-  }
-  EXPECT_TRUE(team.served.eventually([&] { return team.desk.arriving == 0; }));
-  const std::string small = gzipped(grid_body(4000, 4000));
-  EXPECT_EQ(team.ask(head_of(small, kGzip) + small)->status, 200) << "what was held is given back";
-}
-
-TEST(MapUpload, LeavesNothingStoredWhereItIsCutOffOrRefused) {
-  Team team;
-  const std::string body = cloud_body(200'000);
-  RawClient half(team.served.port());
-  half.send(head_of(body) + body.substr(0, body.size() / 2));
-  EXPECT_TRUE(team.served.eventually([&] { return team.desk.stored > 0; }));
-  half.reset();
-  EXPECT_TRUE(team.served.eventually([&] { return team.desk.arriving == 0; }));
-  const std::string bad = body.substr(0, body.size() - 1) + "]";
-  EXPECT_EQ(team.ask(authorized("POST", "/map/update", kJsonType, bad))->status, 400);
-  EXPECT_TRUE(team.served.eventually([&] { return team.desk.arriving == 0; }));
-  EXPECT_TRUE(team.served.on_loop([&] { return team.desk.maps.empty(); }));
-}
-
 TEST(MapUpload, IsToldThatItIsNotTakenOnceAStopHasBegunUnlessItIsTheDesks) {
   Team team;
   team.served.on_loop([&] { team.desk.stores_at_once = false; });
   const std::string body = grid_body(300, 300);
   RawClient kept(team.served.port()), half(team.served.port()), state(team.served.port());
-  kept.send(head_of(body) + body);
+  kept.send(map_head(body) + body);
   ASSERT_TRUE(team.served.eventually([&] { return team.desk.storing.size() == 1; }));
-  half.send(head_of(body) + body.substr(0, body.size() / 2));
+  half.send(map_head(body) + body.substr(0, body.size() / 2));
   state.send(
       authorized("POST", "/state/update",
                  std::string(kJsonType) + "Content-Length: " + std::to_string(kStateBody.size()) + "\r\n") +
@@ -307,16 +172,16 @@ TEST(MapUpload, IsRefusedOverTheBudgetOfAll) {
   {
     Team::Busy busy(team);
     RawClient first(team.served.port());
-    first.send(head_of(body) + body);
+    first.send(map_head(body) + body);
     team.served.turn_often();
-    const auto reply = team.ask(head_of(body) + body);
+    const auto reply = team.ask(map_head(body) + body);
     ASSERT_TRUE(reply);
     EXPECT_EQ(reply->status, 429);
     EXPECT_TRUE(is_json_string(reply->body));
     busy.end();
     EXPECT_EQ(first.reply()->status, 200);
   }
-  for (int i = 0; i < 5; ++i) EXPECT_EQ(team.ask(head_of(body) + body)->status, 200) << "not given back";
+  for (int i = 0; i < 5; ++i) EXPECT_EQ(team.ask(map_head(body) + body)->status, 200) << "not given back";
 }
 
 TEST(MapUpload, GivesItsBudgetBackWhenItIsRefusedOrLost) {
@@ -328,17 +193,17 @@ TEST(MapUpload, GivesItsBudgetBackWhenItIsRefusedOrLost) {
     // A worker may still hold what the lost one brought.
     bool given_back = false;
     for (int tries = 0; tries < 100 && !given_back; ++tries) {
-      given_back = team.ask(head_of(body) + "{]" + body.substr(2))->status == 400;
+      given_back = team.ask(map_head(body) + "{]" + body.substr(2))->status == 400;
     }
     EXPECT_TRUE(given_back);
     RawClient lost(team.served.port());
-    lost.send(head_of(body) + body.substr(0, 100'000));
+    lost.send(map_head(body) + body.substr(0, 100'000));
     lost.reset();
     ASSERT_TRUE(team.served.eventually([&] { return team.served.server().connections() == 0; }));
   }
   int status = 0;
   for (int tries = 0; tries < 100 && status != 200; ++tries) {
-    status = team.ask(head_of(body) + body)->status;
+    status = team.ask(map_head(body) + body)->status;
   }
   EXPECT_EQ(status, 200);
 }
@@ -350,14 +215,14 @@ TEST(MapUpload, CountsInTheBudgetWhatItHasGrownTo) {
   const auto status_of = [&team](const std::string& body) {
     const std::string sent = gzipped(body);
     EXPECT_LT(sent.size(), 50'000u);
-    return team.ask(head_of(sent, kGzip) + sent)->status;
+    return team.ask(map_head(sent, kGzip) + sent)->status;
   };
   for (int i = 0; i < 3; ++i) {
     EXPECT_EQ(status_of(grid_body(1000, 1000)), 200);
     EXPECT_EQ(status_of(grid_body(2000, 1000)), 429);
   }
   const std::string body = grid_body(1100, 1100);
-  EXPECT_EQ(team.ask(head_of(body) + body)->status, 429) << "the body is more";
+  EXPECT_EQ(team.ask(map_head(body) + body)->status, 429) << "the body is more";
 }
 
 TEST(MapUpload, RefusesAMapThatGrowsOverTheLimit) {
@@ -365,11 +230,11 @@ TEST(MapUpload, RefusesAMapThatGrowsOverTheLimit) {
   options.rules.map_bytes = 100'000;
   Team team(options);
   const std::string bomb = gzipped(grid_body(2000, 2000));
-  const auto reply = team.ask(head_of(bomb, "Content-Encoding: gzip\r\n") + bomb);
+  const auto reply = team.ask(map_head(bomb, kGzip) + bomb);
   ASSERT_TRUE(reply);
   EXPECT_TRUE(reply->status == 413 || reply->status == 422) << reply->status;
   const std::string large = grid_body(400, 400);
-  const auto other = team.ask(head_of(large) + large);
+  const auto other = team.ask(map_head(large) + large);
   ASSERT_TRUE(other);
   EXPECT_TRUE(other->status == 413 || other->status == 422) << other->status;
   EXPECT_TRUE(team.served.on_loop([&] { return team.desk.maps.empty(); }));
@@ -382,7 +247,7 @@ TEST(MapUpload, EndsWithTheServerInEveryPhase) {
   std::vector<std::unique_ptr<RawClient>> clients;
   for (const std::size_t size : {std::size_t{0}, std::size_t{10}, std::size_t{500'000}, body.size() / 2}) {
     clients.push_back(std::make_unique<RawClient>(team.served.port()));
-    clients.back()->send(head_of(body));
+    clients.back()->send(map_head(body));
     clients.back()->send_until_stalled(std::string_view(body).substr(0, size), milliseconds(50));
   }
   team.served.on_loop([&] { team.served.destroy_server(); });
@@ -396,7 +261,7 @@ TEST(MapUpload, EndsWithTheWorkersWhileOneIsAtWork) {
   Team team;
   const std::string body = grid_body(3000, 3000);
   RawClient client(team.served.port());
-  client.send(head_of(body));
+  client.send(map_head(body));
   client.send_until_stalled(body, milliseconds(20));
   team.served.on_loop([&] {
     team.front.workers = nullptr;  // waits for the one at work

@@ -204,6 +204,13 @@ inline std::string grid_body(std::uint32_t width, std::uint32_t height) {
          data + R"("}})";
 }
 
+/// The head of a map of that body, with `more` header fields.
+inline std::string map_head(const std::string& body, std::string_view more = {}) {
+  return authorized(
+      "POST", "/map/update",
+      std::string(kJsonType) + std::string(more) + "Content-Length: " + std::to_string(body.size()) + "\r\n");
+}
+
 /// True for a JSON string and nothing else: the body of every refusal (ICD 4).
 inline bool is_json_string(const std::string& body) {
   return nlohmann::json::parse(body, nullptr, false).is_string();

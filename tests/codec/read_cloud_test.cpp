@@ -1,0 +1,132 @@
+// A row for each rule of the ICD about a PointCloud2 in POST /map/update, sent as JSON and as CBOR.
+#include <gtest/gtest.h>
+
+#include "codec/read_map.hpp"
+
+namespace adit::codec {
+namespace {
+
+using test::Bytes;
+using test::expect_map_answers;
+using test::IcdRow;
+using test::json;
+using test::read_map;
+
+TEST(ReadMapUpdate, RefusesWhatTheIcdForbidsInACloud) {
+  const IcdRow rows[] = {
+      {"6.3.2", [](json& m) { m["msg"]["origin"] = 1; },
+       "msg.origin: expected an object, got a whole number"},
+      {"6.3.2", [](json& m) { m["msg"]["origin"]["orientation"]["w"] = nullptr; },
+       "msg.origin.orientation.w: expected a number, got null"},
+      {"6.3.2", [](json& m) { m["msg"].erase("fields"); }, "msg.fields: missing"},
+      {"6.3.2", [](json& m) { m["msg"]["fields"] = json::object(); },
+       "msg.fields: expected an array, got an object"},
+      {"6.3.2", [](json& m) { m["msg"]["fields"] = json::array(); },
+       "msg.fields: expected at least x, y and z, got none"},
+      {"6.3.2",
+       [](json& m) { m["msg"]["fields"].get_ref<json::array_t&>().resize(257, m["msg"]["fields"][3]); },
+       "msg.fields: expected at most 256 fields, got 257"},
+      {"6.3.2", [](json& m) { m["msg"]["fields"][2] = "z"; },
+       "msg.fields[2]: expected an object, got a string"},
+      {"6.3.2", [](json& m) { m["msg"]["fields"][2].erase("name"); }, "msg.fields[2].name: missing"},
+      {"6.3.2", [](json& m) { m["msg"]["fields"][2]["name"] = 3; },
+       "msg.fields[2].name: expected a string, got a whole number"},
+      {"6.3.2", [](json& m) { m["msg"]["fields"][2].erase("offset"); }, "msg.fields[2].offset: missing"},
+      {"6.3.2", [](json& m) { m["msg"]["fields"][2]["offset"] = -8; },
+       "msg.fields[2].offset: expected a whole number from 0 to 4294967295, got -8"},
+      {"6.3.2 and kills a server", [](json& m) { m["msg"]["fields"][3]["offset"] = 13; },
+       "msg.fields[3].offset: expected the field to end within point_step 16, got 13 + 4 x 1 = 17"},
+      {"6.3.2", [](json& m) { m["msg"]["fields"][3].erase("datatype"); }, "msg.fields[3].datatype: missing"},
+      {"6.3.2", [](json& m) { m["msg"]["fields"][3]["datatype"] = 0; },
+       "msg.fields[3].datatype: expected a whole number from 1 to 8, got 0"},
+      {"6.3.2", [](json& m) { m["msg"]["fields"][3]["datatype"] = 9; },
+       "msg.fields[3].datatype: expected a whole number from 1 to 8, got 9"},
+      {"6.3.2", [](json& m) { m["msg"]["fields"][3].erase("count"); }, "msg.fields[3].count: missing"},
+      {"6.3.2", [](json& m) { m["msg"]["fields"][3]["count"] = 0; },
+       "msg.fields[3].count: expected a whole number from 1 to 4294967295, got 0"},
+      {"6.3.2", [](json& m) { m["msg"]["fields"][3]["count"] = 4294967295; },
+       "msg.fields[3].offset: expected the field to end within point_step 16, got 12 + 4 x 4294967295 = "
+       "17179869192"},
+      {"6.3.2", [](json& m) { m["msg"]["fields"][1]["name"] = "Y"; },
+       "msg.fields: expected a field \"y\", got none"},
+      {"6.3.2", [](json& m) { m["msg"]["fields"][3]["name"] = "x"; },
+       "msg.fields: expected one field \"x\", got 2"},
+      {"6.3.2", [](json& m) { m["msg"]["fields"][1]["datatype"] = 6; },
+       "msg.fields[1].datatype: expected 7 or 8 for \"y\", got 6"},
+      {"6.3.2",
+       [](json& m) {
+         m["msg"]["fields"][2]["datatype"] = 8;
+         m["msg"]["fields"][2]["offset"] = 8;
+       },
+       "msg.fields[2].datatype: expected 7 as for \"x\", got 8"},
+      {"6.3.2", [](json& m) { m["msg"]["is_bigendian"] = "no"; },
+       "msg.is_bigendian: expected true or false, got a string"},
+      {"6.3.2", [](json& m) { m["msg"]["is_bigendian"] = 2; },
+       "msg.is_bigendian: expected true or false, got 2"},
+      {"6.3.2", [](json& m) { m["msg"].erase("point_step"); }, "msg.point_step: missing"},
+      {"6.3.2 and kills a server", [](json& m) { m["msg"]["point_step"] = 0; },
+       "msg.point_step: expected a whole number from 1 to 65536, got 0"},
+      {"6.3.2", [](json& m) { m["msg"]["point_step"] = 65537; },
+       "msg.point_step: expected a whole number from 1 to 65536, got 65537"},
+      {"6.3.2 and kills a server", [](json& m) { m["msg"]["point_step"] = 8; },
+       "msg.fields[2].offset: expected the field to end within point_step 8, got 8 + 4 x 1 = 12"},
+      {"6.3.2", [](json& m) { m["msg"]["data"] = json::binary(Bytes(33, 0)); },
+       "msg.data: expected a multiple of point_step 16, got 33 bytes"},
+      {"6.3.2",
+       [](json& m) {
+         m["msg"]["data"] = json::binary(test::compressed(Bytes(31, 0)));
+         m["msg"]["compression"] = "gzip";
+       },
+       "msg.data: expected a multiple of point_step 16, got 31 bytes"},
+  };
+  expect_map_answers(rows, test::good_cloud());
+}
+
+TEST(ReadMapUpdate, RefusesACloudOverTheLargestMap) {
+  icd::Rules rules;
+  rules.map_bytes = 1600;
+  const IcdRow rows[] = {
+      {"setting", [](json& m) { m["msg"]["data"] = json::binary(Bytes(1600, 0)); }, "taken"},
+      {"setting", [](json& m) { m["msg"]["data"] = json::binary(Bytes(1616, 0)); },
+       "msg.data: expected at most 1600 bytes (the setting rules.map_bytes), got 1616"},
+      {"setting and a gzip bomb",
+       [](json& m) {
+         m["msg"]["data"] = json::binary(test::compressed(Bytes(16'000'000, 0)));
+         m["msg"]["compression"] = "gzip";
+       },
+       "msg.data: expected at most 1600 bytes, got more"},
+  };
+  expect_map_answers(rows, test::good_cloud(), rules);
+}
+
+TEST(ReadMapUpdate, KeepsWhatACloudSaysAndItsPointsAsTheyAre) {
+  json message = test::good_cloud();
+  message["msg"]["is_bigendian"] = 0;
+  const auto map = read_map(Format::Json, test::as_json(message));
+  ASSERT_TRUE(map.has_value());
+  const auto& cloud = std::get<icd::PointCloud2>(map->msg);
+  EXPECT_EQ(cloud.header.stamp, 721.4);
+  EXPECT_EQ(cloud.origin, (icd::Pose{{1.5, -2.5, 0.25}, {0, 0, 0.6, 0.8}}));
+  ASSERT_EQ(cloud.fields.size(), 4U);
+  EXPECT_EQ(cloud.fields[3], (icd::FieldSchema{"rgba", 12, icd::Datatype::Uint32, 1}));
+  EXPECT_FALSE(cloud.is_bigendian);
+  EXPECT_EQ(cloud.point_step, 16U);
+  EXPECT_EQ(map->data.compression, icd::Compression::None);
+  EXPECT_EQ(map->data.raw_size, 32U);
+  EXPECT_EQ(map->data.bytes, icd::ChunkedBytes(Bytes(32, 0x41)));
+}
+
+TEST(ReadMapUpdate, TakesACloudWithoutOriginByteOrderOrPoints) {
+  json message = test::good_cloud();
+  message["msg"].erase("origin");
+  message["msg"].erase("is_bigendian");
+  message["msg"]["data"] = json::binary({});
+  const auto map = read_map(Format::Cbor, test::as_cbor(message));
+  ASSERT_TRUE(map.has_value());
+  EXPECT_FALSE(std::get<icd::PointCloud2>(map->msg).origin.has_value());
+  EXPECT_FALSE(std::get<icd::PointCloud2>(map->msg).is_bigendian);
+  EXPECT_EQ(map->data.raw_size, 0U);
+}
+
+}  // namespace
+}  // namespace adit::codec

@@ -1,0 +1,142 @@
+// A map's data goes to the desk as it arrives, so that little of it is in memory.
+#include <gtest/gtest.h>
+
+#include "codec/body_decoder.hpp"
+#include "codec/deflated.hpp"
+#include "codec/read.hpp"
+#include "intake/map_upload.hpp"
+#include "intake/team.hpp"
+
+namespace adit::intake {
+namespace {
+
+using codec::test::gzipped;
+using std::chrono::milliseconds;
+using std::chrono::seconds;
+
+/// A cloud of that many points, as the ICD's clients write it in JSON.
+std::string cloud_body(std::size_t points) {
+  const auto field = [](const char* name, int offset) {
+    return std::string(R"({"name": ")") + name + R"(", "offset": )" + std::to_string(offset) +
+           R"(, "datatype": 7, "count": 1})";
+  };
+  std::string data;
+  for (std::size_t i = 0; i < points; ++i) data += i % 2 == 0 ? "AAAAAAAAgD8AAABA" : "AACAPwAAAEAAAAAA";
+  return R"({"type": "PointCloud2", "name": "r1", "msg": {"fields": [)" + field("x", 0) + ", " +
+         field("y", 4) + ", " + field("z", 8) + R"(], "point_step": 12, "data": ")" + data + R"("}})";
+}
+
+/// The one map that the desk has, as it is decoded in one go.
+void expect_the_map_of(Team& team, const std::string& body) {
+  auto document =
+      codec::decode({codec::Format::Json, codec::ContentCoding::Identity}, codec::Split::MapData, body);
+  const icd::MapUpdate map = codec::read_map_update(std::move(*document), {}).value();
+  team.served.on_loop([&] {
+    ASSERT_EQ(team.desk.maps.size(), 1u);
+    EXPECT_TRUE(team.desk.maps[0] == map) << "other points";
+  });
+}
+
+TEST(MapUpload, IsStoredAsItArrives) {
+  for (const std::string& body : {cloud_body(200'000), grid_body(2000, 1000)}) {
+    Team team;
+    RawClient client(team.served.port());
+    client.send(map_head(body) + body.substr(0, body.size() / 2));
+    EXPECT_TRUE(team.served.eventually([&] { return team.desk.stored > body.size() / 4; }));
+    EXPECT_EQ(team.served.on_loop([&] { return team.desk.arriving; }), 1);
+    client.send(body.substr(body.size() / 2));
+    EXPECT_EQ(client.reply()->status, 200);
+    expect_the_map_of(team, body);
+    EXPECT_TRUE(team.served.eventually([&] { return team.desk.arriving == 0; }));
+  }
+}
+
+TEST(MapUpload, MakesTheClientWaitWhileItCannotBeStored) {
+  Team team;
+  team.served.on_loop([&] { team.desk.stores_pieces = false; });
+  const std::string body = cloud_body(3'000'000);
+  RawClient client(team.served.port());
+  client.send(map_head(body));
+  const std::size_t sent = client.send_until_stalled(body, milliseconds(500));
+  EXPECT_LT(sent, body.size()) << "taken into memory though nobody stores it";
+  EXPECT_EQ(team.served.on_loop([&] { return team.desk.storing.size(); }), 1u);
+  team.served.on_loop([&] {
+    team.desk.stores_pieces = true;
+    team.desk.storing.front()();
+  });
+  client.send(std::string_view(body).substr(sent));
+  const auto reply = client.reply(seconds(30));
+  ASSERT_TRUE(reply);
+  EXPECT_EQ(reply->status, 200) << reply->body;
+  expect_the_map_of(team, body);
+}
+
+TEST(MapUpload, IsHeldInMemoryWhereThereIsNoRoomForMoreUntilTheDeskJudges) {
+  for (const std::size_t room : {std::size_t{0}, std::size_t{500'000}}) {
+    Team team;
+    team.served.on_loop([&] { team.desk.room = room; });
+    const std::string body = cloud_body(200'000);
+    EXPECT_EQ(team.ask(authorized("POST", "/map/update", kJsonType, body))->status, 200);
+    expect_the_map_of(team, body);
+    EXPECT_LE(team.served.on_loop([&] { return team.desk.stored; }), room);
+  }
+}
+
+TEST(MapUpload, ThatIsSmallIsNotStoredBeforeItIsWhole) {
+  Team team;
+  EXPECT_EQ(team.ask(authorized("POST", "/map/update", kJsonType, cloud_body(1000)))->status, 200);
+  EXPECT_EQ(team.served.on_loop([&] { return team.desk.stored; }), 0u);
+}
+
+TEST(MapUpload, ThatIsCompressedIsStoredAsItIsInflatedAndNoMoreOfItHeld) {
+  Team team;
+  team.served.on_loop([&] { team.desk.stores_pieces = false; });
+  const std::string body = grid_body(6000, 6000);
+  const std::string sent = gzipped(body);
+  RawClient client(team.served.port());
+  client.send(map_head(sent, kGzip) + sent);
+  ASSERT_TRUE(team.served.eventually([&] { return team.desk.storing.size() == 1; }));
+  team.served.turn_often();
+  EXPECT_LT(team.served.on_loop([&] { return team.desk.stored; }), 2 * MapUpload::kStored);
+  team.served.on_loop([&] {
+    team.desk.stores_pieces = true;
+    team.desk.storing.front()();
+  });
+  const auto reply = client.reply(seconds(30));
+  ASSERT_TRUE(reply);
+  EXPECT_EQ(reply->status, 200) << reply->body;
+  expect_the_map_of(team, body);
+}
+
+TEST(MapUpload, IsRefusedWhereMoreOfItWouldBeHeldThanThereIsFor) {
+  Team team;
+  team.served.on_loop([&] { team.desk.room = 1'000'000; });
+  const std::string sent = gzipped(grid_body(8000, 4000));
+  ASSERT_GT(8000u * 4000u, MapUpload::kWithoutRoom);
+  for (int i = 0; i < 2; ++i) {
+    const auto reply = team.ask(map_head(sent, kGzip) + sent);
+    ASSERT_TRUE(reply);
+    EXPECT_EQ(reply->status, 503);
+    EXPECT_NE(reply->body.find("no room for this map"), std::string::npos) << reply->body;
+  }
+  EXPECT_TRUE(team.served.eventually([&] { return team.desk.arriving == 0; }));
+  const std::string small = gzipped(grid_body(4000, 4000));
+  EXPECT_EQ(team.ask(map_head(small, kGzip) + small)->status, 200) << "what was held is given back";
+}
+
+TEST(MapUpload, LeavesNothingStoredWhereItIsCutOffOrRefused) {
+  Team team;
+  const std::string body = cloud_body(200'000);
+  RawClient half(team.served.port());
+  half.send(map_head(body) + body.substr(0, body.size() / 2));
+  EXPECT_TRUE(team.served.eventually([&] { return team.desk.stored > 0; }));
+  half.reset();
+  EXPECT_TRUE(team.served.eventually([&] { return team.desk.arriving == 0; }));
+  const std::string bad = body.substr(0, body.size() - 1) + "]";
+  EXPECT_EQ(team.ask(authorized("POST", "/map/update", kJsonType, bad))->status, 400);
+  EXPECT_TRUE(team.served.eventually([&] { return team.desk.arriving == 0; }));
+  EXPECT_TRUE(team.served.on_loop([&] { return team.desk.maps.empty(); }));
+}
+
+}  // namespace
+}  // namespace adit::intake

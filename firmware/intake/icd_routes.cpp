@@ -70,6 +70,7 @@ IcdRoutes::IcdRoutes(IcdOptions options, Desk& desk, loop::Workers& workers, Han
       workers_(workers),
       other_(other),
       budget_(std::make_shared<UploadBudget>(options_.upload_bytes)),
+      small_(std::make_shared<UploadBudget>(options_.small_bytes)),
       without_room_(std::make_shared<UploadBudget>(MapUpload::kWithoutRoom)) {}
 
 Shown IcdRoutes::shown(const RequestHead& head) {
@@ -149,7 +150,7 @@ std::unique_ptr<BodySink> IcdRoutes::take_in(Visit visit, const RequestHead& hea
                                            large_markers_, under_way_);
   }
   if (visit.uri != icd::Uri::MapUpdate) {
-    return std::make_unique<SmallUpload>(std::move(visit), *kind, options_.rules, under_way_);
+    return std::make_unique<SmallUpload>(std::move(visit), *kind, options_.rules, small_, under_way_);
   }
   return std::make_unique<MapUpload>(
       std::move(visit),

@@ -26,6 +26,7 @@ struct IcdOptions {
   bool asks_token = true;                // whether a client has to show one: without any, none is let in
   icd::Rules rules;
   std::size_t upload_bytes = 512u << 20;  // most that all maps and markers under way may take: UploadBudget
+  std::size_t small_bytes = 32u << 20;    // and all states and reports
 };
 
 /// The ICD's five URIs for the team: tokens, methods, content types, CORS, decoding (maps on a worker, chunk
@@ -44,7 +45,7 @@ class IcdRoutes final : public Handler {
   std::unique_ptr<BodySink> open(const RequestHead& head, std::shared_ptr<Responder> responder,
                                  std::shared_ptr<Flow> flow) override;
 
-  /// Whoever comes from now on is served so. `upload_bytes` stays what it was.
+  /// Whoever comes from now on is served so. `upload_bytes` and `small_bytes` stay what they were.
   void serve_with(IcdOptions options) { options_ = std::move(options); }
 
   /// Takes no message in any more: who is in the middle of one, or comes with a map, a state or markers, is
@@ -61,6 +62,7 @@ class IcdRoutes final : public Handler {
   loop::Workers& workers_;
   Handler& other_;
   std::shared_ptr<UploadBudget> budget_;
+  std::shared_ptr<UploadBudget> small_;         // for states and reports
   std::shared_ptr<UploadBudget> without_room_;  // for maps that cannot be stored
   std::shared_ptr<OneAtATime> large_markers_ = std::make_shared<OneAtATime>();
   std::shared_ptr<Upload::UnderWay> under_way_ = std::make_shared<Upload::UnderWay>();

@@ -102,7 +102,7 @@ class MapUpload::State final : public Taking, public std::enable_shared_from_thi
         std::shared_ptr<UploadBudget> budget)
       : Taking(std::move(visit), std::move(budget)),
         options_(std::move(options)),
-        without_room_(options_.without_room),
+        without_room_(options_.without_room, visit_.sender.address),
         flow_(std::move(flow)),
         workers_(workers),
         arrival_(visit_.desk.map_arrives()),
@@ -147,9 +147,7 @@ class MapUpload::State final : public Taking, public std::enable_shared_from_thi
   std::size_t pending_bytes_ = 0;
   std::size_t data_ = 0;  // what has been decoded of it, and how much of that was taken from decoding_
   std::size_t taken_ = 0;
-  std::size_t charged_ = 0;  // of share_
-  std::size_t held_ = 0;     // of without_room_
-  bool at_work_ = false;     // a worker is, and decoding_ is its own
+  bool at_work_ = false;  // a worker is, and decoding_ is its own
   bool storing_ = false;
   bool has_stored_ = false;
   icd::ChunkedBytes left_;  // there was no room for it
@@ -176,28 +174,19 @@ bool MapUpload::State::take(std::span<const std::uint8_t> piece) {
 /// Takes of the budget what its body is, or where that is more what its data has grown to. False: it is
 /// refused.
 bool MapUpload::State::charge() {
-  const std::size_t takes = std::max(visit_.sender.bytes, data_);
-  if (takes <= charged_) return true;
-  if (!share_.take(takes - charged_)) {
-    turn_away(
-        {icd::Status::TooManyRequests, "too many maps are being sent at once; send this one again later"});
-    return false;
-  }
-  charged_ = takes;
-  return true;
+  if (share_.grow_to(std::max(visit_.sender.bytes, data_))) return true;
+  turn_away(
+      {icd::Status::TooManyRequests, "too many maps are being sent at once; send this one again later"});
+  return false;
 }
 
 /// The worker is not at it. Whether what there was no room for is held in memory; false: it is refused.
 bool MapUpload::State::is_held() {
   const std::size_t holds = left_.empty() ? 0 : left_.size() + decoding_->data_held();
-  if (holds <= held_) return true;
-  if (!without_room_.take(holds - held_)) {
-    turn_away({icd::Status::ServiceUnavailable,
-               "there is no room for this map: the room for maps that wait is full; send it again later"});
-    return false;
-  }
-  held_ = holds;
-  return true;
+  if (without_room_.grow_to(holds)) return true;
+  turn_away({icd::Status::ServiceUnavailable,
+             "there is no room for this map: the room for maps that wait is full; send it again later"});
+  return false;
 }
 
 void MapUpload::State::give_to_worker() {

@@ -39,11 +39,12 @@ Parts read_large(codec::BodyKind kind, const icd::Rules& rules, Body& body) {
 class MarkersUpload::State final : public Taking, public std::enable_shared_from_this<State> {
  public:
   State(Visit visit, codec::BodyKind kind, const icd::Rules& rules, loop::Workers& workers,
-        std::shared_ptr<UploadBudget> budget, const std::shared_ptr<OneAtATime>& turns)
-      : Taking(std::move(visit), std::move(budget)),
+        const std::shared_ptr<UploadBudget>& budget, const std::shared_ptr<OneAtATime>& turns)
+      : Taking(std::move(visit), budget),
         kind_(kind),
         rules_(rules),
         workers_(workers),
+        budget_(budget),
         turns_(turns),
         small_(std::in_place, kind, codec::Split::Nothing, codec::Limits{.values = kSmallValues}) {}
 
@@ -57,8 +58,9 @@ class MarkersUpload::State final : public Taking, public std::enable_shared_from
   void let_go() override { body_.clear(); }
   void keep(std::span<const std::uint8_t> piece);
   void feed(std::span<const std::uint8_t> piece);
-  /// False: it has been refused.
-  bool charge(std::size_t bytes);
+  /// What it holds. False: it has been refused.
+  bool charge();
+  void too_much();
   void read();
   void give_to_worker();
   void read_by_worker(const Parts& parts) {
@@ -67,7 +69,7 @@ class MarkersUpload::State final : public Taking, public std::enable_shared_from
     if (!loop::guarded("taking markers", [&] { decoded(parts); })) fail(not_held());
   }
   void end_turn() {
-    if (std::exchange(reads_, false)) share_.give_back(kReading);
+    if (std::exchange(reads_, false)) budget_->give_back(kReading);
     if (const auto turns = turns_.lock()) turns->end();
   }
   void decoded(const Parts& parts) {
@@ -84,16 +86,21 @@ class MarkersUpload::State final : public Taking, public std::enable_shared_from
   codec::BodyKind kind_;
   icd::Rules rules_;
   loop::Workers& workers_;
+  std::shared_ptr<UploadBudget> budget_;
   std::weak_ptr<OneAtATime> turns_;          // whose turns hold this
   bool reads_ = false;                       // and has taken kReading for that
   Body body_;                                // as it came
   std::optional<codec::BodyDecoder> small_;  // nothing: it is large
 };
 
-bool MarkersUpload::State::charge(std::size_t bytes) {
-  if (share_.take(bytes)) return true;
+bool MarkersUpload::State::charge() {
+  const bool has_room = share_.grow_to(visit_.sender.bytes + (small_ ? small_->size() : 0));
+  if (!has_room) too_much();
+  return has_room;
+}
+
+void MarkersUpload::State::too_much() {
   turn_away({icd::Status::TooManyRequests, "too much is being sent at once; send these markers again later"});
-  return false;
 }
 
 void MarkersUpload::State::keep(std::span<const std::uint8_t> piece) {
@@ -102,9 +109,9 @@ void MarkersUpload::State::keep(std::span<const std::uint8_t> piece) {
     return turn_away(
         {icd::Status::ContentTooLarge, icd::sentence("body: expected at most ", kMost, " bytes")});
   }
-  if (!charge(piece.size())) return;
   body_.emplace_back(piece.begin(), piece.end());
   if (small_) feed(piece);
+  if (!over_) charge();
 }
 
 void MarkersUpload::State::feed(std::span<const std::uint8_t> piece) {
@@ -118,7 +125,9 @@ void MarkersUpload::State::feed(std::span<const std::uint8_t> piece) {
 void MarkersUpload::State::whole() {
   if (over_) return;
   if (!small_) {
-    if (const auto turns = turns_.lock()) turns->wait([self = shared_from_this()] { self->read(); });
+    if (const auto turns = turns_.lock()) {
+      turns->wait(visit_.sender.address, [self = shared_from_this()] { self->read(); });
+    }
     return;
   }
   const MemoryGivenBack at_the_end(*small_);
@@ -129,9 +138,10 @@ void MarkersUpload::State::whole() {
 /// It is its turn.
 void MarkersUpload::State::read() {
   const bool well = loop::guarded("reading markers", [this] {
-    reads_ = !over_ && charge(kReading);
-    if (!reads_) return end_turn();
-    give_to_worker();
+    reads_ = !over_ && budget_->take(kReading);
+    if (reads_) return give_to_worker();
+    end_turn();
+    too_much();
   });
   if (well) return;
   end_turn();

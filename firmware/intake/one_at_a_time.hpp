@@ -1,18 +1,22 @@
 #pragma once
 
+#include <algorithm>
 #include <deque>
 #include <functional>
+#include <string>
 #include <utility>
 
 namespace adit::intake {
 
-/// Gives turns, first come first served: for what takes too much memory to be done twice at once. For the
-/// loop alone.
+/// Gives turns, to one address after the other, and to each in the order in which it came: for what takes too
+/// much memory to be done twice at once. For the loop alone.
 class OneAtATime {
  public:
   /// Calls `begin` when it is its turn, maybe at once. Whoever has a turn ends it.
-  void wait(std::function<void()> begin) {
-    waiting_.push_back(std::move(begin));
+  void wait(const std::string& address, std::function<void()> begin) {
+    auto line = std::ranges::find(lines_, address, &Line::address);
+    if (line == lines_.end()) line = lines_.insert(line, {.address = address, .waiting = {}});
+    line->waiting.push_back(std::move(begin));
     go_on();
   }
   void end() {
@@ -21,15 +25,23 @@ class OneAtATime {
   }
 
  private:
+  struct Line {
+    std::string address;
+    std::deque<std::function<void()>> waiting;  // not empty
+  };
+
   void go_on() {
-    if (under_way_ || waiting_.empty()) return;
+    if (under_way_ || lines_.empty()) return;
     under_way_ = true;
-    const auto begin = std::move(waiting_.front());
-    waiting_.pop_front();
+    Line first = std::move(lines_.front());
+    lines_.pop_front();
+    const auto begin = std::move(first.waiting.front());
+    first.waiting.pop_front();
+    if (!first.waiting.empty()) lines_.push_back(std::move(first));
     begin();
   }
 
-  std::deque<std::function<void()>> waiting_;
+  std::deque<Line> lines_;
   bool under_way_ = false;
 };
 

@@ -1,5 +1,7 @@
 #include "intake/small_upload.hpp"
 
+#include <algorithm>
+
 #include "codec/read.hpp"
 #include "intake/memory_given_back.hpp"
 #include "intake/take_parts.hpp"
@@ -8,7 +10,14 @@ namespace adit::intake {
 
 bool SmallUpload::on_body(std::span<const std::uint8_t> piece) {
   visit_.sender.bytes += piece.size();
-  if (const auto fed = decoder_.feed(piece); !fed) visit_.refuse(fed.error());
+  const auto fed = decoder_.feed(piece);
+  if (!fed) {
+    visit_.refuse(fed.error());
+  } else if (!share_.grow_to(std::max(visit_.sender.bytes, decoder_.size()))) {
+    visit_.refuse({icd::Status::ServiceUnavailable,
+                   "too much is being sent at once, by this address or by all; send this again later"},
+                  {{"Retry-After", "1"}});
+  }
   return true;
 }
 

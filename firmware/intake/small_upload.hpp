@@ -3,6 +3,7 @@
 #include "codec/body_decoder.hpp"
 #include "icd/rules.hpp"
 #include "intake/upload.hpp"
+#include "intake/upload_budget.hpp"
 #include "intake/visit.hpp"
 
 namespace adit::intake {
@@ -10,9 +11,11 @@ namespace adit::intake {
 /// Takes a state or a report: at most a megabyte, decoded on the loop as it arrives.
 class SmallUpload final : public Upload {
  public:
-  SmallUpload(Visit visit, codec::BodyKind kind, const icd::Rules& rules, std::shared_ptr<UnderWay> under_way)
+  SmallUpload(Visit visit, codec::BodyKind kind, const icd::Rules& rules,
+              std::shared_ptr<UploadBudget> budget, std::shared_ptr<UnderWay> under_way)
       : Upload(std::move(under_way)),
         visit_(std::move(visit)),
+        share_(std::move(budget), visit_.sender.address),
         rules_(rules),
         decoder_(kind, codec::Split::Nothing, {.values = kSmallValues}) {
     visit_.sender.bytes = 0;
@@ -28,6 +31,7 @@ class SmallUpload final : public Upload {
   void give_to_desk(const codec::Document& document);
 
   Visit visit_;
+  UploadShare share_;
   icd::Rules rules_;
   codec::BodyDecoder decoder_;
   bool whole_ = false;

@@ -1,16 +1,21 @@
 #pragma once
 
 #include <cstddef>
+#include <map>
 #include <memory>
+#include <string>
 #include <utility>
 
 namespace adit::intake {
 
-/// How much all maps and large markers under way together may take, so that many at once cannot use up the
-/// memory. For the loop alone.
+/// How much the bodies under way together may take, so that many at once cannot use up the memory. The last
+/// quarter is for addresses that hold no more than is left after them: however much one sends, another that
+/// comes finds room. For the loop alone.
 class UploadBudget {
  public:
-  explicit UploadBudget(std::size_t bytes) : left_(bytes) {}
+  explicit UploadBudget(std::size_t bytes) : whole_(bytes), left_(bytes) {}
+
+  /// Of nobody's share.
   bool take(std::size_t bytes) {
     if (bytes > left_) return false;
     left_ -= bytes;
@@ -18,32 +23,51 @@ class UploadBudget {
   }
   void give_back(std::size_t bytes) { left_ += bytes; }
 
+  /// Of the share of `address`, of which as much may be given back. False: it has no more, or none is left.
+  bool take(const std::string& address, std::size_t bytes) {
+    if (!is_fair(address, bytes) || !take(bytes)) return false;
+    held_[address] += bytes;
+    return true;
+  }
+  void give_back(const std::string& address, std::size_t bytes) {
+    give_back(bytes);
+    const auto held = held_.find(address);
+    if (held != held_.end() && (held->second -= bytes) == 0) held_.erase(held);
+  }
+
  private:
+  bool is_fair(const std::string& address, std::size_t bytes) const {
+    if (bytes > left_) return false;
+    const std::size_t left = left_ - bytes;
+    const auto held = held_.find(address);
+    return left >= whole_ / 4 || bytes + (held == held_.end() ? 0 : held->second) <= left;
+  }
+
+  const std::size_t whole_;
   std::size_t left_;
+  std::map<std::string, std::size_t> held_;  // by address
 };
 
 /// What one upload has taken of the budget. Its end gives it back.
 class UploadShare {
  public:
-  explicit UploadShare(std::shared_ptr<UploadBudget> budget) : budget_(std::move(budget)) {}
-  ~UploadShare() { budget_->give_back(taken_); }
+  UploadShare(std::shared_ptr<UploadBudget> budget, std::string address)
+      : budget_(std::move(budget)), address_(std::move(address)) {}
+  ~UploadShare() { budget_->give_back(address_, taken_); }
   UploadShare(const UploadShare&) = delete;
   UploadShare& operator=(const UploadShare&) = delete;
 
-  /// False: not so much is left, and nothing more is taken.
-  bool take(std::size_t bytes) {
-    if (!budget_->take(bytes)) return false;
-    taken_ += bytes;
+  /// Takes what is missing to `bytes`. False: not so much is left for it, and nothing more is taken.
+  bool grow_to(std::size_t bytes) {
+    if (bytes <= taken_) return true;
+    if (!budget_->take(address_, bytes - taken_)) return false;
+    taken_ = bytes;
     return true;
-  }
-  /// Of what it has taken.
-  void give_back(std::size_t bytes) {
-    taken_ -= bytes;
-    budget_->give_back(bytes);
   }
 
  private:
   std::shared_ptr<UploadBudget> budget_;
+  const std::string address_;
   std::size_t taken_ = 0;
 };
 

@@ -16,7 +16,7 @@ class WorkerUpload : public Upload {
   class Taking {
    public:
     Taking(Visit visit, std::shared_ptr<UploadBudget> budget)
-        : visit_(std::move(visit)), share_(std::move(budget)) {
+        : visit_(std::move(visit)), share_(std::move(budget), visit_.sender.address) {
       visit_.sender.bytes = 0;
     }
     virtual ~Taking() = default;

@@ -129,7 +129,7 @@ TEST(MarkersUpload, IsNotTakenOnceItsClientIsGoneOrAStopHasBegun) {
 
 TEST(MarkersUpload, WaitsForTheMemoryThatReadingAnotherTakes) {
   IcdOptions options = Team::with_tokens();
-  options.upload_bytes = MarkersUpload::kReading + (6u << 20);
+  options.upload_bytes = 2 * MarkersUpload::kReading - (6u << 20);
   Team team(options);
   const std::string body = cbor_of({{"markers", {marker(50'000, false)}}});
   const std::string sent = authorized("POST", "/markers/update", kCborType, body);

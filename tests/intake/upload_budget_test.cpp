@@ -9,31 +9,44 @@ namespace {
 
 TEST(UploadShare, TakesNoMoreThanIsLeftForAll) {
   const auto budget = std::make_shared<UploadBudget>(100);
-  UploadShare one(budget), other(budget);
-  EXPECT_TRUE(one.take(60));
-  EXPECT_FALSE(other.take(41));
-  EXPECT_TRUE(other.take(40)) << "what was not taken is left";
-  EXPECT_FALSE(one.take(1));
+  UploadShare one(budget, "a"), other(budget, "b");
+  EXPECT_TRUE(one.grow_to(60));
+  EXPECT_FALSE(other.grow_to(41));
+  EXPECT_TRUE(other.grow_to(15)) << "what was not taken is left";
+  EXPECT_TRUE(one.grow_to(50)) << "it has that";
+  EXPECT_FALSE(one.grow_to(76));
+}
+
+TEST(UploadShare, OfOneAddressLeavesRoomForOthersHoweverManyItHas) {
+  const auto budget = std::make_shared<UploadBudget>(100);
+  UploadShare one(budget, "a"), two(budget, "a"), three(budget, "a");
+  EXPECT_TRUE(one.grow_to(60));
+  EXPECT_TRUE(two.grow_to(15));
+  EXPECT_FALSE(three.grow_to(1));
+  UploadShare other(budget, "b"), third(budget, "c");
+  EXPECT_TRUE(other.grow_to(12));
+  EXPECT_FALSE(other.grow_to(13)) << "it would have more than it leaves";
+  EXPECT_TRUE(third.grow_to(6)) << "though the first has not given anything back";
 }
 
 TEST(UploadShare, IsGivenBackWholeAtItsEndAndOnlyOnce) {
   const auto budget = std::make_shared<UploadBudget>(100);
   {
-    std::optional<UploadShare> share(std::in_place, budget);
-    EXPECT_TRUE(share->take(60));
-    EXPECT_TRUE(share->take(30));
-    EXPECT_FALSE(share->take(11));
-    EXPECT_FALSE(budget->take(11));
+    std::optional<UploadShare> share(std::in_place, budget, "a");
+    EXPECT_TRUE(share->grow_to(60));
+    EXPECT_TRUE(share->grow_to(75));
+    EXPECT_FALSE(budget->take(26));
   }
   EXPECT_FALSE(budget->take(101));
+  EXPECT_TRUE(UploadShare(budget, "a").grow_to(75));
   EXPECT_TRUE(budget->take(100));
 }
 
 TEST(UploadShare, KeepsTheBudgetThatItGivesBackTo) {
   auto budget = std::make_shared<UploadBudget>(100);
   const std::weak_ptr<UploadBudget> watched = budget;
-  std::optional<UploadShare> share(std::in_place, std::move(budget));
-  EXPECT_TRUE(share->take(100));
+  std::optional<UploadShare> share(std::in_place, std::move(budget), "a");
+  EXPECT_TRUE(share->grow_to(75));
   EXPECT_FALSE(watched.expired());
   share.reset();
   EXPECT_TRUE(watched.expired());

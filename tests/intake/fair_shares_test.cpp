@@ -1,0 +1,91 @@
+// Memory and turns are shared by addresses, by real sockets: one that sends as much as it can, with or
+// without a token, leaves room for others.
+#include <gtest/gtest.h>
+
+#include "intake/team.hpp"
+
+namespace adit::intake {
+namespace {
+
+const std::string kGreedy = "127.0.0.2", kOther = "127.0.0.3";
+
+class FairShares : public testing::Test {
+ protected:
+  static IcdOptions options() {
+    IcdOptions options;
+    options.asks_token = false;
+    options.upload_bytes = options.small_bytes = 1'000'000;
+    return options;
+  }
+  /// Connections of the greedy address, each of which has sent all but the end of `body`.
+  void send_greedily(std::string_view path, const std::string& body) {
+    const std::string length = "Content-Length: " + std::to_string(body.size()) + "\r\n";
+    for (int i = 0; i < 20; ++i) {
+      greedy.push_back(std::make_unique<RawClient>(team.served.port(), kGreedy));
+      greedy.back()->send(request("POST", path, std::string(kJsonType) + length) +
+                          body.substr(0, body.size() - 1));
+    }
+  }
+  std::optional<Reply> ask_from(const std::string& address, std::string_view path, const std::string& body) {
+    RawClient client(team.served.port(), address);
+    client.send(request("POST", path, kJsonType, body));
+    return client.reply();
+  }
+  /// Those of the greedy that were refused, once one was.
+  std::size_t refusals() {
+    EXPECT_TRUE(team.served.eventually([&] { return !team.desk.refusals.empty(); }));
+    return team.served.on_loop([&] { return team.desk.refusals.size(); });
+  }
+
+  Team team{options()};
+  std::vector<std::unique_ptr<RawClient>> greedy;
+};
+
+TEST_F(FairShares, OfMapsAreLeftForAnotherAddress) {
+  const std::string body = grid_body(300, 300);
+  send_greedily("/map/update", body);
+  EXPECT_GE(refusals(), 1u);
+  const auto reply = ask_from(kOther, "/map/update", body);
+  ASSERT_TRUE(reply);
+  EXPECT_EQ(reply->status, 200) << reply->body;
+  EXPECT_EQ(ask_from(kGreedy, "/map/update", body)->status, 429);
+}
+
+TEST_F(FairShares, OfStatesAreLeftForAnotherAddress) {
+  const std::string body = std::string(kStateBody).insert(1, 100'000, ' ');
+  send_greedily("/state/update", body);
+  EXPECT_GE(refusals(), 1u);
+  const auto reply = ask_from(kOther, "/state/update", body);
+  ASSERT_TRUE(reply);
+  EXPECT_EQ(reply->status, 200) << reply->body;
+  const auto refused = ask_from(kGreedy, "/state/update", body);
+  ASSERT_TRUE(refused);
+  EXPECT_EQ(refused->status, 503);
+  EXPECT_EQ(refused->header("retry-after"), "1");
+  EXPECT_TRUE(is_json_string(refused->body)) << refused->body;
+}
+
+TEST(FairTurns, OfLargeMarkersAreOfOneAddressAfterTheOther) {
+  Team team;
+  std::string many = R"({"markers":[{"action":3})";
+  for (int i = 0; i < 60'000; ++i) many += R"(,{"action":3})";
+  many += "]}";
+  Team::Busy busy(team);
+  std::vector<std::unique_ptr<RawClient>> clients;
+  const auto send_from = [&](const std::string& address) {
+    clients.push_back(std::make_unique<RawClient>(team.served.port(), address));
+    clients.back()->send(authorized("POST", "/markers/update", kJsonType, many));
+    team.served.turn_often();
+  };
+  for (int i = 0; i < 3; ++i) send_from(kGreedy);
+  send_from(kOther);
+  busy.end();
+  for (const auto& client : clients) EXPECT_EQ(client->reply()->status, 200);
+  team.served.on_loop([&] {
+    ASSERT_EQ(team.desk.senders.size(), 4u);
+    EXPECT_LT(std::ranges::find(team.desk.senders, kOther, &Sender::address) - team.desk.senders.begin(), 3);
+  });
+}
+
+}  // namespace
+}  // namespace adit::intake

@@ -20,7 +20,7 @@ std::unique_ptr<Splitter> splitter_for(Format format, Split split, const Limits&
 /// What a body may inflate to. Most that data takes is four characters for a byte, as the integers of an
 /// array; white space counts here alone.
 std::size_t most_inflated(Split split, const Limits& limits) {
-  if (split == Split::Nothing) return limits.text_bytes;
+  if (split != Split::MapData) return limits.text_bytes;
   constexpr std::size_t kMost = std::numeric_limits<std::size_t>::max();
   if (limits.data_bytes > (kMost - limits.text_bytes) / 4) return kMost;
   return limits.text_bytes + 4 * limits.data_bytes;

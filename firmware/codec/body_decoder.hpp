@@ -35,8 +35,12 @@ struct Limits {
   std::size_t data_bytes = 256u << 20;  // bulk data, after inflating the body, before inflating the data
 };
 
-/// Whether the value at "msg.data" is split from the rest as it arrives.
-enum class Split : std::uint8_t { Nothing, MapData };
+/// What is not parsed with the rest.
+enum class Split : std::uint8_t {
+  Nothing,
+  MapData,  // the value at "msg.data", which is split from the rest as it arrives
+  Lists,    // the elements of each array: one by one, when they are asked for (List)
+};
 
 /// How the bulk data stood in the body.
 enum class DataForm : std::uint8_t {

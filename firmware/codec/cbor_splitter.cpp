@@ -16,7 +16,8 @@ bool is_remark(std::uint64_t tag) {
 
 }  // namespace
 
-CborSplitter::CborSplitter(Split split, Most most, BulkData& data) : most_(most), data_(data), path_(split) {
+CborSplitter::CborSplitter(Split split, Most most, BulkData& data)
+    : split_(split), most_(most), data_(data), path_(split) {
   nests_.reserve(BodyDecoder::kDeepest);
 }
 
@@ -34,6 +35,7 @@ icd::Checked<void> CborSplitter::feed(std::string_view bytes) {
 icd::Checked<Value> CborSplitter::finish() {
   if (at_ == 0) return std::unexpected(fault_at(at_, "an empty document"));
   if (!whole_) return std::unexpected(fault_at(at_, "the document is cut short"));
+  if (split_ == Split::Lists) return cbor_value_with_lists(std::move(rest_));
   auto root = cbor_value(rest_);
   if (root && data_.form() != DataForm::Absent) mark_split_out(*root);
   return root;

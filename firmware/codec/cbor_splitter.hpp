@@ -67,6 +67,7 @@ class CborSplitter final : public Splitter {
   icd::Refusal fault(std::string_view what) const { return fault_at(head_at_, what); }
   static icd::Refusal fault_at(std::size_t at, std::string_view what);
 
+  const Split split_;
   const Most most_;
   std::size_t values_ = 0;  // kept, with the chunks of strings
   BulkData& data_;

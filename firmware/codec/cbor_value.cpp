@@ -7,6 +7,7 @@
 #include <optional>
 #include <span>
 
+#include "codec/splitter.hpp"
 #include "codec/utf8.hpp"
 
 namespace adit::codec {
@@ -80,7 +81,7 @@ Value simple(const cbor_item_t& item) {
 }
 
 /// Recursion ends at BodyDecoder::kDeepest.
-Value value_of(const cbor_item_t& item) {
+Value value_of(const cbor_item_t& item, Lists* lists) {
   switch (cbor_typeof(&item)) {
     case CBOR_TYPE_UINT:
       return whole(cbor_get_int(&item));
@@ -91,10 +92,11 @@ Value value_of(const cbor_item_t& item) {
     case CBOR_TYPE_STRING:
       return {text_of(item)};
     case CBOR_TYPE_ARRAY: {
+      if (lists != nullptr) return lists->next();
       Value::Array array;
       array.reserve(cbor_array_size(&item));
       for (const cbor_item_t* element : std::span(cbor_array_handle(&item), cbor_array_size(&item))) {
-        array.push_back(value_of(*element));
+        array.push_back(value_of(*element, nullptr));
       }
       return {std::move(array)};
     }
@@ -102,7 +104,10 @@ Value value_of(const cbor_item_t& item) {
       Value::Object object;
       object.reserve(cbor_map_size(&item));
       for (const cbor_pair& pair : std::span(cbor_map_handle(&item), cbor_map_size(&item))) {
-        if (auto name = name_of(*pair.key)) object.emplace_back(*std::move(name), value_of(*pair.value));
+        auto name = name_of(*pair.key);
+        if (!name) (void)value_of(*pair.key, lists);  // with its lists
+        Value value = value_of(*pair.value, lists);
+        if (name) object.emplace_back(*std::move(name), std::move(value));
       }
       return {std::move(object)};
     }
@@ -113,16 +118,28 @@ Value value_of(const cbor_item_t& item) {
   return simple(item);
 }
 
+/// The value from `begin` on.
+icd::Checked<Value> with_lists(const Text& text, std::size_t begin, std::size_t /*end*/) {
+  Cut cut = cut_cbor(*text, begin);
+  if (cut.values > kMostOutsideLists) return std::unexpected(too_many_outside_lists(kMostOutsideLists));
+  Lists lists(text, std::move(cut.arrays), with_lists, 0);
+  return cbor_value(cut.rest, &lists);
+}
+
 }  // namespace
 
-icd::Checked<Value> cbor_value(const std::string& bytes) {
+icd::Checked<Value> cbor_value(const std::string& bytes, Lists* lists) {
   cbor_load_result result{};
   const Item root(cbor_load(reinterpret_cast<const unsigned char*>(bytes.data()), bytes.size(), &result));
   if (root == nullptr) {  // only for want of memory: the bytes are known to be well-formed
     return std::unexpected(
         icd::Refusal{icd::Status::InternalServerError, "the CBOR document could not be parsed"});
   }
-  return value_of(*root);
+  return value_of(*root, lists);
+}
+
+icd::Checked<Value> cbor_value_with_lists(std::string bytes) {
+  return with_lists(std::make_shared<const std::string>(std::move(bytes)), 0, 0);
 }
 
 }  // namespace adit::codec

@@ -2,6 +2,7 @@
 
 #include <cmath>
 
+#include "codec/list.hpp"
 #include "codec/utf8.hpp"
 #include "icd/require.hpp"
 
@@ -68,11 +69,18 @@ Field Field::member(std::string_view name) const& {
 
 std::size_t Field::size() const {
   if (is<Value::Array>()) return std::get<Value::Array>(value_->is).size();
+  if (is<std::shared_ptr<const List>>()) return std::get<std::shared_ptr<const List>>(value_->is)->size();
   refuse_kind("an array");
   return 0;
 }
 
 Field Field::element(std::size_t index, Reading& reading) const& {
+  if (is<std::shared_ptr<const List>>()) {
+    auto parsed = std::get<std::shared_ptr<const List>>(value_->is)->element(index);
+    if (parsed) return {std::make_unique<const Value>(*std::move(parsed)), this, index, reading};
+    Field(nullptr, this, {}, index, reading).refuse(parsed.error().sentence);
+    return {nullptr, this, {}, index, reading};
+  }
   icd::require(is<Value::Array>() && index < std::get<Value::Array>(value_->is).size());
   return {&std::get<Value::Array>(value_->is)[index], this, {}, index, reading};
 }

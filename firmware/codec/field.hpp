@@ -3,6 +3,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <limits>
+#include <memory>
 #include <optional>
 #include <string>
 #include <string_view>
@@ -106,12 +107,16 @@ class Field {
 
   Field(const Value* value, const Field* parent, std::string_view name, std::size_t index, Reading& reading)
       : value_(value), parent_(parent), name_(name), index_(index), reading_(reading) {}
+  /// Of an element that is its own.
+  Field(std::unique_ptr<const Value> own, const Field* parent, std::size_t index, Reading& reading)
+      : own_(std::move(own)), value_(own_.get()), parent_(parent), index_(index), reading_(reading) {}
 
   std::optional<std::string_view> characters() const;
   std::int64_t whole_number(std::int64_t least, std::int64_t most) const;
   const Value::Object* object() const;
 
-  const Value* value_;  // null: not given
+  std::unique_ptr<const Value> own_;  // null: it lies in the document
+  const Value* value_;                // null: not given
   const Field* parent_;
   std::string_view name_;  // empty: an element
   std::size_t index_;

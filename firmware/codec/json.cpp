@@ -5,6 +5,7 @@
 #include "codec/json_number.hpp"
 #include "codec/json_splitter.hpp"
 #include "codec/json_value.hpp"
+#include "codec/list.hpp"
 #include "codec/write.hpp"
 #include "icd/sentence.hpp"
 
@@ -31,6 +32,12 @@ struct Writer {
       std::visit(*this, element.is);
     }
     text += ']';
+  }
+
+  void operator()(const std::shared_ptr<const List>& list) const {
+    Value::Array array;
+    for (std::size_t i = 0; i < list->size(); ++i) array.push_back(list->element(i).value_or(Value()));
+    (*this)(array);
   }
 
   void operator()(const Value::Object& object) const {

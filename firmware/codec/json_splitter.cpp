@@ -23,7 +23,8 @@ bool starts_number(char c) {
 
 }  // namespace
 
-JsonSplitter::JsonSplitter(Split split, Most most, BulkData& data) : most_(most), data_(data), path_(split) {}
+JsonSplitter::JsonSplitter(Split split, Most most, BulkData& data)
+    : split_(split), most_(most), data_(data), path_(split) {}
 
 icd::Checked<void> JsonSplitter::feed(std::string_view bytes) {
   if (at_ == 0) rest_.reserve(std::min(bytes.size(), kSmallText));
@@ -50,6 +51,7 @@ icd::Checked<void> JsonSplitter::end() {
 
 icd::Checked<Value> JsonSplitter::finish() {
   if (auto whole = end(); !whole) return std::unexpected(whole.error());
+  if (split_ == Split::Lists) return json_value_with_lists(std::move(rest_));
   auto root = json_value(rest_);
   if (root && data_.form() != DataForm::Absent) mark_split_out(*root);
   return root;

@@ -61,6 +61,7 @@ class JsonSplitter final : public Splitter {
   static icd::Refusal fault_at(std::size_t at, std::string_view what);
   icd::Refusal expected(std::string_view what, char got) const;
 
+  const Split split_;
   const Most most_;
   std::size_t values_ = 0;  // kept
   BulkData& data_;

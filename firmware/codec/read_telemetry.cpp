@@ -112,6 +112,7 @@ icd::Checked<InParts<icd::MarkersUpdate>> read_markers_parts(const Document& doc
     return icd::unprocessable("markers: expected at most ", icd::kMostMarkers, " in one message, got ",
                               count);
   }
+  update.markers.reserve(markers.size());
   read_each(
       markers, refused,
       [&](const Field& field) { return field.reading().outcome(read_marker(field, rules)); },

@@ -31,6 +31,10 @@ icd::Refusal too_many_values(std::size_t most) {
           icd::sentence("the document without its bulk data has more than the ", most, " values taken")};
 }
 
+icd::Refusal too_many_outside_lists(std::size_t most) {
+  return {icd::Status::ContentTooLarge, icd::sentence("more than the ", most, " values taken outside lists")};
+}
+
 void mark_split_out(Value& root) {
   // A body with a second "msg.data" has been refused, so that at most one is found.
   each_member(root, "msg",

@@ -34,6 +34,7 @@ icd::Refusal bad_data(std::string_view why);
 /// 413: the rest is over `most` bytes, or values.
 icd::Refusal text_too_large(std::size_t most);
 icd::Refusal too_many_values(std::size_t most);
+icd::Refusal too_many_outside_lists(std::size_t most);
 
 /// Puts SplitOut at "msg.data", where the splitter left a null.
 void mark_split_out(Value& root);

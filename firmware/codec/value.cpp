@@ -5,9 +5,9 @@
 namespace adit::codec {
 
 const char* Value::kind() const {
-  constexpr std::array<const char*, 10> kKinds = {
-      "null",     "true or false", "a whole number",  "a whole number", "a number",
-      "a string", "a byte string", "split-out bytes", "an array",       "an object"};
+  constexpr std::array<const char*, 11> kKinds = {
+      "null",          "true or false",   "a whole number", "a whole number", "a number", "a string",
+      "a byte string", "split-out bytes", "an array",       "an object",      "an array"};
   static_assert(kKinds.size() == std::variant_size_v<decltype(is)>);
   return kKinds[is.index()];
 }

@@ -1,12 +1,15 @@
 #pragma once
 
 #include <cstdint>
+#include <memory>
 #include <string>
 #include <utility>
 #include <variant>
 #include <vector>
 
 namespace adit::codec {
+
+class List;
 
 /// A parsed document without its bulk data: what JSON (RFC 8259) and CBOR (RFC 8949) have in common.
 /// Members keep their order and their duplicates, so that a reader can refuse a member that is given twice.
@@ -21,7 +24,7 @@ struct Value {
   using Object = std::vector<Member>;
 
   std::variant<std::nullptr_t, bool, std::int64_t, std::uint64_t, double, std::string, Bytes, SplitOut, Array,
-               Object>
+               Object, std::shared_ptr<const List>>  // an array, where it is left as text (Split::Lists)
       is = nullptr;
 
   /// "a string", "a whole number", "null", ...: for sentences.

@@ -25,7 +25,7 @@ Parts read_parts(codec::BodyDecoder& decoder, const icd::Rules& rules) {
 /// The worker's part. What has been fed is freed.
 Parts read_large(codec::BodyKind kind, const icd::Rules& rules, Body& body) {
   const MemoryGivenBack at_the_end(true);
-  codec::BodyDecoder decoder(kind, codec::Split::Nothing,
+  codec::BodyDecoder decoder(kind, codec::Split::Lists,
                              {.text_bytes = MarkersUpload::kMost, .values = MarkersUpload::kMostValues});
   for (auto& piece : body) {
     if (auto fed = decoder.feed(piece); !fed) return std::unexpected(std::move(fed.error()));
@@ -39,14 +39,13 @@ Parts read_large(codec::BodyKind kind, const icd::Rules& rules, Body& body) {
 class MarkersUpload::State final : public Taking, public std::enable_shared_from_this<State> {
  public:
   State(Visit visit, codec::BodyKind kind, const icd::Rules& rules, loop::Workers& workers,
-        const std::shared_ptr<UploadBudget>& budget, const std::shared_ptr<OneAtATime>& turns)
-      : Taking(std::move(visit), budget),
+        std::shared_ptr<UploadBudget> budget, const std::shared_ptr<OneAtATime>& turns)
+      : Taking(std::move(visit), std::move(budget)),
         kind_(kind),
         rules_(rules),
         workers_(workers),
-        budget_(budget),
         turns_(turns),
-        small_(std::in_place, kind, codec::Split::Nothing, codec::Limits{.values = kSmallValues}) {}
+        small_(std::in_place, kind, codec::Split::Lists, codec::Limits{.values = kSmallValues}) {}
 
   bool take(std::span<const std::uint8_t> piece) override {
     if (!over_) keep(piece);
@@ -58,9 +57,8 @@ class MarkersUpload::State final : public Taking, public std::enable_shared_from
   void let_go() override { body_.clear(); }
   void keep(std::span<const std::uint8_t> piece);
   void feed(std::span<const std::uint8_t> piece);
-  /// What it holds. False: it has been refused.
-  bool charge();
-  void too_much();
+  /// For what it holds.
+  void charge();
   void read();
   void give_to_worker();
   void read_by_worker(const Parts& parts) {
@@ -69,7 +67,6 @@ class MarkersUpload::State final : public Taking, public std::enable_shared_from
     if (!loop::guarded("taking markers", [&] { decoded(parts); })) fail(not_held());
   }
   void end_turn() {
-    if (std::exchange(reads_, false)) budget_->give_back(kReading);
     if (const auto turns = turns_.lock()) turns->end();
   }
   void decoded(const Parts& parts) {
@@ -86,20 +83,13 @@ class MarkersUpload::State final : public Taking, public std::enable_shared_from
   codec::BodyKind kind_;
   icd::Rules rules_;
   loop::Workers& workers_;
-  std::shared_ptr<UploadBudget> budget_;
   std::weak_ptr<OneAtATime> turns_;          // whose turns hold this
-  bool reads_ = false;                       // and has taken kReading for that
   Body body_;                                // as it came
   std::optional<codec::BodyDecoder> small_;  // nothing: it is large
 };
 
-bool MarkersUpload::State::charge() {
-  const bool has_room = share_.grow_to(visit_.sender.bytes + (small_ ? small_->size() : 0));
-  if (!has_room) too_much();
-  return has_room;
-}
-
-void MarkersUpload::State::too_much() {
+void MarkersUpload::State::charge() {
+  if (share_.grow_to(visit_.sender.bytes + (small_ ? small_->size() : 0))) return;
   turn_away({icd::Status::TooManyRequests, "too much is being sent at once; send these markers again later"});
 }
 
@@ -137,12 +127,7 @@ void MarkersUpload::State::whole() {
 
 /// It is its turn.
 void MarkersUpload::State::read() {
-  const bool well = loop::guarded("reading markers", [this] {
-    reads_ = !over_ && budget_->take(kReading);
-    if (reads_) return give_to_worker();
-    end_turn();
-    too_much();
-  });
+  const bool well = loop::guarded("reading markers", [this] { over_ ? end_turn() : give_to_worker(); });
   if (well) return;
   end_turn();
   failed();

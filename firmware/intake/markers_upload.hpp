@@ -15,7 +15,7 @@ namespace adit::intake {
 /// Nearly all are small: they are decoded on the loop as they arrive, and wait for nobody. One that turns out
 /// to be larger than codec::Limits::text_bytes (a marker may have icd::kMostMarkerPoints), or to have more
 /// than kSmallValues, is kept as it came, and decoded on a worker once it is whole: one at a time, for what
-/// that takes.
+/// that takes. No message is in memory as a tree: each marker is parsed by itself, and each of its points.
 ///
 /// Once whole and checked it is the desk's, also where the client has hung up meanwhile; until then a client
 /// that hangs up takes it back.
@@ -25,9 +25,6 @@ class MarkersUpload final : public WorkerUpload {
   static constexpr std::size_t kMost = 8u << 20;
   /// And for its values: 900,000, without their names.
   static constexpr std::size_t kMostValues = 1'000'000;
-  /// What reading a large one is counted as in the budget while it is read: what was measured for the worst
-  /// that kMostValues can be, members without a name, is 236 MiB.
-  static constexpr std::size_t kReading = 256u << 20;
 
   MarkersUpload(Visit visit, codec::BodyKind kind, const icd::Rules& rules, loop::Workers& workers,
                 std::shared_ptr<UploadBudget> budget, const std::shared_ptr<OneAtATime>& turns,

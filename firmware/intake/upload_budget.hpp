@@ -15,22 +15,15 @@ class UploadBudget {
  public:
   explicit UploadBudget(std::size_t bytes) : whole_(bytes), left_(bytes) {}
 
-  /// Of nobody's share.
-  bool take(std::size_t bytes) {
-    if (bytes > left_) return false;
-    left_ -= bytes;
-    return true;
-  }
-  void give_back(std::size_t bytes) { left_ += bytes; }
-
   /// Of the share of `address`, of which as much may be given back. False: it has no more, or none is left.
   bool take(const std::string& address, std::size_t bytes) {
-    if (!is_fair(address, bytes) || !take(bytes)) return false;
+    if (!is_fair(address, bytes)) return false;
+    left_ -= bytes;
     held_[address] += bytes;
     return true;
   }
   void give_back(const std::string& address, std::size_t bytes) {
-    give_back(bytes);
+    left_ += bytes;
     const auto held = held_.find(address);
     if (held != held_.end() && (held->second -= bytes) == 0) held_.erase(held);
   }

@@ -18,7 +18,7 @@ template <class Message>
 std::optional<Message> message_in(std::string_view said,
                                   icd::Checked<Message> (*read)(const codec::Document&, const icd::Rules&)) {
   const auto document = codec::decode({codec::Format::Cbor, codec::ContentCoding::Identity},
-                                      codec::Split::Nothing, said, {.text_bytes = said.size()});
+                                      codec::Split::Lists, said, {.text_bytes = said.size()});
   auto message = document ? read(*document, {}) : std::unexpected(document.error());
   if (!message) return std::nullopt;
   return std::move(*message);

@@ -70,7 +70,7 @@ icd::Checked<icd::StateUpdate> read_state(const std::string& path) {
 }
 
 icd::Checked<icd::MarkersUpdate> read_markers(const std::string& path) {
-  const auto document = decode(path, codec::Split::Nothing);
+  const auto document = decode(path, codec::Split::Lists);
   if (!document) return std::unexpected(document.error());
   return codec::read_markers_update(*document, as_kept());
 }

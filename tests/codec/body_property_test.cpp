@@ -95,6 +95,20 @@ TEST(AnyDocument, MeansTheSameToUsAndToAnotherParserInBothFormats) {
   }
 }
 
+TEST(AnyDocument, IsTheSameWhereItsListsAreLeftAsText) {
+  Randomness random(7);
+  for (int round = 0; round < 1000; ++round) {
+    const ordered_json document = random_document(random);
+    for (const auto& [kind, body] :
+         {std::pair(kJsonBody, json_of(document, random)), std::pair(kCborBody, cbor_of(document))}) {
+      const auto whole = decode(kind, Split::Nothing, body);
+      const auto listed = decode_in_random_chunks(kind, Split::Lists, body, random);
+      ASSERT_TRUE(whole && listed) << body;
+      ASSERT_EQ(write_json(whole->root), write_json(listed->root)) << body;
+    }
+  }
+}
+
 TEST(AnyDocument, IsWrittenSoThatItReadsBackTheSame) {
   Randomness random(2);
   for (int round = 0; round < 1000; ++round) {

@@ -52,6 +52,18 @@ void require_same(const icd::Checked<codec::Document>& whole, const icd::Checked
   require(codec::write_json(whole->root) == codec::write_json(cut->root));
 }
 
+/// Its arrays left as text, it is the same document, and has the same markers.
+void require_same_in_lists(const Choice& choice, Input body, const codec::Document& whole) {
+  if (choice.split != codec::Split::Nothing) return;
+  const auto listed = codec::decode(choice.kind, codec::Split::Lists, body, kLimits);
+  if (!listed) return require(listed.error().status == icd::Status::ContentTooLarge);
+  require(codec::write_json(listed->root) == codec::write_json(whole.root));
+  const auto ours = codec::read_markers_parts(*listed, {}), others = codec::read_markers_parts(whole, {});
+  require(ours.has_value() == others.has_value());
+  if (!ours) return require(ours.error() == others.error());
+  require(ours->message == others->message && ours->refused.sentences == others->refused.sentences);
+}
+
 /// What is read from JSON, written and read again stays as it is. (CBOR has more than JSON: integers over
 /// 2^53, NaN and U+FFFF change, once, on the way into JSON.)
 void require_settles(const codec::Value& value) {
@@ -146,6 +158,7 @@ void try_body(codec::Format format, Input body) {
   if (!whole) return;
 
   require_settles(whole->root);
+  require_same_in_lists(choice, body, *whole);
   read_message(choice.message, *whole);
 }
 

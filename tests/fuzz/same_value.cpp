@@ -46,6 +46,7 @@ struct Comparison {
   bool operator()(const Value::Array& ours) const {
     return theirs.is_array() && std::ranges::equal(ours, theirs, is_same);
   }
+  bool operator()(const std::shared_ptr<const codec::List>&) const { return false; }
   bool operator()(const Value::Object& ours) const {
     if (!theirs.is_object()) return false;
     std::map<std::string, const Value*> last;

@@ -12,13 +12,13 @@ namespace adit::admin {
 std::expected<network::Status, std::string> NetworkRequests::status() const {
   const auto text = host::read_file(status_ + '/' + network::kStatusFile);
   if (!text) return std::unexpected(text.error());
-  return network::read_status(*text);
+  return network::read<network::Status>(*text);
 }
 
 std::optional<network::Probed> NetworkRequests::probed() const {
   const auto text = host::read_file(status_ + '/' + network::kProbedFile);
   if (!text) return std::nullopt;
-  auto probed = network::read_probed(*text);
+  auto probed = network::read<network::Probed>(*text);
   return probed ? std::optional(std::move(*probed)) : std::nullopt;
 }
 

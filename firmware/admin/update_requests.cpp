@@ -9,7 +9,7 @@ namespace adit::admin {
 std::expected<update::Status, std::string> UpdateRequests::status() const {
   const auto text = host::read_file(status_ + '/' + update::kStatusFile);
   if (!text) return std::unexpected(text.error());
-  return update::read_status_file(*text);
+  return update::read<update::Status>(*text);
 }
 
 std::expected<void, std::string> UpdateRequests::ask(const update::Request& request) {

@@ -6,12 +6,15 @@
 // NOLINTBEGIN(bugprone-suspicious-include): where their descriptions stand.
 #include "api/box.cpp"
 #include "api/map_json.cpp"
+#include "api/network_rows.cpp"
 #include "api/run_view.cpp"
 #include "api/scene.cpp"
 #include "api/self_test.cpp"
 #include "api/session_rows.cpp"
 #include "api/settings_rows.cpp"
 #include "api/updates.cpp"
+#include "network/numbers_rows.cpp"
+#include "update/messages.cpp"
 // NOLINTEND(bugprone-suspicious-include)
 
 namespace adit::api {
@@ -21,8 +24,8 @@ template <class T>
 constexpr const codec::Schema* of = &codec::KindOf<T>::schema;
 
 constexpr codec::Schemas kSchemas({of<RunView>, of<ReportDetail>, of<MarkerChanges>, of<Tracks>, of<MapView>,
-                                   of<LogPage>, of<UpdateView>, of<SessionRow>, of<WhoAsks>, of<SetupView>,
-                                   of<CheckView>, of<ChangesView>, of<TestView>, of<About>});
+                                   of<LogPage>, of<NetworkView>, of<UpdateView>, of<SessionRow>, of<WhoAsks>,
+                                   of<SetupView>, of<CheckView>, of<ChangesView>, of<TestView>, of<About>});
 
 [[gnu::used, gnu::section("schemas")]] constexpr std::array kText = kSchemas.text();
 

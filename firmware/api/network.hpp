@@ -10,6 +10,15 @@
 
 namespace adit::api {
 
+/// A change that waits to be confirmed.
+struct PendingNetwork {
+  double until = 0;  // seconds since 1970
+  network::Numbers wanted;
+  std::optional<network::Numbers> previous;  // what it goes back to; nothing: as the box came
+  std::string page;                          // where to confirm it: "http://192.168.8.11:8000"
+  static const codec::Row kRow;
+};
+
 /// The box's own addresses, and a change of them that waits to be confirmed.
 struct NetworkView {
   bool managed = false;  // they can be changed here
@@ -22,15 +31,10 @@ struct NetworkView {
   network::Mode mode = network::Mode::Static;
   std::optional<std::uint32_t> gateway;
 
-  struct Pending {
-    double until = 0;  // seconds since 1970
-    network::Numbers wanted;
-    std::optional<network::Numbers> previous;  // what it goes back to; nothing: as the box came
-    std::string page;                          // where to confirm it: "http://192.168.8.11:8000"
-  };
-  std::optional<Pending> pending;
+  std::optional<PendingNetwork> pending;
   std::string last;      // "confirmed" or "taken back"; "" where none was made since the box started
   std::string last_why;  // of it
+  static const codec::Row kRow;
 };
 
 /// What changes them. A refusal says why not.

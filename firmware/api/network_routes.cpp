@@ -10,41 +10,6 @@
 namespace adit::api {
 namespace {
 
-using codec::json;
-using codec::Value;
-
-Value team_json(const NetworkView& view) {
-  Value address, prefix;
-  if (view.team) {
-    address = json(settings::ipv4_text(view.team->address));
-    prefix = json(std::int64_t{view.team->prefix});
-  }
-  return {Value::Object{{"interface", json(view.team_interface)},
-                        {"mode", json(std::string(network::name_of(view.mode)))},
-                        {"address", std::move(address)},
-                        {"prefix", std::move(prefix)}}};
-}
-
-Value command_post_json(const NetworkView& view) {
-  Value numbers = network::to_json({.command_post = view.command_post, .gateway = view.gateway});
-  for (auto& [name, value] : std::get<Value::Object>(numbers.is)) {
-    if (name != "command_post") continue;
-    auto& members = std::get<Value::Object>(value.is);
-    members.insert(members.begin(), {"interface", json(view.command_post_interface)});
-    return std::move(value);
-  }
-  return {};
-}
-
-Value pending_json(const NetworkView::Pending& pending) {
-  Value all = network::to_json(pending.wanted);
-  auto& members = std::get<Value::Object>(all.is);
-  members.insert(members.begin(), {"until", json(pending.until)});
-  members.emplace_back("previous", pending.previous ? network::to_json(*pending.previous) : Value{});
-  members.emplace_back("page", json(pending.page));
-  return all;
-}
-
 /// The numbers, or all that is wrong with the body.
 std::expected<network::Numbers, std::vector<settings::Error>> numbers_in(const std::string& body) {
   const auto value = codec::parse_json(body);
@@ -61,14 +26,7 @@ intake::Answer unfit(const std::vector<settings::Error>& errors) {
 }  // namespace
 
 intake::Answer NetworkRoutes::shown() const {
-  const NetworkView view = network_.network();
-  return object({{"managed", json(view.managed)},
-                 {"why", json(view.why)},
-                 {"team", team_json(view)},
-                 {"command_post", command_post_json(view)},
-                 {"pending", view.pending ? pending_json(*view.pending) : Value{}},
-                 {"last", view.last.empty() ? Value{} : json(view.last)},
-                 {"last_why", json(view.last_why)}});
+  return fresh("application/json", codec::to_json(network_.network()));
 }
 
 intake::Answer NetworkRoutes::check(const Call& call) const {

@@ -92,7 +92,7 @@ void Applier::take_requests(bool drop) {
   take_endpoints();
   if (drop) return;
   if (wanted_text) {
-    if (const auto wanted = network::read_wanted(*wanted_text)) {
+    if (const auto wanted = network::read<network::Wanted>(*wanted_text)) {
       host::log(Level::Notice, "asked for a change",
                 {{"team", network::team_text(wanted->numbers)},
                  {"command_post", network::command_post_text(wanted->numbers)}});
@@ -102,7 +102,7 @@ void Applier::take_requests(bool drop) {
     }
   }
   if (word_text) {
-    if (const auto word = network::read_word(*word_text)) {
+    if (const auto word = network::read<network::Word>(*word_text)) {
       change_->hear(*word, loop_.now());
     } else {
       refused(network::kWordFile, word.error());
@@ -110,7 +110,7 @@ void Applier::take_requests(bool drop) {
   }
   if (probe_text) {
     tell();  // before the seconds that it takes
-    if (const auto probe = network::read_probe(*probe_text)) {
+    if (const auto probe = network::read<network::Probe>(*probe_text)) {
       answer_probe(*probe);
     } else {
       refused(network::kProbeFile, probe.error());
@@ -127,7 +127,7 @@ void Applier::take_forget() {
 }
 
 void Applier::forget(const std::string& text) {
-  if (const auto forget = network::read_forget(text); !forget) {
+  if (const auto forget = network::read<network::Forget>(text); !forget) {
     return refused(network::kForgetFile, forget.error());
   }
   if (const auto forgotten = change_->forget(); !forgotten) {
@@ -141,7 +141,7 @@ void Applier::forget(const std::string& text) {
 void Applier::take_endpoints() {
   const auto text = taken(network::kEndpointsFile);
   if (!text) return;
-  const auto endpoints = network::read_endpoints(*text);
+  const auto endpoints = network::read<network::Endpoints>(*text);
   if (!endpoints) return refused(network::kEndpointsFile, endpoints.error());
   if (const auto done = files_.lead_to(*endpoints); !done) {
     host::log(Level::Error, "there are no routes to the endpoints", {{"why", done.error()}});

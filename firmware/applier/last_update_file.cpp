@@ -13,8 +13,8 @@ update::LastUpdate load_last_update(const std::string& folder) {
   const std::string path = folder + '/' + update::kLastUpdateFile;
   const auto text = host::slurp(path);
   if (!text && text.error() == ENOENT) return {};
-  const auto last_update =
-      text ? update::read_last_update(text->text) : std::unexpected(host::trouble(path, text.error()));
+  const auto last_update = text ? update::read<update::LastUpdate>(text->text)
+                                : std::unexpected(host::trouble(path, text.error()));
   if (last_update) return *last_update;
   host::log(host::Level::Error, "what became of the last update is not known",
             {{"why", last_update.error()}});

@@ -101,7 +101,7 @@ void NetworkdFiles::use_factory() {
 
 /// Where they cannot be read, aditd tells them again.
 void NetworkdFiles::read_endpoints() {
-  const auto endpoints = network::read_endpoints(text_of(endpoints_file()));
+  const auto endpoints = network::read<network::Endpoints>(text_of(endpoints_file()));
   endpoints_ = endpoints.value_or(network::Endpoints{});
 }
 

@@ -33,7 +33,7 @@ std::expected<void, std::string> Updater::work() {
   const std::string file = options_.status + '/' + update::kStatusFile;
   const bool first = access(file.c_str(), F_OK) != 0;
   if (const auto before = host::read_file(file)) {
-    if (const auto status = update::read_status_file(*before)) status_.nonce = status->nonce;
+    if (const auto status = update::read<update::Status>(*before)) status_.nonce = status->nonce;
   }
   boot_ = host::boot();
   find_out();
@@ -86,7 +86,7 @@ std::expected<void, std::string> Updater::take_requests(host::UntrustedFolder& f
       tell();
       return std::unexpected(status_.trouble);
     }
-    const auto request = text ? update::read_request(**text) : std::unexpected(text.error().why);
+    const auto request = text ? update::read<update::Request>(**text) : std::unexpected(text.error().why);
     if (drop) continue;
     if (request) {
       answer(*request, folder);

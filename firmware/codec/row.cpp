@@ -13,6 +13,15 @@ const void* in(const Member& member, const void* row) {
 
 }  // namespace
 
+std::string in_turn(std::span<const std::string_view> words) {
+  std::string text;
+  for (std::size_t i = 0; i < words.size(); ++i) {
+    if (i > 0) text += i + 1 == words.size() ? " or " : ", ";
+    text += words[i];
+  }
+  return text;
+}
+
 Value write_row(const Row& row, const void* from) {
   Value::Object object;
   object.reserve(row.members.size());

@@ -1,7 +1,9 @@
 #pragma once
 
+#include <algorithm>
 #include <concepts>
 #include <cstdint>
+#include <iterator>
 #include <optional>
 #include <span>
 #include <string>
@@ -38,6 +40,7 @@ struct Schema {
   std::string_view more = "";  // as JSON: R"("pattern":"^#[0-9a-f]{6}$")"
   std::string_view name = "";  // among OpenAPI's schemas; "": it is described where it is used
   bool or_null = false;
+  bool has_reader = false;  // of its own, which looks at the members itself
 
   constexpr Schema nullable() const {
     Schema other = *this;
@@ -94,11 +97,14 @@ void read_row(const Row& row, const Field& field, void* into);
 template <class T>
 struct KindOf;
 
+/// A Kind out of a class that has what KindOf has.
+template <class T, class As>
+inline constexpr Kind kind_as = {
+    .write = [](const void* value) -> Value { return As::write(*static_cast<const T*>(value)); },
+    .read = [](const Field& field, void* value) { As::read(field, *static_cast<T*>(value)); },
+    .schema = &As::schema};
 template <class T>
-inline constexpr Kind kind_of = {
-    .write = [](const void* value) -> Value { return KindOf<T>::write(*static_cast<const T*>(value)); },
-    .read = [](const Field& field, void* value) { KindOf<T>::read(field, *static_cast<T*>(value)); },
-    .schema = &KindOf<T>::schema};
+inline constexpr Kind kind_of = kind_as<T, KindOf<T>>;
 
 template <>
 struct KindOf<std::string> {
@@ -159,6 +165,21 @@ template <class T>
   requires requires { T::kRow; }
 struct KindOf<T> : KindOfRow<T, T::kRow> {};
 
+/// "a, b or c", for a sentence.
+std::string in_turn(std::span<const std::string_view> words);
+
+/// Of an enum whose values have these words, in their order from 0.
+template <class Enum, const auto& kWords>
+struct KindOfWords {
+  static Value write(Enum value) { return {std::string(kWords[static_cast<std::size_t>(value)])}; }
+  static void read(const Field& field, Enum& value) {
+    const auto* const word = std::find(std::begin(kWords), std::end(kWords), field.text());
+    if (word == std::end(kWords)) return field.refuse("expected ", in_turn(kWords));
+    value = static_cast<Enum>(word - std::begin(kWords));
+  }
+  static constexpr Schema schema = {.type = "string"};
+};
+
 /// For the Kind of what nobody reads.
 struct OnlyWritten {
   static void read(const Field& field, auto& /*value*/) { field.refuse("it is only written"); }
@@ -212,6 +233,17 @@ constexpr Member member(std::string_view name, std::string_view meaning = "") {
     return Member{name, meaning, &kind_of<Last>,
                   [](void* row) -> void* { return &((static_cast<In*>(row)->*first).*....*rest); }};
   }(first);
+}
+
+/// A member that is made of the whole row.
+template <class In, class As>
+constexpr Member made_of(std::string_view name, std::string_view meaning = "") {
+  return {name, meaning, &kind_as<In, As>, [](void* row) { return row; }};
+}
+/// Members of the row that stand in an object of their own.
+template <class In, const Row& kGroup>
+constexpr Member group(std::string_view name, std::string_view meaning = "") {
+  return made_of<In, KindOfRow<In, kGroup>>(name, meaning);
 }
 
 inline constexpr Member kPointMembers[] = {member<&icd::Point::x>("x"), member<&icd::Point::y>("y"),

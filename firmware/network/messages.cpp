@@ -1,121 +1,11 @@
 #include "network/messages.hpp"
 
-#include <initializer_list>
-#include <utility>
-
-#include "network/file_object.hpp"
-
 namespace adit::network {
 namespace {
 
-using codec::Field;
-using codec::Value;
-using file_object::text;
-
-constexpr std::string_view kVersion = "version";  // the member
 constexpr std::size_t kNonceDigits = 32;
 
-std::string written(Value::Object members) {
-  return file_object::written(kVersion, std::move(members));
-}
-
-template <class Message, class Make>
-Read<Message> read(std::string_view json, std::initializer_list<std::string_view> names, Make make) {
-  return file_object::read<Message>(json, kVersion, names, make);
-}
-
-std::string nonce(const Field& object) {
-  const Field field = object.member("nonce");
-  std::string text(field.text());
-  if (!is_nonce(text)) field.refuse("expected 32 hexadecimal digits");
-  return text;
-}
-
-std::chrono::milliseconds within(const Field& object) {
-  return std::chrono::milliseconds(
-      object.member("confirm_within_ms").whole<std::int64_t>(kLeastWithin.count(), kMostWithin.count()));
-}
-
-Numbers numbers(const Field& object, std::string_view name) {
-  const Field field = object.member(name);
-  if (field.value() == nullptr) {
-    field.refuse_kind("an object");
-    return {};
-  }
-  auto read = read_numbers(*field.value());
-  if (read) return *read;
-  field.refuse(read.error().front().sentence());
-  return {};
-}
-
-/// An IPv4 address, or "".
-std::string address_or_none(const Field& object, std::string_view name) {
-  const Field field = object.member(name);
-  std::string text(field.text());
-  if (!text.empty() && !settings::ipv4_of(text)) field.refuse("expected an IPv4 address, or none");
-  return text;
-}
-
-Value json(const Endpoints& endpoints) {
-  Value::Array list;
-  for (const std::uint32_t each : endpoints.addresses) list.push_back({settings::ipv4_text(each)});
-  return {std::move(list)};
-}
-
-Endpoints endpoints(const Field& object) {
-  Endpoints all;
-  const Field list = object.member("endpoints");
-  const std::size_t count = list.size();
-  if (count > kMostEndpoints) list.refuse("expected at most ", kMostEndpoints);
-  for (std::size_t i = 0; i < count && !list.reading().refused(); ++i) {
-    const Field field = list.element(i);
-    const auto address = settings::ipv4_of(field.text());
-    if (!address) {
-      field.refuse("expected an IPv4 address");
-    } else if (!all.addresses.empty() && all.addresses.back() >= *address) {
-      field.refuse("expected them in order, and none twice");
-    } else {
-      all.addresses.push_back(*address);
-    }
-  }
-  return all;
-}
-
-Ended ended(const Field& object) {
-  const Field field = object.member("last");
-  if (field.is_absent()) return Ended::NotYet;
-  const std::string_view word = field.text();
-  for (const Ended each : {Ended::Confirmed, Ended::TakenBack}) {
-    if (word == name_of(each)) return each;
-  }
-  field.refuse("expected confirmed or taken back");
-  return Ended::NotYet;
-}
-
-std::int64_t milliseconds(Instant instant) {
-  return std::chrono::duration_cast<std::chrono::milliseconds>(instant.time_since_epoch()).count();
-}
-
-Value json(const std::optional<Pending>& pending) {
-  if (!pending) return {};
-  return {Value::Object{{"nonce", {pending->nonce}},
-                        {"until_ms", {milliseconds(pending->until)}},
-                        {"confirm_within_ms", {std::int64_t{pending->confirm_within.count()}}},
-                        {"wanted", to_json(pending->wanted)}}};
-}
-
-std::optional<Pending> pending(const Field& object) {
-  const Field field = object.member("pending");
-  if (field.is_absent()) return std::nullopt;
-  return Pending{nonce(field), numbers(field, "wanted"),
-                 Instant(std::chrono::milliseconds(field.member("until_ms").whole<std::int64_t>(0))),
-                 within(field)};
-}
-
-std::optional<Numbers> kept(const Field& object) {
-  if (object.member("kept").is_absent()) return std::nullopt;
-  return numbers(object, "kept");
-}
+constexpr std::string_view kWordWords[] = {"confirm", "back"};  // in the order of Word::What
 
 }  // namespace
 
@@ -124,123 +14,186 @@ bool is_nonce(std::string_view text) {
 }
 
 std::string_view name_of(Ended ended) {
-  switch (ended) {
-    case Ended::Confirmed:
-      return "confirmed";
-    case Ended::TakenBack:
-      return "taken back";
-    case Ended::NotYet:
-      break;
+  return ended == Ended::NotYet ? "" : kEndedWords[static_cast<std::size_t>(ended) - 1];
+}
+
+}  // namespace adit::network
+
+namespace adit::codec {
+
+template <>
+struct KindOf<network::Word::What> : KindOfWords<network::Word::What, network::kWordWords> {};
+
+/// null for NotYet.
+template <>
+struct KindOf<network::Ended> {
+  static Value write(network::Ended ended) {
+    return ended == network::Ended::NotYet ? Value{} : Value{std::string(name_of(ended))};
   }
-  return "";
+  static void read(const Field& field, network::Ended& ended) {
+    if (field.is_absent()) return;
+    for (const auto each : {network::Ended::Confirmed, network::Ended::TakenBack}) {
+      if (field.text() == name_of(each)) ended = each;
+    }
+    if (ended == network::Ended::NotYet) field.refuse("expected ", in_turn(network::kEndedWords));
+  }
+  static constexpr Schema schema = {.type = "string", .or_null = true};
+};
+
+template <>
+struct KindOf<std::chrono::milliseconds> {
+  static Value write(std::chrono::milliseconds time) { return {std::int64_t{time.count()}}; }
+  static void read(const Field& field, std::chrono::milliseconds& time) {
+    time = std::chrono::milliseconds(field.whole<std::int64_t>());
+  }
+  static constexpr Schema schema = {.type = "integer"};
+};
+
+/// Milliseconds of its clock.
+template <>
+struct KindOf<network::Instant> {
+  using Milliseconds = KindOf<std::chrono::milliseconds>;
+  static Value write(network::Instant instant) {
+    return Milliseconds::write(
+        std::chrono::duration_cast<std::chrono::milliseconds>(instant.time_since_epoch()));
+  }
+  static void read(const Field& field, network::Instant& instant) {
+    std::chrono::milliseconds time{};
+    Milliseconds::read(field, time);
+    instant = network::Instant(time);
+  }
+  static constexpr Schema schema = {.type = "integer"};
+};
+
+}  // namespace adit::codec
+
+namespace adit::network {
+namespace {
+
+using codec::Field;
+using codec::member;
+using codec::Member;
+using codec::Row;
+
+void read_nonce(const Field& field, void* nonce) {
+  auto& text = *static_cast<std::string*>(nonce);
+  text = field.text();
+  if (!is_nonce(text)) field.refuse("expected ", kNonceDigits, " hexadecimal digits");
 }
 
-std::string write(const Wanted& wanted) {
-  return written({{"nonce", {wanted.nonce}},
-                  {"confirm_within_ms", {std::int64_t{wanted.confirm_within.count()}}},
-                  {"numbers", to_json(wanted.numbers)}});
+/// An IPv4 address, or "".
+constexpr codec::Kind kAddressOrNone = {.write = codec::kind_of<std::string>.write,
+                                        .read =
+                                            [](const Field& field, void* address) {
+                                              auto& text = *static_cast<std::string*>(address);
+                                              text = field.text();
+                                              if (!text.empty() && !settings::ipv4_of(text))
+                                                field.refuse("expected an IPv4 address, or none");
+                                            },
+                                        .schema = codec::kind_of<std::string>.schema};
+
+codec::Value write_addresses(const void* addresses) {
+  codec::Value::Array list;
+  for (const std::uint32_t each : *static_cast<const std::vector<std::uint32_t>*>(addresses))
+    list.push_back({settings::ipv4_text(each)});
+  return {std::move(list)};
 }
 
-std::string write(const Word& word) {
-  return written({{"nonce", {word.nonce}},
-                  {"word", {std::string(word.what == Word::What::Confirm ? "confirm" : "back")}}});
+void read_addresses(const Field& list, void* addresses) {
+  auto& all = *static_cast<std::vector<std::uint32_t>*>(addresses);
+  const std::size_t count = list.size();
+  if (count > kMostEndpoints) list.refuse("expected at most ", kMostEndpoints);
+  for (std::size_t i = 0; i < count && !list.reading().refused(); ++i) {
+    const Field field = list.element(i);
+    const auto address = settings::ipv4_of(field.text());
+    if (!address) {
+      field.refuse("expected an IPv4 address");
+    } else if (!all.empty() && all.back() >= *address) {
+      field.refuse("expected them in order, and none twice");
+    } else {
+      all.push_back(*address);
+    }
+  }
 }
 
-std::string write(const Probe& probe) {
-  return written({{"nonce", {probe.nonce}}, {"sought", {probe.sought}}});
+constexpr codec::Schema kAddressesSchema = {.type = "array"};
+constexpr codec::Kind kAddresses = {
+    .write = write_addresses, .read = read_addresses, .schema = &kAddressesSchema};
+
+/// When a change is taken back unless it is confirmed.
+template <auto within>
+constexpr Member confirm_within() {
+  return member<within>("confirm_within_ms").from(kLeastWithin.count()).to(kMostWithin.count());
 }
 
-std::string write(const Endpoints& endpoints) {
-  return written({{"endpoints", json(endpoints)}});
-}
+constexpr Member kWantedMembers[] = {
+    member<&Wanted::nonce>("nonce").as(kNonce),
+    confirm_within<&Wanted::confirm_within>(),
+    member<&Wanted::numbers>("numbers"),
+};
+constexpr Member kWordMembers[] = {
+    member<&Word::nonce>("nonce").as(kNonce),
+    member<&Word::what>("word"),
+};
+constexpr Member kProbeMembers[] = {
+    member<&Probe::nonce>("nonce").as(kNonce),
+    member<&Probe::sought>("sought").as(kAddressOrNone),
+};
+constexpr Member kEndpointsMembers[] = {member<&Endpoints::addresses>("endpoints").as(kAddresses)};
+constexpr Member kForgetMembers[] = {member<&Forget::nonce>("nonce").as(kNonce)};
+constexpr Member kPendingMembers[] = {
+    member<&Pending::nonce>("nonce").as(kNonce),
+    member<&Pending::until>("until_ms").from(0),
+    confirm_within<&Pending::confirm_within>(),
+    member<&Pending::wanted>("wanted"),
+};
+constexpr Member kStatusMembers[] = {
+    member<&Status::team_interface>("team_interface"),
+    member<&Status::command_post_interface>("command_post_interface"),
+    member<&Status::kept>("kept"),
+    member<&Status::endpoints, &Endpoints::addresses>("endpoints").as(kAddresses),
+    member<&Status::pending>("pending"),
+    member<&Status::ended>("last"),
+    member<&Status::ended_nonce>("last_nonce"),
+    member<&Status::why>("why"),
+};
+constexpr Member kProbedMembers[] = {
+    member<&Probed::nonce>("nonce").as(kNonce), member<&Probed::address>("address"),
+    member<&Probed::claimant>("claimant"),      member<&Probed::own>("own"),
+    member<&Probed::found_on>("found_on"),      member<&Probed::trouble>("trouble"),
+};
 
-std::string write(const Forget& forget) {
-  return written({{"nonce", {forget.nonce}}});
-}
+/// The file that is kept.
+struct Kept {
+  Numbers numbers;
+  static const Row kRow;
+};
+constexpr Member kKeptMembers[] = {member<&Kept::numbers>("numbers")};
+constexpr Row Kept::kRow = {"", kKeptMembers};
 
-std::string write(const Status& status) {
-  const std::string_view last = name_of(status.ended);
-  return written({{"team_interface", {status.team_interface}},
-                  {"command_post_interface", {status.command_post_interface}},
-                  {"kept", status.kept ? to_json(*status.kept) : Value{}},
-                  {"endpoints", json(status.endpoints)},
-                  {"pending", json(status.pending)},
-                  {"last", last.empty() ? Value{} : Value{std::string(last)}},
-                  {"last_nonce", {status.ended_nonce}},
-                  {"why", {status.why}}});
-}
+}  // namespace
 
-std::string write(const Probed& probed) {
-  return written({{"nonce", {probed.nonce}},
-                  {"address", {probed.address}},
-                  {"claimant", {probed.claimant}},
-                  {"own", {probed.own}},
-                  {"found_on", {probed.found_on}},
-                  {"trouble", {probed.trouble}}});
-}
+constexpr codec::Kind kNonce = {.write = codec::kind_of<std::string>.write,
+                                .read = read_nonce,
+                                .schema = codec::kind_of<std::string>.schema};
 
-Read<Wanted> read_wanted(std::string_view json) {
-  return read<Wanted>(json, {"nonce", "confirm_within_ms", "numbers"}, [](const Field& root) {
-    return Wanted{nonce(root), within(root), numbers(root, "numbers")};
-  });
-}
-
-Read<Word> read_word(std::string_view json) {
-  return read<Word>(json, {"nonce", "word"}, [](const Field& root) {
-    const Field field = root.member("word");
-    const std::string_view word = field.text();
-    if (word != "confirm" && word != "back") field.refuse("expected confirm or back");
-    return Word{nonce(root), word == "confirm" ? Word::What::Confirm : Word::What::Back};
-  });
-}
-
-Read<Probe> read_probe(std::string_view json) {
-  return read<Probe>(json, {"nonce", "sought"},
-                     [](const Field& root) { return Probe{nonce(root), address_or_none(root, "sought")}; });
-}
-
-Read<Endpoints> read_endpoints(std::string_view json) {
-  return read<Endpoints>(json, {"endpoints"}, [](const Field& root) { return endpoints(root); });
-}
-
-Read<Forget> read_forget(std::string_view json) {
-  return read<Forget>(json, {"nonce"}, [](const Field& root) { return Forget{nonce(root)}; });
-}
-
-Read<Status> read_status(std::string_view json) {
-  return read<Status>(json,
-                      {"team_interface", "command_post_interface", "kept", "endpoints", "pending", "last",
-                       "last_nonce", "why"},
-                      [](const Field& root) {
-                        return Status{.team_interface = text(root, "team_interface"),
-                                      .command_post_interface = text(root, "command_post_interface"),
-                                      .kept = kept(root),
-                                      .endpoints = endpoints(root),
-                                      .pending = pending(root),
-                                      .ended = ended(root),
-                                      .ended_nonce = text(root, "last_nonce"),
-                                      .why = text(root, "why")};
-                      });
-}
-
-Read<Probed> read_probed(std::string_view json) {
-  return read<Probed>(json, {"nonce", "address", "claimant", "own", "found_on", "trouble"},
-                      [](const Field& root) {
-                        return Probed{.nonce = nonce(root),
-                                      .address = text(root, "address"),
-                                      .claimant = text(root, "claimant"),
-                                      .own = text(root, "own"),
-                                      .found_on = text(root, "found_on"),
-                                      .trouble = text(root, "trouble")};
-                      });
-}
+constexpr Row Wanted::kRow = {"", kWantedMembers};
+constexpr Row Word::kRow = {"", kWordMembers};
+constexpr Row Probe::kRow = {"", kProbeMembers};
+constexpr Row Endpoints::kRow = {"", kEndpointsMembers};
+constexpr Row Forget::kRow = {"", kForgetMembers};
+constexpr Row Pending::kRow = {"", kPendingMembers};
+constexpr Row Status::kRow = {"", kStatusMembers};
+constexpr Row Probed::kRow = {"", kProbedMembers};
 
 std::string write_kept(const Numbers& numbers) {
-  return written({{"numbers", to_json(numbers)}});
+  return write(Kept{numbers});
 }
 
 Read<Numbers> read_kept(std::string_view json) {
-  return read<Numbers>(json, {"numbers"}, [](const Field& root) { return numbers(root, "numbers"); });
+  auto kept = read<Kept>(json);
+  if (!kept) return std::unexpected(std::move(kept.error()));
+  return std::move(kept->numbers);
 }
 
 }  // namespace adit::network

@@ -8,6 +8,7 @@
 #include <string_view>
 #include <vector>
 
+#include "codec/row_file.hpp"
 #include "network/numbers.hpp"
 
 /// The files by which aditd, which has no privilege, and adit-network, which runs as root, speak with each
@@ -29,13 +30,15 @@ inline constexpr const char* kProbedFile = "probed.json";
 
 inline constexpr std::chrono::milliseconds kLeastWithin{1000}, kMostWithin{600000};
 
-/// 32 hexadecimal digits that name one request.
+/// 32 hexadecimal digits that name one request: the kind of that text.
+extern const codec::Kind kNonce;
 bool is_nonce(std::string_view text);
 
 struct Wanted {
   std::string nonce;
   std::chrono::milliseconds confirm_within{90000};  // kLeastWithin to kMostWithin
   Numbers numbers;
+  static const codec::Row kRow;
 };
 
 /// About a pending change.
@@ -43,6 +46,7 @@ struct Word {
   enum class What : std::uint8_t { Confirm, Back };
   std::string nonce;  // of the change
   What what = What::Back;
+  static const codec::Row kRow;
 };
 
 /// Whether somebody else has one of the box's addresses on the Command Post's network, and who answers for
@@ -50,11 +54,13 @@ struct Word {
 struct Probe {
   std::string nonce;
   std::string sought = "";  // an IPv4 address: the endpoint, or the gateway to it; "": none is looked for
+  static const codec::Row kRow;
 };
 
 /// Where the settings' endpoints are, for whatever addresses the box has: no change, and so never confirmed.
 struct Endpoints {
   std::vector<std::uint32_t> addresses;  // kMostEndpoints, in order, none twice
+  static const codec::Row kRow;
   friend bool operator==(const Endpoints&, const Endpoints&) = default;
 };
 inline constexpr std::size_t kMostEndpoints = 64;
@@ -62,6 +68,7 @@ inline constexpr std::size_t kMostEndpoints = 64;
 /// The box is to have the addresses that it came with.
 struct Forget {
   std::string nonce;
+  static const codec::Row kRow;
 };
 
 struct Pending {
@@ -69,11 +76,14 @@ struct Pending {
   Numbers wanted;
   Instant until;
   std::chrono::milliseconds confirm_within{0};
+  static const codec::Row kRow;
   friend bool operator==(const Pending&, const Pending&) = default;
 };
 
 enum class Ended : std::uint8_t { NotYet, Confirmed, TakenBack };
-/// "confirmed", "taken back"; "" for NotYet
+/// In their order, from Confirmed.
+inline constexpr std::string_view kEndedWords[] = {"confirmed", "taken back"};
+/// "" for NotYet
 std::string_view name_of(Ended ended);
 
 struct Status {
@@ -84,6 +94,7 @@ struct Status {
   Ended ended = Ended::NotYet;   // how the last change of this start ended
   std::string ended_nonce = "";  // its own
   std::string why = "";          // of it
+  static const codec::Row kRow;
   friend bool operator==(const Status&, const Status&) = default;
 };
 
@@ -94,27 +105,23 @@ struct Probed {
   std::string own = "";       // the interface of this box that this is
   std::string found_on = "";  // the interface on which somebody answers for what was sought; "": nobody does
   std::string trouble = "";   // why nothing was found out
+  static const codec::Row kRow;
 };
 
-std::string write(const Wanted& wanted);
-std::string write(const Word& word);
-std::string write(const Probe& probe);
-std::string write(const Endpoints& endpoints);
-std::string write(const Forget& forget);
-std::string write(const Status& status);
-std::string write(const Probed& probed);
+inline constexpr codec::FileFormat kFormat = {"version", 1};
 
-/// Strict: an unknown or a missing member, or a value that is not what it must be, is an error that names it.
-/// What these give has passed all checks.
+template <class Message>
+std::string write(const Message& message) {
+  return codec::write_file(message, kFormat);
+}
+
+/// Strict, as codec::read_file() is. What this gives has passed all checks.
 template <class Message>
 using Read = std::expected<Message, std::string>;
-Read<Wanted> read_wanted(std::string_view json);
-Read<Word> read_word(std::string_view json);
-Read<Probe> read_probe(std::string_view json);
-Read<Endpoints> read_endpoints(std::string_view json);
-Read<Forget> read_forget(std::string_view json);
-Read<Status> read_status(std::string_view json);
-Read<Probed> read_probed(std::string_view json);
+template <class Message>
+Read<Message> read(std::string_view json) {
+  return codec::read_file<Message>(json, kFormat);
+}
 
 /// What is kept, in a file of its own in adit-network's state folder: the numbers alone.
 inline constexpr const char* kConfirmedFile = "confirmed.json";

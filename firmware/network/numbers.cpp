@@ -1,7 +1,6 @@
 #include "network/numbers.hpp"
 
 #include <algorithm>
-#include <iterator>
 #include <utility>
 
 #include "codec/json.hpp"
@@ -86,7 +85,7 @@ class Members {
     for (const Mode each : {Mode::Static, Mode::Dhcp, Mode::LinkLocal}) {
       if (text != nullptr && *text == name_of(each)) return each;
     }
-    refuse("mode", "expected static, dhcp or link-local, got " + shown(*value));
+    refuse("mode", "expected " + codec::in_turn(kModeWords) + ", got " + shown(*value));
     return Mode::Static;
   }
 
@@ -234,24 +233,7 @@ void check_both(const Numbers& numbers, std::vector<Error>& errors) {
   }
 }
 
-Value json(const Subnet& host) {
-  return {Value::Object{{"address", {settings::ipv4_text(host.address)}},
-                        {"prefix", {std::int64_t{host.prefix}}}}};
-}
-
 }  // namespace
-
-std::string_view name_of(Mode mode) {
-  switch (mode) {
-    case Mode::Static:
-      return "static";
-    case Mode::Dhcp:
-      return "dhcp";
-    case Mode::LinkLocal:
-      break;
-  }
-  return "link-local";
-}
 
 std::expected<Numbers, std::vector<Error>> read_numbers(const Value& value) {
   std::vector<Error> errors;
@@ -267,20 +249,6 @@ std::expected<Numbers, std::vector<Error>> read_numbers(const Value& value) {
   }
   if (!errors.empty()) return std::unexpected(std::move(errors));
   return numbers;
-}
-
-Value to_json(const Numbers& numbers) {
-  Value team{Value::Object{{"mode", {std::string(name_of(numbers.mode))}}}};
-  if (numbers.mode == Mode::Static) {
-    Value host = json(numbers.team);
-    std::ranges::move(std::get<Value::Object>(host.is), std::back_inserter(std::get<Value::Object>(team.is)));
-  }
-  Value::Array addresses;
-  for (const Subnet& each : numbers.command_post) addresses.push_back(json(each));
-  Value post{
-      Value::Object{{"addresses", {std::move(addresses)}},
-                    {"gateway", {numbers.gateway ? settings::ipv4_text(*numbers.gateway) : std::string()}}}};
-  return {Value::Object{{"team", std::move(team)}, {"command_post", std::move(post)}}};
 }
 
 const Subnet* on_link(const Numbers& numbers, std::uint32_t address) {
@@ -305,3 +273,14 @@ std::string command_post_text(const Numbers& numbers) {
 }
 
 }  // namespace adit::network
+
+namespace adit::codec {
+
+void KindOf<network::Numbers>::read(const Field& field, network::Numbers& numbers) {
+  if (field.is_absent()) return field.refuse_kind("an object");
+  auto read = network::read_numbers(*field.value());
+  if (!read) return field.refuse(read.error().front().sentence());
+  numbers = *std::move(read);
+}
+
+}  // namespace adit::codec

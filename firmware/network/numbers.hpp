@@ -7,7 +7,7 @@
 #include <string_view>
 #include <vector>
 
-#include "codec/value.hpp"
+#include "codec/row.hpp"
 #include "settings/settings.hpp"
 #include "settings/subnet.hpp"
 
@@ -15,8 +15,11 @@ namespace adit::network {
 
 /// How team0 comes by its address. Besides, it always has a link-local one (RFC 3927).
 enum class Mode : std::uint8_t { Static, Dhcp, LinkLocal };
-/// "static", "dhcp", "link-local"
-std::string_view name_of(Mode mode);
+/// In their order.
+inline constexpr std::string_view kModeWords[] = {"static", "dhcp", "link-local"};
+constexpr std::string_view name_of(Mode mode) {
+  return kModeWords[static_cast<std::size_t>(mode)];
+}
 
 inline constexpr std::size_t kMostAddresses = 8;  // of the Command Post's side
 
@@ -27,6 +30,7 @@ struct Numbers {
   std::vector<settings::Subnet> command_post = {};  // kMostAddresses; none: the interface has none
   std::optional<std::uint32_t> gateway = {};        // in one of these subnets, to endpoints elsewhere
 
+  static const codec::Row kRow;  // as it is written
   friend bool operator==(const Numbers&, const Numbers&) = default;
 };
 
@@ -39,7 +43,19 @@ inline constexpr std::uint8_t kWidest = 8, kNarrowest = 30;  // prefixes that le
 /// stand in place of `addresses`: `{"address", "prefix", "gateway"}`.
 std::expected<Numbers, std::vector<settings::Error>> read_numbers(const codec::Value& value);
 
-codec::Value to_json(const Numbers& numbers);
+/// A host's own address with its prefix, as it is written.
+extern const codec::Row kHost;
+/// Kinds of an address: as text, and "" where there is none.
+struct AddressText : codec::OnlyWritten {
+  static codec::Value write(std::uint32_t address) { return {settings::ipv4_text(address)}; }
+  static constexpr codec::Schema schema = {.type = "string"};
+};
+struct AddressOrNone : codec::OnlyWritten {
+  static codec::Value write(const std::optional<std::uint32_t>& address) {
+    return {address ? settings::ipv4_text(*address) : ""};
+  }
+  static constexpr codec::Schema schema = {.type = "string"};
+};
 
 /// Of the Command Post's addresses, the one in whose subnet `address` is.
 const settings::Subnet* on_link(const Numbers& numbers, std::uint32_t address);
@@ -52,3 +68,20 @@ std::string command_post_text(const Numbers& numbers);
 std::string host_text(const settings::Subnet& host);
 
 }  // namespace adit::network
+
+namespace adit::codec {
+
+template <>
+struct KindOf<network::Mode> : KindOfWords<network::Mode, network::kModeWords> {};
+
+template <>
+struct KindOf<settings::Subnet> : KindOfRow<settings::Subnet, network::kHost> {};
+
+template <>
+struct KindOf<network::Numbers> {
+  static Value write(const network::Numbers& numbers) { return write_row(network::Numbers::kRow, &numbers); }
+  static void read(const Field& field, network::Numbers& numbers);  // as read_numbers()
+  static constexpr Schema schema = {.row = &network::Numbers::kRow, .has_reader = true};
+};
+
+}  // namespace adit::codec

@@ -5,6 +5,8 @@
 #include <string>
 #include <string_view>
 
+#include "codec/row.hpp"
+
 namespace adit::update {
 
 /// What an update says of itself, once its signature was found good.
@@ -20,6 +22,7 @@ struct Running {
   std::string slot = "";    // the boot loader's name: "A"
   std::string other = "";   // the slot that an update goes into: "B"
   bool other_next = false;  // the boot loader starts that one next; known here alone, no file says it
+  static const codec::Row kRow;
   friend bool operator==(const Running&, const Running&) = default;
 };
 

@@ -25,6 +25,17 @@ constexpr std::string_view name_of(Stage stage) {
   return kStageWords[static_cast<std::size_t>(stage)];
 }
 
+}  // namespace adit::update
+
+namespace adit::codec {
+
+template <>
+struct KindOf<update::Stage> : KindOfWords<update::Stage, update::kStageWords> {};
+
+}  // namespace adit::codec
+
+namespace adit::update {
+
 /// The last update. Kept over starts of the machine.
 struct LastUpdate {
   Stage stage = Stage::None;
@@ -32,6 +43,7 @@ struct LastUpdate {
   std::string slot = "";     // that it was installed into
   std::string boot = "";     // the start of the machine in which it was (host::boot())
   std::string why = "";      // a sentence about the stage
+  static const codec::Row kRow;
   friend bool operator==(const LastUpdate&, const LastUpdate&) = default;
 };
 

@@ -6,6 +6,7 @@
 #include <string>
 #include <string_view>
 
+#include "codec/row_file.hpp"
 #include "update/bundle.hpp"
 #include "update/last_update.hpp"
 
@@ -29,12 +30,14 @@ struct Request {
   std::string nonce = "";  // network::is_nonce()
   What what = What::Restart;
   bool again = false;  // Install, Stick: though that version runs already
+  static const codec::Row kRow;
 };
 
 /// A bundle on a USB stick that could be installed.
 struct Offer {
   std::string name = "";  // of the file
   std::string version = "";
+  static const codec::Row kRow;
   friend bool operator==(const Offer&, const Offer&) = default;
 };
 
@@ -49,18 +52,23 @@ struct Status {
   bool trial = false;  // on_trial()
   std::optional<Offer> stick = {};
   std::string stick_trouble = "";  // why what is on the stick cannot be installed; "" where there is none
+  static const codec::Row kRow;
   friend bool operator==(const Status&, const Status&) = default;
 };
 
-std::string write(const Request& request);
-std::string write(const Status& status);
-std::string write(const LastUpdate& last_update);
+inline constexpr codec::FileFormat kFormat = {"format", 1};
 
-/// Strict: an unknown or a missing member, or a value that is not what it must be, is an error that names it.
+template <class Message>
+std::string write(const Message& message) {
+  return codec::write_file(message, kFormat);
+}
+
+/// Strict, as codec::read_file() is.
 template <class Message>
 using Read = std::expected<Message, std::string>;
-Read<Request> read_request(std::string_view json);
-Read<Status> read_status_file(std::string_view json);
-Read<LastUpdate> read_last_update(std::string_view json);
+template <class Message>
+Read<Message> read(std::string_view json) {
+  return codec::read_file<Message>(json, kFormat);
+}
 
 }  // namespace adit::update

@@ -36,7 +36,7 @@ class NetworkChangeTest : public testing::Test {
   std::optional<network::Endpoints> asked() const {
     std::ifstream file(folder / network::kEndpointsFile);
     const std::string text(std::istreambuf_iterator<char>(file), {});
-    const auto read = network::read_endpoints(text);
+    const auto read = network::read<network::Endpoints>(text);
     return read ? std::optional(*read) : std::nullopt;
   }
   void wait(const network::Numbers& wanted) {

@@ -31,7 +31,7 @@ class UpdatesTest : public testing::Test {
   static void wait() { std::this_thread::sleep_for(Updates::kFresh + 20ms); }
   std::optional<update::Request> asked() const {
     const auto text = host::read_file(state_ / update::kRequestFile);
-    const auto request = text ? update::read_request(*text) : std::unexpected(text.error());
+    const auto request = text ? update::read<update::Request>(*text) : std::unexpected(text.error());
     return request ? std::optional(*request) : std::nullopt;
   }
   /// Sends `bytes` in pieces; what it ended in.

@@ -60,7 +60,7 @@ TEST_F(NetworkRoutesTest, TakeOneAddressAsItWasWrittenBeforeThereWereSeveral) {
 }
 
 TEST_F(NetworkRoutesTest, TellOfAChangeThatWaits) {
-  network.view.pending = NetworkView::Pending{1234.5, kRead, std::nullopt, "http://192.168.8.11:8000"};
+  network.view.pending = PendingNetwork{1234.5, kRead, std::nullopt, "http://192.168.8.11:8000"};
   network.view.last = "taken back";
   network.view.last_why = "nobody confirmed it within 90 s";
   const json shown = json::parse(get("/adit/network").body);

@@ -5,13 +5,13 @@
 namespace adit::fuzz {
 
 void try_network(Input text) {
-  settles(text, network::read_wanted);
-  settles(text, network::read_word);
-  settles(text, network::read_probe);
-  settles(text, network::read_endpoints);
-  settles(text, network::read_forget);
-  settles(text, network::read_status);
-  settles(text, network::read_probed);
+  settles(text, network::read<network::Wanted>);
+  settles(text, network::read<network::Word>);
+  settles(text, network::read<network::Probe>);
+  settles(text, network::read<network::Endpoints>);
+  settles(text, network::read<network::Forget>);
+  settles(text, network::read<network::Status>);
+  settles(text, network::read<network::Probed>);
   settles(text, network::read_kept, network::write_kept);
 }
 

@@ -5,9 +5,9 @@
 namespace adit::fuzz {
 
 void try_updates(Input text) {
-  settles(text, update::read_request);
-  settles(text, update::read_status_file);
-  settles(text, update::read_last_update);
+  settles(text, update::read<update::Request>);
+  settles(text, update::read<update::Status>);
+  settles(text, update::read<update::LastUpdate>);
 }
 
 }  // namespace adit::fuzz

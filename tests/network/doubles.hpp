@@ -30,7 +30,7 @@ inline Numbers with_mode(Mode mode) {
 }
 
 inline std::string json_of(const Numbers& all) {
-  return codec::write_json(to_json(all));
+  return codec::to_json(all);
 }
 
 }  // namespace adit::network

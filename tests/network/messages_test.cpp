@@ -15,24 +15,24 @@ using testing::HasSubstr;
 const std::string kNonce = "0123456789abcdef0123456789abcdef";
 
 TEST(NetworkMessages, SurviveTheirWriting) {
-  const auto wanted = read_wanted(write(Wanted{kNonce, std::chrono::milliseconds(90000), numbers()}));
+  const auto wanted = read<Wanted>(write(Wanted{kNonce, std::chrono::milliseconds(90000), numbers()}));
   ASSERT_TRUE(wanted) << wanted.error();
   EXPECT_EQ(wanted->nonce, kNonce);
   EXPECT_EQ(wanted->confirm_within.count(), 90000);
   EXPECT_EQ(wanted->numbers, numbers());
   for (const auto what : {Word::What::Confirm, Word::What::Back}) {
-    const auto word = read_word(write(Word{kNonce, what}));
+    const auto word = read<Word>(write(Word{kNonce, what}));
     ASSERT_TRUE(word);
     EXPECT_EQ(word->what, what);
   }
-  ASSERT_TRUE(read_probe(write(Probe{kNonce})));
-  EXPECT_EQ(read_probe(write(Probe{kNonce, "10.100.1.200"}))->sought, "10.100.1.200");
-  EXPECT_EQ(read_forget(write(Forget{kNonce}))->nonce, kNonce);
+  ASSERT_TRUE(read<Probe>(write(Probe{kNonce})));
+  EXPECT_EQ(read<Probe>(write(Probe{kNonce, "10.100.1.200"}))->sought, "10.100.1.200");
+  EXPECT_EQ(read<Forget>(write(Forget{kNonce}))->nonce, kNonce);
   for (const Endpoints& each : {Endpoints{}, Endpoints{{0x0a6401c8, 0x0a6401c9}}}) {
-    EXPECT_EQ(read_endpoints(write(each)), each);
+    EXPECT_EQ(read<Endpoints>(write(each)), each);
   }
   const auto probed =
-      read_probed(write(Probed{kNonce, "10.100.1.10", "02:00:00:00:00:01", "team0", "darpa0", "none"}));
+      read<Probed>(write(Probed{kNonce, "10.100.1.10", "02:00:00:00:00:01", "team0", "darpa0", "none"}));
   ASSERT_TRUE(probed);
   EXPECT_EQ(probed->claimant, "02:00:00:00:00:01");
   EXPECT_EQ(probed->found_on, "darpa0");
@@ -43,7 +43,7 @@ TEST(NetworkMessages, SurviveTheirWriting) {
 
 TEST(NetworkMessages, TellTheWholeStatus) {
   Status status{.team_interface = "team0", .command_post_interface = "darpa0"};
-  EXPECT_EQ(read_status(write(status)), status);
+  EXPECT_EQ(read<Status>(write(status)), status);
   status.kept = numbers();
   status.endpoints = {{0x0a6401c8}};
   status.pending = Pending{kNonce, numbers("10.0.0.1/8"), Instant(std::chrono::milliseconds(123456)),
@@ -51,7 +51,7 @@ TEST(NetworkMessages, TellTheWholeStatus) {
   status.ended = Ended::TakenBack;
   status.ended_nonce = kNonce;
   status.why = "nobody confirmed it";
-  EXPECT_EQ(read_status(write(status)), status);
+  EXPECT_EQ(read<Status>(write(status)), status);
   EXPECT_EQ(json::parse(write(status))["pending"]["until_ms"], 123456);
 }
 
@@ -78,24 +78,24 @@ TEST(NetworkMessages, AreRefusedWhereTheyAreHostile) {
   for (const auto& [change, what] : cases) {
     json bad = good;
     bad.update(json::parse(change));
-    const auto read = read_wanted(bad.dump());
-    ASSERT_FALSE(read) << change;
-    EXPECT_THAT(read.error(), HasSubstr(what));
+    const auto result = read<Wanted>(bad.dump());
+    ASSERT_FALSE(result) << change;
+    EXPECT_THAT(result.error(), HasSubstr(what));
   }
   for (const char* text : {"", "{", "[]", "null", "7", "{\"version\":1}", "\xff\xfe"}) {
-    EXPECT_FALSE(read_wanted(text)) << text;
-    EXPECT_FALSE(read_word(text)) << text;
-    EXPECT_FALSE(read_probe(text)) << text;
-    EXPECT_FALSE(read_endpoints(text)) << text;
-    EXPECT_FALSE(read_forget(text)) << text;
-    EXPECT_FALSE(read_status(text)) << text;
-    EXPECT_FALSE(read_probed(text)) << text;
+    EXPECT_FALSE(read<Wanted>(text)) << text;
+    EXPECT_FALSE(read<Word>(text)) << text;
+    EXPECT_FALSE(read<Probe>(text)) << text;
+    EXPECT_FALSE(read<Endpoints>(text)) << text;
+    EXPECT_FALSE(read<Forget>(text)) << text;
+    EXPECT_FALSE(read<Status>(text)) << text;
+    EXPECT_FALSE(read<Probed>(text)) << text;
     EXPECT_FALSE(read_kept(text)) << text;
   }
-  EXPECT_FALSE(read_word(R"({"version":1,"nonce":")" + kNonce + R"(","word":"maybe"})"));
-  EXPECT_FALSE(read_word(R"({"version":1,"nonce":"x","word":"back"})"));
-  EXPECT_FALSE(read_forget(R"({"version":1,"nonce":"x"})"));
-  EXPECT_FALSE(read_probe(R"({"version":1,"nonce":")" + kNonce + R"(","sought":"adit.local"})"));
+  EXPECT_FALSE(read<Word>(R"({"version":1,"nonce":")" + kNonce + R"(","word":"maybe"})"));
+  EXPECT_FALSE(read<Word>(R"({"version":1,"nonce":"x","word":"back"})"));
+  EXPECT_FALSE(read<Forget>(R"({"version":1,"nonce":"x"})"));
+  EXPECT_FALSE(read<Probe>(R"({"version":1,"nonce":")" + kNonce + R"(","sought":"adit.local"})"));
 }
 
 TEST(NetworkMessages, RefuseEndpointsThatAreNone) {
@@ -108,15 +108,15 @@ TEST(NetworkMessages, RefuseEndpointsThatAreNone) {
       {R"(["10.100.1.201","10.100.1.201"])", "none twice"},
   };
   for (const auto& [list, what] : cases) {
-    const auto read = read_endpoints(std::string(R"({"version":1,"endpoints":)") + list + "}");
-    ASSERT_FALSE(read) << list;
-    EXPECT_THAT(read.error(), HasSubstr(what));
+    const auto result = read<Endpoints>(std::string(R"({"version":1,"endpoints":)") + list + "}");
+    ASSERT_FALSE(result) << list;
+    EXPECT_THAT(result.error(), HasSubstr(what));
   }
   Endpoints many;
   for (std::uint32_t i = 0; i < kMostEndpoints; ++i) many.addresses.push_back(i + 1);
-  EXPECT_TRUE(read_endpoints(write(many)));
+  EXPECT_TRUE(read<Endpoints>(write(many)));
   many.addresses.push_back(99);
-  EXPECT_THAT(read_endpoints(write(many)).error(), HasSubstr("at most 64"));
+  EXPECT_THAT(read<Endpoints>(write(many)).error(), HasSubstr("at most 64"));
 }
 
 /// What adit-network of an earlier version kept.

@@ -27,24 +27,24 @@ Status a_status() {
 
 TEST(Messages, SayWhatTheyWereGiven) {
   for (const auto what : {Request::What::Install, Request::What::Stick, Request::What::Restart}) {
-    const auto request = read_request(write(Request{kNonce, what, true}));
+    const auto request = read<Request>(write(Request{kNonce, what, true}));
     ASSERT_TRUE(request) << request.error();
     EXPECT_EQ(request->nonce, kNonce);
     EXPECT_EQ(request->what, what);
     EXPECT_TRUE(request->again);
   }
-  const auto status = read_status_file(write(a_status()));
+  const auto status = read<Status>(write(a_status()));
   ASSERT_TRUE(status) << status.error();
   EXPECT_EQ(*status, a_status());
-  const auto none = read_status_file(write(Status{}));
+  const auto none = read<Status>(write(Status{}));
   ASSERT_TRUE(none) << none.error();
   EXPECT_EQ(*none, Status{});
   for (const Stage stage : {Stage::None, Stage::Installing, Stage::Interrupted, Stage::Failed,
                             Stage::Installed, Stage::Left, Stage::Good}) {
     const LastUpdate last_update{stage, "0.2.0", "B", "boot", "why"};
-    const auto read = read_last_update(write(last_update));
-    ASSERT_TRUE(read) << read.error();
-    EXPECT_EQ(*read, last_update);
+    const auto result = read<LastUpdate>(write(last_update));
+    ASSERT_TRUE(result) << result.error();
+    EXPECT_EQ(*result, last_update);
   }
 }
 
@@ -74,35 +74,35 @@ void expect_strict(const std::string& text, Read read) {
 }
 
 TEST(Messages, AreReadStrictly) {
-  expect_strict(write(Request{kNonce, Request::What::Install, false}), read_request);
-  expect_strict(write(a_status()), read_status_file);
-  expect_strict(write(a_status().last), read_last_update);
+  expect_strict(write(Request{kNonce, Request::What::Install, false}), read<Request>);
+  expect_strict(write(a_status()), read<Status>);
+  expect_strict(write(a_status().last), read<LastUpdate>);
 }
 
 TEST(Messages, OfAnotherFormatOrWithAnotherWordAreRefused) {
   json request = json::parse(write(Request{kNonce, Request::What::Install, false}));
   request["format"] = 2;
-  EXPECT_FALSE(read_request(request.dump()));
+  EXPECT_FALSE(read<Request>(request.dump()));
   request["format"] = 1;
   request["what"] = "erase";
-  EXPECT_THAT(read_request(request.dump()).error(), HasSubstr("install, stick or restart"));
+  EXPECT_THAT(read<Request>(request.dump()).error(), HasSubstr("install, stick or restart"));
   request["what"] = "stick";
   for (const char* nonce :
        {"", "0123", "0123456789ABCDEF0123456789abcdef", "../../../../etc/passwd0000000000"}) {
     request["nonce"] = nonce;
-    EXPECT_THAT(read_request(request.dump()).error(), HasSubstr("hexadecimal")) << nonce;
+    EXPECT_THAT(read<Request>(request.dump()).error(), HasSubstr("hexadecimal")) << nonce;
   }
   json status = json::parse(write(a_status()));
   for (const int percent : {-1, 101}) {
     status["progress"] = percent;
-    EXPECT_FALSE(read_status_file(status.dump())) << percent;
+    EXPECT_FALSE(read<Status>(status.dump())) << percent;
   }
   status = json::parse(write(a_status()));
   status["last"]["stage"] = "lost";
-  EXPECT_THAT(read_status_file(status.dump()).error(), HasSubstr("last.stage"));
+  EXPECT_THAT(read<Status>(status.dump()).error(), HasSubstr("last.stage"));
   status = json::parse(write(a_status()));
   status["running"]["more"] = "x";
-  EXPECT_THAT(read_status_file(status.dump()).error(), HasSubstr("running"));
+  EXPECT_THAT(read<Status>(status.dump()).error(), HasSubstr("running"));
 }
 
 }  // namespace

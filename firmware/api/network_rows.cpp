@@ -1,0 +1,64 @@
+#include "api/network.hpp"
+#include "network/messages.hpp"
+
+namespace adit::api {
+namespace {
+
+using codec::group;
+using codec::made_of;
+using codec::member;
+using codec::Member;
+using codec::Row;
+using codec::Schema;
+using codec::Value;
+
+struct OwnAddress : codec::OnlyWritten {
+  static Value write(const NetworkView& view) {
+    return view.team ? network::AddressText::write(view.team->address) : Value{};
+  }
+  static constexpr Schema schema = network::AddressText::schema.nullable();
+};
+struct OwnPrefix : codec::OnlyWritten {
+  static Value write(const NetworkView& view) { return view.team ? codec::json(view.team->prefix) : Value{}; }
+  static constexpr Schema schema = {.type = "integer", .or_null = true};
+};
+
+constexpr Member kTeamSideMembers[] = {
+    member<&NetworkView::team_interface>("interface"),
+    member<&NetworkView::mode>("mode").one_of(network::kModeWords),
+    made_of<NetworkView, OwnAddress>("address"),
+    made_of<NetworkView, OwnPrefix>("prefix"),
+};
+constexpr Row kTeamSide = {"TeamSide", kTeamSideMembers};
+
+constexpr Member kCommandPostSideMembers[] = {
+    member<&NetworkView::command_post_interface>("interface"),
+    member<&NetworkView::command_post>("addresses"),
+    member<&NetworkView::gateway>("gateway", "empty: none")
+        .as(codec::kind_as<std::optional<std::uint32_t>, network::AddressOrNone>),
+};
+constexpr Row kCommandPostSide = {"CommandPostSide", kCommandPostSideMembers};
+
+constexpr Member kPendingMembers[] = {
+    member<&PendingNetwork::until>("until", "seconds since 1970"),
+    member<&PendingNetwork::wanted>(""),
+    member<&PendingNetwork::previous>("previous", "what it goes back to"),
+    member<&PendingNetwork::page>("page", "where to confirm it"),
+};
+
+constexpr Member kNetworkMembers[] = {
+    member<&NetworkView::managed>("managed"),
+    member<&NetworkView::why>("why", "why they cannot be changed here"),
+    group<NetworkView, kTeamSide>("team"),
+    group<NetworkView, kCommandPostSide>("command_post"),
+    member<&NetworkView::pending>("pending"),
+    member<&NetworkView::last>("last").as(codec::kTextOrNull).one_of(network::kEndedWords),
+    member<&NetworkView::last_why>("last_why"),
+};
+
+}  // namespace
+
+constexpr Row PendingNetwork::kRow = {"", kPendingMembers};
+constexpr Row NetworkView::kRow = {"Network", kNetworkMembers};
+
+}  // namespace adit::api

@@ -1,0 +1,71 @@
+#include "codec/row_file.hpp"
+
+#include <algorithm>
+#include <limits>
+
+#include "codec/json.hpp"
+#include "icd/require.hpp"
+#include "icd/sentence.hpp"
+
+namespace adit::codec {
+namespace {
+
+constexpr std::int64_t kAny = std::numeric_limits<std::int64_t>::max();
+
+void check_row(const Row& row, const Field& field, std::string_view besides);
+
+void check_value(const Schema& schema, const Field& field) {
+  if (schema.has_reader) return;
+  if (schema.row != nullptr) return check_row(*schema.row, field, "");
+  if (schema.items == nullptr) return;
+  for (std::size_t i = 0; i < field.size() && !field.reading().refused(); ++i) {
+    const Field element = field.element(i);
+    check_value(*schema.items, element);
+  }
+}
+
+void check_member(const Member& member, const Field& field) {
+  if (field.is_absent()) return;  // whether it may be is its kind's to say
+  if (!member.words.empty() && std::ranges::find(member.words, field.text()) == member.words.end())
+    return field.refuse("expected ", in_turn(member.words));
+  if (member.least || member.most)
+    field.whole<std::int64_t>(member.least.value_or(0), member.most.value_or(kAny));
+  check_value(*member.kind->schema, field);
+}
+
+/// What the kinds of its members do not look at: names, words and bounds. `besides`: a member more.
+void check_row(const Row& row, const Field& field, std::string_view besides) {
+  if (!field.is<Value::Object>()) return field.refuse_kind("an object");
+  for (const auto& [name, value] : std::get<Value::Object>(field.value()->is)) {
+    if (name != besides && std::ranges::find(row.members, name, &Member::name) == row.members.end())
+      field.refuse("no such member: ", icd::in_quotes(name));
+  }
+  for (const Member& member : row.members) {
+    icd::require(!member.name.empty());  // no file has rows whose members stand among its own
+    const Field inner = field.member(member.name);
+    check_member(member, inner);
+  }
+}
+
+}  // namespace
+
+std::string write_row_file(const Row& row, const void* from, const FileFormat& format) {
+  Value value = write_row(row, from);
+  auto& members = std::get<Value::Object>(value.is);
+  members.insert(members.begin(), {std::string(format.member), {format.number}});
+  return write_json(value) + '\n';
+}
+
+std::string read_row_file(const Row& row, void* into, std::string_view json, const FileFormat& format) {
+  const auto root = parse_json(json);
+  if (!root) return "no JSON: " + root.error();
+  Reading reading;
+  const Field field(*root, reading);
+  field.member(format.member).whole<std::int64_t>(format.number, format.number);
+  check_row(row, field, format.member);
+  read_row(row, field, into);
+  const auto outcome = reading.outcome(true);
+  return outcome ? "" : outcome.error().sentence;
+}
+
+}  // namespace adit::codec

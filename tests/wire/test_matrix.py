@@ -44,7 +44,7 @@ class Matrix(Delivered):
     def test_recorded_maps(self):
         found = maps.recorded()
         if not found:
-            self.skipTest(f"{maps.DATA} is absent")
+            self.skipTest("ADIT_MAPS names no folder of recorded maps")
         for source in found:
             for style in (Style(), Style("json", "gzip"), Style("cbor"), Style("cbor", "gzip"),
                           Style("cbor", body="gzip", ros=True)):

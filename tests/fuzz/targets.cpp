@@ -6,6 +6,7 @@ namespace adit::fuzz {
 
 void try_accounts(Input);
 void try_answer(Input);
+void try_api(Input);
 void try_base64(Input);
 void try_card(Input);
 void try_cbor(Input);
@@ -29,13 +30,14 @@ void try_updates(Input);
 namespace {
 
 constexpr Target kTargets[] = {
-    {"accounts", try_accounts}, {"answer", try_answer},       {"base64", try_base64},
-    {"card", try_card, 300},    {"cbor", try_cbor},           {"chunks", try_chunks},
-    {"coding", try_coding},     {"gzip", try_gzip},           {"heads", try_heads},
-    {"journal", try_journal},   {"json", try_json},           {"ledger", try_ledger, 50},
-    {"log", try_log, 300},      {"names", try_names},         {"network", try_network},
-    {"rauc", try_rauc},         {"same_cbor", try_same_cbor}, {"same_json", try_same_json},
-    {"settings", try_settings}, {"spool", try_spool, 500},    {"updates", try_updates},
+    {"accounts", try_accounts},   {"answer", try_answer},     {"api", try_api, 1500},
+    {"base64", try_base64},       {"card", try_card, 300},    {"cbor", try_cbor},
+    {"chunks", try_chunks},       {"coding", try_coding},     {"gzip", try_gzip},
+    {"heads", try_heads},         {"journal", try_journal},   {"json", try_json},
+    {"ledger", try_ledger, 50},   {"log", try_log, 300},      {"names", try_names},
+    {"network", try_network},     {"rauc", try_rauc},         {"same_cbor", try_same_cbor},
+    {"same_json", try_same_json}, {"settings", try_settings}, {"spool", try_spool, 500},
+    {"updates", try_updates},
 };
 
 }  // namespace

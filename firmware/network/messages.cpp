@@ -58,9 +58,8 @@ struct KindOf<network::Instant> {
         std::chrono::duration_cast<std::chrono::milliseconds>(instant.time_since_epoch()));
   }
   static void read(const Field& field, network::Instant& instant) {
-    std::chrono::milliseconds time{};
-    Milliseconds::read(field, time);
-    instant = network::Instant(time);
+    constexpr auto kLast = std::chrono::floor<std::chrono::milliseconds>(network::Instant::duration::max());
+    instant = network::Instant(std::chrono::milliseconds(field.whole<std::int64_t>(0, kLast.count())));
   }
   static constexpr Schema schema = {.type = "integer"};
 };

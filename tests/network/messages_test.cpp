@@ -55,6 +55,22 @@ TEST(NetworkMessages, TellTheWholeStatus) {
   EXPECT_EQ(json::parse(write(status))["pending"]["until_ms"], 123456);
 }
 
+TEST(NetworkMessages, HaveNoTimeThatTheClockDoesNotHave) {
+  const Status status{.team_interface = "team0",
+                      .command_post_interface = "darpa0",
+                      .pending = Pending{kNonce, numbers(), Instant(), std::chrono::seconds(5)}};
+  for (const char* until :
+       {"-1", "-9223372036854775808", "9223372036854", "9223372036855", "9223372036854775807", "\"soon\""}) {
+    json bad = json::parse(write(status));
+    bad["pending"]["until_ms"] = json::parse(until);
+    const auto result = read<Status>(bad.dump());
+    const bool fits = std::string_view(until) == "9223372036854";  // nanoseconds, in 63 bits
+    ASSERT_EQ(result.has_value(), fits) << until;
+    if (fits) continue;
+    EXPECT_THAT(result.error(), HasSubstr("pending.until_ms")) << until;
+  }
+}
+
 /// What a gateway that has been taken over could write.
 TEST(NetworkMessages, AreRefusedWhereTheyAreHostile) {
   const json good = json::parse(write(Wanted{kNonce, std::chrono::milliseconds(90000), numbers()}));

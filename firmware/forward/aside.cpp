@@ -35,17 +35,33 @@ icd::ChunkedBytes bytes_of(const icd::MarkersUpdate& markers) {
 
 constexpr std::string_view kKinds[] = {"map", "state", "markers"};  // as the alternatives of lanes::Message
 
-std::string reason_of(const lanes::AsideItem& item) {
+std::string reason_of(const lanes::AsideItem& item, bool overtaken) {
   return codec::write_json({Value::Object{{"kind", {std::string(kKinds[item.message.index()])}},
                                           {"status", {std::int64_t{item.status}}},
                                           {"why", {item.why}},
                                           {"at", {item.at}},
                                           {"bytes", {static_cast<std::uint64_t>(item.bytes)}},
-                                          {"overtaken", {item.overtaken}}}});
+                                          {"overtaken", {overtaken}}}});
 }
 
 icd::ChunkedBytes text_bytes(const std::string& text) {
   return icd::ChunkedBytes({reinterpret_cast<const std::uint8_t*>(text.data()), text.size()});
+}
+
+/// The two files of a message, and what its reason says from now on.
+struct Files {
+  std::string reason, message, text;
+};
+
+void remove(const std::string& reason, const std::string& message) {
+  std::error_code error;
+  fs::remove(reason, error);
+  fs::remove(message, error);
+}
+
+/// Where there is no room to write that it was overtaken, it goes: nothing is lost by that.
+void write_overtaken(const Files& files) {
+  if (!spool::write_whole(files.reason, text_bytes(files.text))) remove(files.reason, files.message);
 }
 
 template <class Message>
@@ -154,8 +170,8 @@ void Aside::add(lanes::Message message, int status, const std::string& why, std:
 void Aside::keep(const lanes::AsideItem& item, Origin origin) {
   const auto well = std::make_shared<bool>(false);
   writer_.submit(
-      [well, message = item.message, reason = reason_of(item), message_file = path(item.number, kMessage),
-       reason_file = path(item.number, kReason)] {
+      [well, message = item.message, reason = reason_of(item, item.overtaken),
+       message_file = path(item.number, kMessage), reason_file = path(item.number, kReason)] {
         auto written = spool::write_whole(
             message_file, std::visit([](const auto& each) { return bytes_of(each); }, message));
         if (written) written = spool::write_whole(reason_file, text_bytes(reason));
@@ -164,39 +180,50 @@ void Aside::keep(const lanes::AsideItem& item, Origin origin) {
         host::log(host::Level::Warning, "what is set aside is in memory alone", {{"why", written.error()}});
       },
       [this, well, number = item.number, origin = std::move(origin)] { kept(number, *well, origin); });
-  ++being_kept_;  // only now: where it could not be submitted, nothing is
+  ++being_written_;  // only now: where it could not be submitted, nothing is
 }
 
 void Aside::kept(std::uint64_t number, bool well, const Origin& origin) {
-  --being_kept_;
+  --being_written_;
   origin.told(well);
-  if (well || items_.find(number) == nullptr) return origin.let_go();
+  const lanes::AsideItem* const item = items_.find(number);
+  if (well || item == nullptr || item->overtaken) return origin.let_go();
   in_memory_[number] = origin.let_go;
 }
 
 /// Of memory it has gone.
 void Aside::forget(std::uint64_t number) {
   writer_.submit(
-      [reason = path(number, kReason), message = path(number, kMessage)] {
-        std::error_code error;
-        fs::remove(reason, error);
-        fs::remove(message, error);
-      },
-      [] {});
+      [reason = path(number, kReason), message = path(number, kMessage)] { remove(reason, message); }, [] {});
   leaving_.erase(number);
-  if (const auto origin = in_memory_.extract(number)) origin.mapped()();
+  let_origin_go(number);
 }
 
-void Aside::taken(const lanes::Message& message) {
-  for (const std::uint64_t number : items_.taken(message)) {
+void Aside::let_origin_go(std::uint64_t number) {
+  const auto origin = in_memory_.find(number);
+  if (origin == in_memory_.end()) return;
+  origin->second();
+  in_memory_.erase(origin);
+}
+
+bool Aside::taken(const lanes::Message& message, std::function<void()> written) {
+  const std::vector<std::uint64_t> overtaken = items_.overtaken_by(message);
+  std::vector<Files> all;
+  for (const std::uint64_t number : overtaken) {
     if (in_memory_.contains(number)) continue;
-    writer_.submit(
-        [file = path(number, kReason), reason = reason_of(*items_.find(number))] {
-          (void)spool::write_whole(file,
-                                   text_bytes(reason));  // without it, it can be sent again after a restart
-        },
-        [] {});
+    all.push_back({path(number, kReason), path(number, kMessage), reason_of(*items_.find(number), true)});
   }
+  for (const std::uint64_t number : overtaken) let_origin_go(number);
+  if (!all.empty()) {
+    writer_.submit([all] { std::ranges::for_each(all, write_overtaken); },
+                   [this, written = std::move(written)] {
+                     --being_written_;
+                     written();
+                   });
+    ++being_written_;
+  }
+  items_.overtake(overtaken);
+  return !all.empty();
 }
 
 std::expected<lanes::Message, std::string> Aside::to_be_sent(std::uint64_t number) {

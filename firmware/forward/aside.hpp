@@ -38,12 +38,14 @@ class Aside {
   void restore();
 
   void add(lanes::Message message, int status, const std::string& why, std::size_t bytes, Origin origin);
-  /// The Command Post took it: what it says all of need not be sent again.
-  void taken(const lanes::Message& message);
+  /// The Command Post took it: what it says all of is not to be sent again, in a life to come neither.
+  /// Whoever keeps the message forgets it only once that is written: then `written` is called, on the loop.
+  /// False: there is nothing to write, and `written` is not called. Where it throws, nothing is overtaken.
+  bool taken(const lanes::Message& message, std::function<void()> written = [] {});
   /// What made place for newer ones and was not overtaken, ever.
   std::uint64_t dropped() const { return dropped_; }
-  /// Whether every origin has been told.
-  bool all_kept() const { return being_kept_ == 0; }
+  /// Whether all that was to be told by the writer has been.
+  bool all_kept() const { return being_written_ == 0; }
 
   /// For whoever sends it again and then says so by sent_again(). An error: a sentence why it is not sent.
   std::expected<lanes::Message, std::string> to_be_sent(std::uint64_t number);
@@ -59,13 +61,14 @@ class Aside {
   void keep(const lanes::AsideItem& item, Origin origin);
   void kept(std::uint64_t number, bool well, const Origin& origin);
   void forget(std::uint64_t number);
+  void let_origin_go(std::uint64_t number);
   bool restore_one(std::uint64_t number);
 
   const loop::Loop& loop_;
   loop::Writer& writer_;
   const std::string folder_;
   lanes::SetAside items_;
-  int being_kept_ = 0;
+  int being_written_ = 0;
   std::set<std::uint64_t> leaving_;                           // between to_be_sent() and sent_again()
   std::map<std::uint64_t, std::function<void()>> in_memory_;  // those without a file, and who is let go then
   std::uint64_t dropped_ = 0;

@@ -280,10 +280,11 @@ void Maps::taken(int status) {
   const auto sent = std::exchange(prepared_, nullptr);  // whatever fails from here on, it has arrived
   icd::MapUpdate& map = sent->waiting.map;
   const std::size_t updates = sent->waiting.updates.size();
+  if (sent->waiting.again) map.header().stamp = sent->waiting.again;
+  // First: the writer does the one before the other.
+  loop::guarded("what a map overtook", [&] { aside_.taken(map); });
   forget(std::move(sent->waiting.updates));
   blame_.passed(whose(map), loop_.now());
-  if (sent->waiting.again) map.header().stamp = sent->waiting.again;
-  aside_.taken(map);
   record_.forwarded(traffic_of(map), updates, sent->body.size(), status, loop_.stamp_now());
   taken_(std::move(map));
 }

@@ -137,8 +137,8 @@ icd::Checked<void> Telemetry::take(const icd::MarkersUpdate& update, std::size_t
 }
 
 void Telemetry::pump() {
-  if (!stopping_ && !setting_aside_ && channel_.turns()) endpoint_turned();
-  if (stopping_ || setting_aside_ || channel_.busy() || !channel_.has_token()) return;
+  if (!stopping_ && !aside_writes_ && channel_.turns()) endpoint_turned();
+  if (stopping_ || aside_writes_ || channel_.busy() || !channel_.has_token()) return;
   whole(anew_, [this] { send_next(); });
 }
 
@@ -218,7 +218,7 @@ void Telemetry::judge(Kind kind, UriPace& pace, const Waiting& sent, std::size_t
     case MappingVerdict::Taken:
       pace.taken(now);
       passed(sent);
-      aside_.taken(sent.update);
+      overtake(sent);
       as_forwarded_.forwarded(sent.update, loop_.stamp_now());
       break;
     case MappingVerdict::Refused:
@@ -242,7 +242,6 @@ void Telemetry::judge(Kind kind, UriPace& pace, const Waiting& sent, std::size_t
 
 void Telemetry::passed(const lanes::WaitingState& state) {
   state_.passed(state);
-  done(state);
   for (const icd::NamedPose& pose : state.update.poses) state_blame_.passed(pose.name.text(), loop_.now());
 }
 
@@ -250,8 +249,18 @@ void Telemetry::passed(const lanes::WaitingMarkers& markers) {
   marker_blame_.passed("", loop_.now());
   if (markers.is_ahead) return;
   markers_.passed();
-  done(markers);
   for (const icd::Marker& marker : markers.update.markers) marker_trials_.erase({marker.ns, marker.id});
+}
+
+template <class Waiting>
+void Telemetry::overtake(const Waiting& sent) {
+  const auto written = [this, sent] {
+    aside_writes_ = false;
+    done(sent);
+    pump();
+  };
+  aside_writes_ = aside_.taken(sent.update, written);
+  if (!aside_writes_) done(sent);
 }
 
 void Telemetry::give_up(const lanes::WaitingState& state, int status, const std::string& sentence,
@@ -280,12 +289,12 @@ void Telemetry::give_up(const lanes::WaitingMarkers& markers, int status, const 
 void Telemetry::set_aside(const lanes::Message& message, int status, const std::string& sentence,
                           std::size_t bytes, std::function<void(bool kept)> told) {
   const auto go_on = [this, told = std::move(told)](bool kept) {
-    setting_aside_ = false;
+    aside_writes_ = false;
     told(kept);
     pump();
   };
   aside_.add(message, status, sentence, bytes, {.told = go_on});
-  setting_aside_ = true;
+  aside_writes_ = true;
 }
 
 bool Telemetry::is_to_blame(const lanes::WaitingState& state) {

@@ -91,18 +91,23 @@ class Telemetry {
   }
   /// They need no more care.
   void done(const lanes::WaitingState&) { journal_.state_answered(true); }
-  void done(const lanes::WaitingMarkers&) { journal_.markers_answered(true); }
+  void done(const lanes::WaitingMarkers& markers) {
+    if (!markers.is_ahead) journal_.markers_answered(true);
+  }
 
   template <class Waiting>
   void judge(Kind kind, UriPace& pace, const Waiting& sent, std::size_t bytes,
              const uplink::Outcome& outcome);
   void passed(const lanes::WaitingState& state);
   void passed(const lanes::WaitingMarkers& markers);
+  /// It is done once what it overtook is written down as overtaken: the other way round, a kill in between
+  /// would leave a life to come that knows of neither, and lets an operator send the older one.
+  template <class Waiting>
+  void overtake(const Waiting& sent);
   /// Refused, or failed alone: the one at fault is looked for among several, and set aside by itself.
   void give_up(const lanes::WaitingState& state, int status, const std::string& sentence, std::size_t bytes);
   void give_up(const lanes::WaitingMarkers& markers, int status, const std::string& sentence,
                std::size_t bytes);
-  /// Nothing else is sent until the origin has been told: the journal knows of one answer at a time.
   void set_aside(const lanes::Message& message, int status, const std::string& sentence, std::size_t bytes,
                  std::function<void(bool kept)> told);
   /// The handler failed: true where it is this message's fault, and else it is put back.
@@ -129,7 +134,7 @@ class Telemetry {
   int state_failed_ = 0, markers_failed_ = 0;  // answers in a row of a handler that failed
   lanes::Blame state_blame_, marker_blame_;
   std::map<std::pair<std::string, std::int32_t>, lanes::Trial> marker_trials_;  // by ns and id
-  bool setting_aside_ = false;
+  bool aside_writes_ = false;  // nothing is sent meanwhile: the journal knows of one answer at a time
   bool stopping_ = false;
 };
 

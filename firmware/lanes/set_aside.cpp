@@ -83,15 +83,20 @@ void SetAside::restore(AsideItem item) {
   items_.push_back(std::move(item));
 }
 
-std::vector<std::uint64_t> SetAside::taken(const Message& message) {
+std::vector<std::uint64_t> SetAside::overtaken_by(const Message& newer) const {
   std::vector<std::uint64_t> overtaken;
-  for (AsideItem& item : items_) {
+  for (const AsideItem& item : items_) {
     if (item.overtaken) continue;
-    if (!overtakes(message, item.message) && !deletes_newer(item.message, message)) continue;
-    item.overtaken = true;
+    if (!overtakes(newer, item.message) && !deletes_newer(item.message, newer)) continue;
     overtaken.push_back(item.number);
   }
   return overtaken;
+}
+
+void SetAside::overtake(const std::vector<std::uint64_t>& numbers) {
+  for (AsideItem& item : items_) {
+    if (std::ranges::find(numbers, item.number) != numbers.end()) item.overtaken = true;
+  }
 }
 
 const AsideItem* SetAside::find(std::uint64_t number) const {

@@ -43,8 +43,10 @@ class SetAside {
   /// What was kept by an earlier life keeps its number.
   void restore(AsideItem item);
 
-  /// The Command Post took it. Gives the numbers of those that are overtaken by it now.
-  std::vector<std::uint64_t> taken(const Message& message);
+  /// The numbers of those that this overtakes and nothing has before.
+  std::vector<std::uint64_t> overtaken_by(const Message& newer) const;
+  /// The Command Post took what overtakes these.
+  void overtake(const std::vector<std::uint64_t>& numbers);
 
   const AsideItem* find(std::uint64_t number) const;
   std::optional<AsideItem> take(std::uint64_t number);

@@ -133,6 +133,24 @@ TEST_F(AsideTest, RefusesToSendWhatSomethingNewerSaysAllOf) {
   EXPECT_TRUE(aside_->discard(1));
 }
 
+TEST_F(AsideTest, SaysWhenItIsWrittenThatSomethingWasOvertaken) {
+  add(grid());
+  settle();
+  int written = 0;
+  EXPECT_FALSE(aside_->taken(state(), [&] { ++written; })) << "it overtakes nothing";
+  hold();
+  EXPECT_TRUE(aside_->taken(grid(), [&] { ++written; }));
+  EXPECT_FALSE(aside_->taken(grid(), [&] { ++written; })) << "it was overtaken before";
+  EXPECT_FALSE(found_after_a_kill().front().overtaken);
+  EXPECT_FALSE(aside_->all_kept());
+  EXPECT_EQ(written, 0);
+  let_go();
+  settle();
+  EXPECT_TRUE(aside_->all_kept());
+  EXPECT_EQ(written, 1);
+  EXPECT_TRUE(found_after_a_kill().front().overtaken);
+}
+
 TEST_F(AsideTest, CountsWhatMadePlaceAndWasNotSaidAnew) {
   for (int i = 0; i < 5; ++i) add(state());
   EXPECT_EQ(aside_->dropped(), 0) << "the newer state says all of it";
@@ -222,6 +240,24 @@ TEST_F(AsideTest, LetsTheOriginOfWhatCannotBeKeptGoOnlyWhenTheMessageGoes) {
   ASSERT_TRUE(aside_->to_be_sent(2));
   EXPECT_EQ(told_.let_go, 1);
   aside_->sent_again(2, true);
+  EXPECT_EQ(told_.let_go, 2);
+}
+
+/// Else a life to come would send it of itself, behind the newer one.
+TEST_F(AsideTest, LetsTheOriginOfWhatCannotBeKeptGoOnceItIsOvertaken) {
+  folder_.put("in the way", "");
+  aside_ = std::make_unique<Aside>(loop_, *writer_, folder_ / "in the way/aside");
+  add(grid());
+  settle();
+  EXPECT_FALSE(aside_->taken(grid()));
+  EXPECT_EQ(told_.let_go, 1);
+  hold();
+  add(grid(9));
+  aside_->taken(grid(9));
+  EXPECT_EQ(told_.let_go, 1) << "whether it can be kept is not known yet";
+  let_go();
+  settle();
+  EXPECT_EQ(told_.not_kept, 2);
   EXPECT_EQ(told_.let_go, 2);
 }
 

@@ -3,6 +3,7 @@
 #include <gmock/gmock.h>
 
 #include <atomic>
+#include <future>
 #include <memory>
 #include <string>
 #include <utility>
@@ -118,6 +119,26 @@ TEST_F(NewsTest, LeavesNoPoseThatWasTakenToTheNextLife) {
   ASSERT_TRUE(life->news.take(pose("r2", 2), 10));
   ASSERT_EQ(left().robots().size(), 1u);
   EXPECT_EQ(left().robots().begin()->first.text(), "r2");
+}
+
+/// Killed in between, a life to come would know of neither, and an operator could send the older one.
+TEST_F(NewsTest, HasCareForWhatWasTakenUntilItIsWrittenWhatThatOvertook) {
+  TelemetryPost post(true);
+  const auto life = life_before(post.peer);
+  life->aside.add(pose("r1", 1), 422, "no", 100, {});
+  life->aside.add(icd::MarkersUpdate{{marker("a", "older")}}, 422, "no", 100, {});
+  std::promise<void> held;
+  life->writer.submit([until = held.get_future().share()] { until.wait(); }, [] {});
+  const auto overtaken = [&](std::size_t row) { return life->aside.rows().at(row).overtaken; };
+  ASSERT_TRUE(life->news.take(pose("r1", 2), 10));
+  ASSERT_TRUE(comes(*life, [&] { return overtaken(0); }));
+  EXPECT_EQ(left().robots().size(), 1u);
+  EXPECT_FALSE(life->aside.all_kept());
+  ASSERT_TRUE(life->news.take(icd::MarkersUpdate{{marker("a", "newer")}}, 10));
+  held.set_value();
+  ASSERT_TRUE(comes(*life, [&] { return overtaken(1) && life->aside.all_kept(); }));
+  EXPECT_THAT(left().robots(), IsEmpty());
+  EXPECT_THAT(left().markers().markers, IsEmpty());
 }
 
 TEST_F(NewsTest, SendsNoMarkerAgainOfWhichSomethingNewerWaits) {

@@ -38,6 +38,13 @@ AsideItem item(Message message, std::size_t bytes = 100) {
   return item;
 }
 
+/// Those that it overtakes, now that the Command Post took it.
+std::vector<std::uint64_t> taken(SetAside& aside, const Message& message) {
+  auto overtaken = aside.overtaken_by(message);
+  aside.overtake(overtaken);
+  return overtaken;
+}
+
 TEST(SetAside, KnowsWhatOvertakesAnother) {
   const Message small = grid_update("ugv1", grid(0, 0, 10, 10)),
                 large = grid_update("ugv1", grid(0, 0, 20, 20)),
@@ -69,9 +76,11 @@ TEST(SetAside, MarksWhatSomethingNewerSaysAllOf) {
   SetAside aside;
   aside.add(item(grid_update("ugv1", grid(0, 0, 10, 10))));
   aside.add(item(cloud_update("ugv1", {1})));
-  EXPECT_TRUE(aside.taken(grid_update("ugv1", grid(5, 5, 10, 10))).empty());
-  EXPECT_EQ(aside.taken(grid_update("ugv1", grid(0, 0, 30, 30))), std::vector<std::uint64_t>{1});
-  EXPECT_TRUE(aside.taken(grid_update("ugv1", grid(0, 0, 30, 30))).empty()) << "it was marked before";
+  EXPECT_TRUE(taken(aside, grid_update("ugv1", grid(5, 5, 10, 10))).empty());
+  EXPECT_EQ(aside.overtaken_by(grid_update("ugv1", grid(0, 0, 30, 30))).size(), 1u);
+  EXPECT_FALSE(aside.find(1)->overtaken) << "not before it is marked";
+  EXPECT_EQ(taken(aside, grid_update("ugv1", grid(0, 0, 30, 30))), std::vector<std::uint64_t>{1});
+  EXPECT_TRUE(taken(aside, grid_update("ugv1", grid(0, 0, 30, 30))).empty()) << "it was marked before";
   EXPECT_TRUE(aside.find(1)->overtaken);
   EXPECT_FALSE(aside.find(2)->overtaken);
 }
@@ -84,16 +93,16 @@ TEST(SetAside, IsNotOvertakenByAnOlderGridThatIsSentAgain) {
   };
   SetAside aside;
   aside.add(item(made_at(20, 10)));
-  EXPECT_TRUE(aside.taken(made_at(10, 30)).empty());
+  EXPECT_TRUE(taken(aside, made_at(10, 30)).empty());
   EXPECT_TRUE(aside.add(item(made_at(10, 30))).empty()) << "nor where that is set aside again";
-  EXPECT_EQ(aside.taken(made_at(30, 30)), (std::vector<std::uint64_t>{1, 2}));
+  EXPECT_EQ(taken(aside, made_at(30, 30)), (std::vector<std::uint64_t>{1, 2}));
 }
 
 TEST(SetAside, MarksADeleteAllThatWouldDeleteSomethingNewer) {
   SetAside aside;
   aside.add(item(icd::MarkersUpdate{{marker("", 0, icd::MarkerAction::DeleteAll)}}));
-  EXPECT_TRUE(aside.taken(state_of({"ugv1"})).empty());
-  EXPECT_EQ(aside.taken(icd::MarkersUpdate{{marker("a", 1)}}), std::vector<std::uint64_t>{1});
+  EXPECT_TRUE(taken(aside, state_of({"ugv1"})).empty());
+  EXPECT_EQ(taken(aside, icd::MarkersUpdate{{marker("a", 1)}}), std::vector<std::uint64_t>{1});
 }
 
 TEST(SetAside, HoldsOneForEachThatWouldSayTheSame) {

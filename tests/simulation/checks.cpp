@@ -1,9 +1,6 @@
 // All of them, and what a power cut may cost.
 #include "simulation/checks.hpp"
 
-#include <algorithm>
-
-#include "simulation/judge.hpp"
 #include "simulation/messages.hpp"
 
 namespace adit::simulation {
@@ -25,17 +22,6 @@ std::vector<Event> with_losses(const std::vector<Event>& events) {
   return told;
 }
 
-/// What was overtaken while it was set aside is not known to be any more, and the operator sent it: a full
-/// runtime folder kept that from being written down.
-bool may_put_older_in_place(const Evidence& evidence) {
-  const auto is_full = [](const Event& event) {
-    return event.kind == Kind::Fault && event.who == "RuntimeFull";
-  };
-  const auto full = std::ranges::find_if(evidence.events, is_full);
-  return std::any_of(full, evidence.events.end(),
-                     [](const Event& event) { return event.what == kSendAside; });
-}
-
 }  // namespace
 
 Broken all_checks(const Evidence& evidence) {
@@ -46,9 +32,8 @@ Broken all_checks(const Evidence& evidence) {
     check(evidence, broken);
   const std::vector<Event> told = with_losses(evidence.events);
   const Evidence with_them{told, evidence.reports, evidence.readings, evidence.most_map_bytes};
-  for (const auto check : {cloud_arrived, markers_arrived}) check(with_them, broken);
-  if (may_put_older_in_place(evidence)) return broken;
-  for (const auto check : {pose_arrived, grid_arrived}) check(with_them, broken);
+  for (const auto check : {cloud_arrived, markers_arrived, pose_arrived, grid_arrived})
+    check(with_them, broken);
   return broken;
 }
 

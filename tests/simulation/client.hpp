@@ -39,6 +39,8 @@ class Client {
   }
   /// For a request that says several things: an event for each.
   void ask_several(std::string request, std::vector<Event> about, std::function<void(int status)> done);
+  /// From now on all that it asks is asked: a check counts on it.
+  void is_needed() { needed_ = true; }
   bool busy() const { return static_cast<bool>(done_); }
   /// The body of the last whole answer.
   const std::string& heard() const { return heard_; }
@@ -71,6 +73,7 @@ class Client {
   std::function<void(int)> done_;
   std::string heard_;
   std::uint64_t number_ = 0;  // of the request
+  bool needed_ = false;
 };
 
 }  // namespace adit::simulation

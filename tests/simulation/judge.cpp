@@ -46,6 +46,7 @@ bool Judge::is_over() const {
 void Judge::look() {
   if (world_.time() > trouble_for_ + kAfter) return;
   world_.after(seconds(is_over() ? 10 : random_.between(2, 12)), [this] { look(); });
+  if (is_over()) client_.is_needed();
   if (client_.busy() || !words_.empty()) return;
   if (!is_over() && composes_ && random_.chance(0.3)) compose();
   client_.ask(http_request("GET", "/adit/run", kHeaders, ""), {.what = "/adit/run", .who = "reader"},

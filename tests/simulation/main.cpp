@@ -26,10 +26,6 @@ double cpu_seconds() {
   return static_cast<double>(std::clock()) / CLOCKS_PER_SEC;
 }
 
-std::string name_of_check(const std::string& broken) {
-  return broken.substr(0, broken.find(':'));
-}
-
 std::string replay(std::uint64_t seed, const Omissions& without) {
   std::string command = "tests/simulation/run --seed " + std::to_string(seed);
   if (!without.empty()) command += " --without \"" + without.words() + '"';
@@ -96,7 +92,7 @@ class Job {
   /// The first one only: it takes as long as hundreds of runs.
   void tell_shrunk(std::uint64_t seed, const std::string& broken) {
     shrunk_ = true;
-    const Omissions without = shrunk(seed, options_.without, name_of_check(broken), kMostPlays);
+    const Omissions without = shrunk(seed, options_.without, broken, kMostPlays);
     std::printf("\nseed %llu, shrunk:\n", static_cast<unsigned long long>(seed));
     for (const std::string& each : play({.seed = seed, .without = without, .tells = Telling::Story}).broken)
       std::printf("%s\n", each.c_str());

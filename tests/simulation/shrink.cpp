@@ -9,8 +9,8 @@ namespace {
 
 class Shrinking {
  public:
-  Shrinking(std::uint64_t seed, Omissions from, std::string check, int most_plays)
-      : seed_(seed), without_(std::move(from)), check_(std::move(check) + ':'), plays_left_(most_plays) {}
+  Shrinking(std::uint64_t seed, Omissions from, std::string broken, int most_plays)
+      : seed_(seed), without_(std::move(from)), broken_(std::move(broken)), plays_left_(most_plays) {}
 
   Omissions result() {
     for (const auto& [actor, actions] : actions()) try_without_all(actor);
@@ -24,12 +24,11 @@ class Shrinking {
  private:
   Actions actions() const { return play({.seed = seed_, .without = without_}).actions; }
 
-  /// Keeps `next` where the run breaks the check all the same.
+  /// Keeps `next` where the same is broken in it.
   bool still_breaks(Omissions next) {
     if (plays_left_-- <= 0) return false;
     const auto broken = play({.seed = seed_, .without = next}).broken;
-    const bool breaks =
-        std::ranges::any_of(broken, [&](const std::string& each) { return each.starts_with(check_); });
+    const bool breaks = std::ranges::find(broken, broken_) != broken.end();
     if (breaks) without_ = std::move(next);
     return breaks;
   }
@@ -62,14 +61,14 @@ class Shrinking {
 
   const std::uint64_t seed_;
   Omissions without_;
-  const std::string check_;
+  const std::string broken_;
   int plays_left_;
 };
 
 }  // namespace
 
-Omissions shrunk(std::uint64_t seed, const Omissions& from, const std::string& check, int most_plays) {
-  return Shrinking(seed, from, check, most_plays).result();
+Omissions shrunk(std::uint64_t seed, const Omissions& from, const std::string& broken, int most_plays) {
+  return Shrinking(seed, from, broken, most_plays).result();
 }
 
 }  // namespace adit::simulation

@@ -178,6 +178,33 @@ test("what moves under a finger is not pressed by it, and is once it has stood s
   assert.ok(await isOpen(), "it stood still");
 });
 
+test("what was under the finger as it came down is pressed, also where the page moves before it is lifted", async (t) => {
+  const { page } = await watch(t, "calm", PHONE);
+  const { down, up } = await glass(page);
+  const button = page.locator("#reports .compose:enabled");
+  const touch = { down, up, drag: async () => {} };
+  const mouse = { down: async ([x, y]) => { await page.mouse.move(x, y); await page.mouse.down(); }, up: () => page.mouse.up(), drag: (x, y) => page.mouse.move(x, y) };
+  for (const [name, hand] of Object.entries({ touch, mouse })) {
+    for (const [moves, isMeant] of [["away", true], ["hidden", false], ["dragged", false]]) {
+      if (name === "touch" && moves === "dragged") continue; // that scrolls
+      await button.evaluate((node) => node.scrollIntoView({ block: "center" }));
+      await page.waitForFunction(() => !document.querySelector("[data-moving]"));
+      const { x, y, width, height } = await button.boundingBox(), place = [x + width / 2, y + height / 2];
+      await hand.down(place);
+      if (moves === "dragged") await hand.drag(place[0], place[1] - 100);
+      else await button.evaluate((node, moves) => {
+        if (moves === "hidden") node.hidden = true;
+        else node.style.translate = "0 100px";
+      }, moves);
+      await hand.up();
+      await quiet(page);
+      assert.equal(await page.locator(DIALOG).isVisible(), isMeant, `${name}: ${moves}`);
+      if (isMeant) await page.keyboard.press("Escape");
+      await page.locator("#reports .compose").evaluate((node) => Object.assign(node, { hidden: false, style: "" }));
+    }
+  }
+});
+
 test("a question that opens over a dialog takes no press at once, wherever it stands in the page", async (t) => {
   const { page } = await watch(t, "calm");
   const moving = await page.evaluate(async () => {

@@ -1,9 +1,11 @@
 // A press belongs to what was there when it began. A tap's click comes after all that the tap opened or moved, and the
 // second one of a double tap finds something else in the same place: so what has appeared, or moved, takes no press until
-// it has stood still for a while, and a press that began elsewhere is dropped. Every page has this; nothing has to ask for it.
+// it has stood still for a while, and a press that began elsewhere is given to what it began on, where the finger kept its
+// place, and else dropped. Every page has this; nothing has to ask for it.
 
 const STILL = 350; // ms: the second tap of a double tap comes sooner
-const MOVED = 8; // pixels: what moves less is where it was
+// pixels: what moves less is where it was
+const MOVED = 8;
 const FOLLOWS = 150; // ms: a page that scrolls so soon after a press was scrolled by that press
 const CONTROLS = "button, a[href], input, select, textarea, label, summary, canvas[tabindex]";
 const ACT = ["Enter", " ", "Escape"];
@@ -79,18 +81,24 @@ function controlAt(node) {
   return control?.control ?? control;
 }
 
-let press; // what the pointer came down on (null: on nothing); undefined: no press is under way
+// What the pointer came down on (null: on nothing), and where; undefined: no press is under way.
+let press, down;
 
-addEventListener("pointerdown", ({ target }) => (press = controlAt(target) ?? null), true);
+addEventListener("pointerdown", (event) => {
+  press = controlAt(event.target) ?? null;
+  down = event;
+}, true);
 addEventListener("pointercancel", () => (press = undefined), true);
 for (const name of ["mousedown", "click"]) {
   addEventListener(name, (event) => {
     if (!event.isTrusted || !event.detail) return; // a script's, a key's or a screen reader's
-    const control = controlAt(event.target);
-    if (control && press !== undefined && control !== press) drop(event);
+    const control = controlAt(event.target), began = press;
+    if (control && began !== undefined && control !== began) drop(event);
     if (name !== "click") return;
     press = undefined;
     ended = performance.now();
+    // It has moved away from under the finger:
+    if (began && control !== began && places.has(began) && Math.hypot(event.x - down.x, event.y - down.y) < MOVED) began.click();
   }, true);
 }
 

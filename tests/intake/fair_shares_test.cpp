@@ -67,15 +67,14 @@ TEST_F(FairShares, OfStatesAreLeftForAnotherAddress) {
 
 TEST(FairTurns, OfLargeMarkersAreOfOneAddressAfterTheOther) {
   Team team;
-  std::string many = R"({"markers":[{"action":3})";
-  for (int i = 0; i < 60'000; ++i) many += R"(,{"action":3})";
-  many += "]}";
+  const std::string large =
+      R"({"markers":[{"action":3,"text":")" + std::string(std::size_t{11} << 17, 'x') + R"("}]})";
   Team::Busy busy(team);
   std::vector<std::unique_ptr<RawClient>> clients;
   const auto send_from = [&](const std::string& address) {
     clients.push_back(std::make_unique<RawClient>(team.served.port(), address));
-    clients.back()->send(authorized("POST", "/markers/update", kJsonType, many));
-    team.served.turn_often();
+    clients.back()->send(authorized("POST", "/markers/update", kJsonType, large));
+    for (int i = 0; i < 3; ++i) team.served.turn_often();
   };
   for (int i = 0; i < 3; ++i) send_from(kGreedy);
   send_from(kOther);

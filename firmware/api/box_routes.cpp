@@ -12,11 +12,11 @@
 namespace adit::api {
 namespace {
 
-/// "adit-support-20260131T120000Z"
+/// "adit-support-20260131T120000Z"; "adit-support" where the clock is at no date.
 std::string bundle_name(Time now) {
   const auto seconds = static_cast<std::time_t>(now);
   std::tm parts{};
-  gmtime_r(&seconds, &parts);
+  if (gmtime_r(&seconds, &parts) == nullptr) return "adit-support";
   char text[48];
   return {text, std::strftime(text, sizeof text, "adit-support-%Y%m%dT%H%M%SZ", &parts)};
 }

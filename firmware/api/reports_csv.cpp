@@ -114,14 +114,15 @@ std::string write_reports_csv(const std::vector<ReportRow>& reports) {
 std::string iso_time(Time time) {
   static constexpr Time kYear10000 = 253402300800.0;
   if (!(time >= 0 && time < kYear10000)) return "";
-  const auto whole = static_cast<std::time_t>(time);
+  const auto seconds = static_cast<std::time_t>(time);
   const int milliseconds = static_cast<int>((time - std::floor(time)) * 1000);
   std::tm date{};
-  gmtime_r(&whole, &date);
+  if (gmtime_r(&seconds, &date) == nullptr) return "";
   char text[64];
-  std::snprintf(text, sizeof text, "%04d-%02d-%02dT%02d:%02d:%02d.%03dZ", date.tm_year + 1900,
-                date.tm_mon + 1, date.tm_mday, date.tm_hour, date.tm_min, date.tm_sec, milliseconds);
-  return text;
+  const int length =
+      std::snprintf(text, sizeof text, "%04d-%02d-%02dT%02d:%02d:%02d.%03dZ", date.tm_year + 1900,
+                    date.tm_mon + 1, date.tm_mday, date.tm_hour, date.tm_min, date.tm_sec, milliseconds);
+  return {text, static_cast<std::size_t>(length)};
 }
 
 }  // namespace adit::api

@@ -13,8 +13,6 @@ constexpr std::size_t kBlock = 512;
 /// The header of a file, one block: fields at fixed places (POSIX.1-1988 10.1.1).
 class Header {
  public:
-  Header() { block_.fill('\0'); }
-
   void text(std::size_t at, std::string_view text) { std::ranges::copy(text, block_.begin() + at); }
 
   /// `digits` octal digits, and the zero byte that is there already.
@@ -35,7 +33,7 @@ class Header {
 
  private:
   static constexpr std::size_t kSum = 148;
-  std::array<char, kBlock> block_;
+  std::array<char, kBlock> block_{};
 };
 
 }  // namespace

@@ -148,7 +148,7 @@ Done Import::run() {
   }
   if (!found.errors.empty() || found.brought.nothing()) return {};
   if (auto saved = save(found.brought); !saved) {
-    tell(*card, "Adit could not take what is here: " + saved.error() + '\n');
+    (void)tell(*card, "Adit could not take what is here: " + saved.error() + '\n');  // the log has it as well
     return saved;
   }
   if (lasting) leave(*card, found.brought);

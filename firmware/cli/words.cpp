@@ -45,12 +45,13 @@ std::string duration(double seconds) {
 std::string clock(double seconds) {
   const auto whole = static_cast<long>(std::clamp(seconds, 0.0, kLongestTime));
   char text[32];
+  int length = 0;
   if (whole < 3600) {
-    std::snprintf(text, sizeof text, "%ld:%02ld", whole / 60, whole % 60);
+    length = std::snprintf(text, sizeof text, "%ld:%02ld", whole / 60, whole % 60);
   } else {
-    std::snprintf(text, sizeof text, "%ld:%02ld:%02ld", whole / 3600, whole / 60 % 60, whole % 60);
+    length = std::snprintf(text, sizeof text, "%ld:%02ld:%02ld", whole / 3600, whole / 60 % 60, whole % 60);
   }
-  return text;
+  return {text, static_cast<std::size_t>(length)};
 }
 
 std::string size(std::uint64_t bytes) {
@@ -62,8 +63,8 @@ std::string size(std::uint64_t bytes) {
 
 std::string decimal(double number, int digits) {
   char text[400];
-  std::snprintf(text, sizeof text, "%.*f", digits, number);
-  std::string written = text;
+  const int length = std::snprintf(text, sizeof text, "%.*f", digits, number);
+  std::string written(text, static_cast<std::size_t>(length));
   if (written.find('.') != std::string::npos) {
     written.erase(written.find_last_not_of('0') + 1);
     if (written.ends_with('.')) written.pop_back();

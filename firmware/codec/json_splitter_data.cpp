@@ -65,8 +65,8 @@ icd::Checked<void> JsonSplitter::keep_number() {
     if (std::isinf(value)) return std::unexpected(fault_at(number_at_, "a number too large for a double"));
     if (number_.size() > kMostOfCjson) {
       std::array<char, 32> text{};
-      std::snprintf(text.data(), text.size(), "%.17g", value);
-      number_ = text.data();
+      const int length = std::snprintf(text.data(), text.size(), "%.17g", value);
+      number_.assign(text.data(), static_cast<std::size_t>(length));
     }
   }
   keep(number_);

@@ -22,7 +22,7 @@ class PoseList {
  public:
   explicit PoseList(std::vector<icd::NamedPose>& poses) : poses_(poses) {}
 
-  void add(icd::NamedPose named) {
+  void add(const icd::NamedPose& named) {
     const auto [place, is_new] = places_.try_emplace(named.name, poses_.size());
     if (is_new) poses_.push_back(named);
     poses_[place->second].pose = named.pose;
@@ -97,7 +97,7 @@ icd::Checked<InParts<icd::StateUpdate>> read_state_parts(const Document& documen
   PoseList poses(update.poses);
   read_each(
       body.member("poses"), refused, [&](const Field& field) { return read_named_pose(field, rules); },
-      [&](icd::NamedPose named) { poses.add(std::move(named)); });
+      [&](const icd::NamedPose& named) { poses.add(named); });
   return sorted(reading, std::move(update), std::move(refused));
 }
 

@@ -15,13 +15,12 @@ using codec::Value;
 std::string date_and_time(double stamp) {
   const auto seconds = static_cast<std::time_t>(std::floor(stamp));
   std::tm parts{};
-  gmtime_r(&seconds, &parts);
-  char date[32];
-  std::strftime(date, sizeof date, "%Y-%m-%dT%H:%M:%S", &parts);
   char text[64];
-  std::snprintf(text, sizeof text, "%s.%06d+00:00", date,
-                static_cast<int>((stamp - std::floor(stamp)) * 1e6));
-  return text;
+  if (gmtime_r(&seconds, &parts) == nullptr) return "";
+  const std::size_t date = std::strftime(text, sizeof text, "%Y-%m-%dT%H:%M:%S", &parts);
+  const int rest = std::snprintf(text + date, sizeof text - date, ".%06d+00:00",
+                                 static_cast<int>((stamp - std::floor(stamp)) * 1e6));
+  return {text, date + static_cast<std::size_t>(rest)};
 }
 
 Value text_or_null(const std::string& text) {

@@ -1,5 +1,6 @@
 // The life of reports towards the team: taking them, joining the same one again, telling how they stand.
 #include <algorithm>
+#include <cmath>
 #include <ranges>
 
 #include "dispatch/report_verdict.hpp"
@@ -14,7 +15,7 @@ constexpr const char* kAskAgain = "; posting the same report again asks after it
 constexpr const char* kOldRun = "; it is of an earlier run: posting it again sends it in the present one";
 
 std::string metres(double distance) {
-  return icd::number_text(static_cast<double>(static_cast<std::int64_t>(distance * 10 + 0.5)) / 10) + " m";
+  return icd::number_text(std::round(distance * 10) / 10) + " m";
 }
 
 /// A report in this state stands for all that are the same: they get its answer, or wait for it with it.

@@ -11,8 +11,8 @@ namespace adit::host {
 
 std::string numbered_name(std::string_view prefix, std::uint64_t number, std::string_view ending) {
   std::array<char, 24> digits{};
-  std::snprintf(digits.data(), digits.size(), "%08" PRIu64, number);
-  return std::string(prefix).append(digits.data()).append(ending);
+  const int length = std::snprintf(digits.data(), digits.size(), "%08" PRIu64, number);
+  return std::string(prefix).append(digits.data(), static_cast<std::size_t>(length)).append(ending);
 }
 
 std::optional<std::uint64_t> number_in_name(std::string_view name, std::string_view prefix,

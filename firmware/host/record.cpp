@@ -50,7 +50,7 @@ std::string_view name_of(Level level) {
 std::string time_text(double at) {
   const auto seconds = static_cast<std::time_t>(at);
   std::tm parts{};
-  gmtime_r(&seconds, &parts);
+  if (gmtime_r(&seconds, &parts) == nullptr) return "no date";
   char text[32];
   return {text, std::strftime(text, sizeof text, "%Y-%m-%dT%H:%M:%SZ", &parts)};
 }

@@ -22,9 +22,6 @@ namespace {
 /// How long libmicrohttpd has for the last bytes of a client that sends no more.
 constexpr std::chrono::milliseconds kAfterEnd(100);
 
-/// How long a client has to read why its head was refused.
-constexpr std::chrono::milliseconds kLingerWithin(2000);
-
 /// A process may have several servers, and tests have several loops.
 std::uint64_t next_number() {
   static std::atomic<std::uint64_t> last = 0;

@@ -77,6 +77,8 @@ class Client {
   /// The client is to send something, or to take what it is sent, within that time.
   void expect_bytes(std::chrono::milliseconds within);
   void expect_reading(std::chrono::milliseconds within);
+  /// How long a client has to read the last answer of its connection.
+  static constexpr std::chrono::milliseconds kLingerWithin{2000};
   /// The rest of the body: a stranger's soon, that of who is known at the least rate.
   void expect_body();
   void body_came(std::size_t bytes);

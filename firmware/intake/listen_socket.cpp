@@ -2,10 +2,10 @@
 
 #include <arpa/inet.h>
 #include <fcntl.h>
+#include <linux/tcp.h>
 #include <net/if.h>
 #include <netdb.h>
 #include <netinet/in.h>
-#include <netinet/tcp.h>
 #include <sys/socket.h>
 
 #include <array>
@@ -18,7 +18,7 @@
 namespace adit::intake {
 namespace {
 
-/// Those who connect while the service is started anew wait here: two seconds at 200 a second, and as many
+/// Those who connect while the service is restarted wait here: two seconds at 200 a second, and as many
 /// again.
 constexpr int kBacklog = 1024;
 constexpr int kProbes = 3;  // unanswered ones until the kernel gives a silent peer up

@@ -18,7 +18,6 @@ namespace {
 constexpr std::size_t kReadAway = 64 * 1024;
 constexpr std::chrono::milliseconds kReadAwayWithin(1000);
 constexpr std::size_t kLinger = 256 * 1024;
-constexpr std::chrono::milliseconds kLingerWithin(2000);
 
 Answer failure() {
   return error_answer(icd::Status::InternalServerError,
@@ -153,7 +152,7 @@ void Request::turn_away() {
 void Request::refuse(const Answer& answer) {
   client_->say_last(last_answer_text(answer, !is_head_));
   stage_ = Stage::Refusing;
-  client_->expect_reading(kLingerWithin);
+  client_->expect_reading(Client::kLingerWithin);
   client_->resume();
 }
 

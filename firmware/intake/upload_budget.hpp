@@ -25,7 +25,9 @@ class UploadBudget {
   void give_back(const std::string& address, std::size_t bytes) {
     left_ += bytes;
     const auto held = held_.find(address);
-    if (held != held_.end() && (held->second -= bytes) == 0) held_.erase(held);
+    if (held == held_.end()) return;
+    held->second -= bytes;
+    if (held->second == 0) held_.erase(held);
   }
 
  private:

@@ -156,7 +156,7 @@ void remove_database(const std::string& path) {
 
 Result<std::string> set_aside(const std::string& folder, const std::string& path) {
   for (int n = 1;; ++n) {
-    const std::string aside = path + ".damaged-" + std::to_string(n);
+    std::string aside = path + ".damaged-" + std::to_string(n);
     bool is_free = !exists(aside);
     for (const char* suffix : kBeside) is_free = is_free && !exists(aside + suffix);
     if (!is_free) continue;

@@ -211,7 +211,7 @@ Result<void> Ledger::write(std::span<const dispatch::Report> steps, const dispat
   return impl_->write(steps, run, flush);
 }
 void Ledger::expect(dispatch::Flush flush) {
-  impl_->flush_each(flush == dispatch::Flush::Now);  // where that fails, so will write(), and say so
+  (void)impl_->flush_each(flush == dispatch::Flush::Now);  // where that fails, so will write(), and say so
 }
 
 Result<void> Ledger::flush() {

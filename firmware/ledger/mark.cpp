@@ -24,8 +24,8 @@ std::string read_only_uri(const std::string& path) {
       uri += letter;
     } else {
       char escaped[4];
-      std::snprintf(escaped, sizeof escaped, "%%%02X", static_cast<unsigned char>(letter));
-      uri += escaped;
+      const int length = std::snprintf(escaped, sizeof escaped, "%%%02X", static_cast<unsigned char>(letter));
+      uri.append(escaped, static_cast<std::size_t>(length));
     }
   }
   return uri + "?immutable=1";

@@ -38,7 +38,7 @@ std::optional<settings::Panel> find_panel(const panel::LightsOptions& options) {
   if (const auto text = text_of(options.board)) {
     auto board = settings::parse_board(*text);
     if (!board) complain(options.board + ": " + settings::sentence_of(board.error()));
-    if (board && board->panel) return std::move(*board->panel);
+    if (board && board->panel) return std::move(board->panel);
   }
   for (const std::string& file : options.settings) {
     const auto text = text_of(file);

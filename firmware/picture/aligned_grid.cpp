@@ -23,14 +23,14 @@ int pixel_at(double metres) {
 
 }  // namespace
 
-AlignedGrid::Axis::Axis(double origin, double metres_per_cell, std::uint32_t count) {
+AlignedGrid::Axis::Axis(double origin, double metres_per_cell, std::uint32_t count)
+    : first_pixel(pixel_at(origin)) {
   const auto cell = [count](double number) {
     return static_cast<std::uint32_t>(std::clamp(number, 0.0, static_cast<double>(count)));
   };
   const auto first_centre_from = [&](double metres) {
     return cell(std::ceil((metres - origin) / metres_per_cell - 0.5 - kRounding));
   };
-  first_pixel = pixel_at(origin);
   const int last = std::min(pixel_at(origin + count * metres_per_cell), kWorldPixels - 1);
   for (int pixel = first_pixel; pixel <= last; ++pixel) {
     Cells shown{first_centre_from(pixel * kPixel), first_centre_from((pixel + 1) * kPixel)};

@@ -44,7 +44,8 @@ class Sheet {
 
   /// Null where it would be one too many.
   Pixels* tile(int x, int y) {
-    const auto at = static_cast<std::size_t>((y + kWorldTiles) * 2 * kWorldTiles + x + kWorldTiles);
+    const auto at = static_cast<std::size_t>(y + kWorldTiles) * 2 * kWorldTiles +
+                    static_cast<std::size_t>(x + kWorldTiles);
     if (at != last_at_) {
       if (places_[at] == kNone) places_[at] = made(x, y);
       last_ = places_[at] == kNone ? nullptr : parts_[places_[at] - 1U].pixels.get();

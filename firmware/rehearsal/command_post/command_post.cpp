@@ -200,7 +200,7 @@ void CommandPost::show(std::uint64_t number, const Request& request, const Judge
     more.append(" ").append(line_of(Json(sentence)));
   std::printf("%6llu %s: %s%s\n", static_cast<unsigned long long>(number), what.c_str(), status.c_str(),
               more.c_str());
-  std::fflush(stdout);
+  (void)std::fflush(stdout);
 }
 
 }  // namespace adit::rehearsal

@@ -66,7 +66,7 @@ sigset_t awaited_signals() {
 
 void print(const std::string& text) {
   std::fputs(text.c_str(), stdout);
-  std::fflush(stdout);
+  (void)std::fflush(stdout);
 }
 
 struct Servers {

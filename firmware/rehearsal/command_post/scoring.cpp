@@ -17,12 +17,12 @@ std::string date_and_time() {
   const auto micros = std::chrono::duration_cast<std::chrono::microseconds>(since).count();
   const std::time_t seconds = micros / 1'000'000;
   std::tm parts{};
-  gmtime_r(&seconds, &parts);
-  char date[32];
-  std::strftime(date, sizeof date, "%Y-%m-%dT%H:%M:%S", &parts);
   char text[64];
-  std::snprintf(text, sizeof text, "%s.%06d+00:00", date, static_cast<int>(micros % 1'000'000));
-  return text;
+  if (gmtime_r(&seconds, &parts) == nullptr) return "";
+  const std::size_t date = std::strftime(text, sizeof text, "%Y-%m-%dT%H:%M:%S", &parts);
+  const int rest =
+      std::snprintf(text + date, sizeof text - date, ".%06d+00:00", static_cast<int>(micros % 1'000'000));
+  return {text, date + static_cast<std::size_t>(rest)};
 }
 
 /// "current_team is a lowercase string" (ICD 5.1).

@@ -18,8 +18,9 @@ std::uint64_t lines_in(const std::string& path) {
 
 std::string stem_of(std::uint64_t number, const MapMessage& map) {
   char digits[32];
-  std::snprintf(digits, sizeof digits, "%06llu", static_cast<unsigned long long>(number));
-  return std::string(digits) + "-" + (map.name.empty() ? "merged" : tame(map.name));
+  const int length = std::snprintf(digits, sizeof digits, "%06llu", static_cast<unsigned long long>(number));
+  return std::string(digits, static_cast<std::size_t>(length)) + "-" +
+         (map.name.empty() ? "merged" : tame(map.name));
 }
 
 }  // namespace

@@ -8,12 +8,12 @@
 
 namespace adit::icd {
 
-/// The ten artifact types of the final event (ICD 5.2); letter case does not matter.
-inline constexpr std::array<std::string_view, 10> kArtifactTypes = {
-    "Survivor", "Cell Phone", "Backpack", "Drill", "Fire Extinguisher",
-    "Gas",      "Vent",       "Helmet",   "Rope",  "Cube"};
+/// The artifact types of the final event (ICD 5.2); letter case does not matter.
+inline constexpr auto kArtifactTypes = std::to_array<std::string_view>({
+#include "artifact_types.inc"
+});
 
-/// The ICD's own spelling of a type, or nothing ("") where it is none of the ten.
+/// The ICD's own spelling of a type, or nothing ("") where it is none of them.
 std::string_view artifact_type(std::string_view text);
 
 /// The body of POST /api/artifact_reports (ICD 5.2). `type` is kept as its sender wrote it.

@@ -9,6 +9,7 @@
 
 #include "api/on_page.hpp"
 #include "api/scenes.hpp"
+#include "icd/artifact_report.hpp"
 #include "intake/raw_client.hpp"
 #include "intake/served.hpp"
 #include "site/site.hpp"
@@ -22,8 +23,16 @@ std::string file_on_disk(std::string_view path) {
   return {std::istreambuf_iterator<char>(file), {}};
 }
 
-/// Scripts are embedded without the lines that are a comment, style without its comments, pages without what
-/// indents their lines.
+/// As a script has them: "Survivor", "Cell Phone" and so on.
+std::string artifact_types() {
+  std::string words;
+  for (const std::string_view type : icd::kArtifactTypes)
+    words.append(words.empty() ? "\"" : ", \"").append(type).append("\"");
+  return words;
+}
+
+/// Scripts are embedded without the lines that are a comment and with the artifact types, style without its
+/// comments, pages without what indents their lines.
 std::string as_embedded(std::string_view path) {
   std::string text = file_on_disk(path);
   static const std::regex style_comment(R"( */\*[^*]*\*/)");
@@ -32,7 +41,8 @@ std::string as_embedded(std::string_view path) {
   if (path.ends_with(".html")) return std::regex_replace(text, indent, "\n");
   if (!path.ends_with(".js")) return text;
   static const std::regex comment(R"((^|\n) *(//[^\n]*|/\*\*[^\n]*\*/))");
-  return std::regex_replace(text, comment, "$1");
+  static const std::regex types(R"("artifact_types\.inc")");
+  return std::regex_replace(std::regex_replace(text, comment, "$1"), types, artifact_types());
 }
 
 using testing::HasSubstr;

@@ -1,11 +1,8 @@
 // Tokens, robots' names, URIs, artifact types: the small words of the ICD.
 #include <gtest/gtest.h>
 
-#include <fstream>
-#include <iterator>
 #include <ostream>
 #include <string>
-#include <vector>
 
 #include "icd/artifact_report.hpp"
 #include "icd/bearer_token.hpp"
@@ -134,28 +131,6 @@ TEST(UriOf, KnowsNoOther) {
                                  "/map/update2", "//map/update", "/map//update"}) {
     EXPECT_FALSE(uri_of(path).has_value()) << path;
   }
-}
-
-/// The words in quotation marks after `beginning`, up to the list's end.
-std::vector<std::string> list_in(const std::string& path, const std::string& beginning) {
-  std::ifstream file(ADIT_SOURCE_DIR "/firmware/" + path);
-  const std::string text((std::istreambuf_iterator<char>(file)), {});
-  std::vector<std::string> words;
-  const std::size_t begin = text.find(beginning);
-  const std::size_t end = text.find(';', begin);
-  for (std::size_t at = text.find('"', begin); at < end;) {
-    const std::size_t closed = text.find('"', at + 1);
-    words.push_back(text.substr(at + 1, closed - at - 1));
-    at = text.find('"', closed + 1);
-  }
-  return words;
-}
-
-TEST(ArtifactType, IsTheSameForThePageAndForWhatIsRehearsedWith) {  // which share no code with this
-  const std::vector<std::string> all(kArtifactTypes.begin(), kArtifactTypes.end());
-  EXPECT_EQ(list_in("site/files/compose.js", "const TYPES = ["), all);
-  EXPECT_EQ(list_in("rehearsal/command_post/artifacts.cpp", " kTypes = {"), all);
-  EXPECT_EQ(list_in("rehearsal/robots/cave.cpp", " kTypes = {"), all);
 }
 
 TEST(ArtifactType, IsFoundInAnyLetterCaseAndGivenInTheIcdsOwn) {

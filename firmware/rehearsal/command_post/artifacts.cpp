@@ -10,9 +10,9 @@
 namespace adit::rehearsal {
 namespace {
 
-constexpr std::array<std::string_view, 10> kTypes = {
-    "Survivor", "Cell Phone", "Backpack", "Drill", "Fire Extinguisher",
-    "Gas",      "Vent",       "Helmet",   "Rope",  "Cube"};
+constexpr auto kTypes = std::to_array<std::string_view>({
+#include "artifact_types.inc"
+});
 
 constexpr double kScoringDistance = 5.0;  // metres, by the competition's rules
 

@@ -9,7 +9,7 @@
 
 namespace adit::rehearsal {
 
-/// Whether it is one of the ten types of the final event, in any letter case (ICD 5.2).
+/// Whether it is one of the types of the final event, in any letter case (ICD 5.2).
 bool is_artifact_type(std::string_view type);
 
 struct Artifact {

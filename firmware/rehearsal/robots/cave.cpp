@@ -14,9 +14,9 @@ namespace {
 constexpr Lattice kLattice{.resolution = 0.2, .left = -6, .bottom = -32, .width = 480, .height = 320};
 
 /// The ICD's artifact types (5.2).
-constexpr std::array<std::string_view, 10> kTypes = {
-    "Survivor", "Cell Phone", "Backpack", "Drill", "Fire Extinguisher",
-    "Gas",      "Vent",       "Helmet",   "Rope",  "Cube"};
+constexpr auto kTypes = std::to_array<std::string_view>({
+#include "artifact_types.inc"
+});
 constexpr std::size_t kArtifacts = 2 * kTypes.size();
 
 /// The floor blends the chambers' heights by their distance; the ceiling is high in chambers and low

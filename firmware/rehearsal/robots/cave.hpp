@@ -10,7 +10,7 @@
 
 namespace adit::robots {
 
-/// What lies in the cave: one of the ICD's ten types (5.2), and where.
+/// What lies in the cave: one of the ICD's types (5.2), and where.
 using Artifact = Report;
 
 /// A cave of chambers and tunnels in two and a half dimensions: rock or open, with the height of floor and

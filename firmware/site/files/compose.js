@@ -9,8 +9,8 @@ import { post } from "./session.js";
 import { life } from "./arriving.js";
 import { ago, clip, metres } from "./words.js";
 
-// ICD 5.2.
-const TYPES = ["Survivor", "Cell Phone", "Backpack", "Drill", "Fire Extinguisher", "Gas", "Vent", "Helmet", "Rope", "Cube"];
+// ICD 5.2; embed.cmake puts the words of that file here.
+const TYPES = ["artifact_types.inc"];
 const AXES = ["x", "y", "z"];
 const ROBOT_NEAR = 20; // m: so far a robot's height is a fair guess
 

@@ -10,7 +10,7 @@ namespace adit::access {
 /// network opens it, and it is kept nowhere: a restart closes it.
 class Window {
  public:
-  /// From now on; where it is open already, anew.
+  /// From now on; where it is open already, for the whole time again.
   void open(Instant now, Duration length) { until_ = now + length; }
   /// It has been used.
   void close() { until_.reset(); }

@@ -22,7 +22,7 @@ using host::Level;
 access::Accounts accounts_in(const std::string& file) {
   auto accounts = read_kept_file(file, &access::read_accounts);
   if (accounts) return std::move(*accounts);
-  host::log(Level::Error, "the passwords cannot be read: they have to be set anew",
+  host::log(Level::Error, "the passwords cannot be read: they have to be set again",
             {{"why", accounts.error()}});
   return {};
 }

@@ -46,7 +46,7 @@ class NetworkChange final : public api::Network {
     network::Wanted wanted;
     loop::Instant at;
   };
-  /// Reads the status anew where what is known of it is old.
+  /// Reads the status again where what is known of it is old.
   void refresh() const;
   /// Whether what was asked for is not in the status yet, and may still be.
   bool is_asked() const;

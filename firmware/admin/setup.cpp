@@ -35,12 +35,12 @@ std::optional<icd::BearerToken> token_for(const std::string& endpoint, const Set
 }
 
 Setup::Setup(Store& store, FactoryReset& reset, const Store::Loaded& loaded, std::string trouble,
-             Meaning for_reports, std::function<void()> apply, std::function<void()> anew)
+             Meaning for_reports, std::function<void()> apply, std::function<void()> restart)
     : store_(store),
       reset_(reset),
       for_reports_(std::move(for_reports)),
       apply_(std::move(apply)),
-      anew_(std::move(anew)) {
+      restart_(std::move(restart)) {
   runs_with(loaded, std::move(trouble));
 }
 
@@ -115,7 +115,7 @@ icd::Checked<void> Setup::set_token(const std::string& name, const std::optional
 
 icd::Checked<void> Setup::reset() {
   if (applying_) return being_applied();
-  return applied(reset_.begin(), "a factory reset", anew_);
+  return applied(reset_.begin(), "a factory reset", restart_);
 }
 
 }  // namespace adit::admin

@@ -18,9 +18,9 @@ class Setup final : public api::Setup {
   using Meaning = std::function<std::string(const std::string& post)>;
 
   /// `apply` is called once a change is on the disk, and sees to it that runs_with() is told what came of it;
-  /// `anew` ends the gateway, so that another begins. `store` and `reset` outlive this.
+  /// `restart` ends the gateway, so that another begins. `store` and `reset` outlive this.
   Setup(Store& store, FactoryReset& reset, const Store::Loaded& loaded, std::string trouble,
-        Meaning for_reports, std::function<void()> apply, std::function<void()> anew);
+        Meaning for_reports, std::function<void()> apply, std::function<void()> restart);
 
   /// A change was applied, or taken back: the gateway runs with these. `trouble`: see api::Setup.
   void runs_with(const Store::Loaded& loaded, std::string trouble);
@@ -48,7 +48,7 @@ class Setup final : public api::Setup {
   std::string trouble_;
   std::vector<std::string> tokens_set_;
   Meaning for_reports_;
-  std::function<void()> apply_, anew_;
+  std::function<void()> apply_, restart_;
   bool applying_ = false;
   bool is_kept_ = true;  // what is run with is what the disk has: not after a save that failed halfway
 };

@@ -35,7 +35,7 @@ class Updates final : public api::Updates {
   /// Called each second: takes note of what became of the last request.
   void every_second();
 
-  /// Something is being received, checked or installed, or the box is about to be started anew.
+  /// Something is being received, checked or installed, or the box is about to be restarted.
   bool running() const { return !update().doing.empty(); }
 
  private:
@@ -44,7 +44,7 @@ class Updates final : public api::Updates {
     update::Request request;
     loop::Instant at;
   };
-  /// Reads the status anew where what is known of it is old.
+  /// Reads the status again where what is known of it is old.
   void refresh() const;
   /// Whether what was asked for is not in the status yet, and may still be.
   bool is_asked() const;

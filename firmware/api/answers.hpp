@@ -11,7 +11,7 @@ namespace adit::api {
 /// With the headers that keep a browser from loading, framing or guessing anything.
 intake::Answer guarded(intake::Answer answer);
 
-/// 200, for nobody to keep.
+/// 200, not to be cached.
 intake::Answer fresh(std::string content_type, std::string body);
 
 /// The same, of a JSON object.
@@ -19,8 +19,8 @@ intake::Answer object(codec::Value::Object members);
 
 intake::Answer refusal(icd::Status status, std::string_view sentence);
 intake::Answer refused(const icd::Refusal& why);
-/// Of a change of the set-up, which is refused with 409 only while another is being applied (api::Setup):
-/// that takes a second, and Retry-After says so.
+/// The refusal of a change of the set-up. 409 means that another is being applied (api::Setup), which takes a
+/// second: Retry-After says so.
 intake::Answer refused_change(const icd::Refusal& why);
 intake::Answer nothing_here();
 /// 405; `allowed` as in RFC 9110 10.2.1: "GET, HEAD".

@@ -19,7 +19,7 @@ class Setup;
 class Source;
 class Updates;
 
-/// What the API asks. What is null is not served.
+/// What the API asks. A route whose member is null is not served.
 struct Served {
   const Source& source;
   Operator& judge;
@@ -31,15 +31,15 @@ struct Served {
   Box* box = nullptr;
 };
 
-/// What the page and scripts may ask, on the team's side and behind a login, and the page's own files.
-/// routes.cpp is the table of it, README.md has it in words, firmware/access/README.md says what protects it.
+/// The API of the page and of scripts, on the team's side and behind a login, and the page's own files.
+/// routes.cpp is its table, README.md has it in words, firmware/access/README.md says what protects it.
 ///
 /// Every answer but the events carries X-Content-Type-Options, Referrer-Policy and a Content-Security-Policy
 /// of `default-src 'none'` with what the page needs; every error is a JSON string.
 class Api final : public intake::Handler {
  public:
-  /// `tokens`: any of them lets a script in as an operator; empty: none does. `redaction`: of all that is
-  /// answered. All others outlive this, and whatever is still worked on or answered.
+  /// `tokens`: any of them lets a script in as an operator; empty: none does. `redaction` is applied to every
+  /// answer. The other arguments outlive this, and all work and answers that are under way.
   Api(loop::Loop& loop, const Served& served, std::vector<icd::BearerToken> tokens,
       icd::Redaction redaction = icd::Redaction());
   ~Api() override;

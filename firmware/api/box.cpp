@@ -32,8 +32,8 @@ constexpr Member kRecord[] = {
 };
 
 constexpr Member kPage[] = {
-    member<&LogPage::last>(
-        "last", "number of the last record there was: less than since, and the box was started anew"),
+    member<&LogPage::last>("last",
+                           "number of the last record there was: less than since, and the box was restarted"),
     member<&LogPage::records>("records"),
 };
 

@@ -14,7 +14,7 @@ namespace adit::api {
 
 using LogFields = std::vector<std::pair<std::string, std::string>>;
 
-/// A record of the log. All text is visible ASCII: what was not is escaped.
+/// A record of the log. All text is visible ASCII; other bytes are escaped.
 struct LogRecord {
   std::uint64_t seq = 0;
   Time at = 0;
@@ -34,7 +34,7 @@ struct LogPage {
   static const codec::Row kRow;
 };
 
-/// What is refused to the team, counted since the start.
+/// What was refused to the team, counted since the start.
 struct RefusedCount {
   std::string uri;
   int status = 0;
@@ -42,13 +42,13 @@ struct RefusedCount {
   std::uint64_t parts = 0;  // of states and markers: poses and markers
 };
 
-/// Connections of the team that were not gone on with, counted since the start.
+/// Connections of the team that Adit ended, counted since the start.
 struct EndedCount {
   std::string why;
   std::uint64_t count = 0;
 };
 
-/// What the process has used and done since the start.
+/// What the process has used since its start.
 struct Usage {
   Time started = 0;
   double cpu_seconds = 0;
@@ -113,11 +113,11 @@ struct NetworkState {
   static const codec::Row kRow;
 };
 
-/// The box and its service, as the page tells of them.
+/// The box and its service, as the page shows them.
 class Box {
  public:
   virtual ~Box() = default;
-  /// The records after the one of that number that are remembered, oldest first. Never a token in them.
+  /// The records after that number that are still kept, oldest first, without tokens.
   virtual std::vector<LogRecord> log(std::uint64_t after) const = 0;
   /// The number of the last record there was.
   virtual std::uint64_t logged() const = 0;

@@ -16,8 +16,8 @@ struct FlatPoint {
   friend bool operator==(const FlatPoint&, const FlatPoint&) = default;
 };
 
-/// What a map from above shows of a marker, bounded whatever the marker holds. Its parts are the points of a
-/// strip or of a list, the lines of a LineList (two points each), the triangles of a TriangleList (three).
+/// What a map from above shows of a marker; its size is bounded. Its parts are the points of a strip or of a
+/// list, the lines of a LineList (two points each), the triangles of a TriangleList (three points each).
 struct DrawnMarker {
   static constexpr std::size_t kMostPoints = 1000;
   static constexpr std::size_t kLongestText = 120;  // bytes
@@ -39,7 +39,7 @@ struct DrawnMarker {
   std::size_t size() const;
 };
 
-/// A strip is thinned along its way, and a list by every so many of its parts.
+/// Too long a strip loses points evenly along its way; too long a list loses parts evenly.
 DrawnMarker drawn(const icd::Marker& marker);
 
 /// Where the robot's own x axis points, seen from above: radians about z. The quaternion need not be of

@@ -24,14 +24,14 @@ class Entrance {
   /// These let a script in from now on.
   void let_in(std::vector<icd::BearerToken> tokens) { tokens_ = std::move(tokens); }
 
-  /// 401 or 403 where he who asks may not do what `who` may.
+  /// 401 or 403 if the asker may not do what `who` may.
   icd::Checked<Asker> admit(const intake::RequestHead& head, Who who);
   /// Visitor::session is valid until the next call of anything here.
   std::optional<access::Visitor> who(const intake::RequestHead& head);
   intake::Shown shown(const intake::RequestHead& head);
-  /// The browser that asks, where somebody has been in from it, or null. As Devices::find().
+  /// The asking browser, if somebody has logged in from it before, or null. As Devices::find().
   const access::Device* device(const intake::RequestHead& head);
-  /// Whether he may still be given more of a long answer. This outlives the result.
+  /// Whether the asker may still be given more of a long answer. This outlives the result.
   std::function<bool()> may_stay(const Asker& asker);
 
   access::Sessions& sessions() { return keys_.sessions(); }
@@ -42,7 +42,7 @@ class Entrance {
   std::vector<icd::BearerToken> tokens_;
 };
 
-/// The answer for whoever may not come in.
+/// The answer for whoever is not let in.
 intake::Answer turned_away(const icd::Refusal& refusal);
 
 }  // namespace adit::api

@@ -61,9 +61,9 @@ bool has(const Handlers& handlers) {
   return std::get<Handler*>(handlers) != nullptr;
 }
 
-/// A member function of one of the Handlers, called with what it asks for by its parameter's type: a number
-/// is that of the path (404 where it is none), a std::string the body; or the RequestHead, or the whole Call.
-/// It gives the Answer; or nothing, and answers by Call::responder; or what takes the body.
+/// A member function of one of the Handlers. Its parameter's type says what it is called with: the number in
+/// the path (404 if that is no number), the body (std::string), the RequestHead or the whole Call. It returns
+/// the Answer; or nothing, and answers by Call::responder; or the object that takes the body.
 template <auto function>
 consteval Handle by() {
   constexpr auto served = has<typename Signature<decltype(function)>::Handler>;

@@ -12,8 +12,8 @@
 
 namespace adit::api {
 
-/// The passwords, who is logged in, and what is random: what the login needs of the box. For the loop;
-/// hashing takes tens of milliseconds, so what hashes answers later, on the loop.
+/// What the login needs of the box: passwords, sessions and random bytes. To be called on the loop. Hashing
+/// takes tens of milliseconds, so functions that hash answer later, on the loop.
 class Keys {
  public:
   virtual ~Keys() = default;
@@ -23,25 +23,24 @@ class Keys {
   /// False where it is not the first start.
   virtual bool is_code(std::string_view presented) const = 0;
 
-  /// Somebody at the box itself opened set-up with its button: who comes may set the operator's password
-  /// without the present one or the code, until one is set.
+  /// Somebody at the box opened set-up with its button: until a password is set, anybody may set the
+  /// operator's without the present one or the code.
   virtual bool set_up_open() const = 0;
   /// Its button was pressed within the last minute.
   virtual bool somebody_at_box() const = 0;
 
-  /// Tells whose password it is, if anybody's. `address`: who says so, for the log.
+  /// Says whose password it is, if anybody's. `address`: the client's, for the log.
   virtual void check(std::string password, std::string address,
                      std::function<void(std::optional<access::Role>)> done) = 0;
 
-  /// Sets a role's password, which has passed access::check_new(), or takes it away (nothing; the viewer's
-  /// alone). Refused: 409 while another is being set, 422 where it is the other role's, 503 where it cannot
-  /// be kept.
+  /// Sets a role's password, which has passed access::check_new(); nothing removes it (the viewer's only).
+  /// Refused: 409 while another is being set, 422 if it is the other role's, 503 if it cannot be kept.
   virtual void set(access::Role role, std::optional<std::string> password,
                    std::function<void(icd::Checked<void>)> done) = 0;
 
-  /// Those who are logged in; kept where they outlive the page.
+  /// Those who are logged in; kept over a restart of the service.
   virtual access::Sessions& sessions() = 0;
-  /// The browsers that have been in; kept where they outlive the box.
+  /// The browsers that have been in; kept over a restart of the box.
   virtual access::Devices& devices() = 0;
 
   /// Never the same twice.

@@ -10,15 +10,14 @@
 
 namespace adit::api {
 
-/// The pages that are open, each fed by server-sent events (HTML Living Standard 9.2): one at once, then one
-/// whenever something changed, though at most kEventsPerSecond, and a heartbeat by which a page knows
-/// that it has not lost the box.
+/// The open pages, each fed by server-sent events (HTML Living Standard 9.2): one at once, one whenever
+/// something changed (at most kEventsPerSecond), and a heartbeat that tells the page that the box is there.
 class Live {
  public:
   static constexpr int kEventsPerSecond = 4;
 
   static constexpr std::chrono::milliseconds kHeartbeat{2000};  // a page takes 4.5 s of silence for a loss
-  /// Pages at once, so that forgotten ones leave the robots their connections.
+  /// Open pages at once: forgotten ones must leave connections for the robots.
   static constexpr std::size_t kMostPages = 24;
 
   Live(loop::Loop& loop, const Source& source);

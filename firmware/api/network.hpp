@@ -27,7 +27,7 @@ struct NetworkView {
   /// What the interfaces have now, whoever set it.
   std::optional<settings::Subnet> team;  // the first
   std::vector<settings::Subnet> command_post;
-  /// As they were confirmed, or as the box came.
+  /// As they were confirmed, or the factory's.
   network::Mode mode = network::Mode::Static;
   std::optional<std::uint32_t> gateway;
 
@@ -44,11 +44,11 @@ class Network {
   virtual NetworkView network() const = 0;
   /// `asker`: the address of whoever asks.
   virtual network::Findings check(const network::Numbers& wanted, const std::string& asker) const = 0;
-  /// What check() has nothing against; whoever applies it checks it again. It is tried at once, and waits to
-  /// be confirmed.
+  /// The numbers have passed check(); adit-network checks them again. They are tried at once, and wait to be
+  /// confirmed.
   virtual icd::Checked<void> change(const network::Numbers& wanted) = 0;
-  /// `local`: the box's address by which the confirmation came. It must be the new one, or one could confirm
-  /// what one cannot reach.
+  /// `local`: the box's address by which the confirmation came. It must be the new one: nobody can confirm an
+  /// address that he cannot reach.
   virtual icd::Checked<void> confirm(const std::string& local) = 0;
   virtual icd::Checked<void> take_back() = 0;
 };

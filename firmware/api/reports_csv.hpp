@@ -7,8 +7,8 @@
 
 namespace adit::api {
 
-/// The reports as RFC 4180 has it: a header line, lines that end in CR LF, UTF-8. Times are ISO 8601 in UTC,
-/// what is absent is empty, and no cell of text can be taken for a formula by a spreadsheet.
+/// The reports as CSV (RFC 4180): a header line, lines that end in CR LF, UTF-8. Times are ISO 8601 in UTC,
+/// an absent value is an empty cell, and no spreadsheet takes a cell of text for a formula.
 std::string write_reports_csv(const std::vector<ReportRow>& reports);
 
 /// "2019-08-20T14:03:05.120Z"; "" for no time of the years 1970 to 9999.

@@ -26,7 +26,7 @@ class UpdateRoutes;
 using Handlers = std::tuple<PageRoutes*, SessionRoutes*, RunRoutes*, MapRoutes*, ReportRoutes*,
                             SettingsRoutes*, NetworkRoutes*, UpdateRoutes*, BoxRoutes*>;
 
-/// Who may. A script that shows one of the tokens is an operator.
+/// Who may use a route. A script that sends one of the tokens is an operator.
 enum class Who : std::uint8_t {
   Open,             // anybody, from anywhere: nothing of the team's is in it
   OwnPage,          // anybody, but no page from elsewhere

@@ -158,7 +158,7 @@ constexpr Route kRoutes[] = {
          "box", "Installs the update that is on the box's USB stick.", "It is being checked.", "Update",
          "400 409 503"),
     post("/adit/update/restart", Operator, kJson<1024>, by<&UpdateRoutes::restart>(), "Restart", "box",
-         "Starts the box anew, to use what was installed.", "It starts anew.", "Update", "400 409 503"),
+         "Restarts the box, to use what was installed.", "It restarts.", "Update", "400 409 503"),
     get("/adit/test", Viewer, by<&NetworkRoutes::tested>(), "network", "The Test, step by step.",
         "As far as it is.", "Test"),
     post("/adit/test", Operator, kJson<4096>, by<&NetworkRoutes::begin_test>(), "Nothing", "network",

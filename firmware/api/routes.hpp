@@ -9,8 +9,8 @@
 
 namespace adit::api {
 
-/// The one table of routes: README.md has them in words, /adit/openapi.json for programs. Beside it are the
-/// page's files alone, which are for anybody.
+/// The one table of routes: README.md has them in words, /adit/openapi.json for programs. Only the page's
+/// files are not in it; anybody may have them.
 std::span<const Route> routes();
 
 /// What the table says of a request.

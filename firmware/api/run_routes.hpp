@@ -10,7 +10,7 @@
 
 namespace adit::api {
 
-/// How all stands, and the operator's word on what is no report.
+/// The state of the run, and the operator's actions on anything but reports.
 class RunRoutes {
  public:
   static constexpr double kLeast = 1, kMost = 60;  // seconds that the lights flash
@@ -22,7 +22,7 @@ class RunRoutes {
   intake::Answer run() const;
   void events(const Call& call);
   intake::Answer begin_run();
-  /// On a message that the Command Post would not take.
+  /// An action on a message that the Command Post did not take.
   template <AsideAction action>
   intake::Answer aside(std::uint64_t number) {
     return aside(number, action);

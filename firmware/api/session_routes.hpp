@@ -55,7 +55,7 @@ class SessionRoutes {
   bool is_by_button(const Change& change) const;
   void set(const Change& change, const Poster& poster);
 
-  /// Calls `done` with whose password it is; answers 429 instead where it is not to be checked now.
+  /// Calls `done` with the role whose password it is; answers 429 instead if it is not to be checked now.
   template <class Done>
   void check(const std::string& password, const Poster& poster, Done done);
   /// False: it is answered 429.

@@ -16,7 +16,7 @@ class Mosaic;
 
 namespace adit::api {
 
-/// Where the API gets what it tells.
+/// Where the API gets its answers.
 class Source {
  public:
   virtual ~Source() = default;
@@ -30,20 +30,20 @@ class Source {
   virtual std::vector<Track> tracks(Time since) const = 0;
 };
 
-/// The operator's word on a report: see dispatch::Reports.
+/// An operator's action on a report: see dispatch::Reports.
 enum class Action : std::uint8_t { Send, Hold, Withdraw, CallDone, Resubmit };
 
-/// The operator's word on a message that was set aside.
+/// An operator's action on a message that was set aside.
 enum class AsideAction : std::uint8_t { Send, Discard };
 
-/// What does as the operator says.
+/// What carries out the operator's actions.
 class Operator {
  public:
   virtual ~Operator() = default;
   /// Gives the number of the report that it moved, or a sentence why not.
   virtual std::expected<std::int64_t, std::string> judge(std::int64_t number, Action action) = 0;
-  /// Takes a report that the operator composed, like one that a client posts; the number it has, or that the
-  /// same one has already. A sentence: it was not taken.
+  /// Takes a report that the operator composed, like one that a client posts. Gives its number, or that of
+  /// the same report if there is one already; a sentence: it was not taken.
   virtual std::expected<std::int64_t, std::string> report(const icd::ArtifactReport& report,
                                                           bool resubmit) = 0;
   /// A sentence: why not.

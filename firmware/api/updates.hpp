@@ -49,7 +49,7 @@ class Updates {
                                                         std::function<void()> resume) = 0;
   /// Installs what the USB stick has.
   virtual icd::Checked<void> install_from_stick(bool again) = 0;
-  /// Starts the box anew. Unless `anyway`, not while a report is under way.
+  /// Restarts the box. Unless `anyway`, not while a report is under way.
   virtual icd::Checked<void> restart(bool anyway) = 0;
 };
 

@@ -32,10 +32,10 @@ update::Ready ready(const std::string& systemctl) {
 }
 
 std::expected<void, std::string> restart(const std::string& systemctl) {
-  host::log(Level::Error, "this slot did not come up healthy in time: the machine is started anew");
+  host::log(Level::Error, "this slot did not come up healthy in time: the machine is restarted");
   auto restarted = host::run_command({systemctl, "reboot"}, kSystemctlAnswer);
   if (restarted) return restarted;
-  return std::unexpected("the machine cannot be started anew: " + restarted.error());
+  return std::unexpected("the machine cannot be restarted: " + restarted.error());
 }
 
 /// adit-update tells everybody.

@@ -46,7 +46,7 @@ Done put(UntrustedFolder& folder, const std::string& name, const std::string& te
   return give_to_owner(folder, path);
 }
 
-/// systemd makes it anew where it is not there yet, of this mode, and gives it to aditd.
+/// systemd makes it where it is not there yet, of this mode, and gives it to aditd.
 std::expected<UntrustedFolder, std::string> open_state(const std::string& path) {
   const std::filesystem::path parent = std::filesystem::path(path).parent_path();
   std::error_code error;
@@ -86,7 +86,7 @@ std::string said_of(const Found& found, bool lasting) {
   return text;
 }
 
-/// Not written anew at each start: a card wears out.
+/// Not written again at each start: a card wears out.
 Done tell(UntrustedFolder& card, const std::string& text) {
   const auto told = card.read(kTakenText);
   if (told && *told == text) return {};

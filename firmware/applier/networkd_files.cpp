@@ -162,7 +162,7 @@ std::expected<void, std::string> NetworkdFiles::check_unused(const Place& place)
   return {};
 }
 
-/// What was tried stays where it is until the next start, so that networkd has nothing to do anew. Once
+/// What was tried stays where it is until the next start, so that networkd has nothing more to do. Once
 /// confirmed.json is written, the change is kept, whatever happens next: settle() does the rest.
 std::expected<void, std::string> NetworkdFiles::keep(const network::Numbers& numbers) {
   if (auto written = host::write_file(confirmed_file(), network::write_kept(numbers), host::kForAll);

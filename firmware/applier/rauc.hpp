@@ -21,9 +21,9 @@ class Rauc {
   /// Writes the slot that does not run, and has it started next. `progress`: per cent, as it goes.
   std::expected<void, std::string> install(const std::string& bundle,
                                            const std::function<void(int)>& progress) const;
-  /// The slot that runs came up healthy: its count of starts begins anew.
+  /// The slot that runs came up healthy: its starts are counted from none again.
   std::expected<void, std::string> mark_good() const;
-  /// The slot that runs is to be started next, and the other one never, until it is written anew.
+  /// The slot that runs is to be started next, and the other one never, until it is written again.
   std::expected<void, std::string> leave_other() const;
 
  private:

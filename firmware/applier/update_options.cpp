@@ -10,10 +10,10 @@ command_line::Program update_command_line_of(UpdateOptions& options) {
       .usage = "[good]",
       .about =
           "Updates the box, by RAUC, as aditd asks: checks a bundle, installs it into the slot that does not "
-          "run, and starts the machine anew. Ends once nothing is asked for.",
+          "run, and restarts the machine. Ends once nothing is asked for.",
       .rows = {{"good", "",
                 "watches a start of the machine instead: marks the slot good once aditd is healthy, or "
-                "starts the machine anew where a slot on trial does not become so",
+                "restarts the machine where a slot on trial does not become so",
                 &options.good},
                {"--within", "SECONDS", "how long a slot on trial may take for that (300)",
                 command_line::number<1, 3600>(options.within)},

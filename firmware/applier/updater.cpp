@@ -157,11 +157,11 @@ std::string Updater::write(const BundleFile& file, const update::Bundle& bundle)
 std::string Updater::restart() {
   status_.doing = "restarting";
   tell();
-  host::log(Level::Notice, "starting the machine anew");
+  host::log(Level::Notice, "restarting the machine");
   const auto restarted = host::run_command({options_.systemctl, "reboot"}, kRestart);
   if (restarted) return "";
   status_.doing.clear();
-  return "it cannot be started anew: " + restarted.error();
+  return "it cannot be restarted: " + restarted.error();
 }
 
 void Updater::tell_of(update::LastUpdate last_update) {

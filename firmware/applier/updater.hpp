@@ -19,7 +19,7 @@ class Updater {
       : options_(options), rauc_(options.rauc), file_(options.status + '/' + update::kStatusFile) {}
 
   /// Until nothing is asked for. An error: its own folders are not as they should be, or what is asked for
-  /// cannot be taken away. What was asked before the machine was started anew is dropped: whoever asked has
+  /// cannot be taken away. What was asked before the machine was restarted is dropped: whoever asked has
   /// seen that it came to nothing.
   std::expected<void, std::string> work();
 

@@ -142,7 +142,7 @@ TestStep token(Asked asked, const uplink::Outcome& outcome) {
   if ((status == 401 || status == 403) && body != dispatch::Body::Other) {
     return bad("token",
                icd::sentence("the ", name_of(asked), " token is refused; ", answered(status, answer->body)),
-               "Enter the token anew, to the letter; scoring and mapping may have different ones.");
+               "Enter the token again, to the letter; scoring and mapping may have different ones.");
   }
   if (status == 429)
     return skipped("token", "the endpoint was asked too often to say: try again in a few seconds");

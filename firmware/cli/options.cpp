@@ -169,7 +169,7 @@ command_line::Program command_line_of(Options& options) {
                {"--csv", "", "as CSV, for a spreadsheet", &options.csv},
                {"--stick", "", "installs the update that is on the USB stick in the box", &options.stick},
                {"--restart", "",
-                "starts the box anew, to use what was installed. Not while a report waits or is being sent",
+                "restarts the box, to use what was installed. Not while a report waits or is being sent",
                 &options.restart},
                {"--anyway", "",
                 "with --restart: also then. The report is not lost, but its answer has to be found out "

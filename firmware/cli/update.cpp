@@ -149,7 +149,7 @@ Outcome update(const Options& options, const std::function<void(const std::strin
     return outcome;
   }
   if (options.stick) return follow(*adit, options, print);
-  return {Exit::Fine, options.json ? *body + '\n' : "the box starts anew\n", ""};
+  return {Exit::Fine, options.json ? *body + '\n' : "the box restarts\n", ""};
 }
 
 }  // namespace adit::cli

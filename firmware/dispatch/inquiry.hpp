@@ -10,8 +10,8 @@ namespace adit::dispatch {
 
 /// How patiently Adit finds out what became of a report whose answer was lost.
 struct Patience {
-  /// How late a Command Post may still record what it has read: a report counts as not recorded only where a
-  /// status says so that was asked for this long after its answer was lost.
+  /// How late a Command Post may still record what it has read: a report counts as not recorded only if a
+  /// status that was asked for this long after its answer was lost says so.
   std::chrono::milliseconds doubt_for{10000};
   std::int64_t asks = 3;  // statuses in a row that must say "not recorded"
 };
@@ -25,19 +25,18 @@ class Inquiry {
 
   Inquiry(const Patience& patience, Instant lost) : patience_(patience), lost_(lost) {}
 
-  /// One status, weighed; it may be of the moment at which it was asked for. Gives what is now certain:
-  /// Recorded, NotRecorded, Contradicts, or Silent.
+  /// Weighs one status, which may be as old as the moment at which it was asked for. Gives what is now
+  /// certain: Recorded, NotRecorded, Contradicts, or Silent (nothing yet).
   Finding hear(const Evidence& evidence, double run_clock, Instant asked, Instant now);
   void asked(Instant now) { asked_ = now; }
-  /// An asking that brought no status.
+  /// No status came.
   void failed(Instant now) { in_vain_ = !is_pending(now); }
-  /// It has been asked for long enough, and nothing became certain: it goes on, but the operator may as well
-  /// decide.
+  /// Nothing became certain for long enough: the inquiry goes on, but the operator may decide as well.
   bool is_in_vain() const { return in_vain_; }
 
   Instant next_ask(Instant now) const;
-  /// Whether other reports should still wait for the outcome: one that is sent meanwhile, and lost too, would
-  /// blur it.
+  /// Whether other reports should still wait for the outcome: another one that is sent and lost would blur
+  /// it.
   bool is_pending(Instant now) const;
 
  private:

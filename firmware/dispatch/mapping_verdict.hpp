@@ -9,9 +9,9 @@ namespace adit::dispatch {
 enum class Body : std::uint8_t { Empty, Json, Other };
 Body body_of(std::string_view body);
 
-/// Whether a Command Post may have said this. It answers with JSON or with nothing; 404 and 5xx may be pages
-/// of its server, and 429 of something before it. A redirect, and any other status with a page, is from
-/// somebody else: a captive portal, a proxy, a wrong address.
+/// Whether a Command Post may have answered this. It answers with JSON or an empty body; 404 and 5xx may be
+/// pages of its server, 429 a page of something before it. A redirect, or any other status with a page, comes
+/// from somebody else: a captive portal, a proxy, a wrong address.
 bool may_be_the_command_post(int status, Body body);
 
 /// What became of a message to the mapping endpoint.
@@ -20,8 +20,8 @@ enum class MappingVerdict : std::uint8_t {
   Throttled,  // 429: slow down and send it again
   Refused,    // 400, 413, 422 with JSON or nothing: it will never be taken
   Suspect,    // 500, or 400, 413, 422 with a page: this message's fault, if others pass (lanes::Blame)
-  Failing,    // anything else (401 and 404 too: settings or the Command Post may be mended): send it again,
-              // later
+  Failing,    // anything else (also 401 and 404: somebody may mend the settings or the Command Post): send it
+              // again later
 };
 MappingVerdict mapping_verdict(int status, Body body);
 

@@ -21,13 +21,13 @@ struct ClientAnswer {
   std::string sentence = "";
 };
 
-/// By when what is written must be safe from a power cut. From the end of this program it is safe at once.
+/// By when a write must be safe from a power cut. It is safe from an end of this program at once.
 enum class Flush : std::uint8_t {
   Now,   // before anything follows from it
-  Soon,  // within milliseconds: what has happened, and what the step before it lets Adit find out again
+  Soon,  // within milliseconds: if it is lost, Adit finds it out again from the step before
 };
 
-/// What the rules of reports want done: the seam between them and the disk, the clients and the log.
+/// What the rules of reports need done: by the disk, for the clients, in the log.
 class Output {
  public:
   virtual ~Output() = default;
@@ -37,7 +37,7 @@ class Output {
   /// nothing may follow.
   virtual bool write(std::span<const Report> steps, const Run* run, Flush flush) = 0;
 
-  /// `report` is as it now is. Does nothing where the client has gone.
+  /// `report` is as it now is. Does nothing if the client has gone.
   virtual void tell(ClientId client, const ClientAnswer& answer, const Report& report) = 0;
 };
 

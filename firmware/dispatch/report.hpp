@@ -12,7 +12,7 @@
 
 namespace adit::dispatch {
 
-/// The time in both of the ways that rules need it: for waiting, and for writing down.
+/// The time by both clocks that the rules need: one for waiting, one for writing down.
 struct Time {
   std::chrono::steady_clock::time_point now;
   double stamp = 0;  // seconds since 1970
@@ -29,7 +29,7 @@ struct Report {
   std::string note = "";  // a sentence for the operator: why it is where it is
 
   std::int64_t run = 0;      // Run::number of the run that it belongs to
-  bool asked = false;        // sent on purpose: neither a repeat, a near one nor an old run holds it back
+  bool asked = false;        // sent on purpose: not held as a repeat, a near duplicate or one of an old run
   std::int64_t same_as = 0;  // the earlier report that it turned out to be; 0: none
   std::int64_t tries = 0;    // how often it was sent and no answer came
   std::int64_t sending = 0;  // its place among all sendings, the last time; 0: never sent
@@ -42,8 +42,8 @@ struct Report {
   std::string answer = "";        // its body, byte for byte
   bool reconciled = false;        // the answer is Adit's, found out from the run's status
 
-  /// It stands for reports that damage took from the ledger: nothing is known of them but that they may have
-  /// been sent. Its note says which.
+  /// It stands for reports that damage took from the ledger: all that is known is that they may have been
+  /// sent. Its note says which they are.
   bool is_lost() const { return sender == kLost; }
   static constexpr std::string_view kLost = "lost";
   friend bool operator==(const Report&, const Report&) = default;

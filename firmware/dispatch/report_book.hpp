@@ -14,8 +14,8 @@
 
 namespace adit::dispatch {
 
-/// All reports and where each is in its life: in memory to be read, by Output on disk before anything follows
-/// from a step.
+/// All reports and the state of each: in memory to be read; Output writes each step to disk before anything
+/// follows from it.
 class ReportBook {
  public:
   /// What changes beside the state.
@@ -39,15 +39,15 @@ class ReportBook {
   std::int64_t add(Report report, std::span<const ReportEvent> events, const std::string& note,
                    const Edit& edit = nullptr);
 
-  /// Takes the steps that the table has, each of another report, all in one write. What the Command Post did
-  /// has happened even if the disk refuses: then the step is written later, and until then the ledger has the
-  /// safe side of it ("sending", which a restart reads as in doubt). Any other step is not taken: false, and
-  /// none of them is.
+  /// Takes the steps that the table has, each of another report, all in one write. A step that the Command
+  /// Post made has happened even if the disk refuses: then it is written later, and until then the ledger is
+  /// on the safe side ("sending", which a restart reads as in doubt). Other steps are then not taken, none of
+  /// them, and it gives false.
   bool move(std::span<const Step> steps, double stamp);
   bool move(const Step& step, double stamp) { return move({&step, 1}, stamp); }
   /// Changes what is known of reports, but not their states, all in one write.
   bool note(std::span<const Report> noted) { return noted.empty() || write(noted, false); }
-  /// All that follows for the reports from what happened to the run, and the run, in one write.
+  /// Writes the run, and all that its change means for the reports, in one write.
   void change(std::span<const Report> steps, const Run& run);
   void write(const Run& run) { change({}, run); }
   /// Tries again to write what could not be written. True: nothing is left.

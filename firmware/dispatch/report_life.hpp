@@ -9,11 +9,11 @@ namespace adit::dispatch {
 
 /// Where an artifact report is in its life (promise 1).
 enum class ReportState : std::uint8_t {
-  Received,   // on disk, and held: only the operator's word lets it go
+  Received,   // on disk, and held: only the operator can release it
   Waiting,    // to be sent when its turn comes
-  Sending,    // the next thing that happens is that its bytes leave
+  Sending,    // its bytes are about to leave
   Answered,   // the Command Post recorded it and said so
-  Refused,    // the Command Post said that it did not record it, and that asking again is no use
+  Refused,    // the Command Post said that it did not record it, and that sending it again is no use
   InDoubt,    // its bytes may have left and no answer is known; only evidence or the operator moves it on
   Settled,    // no answer came, but it is known, or the operator says, that there is nothing left to do
   Withdrawn,  // the operator took it back before it was sent, or it is a repeat of an earlier one
@@ -26,31 +26,31 @@ constexpr std::string_view name_of(ReportState state) {
 }
 
 enum class ReportEvent : std::uint8_t {
-  Held,       // the review, a new run or too many failures want the operator's word first
-  HeldBack,   // the operator holds it: it waits for his further word
-  Released,   // the operator says send, and takes it on himself
+  Held,       // the review, a new run or too many failures: the operator has to release it
+  HeldBack,   // the operator holds it, until he releases it
+  Released,   // the operator says that it is to be sent
   Chosen,     // its turn has come
   Recorded,   // answered 2xx
   Refused,    // answered 4xx: the Command Post will not have it
   Throttled,  // answered 429: not recorded, may be sent again
   Barred,  // answered 401, 403, 404, 405 or 407: nothing is wrong with it, but with the token or the address
   NeverLeft,   // no byte of it was given to the kernel
-  Lost,        // bytes may have left, and no answer that means anything came
+  Lost,        // bytes may have left, and no answer came that tells anything
   Found,       // the run's status shows that it was recorded
   Missing,     // the run's status shows that it was not recorded
   CalledDone,  // the operator says that nothing is left to do
   Withdrawn,   // the operator takes it back
   Joined,      // it is the same as an earlier one, whose answer it gets
   Cleared,     // it is no repeat of an earlier run's report; it was held until that was known
-  Restarted,   // this program began anew and found it so
+  Restarted,   // this program restarted and found it so
 };
 
-/// What is done once the step is on disk.
+/// What to do once the step is on disk.
 enum class ReportAction : std::uint8_t {
   Nothing,
   Send,           // its bytes go to the Command Post
-  AnswerClients,  // those that wait for it get its answer
-  TellClients,    // those that wait for it are told how it stands, and that it is kept
+  AnswerClients,  // clients that wait for it get its answer
+  TellClients,    // clients that wait for it are told its state, and that it is kept
   Ask,            // the run's status is asked for, to find out what became of it
 };
 
@@ -66,7 +66,7 @@ std::span<const ReportTransition> report_life();
 /// The row for `event` in `state`; nothing where there is none.
 const ReportTransition* transition(ReportState state, ReportEvent event);
 
-/// Nothing more will happen to it by itself, nor is anything left to do.
+/// Nothing more will happen to it, and nobody has anything left to do about it.
 bool is_final(ReportState state);
 
 /// Nothing where it is none of the words.

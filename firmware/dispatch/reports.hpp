@@ -19,7 +19,7 @@
 
 namespace adit::dispatch {
 
-/// What is held for the operator's word before it is sent.
+/// Which reports the operator has to release before they are sent.
 enum class Review : std::uint8_t { Off, Duplicates, All };
 
 struct ReportRules {
@@ -34,7 +34,7 @@ struct ReportRules {
 struct Posted {
   icd::ArtifactReport report;
   std::string sender;     // its address
-  bool resubmit = false;  // as a new report, though it be the same as one that is finished
+  bool resubmit = false;  // as a new report, even if it is the same as one that is finished
 };
 
 /// A whole answer of the Command Post's.
@@ -47,16 +47,16 @@ struct HttpAnswer {
 /// What is to be asked of the Command Post next.
 struct Wish {
   bool report = false;  // the first of those that wait may be sent
-  /// From when on the run's status is needed; nothing: it is not.
+  /// From when on the run's status is needed; nothing: it is not needed.
   std::optional<std::chrono::steady_clock::time_point> status;
 };
 
-/// Every report's life, and every rule of it (promise 1): no I/O and no clock. Each step is on disk, by
-/// Output, before what follows from it.
+/// The life of all reports, with all its rules (promise 1): no I/O and no clock. Output puts each step on
+/// disk before anything follows from it.
 ///
-/// One request is under way at a time: after choose(), or a take() that gives true, comes exactly one of
-/// answered(), never_left() and lost() before anything else is sent or asked; a status that was asked for
-/// ends in status_heard() or status_failed().
+/// One request is under way at a time: choose(), or a take() that gives true, is followed by exactly one of
+/// answered(), never_left() and lost() before anything else is sent or asked for; asking for the status, by
+/// status_heard() or status_failed().
 class Reports {
  public:
   using Instant = std::chrono::steady_clock::time_point;
@@ -68,18 +68,18 @@ class Reports {
   /// `output` outlives this.
   Reports(const ReportRules& rules, Output& output);
 
-  /// Takes up what the ledger holds. `post`: where the Command Post is. At another place than before it is
-  /// another run: the last one there, taken up again, or a new one.
+  /// Begins with what the ledger holds. `post`: the Command Post's address. If it is another than before, the
+  /// run is another, too: the last one there, if there was one, or else a new one.
   void open(std::vector<Report> all, std::vector<Run> runs, Time time, const std::string& post = "");
 
-  /// The same, taking over from `before`, whose clients wait on, no longer than they would have. Requires
-  /// that `before` has nothing under way.
+  /// The same, taking over the clients of `before`, which wait no longer than they would have. Requires that
+  /// `before` has nothing under way.
   void open(std::vector<Report> all, std::vector<Run> runs, Time time, const std::string& post,
             Reports& before);
-  /// The settings name `post`, and open() there follows once the request under way has ended: what comes
-  /// meanwhile is meant for the run there, which a restart finds, too.
+  /// The settings now name `post`; open() follows once the request under way has ended. A report that comes
+  /// meanwhile is meant for the run there, also after a restart.
   void will_move(const std::string& post, Time time);
-  /// These count from now on: each client waits as long as it was to when it came.
+  /// The rules from now on. A client that waits already keeps its deadline.
   void go_by(const ReportRules& rules) { rules_ = rules; }
 
   /// A client posts a report; it is told by Output, at once or later. `may_send`: nothing is under way and
@@ -105,14 +105,14 @@ class Reports {
   /// The gateway stops: tells all clients but those whose report is under way; if `all`, those too.
   void dismiss(bool all);
 
-  /// The operator's word. Each gives the number of the report that it moved, or a sentence why not.
+  /// The operator's actions. Each gives the number of the report that it moved, or a sentence why not.
   Outcome send(std::int64_t number, Time time);
   Outcome hold(std::int64_t number, Time time);
   Outcome withdraw(std::int64_t number, Time time);
   Outcome call_done(std::int64_t number, Time time);
-  /// The same once more, as a new report.
+  /// Sends the same as a new report.
   Outcome resubmit(std::int64_t number, Time time);
-  /// A new run begins, the operator says. Gives its number.
+  /// The operator says that a new run begins. Gives its number.
   std::int64_t declare_new_run(Time time);
 
   /// The report whose answer a client waits for; nothing: it was told at once, or waits no more.
@@ -145,10 +145,10 @@ class Reports {
   std::vector<const Report*> same_in_run(const icd::ArtifactReport& report) const;
   const Report* earlier(const Report& report) const;
   const Report* twin(const Report& report) const;
-  /// Why the operator's word is wanted first; "": it is not.
+  /// Why the operator has to release it first; "": he has not.
   struct Hold {
     std::string why;
-    std::int64_t same_as = 0;  // it may be this one again: held until the run is known for certain
+    std::int64_t same_as = 0;  // it may be the same as this one: held until the run is known for certain
   };
   Hold reason_to_hold(const Report& report) const;
   bool check(std::int64_t number, Time time);

@@ -11,21 +11,20 @@
 
 namespace adit::forward {
 
-/// One connection to the Command Post, and what there is to say of it. Without a token there is none.
+/// One connection to the Command Post, and its state. Without a token it is not opened.
 class Channel {
  public:
   /// `name`: of the endpoint, "scoring" or "mapping".
   Channel(loop::Loop& loop, const char* name, uplink::Endpoint endpoint,
           std::optional<icd::BearerToken> token, std::chrono::milliseconds answer_within);
 
-  /// It is to lead there, by a connection of its own, once the request under way has ended.
+  /// Leads to `endpoint`, by a new connection, once the request under way has ended.
   void lead_to(uplink::Endpoint endpoint, std::optional<icd::BearerToken> token,
                std::chrono::milliseconds answer_within);
-  /// Where that is elsewhere, the request under way ends now, in doubt: for what may be sent again.
+  /// If that is another place, ends the request under way now, in doubt: for messages that may be sent again.
   void give_up();
-  /// Whoever sends asks first: true where it leads to another address from this call on, or with another
-  /// token. What was heard before is of the other place. Another way to the same place is taken without a
-  /// word.
+  /// To be asked before each request. True: from this call on it leads to another address, or has another
+  /// token; what was heard before came from the other place. Another way to the same place gives false.
   bool turns();
 
   bool has_token() const { return connection_.has_value(); }
@@ -45,11 +44,11 @@ class Channel {
     if (connection_) connection_->keep_warm();
   }
 
-  /// Why the last request failed or was refused, or why there is no connection; "" where all is well.
+  /// Why the last request failed or was refused, or why there is no connection; "" if all is well.
   std::string trouble() const;
   int last_status() const { return last_status_; }
   std::optional<double> answer_ms() const { return answer_ms_; }
-  /// Whether the last answer was one that no Command Post gives, and how many were.
+  /// Whether the last answer was one that no Command Post gives, and how many such came.
   bool is_foreign() const { return foreign_now_; }
   std::uint64_t foreign() const { return foreign_; }
   /// How many answers were 429.
@@ -87,7 +86,7 @@ class Channel {
   std::string trouble_;
 };
 
-/// Where the settings say an endpoint is; maps are paced within the link's budget.
+/// Where an endpoint is by the settings; maps are paced within the link's budget.
 uplink::Endpoint endpoint_of(const settings::CommandPost& command_post, const settings::Address& address,
                              std::uint64_t bytes_per_second);
 

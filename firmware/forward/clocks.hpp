@@ -13,27 +13,27 @@
 
 namespace adit::forward {
 
-/// The gateway's clock and those of the senders, brought to it. All go on over an end of the service, and the
-/// gateway's over one of the machine (promise 5).
+/// The gateway's clock, and the senders' clocks brought to it. All go on after a restart of the service, the
+/// gateway's also after one of the machine (promise 5).
 class Clocks {
  public:
-  /// Seconds by which the system's clock was ahead of what it should have been: somebody has set it.
+  /// Seconds by which the system's clock is ahead of what was expected: somebody has set it.
   static constexpr double kWasSet = 1;
 
   /// `loop` and `journal` outlive this.
   Clocks(loop::Loop& loop, journal::Journal& journal, const std::string& state_folder)
       : loop_(loop), journal_(journal), floor_(state_folder) {}
 
-  /// Goes on as the life before left off, and begins the journal of this one. `boot`: the machine's.
+  /// Goes on where the life before ended, and begins the journal of this one. `boot`: the machine's.
   void carry_on(journal::Carried& carried, const std::string& boot);
 
-  /// A sender's stamp on the gateway's clock. The journal keeps how the sender's goes. `connection`: what the
-  /// message came on.
+  /// A sender's stamp on the gateway's clock. The journal keeps the sender's offset. `connection`: the one
+  /// that the message came on.
   icd::Stamp stamped(const std::string& sender, std::optional<icd::Stamp> stamp, std::uint64_t connection);
   /// The markers of one message have stamps of their own, in no order.
   void stamp(icd::MarkersUpdate& update, const std::string& address);
 
-  /// Now and then, by the disk's own writer: it may wait long.
+  /// To be called now and then. Writes by the disk's own writer, because a disk may be slow.
   void keep_floor(loop::Writer& writer);
 
  private:

@@ -7,8 +7,8 @@
 
 namespace adit::forward {
 
-/// How a flow ends: it waits for what is under way and for what is being kept, but for neither longer than
-/// its time; then the clients that still wait are dismissed, and their answers leave.
+/// How a flow ends: it waits for requests under way and for messages being kept, for each only a bounded
+/// time; then the clients that still wait are dismissed, and their answers leave.
 class Ending {
  public:
   static constexpr std::chrono::milliseconds kAnswers{800};      // so long it waits for answers under way

@@ -26,13 +26,13 @@
 #include "ledger/ledger.hpp"
 #include "loop/loop.hpp"
 #include "loop/workers.hpp"
-#include "settings/anew.hpp"
+#include "settings/restarts.hpp"
 #include "settings/settings.hpp"
 #include "spool/spool.hpp"
 
 namespace adit::forward {
 
-/// What one flow hands on to the next that takes its place.
+/// What a flow hands on to the next one, which replaces it.
 struct Legacy {
   picture::Mosaic picture;
   std::int64_t pictured_run = 0;  // whose maps it shows; 0: none yet
@@ -40,14 +40,14 @@ struct Legacy {
   icd::Stamp map_stamp = 0, state_stamp = 0, markers_stamp = 0;  // the last ones sent
 };
 
-/// The flow's, and all that there are: no sentence may quote one.
+/// The flow's tokens, and all tokens that there are: no sentence may quote one.
 struct Tokens {
   std::optional<icd::BearerToken> scoring, mapping;
   std::vector<icd::BearerToken> all;
 };
 
-/// The way of the team's messages from intake to uplink: they come in as to a Desk, and leave by Scoring,
-/// Maps and Telemetry.
+/// The way of the team's messages from intake to uplink: this is the Desk that takes them, and Scoring, Maps
+/// and Telemetry send them.
 class Flow final : public intake::Desk {
  public:
   struct Folders {
@@ -56,7 +56,7 @@ class Flow final : public intake::Desk {
   /// Who is told what. Each is called on the loop.
   struct Told {
     std::function<void()> changed;                        // what the page shows
-    std::function<void()> anew;                           // see whole.hpp
+    std::function<void()> restart;                        // see whole.hpp
     std::function<void(const std::string& name)> posted;  // a robot posts
   };
 
@@ -64,15 +64,16 @@ class Flow final : public intake::Desk {
   Flow(loop::Loop& loop, ledger::Ledger& ledger, const settings::Settings& settings, Tokens tokens,
        const Folders& folders, std::optional<Legacy> legacy, Told told);
 
-  /// Goes on as the life before left off, and connects. An error: the ledger cannot be read.
+  /// Goes on where the life before ended, and connects. An error: the ledger cannot be read.
   std::expected<void, std::string> start();
-  /// The settings are others; of these endpoints the place, the way or the token. Whoever waits waits on.
-  void settings_changed(const settings::Anew& anew, Tokens tokens);
+  /// The settings have changed; `restarts` names the endpoints that have another address, way or token.
+  /// Clients that wait go on waiting.
+  void settings_changed(const settings::Restarts& restarts, Tokens tokens);
   /// Once a second. `disk`: the writer of the state folder.
   void tick(loop::Writer& disk);
-  /// The Command Post's cable is: nothing waits for what it would have waited for without one.
+  /// The Command Post's cable is in again: what would wait because sending failed without it need not wait.
   void link_is_back();
-  /// Takes nothing new, waits for the answers under way and keeps what waits; `over` is called then.
+  /// Takes nothing new, waits for the answers under way, keeps what waits, and then calls `over`.
   void end(std::function<void()> over);
   bool is_ending() const { return ending_.has_begun(); }
   /// Once it is over, or could not start.
@@ -86,7 +87,7 @@ class Flow final : public intake::Desk {
   void status(const intake::Sender& sender, std::shared_ptr<intake::Responder> responder) override;
   void refused(icd::Uri uri, const intake::Sender& sender, const icd::Refusal& told) override;
 
-  /// The operator's word: api::Operator.
+  /// The operator's actions: api::Operator.
   std::expected<std::int64_t, std::string> judge(std::int64_t number, api::Action action) {
     return scoring_.judge(number, action);
   }
@@ -111,7 +112,7 @@ class Flow final : public intake::Desk {
   std::uint64_t sent_bytes() const;
   double sent_mbit() const { return meter_.mbit(); }
 
-  /// For whatever takes long; they end before anything that the flow holds.
+  /// For work that takes long; they end before anything that the flow holds.
   loop::Workers& workers() { return workers_; }
   /// All its threads, to be asked for signs of life.
   std::vector<loop::Workers*> threads() { return {&workers_, &writer_}; }

@@ -39,7 +39,7 @@ Flow::Flow(loop::Loop& loop, ledger::Ledger& ledger, const settings::Settings& s
       clocks_(loop, journal_, folders.state),
       aside_(loop, writer_, folders.runtime + "/aside"),
       record_([this] { changed(); }),
-      scoring_(loop, ledger, settings, tokens_.scoring, record_, random_, journal_, told_.anew),
+      scoring_(loop, ledger, settings, tokens_.scoring, record_, random_, journal_, told_.restart),
       picture_(
           loop, workers_, [this] { return maps_.packing(); }, [this] { changed(); },
           legacy_ ? std::move(legacy_->picture) : picture::Mosaic()),
@@ -47,7 +47,7 @@ Flow::Flow(loop::Loop& loop, ledger::Ledger& ledger, const settings::Settings& s
             [this](icd::MapUpdate map) { picture_.forwarded(std::move(map)); }),
       as_forwarded_(legacy_ ? std::move(legacy_->as_forwarded) : AsForwarded()),
       telemetry_(loop, settings, tokens_.mapping, record_, aside_, random_, journal_, as_forwarded_,
-                 told_.anew),
+                 told_.restart),
       pictured_run_(legacy_ ? legacy_->pictured_run : 0),
       drained_(loop.timer([this] { drain(); })) {}
 
@@ -92,7 +92,7 @@ void Flow::hold_back() {
   telemetry_.hold_back();
 }
 
-/// What is kept in files of its own. What a release before the journal left is stamped anew, and waits: what
+/// What is kept in files of its own. What a release before the journal left is stamped again, and waits: what
 /// that sent last, and when, is not known.
 void Flow::restore(bool is_first) {
   aside_.restore();
@@ -112,12 +112,13 @@ void Flow::restore(bool is_first) {
   if (kept.markers.markers.empty() || telemetry_.take(kept.markers, 0)) spool_.forget_markers();
 }
 
-void Flow::settings_changed(const settings::Anew& anew, Tokens tokens) {
+void Flow::settings_changed(const settings::Restarts& restarts, Tokens tokens) {
   tokens_ = std::move(tokens);
   spool_.leave_to_others(beside_maps(settings_));
-  if (anew.scoring) scoring_.endpoint_changed(tokens_.scoring);  // first: nothing more goes to the old one
-  if (anew.mapping) maps_.endpoint_changed(tokens_.mapping);
-  if (anew.mapping) telemetry_.endpoint_changed(tokens_.mapping);
+  if (restarts.scoring)
+    scoring_.endpoint_changed(tokens_.scoring);  // first: nothing more goes to the old one
+  if (restarts.mapping) maps_.endpoint_changed(tokens_.mapping);
+  if (restarts.mapping) telemetry_.endpoint_changed(tokens_.mapping);
   scoring_.settings_changed();
   maps_.settings_changed();
   telemetry_.settings_changed();

@@ -9,7 +9,7 @@
 
 namespace adit::forward {
 
-/// What the Command Post last said of the run, for clients who ask while it cannot be asked: no older than
+/// What the Command Post last said of the run, for clients that ask while Adit cannot ask it: no older than
 /// kOldest, and with its age (RFC 9111 5.1).
 class KnownStatus {
  public:
@@ -18,11 +18,11 @@ class KnownStatus {
 
   /// `body`: JSON.
   void heard(std::string body, loop::Instant asked);
-  /// It is known to have changed, or may have: still an answer, but not a fresh one.
+  /// It has changed, or may have: still an answer, but not a fresh one.
   void no_longer_fresh() { fresh_ = false; }
 
   bool is_fresh(loop::Instant now) const;
-  /// Nothing where it is too old.
+  /// Nothing if it is too old.
   std::optional<intake::Answer> answer(loop::Instant now) const;
 
  private:

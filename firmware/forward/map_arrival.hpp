@@ -9,10 +9,10 @@
 
 namespace adit::forward {
 
-/// A map whose data the writer puts into the spool as it arrives. While it is not known whether it will be
-/// taken, it leaves as much room there for others as it takes, and `spare` more; what there is no room for is
-/// held in memory until the map is whole and can be judged, for it may be a grid that is pressed to a tenth.
-/// For the loop, but for stored().
+/// A map whose data the writer puts into the spool as it arrives. Until it is known whether the map will be
+/// taken, it leaves as much room there for others as it takes itself, and `spare` more. Data without room is
+/// held in memory until the map is complete and can be judged: it may be a grid that compresses to a tenth.
+/// To be called on the loop, except stored().
 class MapArrival final : public intake::MapArrival {
  public:
   /// What takes it when it is whole, with its file; null: nothing was stored.
@@ -34,7 +34,7 @@ class MapArrival final : public intake::MapArrival {
             std::function<void(icd::Checked<void>)> done) override;
 
  private:
-  /// The writer's, and while that is not at it anybody's.
+  /// The writer's; anybody's while the writer does not work on it.
   struct Stored {
     std::shared_ptr<spool::MapFile> file;  // null: nothing is stored
   };

@@ -13,12 +13,12 @@
 
 namespace adit::forward {
 
-/// The picture of the maps as the Command Post took them. Each is drawn on a worker, one after the other,
-/// when no map waits to be packed: a map on its way is more urgent than its picture, up to kPatience.
+/// The picture of the maps as the Command Post took them. They are drawn on a worker, one after the other,
+/// while no map waits to be packed: a map on its way is more urgent than a picture, but only up to kPatience.
 class MapPicture {
  public:
   static constexpr std::chrono::milliseconds kPatience{2000};
-  /// Bytes of maps that wait to be drawn; above it the oldest is not, and is counted as missed.
+  /// Bytes of maps that wait to be drawn; above it the oldest is not drawn, and is counted as missed.
   static constexpr std::size_t kMostWaiting = std::size_t{64} << 20;
 
   /// `packing`: whether a map is being packed. `changed` is called after each change of the picture.
@@ -26,13 +26,13 @@ class MapPicture {
   MapPicture(loop::Loop& loop, loop::Workers& workers, std::function<bool()> packing,
              std::function<void()> changed, picture::Mosaic mosaic = picture::Mosaic());
 
-  /// The Command Post took this map. It need not be drawn where one that follows covers it.
+  /// The Command Post took this map. It need not be drawn if a later one covers it.
   void forwarded(icd::MapUpdate map);
-  /// What waits is of the run before, and so is all that was drawn.
+  /// A new run: forgets all that was drawn, and all that waits to be.
   void begin_run();
 
   const picture::Mosaic& mosaic() const { return mosaic_; }
-  /// The picture, for one that follows this; what is not drawn yet is missed in it. Ends this.
+  /// The picture, for the MapPicture that follows this one, without the maps that still wait. Ends this.
   picture::Mosaic hand_over();
 
  private:

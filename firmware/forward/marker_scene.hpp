@@ -11,8 +11,8 @@
 
 namespace adit::forward {
 
-/// The markers as the Command Post was last told of them, by ns and id, and which of them changed after any
-/// version, as a map draws them. At most kMost, and kMostBytes of them; where there are more, those forwarded
+/// The markers as the Command Post was last told of them, by ns and id, as a map draws them, and which of
+/// them changed after a version. At most kMost, and kMostBytes of them; if there are more, those forwarded
 /// longest ago are left out and counted.
 class MarkerScene {
  public:
@@ -25,7 +25,7 @@ class MarkerScene {
   void wipe(api::Time now);
 
   std::uint64_t version() const { return version_; }
-  /// What changed after `since`; all there is where that cannot be told any more.
+  /// What changed after `since`; all markers if that is no longer known.
   api::MarkerChanges changes(std::uint64_t since) const;
 
  private:

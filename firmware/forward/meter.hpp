@@ -11,7 +11,7 @@ class Meter {
  public:
   static constexpr std::size_t kSeconds = 5;
 
-  /// Once a second: how many have left in all.
+  /// To be called once a second with the number of bytes that have left in all.
   void second(std::uint64_t bytes);
   double mbit() const;
 

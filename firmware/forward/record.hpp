@@ -21,14 +21,14 @@ enum class Kind : std::uint8_t { Grid, Cloud, State, Markers };
 /// Why a message was not taken upstream: sent too often, failed (both are sent again), or refused for good.
 enum class NotTaken : std::uint8_t { Throttled, Failed, Refused };
 
-/// Whose messages of which kind: "" is a merged map, or markers.
+/// The robot and the kind of its messages: "" is a merged map, or markers.
 struct Traffic {
   Kind kind = Kind::Grid;
   std::string robot;
   friend auto operator<=>(const Traffic&, const Traffic&) = default;
 };
 
-/// What happened to the team's messages, counted and remembered for the page: what was accepted, forwarded,
+/// What happened to the team's messages, counted and kept for the page: how many were accepted, forwarded,
 /// replaced, delayed, refused, and why (promise 7). Holds at most kMostRows rows and kMostRefusals refusals.
 class Record {
  public:

@@ -12,7 +12,7 @@
 
 namespace adit::forward {
 
-/// What the rules of reports want done: steps into the ledger and the log, answers to the clients.
+/// Does what the rules of reports ask for: writes steps to the ledger and the log, answers the clients.
 class ReportOutput final : public dispatch::Output {
  public:
   /// What can follow once a report has left, or its client has its answer, follows so soon: Flush::Soon, and
@@ -23,7 +23,7 @@ class ReportOutput final : public dispatch::Output {
 
   /// A client that waits from now on.
   dispatch::ClientId add(std::shared_ptr<intake::Responder> responder);
-  /// One that is told nothing: the operator watches the report itself.
+  /// A client that is told nothing: the operator, who watches the report itself.
   dispatch::ClientId add_nobody() { return ++last_client_; }
   /// What the last one was told, whoever it was.
   const dispatch::ClientAnswer& last_told() const { return last_told_; }

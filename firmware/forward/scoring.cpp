@@ -35,12 +35,12 @@ intake::Answer no_status_in(const uplink::Answered& answered) {
 
 Scoring::Scoring(loop::Loop& loop, ledger::Ledger& ledger, const settings::Settings& settings,
                  std::optional<icd::BearerToken> token, Record& record, std::mt19937_64& random,
-                 journal::Journal& journal, std::function<void()> anew)
+                 journal::Journal& journal, std::function<void()> restart)
     : loop_(loop),
       ledger_(ledger),
       settings_(settings),
       record_(record),
-      anew_(std::move(anew)),
+      restart_(std::move(restart)),
       output_(loop, ledger),
       reports_(std::make_unique<dispatch::Reports>(rules_of(settings.reports), output_)),
       channel_(loop, "scoring", endpoint_of(settings.command_post, settings.command_post.scoring, 0),
@@ -80,7 +80,7 @@ void Scoring::settings_changed() {
 void Scoring::endpoint_changed(std::optional<icd::BearerToken> token) {
   const settings::CommandPost& post = settings_.command_post;
   channel_.lead_to(endpoint_of(post, post.scoring, 0), std::move(token), post.timeouts.scoring_answer);
-  if (channel_.busy()) whole(anew_, [&] { reports_->will_move(address_text(post.scoring), time()); });
+  if (channel_.busy()) whole(restart_, [&] { reports_->will_move(address_text(post.scoring), time()); });
   pump();
 }
 
@@ -91,10 +91,10 @@ void Scoring::endpoint_turned() {
   run_heard_.reset();
   known_status_ = {};
   poll_due_ = true;
-  const auto opened = whole(anew_, [this] { return open_reports(); });
+  const auto opened = whole(restart_, [this] { return open_reports(); });
   if (!opened) {
-    host::log(host::Level::Error, "the ledger cannot be read: beginning anew", {{"why", opened.error()}});
-    anew_();
+    host::log(host::Level::Error, "the ledger cannot be read: restarting", {{"why", opened.error()}});
+    restart_();
   }
   watch_deadlines();
   record_.changed();
@@ -113,7 +113,7 @@ void Scoring::take(const icd::ArtifactReport& report, const intake::Sender& send
 
 void Scoring::take(const dispatch::Posted& posted, dispatch::ClientId client) {
   const bool may_send = !channel_.busy() && channel_.connected() && report_pace_.ready() <= loop_.now();
-  whole(anew_, [&] {
+  whole(restart_, [&] {
     if (reports_->take(posted, client, may_send, time())) send(*reports_->sending());
   });
   watch_deadlines();
@@ -182,7 +182,7 @@ void Scoring::pump() {
 }
 
 void Scoring::send_next() {
-  const bool is_sent = whole(anew_, [&] {
+  const bool is_sent = whole(restart_, [&] {
     const dispatch::Report* const chosen = reports_->choose(time());
     if (chosen != nullptr) send(*chosen);
     return chosen != nullptr;
@@ -205,7 +205,7 @@ void Scoring::send(const dispatch::Report& report) {
 /// An answer that cannot be dealt with is as good as none: the report is in doubt in the next life.
 void Scoring::report_answered(const uplink::Outcome& outcome) {
   const bool judged =
-      loop::guarded("the answer to a report", [&] { whole(anew_, [&] { judge_report(outcome); }); });
+      loop::guarded("the answer to a report", [&] { whole(restart_, [&] { judge_report(outcome); }); });
   if (!judged) return;
   known_status_.no_longer_fresh();  // score and remaining reports have changed, or may have
   poll_.call_at(loop_.now() + kAskAfterReport);
@@ -263,12 +263,12 @@ void Scoring::tell_askers(loop::Instant now) {
 
 void Scoring::deadline_came() {
   tell_askers(loop_.now());
-  whole(anew_, [&] { reports_->tick(time()); });
+  whole(restart_, [&] { reports_->tick(time()); });
   watch_deadlines();
 }
 
 void Scoring::tick() {
-  whole(anew_, [&] { reports_->tick(time()); });
+  whole(restart_, [&] { reports_->tick(time()); });
   pump();
 }
 
@@ -309,10 +309,10 @@ void Scoring::judge_status(const uplink::Outcome& outcome, loop::Instant asked) 
   if (run) {
     run_ = *run;
     run_heard_ = loop_.stamp_now();
-    whole(anew_, [&] { reports_->status_heard(*run, asked, time()); });
+    whole(restart_, [&] { reports_->status_heard(*run, asked, time()); });
   } else {
     const bool left = !std::holds_alternative<uplink::NeverSent>(outcome);
-    whole(anew_, [&] { reports_->status_failed(left, time()); });
+    whole(restart_, [&] { reports_->status_failed(left, time()); });
   }
 }
 
@@ -326,7 +326,7 @@ void Scoring::answer_askers(const intake::Answer& answer) {
 }
 
 dispatch::Reports::Outcome Scoring::judge(std::int64_t number, api::Action action) {
-  const dispatch::Reports::Outcome outcome = whole(anew_, [&] {
+  const dispatch::Reports::Outcome outcome = whole(restart_, [&] {
     return action == api::Action::Send       ? reports_->send(number, time())
            : action == api::Action::Hold     ? reports_->hold(number, time())
            : action == api::Action::Withdraw ? reports_->withdraw(number, time())
@@ -349,7 +349,7 @@ dispatch::Reports::Outcome Scoring::report(const icd::ArtifactReport& report, bo
 }
 
 std::int64_t Scoring::begin_run() {
-  const std::int64_t number = whole(anew_, [&] { return reports_->declare_new_run(time()); });
+  const std::int64_t number = whole(restart_, [&] { return reports_->declare_new_run(time()); });
   record_.changed();
   poll();
   return number;

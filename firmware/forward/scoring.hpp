@@ -23,39 +23,38 @@
 
 namespace adit::forward {
 
-/// The scoring endpoint: reports, one at a time, by the rules of dispatch::Reports (promise 1), and the run's
-/// status, never asked for ahead of a report that may go.
+/// The scoring endpoint: sends reports, one at a time, by the rules of dispatch::Reports (promise 1), and
+/// asks for the run's status, but never ahead of a report that may go.
 class Scoring {
  public:
-  /// Who asks for the status is told the last known one where the Command Post says nothing for so long.
+  /// So long a client that asks for the status waits for the Command Post; then it gets the last known one.
   static constexpr std::chrono::milliseconds kAskerWaits{100};
-  /// Where none is known, an answer that is under way is waited for: so long since it was asked for.
+  /// If none is known, it waits for the answer under way, until so long after that was asked for.
   static constexpr std::chrono::seconds kSlow{2};
   static constexpr std::chrono::seconds kAskEvery{10};  // the status is asked for at least this often
   /// After a report the status is asked for once its client has been answered.
   static constexpr std::chrono::milliseconds kAskAfterReport{50};
 
-  /// `anew`: see whole.hpp; what is here is not to be gone on with.
+  /// `restart`: see whole.hpp; after it this object must not go on.
   Scoring(loop::Loop& loop, ledger::Ledger& ledger, const settings::Settings& settings,
           std::optional<icd::BearerToken> token, Record& record, std::mt19937_64& random,
-          journal::Journal& journal, std::function<void()> anew);
+          journal::Journal& journal, std::function<void()> restart);
 
   void carry_on(const journal::Carried& carried) {
     report_pace_.carry_on(carried, loop_.now());
     status_pace_.carry_on(carried, loop_.now());
   }
-  /// As if something had just been sent, by whoever sent before.
+  /// As if something had just been sent: the flow before may have.
   void hold_back() {
     report_pace_.sent(loop_.now());
     status_pace_.sent(loop_.now());
   }
-  /// The settings are others, by which it goes from now on.
+  /// The settings have changed.
   void settings_changed();
-  /// The endpoint is, or its token, or the way there: once the answer under way is there, which counts for
-  /// the one that it was asked of. At another place what is known of the run begins anew, and clients whose
-  /// reports wait wait on.
+  /// The endpoint's address, token or way has changed. The answer under way still comes from the old one. If
+  /// the place is another, what is known of the run is forgotten; clients whose reports wait go on waiting.
   void endpoint_changed(std::optional<icd::BearerToken> token);
-  /// Takes up what the ledger holds from before, and connects. An error: the ledger cannot be read.
+  /// Begins with what the ledger holds, and connects. An error: the ledger cannot be read.
   std::expected<void, std::string> start();
 
   void take(const icd::ArtifactReport& report, const intake::Sender& sender,
@@ -64,7 +63,7 @@ class Scoring {
   /// Once a second.
   void tick();
 
-  /// The operator's word on a report; gives the number of the report that it moved, or a sentence why not.
+  /// An operator's action on a report; gives the number of the report that it moved, or a sentence why not.
   dispatch::Reports::Outcome judge(std::int64_t number, api::Action action);
   /// The operator's own report, as if a client had posted it; gives its number once it is on disk.
   dispatch::Reports::Outcome report(const icd::ArtifactReport& report, bool resubmit);
@@ -73,9 +72,9 @@ class Scoring {
   /// Sends and takes nothing more; clients whose reports wait are told so. False while an answer is still
   /// awaited. Called again until it is true or there is no more time.
   bool stop();
-  /// The cable is: nothing waits any more for what failed without it.
+  /// The cable is in again: nothing rests any longer because sending failed without it.
   void link_is_back();
-  /// Tells the client whose report is still under way, too.
+  /// Also tells the client whose report is still under way.
   void dismiss();
 
   const Channel& channel() const { return channel_; }
@@ -120,7 +119,7 @@ class Scoring {
   ledger::Ledger& ledger_;
   const settings::Settings& settings_;
   Record& record_;
-  std::function<void()> anew_;
+  std::function<void()> restart_;
   ReportOutput output_;
   std::unique_ptr<dispatch::Reports> reports_;  // never null
   Channel channel_;

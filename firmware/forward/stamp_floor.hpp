@@ -8,9 +8,9 @@
 
 namespace adit::forward {
 
-/// Keeps stamps from running backward over a start of the machine (promise 5): a box without a clock of its
-/// own begins each at about the same moment. A file in the state folder says above what no stamp has been
-/// given out; it is ahead of them, so that it need be written only now and then, and nobody waits for it.
+/// Keeps stamps from going back when the machine restarts (promise 5): a box without a battery-backed clock
+/// has about the same time at each start. A file in the state folder holds a bound that no stamp has passed.
+/// It is ahead of the stamps, so that it need be written only now and then, and nobody waits for it.
 class StampFloor {
  public:
   static constexpr const char* kFile = "stamps";
@@ -20,13 +20,13 @@ class StampFloor {
 
   explicit StampFloor(const std::string& state_folder) : file_(state_folder + '/' + kFile) {}
 
-  /// Seconds since 1970; 0 where nothing is known. What is wrong with the file is logged.
+  /// Seconds since 1970; 0 if nothing is known. A faulty file is logged.
   double read() const;
 
   /// What is to be written by now, if anything.
   std::optional<double> due(double now);
-  /// Safe to be called on a worker, one call after the other, and on copies. What cannot be written is
-  /// logged, once until it can or fails otherwise.
+  /// May be called on a worker, one call after the other, and on copies. A failure to write is logged once,
+  /// until a write succeeds or fails in another way.
   void write(double floor);
 
  private:

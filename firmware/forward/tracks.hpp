@@ -9,8 +9,8 @@
 
 namespace adit::forward {
 
-/// Where each robot was during the run, as the Command Post was told: about a pose a second while it moves,
-/// one each kStill while it stands. A track that is full keeps every other pose, and new ones half as often.
+/// Where each robot was during the run, as the Command Post was told: about one pose a second while it moves,
+/// one each kStill while it stands. A full track drops every other pose, and takes new ones half as often.
 class Tracks {
  public:
   static constexpr std::size_t kMostPoses = 4000;     // of one robot: over an hour on its way

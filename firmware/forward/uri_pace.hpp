@@ -13,8 +13,8 @@
 
 namespace adit::forward {
 
-/// When one URI may be asked next: its rate limit, which the journal keeps for the next life, and its
-/// back-off after failures.
+/// When the next request to one URI may go: its rate limit, which the journal keeps for the next life, and
+/// its back-off after failures.
 class UriPace {
  public:
   UriPace(icd::Uri uri, double hertz, std::mt19937_64& random, journal::Journal& journal)
@@ -31,10 +31,10 @@ class UriPace {
     if (learned != carried.paces().end()) rate_.carry_on(learned->second, now);
   }
 
-  /// So often is allowed from now on.
+  /// The rate that is allowed from now on.
   void allow(double hertz, pace::Instant now) { rate_.allow(hertz, now); }
 
-  /// Before it leaves: no death may come in between.
+  /// To be called before it leaves, so that the journal has it even if the program ends in between.
   void sent(pace::Instant now) {
     rate_.sent(now);
     keep();
@@ -48,8 +48,8 @@ class UriPace {
     rate_.throttled(now, retry_after);
     keep();
   }
-  /// It failed after it may have been heard. Takes no memory: what sent() has kept holds a life to come back
-  /// as long.
+  /// It failed, but may have been heard. Allocates no memory: what sent() wrote makes the next life wait as
+  /// long.
   void lost(pace::Instant now) {
     rate_.lost(now);
     failed(now);
@@ -62,7 +62,7 @@ class UriPace {
     retry_at_ = now + backoff_.failed(std::uniform_real_distribution<double>(0, 1)(random_));
   }
 
-  /// What failed may well succeed now.
+  /// The cable is in again: the next try need not wait.
   void link_is_back() {
     backoff_.succeeded();
     retry_at_ = {};

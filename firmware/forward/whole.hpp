@@ -7,14 +7,14 @@
 
 namespace adit::forward {
 
-/// Takes a step that a file and memory both know of. Where an exception (no memory) ends it, the file may be
-/// ahead of memory: then `anew` is called, so that another life reads the file, and the exception goes on.
+/// Takes a step that changes a file and memory. If an exception (no memory) ends it, the file may be ahead of
+/// memory: then `restart` is called, so that the next life reads the file, and the exception is thrown on.
 template <class Step>
-decltype(auto) whole(const std::function<void()>& anew, Step&& step) {
+decltype(auto) whole(const std::function<void()>& restart, Step&& step) {
   try {
     return std::forward<Step>(step)();
   } catch (...) {
-    loop::guarded("beginning anew", anew);
+    loop::guarded("restarting", restart);
     throw;
   }
 }

@@ -33,7 +33,7 @@ class Crowding {
   struct Kind {
     std::uint64_t count = 0, logged = 0;
     loop::Instant last{}, log_at{};
-    std::map<std::string, std::uint64_t> by_address;  // since it began anew
+    std::map<std::string, std::uint64_t> by_address;  // since its start
   };
   static constexpr std::array kTold{intake::Ended::NoRoom, intake::Ended::GaveWay, intake::Ended::WrongToken};
 

@@ -24,7 +24,7 @@ Gateway::Gateway(loop::Loop& loop, Parts parts)
       flow_(loop, parts_.ledger, settings_, tokens(), {parts_.runtime_folder, parts_.state_folder},
             std::exchange(parts_.legacy, std::nullopt),
             {.changed = [this] { api_.changed(); },
-             .anew = [this] { make_way(); },
+             .restart = [this] { make_way(); },
              .posted = [this](const std::string& name) { note_robot(name); }}),
       log_ins_(loop, 1),
       lights_(loop, std::move(parts_.lines)),
@@ -104,7 +104,7 @@ std::vector<loop::Workers*> Gateway::threads() {
 }
 
 void Gateway::ledger_is_back() {
-  host::log(host::Level::Notice, "the state folder can be written to again: beginning anew with its ledger");
+  host::log(host::Level::Notice, "the state folder can be written to again: restarting with its ledger");
   make_way();
 }
 
@@ -180,8 +180,8 @@ void Gateway::every_second() {
 void Gateway::look_at_sockets() {
   const ListenSockets::Reach reach = parts_.sockets.reach();
   if (reach == ListenSockets::Reach::Well || flow_.is_ending()) return;
-  host::log(host::Level::Warning, "the team's interface is a new one: listening anew");
-  reach == ListenSockets::Reach::Anew ? make_way() : stop();
+  host::log(host::Level::Warning, "the team's interface is a new one: listening again");
+  reach == ListenSockets::Reach::Reopen ? make_way() : stop();
 }
 
 void Gateway::log_crowding() {

@@ -111,7 +111,7 @@ class Gateway final : public api::Source, public api::Operator {
   std::expected<void, std::string> listen(const settings::Team& team);
   void apply_change();
   std::expected<void, std::string> take_over(admin::Store::Loaded next);
-  void tell_of_settings(const settings::Anew& anew, const forward::Tokens& tokens);
+  void tell_of_settings(const settings::Restarts& restarts, const forward::Tokens& tokens);
   void reopen_panel();
   void take_back(const std::string& why);
   intake::IcdOptions icd_options() const;

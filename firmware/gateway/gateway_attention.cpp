@@ -48,7 +48,7 @@ std::vector<std::string> Gateway::attention() const {
   return sentences;
 }
 
-/// Why the box should not be started anew just now, or "".
+/// Why the box should not be restarted just now, or "".
 std::string Gateway::report_under_way() const {
   const dispatch::Reports& reports = flow_.reports();
   if (const auto* report = reports.sending())

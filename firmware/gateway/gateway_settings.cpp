@@ -1,4 +1,4 @@
-// Settings and tokens that are saved while the gateway runs: it takes them over in place, and begins anew
+// Settings and tokens that are saved while the gateway runs: it takes them over in place, and restarts
 // what they change.
 #include <utility>
 
@@ -27,8 +27,8 @@ void Gateway::apply_change() {
 /// An error: all is as it was, but that sockets may be closed.
 std::expected<void, std::string> Gateway::take_over(admin::Store::Loaded next) {
   settings::Settings in_use = settings::in_use(next.settings);
-  settings::Anew anew = settings::anew_by(settings_, in_use);
-  if (anew.listeners) {
+  settings::Restarts restarts = settings::restarts_by(settings_, in_use);
+  if (restarts.listeners) {
     if (auto listening = listen(in_use.team); !listening) return listening;
   }
   const forward::Tokens before = tokens();
@@ -36,16 +36,16 @@ std::expected<void, std::string> Gateway::take_over(admin::Store::Loaded next) {
   parts_.loaded = std::move(next);
   parts_.trouble.clear();
   const forward::Tokens now = tokens();
-  anew.scoring = anew.scoring || !icd::same(before.scoring, now.scoring);
-  anew.mapping = anew.mapping || !icd::same(before.mapping, now.mapping);
-  tell_of_settings(anew, now);
+  restarts.scoring = restarts.scoring || !icd::same(before.scoring, now.scoring);
+  restarts.mapping = restarts.mapping || !icd::same(before.mapping, now.mapping);
+  tell_of_settings(restarts, now);
   parts_.store.settle(parts_.loaded.settings);
   parts_.sockets.settle();
   return {};
 }
 
-void Gateway::tell_of_settings(const settings::Anew& anew, const forward::Tokens& tokens) {
-  flow_.settings_changed(anew, tokens);
+void Gateway::tell_of_settings(const settings::Restarts& restarts, const forward::Tokens& tokens) {
+  flow_.settings_changed(restarts, tokens);
   routes_.serve_with(icd_options());
   api_.let_in(tokens.all, redaction());
   host::keep_out_of_log(redaction());
@@ -54,7 +54,7 @@ void Gateway::tell_of_settings(const settings::Anew& anew, const forward::Tokens
   roster_.set_up(settings_.robots);
   links_.look_at(settings_);
   box_.runs_with(settings::file_of(parts_.loaded.settings));
-  if (anew.panel && !parts_.board.panel) reopen_panel();
+  if (restarts.panel && !parts_.board.panel) reopen_panel();
   setup_.runs_with(parts_.loaded, parts_.trouble);
 }
 

@@ -32,7 +32,7 @@ class LedgerReturn {
   loop::Source timer_;
 };
 
-/// How long the next one rests, where a ledger that seemed to be back was not: a gateway that begins anew
+/// How long the next one rests, where a ledger that seemed to be back was not: a gateway that restarts
 /// turns clients away.
 inline std::chrono::seconds longer(std::chrono::seconds rest) {
   return std::min(2 * rest, LedgerReturn::kLongestRest);

@@ -98,7 +98,7 @@ ListenSockets::Reach ListenSockets::reach() const {
     if (held.at.interface.empty() || !intake::is_deaf(held.socket.get())) continue;
     if (if_nametoindex(held.at.interface.c_str()) == 0) continue;
     if (held.door) return Reach::BySystemd;
-    reach = Reach::Anew;
+    reach = Reach::Reopen;
   }
   return reach;
 }

@@ -40,8 +40,8 @@ class ListenSockets {
   /// comes back as another interface of the same name.
   enum class Reach : std::uint8_t {
     Well,       // also where the interface is still away
-    Anew,       // they have to be opened anew
-    BySystemd,  // by systemd, for they are the box's doors: the process has to start anew
+    Reopen,     // they have to be opened again
+    BySystemd,  // by systemd, for they are the box's doors: the process has to restart
   };
   Reach reach() const;
 

@@ -106,13 +106,13 @@ int Service::run() {
   const auto terminated = loop_.signal(SIGTERM, [this] { running_->stop(); });
   const auto interrupted = loop_.signal(SIGINT, [this] { running_->stop(); });
   while (true) {
-    const auto anew = run_one();
-    if (anew && !*anew) break;
+    const auto again = run_one();
+    if (again && !*again) break;
     trouble_.clear();
-    if (anew) continue;
-    if (!store_.take_back()) return fail(anew.error());
-    trouble_ = "the last change was taken back: " + anew.error();
-    host::log(host::Level::Error, "the last change of the settings is taken back", {{"why", anew.error()}});
+    if (again) continue;
+    if (!store_.take_back()) return fail(again.error());
+    trouble_ = "the last change was taken back: " + again.error();
+    host::log(host::Level::Error, "the last change of the settings is taken back", {{"why", again.error()}});
   }
   host::log(host::Level::Notice, "stopped");
   return 0;

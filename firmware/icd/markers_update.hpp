@@ -53,7 +53,7 @@ struct Marker {
   Color color;
   double lifetime = 0;  // seconds, not negative; 0: for ever
   std::string text;
-  bool frame_locked = false;       // drawn anew in its frame as that moves
+  bool frame_locked = false;       // drawn again in its frame as that moves
   std::vector<Point> points = {};  // metres from `pose`; at most kMostMarkerPoints
   std::vector<Color> colors = {};  // as they came; of use where there is one for each point, or each triangle
   std::string mesh_resource = {};  // the URL of a MeshResource; at most kLongestMeshResource

@@ -9,8 +9,8 @@
 
 namespace adit::intake {
 
-/// How many connections there may be at once. Who has shown a token (or a session) is known; all others are
-/// strangers, who have a small share of their own: however many come, those who are known have room.
+/// How many connections there may be at once. A client that has shown a token (or a session) is known; all
+/// others are strangers, with a small share of their own: however many come, known clients have room.
 struct Shares {
   std::uint32_t strangers = 0, known = 0;
   std::uint32_t known_of_address = 0;
@@ -36,9 +36,9 @@ struct Held {
   loop::Instant since{};  // it does that
 };
 
-/// Who of `held` (its number) gives way where there are more strangers than their share: of the address that
-/// has most of them one that is idle, or else the oldest. Nothing where there are no more, or the rest is
-/// fresh: it may be about to show a token.
+/// The number of the connection in `held` that is closed if there are more strangers than their share. It is
+/// one of the address that has most strangers: an idle one, or else the oldest. Nothing if there are not too
+/// many, or if all others are fresh: they may be about to show a token.
 std::optional<std::uint64_t> stranger_to_go(std::span<const Held> held, const Shares& shares);
 
 /// Whether there is room for one more who is known, and who gives way for it.
@@ -47,10 +47,10 @@ struct Room {
   std::optional<std::uint64_t> gives_way;  // Held::number
 };
 
-/// For a request from `address` that has shown a token, on a connection that is none of `others`: one that is
-/// idle gives way, for the longest; or one that may have hung up; or, where another address has more than his
-/// own would then have, the oldest of that one's whose request is not whole. Who is known and waits for the
-/// answer to a whole request never gives way.
+/// For a request from `address` that has shown a token, on a connection that is not among `others`. The one
+/// that gives way is the one that has been idle longest; or one that may have hung up; or, if another address
+/// has more connections than this one would then have, the oldest of that address whose request is not whole.
+/// A known client that waits for the answer to a whole request never gives way.
 Room room_for(std::string_view address, std::span<const Held> others, const Shares& shares);
 
 }  // namespace adit::intake

@@ -28,7 +28,7 @@ class Journal {
  public:
   /// What waits to be said, at most: all that comes beyond is lost.
   static constexpr std::size_t kMostUnsaid = 8u << 20;
-  /// A journal is begun anew, beside its snapshot, once it is as large as that, and at least so large.
+  /// A journal is begun again, beside its snapshot, once it is as large as that, and at least so large.
   static constexpr std::size_t kLeastTurn = 1u << 20;
 
   Journal(loop::Loop& loop, std::string folder);

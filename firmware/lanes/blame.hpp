@@ -11,8 +11,8 @@ using Instant = std::chrono::steady_clock::time_point;
 
 /// What is known of one message at which the Command Post's handler failed.
 struct Trial {
-  int failures = 0;                 // in all
-  int strikes = 0;                  // of these: it failed alone, for others had passed since it failed before
+  int failures = 0;  // in all
+  int strikes = 0;   // of these: it alone failed, because others had passed since its last failure
   std::optional<Instant> failed{};  // last
   Instant rests_until{};            // others go first until then
   bool steps_behind = false;        // one other goes first
@@ -20,12 +20,12 @@ struct Trial {
   bool rests(Instant now) const { return steps_behind || now < rests_until; }
 };
 
-/// Whose fault it is that messages of one URI fail: the message's own, or everybody's.
+/// Tells whether a message of one URI fails by its own fault, or because everything fails.
 ///
-/// A handler that fails for everything is an outage, and nobody's fault: everything waits. A message is at
-/// fault that fails again and again while others pass: it steps behind one other, rests longer each time, and
-/// after kMostStrikes is set aside. A strike is void where somebody else's messages went from passing to
-/// failing in between: then the Command Post wavers, and what failed may pass.
+/// If the handler fails for everything, there is an outage: everything waits. If a message fails again and
+/// again while others pass, it is at fault: each time it steps behind one other and rests longer, and after
+/// kMostStrikes it is set aside. A strike does not count if another sender's messages passed and then failed
+/// in between: then the Command Post wavers, and the message may still pass.
 class Blame {
  public:
   static constexpr int kMostStrikes = 3;

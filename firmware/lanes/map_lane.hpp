@@ -17,7 +17,7 @@ namespace adit::lanes {
 /// thousandth of a cell) and older's extent within newer's. Reflexive and transitive.
 bool covers(const icd::OccupancyGrid& newer, const icd::OccupancyGrid& older);
 
-/// Whether the points of both can stand in one message: fields, point_step, byte order and origin alike.
+/// Whether the points of both can be in one message: fields, point_step, byte order and origin are the same.
 bool mergeable(const icd::PointCloud2& a, const icd::PointCloud2& b);
 
 /// Older's points and then newer's, in one update with newer's header. Requires mergeable clouds of one name
@@ -34,8 +34,8 @@ struct WaitingMap {
       parts{};         // the clouds that were merged into it, one for each update; else empty
   bool alone = false;  // not to be merged with others
   Trial trial{};       // where the Command Post's handler failed at it
-  /// What was set aside and is sent again by hand: the stamp that it had, by which it is older than all that
-  /// was never set aside, and told from others that are sent again.
+  /// Only of a map that was set aside and is sent again by hand: the stamp that it had. By it the map is
+  /// older than all that were never set aside, and is told from others that are sent again.
   std::optional<icd::Stamp> again{};
 };
 
@@ -44,16 +44,16 @@ bool replaces(const WaitingMap& newer, const WaitingMap& older);
 
 /// The maps that wait for the Command Post.
 ///
-/// The oldest news goes first. A grid is replaced by a newer one of the same name that covers it, which
-/// inherits its age; what waits of that name and is not covered still goes ahead of it, so that old cells are
-/// never sent after newer ones. Clouds are kept in order; take() merges those of one name that follow each
-/// other while more than one wait. Nothing else is ever dropped.
+/// The oldest news goes first. A newer grid of the same name replaces one that it covers, and inherits its
+/// age. Grids of that name that it does not cover still go ahead of it, so that old cells are never sent
+/// after newer ones. Clouds are kept in order; take() merges clouds of one name that follow each other while
+/// more than one map waits. Nothing else is ever dropped.
 ///
-/// What is on trial (Blame) lets others go first while it rests. A grid on trial keeps the later grids of its
-/// name waiting behind it for its first kInPlace failures, those of what it replaced included; then they pass
-/// it, to see whether they can.
+/// A map on trial (Blame) lets others go first while it rests. A grid on trial holds back the later grids of
+/// its name for its first kInPlace failures, counting those of grids that it replaced; then they go ahead of
+/// it, to see whether they pass.
 ///
-/// Where take() and what puts back throw, for want of memory, all waits as before.
+/// If take() or a function that puts back throws for lack of memory, everything waits as before.
 class MapLane {
  public:
   /// Most bytes of points that take() merges into one message.
@@ -70,13 +70,13 @@ class MapLane {
   /// The next to be sent, taken out of the lane. Without `now`, nothing rests.
   std::optional<WaitingMap> take(Instant now = Instant::max());
 
-  /// Puts back what could not be sent, or is sent again: first in line, behind older ones that are sent
-  /// again, unless a newer grid covers it that waits (then that one takes its updates and its age). The
-  /// numbers of those that are needed no more, as from add().
+  /// Puts back a map that could not be sent, or is sent again: first in line, but behind older ones that are
+  /// sent again. If a newer grid that waits covers it, that one takes its updates and its age instead. Gives
+  /// the numbers of those that are no longer needed, as add() does.
   std::vector<std::uint64_t> put_back(WaitingMap map);
 
-  /// Puts back the parts of a merged cloud, first in line and never to be merged again, so that the one that
-  /// the Command Post cannot take is found and the others arrive. Requires parts.
+  /// Puts back the parts of a merged cloud, first in line and never to be merged again, so that the part that
+  /// the Command Post cannot take is found, and the others arrive. Requires parts.
   void put_back_apart(WaitingMap map);
 
   /// Whether add() would replace one that waits.

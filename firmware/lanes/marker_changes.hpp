@@ -12,11 +12,11 @@
 
 namespace adit::lanes {
 
-/// Changes of the markers' scene (ICD 6.6) in the order in which they are to be sent, as few as say the same:
-/// a newer change of the same ns and id takes the place of an older one, DeleteAll takes the place of all
-/// before it, and nothing is deleted that a DeleteAll before it has deleted. Law: replaying them on any scene
-/// gives what replaying all that were applied gives. Each has a place: a number that rises along the order. A
-/// DeleteAll can only be the first.
+/// Changes of the markers' scene (ICD 6.6) in the order in which they are to be sent, with no needless ones:
+/// a newer change of the same ns and id replaces an older one, DeleteAll replaces all before it, and nothing
+/// is deleted that a DeleteAll before it has deleted. Law: replaying them on any scene gives the same as
+/// replaying all that were applied. Each has a place, a number that rises along the order. Only the first can
+/// be a DeleteAll.
 class MarkerChanges {
  public:
   using Place = std::int64_t;

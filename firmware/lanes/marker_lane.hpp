@@ -20,7 +20,7 @@ struct WaitingMarkers {
   bool is_ahead = false;      // it goes ahead of what waits, and waits still itself
 };
 
-/// What a lane of markers holds and gives out at most; bytes are those of icd::bytes_of.
+/// The most that a lane of markers holds and gives out; bytes as icd::bytes_of counts them.
 struct MarkerBounds {
   std::size_t per_message = 2000;           // markers; at least 1
   std::size_t bytes_per_message = 1 << 20;  // unless a single marker is larger
@@ -34,26 +34,26 @@ class MarkerLane {
 
   explicit MarkerLane(MarkerBounds bounds) : bounds_(bounds), most_now_(bounds.per_message) {}
 
-  /// These count from now on; what waits, waits.
+  /// The limits from now on; what waits already stays.
   void keep_within(MarkerBounds bounds);
 
-  /// So that no sender can fill the memory while the Command Post is away. What only replaces changes that
-  /// wait has a quarter of the bytes to itself: a path that grows is taken when new markers are not. Where
-  /// nothing waits there is room for any update.
+  /// Bounded, so that no sender can fill the memory while the Command Post is away. A quarter of the bytes is
+  /// kept for updates that only replace changes that wait: a path that grows is taken when new markers are
+  /// not. If nothing waits, there is room for any update.
   bool has_room_for(const icd::MarkersUpdate& update) const;
   void add(const icd::MarkersUpdate& update, Instant now);
   /// The oldest pending changes, in order. Updates are counted in the message that sends the last of their
   /// markers.
   std::optional<WaitingMarkers> take();
-  /// What take() gave last and could not be sent goes before what came meanwhile, merged with it.
+  /// Puts back what take() gave last and could not be sent: ahead of what came meanwhile, and merged with it.
   void put_back(const WaitingMarkers& markers);
-  /// The same, but of half as many at a time from now on: where the Command Post will not take several, the
+  /// The same, and sends half as many at a time from now on: if the Command Post does not take several, the
   /// one at fault is found.
   void put_back_narrower(const WaitingMarkers& markers);
-  /// A single change that could not be sent goes behind all others, unless these make it needless. Not one
-  /// that deletes all, for what follows it depends on it: in its place one of those that follow is given out
-  /// once ahead of it, by turns, and waits still. That changes nothing in the end, and shows whether others
-  /// pass.
+  /// Puts a single change that could not be sent behind all others, unless these make it needless. A
+  /// DeleteAll stays first, because what follows depends on it: instead, one of those that follow is given
+  /// out once ahead of it, in turn, and still waits. That changes nothing in the end, and shows whether
+  /// others pass.
   void put_behind(const WaitingMarkers& markers);
   /// Whether what waits makes an earlier change of that marker needless.
   bool says_more_than(const icd::Marker& earlier) const { return changes_.says_more_than(earlier); }

@@ -14,8 +14,8 @@
 
 namespace adit::lanes {
 
-/// How a sender's clock is brought to the gateway's: it goes on from `ours` as the sender's goes on from
-/// `theirs`.
+/// How a sender's stamps become the gateway's: a stamp so much later than `theirs` is as much later than
+/// `ours`.
 struct SenderClock {
   icd::Stamp theirs = 0, ours = 0;  // one moment, by both clocks
   icd::Stamp latest = 0;            // the sender's own
@@ -26,12 +26,12 @@ struct SenderClock {
 /// ICD 6.2 and promise 5: brings each sender's stamps to the gateway's clock, keeping the spacing it gave
 /// them.
 ///
-/// A sender's first stamp is taken as now; from then on its offset is kept, so that two messages it stamped
-/// 0.3 s apart stay 0.3 s apart however late they came. A sender whose clock jumped (backward by more than
-/// kJump, or by less where StepBack shows it, or to more than kJump after now) starts anew: now, or with the
-/// latest stamp that it was given where that is later, so that what it says next is newer than all before. A
-/// message without a stamp (or with 0, ROS's word for none) is stamped so, too. Of more than kMostSenders,
-/// the one that was silent longest is forgotten.
+/// A sender's first stamp counts as now. From then on its offset is kept, so that two messages that it
+/// stamped 0.3 s apart stay 0.3 s apart, however late they came. If a sender's clock jumps (back by more than
+/// kJump, or by less if StepBack shows it, or to more than kJump after now), its offset is taken again: its
+/// stamp counts as now, or as the latest that it was given if that is later, so that what it says next is
+/// newer than all before. A message without a stamp (or with 0, which is ROS's "none") is stamped in the same
+/// way. Of more than kMostSenders, the one that was silent longest is forgotten.
 class StampShift {
  public:
   static constexpr double kJump = 5.0;  // seconds
@@ -42,7 +42,7 @@ class StampShift {
   icd::Stamp shift(const std::string& sender, std::optional<icd::Stamp> stamp, double now,
                    Connection connection = 0);
 
-  /// As it is after shift(); null for a sender that is not known.
+  /// As shift() left it; null for a sender that is not known.
   const SenderClock* clock_of(const std::string& sender) const;
   /// All of them, the one that was silent longest first.
   std::vector<std::pair<std::string, SenderClock>> clocks() const;
@@ -66,7 +66,7 @@ class StampShift {
 /// The stamps that go upstream for one URI: never backward.
 class StampOrder {
  public:
-  /// `stamp`, or the last one given out where that is later.
+  /// `stamp`, or the last one given out if that is later.
   icd::Stamp next(icd::Stamp stamp);
   /// The last one given out; 0: none.
   icd::Stamp last() const { return last_; }

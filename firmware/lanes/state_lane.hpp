@@ -17,13 +17,14 @@ struct WaitingState {
   std::uint64_t updates = 0;  // at least 1
 };
 
-/// Robots' newest poses (ICD 6.5): each robot may post alone, all go out together, also those without news.
+/// The robots' newest poses (ICD 6.5). Each robot may post alone; all go out together, also those without
+/// news.
 ///
-/// Where the Command Post will not take a state of several, each of its robots goes apart, one to a message,
+/// If the Command Post does not take a state of several robots, each of them goes in a message of its own
 /// until it has been taken once: the one at fault is found, and the others arrive.
 class StateLane {
  public:
-  /// How long a robot waits whose own state was given up.
+  /// How long a robot waits after its own state was given up.
   static constexpr std::chrono::seconds kRest{10};
 
   /// What the lane holds at most, so that no sender can fill the memory. A robot without news makes room.
@@ -37,11 +38,10 @@ class StateLane {
   /// Makes these robots news again, with their newer poses where they are known.
   void add_unless_known(const icd::StateUpdate& update, Instant now);
 
-  /// All robots' newest poses, but for those that go apart, or one of these; nothing where no news came since
-  /// the last take(). Without `now`, nobody rests.
+  /// The newest poses of all robots that go together, or of one that goes apart; nothing if no news came
+  /// since the last take(). Without `now`, nobody rests.
   std::optional<WaitingState> take(Instant now = Instant::max());
-  /// Whoever is sent to next knows of no robot, and is told of those alone that have news. Nothing is under
-  /// way.
+  /// The next Command Post knows no robot, and is told only of those that have news. Nothing is under way.
   void forget_what_was_taken();
   /// What was news and could not be sent is news again; newer poses that came meanwhile stay.
   void put_back(const WaitingState& state);

@@ -15,19 +15,20 @@ using Connection = std::uint64_t;
 
 /// Tells a clock that was set back from messages that overtook each other on their way.
 ///
-/// On one connection messages come in the order in which they were sent. Over several they may overtake each
-/// other, but a client waits for each answer: of two connections only one can be behind, by one message, and
-/// what it says next is news. So the clock of a message that is late, by more than kOutOfOrder, was set back
-/// where
-/// - its own connection has said something later before, or
-/// - the message before it was late too, and this one was made after that.
-/// What is late by less is never taken for that: the poses of a robot are not sent so often that it mattered.
+/// On one connection, messages come in the order in which they were sent. On several connections they may
+/// overtake each other, but a client waits for each answer: of two connections only one can be behind, by one
+/// message, and its next message is news. So if a message is older than the one before by more than
+/// kOutOfOrder, its clock was set back if
+/// - its own connection has already brought a later stamp, or
+/// - the message before it was late too, and this one was stamped after that.
+/// A message that is late by less is not taken for one: robots do not send poses so often that it would
+/// matter.
 class StepBack {
  public:
   static constexpr double kOutOfOrder = 1.0;           // seconds
   static constexpr std::size_t kMostConnections = 16;  // that are told apart
 
-  /// Whether a message of this stamp, on the sender's own clock, shows it. Where it does, all that was known
+  /// Whether a message with this stamp, by the sender's own clock, shows that. If it does, all that was known
   /// of the clock before is forgotten.
   bool shown_by(icd::Stamp stamp, Connection connection);
 

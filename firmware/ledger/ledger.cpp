@@ -67,7 +67,7 @@ class Ledger::Impl {
     unflushed_ = unflushed_ || soon;
     auto written = write(steps, run);
     has_hole_ = has_hole_ || (!written && unflushed_);
-    if (pages_ >= kPagesOfLog) begin_log_anew();
+    if (pages_ >= kPagesOfLog) restart_log();
     return written;
   }
 
@@ -88,7 +88,7 @@ class Ledger::Impl {
     return SQLITE_OK;
   }
 
-  bool begin_log_anew() {
+  bool restart_log() {
     (void)flush_each(false);  // taking it over flushes all that is in it
     return take_over_log(database_);
   }
@@ -97,7 +97,7 @@ class Ledger::Impl {
   /// that is in the log behind it.
   Result<void> mend_log() {
     if (!has_hole_) return {};
-    if (!begin_log_anew()) return std::unexpected(Error{.what = "the ledger's log could not be begun anew"});
+    if (!restart_log()) return std::unexpected(Error{.what = "the ledger's log could not be restarted"});
     has_hole_ = unflushed_ = false;
     return flush_each(true);
   }
@@ -201,7 +201,7 @@ void Ledger::sweep(const std::string& folder, const std::string& scratch) {
 }
 
 bool Ledger::can_be_opened(const std::string& folder) {
-  // Tables of an earlier version are written anew, and so is a ledger that is salvaged.
+  // Tables of an earlier version are written again, and so is a ledger that is salvaged.
   return try_opening(folder + kFile) && try_room(folder, kRoomToBegin + 2 * size_of(folder + kFile)) &&
          sync_folder(folder);
 }

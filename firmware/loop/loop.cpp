@@ -26,7 +26,7 @@ constexpr std::uint64_t kAccuracyUsec = 1000;
 constexpr std::uint64_t kNever = UINT64_MAX;
 
 /// Without its loop the process is nothing: where sd-event fails (out of memory, or a descriptor that cannot
-/// be watched) the process ends, and systemd starts it anew.
+/// be watched) the process ends, and systemd restarts it.
 void must(int result, const char* doing) {
   if (result >= 0) return;
   std::fprintf(stderr, "event loop: %s: %s\n", doing, std::strerror(-result));

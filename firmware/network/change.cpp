@@ -77,7 +77,7 @@ void Change::try_to_take_back(Instant now) {
   const auto taken = hands_.take_back();
   if (taken) return end(Ended::TakenBack, why_);
   if (++tries_ == kTries) {
-    return end(Ended::TakenBack, why_ + "; it takes effect once the box is started anew: " + taken.error());
+    return end(Ended::TakenBack, why_ + "; it takes effect once the box is restarted: " + taken.error());
   }
   try_at_ = now + kTryAgain;
 }

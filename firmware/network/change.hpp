@@ -15,7 +15,7 @@ namespace adit::network {
 class Hands {
  public:
   virtual ~Hands() = default;
-  /// Uses the numbers until the machine is started anew, or until they are taken back.
+  /// Uses the numbers until the machine is restarted, or until they are taken back.
   virtual std::expected<void, std::string> apply(const Numbers& numbers) = 0;
   /// Uses them from now on.
   virtual std::expected<void, std::string> keep(const Numbers& numbers) = 0;

@@ -42,7 +42,7 @@ std::string gpiod_version();
 /// A panel without GPIO: what it shows is readable from `file` ("health on\n..."), rewritten atomically at
 /// each change.
 std::unique_ptr<Lines> simulated(std::string file);
-/// Its button: a FIFO, made anew for this user alone, that takes the lines "press" and "release"; whatever
+/// Its button: a FIFO, made new for this user alone, that takes the lines "press" and "release"; whatever
 /// else comes is ignored.
 std::expected<std::unique_ptr<ButtonLine>, std::string> simulated_button(const std::string& fifo);
 

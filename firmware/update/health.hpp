@@ -19,7 +19,7 @@ Ready read_ready(std::string_view properties, std::chrono::microseconds now);
 enum class Health : std::uint8_t {
   Wait,     // ask again
   Good,     // the slot is to be marked good
-  Restart,  // the machine is to be started anew, which counts against the slot
+  Restart,  // the machine is to be restarted, which counts against the slot
 };
 
 /// A slot on trial is good once aditd has been ready, and its watchdog fed, for so long without a break.

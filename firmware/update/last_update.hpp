@@ -14,7 +14,7 @@ enum class Stage : std::uint8_t {
   Installing,   // the other slot is being written
   Interrupted,  // while it was: the slot that runs was not touched
   Failed,       // RAUC could not write it, or not in time
-  Installed,    // waits for a restart; once the box was started anew, from that slot, on trial
+  Installed,    // waits for a restart; once the box was restarted, from that slot, on trial
   Left,         // it did not come up healthy in three starts, and the boot loader went back
   Good,         // it came up healthy
 };

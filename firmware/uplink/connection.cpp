@@ -172,7 +172,7 @@ class Connection::Impl : public std::enable_shared_from_this<Impl> {
     // The peer may have closed a kept connection meanwhile, or a new one at once. Nothing of this request has
     // been sent, so that it is still safe to say so, or to try once more.
     if (!is_quiet(fd_.get()))
-      return fresh_ ? never_sent("the peer closed the new connection, or spoke first") : begin_anew();
+      return fresh_ ? never_sent("the peer closed the new connection, or spoke first") : begin_again();
     if (std::exchange(gives_up_after_, exchange_->answer_within()) != exchange_->answer_within()) {
       give_up_after(fd_.get(), exchange_->answer_within());
     }
@@ -183,7 +183,7 @@ class Connection::Impl : public std::enable_shared_from_this<Impl> {
     write();
   }
 
-  void begin_anew() {
+  void begin_again() {
     close();
     connect();
   }
@@ -191,7 +191,7 @@ class Connection::Impl : public std::enable_shared_from_this<Impl> {
   void write() {
     const int error = exchange_->write(fd_.get());
     if (error == 0) return watch(exchange_->wants_to_write() ? kComing | EPOLLOUT : kComing);
-    if (exchange_->sent() == 0) return fresh_ ? never_sent(std::strerror(error)) : begin_anew();
+    if (exchange_->sent() == 0) return fresh_ ? never_sent(std::strerror(error)) : begin_again();
     if (!answer_came()) watch(kComing);
   }
 

@@ -72,7 +72,7 @@ class Connection {
 
   /// Connects now and again after each close, so that a request finds the connection open.
   void keep_warm();
-  /// The way there may be back: what is being connected begins anew, and no pause is waited for.
+  /// The way there may be back: what is being connected begins again, and no pause is waited for.
   void hurry();
 
   /// Requires !busy(). `done` is called once, from the loop, never from within send(); it may send the next

@@ -26,7 +26,7 @@ def wait_until(condition, what, within=30.0):
     """The first true value of `condition()`; an error that says `what` after `within` seconds."""
     end = time.monotonic() + within
     while time.monotonic() < end:
-        with contextlib.suppress(OSError):  # aditd may be starting anew
+        with contextlib.suppress(OSError):  # aditd may be restarting
             if value := condition():
                 return value
         time.sleep(0.02)

@@ -56,9 +56,9 @@ class Button(unittest.TestCase):
     def listening(self):
         return re.findall(r"listening .*port=(\d+)", self.box.said())
 
-    def await_anew(self, before):
+    def await_restart(self, before):
         """Until it listens once more, at whichever port that is."""
-        self.box.port = int(wait_until(lambda: self.listening()[before:], "it to begin anew")[-1])
+        self.box.port = int(wait_until(lambda: self.listening()[before:], "it to restart")[-1])
 
     def run_view(self):
         status, view, _ = self.box.ask("GET /adit/run", Authorization="Bearer " + self.token)
@@ -163,7 +163,7 @@ class Button(unittest.TestCase):
         self.assertTrue((box.state / "secrets" / "team.token").exists())
         pressed = time.monotonic()
         self.write(b"press\n")
-        self.await_anew(1)
+        self.await_restart(1)
         self.assertGreater(time.monotonic() - pressed, 10)
         self.assertEqual(box.ask("GET /adit/session")[1]["first_start"], True)
         for gone in ("settings.json", "secrets", "access.json"):

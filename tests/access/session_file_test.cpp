@@ -60,7 +60,7 @@ TEST_F(SessionFileTest, GivesNobodyMoreTimeThanHeHad) {
   EXPECT_EQ(late.find(mine.id.reveal(), kStart + 12h), nullptr);
 }
 
-TEST_F(SessionFileTest, OfAClockThatHasBegunAnewIsForgotten) {
+TEST_F(SessionFileTest, OfAClockThatHasRestartedIsForgotten) {
   const Session mine = begin(sessions, Role::Operator, kStart);
   Sessions after = restored(kStart - 1s);
   EXPECT_EQ(after.find(mine.id.reveal(), kStart - 1s), nullptr);

@@ -25,7 +25,7 @@ TEST(Window, IsClosedByItsUse) {
   EXPECT_EQ(window.left(Instant{} + 1s), std::nullopt);
 }
 
-TEST(Window, CountsAnewWhenItIsOpenedAgain) {
+TEST(Window, CountsAgainWhenItIsOpenedAgain) {
   Window window;
   window.open(Instant{}, 10min);
   window.open(Instant{} + 9min, 10min);

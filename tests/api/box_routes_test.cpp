@@ -56,7 +56,7 @@ TEST_F(BoxRoutesTest, TellOfTheLogWhatIsAskedFor) {
   EXPECT_THAT(log("?since=1&level=info&text=fused"),
               ElementsAre("the Command Post refused a state", "refused"));
   EXPECT_THAT(log("?since=99"), IsEmpty());
-  EXPECT_EQ(json::parse(get("/adit/log?since=99").body)["last"], 4) << "the box was started anew";
+  EXPECT_EQ(json::parse(get("/adit/log?since=99").body)["last"], 4) << "the box was restarted";
 }
 
 TEST_F(BoxRoutesTest, SayWhatIsWrongWithAFilter) {

@@ -56,8 +56,8 @@ class NetworkdFilesTest : public testing::Test {
     EXPECT_EQ(log.size() % 7, 0u) << log;  // "reload\n"
     return log.size() / 7;
   }
-  /// As the next start of adit-network would find it, after the machine was started anew or not.
-  void start_anew(bool machine) {
+  /// As the next start of adit-network would find it, after the machine was restarted or not.
+  void restart(bool machine) {
     if (machine) {
       fs::remove_all(options.networkd), fs::create_directory(options.networkd);
       const auto written = NetworkdFiles(options, &nobody).write_at_start();
@@ -107,7 +107,7 @@ TEST_F(NetworkdFilesTest, KeepWithoutDisturbingAnything) {
 TEST_F(NetworkdFilesTest, TouchOnlyTheInterfaceThatChanges) {
   ASSERT_TRUE(files->apply(first));
   ASSERT_TRUE(files->keep(first));
-  start_anew(true);
+  restart(true);
   ASSERT_TRUE(files->apply(second));
   EXPECT_EQ(in(options.networkd).size(), 3u);
   EXPECT_EQ(text_of("40-adit-team.network"), network::team_file("team0", second));
@@ -136,7 +136,7 @@ TEST_F(NetworkdFilesTest, GoBackToWhatWasConfirmedInThisVeryStart) {
 
 TEST_F(NetworkdFilesTest, LoseAnUnconfirmedChangeInAPowerCut) {
   ASSERT_TRUE(files->apply(first));
-  start_anew(true);
+  restart(true);
   EXPECT_FALSE(files->found_a_change());
   EXPECT_EQ(files->kept(), std::nullopt);
   EXPECT_THAT(in(options.networkd), IsEmpty());
@@ -144,7 +144,7 @@ TEST_F(NetworkdFilesTest, LoseAnUnconfirmedChangeInAPowerCut) {
 
 TEST_F(NetworkdFilesTest, TakeAnUnconfirmedChangeBackAfterAKill) {
   ASSERT_TRUE(files->apply(first));
-  start_anew(false);
+  restart(false);
   EXPECT_TRUE(files->found_a_change());
   EXPECT_THAT(in(options.networkd), IsEmpty());
   EXPECT_EQ(reloads(), 2u);
@@ -155,7 +155,7 @@ TEST_F(NetworkdFilesTest, FinishAKeepingThatWasCutOff) {
   ASSERT_TRUE(files->keep(second));
   std::ofstream(options.networkd + "/50-adit-team.network") << network::team_file("team0", first);
   fs::remove(options.networkd + "/50-adit-command-post.network");
-  start_anew(false);
+  restart(false);
   EXPECT_EQ(files->kept(), second);
   EXPECT_EQ(text_of("50-adit-team.network"), network::team_file("team0", second));
   EXPECT_EQ(text_of("50-adit-command-post.network"), network::command_post_file("darpa0", second, {}));
@@ -163,20 +163,20 @@ TEST_F(NetworkdFilesTest, FinishAKeepingThatWasCutOff) {
 
 TEST_F(NetworkdFilesTest, HaveWhatTheBoxCameWithUntilSomethingIsConfirmed) {
   come_with(first);
-  start_anew(true);
+  restart(true);
   EXPECT_EQ(files->kept(), first);
   EXPECT_EQ(reloads(), 0u) << "networkd reads them as it starts";
   EXPECT_EQ(text_of("50-adit-team.network"), network::team_file("team0", first));
   ASSERT_TRUE(files->apply(second));
   ASSERT_TRUE(files->keep(second));
-  start_anew(true);
+  restart(true);
   EXPECT_EQ(files->kept(), second);
   EXPECT_EQ(text_of("50-adit-team.network"), network::team_file("team0", second));
 }
 
 TEST_F(NetworkdFilesTest, ForgetWhatWasConfirmed) {
   come_with(first);
-  start_anew(true);
+  restart(true);
   ASSERT_TRUE(files->lead_to({{0x0a6402c8}}));
   ASSERT_TRUE(files->apply(second));
   ASSERT_TRUE(files->keep(second));
@@ -210,7 +210,7 @@ TEST_F(NetworkdFilesTest, LeadToOtherEndpointsWithoutAChange) {
   }
   ASSERT_TRUE(files->lead_to(elsewhere));
   EXPECT_EQ(reloads(), before + 1);
-  start_anew(true);
+  restart(true);
   EXPECT_EQ(files->endpoints(), elsewhere);
   EXPECT_EQ(text_of("50-adit-command-post.network"),
             network::command_post_file("darpa0", routed, elsewhere.addresses));
@@ -218,7 +218,7 @@ TEST_F(NetworkdFilesTest, LeadToOtherEndpointsWithoutAChange) {
 
 TEST_F(NetworkdFilesTest, LeadToOtherEndpointsWhileAChangeIsTried) {
   come_with(first);
-  start_anew(true);
+  restart(true);
   const network::Numbers routed = numbers("192.168.7.11/24", "10.100.1.10/24", "10.100.1.1");
   ASSERT_TRUE(files->apply(routed));
   ASSERT_TRUE(files->lead_to({{0x0a6402c8}}));
@@ -249,7 +249,7 @@ TEST_F(NetworkdFilesTest, SetADamagedConfirmationAsideAndHaveWhatTheBoxCameWith)
   ASSERT_TRUE(files->apply(second));
   ASSERT_TRUE(files->keep(second));
   std::ofstream(options.state + "/confirmed.json") << "{\"version\":1,";
-  start_anew(true);
+  restart(true);
   EXPECT_EQ(files->kept(), first);
   EXPECT_THAT(in(options.state), UnorderedElementsAre("confirmed.json.damaged"));
   EXPECT_EQ(text_of("50-adit-team.network"), network::team_file("team0", first));

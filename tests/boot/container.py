@@ -47,7 +47,7 @@ class Cables(hosts.Network):
             hosts.ip("-n", self.box, "address", "flush", "dev", port)
 
     def cable_the_box(self):
-        """Anew: with the container its ports went, and with them the other ends of the cables."""
+        """Again: with the container its ports went, and with them the other ends of the cables."""
         for host, addresses, port in (
             (self.team, [self.team_address], "team0"),
             (self.post, [hosts.SCORING, hosts.MAPPING], "darpa0"),

@@ -34,6 +34,6 @@ class Updating:
             try:
                 return self.last() == wanted
             except (OSError, ValueError, KeyError):
-                return False  # it starts anew
+                return False  # it restarts
 
         self.box.wait_until(is_so, f"an update that is {wanted}", within)

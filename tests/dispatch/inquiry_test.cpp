@@ -54,7 +54,7 @@ TEST_F(InquiryTest, BelievesNotRecordedOnlyAfterEnoughStatusesInARow) {
   EXPECT_EQ(hear(13, Finding::NotRecorded), Finding::NotRecorded);
 }
 
-TEST_F(InquiryTest, BeginsToCountAnewWhereStatusesDisagree) {
+TEST_F(InquiryTest, CountsAgainWhereStatusesDisagree) {
   hear_from(1, 9, Finding::NotRecorded);
   EXPECT_EQ(hear(10, Finding::Recorded), Finding::Silent);
   EXPECT_EQ(hear(11, Finding::NotRecorded), Finding::Silent);

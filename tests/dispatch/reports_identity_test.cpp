@@ -125,7 +125,7 @@ TEST_F(OnlyTheClock, LetsItGoOnceMoreReportsAreLeft) {
   EXPECT_EQ(scene_.send_next(), 2);
 }
 
-TEST_F(OnlyTheClock, CountsAnewOnceMoreReportsAreLeft) {
+TEST_F(OnlyTheClock, CountsAgainOnceMoreReportsAreLeft) {
   scene_.hear(25, 0, 4);
   for (int i = 0; i < 3; ++i) {
     scene_.wait(1);

@@ -27,7 +27,7 @@ class FlowTest : public testing::Test {
                   Tokens{.scoring = {}, .mapping = {}, .all = {*icd::BearerToken::parse("a-secret")}},
                   Flow::Folders{folder_.path(), folder_.path()}, std::nullopt,
                   Flow::Told{.changed = [] {},
-                             .anew = [this] { anew_ = true; },
+                             .restart = [this] { restart_ = true; },
                              .posted = [this](const std::string& name) { posted_.push_back(name); }});
     ASSERT_TRUE(flow_->start());
   }
@@ -50,7 +50,7 @@ class FlowTest : public testing::Test {
   settings::Settings settings_;
   ledger::Ledger ledger_ = std::move(*ledger::Ledger::open(folder_.path()));
   std::vector<std::string> posted_;
-  bool anew_ = false;
+  bool restart_ = false;
   std::optional<Flow> flow_;
 };
 
@@ -82,7 +82,7 @@ TEST_F(FlowTest, EndsAndSendsNothingSetAsideFromThenOn) {
   EXPECT_TRUE(flow_->is_ending());
   EXPECT_FALSE(flow_->aside(1, api::AsideAction::Discard));
   EXPECT_TRUE(loop::turn_until(loop_, [&] { return over; }));
-  EXPECT_FALSE(anew_);
+  EXPECT_FALSE(restart_);
 }
 
 /// The last state that the Command Post was sent, and when.
@@ -128,7 +128,7 @@ class FlowAfterAnother : public testing::Test {
         loop_, ledger_, settings_,
         Tokens{.scoring = {}, .mapping = icd::BearerToken::parse("a-token"), .all = {}},
         Flow::Folders{folder.path(), folder.path()}, std::move(legacy),
-        Flow::Told{.changed = [] {}, .anew = [] {}, .posted = [](const std::string&) {}});
+        Flow::Told{.changed = [] {}, .restart = [] {}, .posted = [](const std::string&) {}});
     EXPECT_TRUE(flow->start());
     return flow;
   }

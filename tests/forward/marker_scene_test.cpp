@@ -60,7 +60,7 @@ TEST(MarkerScene, TellsAllAfterAllWereDeletedAndToWhoeverComesFromElsewhere) {
   scene.forwarded({{marker("", 0, 0, MarkerAction::DeleteAll), marker("c", 1)}}, 101);
   EXPECT_TRUE(scene.changes(before).whole);
   EXPECT_THAT(names(scene.changes(before)), ElementsAre("c1"));
-  EXPECT_TRUE(scene.changes(scene.version() + 5000).whole) << "a version of a box that was started anew";
+  EXPECT_TRUE(scene.changes(scene.version() + 5000).whole) << "a version of a box that was restarted";
 }
 
 TEST(MarkerScene, DeletingWhatIsNotThereChangesNothing) {

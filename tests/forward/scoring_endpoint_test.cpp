@@ -66,11 +66,12 @@ class ScoringEndpoint : public testing::Test, protected AroundScoring {
     settings_.command_post.rates.reports_hz = settings_.command_post.rates.status_hz = 1000;
     settings_.command_post.scoring = here_.address();
     journal_.begin({.boot = "b", .at = loop_.now(), .stamp = loop_.stamp_now()});
-    scoring_.emplace(loop_, ledger_, settings_, token_, record_, random_, journal_, [this] { anew_ = true; });
+    scoring_.emplace(loop_, ledger_, settings_, token_, record_, random_, journal_,
+                     [this] { restart_ = true; });
     EXPECT_TRUE(scoring_->start());
     EXPECT_TRUE(comes([this] { return scoring_->run().has_value(); }));
   }
-  void TearDown() override { EXPECT_FALSE(anew_); }
+  void TearDown() override { EXPECT_FALSE(restart_); }
 
   bool comes(const std::function<bool()>& done) {
     return loop::turn_until(loop_, [&] {
@@ -91,7 +92,7 @@ class ScoringEndpoint : public testing::Test, protected AroundScoring {
 
   const std::optional<icd::BearerToken> token_ = icd::BearerToken::parse("a-token");
   ScoringPost here_, there_;
-  bool anew_ = false;
+  bool restart_ = false;
   std::vector<int> first_, second_;
   std::optional<Scoring> scoring_;
 };

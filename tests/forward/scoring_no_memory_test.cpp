@@ -59,14 +59,14 @@ class ScoringWithoutMemory : public testing::TestWithParam<std::size_t>, protect
   /// From what the ledger has.
   void live() {
     scoring_.reset();
-    anew_ = false;
+    restart_ = false;
     scoring_.emplace(loop_, ledger_, settings_, icd::BearerToken::parse("a-token"), record_, random_,
-                     journal_, [this] { anew_ = true; });
+                     journal_, [this] { restart_ = true; });
     ASSERT_TRUE(scoring_->start());
   }
   bool comes(const std::function<bool()>& done) {
     return loop::turn_until(loop_, [&] {
-      if (anew_) live();
+      if (restart_) live();
       scoring_->tick();
       return done();
     });
@@ -81,7 +81,7 @@ class ScoringWithoutMemory : public testing::TestWithParam<std::size_t>, protect
   Post post_;
   uplink::ListeningPeer peer_{
       std::vector<uplink::Peer::Script>(1, [this](uplink::Wire& wire) { post_.serve(wire); })};
-  bool anew_ = false;
+  bool restart_ = false;
   std::optional<Scoring> scoring_;
 };
 
@@ -96,7 +96,7 @@ TEST_P(ScoringWithoutMemory, RecordsEachReportOnceAndKnowsSo) {
     ASSERT_EQ(state_of(number), ReportState::Sending);
     post_.let.release();
     ScarceMemory scarce(n, GetParam());
-    while (!anew_ && state_of(number) == ReportState::Sending && scoring_->channel().busy()) {
+    while (!restart_ && state_of(number) == ReportState::Sending && scoring_->channel().busy()) {
       loop_.turn(std::chrono::milliseconds{2});
     }
     const std::size_t failed = scarce.end();

@@ -7,7 +7,7 @@
 namespace adit::fuzz {
 namespace {
 
-/// What the file says, and says again where it is written anew.
+/// What the file says, and says again where it is written again.
 template <class Message, class Write>
 void kept_as_read(const std::string& file, icd::Checked<Message> (*read)(const std::string&), Write write) {
   const auto message = read(file);

@@ -28,7 +28,7 @@ TEST_F(LedgerReturnTest, IsSaidOnceWhereTheFolderTakesAWriteAgain) {
   EXPECT_EQ(back_, 1);
 }
 
-/// Room alone is not enough: a gateway that begins anew for nothing turns clients away.
+/// Room alone is not enough: a gateway that restarts for nothing turns clients away.
 TEST_F(LedgerReturnTest, IsNotSaidWhereTheLedgerItselfCannotBeOpened) {
   const std::string in_the_way = folder_.path() + "/ledger.sqlite";
   fs::create_directory(in_the_way);

@@ -131,7 +131,7 @@ TEST_F(JournalTest, GoesOnInAnotherFileWhereALifeEndedInTheMiddleOfAWrite) {
   EXPECT_EQ(left().robots().size(), 1u);
 }
 
-TEST_F(JournalTest, StaysSmallAndLosesNothingWhenItIsBegunAnew) {
+TEST_F(JournalTest, StaysSmallAndLosesNothingWhenItIsRestarted) {
   constexpr int kMarkers = 40;
   auto journal = life();
   for (int round = 0; round < 100; ++round) {

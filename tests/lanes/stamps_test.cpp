@@ -42,7 +42,7 @@ TEST(StampShift, KeepsSendersApart) {
   EXPECT_THAT(shift.shift("R1", 101.5, kNow + 2), DoubleNear(kNow + 1.5, 1e-6));
 }
 
-TEST(StampShift, StartsAnewWhereAClockJumpedBackward) {
+TEST(StampShift, StartsAgainWhereAClockJumpedBackward) {
   StampShift shift;
   shift.shift("R1", 100.0, kNow);
   EXPECT_THAT(shift.shift("R1", 95.5, kNow + 1), DoubleNear(kNow - 4.5, 1e-6)) << "late, no jump";
@@ -50,7 +50,7 @@ TEST(StampShift, StartsAnewWhereAClockJumpedBackward) {
   EXPECT_THAT(shift.shift("R1", 95.0, kNow + 2), DoubleNear(kNow + 1.5, 1e-6));
 }
 
-TEST(StampShift, StartsAnewWhereAClockJumpedAhead) {
+TEST(StampShift, StartsAgainWhereAClockJumpedAhead) {
   StampShift shift;
   shift.shift("R1", 100.0, kNow);
   EXPECT_THAT(shift.shift("R1", 104.5, kNow), DoubleNear(kNow + 4.5, 1e-6)) << "no jump";
@@ -100,7 +100,7 @@ TEST(StampShift, ForgetsTheSenderThatWasSilentLongest) {
     shift.shift("busy", 100.0, kNow);
   }
   EXPECT_THAT(shift.shift("busy", 100.5, kNow + 3), DoubleNear(kNow + 0.5, 1e-6));
-  EXPECT_EQ(shift.shift("silent", 100.5, kNow + 3), kNow + 3) << "begun anew";
+  EXPECT_EQ(shift.shift("silent", 100.5, kNow + 3), kNow + 3) << "restarted";
 }
 
 /// As one life hands over to the next, at any message: nobody can see that it did.

@@ -61,7 +61,7 @@ INSTANTIATE_TEST_SUITE_P(
 TEST(StepBack, IsNotSeenInWhateverOvertakesEachOtherOnTwoConnections) {
   std::mt19937_64 random{1};
   std::uniform_real_distribution<double> held_up{0, 4.5};
-  std::bernoulli_distribution often{0.3}, anew{0.2};
+  std::bernoulli_distribution often{0.3}, reopens{0.2};
   for (int robot = 0; robot < 200; ++robot) {
     StepBack step_back;
     std::multimap<double, Said> arrivals;  // by when they arrive
@@ -71,7 +71,7 @@ TEST(StepBack, IsNotSeenInWhateverOvertakesEachOtherOnTwoConnections) {
         const double arrives = now + (often(random) ? held_up(random) : 0.01);
         arrivals.emplace(arrives, Said{100 + now, on});
         now = arrives + 0.1;
-        if (anew(random)) on = ++last_opened + 100 * connection;
+        if (reopens(random)) on = ++last_opened + 100 * connection;
       }
     }
     for (const auto& [at, said] : arrivals) {

@@ -111,7 +111,7 @@ TEST_F(AFlushThatFailed, WithWhatWasLeftForLaterIsMadeGood) {
   EXPECT_EQ(in_the_file_alone(), std::vector<std::string>{"2"});
 }
 
-TEST(LedgerFlushes, MoreThanOnceOnlyWhereTheLogBeginsAnew) {
+TEST(LedgerFlushes, MoreThanOnceOnlyWhereTheLogIsRestarted) {
   const Folder folder;
   auto ledger = open_or_fail(folder);
   constexpr int kWrites = 3000;

@@ -163,7 +163,7 @@ TEST_F(ChangeTest, IsGivenUpWhereItCannotBeTakenBack) {
   for (double s = 90; s < 200; s += 1) change.tick(at(s));
   EXPECT_EQ(hands.done.size(), 1u + Change::kTries);
   EXPECT_FALSE(change.status().pending);
-  EXPECT_THAT(change.status().why, HasSubstr("once the box is started anew: the disk is full"));
+  EXPECT_THAT(change.status().why, HasSubstr("once the box is restarted: the disk is full"));
 }
 
 TEST_F(ChangeTest, IsNotReplacedWhileItIsPending) {

@@ -11,7 +11,7 @@ import { BIN } from "./stage.js";
 export const TOKENS = { scoring: "scoring-token-1", mapping: "mapping-token-1", team: "team-token-1" };
 export const OPERATOR = "correct horse battery", VIEWER = "look, do not touch";
 
-/** A connection of its own for a request: a box that begins anew, after a reset, closes those that are kept. */
+/** A connection of its own for a request: a box that restarts, after a reset, closes those that are kept. */
 export const ONCE = { Connection: "close" };
 
 /** What `look()` gives, once it is something. */
@@ -38,7 +38,7 @@ class Program {
   }
 }
 
-/** One that nobody listens at, where a program is to be found however often it begins anew. Below those that the kernel gives
+/** One that nobody listens at, where a program is to be found however often it restarts. Below those that the kernel gives
  *  to whoever asks for any, or it might give this one away meanwhile. */
 export async function freePort() {
   for (;;) {
@@ -101,8 +101,8 @@ export async function box(t, rates = {}) {
   who.viewer = await logIn(VIEWER);
   let listened = 1;
   /** After a reset. */
-  const begunAnew = () => until(() => (aditd.log.match(/: listening /g) ?? []).length > listened && ++listened, "the box to begin anew");
-  return { url, ask, logIn, code, begunAnew };
+  const restarted = () => until(() => (aditd.log.match(/: listening /g) ?? []).length > listened && ++listened, "the box to restart");
+  return { url, ask, logIn, code, restarted };
 }
 
 /** A team at work: one of every kind of message, and one that is refused. */

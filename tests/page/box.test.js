@@ -82,7 +82,7 @@ test("the support bundle holds all that helps, and no token, password, code or c
 });
 
 test("a reset from the page takes the box back to its first start, and keeps the reports", async (t) => {
-  const { ask, url, begunAnew } = await box(t);
+  const { ask, url, restarted } = await box(t);
   await ask("POST", "/adit/reports", { body: { type: "Drill", x: 1, y: 2, z: 3 } });
   const browser = await launch();
   t.after(() => browser.close());
@@ -98,7 +98,7 @@ test("a reset from the page takes the box back to its first start, and keeps the
   await dialog.getByLabel("present password").fill(OPERATOR);
   await page.keyboard.press("Enter");
   await page.getByLabel("Code").waitFor();
-  await begunAnew();
+  await restarted();
   assert.equal((await (await ask("GET", "/adit/session")).json()).first_start, true);
   assert.equal((await (await ask("GET", "/adit/reports")).json()).length, 1);
   const log = await (await ask("GET", "/adit/log.txt")).text();

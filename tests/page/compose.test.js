@@ -49,7 +49,7 @@ test("names the field that is wrong, and goes there", async (t) => {
   }
 });
 
-test("says that the very same was reported, and sends it anew only when told to", async (t) => {
+test("says that the very same was reported, and sends it again only when told to", async (t) => {
   const { page } = await watch(t, "reports");
   await compose(page);
   await fill(page, "Helmet", "281.75", "−4.5", ".25");

@@ -159,7 +159,7 @@ test("is drawn again only when something on it changed", async (t) => {
   assert.equal(await page.evaluate(() => globalThis.drawn), before);
 });
 
-test("shows the map of a box that was started anew", async (t) => {
+test("shows the map of a box that was restarted", async (t) => {
   const { stage, page } = await watch(t, "calm", { colorScheme: "dark" });
   await settled(page);
   const once = tiles(page);

@@ -19,7 +19,7 @@ export async function ready(t, path = "setup", settings = {}) {
   return { box, ask, page };
 }
 
-/** What the browser complained of; that a box was away while it began anew is none. */
+/** What the browser complained of; that a box was away while it restarted is none. */
 export const complaints = (page, ...known) => page.complaints.filter((each) => !["ERR_CONNECTION", "ERR_EMPTY", ...known].some((part) => each.includes(part)));
 
 /** Types into the field of a setting. */

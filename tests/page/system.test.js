@@ -61,7 +61,7 @@ test("shows of the log what is asked for, and gives the same as a file", async (
   await untilRows(page, 4);
 });
 
-test("says when the box is lost, and comes back with a log of its own when it was started anew", async (t) => {
+test("says when the box is lost, and comes back with a log of its own when it was restarted", async (t) => {
   const { stage, page } = await come(t);
   await untilRows(page, 4);
   for (let i = 0; i < 3; ++i) stage.play(`say ${i}`);
@@ -181,7 +181,7 @@ test("gives the support bundle as a file", async (t) => {
 test("resets the box for whoever knows the operator's password, and asks first", async (t) => {
   const { page } = await come(t);
   const posted = [];
-  let asked = 0; // until it is asked twice the box has not begun anew
+  let asked = 0; // until it is asked twice the box has not restarted
   await page.route("**/adit/session", (route) =>
     posted.includes(OPERATOR) ? route.fulfill({ json: { role: null, csrf: null, first_start: ++asked > 2 } }) : route.continue());
   await page.route("**/adit/reset", (route) => {

@@ -67,7 +67,7 @@ class GrubsEnvironment(Scripts):
         said = self.call("grub-editenv", alone, "list").stdout
         self.assertEqual(dict(line.split("=", 1) for line in said.splitlines()), {**DEFAULTS, "ORDER": "B A", "B_TRY": "1"})
 
-    def test_one_that_cannot_be_read_is_made_anew_with_what_grub_goes_by(self):
+    def test_one_that_cannot_be_read_is_made_again_with_what_grub_goes_by(self):
         for damaged in bytes(SECTOR), b"\xff" * SECTOR, b"#" * SECTOR, FIRST[:9] + bytes(SECTOR - 9):
             with self.subTest(damaged[:12]):
                 self.write(damaged)

@@ -39,7 +39,7 @@ class Looking {
   void at_files() {
     at("bytes in the state folder", reading_.stored.state, ledgers_);
     at("bytes of the journal", reading_.stored.journal, kJournal);
-    // One may stand in for another until the gateway has begun anew.
+    // One may stand in for another until the gateway has restarted.
     at("bytes of what stands in for the ledger", reading_.stored.others, ledgers_ + kLedger + kBeside);
   }
   void at_rest() {

@@ -9,12 +9,12 @@
 namespace adit::simulation {
 namespace {
 
-/// The gateway was told to end, or begins anew for another reason than settings: until it listens again,
+/// The gateway was told to end, or restarts for another reason than settings: until it listens again,
 /// it is that which cuts.
 bool ends_the_gateway(const Event& event) {
-  const bool is_anew = event.kind == Kind::Said &&
-                       (event.text.contains("beginning anew") || event.text.contains("listening anew"));
-  return event.kind == Kind::Stops || event.kind == Kind::Dies || is_anew;
+  const bool restarts = event.kind == Kind::Said &&
+                        (event.text.contains("restarting") || event.text.contains("listening again"));
+  return event.kind == Kind::Stops || event.kind == Kind::Dies || restarts;
 }
 
 /// The box cut the connection, or said that it stops; not the client.

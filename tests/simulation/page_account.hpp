@@ -43,7 +43,7 @@ class PageAccount {
   Range throttled(const std::string& endpoint, Moment from, Moment to) const;
   Range foreign(const std::string& endpoint, Moment from, Moment to) const;
 
-  /// Where its counts began anew, or may have: the last time before a moment.
+  /// Where its counts restarted, or may have: the last time before a moment.
   std::size_t begun(Moment at) const;
 
  private:

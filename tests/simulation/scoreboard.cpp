@@ -11,7 +11,7 @@ constexpr int kSeenToRun = 4;       // statuses that were heard
 constexpr double kSeenToBeOn = 30;  // seconds: a new run may be seen when it has been on for so long
 /// What is heard in between is forgotten.
 constexpr const char *kLedgerIsGone = "no report is taken, the ledger cannot be written",
-                     *kLedgerIsBack = "beginning anew with its ledger";
+                     *kLedgerIsBack = "restarting with its ledger";
 
 std::string json_number(double value) {
   char text[32];

@@ -120,7 +120,7 @@ class ACutOfThePower(OnABox):
 
 
 class Killed(OnABox):
-    def test_while_rauc_works_waits_for_its_end_once_it_is_started_anew_and_tells_it(self):
+    def test_while_rauc_works_waits_for_its_end_once_it_is_restarted_and_tells_it(self):
         hold = self.box.hold_the_boot_loader()
         shutil.copy(self.newer, self.box.folder / "wanted/update.raucb")
         self.box.ask("install")

@@ -70,7 +70,7 @@ class Refused(OnABox):
     def test_a_restart_that_systemd_refuses(self):
         raucs.script(self.box.folder / "bin/systemctl", "echo no bus >&2; exit 1\n")
         self.box.ask("restart")
-        self.expect_refused(self.box.update(), "it cannot be started anew: systemctl reboot: no bus (exit status 1)")
+        self.expect_refused(self.box.update(), "it cannot be restarted: systemctl reboot: no bus (exit status 1)")
 
     def test_another_board(self):
         self.expect_refused(self.box.install(self.bundles.make(board="adit-other"), again=True), "another board")
@@ -174,7 +174,7 @@ class Refused(OnABox):
         self.assertEqual(self.box.update()["trouble"], "", "once it can be taken away")
         self.assertEqual(self.box.install(self.newer)["last"]["stage"], "installed")
 
-    def test_what_was_asked_before_the_machine_was_started_anew(self):
+    def test_what_was_asked_before_the_machine_was_started_again(self):
         shutil.rmtree(self.box.folder / "status")
         (self.box.folder / "status").mkdir()
         shutil.copy(self.newer, self.box.folder / "wanted/update.raucb")

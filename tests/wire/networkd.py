@@ -71,7 +71,7 @@ class Networkd:
     def _answers(self):
         return self.reload().returncode == 0
 
-    def start_anew(self):
+    def restart(self):
         self.daemon.kill()
         self.daemon.wait()
         self._start()

@@ -161,7 +161,7 @@ class Page:
     def _is_settled(self):
         try:
             return not self.ask("GET /adit/settings")[1]["applying"]
-        except OSError:  # a release that begins anew
+        except OSError:  # a release that restarts
             return False
 
     def save(self, change):

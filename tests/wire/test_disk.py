@@ -169,7 +169,7 @@ class Disk(unittest.TestCase):
 
     @staticmethod
     def taken(stage, report):
-        with contextlib.suppress(requests.RequestException):  # it begins anew
+        with contextlib.suppress(requests.RequestException):  # it restarts
             return submit(stage, report).status_code == 201
 
     @staticmethod

@@ -1,5 +1,5 @@
-"""Settings are saved while six robots upload maps, a client waits for its report and a page is open: a saved setting begins
-anew what it changes, and nothing else. Nobody is cut, nobody is told to come again, and all arrives."""
+"""Settings are saved while six robots upload maps, a client waits for its report and a page is open: a saved setting restarts
+what it changes, and nothing else. Nobody is cut, nobody is told to come again, and all arrives."""
 
 import contextlib
 import http.client

@@ -29,7 +29,7 @@ class TheOperator(unittest.TestCase):
         return Operator(types.SimpleNamespace(box=Box(*box), post=post))
 
     def test_takes_it_that_the_box_found_out_first(self):
-        for then in ({"state": "settled", "changed": 12.0}, {"changed": 12.0}):  # and in doubt anew
+        for then in ({"state": "settled", "changed": 12.0}, {"changed": 12.0}):  # and in doubt again
             operator = self.operator(then, (409, FOUND_OUT))
             operator.looks()
             self.assertEqual(operator.judged, {}, "that was not his word")

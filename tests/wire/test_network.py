@@ -41,10 +41,10 @@ class WithAStandIn(Change):
         status = self.box.status()
         self.assertEqual((status["pending"], status["last"]), (None, "confirmed"))
         self.assertIn("Address=192.168.8.11/24", (self.folder / "networkd" / "50-adit-team.network").read_text())
-        self.start_the_machine_anew()
+        self.restart_the_machine()
         self.has(NEW)
 
-    def start_the_machine_anew(self):
+    def restart_the_machine(self):
         """What is in /run is gone, and the interfaces have what networkd finds."""
         for name in ("networkd", "status"):
             for path in (self.folder / name).iterdir():
@@ -59,13 +59,13 @@ class WithAStandIn(Change):
         self.box.want(team="192.168.8.11")
         self.has(NEW)
         self.box.stop()
-        self.start_the_machine_anew()
+        self.restart_the_machine()
         self.has(OLD)
         self.assertIsNone(self.box.pending())
 
     def test_what_was_asked_before_a_power_cut_is_not_done_after_it(self):
         self.box.ask("wanted.json", confirm_within_ms=60000, numbers=self.box.numbers(team="192.168.8.11"))
-        self.start_the_machine_anew()
+        self.restart_the_machine()
         self.has(OLD)
         self.assertEqual(self.box.files("wanted"), [])
         self.assertIsNone(self.box.pending())
@@ -163,12 +163,12 @@ class WithAStandIn(Change):
         self.assertEqual((self.box.addresses("team0"), self.box.addresses("darpa0")), (["10.0.0.1/24"], []))
         self.assertEqual(self.box.files("state"), [])
         self.assertEqual(self.box.status()["kept"], self.box.numbers("10.0.0.1", []))
-        self.start_the_machine_anew()
+        self.restart_the_machine()
         self.assertEqual(self.box.addresses("team0"), ["10.0.0.1/24"])
 
     def test_what_was_to_be_forgotten_before_a_power_cut_is_forgotten_after_it(self):
         self.box.ask("forget.json")
-        self.start_the_machine_anew()
+        self.restart_the_machine()
         self.assertIsNone(self.box.status()["kept"])
         self.assertEqual(self.box.files("state"), [])
 

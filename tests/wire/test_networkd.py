@@ -58,15 +58,15 @@ class WithNetworkd(Change):
         self.ends()
         wait_until(lambda: sorted(self.box.addresses("darpa0")) == three, "all three addresses again")
 
-    def test_networkd_may_start_anew_while_a_change_waits(self):
+    def test_networkd_may_restart_while_a_change_waits(self):
         self.confirm_first()
         self.box.want(within_ms=20000, team="192.168.8.11")
         self.has(NEW)
-        self.networkd.start_anew()
+        self.networkd.restart()
         self.assertEqual(self.box.addresses("team0"), [NEW])
         self.ends()
         self.has(OLD)
-        self.networkd.start_anew()
+        self.networkd.restart()
         self.has(OLD)
 
     def test_a_confirmation_disturbs_nothing(self):

@@ -1,4 +1,4 @@
-"""aditd takes its sockets from systemd, has it keep the others, and so loses nobody who connects while it is started anew:
+"""aditd takes its sockets from systemd, has it keep the others, and so loses nobody who connects while it is restarted:
 the tests play systemd (activation.py). On loopback."""
 
 import contextlib
@@ -116,7 +116,7 @@ class Sockets(unittest.TestCase):
         manager.ready(manager.start(document))
         return manager
 
-    def start_anew(self, manager, number, document=None):
+    def restart(self, manager, number, document=None):
         manager.process.send_signal(number)
         manager.process.wait(30)
         manager.ready(manager.start(document))
@@ -173,7 +173,7 @@ class Sockets(unittest.TestCase):
         self.assertEqual(names, [f"listen--127.0.0.1-{port}", "listen--127.0.0.1-0"])
         drawn = manager.store[1][1].getsockname()[1]
         for number in (signal.SIGTERM, signal.SIGKILL):
-            self.start_anew(manager, number)
+            self.restart(manager, number)
             self.assertEqual([ask(port)[0], ask(drawn)[0]], [200, 200])
             self.assertEqual([name for name, _ in manager.store], names, "it gave none twice")
 
@@ -181,12 +181,12 @@ class Sockets(unittest.TestCase):
         gone, stays = free_port(), free_port()
         manager = self.started(settings(("127.0.0.1", gone), ("127.0.0.1", stays)))
         programs.wait_until(lambda: len(manager.store) == 2, "two sockets to keep")
-        self.start_anew(manager, signal.SIGTERM, settings(("127.0.0.1", stays)))
+        self.restart(manager, signal.SIGTERM, settings(("127.0.0.1", stays)))
         programs.wait_until(lambda: len(manager.store) == 1, "one to be let go of")
         self.is_refused(gone)
         self.assertEqual(ask(stays)[0], 200)
         # Every address instead of one, at the same port: the old one is in the way, and systemd has a copy.
-        self.start_anew(manager, signal.SIGTERM, settings(("0.0.0.0", stays)))
+        self.restart(manager, signal.SIGTERM, settings(("0.0.0.0", stays)))
         self.assertEqual(ask(stays, address="127.0.0.2")[0], 200)
         programs.wait_until(lambda: [name for name, _ in manager.store] == [f"listen--0.0.0.0-{stays}"], "the other one")
 
@@ -291,12 +291,12 @@ class TeamPort(unittest.TestCase):
         hosts.ip("-n", self.network.box, "link", "delete", "team0")
         time.sleep(1.5)
         self.assertIsNone(self.manager.process.poll(), "it goes on while the port is away")
-        # It sees the port once that has its address: without, and without systemd's sockets, it ends, and systemd begins it anew.
+        # It sees the port once that has its address: without, and without systemd's sockets, it ends, and systemd restarts it.
         self.manager.process.send_signal(signal.SIGSTOP)
         self.network.plug_team()
         self.manager.process.send_signal(signal.SIGCONT)
 
-    def test_is_listened_at_anew(self):
+    def test_is_listened_at_again(self):
         self.manager.ready(self.manager.start(self.settings()))
         self.assertTrue(self.is_answered(8000))
         self.replug()
@@ -309,7 +309,7 @@ class TeamPort(unittest.TestCase):
         self.assertTrue(self.is_answered(80) and self.is_answered(8000))
         self.replug()
         self.assertEqual(self.manager.process.wait(30), 0)
-        self.manager.doors.append(self.door())  # as systemd starts adit.socket anew; what it has of the old one is deaf
+        self.manager.doors.append(self.door())  # as systemd restarts adit.socket; what it has of the old one is deaf
         self.manager.ready(self.manager.start(None))
         self.assertTrue(self.is_answered(80) and self.is_answered(8000))
         self.assertIn("its interface is gone", self.manager.log())

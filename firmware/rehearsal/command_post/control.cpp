@@ -52,7 +52,7 @@ Outcome begin_new_run(CommandPost& post, const std::optional<Json>& wanted) {
   const auto run = wanted ? read_new_run(*wanted) : NewRun{};
   if (!run) return refused(422, run.error());
   const auto now = Clock::now();
-  post.run().begin_anew(*run, now);
+  post.run().begin_again(*run, now);
   const Run::Standing standing = post.run().standing(now);
   return answered(200,
                   OrderedJson{{"state", standing.state}, {"run", standing.run}, {"team", standing.team}});

@@ -64,7 +64,7 @@ class Run {
   bool end(Clock::time_point now);
 
   /// Whatever became of the last run: the clock and the score at 0, no report used, no artifact found.
-  void begin_anew(const NewRun& wanted, Clock::time_point now);
+  void begin_again(const NewRun& wanted, Clock::time_point now);
 
   Standing standing(Clock::time_point now) const;
 

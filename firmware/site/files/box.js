@@ -45,7 +45,7 @@ export function offerReset() {
     button.disabled = true;
     try {
       await post("/adit/reset", Object.fromEntries(new FormData(form)));
-      button.textContent = "The box begins anew";
+      button.textContent = "The box restarts";
       await sitOutReset();
     } catch (error) {
       trouble.textContent = error.message;

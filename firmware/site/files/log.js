@@ -33,7 +33,7 @@ async function ask() {
   query.set("since", last);
   const answer = await get(`/adit/log?${query}`);
   if (mine !== asked) return;
-  if (answer.last < last) return startOver(); // the box began anew
+  if (answer.last < last) return startOver(); // the box restarted
   last = answer.last;
   rows.prepend(...answer.records.map(row).reverse());
   while (rows.children.length > MOST) rows.lastElementChild.remove();

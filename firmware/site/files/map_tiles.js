@@ -24,7 +24,7 @@ export class Tiles {
   async refresh() {
     let map = await this.#ask();
     if (map.version < this.#version) {
-      this.#forget(); // the box began anew, and its picture with it
+      this.#forget(); // the box restarted, and its picture with it
       map = await this.#ask();
     }
     this.#take(map);

@@ -2,8 +2,8 @@
 import { post } from "./session.js";
 
 const DONE = {
-  operator: "Changed. Whoever else was logged in has to log in anew.",
-  viewer: "Set. Whoever was logged in as viewer has to log in anew.",
+  operator: "Changed. Whoever else was logged in has to log in again.",
+  viewer: "Set. Whoever was logged in as viewer has to log in again.",
   removed: "Removed: nobody can log in as viewer.",
 };
 

@@ -2,9 +2,9 @@
 
 let asked = null;
 
-/** {role: "operator", "viewer" or null (nobody is logged in), csrf, first_start}; asked for once, or `anew`. */
-export function session(anew = false) {
-  if (anew || !asked) {
+/** {role: "operator", "viewer" or null (nobody is logged in), csrf, first_start}; asked for once, or `again`. */
+export function session(again = false) {
+  if (again || !asked) {
     asked = fetch("/adit/session", { cache: "no-store" }).then(resultOf);
     asked.catch(() => (asked = null));
   }
@@ -27,7 +27,7 @@ export async function checkSession() {
   if (role === null) toLogin();
 }
 
-/** Stays until the box, which was reset, has begun anew: before, no page could be loaded whole. Then to its login. */
+/** Stays until the box, which was reset, has restarted: before, no page could be loaded whole. Then to its login. */
 export async function sitOutReset() {
   sitsOut = true;
   for (const end = performance.now() + 15_000; performance.now() < end; ) {
@@ -47,7 +47,7 @@ export async function post(path, body = {}) {
   } catch (error) {
     if (error.status === 401) toLogin();
     if (error.status !== 403) throw error;
-    const { csrf: newer } = await session(true); // somebody logged in anew, in another tab
+    const { csrf: newer } = await session(true); // somebody logged in again, in another tab
     if (newer === csrf) throw error;
     return send(path, body, newer);
   }

@@ -11,8 +11,8 @@ constexpr Seconds kShortestRun = 60;
 
 }  // namespace
 
-/// The program begins anew, in good order, with another place in its settings. Whoever reported before does
-/// so again, whatever he was told: a robot that was started anew, or an operator who is not sure.
+/// The program restarts, in good order, with another place in its settings. Whoever reported before does
+/// so again, whatever he was told: a robot that was restarted, or an operator who is not sure.
 void World::switch_course() {
   if (calm_) return;
   later(between(5, 90), [this] { switch_course(); }, false);

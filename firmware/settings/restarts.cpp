@@ -1,4 +1,4 @@
-#include "settings/anew.hpp"
+#include "settings/restarts.hpp"
 
 #include <string_view>
 
@@ -9,7 +9,7 @@ namespace {
 
 struct Row {
   std::string_view begins;  // the path of a setting
-  Anew anew;
+  Restarts restarts;
 };
 
 constexpr Row kRows[] = {
@@ -28,15 +28,15 @@ constexpr Row kRows[] = {
 
 }  // namespace
 
-Anew anew_by(const Settings& running, const Settings& next) {
-  Anew all;
+Restarts restarts_by(const Settings& running, const Settings& next) {
+  Restarts all;
   for (const Change& change : changes(running, next)) {
-    for (const auto& [begins, anew] : kRows) {
+    for (const auto& [begins, restarts] : kRows) {
       if (!change.path.starts_with(begins)) continue;
-      all.listeners = all.listeners || anew.listeners;
-      all.scoring = all.scoring || anew.scoring;
-      all.mapping = all.mapping || anew.mapping;
-      all.panel = all.panel || anew.panel;
+      all.listeners = all.listeners || restarts.listeners;
+      all.scoring = all.scoring || restarts.scoring;
+      all.mapping = all.mapping || restarts.mapping;
+      all.panel = all.panel || restarts.panel;
     }
   }
   return all;

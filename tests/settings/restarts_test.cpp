@@ -1,5 +1,5 @@
-// What of a running gateway begins anew: a row for each setting there is.
-#include "settings/anew.hpp"
+// What of a running gateway restarts: a row for each setting there is.
+#include "settings/restarts.hpp"
 
 #include <gtest/gtest.h>
 
@@ -15,16 +15,16 @@ namespace {
 
 using namespace std::chrono_literals;
 
-constexpr Anew kNothing{}, kListeners{.listeners = true}, kScoring{.scoring = true},
+constexpr Restarts kNothing{}, kListeners{.listeners = true}, kScoring{.scoring = true},
     kMapping{.mapping = true}, kBoth{.scoring = true, .mapping = true}, kPanel{.panel = true};
 
-struct AnewCase {
+struct RestartsCase {
   std::string path;  // as in keys()
   std::function<void(Settings&)> change;
-  Anew anew;
+  Restarts restarts;
 };
 
-const AnewCase kAnewCases[] = {
+const RestartsCase kRestartsCases[] = {
     {"command_post.scoring.address", [](Settings& s) { s.command_post.scoring.address = "10.9"; }, kScoring},
     {"command_post.scoring.port", [](Settings& s) { s.command_post.scoring.port = 9; }, kScoring},
     {"command_post.mapping.address", [](Settings& s) { s.command_post.mapping.address = "10.9"; }, kMapping},
@@ -90,41 +90,42 @@ Settings running() {
   return settings;
 }
 
-TEST(Anew, IsWhatASettingChangesAndNothingElse) {
-  for (const AnewCase& each : kAnewCases) {
+TEST(Restarts, IsWhatASettingChangesAndNothingElse) {
+  for (const RestartsCase& each : kRestartsCases) {
     Settings next = running();
     each.change(next);
-    EXPECT_EQ(anew_by(running(), next), each.anew) << each.path;
+    EXPECT_EQ(restarts_by(running(), next), each.restarts) << each.path;
   }
 }
 
-TEST(Anew, IsDecidedForEverySetting) {
+TEST(Restarts, IsDecidedForEverySetting) {
   for (const Key& key : keys()) {
     if (key.path == "version") continue;
-    EXPECT_TRUE(std::ranges::find(kAnewCases, key.path, &AnewCase::path) != std::end(kAnewCases)) << key.path;
+    EXPECT_TRUE(std::ranges::find(kRestartsCases, key.path, &RestartsCase::path) != std::end(kRestartsCases))
+        << key.path;
   }
 }
 
-TEST(Anew, IsNothingWhereNothingIsChanged) {
-  EXPECT_EQ(anew_by(running(), running()), kNothing);
+TEST(Restarts, IsNothingWhereNothingIsChanged) {
+  EXPECT_EQ(restarts_by(running(), running()), kNothing);
 }
 
-TEST(Anew, IsAllThatSeveralSettingsChange) {
+TEST(Restarts, IsAllThatSeveralSettingsChange) {
   Settings next = running();
   next.team.listen.emplace_back("10.9", 9);
   next.command_post.scoring.port = 9;
   next.reports.near_metres = 9;
-  EXPECT_EQ(anew_by(running(), next), (Anew{.listeners = true, .scoring = true}));
+  EXPECT_EQ(restarts_by(running(), next), (Restarts{.listeners = true, .scoring = true}));
 }
 
-TEST(Anew, IsTheEndpointsOfTheCourseInUse) {
+TEST(Restarts, IsTheEndpointsOfTheCourseInUse) {
   Settings now = running(), next = running();
   now.command_post.scoring = {"10.1", 1};
   next.command_post = now.command_post;
   next.courses.front().scoring = {"10.9", 9};
   next.courses.front().mapping = now.command_post.mapping;
   next.command_post.course = "A";
-  EXPECT_EQ(anew_by(in_use(now), in_use(next)), kScoring);
+  EXPECT_EQ(restarts_by(in_use(now), in_use(next)), kScoring);
 }
 
 }  // namespace

@@ -119,10 +119,10 @@ Value value_of(const cbor_item_t& item, Lists* lists) {
 }
 
 /// The value from `begin` on.
-icd::Checked<Value> with_lists(const Text& text, std::size_t begin, std::size_t /*end*/) {
+icd::Checked<Value> with_lists_at(const Text& text, std::size_t begin, std::size_t /*end*/) {
   Cut cut = cut_cbor(*text, begin);
   if (cut.values > kMostOutsideLists) return std::unexpected(too_many_outside_lists(kMostOutsideLists));
-  Lists lists(text, std::move(cut.arrays), with_lists, 0);
+  Lists lists(text, std::move(cut.arrays), with_lists_at, 0);
   return cbor_value(cut.rest, &lists);
 }
 
@@ -139,7 +139,7 @@ icd::Checked<Value> cbor_value(const std::string& bytes, Lists* lists) {
 }
 
 icd::Checked<Value> cbor_value_with_lists(std::string bytes) {
-  return with_lists(std::make_shared<const std::string>(std::move(bytes)), 0, 0);
+  return with_lists_at(std::make_shared<const std::string>(std::move(bytes)), 0, 0);
 }
 
 }  // namespace adit::codec

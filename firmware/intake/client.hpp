@@ -36,7 +36,7 @@ class Engine {
 /// One client's connection, from accept to close. Lives exactly as long as libmicrohttpd's own.
 class Client {
  public:
-  /// What the client is waited for; each with its own deadline.
+  /// What the server waits for; each has its own deadline.
   enum class Phase : std::uint8_t {
     Head,     // of a request that has begun, or of the first
     Idle,     // between requests
@@ -57,14 +57,14 @@ class Client {
   std::optional<Held> held() const;
   bool is_known() const { return known_; }
   void is_known(bool known) { known_ = known; }
-  /// Ends for another, who has no room else; says so where a request is under way.
+  /// Ends, so that another has room; if a request is under way, the client is told so.
   void give_way();
   /// Both directions are over, or the connection was reset. A client that only ends its own direction is not
   /// gone: it may still read.
   bool hung_up() const { return hung_up_; }
 
-  /// libmicrohttpd reads nothing more before the next request's head is whole and sound. Not from within its
-  /// callbacks.
+  /// Keeps libmicrohttpd from reading until the next request's head is whole and sound. Not to be called from
+  /// within its callbacks.
   void hold_back();
   Gate& gate() { return gate_; }
   /// libmicrohttpd has read the request's line.
@@ -74,22 +74,23 @@ class Client {
   void request_over();
   const std::shared_ptr<Request>& request() const { return request_; }
 
-  /// The client is to send something, or to take what it is sent, within that time.
+  /// The client has to send something, or to take what it is sent, within that time.
   void expect_bytes(std::chrono::milliseconds within);
   void expect_reading(std::chrono::milliseconds within);
   /// How long a client has to read the last answer of its connection.
   static constexpr std::chrono::milliseconds kLingerWithin{2000};
-  /// The rest of the body: a stranger's soon, that of who is known at the least rate.
+  /// The client has to send the rest of the body: a stranger soon, a known one at the least rate.
   void expect_body();
   void body_came(std::size_t bytes);
-  /// The client is to take its answer at the least rate.
+  /// The client has to take its answer at the least rate.
   void expect_steady_reading();
   void expect_nothing();
   loop::Instant deadline() const { return deadline_; }
   /// The deadline has passed.
   void late();
 
-  /// Both do nothing where it is so already; suspend() not while libmicrohttpd takes the connection in.
+  /// Both do nothing if it is so already. suspend() must not be called while libmicrohttpd takes the
+  /// connection in.
   void suspend();
   void resume();
   bool suspended() const { return suspended_; }

@@ -15,7 +15,7 @@
 
 namespace adit::intake {
 
-/// Who sent a message and how large it came.
+/// Who sent a message, and its size as it came.
 struct Sender {
   std::string address;
   std::size_t bytes = 0;         // of the body as received
@@ -28,8 +28,8 @@ class MapArrival {
  public:
   virtual ~MapArrival() = default;
 
-  /// Keeps `bytes` of its data, which follow those before, so that they need not be held in memory; then
-  /// calls `done` on the loop with those that there was no room for: a part of them and all after it.
+  /// Stores `bytes` of its data, which follow those before, so that they need not be held in memory. Then
+  /// calls `done` on the loop with the rest for which there was no room.
   virtual void store(icd::ChunkedBytes bytes, std::function<void(icd::ChunkedBytes left)> done) = 0;
   /// All that was stored. For any thread, while nothing is being stored.
   virtual icd::Checked<icd::ChunkedBytes> stored() = 0;
@@ -41,7 +41,7 @@ class MapArrival {
                     std::function<void(icd::Checked<void>)> done) = 0;
 };
 
-/// What the team's messages are handed to once they have passed every check. Called on the loop.
+/// Takes the team's messages once they have passed every check. Called on the loop.
 class Desk {
  public:
   virtual ~Desk() = default;

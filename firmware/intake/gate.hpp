@@ -8,8 +8,8 @@
 
 namespace adit::intake {
 
-/// Stands before libmicrohttpd on one connection: it is let on to read a request only after the request's
-/// head lies whole and sound in the socket, where it is looked at without being taken.
+/// Stands before libmicrohttpd on one connection: lets it read a request only once the request's head lies
+/// whole and sound in the socket, where it is checked without being taken out.
 class Gate {
  public:
   enum class Finding : std::uint8_t {
@@ -22,13 +22,13 @@ class Gate {
 
   explicit Gate(int fd) : fd_(fd) {}
 
-  /// A request is over. The next one's head is waited for, unless it was looked at with the one before
-  /// (a client that does not wait for answers).
+  /// A request is over. Waits for the head of the next one, unless that was checked with the one before (the
+  /// client does not wait for answers).
   void request_over();
   bool is_waiting() const { return stage_ == Stage::Waiting; }
-  /// What came first was not looked at yet, or has been let on and is not yet read.
+  /// The first bytes were not looked at yet, or libmicrohttpd may read them and has not yet.
   bool has_unseen() const;
-  /// `at_once`: though it comes in small pieces.
+  /// `at_once`: even if the head comes in small pieces.
   Finding look(loop::Instant now, bool at_once);
   loop::Instant again_at() const { return again_at_; }
   /// The head that is looked at.
@@ -36,17 +36,17 @@ class Gate {
 
   /// Whether the request that is let in next has a body in chunks.
   bool next_is_chunked() const { return next_ < sound_.size() && !sound_[next_].framing.length; }
-  /// libmicrohttpd begins a request. False: with a head that was not looked at.
+  /// libmicrohttpd begins a request. False: its head was not checked.
   bool let_in();
   /// Of the request that was let in last.
   const Framing& framing() const { return framing_; }
-  /// libmicrohttpd has read on behind the request that it was let in for, which had a length: a part of the
-  /// next head would get past the gate. Asked once the request has been read.
+  /// libmicrohttpd has read further than the end of the request that was let in, which had a length: a part
+  /// of the next head would get past the gate. To be asked once the request has been read.
   bool is_passed_by() const;
 
   bool has_refused() const { return stage_ == Stage::Refused; }
-  /// Throws away what has come: a socket that is closed with bytes unread is reset, and its last answer lost.
-  /// False where that was too much.
+  /// Throws away the bytes that have come: a socket that is closed with bytes unread is reset, and its last
+  /// answer lost. False if there were too many.
   bool read_away();
 
  private:

@@ -15,9 +15,9 @@ struct Framing {
   std::optional<std::uint64_t> length = 0;  // absent where chunked
 };
 
-/// Judges the head of one request as it comes, before libmicrohttpd reads it, which is more lenient than RFC
-/// 9112 allows: what two readers could read in two ways, it refuses. Keeps none of the bytes, and looks at
-/// each of them a fixed number of times, in however many pieces they come.
+/// Checks the head of one request as it comes, before libmicrohttpd reads it, which is more lenient than RFC
+/// 9112 allows: refuses what two readers could read in two ways. Keeps no bytes, and looks at each a fixed
+/// number of times, in however many pieces they come.
 class HeadChecker {
  public:
   static constexpr std::size_t kMostBytes = 16 * 1024;  // of the head, with the blank line that ends it

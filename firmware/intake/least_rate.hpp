@@ -7,8 +7,8 @@
 
 namespace adit::intake {
 
-/// Whether bytes move as fast as a slow radio still moves them: kLeast over any `window`, looked at twice in
-/// each. Who stops altogether is found out within one and a half of them.
+/// Whether bytes move at least as fast as on a slow radio: kLeast over any `window`, checked twice in each. A
+/// client that stops altogether is found out within one and a half windows.
 class LeastRate {
  public:
   static constexpr std::uint64_t kLeast = 1000;  // bytes a second

@@ -17,17 +17,17 @@ struct MapUploadOptions {
   std::shared_ptr<UploadBudget> without_room;  // for what is held because it cannot be stored
 };
 
-/// Takes a map. Its body is decoded on a worker as it arrives, one piece of work at a time; while more than
-/// kPending waits for the worker, the client is made to wait. What has been decoded of its data is stored
-/// kStored bytes and more at a time, and the worker rests while as much is decoded again before that is done:
-/// a large map is nowhere in memory as a whole.
+/// Takes a map. A worker decodes its body as it arrives, one piece of work at a time; while more than
+/// kPending waits for the worker, the client has to wait. Decoded data is stored kStored bytes and more at a
+/// time; if as much again is decoded before that is stored, the worker rests. So no large map is in memory as
+/// a whole.
 ///
 /// A body that is compressed as a whole may grow a thousandfold, and is decoded by little more than kStored
-/// at a time. What it has grown to counts in the budget. Where it cannot be stored it is held until it can be
-/// judged, kWithoutRoom of all such together; what is more is refused.
+/// at a time. Its decoded size counts in the budget. If it cannot be stored, it is held in memory until it
+/// can be judged: kWithoutRoom of all such maps together; a map that would need more is refused.
 ///
-/// Once whole and checked it is the desk's, which answers when it is kept, also where the client has hung up
-/// meanwhile; until then a client that hangs up takes its map back.
+/// Once whole and checked it is the desk's, which answers when it is kept, even if the client has hung up by
+/// then. If the client hangs up before, the map is dropped.
 class MapUpload final : public WorkerUpload {
  public:
   static constexpr std::size_t kPending = 256 * 1024, kStored = 256 * 1024;

@@ -14,11 +14,12 @@ namespace adit::intake {
 ///
 /// Nearly all are small: they are decoded on the loop as they arrive, and wait for nobody. One that turns out
 /// to be larger than codec::Limits::text_bytes (a marker may have icd::kMostMarkerPoints), or to have more
-/// than kSmallValues, is kept as it came, and decoded on a worker once it is whole: one at a time, for what
-/// that takes. No message is in memory as a tree: each marker is parsed by itself, and each of its points.
+/// than kSmallValues, is kept as it came, and decoded on a worker once it is whole: one at a time, because
+/// that takes much memory. No message is in memory as a tree: each marker is parsed by itself, and each of
+/// its points.
 ///
-/// Once whole and checked it is the desk's, also where the client has hung up meanwhile; until then a client
-/// that hangs up takes it back.
+/// Once whole and checked it is the desk's, even if the client has hung up by then. If the client hangs up
+/// before, the update is dropped.
 class MarkersUpload final : public WorkerUpload {
  public:
   /// Room for every marker there can be: one of 100,000 points and as many colors takes 7.9 MB of CBOR.

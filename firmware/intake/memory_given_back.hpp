@@ -6,8 +6,8 @@
 
 namespace adit::intake {
 
-/// At the end of what reads a large document: what was freed in many small pieces stays the process's own,
-/// for each thread once, unless it is asked for.
+/// Gives memory back to the system after a large document was read: what was freed in many small pieces would
+/// stay the process's, once for each thread.
 class MemoryGivenBack {
  public:
   explicit MemoryGivenBack(bool is_large) : is_large_(is_large) {}

@@ -18,13 +18,13 @@ namespace adit::intake {
 
 class TokenGuesses;
 
-/// Why the server did not go on with a connection, or not with a request.
+/// Why the server ended a connection, or refused a request.
 enum class Ended : std::uint8_t {
-  NoRoom,      // refused: its address, or all together, have as many requests under way as they may
-  GaveWay,     // a stranger's, for another; or that of an address with more than its share
-  Idle,        // between requests, for another
-  Slow,        // its head, body or reading
-  WrongToken,  // a request's, or one that was not looked at (TokenGuesses)
+  NoRoom,      // refused: its address, or all together, have as many requests under way as allowed
+  GaveWay,     // for another: a stranger's, or that of an address with more than its share
+  Idle,        // for another: it was between requests
+  Slow,        // its head, body or reading was too slow
+  WrongToken,  // the request's token was wrong, or was not checked (TokenGuesses)
 };
 inline constexpr std::size_t kEndedKinds = 5;
 
@@ -77,8 +77,8 @@ class Stream {
   static constexpr std::size_t kLag = 1u << 20;
 };
 
-/// Answers one request, now or later, from the loop; exactly one of the calls, once. Does nothing where the
-/// client has gone. Copies stand for the same request.
+/// Answers one request, now or later, on the loop, by exactly one call. Does nothing if the client has gone.
+/// Copies stand for the same request.
 class Responder {
  public:
   virtual ~Responder() = default;
@@ -107,20 +107,20 @@ class Flow {
   virtual void resume() = 0;
 };
 
-/// What he who asks has shown.
+/// What the client has shown.
 enum class Shown : std::uint8_t {
-  Nothing,     // but that he is a stranger
-  WrongToken,  // or none where one is asked for
-  Token,       // one that is good
-  Enough,      // a session, or that he has had one; or what he asks for needs nothing of the team
+  Nothing,     // it is a stranger
+  WrongToken,  // a wrong token, or none where one is needed
+  Token,       // a right token
+  Enough,      // a session, or that it has had one; or it asks for something that needs none
 };
 
-/// What a request is given to.
+/// Takes requests.
 class Handler {
  public:
   virtual ~Handler() = default;
-  /// Asked before open(). Who is known (Token, Enough) has room however many strangers come, and all the time
-  /// that a slow radio takes.
+  /// Asked before open(). A known client (Token, Enough) has room however many strangers come, and as much
+  /// time as a slow radio takes.
   virtual Shown shown(const RequestHead& head) = 0;
   /// Called when the headers are whole. May answer at once (a refusal: the body is then read away up to a
   /// limit, or the connection closed). Returning nothing is allowed only after answering.
@@ -130,8 +130,8 @@ class Handler {
 
 /// An HTTP/1.1 server by libmicrohttpd on the loop, for one listening address.
 ///
-/// Who has room is shares.hpp's to say, and who is too slow least_rate.hpp's; a request for which there is no
-/// room is answered 503. It keeps a body's bytes nowhere: a slow receiver is back-pressure.
+/// shares.hpp decides who has room, least_rate.hpp who is too slow; a request that finds no room is answered
+/// 503. The server keeps no bytes of a body: a slow receiver is back-pressure.
 class Server {
  public:
   /// `socket`: one that listens already, taken instead of opening one at `listen`.
@@ -146,8 +146,8 @@ class Server {
   std::size_t connections() const;
   /// Those of them that have shown no token.
   std::size_t strangers() const;
-  /// Takes no new connections; requests under way go on. A socket of which there is a copy elsewhere goes on
-  /// to listen, and whoever connects waits for who has it.
+  /// Takes no new connections; requests under way go on. If there is a copy of the socket elsewhere, it still
+  /// listens, and clients that connect wait for the copy's owner.
   void stop_listening();
 
  private:

@@ -14,11 +14,11 @@ namespace adit::intake {
 
 /// Slows down who guesses bearer tokens, and nobody else.
 ///
-/// Of an address kFree wrong tokens are looked at and answered at once, then one each kEach. The same wrong
-/// one again tells its sender nothing new, so it is no guess, but its answer comes late: a robot with an old
-/// token takes no guesses from those behind the same router. A right token is always let in, from everywhere
-/// but where more was guessed than may be, by an address that has never shown a right one: there it is not
-/// looked at, for otherwise each answer would tell whether a guess was right.
+/// Of each address, kFree wrong tokens are checked and answered at once, then one each kEach. The same wrong
+/// token again is no guess, because it tells its sender nothing new, but its answer comes late: a robot with
+/// an old token uses up no guesses of others behind the same router. A right token is always let in, unless
+/// its address has guessed too much and has never shown a right one: then no token is checked, because each
+/// answer would tell whether a guess was right.
 class TokenGuesses {
  public:
   static constexpr int kFree = 10;
@@ -34,11 +34,11 @@ class TokenGuesses {
     friend bool operator==(const Verdict&, const Verdict&) = default;
   };
 
-  /// What becomes of a request from `address` that shows a token which is right.
+  /// What to do with a request from `address` that shows a right token.
   Verdict right(const std::string& address, loop::Instant now);
-  /// And of one that shows `token`, which is wrong, or none where one is asked for ("").
+  /// What to do with one that shows `token`, which is wrong; "": it shows none, and should.
   Verdict wrong(const std::string& address, std::string_view token, loop::Instant now);
-  /// What is right is another now.
+  /// The tokens have changed.
   void forget() { counts_.clear(); }
 
  private:

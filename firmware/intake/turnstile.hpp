@@ -10,12 +10,12 @@
 
 namespace adit::intake {
 
-/// What stands before a server's handler: who shows a wrong token is answered late, or not looked at, as
-/// TokenGuesses says. An answer that is to come late is held with its connection, which is a stranger's: so
-/// there are no more of them than the strangers' share, and no bytes of a body are taken meanwhile.
+/// Stands before a server's handler: a request with a wrong token is answered late, or its token is not
+/// checked, as TokenGuesses says. A late answer holds its connection, which counts as a stranger's: so there
+/// are no more of them than the strangers' share, and no bytes of a body are taken meanwhile.
 class Turnstile final : public Handler {
  public:
-  /// `wrong` is told of the address of each request without a right token. All outlive this.
+  /// `wrong` is called with the address of each request without a right token. All outlive this.
   Turnstile(loop::Loop& loop, Handler& handler, TokenGuesses& guesses, std::chrono::milliseconds late,
             std::function<void(const std::string& address)> wrong)
       : loop_(loop), handler_(handler), guesses_(guesses), late_(late), wrong_(std::move(wrong)) {}

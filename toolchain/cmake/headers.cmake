@@ -8,7 +8,7 @@ function(adit_way name)
   add_library(adit_way_${name} OBJECT EXCLUDE_FROM_ALL ${CMAKE_BINARY_DIR}/headers/${name}.cpp)
   target_compile_options(adit_way_${name} PUBLIC ${WAY_OPTIONS})
   target_link_libraries(adit_way_${name} PRIVATE adit_options ${WAY_LIBRARIES})
-  target_precompile_headers(adit_way_${name} PRIVATE ${WAY_HEADERS}
+  target_precompile_headers(adit_way_${name} PRIVATE ${CMAKE_CURRENT_FUNCTION_LIST_DIR}/assertions.hpp ${WAY_HEADERS}
     <algorithm> <array> <charconv> <chrono> <cmath> <cstdint> <expected> <functional> <map> <memory> <optional> <span> <string>
     <string_view> <utility> <vector>)
 endfunction()

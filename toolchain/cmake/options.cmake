@@ -7,6 +7,9 @@ target_compile_options(adit_options INTERFACE
   -fstack-protector-strong -fstack-clash-protection -ffunction-sections -fdata-sections -fPIE)
 target_compile_definitions(adit_options INTERFACE _GLIBCXX_ASSERTIONS)
 target_link_options(adit_options INTERFACE -pie -Wl,-z,relro,-z,now -Wl,--gc-sections)
+if(CMAKE_SYSTEM_PROCESSOR MATCHES x86_64)  # binutils 2.40 packs them there, not yet for ARM
+  target_link_options(adit_options INTERFACE -Wl,-z,pack-relative-relocs)
+endif()
 # Small, but for what says otherwise: headers.cmake has the ways to be compiled.
 set(CMAKE_CXX_FLAGS_RELEASE "-Os -DNDEBUG")
 

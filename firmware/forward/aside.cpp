@@ -152,13 +152,13 @@ void Aside::add(lanes::Message message, int status, const std::string& why, std:
              {"robot", who(item.message)},
              {"status", std::to_string(status)},
              {"why", why}});
-  const auto said_anew = [&](std::uint64_t number) {
+  const auto said_again = [&](std::uint64_t number) {
     const lanes::AsideItem* const older = items_.find(number);
     return older == nullptr || older->overtaken || lanes::overtakes(item.message, older->message);
   };
   std::vector<std::uint64_t> covered;
   for (const lanes::AsideItem& older : items_.items()) {
-    if (said_anew(older.number)) covered.push_back(older.number);
+    if (said_again(older.number)) covered.push_back(older.number);
   }
   for (const std::uint64_t gone : items_.add(std::move(item))) {
     if (std::ranges::find(covered, gone) == covered.end()) ++dropped_;

@@ -29,7 +29,7 @@ std::unexpected<icd::Refusal> not_kept(const std::string& why) {
 }
 /// A state or markers of several fail so often together before the one at fault is looked for.
 constexpr int kTriesTogether = 3;
-/// Markers on trial; beyond them all trials begin anew.
+/// Markers on trial; beyond them all trials begin again.
 constexpr std::size_t kMostTrials = 1000;
 
 /// For a verdict that is not Taken.
@@ -56,14 +56,14 @@ lanes::MarkerBounds bounds_of(const settings::Queues& queues) {
 Telemetry::Telemetry(loop::Loop& loop, const settings::Settings& settings,
                      std::optional<icd::BearerToken> token, Record& record, Aside& aside,
                      std::mt19937_64& random, journal::Journal& journal, AsForwarded& as_forwarded,
-                     std::function<void()> anew)
+                     std::function<void()> restart)
     : loop_(loop),
       settings_(settings),
       record_(record),
       aside_(aside),
       journal_(journal),
       as_forwarded_(as_forwarded),
-      anew_(std::move(anew)),
+      restart_(std::move(restart)),
       channel_(loop, "mapping", endpoint_of(settings.command_post, settings.command_post.mapping, 0),
                std::move(token), settings.command_post.timeouts.mapping_answer),
       state_pace_(icd::Uri::StateUpdate, settings.command_post.rates.state_hz, random, journal),
@@ -115,7 +115,7 @@ void Telemetry::endpoint_turned() {
 icd::Checked<void> Telemetry::take(const icd::StateUpdate& update, std::size_t bytes_received) {
   if (!state_.has_room_for(update)) return full("more robots than can be kept apart");
   if (const auto kept = journal_.accepted(update); !kept) return not_kept(kept.error());
-  whole(anew_, [&] {
+  whole(restart_, [&] {
     for (const icd::NamedPose& pose : update.poses) {
       record_.accepted({Kind::State, pose.name.text()}, bytes_received, loop_.stamp_now());
     }
@@ -128,7 +128,7 @@ icd::Checked<void> Telemetry::take(const icd::StateUpdate& update, std::size_t b
 icd::Checked<void> Telemetry::take(const icd::MarkersUpdate& update, std::size_t bytes_received) {
   if (!markers_.has_room_for(update)) return full("more markers than can wait (queues.marker_bytes)");
   if (const auto kept = journal_.accepted(update); !kept) return not_kept(kept.error());
-  whole(anew_, [&] {
+  whole(restart_, [&] {
     record_.accepted({Kind::Markers, ""}, bytes_received, loop_.stamp_now());
     markers_.add(update, loop_.now());
   });
@@ -139,7 +139,7 @@ icd::Checked<void> Telemetry::take(const icd::MarkersUpdate& update, std::size_t
 void Telemetry::pump() {
   if (!stopping_ && !aside_writes_ && channel_.turns()) endpoint_turned();
   if (stopping_ || aside_writes_ || channel_.busy() || !channel_.has_token()) return;
-  whole(anew_, [this] { send_next(); });
+  whole(restart_, [this] { send_next(); });
 }
 
 void Telemetry::send_next() {
@@ -191,7 +191,7 @@ void Telemetry::answered(Kind kind, UriPace& pace, const Waiting& sent, std::siz
   if (kind == Kind::Markers) markers_under_way_ = {};
   if (!loop::guarded("the answer to a state or markers", [&] { judge(kind, pace, sent, bytes, outcome); })) {
     pace.lost(loop_.now());
-    loop::guarded("putting a state or markers back", [&] { whole(anew_, [&] { put_back(sent); }); });
+    loop::guarded("putting a state or markers back", [&] { whole(restart_, [&] { put_back(sent); }); });
   }
   pump();
 }

@@ -24,10 +24,10 @@ namespace adit::forward {
 class Telemetry {
  public:
   /// `as_forwarded` is told what the Command Post took. What is accepted is in the journal first, until then;
-  /// `anew`: see whole.hpp.
+  /// `restart`: see whole.hpp.
   Telemetry(loop::Loop& loop, const settings::Settings& settings, std::optional<icd::BearerToken> token,
             Record& record, Aside& aside, std::mt19937_64& random, journal::Journal& journal,
-            AsForwarded& as_forwarded, std::function<void()> anew);
+            AsForwarded& as_forwarded, std::function<void()> restart);
 
   /// Takes up what the lives before have left.
   void carry_on(const journal::Carried& carried);
@@ -123,7 +123,7 @@ class Telemetry {
   Aside& aside_;
   journal::Journal& journal_;
   AsForwarded& as_forwarded_;
-  std::function<void()> anew_;
+  std::function<void()> restart_;
   Channel channel_;
   UriPace state_pace_, markers_pace_;
   loop::Source wake_;

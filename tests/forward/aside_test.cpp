@@ -26,11 +26,11 @@ struct Told {
 
 class AsideTest : public testing::Test {
  protected:
-  AsideTest() { anew(); }
+  AsideTest() { restart(); }
   ~AsideTest() override { let_go(); }
 
   /// As another service finds what this one left, which has ended as it should.
-  void anew() {
+  void restart() {
     let_go();
     aside_.reset();
     writer_ = std::make_unique<loop::Writer>(loop_);  // the one before finishes first
@@ -86,7 +86,7 @@ TEST_F(AsideTest, OutlivesTheServiceWithItsReason) {
   add(state(), 500, "it failed", 200);
   add(markers(), 413, "too long", 300);
   const auto before = aside_->rows();
-  anew();
+  restart();
   const auto rows = aside_->rows();
   ASSERT_EQ(rows.size(), 3);
   for (std::size_t i = 0; i < rows.size(); ++i) {
@@ -117,7 +117,7 @@ TEST_F(AsideTest, ForgetsWhatIsSentAgainOrDiscarded) {
   EXPECT_EQ(aside_->discard(2).error(), "nothing of number 2 is set aside");
   settle();
   EXPECT_TRUE(fs::is_empty(folder_.path()));
-  anew();
+  restart();
   EXPECT_TRUE(aside_->rows().empty());
 }
 
@@ -128,7 +128,7 @@ TEST_F(AsideTest, RefusesToSendWhatSomethingNewerSaysAllOf) {
   const auto sent = aside_->to_be_sent(1);
   ASSERT_FALSE(sent);
   EXPECT_NE(sent.error().find("newer"), std::string::npos);
-  anew();
+  restart();
   EXPECT_TRUE(aside_->rows().front().overtaken) << "over a restart, too";
   EXPECT_TRUE(aside_->discard(1));
 }
@@ -151,7 +151,7 @@ TEST_F(AsideTest, SaysWhenItIsWrittenThatSomethingWasOvertaken) {
   EXPECT_TRUE(found_after_a_kill().front().overtaken);
 }
 
-TEST_F(AsideTest, CountsWhatMadePlaceAndWasNotSaidAnew) {
+TEST_F(AsideTest, CountsWhatMadePlaceAndWasNotSaidAgain) {
   for (int i = 0; i < 5; ++i) add(state());
   EXPECT_EQ(aside_->dropped(), 0) << "the newer state says all of it";
   for (std::size_t i = 0; i < lanes::SetAside::kMostItems + 3; ++i) {
@@ -167,7 +167,7 @@ TEST_F(AsideTest, PassesOverWhatCannotBeRead) {
   folder_.put("1.json", "{");
   folder_.put("9.json", "{}");
   folder_.put("x.json.part", "{}");
-  anew();
+  restart();
   ASSERT_EQ(aside_->rows().size(), 1);
   EXPECT_EQ(aside_->rows().front().number, 2);
 }
@@ -191,7 +191,7 @@ TEST_F(AsideTest, LetsTheOriginGoOnceItIsKeptAndNotBefore) {
 TEST_F(AsideTest, IsFinishedWhenTheServiceStops) {
   hold();
   add(grid());
-  anew();
+  restart();
   EXPECT_EQ(aside_->rows().size(), 1u);
 }
 

@@ -50,7 +50,7 @@ struct Life {
         journal(loop, folder + "/journal"),
         aside(loop, writer, folder + "/aside"),
         news(loop, settings, std::move(token), record, aside, random, journal, as_forwarded,
-             [this] { anew = true; }) {
+             [this] { restart = true; }) {
     const journal::Carried carried = journal.read();
     journal.begin({.boot = "b", .at = loop.now(), .stamp = loop.stamp_now()});
     news.carry_on(carried);
@@ -63,7 +63,7 @@ struct Life {
   journal::Journal journal;
   Aside aside;
   AsForwarded as_forwarded;
-  bool anew = false;  // another life is to follow
+  bool restart = false;  // another life is to follow
   Telemetry news;
 };
 
@@ -211,7 +211,7 @@ TEST_F(NewsTest, LosesNothingWhereMemoryRunsOutOnTheWay) {
       while (!all_there() && ScarceMemory::failed() == 0) loop_.turn(std::chrono::milliseconds{2});
       const std::size_t failed = scarce.end();
       ASSERT_TRUE(loop::turn_until(loop_, [&] {
-        if (std::exchange(life->anew, false)) {
+        if (std::exchange(life->restart, false)) {
           life.reset();
           life = life_before(post.peer);
         }

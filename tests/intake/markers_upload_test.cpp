@@ -2,6 +2,8 @@
 
 #include <gtest/gtest.h>
 
+#include <chrono>
+
 #include "codec/deflated.hpp"
 #include "icd/markers_update.hpp"
 #include "intake/team.hpp"
@@ -38,31 +40,42 @@ std::string cbor_of(const json& message) {
   return bytes;
 }
 
-TEST(MarkersUpload, HasRoomForTheLargestMarkerThereCanBe) {
+/// A message with the largest marker there can be is taken whole. Reading it takes long under a sanitizer.
+void is_taken(std::string_view headers, const std::string& body, bool colored) {
   Team team;
-  const std::string cbor = cbor_of({{"markers", {marker(icd::kMostMarkerPoints, true)}}});
-  const std::string text = json{{"markers", {marker(icd::kMostMarkerPoints, false)}}}.dump();
-  ASSERT_GT(cbor.size(), 7u << 20);
-  ASSERT_GT(text.size(), 5u << 20);
-  for (const std::string& sent :
-       {authorized("POST", "/markers/update", kCborType, cbor),
-        authorized("POST", "/markers/update", std::string(kCborType) + kGzip, gzipped(cbor)),
-        authorized("POST", "/markers/update", kJsonType, text)}) {
-    const auto reply = team.ask(sent);
-    ASSERT_TRUE(reply);
-    EXPECT_EQ(reply->status, 200) << reply->body;
-  }
+  const auto reply =
+      team.ask(authorized("POST", "/markers/update", headers, body), std::chrono::seconds(100));
+  ASSERT_TRUE(reply);
+  EXPECT_EQ(reply->status, 200) << reply->body;
   team.served.on_loop([&] {
-    ASSERT_EQ(team.desk.markers.size(), 3u);
-    for (const icd::MarkersUpdate& update : team.desk.markers) {
-      ASSERT_EQ(update.markers.size(), 1u);
-      const icd::Marker& taken = update.markers[0];
-      EXPECT_EQ(taken.points.size(), icd::kMostMarkerPoints);
-      EXPECT_EQ(taken.points.at(70).x, 10.0);
-    }
-    EXPECT_EQ(team.desk.markers[0].markers[0].colors.size(), icd::kMostMarkerPoints);
-    EXPECT_EQ(team.desk.senders.at(0).bytes, cbor.size());
+    ASSERT_EQ(team.desk.markers.size(), 1u);
+    ASSERT_EQ(team.desk.markers[0].markers.size(), 1u);
+    const icd::Marker& taken = team.desk.markers[0].markers[0];
+    EXPECT_EQ(taken.points.size(), icd::kMostMarkerPoints);
+    EXPECT_EQ(taken.points.at(70).x, 10.0);
+    EXPECT_EQ(taken.colors.size(), colored ? icd::kMostMarkerPoints : 0);
+    EXPECT_EQ(team.desk.senders.at(0).bytes, body.size());
   });
+}
+
+std::string largest_in_cbor() {
+  std::string cbor = cbor_of({{"markers", {marker(icd::kMostMarkerPoints, true)}}});
+  EXPECT_GT(cbor.size(), 7u << 20);
+  return cbor;
+}
+
+TEST(MarkersUpload, HasRoomForTheLargestMarkerThereCanBe) {
+  is_taken(kCborType, largest_in_cbor(), true);
+}
+
+TEST(MarkersUpload, HasRoomForTheLargestMarkerUnderGzip) {
+  is_taken(std::string(kCborType) + kGzip, gzipped(largest_in_cbor()), true);
+}
+
+TEST(MarkersUpload, HasRoomForTheLargestMarkerInJson) {
+  const std::string text = json{{"markers", {marker(icd::kMostMarkerPoints, false)}}}.dump();
+  ASSERT_GT(text.size(), 5u << 20);
+  is_taken(kJsonType, text, false);
 }
 
 TEST(MarkersUpload, IsRefusedAboveItsLimitHoweverItComes) {

@@ -120,10 +120,11 @@ class Team {
   }
 
   /// Sends it on a connection of its own and gives the answer.
-  std::optional<Reply> ask(const std::string& text) {
+  std::optional<Reply> ask(const std::string& text,
+                           std::chrono::milliseconds patience = std::chrono::seconds(10)) {
     RawClient client(served.port());
     client.send(text);
-    return client.reply();
+    return client.reply(patience);
   }
 
   /// Keeps the worker busy until the guard ends.

@@ -4,6 +4,7 @@
 #include <charconv>
 #include <utility>
 
+#include "codec/row.hpp"
 #include "command_line/read.hpp"
 
 namespace adit::cli {
@@ -16,16 +17,6 @@ std::optional<std::int64_t> number_in(std::string_view text, std::int64_t larges
   const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), number);
   const bool whole = error == std::errc() && end == text.data() + text.size() && number > 0;
   return whole && number <= largest ? std::optional(number) : std::nullopt;
-}
-
-/// "one, two or three"
-std::string listed(std::span<const std::string_view> words) {
-  std::string all;
-  for (std::size_t i = 0; i < words.size(); ++i) {
-    if (i > 0) all += i + 1 == words.size() ? " or " : ", ";
-    all += words[i];
-  }
-  return all;
 }
 
 std::vector<std::string_view> words_of(const CommandRow& command) {
@@ -62,11 +53,11 @@ class Words {
       if (command_ != nullptr) options_.about = command_->command;
       return std::nullopt;
     }
-    if (command_ == nullptr) return "a command is missing: " + listed(names_of_commands());
+    if (command_ == nullptr) return "a command is missing: " + codec::in_turn(names_of_commands());
     options_.command = command_->command;
     const std::string spoken = this->spoken();
     if (form_ == nullptr && !command_->forms.front().usual)
-      return "a word is missing after " + spoken + ": " + listed(words_of(*command_));
+      return "a word is missing after " + spoken + ": " + codec::in_turn(words_of(*command_));
     if (form_ == nullptr) form_ = command_->forms.data();
     options_.verb = form_->verb;
     for (const std::string& option : given) {
@@ -91,7 +82,7 @@ class Words {
       form_ = &form;
       return std::nullopt;
     }
-    return "expected " + listed(words_of(*command_)) + ", got " + word;
+    return "expected " + codec::in_turn(words_of(*command_)) + ", got " + word;
   }
 
   Wrong take_argument(const std::string& word) {

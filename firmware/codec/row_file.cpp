@@ -10,7 +10,7 @@
 namespace adit::codec {
 namespace {
 
-constexpr std::int64_t kAny = std::numeric_limits<std::int64_t>::max();
+using Whole = std::numeric_limits<std::int64_t>;
 
 void check_row(const Row& row, const Field& field, std::string_view besides);
 
@@ -29,7 +29,7 @@ void check_member(const Member& member, const Field& field) {
   if (!member.words.empty() && std::ranges::find(member.words, field.text()) == member.words.end())
     return field.refuse("expected ", in_turn(member.words));
   if (member.least || member.most)
-    field.whole<std::int64_t>(member.least.value_or(0), member.most.value_or(kAny));
+    field.whole(member.least.value_or(Whole::min()), member.most.value_or(Whole::max()));
   check_value(*member.kind->schema, field);
 }
 

@@ -1,12 +1,12 @@
 """What the tests of adit-network have in common."""
 
 import contextlib
-import os
 import pathlib
 import tempfile
 import unittest
 
 import hosts
+from growth import descriptors
 from programs import wait_until
 
 OLD, NEW = "192.168.7.11/24", "192.168.8.11/24"
@@ -49,4 +49,4 @@ class Change(unittest.TestCase):
 
     @staticmethod
     def listening(monitor):
-        return any("socket" in os.readlink(link) for link in pathlib.Path(f"/proc/{monitor.pid}/fd").iterdir())
+        return any(link.startswith("socket:") for link in descriptors(monitor.pid))

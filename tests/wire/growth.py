@@ -1,5 +1,6 @@
 """What a process holds, as it goes on: memory, descriptors, timers and threads."""
 
+import contextlib
 import dataclasses
 import os
 import pathlib
@@ -16,16 +17,21 @@ class Held:
     threads: int
 
 
+def descriptors(pid):
+    """What its descriptors are, as the kernel says it: "socket:[12]", "/a/file"."""
+    folder = pathlib.Path(f"/proc/{pid}/fd")
+    links = []
+    for name in os.listdir(folder):
+        with contextlib.suppress(FileNotFoundError):  # closed since it was listed
+            links.append(os.readlink(folder / name))
+    return links
+
+
 def held(pid):
     """What it holds now."""
     process = pathlib.Path(f"/proc/{pid}")
     status = (process / "status").read_text(encoding="ascii", errors="replace")
-    links = []
-    for name in os.listdir(process / "fd"):
-        try:
-            links.append(os.readlink(process / "fd" / name))
-        except FileNotFoundError:  # closed meanwhile
-            pass
+    links = descriptors(pid)
     return Held(memory=int(re.search(r"RssAnon:\s+(\d+) kB", status)[1]) << 10, descriptors=len(links),
                 timers=links.count("anon_inode:[timerfd]"), threads=int(re.search(r"Threads:\s+(\d+)", status)[1]))
 

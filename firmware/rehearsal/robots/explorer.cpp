@@ -1,7 +1,6 @@
 #include "rehearsal/robots/explorer.hpp"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <numbers>
 #include <utility>
@@ -15,14 +14,14 @@ using namespace std::chrono_literals;
 using std::chrono::milliseconds;
 
 constexpr milliseconds kTick = 100ms;
-constexpr std::array<milliseconds, 3> kCloudEvery = {1000ms, 500ms, 2000ms};
 constexpr double kReportNoise = 0.05;  // metres
 constexpr double kWrongReports = 0.15;
 
 /// Something that is done every so often; what was missed is not made up for.
 class Every {
  public:
-  Every(milliseconds period, std::chrono::steady_clock::time_point first) : period_(period), next_(first) {}
+  Every(std::chrono::duration<double> period, std::chrono::steady_clock::time_point first)
+      : period_(std::chrono::duration_cast<milliseconds>(period)), next_(first) {}
   bool due(std::chrono::steady_clock::time_point now) {
     if (now < next_) return false;
     next_ = std::max(next_ + period_, now);
@@ -44,7 +43,7 @@ double clock_of(std::size_t index, Random& random) {
 }  // namespace
 
 Explorer::Explorer(const Cave& cave, std::uint64_t seed, std::size_t index, std::string name,
-                   const Style& style, Client& client, OperatorDesk& desk)
+                   const Style& style, const MapOffer& offer, Client& client, OperatorDesk& desk)
     : cave_(cave),
       index_(index),
       name_(std::move(name)),
@@ -54,11 +53,17 @@ Explorer::Explorer(const Cave& cave, std::uint64_t seed, std::size_t index, std:
       random_(seed * 7'919 + index),
       robot_(cave, seed, index),
       scene_(name_),
+      offer_(offer),
+      maps_(offer, seed * 104'729 + index),
       clock_at_start_(clock_of(index, random_)),
       start_(Clock::now()) {}
 
 double Explorer::stamp(Clock::time_point now) const {
   return clock_at_start_ + std::chrono::duration<double>(now - start_).count();
+}
+
+MapTime Explorer::map_time(Clock::time_point now) const {
+  return {stamp(now), std::chrono::floor<milliseconds>(std::chrono::system_clock::now())};
 }
 
 /// The first robot that sees an artifact reports it, some centimetres off; now and then it takes a rock for
@@ -83,8 +88,8 @@ void Explorer::report_sightings(double seconds) {
 
 void Explorer::work(double metres_per_second, const std::stop_token& finish) {
   Every state(index_ % 2 == 0 ? kTick : 2 * kTick, start_);
-  Every grid(1000ms, start_ + 50ms);
-  Every cloud(kCloudEvery[index_ % kCloudEvery.size()], start_ + 150ms);
+  Every grid(offer_.grid_every, start_ + 50ms);
+  Every cloud(offer_.cloud_every, start_ + 150ms);
   Every markers(2000ms, start_ + 250ms);
   Clock::time_point before = start_;
   while (!finish.stop_requested()) {
@@ -97,10 +102,12 @@ void Explorer::work(double metres_per_second, const std::stop_token& finish) {
     report_sightings(seconds);
 
     if (state.due(now)) client_.send(State{stamp(now), name_, robot_.pose()});
-    if (grid.due(now)) client_.send(robot_.map().grid(stamp(now)));
+    const Vector3 here = robot_.pose().position;
+    if (grid.due(now)) {
+      if (auto cells = maps_.grid(robot_.map(), here, map_time(now))) client_.send(*std::move(cells));
+    }
     if (cloud.due(now)) {
-      if (Cloud points = robot_.map().take_new_points(stamp(now)); !points.data.empty())
-        client_.send(std::move(points));
+      if (auto points = maps_.cloud(robot_.map(), here, map_time(now))) client_.send(*std::move(points));
     }
     if (markers.due(now)) {
       if (Markers changed{stamp(now), scene_.take_changes()}; !changed.markers.empty())

@@ -7,18 +7,19 @@
 
 #include "rehearsal/robots/client.hpp"
 #include "rehearsal/robots/desk.hpp"
+#include "rehearsal/robots/map_maker.hpp"
 #include "rehearsal/robots/robot.hpp"
 #include "rehearsal/robots/scene.hpp"
 
 namespace adit::robots {
 
 /// A robot and the software on it: walks, and posts what it knows at the rates of the field. Poses 5 or 10
-/// times a second, a grid every second, a differential cloud every 0.5 to 2 s, markers every 2 s.
+/// times a second, markers every 2 s, and the maps of its offer.
 class Explorer {
  public:
   /// `cave`, `style`, `client` and `desk` outlive the explorer.
   Explorer(const Cave& cave, std::uint64_t seed, std::size_t index, std::string name, const Style& style,
-           Client& client, OperatorDesk& desk);
+           const MapOffer& offer, Client& client, OperatorDesk& desk);
 
   void work(double metres_per_second, const std::stop_token& finish);
 
@@ -26,6 +27,7 @@ class Explorer {
   using Clock = std::chrono::steady_clock;
 
   double stamp(Clock::time_point now) const;
+  MapTime map_time(Clock::time_point now) const;
   void report_sightings(double seconds);
 
   const Cave& cave_;
@@ -37,6 +39,8 @@ class Explorer {
   Random random_;
   Robot robot_;
   MarkerScene scene_;
+  MapOffer offer_;
+  MapMaker maps_;
   double clock_at_start_;  // what this robot's own clock says, which is nobody else's
   Clock::time_point start_;
 };

@@ -54,7 +54,10 @@ class Signals {
 
 std::vector<Kind> kinds_to_post(const Options& options, const std::vector<std::filesystem::path>& maps) {
   if (options.robots > 0) {
-    return {Kind::Grid, Kind::Cloud, Kind::State, Kind::Markers, Kind::Report, Kind::Status};
+    std::vector<Kind> kinds = {Kind::State, Kind::Markers, Kind::Report, Kind::Status};
+    if (options.offers.has_grids()) kinds.push_back(Kind::Grid);
+    if (options.offers.has_clouds()) kinds.push_back(Kind::Cloud);
+    return kinds;
   }
   std::vector<Kind> kinds;
   kinds.reserve(maps.size());
@@ -105,6 +108,7 @@ int run(const Options& options, const Cave& cave) {
              .robots = options.robots,
              .seed = options.seed,
              .metres_per_second = kMetresPerSecond * options.speed,
+             .offers = options.offers,
              .maps = maps},
             cave, tally, console);
   team.start();

@@ -27,6 +27,20 @@ Wrong take_style(TeamStyle& into, const std::string& text) {
   return std::nullopt;
 }
 
+Wrong take_grids(std::vector<GridForm>& into, const std::string& text) {
+  auto forms = read_grid_forms(text);
+  if (!forms) return "expected whole, rolling, tiles, none, got '" + text + "'";
+  into = *std::move(forms);
+  return std::nullopt;
+}
+
+Wrong take_clouds(std::vector<CloudForm>& into, const std::string& text) {
+  auto forms = read_cloud_forms(text);
+  if (!forms) return "expected differential, whole, none, got '" + text + "'";
+  into = *std::move(forms);
+  return std::nullopt;
+}
+
 std::expected<Options, std::string> complete(Options options) {
   if (options.help) return options;
   if (options.generate_only) {
@@ -45,6 +59,7 @@ std::expected<Options, std::string> complete(Options options) {
 
 command_line::Program command_line_of(Options& options) {
   constexpr double kLongest = 1e6;  // seconds
+  constexpr double kMostHz = 10, kMostMegabytes = 100;
   return {
       .name = "adit-robots",
       .usage = "--post URL --secrets DIR | --generate-only --truth CSV",
@@ -55,11 +70,25 @@ command_line::Program command_line_of(Options& options) {
                 "where reports and status go instead, to speak to a Command Post without Adit",
                 take<take_url>(options.scoring)},
                {"--secrets", "DIR", "team.token in it is what the team presents", &options.secrets},
-               {"--robots", "N", "how many explore, 0 to 30 (3)", number<0, 30>(options.robots)},
+               {"--robots", "N", "how many explore, 0 to 50 (3)", number<0, 50>(options.robots)},
                {"--style", "STYLE",
-                "cbor, cbor-body-gzip, json-base64, json-array, ros, browser, or mixed: each robot the next "
-                "one (mixed)",
+                "cbor, cbor-plain, cbor-body-gzip, json-base64, json-array, ros, browser, or mixed: each "
+                "robot the next one (mixed)",
                 take<take_style>(options.style)},
+               {"--grids", "FORMS",
+                "whole, rolling (the 10 m about the robot), tiles, none; several, with commas: each robot "
+                "the next one (whole)",
+                take<take_grids>(options.offers.grids)},
+               {"--grid-hz", "HZ", "grids a second of each robot (1)",
+                number<0.01, kMostHz>(options.offers.grid_hz)},
+               {"--grid-mb", "MB", "a finer grid, so that one of the whole cave has so many megabytes (0.15)",
+                number<0.0, kMostMegabytes>(options.offers.grid_mb)},
+               {"--clouds", "FORMS", "differential, whole, none, in turn as well (differential)",
+                take<take_clouds>(options.offers.clouds)},
+               {"--cloud-hz", "HZ", "clouds a second of each robot (1, 2 and 0.5 in turn)",
+                number<0.01, kMostHz>(options.offers.cloud_hz)},
+               {"--cloud-mb", "MB", "denser clouds, of so many megabytes each (as the cave is)",
+                number<0.0, kMostMegabytes>(options.offers.cloud_mb)},
                {"--maps", "DIR",
                 "also post the map files under DIR (.pgm with .yaml, .pcd, .ply) as a robot `replay`",
                 &options.maps},

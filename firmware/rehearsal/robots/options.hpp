@@ -9,6 +9,7 @@
 
 #include "command_line/read.hpp"
 #include "rehearsal/robots/http.hpp"
+#include "rehearsal/robots/map_offer.hpp"
 #include "rehearsal/robots/style.hpp"
 
 namespace adit::robots {
@@ -20,6 +21,7 @@ struct Options {
   std::string secrets;
   std::size_t robots = 3;
   TeamStyle style;
+  MapOffers offers;
   std::string maps;   // "": none
   std::string truth;  // "": not written
   std::optional<std::chrono::duration<double>> run_for;

@@ -92,16 +92,23 @@ void RobotMap::sweep(const Cave& cave, const Vector3& from, Random& random) {
 
 Grid RobotMap::grid(double stamp) const {
   assert(low_.x <= high_.x);
+  return part(low_, high_, stamp);
+}
+
+Grid RobotMap::part(Cell low, Cell high, double stamp) const {
   Grid grid;
   grid.stamp = stamp;
   grid.resolution = lattice().resolution;
-  grid.width = static_cast<std::uint32_t>(high_.x - low_.x + 1);
-  grid.height = static_cast<std::uint32_t>(high_.y - low_.y + 1);
-  grid.origin.position = {lattice().left + low_.x * lattice().resolution,
-                          lattice().bottom + low_.y * lattice().resolution, 0};
+  grid.width = static_cast<std::uint32_t>(high.x - low.x + 1);
+  grid.height = static_cast<std::uint32_t>(high.y - low.y + 1);
+  grid.origin.position = {lattice().left + low.x * lattice().resolution,
+                          lattice().bottom + low.y * lattice().resolution, 0};
   grid.cells.reserve(std::size_t{grid.width} * grid.height);
-  for (int y = low_.y; y <= high_.y; ++y) {
-    for (int x = low_.x; x <= high_.x; ++x) grid.cells.push_back(cells_[{x, y}]);
+  for (int y = low.y; y <= high.y; ++y) {
+    for (int x = low.x; x <= high.x; ++x) {
+      const Cell cell{x, y};
+      grid.cells.push_back(lattice().contains(cell) ? cells_[cell] : kUnknown);
+    }
   }
   return grid;
 }

@@ -25,6 +25,12 @@ class RobotMap {
   /// before it. Requires a sweep.
   Grid grid(double stamp) const;
 
+  /// What is known of the cells from `low` to `high`, both included, which may lie outside of the cave.
+  Grid part(Cell low, Cell high, double stamp) const;
+  /// The corners of all that is known, both included; there are none before the first sweep.
+  Cell low() const { return low_; }
+  Cell high() const { return high_; }
+
   /// The points measured since the last call (x, y, z, intensity as float32), each once.
   Cloud take_new_points(double stamp);
 

@@ -33,6 +33,7 @@ inline constexpr std::array kStyles = {
     Style{.name = "json-array", .data = DataForm::Integers},
     Style{.name = "ros", .data = DataForm::Integers, .ros = true},
     Style{.name = "browser", .browser = true},
+    Style{.name = "cbor-plain", .cbor = true, .data = DataForm::Bytes},
 };
 
 /// What a team speaks: one style, or all in turn (`mixed`).

@@ -43,7 +43,7 @@ void Team::explore(std::size_t index) {
   const std::string name = std::string("r").append(std::to_string(index + 1));
   const Style& style = plan_.style.of(index);
   Client client(plan_.post, name, style, tally_, abort_.get_token());
-  Explorer explorer(cave_, plan_.seed, index, name, style, client, desk_);
+  Explorer explorer(cave_, plan_.seed, index, name, style, plan_.offers.of(index), client, desk_);
   explorer.work(plan_.metres_per_second, finish_.get_token());
 }
 

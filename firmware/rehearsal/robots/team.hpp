@@ -11,6 +11,7 @@
 #include "rehearsal/robots/client.hpp"
 #include "rehearsal/robots/console.hpp"
 #include "rehearsal/robots/desk.hpp"
+#include "rehearsal/robots/map_offer.hpp"
 
 namespace adit::robots {
 
@@ -20,6 +21,7 @@ struct TeamPlan {
   std::size_t robots = 3;
   std::uint64_t seed = 1;
   double metres_per_second = 2;
+  MapOffers offers;
   std::vector<std::filesystem::path> maps;  // files that the robot `replay` posts
 };
 

@@ -44,11 +44,14 @@ TEST(Options, NameTheArgumentThatIsWrong) {
       {{"--post", "http://127.0.0.1:0"}, "1 to 65535"},
       {{"--post", "http://127.0.0.1:65536"}, "1 to 65535"},
       {{"--post", "http://cave:80"}, "no IP address"},
-      {{"--robots", "-1"}, "--robots: expected 0 to 30"},
-      {{"--robots", "31"}, "--robots"},
+      {{"--robots", "-1"}, "--robots: expected 0 to 50"},
+      {{"--robots", "51"}, "--robots"},
       {{"--for", "nan"}, "--for: expected 0 to 1e+06"},
       {{"--speed", "0"}, "--speed"},
       {{"--style", "morse"}, "no style is named 'morse'"},
+      {{"--grids", "whole,torn"}, "--grids: expected whole, rolling, tiles, none, got 'whole,torn'"},
+      {{"--clouds", "all"}, "--clouds: expected differential"},
+      {{"--cloud-hz", "11"}, "--cloud-hz"},
       {{"--frobnicate", "1"}, "unknown word '--frobnicate'"},
       {{"--generate-only"}, "needs --truth"},
   };
@@ -57,6 +60,19 @@ TEST(Options, NameTheArgumentThatIsWrong) {
     ASSERT_FALSE(options) << sentence;
     EXPECT_NE(options.error().find(sentence), std::string::npos) << options.error();
   }
+}
+
+TEST(Options, GiveEachRobotTheNextFormOfMaps) {
+  const auto options = parsed({"--post", "http://127.0.0.1:80", "--secrets", "/tmp", "--grids", "tiles,whole",
+                               "--grid-hz", "4", "--clouds", "none", "--grid-mb", "5"});
+  ASSERT_TRUE(options) << options.error();
+  EXPECT_EQ(options->offers.of(0).grids, GridForm::Tiles);
+  EXPECT_EQ(options->offers.of(1).grids, GridForm::Whole);
+  EXPECT_EQ(options->offers.of(2).grids, GridForm::Tiles);
+  EXPECT_EQ(options->offers.of(2).grid_every.count(), 0.25);
+  EXPECT_EQ(options->offers.of(2).grid_bytes, 5'000'000u);
+  EXPECT_TRUE(options->offers.has_grids());
+  EXPECT_FALSE(options->offers.has_clouds());
 }
 
 TEST(TeamToken, IsTheFilesOneLine) {

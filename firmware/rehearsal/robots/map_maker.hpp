@@ -1,0 +1,44 @@
+#pragma once
+
+#include <chrono>
+#include <cstdint>
+#include <optional>
+
+#include "rehearsal/robots/dated.hpp"
+#include "rehearsal/robots/map_offer.hpp"
+#include "rehearsal/robots/random.hpp"
+#include "rehearsal/robots/robot_map.hpp"
+
+namespace adit::robots {
+
+/// When a map is made: by the robot's own clock, and by the machine's.
+struct MapTime {
+  double stamp = 0;  // seconds
+  Moment posted;
+};
+
+/// Makes a robot's maps from what it knows, in the forms of its offer. All of them are dated.
+class MapMaker {
+ public:
+  MapMaker(const MapOffer& offer, std::uint64_t seed) : offer_(offer), random_(seed) {}
+
+  static constexpr double kWindow = 10;  // metres, a rolling grid's side
+  static constexpr double kTile = 8;     // metres, a tile's side
+
+  /// `here`: where the robot is. Nothing where it posts no grids.
+  std::optional<Grid> grid(const RobotMap& map, const Vector3& here, const MapTime& time);
+  /// Takes the map's new points. Nothing where there are none, or it posts no clouds.
+  std::optional<Cloud> cloud(RobotMap& map, const Vector3& here, const MapTime& time);
+
+ private:
+  Grid window(const RobotMap& map, const Vector3& here, double stamp) const;
+  Grid next_tile(const RobotMap& map, double stamp);
+  void fill(Cloud& cloud, std::size_t bytes, const Vector3& here);
+
+  MapOffer offer_;
+  Random random_;
+  int tile_ = 0;  // whose turn it is
+  Cloud all_;     // of whole clouds
+};
+
+}  // namespace adit::robots

@@ -29,6 +29,12 @@ icd::Stamp stamp_of(const icd::MapUpdate& map) {
   return map.header().stamp.value_or(0);
 }
 
+/// What the link carries between two maps, in bytes.
+std::size_t slot_of(const settings::CommandPost& post) {
+  const double bytes = static_cast<double>(pace::map_bytes_per_second(post.budget_mbit)) / post.rates.map_hz;
+  return static_cast<std::size_t>(std::max(bytes, 1.0));
+}
+
 /// For lanes::Blame: a robot's maps of one kind.
 std::string whose(const icd::MapUpdate& map) {
   return (map.is_grid() ? "grid " : "cloud ") + (map.name ? map.name->text() : "");
@@ -57,7 +63,9 @@ Maps::Maps(loop::Loop& loop, loop::Workers& workers, loop::Writer& writer, spool
       pace_(icd::Uri::MapUpdate, settings.command_post.rates.map_hz, random, journal),
       wake_(loop.timer([this] { pump(); })),
       lane_(settings.queues.merge_bytes),
-      trouble_(spool.trouble()) {}
+      trouble_(spool.trouble()) {
+  lane_.a_slot_carries(slot_of(settings.command_post));
+}
 
 /// What replaces something that waits is taken by a full queue too.
 bool Maps::has_room_for(const icd::MapUpdate& update, bool replaces) const {
@@ -144,6 +152,7 @@ void Maps::carry_on(const journal::Carried& carried) {
 
 void Maps::settings_changed() {
   lane_.merge_at_most(settings_.queues.merge_bytes);
+  lane_.a_slot_carries(slot_of(settings_.command_post));
   pace_.allow(settings_.command_post.rates.map_hz, loop_.now());
   pump();
 }
@@ -285,6 +294,7 @@ void Maps::taken(int status) {
   loop::guarded("what a map overtook", [&] { aside_.taken(map); });
   forget(std::move(sent->waiting.updates));
   blame_.passed(whose(map), loop_.now());
+  lane_.carried(lanes::Sender::of(map), sent->body.size());
   record_.forwarded(traffic_of(map), updates, sent->body.size(), status, loop_.stamp_now());
   taken_(std::move(map));
 }
@@ -386,7 +396,7 @@ bool Maps::stop() {
 
 std::size_t Maps::waiting(const Traffic& traffic) const {
   const auto of_it = [&](const lanes::WaitingMap& waiting) { return traffic_of(waiting.map) == traffic; };
-  return static_cast<std::size_t>(std::ranges::count_if(lane_.waiting(), of_it)) +
+  return lane_.count({icd::RobotName::parse(traffic.robot), traffic.kind == Kind::Grid}) +
          (prepared_ && of_it(prepared_->waiting) ? 1 : 0);
 }
 

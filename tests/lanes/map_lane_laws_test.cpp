@@ -157,21 +157,5 @@ TEST_P(MapLaneLaws, WhatIsSentKeepsTheAgeOfItsOldestNews) {
 
 INSTANTIATE_TEST_SUITE_P(Courses, MapLaneLaws, testing::Range(std::uint64_t{1}, std::uint64_t{41}));
 
-TEST(MapLaneOrder, TheOldestNewsIsAlwaysTheNextUnlessAGridOfItsNameMustGoAhead) {
-  std::mt19937_64 random{7};
-  for (int course = 0; course < 200; ++course) {
-    MapLane lane{0};
-    for (std::uint64_t i = 0; i < 30; ++i) {
-      const auto width = std::uniform_int_distribution{1u, 4u}(random);
-      const char* name = std::uniform_int_distribution{0, 1}(random) == 0 ? "R1" : "R2";
-      lane.add(i, grid_update(name, grid(0, 0, width, 5 - width)), at(static_cast<double>(i)));
-    }
-    while (lane.count() > 0) {
-      const auto name = std::ranges::min_element(lane.waiting(), {}, &WaitingMap::accepted)->map.name;
-      EXPECT_EQ(lane.take()->map.name, name);
-    }
-  }
-}
-
 }  // namespace
 }  // namespace adit::lanes

@@ -17,7 +17,7 @@ const auto kSmall = grid(0, 0, 10, 10);
 const auto kLarge = grid(-1, -1, 80, 80);
 const auto kElsewhere = grid(100, 100, 10, 10);
 
-TEST(MapLane, GivesOutTheOldestNewsFirst) {
+TEST(MapLane, GivesOutFirstWhoCameFirst) {
   MapLane lane{kPlenty};
   lane.add(1, grid_update("R1", kSmall), at(1));
   lane.add(2, cloud_update("R2", {1}), at(2));
@@ -78,8 +78,8 @@ TEST(MapLane, NeverSendsOldCellsAfterNewerOnes) {
   lane.add(3, grid_update("R1", grid(0.2, 0.2, 200, 200)), at(3));  // overlaps the next, and is not covered
   lane.add(4, grid_update("R1", kLarge), at(4));
   EXPECT_THAT(lane.take()->updates, ElementsAre(3));
+  EXPECT_THAT(lane.take()->updates, ElementsAre(2)) << "R2's turn";
   EXPECT_THAT(lane.take()->updates, ElementsAre(1, 4));
-  EXPECT_THAT(lane.take()->updates, ElementsAre(2));
 }
 
 TEST(MapLane, MergesCloudsThatFollowEachOtherWhileMoreThanOneWait) {
@@ -171,7 +171,7 @@ TEST(MapLane, SaysWhichCloudsCanBeMerged) {
   EXPECT_FALSE(mergeable(plain, moved));
 }
 
-TEST(MapLane, PutsBackWhatCouldNotBeSentFirstInLine) {
+TEST(MapLane, PutsBackWhatCouldNotBeSentFirstOfItsSenders) {
   MapLane lane{kPlenty};
   lane.add(1, grid_update("R1", kSmall), at(1));
   lane.add(2, cloud_update("R2", {1}), at(2));
@@ -179,7 +179,9 @@ TEST(MapLane, PutsBackWhatCouldNotBeSentFirstInLine) {
   lane.add(3, grid_update("R1", kElsewhere), at(3));
   EXPECT_FALSE(lane.is_replaced(failed));
   EXPECT_THAT(lane.put_back(failed), ElementsAre());
+  EXPECT_THAT(lane.take()->updates, ElementsAre(2)) << "a try is a turn";
   EXPECT_THAT(lane.take()->updates, ElementsAre(1));
+  EXPECT_THAT(lane.take()->updates, ElementsAre(3));
 }
 
 TEST(MapLane, PutsBackNoGridThatANewerOneCovers) {
@@ -191,6 +193,7 @@ TEST(MapLane, PutsBackNoGridThatANewerOneCovers) {
   EXPECT_TRUE(lane.is_replaced(failed));
   EXPECT_THAT(lane.put_back(failed), ElementsAre(1)) << "nobody needs it any more";
   EXPECT_EQ(lane.count(), 2);
+  EXPECT_THAT(lane.take()->updates, ElementsAre(2)) << "R2's turn";
   const auto heir = lane.take();
   EXPECT_THAT(heir->updates, ElementsAre(1, 3));
   EXPECT_EQ(heir->accepted, at(1));
@@ -220,6 +223,15 @@ TEST(MapLane, TakesOfOneStampTheLaterThatIsSentAgainForTheNewer) {
   for (const std::uint64_t number : {1, 2}) EXPECT_THAT(lane.take()->updates, ElementsAre(number));
   lane.put_back(sent_again(2, kLarge, 10));
   EXPECT_TRUE(lane.is_replaced(sent_again(1, kSmall, 10)));
+}
+
+TEST(MapLane, SendsACloudAgainByHandBeforeTheOthersOfItsSender) {
+  MapLane lane{0};
+  lane.add(7, cloud_update("R1", {1}), at(1));
+  WaitingMap map{cloud_update("R1", {2}), at(9), {1}, {}, true};
+  map.again = 10;
+  lane.put_back(map);
+  for (const std::uint64_t number : {1, 7}) EXPECT_THAT(lane.take()->updates, ElementsAre(number));
 }
 
 TEST(MapLane, TakesNothingThatIsSentAgainForNewerThanWhatNeverWasSetAside) {

@@ -1,0 +1,48 @@
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <deque>
+#include <utility>
+#include <vector>
+
+#include "lanes/waiting_map.hpp"
+
+namespace adit::lanes {
+
+/// The maps of one sender that wait, in the order in which they were made: see MapLane, which says what its
+/// functions do.
+class MapQueue {
+ public:
+  /// A grid lets later ones of its name pass after so many failures.
+  static constexpr int kInPlace = 3;
+
+  std::vector<std::uint64_t> add(WaitingMap added);
+  /// Whether one may go now: none does that rests, nor a grid behind one that rests.
+  bool is_ready(Instant now) const;
+  /// Since when one rests and how old it is, of the one that rested longest. Requires a map.
+  std::pair<Instant, Instant> resting() const;
+  /// The oldest news of those that may go; if none may, what rested longest. Requires a map.
+  WaitingMap take(Instant now, std::size_t merge_bytes);
+  std::vector<std::uint64_t> put_back(WaitingMap map);
+  void put_back_apart(WaitingMap map);
+  void step_forward();  // nothing steps behind any more
+
+  bool replaces_any(const icd::MapUpdate& map) const;
+  bool is_replaced(const WaitingMap& map) const;
+  std::size_t count() const { return waiting_.size(); }
+  std::size_t bytes() const { return bytes_; }
+  std::size_t largest_grid() const;
+
+ private:
+  using Maps = std::deque<WaitingMap>;
+  Maps::const_iterator ready(Instant now) const;
+  Maps::const_iterator rested_longest() const;
+  /// Adds to `leaves`, in the order of waiting_, what it merged.
+  void merge_followers(WaitingMap& next, std::size_t merge_bytes, std::vector<bool>& leaves) const;
+
+  Maps waiting_;
+  std::size_t bytes_ = 0;
+};
+
+}  // namespace adit::lanes

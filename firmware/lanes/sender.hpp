@@ -1,0 +1,18 @@
+#pragma once
+
+#include <compare>
+#include <optional>
+
+#include "icd/map_update.hpp"
+
+namespace adit::lanes {
+
+/// Whose turn it is: a robot's maps of one kind.
+struct Sender {
+  std::optional<icd::RobotName> name;  // absent: maps that are merged, for all robots
+  bool is_grid = false;
+  static Sender of(const icd::MapUpdate& map) { return {map.name, map.is_grid()}; }
+  friend auto operator<=>(const Sender&, const Sender&) = default;
+};
+
+}  // namespace adit::lanes

@@ -1,0 +1,77 @@
+#include "lanes/waiting_map.hpp"
+
+#include <algorithm>
+#include <utility>
+#include <variant>
+
+#include "icd/require.hpp"
+
+namespace adit::lanes {
+
+const icd::PointCloud2* loose_cloud_in(const icd::MapUpdate& map) {
+  if (map.data.compression != icd::Compression::None) return nullptr;
+  return std::get_if<icd::PointCloud2>(&map.msg);
+}
+
+std::size_t bytes_held(const WaitingMap& waiting) {
+  constexpr std::size_t kFrame = 1024;
+  std::size_t bytes = kFrame + waiting.map.data.bytes.size() + waiting.updates.size() * sizeof(std::uint64_t);
+  if (const auto* cloud = std::get_if<icd::PointCloud2>(&waiting.map.msg)) {
+    for (const auto& field : cloud->fields) bytes += sizeof field + field.name.size();
+  }
+  return bytes;
+}
+
+bool replaces(const icd::MapUpdate& newer, const icd::MapUpdate& older) {
+  const auto* const new_grid = std::get_if<icd::OccupancyGrid>(&newer.msg);
+  const auto* const old_grid = std::get_if<icd::OccupancyGrid>(&older.msg);
+  return new_grid && old_grid && newer.name == older.name && covers(*new_grid, *old_grid);
+}
+
+bool replaces(const WaitingMap& newer, const WaitingMap& older) {
+  return is_newer(newer, older) && replaces(newer.map, older.map);
+}
+
+/// A clock that was set back gives many maps one stamp: of these, which are sent again oldest first, the
+/// later one is newer.
+bool is_newer(const WaitingMap& waiting, const WaitingMap& back) {
+  if (!waiting.again) return true;
+  return back.again &&
+         std::pair(*waiting.again, waiting.updates.back()) > std::pair(*back.again, back.updates.back());
+}
+
+void join_parts(WaitingMap& to, const WaitingMap& from) {
+  if (to.parts.empty()) to.parts.push_back(to.map);
+  if (from.parts.empty()) {
+    to.parts.push_back(from.map);
+  } else {
+    to.parts.insert(to.parts.end(), from.parts.begin(), from.parts.end());
+  }
+}
+
+void take_over(WaitingMap& to, WaitingMap from) {
+  const auto middle = static_cast<std::ptrdiff_t>(from.updates.size());
+  from.updates.insert(from.updates.end(), to.updates.begin(), to.updates.end());
+  to.updates = std::move(from.updates);
+  std::inplace_merge(to.updates.begin(), to.updates.begin() + middle, to.updates.end());
+  to.accepted = std::min(to.accepted, from.accepted);
+  // Its place and its rests, too, but it is to fail by itself before it is blamed.
+  if (to.trial.failures > 0) return;
+  to.trial = from.trial;
+  to.trial.strikes = std::min(to.trial.strikes, Blame::kMostStrikes - 2);
+}
+
+bool mergeable(const icd::PointCloud2& a, const icd::PointCloud2& b) {
+  return a.fields == b.fields && a.point_step == b.point_step && a.is_bigendian == b.is_bigendian &&
+         a.origin.value_or(icd::Pose{}) == b.origin.value_or(icd::Pose{});
+}
+
+icd::MapUpdate merge(icd::MapUpdate older, const icd::MapUpdate& newer) {
+  icd::require(older.name == newer.name && !older.is_grid() && !newer.is_grid());
+  older.msg = newer.msg;
+  older.data.bytes.append(newer.data.bytes);
+  older.data.raw_size += newer.data.raw_size;
+  return older;
+}
+
+}  // namespace adit::lanes

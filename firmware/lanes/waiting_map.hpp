@@ -1,0 +1,60 @@
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <optional>
+#include <vector>
+
+#include "icd/map_update.hpp"
+#include "lanes/blame.hpp"
+
+namespace adit::lanes {
+
+/// ICD 6.3.1 and promise 2: whether `newer` says all that `older` said, so that `older` need not be sent: the
+/// same lattice (resolution, orientation and height alike, origins a whole number of cells apart, to a
+/// thousandth of a cell) and older's extent within newer's. Reflexive and transitive.
+bool covers(const icd::OccupancyGrid& newer, const icd::OccupancyGrid& older);
+
+/// Whether the points of both can be in one message: fields, point_step, byte order and origin are the same.
+bool mergeable(const icd::PointCloud2& a, const icd::PointCloud2& b);
+
+/// Older's points and then newer's, in one update with newer's header. Requires mergeable clouds of one name
+/// with uncompressed data. Shares their bytes.
+icd::MapUpdate merge(icd::MapUpdate older, const icd::MapUpdate& newer);
+
+/// A map that waits, and which accepted updates it stands for (itself, what it replaced, what was merged into
+/// it).
+struct WaitingMap {
+  icd::MapUpdate map;
+  Instant accepted;                    // when the oldest news in it was accepted
+  std::vector<std::uint64_t> updates;  // their numbers, oldest first
+  std::vector<icd::MapUpdate>
+      parts{};         // the clouds that were merged into it, one for each update; else empty
+  bool alone = false;  // not to be merged with others
+  Trial trial{};       // where the Command Post's handler failed at it
+  /// Only of a map that was set aside and is sent again by hand: the stamp that it had. By it the map is
+  /// older than all that were never set aside, and is told from others that are sent again.
+  std::optional<icd::Stamp> again{};
+};
+
+/// Whether `newer`, which is under way or waits, is newer and says all that `older` said, which comes back.
+bool replaces(const WaitingMap& newer, const WaitingMap& older);
+/// Whether `newer`, which has just come, does.
+bool replaces(const icd::MapUpdate& newer, const icd::MapUpdate& older);
+
+/// Whether `waiting` is newer than `back`, which comes back to it.
+bool is_newer(const WaitingMap& waiting, const WaitingMap& back);
+
+/// What it keeps in memory beside its data: itself, its fields, and what allocators add.
+std::size_t bytes_held(const WaitingMap& waiting);
+
+/// `from`, which `to` replaces, is older news: its updates become `to`'s as well, and its age counts.
+void take_over(WaitingMap& to, WaitingMap from);
+
+/// What is merged keeps what it was merged of: the bytes are shared, so that this costs next to nothing.
+void join_parts(WaitingMap& to, const WaitingMap& from);
+
+/// The cloud whose points can be joined to others; null for a grid and for packed points.
+const icd::PointCloud2* loose_cloud_in(const icd::MapUpdate& map);
+
+}  // namespace adit::lanes

@@ -123,6 +123,8 @@ Outcome CommandPost::decide(Side& side, std::optional<Aim> aim, const Fault& fau
   }
   if (transcript_) write_down(number, side.name, request, judgement);
   record_.note(number, judgement);
+  if (judgement.map)
+    arrivals_.note(*judgement.map, std::chrono::floor<std::chrono::milliseconds>(request.ended));
   if (judgement.report) keep(std::move(*judgement.report), kByClient, number);
   if (verbose_) show(number, request, judgement);
   if (judgement.outcome.kind == Outcome::Kind::Dies) {
@@ -130,6 +132,12 @@ Outcome CommandPost::decide(Side& side, std::optional<Aim> aim, const Fault& fau
   }
   if (!fault.answer_after) return std::move(judgement.outcome);
   return later(*fault.answer_after, [outcome = std::move(judgement.outcome)] { return outcome; });
+}
+
+OrderedJson CommandPost::record() const {
+  OrderedJson record = record_.json(run_.standing(Clock::now()));
+  record["maps"] = arrivals_.json();
+  return record;
 }
 
 void CommandPost::keep(OrderedJson report, const char* by, const OrderedJson& request) {

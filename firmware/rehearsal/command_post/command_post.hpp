@@ -6,6 +6,7 @@
 #include <mutex>
 #include <string>
 
+#include "rehearsal/command_post/arrivals.hpp"
 #include "rehearsal/command_post/faults.hpp"
 #include "rehearsal/command_post/judgement.hpp"
 #include "rehearsal/command_post/options.hpp"
@@ -35,8 +36,10 @@ class CommandPost {
 
   Run& run() { return run_; }
   Faults& faults() { return faults_; }
-  OrderedJson record() const { return record_.json(run_.standing(Clock::now())); }
-  std::string summary() const { return record_.summary(run_.standing(Clock::now())); }
+  Arrivals& arrivals() { return arrivals_; }
+  const Arrivals& arrivals() const { return arrivals_; }
+  OrderedJson record() const;
+  std::string summary() const { return record_.summary(run_.standing(Clock::now())) + arrivals_.table(); }
   std::string killed_by() const { return record_.killed_by(); }
 
  private:
@@ -58,6 +61,7 @@ class CommandPost {
   Run run_;
   Record record_;
   Faults faults_;
+  Arrivals arrivals_;
   Side scoring_;
   Side mapping_;
   std::unique_ptr<Transcript> transcript_;

@@ -81,6 +81,16 @@ Outcome tell_faults(CommandPost& post, const std::optional<Json>& told) {
   return answered(200, post.faults().left());
 }
 
+Outcome arrivals(const CommandPost& post) {
+  return answered(200, OrderedJson{{"maps", post.arrivals().json()}, {"table", post.arrivals().table()}});
+}
+
+Outcome tell_posted(CommandPost& post, const std::optional<Json>& posted) {
+  if (const auto told = post.arrivals().told(posted.value_or(Json())); !told)
+    return refused(422, told.error());
+  return arrivals(post);
+}
+
 Outcome clear_faults(CommandPost& post) {
   post.faults().clear();
   return answered(200, post.faults().left());
@@ -98,6 +108,8 @@ Outcome control(CommandPost& post, const Request& request) {
   const auto body = body_of(request);
   if (!body) return refused(400, body.error());
   if (wanted == "GET /record") return answered(200, post.record());
+  if (wanted == "GET /arrivals") return arrivals(post);
+  if (wanted == "POST /posted") return tell_posted(post, *body);
   if (wanted == "GET /faults") return answered(200, post.faults().left());
   if (wanted == "POST /faults") return tell_faults(post, *body);
   if (wanted == "DELETE /faults") return clear_faults(post);
@@ -107,9 +119,10 @@ Outcome control(CommandPost& post, const Request& request) {
   if (wanted == "POST /stop") return change_state(post, &Run::admin_stop);
   if (wanted == "POST /resume") return change_state(post, &Run::resume);
   if (wanted == "POST /end") return change_state(post, &Run::end);
-  return refused(404,
-                 "POST /start, /stop, /resume, /end, /new-run or /other-sender, GET /record, "
-                 "GET, POST or DELETE /faults");
+  return refused(
+      404,
+      "POST /start, /stop, /resume, /end, /new-run, /other-sender or /posted, GET /record or /arrivals, "
+      "GET, POST or DELETE /faults");
 }
 
 }  // namespace adit::rehearsal

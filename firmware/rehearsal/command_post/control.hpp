@@ -13,6 +13,9 @@ namespace adit::rehearsal {
 ///    one, is that report
 ///  POST, GET and DELETE /faults: appends to what goes wrong next, shows what is left, and clears it
 ///  GET /record: all that was counted
+///  POST /posted: what adit-robots posted so far (Arrivals::told); its answer and that to GET /arrivals: how
+///  old
+///    maps were when they came, as rows and as a table to print
 Outcome control(CommandPost& post, const Request& request);
 
 }  // namespace adit::rehearsal

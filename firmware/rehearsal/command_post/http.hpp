@@ -29,8 +29,9 @@ struct Request {
   bool expects_continue = false;
   bool keep_alive = true;
   std::string body;
-  std::string local_address;  // "127.0.0.1:8000", where it was sent to
-  Clock::time_point at;       // when its header had arrived
+  std::string local_address;                    // "127.0.0.1:8000", where it was sent to
+  Clock::time_point at;                         // when its header had arrived
+  std::chrono::system_clock::time_point ended;  // when its last byte had
   std::optional<HttpFault> fault;
 };
 

@@ -71,8 +71,8 @@ command_line::Program command_line_of(Options& options) {
             &options.fault_rates},
            {"--seed", "N", "of that randomness (1)", number<0UL, UINT64_MAX>(options.seed)},
            {"--control", "ADDR:PORT",
-            "POST /start /stop /resume /end /new-run /other-sender, GET /record, GET, POST and DELETE "
-            "/faults",
+            "POST /start /stop /resume /end /new-run /other-sender /posted, GET /record /arrivals, GET, POST "
+            "and DELETE /faults",
             take<take_address<std::optional<Address>>>(options.control)},
            {"--verbose", "", "a line for each request, also where stdout is no terminal", &options.verbose},
            {"--help", "", "prints this", &options.help}},

@@ -43,13 +43,15 @@ double clock_of(std::size_t index, Random& random) {
 }  // namespace
 
 Explorer::Explorer(const Cave& cave, std::uint64_t seed, std::size_t index, std::string name,
-                   const Style& style, const MapOffer& offer, Client& client, OperatorDesk& desk)
+                   const Style& style, const MapOffer& offer, Client& client, OperatorDesk& desk,
+                   Posted& posted)
     : cave_(cave),
       index_(index),
       name_(std::move(name)),
       style_(style),
       client_(client),
       desk_(desk),
+      posted_(posted),
       random_(seed * 7'919 + index),
       robot_(cave, seed, index),
       scene_(name_),
@@ -64,6 +66,23 @@ double Explorer::stamp(Clock::time_point now) const {
 
 MapTime Explorer::map_time(Clock::time_point now) const {
   return {stamp(now), std::chrono::floor<milliseconds>(std::chrono::system_clock::now())};
+}
+
+/// What is posted without a name is no robot's own.
+void Explorer::post_grid(Clock::time_point now) {
+  const MapTime time = map_time(now);
+  auto grid = maps_.grid(robot_.map(), robot_.pose().position, time);
+  if (!grid) return;
+  if (!style_.ros) posted_.note(name_, Kind::Grid, maps_.cells(), time.posted);
+  client_.send(*std::move(grid));
+}
+
+void Explorer::post_cloud(Clock::time_point now) {
+  const MapTime time = map_time(now);
+  auto cloud = maps_.cloud(robot_.map(), robot_.pose().position, time);
+  if (!cloud) return;
+  if (!style_.ros) posted_.note(name_, Kind::Cloud, maps_.points(), time.posted);
+  client_.send(*std::move(cloud));
 }
 
 /// The first robot that sees an artifact reports it, some centimetres off; now and then it takes a rock for
@@ -102,13 +121,8 @@ void Explorer::work(double metres_per_second, const std::stop_token& finish) {
     report_sightings(seconds);
 
     if (state.due(now)) client_.send(State{stamp(now), name_, robot_.pose()});
-    const Vector3 here = robot_.pose().position;
-    if (grid.due(now)) {
-      if (auto cells = maps_.grid(robot_.map(), here, map_time(now))) client_.send(*std::move(cells));
-    }
-    if (cloud.due(now)) {
-      if (auto points = maps_.cloud(robot_.map(), here, map_time(now))) client_.send(*std::move(points));
-    }
+    if (grid.due(now)) post_grid(now);
+    if (cloud.due(now)) post_cloud(now);
     if (markers.due(now)) {
       if (Markers changed{stamp(now), scene_.take_changes()}; !changed.markers.empty())
         client_.send(std::move(changed));

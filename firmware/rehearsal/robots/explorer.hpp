@@ -8,6 +8,7 @@
 #include "rehearsal/robots/client.hpp"
 #include "rehearsal/robots/desk.hpp"
 #include "rehearsal/robots/map_maker.hpp"
+#include "rehearsal/robots/posted.hpp"
 #include "rehearsal/robots/robot.hpp"
 #include "rehearsal/robots/scene.hpp"
 
@@ -17,9 +18,9 @@ namespace adit::robots {
 /// times a second, markers every 2 s, and the maps of its offer.
 class Explorer {
  public:
-  /// `cave`, `style`, `client` and `desk` outlive the explorer.
+  /// `cave`, `style`, `client`, `desk` and `posted` outlive the explorer.
   Explorer(const Cave& cave, std::uint64_t seed, std::size_t index, std::string name, const Style& style,
-           const MapOffer& offer, Client& client, OperatorDesk& desk);
+           const MapOffer& offer, Client& client, OperatorDesk& desk, Posted& posted);
 
   void work(double metres_per_second, const std::stop_token& finish);
 
@@ -28,6 +29,8 @@ class Explorer {
 
   double stamp(Clock::time_point now) const;
   MapTime map_time(Clock::time_point now) const;
+  void post_grid(Clock::time_point now);
+  void post_cloud(Clock::time_point now);
   void report_sightings(double seconds);
 
   const Cave& cave_;
@@ -36,6 +39,7 @@ class Explorer {
   const Style& style_;
   Client& client_;
   OperatorDesk& desk_;
+  Posted& posted_;
   Random random_;
   Robot robot_;
   MarkerScene scene_;

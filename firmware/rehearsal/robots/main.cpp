@@ -102,6 +102,7 @@ int run(const Options& options, const Cave& cave) {
   }
   const std::vector<Kind> kinds = kinds_to_post(options, maps);
   Tally tally;
+  Posted posted;
   Console console(options.quiet);
   Team team({.post = {.mapping = options.post, .scoring = options.scoring, .token = *token},
              .style = options.style,
@@ -110,10 +111,11 @@ int run(const Options& options, const Cave& cave) {
              .metres_per_second = kMetresPerSecond * options.speed,
              .offers = options.offers,
              .maps = maps},
-            cave, tally, console);
+            cave, tally, posted, console);
   team.start();
   team.stop(watch(options, kinds, team, tally, console, signals));
   console.finish(tally.summary());
+  if (options.control) console.finish(arrivals_of(posted, *options.control));
   for (const Kind kind : kinds) {
     if (tally.accepted_of(kind) == 0) console.finish("no " + std::string(name_of(kind)) + " was accepted\n");
   }

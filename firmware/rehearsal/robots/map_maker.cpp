@@ -62,6 +62,7 @@ std::optional<Grid> MapMaker::grid(const RobotMap& map, const Vector3& here, con
   if (const std::uint32_t times = finer_by(map.lattice(), offer_.grid_bytes); times > 1)
     grid = finer(grid, times);
   date(grid, time.posted);
+  cells_.add(grid.resolution, grid.origin.position.x, grid.origin.position.y, grid.width, grid.cells);
   return grid;
 }
 
@@ -89,6 +90,7 @@ std::optional<Cloud> MapMaker::cloud(RobotMap& map, const Vector3& here, const M
   fill(news, whole && !is_first ? kNewPoints * news.point_step : wanted, here);
   if (news.data.empty()) return std::nullopt;
   date(news, time.posted);
+  points_ += news.data.size() / news.point_step;
   if (!whole) return news;
   news.data.insert(news.data.begin(), all_.data.begin(), all_.data.end());
   all_ = std::move(news);

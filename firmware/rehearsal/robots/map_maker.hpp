@@ -4,6 +4,7 @@
 #include <cstdint>
 #include <optional>
 
+#include "rehearsal/known_cells.hpp"
 #include "rehearsal/robots/dated.hpp"
 #include "rehearsal/robots/map_offer.hpp"
 #include "rehearsal/robots/random.hpp"
@@ -30,6 +31,10 @@ class MapMaker {
   /// Takes the map's new points. Nothing where there are none, or it posts no clouds.
   std::optional<Cloud> cloud(RobotMap& map, const Vector3& here, const MapTime& time);
 
+  /// How many cells and points were made known so far, each counted once.
+  std::uint64_t cells() const { return cells_.count(); }
+  std::uint64_t points() const { return points_; }
+
  private:
   Grid window(const RobotMap& map, const Vector3& here, double stamp) const;
   Grid next_tile(const RobotMap& map, double stamp);
@@ -39,6 +44,8 @@ class MapMaker {
   Random random_;
   int tile_ = 0;  // whose turn it is
   Cloud all_;     // of whole clouds
+  KnownCells cells_;
+  std::uint64_t points_ = 0;
 };
 
 }  // namespace adit::robots

@@ -20,6 +20,10 @@ Wrong take_url(Endpoint& into, const std::string& text) {
   return std::nullopt;
 }
 
+Wrong take_control(std::optional<Endpoint>& into, const std::string& text) {
+  return take_url(into.emplace(), text);
+}
+
 Wrong take_style(TeamStyle& into, const std::string& text) {
   const auto style = TeamStyle::parse(text);
   if (!style) return "no style is named '" + text + "'";
@@ -69,6 +73,10 @@ command_line::Program command_line_of(Options& options) {
                {"--scoring", "URL",
                 "where reports and status go instead, to speak to a Command Post without Adit",
                 take<take_url>(options.scoring)},
+               {"--control", "URL",
+                "adit-rehearsal's control port: it is told what was posted, and asked how old that was when "
+                "it came",
+                take<take_control>(options.control)},
                {"--secrets", "DIR", "team.token in it is what the team presents", &options.secrets},
                {"--robots", "N", "how many explore, 0 to 50 (3)", number<0, 50>(options.robots)},
                {"--style", "STYLE",

@@ -18,6 +18,7 @@ namespace adit::robots {
 struct Options {
   Endpoint post;
   Endpoint scoring;  // the same as `post` unless it is given
+  std::optional<Endpoint> control;
   std::string secrets;
   std::size_t robots = 3;
   TeamStyle style;

@@ -8,10 +8,11 @@
 
 namespace adit::robots {
 
-Team::Team(TeamPlan plan, const Cave& cave, Tally& tally, Console& console)
+Team::Team(TeamPlan plan, const Cave& cave, Tally& tally, Posted& posted, Console& console)
     : plan_(std::move(plan)),
       cave_(cave),
       tally_(tally),
+      posted_(posted),
       console_(console),
       desk_(plan_.post, plan_.style.of(0), tally,
             [&console](const std::string& line) { console.say(line); }) {}
@@ -43,7 +44,7 @@ void Team::explore(std::size_t index) {
   const std::string name = std::string("r").append(std::to_string(index + 1));
   const Style& style = plan_.style.of(index);
   Client client(plan_.post, name, style, tally_, abort_.get_token());
-  Explorer explorer(cave_, plan_.seed, index, name, style, plan_.offers.of(index), client, desk_);
+  Explorer explorer(cave_, plan_.seed, index, name, style, plan_.offers.of(index), client, desk_, posted_);
   explorer.work(plan_.metres_per_second, finish_.get_token());
 }
 

@@ -12,6 +12,7 @@
 #include "rehearsal/robots/console.hpp"
 #include "rehearsal/robots/desk.hpp"
 #include "rehearsal/robots/map_offer.hpp"
+#include "rehearsal/robots/posted.hpp"
 
 namespace adit::robots {
 
@@ -28,8 +29,8 @@ struct TeamPlan {
 /// The team at work: a thread for each robot, one for the operator, one that replays map files.
 class Team {
  public:
-  /// `cave`, `tally` and `console` outlive the team.
-  Team(TeamPlan plan, const Cave& cave, Tally& tally, Console& console);
+  /// `cave`, `tally`, `posted` and `console` outlive the team.
+  Team(TeamPlan plan, const Cave& cave, Tally& tally, Posted& posted, Console& console);
   ~Team();
   Team(const Team&) = delete;
   Team& operator=(const Team&) = delete;
@@ -51,6 +52,7 @@ class Team {
   TeamPlan plan_;
   const Cave& cave_;
   Tally& tally_;
+  Posted& posted_;
   Console& console_;
   OperatorDesk desk_;
   std::stop_source finish_, abort_;

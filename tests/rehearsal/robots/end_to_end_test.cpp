@@ -80,7 +80,7 @@ TEST_F(Programs, ATeamThatCannotConnectFailsAndSaysWhy) {
 /// "adit-rehearsal: scoring 127.0.0.1:41234 mapping 127.0.0.1:41235"
 std::string url_after(const std::string& line, const std::string& word) {
   const std::size_t at = line.find(word + " ") + word.size() + 1;
-  return "http://" + line.substr(at, line.find(' ', at) - at);
+  return "http://" + line.substr(at, line.find_first_of(" \n", at) - at);
 }
 
 TEST_F(Programs, ATeamGetsOnWithACommandPostAsMeasured) {
@@ -102,13 +102,17 @@ TEST_F(Programs, ATeamGetsOnWithACommandPostAsMeasured) {
 
 TEST_F(Programs, ATeamStopsWhenAllIsPosted) {
   Program post({ADIT_REHEARSAL, "--scoring", "127.0.0.1:0", "--mapping", "127.0.0.1:0", "--secrets",
-                folder_.string(), "--as-measured"});
+                folder_.string(), "--control", "127.0.0.1:0", "--as-measured"});
   const std::string line = post.line();
   ASSERT_NE(line.find("mapping"), std::string::npos) << line;
-  Program team(robots({"--post", url_after(line, "mapping"), "--scoring", url_after(line, "scoring"),
-                       "--style", "json-base64", "--robots", "1", "--stop-when-posted"}));
+  Program team(
+      robots({"--post", url_after(line, "mapping"), "--scoring", url_after(line, "scoring"), "--control",
+              url_after(line, "control"), "--style", "json-base64", "--robots", "1", "--stop-when-posted"}));
   const std::string said = team.rest();
   EXPECT_EQ(team.wait(), 0) << said;
+  EXPECT_NE(said.find("  r1         cloud"), std::string::npos) << said;
+  EXPECT_NE(said.find("  r1         grid"), std::string::npos) << said;
+  EXPECT_NE(said.find(" 100.0%"), std::string::npos) << said;
 }
 
 #endif

@@ -1,0 +1,42 @@
+#include "rehearsal/robots/posted.hpp"
+
+#include <nlohmann/json.hpp>
+
+namespace adit::robots {
+
+using Json = nlohmann::json;
+
+void Posted::note(const std::string& robot, Kind kind, std::uint64_t amount, Moment newest) {
+  const std::scoped_lock lock(mutex_);
+  amounts_[{robot, kind}] = {.amount = amount, .newest = newest};
+}
+
+std::string Posted::json() const {
+  const std::scoped_lock lock(mutex_);
+  Json all = Json::array();
+  for (const auto& [source, posted] : amounts_) {
+    all.push_back({{"robot", source.first},
+                   {"kind", name_of(source.second)},
+                   {"amount", posted.amount},
+                   {"newest", posted.newest.time_since_epoch().count()}});
+  }
+  return all.dump();
+}
+
+std::string arrivals_of(const Posted& posted, const Endpoint& control) {
+  constexpr std::chrono::seconds kPatience{5};
+  const auto reply = Connection(control, {})
+                         .exchange({.method = "POST",
+                                    .target = "/posted",
+                                    .fields = {{"Content-Type", "application/json"}},
+                                    .body = posted.json()},
+                                   kPatience);
+  if (!reply) return "--control: " + reply.error() + "\n";
+  const Json answer = Json::parse(reply->body, nullptr, false);
+  if (reply->status != 200 || !answer.is_object() || !answer.contains("table") ||
+      !answer["table"].is_string())
+    return "--control: what answers is no rehearsal Command Post's control port\n";
+  return answer["table"];
+}
+
+}  // namespace adit::robots

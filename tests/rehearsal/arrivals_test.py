@@ -1,0 +1,82 @@
+"""How old maps are when they come, and how much of what was posted is there."""
+
+import struct
+import time
+import unittest
+
+from command_post import CommandPost, changed, grid
+
+BASE = 101
+
+
+def now_ms():
+    return int(time.time() * 1000)
+
+
+def row(posted, left=0.0):
+    """A row of 20 cells, two of them unknown, that begins with a date as adit-robots writes it."""
+    digits = [posted // BASE ** power % BASE for power in (4, 3, 2, 1, 0)]
+    cells = bytes([13, 87, 42, 61, 99, *digits, *8 * [0], 255, 255])
+    return changed(grid(cells, width=20, height=1), msg__info__origin__position={"x": left, "y": 0.0, "z": 0.0})
+
+
+def cloud(*dates):
+    """A point for each date."""
+    data = b"".join(struct.pack("<fffI", 1, 2, n, date % 2 ** 32) for n, date in enumerate(dates))
+    fields = [{"name": name, "offset": 4 * i, "datatype": 7, "count": 1} for i, name in enumerate("xyz")]
+    fields.append({"name": "posted_ms", "offset": 12, "datatype": 6, "count": 1})
+    return {"type": "PointCloud2", "name": "X1",
+            "msg": {"fields": fields, "is_bigendian": False, "point_step": 16, "data": data}}
+
+
+class Arrivals(unittest.TestCase):
+    def setUp(self):
+        self.post = self.enterContext(CommandPost())
+
+    def only(self):
+        (arrived,) = self.post.record()["maps"]
+        return arrived
+
+    def test_the_age_of_a_grid_is_that_of_its_newest_date(self):
+        self.assertEqual(self.post.map(row(now_ms() - 60_000)).status_code, 200)
+        arrived = self.only()
+        self.assertEqual((arrived["robot"], arrived["kind"], arrived["maps"]), ("X1", "grid", 1))
+        for name in ("p50", "p99", "most"):
+            self.assertGreaterEqual(arrived[name], 59.9)
+            self.assertLess(arrived[name], 600)  # a busy machine takes its time
+        self.assertIsNone(arrived["share"])
+
+    def test_a_cloud_is_as_old_as_its_newest_point_and_no_point_counts_twice(self):
+        old, new = now_ms() - 3_600_000, now_ms() - 60_000
+        for dates in ((old, old), (old, old, new)):
+            self.assertEqual(self.post.map_cbor(cloud(*dates)).status_code, 200)
+        answer = self.post.tell("posted", [{"robot": "X1", "kind": "cloud", "amount": 4, "newest": new + 2000}])
+        self.assertEqual(answer.status_code, 200, answer.text)
+        arrived = self.only()
+        self.assertEqual((arrived["arrived"], arrived["posted"], arrived["share"]), (3, 4, 0.75))
+        self.assertEqual((arrived["maps"], arrived["behind"], arrived["most"]), (2, 2, 3600))
+        self.assertLess(arrived["p50"], 3600)
+        self.assertIn("75.0%", answer.json()["table"])
+        self.assertIn("75.0%", self.post.stop()[1])
+
+    def test_cells_count_once_wherever_they_come_from(self):
+        posted = now_ms()
+        self.post.map(row(posted))            # 18 known cells of 0.2 m
+        self.post.map(row(posted, left=1.0))  # five cells on: five more
+        self.assertEqual(self.only()["arrived"], 23)
+
+    def test_a_map_without_a_date_is_none_of_them(self):
+        self.post.map(grid())
+        self.assertEqual(self.post.record()["maps"], [])
+
+    def test_what_was_posted_is_told_in_full(self):
+        whole = {"robot": "X1", "kind": "grid", "amount": 1, "newest": 1}
+        for name in whole:
+            answer = self.post.tell("posted", [{key: value for key, value in whole.items() if key != name}])
+            self.assertEqual(answer.status_code, 422)
+            self.assertIn(name, answer.text)
+        self.assertEqual(self.post.tell("posted", {}).status_code, 422)
+
+
+if __name__ == "__main__":
+    unittest.main()

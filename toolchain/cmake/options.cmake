@@ -10,6 +10,9 @@ target_link_options(adit_options INTERFACE -pie -Wl,-z,relro,-z,now -Wl,--gc-sec
 if(CMAKE_SYSTEM_PROCESSOR MATCHES x86_64)  # binutils 2.40 packs them there, not yet for ARM
   target_link_options(adit_options INTERFACE -Wl,-z,pack-relative-relocs)
 endif()
+if(CMAKE_INTERPROCEDURAL_OPTIMIZATION)  # what ships: nothing asks for a type at run time, and the types' names are long
+  target_compile_options(adit_options INTERFACE -fno-rtti)
+endif()
 # Small, but for what says otherwise: headers.cmake has the ways to be compiled.
 set(CMAKE_CXX_FLAGS_RELEASE "-Os -DNDEBUG")
 

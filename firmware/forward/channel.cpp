@@ -76,7 +76,7 @@ void Channel::take(Way way) {
 }
 
 void Channel::send(icd::Uri uri, std::string_view content_type, icd::ChunkedBytes body,
-                   std::function<void(uplink::Outcome)> done) {
+                   std::function<void(uplink::Outcome)> done, loop::Instant last_byte_not_before) {
   icd::require(has_token() && !busy());
   finished_bytes_ += connection_->sent_bytes();
   sent_at_ = loop_.now();
@@ -85,7 +85,8 @@ void Channel::send(icd::Uri uri, std::string_view content_type, icd::ChunkedByte
                      .content_type = std::string(content_type),
                      .body = std::move(body),
                      .answer_within = answer_within_,
-                     .longest_answer = longest_answer_to(uri)},
+                     .longest_answer = longest_answer_to(uri),
+                     .last_byte_not_before = last_byte_not_before},
                     [this](uplink::Outcome outcome) { ended(std::move(outcome)); });
   done_ = std::move(done);
 }

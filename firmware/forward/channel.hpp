@@ -30,9 +30,10 @@ class Channel {
   bool has_token() const { return connection_.has_value(); }
   /// Where it leads: "10.100.1.200:8000"
   const std::string& address() const { return address_; }
-  /// Requires has_token() and !busy(). `content_type` is empty without a body.
+  /// Requires has_token() and !busy(). `content_type` is empty without a body; `last_byte_not_before` as in
+  /// uplink::Request.
   void send(icd::Uri uri, std::string_view content_type, icd::ChunkedBytes body,
-            std::function<void(uplink::Outcome)> done);
+            std::function<void(uplink::Outcome)> done, loop::Instant last_byte_not_before = {});
   bool busy() const { return connection_ && connection_->busy(); }
   bool connected() const { return connection_ && connection_->connected(); }
   /// uplink::Connection::hurry()

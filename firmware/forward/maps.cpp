@@ -19,6 +19,8 @@ using dispatch::MappingVerdict;
 /// Packing begins early by what it took last time, but not so early that much newer data could not replace
 /// it.
 constexpr std::chrono::milliseconds kLongestLead{500};
+/// A server may wait no longer for a request that does not go on.
+constexpr std::chrono::seconds kLongestHeldBack{2};
 
 /// For a writer that threw.
 icd::Refusal not_kept() {
@@ -219,14 +221,20 @@ void Maps::go_on() {
   const loop::Instant now = loop_.now();
   if (prepared_ && prepared_->body.empty()) return pack();
   if (prepared_) {
-    if (now >= pace_.ready()) return send();
-    wake_.call_at(pace_.ready());
+    if (now >= starts()) return send();
+    wake_.call_at(starts());
     return;
   }
   if (lane_.count() == 0) return;
-  const loop::Instant begin = pace_.ready() - std::min<loop::Duration>(packing_took_, kLongestLead);
+  const loop::Instant begin = starts() - std::min<loop::Duration>(packing_took_, kLongestLead);
   if (now >= begin) return prepare();
   wake_.call_at(begin);
+}
+
+/// Before the last byte of the next map may leave: that is held back.
+loop::Instant Maps::starts() const {
+  const pace::Span earliest = pace_.earliest();
+  return std::max(earliest.first, earliest.last - kLongestHeldBack);
 }
 
 void Maps::prepare() {
@@ -266,9 +274,11 @@ void Maps::pack() {
 }
 
 void Maps::send() {
+  const loop::Instant last_byte_not_before = pace_.earliest().last;
   pace_.sent(loop_.now());
-  channel_.send(icd::Uri::MapUpdate, codec::kCbor, prepared_->body,
-                [this](const uplink::Outcome& outcome) { answered(outcome); });
+  channel_.send(
+      icd::Uri::MapUpdate, codec::kCbor, prepared_->body,
+      [this](const uplink::Outcome& outcome) { answered(outcome); }, last_byte_not_before);
 }
 
 /// An answer that cannot be dealt with is as good as none: the map is sent again, as it is.
@@ -284,8 +294,8 @@ void Maps::judge(const uplink::Outcome& outcome) {
   again();
 }
 
-void Maps::taken(int status) {
-  pace_.taken(loop_.now());
+void Maps::taken(const uplink::Answered& answered) {
+  pace_.taken(answered.sent, loop_.now());
   const auto sent = std::exchange(prepared_, nullptr);  // whatever fails from here on, it has arrived
   icd::MapUpdate& map = sent->waiting.map;
   const std::size_t updates = sent->waiting.updates.size();
@@ -295,7 +305,7 @@ void Maps::taken(int status) {
   forget(std::move(sent->waiting.updates));
   blame_.passed(whose(map), loop_.now());
   lane_.carried(lanes::Sender::of(map), sent->body.size());
-  record_.forwarded(traffic_of(map), updates, sent->body.size(), status, loop_.stamp_now());
+  record_.forwarded(traffic_of(map), updates, sent->body.size(), answered.status, loop_.stamp_now());
   taken_(std::move(map));
 }
 
@@ -305,13 +315,13 @@ void Maps::verdict(const uplink::Answered& answered) {
   const std::string sentence = sentence_of(answered);
   switch (dispatch::mapping_verdict(answered.status, dispatch::body_of(answered.body))) {
     case MappingVerdict::Taken:
-      return taken(answered.status);
+      return taken(answered);
     case MappingVerdict::Throttled:
       pace_.throttled(now, answered.retry_after);
       record_.not_taken(traffic, NotTaken::Throttled, answered.status, sentence);
       return again();
     case MappingVerdict::Refused:
-      pace_.taken(now);
+      pace_.taken(answered.sent, now);
       return give_up(answered.status, sentence);
     case MappingVerdict::Suspect:
       pace_.lost(now);

@@ -107,13 +107,14 @@ class Maps {
   void forget(std::vector<std::uint64_t> numbers);
   void pump();
   void go_on();
+  loop::Instant starts() const;
   void prepare();
   void pack();
   void send();
   void answered(const uplink::Outcome& outcome);
   void judge(const uplink::Outcome& outcome);
   void verdict(const uplink::Answered& answered);
-  void taken(int status);
+  void taken(const uplink::Answered& answered);
   void again();
   void give_up(int status, const std::string& sentence);
 

@@ -224,14 +224,14 @@ void Scoring::judge_report(const uplink::Outcome& outcome) {
     } else if (event == dispatch::ReportEvent::Barred) {
       report_pace_.lost(now);
     } else {
-      report_pace_.taken(now);
+      report_pace_.taken(answered->sent, now);
     }
   } else if (const auto* never = std::get_if<uplink::NeverSent>(&outcome)) {
     reports_->never_left(never->why, time());
     report_pace_.failed(now);
   } else {
     reports_->lost(sentence_of(outcome), time());
-    report_pace_.taken(now);
+    report_pace_.taken({.first = now, .last = now}, now);
   }
 }
 
@@ -302,7 +302,7 @@ void Scoring::judge_status(const uplink::Outcome& outcome, loop::Instant asked) 
     status_pace_.throttled(now, answered->retry_after);
     answer_askers(known_or(client_answer(*answered)));
   } else {
-    status_pace_.taken(now);
+    status_pace_.taken(answered->sent, now);
     const bool refused = answered->status >= 400 && answered->status < 500 && !channel_.is_foreign();
     answer_askers(refused ? client_answer(*answered) : known_or(no_status_in(*answered)));
   }

@@ -216,13 +216,13 @@ void Telemetry::judge(Kind kind, UriPace& pace, const Waiting& sent, std::size_t
   failed = verdict == MappingVerdict::Suspect ? failed + 1 : 0;
   switch (verdict) {
     case MappingVerdict::Taken:
-      pace.taken(now);
+      pace.taken(answer->sent, now);
       passed(sent);
       overtake(sent);
       as_forwarded_.forwarded(sent.update, loop_.stamp_now());
       break;
     case MappingVerdict::Refused:
-      pace.taken(now);
+      pace.taken(answer->sent, now);
       give_up(sent, status, sentence, bytes);
       break;
     case MappingVerdict::Suspect:

@@ -24,7 +24,13 @@ class UriPace {
         backoff_(std::chrono::milliseconds(500), std::chrono::milliseconds(4000)),
         random_(random) {}
 
+  /// For a request that leaves at once, whole.
   pace::Instant ready() const { return std::max(rate_.next(), retry_at_); }
+  /// For one whose last byte may be held back.
+  pace::Span earliest() const {
+    const pace::Span earliest = rate_.earliest();
+    return {.first = std::max(earliest.first, retry_at_), .last = std::max(earliest.last, retry_at_)};
+  }
 
   void carry_on(const journal::Carried& carried, pace::Instant now) {
     const auto learned = carried.paces().find(uri_);
@@ -39,8 +45,9 @@ class UriPace {
     rate_.sent(now);
     keep();
   }
-  void taken(pace::Instant now) {
-    rate_.taken(now);
+  /// `sent`: when its bytes left.
+  void taken(const uplink::Sent& sent, pace::Instant now) {
+    rate_.taken({.first = sent.first, .last = sent.last}, now);
     keep();
     backoff_.succeeded();
   }

@@ -160,9 +160,13 @@ bool Carried::read_sent(std::string_view said) {
 bool Carried::read_pace(std::string_view said) {
   Reader reader(said);
   const auto uri = uri_in(reader);
-  pace::Learned learned{.next = pace::Instant(duration_in(reader)), .spacing = {}, .under_way = false};
+  pace::Learned learned;
+  learned.earliest.first = pace::Instant(duration_in(reader));
   learned.spacing = duration_in(reader);
   learned.under_way = reader.number() != 0;
+  const bool is_older = reader.at_end();  // of a version that counted from answers alone
+  learned.earliest.last = is_older ? learned.earliest.first : pace::Instant(duration_in(reader));
+  learned.from_answers = !is_older && reader.number() != 0;
   if (uri && reader.ok()) paces_[*uri] = learned;
   return uri && reader.ok();
 }
@@ -243,9 +247,11 @@ std::string said(const std::string& sender, const lanes::SenderClock& clock) {
 std::string said(icd::Uri uri, const pace::Learned& learned) {
   return Writer()
       .number(static_cast<std::uint64_t>(uri))
-      .number(number_of(learned.next.time_since_epoch()))
+      .number(number_of(learned.earliest.first.time_since_epoch()))
       .number(number_of(learned.spacing))
       .number(learned.under_way ? 1 : 0)
+      .number(number_of(learned.earliest.last.time_since_epoch()))
+      .number(learned.from_answers ? 1 : 0)
       .finish();
 }
 

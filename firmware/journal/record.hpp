@@ -47,6 +47,7 @@ class Reader {
   double real();
   std::string_view text();
   bool ok() const { return ok_; }
+  bool at_end() const { return left_.empty(); }
 
  private:
   std::string_view take(std::size_t size);

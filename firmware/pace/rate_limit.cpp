@@ -12,6 +12,8 @@ using Seconds = std::chrono::duration<double>;
 constexpr double kFarOff = 1.5, kSlightlyOff = 1.25, kFaster = 0.67;
 /// What worked once is taken a little slower from then on: networks do not keep time to the millisecond.
 constexpr double kMargin = 1.05;
+/// Part of the spacing that two requests are further apart, where it counts from when the first one left.
+constexpr int kUneven = 50;
 
 /// Between two requests at `hertz`; a rate too low to matter in any run does not overflow.
 Duration spacing(double hertz) {
@@ -25,30 +27,37 @@ Duration times(Duration duration, double factor) {
 
 }  // namespace
 
-RateLimit::RateLimit(double hertz) : allowed_(spacing(hertz)), spacing_(allowed_) {}
+RateLimit::RateLimit(double hertz) : allowed_(spacing(hertz)), rule_{.spacing = allowed_} {}
 
 void RateLimit::allow(double hertz, Instant now) {
   const Duration before = std::exchange(allowed_, spacing(hertz));
   if (allowed_ == before) return;
-  const bool is_learned = spacing_ > before;
-  const Instant by_the_rate = counted_.value_or(Instant{}) + spacing_;
-  spacing_ = is_learned ? std::max(spacing_, allowed_) : allowed_;
-  if (tried_from_ && *tried_from_ <= allowed_) tried_from_.reset();
-  if (counted_ && next_ == by_the_rate) {
-    next_ = *counted_ + spacing_;
-  } else {  // a server asked for the pause, or it is of an earlier life
-    next_ = std::min(next_, now + std::max<Duration>(spacing_, kLongestPause));
-  }
+  const bool is_learned = rule_.spacing > before;
+  rule_.spacing = is_learned ? std::max(rule_.spacing, allowed_) : allowed_;
+  if (tried_from_ && tried_from_->spacing <= allowed_) tried_from_.reset();
+  const Instant longest = now + std::max<Duration>(rule_.spacing, kLongestPause);
+  floor_ = {.first = std::min(floor_.first, longest), .last = std::min(floor_.last, longest)};
+}
+
+Span RateLimit::earliest() const {
+  if (!counted_) return floor_;
+  return {.first = std::max(floor_.first, counted_->first + rule_.spacing),
+          .last = std::max(floor_.last, counted_->last + rule_.spacing)};
+}
+
+Instant RateLimit::next() const {
+  const Span at = earliest();
+  return std::max(at.first, at.last);
 }
 
 void RateLimit::sent(Instant now) {
   if (storm_ && sent_) worked_ = now - *sent_;
   sent_ = now;
   under_way_ = true;
-  space_from(now);
+  counted_ = {.first = now, .last = now};
 }
 
-void RateLimit::taken(Instant now) {
+void RateLimit::taken(const Span& sent, Instant now) {
   under_way_ = false;
   if (storm_) {
     last_was_short_ = now - storm_->began <= kShort;
@@ -60,19 +69,15 @@ void RateLimit::taken(Instant now) {
     ++taken_since_;
     speed_up(now);
   }
-  next_ = {};
-  space_from(now);
+  floor_ = {};
+  const Duration uneven = rule_.spacing / kUneven;
+  counted_ = rule_.from_answers ? Span{.first = now, .last = now}
+                                : Span{.first = sent.first + uneven, .last = sent.last + uneven};
 }
 
 void RateLimit::lost(Instant now) {
   under_way_ = false;
-  space_from(now);
-}
-
-void RateLimit::space_from(Instant now) {
-  if (now + spacing_ < next_) return;
-  next_ = now + spacing_;
-  counted_ = now;
+  counted_ = {.first = now, .last = now};
 }
 
 void RateLimit::throttled(Instant now, std::optional<std::chrono::seconds> retry_after) {
@@ -83,16 +88,20 @@ void RateLimit::throttled(Instant now, std::optional<std::chrono::seconds> retry
     storm_->pause = std::max(allowed_, std::min<Duration>(storm_->pause * 2, kStormPause));
   }
   const auto asked = std::clamp(retry_after.value_or(std::chrono::seconds{0}), {}, kLongestPause);
-  next_ = now + std::max<Duration>({storm_->pause, spacing_, asked});
+  const Instant next = now + std::max<Duration>({storm_->pause, rule_.spacing, asked});
+  floor_ = {.first = next, .last = next};
 }
 
 void RateLimit::begin_storm(Instant now) {
   soon_again_ = calm_since_ && now - *calm_since_ <= kSoonAgain ? soon_again_ + 1 : 0;
   const auto tried_from = std::exchange(tried_from_, std::nullopt);
   if (tried_from && now - learned_at_ <= kSoonAgain) {  // the step up was one too many
-    spacing_ = *tried_from;
+    rule_ = *tried_from;
     learned_at_ = now;
     hold_ = std::min<Duration>(hold_ * 2, kLongestHold);
+  } else if (!rule_.from_answers) {
+    rule_.from_answers = true;
+    learned_at_ = now;
   } else if (is_a_limit()) {
     slow_down(now);
   }
@@ -109,31 +118,38 @@ void RateLimit::slow_down(Instant now) {
   // What the server let through before it refused again, and how long it then refused, is its rate.
   const Duration as_seen = taken_since_ == 0 ? worked_ : soon_again_ > 1 ? on_average_ : Duration{0};
   const double factor = taken_since_ == 0 ? kFarOff : kSlightlyOff;
-  spacing_ = std::min(slowest, std::max(times(spacing_, factor), times(as_seen, kMargin)));
+  rule_.spacing = std::min(slowest, std::max(times(rule_.spacing, factor), times(as_seen, kMargin)));
   learned_at_ = now;
 }
 
 void RateLimit::speed_up(Instant now) {
-  if (spacing_ == allowed_) return;
+  if (rule_.spacing == allowed_ && !rule_.from_answers) return;
   if (now < learned_at_ + hold_ || taken_since_ < 2) return;
-  tried_from_ = spacing_;
-  spacing_ = std::max(allowed_, times(spacing_, kFaster));
+  tried_from_ = rule_;
+  if (rule_.spacing == allowed_) {
+    rule_.from_answers = false;
+  } else {
+    rule_.spacing = std::max(allowed_, times(rule_.spacing, kFaster));
+  }
   learned_at_ = now;
 }
 
 Learned RateLimit::learned() const {
-  return {.next = next_, .spacing = spacing_ > allowed_ ? spacing_ : Duration{0}, .under_way = under_way_};
+  return {.earliest = earliest(),
+          .spacing = rule_.spacing > allowed_ ? rule_.spacing : Duration{0},
+          .under_way = under_way_,
+          .from_answers = rule_.from_answers};
 }
 
 void RateLimit::carry_on(const Learned& learned, Instant now) {
-  if (learned.spacing > allowed_) {
-    spacing_ = learned.spacing;
-    learned_at_ = learned.next;
-  }
+  rule_.from_answers = learned.from_answers;
+  if (learned.spacing > allowed_) rule_.spacing = learned.spacing;
+  if (learned.from_answers || learned.spacing > allowed_) learned_at_ = now;
   const Instant latest =
-      now + std::max<Duration>(spacing_, kLongestPause);  // a later one is of another clock
-  next_ = std::max(next_, std::min(learned.next, latest));
-  if (learned.under_way) next_ = std::max(next_, now + spacing_);
+      now + std::max<Duration>(rule_.spacing, kLongestPause);  // a later one is of another clock
+  floor_.first = std::max(floor_.first, std::min(learned.earliest.first, latest));
+  floor_.last = std::max(floor_.last, std::min(learned.earliest.last, latest));
+  if (learned.under_way) counted_ = {.first = now, .last = now};
 }
 
 }  // namespace adit::pace

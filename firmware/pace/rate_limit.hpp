@@ -8,23 +8,33 @@ namespace adit::pace {
 using Instant = std::chrono::steady_clock::time_point;
 using Duration = std::chrono::nanoseconds;
 
+/// Of one request: its first byte and its last, when they left or may leave.
+struct Span {
+  Instant first{}, last{};
+  friend bool operator==(const Span&, const Span&) = default;
+};
+
 /// What of a rate limit outlives its gateway.
 struct Learned {
-  Instant next{};          // the earliest time for the next request
-  Duration spacing{};      // learned; 0: as the settings allow
-  bool under_way = false;  // a request was sent, and how it ended is not known here
+  Span earliest{};            // of the next request
+  Duration spacing{};         // learned; 0: as the settings allow
+  bool under_way = false;     // a request was sent, and how it ended is not known here
+  bool from_answers = false;  // learned: the server counts from its answer to the next request
   friend bool operator==(const Learned&, const Learned&) = default;
 };
 
-/// How often one URI may be asked: at most `hertz` times a second, evenly spaced, measured from the end of
-/// one request to the start of the next where that is later.
+/// How often one URI may be asked: at most `hertz` times a second, evenly spaced. A server may count a
+/// request when it begins to come or when it is there, so that the first bytes of two requests are the
+/// spacing apart, and so are their last bytes, by a fiftieth more: networks do not keep time to the
+/// millisecond. After a 429 the spacing counts from the answer to the first byte of the next request, for a
+/// server that counts so.
 ///
 /// After a 429 (RFC 6585 4) it tries again with pauses that double up to kStormPause, so that the end of a
 /// storm is found within that time, and the first request that is taken brings back the rate from before: a
 /// storm says nothing about the rate, however long it lasts. What lasts is a limit, and is learned: the rate
 /// goes down where a 429 comes again at once, or within kSoonAgain of a short storm or of the second in a
 /// row; and up again by steps, of which each that fails doubles the time until the next (kFirstHold to
-/// kLongestHold).
+/// kLongestHold). The last step is to count from the answer no more.
 class RateLimit {
  public:
   static constexpr double kSlowest = 1.0 / 30;              // hertz
@@ -37,14 +47,15 @@ class RateLimit {
   /// hertz > 0.
   explicit RateLimit(double hertz);
 
-  /// The earliest time for the next request.
-  Instant next() const { return next_; }
-  bool ready(Instant now) const { return now >= next_; }
+  /// The earliest times for the next request. Its last byte may have to be held back.
+  Span earliest() const;
+  /// The earliest time for one that leaves at once, whole.
+  Instant next() const;
+  bool ready(Instant now) const { return now >= next(); }
 
   void sent(Instant now);
-  /// The request sent last was answered: spacing counts from the later of the two for a server that measures
-  /// at its own end.
-  void taken(Instant now);
+  /// The request sent last was answered at `now`; its bytes had left as `sent` says.
+  void taken(const Span& sent, Instant now);
   /// No answer of it counts, and it may have been heard: spacing counts from now, for its connection may have
   /// been long in coming.
   void lost(Instant now);
@@ -68,16 +79,21 @@ class RateLimit {
     Duration pause;
   };
 
-  void space_from(Instant now);
+  /// Which requests are far enough apart.
+  struct Rule {
+    Duration spacing;
+    bool from_answers = false;
+  };
+
   void begin_storm(Instant now);
   bool is_a_limit() const;
   void slow_down(Instant now);
   void speed_up(Instant now);
 
-  Duration allowed_;  // between two requests, as all that follow
-  Duration spacing_;  // learned
-  Instant next_{};
-  std::optional<Instant> counted_;  // from when the spacing was counted that gave next_
+  Duration allowed_;             // between two requests, as all that follow
+  Rule rule_;                    // learned
+  Span floor_{};                 // what a server asked for, or an earlier life
+  std::optional<Span> counted_;  // the spacing counts from there
   std::optional<Storm> storm_;
   std::optional<Instant> sent_;  // last
   bool under_way_ = false;
@@ -87,9 +103,9 @@ class RateLimit {
   int taken_since_ = 0;     // the end of the last storm
   int soon_again_ = 0;      // storms in a row, each of which began soon after the one before
   Duration on_average_{0};  // between two that were taken, from the end of one storm to the end of the next
-  Instant learned_at_{};    // when spacing_ changed last
-  std::optional<Duration> tried_from_;  // the spacing before the step up that is on trial
-  Duration hold_ = kFirstHold;          // until the next step up
+  Instant learned_at_{};    // when rule_ changed last
+  std::optional<Rule> tried_from_;  // the rule before the step up that is on trial
+  Duration hold_ = kFirstHold;      // until the next step up
 };
 
 }  // namespace adit::pace

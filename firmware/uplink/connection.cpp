@@ -108,7 +108,9 @@ class Connection::Impl : public std::enable_shared_from_this<Impl> {
     exchange_->listen(fd_.get(), loop_.now());
     if (exchange_->is_silent_at(loop_.now()))
       return in_doubt({.why = exchange_->sentence("the peer was silent for too long")});
+    const bool has_more = exchange_->release(loop_.now());
     listen_again();
+    if (has_more) write();
   }
 
   // Connecting.
@@ -178,7 +180,7 @@ class Connection::Impl : public std::enable_shared_from_this<Impl> {
     }
     // What is given up must not arrive after what follows it on another connection, nor be recorded unseen.
     reset_on_close(fd_.get(), true);
-    exchange_->begin(loop_.now());
+    exchange_->begin(fd_.get(), loop_.now());
     listen_again();
     write();
   }
@@ -189,7 +191,9 @@ class Connection::Impl : public std::enable_shared_from_this<Impl> {
   }
 
   void write() {
+    const bool begins = exchange_->sent() == 0;
     const int error = exchange_->write(fd_.get());
+    if (begins) exchange_->began_to_leave(loop_.now());
     if (error == 0) return watch(exchange_->wants_to_write() ? kComing | EPOLLOUT : kComing);
     if (exchange_->sent() == 0) return fresh_ ? never_sent(std::strerror(error)) : begin_again();
     if (!answer_came()) watch(kComing);
@@ -214,6 +218,8 @@ class Connection::Impl : public std::enable_shared_from_this<Impl> {
 
   void answered() {
     Answered answer = exchange_->take_answer();
+    const Transmission seen = transmission(fd_.get());
+    answer.sent = exchange_->left(seen, loop_.now());
     reset_on_close(fd_.get(), exchange_->sent() < exchange_->total());
     // The measured mapping server promises keep-alive with a 4xx and closes all the same.
     const bool keep = exchange_->may_keep_alive() && answer.status < 400;

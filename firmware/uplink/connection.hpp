@@ -32,8 +32,18 @@ struct Request {
   /// take. Halves of an answer do not make it longer.
   std::chrono::milliseconds answer_within{10000};
   std::size_t longest_answer = kLongestAnswer;  // bytes of its body; a longer one is InDoubt
+  /// The last kHeldBack bytes of the body wait until then; the peer's silence does not count meanwhile.
+  loop::Instant last_byte_not_before{};
 
   static constexpr std::size_t kLongestAnswer = 64u << 10;
+  static constexpr std::size_t kHeldBack = 1024;
+};
+
+/// When the bytes of a request left: the first and the last, to some 10 ms, in doubt the later. If some were
+/// sent twice, or not all were sent, the last is as late as the answer; if some were sent twice, the first
+/// too: it may be one of these.
+struct Sent {
+  loop::Instant first{}, last{};
 };
 
 /// A whole HTTP answer came. Its body may be anything.
@@ -43,6 +53,7 @@ struct Answered {
   std::string body;
   std::optional<std::chrono::seconds> retry_after;
   std::optional<std::chrono::sys_seconds> date = {};  // by the peer's clock
+  Sent sent = {};
 };
 /// No byte of the request was given to the kernel: it is safe to send it again.
 struct NeverSent {

@@ -6,8 +6,6 @@
 #include <cstring>
 #include <utility>
 
-#include "uplink/socket.hpp"
-
 namespace adit::uplink {
 namespace {
 
@@ -33,6 +31,16 @@ iovec piece(const void* data, std::size_t size) {
   return {const_cast<void*>(data), size};
 }
 
+/// The first `bytes` of the pieces, or all.
+std::span<iovec> first_of(std::span<iovec> pieces, std::size_t bytes) {
+  for (std::size_t i = 0; i < pieces.size(); ++i) {
+    pieces[i].iov_len = std::min(pieces[i].iov_len, bytes);
+    bytes -= pieces[i].iov_len;
+    if (bytes == 0) return pieces.first(i + 1);
+  }
+  return pieces;
+}
+
 }  // namespace
 
 Exchange::Exchange(const Endpoint& endpoint, const icd::BearerToken& token, Request request)
@@ -40,7 +48,22 @@ Exchange::Exchange(const Endpoint& endpoint, const icd::BearerToken& token, Requ
       request_(std::move(request)),
       head_(head_of(authority_, token, request_)),
       total_(head_.size() + request_.body.size()),
+      may_go_(request_.last_byte_not_before == loop::Instant{}
+                  ? total_
+                  : total_ - std::min(request_.body.size(), Request::kHeldBack)),
       parser_(request_.longest_answer) {}
+
+void Exchange::begin(int fd, loop::Instant now) {
+  heard_ = now;
+  sent_twice_ = transmission(fd).sent_twice;
+  release(now);
+}
+
+bool Exchange::release(loop::Instant now) {
+  if (!holds_back() || now < request_.last_byte_not_before) return false;
+  may_go_ = total_;
+  return true;
+}
 
 int Exchange::write(int fd) {
   std::array<iovec, kChunksAtOnce + 1> pieces{};
@@ -51,7 +74,7 @@ int Exchange::write(int fd) {
     const std::size_t skip = i == chunk_ ? within_chunk_ : 0;
     pieces[count++] = piece(chunks[i]->data() + skip, chunks[i]->size() - skip);
   }
-  const auto taken = uplink::write(fd, std::span(pieces).first(count));
+  const auto taken = uplink::write(fd, first_of(std::span(pieces).first(count), may_go_ - sent_));
   if (taken) {
     advance(*taken);
     return 0;
@@ -93,15 +116,23 @@ Exchange::Answer Exchange::read(int fd) {
   }
 }
 
+Sent Exchange::left(const Transmission& seen, loop::Instant now) const {
+  if (seen.sent_twice != sent_twice_) return {.first = now, .last = now};
+  if (sent_ < total_) return {.first = first_left_, .last = now};
+  return {.first = first_left_, .last = std::max(first_left_, now - seen.since_last_byte)};
+}
+
 void Exchange::listen(int fd, loop::Instant now) {
   const std::size_t acknowledged = sent_ - std::min(sent_, unacknowledged_bytes(fd));
-  if (acknowledged <= acknowledged_) return;
+  const bool nothing_to_hear = holds_back() && acknowledged == may_go_;
+  if (acknowledged <= acknowledged_ && !nothing_to_hear) return;
   acknowledged_ = acknowledged;
   heard_ = now;
 }
 
 loop::Instant Exchange::next_listening(loop::Instant now) const {
-  return std::min<loop::Instant>(now + request_.answer_within / kListenings, silent_at());
+  const auto next = std::min<loop::Instant>(now + request_.answer_within / kListenings, silent_at());
+  return holds_back() ? std::min(next, request_.last_byte_not_before) : next;
 }
 
 std::string Exchange::sentence(const std::string& what) const {

@@ -7,6 +7,7 @@
 #include "loop/loop.hpp"
 #include "uplink/answer_parser.hpp"
 #include "uplink/connection.hpp"
+#include "uplink/socket.hpp"
 
 namespace adit::uplink {
 
@@ -15,10 +16,14 @@ class Exchange {
  public:
   Exchange(const Endpoint& endpoint, const icd::BearerToken& token, Request request);
 
-  /// Gives the kernel one portion of what is left, as much as it takes; 0 or an errno. A failure ends the
+  /// Gives the kernel one portion of what may go, as much as it takes; 0 or an errno. A failure ends the
   /// writing for good.
   int write(int fd);
-  bool wants_to_write() const { return !write_broken_ && sent_ < total_; }
+  /// To be told right after the first write().
+  void began_to_leave(loop::Instant now) { first_left_ = now; }
+  bool wants_to_write() const { return !write_broken_ && sent_ < may_go_; }
+  /// What was held back may go from now on: true where that is news.
+  bool release(loop::Instant now);
 
   enum class Answer : std::uint8_t { Waiting, Whole, Lost };
   /// Reads all that has come, also where writing has failed: a peer that refuses a request early answers and
@@ -26,12 +31,14 @@ class Exchange {
   Answer read(int fd);
   /// For Whole.
   Answered take_answer() { return parser_.take(); }
+  /// When the request left, as the kernel says a moment before `now`, once its answer has come.
+  Sent left(const Transmission& seen, loop::Instant now) const;
   bool may_keep_alive() const { return sent_ == total_ && parser_.may_keep_alive(); }
   /// For Lost.
   InDoubt doubt() const { return {.why = fault_, .too_long_status = parser_.too_long_status()}; }
 
   /// The clock of the peer's silence starts.
-  void begin(loop::Instant now) { heard_ = now; }
+  void begin(int fd, loop::Instant now);
   /// The peer's TCP has acknowledged more bytes since the last call, or it has been silent until `now`. Bytes
   /// that come in do not count: a peer that dribbles an answer for ever would hold the connection for ever,
   /// so that the whole answer must come within answer_within of the last acknowledgement.
@@ -50,17 +57,21 @@ class Exchange {
   loop::Instant silent_at() const { return heard_ + request_.answer_within; }
   Answer lost(const std::string& why);
   void advance(std::size_t bytes);
+  bool holds_back() const { return may_go_ < total_; }
 
   std::string authority_;
   Request request_;
   std::string head_;
   std::size_t total_ = 0;
+  std::size_t may_go_ = 0;  // of total_; the rest is held back
   std::size_t sent_ = 0;
   std::size_t chunk_ = 0;         // the first of the body's that is not wholly sent
   std::size_t within_chunk_ = 0;  // bytes of it that are
   bool write_broken_ = false;
   std::size_t acknowledged_ = 0;
   loop::Instant heard_;
+  loop::Instant first_left_;
+  std::uint64_t sent_twice_ = 0;  // segments of this connection, before
   AnswerParser parser_;
   std::string fault_;
 };

@@ -26,6 +26,9 @@ constexpr std::uint64_t kMostUnsent = 65536;
 /// Of a paced connection: enough for 100 Mbit/s at 20 ms.
 constexpr int kPacedSendBuffer = 256 * 1024;
 
+/// The kernel notes times to a tick of its clock: 10 ms where CONFIG_HZ is 100.
+constexpr std::chrono::milliseconds kTick{10};
+
 struct FreeAddresses {
   void operator()(addrinfo* addresses) const { ::freeaddrinfo(addresses); }
 };
@@ -132,6 +135,15 @@ void reset_on_close(int fd, bool reset) {
 bool is_quiet(int fd) {
   char byte = 0;
   return ::recv(fd, &byte, 1, MSG_PEEK | MSG_DONTWAIT) < 0 && (errno == EAGAIN || errno == EWOULDBLOCK);
+}
+
+Transmission transmission(int fd) {
+  tcp_info info{};
+  socklen_t size = sizeof info;
+  if (::getsockopt(fd, IPPROTO_TCP, TCP_INFO, &info, &size) != 0) return {};
+  const std::chrono::milliseconds since(info.tcpi_last_data_sent);
+  return {.since_last_byte = std::max(since - kTick, std::chrono::milliseconds{0}),
+          .sent_twice = info.tcpi_total_retrans};
 }
 
 std::size_t unacknowledged_bytes(int fd) {

@@ -4,11 +4,13 @@
 
 #include <chrono>
 #include <cstddef>
+#include <cstdint>
 #include <expected>
 #include <span>
 #include <string>
 
 #include "loop/file_descriptor.hpp"
+#include "loop/loop.hpp"
 #include "uplink/connection.hpp"
 
 namespace adit::uplink {
@@ -44,6 +46,13 @@ void reset_on_close(int fd, bool reset);
 
 /// Whether an idle connection is still there: neither closed, nor has anything come that nobody asked for.
 bool is_quiet(int fd);
+
+/// How bytes leave, as the kernel says (TCP_INFO).
+struct Transmission {
+  loop::Duration since_last_byte{};  // at least so long ago the last one left, first or again
+  std::uint64_t sent_twice = 0;      // segments of this connection so far
+};
+Transmission transmission(int fd);
 
 /// Bytes that the kernel holds and the peer has not acknowledged.
 std::size_t unacknowledged_bytes(int fd);

@@ -176,12 +176,12 @@ TEST_F(FlowAfterAnother, LeavesThePauseThatACommandPostAskedForToTheNextLife) {
   {
     journal::Journal journal(loop_, runtime + "/journal");
     journal.begin({.boot = host::boot(), .at = loop_.now(), .stamp = loop_.stamp_now()});
-    journal.paced(icd::Uri::MarkersUpdate, {.next = end_of_pause});
+    journal.paced(icd::Uri::MarkersUpdate, {.earliest = {.first = end_of_pause, .last = end_of_pause}});
   }
   auto legacy = flow(second_, std::nullopt)->hand_over();
   flow(first_, std::move(legacy));
   const journal::Carried carried = journal::Journal(loop_, runtime + "/journal").read();
-  EXPECT_EQ(carried.paces().at(icd::Uri::MarkersUpdate).next, end_of_pause);
+  EXPECT_EQ(carried.paces().at(icd::Uri::MarkersUpdate).earliest.first, end_of_pause);
 }
 
 }  // namespace

@@ -117,7 +117,11 @@ TEST(Carried, HoldsForNotTakenWhatWasSentAndOfWhichNoAnswerWasWrittenDown) {
 
 TEST(Carried, HasClocksPacesAndStamps) {
   using std::chrono::seconds;
-  const pace::Learned learned{.next = pace::Instant(seconds(7)), .spacing = seconds(3), .under_way = true};
+  const pace::Learned learned{
+      .earliest = {.first = pace::Instant(seconds(7)), .last = pace::Instant(seconds(8))},
+      .spacing = seconds(3),
+      .under_way = true,
+      .from_answers = true};
   Carried carried;
   EXPECT_FALSE(carried.clock());
   tell(carried, Kind::Clock, said(Clock{.boot = "b1", .at = pace::Instant(seconds(5)), .stamp = 1.5e9}));
@@ -143,7 +147,7 @@ TEST(Carried, KnowsNoInstantsOfAnotherStartOfTheMachine) {
   using std::chrono::seconds;
   Carried carried;
   tell(carried, Kind::Clock, said(Clock{.boot = "b1", .at = pace::Instant(seconds(5)), .stamp = 1.5e9}));
-  tell(carried, Kind::Pace, said(icd::Uri::MapUpdate, pace::Learned{.next = pace::Instant(seconds(7))}));
+  tell(carried, Kind::Pace, said(icd::Uri::MapUpdate, pace::Learned{.spacing = seconds(7)}));
   carried.machine_is("b1");
   EXPECT_TRUE(carried.clock());
   EXPECT_THAT(carried.paces(), SizeIs(1));

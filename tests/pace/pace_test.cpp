@@ -2,6 +2,7 @@
 
 #include <limits>
 #include <random>
+#include <utility>
 
 #include "pace/at.hpp"
 #include "pace/backoff.hpp"
@@ -16,6 +17,15 @@ using std::chrono::milliseconds;
 using std::chrono::seconds;
 using testing::DoubleNear;
 
+/// A request so short that it left at once.
+Span left(double s) {
+  return {.first = at(s), .last = at(s)};
+}
+
+Duration seconds_of(double s) {
+  return std::chrono::duration_cast<Duration>(std::chrono::duration<double>{s});
+}
+
 TEST(RateLimit, IsReadyAtOnceAndThenAfterItsSpacing) {
   RateLimit limit{2};
   EXPECT_TRUE(limit.ready(at(0)));
@@ -24,11 +34,26 @@ TEST(RateLimit, IsReadyAtOnceAndThenAfterItsSpacing) {
   EXPECT_TRUE(limit.ready(at(10.5)));
 }
 
-TEST(RateLimit, MeasuresFromTheAnswerToTheNextRequest) {
+TEST(RateLimit, KeepsFirstBytesApartAndLastBytes) {
   RateLimit limit{1};
   limit.sent(at(10));
-  limit.taken(at(10.7));
-  EXPECT_EQ(limit.next(), at(11.7));
+  limit.taken({.first = at(10), .last = at(10.6)}, at(10.7));
+  EXPECT_EQ(limit.earliest(), (Span{.first = at(11.02), .last = at(11.62)}));
+  EXPECT_EQ(limit.next(), at(11.62)) << "where nothing is held back";
+}
+
+TEST(RateLimit, AfterA429CountsFromTheAnswerToTheNextRequest) {
+  RateLimit limit{1};
+  limit.sent(at(10));
+  limit.throttled(at(10.1), {});
+  limit.sent(at(11.2));
+  limit.taken({.first = at(11.2), .last = at(11.5)}, at(11.7));
+  EXPECT_EQ(limit.earliest(), (Span{.first = at(12.7), .last = at(12.7)}));
+  EXPECT_TRUE(limit.learned().from_answers);
+  RateLimit next{1};
+  next.carry_on(limit.learned(), at(12));
+  EXPECT_TRUE(next.learned().from_answers);
+  EXPECT_EQ(next.earliest(), limit.earliest());
 }
 
 TEST(RateLimit, HeedsRetryAfterUpToItsLongestPause) {
@@ -54,7 +79,7 @@ TEST(RateLimit, NeverStopsForEver) {
 
 TEST(RateLimit, GoesOnAsTheOneBeforeHasLearned) {
   RateLimit slowed(1);
-  for (int i = 0; i < 40; ++i) slowed.throttled(at(i), {}), slowed.taken(at(i));
+  for (int i = 0; i < 40; ++i) slowed.throttled(at(i), {}), slowed.taken(left(i), at(i));
   ASSERT_LT(hertz(slowed, 1), 0.9);
   slowed.throttled(at(40), std::chrono::seconds(20));
   RateLimit next(1);
@@ -67,9 +92,9 @@ TEST(RateLimit, GoesOnAsTheOneBeforeHasLearned) {
   EXPECT_EQ(hertz(slower, 0.01), 0.01) << "never more than the settings allow";
   RateLimit free(1), freed(5);
   free.sent(at(3));
-  free.taken(at(3));
+  free.taken(left(3), at(3));
   freed.carry_on(free.learned(), at(3));
-  EXPECT_EQ(freed.next(), at(4));
+  EXPECT_EQ(freed.next(), at(4) + milliseconds{20});
   EXPECT_EQ(hertz(freed, 5), 5) << "nothing was learned: the new settings count";
 }
 
@@ -80,16 +105,16 @@ TEST(RateLimit, KeepsItsDistanceFromWhatWasUnderWayWhenTheOneBeforeEnded) {
   RateLimit next(1);
   next.carry_on(before.learned(), at(8.3));
   EXPECT_EQ(next.next(), at(9.3));
-  before.taken(at(8));
+  before.taken(left(8), at(8));
   RateLimit known(1);
   known.carry_on(before.learned(), at(8.3));
-  EXPECT_EQ(known.next(), at(9)) << "how it ended is known";
+  EXPECT_EQ(known.next(), at(9) + milliseconds{20}) << "how it ended is known";
 }
 
 TEST(RateLimit, IsNotHeldBackForEverByAClockThatWasAnother) {
   for (const double hertz : {1.0, 0.01}) {
     RateLimit next(hertz);
-    next.carry_on({.next = at(1e6)}, at(5));
+    next.carry_on({.earliest = {.first = at(1e6), .last = at(1e6)}}, at(5));
     EXPECT_LE(next.next(), at(5 + std::max(30.0, 1 / hertz))) << hertz;
   }
 }
@@ -109,18 +134,25 @@ TEST(RateLimit, NoTwoRequestsAreCloserThanAllowedWhateverTheAnswers) {
   for (const double allowed : {0.5, 1.0, 10.0}) {
     RateLimit limit{allowed};
     auto now = at(0);
-    auto last = at(-100);
+    Span last{.first = at(-100), .last = at(-100)};
     for (int i = 0; i < 2000; ++i) {
-      now += std::chrono::duration_cast<Duration>(std::chrono::duration<double>{any(random) * 0.3});
-      if (!limit.ready(now)) continue;
-      const std::chrono::duration<double> apart = now - last;
-      ASSERT_GE(apart.count(), 1 / allowed - 1e-9);
-      last = now;
-      limit.sent(now);
-      now += milliseconds{20};
+      now += seconds_of(any(random) * 0.3);
+      if (now < limit.earliest().first) continue;
+      const Span sent{.first = now,
+                      .last = std::max(now + seconds_of(any(random) * 2), limit.earliest().last)};
+      ASSERT_GE(sent.first - last.first, seconds_of(1 / allowed));
+      ASSERT_GE(sent.last - last.last, seconds_of(1 / allowed));
+      last = sent;
+      limit.sent(sent.first);
+      now = sent.last + milliseconds{20};
       const double answer = any(random);
       if (answer < 0.2) limit.throttled(now, {});
-      if (answer > 0.4) limit.taken(now);  // else it failed
+      if (answer >= 0.2 && answer < 0.4) limit.lost(now);
+      if (answer >= 0.4) limit.taken(sent, now);
+      if (answer > 0.98) {  // a life ends, and the next begins
+        const Learned learned = std::exchange(limit, RateLimit{allowed}).learned();
+        limit.carry_on(learned, now);
+      }
       ASSERT_GE(hertz(limit, allowed), std::min(allowed, RateLimit::kSlowest) - 1e-9);
     }
   }

@@ -60,7 +60,8 @@ std::vector<Request> played(Server server, double until,
     limit.sent(at(now));
     all.push_back({now, server(now)});
     const double answered = now + kAnswerTakes;
-    all.back().taken ? limit.taken(at(answered)) : limit.throttled(at(answered), retry_after);
+    all.back().taken ? limit.taken({.first = at(now), .last = at(now)}, at(answered))
+                     : limit.throttled(at(answered), retry_after);
     now = std::max(answered, Seconds(limit.next().time_since_epoch()).count());
   }
   return all;
@@ -152,10 +153,35 @@ TEST(RateLimitServers, AStormThatDoesNotEndIsAskedAsOftenAsItsEndIsToBeFound) {
   EXPECT_GE(asked.refused, 480 / 5);
 }
 
+/// At least a second from its answer to the first byte of the next request.
+struct FromAnswers {
+  double answered = -1e9;
+  bool takes(double first) const { return first - answered >= 1; }
+};
+
+TEST(RateLimitServers, OneThatCountsFromItsAnswersIsLearnedOfAtOnce) {
+  constexpr double kTransfer = 0.5, kMinutes = 10;
+  FromAnswers server;
+  RateLimit limit{1};
+  Counts counts;
+  for (double now = 0; now < kMinutes * 60;) {
+    limit.sent(at(now));
+    const double answered = now + kTransfer;
+    const bool is_taken = server.takes(now);
+    ++(is_taken ? counts.taken : counts.refused);
+    server.answered = answered;
+    is_taken ? limit.taken({.first = at(now), .last = at(answered)}, at(answered))
+             : limit.throttled(at(answered), {});
+    now = std::max(answered, Seconds(limit.earliest().first.time_since_epoch()).count());
+  }
+  EXPECT_LE(counts.refused, 9) << "one at first, and one for each time that it tries for more";
+  EXPECT_GE(counts.taken, 0.95 * kMinutes * 60 / (1 + kTransfer));
+}
+
 TEST(RateLimit, GoesByARateThatIsAllowedFromNowOn) {
   RateLimit rate(1);
   rate.sent(at(0));
-  rate.taken(at(0));
+  rate.lost(at(0));
   rate.allow(4, at(0.1));
   EXPECT_EQ(rate.next(), at(0.25));
   rate.allow(0.5, at(0.1));
@@ -172,14 +198,14 @@ TEST(RateLimit, KeepsAPauseThatTheServerAskedFor) {
 
 TEST(RateLimit, KeepsAPauseOfAnEarlierLifeForAsLongAsAServerMayAskFor) {
   RateLimit rate(0.001);
-  rate.carry_on({.next = at(900), .spacing = {}, .under_way = false}, at(0));
+  rate.carry_on({.earliest = {.first = at(900), .last = at(900)}}, at(0));
   rate.allow(1, at(5));
   EXPECT_EQ(rate.next(), at(5) + RateLimit::kLongestPause);
 }
 
 TEST(RateLimit, KeepsWhatItLearnedOfTheServer) {
   RateLimit rate(10);
-  rate.carry_on({.next = {}, .spacing = std::chrono::seconds{2}, .under_way = false}, at(0));
+  rate.carry_on({.spacing = std::chrono::seconds{2}}, at(0));
   rate.allow(5, at(0));
   EXPECT_DOUBLE_EQ(hertz(rate, 5), 0.5);
   rate.allow(0.1, at(0));

@@ -22,7 +22,7 @@ constexpr double kLongestPause = 30;  // that a Retry-After is heeded for
 }  // namespace
 
 void paced(const Evidence& evidence, Broken& broken) {
-  std::map<std::string, double> last;
+  std::map<Kind, std::map<std::string, double>> last;  // of Leaves and of Complete
   struct Asked {
     double at, pause;
     int life;
@@ -40,19 +40,21 @@ void paced(const Evidence& evidence, Broken& broken) {
     if (event.kind == Kind::Dies) asked.clear();  // the answer may have been read and not yet understood
     if (event.kind == Kind::Replied && event.status == 429)
       asked[event.what] = {event.at, std::min(event.stamp, kLongestPause), event.life};
-    if (event.kind != Kind::Leaves) continue;
-    const auto before = last.find(event.what);
-    if (before != last.end() && event.at - before->second < kSpacing - kRounding) {
-      broken.push_back(icd::sentence("Paced: ", event.what, " was asked ", event.at - before->second,
-                                     " s after the last time, at ", event.at));
+    if (event.kind != Kind::Leaves && event.kind != Kind::Complete) continue;
+    const auto before = last[event.kind].find(event.what);
+    if (before != last[event.kind].end() && event.at - before->second < kSpacing - kRounding) {
+      broken.push_back(icd::sentence(
+          "Paced: ", event.what, " was asked ", event.at - before->second, " s after the last time, by its ",
+          event.kind == Kind::Leaves ? "first byte" : "last byte", ", at ", event.at));
     }
+    last[event.kind][event.what] = event.at;
+    if (event.kind == Kind::Complete) continue;
     const auto pause = asked.find(event.what);
     if (pause != asked.end() && event.at - pause->second.at < pause->second.pause - kRounding) {
       broken.push_back(icd::sentence("Paced: ", event.what, " was asked ", event.at - pause->second.at,
                                      " s after a 429 that asked for ", pause->second.pause, " s, at ",
                                      event.at));
     }
-    last[event.what] = event.at;
     asked.erase(event.what);
   }
 }

@@ -16,7 +16,8 @@ enum class Kind : std::uint8_t {
   Answered,   // the client has heard a whole answer, of that status
   Gone,       // the client has not, and the connection is over: it hung up, or was cut
   Leaves,     // the first byte of a request upstream is given to the network
-  Left,       // the last one: the message it carries
+  Complete,   // the last one is
+  Left,       // and so the message that it carries
   Forbidden,  // it was one that the ICD forbids, or what must not be in the box; the text says why
   Replied,    // Adit has read the last byte of an answer of that status
   Opens,      // it finds a connection upstream open

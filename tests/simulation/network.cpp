@@ -47,6 +47,7 @@ std::size_t Link::write(std::string_view bytes) {
   std::size_t left = std::min(bytes.size(), window_ - std::min(window_, unacknowledged_));
   const std::size_t taken = left;
   unacknowledged_ += taken;
+  if (taken > 0) last_left_ = world_.now();
   while (left > 0) {
     const std::size_t size = random_.chance(0.8) ? left : 1 + random_.below(left);
     last_there_ = std::max(last_there_, arrival());

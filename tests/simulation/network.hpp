@@ -54,6 +54,7 @@ class Link : public std::enable_shared_from_this<Link> {
   int error = 0;  // of connecting
   bool resets_on_close = false;
   std::size_t unacknowledged() const { return unacknowledged_; }
+  loop::Instant last_left() const { return last_left_; }  // when write() took bytes last
   std::uint32_t ready() const;
   void close();
   /// Adit's machine has no power: nothing tells the other end, and what has left arrives.
@@ -79,7 +80,7 @@ class Link : public std::enable_shared_from_this<Link> {
   std::size_t window_;
   std::size_t unacknowledged_ = 0;
   bool closed_ = false, lost_ = false;
-  loop::Instant last_there_{}, last_here_{}, held_until_{};
+  loop::Instant last_there_{}, last_here_{}, last_left_{}, held_until_{};
   std::unique_ptr<Peer> peer_;
 };
 

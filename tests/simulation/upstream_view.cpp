@@ -28,6 +28,7 @@ void UpstreamView::left(std::string_view bytes) {
   }
   requests_.feed(bytes);
   while (const auto request = requests_.next()) {
+    world.note({.kind = Kind::Complete, .what = path_, .who = ""});
     if (const std::string fault = fault_of(*request); !fault.empty()) {
       world.note({.kind = Kind::Forbidden, .what = path_, .who = "", .text = fault});
       continue;

@@ -80,6 +80,12 @@ bool is_quiet(int fd) {
   return link != nullptr && link->inbox.empty() && !link->ended && !link->reset;
 }
 
+Transmission transmission(int fd) {
+  const Link* const link = link_of(fd);
+  if (link == nullptr) return {};
+  return {.since_last_byte = World::current().now() - link->last_left(), .sent_twice = 0};
+}
+
 std::size_t unacknowledged_bytes(int fd) {
   const Link* const link = link_of(fd);
   return link == nullptr ? 0 : link->unacknowledged();

@@ -1,0 +1,77 @@
+// The last bytes of a request may be held back, and its answer says when its bytes left.
+#include <gtest/gtest.h>
+
+#include <atomic>
+#include <thread>
+
+#include "asking.hpp"
+
+namespace adit::uplink {
+namespace {
+
+using std::chrono::milliseconds;
+
+class HeldBack : public Asking {
+ protected:
+  /// Answers, so long after the whole request was there.
+  Peer::Script answers_after(milliseconds pause) {
+    return [this, pause](Wire& wire) {
+      wire.read_request();
+      whole_ = loop_.now();
+      std::this_thread::sleep_for(pause);
+      wire.write(answer("200 OK", "null"));
+    };
+  }
+
+  std::atomic<loop::Instant> whole_ = loop::Instant{};
+};
+
+TEST_F(HeldBack, AllButALittleLeavesAtOnce) {
+  const ListeningPeer peer(answers_after({}));
+  Connection connection(loop_, peer.endpoint(), token());
+  const std::string body = megabytes(3);
+  Request request = post(body);
+  request.last_byte_not_before = loop_.now() + std::chrono::hours(1);
+  connection.send(std::move(request), [](const Outcome&) { ADD_FAILURE() << "it was answered"; });
+  const std::size_t most = body.size() - Request::kHeldBack;
+  EXPECT_TRUE(loop::turn_until(loop_, [&] { return connection.sent_bytes() > most; }));
+  for (int i = 0; i < 5; ++i) loop_.turn(milliseconds(2));
+  EXPECT_LT(connection.sent_bytes(), body.size());
+}
+
+TEST_F(HeldBack, TheLastByteLeavesNoSoonerThanItMay) {
+  for (const std::size_t size : {0u, 1u, 1024u, 300'000u}) {
+    const ListeningPeer peer(answers_after({}));
+    Request request = post(std::string(size, 'x'));
+    const loop::Instant not_before = loop_.now() + milliseconds(100);
+    request.last_byte_not_before = not_before;
+    const Answered got = answered(ask(peer.endpoint(), std::move(request)));
+    EXPECT_EQ(got.status, 200) << got.body;
+    if (size == 0) continue;  // its head alone is not held back
+    EXPECT_GE(whole_.load(), not_before) << size;
+    EXPECT_GE(got.sent.last, not_before) << size;
+    EXPECT_LE(got.sent.first, got.sent.last) << size;
+  }
+}
+
+TEST_F(HeldBack, ThePeerIsNotSilentMeanwhile) {
+  const ListeningPeer peer(answers_after({}));
+  Request request = post("body");
+  request.answer_within = milliseconds(1000);
+  request.last_byte_not_before = loop_.now() + milliseconds(1500);
+  EXPECT_EQ(answered(ask(peer.endpoint(), std::move(request))).status, 200);
+}
+
+TEST_F(HeldBack, TheTimeOfTheAnswerIsNotWhenTheLastByteLeft) {
+  const ListeningPeer peer(answers_after(milliseconds(400)));
+  const loop::Instant begin = loop_.now();
+  const Answered got = answered(ask(peer.endpoint(), post(megabytes(1))));
+  const loop::Instant end = loop_.now();
+  EXPECT_EQ(got.status, 200);
+  EXPECT_GE(got.sent.first, begin);
+  EXPECT_LE(got.sent.first, got.sent.last);
+  EXPECT_LT(got.sent.last, end - milliseconds(200));
+}
+
+}  // namespace
+}  // namespace adit::uplink

@@ -1,25 +1,32 @@
 #include "box/links.hpp"
 
+#include <sys/epoll.h>
+
 #include <utility>
 
+#include "host/link_changes.hpp"
 #include "host/log.hpp"
 #include "icd/sentence.hpp"
 
 namespace adit::box {
 
-Links::Links(loop::Loop& loop, const settings::Settings& settings, Look look, std::function<void()> changed,
-             std::function<void()> back)
-    : loop_(loop),
-      look_(std::move(look)),
+Links::Links(loop::Loop& loop, const settings::Settings& settings, Look look, loop::FileDescriptor kernel,
+             std::function<void()> changed, std::function<void()> back)
+    : look_(std::move(look)),
       changed_(std::move(changed)),
       back_(std::move(back)),
       links_{{{.side = "team", .whose = "team's", .interface = settings.team.interface},
               {.side = "command_post",
                .whose = "Command Post's",
                .interface = settings.command_post.interface}}},
-      timer_(loop.timer([this] { this->look(); })) {
+      kernel_(std::move(kernel)) {
+  if (kernel_) {
+    told_ = loop.watch(kernel_.get(), EPOLLIN, [this](std::uint32_t) {
+      if (!host::take_link_changes(kernel_)) told_.wait_for(0);
+      this->look();
+    });
+  }
   for (Link& link : links_) link.carrier = look_(link.interface);
-  timer_.call_at(loop_.now() + kEvery);
 }
 
 void Links::look_at(const settings::Settings& settings) {
@@ -44,7 +51,6 @@ void Links::look() {
   }
   if (changed) changed_();
   if (back) back_();
-  timer_.call_at(loop_.now() + kEvery);
 }
 
 std::vector<api::LinkRow> Links::rows() const {

@@ -7,22 +7,25 @@
 #include <vector>
 
 #include "api/source.hpp"
+#include "loop/file_descriptor.hpp"
 #include "loop/loop.hpp"
 #include "settings/settings.hpp"
 
 namespace adit::box {
 
-/// The two cables: looked at often, so that one that is out is shown, and what waited for it goes on as soon
-/// as it is back.
+/// The two cables: looked at as soon as the kernel tells of a change, so that one that is out is shown, and
+/// what waited for it goes on as soon as it is back.
 class Links {
  public:
-  static constexpr std::chrono::milliseconds kEvery{250};
   using Look = std::function<std::optional<bool>(const std::string& interface)>;
 
   /// `changed` is called as a cable comes or goes, `back` after it where the Command Post's came.
-  /// `look`: host::carrier().
-  Links(loop::Loop& loop, const settings::Settings& settings, Look look, std::function<void()> changed,
-        std::function<void()> back);
+  /// `look`: host::carrier(). `kernel`: host::link_changes(), or none.
+  Links(loop::Loop& loop, const settings::Settings& settings, Look look, loop::FileDescriptor kernel,
+        std::function<void()> changed, std::function<void()> back);
+
+  /// To be called each second: the kernel may have told of nothing.
+  void look();
 
   /// The settings may name others from now on.
   void look_at(const settings::Settings& settings);
@@ -37,13 +40,12 @@ class Links {
     std::string side, whose, interface;
     std::optional<bool> carrier = {};
   };
-  void look();
 
-  loop::Loop& loop_;
   Look look_;
   std::function<void()> changed_, back_;
   std::array<Link, 2> links_;
-  loop::Source timer_;
+  const loop::FileDescriptor kernel_;
+  loop::Source told_;
 };
 
 }  // namespace adit::box

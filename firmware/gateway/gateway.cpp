@@ -4,6 +4,7 @@
 
 #include "dispatch/another_post.hpp"
 #include "gateway/report_rows.hpp"
+#include "host/link_changes.hpp"
 #include "host/log.hpp"
 #include "loop/guard.hpp"
 #include "settings/written.hpp"
@@ -29,7 +30,8 @@ Gateway::Gateway(loop::Loop& loop, Parts parts)
       log_ins_(loop, 1),
       lights_(loop, std::move(parts_.lines)),
       links_(
-          loop, settings_, host::carrier, [this] { api_.changed(); }, [this] { flow_.link_is_back(); }),
+          loop, settings_, host::carrier, host::link_changes(), [this] { api_.changed(); },
+          [this] { flow_.link_is_back(); }),
       button_(loop, std::move(parts_.button), lights_, [this](panel::Press press) { pressed(press); }),
       roster_(settings_.robots),
       sessions_(parts_.runtime_folder + '/' + admin::SessionKeeper::kFile, loop.now()),
@@ -163,6 +165,7 @@ void Gateway::every_second() {
   second_.call_at(loop_.now() +
                   std::chrono::seconds(1));  // first: whatever fails below, the next second comes
   flow_.tick(disk_writer_);
+  links_.look();
   show_lights();
   network_.every_second();
   updates_.every_second();

@@ -1,7 +1,9 @@
 #include "box/links.hpp"
 
 #include <gmock/gmock.h>
+#include <sys/socket.h>
 
+#include <array>
 #include <map>
 
 namespace adit::box {
@@ -16,14 +18,13 @@ class LinksTest : public testing::Test {
     settings.team.interface = "team0";
     settings.command_post.interface = "darpa0";
   }
-  Links make() {
-    return {loop, settings, [this](const std::string& name) { return carriers[name]; }, [this] { ++changes; },
+  Links make(loop::FileDescriptor told = {}) {
+    return {loop,
+            settings,
+            [this](const std::string& name) { return carriers[name]; },
+            std::move(told),
+            [this] { ++changes; },
             [this] { ++backs; }};
-  }
-  void wait() {
-    const auto end = loop.now() + 2 * Links::kEvery;
-    while (loop.now() < end) loop.turn(std::chrono::milliseconds(20));
-    loop.turn(std::chrono::milliseconds(0));  // what is due by then
   }
 
   loop::Loop loop;
@@ -57,25 +58,70 @@ TEST_F(LinksTest, AreNoneWhereTheSettingsNameNone) {
 }
 
 TEST_F(LinksTest, TellWhenTheCommandPostsCableIsBack) {
-  const Links links = make();
-  wait();
+  Links links = make();
+  links.look();
   EXPECT_EQ(changes, 0);
   carriers["darpa0"] = false;
-  wait();
+  links.look();
   EXPECT_EQ(changes, 1);
   EXPECT_EQ(backs, 0);
   EXPECT_EQ(links.attention().size(), 1u);
   carriers["darpa0"] = true;
-  wait();
+  links.look();
   EXPECT_EQ(changes, 2);
   EXPECT_EQ(backs, 1);
   EXPECT_THAT(links.attention(), IsEmpty());
   carriers["team0"] = false;
-  wait();
+  links.look();
   carriers["team0"] = true;
-  wait();
+  links.look();
   EXPECT_EQ(changes, 4);
   EXPECT_EQ(backs, 1) << "nothing waits for the team's";
+}
+
+/// What the kernel's end of a socket says, and that it breaks.
+class ToldLinksTest : public LinksTest {
+ protected:
+  ToldLinksTest() {
+    std::array<int, 2> ends{};
+    EXPECT_EQ(socketpair(AF_UNIX, SOCK_SEQPACKET | SOCK_NONBLOCK, 0, ends.data()), 0);
+    kernel = loop::FileDescriptor(ends[0]);
+    ours = loop::FileDescriptor(ends[1]);
+  }
+  void tell() { EXPECT_EQ(send(kernel.get(), "news", 4, 0), 4); }
+  void turn() {  // one thing that is due at a time
+    for (int each = 0; each < 4; ++each) loop.turn(std::chrono::milliseconds(0));
+  }
+
+  loop::FileDescriptor kernel, ours;
+};
+
+TEST_F(ToldLinksTest, LookAsSoonAsTheKernelTellsOfAChange) {
+  const Links links = make(std::move(ours));
+  carriers["darpa0"] = false;
+  turn();
+  EXPECT_EQ(changes, 0) << "nobody looks unasked";
+  tell();
+  tell();
+  turn();
+  EXPECT_EQ(changes, 1);
+  carriers["darpa0"] = true;
+  turn();
+  EXPECT_EQ(backs, 0) << "what was told before is taken";
+  tell();
+  turn();
+  EXPECT_EQ(backs, 1);
+}
+
+TEST_F(ToldLinksTest, GoOnLookingEachSecondWhereTheKernelTellsNothingMore) {
+  kernel = {};
+  Links links = make(std::move(ours));
+  turn();
+  carriers["darpa0"] = false;
+  turn();
+  EXPECT_EQ(changes, 0) << "what is broken is not looked at again";
+  links.look();
+  EXPECT_EQ(changes, 1);
 }
 
 TEST_F(LinksTest, AreThoseThatTheSettingsNameByNow) {

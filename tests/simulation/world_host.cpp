@@ -1,4 +1,6 @@
-// host/log.hpp, host/process.hpp, host/random.hpp and host/service.hpp's carrier() over the simulated world.
+// host/link_changes.hpp, host/log.hpp, host/process.hpp, host/random.hpp and host/service.hpp's carrier()
+// over the simulated world.
+#include "host/link_changes.hpp"
 #include "host/log.hpp"
 #include "host/memory.hpp"
 #include "host/process.hpp"
@@ -60,6 +62,12 @@ std::string line_of(const Record& record) {
 /// All cables are in.
 std::optional<bool> carrier(const std::string&) {
   return true;
+}
+loop::FileDescriptor link_changes() {
+  return {};
+}
+bool take_link_changes(const loop::FileDescriptor&) {
+  return false;
 }
 
 /// The same on any machine.

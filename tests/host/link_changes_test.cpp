@@ -1,0 +1,60 @@
+#include "host/link_changes.hpp"
+
+#include <gtest/gtest.h>
+#include <net/if.h>
+#include <poll.h>
+#include <sched.h>
+#include <sys/ioctl.h>
+#include <sys/socket.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+#include <cstring>
+
+namespace adit::host {
+namespace {
+
+constexpr int kNoNamespace = 77;
+
+void set_loopback_up() {
+  const loop::FileDescriptor any(socket(AF_INET, SOCK_DGRAM | SOCK_CLOEXEC, 0));
+  ifreq request{};
+  std::strcpy(request.ifr_name, "lo");
+  request.ifr_flags = IFF_UP;
+  ioctl(any.get(), SIOCSIFFLAGS, &request);
+}
+
+bool is_told(const loop::FileDescriptor& changes, int within_ms) {
+  pollfd wait{.fd = changes.get(), .events = POLLIN, .revents = 0};
+  return poll(&wait, 1, within_ms) == 1;
+}
+
+/// In a network of its own, whose one interface is down at first. What went wrong; 0: nothing.
+int tell_of_the_loopback() {
+  if (unshare(CLONE_NEWUSER | CLONE_NEWNET) != 0) return kNoNamespace;
+  const loop::FileDescriptor changes = link_changes();
+  if (!changes) return 1;
+  if (is_told(changes, 0)) return 2;
+  set_loopback_up();
+  if (!is_told(changes, 30'000)) return 3;
+  if (!take_link_changes(changes)) return 4;
+  if (is_told(changes, 0)) return 5;
+  return 0;
+}
+
+TEST(LinkChanges, AreToldByTheKernel) {
+  const pid_t child = fork();
+  if (child == 0) _exit(tell_of_the_loopback());
+  int status = 0;
+  ASSERT_EQ(waitpid(child, &status, 0), child);
+  ASSERT_TRUE(WIFEXITED(status));
+  if (WEXITSTATUS(status) == kNoNamespace) GTEST_SKIP() << "no network of one's own here";
+  EXPECT_EQ(WEXITSTATUS(status), 0);
+}
+
+TEST(LinkChanges, AreNotTakenFromWhatIsNoSocket) {
+  EXPECT_FALSE(take_link_changes({}));
+}
+
+}  // namespace
+}  // namespace adit::host

@@ -157,6 +157,14 @@ void write_updates(Exposition& out, const RunView& view) {
                 &ActivityRow::failed);
   write_counter(out, view, "adit_updates_refused_total", "Updates that the Command Post refused for good.",
                 &ActivityRow::refused_upstream);
+  write_counter(out, view, "adit_updates_no_room_total", "Updates refused to robots, because too much waits.",
+                &ActivityRow::no_room);
+  out.gauge("adit_updates_behind_seconds",
+            "For how long the Command Post has lacked the oldest news; 0: it has all.");
+  for (const ActivityRow& row : view.activities) {
+    out.sample({{"kind", row.kind}, {"robot", row.robot}},
+               row.behind_since ? view.now - *row.behind_since : 0);
+  }
   out.gauge("adit_updates_waiting", "Updates that wait.");
   sample_each(out, view, &ActivityRow::waiting);
   write_age(out, view, "adit_updates_accepted_age_seconds", "How long ago the last one was accepted.",

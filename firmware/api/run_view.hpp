@@ -58,8 +58,8 @@ struct ReportDetail {
 struct ActivityRow {
   std::string kind, robot;
   std::uint64_t accepted = 0, forwarded = 0, replaced = 0, merged = 0, throttled = 0, failed = 0,
-                refused_upstream = 0, waiting = 0;
-  std::optional<Time> last_accepted, last_forwarded;
+                refused_upstream = 0, no_room = 0, waiting = 0;
+  std::optional<Time> behind_since, last_accepted, last_forwarded, last_no_room;
   std::uint64_t bytes_received = 0, bytes_sent = 0;
   int last_status = 0;
   std::string last_sentence;

@@ -78,12 +78,14 @@ std::string endpoints_table(const RunView& view, bool colour) {
   return table.empty() ? "" : "\nCommand Post\n" + table.written(colour);
 }
 
-Cell arrival_cell(Arrival arrival) {
+/// How far the Command Post is behind what was accepted.
+Cell arrival_cell(Arrival arrival, const api::ActivityRow& row, api::Time now) {
+  const std::string behind = row.behind_since ? duration(now - *row.behind_since) + " behind" : "up to date";
   switch (arrival) {
     case Arrival::Yes:
-      return {"yes", Tone::Good};
+      return {behind, Tone::Good};
     case Arrival::Late:
-      return {"late", Tone::Warning};
+      return {behind, Tone::Warning};
     case Arrival::No:
       return {"NO", Tone::Bad};
     case Arrival::Silent:
@@ -116,6 +118,7 @@ std::string activities_table(const RunView& view, bool colour) {
                {"accepted", Align::Right},
                {"sent", Align::Right},
                {"waiting", Align::Right},
+               {"refused", Align::Right},
                {"last sent", Align::Right},
                {"size", Align::Right},
                {"the Command Post said"}});
@@ -123,10 +126,11 @@ std::string activities_table(const RunView& view, bool colour) {
     const Arrival arrival = arrival_of(row, view.now);
     table.add({{row.robot.empty() ? "(all)" : row.robot, Tone::Strong},
                {row.kind},
-               arrival_cell(arrival),
+               arrival_cell(arrival, row, view.now),
                {std::to_string(row.accepted)},
                {std::to_string(row.forwarded)},
                {std::to_string(row.waiting)},
+               {row.no_room == 0 ? "" : std::to_string(row.no_room), Tone::Warning},
                {ago(row.last_forwarded, view.now)},
                {sent_size(row)},
                {said(row), arrival == Arrival::No ? Tone::Bad : Tone::Plain}});
@@ -157,12 +161,9 @@ Arrival arrival_of(const api::ActivityRow& row, api::Time now) {
   const auto older = [now](const std::optional<api::Time>& time, double seconds) {
     return time && now - *time > seconds;
   };
-  if (row.waiting > 0) {
-    const bool late = older(row.last_forwarded ? row.last_forwarded : row.last_accepted, kLateAfter);
-    return late ? Arrival::Late : row.last_forwarded ? Arrival::Yes : Arrival::NotYet;
-  }
+  if (older(row.behind_since, kLateAfter)) return Arrival::Late;
   if (!row.last_forwarded) return Arrival::NotYet;
-  return older(row.last_accepted, kSilentAfter) ? Arrival::Silent : Arrival::Yes;
+  return !row.behind_since && older(row.last_accepted, kSilentAfter) ? Arrival::Silent : Arrival::Yes;
 }
 
 std::string status_text(const RunView& view, bool colour) {

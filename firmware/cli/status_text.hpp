@@ -10,7 +10,7 @@ namespace adit::cli {
 enum class Arrival : std::uint8_t { Yes, Late, No, Silent, NotYet };
 Arrival arrival_of(const api::ActivityRow& row, api::Time now);
 
-inline constexpr double kLateAfter = 10;    // seconds that an update may wait
+inline constexpr double kLateAfter = 5;     // seconds that the Command Post may be behind
 inline constexpr double kSilentAfter = 30;  // seconds without anything new from the robot
 
 /// What `adit status` prints.

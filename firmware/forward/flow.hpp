@@ -118,6 +118,7 @@ class Flow final : public intake::Desk {
   std::vector<loop::Workers*> threads() { return {&workers_, &writer_}; }
 
  private:
+  std::optional<api::Time> behind_since(const Traffic& traffic) const;
   void carry_on();
   void hold_back();
   void restore(bool is_first);

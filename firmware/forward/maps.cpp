@@ -37,6 +37,10 @@ std::size_t slot_of(const settings::CommandPost& post) {
   return static_cast<std::size_t>(std::max(bytes, 1.0));
 }
 
+lanes::Sender sender_of(const Traffic& traffic) {
+  return {icd::RobotName::parse(traffic.robot), traffic.kind == Kind::Grid};
+}
+
 /// For lanes::Blame: a robot's maps of one kind.
 std::string whose(const icd::MapUpdate& map) {
   return (map.is_grid() ? "grid " : "cloud ") + (map.name ? map.name->text() : "");
@@ -86,6 +90,7 @@ void Maps::take(icd::MapUpdate update, std::size_t bytes_received, std::shared_p
                 std::function<void(icd::Checked<void>)> done) {
   const bool replaces = lane_.replaces_any(update);
   if (!has_room_for(update, replaces)) {
+    record_.no_room(traffic_of(update), loop_.stamp_now());
     if (file) writer_.submit([file = std::move(file)]() mutable { file.reset(); }, [] {});
     return done(std::unexpected(
         icd::Refusal{icd::Status::TooManyRequests,
@@ -405,9 +410,17 @@ bool Maps::stop() {
 }
 
 std::size_t Maps::waiting(const Traffic& traffic) const {
-  const auto of_it = [&](const lanes::WaitingMap& waiting) { return traffic_of(waiting.map) == traffic; };
-  return lane_.count({icd::RobotName::parse(traffic.robot), traffic.kind == Kind::Grid}) +
-         (prepared_ && of_it(prepared_->waiting) ? 1 : 0);
+  return lane_.count(sender_of(traffic)) + (is_prepared(traffic) ? 1 : 0);
+}
+
+std::optional<loop::Instant> Maps::waits_since(const Traffic& traffic) const {
+  const auto oldest = lane_.oldest(sender_of(traffic));
+  if (!is_prepared(traffic)) return oldest;
+  return std::min(oldest.value_or(prepared_->waiting.accepted), prepared_->waiting.accepted);
+}
+
+bool Maps::is_prepared(const Traffic& traffic) const {
+  return prepared_ && traffic_of(prepared_->waiting.map) == traffic;
 }
 
 }  // namespace adit::forward

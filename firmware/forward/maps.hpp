@@ -78,6 +78,8 @@ class Maps {
   std::size_t queued_bytes() const { return lane_.bytes(); }
   bool nearly_full() const { return lane_.bytes() > settings_.queues.map_bytes / 5 * 4; }
   std::size_t waiting(const Traffic& traffic) const;
+  /// When the oldest news that waits or is under way was accepted; nothing if there is none.
+  std::optional<loop::Instant> waits_since(const Traffic& traffic) const;
 
  private:
   /// A map out of the lane, in the form that goes upstream.
@@ -101,6 +103,7 @@ class Maps {
   void keep(const std::shared_ptr<Keeping>& keeping, const std::function<void(Keeping&)>& told);
   void kept(Keeping& keeping, const std::function<void(icd::Checked<void>)>& done);
   void kept_again(Keeping& keeping, const std::function<bool(bool kept)>& done);
+  bool is_prepared(const Traffic& traffic) const;
   bool is_said_by_what_goes(const lanes::WaitingMap& back) const;
   lanes::WaitingMap waiting_again(std::uint64_t number, icd::MapUpdate update, icd::Stamp again) const;
   std::uint64_t next_number(bool again);

@@ -1,5 +1,7 @@
 #include "forward/record.hpp"
 
+#include "icd/sentence.hpp"
+
 namespace adit::forward {
 namespace {
 
@@ -39,6 +41,28 @@ void Record::accepted(const Traffic& traffic, std::size_t bytes, api::Time now) 
   activity.last_accepted = now;
   activity.bytes_received = bytes;
   changed_();
+}
+
+void Record::no_room(const Traffic& traffic, api::Time now) {
+  api::ActivityRow& activity = row(traffic);
+  ++activity.no_room;
+  activity.last_no_room = now;
+  changed_();
+}
+
+std::vector<std::string> Record::attention(api::Time now) const {
+  constexpr std::size_t kNamed = 3;
+  std::string names;
+  std::size_t count = 0;
+  for (const auto& [traffic, activity] : rows_) {
+    if (!activity.last_no_room || now - *activity.last_no_room > kRecent) continue;
+    if (++count > kNamed) continue;
+    names +=
+        (names.empty() ? "" : ", ") + activity.robot + (activity.robot.empty() ? "" : " ") + activity.kind;
+  }
+  if (count == 0) return {};
+  if (count > kNamed) names += icd::sentence(" and ", count - kNamed, " more");
+  return {"too much waits, so that robots are refused: " + names};
 }
 
 void Record::replaced(const Traffic& traffic, std::size_t updates) {
@@ -91,13 +115,6 @@ std::vector<api::RefusedCount> Record::refused_counts() const {
                    .count = counted.count,
                    .parts = counted.parts});
   }
-  return all;
-}
-
-std::vector<api::ActivityRow> Record::activities() const {
-  std::vector<api::ActivityRow> all;
-  all.reserve(rows_.size());
-  for (const auto& [traffic, activity] : rows_) all.push_back(activity);
   return all;
 }
 

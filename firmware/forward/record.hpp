@@ -34,11 +34,14 @@ class Record {
  public:
   static constexpr std::size_t kMostRows = 200;
   static constexpr std::size_t kMostRefusals = 50;
+  static constexpr double kRecent = 60;  // seconds that a refusal for want of room is told of
 
   /// `changed` is called whenever something is noted.
   explicit Record(std::function<void()> changed) : changed_(std::move(changed)) {}
 
   void accepted(const Traffic& traffic, std::size_t bytes, api::Time now);
+  /// It was refused to the robot, because too much waits.
+  void no_room(const Traffic& traffic, api::Time now);
   void replaced(const Traffic& traffic, std::size_t updates);
   /// The Command Post took a message of `bytes` that stands for `updates` accepted ones.
   void forwarded(const Traffic& traffic, std::size_t updates, std::size_t bytes, int status, api::Time now);
@@ -47,8 +50,10 @@ class Record {
 
   void refused(icd::Uri uri, const intake::Sender& sender, const icd::Refusal& refusal, api::Time now);
 
-  /// Without `waiting`, which the lanes know.
-  std::vector<api::ActivityRow> activities() const;
+  /// Without `waiting` and `behind_since`, which the lanes know.
+  const std::map<Traffic, api::ActivityRow>& rows() const { return rows_; }
+  /// For the operator, as long as robots are refused because too much waits.
+  std::vector<std::string> attention(api::Time now) const;
   /// What was ever refused, by URI and status.
   std::vector<api::RefusedCount> refused_counts() const;
   /// Newest first.

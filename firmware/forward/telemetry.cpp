@@ -113,7 +113,11 @@ void Telemetry::endpoint_turned() {
 }
 
 icd::Checked<void> Telemetry::take(const icd::StateUpdate& update, std::size_t bytes_received) {
-  if (!state_.has_room_for(update)) return full("more robots than can be kept apart");
+  if (!state_.has_room_for(update)) {
+    for (const icd::NamedPose& pose : update.poses)
+      record_.no_room({Kind::State, pose.name.text()}, loop_.stamp_now());
+    return full("more robots than can be kept apart");
+  }
   if (const auto kept = journal_.accepted(update); !kept) return not_kept(kept.error());
   whole(restart_, [&] {
     for (const icd::NamedPose& pose : update.poses) {
@@ -126,7 +130,10 @@ icd::Checked<void> Telemetry::take(const icd::StateUpdate& update, std::size_t b
 }
 
 icd::Checked<void> Telemetry::take(const icd::MarkersUpdate& update, std::size_t bytes_received) {
-  if (!markers_.has_room_for(update)) return full("more markers than can wait (queues.marker_bytes)");
+  if (!markers_.has_room_for(update)) {
+    record_.no_room({Kind::Markers, ""}, loop_.stamp_now());
+    return full("more markers than can wait (queues.marker_bytes)");
+  }
   if (const auto kept = journal_.accepted(update); !kept) return not_kept(kept.error());
   whole(restart_, [&] {
     record_.accepted({Kind::Markers, ""}, bytes_received, loop_.stamp_now());
@@ -159,6 +166,7 @@ void Telemetry::send_state() {
   journal_.state_sent(waiting->update);
   const icd::ChunkedBytes body = codec::write_state_update(waiting->update);
   state_pace_.sent(loop_.now());
+  under_way_ = {Kind::State, waiting->accepted};
   channel_.send(icd::Uri::StateUpdate, codec::kCbor, body,
                 [this, sent = std::move(*waiting), bytes = body.size()](const uplink::Outcome& outcome) {
                   answered(Kind::State, state_pace_, sent, bytes, outcome);
@@ -178,6 +186,7 @@ void Telemetry::send_markers() {
   for (const icd::Marker& marker : waiting->update.markers) markers_under_way_.apply(marker);
   const icd::ChunkedBytes body = codec::write_markers_update(waiting->update);
   markers_pace_.sent(loop_.now());
+  under_way_ = {Kind::Markers, waiting->accepted};
   channel_.send(icd::Uri::MarkersUpdate, codec::kCbor, body,
                 [this, sent = std::move(*waiting), bytes = body.size()](const uplink::Outcome& outcome) {
                   answered(Kind::Markers, markers_pace_, sent, bytes, outcome);
@@ -189,6 +198,7 @@ template <class Waiting>
 void Telemetry::answered(Kind kind, UriPace& pace, const Waiting& sent, std::size_t bytes,
                          const uplink::Outcome& outcome) {
   if (kind == Kind::Markers) markers_under_way_ = {};
+  under_way_.reset();
   if (!loop::guarded("the answer to a state or markers", [&] { judge(kind, pace, sent, bytes, outcome); })) {
     pace.lost(loop_.now());
     loop::guarded("putting a state or markers back", [&] { whole(restart_, [&] { put_back(sent); }); });
@@ -381,6 +391,18 @@ bool Telemetry::stop() {
 std::size_t Telemetry::waiting(Kind kind) const {
   if (kind == Kind::State) return state_.empty() ? 0 : 1;
   return markers_.count();
+}
+
+std::optional<loop::Instant> Telemetry::waits_since(const Traffic& traffic) const {
+  const bool state = traffic.kind == Kind::State;
+  if (state) {
+    const auto name = icd::RobotName::parse(traffic.robot);
+    if (!name || !state_.waits(*name)) return std::nullopt;
+  }
+  auto oldest = state ? state_.oldest() : markers_.oldest();
+  if (under_way_ && under_way_->first == traffic.kind)
+    oldest = std::min(oldest.value_or(under_way_->second), under_way_->second);
+  return oldest;
 }
 
 }  // namespace adit::forward

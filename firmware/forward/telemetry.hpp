@@ -68,6 +68,9 @@ class Telemetry {
   void link_is_back();
   const Channel& channel() const { return channel_; }
   std::size_t waiting(Kind kind) const;
+  /// When the oldest news that waits or is under way was accepted; nothing if there is none. Of a robot's
+  /// state, at the latest: robots go together.
+  std::optional<loop::Instant> waits_since(const Traffic& traffic) const;
 
  private:
   void pump();
@@ -134,6 +137,7 @@ class Telemetry {
   int state_failed_ = 0, markers_failed_ = 0;  // answers in a row of a handler that failed
   lanes::Blame state_blame_, marker_blame_;
   std::map<std::pair<std::string, std::int32_t>, lanes::Trial> marker_trials_;  // by ns and id
+  std::optional<std::pair<Kind, loop::Instant>> under_way_;  // and when its oldest news was accepted
   bool aside_writes_ = false;  // nothing is sent meanwhile: the journal knows of one answer at a time
   bool stopping_ = false;
 };

@@ -44,6 +44,7 @@ std::vector<std::string> Gateway::attention() const {
       "mapping");
   std::ranges::move(roster_.attention(loop_.now()), std::back_inserter(sentences));
   std::ranges::move(crowding_.attention(loop_.now()), std::back_inserter(sentences));
+  std::ranges::move(flow_.record().attention(loop_.stamp_now()), std::back_inserter(sentences));
   if (flow_.maps().nearly_full()) sentences.emplace_back("the queue of maps is nearly full");
   return sentences;
 }

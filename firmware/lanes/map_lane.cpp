@@ -104,6 +104,11 @@ std::size_t MapLane::count(const Sender& sender) const {
   return queue == nullptr ? 0 : queue->count();
 }
 
+std::optional<Instant> MapLane::oldest(const Sender& sender) const {
+  const MapQueue* queue = queue_of(sender);
+  return queue == nullptr ? std::nullopt : queue->oldest();
+}
+
 std::size_t MapLane::largest_grid() const {
   std::size_t most = 0;
   for (const auto& [sender, waiting] : senders_) most = std::max(most, waiting.queue.largest_grid());

@@ -66,6 +66,8 @@ class MapLane {
 
   std::size_t count() const { return count_; }
   std::size_t count(const Sender& sender) const;
+  /// When the oldest news of that sender was accepted; nothing if none waits.
+  std::optional<Instant> oldest(const Sender& sender) const;
   std::size_t bytes() const { return bytes_; }  // of memory held by all that wait
   std::size_t largest_grid() const;             // bytes of its data: what one that replaces it may need
   /// Senders that it knows of: those that wait, and those that have still to pay for what they sent.

@@ -131,6 +131,11 @@ bool MapQueue::is_replaced(const WaitingMap& map) const {
   return std::ranges::any_of(waiting_, [&](const WaitingMap& waiting) { return replaces(waiting, map); });
 }
 
+std::optional<Instant> MapQueue::oldest() const {
+  const auto oldest = std::ranges::min_element(waiting_, {}, &WaitingMap::accepted);
+  return oldest == waiting_.end() ? std::nullopt : std::optional(oldest->accepted);
+}
+
 std::size_t MapQueue::largest_grid() const {
   std::size_t most = 0;
   for (const WaitingMap& waiting : waiting_) {

@@ -3,6 +3,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <deque>
+#include <optional>
 #include <utility>
 #include <vector>
 
@@ -30,6 +31,8 @@ class MapQueue {
 
   bool replaces_any(const icd::MapUpdate& map) const;
   bool is_replaced(const WaitingMap& map) const;
+  /// When the oldest news was accepted; nothing if none waits.
+  std::optional<Instant> oldest() const;
   std::size_t count() const { return waiting_.size(); }
   std::size_t bytes() const { return bytes_; }
   std::size_t largest_grid() const;

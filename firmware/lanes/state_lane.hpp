@@ -57,6 +57,11 @@ class StateLane {
   /// The newest poses of those robots that have news.
   icd::StateUpdate unsent() const;
 
+  /// Whether the Command Post lacks this robot's pose: it waits, or is under way.
+  bool waits(const icd::RobotName& name) const {
+    const auto robot = robots_.find(name);
+    return robot != robots_.end() && robot->second.waits();
+  }
   std::optional<Instant> oldest() const { return oldest_; }
   bool empty() const { return !oldest_; }  // no news
 

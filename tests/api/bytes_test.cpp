@@ -56,6 +56,7 @@ RunView view() {
   activity.kind = "grid", activity.robot = "r", activity.accepted = 1, activity.forwarded = 2;
   activity.replaced = 3, activity.merged = 4;
   activity.throttled = 5, activity.failed = 6, activity.refused_upstream = 7, activity.waiting = 8;
+  activity.no_room = 13, activity.behind_since = 14, activity.last_no_room = 15;
   activity.last_accepted = 9, activity.bytes_received = 10, activity.bytes_sent = 11;
   activity.last_status = 12, activity.last_sentence = "said";
   view.activities = {activity};
@@ -85,30 +86,31 @@ constexpr const char* kReport =
     R"("reconciled":true,"same_as":3})";
 
 TEST(Bytes, OfARun) {
-  EXPECT_EQ(codec::to_json(view()),
-            R"({"now":1000.5,"version":"0.1","run":{"score":7,"run_clock":754.5,"remaining_reports":18,)"
-            R"("current_team":"cave"},"run_heard":999.0,"run_number":2,"run_id":"beta",)"
-            R"("endpoints":[{"name":"scoring","address":"a:1","connected":true,"trouble":"t",)"
-            R"("last_status":201,"answer_ms":3.5,"throttled":1,"foreign":2},{"name":"mapping",)"
-            R"("address":"b:1","connected":false,"trouble":"","last_status":0,"answer_ms":null,)"
-            R"("throttled":0,"foreign":0}],"robots":[{"name":"r","position":{"x":1.0,"y":2.0,"z":3.0},)"
-            R"("heading":0.5,"at":990.0}],"reports":[{"number":7,"type":"Rope","position":{"x":1.0,)"
-            R"("y":-2.5,"z":0.0},"sender":"10.0.0.7","received":940.0,"changed":941.25,)"
-            R"("state":"in doubt","status":500,"report_status":"scored","score_change":-1,)"
-            R"("note":"no \"answer\"","run":2,"asking":true,"reconciled":true,"same_as":3},{"number":0,)"
-            R"("type":"","position":{"x":0.0,"y":0.0,"z":0.0},"sender":"","received":0.0,"changed":0.0,)"
-            R"("state":"","status":0,"report_status":"","score_change":null,"note":"","run":1,)"
-            R"("asking":false,"reconciled":false,"same_as":0}],"near_metres":5.0,)"
-            R"("activities":[{"kind":"grid","robot":"r","accepted":1,"forwarded":2,"replaced":3,)"
-            R"("merged":4,"throttled":5,"failed":6,"refused_upstream":7,"waiting":8,"last_accepted":9.0,)"
-            R"("last_forwarded":null,"bytes_received":10,"bytes_sent":11,"last_status":12,)"
-            R"("last_sentence":"said"}],"refusals":[{"at":1.0,"uri":"/u","sender":"s","status":422,)"
-            R"("sentence":"no","parts":2}],"aside":[{"number":1,"kind":"grid","robot":"r","at":2.0,)"
-            R"("status":400,"why":"w","bytes":3,"overtaken":true}],"lights":[{"name":"health",)"
-            R"("pattern":"on"}],"links":[{"side":"team","interface":"team0","carrier":true},)"
-            R"({"side":"command_post","interface":"d","carrier":null}],"identify_until":1001.0,)"
-            R"("setup_open_until":null,"budget_mbit":100.0,"sent_mbit":1.5,"queued_bytes":6,)"
-            R"("map_version":1793000123456,"marker_version":4,"attention":["do"]})");
+  EXPECT_EQ(
+      codec::to_json(view()),
+      R"({"now":1000.5,"version":"0.1","run":{"score":7,"run_clock":754.5,"remaining_reports":18,)"
+      R"("current_team":"cave"},"run_heard":999.0,"run_number":2,"run_id":"beta",)"
+      R"("endpoints":[{"name":"scoring","address":"a:1","connected":true,"trouble":"t",)"
+      R"("last_status":201,"answer_ms":3.5,"throttled":1,"foreign":2},{"name":"mapping",)"
+      R"("address":"b:1","connected":false,"trouble":"","last_status":0,"answer_ms":null,)"
+      R"("throttled":0,"foreign":0}],"robots":[{"name":"r","position":{"x":1.0,"y":2.0,"z":3.0},)"
+      R"("heading":0.5,"at":990.0}],"reports":[{"number":7,"type":"Rope","position":{"x":1.0,)"
+      R"("y":-2.5,"z":0.0},"sender":"10.0.0.7","received":940.0,"changed":941.25,)"
+      R"("state":"in doubt","status":500,"report_status":"scored","score_change":-1,)"
+      R"("note":"no \"answer\"","run":2,"asking":true,"reconciled":true,"same_as":3},{"number":0,)"
+      R"("type":"","position":{"x":0.0,"y":0.0,"z":0.0},"sender":"","received":0.0,"changed":0.0,)"
+      R"("state":"","status":0,"report_status":"","score_change":null,"note":"","run":1,)"
+      R"("asking":false,"reconciled":false,"same_as":0}],"near_metres":5.0,)"
+      R"("activities":[{"kind":"grid","robot":"r","accepted":1,"forwarded":2,"replaced":3,)"
+      R"("merged":4,"throttled":5,"failed":6,"refused_upstream":7,"no_room":13,"waiting":8,)"
+      R"("behind_since":14.0,"last_accepted":9.0,"last_forwarded":null,"last_no_room":15.0,"bytes_received":10,"bytes_sent":11,"last_status":12,)"
+      R"("last_sentence":"said"}],"refusals":[{"at":1.0,"uri":"/u","sender":"s","status":422,)"
+      R"("sentence":"no","parts":2}],"aside":[{"number":1,"kind":"grid","robot":"r","at":2.0,)"
+      R"("status":400,"why":"w","bytes":3,"overtaken":true}],"lights":[{"name":"health",)"
+      R"("pattern":"on"}],"links":[{"side":"team","interface":"team0","carrier":true},)"
+      R"({"side":"command_post","interface":"d","carrier":null}],"identify_until":1001.0,)"
+      R"("setup_open_until":null,"budget_mbit":100.0,"sent_mbit":1.5,"queued_bytes":6,)"
+      R"("map_version":1793000123456,"marker_version":4,"attention":["do"]})");
 }
 
 TEST(Bytes, OfReports) {

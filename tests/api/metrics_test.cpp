@@ -46,6 +46,8 @@ TEST(Metrics, CarryWhatTheViewSays) {
   clouds.replaced = 1;
   clouds.merged = 2;
   clouds.last_forwarded = all.view.now - 8;
+  clouds.behind_since = all.view.now - 33;
+  clouds.no_room = 1110;
   all.view.activities = {clouds};
   all.view.sent_mbit = 8;
   all.view.budget_mbit = 20;
@@ -55,20 +57,27 @@ TEST(Metrics, CarryWhatTheViewSays) {
   all.usage.resident_bytes = 12'000'000;
   all.operators = 2;
   const std::string text = write_metrics(all);
-  for (const char* sample :
-       {"adit_run_score 7", "adit_run_clock_seconds 750", "adit_run_remaining_reports 18",
-        "adit_run_heard_age_seconds 2", R"(adit_endpoint_up{endpoint="scoring"} 1)",
-        R"(adit_endpoint_answer_seconds{endpoint="scoring"} 0.0125)",
-        R"(adit_endpoint_throttled_total{endpoint="scoring"} 3)",
-        R"(adit_updates_accepted_total{kind="cloud",robot="ugv1"} 9)",
-        R"(adit_updates_forwarded_total{kind="cloud",robot="ugv1"} 4)",
-        R"(adit_updates_replaced_total{kind="cloud",robot="ugv1"} 1)",
-        R"(adit_updates_merged_total{kind="cloud",robot="ugv1"} 2)",
-        R"(adit_updates_forwarded_age_seconds{kind="cloud",robot="ugv1"} 8)",
-        "adit_link_rate_bytes_per_second 1e+06", "adit_link_budget_bytes_per_second 2500000",
-        "adit_attention 2", R"(adit_refused_total{uri="/map/update",status="422"} 5)",
-        R"(adit_refused_parts_total{uri="/state/update"} 15)", "adit_process_resident_memory_bytes 1.2e+07",
-        R"(adit_sessions{role="operator"} 2)"}) {
+  for (const char* sample : {"adit_run_score 7",
+                             "adit_run_clock_seconds 750",
+                             "adit_run_remaining_reports 18",
+                             "adit_run_heard_age_seconds 2",
+                             R"(adit_endpoint_up{endpoint="scoring"} 1)",
+                             R"(adit_endpoint_answer_seconds{endpoint="scoring"} 0.0125)",
+                             R"(adit_endpoint_throttled_total{endpoint="scoring"} 3)",
+                             R"(adit_updates_accepted_total{kind="cloud",robot="ugv1"} 9)",
+                             R"(adit_updates_forwarded_total{kind="cloud",robot="ugv1"} 4)",
+                             R"(adit_updates_replaced_total{kind="cloud",robot="ugv1"} 1)",
+                             R"(adit_updates_merged_total{kind="cloud",robot="ugv1"} 2)",
+                             R"(adit_updates_forwarded_age_seconds{kind="cloud",robot="ugv1"} 8)",
+                             R"(adit_updates_behind_seconds{kind="cloud",robot="ugv1"} 33)",
+                             R"(adit_updates_no_room_total{kind="cloud",robot="ugv1"} 1110)",
+                             "adit_link_rate_bytes_per_second 1e+06",
+                             "adit_link_budget_bytes_per_second 2500000",
+                             "adit_attention 2",
+                             R"(adit_refused_total{uri="/map/update",status="422"} 5)",
+                             R"(adit_refused_parts_total{uri="/state/update"} 15)",
+                             "adit_process_resident_memory_bytes 1.2e+07",
+                             R"(adit_sessions{role="operator"} 2)"}) {
     EXPECT_THAT(text, HasSubstr(icd::sentence("\n", sample, "\n")));
   }
   EXPECT_THAT(text, Not(HasSubstr("adit_updates_accepted_age_seconds{"))) << "none was accepted";

@@ -25,9 +25,10 @@ ActivityRow traffic(std::string kind, std::string robot, Time now, double since,
           .accepted = forwarded * 3 + 2,
           .forwarded = forwarded,
           .replaced = forwarded * 2,
-          .waiting = 0,
+          .behind_since = {},
           .last_accepted = now - since - 0.2,
           .last_forwarded = now - since,
+          .last_no_room = {},
           .bytes_received = bytes * 4,
           .bytes_sent = bytes,
           .last_status = 200,
@@ -100,12 +101,15 @@ RunView trouble(Time now, double elapsed) {
   for (const std::size_t stuck : {1u, 2u}) {
     ActivityRow& row = view.activities[stuck];
     row.waiting = 12;
+    row.behind_since = began - 110;
     row.failed = 9;
     row.last_accepted = began - 110;
     row.last_forwarded = began - 130;
     row.last_status = 0;
     row.last_sentence = "connecting to 10.100.1.201:8000: Connection refused";
   }
+  view.activities[3].waiting = 247;
+  view.activities[3].behind_since = began - 33;
   view.activities[4].last_status = 429;
   view.activities[4].throttled = 3;
   view.activities[4].last_sentence = "\"Cloud updates too frequent. Reduce to <1Hz.\"";

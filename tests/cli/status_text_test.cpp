@@ -13,19 +13,19 @@ using testing::Not;
 using testing::StartsWith;
 
 TEST(StatusText, TellsAGoodRunOnOneScreen) {
-  EXPECT_EQ(
-      status_text(sample_view(), false),
-      "Run   12:34   score 7   18 reports left   team cave_club   (heard 0.4 s ago)\n"
-      "Link  12.3 of 100 Mbit/s   3.4 MB of maps wait\n"
-      "Reports  answered 1\n"
-      "\n"
-      "Command Post\n"
-      "  scoring  10.100.1.200:8000  connected  last answer 201 in 3.4 ms\n"
-      "  mapping  10.100.1.201:8000  connected  last answer 200 in 42 ms\n"
-      "\n"
-      "Is my map arriving?\n"
-      "  robot  kind  arriving  accepted  sent  waiting  last sent          size  the Command Post said\n"
-      "  r1     grid  yes             12    11        0  0.5 s ago  64 kB > 4 kB  200\n");
+  EXPECT_EQ(status_text(sample_view(), false),
+            "Run   12:34   score 7   18 reports left   team cave_club   (heard 0.4 s ago)\n"
+            "Link  12.3 of 100 Mbit/s   3.4 MB of maps wait\n"
+            "Reports  answered 1\n"
+            "\n"
+            "Command Post\n"
+            "  scoring  10.100.1.200:8000  connected  last answer 201 in 3.4 ms\n"
+            "  mapping  10.100.1.201:8000  connected  last answer 200 in 42 ms\n"
+            "\n"
+            "Is my map arriving?\n"
+            "  robot  kind  arriving    accepted  sent  waiting  refused  last sent          size  the "
+            "Command Post said\n"
+            "  r1     grid  up to date        12    11        0           0.5 s ago  64 kB > 4 kB  200\n");
 }
 
 TEST(StatusText, BeginsWithWhatNeedsTheOperator) {
@@ -81,6 +81,15 @@ TEST(StatusText, NeverLetsOthersSteerTheTerminal) {
   EXPECT_THAT(status_text(view, false), Not(HasSubstr("\x1b")));
 }
 
+TEST(StatusText, SaysHowFarTheCommandPostIsBehindAndWhatWasRefused) {
+  api::RunView view = sample_view();
+  view.activities[0].behind_since = 967;
+  view.activities[0].waiting = 247;
+  view.activities[0].no_room = 1110;
+  EXPECT_THAT(status_text(view, false),
+              HasSubstr("  r1     grid  33 s behind        12    11      247     1110"));
+}
+
 TEST(Arrival, IsWhatTheOperatorAsks) {
   const auto row = [](void (*change)(api::ActivityRow&)) {
     api::ActivityRow activity = sample_view().activities[0];
@@ -89,12 +98,13 @@ TEST(Arrival, IsWhatTheOperatorAsks) {
   };
   using Row = api::ActivityRow;
   EXPECT_EQ(row([](Row&) {}), Arrival::Yes);
-  EXPECT_EQ(row([](Row& r) { r.waiting = 1; }), Arrival::Yes) << "the next one waits for its turn";
-  EXPECT_EQ(row([](Row& r) { r.waiting = 1, r.last_forwarded = 980; }), Arrival::Late);
-  EXPECT_EQ(
-      row([](Row& r) { r.waiting = 1, r.last_accepted = 980, r.last_forwarded = {}, r.last_status = 0; }),
-      Arrival::Late);
-  EXPECT_EQ(row([](Row& r) { r.waiting = 1, r.last_forwarded = {}, r.last_status = 0; }), Arrival::NotYet);
+  EXPECT_EQ(row([](Row& r) { r.behind_since = 996; }), Arrival::Yes) << "the next one waits for its turn";
+  EXPECT_EQ(row([](Row& r) { r.waiting = 247, r.behind_since = 967; }), Arrival::Late)
+      << "also where one was just sent";
+  EXPECT_EQ(row([](Row& r) { r.behind_since = 980, r.last_forwarded = {}, r.last_status = 0; }),
+            Arrival::Late);
+  EXPECT_EQ(row([](Row& r) { r.behind_since = 999, r.last_forwarded = {}, r.last_status = 0; }),
+            Arrival::NotYet);
   EXPECT_EQ(row([](Row& r) { r.last_status = 422; }), Arrival::No);
   EXPECT_EQ(row([](Row& r) { r.last_status = 0, r.last_sentence = "connecting: refused"; }), Arrival::No);
   EXPECT_EQ(row([](Row& r) { r.last_accepted = 960, r.last_forwarded = 961; }), Arrival::Silent);

@@ -63,6 +63,18 @@ TEST_F(FlowTest, WhatItTookWaitsInTheNextLife) {
   EXPECT_THAT(waiting(), ElementsAre(1, 1, 1));
 }
 
+TEST_F(FlowTest, TellsSinceWhenTheCommandPostIsBehind) {
+  const api::Time before = loop_.stamp_now();
+  ASSERT_TRUE(take_map());
+  ASSERT_TRUE(flow_->take(spool::state(), sender_));
+  ASSERT_TRUE(flow_->take(spool::markers(), sender_));
+  for (const api::ActivityRow& row : flow_->activities()) {
+    ASSERT_TRUE(row.behind_since) << row.kind;
+    EXPECT_GE(*row.behind_since, before - 0.001) << row.kind;
+    EXPECT_LE(*row.behind_since, loop_.stamp_now()) << row.kind;
+  }
+}
+
 TEST_F(FlowTest, TellsWhichRobotsPost) {
   ASSERT_TRUE(take_map());
   ASSERT_TRUE(flow_->take(spool::state(), sender_));

@@ -185,8 +185,23 @@ TEST_F(MapsTest, ThatReplaceWhatWaitsAreTakenByAFullQueueAndOthersAreNot) {
   EXPECT_EQ(status(take(grid("r1", 10, 50'000))), icd::Status::Ok);
   EXPECT_EQ(status(take(grid("r2", 10, 40'000))), icd::Status::Ok);
   EXPECT_EQ(status(take(grid("r3", 10, 20'000))), icd::Status::TooManyRequests);
+  EXPECT_EQ(record_.rows().at({Kind::Grid, "r3"}).no_room, 1u);
   EXPECT_EQ(status(take(grid("r1", 20, 60'000))), icd::Status::Ok);
   EXPECT_TRUE(comes_to(2));
+}
+
+TEST_F(MapsTest, WaitSinceTheOldestNewsOfTheirRobotAndKindWasAccepted) {
+  const Traffic traffic{Kind::Grid, "r1"};
+  EXPECT_FALSE(maps_.waits_since(traffic)) << "the Command Post lacks nothing";
+  ASSERT_TRUE(take(grid("r1", 10, 500)));
+  const auto since = maps_.waits_since(traffic);
+  ASSERT_TRUE(since);
+  ASSERT_TRUE(take(grid("r2", 10, 500)));
+  ASSERT_TRUE(take(grid("r1", 20, 500)));
+  EXPECT_EQ(maps_.waits_since(traffic), since)
+      << "what is newer makes the picture no fresher until it is there";
+  EXPECT_GT(*maps_.waits_since({Kind::Grid, "r2"}), *since);
+  EXPECT_FALSE(maps_.waits_since({Kind::Cloud, "r1"}));
 }
 
 TEST_F(MapsTest, AreBoundedInNumberHoweverSmallTheyAre) {

@@ -16,20 +16,20 @@ TEST(Record, TellsWhatBecameOfEachRobotsMaps) {
   record.accepted({Kind::Grid, "r1"}, 5, 13.0);
   record.not_taken({Kind::Grid, "r1"}, NotTaken::Throttled, 429, "too frequent");
 
-  const auto rows = record.activities();
-  ASSERT_EQ(rows.size(), 2u);
-  EXPECT_EQ(rows[0].kind, "grid");
-  EXPECT_EQ(rows[0].throttled, 1u);
-  EXPECT_EQ(rows[0].last_sentence, "too frequent");
-  EXPECT_FALSE(rows[0].last_forwarded);
-  EXPECT_EQ(rows[1].kind, "cloud");
-  EXPECT_EQ(rows[1].accepted, 2u);
-  EXPECT_EQ(rows[1].forwarded, 1u);
-  EXPECT_EQ(rows[1].merged, 1u);
-  EXPECT_EQ(rows[1].last_forwarded, 12.0);
-  EXPECT_EQ(rows[1].bytes_received, 1100u);
-  EXPECT_EQ(rows[1].bytes_sent, 900u);
-  EXPECT_EQ(rows[1].last_status, 200);
+  ASSERT_EQ(record.rows().size(), 2u);
+  const api::ActivityRow &grid = record.rows().at({Kind::Grid, "r1"}), &cloud = record.rows().at(kCloudOfR1);
+  EXPECT_EQ(grid.kind, "grid");
+  EXPECT_EQ(grid.throttled, 1u);
+  EXPECT_EQ(grid.last_sentence, "too frequent");
+  EXPECT_FALSE(grid.last_forwarded);
+  EXPECT_EQ(cloud.kind, "cloud");
+  EXPECT_EQ(cloud.accepted, 2u);
+  EXPECT_EQ(cloud.forwarded, 1u);
+  EXPECT_EQ(cloud.merged, 1u);
+  EXPECT_EQ(cloud.last_forwarded, 12.0);
+  EXPECT_EQ(cloud.bytes_received, 1100u);
+  EXPECT_EQ(cloud.bytes_sent, 900u);
+  EXPECT_EQ(cloud.last_status, 200);
   EXPECT_EQ(changes, 5);
 }
 
@@ -37,19 +37,37 @@ TEST(Record, ForgetsAnOldSentenceOnceAMessageIsTaken) {
   Record record([] {});
   record.not_taken(kCloudOfR1, NotTaken::Failed, 0, "connection reset");
   record.forwarded(kCloudOfR1, 1, 10, 200, 1.0);
-  EXPECT_EQ(record.activities().front().last_sentence, "");
-  EXPECT_EQ(record.activities().front().failed, 1u);
+  EXPECT_EQ(record.rows().at(kCloudOfR1).last_sentence, "");
+  EXPECT_EQ(record.rows().at(kCloudOfR1).failed, 1u);
 }
 
 TEST(Record, CountsRobotsBeyondTheLastRowTogether) {
   Record record([] {});
   for (std::size_t i = 0; i < 2 * Record::kMostRows; ++i)
     record.accepted({Kind::State, std::to_string(i)}, 1, 0.0);
-  const auto rows = record.activities();
+  const auto& rows = record.rows();
   EXPECT_LE(rows.size(), Record::kMostRows + 1);
   std::uint64_t accepted = 0;
-  for (const auto& row : rows) accepted += row.accepted;
+  for (const auto& [traffic, row] : rows) accepted += row.accepted;
   EXPECT_EQ(accepted, 2 * Record::kMostRows);
+}
+
+TEST(Record, TellsOfRobotsThatAreRefusedForWantOfRoomForAMinute) {
+  Record record([] {});
+  EXPECT_TRUE(record.attention(1).empty());
+  record.no_room(kCloudOfR1, 10);
+  record.no_room({Kind::Markers, ""}, 20);
+  record.no_room({Kind::Markers, ""}, 21);
+  EXPECT_EQ(record.rows().at({Kind::Markers, ""}).no_room, 2u);
+  EXPECT_EQ(record.attention(70),
+            std::vector<std::string>{"too much waits, so that robots are refused: r1 cloud, markers"});
+  EXPECT_EQ(record.attention(80),
+            std::vector<std::string>{"too much waits, so that robots are refused: markers"});
+  EXPECT_TRUE(record.attention(82).empty());
+  for (int robot = 0; robot < 9; ++robot) record.no_room({Kind::Grid, "g" + std::to_string(robot)}, 90);
+  EXPECT_EQ(record.attention(90),
+            std::vector<std::string>{
+                "too much waits, so that robots are refused: g0 grid, g1 grid, g2 grid and 6 more"});
 }
 
 TEST(Record, KeepsTheLastRefusalsNewestFirst) {

@@ -224,5 +224,21 @@ TEST_F(NewsTest, LosesNothingWhereMemoryRunsOutOnTheWay) {
   }
 }
 
+TEST_F(NewsTest, IsMissedByTheCommandPostUntilItIsTaken) {
+  TelemetryPost post(true);
+  const auto life = life_before(post.peer);
+  const Traffic robot{Kind::State, "r2"}, other{Kind::State, "r9"}, markers{Kind::Markers, ""};
+  EXPECT_FALSE(life->news.waits_since(robot));
+  ASSERT_TRUE(life->news.take(
+      icd::StateUpdate{.header = {.stamp = 7.5}, .poses = {{*icd::RobotName::parse("r2"), {}}}}, 10));
+  ASSERT_TRUE(life->news.take(icd::MarkersUpdate{{marker("", "one")}}, 10));
+  EXPECT_TRUE(life->news.waits_since(robot));
+  EXPECT_TRUE(life->news.waits_since(markers));
+  EXPECT_FALSE(life->news.waits_since(other)) << "it posted nothing";
+  EXPECT_TRUE(
+      comes(*life, [&] { return !life->news.waits_since(robot) && !life->news.waits_since(markers); }));
+  EXPECT_EQ(life->record.rows().at(robot).forwarded, 1u);
+}
+
 }  // namespace
 }  // namespace adit::forward

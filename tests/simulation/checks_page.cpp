@@ -177,14 +177,14 @@ std::optional<double> metric(const std::string& text, const std::string& name) {
   return std::strtod(text.c_str() + at + name.size() + 2, nullptr);
 }
 
-/// The view still tells of too many connections, and the metrics no more: a minute has passed, which is no
-/// event.
+/// The view still tells of too many connections or of refused robots, and the metrics no more: a minute has
+/// passed, which is no event.
 bool has_forgotten_crowd(const Reading& reading) {
   const Json& attention = reading.view.at("attention");
   const auto tells_of_crowd = [](const Json& sentence) {
     const auto& text = sentence.get_ref<const std::string&>();
     return text.contains("are ended for new ones") || text.starts_with("requests are answered 503") ||
-           text.starts_with("requests show wrong tokens");
+           text.starts_with("requests show wrong tokens") || text.starts_with("too much waits");
   };
   const auto told = metric(reading.metrics, "adit_attention");
   const auto crowded = static_cast<double>(std::ranges::count_if(attention, tells_of_crowd));

@@ -3,43 +3,25 @@
 //   ask: it waits for the operator's word
 import { age, signed } from "./words.js";
 
-// Seconds. One map a second goes out for all robots together, so that each waits for its turn.
-const FAILING = 10, LATE = 30, STUCK = 90, QUIET = 60;
+// Seconds that the Command Post may be behind, or that nothing was sent.
+const FAILING = 10, LATE = 5, STUCK = 90, QUIET = 60;
 
 const KINDS = { grid: "grid", cloud: "cloud", state: "pose", markers: "markers" };
 export const kindOf = (row) => KINDS[row.kind] ?? row.kind;
 export const robotOf = (row) => row.robot || "Merged map";
 
-// Since when something of a row has waited while nothing of it was forwarded.
-const waits = new Map();
-
-function overdueOf(row, now) {
-  const key = `${row.kind} ${row.robot}`;
-  if (!row.waiting) {
-    waits.delete(key);
-    return 0;
-  }
-  const known = waits.get(key);
-  if (known?.forwarded === row.last_forwarded) return now - known.from;
-  const from = known ? now : row.last_accepted ?? now;
-  waits.set(key, { forwarded: row.last_forwarded, from });
-  return now - from;
-}
-
-/** Whether what a robot sends of one kind reaches the Command Post. */
+/** Whether what a robot sends of one kind reaches the Command Post, and how far that is behind. */
 export function arrival(row, now) {
-  const overdue = overdueOf(row, now);
-  const since = row.last_forwarded === null ? Infinity : now - row.last_forwarded;
+  const behind = row.behind_since === null ? 0 : now - row.behind_since;
   const throttled = row.last_status === 429;
   if (row.last_status >= 400 && row.last_status < 500 && !throttled) return { level: "bad", word: "refused" };
-  if (overdue > STUCK) return { level: "bad", word: "not arriving" };
+  if (behind > STUCK) return { level: "bad", word: "not arriving" };
   if (throttled) return { level: "wait", word: "throttled" };
-  if (row.last_sentence && overdue > FAILING) return { level: "bad", word: "not arriving" };
-  if (row.last_sentence) return { level: "wait", word: "failing" };
-  if (overdue > LATE) return { level: "wait", word: "late" };
-  if (since === Infinity) return { level: "wait", word: "waiting" };
-  if (since > QUIET) return { level: "quiet", word: "quiet" };
-  return { level: "good", word: "arriving" };
+  if (row.last_sentence) return behind > FAILING ? { level: "bad", word: "not arriving" } : { level: "wait", word: "failing" };
+  if (behind > LATE) return { level: "wait", word: `${age(behind)} behind` };
+  if (row.last_forwarded === null) return { level: "wait", word: "waiting" };
+  if (behind) return { level: "good", word: "arriving" };
+  return now - row.last_forwarded > QUIET ? { level: "quiet", word: "quiet" } : { level: "good", word: "up to date" };
 }
 
 const RANK = ["quiet", "good", "wait", "bad"];
@@ -53,7 +35,7 @@ export function overall(activities, now) {
   const arrivals = maps.map((row) => ({ ...arrival(row, now), row }));
   const { level } = worst(arrivals);
   const those = arrivals.filter((arrival) => arrival.level === level);
-  const names = [...new Set(those.map(({ row }) => `${robotOf(row)} ${kindOf(row)}`))];
+  const names = those.map(({ row, word }) => `${robotOf(row)} ${kindOf(row)} ${word}`);
   const who = names.length > 3 ? `${names.slice(0, 2).join(", ")} and ${names.length - 2} more` : names.join(", ");
   if (level === "bad") return { level, word: `No: ${who}` };
   if (level === "wait") return { level, word: `Not all: ${who}` };

@@ -1,7 +1,6 @@
 #include "box/parts.hpp"
 
 #include <cJSON.h>
-#include <cbor.h>
 #include <crypt.h>
 #include <gnu/libc-version.h>
 #include <microhttpd.h>
@@ -32,9 +31,6 @@ std::string boost_version() {
 std::vector<api::PartRow> parts() {
   return {{.name = "libmicrohttpd", .version = MHD_get_version(), .licence = kLesserGpl},
           {.name = "cJSON", .version = cJSON_Version(), .licence = "MIT"},
-          {.name = "libcbor",
-           .version = dotted(CBOR_MAJOR_VERSION, CBOR_MINOR_VERSION, CBOR_PATCH_VERSION),
-           .licence = "MIT"},
           {.name = "zlib", .version = zlibVersion(), .licence = "Zlib"},
           {.name = "SQLite", .version = sqlite3_libversion(), .licence = "blessing"},
           {.name = "Boost.Beast", .version = boost_version(), .licence = "BSL-1.0"},

@@ -60,9 +60,8 @@ struct Document {
 ///
 /// Well-formedness is checked as the bytes arrive (RFC 8259 strictly, RFC 8949 5.3.1), nesting is at most 64,
 /// and no step holds the whole body. A map's data goes to Document::data in chunks; the rest, at most
-/// text_bytes and so many values, is parsed at the end by cJSON or libcbor. Refusals: 400 not well-formed,
-/// 413 over a limit, 422 bulk data of another kind than the format allows. After a refusal the decoder is
-/// spent.
+/// text_bytes and so many values, is read at the end. Refusals: 400 not well-formed, 413 over a limit, 422
+/// bulk data of another kind than the format allows. After a refusal the decoder is spent.
 class BodyDecoder {
  public:
   static constexpr int kDeepest = 64;

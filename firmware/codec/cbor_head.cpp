@@ -1,5 +1,6 @@
 #include "codec/cbor_head.hpp"
 
+#include <algorithm>
 #include <bit>
 #include <cmath>
 #include <limits>
@@ -30,8 +31,11 @@ double half(std::uint16_t bits) {
 std::size_t CborHead::next(std::string_view in) {
   icd::require(!complete());
   std::size_t taken = 0;
-  while (taken < in.size() && !complete()) bytes_[size_++] = static_cast<std::uint8_t>(in[taken++]);
-  return taken;
+  if (size_ == 0 && !in.empty()) bytes_[size_++] = static_cast<std::uint8_t>(in[taken++]);
+  const std::string_view rest = in.substr(taken, length() - size_);
+  std::ranges::copy(rest, bytes_.data() + size_);
+  size_ += rest.size();
+  return taken + rest.size();
 }
 
 std::uint64_t CborHead::argument() const {

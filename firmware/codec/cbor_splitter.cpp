@@ -36,8 +36,8 @@ icd::Checked<Value> CborSplitter::finish() {
   if (at_ == 0) return std::unexpected(fault_at(at_, "an empty document"));
   if (!whole_) return std::unexpected(fault_at(at_, "the document is cut short"));
   if (split_ == Split::Lists) return cbor_value_with_lists(std::move(rest_));
-  auto root = cbor_value(rest_);
-  if (root && data_.form() != DataForm::Absent) mark_split_out(*root);
+  Value root = cbor_value(rest_);
+  if (data_.form() != DataForm::Absent) mark_split_out(root);
   return root;
 }
 

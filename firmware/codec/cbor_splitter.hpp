@@ -88,8 +88,8 @@ class CborSplitter final : public Splitter {
 
   std::size_t elements_of_ = 0;  // how many nests there are in the map's data, when it is an array
 
-  /// The document without tags (libcbor refuses 6 to 20), with null for the map's data, and undefined for the
-  /// simple values that libcbor does not know.
+  /// The document without tags, with null for the map's data, and undefined for the simple values that
+  /// RFC 8949 3.3 gives no meaning.
   std::string rest_;
 };
 

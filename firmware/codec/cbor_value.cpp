@@ -1,22 +1,15 @@
 #include "codec/cbor_value.hpp"
 
-#include <cbor.h>
-
 #include <limits>
 #include <memory>
 #include <optional>
-#include <span>
 
+#include "codec/cbor_head.hpp"
 #include "codec/splitter.hpp"
 #include "codec/utf8.hpp"
 
 namespace adit::codec {
 namespace {
-
-struct Release {
-  void operator()(cbor_item_t* item) const { cbor_decref(&item); }
-};
-using Item = std::unique_ptr<cbor_item_t, Release>;
 
 Value negative(std::uint64_t argument) {  // RFC 8949 3.1: the value is -1 - argument
   if (argument <= static_cast<std::uint64_t>(std::numeric_limits<std::int64_t>::max())) {
@@ -32,110 +25,121 @@ Value whole(std::uint64_t number) {
   return {number};
 }
 
-std::vector<std::uint8_t> bytes_of(const cbor_item_t& item) {
-  std::vector<std::uint8_t> bytes;
-  const auto append = [&bytes](const cbor_item_t& piece) {
-    const unsigned char* const first = cbor_bytestring_handle(&piece);
-    bytes.insert(bytes.end(), first, first + cbor_bytestring_length(&piece));
-  };
-  if (cbor_bytestring_is_definite(&item)) {
-    append(item);
-    return bytes;
-  }
-  for (const cbor_item_t* chunk :
-       std::span(cbor_bytestring_chunks_handle(&item), cbor_bytestring_chunk_count(&item))) {
-    append(*chunk);
-  }
-  return bytes;
-}
-
-std::string text_of(const cbor_item_t& item) {
-  std::string text;
-  const auto append = [&text](const cbor_item_t& piece) {
-    text.append(reinterpret_cast<const char*>(cbor_string_handle(&piece)), cbor_string_length(&piece));
-  };
-  if (cbor_string_is_definite(&item)) {
-    append(item);
-    return text;
-  }
-  for (const cbor_item_t* chunk :
-       std::span(cbor_string_chunks_handle(&item), cbor_string_chunk_count(&item))) {
-    append(*chunk);
-  }
-  return text;
-}
-
-/// A member's name: a text, or a byte string that holds one, as Python 2 writes it. Nothing for another key.
-std::optional<std::string> name_of(const cbor_item_t& key) {
-  if (cbor_isa_string(&key)) return text_of(key);
-  if (!cbor_isa_bytestring(&key)) return std::nullopt;
-  const auto bytes = bytes_of(key);
-  std::string name(bytes.begin(), bytes.end());
-  return is_utf8(name) ? std::optional(std::move(name)) : std::nullopt;
-}
-
-Value simple(const cbor_item_t& item) {
-  if (cbor_is_float(&item)) return {cbor_float_get_float(&item)};
-  if (cbor_is_bool(&item)) return {cbor_get_bool(&item)};
+Value simple(const CborHead& head) {
+  constexpr std::uint8_t kFalse = 20, kTrue = 21, kHalf = 25;
+  if (head.info() >= kHalf) return {head.number()};
+  if (head.info() == kFalse || head.info() == kTrue) return {head.info() == kTrue};
   return {};
 }
 
-/// Recursion ends at BodyDecoder::kDeepest.
-Value value_of(const cbor_item_t& item, Lists* lists) {
-  switch (cbor_typeof(&item)) {
-    case CBOR_TYPE_UINT:
-      return whole(cbor_get_int(&item));
-    case CBOR_TYPE_NEGINT:
-      return negative(cbor_get_int(&item));
-    case CBOR_TYPE_BYTESTRING:
-      return {Value::Bytes{bytes_of(item)}};
-    case CBOR_TYPE_STRING:
-      return {text_of(item)};
-    case CBOR_TYPE_ARRAY: {
-      if (lists != nullptr) return lists->next();
-      Value::Array array;
-      array.reserve(cbor_array_size(&item));
-      for (const cbor_item_t* element : std::span(cbor_array_handle(&item), cbor_array_size(&item))) {
-        array.push_back(value_of(*element, nullptr));
+/// Reads items that are known to be well-formed. Recursion ends at BodyDecoder::kDeepest.
+class CborReader {
+ public:
+  CborReader(std::string_view bytes, Lists* lists) : left_(bytes), lists_(lists) {}
+
+  Value value() {
+    const CborHead head = next_head();
+    switch (head.major()) {
+      case Major::Unsigned:
+        return whole(head.argument());
+      case Major::Negative:
+        return negative(head.argument());
+      case Major::Bytes: {
+        const std::string bytes = string(head);
+        return {Value::Bytes{{bytes.begin(), bytes.end()}}};
       }
-      return {std::move(array)};
+      case Major::Text:
+        return {string(head)};
+      case Major::Array:
+        return lists_ != nullptr ? lists_->next() : array(head);  // of a Cut, it is empty
+      case Major::Map:
+        return object(head);
+      case Major::Tag:  // a CborSplitter leaves none
+      case Major::Simple:
+        break;
     }
-    case CBOR_TYPE_MAP: {
-      Value::Object object;
-      object.reserve(cbor_map_size(&item));
-      for (const cbor_pair& pair : std::span(cbor_map_handle(&item), cbor_map_size(&item))) {
-        auto name = name_of(*pair.key);
-        if (!name) (void)value_of(*pair.key, lists);  // with its lists
-        Value value = value_of(*pair.value, lists);
-        if (name) object.emplace_back(*std::move(name), std::move(value));
-      }
-      return {std::move(object)};
-    }
-    case CBOR_TYPE_TAG:  // a CborSplitter leaves none
-    case CBOR_TYPE_FLOAT_CTRL:
-      break;
+    return simple(head);
   }
-  return simple(item);
-}
+
+ private:
+  CborHead next_head() {
+    CborHead head;
+    left_.remove_prefix(head.next(left_));
+    return head;
+  }
+
+  bool take_break() {
+    if (left_[0] != '\xFF') return false;
+    left_.remove_prefix(1);
+    return true;
+  }
+
+  void append(std::string& text, const CborHead& head) {
+    text += left_.substr(0, head.argument());
+    left_.remove_prefix(head.argument());
+  }
+
+  std::string string(const CborHead& head) {
+    std::string text;
+    if (!head.indefinite()) {
+      append(text, head);
+    } else {
+      while (!take_break()) append(text, next_head());
+    }
+    return text;
+  }
+
+  /// `add` reads what each of an array's or a map's consists of.
+  template <class Items, class Add>
+  Value filled(const CborHead& head, const Add& add) {
+    Items items;
+    if (!head.indefinite()) {
+      items.reserve(head.argument());  // each of them has a byte at least
+      for (std::uint64_t left = head.argument(); left > 0; --left) add(items);
+    } else {
+      while (!take_break()) add(items);
+    }
+    return {std::move(items)};
+  }
+
+  Value array(const CborHead& head) {
+    return filled<Value::Array>(head, [this](Value::Array& array) { array.push_back(value()); });
+  }
+
+  Value object(const CborHead& head) {
+    return filled<Value::Object>(head, [this](Value::Object& object) {
+      auto name = name_of(value());
+      Value member = value();
+      if (name) object.emplace_back(*std::move(name), std::move(member));
+    });
+  }
+
+  /// A member's name: a text, or a byte string that holds one, as Python 2 writes it. Nothing for another
+  /// key.
+  static std::optional<std::string> name_of(Value key) {
+    if (auto* text = std::get_if<std::string>(&key.is)) return std::move(*text);
+    const auto* bytes = std::get_if<Value::Bytes>(&key.is);
+    if (bytes == nullptr) return std::nullopt;
+    std::string name(bytes->bytes.begin(), bytes->bytes.end());
+    return is_utf8(name) ? std::optional(std::move(name)) : std::nullopt;
+  }
+
+  std::string_view left_;
+  Lists* lists_;
+};
 
 /// The value from `begin` on.
-icd::Checked<Value> with_lists_at(const Text& text, std::size_t begin, std::size_t /*end*/) {
+icd::Checked<Value> with_lists_at(const SharedText& text, std::size_t begin, std::size_t /*end*/) {
   Cut cut = cut_cbor(*text, begin);
   if (cut.values > kMostOutsideLists) return std::unexpected(too_many_outside_lists(kMostOutsideLists));
   Lists lists(text, std::move(cut.arrays), with_lists_at, 0);
-  return cbor_value(cut.rest, &lists);
+  return CborReader(cut.rest, &lists).value();
 }
 
 }  // namespace
 
-icd::Checked<Value> cbor_value(const std::string& bytes, Lists* lists) {
-  cbor_load_result result{};
-  const Item root(cbor_load(reinterpret_cast<const unsigned char*>(bytes.data()), bytes.size(), &result));
-  if (root == nullptr) {  // only for want of memory: the bytes are known to be well-formed
-    return std::unexpected(
-        icd::Refusal{icd::Status::InternalServerError, "the CBOR document could not be parsed"});
-  }
-  return value_of(*root, lists);
+Value cbor_value(std::string_view bytes) {
+  return CborReader(bytes, nullptr).value();
 }
 
 icd::Checked<Value> cbor_value_with_lists(std::string bytes) {

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <string>
+#include <string_view>
 
 #include "codec/cut_lists.hpp"
 #include "codec/value.hpp"
@@ -8,9 +9,9 @@
 
 namespace adit::codec {
 
-/// The document that a CborSplitter has passed and kept, by libcbor. Tags are skipped, undefined is null, and
-/// members whose keys are no text are left out. `lists`: what stands for its arrays; null: they are parsed.
-icd::Checked<Value> cbor_value(const std::string& bytes, Lists* lists = nullptr);
+/// The document that a CborSplitter has passed and kept, which is not checked again: it is well-formed and
+/// has no tags. Undefined is null, and members whose keys are no text are left out.
+Value cbor_value(std::string_view bytes);
 /// The same, its arrays left as text. 413: as List::element().
 icd::Checked<Value> cbor_value_with_lists(std::string bytes);
 

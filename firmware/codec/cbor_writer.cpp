@@ -1,50 +1,58 @@
 #include "codec/cbor_writer.hpp"
 
-#include <cbor/encoding.h>
-
 #include <array>
+#include <bit>
 #include <span>
 
 namespace adit::codec {
 
-template <auto kEncode, class... Arguments>
-void CborWriter::head(Arguments... arguments) {
-  std::array<std::uint8_t, 9> bytes{};  // the longest head there is
-  const std::size_t size = kEncode(arguments..., bytes.data(), bytes.size());
-  out_.append(std::span(bytes).first(size));
+/// The number's `size` bytes follow, the highest first.
+void CborWriter::head(Major major, std::uint8_t info, std::uint64_t number, std::size_t size) {
+  std::array<std::uint8_t, 9> bytes{};
+  bytes[0] = static_cast<std::uint8_t>(static_cast<unsigned>(major) << 5 | info);
+  for (std::size_t at = size; at > 0; --at, number >>= 8) bytes[at] = static_cast<std::uint8_t>(number);
+  out_.append(std::span(bytes).first(1 + size));
+}
+
+void CborWriter::head(Major major, std::uint64_t argument) {
+  if (argument < 24) return head(major, static_cast<std::uint8_t>(argument), 0, 0);
+  if (argument <= 0xFF) return head(major, 24, argument, 1);
+  if (argument <= 0xFFFF) return head(major, 25, argument, 2);
+  if (argument <= 0xFFFF'FFFF) return head(major, 26, argument, 4);
+  head(major, 27, argument, 8);
 }
 
 void CborWriter::map(std::size_t members) {
-  head<cbor_encode_map_start>(members);
+  head(Major::Map, members);
 }
 
 void CborWriter::array(std::size_t elements) {
-  head<cbor_encode_array_start>(elements);
+  head(Major::Array, elements);
 }
 
 void CborWriter::text(std::string_view utf8) {
-  head<cbor_encode_string_start>(utf8.size());
+  head(Major::Text, utf8.size());
   out_.append({reinterpret_cast<const std::uint8_t*>(utf8.data()), utf8.size()});
 }
 
 void CborWriter::whole(std::int64_t number) {
   if (number >= 0) {
-    head<cbor_encode_uint>(static_cast<std::uint64_t>(number));
+    head(Major::Unsigned, static_cast<std::uint64_t>(number));
   } else {
-    head<cbor_encode_negint>(static_cast<std::uint64_t>(-(number + 1)));
+    head(Major::Negative, static_cast<std::uint64_t>(-(number + 1)));
   }
 }
 
 void CborWriter::real(double number) {
-  head<cbor_encode_double>(number);
+  head(Major::Simple, 27, std::bit_cast<std::uint64_t>(number), sizeof number);
 }
 
 void CborWriter::truth(bool yes) {
-  head<cbor_encode_bool>(yes);
+  head(Major::Simple, yes ? 21 : 20);
 }
 
 void CborWriter::byte_string(const icd::ChunkedBytes& bytes) {
-  head<cbor_encode_bytestring_start>(bytes.size());
+  head(Major::Bytes, bytes.size());
   out_.append(bytes);
 }
 

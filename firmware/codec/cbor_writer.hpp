@@ -5,6 +5,7 @@
 #include <string_view>
 #include <utility>
 
+#include "codec/cbor_head.hpp"
 #include "icd/chunked_bytes.hpp"
 
 namespace adit::codec {
@@ -26,8 +27,8 @@ class CborWriter {
   icd::ChunkedBytes finish() { return std::move(out_); }
 
  private:
-  template <auto kEncode, class... Arguments>
-  void head(Arguments... arguments);
+  void head(Major major, std::uint8_t info, std::uint64_t number, std::size_t size);
+  void head(Major major, std::uint64_t argument);
 
   icd::ChunkedBytes out_;
 };

@@ -9,7 +9,7 @@ namespace {
 
 class CutList final : public List {
  public:
-  CutList(Text text, Starts starts, Lists::Read read, std::size_t gap)
+  CutList(SharedText text, Starts starts, Lists::Read read, std::size_t gap)
       : text_(std::move(text)), starts_(std::move(starts)), read_(read), gap_(gap) {}
 
   std::size_t size() const override { return starts_.empty() ? 0 : starts_.size() - 1; }
@@ -19,7 +19,7 @@ class CutList final : public List {
   }
 
  private:
-  const Text text_;
+  const SharedText text_;
   const Starts starts_;
   const Lists::Read read_;
   const std::size_t gap_;

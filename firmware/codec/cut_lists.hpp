@@ -12,7 +12,7 @@
 /// message is nowhere in memory as a tree.
 namespace adit::codec {
 
-using Text = std::shared_ptr<const std::string>;
+using SharedText = std::shared_ptr<const std::string>;
 /// Where each element of an array begins in its text, and then where the next would; none: it is empty.
 using Starts = std::vector<std::uint32_t>;
 
@@ -28,16 +28,16 @@ Cut cut_cbor(std::string_view text, std::size_t begin);
 /// What stands for the arrays of a Cut, one after the other.
 class Lists {
  public:
-  using Read = icd::Checked<Value> (*)(const Text& text, std::size_t begin, std::size_t end);
+  using Read = icd::Checked<Value> (*)(const SharedText& text, std::size_t begin, std::size_t end);
 
   /// `read` reads an element; between two of them are `gap` bytes.
-  Lists(Text text, std::vector<Starts> arrays, Read read, std::size_t gap)
+  Lists(SharedText text, std::vector<Starts> arrays, Read read, std::size_t gap)
       : text_(std::move(text)), arrays_(std::move(arrays)), read_(read), gap_(gap) {}
   /// Requires that there is one more.
   Value next();
 
  private:
-  Text text_;
+  SharedText text_;
   std::vector<Starts> arrays_;
   Read read_;
   std::size_t gap_;

@@ -2,10 +2,9 @@
 
 #include <cmath>
 
-#include "codec/json_number.hpp"
 #include "codec/json_splitter.hpp"
-#include "codec/json_value.hpp"
 #include "codec/list.hpp"
+#include "codec/plain_json.hpp"
 #include "codec/write.hpp"
 #include "icd/sentence.hpp"
 
@@ -52,49 +51,10 @@ struct Writer {
   }
 };
 
-/// The length of a number at the start of `text`: a short one without exponent, which is surely a double. 0:
-/// none, or another.
-std::size_t plain_number(std::string_view text) {
-  constexpr std::size_t kShort = 15;
-  JsonNumber grammar;
-  const std::size_t length = grammar.next(text);
-  const bool whole = grammar.complete() && text.substr(0, length).find_first_of("eE") == text.npos;
-  const bool ended = length == text.size() || text[length] < '0' || text[length] > '9';
-  return whole && ended && length <= kShort ? length : 0;
-}
-
-/// Whether cJSON alone reads the text as RFC 8259 has it: ASCII without escapes, shallow, its numbers short.
-/// Most of what is read in one piece is like that, and then needs no second look.
-bool is_plain(std::string_view text) {
-  const auto printable = [text](std::size_t at) {
-    return at < text.size() && text[at] >= ' ' && text[at] <= '~';
-  };
-  std::size_t depth = 0;
-  for (std::size_t at = 0; at < text.size(); ++at) {
-    const char c = text[at];
-    if (c == '"') {
-      do {
-        if (!printable(++at) || text[at] == '\\') return false;
-      } while (text[at] != '"');
-    } else if (c == '-' || (c >= '0' && c <= '9')) {
-      const std::size_t length = plain_number(text.substr(at));
-      if (length == 0) return false;
-      at += length - 1;
-    } else if (c == '{' || c == '[') {
-      if (++depth > BodyDecoder::kDeepest) return false;
-    } else if (!printable(at) && c != '\n' && c != '\r' && c != '\t') {
-      return false;
-    }
-  }
-  return true;
-}
-
 }  // namespace
 
 std::expected<Value, std::string> parse_json(std::string_view text) {
-  if (is_plain(text)) {
-    if (auto root = json_value(std::string(text))) return std::move(*root);
-  }
+  if (auto plain = plain_json(text)) return std::move(*plain);
   // Else it says what is wrong, and where.
   BulkData none(0);
   JsonSplitter splitter(Split::Nothing, {.text = text.size()}, none);

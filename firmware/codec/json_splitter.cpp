@@ -52,8 +52,8 @@ icd::Checked<void> JsonSplitter::end() {
 icd::Checked<Value> JsonSplitter::finish() {
   if (auto whole = end(); !whole) return std::unexpected(whole.error());
   if (split_ == Split::Lists) return json_value_with_lists(std::move(rest_));
-  auto root = json_value(rest_);
-  if (root && data_.form() != DataForm::Absent) mark_split_out(*root);
+  Value root = json_value(rest_);
+  if (data_.form() != DataForm::Absent) mark_split_out(root);
   return root;
 }
 
@@ -185,7 +185,7 @@ icd::Checked<std::size_t> JsonSplitter::string(std::string_view in) {
   if (diverted_ == Diverted::Base64) {
     if (auto decoded = decode(piece->text); !decoded) return std::unexpected(decoded.error());
   } else {
-    keep(piece->text == std::string_view("\0", 1) ? "\\uFFFF" : piece->raw);
+    keep(piece->raw);
   }
   if (token_ == Token::Key && key_.size() < DataPath::kLongestKey) {
     key_ += piece->text.substr(0, DataPath::kLongestKey);

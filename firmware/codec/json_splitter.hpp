@@ -16,8 +16,7 @@
 
 namespace adit::codec {
 
-/// JSON (RFC 8259) as a pushdown automaton. What it lets through is stricter than what cJSON takes, and free
-/// of what cJSON does not keep: see rest_.
+/// JSON (RFC 8259) as a pushdown automaton.
 class JsonSplitter final : public Splitter {
  public:
   /// `data` must outlive this.
@@ -82,8 +81,7 @@ class JsonSplitter final : public Splitter {
   std::string_view word_;  // the part of the literal that must follow
   Base64Decoder base64_;
 
-  /// The document without white space, with null for the map's data, with U+FFFF for the escape \u0000 (where
-  /// cJSON would end the string) and with numbers of at most 63 characters (cJSON cuts them there).
+  /// The document without white space, with null for the map's data.
   std::string rest_;
 };
 

@@ -1,7 +1,6 @@
 // The JSON splitter's numbers, and the values that it diverts from the rest: the map's data.
 #include <charconv>
 #include <cmath>
-#include <cstdio>
 #include <cstdlib>
 
 #include "codec/json_splitter.hpp"
@@ -59,15 +58,11 @@ icd::Checked<void> JsonSplitter::number_ended(std::optional<char> next) {
 
 icd::Checked<void> JsonSplitter::keep_number() {
   constexpr std::size_t kSurelySmall = 15;  // characters: with an exponent looked for apart
-  constexpr std::size_t kMostOfCjson = 63;
   if (number_.size() > kSurelySmall || number_.find_first_of("eE") != std::string::npos) {
-    const double value = std::strtod(number_.c_str(), nullptr);  // as cJSON will
-    if (std::isinf(value)) return std::unexpected(fault_at(number_at_, "a number too large for a double"));
-    if (number_.size() > kMostOfCjson) {
-      std::array<char, 32> text{};
-      const int length = std::snprintf(text.data(), text.size(), "%.17g", value);
-      number_.assign(text.data(), static_cast<std::size_t>(length));
-    }
+    double value = 0;
+    const auto [end, error] = std::from_chars(number_.data(), number_.data() + number_.size(), value);
+    if (error != std::errc{} && std::isinf(std::strtod(number_.c_str(), nullptr)))
+      return std::unexpected(fault_at(number_at_, "a number too large for a double"));
   }
   keep(number_);
   return {};

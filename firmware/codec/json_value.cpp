@@ -1,26 +1,109 @@
 #include "codec/json_value.hpp"
 
-#include <cjson/cJSON.h>
-
+#include <charconv>
 #include <cmath>
+#include <cstdlib>
 #include <memory>
-#include <string_view>
 
+#include "codec/json_string.hpp"
 #include "codec/splitter.hpp"
 
 namespace adit::codec {
 namespace {
 
-std::string text_of(const char* text) {
-  constexpr std::string_view kStandsForNul = "\xEF\xBF\xBF";  // see JsonSplitter::rest_
-  std::string result(text);
-  for (std::size_t at = 0; (at = result.find(kStandsForNul, at)) != std::string::npos; ++at) {
-    result.replace(at, kStandsForNul.size(), 1, '\0');
+/// Reads text that is known to be well-formed and without white space. Recursion ends at
+/// BodyDecoder::kDeepest.
+class JsonReader {
+ public:
+  JsonReader(std::string_view text, Lists* lists) : left_(text), lists_(lists) {}
+
+  Value value() {
+    switch (left_[0]) {
+      case '"':
+        return {string()};
+      case '{':
+        return object();
+      case '[':
+        return array();
+      case 't':
+        return literal("true", {true});
+      case 'f':
+        return literal("false", {false});
+      case 'n':
+        return literal("null", {});
+      default:
+        return json_number_value(number());
+    }
   }
-  return result;
+
+ private:
+  Value literal(std::string_view word, Value meaning) {
+    left_.remove_prefix(word.size());
+    return meaning;
+  }
+
+  double number() {
+    double number = 0;
+    const auto [end, error] = std::from_chars(left_.data(), left_.data() + left_.size(), number);
+    const auto length = static_cast<std::size_t>(end - left_.data());
+    // Too small or too large for a double: 0, or infinite.
+    if (error != std::errc{}) number = std::strtod(std::string(left_.substr(0, length)).c_str(), nullptr);
+    left_.remove_prefix(length);
+    return number;
+  }
+
+  std::string string() {
+    left_.remove_prefix(1);
+    std::string text;
+    JsonString characters;
+    for (bool ended = false; !ended;) {
+      const auto piece = characters.next(left_);
+      text += piece->text;
+      ended = piece->ended;
+      left_.remove_prefix(piece->taken);
+    }
+    return text;
+  }
+
+  /// Takes the bracket or the comma before the next one; false: the last bracket.
+  bool take_before_next(char last) {
+    const bool is_over = left_[0] == last || (left_[0] != ',' && left_[1] == last);
+    left_.remove_prefix(is_over && left_[0] != last ? 2 : 1);
+    return !is_over;
+  }
+
+  Value array() {
+    Value::Array array;
+    while (take_before_next(']')) array.push_back(value());
+    if (lists_ != nullptr) return lists_->next();  // of a Cut, it is empty
+    return {std::move(array)};
+  }
+
+  Value object() {
+    Value::Object object;
+    while (take_before_next('}')) {
+      std::string name = string();
+      left_.remove_prefix(1);  // the colon
+      object.emplace_back(std::move(name), value());
+    }
+    return {std::move(object)};
+  }
+
+  std::string_view left_;
+  Lists* lists_;
+};
+
+/// The value from `begin` to `end`.
+icd::Checked<Value> with_lists(const SharedText& text, std::size_t begin, std::size_t end) {
+  Cut cut = cut_json(*text, begin, end);
+  if (cut.values > kMostOutsideLists) return std::unexpected(too_many_outside_lists(kMostOutsideLists));
+  Lists lists(text, std::move(cut.arrays), with_lists, 1);
+  return JsonReader(cut.rest, &lists).value();
 }
 
-Value number_of(double number) {
+}  // namespace
+
+Value json_number_value(double number) {
   constexpr double kWholeBelow = 9007199254740992;  // 2^53: from there on it may stand for another integer
   const bool whole = std::abs(number) < kWholeBelow && number == std::floor(number);
   const bool negative_zero = number == 0 && std::signbit(number);
@@ -28,54 +111,8 @@ Value number_of(double number) {
   return {number};
 }
 
-std::size_t children_of(const cJSON& item) {
-  return static_cast<std::size_t>(cJSON_GetArraySize(&item));
-}
-
-/// Recursion ends at BodyDecoder::kDeepest.
-Value value_of(const cJSON& item, Lists* lists) {
-  if (cJSON_IsBool(&item)) return {static_cast<bool>(cJSON_IsTrue(&item))};
-  if (cJSON_IsNumber(&item)) return number_of(item.valuedouble);
-  if (cJSON_IsString(&item)) return {text_of(item.valuestring)};
-  if (cJSON_IsArray(&item)) {
-    if (lists != nullptr) return lists->next();
-    Value::Array array;
-    array.reserve(children_of(item));
-    for (const cJSON* element = item.child; element != nullptr; element = element->next) {
-      array.push_back(value_of(*element, nullptr));
-    }
-    return {std::move(array)};
-  }
-  if (cJSON_IsObject(&item)) {
-    Value::Object object;
-    object.reserve(children_of(item));
-    for (const cJSON* member = item.child; member != nullptr; member = member->next) {
-      object.emplace_back(text_of(member->string), value_of(*member, lists));
-    }
-    return {std::move(object)};
-  }
-  return {};
-}
-
-/// The value from `begin` to `end`.
-icd::Checked<Value> with_lists(const Text& text, std::size_t begin, std::size_t end) {
-  Cut cut = cut_json(*text, begin, end);
-  if (cut.values > kMostOutsideLists) return std::unexpected(too_many_outside_lists(kMostOutsideLists));
-  Lists lists(text, std::move(cut.arrays), with_lists, 1);
-  return json_value(cut.rest, &lists);
-}
-
-}  // namespace
-
-icd::Checked<Value> json_value(const std::string& text, Lists* lists) {
-  constexpr bool kNothingAfter = true;
-  const std::unique_ptr<cJSON, decltype(&cJSON_Delete)> root(
-      cJSON_ParseWithLengthOpts(text.c_str(), text.size() + 1, nullptr, kNothingAfter), &cJSON_Delete);
-  if (root == nullptr) {  // of what a JsonSplitter has passed, only for want of memory
-    return std::unexpected(
-        icd::Refusal{icd::Status::InternalServerError, "the JSON document could not be parsed"});
-  }
-  return value_of(*root, lists);
+Value json_value(std::string_view text) {
+  return JsonReader(text, nullptr).value();
 }
 
 icd::Checked<Value> json_value_with_lists(std::string text) {

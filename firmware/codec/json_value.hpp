@@ -1,6 +1,7 @@
 #pragma once
 
 #include <string>
+#include <string_view>
 
 #include "codec/cut_lists.hpp"
 #include "codec/value.hpp"
@@ -8,10 +9,13 @@
 
 namespace adit::codec {
 
-/// A document by cJSON, which takes more than RFC 8259 does: see JsonSplitter and is_plain(). U+FFFF stands
-/// for NUL. `lists`: what stands for its arrays; null: they are parsed.
-icd::Checked<Value> json_value(const std::string& text, Lists* lists = nullptr);
-/// The same of what a JsonSplitter has passed, its arrays left as text. 413: as List::element().
+/// A document that a JsonSplitter has passed and kept, which is not checked again: it is well-formed and
+/// without white space.
+Value json_value(std::string_view text);
+/// The same, its arrays left as text. 413: as List::element().
 icd::Checked<Value> json_value_with_lists(std::string text);
+
+/// A number of JSON: an integer where it surely stands for that one alone.
+Value json_number_value(double number);
 
 }  // namespace adit::codec

@@ -3,8 +3,8 @@
 #include <algorithm>
 #include <filesystem>
 #include <fstream>
-#include <iterator>
 #include <string_view>
+#include <system_error>
 
 #include "host/log.hpp"
 #include "host/numbered_name.hpp"
@@ -17,8 +17,14 @@ namespace fs = std::filesystem;
 constexpr std::string_view kJournal = "journal-", kSnapshot = "snapshot-", kPart = ".part";
 
 std::string bytes_of(const std::string& path) {
+  std::error_code error;
+  const std::uintmax_t size = fs::file_size(path, error);
+  if (error) return "";
+  std::string bytes(size, '\0');
   std::ifstream file(path, std::ios::binary);
-  return {std::istreambuf_iterator<char>(file), std::istreambuf_iterator<char>()};
+  file.read(bytes.data(), static_cast<std::streamsize>(bytes.size()));
+  bytes.resize(static_cast<std::size_t>(file.gcount()));
+  return bytes;
 }
 
 /// Whether the records end as those of a whole snapshot do.

@@ -65,7 +65,7 @@ void require_same_in_lists(const Choice& choice, Input body, const codec::Docume
 }
 
 /// What is read from JSON, written and read again stays as it is. (CBOR has more than JSON: integers over
-/// 2^53, NaN and U+FFFF change, once, on the way into JSON.)
+/// 2^53 and NaN change, once, on the way into JSON.)
 void require_settles(const codec::Value& value) {
   const auto once = codec::parse_json(codec::write_json(value));
   require(once.has_value());

@@ -3,22 +3,12 @@
 #include <algorithm>
 #include <cmath>
 #include <map>
-#include <set>
 
 namespace adit::fuzz {
 namespace {
 
 using codec::Value;
 using nlohmann::json;
-
-/// Adit reads U+FFFF, which is no character, as NUL, which it refuses where text is asked for.
-std::string as_adit_reads(std::string text) {
-  constexpr std::string_view kNoCharacter = "\xef\xbf\xbf";
-  for (std::size_t at = 0; (at = text.find(kNoCharacter, at)) != std::string::npos; ++at) {
-    text.replace(at, kNoCharacter.size(), 1, '\0');
-  }
-  return text;
-}
 
 /// A negative integer of CBOR that is less than that nlohmann's reader turns into another.
 constexpr double kLeastOfTheirs = -9223372036854775808.0;
@@ -37,7 +27,7 @@ struct Comparison {
     return number == ours || (std::isnan(number) && std::isnan(ours));
   }
   bool operator()(const std::string& ours) const {
-    return theirs.is_string() && as_adit_reads(theirs.get<std::string>()) == as_adit_reads(ours);
+    return theirs.is_string() && theirs.get<std::string>() == ours;
   }
   bool operator()(const Value::Bytes& ours) const {
     return theirs.is_binary() && std::ranges::equal(theirs.get_binary(), ours.bytes);
@@ -50,17 +40,11 @@ struct Comparison {
   bool operator()(const Value::Object& ours) const {
     if (!theirs.is_object()) return false;
     std::map<std::string, const Value*> last;
-    for (const auto& [name, value] : ours) last.insert_or_assign(as_adit_reads(name), &value);
-    std::set<std::string> names;
-    for (const auto& [name, value] : theirs.items()) {
-      const auto found = last.find(as_adit_reads(name));
-      if (found == last.end()) return false;
-      // Of two names that Adit reads alike it cannot be told which it read last.
-      if (names.insert(found->first).second && ours.size() == theirs.size() &&
-          !is_same(*found->second, value))
-        return false;
-    }
-    return names.size() == last.size();
+    for (const auto& [name, value] : ours) last.insert_or_assign(name, &value);
+    return last.size() == theirs.size() && std::ranges::all_of(last, [this](const auto& member) {
+             const auto found = theirs.find(member.first);
+             return found != theirs.end() && is_same(*member.second, *found);
+           });
   }
 };
 

@@ -9,7 +9,6 @@
 #include "icd/sentence.hpp"
 #include "loop/guard.hpp"
 #include "pace/budget.hpp"
-#include "pack/pack.hpp"
 
 namespace adit::forward {
 namespace {
@@ -224,7 +223,7 @@ void Maps::pump() {
 void Maps::go_on() {
   forget({});
   const loop::Instant now = loop_.now();
-  if (prepared_ && prepared_->body.empty()) return pack();
+  if (prepared_ && prepared_->packed.body.empty()) return pack();
   if (prepared_) {
     if (now >= starts()) return send();
     wake_.call_at(starts());
@@ -257,32 +256,44 @@ void Maps::pack() {
   header.stamp = stamps_.next(header.stamp.value_or(loop_.stamp_now()));
   journal_.stamped(icd::Uri::MapUpdate, *header.stamp);
   const loop::Instant began = loop_.now();
-  workers_.submit(
-      [prepared = prepared_] { prepared->body = codec::write_map_update(pack::pack(prepared->waiting.map)); },
-      [this, began] {
-        preparing_ = false;
-        packing_took_ = loop_.now() - began;
-        pump();
-      },
-      [this] {
-        preparing_ = false;
-        pace_.failed(loop_.now());
-        prepared_->body = {};
-        loop::guarded("putting a map back", [this] {
-          record_.not_taken(traffic_of(prepared_->waiting.map), NotTaken::Failed, 0,
-                            "it could not be packed");
-          again();
-        });
-        wake_.call_at(pace_.ready());
-      });
+  workers_.submit([prepared = prepared_] { prepared->packed = packed(prepared->waiting); },
+                  [this, began] {
+                    preparing_ = false;
+                    packing_took_ = loop_.now() - began;
+                    loop::guarded("a map that was packed", [this] { is_packed(); });
+                    pump();
+                  },
+                  [this] {
+                    preparing_ = false;
+                    pace_.failed(loop_.now());
+                    prepared_->packed = {};
+                    loop::guarded("putting a map back", [this] {
+                      record_.not_taken(traffic_of(prepared_->waiting.map), NotTaken::Failed, 0,
+                                        "it could not be packed");
+                      again();
+                    });
+                    wake_.call_at(pace_.ready());
+                  });
   preparing_ = true;  // only now: where it could not be submitted, it is not
+}
+
+/// What cannot be stitched goes as it came, each part by itself.
+void Maps::is_packed() {
+  if (!prepared_->packed.body.empty()) {
+    if (prepared_->packed.stitched.raw_size > 0)
+      prepared_->waiting.map.data = std::move(prepared_->packed.stitched);
+    return;
+  }
+  host::log(host::Level::Warning, "grids cannot be stitched: what they hold is damaged");
+  lane_.put_back_apart(prepared_->waiting);
+  prepared_.reset();
 }
 
 void Maps::send() {
   const loop::Instant last_byte_not_before = pace_.earliest().last;
   pace_.sent(loop_.now());
   channel_.send(
-      icd::Uri::MapUpdate, codec::kCbor, prepared_->body,
+      icd::Uri::MapUpdate, codec::kCbor, prepared_->packed.body,
       [this](const uplink::Outcome& outcome) { answered(outcome); }, last_byte_not_before);
 }
 
@@ -309,8 +320,8 @@ void Maps::taken(const uplink::Answered& answered) {
   loop::guarded("what a map overtook", [&] { aside_.taken(map); });
   forget(std::move(sent->waiting.updates));
   blame_.passed(whose(map), loop_.now());
-  lane_.carried(lanes::Sender::of(map), sent->body.size());
-  record_.forwarded(traffic_of(map), updates, sent->body.size(), answered.status, loop_.stamp_now());
+  lane_.carried(lanes::Sender::of(map), sent->packed.body.size());
+  record_.forwarded(traffic_of(map), updates, sent->packed.body.size(), answered.status, loop_.stamp_now());
   taken_(std::move(map));
 }
 
@@ -349,7 +360,8 @@ void Maps::again() {
   forget(std::move(replaced));
 }
 
-/// A map that will not be taken is set aside; of a merged cloud each part is tried by itself.
+/// A map that will not be taken is set aside; of one that was merged or stitched each part is tried by
+/// itself.
 void Maps::give_up(int status, const std::string& sentence) {
   record_.not_taken(traffic_of(prepared_->waiting.map), NotTaken::Refused, status, sentence);
   if (prepared_->waiting.again) prepared_->waiting.map.header().stamp = prepared_->waiting.again;

@@ -11,6 +11,7 @@
 #include "forward/channel.hpp"
 #include "forward/map_arrival.hpp"
 #include "forward/record.hpp"
+#include "forward/stitched.hpp"
 #include "forward/uri_pace.hpp"
 #include "icd/map_update.hpp"
 #include "icd/status.hpp"
@@ -59,9 +60,9 @@ class Maps {
   void take(icd::MapUpdate update, std::size_t bytes_received, std::shared_ptr<spool::MapFile> file,
             std::function<void(icd::Checked<void>)> done);
 
-  /// What was set aside, on the operator's word: before all that waits. `done` is told whether it is kept; if
-  /// not, nothing has become of it. It says whether it is still to go: nothing newer that says all of it was
-  /// taken since.
+  /// What was set aside, on the operator's word: before all that waits of its sender's. `done` is told
+  /// whether it is kept; if not, nothing has become of it. It says whether it is still to go: nothing newer
+  /// that says all of it was taken since.
   void send_again(icd::MapUpdate update, std::function<bool(bool kept)> done);
 
   /// Sends nothing more. False while an answer is awaited.
@@ -85,7 +86,7 @@ class Maps {
   /// A map out of the lane, in the form that goes upstream.
   struct Prepared {
     lanes::WaitingMap waiting;
-    icd::ChunkedBytes body;  // empty: not packed
+    Packed packed;  // without a body: not packed
   };
 
   std::vector<std::uint64_t> add(std::uint64_t number, icd::MapUpdate update);
@@ -113,6 +114,7 @@ class Maps {
   loop::Instant starts() const;
   void prepare();
   void pack();
+  void is_packed();
   void send();
   void answered(const uplink::Outcome& outcome);
   void judge(const uplink::Outcome& outcome);

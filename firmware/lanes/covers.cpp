@@ -3,7 +3,8 @@
 #include <cstdint>
 #include <optional>
 
-#include "lanes/map_lane.hpp"
+#include "lanes/lattice.hpp"
+#include "lanes/waiting_map.hpp"
 
 namespace adit::lanes {
 namespace {
@@ -47,25 +48,44 @@ std::optional<Corner> corner_of(const icd::OccupancyGrid& grid) {
   return Corner{std::llround(x), std::llround(y), std::llround(z)};
 }
 
-/// Whether `size` cells that begin at `begin` lie within `outer_size` cells that begin at `outer_begin`.
-bool within(std::int64_t begin, std::int64_t size, std::int64_t outer_begin, std::int64_t outer_size) {
-  const std::int64_t steps = begin - outer_begin;
-  if (steps < 0 || steps % kStepsPerCell != 0) return false;
-  return steps / kStepsPerCell + size <= outer_size;
+/// Steps as cells; nothing where they end within one.
+std::optional<std::int64_t> whole_cells(std::int64_t steps) {
+  if (steps % kStepsPerCell != 0) return {};
+  return steps / kStepsPerCell;
+}
+
+Cells cells_at(std::int64_t x, std::int64_t y, const icd::OccupancyGrid& grid) {
+  return {x, y, grid.width, grid.height};
 }
 
 }  // namespace
 
+std::optional<Cells> cells_in(const icd::OccupancyGrid& of, const icd::OccupancyGrid& grid) {
+  if (grid.resolution != of.resolution || grid.origin.orientation != of.origin.orientation) {
+    return {};
+  }
+  const auto from = corner_of(of), to = corner_of(grid);
+  if (!from || !to) return of.origin == grid.origin ? std::optional(cells_at(0, 0, grid)) : std::nullopt;
+  const auto x = whole_cells(to->x - from->x), y = whole_cells(to->y - from->y);
+  if (!x || !y || to->z != from->z) return {};
+  return cells_at(*x, *y, grid);
+}
+
 bool covers(const icd::OccupancyGrid& newer, const icd::OccupancyGrid& older) {
-  if (newer.resolution != older.resolution || newer.origin.orientation != older.origin.orientation) {
-    return false;
-  }
-  const auto outer = corner_of(newer), inner = corner_of(older);
-  if (!outer || !inner) {
-    return newer.origin == older.origin && older.width <= newer.width && older.height <= newer.height;
-  }
-  return inner->z == outer->z && within(inner->x, older.width, outer->x, newer.width) &&
-         within(inner->y, older.height, outer->y, newer.height);
+  const auto inner = cells_in(newer, older);
+  return inner && cells_at(0, 0, newer).holds(*inner);
+}
+
+/// On the middle of its step, so that what floating point makes of it is rounded to the same one.
+std::optional<icd::Pose> corner_at(const icd::OccupancyGrid& of, std::int64_t x, std::int64_t y) {
+  const auto from = corner_of(of);
+  if (!from) return {};
+  const double step = of.resolution / static_cast<double>(kStepsPerCell);
+  const auto& [qx, qy, qz, qw] = of.origin.orientation;
+  const icd::Point there{static_cast<double>(from->x + x * kStepsPerCell) * step,
+                         static_cast<double>(from->y + y * kStepsPerCell) * step,
+                         turned_back(of.origin.orientation, of.origin.position).z};
+  return icd::Pose{turned_back({-qx, -qy, -qz, qw}, there), of.origin.orientation};
 }
 
 }  // namespace adit::lanes

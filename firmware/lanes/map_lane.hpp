@@ -21,8 +21,13 @@ namespace adit::lanes {
 ///
 /// Within a sender the oldest news goes first. A newer grid replaces one that it covers, and inherits its
 /// age. Grids of that name that it does not cover still go ahead of it, so that old cells are never sent
-/// after newer ones. Clouds are kept in order; take() merges clouds that follow each other. Nothing else is
-/// ever dropped.
+/// after newer ones. Clouds are kept in order; take() merges clouds that follow each other, and stitches
+/// grids of one lattice that fill a rectangle (stitch.hpp). Nothing else is ever dropped.
+///
+/// So what a Command Post has in the end, of the grids of one name and lattice, is in each cell the newest
+/// value that was posted for it, unknown included, where it overwrites cells by what it is sent. Where it
+/// overlays (unknown overwrites nothing), that is so of each cell whose newest value is known; of the others
+/// it has a value that was posted, or none.
 ///
 /// A map on trial (Blame) lets others go first while it rests. A grid on trial holds back the later grids of
 /// its name for its first kInPlace failures, counting those of grids that it replaced; then they go ahead of
@@ -55,8 +60,8 @@ class MapLane {
   /// instead. Gives the numbers of those that are no longer needed, as add() does.
   std::vector<std::uint64_t> put_back(WaitingMap map);
 
-  /// Puts back the parts of a merged cloud, first of its sender's and never to be merged again, so that the
-  /// part that the Command Post cannot take is found, and the others arrive. Requires parts.
+  /// Puts back the parts of what was merged or stitched, first of its sender's and never to be joined again,
+  /// so that the part that the Command Post cannot take is found, and the others arrive. Requires parts.
   void put_back_apart(WaitingMap map);
 
   /// Whether add() would replace one that waits.

@@ -5,6 +5,7 @@
 #include <utility>
 
 #include "icd/require.hpp"
+#include "lanes/stitch.hpp"
 
 namespace adit::lanes {
 
@@ -15,7 +16,7 @@ std::vector<std::uint64_t> MapQueue::add(WaitingMap added) {
   std::vector<std::uint64_t> replaced;
   for (auto it = gone; it != waiting_.end(); ++it) {
     bytes_ -= bytes_held(*it);
-    replaced.push_back(it->updates.back());
+    add_own_numbers(replaced, *it);
     take_over(added, std::move(*it));
   }
   waiting_.erase(gone, waiting_.end());
@@ -53,13 +54,16 @@ std::pair<Instant, Instant> MapQueue::resting() const {
 }
 
 WaitingMap MapQueue::take(Instant now, std::size_t merge_bytes) {
+  icd::require(!waiting_.empty());
   const auto may_go = ready(now);
   const auto chosen = may_go == waiting_.end() ? rested_longest() : may_go;
-  // It, and what is merged into it: they leave at last, when nothing can fail.
+  const auto place = static_cast<std::size_t>(chosen - waiting_.begin());
+  // It, and what goes with it: they leave at last, when nothing can fail.
   std::vector<bool> leaves(waiting_.size());
-  leaves[static_cast<std::size_t>(chosen - waiting_.begin())] = true;
+  leaves[place] = true;
   WaitingMap next = *chosen;
-  merge_followers(next, merge_bytes, leaves);
+  if (may_join(next) && next.map.is_grid()) stitch_followers(next, place, leaves);
+  if (may_join(next) && !next.map.is_grid()) merge_followers(next, merge_bytes, leaves);
   auto leaving = leaves.begin();
   std::erase_if(waiting_, [&](const WaitingMap& waiting) {
     if (!*leaving++) return false;
@@ -71,22 +75,52 @@ WaitingMap MapQueue::take(Instant now, std::size_t merge_bytes) {
 
 void MapQueue::merge_followers(WaitingMap& next, std::size_t merge_bytes, std::vector<bool>& leaves) const {
   const icd::PointCloud2* first = loose_cloud_in(next.map);
-  bool open = first != nullptr && !next.alone && next.trial.failures == 0;
-  for (std::size_t i = 0; i < waiting_.size() && open; ++i) {
+  for (std::size_t i = 0; i < waiting_.size() && first != nullptr; ++i) {
     const WaitingMap& other = waiting_[i];
     if (leaves[i]) continue;
     if (other.trial.failures > 0) continue;  // what is on trial goes by itself
     const icd::PointCloud2* cloud = loose_cloud_in(other.map);
-    open = cloud && !other.alone && mergeable(*first, *cloud) &&
-           next.map.data.raw_size + other.map.data.raw_size <= merge_bytes;
-    if (!open) return;
+    const bool fits = cloud != nullptr && may_join(other) && mergeable(*first, *cloud) &&
+                      next.map.data.raw_size + other.map.data.raw_size <= merge_bytes;
+    if (!fits) return;
     leaves[i] = true;
-    join_parts(next, other);
+    join(next, other);
     next.map = merge(std::move(next.map), other.map);
     first = loose_cloud_in(next.map);
-    next.updates.insert(next.updates.end(), other.updates.begin(), other.updates.end());
-    next.accepted = std::min(next.accepted, other.accepted);
   }
+}
+
+/// The places of the grid at `place` and of those behind it that may be stitched to it: up to the first one
+/// that may not, for what goes ahead of that could overlap it.
+std::vector<std::size_t> MapQueue::that_follow(std::size_t place) const {
+  const auto& first = std::get<icd::OccupancyGrid>(waiting_[place].map.msg);
+  std::vector<std::size_t> places;
+  for (std::size_t i = place; i < waiting_.size() && places.size() < kMostStitched; ++i) {
+    if (!may_join(waiting_[i])) break;
+    if (!cells_in(first, std::get<icd::OccupancyGrid>(waiting_[i].map.msg))) break;
+    places.push_back(i);
+  }
+  return places;
+}
+
+void MapQueue::stitch_followers(WaitingMap& next, std::size_t place, std::vector<bool>& leaves) const {
+  const auto grid_at = [this](std::size_t i) { return &std::get<icd::OccupancyGrid>(waiting_[i].map.msg); };
+  const auto places = that_follow(place);
+  std::vector<Cells> cells;
+  for (const std::size_t i : places) cells.push_back(*cells_in(*grid_at(place), *grid_at(i)));
+  const Stitch found = stitch(cells);
+  if (found.which.size() < 2) return;
+  std::vector<const icd::OccupancyGrid*> grids;
+  for (const std::size_t i : found.which) grids.push_back(grid_at(places[i]));
+  auto whole = stitched(grids);
+  if (!whole) return;
+  for (const std::size_t i : found.which) {
+    if (places[i] == place) continue;
+    leaves[places[i]] = true;
+    join(next, waiting_[places[i]]);
+  }
+  next.map.data = {{}, icd::Compression::None, std::size_t{whole->width} * whole->height};
+  next.map.msg = std::move(*whole);
 }
 
 std::vector<std::uint64_t> MapQueue::put_back(WaitingMap map) {
@@ -100,7 +134,8 @@ std::vector<std::uint64_t> MapQueue::put_back(WaitingMap map) {
     bytes_ += bytes;
     return {};
   }
-  std::vector<std::uint64_t> replaced{map.updates.back()};
+  std::vector<std::uint64_t> replaced;
+  add_own_numbers(replaced, map);
   const std::size_t before = bytes_held(*newer);
   take_over(*newer, std::move(map));
   bytes_ += bytes_held(*newer) - before;
@@ -108,14 +143,12 @@ std::vector<std::uint64_t> MapQueue::put_back(WaitingMap map) {
 }
 
 void MapQueue::put_back_apart(WaitingMap map) {
-  icd::require(!map.parts.empty() && map.parts.size() == map.updates.size());
-  Maps all;
+  const auto place =
+      std::ranges::find_if(waiting_, [&](const WaitingMap& waiting) { return is_newer(waiting, map); });
+  auto parts = parts_of(std::move(map));
   std::size_t bytes = 0;
-  for (std::size_t i = 0; i < map.parts.size(); ++i) {
-    all.push_back({std::move(map.parts[i]), map.accepted, {map.updates[i]}, {}, true});
-    bytes += bytes_held(all.back());
-  }
-  waiting_.insert(waiting_.begin(), std::move_iterator(all.begin()), std::move_iterator(all.end()));
+  for (const WaitingMap& part : parts) bytes += bytes_held(part);
+  waiting_.insert(place, std::move_iterator(parts.begin()), std::move_iterator(parts.end()));
   bytes_ += bytes;
 }
 
@@ -139,7 +172,8 @@ std::optional<Instant> MapQueue::oldest() const {
 std::size_t MapQueue::largest_grid() const {
   std::size_t most = 0;
   for (const WaitingMap& waiting : waiting_) {
-    if (waiting.map.is_grid()) most = std::max(most, waiting.map.data.bytes.size());
+    if (!waiting.map.is_grid()) continue;
+    most = std::max(most, waiting.parts.empty() ? waiting.map.data.bytes.size() : bytes_held(waiting));
   }
   return most;
 }

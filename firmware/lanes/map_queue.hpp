@@ -41,8 +41,10 @@ class MapQueue {
   using Maps = std::deque<WaitingMap>;
   Maps::const_iterator ready(Instant now) const;
   Maps::const_iterator rested_longest() const;
-  /// Adds to `leaves`, in the order of waiting_, what it merged.
+  /// Each adds to `leaves`, in the order of waiting_, what goes with the next.
   void merge_followers(WaitingMap& next, std::size_t merge_bytes, std::vector<bool>& leaves) const;
+  void stitch_followers(WaitingMap& next, std::size_t place, std::vector<bool>& leaves) const;
+  std::vector<std::size_t> that_follow(std::size_t place) const;
 
   Maps waiting_;
   std::size_t bytes_ = 0;

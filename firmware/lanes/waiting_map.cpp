@@ -1,6 +1,7 @@
 #include "lanes/waiting_map.hpp"
 
 #include <algorithm>
+#include <iterator>
 #include <utility>
 #include <variant>
 
@@ -18,6 +19,8 @@ std::size_t bytes_held(const WaitingMap& waiting) {
   std::size_t bytes = kFrame + waiting.map.data.bytes.size() + waiting.updates.size() * sizeof(std::uint64_t);
   if (const auto* cloud = std::get_if<icd::PointCloud2>(&waiting.map.msg)) {
     for (const auto& field : cloud->fields) bytes += sizeof field + field.name.size();
+  } else {
+    for (const WaitingMap& part : waiting.parts) bytes += bytes_held(part);
   }
   return bytes;
 }
@@ -40,13 +43,43 @@ bool is_newer(const WaitingMap& waiting, const WaitingMap& back) {
          std::pair(*waiting.again, waiting.updates.back()) > std::pair(*back.again, back.updates.back());
 }
 
-void join_parts(WaitingMap& to, const WaitingMap& from) {
-  if (to.parts.empty()) to.parts.push_back(to.map);
+void join(WaitingMap& to, const WaitingMap& from) {
+  if (to.parts.empty()) to.parts.push_back(to);
   if (from.parts.empty()) {
-    to.parts.push_back(from.map);
+    to.parts.push_back(from);
   } else {
     to.parts.insert(to.parts.end(), from.parts.begin(), from.parts.end());
   }
+  const auto middle = static_cast<std::ptrdiff_t>(to.updates.size());
+  const bool in_order = to.updates.back() < from.updates.front();
+  to.updates.insert(to.updates.end(), from.updates.begin(), from.updates.end());
+  if (!in_order) std::inplace_merge(to.updates.begin(), to.updates.begin() + middle, to.updates.end());
+  to.accepted = std::min(to.accepted, from.accepted);
+}
+
+/// What it has replaced since it was put together, no part alone may say all of: it goes with the last.
+std::vector<WaitingMap> parts_of(WaitingMap map) {
+  icd::require(!map.parts.empty());
+  std::vector<std::uint64_t> of_parts, others;
+  for (WaitingMap& part : map.parts) {
+    part.alone = true;
+    of_parts.insert(of_parts.end(), part.updates.begin(), part.updates.end());
+  }
+  std::ranges::sort(of_parts);
+  std::ranges::set_difference(map.updates, of_parts, std::back_inserter(others));
+  auto& last = map.parts.back().updates;
+  last.insert(last.begin(), others.begin(), others.end());
+  std::ranges::sort(last);
+  return std::move(map.parts);
+}
+
+bool may_join(const WaitingMap& map) {
+  return !map.alone && map.trial.failures == 0 && !map.again;
+}
+
+void add_own_numbers(std::vector<std::uint64_t>& numbers, const WaitingMap& of) {
+  if (of.parts.empty()) numbers.push_back(of.updates.back());
+  for (const WaitingMap& part : of.parts) numbers.push_back(part.updates.back());
 }
 
 void take_over(WaitingMap& to, WaitingMap from) {

@@ -28,9 +28,10 @@ struct WaitingMap {
   icd::MapUpdate map;
   Instant accepted;                    // when the oldest news in it was accepted
   std::vector<std::uint64_t> updates;  // their numbers, oldest first
-  std::vector<icd::MapUpdate>
-      parts{};         // the clouds that were merged into it, one for each update; else empty
-  bool alone = false;  // not to be merged with others
+  /// What was merged or stitched into it, in the order they were made; else empty. The cells of a stitched
+  /// grid are in its parts alone, until it is packed.
+  std::vector<WaitingMap> parts{};
+  bool alone = false;  // not to be merged or stitched with others
   Trial trial{};       // where the Command Post's handler failed at it
   /// Only of a map that was set aside and is sent again by hand: the stamp that it had. By it the map is
   /// older than all that were never set aside, and is told from others that are sent again.
@@ -48,11 +49,21 @@ bool is_newer(const WaitingMap& waiting, const WaitingMap& back);
 /// What it keeps in memory beside its data: itself, its fields, and what allocators add.
 std::size_t bytes_held(const WaitingMap& waiting);
 
+/// Adds the numbers of the maps that would be sent with it: not of those that these have replaced.
+void add_own_numbers(std::vector<std::uint64_t>& numbers, const WaitingMap& of);
+
 /// `from`, which `to` replaces, is older news: its updates become `to`'s as well, and its age counts.
 void take_over(WaitingMap& to, WaitingMap from);
 
-/// What is merged keeps what it was merged of: the bytes are shared, so that this costs next to nothing.
-void join_parts(WaitingMap& to, const WaitingMap& from);
+/// `from` is sent within `to`, which stands for its updates from now on, and keeps both as its parts: their
+/// bytes are shared, so that this costs next to nothing.
+void join(WaitingMap& to, const WaitingMap& from);
+
+/// Takes `map` apart: each part with its updates, to be sent by itself. Requires parts.
+std::vector<WaitingMap> parts_of(WaitingMap map);
+
+/// Whether it may be sent within another one, or another one within it.
+bool may_join(const WaitingMap& map);
 
 /// The cloud whose points can be joined to others; null for a grid and for packed points.
 const icd::PointCloud2* loose_cloud_in(const icd::MapUpdate& map);

@@ -1,5 +1,6 @@
 #include "picture/draw.hpp"
 
+#include "codec/map_pieces.hpp"
 #include "picture/aligned_grid.hpp"
 #include "picture/draw_parts.hpp"
 #include "picture/grid_cells.hpp"
@@ -14,7 +15,7 @@ icd::Checked<std::size_t> draw_by(const icd::OccupancyGrid& grid, const Placemen
                                   const icd::MapData& data, Sheet& sheet) {
   RowCutter cutter{grid.width, grid.height};
   Drawer drawer{grid, placement, sheet};
-  auto drawn = for_each_piece(data, [&](std::span<const std::uint8_t> piece) -> icd::Checked<void> {
+  auto drawn = codec::for_each_piece(data, [&](std::span<const std::uint8_t> piece) -> icd::Checked<void> {
     cutter.feed(piece, [&](std::size_t row, std::size_t column, std::span<const std::uint8_t> cells) {
       drawer.draw(row, column, cells);
     });
@@ -25,18 +26,6 @@ icd::Checked<std::size_t> draw_by(const icd::OccupancyGrid& grid, const Placemen
 }
 
 }  // namespace
-
-icd::Checked<void> for_each_piece(const icd::MapData& data, const codec::Sink& sink) {
-  if (data.compression == icd::Compression::None) {
-    for (const auto& chunk : data.bytes.chunks()) {
-      if (auto taken = sink(*chunk); !taken) return taken;
-    }
-    return {};
-  }
-  auto inflated = codec::gunzip(data.bytes, data.raw_size, "msg.data", sink);
-  if (!inflated) return std::unexpected(std::move(inflated.error()));
-  return {};
-}
 
 icd::Checked<std::size_t> draw_grid(const icd::OccupancyGrid& grid, const icd::MapData& data, Sheet& sheet) {
   const Placement placement{grid.origin};

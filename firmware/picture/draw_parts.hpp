@@ -2,14 +2,10 @@
 
 #include <cstddef>
 
-#include "codec/gzip.hpp"
 #include "icd/map_update.hpp"
 #include "picture/sheet.hpp"
 
 namespace adit::picture {
-
-/// Gives a map's data to `sink`, inflated where it is compressed, piece by piece.
-icd::Checked<void> for_each_piece(const icd::MapData& data, const codec::Sink& sink);
 
 /// Draws a map by itself. Gives how much was left out.
 icd::Checked<std::size_t> draw_grid(const icd::OccupancyGrid& grid, const icd::MapData& data, Sheet& sheet);

@@ -157,7 +157,8 @@ TEST(MapLaneOnTrial, LetsOneOtherGoFirst) {
 TEST(MapLaneOnTrial, KeepsLaterGridsOfItsNameBehindItAtFirst) {
   MapLane lane(0);
   lane.add(1, grid_update("ugv1", grid(0, 0, 10, 10)), at(0));
-  lane.add(2, grid_update("ugv1", grid(0.25, 0, 10, 10)), at(1));  // overlaps it, and does not cover it
+  lane.add(2, grid_update("ugv1", grid(0.25, 0.25, 10, 10)),
+           at(1));  // overlaps it, and fills no rectangle with it
   Blame blame;
   for (int i = 0; i < MapLane::kInPlace; ++i) {
     auto taken = lane.take(at(10 * i));

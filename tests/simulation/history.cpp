@@ -2,6 +2,7 @@
 
 #include <cmath>
 #include <cstdio>
+#include <ranges>
 #include <string_view>
 
 namespace adit::simulation {
@@ -65,7 +66,7 @@ std::string line_of(const Event& event) {
     std::snprintf(stamp, sizeof stamp, "(%.6f)", event.stamp);
     add(stamp);
   }
-  for (const int number : event.says) add(std::to_string(number));
+  for (const int number : event.says | std::views::take(5)) add(std::to_string(number));
   add(event.text);
   constexpr std::size_t kColumn = 44;
   const std::size_t column = static_cast<std::size_t>(event.actor) * kColumn;

@@ -1,4 +1,4 @@
-// Grids and clouds, each with its serial in its data.
+// Grids and clouds, each made of its serial.
 #include "simulation/map_messages.hpp"
 
 #include <algorithm>
@@ -11,12 +11,13 @@
 #include <set>
 #include <stdexcept>
 
+#include "simulation/bad_messages.hpp"
 #include "simulation/bytes.hpp"
 
 namespace adit::simulation {
 namespace {
 
-constexpr std::size_t kSerialCells = 4;     // of a grid, each a digit of base 100
+constexpr std::size_t kSerialCells = 4;     // of a bad grid, each a digit of base 100
 constexpr std::int64_t kPointsApart = 512;  // a point's intensity: so many times the serial, and its index
 constexpr std::int64_t kInvalidEvery = 17;
 constexpr double kPacking = 0.0013;  // metres by which packing may move a point
@@ -58,11 +59,35 @@ std::string data_in(const Json& msg) {
   return msg.value("compression", "none") == "gzip" ? inflated(data) : data;
 }
 
+std::string cells_of(std::int64_t serial, const Extent& extent) {
+  std::string cells;
+  for (int row = 0; row < extent.height; ++row) {
+    for (int column = 0; column < extent.width; ++column)
+      cells += static_cast<char>(value_of(serial, extent.x + 2 * column, extent.y + 2 * row));
+  }
+  return cells;
+}
+
+/// Nothing but its serial, so that it can be told wherever it goes.
+std::string bad_cells(std::int64_t serial, const Extent& extent) {
+  std::string cells(static_cast<std::size_t>(extent.width) * static_cast<std::size_t>(extent.height), '\0');
+  for (std::size_t i = kSerialCells; i-- > 0; serial /= 100) cells[i] = static_cast<char>(serial % 100);
+  return cells;
+}
+
+/// Of a bad grid; 0 of any other.
+std::int64_t bad_serial_in(const std::string& cells) {
+  if (cells.size() <= kSerialCells || cells.find_first_not_of('\0', kSerialCells) != std::string::npos)
+    return 0;
+  std::int64_t serial = 0;
+  for (std::size_t i = 0; i < kSerialCells; ++i) serial = serial * 100 + cells[i];
+  return serial;
+}
+
 Json grid(const Item& item, const Style& style) {
   const Extent extent = Extent::from(item.says);
-  std::string cells(static_cast<std::size_t>(extent.width) * static_cast<std::size_t>(extent.height), '\0');
-  std::int64_t serial = item.serial;
-  for (std::size_t i = kSerialCells; i-- > 0; serial /= 100) cells[i] = static_cast<char>(serial % 100);
+  std::string cells =
+      item.serial < kBadSerials ? cells_of(item.serial, extent) : bad_cells(item.serial, extent);
   const double cell = extent.centimetres / 100.0;
   Json msg = {{"header", header_of(item.stamp)},
               {"info",
@@ -113,9 +138,9 @@ Item grid_item(const Json& msg) {
   const Extent extent{static_cast<int>(std::lround(cell * 100)), halves(origin.at("x")),
                       halves(origin.at("y")), info.at("width"), info.at("height")};
   const std::string cells = data_in(msg);
-  std::int64_t serial = 0;
-  for (std::size_t i = 0; i < kSerialCells; ++i) serial = serial * 100 + (cells.size() > i ? cells[i] : 0);
-  return {.who = "", .serial = serial, .says = extent.says()};
+  Says says = extent.says();
+  for (const char each : cells) says.push_back(static_cast<unsigned char>(each));
+  return {.who = "", .serial = bad_serial_in(cells), .says = std::move(says)};
 }
 
 /// In order of their first points. A point that is there already begins another copy of its cloud.
@@ -156,6 +181,15 @@ std::vector<Item> cloud_items(const Json& msg) {
 }
 
 }  // namespace
+
+int value_of(std::int64_t serial, int x, int y) {
+  constexpr std::uint64_t kOdd = 0x9E3779B97F4A7C15u;
+  auto mixed = static_cast<std::uint64_t>(serial) * kOdd;
+  for (const int each : {x, y})
+    mixed = (mixed ^ (mixed >> 29) ^ static_cast<std::uint64_t>(each + 1000)) * kOdd;
+  const auto value = static_cast<int>((mixed >> 40) % 102);
+  return value > 100 ? 255 : value;
+}
 
 Json header_of(double stamp) {
   Json header = {{"frame_id", "darpa"}};

@@ -15,6 +15,9 @@ Json pose_at(double x, double y);
 
 /// The body of any message.
 Json message_of(const Posting& posting, const Style& style);
+/// The value of a grid's cell at that place, in half cells: of each grid another one, so that it shows whose
+/// cell it is.
+int value_of(std::int64_t serial, int x, int y);
 /// Of a map.
 Json map_of(const Item& item, const Style& style);
 /// What it says: a grid, or each of the clouds that were merged into it.

@@ -13,12 +13,13 @@ inline constexpr const char *kReports = "/api/artifact_reports", *kStatus = "/ap
                             *kMap = "/map/update", *kState = "/state/update", *kMarkers = "/markers/update";
 
 /// What one message says of one thing, by the serial that rides in a field which nothing changes: a report's
-/// x, a pose's x, a marker's scale, the first cells of a grid, the points' intensity.
+/// x, a pose's x, a marker's scale, the points' intensity. A grid's cells show it, each by its value.
 struct Item {
   std::string who;  // a map's or a pose's name, a marker's ns, "" of a report
   std::int64_t serial = 0;
   double stamp = 0;  // 0: none
-  Says says = {};    // of a grid its Extent, of a cloud its points, of a marker action and id
+  Says says =
+      {};  // of a grid its Extent, and upstream its cells, of a cloud its points, of a marker action and id
 };
 
 /// Where a grid lies.
@@ -30,8 +31,9 @@ struct Extent {
   static Extent from(const Says& says) { return {says[0], says[1], says[2], says[3], says[4]}; }
   Says says() const { return {centimetres, x, y, width, height}; }
 };
+inline constexpr std::size_t kExtentNumbers = 5;
 inline bool is_grid(const Says& says) {
-  return says.size() == 5;
+  return says.size() >= kExtentNumbers;
 }
 inline bool is_cloud(const Says& says) {
   return says.size() == 1;

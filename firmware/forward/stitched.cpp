@@ -1,0 +1,49 @@
+#include "forward/stitched.hpp"
+
+#include <utility>
+#include <vector>
+
+#include "codec/write.hpp"
+#include "lanes/lattice.hpp"
+#include "pack/pack.hpp"
+#include "pack/stitch.hpp"
+
+namespace adit::forward {
+namespace {
+
+/// Whether its cells are in its parts alone.
+bool is_to_be_stitched(const lanes::WaitingMap& waiting) {
+  return waiting.map.is_grid() && !waiting.parts.empty() && waiting.map.data.bytes.empty();
+}
+
+}  // namespace
+
+Packed packed(const lanes::WaitingMap& waiting) {
+  auto whole = whole_of(waiting);
+  if (!whole) return {};
+  icd::MapUpdate map = pack::pack(std::move(*whole));
+  Packed packed;
+  packed.body = codec::write_map_update(map);
+  if (is_to_be_stitched(waiting)) packed.stitched = std::move(map.data);
+  return packed;
+}
+
+icd::Checked<icd::MapUpdate> whole_of(const lanes::WaitingMap& waiting) {
+  icd::MapUpdate whole = waiting.map;
+  if (!is_to_be_stitched(waiting)) return whole;
+  const auto& grid = std::get<icd::OccupancyGrid>(whole.msg);
+  std::vector<pack::Tile> tiles;
+  for (const lanes::WaitingMap& part : waiting.parts) {
+    const auto cells = lanes::cells_in(grid, std::get<icd::OccupancyGrid>(part.map.msg));
+    if (!cells)
+      return std::unexpected(icd::Refusal{icd::Status::ServiceUnavailable, "it is of another lattice"});
+    tiles.push_back({part.map.data, static_cast<std::size_t>(cells->x), static_cast<std::size_t>(cells->y),
+                     static_cast<std::size_t>(cells->width), static_cast<std::size_t>(cells->height)});
+  }
+  auto data = pack::stitch(grid.width, grid.height, tiles);
+  if (!data) return std::unexpected(std::move(data.error()));
+  whole.data = std::move(*data);
+  return whole;
+}
+
+}  // namespace adit::forward

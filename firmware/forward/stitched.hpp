@@ -1,0 +1,22 @@
+#pragma once
+
+#include "icd/chunked_bytes.hpp"
+#include "icd/status.hpp"
+#include "lanes/map_lane.hpp"
+
+namespace adit::forward {
+
+/// A map in the form that goes upstream.
+struct Packed {
+  icd::ChunkedBytes body;  // empty: what it would be stitched of is damaged
+  icd::MapData stitched;   // its cells, where they were in its parts alone
+};
+
+/// CPU-bound in the size of the map: meant for a worker.
+Packed packed(const lanes::WaitingMap& waiting);
+
+/// The map with its cells, which are put together of its parts where they are there alone. The error says
+/// what is wrong with the data of one.
+icd::Checked<icd::MapUpdate> whole_of(const lanes::WaitingMap& waiting);
+
+}  // namespace adit::forward

@@ -1,0 +1,59 @@
+#include "pack/stitch.hpp"
+
+#include <algorithm>
+#include <cstdint>
+#include <memory>
+#include <utility>
+#include <vector>
+
+#include "codec/map_pieces.hpp"
+#include "icd/require.hpp"
+
+namespace adit::pack {
+namespace {
+
+/// Copies a tile's cells, as they come, to their places in rows of `width` cells.
+class Laying {
+ public:
+  Laying(std::vector<std::uint8_t>& cells, std::size_t width, const Tile& tile)
+      : cells_(cells), width_(width), tile_(tile) {}
+
+  void feed(std::span<const std::uint8_t> piece) {
+    while (!piece.empty()) {
+      const std::size_t row = laid_ / tile_.width, column = laid_ % tile_.width;
+      const auto run = piece.first(std::min(piece.size(), tile_.width - column));
+      const std::size_t place = (tile_.row + row) * width_ + tile_.column + column;
+      icd::require(row < tile_.height && place + run.size() <= cells_.size());
+      std::ranges::copy(run, cells_.begin() + static_cast<std::ptrdiff_t>(place));
+      laid_ += run.size();
+      piece = piece.subspan(run.size());
+    }
+  }
+
+ private:
+  std::vector<std::uint8_t>& cells_;
+  std::size_t width_;
+  const Tile& tile_;
+  std::size_t laid_ = 0;
+};
+
+}  // namespace
+
+icd::Checked<icd::MapData> stitch(std::size_t width, std::size_t height, std::span<const Tile> tiles) {
+  const auto cells = std::make_shared<std::vector<std::uint8_t>>(width * height, icd::kUnknownCell);
+  for (const Tile& tile : tiles) {
+    icd::require(tile.column + tile.width <= width && tile.row + tile.height <= height);
+    Laying laying{*cells, width, tile};
+    const auto laid =
+        codec::for_each_piece(tile.data, [&](std::span<const std::uint8_t> piece) -> icd::Checked<void> {
+          laying.feed(piece);
+          return {};
+        });
+    if (!laid) return std::unexpected(laid.error());
+  }
+  icd::MapData data{{}, icd::Compression::None, cells->size()};
+  data.bytes.append(cells, *cells);
+  return data;
+}
+
+}  // namespace adit::pack

@@ -1,0 +1,70 @@
+#include "forward/stitched.hpp"
+
+#include <gmock/gmock.h>
+
+#include "codec/gzip.hpp"
+#include "codec/map_pieces.hpp"
+
+namespace adit::forward {
+namespace {
+
+using testing::ElementsAre;
+
+/// A row of cells of 1 m that begins at `x`.
+icd::MapUpdate row_at(double x, const std::vector<std::uint8_t>& values) {
+  icd::OccupancyGrid grid;
+  grid.width = static_cast<std::uint32_t>(values.size());
+  grid.height = 1;
+  grid.resolution = 1;
+  grid.origin.position.x = x;
+  return {icd::RobotName::parse("r1"),
+          grid,
+          {codec::gzip(icd::ChunkedBytes{values}, codec::GzipStrategy::Runs), icd::Compression::Gzip,
+           values.size()}};
+}
+
+lanes::WaitingMap taken_of(const std::vector<icd::MapUpdate>& maps) {
+  lanes::MapLane lane{0};
+  std::uint64_t number = 0;
+  for (const icd::MapUpdate& map : maps) lane.add(++number, map, lanes::Instant{});
+  return *lane.take();
+}
+
+std::vector<std::uint8_t> cells_of(const icd::MapData& data) {
+  std::vector<std::uint8_t> cells;
+  const auto read =
+      codec::for_each_piece(data, [&](std::span<const std::uint8_t> piece) -> icd::Checked<void> {
+        cells.insert(cells.end(), piece.begin(), piece.end());
+        return {};
+      });
+  EXPECT_TRUE(read);
+  return cells;
+}
+
+TEST(StitchedMap, HasTheCellsOfItsParts) {
+  const auto waiting = taken_of({row_at(0, {1, 2, 3}), row_at(3, {4}), row_at(2, {5, 6, 7})});
+  ASSERT_EQ(waiting.updates.size(), 3);
+  const Packed map = packed(waiting);
+  EXPECT_FALSE(map.body.empty());
+  EXPECT_THAT(cells_of(map.stitched), ElementsAre(1, 2, 5, 6, 7));
+}
+
+TEST(StitchedMap, ThatWasPackedOnceIsNotStitchedAnotherTime) {
+  auto waiting = taken_of({row_at(0, {1, 2, 3}), row_at(3, {4})});
+  const Packed first = packed(waiting);
+  waiting.map.data = first.stitched;
+  const Packed second = packed(waiting);
+  EXPECT_EQ(second.body, first.body);
+  EXPECT_EQ(second.stitched.raw_size, 0);
+}
+
+TEST(StitchedMap, HasNoBodyWhereAPartIsDamaged) {
+  auto damaged = row_at(3, {4, 5, 6});
+  auto bytes = damaged.data.bytes.to_vector();
+  bytes[bytes.size() - 6] ^= 1;
+  damaged.data.bytes = icd::ChunkedBytes{bytes};
+  EXPECT_TRUE(packed(taken_of({row_at(0, {1, 2, 3}), damaged})).body.empty());
+}
+
+}  // namespace
+}  // namespace adit::forward

@@ -1,0 +1,149 @@
+// What a Command Post has in the end is what was posted, however grids were stitched on their way.
+#include <gmock/gmock.h>
+
+#include <map>
+#include <random>
+#include <set>
+#include <string>
+#include <tuple>
+
+#include "lanes/lattice.hpp"
+#include "lanes/map_lane.hpp"
+#include "lanes/maps.hpp"
+
+namespace adit::lanes {
+namespace {
+
+/// Of a name and a lattice; the lattice is that of a grid which is kept for it.
+using Place = std::tuple<std::string, int, std::int64_t, std::int64_t>;
+
+/// A server's cells.
+class Replay {
+ public:
+  explicit Replay(bool overlays) : overlays_(overlays) {}
+  void put(const Place& place, std::uint8_t value) {
+    if (overlays_ && value == icd::kUnknownCell) return;
+    cells[place] = value;
+  }
+  std::map<Place, std::uint8_t> cells;
+
+ private:
+  bool overlays_;
+};
+
+class StitchLaws : public testing::TestWithParam<std::uint64_t> {
+ protected:
+  static icd::OccupancyGrid lattice(int which) {
+    return which == 0   ? grid(0, 0, 1, 1, 0.05)
+           : which == 1 ? grid(0.025, 0, 1, 1, 0.05)
+                        : grid(0, 0, 1, 1, 0.1);
+  }
+
+  /// Each cell of a grid, in its order.
+  template <class Visit>
+  static void for_each_cell(const icd::MapUpdate& map, Visit visit) {
+    const auto& grid = std::get<icd::OccupancyGrid>(map.msg);
+    const std::string name = map.name ? map.name->text() : "";
+    for (int which = 0; which < 3; ++which) {
+      const auto cells = cells_in(lattice(which), grid);
+      if (!cells) continue;
+      for (std::int64_t y = cells->y; y < cells->top(); ++y) {
+        for (std::int64_t x = cells->x; x < cells->right(); ++x) visit(Place{name, which, x, y});
+      }
+    }
+  }
+
+  void run() {
+    for (int step = 0; step < 300; ++step) {
+      const int what = pick(10);
+      if (what < 6) post();
+      if (what >= 6) send(what);
+    }
+    while (lane_.count() > 0) send(9);
+  }
+
+  void post() {
+    auto origin = lattice(pick(8) == 0 ? pick(3) : 0);
+    origin.width = static_cast<std::uint32_t>(1 + pick(5));
+    origin.height = static_cast<std::uint32_t>(1 + pick(5));
+    origin.origin = *corner_at(origin, pick(12) - 6, pick(12) - 6);
+    icd::MapUpdate map = grid_update(pick(4) == 0 ? "" : "R1", origin);
+    std::vector<std::uint8_t> values(map.data.raw_size);
+    for (auto& value : values)
+      value = pick(4) == 0 ? icd::kUnknownCell : static_cast<std::uint8_t>(pick(101));
+    map.data.bytes = icd::ChunkedBytes{values};
+    auto value = values.begin();
+    for_each_cell(map, [&](const Place& place) {
+      newest_[place] = *value;
+      posted_[place].insert(*value++);
+    });
+    ++number_;
+    lane_.add(number_, std::move(map), at(static_cast<double>(number_)));
+  }
+
+  /// As a gateway does: others come while it is on its way, and it may not arrive, or be refused.
+  void send(int how) {
+    auto next = lane_.take();
+    if (!next) return;
+    while (pick(3) == 0) post();
+    if (how == 6) {
+      lane_.put_back(std::move(*next));
+    } else if (how == 7 && !next->parts.empty()) {
+      lane_.put_back_apart(std::move(*next));
+    } else {
+      arrives(*next);
+    }
+  }
+
+  void arrives(const WaitingMap& sent) {
+    std::map<Place, std::uint8_t> message;
+    const auto lay = [&](const icd::MapUpdate& map) {
+      const auto values = map.data.bytes.to_vector();
+      auto value = values.begin();
+      for_each_cell(map, [&](const Place& place) { message[place] = *value++; });
+    };
+    for (const WaitingMap& part : sent.parts) lay(part.map);
+    if (sent.parts.empty()) lay(sent.map);
+    std::size_t cells = 0;
+    for_each_cell(sent.map, [&](const Place& place) {
+      ++cells;
+      ASSERT_TRUE(message.contains(place)) << "a gap";
+    });
+    EXPECT_EQ(cells, message.size());
+    for (const auto& [place, value] : message) {
+      overwriting_.put(place, value);
+      overlaying_.put(place, value);
+    }
+    stitched_ += sent.parts.empty() ? 0 : 1;
+  }
+
+  int pick(int below) { return std::uniform_int_distribution{0, below - 1}(random_); }
+
+  std::mt19937_64 random_{GetParam()};
+  MapLane lane_{0};
+  std::uint64_t number_ = 0;
+  int stitched_ = 0;
+  std::map<Place, std::uint8_t> newest_;
+  std::map<Place, std::set<std::uint8_t>> posted_;
+  Replay overwriting_{false}, overlaying_{true};
+};
+
+TEST_P(StitchLaws, AServerHasTheNewestValueOfEachCellThatWasPosted) {
+  run();
+  EXPECT_GT(stitched_, 5);
+  EXPECT_EQ(overwriting_.cells, newest_) << "unknown cells too, where it overwrites";
+  for (const auto& [place, value] : newest_) {
+    const auto has = overlaying_.cells.find(place);
+    if (value != icd::kUnknownCell) {
+      ASSERT_NE(has, overlaying_.cells.end());
+      EXPECT_EQ(has->second, value);
+    } else if (has != overlaying_.cells.end()) {
+      EXPECT_TRUE(posted_.at(place).contains(has->second)) << "once known, it stays where it overlays";
+    }
+  }
+}
+
+INSTANTIATE_TEST_SUITE_P(Courses, StitchLaws, testing::Range(std::uint64_t{1}, std::uint64_t{41}));
+
+}  // namespace
+}  // namespace adit::lanes

@@ -1,0 +1,216 @@
+// GridArrived: replays the cells of all grids that the Command Post took.
+#include <algorithm>
+#include <deque>
+#include <map>
+#include <tuple>
+#include <utility>
+
+#include "icd/sentence.hpp"
+#include "simulation/asked.hpp"
+#include "simulation/checks.hpp"
+#include "simulation/map_messages.hpp"
+#include "simulation/messages.hpp"
+
+namespace adit::simulation {
+namespace {
+
+/// A grid that failed so often at the Command Post lets newer ones pass, to see whether they can.
+constexpr int kInPlace = 3;
+
+/// A grid that was posted, and what became of it.
+struct PostedGrid {
+  const Asked* asked;
+  std::int64_t serial;
+  Extent extent;
+  std::size_t taken = 0;    // the last event by which it was; 0: none
+  int failures = 0;         // answers of 5xx to it
+  bool is_taken = false;    // as an answer said
+  bool is_refused = false;  // it is set aside, and follows later at the operator's word
+
+  void answered(const Event& reply) {
+    if (reply.status >= 500) ++failures;
+    is_taken = is_taken || (reply.status == 200 && reply.who.empty());
+    is_refused = is_refused || reply.status == 422;
+  }
+  bool is_before(const PostedGrid& other) const { return asked->ended < other.asked->began; }
+};
+
+/// Whether `size` cells from `begin`, in half cells, lie within those.
+bool lies_within(int begin, int size, int outer_begin, int outer_size) {
+  const int halves = begin - outer_begin;
+  return halves >= 0 && halves % 2 == 0 && halves / 2 + size <= outer_size;
+}
+
+/// ICD 6.3.1: whether `outer` says all that `inner` said, if it is newer.
+bool holds(const Extent& outer, const Extent& inner) {
+  return outer.centimetres == inner.centimetres && lies_within(inner.x, inner.width, outer.x, outer.width) &&
+         lies_within(inner.y, inner.height, outer.y, outer.height);
+}
+
+/// Whether they have any place in common.
+bool overlap(const Extent& a, const Extent& b) {
+  const auto one = [&](int a_begin, int a_size, int b_begin, int b_size) {
+    return a_begin * a.centimetres < (b_begin + 2 * b_size) * b.centimetres &&
+           b_begin * b.centimetres < (a_begin + 2 * a_size) * a.centimetres;
+  };
+  return one(a.x, a.width, b.x, b.width) && one(a.y, a.height, b.y, b.height);
+}
+
+/// Gives each cell of it as an extent of its own, row by row.
+template <class Visit>
+void for_each_cell(const Extent& extent, Visit visit) {
+  for (int row = 0; row < extent.height; ++row) {
+    for (int column = 0; column < extent.width; ++column)
+      visit(Extent{extent.centimetres, extent.x + 2 * column, extent.y + 2 * row, 1, 1});
+  }
+}
+
+/// The grids of one name, and what the Command Post has of them.
+class GridsOfOneName {
+ public:
+  void post(const Asked& asked, const Item& item) {
+    posted_.push_back({&asked, item.serial, Extent::from(item.says)});
+  }
+
+  /// A grid left, or was taken: those that were posted and are in it.
+  std::vector<PostedGrid*> sent(const Event& event) {
+    std::vector<PostedGrid*> in_it;
+    const Message message = read(event);
+    for (PostedGrid* each : message.within) {
+      const auto is_its = [&](const Owners& owners) { return owners.size() == 1 && owners.front() == each; };
+      if (!each->is_taken || std::ranges::any_of(message.cells, is_its)) in_it.push_back(each);
+    }
+    return in_it;
+  }
+
+  void taken(const Event& event, std::size_t place, Broken& broken) {
+    const Message message = read(event);
+    std::size_t i = 0;
+    bool is_strange = false;
+    for_each_cell(message.extent, [&](const Extent& cell) {
+      const Owners& owners = message.cells[i++];
+      is_strange = is_strange || owners.empty();
+      if (owners.size() == 1) owners.front()->taken = place;
+      has_[key_of(cell)] = {place, owners};
+    });
+    if (is_strange)
+      broken.push_back(icd::sentence("GridArrived: cells that nobody posted were taken from '", event.who,
+                                     "' at ", event.at));
+  }
+
+  void check(const std::string& name, Broken& broken) const {
+    for (const PostedGrid& grid : posted_) {
+      if (!grid.asked->accepted()) continue;
+      if (!is_there(grid)) {
+        broken.push_back(
+            icd::sentence("GridArrived: ", name, "'s ", grid.serial,
+                          " was answered 200, and the Command Post has older cells there, or none"));
+      }
+      for (const PostedGrid& older : posted_) {
+        const bool may_be_over = older.taken > 0 && older.is_before(grid) &&
+                                 overlap(older.extent, grid.extent) && !lets_newer_pass(older);
+        if (!may_be_over || !is_under(grid, older)) continue;
+        broken.push_back(icd::sentence("GridArrived: ", name, "'s ", older.serial, " lies over its newer ",
+                                       grid.serial, ", for it was taken last"));
+      }
+    }
+  }
+
+ private:
+  /// Those that have that value there, of which one is the cell's.
+  using Owners = std::vector<PostedGrid*>;
+  struct Message {
+    Extent extent;
+    std::vector<PostedGrid*> within;  // that lie within it
+    std::vector<Owners> cells;
+  };
+  struct Has {
+    std::size_t place = 0;  // of the event by which it was taken
+    Owners owners;
+  };
+  using Key = std::tuple<int, int, int>;
+  static Key key_of(const Extent& cell) { return {cell.centimetres, cell.x, cell.y}; }
+
+  Message read(const Event& event) {
+    Message message{Extent::from(event.says), {}, {}};
+    for (PostedGrid& each : posted_) {
+      if (each.asked->began <= event.at && holds(message.extent, each.extent))
+        message.within.push_back(&each);
+    }
+    std::size_t i = kExtentNumbers;
+    for_each_cell(message.extent, [&](const Extent& cell) {
+      const int value = event.says.at(i++);
+      Owners owners;
+      for (PostedGrid* each : message.within) {
+        if (holds(each->extent, cell) && value_of(each->serial, cell.x, cell.y) == value)
+          owners.push_back(each);
+      }
+      message.cells.push_back(std::move(owners));
+    });
+    return message;
+  }
+
+  /// Each of its cells is its own, or one that is no older; or of one that let it pass.
+  bool is_there(const PostedGrid& grid) const {
+    bool all = true;
+    for_each_cell(grid.extent, [&](const Extent& cell) {
+      const auto found = has_.find(key_of(cell));
+      all = all && found != has_.end() &&
+            std::ranges::any_of(found->second.owners, [&](const PostedGrid* owner) {
+              return !owner->is_before(grid) || lets_newer_pass(*owner);
+            });
+    });
+    return all;
+  }
+
+  /// Whether `older`, which may be of another lattice, was taken after some of what is over it.
+  bool is_under(const PostedGrid& grid, const PostedGrid& older) const {
+    bool any = false;
+    for_each_cell(grid.extent, [&](const Extent& cell) {
+      const auto found = has_.find(key_of(cell));
+      any = any || (overlap(cell, older.extent) && found != has_.end() && found->second.place < older.taken);
+    });
+    return any;
+  }
+
+  /// Its failures count with those of what it may have replaced.
+  bool lets_newer_pass(const PostedGrid& grid) const {
+    int failures = grid.failures;
+    for (const PostedGrid& older : posted_) {
+      const bool may_be_replaced = &older != &grid && !grid.is_before(older) && !older.is_taken &&
+                                   !older.is_refused && holds(grid.extent, older.extent);
+      if (may_be_replaced) failures += older.failures;
+    }
+    return grid.is_refused || failures >= kInPlace;
+  }
+
+  std::deque<PostedGrid> posted_;
+  std::map<Key, Has> has_;
+};
+
+}  // namespace
+
+void grid_arrived(const Evidence& evidence, Broken& broken) {
+  const auto all = asked_in(evidence.events, kMap);
+  std::map<std::string, GridsOfOneName> names;
+  for (const Asked& asked : all) {
+    const Item& item = asked.items.front();
+    if (is_grid(item.says)) names[item.who].post(asked, item);
+  }
+  std::vector<PostedGrid*> sent;  // last
+  for (std::size_t i = 0; i < evidence.events.size(); ++i) {
+    const Event& event = evidence.events[i];
+    if (event.what != kMap) continue;
+    if (event.kind == Kind::Replied) {
+      for (PostedGrid* each : sent) each->answered(event);
+    }
+    if (event.kind != Kind::Taken && event.kind != Kind::Left) continue;
+    sent.clear();
+    if (!is_grid(event.says)) continue;
+    sent = names[event.who].sent(event);
+    if (event.kind == Kind::Taken) names[event.who].taken(event, i, broken);
+  }
+  for (const auto& [name, grids] : names) grids.check(name, broken);
+}
+
+}  // namespace adit::simulation

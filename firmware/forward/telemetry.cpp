@@ -10,6 +10,7 @@
 #include "dispatch/turn.hpp"
 #include "forward/upstream_answer.hpp"
 #include "forward/whole.hpp"
+#include "icd/sentence.hpp"
 #include "loop/guard.hpp"
 
 namespace adit::forward {
@@ -130,10 +131,22 @@ icd::Checked<void> Telemetry::take(const icd::StateUpdate& update, std::size_t b
 }
 
 icd::Checked<void> Telemetry::take(const icd::MarkersUpdate& update, std::size_t bytes_received) {
-  if (!markers_.has_room_for(update)) {
-    record_.no_room({Kind::Markers, ""}, loop_.stamp_now());
+  if (markers_.has_room_for(update)) return take_in(update, bytes_received);
+  record_.no_room({Kind::Markers, ""}, loop_.stamp_now());
+  const icd::MarkersUpdate known = markers_.those_that_wait(update);
+  if (known.markers.empty() || !markers_.has_room_for(known))
     return full("more markers than can wait (queues.marker_bytes)");
-  }
+  if (const auto taken = take_in(known, bytes_received); !taken) return taken;
+  const std::size_t others = update.markers.size() - known.markers.size();
+  return std::unexpected(icd::Refusal{
+      icd::Status::TooManyRequests,
+      icd::sentence(known.markers.size(), " of ", update.markers.size(),
+                    " markers were taken, for others of theirs wait already; for new ones there is "
+                    "no room (queues.marker_bytes); send them again later"),
+      others});
+}
+
+icd::Checked<void> Telemetry::take_in(const icd::MarkersUpdate& update, std::size_t bytes_received) {
   if (const auto kept = journal_.accepted(update); !kept) return not_kept(kept.error());
   whole(restart_, [&] {
     record_.accepted({Kind::Markers, ""}, bytes_received, loop_.stamp_now());

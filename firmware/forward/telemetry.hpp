@@ -53,7 +53,8 @@ class Telemetry {
     pump();
   }
   /// Stamps are on the gateway's clock. Refused with 429 where the lane is full, and with 503 where it cannot
-  /// be kept.
+  /// be kept. Of markers for which there is no room, those that change one which waits are taken all the
+  /// same; the refusal is about the others, and says how many they are.
   icd::Checked<void> take(const icd::StateUpdate& update, std::size_t bytes_received);
   icd::Checked<void> take(const icd::MarkersUpdate& update, std::size_t bytes_received);
 
@@ -75,6 +76,7 @@ class Telemetry {
  private:
   void pump();
   void endpoint_turned();
+  icd::Checked<void> take_in(const icd::MarkersUpdate& update, std::size_t bytes_received);
   void send_next();
   void send_state();
   void send_markers();

@@ -45,6 +45,10 @@ class MarkerChanges {
     return begins_with_delete_all() ||
            (earlier.action != icd::MarkerAction::DeleteAll && places_.contains({earlier.ns, earlier.id}));
   }
+  /// Whether a change of the same ns and id waits, or it is a DeleteAll: applying it adds no change.
+  bool holds(const icd::Marker& marker) const {
+    return marker.action == icd::MarkerAction::DeleteAll || places_.contains({marker.ns, marker.id});
+  }
   const std::map<Place, icd::Marker>& in_order() const { return by_place_; }
   bool begins_with_delete_all() const;
 

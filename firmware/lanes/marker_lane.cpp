@@ -14,6 +14,15 @@ bool MarkerLane::has_room_for(const icd::MarkersUpdate& update) const {
   return then.count <= std::max(kMostMarkers, now.count) && then.bytes <= std::max(most_bytes, now.bytes);
 }
 
+icd::MarkersUpdate MarkerLane::those_that_wait(const icd::MarkersUpdate& update) const {
+  icd::MarkersUpdate known;
+  for (const icd::Marker& marker : update.markers) {
+    if (marker.action == icd::MarkerAction::DeleteAll) known.markers.clear();
+    if (changes_.holds(marker)) known.markers.push_back(marker);
+  }
+  return known;
+}
+
 void MarkerLane::add(const icd::MarkersUpdate& update, Instant now) {
   Place last = kNowhere;
   for (const icd::Marker& marker : update.markers) last = std::max(last, changes_.apply(marker));

@@ -41,6 +41,9 @@ class MarkerLane {
   /// kept for updates that only replace changes that wait: a path that grows is taken when new markers are
   /// not. If nothing waits, there is room for any update.
   bool has_room_for(const icd::MarkersUpdate& update) const;
+  /// Of an update for which there is no room: what changes markers that wait already, so that a full lane
+  /// holds the newest of each. Without what stands before its last DeleteAll, which is needless.
+  icd::MarkersUpdate those_that_wait(const icd::MarkersUpdate& update) const;
   void add(const icd::MarkersUpdate& update, Instant now);
   /// The oldest pending changes, in order. Updates are counted in the message that sends the last of their
   /// markers.

@@ -224,6 +224,20 @@ TEST_F(NewsTest, LosesNothingWhereMemoryRunsOutOnTheWay) {
   }
 }
 
+TEST_F(NewsTest, OfAFullLaneTakesInWhatChangesTheMarkersThatWait) {
+  settings_.queues.marker_bytes = 2 * icd::bytes_of(marker("a", "old"));
+  const auto life = life_without_a_token();
+  ASSERT_TRUE(life->news.take(icd::MarkersUpdate{{marker("a", "old")}}, 10));
+  const auto said = life->news.take(icd::MarkersUpdate{{marker("b", "new"), marker("a", "now")}}, 10);
+  ASSERT_FALSE(said);
+  EXPECT_EQ(said.error().status, icd::Status::TooManyRequests);
+  EXPECT_EQ(said.error().parts, 1u) << said.error().sentence;
+  EXPECT_EQ(left().markers().markers, std::vector{marker("a", "now")});
+  const auto none = life->news.take(icd::MarkersUpdate{{marker("b", "new")}}, 10);
+  ASSERT_FALSE(none);
+  EXPECT_EQ(none.error().parts, 0u) << none.error().sentence;
+}
+
 TEST_F(NewsTest, IsMissedByTheCommandPostUntilItIsTaken) {
   TelemetryPost post(true);
   const auto life = life_before(post.peer);

@@ -227,6 +227,18 @@ TEST(MarkerLane, HasAnEndToTheBytesThatItHoldsAndTakesInWhatReplacesAChangeThatW
   EXPECT_TRUE(lane.has_room_for({{remove_all(), path(4, 1000)}}));
 }
 
+TEST(MarkerLane, TellsWhatItCanTakeInOfAnUpdateForWhichItHasNoRoom) {
+  const std::size_t quarter = icd::bytes_of(path(1, 1000));
+  MarkerLane lane{{.bytes = 4 * quarter}};
+  lane.add({{path(1, 1000), path(2, 1000), path(3, 1000)}}, at(1));
+  const icd::MarkersUpdate update{{path(4, 10), path(1, 1010), remove(5), path(2, 1000)}};
+  ASSERT_FALSE(lane.has_room_for(update));
+  EXPECT_THAT(lane.those_that_wait(update).markers, ElementsAre(path(1, 1010), path(2, 1000)));
+  EXPECT_TRUE(lane.has_room_for(lane.those_that_wait(update)));
+  EXPECT_THAT(lane.those_that_wait({{path(1, 1), remove_all(), path(7, 1)}}).markers,
+              ElementsAre(remove_all()));
+}
+
 TEST(MarkerLane, TakesAnyUpdateWhereNothingWaits) {  // its sender could not be told when to try again
   const MarkerLane lane{{.bytes = 1000}};
   EXPECT_TRUE(lane.has_room_for({{path(1, 5000)}}));

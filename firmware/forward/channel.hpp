@@ -56,6 +56,8 @@ class Channel {
   std::uint64_t throttled() const { return throttled_; }
   /// When last_status() was heard.
   loop::Instant heard() const { return heard_; }
+  /// Bytes of the request under way, or of the last one, that the kernel has taken.
+  std::size_t sent_of_it() const { return connection_ ? connection_->sent_bytes() : 0; }
   /// All bytes of bodies that were handed to the kernel, those under way included.
   std::uint64_t bytes_sent() const { return finished_bytes_ + (connection_ ? connection_->sent_bytes() : 0); }
 

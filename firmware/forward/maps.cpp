@@ -17,7 +17,9 @@ using dispatch::MappingVerdict;
 
 /// Packing begins early by what it took last time, but not so early that much newer data could not replace
 /// it.
-constexpr std::chrono::milliseconds kLongestLead{500};
+constexpr std::chrono::milliseconds kLongestLead{1500};
+/// How a map that is under way goes on is looked at no more often.
+constexpr std::chrono::milliseconds kLookAtSending{10}, kLookAtConnecting{100};
 /// A server may wait no longer for a request that does not go on.
 constexpr std::chrono::seconds kLongestHeldBack{2};
 
@@ -67,6 +69,7 @@ Maps::Maps(loop::Loop& loop, loop::Workers& workers, loop::Writer& writer, spool
                std::move(token), settings.command_post.timeouts.mapping_answer),
       pace_(icd::Uri::MapUpdate, settings.command_post.rates.map_hz, random, journal),
       wake_(loop.timer([this] { pump(); })),
+      slot_(pace::map_bytes_per_second(settings.command_post.budget_mbit)),
       lane_(settings.queues.merge_bytes),
       trouble_(spool.trouble()) {
   lane_.a_slot_carries(slot_of(settings.command_post));
@@ -115,6 +118,7 @@ std::uint64_t Maps::next_number(bool again) {
 
 /// By the writer, under the next number; then `told` has it, kept or not.
 void Maps::keep(const std::shared_ptr<Keeping>& keeping, const std::function<void(Keeping&)>& told) {
+  will_be_forgotten();
   keeping->number = next_number(keeping->again.has_value());
   keeping->size = keeping->update.data.bytes.size();
   const auto over = [this, keeping, told] {
@@ -157,8 +161,8 @@ void Maps::carry_on(const journal::Carried& carried) {
 }
 
 void Maps::settings_changed() {
-  lane_.merge_at_most(settings_.queues.merge_bytes);
   lane_.a_slot_carries(slot_of(settings_.command_post));
+  slot_.allow(pace::map_bytes_per_second(settings_.command_post.budget_mbit));
   pace_.allow(settings_.command_post.rates.map_hz, loop_.now());
   pump();
 }
@@ -172,6 +176,7 @@ void Maps::endpoint_changed(std::optional<icd::BearerToken> token) {
 }
 
 void Maps::restore(std::uint64_t number, icd::MapUpdate update) {
+  will_be_forgotten();
   const bool again = number < kFirstNumber;
   std::uint64_t& last = again ? again_numbers_ : numbers_;
   last = std::max(last, number);
@@ -190,13 +195,16 @@ std::vector<std::uint64_t> Maps::add(std::uint64_t number, icd::MapUpdate update
   return replaced;
 }
 
+/// One number more: forgetting it will take no memory, for there may be none then.
+void Maps::will_be_forgotten() {
+  const std::size_t all = remembered_ + 1;
+  if (all > to_forget_.capacity()) to_forget_.reserve(2 * all);
+  remembered_ = all;
+}
+
 /// What cannot be told to the writer just now is told with the next.
-void Maps::forget(std::vector<std::uint64_t> numbers) {
-  if (to_forget_.empty()) {
-    to_forget_ = std::move(numbers);
-  } else {
-    to_forget_.insert(to_forget_.end(), numbers.begin(), numbers.end());
-  }
+void Maps::forget(std::span<const std::uint64_t> numbers) {
+  to_forget_.insert(to_forget_.end(), numbers.begin(), numbers.end());
   if (to_forget_.empty()) return;
   const bool told = loop::guarded("forgetting maps", [this] {
     writer_.submit(
@@ -205,7 +213,9 @@ void Maps::forget(std::vector<std::uint64_t> numbers) {
         },
         [] {});
   });
-  if (told) to_forget_.clear();
+  if (!told) return;
+  remembered_ -= std::min(remembered_, to_forget_.size());
+  to_forget_.clear();
 }
 
 /// What fails is tried again by itself: nobody else may come for a while.
@@ -214,87 +224,118 @@ void Maps::pump() {
     pace_.link_is_back();
     blame_ = {};
   }
-  if (stopping_ || preparing_ || channel_.busy() || !channel_.has_token()) return;
+  if (stopping_ || preparing_ || !channel_.has_token()) return;
   if (loop::guarded("sending a map", [this] { go_on(); })) return;
-  pace_.failed(loop_.now());
-  wake_.call_at(pace_.ready());
+  if (!channel_.busy()) pace_.failed(loop_.now());
+  wake_.call_at(channel_.busy() ? loop_.now() + kLongestLead : pace_.ready());
 }
 
 void Maps::go_on() {
   forget({});
   const loop::Instant now = loop_.now();
-  if (prepared_ && prepared_->packed.body.empty()) return pack();
-  if (prepared_) {
+  std::shared_ptr<Prepared>& next = channel_.busy() ? following_ : prepared_;
+  if (next && next->packed.body.empty()) return pack(next);
+  if (next && channel_.busy()) return;
+  if (next) {
     if (now >= starts()) return send();
     wake_.call_at(starts());
     return;
   }
   if (lane_.count() == 0) return;
-  const loop::Instant begin = starts() - std::min<loop::Duration>(packing_took_, kLongestLead);
-  if (now >= begin) return prepare();
+  const loop::Instant begin = begins_to_pack(now);
+  if (now >= begin) return prepare(next);
   wake_.call_at(begin);
 }
 
-/// Before the last byte of the next map may leave: that is held back.
+/// The earliest time for the next map, whose last byte is held back.
 loop::Instant Maps::starts() const {
   const pace::Span earliest = pace_.earliest();
   return std::max(earliest.first, earliest.last - kLongestHeldBack);
 }
 
-void Maps::prepare() {
+/// As late as can be, so that newer data still replaces what waits, but so early that the next map is packed
+/// when it may start, or when the one that is under way has left. While the way there is down it is not
+/// packed.
+loop::Instant Maps::begins_to_pack(loop::Instant now) const {
+  loop::Instant free = now;
+  if (channel_.busy()) {
+    if (!channel_.connected()) return now + kLookAtConnecting;
+    const std::size_t size = prepared_->packed.body.size();
+    free += slot_.transfer(size - std::min(size, channel_.sent_of_it()));
+  }
+  const loop::Instant begin =
+      std::max(starts(), free) - std::min<loop::Duration>(packing_took_, kLongestLead);
+  return begin <= now ? begin : std::max(begin, now + kLookAtSending);
+}
+
+void Maps::prepare(std::shared_ptr<Prepared>& place) {
   auto prepared = std::make_shared<Prepared>();
+  lane_.merge_at_most(std::min(settings_.queues.merge_bytes, slot_.points_within(pace_.spacing())));
   auto waiting = lane_.take(loop_.now());
   if (!waiting) return;
   prepared->waiting = std::move(*waiting);
-  prepared_ = std::move(prepared);
-  pack();
+  place = std::move(prepared);
+  pack(place);
 }
 
-/// Where it throws, prepared_ waits to be packed.
-void Maps::pack() {
-  icd::Header& header = prepared_->waiting.map.header();
+/// Where it throws, `prepared` waits to be packed.
+void Maps::pack(const std::shared_ptr<Prepared>& prepared) {
+  icd::Header& header = prepared->waiting.map.header();
   header.stamp = stamps_.next(header.stamp.value_or(loop_.stamp_now()));
   journal_.stamped(icd::Uri::MapUpdate, *header.stamp);
   const loop::Instant began = loop_.now();
-  workers_.submit([prepared = prepared_] { prepared->packed = packed(prepared->waiting); },
-                  [this, began] {
+  workers_.submit([prepared] { prepared->packed = packed(prepared->waiting); },
+                  [this, began, prepared] {
                     preparing_ = false;
                     packing_took_ = loop_.now() - began;
-                    loop::guarded("a map that was packed", [this] { is_packed(); });
+                    loop::guarded("a map that was packed", [&] { is_packed(prepared); });
                     pump();
                   },
-                  [this] {
-                    preparing_ = false;
-                    pace_.failed(loop_.now());
-                    prepared_->packed = {};
-                    loop::guarded("putting a map back", [this] {
-                      record_.not_taken(traffic_of(prepared_->waiting.map), NotTaken::Failed, 0,
-                                        "it could not be packed");
-                      again();
-                    });
-                    wake_.call_at(pace_.ready());
-                  });
+                  [this, prepared] { not_packed(prepared); });
   preparing_ = true;  // only now: where it could not be submitted, it is not
 }
 
+/// Null where it went back into the lane meanwhile.
+std::shared_ptr<Maps::Prepared>* Maps::place_of(const std::shared_ptr<Prepared>& prepared) {
+  if (prepared == prepared_) return &prepared_;
+  return prepared == following_ ? &following_ : nullptr;
+}
+
 /// What cannot be stitched goes as it came, each part by itself.
-void Maps::is_packed() {
-  if (!prepared_->packed.body.empty()) {
-    if (prepared_->packed.stitched.raw_size > 0)
-      prepared_->waiting.map.data = std::move(prepared_->packed.stitched);
+void Maps::is_packed(const std::shared_ptr<Prepared>& prepared) {
+  slot_.packed(prepared->waiting.map, prepared->packed.body.size());
+  std::shared_ptr<Prepared>* const place = place_of(prepared);
+  if (place == nullptr) return;
+  if (!prepared->packed.body.empty()) {
+    if (prepared->packed.stitched.raw_size > 0)
+      prepared->waiting.map.data = std::move(prepared->packed.stitched);
     return;
   }
   host::log(host::Level::Warning, "grids cannot be stitched: what they hold is damaged");
-  lane_.put_back_apart(prepared_->waiting);
-  prepared_.reset();
+  lane_.put_back_apart(prepared->waiting);
+  place->reset();
+}
+
+void Maps::not_packed(const std::shared_ptr<Prepared>& prepared) {
+  preparing_ = false;
+  pace_.failed(loop_.now());
+  prepared->packed = {};
+  if (std::shared_ptr<Prepared>* const place = place_of(prepared)) {
+    loop::guarded("putting a map back", [&] {
+      record_.not_taken(traffic_of(prepared->waiting.map), NotTaken::Failed, 0, "it could not be packed");
+      put_back(*place);
+    });
+  }
+  wake_.call_at(pace_.ready());
 }
 
 void Maps::send() {
-  const loop::Instant last_byte_not_before = pace_.earliest().last;
+  last_byte_not_before_ = pace_.earliest().last;
   pace_.sent(loop_.now());
   channel_.send(
       icd::Uri::MapUpdate, codec::kCbor, prepared_->packed.body,
-      [this](const uplink::Outcome& outcome) { answered(outcome); }, last_byte_not_before);
+      [this](const uplink::Outcome& outcome) { answered(outcome); }, last_byte_not_before_);
+  wake_.call_at(loop_.now());  // for the one that follows
 }
 
 /// An answer that cannot be dealt with is as good as none: the map is sent again, as it is.
@@ -312,13 +353,15 @@ void Maps::judge(const uplink::Outcome& outcome) {
 
 void Maps::taken(const uplink::Answered& answered) {
   pace_.taken(answered.sent, loop_.now());
-  const auto sent = std::exchange(prepared_, nullptr);  // whatever fails from here on, it has arrived
+  slot_.left(prepared_->packed.body.size(), answered.sent, last_byte_not_before_);
+  const auto sent = std::exchange(
+      prepared_, std::exchange(following_, nullptr));  // whatever fails from here on, it has arrived
   icd::MapUpdate& map = sent->waiting.map;
   const std::size_t updates = sent->waiting.updates.size();
   if (sent->waiting.again) map.header().stamp = sent->waiting.again;
   // First: the writer does the one before the other.
   loop::guarded("what a map overtook", [&] { aside_.taken(map); });
-  forget(std::move(sent->waiting.updates));
+  forget(sent->waiting.updates);
   blame_.passed(whose(map), loop_.now());
   lane_.carried(lanes::Sender::of(map), sent->packed.body.size());
   record_.forwarded(traffic_of(map), updates, sent->packed.body.size(), answered.status, loop_.stamp_now());
@@ -353,11 +396,17 @@ void Maps::verdict(const uplink::Answered& answered) {
   }
 }
 
-/// Where it throws, prepared_ is as it was.
+/// The newer one first: old cells never follow newer ones. Where it throws, what is not back is as it was.
 void Maps::again() {
-  auto replaced = lane_.put_back(prepared_->waiting);
-  prepared_.reset();
-  forget(std::move(replaced));
+  put_back(following_);
+  put_back(prepared_);
+}
+
+void Maps::put_back(std::shared_ptr<Prepared>& prepared) {
+  if (!prepared) return;
+  const auto replaced = lane_.put_back(prepared->waiting);
+  prepared.reset();
+  forget(replaced);
 }
 
 /// A map that will not be taken is set aside; of one that was merged or stitched each part is tried by
@@ -368,8 +417,10 @@ void Maps::give_up(int status, const std::string& sentence) {
   if (prepared_->waiting.parts.empty()) {
     aside_.add(prepared_->waiting.map, status, sentence, prepared_->waiting.map.data.bytes.size(),
                {.let_go = [this, numbers = prepared_->waiting.updates] { forget(numbers); }});
-    return prepared_.reset();
+    prepared_ = std::exchange(following_, nullptr);
+    return;
   }
+  put_back(following_);
   lane_.put_back_apart(prepared_->waiting);
   prepared_.reset();
 }
@@ -396,7 +447,7 @@ void Maps::kept_again(Keeping& keeping, const std::function<bool(bool kept)>& do
                      {{"why", keeping.kept.error().sentence}});
   }
   lanes::WaitingMap back = waiting_again(keeping.number, std::move(*keeping.kept), *keeping.again);
-  if (!is_wanted || is_said_by_what_goes(back)) return forget({keeping.number});
+  if (!is_wanted || is_said_by_what_goes(back)) return forget({&keeping.number, 1});
   forget(lane_.put_back(std::move(back)));
   pump();
 }
@@ -407,7 +458,8 @@ lanes::WaitingMap Maps::waiting_again(std::uint64_t number, icd::MapUpdate updat
 }
 
 bool Maps::is_said_by_what_goes(const lanes::WaitingMap& back) const {
-  return prepared_ && lanes::replaces(prepared_->waiting, back);
+  return (prepared_ && lanes::replaces(prepared_->waiting, back)) ||
+         (following_ && lanes::replaces(following_->waiting, back));
 }
 
 void Maps::link_is_back() {
@@ -422,17 +474,24 @@ bool Maps::stop() {
 }
 
 std::size_t Maps::waiting(const Traffic& traffic) const {
-  return lane_.count(sender_of(traffic)) + (is_prepared(traffic) ? 1 : 0);
+  return lane_.count(sender_of(traffic)) + prepared_of(traffic).size();
 }
 
 std::optional<loop::Instant> Maps::waits_since(const Traffic& traffic) const {
-  const auto oldest = lane_.oldest(sender_of(traffic));
-  if (!is_prepared(traffic)) return oldest;
-  return std::min(oldest.value_or(prepared_->waiting.accepted), prepared_->waiting.accepted);
+  std::optional<loop::Instant> oldest = lane_.oldest(sender_of(traffic));
+  for (const Prepared* prepared : prepared_of(traffic)) {
+    oldest = std::min(oldest.value_or(prepared->waiting.accepted), prepared->waiting.accepted);
+  }
+  return oldest;
 }
 
-bool Maps::is_prepared(const Traffic& traffic) const {
-  return prepared_ && traffic_of(prepared_->waiting.map) == traffic;
+/// The one under way, and the one that follows.
+std::vector<const Maps::Prepared*> Maps::prepared_of(const Traffic& traffic) const {
+  std::vector<const Prepared*> all;
+  for (const Prepared* each : {prepared_.get(), following_.get()}) {
+    if (each != nullptr && traffic_of(each->waiting.map) == traffic) all.push_back(each);
+  }
+  return all;
 }
 
 }  // namespace adit::forward

@@ -4,6 +4,7 @@
 #include <memory>
 #include <optional>
 #include <random>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -11,6 +12,7 @@
 #include "forward/channel.hpp"
 #include "forward/map_arrival.hpp"
 #include "forward/record.hpp"
+#include "forward/slot.hpp"
 #include "forward/stitched.hpp"
 #include "forward/uri_pace.hpp"
 #include "icd/map_update.hpp"
@@ -23,8 +25,8 @@
 namespace adit::forward {
 
 /// Maps on their way to the mapping endpoint: are kept by the writer before they are taken, wait in their
-/// lane, are packed on a worker, and go out one at a time on a connection of their own, paced within the
-/// link's budget.
+/// lane, are packed on a worker, the next one while one is sent, and go out one at a time on a connection of
+/// their own, paced within the link's budget.
 class Maps {
  public:
   /// So many may wait, however small: each has a file that is mapped (vm.max_map_count is 65,530).
@@ -104,23 +106,28 @@ class Maps {
   void keep(const std::shared_ptr<Keeping>& keeping, const std::function<void(Keeping&)>& told);
   void kept(Keeping& keeping, const std::function<void(icd::Checked<void>)>& done);
   void kept_again(Keeping& keeping, const std::function<bool(bool kept)>& done);
-  bool is_prepared(const Traffic& traffic) const;
+  std::vector<const Prepared*> prepared_of(const Traffic& traffic) const;
   bool is_said_by_what_goes(const lanes::WaitingMap& back) const;
   lanes::WaitingMap waiting_again(std::uint64_t number, icd::MapUpdate update, icd::Stamp again) const;
   std::uint64_t next_number(bool again);
-  void forget(std::vector<std::uint64_t> numbers);
+  void will_be_forgotten();
+  void forget(std::span<const std::uint64_t> numbers);
   void pump();
   void go_on();
   loop::Instant starts() const;
-  void prepare();
-  void pack();
-  void is_packed();
+  loop::Instant begins_to_pack(loop::Instant now) const;
+  void prepare(std::shared_ptr<Prepared>& place);
+  void pack(const std::shared_ptr<Prepared>& prepared);
+  void not_packed(const std::shared_ptr<Prepared>& prepared);
+  std::shared_ptr<Prepared>* place_of(const std::shared_ptr<Prepared>& prepared);
+  void is_packed(const std::shared_ptr<Prepared>& prepared);
   void send();
   void answered(const uplink::Outcome& outcome);
   void judge(const uplink::Outcome& outcome);
   void verdict(const uplink::Answered& answered);
   void taken(const uplink::Answered& answered);
   void again();
+  void put_back(std::shared_ptr<Prepared>& prepared);
   void give_up(int status, const std::string& sentence);
 
   loop::Loop& loop_;
@@ -137,6 +144,8 @@ class Maps {
   UriPace pace_;
   loop::Source wake_;
 
+  Slot slot_;
+  loop::Instant last_byte_not_before_;  // of the map that was sent last
   lanes::MapLane lane_;
   lanes::StampOrder stamps_;
   std::uint64_t numbers_ = kFirstNumber, again_numbers_ = 0;
@@ -146,7 +155,9 @@ class Maps {
   bool preparing_ = false;
   loop::Duration packing_took_{0};
   std::shared_ptr<Prepared> prepared_;    // while it is packed, waits for its time, or is under way
-  std::vector<std::uint64_t> to_forget_;  // that the writer could not be told of
+  std::shared_ptr<Prepared> following_;   // the next one, while that is under way
+  std::vector<std::uint64_t> to_forget_;  // that the writer could not be told of; has room for all
+  std::size_t remembered_ = 0;            // numbers that were given, and are still to be forgotten
   lanes::Blame blame_;
   bool stopping_ = false;
 };

@@ -32,6 +32,9 @@ class UriPace {
     return {.first = std::max(earliest.first, retry_at_), .last = std::max(earliest.last, retry_at_)};
   }
 
+  /// Between two requests.
+  pace::Duration spacing() const { return rate_.spacing(); }
+
   void carry_on(const journal::Carried& carried, pace::Instant now) {
     const auto learned = carried.paces().find(uri_);
     if (learned != carried.paces().end()) rate_.carry_on(learned->second, now);

@@ -16,7 +16,7 @@ constexpr double kMargin = 1.05;
 constexpr int kUneven = 50;
 
 /// Between two requests at `hertz`; a rate too low to matter in any run does not overflow.
-Duration spacing(double hertz) {
+Duration spacing_at(double hertz) {
   constexpr Seconds kLongest = std::chrono::hours{24};
   return std::chrono::duration_cast<Duration>(std::min(Seconds{1 / hertz}, kLongest));
 }
@@ -27,10 +27,10 @@ Duration times(Duration duration, double factor) {
 
 }  // namespace
 
-RateLimit::RateLimit(double hertz) : allowed_(spacing(hertz)), rule_{.spacing = allowed_} {}
+RateLimit::RateLimit(double hertz) : allowed_(spacing_at(hertz)), rule_{.spacing = allowed_} {}
 
 void RateLimit::allow(double hertz, Instant now) {
-  const Duration before = std::exchange(allowed_, spacing(hertz));
+  const Duration before = std::exchange(allowed_, spacing_at(hertz));
   if (allowed_ == before) return;
   const bool is_learned = rule_.spacing > before;
   rule_.spacing = is_learned ? std::max(rule_.spacing, allowed_) : allowed_;
@@ -114,7 +114,7 @@ bool RateLimit::is_a_limit() const {
 }
 
 void RateLimit::slow_down(Instant now) {
-  const Duration slowest = std::max(allowed_, spacing(kSlowest));
+  const Duration slowest = std::max(allowed_, spacing_at(kSlowest));
   // What the server let through before it refused again, and how long it then refused, is its rate.
   const Duration as_seen = taken_since_ == 0 ? worked_ : soon_again_ > 1 ? on_average_ : Duration{0};
   const double factor = taken_since_ == 0 ? kFarOff : kSlightlyOff;

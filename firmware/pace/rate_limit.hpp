@@ -51,6 +51,8 @@ class RateLimit {
   Span earliest() const;
   /// The earliest time for one that leaves at once, whole.
   Instant next() const;
+  /// Between two requests, as allowed or learned.
+  Duration spacing() const { return rule_.spacing; }
   bool ready(Instant now) const { return now >= next(); }
 
   void sent(Instant now);

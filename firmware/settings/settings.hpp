@@ -58,7 +58,7 @@ struct Reports {
 
 struct Queues {
   std::size_t map_bytes = 256u << 20;    // maps that may wait, in bytes held; above it: 429
-  std::size_t merge_bytes = 8u << 20;    // points merged into one cloud at most
+  std::size_t merge_bytes = 32u << 20;   // points merged into one cloud at most
   std::size_t marker_bytes = 32u << 20;  // markers that may wait, in bytes held; above it: 429
   std::size_t markers_per_message = 2000;
   std::size_t marker_bytes_per_message = 1u << 20;

@@ -36,7 +36,7 @@ void write(const fs::path& path, const std::string& text) {
 /// Some are so small that they fill, and that messages are divided.
 struct Queues {
   std::string settings;
-  std::size_t most_map_bytes;  // that wait, one that comes back with them
+  std::size_t most_map_bytes;  // that wait, two that come back with them
 };
 
 Queues queues(Random random) {
@@ -50,7 +50,7 @@ Queues queues(Random random) {
   queues.settings += R"(, "map_bytes": )" + std::to_string(map_bytes);
   queues.settings += R"(, "merge_bytes": )" + std::to_string(merge_bytes);
   if (random.chance(0.2)) queues.settings += R"(, "marker_bytes_per_message": 1024)";
-  queues.most_map_bytes = map_bytes + merge_bytes + kLargestMap;
+  queues.most_map_bytes = map_bytes + 2 * (merge_bytes + kLargestMap);
   return queues;
 }
 

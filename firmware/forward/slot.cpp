@@ -1,0 +1,48 @@
+#include "forward/slot.hpp"
+
+#include <algorithm>
+
+namespace adit::forward {
+namespace {
+
+using Seconds = std::chrono::duration<double>;
+
+/// What shorter messages show of the link is little more than its delay.
+constexpr std::size_t kTelling = 64u << 10;
+/// So much at least, so that a link that was slow is found to be fast again.
+constexpr double kLeast = 4.0 * kTelling;
+constexpr double kSmallest = 0.01;  // that packing is expected to make of a byte
+constexpr std::chrono::milliseconds kHeldBack{20};
+
+}  // namespace
+
+void Slot::allow(std::uint64_t most) {
+  most_ = bytes_per_second_ = static_cast<double>(most);
+}
+
+void Slot::packed(const icd::MapUpdate& map, std::size_t bytes) {
+  if (map.is_grid() || map.data.raw_size < kTelling) return;
+  packed_to_ =
+      std::clamp(static_cast<double>(bytes) / static_cast<double>(map.data.raw_size), kSmallest, 1.0);
+}
+
+/// What was held back says only that the link is at least so fast.
+void Slot::left(std::size_t bytes, const uplink::Sent& sent, loop::Instant last_byte_not_before) {
+  if (bytes < kTelling) return;
+  const double took = std::max(Seconds(sent.last - sent.first).count(), 1e-6);
+  const double seen = std::min(static_cast<double>(bytes) / took, most_);
+  const bool was_held_back = sent.last <= last_byte_not_before + kHeldBack;
+  bytes_per_second_ = was_held_back ? std::max(seen, bytes_per_second_) : seen;
+}
+
+loop::Duration Slot::transfer(std::size_t bytes) const {
+  return std::chrono::duration_cast<loop::Duration>(Seconds(static_cast<double>(bytes) / bytes_per_second_));
+}
+
+std::size_t Slot::points_within(loop::Duration spacing) const {
+  const double bytes = std::max(bytes_per_second_ * Seconds(spacing).count(), kLeast);
+  constexpr double kMost = 1e15;
+  return static_cast<std::size_t>(std::min(bytes / packed_to_, kMost));
+}
+
+}  // namespace adit::forward

@@ -1,0 +1,35 @@
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+
+#include "icd/map_update.hpp"
+#include "loop/loop.hpp"
+#include "uplink/connection.hpp"
+
+namespace adit::forward {
+
+/// What one map after the other may hold, by what the last ones showed: how fast the link takes bytes, and
+/// how small packing makes clouds.
+class Slot {
+ public:
+  /// `most`: bytes a second that maps may use of the link.
+  explicit Slot(std::uint64_t most) { allow(most); }
+  void allow(std::uint64_t most);
+
+  /// `map` was packed to so many bytes.
+  void packed(const icd::MapUpdate& map, std::size_t bytes);
+  /// So many bytes left, of which the last were held back until then.
+  void left(std::size_t bytes, const uplink::Sent& sent, loop::Instant last_byte_not_before);
+
+  /// How long so many bytes take to leave.
+  loop::Duration transfer(std::size_t bytes) const;
+  /// How many bytes of points, not packed, leave within `spacing`.
+  std::size_t points_within(loop::Duration spacing) const;
+
+ private:
+  double most_ = 1, bytes_per_second_ = 1;
+  double packed_to_ = 1;  // of a byte of a cloud
+};
+
+}  // namespace adit::forward

@@ -1,0 +1,66 @@
+#include "forward/slot.hpp"
+
+#include <gtest/gtest.h>
+
+#include "spool/messages.hpp"
+
+namespace adit::forward {
+namespace {
+
+using std::chrono::milliseconds;
+
+constexpr loop::Instant kBegin{std::chrono::seconds(100)};
+constexpr std::size_t kMegabyte = 1'000'000;
+
+uplink::Sent sent_in(milliseconds took) {
+  return {.first = kBegin, .last = kBegin + took};
+}
+
+icd::MapUpdate raw(std::size_t bytes) {
+  icd::MapUpdate map = spool::cloud(1);
+  map.data.raw_size = bytes;
+  return map;
+}
+
+TEST(Slot, HoldsAtFirstWhatMapsMayUseOfTheLink) {
+  const Slot slot(10 * kMegabyte);
+  EXPECT_EQ(slot.points_within(std::chrono::seconds(1)), 10 * kMegabyte);
+  EXPECT_EQ(slot.points_within(std::chrono::seconds(2)), 20 * kMegabyte);
+  EXPECT_EQ(slot.transfer(5 * kMegabyte), milliseconds(500));
+}
+
+TEST(Slot, HoldsMoreOfCloudsThatArePackedSmaller) {
+  Slot slot(10 * kMegabyte);
+  slot.packed(raw(4 * kMegabyte), kMegabyte);
+  EXPECT_EQ(slot.points_within(std::chrono::seconds(1)), 40 * kMegabyte);
+  slot.packed(raw(4 * kMegabyte), 5 * kMegabyte);
+  EXPECT_EQ(slot.points_within(std::chrono::seconds(1)), 10 * kMegabyte);
+}
+
+TEST(Slot, GoesByWhatTheLinkShows) {
+  Slot slot(10 * kMegabyte);
+  slot.left(4 * kMegabyte, sent_in(std::chrono::seconds(1)), kBegin);
+  EXPECT_EQ(slot.points_within(std::chrono::seconds(1)), 4 * kMegabyte);
+  slot.left(8 * kMegabyte, sent_in(std::chrono::seconds(1)), kBegin);
+  EXPECT_EQ(slot.points_within(std::chrono::seconds(1)), 8 * kMegabyte);
+  slot.left(80 * kMegabyte, sent_in(std::chrono::seconds(1)), kBegin);
+  EXPECT_EQ(slot.points_within(std::chrono::seconds(1)), 10 * kMegabyte) << "no more than maps may use";
+}
+
+TEST(Slot, TakesNoLinkForSlowThatHadToWait) {
+  Slot slot(10 * kMegabyte);
+  slot.left(kMegabyte, sent_in(std::chrono::seconds(1)), kBegin + std::chrono::seconds(1));
+  EXPECT_EQ(slot.points_within(std::chrono::seconds(1)), 10 * kMegabyte);
+}
+
+TEST(Slot, FindsASlowLinkFastAgain) {
+  Slot slot(10 * kMegabyte);
+  slot.left(kMegabyte, sent_in(std::chrono::seconds(1000)), kBegin);
+  const std::size_t few = slot.points_within(std::chrono::seconds(1));
+  EXPECT_LT(few, kMegabyte);
+  slot.left(few, sent_in(milliseconds(1)), kBegin);
+  EXPECT_EQ(slot.points_within(std::chrono::seconds(1)), 10 * kMegabyte);
+}
+
+}  // namespace
+}  // namespace adit::forward

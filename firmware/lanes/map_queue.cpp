@@ -107,12 +107,14 @@ void MapQueue::stitch_followers(WaitingMap& next, std::size_t place, std::vector
   const auto grid_at = [this](std::size_t i) { return &std::get<icd::OccupancyGrid>(waiting_[i].map.msg); };
   const auto places = that_follow(place);
   std::vector<Cells> cells;
+  cells.reserve(places.size());
   for (const std::size_t i : places) cells.push_back(*cells_in(*grid_at(place), *grid_at(i)));
   const Stitch found = stitch(cells);
   if (found.which.size() < 2) return;
   std::vector<const icd::OccupancyGrid*> grids;
+  grids.reserve(found.which.size());
   for (const std::size_t i : found.which) grids.push_back(grid_at(places[i]));
-  auto whole = stitched(grids);
+  const auto whole = stitched(grids);
   if (!whole) return;
   for (const std::size_t i : found.which) {
     if (places[i] == place) continue;
@@ -120,7 +122,7 @@ void MapQueue::stitch_followers(WaitingMap& next, std::size_t place, std::vector
     join(next, waiting_[places[i]]);
   }
   next.map.data = {{}, icd::Compression::None, std::size_t{whole->width} * whole->height};
-  next.map.msg = std::move(*whole);
+  next.map.msg = *whole;
 }
 
 std::vector<std::uint64_t> MapQueue::put_back(WaitingMap map) {

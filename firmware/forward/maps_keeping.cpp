@@ -1,0 +1,177 @@
+// How maps come to wait, each in a file of its own: kept by the writer before they are taken, forgotten when
+// they are not needed.
+#include <algorithm>
+
+#include "forward/maps.hpp"
+#include "host/log.hpp"
+#include "icd/sentence.hpp"
+#include "loop/guard.hpp"
+
+namespace adit::forward {
+namespace {
+
+/// For a writer that threw.
+icd::Refusal not_kept() {
+  return {icd::Status::ServiceUnavailable, "this map cannot be kept; send it again later"};
+}
+
+icd::Stamp stamp_of(const icd::MapUpdate& map) {
+  return map.header().stamp.value_or(0);
+}
+
+}  // namespace
+
+/// What replaces something that waits is taken by a full queue too.
+bool Maps::has_room_for(const icd::MapUpdate& update, bool replaces) const {
+  const std::size_t waiting = lane_.bytes() + bytes_being_kept_;
+  if (!replaces && lane_.count() + static_cast<std::size_t>(being_kept_) >= kMostMaps) return false;
+  return replaces || waiting == 0 || waiting + update.data.bytes.size() <= settings_.queues.map_bytes;
+}
+
+/// What arrives leaves room for a grid that replaces one.
+std::shared_ptr<intake::MapArrival> Maps::arrives(MapArrival::Take take) {
+  return std::make_shared<MapArrival>(
+      while_alive_, spool_, [this] { return lane_.largest_grid(); }, std::move(take));
+}
+
+void Maps::take(icd::MapUpdate update, std::size_t bytes_received, std::shared_ptr<spool::MapFile> file,
+                std::function<void(icd::Checked<void>)> done) {
+  const bool replaces = lane_.replaces_any(update);
+  if (!has_room_for(update, replaces)) {
+    record_.no_room(traffic_of(update), loop_.stamp_now());
+    if (file) writer_.submit([file = std::move(file)]() mutable { file.reset(); }, [] {});
+    return done(std::unexpected(
+        icd::Refusal{icd::Status::TooManyRequests,
+                     icd::sentence(lane_.count() + static_cast<std::size_t>(being_kept_), " maps of ",
+                                   (lane_.bytes() + bytes_being_kept_) >> 20,
+                                   " MiB wait already; this one was not taken, send it again later")}));
+  }
+  const auto keeping = std::make_shared<Keeping>();
+  keeping->bytes_received = bytes_received;
+  // Only a grid is ever replaced, and the newer one must find room beside it.
+  const std::uint64_t of_its_own = update.is_grid() ? update.data.bytes.size() : 0;
+  if (!replaces) keeping->spare = std::max<std::uint64_t>(lane_.largest_grid(), of_its_own);
+  keeping->update = std::move(update);
+  keeping->file = std::move(file);
+  keep(keeping, [this, done = std::move(done)](Keeping& it) { kept(it, done); });
+}
+
+/// What is sent again is older than what waits, and has the lower numbers also for a life to come, which
+/// reads the maps in their order.
+std::uint64_t Maps::next_number(bool again) {
+  return again && again_numbers_ < kFirstNumber - 1 ? ++again_numbers_ : ++numbers_;
+}
+
+/// By the writer, under the next number; then `told` has it, kept or not.
+void Maps::keep(const std::shared_ptr<Keeping>& keeping, const std::function<void(Keeping&)>& told) {
+  will_be_forgotten();
+  keeping->number = next_number(keeping->again.has_value());
+  keeping->size = keeping->update.data.bytes.size();
+  const auto over = [this, keeping, told] {
+    --being_kept_;
+    bytes_being_kept_ -= keeping->size;
+    told(*keeping);
+  };
+  writer_.submit(
+      [&spool = spool_, keeping] {
+        keeping->kept =
+            spool.keep(keeping->number, std::move(keeping->update), keeping->spare, std::move(keeping->file));
+      },
+      over,
+      [keeping, over] {
+        keeping->kept = std::unexpected(not_kept());
+        over();
+      });
+  ++being_kept_;  // only now: where it could not be submitted, nothing is
+  bytes_being_kept_ += keeping->size;
+}
+
+/// It waits from now on, and its sender may know.
+void Maps::kept(Keeping& keeping, const std::function<void(icd::Checked<void>)>& done) {
+  const std::string before = std::exchange(trouble_, keeping.kept ? "" : keeping.kept.error().sentence);
+  if (!keeping.kept) {
+    if (before.empty()) host::log(host::Level::Error, "a map was not taken", {{"why", trouble_}});
+    return done(std::unexpected(std::move(keeping.kept.error())));
+  }
+  record_.accepted(traffic_of(*keeping.kept), keeping.bytes_received, loop_.stamp_now());
+  forget(add(keeping.number, std::move(*keeping.kept)));
+  done({});
+  pump();
+}
+
+void Maps::restore(std::uint64_t number, icd::MapUpdate update) {
+  will_be_forgotten();
+  const bool again = number < kFirstNumber;
+  std::uint64_t& last = again ? again_numbers_ : numbers_;
+  last = std::max(last, number);
+  record_.accepted(traffic_of(update), update.data.bytes.size(), loop_.stamp_now());
+  const icd::Stamp stamp = stamp_of(update);
+  forget(again ? lane_.put_back(waiting_again(number, std::move(update), stamp))
+               : add(number, std::move(update)));
+  pump();
+}
+
+/// The numbers of the maps that this one replaced.
+std::vector<std::uint64_t> Maps::add(std::uint64_t number, icd::MapUpdate update) {
+  const Traffic traffic = traffic_of(update);
+  auto replaced = lane_.add(number, std::move(update), loop_.now());
+  record_.replaced(traffic, replaced.size());
+  return replaced;
+}
+
+/// One number more: forgetting it will take no memory, for there may be none then.
+void Maps::will_be_forgotten() {
+  const std::size_t all = remembered_ + 1;
+  if (all > to_forget_.capacity()) to_forget_.reserve(2 * all);
+  remembered_ = all;
+}
+
+/// What cannot be told to the writer just now is told with the next.
+void Maps::forget(std::span<const std::uint64_t> numbers) {
+  to_forget_.insert(to_forget_.end(), numbers.begin(), numbers.end());
+  if (to_forget_.empty()) return;
+  const bool told = loop::guarded("forgetting maps", [this] {
+    writer_.submit(
+        [&spool = spool_, gone = to_forget_] {
+          for (const std::uint64_t number : gone) spool.forget(number);
+        },
+        [] {});
+  });
+  if (!told) return;
+  remembered_ -= std::min(remembered_, to_forget_.size());
+  to_forget_.clear();
+}
+
+/// What waits or is under way may say all of it by now: it must not follow that.
+void Maps::send_again(icd::MapUpdate update, std::function<bool(bool kept)> done) {
+  const icd::Stamp again = stamp_of(update);
+  const lanes::WaitingMap back = waiting_again(again_numbers_ + 1, update, again);
+  if (lane_.is_replaced(back) || is_said_by_what_goes(back)) {
+    done(true);
+    return;
+  }
+  const auto keeping = std::make_shared<Keeping>();
+  keeping->again = again;
+  update.header().stamp = loop_.stamp_now();
+  keeping->update = std::move(update);
+  keep(keeping, [this, done = std::move(done)](Keeping& it) { kept_again(it, done); });
+}
+
+void Maps::kept_again(Keeping& keeping, const std::function<bool(bool kept)>& done) {
+  const bool is_wanted = done(keeping.kept.has_value());
+  if (!keeping.kept) {
+    return host::log(host::Level::Error, "what was set aside is not sent again",
+                     {{"why", keeping.kept.error().sentence}});
+  }
+  lanes::WaitingMap back = waiting_again(keeping.number, std::move(*keeping.kept), *keeping.again);
+  if (!is_wanted || is_said_by_what_goes(back)) return forget({&keeping.number, 1});
+  forget(lane_.put_back(std::move(back)));
+  pump();
+}
+
+lanes::WaitingMap Maps::waiting_again(std::uint64_t number, icd::MapUpdate update, icd::Stamp again) const {
+  return {
+      .map = std::move(update), .accepted = loop_.now(), .updates = {number}, .alone = true, .again = again};
+}
+
+}  // namespace adit::forward

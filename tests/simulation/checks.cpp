@@ -1,6 +1,8 @@
 // All of them, and what a power cut may cost.
 #include "simulation/checks.hpp"
 
+#include <algorithm>
+
 #include "simulation/messages.hpp"
 
 namespace adit::simulation {
@@ -23,6 +25,13 @@ std::vector<Event> with_losses(const std::vector<Event>& events) {
 }
 
 }  // namespace
+
+double clock_behind(const Evidence& evidence) {
+  constexpr double kMost = 60;  // its own stamps, which are kept, bring it on
+  const bool is_set_back =
+      std::ranges::any_of(evidence.events, [](const Event& event) { return event.kind == Kind::PowerCut; });
+  return is_set_back ? kMost : 0;
+}
 
 Broken all_checks(const Evidence& evidence) {
   Broken broken;

@@ -20,6 +20,9 @@ struct Evidence {
   std::size_t most_map_bytes = 0;                // that wait at once, by the first settings
 };
 
+/// By how many seconds the box's clock may be behind: a power cut may set it back.
+double clock_behind(const Evidence& evidence);
+
 /// Each adds a sentence for what it finds broken, which begins with its name. Their rules are in README.md.
 using Broken = std::vector<std::string>;
 void settings_kept(const Evidence& evidence, Broken& broken);

@@ -26,9 +26,10 @@ std::map<std::int64_t, double> first_records(const Evidence& evidence) {
 
 /// What somebody else recorded while this one was in doubt looks the same; nobody could tell.
 bool is_blurred(const Evidence& evidence, const dispatch::Report& report) {
+  const double behind = clock_behind(evidence);
   return std::ranges::any_of(evidence.events, [&](const Event& event) {
     const double at = World::kEpoch + event.at;
-    return event.kind == Kind::Another && at > report.sent - kLongestDoubt && at < report.changed;
+    return event.kind == Kind::Another && at > report.sent - kLongestDoubt && at < report.changed + behind;
   });
 }
 

@@ -2,19 +2,25 @@
 
 #include <cmath>
 #include <cstdio>
+#include <iterator>
 #include <ranges>
 #include <string_view>
 
 namespace adit::simulation {
 namespace {
 
-constexpr const char* kWords[] = {
-    "asks",      "has asked",    "stalls at",     "hears",           "hears nothing",
-    "sends",     "has sent",     "must not send", "reads",           "opens",
-    "closes",    "takes",        "begins",        "is told to stop", "dies",
-    "power cut", "cannot begin", "ended",         "saved",           "records another's",
-    "new run",   "fault",        "written",       "serves",          "mended",
-    "slow",      "calm",         "tells",         "shows",           ""};
+constexpr const char* kWords[] = {"asks",    "has asked",     "stalls at",
+                                  "hears",   "hears nothing", "sends",
+                                  "ends",    "has sent",      "must not send",
+                                  "reads",   "opens",         "closes",
+                                  "takes",   "begins",        "is told to stop",
+                                  "dies",    "power cut",     "cannot begin",
+                                  "ended",   "saved",         "records another's",
+                                  "new run", "fault",         "written",
+                                  "serves",  "mended",        "slow",
+                                  "calm",    "tells",         "shows",
+                                  ""};
+static_assert(std::size(kWords) == static_cast<std::size_t>(Kind::Said) + 1);
 
 void mix(std::uint64_t& hash, std::uint64_t number) {
   for (int i = 0; i < 8; ++i, number >>= 8) hash = (hash ^ (number & 0xFF)) * 0x100000001B3u;

@@ -82,7 +82,8 @@ class Waiting(unittest.TestCase):
         self.post_map(stage, first, "r1")
         wait_until(lambda: self.taken(stage, "/map/update"), "the first grid")
         stage.post.process.send_signal(signal.SIGSTOP)
-        self.post_map(stage, maps.made_grid(10, 10), "r2")  # behind which the others wait
+        for name in ("r2", "r3"):  # one under way, and one packed: behind these the others wait
+            self.post_map(stage, maps.made_grid(10, 10), name)
         aside = maps.made_grid(20, 20, seed=2)
         aside.origin = (first.origin[0] + 10, *first.origin[1:])
         small, large = maps.made_grid(30, 30, seed=3), maps.made_grid(40, 40, seed=4)
@@ -91,9 +92,10 @@ class Waiting(unittest.TestCase):
             self.post_map(stage, grid, "r1")
         stage.post.process.send_signal(signal.SIGCONT)
         wait_until(lambda: not any(row["waiting"] for row in stage.box.ask("GET /adit/run")[1]["activities"]), "them to go")
-        wait_until(lambda: len(self.taken(stage, "/map/update")) >= 4, "the grids that are left")
-        arrived = [request["message"]["msg"]["info"]["width"] for request in self.taken(stage, "/map/update")]
-        self.assertEqual(arrived, [20, 10, 20, 40], "in the order in which they were made")
+        wait_until(lambda: len(self.taken(stage, "/map/update")) >= 5, "the grids that are left")
+        arrived = [request["message"]["msg"]["info"]["width"] for request in self.taken(stage, "/map/update")
+                   if request["message"]["name"] == "r1"]
+        self.assertEqual(arrived, [20, 20, 40], "in the order in which they were made")
 
     def test_robots_that_post_alone_are_sent_together_at_one_a_second(self):
         stage = self.stage(post_options=("--rate", "1"), command_post__rates__state_hz=1)

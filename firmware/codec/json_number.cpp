@@ -1,5 +1,10 @@
 #include "codec/json_number.hpp"
 
+#include <charconv>
+#include <cstdlib>
+#include <string>
+#include <system_error>
+
 namespace adit::codec {
 
 std::size_t JsonNumber::next(std::string_view in) {
@@ -40,6 +45,16 @@ bool JsonNumber::accept(char c) {
       return digit && go(Place::Exponent);
   }
   return false;
+}
+
+double take_json_number(std::string_view& text) {
+  double number = 0;
+  const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), number);
+  const auto length = static_cast<std::size_t>(end - text.data());
+  // strtod(3) tells too small from too large.
+  if (error != std::errc{}) number = std::strtod(std::string(text.substr(0, length)).c_str(), nullptr);
+  text.remove_prefix(length);
+  return number;
 }
 
 }  // namespace adit::codec

@@ -27,4 +27,8 @@ class JsonNumber {
   Place place_ = Place::Start;
 };
 
+/// Takes such a number, as which `text` begins, and gives what it means as a double, rounded to the nearest:
+/// 0 or infinite where it is too small or too large for one.
+double take_json_number(std::string_view& text);
+
 }  // namespace adit::codec

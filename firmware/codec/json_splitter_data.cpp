@@ -1,7 +1,6 @@
 // The JSON splitter's numbers, and the values that it diverts from the rest: the map's data.
 #include <charconv>
 #include <cmath>
-#include <cstdlib>
 
 #include "codec/json_splitter.hpp"
 
@@ -58,12 +57,10 @@ icd::Checked<void> JsonSplitter::number_ended(std::optional<char> next) {
 
 icd::Checked<void> JsonSplitter::keep_number() {
   constexpr std::size_t kSurelySmall = 15;  // characters: with an exponent looked for apart
-  if (number_.size() > kSurelySmall || number_.find_first_of("eE") != std::string::npos) {
-    double value = 0;
-    const auto [end, error] = std::from_chars(number_.data(), number_.data() + number_.size(), value);
-    if (error != std::errc{} && std::isinf(std::strtod(number_.c_str(), nullptr)))
-      return std::unexpected(fault_at(number_at_, "a number too large for a double"));
-  }
+  const bool surely_small =
+      number_.size() <= kSurelySmall && number_.find_first_of("eE") == std::string::npos;
+  if (std::string_view text = number_; !surely_small && std::isinf(take_json_number(text)))
+    return std::unexpected(fault_at(number_at_, "a number too large for a double"));
   keep(number_);
   return {};
 }

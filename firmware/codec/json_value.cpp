@@ -1,10 +1,9 @@
 #include "codec/json_value.hpp"
 
-#include <charconv>
 #include <cmath>
-#include <cstdlib>
 #include <memory>
 
+#include "codec/json_number.hpp"
 #include "codec/json_string.hpp"
 #include "codec/splitter.hpp"
 
@@ -32,7 +31,7 @@ class JsonReader {
       case 'n':
         return literal("null", {});
       default:
-        return json_number_value(number());
+        return json_number_value(take_json_number(left_));
     }
   }
 
@@ -40,16 +39,6 @@ class JsonReader {
   Value literal(std::string_view word, Value meaning) {
     left_.remove_prefix(word.size());
     return meaning;
-  }
-
-  double number() {
-    double number = 0;
-    const auto [end, error] = std::from_chars(left_.data(), left_.data() + left_.size(), number);
-    const auto length = static_cast<std::size_t>(end - left_.data());
-    // Too small or too large for a double: 0, or infinite.
-    if (error != std::errc{}) number = std::strtod(std::string(left_.substr(0, length)).c_str(), nullptr);
-    left_.remove_prefix(length);
-    return number;
   }
 
   std::string string() {

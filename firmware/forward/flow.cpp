@@ -91,8 +91,7 @@ void Flow::picture_the_run() {
 
 /// By the clock of the view.
 std::optional<api::Time> Flow::behind_since(const Traffic& traffic) const {
-  const bool map = traffic.kind == Kind::Grid || traffic.kind == Kind::Cloud;
-  const auto since = map ? maps_.waits_since(traffic) : telemetry_.waits_since(traffic);
+  const auto since = is_map(traffic.kind) ? maps_.waits_since(traffic) : telemetry_.waits_since(traffic);
   if (!since) return std::nullopt;
   return loop_.stamp_now() - std::chrono::duration<double>(loop_.now() - *since).count();
 }
@@ -101,8 +100,7 @@ std::vector<api::ActivityRow> Flow::activities() const {
   std::vector<api::ActivityRow> rows;
   for (const auto& [traffic, counted] : record_.rows()) {
     api::ActivityRow& row = rows.emplace_back(counted);
-    const bool map = traffic.kind == Kind::Grid || traffic.kind == Kind::Cloud;
-    row.waiting = map ? maps_.waiting(traffic) : telemetry_.waiting(traffic.kind);
+    row.waiting = is_map(traffic.kind) ? maps_.waiting(traffic) : telemetry_.waiting(traffic.kind);
     row.behind_since = behind_since(traffic);
   }
   return rows;

@@ -28,6 +28,10 @@ struct Traffic {
   friend auto operator<=>(const Traffic&, const Traffic&) = default;
 };
 
+inline bool is_map(Kind kind) {
+  return kind == Kind::Grid || kind == Kind::Cloud;
+}
+
 /// What happened to the team's messages, counted and kept for the page: how many were accepted, forwarded,
 /// replaced, delayed, refused, and why (promise 7). Holds at most kMostRows rows and kMostRefusals refusals.
 class Record {

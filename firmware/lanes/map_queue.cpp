@@ -8,6 +8,14 @@
 #include "lanes/stitch.hpp"
 
 namespace adit::lanes {
+namespace {
+
+/// Since when it rests, and how old it is.
+std::pair<Instant, Instant> rest_of(const WaitingMap& waiting) {
+  return {waiting.trial.failed.value_or(Instant{}), waiting.accepted};
+}
+
+}  // namespace
 
 std::vector<std::uint64_t> MapQueue::add(WaitingMap added) {
   const auto stays = [&](const WaitingMap& waiting) { return !replaces(added.map, waiting.map); };
@@ -43,14 +51,11 @@ bool MapQueue::is_ready(Instant now) const {
 MapQueue::Maps::const_iterator MapQueue::rested_longest() const {
   icd::require(!waiting_.empty());
   if (waiting_.front().map.is_grid()) return waiting_.begin();
-  return std::ranges::min_element(waiting_, {}, [](const WaitingMap& waiting) {
-    return std::pair(waiting.trial.failed.value_or(Instant{}), waiting.accepted);
-  });
+  return std::ranges::min_element(waiting_, {}, rest_of);
 }
 
 std::pair<Instant, Instant> MapQueue::resting() const {
-  const WaitingMap& waiting = *rested_longest();
-  return {waiting.trial.failed.value_or(Instant{}), waiting.accepted};
+  return rest_of(*rested_longest());
 }
 
 WaitingMap MapQueue::take(Instant now, std::size_t merge_bytes) {
@@ -125,14 +130,17 @@ void MapQueue::stitch_followers(WaitingMap& next, std::size_t place, std::vector
   next.map.msg = *whole;
 }
 
+/// Where what comes back belongs.
+MapQueue::Maps::const_iterator MapQueue::before_newer(const WaitingMap& back) const {
+  return std::ranges::find_if(waiting_, [&](const WaitingMap& waiting) { return is_newer(waiting, back); });
+}
+
 std::vector<std::uint64_t> MapQueue::put_back(WaitingMap map) {
   const auto newer =
       std::ranges::find_if(waiting_, [&](const WaitingMap& waiting) { return replaces(waiting, map); });
   if (newer == waiting_.end()) {
     const std::size_t bytes = bytes_held(map);
-    const auto place =
-        std::ranges::find_if(waiting_, [&](const WaitingMap& waiting) { return is_newer(waiting, map); });
-    waiting_.insert(place, std::move(map));
+    waiting_.insert(before_newer(map), std::move(map));
     bytes_ += bytes;
     return {};
   }
@@ -145,8 +153,7 @@ std::vector<std::uint64_t> MapQueue::put_back(WaitingMap map) {
 }
 
 void MapQueue::put_back_apart(WaitingMap map) {
-  const auto place =
-      std::ranges::find_if(waiting_, [&](const WaitingMap& waiting) { return is_newer(waiting, map); });
+  const auto place = before_newer(map);
   auto parts = parts_of(std::move(map));
   std::size_t bytes = 0;
   for (const WaitingMap& part : parts) bytes += bytes_held(part);

@@ -41,6 +41,7 @@ class MapQueue {
   using Maps = std::deque<WaitingMap>;
   Maps::const_iterator ready(Instant now) const;
   Maps::const_iterator rested_longest() const;
+  Maps::const_iterator before_newer(const WaitingMap& back) const;
   /// Each adds to `leaves`, in the order of waiting_, what goes with the next.
   void merge_followers(WaitingMap& next, std::size_t merge_bytes, std::vector<bool>& leaves) const;
   void stitch_followers(WaitingMap& next, std::size_t place, std::vector<bool>& leaves) const;

@@ -36,8 +36,8 @@ double clock_behind(const Evidence& evidence) {
 Broken all_checks(const Evidence& evidence) {
   Broken broken;
   for (const auto check :
-       {starts, settings_kept, once, not_lost, paced, stamps, kept, answered, not_cut, refused, clean,
-        status_true, live, honest, lights, alive, obeyed, bounded, has_room})
+       {starts,  settings_kept, once,        not_lost, paced,  learned, stamps, kept,   answered, not_cut,
+        refused, clean,         status_true, live,     honest, lights,  alive,  obeyed, bounded,  has_room})
     check(evidence, broken);
   const std::vector<Event> told = with_losses(evidence.events);
   const Evidence with_them{told, evidence.reports, evidence.readings, evidence.most_map_bytes};

@@ -1,10 +1,11 @@
-// Paced and Stamps: of what goes to the Command Post.
+// Paced, Learned and Stamps: of what goes to the Command Post.
 #include <algorithm>
 #include <map>
 #include <optional>
 
 #include "icd/sentence.hpp"
 #include "simulation/checks.hpp"
+#include "simulation/counting.hpp"
 #include "simulation/world.hpp"
 
 namespace adit::simulation {
@@ -17,6 +18,7 @@ constexpr double kAhead = 5;        // seconds that a stamp may be after the box
 /// written of that holds so long.
 constexpr double kFloorAhead = 30, kFloorHolds = 35;
 constexpr double kMakesWay = 1;       // seconds until the next gateway has begun
+constexpr double kTriedAgain = 9;     // seconds
 constexpr double kLongestPause = 30;  // that a Retry-After is heeded for
 
 }  // namespace
@@ -56,6 +58,31 @@ void paced(const Evidence& evidence, Broken& broken) {
                                      event.at));
     }
     asked.erase(event.what);
+  }
+}
+
+/// Whoever counts from its answers is found out by his first 429, and tried again after 10 s at the soonest
+/// (pace/rate_limit.hpp).
+void learned(const Evidence& evidence, Broken& broken) {
+  std::map<std::string, double> last;
+  DiskFaultsSeen disk;
+  double forgotten_until = 0;
+  for (const Event& event : evidence.events) {
+    if (disk.forgets_at(event)) forgotten_until = event.at + kMakesWay + kSpacing;
+    if (event.kind == Kind::Dies) last.clear();  // the answer may have been read and not yet understood
+    disk.add(event);
+    if (event.kind != Kind::Fault || event.who != kTooSoon || event.at < forgotten_until) continue;
+    const auto before = last.find(event.what);
+    if (event.serial != static_cast<std::int64_t>(Counting::What::Answers)) {
+      broken.push_back(icd::sentence("Learned: ", event.what,
+                                     " came too soon for a Command Post that counts ",
+                                     event.serial == 0 ? "first" : "last", " bytes, at ", event.at));
+    } else if (before != last.end() && event.at - before->second < kTriedAgain) {
+      broken.push_back(icd::sentence("Learned: ", event.what,
+                                     " came too soon for a Command Post that counts ", "from its answers, ",
+                                     event.at - before->second, " s after the last time, at ", event.at));
+    }
+    last[event.what] = event.at;
   }
 }
 

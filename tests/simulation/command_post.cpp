@@ -32,9 +32,10 @@ bool is_mapping(const HttpMessage& request) {
 class CommandPost::Conversation final : public Peer {
  public:
   Conversation(CommandPost& post, Link& link) : post_(post), link_(link) {}
-  void came(std::string_view bytes) override {
+  void came(std::string_view bytes, Instant left) override {
+    if (stream_.is_between()) began_ = left;
     stream_.feed(bytes);
-    while (const auto request = stream_.next()) post_.asked(*request, link_);
+    while (const auto request = stream_.next()) post_.asked(*request, {.first = began_, .last = left}, link_);
   }
   void ended() override {}
 
@@ -42,13 +43,15 @@ class CommandPost::Conversation final : public Peer {
   CommandPost& post_;
   Link& link_;  // whose this is
   HttpStream stream_;
+  Instant began_{};  // to leave: the request that comes
 };
 
 CommandPost::CommandPost(World& world, const Faults& faults, double trouble_for, int place)
     : world_(world),
       faults_(faults),
       random_(world.random(numbered("command post", place))),
-      scoreboard_(world, faults_, random_, place) {
+      scoreboard_(world, faults_, random_, place),
+      counting_(world.random("counting")) {
   for (const Fault fault : kPeriods) {
     // Nobody can tell one run from the next by clocks that stand.
     const bool untold = fault == Fault::NewRun && faults_.has(Fault::ConstantClocks);
@@ -113,15 +116,40 @@ std::unique_ptr<Peer> CommandPost::connected(const uplink::Endpoint&, Link& link
   return std::make_unique<Conversation>(*this, link);
 }
 
-void CommandPost::asked(const HttpMessage& request, Link& link) {
+/// What comes on a connection that Adit has given up does not count.
+void CommandPost::asked(const HttpMessage& request, const WhenLeft& left, Link& link) {
   if (is_on(Fault::Mute) || is_on(Fault::Outage)) return;
   if (is_on(Fault::StatusDown) && request.path() == kStatus) return;
+  if (refuses(request, left, link)) return;
+  answer(request, link);
+  if (!is_mapping(request) || link.is_closed()) return;
+  const auto count = [this, path = request.path(), left, self = link.shared_from_this()] {
+    if (!self->is_closed()) counting_.count(path, left, world_.now());
+  };
+  count();
+  if (link.answers_until() > world_.now()) world_.at(link.answers_until(), count);
+}
+
+/// With a 429.
+bool CommandPost::refuses(const HttpMessage& request, const WhenLeft& left, Link& link) {
   if (is_on(Fault::Storm) || is_on(Fault::PoliteStorm)) {
     const std::string after = is_on(Fault::PoliteStorm)
                                   ? "Retry-After: " + std::to_string(1 + random_.below(4)) + "\r\n"
                                   : std::string();
-    return link.send(http_answer("429 Too Many Requests", kJson + after, "\"too many requests\""));
+    link.send(http_answer("429 Too Many Requests", kJson + after, "\"too many requests\""));
+    return true;
   }
+  if (!is_mapping(request) || link.is_closed() || !counting_.is_too_soon(request.path(), left)) return false;
+  world_.note({.actor = Actor::Post,
+               .kind = Kind::Fault,
+               .what = request.path(),
+               .who = kTooSoon,
+               .serial = static_cast<std::int64_t>(counting_.what())});
+  link.send(http_answer("429 Too Many Requests", kJson, "\"too soon\""));
+  return true;
+}
+
+void CommandPost::answer(const HttpMessage& request, Link& link) {
   const Fault fault = calm_ ? Fault::End : faults_.of_request();
   const bool befalls = fault == Fault::Unwanted         ? request.path() == kMap || request.path() == kState
                        : fault == Fault::TakenThrottled ? is_mapping(request)

@@ -7,6 +7,7 @@
 #include <string>
 #include <vector>
 
+#include "simulation/counting.hpp"
 #include "simulation/faults.hpp"
 #include "simulation/http.hpp"
 #include "simulation/messages.hpp"
@@ -32,7 +33,9 @@ class CommandPost final : public Host {
 
  private:
   class Conversation;
-  void asked(const HttpMessage& request, Link& link);
+  void asked(const HttpMessage& request, const WhenLeft& left, Link& link);
+  bool refuses(const HttpMessage& request, const WhenLeft& left, Link& link);
+  void answer(const HttpMessage& request, Link& link);
   void misbehave(Fault fault, const HttpMessage& request, Link& link);
   std::string bad_answer(Fault fault, const HttpMessage& request);
   /// Records what the request says: its answer.
@@ -49,6 +52,7 @@ class CommandPost final : public Host {
   Faults faults_;
   Random random_;
   Scoreboard scoreboard_;
+  Counting counting_;
   bool calm_ = false;
   std::set<Fault> on_;  // periods
   std::vector<std::weak_ptr<Link>> links_;

@@ -52,12 +52,12 @@ std::size_t Link::write(std::string_view bytes) {
     const std::size_t size = random_.chance(0.8) ? left : 1 + random_.below(left);
     last_there_ = std::max(last_there_, arrival());
     if (world_.network().stalls().is_on()) held_until_ = last_there_;
-    world_.at(last_there_,
-              [self = shared_from_this(), piece = std::string(bytes.substr(taken - left, size))] {
-                if (self->lost_) return;
-                self->unacknowledged_ -= piece.size();
-                if (self->peer_) self->peer_->came(piece);
-              });
+    world_.at(last_there_, [self = shared_from_this(), piece = std::string(bytes.substr(taken - left, size)),
+                            left_at = world_.now()] {
+      if (self->lost_) return;
+      self->unacknowledged_ -= piece.size();
+      if (self->peer_) self->peer_->came(piece, left_at);
+    });
     left -= size;
   }
   return taken;
@@ -89,6 +89,7 @@ void Link::vanish() {
 }
 
 void Link::send(std::string bytes, loop::Duration delay) {
+  answers_until_ = world_.now() + delay;
   while (!bytes.empty()) {
     const std::size_t size = random_.chance(0.7) ? bytes.size() : 1 + random_.below(bytes.size());
     last_here_ = std::max(last_here_, arrival() + delay);

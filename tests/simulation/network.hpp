@@ -25,7 +25,8 @@ class Link;
 class Peer {
  public:
   virtual ~Peer() = default;
-  virtual void came(std::string_view bytes) = 0;
+  /// `left`: when Adit gave them to the network.
+  virtual void came(std::string_view bytes, loop::Instant left) = 0;
   /// Adit's end is over; nothing comes any more.
   virtual void ended() = 0;
 };
@@ -66,6 +67,8 @@ class Link : public std::enable_shared_from_this<Link> {
   void send(std::string bytes, loop::Duration delay = {});
   enum class How : std::uint8_t { End, Reset };
   void end(How how, loop::Duration delay = {});
+  /// When what was sent last leaves.
+  loop::Instant answers_until() const { return answers_until_; }
   const uplink::Endpoint& endpoint() const { return endpoint_; }
   bool is_closed() const { return closed_; }
 
@@ -80,7 +83,7 @@ class Link : public std::enable_shared_from_this<Link> {
   std::size_t window_;
   std::size_t unacknowledged_ = 0;
   bool closed_ = false, lost_ = false;
-  loop::Instant last_there_{}, last_here_{}, last_left_{}, held_until_{};
+  loop::Instant last_there_{}, last_here_{}, last_left_{}, held_until_{}, answers_until_{};
   std::unique_ptr<Peer> peer_;
 };
 

@@ -19,10 +19,10 @@ std::unique_ptr<Endpoint> scoring_of(const Options& options, const Secrets& secr
 }
 
 std::unique_ptr<Endpoint> mapping_of(const Options& options, const Secrets& secrets) {
-  if (options.manner == Manner::Strict) {
-    return std::make_unique<StrictMapping>(secrets.mapping, options.rate.value_or(1));
-  }
-  return std::make_unique<MeasuredMapping>(secrets.mapping, options.rate.value_or(1));
+  const double hz = options.rate.value_or(1);
+  if (options.manner == Manner::Strict)
+    return std::make_unique<StrictMapping>(secrets.mapping, hz, options.counted);
+  return std::make_unique<MeasuredMapping>(secrets.mapping, hz, options.counted);
 }
 
 /// What is no HTTP request is refused alike by all. One that its sender broke off, or that came too slowly,
@@ -99,7 +99,7 @@ Outcome CommandPost::receive(Side& side, std::optional<Aim> aim, const Request& 
   if (!fault.record_after) return decide(side, aim, fault, request);
   return later(*fault.record_after, [this, &side, aim, fault, &request] {
     Request late = request;
-    late.at = Clock::now();  // it counts from when it is judged
+    late.at = late.whole = Clock::now();  // it counts from when it is judged
     return decide(side, aim, fault, late);
   });
 }

@@ -112,6 +112,7 @@ std::optional<Request> Connection::read_request() {
     if (!error) take_header(parser, request);
   }
   if (error) request.fault = fault_of(error);
+  request.whole = Clock::now();
   request.ended = std::chrono::system_clock::now();
   request.body = std::move(parser.get().body());
   return request;

@@ -31,7 +31,8 @@ struct Request {
   std::string body;
   std::string local_address;                    // "127.0.0.1:8000", where it was sent to
   Clock::time_point at;                         // when its header had arrived
-  std::chrono::system_clock::time_point ended;  // when its last byte had
+  Clock::time_point whole;                      // when its last byte had
+  std::chrono::system_clock::time_point ended;  // the same, by the machine's clock
   std::optional<HttpFault> fault;
 };
 

@@ -4,12 +4,18 @@
 
 namespace adit::rehearsal {
 
-bool StrictMapping::too_many(const std::string& uri, Clock::time_point at) {
+bool StrictMapping::too_many(const std::string& uri, const Request& request) {
   const std::lock_guard lock(mutex_);
-  RateLimit& limit = limits_.try_emplace(uri, hz_).first->second;
-  if (limit.too_soon(at)) return true;
-  limit.count(at);
+  RateLimit& limit = limits_.try_emplace(uri, hz_, counted_).first->second;
+  if (limit.too_soon(request)) return true;
+  limit.count(request, Clock::now());
   return false;
+}
+
+/// It has been judged: its answer follows.
+void StrictMapping::count(const std::string& uri, const Request& request) {
+  const std::lock_guard lock(mutex_);
+  limits_.at(uri).count(request, Clock::now());
 }
 
 Judgement StrictMapping::judge(const Request& request) {
@@ -19,10 +25,11 @@ Judgement StrictMapping::judge(const Request& request) {
   if (finding == nullptr || finding->status != 404) judgement.uri = path_of(request.target);
   if (finding != nullptr) {
     judgement.outcome = refused(*finding);
-  } else if (too_many(judgement.uri, request.at)) {
+  } else if (too_many(judgement.uri, request)) {
     judgement.outcome = refused(429, kTooManyRequests);
   } else {
     judge_body(request, judgement);
+    count(judgement.uri, request);
   }
   return judgement;
 }

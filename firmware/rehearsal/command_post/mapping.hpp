@@ -13,15 +13,18 @@ namespace adit::rehearsal {
 /// The mapping endpoint of the ICD's section 6, to the letter. At most `hz` requests a second for each URI.
 class StrictMapping : public Endpoint {
  public:
-  StrictMapping(std::string token, double hz) : token_(std::move(token)), hz_(hz) {}
+  StrictMapping(std::string token, double hz, Counted counted)
+      : token_(std::move(token)), hz_(hz), counted_(counted) {}
   Judgement judge(const Request& request) override;
 
  private:
-  bool too_many(const std::string& uri, Clock::time_point at);
+  bool too_many(const std::string& uri, const Request& request);
+  void count(const std::string& uri, const Request& request);
   void judge_body(const Request& request, Judgement& judgement);
 
   const std::string token_;
   const double hz_;
+  const Counted counted_;
   StampOrder stamps_;
   std::mutex mutex_;
   std::map<std::string, RateLimit> limits_;
@@ -31,12 +34,13 @@ class StrictMapping : public Endpoint {
 /// second, of all robots together.
 class MeasuredMapping : public Endpoint {
  public:
-  MeasuredMapping(std::string token, double hz) : token_(std::move(token)), cloud_limit_(hz) {}
+  MeasuredMapping(std::string token, double hz, Counted counted)
+      : token_(std::move(token)), cloud_limit_(hz, counted) {}
   Judgement judge(const Request& request) override;
 
  private:
   void judge_body(const Request& request, Judgement& judgement);
-  bool cloud_too_soon(Clock::time_point at);
+  bool cloud_too_soon(const Request& request);
 
   const std::string token_;
   StampOrder stamps_;

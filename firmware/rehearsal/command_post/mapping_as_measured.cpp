@@ -39,10 +39,10 @@ Outcome outcome_of(const Finding& finding) {
 
 }  // namespace
 
-bool MeasuredMapping::cloud_too_soon(Clock::time_point at) {
+bool MeasuredMapping::cloud_too_soon(const Request& request) {
   const std::lock_guard lock(mutex_);
-  const bool soon = cloud_limit_.too_soon(at);
-  cloud_limit_.count(at);
+  const bool soon = cloud_limit_.too_soon(request);
+  cloud_limit_.count(request, Clock::now());
   return soon;
 }
 
@@ -87,7 +87,7 @@ void MeasuredMapping::judge_body(const Request& request, Judgement& judgement) {
   stamps_.check(judgement.uri, message->stamps, true, findings);
   judgement.outcome = answered(200, Json(nullptr));
   // Too many clouds are told off and taken all the same.
-  if (message->map && std::holds_alternative<Cloud>(message->map->msg) && cloud_too_soon(request.at)) {
+  if (message->map && std::holds_alternative<Cloud>(message->map->msg) && cloud_too_soon(request)) {
     judgement.outcome = closing(refused(429, kTooManyClouds));
   }
   judgement.accepted = std::move(message->parts);

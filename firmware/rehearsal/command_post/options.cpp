@@ -33,6 +33,19 @@ Wrong take_megabytes(std::uint64_t& bytes, const std::string& text) {
   return wrong;
 }
 
+Wrong take_counted(Counted& counted, const std::string& text) {
+  if (text == "starts") {
+    counted = Counted::Starts;
+  } else if (text == "last-bytes") {
+    counted = Counted::LastBytes;
+  } else if (text == "answers") {
+    counted = Counted::Answers;
+  } else {
+    return "expected starts, last-bytes or answers, got '" + text + "'";
+  }
+  return std::nullopt;
+}
+
 Wrong take_as_measured(Options& options, const std::string&) {
   options.manner = Manner::AsMeasured;
   options.run.renames = false;
@@ -64,6 +77,9 @@ command_line::Program command_line_of(Options& options) {
            {"--reports", "N", "allotment of artifact reports (45)",
             number<0L, INT64_MAX>(options.run.reports)},
            {"--rate", "HZ", "429 above it, for each URI (1; 0: no limit)", number<0.0, kMost>(options.rate)},
+           {"--counts", "WHAT",
+            "of maps, states and markers, for that rate: starts, last-bytes, or answers (to the next start)",
+            take<take_counted>(options.counted)},
            {"--not-started", "", "the run waits for POST /start on the control port", &options.not_started},
            {"--fault", "AIM:FAULT", "what goes wrong with the next request of an aim; may be given often",
             &options.faults},

@@ -8,6 +8,7 @@
 #include "command_line/program.hpp"
 #include "rehearsal/command_post/address.hpp"
 #include "rehearsal/command_post/findings.hpp"
+#include "rehearsal/command_post/rate_limit.hpp"
 #include "rehearsal/command_post/run.hpp"
 
 namespace adit::rehearsal {
@@ -24,6 +25,7 @@ struct Options {
   Manner manner = Manner::Strict;
   RunPlan run;
   std::optional<double> rate;            // Hz; absent: as the manner has it
+  Counted counted = Counted::Starts;     // of what is mapping's, for the rate
   std::vector<std::string> faults;       // "reports:record-then-drop", not yet understood
   std::vector<std::string> fault_rates;  // "reports:record-then-drop=0.1", not yet understood
   std::uint64_t seed = 1;                // of what happens at random

@@ -79,8 +79,8 @@ StrictScoring::StrictScoring(std::string token, double hz, Run& run)
 bool StrictScoring::too_many(const Request& request) {
   const std::lock_guard lock(mutex_);
   RateLimit& limit = path_of(request.target) == kStatusUri ? status_limit_ : report_limit_;
-  if (limit.too_soon(request.at)) return true;
-  limit.count(request.at);
+  if (limit.too_soon(request)) return true;
+  limit.count(request, request.at);
   return false;
 }
 

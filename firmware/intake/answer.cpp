@@ -2,6 +2,9 @@
 
 #include <microhttpd.h>
 
+#include <memory>
+#include <utility>
+
 #include "codec/write.hpp"
 #include "intake/field_text.hpp"
 #include "intake/icd_routes.hpp"
@@ -38,10 +41,14 @@ bool is_field_value(std::string_view text) {
   return !text.empty() && has_no_controls(text);
 }
 
-MHD_Response* make_response(const Answer& answer) {
-  MHD_Response* response = MHD_create_response_from_buffer(
-      answer.body.size(), const_cast<char*>(answer.body.data()), MHD_RESPMEM_MUST_COPY);
+MHD_Response* make_response(Answer& answer) {
+  auto body = std::make_unique<std::string>(std::move(answer.body));
+  MHD_Response* response = MHD_create_response_from_buffer_with_free_callback_cls(
+      body->size(), body->data(),
+      [](void* cls) { const std::unique_ptr<std::string> freed(static_cast<std::string*>(cls)); },
+      body.get());
   if (response == nullptr) return nullptr;
+  body.release();  // NOLINT(bugprone-unused-return-value): the response owns it now
   if (may_have_body(answer)) add_header(response, MHD_HTTP_HEADER_CONTENT_TYPE, answer.content_type);
   for (const Header& header : answer.headers) add_header(response, header.name.c_str(), header.value);
   return response;

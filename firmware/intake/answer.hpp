@@ -16,8 +16,9 @@ bool is_field_value(std::string_view text);
 /// 503, with the sentence and when to try again.
 Answer no_room(std::string_view sentence);
 
-/// For libmicrohttpd; fields that are none are left out. Null where there is no memory.
-MHD_Response* make_response(const Answer& answer);
+/// For libmicrohttpd; fields that are none are left out. Null where there is no memory. The body is taken out
+/// of the answer, not copied: it may be megabytes.
+MHD_Response* make_response(Answer& answer);
 
 /// The whole answer as it goes over the wire, after which the connection ends. For when libmicrohttpd takes
 /// no answer: in the middle of a body, or of the head.

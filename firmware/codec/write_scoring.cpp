@@ -43,6 +43,10 @@ void append_escaped(std::string& out, char control) {
   }
 }
 
+bool stands_for_itself(char letter) {
+  return letter >= ' ' && letter <= '~' && letter != '"' && letter != '\\';
+}
+
 }  // namespace
 
 std::string write_artifact_report(const icd::ArtifactReport& report) {
@@ -60,6 +64,11 @@ std::string write_run_status(const icd::RunStatus& status) {
 std::string json_string(std::string_view text) {
   std::string out = "\"";
   while (!text.empty()) {
+    const auto plain =
+        static_cast<std::size_t>(std::ranges::find_if_not(text, stands_for_itself) - text.begin());
+    out += text.substr(0, plain);
+    text.remove_prefix(plain);
+    if (text.empty()) break;
     const std::size_t size = character_size(text);
     if (size == 0) {
       out += "\xef\xbf\xbd";  // U+FFFD

@@ -49,7 +49,7 @@ class Api::Impl {
         sessions_(loop, entrance_, served.keys, served.setup),
         run_(served.source, served.judge, live_, entrance_),
         maps_(served.source),
-        reports_(served.source, served.judge, [this] { changed(); }) {
+        reports_(loop, served.source, served.judge, [this] { changed(); }) {
     if (served.setup) settings_.emplace(*served.setup);
     if (served.network) network_.emplace(*served.network, *served.test, [this] { changed(); });
     if (served.updates) updates_.emplace(*served.updates, [this] { changed(); });

@@ -7,6 +7,7 @@
 #include "api/bundle.hpp"
 #include "api/exposition.hpp"
 #include "api/metrics.hpp"
+#include "api/report_list.hpp"
 #include "api/small_body.hpp"
 
 namespace adit::api {
@@ -29,8 +30,10 @@ intake::Answer download(intake::Answer answer, const std::string& name) {
 }  // namespace
 
 std::string BoxRoutes::metrics_text() const {
-  Measured measured{
-      .view = source_.view(), .reports = source_.reports(), .usage = box_.usage(), .about = box_.about()};
+  Measured measured{.view = source_.view(),
+                    .reports = source_.report_counts(),
+                    .usage = box_.usage(),
+                    .about = box_.about()};
   for (const access::Session& session : entrance_.sessions().all(loop_.now())) {
     ++(session.role == access::Role::Operator ? measured.operators : measured.viewers);
   }
@@ -75,15 +78,18 @@ intake::Answer BoxRoutes::about() const {
 
 std::unique_ptr<intake::BodySink> BoxRoutes::bundle(const Call& call) {
   return std::make_unique<SmallBody>(
-      call.responder, 0, [this, responder = call.responder](const std::string&) { pack(responder); });
+      call.responder, 0, [this, responder = call.responder](const std::string&) {
+        list_reports(loop_, source_, json_list(), std::nullopt,
+                     [this, responder](std::string reports) { pack(responder, std::move(reports)); });
+      });
 }
 
-void BoxRoutes::pack(const std::shared_ptr<intake::Responder>& responder) {
+void BoxRoutes::pack(const std::shared_ptr<intake::Responder>& responder, std::string reports) {
   const Time now = loop_.stamp_now();
   auto files = std::make_shared<std::vector<BundleFile>>();
   files->push_back({"about.json", about_json()});
   files->push_back({"run.json", codec::to_json(source_.view())});
-  files->push_back({"reports.json", codec::to_json(source_.reports())});
+  files->push_back({"reports.json", std::move(reports)});
   files->push_back({"settings.json", box_.settings()});
   files->push_back({"network.json", codec::to_json(box_.network())});
   files->push_back({"metrics.txt", metrics_text()});

@@ -27,7 +27,7 @@ class BoxRoutes {
   std::unique_ptr<intake::BodySink> bundle(const Call& call);
 
  private:
-  void pack(const std::shared_ptr<intake::Responder>& responder);
+  void pack(const std::shared_ptr<intake::Responder>& responder, std::string reports);
   std::string about_json() const;
   std::string metrics_text() const;
   std::string log_lines(const LogFilter& filter) const;

@@ -1,7 +1,6 @@
 #include "api/metrics.hpp"
 
 #include <algorithm>
-#include <map>
 
 #include "api/exposition.hpp"
 #include "dispatch/report_life.hpp"
@@ -75,18 +74,13 @@ void write_run(Exposition& out, const RunView& view) {
   out.sample(view.now - *view.run_heard);
 }
 
-void write_reports(Exposition& out, const std::vector<ReportRow>& reports) {
-  std::map<std::string, std::uint64_t> states;
-  for (const std::string_view state : dispatch::kStateWords) states[std::string(state)] = 0;
-  std::uint64_t asking = 0;
-  for (const ReportRow& report : reports) {
-    ++states[report.state];
-    if (report.asking) ++asking;
-  }
+void write_reports(Exposition& out, const ReportCounts& reports) {
   out.gauge("adit_reports", "Artifact reports of all runs, by where they are in their lives.");
-  for (const auto& [state, count] : states) out.sample({{"state", state}}, number(count));
+  for (std::size_t i = 0; i < reports.in.size(); ++i) {
+    out.sample({{"state", std::string(dispatch::kStateWords[i])}}, number(reports.in[i]));
+  }
   out.gauge("adit_reports_asking", "Reports in doubt of which Adit is finding out what became.");
-  out.sample(number(asking));
+  out.sample(number(reports.asking));
 }
 
 void write_endpoints(Exposition& out, const RunView& view) {

@@ -1,7 +1,6 @@
 #pragma once
 
 #include <string>
-#include <vector>
 
 #include "api/box.hpp"
 
@@ -10,7 +9,7 @@ namespace adit::api {
 /// What the metrics are made of.
 struct Measured {
   RunView view;
-  std::vector<ReportRow> reports;  // of all runs
+  ReportCounts reports;  // of all runs
   Usage usage;
   About about;
   std::uint64_t operators = 0, viewers = 0;  // sessions

@@ -1,10 +1,12 @@
 #include "api/report_routes.hpp"
 
+#include <optional>
 #include <utility>
 
 #include "api/answers.hpp"
 #include "api/number_in.hpp"
 #include "api/reports_csv.hpp"
+#include "api/small_body.hpp"
 #include "codec/body_decoder.hpp"
 #include "codec/field.hpp"
 #include "codec/read.hpp"
@@ -24,32 +26,39 @@ intake::Answer no_such(std::int64_t number) {
 
 }  // namespace
 
-ReportRoutes::ReportRoutes(const Source& source, Operator& judge, std::function<void()> changed)
-    : source_(source), operator_(judge), changed_(std::move(changed)) {}
+ReportRoutes::ReportRoutes(loop::Loop& loop, const Source& source, Operator& judge,
+                           std::function<void()> changed)
+    : loop_(loop), source_(source), operator_(judge), changed_(std::move(changed)) {}
 
-icd::Checked<std::vector<ReportRow>> ReportRoutes::listed(std::string_view run) const {
-  std::vector<ReportRow> rows = source_.reports();
-  if (run.empty() || run == kAll) return rows;
-  const auto number = run == kPresent ? source_.view().run_number : number_in<std::int64_t>(run);
-  if (!number) {
-    return std::unexpected(
-        icd::Refusal{icd::Status::BadRequest, "run: expected a run's number, present or all"});
+std::unique_ptr<intake::BodySink> ReportRoutes::listed(const Call& call, ListForm form,
+                                                       intake::Answer begun) const {
+  std::optional<std::int64_t> run;
+  if (const auto named = call.head.query("run"); !named.empty() && named != kAll) {
+    run = named == kPresent ? source_.view().run_number : number_in<std::int64_t>(named);
+    if (!run) {
+      call.responder->answer(
+          refusal(icd::Status::BadRequest, "run: expected a run's number, present or all"));
+      return nullptr;
+    }
   }
-  std::erase_if(rows, [&](const ReportRow& row) { return row.run != *number; });
-  return rows;
+  const auto answer = [responder = call.responder, begun = std::move(begun)](std::string list) mutable {
+    begun.body = std::move(list);
+    responder->answer(std::move(begun));
+  };
+  return std::make_unique<SmallBody>(call.responder, 0,
+                                     [this, form = std::move(form), run, answer](const std::string&) {
+                                       list_reports(loop_, source_, form, run, answer);
+                                     });
 }
 
-intake::Answer ReportRoutes::list(const intake::RequestHead& head) const {
-  const auto rows = listed(head.query("run"));
-  return rows ? fresh("application/json", codec::to_json(*rows)) : refused(rows.error());
+std::unique_ptr<intake::BodySink> ReportRoutes::list(const Call& call) const {
+  return listed(call, json_list(), fresh("application/json", ""));
 }
 
-intake::Answer ReportRoutes::csv(const intake::RequestHead& head) const {
-  const auto rows = listed(head.query("run"));
-  if (!rows) return refused(rows.error());
-  auto answer = fresh("text/csv; charset=utf-8; header=present", write_reports_csv(*rows));
-  answer.headers.push_back({"Content-Disposition", "attachment; filename=\"adit-reports.csv\""});
-  return answer;
+std::unique_ptr<intake::BodySink> ReportRoutes::csv(const Call& call) const {
+  auto begun = fresh("text/csv; charset=utf-8; header=present", "");
+  begun.headers.push_back({"Content-Disposition", "attachment; filename=\"adit-reports.csv\""});
+  return listed(call, {.begin = csv_header(), .row = csv_line, .between = "", .end = ""}, std::move(begun));
 }
 
 intake::Answer ReportRoutes::one(std::int64_t number) const {

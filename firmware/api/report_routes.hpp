@@ -1,10 +1,11 @@
 #pragma once
 
 #include <functional>
+#include <memory>
 #include <string>
-#include <string_view>
-#include <vector>
 
+#include "api/report_list.hpp"
+#include "api/route.hpp"
 #include "api/source.hpp"
 #include "intake/server.hpp"
 
@@ -13,11 +14,11 @@ namespace adit::api {
 /// What is known of reports, and the operator's actions: README.md.
 class ReportRoutes {
  public:
-  /// `changed` is called after each action. All outlive this.
-  ReportRoutes(const Source& source, Operator& judge, std::function<void()> changed);
+  /// `changed` is called after each action. All outlive this, and the answers that are under way.
+  ReportRoutes(loop::Loop& loop, const Source& source, Operator& judge, std::function<void()> changed);
 
-  intake::Answer list(const intake::RequestHead& head) const;
-  intake::Answer csv(const intake::RequestHead& head) const;
+  std::unique_ptr<intake::BodySink> list(const Call& call) const;
+  std::unique_ptr<intake::BodySink> csv(const Call& call) const;
   intake::Answer one(std::int64_t number) const;
   template <Action action>
   intake::Answer judge(std::int64_t number) {
@@ -26,11 +27,12 @@ class ReportRoutes {
   intake::Answer compose(const std::string& body);
 
  private:
-  /// Of one run: its number, "present" or, as "", "all".
-  icd::Checked<std::vector<ReportRow>> listed(std::string_view run) const;
+  /// All of one run, which the request names (its number, "present" or "all"), answered as `begun` with them.
+  std::unique_ptr<intake::BodySink> listed(const Call& call, ListForm form, intake::Answer begun) const;
   intake::Answer judge(std::int64_t number, Action action);
   intake::Answer composed(const std::string& body);
 
+  loop::Loop& loop_;
   const Source& source_;
   Operator& operator_;
   std::function<void()> changed_;

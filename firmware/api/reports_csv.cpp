@@ -105,10 +105,12 @@ std::string line(const codec::Value::Object& row) {
 
 }  // namespace
 
-std::string write_reports_csv(const std::vector<ReportRow>& reports) {
-  std::string text = line([](const codec::Member&, const codec::Member& inner) { return inner.name; });
-  for (const ReportRow& row : reports) text += line(std::get<codec::Value::Object>(codec::json(row).is));
-  return text;
+std::string csv_header() {
+  return line([](const codec::Member&, const codec::Member& inner) { return inner.name; });
+}
+
+std::string csv_line(const ReportRow& row) {
+  return line(std::get<codec::Value::Object>(codec::json(row).is));
 }
 
 std::string iso_time(Time time) {

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <array>
 #include <cstdint>
 #include <optional>
 #include <string>
@@ -8,6 +9,7 @@
 
 #include "api/scene.hpp"
 #include "codec/row.hpp"
+#include "dispatch/report_life.hpp"
 #include "icd/geometry.hpp"
 #include "icd/run_status.hpp"
 
@@ -36,6 +38,12 @@ struct ReportRow {
   std::int64_t same_as = 0;
 
   static const codec::Row kRow;
+};
+
+/// How many reports are where in their lives.
+struct ReportCounts {
+  std::array<std::uint64_t, std::size(dispatch::kStateWords)> in{};  // each state
+  std::uint64_t asking = 0;
 };
 
 /// One step of a report's life.

@@ -21,7 +21,9 @@ class Source {
  public:
   virtual ~Source() = default;
   virtual RunView view() const = 0;
-  virtual std::vector<ReportRow> reports() const = 0;  // of all runs, oldest first
+  /// Of all runs, those that are numbered above `after`, oldest first, at most `most`.
+  virtual std::vector<ReportRow> reports(std::int64_t after, std::size_t most) const = 0;
+  virtual ReportCounts report_counts() const = 0;  // of all runs
   virtual std::optional<ReportDetail> report(std::int64_t number) const = 0;
   virtual const picture::Mosaic& map() const = 0;
   /// What changed after version `since`.

@@ -15,7 +15,8 @@ struct Open {
 
 Open open_here(const Reports& reports) {
   Open open;
-  for (const auto& [number, report] : reports.book().all()) {
+  for (const std::int64_t number : reports.book().open()) {
+    const Report& report = reports.book().at(number);
     if (!reports.runs().is_at(report.run, reports.meant_run().post)) continue;
     open.waiting += report.state == ReportState::Waiting ? 1 : 0;
     open.held += report.state == ReportState::Received ? 1 : 0;

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <tuple>
+#include <utility>
 
 namespace adit::dispatch {
 namespace {
@@ -32,7 +33,7 @@ bool can_be_found_out(const Report& report, ReportEvent event) {
 }  // namespace
 
 void ReportBook::open(std::vector<Report> all) {
-  for (Report& report : all) put(report);
+  for (Report& report : all) put(std::move(report));
 }
 
 std::int64_t ReportBook::add(Report report, std::span<const ReportEvent> events, const std::string& note,
@@ -123,18 +124,26 @@ std::span<const std::int64_t> ReportBook::at_position(const icd::Point& position
   return found->second;
 }
 
-void ReportBook::put(const Report& report) {
-  const bool is_new = reports_.insert_or_assign(report.number, report).second;
-  if (is_new) by_position_[report.report.position].push_back(report.number);
-  const auto keep = [&report](std::set<std::int64_t>& numbers, ReportState state) {
-    if (report.state == state) {
-      numbers.insert(report.number);
+void ReportBook::put(Report report) {
+  const std::int64_t number = report.number;
+  const ReportState state = report.state;
+  if (const Report* const before = find(number); before != nullptr) {
+    --counts_.at(static_cast<std::size_t>(before->state));
+  } else {
+    by_position_[report.report.position].push_back(number);
+  }
+  ++counts_.at(static_cast<std::size_t>(state));
+  const auto keep = [number](std::set<std::int64_t>& numbers, bool is_in) {
+    if (is_in) {
+      numbers.insert(number);
     } else {
-      numbers.erase(report.number);
+      numbers.erase(number);
     }
   };
-  keep(waiting_, ReportState::Waiting);
-  keep(in_doubt_, ReportState::InDoubt);
+  keep(waiting_, state == ReportState::Waiting);
+  keep(in_doubt_, state == ReportState::InDoubt);
+  keep(open_, !is_final(state));
+  reports_.insert_or_assign(number, std::move(report));
 }
 
 const Report* ReportBook::find(std::int64_t number) const {

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <array>
 #include <cstdint>
 #include <functional>
 #include <map>
@@ -60,13 +61,17 @@ class ReportBook {
   std::span<const std::int64_t> at_position(const icd::Point& position) const;
   /// Those in state Waiting, oldest first.
   const std::set<std::int64_t>& waiting() const { return waiting_; }
+  /// Those with which something is still to happen, oldest first: few of many.
+  const std::set<std::int64_t>& open() const { return open_; }
+  /// How many are in this state.
+  std::size_t count(ReportState state) const { return counts_.at(static_cast<std::size_t>(state)); }
   /// Those in doubt in `run`, in the order in which they were sent.
   std::vector<const Report*> doubts(std::int64_t run) const;
 
  private:
   bool write(std::span<const Report> steps, bool happened, Flush flush = Flush::Now);
   bool write_earlier_runs();
-  void put(const Report& report);
+  void put(Report report);
 
   Output& output_;
   struct ByPlace {
@@ -75,7 +80,9 @@ class ReportBook {
 
   std::map<std::int64_t, Report> reports_;
   std::map<icd::Point, std::vector<std::int64_t>, ByPlace> by_position_;
+  std::array<std::size_t, std::size(kStateWords)> counts_{};
   std::set<std::int64_t> waiting_;
+  std::set<std::int64_t> open_;
   std::set<std::int64_t> in_doubt_;
   std::set<std::int64_t> unwritten_;  // their last step has happened, but is not on disk
   std::vector<Run> unwritten_runs_;   // each as it now is, the one that changed last at the end

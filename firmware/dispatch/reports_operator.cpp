@@ -108,7 +108,8 @@ Reports::Outcome Reports::resubmit(std::int64_t number, Time time) {
 
 std::vector<std::string> Reports::attention() const {
   std::vector<std::string> sentences;
-  for (const auto& [number, report] : book_.all()) {
+  for (const std::int64_t number : book_.open()) {
+    const Report& report = book_.at(number);
     if (report.is_lost() && report.state == ReportState::InDoubt) {
       sentences.push_back(report.note + (is_of_run(report) ? kUntilDone : kCallDone));
     } else if (report.state == ReportState::Received || report.state == ReportState::InDoubt) {

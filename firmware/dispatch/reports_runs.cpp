@@ -187,7 +187,8 @@ void Reports::return_to(const Run& known, Time time) {
 /// The present run is another for certain: what was held because that was not known is none of its repeats.
 void Reports::clear_held(Time time) {
   std::vector<ReportBook::Step> steps;
-  for (const auto& [number, report] : book_.all()) {
+  for (const std::int64_t number : book_.open()) {
+    const Report& report = book_.at(number);
     const bool held = report.state == ReportState::Received && report.same_as != 0;
     if (!held || report.run != run().number) continue;
     steps.push_back({number, ReportEvent::Cleared,

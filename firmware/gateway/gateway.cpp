@@ -153,8 +153,12 @@ void Gateway::note_robot(const std::string& name) {
   if (roster_.posted(name, loop_.now())) host::log(host::Level::Warning, roster_.sentence(name));
 }
 
-std::vector<api::ReportRow> Gateway::reports() const {
-  return all_rows(flow_.reports());
+std::vector<api::ReportRow> Gateway::reports(std::int64_t after, std::size_t most) const {
+  return rows_after(flow_.reports(), after, most);
+}
+
+api::ReportCounts Gateway::report_counts() const {
+  return counts_of(flow_.reports());
 }
 
 std::optional<api::ReportDetail> Gateway::report(std::int64_t number) const {

@@ -76,7 +76,8 @@ class Gateway final : public api::Source, public api::Operator {
   std::string status_line() const;
 
   api::RunView view() const override;
-  std::vector<api::ReportRow> reports() const override;
+  std::vector<api::ReportRow> reports(std::int64_t after, std::size_t most) const override;
+  api::ReportCounts report_counts() const override;
   std::optional<api::ReportDetail> report(std::int64_t number) const override;
   std::expected<std::int64_t, std::string> judge(std::int64_t number, api::Action action) override {
     return flow_.judge(number, action);

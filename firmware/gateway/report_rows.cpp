@@ -1,6 +1,7 @@
 #include "gateway/report_rows.hpp"
 
 #include <algorithm>
+#include <functional>
 #include <ranges>
 
 #include "codec/read.hpp"
@@ -31,30 +32,43 @@ api::ReportRow row_of(const dispatch::Reports& reports, const dispatch::Report& 
   return row;
 }
 
-std::vector<api::ReportRow> all_rows(const dispatch::Reports& reports) {
+std::vector<api::ReportRow> rows_after(const dispatch::Reports& reports, std::int64_t after,
+                                       std::size_t most) {
   std::vector<api::ReportRow> rows;
-  for (const auto& [number, report] : reports.book().all()) rows.push_back(row_of(reports, report));
+  const auto& all = reports.book().all();
+  for (auto next = all.upper_bound(after); next != all.end() && rows.size() < most; ++next) {
+    rows.push_back(row_of(reports, next->second));
+  }
   return rows;
 }
 
-std::vector<const dispatch::Report*> latest_of(const std::map<std::int64_t, dispatch::Report>& all,
-                                               std::size_t most) {
-  const auto is_open = [](const auto& item) { return !dispatch::is_final(item.second.state); };
-  const auto open = static_cast<std::size_t>(std::ranges::count_if(all, is_open));
-  std::size_t room = most - std::min(most, open);  // for those that are done
-  std::vector<const dispatch::Report*> chosen;
-  for (const auto& item : all | std::views::reverse) {
-    if (chosen.size() == most) break;
-    if (!is_open(item) && room == 0) continue;
-    if (!is_open(item)) --room;
-    chosen.push_back(&item.second);
+api::ReportCounts counts_of(const dispatch::Reports& reports) {
+  api::ReportCounts counts;
+  for (std::size_t i = 0; i < counts.in.size(); ++i) {
+    counts.in[i] = reports.book().count(static_cast<dispatch::ReportState>(i));
   }
+  counts.asking = static_cast<std::uint64_t>(std::ranges::count_if(
+      reports.book().open(),
+      [&reports](std::int64_t number) { return reports.is_asking(reports.book().at(number)); }));
+  return counts;
+}
+
+std::vector<const dispatch::Report*> latest_of(const dispatch::ReportBook& book, std::size_t most) {
+  std::vector<const dispatch::Report*> chosen;
+  for (const std::int64_t number : book.open() | std::views::reverse | std::views::take(most)) {
+    chosen.push_back(&book.at(number));
+  }
+  for (const auto& [number, report] : book.all() | std::views::reverse) {
+    if (chosen.size() == most) break;
+    if (dispatch::is_final(report.state)) chosen.push_back(&report);
+  }
+  std::ranges::sort(chosen, std::greater(), &dispatch::Report::number);
   return chosen;
 }
 
 std::vector<api::ReportRow> latest_rows(const dispatch::Reports& reports, std::size_t most) {
   std::vector<api::ReportRow> rows;
-  for (const dispatch::Report* const report : latest_of(reports.book().all(), most)) {
+  for (const dispatch::Report* const report : latest_of(reports.book(), most)) {
     rows.push_back(row_of(reports, *report));
   }
   return rows;

@@ -1,6 +1,5 @@
 #pragma once
 
-#include <map>
 #include <vector>
 
 #include "api/run_view.hpp"
@@ -11,12 +10,13 @@ namespace adit::gateway {
 
 /// Reports as the page and `adit reports` show them.
 api::ReportRow row_of(const dispatch::Reports& reports, const dispatch::Report& report);
-/// All of them, oldest first.
-std::vector<api::ReportRow> all_rows(const dispatch::Reports& reports);
+/// Those that are numbered above `after`, oldest first, at most `most`.
+std::vector<api::ReportRow> rows_after(const dispatch::Reports& reports, std::int64_t after,
+                                       std::size_t most);
+api::ReportCounts counts_of(const dispatch::Reports& reports);
 /// At most `most` of them, newest first: those with which something is still to happen, and the newest
 /// others.
-std::vector<const dispatch::Report*> latest_of(const std::map<std::int64_t, dispatch::Report>& all,
-                                               std::size_t most);
+std::vector<const dispatch::Report*> latest_of(const dispatch::ReportBook& book, std::size_t most);
 std::vector<api::ReportRow> latest_rows(const dispatch::Reports& reports, std::size_t most);
 
 /// One report with its history, or nothing where there is none of that number.

@@ -11,6 +11,7 @@
 
 #include "api/fake_keys.hpp"
 #include "api/fake_network.hpp"
+#include "api/played.hpp"
 #include "api/source.hpp"
 #include "intake/server.hpp"
 #include "picture/mosaic.hpp"
@@ -22,11 +23,15 @@ struct FakeSource final : Source {
     ++asked;
     return now;
   }
-  std::vector<ReportRow> reports() const override {
+  std::vector<ReportRow> all() const {
     std::vector<ReportRow> rows;
     for (const auto& [number, detail] : details) rows.push_back(detail.row);
     return rows;
   }
+  std::vector<ReportRow> reports(std::int64_t after, std::size_t most) const override {
+    return rows_after(all(), after, most);
+  }
+  ReportCounts report_counts() const override { return counts_of(all()); }
   std::optional<ReportDetail> report(std::int64_t number) const override {
     const auto found = details.find(number);
     return found == details.end() ? std::nullopt : std::optional(found->second);

@@ -4,6 +4,7 @@
 
 #include "api/exposition.hpp"
 #include "api/exposition_grammar.hpp"
+#include "api/played.hpp"
 #include "api/scenes.hpp"
 #include "icd/sentence.hpp"
 
@@ -17,7 +18,7 @@ using testing::Not;
 Measured measured(const std::string& name) {
   const Time now = 1'780'000'000;
   Measured measured{.view = *scene(name, now, 60), .reports = {}, .usage = {}, .about = {}};
-  measured.reports = measured.view.reports;
+  measured.reports = counts_of(measured.view.reports);
   return measured;
 }
 
@@ -85,14 +86,10 @@ TEST(Metrics, CarryWhatTheViewSays) {
 
 TEST(Metrics, CountReportsByTheirStates) {
   Measured all = measured("empty");
-  ReportRow waiting, doubtful;
-  waiting.state = "waiting";
-  doubtful.state = "in doubt";
-  doubtful.asking = true;
-  all.reports = {waiting, waiting, doubtful};
+  all.reports.in[static_cast<std::size_t>(dispatch::ReportState::Waiting)] = 2;
+  all.reports.asking = 1;
   const std::string text = write_metrics(all);
   EXPECT_THAT(text, HasSubstr("adit_reports{state=\"waiting\"} 2\n"));
-  EXPECT_THAT(text, HasSubstr("adit_reports{state=\"in doubt\"} 1\n"));
   EXPECT_THAT(text, HasSubstr("adit_reports{state=\"settled\"} 0\n"))
       << "so that it is known before there is one";
   EXPECT_THAT(text, HasSubstr("adit_reports_asking 1\n"));

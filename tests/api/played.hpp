@@ -11,6 +11,23 @@
 
 namespace adit::api {
 
+/// As a Source gives them: those of `all`, oldest first, that are numbered above `after`.
+inline std::vector<ReportRow> rows_after(std::vector<ReportRow> all, std::int64_t after, std::size_t most) {
+  std::erase_if(all, [after](const ReportRow& row) { return row.number <= after; });
+  all.resize(std::min(all.size(), most));
+  return all;
+}
+
+inline ReportCounts counts_of(const std::vector<ReportRow>& rows) {
+  ReportCounts counts;
+  for (const ReportRow& row : rows) {
+    const auto state = dispatch::state_named(row.state);
+    if (state) ++counts.in.at(static_cast<std::size_t>(*state));
+    counts.asking += row.asking ? 1 : 0;
+  }
+  return counts;
+}
+
 /// What was done to a scene's reports, so that a browser sees it done.
 class Played {
  public:

@@ -7,6 +7,12 @@
 namespace adit::api {
 namespace {
 
+std::string csv(const std::vector<ReportRow>& rows) {
+  std::string text = csv_header();
+  for (const ReportRow& row : rows) text += csv_line(row);
+  return text;
+}
+
 using testing::HasSubstr;
 
 constexpr const char* kHeader =
@@ -31,7 +37,7 @@ ReportRow row() {
 std::string note_cell(std::string note) {
   ReportRow noted;
   noted.note = std::move(note);
-  const std::string text = write_reports_csv({noted});
+  const std::string text = csv({noted});
   const std::string before = std::string(kHeader) +
                              "0,1,,0,0,0,,1970-01-01T00:00:00.000Z,"
                              "1970-01-01T00:00:00.000Z,,no,no,,,,,";
@@ -41,16 +47,16 @@ std::string note_cell(std::string note) {
 }
 
 TEST(ReportsCsv, HasALineOfNamesAndOneForEachReport) {
-  EXPECT_EQ(write_reports_csv({}), kHeader);
-  EXPECT_EQ(write_reports_csv({row()}), std::string(kHeader) +
-                                            "7,1,Survivor,85.75,-4.5,0.25,10.0.0.5,2019-08-20T14:03:05.125Z,"
-                                            "2019-08-20T14:03:06.000Z,answered,no,no,,201,scored,1,\r\n");
+  EXPECT_EQ(csv({}), kHeader);
+  EXPECT_EQ(csv({row()}), std::string(kHeader) +
+                              "7,1,Survivor,85.75,-4.5,0.25,10.0.0.5,2019-08-20T14:03:05.125Z,"
+                              "2019-08-20T14:03:06.000Z,answered,no,no,,201,scored,1,\r\n");
 }
 
 TEST(ReportsCsv, GivesAReportThatIsLostNoPlace) {
   ReportRow lost = row();
   lost.position.reset();
-  EXPECT_THAT(write_reports_csv({lost}), HasSubstr("7,1,Survivor,,,,10.0.0.5,"));
+  EXPECT_THAT(csv({lost}), HasSubstr("7,1,Survivor,,,,10.0.0.5,"));
 }
 
 TEST(ReportsCsv, TellsFoundOutAnswersZeroPointsAndRepeats) {
@@ -59,10 +65,10 @@ TEST(ReportsCsv, TellsFoundOutAnswersZeroPointsAndRepeats) {
   settled.score_change = 0;
   settled.reconciled = true;
   settled.same_as = 3;
-  EXPECT_THAT(write_reports_csv({settled}), HasSubstr(",settled,no,yes,3,201,scored,0,"));
+  EXPECT_THAT(csv({settled}), HasSubstr(",settled,no,yes,3,201,scored,0,"));
   settled.state = "in doubt";
   settled.asking = true;
-  EXPECT_THAT(write_reports_csv({settled}), HasSubstr(",in doubt,yes,yes,"));
+  EXPECT_THAT(csv({settled}), HasSubstr(",in doubt,yes,yes,"));
 }
 
 TEST(ReportsCsv, QuotesWhatWouldEndACell) {

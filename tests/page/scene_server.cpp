@@ -40,10 +40,11 @@ class Stage final : public Source, public Operator {
     return view;
   }
 
-  std::vector<ReportRow> reports() const override {
+  std::vector<ReportRow> reports(std::int64_t after, std::size_t most) const override {
     auto rows = view().reports;
-    return {rows.rbegin(), rows.rend()};
+    return rows_after({rows.rbegin(), rows.rend()}, after, most);
   }
+  ReportCounts report_counts() const override { return counts_of(view().reports); }
   std::optional<ReportDetail> report(std::int64_t number) const override {
     const auto rows = view().reports;
     const auto row = std::ranges::find(rows, number, &ReportRow::number);

@@ -57,8 +57,10 @@ std::vector<std::string> Record::attention(api::Time now) const {
   for (const auto& [traffic, activity] : rows_) {
     if (!activity.last_no_room || now - *activity.last_no_room > kRecent) continue;
     if (++count > kNamed) continue;
-    names +=
-        (names.empty() ? "" : ", ") + activity.robot + (activity.robot.empty() ? "" : " ") + activity.kind;
+    const bool is_of_all = traffic.kind == Kind::Markers;
+    names += names.empty() ? "" : ", ";
+    names += is_of_all ? "" : (activity.robot.empty() ? "merged" : activity.robot) + " ";
+    names += activity.kind;
   }
   if (count == 0) return {};
   if (count > kNamed) names += icd::sentence(" and ", count - kNamed, " more");

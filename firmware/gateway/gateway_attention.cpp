@@ -44,8 +44,10 @@ std::vector<std::string> Gateway::attention() const {
       "mapping");
   std::ranges::move(roster_.attention(loop_.now()), std::back_inserter(sentences));
   std::ranges::move(crowding_.attention(loop_.now()), std::back_inserter(sentences));
-  std::ranges::move(flow_.record().attention(loop_.stamp_now()), std::back_inserter(sentences));
-  if (flow_.maps().nearly_full()) sentences.emplace_back("the queue of maps is nearly full");
+  const std::vector<std::string> refused = flow_.record().attention(loop_.stamp_now());
+  sentences.insert(sentences.end(), refused.begin(), refused.end());
+  if (flow_.maps().nearly_full() && refused.empty())
+    sentences.emplace_back("the queue of maps is nearly full");
   return sentences;
 }
 

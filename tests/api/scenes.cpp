@@ -108,6 +108,7 @@ RunView trouble(Time now, double elapsed) {
     row.last_status = 0;
     row.last_sentence = "connecting to 10.100.1.201:8000: Connection refused";
   }
+  view.activities[2].behind_since = began - 125;
   view.activities[3].waiting = 247;
   view.activities[3].behind_since = began - 33;
   view.activities[4].last_status = 429;

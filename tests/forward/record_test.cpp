@@ -56,11 +56,12 @@ TEST(Record, TellsOfRobotsThatAreRefusedForWantOfRoomForAMinute) {
   Record record([] {});
   EXPECT_TRUE(record.attention(1).empty());
   record.no_room(kCloudOfR1, 10);
+  record.no_room({Kind::Cloud, ""}, 10);
   record.no_room({Kind::Markers, ""}, 20);
   record.no_room({Kind::Markers, ""}, 21);
   EXPECT_EQ(record.rows().at({Kind::Markers, ""}).no_room, 2u);
-  EXPECT_EQ(record.attention(70),
-            std::vector<std::string>{"too much waits, so that robots are refused: r1 cloud, markers"});
+  EXPECT_EQ(record.attention(70), std::vector<std::string>{"too much waits, so that robots are refused: "
+                                                           "merged cloud, r1 cloud, markers"});
   EXPECT_EQ(record.attention(80),
             std::vector<std::string>{"too much waits, so that robots are refused: markers"});
   EXPECT_TRUE(record.attention(82).empty());

@@ -25,7 +25,7 @@ test("follows what changes, and says so to those who only listen", async (t) => 
   assert.equal(await alert.textContent(), "");
   stage.play("trouble");
   await said(page, "1 report is in doubt");
-  assert.match(await text(page, "#arriving"), /No: ANYmal1 grid not arriving, ANYmal1 cloud not arriving/);
+  assert.match(await text(page, "#arriving"), /No: ANYmal1 cloud not arriving, ANYmal1 grid not arriving/); // the one longest behind first
   await page.getByRole("row", { name: /ANYmal2/ }).filter({ hasText: /\d s behind *247 waiting/ }).waitFor(); // though one was just sent
   assert.match(await text(page, "#sayings"), /ANYmal2 cloud: 429 "Cloud updates too frequent/);
   assert.match(await text(page, "#post"), /not connected.*Connection refused/);

@@ -28,13 +28,15 @@ const RANK = ["quiet", "good", "wait", "bad"];
 const worst = (arrivals) =>
   arrivals.reduce((a, b) => (RANK.indexOf(b.level) > RANK.indexOf(a.level) ? b : a), { level: "quiet" });
 
-/** One sentence over all maps: is my map arriving? */
+const since = ({ row }) => row.behind_since ?? Infinity;
+
+/** One sentence over all maps, those first that are longest behind: is my map arriving? */
 export function overall(activities, now) {
   const maps = activities.filter((row) => row.kind === "grid" || row.kind === "cloud");
   if (maps.length === 0) return { level: "quiet", word: "No robot has sent a map yet" };
   const arrivals = maps.map((row) => ({ ...arrival(row, now), row }));
   const { level } = worst(arrivals);
-  const those = arrivals.filter((arrival) => arrival.level === level);
+  const those = arrivals.filter((arrival) => arrival.level === level).sort((a, b) => since(a) - since(b));
   const names = those.map(({ row, word }) => `${robotOf(row)} ${kindOf(row)} ${word}`);
   const who = names.length > 3 ? `${names.slice(0, 2).join(", ")} and ${names.length - 2} more` : names.join(", ");
   if (level === "bad") return { level, word: `No: ${who}` };

@@ -56,6 +56,8 @@ class Channel {
   std::uint64_t throttled() const { return throttled_; }
   /// When last_status() was heard.
   loop::Instant heard() const { return heard_; }
+  /// uplink::Connection::delivers(); 0 where there is no connection.
+  std::uint64_t delivers() const { return connection_ ? connection_->delivers() : 0; }
   /// Bytes of the request under way, or of the last one, that the kernel has taken.
   std::size_t sent_of_it() const { return connection_ ? connection_->sent_bytes() : 0; }
   /// All bytes of bodies that were handed to the kernel, those under way included.

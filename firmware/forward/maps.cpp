@@ -139,6 +139,7 @@ loop::Instant Maps::begins_to_pack(loop::Instant now) const {
 
 void Maps::prepare(std::shared_ptr<Prepared>& place) {
   auto prepared = std::make_shared<Prepared>();
+  slot_.link_delivers(channel_.delivers());
   lane_.merge_at_most(std::min(settings_.queues.merge_bytes, slot_.points_within(pace_.spacing())));
   auto waiting = lane_.take(loop_.now());
   if (!waiting) return;

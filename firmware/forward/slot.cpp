@@ -35,6 +35,11 @@ void Slot::left(std::size_t bytes, const uplink::Sent& sent, loop::Instant last_
   bytes_per_second_ = was_held_back ? std::max(seen, bytes_per_second_) : seen;
 }
 
+void Slot::link_delivers(std::uint64_t bytes_per_second) {
+  if (bytes_per_second == 0) return;
+  bytes_per_second_ = std::min(bytes_per_second_, static_cast<double>(bytes_per_second));
+}
+
 loop::Duration Slot::transfer(std::size_t bytes) const {
   return std::chrono::duration_cast<loop::Duration>(Seconds(static_cast<double>(bytes) / bytes_per_second_));
 }

@@ -22,6 +22,9 @@ class Slot {
   /// So many bytes left, of which the last were held back until then.
   void left(std::size_t bytes, const uplink::Sent& sent, loop::Instant last_byte_not_before);
 
+  /// The link takes no more than so many bytes a second now; 0: not known.
+  void link_delivers(std::uint64_t bytes_per_second);
+
   /// How long so many bytes take to leave.
   loop::Duration transfer(std::size_t bytes) const;
   /// How many bytes of points, not packed, leave within `spacing`.

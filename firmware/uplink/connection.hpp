@@ -19,7 +19,7 @@ struct Endpoint {
   std::string address;  // IPv4 or IPv6, numeric
   std::uint16_t port = 0;
   std::string interface;               // SO_BINDTODEVICE; "": not bound
-  std::uint64_t bytes_per_second = 0;  // SO_MAX_PACING_RATE; 0: not paced
+  std::uint64_t bytes_per_second = 0;  // at the most, less where the link delivers less; 0: not paced
   std::chrono::milliseconds connect_within{3000};
 };
 
@@ -96,6 +96,9 @@ class Connection {
 
   /// Bytes of the request under way, or of the last one, that the kernel has taken so far, head included.
   std::size_t sent_bytes() const;
+  /// Bytes a second that the link takes, as its last requests showed, at most Endpoint::bytes_per_second; 0
+  /// where it is not paced.
+  std::uint64_t delivers() const;
 
  private:
   class Impl;

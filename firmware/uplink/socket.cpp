@@ -2,9 +2,9 @@
 
 #include <arpa/inet.h>
 #include <linux/sockios.h>
+#include <linux/tcp.h>
 #include <netdb.h>
 #include <netinet/in.h>
-#include <netinet/tcp.h>
 #include <sys/ioctl.h>
 #include <sys/socket.h>
 
@@ -20,11 +20,14 @@ namespace {
 /// Keep-alive probes find a pulled cable while no request is under way: after 5 s, then each 2 s.
 constexpr int kKeepAliveIdle = 5, kKeepAliveInterval = 2, kKeepAliveProbes = 3;
 
-/// What the kernel may hold beyond what is on its way, so that progress is true and a report that follows on
-/// the same link finds no long queue.
+/// What the kernel may hold beyond what is on its way, so that progress is true. It asks for more when half
+/// of that is left.
 constexpr std::uint64_t kMostUnsent = 65536;
-/// Of a paced connection: enough for 100 Mbit/s at 20 ms.
-constexpr int kPacedSendBuffer = 256 * 1024;
+/// Of a paced connection, where it waits in the socket and in no queue of the link: 10 ms at 100 Mbit/s are
+/// left when more is asked for, in which the loop may have other things to do.
+constexpr std::uint64_t kMostUnsentPaced = 256 * 1024;
+/// Of a paced connection: what is unsent, and what is on its way.
+constexpr int kPacedSendBuffer = 512 * 1024;
 
 /// The kernel notes times to a tick of its clock: 10 ms where CONFIG_HZ is 100.
 constexpr std::chrono::milliseconds kTick{10};
@@ -57,18 +60,23 @@ int set(int fd, int level, int option, const T& value) {
 /// A quarter of a second of a slow pace, so that progress is seen often enough to tell slow from silent.
 int most_unsent(std::uint64_t bytes_per_second) {
   if (bytes_per_second == 0) return static_cast<int>(kMostUnsent);
-  return static_cast<int>(std::clamp<std::uint64_t>(bytes_per_second / 4, 4096, kMostUnsent));
+  return static_cast<int>(std::clamp<std::uint64_t>(bytes_per_second / 4, 4096, kMostUnsentPaced));
 }
 
-/// 0 or an errno. Options that only make it better are not checked.
-int set_pace(int fd, std::uint64_t bytes_per_second) {
-  set(fd, IPPROTO_TCP, TCP_NOTSENT_LOWAT, most_unsent(bytes_per_second));
-  if (bytes_per_second == 0) return 0;
-  set(fd, SOL_SOCKET, SO_SNDBUF, kPacedSendBuffer);
+/// 0 or an errno.
+int set_most(int fd, std::uint64_t bytes_per_second) {
   // An unsigned long to the kernel; all ones would mean no pace.
   const auto rate = static_cast<unsigned long>(
       std::min<std::uint64_t>(bytes_per_second, std::numeric_limits<unsigned long>::max() - 1));
   return set(fd, SOL_SOCKET, SO_MAX_PACING_RATE, rate);
+}
+
+/// 0 or an errno. Options that only make it better are not checked.
+int begin_pace(int fd, std::uint64_t bytes_per_second) {
+  set(fd, IPPROTO_TCP, TCP_NOTSENT_LOWAT, most_unsent(bytes_per_second));
+  if (bytes_per_second == 0) return 0;
+  set(fd, SOL_SOCKET, SO_SNDBUF, kPacedSendBuffer);
+  return set_most(fd, bytes_per_second);
 }
 
 void keep_alive(int fd) {
@@ -94,7 +102,7 @@ std::expected<loop::FileDescriptor, NoSocket> begin_connect(const Endpoint& endp
   if (!interface.empty() && ::setsockopt(fd.get(), SOL_SOCKET, SO_BINDTODEVICE, interface.data(),
                                          static_cast<socklen_t>(interface.size())) != 0)
     return failure("binding to interface " + interface + ": ", errno);
-  if (const int error = set_pace(fd.get(), endpoint.bytes_per_second); error != 0)
+  if (const int error = begin_pace(fd.get(), endpoint.bytes_per_second); error != 0)
     return failure("setting the pace: ", error);
   set(fd.get(), IPPROTO_TCP, TCP_NODELAY, 1);
   keep_alive(fd.get());
@@ -143,7 +151,15 @@ Transmission transmission(int fd) {
   if (::getsockopt(fd, IPPROTO_TCP, TCP_INFO, &info, &size) != 0) return {};
   const std::chrono::milliseconds since(info.tcpi_last_data_sent);
   return {.since_last_byte = std::max(since - kTick, std::chrono::milliseconds{0}),
-          .sent_twice = info.tcpi_total_retrans};
+          .sent_twice = info.tcpi_total_retrans,
+          .delivered = std::uint64_t{info.tcpi_delivered} * info.tcpi_snd_mss,
+          .unsent = info.tcpi_notsent_bytes,
+          .round_trip = std::chrono::microseconds(info.tcpi_rtt),
+          .least_round_trip = std::chrono::microseconds(info.tcpi_min_rtt)};
+}
+
+void set_pace(int fd, std::uint64_t bytes_per_second) {
+  set_most(fd, bytes_per_second);
 }
 
 std::size_t unacknowledged_bytes(int fd) {

@@ -51,8 +51,14 @@ bool is_quiet(int fd);
 struct Transmission {
   loop::Duration since_last_byte{};  // at least so long ago the last one left, first or again
   std::uint64_t sent_twice = 0;      // segments of this connection so far
+  std::uint64_t delivered = 0;       // bytes of this connection so far, about: whole segments
+  std::size_t unsent = 0;            // bytes that the kernel holds and has not sent yet
+  loop::Duration round_trip{}, least_round_trip{};
 };
 Transmission transmission(int fd);
+
+/// SO_MAX_PACING_RATE, in bytes a second; > 0.
+void set_pace(int fd, std::uint64_t bytes_per_second);
 
 /// Bytes that the kernel holds and the peer has not acknowledged.
 std::size_t unacknowledged_bytes(int fd);

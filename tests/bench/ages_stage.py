@@ -49,6 +49,7 @@ class Stage:
         for space in ("team", "gate", "post"):
             sh("ip", "netns", "add", self.space(space))
             sh("ip", "-n", self.space(space), "link", "set", "lo", "up")
+            self.fill_queues(space)
         self.cable("team", "gate", 1)
         self.cable("gate", "post", 2)
         self.cable("team", "post", 3)
@@ -61,6 +62,15 @@ class Stage:
         for space in ("team", "gate", "post"):
             subprocess.run(["ip", "netns", "del", self.space(space)], check=False)
         shutil.rmtree(self.folder)
+
+    def fill_queues(self, space):
+        """With a congestion control that goes by losses, as Debian's does (cubic), whatever this machine has."""
+        for name in ("cubic", "reno"):
+            if subprocess.run(["ip", "netns", "exec", self.space(space), "sysctl", "-q",
+                               f"net.ipv4.tcp_congestion_control={name}"], stderr=subprocess.DEVNULL,
+                              check=False).returncode == 0:
+                return
+        raise RuntimeError("neither cubic nor reno is to be had")
 
     def space(self, name):
         return f"{self.tag}-{name}"
@@ -111,19 +121,21 @@ class Stage:
                                           capture_output=True, check=True).stdout)
         return shown[0]["stats64"]["tx"]["bytes"]
 
-    def play(self, way, robots, seconds):
+    def play(self, way, robots, seconds, before=lambda: None, meanwhile=time.sleep):
+        """`before` is called right before the robots begin, `meanwhile` with the seconds that they post."""
         place = tempfile.mkdtemp(dir=self.folder)
         where = ["--scoring", "%s:%d" % SCORING, "--mapping", "%s:%d" % MAPPING, "--control", "%s:%d" % CONTROL]
         self.start("post", [f"{self.programs}/adit-rehearsal", *where, "--secrets", f"{self.folder}/secrets"], "post")
         self.wait_for("team", CONTROL, "post")
         self.start("gate", way.command(place), "way")
         self.wait_for("team", LISTEN, "way")
-        before, began = self.sent(), time.monotonic()
+        before()
+        at_first, began = self.sent(), time.monotonic()
         team = self.start("team", [f"{self.programs}/adit-robots", "--post", "http://%s:%d" % LISTEN,
                                    "--control", "http://%s:%d" % CONTROL, "--secrets", f"{self.folder}/secrets",
                                    "--for", str(seconds), "--quiet", *robots], "team")
-        time.sleep(seconds)
-        sent, took = self.sent() - before, time.monotonic() - began
+        meanwhile(seconds)
+        sent, took = self.sent() - at_first, time.monotonic() - began
         team.wait()
         record = self.ask("team", CONTROL, "/record")
         self.stop()

@@ -47,6 +47,17 @@ TEST(Slot, GoesByWhatTheLinkShows) {
   EXPECT_EQ(slot.points_within(std::chrono::seconds(1)), 10 * kMegabyte) << "no more than maps may use";
 }
 
+TEST(Slot, HoldsLessAtOnceWhereTheLinkTakesLess) {
+  Slot slot(10 * kMegabyte);
+  slot.link_delivers(0);  // not known
+  EXPECT_EQ(slot.points_within(std::chrono::seconds(1)), 10 * kMegabyte);
+  slot.link_delivers(6 * kMegabyte);
+  slot.link_delivers(9 * kMegabyte);
+  EXPECT_EQ(slot.points_within(std::chrono::seconds(1)), 6 * kMegabyte) << "until a map has left faster";
+  slot.left(6 * kMegabyte, sent_in(milliseconds(600)), {});
+  EXPECT_EQ(slot.points_within(std::chrono::seconds(1)), 10 * kMegabyte);
+}
+
 TEST(Slot, TakesNoLinkForSlowThatHadToWait) {
   Slot slot(10 * kMegabyte);
   slot.left(kMegabyte, sent_in(std::chrono::seconds(1)), kBegin + std::chrono::seconds(1));

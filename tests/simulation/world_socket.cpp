@@ -68,6 +68,9 @@ int connect_error(int fd) {
   return link->error;
 }
 
+/// Lines have no pace here, and nothing of what they are given is unsent.
+void set_pace(int, std::uint64_t) {}
+
 /// The exchange itself looks at what is not acknowledged, and gives up as soon.
 void give_up_after(int, std::chrono::milliseconds) {}
 

@@ -49,6 +49,8 @@ TEST(Socket, HoldsLittleThatIsNotOnItsWay) {
   const ListeningPeer peer([](Wire& wire) { wire.wait_for_close(); });
   Endpoint endpoint = peer.endpoint();
   EXPECT_EQ(option<int>(socket_of(endpoint), IPPROTO_TCP, TCP_NOTSENT_LOWAT), 64 * 1024);
+  endpoint.bytes_per_second = 11'000'000;
+  EXPECT_EQ(option<int>(socket_of(endpoint), IPPROTO_TCP, TCP_NOTSENT_LOWAT), 256 * 1024);
   endpoint.bytes_per_second = 100'000;
   EXPECT_EQ(option<int>(socket_of(endpoint), IPPROTO_TCP, TCP_NOTSENT_LOWAT), 25'000);
 }

@@ -1,0 +1,124 @@
+#include "pace/delivery.hpp"
+
+#include <algorithm>
+#include <utility>
+
+namespace adit::pace {
+namespace {
+
+using Seconds = std::chrono::duration<double>;
+
+constexpr double kMore = 1.25, kLess = 0.5;
+/// Of what is given: where less is delivered, or more, it came into a queue or out of one.
+constexpr double kKept = 0.9, kNearly = 0.98, kDrawn = 1.1;
+/// What a quarter more has to find, so that it was not in vain.
+constexpr double kFound = 1.05;
+/// So much longer than without a queue takes a round trip where one stands.
+constexpr std::chrono::milliseconds kQueue{5};
+/// Intervals: a queue that stands so long shows what the link carries where that is nearly all, too.
+constexpr int kStands = 4;
+/// What is shorter says little of a rate.
+constexpr std::chrono::milliseconds kTelling{20};
+
+bool has_queue(const Progress& now) {
+  return now.round_trip > now.least_round_trip + std::max<Duration>(kQueue, now.least_round_trip / 4);
+}
+
+}  // namespace
+
+void Delivery::begins(const Progress& now) {
+  began_ = now;
+  queued_ = has_queue(now);
+  starved_ = false;
+}
+
+/// While a queue stands, the link has enough to do, also where TCP has nothing left: all of it may be there.
+void Delivery::goes_on(const Progress& now) {
+  const bool has = has_queue(now);
+  if (probes_ && has && !has_queue(began_)) return queue_ended_probe(now);
+  if (drains_ && !has) {
+    drains_ = false;
+    return begins(now);
+  }
+  queued_ = queued_ && has;
+  starved_ = starved_ || (now.starved && !has);
+  if (now.at - began_.at < std::max<Duration>(kInterval, 2 * now.least_round_trip)) return;
+  const double rate = rate_until(now);
+  if (rate > 0 && (!starved_ || rate > link_ * kFound)) judge(rate, now.at);
+  if (!drains_ && link_ < most_ && now.at >= probe_at_) probes_ = true;
+  begins(now);
+}
+
+double Delivery::rate_until(const Progress& now) const {
+  const auto bytes = now.delivered - std::min(began_.delivered, now.delivered);
+  return static_cast<double>(bytes) / Seconds(now.at - began_.at).count();
+}
+
+/// Until then the link was full.
+void Delivery::queue_ended_probe(const Progress& now) {
+  if (!starved_ && now.at - began_.at >= kTelling) link_ = std::clamp(rate_until(now), link_, most_);
+  end_probe(true, now.at);
+  begins(now);
+}
+
+void Delivery::judge(double rate, Instant now) {
+  remember(rate, now);
+  const double given = pace();
+  stands_ = queued_ ? stands_ + 1 : 0;
+  if (probes_) {
+    const bool found = rate > link_ * kFound;
+    link_ = std::clamp(rate, link_, most_);
+    end_probe(!found, now);
+  } else if (queued_ && rate < given * kKept) {
+    carries(rate, now);
+    drains_ = true;
+  } else if (drains_) {  // a round trip that is long for another reason draws nothing out
+    if (rate > given * kDrawn) carries(rate, now);
+    drains_ = rate > given * kDrawn;
+  } else if (stands_ >= kStands) {
+    if (rate < given * kNearly) carries(rate, now);
+    drains_ = true;
+    stands_ = 0;
+  }
+}
+
+/// Just that: a queue stood all the time. A moment that passes looks like another link, so that more is tried
+/// soon.
+void Delivery::carries(double rate, Instant now) {
+  const double before = std::exchange(link_, std::clamp(rate, most_ * kSlowest, most_));
+  if (link_ > before * kKept) return;
+  most_before_ = 0;
+  most_now_ = rate;
+  wait_ = kFirstWait;
+  probe_at_ = now;
+}
+
+void Delivery::remember(double rate, Instant now) {
+  if (now - second_began_ >= kRemembered) {
+    most_before_ = std::exchange(most_now_, 0);
+    second_began_ = now;
+  }
+  most_now_ = std::max(most_now_, rate);
+}
+
+void Delivery::end_probe(bool in_vain, Instant now) {
+  probes_ = false;
+  if (!in_vain) {
+    wait_ = kFirstWait;
+    return;
+  }
+  probe_at_ = now + wait_;
+  wait_ = std::min<Duration>(wait_ * 2, kLongestWait);
+}
+
+double Delivery::pace() const {
+  const double gain = link_ >= most_ ? 1 : drains_ ? kLess : probes_ ? kMore : 1;
+  return std::min(link_ * gain, most_);
+}
+
+double Delivery::delivers() const {
+  const double seen = std::max(most_before_, most_now_);
+  return seen > 0 ? std::min(seen, most_) : most_;
+}
+
+}  // namespace adit::pace

@@ -1,0 +1,103 @@
+#pragma once
+
+#include <sys/epoll.h>
+
+#include <chrono>
+#include <cstdint>
+#include <functional>
+#include <memory>
+#include <optional>
+#include <string>
+
+#include "loop/file_descriptor.hpp"
+#include "uplink/connection.hpp"
+#include "uplink/exchange.hpp"
+#include "uplink/link_pace.hpp"
+
+namespace adit::uplink {
+
+/// What a Connection is. Callbacks hold it while they run: `done` may destroy the Connection.
+class Connection::Impl : public std::enable_shared_from_this<Impl> {
+ public:
+  Impl(loop::Loop& loop, Endpoint endpoint, icd::BearerToken token);
+
+  void keep_warm();
+  void hurry();
+  void send(Request request, std::function<void(Outcome)> done);
+  /// The Connection is gone, though a callback may still hold this.
+  void abandon();
+
+  bool busy() const { return done_ != nullptr; }
+  bool connected() const { return phase_ == Phase::Open; }
+  const std::string& trouble() const { return trouble_; }
+  std::size_t sent_bytes() const { return exchange_ ? exchange_->sent() : sent_; }
+  std::uint64_t delivers() const { return pace_.delivers(); }
+
+ private:
+  enum class Phase : std::uint8_t { Closed, Connecting, Open };
+  /// A connection that is kept warm is begun at most this often, and less often while it fails.
+  static constexpr std::chrono::seconds kFirstPause{1}, kLongestPause{5};
+  static constexpr std::uint32_t kComing = EPOLLIN | EPOLLRDHUP;
+
+  void guard(void (Impl::*part)());
+
+  // What the socket and the timers call.
+  void ready();
+  void time_came();
+  void look();
+
+  // Connecting, and idle (connecting.cpp).
+  void connect();
+  void connect_in_time();
+  void connecting_ended(int error);
+  void connecting_failed(const std::string& why);
+  void rest();
+  void idle_ended();
+  void drop();
+  void close();
+  void watch(std::uint32_t events);
+
+  // A request and its answer.
+  void begin_sending();
+  void begin();
+  void begin_again();
+  void write();
+  void began_to_leave();
+  bool answer_came();
+  void listen_again();
+  void answered();
+  void in_doubt(InDoubt doubt);
+  void never_sent(const std::string& reason);
+  void deliver(Outcome outcome);
+  void tell();
+  void call_done(Outcome outcome);
+
+  loop::Loop& loop_;
+  const Endpoint endpoint_;
+  const icd::BearerToken token_;
+
+  Phase phase_ = Phase::Closed;
+  loop::FileDescriptor fd_;
+  std::chrono::milliseconds gives_up_after_{};  // as fd_ was told; 0: not yet
+  loop::Source source_;                         // of fd_; ends before it
+  std::uint32_t watched_ = 0;
+  loop::Source timer_;  // the end of the phase: a pause, connecting, resting, the peer's silence
+  bool warm_ = false;
+  bool fresh_ = false;   // connected for the very request that is under way
+  loop::Instant began_;  // to connect, last
+  std::chrono::seconds pause_ = kFirstPause;
+  std::string trouble_;
+
+  std::unique_ptr<Exchange> exchange_;
+  std::function<void(Outcome)> done_;
+  bool within_send_ = false;
+  InDoubt undealt_;                 // for guard()
+  std::optional<Outcome> outcome_;  // known within send(), to be told after it
+  loop::Source tell_;
+  std::size_t sent_ = 0;
+
+  LinkPace pace_;
+  loop::Source look_;  // while there is more to give
+};
+
+}  // namespace adit::uplink

@@ -1,0 +1,158 @@
+// What a link delivers, and the pace: on a simulated link with a queue.
+#include "pace/delivery.hpp"
+
+#include <gtest/gtest.h>
+
+#include <deque>
+#include <random>
+#include <utility>
+
+#include "pace/at.hpp"
+
+namespace adit::pace {
+namespace {
+
+constexpr double kMost = 11.5e6;  // bytes a second
+constexpr double kStep = 0.001;   // seconds
+
+Duration lasting(double s) {
+  return std::chrono::duration_cast<Duration>(std::chrono::duration<double>{s});
+}
+
+/// A sender with always enough to send, its TCP, and a link with a queue.
+class Line {
+ public:
+  Line(double bytes_per_second, double round_trip) : carries(bytes_per_second), round_trip_(round_trip) {}
+
+  /// For so long; how many bytes a second were delivered.
+  double runs(double s) {
+    const double before = delivered_, end = time_ + s;
+    most_queued = 0;
+    for (; time_ < end; time_ += kStep) step();
+    return (delivered_ - before) / s;
+  }
+  /// Nothing is sent.
+  void rests(double s) {
+    time_ += s;
+    queue_ = 0;
+    delivery.begins(progress());
+  }
+
+  double carries;          // bytes a second
+  double burst = 0;        // bytes that pass at once after a while of less, as in a token bucket
+  double most_queued = 0;  // seconds that a report would have waited
+  bool starves = false;    // the sender has other things to do every now and then
+  Delivery delivery{kMost};
+
+ private:
+  /// What TCP holds, and the kernel takes, is bounded: bytes on their way or queued.
+  static constexpr double kWindow = 512e3;
+
+  void step() {
+    const bool rests = starves && static_cast<int>(time_ / kStep) % 40 < 20;
+    const double gives = rests ? 0 : std::min(delivery.pace() * kStep, kWindow - queue_);
+    queue_ += gives;
+    tokens_ = std::min(burst, tokens_ + carries * kStep);
+    const double passes = std::min(queue_, burst > 0 ? tokens_ : carries * kStep);
+    tokens_ -= passes;
+    queue_ -= passes;
+    delivered_ += passes;
+    const double waits = queue_ / carries;
+    told_.emplace_back(delivered_, waits);
+    if (told_.size() > 1 && static_cast<double>(told_.size()) * kStep > round_trip_) told_.pop_front();
+    smoothed_ += (told_.front().second - smoothed_) / 4;
+    most_queued = std::max(most_queued, waits);
+    Progress now = progress();
+    now.starved = rests || queue_ + delivery.pace() * kStep >= kWindow;
+    if (static_cast<int>(time_ / kStep) % 4 == 0) delivery.goes_on(now);
+  }
+
+  Progress progress() const {
+    return {.at = at(time_),
+            .delivered = static_cast<std::uint64_t>(told_.empty() ? 0 : told_.front().first),
+            .round_trip = lasting(round_trip_ + smoothed_),
+            .least_round_trip = lasting(round_trip_)};
+  }
+
+  double round_trip_;
+  std::deque<std::pair<double, double>>
+      told_;  // on their way back: bytes delivered, and how long they waited
+  double time_ = 10, queue_ = 0, tokens_ = 0, delivered_ = 0, smoothed_ = 0;
+};
+
+TEST(Delivery, IsFullWhereTheLinkIs) {
+  Line line(12.5e6, 0.001);
+  EXPECT_NEAR(line.runs(5), kMost, kMost / 100);
+  EXPECT_EQ(line.delivery.pace(), kMost);
+  EXPECT_NEAR(line.delivery.delivers(), kMost, kMost / 50);
+}
+
+TEST(Delivery, FollowsALinkThatSlowsDownAndComesBack) {
+  Line line(12.5e6, 0.001);
+  line.runs(3);
+  line.carries = 7.5e6;
+  line.runs(1);
+  EXPECT_GT(line.runs(2), 0.95 * 7.5e6);
+  EXPECT_NEAR(line.delivery.delivers(), 7.5e6, 0.75e6);
+  EXPECT_LT(line.most_queued, 0.012);
+  line.carries = 12.5e6;
+  line.runs(2);
+  EXPECT_GT(line.runs(0.5), 0.95 * kMost);
+}
+
+TEST(Delivery, ASenderWithOtherThingsToDoIsNotASlowLink) {
+  Line line(12.5e6, 0.001);
+  line.starves = true;
+  line.runs(5);
+  EXPECT_EQ(line.delivery.pace(), kMost);
+  EXPECT_EQ(line.delivery.delivers(), kMost);
+}
+
+TEST(Delivery, ALongRoundTripAtTheBeginIsNoSlowLink) {
+  Delivery delivery(kMost);
+  Progress now{.at = at(10), .round_trip = std::chrono::milliseconds(40)};
+  delivery.begins(now);
+  for (int i = 0; i < 1000; ++i) {
+    now.at += std::chrono::milliseconds(4);
+    now.delivered += 46'000;
+    now.round_trip = now.round_trip * 7 / 8;
+    delivery.goes_on(now);
+    ASSERT_EQ(delivery.pace(), kMost) << i;
+  }
+}
+
+TEST(Delivery, SilenceIsNoSlowLink) {
+  Delivery delivery(kMost);
+  Progress now{.at = at(10), .round_trip = std::chrono::milliseconds(40)};
+  delivery.begins(now);
+  for (int i = 0; i < 1000; ++i) {
+    now.at += std::chrono::milliseconds(50);
+    delivery.goes_on(now);
+  }
+  EXPECT_EQ(delivery.pace(), kMost);
+}
+
+/// Whatever the link does: 2 s later 95 % of it is used, and a report waits 30 ms at the most.
+TEST(Delivery, IsBackWithinTwoSecondsOnAnyLink) {
+  for (unsigned seed = 1; seed <= 200; ++seed) {
+    std::mt19937 random(seed);
+    const auto between = [&](double low, double high) {
+      return std::uniform_real_distribution<double>(low, high)(random);
+    };
+    Line line(between(1e6, 15e6), between(0.0001, 0.02));
+    if (seed % 2 == 0) line.burst = between(20e3, 40e3);
+    for (int change = 0; change < 5; ++change) {
+      if (change > 0) line.carries = between(1e6, 15e6);
+      if (seed % 3 == 0) line.rests(between(0.1, 3));
+      line.runs(2);
+      const double used = line.runs(2) / std::min(line.carries, kMost);
+      EXPECT_GT(used, 0.95) << "seed " << seed << " change " << change << " link " << line.carries;
+      if (line.carries > 0.97 * kMost && line.carries < kMost) continue;  // cannot be told from the most
+      EXPECT_LT(line.most_queued, 0.03 + 3 * line.burst / line.carries)
+          << "seed " << seed << " change " << change << " link " << line.carries;
+    }
+  }
+}
+
+}  // namespace
+}  // namespace adit::pace

@@ -49,11 +49,12 @@ class Api::Impl {
         sessions_(loop, entrance_, served.keys, served.setup),
         run_(served.source, served.judge, live_, entrance_),
         maps_(served.source),
-        reports_(loop, served.source, served.judge, [this] { changed(); }) {
+        lists_(loop, served.source),
+        reports_(lists_, served.source, served.judge, [this] { changed(); }) {
     if (served.setup) settings_.emplace(*served.setup);
     if (served.network) network_.emplace(*served.network, *served.test, [this] { changed(); });
     if (served.updates) updates_.emplace(*served.updates, [this] { changed(); });
-    if (served.box) box_.emplace(served.source, *served.box, entrance_, redaction_, loop);
+    if (served.box) box_.emplace(served.source, lists_, *served.box, entrance_, redaction_, loop);
     handlers_ = {&pages_,       &sessions_,   &run_,        &maps_,  &reports_,
                  at(settings_), at(network_), at(updates_), at(box_)};
   }
@@ -115,6 +116,7 @@ class Api::Impl {
   SessionRoutes sessions_;
   RunRoutes run_;
   MapRoutes maps_;
+  const ReportLists lists_;
   ReportRoutes reports_;
   std::optional<SettingsRoutes> settings_;
   std::optional<NetworkRoutes> network_;

@@ -79,7 +79,7 @@ intake::Answer BoxRoutes::about() const {
 std::unique_ptr<intake::BodySink> BoxRoutes::bundle(const Call& call) {
   return std::make_unique<SmallBody>(
       call.responder, 0, [this, responder = call.responder](const std::string&) {
-        list_reports(loop_, source_, json_list(), std::nullopt,
+        lists_.write(json_list(), std::nullopt,
                      [this, responder](std::string reports) { pack(responder, std::move(reports)); });
       });
 }

@@ -7,6 +7,7 @@
 #include "api/entrance.hpp"
 #include "api/log_filter.hpp"
 #include "api/redacted.hpp"
+#include "api/report_list.hpp"
 #include "api/source.hpp"
 #include "intake/server.hpp"
 
@@ -16,9 +17,9 @@ namespace adit::api {
 class BoxRoutes {
  public:
   /// All outlive this, and whatever `box` still works on.
-  BoxRoutes(const Source& source, Box& box, Entrance& entrance, const SharedRedaction& redaction,
-            loop::Loop& loop)
-      : source_(source), box_(box), entrance_(entrance), redaction_(redaction), loop_(loop) {}
+  BoxRoutes(const Source& source, const ReportLists& lists, Box& box, Entrance& entrance,
+            const SharedRedaction& redaction, loop::Loop& loop)
+      : source_(source), lists_(lists), box_(box), entrance_(entrance), redaction_(redaction), loop_(loop) {}
 
   intake::Answer metrics() const;
   intake::Answer log(const intake::RequestHead& head) const;
@@ -33,6 +34,7 @@ class BoxRoutes {
   std::string log_lines(const LogFilter& filter) const;
 
   const Source& source_;
+  const ReportLists& lists_;
   Box& box_;
   Entrance& entrance_;
   const SharedRedaction& redaction_;  // of the bundle; of other answers it is the Api's

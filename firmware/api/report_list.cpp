@@ -11,34 +11,16 @@ namespace {
 /// Half a millisecond of work.
 constexpr std::size_t kInATurn = 64;
 
-struct Listing : std::enable_shared_from_this<Listing> {
-  loop::Loop& loop;
-  const Source& source;
+}  // namespace
+
+struct ReportLists::Listing {
   const ListForm form;
   const std::optional<std::int64_t> run;
   const std::function<void(std::string)> done;
   std::string text = form.begin;
   std::int64_t last = 0;  // whose turn has been
   bool is_empty = true;
-
-  Listing(loop::Loop& on, const Source& of, ListForm as, std::optional<std::int64_t> only,
-          std::function<void(std::string)> then)
-      : loop(on), source(of), form(std::move(as)), run(only), done(std::move(then)) {}
-
-  void go_on() {
-    const auto rows = source.reports(last, kInATurn);
-    for (const ReportRow& row : rows) {
-      last = row.number;
-      if (run && row.run != *run) continue;
-      if (!std::exchange(is_empty, false)) text += form.between;
-      text += form.row(row);
-    }
-    if (rows.size() == kInATurn) return loop.post([self = shared_from_this()] { self->go_on(); });
-    done(std::move(text.append(form.end)));
-  }
 };
-
-}  // namespace
 
 ListForm json_list() {
   return {.begin = "[",
@@ -47,9 +29,25 @@ ListForm json_list() {
           .end = "]"};
 }
 
-void list_reports(loop::Loop& loop, const Source& source, ListForm form, std::optional<std::int64_t> run,
-                  std::function<void(std::string list)> done) {
-  std::make_shared<Listing>(loop, source, std::move(form), run, std::move(done))->go_on();
+void ReportLists::write(ListForm form, std::optional<std::int64_t> run,
+                        std::function<void(std::string list)> done) const {
+  go_on(std::make_shared<Listing>(std::move(form), run, std::move(done)));
+}
+
+void ReportLists::go_on(const std::shared_ptr<Listing>& listing) const {
+  const auto rows = source_.reports(listing->last, kInATurn);
+  for (const ReportRow& row : rows) {
+    listing->last = row.number;
+    if (listing->run && row.run != *listing->run) continue;
+    if (!std::exchange(listing->is_empty, false)) listing->text += listing->form.between;
+    listing->text += listing->form.row(row);
+  }
+  if (rows.size() == kInATurn) {
+    return loop_.post([this, listing, alive = std::weak_ptr(alive_)] {
+      if (!alive.expired()) go_on(listing);
+    });
+  }
+  listing->done(std::move(listing->text.append(listing->form.end)));
 }
 
 }  // namespace adit::api

@@ -2,6 +2,7 @@
 
 #include <cstdint>
 #include <functional>
+#include <memory>
 #include <optional>
 #include <string>
 #include <string_view>
@@ -21,10 +22,25 @@ struct ListForm {
 /// An array of JSON.
 ListForm json_list();
 
-/// Writes all reports of `run`, or of all runs, oldest first, and calls `done` with them: at once where they
-/// are few. Of thousands it writes some in each turn of the loop, each as it is then: all at once, they would
-/// keep the loop from its sockets. `source` outlives that.
-void list_reports(loop::Loop& loop, const Source& source, ListForm form, std::optional<std::int64_t> run,
-                  std::function<void(std::string list)> done);
+/// Writes lists of reports. With its end, those that are not finished end without a word.
+class ReportLists {
+ public:
+  /// Both outlive this.
+  ReportLists(loop::Loop& loop, const Source& source) : loop_(loop), source_(source) {}
+
+  /// Writes all reports of `run`, or of all runs, oldest first, and calls `done` with them: at once where
+  /// they are few. Of thousands it writes some in each turn of the loop, each as it is then: all at once,
+  /// they would keep the loop from its sockets.
+  void write(ListForm form, std::optional<std::int64_t> run,
+             std::function<void(std::string list)> done) const;
+
+ private:
+  struct Listing;
+  void go_on(const std::shared_ptr<Listing>& listing) const;
+
+  loop::Loop& loop_;
+  const Source& source_;
+  std::shared_ptr<const char> alive_ = std::make_shared<const char>();
+};
 
 }  // namespace adit::api

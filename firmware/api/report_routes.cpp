@@ -26,9 +26,9 @@ intake::Answer no_such(std::int64_t number) {
 
 }  // namespace
 
-ReportRoutes::ReportRoutes(loop::Loop& loop, const Source& source, Operator& judge,
+ReportRoutes::ReportRoutes(const ReportLists& lists, const Source& source, Operator& judge,
                            std::function<void()> changed)
-    : loop_(loop), source_(source), operator_(judge), changed_(std::move(changed)) {}
+    : lists_(lists), source_(source), operator_(judge), changed_(std::move(changed)) {}
 
 std::unique_ptr<intake::BodySink> ReportRoutes::listed(const Call& call, ListForm form,
                                                        intake::Answer begun) const {
@@ -45,10 +45,9 @@ std::unique_ptr<intake::BodySink> ReportRoutes::listed(const Call& call, ListFor
     begun.body = std::move(list);
     responder->answer(std::move(begun));
   };
-  return std::make_unique<SmallBody>(call.responder, 0,
-                                     [this, form = std::move(form), run, answer](const std::string&) {
-                                       list_reports(loop_, source_, form, run, answer);
-                                     });
+  return std::make_unique<SmallBody>(
+      call.responder, 0,
+      [this, form = std::move(form), run, answer](const std::string&) { lists_.write(form, run, answer); });
 }
 
 std::unique_ptr<intake::BodySink> ReportRoutes::list(const Call& call) const {

@@ -14,8 +14,9 @@ namespace adit::api {
 /// What is known of reports, and the operator's actions: README.md.
 class ReportRoutes {
  public:
-  /// `changed` is called after each action. All outlive this, and the answers that are under way.
-  ReportRoutes(loop::Loop& loop, const Source& source, Operator& judge, std::function<void()> changed);
+  /// `changed` is called after each action. All outlive this.
+  ReportRoutes(const ReportLists& lists, const Source& source, Operator& judge,
+               std::function<void()> changed);
 
   std::unique_ptr<intake::BodySink> list(const Call& call) const;
   std::unique_ptr<intake::BodySink> csv(const Call& call) const;
@@ -32,7 +33,7 @@ class ReportRoutes {
   intake::Answer judge(std::int64_t number, Action action);
   intake::Answer composed(const std::string& body);
 
-  loop::Loop& loop_;
+  const ReportLists& lists_;
   const Source& source_;
   Operator& operator_;
   std::function<void()> changed_;

@@ -86,6 +86,16 @@ TEST_F(ReportRoutesTest, WriteThousandsInManyTurnsOfTheLoop) {
   EXPECT_EQ(reports[999]["number"], 1000);
 }
 
+TEST_F(ReportRoutesTest, EndAListThatIsBeingWrittenWithThePage) {
+  for (std::int64_t number = 1; number <= 1000; ++number) source.details[number].row.number = number;
+  auto lists = std::make_optional<ReportLists>(loop, source);
+  bool is_written = false;
+  lists->write(json_list(), std::nullopt, [&](const std::string&) { is_written = true; });
+  lists.reset();
+  for (int turn = 0; turn < 50; ++turn) loop.turn(std::chrono::seconds(0));
+  EXPECT_FALSE(is_written);
+}
+
 TEST_F(ReportRoutesTest, GiveAllReportsAsAFileForSpreadsheets) {
   const auto answer = get("/adit/reports.csv");
   EXPECT_EQ(answer.content_type, "text/csv; charset=utf-8; header=present");

@@ -2,6 +2,7 @@
 
 #include <chrono>
 #include <set>
+#include <string_view>
 
 namespace adit::forward {
 
@@ -34,11 +35,16 @@ icd::Stamp Clocks::stamped(const std::string& sender, std::optional<icd::Stamp> 
 
 void Clocks::stamp(icd::MarkersUpdate& update, const std::string& address) {
   std::set<std::string> senders;
+  std::string_view ns;
+  auto sender = senders.end();
   for (icd::Marker& marker : update.markers) {
-    const auto sender = senders.insert(address + "/markers/" + marker.ns).first;
+    if (sender == senders.end() || marker.ns != ns) {
+      sender = senders.insert(address + "/markers/" + marker.ns).first;
+      ns = marker.ns;
+    }
     marker.header.stamp = senders_.shift(*sender, marker.header.stamp, loop_.stamp_now());
   }
-  for (const std::string& sender : senders) keep(sender);
+  for (const std::string& each : senders) keep(each);
 }
 
 void Clocks::keep(const std::string& sender) {

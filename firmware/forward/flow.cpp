@@ -23,19 +23,17 @@ void Flow::take(icd::MapUpdate update, const intake::Sender& sender, std::shared
   maps_.take(std::move(update), sender.bytes, std::move(file), std::move(done));
 }
 
-icd::Checked<void> Flow::take(const icd::StateUpdate& update, const intake::Sender& sender) {
+icd::Checked<void> Flow::take(icd::StateUpdate update, const intake::Sender& sender) {
   const std::string robot = update.poses.size() == 1 ? update.poses.front().name.text() : "";
   for (const icd::NamedPose& pose : update.poses) told_.posted(pose.name.text());
-  icd::StateUpdate shifted = update;
-  shifted.header.stamp =
+  update.header.stamp =
       clocks_.stamped(sender.address + "/state/" + robot, update.header.stamp, sender.connection);
-  return telemetry_.take(shifted, sender.bytes);
+  return telemetry_.take(update, sender.bytes);
 }
 
-icd::Checked<void> Flow::take(const icd::MarkersUpdate& update, const intake::Sender& sender) {
-  icd::MarkersUpdate shifted = update;
-  clocks_.stamp(shifted, sender.address);
-  return telemetry_.take(shifted, sender.bytes);
+icd::Checked<void> Flow::take(icd::MarkersUpdate update, const intake::Sender& sender) {
+  clocks_.stamp(update, sender.address);
+  return telemetry_.take(std::move(update), sender.bytes);
 }
 
 void Flow::take(const icd::ArtifactReport& report, const intake::Sender& sender,

@@ -80,8 +80,8 @@ class Flow final : public intake::Desk {
   Legacy hand_over();
 
   std::shared_ptr<intake::MapArrival> map_arrives() override;
-  icd::Checked<void> take(const icd::StateUpdate& update, const intake::Sender& sender) override;
-  icd::Checked<void> take(const icd::MarkersUpdate& update, const intake::Sender& sender) override;
+  icd::Checked<void> take(icd::StateUpdate update, const intake::Sender& sender) override;
+  icd::Checked<void> take(icd::MarkersUpdate update, const intake::Sender& sender) override;
   void take(const icd::ArtifactReport& report, const intake::Sender& sender,
             std::shared_ptr<intake::Responder> responder) override;
   void status(const intake::Sender& sender, std::shared_ptr<intake::Responder> responder) override;

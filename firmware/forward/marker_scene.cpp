@@ -1,9 +1,8 @@
 #include "forward/marker_scene.hpp"
 
 #include <algorithm>
+#include <ranges>
 #include <utility>
-
-#include "icd/require.hpp"
 
 namespace adit::forward {
 
@@ -29,7 +28,6 @@ void MarkerScene::wipe(api::Time now) {
 
 void MarkerScene::clear() {
   entries_.clear();
-  in_order_.clear();
   standing_ = gone_ = {};
   forgotten_ = version_;
 }
@@ -57,9 +55,8 @@ void MarkerScene::remove(const Key& key) {
 void MarkerScene::put(const Key& key, Entry entry) {
   erase(key);
   Held& held = entry.gone ? gone_ : standing_;
-  ++held.count;
   held.bytes += entry.marker.size();
-  in_order_.emplace(entry.version, key);
+  held.in_order.emplace(entry.version, key);
   entries_.emplace(key, std::move(entry));
 }
 
@@ -67,30 +64,23 @@ void MarkerScene::erase(const Key& key) {
   const auto found = entries_.find(key);
   if (found == entries_.end()) return;
   Held& held = found->second.gone ? gone_ : standing_;
-  --held.count;
   held.bytes -= found->second.marker.size();
-  in_order_.erase(found->second.version);
+  held.in_order.erase(found->second.version);
   entries_.erase(found);
 }
 
-/// Requires that there is one.
-MarkerScene::InOrder::const_iterator MarkerScene::oldest(bool gone) const {
-  const auto found =
-      std::ranges::find_if(in_order_, [&](const auto& one) { return entries_.at(one.second).gone == gone; });
-  icd::require(found != in_order_.end());
-  return found;
-}
-
 void MarkerScene::keep_bounds() {
-  const auto exceeds = [](const Held& held) { return held.count > kMost || held.bytes > kMostBytes; };
+  const auto exceeds = [](const Held& held) {
+    return held.in_order.size() > kMost || held.bytes > kMostBytes;
+  };
   while (exceeds(standing_)) {
-    const Key key = oldest(false)->second;
+    const Key key = standing_.in_order.begin()->second;
     ++version_;  // a change of its own
     remove(key);
     ++left_out_;
   }
   while (exceeds(gone_)) {
-    const auto [version, key] = *oldest(true);
+    const auto [version, key] = *gone_.in_order.begin();
     forgotten_ = version;
     erase(key);
   }
@@ -100,15 +90,16 @@ api::MarkerChanges MarkerScene::changes(std::uint64_t since) const {
   const bool whole = since < forgotten_ || since > version_ || since == 0;
   api::MarkerChanges changes{
       .version = version_, .whole = whole, .left_out = left_out_, .markers = {}, .gone = {}};
-  for (auto each = whole ? in_order_.begin() : in_order_.upper_bound(since); each != in_order_.end();
-       ++each) {
-    const Entry& entry = entries_.at(each->second);
-    if (!entry.gone) {
-      changes.markers.push_back({entry.marker, entry.at});
-    } else if (!whole) {
-      changes.gone.push_back(each->second);
-    }
+  const auto news = [since, whole](const Held& held) {
+    const auto& all = held.in_order;
+    return std::ranges::subrange(whole ? all.begin() : all.upper_bound(since), all.end());
+  };
+  for (const auto& [version, key] : news(standing_)) {
+    const Entry& entry = entries_.at(key);
+    changes.markers.push_back({entry.marker, entry.at});
   }
+  if (whole) return changes;
+  for (const auto& [version, key] : news(gone_)) changes.gone.push_back(key);
   return changes;
 }
 

@@ -43,14 +43,13 @@ class MarkerScene {
   void remove(const Key& key);
   void clear();
   void keep_bounds();
-  InOrder::const_iterator oldest(bool gone) const;
   void put(const Key& key, Entry entry);
   void erase(const Key& key);
 
   std::map<Key, Entry> entries_;  // those that are gone too, as long as there is room
-  InOrder in_order_;              // the entries by version
   struct Held {
-    std::size_t count = 0, bytes = 0;
+    InOrder in_order;  // by version
+    std::size_t bytes = 0;
   } standing_, gone_;
   std::uint64_t version_ = 0, forgotten_ = 0;  // all that went up to this version is not told any more
   std::uint64_t left_out_ = 0;

@@ -83,9 +83,9 @@ void Telemetry::carry_on(const journal::Carried& carried) {
     state_.add({.header = {robot.stamp}, .poses = {{name, robot.pose}}}, loop_.now());
     record_.accepted({Kind::State, name.text()}, 0, loop_.stamp_now());
   }
-  if (const icd::MarkersUpdate markers = carried.markers(); !markers.markers.empty()) {
+  if (icd::MarkersUpdate markers = carried.markers(); !markers.markers.empty()) {
     record_.accepted({Kind::Markers, ""}, 0, loop_.stamp_now());
-    markers_.add(markers, loop_.now());
+    markers_.add(std::move(markers), loop_.now());
   }
 }
 
@@ -130,27 +130,27 @@ icd::Checked<void> Telemetry::take(const icd::StateUpdate& update, std::size_t b
   return {};
 }
 
-icd::Checked<void> Telemetry::take(const icd::MarkersUpdate& update, std::size_t bytes_received) {
-  if (markers_.has_room_for(update)) return take_in(update, bytes_received);
+icd::Checked<void> Telemetry::take(icd::MarkersUpdate update, std::size_t bytes_received) {
+  if (markers_.has_room_for(update)) return take_in(std::move(update), bytes_received);
   record_.no_room({Kind::Markers, ""}, loop_.stamp_now());
-  const icd::MarkersUpdate known = markers_.those_that_wait(update);
+  icd::MarkersUpdate known = markers_.those_that_wait(update);
   if (known.markers.empty() || !markers_.has_room_for(known))
     return full("more markers than can wait (queues.marker_bytes)");
-  if (const auto taken = take_in(known, bytes_received); !taken) return taken;
-  const std::size_t others = update.markers.size() - known.markers.size();
+  const std::size_t taken = known.markers.size(), others = update.markers.size() - taken;
+  if (const auto kept = take_in(std::move(known), bytes_received); !kept) return kept;
   return std::unexpected(icd::Refusal{
       icd::Status::TooManyRequests,
-      icd::sentence(known.markers.size(), " of ", update.markers.size(),
+      icd::sentence(taken, " of ", update.markers.size(),
                     " markers were taken, for others of theirs wait already; for new ones there is "
                     "no room (queues.marker_bytes); send them again later"),
       others});
 }
 
-icd::Checked<void> Telemetry::take_in(const icd::MarkersUpdate& update, std::size_t bytes_received) {
+icd::Checked<void> Telemetry::take_in(icd::MarkersUpdate update, std::size_t bytes_received) {
   if (const auto kept = journal_.accepted(update); !kept) return not_kept(kept.error());
   whole(restart_, [&] {
     record_.accepted({Kind::Markers, ""}, bytes_received, loop_.stamp_now());
-    markers_.add(update, loop_.now());
+    markers_.add(std::move(update), loop_.now());
   });
   pump();
   return {};

@@ -56,7 +56,7 @@ class Telemetry {
   /// be kept. Of markers for which there is no room, those that change one which waits are taken all the
   /// same; the refusal is about the others, and says how many they are.
   icd::Checked<void> take(const icd::StateUpdate& update, std::size_t bytes_received);
-  icd::Checked<void> take(const icd::MarkersUpdate& update, std::size_t bytes_received);
+  icd::Checked<void> take(icd::MarkersUpdate update, std::size_t bytes_received);
 
   /// What was set aside, on the operator's word: before what came since, and not what that says more than.
   /// Not a map. False: it stays aside, for it is not kept, or newer markers that it would delete are under
@@ -76,7 +76,7 @@ class Telemetry {
  private:
   void pump();
   void endpoint_turned();
-  icd::Checked<void> take_in(const icd::MarkersUpdate& update, std::size_t bytes_received);
+  icd::Checked<void> take_in(icd::MarkersUpdate update, std::size_t bytes_received);
   void send_next();
   void send_state();
   void send_markers();

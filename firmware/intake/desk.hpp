@@ -50,8 +50,8 @@ class Desk {
   virtual std::shared_ptr<MapArrival> map_arrives() = 0;
   /// Queues the message, or says why not (a queue is full: 429). On success the sender is answered 200
   /// `null`.
-  virtual icd::Checked<void> take(const icd::StateUpdate& update, const Sender& sender) = 0;
-  virtual icd::Checked<void> take(const icd::MarkersUpdate& update, const Sender& sender) = 0;
+  virtual icd::Checked<void> take(icd::StateUpdate update, const Sender& sender) = 0;
+  virtual icd::Checked<void> take(icd::MarkersUpdate update, const Sender& sender) = 0;
 
   /// Answers later, with the Command Post's own answer.
   virtual void take(const icd::ArtifactReport& report, const Sender& sender,

@@ -16,17 +16,34 @@ namespace {
 using Body = std::vector<std::vector<std::uint8_t>>;
 using Parts = icd::Checked<codec::InParts<icd::MarkersUpdate>>;
 
+/// What the loop reads itself takes it less than a millisecond.
+constexpr codec::Limits kAtOnce = {.text_bytes = 32u << 10, .values = kSmallValues},
+                        kSmall = {.values = kSmallValues},
+                        kLarge = {.text_bytes = MarkersUpload::kMost, .values = MarkersUpload::kMostValues};
+
 Parts read_parts(codec::BodyDecoder& decoder, const icd::Rules& rules) {
   const auto document = decoder.finish();
   if (!document) return std::unexpected(document.error());
   return codec::read_markers_parts(*document, rules);
 }
 
-/// The worker's part. What has been fed is freed.
+bool is_too_large(const icd::Refusal& refusal) {
+  return refusal.status == icd::Status::ContentTooLarge;
+}
+
+/// The worker's parts. Of what is large, what has been fed is freed.
+Parts read_small(codec::BodyKind kind, const icd::Rules& rules, const Body& body) {
+  codec::BodyDecoder decoder(kind, codec::Split::Lists, kSmall);
+  const MemoryGivenBack at_the_end(decoder);
+  for (const auto& piece : body) {
+    if (auto fed = decoder.feed(piece); !fed) return std::unexpected(std::move(fed.error()));
+  }
+  return read_parts(decoder, rules);
+}
+
 Parts read_large(codec::BodyKind kind, const icd::Rules& rules, Body& body) {
   const MemoryGivenBack at_the_end(true);
-  codec::BodyDecoder decoder(kind, codec::Split::Lists,
-                             {.text_bytes = MarkersUpload::kMost, .values = MarkersUpload::kMostValues});
+  codec::BodyDecoder decoder(kind, codec::Split::Lists, kLarge);
   for (auto& piece : body) {
     if (auto fed = decoder.feed(piece); !fed) return std::unexpected(std::move(fed.error()));
     std::vector<std::uint8_t>().swap(piece);
@@ -45,7 +62,7 @@ class MarkersUpload::State final : public Taking, public std::enable_shared_from
         rules_(rules),
         workers_(workers),
         turns_(turns),
-        small_(std::in_place, kind, codec::Split::Lists, codec::Limits{.values = kSmallValues}) {}
+        at_once_(std::in_place, kind, codec::Split::Lists, kAtOnce) {}
 
   bool take(std::span<const std::uint8_t> piece) override {
     if (!over_) keep(piece);
@@ -59,19 +76,20 @@ class MarkersUpload::State final : public Taking, public std::enable_shared_from
   void feed(std::span<const std::uint8_t> piece);
   /// For what it holds.
   void charge();
-  void read();
   void give_to_worker();
-  void read_by_worker(const Parts& parts) {
-    end_turn();
+  void small_was_read(std::shared_ptr<Body> body, Parts parts);
+  void wait_for_turn();
+  void read_large_one();
+  void was_read(Parts parts) {
     if (over_) return;
-    if (!loop::guarded("taking markers", [&] { decoded(parts); })) fail(not_held());
+    if (!loop::guarded("taking markers", [&] { decoded(std::move(parts)); })) fail(not_held());
   }
   void end_turn() {
     if (const auto turns = turns_.lock()) turns->end();
   }
-  void decoded(const Parts& parts) {
+  void decoded(Parts parts) {
     abandon();
-    take_parts(visit_, parts);
+    take_parts(visit_, std::move(parts));
   }
   static icd::Refusal not_held() {
     return {icd::Status::ServiceUnavailable,
@@ -83,13 +101,13 @@ class MarkersUpload::State final : public Taking, public std::enable_shared_from
   codec::BodyKind kind_;
   icd::Rules rules_;
   loop::Workers& workers_;
-  std::weak_ptr<OneAtATime> turns_;          // whose turns hold this
-  Body body_;                                // as it came
-  std::optional<codec::BodyDecoder> small_;  // nothing: it is large
+  std::weak_ptr<OneAtATime> turns_;            // whose turns hold this
+  Body body_;                                  // as it came
+  std::optional<codec::BodyDecoder> at_once_;  // nothing: it is for a worker
 };
 
 void MarkersUpload::State::charge() {
-  if (share_.grow_to(visit_.sender.bytes + (small_ ? small_->size() : 0))) return;
+  if (share_.grow_to(visit_.sender.bytes + (at_once_ ? at_once_->size() : 0))) return;
   turn_away({icd::Status::TooManyRequests, "too much is being sent at once; send these markers again later"});
 }
 
@@ -100,44 +118,60 @@ void MarkersUpload::State::keep(std::span<const std::uint8_t> piece) {
         {icd::Status::ContentTooLarge, icd::sentence("body: expected at most ", kMost, " bytes")});
   }
   body_.emplace_back(piece.begin(), piece.end());
-  if (small_) feed(piece);
+  if (at_once_) feed(piece);
   if (!over_) charge();
 }
 
 void MarkersUpload::State::feed(std::span<const std::uint8_t> piece) {
-  const auto fed = small_->feed(piece);
+  const auto fed = at_once_->feed(piece);
   if (fed) return;
-  if (fed.error().status != icd::Status::ContentTooLarge) return turn_away(fed.error());
-  small_.reset();
-  at_the_end_.expect_much();
+  if (!is_too_large(fed.error())) return turn_away(fed.error());
+  at_once_.reset();
 }
 
 void MarkersUpload::State::whole() {
   if (over_) return;
-  if (!small_) {
-    if (const auto turns = turns_.lock()) {
-      turns->wait(visit_.sender.address, [self = shared_from_this()] { self->read(); });
-    }
-    return;
-  }
-  const MemoryGivenBack at_the_end(*small_);
-  const Parts parts = read_parts(*small_, rules_);
-  decoded(parts);
-}
-
-/// It is its turn.
-void MarkersUpload::State::read() {
-  const bool well = loop::guarded("reading markers", [this] { over_ ? end_turn() : give_to_worker(); });
-  if (well) return;
-  end_turn();
-  failed();
+  if (!at_once_) return give_to_worker();
+  const MemoryGivenBack at_the_end(*at_once_);
+  decoded(read_parts(*at_once_, rules_));
 }
 
 void MarkersUpload::State::give_to_worker() {
   auto body = std::make_shared<Body>(std::exchange(body_, {}));
   auto parts = std::make_shared<Parts>();
+  workers_.submit([kind = kind_, rules = rules_, body, parts] { *parts = read_small(kind, rules, *body); },
+                  [self = shared_from_this(), body, parts] { self->small_was_read(body, std::move(*parts)); },
+                  [self = shared_from_this()] { self->failed(); });
+}
+
+void MarkersUpload::State::small_was_read(std::shared_ptr<Body> body, Parts parts) {
+  if (over_) return;
+  if (parts || !is_too_large(parts.error())) return was_read(std::move(parts));
+  body_ = std::move(*body);
+  if (!loop::guarded("reading markers", [this] { wait_for_turn(); })) failed();
+}
+
+void MarkersUpload::State::wait_for_turn() {
+  at_the_end_.expect_much();
+  const auto turns = turns_.lock();
+  if (!turns) return;
+  turns->wait(visit_.sender.address, [self = shared_from_this()] {
+    const bool well =
+        loop::guarded("reading markers", [&] { self->over_ ? self->end_turn() : self->read_large_one(); });
+    if (well) return;
+    self->end_turn();
+    self->failed();
+  });
+}
+
+void MarkersUpload::State::read_large_one() {
+  auto body = std::make_shared<Body>(std::exchange(body_, {}));
+  auto parts = std::make_shared<Parts>();
   workers_.submit([kind = kind_, rules = rules_, body, parts] { *parts = read_large(kind, rules, *body); },
-                  [self = shared_from_this(), parts] { self->read_by_worker(*parts); },
+                  [self = shared_from_this(), parts] {
+                    self->end_turn();
+                    self->was_read(std::move(*parts));
+                  },
                   [self = shared_from_this()] {
                     self->end_turn();
                     self->failed();

@@ -12,11 +12,11 @@ namespace adit::intake {
 
 /// Takes a markers update of at most kMost bytes, compressed or not.
 ///
-/// Nearly all are small: they are decoded on the loop as they arrive, and wait for nobody. One that turns out
-/// to be larger than codec::Limits::text_bytes (a marker may have icd::kMostMarkerPoints), or to have more
-/// than kSmallValues, is kept as it came, and decoded on a worker once it is whole: one at a time, because
-/// that takes much memory. No message is in memory as a tree: each marker is parsed by itself, and each of
-/// its points.
+/// Those of a few dozen markers are decoded on the loop as they arrive, and wait for nobody. Others are kept
+/// as they come, and decoded on a worker once they are whole; one that turns out to be larger than
+/// codec::Limits::text_bytes (a marker may have icd::kMostMarkerPoints), or to have more than kSmallValues,
+/// when no other of those is: that takes much memory. No message is in memory as a tree: each marker is
+/// parsed by itself, and each of its points.
 ///
 /// Once whole and checked it is the desk's, even if the client has hung up by then. If the client hangs up
 /// before, the update is dropped.

@@ -1,5 +1,7 @@
 #pragma once
 
+#include <utility>
+
 #include "codec/read.hpp"
 #include "intake/visit.hpp"
 
@@ -8,9 +10,9 @@ namespace adit::intake {
 /// Gives the good parts of a state or of markers to the desk. If they are taken, the answer is about the
 /// others.
 template <class Message>
-void take_parts(const Visit& visit, const icd::Checked<codec::InParts<Message>>& read) {
+void take_parts(const Visit& visit, icd::Checked<codec::InParts<Message>> read) {
   if (!read) return visit.refuse(read.error());
-  auto taken = visit.desk.take(read->message, visit.sender);
+  auto taken = visit.desk.take(std::move(read->message), visit.sender);
   if (taken && read->refused.count > 0) taken = std::unexpected(read->refused.refusal());
   visit.answer(taken);
 }

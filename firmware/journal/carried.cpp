@@ -190,11 +190,9 @@ void Carried::state_comes_back() {
 
 /// As lanes::MarkerLane::put_back().
 void Carried::markers_come_back() {
-  if (markers_under_way_.empty()) return;
-  lanes::MarkerChanges all;
-  for (const icd::Marker& marker : std::exchange(markers_under_way_, {})) all.apply(marker);
-  for (const auto& [place, marker] : markers_.in_order()) all.apply(marker);
-  markers_ = std::move(all);
+  lanes::MarkerChanges older;
+  for (icd::Marker& marker : std::exchange(markers_under_way_, {})) older.apply(std::move(marker));
+  markers_.apply_before(std::move(older));
 }
 
 icd::MarkersUpdate Carried::markers() const {

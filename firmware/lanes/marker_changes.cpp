@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <iterator>
+#include <utility>
 
 namespace adit::lanes {
 
@@ -15,48 +16,60 @@ std::size_t MarkerChanges::bytes_at(const Key& key) const {
   return known == places_.end() ? 0 : icd::bytes_of(by_place_.at(known->second));
 }
 
-MarkerChanges::Place MarkerChanges::apply(const icd::Marker& marker) {
+void MarkerChanges::insert(Place place, icd::Marker marker) {
+  size_ = {size_.count + 1, size_.bytes + icd::bytes_of(marker)};
+  if (marker.action != icd::MarkerAction::DeleteAll) places_.insert_or_assign({marker.ns, marker.id}, place);
+  if (marker.action == icd::MarkerAction::Delete) deletes_.insert(place);
+  by_place_.emplace(place, std::move(marker));
+}
+
+icd::Marker MarkerChanges::extract(Place place) {
+  icd::Marker marker = std::move(by_place_.extract(place).mapped());
+  size_ = {size_.count - 1, size_.bytes - icd::bytes_of(marker)};
+  if (marker.action != icd::MarkerAction::DeleteAll) places_.erase({marker.ns, marker.id});
+  deletes_.erase(place);
+  return marker;
+}
+
+MarkerChanges::Place MarkerChanges::apply(icd::Marker marker) {
   if (marker.action == icd::MarkerAction::DeleteAll) {
-    by_place_.clear();
-    places_.clear();
-    by_place_.emplace(next_, marker);
-    size_ = {1, icd::bytes_of(marker)};
+    *this = MarkerChanges(next_);
+    insert(next_, std::move(marker));
     return next_++;
   }
-  const Key key{marker.ns, marker.id};
-  const std::size_t older = bytes_at(key);
-  const auto known = places_.find(key);
-  if (marker.action == icd::MarkerAction::Delete && begins_with_delete_all()) {
-    if (known != places_.end()) {  // nothing of it is left to delete: what added it is all that goes
-      by_place_.erase(known->second);
-      places_.erase(known);
-      size_ = {size_.count - 1, size_.bytes - older};
-    }
-    return by_place_.begin()->first;
+  const auto known = places_.find({marker.ns, marker.id});
+  const Place place = known == places_.end() ? next_ : known->second;
+  if (known != places_.end()) extract(place);
+  // Nothing of it is left to delete: what added it is all that goes.
+  if (marker.action == icd::MarkerAction::Delete && begins_with_delete_all()) return by_place_.begin()->first;
+  insert(place, std::move(marker));
+  next_ = std::max(next_, place + 1);
+  return place;
+}
+
+MarkerChanges::Place MarkerChanges::apply_before(MarkerChanges older) {
+  const Place first = empty() ? next_ : by_place_.begin()->first;
+  if (begins_with_delete_all()) return first - 1;
+  if (older.begins_with_delete_all()) {
+    while (!deletes_.empty()) older.remove(extract(*deletes_.begin()));
   }
-  size_ = {size_.count + (older == 0 ? 1 : 0), size_.bytes - older + icd::bytes_of(marker)};
-  if (known != places_.end()) {
-    by_place_.at(known->second) = marker;
-    return known->second;
+  Place place = first - static_cast<Place>(older.size().count);
+  for (auto& [its, marker] : older.by_place_) {
+    const auto newer = places_.find({marker.ns, marker.id});
+    const bool stands = marker.action == icd::MarkerAction::DeleteAll || newer == places_.end();
+    insert(place++, stands ? std::move(marker) : extract(newer->second));
   }
-  by_place_.emplace(next_, marker);
-  places_.emplace(key, next_);
-  return next_++;
+  return first - 1;
 }
 
 std::optional<icd::Marker> MarkerChanges::remove(const icd::Marker& like) {
-  auto place = by_place_.begin();
   if (like.action == icd::MarkerAction::DeleteAll) {
     if (!begins_with_delete_all()) return {};
-  } else {
-    const auto known = places_.find({like.ns, like.id});
-    if (known == places_.end()) return {};
-    place = by_place_.find(known->second);
-    places_.erase(known);
+    return extract(by_place_.begin()->first);
   }
-  auto change = by_place_.extract(place);
-  size_ = {size_.count - 1, size_.bytes - icd::bytes_of(change.mapped())};
-  return std::move(change.mapped());
+  const auto known = places_.find({like.ns, like.id});
+  if (known == places_.end()) return {};
+  return extract(known->second);
 }
 
 std::vector<icd::Marker> MarkerChanges::take(Size most) {
@@ -67,11 +80,7 @@ std::vector<icd::Marker> MarkerChanges::take(Size most) {
     const std::size_t bytes = icd::bytes_of(by_place_.begin()->second);
     if (!taken.empty() && bytes > most.bytes - std::min(most.bytes, taken_bytes)) break;
     taken_bytes += bytes;
-    size_ = {size_.count - 1, size_.bytes - bytes};
-    auto change = by_place_.extract(by_place_.begin());
-    const icd::Marker& marker = change.mapped();
-    if (marker.action != icd::MarkerAction::DeleteAll) places_.erase({marker.ns, marker.id});
-    taken.push_back(std::move(change.mapped()));
+    taken.push_back(extract(by_place_.begin()->first));
   }
   return taken;
 }

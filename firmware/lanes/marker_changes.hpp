@@ -4,6 +4,7 @@
 #include <cstdint>
 #include <map>
 #include <optional>
+#include <set>
 #include <string>
 #include <utility>
 #include <vector>
@@ -21,6 +22,8 @@ class MarkerChanges {
  public:
   using Place = std::int64_t;
 
+  MarkerChanges() = default;
+
   struct Size {
     std::size_t count = 0;  // of changes
     std::size_t bytes = 0;  // icd::bytes_of all of them
@@ -29,7 +32,10 @@ class MarkerChanges {
 
   /// Adds a change that comes after all others; gives the place of the change that stands for it, or of the
   /// DeleteAll that made it needless.
-  Place apply(const icd::Marker& marker);
+  Place apply(icd::Marker marker);
+  /// As if all of `older` had been applied before the others; gives a place that is after all that came of
+  /// it, and before all others. Costs by what is in `older`, not by what waits.
+  Place apply_before(MarkerChanges older);
 
   /// Takes out the change of the same ns and id, or the DeleteAll, where there is one.
   std::optional<icd::Marker> remove(const icd::Marker& like);
@@ -54,10 +60,15 @@ class MarkerChanges {
 
  private:
   using Key = std::pair<std::string, std::int32_t>;  // ns and id (ICD 6.6)
+
+  explicit MarkerChanges(Place next) : next_(next) {}
   std::size_t bytes_at(const Key& key) const;
+  void insert(Place place, icd::Marker marker);
+  icd::Marker extract(Place place);
 
   std::map<Place, icd::Marker> by_place_;
   std::map<Key, Place> places_;
+  std::set<Place> deletes_;  // that are no DeleteAll
   Place next_ = 0;
   Size size_;
 };

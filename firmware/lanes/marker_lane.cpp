@@ -23,30 +23,11 @@ icd::MarkersUpdate MarkerLane::those_that_wait(const icd::MarkersUpdate& update)
   return known;
 }
 
-void MarkerLane::add(const icd::MarkersUpdate& update, Instant now) {
-  Place last = kNowhere;
-  for (const icd::Marker& marker : update.markers) last = std::max(last, changes_.apply(marker));
-  add_to(updates_, last, {1, now});
-  oldest_ = std::min(oldest_.value_or(now), now);
-  if (updates_.size() > 2 * (count() + 1)) join_updates();
-}
-
-void MarkerLane::add_to(UpdatesByPlace& all, Place last, const Updates& updates) {
-  const auto [found, is_new] = all.try_emplace(last, updates);
-  if (is_new) return;
-  found->second.count += updates.count;
-  found->second.accepted = std::min(found->second.accepted, updates.accepted);
-}
-
-/// Updates whose last place is gone are done with the last one before it that is not: there are never many
-/// more of them than changes.
-void MarkerLane::join_updates() {
-  UpdatesByPlace joined;
-  for (const auto& [last, updates] : updates_) {
-    const auto after = changes_.in_order().upper_bound(last);
-    add_to(joined, after == changes_.in_order().begin() ? kNowhere : std::prev(after)->first, updates);
-  }
-  updates_ = std::move(joined);
+void MarkerLane::add(icd::MarkersUpdate update, Instant now) {
+  auto last = WaitingUpdates::kNowhere;
+  for (icd::Marker& marker : update.markers) last = std::max(last, changes_.apply(std::move(marker)));
+  updates_.add(last, 1, now);
+  updates_.join(changes_);
 }
 
 void MarkerLane::keep_within(MarkerBounds bounds) {
@@ -56,48 +37,34 @@ void MarkerLane::keep_within(MarkerBounds bounds) {
 }
 
 std::optional<WaitingMarkers> MarkerLane::take() {
-  if (!oldest_) return {};
+  if (empty()) return {};
   WaitingMarkers taken;
-  taken.accepted = *oldest_;
+  taken.accepted = *oldest();
   if (auto ahead = one_ahead()) {
     taken.update.markers.push_back(std::move(*ahead));
     taken.is_ahead = true;
     return taken;
   }
   taken.update.markers = changes_.take({most_now_, bounds_.bytes_per_message});
-  const auto still_waiting =
-      changes_.empty() ? updates_.end() : updates_.lower_bound(changes_.in_order().begin()->first);
-  for (auto done = updates_.begin(); done != still_waiting; ++done) taken.updates += done->second.count;
-  updates_.erase(updates_.begin(), still_waiting);
-  find_oldest();
+  taken.updates = updates_.take_done(changes_);
   return taken;
 }
 
 std::optional<icd::Marker> MarkerLane::one_ahead() {
   if (!std::exchange(may_go_ahead_, false) || !changes_.begins_with_delete_all() || count() < 2) return {};
-  const auto which = static_cast<std::ptrdiff_t>(1 + ahead_++ % (count() - 1));
-  return std::next(changes_.in_order().begin(), which)->second;
+  const auto second = std::next(changes_.in_order().begin());
+  auto next = changes_.in_order().upper_bound(std::max(ahead_, changes_.in_order().begin()->first));
+  if (next == changes_.in_order().end()) next = second;
+  ahead_ = next->first;
+  return next->second;
 }
 
 void MarkerLane::put_back(const WaitingMarkers& markers) {
-  MarkerChanges all;
-  auto last = kNowhere;
-  for (const icd::Marker& marker : markers.update.markers) last = std::max(last, all.apply(marker));
-
-  UpdatesByPlace updates;
-  if (markers.updates > 0) add_to(updates, last, {markers.updates, markers.accepted});
-  // An update ends where the last of the changes up to its end has gone to.
-  std::map<Place, Place> moved{{kNowhere, last}};
-  for (const auto& [place, marker] : changes_.in_order()) {
-    last = std::max(last, all.apply(marker));
-    moved.emplace(place, last);
-  }
-  for (const auto& [place, waiting] : updates_) {
-    add_to(updates, std::prev(moved.upper_bound(place))->second, waiting);
-  }
-  changes_ = std::move(all);
-  updates_ = std::move(updates);
-  find_oldest();
+  MarkerChanges older;
+  for (const icd::Marker& marker : markers.update.markers) older.apply(marker);
+  const auto last = changes_.apply_before(std::move(older));
+  if (markers.updates > 0) updates_.add(last, markers.updates, markers.accepted);
+  updates_.join(changes_);
 }
 
 void MarkerLane::put_back_narrower(const WaitingMarkers& markers) {
@@ -115,14 +82,12 @@ void MarkerLane::put_behind(const WaitingMarkers& markers) {
   const bool is_needless = changes_.says_more_than(marker);
   const auto last = is_needless ? changes_.in_order().rbegin()->first : changes_.apply(marker);
   if (markers.updates > 0) {
-    add_to(updates_, last, {markers.updates, markers.accepted});
+    updates_.add(last, markers.updates, markers.accepted);
   } else if (!is_needless && !updates_.empty()) {
     // It is the end of the update that it came in, which is the first that waits: otherwise nothing would
     // wait for it any more when the others have gone.
-    const auto its = updates_.extract(updates_.begin());
-    add_to(updates_, last, its.mapped());
+    updates_.move_first_to(last);
   }
-  find_oldest();
 }
 
 std::vector<icd::Marker> MarkerLane::pending() const {
@@ -130,13 +95,6 @@ std::vector<icd::Marker> MarkerLane::pending() const {
   all.reserve(count());
   for (const auto& [place, marker] : changes_.in_order()) all.push_back(marker);
   return all;
-}
-
-void MarkerLane::find_oldest() {
-  oldest_.reset();
-  for (const auto& [last, updates] : updates_) {
-    oldest_ = std::min(oldest_.value_or(updates.accepted), updates.accepted);
-  }
 }
 
 }  // namespace adit::lanes

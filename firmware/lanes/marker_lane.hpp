@@ -2,14 +2,13 @@
 
 #include <cstddef>
 #include <cstdint>
-#include <limits>
-#include <map>
 #include <optional>
 #include <vector>
 
 #include "icd/markers_update.hpp"
 #include "lanes/map_lane.hpp"
 #include "lanes/marker_changes.hpp"
+#include "lanes/waiting_updates.hpp"
 
 namespace adit::lanes {
 
@@ -44,11 +43,12 @@ class MarkerLane {
   /// Of an update for which there is no room: what changes markers that wait already, so that a full lane
   /// holds the newest of each. Without what stands before its last DeleteAll, which is needless.
   icd::MarkersUpdate those_that_wait(const icd::MarkersUpdate& update) const;
-  void add(const icd::MarkersUpdate& update, Instant now);
+  void add(icd::MarkersUpdate update, Instant now);
   /// The oldest pending changes, in order. Updates are counted in the message that sends the last of their
   /// markers.
   std::optional<WaitingMarkers> take();
   /// Puts back what take() gave last and could not be sent: ahead of what came meanwhile, and merged with it.
+  /// Costs by what is put back, not by what waits.
   void put_back(const WaitingMarkers& markers);
   /// The same, and sends half as many at a time from now on: if the Command Post does not take several, the
   /// one at fault is found.
@@ -67,32 +67,18 @@ class MarkerLane {
   std::size_t bytes() const { return changes_.size().bytes; }
   /// All that wait, in order.
   std::vector<icd::Marker> pending() const;
-  std::optional<Instant> oldest() const { return oldest_; }
+  std::optional<Instant> oldest() const { return updates_.oldest(); }
   bool empty() const { return updates_.empty(); }
 
  private:
-  using Place = MarkerChanges::Place;
-  static constexpr auto kNowhere = std::numeric_limits<Place>::min();
-
-  struct Updates {
-    std::uint64_t count = 0;
-    Instant accepted;  // the oldest of them
-  };
-  /// By the last place that any of their changes has: they are done when all up to there have been taken.
-  using UpdatesByPlace = std::map<Place, Updates>;
-
   std::optional<icd::Marker> one_ahead();
-  static void add_to(UpdatesByPlace& all, Place last, const Updates& updates);
-  void join_updates();
-  void find_oldest();
 
   MarkerBounds bounds_;
   std::size_t most_now_;       // markers in the next message
   bool may_go_ahead_ = false;  // the DeleteAll that is first has failed: something else goes once
-  std::size_t ahead_ = 0;      // how many went ahead
+  MarkerChanges::Place ahead_ = WaitingUpdates::kNowhere;  // of the last that went ahead
   MarkerChanges changes_;
-  UpdatesByPlace updates_;
-  std::optional<Instant> oldest_;
+  WaitingUpdates updates_;
 };
 
 }  // namespace adit::lanes

@@ -120,15 +120,17 @@ TEST(MarkersUpload, IsRefusedAboveItsLimitHoweverItComes) {
 TEST(MarkersUpload, WaitsForAWorkerOnlyWhereItIsLarge) {
   Team team;
   Team::Busy busy(team);
-  const std::string body = message_of(50'000);
-  RawClient large(team.served.port());  // from here on it has 5 s to say who it is
-  large.send(authorized("POST", "/markers/update", kCborType, body));
+  const std::string bodies[] = {message_of(2'000), message_of(50'000)};
+  RawClient middling(team.served.port()), large(team.served.port());  // each has 5 s to say who it is
+  middling.send(authorized("POST", "/markers/update", kCborType, bodies[0]));
+  large.send(authorized("POST", "/markers/update", kCborType, bodies[1]));
   EXPECT_EQ(team.ask(authorized("POST", "/markers/update", kJsonType, kMarkersBody))->status, 200);
   team.served.on_loop([&] {
     ASSERT_EQ(team.desk.markers.size(), 1u);
     EXPECT_EQ(team.desk.markers[0].markers.size(), 1u);
   });
   busy.end();
+  EXPECT_EQ(middling.reply()->status, 200);
   EXPECT_EQ(large.reply()->status, 200);
 }
 

@@ -40,10 +40,10 @@ class FakeDesk final : public Desk {
   bool stores_pieces = true;    // at once; else they wait in `storing`
 
   std::shared_ptr<MapArrival> map_arrives() override { return std::make_shared<Arrival>(*this); }
-  icd::Checked<void> take(const icd::StateUpdate& update, const Sender& sender) override {
+  icd::Checked<void> take(icd::StateUpdate update, const Sender& sender) override {
     return keep(states, update, sender);
   }
-  icd::Checked<void> take(const icd::MarkersUpdate& update, const Sender& sender) override {
+  icd::Checked<void> take(icd::MarkersUpdate update, const Sender& sender) override {
     return keep(markers, update, sender);
   }
   void take(const icd::ArtifactReport& report, const Sender& sender,

@@ -111,6 +111,31 @@ TEST(MarkerChanges, ReplayingTheMergedChangesGivesTheSameSceneAsReplayingBoth) {
   }
 }
 
+std::vector<icd::Marker> in_order(const MarkerChanges& changes) {
+  std::vector<icd::Marker> all;
+  for (const auto& [place, marker] : changes.in_order()) all.push_back(marker);
+  return all;
+}
+
+TEST(MarkerChanges, ComeToTheSameWhereTheOlderOnesComeLate) {
+  AnyChanges any{3};
+  for (int i = 0; i < 5000; ++i) {
+    const Scene scene = replay({}, any.changes());
+    const auto older = any.changes(), newer = any.changes(), newest = any.changes();
+    MarkerChanges late, changes;
+    for (const icd::Marker& marker : older) late.apply(marker);
+    for (const icd::Marker& marker : newer) changes.apply(marker);
+    changes.apply_before(late);
+    const auto both = in_order(changes);
+    const Scene then = replay(replay(scene, older), newer);
+    ASSERT_EQ(replay(scene, both), then);
+    ASSERT_EQ(merged({}, both), both) << "as few as say the same";
+    ASSERT_EQ(changes.size().count, both.size());
+    for (const icd::Marker& marker : newest) changes.apply(marker);
+    ASSERT_EQ(replay(scene, in_order(changes)), replay(then, newest)) << "each is found where it stands";
+  }
+}
+
 TEST(MarkerLane, GivesOutNothingWhereNothingWaits) {
   MarkerLane lane{{.per_message = 10}};
   EXPECT_TRUE(lane.empty());

@@ -1,8 +1,8 @@
 #include "codec/cbor_writer.hpp"
 
-#include <array>
+#include <algorithm>
 #include <bit>
-#include <span>
+#include <utility>
 
 namespace adit::codec {
 
@@ -11,7 +11,7 @@ void CborWriter::head(Major major, std::uint8_t info, std::uint64_t number, std:
   std::array<std::uint8_t, 9> bytes{};
   bytes[0] = static_cast<std::uint8_t>(static_cast<unsigned>(major) << 5 | info);
   for (std::size_t at = size; at > 0; --at, number >>= 8) bytes[at] = static_cast<std::uint8_t>(number);
-  out_.append(std::span(bytes).first(1 + size));
+  put(std::span(bytes).first(1 + size));
 }
 
 void CborWriter::head(Major major, std::uint64_t argument) {
@@ -32,7 +32,7 @@ void CborWriter::array(std::size_t elements) {
 
 void CborWriter::text(std::string_view utf8) {
   head(Major::Text, utf8.size());
-  out_.append({reinterpret_cast<const std::uint8_t*>(utf8.data()), utf8.size()});
+  put({reinterpret_cast<const std::uint8_t*>(utf8.data()), utf8.size()});
 }
 
 void CborWriter::whole(std::int64_t number) {
@@ -53,7 +53,24 @@ void CborWriter::truth(bool yes) {
 
 void CborWriter::byte_string(const icd::ChunkedBytes& bytes) {
   head(Major::Bytes, bytes.size());
+  flush();
   out_.append(bytes);
+}
+
+void CborWriter::put(std::span<const std::uint8_t> bytes) {
+  if (bytes.size() > latest_.size() - used_) flush();
+  if (bytes.size() > latest_.size()) return out_.append(bytes);
+  std::ranges::copy(bytes, latest_.begin() + static_cast<std::ptrdiff_t>(used_));
+  used_ += bytes.size();
+}
+
+void CborWriter::flush() {
+  out_.append(std::span(latest_).first(std::exchange(used_, 0)));
+}
+
+icd::ChunkedBytes CborWriter::finish() {
+  flush();
+  return std::move(out_);
 }
 
 }  // namespace adit::codec

@@ -1,9 +1,10 @@
 #pragma once
 
+#include <array>
 #include <cstddef>
 #include <cstdint>
+#include <span>
 #include <string_view>
-#include <utility>
 
 #include "codec/cbor_head.hpp"
 #include "icd/chunked_bytes.hpp"
@@ -24,13 +25,17 @@ class CborWriter {
   /// A byte string that shares the chunks of `bytes`.
   void byte_string(const icd::ChunkedBytes& bytes);
 
-  icd::ChunkedBytes finish() { return std::move(out_); }
+  icd::ChunkedBytes finish();
 
  private:
   void head(Major major, std::uint8_t info, std::uint64_t number, std::size_t size);
   void head(Major major, std::uint64_t argument);
+  void put(std::span<const std::uint8_t> bytes);
+  void flush();
 
   icd::ChunkedBytes out_;
+  std::array<std::uint8_t, 1024> latest_;  // what follows, together: an item is a few bytes
+  std::size_t used_ = 0;
 };
 
 }  // namespace adit::codec

@@ -8,7 +8,13 @@ namespace adit::lanes {
 
 bool MarkerLane::has_room_for(const icd::MarkersUpdate& update) const {
   if (empty()) return true;
-  const MarkerChanges::Size now = changes_.size(), then = changes_.size_with(update.markers);
+  const MarkerChanges::Size now = changes_.size();
+  std::size_t at_most = now.bytes;
+  for (const icd::Marker& marker : update.markers) at_most += icd::bytes_of(marker);
+  const bool is_far =
+      now.count + update.markers.size() <= kMostMarkers && at_most <= bounds_.bytes - bounds_.bytes / 4;
+  if (is_far) return true;
+  const MarkerChanges::Size then = changes_.size_with(update.markers);
   const bool only_replaces = then.count <= now.count;
   const std::size_t most_bytes = only_replaces ? bounds_.bytes : bounds_.bytes - bounds_.bytes / 4;
   return then.count <= std::max(kMostMarkers, now.count) && then.bytes <= std::max(most_bytes, now.bytes);

@@ -47,6 +47,7 @@ Exchange::Exchange(const Endpoint& endpoint, const icd::BearerToken& token, Requ
     : authority_(authority_of(endpoint)),
       request_(std::move(request)),
       head_(head_of(authority_, token, request_)),
+      paced_(endpoint.bytes_per_second > 0),
       total_(head_.size() + request_.body.size()),
       may_go_(request_.last_byte_not_before == loop::Instant{}
                   ? total_
@@ -74,7 +75,8 @@ int Exchange::write(int fd) {
     const std::size_t skip = i == chunk_ ? within_chunk_ : 0;
     pieces[count++] = piece(chunks[i]->data() + skip, chunks[i]->size() - skip);
   }
-  const auto taken = uplink::write(fd, first_of(std::span(pieces).first(count), may_go_ - sent_));
+  const std::span<iovec> may_go = first_of(std::span(pieces).first(count), may_go_ - sent_);
+  const auto taken = paced_ ? write_evenly(fd, may_go) : uplink::write(fd, may_go);
   if (taken) {
     advance(*taken);
     return 0;

@@ -62,6 +62,7 @@ class Exchange {
   std::string authority_;
   Request request_;
   std::string head_;
+  bool paced_ = false;
   std::size_t total_ = 0;
   std::size_t may_go_ = 0;  // of total_; the rest is held back
   std::size_t sent_ = 0;

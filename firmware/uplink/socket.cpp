@@ -9,6 +9,7 @@
 #include <sys/socket.h>
 
 #include <algorithm>
+#include <array>
 #include <cerrno>
 #include <cstring>
 #include <limits>
@@ -28,6 +29,9 @@ constexpr std::uint64_t kMostUnsent = 65536;
 constexpr std::uint64_t kMostUnsentPaced = 256 * 1024;
 /// Of a paced connection: what is unsent, and what is on its way.
 constexpr int kPacedSendBuffer = 512 * 1024;
+
+/// Two full segments of Ethernet: what MSG_EOR ends stays apart. So many at once are some 180 KB.
+constexpr std::size_t kBurst = 2 * 1448, kMostBursts = 64;
 
 /// The kernel notes times to a tick of its clock: 10 ms where CONFIG_HZ is 100.
 constexpr std::chrono::milliseconds kTick{10};
@@ -118,6 +122,25 @@ std::expected<std::size_t, int> write(int fd, std::span<const iovec> pieces) {
   const ssize_t taken = ::sendmsg(fd, &message, MSG_NOSIGNAL | MSG_DONTWAIT);
   if (taken >= 0) return static_cast<std::size_t>(taken);
   return std::unexpected(errno);
+}
+
+std::expected<std::size_t, int> write_evenly(int fd, std::span<const iovec> pieces) {
+  std::array<iovec, kMostBursts> parts{};
+  std::array<mmsghdr, kMostBursts> messages{};
+  unsigned count = 0;
+  for (const iovec& piece : pieces) {
+    for (std::size_t from = 0; from < piece.iov_len && count < kMostBursts; from += kBurst, ++count) {
+      parts[count] = {.iov_base = static_cast<char*>(piece.iov_base) + from,
+                      .iov_len = std::min(kBurst, piece.iov_len - from)};
+      messages[count].msg_hdr.msg_iov = &parts[count];
+      messages[count].msg_hdr.msg_iovlen = 1;
+    }
+  }
+  const int taken = ::sendmmsg(fd, messages.data(), count, MSG_NOSIGNAL | MSG_DONTWAIT | MSG_EOR);
+  if (taken < 0) return std::unexpected(errno);
+  std::size_t bytes = 0;
+  for (int i = 0; i < taken; ++i) bytes += messages[i].msg_len;
+  return bytes;
 }
 
 std::expected<std::size_t, int> read(int fd, std::span<char> bytes) {

@@ -45,6 +45,10 @@ std::expected<std::size_t, int> write(int fd, std::span<const iovec> pieces) {
   return taken;
 }
 
+std::expected<std::size_t, int> write_evenly(int fd, std::span<const iovec> pieces) {
+  return write(fd, pieces);
+}
+
 std::expected<std::size_t, int> read(int fd, std::span<char> bytes) {
   Link* const link = link_of(fd);
   if (link == nullptr) return std::unexpected(ECONNRESET);

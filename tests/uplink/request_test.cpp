@@ -63,24 +63,29 @@ TEST_F(ConnectionRequests, OfAnEmptyPostSayThatItIsEmpty) {
 
 TEST_F(ConnectionRequests, ArriveByteForByteHoweverTheirBodyIsCut) {
   const std::string all = megabytes(5);
-  Request request = post("");
-  std::size_t at = 0;
-  for (std::size_t size = 1; at < all.size(); size = size * 3 + 1) {  // chunks of many sizes
+  icd::ChunkedBytes body;
+  for (std::size_t at = 0, size = 1; at < all.size(); size = size * 3 + 1) {  // chunks of many sizes
     const std::size_t piece = std::min({size, all.size() - at, std::size_t{64} << 10});
-    request.body.append(std::vector<std::uint8_t>(all.begin() + static_cast<std::ptrdiff_t>(at),
-                                                  all.begin() + static_cast<std::ptrdiff_t>(at + piece)));
+    body.append(std::vector<std::uint8_t>(all.begin() + static_cast<std::ptrdiff_t>(at),
+                                          all.begin() + static_cast<std::ptrdiff_t>(at + piece)));
     at += piece;
   }
-  Listener listener;
-  std::size_t sent = 0;
-  {
-    const ListeningPeer peer(listener.script());
-    Connection connection(loop_, peer.endpoint(), token());
-    EXPECT_EQ(answered(ask(connection, std::move(request))).status, 200);
-    sent = connection.sent_bytes();
+  for (const std::uint64_t pace : {0, 500'000'000}) {
+    Request request = post("");
+    request.body = body;
+    Listener listener;
+    std::size_t sent = 0;
+    {
+      const ListeningPeer peer(listener.script());
+      Endpoint endpoint = peer.endpoint();
+      endpoint.bytes_per_second = pace;
+      Connection connection(loop_, endpoint, token());
+      EXPECT_EQ(answered(ask(connection, std::move(request))).status, 200);
+      sent = connection.sent_bytes();
+    }
+    EXPECT_EQ(sent, listener.request.size());
+    EXPECT_TRUE(listener.request.ends_with(all)) << pace;
   }
-  EXPECT_EQ(sent, listener.request.size());
-  EXPECT_TRUE(listener.request.ends_with(all));
 }
 
 TEST_F(ConnectionRequests, FollowEachOtherOnOneConnection) {

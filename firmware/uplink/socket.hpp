@@ -31,8 +31,8 @@ std::expected<loop::FileDescriptor, NoSocket> begin_connect(const Endpoint& endp
 /// none now).
 std::expected<std::size_t, int> write(int fd, std::span<const iovec> pieces);
 
-/// The same, so that the kernel lets no more than two full segments leave at once, at the socket's pace in between
-/// (SO_MAX_PACING_RATE): else it lets up to 64 KB leave, as one, where the round trip is short
+/// The same, so that the kernel lets no more than two full segments leave at once, at the socket's pace in
+/// between (SO_MAX_PACING_RATE): else it lets up to 64 KB leave, as one, where the round trip is short
 /// (net.ipv4.tcp_tso_rtt_log), and a report on the same link waits 5 ms behind them at 100 Mbit/s.
 std::expected<std::size_t, int> write_evenly(int fd, std::span<const iovec> pieces);
 

@@ -11,7 +11,7 @@ namespace adit::codec {
 namespace {
 
 constexpr std::size_t kPiece = icd::ChunkedBytes::kChunk;
-constexpr int kLevel = 6;
+constexpr int kLevel = 6, kFastLevel = 1;
 constexpr int kGzip = MAX_WBITS + 16;  // zlib: a gzip wrapper, and no other
 constexpr int kMemoryLevel = 8;        // zlib's default
 
@@ -45,8 +45,10 @@ icd::Refusal damaged(std::string_view path, const char* why) {
 }  // namespace
 
 struct Gzipper::Stream {
-  explicit Stream(int strategy) {
-    require_started(deflateInit2(&zlib, kLevel, Z_DEFLATED, kGzip, kMemoryLevel, strategy));
+  explicit Stream(GzipStrategy strategy) {
+    const int level = strategy == GzipStrategy::Points ? kFastLevel : kLevel;
+    const int zlibs = strategy == GzipStrategy::Runs ? Z_RLE : Z_DEFAULT_STRATEGY;
+    require_started(deflateInit2(&zlib, level, Z_DEFLATED, kGzip, kMemoryLevel, zlibs));
   }
   ~Stream() { deflateEnd(&zlib); }
   Stream(const Stream&) = delete;
@@ -55,8 +57,7 @@ struct Gzipper::Stream {
   z_stream zlib{};
 };
 
-Gzipper::Gzipper(GzipStrategy strategy)
-    : stream_(std::make_unique<Stream>(strategy == GzipStrategy::Runs ? Z_RLE : Z_DEFAULT_STRATEGY)) {}
+Gzipper::Gzipper(GzipStrategy strategy) : stream_(std::make_unique<Stream>(strategy)) {}
 Gzipper::~Gzipper() = default;
 Gzipper::Gzipper(Gzipper&&) noexcept = default;
 Gzipper& Gzipper::operator=(Gzipper&&) noexcept = default;

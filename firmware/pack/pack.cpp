@@ -96,7 +96,7 @@ icd::MapUpdate pack(icd::MapUpdate map) {
     map.data = compressed(std::move(map.data), codec::GzipStrategy::Runs);
     return map;
   }
-  map.data = compressed(without_invalid_points(*cloud, std::move(map.data)), codec::GzipStrategy::Default);
+  map.data = compressed(without_invalid_points(*cloud, std::move(map.data)), codec::GzipStrategy::Points);
   return map;
 }
 

@@ -39,7 +39,8 @@ void try_gzip(Input text) {
   // Nothing may follow a member: that hangs a Command Post.
   if (said) require(!inflated(icd::ChunkedBytes(bytes_of(std::string(text) + "x"))));
 
-  for (const auto strategy : {codec::GzipStrategy::Default, codec::GzipStrategy::Runs}) {
+  for (const auto strategy :
+       {codec::GzipStrategy::Default, codec::GzipStrategy::Runs, codec::GzipStrategy::Points}) {
     const auto member = codec::gzip(icd::ChunkedBytes(bytes_of(text)), strategy);
     require(inflated(member) == std::string(text));
   }

@@ -180,10 +180,10 @@ void Telemetry::send_state() {
   const icd::ChunkedBytes body = codec::write_state_update(waiting->update);
   state_pace_.sent(loop_.now());
   under_way_ = {Kind::State, waiting->accepted};
-  channel_.send(icd::Uri::StateUpdate, codec::kCbor, body,
-                [this, sent = std::move(*waiting), bytes = body.size()](const uplink::Outcome& outcome) {
-                  answered(Kind::State, state_pace_, sent, bytes, outcome);
-                });
+  channel_.send(
+      icd::Uri::StateUpdate, codec::kCbor, body,
+      [this, sent = std::make_shared<const lanes::WaitingState>(std::move(*waiting)), bytes = body.size()](
+          const uplink::Outcome& outcome) { answered(Kind::State, state_pace_, sent, bytes, outcome); });
 }
 
 void Telemetry::send_markers() {
@@ -196,31 +196,31 @@ void Telemetry::send_markers() {
     journal_.stamped(icd::Uri::MarkersUpdate, *waiting->update.markers.back().header.stamp);
   }
   if (!waiting->is_ahead) journal_.markers_sent(waiting->update);
-  for (const icd::Marker& marker : waiting->update.markers) markers_under_way_.apply(marker);
   const icd::ChunkedBytes body = codec::write_markers_update(waiting->update);
   markers_pace_.sent(loop_.now());
   under_way_ = {Kind::Markers, waiting->accepted};
+  const auto sent = markers_under_way_ = std::make_shared<const lanes::WaitingMarkers>(std::move(*waiting));
   channel_.send(icd::Uri::MarkersUpdate, codec::kCbor, body,
-                [this, sent = std::move(*waiting), bytes = body.size()](const uplink::Outcome& outcome) {
+                [this, sent, bytes = body.size()](const uplink::Outcome& outcome) {
                   answered(Kind::Markers, markers_pace_, sent, bytes, outcome);
                 });
 }
 
 /// An answer that cannot be dealt with is as good as none: the message is sent again.
 template <class Waiting>
-void Telemetry::answered(Kind kind, UriPace& pace, const Waiting& sent, std::size_t bytes,
+void Telemetry::answered(Kind kind, UriPace& pace, const Sent<Waiting>& sent, std::size_t bytes,
                          const uplink::Outcome& outcome) {
-  if (kind == Kind::Markers) markers_under_way_ = {};
+  if (kind == Kind::Markers) markers_under_way_.reset();
   under_way_.reset();
   if (!loop::guarded("the answer to a state or markers", [&] { judge(kind, pace, sent, bytes, outcome); })) {
     pace.lost(loop_.now());
-    loop::guarded("putting a state or markers back", [&] { whole(restart_, [&] { put_back(sent); }); });
+    loop::guarded("putting a state or markers back", [&] { whole(restart_, [&] { put_back(*sent); }); });
   }
   pump();
 }
 
 template <class Waiting>
-void Telemetry::judge(Kind kind, UriPace& pace, const Waiting& sent, std::size_t bytes,
+void Telemetry::judge(Kind kind, UriPace& pace, const Sent<Waiting>& sent, std::size_t bytes,
                       const uplink::Outcome& outcome) {
   const loop::Instant now = loop_.now();
   const auto* answer = std::get_if<uplink::Answered>(&outcome);
@@ -228,9 +228,9 @@ void Telemetry::judge(Kind kind, UriPace& pace, const Waiting& sent, std::size_t
   auto verdict = answer != nullptr ? dispatch::mapping_verdict(status, dispatch::body_of(answer->body))
                                    : MappingVerdict::Failing;
   const std::string sentence = verdict == MappingVerdict::Taken ? "" : sentence_of(outcome);
-  for (const Traffic& traffic : traffic_of(sent)) {
+  for (const Traffic& traffic : traffic_of(*sent)) {
     if (verdict == MappingVerdict::Taken) {
-      record_.forwarded(traffic, updates_in(sent), bytes, status, loop_.stamp_now());
+      record_.forwarded(traffic, updates_in(*sent), bytes, status, loop_.stamp_now());
     } else {
       record_.not_taken(traffic, why_not(verdict), status, sentence);
     }
@@ -240,25 +240,25 @@ void Telemetry::judge(Kind kind, UriPace& pace, const Waiting& sent, std::size_t
   switch (verdict) {
     case MappingVerdict::Taken:
       pace.taken(answer->sent, now);
-      passed(sent);
+      passed(*sent);
       overtake(sent);
-      as_forwarded_.forwarded(sent.update, loop_.stamp_now());
+      as_forwarded_.forwarded(sent->update, loop_.stamp_now());
       break;
     case MappingVerdict::Refused:
       pace.taken(answer->sent, now);
-      give_up(sent, status, sentence, bytes);
+      give_up(*sent, status, sentence, bytes);
       break;
     case MappingVerdict::Suspect:
       pace.lost(now);
-      if (is_to_blame(sent)) give_up(sent, status, sentence, bytes);
+      if (is_to_blame(*sent)) give_up(*sent, status, sentence, bytes);
       break;
     case MappingVerdict::Throttled:
       pace.throttled(now, answer->retry_after);
-      put_back(sent);
+      put_back(*sent);
       break;
     case MappingVerdict::Failing:
       pace.failed(outcome, now);
-      put_back(sent);
+      put_back(*sent);
       break;
   }
 }
@@ -276,14 +276,14 @@ void Telemetry::passed(const lanes::WaitingMarkers& markers) {
 }
 
 template <class Waiting>
-void Telemetry::overtake(const Waiting& sent) {
+void Telemetry::overtake(const Sent<Waiting>& sent) {
   const auto written = [this, sent] {
     aside_writes_ = false;
-    done(sent);
+    done(*sent);
     pump();
   };
-  aside_writes_ = aside_.taken(sent.update, written);
-  if (!aside_writes_) done(sent);
+  aside_writes_ = aside_.taken(sent->update, written);
+  if (!aside_writes_) done(*sent);
 }
 
 void Telemetry::give_up(const lanes::WaitingState& state, int status, const std::string& sentence,
@@ -366,9 +366,13 @@ bool Telemetry::wait_again(icd::MarkersUpdate markers) {
     return marker.action == icd::MarkerAction::DeleteAll;
   };
   const bool wipes = std::ranges::any_of(markers.markers, deletes_all);
-  if (wipes && !markers_under_way_.empty()) return false;
-  std::erase_if(markers.markers, [this](const icd::Marker& marker) {
-    return markers_.says_more_than(marker) || markers_under_way_.says_more_than(marker);
+  lanes::MarkerChanges under_way;
+  if (markers_under_way_) {
+    for (const icd::Marker& marker : markers_under_way_->update.markers) under_way.apply(marker);
+  }
+  if (wipes && !under_way.empty()) return false;
+  std::erase_if(markers.markers, [&](const icd::Marker& marker) {
+    return markers_.says_more_than(marker) || under_way.says_more_than(marker);
   });
   if (markers.markers.empty()) return true;
   icd::MarkersUpdate in_order = markers;

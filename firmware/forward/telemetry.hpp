@@ -2,6 +2,7 @@
 
 #include <functional>
 #include <map>
+#include <memory>
 #include <optional>
 #include <random>
 #include <utility>
@@ -80,8 +81,11 @@ class Telemetry {
   void send_next();
   void send_state();
   void send_markers();
+  /// What is under way, and is not copied.
   template <class Waiting>
-  void answered(Kind kind, UriPace& pace, const Waiting& sent, std::size_t bytes,
+  using Sent = std::shared_ptr<const Waiting>;
+  template <class Waiting>
+  void answered(Kind kind, UriPace& pace, const Sent<Waiting>& sent, std::size_t bytes,
                 const uplink::Outcome& outcome);
   std::vector<Traffic> traffic_of(const lanes::WaitingState& state) const;
   std::vector<Traffic> traffic_of(const lanes::WaitingMarkers& markers) const;
@@ -101,14 +105,14 @@ class Telemetry {
   }
 
   template <class Waiting>
-  void judge(Kind kind, UriPace& pace, const Waiting& sent, std::size_t bytes,
+  void judge(Kind kind, UriPace& pace, const Sent<Waiting>& sent, std::size_t bytes,
              const uplink::Outcome& outcome);
   void passed(const lanes::WaitingState& state);
   void passed(const lanes::WaitingMarkers& markers);
   /// It is done once what it overtook is written down as overtaken: the other way round, a kill in between
   /// would leave a life to come that knows of neither, and lets an operator send the older one.
   template <class Waiting>
-  void overtake(const Waiting& sent);
+  void overtake(const Sent<Waiting>& sent);
   /// Refused, or failed alone: the one at fault is looked for among several, and set aside by itself.
   void give_up(const lanes::WaitingState& state, int status, const std::string& sentence, std::size_t bytes);
   void give_up(const lanes::WaitingMarkers& markers, int status, const std::string& sentence,
@@ -134,7 +138,7 @@ class Telemetry {
   loop::Source wake_;
   lanes::StateLane state_;
   lanes::MarkerLane markers_;
-  lanes::MarkerChanges markers_under_way_;
+  Sent<lanes::WaitingMarkers> markers_under_way_;  // null: none
   lanes::StampOrder state_stamps_, marker_stamps_;
   int state_failed_ = 0, markers_failed_ = 0;  // answers in a row of a handler that failed
   lanes::Blame state_blame_, marker_blame_;

@@ -2,6 +2,7 @@
 
 #include <zlib.h>
 
+#include <array>
 #include <bit>
 
 namespace adit::journal {
@@ -10,7 +11,10 @@ namespace {
 constexpr std::size_t kHead = 8;  // length and checksum
 
 void put(std::string& to, std::uint64_t number, int bytes) {
-  for (int i = 0; i < bytes; ++i) to += static_cast<char>(number >> (8 * i));
+  std::array<char, 8> little{};
+  for (int i = 0; i < bytes; ++i)
+    little.at(static_cast<std::size_t>(i)) = static_cast<char>(number >> (8 * i));
+  to.append(little.data(), static_cast<std::size_t>(bytes));
 }
 
 std::uint64_t get(std::string_view from) {

@@ -83,7 +83,11 @@ void MapPicture::draw(Waiting waiting) {
   auto job = std::make_shared<Job>(Job{std::move(waiting), {}});
   job->canvas = mosaic_.canvas(picture::layer_of(job->waiting.map));
   workers_.submit(
-      [job] { job->drawing = picture::draw(job->waiting.map, job->canvas); }, [this, job] { drawn(*job); },
+      [job] {
+        job->drawing = picture::draw(job->waiting.map, job->canvas);
+        job->waiting.map.data = {};  // here: that takes milliseconds of a file that is mapped
+      },
+      [this, job] { drawn(*job); },
       [this, job] {
         job->drawing = std::unexpected(icd::Refusal{icd::Status::ServiceUnavailable, "no memory"});
         drawn(*job);

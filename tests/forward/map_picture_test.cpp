@@ -2,7 +2,11 @@
 
 #include <gtest/gtest.h>
 
+#include <atomic>
+#include <memory>
+#include <thread>
 #include <utility>
+#include <vector>
 
 #include "codec/gzip.hpp"
 #include "loop/turn_until.hpp"
@@ -61,6 +65,20 @@ TEST_F(MapPictureTest, DrawsEachMapThatWasForwardedAndSaysThatThePictureChanged)
   picture.forwarded(grid("r3", 0, 4, 0));
   ASSERT_TRUE(loop::turn_until(loop, [&] { return drawn("r3", {0, 0, 0}); }));
   EXPECT_EQ(changes, 4) << "the same grid again changed nothing";
+}
+
+TEST_F(MapPictureTest, FreesNoMapOnTheLoop) {
+  const std::vector<std::uint8_t> cells(16, 0);
+  std::atomic<std::thread::id> freed_by;
+  icd::MapUpdate map = grid("r1", 0, 4, 0);
+  map.data.bytes = {};
+  map.data.bytes.append(
+      std::shared_ptr<const void>(cells.data(), [&](const void*) { freed_by = std::this_thread::get_id(); }),
+      cells);
+  picture.forwarded(std::move(map));
+  ASSERT_TRUE(loop::turn_until(loop, [&] { return drawn("r1", {0, 0, 0}); }));
+  EXPECT_NE(freed_by.load(), std::thread::id());
+  EXPECT_NE(freed_by.load(), std::this_thread::get_id());
 }
 
 TEST_F(MapPictureTest, IsHandedOnWithWhatItHasDrawnAndCountsWhatItHasNot) {

@@ -117,21 +117,25 @@ class Stage:
             raise RuntimeError(f"{log} did not start: {file.read()}")
 
     def sent(self):
-        shown = json.loads(subprocess.run(["ip", "-n", self.space("gate"), "-j", "-s", "link", "show", "c2"],
+        """Bytes, with the heads of all segments."""
+        shown = json.loads(subprocess.run(["tc", "-n", self.space("gate"), "-j", "-s", "qdisc", "show", "dev", "c2"],
                                           capture_output=True, check=True).stdout)
-        return shown[0]["stats64"]["tx"]["bytes"]
+        return shown[0]["bytes"]
 
-    def play(self, way, robots, seconds, before=lambda: None, meanwhile=time.sleep):
-        """`before` is called right before the robots begin, `meanwhile` with the seconds that they post."""
+    def play(self, way, robots, seconds, before=lambda: None, meanwhile=time.sleep, post=()):
+        """`before` is called right before the robots begin, `meanwhile` with the seconds that they post. `post`: more options
+        of the Command Post."""
         place = tempfile.mkdtemp(dir=self.folder)
         where = ["--scoring", "%s:%d" % SCORING, "--mapping", "%s:%d" % MAPPING, "--control", "%s:%d" % CONTROL]
-        self.start("post", [f"{self.programs}/adit-rehearsal", *where, "--secrets", f"{self.folder}/secrets"], "post")
+        self.start("post", ["nice", "-n", "10", f"{self.programs}/adit-rehearsal", *where, "--secrets", f"{self.folder}/secrets",
+                            *post], "post")
         self.wait_for("team", CONTROL, "post")
         self.start("gate", way.command(place), "way")
         self.wait_for("team", LISTEN, "way")
         before()
         at_first, began = self.sent(), time.monotonic()
-        team = self.start("team", [f"{self.programs}/adit-robots", "--post", "http://%s:%d" % LISTEN,
+        # They and the Command Post have machines of their own in the field: here they take what the way leaves of this one.
+        team = self.start("team", ["nice", "-n", "15", f"{self.programs}/adit-robots", "--post", "http://%s:%d" % LISTEN,
                                    "--control", "http://%s:%d" % CONTROL, "--secrets", f"{self.folder}/secrets",
                                    "--for", str(seconds), "--quiet", *robots], "team")
         meanwhile(seconds)

@@ -17,15 +17,17 @@ class Way:
 
 
 class Adit(Way):
-    def __init__(self, name, program):
+    def __init__(self, name, program, reports_hz=1):
         super().__init__(name)
         self.program = program
+        self.reports_hz = reports_hz
 
     def command(self, folder):
         os.mkdir(f"{folder}/state")
         settings = {"version": 1,
                     "command_post": {"scoring": {"address": SCORING[0], "port": SCORING[1]},
-                                     "mapping": {"address": MAPPING[0], "port": MAPPING[1]}},
+                                     "mapping": {"address": MAPPING[0], "port": MAPPING[1]},
+                                     "rates": {"reports_hz": self.reports_hz}},
                     "team": {"listen": [{"address": LISTEN[0], "port": LISTEN[1]}]}}
         with open(f"{folder}/settings.json", "w", encoding="utf-8") as file:
             json.dump(settings, file)

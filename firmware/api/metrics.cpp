@@ -159,6 +159,11 @@ void write_updates(Exposition& out, const RunView& view) {
     out.sample({{"kind", row.kind}, {"robot", row.robot}},
                row.behind_since ? view.now - *row.behind_since : 0);
   }
+  out.gauge("adit_clouds_whole",
+            "Whether its newest cloud replaces those that wait (1), or each arrives (0).");
+  for (const ActivityRow& row : view.activities) {
+    if (!row.clouds.empty()) out.sample({{"robot", row.robot}}, row.clouds == "whole" ? 1 : 0);
+  }
   out.gauge("adit_updates_waiting", "Updates that wait.");
   sample_each(out, view, &ActivityRow::waiting);
   write_age(out, view, "adit_updates_accepted_age_seconds", "How long ago the last one was accepted.",

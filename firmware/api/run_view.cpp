@@ -11,6 +11,7 @@ using codec::Member;
 
 constexpr std::string_view kWhen = "seconds since 1970";
 constexpr std::string_view kKinds[] = {"grid", "cloud", "state", "markers"};
+constexpr std::string_view kClouds[] = {"", "whole", "parts"};
 constexpr std::string_view kPatterns[] = {"off",   "on",   "slow", "fast",  "twice",
                                           "flash", "wink", "rush", "digits"};
 constexpr std::string_view kSides[] = {"team", "command_post"};
@@ -69,6 +70,11 @@ constexpr Member kActivity[] = {
     member<&ActivityRow::bytes_sent>("bytes_sent", "of the last"),
     member<&ActivityRow::last_status>("last_status", "the Command Post's, to the last try; 0: none came"),
     member<&ActivityRow::last_sentence>("last_sentence", "what it said, or why nothing came"),
+    member<&ActivityRow::clouds>("clouds",
+                                 "what the last clouds were taken for. whole: the newest says all that those "
+                                 "before it said, and replaces them; parts: each arrives; empty: no two of "
+                                 "them have waited")
+        .one_of(kClouds),
 };
 
 constexpr Member kRefusal[] = {

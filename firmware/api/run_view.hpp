@@ -71,6 +71,7 @@ struct ActivityRow {
   std::uint64_t bytes_received = 0, bytes_sent = 0;
   int last_status = 0;
   std::string last_sentence;
+  std::string clouds;
 
   static const codec::Row kRow;
 };

@@ -125,7 +125,7 @@ std::string activities_table(const RunView& view, bool colour) {
   for (const api::ActivityRow& row : view.activities) {
     const Arrival arrival = arrival_of(row, view.now);
     table.add({{row.robot.empty() ? "(all)" : row.robot, Tone::Strong},
-               {row.kind},
+               {row.kind + (row.clouds.empty() ? "" : ", " + row.clouds)},
                arrival_cell(arrival, row, view.now),
                {std::to_string(row.accepted)},
                {std::to_string(row.forwarded)},

@@ -62,7 +62,7 @@ Maps::Maps(loop::Loop& loop, loop::Workers& workers, loop::Writer& writer, spool
       slot_(pace::map_bytes_per_second(settings.command_post.budget_mbit)),
       lane_(settings.queues.merge_bytes),
       trouble_(spool.trouble()) {
-  lane_.a_slot_carries(slot_of(settings.command_post));
+  take_settings();
 }
 
 void Maps::carry_on(const journal::Carried& carried) {
@@ -72,8 +72,13 @@ void Maps::carry_on(const journal::Carried& carried) {
   }
 }
 
-void Maps::settings_changed() {
+void Maps::take_settings() {
   lane_.a_slot_carries(slot_of(settings_.command_post));
+  lane_.clouds_are(settings::clouds_of(settings_.robots));
+}
+
+void Maps::settings_changed() {
+  take_settings();
   slot_.allow(pace::map_bytes_per_second(settings_.command_post.budget_mbit));
   pace_.allow(settings_.command_post.rates.map_hz, loop_.now());
   pump();

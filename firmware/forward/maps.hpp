@@ -92,6 +92,9 @@ class Maps {
   };
 
   std::vector<std::uint64_t> add(std::uint64_t number, icd::MapUpdate update);
+  void take_settings();
+  void compare();
+  void compared(const lanes::Successive& two, bool has_all);
   /// A map on its way to its file: the writer's, until it is handed back.
   struct Keeping {
     std::uint64_t number = 0;
@@ -153,6 +156,7 @@ class Maps {
   std::size_t bytes_being_kept_ = 0;
   std::string trouble_;
   bool preparing_ = false;
+  bool comparing_ = false;  // a worker is comparing two clouds
   loop::Duration packing_took_{0};
   std::shared_ptr<Prepared> prepared_;    // while it is packed, waits for its time, or is under way
   std::shared_ptr<Prepared> following_;   // the next one, while that is under way

@@ -31,7 +31,7 @@ bool Maps::has_room_for(const icd::MapUpdate& update, bool replaces) const {
 /// What arrives leaves room for a grid that replaces one.
 std::shared_ptr<intake::MapArrival> Maps::arrives(MapArrival::Take take) {
   return std::make_shared<MapArrival>(
-      while_alive_, spool_, [this] { return lane_.largest_grid(); }, std::move(take));
+      while_alive_, spool_, [this] { return lane_.largest_replaceable(); }, std::move(take));
 }
 
 void Maps::take(icd::MapUpdate update, std::size_t bytes_received, std::shared_ptr<spool::MapFile> file,
@@ -48,9 +48,11 @@ void Maps::take(icd::MapUpdate update, std::size_t bytes_received, std::shared_p
   }
   const auto keeping = std::make_shared<Keeping>();
   keeping->bytes_received = bytes_received;
-  // Only a grid is ever replaced, and the newer one must find room beside it.
-  const std::uint64_t of_its_own = update.is_grid() ? update.data.bytes.size() : 0;
-  if (!replaces) keeping->spare = std::max<std::uint64_t>(lane_.largest_grid(), of_its_own);
+  // Only a grid or a whole cloud is replaced as it comes, and the newer one must find room beside it.
+  const bool is_whole =
+      update.is_grid() || lane_.clouds_of(lanes::Sender::of(update)) == lanes::Clouds::Whole;
+  const std::uint64_t of_its_own = is_whole ? update.data.bytes.size() : 0;
+  if (!replaces) keeping->spare = std::max<std::uint64_t>(lane_.largest_replaceable(), of_its_own);
   keeping->update = std::move(update);
   keeping->file = std::move(file);
   keep(keeping, [this, done = std::move(done)](Keeping& it) { kept(it, done); });
@@ -96,6 +98,7 @@ void Maps::kept(Keeping& keeping, const std::function<void(icd::Checked<void>)>&
   record_.accepted(traffic_of(*keeping.kept), keeping.bytes_received, loop_.stamp_now());
   forget(add(keeping.number, std::move(*keeping.kept)));
   done({});
+  compare();
   pump();
 }
 
@@ -108,14 +111,17 @@ void Maps::restore(std::uint64_t number, icd::MapUpdate update) {
   const icd::Stamp stamp = stamp_of(update);
   forget(again ? lane_.put_back(waiting_again(number, std::move(update), stamp))
                : add(number, std::move(update)));
+  compare();
   pump();
 }
 
 /// The numbers of the maps that this one replaced.
 std::vector<std::uint64_t> Maps::add(std::uint64_t number, icd::MapUpdate update) {
   const Traffic traffic = traffic_of(update);
+  const lanes::Clouds clouds = lane_.clouds_of(lanes::Sender::of(update));
   auto replaced = lane_.add(number, std::move(update), loop_.now());
   record_.replaced(traffic, replaced.size());
+  if (clouds != lanes::Clouds::Auto) record_.clouds_are(traffic, clouds);
   return replaced;
 }
 

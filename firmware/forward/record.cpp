@@ -71,6 +71,10 @@ void Record::replaced(const Traffic& traffic, std::size_t updates) {
   row(traffic).replaced += updates;
 }
 
+void Record::clouds_are(const Traffic& traffic, lanes::Clouds clouds) {
+  if (traffic.kind == Kind::Cloud) row(traffic).clouds = clouds == lanes::Clouds::Whole ? "whole" : "parts";
+}
+
 void Record::forwarded(const Traffic& traffic, std::size_t updates, std::size_t bytes, int status,
                        api::Time now) {
   api::ActivityRow& activity = row(traffic);

@@ -13,6 +13,7 @@
 #include "icd/status.hpp"
 #include "icd/uri.hpp"
 #include "intake/desk.hpp"
+#include "lanes/clouds.hpp"
 
 namespace adit::forward {
 
@@ -47,6 +48,8 @@ class Record {
   /// It was refused to the robot, because too much waits.
   void no_room(const Traffic& traffic, api::Time now);
   void replaced(const Traffic& traffic, std::size_t updates);
+  /// What its clouds were taken for.
+  void clouds_are(const Traffic& traffic, lanes::Clouds clouds);
   /// The Command Post took a message of `bytes` that stands for `updates` accepted ones.
   void forwarded(const Traffic& traffic, std::size_t updates, std::size_t bytes, int status, api::Time now);
   /// The Command Post did not take it; 0: no status came.

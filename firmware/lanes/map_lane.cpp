@@ -29,8 +29,20 @@ MapLane::Waiting& MapLane::joins(const Sender& sender) {
   return its;
 }
 
+Clouds MapLane::clouds_of(const Sender& sender) const {
+  if (!sender.name) return Clouds::Auto;
+  const auto found = clouds_.find(*sender.name);
+  return found == clouds_.end() ? Clouds::Auto : found->second;
+}
+
+WaitingMap MapLane::waiting(std::uint64_t number, icd::MapUpdate map, Instant now) const {
+  WaitingMap made{.map = std::move(map), .accepted = now, .updates = {number}};
+  made.is_whole = !made.map.is_grid() && clouds_of(Sender::of(made.map)) == Clouds::Whole;
+  return made;
+}
+
 std::vector<std::uint64_t> MapLane::add(std::uint64_t number, icd::MapUpdate map, Instant now) {
-  WaitingMap added{std::move(map), now, {number}, {}, false};
+  WaitingMap added = waiting(number, std::move(map), now);
   Waiting& its = joins(Sender::of(added.map));
   return change(its.queue, [&](MapQueue& queue) { return queue.add(std::move(added)); });
 }
@@ -89,9 +101,28 @@ void MapLane::put_back_apart(WaitingMap map) {
   });
 }
 
+std::optional<Successive> MapLane::to_compare() const {
+  for (const auto& [sender, waiting] : senders_) {
+    if (sender.is_grid || clouds_of(sender) != Clouds::Auto) continue;
+    if (auto two = waiting.queue.to_compare()) return two;
+  }
+  return {};
+}
+
+std::vector<std::uint64_t> MapLane::replace(const Successive& two) {
+  const auto found = senders_.find(two.sender);
+  if (found == senders_.end()) return {};
+  return change(found->second.queue, [&](MapQueue& queue) { return queue.replace(two); });
+}
+
+void MapLane::keep_both(const Successive& two) {
+  const auto found = senders_.find(two.sender);
+  if (found != senders_.end()) found->second.queue.keep_both(two);
+}
+
 bool MapLane::replaces_any(const icd::MapUpdate& map) const {
   const MapQueue* queue = queue_of(Sender::of(map));
-  return queue != nullptr && queue->replaces_any(map);
+  return queue != nullptr && queue->replaces_any(waiting(0, map, {}));
 }
 
 bool MapLane::is_replaced(const WaitingMap& map) const {
@@ -109,9 +140,9 @@ std::optional<Instant> MapLane::oldest(const Sender& sender) const {
   return queue == nullptr ? std::nullopt : queue->oldest();
 }
 
-std::size_t MapLane::largest_grid() const {
+std::size_t MapLane::largest_replaceable() const {
   std::size_t most = 0;
-  for (const auto& [sender, waiting] : senders_) most = std::max(most, waiting.queue.largest_grid());
+  for (const auto& [sender, waiting] : senders_) most = std::max(most, waiting.queue.largest_replaceable());
   return most;
 }
 

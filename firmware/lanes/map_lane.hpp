@@ -4,11 +4,14 @@
 #include <cstdint>
 #include <map>
 #include <optional>
+#include <utility>
 #include <vector>
 
 #include "icd/map_update.hpp"
+#include "lanes/clouds.hpp"
 #include "lanes/map_queue.hpp"
 #include "lanes/sender.hpp"
+#include "lanes/successive.hpp"
 #include "lanes/turns.hpp"
 #include "lanes/waiting_map.hpp"
 
@@ -22,7 +25,9 @@ namespace adit::lanes {
 /// Within a sender the oldest news goes first. A newer grid replaces one that it covers, and inherits its
 /// age. Grids of that name that it does not cover still go ahead of it, so that old cells are never sent
 /// after newer ones. Clouds are kept in order; take() merges clouds that follow each other, and stitches
-/// grids of one lattice that fill a rectangle (stitch.hpp). Nothing else is ever dropped.
+/// grids of one lattice that fill a rectangle (stitch.hpp). A cloud replaces those before it where its
+/// robot's clouds are said to be whole (Clouds); where nothing is said, the one before it, once somebody has
+/// seen that it has all its points (to_compare(), replace()). Nothing else is ever dropped.
 ///
 /// So what a Command Post has in the end, of the grids of one name and lattice, is in each cell the newest
 /// value that was posted for it, unknown included, where it overwrites cells by what it is sent. Where it
@@ -42,6 +47,11 @@ class MapLane {
   void merge_at_most(std::size_t bytes) { merge_bytes_ = bytes; }
   /// Bytes of a message that the link carries in the time between two messages; at least 1.
   void a_slot_carries(std::size_t bytes) { slot_bytes_ = bytes; }
+
+  /// Of the robots that are not named, Clouds::Auto. Holds for clouds that are added from now on.
+  void clouds_are(std::map<icd::RobotName, Clouds> clouds) { clouds_ = std::move(clouds); }
+
+  Clouds clouds_of(const Sender& sender) const;
 
   /// The numbers of the updates whose maps `map` replaced; it stands for them from now on. No number is given
   /// twice.
@@ -64,6 +74,14 @@ class MapLane {
   /// so that the part that the Command Post cannot take is found, and the others arrive. Requires parts.
   void put_back_apart(WaitingMap map);
 
+  /// Two clouds of which it is not known whether the newer one has each point of the older one; nothing where
+  /// there are none. replace() or keep_both() is to follow.
+  std::optional<Successive> to_compare() const;
+  /// It has: it stands for the older one from now on, if both wait as they did. Gives numbers as add() does.
+  std::vector<std::uint64_t> replace(const Successive& two);
+  /// It has not, or nobody knows.
+  void keep_both(const Successive& two);
+
   /// Whether add() would replace one that waits.
   bool replaces_any(const icd::MapUpdate& map) const;
   /// Whether put_back() would find a newer grid that covers it.
@@ -74,7 +92,8 @@ class MapLane {
   /// When the oldest news of that sender was accepted; nothing if none waits.
   std::optional<Instant> oldest(const Sender& sender) const;
   std::size_t bytes() const { return bytes_; }  // of memory held by all that wait
-  std::size_t largest_grid() const;             // bytes of its data: what one that replaces it may need
+  /// Bytes of the data of a grid or a whole cloud: what one that replaces it may need.
+  std::size_t largest_replaceable() const;
   /// Senders that it knows of: those that wait, and those that have still to pay for what they sent.
   std::size_t senders() const { return senders_.size(); }
 
@@ -91,8 +110,10 @@ class MapLane {
   template <class Change>
   auto change(MapQueue& queue, Change change);
   const MapQueue* queue_of(const Sender& sender) const;
+  WaitingMap waiting(std::uint64_t number, icd::MapUpdate map, Instant now) const;
 
   Senders senders_;
+  std::map<icd::RobotName, Clouds> clouds_;
   Turns turns_;
   std::size_t merge_bytes_;
   std::size_t slot_bytes_ = 8u << 20;

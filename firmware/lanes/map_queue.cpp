@@ -15,11 +15,16 @@ std::pair<Instant, Instant> rest_of(const WaitingMap& waiting) {
   return {waiting.trial.failed.value_or(Instant{}), waiting.accepted};
 }
 
+/// If not, a newer one need not be looked at beside each that waits.
+bool may_replace(const WaitingMap& newer) {
+  return newer.map.is_grid() || newer.is_whole;
+}
+
 }  // namespace
 
 std::vector<std::uint64_t> MapQueue::add(WaitingMap added) {
-  const auto stays = [&](const WaitingMap& waiting) { return !replaces(added.map, waiting.map); };
-  const auto first = added.map.is_grid() ? std::ranges::find_if_not(waiting_, stays) : waiting_.end();
+  const auto stays = [&](const WaitingMap& waiting) { return !says_all_of(added, waiting); };
+  const auto first = may_replace(added) ? std::ranges::find_if_not(waiting_, stays) : waiting_.end();
   const auto gone = std::stable_partition(first, waiting_.end(), stays);
   std::vector<std::uint64_t> replaced;
   for (auto it = gone; it != waiting_.end(); ++it) {
@@ -165,8 +170,44 @@ void MapQueue::step_forward() {
   for (WaitingMap& each : waiting_) each.trial.steps_behind = false;
 }
 
-bool MapQueue::replaces_any(const icd::MapUpdate& map) const {
-  return std::ranges::any_of(waiting_, [&](const WaitingMap& waiting) { return replaces(map, waiting.map); });
+std::optional<Successive> MapQueue::to_compare() const {
+  if (waiting_.size() < 2 || waiting_.back().is_compared) return {};
+  const WaitingMap &older = waiting_[waiting_.size() - 2], &newer = waiting_.back();
+  const auto *const before = loose_cloud_in(older.map), *const cloud = loose_cloud_in(newer.map);
+  if (before == nullptr || cloud == nullptr || !mergeable(*before, *cloud)) return {};
+  return Successive{.sender = Sender::of(newer.map),
+                    .older_updates = older.updates,
+                    .newer_updates = newer.updates,
+                    .older = older.map.data,
+                    .newer = newer.map.data,
+                    .point_step = cloud->point_step};
+}
+
+void MapQueue::keep_both(const Successive& two) {
+  for (WaitingMap& waiting : waiting_) {
+    if (waiting.updates == two.newer_updates) waiting.is_compared = true;
+  }
+}
+
+std::vector<std::uint64_t> MapQueue::replace(const Successive& two) {
+  if (waiting_.size() < 2) return {};
+  const auto older = waiting_.end() - 2, newer = waiting_.end() - 1;
+  const bool are_those =
+      older->updates == two.older_updates && older->map.data.raw_size == two.older.raw_size &&
+      newer->updates == two.newer_updates && newer->map.data.raw_size == two.newer.raw_size;
+  if (!are_those) return {};
+  std::vector<std::uint64_t> replaced;
+  add_own_numbers(replaced, *older);
+  bytes_ -= bytes_held(*older) + bytes_held(*newer);
+  take_over(*newer, std::move(*older));
+  bytes_ += bytes_held(*newer);
+  waiting_.erase(older);
+  return replaced;
+}
+
+bool MapQueue::replaces_any(const WaitingMap& map) const {
+  return may_replace(map) &&
+         std::ranges::any_of(waiting_, [&](const WaitingMap& waiting) { return says_all_of(map, waiting); });
 }
 
 bool MapQueue::is_replaced(const WaitingMap& map) const {
@@ -178,10 +219,10 @@ std::optional<Instant> MapQueue::oldest() const {
   return oldest == waiting_.end() ? std::nullopt : std::optional(oldest->accepted);
 }
 
-std::size_t MapQueue::largest_grid() const {
+std::size_t MapQueue::largest_replaceable() const {
   std::size_t most = 0;
   for (const WaitingMap& waiting : waiting_) {
-    if (!waiting.map.is_grid()) continue;
+    if (!waiting.map.is_grid() && !waiting.is_whole) continue;
     most = std::max(most, waiting.parts.empty() ? waiting.map.data.bytes.size() : bytes_held(waiting));
   }
   return most;

@@ -7,6 +7,7 @@
 #include <utility>
 #include <vector>
 
+#include "lanes/successive.hpp"
 #include "lanes/waiting_map.hpp"
 
 namespace adit::lanes {
@@ -29,13 +30,20 @@ class MapQueue {
   void put_back_apart(WaitingMap map);
   void step_forward();  // nothing steps behind any more
 
-  bool replaces_any(const icd::MapUpdate& map) const;
+  /// Takes the older of the two out, where both still wait as they were, for the newer one has all its
+  /// points.
+  std::vector<std::uint64_t> replace(const Successive& two);
+  /// The last two clouds, where it is not known yet whether the newer one has all points of the older one.
+  std::optional<Successive> to_compare() const;
+  void keep_both(const Successive& two);  // it is now
+
+  bool replaces_any(const WaitingMap& map) const;
   bool is_replaced(const WaitingMap& map) const;
   /// When the oldest news was accepted; nothing if none waits.
   std::optional<Instant> oldest() const;
   std::size_t count() const { return waiting_.size(); }
   std::size_t bytes() const { return bytes_; }
-  std::size_t largest_grid() const;
+  std::size_t largest_replaceable() const;
 
  private:
   using Maps = std::deque<WaitingMap>;

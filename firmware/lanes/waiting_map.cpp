@@ -25,14 +25,14 @@ std::size_t bytes_held(const WaitingMap& waiting) {
   return bytes;
 }
 
-bool replaces(const icd::MapUpdate& newer, const icd::MapUpdate& older) {
-  const auto* const new_grid = std::get_if<icd::OccupancyGrid>(&newer.msg);
-  const auto* const old_grid = std::get_if<icd::OccupancyGrid>(&older.msg);
-  return new_grid && old_grid && newer.name == older.name && covers(*new_grid, *old_grid);
+bool says_all_of(const WaitingMap& newer, const WaitingMap& older) {
+  if (newer.map.name != older.map.name || newer.map.is_grid() != older.map.is_grid()) return false;
+  if (!newer.map.is_grid()) return newer.is_whole;
+  return covers(std::get<icd::OccupancyGrid>(newer.map.msg), std::get<icd::OccupancyGrid>(older.map.msg));
 }
 
 bool replaces(const WaitingMap& newer, const WaitingMap& older) {
-  return is_newer(newer, older) && replaces(newer.map, older.map);
+  return is_newer(newer, older) && says_all_of(newer, older);
 }
 
 /// A clock that was set back gives many maps one stamp: of these, which are sent again oldest first, the

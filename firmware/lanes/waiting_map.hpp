@@ -32,16 +32,20 @@ struct WaitingMap {
   /// grid are in its parts alone, until it is packed.
   std::vector<WaitingMap> parts{};
   bool alone = false;  // not to be merged or stitched with others
-  Trial trial{};       // where the Command Post's handler failed at it
+  /// Of a cloud: it says all that those said which came before it.
+  bool is_whole = false;
+  /// Of a cloud: it is known whether it has all points of the one before it.
+  bool is_compared = false;
+  Trial trial{};  // where the Command Post's handler failed at it
   /// Only of a map that was set aside and is sent again by hand: the stamp that it had. By it the map is
   /// older than all that were never set aside, and is told from others that are sent again.
   std::optional<icd::Stamp> again{};
 };
 
+/// Whether `newer`, which has just come, says all that `older` said: a grid that covers it, or a whole cloud.
+bool says_all_of(const WaitingMap& newer, const WaitingMap& older);
 /// Whether `newer`, which is under way or waits, is newer and says all that `older` said, which comes back.
 bool replaces(const WaitingMap& newer, const WaitingMap& older);
-/// Whether `newer`, which has just come, does.
-bool replaces(const icd::MapUpdate& newer, const icd::MapUpdate& older);
 
 /// Whether `waiting` is newer than `back`, which comes back to it.
 bool is_newer(const WaitingMap& waiting, const WaitingMap& back);

@@ -9,28 +9,10 @@
 #include <vector>
 
 #include "codec/gzip.hpp"
+#include "pack/points.hpp"
 
 namespace adit::pack {
 namespace {
-
-/// Gives each point of `bytes` (point_step bytes) to `visit`, in order, wherever chunks end.
-template <class Visit>
-void for_each_point(const icd::ChunkedBytes& bytes, std::size_t point_step, Visit visit) {
-  std::vector<std::uint8_t> cut;  // a point of which only the first bytes have come
-  for (const auto& chunk : bytes.chunks()) {
-    std::span<const std::uint8_t> rest{*chunk};
-    if (!cut.empty()) {
-      const auto more = rest.first(std::min(rest.size(), point_step - cut.size()));
-      cut.insert(cut.end(), more.begin(), more.end());
-      rest = rest.subspan(more.size());
-      if (cut.size() < point_step) continue;
-      visit(std::span<const std::uint8_t>{cut});
-      cut.clear();
-    }
-    for (; rest.size() >= point_step; rest = rest.subspan(point_step)) visit(rest.first(point_step));
-    cut.assign(rest.begin(), rest.end());
-  }
-}
 
 /// Tells whether a point's x, y and z are all finite, by their exponents alone (IEEE 754): no alignment and
 /// no swapping of bytes is needed.
@@ -78,12 +60,13 @@ icd::MapData compressed(icd::MapData data, codec::GzipStrategy strategy) {
 icd::MapData without_invalid_points(const icd::PointCloud2& cloud, icd::MapData data) {
   const FiniteCheck is_finite{cloud};
   bool all_are = true;
-  for_each_point(data.bytes, cloud.point_step, [&](auto point) { all_are = is_finite(point) && all_are; });
+  for_each_point(data.bytes, cloud.point_step, [&](auto point) { return all_are = is_finite(point); });
   if (all_are) return data;
 
   icd::MapData kept;
   for_each_point(data.bytes, cloud.point_step, [&](auto point) {
     if (is_finite(point)) kept.bytes.append(point);
+    return true;
   });
   kept.raw_size = kept.bytes.size();
   return kept;

@@ -13,6 +13,7 @@ namespace {
 
 constexpr bool kRequired = true;
 constexpr std::uint64_t kMiB = 1u << 20;
+constexpr std::string_view kClouds[] = {"auto", "whole", "parts"};     // as lanes::Clouds
 constexpr std::string_view kReviews[] = {"off", "duplicates", "all"};  // as dispatch::Review
 
 const Key kKeys[] = {
@@ -88,6 +89,11 @@ const Key kKeys[] = {
      text<MEMBER(robots.back().name)>(Form::Robot), kRequired},
     {"robots[].alias", "What that robot calls itself in its maps and states: it goes on under its name.",
      text<MEMBER(robots.back().alias)>(Form::Alias)},
+    {"robots[].clouds",
+     "What that robot's clouds are. whole: each says all that those before it said, so that the newest "
+     "replaces those that wait. parts: each arrives. auto: the newer one replaces the one before it where it "
+     "has each of its points.",
+     choice<MEMBER(robots.back().clouds)>(kClouds)},
 
     {"network.confirm_within_ms",
      "How long a change of the network waits to be confirmed from the new address; then it takes itself "

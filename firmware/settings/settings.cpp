@@ -31,6 +31,12 @@ std::expected<Settings, std::vector<Error>> read(Reader& reader, const Value& ro
   return std::move(reader.settings);
 }
 
+icd::RobotName name_of(const Robot& robot) {
+  auto name = icd::RobotName::parse(robot.name);
+  icd::require(name.has_value());
+  return *std::move(name);
+}
+
 }  // namespace
 
 std::expected<Settings, std::vector<Error>> parse(std::string_view json) {
@@ -61,12 +67,15 @@ Settings in_use(Settings settings) {
     settings.command_post.mapping = course->mapping;
   }
   for (const Robot& robot : settings.robots) {
-    if (robot.alias.empty()) continue;
-    const auto name = icd::RobotName::parse(robot.name);
-    icd::require(name.has_value());
-    settings.rules.aliases.emplace(robot.alias, *name);
+    if (!robot.alias.empty()) settings.rules.aliases.emplace(robot.alias, name_of(robot));
   }
   return settings;
+}
+
+std::map<icd::RobotName, lanes::Clouds> clouds_of(const std::vector<Robot>& robots) {
+  std::map<icd::RobotName, lanes::Clouds> clouds;
+  for (const Robot& robot : robots) clouds.emplace(name_of(robot), robot.clouds);
+  return clouds;
 }
 
 std::string sentence_of(const std::vector<Error>& errors) {

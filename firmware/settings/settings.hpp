@@ -3,6 +3,7 @@
 #include <chrono>
 #include <cstdint>
 #include <expected>
+#include <map>
 #include <optional>
 #include <string>
 #include <string_view>
@@ -10,7 +11,9 @@
 
 #include "codec/value.hpp"
 #include "dispatch/reports.hpp"
+#include "icd/robot_name.hpp"
 #include "icd/rules.hpp"
+#include "lanes/clouds.hpp"
 
 namespace adit::settings {
 
@@ -82,6 +85,7 @@ struct Panel {
 struct Robot {
   std::string name;   // icd::RobotName
   std::string alias;  // what it calls itself, goes on under `name`; "": nothing else
+  lanes::Clouds clouds = lanes::Clouds::Auto;
 };
 
 /// One of the Command Posts of an event: its endpoints, switched by name.
@@ -131,6 +135,9 @@ std::expected<Saved, std::vector<Error>> parse_saved(std::string_view json);
 /// The settings as they work while their course is in use: its endpoints are the Command Post's, and each
 /// robot's alias is in the rules. Requires names of robots that RobotName takes, as parse() sees to it.
 Settings in_use(Settings settings);
+
+/// Of each robot that is named. Requires names that RobotName takes.
+std::map<icd::RobotName, lanes::Clouds> clouds_of(const std::vector<Robot>& robots);
 
 /// "a: what; b: what"
 std::string sentence_of(const std::vector<Error>& errors);

@@ -49,6 +49,7 @@ TEST(Metrics, CarryWhatTheViewSays) {
   clouds.last_forwarded = all.view.now - 8;
   clouds.behind_since = all.view.now - 33;
   clouds.no_room = 1110;
+  clouds.clouds = "whole";
   all.view.activities = {clouds};
   all.view.sent_mbit = 8;
   all.view.budget_mbit = 20;
@@ -72,6 +73,7 @@ TEST(Metrics, CarryWhatTheViewSays) {
                              R"(adit_updates_forwarded_age_seconds{kind="cloud",robot="ugv1"} 8)",
                              R"(adit_updates_behind_seconds{kind="cloud",robot="ugv1"} 33)",
                              R"(adit_updates_no_room_total{kind="cloud",robot="ugv1"} 1110)",
+                             R"(adit_clouds_whole{robot="ugv1"} 1)",
                              "adit_link_rate_bytes_per_second 1e+06",
                              "adit_link_budget_bytes_per_second 2500000",
                              "adit_attention 2",

@@ -32,7 +32,8 @@ ActivityRow traffic(std::string kind, std::string robot, Time now, double since,
           .bytes_received = bytes * 4,
           .bytes_sent = bytes,
           .last_status = 200,
-          .last_sentence = {}};
+          .last_sentence = {},
+          .clouds = {}};
 }
 
 ReportRow report(std::int64_t number, std::string type, Time received, std::string state, int status,

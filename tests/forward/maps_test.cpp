@@ -205,6 +205,8 @@ TEST_F(MapsTest, WaitSinceTheOldestNewsOfTheirRobotAndKindWasAccepted) {
 }
 
 TEST_F(MapsTest, AreBoundedInNumberHoweverSmallTheyAre) {
+  settings_.robots = {{.name = "r1", .alias = "", .clouds = lanes::Clouds::Parts}};
+  maps_.settings_changed();
   settings_.queues.map_bytes = std::size_t{1} << 30;
   int taken = 0, full = 0;
   for (std::size_t i = 0; i <= Maps::kMostMaps; ++i) {

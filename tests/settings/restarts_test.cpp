@@ -55,6 +55,7 @@ const RestartsCase kRestartsCases[] = {
     {"team.connections_per_address", [](Settings& s) { s.team.connections_per_address = 9; }, kListeners},
     {"robots[].name", [](Settings& s) { s.robots.front().name = "r9"; }, kNothing},
     {"robots[].alias", [](Settings& s) { s.robots.front().alias = "other"; }, kNothing},
+    {"robots[].clouds", [](Settings& s) { s.robots.front().clouds = lanes::Clouds::Whole; }, kNothing},
     {"network.confirm_within_ms", [](Settings& s) { s.network.confirm_within = 9s; }, kNothing},
     {"network.allow_overlap", [](Settings& s) { s.network.allow_overlap = true; }, kNothing},
     {"reports.answer_within_ms", [](Settings& s) { s.reports.answer_within = 9s; }, kNothing},

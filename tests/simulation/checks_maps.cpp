@@ -1,6 +1,7 @@
 // CloudArrived.
 #include <algorithm>
 #include <map>
+#include <ranges>
 #include <utility>
 
 #include "icd/sentence.hpp"
@@ -18,6 +19,7 @@ struct Posted {
   const Asked* asked;
   const Item* item;
   std::vector<std::size_t> taken = {};
+  bool again = false;  // later ones had its points, too
 };
 using Name = std::string;
 
@@ -31,6 +33,12 @@ std::map<Name, std::vector<Posted>> posted_in(const Evidence& evidence, const st
     auto& of_it = posted[item.who];
     by_serial[item.serial] = {item.who, of_it.size()};
     of_it.push_back({&asked, &item});
+  }
+  for (const Asked& asked : all) {
+    for (const Item& item : asked.items | std::views::drop(1)) {
+      const auto found = by_serial.find(item.serial);
+      if (found != by_serial.end()) posted[found->second.first][found->second.second].again = true;
+    }
   }
   for (std::size_t i = 0; i < evidence.events.size(); ++i) {
     const Event& event = evidence.events[i];
@@ -72,7 +80,7 @@ void check_clouds(const Evidence& evidence, const Name& name, const std::vector<
       broken.push_back(icd::sentence("CloudArrived: ", cloud.item->serial, " of '", name,
                                      "' was answered 200, and no cloud with all its points was taken"));
     }
-    for (std::size_t i = 1; i < cloud.taken.size(); ++i) {
+    for (std::size_t i = 1; i < cloud.taken.size() && !cloud.again; ++i) {
       if (may_be_double(evidence.events, cloud.taken[i - 1], cloud.taken[i])) continue;
       broken.push_back(icd::sentence("CloudArrived: ", cloud.item->serial, " of '", name,
                                      "' was taken again at ", evidence.events[cloud.taken[i]].at));

@@ -8,6 +8,7 @@
 #include <cstring>
 #include <limits>
 #include <map>
+#include <ranges>
 #include <set>
 #include <stdexcept>
 
@@ -104,25 +105,29 @@ Json field(const char* name, std::size_t offset) {
 }
 
 /// In a third of them an invalid point comes before each kInvalidEvery valid ones.
-Json cloud(const Item& item, const Style& style) {
+Json cloud(const std::vector<Item>& items, const Style& style) {
   const auto step = static_cast<std::size_t>(style.point_step);
   std::string points;
-  const auto add = [&](std::array<float, 3> place, std::int64_t index) {
+  const auto add = [&](std::int64_t serial, std::array<float, 3> place, std::int64_t index) {
     const std::size_t at = points.size();
     points.resize(at + step);
     for (std::size_t i = 0; i < 3; ++i) put(points, at + 4 * i, place[i], style.big_endian);
-    put(points, at + 12, static_cast<float>(item.serial * kPointsApart + index), style.big_endian);
+    put(points, at + 12, static_cast<float>(serial * kPointsApart + index), style.big_endian);
   };
-  for (std::int64_t index = 0; index < item.says.front(); ++index) {
-    auto place = place_of(item.serial, index);
-    if (item.serial % 3 == 0 && index % kInvalidEvery == 0) {
-      auto invalid = place;
-      invalid[static_cast<std::size_t>(item.serial / 3 % 3)] = std::numeric_limits<float>::quiet_NaN();
-      add(invalid, index);
+  const auto add_all = [&](const Item& item) {
+    for (std::int64_t index = 0; index < item.says.front(); ++index) {
+      auto place = place_of(item.serial, index);
+      if (item.serial % 3 == 0 && index % kInvalidEvery == 0) {
+        auto invalid = place;
+        invalid[static_cast<std::size_t>(item.serial / 3 % 3)] = std::numeric_limits<float>::quiet_NaN();
+        add(item.serial, invalid, index);
+      }
+      add(item.serial, place, index);
     }
-    add(place, index);
-  }
-  Json msg = {{"header", header_of(item.stamp)},
+  };
+  if (style.news_first) std::ranges::for_each(items, add_all);
+  if (!style.news_first) std::ranges::for_each(items | std::views::reverse, add_all);
+  Json msg = {{"header", header_of(items.front().stamp)},
               {"fields", {field("x", 0), field("y", 4), field("z", 8), field("intensity", 12)}},
               {"point_step", step}};
   if (style.big_endian) msg["is_bigendian"] = true;
@@ -206,10 +211,11 @@ Json pose_at(double x, double y) {
           {"orientation", {{"x", 0.0}, {"y", 0.0}, {"z", 0.0}, {"w", 1.0}}}};
 }
 
-Json map_of(const Item& item, const Style& style) {
+Json map_of(const std::vector<Item>& items, const Style& style) {
+  const Item& item = items.front();
   const bool is_of_cells = is_grid(item.says);
   Json message = {{"type", is_of_cells ? "OccupancyGrid" : "PointCloud2"},
-                  {"msg", is_of_cells ? grid(item, style) : cloud(item, style)}};
+                  {"msg", is_of_cells ? grid(item, style) : cloud(items, style)}};
   if (!item.who.empty()) message["name"] = item.who;
   return message;
 }

@@ -19,7 +19,7 @@ Json message_of(const Posting& posting, const Style& style);
 /// cell it is.
 int value_of(std::int64_t serial, int x, int y);
 /// Of a map.
-Json map_of(const Item& item, const Style& style);
+Json map_of(const std::vector<Item>& items, const Style& style);
 /// What it says: a grid, or each of the clouds that were merged into it.
 std::vector<Item> map_items(const Json& message);
 

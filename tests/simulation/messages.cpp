@@ -70,7 +70,7 @@ Json message_of(const Posting& posting, const Style& style) {
             {"z", -1.0},
             {"type", item.serial % 2 == 0 ? "Drill" : "Rope"}};
   }
-  if (posting.path == kMap) return map_of(item, style);
+  if (posting.path == kMap) return map_of(posting.items, style);
   if (posting.path == kState) {
     Json poses = Json::array();
     for (const Item& each : posting.items) {

@@ -52,13 +52,15 @@ Says status_in(const std::string& body);
 /// A client's message before it is put into bytes.
 struct Posting {
   std::string path;
-  std::vector<Item> items;  // of one of the same stamp: several markers, or one
+  /// Several markers of one stamp; or one thing, and behind it the clouds before it whose points it has, too.
+  std::vector<Item> items;
 };
 
 struct Style {
   bool cbor = false, gzip = false, gzip_data = false;
   bool big_endian = false;  // clouds
   int point_step = 16;      // of clouds, in bytes
+  bool news_first = false;  // of clouds that have the points of those before them
 };
 
 /// The whole request, in the bytes of that style. Reports are JSON.

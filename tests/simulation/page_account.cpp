@@ -37,8 +37,8 @@ void PageAccount::read_team(std::size_t place, const Event& event) {
   if (event.kind == Kind::Invoke) {
     auto& all = posted_[stream];
     auto& open = open_[event.request];
-    // A message of several markers counts once, each pose of a state by itself.
-    if (event.what == kMarkers && !open.empty()) return;
+    // A message of several markers or clouds counts once, each pose of a state by itself.
+    if (event.what != kState && !open.empty()) return;
     open.emplace_back(stream, all.size());
     all.push_back({.asked = place});
   }

@@ -10,15 +10,17 @@ namespace adit::simulation {
 namespace {
 
 constexpr int kWritings = 80;
-constexpr int kLargest = 64;  // cells of a side
-constexpr double kJump = 6;   // seconds: less may be messages that overtook each other
+constexpr int kLargest = 64;            // cells of a side
+constexpr std::size_t kLongestMap = 8;  // clouds until it begins anew
+constexpr double kJump = 6;             // seconds: less may be messages that overtook each other
 
 Style style(Random random) {
   return {.cbor = random.chance(0.5),
           .gzip = random.chance(0.3),
           .gzip_data = random.chance(0.3),
           .big_endian = random.chance(0.2),
-          .point_step = random.chance(0.7) ? 16 : 24};
+          .point_step = random.chance(0.7) ? 16 : 24,
+          .news_first = random.chance(0.5)};
 }
 
 int between(Random& random, int low, int high) {
@@ -40,7 +42,8 @@ Robot::Robot(World& world, int number)
       every_(random_.between(0.1, 2)),
       wipes_(random_.chance(0.5) ? 0.1 : 0),
       writings_(world.random("writings of " + name_).chance(0.01) ? kWritings : 0),
-      serial_(number * kSerials) {}
+      serial_(number * kSerials),
+      whole_(world.random("whole clouds of " + name_).chance(0.3)) {}
 
 void Robot::post_until(double end) {
   end_ = end;
@@ -68,7 +71,7 @@ void Robot::post() {
 Posting Robot::next() {
   if (row_ > 0) {
     --row_;
-    return {kMap, {cloud()}};
+    return clouds();
   }
   if (writings_ > 0 && random_.chance(0.5)) return markers();
   const double kind = random_.unit();
@@ -76,7 +79,7 @@ Posting Robot::next() {
   if (kind < 0.55) return {kMap, {grid()}};
   if (kind < 0.8) return markers();
   if (random_.chance(0.4)) row_ = 1 + random_.below(5);
-  return {kMap, {cloud()}};
+  return clouds();
 }
 
 Item Robot::item(std::string who, Says says) {
@@ -105,6 +108,14 @@ Item Robot::grid() {
 /// Some are of no robot.
 Item Robot::cloud() {
   return item(random_.chance(0.8) ? name_ : "", {between(random_, 5, random_.chance(0.1) ? 300 : 60)});
+}
+
+Posting Robot::clouds() {
+  const Item news = cloud();
+  if (!whole_ || news.who.empty()) return {kMap, {news}};
+  if (said_.size() == kLongestMap) said_.clear();
+  said_.insert(said_.begin(), news);
+  return {kMap, said_};
 }
 
 /// Up to four changes in one message, of its own namespaces; in some runs it deletes all, others' too.

@@ -2,6 +2,7 @@
 
 #include <cstdint>
 #include <string>
+#include <vector>
 
 #include "simulation/client.hpp"
 #include "simulation/messages.hpp"
@@ -12,7 +13,8 @@ namespace adit::simulation {
 class World;
 
 /// A robot: posts where it is, grids that cover earlier ones or do not, clouds by themselves or several in a
-/// row, and markers that it changes and deletes. Its serials rise.
+/// row, of what is new or of all since its map began, and markers that it changes and deletes. Its serials
+/// rise.
 class Robot {
  public:
   static constexpr std::int64_t kSerials = 4096;  // of one robot, from `number` times as many on
@@ -26,6 +28,7 @@ class Robot {
   Item item(std::string who, Says says = {});
   Item grid();
   Item cloud();
+  Posting clouds();
   Posting markers();
   Posting next();
 
@@ -43,8 +46,10 @@ class Robot {
   int writings_;        // still to come: markers with texts so long that they fill the journal
   double end_ = 0;
   std::int64_t serial_;
-  Extent extent_;          // of its own map, which grows
-  std::uint64_t row_ = 0;  // clouds still to come in this row
+  Extent extent_;           // of its own map, which grows
+  const bool whole_;        // each of its clouds has all points since its map began
+  std::vector<Item> said_;  // then its clouds since, the newest first
+  std::uint64_t row_ = 0;   // clouds still to come in this row
 };
 
 }  // namespace adit::simulation

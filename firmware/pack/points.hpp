@@ -1,0 +1,35 @@
+#pragma once
+
+#include <algorithm>
+#include <cstddef>
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "icd/chunked_bytes.hpp"
+
+namespace adit::pack {
+
+/// Gives each point of `bytes` (point_step bytes) to `visit`, in order, wherever chunks end, until that says
+/// false.
+template <class Visit>
+void for_each_point(const icd::ChunkedBytes& bytes, std::size_t point_step, Visit visit) {
+  std::vector<std::uint8_t> cut;  // a point of which only the first bytes have come
+  for (const auto& chunk : bytes.chunks()) {
+    std::span<const std::uint8_t> rest{*chunk};
+    if (!cut.empty()) {
+      const auto more = rest.first(std::min(rest.size(), point_step - cut.size()));
+      cut.insert(cut.end(), more.begin(), more.end());
+      rest = rest.subspan(more.size());
+      if (cut.size() < point_step) continue;
+      if (!visit(std::span<const std::uint8_t>{cut})) return;
+      cut.clear();
+    }
+    for (; rest.size() >= point_step; rest = rest.subspan(point_step)) {
+      if (!visit(rest.first(point_step))) return;
+    }
+    cut.assign(rest.begin(), rest.end());
+  }
+}
+
+}  // namespace adit::pack

@@ -136,7 +136,7 @@ std::expected<Saved, std::vector<Error>> parse_saved(std::string_view json);
 /// robot's alias is in the rules. Requires names of robots that RobotName takes, as parse() sees to it.
 Settings in_use(Settings settings);
 
-/// Of each robot that is named. Requires names that RobotName takes.
+/// What the clouds of each robot that is named are; names as parse() takes them.
 std::map<icd::RobotName, lanes::Clouds> clouds_of(const std::vector<Robot>& robots);
 
 /// "a: what; b: what"

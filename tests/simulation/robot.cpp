@@ -11,7 +11,7 @@ namespace {
 
 constexpr int kWritings = 80;
 constexpr int kLargest = 64;            // cells of a side
-constexpr std::size_t kLongestMap = 8;  // clouds until it begins anew
+constexpr std::size_t kLongestMap = 8;  // clouds until it begins again
 constexpr double kJump = 6;             // seconds: less may be messages that overtook each other
 
 Style style(Random random) {

@@ -29,13 +29,19 @@ std::vector<api::ReportRow> two_runs() {
           report(4, 2, "waiting")};
 }
 
+std::string csv_of(const std::vector<api::ReportRow>& rows) {
+  std::string csv = api::csv_header();
+  for (const api::ReportRow& row : rows) csv += api::csv_line(row);
+  return csv;
+}
+
 Outcome asked(const std::vector<api::ReportRow>& rows, std::vector<std::string_view> words) {
   api::RunView view = sample_view();
   view.run_number = 2;
   const api::ReportDetail detail{rows.back(), {{1000, "waiting", "posted"}}, "{}"};
   const Server server({{"GET /adit/run", Server::ok(codec::to_json(view))},
                        {"GET /adit/reports", Server::ok(codec::to_json(rows))},
-                       {"GET /adit/reports.csv", Server::ok(api::write_reports_csv(rows))},
+                       {"GET /adit/reports.csv", Server::ok(csv_of(rows))},
                        {"GET /adit/reports/4", Server::ok(codec::to_json(detail))},
                        {"GET /adit/reports/5", Server::reply("404 Not Found", "\"there is no report 5\"")}});
   const std::string at = server.at();
@@ -91,8 +97,8 @@ TEST(Reports, ShowOneOrSayThatThereIsNone) {
 
 TEST(Reports, AreExportedAsTheyAre) {
   const auto rows = two_runs();
-  EXPECT_EQ(asked(rows, {"reports", "export"}).out, api::write_reports_csv(rows));
-  EXPECT_EQ(asked(rows, {"reports", "export", "--csv"}).out, api::write_reports_csv(rows));
+  EXPECT_EQ(asked(rows, {"reports", "export"}).out, csv_of(rows));
+  EXPECT_EQ(asked(rows, {"reports", "export", "--csv"}).out, csv_of(rows));
   EXPECT_EQ(asked(rows, {"reports", "export", "--json"}).out, codec::to_json(rows) + "\n");
   EXPECT_EQ(asked(rows, {"reports", "export"}).exit, Exit::Fine);
 }

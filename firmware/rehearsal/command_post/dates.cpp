@@ -42,11 +42,15 @@ std::optional<Dates> dates_of_cloud(const Cloud& cloud, std::string_view data, M
   if (field == cloud.fields.end() || field->datatype != kUint32 || cloud.is_bigendian) return std::nullopt;
   std::map<std::uint32_t, std::uint64_t> counts;
   auto known = counts.end();
+  std::uint64_t together = 0;  // points of that date, one after the other
   for (std::size_t at = 0; at + cloud.point_step <= data.size(); at += cloud.point_step) {
     std::uint32_t posted = 0;
     std::memcpy(&posted, data.data() + at + field->offset, sizeof posted);
-    if (known == counts.end() || known->first != posted) known = counts.try_emplace(posted).first;
-    ++known->second;
+    if (known == counts.end() || known->first != posted) {
+      known = counts.try_emplace(posted).first;
+      together = 0;
+    }
+    known->second = std::max(known->second, ++together);
   }
   if (counts.empty()) return std::nullopt;
   Dates dates;

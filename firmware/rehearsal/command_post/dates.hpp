@@ -15,7 +15,9 @@ using Moment = std::chrono::sys_time<std::chrono::milliseconds>;
 /// When a map's data was posted, as adit-robots writes it into its maps (README.md, 'How old').
 struct Dates {
   Moment newest;
-  std::map<Moment, std::uint64_t> points;  // of a cloud: how many were posted then
+  // Of a cloud: how many points were posted then. A cloud that was joined of several has some of them twice:
+  // it is the most that stand together.
+  std::map<Moment, std::uint64_t> points;
 };
 
 /// Nothing of a map that tells no date. A date is read as the one nearest to `now`.

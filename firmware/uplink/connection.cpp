@@ -113,7 +113,6 @@ void Connection::Impl::write() {
   if (!answer_came()) watch(kComing);
 }
 
-/// Reads; true where that ended the exchange.
 void Connection::Impl::began_to_leave() {
   exchange_->began_to_leave(loop_.now());
   if (!exchange_->wants_to_write()) return;  // too short to tell anything of the link
@@ -121,6 +120,7 @@ void Connection::Impl::began_to_leave() {
   look_.call_at(loop_.now() + LinkPace::kLook);
 }
 
+/// Reads; true where that ended the exchange.
 bool Connection::Impl::answer_came() {
   switch (exchange_->read(fd_.get())) {
     case Exchange::Answer::Waiting:

@@ -96,7 +96,11 @@ class Box:
         self._programs()
         self.bus = self._start_bus()
         self.service = None
-        self.start(running)
+        try:
+            self.start(running)
+        except BaseException:
+            self.stop()
+            raise
 
     def _boot_loader(self):
         (self.folder / "env.txt").write_text(ENVIRONMENT)
@@ -126,9 +130,10 @@ class Box:
 
     def _start_bus(self):
         (self.folder / "bus.conf").write_text(BUS.format(path=self.folder / "bus"))
-        bus = subprocess.Popen(["dbus-daemon", "--nofork", "--nosyslog", "--nopidfile",
-                                f"--config-file={self.folder}/bus.conf"], stderr=subprocess.DEVNULL)
-        wait_until((self.folder / "bus").exists, "the bus")
+        bus = subprocess.Popen(["dbus-daemon", "--nofork", "--nosyslog", "--nopidfile", "--print-address",
+                                f"--config-file={self.folder}/bus.conf"], stdout=subprocess.PIPE, stderr=subprocess.DEVNULL)
+        with bus.stdout:  # its socket is there before it listens; it prints its address once it does
+            assert bus.stdout.readline(), "the bus did not start"
         return bus
 
     def start(self, slot):

@@ -46,9 +46,11 @@ class Networkd:
         self.network = network
         self.bus = folder / "bus"
         (folder / "bus.conf").write_text(BUS.format(path=self.bus))
-        self.dbus = subprocess.Popen(["dbus-daemon", "--nofork", "--nosyslog", "--nopidfile",
-                                      f"--config-file={folder / 'bus.conf'}"], stderr=subprocess.DEVNULL)
-        programs.wait_until(self.bus.exists, "the bus")
+        self.dbus = subprocess.Popen(["dbus-daemon", "--nofork", "--nosyslog", "--nopidfile", "--print-address",
+                                      f"--config-file={folder / 'bus.conf'}"], stdout=subprocess.PIPE,
+                                     stderr=subprocess.DEVNULL)
+        with self.dbus.stdout:  # its socket is there before it listens; it prints its address once it does
+            assert self.dbus.stdout.readline(), "the bus did not start"
         self.environment = {**os.environ, "DBUS_SYSTEM_BUS_ADDRESS": f"unix:path={self.bus}", "FOLDER": str(folder),
                             "NETWORKD": NETWORKD, "SYSTEMD_LOG_TARGET": "console"}
         self.log = open(folder / "networkd.log", "wb")

@@ -72,7 +72,8 @@ void Record::replaced(const Traffic& traffic, std::size_t updates) {
 }
 
 void Record::clouds_are(const Traffic& traffic, lanes::Clouds clouds) {
-  if (traffic.kind == Kind::Cloud) row(traffic).clouds = clouds == lanes::Clouds::Whole ? "whole" : "parts";
+  if (traffic.kind == Kind::Cloud)
+    row(traffic).clouds = lanes::kCloudsWords[static_cast<std::size_t>(clouds)];
 }
 
 void Record::forwarded(const Traffic& traffic, std::size_t updates, std::size_t bytes, int status,

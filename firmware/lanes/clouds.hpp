@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cstdint>
+#include <string_view>
 
 namespace adit::lanes {
 
@@ -10,5 +11,6 @@ enum class Clouds : std::uint8_t {
   Whole,  // each says all that those before it said: it replaces them
   Parts,  // each is to arrive
 };
+inline constexpr std::string_view kCloudsWords[] = {"auto", "whole", "parts"};
 
 }  // namespace adit::lanes

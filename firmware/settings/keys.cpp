@@ -13,7 +13,6 @@ namespace {
 
 constexpr bool kRequired = true;
 constexpr std::uint64_t kMiB = 1u << 20;
-constexpr std::string_view kClouds[] = {"auto", "whole", "parts"};     // as lanes::Clouds
 constexpr std::string_view kReviews[] = {"off", "duplicates", "all"};  // as dispatch::Review
 
 const Key kKeys[] = {
@@ -93,7 +92,7 @@ const Key kKeys[] = {
      "What that robot's clouds are. whole: each says all that those before it said, so that the newest "
      "replaces those that wait. parts: each arrives. auto: the newer one replaces the one before it where it "
      "has each of its points.",
-     choice<MEMBER(robots.back().clouds)>(kClouds)},
+     choice<MEMBER(robots.back().clouds)>(lanes::kCloudsWords)},
 
     {"network.confirm_within_ms",
      "How long a change of the network waits to be confirmed from the new address; then it takes itself "

@@ -29,8 +29,9 @@ namespace adit::forward {
 /// their own, paced within the link's budget.
 class Maps {
  public:
-  /// So many may wait, however small: each has a file that is mapped (vm.max_map_count is 65,530).
-  static constexpr std::size_t kMostMaps = 20'000;
+  /// So many may wait, however small: each has a file that is mapped (vm.max_map_count is 65,530). Up to
+  /// kMostWithJoined are taken where they join what waits of their robot and kind.
+  static constexpr std::size_t kMostMaps = 20'000, kMostWithJoined = 40'000;
   /// In the spool those below are sent again by hand.
   static constexpr std::uint64_t kFirstNumber = 1u << 20;
 

@@ -21,10 +21,12 @@ icd::Stamp stamp_of(const icd::MapUpdate& map) {
 
 }  // namespace
 
-/// What replaces something that waits is taken by a full queue too.
+/// What replaces something that waits is taken by a full queue too; what joins it, by a queue that is full by
+/// number alone.
 bool Maps::has_room_for(const icd::MapUpdate& update, bool replaces) const {
   const std::size_t waiting = lane_.bytes() + bytes_being_kept_;
-  if (!replaces && lane_.count() + static_cast<std::size_t>(being_kept_) >= kMostMaps) return false;
+  const std::size_t count = lane_.count() + static_cast<std::size_t>(being_kept_);
+  if (!replaces && count >= kMostMaps && (count >= kMostWithJoined || !lane_.joins(update))) return false;
   return replaces || waiting == 0 || waiting + update.data.bytes.size() <= settings_.queues.map_bytes;
 }
 

@@ -125,6 +125,11 @@ bool MapLane::replaces_any(const icd::MapUpdate& map) const {
   return queue != nullptr && queue->replaces_any(waiting(0, map, {}));
 }
 
+bool MapLane::joins(const icd::MapUpdate& map) const {
+  const MapQueue* queue = queue_of(Sender::of(map));
+  return queue != nullptr && queue->joins(waiting(0, map, {}));
+}
+
 bool MapLane::is_replaced(const WaitingMap& map) const {
   const MapQueue* queue = queue_of(Sender::of(map.map));
   return queue != nullptr && queue->is_replaced(map);

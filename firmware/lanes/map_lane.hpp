@@ -84,6 +84,8 @@ class MapLane {
 
   /// Whether add() would replace one that waits.
   bool replaces_any(const icd::MapUpdate& map) const;
+  /// Whether it can be merged or stitched with the last that waits of its sender, within take()'s bounds.
+  bool joins(const icd::MapUpdate& map) const;
   /// Whether put_back() would find a newer grid that covers it.
   bool is_replaced(const WaitingMap& map) const;
 

@@ -214,6 +214,16 @@ bool MapQueue::is_replaced(const WaitingMap& map) const {
   return std::ranges::any_of(waiting_, [&](const WaitingMap& waiting) { return replaces(waiting, map); });
 }
 
+bool MapQueue::joins(const WaitingMap& map) const {
+  if (waiting_.empty() || !may_join(waiting_.back())) return false;
+  const icd::MapUpdate& last = waiting_.back().map;
+  if (map.map.is_grid())
+    return cells_in(std::get<icd::OccupancyGrid>(last.msg), std::get<icd::OccupancyGrid>(map.map.msg))
+        .has_value();
+  const auto *const before = loose_cloud_in(last), *const cloud = loose_cloud_in(map.map);
+  return before != nullptr && cloud != nullptr && mergeable(*before, *cloud);
+}
+
 std::optional<Instant> MapQueue::oldest() const {
   const auto oldest = std::ranges::min_element(waiting_, {}, &WaitingMap::accepted);
   return oldest == waiting_.end() ? std::nullopt : std::optional(oldest->accepted);

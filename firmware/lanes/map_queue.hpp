@@ -39,6 +39,7 @@ class MapQueue {
 
   bool replaces_any(const WaitingMap& map) const;
   bool is_replaced(const WaitingMap& map) const;
+  bool joins(const WaitingMap& map) const;
   /// When the oldest news was accepted; nothing if none waits.
   std::optional<Instant> oldest() const;
   std::size_t count() const { return waiting_.size(); }

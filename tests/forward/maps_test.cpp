@@ -204,14 +204,18 @@ TEST_F(MapsTest, WaitSinceTheOldestNewsOfTheirRobotAndKindWasAccepted) {
   EXPECT_FALSE(maps_.waits_since({Kind::Cloud, "r1"}));
 }
 
-TEST_F(MapsTest, AreBoundedInNumberHoweverSmallTheyAre) {
+TEST_F(MapsTest, AreBoundedInNumberHoweverSmallTheyAreUnlessTheyJoinWhatWaits) {
   settings_.robots = {{.name = "r1", .alias = "", .clouds = lanes::Clouds::Parts}};
   maps_.settings_changed();
   settings_.queues.map_bytes = std::size_t{1} << 30;
+  const auto cloud_of = [](bool is_bigendian) {
+    icd::MapUpdate map = cloud(1);
+    std::get<icd::PointCloud2>(map.msg).is_bigendian = is_bigendian;
+    return map;
+  };
   int taken = 0, full = 0;
   for (std::size_t i = 0; i <= Maps::kMostMaps; ++i) {
-    icd::MapUpdate map = cloud(1);
-    maps_.take(std::move(map), 10, nullptr, [&](const icd::Checked<void>& said) {
+    maps_.take(cloud_of(i % 2 == 0), 10, nullptr, [&](const icd::Checked<void>& said) {
       if (said) ++taken;
       if (status(said) == icd::Status::TooManyRequests) ++full;
     });
@@ -220,6 +224,8 @@ TEST_F(MapsTest, AreBoundedInNumberHoweverSmallTheyAre) {
   EXPECT_TRUE(loop::turn_until(loop_, [&] { return maps_.all_kept(); }, std::chrono::seconds{60}));
   EXPECT_EQ(taken, static_cast<int>(Maps::kMostMaps));
   EXPECT_EQ(full, 1);
+  EXPECT_EQ(status(take(cloud_of(false))), icd::Status::Ok) << "as the last one that waits";
+  EXPECT_EQ(status(take(cloud_of(true))), icd::Status::TooManyRequests);
 }
 
 TEST_F(MapsTest, ThatCannotBeKeptAreRefusedAndItIsSaidWhy) {

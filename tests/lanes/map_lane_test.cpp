@@ -264,5 +264,26 @@ TEST(MapLane, IsNotSlowedDownByAFloodOfTinyClouds) {
   EXPECT_EQ(lane.take()->updates.size(), kPlenty / 12);
 }
 
+TEST(MapLane, TellsWhatJoinsTheLastThatWaitsOfItsSender) {
+  MapLane lane{1000};
+  EXPECT_FALSE(lane.joins(grid_update("R1", grid(0, 0, 4, 4))));
+  lane.add(1, grid_update("R1", grid(0, 0, 4, 4)), at(1));
+  EXPECT_TRUE(lane.joins(grid_update("R1", grid(0.2, 0, 4, 4))));
+  EXPECT_FALSE(lane.joins(grid_update("R1", grid(0.2, 0, 4, 4, 0.1)))) << "of another lattice";
+  EXPECT_FALSE(lane.joins(grid_update("R2", grid(0.2, 0, 4, 4))));
+  lane.put_back_apart(*[&] {
+    lane.add(2, grid_update("R1", grid(0.2, 0, 4, 4)), at(2));
+    return lane.take();
+  }());
+  EXPECT_FALSE(lane.joins(grid_update("R1", grid(0.4, 0, 4, 4)))) << "what waits goes by itself";
+
+  auto turned = xyz();
+  turned.is_bigendian = true;
+  lane.add(3, cloud_update("R1", {1}), at(3));
+  EXPECT_TRUE(lane.joins(cloud_update("R1", {2})));
+  EXPECT_FALSE(lane.joins(cloud_update("R1", {2}, turned)));
+  EXPECT_FALSE(lane.joins(cloud_update("", {2})));
+}
+
 }  // namespace
 }  // namespace adit::lanes

@@ -61,8 +61,8 @@ struct KindOf<std::vector<icd::Color>> : OnlyWritten {
     for (const icd::Color& color : colors) array.push_back(api::as_hex(color));
     return {std::move(array)};
   }
-  static constexpr Schema color = {.type = "string", .more = R"("pattern":"^#[0-9a-f]{8}$")"};
-  static constexpr Schema schema = {.type = "array", .items = &color};
+  static constexpr Schema kOne = {.type = "string", .more = R"("pattern":"^#[0-9a-f]{8}$")"};
+  static constexpr Schema schema = {.type = "array", .items = &kOne};
 };
 
 /// x, y, x, y, ...

@@ -23,8 +23,8 @@ class LeastRate {
     const std::uint64_t moved = in_last_half_ + in_this_half_;
     in_last_half_ = std::exchange(in_this_half_, 0);
     look_at_ = now + half_;
-    using Seconds = std::chrono::duration<double>;
-    return is_full && static_cast<double>(moved) < kLeast * Seconds(2 * half_).count();
+    const std::chrono::duration<double> both = 2 * half_;
+    return is_full && static_cast<double>(moved) < kLeast * both.count();
   }
 
  private:

@@ -139,7 +139,7 @@ void lay(const Sheet& sheet, const Canvas& before, Drawing& drawing) {
   while (!changed.empty()) {
     Changed coarser_ones;
     for (const auto& [at, parts] : changed) {
-      layers.change(at, coarser_ones, [&parts = parts](Pixels& pixels) {
+      layers.change(at, coarser_ones, [&parts](Pixels& pixels) {
         for (const auto& [part, small] : parts) paste(part, small, pixels);
       });
     }

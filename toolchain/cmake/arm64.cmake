@@ -1,8 +1,9 @@
-# Cross-compiles for the box: 64-bit ARM, Debian's compiler and libraries (toolchain/setup arm64).
+# Cross-compiles for the box: 64-bit ARM, Debian's libraries (toolchain/setup image arm64).
+include(${CMAKE_CURRENT_LIST_DIR}/ships.cmake)
 set(CMAKE_SYSTEM_NAME Linux)
 set(CMAKE_SYSTEM_PROCESSOR aarch64)
-set(CMAKE_C_COMPILER aarch64-linux-gnu-gcc)
-set(CMAKE_CXX_COMPILER aarch64-linux-gnu-g++)
+set(CMAKE_C_COMPILER_TARGET aarch64-linux-gnu)
+set(CMAKE_CXX_COMPILER_TARGET aarch64-linux-gnu)
 set(CMAKE_LIBRARY_ARCHITECTURE aarch64-linux-gnu)
 
 # Debian keeps the libraries of every architecture in one root, and pkg-config's files of each apart.

@@ -3,18 +3,22 @@ add_library(adit_options INTERFACE)
 target_compile_options(adit_options INTERFACE
   -Wall -Wextra -Wpedantic -Wshadow -Wconversion -Wno-sign-conversion -Wnon-virtual-dtor
   -Woverloaded-virtual -Wimplicit-fallthrough -Werror
+  $<$<CXX_COMPILER_ID:Clang>:-Wno-deprecated-declarations>  # inside libstdc++'s own headers; GCC finds ours
   $<$<CXX_COMPILER_ID:GNU>:-Wno-subobject-linkage>  # GCC takes a batch's files, and what is in a template's argument, for headers
   -fstack-protector-strong -fstack-clash-protection -ffunction-sections -fdata-sections -fPIE)
 target_compile_definitions(adit_options INTERFACE _GLIBCXX_ASSERTIONS)
 target_link_options(adit_options INTERFACE -pie -Wl,-z,relro,-z,now -Wl,--gc-sections)
-if(CMAKE_SYSTEM_PROCESSOR MATCHES x86_64)  # binutils 2.40 packs them there, not yet for ARM
-  target_link_options(adit_options INTERFACE -Wl,-z,pack-relative-relocs)
-endif()
-if(CMAKE_INTERPROCEDURAL_OPTIMIZATION)  # what ships: nothing asks for a type at run time, and the types' names are long
-  target_compile_options(adit_options INTERFACE -fno-rtti)
-endif()
 # Small, but for what says otherwise: headers.cmake has the ways to be compiled.
 set(CMAKE_CXX_FLAGS_RELEASE "-Os -DNDEBUG")
+
+if(CMAKE_INTERPROCEDURAL_OPTIMIZATION)  # what ships, by Clang: see ships.cmake
+  set(CMAKE_CXX_FLAGS_RELEASE "-Oz -DNDEBUG")
+  # As one program, not in parts. Nothing asks for a type at run time, and the types' names are long; the stack is unwound where
+  # something throws, not at each instruction.
+  set(CMAKE_CXX_COMPILE_OPTIONS_IPO -flto=full)
+  target_compile_options(adit_options INTERFACE -fno-rtti -fno-asynchronous-unwind-tables)
+  target_link_options(adit_options INTERFACE -flto=full -Wl,--icf=safe -Wl,-z,pack-relative-relocs)
+endif()
 
 set(ADIT_SANITIZE "" CACHE STRING "Sanitizers to build with, as -fsanitize takes them (address,undefined or thread)")
 if(ADIT_SANITIZE)

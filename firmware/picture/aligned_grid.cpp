@@ -46,14 +46,14 @@ AlignedGrid::Axis::Axis(double origin, double metres_per_cell, std::uint32_t cou
   }
 }
 
-bool AlignedGrid::suits(const icd::OccupancyGrid& grid, const Placement& placement) {
+bool AlignedGrid::suits(const icd::OccupancyGrid& grid, const icd::Placement& placement) {
   const auto& turn = placement.turn;
   const double along_x = grid.width * grid.resolution, along_y = grid.height * grid.resolution;
   return turn[0][0] > 0.5 && turn[1][1] > 0.5 && std::abs(turn[1][0]) * along_x < kMostSkew &&
          std::abs(turn[0][1]) * along_y < kMostSkew;
 }
 
-AlignedGrid::AlignedGrid(const icd::OccupancyGrid& grid, const Placement& placement, Sheet& sheet)
+AlignedGrid::AlignedGrid(const icd::OccupancyGrid& grid, const icd::Placement& placement, Sheet& sheet)
     : sheet_(sheet),
       columns_(placement.shift.x, grid.resolution * placement.turn[0][0], grid.width),
       rows_(placement.shift.y, grid.resolution * placement.turn[1][1], grid.height),

@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "icd/map_update.hpp"
-#include "picture/placement.hpp"
+#include "icd/placement.hpp"
 #include "picture/sheet.hpp"
 
 namespace adit::picture {
@@ -15,9 +15,9 @@ namespace adit::picture {
 /// or, where cells are larger than pixels, the cell that its own centre lies in.
 class AlignedGrid {
  public:
-  static bool suits(const icd::OccupancyGrid& grid, const Placement& placement);
+  static bool suits(const icd::OccupancyGrid& grid, const icd::Placement& placement);
   /// Requires suits().
-  AlignedGrid(const icd::OccupancyGrid& grid, const Placement& placement, Sheet& sheet);
+  AlignedGrid(const icd::OccupancyGrid& grid, const icd::Placement& placement, Sheet& sheet);
 
   /// A part of a row, in the order of the data.
   void draw(std::size_t row, std::size_t column, std::span<const std::uint8_t> cells);

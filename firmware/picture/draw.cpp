@@ -11,7 +11,7 @@ namespace adit::picture {
 namespace {
 
 template <class Drawer>
-icd::Checked<std::size_t> draw_by(const icd::OccupancyGrid& grid, const Placement& placement,
+icd::Checked<std::size_t> draw_by(const icd::OccupancyGrid& grid, const icd::Placement& placement,
                                   const icd::MapData& data, Sheet& sheet) {
   RowCutter cutter{grid.width, grid.height};
   Drawer drawer{grid, placement, sheet};
@@ -28,7 +28,7 @@ icd::Checked<std::size_t> draw_by(const icd::OccupancyGrid& grid, const Placemen
 }  // namespace
 
 icd::Checked<std::size_t> draw_grid(const icd::OccupancyGrid& grid, const icd::MapData& data, Sheet& sheet) {
-  const Placement placement{grid.origin};
+  const icd::Placement placement{grid.origin};
   return AlignedGrid::suits(grid, placement) ? draw_by<AlignedGrid>(grid, placement, data, sheet)
                                              : draw_by<TurnedGrid>(grid, placement, data, sheet);
 }

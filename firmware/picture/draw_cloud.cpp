@@ -2,11 +2,11 @@
 #include <array>
 
 #include "codec/map_pieces.hpp"
+#include "icd/placement.hpp"
 #include "picture/cloud_points.hpp"
 #include "picture/draw.hpp"
 #include "picture/draw_parts.hpp"
 #include "picture/palette.hpp"
-#include "picture/placement.hpp"
 
 namespace adit::picture {
 namespace {
@@ -42,7 +42,7 @@ class Dabber {
   }
 
   Sheet& sheet_;
-  Placement placement_;
+  icd::Placement placement_;
 };
 
 template <class Float, bool Bigendian>

@@ -16,7 +16,7 @@ constexpr double kGapless = 1 / std::numbers::sqrt2;
 
 }  // namespace
 
-TurnedGrid::TurnedGrid(const icd::OccupancyGrid& grid, const Placement& placement, Sheet& sheet)
+TurnedGrid::TurnedGrid(const icd::OccupancyGrid& grid, const icd::Placement& placement, Sheet& sheet)
     : sheet_(sheet) {
   const auto& turn = placement.turn;
   const double cell = grid.resolution * kPixelsPerMetre;

@@ -6,7 +6,7 @@
 #include <span>
 
 #include "icd/map_update.hpp"
-#include "picture/placement.hpp"
+#include "icd/placement.hpp"
 #include "picture/sheet.hpp"
 
 namespace adit::picture {
@@ -15,7 +15,7 @@ namespace adit::picture {
 /// not much smaller than pixels, those of as many points evenly over the cell as leave no gap.
 class TurnedGrid {
  public:
-  TurnedGrid(const icd::OccupancyGrid& grid, const Placement& placement, Sheet& sheet);
+  TurnedGrid(const icd::OccupancyGrid& grid, const icd::Placement& placement, Sheet& sheet);
 
   /// A part of a row, in the order of the data.
   void draw(std::size_t row, std::size_t column, std::span<const std::uint8_t> cells);

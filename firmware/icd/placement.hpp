@@ -6,12 +6,12 @@
 
 #include "icd/geometry.hpp"
 
-namespace adit::picture {
+namespace adit::icd {
 
 /// From a map's own frame to "darpa": a rotation by a matrix, then a shift.
 struct Placement {
-  explicit Placement(const icd::Pose& pose) : shift{pose.position} {
-    const icd::Quaternion& q = pose.orientation;
+  explicit Placement(const Pose& pose) : shift{pose.position} {
+    const Quaternion& q = pose.orientation;
     const double largest = std::max({std::abs(q.x), std::abs(q.y), std::abs(q.z), std::abs(q.w)});
     double x = q.x / largest, y = q.y / largest, z = q.z / largest, w = q.w / largest;
     const double norm = std::sqrt(x * x + y * y + z * z + w * w);
@@ -21,14 +21,14 @@ struct Placement {
              {2 * (x * z - w * y), 2 * (y * z + w * x), 1 - 2 * (x * x + y * y)}}};
   }
 
-  icd::Point operator()(const icd::Point& p) const {
+  Point operator()(const Point& p) const {
     return {turn[0][0] * p.x + turn[0][1] * p.y + turn[0][2] * p.z + shift.x,
             turn[1][0] * p.x + turn[1][1] * p.y + turn[1][2] * p.z + shift.y,
             turn[2][0] * p.x + turn[2][1] * p.y + turn[2][2] * p.z + shift.z};
   }
 
   std::array<std::array<double, 3>, 3> turn;  // rows
-  icd::Point shift;
+  Point shift;
 };
 
-}  // namespace adit::picture
+}  // namespace adit::icd

@@ -1,0 +1,81 @@
+#include "pack/taken_voxels.hpp"
+
+#include <algorithm>
+#include <utility>
+
+#include "pack/points.hpp"
+
+namespace adit::pack {
+namespace {
+
+/// Neighbours are often in one block.
+void note(const VoxelBlock& found, std::vector<VoxelBlock>& all) {
+  if (found.place == 0) return;
+  if (all.empty() || all.back().place != found.place) all.push_back({found.place, 0});
+  all.back().voxels |= found.voxels;
+}
+
+icd::MapData those_that_stay(const icd::MapData& data, std::size_t point_step,
+                             const std::vector<bool>& stays) {
+  icd::MapData kept;
+  auto next = stays.begin();
+  for_each_point(data.bytes, point_step, [&](auto point) {
+    if (*next++) kept.bytes.append(point);
+    return true;
+  });
+  kept.raw_size = kept.bytes.size();
+  return kept;
+}
+
+}  // namespace
+
+TakenVoxels::Rest TakenVoxels::leave_out(const icd::RobotName& robot, const icd::PointCloud2& cloud,
+                                         const icd::MapData& data, double edge) const {
+  const auto found = robots_.find(robot);
+  const bool knows = found != robots_.end() && found->second.edge == edge;
+  const VoxelSet none, &taken = knows ? found->second.voxels : none;
+  const Voxels voxels{cloud, edge};
+  Rest rest;
+  std::vector<bool> stays;
+  stays.reserve(data.bytes.size() / cloud.point_step);
+  for_each_point(data.bytes, cloud.point_step, [&](auto point) {
+    const VoxelBlock at = voxels.of(point);
+    stays.push_back(at.place == 0 || !taken.has(at));
+    if (stays.back()) note(at, rest.voxels);
+    return true;
+  });
+  rest.left_out = static_cast<std::size_t>(std::ranges::count(stays, false));
+  rest.data = rest.left_out == 0 ? data : those_that_stay(data, cloud.point_step, stays);
+  return rest;
+}
+
+void TakenVoxels::add(const icd::RobotName& robot, double edge, std::span<const VoxelBlock> voxels) {
+  Robot& its = robots_[robot];
+  if (its.edge != edge) its = {.edge = edge, .last = 0, .voxels = {}};
+  its.last = ++adds_;
+  for (const VoxelBlock& block : voxels) {
+    if (its.voxels.bytes_with_another() > its.voxels.bytes()) make_room(its);
+    its.voxels.add(block);
+  }
+}
+
+/// For a block more of that robot's.
+void TakenVoxels::make_room(Robot& robot) {
+  while (bytes() - robot.voxels.bytes() + robot.voxels.bytes_with_another() > most_bytes_) {
+    const auto oldest =
+        std::ranges::min_element(robots_, {}, [](const auto& each) { return each.second.last; });
+    if (&oldest->second == &robot) {
+      robot.voxels = {};
+      return;
+    }
+    robots_.erase(oldest);
+  }
+}
+
+std::size_t TakenVoxels::bytes() const {
+  std::size_t bytes = 0;
+  for (const auto& [name, robot] : robots_) bytes += robot.voxels.bytes();
+  return bytes;
+}
+
+}  // namespace adit::pack

@@ -1,0 +1,31 @@
+#pragma once
+
+#include <cstddef>
+#include <vector>
+
+#include "pack/voxels.hpp"
+
+namespace adit::pack {
+
+/// Voxels, each block of them in a place of its own: open addressing, at most three quarters full.
+class VoxelSet {
+ public:
+  /// Whether it has all that are meant. Requires a block.
+  bool has(const VoxelBlock& block) const;
+  /// Where there is no memory, it is as it was. Requires a block.
+  void add(const VoxelBlock& block);
+
+  /// Of memory; and what that is once another block has come.
+  std::size_t bytes() const { return places_.size() * sizeof(VoxelBlock); }
+  std::size_t bytes_with_another() const { return places_with_another() * sizeof(VoxelBlock); }
+
+ private:
+  std::size_t place_of(std::uint64_t place) const;
+  std::size_t places_with_another() const;
+  void grow(std::size_t places);
+
+  std::vector<VoxelBlock> places_;  // a power of two of them, or none
+  std::size_t count_ = 0;
+};
+
+}  // namespace adit::pack

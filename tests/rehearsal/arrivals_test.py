@@ -60,6 +60,15 @@ class Arrivals(unittest.TestCase):
         self.assertIn("75.0%", answer.json()["table"])
         self.assertIn("75.0%", self.post.stop()[1])
 
+    def test_a_place_counts_once_however_many_points_it_has(self):
+        posted = now_ms()
+        near = cloud(posted, posted, posted)  # a metre apart
+        self.post.map_cbor(near)
+        self.post.map_cbor(changed(near, msg__data=near["msg"]["data"].replace(struct.pack("<f", 1), struct.pack("<f", 1.04), 1)))
+        told = {"robot": "X1", "kind": "cloud", "amount": 8, "places": 4, "newest": posted}
+        self.assertIn("75.0%", self.post.tell("posted", [told]).json()["table"])
+        self.assertEqual(self.only()["places"], 0.75)
+
     def test_cells_count_once_wherever_they_come_from(self):
         posted = now_ms()
         self.post.map(row(posted))            # 18 known cells of 0.2 m

@@ -5,6 +5,7 @@
 #include <cmath>
 #include <cstdio>
 #include <numeric>
+#include <span>
 
 #include "rehearsal/command_post/fields.hpp"
 #include "rehearsal/command_post/pictures.hpp"
@@ -19,6 +20,10 @@ constexpr std::size_t kMostDates = 100'000;  // of one robot's points
 constexpr Milliseconds kTick{10};            // by which ages are told apart
 constexpr Milliseconds kOldest{3'600'000};
 
+double share_of(std::uint64_t part, std::uint64_t all) {
+  return all == 0 ? 1 : static_cast<double>(part) / static_cast<double>(all);
+}
+
 double seconds(Milliseconds time) {
   return std::chrono::duration<double>(time).count();
 }
@@ -29,6 +34,10 @@ std::string written(const OrderedJson& value, int digits) {
   std::array<char, 32> text{};
   (void)std::snprintf(text.data(), text.size(), "%.*f", digits, value.get<double>());
   return text.data();
+}
+
+std::string percent(const OrderedJson& share) {
+  return share.is_null() ? "-" : written(100 * share.get<double>(), 1) + "%";
 }
 
 }  // namespace
@@ -69,10 +78,12 @@ void Arrivals::note(const MapMessage& map, Moment now) {
     if (here->points.size() >= kMostDates && !here->points.contains(date)) continue;
     here->points[date] = std::max(here->points[date], points);
   }
-  if (grid == nullptr) return;
+  const std::span data(reinterpret_cast<const std::uint8_t*>(map.data.data()), map.data.size());
+  if (const auto* const cloud = std::get_if<Cloud>(&map.msg)) {
+    return here->places.add(cloud->fields, cloud->point_step, data);
+  }
   const Point& corner = grid->origin.position;
-  here->cells.add(grid->resolution, corner.x, corner.y, grid->width,
-                  {reinterpret_cast<const std::uint8_t*>(map.data.data()), map.data.size()});
+  here->cells.add(grid->resolution, corner.x, corner.y, grid->width, data);
 }
 
 std::expected<void, std::string> Arrivals::told(const Json& posted) {
@@ -85,9 +96,13 @@ std::expected<void, std::string> Arrivals::told(const Json& posted) {
     if (!robot || !kind || !amount || !newest) break;
     const auto name = robot->text(), of = kind->text();
     const auto count = amount->integer(0, INT64_MAX), at = newest->integer(0, INT64_MAX);
-    if (!name || !of || !count || !at) break;
+    const auto told_places = one.optional_member("places");
+    const auto places = told_places ? told_places->integer(0, INT64_MAX) : 0;
+    if (!name || !of || !count || !at || !places) break;
     if (Arrived* const here = arrived(*name, *of)) {
-      here->posted = {.amount = static_cast<std::uint64_t>(*count), .newest = Moment(Milliseconds(*at))};
+      here->posted = {.amount = static_cast<std::uint64_t>(*count),
+                      .places = static_cast<std::uint64_t>(*places),
+                      .newest = Moment(Milliseconds(*at))};
     }
   }
   if (findings.all().empty()) return {};
@@ -100,13 +115,14 @@ OrderedJson Arrivals::row(const Source& source, const Arrived& arrived) {
   for (const auto& [name, share] : {std::pair{"p50", 0.5}, {"p99", 0.99}, {"most", 1.0}}) {
     row[name] = any ? OrderedJson(arrived.age(share)) : OrderedJson(nullptr);
   }
-  row["behind"] = row["posted"] = row["share"] = nullptr;
+  row["behind"] = row["posted"] = row["share"] = row["places"] = nullptr;
   row["arrived"] = arrived.amount();
   if (!arrived.posted) return row;
-  const auto& [amount, newest] = *arrived.posted;
+  const auto& [amount, places, newest] = *arrived.posted;
   if (any) row["behind"] = std::max(0.0, seconds(newest - arrived.newest));
   row["posted"] = amount;
-  row["share"] = amount == 0 ? 1 : static_cast<double>(arrived.amount()) / static_cast<double>(amount);
+  row["share"] = share_of(arrived.amount(), amount);
+  if (places > 0) row["places"] = share_of(arrived.places.count(), places);
   return row;
 }
 
@@ -121,18 +137,16 @@ std::string Arrivals::table() const {
   const OrderedJson rows = json();
   if (rows.empty()) return "";
   std::string text = "how old maps were when they came, in seconds; how much of what was posted is here\n";
-  text += "  robot      kind    maps      p50     p99    most  behind   here\n";
+  text += "  robot      kind    maps      p50     p99    most  behind    here  places\n";
   for (const OrderedJson& row : rows) {
     const std::string robot = row["robot"];
-    const OrderedJson share =
-        row["share"].is_null() ? row["share"] : OrderedJson(100 * row["share"].get<double>());
     std::array<char, 160> line{};
     (void)std::snprintf(
-        line.data(), line.size(), "  %-10.10s %-6.6s %5llu %8s%8s%8s%8s%6s%%\n",
+        line.data(), line.size(), "  %-10.10s %-6.6s %5llu %8s%8s%8s%8s%8s%8s\n",
         robot.empty() ? "(merged)" : tame(robot).c_str(), row["kind"].get_ref<const std::string&>().c_str(),
         static_cast<unsigned long long>(row["maps"].get<std::uint64_t>()), written(row["p50"], 2).c_str(),
         written(row["p99"], 2).c_str(), written(row["most"], 2).c_str(), written(row["behind"], 2).c_str(),
-        written(share, 1).c_str());
+        percent(row["share"]).c_str(), percent(row["places"]).c_str());
     text += line.data();
   }
   return text;

@@ -11,6 +11,7 @@
 #include "rehearsal/command_post/dates.hpp"
 #include "rehearsal/command_post/json.hpp"
 #include "rehearsal/known_cells.hpp"
+#include "rehearsal/known_places.hpp"
 
 namespace adit::rehearsal {
 
@@ -21,8 +22,9 @@ class Arrivals {
   /// A map was taken, whose last byte had come at `now`.
   void note(const MapMessage& map, Moment now);
 
-  /// What adit-robots posted so far: [{"robot": "r1", "kind": "cloud", "amount": 1200, "newest": MS}], cells
-  /// or points, and the newest date in milliseconds since 1970. An error says what is wrong.
+  /// What adit-robots posted so far: [{"robot": "r1", "kind": "cloud", "amount": 1200, "places": 300,
+  /// "newest": MS}], cells or points, places that have points (of grids none need be told), and the newest
+  /// date in milliseconds since 1970. An error says what is wrong.
   std::expected<void, std::string> told(const Json& posted);
 
   /// An object for each robot and kind; ages in seconds. See README.md, 'How old'.
@@ -33,7 +35,7 @@ class Arrivals {
 
  private:
   struct Posted {
-    std::uint64_t amount = 0;
+    std::uint64_t amount = 0, places = 0;
     Moment newest;
   };
   struct Arrived {
@@ -42,6 +44,7 @@ class Arrivals {
     Moment newest;
     KnownCells cells;                        // of grids
     std::map<Moment, std::uint64_t> points;  // of clouds, by the date; the most that came in one map
+    KnownPlaces places;
     std::optional<Posted> posted;
 
     std::uint64_t amount() const;

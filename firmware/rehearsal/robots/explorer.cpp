@@ -73,7 +73,7 @@ void Explorer::post_grid(Clock::time_point now) {
   const MapTime time = map_time(now);
   auto grid = maps_.grid(robot_.map(), robot_.pose().position, time);
   if (!grid) return;
-  if (!style_.ros) posted_.note(name_, Kind::Grid, maps_.cells(), time.posted);
+  if (!style_.ros) posted_.note(name_, Kind::Grid, {.amount = maps_.cells(), .newest = time.posted});
   client_.send(*std::move(grid));
 }
 
@@ -81,7 +81,10 @@ void Explorer::post_cloud(Clock::time_point now) {
   const MapTime time = map_time(now);
   auto cloud = maps_.cloud(robot_.map(), robot_.pose().position, time);
   if (!cloud) return;
-  if (!style_.ros) posted_.note(name_, Kind::Cloud, maps_.points(), time.posted);
+  if (!style_.ros) {
+    posted_.note(name_, Kind::Cloud,
+                 {.amount = maps_.points(), .places = maps_.places(), .newest = time.posted});
+  }
   client_.send(*std::move(cloud));
 }
 

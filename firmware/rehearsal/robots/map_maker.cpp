@@ -91,6 +91,7 @@ std::optional<Cloud> MapMaker::cloud(RobotMap& map, const Vector3& here, const M
   if (news.data.empty()) return std::nullopt;
   date(news, time.posted);
   points_ += news.data.size() / news.point_step;
+  places_.add(news.fields, news.point_step, news.data);
   if (!whole) return news;
   news.data.insert(news.data.begin(), all_.data.begin(), all_.data.end());
   all_ = std::move(news);

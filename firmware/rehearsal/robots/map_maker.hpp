@@ -5,6 +5,7 @@
 #include <optional>
 
 #include "rehearsal/known_cells.hpp"
+#include "rehearsal/known_places.hpp"
 #include "rehearsal/robots/dated.hpp"
 #include "rehearsal/robots/map_offer.hpp"
 #include "rehearsal/robots/random.hpp"
@@ -34,6 +35,8 @@ class MapMaker {
   /// How many cells and points were made known so far, each counted once.
   std::uint64_t cells() const { return cells_.count(); }
   std::uint64_t points() const { return points_; }
+  /// And places with points.
+  std::uint64_t places() const { return places_.count(); }
 
  private:
   Grid window(const RobotMap& map, const Vector3& here, double stamp) const;
@@ -46,6 +49,7 @@ class MapMaker {
   Cloud all_;     // of whole clouds
   KnownCells cells_;
   std::uint64_t points_ = 0;
+  KnownPlaces places_;
 };
 
 }  // namespace adit::robots

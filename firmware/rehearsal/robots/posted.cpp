@@ -6,9 +6,9 @@ namespace adit::robots {
 
 using Json = nlohmann::json;
 
-void Posted::note(const std::string& robot, Kind kind, std::uint64_t amount, Moment newest) {
+void Posted::note(const std::string& robot, Kind kind, const Amount& amount) {
   const std::scoped_lock lock(mutex_);
-  amounts_[{robot, kind}] = {.amount = amount, .newest = newest};
+  amounts_[{robot, kind}] = amount;
 }
 
 std::string Posted::json() const {
@@ -18,6 +18,7 @@ std::string Posted::json() const {
     all.push_back({{"robot", source.first},
                    {"kind", name_of(source.second)},
                    {"amount", posted.amount},
+                   {"places", posted.places},
                    {"newest", posted.newest.time_since_epoch().count()}});
   }
   return all.dump();

@@ -15,18 +15,17 @@ namespace adit::robots {
 /// against. Any thread may write to it.
 class Posted {
  public:
-  /// `amount`: how many cells or points the robot posted so far, each counted once; `newest`: the last map's
-  /// date.
-  void note(const std::string& robot, Kind kind, std::uint64_t amount, Moment newest);
+  struct Amount {
+    std::uint64_t amount = 0;  // cells or points posted so far, each counted once
+    std::uint64_t places = 0;  // that have points (KnownPlaces); of grids 0
+    Moment newest;             // the last map's date
+  };
+  void note(const std::string& robot, Kind kind, const Amount& amount);
 
   /// As POST /posted on the control port takes it.
   std::string json() const;
 
  private:
-  struct Amount {
-    std::uint64_t amount = 0;
-    Moment newest;
-  };
   mutable std::mutex mutex_;  // guards all below
   std::map<std::pair<std::string, Kind>, Amount> amounts_;
 };

@@ -141,8 +141,8 @@ void write_updates(Exposition& out, const RunView& view) {
                 &ActivityRow::accepted);
   write_counter(out, view, "adit_updates_forwarded_total", "Updates that the Command Post took.",
                 &ActivityRow::forwarded);
-  write_counter(out, view, "adit_updates_replaced_total", "Updates that newer ones covered before they went.",
-                &ActivityRow::replaced);
+  write_counter(out, view, "adit_updates_replaced_total",
+                "Updates that did not go, for others say all of theirs.", &ActivityRow::replaced);
   write_counter(out, view, "adit_updates_merged_total", "Updates that went as parts of others.",
                 &ActivityRow::merged);
   write_counter(out, view, "adit_updates_throttled_total", "Answers of 429, after which it went again.",
@@ -163,6 +163,11 @@ void write_updates(Exposition& out, const RunView& view) {
             "Whether its newest cloud replaces those that wait (1), or each arrives (0).");
   for (const ActivityRow& row : view.activities) {
     if (!row.clouds.empty()) out.sample({{"robot", row.robot}}, row.clouds == "whole" ? 1 : 0);
+  }
+  out.counter("adit_points_left_out_total",
+              "Points that were not sent, for the Command Post has taken one of the same voxel.");
+  for (const ActivityRow& row : view.activities) {
+    if (row.kind == "cloud") out.sample({{"robot", row.robot}}, number(row.points_left_out));
   }
   out.gauge("adit_updates_waiting", "Updates that wait.");
   sample_each(out, view, &ActivityRow::waiting);

@@ -75,6 +75,10 @@ constexpr Member kActivity[] = {
                                  "before it said, and replaces them; parts: each arrives; empty: no two of "
                                  "them have waited")
         .one_of(kClouds),
+    member<&ActivityRow::points_left_out>(
+        "points_left_out",
+        "of its clouds, because the Command Post has taken one of the same voxel "
+        "(robots[].voxel_metres)"),
 };
 
 constexpr Member kRefusal[] = {

@@ -72,6 +72,7 @@ struct ActivityRow {
   int last_status = 0;
   std::string last_sentence;
   std::string clouds;
+  std::uint64_t points_left_out = 0;
 
   static const codec::Row kRow;
 };

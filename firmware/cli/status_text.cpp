@@ -111,6 +111,14 @@ std::string said(const api::ActivityRow& row) {
   return status.empty() ? row.last_sentence : status + ": " + row.last_sentence;
 }
 
+/// With what its clouds are taken for, and what of them was not sent.
+std::string kind_of(const api::ActivityRow& row) {
+  std::string kind = row.kind;
+  if (!row.clouds.empty()) kind += ", " + row.clouds;
+  if (row.points_left_out > 0) kind += ", " + std::to_string(row.points_left_out) + " points left out";
+  return kind;
+}
+
 std::string activities_table(const RunView& view, bool colour) {
   Table table({{"robot"},
                {"kind"},
@@ -125,7 +133,7 @@ std::string activities_table(const RunView& view, bool colour) {
   for (const api::ActivityRow& row : view.activities) {
     const Arrival arrival = arrival_of(row, view.now);
     table.add({{row.robot.empty() ? "(all)" : row.robot, Tone::Strong},
-               {row.kind + (row.clouds.empty() ? "" : ", " + row.clouds)},
+               {kind_of(row)},
                arrival_cell(arrival, row, view.now),
                {std::to_string(row.accepted)},
                {std::to_string(row.forwarded)},

@@ -84,6 +84,7 @@ void Flow::picture_the_run() {
   const std::int64_t before = std::exchange(pictured_run_, run);
   if (before == 0 || before == run) return;
   as_forwarded_.begin_run(loop_.stamp_now());
+  maps_.begin_run();
   picture_.begin_run();
 }
 

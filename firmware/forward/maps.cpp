@@ -75,6 +75,7 @@ void Maps::carry_on(const journal::Carried& carried) {
 void Maps::take_settings() {
   lane_.a_slot_carries(slot_of(settings_.command_post));
   lane_.clouds_are(settings::clouds_of(settings_.robots));
+  points_.edges_are(settings::voxels_of(settings_.robots));
 }
 
 void Maps::settings_changed() {
@@ -88,6 +89,7 @@ void Maps::endpoint_changed(std::optional<icd::BearerToken> token) {
   const settings::CommandPost& post = settings_.command_post;
   channel_.lead_to(endpoint_of(post, post.mapping, pace::map_bytes_per_second(post.budget_mbit)),
                    std::move(token), post.timeouts.mapping_answer);
+  points_.forget();
   channel_.give_up();
   pump();
 }
@@ -108,6 +110,7 @@ void Maps::go_on() {
   forget({});
   const loop::Instant now = loop_.now();
   std::shared_ptr<Prepared>& next = channel_.busy() ? following_ : prepared_;
+  if (next && !points_.hold(next->packed.left_out)) next->packed = {};
   if (next && next->packed.body.empty()) return pack(next);
   if (next && channel_.busy()) return;
   if (next) {
@@ -159,14 +162,16 @@ void Maps::pack(const std::shared_ptr<Prepared>& prepared) {
   header.stamp = stamps_.next(header.stamp.value_or(loop_.stamp_now()));
   journal_.stamped(icd::Uri::MapUpdate, *header.stamp);
   const loop::Instant began = loop_.now();
-  workers_.submit([prepared] { prepared->packed = packed(prepared->waiting); },
-                  [this, began, prepared] {
-                    preparing_ = false;
-                    packing_took_ = loop_.now() - began;
-                    loop::guarded("a map that was packed", [&] { is_packed(prepared); });
-                    pump();
-                  },
-                  [this, prepared] { not_packed(prepared); });
+  const auto leaving_out = std::make_shared<LeavingOut>(points_.leaving_out(prepared->waiting.map));
+  workers_.submit(
+      [prepared, leaving_out] { prepared->packed = packed(prepared->waiting, std::move(*leaving_out)); },
+      [this, began, prepared] {
+        preparing_ = false;
+        packing_took_ = loop_.now() - began;
+        loop::guarded("a map that was packed", [&] { is_packed(prepared); });
+        pump();
+      },
+      [this, prepared] { not_packed(prepared); });
   preparing_ = true;  // only now: where it could not be submitted, it is not
 }
 
@@ -178,9 +183,13 @@ std::shared_ptr<Maps::Prepared>* Maps::place_of(const std::shared_ptr<Prepared>&
 
 /// What cannot be stitched goes as it came, each part by itself.
 void Maps::is_packed(const std::shared_ptr<Prepared>& prepared) {
-  slot_.packed(prepared->waiting.map, prepared->packed.body.size());
+  const icd::MapUpdate& map = prepared->waiting.map;
+  const LeftOut& left_out = prepared->packed.left_out;
+  if (!map.is_grid())
+    slot_.packed(left_out.points > 0 ? left_out.sent : map.data, prepared->packed.body.size());
   std::shared_ptr<Prepared>* const place = place_of(prepared);
   if (place == nullptr) return;
+  if (left_out.is_all) return is_there(*place);
   if (!prepared->packed.body.empty()) {
     if (prepared->packed.stitched.raw_size > 0)
       prepared->waiting.map.data = std::move(prepared->packed.stitched);
@@ -229,6 +238,7 @@ void Maps::judge(const uplink::Outcome& outcome) {
 void Maps::taken(const uplink::Answered& answered) {
   pace_.taken(answered.sent, loop_.now());
   slot_.left(prepared_->packed.body.size(), answered.sent, last_byte_not_before_);
+  if (!points_.hold(prepared_->packed.left_out)) return goes_whole(answered.status);
   const auto sent = std::exchange(
       prepared_, std::exchange(following_, nullptr));  // whatever fails from here on, it has arrived
   icd::MapUpdate& map = sent->waiting.map;
@@ -240,6 +250,7 @@ void Maps::taken(const uplink::Answered& answered) {
   blame_.passed(whose(map), loop_.now());
   lane_.carried(lanes::Sender::of(map), sent->packed.body.size());
   record_.forwarded(traffic_of(map), updates, sent->packed.body.size(), answered.status, loop_.stamp_now());
+  points_taken(*sent);
   taken_(std::move(map));
 }
 

@@ -14,6 +14,7 @@
 #include "forward/record.hpp"
 #include "forward/slot.hpp"
 #include "forward/stitched.hpp"
+#include "forward/taken_points.hpp"
 #include "forward/uri_pace.hpp"
 #include "icd/map_update.hpp"
 #include "icd/status.hpp"
@@ -52,6 +53,8 @@ class Maps {
   /// The endpoint is, or its token, or the way there: what is under way to another place is given up, and
   /// sent again to this one.
   void endpoint_changed(std::optional<icd::BearerToken> token);
+  /// What the Command Post took of the run before it may have no more.
+  void begin_run() { points_.forget(); }
   /// A map that the spool kept under this number.
   void restore(std::uint64_t number, icd::MapUpdate update);
 
@@ -89,7 +92,7 @@ class Maps {
   /// A map out of the lane, in the form that goes upstream.
   struct Prepared {
     lanes::WaitingMap waiting;
-    Packed packed;  // without a body: not packed
+    Packed packed;  // without a body: not packed, or nothing is left to be sent
   };
 
   std::vector<std::uint64_t> add(std::uint64_t number, icd::MapUpdate update);
@@ -125,6 +128,9 @@ class Maps {
   void not_packed(const std::shared_ptr<Prepared>& prepared);
   std::shared_ptr<Prepared>* place_of(const std::shared_ptr<Prepared>& prepared);
   void is_packed(const std::shared_ptr<Prepared>& prepared);
+  void is_there(std::shared_ptr<Prepared>& place);
+  void goes_whole(int status);
+  void points_taken(Prepared& sent);
   void send();
   void answered(const uplink::Outcome& outcome);
   void judge(const uplink::Outcome& outcome);
@@ -152,6 +158,7 @@ class Maps {
   loop::Instant last_byte_not_before_;  // of the map that was sent last
   lanes::MapLane lane_;
   lanes::StampOrder stamps_;
+  TakenPoints points_;
   std::uint64_t numbers_ = kFirstNumber, again_numbers_ = 0;
   int being_kept_ = 0;
   std::size_t bytes_being_kept_ = 0;

@@ -1,4 +1,7 @@
-// Which clouds that wait are said by newer ones, where no setting tells: a worker looks.
+// Which clouds that wait are said by newer ones, where no setting tells: a worker looks. And what becomes of
+// one of which nothing is left to be sent.
+#include <utility>
+
 #include "forward/maps.hpp"
 #include "loop/guard.hpp"
 #include "pack/has_all_points.hpp"
@@ -38,6 +41,33 @@ void Maps::compared(const lanes::Successive& two, bool has_all) {
     record_.clouds_are(traffic, has_all ? lanes::Clouds::Whole : lanes::Clouds::Parts);
   });
   compare();
+}
+
+/// All that it says was taken already. If that is forgotten by now, it is packed again.
+void Maps::is_there(std::shared_ptr<Prepared>& place) {
+  const LeftOut& left_out = place->packed.left_out;
+  if (!points_.hold(left_out)) return;
+  const auto there = std::exchange(place, nullptr);
+  const Traffic traffic = traffic_of(there->waiting.map);
+  record_.left_out(traffic, there->packed.left_out.points);
+  record_.replaced(traffic, there->waiting.updates.size());
+  forget(there->waiting.updates);
+}
+
+/// From here on the map has the points that were sent.
+void Maps::points_taken(Prepared& sent) {
+  icd::MapUpdate& map = sent.waiting.map;
+  LeftOut& left_out = sent.packed.left_out;
+  record_.left_out(traffic_of(map), left_out.points);
+  if (left_out.points > 0) map.data = std::move(left_out.sent);
+  loop::guarded("points that were taken", [&] { points_.taken(map, std::move(left_out)); });
+}
+
+/// It was taken, but while it was under way what had been left out of it was forgotten.
+void Maps::goes_whole(int status) {
+  record_.forwarded(traffic_of(prepared_->waiting.map), 0, prepared_->packed.body.size(), status,
+                    loop_.stamp_now());
+  again();
 }
 
 }  // namespace adit::forward

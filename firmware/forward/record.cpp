@@ -71,6 +71,12 @@ void Record::replaced(const Traffic& traffic, std::size_t updates) {
   row(traffic).replaced += updates;
 }
 
+void Record::left_out(const Traffic& traffic, std::size_t points) {
+  if (points == 0) return;
+  row(traffic).points_left_out += points;
+  changed_();
+}
+
 void Record::clouds_are(const Traffic& traffic, lanes::Clouds clouds) {
   if (traffic.kind == Kind::Cloud)
     row(traffic).clouds = lanes::kCloudsWords[static_cast<std::size_t>(clouds)];

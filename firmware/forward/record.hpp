@@ -48,6 +48,8 @@ class Record {
   /// It was refused to the robot, because too much waits.
   void no_room(const Traffic& traffic, api::Time now);
   void replaced(const Traffic& traffic, std::size_t updates);
+  /// So many points of its clouds were not sent, for others of their voxels had been taken.
+  void left_out(const Traffic& traffic, std::size_t points);
   /// What its clouds were taken for.
   void clouds_are(const Traffic& traffic, lanes::Clouds clouds);
   /// The Command Post took a message of `bytes` that stands for `updates` accepted ones.

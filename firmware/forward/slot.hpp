@@ -17,8 +17,8 @@ class Slot {
   explicit Slot(std::uint64_t most) { allow(most); }
   void allow(std::uint64_t most);
 
-  /// `map` was packed to so many bytes.
-  void packed(const icd::MapUpdate& map, std::size_t bytes);
+  /// These points of a cloud were packed to so many bytes.
+  void packed(const icd::MapData& points, std::size_t bytes);
   /// So many bytes left, of which the last were held back until then.
   void left(std::size_t bytes, const uplink::Sent& sent, loop::Instant last_byte_not_before);
 

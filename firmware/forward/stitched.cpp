@@ -18,12 +18,15 @@ bool is_to_be_stitched(const lanes::WaitingMap& waiting) {
 
 }  // namespace
 
-Packed packed(const lanes::WaitingMap& waiting) {
+Packed packed(const lanes::WaitingMap& waiting, LeavingOut leaving_out) {
   auto whole = whole_of(waiting);
   if (!whole) return {};
-  icd::MapUpdate map = pack::pack(std::move(*whole));
   Packed packed;
+  packed.left_out = leaving_out(*whole);
+  if (packed.left_out.is_all) return packed;
+  icd::MapUpdate map = pack::pack(std::move(*whole));
   packed.body = codec::write_map_update(map);
+  if (packed.left_out.points > 0) packed.left_out.sent = map.data;
   if (is_to_be_stitched(waiting)) packed.stitched = std::move(map.data);
   return packed;
 }

@@ -1,5 +1,6 @@
 #pragma once
 
+#include "forward/taken_points.hpp"
 #include "icd/chunked_bytes.hpp"
 #include "icd/status.hpp"
 #include "lanes/map_lane.hpp"
@@ -8,12 +9,13 @@ namespace adit::forward {
 
 /// A map in the form that goes upstream.
 struct Packed {
-  icd::ChunkedBytes body;  // empty: what it would be stitched of is damaged
+  icd::ChunkedBytes body;  // empty: all of it is left out, or what it would be stitched of is damaged
   icd::MapData stitched;   // its cells, where they were in its parts alone
+  LeftOut left_out;
 };
 
 /// CPU-bound in the size of the map: meant for a worker.
-Packed packed(const lanes::WaitingMap& waiting);
+Packed packed(const lanes::WaitingMap& waiting, LeavingOut leaving_out = {});
 
 /// The map with its cells, which are put together of its parts where they are there alone. The error says
 /// what is wrong with the data of one.

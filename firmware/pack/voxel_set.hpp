@@ -10,9 +10,9 @@ namespace adit::pack {
 /// Voxels, each block of them in a place of its own: open addressing, at most three quarters full.
 class VoxelSet {
  public:
-  /// Whether it has all that are meant. Requires a block.
+  /// Whether it has all that are meant.
   bool has(const VoxelBlock& block) const;
-  /// Where there is no memory, it is as it was. Requires a block.
+  /// Where there is no memory, it is as it was.
   void add(const VoxelBlock& block);
 
   /// Of memory; and what that is once another block has come.

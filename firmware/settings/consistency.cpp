@@ -105,6 +105,22 @@ void check_robots(const std::vector<Robot>& robots, std::vector<Error>& errors) 
   }
 }
 
+/// Of whole clouds the newest counts alone: what is left out of it would be there no more.
+void check_voxels(const std::vector<Robot>& robots, std::vector<Error>& errors) {
+  constexpr double kSmallest = 0.01;
+  for (std::size_t i = 0; i < robots.size(); ++i) {
+    const std::string path = icd::sentence("robots[", i, "].voxel_metres");
+    const double edge = robots[i].voxel_metres;
+    if (edge > 0 && edge < kSmallest) {
+      errors.push_back({path, icd::sentence("expected 0, or 0.01 to 10, got ", edge)});
+    } else if (edge > 0 && robots[i].clouds == lanes::Clouds::Whole) {
+      errors.push_back({path, icd::sentence("robots[", i,
+                                            "].clouds is \"whole\", so that the newest counts "
+                                            "alone: nothing can be left out of it")});
+    }
+  }
+}
+
 void check_courses(const Settings& settings, std::vector<Error>& errors) {
   const std::vector<Course>& courses = settings.courses;
   for (std::size_t i = 0; i < courses.size(); ++i) {
@@ -152,6 +168,7 @@ std::vector<Error> contradictions(const Settings& settings) {
   check_listen(settings, errors);
   check_panel(settings.panel, errors);
   check_robots(settings.robots, errors);
+  check_voxels(settings.robots, errors);
   check_courses(settings, errors);
   return errors;
 }

@@ -93,6 +93,12 @@ const Key kKeys[] = {
      "replaces those that wait. parts: each arrives. auto: the newer one replaces the one before it where it "
      "has each of its points.",
      choice<MEMBER(robots.back().clouds)>(lanes::kCloudsWords)},
+    {"robots[].voxel_metres",
+     "Leaves out points of that robot's clouds where the Command Post has taken one of the same voxel, a "
+     "cube "
+     "of so many metres (at least 0.01); 0: each is sent. Only for a Command Post that adds each cloud to "
+     "those before it. Not for clouds that are whole.",
+     real<MEMBER(robots.back().voxel_metres)>(0, 10)},
 
     {"network.confirm_within_ms",
      "How long a change of the network waits to be confirmed from the new address; then it takes itself "

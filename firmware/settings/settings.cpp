@@ -78,6 +78,14 @@ std::map<icd::RobotName, lanes::Clouds> clouds_of(const std::vector<Robot>& robo
   return clouds;
 }
 
+std::map<icd::RobotName, double> voxels_of(const std::vector<Robot>& robots) {
+  std::map<icd::RobotName, double> voxels;
+  for (const Robot& robot : robots) {
+    if (robot.voxel_metres > 0) voxels.emplace(name_of(robot), robot.voxel_metres);
+  }
+  return voxels;
+}
+
 std::string sentence_of(const std::vector<Error>& errors) {
   std::string sentences;
   for (const Error& error : errors) sentences += (sentences.empty() ? "" : "; ") + error.sentence();

@@ -86,6 +86,7 @@ struct Robot {
   std::string name;   // icd::RobotName
   std::string alias;  // what it calls itself, goes on under `name`; "": nothing else
   lanes::Clouds clouds = lanes::Clouds::Auto;
+  double voxel_metres = 0;  // of its clouds one point in each voxel of that edge is enough; 0: all are sent
 };
 
 /// One of the Command Posts of an event: its endpoints, switched by name.
@@ -138,6 +139,8 @@ Settings in_use(Settings settings);
 
 /// What the clouds of each robot that is named are; names as parse() takes them.
 std::map<icd::RobotName, lanes::Clouds> clouds_of(const std::vector<Robot>& robots);
+/// The voxel_metres of each robot that has any; names as parse() takes them.
+std::map<icd::RobotName, double> voxels_of(const std::vector<Robot>& robots);
 
 /// "a: what; b: what"
 std::string sentence_of(const std::vector<Error>& errors);

@@ -2,8 +2,6 @@
 
 #include <gtest/gtest.h>
 
-#include "spool/messages.hpp"
-
 namespace adit::forward {
 namespace {
 
@@ -16,10 +14,8 @@ uplink::Sent sent_in(milliseconds took) {
   return {.first = kBegin, .last = kBegin + took};
 }
 
-icd::MapUpdate raw(std::size_t bytes) {
-  icd::MapUpdate map = spool::cloud(1);
-  map.data.raw_size = bytes;
-  return map;
+icd::MapData raw(std::size_t bytes) {
+  return {{}, icd::Compression::None, bytes};
 }
 
 TEST(Slot, HoldsAtFirstWhatMapsMayUseOfTheLink) {

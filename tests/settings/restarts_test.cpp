@@ -56,6 +56,7 @@ const RestartsCase kRestartsCases[] = {
     {"robots[].name", [](Settings& s) { s.robots.front().name = "r9"; }, kNothing},
     {"robots[].alias", [](Settings& s) { s.robots.front().alias = "other"; }, kNothing},
     {"robots[].clouds", [](Settings& s) { s.robots.front().clouds = lanes::Clouds::Whole; }, kNothing},
+    {"robots[].voxel_metres", [](Settings& s) { s.robots.front().voxel_metres = 0.1; }, kNothing},
     {"network.confirm_within_ms", [](Settings& s) { s.network.confirm_within = 9s; }, kNothing},
     {"network.allow_overlap", [](Settings& s) { s.network.allow_overlap = true; }, kNothing},
     {"reports.answer_within_ms", [](Settings& s) { s.reports.answer_within = 9s; }, kNothing},

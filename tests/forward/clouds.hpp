@@ -1,0 +1,38 @@
+#pragma once
+
+#include <cstdint>
+#include <cstring>
+#include <span>
+#include <vector>
+
+#include "codec/map_pieces.hpp"
+#include "icd/map_update.hpp"
+
+namespace adit::forward {
+
+/// A cloud with points on the x axis; "": of no robot.
+inline icd::MapUpdate cloud_along_x(const char* robot, const std::vector<float>& xs) {
+  icd::PointCloud2 cloud;
+  cloud.fields = {{"x", 0, icd::Datatype::Float32, 1},
+                  {"y", 4, icd::Datatype::Float32, 1},
+                  {"z", 8, icd::Datatype::Float32, 1}};
+  cloud.point_step = 12;
+  std::vector<std::uint8_t> bytes(12 * xs.size());
+  for (std::size_t i = 0; i < xs.size(); ++i) std::memcpy(bytes.data() + 12 * i, &xs[i], sizeof xs[i]);
+  return {
+      icd::RobotName::parse(robot), cloud, {icd::ChunkedBytes{bytes}, icd::Compression::None, bytes.size()}};
+}
+
+/// Of such a cloud's data, packed or not.
+inline std::vector<float> xs_of(const icd::MapData& data) {
+  std::vector<std::uint8_t> bytes;
+  (void)codec::for_each_piece(data, [&](std::span<const std::uint8_t> piece) -> icd::Checked<void> {
+    bytes.insert(bytes.end(), piece.begin(), piece.end());
+    return {};
+  });
+  std::vector<float> xs(bytes.size() / 12);
+  for (std::size_t i = 0; i < xs.size(); ++i) std::memcpy(&xs[i], bytes.data() + 12 * i, sizeof xs[i]);
+  return xs;
+}
+
+}  // namespace adit::forward

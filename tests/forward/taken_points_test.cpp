@@ -1,0 +1,90 @@
+// Points of voxels that the Command Post has taken: what a worker leaves out, and when it goes all the same.
+#include "forward/taken_points.hpp"
+
+#include <gmock/gmock.h>
+
+#include <limits>
+
+#include "codec/gzip.hpp"
+#include "forward/clouds.hpp"
+#include "forward/stitched.hpp"
+
+namespace adit::forward {
+namespace {
+
+using testing::ElementsAre;
+using testing::IsEmpty;
+
+class TakenPointsTest : public testing::Test {
+ protected:
+  TakenPointsTest() { points_.edges_are({{*icd::RobotName::parse("r1"), 0.5}}); }
+
+  Packed pack(const icd::MapUpdate& map) {
+    const lanes::WaitingMap waiting{.map = map, .accepted = {}, .updates = {1}};
+    return packed(waiting, points_.leaving_out(map));
+  }
+  Packed pack(const std::vector<float>& xs) { return pack(cloud_along_x("r1", xs)); }
+  void take(const std::vector<float>& xs) { points_.taken(cloud_along_x("r1", xs), pack(xs).left_out); }
+
+  TakenPoints points_;
+};
+
+TEST_F(TakenPointsTest, AreLeftOutOfTheNextCloud) {
+  take({0.1F, 1.1F});
+  const Packed next = pack({0.4F, 7, 1.4F});
+  EXPECT_EQ(next.left_out.points, 2);
+  EXPECT_THAT(xs_of(next.left_out.sent), ElementsAre(7));
+  EXPECT_FALSE(next.body.empty());
+  EXPECT_FALSE(next.left_out.is_all);
+}
+
+TEST_F(TakenPointsTest, AreNotThoseThatWereOnlyPacked) {
+  (void)pack({0.1F});
+  EXPECT_EQ(pack({0.1F}).left_out.points, 0);
+}
+
+TEST_F(TakenPointsTest, CanBeAllThatACloudHasThatIsFinite) {
+  take({0.1F});
+  const Packed next = pack({0.1F, std::numeric_limits<float>::quiet_NaN()});
+  EXPECT_TRUE(next.left_out.is_all);
+  EXPECT_TRUE(next.body.empty());
+}
+
+TEST_F(TakenPointsTest, AreOfTheRobotsThatHaveAnEdge) {
+  const icd::MapUpdate other = cloud_along_x("r2", {0.1F}), merged = cloud_along_x("", {0.1F});
+  for (const icd::MapUpdate& map : {other, merged}) {
+    points_.taken(map, pack(map).left_out);
+    EXPECT_EQ(pack(map).left_out.points, 0);
+  }
+}
+
+TEST_F(TakenPointsTest, AreLeftAloneWhereTheyArePacked) {
+  take({0.1F});
+  icd::MapUpdate map = cloud_along_x("r1", {0.1F});
+  map.data = {codec::gzip(map.data.bytes, codec::GzipStrategy::Points), icd::Compression::Gzip, 12};
+  EXPECT_EQ(pack(map).left_out.points, 0);
+}
+
+TEST_F(TakenPointsTest, DoNotHoldInTheNextEpoch) {
+  take({0.1F});
+  const Packed with = pack({0.1F, 1}), without = pack({5, 6});
+  EXPECT_TRUE(points_.hold(with.left_out));
+  points_.forget();
+  EXPECT_FALSE(points_.hold(with.left_out));
+  EXPECT_TRUE(points_.hold(without.left_out)) << "nothing was left out of it";
+  points_.taken(cloud_along_x("r1", {5, 6}), without.left_out);
+  EXPECT_EQ(pack({5, 6, 0.1F}).left_out.points, 0) << "it was another Command Post that took them";
+}
+
+TEST_F(TakenPointsTest, AreForgottenWhereTheSettingIsAnother) {
+  take({0.1F});
+  points_.edges_are({{*icd::RobotName::parse("r1"), 0.5}});
+  EXPECT_EQ(pack({0.1F}).left_out.points, 1) << "the same";
+  points_.edges_are({});
+  EXPECT_EQ(pack({0.1F}).left_out.points, 0);
+  points_.edges_are({{*icd::RobotName::parse("r1"), 0.5}});
+  EXPECT_EQ(pack({0.1F}).left_out.points, 0);
+}
+
+}  // namespace
+}  // namespace adit::forward

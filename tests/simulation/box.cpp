@@ -54,8 +54,22 @@ Queues queues(Random random) {
   return queues;
 }
 
+/// In some worlds points of one voxel are left out of the first robots' clouds; so small are voxels that each
+/// point of another serial has its own.
+std::string robots(Random random) {
+  constexpr int kNamed = 4;
+  if (!random.chance(0.3)) return "";
+  std::string list;
+  for (int i = 1; i <= kNamed; ++i) {
+    if (!list.empty()) list += ", ";
+    list += R"({"name": "R)" + std::to_string(i) + R"(", "voxel_metres": 0.01})";
+  }
+  return R"(, "robots": [)" + list + "]";
+}
+
 /// Nobody connects to the socket in which the team's server listens: the clients come in by the door.
-std::string first_settings(const std::string& queues, const std::string& interface) {
+std::string first_settings(const std::string& queues, const std::string& robots,
+                           const std::string& interface) {
   return R"({"version": 1, "command_post": {"scoring": {"address": "10.100.1.200", "port": )" +
          std::to_string(CommandPost::kScoring) + R"(}, "mapping": {"address": "10.100.1.201", "port": )" +
          std::to_string(CommandPost::kMapping) + R"(}, "interface": ")" + Box::kInterface +
@@ -63,7 +77,7 @@ std::string first_settings(const std::string& queues, const std::string& interfa
          std::to_string(CommandPost::kScoring) + R"(}, "mapping": {"address": "10.100.2.201", "port": )" +
          std::to_string(CommandPost::kMapping) +
          R"(}}], "team": {"listen": [{"address": "127.0.0.1", "port": 0}], "connections": 64, "connections_per_address": 8, "interface": ")" +
-         interface + R"("}, "queues": {)" + queues + "}}";
+         interface + R"("}, "queues": {)" + queues + "}" + robots + "}";
 }
 
 /// With its mode, and what is a hole in it.
@@ -114,7 +128,8 @@ Box::Box(World& world) : world_(world), random_(world.random("box")) {
   world.door().belongs_to(interface);
   const auto [queues, most_map_bytes] = simulation::queues(world.random("settings"));
   most_map_bytes_ = most_map_bytes;
-  write(folder_ / "settings.json", first_settings(queues, interface));
+  write(folder_ / "settings.json",
+        first_settings(queues, simulation::robots(world.random("voxels")), interface));
   world_.disk().mount(folder_);
 }
 

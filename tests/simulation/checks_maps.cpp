@@ -7,12 +7,15 @@
 #include "icd/sentence.hpp"
 #include "simulation/asked.hpp"
 #include "simulation/checks.hpp"
+#include "simulation/courses.hpp"
 #include "simulation/judge.hpp"
 #include "simulation/messages.hpp"
 #include "simulation/upstream_view.hpp"
 
 namespace adit::simulation {
 namespace {
+
+constexpr double kLongestSending = 60;  // seconds
 
 /// A cloud that was posted, and the events by which it was taken.
 struct Posted {
@@ -73,6 +76,15 @@ bool may_be_double(const std::vector<Event>& events, std::size_t first, std::siz
   return status != 200;
 }
 
+/// Between the two a run, a setting or a course began, of which what was left out of the first must go.
+bool may_go_whole(const std::vector<Event>& events, std::size_t first, std::size_t second) {
+  const auto at = [&](std::size_t place) { return events.begin() + static_cast<std::ptrdiff_t>(place); };
+  return std::any_of(at(0), at(second), [&](const Event& event) {
+    const bool begins = event.kind == Kind::NewRun || event.kind == Kind::Saved || event.what == kCourse;
+    return begins && event.at > events[first].at - kLongestSending;
+  });
+}
+
 void check_clouds(const Evidence& evidence, const Name& name, const std::vector<Posted>& all,
                   Broken& broken) {
   for (const Posted& cloud : all) {
@@ -82,6 +94,8 @@ void check_clouds(const Evidence& evidence, const Name& name, const std::vector<
     }
     for (std::size_t i = 1; i < cloud.taken.size() && !cloud.again; ++i) {
       if (may_be_double(evidence.events, cloud.taken[i - 1], cloud.taken[i])) continue;
+      const bool had_more = cloud.asked->items.size() > 1;
+      if (had_more && may_go_whole(evidence.events, cloud.taken[i - 1], cloud.taken[i])) continue;
       broken.push_back(icd::sentence("CloudArrived: ", cloud.item->serial, " of '", name,
                                      "' was taken again at ", evidence.events[cloud.taken[i]].at));
     }

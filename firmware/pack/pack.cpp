@@ -6,7 +6,6 @@
 #include <string_view>
 #include <utility>
 #include <variant>
-#include <vector>
 
 #include "codec/gzip.hpp"
 #include "pack/points.hpp"
@@ -62,14 +61,7 @@ icd::MapData without_invalid_points(const icd::PointCloud2& cloud, icd::MapData 
   bool all_are = true;
   for_each_point(data.bytes, cloud.point_step, [&](auto point) { return all_are = is_finite(point); });
   if (all_are) return data;
-
-  icd::MapData kept;
-  for_each_point(data.bytes, cloud.point_step, [&](auto point) {
-    if (is_finite(point)) kept.bytes.append(point);
-    return true;
-  });
-  kept.raw_size = kept.bytes.size();
-  return kept;
+  return those_that_stay(data, cloud.point_step, is_finite);
 }
 
 icd::MapUpdate pack(icd::MapUpdate map) {

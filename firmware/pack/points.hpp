@@ -6,7 +6,7 @@
 #include <span>
 #include <vector>
 
-#include "icd/chunked_bytes.hpp"
+#include "icd/map_update.hpp"
 
 namespace adit::pack {
 
@@ -30,6 +30,18 @@ void for_each_point(const icd::ChunkedBytes& bytes, std::size_t point_step, Visi
     }
     cut.assign(rest.begin(), rest.end());
   }
+}
+
+/// The points of `data`, not compressed, for which `stays` says so, asked in order: byte for byte.
+template <class Stays>
+icd::MapData those_that_stay(const icd::MapData& data, std::size_t point_step, Stays stays) {
+  icd::MapData kept;
+  for_each_point(data.bytes, point_step, [&](std::span<const std::uint8_t> point) {
+    if (stays(point)) kept.bytes.append(point);
+    return true;
+  });
+  kept.raw_size = kept.bytes.size();
+  return kept;
 }
 
 }  // namespace adit::pack

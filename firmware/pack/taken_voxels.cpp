@@ -15,18 +15,6 @@ void note(const VoxelBlock& found, std::vector<VoxelBlock>& all) {
   all.back().voxels |= found.voxels;
 }
 
-icd::MapData those_that_stay(const icd::MapData& data, std::size_t point_step,
-                             const std::vector<bool>& stays) {
-  icd::MapData kept;
-  auto next = stays.begin();
-  for_each_point(data.bytes, point_step, [&](auto point) {
-    if (*next++) kept.bytes.append(point);
-    return true;
-  });
-  kept.raw_size = kept.bytes.size();
-  return kept;
-}
-
 }  // namespace
 
 TakenVoxels::Rest TakenVoxels::leave_out(const icd::RobotName& robot, const icd::PointCloud2& cloud,
@@ -45,7 +33,8 @@ TakenVoxels::Rest TakenVoxels::leave_out(const icd::RobotName& robot, const icd:
     return true;
   });
   rest.left_out = static_cast<std::size_t>(std::ranges::count(stays, false));
-  rest.data = rest.left_out == 0 ? data : those_that_stay(data, cloud.point_step, stays);
+  const auto next_stays = [next = stays.begin()](auto) mutable { return bool{*next++}; };
+  rest.data = rest.left_out == 0 ? data : those_that_stay(data, cloud.point_step, next_stays);
   return rest;
 }
 

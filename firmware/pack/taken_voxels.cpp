@@ -24,11 +24,13 @@ TakenVoxels::Rest TakenVoxels::leave_out(const icd::RobotName& robot, const icd:
   const VoxelSet none, &taken = knows ? found->second.voxels : none;
   const Voxels voxels{cloud, edge};
   Rest rest;
+  VoxelBlock block;  // of the point before, with all that was taken of it
   std::vector<bool> stays;
   stays.reserve(data.bytes.size() / cloud.point_step);
   for_each_point(data.bytes, cloud.point_step, [&](auto point) {
     const VoxelBlock at = voxels.of(point);
-    stays.push_back(at.place == 0 || !taken.has(at));
+    if (at.place != block.place) block = {at.place, at.place == 0 ? 0 : taken.voxels_at(at.place)};
+    stays.push_back((at.voxels & block.voxels) == 0);
     if (stays.back()) note(at, rest.voxels);
     return true;
   });

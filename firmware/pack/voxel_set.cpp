@@ -18,8 +18,8 @@ std::size_t VoxelSet::place_of(std::uint64_t place) const {
   return at;
 }
 
-bool VoxelSet::has(const VoxelBlock& block) const {
-  return !places_.empty() && (block.voxels & ~places_[place_of(block.place)].voxels) == 0;
+std::uint64_t VoxelSet::voxels_at(std::uint64_t place) const {
+  return places_.empty() ? 0 : places_[place_of(place)].voxels;
 }
 
 void VoxelSet::add(const VoxelBlock& block) {

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cstddef>
+#include <cstdint>
 #include <vector>
 
 #include "pack/voxels.hpp"
@@ -10,8 +11,8 @@ namespace adit::pack {
 /// Voxels, each block of them in a place of its own: open addressing, at most three quarters full.
 class VoxelSet {
  public:
-  /// Whether it has all that are meant.
-  bool has(const VoxelBlock& block) const;
+  /// Those that it has of a block.
+  std::uint64_t voxels_at(std::uint64_t place) const;
   /// Where there is no memory, it is as it was.
   void add(const VoxelBlock& block);
 

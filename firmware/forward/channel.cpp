@@ -1,5 +1,6 @@
 #include "forward/channel.hpp"
 
+#include <algorithm>
 #include <utility>
 
 #include "dispatch/mapping_verdict.hpp"
@@ -33,6 +34,7 @@ bool comes_from_another(const uplink::Outcome& outcome) {
 Channel::Channel(loop::Loop& loop, const char* name, uplink::Endpoint endpoint,
                  std::optional<icd::BearerToken> token, std::chrono::milliseconds answer_within)
     : loop_(loop), name_(name) {
+  under_way_.reserve(2);
   take({std::move(endpoint), std::move(token), answer_within});
 }
 
@@ -49,7 +51,8 @@ void Channel::give_up() {
   if (!next_ || !busy() || !leads_elsewhere(*next_)) return;
   finished_bytes_ += connection_->sent_bytes();
   connection_.reset();
-  ended(uplink::InDoubt{.why = "it was under way to " + address_ + ", where the settings lead no more"});
+  const uplink::InDoubt doubt{.why = "it was under way to " + address_ + ", where the settings lead no more"};
+  for (const auto& request : std::vector(under_way_)) ended(request, doubt);
 }
 
 bool Channel::turns() {
@@ -77,9 +80,9 @@ void Channel::take(Way way) {
 
 void Channel::send(icd::Uri uri, std::string_view content_type, icd::ChunkedBytes body,
                    std::function<void(uplink::Outcome)> done, loop::Instant last_byte_not_before) {
-  icd::require(has_token() && !busy());
+  icd::require(has_token() && (!busy() || can_go_ahead()));
   finished_bytes_ += connection_->sent_bytes();
-  sent_at_ = loop_.now();
+  const auto under_way = std::make_shared<UnderWay>(loop_.now(), std::move(done));
   connection_->send({.method = std::string(icd::method_of(uri)),
                      .target = std::string(icd::path_of(uri)),
                      .content_type = std::string(content_type),
@@ -87,16 +90,26 @@ void Channel::send(icd::Uri uri, std::string_view content_type, icd::ChunkedByte
                      .answer_within = answer_within_,
                      .longest_answer = longest_answer_to(uri),
                      .last_byte_not_before = last_byte_not_before},
-                    [this](uplink::Outcome outcome) { ended(std::move(outcome)); });
-  done_ = std::move(done);
+                    [this, under_way](uplink::Outcome outcome) { ended(under_way, std::move(outcome)); });
+  under_way_.push_back(under_way);  // has room
 }
 
-void Channel::ended(uplink::Outcome outcome) {
-  loop::guarded("noting an answer", [&] { note(outcome); });
-  std::exchange(done_, nullptr)(std::move(outcome));
+void Channel::get_ready() {
+  if (!next_ && connection_) connection_->get_ready();
 }
 
-void Channel::note(const uplink::Outcome& outcome) {
+std::optional<uplink::Sent> Channel::has_arrived() const {
+  return connection_ ? connection_->has_arrived() : std::nullopt;
+}
+
+void Channel::ended(const std::shared_ptr<UnderWay>& request, uplink::Outcome outcome) {
+  loop::guarded("noting an answer", [&] { note(*request, outcome); });
+  std::erase(under_way_, request);
+  const auto done = std::move(request->done);
+  done(std::move(outcome));
+}
+
+void Channel::note(const UnderWay& request, const uplink::Outcome& outcome) {
   heard_ = loop_.now();
   last_status_ = 0;
   foreign_now_ = comes_from_another(outcome);
@@ -105,7 +118,7 @@ void Channel::note(const uplink::Outcome& outcome) {
   if (answered != nullptr) {
     last_status_ = answered->status;
     if (last_status_ == 429) ++throttled_;
-    answer_ms_ = std::chrono::duration<double, std::milli>(heard_ - sent_at_).count();
+    answer_ms_ = std::chrono::duration<double, std::milli>(heard_ - request.sent_at).count();
   }
   const bool is_well = answered != nullptr && !foreign_now_ && last_status_ < 400;
   trouble_ = is_well ? "" : forward::sentence_of(outcome);

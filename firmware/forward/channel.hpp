@@ -1,27 +1,30 @@
 #pragma once
 
 #include <functional>
+#include <memory>
 #include <optional>
 #include <string>
+#include <vector>
 
 #include "icd/uri.hpp"
 #include "loop/loop.hpp"
 #include "settings/settings.hpp"
-#include "uplink/connection.hpp"
+#include "uplink/connections.hpp"
 
 namespace adit::forward {
 
-/// One connection to the Command Post, and its state. Without a token it is not opened.
+/// The way to an endpoint of the Command Post, and its state: one request at a time, or a second one that
+/// goes ahead (uplink::Connections). Without a token it is not opened.
 class Channel {
  public:
   /// `name`: of the endpoint, "scoring" or "mapping".
   Channel(loop::Loop& loop, const char* name, uplink::Endpoint endpoint,
           std::optional<icd::BearerToken> token, std::chrono::milliseconds answer_within);
 
-  /// Leads to `endpoint`, by a new connection, once the request under way has ended.
+  /// Leads to `endpoint`, by a new connection, once no request is under way.
   void lead_to(uplink::Endpoint endpoint, std::optional<icd::BearerToken> token,
                std::chrono::milliseconds answer_within);
-  /// If that is another place, ends the request under way now, in doubt: for messages that may be sent again.
+  /// If that is another place, ends what is under way now, in doubt: for messages that may be sent again.
   void give_up();
   /// To be asked before each request. True: from this call on it leads to another address, or has another
   /// token; what was heard before came from the other place. Another way to the same place gives false.
@@ -30,11 +33,17 @@ class Channel {
   bool has_token() const { return connection_.has_value(); }
   /// Where it leads: "10.100.1.200:8000"
   const std::string& address() const { return address_; }
-  /// Requires has_token() and !busy(). `content_type` is empty without a body; `last_byte_not_before` as in
-  /// uplink::Request.
+  /// Requires has_token(), and !busy() or can_go_ahead(). `content_type` is empty without a body;
+  /// `last_byte_not_before` as in uplink::Request.
   void send(icd::Uri uri, std::string_view content_type, icd::ChunkedBytes body,
             std::function<void(uplink::Outcome)> done, loop::Instant last_byte_not_before = {});
-  bool busy() const { return connection_ && connection_->busy(); }
+  bool busy() const { return !under_way_.empty(); }
+  /// Gets ready to send a request ahead of the answer to the only one that is under way.
+  void get_ready();
+  /// It is ready to. Not where it is to lead elsewhere: then what is under way is the last.
+  bool can_go_ahead() const { return !next_ && connection_ && connection_->is_ready(); }
+  /// uplink::Connections::has_arrived()
+  std::optional<uplink::Sent> has_arrived() const;
   bool connected() const { return connection_ && connection_->connected(); }
   /// uplink::Connection::hurry()
   void hurry() {
@@ -58,7 +67,7 @@ class Channel {
   loop::Instant heard() const { return heard_; }
   /// uplink::Connection::delivers(); 0 where there is no connection.
   std::uint64_t delivers() const { return connection_ ? connection_->delivers() : 0; }
-  /// Bytes of the request under way, or of the last one, that the kernel has taken.
+  /// Bytes of the request that was sent last that the kernel has taken.
   std::size_t sent_of_it() const { return connection_ ? connection_->sent_bytes() : 0; }
   /// All bytes of bodies that were handed to the kernel, those under way included.
   std::uint64_t bytes_sent() const { return finished_bytes_ + (connection_ ? connection_->sent_bytes() : 0); }
@@ -69,21 +78,25 @@ class Channel {
     std::optional<icd::BearerToken> token;
     std::chrono::milliseconds answer_within;
   };
+  struct UnderWay {
+    loop::Instant sent_at;
+    std::function<void(uplink::Outcome)> done;
+  };
   void take(Way way);
   bool leads_elsewhere(const Way& way) const;
-  void ended(uplink::Outcome outcome);
-  void note(const uplink::Outcome& outcome);
+  void ended(const std::shared_ptr<UnderWay>& request, uplink::Outcome outcome);
+  void note(const UnderWay& request, const uplink::Outcome& outcome);
 
   loop::Loop& loop_;
   const char* name_;
   std::string address_;
   std::optional<icd::BearerToken> token_;
-  std::optional<uplink::Connection> connection_;
+  std::optional<uplink::Connections> connection_;
   std::chrono::milliseconds answer_within_{};
   bool keeps_warm_ = false;
   std::optional<Way> next_;
-  std::function<void(uplink::Outcome)> done_;  // for the request under way
-  loop::Instant sent_at_{}, heard_{};
+  std::vector<std::shared_ptr<UnderWay>> under_way_;  // at most two; the first was sent first
+  loop::Instant heard_{};
   std::uint64_t finished_bytes_ = 0, throttled_ = 0, foreign_ = 0;
   bool foreign_now_ = false;
   int last_status_ = 0;

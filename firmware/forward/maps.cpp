@@ -99,6 +99,7 @@ void Maps::pump() {
   if (!stopping_ && channel_.turns()) {
     pace_.link_is_back();
     blame_ = {};
+    ahead_ = {};
   }
   if (stopping_ || preparing_ || !channel_.has_token()) return;
   if (loop::guarded("sending a map", [this] { go_on(); })) return;
@@ -109,12 +110,13 @@ void Maps::pump() {
 void Maps::go_on() {
   forget({});
   const loop::Instant now = loop_.now();
-  std::shared_ptr<Prepared>& next = channel_.busy() ? following_ : prepared_;
+  Place& next = channel_.busy() ? following_ : prepared_;
+  if (next && next->is_under_way) return;
   if (next && !points_.hold(next->packed.left_out)) next->packed = {};
   if (next && next->packed.body.empty()) return pack(next);
-  if (next && channel_.busy()) return;
+  if (next && channel_.busy()) return go_ahead(now);
   if (next) {
-    if (now >= starts()) return send();
+    if (now >= starts()) return send(next);
     wake_.call_at(starts());
     return;
   }
@@ -135,7 +137,7 @@ loop::Instant Maps::starts() const {
 /// packed.
 loop::Instant Maps::begins_to_pack(loop::Instant now) const {
   loop::Instant free = now;
-  if (channel_.busy()) {
+  if (channel_.busy() && !prepared_->arrived) {
     if (!channel_.connected()) return now + kLookAtConnecting;
     const std::size_t size = prepared_->packed.body.size();
     free += slot_.transfer(size - std::min(size, channel_.sent_of_it()));
@@ -145,7 +147,7 @@ loop::Instant Maps::begins_to_pack(loop::Instant now) const {
   return begin <= now ? begin : std::max(begin, now + kLookAtSending);
 }
 
-void Maps::prepare(std::shared_ptr<Prepared>& place) {
+void Maps::prepare(Place& place) {
   auto prepared = std::make_shared<Prepared>();
   slot_.link_delivers(channel_.delivers());
   lane_.merge_at_most(std::min(settings_.queues.merge_bytes, slot_.points_within(pace_.spacing())));
@@ -157,7 +159,7 @@ void Maps::prepare(std::shared_ptr<Prepared>& place) {
 }
 
 /// Where it throws, `prepared` waits to be packed.
-void Maps::pack(const std::shared_ptr<Prepared>& prepared) {
+void Maps::pack(const Place& prepared) {
   icd::Header& header = prepared->waiting.map.header();
   header.stamp = stamps_.next(header.stamp.value_or(loop_.stamp_now()));
   journal_.stamped(icd::Uri::MapUpdate, *header.stamp);
@@ -176,18 +178,18 @@ void Maps::pack(const std::shared_ptr<Prepared>& prepared) {
 }
 
 /// Null where it went back into the lane meanwhile.
-std::shared_ptr<Maps::Prepared>* Maps::place_of(const std::shared_ptr<Prepared>& prepared) {
+Maps::Place* Maps::place_of(const Place& prepared) {
   if (prepared == prepared_) return &prepared_;
   return prepared == following_ ? &following_ : nullptr;
 }
 
 /// What cannot be stitched goes as it came, each part by itself.
-void Maps::is_packed(const std::shared_ptr<Prepared>& prepared) {
+void Maps::is_packed(const Place& prepared) {
   const icd::MapUpdate& map = prepared->waiting.map;
   const LeftOut& left_out = prepared->packed.left_out;
   if (!map.is_grid())
     slot_.packed(left_out.points > 0 ? left_out.sent : map.data, prepared->packed.body.size());
-  std::shared_ptr<Prepared>* const place = place_of(prepared);
+  Place* const place = place_of(prepared);
   if (place == nullptr) return;
   if (left_out.is_all) return is_there(*place);
   if (!prepared->packed.body.empty()) {
@@ -200,11 +202,11 @@ void Maps::is_packed(const std::shared_ptr<Prepared>& prepared) {
   place->reset();
 }
 
-void Maps::not_packed(const std::shared_ptr<Prepared>& prepared) {
+void Maps::not_packed(const Place& prepared) {
   preparing_ = false;
   pace_.failed(loop_.now());
   prepared->packed = {};
-  if (std::shared_ptr<Prepared>* const place = place_of(prepared)) {
+  if (Place* const place = place_of(prepared)) {
     loop::guarded("putting a map back", [&] {
       record_.not_taken(traffic_of(prepared->waiting.map), NotTaken::Failed, 0, "it could not be packed");
       put_back(*place);
@@ -213,34 +215,57 @@ void Maps::not_packed(const std::shared_ptr<Prepared>& prepared) {
   wake_.call_at(pace_.ready());
 }
 
-void Maps::send() {
-  last_byte_not_before_ = pace_.earliest().last;
-  pace_.sent(loop_.now());
-  channel_.send(
-      icd::Uri::MapUpdate, codec::kCbor, prepared_->packed.body,
-      [this](const uplink::Outcome& outcome) { answered(outcome); }, last_byte_not_before_);
+void Maps::send(const Place& prepared) {
+  const bool ahead = channel_.busy();
+  const bool is_sent = loop::guarded("giving a map to its connection", [&] {
+    prepared->last_byte_not_before = pace_.earliest().last;
+    pace_.sent(loop_.now(), ahead);
+    channel_.send(
+        icd::Uri::MapUpdate, codec::kCbor, prepared->packed.body,
+        [this, prepared](const uplink::Outcome& outcome) { answered(prepared, outcome); },
+        prepared->last_byte_not_before);
+  });
+  if (!is_sent) {
+    pace_.failed(uplink::NeverSent{}, loop_.now());
+    return wake_.call_at(pace_.ready());
+  }
+  prepared->is_under_way = true;
+  prepared->went_ahead = ahead;
+  prepared->arrived.reset();
   wake_.call_at(loop_.now());  // for the one that follows
 }
 
-/// An answer that cannot be dealt with is as good as none: the map is sent again, as it is.
-void Maps::answered(const uplink::Outcome& outcome) {
-  if (!loop::guarded("the answer to a map", [&] { judge(outcome); })) pace_.lost(loop_.now());
+/// An answer that cannot be dealt with is as good as none: the map is sent again, as it is. Where a later one
+/// was sent, it is packed again first, for its stamp.
+void Maps::answered(const Place& sent, const uplink::Outcome& outcome) {
+  sent->is_under_way = false;
+  if (!loop::guarded("the answer to a map", [&] { judge(sent, outcome); })) {
+    pace_.lost(loop_.now());
+    ahead_.failed(false);
+    if (sent == prepared_ && following_ && following_->is_under_way) sent->packed = {};
+  }
   pump();
 }
 
-void Maps::judge(const uplink::Outcome& outcome) {
-  if (const auto* answer = std::get_if<uplink::Answered>(&outcome)) return verdict(*answer);
+void Maps::judge(const Place& sent, const uplink::Outcome& outcome) {
+  if (const auto* answer = std::get_if<uplink::Answered>(&outcome)) return verdict(sent, *answer);
   pace_.failed(outcome, loop_.now());
-  record_.not_taken(traffic_of(prepared_->waiting.map), NotTaken::Failed, 0, sentence_of(outcome));
-  again();
+  record_.not_taken(traffic_of(sent->waiting.map), NotTaken::Failed, 0, sentence_of(outcome));
+  again(sent);
 }
 
-void Maps::taken(const uplink::Answered& answered) {
+/// The one that follows it is the next; it may be under way already.
+void Maps::leaves(const Place& sent) {
+  if (sent == following_) return following_.reset();
+  if (sent == prepared_) prepared_ = std::exchange(following_, nullptr);
+}
+
+void Maps::taken(const Place& sent, const uplink::Answered& answered) {
   pace_.taken(answered.sent, loop_.now());
-  slot_.left(prepared_->packed.body.size(), answered.sent, last_byte_not_before_);
-  if (!points_.hold(prepared_->packed.left_out)) return goes_whole(answered.status);
-  const auto sent = std::exchange(
-      prepared_, std::exchange(following_, nullptr));  // whatever fails from here on, it has arrived
+  slot_.left(sent->packed.body.size(), answered.sent, sent->last_byte_not_before);
+  if (!points_.hold(sent->packed.left_out)) return goes_whole(sent, answered.status);
+  ahead_.taken(sent->went_ahead);
+  leaves(sent);  // whatever fails from here on, it has arrived
   icd::MapUpdate& map = sent->waiting.map;
   const std::size_t updates = sent->waiting.updates.size();
   if (sent->waiting.again) map.header().stamp = sent->waiting.again;
@@ -254,42 +279,44 @@ void Maps::taken(const uplink::Answered& answered) {
   taken_(std::move(map));
 }
 
-void Maps::verdict(const uplink::Answered& answered) {
+void Maps::verdict(const Place& sent, const uplink::Answered& answered) {
   const loop::Instant now = loop_.now();
-  const Traffic traffic = traffic_of(prepared_->waiting.map);
+  const Traffic traffic = traffic_of(sent->waiting.map);
   const std::string sentence = sentence_of(answered);
   switch (dispatch::mapping_verdict(answered.status, dispatch::body_of(answered.body))) {
     case MappingVerdict::Taken:
-      return taken(answered);
+      return taken(sent, answered);
     case MappingVerdict::Throttled:
       pace_.throttled(now, answered.retry_after);
       record_.not_taken(traffic, NotTaken::Throttled, answered.status, sentence);
-      return again();
+      return again(sent);
     case MappingVerdict::Refused:
       pace_.taken(answered.sent, now);
-      return give_up(answered.status, sentence);
+      return give_up(sent, answered.status, sentence);
     case MappingVerdict::Suspect:
       pace_.lost(now);
-      if (blame_.failed(whose(prepared_->waiting.map), prepared_->waiting.trial, now) ==
-          lanes::Blame::Next::SetAside)
-        return give_up(answered.status, sentence + " (others passed, this one failed again and again)");
+      if (blame_.failed(whose(sent->waiting.map), sent->waiting.trial, now) == lanes::Blame::Next::SetAside)
+        return give_up(sent, answered.status, sentence + " (others passed, this one failed again and again)");
       record_.not_taken(traffic, NotTaken::Failed, answered.status, sentence);
-      return again();
+      return again(sent);
     case MappingVerdict::Failing:
       pace_.lost(now);
       record_.not_taken(traffic, NotTaken::Failed, answered.status, sentence);
-      return again();
+      return again(sent);
   }
 }
 
 /// The newer one first: old cells never follow newer ones. Where it throws, what is not back is as it was.
-void Maps::again() {
-  put_back(following_);
-  put_back(prepared_);
+void Maps::again(const Place& sent) {
+  ahead_.failed(sent->went_ahead || channel_.busy());
+  if (sent == prepared_) put_back(following_);
+  if (Place* const place = place_of(sent)) put_back(*place);
+  if (!prepared_) prepared_ = std::exchange(following_, nullptr);
 }
 
-void Maps::put_back(std::shared_ptr<Prepared>& prepared) {
-  if (!prepared) return;
+/// One that is under way stays so.
+void Maps::put_back(Place& prepared) {
+  if (!prepared || prepared->is_under_way) return;
   const auto replaced = lane_.put_back(prepared->waiting);
   prepared.reset();
   forget(replaced);
@@ -297,18 +324,19 @@ void Maps::put_back(std::shared_ptr<Prepared>& prepared) {
 
 /// A map that will not be taken is set aside; of one that was merged or stitched each part is tried by
 /// itself.
-void Maps::give_up(int status, const std::string& sentence) {
-  record_.not_taken(traffic_of(prepared_->waiting.map), NotTaken::Refused, status, sentence);
-  if (prepared_->waiting.again) prepared_->waiting.map.header().stamp = prepared_->waiting.again;
-  if (prepared_->waiting.parts.empty()) {
-    aside_.add(prepared_->waiting.map, status, sentence, prepared_->waiting.map.data.bytes.size(),
-               {.let_go = [this, numbers = prepared_->waiting.updates] { forget(numbers); }});
-    prepared_ = std::exchange(following_, nullptr);
-    return;
+void Maps::give_up(const Place& sent, int status, const std::string& sentence) {
+  ahead_.failed(false);
+  lanes::WaitingMap& waiting = sent->waiting;
+  record_.not_taken(traffic_of(waiting.map), NotTaken::Refused, status, sentence);
+  if (waiting.again) waiting.map.header().stamp = waiting.again;
+  if (waiting.parts.empty()) {
+    aside_.add(waiting.map, status, sentence, waiting.map.data.bytes.size(),
+               {.let_go = [this, numbers = waiting.updates] { forget(numbers); }});
+    return leaves(sent);
   }
-  put_back(following_);
-  lane_.put_back_apart(prepared_->waiting);
-  prepared_.reset();
+  if (sent == prepared_) put_back(following_);
+  lane_.put_back_apart(waiting);
+  leaves(sent);
 }
 
 bool Maps::is_said_by_what_goes(const lanes::WaitingMap& back) const {

@@ -18,6 +18,7 @@
 #include "forward/uri_pace.hpp"
 #include "icd/map_update.hpp"
 #include "icd/status.hpp"
+#include "lanes/ahead.hpp"
 #include "lanes/map_lane.hpp"
 #include "lanes/stamps.hpp"
 #include "loop/workers.hpp"
@@ -26,8 +27,14 @@
 namespace adit::forward {
 
 /// Maps on their way to the mapping endpoint: are kept by the writer before they are taken, wait in their
-/// lane, are packed on a worker, the next one while one is sent, and go out one at a time on a connection of
-/// their own, paced within the link's budget.
+/// lane, are packed on a worker, the next one while one is sent, and go out one at a time by a way of their
+/// own, paced within the link's budget. Where the Command Post answers well, the next one goes ahead: it
+/// begins once the one before has arrived, and its answer is still awaited (lanes::Ahead). So the link is not
+/// idle meanwhile, and a second of the Command Post's is never shared by two.
+///
+/// Each of the two under way ends by itself: what fails goes back into the lane, where the other one stays
+/// under way, and no new one is sent before that has ended as well. A 429 says nothing of what was sent
+/// before it came (pace::RateLimit). Stamps go up in the order in which maps are sent.
 class Maps {
  public:
   /// So many may wait, however small: each has a file that is mapped (vm.max_map_count is 65,530). Up to
@@ -93,7 +100,11 @@ class Maps {
   struct Prepared {
     lanes::WaitingMap waiting;
     Packed packed;  // without a body: not packed, or nothing is left to be sent
+    bool is_under_way = false, went_ahead = false;
+    loop::Instant last_byte_not_before{};
+    std::optional<loop::Instant> arrived{};  // about when, once that was seen
   };
+  using Place = std::shared_ptr<Prepared>;
 
   std::vector<std::uint64_t> add(std::uint64_t number, icd::MapUpdate update);
   void take_settings();
@@ -123,22 +134,25 @@ class Maps {
   void go_on();
   loop::Instant starts() const;
   loop::Instant begins_to_pack(loop::Instant now) const;
-  void prepare(std::shared_ptr<Prepared>& place);
-  void pack(const std::shared_ptr<Prepared>& prepared);
-  void not_packed(const std::shared_ptr<Prepared>& prepared);
-  std::shared_ptr<Prepared>* place_of(const std::shared_ptr<Prepared>& prepared);
-  void is_packed(const std::shared_ptr<Prepared>& prepared);
-  void is_there(std::shared_ptr<Prepared>& place);
-  void goes_whole(int status);
+  void prepare(Place& place);
+  void pack(const Place& prepared);
+  void not_packed(const Place& prepared);
+  Place* place_of(const Place& prepared);
+  void is_packed(const Place& prepared);
+  void is_there(Place& place);
+  void goes_whole(const Place& sent, int status);
   void points_taken(Prepared& sent);
-  void send();
-  void answered(const uplink::Outcome& outcome);
-  void judge(const uplink::Outcome& outcome);
-  void verdict(const uplink::Answered& answered);
-  void taken(const uplink::Answered& answered);
-  void again();
-  void put_back(std::shared_ptr<Prepared>& prepared);
-  void give_up(int status, const std::string& sentence);
+  void send(const Place& prepared);
+  void go_ahead(loop::Instant now);
+  bool may_go_ahead(loop::Instant now) const;
+  void answered(const Place& sent, const uplink::Outcome& outcome);
+  void judge(const Place& sent, const uplink::Outcome& outcome);
+  void verdict(const Place& sent, const uplink::Answered& answered);
+  void taken(const Place& sent, const uplink::Answered& answered);
+  void leaves(const Place& sent);
+  void again(const Place& sent);
+  void put_back(Place& prepared);
+  void give_up(const Place& sent, int status, const std::string& sentence);
 
   loop::Loop& loop_;
   loop::Workers& workers_;
@@ -155,7 +169,6 @@ class Maps {
   loop::Source wake_;
 
   Slot slot_;
-  loop::Instant last_byte_not_before_;  // of the map that was sent last
   lanes::MapLane lane_;
   lanes::StampOrder stamps_;
   TakenPoints points_;
@@ -166,8 +179,9 @@ class Maps {
   bool preparing_ = false;
   bool comparing_ = false;  // a worker is comparing two clouds
   loop::Duration packing_took_{0};
-  std::shared_ptr<Prepared> prepared_;    // while it is packed, waits for its time, or is under way
-  std::shared_ptr<Prepared> following_;   // the next one, while that is under way
+  Place prepared_;   // while it is packed, waits for its time, or is under way
+  Place following_;  // the next one, while that is under way; may be so itself, too
+  lanes::Ahead ahead_;
   std::vector<std::uint64_t> to_forget_;  // that the writer could not be told of; has room for all
   std::size_t remembered_ = 0;            // numbers that were given, and are still to be forgotten
   lanes::Blame blame_;

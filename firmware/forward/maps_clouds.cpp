@@ -44,7 +44,7 @@ void Maps::compared(const lanes::Successive& two, bool has_all) {
 }
 
 /// All that it says was taken already. If that is forgotten by now, it is packed again.
-void Maps::is_there(std::shared_ptr<Prepared>& place) {
+void Maps::is_there(Place& place) {
   const LeftOut& left_out = place->packed.left_out;
   if (!points_.hold(left_out)) return;
   const auto there = std::exchange(place, nullptr);
@@ -64,10 +64,9 @@ void Maps::points_taken(Prepared& sent) {
 }
 
 /// It was taken, but while it was under way what had been left out of it was forgotten.
-void Maps::goes_whole(int status) {
-  record_.forwarded(traffic_of(prepared_->waiting.map), 0, prepared_->packed.body.size(), status,
-                    loop_.stamp_now());
-  again();
+void Maps::goes_whole(const Place& sent, int status) {
+  record_.forwarded(traffic_of(sent->waiting.map), 0, sent->packed.body.size(), status, loop_.stamp_now());
+  again(sent);
 }
 
 }  // namespace adit::forward

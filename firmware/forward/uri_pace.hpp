@@ -32,6 +32,9 @@ class UriPace {
     return {.first = std::max(earliest.first, retry_at_), .last = std::max(earliest.last, retry_at_)};
   }
 
+  /// pace::RateLimit::may_go_ahead(), where nothing failed just now.
+  bool may_go_ahead(pace::Instant now) const { return rate_.may_go_ahead() && now >= retry_at_; }
+
   /// Between two requests.
   pace::Duration spacing() const { return rate_.spacing(); }
 
@@ -44,10 +47,12 @@ class UriPace {
   void allow(double hertz, pace::Instant now) { rate_.allow(hertz, now); }
 
   /// To be called before it leaves, so that the journal has it even if the program ends in between.
-  void sent(pace::Instant now) {
-    rate_.sent(now);
+  void sent(pace::Instant now, bool ahead = false) {
+    rate_.sent(now, ahead);
     keep();
   }
+  /// The one sent last has arrived, and is still to be answered.
+  void left(const uplink::Sent& sent) { rate_.left({.first = sent.first, .last = sent.last}); }
   /// `sent`: when its bytes left.
   void taken(const uplink::Sent& sent, pace::Instant now) {
     rate_.taken({.first = sent.first, .last = sent.last}, now);
@@ -65,9 +70,11 @@ class UriPace {
     failed(now);
   }
   void failed(const uplink::Outcome& outcome, pace::Instant now) {
-    std::holds_alternative<uplink::NeverSent>(outcome) ? failed(now) : lost(now);
+    if (!std::holds_alternative<uplink::NeverSent>(outcome)) return lost(now);
+    rate_.not_sent();
+    failed(now);
   }
-  /// It never left.
+  /// The next one could not be sent.
   void failed(pace::Instant now) {
     retry_at_ = now + backoff_.failed(std::uniform_real_distribution<double>(0, 1)(random_));
   }

@@ -50,15 +50,37 @@ Instant RateLimit::next() const {
   return std::max(at.first, at.last);
 }
 
-void RateLimit::sent(Instant now) {
+void RateLimit::sent(Instant now, bool ahead) {
   if (storm_ && sent_) worked_ = now - *sent_;
   sent_ = now;
-  under_way_ = true;
-  counted_ = {.first = now, .last = now};
+  under_way_ = ahead ? 2 : 1;
+  count({.first = now, .last = now});
+}
+
+/// Of two, the later counts, whichever was answered first.
+void RateLimit::count(const Span& sent) {
+  const Span before = counted_.value_or(sent);
+  counted_ = {.first = std::max(before.first, sent.first), .last = std::max(before.last, sent.last)};
+}
+
+void RateLimit::left(const Span& sent) {
+  const Duration uneven = rule_.spacing / kUneven;
+  count({.first = sent.first + uneven, .last = sent.last + uneven});
+}
+
+/// Whether it was sent before the storm that goes on.
+bool RateLimit::end_one() {
+  under_way_ = std::max(under_way_ - 1, 0);
+  if (!storm_ || storm_->sent_before == 0) return false;
+  --storm_->sent_before;
+  return true;
 }
 
 void RateLimit::taken(const Span& sent, Instant now) {
-  under_way_ = false;
+  if (end_one()) {
+    ++taken_since_;
+    return rule_.from_answers ? count({.first = now, .last = now}) : left(sent);
+  }
   if (storm_) {
     last_was_short_ = now - storm_->began <= kShort;
     if (calm_since_) on_average_ = (now - *calm_since_) / (taken_since_ + 1);
@@ -70,26 +92,24 @@ void RateLimit::taken(const Span& sent, Instant now) {
     speed_up(now);
   }
   floor_ = {};
-  const Duration uneven = rule_.spacing / kUneven;
-  counted_ = rule_.from_answers ? Span{.first = now, .last = now}
-                                : Span{.first = sent.first + uneven, .last = sent.last + uneven};
+  rule_.from_answers ? count({.first = now, .last = now}) : left(sent);
 }
 
 void RateLimit::lost(Instant now) {
-  under_way_ = false;
-  counted_ = {.first = now, .last = now};
+  end_one();
+  count({.first = now, .last = now});
 }
 
 void RateLimit::throttled(Instant now, std::optional<std::chrono::seconds> retry_after) {
-  under_way_ = false;
+  const bool sent_before = end_one();
   if (!storm_) {
     begin_storm(now);
-  } else {
+  } else if (!sent_before) {
     storm_->pause = std::max(allowed_, std::min<Duration>(storm_->pause * 2, kStormPause));
   }
   const auto asked = std::clamp(retry_after.value_or(std::chrono::seconds{0}), {}, kLongestPause);
   const Instant next = now + std::max<Duration>({storm_->pause, rule_.spacing, asked});
-  floor_ = {.first = next, .last = next};
+  floor_ = {.first = std::max(floor_.first, next), .last = std::max(floor_.last, next)};
 }
 
 void RateLimit::begin_storm(Instant now) {
@@ -105,7 +125,7 @@ void RateLimit::begin_storm(Instant now) {
   } else if (is_a_limit()) {
     slow_down(now);
   }
-  storm_ = Storm{.began = now, .pause = allowed_};
+  storm_ = Storm{.began = now, .pause = allowed_, .sent_before = under_way_};
 }
 
 bool RateLimit::is_a_limit() const {
@@ -137,7 +157,7 @@ void RateLimit::speed_up(Instant now) {
 Learned RateLimit::learned() const {
   return {.earliest = earliest(),
           .spacing = rule_.spacing > allowed_ ? rule_.spacing : Duration{0},
-          .under_way = under_way_,
+          .under_way = under_way_ > 0,
           .from_answers = rule_.from_answers};
 }
 

@@ -55,9 +55,18 @@ class RateLimit {
   Duration spacing() const { return rule_.spacing; }
   bool ready(Instant now) const { return now >= next(); }
 
-  void sent(Instant now);
-  /// The request sent last was answered at `now`; its bytes had left as `sent` says.
+  /// Whether the next request may be sent before the answer to the last one: not while it is learned how
+  /// often the server lets itself be asked.
+  bool may_go_ahead() const { return !storm_ && !rule_.from_answers && rule_.spacing == allowed_; }
+
+  /// `ahead`: the one before is still to be answered. Of each it is to be said what became of it.
+  void sent(Instant now, bool ahead = false);
+  /// The request sent last has left as `sent` says, and is still to be answered.
+  void left(const Span& sent);
+  /// A request was answered at `now`; its bytes had left as `sent` says.
   void taken(const Span& sent, Instant now);
+  /// A request did not leave.
+  void not_sent() { end_one(); }
   /// No answer of it counts, and it may have been heard: spacing counts from now, for its connection may have
   /// been long in coming.
   void lost(Instant now);
@@ -79,6 +88,7 @@ class RateLimit {
   struct Storm {
     Instant began;
     Duration pause;
+    int sent_before = 0;  // requests that were under way: how they end says nothing of the storm
   };
 
   /// Which requests are far enough apart.
@@ -87,6 +97,8 @@ class RateLimit {
     bool from_answers = false;
   };
 
+  bool end_one();
+  void count(const Span& sent);
   void begin_storm(Instant now);
   bool is_a_limit() const;
   void slow_down(Instant now);
@@ -98,7 +110,7 @@ class RateLimit {
   std::optional<Span> counted_;  // the spacing counts from there
   std::optional<Storm> storm_;
   std::optional<Instant> sent_;  // last
-  bool under_way_ = false;
+  int under_way_ = 0;
   Duration worked_{0};                 // the pause before the request that ended the last storm
   std::optional<Instant> calm_since_;  // the end of the last storm
   bool last_was_short_ = false;

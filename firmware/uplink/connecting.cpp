@@ -24,6 +24,15 @@ void Connection::Impl::hurry() {
   }
 }
 
+void Connection::Impl::open() {
+  if (phase_ == Phase::Closed) connect();
+}
+
+/// As drop(), where nothing was under way.
+void Connection::Impl::end() {
+  if (phase_ != Phase::Closed) drop();
+}
+
 void Connection::Impl::connect() {
   began_ = loop_.now();
   auto fd = begin_connect(endpoint_);

@@ -10,14 +10,16 @@
 
 namespace adit::uplink {
 
-Connection::Impl::Impl(loop::Loop& loop, Endpoint endpoint, icd::BearerToken token)
-    : loop_(loop),
-      endpoint_(std::move(endpoint)),
-      token_(std::move(token)),
-      pace_(endpoint_.bytes_per_second) {
+Connection::Impl::Impl(loop::Loop& loop, Endpoint endpoint, icd::BearerToken token,
+                       std::shared_ptr<LinkPace> pace)
+    : loop_(loop), endpoint_(std::move(endpoint)), token_(std::move(token)), pace_(std::move(pace)) {
   timer_ = loop_.timer([this] { guard(&Impl::time_came); });
   tell_ = loop_.timer([this] { guard(&Impl::tell); });
   look_ = loop_.timer([this] { guard(&Impl::look); });
+}
+
+std::shared_ptr<Connection::Impl> Connection::Impl::another() const {
+  return std::make_shared<Impl>(loop_, endpoint_, token_, pace_);
 }
 
 /// Calls one of its own parts. What throws there ends the request under way, of which bytes may have left,
@@ -79,7 +81,7 @@ void Connection::Impl::time_came() {
 /// How it goes on where the kernel takes no more for a while.
 void Connection::Impl::look() {
   if (!exchange_ || phase_ != Phase::Open || !exchange_->wants_to_write()) return;
-  pace_.goes_on(fd_.get(), loop_.now());
+  pace_->goes_on(fd_.get(), loop_.now());
   look_.call_at(loop_.now() + LinkPace::kLook);
 }
 
@@ -88,8 +90,8 @@ void Connection::Impl::begin() {
   // been sent, so that it is still safe to say so, or to try once more.
   if (!is_quiet(fd_.get()))
     return fresh_ ? never_sent("the peer closed the new connection, or spoke first") : begin_again();
-  if (std::exchange(gives_up_after_, exchange_->answer_within()) != exchange_->answer_within()) {
-    give_up_after(fd_.get(), exchange_->answer_within());
+  if (std::exchange(gives_up_after_, exchange_->longest_silence()) != exchange_->longest_silence()) {
+    give_up_after(fd_.get(), exchange_->longest_silence());
   }
   // What is given up must not arrive after what follows it on another connection, nor be recorded unseen.
   reset_on_close(fd_.get(), true);
@@ -105,7 +107,7 @@ void Connection::Impl::begin_again() {
 
 void Connection::Impl::write() {
   const bool begins = exchange_->sent() == 0;
-  if (!begins) pace_.goes_on(fd_.get(), loop_.now());
+  if (!begins) pace_->goes_on(fd_.get(), loop_.now());
   const int error = exchange_->write(fd_.get());
   if (begins) began_to_leave();
   if (error == 0) return watch(exchange_->wants_to_write() ? kComing | EPOLLOUT : kComing);
@@ -116,7 +118,7 @@ void Connection::Impl::write() {
 void Connection::Impl::began_to_leave() {
   exchange_->began_to_leave(loop_.now());
   if (!exchange_->wants_to_write()) return;  // too short to tell anything of the link
-  pace_.begins(fd_.get(), loop_.now());
+  pace_->begins(fd_.get(), loop_.now());
   look_.call_at(loop_.now() + LinkPace::kLook);
 }
 
@@ -133,6 +135,18 @@ bool Connection::Impl::answer_came() {
       return true;
   }
   return false;
+}
+
+void Connection::Impl::is_next() {
+  if (!exchange_) return;
+  exchange_->is_next(loop_.now());
+  if (phase_ == Phase::Open) listen_again();
+}
+
+std::optional<Sent> Connection::Impl::has_arrived() const {
+  if (!exchange_ || phase_ != Phase::Open || exchange_->sent() < exchange_->total()) return {};
+  if (unacknowledged_bytes(fd_.get()) > 0) return {};
+  return exchange_->left(transmission(fd_.get()), loop_.now());
 }
 
 void Connection::Impl::listen_again() {
@@ -184,8 +198,14 @@ void Connection::Impl::call_done(Outcome outcome) {
   if (const auto done = std::exchange(done_, nullptr)) done(std::move(outcome));
 }
 
-Connection::Connection(loop::Loop& loop, Endpoint endpoint, icd::BearerToken token)
-    : impl_(std::make_shared<Impl>(loop, std::move(endpoint), std::move(token))) {}
+Connection::Connection(loop::Loop& loop, Endpoint endpoint, icd::BearerToken token) {
+  auto pace = std::make_shared<LinkPace>(endpoint.bytes_per_second);
+  impl_ = std::make_shared<Impl>(loop, std::move(endpoint), std::move(token), std::move(pace));
+}
+Connection::Connection(std::shared_ptr<Impl> impl) : impl_(std::move(impl)) {}
+std::unique_ptr<Connection> Connection::another() const {
+  return std::unique_ptr<Connection>(new Connection(impl_->another()));
+}
 Connection::~Connection() {
   impl_->abandon();
 }
@@ -195,6 +215,19 @@ void Connection::keep_warm() {
 }
 void Connection::hurry() {
   impl_->hurry();
+}
+void Connection::open() {
+  impl_->open();
+}
+void Connection::close() {
+  icd::require(!busy());
+  impl_->end();
+}
+void Connection::is_next() {
+  impl_->is_next();
+}
+std::optional<Sent> Connection::has_arrived() const {
+  return impl_->has_arrived();
 }
 void Connection::send(Request request, std::function<void(Outcome)> done) {
   impl_->send(std::move(request), std::move(done));

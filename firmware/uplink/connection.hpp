@@ -34,6 +34,9 @@ struct Request {
   std::size_t longest_answer = kLongestAnswer;  // bytes of its body; a longer one is InDoubt
   /// The last kHeldBack bytes of the body wait until then; the peer's silence does not count meanwhile.
   loop::Instant last_byte_not_before{};
+  /// The peer has still to answer another request, on another connection, and may read no more before it has:
+  /// its silence does not count until Connection::is_next().
+  bool goes_ahead = false;
 
   static constexpr std::size_t kLongestAnswer = 64u << 10;
   static constexpr std::size_t kHeldBack = 1024;
@@ -77,6 +80,9 @@ class Connection {
   static constexpr std::chrono::seconds kIdle{25};  // a server closes after 60
 
   Connection(loop::Loop& loop, Endpoint endpoint, icd::BearerToken token);
+  /// One more to the same place, that shares what is known of the link: only one of them is to have bytes to
+  /// send at a time.
+  std::unique_ptr<Connection> another() const;
   ~Connection();
   Connection(const Connection&) = delete;
   Connection& operator=(const Connection&) = delete;
@@ -85,11 +91,19 @@ class Connection {
   void keep_warm();
   /// The way there may be back: what is being connected begins again, and no pause is waited for.
   void hurry();
+  /// Connects, if it is closed.
+  void open();
+  /// Closes it. Requires !busy().
+  void close();
 
   /// Requires !busy(). `done` is called once, from the loop, never from within send(); it may send the next
   /// request and may destroy this connection. Destroyed while busy, the connection never calls it.
   void send(Request request, std::function<void(Outcome)> done);
   bool busy() const;
+  /// No request goes ahead of the one that is under way any more: from now on the peer's silence counts.
+  void is_next();
+  /// When the request under way left, once the peer's TCP has acknowledged all of it.
+  std::optional<Sent> has_arrived() const;
   bool connected() const;
   /// Why the last connecting failed, or "".
   const std::string& trouble() const;
@@ -102,6 +116,7 @@ class Connection {
 
  private:
   class Impl;
+  explicit Connection(std::shared_ptr<Impl> impl);
   std::shared_ptr<Impl> impl_;
 };
 

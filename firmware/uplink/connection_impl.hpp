@@ -19,11 +19,16 @@ namespace adit::uplink {
 /// What a Connection is. Callbacks hold it while they run: `done` may destroy the Connection.
 class Connection::Impl : public std::enable_shared_from_this<Impl> {
  public:
-  Impl(loop::Loop& loop, Endpoint endpoint, icd::BearerToken token);
+  Impl(loop::Loop& loop, Endpoint endpoint, icd::BearerToken token, std::shared_ptr<LinkPace> pace);
+  std::shared_ptr<Impl> another() const;
 
   void keep_warm();
   void hurry();
+  void open();
+  void end();
   void send(Request request, std::function<void(Outcome)> done);
+  void is_next();
+  std::optional<Sent> has_arrived() const;
   /// The Connection is gone, though a callback may still hold this.
   void abandon();
 
@@ -31,7 +36,7 @@ class Connection::Impl : public std::enable_shared_from_this<Impl> {
   bool connected() const { return phase_ == Phase::Open; }
   const std::string& trouble() const { return trouble_; }
   std::size_t sent_bytes() const { return exchange_ ? exchange_->sent() : sent_; }
-  std::uint64_t delivers() const { return pace_.delivers(); }
+  std::uint64_t delivers() const { return pace_->delivers(); }
 
  private:
   enum class Phase : std::uint8_t { Closed, Connecting, Open };
@@ -96,7 +101,7 @@ class Connection::Impl : public std::enable_shared_from_this<Impl> {
   loop::Source tell_;
   std::size_t sent_ = 0;
 
-  LinkPace pace_;
+  const std::shared_ptr<LinkPace> pace_;
   loop::Source look_;  // while there is more to give
 };
 

@@ -127,7 +127,7 @@ Sent Exchange::left(const Transmission& seen, loop::Instant now) const {
 void Exchange::listen(int fd, loop::Instant now) {
   const std::size_t acknowledged = sent_ - std::min(sent_, unacknowledged_bytes(fd));
   const bool nothing_to_hear = holds_back() && acknowledged == may_go_;
-  if (acknowledged <= acknowledged_ && !nothing_to_hear) return;
+  if (acknowledged <= acknowledged_ && !nothing_to_hear && !request_.goes_ahead) return;
   acknowledged_ = acknowledged;
   heard_ = now;
 }

@@ -44,9 +44,17 @@ class Exchange {
   /// so that the whole answer must come within answer_within of the last acknowledgement.
   void listen(int fd, loop::Instant now);
   bool is_silent_at(loop::Instant now) const { return now >= silent_at(); }
+  /// It goes ahead of no other any more (Request::goes_ahead).
+  void is_next(loop::Instant now) {
+    request_.goes_ahead = false;
+    heard_ = now;
+  }
   /// When to listen next.
   loop::Instant next_listening(loop::Instant now) const;
-  std::chrono::milliseconds answer_within() const { return request_.answer_within; }
+  /// For the kernel, which knows of no other request.
+  std::chrono::milliseconds longest_silence() const {
+    return request_.answer_within * (request_.goes_ahead ? 2 : 1);
+  }
 
   std::size_t sent() const { return sent_; }
   std::size_t total() const { return total_; }

@@ -214,5 +214,62 @@ TEST(RateLimit, KeepsWhatItLearnedOfTheServer) {
   EXPECT_DOUBLE_EQ(hertz(rate, 10), 10);
 }
 
+TEST(RateLimit, SpacesTheNextFromOneThatLeftAndIsStillToBeAnswered) {
+  RateLimit rate(1);
+  rate.sent(at(0));
+  rate.left({.first = at(0), .last = at(0.9)});
+  EXPECT_EQ(rate.earliest(), (Span{.first = at(1.02), .last = at(1.92)}));
+}
+
+TEST(RateLimit, OfTwoUnderWayTheLaterCountsWhicheverIsAnsweredFirst) {
+  for (const bool first_first : {true, false}) {
+    RateLimit rate(1);
+    rate.sent(at(0));
+    rate.left({.first = at(0), .last = at(0.9)});
+    rate.sent(at(1.1), true);
+    for (const bool is_first : {first_first, !first_first}) {
+      EXPECT_TRUE(rate.learned().under_way);
+      is_first ? rate.taken({.first = at(0), .last = at(0.9)}, at(2.3))
+               : rate.taken({.first = at(1.1), .last = at(2)}, at(2.3));
+    }
+    EXPECT_EQ(rate.earliest(), (Span{.first = at(2.12), .last = at(3.02)}));
+    EXPECT_FALSE(rate.learned().under_way);
+  }
+}
+
+/// Else the answer to it would end a pause that the server asked for since.
+TEST(RateLimit, WhatWasSentBeforeA429DoesNotEndTheStorm) {
+  RateLimit rate(1);
+  rate.sent(at(0));
+  rate.sent(at(1.1), true);
+  rate.throttled(at(1.2), std::chrono::seconds{10});
+  rate.taken({.first = at(0), .last = at(0.9)}, at(1.3));
+  EXPECT_EQ(rate.next(), at(11.2));
+  rate.sent(at(11.2));
+  rate.taken({.first = at(11.2), .last = at(11.2)}, at(11.3));
+  EXPECT_EQ(rate.next(), at(12.3));
+}
+
+TEST(RateLimit, TwoThatAreThrottledAreOneStorm) {
+  RateLimit once(1), twice(1);
+  once.sent(at(0));
+  twice.sent(at(0));
+  twice.sent(at(1.1), true);
+  twice.throttled(at(1.2), {});
+  for (RateLimit* rate : {&once, &twice}) rate->throttled(at(1.2), {});
+  EXPECT_EQ(once.next(), twice.next());
+}
+
+TEST(RateLimit, NothingGoesAheadWhileItIsLearnedHowOften) {
+  RateLimit rate(1);
+  EXPECT_TRUE(rate.may_go_ahead());
+  rate.sent(at(0));
+  rate.throttled(at(0.1), {});
+  EXPECT_FALSE(rate.may_go_ahead());
+  rate.sent(at(2));
+  rate.taken({.first = at(2), .last = at(2)}, at(2.1));
+  EXPECT_FALSE(rate.may_go_ahead()) << "it may count from its answers";
+}
+
 }  // namespace
 }  // namespace adit::pace

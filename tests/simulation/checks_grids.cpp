@@ -197,10 +197,11 @@ void grid_arrived(const Evidence& evidence, Broken& broken) {
     const Item& item = asked.items.front();
     if (is_grid(item.says)) names[item.who].post(asked, item);
   }
-  std::vector<PostedGrid*> sent;  // last
+  std::map<std::uint64_t, std::vector<PostedGrid*>> last_sent;  // by connection
   for (std::size_t i = 0; i < evidence.events.size(); ++i) {
     const Event& event = evidence.events[i];
     if (event.what != kMap) continue;
+    std::vector<PostedGrid*>& sent = last_sent[event.request];
     if (event.kind == Kind::Replied) {
       for (PostedGrid* each : sent) each->answered(event);
     }

@@ -69,7 +69,7 @@ bool may_be_double(const std::vector<Event>& events, std::size_t first, std::siz
   for (std::size_t i = first; i < second; ++i) {
     const Event& event = events[i];
     if (event.kind == Kind::Dies) return true;
-    if (event.what != kMap || status >= 0) continue;
+    if (event.what != kMap || event.request != events[first].request || status >= 0) continue;
     if (event.kind == Kind::Leaves) status = 0;
     if (event.kind == Kind::Replied && event.who.empty()) status = event.status;
   }

@@ -118,6 +118,7 @@ std::unique_ptr<Peer> CommandPost::connected(const uplink::Endpoint&, Link& link
 
 /// What comes on a connection that Adit has given up does not count.
 void CommandPost::asked(const HttpMessage& request, const WhenLeft& left, Link& link) {
+  connection_ = link.number();
   if (is_on(Fault::Mute) || is_on(Fault::Outage)) return;
   if (is_on(Fault::StatusDown) && request.path() == kStatus) return;
   if (refuses(request, left, link)) return;
@@ -254,6 +255,7 @@ std::string CommandPost::take(const HttpMessage& request) {
                  .who = item.who,
                  .serial = item.serial,
                  .stamp = item.stamp,
+                 .request = connection_,
                  .says = item.says});
   }
   return http_answer("200 OK", kJson, "null");

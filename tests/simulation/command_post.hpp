@@ -52,6 +52,7 @@ class CommandPost final : public Host {
   Faults faults_;
   Random random_;
   Scoreboard scoreboard_;
+  std::uint64_t connection_ = 0;  // on which it was asked last
   Counting counting_;
   bool calm_ = false;
   std::set<Fault> on_;  // periods

@@ -57,7 +57,7 @@ struct Event {
   int status = 0;           // of Invoke: that the ICD has for a bad message
   double stamp = 0;  // of a message upstream; of an answer: its Retry-After; of a recorded report: its points
   std::string text = {};      // for the story; of an answer to a status its body, of "STATUS" the line
-  std::uint64_t request = 0;  // of a client: which
+  std::uint64_t request = 0;  // of a client: which; of one upstream: its connection
   Says says = {};
 };
 

@@ -10,9 +10,10 @@
 
 namespace adit::simulation {
 
-Link::Link(World& world, uplink::Endpoint endpoint, Random random)
-    : view(place_at(endpoint.address)),
+Link::Link(World& world, std::uint64_t number, uplink::Endpoint endpoint, Random random)
+    : view(place_at(endpoint.address), number),
       world_(world),
+      number_(number),
       endpoint_(std::move(endpoint)),
       random_(random),
       typical_(random_.chance(0.8) ? random_.between(0.0001, 0.002) : random_.between(0.002, 0.15)),
@@ -30,6 +31,13 @@ loop::Instant Link::arrival() {
   return stalls.ends() + seconds(random_.between(0, stalls.length())) + latency();
 }
 
+/// In order, and not before the bytes before have come at the line's rate.
+loop::Instant Link::arrival_of(std::size_t bytes) {
+  if (!is_thin_) return std::max(last_there_, arrival());
+  const auto takes = seconds(static_cast<double>(bytes) / world_.network().map_rate());
+  return std::max(std::max(last_there_, world_.now()) + takes, arrival());
+}
+
 void Link::connect(Host& host) {
   const auto how = host.connecting(endpoint_);
   if (!how) return;
@@ -44,13 +52,14 @@ void Link::connect(Host& host) {
 
 std::size_t Link::write(std::string_view bytes) {
   if (reset) return 0;
+  if (bytes.starts_with("POST /map/update")) is_thin_ = world_.network().map_rate() > 0;
   std::size_t left = std::min(bytes.size(), window_ - std::min(window_, unacknowledged_));
   const std::size_t taken = left;
   unacknowledged_ += taken;
   if (taken > 0) last_left_ = world_.now();
   while (left > 0) {
     const std::size_t size = random_.chance(0.8) ? left : 1 + random_.below(left);
-    last_there_ = std::max(last_there_, arrival());
+    last_there_ = arrival_of(size);
     if (world_.network().stalls().is_on()) held_until_ = last_there_;
     world_.at(last_there_, [self = shared_from_this(), piece = std::string(bytes.substr(taken - left, size)),
                             left_at = world_.now()] {
@@ -106,12 +115,16 @@ void Link::end(How how, loop::Duration delay) {
             [self = shared_from_this(), how] { (how == How::End ? self->ended : self->reset) = true; });
 }
 
-Network::Network(World& world) : world_(world), stalls_(world) {}
+Network::Network(World& world) : world_(world), stalls_(world) {
+  Random random = world.random("rate of maps");
+  map_rate_ = random.chance(0.25) ? random.between(300, 1500) : 0;
+}
 
 int Network::connect(const uplink::Endpoint& endpoint) {
   const int fd = ++last_fd_;
+  const auto number = static_cast<std::uint64_t>(fd - kFirst);
   const auto link =
-      std::make_shared<Link>(world_, endpoint, world_.random("link " + std::to_string(fd - kFirst)));
+      std::make_shared<Link>(world_, number, endpoint, world_.random("link " + std::to_string(number)));
   links_.emplace(fd, link);
   link->connect(*host_);
   return fd;

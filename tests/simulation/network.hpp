@@ -44,7 +44,8 @@ class Host {
 /// One TCP connection to the Command Post, in memory.
 class Link : public std::enable_shared_from_this<Link> {
  public:
-  Link(World& world, uplink::Endpoint endpoint, Random random);
+  /// `number`: told from the others by it in the history (Event::request).
+  Link(World& world, std::uint64_t number, uplink::Endpoint endpoint, Random random);
 
   // Adit's end.
   std::size_t write(std::string_view bytes);  // how many the window took
@@ -69,17 +70,21 @@ class Link : public std::enable_shared_from_this<Link> {
   void end(How how, loop::Duration delay = {});
   /// When what was sent last leaves.
   loop::Instant answers_until() const { return answers_until_; }
+  std::uint64_t number() const { return number_; }
   const uplink::Endpoint& endpoint() const { return endpoint_; }
   bool is_closed() const { return closed_; }
 
  private:
   loop::Duration latency();
   loop::Instant arrival();
+  loop::Instant arrival_of(std::size_t bytes);
 
   World& world_;
+  const std::uint64_t number_;
   const uplink::Endpoint endpoint_;
   Random random_;
-  double typical_;  // latency, in seconds
+  double typical_;        // latency, in seconds
+  bool is_thin_ = false;  // a map is on its way, and maps take long here
   std::size_t window_;
   std::size_t unacknowledged_ = 0;
   bool closed_ = false, lost_ = false;
@@ -96,6 +101,8 @@ class Network {
   explicit Network(World& world);
   void serve(Host* host) { host_ = host; }
   Stalls& stalls() { return stalls_; }
+  /// Bytes a second of a map; 0: as fast as all else.
+  double map_rate() const { return map_rate_; }
 
   /// A descriptor.
   int connect(const uplink::Endpoint& endpoint);
@@ -120,6 +127,7 @@ class Network {
   };
   World& world_;
   Stalls stalls_;
+  double map_rate_;
   Host* host_ = nullptr;
   int last_fd_ = kFirst;
   std::uint64_t last_ = 0;

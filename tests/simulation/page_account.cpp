@@ -63,9 +63,9 @@ void PageAccount::end(std::size_t place, const Event& event) {
 }
 
 void PageAccount::read_upstream(std::size_t place, const Event& event) {
-  if (event.kind == Kind::Leaves) under_way_[event.what].clear();
+  if (event.kind == Kind::Leaves) under_way_[event.request].clear();
   if (event.kind == Kind::Left) {
-    auto& all = under_way_[event.what];
+    auto& all = under_way_[event.request];
     const Stream stream = stream_of(event.what, event.who);
     if (std::ranges::find(all, stream) == all.end()) all.push_back(stream);
   }
@@ -77,7 +77,7 @@ void PageAccount::read_upstream(std::size_t place, const Event& event) {
   const bool allowed = event.status == 404 || event.status == 429 || event.status >= 500;
   if (never || (is_page && !allowed)) foreign_[endpoint].push_back(place);
   if (event.status >= 300 || is_page) return;
-  for (const Stream& stream : under_way_[event.what]) forwarded_[stream].push_back(place);
+  for (const Stream& stream : under_way_[event.request]) forwarded_[stream].push_back(place);
 }
 
 Range PageAccount::accepted(const Stream& stream, Moment from, Moment to) const {

@@ -62,7 +62,7 @@ class PageAccount {
   std::map<Stream, std::vector<Posted>> posted_;
   std::map<std::uint64_t, std::vector<std::pair<Stream, std::size_t>>> open_;  // requests: where in posted_
   std::deque<std::pair<double, std::uint64_t>> gone_;                          // when, and which request
-  std::map<std::string, std::vector<Stream>> under_way_;                       // by path: whose messages
+  std::map<std::uint64_t, std::vector<Stream>> under_way_;  // by connection: whose messages
   std::map<Stream, Places> forwarded_;
   std::map<std::string, Places> throttled_, foreign_;
   Places begun_;

@@ -24,7 +24,7 @@ void UpstreamView::left(std::string_view bytes) {
   if (requests_.is_between()) {
     const std::size_t from = bytes.find(' ') + 1;
     path_ = bytes.substr(from, bytes.find(' ', from) - from);
-    world.note({.kind = Kind::Leaves, .what = path_, .who = ""});
+    world.note({.kind = Kind::Leaves, .what = path_, .who = "", .request = connection_});
   }
   requests_.feed(bytes);
   while (const auto request = requests_.next()) {
@@ -39,6 +39,7 @@ void UpstreamView::left(std::string_view bytes) {
                   .who = item.who,
                   .serial = item.serial,
                   .stamp = item.stamp,
+                  .request = connection_,
                   .says = item.says});
     }
   }
@@ -55,11 +56,15 @@ void UpstreamView::came(std::string_view bytes) {
                            .status = answer->status(),
                            .stamp = std::atof(answer->header("retry-after").c_str()),
                            .text = path_ == kStatus ? answer->body : "",
+                           .request = connection_,
                            .says = path_ == kStatus ? status_in(answer->body) : Says()});
   }
   if (!answers_.head() || answers_.length() <= kLongestBody) return;
-  World::current().note(
-      {.kind = Kind::Replied, .what = path_, .who = kTooLong, .status = answers_.head()->status()});
+  World::current().note({.kind = Kind::Replied,
+                         .what = path_,
+                         .who = kTooLong,
+                         .status = answers_.head()->status(),
+                         .request = connection_});
 }
 
 }  // namespace adit::simulation

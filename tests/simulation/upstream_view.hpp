@@ -1,5 +1,6 @@
 #pragma once
 
+#include <cstdint>
 #include <string>
 #include <string_view>
 
@@ -15,12 +16,13 @@ inline constexpr const char* kTooLong = "too long";
 /// What Adit gives a connection to the Command Post, and takes from it, as events of the history.
 class UpstreamView {
  public:
-  explicit UpstreamView(int place) : place_(place) {}
+  UpstreamView(int place, std::uint64_t connection) : place_(place), connection_(connection) {}
   void left(std::string_view bytes);
   void came(std::string_view bytes);
 
  private:
   const int place_;  // of the Command Post
+  const std::uint64_t connection_;
   HttpStream requests_, answers_;
   std::string path_;
 };

@@ -1,0 +1,43 @@
+// How the next map goes ahead of the answer to the one before.
+#include <algorithm>
+
+#include "forward/maps.hpp"
+
+namespace adit::forward {
+namespace {
+
+/// How the map before leaves is looked at no more often.
+constexpr std::chrono::milliseconds kLookAtLeaving{10};
+/// A connection for the next map is made so long before it may start, and the end of the one before is looked
+/// for so often from then on: the link is idle in between.
+constexpr std::chrono::milliseconds kGetReady{50}, kLookForEnd{2};
+
+}  // namespace
+
+/// Once the one that is under way has arrived; it is looked for when the next may start, and not before.
+void Maps::go_ahead(loop::Instant now) {
+  if (!may_go_ahead(now)) return;
+  const std::size_t size = prepared_->packed.body.size(), left = size - std::min(size, channel_.sent_of_it());
+  if (!prepared_->arrived && left > 0)
+    return wake_.call_at(now + std::max<loop::Duration>(slot_.transfer(left) / 2, kLookAtLeaving));
+  if (now < starts() - kGetReady) return wake_.call_at(starts() - kGetReady);
+  channel_.get_ready();
+  const auto arrived = prepared_->arrived ? std::nullopt : channel_.has_arrived();
+  if (arrived) {
+    prepared_->arrived = arrived->last;
+    pace_.left(*arrived);
+  }
+  if (prepared_->arrived && channel_.can_go_ahead() && now >= starts()) return send(following_);
+  wake_.call_at(std::max(starts(), now + kLookForEnd));
+}
+
+/// If not, the answer to the one that is under way is awaited.
+bool Maps::may_go_ahead(loop::Instant now) const {
+  const lanes::Ahead::Before before{.map = prepared_->waiting,
+                                    .arrived = prepared_->arrived.value_or(now),
+                                    .went_ahead = prepared_->went_ahead};
+  return prepared_->is_under_way && pace_.may_go_ahead(now) &&
+         ahead_.may_go(following_->waiting, before, now);
+}
+
+}  // namespace adit::forward

@@ -1,0 +1,138 @@
+// A second request goes ahead of the answer to the first, also to a server that serves one connection at a
+// time, as the peer here does.
+#include "uplink/connections.hpp"
+
+#include <gtest/gtest.h>
+
+#include <mutex>
+#include <semaphore>
+#include <vector>
+
+#include "asking.hpp"
+
+namespace adit::uplink {
+namespace {
+
+using std::chrono::milliseconds;
+
+class TwoRequests : public Asking {
+ protected:
+  ~TwoRequests() override { let_.release(100); }
+
+  /// Reads each request of a connection, and answers when it is let.
+  void serve(Wire& wire) {
+    while (!wire.read_request().empty()) {
+      ++came_;
+      let_.acquire();
+      if (!wire.write(answer("200 OK", "null"))) return;
+    }
+  }
+  void send(Request request) {
+    outcomes_.emplace_back();
+    connections_.send(std::move(request), [this, place = outcomes_.size() - 1](Outcome outcome) {
+      outcomes_[place] = std::move(outcome);
+    });
+  }
+  int status_of(std::size_t place) { return answered(outcomes_[place].value_or(NeverSent{"none"})).status; }
+  bool is_told(std::size_t place) {
+    return loop::turn_until(loop_, [&] { return outcomes_[place].has_value(); });
+  }
+  /// The first one has arrived, and there is a connection for the next.
+  bool one_has_arrived() {
+    send(post("first"));
+    connections_.get_ready();
+    return loop::turn_until(loop_, [&] { return connections_.has_arrived() && connections_.is_ready(); });
+  }
+
+  std::counting_semaphore<> let_{0};
+  std::atomic<int> came_ = 0;
+  std::vector<std::optional<Outcome>> outcomes_;
+  ListeningPeer peer_{[this](Wire& wire) { serve(wire); }};
+  Connections connections_{loop_, peer_.endpoint(), token()};
+};
+
+TEST_F(TwoRequests, TheSecondIsServedOnceTheFirstIsAnswered) {
+  ASSERT_TRUE(one_has_arrived());
+  send(post(megabytes(2)));  // more than a connection holds that nobody reads
+  EXPECT_FALSE(connections_.is_ready()) << "for a third";
+  EXPECT_FALSE(connections_.has_arrived());
+  let_.release();
+  ASSERT_TRUE(is_told(0));
+  EXPECT_TRUE(connections_.busy());
+  let_.release();
+  ASSERT_TRUE(is_told(1));
+  EXPECT_EQ(status_of(0), 200);
+  EXPECT_EQ(status_of(1), 200);
+  EXPECT_FALSE(connections_.busy());
+  EXPECT_EQ(peer_.begun(), 2);
+}
+
+/// It takes the connection that is left.
+TEST_F(TwoRequests, AThirdGoesAheadOfTheSecond) {
+  ASSERT_TRUE(one_has_arrived());
+  send(post("second"));
+  let_.release();
+  ASSERT_TRUE(is_told(0));
+  connections_.get_ready();
+  ASSERT_TRUE(loop::turn_until(loop_, [&] { return connections_.has_arrived() && connections_.is_ready(); }));
+  send(post("third"));
+  let_.release(2);
+  ASSERT_TRUE(is_told(1) && is_told(2));
+  EXPECT_EQ(status_of(2), 200);
+  EXPECT_EQ(peer_.begun(), 3);
+}
+
+TEST_F(TwoRequests, AConnectionThatWasNotNeededEnds) {
+  ASSERT_TRUE(one_has_arrived());
+  let_.release();
+  ASSERT_TRUE(is_told(0));
+  EXPECT_TRUE(connections_.connected());
+  send(post("second"));
+  let_.release();
+  ASSERT_TRUE(is_told(1));
+  EXPECT_EQ(status_of(1), 200);
+  EXPECT_EQ(peer_.begun(), 1) << "the first one is kept";
+}
+
+TEST_F(TwoRequests, SilenceCountsForTheSecondOnceTheFirstIsAnswered) {
+  ASSERT_TRUE(one_has_arrived());
+  Request second = post("second");
+  second.answer_within = milliseconds(1000);
+  send(std::move(second));
+  const loop::Instant answered = loop_.now() + milliseconds(1500);
+  ASSERT_TRUE(loop::turn_until(loop_, [&] { return loop_.now() > answered; }));
+  EXPECT_FALSE(outcomes_[1]);
+  let_.release(2);
+  ASSERT_TRUE(is_told(1));
+  EXPECT_EQ(status_of(1), 200) << why(*outcomes_[1]);
+}
+
+TEST_F(TwoRequests, ThereIsNoneWhereASecondConnectionIsRefused) {
+  Peer closed({[this](Wire& wire) { serve(wire); }});
+  Connections connections(loop_, closed.endpoint(), token());
+  bool told = false;
+  connections.send(post("first"), [&](const Outcome&) { told = true; });
+  connections.get_ready();
+  EXPECT_FALSE(connections.is_ready());
+  EXPECT_TRUE(loop::turn_until(loop_, [&] { return told; }));
+  EXPECT_FALSE(connections.busy());
+}
+
+/// Or a kept connection would be closed and made again by each look.
+TEST_F(TwoRequests, ASecondConnectionIsTriedOnceForEachRequest) {
+  const ListeningPeer hangs_up({[this](Wire& wire) { serve(wire); }, [](Wire&) {}});
+  Connections connections(loop_, hangs_up.endpoint(), token());
+  bool told = false;
+  connections.send(post("first"), [&](const Outcome&) { told = true; });
+  connections.get_ready();
+  ASSERT_TRUE(loop::turn_until(loop_, [&] { return connections.has_arrived().has_value(); }));
+  let_.release();
+  ASSERT_TRUE(loop::turn_until(loop_, [&] {
+    if (!told) connections.get_ready();
+    return told;
+  }));
+  EXPECT_LE(hangs_up.begun(), 2);
+}
+
+}  // namespace
+}  // namespace adit::uplink

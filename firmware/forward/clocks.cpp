@@ -10,6 +10,7 @@ void Clocks::carry_on(journal::Carried& carried, const std::string& boot) {
   const double floor = floor_.read();
   carried.machine_is(boot);
   const auto& clock = carried.clock();
+  ran_before_ = clock || floor > 0;
   if (clock) {
     const double due = clock->stamp + std::chrono::duration<double>(loop_.now() - clock->at).count();
     const double set_ahead = loop_.stamp_now() - due;

@@ -27,6 +27,9 @@ class Clocks {
   /// Goes on where the life before ended, and begins the journal of this one. `boot`: the machine's.
   void carry_on(journal::Carried& carried, const std::string& boot);
 
+  /// Whether this box may have sent something in a life before.
+  bool ran_before() const { return ran_before_; }
+
   /// A sender's stamp on the gateway's clock. The journal keeps the sender's offset. `connection`: the one
   /// that the message came on.
   icd::Stamp stamped(const std::string& sender, std::optional<icd::Stamp> stamp, std::uint64_t connection);
@@ -43,6 +46,7 @@ class Clocks {
   journal::Journal& journal_;
   StampFloor floor_;
   lanes::StampShift senders_;
+  bool ran_before_ = false;
 };
 
 }  // namespace adit::forward

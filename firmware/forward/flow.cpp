@@ -82,9 +82,9 @@ void Flow::changed() {
 void Flow::picture_the_run() {
   const std::int64_t run = reports().run().number;
   const std::int64_t before = std::exchange(pictured_run_, run);
+  if (before != run) maps_.begin_run();
   if (before == 0 || before == run) return;
   as_forwarded_.begin_run(loop_.stamp_now());
-  maps_.begin_run();
   picture_.begin_run();
 }
 

@@ -74,7 +74,7 @@ void Flow::carry_on() {
   const bool is_first = !carried.clock();
   clocks_.carry_on(carried, host::boot());
   scoring_.carry_on(carried);
-  maps_.carry_on(carried);
+  maps_.carry_on(carried, clocks_.ran_before());
   telemetry_.carry_on(carried);
   if (legacy_) {
     maps_.go_on_from(legacy_->map_stamp);

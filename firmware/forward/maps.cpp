@@ -63,9 +63,11 @@ Maps::Maps(loop::Loop& loop, loop::Workers& workers, loop::Writer& writer, spool
       lane_(settings.queues.merge_bytes),
       trouble_(spool.trouble()) {
   take_settings();
+  lane_.canvases().lead_to(channel_.address());
 }
 
-void Maps::carry_on(const journal::Carried& carried) {
+void Maps::carry_on(const journal::Carried& carried, bool ran_before) {
+  carry_on_grids(carried, ran_before);
   pace_.carry_on(carried, loop_.now());
   if (const auto last = carried.stamps().find(icd::Uri::MapUpdate); last != carried.stamps().end()) {
     stamps_.carry_on(last->second);
@@ -100,6 +102,7 @@ void Maps::pump() {
     pace_.link_is_back();
     blame_ = {};
     ahead_ = {};
+    leads_elsewhere();
   }
   if (stopping_ || preparing_ || !channel_.has_token()) return;
   if (loop::guarded("sending a map", [this] { go_on(); })) return;
@@ -192,6 +195,8 @@ void Maps::is_packed(const Place& prepared) {
   Place* const place = place_of(prepared);
   if (place == nullptr) return;
   if (left_out.is_all) return is_there(*place);
+  if (prepared->packed.drawn) lane_.canvases().lay(prepared->waiting.map.name, *prepared->packed.drawn);
+  prepared->packed.drawn.reset();
   if (!prepared->packed.body.empty()) {
     if (prepared->packed.stitched.raw_size > 0)
       prepared->waiting.map.data = std::move(prepared->packed.stitched);

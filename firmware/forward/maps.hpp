@@ -49,7 +49,8 @@ class Maps {
        Aside& aside, std::mt19937_64& random, journal::Journal& journal,
        std::function<void(icd::MapUpdate)> taken);
 
-  void carry_on(const journal::Carried& carried);
+  /// `ran_before`: this box may have sent maps before.
+  void carry_on(const journal::Carried& carried, bool ran_before);
   /// What the flow before has sent, where the journal may not know.
   void go_on_from(icd::Stamp last) { stamps_.carry_on(last); }
   icd::Stamp last_stamp() const { return stamps_.last(); }
@@ -61,7 +62,10 @@ class Maps {
   /// sent again to this one.
   void endpoint_changed(std::optional<icd::BearerToken> token);
   /// What the Command Post took of the run before it may have no more.
-  void begin_run() { points_.forget(); }
+  void begin_run() {
+    points_.forget();
+    lane_.canvases().begin_run();
+  }
   /// A map that the spool kept under this number.
   void restore(std::uint64_t number, icd::MapUpdate update);
 
@@ -108,6 +112,9 @@ class Maps {
 
   std::vector<std::uint64_t> add(std::uint64_t number, icd::MapUpdate update);
   void take_settings();
+  void leads_elsewhere();
+  void carry_on_grids(const journal::Carried& carried, bool ran_before);
+  bool is_told(const icd::MapUpdate& update);
   void compare();
   void compared(const lanes::Successive& two, bool has_all);
   /// A map on its way to its file: the writer's, until it is handed back.

@@ -48,6 +48,10 @@ void Maps::take(icd::MapUpdate update, std::size_t bytes_received, std::shared_p
                                    (lane_.bytes() + bytes_being_kept_) >> 20,
                                    " MiB wait already; this one was not taken, send it again later")}));
   }
+  if (!is_told(update)) {
+    if (file) writer_.submit([file = std::move(file)]() mutable { file.reset(); }, [] {});
+    return done(std::unexpected(not_kept()));
+  }
   const auto keeping = std::make_shared<Keeping>();
   keeping->bytes_received = bytes_received;
   // Only a grid or a whole cloud is replaced as it comes, and the newer one must find room beside it.

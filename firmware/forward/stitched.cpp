@@ -3,6 +3,7 @@
 #include <utility>
 #include <vector>
 
+#include "codec/map_pieces.hpp"
 #include "codec/write.hpp"
 #include "lanes/lattice.hpp"
 #include "pack/pack.hpp"
@@ -16,6 +17,21 @@ bool is_to_be_stitched(const lanes::WaitingMap& waiting) {
   return waiting.map.is_grid() && !waiting.parts.empty() && waiting.map.data.bytes.empty();
 }
 
+/// The cells of `data` over what lies under them; nothing where they are damaged.
+std::optional<lanes::Ground> drawn_over(const lanes::Ground& under, const icd::MapData& data) {
+  lanes::Drawing drawing(under);
+  std::size_t left = static_cast<std::size_t>(under.cells.width * under.cells.height);
+  const auto read =
+      codec::for_each_piece(data, [&](std::span<const std::uint8_t> piece) -> icd::Checked<void> {
+        if (piece.size() > left)
+          return std::unexpected(icd::Refusal{icd::Status::ServiceUnavailable, "it has too many cells"});
+        left -= piece.size();
+        drawing.feed(piece);
+        return {};
+      });
+  return read && left == 0 ? std::optional(drawing.finish()) : std::nullopt;
+}
+
 }  // namespace
 
 Packed packed(const lanes::WaitingMap& waiting, LeavingOut leaving_out) {
@@ -24,6 +40,7 @@ Packed packed(const lanes::WaitingMap& waiting, LeavingOut leaving_out) {
   Packed packed;
   packed.left_out = leaving_out(*whole);
   if (packed.left_out.is_all) return packed;
+  if (waiting.ground) packed.drawn = drawn_over(*waiting.ground, whole->data);
   icd::MapUpdate map = pack::pack(std::move(*whole));
   packed.body = codec::write_map_update(map);
   if (packed.left_out.points > 0) packed.left_out.sent = map.data;
@@ -43,7 +60,9 @@ icd::Checked<icd::MapUpdate> whole_of(const lanes::WaitingMap& waiting) {
     tiles.push_back({part.map.data, static_cast<std::size_t>(cells->x), static_cast<std::size_t>(cells->y),
                      static_cast<std::size_t>(cells->width), static_cast<std::size_t>(cells->height)});
   }
-  auto data = pack::stitch(grid.width, grid.height, tiles);
+  auto data =
+      pack::stitch(grid.width, grid.height, tiles,
+                   waiting.has_gaps ? lanes::cells_under(*waiting.ground) : std::vector<std::uint8_t>{});
   if (!data) return std::unexpected(std::move(data.error()));
   whole.data = std::move(*data);
   return whole;

@@ -1,8 +1,11 @@
 #pragma once
 
+#include <optional>
+
 #include "forward/taken_points.hpp"
 #include "icd/chunked_bytes.hpp"
 #include "icd/status.hpp"
+#include "lanes/ground.hpp"
 #include "lanes/map_lane.hpp"
 
 namespace adit::forward {
@@ -12,12 +15,15 @@ struct Packed {
   icd::ChunkedBytes body;  // empty: all of it is left out, or what it would be stitched of is damaged
   icd::MapData stitched;   // its cells, where they were in its parts alone
   LeftOut left_out;
+  /// What it was packed over, with it; absent where that is not wanted, or its cells are damaged.
+  std::optional<lanes::Ground> drawn;
 };
 
 /// CPU-bound in the size of the map: meant for a worker.
 Packed packed(const lanes::WaitingMap& waiting, LeavingOut leaving_out = {});
 
-/// The map with its cells, which are put together of its parts where they are there alone. The error says
+/// The map with its cells, which are put together of its parts where they are there
+/// alone, over what lies under them where they leave gaps. The error says
 /// what is wrong with the data of one.
 icd::Checked<icd::MapUpdate> whole_of(const lanes::WaitingMap& waiting);
 

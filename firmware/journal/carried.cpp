@@ -73,6 +73,8 @@ bool Carried::apply(Kind kind, std::string_view said) {
       return read_pace(said);
     case Kind::Stamp:
       return read_stamp(said);
+    case Kind::Grids:
+      return read_grids(said);
     case Kind::End:
       return true;
   }
@@ -179,6 +181,18 @@ bool Carried::read_stamp(std::string_view said) {
   return uri && reader.ok();
 }
 
+/// An empty one begins them: what is sent is told from there on.
+bool Carried::read_grids(std::string_view said) {
+  if (!grids_) grids_.emplace();
+  if (said.empty()) return true;
+  Reader reader(said);
+  const std::string key(reader.text());
+  lanes::Extent extent;
+  for (double* const side : {&extent.left, &extent.bottom, &extent.right, &extent.top}) *side = reader.real();
+  if (reader.ok()) (*grids_)[key] = extent;
+  return reader.ok();
+}
+
 void Carried::state_is_done() {
   for (auto& [name, robot] : robots_) robot.under_way = false;
   std::erase_if(robots_, [](const auto& robot) { return !robot.second.news; });
@@ -209,6 +223,10 @@ void Carried::write(const std::function<void(Kind, std::string_view)>& to) const
   for (const auto& [sender, clock] : senders_.clocks()) to(Kind::Sender, said(sender, clock));
   for (const auto& [uri, learned] : paces_) to(Kind::Pace, said(uri, learned));
   for (const auto& [uri, stamp] : stamps_) to(Kind::Stamp, said(uri, stamp));
+  if (grids_) to(Kind::Grids, {});
+  if (grids_) {
+    for (const auto& [key, extent] : *grids_) to(Kind::Grids, said(key, extent));
+  }
   const auto write_robots = [&](bool Robot::* these) {
     std::vector<icd::RobotName> names;
     for (const auto& [name, robot] : robots_) {
@@ -255,6 +273,16 @@ std::string said(icd::Uri uri, const pace::Learned& learned) {
 
 std::string said(icd::Uri uri, icd::Stamp stamp) {
   return Writer().number(static_cast<std::uint64_t>(uri)).real(stamp).finish();
+}
+
+std::string said(const std::string& name, const lanes::Extent& extent) {
+  return Writer()
+      .text(name)
+      .real(extent.left)
+      .real(extent.bottom)
+      .real(extent.right)
+      .real(extent.top)
+      .finish();
 }
 
 std::string said(const icd::StateUpdate& update) {

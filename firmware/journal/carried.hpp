@@ -12,6 +12,7 @@
 #include "icd/state_update.hpp"
 #include "icd/uri.hpp"
 #include "journal/record.hpp"
+#include "lanes/extent.hpp"
 #include "lanes/marker_changes.hpp"
 #include "lanes/stamps.hpp"
 #include "pace/rate_limit.hpp"
@@ -49,6 +50,8 @@ class Carried {
   const lanes::StampShift& senders() const { return senders_; }
   const std::map<icd::Uri, pace::Learned>& paces() const { return paces_; }
   const std::map<icd::Uri, icd::Stamp>& stamps() const { return stamps_; }
+  /// lanes::Canvases::Posted. Absent: nobody told.
+  const std::optional<std::map<std::string, lanes::Extent>>& grids() const { return grids_; }
   /// Those whose pose the Command Post has not taken as it is. One that it has taken is no business of a life
   /// to come, which may serve another Command Post.
   const std::map<icd::RobotName, Robot>& robots() const { return robots_; }
@@ -64,6 +67,7 @@ class Carried {
   bool read_sent(std::string_view said);
   bool read_pace(std::string_view said);
   bool read_stamp(std::string_view said);
+  bool read_grids(std::string_view said);
   void state_is_done();
   void state_comes_back();
   void markers_come_back();
@@ -72,6 +76,7 @@ class Carried {
   lanes::StampShift senders_;
   std::map<icd::Uri, pace::Learned> paces_;
   std::map<icd::Uri, icd::Stamp> stamps_;
+  std::optional<std::map<std::string, lanes::Extent>> grids_;
   std::map<icd::RobotName, Robot> robots_;
   lanes::MarkerChanges markers_;
   std::vector<icd::Marker> markers_under_way_;
@@ -82,6 +87,7 @@ std::string said(const Clock& clock);
 std::string said(const std::string& sender, const lanes::SenderClock& clock);
 std::string said(icd::Uri uri, const pace::Learned& learned);
 std::string said(icd::Uri uri, icd::Stamp stamp);
+std::string said(const std::string& name, const lanes::Extent& extent);
 std::string said(const icd::StateUpdate& update);
 std::string said(const icd::MarkersUpdate& update);
 /// Whose poses were sent.

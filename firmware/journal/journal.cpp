@@ -81,6 +81,14 @@ void Journal::stamped(icd::Uri uri, icd::Stamp stamp) {
   note(Kind::Stamp, said(uri, stamp));
 }
 
+Journal::Kept Journal::grids_begin() {
+  return append(framed(Kind::Grids, {}));
+}
+
+Journal::Kept Journal::grids_posted(const std::string& name, const lanes::Extent& extent) {
+  return append(framed(Kind::Grids, said(name, extent)));
+}
+
 void Journal::note(Kind kind, std::string_view said) {
   std::string record = framed(kind, said);
   if (append(record) || unsaid_size_ + record.size() > kMostUnsaid) return;

@@ -57,6 +57,9 @@ class Journal {
 
   void paced(icd::Uri uri, const pace::Learned& learned);
   void stamped(icd::Uri uri, icd::Stamp stamp);
+  /// Where grids are posted is told from here on.
+  Kept grids_begin();
+  Kept grids_posted(const std::string& name, const lanes::Extent& extent);
 
   /// Why the last record could not be kept, or "".
   const std::string& trouble() const { return trouble_; }

@@ -25,6 +25,7 @@ enum class Kind : std::uint8_t {
   Pace = 13,   // when a URI may be asked next, and what spacing was learned
   Stamp = 14,  // the last stamp of a URI
   End = 15,    // of a whole snapshot
+  Grids = 16,  // where grids of a name were posted
 };
 
 /// Puts numbers and texts one after the other, little-endian.

@@ -30,6 +30,12 @@ inline Cells around(const Cells& a, const Cells& b) {
   return {x, y, std::max(a.right(), b.right()) - x, std::max(a.top(), b.top()) - y};
 }
 
+/// What lies in both, which overlap.
+inline Cells common(const Cells& a, const Cells& b) {
+  const std::int64_t x = std::max(a.x, b.x), y = std::max(a.y, b.y);
+  return {x, y, std::min(a.right(), b.right()) - x, std::min(a.top(), b.top()) - y};
+}
+
 /// The cells of `grid`, counted from the lower left one of `of`; nothing where they are not of one lattice:
 /// resolution, orientation and height alike, origins a whole number of cells apart, to a thousandth of a
 /// cell.

@@ -67,7 +67,8 @@ MapLane::Senders::iterator MapLane::next(Instant now) {
 std::optional<WaitingMap> MapLane::take(Instant now) {
   if (count_ == 0) return {};
   Waiting& its = next(now)->second;
-  WaitingMap taken = change(its.queue, [&](MapQueue& queue) { return queue.take(now, merge_bytes_); });
+  WaitingMap taken =
+      change(its.queue, [&](MapQueue& queue) { return queue.take(now, merge_bytes_, canvases_); });
   its.turn = turns_.served(its.turn);
   forget_those_that_are_gone();
   for (auto& [sender, waiting] : senders_) waiting.queue.step_forward();

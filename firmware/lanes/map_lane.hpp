@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "icd/map_update.hpp"
+#include "lanes/canvases.hpp"
 #include "lanes/clouds.hpp"
 #include "lanes/map_queue.hpp"
 #include "lanes/sender.hpp"
@@ -25,7 +26,8 @@ namespace adit::lanes {
 /// Within a sender the oldest news goes first. A newer grid replaces one that it covers, and inherits its
 /// age. Grids of that name that it does not cover still go ahead of it, so that old cells are never sent
 /// after newer ones. Clouds are kept in order; take() merges clouds that follow each other, and stitches
-/// grids of one lattice that fill a rectangle (stitch.hpp). A cloud replaces those before it where its
+/// grids of one lattice that fill a rectangle, with what was last sent in the gaps between them where that is
+/// known (stitch.hpp, canvases.hpp). A cloud replaces those before it where its
 /// robot's clouds are said to be whole (Clouds); where nothing is said, the one before it, once somebody has
 /// seen that it has all its points (to_compare(), replace()). Nothing else is ever dropped.
 ///
@@ -61,6 +63,9 @@ class MapLane {
 
   /// The next to be sent, taken out of the lane. Without `now`, nothing rests.
   std::optional<WaitingMap> take(Instant now = Instant::max());
+
+  /// What was sent of each robot's grids: it is to be told what becomes of a grid that was taken.
+  Canvases& canvases() { return canvases_; }
 
   /// A message of that sender took so many bytes of the link: it pays for what is beyond one slot.
   void carried(const Sender& sender, std::size_t bytes);
@@ -117,6 +122,7 @@ class MapLane {
   Senders senders_;
   std::map<icd::RobotName, Clouds> clouds_;
   Turns turns_;
+  Canvases canvases_;
   std::size_t merge_bytes_;
   std::size_t slot_bytes_ = 8u << 20;
   std::size_t count_ = 0, bytes_ = 0;

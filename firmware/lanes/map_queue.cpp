@@ -15,6 +15,9 @@ std::pair<Instant, Instant> rest_of(const WaitingMap& waiting) {
   return {waiting.trial.failed.value_or(Instant{}), waiting.accepted};
 }
 
+/// At what is known of gaps, for one message: this bounds the work.
+constexpr std::size_t kMostLooks = 4096;
+
 /// If not, a newer one need not be looked at beside each that waits.
 bool may_replace(const WaitingMap& newer) {
   return newer.map.is_grid() || newer.is_whole;
@@ -63,7 +66,7 @@ std::pair<Instant, Instant> MapQueue::resting() const {
   return rest_of(*rested_longest());
 }
 
-WaitingMap MapQueue::take(Instant now, std::size_t merge_bytes) {
+WaitingMap MapQueue::take(Instant now, std::size_t merge_bytes, Canvases& canvases) {
   icd::require(!waiting_.empty());
   const auto may_go = ready(now);
   const auto chosen = may_go == waiting_.end() ? rested_longest() : may_go;
@@ -72,8 +75,12 @@ WaitingMap MapQueue::take(Instant now, std::size_t merge_bytes) {
   std::vector<bool> leaves(waiting_.size());
   leaves[place] = true;
   WaitingMap next = *chosen;
-  if (may_join(next) && next.map.is_grid()) stitch_followers(next, place, leaves);
-  if (may_join(next) && !next.map.is_grid()) merge_followers(next, merge_bytes, leaves);
+  if (next.map.is_grid()) {
+    if (may_join(next)) stitch_followers(next, place, canvases.find(next.map.name), leaves);
+    canvases.sends(next);
+  } else if (may_join(next)) {
+    merge_followers(next, merge_bytes, leaves);
+  }
   auto leaving = leaves.begin();
   std::erase_if(waiting_, [&](const WaitingMap& waiting) {
     if (!*leaving++) return false;
@@ -113,19 +120,30 @@ std::vector<std::size_t> MapQueue::that_follow(std::size_t place) const {
   return places;
 }
 
-void MapQueue::stitch_followers(WaitingMap& next, std::size_t place, std::vector<bool>& leaves) const {
+/// What failed, or is sent by itself, may go behind newer ones: while such a one waits, what lies under the
+/// others is not relied on.
+void MapQueue::stitch_followers(WaitingMap& next, std::size_t place, const Canvas* canvas,
+                                std::vector<bool>& leaves) const {
   const auto grid_at = [this](std::size_t i) { return &std::get<icd::OccupancyGrid>(waiting_[i].map.msg); };
   const auto places = that_follow(place);
   std::vector<Cells> cells;
   cells.reserve(places.size());
   for (const std::size_t i : places) cells.push_back(*cells_in(*grid_at(place), *grid_at(i)));
-  const Stitch found = stitch(cells);
+  const auto first = canvas == nullptr ? std::nullopt : canvas->cells_of(*grid_at(place));
+  std::size_t looks = kMostLooks;
+  const Stitch found = first && std::ranges::all_of(waiting_, may_join)
+                           ? stitch(cells,
+                                    [&](const Cells& all, std::span<const Cells> those) {
+                                      return canvas->knows(*first, all, those, looks);
+                                    })
+                           : stitch(cells);
   if (found.which.size() < 2) return;
   std::vector<const icd::OccupancyGrid*> grids;
   grids.reserve(found.which.size());
   for (const std::size_t i : found.which) grids.push_back(grid_at(places[i]));
   const auto whole = stitched(grids);
   if (!whole) return;
+  if (found.has_gaps && !(Canvas::can_draw(*whole) && canvas->cells_of(*whole))) return;
   for (const std::size_t i : found.which) {
     if (places[i] == place) continue;
     leaves[places[i]] = true;
@@ -133,6 +151,7 @@ void MapQueue::stitch_followers(WaitingMap& next, std::size_t place, std::vector
   }
   next.map.data = {{}, icd::Compression::None, std::size_t{whole->width} * whole->height};
   next.map.msg = *whole;
+  next.has_gaps = found.has_gaps;
 }
 
 /// Where what comes back belongs.
@@ -141,6 +160,14 @@ MapQueue::Maps::const_iterator MapQueue::before_newer(const WaitingMap& back) co
 }
 
 std::vector<std::uint64_t> MapQueue::put_back(WaitingMap map) {
+  map.ground.reset();
+  if (map.has_gaps) {
+    // What lay between its parts may be older than what is there by the next try.
+    const bool may_join_again = may_join(map);
+    const auto place = before_newer(map);
+    insert(place, parts_of(std::move(map), may_join_again));
+    return {};
+  }
   const auto newer =
       std::ranges::find_if(waiting_, [&](const WaitingMap& waiting) { return replaces(waiting, map); });
   if (newer == waiting_.end()) {
@@ -159,7 +186,10 @@ std::vector<std::uint64_t> MapQueue::put_back(WaitingMap map) {
 
 void MapQueue::put_back_apart(WaitingMap map) {
   const auto place = before_newer(map);
-  auto parts = parts_of(std::move(map));
+  insert(place, parts_of(std::move(map), /*may_join_again=*/false));
+}
+
+void MapQueue::insert(Maps::const_iterator place, std::vector<WaitingMap> parts) {
   std::size_t bytes = 0;
   for (const WaitingMap& part : parts) bytes += bytes_held(part);
   waiting_.insert(place, std::move_iterator(parts.begin()), std::move_iterator(parts.end()));

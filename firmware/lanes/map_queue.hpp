@@ -7,6 +7,7 @@
 #include <utility>
 #include <vector>
 
+#include "lanes/canvases.hpp"
 #include "lanes/successive.hpp"
 #include "lanes/waiting_map.hpp"
 
@@ -25,7 +26,7 @@ class MapQueue {
   /// Since when one rests and how old it is, of the one that rested longest. Requires a map.
   std::pair<Instant, Instant> resting() const;
   /// The oldest news of those that may go; if none may, what rested longest. Requires a map.
-  WaitingMap take(Instant now, std::size_t merge_bytes);
+  WaitingMap take(Instant now, std::size_t merge_bytes, Canvases& canvases);
   std::vector<std::uint64_t> put_back(WaitingMap map);
   void put_back_apart(WaitingMap map);
   void step_forward();  // nothing steps behind any more
@@ -53,7 +54,9 @@ class MapQueue {
   Maps::const_iterator before_newer(const WaitingMap& back) const;
   /// Each adds to `leaves`, in the order of waiting_, what goes with the next.
   void merge_followers(WaitingMap& next, std::size_t merge_bytes, std::vector<bool>& leaves) const;
-  void stitch_followers(WaitingMap& next, std::size_t place, std::vector<bool>& leaves) const;
+  void stitch_followers(WaitingMap& next, std::size_t place, const Canvas* canvas,
+                        std::vector<bool>& leaves) const;
+  void insert(Maps::const_iterator place, std::vector<WaitingMap> parts);
   std::vector<std::size_t> that_follow(std::size_t place) const;
 
   Maps waiting_;

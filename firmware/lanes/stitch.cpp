@@ -20,22 +20,15 @@ bool fill_row(const Cells& all, const std::vector<Cells>& tiles, std::int64_t y)
   return filled == all.right();
 }
 
-/// Whether they leave no gap at all: the same tiles lie in all rows between two of their edges.
-bool fill(const Cells& all, std::vector<Cells> tiles) {
-  std::ranges::sort(tiles, {}, &Cells::x);
-  if (!fill_row(all, tiles, all.y)) return false;
-  return std::ranges::all_of(tiles, [&](const Cells& tile) {
-    return (tile.y == all.y || fill_row(all, tiles, tile.y)) &&
-           (tile.top() == all.top() || fill_row(all, tiles, tile.top()));
-  });
-}
-
-/// Whether those within `all` have as many cells as it, and it is not too large.
-bool may_fill(const Cells& all, std::span<const Cells> grids) {
+/// Whether those within `all` have as many cells as it, or, `with_gaps`, are not too few for it.
+bool may_fill(const Cells& all, std::span<const Cells> grids, bool with_gaps) {
   if (all.width > kMostStitchedCells / all.height) return false;
   std::int64_t most = 0;
-  for (const Cells& grid : grids) most += all.holds(grid) ? grid.width * grid.height : 0;
-  return most >= all.width * all.height;
+  for (const Cells& grid : grids) {
+    const bool is_in = all.holds(grid) && grid.width <= kMostStitchedCells / grid.height;
+    most += is_in ? grid.width * grid.height : 0;
+  }
+  return most * (with_gaps ? kMostFilled : 1) >= all.width * all.height;
 }
 
 /// Those within `all` that overlap nothing older which stays behind.
@@ -61,26 +54,38 @@ std::vector<Cells> of_those(std::span<const Cells> grids, const std::vector<std:
 }
 
 /// What fills `all`; nothing where it cannot be filled.
-std::optional<Stitch> filling(const Cells& all, std::span<const Cells> grids) {
+std::optional<Stitch> filling(const Cells& all, std::span<const Cells> grids, const Known& known) {
   auto which = that_may_go(all, grids);
-  if (!fill(all, of_those(grids, which))) return {};
-  return Stitch{std::move(which), all};
+  const auto those = of_those(grids, which);
+  const bool has_gaps = !fill(all, those);
+  if (has_gaps && !(known && known(all, those))) return {};
+  return Stitch{std::move(which), all, has_gaps};
 }
 
 }  // namespace
 
+/// The same tiles lie in all rows between two of their edges.
+bool fill(const Cells& all, std::vector<Cells> tiles) {
+  std::ranges::sort(tiles, {}, &Cells::x);
+  if (!fill_row(all, tiles, all.y)) return false;
+  return std::ranges::all_of(tiles, [&](const Cells& tile) {
+    return (tile.y == all.y || fill_row(all, tiles, tile.y)) &&
+           (tile.top() == all.top() || fill_row(all, tiles, tile.top()));
+  });
+}
+
 /// Grows the rectangle by one grid after the other, and by all that lie within it then.
-Stitch stitch(std::span<const Cells> grids) {
+Stitch stitch(std::span<const Cells> grids, const Known& known) {
   grids = grids.first(std::min(grids.size(), kMostStitched));
   Stitch best{{0}, grids.front()};
-  if (!may_fill(best.cells, grids)) return best;
-  if (auto with_those_within = filling(best.cells, grids)) best = std::move(*with_those_within);
+  if (!may_fill(best.cells, grids, false)) return best;
+  if (auto with_those_within = filling(best.cells, grids, {})) best = std::move(*with_those_within);
   std::size_t tries = 0;
   for (std::size_t i = 0, in_vain = 0; in_vain < grids.size() && tries < kMostTries; ++i, ++in_vain) {
     const Cells all = around(best.cells, grids[i % grids.size()]);
-    if (all == best.cells || !may_fill(all, grids)) continue;
+    if (all == best.cells || !may_fill(all, grids, known != nullptr)) continue;
     ++tries;
-    if (auto larger = filling(all, grids)) {
+    if (auto larger = filling(all, grids, known)) {
       best = std::move(*larger);
       in_vain = 0;
     }

@@ -58,11 +58,11 @@ void join(WaitingMap& to, const WaitingMap& from) {
 }
 
 /// What it has replaced since it was put together, no part alone may say all of: it goes with the last.
-std::vector<WaitingMap> parts_of(WaitingMap map) {
+std::vector<WaitingMap> parts_of(WaitingMap map, bool may_join_again) {
   icd::require(!map.parts.empty());
   std::vector<std::uint64_t> of_parts, others;
   for (WaitingMap& part : map.parts) {
-    part.alone = true;
+    part.alone = !may_join_again;
     of_parts.insert(of_parts.end(), part.updates.begin(), part.updates.end());
   }
   std::ranges::sort(of_parts);

@@ -2,11 +2,13 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <memory>
 #include <optional>
 #include <vector>
 
 #include "icd/map_update.hpp"
 #include "lanes/blame.hpp"
+#include "lanes/ground.hpp"
 
 namespace adit::lanes {
 
@@ -32,6 +34,10 @@ struct WaitingMap {
   /// grid are in its parts alone, until it is packed.
   std::vector<WaitingMap> parts{};
   bool alone = false;  // not to be merged or stitched with others
+  /// Of a stitched grid: its parts do not fill it, and the cells between them are those of `ground`.
+  bool has_gaps = false;
+  /// Of a grid that was taken to be sent: what lies under it. Null: it is not drawn (Canvases).
+  std::shared_ptr<const Ground> ground{};
   /// Of a cloud: it says all that those said which came before it.
   bool is_whole = false;
   /// Of a cloud: it is known whether it has all points of the one before it.
@@ -63,8 +69,8 @@ void take_over(WaitingMap& to, WaitingMap from);
 /// bytes are shared, so that this costs next to nothing.
 void join(WaitingMap& to, const WaitingMap& from);
 
-/// Takes `map` apart: each part with its updates, to be sent by itself. Requires parts.
-std::vector<WaitingMap> parts_of(WaitingMap map);
+/// Takes `map` apart: each part with its updates, to be joined again or sent by itself. Requires parts.
+std::vector<WaitingMap> parts_of(WaitingMap map, bool may_join_again);
 
 /// Whether it may be sent within another one, or another one within it.
 bool may_join(const WaitingMap& map);

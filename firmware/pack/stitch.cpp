@@ -39,8 +39,11 @@ class Laying {
 
 }  // namespace
 
-icd::Checked<icd::MapData> stitch(std::size_t width, std::size_t height, std::span<const Tile> tiles) {
-  const auto cells = std::make_shared<std::vector<std::uint8_t>>(width * height, icd::kUnknownCell);
+icd::Checked<icd::MapData> stitch(std::size_t width, std::size_t height, std::span<const Tile> tiles,
+                                  std::vector<std::uint8_t> under) {
+  if (under.empty()) under.assign(width * height, icd::kUnknownCell);
+  icd::require(under.size() == width * height);
+  const auto cells = std::make_shared<std::vector<std::uint8_t>>(std::move(under));
   for (const Tile& tile : tiles) {
     icd::require(tile.column + tile.width <= width && tile.row + tile.height <= height);
     Laying laying{*cells, width, tile};

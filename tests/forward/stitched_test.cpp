@@ -66,5 +66,34 @@ TEST(StitchedMap, HasNoBodyWhereAPartIsDamaged) {
   EXPECT_TRUE(packed(taken_of({row_at(0, {1, 2, 3}), damaged})).body.empty());
 }
 
+TEST(StitchedMap, HasWhatWasSentLastInTheGapsBetweenItsParts) {
+  lanes::MapLane lane{0};
+  std::uint64_t number = 0;
+  const auto take = [&](const std::vector<icd::MapUpdate>& maps) {
+    for (const icd::MapUpdate& map : maps) lane.add(++number, map, lanes::Instant{});
+    auto waiting = *lane.take();
+    Packed map = packed(waiting);
+    EXPECT_TRUE(map.drawn);
+    if (map.drawn) lane.canvases().lay(waiting.map.name, *map.drawn);
+    return map;
+  };
+  take({row_at(0, {1, 2, 3, 4})});
+  EXPECT_THAT(cells_of(take({row_at(-1, {7, 8}), row_at(3, {9, 9})}).stitched),
+              ElementsAre(7, 8, 2, 3, 9, 9));
+  EXPECT_THAT(cells_of(take({row_at(4, {5}), row_at(7, {6})}).stitched),
+              ElementsAre(5, icd::kUnknownCell, icd::kUnknownCell, 6))
+      << "never sent";
+}
+
+TEST(StitchedMap, IsNotDrawnWhereItIsDamaged) {
+  auto damaged = row_at(3, {4, 5, 6});
+  auto bytes = damaged.data.bytes.to_vector();
+  bytes[bytes.size() - 6] ^= 1;
+  damaged.data.bytes = icd::ChunkedBytes{bytes};
+  const Packed map = packed(taken_of({damaged}));
+  EXPECT_FALSE(map.body.empty()) << "it goes as it came";
+  EXPECT_FALSE(map.drawn);
+}
+
 }  // namespace
 }  // namespace adit::forward

@@ -167,6 +167,21 @@ TEST(Carried, PassesOverWhatItDoesNotUnderstand) {
   EXPECT_THAT(carried.markers().markers, IsEmpty());
 }
 
+TEST(Carried, KnowsWhereGridsWerePostedOnceThatIsTold) {
+  Carried carried;
+  EXPECT_FALSE(carried.grids());
+  tell(carried, Kind::Grids);
+  EXPECT_THAT(again(carried).grids(), testing::Optional(IsEmpty()));
+  const lanes::Extent first{-1, -2, 3, 4}, larger{-1, -2, 30, 4};
+  tell(carried, Kind::Grids, said(std::string("r1"), first));
+  tell(carried, Kind::Grids, said(std::string("r1"), larger));
+  tell(carried, Kind::Grids, said(std::string("*"), lanes::Extent::everywhere()));
+  EXPECT_FALSE(carried.apply(Kind::Grids, "torn"));
+  carried.machine_is("another start");
+  EXPECT_THAT(again(carried).grids(), testing::Optional(testing::ElementsAre(
+                                          Pair("*", lanes::Extent::everywhere()), Pair("r1", larger))));
+}
+
 /// The law: what a journal comes to is what waits in the lanes, however sending goes and wherever a snapshot
 /// was made.
 TEST(Carried, IsWhatWaitsInTheLanes) {

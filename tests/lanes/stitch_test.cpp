@@ -29,6 +29,28 @@ TEST(Stitch, LeavesNoGap) {
   EXPECT_THAT(which({{0, 0, 4, 4}, {4, 0, 4, 3}, {4, 3, 3, 1}}), ElementsAre(0)) << "one cell";
 }
 
+TEST(Stitch, HasGapsWhereItIsKnownWhatWasSentThere) {
+  const std::vector<Cells> windows{{0, 0, 10, 10}, {2, 3, 10, 10}, {5, 5, 10, 10}};
+  std::vector<Cells> asked;
+  const auto found = stitch(windows, [&](const Cells& all, std::span<const Cells> those) {
+    asked.push_back(all);
+    return those.size() < 3;
+  });
+  EXPECT_THAT(found.which, ElementsAre(0, 1)) << "of the third nothing is known";
+  EXPECT_TRUE(found.has_gaps);
+  EXPECT_THAT(asked, ElementsAre(Cells{0, 0, 12, 13}, Cells{0, 0, 15, 15}));
+  const auto row = stitch(std::vector<Cells>{{0, 0, 4, 4}, {4, 0, 4, 4}}, [](auto&&...) { return true; });
+  EXPECT_FALSE(row.has_gaps);
+}
+
+TEST(Stitch, HasNotMuchMoreCellsThanItsGrids) {
+  const auto know_all = [](auto&&...) { return true; };
+  EXPECT_EQ(stitch(std::vector<Cells>{{0, 0, 10, 10}, {70, 0, 10, 10}}, know_all).which.size(), 2);
+  EXPECT_EQ(stitch(std::vector<Cells>{{0, 0, 10, 10}, {71, 0, 10, 10}}, know_all).which.size(), 1);
+  EXPECT_EQ(stitch(std::vector<Cells>{{0, 0, 1500, 1500}, {1500, 1500, 1500, 1500}}, know_all).which.size(),
+            1);
+}
+
 TEST(Stitch, NeedsOnlyThatAllTogetherFillIt) {
   std::vector<Cells> tiles;
   for (const int place : {4, 0, 8, 5, 2, 7, 1, 6, 3}) tiles.push_back({place % 3 * 5, place / 3 * 5, 5, 5});

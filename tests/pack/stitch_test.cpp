@@ -43,6 +43,11 @@ TEST(StitchedCells, AreTheSameHoweverTheDataIsCut) {
               ElementsAre(255, 255, 255, 1, 2, 3, 4, 5, 6));
 }
 
+TEST(StitchedCells, LieOverWhatIsUnderThem) {
+  EXPECT_THAT(stitch(3, 1, std::vector<Tile>{{cells({9}), 1, 0, 1, 1}}, {1, 2, 3})->bytes.to_vector(),
+              ElementsAre(1, 9, 3));
+}
+
 TEST(StitchedCells, AreRefusedWhereATileIsDamaged) {
   icd::MapData damaged = zipped({1, 2, 3, 4});
   auto bytes = damaged.bytes.to_vector();

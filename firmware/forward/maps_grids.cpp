@@ -1,0 +1,35 @@
+// What is known of the grids that were sent before: in a life before this one, and to another Command Post.
+#include "forward/maps.hpp"
+#include "loop/guard.hpp"
+
+namespace adit::forward {
+
+/// After a power cut the journal is gone: then it is not known where grids were sent, if any were.
+void Maps::carry_on_grids(const journal::Carried& carried, bool ran_before) {
+  lanes::Canvases::Posted posted = carried.grids().value_or(lanes::Canvases::Posted{});
+  const bool is_told = carried.grids() || journal_.grids_begin();
+  const bool is_known = carried.grids() || !ran_before;
+  if (!is_told || !is_known) posted[lanes::Canvases::kAnyName] = lanes::Extent::everywhere();
+  if (!is_known) (void)journal_.grids_posted(lanes::Canvases::kAnyName, lanes::Extent::everywhere());
+  lane_.canvases().carry_on(std::move(posted));
+}
+
+/// So that a life to come knows where nothing can have been sent. False: there is no room for it.
+bool Maps::is_told(const icd::MapUpdate& update) {
+  if (!update.is_grid()) return true;
+  const auto grows = lane_.canvases().grows(update);
+  if (!grows) return true;
+  if (!journal_.grids_posted(grows->first, grows->second)) return false;
+  lane_.canvases().grown(*grows);
+  return true;
+}
+
+/// What was packed for another one is packed again, for it may hold what lay there.
+void Maps::leads_elsewhere() {
+  loop::guarded("maps for another Command Post", [this] {
+    lane_.canvases().lead_to(channel_.address());
+    again();
+  });
+}
+
+}  // namespace adit::forward

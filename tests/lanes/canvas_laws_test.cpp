@@ -1,0 +1,160 @@
+// A window that rolls with its robot, sent with what lies in the gaps between its places: what a Command Post
+// has in the end is what was posted, whatever became of each try.
+#include <gmock/gmock.h>
+
+#include <bitset>
+#include <random>
+#include <vector>
+
+#include "lanes/map_lane.hpp"
+#include "lanes/maps.hpp"
+#include "lanes/packing.hpp"
+
+namespace adit::lanes {
+namespace {
+
+constexpr int kSide = 400;  // cells of the world, with (0, 0) in its middle
+constexpr int kWindow = 14;
+constexpr double kCell = 0.05;
+
+/// The world's cells, as a server has them.
+struct World {
+  std::vector<std::uint8_t> cells = std::vector<std::uint8_t>(std::size_t{kSide} * kSide, icd::kUnknownCell);
+  bool overlays = false;  // unknown overwrites nothing
+
+  void put(const icd::OccupancyGrid& grid, const std::vector<std::uint8_t>& values) {
+    const auto at = *cells_in(lanes::grid(-kSide / 2 * kCell, -kSide / 2 * kCell, 1, 1), grid);
+    auto value = values.begin();
+    for (std::int64_t y = at.y; y < at.top(); ++y) {
+      for (std::int64_t x = at.x; x < at.right(); ++x, ++value) {
+        if (!overlays || *value != icd::kUnknownCell) cells[static_cast<std::size_t>(y * kSide + x)] = *value;
+      }
+    }
+  }
+};
+
+class CanvasLaws : public testing::TestWithParam<std::uint64_t> {
+ protected:
+  void run(int steps) {
+    lane_.canvases() = Canvases{kMostTiles};
+    for (int step = 0; step < steps; ++step) {
+      const int what = pick(400);
+      if (what < 250) post();
+      if (what >= 250 && what < 397) send();
+      if (what == 397) restart();
+      if (what == 398) lane_.canvases().begin_run();
+      if (what == 399) x_ = pick(200) - 100, y_ = pick(200) - 100;  // it is carried away
+    }
+    while (lane_.count() > 0 || following_) send();
+  }
+
+  /// The window has moved; now and then it is another patch.
+  void post() {
+    if (pick(25) == 0) towards_x_ = pick(9) - 4, towards_y_ = pick(9) - 4;
+    x_ = std::clamp(x_ + towards_x_, -150, 130), y_ = std::clamp(y_ + towards_y_, -150, 130);
+    const bool is_patch = pick(12) == 0;
+    const auto side = static_cast<std::uint32_t>(is_patch ? 1 + pick(40) : kWindow);
+    icd::MapUpdate map = grid_update("R1", grid(x_ * kCell, y_ * kCell, side, side));
+    std::vector<std::uint8_t> values(map.data.raw_size);
+    for (auto& value : values)
+      value = pick(4) == 0 ? icd::kUnknownCell : static_cast<std::uint8_t>(pick(101));
+    map.data = {icd::ChunkedBytes{values}, icd::Compression::None, values.size()};
+    posted_.put(std::get<icd::OccupancyGrid>(map.msg), values);
+    note_posted(std::get<icd::OccupancyGrid>(map.msg), values);
+    if (const auto grows = lane_.canvases().grows(map)) {
+      lane_.canvases().grown(*grows);
+      extents_[grows->first] = grows->second;
+    }
+    kept_[++number_] = map;
+    forget(lane_.add(number_, std::move(map), at(static_cast<double>(number_))));
+  }
+
+  void note_posted(const icd::OccupancyGrid& grid, const std::vector<std::uint8_t>& values) {
+    const auto at = *cells_in(lanes::grid(-kSide / 2 * kCell, -kSide / 2 * kCell, 1, 1), grid);
+    auto value = values.begin();
+    for (std::int64_t y = at.y; y < at.top(); ++y) {
+      for (std::int64_t x = at.x; x < at.right(); ++x)
+        ever_posted_[static_cast<std::size_t>(y * kSide + x)].set(*value++);
+    }
+  }
+
+  struct Sent {
+    WaitingMap waiting;
+    std::vector<std::uint8_t> cells;
+  };
+  std::optional<Sent> take() {
+    auto next = lane_.take();
+    if (!next) return {};
+    auto cells = packed_of(lane_, *next);
+    gaps_ += next->has_gaps ? 1 : 0;
+    return Sent{*std::move(next), std::move(cells)};
+  }
+
+  /// The next one is packed while one is under way, of which it may not be known whether it arrived.
+  void send() {
+    auto sent = following_ ? std::exchange(following_, {}) : take();
+    if (!sent) return;
+    if (pick(3) == 0) following_ = take();
+    while (pick(3) == 0) post();
+    const int what = pick(20);
+    if (what > 3) {
+      arrives(*sent);
+      forget(sent->waiting.updates);
+      return;
+    }
+    if (what % 2 == 0) arrives(*sent);  // and nobody knows
+    if (following_) forget(lane_.put_back(std::exchange(following_, {})->waiting));
+    if (what == 3) ++sent->waiting.trial.failures;
+    if (what == 1 && !sent->waiting.parts.empty()) return lane_.put_back_apart(std::move(sent->waiting));
+    forget(lane_.put_back(std::move(sent->waiting)));
+  }
+
+  void arrives(const Sent& sent) {
+    const auto& grid = std::get<icd::OccupancyGrid>(sent.waiting.map.msg);
+    overwriting_.put(grid, sent.cells);
+    overlaying_.put(grid, sent.cells);
+  }
+
+  /// A life that follows has the maps that wait, and where some were sent.
+  void restart() {
+    following_.reset();
+    lane_ = MapLane{0};
+    lane_.canvases() = Canvases{kMostTiles};
+    lane_.canvases().carry_on(extents_);
+    const auto kept = kept_;
+    for (const auto& [number, map] : kept) forget(lane_.add(number, map, at(static_cast<double>(number))));
+  }
+
+  void forget(const std::vector<std::uint64_t>& numbers) {
+    for (const std::uint64_t number : numbers) kept_.erase(number);
+  }
+  int pick(int below) { return std::uniform_int_distribution{0, below - 1}(random_); }
+
+  static constexpr std::size_t kMostTiles = 12;
+  std::mt19937_64 random_{GetParam()};
+  MapLane lane_{0};
+  std::map<std::uint64_t, icd::MapUpdate> kept_;
+  Canvases::Posted extents_;
+  std::optional<Sent> following_;
+  std::uint64_t number_ = 0;
+  int x_ = 0, y_ = 0, towards_x_ = 2, towards_y_ = 3, gaps_ = 0;
+  std::vector<std::bitset<256>> ever_posted_ = std::vector<std::bitset<256>>(std::size_t{kSide} * kSide);
+  World posted_, overwriting_, overlaying_{.overlays = true};
+};
+
+TEST_P(CanvasLaws, AServerHasTheNewestValueOfEachCellThatWasPostedAndNothingElsewhere) {
+  run(1000);
+  EXPECT_GT(gaps_, 3);
+  EXPECT_TRUE(overwriting_.cells == posted_.cells) << "unknown cells too, where it overwrites";
+  for (std::size_t i = 0; i < posted_.cells.size(); ++i) {
+    const std::uint8_t newest = posted_.cells[i], has = overlaying_.cells[i];
+    const bool is_right =
+        newest != icd::kUnknownCell ? has == newest : has == icd::kUnknownCell || ever_posted_[i].test(has);
+    ASSERT_TRUE(is_right) << "cell " << i << ": " << int{has} << " where it overlays, not " << int{newest};
+  }
+}
+
+INSTANTIATE_TEST_SUITE_P(Courses, CanvasLaws, testing::Range(std::uint64_t{1}, std::uint64_t{9}));
+
+}  // namespace
+}  // namespace adit::lanes

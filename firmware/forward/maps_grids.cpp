@@ -28,7 +28,8 @@ bool Maps::is_told(const icd::MapUpdate& update) {
 void Maps::leads_elsewhere() {
   loop::guarded("maps for another Command Post", [this] {
     lane_.canvases().lead_to(channel_.address());
-    again();
+    put_back(following_);
+    put_back(prepared_);
   });
 }
 

@@ -8,6 +8,7 @@
 #include "icd/sentence.hpp"
 #include "simulation/asked.hpp"
 #include "simulation/checks.hpp"
+#include "simulation/courses.hpp"
 #include "simulation/map_messages.hpp"
 #include "simulation/messages.hpp"
 
@@ -16,6 +17,7 @@ namespace {
 
 /// A grid that failed so often at the Command Post lets newer ones pass, to see whether they can.
 constexpr int kInPlace = 3;
+constexpr int kNoValue = 255;
 
 /// A grid that was posted, and what became of it.
 struct PostedGrid {
@@ -65,9 +67,11 @@ void for_each_cell(const Extent& extent, Visit visit) {
   }
 }
 
-/// The grids of one name, and what the Command Post has of them.
+/// The grids of one name, and what the Command Post has of them. What two Command Posts have is taken
+/// together where an operator `switches` between them: then a cell that one of them lacks is not missed.
 class GridsOfOneName {
  public:
+  explicit GridsOfOneName(bool switches) : switches_(switches) {}
   void post(const Asked& asked, const Item& item) {
     posted_.push_back({&asked, item.serial, Extent::from(item.says)});
   }
@@ -88,10 +92,16 @@ class GridsOfOneName {
     std::size_t i = 0;
     bool is_strange = false;
     for_each_cell(message.extent, [&](const Extent& cell) {
-      const Owners& owners = message.cells[i++];
-      is_strange = is_strange || owners.empty();
-      if (owners.size() == 1) owners.front()->taken = place;
-      has_[key_of(cell)] = {place, owners};
+      const int value = event.says.at(kExtentNumbers + i);
+      const Owners& within = message.cells[i++];
+      if (within.size() == 1 && !within.front()->is_taken) within.front()->taken = place;
+      Owners owners = owners_of(cell, value, event.at);
+      const auto had = has_.find(key_of(cell));
+      const bool was_sent = had != has_.end();
+      if (value == kNoValue && was_sent && switches_)  // perhaps to the other one alone
+        owners.insert(owners.end(), had->second.owners.begin(), had->second.owners.end());
+      is_strange = is_strange || (owners.empty() && (value != kNoValue || was_sent));
+      if (!owners.empty()) has_[key_of(cell)] = {place, owners};
     });
     if (is_strange)
       broken.push_back(icd::sentence("GridArrived: cells that nobody posted were taken from '", event.who,
@@ -134,7 +144,7 @@ class GridsOfOneName {
   Message read(const Event& event) {
     Message message{Extent::from(event.says), {}, {}};
     for (PostedGrid& each : posted_) {
-      if (each.asked->began <= event.at && holds(message.extent, each.extent))
+      if (each.asked->began <= event.at && each.asked->may_count() && holds(message.extent, each.extent))
         message.within.push_back(&each);
     }
     std::size_t i = kExtentNumbers;
@@ -148,6 +158,18 @@ class GridsOfOneName {
       message.cells.push_back(std::move(owners));
     });
     return message;
+  }
+
+  /// Those that have that value there, also where they do not lie within the message: what was sent last may
+  /// be sent with what lies about it.
+  Owners owners_of(const Extent& cell, int value, double at) {
+    Owners owners;
+    for (PostedGrid& each : posted_) {
+      if (each.asked->began <= at && each.asked->may_count() && holds(each.extent, cell) &&
+          value_of(each.serial, cell.x, cell.y) == value)
+        owners.push_back(&each);
+    }
+    return owners;
   }
 
   /// Each of its cells is its own, or one that is no older; or of one that let it pass.
@@ -184,6 +206,7 @@ class GridsOfOneName {
     return grid.is_refused || failures >= kInPlace;
   }
 
+  bool switches_;
   std::deque<PostedGrid> posted_;
   std::map<Key, Has> has_;
 };
@@ -192,10 +215,14 @@ class GridsOfOneName {
 
 void grid_arrived(const Evidence& evidence, Broken& broken) {
   const auto all = asked_in(evidence.events, kMap);
+  const bool switches = std::ranges::find(evidence.events, kCourse, &Event::what) != evidence.events.end();
   std::map<std::string, GridsOfOneName> names;
+  const auto of = [&](const std::string& name) -> GridsOfOneName& {
+    return names.try_emplace(name, switches).first->second;
+  };
   for (const Asked& asked : all) {
     const Item& item = asked.items.front();
-    if (is_grid(item.says)) names[item.who].post(asked, item);
+    if (is_grid(item.says)) of(item.who).post(asked, item);
   }
   std::map<std::uint64_t, std::vector<PostedGrid*>> last_sent;  // by connection
   for (std::size_t i = 0; i < evidence.events.size(); ++i) {
@@ -208,8 +235,8 @@ void grid_arrived(const Evidence& evidence, Broken& broken) {
     if (event.kind != Kind::Taken && event.kind != Kind::Left) continue;
     sent.clear();
     if (!is_grid(event.says)) continue;
-    sent = names[event.who].sent(event);
-    if (event.kind == Kind::Taken) names[event.who].taken(event, i, broken);
+    sent = of(event.who).sent(event);
+    if (event.kind == Kind::Taken) of(event.who).taken(event, i, broken);
   }
   for (const auto& [name, grids] : names) grids.check(name, broken);
 }

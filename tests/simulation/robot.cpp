@@ -1,5 +1,6 @@
 #include "simulation/robot.hpp"
 
+#include <algorithm>
 #include <utility>
 #include <vector>
 
@@ -43,7 +44,8 @@ Robot::Robot(World& world, int number)
       wipes_(random_.chance(0.5) ? 0.1 : 0),
       writings_(world.random("writings of " + name_).chance(0.01) ? kWritings : 0),
       serial_(number * kSerials),
-      whole_(world.random("whole clouds of " + name_).chance(0.3)) {}
+      whole_(world.random("whole clouds of " + name_).chance(0.3)),
+      rolls_(world.random("rolling grids of " + name_).chance(0.3)) {}
 
 void Robot::post_until(double end) {
   end_ = end;
@@ -71,11 +73,14 @@ void Robot::post() {
 Posting Robot::next() {
   if (row_ > 0) {
     --row_;
+    if (row_of_grids_) return {kMap, {grid()}};
     return clouds();
   }
   if (writings_ > 0 && random_.chance(0.5)) return markers();
   const double kind = random_.unit();
   if (kind < 0.35) return {kState, {item(name_)}};
+  row_of_grids_ = rolls_ && kind < 0.55;
+  if (row_of_grids_) row_ = 1 + random_.below(5);
   if (kind < 0.55) return {kMap, {grid()}};
   if (kind < 0.8) return markers();
   if (random_.chance(0.4)) row_ = 1 + random_.below(5);
@@ -92,6 +97,7 @@ Item Robot::item(std::string who, Says says) {
 
 /// Half of them are its whole map, which grows; the others are patches anywhere, some on another lattice.
 Item Robot::grid() {
+  if (rolls_ && random_.chance(0.9)) return window();
   if (random_.chance(0.5)) {
     if (random_.chance(0.2) && extent_.width < kLargest) ++extent_.width, ++extent_.height;
     if (random_.chance(0.1)) extent_.x -= 2, ++extent_.width;
@@ -103,6 +109,14 @@ Item Robot::grid() {
                      .width = between(random_, 2, 12),
                      .height = between(random_, 2, 12)};
   return item(name_, patch.says());
+}
+
+Item Robot::window() {
+  constexpr int kFarthest = 60;  // half cells
+  window_.x = std::clamp(window_.x + 2 * between(random_, -1, 3), -kFarthest, kFarthest);
+  window_.y = std::clamp(window_.y + 2 * between(random_, -1, 3), -kFarthest, kFarthest);
+  if (window_.x == kFarthest || window_.y == kFarthest) window_.x = window_.y = -kFarthest;
+  return item(name_, window_.says());
 }
 
 /// Some are of no robot.

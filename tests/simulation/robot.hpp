@@ -27,6 +27,7 @@ class Robot {
   void post();
   Item item(std::string who, Says says = {});
   Item grid();
+  Item window();
   Item cloud();
   Posting clouds();
   Posting markers();
@@ -49,7 +50,10 @@ class Robot {
   Extent extent_;           // of its own map, which grows
   const bool whole_;        // each of its clouds has all points since its map began
   std::vector<Item> said_;  // then its clouds since, the newest first
-  std::uint64_t row_ = 0;   // clouds still to come in this row
+  std::uint64_t row_ = 0;   // maps still to come in this row
+  const bool rolls_;        // its grids are a window that moves with it, several in a row
+  bool row_of_grids_ = false;
+  Extent window_{.width = 12, .height = 12};
 };
 
 }  // namespace adit::simulation

@@ -1,17 +1,21 @@
 #include "codec/cbor_writer.hpp"
 
-#include <algorithm>
 #include <bit>
+#include <cstring>
+#include <span>
 #include <utility>
 
 namespace adit::codec {
 
 /// The number's `size` bytes follow, the highest first.
 void CborWriter::head(Major major, std::uint8_t info, std::uint64_t number, std::size_t size) {
-  std::array<std::uint8_t, 9> bytes{};
-  bytes[0] = static_cast<std::uint8_t>(static_cast<unsigned>(major) << 5 | info);
-  for (std::size_t at = size; at > 0; --at, number >>= 8) bytes[at] = static_cast<std::uint8_t>(number);
-  put(std::span(bytes).first(1 + size));
+  if (latest_.size() - used_ < 1 + sizeof number) flush();
+  latest_[used_++] = static_cast<std::uint8_t>(static_cast<unsigned>(major) << 5 | info);
+  if (size == 0) return;
+  number <<= 8 * (sizeof number - size);
+  if constexpr (std::endian::native == std::endian::little) number = std::byteswap(number);
+  std::memcpy(&latest_[used_], &number, sizeof number);
+  used_ += size;
 }
 
 void CborWriter::head(Major major, std::uint64_t argument) {
@@ -32,7 +36,11 @@ void CborWriter::array(std::size_t elements) {
 
 void CborWriter::text(std::string_view utf8) {
   head(Major::Text, utf8.size());
-  put({reinterpret_cast<const std::uint8_t*>(utf8.data()), utf8.size()});
+  if (utf8.size() > latest_.size() - used_) flush();
+  if (utf8.size() > latest_.size())
+    return out_.append({reinterpret_cast<const std::uint8_t*>(utf8.data()), utf8.size()});
+  std::memcpy(latest_.data() + used_, utf8.data(), utf8.size());
+  used_ += utf8.size();
 }
 
 void CborWriter::whole(std::int64_t number) {
@@ -55,13 +63,6 @@ void CborWriter::byte_string(const icd::ChunkedBytes& bytes) {
   head(Major::Bytes, bytes.size());
   flush();
   out_.append(bytes);
-}
-
-void CborWriter::put(std::span<const std::uint8_t> bytes) {
-  if (bytes.size() > latest_.size() - used_) flush();
-  if (bytes.size() > latest_.size()) return out_.append(bytes);
-  std::ranges::copy(bytes, latest_.begin() + static_cast<std::ptrdiff_t>(used_));
-  used_ += bytes.size();
 }
 
 void CborWriter::flush() {

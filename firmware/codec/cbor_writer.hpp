@@ -3,7 +3,6 @@
 #include <array>
 #include <cstddef>
 #include <cstdint>
-#include <span>
 #include <string_view>
 
 #include "codec/cbor_head.hpp"
@@ -30,11 +29,10 @@ class CborWriter {
  private:
   void head(Major major, std::uint8_t info, std::uint64_t number, std::size_t size);
   void head(Major major, std::uint64_t argument);
-  void put(std::span<const std::uint8_t> bytes);
   void flush();
 
   icd::ChunkedBytes out_;
-  std::array<std::uint8_t, 1024> latest_;  // what follows, together: an item is a few bytes
+  std::array<std::uint8_t, 4096> latest_;  // what follows, together: an item is a few bytes
   std::size_t used_ = 0;
 };
 

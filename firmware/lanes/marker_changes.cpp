@@ -16,34 +16,55 @@ std::size_t MarkerChanges::bytes_at(const Key& key) const {
   return known == places_.end() ? 0 : icd::bytes_of(by_place_.at(known->second));
 }
 
-void MarkerChanges::insert(Place place, icd::Marker marker) {
+void MarkerChanges::insert(Place place, icd::Marker&& marker, Places::const_iterator next) {
   size_ = {size_.count + 1, size_.bytes + icd::bytes_of(marker)};
-  if (marker.action != icd::MarkerAction::DeleteAll) places_.insert_or_assign({marker.ns, marker.id}, place);
-  if (marker.action == icd::MarkerAction::Delete) deletes_.insert(place);
-  by_place_.emplace(place, std::move(marker));
+  if (marker.action != icd::MarkerAction::DeleteAll)
+    places_.emplace_hint(next, Key{marker.ns, marker.id}, place);
+  if (marker.action == icd::MarkerAction::Delete) deletes_.insert(deletes_.end(), place);
+  by_place_.emplace_hint(by_place_.end(), place, std::move(marker));
 }
 
-icd::Marker MarkerChanges::extract(Place place) {
-  icd::Marker marker = std::move(by_place_.extract(place).mapped());
+void MarkerChanges::replace(InOrder::iterator older, icd::Marker&& marker) {
+  size_.bytes = size_.bytes - icd::bytes_of(older->second) + icd::bytes_of(marker);
+  if (older->second.action == icd::MarkerAction::Delete) deletes_.erase(older->first);
+  if (marker.action == icd::MarkerAction::Delete) deletes_.insert(older->first);
+  older->second = std::move(marker);
+}
+
+icd::Marker MarkerChanges::extract(InOrder::iterator change) {
+  icd::Marker marker = std::move(change->second);
   size_ = {size_.count - 1, size_.bytes - icd::bytes_of(marker)};
-  if (marker.action != icd::MarkerAction::DeleteAll) places_.erase({marker.ns, marker.id});
-  deletes_.erase(place);
+  if (marker.action != icd::MarkerAction::DeleteAll) places_.erase(places_.find(marker));
+  if (marker.action == icd::MarkerAction::Delete) deletes_.erase(change->first);
+  by_place_.erase(change);
   return marker;
+}
+
+MarkerChanges MarkerChanges::wipe(icd::Marker delete_all) {
+  MarkerChanges needless = std::exchange(*this, {});
+  next_ = needless.next_;
+  insert(next_++, std::move(delete_all));
+  return needless;
 }
 
 MarkerChanges::Place MarkerChanges::apply(icd::Marker marker) {
   if (marker.action == icd::MarkerAction::DeleteAll) {
-    *this = MarkerChanges(next_);
-    insert(next_, std::move(marker));
-    return next_++;
+    wipe(std::move(marker));
+    return next_ - 1;
   }
-  const auto known = places_.find({marker.ns, marker.id});
-  const Place place = known == places_.end() ? next_ : known->second;
-  if (known != places_.end()) extract(place);
-  // Nothing of it is left to delete: what added it is all that goes.
-  if (marker.action == icd::MarkerAction::Delete && begins_with_delete_all()) return by_place_.begin()->first;
-  insert(place, std::move(marker));
-  next_ = std::max(next_, place + 1);
+  const auto known = places_.lower_bound(marker);
+  const bool is_known = known != places_.end() && !ByKey()(marker, known->first);
+  if (marker.action == icd::MarkerAction::Delete && begins_with_delete_all()) {
+    // Nothing of it is left to delete: what added it is all that goes.
+    if (is_known) extract(known->second);
+    return by_place_.begin()->first;
+  }
+  const Place place = is_known ? known->second : next_++;
+  if (is_known) {
+    replace(by_place_.find(place), std::move(marker));
+  } else {
+    insert(place, std::move(marker), known);
+  }
   return place;
 }
 
@@ -55,7 +76,7 @@ MarkerChanges::Place MarkerChanges::apply_before(MarkerChanges older) {
   }
   Place place = first - static_cast<Place>(older.size().count);
   for (auto& [its, marker] : older.by_place_) {
-    const auto newer = places_.find({marker.ns, marker.id});
+    const auto newer = places_.find(marker);
     const bool stands = marker.action == icd::MarkerAction::DeleteAll || newer == places_.end();
     insert(place++, stands ? std::move(marker) : extract(newer->second));
   }
@@ -65,9 +86,9 @@ MarkerChanges::Place MarkerChanges::apply_before(MarkerChanges older) {
 std::optional<icd::Marker> MarkerChanges::remove(const icd::Marker& like) {
   if (like.action == icd::MarkerAction::DeleteAll) {
     if (!begins_with_delete_all()) return {};
-    return extract(by_place_.begin()->first);
+    return extract(by_place_.begin());
   }
-  const auto known = places_.find({like.ns, like.id});
+  const auto known = places_.find(like);
   if (known == places_.end()) return {};
   return extract(known->second);
 }
@@ -80,7 +101,7 @@ std::vector<icd::Marker> MarkerChanges::take(Size most) {
     const std::size_t bytes = icd::bytes_of(by_place_.begin()->second);
     if (!taken.empty() && bytes > most.bytes - std::min(most.bytes, taken_bytes)) break;
     taken_bytes += bytes;
-    taken.push_back(extract(by_place_.begin()->first));
+    taken.push_back(extract(by_place_.begin()));
   }
   return taken;
 }
@@ -92,7 +113,7 @@ MarkerChanges::Size MarkerChanges::size_with(const std::vector<icd::Marker>& new
   });
   const bool wiped = wipe != newer.rend();
   Size size = wiped ? Size{1, icd::bytes_of(*wipe)} : size_;
-  std::map<Key, std::size_t> bytes_now;  // of those that `newer` changes; 0: none
+  std::map<Key, std::size_t, ByKey> bytes_now;  // of those that `newer` changes; 0: none
   for (auto marker = wiped ? wipe.base() : newer.begin(); marker != newer.end(); ++marker) {
     const Key key{marker->ns, marker->id};
     std::size_t& bytes = bytes_now.try_emplace(key, wiped ? 0 : bytes_at(key)).first->second;

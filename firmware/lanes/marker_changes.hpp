@@ -33,6 +33,8 @@ class MarkerChanges {
   /// Adds a change that comes after all others; gives the place of the change that stands for it, or of the
   /// DeleteAll that made it needless.
   Place apply(icd::Marker marker);
+  /// The same for a DeleteAll, and gives what it made needless: to free much of that takes long.
+  MarkerChanges wipe(icd::Marker delete_all);
   /// As if all of `older` had been applied before the others; gives a place that is after all that came of
   /// it, and before all others. Costs by what is in `older`, not by what waits.
   Place apply_before(MarkerChanges older);
@@ -49,25 +51,44 @@ class MarkerChanges {
   /// Whether what waits makes an earlier change of that marker needless.
   bool says_more_than(const icd::Marker& earlier) const {
     return begins_with_delete_all() ||
-           (earlier.action != icd::MarkerAction::DeleteAll && places_.contains({earlier.ns, earlier.id}));
+           (earlier.action != icd::MarkerAction::DeleteAll && places_.contains(earlier));
   }
   /// Whether a change of the same ns and id waits, or it is a DeleteAll: applying it adds no change.
   bool holds(const icd::Marker& marker) const {
-    return marker.action == icd::MarkerAction::DeleteAll || places_.contains({marker.ns, marker.id});
+    return marker.action == icd::MarkerAction::DeleteAll || places_.contains(marker);
   }
   const std::map<Place, icd::Marker>& in_order() const { return by_place_; }
   bool begins_with_delete_all() const;
 
  private:
-  using Key = std::pair<std::string, std::int32_t>;  // ns and id (ICD 6.6)
+  /// Of ns and id (ICD 6.6), as a marker has them; the id first, which alone tells most of them apart.
+  struct Key {
+    std::string ns;
+    std::int32_t id = 0;
+  };
+  struct ByKey {
+    using is_transparent = void;
+    template <class A, class B>
+    bool operator()(const A& a, const B& b) const {
+      return a.id != b.id ? a.id < b.id : a.ns < b.ns;
+    }
+  };
+  using InOrder = std::map<Place, icd::Marker>;
+  using Places = std::map<Key, Place, ByKey>;
 
-  explicit MarkerChanges(Place next) : next_(next) {}
   std::size_t bytes_at(const Key& key) const;
-  void insert(Place place, icd::Marker marker);
-  icd::Marker extract(Place place);
+  /// `next`: the first in places_ that is after it, of a marker that is not there.
+  void insert(Place place, icd::Marker&& marker, Places::const_iterator next);
+  void insert(Place place, icd::Marker&& marker) {
+    const auto next = places_.lower_bound(marker);
+    insert(place, std::move(marker), next);
+  }
+  void replace(InOrder::iterator older, icd::Marker&& marker);
+  icd::Marker extract(InOrder::iterator change);
+  icd::Marker extract(Place place) { return extract(by_place_.find(place)); }
 
-  std::map<Place, icd::Marker> by_place_;
-  std::map<Key, Place> places_;
+  InOrder by_place_;
+  Places places_;
   std::set<Place> deletes_;  // that are no DeleteAll
   Place next_ = 0;
   Size size_;

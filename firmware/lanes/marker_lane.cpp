@@ -30,8 +30,22 @@ icd::MarkersUpdate MarkerLane::those_that_wait(const icd::MarkersUpdate& update)
 }
 
 void MarkerLane::add(icd::MarkersUpdate update, Instant now) {
-  auto last = WaitingUpdates::kNowhere;
-  for (icd::Marker& marker : update.markers) last = std::max(last, changes_.apply(std::move(marker)));
+  end_of_update(add_part(update.markers, WaitingUpdates::kNowhere), now);
+}
+
+MarkerChanges::Place MarkerLane::add_part(std::span<icd::Marker> some, MarkerChanges::Place last) {
+  for (icd::Marker& marker : some) {
+    if (marker.action == icd::MarkerAction::DeleteAll) {
+      needless_.push_back(changes_.wipe(std::move(marker)));
+      last = changes_.in_order().begin()->first;
+    } else {
+      last = std::max(last, changes_.apply(std::move(marker)));
+    }
+  }
+  return last;
+}
+
+void MarkerLane::end_of_update(MarkerChanges::Place last, Instant now) {
   updates_.add(last, 1, now);
   updates_.join(changes_);
 }

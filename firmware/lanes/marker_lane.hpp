@@ -3,6 +3,8 @@
 #include <cstddef>
 #include <cstdint>
 #include <optional>
+#include <span>
+#include <utility>
 #include <vector>
 
 #include "icd/markers_update.hpp"
@@ -44,6 +46,14 @@ class MarkerLane {
   /// holds the newest of each. Without what stands before its last DeleteAll, which is needless.
   icd::MarkersUpdate those_that_wait(const icd::MarkersUpdate& update) const;
   void add(icd::MarkersUpdate update, Instant now);
+  /// The same in parts, where it is so large that all at once would take long: `some` of its markers, which
+  /// are moved from, and `last` as the part before gave it, or kNowhere; after the last part,
+  /// end_of_update(). Nothing is taken meanwhile.
+  MarkerChanges::Place add_part(std::span<icd::Marker> some, MarkerChanges::Place last);
+  void end_of_update(MarkerChanges::Place last, Instant now);
+  /// What a DeleteAll made needless since this was asked last: to free much of that takes long, and any
+  /// thread may do it.
+  std::vector<MarkerChanges> needless() { return std::exchange(needless_, {}); }
   /// The oldest pending changes, in order. Updates are counted in the message that sends the last of their
   /// markers.
   std::optional<WaitingMarkers> take();
@@ -79,6 +89,7 @@ class MarkerLane {
   MarkerChanges::Place ahead_ = WaitingUpdates::kNowhere;  // of the last that went ahead
   MarkerChanges changes_;
   WaitingUpdates updates_;
+  std::vector<MarkerChanges> needless_;
 };
 
 }  // namespace adit::lanes

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <map>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -18,7 +19,7 @@ class AsForwarded {
   static constexpr std::size_t kMostRobots = 100;  // those heard of last
 
   void forwarded(const icd::StateUpdate& update, api::Time now);
-  void forwarded(const icd::MarkersUpdate& update, api::Time now) { markers_.forwarded(update, now); }
+  void forwarded(std::span<const icd::Marker> markers, api::Time now) { markers_.forwarded(markers, now); }
   /// A new run begins without tracks and markers; where each robot is, it still is.
   void begin_run(api::Time now);
 

@@ -42,6 +42,7 @@ class Aside {
   /// Whoever keeps the message forgets it only once that is written: then `written` is called, on the loop.
   /// False: there is nothing to write, and `written` is not called. Where it throws, nothing is overtaken.
   bool taken(const lanes::Message& message, std::function<void()> written = [] {});
+  bool empty() const { return items_.items().empty(); }
   /// What made place for newer ones and was not overtaken, ever.
   std::uint64_t dropped() const { return dropped_; }
   /// Whether all that was to be told by the writer has been.

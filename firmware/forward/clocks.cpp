@@ -38,12 +38,13 @@ void Clocks::stamp(icd::MarkersUpdate& update, const std::string& address) {
   std::set<std::string> senders;
   std::string_view ns;
   auto sender = senders.end();
+  const double now = loop_.stamp_now();
   for (icd::Marker& marker : update.markers) {
     if (sender == senders.end() || marker.ns != ns) {
       sender = senders.insert(address + "/markers/" + marker.ns).first;
       ns = marker.ns;
     }
-    marker.header.stamp = senders_.shift(*sender, marker.header.stamp, loop_.stamp_now());
+    marker.header.stamp = senders_.shift(*sender, marker.header.stamp, now);
   }
   for (const std::string& each : senders) keep(each);
 }

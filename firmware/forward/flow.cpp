@@ -31,9 +31,9 @@ icd::Checked<void> Flow::take(icd::StateUpdate update, const intake::Sender& sen
   return telemetry_.take(update, sender.bytes);
 }
 
-icd::Checked<void> Flow::take(icd::MarkersUpdate update, const intake::Sender& sender) {
+void Flow::take(icd::MarkersUpdate update, const intake::Sender& sender, MarkerArrivals::Done done) {
   clocks_.stamp(update, sender.address);
-  return telemetry_.take(std::move(update), sender.bytes);
+  telemetry_.take(std::move(update), sender.bytes, std::move(done));
 }
 
 void Flow::take(const icd::ArtifactReport& report, const intake::Sender& sender,

@@ -81,7 +81,7 @@ class Flow final : public intake::Desk {
 
   std::shared_ptr<intake::MapArrival> map_arrives() override;
   icd::Checked<void> take(icd::StateUpdate update, const intake::Sender& sender) override;
-  icd::Checked<void> take(icd::MarkersUpdate update, const intake::Sender& sender) override;
+  void take(icd::MarkersUpdate update, const intake::Sender& sender, MarkerArrivals::Done done) override;
   void take(const icd::ArtifactReport& report, const intake::Sender& sender,
             std::shared_ptr<intake::Responder> responder) override;
   void status(const intake::Sender& sender, std::shared_ptr<intake::Responder> responder) override;

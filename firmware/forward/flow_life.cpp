@@ -46,7 +46,7 @@ Flow::Flow(loop::Loop& loop, ledger::Ledger& ledger, const settings::Settings& s
       maps_(loop, workers_, writer_, spool_, settings, tokens_.mapping, record_, aside_, random_, journal_,
             [this](icd::MapUpdate map) { picture_.forwarded(std::move(map)); }),
       as_forwarded_(legacy_ ? std::move(legacy_->as_forwarded) : AsForwarded()),
-      telemetry_(loop, settings, tokens_.mapping, record_, aside_, random_, journal_, as_forwarded_,
+      telemetry_(loop, workers_, settings, tokens_.mapping, record_, aside_, random_, journal_, as_forwarded_,
                  told_.restart),
       pictured_run_(legacy_ ? legacy_->pictured_run : 0),
       drained_(loop.timer([this] { drain(); })) {}
@@ -109,7 +109,11 @@ void Flow::restore(bool is_first) {
   // The lanes are empty: there is room. What cannot be kept in the journal stays in its file; the other is
   // not taken twice, for what came since is newer.
   if (kept.state.poses.empty() || telemetry_.take(kept.state, 0)) spool_.forget_state();
-  if (kept.markers.markers.empty() || telemetry_.take(kept.markers, 0)) spool_.forget_markers();
+  const auto forget_markers = [this](const icd::Checked<void>& taken) {
+    if (taken) spool_.forget_markers();
+  };
+  if (kept.markers.markers.empty()) return forget_markers({});
+  telemetry_.take(std::move(kept.markers), 0, forget_markers);
 }
 
 void Flow::settings_changed(const settings::Restarts& restarts, Tokens tokens) {

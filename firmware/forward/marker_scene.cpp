@@ -12,8 +12,8 @@ void MarkerScene::begin_change(api::Time now) {
   version_ = std::max(version_ + 1, by_clock);
 }
 
-void MarkerScene::forwarded(const icd::MarkersUpdate& update, api::Time now) {
-  for (const icd::Marker& marker : update.markers) {
+void MarkerScene::forwarded(std::span<const icd::Marker> markers, api::Time now) {
+  for (const icd::Marker& marker : markers) {
     begin_change(now);
     apply(marker, now);
     keep_bounds();
@@ -40,33 +40,33 @@ void MarkerScene::apply(const icd::Marker& marker, api::Time now) {
       left_out_ = 0;
       return;
     case icd::MarkerAction::Delete:
-      return remove(key);
-    case icd::MarkerAction::Add:
-      return put(key, {.marker = api::drawn(marker), .at = now, .version = version_});
+      return remove(entries_.find(key));
+    case icd::MarkerAction::Add: {
+      Entry entry{.marker = api::drawn(marker), .at = now, .version = version_};
+      const auto [at, is_new] = entries_.try_emplace(key);
+      if (!is_new) let_go(at->second);
+      return put(at, std::move(entry));
+    }
   }
 }
 
-void MarkerScene::remove(const Key& key) {
-  const auto found = entries_.find(key);
-  if (found == entries_.end() || found->second.gone) return;
-  put(key, {.marker = {.ns = key.first}, .version = version_, .gone = true});
+void MarkerScene::remove(Entries::iterator at) {
+  if (at == entries_.end() || at->second.gone) return;
+  let_go(at->second);
+  put(at, {.marker = {.ns = at->first.first}, .version = version_, .gone = true});
 }
 
-void MarkerScene::put(const Key& key, Entry entry) {
-  erase(key);
-  Held& held = entry.gone ? gone_ : standing_;
+void MarkerScene::put(Entries::iterator at, Entry entry) {
+  Held& held = held_with(entry);
   held.bytes += entry.marker.size();
-  held.in_order.emplace(entry.version, key);
-  entries_.emplace(key, std::move(entry));
+  held.in_order.emplace_hint(held.in_order.end(), entry.version, at);
+  at->second = std::move(entry);
 }
 
-void MarkerScene::erase(const Key& key) {
-  const auto found = entries_.find(key);
-  if (found == entries_.end()) return;
-  Held& held = found->second.gone ? gone_ : standing_;
-  held.bytes -= found->second.marker.size();
-  held.in_order.erase(found->second.version);
-  entries_.erase(found);
+void MarkerScene::let_go(const Entry& entry) {
+  Held& held = held_with(entry);
+  held.bytes -= entry.marker.size();
+  held.in_order.erase(entry.version);
 }
 
 void MarkerScene::keep_bounds() {
@@ -74,15 +74,15 @@ void MarkerScene::keep_bounds() {
     return held.in_order.size() > kMost || held.bytes > kMostBytes;
   };
   while (exceeds(standing_)) {
-    const Key key = standing_.in_order.begin()->second;
     ++version_;  // a change of its own
-    remove(key);
+    remove(standing_.in_order.begin()->second);
     ++left_out_;
   }
   while (exceeds(gone_)) {
-    const auto [version, key] = *gone_.in_order.begin();
+    const auto [version, at] = *gone_.in_order.begin();
     forgotten_ = version;
-    erase(key);
+    let_go(at->second);
+    entries_.erase(at);
   }
 }
 
@@ -94,12 +94,10 @@ api::MarkerChanges MarkerScene::changes(std::uint64_t since) const {
     const auto& all = held.in_order;
     return std::ranges::subrange(whole ? all.begin() : all.upper_bound(since), all.end());
   };
-  for (const auto& [version, key] : news(standing_)) {
-    const Entry& entry = entries_.at(key);
-    changes.markers.push_back({entry.marker, entry.at});
-  }
+  for (const auto& [version, at] : news(standing_))
+    changes.markers.push_back({at->second.marker, at->second.at});
   if (whole) return changes;
-  for (const auto& [version, key] : news(gone_)) changes.gone.push_back(key);
+  for (const auto& [version, at] : news(gone_)) changes.gone.push_back(at->first);
   return changes;
 }
 

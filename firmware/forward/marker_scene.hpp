@@ -3,6 +3,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <map>
+#include <span>
 #include <string>
 #include <utility>
 
@@ -19,8 +20,13 @@ class MarkerScene {
   static constexpr std::size_t kMost = 2000;
   static constexpr std::size_t kMostBytes = 1'000'000;  // as DrawnMarker::size() has it
 
+  MarkerScene() = default;
+  MarkerScene(MarkerScene&&) = default;  // a copy's order would be of the other's markers
+  MarkerScene& operator=(MarkerScene&&) = default;
+  ~MarkerScene() = default;
+
   /// The Command Post took these, at `now`; the first is at number 1, later ones never run backward.
-  void forwarded(const icd::MarkersUpdate& update, api::Time now);
+  void forwarded(std::span<const icd::Marker> markers, api::Time now);
   /// A new run begins with none.
   void wipe(api::Time now);
 
@@ -36,21 +42,30 @@ class MarkerScene {
     std::uint64_t version = 0;
     bool gone = false;  // of the marker only the ns is left, which counts
   };
-  using InOrder = std::map<std::uint64_t, Key>;
-
-  void begin_change(api::Time now);
-  void apply(const icd::Marker& marker, api::Time now);
-  void remove(const Key& key);
-  void clear();
-  void keep_bounds();
-  void put(const Key& key, Entry entry);
-  void erase(const Key& key);
-
-  std::map<Key, Entry> entries_;  // those that are gone too, as long as there is room
+  /// By the id first, which alone tells most of them apart.
+  struct ByKey {
+    bool operator()(const Key& a, const Key& b) const {
+      return a.second != b.second ? a.second < b.second : a.first < b.first;
+    }
+  };
+  using Entries = std::map<Key, Entry, ByKey>;
+  using InOrder = std::map<std::uint64_t, Entries::iterator>;
   struct Held {
     InOrder in_order;  // by version
     std::size_t bytes = 0;
-  } standing_, gone_;
+  };
+
+  void begin_change(api::Time now);
+  void apply(const icd::Marker& marker, api::Time now);
+  void remove(Entries::iterator at);
+  void clear();
+  void keep_bounds();
+  void put(Entries::iterator at, Entry entry);
+  void let_go(const Entry& entry);
+  Held& held_with(const Entry& entry) { return entry.gone ? gone_ : standing_; }
+
+  Entries entries_;  // those that are gone too, as long as there is room
+  Held standing_, gone_;
   std::uint64_t version_ = 0, forgotten_ = 0;  // all that went up to this version is not told any more
   std::uint64_t left_out_ = 0;
 };

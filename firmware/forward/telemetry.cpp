@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <iterator>
+#include <span>
 #include <utility>
 
 #include "codec/write.hpp"
@@ -30,6 +31,8 @@ std::unexpected<icd::Refusal> not_kept(const std::string& why) {
 }
 /// A state or markers of several fail so often together before the one at fault is looked for.
 constexpr int kTriesTogether = 3;
+/// Markers that are written or shown in a turn of the loop that does more.
+constexpr std::size_t kAtOnce = 500;
 /// Markers on trial; beyond them all trials begin again.
 constexpr std::size_t kMostTrials = 1000;
 
@@ -54,7 +57,7 @@ lanes::MarkerBounds bounds_of(const settings::Queues& queues) {
 
 }  // namespace
 
-Telemetry::Telemetry(loop::Loop& loop, const settings::Settings& settings,
+Telemetry::Telemetry(loop::Loop& loop, loop::Workers& workers, const settings::Settings& settings,
                      std::optional<icd::BearerToken> token, Record& record, Aside& aside,
                      std::mt19937_64& random, journal::Journal& journal, AsForwarded& as_forwarded,
                      std::function<void()> restart)
@@ -70,7 +73,8 @@ Telemetry::Telemetry(loop::Loop& loop, const settings::Settings& settings,
       state_pace_(icd::Uri::StateUpdate, settings.command_post.rates.state_hz, random, journal),
       markers_pace_(icd::Uri::MarkersUpdate, settings.command_post.rates.markers_hz, random, journal),
       wake_(loop.timer([this] { pump(); })),
-      markers_(bounds_of(settings.queues)) {}
+      markers_(bounds_of(settings.queues)),
+      arrivals_(loop, workers, journal, markers_, record, restart_, [this] { pump(); }) {}
 
 void Telemetry::carry_on(const journal::Carried& carried) {
   state_pace_.carry_on(carried, loop_.now());
@@ -130,41 +134,18 @@ icd::Checked<void> Telemetry::take(const icd::StateUpdate& update, std::size_t b
   return {};
 }
 
-icd::Checked<void> Telemetry::take(icd::MarkersUpdate update, std::size_t bytes_received) {
-  if (markers_.has_room_for(update)) return take_in(std::move(update), bytes_received);
-  record_.no_room({Kind::Markers, ""}, loop_.stamp_now());
-  icd::MarkersUpdate known = markers_.those_that_wait(update);
-  if (known.markers.empty() || !markers_.has_room_for(known))
-    return full("more markers than can wait (queues.marker_bytes)");
-  const std::size_t taken = known.markers.size(), others = update.markers.size() - taken;
-  if (const auto kept = take_in(std::move(known), bytes_received); !kept) return kept;
-  return std::unexpected(icd::Refusal{
-      icd::Status::TooManyRequests,
-      icd::sentence(taken, " of ", update.markers.size(),
-                    " markers were taken, for others of theirs wait already; for new ones there is "
-                    "no room (queues.marker_bytes); send them again later"),
-      others});
-}
-
-icd::Checked<void> Telemetry::take_in(icd::MarkersUpdate update, std::size_t bytes_received) {
-  if (const auto kept = journal_.accepted(update); !kept) return not_kept(kept.error());
-  whole(restart_, [&] {
-    record_.accepted({Kind::Markers, ""}, bytes_received, loop_.stamp_now());
-    markers_.add(std::move(update), loop_.now());
-  });
-  pump();
-  return {};
-}
-
 void Telemetry::pump() {
+  if (to_show_ && show_some()) return wake_.call_at(loop_.now());
   if (!stopping_ && !aside_writes_ && channel_.turns()) endpoint_turned();
   if (stopping_ || aside_writes_ || channel_.busy() || !channel_.has_token()) return;
   whole(restart_, [this] { send_next(); });
 }
 
 void Telemetry::send_next() {
-  const std::array candidates = {dispatch::Candidate{state_.oldest(), state_pace_.ready()},
-                                 dispatch::Candidate{markers_.oldest(), markers_pace_.ready()}};
+  if (markers_under_way_) return write_markers();
+  const std::array candidates = {
+      dispatch::Candidate{state_.oldest(), state_pace_.ready()},
+      dispatch::Candidate{arrivals_.is_in_part() ? std::nullopt : markers_.oldest(), markers_pace_.ready()}};
   const dispatch::Turn turn = dispatch::oldest_first(candidates, loop_.now());
   if (turn.wake) wake_.call_at(*turn.wake);
   if (turn.candidate == 0) send_state();
@@ -196,10 +177,16 @@ void Telemetry::send_markers() {
     journal_.stamped(icd::Uri::MarkersUpdate, *waiting->update.markers.back().header.stamp);
   }
   if (!waiting->is_ahead) journal_.markers_sent(waiting->update);
-  const icd::ChunkedBytes body = codec::write_markers_update(waiting->update);
-  markers_pace_.sent(loop_.now());
   under_way_ = {Kind::Markers, waiting->accepted};
-  const auto sent = markers_under_way_ = std::make_shared<const lanes::WaitingMarkers>(std::move(*waiting));
+  markers_under_way_ = std::make_shared<const lanes::WaitingMarkers>(std::move(*waiting));
+  if (markers_under_way_->update.markers.size() > kAtOnce) return wake_.call_at(loop_.now());
+  write_markers();
+}
+
+void Telemetry::write_markers() {
+  const Sent<lanes::WaitingMarkers> sent = markers_under_way_;
+  const icd::ChunkedBytes body = codec::write_markers_update(sent->update);
+  markers_pace_.sent(loop_.now());
   channel_.send(icd::Uri::MarkersUpdate, codec::kCbor, body,
                 [this, sent, bytes = body.size()](const uplink::Outcome& outcome) {
                   answered(Kind::Markers, markers_pace_, sent, bytes, outcome);
@@ -242,7 +229,7 @@ void Telemetry::judge(Kind kind, UriPace& pace, const Sent<Waiting>& sent, std::
       pace.taken(answer->sent, now);
       passed(*sent);
       overtake(sent);
-      as_forwarded_.forwarded(sent->update, loop_.stamp_now());
+      show(sent);
       break;
     case MappingVerdict::Refused:
       pace.taken(answer->sent, now);
@@ -272,7 +259,26 @@ void Telemetry::passed(const lanes::WaitingMarkers& markers) {
   marker_blame_.passed("", loop_.now());
   if (markers.is_ahead) return;
   markers_.passed();
+  if (marker_trials_.empty()) return;
   for (const icd::Marker& marker : markers.update.markers) marker_trials_.erase({marker.ns, marker.id});
+}
+
+void Telemetry::show(const Sent<lanes::WaitingState>& state) {
+  as_forwarded_.forwarded(state->update, loop_.stamp_now());
+}
+
+void Telemetry::show(const Sent<lanes::WaitingMarkers>& markers) {
+  to_show_ = markers;
+  shown_ = 0;
+}
+
+bool Telemetry::show_some() {
+  const std::span<const icd::Marker> all = to_show_->update.markers;
+  const auto some = all.subspan(shown_, std::min(all.size() - shown_, kAtOnce));
+  as_forwarded_.forwarded(some, loop_.stamp_now());
+  shown_ += some.size();
+  if (shown_ == all.size()) to_show_.reset();
+  return some.size() < all.size();
 }
 
 template <class Waiting>
@@ -282,7 +288,7 @@ void Telemetry::overtake(const Sent<Waiting>& sent) {
     done(*sent);
     pump();
   };
-  aside_writes_ = aside_.taken(sent->update, written);
+  aside_writes_ = !aside_.empty() && aside_.taken(sent->update, written);
   if (!aside_writes_) done(*sent);
 }
 
@@ -370,7 +376,7 @@ bool Telemetry::wait_again(icd::MarkersUpdate markers) {
   if (markers_under_way_) {
     for (const icd::Marker& marker : markers_under_way_->update.markers) under_way.apply(marker);
   }
-  if (wipes && !under_way.empty()) return false;
+  if (arrivals_.is_in_part() || (wipes && !under_way.empty())) return false;
   std::erase_if(markers.markers, [&](const icd::Marker& marker) {
     return markers_.says_more_than(marker) || under_way.says_more_than(marker);
   });
@@ -402,7 +408,7 @@ void Telemetry::link_is_back() {
 
 bool Telemetry::stop() {
   stopping_ = true;
-  return !channel_.busy();
+  return !channel_.busy() && arrivals_.empty() && !to_show_;
 }
 
 std::size_t Telemetry::waiting(Kind kind) const {

@@ -11,6 +11,7 @@
 #include "forward/as_forwarded.hpp"
 #include "forward/aside.hpp"
 #include "forward/channel.hpp"
+#include "forward/marker_arrivals.hpp"
 #include "forward/record.hpp"
 #include "forward/uri_pace.hpp"
 #include "icd/status.hpp"
@@ -26,9 +27,9 @@ class Telemetry {
  public:
   /// `as_forwarded` is told what the Command Post took. What is accepted is in the journal first, until then;
   /// `restart`: see whole.hpp.
-  Telemetry(loop::Loop& loop, const settings::Settings& settings, std::optional<icd::BearerToken> token,
-            Record& record, Aside& aside, std::mt19937_64& random, journal::Journal& journal,
-            AsForwarded& as_forwarded, std::function<void()> restart);
+  Telemetry(loop::Loop& loop, loop::Workers& workers, const settings::Settings& settings,
+            std::optional<icd::BearerToken> token, Record& record, Aside& aside, std::mt19937_64& random,
+            journal::Journal& journal, AsForwarded& as_forwarded, std::function<void()> restart);
 
   /// Takes up what the lives before have left.
   void carry_on(const journal::Carried& carried);
@@ -54,14 +55,15 @@ class Telemetry {
     pump();
   }
   /// Stamps are on the gateway's clock. Refused with 429 where the lane is full, and with 503 where it cannot
-  /// be kept. Of markers for which there is no room, those that change one which waits are taken all the
-  /// same; the refusal is about the others, and says how many they are.
+  /// be kept.
   icd::Checked<void> take(const icd::StateUpdate& update, std::size_t bytes_received);
-  icd::Checked<void> take(icd::MarkersUpdate update, std::size_t bytes_received);
+  void take(icd::MarkersUpdate update, std::size_t bytes_received, MarkerArrivals::Done done) {
+    arrivals_.take(std::move(update), bytes_received, std::move(done));
+  }
 
   /// What was set aside, on the operator's word: before what came since, and not what that says more than.
   /// Not a map. False: it stays aside, for it is not kept, or newer markers that it would delete are under
-  /// way.
+  /// way, or some come in just now.
   bool send_again(const lanes::Message& message);
 
   /// Sends nothing more. False while an answer is still awaited.
@@ -77,10 +79,11 @@ class Telemetry {
  private:
   void pump();
   void endpoint_turned();
-  icd::Checked<void> take_in(icd::MarkersUpdate update, std::size_t bytes_received);
   void send_next();
   void send_state();
   void send_markers();
+  /// Those under way leave; many do so in a turn of their own.
+  void write_markers();
   /// What is under way, and is not copied.
   template <class Waiting>
   using Sent = std::shared_ptr<const Waiting>;
@@ -109,6 +112,11 @@ class Telemetry {
              const uplink::Outcome& outcome);
   void passed(const lanes::WaitingState& state);
   void passed(const lanes::WaitingMarkers& markers);
+  /// What the Command Post has taken, to as_forwarded_.
+  void show(const Sent<lanes::WaitingState>& state);
+  void show(const Sent<lanes::WaitingMarkers>& markers);
+  /// Before anything more is sent. False: that was all, at once; otherwise the turn is over.
+  bool show_some();
   /// It is done once what it overtook is written down as overtaken: the other way round, a kill in between
   /// would leave a life to come that knows of neither, and lets an operator send the older one.
   template <class Waiting>
@@ -138,7 +146,10 @@ class Telemetry {
   loop::Source wake_;
   lanes::StateLane state_;
   lanes::MarkerLane markers_;
+  MarkerArrivals arrivals_;
   Sent<lanes::WaitingMarkers> markers_under_way_;  // null: none
+  Sent<lanes::WaitingMarkers> to_show_;            // null: all are shown
+  std::size_t shown_ = 0;                          // of these
   lanes::StampOrder state_stamps_, marker_stamps_;
   int state_failed_ = 0, markers_failed_ = 0;  // answers in a row of a handler that failed
   lanes::Blame state_blame_, marker_blame_;

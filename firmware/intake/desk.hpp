@@ -51,7 +51,9 @@ class Desk {
   /// Queues the message, or says why not (a queue is full: 429). On success the sender is answered 200
   /// `null`.
   virtual icd::Checked<void> take(icd::StateUpdate update, const Sender& sender) = 0;
-  virtual icd::Checked<void> take(icd::MarkersUpdate update, const Sender& sender) = 0;
+  /// The same; says so by `done` on the loop, maybe later.
+  virtual void take(icd::MarkersUpdate update, const Sender& sender,
+                    std::function<void(icd::Checked<void>)> done) = 0;
 
   /// Answers later, with the Command Post's own answer.
   virtual void take(const icd::ArtifactReport& report, const Sender& sender,

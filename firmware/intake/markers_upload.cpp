@@ -7,7 +7,6 @@
 
 #include "icd/sentence.hpp"
 #include "intake/memory_given_back.hpp"
-#include "intake/take_parts.hpp"
 #include "loop/guard.hpp"
 
 namespace adit::intake {
@@ -87,9 +86,16 @@ class MarkersUpload::State final : public Taking, public std::enable_shared_from
   void end_turn() {
     if (const auto turns = turns_.lock()) turns->end();
   }
+  /// Gives the good ones to the desk. If they are taken, the answer is about the others.
   void decoded(Parts parts) {
     abandon();
-    take_parts(visit_, std::move(parts));
+    if (!parts) return visit_.refuse(parts.error());
+    visit_.desk.take(
+        std::move(parts->message), visit_.sender,
+        [self = shared_from_this(), refused = std::move(parts->refused)](icd::Checked<void> taken) {
+          if (taken && refused.count > 0) taken = std::unexpected(refused.refusal());
+          self->visit_.answer(taken);
+        });
   }
   static icd::Refusal not_held() {
     return {icd::Status::ServiceUnavailable,

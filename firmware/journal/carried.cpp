@@ -293,6 +293,10 @@ std::string said(const icd::MarkersUpdate& update) {
   return codec::write_markers_update(update).to_string();
 }
 
+std::string record_of(const icd::MarkersUpdate& update) {
+  return framed(Kind::Markers, codec::write_markers_update(update));
+}
+
 std::string said_sent(const std::vector<icd::RobotName>& robots) {
   Writer out;
   out.number(robots.size());

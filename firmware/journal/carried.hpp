@@ -90,6 +90,8 @@ std::string said(icd::Uri uri, icd::Stamp stamp);
 std::string said(const std::string& name, const lanes::Extent& extent);
 std::string said(const icd::StateUpdate& update);
 std::string said(const icd::MarkersUpdate& update);
+/// The record of markers that were accepted: it may be made by any thread.
+std::string record_of(const icd::MarkersUpdate& update);
 /// Whose poses were sent.
 std::string said_sent(const std::vector<icd::RobotName>& robots);
 /// Which markers were sent: ns, id and action of each.

@@ -46,10 +46,6 @@ Journal::Kept Journal::accepted(const icd::StateUpdate& update) {
   return append(framed(Kind::State, said(update)));
 }
 
-Journal::Kept Journal::accepted(const icd::MarkersUpdate& update) {
-  return append(framed(Kind::Markers, said(update)));
-}
-
 void Journal::sender(const std::string& sender, const lanes::SenderClock& clock) {
   note(Kind::Sender, said(sender, clock));
 }
@@ -82,7 +78,7 @@ void Journal::stamped(icd::Uri uri, icd::Stamp stamp) {
 }
 
 Journal::Kept Journal::grids_begin() {
-  return append(framed(Kind::Grids, {}));
+  return append(framed(Kind::Grids, std::string_view()));
 }
 
 Journal::Kept Journal::grids_posted(const std::string& name, const lanes::Extent& extent) {

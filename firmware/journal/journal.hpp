@@ -44,7 +44,9 @@ class Journal {
   /// An error: it is not kept, and must not be answered as if it were.
   using Kept = std::expected<void, std::string>;
   Kept accepted(const icd::StateUpdate& update);
-  Kept accepted(const icd::MarkersUpdate& update);
+  Kept accepted(const icd::MarkersUpdate& update) { return accepted_record(record_of(update)); }
+  /// Of markers, as record_of() made it.
+  Kept accepted_record(const std::string& record) { return append(record); }
 
   void sender(const std::string& sender, const lanes::SenderClock& clock);
 

@@ -32,6 +32,22 @@ std::uint32_t checksum(std::string_view length, std::string_view body) {
   return add(add(0, length), body);
 }
 
+/// Up to what it says, of so many bytes.
+std::string begun(Kind kind, std::size_t size) {
+  std::string record;
+  record.reserve(kHead + 1 + size);
+  put(record, size + 1, 4);
+  put(record, 0, 4);
+  return record += static_cast<char>(kind);
+}
+
+/// Writes its checksum.
+void seal(std::string& record) {
+  const std::string_view all = record;
+  const std::uint32_t sum = checksum(all.substr(0, 4), all.substr(kHead));
+  for (int i = 0; i < 4; ++i) record[4 + i] = static_cast<char>(sum >> (8 * i));
+}
+
 }  // namespace
 
 Writer& Writer::number(std::uint64_t number) {
@@ -70,16 +86,18 @@ std::string_view Reader::text() {
 }
 
 std::string framed(Kind kind, std::string_view said) {
-  std::string body;
-  body.reserve(kHead + 1 + said.size());
-  put(body, said.size() + 1, 4);
-  put(body, 0, 4);
-  body += static_cast<char>(kind);
-  body += said;
-  const std::uint32_t sum =
-      checksum(std::string_view(body).substr(0, 4), std::string_view(body).substr(kHead));
-  for (int i = 0; i < 4; ++i) body[4 + i] = static_cast<char>(sum >> (8 * i));
-  return body;
+  std::string record = begun(kind, said.size());
+  record += said;
+  seal(record);
+  return record;
+}
+
+std::string framed(Kind kind, const icd::ChunkedBytes& said) {
+  std::string record = begun(kind, said.size());
+  for (const icd::Chunk& chunk : said.chunks())
+    record.append(reinterpret_cast<const char*>(chunk->data()), chunk->size());
+  seal(record);
+  return record;
 }
 
 void for_each_record(std::string_view bytes, const std::function<bool(Kind, std::string_view)>& told) {

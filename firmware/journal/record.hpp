@@ -7,6 +7,8 @@
 #include <string>
 #include <string_view>
 
+#include "icd/chunked_bytes.hpp"
+
 namespace adit::journal {
 
 /// What a record tells. The numbers are in files: they stay.
@@ -60,6 +62,7 @@ class Reader {
 /// A record as it stands in a file: its length and its CRC-32 (RFC 1952 8), 4 bytes each, then its kind and
 /// what it says.
 std::string framed(Kind kind, std::string_view said);
+std::string framed(Kind kind, const icd::ChunkedBytes& said);
 
 /// Tells the whole records at the beginning of `bytes`, in order, until `told` returns false. A record that
 /// is torn or damaged, and all after it, is not told.

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <vector>
 
 #include "icd/sentence.hpp"
 
@@ -34,7 +35,7 @@ TEST(AsForwarded, HasEachRobotWhereItWasLast) {
 TEST(AsForwarded, ShowsARunFromItsBeginning) {
   AsForwarded all;
   all.forwarded(state("a", 1), 100);
-  all.forwarded(icd::MarkersUpdate{{icd::Marker{}}}, 100);
+  all.forwarded(std::vector{icd::Marker{}}, 100);
   all.begin_run(200);
   EXPECT_THAT(all.robots(), SizeIs(1)) << "the robots are still where they are";
   EXPECT_THAT(all.tracks().since(0), IsEmpty());

@@ -3,6 +3,7 @@
 #include <gmock/gmock.h>
 
 #include <random>
+#include <vector>
 
 namespace adit::forward {
 namespace {
@@ -31,8 +32,8 @@ std::vector<std::string> names(const api::MarkerChanges& news) {
 
 TEST(MarkerScene, HasEachMarkerAsItWasLastForwarded) {
   MarkerScene scene;
-  scene.forwarded({{marker("a", 1, 5), marker("a", 2), marker("b", 1)}}, 100);
-  scene.forwarded({{marker("a", 1, 7)}}, 101);
+  scene.forwarded(std::vector{marker("a", 1, 5), marker("a", 2), marker("b", 1)}, 100);
+  scene.forwarded(std::vector{marker("a", 1, 7)}, 101);
   const auto news = scene.changes(0);
   EXPECT_TRUE(news.whole);
   EXPECT_THAT(names(news), ElementsAre("a2", "b1", "a1"));
@@ -42,10 +43,10 @@ TEST(MarkerScene, HasEachMarkerAsItWasLastForwarded) {
 
 TEST(MarkerScene, TellsWhatChangedSinceAVersionAndNothingElse) {
   MarkerScene scene;
-  scene.forwarded({{marker("a", 1), marker("a", 2)}}, 100);
+  scene.forwarded(std::vector{marker("a", 1), marker("a", 2)}, 100);
   const auto before = scene.version();
   EXPECT_THAT(scene.changes(before).markers, IsEmpty());
-  scene.forwarded({{marker("a", 2, 9), marker("a", 1, 0, MarkerAction::Delete)}}, 101);
+  scene.forwarded(std::vector{marker("a", 2, 9), marker("a", 1, 0, MarkerAction::Delete)}, 101);
   const auto news = scene.changes(before);
   EXPECT_FALSE(news.whole);
   EXPECT_THAT(names(news), ElementsAre("a2"));
@@ -55,9 +56,9 @@ TEST(MarkerScene, TellsWhatChangedSinceAVersionAndNothingElse) {
 
 TEST(MarkerScene, TellsAllAfterAllWereDeletedAndToWhoeverComesFromElsewhere) {
   MarkerScene scene;
-  scene.forwarded({{marker("a", 1), marker("a", 2)}}, 100);
+  scene.forwarded(std::vector{marker("a", 1), marker("a", 2)}, 100);
   const auto before = scene.version();
-  scene.forwarded({{marker("", 0, 0, MarkerAction::DeleteAll), marker("c", 1)}}, 101);
+  scene.forwarded(std::vector{marker("", 0, 0, MarkerAction::DeleteAll), marker("c", 1)}, 101);
   EXPECT_TRUE(scene.changes(before).whole);
   EXPECT_THAT(names(scene.changes(before)), ElementsAre("c1"));
   EXPECT_TRUE(scene.changes(scene.version() + 5000).whole) << "a version of a box that was restarted";
@@ -65,16 +66,16 @@ TEST(MarkerScene, TellsAllAfterAllWereDeletedAndToWhoeverComesFromElsewhere) {
 
 TEST(MarkerScene, DeletingWhatIsNotThereChangesNothing) {
   MarkerScene scene;
-  scene.forwarded({{marker("a", 1)}}, 100);
+  scene.forwarded(std::vector{marker("a", 1)}, 100);
   const auto before = scene.version();
-  scene.forwarded({{marker("a", 2, 0, MarkerAction::Delete)}}, 101);
+  scene.forwarded(std::vector{marker("a", 2, 0, MarkerAction::Delete)}, 101);
   EXPECT_THAT(scene.changes(before).gone, IsEmpty());
   EXPECT_THAT(names(scene.changes(0)), ElementsAre("a1"));
 }
 
 TEST(MarkerScene, IsBlankInANewRun) {
   MarkerScene scene;
-  scene.forwarded({{marker("a", 1)}}, 100);
+  scene.forwarded(std::vector{marker("a", 1)}, 100);
   const auto before = scene.version();
   scene.wipe(200);
   EXPECT_GT(scene.version(), before);
@@ -84,7 +85,7 @@ TEST(MarkerScene, IsBlankInANewRun) {
 
 TEST(MarkerScene, LeavesOutTheOldestOfTooManyAndSaysHowMany) {
   MarkerScene scene;
-  for (std::int32_t id = 0; id < 2003; ++id) scene.forwarded({{marker("a", id)}}, 100 + id);
+  for (std::int32_t id = 0; id < 2003; ++id) scene.forwarded(std::vector{marker("a", id)}, 100 + id);
   const auto news = scene.changes(0);
   EXPECT_THAT(news.markers, SizeIs(MarkerScene::kMost));
   EXPECT_EQ(news.left_out, 3u);
@@ -97,7 +98,7 @@ TEST(MarkerScene, LeavesOutTheOldestWhereTheyAreTooLarge) {
   line.type = static_cast<std::int32_t>(icd::MarkerType::LineStrip);
   for (int i = 0; i < 5000; ++i) line.points.push_back({i * 1.0, 0, 0});
   for (; line.id < 100; ++line.id) {
-    scene.forwarded({{line}}, 100 + line.id);
+    scene.forwarded(std::vector{line}, 100 + line.id);
   }
   const auto news = scene.changes(0);
   std::size_t bytes = 0;
@@ -107,18 +108,18 @@ TEST(MarkerScene, LeavesOutTheOldestWhereTheyAreTooLarge) {
   EXPECT_EQ(news.left_out, 100 - news.markers.size());
   EXPECT_EQ(news.markers.back().marker.id, 99);
   const auto first = news.markers.front().marker.id;
-  for (std::int32_t id = first; id < 100; ++id) scene.forwarded({{marker("a", id)}}, 300);
+  for (std::int32_t id = first; id < 100; ++id) scene.forwarded(std::vector{marker("a", id)}, 300);
   line.id = 0;
-  scene.forwarded({{line}}, 301);
+  scene.forwarded(std::vector{line}, 301);
   EXPECT_THAT(scene.changes(0).markers, SizeIs(101 - first)) << "what has become small has made room";
 }
 
 TEST(MarkerScene, ForgetsTheLongNamesOfThoseThatAreGone) {
   MarkerScene scene;
-  const auto begun = (scene.forwarded({{marker("b", 0)}}, 99), scene.version());
+  const auto begun = (scene.forwarded(std::vector{marker("b", 0)}, 99), scene.version());
   for (char name = 'a'; name < 'z'; ++name) {
     const std::string longest(200'000, name);
-    scene.forwarded({{marker(longest, 1), marker(longest, 1, 0, MarkerAction::Delete)}}, 100);
+    scene.forwarded(std::vector{marker(longest, 1), marker(longest, 1, 0, MarkerAction::Delete)}, 100);
   }
   EXPECT_TRUE(scene.changes(begun).whole) << "what went since then is not told any more";
   EXPECT_THAT(names(scene.changes(0)), ElementsAre("b0"));
@@ -139,7 +140,8 @@ TEST(MarkerScene, GivesNewsThatAddUpToTheWhole) {
       const auto action = below(2000) == 0 ? MarkerAction::DeleteAll
                           : below(3) == 0  ? MarkerAction::Delete
                                            : MarkerAction::Add;
-      scene.forwarded({{marker("n", static_cast<std::int32_t>(below(6000)), step, action)}}, step / 10.0);
+      scene.forwarded(std::vector{marker("n", static_cast<std::int32_t>(below(6000)), step, action)},
+                      step / 10.0);
     }
     if (below(20) != 0) continue;
     const auto news = scene.changes(known);

@@ -47,9 +47,10 @@ struct Life {
   Life(loop::Loop& loop, const std::string& folder, const settings::Settings& settings,
        std::optional<icd::BearerToken> token)
       : writer(loop),
+        workers(loop, 1),
         journal(loop, folder + "/journal"),
         aside(loop, writer, folder + "/aside"),
-        news(loop, settings, std::move(token), record, aside, random, journal, as_forwarded,
+        news(loop, workers, settings, std::move(token), record, aside, random, journal, as_forwarded,
              [this] { restart = true; }) {
     const journal::Carried carried = journal.read();
     journal.begin({.boot = "b", .at = loop.now(), .stamp = loop.stamp_now()});
@@ -57,9 +58,17 @@ struct Life {
     news.start();
   }
 
+  /// Few markers: it is said at once.
+  icd::Checked<void> take(icd::MarkersUpdate update) {
+    std::optional<icd::Checked<void>> said;
+    news.take(std::move(update), 10, [&](icd::Checked<void> taken) { said = std::move(taken); });
+    return said.value();
+  }
+
   std::mt19937_64 random{1};
   Record record{[] {}};
   loop::Writer writer;
+  loop::Workers workers;
   journal::Journal journal;
   Aside aside;
   AsForwarded as_forwarded;
@@ -134,7 +143,7 @@ TEST_F(NewsTest, HasCareForWhatWasTakenUntilItIsWrittenWhatThatOvertook) {
   ASSERT_TRUE(comes(*life, [&] { return overtaken(0); }));
   EXPECT_EQ(left().robots().size(), 1u);
   EXPECT_FALSE(life->aside.all_kept());
-  ASSERT_TRUE(life->news.take(icd::MarkersUpdate{{marker("a", "newer")}}, 10));
+  ASSERT_TRUE(life->take(icd::MarkersUpdate{{marker("a", "newer")}}));
   held.set_value();
   ASSERT_TRUE(comes(*life, [&] { return overtaken(1) && life->aside.all_kept(); }));
   EXPECT_THAT(left().robots(), IsEmpty());
@@ -143,7 +152,7 @@ TEST_F(NewsTest, HasCareForWhatWasTakenUntilItIsWrittenWhatThatOvertook) {
 
 TEST_F(NewsTest, SendsNoMarkerAgainOfWhichSomethingNewerWaits) {
   const auto life = life_without_a_token();
-  ASSERT_TRUE(life->news.take(icd::MarkersUpdate{{marker("a", "newer"), marker("b", "other")}}, 10));
+  ASSERT_TRUE(life->take(icd::MarkersUpdate{{marker("a", "newer"), marker("b", "other")}}));
   EXPECT_TRUE(life->news.send_again(icd::MarkersUpdate{{marker("a", "older")}}));
   EXPECT_THAT(texts(left().markers()), ElementsAre("newer", "other"));
   EXPECT_EQ(life->news.waiting(Kind::Markers), 2u);
@@ -151,7 +160,7 @@ TEST_F(NewsTest, SendsNoMarkerAgainOfWhichSomethingNewerWaits) {
 
 TEST_F(NewsTest, SendsNoMarkerAgainThatWasDeletedSince) {
   const auto life = life_without_a_token();
-  ASSERT_TRUE(life->news.take(icd::MarkersUpdate{{kWipe}}, 10));
+  ASSERT_TRUE(life->take(icd::MarkersUpdate{{kWipe}}));
   EXPECT_TRUE(life->news.send_again(icd::MarkersUpdate{{marker("a", "older")}}));
   EXPECT_THAT(texts(left().markers()), ElementsAre("wipe"));
   EXPECT_EQ(life->news.waiting(Kind::Markers), 1u);
@@ -159,7 +168,7 @@ TEST_F(NewsTest, SendsNoMarkerAgainThatWasDeletedSince) {
 
 TEST_F(NewsTest, DeletesNothingThatCameSinceWhereItDeletesAllOnceMore) {
   const auto life = life_without_a_token();
-  ASSERT_TRUE(life->news.take(icd::MarkersUpdate{{marker("", "newer")}}, 10));
+  ASSERT_TRUE(life->take(icd::MarkersUpdate{{marker("", "newer")}}));
   EXPECT_TRUE(life->news.send_again(icd::MarkersUpdate{{kWipe}}));
   EXPECT_THAT(texts(left().markers()), ElementsAre("wipe", "newer"));
   EXPECT_EQ(life->news.waiting(Kind::Markers), 2u);
@@ -167,7 +176,7 @@ TEST_F(NewsTest, DeletesNothingThatCameSinceWhereItDeletesAllOnceMore) {
 
 TEST_F(NewsTest, SendsAMarkerAgainThatNothingSaysMoreThan) {
   const auto life = life_without_a_token();
-  ASSERT_TRUE(life->news.take(icd::MarkersUpdate{{marker("b", "other")}}, 10));
+  ASSERT_TRUE(life->take(icd::MarkersUpdate{{marker("b", "other")}}));
   EXPECT_TRUE(life->news.send_again(icd::MarkersUpdate{{marker("a", "older")}}));
   EXPECT_THAT(texts(left().markers()), UnorderedElementsAre("older", "other"));
 }
@@ -175,7 +184,7 @@ TEST_F(NewsTest, SendsAMarkerAgainThatNothingSaysMoreThan) {
 TEST_F(NewsTest, SetsAsideADeleteAllThatAloneFails) {
   TelemetryPost post(true);
   const auto life = life_before(post.peer);
-  ASSERT_TRUE(life->news.take(icd::MarkersUpdate{{kWipe, marker("a", "1"), marker("b", "2")}}, 10));
+  ASSERT_TRUE(life->take(icd::MarkersUpdate{{kWipe, marker("a", "1"), marker("b", "2")}}));
   ASSERT_TRUE(comes(*life, [&] { return life->news.waiting(Kind::Markers) == 0; }));
   ASSERT_TRUE(comes(*life, [&] { return !life->aside.rows().empty() && left().markers().markers.empty(); }));
   EXPECT_EQ(life->aside.rows().size(), 1u);
@@ -186,7 +195,7 @@ TEST_F(NewsTest, HoldsADeleteAllWhereEverythingFails) {
   TelemetryPost post(false);
   const auto life = life_before(post.peer);
   const icd::MarkersUpdate all{{kWipe, marker("a", "1"), marker("b", "2")}};
-  ASSERT_TRUE(life->news.take(all, 10));
+  ASSERT_TRUE(life->take(all));
   ASSERT_TRUE(comes(*life, [&] { return post.requests >= 20; }));
   EXPECT_THAT(life->aside.rows(), IsEmpty());
   EXPECT_THAT(texts(left().markers()), ElementsAre("wipe", "1", "2"));
@@ -201,8 +210,7 @@ TEST_F(NewsTest, LosesNothingWhereMemoryRunsOutOnTheWay) {
       SCOPED_TRACE(n);
       const int before = post.requests;
       ASSERT_TRUE(life->news.take(pose("r1", static_cast<double>(n)), 10));
-      ASSERT_TRUE(
-          life->news.take(icd::MarkersUpdate{.markers = {marker("path", std::to_string(n).c_str())}}, 10));
+      ASSERT_TRUE(life->take(icd::MarkersUpdate{.markers = {marker("path", std::to_string(n).c_str())}}));
       ScarceMemory scarce(n, count);
       const auto all_there = [&] {
         return life->news.waiting(Kind::State) + life->news.waiting(Kind::Markers) == 0 &&
@@ -227,13 +235,13 @@ TEST_F(NewsTest, LosesNothingWhereMemoryRunsOutOnTheWay) {
 TEST_F(NewsTest, OfAFullLaneTakesInWhatChangesTheMarkersThatWait) {
   settings_.queues.marker_bytes = 2 * icd::bytes_of(marker("a", "old"));
   const auto life = life_without_a_token();
-  ASSERT_TRUE(life->news.take(icd::MarkersUpdate{{marker("a", "old")}}, 10));
-  const auto said = life->news.take(icd::MarkersUpdate{{marker("b", "new"), marker("a", "now")}}, 10);
+  ASSERT_TRUE(life->take(icd::MarkersUpdate{{marker("a", "old")}}));
+  const auto said = life->take(icd::MarkersUpdate{{marker("b", "new"), marker("a", "now")}});
   ASSERT_FALSE(said);
   EXPECT_EQ(said.error().status, icd::Status::TooManyRequests);
   EXPECT_EQ(said.error().parts, 1u) << said.error().sentence;
   EXPECT_EQ(left().markers().markers, std::vector{marker("a", "now")});
-  const auto none = life->news.take(icd::MarkersUpdate{{marker("b", "new")}}, 10);
+  const auto none = life->take(icd::MarkersUpdate{{marker("b", "new")}});
   ASSERT_FALSE(none);
   EXPECT_EQ(none.error().parts, 0u) << none.error().sentence;
 }
@@ -245,7 +253,7 @@ TEST_F(NewsTest, IsMissedByTheCommandPostUntilItIsTaken) {
   EXPECT_FALSE(life->news.waits_since(robot));
   ASSERT_TRUE(life->news.take(
       icd::StateUpdate{.header = {.stamp = 7.5}, .poses = {{*icd::RobotName::parse("r2"), {}}}}, 10));
-  ASSERT_TRUE(life->news.take(icd::MarkersUpdate{{marker("", "one")}}, 10));
+  ASSERT_TRUE(life->take(icd::MarkersUpdate{{marker("", "one")}}));
   EXPECT_TRUE(life->news.waits_since(robot));
   EXPECT_TRUE(life->news.waits_since(markers));
   EXPECT_FALSE(life->news.waits_since(other)) << "it posted nothing";

@@ -43,8 +43,9 @@ class FakeDesk final : public Desk {
   icd::Checked<void> take(icd::StateUpdate update, const Sender& sender) override {
     return keep(states, update, sender);
   }
-  icd::Checked<void> take(icd::MarkersUpdate update, const Sender& sender) override {
-    return keep(markers, update, sender);
+  void take(icd::MarkersUpdate update, const Sender& sender,
+            std::function<void(icd::Checked<void>)> done) override {
+    done(keep(markers, std::move(update), sender));
   }
   void take(const icd::ArtifactReport& report, const Sender& sender,
             std::shared_ptr<Responder> responder) override {

@@ -1,0 +1,144 @@
+#include "forward/marker_arrivals.hpp"
+
+#include <algorithm>
+#include <span>
+#include <utility>
+#include <vector>
+
+#include "forward/whole.hpp"
+#include "icd/sentence.hpp"
+#include "loop/guard.hpp"
+
+namespace adit::forward {
+namespace {
+
+std::size_t bytes_of_all(const icd::MarkersUpdate& update) {
+  std::size_t bytes = 0;
+  for (const icd::Marker& marker : update.markers) bytes += icd::bytes_of(marker);
+  return bytes;
+}
+
+icd::Refusal no_memory() {
+  return {icd::Status::ServiceUnavailable, "the gateway could not hold these markers; send them again later"};
+}
+
+}  // namespace
+
+MarkerArrivals::MarkerArrivals(loop::Loop& loop, loop::Workers& workers, journal::Journal& journal,
+                               lanes::MarkerLane& lane, Record& record, std::function<void()> restart,
+                               std::function<void()> came)
+    : loop_(loop),
+      workers_(workers),
+      journal_(journal),
+      lane_(lane),
+      record_(record),
+      restart_(std::move(restart)),
+      came_(std::move(came)),
+      next_turn_(
+          loop.timer([this] { go(is_in_part() ? &MarkerArrivals::add_part : &MarkerArrivals::begin); })) {}
+
+void MarkerArrivals::take(icd::MarkersUpdate update, std::size_t bytes_received, Done done) {
+  arrivals_.push_back(
+      {std::make_shared<icd::MarkersUpdate>(std::move(update)), bytes_received, std::move(done)});
+  if (arrivals_.size() == 1) go(&MarkerArrivals::begin);
+}
+
+void MarkerArrivals::go(Step step) {
+  Arrival& first = arrivals_.front();
+  bool over = false;
+  if (!loop::guarded("taking markers", [&] { over = (this->*step)(first); })) return give_up();
+  if (over) end();
+}
+
+void MarkerArrivals::give_up() {
+  loop::guarded("refusing markers", [this] { fail(arrivals_.front(), no_memory()); });
+  end();
+}
+
+bool MarkerArrivals::fail(Arrival& arrival, icd::Refusal why) {
+  arrival.outcome = std::unexpected(std::move(why));
+  return true;
+}
+
+void MarkerArrivals::end() {
+  Arrival first = std::move(arrivals_.front());
+  arrivals_.pop_front();
+  if (!arrivals_.empty()) next_turn_.call_at(loop_.now());
+  loop::guarded("answering markers", [&] { first.done(std::move(first.outcome)); });
+  loop::guarded("sending markers", came_);
+}
+
+bool MarkerArrivals::begin(Arrival& arrival) {
+  if (!lane_.has_room_for(*arrival.update) && !takes_some(arrival)) {
+    return fail(arrival,
+                {icd::Status::TooManyRequests,
+                 "not taken: more markers than can wait (queues.marker_bytes); send it again later"});
+  }
+  if (bytes_of_all(*arrival.update) > kSmall) {
+    make_record(arrival);
+    return false;
+  }
+  arrival.record = journal::record_of(*arrival.update);
+  return keep(arrival);
+}
+
+bool MarkerArrivals::takes_some(Arrival& arrival) {
+  record_.no_room({Kind::Markers, ""}, loop_.stamp_now());
+  icd::MarkersUpdate known = lane_.those_that_wait(*arrival.update);
+  if (known.markers.empty() || !lane_.has_room_for(known)) return false;
+  const std::size_t taken = known.markers.size(), all = arrival.update->markers.size();
+  arrival.outcome = std::unexpected(
+      icd::Refusal{icd::Status::TooManyRequests,
+                   icd::sentence(taken, " of ", all,
+                                 " markers were taken, for others of theirs wait already; for new ones there "
+                                 "is no room (queues.marker_bytes); send them again later"),
+                   all - taken});
+  *arrival.update = std::move(known);
+  return true;
+}
+
+void MarkerArrivals::make_record(const Arrival& arrival) {
+  const auto made = std::make_shared<std::string>();
+  workers_.submit([made, update = arrival.update] { *made = journal::record_of(*update); },
+                  [this, made] {
+                    arrivals_.front().record = std::move(*made);
+                    go(&MarkerArrivals::keep);
+                  },
+                  [this] { give_up(); });
+}
+
+bool MarkerArrivals::keep(Arrival& arrival) {
+  if (const auto kept = journal_.accepted_record(arrival.record); !kept) {
+    return fail(arrival, {icd::Status::ServiceUnavailable,
+                          "not taken: it cannot be kept: " + kept.error() + "; send it again later"});
+  }
+  arrival.record = {};
+  return whole(restart_, [&] {
+    record_.accepted({Kind::Markers, ""}, arrival.bytes_received, loop_.stamp_now());
+    return add_part(arrival);
+  });
+}
+
+/// That the rest is not in the lane where memory runs out is no loss: whole() restarts, and the journal has
+/// it.
+bool MarkerArrivals::add_part(Arrival& arrival) {
+  const std::span<icd::Marker> markers = arrival.update->markers;
+  const auto part = markers.subspan(arrival.added, std::min(kPart, markers.size() - arrival.added));
+  whole(restart_, [&] { arrival.last = lane_.add_part(part, arrival.last); });
+  arrival.added += part.size();
+  free_needless();
+  if (arrival.added < markers.size()) {
+    next_turn_.call_at(loop_.now());
+    return false;
+  }
+  whole(restart_, [&] { lane_.end_of_update(arrival.last, loop_.now()); });
+  return true;
+}
+
+/// Tens of thousands of markers, where all are deleted.
+void MarkerArrivals::free_needless() {
+  auto needless = std::make_shared<std::vector<lanes::MarkerChanges>>(lane_.needless());
+  if (!needless->empty()) workers_.submit([needless] { needless->clear(); }, [] {});
+}
+
+}  // namespace adit::forward

@@ -1,0 +1,114 @@
+#include "forward/marker_arrivals.hpp"
+
+#include <gmock/gmock.h>
+
+#include <optional>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "host/folder.hpp"
+#include "loop/turn_until.hpp"
+
+namespace adit::forward {
+namespace {
+
+using testing::ElementsAre;
+
+icd::Marker change(std::int32_t id, std::string text, icd::MarkerAction action = icd::MarkerAction::Add) {
+  icd::Marker marker;
+  marker.header.stamp = 5;
+  marker.id = id;
+  marker.text = std::move(text);
+  marker.action = action;
+  return marker;
+}
+
+/// More than goes into the lane in one turn.
+icd::MarkersUpdate many(const std::string& text) {
+  icd::MarkersUpdate update;
+  for (std::int32_t id = 0; id < 2500; ++id) update.markers.push_back(change(id, text));
+  return update;
+}
+
+class MarkerArrivalsTest : public testing::Test {
+ protected:
+  MarkerArrivalsTest() { journal_.begin({.boot = "b", .at = loop_.now(), .stamp = loop_.stamp_now()}); }
+
+  void take(icd::MarkersUpdate update) {
+    arrivals_.take(std::move(update), 10, [this](const icd::Checked<void>& taken) {
+      said_.push_back(taken ? icd::Status::Ok : taken.error().status);
+    });
+  }
+  bool turn_until(auto done) { return loop::turn_until(loop_, done); }
+  std::vector<icd::Marker> left() const {
+    return journal::Folder(folder_.path() + "/journal").read().markers().markers;
+  }
+
+  host::Folder folder_;
+  loop::Loop loop_;
+  loop::Workers workers_{loop_, 1};
+  journal::Journal journal_{loop_, folder_.path() + "/journal"};
+  lanes::MarkerLane lane_{{}};
+  Record record_{[] {}};
+  bool restart_ = false;
+  int came_ = 0;
+  std::vector<icd::Status> said_;
+  MarkerArrivals arrivals_{
+      loop_, workers_, journal_, lane_, record_, [this] { restart_ = true; }, [this] { ++came_; }};
+};
+
+TEST_F(MarkerArrivalsTest, AreThereAtOnceWhereTheyAreFew) {
+  take({{change(1, "a")}});
+  EXPECT_THAT(said_, ElementsAre(icd::Status::Ok));
+  EXPECT_EQ(came_, 1);
+  EXPECT_TRUE(arrivals_.empty());
+  EXPECT_EQ(lane_.pending(), left());
+}
+
+TEST_F(MarkerArrivalsTest, AreAnsweredOnceAllAreKeptAndWait) {
+  take(many("many"));
+  EXPECT_THAT(said_, ElementsAre());
+  ASSERT_TRUE(turn_until([this] { return lane_.count() > 0; }));
+  EXPECT_TRUE(arrivals_.is_in_part()) << "the rest comes in other turns";
+  EXPECT_THAT(said_, ElementsAre());
+  EXPECT_EQ(left().size(), 2500u) << "the journal has all before the lane has any";
+  ASSERT_TRUE(turn_until([this] { return !said_.empty(); }));
+  EXPECT_THAT(said_, ElementsAre(icd::Status::Ok));
+  EXPECT_EQ(lane_.pending(), many("many").markers);
+  EXPECT_FALSE(restart_);
+}
+
+/// As the journal has them, and whoever reads it in a life to come.
+TEST_F(MarkerArrivalsTest, ComeInTheOrderInWhichTheyWereTaken) {
+  take(many("older"));
+  take({{change(2499, "newer")}});
+  take({{change(7, "", icd::MarkerAction::Delete)}});
+  ASSERT_TRUE(turn_until([this] { return said_.size() == 3; }));
+  EXPECT_EQ(lane_.pending(), left());
+  EXPECT_EQ(lane_.pending().at(2499).text, "newer");
+  EXPECT_EQ(lane_.pending().at(7).action, icd::MarkerAction::Delete);
+}
+
+TEST_F(MarkerArrivalsTest, OfADeleteAllNothingBeforeItIsLeft) {
+  take(many("older"));
+  take({{change(0, "wipe", icd::MarkerAction::DeleteAll), change(3, "newer")}});
+  ASSERT_TRUE(turn_until([this] { return said_.size() == 2; }));
+  EXPECT_EQ(lane_.count(), 2u);
+  EXPECT_EQ(lane_.pending(), left());
+}
+
+TEST_F(MarkerArrivalsTest, AreRefusedAsAWholeWhereTheLaneIsFull) {
+  lane_.keep_within({.bytes = 3000 * icd::bytes_of(change(0, "12345"))});
+  take(many("12345"));
+  icd::MarkersUpdate others = many("12345");
+  for (icd::Marker& marker : others.markers) marker.id += 10'000;
+  take(std::move(others));
+  ASSERT_TRUE(turn_until([this] { return said_.size() == 2; }));
+  EXPECT_THAT(said_, ElementsAre(icd::Status::Ok, icd::Status::TooManyRequests));
+  EXPECT_EQ(lane_.count(), 2500u);
+  EXPECT_EQ(left().size(), 2500u);
+}
+
+}  // namespace
+}  // namespace adit::forward

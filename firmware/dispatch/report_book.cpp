@@ -143,7 +143,7 @@ void ReportBook::put(Report report) {
   keep(waiting_, state == ReportState::Waiting);
   keep(in_doubt_, state == ReportState::InDoubt);
   keep(open_, !is_final(state));
-  reports_.insert_or_assign(number, std::move(report));
+  reports_.insert_or_assign(reports_.end(), number, std::move(report));
 }
 
 const Report* ReportBook::find(std::int64_t number) const {

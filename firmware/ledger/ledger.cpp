@@ -1,5 +1,7 @@
 #include "ledger/ledger.hpp"
 
+#include <algorithm>
+#include <cstdint>
 #include <utility>
 
 #include "ledger/database.hpp"
@@ -19,9 +21,10 @@ constexpr std::int64_t kRoomToBegin = 1 << 20;
 /// All that a statement without parameters reads.
 template <class Row>
 Result<std::vector<Row>> rows_of(const Database& database, const Statement& statement,
-                                 Row (*row_of)(const Query&), const char* doing) {
+                                 Row (*row_of)(const Query&), const char* doing, std::size_t about) {
   Query query(statement);
   std::vector<Row> all;
+  all.reserve(about);
   int result = SQLITE_OK;
   while ((result = query.step()) == SQLITE_ROW) all.push_back(row_of(query));
   if (result != SQLITE_DONE) return std::unexpected(database.error(doing));
@@ -218,10 +221,14 @@ Result<void> Ledger::flush() {
   return impl_->flush();
 }
 Result<std::vector<dispatch::Report>> Ledger::reports() const {
-  return rows_of(impl_->database_, impl_->read_reports_, report_of, "reading the reports");
+  constexpr std::int64_t kNoMore = 100'000;  // whatever a damaged number says
+  const auto highest = impl_->database_.number("SELECT coalesce(max(number), 0) FROM report");
+  if (!highest) return std::unexpected(impl_->database_.error("reading the reports"));
+  const auto about = static_cast<std::size_t>(std::clamp<std::int64_t>(*highest, 0, kNoMore));
+  return rows_of(impl_->database_, impl_->read_reports_, report_of, "reading the reports", about);
 }
 Result<std::vector<dispatch::Run>> Ledger::runs() const {
-  return rows_of(impl_->database_, impl_->read_runs_, run_of, "reading the runs");
+  return rows_of(impl_->database_, impl_->read_runs_, run_of, "reading the runs", 0);
 }
 
 Result<std::vector<Ledger::Step>> Ledger::history(std::int64_t number) const {

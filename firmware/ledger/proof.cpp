@@ -1,9 +1,17 @@
 #include "ledger/proof.hpp"
 
+#include <array>
 #include <bit>
 
 namespace adit::ledger {
 namespace {
+
+/// A prime's powers, from the 0th on.
+constexpr auto powers_of(std::uint64_t prime) {
+  std::array<std::uint64_t, sizeof(std::uint64_t) + 1> powers{1};
+  for (std::size_t i = 1; i < powers.size(); ++i) powers.at(i) = powers.at(i - 1) * prime;
+  return powers;
+}
 
 std::string_view bytes_of(sqlite3_value* value) {
   const auto* const bytes = static_cast<const char*>(sqlite3_value_blob(value));
@@ -35,8 +43,12 @@ void prove(sqlite3_context* context, int count, sqlite3_value** values) {
 
 }  // namespace
 
+/// The lowest byte first. A zero only multiplies, and most numbers end in many.
 void Proof::number(std::uint64_t number) {
-  for (int shift = 0; shift < 64; shift += 8) byte(static_cast<unsigned char>(number >> shift));
+  std::size_t zeros = sizeof number;
+  for (; number != 0; number >>= 8, --zeros) byte(static_cast<unsigned char>(number));
+  static constexpr auto kPowers = powers_of(kPrime);
+  hash_ *= kPowers.at(zeros);
 }
 
 void Proof::add(std::int64_t value) {

@@ -112,11 +112,12 @@ bool MarkerArrivals::keep(Arrival& arrival) {
     return fail(arrival, {icd::Status::ServiceUnavailable,
                           "not taken: it cannot be kept: " + kept.error() + "; send it again later"});
   }
+  arrival.is_kept = true;
   arrival.record = {};
-  return whole(restart_, [&] {
-    record_.accepted({Kind::Markers, ""}, arrival.bytes_received, loop_.stamp_now());
-    return add_part(arrival);
-  });
+  whole(restart_, [&] { record_.accepted({Kind::Markers, ""}, arrival.bytes_received, loop_.stamp_now()); });
+  if (arrival.update->markers.size() <= kPart) return add_part(arrival);
+  next_turn_.call_at(loop_.now());
+  return false;
 }
 
 /// That the rest is not in the lane where memory runs out is no loss: whole() restarts, and the journal has

@@ -27,7 +27,7 @@ class MarkerArrivals {
   using Done = std::function<void(icd::Checked<void>)>;
   /// What is no larger is taken at once; as icd::bytes_of counts.
   static constexpr std::size_t kSmall = 128u << 10;
-  static constexpr std::size_t kPart = 1000;  // markers that go into the lane in one turn
+  static constexpr std::size_t kPart = 500;  // markers that go into the lane in one turn
 
   /// `came` is called when the lane has more than before; `restart`: see whole.hpp.
   MarkerArrivals(loop::Loop& loop, loop::Workers& workers, journal::Journal& journal, lanes::MarkerLane& lane,
@@ -35,8 +35,8 @@ class MarkerArrivals {
 
   void take(icd::MarkersUpdate update, std::size_t bytes_received, Done done);
 
-  /// Whether the journal has all of one and the lane a part: nothing may be taken out of it meanwhile.
-  bool is_in_part() const { return !empty() && arrivals_.front().added > 0; }
+  /// Whether the journal has all of one and the lane not yet: nothing may be taken out of it meanwhile.
+  bool is_in_part() const { return !empty() && arrivals_.front().is_kept; }
   bool empty() const { return arrivals_.empty(); }
 
  private:
@@ -46,6 +46,7 @@ class MarkerArrivals {
     Done done;
     icd::Checked<void> outcome = {};
     std::string record = {};
+    bool is_kept = false;                                                // by the journal
     std::size_t added = 0;                                               // of its markers, to the lane
     lanes::MarkerChanges::Place last = lanes::WaitingUpdates::kNowhere;  // of those
   };

@@ -5,6 +5,7 @@
 #include <utility>
 #include <vector>
 
+#include "codec/read.hpp"
 #include "icd/sentence.hpp"
 #include "intake/memory_given_back.hpp"
 #include "loop/guard.hpp"

@@ -3,20 +3,13 @@
 #include <algorithm>
 #include <array>
 #include <iterator>
-#include <span>
 #include <utility>
 
 #include "codec/write.hpp"
-#include "dispatch/mapping_verdict.hpp"
 #include "dispatch/turn.hpp"
-#include "forward/upstream_answer.hpp"
 #include "forward/whole.hpp"
-#include "icd/sentence.hpp"
-#include "loop/guard.hpp"
 
 namespace adit::forward {
-
-using dispatch::MappingVerdict;
 
 namespace {
 
@@ -29,25 +22,9 @@ std::unexpected<icd::Refusal> not_kept(const std::string& why) {
   return std::unexpected(icd::Refusal{icd::Status::ServiceUnavailable,
                                       "not taken: it cannot be kept: " + why + "; send it again later"});
 }
-/// A state or markers of several fail so often together before the one at fault is looked for.
-constexpr int kTriesTogether = 3;
-/// Markers that are written or shown in a turn of the loop that does more.
+
+/// Markers that are written in the turn of the loop that takes them.
 constexpr std::size_t kAtOnce = 500;
-/// Markers on trial; beyond them all trials begin again.
-constexpr std::size_t kMostTrials = 1000;
-
-/// For a verdict that is not Taken.
-NotTaken why_not(MappingVerdict verdict) {
-  if (verdict == MappingVerdict::Throttled) return NotTaken::Throttled;
-  return verdict == MappingVerdict::Refused ? NotTaken::Refused : NotTaken::Failed;
-}
-
-std::size_t updates_in(const lanes::WaitingState& state) {
-  return state.updates;
-}
-std::size_t updates_in(const lanes::WaitingMarkers& markers) {
-  return markers.updates;
-}
 
 lanes::MarkerBounds bounds_of(const settings::Queues& queues) {
   return {.per_message = queues.markers_per_message,
@@ -184,175 +161,13 @@ void Telemetry::send_markers() {
 }
 
 void Telemetry::write_markers() {
-  const Sent<lanes::WaitingMarkers> sent = markers_under_way_;
+  const Shared<lanes::WaitingMarkers> sent = markers_under_way_;
   const icd::ChunkedBytes body = codec::write_markers_update(sent->update);
   markers_pace_.sent(loop_.now());
   channel_.send(icd::Uri::MarkersUpdate, codec::kCbor, body,
                 [this, sent, bytes = body.size()](const uplink::Outcome& outcome) {
                   answered(Kind::Markers, markers_pace_, sent, bytes, outcome);
                 });
-}
-
-/// An answer that cannot be dealt with is as good as none: the message is sent again.
-template <class Waiting>
-void Telemetry::answered(Kind kind, UriPace& pace, const Sent<Waiting>& sent, std::size_t bytes,
-                         const uplink::Outcome& outcome) {
-  if (kind == Kind::Markers) markers_under_way_.reset();
-  under_way_.reset();
-  if (!loop::guarded("the answer to a state or markers", [&] { judge(kind, pace, sent, bytes, outcome); })) {
-    pace.lost(loop_.now());
-    loop::guarded("putting a state or markers back", [&] { whole(restart_, [&] { put_back(*sent); }); });
-  }
-  pump();
-}
-
-template <class Waiting>
-void Telemetry::judge(Kind kind, UriPace& pace, const Sent<Waiting>& sent, std::size_t bytes,
-                      const uplink::Outcome& outcome) {
-  const loop::Instant now = loop_.now();
-  const auto* answer = std::get_if<uplink::Answered>(&outcome);
-  const int status = answer != nullptr ? answer->status : 0;
-  auto verdict = answer != nullptr ? dispatch::mapping_verdict(status, dispatch::body_of(answer->body))
-                                   : MappingVerdict::Failing;
-  const std::string sentence = verdict == MappingVerdict::Taken ? "" : sentence_of(outcome);
-  for (const Traffic& traffic : traffic_of(*sent)) {
-    if (verdict == MappingVerdict::Taken) {
-      record_.forwarded(traffic, updates_in(*sent), bytes, status, loop_.stamp_now());
-    } else {
-      record_.not_taken(traffic, why_not(verdict), status, sentence);
-    }
-  }
-  int& failed = kind == Kind::State ? state_failed_ : markers_failed_;
-  failed = verdict == MappingVerdict::Suspect ? failed + 1 : 0;
-  switch (verdict) {
-    case MappingVerdict::Taken:
-      pace.taken(answer->sent, now);
-      passed(*sent);
-      overtake(sent);
-      show(sent);
-      break;
-    case MappingVerdict::Refused:
-      pace.taken(answer->sent, now);
-      give_up(*sent, status, sentence, bytes);
-      break;
-    case MappingVerdict::Suspect:
-      pace.lost(now);
-      if (is_to_blame(*sent)) give_up(*sent, status, sentence, bytes);
-      break;
-    case MappingVerdict::Throttled:
-      pace.throttled(now, answer->retry_after);
-      put_back(*sent);
-      break;
-    case MappingVerdict::Failing:
-      pace.failed(outcome, now);
-      put_back(*sent);
-      break;
-  }
-}
-
-void Telemetry::passed(const lanes::WaitingState& state) {
-  state_.passed(state);
-  for (const icd::NamedPose& pose : state.update.poses) state_blame_.passed(pose.name.text(), loop_.now());
-}
-
-void Telemetry::passed(const lanes::WaitingMarkers& markers) {
-  marker_blame_.passed("", loop_.now());
-  if (markers.is_ahead) return;
-  markers_.passed();
-  if (marker_trials_.empty()) return;
-  for (const icd::Marker& marker : markers.update.markers) marker_trials_.erase({marker.ns, marker.id});
-}
-
-void Telemetry::show(const Sent<lanes::WaitingState>& state) {
-  as_forwarded_.forwarded(state->update, loop_.stamp_now());
-}
-
-void Telemetry::show(const Sent<lanes::WaitingMarkers>& markers) {
-  to_show_ = markers;
-  shown_ = 0;
-}
-
-bool Telemetry::show_some() {
-  const std::span<const icd::Marker> all = to_show_->update.markers;
-  const auto some = all.subspan(shown_, std::min(all.size() - shown_, kAtOnce));
-  as_forwarded_.forwarded(some, loop_.stamp_now());
-  shown_ += some.size();
-  if (shown_ == all.size()) to_show_.reset();
-  return some.size() < all.size();
-}
-
-template <class Waiting>
-void Telemetry::overtake(const Sent<Waiting>& sent) {
-  const auto written = [this, sent] {
-    aside_writes_ = false;
-    done(*sent);
-    pump();
-  };
-  aside_writes_ = !aside_.empty() && aside_.taken(sent->update, written);
-  if (!aside_writes_) done(*sent);
-}
-
-void Telemetry::give_up(const lanes::WaitingState& state, int status, const std::string& sentence,
-                        std::size_t bytes) {
-  if (state.update.poses.size() > 1) {
-    journal_.state_answered(false);
-    return state_.put_back_apart(state);
-  }
-  for (const icd::NamedPose& pose : state.update.poses) state_.give_up(pose.name, loop_.now());
-  set_aside(state.update, status, sentence, bytes,
-            [this, state](bool kept) { kept ? done(state) : journal_.state_answered(false); });
-}
-
-void Telemetry::give_up(const lanes::WaitingMarkers& markers, int status, const std::string& sentence,
-                        std::size_t bytes) {
-  if (markers.is_ahead) return;  // it has its own turn
-  if (markers.update.markers.size() > 1) {
-    journal_.markers_answered(false);
-    return markers_.put_back_narrower(markers);
-  }
-  for (const icd::Marker& marker : markers.update.markers) marker_trials_.erase({marker.ns, marker.id});
-  set_aside(markers.update, status, sentence, bytes,
-            [this, markers](bool kept) { kept ? done(markers) : journal_.markers_answered(false); });
-}
-
-void Telemetry::set_aside(const lanes::Message& message, int status, const std::string& sentence,
-                          std::size_t bytes, std::function<void(bool kept)> told) {
-  const auto go_on = [this, told = std::move(told)](bool kept) {
-    aside_writes_ = false;
-    told(kept);
-    pump();
-  };
-  aside_.add(message, status, sentence, bytes, {.told = go_on});
-  aside_writes_ = true;
-}
-
-bool Telemetry::is_to_blame(const lanes::WaitingState& state) {
-  bool to_blame = state_failed_ >= kTriesTogether;
-  if (state.update.poses.size() == 1) {
-    const icd::RobotName& name = state.update.poses.front().name;
-    to_blame =
-        state_blame_.failed(name.text(), state_.trial_of(name), loop_.now()) == lanes::Blame::Next::SetAside;
-  }
-  if (!to_blame) put_back(state);
-  return to_blame;
-}
-
-bool Telemetry::is_to_blame(const lanes::WaitingMarkers& markers) {
-  if (markers.is_ahead) return false;
-  if (markers.update.markers.size() != 1) {
-    const bool narrow = markers_failed_ >= kTriesTogether;
-    if (!narrow) put_back(markers);
-    return narrow;
-  }
-  const icd::Marker& marker = markers.update.markers.front();
-  if (marker_trials_.size() >= kMostTrials) marker_trials_.clear();
-  const bool to_blame = marker_blame_.failed("", marker_trials_[{marker.ns, marker.id}], loop_.now()) ==
-                        lanes::Blame::Next::SetAside;
-  if (!to_blame) {
-    journal_.markers_answered(false);
-    markers_.put_behind(markers);
-  }
-  return to_blame;
 }
 
 bool Telemetry::send_again(const lanes::Message& message) {
@@ -386,17 +201,6 @@ bool Telemetry::wait_again(icd::MarkersUpdate markers) {
   if (!journal_.accepted(in_order)) return false;
   markers_.put_back({.update = std::move(markers), .accepted = loop_.now(), .updates = 1});
   return true;
-}
-
-std::vector<Traffic> Telemetry::traffic_of(const lanes::WaitingState& state) const {
-  std::vector<Traffic> all;
-  all.reserve(state.update.poses.size());
-  for (const icd::NamedPose& pose : state.update.poses) all.push_back({Kind::State, pose.name.text()});
-  return all;
-}
-
-std::vector<Traffic> Telemetry::traffic_of(const lanes::WaitingMarkers&) const {
-  return {{Kind::Markers, ""}};
 }
 
 void Telemetry::link_is_back() {

@@ -86,9 +86,9 @@ class Telemetry {
   void write_markers();
   /// What is under way, and is not copied.
   template <class Waiting>
-  using Sent = std::shared_ptr<const Waiting>;
+  using Shared = std::shared_ptr<const Waiting>;
   template <class Waiting>
-  void answered(Kind kind, UriPace& pace, const Sent<Waiting>& sent, std::size_t bytes,
+  void answered(Kind kind, UriPace& pace, const Shared<Waiting>& sent, std::size_t bytes,
                 const uplink::Outcome& outcome);
   std::vector<Traffic> traffic_of(const lanes::WaitingState& state) const;
   std::vector<Traffic> traffic_of(const lanes::WaitingMarkers& markers) const;
@@ -108,19 +108,19 @@ class Telemetry {
   }
 
   template <class Waiting>
-  void judge(Kind kind, UriPace& pace, const Sent<Waiting>& sent, std::size_t bytes,
+  void judge(Kind kind, UriPace& pace, const Shared<Waiting>& sent, std::size_t bytes,
              const uplink::Outcome& outcome);
   void passed(const lanes::WaitingState& state);
   void passed(const lanes::WaitingMarkers& markers);
   /// What the Command Post has taken, to as_forwarded_.
-  void show(const Sent<lanes::WaitingState>& state);
-  void show(const Sent<lanes::WaitingMarkers>& markers);
+  void show(const Shared<lanes::WaitingState>& state);
+  void show(const Shared<lanes::WaitingMarkers>& markers);
   /// Before anything more is sent. False: that was all, at once; otherwise the turn is over.
   bool show_some();
   /// It is done once what it overtook is written down as overtaken: the other way round, a kill in between
   /// would leave a life to come that knows of neither, and lets an operator send the older one.
   template <class Waiting>
-  void overtake(const Sent<Waiting>& sent);
+  void overtake(const Shared<Waiting>& sent);
   /// Refused, or failed alone: the one at fault is looked for among several, and set aside by itself.
   void give_up(const lanes::WaitingState& state, int status, const std::string& sentence, std::size_t bytes);
   void give_up(const lanes::WaitingMarkers& markers, int status, const std::string& sentence,
@@ -147,9 +147,9 @@ class Telemetry {
   lanes::StateLane state_;
   lanes::MarkerLane markers_;
   MarkerArrivals arrivals_;
-  Sent<lanes::WaitingMarkers> markers_under_way_;  // null: none
-  Sent<lanes::WaitingMarkers> to_show_;            // null: all are shown
-  std::size_t shown_ = 0;                          // of these
+  Shared<lanes::WaitingMarkers> markers_under_way_;  // null: none
+  Shared<lanes::WaitingMarkers> to_show_;            // null: all are shown
+  std::size_t shown_ = 0;                            // of these
   lanes::StampOrder state_stamps_, marker_stamps_;
   int state_failed_ = 0, markers_failed_ = 0;  // answers in a row of a handler that failed
   lanes::Blame state_blame_, marker_blame_;

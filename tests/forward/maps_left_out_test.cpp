@@ -119,7 +119,8 @@ TEST_F(PointsLeftOut, AreNotThoseOfAMessageThatFailed) {
   take({0.2F});
   post_.go_on();
   ASSERT_TRUE(none_waits());
-  EXPECT_EQ(taken_.size(), 1) << "one of the two is enough";
+  EXPECT_FALSE(taken_.empty())
+      << "one of the two is enough; the second may be packed before the first is taken";
 }
 
 TEST_F(PointsLeftOut, GoAgainInAnotherRun) {

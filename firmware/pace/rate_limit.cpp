@@ -63,6 +63,10 @@ void RateLimit::count(const Span& sent) {
   counted_ = {.first = std::max(before.first, sent.first), .last = std::max(before.last, sent.last)};
 }
 
+Duration RateLimit::spacing() const {
+  return rule_.from_answers ? rule_.spacing : rule_.spacing + rule_.spacing / kUneven;
+}
+
 void RateLimit::left(const Span& sent) {
   const Duration uneven = rule_.spacing / kUneven;
   count({.first = sent.first + uneven, .last = sent.last + uneven});

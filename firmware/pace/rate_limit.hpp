@@ -51,8 +51,9 @@ class RateLimit {
   Span earliest() const;
   /// The earliest time for one that leaves at once, whole.
   Instant next() const;
-  /// Between two requests, as allowed or learned.
-  Duration spacing() const { return rule_.spacing; }
+  /// From one request to the next, as allowed or learned: what one of them may take to leave without being
+  /// in the way of the next.
+  Duration spacing() const;
   bool ready(Instant now) const { return now >= next(); }
 
   /// Whether the next request may be sent before the answer to the last one: not while it is learned how

@@ -237,6 +237,15 @@ TEST(RateLimit, OfTwoUnderWayTheLaterCountsWhicheverIsAnsweredFirst) {
   }
 }
 
+/// What fills a link sends so much at a time.
+TEST(RateLimit, OneThatLeavesForAllOfTheSpacingEndsWhereTheNextMayBegin) {
+  RateLimit rate(1);
+  rate.sent(at(0));
+  const Instant end = at(0) + rate.spacing();
+  rate.left({.first = at(0), .last = end});
+  EXPECT_EQ(rate.earliest().first, end);
+}
+
 /// Else the answer to it would end a pause that the server asked for since.
 TEST(RateLimit, WhatWasSentBeforeA429DoesNotEndTheStorm) {
   RateLimit rate(1);

@@ -78,12 +78,13 @@ void Flow::changed() {
   told_.changed();
 }
 
-/// A new run begins with a blank picture.
+/// A new run begins with a blank picture, here and at the Command Post. The first one that is known in a life
+/// may have begun before it.
 void Flow::picture_the_run() {
   const std::int64_t run = reports().run().number;
   const std::int64_t before = std::exchange(pictured_run_, run);
-  if (before != run) maps_.begin_run();
   if (before == 0 || before == run) return;
+  maps_.begin_run();
   as_forwarded_.begin_run(loop_.stamp_now());
   picture_.begin_run();
 }

@@ -62,10 +62,7 @@ class Maps {
   /// sent again to this one.
   void endpoint_changed(std::optional<icd::BearerToken> token);
   /// What the Command Post took of the run before it may have no more.
-  void begin_run() {
-    points_.forget();
-    lane_.canvases().begin_run();
-  }
+  void begin_run();
   /// A map that the spool kept under this number.
   void restore(std::uint64_t number, icd::MapUpdate update);
 
@@ -113,6 +110,7 @@ class Maps {
   std::vector<std::uint64_t> add(std::uint64_t number, icd::MapUpdate update);
   void take_settings();
   void leads_elsewhere();
+  void pack_again();
   void carry_on_grids(const journal::Carried& carried, bool ran_before);
   bool is_told(const icd::MapUpdate& update);
   void compare();

@@ -1,4 +1,6 @@
-// What is known of the grids that were sent before: in a life before this one, and to another Command Post.
+// What is known of the grids that were sent before: in a life before this one, in another run, and to another Command Post.
+#include <vector>
+
 #include "forward/maps.hpp"
 #include "loop/guard.hpp"
 
@@ -24,13 +26,29 @@ bool Maps::is_told(const icd::MapUpdate& update) {
   return true;
 }
 
-/// What was packed for another one is packed again, for it may hold what lay there.
+void Maps::begin_run() {
+  points_.forget();
+  loop::guarded("maps for another run", [this] {
+    pack_again();
+    std::vector<const icd::MapUpdate*> under_way;
+    for (const Place& place : {prepared_, following_}) {
+      if (place) under_way.push_back(&place->waiting.map);
+    }
+    lane_.canvases().begin_run(under_way);
+  });
+}
+
 void Maps::leads_elsewhere() {
   loop::guarded("maps for another Command Post", [this] {
     lane_.canvases().lead_to(channel_.address());
-    put_back(following_);
-    put_back(prepared_);
+    pack_again();
   });
+}
+
+/// What is not under way yet may hold what lay there before.
+void Maps::pack_again() {
+  put_back(following_);
+  put_back(prepared_);
 }
 
 }  // namespace adit::forward

@@ -52,6 +52,17 @@ void Canvases::note(const std::optional<icd::RobotName>& name, const Extent& ext
   if (!is_new) its->second = around(its->second, extent);
 }
 
+/// A life to come takes for sent what was posted in earlier runs, too: it does not know when they ended.
+void Canvases::begin_run(std::span<const icd::MapUpdate* const> under_way) {
+  canvases_.clear();
+  before_.clear();
+  sent_.clear();
+  for (const icd::MapUpdate* map : under_way) {
+    if (!map->is_grid()) continue;
+    note(map->name, extent_of(std::get<icd::OccupancyGrid>(map->msg)));
+  }
+}
+
 const Canvas* Canvases::find(const std::optional<icd::RobotName>& name) const {
   const auto found = canvases_.find(name);
   return found == canvases_.end() ? nullptr : &found->second;

@@ -4,6 +4,7 @@
 #include <cstdint>
 #include <map>
 #include <optional>
+#include <span>
 #include <string>
 #include <utility>
 
@@ -14,9 +15,8 @@
 namespace adit::lanes {
 
 /// What was last sent of each robot's grids, so that a gap between grids can be sent with them: its cells
-/// have the newest value that was packed, or were never sent. Where that is not known, for the memory's
-/// bound, for a try that failed, or from before a restart, another run or another Command Post, nothing is
-/// filled.
+/// have the newest value that was packed, or were never sent in this run. Where that is not known, for the
+/// memory's bound, for a try that failed, or from before a restart or another Command Post, nothing is filled.
 ///
 /// What was packed and came back goes before all newer ones, and is drawn again: what is sent in a gap is not
 /// older than what arrived.
@@ -42,8 +42,8 @@ class Canvases {
   void grown(const std::pair<std::string, Extent>& posted) {
     posted_.insert_or_assign(posted.first, posted.second);
   }
-  /// A Command Post may begin a run with an empty map, or keep it.
-  void begin_run() { canvases_.clear(); }
+  /// A run begins with an empty map, but for the grids among `under_way`, which may arrive in it.
+  void begin_run(std::span<const icd::MapUpdate* const> under_way);
 
   /// Of grids of that name; null where nothing is known.
   const Canvas* find(const std::optional<icd::RobotName>& name) const;

@@ -22,6 +22,7 @@ struct World {
   std::vector<std::uint8_t> cells = std::vector<std::uint8_t>(std::size_t{kSide} * kSide, icd::kUnknownCell);
   bool overlays = false;  // unknown overwrites nothing
 
+  void empty() { std::ranges::fill(cells, icd::kUnknownCell); }
   void put(const icd::OccupancyGrid& grid, const std::vector<std::uint8_t>& values) {
     const auto at = *cells_in(lanes::grid(-kSide / 2 * kCell, -kSide / 2 * kCell, 1, 1), grid);
     auto value = values.begin();
@@ -42,7 +43,7 @@ class CanvasLaws : public testing::TestWithParam<std::uint64_t> {
       if (what < 250) post();
       if (what >= 250 && what < 397) send();
       if (what == 397) restart();
-      if (what == 398) lane_.canvases().begin_run();
+      if (what == 398) begin_run();
       if (what == 399) x_ = pick(200) - 100, y_ = pick(200) - 100;  // it is carried away
     }
     while (lane_.count() > 0 || following_) send();
@@ -113,6 +114,21 @@ class CanvasLaws : public testing::TestWithParam<std::uint64_t> {
     const auto& grid = std::get<icd::OccupancyGrid>(sent.waiting.map.msg);
     overwriting_.put(grid, sent.cells);
     overlaying_.put(grid, sent.cells);
+  }
+
+  /// With an empty map, here and there. What waits is posted in it: its cells are the newest there are.
+  void begin_run() {
+    if (following_) forget(lane_.put_back(std::exchange(following_, {})->waiting));
+    lane_.canvases().begin_run({});
+    for (World* world : {&posted_, &overwriting_, &overlaying_}) world->empty();
+    std::ranges::fill(ever_posted_, std::bitset<256>{});
+    for (const auto& [number, map] : kept_) {
+      const auto& grid = std::get<icd::OccupancyGrid>(map.msg);
+      const auto bytes = *map.data.bytes.chunks().front();
+      const std::vector<std::uint8_t> values(bytes.begin(), bytes.end());
+      posted_.put(grid, values);
+      note_posted(grid, values);
+    }
   }
 
   /// A life that follows has the maps that wait, and where some were sent.

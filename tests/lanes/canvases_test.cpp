@@ -60,11 +60,22 @@ TEST_F(CanvasesTest, DoNotKnowWhatWasSentOnAnotherLattice) {
   EXPECT_EQ(go_together(70, 70), 2) << "there nothing was, tiles away";
 }
 
-TEST_F(CanvasesTest, DoNotKnowAfterARestartOrInAnotherRunWhatWasSentBefore) {
+TEST_F(CanvasesTest, BeginARunWithAnEmptyMapButForWhatIsUnderWay) {
+  lane_.canvases().carry_on({{Canvases::kAnyName, Extent::everywhere()}});
   go_together(0, 0);
-  lane_.canvases().begin_run();
-  go_together(200, 200);
-  EXPECT_EQ(go_together(0, 0), 1);
+  EXPECT_EQ(go_together(4, 4), 1) << "of an earlier life";
+  add(window_at(100, 100));
+  const WaitingMap under_way = taken();
+  const icd::MapUpdate* const maps[] = {&under_way.map};
+  lane_.canvases().begin_run(maps);
+  go_together(300, 300);
+  EXPECT_EQ(go_together(4, 4), 2);
+  EXPECT_EQ(go_together(102, 102), 1) << "what lies in its corner is not known";
+}
+
+TEST_F(CanvasesTest, DoNotKnowAfterARestartWhatWasSentBefore) {
+  go_together(0, 0);
+  lane_.canvases().begin_run({});
   lane_ = MapLane{0};
   lane_.canvases().carry_on(posted_);
   go_together(300, 300);

@@ -68,10 +68,11 @@ void for_each_cell(const Extent& extent, Visit visit) {
 }
 
 /// The grids of one name, and what the Command Post has of them. What two Command Posts have is taken
-/// together where an operator `switches` between them: then a cell that one of them lacks is not missed.
+/// together where an operator `switches` between them: then a cell that one of them lacks is not missed. Nor is
+/// one of which an earlier run had more, for a run begins with an empty map.
 class GridsOfOneName {
  public:
-  explicit GridsOfOneName(bool switches) : switches_(switches) {}
+  explicit GridsOfOneName(bool has_more_maps) : has_more_maps_(has_more_maps) {}
   void post(const Asked& asked, const Item& item) {
     posted_.push_back({&asked, item.serial, Extent::from(item.says)});
   }
@@ -98,7 +99,7 @@ class GridsOfOneName {
       Owners owners = owners_of(cell, value, event.at);
       const auto had = has_.find(key_of(cell));
       const bool was_sent = had != has_.end();
-      if (value == kNoValue && was_sent && switches_)  // perhaps to the other one alone
+      if (value == kNoValue && was_sent && has_more_maps_)  // perhaps of another map alone
         owners.insert(owners.end(), had->second.owners.begin(), had->second.owners.end());
       is_strange = is_strange || (owners.empty() && (value != kNoValue || was_sent));
       if (!owners.empty()) has_[key_of(cell)] = {place, owners};
@@ -206,7 +207,7 @@ class GridsOfOneName {
     return grid.is_refused || failures >= kInPlace;
   }
 
-  bool switches_;
+  bool has_more_maps_;
   std::deque<PostedGrid> posted_;
   std::map<Key, Has> has_;
 };
@@ -215,10 +216,12 @@ class GridsOfOneName {
 
 void grid_arrived(const Evidence& evidence, Broken& broken) {
   const auto all = asked_in(evidence.events, kMap);
-  const bool switches = std::ranges::find(evidence.events, kCourse, &Event::what) != evidence.events.end();
+  const bool has_more_maps = std::ranges::any_of(evidence.events, [](const Event& event) {
+    return event.what == kCourse || event.kind == Kind::NewRun;
+  });
   std::map<std::string, GridsOfOneName> names;
   const auto of = [&](const std::string& name) -> GridsOfOneName& {
-    return names.try_emplace(name, switches).first->second;
+    return names.try_emplace(name, has_more_maps).first->second;
   };
   for (const Asked& asked : all) {
     const Item& item = asked.items.front();

@@ -154,9 +154,9 @@ test("loses nothing that was typed when the box is lost in the middle of it", as
   assert.equal(await field(page, "robots[0].name").locator("input").inputValue(), "ugv1");
   await box.startAditd();
   await hears(page, "Live");
-  await hears(page, /1 change|3 changes/);
+  await hears(page, /[1-9] changes?/);
   await page.reload();
-  await hears(page, /1 change|3 changes/);
+  await hears(page, /[1-9] changes?/);
   assert.equal(await field(page, "robots[0].name").locator("input").inputValue(), "ugv1", "kept through a reload, too");
   await page.getByRole("button", { name: "Apply changes" }).click();
   await review(page);

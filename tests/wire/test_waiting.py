@@ -85,7 +85,7 @@ class Waiting(unittest.TestCase):
         for name in ("r2", "r3"):  # one under way, and one packed: behind these the others wait
             self.post_map(stage, maps.made_grid(10, 10), name)
         aside = maps.made_grid(20, 20, seed=2)
-        aside.origin = (first.origin[0] + 10, *first.origin[1:])
+        aside.origin = (first.origin[0] + 10.03, *first.origin[1:])  # not of one lattice with the others
         small, large = maps.made_grid(30, 30, seed=3), maps.made_grid(40, 40, seed=4)
         small.origin = large.origin = first.origin
         for grid in (small, aside, large):

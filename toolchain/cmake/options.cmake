@@ -12,6 +12,9 @@ target_link_options(adit_options INTERFACE -pie -Wl,-z,relro,-z,now -Wl,--gc-sec
 set(CMAKE_CXX_FLAGS_RELEASE "-Os -DNDEBUG")
 
 if(CMAKE_INTERPROCEDURAL_OPTIMIZATION)  # what ships, by Clang: see ships.cmake
+  if(NOT CMAKE_CXX_COMPILER_ID STREQUAL Clang)
+    message(FATAL_ERROR "${CMAKE_BINARY_DIR} is of another compiler than ships.cmake names: remove it, and say --preset again")
+  endif()
   set(CMAKE_CXX_FLAGS_RELEASE "-Oz -DNDEBUG")
   # As one program, not in parts. Nothing asks for a type at run time, and the types' names are long; the stack is unwound where
   # something throws, not at each instruction.

@@ -1,4 +1,5 @@
-// What is known of the grids that were sent before: in a life before this one, in another run, and to another Command Post.
+// What is known of the grids that were sent before: in a life before this one, in another run, and to another
+// Command Post.
 #include <vector>
 
 #include "forward/maps.hpp"
@@ -6,13 +7,16 @@
 
 namespace adit::forward {
 
-/// After a power cut the journal is gone: then it is not known where grids were sent, if any were.
+/// After a power cut the journal is gone: then it is not known where grids were sent, if any were. That is
+/// told by the record that begins them, for a life may end after each.
 void Maps::carry_on_grids(const journal::Carried& carried, bool ran_before) {
   lanes::Canvases::Posted posted = carried.grids().value_or(lanes::Canvases::Posted{});
-  const bool is_told = carried.grids() || journal_.grids_begin();
-  const bool is_known = carried.grids() || !ran_before;
-  if (!is_told || !is_known) posted[lanes::Canvases::kAnyName] = lanes::Extent::everywhere();
-  if (!is_known) (void)journal_.grids_posted(lanes::Canvases::kAnyName, lanes::Extent::everywhere());
+  if (!carried.grids()) {
+    const auto everywhere = lanes::Extent::everywhere();
+    const auto told =
+        ran_before ? journal_.grids_posted(lanes::Canvases::kAnyName, everywhere) : journal_.grids_begin();
+    if (ran_before || !told) posted[lanes::Canvases::kAnyName] = everywhere;
+  }
   lane_.canvases().carry_on(std::move(posted));
 }
 

@@ -59,7 +59,7 @@ class Journal {
 
   void paced(icd::Uri uri, const pace::Learned& learned);
   void stamped(icd::Uri uri, icd::Stamp stamp);
-  /// Where grids are posted is told from here on.
+  /// Where grids are posted is told from here on; grids_posted() begins that, too.
   Kept grids_begin();
   Kept grids_posted(const std::string& name, const lanes::Extent& extent);
 

@@ -105,6 +105,23 @@ TEST_F(MapsTest, ThatWereReplacedAreForgottenOnceTheNewerOneIsKept) {
   EXPECT_TRUE(comes_to(1));
 }
 
+/// A life may end at any byte of what it writes.
+TEST_F(MapsTest, NeverTellThatNoGridWasSentWhereThatIsNotKnown) {
+  journal_.begin({.boot = "boot", .at = {}, .stamp = 1});
+  maps_.carry_on({}, /*ran_before=*/true);
+  for (const auto& entry : fs::directory_iterator(journal_folder_.path())) {
+    for (std::uintmax_t size = 0; size <= entry.file_size(); ++size) {
+      const host::Folder cut;
+      const fs::path file = fs::path(cut.path()) / entry.path().filename();
+      fs::copy_file(entry.path(), file);
+      fs::resize_file(file, size);
+      const auto left = journal::Journal(loop_, cut.path()).read();
+      EXPECT_TRUE(!left.grids() || left.grids()->contains(lanes::Canvases::kAnyName)) << size;
+    }
+  }
+  EXPECT_TRUE(journal_.read().grids());
+}
+
 /// The next life takes the one of the higher number for the newer one.
 TEST_F(MapsTest, ThatAreSentAgainByHandStayBehindANewerOneThatCoversThem) {
   EXPECT_EQ(status(take(grid("r1", 20, 700))), icd::Status::Ok);

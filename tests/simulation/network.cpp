@@ -9,6 +9,12 @@
 #include "simulation/world.hpp"
 
 namespace adit::simulation {
+namespace {
+
+/// Bytes of a segment on Ethernet: a thin line delivers one after the other, and each is acknowledged.
+constexpr std::size_t kSegment = 1448;
+
+}  // namespace
 
 Link::Link(World& world, std::uint64_t number, uplink::Endpoint endpoint, Random random)
     : view(place_at(endpoint.address), number),
@@ -58,7 +64,8 @@ std::size_t Link::write(std::string_view bytes) {
   unacknowledged_ += taken;
   if (taken > 0) last_left_ = world_.now();
   while (left > 0) {
-    const std::size_t size = random_.chance(0.8) ? left : 1 + random_.below(left);
+    const std::size_t most = is_thin_ ? std::min(left, kSegment) : left;
+    const std::size_t size = random_.chance(0.8) ? most : 1 + random_.below(most);
     last_there_ = arrival_of(size);
     if (world_.network().stalls().is_on()) held_until_ = last_there_;
     world_.at(last_there_, [self = shared_from_this(), piece = std::string(bytes.substr(taken - left, size)),

@@ -68,8 +68,8 @@ void for_each_cell(const Extent& extent, Visit visit) {
 }
 
 /// The grids of one name, and what the Command Post has of them. What two Command Posts have is taken
-/// together where an operator `switches` between them: then a cell that one of them lacks is not missed. Nor is
-/// one of which an earlier run had more, for a run begins with an empty map.
+/// together where an operator `switches` between them: then a cell that one of them lacks is not missed. Nor
+/// is one of which an earlier run had more, for a run begins with an empty map.
 class GridsOfOneName {
  public:
   explicit GridsOfOneName(bool has_more_maps) : has_more_maps_(has_more_maps) {}
@@ -158,7 +158,31 @@ class GridsOfOneName {
       }
       message.cells.push_back(std::move(owners));
     });
+    if (event.kind == Kind::Taken) leave_out_what_is_not_in(message);
     return message;
+  }
+
+  /// Where a message has gaps, not all that lies within it is in it, and a gap may have its value by chance.
+  /// Of what is in it each cell is its own, or of one that is no older, also where that has replaced it.
+  static void leave_out_what_is_not_in(Message& message) {
+    Owners not_in;
+    for (PostedGrid* grid : message.within) {
+      std::size_t i = 0;
+      bool is_in = true;
+      for_each_cell(message.extent, [&](const Extent& cell) {
+        const Owners& owners = message.cells[i++];
+        is_in =
+            is_in && (!holds(grid->extent, cell) || std::ranges::any_of(owners, [&](const PostedGrid* owner) {
+              return !owner->is_before(*grid);
+            }));
+      });
+      if (!is_in) not_in.push_back(grid);
+    }
+    const auto leave_out = [&](Owners& of) {
+      std::erase_if(of, [&](PostedGrid* each) { return std::ranges::find(not_in, each) != not_in.end(); });
+    };
+    leave_out(message.within);
+    std::ranges::for_each(message.cells, leave_out);
   }
 
   /// Those that have that value there, also where they do not lie within the message: what was sent last may

@@ -61,8 +61,9 @@ class Maps {
   /// The endpoint is, or its token, or the way there: what is under way to another place is given up, and
   /// sent again to this one.
   void endpoint_changed(std::optional<icd::BearerToken> token);
-  /// What the Command Post took of the run before it may have no more.
-  void begin_run();
+  /// Another run is on: what the Command Post took of the one before it may have no more. `is_new`: it begins
+  /// at the same Command Post, with an empty map.
+  void change_run(bool is_new);
   /// A map that the spool kept under this number.
   void restore(std::uint64_t number, icd::MapUpdate update);
 

@@ -30,10 +30,11 @@ bool Maps::is_told(const icd::MapUpdate& update) {
   return true;
 }
 
-void Maps::begin_run() {
+void Maps::change_run(bool is_new) {
   points_.forget();
-  loop::guarded("maps for another run", [this] {
+  loop::guarded("maps for another run", [&] {
     pack_again();
+    if (!is_new) return lane_.canvases().change_run();
     std::vector<const icd::MapUpdate*> under_way;
     for (const Place& place : {prepared_, following_}) {
       if (place) under_way.push_back(&place->waiting.map);

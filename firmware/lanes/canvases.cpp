@@ -35,8 +35,10 @@ std::optional<Extent> Canvases::sent(const std::optional<icd::RobotName>& name) 
     const auto found = extents.find(key);
     if (found != extents.end()) all = all ? around(*all, found->second) : found->second;
   };
-  add(before_, kAnyName);
-  add(before_, text_of(name));
+  if (!began_.contains(command_post_)) {
+    add(before_, kAnyName);
+    add(before_, text_of(name));
+  }
   add(sent_, kAnyName);
   add(sent_, text_of(name) + '@' + command_post_);
   return all;
@@ -55,8 +57,8 @@ void Canvases::note(const std::optional<icd::RobotName>& name, const Extent& ext
 /// A life to come takes for sent what was posted in earlier runs, too: it does not know when they ended.
 void Canvases::begin_run(std::span<const icd::MapUpdate* const> under_way) {
   canvases_.clear();
-  before_.clear();
-  sent_.clear();
+  began_.insert(command_post_);
+  std::erase_if(sent_, [&](const auto& sent) { return sent.first.ends_with('@' + command_post_); });
   for (const icd::MapUpdate* map : under_way) {
     if (!map->is_grid()) continue;
     note(map->name, extent_of(std::get<icd::OccupancyGrid>(map->msg)));

@@ -4,6 +4,7 @@
 #include <cstdint>
 #include <map>
 #include <optional>
+#include <set>
 #include <span>
 #include <string>
 #include <utility>
@@ -16,7 +17,8 @@ namespace adit::lanes {
 
 /// What was last sent of each robot's grids, so that a gap between grids can be sent with them: its cells
 /// have the newest value that was packed, or were never sent in this run. Where that is not known, for the
-/// memory's bound, for a try that failed, or from before a restart or another Command Post, nothing is filled.
+/// memory's bound, for a try that failed, or from before a restart or another Command Post, nothing is
+/// filled.
 ///
 /// What was packed and came back goes before all newer ones, and is drawn again: what is sent in a gap is not
 /// older than what arrived.
@@ -42,7 +44,10 @@ class Canvases {
   void grown(const std::pair<std::string, Extent>& posted) {
     posted_.insert_or_assign(posted.first, posted.second);
   }
-  /// A run begins with an empty map, but for the grids among `under_way`, which may arrive in it.
+  /// Another run is on, with a map of its own, which is not known.
+  void change_run() { canvases_.clear(); }
+  /// A run begins at this Command Post with an empty map, but for the grids among `under_way`, which may
+  /// arrive in it. At others, what was sent stays.
   void begin_run(std::span<const icd::MapUpdate* const> under_way);
 
   /// Of grids of that name; null where nothing is known.
@@ -63,6 +68,7 @@ class Canvases {
   std::string command_post_;
   std::map<std::optional<icd::RobotName>, Canvas> canvases_;
   Posted before_, posted_;              // by the end of the life before, and by now
+  std::set<std::string> began_;         // Command Posts that have nothing of the life before
   std::map<std::string, Extent> sent_;  // in this life, by name@Command Post
   std::uint64_t numbers_ = 0, laid_ = 0;
 };

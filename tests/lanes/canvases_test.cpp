@@ -99,6 +99,21 @@ TEST_F(CanvasesTest, KnowOfEachCommandPostByItself) {
   EXPECT_EQ(go_together(0, 0), 1);
 }
 
+TEST_F(CanvasesTest, KnowWhatOneCommandPostHasWhenARunBeginsAtAnother) {
+  lane_.canvases().carry_on({{"R1", extent_of(grid(-1000, -1000, 100, 100))}});
+  lane_.canvases().lead_to("10.100.1.201:8000");
+  go_together(0, 0);
+  lane_.canvases().lead_to("10.100.2.201:8000");
+  lane_.canvases().begin_run({});
+  go_together(100, 100);
+  EXPECT_EQ(go_together(0, 0), 2);
+  EXPECT_EQ(go_together(-1990, -1990), 2);
+  lane_.canvases().lead_to("10.100.1.201:8000");
+  go_together(200, 200);
+  EXPECT_EQ(go_together(0, 0), 1);
+  EXPECT_EQ(go_together(-1990, -1990), 1) << "of an earlier life";
+}
+
 TEST_F(CanvasesTest, DoNotKnowWhatATryThatFailedHasLeft) {
   go_together(0, 0);
   add(window_at(4, 4));

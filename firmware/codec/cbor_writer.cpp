@@ -39,7 +39,7 @@ void CborWriter::text(std::string_view utf8) {
   if (utf8.size() > latest_.size() - used_) flush();
   if (utf8.size() > latest_.size())
     return out_.append({reinterpret_cast<const std::uint8_t*>(utf8.data()), utf8.size()});
-  std::memcpy(latest_.data() + used_, utf8.data(), utf8.size());
+  utf8.copy(reinterpret_cast<char*>(latest_.data()) + used_, utf8.size());  // which may be none
   used_ += utf8.size();
 }
 

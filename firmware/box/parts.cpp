@@ -3,6 +3,7 @@
 #include <cJSON.h>
 #include <crypt.h>
 #include <gnu/libc-version.h>
+#include <libdeflate.h>
 #include <microhttpd.h>
 #include <sqlite3.h>
 #include <zlib.h>
@@ -32,6 +33,7 @@ std::vector<api::PartRow> parts() {
   return {{.name = "libmicrohttpd", .version = MHD_get_version(), .licence = kLesserGpl},
           {.name = "cJSON", .version = cJSON_Version(), .licence = "MIT"},
           {.name = "zlib", .version = zlibVersion(), .licence = "Zlib"},
+          {.name = "libdeflate", .version = LIBDEFLATE_VERSION_STRING, .licence = "MIT"},
           {.name = "SQLite", .version = sqlite3_libversion(), .licence = "blessing"},
           {.name = "Boost.Beast", .version = boost_version(), .licence = "BSL-1.0"},
           {.name = "libsystemd", .version = kSystemdVersion, .licence = kLesserGpl},

@@ -11,7 +11,7 @@ namespace adit::codec {
 namespace {
 
 constexpr std::size_t kPiece = icd::ChunkedBytes::kChunk;
-constexpr int kLevel = 6, kFastLevel = 1;
+constexpr int kLevel = 6;
 constexpr int kGzip = MAX_WBITS + 16;  // zlib: a gzip wrapper, and no other
 constexpr int kMemoryLevel = 8;        // zlib's default
 
@@ -46,9 +46,8 @@ icd::Refusal damaged(std::string_view path, const char* why) {
 
 struct Gzipper::Stream {
   explicit Stream(GzipStrategy strategy) {
-    const int level = strategy == GzipStrategy::Points ? kFastLevel : kLevel;
     const int zlibs = strategy == GzipStrategy::Runs ? Z_RLE : Z_DEFAULT_STRATEGY;
-    require_started(deflateInit2(&zlib, level, Z_DEFLATED, kGzip, kMemoryLevel, zlibs));
+    require_started(deflateInit2(&zlib, kLevel, Z_DEFLATED, kGzip, kMemoryLevel, zlibs));
   }
   ~Stream() { deflateEnd(&zlib); }
   Stream(const Stream&) = delete;

@@ -16,7 +16,6 @@ namespace adit::codec {
 enum class GzipStrategy : std::uint8_t {
   Default,  // zlib level 6: for text
   Runs,     // zlib level 6 with Z_RLE: for grids, two to five times faster and mostly smaller
-  Points,   // zlib level 1: for point clouds, 2.6 times faster and 2 % larger
 };
 
 /// Makes one gzip member (RFC 1952) of what it is fed, with nothing after it, and no time or name in its

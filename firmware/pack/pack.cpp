@@ -2,12 +2,14 @@
 
 #include <algorithm>
 #include <array>
+#include <optional>
 #include <span>
 #include <string_view>
 #include <utility>
 #include <variant>
 
 #include "codec/gzip.hpp"
+#include "codec/gzip_whole.hpp"
 #include "pack/points.hpp"
 
 namespace adit::pack {
@@ -46,12 +48,24 @@ class FiniteCheck {
   std::array<Exponent, 3> exponents_;
 };
 
-icd::MapData compressed(icd::MapData data, codec::GzipStrategy strategy) {
-  icd::ChunkedBytes member = codec::gzip(data.bytes, strategy);
-  if (member.size() >= data.bytes.size()) return data;
-  data.bytes = std::move(member);
+/// A cloud's: for libdeflate its points are whole in memory meanwhile.
+constexpr int kCloudLevel = 6;
+
+icd::MapData compressed(icd::MapData data, std::optional<icd::ChunkedBytes> member) {
+  if (!member || member->size() >= data.bytes.size()) return data;
+  data.bytes = *std::move(member);
   data.compression = icd::Compression::Gzip;
   return data;
+}
+
+icd::MapData compressed_cells(icd::MapData data) {
+  icd::ChunkedBytes member = codec::gzip(data.bytes, codec::GzipStrategy::Runs);
+  return compressed(std::move(data), std::move(member));
+}
+
+icd::MapData compressed_points(icd::MapData data) {
+  auto member = codec::gzip_whole(data.bytes.to_vector(), kCloudLevel, data.bytes.size());
+  return compressed(std::move(data), std::move(member));
 }
 
 }  // namespace
@@ -68,10 +82,10 @@ icd::MapUpdate pack(icd::MapUpdate map) {
   if (map.data.compression != icd::Compression::None) return map;
   const auto* cloud = std::get_if<icd::PointCloud2>(&map.msg);
   if (cloud == nullptr) {
-    map.data = compressed(std::move(map.data), codec::GzipStrategy::Runs);
+    map.data = compressed_cells(std::move(map.data));
     return map;
   }
-  map.data = compressed(without_invalid_points(*cloud, std::move(map.data)), codec::GzipStrategy::Points);
+  map.data = compressed_points(without_invalid_points(*cloud, std::move(map.data)));
   return map;
 }
 

@@ -48,7 +48,7 @@ icd::ChunkedBytes in_pieces(const Bytes& bytes, std::size_t piece) {
 }
 
 TEST(Gzip, MakesExactlyOneMemberAndNothingAfterIt) {
-  for (const auto strategy : {GzipStrategy::Default, GzipStrategy::Runs, GzipStrategy::Points}) {
+  for (const auto strategy : {GzipStrategy::Default, GzipStrategy::Runs}) {
     for (const std::size_t size : {0, 1, 100, 65535, 65536, 65537, 1'000'000}) {
       for (const Bytes& bytes : {noise(size, size), runs(size)}) {
         const Bytes member = gzip(icd::ChunkedBytes(bytes), strategy).to_vector();

@@ -121,7 +121,7 @@ icd::MapUpdate random_cloud(Random& random) {
   if (below(random, 4) == 0) update.name.reset();
   update.data = {.bytes = icd::ChunkedBytes(points), .compression = {}, .raw_size = points.size()};
   if (below(random, 2) == 0) {
-    update.data.bytes = gzip(std::move(update.data.bytes), GzipStrategy::Points);
+    update.data.bytes = gzip(std::move(update.data.bytes), GzipStrategy::Default);
     update.data.compression = icd::Compression::Gzip;
   }
   return update;

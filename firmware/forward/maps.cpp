@@ -168,15 +168,16 @@ void Maps::pack(const Place& prepared) {
   journal_.stamped(icd::Uri::MapUpdate, *header.stamp);
   const loop::Instant began = loop_.now();
   const auto leaving_out = std::make_shared<LeavingOut>(points_.leaving_out(prepared->waiting.map));
-  workers_.submit(
-      [prepared, leaving_out] { prepared->packed = packed(prepared->waiting, std::move(*leaving_out)); },
-      [this, began, prepared] {
-        preparing_ = false;
-        packing_took_ = loop_.now() - began;
-        loop::guarded("a map that was packed", [&] { is_packed(prepared); });
-        pump();
-      },
-      [this, prepared] { not_packed(prepared); });
+  const pack::CloudForm form{.is_arranged = settings_.command_post.arrange_clouds};
+  workers_.submit([prepared, leaving_out,
+                   form] { prepared->packed = packed(prepared->waiting, std::move(*leaving_out), form); },
+                  [this, began, prepared] {
+                    preparing_ = false;
+                    packing_took_ = loop_.now() - began;
+                    loop::guarded("a map that was packed", [&] { is_packed(prepared); });
+                    pump();
+                  },
+                  [this, prepared] { not_packed(prepared); });
   preparing_ = true;  // only now: where it could not be submitted, it is not
 }
 
@@ -190,8 +191,7 @@ Maps::Place* Maps::place_of(const Place& prepared) {
 void Maps::is_packed(const Place& prepared) {
   const icd::MapUpdate& map = prepared->waiting.map;
   const LeftOut& left_out = prepared->packed.left_out;
-  if (!map.is_grid())
-    slot_.packed(left_out.points > 0 ? left_out.sent : map.data, prepared->packed.body.size());
+  if (!map.is_grid()) slot_.packed(prepared->packed.points_size, prepared->packed.body.size());
   Place* const place = place_of(prepared);
   if (place == nullptr) return;
   if (left_out.is_all) return is_there(*place);

@@ -59,7 +59,10 @@ void Maps::points_taken(Prepared& sent) {
   icd::MapUpdate& map = sent.waiting.map;
   LeftOut& left_out = sent.packed.left_out;
   record_.left_out(traffic_of(map), left_out.points);
-  if (left_out.points > 0) map.data = std::move(left_out.sent);
+  if (left_out.sent) {
+    left_out.sent->header() = map.header();
+    map = *std::exchange(left_out.sent, std::nullopt);
+  }
   loop::guarded("points that were taken", [&] { points_.taken(map, std::move(left_out)); });
 }
 

@@ -20,9 +20,9 @@ void Slot::allow(std::uint64_t most) {
   most_ = bytes_per_second_ = static_cast<double>(most);
 }
 
-void Slot::packed(const icd::MapData& points, std::size_t bytes) {
-  if (points.raw_size < kTelling) return;
-  packed_to_ = std::clamp(static_cast<double>(bytes) / static_cast<double>(points.raw_size), kSmallest, 1.0);
+void Slot::packed(std::size_t points, std::size_t bytes) {
+  if (points < kTelling) return;
+  packed_to_ = std::clamp(static_cast<double>(bytes) / static_cast<double>(points), kSmallest, 1.0);
 }
 
 /// What was held back says only that the link is at least so fast.

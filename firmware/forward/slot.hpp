@@ -3,7 +3,6 @@
 #include <cstddef>
 #include <cstdint>
 
-#include "icd/map_update.hpp"
 #include "loop/loop.hpp"
 #include "uplink/connection.hpp"
 
@@ -17,8 +16,8 @@ class Slot {
   explicit Slot(std::uint64_t most) { allow(most); }
   void allow(std::uint64_t most);
 
-  /// These points of a cloud were packed to so many bytes.
-  void packed(const icd::MapData& points, std::size_t bytes);
+  /// So many bytes of a cloud's points were packed to so many.
+  void packed(std::size_t points, std::size_t bytes);
   /// So many bytes left, of which the last were held back until then.
   void left(std::size_t bytes, const uplink::Sent& sent, loop::Instant last_byte_not_before);
 

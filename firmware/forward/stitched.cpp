@@ -34,17 +34,18 @@ std::optional<lanes::Ground> drawn_over(const lanes::Ground& under, const icd::M
 
 }  // namespace
 
-Packed packed(const lanes::WaitingMap& waiting, LeavingOut leaving_out) {
+Packed packed(const lanes::WaitingMap& waiting, LeavingOut leaving_out, const pack::CloudForm& form) {
   auto whole = whole_of(waiting);
   if (!whole) return {};
   Packed packed;
   packed.left_out = leaving_out(*whole);
   if (packed.left_out.is_all) return packed;
   if (waiting.ground) packed.drawn = drawn_over(*waiting.ground, whole->data);
-  icd::MapUpdate map = pack::pack(std::move(*whole));
+  if (!whole->is_grid()) packed.points_size = whole->data.raw_size;
+  icd::MapUpdate map = pack::pack(std::move(*whole), form);
   packed.body = codec::write_map_update(map);
-  if (packed.left_out.points > 0) packed.left_out.sent = map.data;
   if (is_to_be_stitched(waiting)) packed.stitched = std::move(map.data);
+  if (packed.left_out.points > 0) packed.left_out.sent = std::move(map);
   return packed;
 }
 

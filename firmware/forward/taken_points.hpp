@@ -4,6 +4,7 @@
 #include <cstdint>
 #include <map>
 #include <memory>
+#include <optional>
 #include <utility>
 #include <vector>
 
@@ -20,7 +21,7 @@ struct LeftOut {
   std::uint64_t epoch = 0;  // of TakenPoints, by which the points are there
   double edge = 0;          // of a voxel, in metres; 0: nothing is left out of this robot's clouds
   std::vector<pack::VoxelBlock> voxels;  // of the points that are not left out
-  icd::MapData sent;                     // these points, as they go upstream, where any are left out
+  std::optional<icd::MapUpdate> sent;    // the cloud of these, as it goes upstream, where any are left out
 };
 
 /// What a worker leaves out of clouds, one after the other.

@@ -9,7 +9,7 @@
 #include <variant>
 
 #include "codec/gzip.hpp"
-#include "codec/gzip_whole.hpp"
+#include "pack/pack_points.hpp"
 #include "pack/points.hpp"
 
 namespace adit::pack {
@@ -48,9 +48,6 @@ class FiniteCheck {
   std::array<Exponent, 3> exponents_;
 };
 
-/// A cloud's: for libdeflate its points are whole in memory meanwhile.
-constexpr int kCloudLevel = 6;
-
 icd::MapData compressed(icd::MapData data, std::optional<icd::ChunkedBytes> member) {
   if (!member || member->size() >= data.bytes.size()) return data;
   data.bytes = *std::move(member);
@@ -60,11 +57,6 @@ icd::MapData compressed(icd::MapData data, std::optional<icd::ChunkedBytes> memb
 
 icd::MapData compressed_cells(icd::MapData data) {
   icd::ChunkedBytes member = codec::gzip(data.bytes, codec::GzipStrategy::Runs);
-  return compressed(std::move(data), std::move(member));
-}
-
-icd::MapData compressed_points(icd::MapData data) {
-  auto member = codec::gzip_whole(data.bytes.to_vector(), kCloudLevel, data.bytes.size());
   return compressed(std::move(data), std::move(member));
 }
 
@@ -78,14 +70,15 @@ icd::MapData without_invalid_points(const icd::PointCloud2& cloud, icd::MapData 
   return those_that_stay(data, cloud.point_step, is_finite);
 }
 
-icd::MapUpdate pack(icd::MapUpdate map) {
+icd::MapUpdate pack(icd::MapUpdate map, const CloudForm& form) {
   if (map.data.compression != icd::Compression::None) return map;
-  const auto* cloud = std::get_if<icd::PointCloud2>(&map.msg);
+  auto* const cloud = std::get_if<icd::PointCloud2>(&map.msg);
   if (cloud == nullptr) {
     map.data = compressed_cells(std::move(map.data));
     return map;
   }
-  map.data = compressed_points(without_invalid_points(*cloud, std::move(map.data)));
+  map.data = without_invalid_points(*cloud, std::move(map.data));
+  pack_points(*cloud, map.data, form);
   return map;
 }
 

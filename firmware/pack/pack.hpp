@@ -6,10 +6,16 @@
 
 namespace adit::pack {
 
+/// What is done to a cloud so that it becomes smaller.
+struct CloudForm {
+  bool is_arranged = true;  // its padding is dropped, and its points are put in another order
+};
+
 /// A map as small as it can be made without loss, ready to be written: a cloud loses the points that are not
-/// finite (ICD 6.3.2 takes clouds to be dense), and what is not compressed yet is gzipped where that is
-/// smaller. CPU-bound in the size of the map: meant for a worker.
-icd::MapUpdate pack(icd::MapUpdate map);
+/// finite (ICD 6.3.2 takes clouds to be dense) and takes `form`, and what is not compressed yet is gzipped
+/// where that is smaller; where it is not, points stay in their order. CPU-bound in the size of the map, and
+/// takes as much memory as that and half as much more for a cloud: meant for a worker.
+icd::MapUpdate pack(icd::MapUpdate map, const CloudForm& form = {});
 
 /// `data` without the points whose x, y or z is not finite. `data` must be uncompressed.
 icd::MapData without_invalid_points(const icd::PointCloud2& cloud, icd::MapData data);

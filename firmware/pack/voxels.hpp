@@ -1,6 +1,5 @@
 #pragma once
 
-#include <array>
 #include <cstddef>
 #include <cstdint>
 #include <optional>
@@ -8,6 +7,7 @@
 
 #include "icd/map_update.hpp"
 #include "icd/placement.hpp"
+#include "pack/coordinates.hpp"
 
 namespace adit::pack {
 
@@ -32,10 +32,7 @@ class Voxels {
   VoxelBlock of(std::span<const std::uint8_t> point) const;
 
  private:
-  double coordinate(std::span<const std::uint8_t> point, std::size_t axis) const;
-
-  std::array<std::size_t, 3> offsets_{};  // of x, y and z in a point
-  bool is_double_ = false, is_bigendian_;
+  CoordinateReader coordinates_;
   std::optional<icd::Placement> placement_;  // absent: the points are in "darpa"
   double per_metre_;
 };

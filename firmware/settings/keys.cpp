@@ -50,6 +50,10 @@ const Key kKeys[] = {
     {"command_post.timeouts.mapping_answer_ms",
      "How long the mapping endpoint may be silent before an update is sent again.",
      whole<MEMBER(command_post.timeouts.mapping_answer)>(100, 600000)},
+    {"command_post.arrange_clouds",
+     "Whether clouds lose the padding in and after their points, and have their points put in another order, "
+     "so that they are smaller; no value of a point changes.",
+     flag<MEMBER(command_post.arrange_clouds)>()},
     {"command_post.course",
      "The course in use, one of courses[].name, whose endpoints then count; empty: those above.",
      text<MEMBER(command_post.course)>(Form::CourseOrNone)},

@@ -41,7 +41,8 @@ struct CommandPost {
   double budget_mbit = 100;  // of the link, over both endpoints (ICD 3)
   Rates rates;
   Timeouts timeouts;
-  std::string course;  // the one in use, whose endpoints then count instead of these; "": none
+  bool arrange_clouds = true;  // pack::CloudForm
+  std::string course;          // the one in use, whose endpoints then count instead of these; "": none
 };
 
 struct Team {

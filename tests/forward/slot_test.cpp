@@ -14,10 +14,6 @@ uplink::Sent sent_in(milliseconds took) {
   return {.first = kBegin, .last = kBegin + took};
 }
 
-icd::MapData raw(std::size_t bytes) {
-  return {{}, icd::Compression::None, bytes};
-}
-
 TEST(Slot, HoldsAtFirstWhatMapsMayUseOfTheLink) {
   const Slot slot(10 * kMegabyte);
   EXPECT_EQ(slot.points_within(std::chrono::seconds(1)), 10 * kMegabyte);
@@ -27,9 +23,9 @@ TEST(Slot, HoldsAtFirstWhatMapsMayUseOfTheLink) {
 
 TEST(Slot, HoldsMoreOfCloudsThatArePackedSmaller) {
   Slot slot(10 * kMegabyte);
-  slot.packed(raw(4 * kMegabyte), kMegabyte);
+  slot.packed(4 * kMegabyte, kMegabyte);
   EXPECT_EQ(slot.points_within(std::chrono::seconds(1)), 40 * kMegabyte);
-  slot.packed(raw(4 * kMegabyte), 5 * kMegabyte);
+  slot.packed(4 * kMegabyte, 5 * kMegabyte);
   EXPECT_EQ(slot.points_within(std::chrono::seconds(1)), 10 * kMegabyte);
 }
 

@@ -33,7 +33,9 @@ TEST_F(TakenPointsTest, AreLeftOutOfTheNextCloud) {
   take({0.1F, 1.1F});
   const Packed next = pack({0.4F, 7, 1.4F});
   EXPECT_EQ(next.left_out.points, 2);
-  EXPECT_THAT(xs_of(next.left_out.sent), ElementsAre(7));
+  ASSERT_TRUE(next.left_out.sent);
+  EXPECT_THAT(xs_of(next.left_out.sent->data), ElementsAre(7));
+  EXPECT_EQ(next.points_size, 12);
   EXPECT_FALSE(next.body.empty());
   EXPECT_FALSE(next.left_out.is_all);
 }

@@ -84,7 +84,7 @@ TEST(Pack, GzipsACloudsFinitePoints) {
     all.insert(all.end(), point.begin(), point.end());
     if (i % 7 != 0) valid.insert(valid.end(), point.begin(), point.end());
   }
-  const auto packed = pack(cloud_update(layout, all));
+  const auto packed = pack(cloud_update(layout, all), {.is_arranged = false});
   EXPECT_EQ(packed.data.compression, icd::Compression::Gzip);
   EXPECT_LT(packed.data.bytes.size(), valid.size() / 4);
   EXPECT_EQ(packed.data.raw_size, valid.size());

@@ -79,7 +79,7 @@ const Case kValues[] = {
 const Case kKeys[] = {
     {sample(R"(, "intrface": "darpa0")"),
      "command_post.intrface: no such key; did you mean interface? (keys here: scoring, mapping, "
-     "interface, budget_mbit, rates, timeouts, course)"},
+     "interface, budget_mbit, rates, timeouts, arrange_clouds, course)"},
     {sample(R"(, "timeouts": {"connect": 5})"),
      "command_post.timeouts.connect: no such key; did you mean connect_ms? (keys here: connect_ms, "
      "scoring_answer_ms, mapping_answer_ms)"},

@@ -41,6 +41,7 @@ const RestartsCase kRestartsCases[] = {
      [](Settings& s) { s.command_post.timeouts.scoring_answer = 9ms; }, kScoring},
     {"command_post.timeouts.mapping_answer_ms",
      [](Settings& s) { s.command_post.timeouts.mapping_answer = 9ms; }, kMapping},
+    {"command_post.arrange_clouds", [](Settings& s) { s.command_post.arrange_clouds = false; }, kNothing},
     {"command_post.course", [](Settings& s) { s.command_post.course = "B"; }, kNothing},
     {"courses[].name", [](Settings& s) { s.courses.front().name = "B"; }, kNothing},
     {"courses[].scoring.address", [](Settings& s) { s.courses.front().scoring.address = "10.9"; }, kNothing},

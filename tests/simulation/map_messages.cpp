@@ -9,7 +9,6 @@
 #include <limits>
 #include <map>
 #include <ranges>
-#include <set>
 #include <stdexcept>
 
 #include "simulation/bad_messages.hpp"
@@ -148,7 +147,20 @@ Item grid_item(const Json& msg) {
   return {.who = "", .serial = bad_serial_in(cells), .says = std::move(says)};
 }
 
-/// In order of their first points. A point that is there already begins another copy of its cloud.
+/// How often each point of a cloud is in a message.
+using Copies = std::map<std::int64_t, int>;
+
+/// The clouds of that serial: as many as their points are there, whatever order these are in.
+void add_copies(std::int64_t serial, const Copies& copies, std::vector<Item>& items) {
+  const auto is_in = [&](int copy) {
+    return std::ranges::count_if(copies, [copy](const auto& point) { return point.second >= copy; });
+  };
+  for (int copy = 1; is_in(copy) > 0; ++copy) {
+    items.push_back({.who = "", .serial = serial, .says = {static_cast<int>(is_in(copy))}});
+  }
+}
+
+/// In the order of their serials.
 std::vector<Item> cloud_items(const Json& msg) {
   const std::string data = data_in(msg);
   const auto step = msg.at("point_step").get<std::size_t>();
@@ -161,8 +173,7 @@ std::vector<Item> cloud_items(const Json& msg) {
   };
   const std::size_t x = offset_of("x"), y = offset_of("y"), z = offset_of("z");
   const std::size_t intensity = offset_of("intensity");
-  std::vector<Item> items;
-  std::map<std::int64_t, std::pair<std::size_t, std::set<std::int64_t>>> copies;  // the last of each
+  std::map<std::int64_t, Copies> clouds;
   bool strange = data.size() % step != 0;
   for (std::size_t at = 0; at + step <= data.size(); at += step) {
     const auto number = static_cast<std::int64_t>(get(data, at + intensity, big_endian));
@@ -172,15 +183,10 @@ std::vector<Item> cloud_items(const Json& msg) {
       return std::abs(get(data, at + offset, big_endian) - where) <= kPacking;
     };
     strange = strange || !is_at(x, place[0]) || !is_at(y, place[1]) || !is_at(z, place[2]);
-    auto& [item, points] = copies[serial];
-    if (points.empty() || points.contains(index)) {
-      points.clear();
-      item = items.size();
-      items.push_back({.who = "", .serial = serial, .says = {0}});
-    }
-    points.insert(index);
-    ++items[item].says.front();
+    ++clouds[serial][index];
   }
+  std::vector<Item> items;
+  for (const auto& [serial, copies] : clouds) add_copies(serial, copies, items);
   if (strange) items.push_back({.who = "", .says = {kStrange}});
   return items;
 }

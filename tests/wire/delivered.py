@@ -11,6 +11,39 @@ import messages
 from programs import Stage, wait_until
 
 
+SIZES = {1: 1, 2: 1, 3: 2, 4: 2, 5: 4, 6: 4, 7: 4, 8: 8}  # of PointField's datatypes
+
+
+def size_of(field):
+    return SIZES[field["datatype"]] * field["count"]
+
+
+def points_of(head, data):
+    """Of each point the bytes of its fields, in the order of their list."""
+    return [b"".join(data[at + field["offset"]:at + field["offset"] + size_of(field)] for field in head["fields"])
+            for at in range(0, len(data), head["point_step"])]
+
+
+def put_together(head, in_order):
+    """`head` with those fields one after the other, `in_order` of them."""
+    offsets, end = {}, 0
+    for field in in_order:
+        offsets[field["name"]] = end
+        end += size_of(field)
+    fields = [{**field, "offset": offsets[field["name"]]} for field in head["fields"]]
+    return {**head, "fields": fields, "point_step": end}
+
+
+def without_padding(head):
+    """As Adit sends it."""
+    return put_together(head, sorted(head["fields"], key=lambda field: field["offset"]))
+
+
+def tight_list(head):
+    """As a picture of the transcript has it."""
+    return put_together(head, head["fields"])
+
+
 class Delivered(unittest.TestCase):
     """A class of tests over one network; what a Command Post that is strict finds fault with, fails them."""
 
@@ -64,12 +97,19 @@ class Delivered(unittest.TestCase):
         return header
 
     def same_map(self, arrived, update, data, head):
-        """`head`: the members of msg, but for header and data."""
+        """`head`: the members of msg, but for header and data. Of a cloud the points are the same, without padding and in
+        any order."""
         arrived = copy.deepcopy(arrived)
         msg = arrived["msg"]
         msg["header"] = self.without_stamp(msg["header"])
         self.assertIn(msg.pop("compression"), ("gzip", "none"))
-        msg["data"].pop("file", None)  # where the transcript has its picture
+        file = msg["data"].pop("file", None)  # where the transcript has its picture
+        said = {"bytes": len(data), "crc32": zlib.crc32(data)}
+        if update["type"] == "PointCloud2":
+            points = sorted(points_of(head, data))
+            head = without_padding(head)
+            said = {"bytes": len(points) * head["point_step"], "crc32": msg["data"]["crc32"]}
+            picture = (self.stage.post.transcript / file).read_bytes().partition(b"DATA binary\n")[2]
+            self.assertEqual(sorted(points_of(tight_list(head), picture)), points)
         self.same(arrived, {"type": update["type"], "name": update.get("name", ""),
-                            "msg": {**head, "header": {"frame_id": "darpa"},
-                                    "data": {"bytes": len(data), "crc32": zlib.crc32(data)}}})
+                            "msg": {**head, "header": {"frame_id": "darpa"}, "data": said}})

@@ -150,7 +150,7 @@ class Round:
 
 class Answered(unittest.TestCase):
     def setUp(self):
-        self.stage, self.bodies = self.enterContext(Stage()), Bodies()
+        self.stage, self.bodies = self.enterContext(Stage(command_post__arrange_clouds=False)), Bodies()
         self.arrived = {"map": {}, "state": {}, "markers": {}, "report": {}}
 
     def killed(self):

@@ -1,0 +1,29 @@
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <vector>
+
+#include "icd/map_update.hpp"
+#include "pack/point_layout.hpp"
+
+namespace adit::pack {
+
+/// Of libdeflate, by which points are compressed: higher ones are several times slower, and 1 % smaller.
+inline constexpr int kPointsLevel = 6;
+
+/// A cloud with all its points in one piece, not compressed.
+struct Arranged {
+  icd::PointCloud2 cloud;
+  std::vector<std::uint8_t> points;
+};
+
+/// The points of `data`, not compressed, of `point_step` bytes, laid out in that way, in their order.
+Arranged in_one_piece(const PointLayout& layout, const icd::MapData& data, std::size_t point_step);
+
+/// Puts the points in the order in which gzip makes them smallest: in layers along one of the axes, or as
+/// they are. A part of them is tried in each order, and kMostOrdered points are ordered at a time. A cloud is
+/// a set of points (ICD 6.3.2: "clouds will always be unstructured"), so that this loses nothing.
+void put_in_order(Arranged& arranged);
+
+}  // namespace adit::pack

@@ -1,0 +1,46 @@
+#pragma once
+
+#include <array>
+#include <bit>
+#include <cstddef>
+#include <cstdint>
+#include <cstring>
+#include <span>
+
+#include "icd/map_update.hpp"
+
+namespace adit::pack {
+
+/// Of a point: its x, y and z in metres, in the frame that its cloud is in.
+using Coordinates = std::array<double, 3>;
+
+/// Reads the coordinates of a cloud's points, float32 or float64, in either byte order (ICD 6.3.2).
+class CoordinateReader {
+ public:
+  /// Requires x, y and z, as check(cloud) sees to it.
+  explicit CoordinateReader(const icd::PointCloud2& cloud);
+
+  /// Of a point of point_step bytes.
+  Coordinates operator()(std::span<const std::uint8_t> point) const {
+    Coordinates read{};
+    for (std::size_t axis = 0; axis < read.size(); ++axis) {
+      const std::uint8_t* const at = point.data() + offsets_[axis];
+      read[axis] = is_double_ ? value<double, std::uint64_t>(at) : value<float, std::uint32_t>(at);
+    }
+    return read;
+  }
+
+ private:
+  template <class Float, class Bits>
+  double value(const std::uint8_t* at) const {
+    static_assert(std::endian::native == std::endian::little);
+    Bits bits = 0;
+    std::memcpy(&bits, at, sizeof bits);
+    return std::bit_cast<Float>(is_bigendian_ ? std::byteswap(bits) : bits);
+  }
+
+  std::array<std::size_t, 3> offsets_{};  // of x, y and z in a point
+  bool is_double_ = false, is_bigendian_;
+};
+
+}  // namespace adit::pack

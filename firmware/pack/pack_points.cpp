@@ -1,0 +1,27 @@
+#include "pack/pack_points.hpp"
+
+#include <optional>
+#include <utility>
+
+#include "codec/gzip_whole.hpp"
+#include "pack/arrange.hpp"
+#include "pack/point_layout.hpp"
+
+namespace adit::pack {
+
+void pack_points(icd::PointCloud2& cloud, icd::MapData& data, const CloudForm& form) {
+  if (data.bytes.empty()) return;
+  const auto tight = form.is_arranged ? without_padding(cloud) : std::nullopt;
+  const PointLayout layout = tight ? *tight : unchanged(cloud);
+  Arranged arranged = in_one_piece(layout, data, cloud.point_step);
+  if (tight) put_in_order(arranged);
+  auto member = codec::gzip_whole(arranged.points, kPointsLevel, arranged.points.size() - 1);
+  if (!member && arranged.cloud.point_step == cloud.point_step) return;
+  if (!member) arranged = in_one_piece(layout, data, cloud.point_step);  // in their order
+  cloud = std::move(arranged.cloud);
+  data.raw_size = arranged.points.size();
+  data.compression = member ? icd::Compression::Gzip : icd::Compression::None;
+  data.bytes = member ? *std::move(member) : icd::ChunkedBytes{arranged.points};
+}
+
+}  // namespace adit::pack

@@ -1,0 +1,86 @@
+// What the rehearsal's Command Post decodes of a packed cloud is the same set of points: each field of each
+// point, bit for bit.
+#include <gtest/gtest.h>
+
+#include "pack/generated.hpp"
+#include "pack/pack.hpp"
+#include "pack/read_back.hpp"
+
+namespace adit::pack {
+namespace {
+
+std::vector<std::string> sorted(std::vector<std::string> points) {
+  std::ranges::sort(points);
+  return points;
+}
+
+void expect_same_points(const icd::MapUpdate& map) {
+  const auto& before = std::get<icd::PointCloud2>(map.msg);
+  const ReadBack after = read_back(pack(map));
+  EXPECT_EQ(sorted(values_of(after.cloud.fields, after.cloud.point_step, after.data)),
+            sorted(values_of(before.fields, before.point_step, map.data.bytes.to_string())));
+  EXPECT_EQ(after.cloud.is_bigendian, before.is_bigendian);
+  EXPECT_EQ(after.cloud.origin.has_value(), before.origin.has_value());
+  ASSERT_EQ(after.cloud.fields.size(), before.fields.size());
+  std::size_t bytes = 0;
+  for (std::size_t i = 0; i < before.fields.size(); ++i) {
+    EXPECT_EQ(after.cloud.fields[i].name, before.fields[i].name);
+    EXPECT_EQ(after.cloud.fields[i].datatype, static_cast<std::uint32_t>(before.fields[i].datatype));
+    EXPECT_EQ(after.cloud.fields[i].count, before.fields[i].count);
+    bytes += icd::size_of(before.fields[i].datatype) * before.fields[i].count;
+  }
+  EXPECT_EQ(after.cloud.point_step, bytes) << "no padding";
+}
+
+class SamePoints : public testing::TestWithParam<std::uint64_t> {};
+
+TEST_P(SamePoints, AreReadOfACloudOfAnyFields) {
+  Generator make{GetParam()};
+  for (int round = 0; round < 12; ++round) {
+    const icd::PointCloud2 fields = make.fields(/*is_bigendian=*/false);
+    const double cell = round % 3 == 0 ? 0.05 : 1e-9;  // surveyed, or of noise
+    expect_same_points(make.cloud(fields, make.any(0, 4000), [&](std::size_t) {
+      auto at = make.on_wall({-20, 3, 1000}, 30);
+      for (double& metres : at) metres = std::round(metres / cell) * cell;
+      return at;
+    }));
+  }
+}
+
+TEST_P(SamePoints, AreReadWhereCoordinatesAreOfAnyBits) {
+  Generator make{GetParam()};
+  const icd::PointCloud2 fields = make.fields(/*is_bigendian=*/GetParam() % 2 == 0);
+  expect_same_points(make.cloud(fields, 500, [&](std::size_t) -> std::array<double, 3> {
+    const auto any = [&] { return std::ldexp(make.real(-1, 1), static_cast<int>(make.any(0, 240)) - 120); };
+    return {any(), any(), any()};
+  }));
+}
+
+INSTANTIATE_TEST_SUITE_P(Seeds, SamePoints, testing::Range<std::uint64_t>(1, 13));
+
+TEST(SamePointsOf, ACloudThatIsOrderedInSeveralBlocks) {
+  Generator make{1};
+  icd::PointCloud2 fields;
+  fields.fields = {{"x", 0, icd::Datatype::Float32, 1},
+                   {"y", 4, icd::Datatype::Float32, 1},
+                   {"z", 8, icd::Datatype::Float32, 1}};
+  fields.point_step = 12;
+  Bytes bytes;
+  for (int i = 0; i < 530'000; ++i) {
+    const auto at = make.on_wall({0, 0, 0}, 100);
+    std::array<float, 3> values{};
+    std::ranges::transform(at, values.begin(), [](double metres) { return static_cast<float>(metres); });
+    const auto* const raw = reinterpret_cast<const std::uint8_t*>(values.data());
+    bytes.insert(bytes.end(), raw, raw + sizeof values);
+  }
+  expect_same_points(update_of(fields, bytes));
+}
+
+TEST(SamePointsOf, RecordedClouds) {
+  const auto clouds = recorded_clouds();
+  if (clouds.empty()) GTEST_SKIP() << "ADIT_MAPS names no folder of recorded maps";
+  for (const icd::MapUpdate& cloud : clouds) expect_same_points(cloud);
+}
+
+}  // namespace
+}  // namespace adit::pack

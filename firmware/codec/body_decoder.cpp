@@ -52,7 +52,7 @@ class BodyDecoder::Impl {
     if (!root) return std::unexpected(root.error());
     auto data = data_.take();
     if (!data) return std::unexpected(data.error());
-    return Document{std::move(*root), std::move(*data), data_.form()};
+    return Document{std::move(*root), std::move(*data), data_.form(), data_.pressed()};
   }
 
  private:

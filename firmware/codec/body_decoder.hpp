@@ -50,10 +50,17 @@ enum class DataForm : std::uint8_t {
   Integers,    // array of integers -1 to 255, one byte each, -1 as 255
 };
 
+/// A grid's cells that were gzipped as they arrived, because the body had said before that it is a grid.
+struct PressedCells {
+  std::size_t count = 0;
+  icd::Checked<void> checked;  // 422 about the first that no cell may be; those before it alone are there
+};
+
 struct Document {
   Value root;
   icd::ChunkedBytes data;
   DataForm data_form = DataForm::Absent;
+  std::optional<PressedCells> pressed;  // that are in `data`; nothing: it is as it came
 };
 
 /// Parses one request body given in chunks of any size.

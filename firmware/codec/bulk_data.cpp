@@ -1,5 +1,6 @@
 #include "codec/bulk_data.hpp"
 
+#include <algorithm>
 #include <cmath>
 #include <utility>
 
@@ -15,14 +16,22 @@ icd::Checked<void> BulkData::appear() {
 }
 
 icd::Checked<void> BulkData::fits(std::uint64_t bytes) const {
-  if (bytes <= most_ - taken_ - bytes_.size()) return {};
+  if (bytes <= most_ - came_) return {};
   return std::unexpected(icd::Refusal{icd::Status::ContentTooLarge,
                                       icd::sentence("msg.data: larger than the ", most_, " bytes taken")});
 }
 
 icd::Checked<void> BulkData::append(std::span<const std::uint8_t> bytes) {
   if (auto fit = fits(bytes.size()); !fit) return fit;
-  bytes_.append(bytes);
+  if (bytes.empty()) return {};
+  constexpr std::uint8_t kGzip = 0x1F;  // RFC 1952 2.3.1; a grid whose first cell that is waits to be pressed
+  if (came_ == 0 && is_grid_ && bytes.front() != kGzip) press_.emplace();
+  came_ += bytes.size();
+  if (press_) {
+    press_->feed(bytes);
+  } else {
+    bytes_.append(bytes);
+  }
   return {};
 }
 
@@ -40,12 +49,24 @@ icd::Checked<void> BulkData::append_element(std::uint8_t byte) {
   return {};
 }
 
+icd::Checked<void> BulkData::append_elements(std::uint8_t byte, std::size_t count) {
+  while (count > 0) {
+    if (waiting_ == elements_.size()) {
+      if (auto flushed = flush(); !flushed) return flushed;
+    }
+    const std::size_t some = std::min(count, elements_.size() - waiting_);
+    std::fill_n(elements_.begin() + static_cast<std::ptrdiff_t>(waiting_), some, byte);
+    waiting_ += some;
+    count -= some;
+  }
+  return {};
+}
+
 icd::Refusal BulkData::bad_element(std::string_view got) const {
   constexpr std::size_t kLongest = 32;
   return {icd::Status::UnprocessableEntity,
-          icd::sentence("msg.data[", taken_ + bytes_.size() + waiting_,
-                        "]: expected an integer from -1 to 255, got ", got.substr(0, kLongest),
-                        got.size() > kLongest ? "..." : "")};
+          icd::sentence("msg.data[", came_ + waiting_, "]: expected an integer from -1 to 255, got ",
+                        got.substr(0, kLongest), got.size() > kLongest ? "..." : "")};
 }
 
 icd::Checked<void> BulkData::flush() {
@@ -53,13 +74,17 @@ icd::Checked<void> BulkData::flush() {
 }
 
 icd::ChunkedBytes BulkData::take_some() {
-  taken_ += bytes_.size();
-  return std::move(bytes_);
+  return press_ ? press_->take_some() : std::move(bytes_);
 }
 
 icd::Checked<icd::ChunkedBytes> BulkData::take() {
   if (auto flushed = flush(); !flushed) return std::unexpected(flushed.error());
-  return std::move(bytes_);
+  return press_ ? press_->finish() : std::move(bytes_);
+}
+
+std::optional<PressedCells> BulkData::pressed() const {
+  if (!press_) return std::nullopt;
+  return PressedCells{.count = came_, .checked = press_->checked()};
 }
 
 }  // namespace adit::codec

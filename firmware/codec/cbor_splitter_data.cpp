@@ -35,11 +35,11 @@ icd::Checked<void> CborSplitter::divert() {
   switch (head_.major()) {
     case Major::Bytes:
       rest_ += '\xF6';
-      data_.begin(DataForm::ByteString);
+      data_.begin(DataForm::ByteString, path_.is_grid());
       break;
     case Major::Array:
       rest_ += '\xF6';
-      data_.begin(DataForm::Integers);
+      data_.begin(DataForm::Integers, path_.is_grid());
       elements_of_ = nests_.size() + 1;
       break;
     case Major::Text:  // ICD 6.3 (b): refused here, because it may be too long for the rest
@@ -111,6 +111,7 @@ icd::Checked<std::size_t> CborSplitter::string(std::string_view in) {
   } else {
     rest_ += run;
   }
+  if (into_ == Into::Rest) path_.text(run);
   if (into_ == Into::Key && key_.size() < DataPath::kLongestKey) {
     key_ += run.substr(0, DataPath::kLongestKey);
   }

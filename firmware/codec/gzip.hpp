@@ -6,6 +6,7 @@
 #include <memory>
 #include <span>
 #include <string_view>
+#include <utility>
 #include <vector>
 
 #include "icd/chunked_bytes.hpp"
@@ -28,7 +29,11 @@ class Gzipper {
   Gzipper& operator=(Gzipper&&) noexcept;
 
   void feed(std::span<const std::uint8_t> bytes);
-  /// The whole member, once, after the last feed.
+  /// How much take_some() would give.
+  std::size_t held() const { return member_.size(); }
+  /// What has come of the member since the last take_some(), in whole chunks.
+  icd::ChunkedBytes take_some() { return std::move(member_); }
+  /// The whole member, or what take_some() has left of it, once, after the last feed.
   icd::ChunkedBytes finish();
 
  private:

@@ -3,6 +3,7 @@
 #include <algorithm>
 
 #include "codec/byte_name.hpp"
+#include "codec/json_blank.hpp"
 #include "codec/json_value.hpp"
 #include "icd/sentence.hpp"
 
@@ -11,11 +12,6 @@ namespace {
 
 /// How much text is kept without asking for more memory: any of the ICD's messages but its maps' data.
 constexpr std::size_t kSmallText = 1024;
-
-/// Not by searching in a list of them: this is asked of every second character.
-bool is_blank(char c) {
-  return c == ' ' || c == '\n' || c == '\r' || c == '\t';
-}
 
 bool starts_number(char c) {
   return c == '-' || (c >= '0' && c <= '9');
@@ -73,6 +69,9 @@ icd::Checked<std::size_t> JsonSplitter::step(std::string_view in) {
 }
 
 icd::Checked<std::size_t> JsonSplitter::structure(std::string_view in) {
+  if (diverted_ == Diverted::Elements && expect_ != Expect::Separator) {
+    if (auto taken = plain_elements(in); !taken || *taken > 0) return taken;
+  }
   if (is_blank(in[0])) {
     return static_cast<std::size_t>(std::ranges::find_if_not(in, is_blank) - in.begin());
   }
@@ -180,12 +179,17 @@ icd::Checked<std::size_t> JsonSplitter::literal(std::string_view in) {
 }
 
 icd::Checked<std::size_t> JsonSplitter::string(std::string_view in) {
+  if (diverted_ == Diverted::Base64) {
+    if (auto taken = base64_groups(in); !taken || *taken > 0) return taken;
+    in = in.substr(0, base64_.missing());  // up to where groups are whole again
+  }
   const auto piece = string_.next(in);
   if (!piece) return std::unexpected(fault_at(at_ + piece.error().at, piece.error().what));
   if (diverted_ == Diverted::Base64) {
     if (auto decoded = decode(piece->text); !decoded) return std::unexpected(decoded.error());
   } else {
     keep(piece->raw);
+    if (token_ == Token::String) path_.text(piece->text);
   }
   if (token_ == Token::Key && key_.size() < DataPath::kLongestKey) {
     key_ += piece->text.substr(0, DataPath::kLongestKey);

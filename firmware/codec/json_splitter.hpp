@@ -46,6 +46,8 @@ class JsonSplitter final : public Splitter {
   icd::Checked<std::size_t> begin_literal(std::string_view word);
   icd::Checked<void> divert(char first);
   icd::Checked<void> decode(std::string_view base64);
+  icd::Checked<std::size_t> base64_groups(std::string_view in);
+  icd::Checked<std::size_t> plain_elements(std::string_view in);
   icd::Checked<void> string_ended();
   icd::Checked<void> number_ended(std::optional<char> next);
   icd::Checked<void> keep_number();

@@ -3,6 +3,7 @@
 #include <cmath>
 
 #include "codec/json_splitter.hpp"
+#include "codec/plain_elements.hpp"
 
 namespace adit::codec {
 
@@ -20,7 +21,7 @@ icd::Checked<void> JsonSplitter::divert(char first) {
   if (first == '"' || first == '[') {
     keep("null");
     diverted_ = first == '"' ? Diverted::Base64 : Diverted::Elements;
-    data_.begin(first == '"' ? DataForm::Base64 : DataForm::Integers);
+    data_.begin(first == '"' ? DataForm::Base64 : DataForm::Integers, path_.is_grid());
   }
   return {};
 }
@@ -33,6 +34,30 @@ icd::Checked<void> JsonSplitter::decode(std::string_view base64) {
     if (auto taken = data_.append(std::span(bytes).first(*size)); !taken) return taken;
   }
   return {};
+}
+
+/// Right up to the string's end, without a look at it before.
+icd::Checked<std::size_t> JsonSplitter::base64_groups(std::string_view in) {
+  if (!string_.between_characters()) return 0;
+  std::array<std::uint8_t, 6144> bytes;  // not cleared, as above
+  std::string_view left = in;
+  while (const std::size_t size = base64_.decode_groups(left, bytes)) {
+    if (auto taken = data_.append(std::span(bytes).first(size)); !taken)
+      return std::unexpected(taken.error());
+  }
+  return in.size() - left.size();
+}
+
+/// Those that stand there as every client writes them; whatever else there is, the general way reads.
+icd::Checked<std::size_t> JsonSplitter::plain_elements(std::string_view in) {
+  std::string_view left = in;
+  while (const auto elements = take_plain_elements(left)) {
+    if (auto taken = data_.append_elements(elements->value, elements->count); !taken) {
+      return std::unexpected(taken.error());
+    }
+    expect_ = Expect::Value;
+  }
+  return in.size() - left.size();
 }
 
 icd::Checked<std::size_t> JsonSplitter::number(std::string_view in) {

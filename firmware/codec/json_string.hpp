@@ -30,6 +30,8 @@ class JsonString {
   /// The next run of characters, or the next escape. Requires !in.empty(). The views live until the next
   /// call.
   std::expected<Piece, Fault> next(std::string_view in);
+  /// Neither within an escape nor within a character: what comes next stands for itself if it is plain ASCII.
+  bool between_characters() const { return escape_.empty() && utf8_.complete(); }
 
  private:
   std::expected<Piece, Fault> plain(std::string_view in);

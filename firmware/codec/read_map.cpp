@@ -4,6 +4,7 @@
 #include "codec/parts.hpp"
 #include "codec/read.hpp"
 #include "codec/read_map_data.hpp"
+#include "icd/require.hpp"
 
 namespace adit::codec {
 namespace {
@@ -74,16 +75,24 @@ icd::Checked<icd::MapData> turned(icd::PointCloud2& cloud, icd::MapData data) {
   return data;
 }
 
+icd::Checked<icd::MapData> read_data(const icd::MapUpdate& update, Document document,
+                                     icd::Compression compression, const icd::Rules& rules) {
+  if (!update.is_grid()) {
+    icd::require(!document.pressed);  // its type was read before, and may be given once
+    return read_points(std::get<icd::PointCloud2>(update.msg), std::move(document.data), compression, rules);
+  }
+  const auto& grid = std::get<icd::OccupancyGrid>(update.msg);
+  return document.pressed ? read_pressed_cells(grid, std::move(document.data), compression, *document.pressed)
+                          : read_cells(grid, std::move(document.data), compression, rules);
+}
+
 }  // namespace
 
 icd::Checked<icd::MapUpdate> read_map_update(Document document, const icd::Rules& rules) {
   auto compression = icd::Compression::None;
   auto update = read_structure(document, rules, compression);
   if (!update) return update;
-  auto data = update->is_grid() ? read_cells(std::get<icd::OccupancyGrid>(update->msg),
-                                             std::move(document.data), compression, rules)
-                                : read_points(std::get<icd::PointCloud2>(update->msg),
-                                              std::move(document.data), compression, rules);
+  auto data = read_data(*update, std::move(document), compression, rules);
   if (!data) return std::unexpected(std::move(data.error()));
   if (auto* cloud = std::get_if<icd::PointCloud2>(&update->msg); cloud != nullptr && cloud->is_bigendian) {
     data = turned(*cloud, *std::move(data));

@@ -84,6 +84,18 @@ icd::Checked<icd::MapData> read_cells(const icd::OccupancyGrid& grid, icd::Chunk
   return pressed(gzipper, grid);
 }
 
+icd::Checked<icd::MapData> read_pressed_cells(const icd::OccupancyGrid& grid, icd::ChunkedBytes data,
+                                              icd::Compression compression, const PressedCells& pressed) {
+  if (compression == icd::Compression::Gzip) {  // as gunzip() would say it: these do not begin as gzip does
+    return icd::unprocessable(kPath, ": expected one gzip member, got ",
+                              pressed.count < 2 ? "one that is cut short" : "incorrect header check");
+  }
+  if (auto checked = icd::check_size(grid, pressed.count); !checked) return std::unexpected(checked.error());
+  if (!pressed.checked) return std::unexpected(pressed.checked.error());
+  return icd::MapData{
+      .bytes = std::move(data), .compression = icd::Compression::Gzip, .raw_size = pressed.count};
+}
+
 icd::Checked<icd::MapData> read_points(const icd::PointCloud2& cloud, icd::ChunkedBytes data,
                                        icd::Compression compression, const icd::Rules& rules) {
   icd::ChunkedBytes points = std::move(data);

@@ -14,6 +14,9 @@ namespace adit::codec {
 /// ICD 6.3.1: width * height cells, each 0 to 100 or 255, left as one gzip member.
 icd::Checked<icd::MapData> read_cells(const icd::OccupancyGrid& grid, icd::ChunkedBytes data,
                                       icd::Compression compression, const icd::Rules& rules);
+/// The same of cells that were pressed as they arrived.
+icd::Checked<icd::MapData> read_pressed_cells(const icd::OccupancyGrid& grid, icd::ChunkedBytes data,
+                                              icd::Compression compression, const PressedCells& pressed);
 /// ICD 6.3.2: a whole number of points, left as they are.
 icd::Checked<icd::MapData> read_points(const icd::PointCloud2& cloud, icd::ChunkedBytes data,
                                        icd::Compression compression, const icd::Rules& rules);

@@ -62,10 +62,6 @@ Checked<void> check_coordinates(const std::vector<FieldSchema>& fields) {
   return {};
 }
 
-bool is_cell(std::uint8_t cell) {
-  return cell <= kMostOccupied || cell == kUnknownCell;
-}
-
 }  // namespace
 
 Checked<void> check(const OccupancyGrid& grid, const Rules& rules) {
@@ -87,15 +83,6 @@ Checked<void> check_size(const OccupancyGrid& grid, std::size_t bytes) {
   if (bytes == cells) return {};
   return unprocessable("msg.info.width: expected ", grid.width, " x ", grid.height, " = ", cells,
                        " bytes of data, got ", bytes);
-}
-
-Checked<void> check_cells(std::span<const std::uint8_t> cells, std::size_t first) {
-  unsigned bad = 0;  // the loop without a way out of it is the one that compilers vectorize
-  for (const std::uint8_t cell : cells) bad |= is_cell(cell) ? 0U : 1U;
-  if (bad == 0) return {};
-  const auto found = std::ranges::find_if_not(cells, is_cell);
-  const std::size_t index = first + static_cast<std::size_t>(found - cells.begin());
-  return unprocessable("msg.data[", index, "]: expected 0 to 100 or 255, got ", +*found);
 }
 
 Checked<void> check(const PointCloud2& cloud, const Rules& /*rules*/) {

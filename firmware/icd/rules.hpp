@@ -37,6 +37,8 @@ Checked<void> check(const OccupancyGrid& grid, const Rules& rules);
 Checked<void> check_size(const OccupancyGrid& grid, std::size_t bytes);
 /// ICD 6.3.1: cell values are 0 to 100 or 255. `first` is the index of cells.front() in the grid.
 Checked<void> check_cells(std::span<const std::uint8_t> cells, std::size_t first);
+/// How many of the first of them are, before one that is not.
+std::size_t sound_cells(std::span<const std::uint8_t> cells);
 
 /// ICD 6.3.2 and what kills a server: point_step, the fields' places, x y z present and of one float type.
 Checked<void> check(const PointCloud2& cloud, const Rules& rules);

@@ -40,7 +40,8 @@ class Decoding {
     for (auto& piece : pieces) pieces_.push_back(std::move(piece));
     pieces.clear();
     const std::size_t enough = decoder_.data_held() + MapUpload::kStored;
-    while (has_more() && decoder_.data_held() < enough) {
+    const std::size_t long_enough = decoder_.size() + kMostOfBody;
+    while (has_more() && decoder_.data_held() < enough && decoder_.size() < long_enough) {
       if (auto fed = feed_some(); !fed) {
         result_ = std::unexpected(std::move(fed.error()));
         return;
@@ -86,6 +87,10 @@ class Decoding {
   static constexpr std::size_t kGrowth =
       1032;  // most that deflate makes of a byte (RFC 1951 3.2.5: 258 by 2 bits)
 
+  /// So much of a body is a piece of work, inflated: cells are pressed as they come and may never be enough
+  /// to be stored.
+  static constexpr std::size_t kMostOfBody = 8 * MapUpload::kStored;
+
   icd::Rules rules_;
   std::size_t most_at_once_;
   codec::BodyDecoder decoder_;
@@ -123,6 +128,7 @@ class MapUpload::State final : public Taking, public std::enable_shared_from_thi
   }
   bool charge();
   bool is_held();
+  bool is_worth_it() const;
   void give_to_worker();
   void worked();
   void take_result(icd::Checked<icd::MapUpdate> result);
@@ -189,8 +195,16 @@ bool MapUpload::State::is_held() {
   return false;
 }
 
+/// The worker is not at it. The beginning is looked at at once, for it may be refused; then a worker is not
+/// woken for every few bytes.
+bool MapUpload::State::is_worth_it() const {
+  if (whole_ || decoding_->has_more()) return true;
+  const bool is_first = pending_bytes_ == visit_.sender.bytes;
+  return !pending_.empty() && (is_first || pending_bytes_ >= kTogether);
+}
+
 void MapUpload::State::give_to_worker() {
-  if (at_work_ || over_ || (pending_.empty() && !whole_ && !decoding_->has_more())) return;
+  if (at_work_ || over_ || !is_worth_it()) return;
   if (storing_ && (whole_ || decoding_->data_held() >= kStored)) return;  // stored() goes on
   at_work_ = true;
   auto pieces = std::make_shared<Pieces>();

@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cmath>
 #include <nlohmann/json.hpp>
+#include <random>
+#include <span>
 #include <string>
 #include <string_view>
 
@@ -24,6 +26,35 @@ inline icd::Checked<Document> decode_in_chunks(BodyKind kind, Split split, std::
     if (!fed) return std::unexpected(fed.error());
   }
   return decoder.finish();
+}
+
+/// In chunks of random sizes up to one that is random, too, and at most `most`; some of them are empty.
+inline icd::Checked<Document> decode_in_random_chunks(BodyKind kind, Split split, std::string_view body,
+                                                      std::mt19937_64& random, std::size_t most = 40,
+                                                      const Limits& limits = {}) {
+  BodyDecoder decoder(kind, split, limits);
+  most = 1 + random() % most;
+  while (!body.empty()) {
+    const std::string_view chunk = body.substr(0, random() % (most + 1));
+    body.remove_prefix(chunk.size());
+    const auto fed = decoder.feed({reinterpret_cast<const std::uint8_t*>(chunk.data()), chunk.size()});
+    if (!fed) return std::unexpected(fed.error());
+  }
+  return decoder.finish();
+}
+
+inline constexpr std::string_view kBase64 =
+    "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";
+
+inline std::string base64_of(std::span<const std::uint8_t> bytes) {
+  std::string text;
+  for (std::size_t i = 0; i < bytes.size(); i += 3) {
+    const auto byte = [&](std::size_t at) { return at < bytes.size() ? bytes[at] : std::uint8_t{0}; };
+    const unsigned group = byte(i) << 16U | byte(i + 1) << 8U | byte(i + 2);
+    for (const unsigned shift : {18U, 12U, 6U, 0U}) text += kBase64[group >> shift & 63U];
+  }
+  for (std::size_t i = 0; i < (3 - bytes.size() % 3) % 3; ++i) text[text.size() - 1 - i] = '=';
+  return text;
 }
 
 /// Bytes written as "83 01 ff".

@@ -49,6 +49,10 @@ void require_same(const icd::Checked<codec::Document>& whole, const icd::Checked
   }
   require(whole->data == cut->data);
   require(whole->data_form == cut->data_form);
+  require(whole->pressed.has_value() == cut->pressed.has_value());
+  if (whole->pressed) {
+    require(whole->pressed->count == cut->pressed->count && whole->pressed->checked == cut->pressed->checked);
+  }
   require(codec::write_json(whole->root) == codec::write_json(cut->root));
 }
 

@@ -14,18 +14,6 @@ using codec::test::gzipped;
 using std::chrono::milliseconds;
 using std::chrono::seconds;
 
-/// A cloud of that many points, as the ICD's clients write it in JSON.
-std::string cloud_body(std::size_t points) {
-  const auto field = [](const char* name, int offset) {
-    return std::string(R"({"name": ")") + name + R"(", "offset": )" + std::to_string(offset) +
-           R"(, "datatype": 7, "count": 1})";
-  };
-  std::string data;
-  for (std::size_t i = 0; i < points; ++i) data += i % 2 == 0 ? "AAAAAAAAgD8AAABA" : "AACAPwAAAEAAAAAA";
-  return R"({"type": "PointCloud2", "name": "r1", "msg": {"fields": [)" + field("x", 0) + ", " +
-         field("y", 4) + ", " + field("z", 8) + R"(], "point_step": 12, "data": ")" + data + R"("}})";
-}
-
 /// The one map that the desk has, as it is decoded in one go.
 void expect_the_map_of(Team& team, const std::string& body) {
   auto document =
@@ -38,7 +26,7 @@ void expect_the_map_of(Team& team, const std::string& body) {
 }
 
 TEST(MapUpload, IsStoredAsItArrives) {
-  for (const std::string& body : {cloud_body(200'000), grid_body(2000, 1000)}) {
+  for (const std::string& body : {cloud_body(200'000), grid_said_late(2000, 1000)}) {
     Team team;
     RawClient client(team.served.port());
     client.send(map_head(body) + body.substr(0, body.size() / 2));
@@ -48,6 +36,19 @@ TEST(MapUpload, IsStoredAsItArrives) {
     EXPECT_EQ(client.reply()->status, 200);
     expect_the_map_of(team, body);
     EXPECT_TRUE(team.served.eventually([&] { return team.desk.arriving == 0; }));
+  }
+}
+
+TEST(MapUpload, OfAGridIsPressedAsItArrivesAndLittleOfItHeldOrStored) {
+  for (const bool is_compressed : {false, true}) {
+    Team team;
+    const std::string body = grid_body(6000, 6000);
+    const std::string sent = is_compressed ? gzipped(body) : body;
+    const auto reply = team.ask(map_head(sent, is_compressed ? kGzip : "") + sent);
+    ASSERT_TRUE(reply);
+    EXPECT_EQ(reply->status, 200) << reply->body;
+    expect_the_map_of(team, body);
+    EXPECT_EQ(team.served.on_loop([&] { return team.desk.stored; }), 0u) << "cells as they came";
   }
 }
 
@@ -91,7 +92,7 @@ TEST(MapUpload, ThatIsSmallIsNotStoredBeforeItIsWhole) {
 TEST(MapUpload, ThatIsCompressedIsStoredAsItIsInflatedAndNoMoreOfItHeld) {
   Team team;
   team.served.on_loop([&] { team.desk.stores_pieces = false; });
-  const std::string body = grid_body(6000, 6000);
+  const std::string body = cloud_body(3'000'000);
   const std::string sent = gzipped(body);
   RawClient client(team.served.port());
   client.send(map_head(sent, kGzip) + sent);
@@ -111,8 +112,8 @@ TEST(MapUpload, ThatIsCompressedIsStoredAsItIsInflatedAndNoMoreOfItHeld) {
 TEST(MapUpload, IsRefusedWhereMoreOfItWouldBeHeldThanThereIsFor) {
   Team team;
   team.served.on_loop([&] { team.desk.room = 1'000'000; });
-  const std::string sent = gzipped(grid_body(8000, 4000));
-  ASSERT_GT(8000u * 4000u, MapUpload::kWithoutRoom);
+  const std::string sent = gzipped(cloud_body(2'700'000));
+  ASSERT_GT(12u * 2'700'000u, MapUpload::kWithoutRoom);
   for (int i = 0; i < 2; ++i) {
     const auto reply = team.ask(map_head(sent, kGzip) + sent);
     ASSERT_TRUE(reply);
@@ -120,7 +121,7 @@ TEST(MapUpload, IsRefusedWhereMoreOfItWouldBeHeldThanThereIsFor) {
     EXPECT_NE(reply->body.find("no room for this map"), std::string::npos) << reply->body;
   }
   EXPECT_TRUE(team.served.eventually([&] { return team.desk.arriving == 0; }));
-  const std::string small = gzipped(grid_body(4000, 4000));
+  const std::string small = gzipped(cloud_body(1'400'000));
   EXPECT_EQ(team.ask(map_head(small, kGzip) + small)->status, 200) << "what was held is given back";
 }
 

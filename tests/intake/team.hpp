@@ -206,6 +206,28 @@ inline std::string grid_body(std::uint32_t width, std::uint32_t height) {
          data + R"("}})";
 }
 
+/// A cloud of that many points, as the ICD's clients write it in JSON.
+inline std::string cloud_body(std::size_t points) {
+  const auto field = [](const char* name, int offset) {
+    return std::string(R"({"name": ")") + name + R"(", "offset": )" + std::to_string(offset) +
+           R"(, "datatype": 7, "count": 1})";
+  };
+  std::string data;
+  for (std::size_t i = 0; i < points; ++i) data += i % 2 == 0 ? "AAAAAAAAgD8AAABA" : "AACAPwAAAEAAAAAA";
+  return R"({"type": "PointCloud2", "name": "r1", "msg": {"fields": [)" + field("x", 0) + ", " +
+         field("y", 4) + ", " + field("z", 8) + R"(], "point_step": 12, "data": ")" + data + R"("}})";
+}
+
+/// The grid of grid_body(), which says only after its data that it is one: its cells are kept as they came
+/// until then.
+inline std::string grid_said_late(std::uint32_t width, std::uint32_t height) {
+  constexpr std::string_view kType = R"("type": "OccupancyGrid", )";
+  std::string body = grid_body(width, height);
+  body.erase(body.find(kType), kType.size());
+  body.insert(body.size() - 1, R"(, "type": "OccupancyGrid")");
+  return body;
+}
+
 /// The head of a map of that body, with `more` header fields.
 inline std::string map_head(const std::string& body, std::string_view more = {}) {
   return authorized(

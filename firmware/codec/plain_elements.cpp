@@ -1,0 +1,69 @@
+#include "codec/plain_elements.hpp"
+
+#include <cstring>
+
+#include "codec/json_blank.hpp"
+
+namespace adit::codec {
+namespace {
+
+std::size_t blanks(std::string_view text, std::size_t at) {
+  while (at < text.size() && is_blank(text[at])) ++at;
+  return at;
+}
+
+/// How many characters of `text` are the ones that stand `period` before them, from the one at `period` on.
+std::size_t repeated(std::string_view text, std::size_t period) {
+  using Word = std::uint64_t;
+  std::size_t n = 0;
+  const std::size_t most = text.size() - period;
+  while (n + sizeof(Word) <= most) {
+    Word here = 0, before = 0;
+    std::memcpy(&before, text.data() + n, sizeof before);
+    std::memcpy(&here, text.data() + n + period, sizeof here);
+    if (here != before) break;
+    n += sizeof(Word);
+  }
+  while (n < most && text[n] == text[n + period]) ++n;
+  return n;
+}
+
+/// One element as it stands there.
+struct Element {
+  std::uint8_t value = 0;
+  std::size_t end = 0;  // after its last character
+};
+
+bool is_digit(char c) {
+  return c >= '0' && c <= '9';
+}
+
+/// At `at`, with a character behind it; nothing where there is another kind of element.
+std::optional<Element> element(std::string_view text, std::size_t at) {
+  if (text.substr(at).starts_with("-1")) return Element{.value = 255, .end = at + 2};
+  constexpr std::size_t kMostDigits = 3;
+  unsigned value = 0;
+  std::size_t end = at;
+  while (end < text.size() && end < at + kMostDigits && is_digit(text[end])) {
+    value = 10 * value + static_cast<unsigned>(text[end++] - '0');
+  }
+  const bool leading_zero = end > at + 1 && text[at] == '0';
+  if (end == at || leading_zero || value > 255) return std::nullopt;
+  return Element{.value = static_cast<std::uint8_t>(value), .end = end};
+}
+
+}  // namespace
+
+std::optional<PlainElements> take_plain_elements(std::string_view& text) {
+  const auto one = element(text, blanks(text, 0));
+  if (!one) return std::nullopt;
+  const std::size_t comma = blanks(text, one->end);
+  if (comma == text.size() || text[comma] != ',') return std::nullopt;
+  // White space that follows the comma belongs to what repeats itself: "0, " and "0, " again.
+  const std::size_t period = comma + 1;
+  const std::size_t again = repeated(text, period) / period;
+  text.remove_prefix(period * (1 + again));
+  return PlainElements{.value = one->value, .count = 1 + again};
+}
+
+}  // namespace adit::codec

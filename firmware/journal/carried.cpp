@@ -1,6 +1,9 @@
 #include "journal/carried.hpp"
 
 #include <algorithm>
+#include <array>
+#include <cmath>
+#include <limits>
 #include <utility>
 
 #include "codec/body_decoder.hpp"
@@ -32,6 +35,26 @@ std::optional<icd::Uri> uri_in(Reader& reader) {
 
 pace::Duration duration_in(Reader& reader) {
   return pace::Duration(static_cast<std::int64_t>(reader.number()));
+}
+
+/// The components of a pose, in the order of a record.
+std::array<double*, 7> parts_of(icd::Pose& pose) {
+  auto& [at, turned] = pose;
+  return {&at.x, &at.y, &at.z, &turned.x, &turned.y, &turned.z, &turned.w};
+}
+
+/// Nothing where it says no state.
+std::optional<icd::StateUpdate> poses_in(Reader& reader) {
+  icd::StateUpdate update;
+  if (const double stamp = reader.real(); !std::isnan(stamp)) update.header.stamp = stamp;
+  while (reader.ok() && !reader.at_end()) {
+    const auto name = icd::RobotName::parse(reader.text());
+    icd::Pose pose;
+    for (double* const part : parts_of(pose)) *part = reader.real();
+    if (!name) return std::nullopt;
+    update.poses.push_back({*name, pose});
+  }
+  return reader.ok() ? std::optional(std::move(update)) : std::nullopt;
 }
 
 std::uint64_t number_of(pace::Duration duration) {
@@ -75,6 +98,8 @@ bool Carried::apply(Kind kind, std::string_view said) {
       return read_stamp(said);
     case Kind::Grids:
       return read_grids(said);
+    case Kind::Poses:
+      return read_poses(said);
     case Kind::End:
       return true;
   }
@@ -109,18 +134,28 @@ bool Carried::read_sender(std::string_view said) {
   return reader.ok();
 }
 
-/// As lanes::StateLane takes it.
 bool Carried::read_state(std::string_view said) {
   const auto update = message_in<icd::StateUpdate>(said, codec::read_state_update);
-  if (!update) return false;
-  const auto stamp = update->header.stamp;
-  for (const icd::NamedPose& named : update->poses) {
+  if (update) add(*update);
+  return update.has_value();
+}
+
+bool Carried::read_poses(std::string_view said) {
+  Reader reader(said);
+  const auto update = poses_in(reader);
+  if (update) add(*update);
+  return update.has_value();
+}
+
+/// As lanes::StateLane takes it.
+void Carried::add(const icd::StateUpdate& update) {
+  const auto stamp = update.header.stamp;
+  for (const icd::NamedPose& named : update.poses) {
     Robot& held = robots_.try_emplace(named.name, Robot{named.pose, stamp}).first->second;
     held.news = true;
     const bool replaces = !held.stamp || !stamp || *held.stamp <= *stamp;
     if (replaces) held.pose = named.pose, held.stamp = stamp;
   }
-  return true;
 }
 
 /// One state is under way at a time: what was before, and of which no answer is known, was not taken.
@@ -223,15 +258,15 @@ void Carried::write(const std::function<void(Kind, std::string_view)>& to) const
   for (const auto& [sender, clock] : senders_.clocks()) to(Kind::Sender, said(sender, clock));
   for (const auto& [uri, learned] : paces_) to(Kind::Pace, said(uri, learned));
   for (const auto& [uri, stamp] : stamps_) to(Kind::Stamp, said(uri, stamp));
-  if (grids_) to(Kind::Grids, {});
   if (grids_) {
+    to(Kind::Grids, {});
     for (const auto& [key, extent] : *grids_) to(Kind::Grids, said(key, extent));
   }
   const auto write_robots = [&](bool Robot::* these) {
     std::vector<icd::RobotName> names;
     for (const auto& [name, robot] : robots_) {
       if (!(robot.*these)) continue;
-      to(Kind::State, said(icd::StateUpdate{.header = {robot.stamp}, .poses = {{name, robot.pose}}}));
+      to(Kind::Poses, said(icd::StateUpdate{.header = {robot.stamp}, .poses = {{name, robot.pose}}}));
       names.push_back(name);
     }
     return names;
@@ -286,7 +321,13 @@ std::string said(const std::string& name, const lanes::Extent& extent) {
 }
 
 std::string said(const icd::StateUpdate& update) {
-  return codec::write_state_update(update).to_string();
+  Writer out;
+  out.real(update.header.stamp.value_or(std::numeric_limits<double>::quiet_NaN()));
+  for (icd::NamedPose named : update.poses) {
+    out.text(named.name.text());
+    for (const double* const part : parts_of(named.pose)) out.real(*part);
+  }
+  return out.finish();
 }
 
 std::string said(const icd::MarkersUpdate& update) {

@@ -62,6 +62,8 @@ class Carried {
   bool read_clock(std::string_view said);
   bool read_sender(std::string_view said);
   bool read_state(std::string_view said);
+  bool read_poses(std::string_view said);
+  void add(const icd::StateUpdate& update);
   bool read_state_sent(std::string_view said);
   bool read_markers(std::string_view said);
   bool read_sent(std::string_view said);

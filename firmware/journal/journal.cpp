@@ -43,7 +43,7 @@ bool Journal::open_next() {
 }
 
 Journal::Kept Journal::accepted(const icd::StateUpdate& update) {
-  return append(framed(Kind::State, said(update)));
+  return append(framed(Kind::Poses, said(update)));
 }
 
 void Journal::sender(const std::string& sender, const lanes::SenderClock& clock) {

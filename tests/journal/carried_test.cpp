@@ -6,6 +6,7 @@
 #include <random>
 #include <string>
 
+#include "codec/write.hpp"
 #include "lanes/merged.hpp"
 
 namespace adit::journal {
@@ -56,8 +57,8 @@ Carried again(const Carried& carried) {
 
 TEST(Carried, HasPosesUntilTheyWereTaken) {
   Carried carried;
-  tell(carried, Kind::State, said(state("r1", 1, 10)));
-  tell(carried, Kind::State, said(state("r2", 2, 11)));
+  tell(carried, Kind::Poses, said(state("r1", 1, 10)));
+  tell(carried, Kind::Poses, said(state("r2", 2, 11)));
   EXPECT_THAT(names_in(carried), ElementsAre("r1", "r2"));
   tell(carried, Kind::StateSent, sent({"r1", "r2"}));
   EXPECT_THAT(names_in(again(carried)), ElementsAre("r1", "r2")) << "no answer has come";
@@ -65,10 +66,40 @@ TEST(Carried, HasPosesUntilTheyWereTaken) {
   EXPECT_THAT(carried.robots(), IsEmpty()) << "the next life may serve another Command Post";
 }
 
+TEST(Carried, HasPosesAsTheyWere) {
+  const icd::Pose pose{.position = {1.5, -2, 1e-300}, .orientation = {0, 0, 0.6, 0.8}};
+  for (const auto stamp : {std::optional<icd::Stamp>(12.25), std::optional<icd::Stamp>()}) {
+    Carried carried;
+    tell(carried, Kind::Poses,
+         said(icd::StateUpdate{.header = {stamp}, .poses = {{*icd::RobotName::parse("r1"), pose}}}));
+    carried = again(carried);
+    ASSERT_THAT(carried.robots(), SizeIs(1));
+    EXPECT_EQ(carried.robots().begin()->second.pose, pose);
+    EXPECT_EQ(carried.robots().begin()->second.stamp, stamp);
+  }
+}
+
+TEST(Carried, ReadsPosesOfReleasesThatKeptTheMessage) {
+  Carried carried;
+  tell(carried, Kind::State, codec::write_state_update(state("r1", 1, 10)).to_string());
+  EXPECT_THAT(names_in(again(carried)), ElementsAre("r1"));
+}
+
+TEST(Carried, PassesOverPosesThatAreCutShortOrOfNobody) {
+  Carried carried;
+  const std::string poses = said(state("r1", 1, 10));
+  for (std::size_t size = 0; size < poses.size(); ++size) {
+    if (size == sizeof(double)) continue;  // a state without poses
+    EXPECT_FALSE(carried.apply(Kind::Poses, poses.substr(0, size))) << size;
+  }
+  EXPECT_FALSE(carried.apply(Kind::Poses, Writer().real(1).text("no name").finish() + std::string(56, '\0')));
+  EXPECT_THAT(carried.robots(), IsEmpty());
+}
+
 TEST(Carried, HasThePosesThatWaitWhileOthersAreTaken) {
   Carried carried;
-  tell(carried, Kind::State, said(state("r1", 1, 10)));
-  tell(carried, Kind::State, said(state("r2", 2, 11)));
+  tell(carried, Kind::Poses, said(state("r1", 1, 10)));
+  tell(carried, Kind::Poses, said(state("r2", 2, 11)));
   tell(carried, Kind::StateSent, sent({"r1"}));
   carried = again(carried);
   tell(carried, Kind::StateDone);
@@ -77,9 +108,9 @@ TEST(Carried, HasThePosesThatWaitWhileOthersAreTaken) {
 
 TEST(Carried, HasNewsThatCameWhileOthersWereUnderWay) {
   Carried carried;
-  tell(carried, Kind::State, said(state("r1", 1, 10)));
+  tell(carried, Kind::Poses, said(state("r1", 1, 10)));
   tell(carried, Kind::StateSent, sent({"r1"}));
-  tell(carried, Kind::State, said(state("r1", 2, 11)));
+  tell(carried, Kind::Poses, said(state("r1", 2, 11)));
   carried = again(carried);
   tell(carried, Kind::StateDone);
   ASSERT_THAT(carried.robots(), SizeIs(1));
@@ -88,7 +119,7 @@ TEST(Carried, HasNewsThatCameWhileOthersWereUnderWay) {
 
 TEST(Carried, HoldsWhatWasUnderWayForNotTakenWhereALifeEnded) {
   Carried carried;
-  tell(carried, Kind::State, said(state("r1", 1, 10)));
+  tell(carried, Kind::Poses, said(state("r1", 1, 10)));
   tell(carried, Kind::Markers, said(icd::MarkersUpdate{{marker("a", 1, icd::MarkerAction::Add, 1)}}));
   tell(carried, Kind::StateSent, sent({"r1"}));
   tell(carried, Kind::MarkersSent, said_sent({marker("a", 1, icd::MarkerAction::Add, 1)}));
@@ -101,8 +132,8 @@ TEST(Carried, HoldsWhatWasUnderWayForNotTakenWhereALifeEnded) {
 
 TEST(Carried, HoldsForNotTakenWhatWasSentAndOfWhichNoAnswerWasWrittenDown) {
   Carried carried;
-  tell(carried, Kind::State, said(state("r1", 1, 10)));
-  tell(carried, Kind::State, said(state("r2", 1, 10)));
+  tell(carried, Kind::Poses, said(state("r1", 1, 10)));
+  tell(carried, Kind::Poses, said(state("r2", 1, 10)));
   const auto a = marker("a", 1, icd::MarkerAction::Add, 1), b = marker("b", 1, icd::MarkerAction::Add, 1);
   tell(carried, Kind::Markers, said(icd::MarkersUpdate{{a, b}}));
   tell(carried, Kind::StateSent, sent({"r1"}));

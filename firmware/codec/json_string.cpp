@@ -1,24 +1,13 @@
 #include "codec/json_string.hpp"
 
-#include <array>
 #include <charconv>
 
 #include "codec/byte_name.hpp"
+#include "codec/json_plain.hpp"
 #include "icd/require.hpp"
 
 namespace adit::codec {
 namespace {
-
-/// ASCII that stands for itself in a string.
-constexpr std::array<bool, 256> kPlain = [] {
-  std::array<bool, 256> plain{};
-  for (std::size_t c = 0x20; c < 0x80; ++c) plain[c] = c != '"' && c != '\\';
-  return plain;
-}();
-
-bool is_plain(char c) {
-  return kPlain[static_cast<unsigned char>(c)];
-}
 
 bool is_hex(char c) {
   return (c >= '0' && c <= '9') || (c >= 'a' && c <= 'f') || (c >= 'A' && c <= 'F');

@@ -5,6 +5,7 @@
 
 #include "codec/documents.hpp"
 #include "codec/json.hpp"
+#include "codec/quick_json.hpp"
 
 namespace adit::codec::test {
 namespace {
@@ -188,6 +189,31 @@ TEST(AnyDamagedJson, IsJudgedWellFormedExactlyWhenAnotherParserSaysSo) {
   }
   EXPECT_GT(taken, 1000);  // both verdicts were common enough to mean something
   EXPECT_LT(taken, 29000);
+}
+
+/// What is read when it is whole, and what is read as it comes.
+TEST(AnyJson, IsTheSameWhetherDataIsSplitFromItOrNot) {
+  Randomness random(6);
+  constexpr int kRounds = 20000;
+  RecordProperty("cases", kRounds);
+  int quick = 0;
+  for (int round = 0; round < kRounds; ++round) {
+    std::string body = json_of(random_document(random), random);
+    if (round % 2 == 0) damage(body, random);
+    const auto whole = decode(kJsonBody, Split::Nothing, body);
+    const auto split = decode_in_random_chunks(kJsonBody, Split::MapData, body, random);
+    ASSERT_EQ(whole.has_value(), split.has_value()) << body;
+    if (whole)
+      ASSERT_EQ(write_json(whole->root), write_json(split->root)) << body;
+    else
+      ASSERT_EQ(whole.error(), split.error()) << body;
+    const std::size_t values = random() % 20;
+    const auto bounded = decode(kJsonBody, Split::Nothing, body, {.values = values});
+    ASSERT_EQ(bounded.has_value(), decode(kJsonBody, Split::MapData, body, {.values = values}).has_value());
+    quick += quick_json(body, values) ? 1 : 0;
+  }
+  EXPECT_GT(quick, 1000);  // both ways were taken often
+  EXPECT_LT(quick, 19000);
 }
 
 TEST(AnyDamagedBody, IsJudgedTheSameHoweverItIsCut) {

@@ -14,9 +14,6 @@ namespace {
 
 using dispatch::MappingVerdict;
 
-/// Packing begins early by what it took last time, but not so early that much newer data could not replace
-/// it.
-constexpr std::chrono::milliseconds kLongestLead{1500};
 /// How a map that is under way goes on is looked at no more often.
 constexpr std::chrono::milliseconds kLookAtSending{10}, kLookAtConnecting{100};
 /// A server may wait no longer for a request that does not go on.
@@ -107,7 +104,7 @@ void Maps::pump() {
   if (stopping_ || preparing_ || !channel_.has_token()) return;
   if (loop::guarded("sending a map", [this] { go_on(); })) return;
   if (!channel_.busy()) pace_.failed(loop_.now());
-  wake_.call_at(channel_.busy() ? loop_.now() + kLongestLead : pace_.ready());
+  wake_.call_at(channel_.busy() ? loop_.now() + Slot::kLongestLead : pace_.ready());
 }
 
 void Maps::go_on() {
@@ -145,8 +142,7 @@ loop::Instant Maps::begins_to_pack(loop::Instant now) const {
     const std::size_t size = prepared_->packed.body.size();
     free += slot_.transfer(size - std::min(size, channel_.sent_of_it()));
   }
-  const loop::Instant begin =
-      std::max(starts(), free) - std::min<loop::Duration>(packing_took_, kLongestLead);
+  const loop::Instant begin = std::max(starts(), free) - slot_.lead();
   return begin <= now ? begin : std::max(begin, now + kLookAtSending);
 }
 
@@ -173,7 +169,7 @@ void Maps::pack(const Place& prepared) {
                    form] { prepared->packed = packed(prepared->waiting, std::move(*leaving_out), form); },
                   [this, began, prepared] {
                     preparing_ = false;
-                    packing_took_ = loop_.now() - began;
+                    slot_.packing_took(loop_.now() - began);
                     loop::guarded("a map that was packed", [&] { is_packed(prepared); });
                     pump();
                   },

@@ -184,7 +184,6 @@ class Maps {
   std::string trouble_;
   bool preparing_ = false;
   bool comparing_ = false;  // a worker is comparing two clouds
-  loop::Duration packing_took_{0};
   Place prepared_;   // while it is packed, waits for its time, or is under way
   Place following_;  // the next one, while that is under way; may be so itself, too
   lanes::Ahead ahead_;

@@ -20,6 +20,15 @@ void Slot::allow(std::uint64_t most) {
   most_ = bytes_per_second_ = static_cast<double>(most);
 }
 
+/// After eight shorter ones, a third of what is above them is left.
+void Slot::packing_took(loop::Duration took) {
+  packing_takes_ = std::max(took, packing_takes_ - (packing_takes_ - took) / 8);
+}
+
+loop::Duration Slot::lead() const {
+  return std::min<loop::Duration>(packing_takes_, kLongestLead);
+}
+
 void Slot::packed(std::size_t points, std::size_t bytes) {
   if (points < kTelling) return;
   packed_to_ = std::clamp(static_cast<double>(bytes) / static_cast<double>(points), kSmallest, 1.0);

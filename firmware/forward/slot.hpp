@@ -12,10 +12,14 @@ namespace adit::forward {
 /// how small packing makes clouds.
 class Slot {
  public:
+  static constexpr std::chrono::milliseconds kLongestLead{1500};
+
   /// `most`: bytes a second that maps may use of the link.
   explicit Slot(std::uint64_t most) { allow(most); }
   void allow(std::uint64_t most);
 
+  /// A map was packed, which took so long.
+  void packing_took(loop::Duration took);
   /// So many bytes of a cloud's points were packed to so many.
   void packed(std::size_t points, std::size_t bytes);
   /// So many bytes left, of which the last were held back until then.
@@ -24,12 +28,16 @@ class Slot {
   /// The link takes no more than so many bytes a second now; 0: not known.
   void link_delivers(std::uint64_t bytes_per_second);
 
+  /// How long before its time the next map is to be packed: as the longest of the last few took, for where
+  /// one comes too late, the link is idle; at most kLongestLead, for until then newer data takes its place.
+  loop::Duration lead() const;
   /// How long so many bytes take to leave.
   loop::Duration transfer(std::size_t bytes) const;
   /// How many bytes of points, not packed, leave within `spacing`.
   std::size_t points_within(loop::Duration spacing) const;
 
  private:
+  loop::Duration packing_takes_{0};
   double most_ = 1, bytes_per_second_ = 1;
   double packed_to_ = 1;  // of a byte of a cloud
 };

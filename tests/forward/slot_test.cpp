@@ -56,6 +56,23 @@ TEST(Slot, TakesNoLinkForSlowThatHadToWait) {
   EXPECT_EQ(slot.points_within(std::chrono::seconds(1)), 10 * kMegabyte);
 }
 
+TEST(Slot, LetsPackingBeginInTimeForTheLongestOfTheLastFew) {
+  Slot slot(10 * kMegabyte);
+  EXPECT_EQ(slot.lead(), loop::Duration(0));
+  slot.packing_took(milliseconds(600));
+  slot.packing_took(milliseconds(300));
+  EXPECT_GT(slot.lead(), milliseconds(500));
+  for (int i = 0; i < 50; ++i) slot.packing_took(milliseconds(300));
+  EXPECT_LT(slot.lead(), milliseconds(310));
+  EXPECT_GE(slot.lead(), milliseconds(300));
+}
+
+TEST(Slot, LetsPackingBeginNoEarlierThanTheLongestLead) {
+  Slot slot(10 * kMegabyte);
+  slot.packing_took(std::chrono::seconds(60));
+  EXPECT_EQ(slot.lead(), loop::Duration(Slot::kLongestLead));
+}
+
 TEST(Slot, FindsASlowLinkFastAgain) {
   Slot slot(10 * kMegabyte);
   slot.left(kMegabyte, sent_in(std::chrono::seconds(1000)), kBegin);

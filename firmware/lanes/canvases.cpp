@@ -28,6 +28,11 @@ std::optional<std::pair<std::string, Extent>> Canvases::grows(const icd::MapUpda
   return {{name, around(before->second, extent)}};
 }
 
+/// That name at this Command Post.
+std::string Canvases::here(const std::optional<icd::RobotName>& name) const {
+  return text_of(name) + '@' + command_post_;
+}
+
 /// Where something of that name was sent, or may have been; nothing: nowhere.
 std::optional<Extent> Canvases::sent(const std::optional<icd::RobotName>& name) const {
   std::optional<Extent> all;
@@ -40,12 +45,12 @@ std::optional<Extent> Canvases::sent(const std::optional<icd::RobotName>& name) 
     add(before_, text_of(name));
   }
   add(sent_, kAnyName);
-  add(sent_, text_of(name) + '@' + command_post_);
+  add(sent_, here(name));
   return all;
 }
 
 void Canvases::note(const std::optional<icd::RobotName>& name, const Extent& extent) {
-  const std::string key = text_of(name) + '@' + command_post_;
+  const std::string key = here(name);
   if (sent_.size() >= kMostNames && !sent_.contains(key)) {
     sent_[kAnyName] = Extent::everywhere();
     return;

@@ -61,6 +61,7 @@ class Canvases {
 
  private:
   std::optional<Extent> sent(const std::optional<icd::RobotName>& name) const;
+  std::string here(const std::optional<icd::RobotName>& name) const;
   void note(const std::optional<icd::RobotName>& name, const Extent& extent);
   void forget_oldest();
 

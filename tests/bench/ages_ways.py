@@ -7,6 +7,15 @@ import sys
 
 LISTEN, MAPPING, SCORING = ("10.91.1.2", 8000), ("10.91.2.2", 9001), ("10.91.2.2", 9000)
 TOKEN = "token-of-the-bench"  # of all three
+URIS = ("/map/update", "/state/update", "/markers/update")
+
+
+def found(name):
+    """Where the program is, or the end of this one."""
+    program = shutil.which(name, path=os.environ["PATH"] + ":/usr/sbin")
+    if program is None:
+        sys.exit(f"tests/bench: no {name} here: toolchain/setup bench")
+    return program
 
 
 class Way:
@@ -38,15 +47,13 @@ class Adit(Way):
 class Nginx(Way):
     """One request a second of each URI goes on; what comes sooner is refused with 429, as careful teams set it up."""
 
-    URIS = ("/map/update", "/state/update", "/markers/update")
-
     def __init__(self):
         super().__init__("nginx")
 
     def command(self, folder):
-        zones = "".join(f"limit_req_zone $uri zone=z{i}:1m rate=1r/s;" for i in range(len(self.URIS)))
+        zones = "".join(f"limit_req_zone $uri zone=z{i}:1m rate=1r/s;" for i in range(len(URIS)))
         places = "".join(f"location {uri} {{ limit_req zone=z{i}; proxy_pass http://{MAPPING[0]}:{MAPPING[1]}; }}"
-                         for i, uri in enumerate(self.URIS))
+                         for i, uri in enumerate(URIS))
         with open(f"{folder}/nginx.conf", "w", encoding="utf-8") as file:
             file.write(f"""daemon off; worker_processes 1; pid {folder}/pid; error_log stderr crit;
 events {{}}
@@ -61,10 +68,39 @@ http {{
   }}
 }}
 """)
-        program = shutil.which("nginx", path=os.environ["PATH"] + ":/usr/sbin")
-        if program is None:
-            sys.exit("tests/bench/ages: no nginx here: toolchain/setup bench")
-        return [program, "-c", f"{folder}/nginx.conf", "-e", "stderr", "-g", "user root;"]
+        return [found("nginx"), "-c", f"{folder}/nginx.conf", "-e", "stderr", "-g", "user root;"]
+
+
+class Haproxy(Way):
+    """As nginx here, refuses what comes sooner than a second after the last of its URI with 429."""
+
+    def __init__(self):
+        super().__init__("haproxy")
+
+    def command(self, folder):
+        tables = "".join(f"backend rate{i}\n  stick-table type string size 10 expire 10s store http_req_rate(1s)\n"
+                         for i in range(len(URIS)))
+        rules = "".join(f"  http-request track-sc{i} path table rate{i} if {{ path {uri} }} !{{ path,table_http_req_rate(rate{i}) gt 0 }}\n"
+                        f"  http-request deny deny_status 429 if {{ path {uri} }} !{{ sc{i}_tracked }}\n"
+                        for i, uri in enumerate(URIS))
+        with open(f"{folder}/haproxy.cfg", "w", encoding="utf-8") as file:
+            file.write(f"""global
+  nbthread 1
+defaults
+  mode http
+  timeout connect 5s
+  timeout client 60s
+  timeout server 60s
+{tables}frontend team
+  bind {LISTEN[0]}:{LISTEN[1]}
+{rules}  use_backend mapping if {{ path {" ".join(URIS)} }}
+  default_backend scoring
+backend mapping
+  server post {MAPPING[0]}:{MAPPING[1]}
+backend scoring
+  server post {SCORING[0]}:{SCORING[1]}
+""")
+        return [found("haproxy"), "-f", f"{folder}/haproxy.cfg"]
 
 
 class Relay(Way):

@@ -29,6 +29,22 @@ std::string position(std::uint64_t number) {
                        ".5, \"z\": ", 10 * (number / 10'000), ".5");
 }
 
+std::string report(std::uint64_t number) {
+  return icd::sentence("{", position(number), ", \"type\": \"Backpack\"}");
+}
+
+std::string state(std::uint64_t number) {
+  std::string poses;
+  for (std::uint64_t robot = 0; robot < 10; ++robot) {
+    poses +=
+        icd::sentence(robot == 0 ? "" : ", ", "{\"name\": \"robot_", robot, "\", \"position\": {",
+                      position(number + robot), "}, \"orientation\": {\"x\": 0.0, \"y\": 0.0, ",
+                      R"("z": 0.3826834323650898, "w": 0.9238795325112867}})");
+  }
+  return icd::sentence(R"({"header": {"stamp": {"secs": )", 1'600'000'000 + number / 1000, R"(, "nsecs": )",
+                       number % 1000 * 1'000'000, R"(}, "frame_id": "darpa"}, "poses": [)", poses, "]}");
+}
+
 /// The length of the whole answer, once its head is there; 0 before.
 std::size_t whole_size(std::string_view text) {
   const std::size_t head = text.find(kEndOfHead);
@@ -44,11 +60,11 @@ std::size_t whole_size(std::string_view text) {
 
 }  // namespace
 
-std::string report_body(std::uint64_t number) {
-  return icd::sentence("{", position(number), ", \"type\": \"Backpack\"}");
+std::string body_of(Kind kind, std::uint64_t number) {
+  return kind == Kind::Reports ? report(number) : state(number);
 }
 
-std::expected<Client, std::string> Client::connect(std::uint16_t port, const std::string& token) {
+std::expected<Client, std::string> Client::connect(std::uint16_t port, const std::string& token, Kind kind) {
   const std::string where = icd::sentence("127.0.0.1:", port);
   loop::FileDescriptor fd(::socket(AF_INET, SOCK_STREAM | SOCK_CLOEXEC, 0));
   sockaddr_in address{};
@@ -60,23 +76,28 @@ std::expected<Client, std::string> Client::connect(std::uint16_t port, const std
   const int yes = 1;
   ::setsockopt(fd.get(), IPPROTO_TCP, TCP_NODELAY, &yes, sizeof yes);
   ::setsockopt(fd.get(), SOL_SOCKET, SO_RCVTIMEO, &kPatience, sizeof kPatience);
-  std::string head =
-      icd::sentence("POST /api/artifact_reports HTTP/1.1\r\nHost: ", where, "\r\nAuthorization: Bearer ",
-                    token, "\r\nContent-Type: application/json\r\nContent-Length: ");
-  return Client(std::move(fd), std::move(head));
+  const std::string_view uri = kind == Kind::Reports ? "/api/artifact_reports" : "/state/update";
+  std::string head = icd::sentence("POST ", uri, " HTTP/1.1\r\nHost: ", where, "\r\nAuthorization: Bearer ",
+                                   token, "\r\nContent-Type: application/json\r\nContent-Length: ");
+  return Client(std::move(fd), std::move(head), kind);
 }
 
-std::expected<Clock::duration, std::string> Client::report(std::uint64_t number) {
-  const std::string body = report_body(number);
+bool Client::is_answered(std::string_view answer, std::uint64_t number) const {
+  if (kind_ == Kind::States) return answer.starts_with("HTTP/1.1 200 ");
+  return answer.starts_with("HTTP/1.1 201 ") && answer.contains(position(number));
+}
+
+std::expected<Clock::duration, std::string> Client::post(std::uint64_t number) {
+  const std::string body = body_of(kind_, number);
   const std::string request = icd::sentence(head_, body.size(), kEndOfHead, body);
   const Clock::time_point began = Clock::now();
   if (::send(fd_.get(), request.data(), request.size(), MSG_NOSIGNAL) != static_cast<ssize_t>(request.size()))
-    return system_error("sending a report");
+    return system_error("sending a message");
   const auto text = answer();
   const Clock::duration took = Clock::now() - began;
   if (!text) return std::unexpected(text.error());
-  const bool is_ours = text->starts_with("HTTP/1.1 201 ") && text->contains(position(number));
-  if (!is_ours) return std::unexpected(icd::sentence("expected the answer to ", body, ", got ", *text));
+  if (!is_answered(*text, number))
+    return std::unexpected(icd::sentence("expected the answer to ", body, ", got ", *text));
   return took;
 }
 

@@ -84,4 +84,16 @@ std::string comparison(const std::vector<Path>& paths, const std::string& ours) 
   return text;
 }
 
+std::string cpu_comparison(const std::vector<Path>& paths, const std::string& ours) {
+  const auto adit = std::ranges::find(paths, ours, &Path::name);
+  if (adit == paths.end()) return "";
+  std::string text = "CPU";
+  for (const Path& path : paths) {
+    if (path.name == ours || path.cpu.count() == 0) continue;
+    text += line("; %s / %s: %.2f", ours.c_str(), path.name.c_str(),
+                 static_cast<double>(adit->cpu.count()) / static_cast<double>(path.cpu.count()));
+  }
+  return text + '\n';
+}
+
 }  // namespace adit::bench

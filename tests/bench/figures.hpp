@@ -11,7 +11,7 @@ namespace adit::bench {
 /// What was measured on one way to the Command Post.
 struct Path {
   std::string name;
-  std::vector<Clock::duration> took;  // one for each report
+  std::vector<Clock::duration> took;  // one for each message
   std::chrono::nanoseconds cpu{};     // of the program in between, over all of them
 };
 
@@ -26,5 +26,8 @@ std::string flush_line(const std::string& name, const std::vector<Clock::duratio
 /// What a report by `ours` takes more than by the slower of the other proxies, with the target beside it, and
 /// the ratios. "" where there is nothing to compare.
 std::string comparison(const std::vector<Path>& paths, const std::string& ours);
+
+/// The CPU time of `ours` as a ratio to that of each of the others, in one line.
+std::string cpu_comparison(const std::vector<Path>& paths, const std::string& ours);
 
 }  // namespace adit::bench

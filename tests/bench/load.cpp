@@ -1,4 +1,4 @@
-/// The load of tests/bench: the same reports by several ways to one Command Post, in turns, and the figures.
+/// The load of tests/bench: the same messages by several ways to one Command Post, in turns, and the figures.
 
 #include <array>
 #include <cstdio>
@@ -40,7 +40,7 @@ class Race {
     if (!probe) return std::unexpected(probe.error());
     Race race(options, *std::move(probe));
     for (const Way& way : options.ways) {
-      auto client = Client::connect(way.port, options.token);
+      auto client = Client::connect(way.port, options.token, options.what);
       if (!client) return std::unexpected(way.name + ": " + client.error());
       race.lanes_.push_back({way, *std::move(client), {.name = way.name, .took = {}, .cpu = {}}});
     }
@@ -53,7 +53,7 @@ class Race {
     for (FlushTimes& flushes : flushes_) flushes.took.clear();
     for (Lane& lane : lanes_) lane.path = {.name = lane.way.name, .took = {}, .cpu = {}};
     const Clock::time_point end = Clock::now() + options_.most;
-    while (lanes_.front().path.took.size() < options_.reports && Clock::now() < end)
+    while (lanes_.front().path.took.size() < options_.messages && Clock::now() < end)
       if (auto done = round(); !done) return done;
     return {};
   }
@@ -89,7 +89,7 @@ class Race {
   std::expected<void, std::string> round() {
     for (Lane& lane : lanes_) {
       const auto before = cpu_time(lane.way.process);
-      const auto done = block([&] { return lane.client.report(number_++); }, lane.path.took);
+      const auto done = block([&] { return lane.client.post(number_++); }, lane.path.took);
       if (!done) return std::unexpected(lane.way.name + ": " + done.error());
       lane.path.cpu += cpu_time(lane.way.process) - before;
     }
@@ -103,7 +103,7 @@ class Race {
   std::vector<Lane> lanes_;
   std::array<FlushTimes, 2> flushes_ = {FlushTimes{"flush, grown", &FlushProbe::append, {}},
                                         FlushTimes{"flush, in place", &FlushProbe::overwrite, {}}};
-  std::uint64_t number_ = 0;  // of the next report
+  std::uint64_t number_ = 0;  // of the next message
 };
 
 int fail(const std::string& why) {
@@ -120,8 +120,10 @@ int main(int argc, char** argv) {
   if (!race) return fail(race.error());
   if (const auto ran = race->run(); !ran) return fail(ran.error());
   const std::vector<Path> paths = race->paths();
-  std::printf("%zu reports each way, by turns of %zu, one each %lld ms\n%s%s\n%s", paths.front().took.size(),
-              options->block, static_cast<long long>(options->pace.count()), table(paths).c_str(),
-              race->flush_lines().c_str(), comparison(paths, "adit").c_str());
+  std::printf("%zu messages each way, by turns of %zu, one each %lld ms\n%s%s\n%s%s",
+              paths.front().took.size(), options->block, static_cast<long long>(options->pace.count()),
+              table(paths).c_str(), race->flush_lines().c_str(),
+              options->what == Kind::Reports ? comparison(paths, "adit").c_str() : "",
+              cpu_comparison(paths, "adit").c_str());
   return 0;
 }

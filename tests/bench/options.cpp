@@ -27,6 +27,12 @@ std::optional<Way> way(std::string_view word) {
   return Way{.name = std::string(word.substr(0, equals)), .port = *port, .process = process.value_or(0)};
 }
 
+command_line::Wrong take_what(Kind& what, const std::string& word) {
+  if (word != "reports" && word != "states") return "'" + word + "': expected reports or states";
+  what = word == "states" ? Kind::States : Kind::Reports;
+  return std::nullopt;
+}
+
 command_line::Wrong take_way(std::vector<Way>& ways, const std::string& word) {
   auto made = way(word);
   if (!made) return "'" + word + "' is no way: expected NAME=PORT or NAME=PORT:PID";
@@ -42,14 +48,15 @@ command_line::Program command_line_of(Options& options) {
   return {
       .name = "adit_bench_load",
       .usage = "direct=PORT NAME=PORT:PID...",
-      .about = "Sends reports to the Command Post by several ways, in turns, and compares what they take.",
+      .about = "Sends messages to the Command Post by several ways, in turns, and compares what they take.",
       .rows = {{"--flush", "FOLDER", "the ledger's", &options.flush, Wanted::Always},
                {"--token", "TOKEN", "of the team and of scoring", &options.token, Wanted::Always},
-               {"--reports", "N", "on each way (2000)", number<1, 1'000'000>(options.reports)},
+               {"--what", "KIND", "reports or states (reports)", command_line::take<take_what>(options.what)},
+               {"--messages", "N", "on each way (2000)", number<1, 1'000'000>(options.messages)},
                {"--seconds", "S", "at most (600)", number<1, 1'000'000>(options.most)},
-               {"--pace", "MS", "from the start of one report to that of the next (5)",
+               {"--pace", "MS", "from the start of one to that of the next (5)",
                 number<1, 1'000'000>(options.pace)},
-               {"--block", "N", "reports on one way before the next has its turn (20)",
+               {"--block", "N", "messages on one way before the next has its turn (20)",
                 number<1, 1'000'000>(options.block)},
                {"--help", "", "prints this", &options.help}},
       .ending = "",

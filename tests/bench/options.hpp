@@ -4,6 +4,7 @@
 
 #include <chrono>
 
+#include "client.hpp"
 #include "command_line/read.hpp"
 
 namespace adit::bench {
@@ -16,10 +17,11 @@ struct Way {
 };
 
 struct Options {
-  std::size_t reports = 2000;  // on each way
+  Kind what = Kind::Reports;
+  std::size_t messages = 2000;  // on each way
   std::chrono::seconds most{600};
-  std::chrono::milliseconds pace{5};  // from the start of one report to the start of the next
-  std::size_t block = 20;             // reports on one way before the next has its turn
+  std::chrono::milliseconds pace{5};  // from the start of one to the start of the next
+  std::size_t block = 20;             // messages on one way before the next has its turn
   std::string flush;                  // the ledger's folder
   std::string token;
   std::vector<Way> ways;  // the first without anything in between

@@ -3,7 +3,7 @@
 #include <algorithm>
 
 #include "codec/byte_name.hpp"
-#include "codec/json_blank.hpp"
+#include "codec/json_characters.hpp"
 #include "codec/json_value.hpp"
 #include "icd/sentence.hpp"
 
@@ -14,7 +14,7 @@ namespace {
 constexpr std::size_t kSmallText = 1024;
 
 bool starts_number(char c) {
-  return c == '-' || (c >= '0' && c <= '9');
+  return c == '-' || is_digit(c);
 }
 
 }  // namespace

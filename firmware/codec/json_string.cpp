@@ -3,14 +3,14 @@
 #include <charconv>
 
 #include "codec/byte_name.hpp"
-#include "codec/json_plain.hpp"
+#include "codec/json_characters.hpp"
 #include "icd/require.hpp"
 
 namespace adit::codec {
 namespace {
 
 bool is_hex(char c) {
-  return (c >= '0' && c <= '9') || (c >= 'a' && c <= 'f') || (c >= 'A' && c <= 'F');
+  return is_digit(c) || (c >= 'a' && c <= 'f') || (c >= 'A' && c <= 'F');
 }
 
 /// Requires four hex digits.

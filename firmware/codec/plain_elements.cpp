@@ -2,7 +2,7 @@
 
 #include <cstring>
 
-#include "codec/json_blank.hpp"
+#include "codec/json_characters.hpp"
 
 namespace adit::codec {
 namespace {
@@ -33,10 +33,6 @@ struct Element {
   std::uint8_t value = 0;
   std::size_t end = 0;  // after its last character
 };
-
-bool is_digit(char c) {
-  return c >= '0' && c <= '9';
-}
 
 /// At `at`, with a character behind it; nothing where there is another kind of element.
 std::optional<Element> element(std::string_view text, std::size_t at) {

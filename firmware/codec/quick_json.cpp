@@ -7,16 +7,11 @@
 #include <vector>
 
 #include "codec/body_decoder.hpp"
-#include "codec/json_blank.hpp"
-#include "codec/json_plain.hpp"
+#include "codec/json_characters.hpp"
 #include "codec/json_value.hpp"
 
 namespace adit::codec {
 namespace {
-
-bool is_digit(char c) {
-  return c >= '0' && c <= '9';
-}
 
 /// Each function reads what its name says and moves on behind it; false: this document is not to be read so.
 class QuickReader {
@@ -141,10 +136,11 @@ class QuickReader {
     const std::size_t first = members_.size();
     if (!take('}')) {
       do {
-        Value::Member member;
+        std::string name;
+        Value meant;
         skip_blanks();
-        if (next() != '"' || !string(member.first) || !take(':') || !value(member.second)) return false;
-        members_.push_back(std::move(member));
+        if (next() != '"' || !string(name) || !take(':') || !value(meant)) return false;
+        members_.emplace_back(std::move(name), std::move(meant));
       } while (take(','));
       if (!take('}')) return false;
     }

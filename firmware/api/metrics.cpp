@@ -164,6 +164,12 @@ void write_updates(Exposition& out, const RunView& view) {
   for (const ActivityRow& row : view.activities) {
     if (!row.clouds.empty()) out.sample({{"robot", row.robot}}, row.clouds == "whole" ? 1 : 0);
   }
+  out.gauge("adit_clouds_rounded_metres",
+            "Steps to which the coordinates of the last cloud that went were rounded; 0: it was exact.");
+  for (const ActivityRow& row : view.activities) {
+    if (row.precision.empty()) continue;
+    out.sample({{"robot", row.robot}}, row.precision == "1mm" ? 0.001 : row.precision == "8mm" ? 0.008 : 0);
+  }
   out.counter("adit_points_left_out_total",
               "Points that were not sent, for the Command Post has taken one of the same voxel.");
   for (const ActivityRow& row : view.activities) {

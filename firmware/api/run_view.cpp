@@ -12,6 +12,7 @@ using codec::Member;
 constexpr std::string_view kWhen = "seconds since 1970";
 constexpr std::string_view kKinds[] = {"grid", "cloud", "state", "markers"};
 constexpr std::string_view kClouds[] = {"", "whole", "parts"};
+constexpr std::string_view kPrecisions[] = {"", "exact", "1mm", "8mm"};
 constexpr std::string_view kPatterns[] = {"off",   "on",   "slow", "fast",  "twice",
                                           "flash", "wink", "rush", "digits"};
 constexpr std::string_view kSides[] = {"team", "command_post"};
@@ -75,6 +76,10 @@ constexpr Member kActivity[] = {
                                  "before it said, and replaces them; parts: each arrives; empty: no two of "
                                  "them have waited")
         .one_of(kClouds),
+    member<&ActivityRow::precision>("precision",
+                                    "how far the last cloud was rounded that the Command Post took "
+                                    "(robots[].precision); empty: it took none")
+        .one_of(kPrecisions),
     member<&ActivityRow::points_left_out>(
         "points_left_out",
         "of its clouds, because the Command Post has taken one of the same voxel "

@@ -71,7 +71,7 @@ struct ActivityRow {
   std::uint64_t bytes_received = 0, bytes_sent = 0;
   int last_status = 0;
   std::string last_sentence;
-  std::string clouds;
+  std::string clouds, precision;
   std::uint64_t points_left_out = 0;
 
   static const codec::Row kRow;

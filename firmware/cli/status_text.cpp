@@ -115,6 +115,7 @@ std::string said(const api::ActivityRow& row) {
 std::string kind_of(const api::ActivityRow& row) {
   std::string kind = row.kind;
   if (!row.clouds.empty()) kind += ", " + row.clouds;
+  if (!row.precision.empty() && row.precision != "exact") kind += ", to " + row.precision;
   if (row.points_left_out > 0) kind += ", " + std::to_string(row.points_left_out) + " points left out";
   return kind;
 }

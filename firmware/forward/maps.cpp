@@ -74,6 +74,7 @@ void Maps::carry_on(const journal::Carried& carried, bool ran_before) {
 void Maps::take_settings() {
   lane_.a_slot_carries(slot_of(settings_.command_post));
   lane_.clouds_are(settings::clouds_of(settings_.robots));
+  lane_.precisions_are(settings::precisions_of(settings_.robots));
   points_.edges_are(settings::voxels_of(settings_.robots));
 }
 
@@ -149,7 +150,8 @@ loop::Instant Maps::begins_to_pack(loop::Instant now) const {
 void Maps::prepare(Place& place) {
   auto prepared = std::make_shared<Prepared>();
   slot_.link_delivers(channel_.delivers());
-  lane_.merge_at_most(std::min(settings_.queues.merge_bytes, slot_.points_within(pace_.spacing())));
+  lane_.merge_at_most(settings_.queues.merge_bytes);
+  lane_.a_message_holds(slot_.points_within(pace_.spacing()));
   auto waiting = lane_.take(loop_.now());
   if (!waiting) return;
   prepared->waiting = std::move(*waiting);
@@ -164,16 +166,18 @@ void Maps::pack(const Place& prepared) {
   journal_.stamped(icd::Uri::MapUpdate, *header.stamp);
   const loop::Instant began = loop_.now();
   const auto leaving_out = std::make_shared<LeavingOut>(points_.leaving_out(prepared->waiting.map));
-  const pack::CloudForm form{.is_arranged = settings_.command_post.arrange_clouds};
-  workers_.submit([prepared, leaving_out,
-                   form] { prepared->packed = packed(prepared->waiting, std::move(*leaving_out), form); },
-                  [this, began, prepared] {
-                    preparing_ = false;
-                    slot_.packing_took(loop_.now() - began);
-                    loop::guarded("a map that was packed", [&] { is_packed(prepared); });
-                    pump();
-                  },
-                  [this, prepared] { not_packed(prepared); });
+  const bool arranges = settings_.command_post.arrange_clouds;
+  workers_.submit(
+      [prepared, leaving_out, arranges] {
+        prepared->packed = packed(prepared->waiting, std::move(*leaving_out), arranges);
+      },
+      [this, began, prepared] {
+        preparing_ = false;
+        slot_.packing_took(loop_.now() - began);
+        loop::guarded("a map that was packed", [&] { is_packed(prepared); });
+        pump();
+      },
+      [this, prepared] { not_packed(prepared); });
   preparing_ = true;  // only now: where it could not be submitted, it is not
 }
 
@@ -187,7 +191,8 @@ Maps::Place* Maps::place_of(const Place& prepared) {
 void Maps::is_packed(const Place& prepared) {
   const icd::MapUpdate& map = prepared->waiting.map;
   const LeftOut& left_out = prepared->packed.left_out;
-  if (!map.is_grid()) slot_.packed(prepared->packed.points_size, prepared->packed.body.size());
+  if (!map.is_grid())
+    slot_.packed(prepared->packed.points_size, prepared->packed.body.size(), prepared->packed.precision);
   Place* const place = place_of(prepared);
   if (place == nullptr) return;
   if (left_out.is_all) return is_there(*place);
@@ -276,6 +281,7 @@ void Maps::taken(const Place& sent, const uplink::Answered& answered) {
   blame_.passed(whose(map), loop_.now());
   lane_.carried(lanes::Sender::of(map), sent->packed.body.size());
   record_.forwarded(traffic_of(map), updates, sent->packed.body.size(), answered.status, loop_.stamp_now());
+  if (!map.is_grid()) record_.rounded_to(traffic_of(map), sent->packed.precision);
   points_taken(*sent);
   taken_(std::move(map));
 }

@@ -77,6 +77,10 @@ void Record::left_out(const Traffic& traffic, std::size_t points) {
   changed_();
 }
 
+void Record::rounded_to(const Traffic& traffic, lanes::Precision precision) {
+  row(traffic).precision = lanes::kPrecisionWords[static_cast<std::size_t>(precision)];
+}
+
 void Record::clouds_are(const Traffic& traffic, lanes::Clouds clouds) {
   if (traffic.kind == Kind::Cloud)
     row(traffic).clouds = lanes::kCloudsWords[static_cast<std::size_t>(clouds)];

@@ -14,6 +14,7 @@
 #include "icd/uri.hpp"
 #include "intake/desk.hpp"
 #include "lanes/clouds.hpp"
+#include "lanes/precision.hpp"
 
 namespace adit::forward {
 
@@ -52,6 +53,8 @@ class Record {
   void left_out(const Traffic& traffic, std::size_t points);
   /// What its clouds were taken for.
   void clouds_are(const Traffic& traffic, lanes::Clouds clouds);
+  /// How far the cloud was rounded that the Command Post took last.
+  void rounded_to(const Traffic& traffic, lanes::Precision precision);
   /// The Command Post took a message of `bytes` that stands for `updates` accepted ones.
   void forwarded(const Traffic& traffic, std::size_t updates, std::size_t bytes, int status, api::Time now);
   /// The Command Post did not take it; 0: no status came.

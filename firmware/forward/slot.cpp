@@ -1,6 +1,7 @@
 #include "forward/slot.hpp"
 
 #include <algorithm>
+#include <array>
 
 namespace adit::forward {
 namespace {
@@ -11,6 +12,8 @@ using Seconds = std::chrono::duration<double>;
 constexpr std::size_t kTelling = 64u << 10;
 /// So much at least, so that a link that was slow is found to be fast again.
 constexpr double kLeast = 4.0 * kTelling;
+/// What rounding makes of a cloud's bytes at each precision, as measured (tests/bench/README.md).
+constexpr std::array<double, 3> kOfExact{1, 0.65, 0.5};
 constexpr double kSmallest = 0.01;  // that packing is expected to make of a byte
 constexpr std::chrono::milliseconds kHeldBack{20};
 
@@ -29,9 +32,10 @@ loop::Duration Slot::lead() const {
   return std::min<loop::Duration>(packing_takes_, kLongestLead);
 }
 
-void Slot::packed(std::size_t points, std::size_t bytes) {
+void Slot::packed(std::size_t points, std::size_t bytes, lanes::Precision precision) {
   if (points < kTelling) return;
-  packed_to_ = std::clamp(static_cast<double>(bytes) / static_cast<double>(points), kSmallest, 1.0);
+  const double packed_to = static_cast<double>(bytes) / static_cast<double>(points);
+  packed_to_ = std::clamp(packed_to / kOfExact.at(static_cast<std::size_t>(precision)), kSmallest, 1.0);
 }
 
 /// What was held back says only that the link is at least so fast.
@@ -52,10 +56,14 @@ loop::Duration Slot::transfer(std::size_t bytes) const {
   return std::chrono::duration_cast<loop::Duration>(Seconds(static_cast<double>(bytes) / bytes_per_second_));
 }
 
-std::size_t Slot::points_within(loop::Duration spacing) const {
+lanes::PointsAt Slot::points_within(loop::Duration spacing) const {
   const double bytes = std::max(bytes_per_second_ * Seconds(spacing).count(), kLeast);
   constexpr double kMost = 1e15;
-  return static_cast<std::size_t>(std::min(bytes / packed_to_, kMost));
+  lanes::PointsAt points{};
+  std::ranges::transform(kOfExact, points.begin(), [&](double of_exact) {
+    return static_cast<std::size_t>(std::min(bytes / (packed_to_ * of_exact), kMost));
+  });
+  return points;
 }
 
 }  // namespace adit::forward

@@ -3,6 +3,7 @@
 #include <cstddef>
 #include <cstdint>
 
+#include "lanes/precision.hpp"
 #include "loop/loop.hpp"
 #include "uplink/connection.hpp"
 
@@ -20,8 +21,8 @@ class Slot {
 
   /// A map was packed, which took so long.
   void packing_took(loop::Duration took);
-  /// So many bytes of a cloud's points were packed to so many.
-  void packed(std::size_t points, std::size_t bytes);
+  /// So many bytes of a cloud's points were packed to so many, at that precision.
+  void packed(std::size_t points, std::size_t bytes, lanes::Precision precision);
   /// So many bytes left, of which the last were held back until then.
   void left(std::size_t bytes, const uplink::Sent& sent, loop::Instant last_byte_not_before);
 
@@ -33,13 +34,14 @@ class Slot {
   loop::Duration lead() const;
   /// How long so many bytes take to leave.
   loop::Duration transfer(std::size_t bytes) const;
-  /// How many bytes of points, not packed, leave within `spacing`.
-  std::size_t points_within(loop::Duration spacing) const;
+  /// How many bytes of points, not packed, leave within `spacing`, at each precision: by the last cloud, and
+  /// by what rounding makes of clouds.
+  lanes::PointsAt points_within(loop::Duration spacing) const;
 
  private:
   loop::Duration packing_takes_{0};
   double most_ = 1, bytes_per_second_ = 1;
-  double packed_to_ = 1;  // of a byte of a cloud
+  double packed_to_ = 1;  // of a byte of a cloud that is exact
 };
 
 }  // namespace adit::forward

@@ -32,9 +32,20 @@ std::optional<lanes::Ground> drawn_over(const lanes::Ground& under, const icd::M
   return read && left == 0 ? std::optional(drawing.finish()) : std::nullopt;
 }
 
+double unit_of(lanes::Precision precision) {
+  if (precision == lanes::Precision::Millimetre) return pack::kMillimetre;
+  return precision == lanes::Precision::EightMillimetres ? pack::kEightMillimetres : 0;
+}
+
+/// pack() says so by the origin.
+bool was_rounded(const icd::MapUpdate& before, const icd::MapUpdate& after) {
+  const auto* const cloud = std::get_if<icd::PointCloud2>(&after.msg);
+  return cloud != nullptr && cloud->origin != std::get<icd::PointCloud2>(before.msg).origin;
+}
+
 }  // namespace
 
-Packed packed(const lanes::WaitingMap& waiting, LeavingOut leaving_out, const pack::CloudForm& form) {
+Packed packed(const lanes::WaitingMap& waiting, LeavingOut leaving_out, bool arranges_clouds) {
   auto whole = whole_of(waiting);
   if (!whole) return {};
   Packed packed;
@@ -42,7 +53,9 @@ Packed packed(const lanes::WaitingMap& waiting, LeavingOut leaving_out, const pa
   if (packed.left_out.is_all) return packed;
   if (waiting.ground) packed.drawn = drawn_over(*waiting.ground, whole->data);
   if (!whole->is_grid()) packed.points_size = whole->data.raw_size;
-  icd::MapUpdate map = pack::pack(std::move(*whole), form);
+  icd::MapUpdate map =
+      pack::pack(std::move(*whole), {.is_arranged = arranges_clouds, .unit = unit_of(waiting.precision)});
+  if (was_rounded(waiting.map, map)) packed.precision = waiting.precision;
   packed.body = codec::write_map_update(map);
   if (is_to_be_stitched(waiting)) packed.stitched = std::move(map.data);
   if (packed.left_out.points > 0) packed.left_out.sent = std::move(map);

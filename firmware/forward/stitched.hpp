@@ -8,7 +8,7 @@
 #include "icd/status.hpp"
 #include "lanes/ground.hpp"
 #include "lanes/map_lane.hpp"
-#include "pack/pack.hpp"
+#include "lanes/precision.hpp"
 
 namespace adit::forward {
 
@@ -17,14 +17,15 @@ struct Packed {
   icd::ChunkedBytes body;  // empty: all of it is left out, or what it would be stitched of is damaged
   icd::MapData stitched;   // its cells, where they were in its parts alone
   LeftOut left_out;
+  lanes::Precision precision = lanes::Precision::Exact;  // of a cloud: what it was rounded to
   std::size_t points_size = 0;  // of a cloud: bytes of the points that are sent, before they were packed
   /// What it was packed over, with it; absent where that is not wanted, or its cells are damaged.
   std::optional<lanes::Ground> drawn;
 };
 
-/// CPU-bound in the size of the map: meant for a worker.
-Packed packed(const lanes::WaitingMap& waiting, LeavingOut leaving_out = {},
-              const pack::CloudForm& form = {});
+/// A cloud goes by waiting.precision, or exact where that cannot be held. CPU-bound in the size of the map:
+/// meant for a worker.
+Packed packed(const lanes::WaitingMap& waiting, LeavingOut leaving_out = {}, bool arranges_clouds = true);
 
 /// The map with its cells, which are put together of its parts where they are there
 /// alone, over what lies under them where they leave gaps. The error says

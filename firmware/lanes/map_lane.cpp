@@ -64,11 +64,21 @@ MapLane::Senders::iterator MapLane::next(Instant now) {
   return next;
 }
 
+Precision MapLane::precision_of(const Sender& sender, const MapQueue& queue) const {
+  if (sender.is_grid || !sender.name) return Precision::Exact;
+  const auto found = precisions_.find(*sender.name);
+  if (found == precisions_.end()) return Precision::Exact;
+  return found->second == Precision::Auto ? precision_for(queue.bytes(), holds_) : found->second;
+}
+
 std::optional<WaitingMap> MapLane::take(Instant now) {
   if (count_ == 0) return {};
-  Waiting& its = next(now)->second;
-  WaitingMap taken =
-      change(its.queue, [&](MapQueue& queue) { return queue.take(now, merge_bytes_, canvases_); });
+  const auto chosen = next(now);
+  Waiting& its = chosen->second;
+  const Precision precision = precision_of(chosen->first, its.queue);
+  const std::size_t most = std::min(merge_bytes_, holds_[static_cast<std::size_t>(precision)]);
+  WaitingMap taken = change(its.queue, [&](MapQueue& queue) { return queue.take(now, most, canvases_); });
+  taken.precision = precision;
   its.turn = turns_.served(its.turn);
   forget_those_that_are_gone();
   for (auto& [sender, waiting] : senders_) waiting.queue.step_forward();

@@ -11,6 +11,7 @@
 #include "lanes/canvases.hpp"
 #include "lanes/clouds.hpp"
 #include "lanes/map_queue.hpp"
+#include "lanes/precision.hpp"
 #include "lanes/sender.hpp"
 #include "lanes/successive.hpp"
 #include "lanes/turns.hpp"
@@ -54,6 +55,12 @@ class MapLane {
   void clouds_are(std::map<icd::RobotName, Clouds> clouds) { clouds_ = std::move(clouds); }
 
   Clouds clouds_of(const Sender& sender) const;
+
+  /// Of the robots that are not named, Precision::Exact. Holds for clouds that are taken from now on.
+  void precisions_are(std::map<icd::RobotName, Precision> precisions) { precisions_ = std::move(precisions); }
+  /// What the link carries of points in one message: no more are merged into one. Where a robot's precision
+  /// is Auto, the finest at which that is all of its clouds that wait.
+  void a_message_holds(const PointsAt& points) { holds_ = points; }
 
   /// The numbers of the updates whose maps `map` replaced; it stands for them from now on. No number is given
   /// twice.
@@ -118,9 +125,12 @@ class MapLane {
   auto change(MapQueue& queue, Change change);
   const MapQueue* queue_of(const Sender& sender) const;
   WaitingMap waiting(std::uint64_t number, icd::MapUpdate map, Instant now) const;
+  Precision precision_of(const Sender& sender, const MapQueue& queue) const;
 
   Senders senders_;
   std::map<icd::RobotName, Clouds> clouds_;
+  std::map<icd::RobotName, Precision> precisions_;
+  PointsAt holds_ = kAnyPoints;
   Turns turns_;
   Canvases canvases_;
   std::size_t merge_bytes_;

@@ -9,6 +9,7 @@
 #include "icd/map_update.hpp"
 #include "lanes/blame.hpp"
 #include "lanes/ground.hpp"
+#include "lanes/precision.hpp"
 
 namespace adit::lanes {
 
@@ -42,6 +43,8 @@ struct WaitingMap {
   bool is_whole = false;
   /// Of a cloud: it is known whether it has all points of the one before it.
   bool is_compared = false;
+  /// Of a cloud that was taken to be sent: how far it may be rounded; not Auto.
+  Precision precision = Precision::Exact;
   Trial trial{};  // where the Command Post's handler failed at it
   /// Only of a map that was set aside and is sent again by hand: the stamp that it had. By it the map is
   /// older than all that were never set aside, and is told from others that are sent again.

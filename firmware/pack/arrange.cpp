@@ -19,15 +19,6 @@ namespace {
 using Numbers = std::vector<std::uint32_t>;
 using Bytes = std::vector<std::uint8_t>;
 
-Box box_of(const Arranged& arranged) {
-  const CoordinateReader coordinates{arranged.cloud};
-  const std::size_t step = arranged.cloud.point_step;
-  Box box;
-  std::span<const std::uint8_t> points{arranged.points};
-  for (; points.size() >= step; points = points.subspan(step)) box.add(coordinates(points.first(step)));
-  return box;
-}
-
 void gather(std::span<const std::uint8_t> points, std::size_t step, std::span<const std::uint32_t> numbers,
             Bytes& to) {
   for (const std::uint32_t number : numbers) {
@@ -81,6 +72,15 @@ Arranged in_one_piece(const PointLayout& layout, const icd::MapData& data, std::
     return true;
   });
   return arranged;
+}
+
+Box box_of(const Arranged& arranged) {
+  const CoordinateReader coordinates{arranged.cloud};
+  const std::size_t step = arranged.cloud.point_step;
+  Box box;
+  std::span<const std::uint8_t> points{arranged.points};
+  for (; points.size() >= step; points = points.subspan(step)) box.add(coordinates(points.first(step)));
+  return box;
 }
 
 /// In blocks of one size.

@@ -14,10 +14,13 @@ namespace adit::pack {
 /// Of a point: its x, y and z in metres, in the frame that its cloud is in.
 using Coordinates = std::array<double, 3>;
 
+/// The offsets of x, y and z in a point. Requires them, as check(cloud) sees to it.
+std::array<std::size_t, 3> axes_of(const icd::PointCloud2& cloud);
+
 /// Reads the coordinates of a cloud's points, float32 or float64, in either byte order (ICD 6.3.2).
 class CoordinateReader {
  public:
-  /// Requires x, y and z, as check(cloud) sees to it.
+  /// As axes_of() requires.
   explicit CoordinateReader(const icd::PointCloud2& cloud);
 
   /// Of a point of point_step bytes.
@@ -39,8 +42,8 @@ class CoordinateReader {
     return std::bit_cast<Float>(is_bigendian_ ? std::byteswap(bits) : bits);
   }
 
-  std::array<std::size_t, 3> offsets_{};  // of x, y and z in a point
-  bool is_double_ = false, is_bigendian_;
+  std::array<std::size_t, 3> offsets_;
+  bool is_double_, is_bigendian_;
 };
 
 }  // namespace adit::pack

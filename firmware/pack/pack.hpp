@@ -9,10 +9,14 @@ namespace adit::pack {
 /// What is done to a cloud so that it becomes smaller.
 struct CloudForm {
   bool is_arranged = true;  // its padding is dropped, and its points are put in another order
+  double unit = 0;          // metres, to which coordinates are rounded where it is arranged; 0: they are not
 };
+/// Units that there are.
+inline constexpr double kMillimetre = 0x1p-10, kEightMillimetres = 0x1p-7;
 
-/// A map as small as it can be made without loss, ready to be written: a cloud loses the points that are not
-/// finite (ICD 6.3.2 takes clouds to be dense) and takes `form`, and what is not compressed yet is gzipped
+/// A map as small as it can be made without loss but what `form` allows, ready to be written: a cloud loses
+/// the points that are not finite (ICD 6.3.2 takes clouds to be dense) and takes `form`: it was rounded where
+/// its origin is another (rounding.hpp), and what is not compressed yet is gzipped
 /// where that is smaller; where it is not, points stay in their order. CPU-bound in the size of the map, and
 /// takes as much memory as that and half as much more for a cloud: meant for a worker.
 icd::MapUpdate pack(icd::MapUpdate map, const CloudForm& form = {});

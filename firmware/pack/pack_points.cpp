@@ -6,6 +6,7 @@
 #include "codec/gzip_whole.hpp"
 #include "pack/arrange.hpp"
 #include "pack/point_layout.hpp"
+#include "pack/rounding.hpp"
 
 namespace adit::pack {
 
@@ -14,10 +15,11 @@ void pack_points(icd::PointCloud2& cloud, icd::MapData& data, const CloudForm& f
   const auto tight = form.is_arranged ? without_padding(cloud) : std::nullopt;
   const PointLayout layout = tight ? *tight : unchanged(cloud);
   Arranged arranged = in_one_piece(layout, data, cloud.point_step);
+  if (tight && form.unit > 0) round_to(form.unit, arranged);
   if (tight) put_in_order(arranged);
   auto member = codec::gzip_whole(arranged.points, kPointsLevel, arranged.points.size() - 1);
-  if (!member && arranged.cloud.point_step == cloud.point_step) return;
-  if (!member) arranged = in_one_piece(layout, data, cloud.point_step);  // in their order
+  if (!member && layout.cloud == cloud) return;
+  if (!member) arranged = in_one_piece(layout, data, cloud.point_step);  // exact, and in their order
   cloud = std::move(arranged.cloud);
   data.raw_size = arranged.points.size();
   data.compression = member ? icd::Compression::Gzip : icd::Compression::None;

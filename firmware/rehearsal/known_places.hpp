@@ -19,11 +19,13 @@ class KnownPlaces {
   static constexpr double kEdge = 0.1;  // metres
   static constexpr std::size_t kMostBlocks = 1u << 20;
 
-  /// Points of `step` bytes, little-endian; `fields` tell where x, y and z are. Others than float32
+  /// Points of `step` bytes, little-endian, which are away from `origin`; `fields` tell where x, y and z are.
+  /// How a cloud is turned is not looked at, for adit-robots turns none. Others than float32
   /// (ICD 6.3.2) are passed over, and so is what is further away than 50 km or comes after kMostBlocks
   /// blocks.
   template <class Fields>
-  void add(const Fields& fields, std::size_t step, std::span<const std::uint8_t> points) {
+  void add(const Fields& fields, std::size_t step, std::span<const std::uint8_t> points,
+           const std::array<double, 3>& origin = {}) {
     std::array<std::size_t, 3> offsets{};
     std::size_t axis = 0;
     for (const std::string_view name : {"x", "y", "z"}) {
@@ -31,7 +33,7 @@ class KnownPlaces {
       if (field == fields.end() || field->datatype != kFloat32) return;
       offsets[axis++] = field->offset;
     }
-    for (; points.size() >= step; points = points.subspan(step)) include(points, offsets);
+    for (; points.size() >= step; points = points.subspan(step)) include(points, offsets, origin);
   }
 
   std::size_t count() const { return count_; }
@@ -41,12 +43,13 @@ class KnownPlaces {
   static constexpr double kMost = 500'000;  // places to either side
   static constexpr unsigned kBits = 18;     // of the number of a block of 4 x 4 x 4 places, on one axis
 
-  void include(std::span<const std::uint8_t> point, const std::array<std::size_t, 3>& offsets) {
+  void include(std::span<const std::uint8_t> point, const std::array<std::size_t, 3>& offsets,
+               const std::array<double, 3>& origin) {
     std::uint64_t block = 0, within = 0;
-    for (const std::size_t offset : offsets) {
+    for (std::size_t axis = 0; axis < offsets.size(); ++axis) {
       float metres = 0;
-      std::memcpy(&metres, point.data() + offset, sizeof metres);
-      const double at = std::floor(static_cast<double>(metres) / kEdge);
+      std::memcpy(&metres, point.data() + offsets[axis], sizeof metres);
+      const double at = std::floor((origin[axis] + static_cast<double>(metres)) / kEdge);
       if (!(std::abs(at) < kMost)) return;  // nor what is not a number
       const auto place = static_cast<std::uint64_t>(std::llround(at + kMost));
       block = block << kBits | place >> 2;

@@ -97,6 +97,12 @@ const Key kKeys[] = {
      "replaces those that wait. parts: each arrives. auto: the newer one replaces the one before it where it "
      "has each of its points.",
      choice<MEMBER(robots.back().clouds)>(lanes::kCloudsWords)},
+    {"robots[].precision",
+     "How far the coordinates of that robot's clouds may be rounded, so that these are smaller. exact: not "
+     "at "
+     "all. 1mm, 8mm: to steps of that size; a point moves by 1.3 steps at most. auto: as far as what waits "
+     "forces it. Clouds stay exact where command_post.arrange_clouds is false.",
+     choice<MEMBER(robots.back().precision)>(lanes::kPrecisionWords)},
     {"robots[].voxel_metres",
      "Leaves out points of that robot's clouds where the Command Post has taken one of the same voxel, a "
      "cube "

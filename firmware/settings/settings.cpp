@@ -78,6 +78,14 @@ std::map<icd::RobotName, lanes::Clouds> clouds_of(const std::vector<Robot>& robo
   return clouds;
 }
 
+std::map<icd::RobotName, lanes::Precision> precisions_of(const std::vector<Robot>& robots) {
+  std::map<icd::RobotName, lanes::Precision> precisions;
+  for (const Robot& robot : robots) {
+    if (robot.precision != lanes::Precision::Exact) precisions.emplace(name_of(robot), robot.precision);
+  }
+  return precisions;
+}
+
 std::map<icd::RobotName, double> voxels_of(const std::vector<Robot>& robots) {
   std::map<icd::RobotName, double> voxels;
   for (const Robot& robot : robots) {

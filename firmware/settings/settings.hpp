@@ -14,6 +14,7 @@
 #include "icd/robot_name.hpp"
 #include "icd/rules.hpp"
 #include "lanes/clouds.hpp"
+#include "lanes/precision.hpp"
 
 namespace adit::settings {
 
@@ -87,6 +88,7 @@ struct Robot {
   std::string name;   // icd::RobotName
   std::string alias;  // what it calls itself, goes on under `name`; "": nothing else
   lanes::Clouds clouds = lanes::Clouds::Auto;
+  lanes::Precision precision = lanes::Precision::Exact;  // of its clouds
   double voxel_metres = 0;  // of its clouds one point in each voxel of that edge is enough; 0: all are sent
 };
 
@@ -140,6 +142,8 @@ Settings in_use(Settings settings);
 
 /// What the clouds of each robot that is named are; names as parse() takes them.
 std::map<icd::RobotName, lanes::Clouds> clouds_of(const std::vector<Robot>& robots);
+/// The precision of each robot's clouds that is not exact; names as parse() takes them.
+std::map<icd::RobotName, lanes::Precision> precisions_of(const std::vector<Robot>& robots);
 /// The voxel_metres of each robot that has any; names as parse() takes them.
 std::map<icd::RobotName, double> voxels_of(const std::vector<Robot>& robots);
 

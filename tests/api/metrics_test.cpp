@@ -50,6 +50,7 @@ TEST(Metrics, CarryWhatTheViewSays) {
   clouds.behind_since = all.view.now - 33;
   clouds.no_room = 1110;
   clouds.clouds = "whole";
+  clouds.precision = "8mm";
   clouds.points_left_out = 7000;
   all.view.activities = {clouds};
   all.view.sent_mbit = 8;
@@ -75,6 +76,7 @@ TEST(Metrics, CarryWhatTheViewSays) {
                              R"(adit_updates_behind_seconds{kind="cloud",robot="ugv1"} 33)",
                              R"(adit_updates_no_room_total{kind="cloud",robot="ugv1"} 1110)",
                              R"(adit_clouds_whole{robot="ugv1"} 1)",
+                             R"(adit_clouds_rounded_metres{robot="ugv1"} 0.008)",
                              R"(adit_points_left_out_total{robot="ugv1"} 7000)",
                              "adit_link_rate_bytes_per_second 1e+06",
                              "adit_link_budget_bytes_per_second 2500000",

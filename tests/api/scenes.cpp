@@ -33,7 +33,8 @@ ActivityRow traffic(std::string kind, std::string robot, Time now, double since,
           .bytes_sent = bytes,
           .last_status = 200,
           .last_sentence = {},
-          .clouds = {}};
+          .clouds = {},
+          .precision = {}};
 }
 
 ReportRow report(std::int64_t number, std::string type, Time received, std::string state, int status,

@@ -12,6 +12,7 @@ TEST(Record, TellsWhatBecameOfEachRobotsMaps) {
   Record record([&] { ++changes; });
   record.accepted(kCloudOfR1, 1000, 10.0);
   record.accepted(kCloudOfR1, 1100, 11.0);
+  record.rounded_to(kCloudOfR1, lanes::Precision::EightMillimetres);
   record.forwarded(kCloudOfR1, 2, 900, 200, 12.0);
   record.accepted({Kind::Grid, "r1"}, 5, 13.0);
   record.not_taken({Kind::Grid, "r1"}, NotTaken::Throttled, 429, "too frequent");
@@ -30,6 +31,8 @@ TEST(Record, TellsWhatBecameOfEachRobotsMaps) {
   EXPECT_EQ(cloud.bytes_received, 1100u);
   EXPECT_EQ(cloud.bytes_sent, 900u);
   EXPECT_EQ(cloud.last_status, 200);
+  EXPECT_EQ(cloud.precision, "8mm");
+  EXPECT_EQ(grid.precision, "");
   EXPECT_EQ(changes, 5);
 }
 

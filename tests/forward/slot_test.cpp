@@ -7,6 +7,7 @@ namespace {
 
 using std::chrono::milliseconds;
 
+using lanes::Precision;
 constexpr loop::Instant kBegin{std::chrono::seconds(100)};
 constexpr std::size_t kMegabyte = 1'000'000;
 
@@ -14,46 +15,61 @@ uplink::Sent sent_in(milliseconds took) {
   return {.first = kBegin, .last = kBegin + took};
 }
 
+/// Points that are exact, in so many seconds.
+std::size_t exact_in(const Slot& slot, int seconds) {
+  return slot.points_within(std::chrono::seconds(seconds))[0];
+}
+
+TEST(Slot, HoldsMoreOfCloudsThatAreRounded) {
+  Slot slot(10 * kMegabyte);
+  const lanes::PointsAt at_first = slot.points_within(std::chrono::seconds(1));
+  EXPECT_LT(at_first[0], at_first[1]);
+  EXPECT_LT(at_first[1], at_first[2]);
+  slot.packed(4 * kMegabyte, kMegabyte, Precision::EightMillimetres);
+  EXPECT_EQ(slot.points_within(std::chrono::seconds(1))[2], 40 * kMegabyte);
+  EXPECT_LT(exact_in(slot, 1), 40 * kMegabyte) << "exact, they would have been larger";
+}
+
 TEST(Slot, HoldsAtFirstWhatMapsMayUseOfTheLink) {
   const Slot slot(10 * kMegabyte);
-  EXPECT_EQ(slot.points_within(std::chrono::seconds(1)), 10 * kMegabyte);
-  EXPECT_EQ(slot.points_within(std::chrono::seconds(2)), 20 * kMegabyte);
+  EXPECT_EQ(exact_in(slot, 1), 10 * kMegabyte);
+  EXPECT_EQ(exact_in(slot, 2), 20 * kMegabyte);
   EXPECT_EQ(slot.transfer(5 * kMegabyte), milliseconds(500));
 }
 
 TEST(Slot, HoldsMoreOfCloudsThatArePackedSmaller) {
   Slot slot(10 * kMegabyte);
-  slot.packed(4 * kMegabyte, kMegabyte);
-  EXPECT_EQ(slot.points_within(std::chrono::seconds(1)), 40 * kMegabyte);
-  slot.packed(4 * kMegabyte, 5 * kMegabyte);
-  EXPECT_EQ(slot.points_within(std::chrono::seconds(1)), 10 * kMegabyte);
+  slot.packed(4 * kMegabyte, kMegabyte, Precision::Exact);
+  EXPECT_EQ(exact_in(slot, 1), 40 * kMegabyte);
+  slot.packed(4 * kMegabyte, 5 * kMegabyte, Precision::Exact);
+  EXPECT_EQ(exact_in(slot, 1), 10 * kMegabyte);
 }
 
 TEST(Slot, GoesByWhatTheLinkShows) {
   Slot slot(10 * kMegabyte);
   slot.left(4 * kMegabyte, sent_in(std::chrono::seconds(1)), kBegin);
-  EXPECT_EQ(slot.points_within(std::chrono::seconds(1)), 4 * kMegabyte);
+  EXPECT_EQ(exact_in(slot, 1), 4 * kMegabyte);
   slot.left(8 * kMegabyte, sent_in(std::chrono::seconds(1)), kBegin);
-  EXPECT_EQ(slot.points_within(std::chrono::seconds(1)), 8 * kMegabyte);
+  EXPECT_EQ(exact_in(slot, 1), 8 * kMegabyte);
   slot.left(80 * kMegabyte, sent_in(std::chrono::seconds(1)), kBegin);
-  EXPECT_EQ(slot.points_within(std::chrono::seconds(1)), 10 * kMegabyte) << "no more than maps may use";
+  EXPECT_EQ(exact_in(slot, 1), 10 * kMegabyte) << "no more than maps may use";
 }
 
 TEST(Slot, HoldsLessAtOnceWhereTheLinkTakesLess) {
   Slot slot(10 * kMegabyte);
   slot.link_delivers(0);  // not known
-  EXPECT_EQ(slot.points_within(std::chrono::seconds(1)), 10 * kMegabyte);
+  EXPECT_EQ(exact_in(slot, 1), 10 * kMegabyte);
   slot.link_delivers(6 * kMegabyte);
   slot.link_delivers(9 * kMegabyte);
-  EXPECT_EQ(slot.points_within(std::chrono::seconds(1)), 6 * kMegabyte) << "until a map has left faster";
+  EXPECT_EQ(exact_in(slot, 1), 6 * kMegabyte) << "until a map has left faster";
   slot.left(6 * kMegabyte, sent_in(milliseconds(600)), {});
-  EXPECT_EQ(slot.points_within(std::chrono::seconds(1)), 10 * kMegabyte);
+  EXPECT_EQ(exact_in(slot, 1), 10 * kMegabyte);
 }
 
 TEST(Slot, TakesNoLinkForSlowThatHadToWait) {
   Slot slot(10 * kMegabyte);
   slot.left(kMegabyte, sent_in(std::chrono::seconds(1)), kBegin + std::chrono::seconds(1));
-  EXPECT_EQ(slot.points_within(std::chrono::seconds(1)), 10 * kMegabyte);
+  EXPECT_EQ(exact_in(slot, 1), 10 * kMegabyte);
 }
 
 TEST(Slot, LetsPackingBeginInTimeForTheLongestOfTheLastFew) {
@@ -76,10 +92,10 @@ TEST(Slot, LetsPackingBeginNoEarlierThanTheLongestLead) {
 TEST(Slot, FindsASlowLinkFastAgain) {
   Slot slot(10 * kMegabyte);
   slot.left(kMegabyte, sent_in(std::chrono::seconds(1000)), kBegin);
-  const std::size_t few = slot.points_within(std::chrono::seconds(1));
+  const std::size_t few = exact_in(slot, 1);
   EXPECT_LT(few, kMegabyte);
   slot.left(few, sent_in(milliseconds(1)), kBegin);
-  EXPECT_EQ(slot.points_within(std::chrono::seconds(1)), 10 * kMegabyte);
+  EXPECT_EQ(exact_in(slot, 1), 10 * kMegabyte);
 }
 
 }  // namespace

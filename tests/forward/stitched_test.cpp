@@ -4,6 +4,7 @@
 
 #include "codec/gzip.hpp"
 #include "codec/map_pieces.hpp"
+#include "forward/clouds.hpp"
 
 namespace adit::forward {
 namespace {
@@ -93,6 +94,33 @@ TEST(StitchedMap, IsNotDrawnWhereItIsDamaged) {
   const Packed map = packed(taken_of({damaged}));
   EXPECT_FALSE(map.body.empty()) << "it goes as it came";
   EXPECT_FALSE(map.drawn);
+}
+
+/// A cloud of `points` from `begin` metres on, as it was taken to be sent.
+lanes::WaitingMap cloud_at(float begin, int points, lanes::Precision precision) {
+  std::vector<float> xs;
+  for (int i = 0; i < points; ++i) xs.push_back(begin + 0.0137F * static_cast<float>(i * i % 997));
+  return {.map = cloud_along_x("r1", xs), .accepted = {}, .updates = {1}, .precision = precision};
+}
+
+TEST(PackedCloud, SaysHowFarItWasRounded) {
+  using lanes::Precision;
+  for (const Precision each : {Precision::Exact, Precision::Millimetre, Precision::EightMillimetres}) {
+    const Packed map = packed(cloud_at(5, 2000, each));
+    EXPECT_EQ(map.precision, each);
+    EXPECT_EQ(map.points_size, 2000 * 12);
+  }
+}
+
+TEST(PackedCloud, IsExactWhereItCannotBeRounded) {
+  const auto precision_of = [](const lanes::WaitingMap& waiting, bool arranges) {
+    return packed(waiting, {}, arranges).precision;
+  };
+  using lanes::Precision;
+  EXPECT_EQ(precision_of(cloud_at(5, 2000, Precision::Millimetre), /*arranges=*/false), Precision::Exact);
+  EXPECT_EQ(precision_of(cloud_at(9000, 2000, Precision::Millimetre), /*arranges=*/true), Precision::Exact);
+  EXPECT_EQ(precision_of(cloud_at(5, 2, Precision::Millimetre), /*arranges=*/true), Precision::Exact)
+      << "which gzip does not make smaller";
 }
 
 }  // namespace

@@ -195,7 +195,7 @@ test("gives all settings as a file, and takes one that is checked and shown firs
   assert.match(JSON.stringify(await review(page)), /robots\[ugv1\]/);
   await page.getByRole("button", { name: "Apply", exact: true }).click();
   await page.locator("#step-file").getByText(/Applied\./).waitFor();
-  assert.deepEqual((await ask("/adit/settings")).said.settings.robots, [{ name: "ugv1", alias: "", clouds: "auto", voxel_metres: 0 }]);
+  assert.deepEqual((await ask("/adit/settings")).said.settings.robots, [{ name: "ugv1", alias: "", clouds: "auto", precision: "exact", voxel_metres: 0 }]);
   await step(page, "Robots").getByText("1 named").waitFor();
 });
 

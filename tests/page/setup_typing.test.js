@@ -36,7 +36,7 @@ test("checks the names of robots as they are typed", async (t) => {
   await review(page);
   await page.getByRole("button", { name: "Apply", exact: true }).click();
   await hears(page, /Applied\./);
-  assert.deepEqual((await ask("/adit/settings")).said.settings.robots, [{ name: "ugv1", alias: "", clouds: "auto", voxel_metres: 0 }, { name: "uav1", alias: "drone-1", clouds: "auto", voxel_metres: 0 }]);
+  assert.deepEqual((await ask("/adit/settings")).said.settings.robots, [{ name: "ugv1", alias: "", clouds: "auto", precision: "exact", voxel_metres: 0 }, { name: "uav1", alias: "drone-1", clouds: "auto", precision: "exact", voxel_metres: 0 }]);
   await step(page, "Robots").getByText("2 named").waitFor();
   assert.deepEqual(complaints(page), []);
 });

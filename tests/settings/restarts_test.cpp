@@ -57,6 +57,8 @@ const RestartsCase kRestartsCases[] = {
     {"robots[].name", [](Settings& s) { s.robots.front().name = "r9"; }, kNothing},
     {"robots[].alias", [](Settings& s) { s.robots.front().alias = "other"; }, kNothing},
     {"robots[].clouds", [](Settings& s) { s.robots.front().clouds = lanes::Clouds::Whole; }, kNothing},
+    {"robots[].precision", [](Settings& s) { s.robots.front().precision = lanes::Precision::Auto; },
+     kNothing},
     {"robots[].voxel_metres", [](Settings& s) { s.robots.front().voxel_metres = 0.1; }, kNothing},
     {"network.confirm_within_ms", [](Settings& s) { s.network.confirm_within = 9s; }, kNothing},
     {"network.allow_overlap", [](Settings& s) { s.network.allow_overlap = true; }, kNothing},

@@ -55,14 +55,18 @@ Queues queues(Random random) {
 }
 
 /// In some worlds points of one voxel are left out of the first robots' clouds; so small are voxels that each
-/// point of another serial has its own.
+/// point of another serial has its own. In some, the first robots' clouds are rounded.
 std::string robots(Random random) {
   constexpr int kNamed = 4;
-  if (!random.chance(0.3)) return "";
+  const bool leaves_out = random.chance(0.3), rounds = random.chance(0.3);
+  if (!leaves_out && !rounds) return "";
   std::string list;
   for (int i = 1; i <= kNamed; ++i) {
     if (!list.empty()) list += ", ";
-    list += R"({"name": "R)" + std::to_string(i) + R"(", "voxel_metres": 0.01})";
+    list += R"({"name": "R)" + std::to_string(i) + '"';
+    if (leaves_out) list += R"(, "voxel_metres": 0.01)";
+    if (rounds) list += R"(, "precision": "1mm")";
+    list += '}';
   }
   return R"(, "robots": [)" + list + "]";
 }

@@ -160,6 +160,13 @@ void add_copies(std::int64_t serial, const Copies& copies, std::vector<Item>& it
   }
 }
 
+/// No cloud that is posted has one; no cloud is turned.
+std::array<float, 3> origin_of(const Json& msg) {
+  if (!msg.contains("origin")) return {};
+  const Json& at = msg["origin"].at("position");
+  return {at.at("x").get<float>(), at.at("y").get<float>(), at.at("z").get<float>()};
+}
+
 /// In the order of their serials.
 std::vector<Item> cloud_items(const Json& msg) {
   const std::string data = data_in(msg);
@@ -173,16 +180,18 @@ std::vector<Item> cloud_items(const Json& msg) {
   };
   const std::size_t x = offset_of("x"), y = offset_of("y"), z = offset_of("z");
   const std::size_t intensity = offset_of("intensity");
+  const auto origin = origin_of(msg);
   std::map<std::int64_t, Copies> clouds;
   bool strange = data.size() % step != 0;
   for (std::size_t at = 0; at + step <= data.size(); at += step) {
     const auto number = static_cast<std::int64_t>(get(data, at + intensity, big_endian));
     const std::int64_t serial = number / kPointsApart, index = number % kPointsApart;
     const auto place = place_of(serial, index);
-    const auto is_at = [&](std::size_t offset, float where) {
-      return std::abs(get(data, at + offset, big_endian) - where) <= kPacking;
+    const auto is_at = [&](std::size_t offset, float from, float where) {
+      return std::abs(get(data, at + offset, big_endian) + from - where) <= kPacking;
     };
-    strange = strange || !is_at(x, place[0]) || !is_at(y, place[1]) || !is_at(z, place[2]);
+    strange = strange || !is_at(x, origin[0], place[0]) || !is_at(y, origin[1], place[1]) ||
+              !is_at(z, origin[2], place[2]);
     ++clouds[serial][index];
   }
   std::vector<Item> items;

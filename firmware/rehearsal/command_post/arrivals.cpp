@@ -80,7 +80,8 @@ void Arrivals::note(const MapMessage& map, Moment now) {
   }
   const std::span data(reinterpret_cast<const std::uint8_t*>(map.data.data()), map.data.size());
   if (const auto* const cloud = std::get_if<Cloud>(&map.msg)) {
-    return here->places.add(cloud->fields, cloud->point_step, data);
+    const Point from = cloud->origin.value_or(Pose{}).position;
+    return here->places.add(cloud->fields, cloud->point_step, data, {from.x, from.y, from.z});
   }
   const Point& corner = grid->origin.position;
   here->cells.add(grid->resolution, corner.x, corner.y, grid->width, data);

@@ -1,0 +1,29 @@
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <string_view>
+
+namespace adit::lanes {
+
+/// How far the coordinates of a robot's clouds may be rounded, so that a message holds more of them.
+enum class Precision : std::uint8_t {
+  Exact,
+  Millimetre,        // within 1.3 mm
+  EightMillimetres,  // within 11 mm
+  Auto,              // as far as what waits forces it
+};
+inline constexpr std::string_view kPrecisionWords[] = {"exact", "1mm", "8mm", "auto"};
+
+/// Bytes of points, as they came, that a message holds at each precision but Auto.
+using PointsAt = std::array<std::size_t, 3>;
+inline constexpr PointsAt kAnyPoints{SIZE_MAX, SIZE_MAX, SIZE_MAX};
+
+/// The finest precision at which one message holds all that waits; where none does, the coarsest.
+constexpr Precision precision_for(std::size_t waiting, const PointsAt& holds) {
+  if (waiting <= holds[0]) return Precision::Exact;
+  return waiting <= holds[1] ? Precision::Millimetre : Precision::EightMillimetres;
+}
+
+}  // namespace adit::lanes

@@ -16,6 +16,7 @@ namespace {
 struct Freed {
   void operator()(std::uint8_t* memory) const { std::free(memory); }
   void operator()(libdeflate_compressor* compressor) const { libdeflate_free_compressor(compressor); }
+  void operator()(libdeflate_decompressor* decompressor) const { libdeflate_free_decompressor(decompressor); }
 };
 using Memory = std::unique_ptr<std::uint8_t, Freed>;
 
@@ -50,6 +51,20 @@ std::optional<icd::ChunkedBytes> gzip_whole(std::span<const std::uint8_t> bytes,
   icd::ChunkedBytes member;
   member.append(owner, {owner.get(), size});
   return member;
+}
+
+std::optional<std::vector<std::uint8_t>> gunzip_whole(const icd::ChunkedBytes& member, std::size_t size) {
+  const std::unique_ptr<libdeflate_decompressor, Freed> decompressor(libdeflate_alloc_decompressor());
+  if (!decompressor) throw std::bad_alloc();
+  std::vector<std::uint8_t> together, bytes(size);
+  if (member.chunks().size() > 1) together = member.to_vector();
+  const std::span<const std::uint8_t> all =
+      member.chunks().size() == 1 ? *member.chunks().front() : std::span<const std::uint8_t>(together);
+  std::size_t read = 0, made = 0;
+  const libdeflate_result result = libdeflate_gzip_decompress_ex(decompressor.get(), all.data(), all.size(),
+                                                                 bytes.data(), bytes.size(), &read, &made);
+  if (result != LIBDEFLATE_SUCCESS || read != all.size() || made != size) return std::nullopt;
+  return bytes;
 }
 
 }  // namespace adit::codec

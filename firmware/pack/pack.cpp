@@ -2,13 +2,12 @@
 
 #include <algorithm>
 #include <array>
-#include <optional>
 #include <span>
 #include <string_view>
 #include <utility>
 #include <variant>
 
-#include "codec/gzip.hpp"
+#include "pack/pack_cells.hpp"
 #include "pack/pack_points.hpp"
 #include "pack/points.hpp"
 
@@ -48,18 +47,6 @@ class FiniteCheck {
   std::array<Exponent, 3> exponents_;
 };
 
-icd::MapData compressed(icd::MapData data, std::optional<icd::ChunkedBytes> member) {
-  if (!member || member->size() >= data.bytes.size()) return data;
-  data.bytes = *std::move(member);
-  data.compression = icd::Compression::Gzip;
-  return data;
-}
-
-icd::MapData compressed_cells(icd::MapData data) {
-  icd::ChunkedBytes member = codec::gzip(data.bytes, codec::GzipStrategy::Runs);
-  return compressed(std::move(data), std::move(member));
-}
-
 }  // namespace
 
 icd::MapData without_invalid_points(const icd::PointCloud2& cloud, icd::MapData data) {
@@ -71,14 +58,14 @@ icd::MapData without_invalid_points(const icd::PointCloud2& cloud, icd::MapData 
 }
 
 icd::MapUpdate pack(icd::MapUpdate map, const CloudForm& form) {
-  if (map.data.compression != icd::Compression::None) return map;
-  auto* const cloud = std::get_if<icd::PointCloud2>(&map.msg);
-  if (cloud == nullptr) {
-    map.data = compressed_cells(std::move(map.data));
+  if (const auto* const grid = std::get_if<icd::OccupancyGrid>(&map.msg)) {
+    map.data = pack_cells(*grid, std::move(map.data));
     return map;
   }
-  map.data = without_invalid_points(*cloud, std::move(map.data));
-  pack_points(*cloud, map.data, form);
+  if (map.data.compression != icd::Compression::None) return map;
+  auto& cloud = std::get<icd::PointCloud2>(map.msg);
+  map.data = without_invalid_points(cloud, std::move(map.data));
+  pack_points(cloud, map.data, form);
   return map;
 }
 

@@ -16,8 +16,9 @@ inline constexpr double kMillimetre = 0x1p-10, kEightMillimetres = 0x1p-7;
 
 /// A map as small as it can be made without loss but what `form` allows, ready to be written: a cloud loses
 /// the points that are not finite (ICD 6.3.2 takes clouds to be dense) and takes `form`: it was rounded where
-/// its origin is another (rounding.hpp), and what is not compressed yet is gzipped
-/// where that is smaller; where it is not, points stay in their order. CPU-bound in the size of the map, and
+/// its origin is another (rounding.hpp), and if it is not compressed yet it is gzipped
+/// where that is smaller; where it is not, points stay in their order. A grid is compressed again where that
+/// is smaller (pack_cells.hpp). CPU-bound in the size of the map, and
 /// takes as much memory as that and half as much more for a cloud: meant for a worker.
 icd::MapUpdate pack(icd::MapUpdate map, const CloudForm& form = {});
 

@@ -61,5 +61,51 @@ TEST(GzipWhole, IsSmallerAtAHigherLevel) {
   EXPECT_LT(gzip_whole(bytes, kSmallestLevel, kEnough)->size(), gzip_whole(bytes, 1, kEnough)->size());
 }
 
+icd::ChunkedBytes in_pieces(const Bytes& bytes, std::size_t piece) {
+  icd::ChunkedBytes pieces;
+  for (std::size_t at = 0; at < bytes.size(); at += piece) {
+    const auto part = std::span(bytes).subspan(at, std::min(piece, bytes.size() - at));
+    pieces.append(Bytes(part.begin(), part.end()));
+  }
+  return pieces;
+}
+
+TEST(GunzipWhole, GivesBackWhatWasCompressedHoweverItIsCut) {
+  for (const std::size_t size : {0, 1, 100, 300'000}) {
+    const Bytes bytes = mixed(size), member = test::compressed(bytes);
+    for (const std::size_t piece : {7, 1000, 65'536}) {
+      EXPECT_EQ(gunzip_whole(in_pieces(member, piece), size), bytes) << size;
+    }
+  }
+}
+
+TEST(GunzipWhole, TakesNoOtherSize) {
+  const Bytes bytes = mixed(1000);
+  const icd::ChunkedBytes member(test::compressed(bytes));
+  for (const std::size_t size : {0, 1, 999, 1001, 100'000}) EXPECT_FALSE(gunzip_whole(member, size)) << size;
+}
+
+TEST(GunzipWhole, TakesNothingThatIsCutShortOrGoesOn) {
+  const Bytes bytes = mixed(300), member = test::compressed(bytes);
+  for (std::size_t size = 0; size < member.size(); ++size) {
+    EXPECT_FALSE(gunzip_whole(icd::ChunkedBytes(std::span(member).first(size)), bytes.size())) << size;
+  }
+  for (const Bytes& more : {Bytes{0}, Bytes{1, 2, 3}, member}) {
+    Bytes both = member;
+    both.insert(both.end(), more.begin(), more.end());
+    EXPECT_FALSE(gunzip_whole(icd::ChunkedBytes(both), bytes.size()));
+  }
+}
+
+TEST(GunzipWhole, TakesNothingThatIsDamaged) {
+  const Bytes bytes = mixed(300), member = test::compressed(bytes);
+  for (std::size_t i = 10; i < member.size(); ++i) {  // its head says what does not matter
+    Bytes damaged = member;
+    damaged[i] ^= 0x10;
+    const auto inflated = gunzip_whole(icd::ChunkedBytes(damaged), bytes.size());
+    EXPECT_TRUE(!inflated || *inflated == bytes) << i;
+  }
+}
+
 }  // namespace
 }  // namespace adit::codec

@@ -1,10 +1,12 @@
-// A map's data under gzip.
+// A map's data under gzip; what packs it.
 #include "codec/gzip.hpp"
 
+#include <algorithm>
 #include <string>
 #include <vector>
 
 #include "codec/gzip_whole.hpp"
+#include "pack/grid_gzipper.hpp"
 #include "target.hpp"
 
 namespace adit::fuzz {
@@ -37,12 +39,23 @@ void try_gzip(Input text) {
   require(said.has_value() == said_of_pieces.has_value());
   if (said) require(*said == *said_of_pieces);
   if (!said) require(said.error().sentence.starts_with("msg.data"));
+  const auto at_once =
+      codec::gunzip_whole(cut, said ? said->size() : std::min(codec::claimed_size(cut), kMostInflated));
+  if (said && at_once) require(std::ranges::equal(*at_once, bytes_of(*said)));
   // Nothing may follow a member: that hangs a Command Post.
   if (said) require(!inflated(icd::ChunkedBytes(bytes_of(std::string(text) + "x"))));
 
   for (const auto strategy : {codec::GzipStrategy::Default, codec::GzipStrategy::Runs}) {
     const auto member = codec::gzip(icd::ChunkedBytes(bytes_of(text)), strategy);
     require(inflated(member) == std::string(text));
+  }
+  for (const std::size_t width : {std::size_t{1}, piece, text.size() / 7 + 1}) {
+    pack::GridGzipper gzipper(width);
+    in_pieces(text, piece, [&](Input each) {
+      gzipper.feed(bytes_of(each));
+      return true;
+    });
+    require(inflated(gzipper.finish()) == std::string(text));
   }
   const auto whole = bytes_of(text);
   for (const int level : {codec::kFastestLevel, 6, codec::kSmallestLevel}) {

@@ -109,22 +109,27 @@ TEST(Pack, MakesAnEmptyCloudOfOneWithoutAnyValidPoint) {
   EXPECT_EQ(packed.data.compression, icd::Compression::None);
 }
 
-TEST(Pack, LeavesWhatIsCompressedAsItIs) {
-  icd::MapUpdate grid{{}, icd::OccupancyGrid{}, {}};
-  grid.data = {icd::ChunkedBytes{Bytes{1, 2, 3}}, icd::Compression::Gzip, 4800};
-  EXPECT_EQ(pack(grid), grid);
+TEST(Pack, LeavesACloudThatIsCompressedAsItIs) {
   auto cloud = cloud_update(kLayouts[0], Bytes{1, 2, 3});
   cloud.data.compression = icd::Compression::Gzip;
   EXPECT_EQ(pack(cloud), cloud);
 }
 
-TEST(Pack, GzipsAGridThatIsNot) {
-  icd::MapUpdate grid{{}, icd::OccupancyGrid{}, {}};
+TEST(Pack, GzipsAGridHoweverItIsKept) {
+  icd::OccupancyGrid info;
+  info.width = 80;
+  info.height = 60;
   const Bytes cells(4800, icd::kUnknownCell);
-  grid.data = {icd::ChunkedBytes{cells}, icd::Compression::None, cells.size()};
-  const auto packed = pack(grid);
-  EXPECT_EQ(packed.data.compression, icd::Compression::Gzip);
-  EXPECT_EQ(inflated(packed.data), cells);
+  const icd::MapUpdate grid{{}, info, {icd::ChunkedBytes{cells}, icd::Compression::None, cells.size()}};
+  icd::MapUpdate kept = grid;
+  kept.data.bytes = codec::gzip(kept.data.bytes, codec::GzipStrategy::Runs);
+  kept.data.compression = icd::Compression::Gzip;
+  for (const icd::MapUpdate& each : {grid, kept}) {
+    const auto packed = pack(each);
+    EXPECT_EQ(packed.data.compression, icd::Compression::Gzip);
+    EXPECT_LE(packed.data.bytes.size(), kept.data.bytes.size());
+    EXPECT_EQ(inflated(packed.data), cells);
+  }
 }
 
 }  // namespace

@@ -1,0 +1,24 @@
+#pragma once
+
+#include <expected>
+#include <string>
+#include <vector>
+
+#include "icd/map_update.hpp"
+
+namespace adit::bench {
+
+/// A map as its robot sends it, not compressed.
+struct SizedMap {
+  std::string name;
+  icd::MapUpdate update;
+};
+
+/// The recorded maps in `folder`, none where there is no such folder. A .pgm without a .yaml is a cost map,
+/// whose greys are costs.
+std::expected<std::vector<SizedMap>, std::string> recorded_maps(const std::string& folder);
+
+/// Grids of all kinds. `is_short`: without the large ones.
+std::vector<SizedMap> generated_grids(bool is_short);
+
+}  // namespace adit::bench

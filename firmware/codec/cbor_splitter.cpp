@@ -43,6 +43,9 @@ icd::Checked<Value> CborSplitter::finish() {
 
 icd::Checked<std::size_t> CborSplitter::head(std::string_view in) {
   if (whole_) return std::unexpected(fault_at(at_, "bytes after the document"));
+  if (elements() && head_.empty() && nests_.size() == elements_of_) {
+    if (auto taken = plain_elements(in); !taken || *taken > 0) return taken;
+  }
   if (head_.empty()) head_at_ = at_;
   const std::size_t taken = head_.next(in);
   if (!head_.complete()) return taken;

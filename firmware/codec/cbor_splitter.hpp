@@ -56,6 +56,7 @@ class CborSplitter final : public Splitter {
 
   icd::Checked<void> divert();
   icd::Checked<void> element();
+  icd::Checked<std::size_t> plain_elements(std::string_view in);
   bool elements() const { return elements_of_ > 0; }
   void keep(std::string_view raw) {
     if (!elements()) rest_ += raw;

@@ -1,7 +1,9 @@
 // The CBOR splitter's strings, and the values that it diverts from the rest: the map's data.
 #include <algorithm>
+#include <limits>
 
 #include "codec/cbor_splitter.hpp"
+#include "codec/plain_elements.hpp"
 #include "icd/sentence.hpp"
 
 namespace adit::codec {
@@ -67,6 +69,23 @@ icd::Checked<void> CborSplitter::element() {
   }
   if (major == Major::Tag) return {};
   return std::unexpected(data_.bad_element(element_kind(head_)));
+}
+
+/// Those that stand there as every client writes them. The last one of a length that was told is not among
+/// them: with it the array ends.
+icd::Checked<std::size_t> CborSplitter::plain_elements(std::string_view in) {
+  std::string_view left = in;
+  Nest& list = nests_.back();
+  while (list.indefinite || list.left > 1) {
+    constexpr auto kAny = std::numeric_limits<std::uint64_t>::max();
+    const auto elements = take_plain_cbor_elements(left, list.indefinite ? kAny : list.left - 1);
+    if (!elements) break;
+    if (auto taken = data_.append_elements(elements->value, elements->count); !taken) {
+      return std::unexpected(taken.error());
+    }
+    if (!list.indefinite) list.left -= elements->count;
+  }
+  return in.size() - left.size();
 }
 
 icd::Checked<void> CborSplitter::begin_string(Into into) {

@@ -39,9 +39,11 @@ class Gzipper {
  private:
   struct Stream;
   void deflate_with(int flush);
+  void give_piece();
 
   std::unique_ptr<Stream> stream_;
-  std::vector<std::uint8_t> piece_;  // what comes out, until it is a whole chunk
+  std::vector<std::uint8_t> piece_;  // what comes out, until it is a whole chunk...
+  std::size_t made_ = 0;             // ...and so much of it has
   icd::ChunkedBytes member_;
 };
 

@@ -1,8 +1,10 @@
 #include "codec/plain_elements.hpp"
 
+#include <algorithm>
 #include <cstring>
 
 #include "codec/json_characters.hpp"
+#include "icd/require.hpp"
 
 namespace adit::codec {
 namespace {
@@ -48,6 +50,17 @@ std::optional<Element> element(std::string_view text, std::size_t at) {
   return Element{.value = static_cast<std::uint8_t>(value), .end = end};
 }
 
+/// One of CBOR; nothing where there is another kind, or less than all of it.
+std::optional<Element> cbor_element(std::string_view bytes) {
+  constexpr std::uint8_t kInNextByte = 0x18, kMinusOne = 0x20;
+  const auto at = [&](std::size_t i) { return static_cast<std::uint8_t>(bytes[i]); };
+  if (bytes.empty()) return std::nullopt;
+  if (at(0) < kInNextByte) return Element{.value = at(0), .end = 1};
+  if (at(0) == kMinusOne) return Element{.value = 255, .end = 1};
+  if (at(0) == kInNextByte && bytes.size() > 1) return Element{.value = at(1), .end = 2};
+  return std::nullopt;
+}
+
 }  // namespace
 
 std::optional<PlainElements> take_plain_elements(std::string_view& text) {
@@ -60,6 +73,16 @@ std::optional<PlainElements> take_plain_elements(std::string_view& text) {
   const std::size_t again = repeated(text, period) / period;
   text.remove_prefix(period * (1 + again));
   return PlainElements{.value = one->value, .count = 1 + again};
+}
+
+std::optional<PlainElements> take_plain_cbor_elements(std::string_view& bytes, std::uint64_t most) {
+  icd::require(most > 0);
+  const auto one = cbor_element(bytes);
+  if (!one) return std::nullopt;
+  const std::uint64_t again = std::min<std::uint64_t>(repeated(bytes, one->end) / one->end, most - 1);
+  const auto count = static_cast<std::size_t>(1 + again);
+  bytes.remove_prefix(one->end * count);
+  return PlainElements{.value = one->value, .count = count};
 }
 
 }  // namespace adit::codec

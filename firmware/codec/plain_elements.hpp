@@ -19,4 +19,8 @@ struct PlainElements {
 /// does not begin with a whole such element and its comma: the general reader says what that is.
 std::optional<PlainElements> take_plain_elements(std::string_view& text);
 
+/// The same of a CBOR array: elements of one or two bytes, 0 to 255 or -1 (RFC 8949 3.1), at most `most` of
+/// them. Requires most > 0.
+std::optional<PlainElements> take_plain_cbor_elements(std::string_view& bytes, std::uint64_t most);
+
 }  // namespace adit::codec

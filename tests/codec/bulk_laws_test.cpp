@@ -6,7 +6,6 @@
 
 #include "codec/base64.hpp"
 #include "codec/documents.hpp"
-#include "codec/plain_elements.hpp"
 
 namespace adit::codec::test {
 namespace {
@@ -110,6 +109,80 @@ std::vector<std::uint8_t> bytes_of(std::string_view base64) {
   return bytes;
 }
 
+/// A list in CBOR: runs, told by a length or ended by a break, some elements longer than they need be; and
+/// its bytes.
+struct CborList {
+  std::string body = from_hex("a1 63 6d7367 a1 64 64617461");
+  icd::ChunkedBytes bytes;
+};
+
+CborList random_cbor_list(Randomness& random) {
+  CborList list;
+  std::string elements;
+  std::size_t count = 0;
+  for (std::size_t runs = random() % 12; runs > 0; --runs) {
+    const auto value = static_cast<std::uint8_t>(random() % 3 == 0 ? 255 : random() % 256);
+    std::string element(1, static_cast<char>(value));
+    if (value >= 24 || random() % 8 == 0) element.insert(0, 1, '\x18');
+    if (value == 255 && random() % 2 == 0) element = random() % 4 == 0 ? from_hex("3800") : from_hex("20");
+    if (random() % 10 == 0) element = from_hex("c1 1900") + static_cast<char>(value);  // with a tag
+    for (std::size_t left = 1 + random() % (random() % 16 == 0 ? 9000 : 9); left > 0; --left, ++count) {
+      elements += element;
+      list.bytes.append(std::array{value});
+    }
+  }
+  if (random() % 2 == 0) {
+    list.body += '\x9f' + elements + '\xff';
+  } else {
+    list.body += '\x9a';
+    for (const int shift : {24, 16, 8, 0}) list.body += static_cast<char>(count >> shift & 255);
+    list.body += elements;
+  }
+  return list;
+}
+
+TEST(AnyCborList, IsItsBytesHoweverItIsCut) {
+  Randomness random(14);
+  for (int round = 0; round < 1500; ++round) {
+    const CborList list = random_cbor_list(random);
+    for (const auto& document :
+         {decode(kCborBody, Split::MapData, list.body),
+          decode_in_chunks(kCborBody, Split::MapData, list.body, 1),
+          decode_in_random_chunks(kCborBody, Split::MapData, list.body, random, 300)}) {
+      ASSERT_TRUE(document) << document.error().sentence;
+      ASSERT_EQ(document->data, list.bytes);
+    }
+  }
+}
+
+TEST(AnyCborList, ThatIsDamagedIsJudgedTheSameHoweverItIsCut) {
+  Randomness random(15);
+  int good = 0;
+  constexpr int kRounds = 3000;
+  for (int round = 0; round < kRounds; ++round) {
+    std::string body = random_cbor_list(random).body;
+    for (std::size_t left = 1 + random() % 2; left > 0; --left) {
+      const std::size_t at = random() % body.size();
+      body[at] = static_cast<char>(random() % 2 == 0 ? random() : "\x18\x19\x20\x9f\xff\xf6"[random() % 6]);
+    }
+    const Limits limits{.data_bytes = round % 4 == 0 ? random() % 300 : std::size_t{1} << 20};
+    const auto bytewise = decode_in_chunks(kCborBody, Split::MapData, body, 1, limits);
+    for (const auto& document :
+         {decode(kCborBody, Split::MapData, body, limits),
+          decode_in_random_chunks(kCborBody, Split::MapData, body, random, 300, limits)}) {
+      ASSERT_EQ(bytewise.has_value(), document.has_value());
+      if (document) {
+        ASSERT_EQ(bytewise->data, document->data);
+      } else {
+        ASSERT_EQ(bytewise.error(), document.error());
+      }
+    }
+    good += bytewise ? 1 : 0;
+  }
+  EXPECT_GT(good, kRounds / 20);
+  EXPECT_LT(good, kRounds - kRounds / 20);
+}
+
 TEST(WholeGroups, AreDecodedUpToTheFirstThatIsNoneAndAsFarAsThereIsRoom) {
   Randomness random(13);
   for (int round = 0; round < 3000; ++round) {
@@ -139,49 +212,6 @@ TEST(WholeGroups, AreNoneWithinAGroup) {
   std::string_view more = "9vZm9v";
   EXPECT_EQ(decoder.decode_groups(more, out), 0u);
   EXPECT_EQ(more.size(), 6u);
-}
-
-TEST(PlainElements, AreTakenWithTheirCommaAndAsManyAsAreTheSame) {
-  struct Case {
-    std::string_view text;
-    int value;  // -1: nothing is taken
-    std::size_t count;
-    std::string_view rest;
-  };
-  const std::vector<Case> cases = {
-      {"0,", 0, 1, ""},
-      {"-1, -1, -1, 0", 255, 1, " -1, -1, 0"},
-      {" -1, -1, -1, 0", 255, 3, " 0"},
-      {"7,7,7,71,", 7, 3, "71,"},
-      {"255 ,255 ,25", 255, 2, "25"},
-      {"100\n,\n", 100, 1, "\n"},
-      {"12,12,12", 12, 2, "12"},
-      {"0", -1, 0, ""},
-      {"0]", -1, 0, ""},
-      {"00,", -1, 0, ""},
-      {"01,", -1, 0, ""},
-      {"256,", -1, 0, ""},
-      {"1000,", -1, 0, ""},
-      {"-2,", -1, 0, ""},
-      {"-10,", -1, 0, ""},
-      {"-1", -1, 0, ""},
-      {"-0,", -1, 0, ""},
-      {"1.0,", -1, 0, ""},
-      {"1e1,", -1, 0, ""},
-      {",", -1, 0, ""},
-      {"", -1, 0, ""},
-      {"  ", -1, 0, ""},
-      {"\f1,", -1, 0, ""},
-  };
-  for (const Case& row : cases) {
-    std::string_view text = row.text;
-    const auto taken = take_plain_elements(text);
-    ASSERT_EQ(taken.has_value(), row.value >= 0) << row.text;
-    EXPECT_EQ(text, taken ? row.rest : row.text);
-    if (!taken) continue;
-    EXPECT_EQ(int{taken->value}, row.value) << row.text;
-    EXPECT_EQ(taken->count, row.count) << row.text;
-  }
 }
 
 }  // namespace

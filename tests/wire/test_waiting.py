@@ -76,6 +76,45 @@ class Waiting(unittest.TestCase):
         self.assertEqual([request["status"] for request in stage.post.requests("/map/update")].count(429), 0)
         self.are_one_a_second(stage.post.requests("/map/update"))
 
+    def row_of_clouds(self, stage, name):
+        return next(row for row in stage.box.ask("GET /adit/run")[1]["activities"]
+                    if (row["kind"], row["robot"]) == ("cloud", name))
+
+    def coordinates(self, stage, request):
+        """In darpa, by axis, each in rising order, as a picture of the Command Post's transcript has them."""
+        msg = request["message"]["msg"]
+        data = (stage.post.transcript / msg["data"]["file"]).read_bytes().partition(b"DATA binary\n")[2]
+        start = msg.get("origin", {}).get("position", {"x": 0.0, "y": 0.0, "z": 0.0})
+        return [[value + start[axis] for value in struct.unpack(f"<{len(data) // 4}f", data)[number::3]]
+                for number, axis in enumerate("xyz")]
+
+    def test_clouds_are_rounded_as_far_as_what_waits_forces_it(self):
+        stage = self.stage(robots=[{"name": "r1", "precision": "auto"}])
+        clouds = [maps.made_cloud(2000, seed=number) for number in range(60)]
+        self.post_map(stage, clouds[0], "r1")
+        wait_until(lambda: self.taken(stage, "/map/update"), "the first cloud")
+        wait_until(lambda: self.row_of_clouds(stage, "r1")["precision"] == "exact", "nothing to be forced")
+        stage.post.process.send_signal(signal.SIGSTOP)
+        for cloud in clouds[1:-1]:
+            self.post_map(stage, cloud, "r1")
+        stage.post.process.send_signal(signal.SIGCONT)
+        sent = sum(len(cloud.data) for cloud in clouds[:-1])
+        wait_until(lambda: self.cloud_bytes(stage, "r1") == sent, "all that waited")
+        self.post_map(stage, clouds[-1], "r1")
+        wait_until(lambda: self.cloud_bytes(stage, "r1") == sent + len(clouds[-1].data), "the last cloud")
+        wait_until(lambda: self.row_of_clouds(stage, "r1")["precision"] == "exact", "that nothing forces it any more")
+        requests = self.taken(stage, "/map/update")
+        rounded = ["origin" in request["message"]["msg"] for request in requests]
+        self.assertTrue(any(rounded))
+        self.assertFalse(rounded[0] or rounded[-1])
+        arrived = [self.coordinates(stage, request) for request in requests]
+        for axis in range(3):
+            here = sorted(value for each in arrived for value in each[axis])
+            posted = sorted(value for cloud in clouds
+                            for value in struct.unpack(f"<{len(cloud.data) // 4}f", cloud.data)[axis::3])
+            self.assertEqual(len(here), len(posted))
+            self.assertLessEqual(max(abs(a - b) for a, b in zip(here, posted, strict=True)), 1.3 / 128)
+
     def test_a_grid_that_covers_replaces_and_one_that_does_not_is_sent_beside(self):
         stage = self.stage()
         first = maps.made_grid(20, 20, seed=1)

@@ -30,8 +30,8 @@ void gather(std::span<const std::uint8_t> points, std::size_t step, std::span<co
 /// How small gzip makes some stretches of them in that order.
 std::size_t tried(std::span<const std::uint8_t> points, std::size_t step,
                   std::span<const std::uint32_t> numbers) {
-  constexpr std::size_t kShare = 10, kStretches = 16, kLeast = std::size_t{16} << 10;
-  const std::size_t bytes = std::max(points.size() / kShare, kLeast);
+  constexpr std::size_t kShare = 32, kShareOfFew = 4, kStretches = 16, kTelling = std::size_t{32} << 10;
+  const std::size_t bytes = std::max(points.size() / kShare, std::min(points.size() / kShareOfFew, kTelling));
   const std::size_t part = numbers.size() / kStretches;
   Bytes some;
   for (std::size_t i = 0; i < kStretches; ++i) {

@@ -60,6 +60,7 @@ int main(int argc, char** argv) {
   }
   if (maps->empty()) std::printf("ADIT_MAPS names no folder of recorded maps: generated ones alone\n");
   for (SizedMap& map : generated_grids(is_short)) maps->push_back(std::move(map));
+  for (SizedMap& map : generated_clouds(is_short)) maps->push_back(std::move(map));
   print_table("grids", *maps, true, is_short, kBest);
   print_table("clouds", *maps, false, is_short, kUsual);
   return 0;

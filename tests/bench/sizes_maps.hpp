@@ -20,5 +20,7 @@ std::expected<std::vector<SizedMap>, std::string> recorded_maps(const std::strin
 
 /// Grids of all kinds. `is_short`: without the large ones.
 std::vector<SizedMap> generated_grids(bool is_short);
+/// Clouds of noise and of surveys, with and without padding (sizes_clouds.cpp).
+std::vector<SizedMap> generated_clouds(bool is_short);
 
 }  // namespace adit::bench

@@ -52,9 +52,9 @@ PackingWay libdeflate(int level) {
           }};
 }
 
-PackingWay adit(std::string name, bool is_kept) {
+PackingWay adit(std::string name, bool is_kept, const pack::CloudForm& form = {}) {
   return {std::move(name), false, is_kept,
-          [](const icd::MapUpdate& map) { return pack::pack(map).data.bytes.size(); }};
+          [form](const icd::MapUpdate& map) { return pack::pack(map, form).data.bytes.size(); }};
 }
 
 std::vector<PackingWay> of_others() {
@@ -74,7 +74,10 @@ std::vector<PackingWay> ways_for_grids() {
 
 std::vector<PackingWay> ways_for_clouds() {
   auto ways = of_others();
-  ways.push_back(adit("Adit", false));
+  ways.push_back(adit("Adit, as it came", false, {.is_arranged = false}));
+  ways.push_back(adit("Adit, exact", false));
+  ways.push_back(adit("Adit, 1mm", false, {.unit = pack::kMillimetre}));
+  ways.push_back(adit("Adit, 8mm", false, {.unit = pack::kEightMillimetres}));
   return ways;
 }
 

@@ -99,15 +99,18 @@ inline std::vector<icd::MapUpdate> recorded_clouds() {
   for (const auto& entry : std::filesystem::directory_iterator(std::filesystem::path(named) / "clouds")) {
     std::ifstream file(entry.path(), std::ios::binary);
     const std::string all(std::istreambuf_iterator<char>(file), {});
-    const std::string end = entry.path().extension() == ".ply" ? "end_header\n" : "DATA binary\n";
+    const bool is_ply = entry.path().extension() == ".ply";
+    const std::string count = is_ply ? "element vertex " : "POINTS ",
+                      end = is_ply ? "end_header\n" : "DATA binary\n";
+    const std::size_t points = std::stoul(all.substr(all.find(count) + count.size(), 10));
     const std::size_t begin = all.find(end) + end.size();
     icd::PointCloud2 cloud;
     for (const char* name : {"x", "y", "z", "intensity"}) {
       cloud.fields.push_back({name, cloud.point_step, icd::Datatype::Float32, 1});
       cloud.point_step += 4;
     }
-    Bytes bytes(all.begin() + static_cast<std::ptrdiff_t>(begin), all.end());
-    bytes.resize(bytes.size() / cloud.point_step * cloud.point_step);
+    const std::string data = all.substr(begin, points * cloud.point_step);  // one file has more behind them
+    const Bytes bytes(data.begin(), data.end());
     clouds.push_back(update_of(std::move(cloud), bytes));
   }
   return clouds;

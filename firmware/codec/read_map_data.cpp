@@ -36,10 +36,19 @@ icd::MapData pressed(Gzipper& gzipper, const icd::OccupancyGrid& grid) {
   return {.bytes = gzipper.finish(), .compression = icd::Compression::Gzip, .raw_size = icd::cells_of(grid)};
 }
 
+/// Without a name, a comment or a checksum of its own (RFC 1952 2.3.1), which other readers may not expect.
+bool has_plain_head(const icd::ChunkedBytes& member) {
+  constexpr std::size_t kFlags = 3;
+  const auto& first = *member.chunks().front();
+  return first.size() > kFlags && first[kFlags] == 0;
+}
+
+/// What it holds is proven by then. Its sender's member stays if it is smaller: many are made with more care.
 /// Where the data does not claim to have the right size it is refused in the end, and nothing of it is kept.
 icd::Checked<icd::MapData> read_gzipped_cells(const icd::OccupancyGrid& grid, icd::ChunkedBytes data,
                                               const icd::Rules& rules) {
   const bool is_kept = claimed_size(data) == icd::cells_of(grid);
+  const icd::ChunkedBytes as_sent = data;  // the same chunks
   CellCheck check(grid);
   Gzipper gzipper(GzipStrategy::Runs);
   const auto sink = [&](std::span<const std::uint8_t> cells) {
@@ -50,7 +59,9 @@ icd::Checked<icd::MapData> read_gzipped_cells(const icd::OccupancyGrid& grid, ic
   const auto inflated = gunzip(std::move(data), rules.map_bytes, kPath, sink);
   if (!inflated) return std::unexpected(inflated.error());
   if (auto checked = check.finish(); !checked) return std::unexpected(checked.error());
-  return pressed(gzipper, grid);
+  icd::MapData ours = pressed(gzipper, grid);
+  if (as_sent.size() < ours.bytes.size() && has_plain_head(as_sent)) ours.bytes = as_sent;
+  return ours;
 }
 
 icd::Checked<icd::ChunkedBytes> inflated_points(const icd::PointCloud2& cloud, icd::ChunkedBytes data,

@@ -47,6 +47,7 @@ void code_lengths(std::span<const std::uint32_t> counts, int most_bits, std::spa
   if (symbols.size() < 2) return;
   std::ranges::sort(symbols);
   std::vector<std::uint64_t> leaves;
+  leaves.reserve(symbols.size());
   for (const auto& [count, symbol] : symbols) leaves.push_back(count);
   std::vector<Coins> rows;  // one for each length, the longest first
   for (int bits = most_bits; bits > 0; --bits) {

@@ -1,6 +1,8 @@
 // A row for each rule of the ICD about an OccupancyGrid in POST /map/update, sent as JSON and as CBOR.
 #include <gtest/gtest.h>
+#include <zlib.h>
 
+#include "codec/gzip.hpp"
 #include "codec/read_map.hpp"
 
 namespace adit::codec {
@@ -124,6 +126,61 @@ TEST(ReadMapUpdate, KeepsWhatAGridSays) {
     EXPECT_EQ(map->data.raw_size, 12U);
     EXPECT_EQ(test::raw_data(map->data), (Bytes{0, 1, 50, 100, 255, 255, 0, 0, 100, 99, 255, 1}));
   }
+}
+
+/// Patterns that come again anywhere: Z_RLE finds none of them.
+Bytes patterned(std::size_t size) {
+  Bytes cells(size);
+  for (std::size_t i = 0; i < size; ++i) cells[i] = static_cast<std::uint8_t>(i % 700 % 97);
+  return cells;
+}
+
+/// What is kept of `member`, which holds `cells`.
+icd::ChunkedBytes kept_of(const Bytes& member, const Bytes& cells) {
+  json message = test::good_grid();
+  message["msg"]["info"]["width"] = cells.size();
+  message["msg"]["info"]["height"] = 1;
+  message["msg"]["compression"] = "gzip";
+  message["msg"]["data"] = json::binary(member);
+  const auto map = read_map(Format::Cbor, test::as_cbor(message));
+  EXPECT_EQ(test::sentence_of(map), "taken");
+  EXPECT_EQ(map->data.compression, icd::Compression::Gzip);
+  EXPECT_EQ(map->data.raw_size, cells.size());
+  EXPECT_EQ(test::only_member(map->data.bytes.to_vector()), cells);
+  return map->data.bytes;
+}
+
+TEST(ReadMapUpdate, KeepsTheMemberOfAGridsSenderWhereItIsSmallerThanItsOwn) {
+  const Bytes cells = patterned(50'000), member = test::compressed(cells);
+  EXPECT_EQ(kept_of(member, cells), icd::ChunkedBytes(member));
+}
+
+TEST(ReadMapUpdate, KeepsItsOwnMemberWhereItIsSmaller) {
+  Bytes cells(50'000, icd::kUnknownCell);
+  for (std::size_t i = 0; i < cells.size(); i += 4'000) cells[i] = 100;
+  Bytes stored{0x1f, 0x8b, 8, 0, 0, 0, 0, 0, 0, 255};  // one block that is not compressed (RFC 1951 3.2.4)
+  const auto put = [&](std::size_t number, std::size_t bytes) {
+    for (std::size_t i = 0; i < bytes; ++i) stored.push_back(static_cast<std::uint8_t>(number >> 8 * i));
+  };
+  put(1, 1);
+  put(cells.size(), 2);
+  put(~cells.size(), 2);
+  stored.insert(stored.end(), cells.begin(), cells.end());
+  put(crc32(0, cells.data(), static_cast<uInt>(cells.size())), 4);
+  put(cells.size(), 4);
+  EXPECT_EQ(kept_of(stored, cells), gzip(icd::ChunkedBytes(cells), GzipStrategy::Runs));
+}
+
+TEST(ReadMapUpdate, KeepsNoMemberWithANameInItsHead) {
+  const Bytes cells = patterned(50'000), plain = test::compressed(cells);
+  Bytes named = plain;
+  constexpr std::uint8_t kName = 8;  // RFC 1952 2.3.1
+  named[3] = kName;
+  const Bytes name{'m', 'a', 'p', 0};
+  named.insert(named.begin() + 10, name.begin(), name.end());
+  const auto kept = kept_of(named, cells);
+  EXPECT_EQ(kept, gzip(icd::ChunkedBytes(cells), GzipStrategy::Runs));
+  EXPECT_GT(kept.size(), named.size());
 }
 
 TEST(ReadMapUpdate, MakesAnAllZeroQuaternionTheIdentity) {

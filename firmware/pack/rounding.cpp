@@ -59,10 +59,10 @@ struct Shift {
 /// exactly, so that a receiver rounds once, when it adds the two.
 bool shift(double binade, double unit, double low, double high, double& placed, double& origin) {
   constexpr double kMargin = 4;  // units: the origin is rounded by at most one
+  if (!(std::max(std::abs(low), std::abs(high)) < binade)) return false;
   origin = static_cast<double>(static_cast<float>(low - binade - kMargin * unit));
   placed -= origin;
-  return std::max(std::abs(low), std::abs(high)) < binade && low - origin >= binade &&
-         high - origin <= 2 * binade - unit;
+  return low - origin >= binade && high - origin <= 2 * binade - unit;
 }
 
 std::optional<Shift> shift_of(const icd::PointCloud2& cloud, const Box& box, double unit) {

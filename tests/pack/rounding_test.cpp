@@ -186,14 +186,16 @@ TEST(RoundingOf, ATunnelMakesItSmaller) {
 
 TEST(RoundingOf, ACloudLeavesItAsItIsWhereItCannotBeHeld) {
   const icd::MapUpdate map = tunnel(xyz_and_number(icd::Datatype::Float32));
-  icd::MapUpdate big = map, turned = map, far = map, wide = map;
+  icd::MapUpdate big = map, turned = map, far = map, wide = map, endless = map;
   std::get<icd::PointCloud2>(big.msg).is_bigendian = true;
   auto& with_normals = std::get<icd::PointCloud2>(turned.msg);
   with_normals.origin = icd::Pose{{}, {0, 0, 1, 1}};
   with_normals.fields.back().name = "normal_x";
   std::get<icd::PointCloud2>(far.msg).origin = icd::Pose{{9000, 0, 0}, {}};
   wide = numbered(xyz_and_number(icd::Datatype::Float32), Places{{-4097, 0, 0}, {4097, 0, 0}, {1, 1, 1}});
-  for (const icd::MapUpdate& each : {big, turned, far, wide}) {
+  endless = numbered(xyz_and_number(icd::Datatype::Float64),
+                     Places{{1e308, -1e308, 0}, {-1e308, 1e308, 1e-308}, {1, 2, 3}});
+  for (const icd::MapUpdate& each : {big, turned, far, wide, endless}) {
     EXPECT_EQ(pack(each, {.unit = kMillimetre}), pack(each));
   }
   EXPECT_NE(pack(map, {.unit = kMillimetre}), pack(map));

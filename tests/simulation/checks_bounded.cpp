@@ -1,5 +1,6 @@
 // Bounded: what the box holds, while it works and at rest.
 #include <algorithm>
+#include <ranges>
 #include <string>
 
 #include "icd/sentence.hpp"
@@ -53,11 +54,13 @@ class Looking {
   Broken& broken_;
 };
 
-std::uint64_t ledgers_at(double time, const Evidence& evidence) {
-  return 1 + static_cast<std::uint64_t>(std::ranges::count_if(evidence.events, [&](const Event& event) {
-           return event.at <= time && event.kind == Kind::Said &&
-                  event.text.contains("The ledger was damaged");
-         }));
+/// When so many events had happened.
+std::uint64_t ledgers_after(std::size_t events, const Evidence& evidence) {
+  const auto was_damaged = [](const Event& event) {
+    return event.kind == Kind::Said && event.text.contains("The ledger was damaged");
+  };
+  return 1 + static_cast<std::uint64_t>(
+                 std::ranges::count_if(evidence.events | std::views::take(events), was_damaged));
 }
 
 bool nothing_waits(const nlohmann::json& view) {
@@ -74,7 +77,7 @@ void bounded(const Evidence& evidence, Broken& broken) {
       broken.push_back(icd::sentence("Bounded: at ", event.at, " ", event.text));
   }
   for (const Reading& reading : evidence.readings) {
-    Looking looking(reading, ledgers_at(reading.at, evidence), broken);
+    Looking looking(reading, ledgers_after(reading.heard, evidence), broken);
     looking.at_lists();
     looking.at_files();
     if (reading.at < changed)

@@ -90,6 +90,15 @@ TEST(StatusText, SaysHowFarTheCommandPostIsBehindAndWhatWasRefused) {
               HasSubstr("  r1     grid  33 s behind        12    11      247     1110"));
 }
 
+TEST(StatusText, SaysWhatBecomesOfARobotsClouds) {
+  api::RunView view = sample_view();
+  api::ActivityRow& row = view.activities[0];
+  row.kind = "cloud", row.clouds = "parts", row.precision = "exact";
+  EXPECT_THAT(status_text(view, false), HasSubstr("  r1     cloud, parts  "));
+  row.precision = "8mm", row.points_left_out = 16;
+  EXPECT_THAT(status_text(view, false), HasSubstr("  r1     cloud, parts, to 8mm, 16 points left out  "));
+}
+
 TEST(Arrival, IsWhatTheOperatorAsks) {
   const auto row = [](void (*change)(api::ActivityRow&)) {
     api::ActivityRow activity = sample_view().activities[0];

@@ -159,6 +159,16 @@ void Maps::prepare(Place& place) {
   pack(place);
 }
 
+/// Whether its slot was free already when it came, and it is a large grid that leaves soon as it is kept:
+/// what is saved by making it smaller is then less than that takes. One that has to wait is made smaller
+/// meanwhile.
+bool Maps::is_awaited(const lanes::WaitingMap& waiting) const {
+  constexpr std::size_t kLarge = 1u << 20;  // cells; smaller ones are packed in a few milliseconds
+  constexpr int kSoon = 8;                  // in that part of the time between two maps
+  return waiting.map.data.raw_size >= kLarge && !channel_.busy() && starts() <= waiting.accepted &&
+         slot_.transfer(waiting.map.data.bytes.size()) <= pace_.spacing() / kSoon;
+}
+
 /// Where it throws, `prepared` waits to be packed.
 void Maps::pack(const Place& prepared) {
   icd::Header& header = prepared->waiting.map.header();
@@ -166,10 +176,11 @@ void Maps::pack(const Place& prepared) {
   journal_.stamped(icd::Uri::MapUpdate, *header.stamp);
   const loop::Instant began = loop_.now();
   const auto leaving_out = std::make_shared<LeavingOut>(points_.leaving_out(prepared->waiting.map));
-  const bool arranges = settings_.command_post.arrange_clouds;
+  const Packing packing{.arranges_clouds = settings_.command_post.arrange_clouds,
+                        .leaves_grids = is_awaited(prepared->waiting)};
   workers_.submit(
-      [prepared, leaving_out, arranges] {
-        prepared->packed = packed(prepared->waiting, std::move(*leaving_out), arranges);
+      [prepared, leaving_out, packing] {
+        prepared->packed = packed(prepared->waiting, std::move(*leaving_out), packing);
       },
       [this, began, prepared] {
         preparing_ = false;

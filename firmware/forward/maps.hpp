@@ -141,6 +141,7 @@ class Maps {
   loop::Instant starts() const;
   loop::Instant begins_to_pack(loop::Instant now) const;
   void prepare(Place& place);
+  bool is_awaited(const lanes::WaitingMap& waiting) const;
   void pack(const Place& prepared);
   void not_packed(const Place& prepared);
   Place* place_of(const Place& prepared);
@@ -184,8 +185,8 @@ class Maps {
   std::string trouble_;
   bool preparing_ = false;
   bool comparing_ = false;  // a worker is comparing two clouds
-  Place prepared_;   // while it is packed, waits for its time, or is under way
-  Place following_;  // the next one, while that is under way; may be so itself, too
+  Place prepared_;          // while it is packed, waits for its time, or is under way
+  Place following_;         // the next one, while that is under way; may be so itself, too
   lanes::Ahead ahead_;
   std::vector<std::uint64_t> to_forget_;  // that the writer could not be told of; has room for all
   std::size_t remembered_ = 0;            // numbers that were given, and are still to be forgotten

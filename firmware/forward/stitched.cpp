@@ -37,6 +37,10 @@ double unit_of(lanes::Precision precision) {
   return precision == lanes::Precision::EightMillimetres ? pack::kEightMillimetres : 0;
 }
 
+bool is_compressed(const icd::MapUpdate& map) {
+  return map.data.compression != icd::Compression::None;
+}
+
 /// pack() says so by the origin.
 bool was_rounded(const icd::MapUpdate& before, const icd::MapUpdate& after) {
   const auto* const cloud = std::get_if<icd::PointCloud2>(&after.msg);
@@ -45,7 +49,7 @@ bool was_rounded(const icd::MapUpdate& before, const icd::MapUpdate& after) {
 
 }  // namespace
 
-Packed packed(const lanes::WaitingMap& waiting, LeavingOut leaving_out, bool arranges_clouds) {
+Packed packed(const lanes::WaitingMap& waiting, LeavingOut leaving_out, const Packing& packing) {
   auto whole = whole_of(waiting);
   if (!whole) return {};
   Packed packed;
@@ -53,8 +57,10 @@ Packed packed(const lanes::WaitingMap& waiting, LeavingOut leaving_out, bool arr
   if (packed.left_out.is_all) return packed;
   if (waiting.ground) packed.drawn = drawn_over(*waiting.ground, whole->data);
   if (!whole->is_grid()) packed.points_size = whole->data.raw_size;
-  icd::MapUpdate map =
-      pack::pack(std::move(*whole), {.is_arranged = arranges_clouds, .unit = unit_of(waiting.precision)});
+  const bool is_left = packing.leaves_grids && whole->is_grid() && is_compressed(*whole);
+  icd::MapUpdate map = is_left ? std::move(*whole)
+                               : pack::pack(std::move(*whole), {.is_arranged = packing.arranges_clouds,
+                                                                .unit = unit_of(waiting.precision)});
   if (was_rounded(waiting.map, map)) packed.precision = waiting.precision;
   packed.body = codec::write_map_update(map);
   if (is_to_be_stitched(waiting)) packed.stitched = std::move(map.data);

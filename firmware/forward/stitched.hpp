@@ -23,9 +23,16 @@ struct Packed {
   std::optional<lanes::Ground> drawn;
 };
 
+/// What is done to a map on its way to that form.
+struct Packing {
+  bool arranges_clouds = true;
+  bool leaves_grids =
+      false;  // a grid that is compressed goes so, for it would leave later if it were made smaller
+};
+
 /// A cloud goes by waiting.precision, or exact where that cannot be held. CPU-bound in the size of the map:
 /// meant for a worker.
-Packed packed(const lanes::WaitingMap& waiting, LeavingOut leaving_out = {}, bool arranges_clouds = true);
+Packed packed(const lanes::WaitingMap& waiting, LeavingOut leaving_out = {}, const Packing& packing = {});
 
 /// The map with its cells, which are put together of its parts where they are there
 /// alone, over what lies under them where they leave gaps. The error says

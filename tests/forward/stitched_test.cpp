@@ -114,7 +114,7 @@ TEST(PackedCloud, SaysHowFarItWasRounded) {
 
 TEST(PackedCloud, IsExactWhereItCannotBeRounded) {
   const auto precision_of = [](const lanes::WaitingMap& waiting, bool arranges) {
-    return packed(waiting, {}, arranges).precision;
+    return packed(waiting, {}, {.arranges_clouds = arranges}).precision;
   };
   using lanes::Precision;
   EXPECT_EQ(precision_of(cloud_at(5, 2000, Precision::Millimetre), /*arranges=*/false), Precision::Exact);

@@ -1,0 +1,71 @@
+// A grid for which the slot is free leaves as it is kept; one that waits is made smaller meanwhile.
+#include <gtest/gtest.h>
+
+#include <algorithm>
+
+#include "codec/gzip.hpp"
+#include "forward/letting_post.hpp"
+
+namespace adit::forward {
+namespace {
+
+/// As it is kept: rows that are all alike, which runs of the same cell do not tell.
+icd::MapUpdate kept_grid(const char* robot, std::uint32_t side) {
+  icd::MapUpdate map = grid_of(robot, side);
+  std::vector<std::uint8_t> cells(std::size_t{side} * side);
+  for (std::size_t i = 0; i < cells.size(); ++i)
+    cells[i] = static_cast<std::uint8_t>(i % side / 8 * 37 % 101);
+  map.data.bytes = codec::gzip(icd::ChunkedBytes(cells), codec::GzipStrategy::Runs);
+  map.data.compression = icd::Compression::Gzip;
+  return map;
+}
+
+class AwaitedGrid : public WithLettingPost {
+ protected:
+  AwaitedGrid() {
+    settings_.command_post.rates.map_hz = 1;
+    maps_->settings_changed();
+  }
+  std::uint64_t sent(const char* robot) const {
+    for (const auto& [traffic, row] : record_.rows()) {
+      if (traffic == Traffic{Kind::Grid, robot}) return row.bytes_sent;
+    }
+    return 0;
+  }
+  bool all_are_taken() {
+    return loop::turn_until(loop_, [&] {
+      return maps_->waiting({Kind::Grid, "first"}) + maps_->waiting({Kind::Grid, "second"}) == 0;
+    });
+  }
+};
+
+TEST_F(AwaitedGrid, LeavesAsItIsKeptAndOneThatWaitsIsMadeSmaller) {
+  const icd::MapUpdate first = kept_grid("first", 1100), second = kept_grid("second", 1100);
+  take(first);
+  ASSERT_TRUE(come({"first"}));
+  take(second);
+  ASSERT_TRUE(loop::turn_until(loop_, [&] { return maps_->queued_bytes() == 0 && !maps_->packing(); }));
+  for (int i = 0; i < 2; ++i) post_.answer("200 OK");
+  ASSERT_TRUE(all_are_taken());
+  EXPECT_GT(sent("first"), first.data.bytes.size());
+  EXPECT_LT(sent("second"), second.data.bytes.size() / 2);
+}
+
+TEST_F(AwaitedGrid, ThatIsSmallOrTakesLongToLeaveIsMadeSmallerAllTheSame) {
+  const icd::MapUpdate small = kept_grid("first", 500);
+  take(small);
+  post_.answer("200 OK");
+  ASSERT_TRUE(all_are_taken());
+  EXPECT_LT(sent("first"), small.data.bytes.size() / 2);
+
+  settings_.command_post.budget_mbit = 1;
+  maps_->settings_changed();
+  const icd::MapUpdate large = kept_grid("second", 1100);
+  take(large);
+  post_.answer("200 OK");
+  ASSERT_TRUE(all_are_taken());
+  EXPECT_LT(sent("second"), large.data.bytes.size() / 2);
+}
+
+}  // namespace
+}  // namespace adit::forward

@@ -1,23 +1,29 @@
 #include "codec/json_at_once.hpp"
 
-#include "codec/json_splitter.hpp"
+#include <utility>
+
 #include "codec/quick_json.hpp"
 
 namespace adit::codec {
 
 icd::Checked<void> JsonAtOnce::feed(std::string_view bytes) {
-  if (bytes.size() > most_.text - text_.size()) return std::unexpected(text_too_large(most_.text));
-  text_ += bytes;
-  return {};
+  const bool is_first = !root_ && !splitter_;
+  if (is_first && bytes.size() <= most_.text) root_ = quick_json(bytes, most_.values);
+  if (is_first && root_) {
+    text_ = bytes;
+    return {};
+  }
+  root_.reset();
+  if (auto fed = splitter().feed(std::exchange(text_, {})); !fed) return fed;
+  return splitter().feed(bytes);
 }
 
-/// What is wrong with it, a JsonSplitter says.
 icd::Checked<Value> JsonAtOnce::finish() {
-  if (auto root = quick_json(text_, most_.values)) return std::move(*root);
-  BulkData none(0);
-  JsonSplitter splitter(Split::Nothing, most_, none);
-  if (auto fed = splitter.feed(text_); !fed) return std::unexpected(std::move(fed.error()));
-  return splitter.finish();
+  return root_ ? std::move(*root_) : splitter().finish();
+}
+
+JsonSplitter& JsonAtOnce::splitter() {
+  return splitter_ ? *splitter_ : splitter_.emplace(Split::Nothing, most_, none_);
 }
 
 }  // namespace adit::codec

@@ -49,8 +49,10 @@ class Arrivals(unittest.TestCase):
     def test_a_cloud_is_as_old_as_its_newest_point_and_no_point_counts_twice(self):
         old, new = now_ms() - 3_600_000, now_ms() - 60_000
         whole = (old, old, new)
-        for dates in ((old, old), whole, whole + whole):
-            self.assertEqual(self.post.map_cbor(cloud(*dates)).status_code, 200)
+        data = cloud(*whole)["msg"]["data"]
+        points = sorted(2 * [data[at:at + 16] for at in range(0, len(data), 16)], reverse=True)  # joined, and in an order
+        for message in (cloud(old, old), cloud(*whole), changed(cloud(*whole), msg__data=b"".join(points))):
+            self.assertEqual(self.post.map_cbor(message).status_code, 200)
         answer = self.post.tell("posted", [{"robot": "X1", "kind": "cloud", "amount": 4, "newest": new + 2000}])
         self.assertEqual(answer.status_code, 200, answer.text)
         arrived = self.only()

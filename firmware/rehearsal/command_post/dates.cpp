@@ -3,7 +3,10 @@
 #include <algorithm>
 #include <array>
 #include <cstring>
+#include <functional>
 #include <string_view>
+#include <utility>
+#include <vector>
 
 namespace adit::rehearsal {
 namespace {
@@ -37,25 +40,33 @@ std::optional<Dates> dates_of_grid(std::string_view cells, Moment now) {
   return dates;
 }
 
+/// Each point once, in whatever order they are: its date, which stands at `offset`, and a hash of all of it.
+std::vector<std::pair<std::uint32_t, std::size_t>> different_points(const Cloud& cloud, std::string_view data,
+                                                                    std::size_t offset) {
+  std::vector<std::pair<std::uint32_t, std::size_t>> points;
+  points.reserve(data.size() / cloud.point_step);
+  for (; data.size() >= cloud.point_step; data.remove_prefix(cloud.point_step)) {
+    const std::string_view point = data.substr(0, cloud.point_step);
+    std::uint32_t posted = 0;
+    std::memcpy(&posted, point.data() + offset, sizeof posted);
+    points.emplace_back(posted, std::hash<std::string_view>{}(point));
+  }
+  std::ranges::sort(points);
+  const auto repeated = std::ranges::unique(points);
+  points.erase(repeated.begin(), repeated.end());
+  return points;
+}
+
 std::optional<Dates> dates_of_cloud(const Cloud& cloud, std::string_view data, Moment now) {
   const auto field = std::ranges::find(cloud.fields, "posted_ms", &CloudField::name);
   if (field == cloud.fields.end() || field->datatype != kUint32 || cloud.is_bigendian) return std::nullopt;
+  const auto points = different_points(cloud, data, field->offset);
+  if (points.empty()) return std::nullopt;
   std::map<std::uint32_t, std::uint64_t> counts;
-  auto known = counts.end();
-  std::uint64_t together = 0;  // points of that date, one after the other
-  for (std::size_t at = 0; at + cloud.point_step <= data.size(); at += cloud.point_step) {
-    std::uint32_t posted = 0;
-    std::memcpy(&posted, data.data() + at + field->offset, sizeof posted);
-    if (known == counts.end() || known->first != posted) {
-      known = counts.try_emplace(posted).first;
-      together = 0;
-    }
-    known->second = std::max(known->second, ++together);
-  }
-  if (counts.empty()) return std::nullopt;
+  for (const auto& [posted, point] : points) ++counts[posted];
   Dates dates;
-  for (const auto& [posted, points] : counts) {
-    dates.points[nearest(posted, std::int64_t{1} << 32, now)] += points;
+  for (const auto& [posted, count] : counts) {
+    dates.points[nearest(posted, std::int64_t{1} << 32, now)] += count;
   }
   dates.newest = dates.points.rbegin()->first;
   return dates;

@@ -15,8 +15,8 @@ using Moment = std::chrono::sys_time<std::chrono::milliseconds>;
 /// When a map's data was posted, as adit-robots writes it into its maps (README.md, 'How old').
 struct Dates {
   Moment newest;
-  // Of a cloud: how many points were posted then. A cloud that was joined of several has some of them twice:
-  // it is the most that stand together.
+  // Of a cloud: how many different points were posted then. A cloud that was joined of several has some of
+  // them twice.
   std::map<Moment, std::uint64_t> points;
 };
 

@@ -15,6 +15,31 @@ void note(const VoxelBlock& found, std::vector<VoxelBlock>& all) {
   all.back().voxels |= found.voxels;
 }
 
+/// The voxels that have a point already: what was taken, and what goes with one message.
+class Held {
+ public:
+  explicit Held(const VoxelSet& taken) : taken_(taken) {}
+
+  /// Whether a point of that voxel is its first, which it has from then on. One of no voxel always is.
+  bool is_first(const VoxelBlock& at) {
+    if (at.place == 0) return true;
+    if (at.place != here_.place) go_to(at.place);
+    if ((at.voxels & here_.voxels) != 0) return false;
+    here_.voxels |= at.voxels;
+    return true;
+  }
+
+ private:
+  void go_to(std::uint64_t place) {
+    if (here_.place != 0) left_.add(here_);
+    here_ = {place, taken_.voxels_at(place) | left_.voxels_at(place)};
+  }
+
+  const VoxelSet& taken_;
+  VoxelSet left_;    // blocks that points of the message were in
+  VoxelBlock here_;  // the block of the point before
+};
+
 }  // namespace
 
 TakenVoxels::Rest TakenVoxels::leave_out(const icd::RobotName& robot, const icd::PointCloud2& cloud,
@@ -24,13 +49,12 @@ TakenVoxels::Rest TakenVoxels::leave_out(const icd::RobotName& robot, const icd:
   const VoxelSet none, &taken = knows ? found->second.voxels : none;
   const Voxels voxels{cloud, edge};
   Rest rest;
-  VoxelBlock block;  // of the point before, with all that was taken of it
+  Held held{taken};
   std::vector<bool> stays;
   stays.reserve(data.bytes.size() / cloud.point_step);
   for_each_point(data.bytes, cloud.point_step, [&](auto point) {
     const VoxelBlock at = voxels.of(point);
-    if (at.place != block.place) block = {at.place, at.place == 0 ? 0 : taken.voxels_at(at.place)};
-    stays.push_back((at.voxels & block.voxels) == 0);
+    stays.push_back(held.is_first(at));
     if (stays.back()) note(at, rest.voxels);
     return true;
   });

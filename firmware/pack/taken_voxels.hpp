@@ -32,7 +32,7 @@ class TakenVoxels {
     std::size_t left_out = 0;        // points
   };
   /// `data`: the cloud's, not compressed. Of its points those are left out whose voxel (`edge` metres) has a
-  /// point that was taken from this robot. The others are all kept, several of one voxel too, in their order
+  /// point that was taken from this robot, or one before it in the cloud. The others are kept, in their order
   /// and byte for byte; so are those of no voxel.
   Rest leave_out(const icd::RobotName& robot, const icd::PointCloud2& cloud, const icd::MapData& data,
                  double edge) const;

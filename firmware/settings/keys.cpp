@@ -104,10 +104,9 @@ const Key kKeys[] = {
      "forces it. Clouds stay exact where command_post.arrange_clouds is false.",
      choice<MEMBER(robots.back().precision)>(lanes::kPrecisionWords)},
     {"robots[].voxel_metres",
-     "Leaves out points of that robot's clouds where the Command Post has taken one of the same voxel, a "
-     "cube "
-     "of so many metres (at least 0.01); 0: each is sent. Only for a Command Post that adds each cloud to "
-     "those before it. Not for clouds that are whole.",
+     "Of that robot's clouds one point of each voxel goes, a cube of so many metres (at least 0.01): the "
+     "others are left out, and all where the Command Post has taken one; 0: each is sent. Only for a "
+     "Command Post that adds each cloud to those before it. Not for clouds that are whole.",
      real<MEMBER(robots.back().voxel_metres)>(0, 10)},
 
     {"network.confirm_within_ms",

@@ -53,9 +53,15 @@ TEST_F(TakenVoxelsTest, LeavesOutPointsOfVoxelsThatHaveOne) {
 }
 
 TEST_F(TakenVoxelsTest, LeavesNothingOutThatWasNotTakenYet) {
-  const auto kept = rest({0.1, 0.2, 0.1});
-  EXPECT_EQ(kept.left_out, 0u) << "of one voxel, but of one message";
+  EXPECT_EQ(rest({0.1, 0.6, 1.1}).left_out, 0u);
   EXPECT_EQ(rest({0.1}).left_out, 0u) << "that was packed, but nobody said that it was taken";
+}
+
+TEST_F(TakenVoxelsTest, KeepsTheFirstOfEachVoxelOfACloud) {
+  const auto kept = rest({0.1, 0.6, 5, 0.2, 0.9, 5.1, 0.1});
+  EXPECT_EQ(kept.left_out, 4u);
+  const Bytes all = row_of(kLayouts[0], {0.1, 0.6, 5});
+  EXPECT_EQ(kept.data.bytes.to_vector(), all);
 }
 
 TEST_F(TakenVoxelsTest, CopiesNothingWhereNothingIsLeftOut) {

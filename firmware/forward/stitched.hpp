@@ -26,17 +26,16 @@ struct Packed {
 /// What is done to a map on its way to that form.
 struct Packing {
   bool arranges_clouds = true;
-  bool leaves_grids =
-      false;  // a grid that is compressed goes so, for it would leave later if it were made smaller
+  /// A grid that is compressed goes as it is: made smaller, it would leave later.
+  bool leaves_grids = false;
 };
 
 /// A cloud goes by waiting.precision, or exact where that cannot be held. CPU-bound in the size of the map:
 /// meant for a worker.
 Packed packed(const lanes::WaitingMap& waiting, LeavingOut leaving_out = {}, const Packing& packing = {});
 
-/// The map with its cells, which are put together of its parts where they are there
-/// alone, over what lies under them where they leave gaps. The error says
-/// what is wrong with the data of one.
+/// The map with its cells, which are put together of its parts where they are there alone, over what lies
+/// under them where they leave gaps. The error says what is wrong with the data of one.
 icd::Checked<icd::MapUpdate> whole_of(const lanes::WaitingMap& waiting);
 
 }  // namespace adit::forward

@@ -36,10 +36,9 @@ std::string report(std::uint64_t number) {
 std::string state(std::uint64_t number) {
   std::string poses;
   for (std::uint64_t robot = 0; robot < 10; ++robot) {
-    poses +=
-        icd::sentence(robot == 0 ? "" : ", ", "{\"name\": \"robot_", robot, "\", \"position\": {",
-                      position(number + robot), "}, \"orientation\": {\"x\": 0.0, \"y\": 0.0, ",
-                      R"("z": 0.3826834323650898, "w": 0.9238795325112867}})");
+    poses += icd::sentence(robot == 0 ? "" : ", ", "{\"name\": \"robot_", robot, "\", \"position\": {",
+                           position(number + robot), "}, \"orientation\": {\"x\": 0.0, \"y\": 0.0, ",
+                           R"("z": 0.3826834323650898, "w": 0.9238795325112867}})");
   }
   return icd::sentence(R"({"header": {"stamp": {"secs": )", 1'600'000'000 + number / 1000, R"(, "nsecs": )",
                        number % 1000 * 1'000'000, R"(}, "frame_id": "darpa"}, "poses": [)", poses, "]}");

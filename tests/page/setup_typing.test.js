@@ -131,7 +131,7 @@ test("shows two operators what each has done, and lets one go on from the newer"
   await page.getByRole("heading", { name: "Somebody else has saved settings meanwhile" }).waitFor();
   await page.getByRole("button", { name: "Go on with mine over theirs" }).click();
   await page.getByRole("button", { name: "Apply changes" }).click();
-  assert.deepEqual((await review(page)).map(([path]) => path.replace(/\..*/, "")), ["robots[ugv2]", "robots[ugv2]", "robots[ugv2]", "robots[ugv2]"]);
+  assert.deepEqual((await review(page)).map(([path]) => path.replace(/\..*/, "")), Array(5).fill("robots[ugv2]"));
   await page.getByRole("button", { name: "Apply", exact: true }).click();
   await hears(page, /Applied\./);
   assert.deepEqual((await ask("/adit/settings")).said.settings.robots.map(({ name }) => name), ["ugv1", "uav1"]);

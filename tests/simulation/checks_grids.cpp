@@ -2,6 +2,7 @@
 #include <algorithm>
 #include <deque>
 #include <map>
+#include <set>
 #include <tuple>
 #include <utility>
 
@@ -69,7 +70,8 @@ void for_each_cell(const Extent& extent, Visit visit) {
 
 /// The grids of one name, and what the Command Post has of them. What two Command Posts have is taken
 /// together where an operator `switches` between them: then a cell that one of them lacks is not missed. Nor
-/// is one of which an earlier run had more, for a run begins with an empty map.
+/// is one of which an earlier run had more, for a run begins with an empty map, and one that was sent by a
+/// life of which the box knows nothing.
 class GridsOfOneName {
  public:
   explicit GridsOfOneName(bool has_more_maps) : has_more_maps_(has_more_maps) {}
@@ -236,13 +238,24 @@ class GridsOfOneName {
   std::map<Key, Has> has_;
 };
 
+/// A life that could write nothing down, and a power cut: the next one holds itself for the first.
+bool leaves_no_trace(const Evidence& evidence) {
+  std::set<std::int64_t> unwritten;  // lives
+  return std::ranges::any_of(evidence.events, [&](const Event& event) {
+    if (event.kind == Kind::Said && event.text.contains("stamps may run backward"))
+      unwritten.insert(event.life);
+    return event.kind == Kind::PowerCut && unwritten.contains(event.serial);
+  });
+}
+
 }  // namespace
 
 void grid_arrived(const Evidence& evidence, Broken& broken) {
   const auto all = asked_in(evidence.events, kMap);
-  const bool has_more_maps = std::ranges::any_of(evidence.events, [](const Event& event) {
-    return event.what == kCourse || event.kind == Kind::NewRun;
-  });
+  const bool has_more_maps =
+      leaves_no_trace(evidence) || std::ranges::any_of(evidence.events, [](const Event& event) {
+        return event.what == kCourse || event.kind == Kind::NewRun;
+      });
   std::map<std::string, GridsOfOneName> names;
   const auto of = [&](const std::string& name) -> GridsOfOneName& {
     return names.try_emplace(name, has_more_maps).first->second;

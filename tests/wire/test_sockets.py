@@ -92,9 +92,10 @@ class Clients(threading.Thread):
             return
 
     def go_on(self):
-        """Until some more were answered."""
-        before = self.answered
-        programs.wait_until(lambda: self.answered > before + 50, "more clients to be answered")
+        """Until some more were answered, and all who came before: nobody is cut off twice, by one end and by the next."""
+        before, came = self.answered, len(self.visits)
+        programs.wait_until(lambda: self.answered > before + 50 and not any(each.is_alive() for each in self.visits[:came]),
+                            "more clients to be answered")
 
     def stop(self):
         self.ended = True

@@ -72,6 +72,7 @@ RunView calm(Time now, double elapsed) {
       traffic("state", "ANYmal1", now, 0.4, 710, 230),   traffic("state", "ANYmal2", now, 0.4, 710, 230),
       traffic("state", "Scout", now, 0.4, 709, 230),     traffic("markers", "", now, 21, 12, 1'900)};
   view.activities[2].merged = 96;
+  view.activities[2].clouds = "parts", view.activities[2].precision = "8mm";
   view.robots = {{"ANYmal1", {24, 6, 0.5}, 0.5, now - 0.5},
                  {"ANYmal2", {52, -14, 0.25}, -2, now - 0.5},
                  {"Scout", {71 + 4 * std::sin(elapsed / 5), 18, 3}, 1.6, now - 0.5}};

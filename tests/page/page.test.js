@@ -13,6 +13,7 @@ test("shows how the run stands, and that every map arrives", async (t) => {
   assert.match(await text(page, "#arriving"), /Yes, every map arrives/);
   assert.equal(await page.getByRole("row", { name: /ANYmal2/ }).count(), 1);
   await page.getByRole("row", { name: /ANYmal2/ }).filter({ hasText: /7 s.*up to date/ }).waitFor(); // its age grows until the next event
+  await page.getByTitle(/96 merged, taken as parts, rounded to 8mm$/).waitFor();
   assert.match(await text(page, "#reports .rows li:first-child"), /scored \+1.*Survivor.*85\.8, −4\.5/);
   assert.match(await text(page, "#refusals .rows"), /422.*got 4799/);
   assert.deepEqual(page.complaints, []);

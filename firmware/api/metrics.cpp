@@ -171,7 +171,7 @@ void write_updates(Exposition& out, const RunView& view) {
     out.sample({{"robot", row.robot}}, row.precision == "1mm" ? 0.001 : row.precision == "8mm" ? 0.008 : 0);
   }
   out.counter("adit_points_left_out_total",
-              "Points that were not sent, for the Command Post has taken one of the same voxel.");
+              "Points that were not sent, for another of their voxel was, or was taken by the Command Post.");
   for (const ActivityRow& row : view.activities) {
     if (row.kind == "cloud") out.sample({{"robot", row.robot}}, number(row.points_left_out));
   }

@@ -82,7 +82,7 @@ constexpr Member kActivity[] = {
         .one_of(kPrecisions),
     member<&ActivityRow::points_left_out>(
         "points_left_out",
-        "of its clouds, because the Command Post has taken one of the same voxel "
+        "of its clouds, because another of their voxel went, or was taken by the Command Post "
         "(robots[].voxel_metres)"),
 };
 

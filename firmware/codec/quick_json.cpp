@@ -8,6 +8,7 @@
 
 #include "codec/body_decoder.hpp"
 #include "codec/json_characters.hpp"
+#include "codec/json_number.hpp"
 #include "codec/json_value.hpp"
 
 namespace adit::codec {
@@ -35,9 +36,6 @@ class QuickReader {
     if (next() != c) return false;
     ++at_;
     return true;
-  }
-  void skip_digits() {
-    while (is_digit(next())) ++at_;
   }
 
   bool value(Value& into) {
@@ -87,24 +85,12 @@ class QuickReader {
     return true;
   }
 
-  /// RFC 8259 section 6.
   bool number(Value& into) {
+    JsonNumber grammar;
     const char* const begin = at_;
-    if (next() == '-') ++at_;
-    if (!is_digit(next())) return false;
-    if (*at_++ != '0') skip_digits();
-    if (next() == '.') {
-      if (++at_; !is_digit(next())) return false;
-      skip_digits();
-    }
-    if (next() == 'e' || next() == 'E') {
-      if (++at_; next() == '+' || next() == '-') ++at_;
-      if (!is_digit(next())) return false;
-      skip_digits();
-    }
+    at_ += grammar.next({at_, end_});
     double number = 0;
-    const auto [end, error] = std::from_chars(begin, at_, number);
-    if (error != std::errc() || end != at_) return false;
+    if (!grammar.complete() || std::from_chars(begin, at_, number).ec != std::errc()) return false;
     into = json_number_value(number);
     return true;
   }

@@ -73,6 +73,7 @@ void Maps::carry_on(const journal::Carried& carried, bool ran_before) {
 
 void Maps::take_settings() {
   lane_.a_slot_carries(slot_of(settings_.command_post));
+  lane_.merge_at_most(settings_.queues.merge_bytes);
   lane_.clouds_are(settings::clouds_of(settings_.robots));
   lane_.precisions_are(settings::precisions_of(settings_.robots));
   points_.edges_are(settings::voxels_of(settings_.robots));
@@ -150,7 +151,6 @@ loop::Instant Maps::begins_to_pack(loop::Instant now) const {
 void Maps::prepare(Place& place) {
   auto prepared = std::make_shared<Prepared>();
   slot_.link_delivers(channel_.delivers());
-  lane_.merge_at_most(settings_.queues.merge_bytes);
   lane_.a_message_holds(slot_.points_within(pace_.spacing()));
   auto waiting = lane_.take(loop_.now());
   if (!waiting) return;

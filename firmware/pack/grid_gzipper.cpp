@@ -94,10 +94,4 @@ icd::ChunkedBytes GridGzipper::finish() {
   return std::move(member_);
 }
 
-icd::ChunkedBytes gzip_grid(icd::ChunkedBytes cells, std::size_t width) {
-  GridGzipper gzipper(width);
-  while (!cells.empty()) gzipper.feed(*cells.pop_front());
-  return gzipper.finish();
-}
-
 }  // namespace adit::pack

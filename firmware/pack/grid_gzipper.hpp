@@ -48,7 +48,4 @@ class GridGzipper {
   std::uint32_t crc_ = 0, size_ = 0;
 };
 
-/// One gzip member of the cells of a grid that is `width` cells wide; consumed chunk by chunk.
-icd::ChunkedBytes gzip_grid(icd::ChunkedBytes cells, std::size_t width);
-
 }  // namespace adit::pack

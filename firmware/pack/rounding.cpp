@@ -24,10 +24,13 @@ namespace {
 constexpr std::string_view kUnturned[] = {"intensity", "i",    "rgb", "rgba",      "ring",  "reflectivity",
                                           "label",     "time", "t",   "timestamp", "range", "ambient"};
 
+bool is_coordinate(const icd::FieldSchema& field) {
+  return field.name == "x" || field.name == "y" || field.name == "z";
+}
+
 bool may_be_turned(const icd::PointCloud2& cloud) {
   return std::ranges::all_of(cloud.fields, [](const icd::FieldSchema& field) {
-    return field.name == "x" || field.name == "y" || field.name == "z" ||
-           std::ranges::find(kUnturned, field.name) != std::end(kUnturned);
+    return is_coordinate(field) || std::ranges::find(kUnturned, field.name) != std::end(kUnturned);
   });
 }
 
@@ -80,7 +83,7 @@ std::optional<Shift> shift_of(const icd::PointCloud2& cloud, const Box& box, dou
 
 icd::PointCloud2 in_float32(icd::PointCloud2 cloud) {
   for (icd::FieldSchema& field : cloud.fields) {
-    if (field.name == "x" || field.name == "y" || field.name == "z") field.datatype = icd::Datatype::Float32;
+    if (is_coordinate(field)) field.datatype = icd::Datatype::Float32;
   }
   return cloud;
 }

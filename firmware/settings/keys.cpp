@@ -98,10 +98,9 @@ const Key kKeys[] = {
      "has each of its points.",
      choice<MEMBER(robots.back().clouds)>(lanes::kCloudsWords)},
     {"robots[].precision",
-     "How far the coordinates of that robot's clouds may be rounded, so that these are smaller. exact: not "
-     "at "
-     "all. 1mm, 8mm: to steps of that size; a point moves by 1.3 steps at most. auto: as far as what waits "
-     "forces it. Clouds stay exact where command_post.arrange_clouds is false.",
+     "How far the coordinates of that robot's clouds may be rounded, so that these are smaller. exact: "
+     "not at all. 1mm, 8mm: to steps of that size; a point moves by 1.3 steps at most. auto: as far as what "
+     "waits forces it. Clouds stay exact where command_post.arrange_clouds is false.",
      choice<MEMBER(robots.back().precision)>(lanes::kPrecisionWords)},
     {"robots[].voxel_metres",
      "Of that robot's clouds one point of each voxel goes, a cube of so many metres (at least 0.01): the "

@@ -4,6 +4,8 @@
 #include <cstring>
 #include <utility>
 
+#include "icd/xyz.hpp"
+
 namespace adit::api {
 namespace {
 
@@ -44,11 +46,7 @@ icd::MapUpdate scanned(double reach) {
       values.push_back(static_cast<float>(x / 40 + 0.1 * across * across));
     }
   }
-  icd::PointCloud2 cloud;
-  cloud.fields = {{"x", 0, icd::Datatype::Float32, 1},
-                  {"y", 4, icd::Datatype::Float32, 1},
-                  {"z", 8, icd::Datatype::Float32, 1}};
-  cloud.point_step = 12;
+  const icd::PointCloud2 cloud = icd::xyz();
   std::vector<std::uint8_t> bytes(values.size() * sizeof(float));
   std::memcpy(bytes.data(), values.data(), bytes.size());
   icd::MapUpdate map{icd::RobotName::parse("ugv1"), cloud, {}};

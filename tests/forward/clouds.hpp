@@ -7,16 +7,13 @@
 
 #include "codec/map_pieces.hpp"
 #include "icd/map_update.hpp"
+#include "icd/xyz.hpp"
 
 namespace adit::forward {
 
 /// A cloud with points on the x axis; "": of no robot.
 inline icd::MapUpdate cloud_along_x(const char* robot, const std::vector<float>& xs) {
-  icd::PointCloud2 cloud;
-  cloud.fields = {{"x", 0, icd::Datatype::Float32, 1},
-                  {"y", 4, icd::Datatype::Float32, 1},
-                  {"z", 8, icd::Datatype::Float32, 1}};
-  cloud.point_step = 12;
+  const icd::PointCloud2 cloud = icd::xyz();
   std::vector<std::uint8_t> bytes(12 * xs.size());
   for (std::size_t i = 0; i < xs.size(); ++i) std::memcpy(bytes.data() + 12 * i, &xs[i], sizeof xs[i]);
   return {

@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "codec/gzip.hpp"
+#include "icd/xyz.hpp"
 #include "loop/turn_until.hpp"
 
 namespace adit::forward {
@@ -29,11 +30,7 @@ icd::MapUpdate grid(const char* robot, double x, std::uint32_t width, std::uint8
 
 /// Points at the frame's origin.
 icd::MapUpdate cloud(const char* robot, std::size_t points) {
-  icd::PointCloud2 cloud;
-  cloud.fields = {{"x", 0, icd::Datatype::Float32, 1},
-                  {"y", 4, icd::Datatype::Float32, 1},
-                  {"z", 8, icd::Datatype::Float32, 1}};
-  cloud.point_step = 12;
+  const icd::PointCloud2 cloud = icd::xyz();
   const std::vector<std::uint8_t> bytes(points * 12);
   return {
       icd::RobotName::parse(robot), cloud, {icd::ChunkedBytes{bytes}, icd::Compression::None, bytes.size()}};

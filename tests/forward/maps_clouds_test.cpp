@@ -6,6 +6,7 @@
 
 #include "forward/around.hpp"
 #include "forward/maps.hpp"
+#include "icd/xyz.hpp"
 #include "loop/turn_until.hpp"
 
 namespace adit::forward {
@@ -14,11 +15,7 @@ namespace {
 constexpr std::size_t kStep = 12;
 
 icd::MapUpdate cloud_of(const std::vector<std::uint8_t>& points) {
-  icd::PointCloud2 cloud;
-  cloud.fields = {{"x", 0, icd::Datatype::Float32, 1},
-                  {"y", 4, icd::Datatype::Float32, 1},
-                  {"z", 8, icd::Datatype::Float32, 1}};
-  cloud.point_step = kStep;
+  const icd::PointCloud2 cloud = icd::xyz();
   std::vector<std::uint8_t> bytes;
   for (const std::uint8_t point : points) bytes.insert(bytes.end(), kStep, point);
   return {

@@ -24,7 +24,7 @@ MapLane lane_of(Clouds clouds) {
 }
 
 Points set_of(const icd::MapData& data) {
-  const auto points = points_of({{}, xyz(), data});
+  const auto points = points_of({{}, icd::xyz(), data});
   return {points.begin(), points.end()};
 }
 
@@ -93,7 +93,7 @@ TEST(ComparedClouds, AreReplacedByOneThatHasTheirPoints) {
 }
 
 TEST(ComparedClouds, AreThoseOfOneKindOfPointsOnly) {
-  auto other = xyz();
+  auto other = icd::xyz();
   other.is_bigendian = true;
   MapLane lane{kRoom};
   lane.add(1, cloud_update("R1", {1}), at(1));

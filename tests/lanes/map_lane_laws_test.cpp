@@ -58,7 +58,7 @@ class Course {
   icd::MapUpdate any_cloud(const char* name) {
     std::vector<std::uint8_t> points;
     for (int i = pick(4); i > 0; --i) points.push_back(++point_);
-    auto cloud = xyz();
+    auto cloud = icd::xyz();
     cloud.is_bigendian = pick(5) == 0;
     return cloud_update(name, points, cloud);
   }

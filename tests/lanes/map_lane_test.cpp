@@ -133,7 +133,7 @@ TEST(MapLane, MergesWithinItsLimitAndInOrder) {
 }
 
 TEST(MapLane, MergesNoCloudsPastOneThatDoesNotFit) {
-  auto other = xyz();
+  auto other = icd::xyz();
   other.is_bigendian = true;
   MapLane lane{kPlenty};
   lane.add(1, cloud_update("R1", {1}), at(1));
@@ -156,7 +156,7 @@ TEST(MapLane, MergesNoPackedCloud) {
 }
 
 TEST(MapLane, SaysWhichCloudsCanBeMerged) {
-  const auto plain = xyz();
+  const auto plain = icd::xyz();
   auto step = plain, fields = plain, bytes = plain, moved = plain, still = plain;
   step.point_step = 16;
   fields.fields[2].name = "Z";
@@ -277,7 +277,7 @@ TEST(MapLane, TellsWhatJoinsTheLastThatWaitsOfItsSender) {
   }());
   EXPECT_FALSE(lane.joins(grid_update("R1", grid(0.4, 0, 4, 4)))) << "what waits goes by itself";
 
-  auto turned = xyz();
+  auto turned = icd::xyz();
   turned.is_bigendian = true;
   lane.add(3, cloud_update("R1", {1}), at(3));
   EXPECT_TRUE(lane.joins(cloud_update("R1", {2})));

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "icd/map_update.hpp"
+#include "icd/xyz.hpp"
 #include "lanes/map_lane.hpp"
 
 namespace adit::lanes {
@@ -37,18 +38,9 @@ inline icd::MapUpdate grid_update(std::string_view name, const icd::OccupancyGri
   return {robot(name), grid, data};
 }
 
-inline icd::PointCloud2 xyz() {
-  icd::PointCloud2 cloud;
-  cloud.fields = {{"x", 0, icd::Datatype::Float32, 1},
-                  {"y", 4, icd::Datatype::Float32, 1},
-                  {"z", 8, icd::Datatype::Float32, 1}};
-  cloud.point_step = 12;
-  return cloud;
-}
-
 /// One point for each of `points`, all twelve bytes of which are that value.
 inline icd::MapUpdate cloud_update(std::string_view name, const std::vector<std::uint8_t>& points,
-                                   const icd::PointCloud2& cloud = xyz()) {
+                                   const icd::PointCloud2& cloud = icd::xyz()) {
   std::vector<std::uint8_t> bytes;
   for (const std::uint8_t point : points) bytes.insert(bytes.end(), 12, point);
   return {robot(name), cloud, {icd::ChunkedBytes{bytes}, icd::Compression::None, bytes.size()}};

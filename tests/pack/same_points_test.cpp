@@ -2,6 +2,7 @@
 // point, bit for bit.
 #include <gtest/gtest.h>
 
+#include "icd/xyz.hpp"
 #include "pack/generated.hpp"
 #include "pack/pack.hpp"
 #include "pack/read_back.hpp"
@@ -60,11 +61,7 @@ INSTANTIATE_TEST_SUITE_P(Seeds, SamePoints, testing::Range<std::uint64_t>(1, 13)
 
 TEST(SamePointsOf, ACloudThatIsOrderedInSeveralBlocks) {
   Generator make{1};
-  icd::PointCloud2 fields;
-  fields.fields = {{"x", 0, icd::Datatype::Float32, 1},
-                   {"y", 4, icd::Datatype::Float32, 1},
-                   {"z", 8, icd::Datatype::Float32, 1}};
-  fields.point_step = 12;
+  const icd::PointCloud2 fields = icd::xyz();
   Bytes bytes;
   for (int i = 0; i < 530'000; ++i) {
     const auto at = make.on_wall({0, 0, 0}, 100);

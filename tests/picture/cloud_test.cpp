@@ -3,6 +3,7 @@
 #include <numbers>
 #include <random>
 
+#include "icd/xyz.hpp"
 #include "picture/maps.hpp"
 #include "picture/palette.hpp"
 
@@ -141,11 +142,7 @@ TEST(Cloud, OfVeryManyPointsSomeAreLookedAtEvenly) {
     values.push_back(0);
     values.push_back(1);
   }
-  icd::PointCloud2 cloud;
-  cloud.fields = {{"x", 0, icd::Datatype::Float32, 1},
-                  {"y", 4, icd::Datatype::Float32, 1},
-                  {"z", 8, icd::Datatype::Float32, 1}};
-  cloud.point_step = 12;
+  const icd::PointCloud2 cloud = icd::xyz();
   std::vector<std::uint8_t> bytes(values.size() * sizeof(float));
   std::memcpy(bytes.data(), values.data(), bytes.size());
   Easel easel;

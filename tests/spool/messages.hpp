@@ -3,6 +3,7 @@
 #include "icd/map_update.hpp"
 #include "icd/markers_update.hpp"
 #include "icd/state_update.hpp"
+#include "icd/xyz.hpp"
 
 namespace adit::spool {
 
@@ -20,13 +21,9 @@ inline icd::MarkersUpdate markers() {
 
 /// A cloud of that many points, no two neighbours alike.
 inline icd::MapUpdate cloud(std::size_t points) {
-  icd::PointCloud2 cloud;
+  icd::PointCloud2 cloud = icd::xyz();
   cloud.header.stamp = 5;
   cloud.origin = icd::Pose{};
-  cloud.fields = {{"x", 0, icd::Datatype::Float32, 1},
-                  {"y", 4, icd::Datatype::Float32, 1},
-                  {"z", 8, icd::Datatype::Float32, 1}};
-  cloud.point_step = 12;
   std::vector<std::uint8_t> bytes(points * 12);
   for (std::size_t i = 0; i < bytes.size(); ++i) bytes[i] = static_cast<std::uint8_t>(i * 7 >> 8);
   return {

@@ -1,0 +1,16 @@
+#pragma once
+
+#include "icd/map_update.hpp"
+
+namespace adit::icd {
+
+/// Points of x, y and z in float32 with nothing between them, as most robots send them.
+inline PointCloud2 xyz() {
+  PointCloud2 cloud;
+  cloud.fields = {
+      {"x", 0, Datatype::Float32, 1}, {"y", 4, Datatype::Float32, 1}, {"z", 8, Datatype::Float32, 1}};
+  cloud.point_step = 12;
+  return cloud;
+}
+
+}  // namespace adit::icd

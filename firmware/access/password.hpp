@@ -11,6 +11,8 @@ namespace adit::access {
 /// What the first password is set with: 8 digits, on the box's label or on its console.
 inline constexpr std::size_t kCodeDigits = 8;
 bool is_code(std::string_view text);
+/// In the state folder: the code that was drawn, or brought by a card, until a password is set.
+inline constexpr const char* kCodeFile = "first-start.code";
 /// From 64 random bits.
 std::string code_from(std::uint64_t random);
 

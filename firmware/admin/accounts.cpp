@@ -96,20 +96,23 @@ bool Accounts::is_code(std::string_view presented) const {
 void Accounts::check(std::string password, std::string address,
                      std::function<void(std::optional<Role>)> done) {
   auto role = std::make_shared<std::optional<Role>>();
-  workers_.submit([role, password = std::move(password),
-                   accounts = accounts_] { *role = access::role_of(password, accounts); },
-                  [this, role, accounts = accounts_, address = std::move(address), done = std::move(done)] {
-                    // another was set while it was checked
-                    if (*role && accounts_.of(**role) != accounts.of(**role)) role->reset();
-                    if (*role) {
-                      host::log(Level::Notice, "a password was shown",
-                                {{"role", std::string(name_of(**role))}, {"sender", address}});
-                    } else {
-                      host::log(Level::Warning, "a wrong password was shown", {{"sender", address}});
-                    }
-                    done(*role);
-                  },
-                  [] {});  // who waits for it is told by being dropped
+  workers_.submit(
+      loop::Urgency::OnTheWay,
+      [role, password = std::move(password), accounts = accounts_] {
+        *role = access::role_of(password, accounts);
+      },
+      [this, role, accounts = accounts_, address = std::move(address), done = std::move(done)] {
+        // another was set while it was checked
+        if (*role && accounts_.of(**role) != accounts.of(**role)) role->reset();
+        if (*role) {
+          host::log(Level::Notice, "somebody logged in",
+                    {{"role", std::string(name_of(**role))}, {"sender", address}});
+        } else {
+          host::log(Level::Warning, "a log-in was refused: wrong password", {{"sender", address}});
+        }
+        done(*role);
+      },
+      [] {});  // who waits for it is told by being dropped
 }
 
 void Accounts::set(Role role, std::optional<std::string> password,
@@ -134,7 +137,7 @@ void Accounts::set(Role role, std::optional<std::string> password,
     }
   };
   const auto ended = [this, changed, role, done = std::move(done)] { was_set(role, *changed, done); };
-  workers_.submit(change, [this, keep, ended] { writer_.submit(keep, ended); });
+  workers_.submit(loop::Urgency::OnTheWay, change, [this, keep, ended] { writer_.submit(keep, ended); });
 }
 
 void Accounts::was_set(Role role, const icd::Checked<access::Accounts>& changed,

@@ -5,6 +5,7 @@
 
 #include "access/accounts.hpp"
 #include "access/devices.hpp"
+#include "access/password.hpp"
 #include "access/window.hpp"
 #include "admin/session_keeper.hpp"
 #include "api/keys.hpp"
@@ -20,7 +21,7 @@ class Accounts final : public api::Keys {
   /// In the state folder: the passwords' hashes, and until there is one the code that sets it, where the
   /// box's label has none.
   static constexpr const char* kFile = "access.json";
-  static constexpr const char* kCodeFile = "first-start.code";
+  static constexpr const char* kCodeFile = access::kCodeFile;
   /// Beside them: the browsers that have been in.
   static constexpr const char* kDevicesFile = "devices.json";
   static constexpr std::chrono::minutes kSetUp{10}, kAtBox{1};  // for how long the button's press is good

@@ -31,6 +31,9 @@ std::expected<bool, std::string> FactoryReset::finish() {
     std::filesystem::remove_all(runtime_ + '/' + kept, error);
     if (error) return std::unexpected(runtime_ + '/' + kept + ": cannot be removed: " + error.message());
   }
+  std::error_code error;
+  std::filesystem::remove_all(state_ + "/runs", error);
+  if (error) return std::unexpected(state_ + "/runs: cannot be removed: " + error.message());
   // Last: until then the box does not look as if it were reset.
   for (const std::string& file :
        {runtime_ + '/' + SessionKeeper::kFile, state_ + '/' + Accounts::kDevicesFile,

@@ -14,6 +14,27 @@ std::unexpected<icd::Refusal> conflict(std::string sentence) {
   return refuse(icd::Status::Conflict, std::move(sentence));
 }
 
+/// Names are found on the team's side alone: nothing listens on the other.
+api::PortRow port_of(const char* side, const std::string& interface) {
+  const auto all = host::interfaces().value_or(std::vector<host::Interface>{});
+  const auto found = std::ranges::find(all, interface, &host::Interface::name);
+  const host::Port port = host::port(interface).value_or(host::Port{});
+  const bool is_team = std::string_view(side) == "team";
+  api::PortRow row{.side = side,
+                   .interface = interface,
+                   .mac = port.mac,
+                   .addresses = {},
+                   .name = {},
+                   .carrier = {},
+                   .mbit = port.mbit,
+                   .duplex = port.duplex};
+  if (found == all.end()) return row;
+  row.addresses = found->addresses;
+  row.carrier = found->carrier;
+  if (is_team) row.name = host::host_name() + ".local";
+  return row;
+}
+
 }  // namespace
 
 void NetworkChange::refresh() const {
@@ -21,6 +42,7 @@ void NetworkChange::refresh() const {
   if (read_at_ && now < *read_at_ + kFresh) return;
   read_at_ = now;
   status_ = requests_.status();
+  probed_ = requests_.probed();
 }
 
 bool NetworkChange::is_asked() const {
@@ -86,6 +108,9 @@ api::NetworkView NetworkChange::network() const {
   view.command_post_interface = settings_.command_post.interface;
   view.team = host::own_address(view.team_interface);
   view.command_post = host::own_addresses(view.command_post_interface);
+  if (!view.team_interface.empty()) view.ports.push_back(port_of("team", view.team_interface));
+  if (!view.command_post_interface.empty())
+    view.ports.push_back(port_of("command_post", view.command_post_interface));
   if (status_ && status_->kept) {
     view.mode = status_->kept->mode;
     view.gateway = status_->kept->gateway;
@@ -176,12 +201,12 @@ void NetworkChange::lead_to_endpoints() {
   }
 }
 
-std::string NetworkChange::next_hop() const {
+std::string NetworkChange::next_hop(const settings::Address& endpoint) const {
   refresh();
-  const auto endpoint = settings::ipv4_of(settings_.command_post.scoring.address);
+  const auto number = settings::ipv4_of(endpoint.address);
   const auto numbers = present();
-  if (!endpoint || !numbers) return "";
-  if (network::on_link(*numbers, *endpoint) != nullptr) return settings_.command_post.scoring.address;
+  if (!number || !numbers) return "";
+  if (network::on_link(*numbers, *number) != nullptr) return endpoint.address;
   return numbers->gateway ? settings::ipv4_text(*numbers->gateway) : "";
 }
 
@@ -198,18 +223,20 @@ icd::Checked<void> NetworkChange::say(network::Word::What what, const network::P
   return {};
 }
 
-std::string NetworkChange::attention() const {
+alarms::NetworkFact NetworkChange::fact() const {
+  alarms::NetworkFact fact;
   const auto waits = pending();
   const bool bare = status_ && status_->kept && status_->kept->command_post.empty();
-  if (!waits && bare && hindrance().empty()) {
-    return icd::sentence("there is no address on ", settings_.command_post.interface,
-                         " yet: set one in the Command Post's subnet");
+  fact.no_address = !waits && bare && hindrance().empty();
+  if (waits) {
+    fact.confirm_within = std::chrono::duration<double>(waits->until - loop_.now()).count();
+    fact.page = network::page_at(waits->wanted, settings_.team.listen);
   }
-  if (!waits) return "";
-  const auto left = std::chrono::ceil<std::chrono::seconds>(waits->until - loop_.now()).count();
-  if (left <= 0) return "network change: it is being taken back";
-  return icd::sentence("network change: confirm within ", left, " s at ",
-                       network::page_at(waits->wanted, settings_.team.listen));
+  if (probed_ && !probed_->claimant.empty()) {
+    fact.taken_by = probed_->claimant;
+    fact.address = probed_->address;
+  }
+  return fact;
 }
 
 }  // namespace adit::admin

@@ -4,6 +4,7 @@
 #include <string>
 
 #include "admin/network_requests.hpp"
+#include "alarms/facts.hpp"
 #include "api/network.hpp"
 #include "loop/loop.hpp"
 #include "settings/settings.hpp"
@@ -34,11 +35,12 @@ class NetworkChange final : public api::Network {
   /// Called each second. Takes note of what became of the last change, and sees to it that there are ways to
   /// the endpoints of the settings, and of all courses.
   void every_second();
-  /// Who answers for them: the first endpoint, or the gateway to it; "": there is no way to it.
-  std::string next_hop() const;
+  /// Who answers for an endpoint on the Command Post's side: it, or the gateway to it; "": there is no way to
+  /// it.
+  std::string next_hop(const settings::Address& endpoint) const;
 
-  /// What the operator is to do while a change waits; "" where none does.
-  std::string attention() const;
+  /// What is to be known of the addresses at once.
+  alarms::NetworkFact fact() const;
 
  private:
   /// What was asked for and is not in the status yet.
@@ -64,6 +66,7 @@ class NetworkChange final : public api::Network {
   const settings::Settings& settings_;
   NetworkRequests& requests_;
   mutable std::expected<network::Status, std::string> status_;
+  mutable std::optional<network::Probed> probed_;
   mutable std::optional<loop::Instant> read_at_;
   std::optional<Asked> asked_;            // its last word is had by is_asked()
   std::optional<loop::Instant> told_at_;  // where the endpoints are

@@ -17,6 +17,12 @@ icd::Refusal conflicting(std::string sentence) {
   return {icd::Status::Conflict, std::move(sentence)};
 }
 
+/// What is said to be done before adit-update says so itself.
+const char* doing_of(update::Request::What what) {
+  using What = update::Request::What;
+  return what == What::Restart || what == What::Back ? "restarting" : "checking";
+}
+
 /// Why a bundle of that size has no place in the folder.
 std::optional<icd::Refusal> no_room(const std::string& folder, std::uint64_t size) {
   struct statvfs disk{};
@@ -72,6 +78,7 @@ api::UpdateView Updates::update() const {
     view.refusal = status_->refusal;
     view.last = status_->last;
     view.trial = status_->trial;
+    view.stray = status_->stray;
     view.stick = status_->stick;
     view.stick_why = status_->stick_trouble;
   }
@@ -81,7 +88,7 @@ api::UpdateView Updates::update() const {
     view.progress = static_cast<int>(100 * receiving_->received() / expected_);
     view.refusal.clear();
   } else if (is_asked()) {
-    view.doing = asked_->request.what == update::Request::What::Restart ? "restarting" : "checking";
+    view.doing = doing_of(asked_->request.what);
     view.refusal.clear();
   }
   return view;
@@ -93,6 +100,12 @@ std::optional<icd::Refusal> Updates::hindrance() const {
   if (!view.doing.empty())
     return conflicting(icd::sentence("the box is ", view.doing, " already: wait for its end"));
   return std::nullopt;
+}
+
+std::optional<icd::Refusal> Updates::no_stray() const {
+  const api::UpdateView view = update();
+  if (!view.managed || !view.stray.empty()) return std::nullopt;
+  return conflicting("the slot that runs is the one that was good last");
 }
 
 icd::Checked<std::unique_ptr<api::Upload>> Updates::receive(std::uint64_t size, bool again,
@@ -120,10 +133,25 @@ icd::Checked<void> Updates::install_from_stick(bool again) {
 }
 
 icd::Checked<void> Updates::restart(bool anyway) {
+  return ask_for_restart(update::Request::What::Restart, anyway);
+}
+
+icd::Checked<void> Updates::go_back(bool anyway) {
+  if (auto why = no_stray()) return std::unexpected(std::move(*why));
+  return ask_for_restart(update::Request::What::Back, anyway);
+}
+
+icd::Checked<void> Updates::stay() {
+  if (auto why = no_stray()) return std::unexpected(std::move(*why));
+  if (auto why = hindrance()) return std::unexpected(std::move(*why));
+  return ask(update::Request::What::Stay, false);
+}
+
+icd::Checked<void> Updates::ask_for_restart(update::Request::What what, bool anyway) {
   if (auto why = hindrance()) return std::unexpected(std::move(*why));
   const std::string report = anyway ? "" : under_way_();
   if (!report.empty()) return std::unexpected(conflicting(report));
-  return ask(update::Request::What::Restart, false);
+  return ask(what, false);
 }
 
 icd::Checked<void> Updates::ask(update::Request::What what, bool again) {

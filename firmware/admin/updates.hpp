@@ -31,6 +31,8 @@ class Updates final : public api::Updates {
                                                      std::function<void()> resume) override;
   icd::Checked<void> install_from_stick(bool again) override;
   icd::Checked<void> restart(bool anyway) override;
+  icd::Checked<void> go_back(bool anyway) override;
+  icd::Checked<void> stay() override;
 
   /// Called each second: takes note of what became of the last request.
   void every_second();
@@ -50,6 +52,10 @@ class Updates final : public api::Updates {
   bool is_asked() const;
   /// Why nothing can be asked for now; nothing: it can.
   std::optional<icd::Refusal> hindrance() const;
+  /// There is no slot to go back to.
+  std::optional<icd::Refusal> no_stray() const;
+  /// Why the box is not restarted into that: also, unless `anyway`, while a report is under way.
+  icd::Checked<void> ask_for_restart(update::Request::What what, bool anyway);
   icd::Checked<void> ask(update::Request::What what, bool again);
 
   loop::Loop& loop_;

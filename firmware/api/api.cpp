@@ -6,9 +6,11 @@
 #include "api/answers.hpp"
 #include "api/box_routes.hpp"
 #include "api/entrance.hpp"
+#include "api/kept_runs_routes.hpp"
 #include "api/live.hpp"
 #include "api/map_routes.hpp"
 #include "api/network_routes.hpp"
+#include "api/packed.hpp"
 #include "api/page_routes.hpp"
 #include "api/redacted.hpp"
 #include "api/report_routes.hpp"
@@ -55,14 +57,15 @@ class Api::Impl {
     if (served.network) network_.emplace(*served.network, *served.test, [this] { changed(); });
     if (served.updates) updates_.emplace(*served.updates, [this] { changed(); });
     if (served.box) box_.emplace(served.source, lists_, *served.box, entrance_, redaction_, loop);
-    handlers_ = {&pages_,       &sessions_,   &run_,        &maps_,  &reports_,
-                 at(settings_), at(network_), at(updates_), at(box_)};
+    if (served.runs) kept_.emplace(loop, *served.runs, served.source);
+    handlers_ = {&pages_,       &sessions_,   &run_,        &maps_,   &reports_,
+                 at(settings_), at(network_), at(updates_), at(box_), at(kept_)};
   }
 
   std::unique_ptr<intake::BodySink> open(const intake::RequestHead& head,
                                          std::shared_ptr<intake::Responder> asked_by,
                                          std::shared_ptr<intake::Flow> flow) {
-    auto responder = redacted(std::move(asked_by), redaction_);
+    auto responder = redacted(packing(std::move(asked_by), head), redaction_);
     Match found = match(handlers_, head);
     const auto refuse = [&responder](intake::Answer answer) {
       responder->answer(std::move(answer));
@@ -122,6 +125,7 @@ class Api::Impl {
   std::optional<NetworkRoutes> network_;
   std::optional<UpdateRoutes> updates_;
   std::optional<BoxRoutes> box_;
+  std::optional<KeptRunsRoutes> kept_;
   Handlers handlers_;
 };
 

@@ -11,6 +11,7 @@
 namespace adit::api {
 
 class Box;
+class KeptRuns;
 class Keys;
 class Network;
 class Operator;
@@ -29,6 +30,7 @@ struct Served {
   SelfTest* test = nullptr;  // null only where `network` is
   Updates* updates = nullptr;
   Box* box = nullptr;
+  KeptRuns* runs = nullptr;
 };
 
 /// The API of the page and of scripts, on the team's side and behind a login, and the page's own files.

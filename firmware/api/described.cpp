@@ -4,7 +4,11 @@
 #include "codec/schemas.hpp"
 
 // NOLINTBEGIN(bugprone-suspicious-include): where their descriptions stand.
+#include "alarms/alarm.cpp"
+#include "alarms/verdict.cpp"
 #include "api/box.cpp"
+#include "api/history.cpp"
+#include "api/kept_runs.cpp"
 #include "api/map_json.cpp"
 #include "api/network_rows.cpp"
 #include "api/run_view.cpp"
@@ -24,8 +28,9 @@ template <class T>
 constexpr const codec::Schema* of = &codec::KindOf<T>::schema;
 
 constexpr codec::Schemas kSchemas({of<RunView>, of<ReportDetail>, of<MarkerChanges>, of<Tracks>, of<MapView>,
-                                   of<LogPage>, of<NetworkView>, of<UpdateView>, of<SessionRow>, of<WhoAsks>,
-                                   of<SetupView>, of<CheckView>, of<ChangesView>, of<TestView>, of<About>});
+                                   of<History>, of<RunList>, of<LogPage>, of<NetworkView>, of<UpdateView>,
+                                   of<SessionRow>, of<WhoAsks>, of<SetupView>, of<CheckView>, of<ChangesView>,
+                                   of<TestView>, of<About>});
 
 [[gnu::used, gnu::section("schemas")]] constexpr std::array kText = kSchemas.text();
 

@@ -49,11 +49,25 @@ void write_box(Exposition& out, const Measured& measured) {
   out.gauge("adit_sessions", "Logins that have not ended.");
   out.sample({{"role", "operator"}}, number(measured.operators));
   out.sample({{"role", "viewer"}}, number(measured.viewers));
-  out.gauge("adit_attention", "What waits for the operator: sentences on the page.");
-  out.sample(number(measured.view.attention.size()));
   out.gauge("adit_light", "The lights on the box, each with its pattern; always 1.");
   for (const LightRow& light : measured.view.lights) {
     out.sample({{"light", light.name}, {"pattern", light.pattern}}, 1);
+  }
+}
+
+void write_alarms(Exposition& out, const std::vector<alarms::Alarm>& all) {
+  out.gauge("adit_alarm", "What is not as it should be; always 1.");
+  for (const alarms::Alarm& alarm : all) {
+    out.sample({{"id", alarm.id},
+                {"severity", std::string(alarms::kSeverityWords[static_cast<std::size_t>(alarm.severity)])},
+                {"side", std::string(alarms::kSideWords[static_cast<std::size_t>(alarm.side)])}},
+               1);
+  }
+  out.gauge("adit_alarms", "How many alarms there are of each severity.");
+  for (std::size_t i = 0; i < std::size(alarms::kSeverityWords); ++i) {
+    const auto severity = static_cast<alarms::Severity>(i);
+    out.sample({{"severity", std::string(alarms::kSeverityWords[i])}},
+               number(static_cast<std::size_t>(std::ranges::count(all, severity, &alarms::Alarm::severity))));
   }
 }
 
@@ -159,6 +173,10 @@ void write_updates(Exposition& out, const RunView& view) {
     out.sample({{"kind", row.kind}, {"robot", row.robot}},
                row.behind_since ? view.now - *row.behind_since : 0);
   }
+  out.gauge("adit_updates_arrive", "Whether they reach the Command Post, by the word on the page; always 1.");
+  for (const ActivityRow& row : view.activities) {
+    out.sample({{"kind", row.kind}, {"robot", row.robot}, {"arrival", std::string(name_of(row.arrival))}}, 1);
+  }
   out.gauge("adit_clouds_whole",
             "Whether its newest cloud replaces those that wait (1), or each arrives (0).");
   for (const ActivityRow& row : view.activities) {
@@ -205,6 +223,7 @@ void write_refused(Exposition& out, const Usage& usage) {
 std::string write_metrics(const Measured& measured) {
   Exposition out;
   write_box(out, measured);
+  write_alarms(out, measured.view.alarms);
   write_run(out, measured.view);
   write_reports(out, measured.reports);
   write_endpoints(out, measured.view);

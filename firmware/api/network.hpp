@@ -4,6 +4,7 @@
 #include <string>
 #include <vector>
 
+#include "codec/row.hpp"
 #include "icd/status.hpp"
 #include "network/check.hpp"
 #include "network/numbers.hpp"
@@ -16,6 +17,18 @@ struct PendingNetwork {
   network::Numbers wanted;
   std::optional<network::Numbers> previous;  // what it goes back to; nothing: as the box came
   std::string page;                          // where to confirm it: "http://192.168.8.11:8000"
+  static const codec::Row kRow;
+};
+
+/// One of the box's two ports, as the kernel has it now.
+struct PortRow {
+  std::string side, interface;  // side: "team", "command_post"
+  std::string mac;              // "": there is no such interface
+  std::vector<std::string> addresses;
+  std::string name;  // that finds it from this side: "adit.local"; "": none, only the team's has one
+  std::optional<bool> carrier;  // nothing: there is no such interface
+  std::optional<std::uint32_t> mbit;
+  std::string duplex;
   static const codec::Row kRow;
 };
 
@@ -32,8 +45,9 @@ struct NetworkView {
   std::optional<std::uint32_t> gateway;
 
   std::optional<PendingNetwork> pending;
-  std::string last;      // "confirmed" or "taken back"; "" where none was made since the box started
-  std::string last_why;  // of it
+  std::vector<PortRow> ports;  // those that the settings name
+  std::string last;            // "confirmed" or "taken back"; "" where none was made since the box started
+  std::string last_why;        // of it
   static const codec::Row kRow;
 };
 

@@ -68,10 +68,12 @@ intake::Answer NetworkRoutes::after(const icd::Checked<void>& done) {
   return answer;
 }
 
-intake::Answer NetworkRoutes::begin_test() {
-  const bool begun = test_.begin_test();
+intake::Answer NetworkRoutes::begin_test(const std::string& body) {
+  const auto candidate = read_candidate(body);
+  if (!candidate) return refused(candidate.error());
+  const auto begun = test_.begin_test(*candidate);
   changed_();
-  return begun ? tested() : refusal(icd::Status::Conflict, "a test is running: see GET /adit/test");
+  return begun ? tested() : refused(begun.error());
 }
 
 intake::Answer NetworkRoutes::tested() const {

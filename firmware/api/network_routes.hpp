@@ -22,7 +22,7 @@ class NetworkRoutes {
   intake::Answer confirm(const Call& call);
   intake::Answer take_back();
   intake::Answer tested() const;
-  intake::Answer begin_test();
+  intake::Answer begin_test(const std::string& body);
 
  private:
   intake::Answer changed_to(const Call& call);

@@ -46,18 +46,32 @@ constexpr Member kPendingMembers[] = {
     member<&PendingNetwork::page>("page", "where to confirm it"),
 };
 
+constexpr std::string_view kPortSides[] = {"team", "command_post"};
+constexpr Member kPortMembers[] = {
+    member<&PortRow::side>("side").one_of(kPortSides),
+    member<&PortRow::interface>("interface"),
+    member<&PortRow::mac>("mac", "empty: there is no such interface"),
+    member<&PortRow::addresses>("addresses"),
+    member<&PortRow::name>("name", "that finds it (mDNS); empty: none on this side"),
+    member<&PortRow::carrier>("carrier", "null: there is no such interface"),
+    member<&PortRow::mbit>("mbit", "of the link; null: not told").from(0),
+    member<&PortRow::duplex>("duplex", "full, half; empty: not told"),
+};
+
 constexpr Member kNetworkMembers[] = {
     member<&NetworkView::managed>("managed"),
     member<&NetworkView::why>("why", "why they cannot be changed here"),
     group<NetworkView, kTeamSide>("team"),
     group<NetworkView, kCommandPostSide>("command_post"),
     member<&NetworkView::pending>("pending"),
+    member<&NetworkView::ports>("ports"),
     member<&NetworkView::last>("last").as(codec::kTextOrNull).one_of(network::kEndedWords),
     member<&NetworkView::last_why>("last_why"),
 };
 
 }  // namespace
 
+constexpr Row PortRow::kRow = {"", kPortMembers};
 constexpr Row PendingNetwork::kRow = {"", kPendingMembers};
 constexpr Row NetworkView::kRow = {"Network", kNetworkMembers};
 

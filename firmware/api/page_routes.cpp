@@ -6,6 +6,7 @@
 
 #include "api/answers.hpp"
 #include "api/description.hpp"
+#include "api/packed.hpp"
 #include "codec/gzip.hpp"
 #include "site/site.hpp"
 
@@ -26,12 +27,22 @@ icd::Checked<std::string> inflated(const site::File& file) {
   return text;
 }
 
-intake::Answer answer_with(const site::File& file, std::string_view if_none_match) {
+constexpr const char* kForGood = "public, max-age=31536000, immutable";  // RFC 8246
+constexpr const char* kAskEachTime = "no-cache";                         // sent only where it changed
+
+/// What is embedded, as the client takes it: as it lies there, or inflated.
+intake::Answer answer_with(const site::File& file, const intake::RequestHead& head) {
+  const bool as_it_is = takes_gzip(head.header("Accept-Encoding"));
+  const std::string etag = '"' + std::string(file.etag) + (as_it_is ? "-gzip\"" : "\"");  // of these bytes
   intake::Answer answer{.content_type = std::string(site::content_type_of(file)), .body = {}, .headers = {}};
-  answer.headers.push_back({"ETag", std::string(file.etag)});
-  answer.headers.push_back({"Cache-Control", "no-cache"});  // asked for each time, sent only where it changed
-  if (if_none_match.contains(file.etag)) {
+  answer.headers.push_back({"ETag", etag});
+  answer.headers.push_back({"Cache-Control", file.is_hashed ? kForGood : kAskEachTime});
+  answer.headers.push_back({"Vary", "Accept-Encoding"});
+  if (head.header("If-None-Match").contains(etag)) {
     answer.status = kNotModified;
+  } else if (as_it_is) {
+    answer.headers.push_back({"Content-Encoding", "gzip"});
+    answer.body = file.packed;
   } else {
     auto text = inflated(file);
     if (!text) return refused(text.error());
@@ -45,11 +56,11 @@ intake::Answer answer_with(const site::File& file, std::string_view if_none_matc
 intake::Answer PageRoutes::file(const intake::RequestHead& head) const {
   const auto* const file = site::file_at(head.path());
   if (file == nullptr) return nothing_here();
-  return only_reads(head) ? answer_with(*file, head.header("If-None-Match")) : wrong_method(kReading);
+  return only_reads(head) ? answer_with(*file, head) : wrong_method(kReading);
 }
 
 intake::Answer PageRoutes::description(const intake::RequestHead& head) const {
-  return answer_with(open_api::description(), head.header("If-None-Match"));
+  return answer_with(open_api::description(), head);
 }
 
 }  // namespace adit::api

@@ -2,6 +2,8 @@
 
 #include <utility>
 
+#include "api/packed.hpp"
+
 namespace adit::api {
 namespace {
 
@@ -27,7 +29,7 @@ class RedactedResponder final : public intake::Responder {
   RedactedResponder(std::shared_ptr<intake::Responder> responder, SharedRedaction redaction)
       : responder_(std::move(responder)), redaction_(std::move(redaction)) {}
   void answer(intake::Answer answer) override {
-    redact(*redaction_, answer.content_type, answer.body);
+    if (!is_packed(answer)) redact(*redaction_, answer.content_type, answer.body);
     responder_->answer(std::move(answer));
   }
   std::shared_ptr<intake::Stream> stream(std::string_view content_type) override {
@@ -50,6 +52,8 @@ void redact(const icd::Redaction& redaction, std::string_view content_type, std:
     redaction.strike_from_strings(body);
   } else if (content_type.starts_with("text/csv") || content_type.starts_with("text/plain")) {
     redaction.strike_from(body);
+  } else if (content_type.starts_with("text/html")) {
+    redaction.strike_from_html(body);
   }
 }
 

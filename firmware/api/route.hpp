@@ -13,6 +13,7 @@
 namespace adit::api {
 
 class BoxRoutes;
+class KeptRunsRoutes;
 class MapRoutes;
 class NetworkRoutes;
 class PageRoutes;
@@ -24,7 +25,7 @@ class UpdateRoutes;
 
 /// What answers; null: not served here.
 using Handlers = std::tuple<PageRoutes*, SessionRoutes*, RunRoutes*, MapRoutes*, ReportRoutes*,
-                            SettingsRoutes*, NetworkRoutes*, UpdateRoutes*, BoxRoutes*>;
+                            SettingsRoutes*, NetworkRoutes*, UpdateRoutes*, BoxRoutes*, KeptRunsRoutes*>;
 
 /// Who may use a route. A script that sends one of the tokens is an operator.
 enum class Who : std::uint8_t {

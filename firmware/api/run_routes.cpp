@@ -28,6 +28,18 @@ intake::Answer RunRoutes::aside(std::uint64_t number, AsideAction action) {
   return done ? object({{"aside", json(number)}}) : refusal(icd::Status::Conflict, done.error());
 }
 
+intake::Answer RunRoutes::acknowledge(const std::string& body) {
+  const auto document = codec::decode({}, codec::Split::Nothing, body);
+  if (!document) return refused(document.error());
+  codec::Reading reading;
+  const codec::Field root(document->root, reading);
+  const auto id = reading.outcome(std::string(root.member("id").text()));
+  if (!id) return refused(id.error());
+  const auto done = operator_.acknowledge(*id);
+  live_.changed();
+  return done ? object({{"acknowledged", json(*id)}}) : refusal(icd::Status::Conflict, done.error());
+}
+
 intake::Answer RunRoutes::identify(const std::string& body) {
   const auto document = codec::decode({}, codec::Split::Nothing, body);
   if (!document) return refused(document.error());

@@ -27,6 +27,8 @@ class RunRoutes {
   intake::Answer aside(std::uint64_t number) {
     return aside(number, action);
   }
+  /// An operator has seen an alarm.
+  intake::Answer acknowledge(const std::string& body);
   /// The box's lights flash for some seconds, so that it can be told from others.
   intake::Answer identify(const std::string& body);
 

@@ -84,6 +84,9 @@ constexpr Member kActivity[] = {
         "points_left_out",
         "of its clouds, because another of their voxel went, or was taken by the Command Post "
         "(robots[].voxel_metres)"),
+    member<&ActivityRow::arrival>("arrival", "whether it reaches the Command Post")
+        .one_of(alarms::kArrivalWords),
+    member<&ActivityRow::level>("level", "how well that is").one_of(alarms::kLevelWords),
 };
 
 constexpr Member kRefusal[] = {
@@ -167,7 +170,9 @@ constexpr Member kView[] = {
     member<&RunView::queued_bytes>("queued_bytes"),
     member<&RunView::map_version>("map_version", "says whether /adit/map has changed"),
     member<&RunView::marker_version>("marker_version", "says whether /adit/markers has changed"),
-    member<&RunView::attention>("attention", "for the operator, most urgent first"),
+    member<&RunView::verdict>("verdict"),
+    member<&RunView::alarms>("alarms", "bad before ask before wait, then the oldest first"),
+    member<&RunView::alarms_over>("alarms_over", "the last few that went, the newest first"),
 };
 
 }  // namespace

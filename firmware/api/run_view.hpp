@@ -7,6 +7,9 @@
 #include <string_view>
 #include <vector>
 
+#include "alarms/alarm.hpp"
+#include "alarms/arrival.hpp"
+#include "alarms/verdict.hpp"
 #include "api/scene.hpp"
 #include "codec/row.hpp"
 #include "dispatch/report_life.hpp"
@@ -73,6 +76,8 @@ struct ActivityRow {
   std::string last_sentence;
   std::string clouds, precision;
   std::uint64_t points_left_out = 0;
+  alarms::Arrival arrival = alarms::Arrival::NotYet;
+  alarms::Level level = alarms::Level::Quiet;
 
   static const codec::Row kRow;
 };
@@ -157,7 +162,9 @@ struct RunView {
   double budget_mbit = 0, sent_mbit = 0;
   std::size_t queued_bytes = 0;
   std::uint64_t map_version = 0, marker_version = 0;
-  std::vector<std::string> attention;
+  alarms::Verdict verdict;
+  std::vector<alarms::Alarm> alarms;
+  std::vector<alarms::Over> alarms_over;
 
   static const codec::Row kRow;
 };

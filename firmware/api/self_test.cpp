@@ -1,5 +1,8 @@
 #include "api/self_test.hpp"
 
+#include <algorithm>
+
+#include "api/read_body.hpp"
 #include "api/run_view.hpp"
 
 namespace adit::api {
@@ -26,10 +29,53 @@ constexpr Member kTestedEndpoint[] = {
 
 constexpr Member kTest[] = {
     member<&TestView::running>("running"),
+    member<&TestView::applied>("applied", "of what is in use; else of what was named"),
+    member<&TestView::course>("course",
+                              "whose addresses and tokens count where none were named; empty: none's"),
     member<&TestView::endpoints>("endpoints"),
 };
 
+/// Refuses a member that is none of these: a wrong name would try something else than was meant.
+void know(const codec::Field& field, std::span<const std::string_view> names) {
+  if (!field.is<codec::Value::Object>()) return field.refuse_kind("an object");
+  for (const auto& [name, value] : std::get<codec::Value::Object>(field.value()->is)) {
+    if (std::ranges::find(names, name) == names.end())
+      field.refuse("no such member: ", icd::in_quotes(name), "; expected ", codec::in_turn(names));
+  }
+}
+
+Candidate::Endpoint endpoint_in(const codec::Field& field) {
+  constexpr std::string_view kKnown[] = {"address", "port", "token"};
+  know(field, kKnown);
+  Candidate::Endpoint endpoint;
+  const codec::Field address = field.member("address"), port = field.member("port"),
+                     token = field.member("token");
+  if (!address.is_absent()) endpoint.address = address.text();
+  if (!port.is_absent()) endpoint.port = port.whole<std::uint16_t>(1);
+  if (token.is_absent() || token.is_empty_text()) return endpoint;
+  endpoint.token = icd::BearerToken::parse(token.text());
+  if (!endpoint.token) token.refuse("expected 1 to 256 visible ASCII characters");
+  return endpoint;
+}
+
+Candidate candidate_in(const codec::Field& root) {
+  constexpr std::string_view kKnown[] = {"course", "scoring", "mapping"};
+  know(root, kKnown);
+  Candidate candidate;
+  const codec::Field course = root.member("course"), scoring = root.member("scoring"),
+                     mapping = root.member("mapping");
+  if (!course.is_absent()) candidate.course = course.text();
+  if (!scoring.is_absent()) candidate.scoring = endpoint_in(scoring);
+  if (!mapping.is_absent()) candidate.mapping = endpoint_in(mapping);
+  return candidate;
+}
+
 }  // namespace
+
+icd::Checked<Candidate> read_candidate(const std::string& body) {
+  if (body.empty()) return Candidate{};
+  return read_body<Candidate>(body, candidate_in);
+}
 
 constexpr codec::Row TestStep::kRow = {"", kTestStep};
 constexpr codec::Row TestedEndpoint::kRow = {"", kTestedEndpoint};

@@ -124,6 +124,13 @@ constexpr Row SetupView::kRow = {"Setup", kSetup};
 constexpr Row ChangesView::kRow = {"Changes", kChanged};
 constexpr Row CheckView::kRow = {"Checked", kCheck};
 
+std::vector<KeyRow> key_rows() {
+  const settings::Settings defaults = settings::with_an_item_of_each();
+  std::vector<KeyRow> rows;
+  for (const settings::Key& key : settings::keys()) rows.push_back(row_of(key, defaults));
+  return rows;
+}
+
 SetupView setup_view(const Setup& setup) {
   SetupView view{.settings = settings::value_of(setup.settings()),
                  .tag = settings::tag_of(setup.settings()),
@@ -131,8 +138,7 @@ SetupView setup_view(const Setup& setup) {
                  .applying = setup.applying(),
                  .trouble = setup.trouble(),
                  .tokens = setup.tokens()};
-  const settings::Settings defaults = settings::with_an_item_of_each();
-  for (const settings::Key& key : settings::keys()) view.keys.push_back(row_of(key, defaults));
+  view.keys = key_rows();
   return view;
 }
 

@@ -50,6 +50,9 @@ struct CheckView {
   static const codec::Row kRow;
 };
 
+/// Of all keys, in the order of their table.
+std::vector<KeyRow> key_rows();
+
 SetupView setup_view(const Setup& setup);
 
 }  // namespace adit::api

@@ -50,6 +50,8 @@ class Operator {
                                                           bool resubmit) = 0;
   /// A sentence: why not.
   virtual std::expected<void, std::string> aside(std::uint64_t number, AsideAction action) = 0;
+  /// The alarm of that id is quiet until it gets worse or comes again. A sentence: why not.
+  virtual std::expected<void, std::string> acknowledge(const std::string& id) = 0;
   /// Gives the new run's number.
   virtual std::int64_t begin_run() = 0;
   /// All lights blink for so long. Gives until when.

@@ -1,6 +1,8 @@
 #include "api/update_routes.hpp"
 
+#include <algorithm>
 #include <utility>
+#include <vector>
 
 #include "api/answers.hpp"
 #include "codec/body_decoder.hpp"
@@ -16,14 +18,37 @@ using codec::Value;
 /// A body that goes to an Upload as it comes.
 class Receiving final : public intake::BodySink {
  public:
-  Receiving(std::unique_ptr<Upload> upload, std::function<void(icd::Checked<void>)> done)
-      : upload_(std::move(upload)), done_(std::move(done)) {}
-  bool on_body(std::span<const std::uint8_t> piece) override { return upload_->write(piece); }
-  void on_end() override { upload_->finish(std::move(done_)); }
+  Receiving(std::unique_ptr<Upload> upload, std::uint64_t size, std::function<void(icd::Checked<void>)> done)
+      : upload_(std::move(upload)), size_(size), done_(std::move(done)) {}
+  bool on_body(std::span<const std::uint8_t> piece) override {
+    if (!upload_) return true;
+    const bool known = head_.size() >= update::kBundleHead;
+    if (!known) {
+      const std::size_t more = std::min(piece.size(), update::kBundleHead - head_.size());
+      head_.insert(head_.end(), piece.begin(), piece.begin() + static_cast<std::ptrdiff_t>(more));
+      if (head_.size() >= update::kBundleHead && !may_be_a_bundle()) return true;
+    }
+    return upload_->write(piece);
+  }
+  void on_end() override {
+    const bool known = head_.size() >= update::kBundleHead;
+    if (upload_ && (known || may_be_a_bundle())) upload_->finish(std::move(done_));
+  }
   void on_gone() override { upload_.reset(); }
 
  private:
-  std::unique_ptr<Upload> upload_;
+  /// Else it is refused, and nothing more of it is taken.
+  bool may_be_a_bundle() {
+    std::string why = update::not_a_bundle(head_, size_);
+    if (why.empty()) return true;
+    upload_.reset();
+    done_(std::unexpected(icd::Refusal{icd::Status::UnprocessableEntity, std::move(why)}));
+    return false;
+  }
+
+  std::unique_ptr<Upload> upload_;  // null: it was refused
+  std::uint64_t size_;
+  std::vector<std::uint8_t> head_;
   std::function<void(icd::Checked<void>)> done_;
 };
 
@@ -56,7 +81,7 @@ std::unique_ptr<intake::BodySink> UpdateRoutes::receive(const Call& call) {
   if (!upload) return refuse(refused(upload.error()));
   changed_();
   return std::make_unique<Receiving>(
-      std::move(*upload),
+      std::move(*upload), *size,
       [this, responder = call.responder](const icd::Checked<void>& done) { responder->answer(after(done)); });
 }
 
@@ -68,6 +93,15 @@ intake::Answer UpdateRoutes::install_from_stick(const std::string& body) {
 intake::Answer UpdateRoutes::restart(const std::string& body) {
   const auto anyway = flag_in(body, "anyway");
   return anyway ? after(updates_.restart(*anyway)) : refused(anyway.error());
+}
+
+intake::Answer UpdateRoutes::go_back(const std::string& body) {
+  const auto anyway = flag_in(body, "anyway");
+  return anyway ? after(updates_.go_back(*anyway)) : refused(anyway.error());
+}
+
+intake::Answer UpdateRoutes::stay() {
+  return after(updates_.stay());
 }
 
 intake::Answer UpdateRoutes::shown() const {

@@ -21,6 +21,8 @@ class UpdateRoutes {
   std::unique_ptr<intake::BodySink> receive(const Call& call);
   intake::Answer install_from_stick(const std::string& body);
   intake::Answer restart(const std::string& body);
+  intake::Answer go_back(const std::string& body);
+  intake::Answer stay();
 
  private:
   /// How it stands now, or why the action was refused.

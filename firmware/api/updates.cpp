@@ -38,6 +38,8 @@ constexpr Member kUpdate[] = {
     member<&UpdateView::running, &update::Running::slot>("slot"),
     member<&UpdateView::trial>("trial",
                                "what runs was installed last, and has not been healthy for a minute"),
+    member<&UpdateView::stray>("stray", "which other slot runs than the one that was good last, and why")
+        .as(codec::kTextOrNull),
     member<&UpdateView::doing>("doing").as(codec::kTextOrNull).one_of(kDoing),
     member<&UpdateView::progress>("progress").from(0).to(100),
     member<&UpdateView::refusal>("refusal", "why the last one was not installed").as(codec::kTextOrNull),

@@ -23,6 +23,7 @@ struct UpdateView {
   std::string refusal;          // why the last one was not installed; "" where it was, or there was none
   update::LastUpdate last;
   bool trial = false;  // what runs was installed last, and has not been healthy for long yet
+  std::string stray;   // which other slot runs than the one that was good last, and why; "": none does
   std::optional<update::Offer> stick;
   std::string stick_why;  // why what is on a stick cannot be installed; "" where there is none
 
@@ -51,6 +52,10 @@ class Updates {
   virtual icd::Checked<void> install_from_stick(bool again) = 0;
   /// Restarts the box. Unless `anyway`, not while a report is under way.
   virtual icd::Checked<void> restart(bool anyway) = 0;
+  /// Where UpdateView::stray says so: restarts the box into the slot that was good last.
+  virtual icd::Checked<void> go_back(bool anyway) = 0;
+  /// Where UpdateView::stray says so: the slot that runs is the one to keep.
+  virtual icd::Checked<void> stay() = 0;
 };
 
 }  // namespace adit::api

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <utility>
 
+#include "access/password.hpp"
 #include "codec/json.hpp"
 #include "host/log.hpp"
 #include "icd/sentence.hpp"
@@ -123,16 +124,26 @@ class Reader {
 
   void read_token(const UntrustedFolder& folder, const std::string& file) {
     const std::string name = icd::sentence(kCardSecrets, "/", file);
+    if (file == kCardCode) return read_code(folder, name);
     const auto known = settings::token_names(counting());
     const bool is_known = std::ranges::any_of(
         known, [&file](const std::string& token) { return token + settings::kTokenEnding == file; });
     if (!is_known)
-      return refuse(name, icd::sentence("no token is called so; expected one of ", listed(known)));
+      return refuse(name,
+                    icd::sentence("no token is called so; expected one of ", listed(known), ", ", kCardCode));
     const auto text = text_of(folder, file, name);
     if (!text) return;
     auto token = icd::BearerToken::parse(trimmed(*text));
     if (!token) return refuse(name, "expected one token of 1 to 256 visible ASCII characters");
     found_.brought.tokens.emplace(file, std::move(*token));
+  }
+
+  void read_code(const UntrustedFolder& folder, const std::string& name) {
+    const auto text = text_of(folder, kCardCode, name);
+    if (!text) return;
+    auto code = icd::BearerToken::parse(trimmed(*text));
+    if (!code || !access::is_code(code->reveal())) return refuse(name, "expected 8 digits");
+    found_.brought.tokens.emplace(kCardCode, std::move(*code));
   }
 
   static std::string listed(const std::vector<std::string>& tokens) {

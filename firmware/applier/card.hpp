@@ -16,7 +16,7 @@ namespace adit::applier {
 struct Brought {
   std::optional<settings::Settings> settings;
   std::optional<network::Numbers> numbers;
-  std::map<std::string, icd::BearerToken> tokens;  // by the name of the file, "scoring.token"
+  std::map<std::string, icd::BearerToken> tokens;  // by the name of the file: "scoring.token", or kCardCode
 
   bool nothing() const { return !settings && !numbers && tokens.empty(); }
 };
@@ -31,6 +31,7 @@ struct Found {
 inline constexpr const char* kCardSettings = "settings.json";
 inline constexpr const char* kCardNetwork = "network.json";
 inline constexpr const char* kCardSecrets = "secrets";
+inline constexpr const char* kCardCode = "label.code";  // of kCardSecrets: what the first password asks for
 inline constexpr const char* kTakenText = "taken.txt";
 inline constexpr const char* kTakenEnding = ".taken";
 

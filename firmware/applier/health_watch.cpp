@@ -3,7 +3,8 @@
 #include <chrono>
 #include <thread>
 
-#include "applier/last_update_file.hpp"
+#include "applier/kept.hpp"
+#include "applier/os_release.hpp"
 #include "applier/rauc.hpp"
 #include "host/log.hpp"
 #include "host/output.hpp"
@@ -38,15 +39,26 @@ std::expected<void, std::string> restart(const std::string& systemctl) {
   return std::unexpected("the machine cannot be restarted: " + restarted.error());
 }
 
-/// adit-update tells everybody.
+/// Where this cannot be kept, the slot is good all the same: a later start keeps it.
+void keep_proven(const UpdateOptions& options, update::Running running, bool trial) {
+  running.version = version_in(options.os_release);
+  const update::Proven before = load_proven(options.state);
+  const update::Proven proven = update::proven_now(before, running, trial);
+  if (proven != before) save(options.state, proven);
+}
+
 std::expected<void, std::string> pass_trial(const UpdateOptions& options, update::LastUpdate last_update) {
   host::log(Level::Notice, "the update is healthy",
             {{"version", last_update.version}, {"slot", last_update.slot}});
   last_update.stage = update::Stage::Good;
   last_update.why.clear();  // of one that adit-update has not settled yet
-  if (!save_last_update(options.state, last_update)) return std::unexpected("the trial cannot be ended");
-  host::output_of({options.systemctl, "start", "--no-block", "adit-update.service"}, kSystemctlAnswer);
+  if (!save(options.state, last_update)) return std::unexpected("the trial cannot be ended");
   return {};
+}
+
+/// It tells everybody, and ends RAUC's service.
+void start_adit_update(const std::string& systemctl) {
+  host::output_of({systemctl, "start", "--no-block", "adit-update.service"}, kSystemctlAnswer);
 }
 
 }  // namespace
@@ -65,7 +77,10 @@ std::expected<void, std::string> watch_health(const UpdateOptions& options) {
     std::this_thread::sleep_for(trial ? kOnTrial : kElse);
   }
   if (auto marked = rauc.mark_good(); !marked) return marked;
-  return trial ? pass_trial(options, last_update) : std::expected<void, std::string>{};
+  keep_proven(options, *running, trial);
+  auto passed = trial ? pass_trial(options, last_update) : std::expected<void, std::string>{};
+  if (passed) start_adit_update(options.systemctl);
+  return passed;
 }
 
 }  // namespace adit::applier

@@ -11,6 +11,7 @@
 #include <system_error>
 #include <utility>
 
+#include "access/password.hpp"
 #include "host/files.hpp"
 #include "host/log.hpp"
 #include "host/service.hpp"
@@ -137,7 +138,7 @@ Done Import::run() {
   }
   wipe_taken(*card);
   const Found found = read_card(*card, in_force());
-  const bool lasting = access(options_.in_memory.c_str(), F_OK) != 0;
+  const bool lasting = ::access(options_.in_memory.c_str(), F_OK) != 0;
   const std::string said = said_of(found, lasting);
   if (said.empty()) return {};
   for (const std::string& error : found.errors)
@@ -196,7 +197,9 @@ Done Import::save_tokens(UntrustedFolder& state, const Brought& brought) {
   auto secrets = state.folder(settings::kSecretsFolder);
   if (!secrets) return std::unexpected(secrets.error());
   for (const auto& [file, token] : brought.tokens) {
-    if (auto saved = put(**secrets, file, token.reveal() + "\n"); !saved) return saved;
+    const std::string text = token.reveal() + "\n";
+    auto saved = file == kCardCode ? put(state, access::kCodeFile, text) : put(**secrets, file, text);
+    if (!saved) return saved;
   }
   return {};
 }

@@ -70,6 +70,11 @@ std::expected<void, std::string> Rauc::mark_good() const {
   return mark(command_, "mark-good", "booted");
 }
 
+std::expected<void, std::string> Rauc::start_other_next() const {
+  if (auto first = mark(command_, "mark-active", "other"); !first) return first;
+  return mark(command_, "mark-good", "other");
+}
+
 /// Marked bad, it is out of the boot loader's order, which would else try it three times more once no slot
 /// has a try left.
 std::expected<void, std::string> Rauc::leave_other() const {

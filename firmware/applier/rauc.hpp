@@ -23,6 +23,8 @@ class Rauc {
                                            const std::function<void(int)>& progress) const;
   /// The slot that runs came up healthy: its starts are counted from none again.
   std::expected<void, std::string> mark_good() const;
+  /// The other slot is to be started next, with all its tries: what it holds was good once.
+  std::expected<void, std::string> start_other_next() const;
   /// The slot that runs is to be started next, and the other one never, until it is written again.
   std::expected<void, std::string> leave_other() const;
 

@@ -4,7 +4,8 @@
 
 #include <utility>
 
-#include "applier/last_update_file.hpp"
+#include "applier/kept.hpp"
+#include "applier/os_release.hpp"
 #include "applier/stick.hpp"
 #include "host/log.hpp"
 #include "host/output.hpp"
@@ -18,14 +19,7 @@ using host::Level;
 using update::Stage;
 
 constexpr std::chrono::seconds kRestart{30};
-
-/// VERSION_ID of os-release(5), with or without quotation marks; "" where there is none.
-std::string version_in(const std::string& path) {
-  const auto text = host::read_file(path);
-  std::string value(text ? update::value_of("VERSION_ID", *text) : "");
-  std::erase(value, '"');
-  return value;
-}
+constexpr std::string_view kNoStray = "the slot that runs is the one that was good last";
 
 }  // namespace
 
@@ -66,6 +60,8 @@ void Updater::find_out() {
     tell_of(std::move(last_update));
   }
   status_.trial = update::on_trial(status_.last, status_.running.slot, boot_);
+  status_.stray = update::stray(load_proven(options_.state), status_.running, status_.trial);
+  if (!status_.stray.empty()) host::log(Level::Error, "another slot was started", {{"what", status_.stray}});
 }
 
 void Updater::look_at_sticks() {
@@ -106,6 +102,10 @@ void Updater::answer(const update::Request& request, host::UntrustedFolder& fold
     status_.refusal = install(BundleFile::take(folder, update::kBundleFile), request.again);
   } else if (request.what == What::Restart) {
     status_.refusal = restart();
+  } else if (request.what == What::Back) {
+    status_.refusal = go_back();
+  } else if (request.what == What::Stay) {
+    status_.refusal = stay();
   } else if (status_.stick) {
     status_.refusal = install(BundleFile::open(on_stick_), request.again);
   } else {
@@ -138,8 +138,7 @@ std::string Updater::write(const BundleFile& file, const update::Bundle& bundle)
   update::LastUpdate last_update{
       .stage = Stage::Installing, .version = bundle.version, .slot = status_.running.other, .boot = boot_};
   // Were that not kept, the slot would not be on trial.
-  if (!save_last_update(options_.state, last_update))
-    return "it cannot be written down that it is being installed";
+  if (!save(options_.state, last_update)) return "it cannot be written down that it is being installed";
   status_.doing = "installing";
   status_.progress = 0;
   tell_of(last_update);
@@ -164,6 +163,21 @@ std::string Updater::restart() {
   return "it cannot be restarted: " + restarted.error();
 }
 
+std::string Updater::go_back() {
+  if (status_.stray.empty()) return std::string(kNoStray);
+  if (const auto chosen = rauc_.start_other_next(); !chosen) return chosen.error();
+  return restart();
+}
+
+std::string Updater::stay() {
+  if (status_.stray.empty()) return std::string(kNoStray);
+  if (!save(options_.state, update::Proven{status_.running.slot, status_.running.version}))
+    return "it cannot be written down";
+  host::log(Level::Notice, "the slot that runs is to stay", {{"slot", status_.running.slot}});
+  status_.stray.clear();
+  return "";
+}
+
 void Updater::tell_of(update::LastUpdate last_update) {
   host::log(
       last_update.stage == Stage::Left || last_update.stage == Stage::Failed ? Level::Error : Level::Notice,
@@ -172,7 +186,7 @@ void Updater::tell_of(update::LastUpdate last_update) {
        {"slot", last_update.slot},
        {"stage", std::string(name_of(last_update.stage))},
        {"why", last_update.why}});
-  save_last_update(options_.state, last_update);
+  save(options_.state, last_update);
   status_.last = std::move(last_update);
 }
 

@@ -32,6 +32,8 @@ class Updater {
   std::string install(const std::expected<BundleFile, std::string>& file, bool again);
   std::string write(const BundleFile& file, const update::Bundle& bundle);
   std::string restart();
+  std::string go_back();
+  std::string stay();
   void tell_of(update::LastUpdate last_update);
   bool tell();
 

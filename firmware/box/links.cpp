@@ -6,7 +6,6 @@
 
 #include "host/link_changes.hpp"
 #include "host/log.hpp"
-#include "icd/sentence.hpp"
 
 namespace adit::box {
 
@@ -15,10 +14,8 @@ Links::Links(loop::Loop& loop, const settings::Settings& settings, Look look, lo
     : look_(std::move(look)),
       changed_(std::move(changed)),
       back_(std::move(back)),
-      links_{{{.side = "team", .whose = "team's", .interface = settings.team.interface},
-              {.side = "command_post",
-               .whose = "Command Post's",
-               .interface = settings.command_post.interface}}},
+      links_{{{.side = "team", .interface = settings.team.interface},
+              {.side = "command_post", .interface = settings.command_post.interface}}},
       kernel_(std::move(kernel)) {
   if (kernel_) {
     told_ = loop.watch(kernel_.get(), EPOLLIN, [this](std::uint32_t) {
@@ -60,17 +57,6 @@ std::vector<api::LinkRow> Links::rows() const {
       rows.push_back({.side = link.side, .interface = link.interface, .carrier = link.carrier});
   }
   return rows;
-}
-
-std::vector<std::string> Links::attention() const {
-  std::vector<std::string> sentences;
-  for (const Link& link : links_) {
-    if (link.interface.empty() || link.carrier == true) continue;
-    sentences.push_back(
-        link.carrier ? icd::sentence("the ", link.whose, " cable is out: ", link.interface, " has no carrier")
-                     : icd::sentence("there is no interface ", link.interface));
-  }
-  return sentences;
 }
 
 }  // namespace adit::box

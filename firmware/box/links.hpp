@@ -32,12 +32,10 @@ class Links {
 
   /// The team's, then the Command Post's; without one whose interface the settings do not name.
   std::vector<api::LinkRow> rows() const;
-  /// For the operator: which cable is out.
-  std::vector<std::string> attention() const;
 
  private:
   struct Link {
-    std::string side, whose, interface;
+    std::string side, interface;
     std::optional<bool> carrier = {};
   };
 

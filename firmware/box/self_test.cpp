@@ -34,39 +34,50 @@ icd::ChunkedBytes empty_object() {
 
 }  // namespace
 
-SelfTest::SelfTest(loop::Loop& loop, const settings::Settings& settings, Tokens tokens,
+SelfTest::SelfTest(loop::Loop& loop, const settings::Settings& settings,
+                   std::function<icd::Checked<Tried>(const api::Candidate&)> tried, Turns turns,
                    admin::NetworkRequests& requests, const admin::NetworkChange& network,
                    std::function<void()> changed)
     : loop_(loop),
       settings_(settings),
-      tokens_(std::move(tokens)),
+      tried_of_(std::move(tried)),
+      turns_(std::move(turns)),
       requests_(requests),
       network_(network),
       changed_(std::move(changed)),
       timer_(loop.timer([this] { std::exchange(when_due_, {})(); })) {}
 
-bool SelfTest::begin_test() {
-  if (view_.running) return false;
-  view_ = {.running = true, .endpoints = {}};
-  post_ = settings_.command_post;
-  shown_ = tokens_;
-  for (const auto& [name, address] :
-       {std::pair("scoring", &post_.scoring), std::pair("mapping", &post_.mapping)}) {
-    api::TestedEndpoint endpoint{.name = name, .address = forward::address_text(*address), .steps = {}};
-    for (const char* step : kSteps) endpoint.steps.push_back({.name = step, .said = "", .advice = ""});
-    view_.endpoints.push_back(std::move(endpoint));
-  }
+icd::Checked<void> SelfTest::begin_test(const api::Candidate& candidate) {
+  if (view_.running)
+    return std::unexpected(icd::Refusal{icd::Status::Conflict, "a test is running: see GET /adit/test"});
+  auto tried = tried_of_(candidate);
+  if (!tried) return std::unexpected(std::move(tried.error()));
+  tried_ = *std::move(tried);
+  view_ = {.running = true, .applied = candidate.is_applied(), .course = tried_.post.course, .endpoints = {}};
+  asked_.clear();
+  const bool all = !candidate.scoring && !candidate.mapping;
+  if (all || candidate.scoring) list(steps::Asked::Scoring);
+  if (all || candidate.mapping) list(steps::Asked::Mapping);
   tested_ = 0;
   probed_.reset();
   at_ = At::Link;
   run_step();
-  return true;
+  return {};
+}
+
+void SelfTest::list(steps::Asked asked) {
+  asked_.push_back(asked);
+  api::TestedEndpoint endpoint{.name = steps::name_of(asked),
+                               .address = forward::address_text(steps::address_in(tried_.post, asked)),
+                               .steps = {}};
+  for (const char* step : kSteps) endpoint.steps.push_back({.name = step, .said = "", .advice = ""});
+  view_.endpoints.push_back(std::move(endpoint));
 }
 
 void SelfTest::run_step() {
   endpoint().steps[static_cast<std::size_t>(at_)].state = "running";
   changed_();
-  const std::string& interface = post_.interface;
+  const std::string& interface = tried_.post.interface;
   switch (at_) {
     case At::Link:
       return finish(steps::link(interface, host::carrier(interface)));
@@ -88,6 +99,7 @@ void SelfTest::run_step() {
 /// On to the next step, in a later turn of the loop.
 void SelfTest::finish(api::TestStep step) {
   const bool is_bad = step.state == "bad";
+  tried_.typed.strike_from(step.said);  // an answer may echo it
   const std::string said = step.said;
   endpoint().steps[static_cast<std::size_t>(at_)] = std::move(step);
   if (is_bad && at_ != At::Address && at_ != At::Cables && at_ != At::Token)
@@ -107,21 +119,24 @@ void SelfTest::skip_the_rest(const std::string& why) {
 void SelfTest::next() {
   if (at_ == At::End) {
     connection_.reset();
-    if (++tested_ == view_.endpoints.size()) {
-      view_.running = false;
-      return changed_();
-    }
+    if (++tested_ == asked_.size()) return over();
     at_ = At::Link;
   }
   when_due_ = [this] { run_step(); };
   timer_.call_at(loop_.now());
 }
 
+void SelfTest::over() {
+  tried_ = {};
+  view_.running = false;
+  changed_();
+}
+
 /// Both endpoints are on the same interface: it is asked about once.
 void SelfTest::ask_address() {
   if (tested_ > 0 && view_.endpoints.front().steps[1].state != "skipped")
     return finish(view_.endpoints.front().steps[1]);
-  const std::string& interface = post_.interface;
+  const std::string& interface = tried_.post.interface;
   const auto own = host::own_address(interface);
   const auto status = requests_.status();
   std::string why = !status ? "adit-network does not run here: " + status.error()
@@ -130,7 +145,7 @@ void SelfTest::ask_address() {
                                                                         " instead"
                                                                   : "";
   if (own && why.empty()) {
-    probe_ = {admin::NetworkRequests::draw_nonce(), network_.next_hop()};
+    probe_ = {admin::NetworkRequests::draw_nonce(), network_.next_hop(address())};
     const auto asked = requests_.ask(probe_);
     until_ = loop_.now() + kProbeWithin;
     if (asked) return wait_for_probe();
@@ -146,17 +161,17 @@ void SelfTest::wait_for_probe() {
     when_due_ = [this] { wait_for_probe(); };
     return timer_.call_at(loop_.now() + kProbePoll);
   }
-  const std::string& interface = post_.interface;
+  const std::string& interface = tried_.post.interface;
   probed_ = probed;
   finish(steps::address(interface, host::own_address(interface), probed, "adit-network did not answer"));
 }
 
 void SelfTest::look_at_cables() {
-  finish(steps::cables(post_.interface, settings_.team.interface, probe_.sought, probed_));
+  finish(steps::cables(tried_.post.interface, settings_.team.interface, probe_.sought, probed_));
 }
 
 uplink::Endpoint SelfTest::there() const {
-  auto endpoint = forward::endpoint_of(post_, tested_ == 0 ? post_.scoring : post_.mapping, 0);
+  auto endpoint = forward::endpoint_of(tried_.post, address(), 0);
   endpoint.connect_within = kReachWithin;
   return endpoint;
 }
@@ -180,12 +195,26 @@ void SelfTest::connected(int error, const std::string& why) {
   finish(steps::reach(endpoint().address, error, why));
 }
 
+/// Where the run asks the same of the same endpoint, a turn of its own is taken, so that nothing of the run's
+/// is throttled for this.
 void SelfTest::ask(std::function<void(uplink::Outcome)> done) {
+  if (!is_of_the_run()) return send(std::move(done));
+  const auto at = turns_.claim(uri(), loop_.now() + kLongestTurn);
+  if (!at) return finish(steps::no_turn(kSteps[static_cast<std::size_t>(at_)]));
+  when_due_ = [this, done = std::move(done)] {
+    send([this, uri = uri(), done](uplink::Outcome outcome) {
+      turns_.claimed(uri);
+      done(std::move(outcome));
+    });
+  };
+  timer_.call_at(*at);
+}
+
+void SelfTest::send(std::function<void(uplink::Outcome)> done) {
   const bool scoring = kind() == steps::Asked::Scoring;
-  const icd::Uri uri = scoring ? icd::Uri::Status : icd::Uri::StateUpdate;
   connection_ = std::make_unique<uplink::Connection>(loop_, there(), *token());
-  connection_->send({.method = std::string(icd::method_of(uri)),
-                     .target = std::string(icd::path_of(uri)),
+  connection_->send({.method = std::string(icd::method_of(uri())),
+                     .target = std::string(icd::path_of(uri())),
                      .content_type = scoring ? "" : std::string(codec::kJson),
                      .body = scoring ? icd::ChunkedBytes() : empty_object(),
                      .answer_within = kAnswerWithin},

@@ -8,8 +8,9 @@
 #include "admin/network_change.hpp"
 #include "admin/network_requests.hpp"
 #include "api/self_test.hpp"
+#include "box/candidate.hpp"
 #include "box/test_steps.hpp"
-#include "icd/bearer_token.hpp"
+#include "icd/uri.hpp"
 #include "loop/file_descriptor.hpp"
 #include "loop/loop.hpp"
 #include "settings/settings.hpp"
@@ -17,9 +18,10 @@
 
 namespace adit::box {
 
-/// The Test, step by step on the loop. It asks nothing that changes anything at the Command Post: the scoring
-/// endpoint for the run's status, the mapping endpoint to take `{}` for a state, which it refuses as it lacks
-/// everything (ICD 5.2), but only once it has looked at the token.
+/// The Test, step by step on the loop, on connections of its own: of what is in use, or of what an operator
+/// is about to apply, whose tokens are forgotten once it is over. It asks nothing that changes anything at
+/// the Command Post: the scoring endpoint for the run's status, the mapping endpoint to take `{}` for a
+/// state, which it refuses as it lacks everything (ICD 5.2), but only once it has looked at the token.
 class SelfTest final : public api::SelfTest {
  public:
   static constexpr std::chrono::milliseconds kReachWithin{3000}, kAnswerWithin{5000};
@@ -27,24 +29,30 @@ class SelfTest final : public api::SelfTest {
   /// Between two questions to the scoring endpoint, so that it does not answer 429.
   static constexpr std::chrono::milliseconds kAskAgain{1500};
 
-  struct Tokens {
-    std::optional<icd::BearerToken> scoring, mapping;
+  /// So long a question to an endpoint of the run waits for its turn among the run's own; then it is not
+  /// asked.
+  static constexpr std::chrono::seconds kLongestTurn{40};
+
+  /// How it asks an endpoint that the run uses, too: forward::Flow.
+  struct Turns {
+    std::function<std::optional<loop::Instant>(icd::Uri uri, loop::Instant latest)> claim;
+    std::function<void(icd::Uri uri)> claimed;  // it was answered, or not
   };
 
-  /// `changed` is called as steps end. All outlive this.
-  SelfTest(loop::Loop& loop, const settings::Settings& settings, Tokens tokens,
+  /// `settings`: as they are in use. `tried`: tried_of() beside those that are written. `changed` is called
+  /// as steps end. All outlive this.
+  SelfTest(loop::Loop& loop, const settings::Settings& settings,
+           std::function<icd::Checked<Tried>(const api::Candidate&)> tried, Turns turns,
            admin::NetworkRequests& requests, const admin::NetworkChange& network,
            std::function<void()> changed);
 
-  /// For tests that begin from now on.
-  void use(Tokens tokens) { tokens_ = std::move(tokens); }
-
   api::TestView test() const override { return view_; }
-  bool begin_test() override;
+  icd::Checked<void> begin_test(const api::Candidate& candidate) override;
 
  private:
   enum class At : std::uint8_t { Link, Address, Cables, Reach, Token, Clock, End };
 
+  void list(steps::Asked asked);
   void next();
   void run_step();
   void finish(api::TestStep step);
@@ -61,18 +69,24 @@ class SelfTest final : public api::SelfTest {
   void ask_clock();
   void ask_again();
   void ask(std::function<void(uplink::Outcome)> done);
+  void send(std::function<void(uplink::Outcome)> done);
+  void over();
 
-  steps::Asked kind() const { return tested_ == 0 ? steps::Asked::Scoring : steps::Asked::Mapping; }
+  steps::Asked kind() const { return asked_.at(tested_); }
+  icd::Uri uri() const { return kind() == steps::Asked::Scoring ? icd::Uri::Status : icd::Uri::StateUpdate; }
   const std::optional<icd::BearerToken>& token() const {
-    return tested_ == 0 ? shown_.scoring : shown_.mapping;
+    return kind() == steps::Asked::Scoring ? tried_.scoring : tried_.mapping;
   }
+  const settings::Address& address() const { return steps::address_in(tried_.post, kind()); }
+  bool is_of_the_run() const { return address() == steps::address_in(settings_.command_post, kind()); }
   uplink::Endpoint there() const;
 
   loop::Loop& loop_;
   const settings::Settings& settings_;
-  Tokens tokens_;
-  settings::CommandPost post_;  // that is tested, whatever the settings say by now
-  Tokens shown_;                // to it
+  std::function<icd::Checked<Tried>(const api::Candidate&)> tried_of_;
+  Turns turns_;
+  Tried tried_;  // whatever the settings say by now
+  std::vector<steps::Asked> asked_;
   admin::NetworkRequests& requests_;
   const admin::NetworkChange& network_;
   std::function<void()> changed_;

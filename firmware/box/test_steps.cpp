@@ -20,10 +20,6 @@ std::string answered(int status, const std::string& body) {
   return icd::sentence("the answer is ", status, ": ", dispatch::said(status, body));
 }
 
-const char* name_of(Asked asked) {
-  return asked == Asked::Scoring ? "scoring" : "mapping";
-}
-
 /// The mapping endpoint is asked an empty question, so that what is wrong is the question: it has got past
 /// the token.
 bool took_the_token(Asked asked, int status, dispatch::Body body) {
@@ -33,6 +29,14 @@ bool took_the_token(Asked asked, int status, dispatch::Body body) {
 }
 
 }  // namespace
+
+const char* name_of(Asked asked) {
+  return asked == Asked::Scoring ? "scoring" : "mapping";
+}
+
+const settings::Address& address_in(const settings::CommandPost& post, Asked asked) {
+  return asked == Asked::Scoring ? post.scoring : post.mapping;
+}
 
 TestStep skipped(const std::string& name, const std::string& why) {
   return {.name = name, .state = "skipped", .said = why, .advice = ""};
@@ -95,7 +99,7 @@ TestStep reach(const std::string& at, int error, const std::string& why) {
   switch (error) {
     case 0:
       if (why.empty()) return good("reach", icd::sentence(at, " takes a connection"));
-      return bad("reach", icd::sentence(at, ": ", why), "Look at the endpoint's address in the settings.");
+      return bad("reach", icd::sentence(at, ": ", why), "Look at the endpoint's address.");
     case ECONNREFUSED:
       return bad(
           "reach",
@@ -118,13 +122,17 @@ TestStep reach(const std::string& at, int error, const std::string& why) {
     case ENODEV:
       return bad("reach", why, "Look at command_post.interface in the settings.");
     default:
-      return bad("reach", icd::sentence(at, ": ", why), "Look at the endpoint's address in the settings.");
+      return bad("reach", icd::sentence(at, ": ", why), "Look at the endpoint's address.");
   }
 }
 
 TestStep no_token(Asked asked) {
   return bad("token", icd::sentence("there is no ", name_of(asked), " token"),
              "Enter the token that the organisers gave.");
+}
+
+TestStep no_turn(const std::string& name) {
+  return skipped(name, "not asked: the run itself asks as often as the endpoint allows; try again later");
 }
 
 TestStep token(Asked asked, const uplink::Outcome& outcome) {

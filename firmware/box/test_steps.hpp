@@ -18,6 +18,8 @@ using api::TestStep;
 
 /// The kinds of endpoint, which are asked differently.
 enum class Asked : std::uint8_t { Scoring, Mapping };
+const char* name_of(Asked asked);
+const settings::Address& address_in(const settings::CommandPost& post, Asked asked);
 
 /// `carrier` as host::carrier() tells it; "" as `interface`: none is set.
 TestStep link(const std::string& interface, std::optional<bool> carrier);
@@ -37,6 +39,8 @@ TestStep reach(const std::string& at, int error, const std::string& why);
 /// Of the answer to a question that changes nothing.
 TestStep token(Asked asked, const uplink::Outcome& outcome);
 TestStep no_token(Asked asked);
+/// It was not asked: the run asks as often as the endpoint lets itself be asked.
+TestStep no_turn(const std::string& name);
 
 /// By the Date of an answer; `now`: seconds since 1970 on the box's clock.
 TestStep clock(std::optional<std::chrono::sys_seconds> date, double now);

@@ -87,7 +87,8 @@ api::NetworkState ThisBox::network() const {
 }
 
 void ThisBox::work(std::function<void()> work, std::function<void()> done) {
-  workers_.submit(std::move(work), std::move(done), [] {});  // who waits for it is told by being dropped
+  workers_.submit(loop::Urgency::CanWait, std::move(work), std::move(done),
+                  [] {});  // who waits for it is told by being dropped
 }
 
 }  // namespace adit::box

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 
+#include "cli/doubt.hpp"
 #include "cli/reading.hpp"
 #include "cli/where.hpp"
 #include "host/log.hpp"
@@ -64,10 +65,17 @@ void add(Outcome& outcome, const Failure& failure) {
 
 }  // namespace
 
-Outcome judge(const Adit& adit, const Options& options) {
+Outcome judge(const Adit& adit, const Options& options, const Console& console) {
   Outcome outcome;
   for (const std::int64_t number : options.numbers) {
     const std::string text = std::to_string(number);
+    if (options.verb == Verb::Send && !options.yes) {
+      if (const auto hindrance = doubt(adit, number, console)) {
+        add(outcome, *hindrance);
+        if (hindrance->exit == Exit::Unable) break;
+        continue;
+      }
+    }
     const auto moved = ask(adit, "/adit/reports/" + text + "/" + path_of(options.verb), "report",
                            options.verb == Verb::Resubmit ? "adit reports" : "adit reports show " + text);
     if (moved) {

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 
+#include "alarms/board.hpp"
 #include "api/run_view.hpp"
 #include "cli/http_client.hpp"
 #include "cli/reading.hpp"
@@ -18,8 +19,7 @@ constexpr std::chrono::seconds kReadPatience{3};
 constexpr std::chrono::seconds kActionPatience{10};  // an action is on the disk before it is answered
 
 bool all_is_well(const api::RunView& view) {
-  return view.attention.empty() &&
-         std::ranges::all_of(view.endpoints, &std::string::empty, &api::EndpointRow::trouble);
+  return std::ranges::none_of(view.alarms, alarms::calls);
 }
 
 /// The file that was named, or else the one that counts.
@@ -82,6 +82,13 @@ Failure failure(const Adit& adit, const HttpReply& reply) {
 }
 
 }  // namespace
+
+std::expected<std::string, Failure> find(const Adit& adit, const std::string& target) {
+  auto reply = http_ask(adit.address, {.target = target, .token = adit.token.token}, kReadPatience);
+  if (!reply) return std::unexpected(Failure{Exit::Unable, reply.error().sentence});
+  if (reply->status != 200) return std::unexpected(failure(adit, *reply));
+  return std::move(reply->body);
+}
 
 std::expected<std::string, Failure> post(const Adit& adit, const std::string& target, const std::string& body,
                                          const std::string& check) {

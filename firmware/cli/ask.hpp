@@ -33,6 +33,9 @@ struct Failure {
 std::expected<std::string, Failure> post(const Adit& adit, const std::string& target, const std::string& body,
                                          const std::string& check);
 
+/// The body of a 200, where the answer may be that there is no such thing.
+std::expected<std::string, Failure> find(const Adit& adit, const std::string& target);
+
 /// For an answer of 401.
 std::string unknown_token(const Adit& adit);
 

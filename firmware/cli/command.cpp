@@ -4,6 +4,7 @@
 #include "cli/aside.hpp"
 #include "cli/ask.hpp"
 #include "cli/check.hpp"
+#include "cli/complete.hpp"
 #include "cli/help.hpp"
 #include "cli/network.hpp"
 #include "cli/options.hpp"
@@ -11,19 +12,23 @@
 #include "cli/settings.hpp"
 #include "cli/test.hpp"
 #include "cli/update.hpp"
+#include "cli/watch.hpp"
 #include "host/log.hpp"
 
 namespace adit::cli {
 
-Outcome run(std::span<const std::string_view> words, bool colour,
-            const std::function<void(const std::string&)>& print) {
+Outcome run(std::span<const std::string_view> words, const Console& console) {
   const auto options = parse_options(words);
   if (!options) return {Exit::Unable, "", "adit: " + host::escaped(options.error()) + '\n' + kSeeHelp};
+  if (options->version) return {Exit::Fine, "adit " ADIT_VERSION "\n", ""};
+  const bool colour = console.colour;
   switch (options->command) {
     case Command::Status:
       return status(*options, colour);
+    case Command::Watch:
+      return watch(*options, console);
     case Command::Reports:
-      return reports(*options, colour);
+      return reports(*options, console);
     case Command::Aside:
       return aside(*options, colour);
     case Command::Run:
@@ -37,11 +42,13 @@ Outcome run(std::span<const std::string_view> words, bool colour,
     case Command::Network:
       return network(*options);
     case Command::Test:
-      return test(*options, colour, print);
+      return test(*options, colour, console.print);
     case Command::Update:
-      return update(*options, print);
+      return update(*options, console.print);
     case Command::Check:
       return check(*options, colour);
+    case Command::Complete:
+      return complete(*options);
     case Command::Help:
       break;
   }

@@ -1,18 +1,14 @@
 #pragma once
 
-#include <functional>
 #include <span>
-#include <string>
 #include <string_view>
 
+#include "cli/console.hpp"
 #include "cli/outcome.hpp"
 
 namespace adit::cli {
 
-/// The whole of `adit`, but for printing: `words` are its arguments. What takes a while gives its lines to
-/// `print` as they come, and the rest in the Outcome.
-Outcome run(
-    std::span<const std::string_view> words, bool colour,
-    const std::function<void(const std::string&)>& print = [](const std::string&) {});
+/// The whole of `adit`: `words` are its arguments.
+Outcome run(std::span<const std::string_view> words, const Console& console = {});
 
 }  // namespace adit::cli

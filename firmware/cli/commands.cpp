@@ -5,14 +5,18 @@ namespace {
 
 constexpr std::size_t kMany = 1000;
 constexpr Argument kNothing{"", "", 0, 0, 0};
-constexpr Argument kReport{"NUMBER", "a report's number", 1, 1, INT64_MAX};
-constexpr Argument kReports{"NUMBER...", "a report's number", 1, kMany, INT64_MAX};
-constexpr Argument kSetAside{"NUMBER...", "the number of what is set aside", 1, kMany, INT64_MAX};
+constexpr Argument kReport{"NUMBER", "a report's number", 1, 1, INT64_MAX, Among::Reports};
+constexpr Argument kReports{"NUMBER...", "a report's number", 1, kMany, INT64_MAX, Among::Reports};
+constexpr Argument kSetAside{"NUMBER...", "the number of what is set aside", 1, kMany, INT64_MAX,
+                             Among::Aside};
 constexpr Argument kSeconds{"[SECONDS]", "seconds, a whole number from 1 to 60", 0, 1, 60};
-constexpr Argument kName{"NAME", "a course's name", 1, 1, 0};
-constexpr Argument kFile{"FILE", "a file", 1, 1, 0};
-constexpr Argument kBundle{"[FILE]", "a file", 0, 1, 0};
-constexpr Argument kSettingsFile{"[SETTINGS]", "a file", 0, 1, 0};
+constexpr Argument kName{"NAME", "a course's name", 1, 1, 0, Among::Courses};
+constexpr Argument kKey{"[KEY]", "a key of the settings", 0, 1, 0, Among::Keys};
+constexpr Argument kFile{"FILE", "a file", 1, 1, 0, Among::Files};
+constexpr Argument kBundle{"[FILE]", "a file", 0, 1, 0, Among::Files};
+constexpr Argument kSettingsFile{"[SETTINGS]", "a file", 0, 1, 0, Among::Files};
+constexpr Argument kCommand{"[COMMAND]", "a command", 0, 1, 0, Among::Commands};
+constexpr Argument kWord{"[WORD]", "a word of `adit reports`", 0, 1, 0};
 
 constexpr Form kPlain[] = {{"", Verb::List, kNothing, "", "", true}};
 constexpr Form kReportForms[] = {
@@ -22,7 +26,8 @@ constexpr Form kReportForms[] = {
     {"send", Verb::Send, kReports,
      "a held report: it is meant. One in doubt: only where you know that it was not recorded (ask the "
      "Command Post, or look at its count of reports), for else it uses up a second one of the allotment. A "
-     "refused or withdrawn one: try it all the same"},
+     "refused or withdrawn one: try it all the same",
+     "--yes"},
     {"hold", Verb::Hold, kReports, "a waiting report: it goes only when you send it"},
     {"withdraw", Verb::Withdraw, kReports,
      "a held or waiting report: it is not to be sent. It can still be sent later"},
@@ -40,9 +45,10 @@ constexpr Form kAsideForms[] = {
     {"discard", Verb::Discard, kSetAside, "forgets it"}};
 constexpr Form kRunForms[] = {{"new", Verb::New, kNothing, "declares that a new run begins"}};
 constexpr Form kSettingsForms[] = {
-    {"show", Verb::Show, kNothing,
+    {"show", Verb::Show, kKey,
      "the settings that differ from what is by default, and which tokens are set; with --json all, and what "
-     "each key means",
+     "each key means. Of KEY (reports.review; or where several begin, reports): its value, what it means and "
+     "what it may be",
      "", true},
     {"check", Verb::Check, kFile,
      "what is wrong with FILE, or what it would change and what to mind. Nothing is changed"},
@@ -60,25 +66,49 @@ constexpr Form kNetworkForms[] = {
      "the change is good and stays. It must be said at the new address, as what reaches Adit there shows "
      "that the address works: adit finds it by team.interface, or name it by --at"},
     {"back", Verb::Back, kNothing, "the change is taken back now"}};
+constexpr Form kTestForms[] = {
+    {"", Verb::List, kNothing, "", "--course --scoring --mapping --scoring-token --mapping-token", true}};
 constexpr Form kUpdateForms[] = {{"", Verb::List, kBundle, "", "--stick --restart --again --anyway", true}};
+constexpr Form kHelpForms[] = {{"", Verb::List, kCommand, "", "", true}};
+constexpr Form kCompleteForms[] = {
+    {"reports", Verb::Reports, kWord, "reports by their numbers: all, or those that WORD can be said of"},
+    {"aside", Verb::Aside, kNothing, "what is set aside, by its numbers"},
+    {"courses", Verb::Courses, kNothing, "the names of courses"},
+    {"keys", Verb::Keys, kNothing,
+     "the keys of the settings, with --json all that is to be known of each; no Adit is asked"}};
 constexpr Form kCheckForms[] = {{"", Verb::List, kSettingsFile, "", "", true}};
 
 constexpr CommandRow kCommands[] = {
     {Command::Status, "status", "the run, the Command Post, each robot's maps, and what the operator must do",
      kPlain,
-     "First what needs the operator, then the run as the Command Post last told of it, the two endpoints, "
-     "how many reports are in which state, and a row for each robot and kind of update. Its column "
-     "'arriving' says:\n"
-     "  yes      the Command Post took the last one\n"
-     "  late     one has waited for over 10 s\n"
-     "  NO       the Command Post refused the last one, or could not be reached: the row says why\n"
-     "  silent   all has arrived, but the robot has sent nothing new for over 30 s\n"
-     "  not yet  accepted, and nothing has been sent so far\n"
+     "First the alarms, then the run as the Command Post last told of it, whether every map arrives, the two "
+     "endpoints, how many reports are in which state, and a row for each robot and kind of update.\n"
+     "An alarm is\n"
+     "  x bad    something does not work\n"
+     "  ? ask    it waits for the operator's word\n"
+     "  ! wait   it may pass by itself\n"
+     "The column 'arriving' says:\n"
+     "  up to date, arriving     the Command Post has it, or something waits for its turn\n"
+     "  12 s behind              longer than taking turns explains\n"
+     "  throttled, failing       the last try came to nothing: the row says why\n"
+     "  not arriving, refused    so it has been for long, or for good\n"
+     "  quiet                    all has arrived, and nothing new came for a minute\n"
+     "  silent                   the robot says nothing any more, against its habit\n"
+     "  waiting                  accepted, and nothing has been sent so far\n"
      "Times are as of now; bytes are of the last update.",
-     "nothing needs the operator", "something does, or an endpoint cannot be reached or refuses",
+     "there is no alarm, or only ones that may pass (wait)", "there is an alarm that is bad, or asks",
      "  sudo adit status\n"
-     "  watch -c -n 1 adit status --at 10.0.0.1:8000 --token-file team.token\n"
+     "  adit status --at 10.0.0.1:8000 --token-file team.token\n"
      "  sudo adit status --json | jq '.run.remaining_reports'"},
+    {Command::Watch, "watch", "the same as `adit status`, again each second, until you end it", kPlain,
+     "On a terminal the screen is drawn again each second; q or Ctrl-C ends it. Elsewhere, in a pipe or a "
+     "file: first all of it, then a line for each change: of the run, of a report, of an endpoint, of a "
+     "robot's maps that stop or arrive, of what needs the operator. With --json: what Adit says, a line each "
+     "second. Where Adit does not answer, it says so and goes on asking.",
+     "it was ended", "",
+     "  sudo adit watch\n"
+     "  sudo adit watch | tee run.log\n"
+     "  sudo adit watch --json | jq --unbuffered '.run.score'"},
     {Command::Reports, "reports",
      "every artifact report and what became of it; and your word on those that wait for it", kReportForms,
      "Without a word: a row for each report of the present run, and for those of other runs that are not "
@@ -152,7 +182,7 @@ constexpr CommandRow kCommands[] = {
      "  sudo adit network\n"
      "  sudo adit network confirm --at 192.168.8.11:8000"},
     {Command::Test, "test", "tries each endpoint of the Command Post step by step, and spends no report",
-     kPlain,
+     kTestForms,
      "What it tries:\n"
      "  link     does the interface to the Command Post have a carrier\n"
      "  address  does it have an address, and does anybody else on its network have the same\n"
@@ -160,9 +190,14 @@ constexpr CommandRow kCommands[] = {
      "  reach    does the endpoint take a connection\n"
      "  token    does it take the token\n"
      "  clock    does the box's clock agree with the Command Post's, to 2 s\n"
-     "Each step is good, BAD or skipped, with what was found, and with what to do about it.",
+     "Each step is good, BAD or skipped, with what was found, and with what to do about it.\n"
+     "\n"
+     "With an address, a token or a course it tries that before it is applied, and the run goes on: where "
+     "only one "
+     "endpoint is named, only that one is tried.",
      "no step is bad", "one is",
      "  sudo adit test\n"
+     "  sudo adit test --scoring 10.100.2.200:8000 --mapping 10.100.2.201:8000\n"
      "  sudo adit test --json | jq '.endpoints[].steps[] | select(.state == \"bad\")'"},
     {Command::Update, "update", "the box's version, and the installation of another", kUpdateForms,
      "Without a word it tells which version runs, in which of the two slots, and what became of the last "
@@ -182,7 +217,12 @@ constexpr CommandRow kCommands[] = {
      "aditd would take the file", "it would not",
      "  adit check\n"
      "  adit check new.json && sudo install -m 644 new.json /etc/adit/settings.json"},
-    {Command::Help, "help", "explains a command: adit help COMMAND", kPlain, "", "", "", ""}};
+    {Command::Complete, "complete", "lists what may stand in a command: for the completion of shells",
+     kCompleteForms,
+     "Each line is a word that may stand there, a tab, and what it is. Where Adit cannot be reached, there "
+     "is none.",
+     "they are listed", "", "  adit complete reports send"},
+    {Command::Help, "help", "explains a command: adit help COMMAND", kHelpForms, "", "", "", ""}};
 
 }  // namespace
 

@@ -9,6 +9,7 @@ namespace adit::cli {
 
 enum class Command : std::uint8_t {
   Status,
+  Watch,
   Reports,
   Aside,
   Run,
@@ -19,6 +20,7 @@ enum class Command : std::uint8_t {
   Test,
   Update,
   Check,
+  Complete,
   Help
 };
 
@@ -37,8 +39,15 @@ enum class Verb : std::uint8_t {
   Check,
   Apply,
   Confirm,
-  Back
+  Back,
+  Reports,
+  Aside,
+  Courses,
+  Keys
 };
+
+/// What an argument may be, for the completion of shells: `adit complete` lists all but files.
+enum class Among : std::uint8_t { Anything, Files, Reports, Aside, Courses, Keys, Commands };
 
 /// What stands behind a command, or behind its word.
 struct Argument {
@@ -46,6 +55,7 @@ struct Argument {
   const char* noun;   // "a report's number"
   std::size_t least, most;
   std::int64_t largest;  // of a number; 0: it is a text
+  Among among = Among::Anything;
 };
 
 /// What a command does at a word of its own; "": without one.

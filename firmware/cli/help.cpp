@@ -1,6 +1,7 @@
 #include "cli/help.hpp"
 
 #include <algorithm>
+#include <deque>
 
 #include "cli/options.hpp"
 
@@ -29,6 +30,21 @@ void limit_to(Program& program, const CommandRow& command) {
   });
 }
 
+/// "with export: " or "without a word: ", where not all words of a command take an option; "" where they do.
+std::string takers_of(const CommandRow& command, const char* option) {
+  std::string words;
+  bool by_all = true;
+  for (const Form& form : command.forms) {
+    if (!takes(command, form, option)) {
+      by_all = false;
+    } else if (*form.word != '\0') {
+      words.append(words.empty() ? "" : ", ").append(form.word);
+    }
+  }
+  if (by_all) return "";
+  return words.empty() ? "without a word: " : "with " + words + ": ";
+}
+
 /// "[show|send]", "[FILE]"
 std::string usage_of(const CommandRow& command) {
   std::string words;
@@ -36,14 +52,15 @@ std::string usage_of(const CommandRow& command) {
     if (*form.word != '\0') words.append(words.empty() ? "" : "|").append(form.word);
   }
   if (command.forms.front().usual && !words.empty()) words = "[" + words + "]";
-  const char* const argument = command.forms.front().argument.shown;
+  const Form& first = command.forms.front();
+  const char* const argument = *first.word == '\0' ? first.argument.shown : "";
   return words.append(words.empty() || *argument == '\0' ? "" : " ").append(argument);
 }
 
 void explain_all(Program& program) {
   std::vector<Row> rows;
   for (const CommandRow& row : commands()) rows.push_back({row.name, "", row.sentence, command_line::Take()});
-  limit_to(program, commands().front());
+  limit_to(program, commands().back());  // help's own
   put_first(program, rows);
   program.ending =
       "Exit status:\n  0  all is well\n  1  something needs the operator, or the settings are wrong";
@@ -51,12 +68,15 @@ void explain_all(Program& program) {
       "Where NO_COLOR is set in the environment, there is no colour on a terminal either.");
 }
 
-void explain(Program& program, const CommandRow& command) {
+/// `sentences` keeps what the program's rows point to.
+void explain(Program& program, const CommandRow& command, std::deque<std::string>& sentences) {
   program.name.append(" ").append(command.name);
   program.usage = usage_of(command);
   program.about = program.name + " - " + command.sentence;
   if (*command.details != '\0') program.about.append("\n\n").append(command.details);
   limit_to(program, command);
+  for (Row& row : program.rows)
+    row.help = sentences.emplace_back(takers_of(command, row.word) + row.help).c_str();
   std::vector<Row> rows;
   for (const Form& form : command.forms) {
     if (*form.word != '\0')
@@ -76,10 +96,11 @@ const char* const kSeeHelp = "Try 'adit --help'.\n";
 std::string help_about(Command about) {
   Options options;
   Program program = command_line_of(options);
+  std::deque<std::string> sentences;
   if (about == Command::Help) {
     explain_all(program);
   } else {
-    explain(program, *std::ranges::find(commands(), about, &CommandRow::command));
+    explain(program, *std::ranges::find(commands(), about, &CommandRow::command), sentences);
   }
   return command_line::help(program);
 }

@@ -1,25 +1,61 @@
+#include <langinfo.h>
 #include <unistd.h>
 
+#include <clocale>
 #include <cstdio>
 #include <cstdlib>
+#include <string_view>
 #include <vector>
 
 #include "cli/command.hpp"
+#include "host/log.hpp"
 #include "loop/guard.hpp"
 
+namespace adit::cli {
+namespace {
+
+bool is_terminal(int fd) {
+  return isatty(fd) == 1;
+}
+
+/// Elsewhere the bytes of a character could steer it.
+bool is_utf8_terminal() {
+  return std::setlocale(LC_CTYPE, "") != nullptr && nl_langinfo(CODESET) == std::string_view("UTF-8");
+}
+
+/// A line from whoever is at the terminal.
+std::optional<bool> ask(const std::string& question) {
+  if (!is_terminal(STDIN_FILENO) || !is_terminal(STDERR_FILENO)) return std::nullopt;
+  std::fprintf(stderr, "%s [y/N] ", question.c_str());
+  char answer[16];
+  if (std::fgets(answer, sizeof answer, stdin) == nullptr) return false;
+  const std::string_view said(answer);
+  return said == "y\n" || said == "Y\n" || said == "yes\n";
+}
+
+}  // namespace
+}  // namespace adit::cli
+
 int main(int count, char** arguments) {
+  using namespace adit::cli;
   adit::loop::tell_of_caught(
       [](const char*, const char* what) { std::fprintf(stderr, "adit: cannot go on: %s\n", what); });
   const std::vector<std::string_view> words(arguments + 1, arguments + count);
-  const bool colour = isatty(STDOUT_FILENO) == 1 && std::getenv("NO_COLOR") == nullptr;
+  const bool screen = is_terminal(STDOUT_FILENO);
+  const bool utf8 = is_utf8_terminal();
   bool printed = true;
-  const auto print = [&printed](const std::string& text) {
-    printed = std::fwrite(text.data(), 1, text.size(), stdout) == text.size() && std::fflush(stdout) == 0 &&
-              printed;
+  const auto write_to = [utf8](std::FILE* file, const std::string& text) {
+    const std::string safe = !utf8 && is_terminal(fileno(file)) ? adit::host::in_ascii(text) : text;
+    return std::fwrite(safe.data(), 1, safe.size(), file) == safe.size() && std::fflush(file) == 0;
   };
-  adit::cli::Outcome outcome{adit::cli::Exit::Unable, "", ""};
-  adit::loop::guarded("adit", [&] { outcome = adit::cli::run(words, colour, print); });
-  std::fputs(outcome.err.c_str(), stderr);
-  print(outcome.out);
-  return static_cast<int>(printed ? outcome.exit : adit::cli::Exit::Unable);
+  const Console console{
+      .colour = screen && std::getenv("NO_COLOR") == nullptr,
+      .screen = screen,
+      .print = [&](const std::string& text) { printed = write_to(stdout, text) && printed; },
+      .ask = ask};
+  Outcome outcome{Exit::Unable, "", ""};
+  adit::loop::guarded("adit", [&] { outcome = run(words, console); });
+  write_to(stderr, outcome.err);
+  console.print(outcome.out);
+  return static_cast<int>(printed ? outcome.exit : Exit::Unable);
 }

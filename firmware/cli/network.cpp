@@ -157,7 +157,7 @@ Outcome say(const Adit& adit, const Options& options, bool confirms) {
     }
     std::this_thread::sleep_for(kConfirmEvery);
   }
-  if (!confirms) return {Exit::Fine, options.json ? "" : "the change is being taken back\n", ""};
+  if (!confirms) return {Exit::Fine, options.json ? "{}\n" : "the change is being taken back\n", ""};
   return unable("the change still waits, though it was confirmed: see adit network show");
 }
 

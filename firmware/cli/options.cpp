@@ -4,8 +4,10 @@
 #include <charconv>
 #include <utility>
 
+#include "cli/where.hpp"
 #include "codec/row.hpp"
 #include "command_line/read.hpp"
+#include "spelling/nearest.hpp"
 
 namespace adit::cli {
 namespace {
@@ -49,6 +51,7 @@ class Words {
 
   /// `given`: the options.
   [[gnu::cold]] Wrong finish(std::span<const std::string> given) {
+    if (options_.version) return std::nullopt;
     if (options_.help || helps_) {
       if (command_ != nullptr) options_.about = command_->command;
       return std::nullopt;
@@ -70,7 +73,9 @@ class Words {
  private:
   Wrong take_command(std::string_view word) {
     const auto row = std::ranges::find(commands(), word, &CommandRow::name);
-    if (row == commands().end()) return "no such command: " + std::string(word);
+    if (row == commands().end())
+      return std::string("no such command: ").append(word) +
+             spelling::did_you_mean(word, names_of_commands());
     command_ = &*row;
     helps_ = helps_ || row->command == Command::Help;
     return std::nullopt;
@@ -82,7 +87,8 @@ class Words {
       form_ = &form;
       return std::nullopt;
     }
-    return "expected " + codec::in_turn(words_of(*command_)) + ", got " + word;
+    const auto words = words_of(*command_);
+    return "expected " + codec::in_turn(words) + ", got " + word + spelling::did_you_mean(word, words);
   }
 
   Wrong take_argument(const std::string& word) {
@@ -102,6 +108,8 @@ class Words {
 
   std::string& text() {
     if (command_->command == Command::Course) return options_.course;
+    if (command_->command == Command::Complete) return options_.word;
+    if (form_->argument.among == Among::Keys) return options_.key;
     return command_->command == Command::Check ? options_.settings : options_.file;
   }
 
@@ -135,6 +143,15 @@ class Words {
   bool helps_ = false;     // by the command help
 };
 
+/// An endpoint's address, to be tried.
+template <auto member>
+Wrong take_endpoint(Trial& trial, const std::string& value) {
+  auto address = parse_address(value);
+  if (!address) return std::move(address.error());
+  trial.*member = *std::move(address);
+  return std::nullopt;
+}
+
 Wrong take_run(Options& options, const std::string& value) {
   options.run = number_in(value, INT64_MAX);
   options.all_runs = value == "all";
@@ -146,6 +163,7 @@ Wrong take_run(Options& options, const std::string& value) {
 
 bool takes(const CommandRow& command, const Form& form, std::string_view option) {
   if (option == "--json" || option == "--settings" || option == "--help") return true;
+  if (option == "--version") return command.command == Command::Help;
   if (option == "--at" || option == "--token-file") return command.command != Command::Check;
   return form.options.contains(option);
 }
@@ -158,6 +176,10 @@ command_line::Program command_line_of(Options& options) {
       .rows = {{"--run", "N|all", "whose reports to list; if not given, the present run's",
                 command_line::take<take_run>(options)},
                {"--csv", "", "as CSV, for a spreadsheet", &options.csv},
+               {"--yes", "",
+                "sends a report in doubt without asking. Without it, you are asked on a terminal, and it is "
+                "not sent where there is none",
+                &options.yes},
                {"--stick", "", "installs the update that is on the USB stick in the box", &options.stick},
                {"--restart", "",
                 "restarts the box, to use what was installed. Not while a report waits or is being sent",
@@ -167,6 +189,17 @@ command_line::Program command_line_of(Options& options) {
                 "afterwards",
                 &options.anyway},
                {"--again", "", "installs the version that runs already", &options.again},
+               {"--course", "NAME", "of test: tries the Command Post of this course instead of that in use",
+                &options.trial.course},
+               {"--scoring", "ADDR:PORT", "of test: tries this address as the scoring endpoint",
+                command_line::take<take_endpoint<&Trial::scoring>>(options.trial)},
+               {"--mapping", "ADDR:PORT", "of test: tries this address as the mapping endpoint",
+                command_line::take<take_endpoint<&Trial::mapping>>(options.trial)},
+               {"--scoring-token", "FILE",
+                "of test: tries the token in this file at the scoring endpoint. It is not kept",
+                &options.trial.scoring_token},
+               {"--mapping-token", "FILE", "of test: the same at the mapping endpoint",
+                &options.trial.mapping_token},
                {"--at", "ADDR:PORT", "where Adit listens for the team: 10.0.0.1:8000 or [fd00::1]:8000",
                 &options.at},
                {"--settings", "FILE",
@@ -179,6 +212,7 @@ command_line::Program command_line_of(Options& options) {
                 "that can be read (by root)",
                 &options.token_file},
                {"--json", "", "for scripts: what Adit itself says, as JSON", &options.json},
+               {"--version", "", "prints the version", &options.version},
                {"--help", "", "this, or more about a command", &options.help}},
       .ending = "",
   };

@@ -10,6 +10,7 @@
 #include "cli/commands.hpp"
 #include "cli/token.hpp"
 #include "command_line/program.hpp"
+#include "settings/settings.hpp"
 
 namespace adit::cli {
 
@@ -17,21 +18,36 @@ namespace adit::cli {
 inline constexpr const char* kGivenSettings = "/etc/adit/settings.json";
 inline constexpr const char* kSavedSettings = "/var/lib/adit/settings.json";
 
+/// What a Test is to try instead of what is in use; "": nothing.
+struct Trial {
+  std::string course;
+  std::optional<settings::Address> scoring, mapping;
+  std::string scoring_token, mapping_token;  // files
+
+  bool is_of_what_is_in_use() const {
+    return course.empty() && !scoring && !mapping && scoring_token.empty() && mapping_token.empty();
+  }
+};
+
 /// adit's command line.
 struct Options {
   Command command = Command::Help;
   Command about = Command::Help;  // of Help: the command to explain
-  bool help = false;
+  bool help = false, version = false;
   Verb verb = Verb::List;
   std::vector<std::int64_t> numbers;  // of reports, or of what is set aside
   std::optional<std::int64_t> run;    // whose reports to list; nothing: the present one's
   bool all_runs = false;
   std::int64_t seconds = 10;  // how long the lights are to blink
   bool json = false, csv = false;
+  bool yes = false;  // what is asked on a terminal is meant
   std::string at;    // "ADDR:PORT"; empty: as the settings say
   std::string file;  // of settings: to check or apply; of Update: the bundle
+  std::string key;   // of settings show; or where several begin
+  std::string word;  // of Complete: of `adit reports`
   bool restart = false, stick = false, again = false, anyway = false;  // of Update
   std::string course;                                                  // to switch to; "": none
+  Trial trial;                                                         // of Test
   std::string settings = kGivenSettings;
   std::string saved_settings = kSavedSettings;
   std::string token_file;  // empty: in `secrets`

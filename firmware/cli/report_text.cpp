@@ -1,28 +1,16 @@
 #include "cli/report_text.hpp"
 
 #include "api/reports_csv.hpp"
+#include "cli/report_verbs.hpp"
 #include "cli/reports_text.hpp"
 #include "cli/table.hpp"
-#include "dispatch/report_life.hpp"
 
 namespace adit::cli {
 namespace {
 
-using dispatch::ReportEvent;
-
-/// The actions that the table of a report's life has for where it is.
 std::string actions_for(const api::ReportRow& report) {
-  const auto state = dispatch::state_named(report.state);
-  if (!state) return "";
   std::string text;
-  const auto offer = [&text](bool possible, const char* action) {
-    if (possible) text.append(text.empty() ? "" : ", ").append(action);
-  };
-  offer(dispatch::transition(*state, ReportEvent::Released) != nullptr, "send");
-  offer(dispatch::transition(*state, ReportEvent::HeldBack) != nullptr, "hold");
-  offer(dispatch::transition(*state, ReportEvent::Withdrawn) != nullptr, "withdraw");
-  offer(dispatch::transition(*state, ReportEvent::CalledDone) != nullptr, "done");
-  offer(dispatch::is_final(*state), "resubmit");
+  for (const std::string_view verb : verbs_for(report)) text.append(text.empty() ? "" : ", ").append(verb);
   return text;
 }
 

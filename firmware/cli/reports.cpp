@@ -59,18 +59,18 @@ Outcome exported(const Adit& adit, const Options& options) {
 
 }  // namespace
 
-Outcome reports(const Options& options, bool colour) {
+Outcome reports(const Options& options, const Console& console) {
   const auto adit = adit_of(options);
   if (!adit) return unable(adit.error());
   switch (options.verb) {
     case Verb::List:
-      return list_reports(*adit, options, colour);
+      return list_reports(*adit, options, console.colour);
     case Verb::Show:
-      return show(*adit, options, colour);
+      return show(*adit, options, console.colour);
     case Verb::Export:
       return exported(*adit, options);
     default:
-      return judge(*adit, options);
+      return judge(*adit, options, console);
   }
 }
 

@@ -1,11 +1,12 @@
 #pragma once
 
+#include "cli/console.hpp"
 #include "cli/options.hpp"
 #include "cli/outcome.hpp"
 
 namespace adit::cli {
 
 /// `adit reports` and its verbs.
-Outcome reports(const Options& options, bool colour);
+Outcome reports(const Options& options, const Console& console);
 
 }  // namespace adit::cli

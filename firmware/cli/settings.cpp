@@ -2,6 +2,7 @@
 
 #include "cli/ask.hpp"
 #include "cli/reading.hpp"
+#include "cli/settings_key.hpp"
 #include "cli/table.hpp"
 #include "host/log.hpp"
 #include "host/service.hpp"
@@ -109,6 +110,14 @@ Outcome show(const std::string& body, const Options& options, bool colour) {
   return {Exit::Fine, text + tokens.written(colour), ""};
 }
 
+Outcome show_keys(const std::string& body, const Options& options, bool colour) {
+  const auto answer = codec::parse_json(body);
+  if (!answer) return not_understood(answer.error());
+  const auto keys = keys_named(*answer, options.key);
+  if (!keys) return unable(keys.error());
+  return {Exit::Fine, options.json ? codec::write_json(json_of(*keys)) + '\n' : text_of(*keys, colour), ""};
+}
+
 /// What Adit says of the settings in a file: whether it would take them.
 struct Checked {
   Value settings, answer;
@@ -162,7 +171,8 @@ Outcome settings(const Options& options, bool colour) {
   const bool exports = options.verb == Verb::Export;
   const auto body = get(*adit, exports ? "/adit/settings/export" : "/adit/settings");
   if (!body) return unable(body.error());
-  return exports ? Outcome{Exit::Fine, *body, ""} : show(*body, options, colour);
+  if (exports) return {Exit::Fine, *body, ""};
+  return options.key.empty() ? show(*body, options, colour) : show_keys(*body, options, colour);
 }
 
 Outcome switch_course(const Options& options, bool colour) {

@@ -14,12 +14,45 @@ namespace {
 using api::RunView;
 using Align = Table::Align;
 
-std::string attention_lines(const RunView& view, bool colour) {
-  std::string text;
-  for (const std::string& sentence : view.attention) {
-    text += painted("ATTENTION  " + host::escaped(sentence), Tone::Bad, colour) + '\n';
+/// A shape and a word beside the colour.
+Cell severity_cell(const alarms::Alarm& alarm) {
+  constexpr struct {
+    const char* word;
+    Tone tone;
+  } kForms[] = {{"x bad", Tone::Bad}, {"? ask", Tone::Bad}, {"! wait", Tone::Warning}};
+  const auto& form = kForms[static_cast<std::size_t>(alarm.severity)];
+  return {form.word, alarm.acknowledged ? Tone::Faint : form.tone};
+}
+
+constexpr std::string_view kSides[] = {"robot", "box", "network", "Command Post"};
+
+std::string why_of(const alarms::Alarm& alarm) {
+  std::string text(kSides[static_cast<std::size_t>(alarm.side)]);
+  if (!alarm.why.empty()) text += ": " + alarm.why;
+  if (alarm.hides > 0) text += " (hides " + std::to_string(alarm.hides) + ")";
+  return alarm.acknowledged ? text + " (acknowledged)" : text;
+}
+
+std::string alarms_table(const RunView& view, bool colour) {
+  Table table({{}, {}, {}, {}});
+  for (const alarms::Alarm& alarm : view.alarms) {
+    table.add({severity_cell(alarm),
+               {alarm.what, Tone::Strong},
+               {"for " + duration(view.now - alarm.since)},
+               {why_of(alarm)}});
   }
-  return text.empty() ? text : text + '\n';
+  return table.empty() ? "" : table.written(colour) + '\n';
+}
+
+Tone tone_of(alarms::Level level) {
+  constexpr Tone kTones[] = {Tone::Faint, Tone::Good, Tone::Warning, Tone::Bad};
+  return kTones[static_cast<std::size_t>(level)];
+}
+
+std::string verdict_line(const RunView& view, bool colour) {
+  if (view.verdict.what.empty()) return "";
+  return "Maps  " + painted(view.verdict.what, tone_of(view.verdict.level), colour) + ": " +
+         host::escaped(view.verdict.why) + '\n';
 }
 
 std::string run_line(const RunView& view, bool colour) {
@@ -78,22 +111,11 @@ std::string endpoints_table(const RunView& view, bool colour) {
   return table.empty() ? "" : "\nCommand Post\n" + table.written(colour);
 }
 
-/// How far the Command Post is behind what was accepted.
-Cell arrival_cell(Arrival arrival, const api::ActivityRow& row, api::Time now) {
-  const std::string behind = row.behind_since ? duration(now - *row.behind_since) + " behind" : "up to date";
-  switch (arrival) {
-    case Arrival::Yes:
-      return {behind, Tone::Good};
-    case Arrival::Late:
-      return {behind, Tone::Warning};
-    case Arrival::No:
-      return {"NO", Tone::Bad};
-    case Arrival::Silent:
-      return {"silent", Tone::Warning};
-    case Arrival::NotYet:
-      break;
-  }
-  return {"not yet", Tone::Faint};
+/// Whether it reaches the Command Post, and how far that is behind.
+Cell arrival_cell(const api::ActivityRow& row, api::Time now) {
+  const bool late = row.arrival == alarms::Arrival::Late && row.behind_since;
+  return {late ? duration(now - *row.behind_since) + " behind" : std::string(name_of(row.arrival)),
+          tone_of(row.level)};
 }
 
 std::string ago(const std::optional<api::Time>& time, api::Time now) {
@@ -132,17 +154,16 @@ std::string activities_table(const RunView& view, bool colour) {
                {"size", Align::Right},
                {"the Command Post said"}});
   for (const api::ActivityRow& row : view.activities) {
-    const Arrival arrival = arrival_of(row, view.now);
     table.add({{row.robot.empty() ? "(all)" : row.robot, Tone::Strong},
                {kind_of(row)},
-               arrival_cell(arrival, row, view.now),
+               arrival_cell(row, view.now),
                {std::to_string(row.accepted)},
                {std::to_string(row.forwarded)},
                {std::to_string(row.waiting)},
                {row.no_room == 0 ? "" : std::to_string(row.no_room), Tone::Warning},
                {ago(row.last_forwarded, view.now)},
                {sent_size(row)},
-               {said(row), arrival == Arrival::No ? Tone::Bad : Tone::Plain}});
+               {said(row), row.level == alarms::Level::Bad ? Tone::Bad : Tone::Plain}});
   }
   return table.empty() ? "" : "\nIs my map arriving?\n" + table.written(colour);
 }
@@ -163,20 +184,8 @@ std::string refusals_table(const RunView& view, bool colour) {
 
 }  // namespace
 
-Arrival arrival_of(const api::ActivityRow& row, api::Time now) {
-  const bool answered = row.last_status != 0;
-  const bool taken = row.last_status >= 200 && row.last_status < 300;
-  if (answered ? !taken : !row.last_sentence.empty()) return Arrival::No;
-  const auto older = [now](const std::optional<api::Time>& time, double seconds) {
-    return time && now - *time > seconds;
-  };
-  if (older(row.behind_since, kLateAfter)) return Arrival::Late;
-  if (!row.last_forwarded) return Arrival::NotYet;
-  return !row.behind_since && older(row.last_accepted, kSilentAfter) ? Arrival::Silent : Arrival::Yes;
-}
-
 std::string status_text(const RunView& view, bool colour) {
-  return attention_lines(view, colour) + run_line(view, colour) + link_line(view) +
+  return alarms_table(view, colour) + run_line(view, colour) + verdict_line(view, colour) + link_line(view) +
          reports_line(view, colour) + endpoints_table(view, colour) + activities_table(view, colour) +
          refusals_table(view, colour);
 }

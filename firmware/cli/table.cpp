@@ -13,7 +13,7 @@ std::string line(const std::vector<Cell>& cells, const std::vector<Table::Column
   std::string text;
   std::size_t owed = 0;  // spaces, written only before something that shows: lines do not end in any
   for (std::size_t i = 0; i < cells.size(); ++i) {
-    const std::size_t spare = widths[i] - cells[i].text.size();
+    const std::size_t spare = widths[i] - width_of(cells[i].text);
     const bool right = columns[i].align == Table::Align::Right;
     owed += 2 + (right ? spare : 0);
     if (!cells[i].text.empty()) {
@@ -36,10 +36,10 @@ std::string Table::written(bool colour) const {
   std::vector<std::size_t> widths;
   for (const Column& column : columns_) {
     names.push_back({column.name, Tone::Faint});
-    widths.push_back(column.name.size());
+    widths.push_back(width_of(column.name));
   }
   for (const auto& row : rows_) {
-    for (std::size_t i = 0; i < row.size(); ++i) widths[i] = std::max(widths[i], row[i].text.size());
+    for (std::size_t i = 0; i < row.size(); ++i) widths[i] = std::max(widths[i], width_of(row[i].text));
   }
   const bool named = std::ranges::any_of(columns_, [](const Column& column) { return !column.name.empty(); });
   std::string text = named ? line(names, columns_, widths, colour) : "";

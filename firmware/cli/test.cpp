@@ -10,6 +10,7 @@
 #include "cli/reading.hpp"
 #include "cli/where.hpp"
 #include "cli/words.hpp"
+#include "codec/json.hpp"
 #include "host/log.hpp"
 
 namespace adit::cli {
@@ -66,22 +67,62 @@ bool is_bad(const api::TestView& view) {
   });
 }
 
+using codec::Value;
+
+/// An endpoint to try, as POST /adit/test takes it; null where none is named.
+std::expected<Value, std::string> endpoint_to_try(const std::optional<settings::Address>& at,
+                                                  const std::string& token_file) {
+  Value::Object endpoint;
+  if (at) endpoint = {{"address", {at->address}}, {"port", {std::int64_t{at->port}}}};
+  if (!token_file.empty()) {
+    const auto token = token_in_file(token_file);
+    if (!token) return std::unexpected(token.error());
+    endpoint.emplace_back("token", Value{token->token.reveal()});
+  }
+  return endpoint.empty() ? Value{} : Value{std::move(endpoint)};
+}
+
+/// The body of POST /adit/test; "" for what is in use.
+std::expected<std::string, std::string> body_of(const Trial& trial) {
+  if (trial.is_of_what_is_in_use()) return "";
+  const auto scoring = endpoint_to_try(trial.scoring, trial.scoring_token);
+  if (!scoring) return std::unexpected(scoring.error());
+  const auto mapping = endpoint_to_try(trial.mapping, trial.mapping_token);
+  if (!mapping) return std::unexpected(mapping.error());
+  Value::Object body = {{"scoring", *scoring}, {"mapping", *mapping}};
+  if (!trial.course.empty()) body.emplace_back("course", Value{trial.course});
+  return codec::write_json({std::move(body)});
+}
+
+/// Begins it, or finds that one of what is in use runs already, which is joined.
+std::expected<void, Outcome> begin(const Adit& adit, const Trial& trial) {
+  auto body = body_of(trial);
+  if (!body) return std::unexpected(unable(body.error()));
+  const auto begun = http_ask(adit.address,
+                              {.method = HttpRequest::Method::Post,
+                               .target = "/adit/test",
+                               .token = adit.token.token,
+                               .body = *std::move(body)},
+                              kTestPatience);
+  if (!begun) return std::unexpected(unable(begun.error().sentence));
+  if (begun->status == 200) return {};
+  if (begun->status == 401) return std::unexpected(unable(unknown_token(adit)));
+  const std::string sentence = sentence_in(begun->body);
+  const bool runs_already = begun->status == 409 && !sentence.empty();
+  if (runs_already && trial.is_of_what_is_in_use()) return {};
+  if (runs_already || begun->status == 422)
+    return std::unexpected(Outcome{Exit::Attention, "", "adit: " + host::escaped(sentence) + '\n'});
+  return std::unexpected(unable("Adit at " + written(adit.address) + " answered " +
+                                std::to_string(begun->status) +
+                                (sentence.empty() ? " (is that Adit?)" : ": " + sentence)));
+}
+
 }  // namespace
 
 Outcome test(const Options& options, bool colour, const std::function<void(const std::string&)>& print) {
   const auto adit = adit_of(options);
   if (!adit) return unable(adit.error());
-  const auto begun =
-      http_ask(adit->address,
-               {.method = HttpRequest::Method::Post, .target = "/adit/test", .token = adit->token.token},
-               kTestPatience);
-  if (!begun) return unable(begun.error().sentence);
-  if (begun->status == 401) return unable(unknown_token(*adit));
-  if (begun->status != 200 && begun->status != 409) {  // 409: one runs already
-    const std::string sentence = sentence_in(begun->body);
-    return unable("Adit at " + written(adit->address) + " answered " + std::to_string(begun->status) +
-                  (sentence.empty() ? " (is that Adit?)" : ": " + sentence));
-  }
+  if (auto begun = begin(*adit, options.trial); !begun) return std::move(begun.error());
   Progress progress(colour, print);
   for (int i = 0; i < kTestTimes; ++i) {
     const auto json = get(*adit, "/adit/test");

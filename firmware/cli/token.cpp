@@ -12,6 +12,8 @@ std::string_view trimmed(std::string_view text) {
   return text.substr(first, text.find_last_not_of(kSpace) - first + 1);
 }
 
+}  // namespace
+
 std::expected<Token, std::string> token_in_file(const std::string& file) {
   const auto text = host::read_file(file);
   if (!text) return std::unexpected(text.error());
@@ -19,8 +21,6 @@ std::expected<Token, std::string> token_in_file(const std::string& file) {
   if (!token) return std::unexpected(file + ": expected one token of 1 to 256 visible ASCII characters");
   return Token{std::move(*token), file};
 }
-
-}  // namespace
 
 std::expected<std::optional<Token>, std::string> find_token(const std::string& file,
                                                             std::span<const std::string> folders) {

@@ -19,6 +19,9 @@ struct Token {
   std::string file;
 };
 
+/// The one token in a file. An error names the file, never what is in it.
+std::expected<Token, std::string> token_in_file(const std::string& file);
+
 /// The token in `file`; or, where that is empty, in the first of team.token and scoring.token in `folders`,
 /// each in the first folder first, that can be read and holds one: perhaps none. An error names the file,
 /// never what is in it.

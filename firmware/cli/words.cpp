@@ -34,6 +34,11 @@ std::string painted(const std::string& text, Tone tone, bool colour) {
   return code_of(tone) + text + "\033[0m";
 }
 
+std::size_t width_of(std::string_view text) {
+  return static_cast<std::size_t>(std::ranges::count_if(
+      text, [](char byte) { return (static_cast<std::uint8_t>(byte) & 0xc0u) != 0x80u; }));
+}
+
 std::string duration(double seconds) {
   const double time = std::clamp(seconds, 0.0, kLongestTime);
   if (time < 9.95) return decimal(time, 1) + " s";

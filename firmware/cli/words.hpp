@@ -2,6 +2,7 @@
 
 #include <cstdint>
 #include <string>
+#include <string_view>
 
 namespace adit::cli {
 
@@ -10,6 +11,9 @@ enum class Tone : std::uint8_t { Plain, Faint, Strong, Good, Warning, Bad };
 
 /// In the tone's colour where there is colour.
 std::string painted(const std::string& text, Tone tone, bool colour);
+
+/// How many characters of UTF-8 a text has.
+std::size_t width_of(std::string_view text);
 
 /// "0.4 s", "12 s", "3 min", "2 h"
 std::string duration(double seconds);

@@ -33,7 +33,7 @@ enum class Empty : std::uint8_t { Refused, Taken };
 /// One option: all that reads, explains, documents or completes it comes from here.
 struct Row {
   const char* word;   // "--settings"; or a word of its own, "good"
-  const char* value;  // what the help calls it, "FILE"; "": it stands alone
+  const char* value;  // what the help calls it, "FILE", "N|all"; "": it stands alone
   const char* help;   // what it is for; a text that it has where it is left out is added to that
   std::variant<bool*, std::string*, std::vector<std::string>*, Take> into;
   Wanted wanted = Wanted::Maybe;

@@ -5,6 +5,8 @@
 #include <algorithm>
 #include <string_view>
 
+#include "spelling/nearest.hpp"
+
 namespace adit::command_line {
 namespace {
 
@@ -22,6 +24,24 @@ std::vector<option> options_of(const Program& program) {
   }
   options.push_back({});
   return options;
+}
+
+std::string_view without_dashes(std::string_view word) {
+  return word.substr(std::min(word.find_first_not_of('-'), word.size()));
+}
+
+/// Says so of a word, and which row's was likely meant.
+std::string unknown(std::string_view word, const Program& program) {
+  std::string sentence = std::string("unknown word '").append(word).append("'");
+  std::vector<std::string_view> known;
+  known.reserve(program.rows.size());
+  for (const Row& row : program.rows) known.push_back(without_dashes(row.word));
+  const auto meant = spelling::nearest(without_dashes(word), known);
+  if (!meant) return sentence;
+  const auto row = std::ranges::find(known, *meant) - known.begin();
+  return sentence.append("; did you mean ")
+      .append(program.rows[static_cast<std::size_t>(row)].word)
+      .append("?");
 }
 
 class Reading {
@@ -60,7 +80,7 @@ class Reading {
     const Row* const row =
         number < kFirst ? nullptr : &program_.rows[static_cast<std::size_t>(number - kFirst)];
     if (row == nullptr || name != row->word)  // a word that was cut short is none
-      return "unknown word '" + name + "'";
+      return unknown(name, program_);
     if (found == '?') return name + " takes no value";
     if (found == ':') return name + " wants a value";
     return put(*row, optarg == nullptr ? "" : optarg);
@@ -72,7 +92,7 @@ class Reading {
     });
     if (row != program_.rows.end()) return put(*row, "");
     if (program_.word.take != nullptr) return program_.word.take(program_.word.into, text);
-    return "unknown word '" + std::string(text) + "'";
+    return unknown(text, program_);
   }
 
   Wrong put(const Row& row, const std::string& value) {

@@ -129,8 +129,6 @@ class Reports {
   const Report* sending() const { return sending_ ? &book_.at(*sending_) : nullptr; }
   /// Whether it is in doubt and Adit can find out by itself.
   bool is_asking(const Report& report) const;
-  /// What the operator must know or decide, a sentence each.
-  std::vector<std::string> attention() const;
 
  private:
   // Clients.

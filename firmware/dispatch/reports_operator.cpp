@@ -6,9 +6,6 @@ namespace adit::dispatch {
 namespace {
 
 constexpr const char* kLost = "what it said is lost from the ledger: post it again, or call it done";
-constexpr const char* kCallDone = "; call it done";
-constexpr const char* kUntilDone =
-    "; what is posted in this run is held for the operator, as it may be the same, until he calls it done";
 constexpr const char* kDisk = "the step could not be written down, so it was not taken; try again";
 
 std::unexpected<std::string> no_such(std::int64_t number) {
@@ -104,26 +101,6 @@ Reports::Outcome Reports::resubmit(std::int64_t number, Time time) {
   if (made == 0) return std::unexpected(kDisk);
   taken_at_[made] = time.now;
   return made;
-}
-
-std::vector<std::string> Reports::attention() const {
-  std::vector<std::string> sentences;
-  for (const std::int64_t number : book_.open()) {
-    const Report& report = book_.at(number);
-    if (report.is_lost() && report.state == ReportState::InDoubt) {
-      sentences.push_back(report.note + (is_of_run(report) ? kUntilDone : kCallDone));
-    } else if (report.state == ReportState::Received || report.state == ReportState::InDoubt) {
-      sentences.push_back(icd::sentence(
-          "report ", number, " is ", report.state == ReportState::InDoubt ? "in doubt: " : "", report.note));
-    }
-  }
-  for (const auto& [post, count] : waiting_elsewhere()) {
-    sentences.push_back(icd::sentence(count, count == 1 ? " report waits" : " reports wait",
-                                      " for the Command Post at ", post,
-                                      ", which the settings do not name now"));
-  }
-  if (!run().unreliable.empty()) sentences.push_back(run().unreliable);
-  return sentences;
 }
 
 }  // namespace adit::dispatch

@@ -26,6 +26,18 @@ void AsForwarded::begin_run(api::Time now) {
   tracks_.wipe();
 }
 
+void AsForwarded::go_on_from(std::vector<api::Track> earlier) {
+  std::erase_if(earlier, [this](const api::Track& track) {
+    if (robots_.contains(track.robot)) return false;
+    if (track.poses.empty() || robots_.size() >= kMostRobots) return true;
+    const api::TrackPose& last = track.poses.back();
+    robots_[track.robot] = {
+        .name = track.robot, .position = last.position, .heading = last.heading, .at = last.at};
+    return false;
+  });
+  tracks_.go_on_from(earlier);
+}
+
 std::vector<api::RobotRow> AsForwarded::robots() const {
   std::vector<api::RobotRow> rows;
   rows.reserve(robots_.size());

@@ -23,6 +23,9 @@ class AsForwarded {
   /// A new run begins without tracks and markers; where each robot is, it still is.
   void begin_run(api::Time now);
 
+  /// Where they were in this run before a restart.
+  void go_on_from(std::vector<api::Track> earlier);
+
   /// Each robot's last pose, by name.
   std::vector<api::RobotRow> robots() const;
   const MarkerScene& markers() const { return markers_; }

@@ -111,6 +111,7 @@ void Channel::ended(const std::shared_ptr<UnderWay>& request, uplink::Outcome ou
 
 void Channel::note(const UnderWay& request, const uplink::Outcome& outcome) {
   heard_ = loop_.now();
+  ++ended_;
   last_status_ = 0;
   foreign_now_ = comes_from_another(outcome);
   if (foreign_now_) ++foreign_;

@@ -61,6 +61,8 @@ class Channel {
   /// Whether the last answer was one that no Command Post gives, and how many such came.
   bool is_foreign() const { return foreign_now_; }
   std::uint64_t foreign() const { return foreign_; }
+  /// How many requests have ended, in any way.
+  std::uint64_t ended() const { return ended_; }
   /// How many answers were 429.
   std::uint64_t throttled() const { return throttled_; }
   /// When last_status() was heard.
@@ -97,7 +99,7 @@ class Channel {
   std::optional<Way> next_;
   std::vector<std::shared_ptr<UnderWay>> under_way_;  // at most two; the first was sent first
   loop::Instant heard_{};
-  std::uint64_t finished_bytes_ = 0, throttled_ = 0, foreign_ = 0;
+  std::uint64_t finished_bytes_ = 0, ended_ = 0, throttled_ = 0, foreign_ = 0;
   bool foreign_now_ = false;
   int last_status_ = 0;
   std::optional<double> answer_ms_;

@@ -81,15 +81,19 @@ void Flow::changed() {
 /// A new run begins with a blank picture, here and at the Command Post. The first one that is known in a life
 /// may have begun before it, and so may one at another Command Post, or one that is taken up again.
 void Flow::picture_the_run() {
+  if (!has_started_) return;
   const std::int64_t run = reports().run().number;
   const std::int64_t before = std::exchange(pictured_run_, run);
-  if (before == 0 || before == run) return;
+  if (before == run) return;
+  if (before == 0) return keep_the_run();
   const std::string& post = reports().run().post;
+  archive_->end_run(seen());
   const bool is_here =
       reports().runs().is_at(before, post) && post == address_text(settings_.command_post.scoring);
   maps_.change_run(/*is_new=*/is_here && run > before);
   as_forwarded_.begin_run(loop_.stamp_now());
   picture_.begin_run();
+  keep_the_run();
 }
 
 /// By the clock of the view.

@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "api/source.hpp"
+#include "archive/archive.hpp"
 #include "forward/as_forwarded.hpp"
 #include "forward/aside.hpp"
 #include "forward/clocks.hpp"
@@ -37,6 +38,7 @@ struct Legacy {
   picture::Mosaic picture;
   std::int64_t pictured_run = 0;  // whose maps it shows; 0: none yet
   AsForwarded as_forwarded;
+  std::unique_ptr<archive::Archive> archive;                     // which goes on writing meanwhile
   icd::Stamp map_stamp = 0, state_stamp = 0, markers_stamp = 0;  // the last ones sent
 };
 
@@ -69,7 +71,7 @@ class Flow final : public intake::Desk {
   /// The settings have changed; `restarts` names the endpoints that have another address, way or token.
   /// Clients that wait go on waiting.
   void settings_changed(const settings::Restarts& restarts, Tokens tokens);
-  /// Once a second. `disk`: the writer of the state folder.
+  /// Once a second. `disk`: the writer of small files of the state folder.
   void tick(loop::Writer& disk);
   /// The Command Post's cable is in again: what would wait because sending failed without it need not wait.
   void link_is_back();
@@ -86,6 +88,13 @@ class Flow final : public intake::Desk {
             std::shared_ptr<intake::Responder> responder) override;
   void status(const intake::Sender& sender, std::shared_ptr<intake::Responder> responder) override;
   void refused(icd::Uri uri, const intake::Sender& sender, const icd::Refusal& told) override;
+
+  /// When the operator's test may ask an endpoint that the run uses for its status, or send it a state: a
+  /// turn of the run's own, so that neither is throttled. Nothing: not before `latest`.
+  std::optional<loop::Instant> claim(icd::Uri uri, loop::Instant latest) {
+    return pace_of(uri).claim(loop_.now(), latest);
+  }
+  void claimed(icd::Uri uri) { pace_of(uri).claimed(loop_.now()); }
 
   /// The operator's actions: api::Operator.
   std::expected<std::int64_t, std::string> judge(std::int64_t number, api::Action action) {
@@ -105,6 +114,9 @@ class Flow final : public intake::Desk {
   const Record& record() const { return record_; }
   const AsForwarded& as_forwarded() const { return as_forwarded_; }
   const picture::Mosaic& picture() const { return picture_.mosaic(); }
+  /// What is kept of runs.
+  archive::Archive& archive() { return *archive_; }
+  const archive::Archive& archive() const { return *archive_; }
   /// Record's, with what waits.
   std::vector<api::ActivityRow> activities() const;
   /// Why states and markers cannot be kept, or "".
@@ -115,9 +127,12 @@ class Flow final : public intake::Desk {
   /// For work that takes long; they end before anything that the flow holds.
   loop::Workers& workers() { return workers_; }
   /// All its threads, to be asked for signs of life.
-  std::vector<loop::Workers*> threads() { return {&workers_, &writer_}; }
+  std::vector<loop::Workers*> threads() { return {&workers_, &writer_, &archive_->thread()}; }
 
  private:
+  UriPace& pace_of(icd::Uri uri) {
+    return uri == icd::Uri::Status ? scoring_.status_pace() : telemetry_.state_pace();
+  }
   std::optional<api::Time> behind_since(const Traffic& traffic) const;
   void carry_on();
   void hold_back();
@@ -126,6 +141,10 @@ class Flow final : public intake::Desk {
             std::function<void(icd::Checked<void>)> done);
   void changed();
   void picture_the_run();
+  void keep_the_run();
+  archive::Seen seen() const;
+  archive::Sample sample() const;
+  api::RunRow facts() const;
   void drain();
 
   loop::Loop& loop_;
@@ -148,6 +167,8 @@ class Flow final : public intake::Desk {
   Telemetry telemetry_;
   Meter meter_;
   std::int64_t pictured_run_;  // Legacy's
+  bool has_started_ = false;   // until then the ledger has not said which run it is
+  std::unique_ptr<archive::Archive> archive_;
   Ending ending_;
   std::function<void()> over_;
   loop::Source drained_;

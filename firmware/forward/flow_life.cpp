@@ -16,6 +16,10 @@ std::uint64_t beside_maps(const settings::Settings& settings) {
   return 4 * std::uint64_t{settings.queues.marker_bytes} + lanes::SetAside::kMostBytes + kOthers;
 }
 
+archive::Limits limits_of(const settings::Settings& settings) {
+  return {.run = settings.runs.run_bytes, .all = settings.runs.all_bytes};
+}
+
 std::uint64_t seed() {
   std::uint64_t seed = 0;
   host::fill_random({reinterpret_cast<std::uint8_t*>(&seed), sizeof seed});
@@ -41,27 +45,36 @@ Flow::Flow(loop::Loop& loop, ledger::Ledger& ledger, const settings::Settings& s
       record_([this] { changed(); }),
       scoring_(loop, ledger, settings, tokens_.scoring, record_, random_, journal_, told_.restart),
       picture_(
-          loop, workers_, [this] { return maps_.packing(); }, [this] { changed(); },
-          legacy_ ? std::move(legacy_->picture) : picture::Mosaic()),
+          loop, workers_, [this] { changed(); }, legacy_ ? std::move(legacy_->picture) : picture::Mosaic()),
       maps_(loop, workers_, writer_, spool_, settings, tokens_.mapping, record_, aside_, random_, journal_,
             [this](icd::MapUpdate map) { picture_.forwarded(std::move(map)); }),
       as_forwarded_(legacy_ ? std::move(legacy_->as_forwarded) : AsForwarded()),
       telemetry_(loop, workers_, settings, tokens_.mapping, record_, aside_, random_, journal_, as_forwarded_,
                  told_.restart),
       pictured_run_(legacy_ ? legacy_->pictured_run : 0),
-      drained_(loop.timer([this] { drain(); })) {}
+      archive_(legacy_ && legacy_->archive ? std::move(legacy_->archive)
+                                           : std::make_unique<archive::Archive>(loop, folders.state)),
+      drained_(loop.timer([this] { drain(); })) {
+  archive_->limit(limits_of(settings));
+}
 
 std::expected<void, std::string> Flow::start() {
   carry_on();
   if (auto started = scoring_.start(); !started) return started;
   telemetry_.start();
+  has_started_ = true;
+  if (!archive_->has_begun() && pictured_run_ == reports().run().number) keep_the_run();
+  picture_the_run();
   return {};
 }
 
 Legacy Flow::hand_over() {
+  if (has_started_) archive_->write_now(seen());
+  archive_->forget_who_goes_on();
   return {.picture = picture_.hand_over(),
           .pictured_run = pictured_run_,
           .as_forwarded = std::move(as_forwarded_),
+          .archive = std::move(archive_),
           .map_stamp = maps_.last_stamp(),
           .state_stamp = telemetry_.last_state_stamp(),
           .markers_stamp = telemetry_.last_markers_stamp()};
@@ -118,6 +131,7 @@ void Flow::restore(bool is_first) {
 
 void Flow::settings_changed(const settings::Restarts& restarts, Tokens tokens) {
   tokens_ = std::move(tokens);
+  archive_->limit(limits_of(settings_));
   spool_.leave_to_others(beside_maps(settings_));
   if (restarts.scoring)
     scoring_.endpoint_changed(tokens_.scoring);  // first: nothing more goes to the old one
@@ -138,6 +152,7 @@ void Flow::tick(loop::Writer& disk) {
   meter_.second(sent_bytes());
   scoring_.tick();
   clocks_.keep_floor(disk);
+  archive_->tick(seen());
 }
 
 void Flow::end(std::function<void()> over) {

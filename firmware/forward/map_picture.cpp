@@ -9,8 +9,6 @@
 namespace adit::forward {
 namespace {
 
-constexpr std::chrono::milliseconds kLookAgain{20};  // whether packing is done
-
 /// Whether `newer` shows all that `older` showed. A cloud never does: senders post what is new alone.
 bool covers(const icd::MapUpdate& newer, const icd::MapUpdate& older) {
   const auto* grid = std::get_if<icd::OccupancyGrid>(&newer.msg);
@@ -27,11 +25,10 @@ struct MapPicture::Job {
   icd::Checked<picture::Drawing> drawing{};
 };
 
-MapPicture::MapPicture(loop::Loop& loop, loop::Workers& workers, std::function<bool()> packing,
-                       std::function<void()> changed, picture::Mosaic mosaic)
+MapPicture::MapPicture(loop::Loop& loop, loop::Workers& workers, std::function<void()> changed,
+                       picture::Mosaic mosaic)
     : loop_(loop),
       workers_(workers),
-      packing_(std::move(packing)),
       changed_(std::move(changed)),
       wake_(loop.timer([this] { pump(); })),
       mosaic_(std::move(mosaic)) {}
@@ -43,13 +40,25 @@ void MapPicture::forwarded(icd::MapUpdate map) {
     return overtaken;
   });
   waiting_bytes_ += map.data.bytes.size();
-  waiting_.push_back({.map = std::move(map), .stamp = loop_.stamp_now(), .since = loop_.now()});
+  waiting_.push_back({.map = std::move(map), .stamp = loop_.stamp_now()});
   while (waiting_bytes_ > kMostWaiting && waiting_.size() > 1) {
     mosaic_.missed(picture::layer_of(waiting_.front().map), waiting_.front().stamp);
     waiting_bytes_ -= waiting_.front().map.data.bytes.size();
     waiting_.pop_front();
   }
   wake_.call_at(loop_.now());  // not at once: the next map may begin to be packed first
+}
+
+void MapPicture::hold() {
+  held_until_ = loop_.now() + kMostHeld;
+}
+
+void MapPicture::go_on_from(picture::Mosaic earlier) {
+  held_until_ = {};
+  const auto before = mosaic_.version();
+  mosaic_.take_up(std::move(earlier), loop_.stamp_now());
+  if (mosaic_.version() != before) changed_();
+  pump();
 }
 
 void MapPicture::begin_run() {
@@ -68,10 +77,7 @@ picture::Mosaic MapPicture::hand_over() {
 
 void MapPicture::pump() {
   if (drawing_ || waiting_.empty()) return;
-  if (packing_() && loop_.now() < waiting_.front().since + kPatience) {
-    wake_.call_at(loop_.now() + kLookAgain);
-    return;
-  }
+  if (loop_.now() < held_until_) return wake_.call_at(held_until_);
   Waiting next = std::move(waiting_.front());
   waiting_.pop_front();
   waiting_bytes_ -= next.map.data.bytes.size();
@@ -83,8 +89,9 @@ void MapPicture::draw(Waiting waiting) {
   auto job = std::make_shared<Job>(Job{std::move(waiting), {}});
   job->canvas = mosaic_.canvas(picture::layer_of(job->waiting.map));
   workers_.submit(
-      [job] {
-        job->drawing = picture::draw(job->waiting.map, job->canvas);
+      loop::Urgency::CanWait,
+      [job, &workers = workers_] {  // they outlive this
+        job->drawing = picture::draw(job->waiting.map, job->canvas, [&workers] { workers.give_way(); });
         job->waiting.map.data = {};  // here: that takes milliseconds of a file that is mapped
       },
       [this, job] { drawn(*job); },

@@ -148,90 +148,6 @@ loop::Instant Maps::begins_to_pack(loop::Instant now) const {
   return begin <= now ? begin : std::max(begin, now + kLookAtSending);
 }
 
-void Maps::prepare(Place& place) {
-  auto prepared = std::make_shared<Prepared>();
-  slot_.link_delivers(channel_.delivers());
-  lane_.a_message_holds(slot_.points_within(pace_.spacing()));
-  auto waiting = lane_.take(loop_.now());
-  if (!waiting) return;
-  prepared->waiting = std::move(*waiting);
-  place = std::move(prepared);
-  pack(place);
-}
-
-/// Whether its slot was free already when it came, and it is a large grid that leaves soon as it is kept:
-/// what is saved by making it smaller is then less than that takes. One that has to wait is made smaller
-/// meanwhile.
-bool Maps::is_awaited(const lanes::WaitingMap& waiting) const {
-  constexpr std::size_t kLarge = 1u << 20;  // cells; smaller ones are packed in a few milliseconds
-  constexpr int kSoon = 8;                  // in that part of the time between two maps
-  return waiting.map.data.raw_size >= kLarge && !channel_.busy() && starts() <= waiting.accepted &&
-         slot_.transfer(waiting.map.data.bytes.size()) <= pace_.spacing() / kSoon;
-}
-
-/// Where it throws, `prepared` waits to be packed.
-void Maps::pack(const Place& prepared) {
-  icd::Header& header = prepared->waiting.map.header();
-  header.stamp = stamps_.next(header.stamp.value_or(loop_.stamp_now()));
-  journal_.stamped(icd::Uri::MapUpdate, *header.stamp);
-  const loop::Instant began = loop_.now();
-  const auto leaving_out = std::make_shared<LeavingOut>(points_.leaving_out(prepared->waiting.map));
-  const Packing packing{.arranges_clouds = settings_.command_post.arrange_clouds,
-                        .leaves_grids = is_awaited(prepared->waiting)};
-  workers_.submit(
-      [prepared, leaving_out, packing] {
-        prepared->packed = packed(prepared->waiting, std::move(*leaving_out), packing);
-      },
-      [this, began, prepared] {
-        preparing_ = false;
-        slot_.packing_took(loop_.now() - began);
-        loop::guarded("a map that was packed", [&] { is_packed(prepared); });
-        pump();
-      },
-      [this, prepared] { not_packed(prepared); });
-  preparing_ = true;  // only now: where it could not be submitted, it is not
-}
-
-/// Null where it went back into the lane meanwhile.
-Maps::Place* Maps::place_of(const Place& prepared) {
-  if (prepared == prepared_) return &prepared_;
-  return prepared == following_ ? &following_ : nullptr;
-}
-
-/// What cannot be stitched goes as it came, each part by itself.
-void Maps::is_packed(const Place& prepared) {
-  const icd::MapUpdate& map = prepared->waiting.map;
-  const LeftOut& left_out = prepared->packed.left_out;
-  if (!map.is_grid())
-    slot_.packed(prepared->packed.points_size, prepared->packed.body.size(), prepared->packed.precision);
-  Place* const place = place_of(prepared);
-  if (place == nullptr) return;
-  if (left_out.is_all) return is_there(*place);
-  if (prepared->packed.drawn) lane_.canvases().lay(prepared->waiting.map.name, *prepared->packed.drawn);
-  prepared->packed.drawn.reset();
-  if (!prepared->packed.body.empty()) {
-    if (prepared->packed.stitched.raw_size > 0)
-      prepared->waiting.map.data = std::move(prepared->packed.stitched);
-    return;
-  }
-  host::log(host::Level::Warning, "grids cannot be stitched: what they hold is damaged");
-  lane_.put_back_apart(prepared->waiting);
-  place->reset();
-}
-
-void Maps::not_packed(const Place& prepared) {
-  preparing_ = false;
-  pace_.failed(loop_.now());
-  prepared->packed = {};
-  if (Place* const place = place_of(prepared)) {
-    loop::guarded("putting a map back", [&] {
-      record_.not_taken(traffic_of(prepared->waiting.map), NotTaken::Failed, 0, "it could not be packed");
-      put_back(*place);
-    });
-  }
-  wake_.call_at(pace_.ready());
-}
-
 void Maps::send(const Place& prepared) {
   const bool ahead = channel_.busy();
   const bool is_sent = loop::guarded("giving a map to its connection", [&] {
@@ -287,7 +203,9 @@ void Maps::taken(const Place& sent, const uplink::Answered& answered) {
   const std::size_t updates = sent->waiting.updates.size();
   if (sent->waiting.again) map.header().stamp = sent->waiting.again;
   // First: the writer does the one before the other.
-  loop::guarded("what a map overtook", [&] { aside_.taken(map); });
+  loop::guarded("what a map overtook", [&] {
+    for (const icd::MapUpdate* const said : lanes::said_by(sent->waiting)) aside_.taken(*said);
+  });
   forget(sent->waiting.updates);
   blame_.passed(whose(map), loop_.now());
   lane_.carried(lanes::Sender::of(map), sent->packed.body.size());

@@ -101,7 +101,8 @@ class Maps {
   /// A map out of the lane, in the form that goes upstream.
   struct Prepared {
     lanes::WaitingMap waiting;
-    Packed packed;  // without a body: not packed, or nothing is left to be sent
+    Packed packed;                   // without a body: not packed, or nothing is left to be sent
+    loop::Duration packing_took{0};  // the worker
     bool is_under_way = false, went_ahead = false;
     loop::Instant last_byte_not_before{};
     std::optional<loop::Instant> arrived{};  // about when, once that was seen
@@ -142,9 +143,11 @@ class Maps {
   loop::Instant begins_to_pack(loop::Instant now) const;
   void prepare(Place& place);
   bool is_awaited(const lanes::WaitingMap& waiting) const;
+  Packing packing_for(const lanes::WaitingMap& waiting) const;
   void pack(const Place& prepared);
   void not_packed(const Place& prepared);
   Place* place_of(const Place& prepared);
+  void learn_from(const Prepared& cloud);
   void is_packed(const Place& prepared);
   void is_there(Place& place);
   void goes_whole(const Place& sent, int status);

@@ -21,6 +21,7 @@ void Maps::compare() {
     };
     const auto it = std::make_shared<Comparison>(Comparison{*std::move(next)});
     workers_.submit(
+        loop::Urgency::OnTheWay,
         [it] { it->has_all = pack::has_all_points(it->two.newer, it->two.older, it->two.point_step); },
         [this, it] { compared(it->two, it->has_all); }, [this, it] { compared(it->two, false); });
     comparing_ = true;  // only now: where it could not be submitted, it is not

@@ -99,12 +99,13 @@ bool MarkerArrivals::takes_some(Arrival& arrival) {
 
 void MarkerArrivals::make_record(const Arrival& arrival) {
   const auto made = std::make_shared<std::string>();
-  workers_.submit([made, update = arrival.update] { *made = journal::record_of(*update); },
-                  [this, made] {
-                    arrivals_.front().record = std::move(*made);
-                    go(&MarkerArrivals::keep);
-                  },
-                  [this] { give_up(); });
+  workers_.submit(
+      loop::Urgency::OnTheWay, [made, update = arrival.update] { *made = journal::record_of(*update); },
+      [this, made] {
+        arrivals_.front().record = std::move(*made);
+        go(&MarkerArrivals::keep);
+      },
+      [this] { give_up(); });
 }
 
 bool MarkerArrivals::keep(Arrival& arrival) {
@@ -139,7 +140,7 @@ bool MarkerArrivals::add_part(Arrival& arrival) {
 /// Tens of thousands of markers, where all are deleted.
 void MarkerArrivals::free_needless() {
   auto needless = std::make_shared<std::vector<lanes::MarkerChanges>>(lane_.needless());
-  if (!needless->empty()) workers_.submit([needless] { needless->clear(); }, [] {});
+  if (!needless->empty()) workers_.submit(loop::Urgency::CanWait, [needless] { needless->clear(); }, [] {});
 }
 
 }  // namespace adit::forward

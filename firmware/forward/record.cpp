@@ -50,23 +50,6 @@ void Record::no_room(const Traffic& traffic, api::Time now) {
   changed_();
 }
 
-std::vector<std::string> Record::attention(api::Time now) const {
-  constexpr std::size_t kNamed = 3;
-  std::string names;
-  std::size_t count = 0;
-  for (const auto& [traffic, activity] : rows_) {
-    if (!activity.last_no_room || now - *activity.last_no_room > kRecent) continue;
-    if (++count > kNamed) continue;
-    const bool is_of_all = traffic.kind == Kind::Markers;
-    names += names.empty() ? "" : ", ";
-    names += is_of_all ? "" : (activity.robot.empty() ? "merged" : activity.robot) + " ";
-    names += activity.kind;
-  }
-  if (count == 0) return {};
-  if (count > kNamed) names += icd::sentence(" and ", count - kNamed, " more");
-  return {"too much waits, so that robots are refused: " + names};
-}
-
 void Record::replaced(const Traffic& traffic, std::size_t updates) {
   row(traffic).replaced += updates;
 }

@@ -40,7 +40,6 @@ class Record {
  public:
   static constexpr std::size_t kMostRows = 200;
   static constexpr std::size_t kMostRefusals = 50;
-  static constexpr double kRecent = 60;  // seconds that a refusal for want of room is told of
 
   /// `changed` is called whenever something is noted.
   explicit Record(std::function<void()> changed) : changed_(std::move(changed)) {}
@@ -64,8 +63,6 @@ class Record {
 
   /// Without `waiting` and `behind_since`, which the lanes know.
   const std::map<Traffic, api::ActivityRow>& rows() const { return rows_; }
-  /// For the operator, as long as robots are refused because too much waits.
-  std::vector<std::string> attention(api::Time now) const;
   /// What was ever refused, by URI and status.
   std::vector<api::RefusedCount> refused_counts() const;
   /// Newest first.

@@ -49,6 +49,8 @@ class Scoring {
     report_pace_.sent(loop_.now());
     status_pace_.sent(loop_.now());
   }
+  /// Of the run's status, which the operator's test asks for too.
+  UriPace& status_pace() { return status_pace_; }
   /// The settings have changed.
   void settings_changed();
   /// The endpoint's address, token or way has changed. The answer under way still comes from the old one. If

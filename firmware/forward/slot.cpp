@@ -21,6 +21,7 @@ constexpr std::chrono::milliseconds kHeldBack{20};
 
 void Slot::allow(std::uint64_t most) {
   most_ = bytes_per_second_ = static_cast<double>(most);
+  is_link_known_ = false;
 }
 
 /// After eight shorter ones, a third of what is above them is left.
@@ -45,6 +46,21 @@ void Slot::left(std::size_t bytes, const uplink::Sent& sent, loop::Instant last_
   const double seen = std::min(static_cast<double>(bytes) / took, most_);
   const bool was_held_back = sent.last <= last_byte_not_before + kHeldBack;
   bytes_per_second_ = was_held_back ? std::max(seen, bytes_per_second_) : seen;
+  is_link_known_ = is_link_known_ || !was_held_back;
+}
+
+/// A cloud that is smaller, or that was not packed, says little.
+void Slot::worker_took(loop::Duration took, std::size_t points, pack::Effort effort) {
+  if (points < kTelling || effort == pack::Effort::None) return;
+  constexpr double kFastest = 0.1, kSlowest = 100;
+  const double seen = pack::slowness(effort, points, Seconds(took).count());
+  slowness_ = std::clamp((slowness_ + seen) / 2, kFastest, kSlowest);
+}
+
+std::optional<pack::Hurry> Slot::hurry(loop::Duration spacing) const {
+  if (!is_link_known_) return std::nullopt;
+  return pack::Hurry{
+      .bytes_per_second = bytes_per_second_, .slowness = slowness_, .longest = Seconds(spacing).count()};
 }
 
 void Slot::link_delivers(std::uint64_t bytes_per_second) {

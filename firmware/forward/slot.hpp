@@ -2,9 +2,11 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <optional>
 
 #include "lanes/precision.hpp"
 #include "loop/loop.hpp"
+#include "pack/effort.hpp"
 #include "uplink/connection.hpp"
 
 namespace adit::forward {
@@ -23,6 +25,8 @@ class Slot {
   void packing_took(loop::Duration took);
   /// So many bytes of a cloud's points were packed to so many, at that precision.
   void packed(std::size_t points, std::size_t bytes, lanes::Precision precision);
+  /// A worker took so long to pack so many bytes of points with that effort.
+  void worker_took(loop::Duration took, std::size_t points, pack::Effort effort);
   /// So many bytes left, of which the last were held back until then.
   void left(std::size_t bytes, const uplink::Sent& sent, loop::Instant last_byte_not_before);
 
@@ -34,6 +38,9 @@ class Slot {
   loop::Duration lead() const;
   /// How long so many bytes take to leave.
   loop::Duration transfer(std::size_t bytes) const;
+  /// What the effort for a cloud hangs on that is to leave within `spacing`. Nothing while it is not known
+  /// how fast the link is: no map has shown it yet.
+  std::optional<pack::Hurry> hurry(loop::Duration spacing) const;
   /// How many bytes of points, not packed, leave within `spacing`, at each precision: by the last cloud, and
   /// by what rounding makes of clouds.
   lanes::PointsAt points_within(loop::Duration spacing) const;
@@ -41,7 +48,9 @@ class Slot {
  private:
   loop::Duration packing_takes_{0};
   double most_ = 1, bytes_per_second_ = 1;
+  bool is_link_known_ = false;
   double packed_to_ = 1;  // of a byte of a cloud that is exact
+  double slowness_ = 1;   // pack::Hurry's
 };
 
 }  // namespace adit::forward

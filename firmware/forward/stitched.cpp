@@ -47,6 +47,13 @@ bool was_rounded(const icd::MapUpdate& before, const icd::MapUpdate& after) {
   return cloud != nullptr && cloud->origin != std::get<icd::PointCloud2>(before.msg).origin;
 }
 
+/// What a setting asks for is done whatever it takes.
+pack::Effort effort_for(const icd::MapUpdate& map, const lanes::WaitingMap& waiting, const Packing& packing) {
+  const bool may_hurry = packing.hurry && !map.is_grid() && !is_compressed(map);
+  if (!may_hurry || unit_of(waiting.precision) > 0) return pack::Effort::Full;
+  return pack::effort_for(map.data, *packing.hurry);
+}
+
 }  // namespace
 
 Packed packed(const lanes::WaitingMap& waiting, LeavingOut leaving_out, const Packing& packing) {
@@ -57,10 +64,12 @@ Packed packed(const lanes::WaitingMap& waiting, LeavingOut leaving_out, const Pa
   if (packed.left_out.is_all) return packed;
   if (waiting.ground) packed.drawn = drawn_over(*waiting.ground, whole->data);
   if (!whole->is_grid()) packed.points_size = whole->data.raw_size;
+  packed.effort = effort_for(*whole, waiting, packing);
   const bool is_left = packing.leaves_grids && whole->is_grid() && is_compressed(*whole);
   icd::MapUpdate map = is_left ? std::move(*whole)
                                : pack::pack(std::move(*whole), {.is_arranged = packing.arranges_clouds,
-                                                                .unit = unit_of(waiting.precision)});
+                                                                .unit = unit_of(waiting.precision),
+                                                                .effort = packed.effort});
   if (was_rounded(waiting.map, map)) packed.precision = waiting.precision;
   packed.body = codec::write_map_update(map);
   if (is_to_be_stitched(waiting)) packed.stitched = std::move(map.data);

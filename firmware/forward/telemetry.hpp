@@ -45,6 +45,8 @@ class Telemetry {
     state_pace_.sent(loop_.now());
     markers_pace_.sent(loop_.now());
   }
+  /// Of states, of which the operator's test sends one that is refused.
+  UriPace& state_pace() { return state_pace_; }
   /// The settings are others, by which it goes from now on.
   void settings_changed();
   /// The endpoint is, or its token, or the way there: what is under way to another place is given up, and

@@ -39,6 +39,16 @@ void Tracks::forwarded(const std::string& robot, const api::TrackPose& pose) {
   track.poses.push_back(pose);
 }
 
+void Tracks::go_on_from(const std::vector<api::Track>& earlier) {
+  const auto later = std::exchange(tracks_, {});
+  for (const auto& [robot, poses] : earlier) {
+    for (const api::TrackPose& pose : poses) forwarded(robot, pose);
+  }
+  for (const auto& [robot, kept] : later) {
+    for (const api::TrackPose& pose : kept.poses) forwarded(robot, pose);
+  }
+}
+
 std::vector<api::Track> Tracks::since(api::Time since) const {
   std::vector<api::Track> tracks;
   for (const auto& [robot, kept] : tracks_) {

@@ -20,6 +20,8 @@ class Tracks {
 
   /// The caller bounds the number of robots.
   void forwarded(const std::string& robot, const api::TrackPose& pose);
+  /// Where they were before; what is here already is later.
+  void go_on_from(const std::vector<api::Track>& earlier);
   void wipe() { tracks_.clear(); }
   void forget(const std::string& robot) { tracks_.erase(robot); }
 

@@ -46,6 +46,17 @@ class UriPace {
   /// The rate that is allowed from now on.
   void allow(double hertz, pace::Instant now) { rate_.allow(hertz, now); }
 
+  /// pace::RateLimit::claim(), for a question of the operator's.
+  std::optional<pace::Instant> claim(pace::Instant now, pace::Instant latest) {
+    const auto at = rate_.claim(now, latest);
+    keep();
+    return at;
+  }
+  void claimed(pace::Instant now) {
+    rate_.claimed(now);
+    keep();
+  }
+
   /// To be called before it leaves, so that the journal has it even if the program ends in between.
   void sent(pace::Instant now, bool ahead = false) {
     rate_.sent(now, ahead);

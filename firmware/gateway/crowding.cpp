@@ -13,12 +13,17 @@ void Crowding::ended(intake::Ended why, const std::string& address, loop::Instan
     ++kind.by_address[address];
 }
 
-std::vector<std::string> Crowding::attention(loop::Instant now) const {
-  std::vector<std::string> sentences;
+std::vector<alarms::Crowd> Crowding::crowds(loop::Instant now) const {
+  using Is = alarms::Crowd::Is;
+  std::vector<alarms::Crowd> crowds;
   for (const intake::Ended why : kTold) {
-    if (at(why).count > 0 && now - at(why).last < kRecent) sentences.push_back(sentence(why));
+    if (at(why).count == 0 || now - at(why).last >= kRecent) continue;
+    const Is is = why == intake::Ended::NoRoom       ? Is::NoRoom
+                  : why == intake::Ended::WrongToken ? Is::WrongToken
+                                                     : Is::Strangers;
+    crowds.push_back({is, most_of(why)});
   }
-  return sentences;
+  return crowds;
 }
 
 std::vector<Crowding::Line> Crowding::to_log(loop::Instant now) {
@@ -33,18 +38,22 @@ std::vector<Crowding::Line> Crowding::to_log(loop::Instant now) {
   return lines;
 }
 
+const std::string& Crowding::most_of(intake::Ended why) const {
+  return std::ranges::max_element(at(why).by_address, {}, [](const auto& each) { return each.second; })
+      ->first;
+}
+
 std::string Crowding::sentence(intake::Ended why) const {
-  const auto most =
-      std::ranges::max_element(at(why).by_address, {}, [](const auto& each) { return each.second; });
+  const std::string& most = most_of(why);
   if (why == intake::Ended::NoRoom) {
-    return "requests are answered 503, most of " + most->first +
+    return "requests are answered 503, most of " + most +
            ": too many are under way at once (team.connections, team.connections_per_address)";
   }
   if (why == intake::Ended::WrongToken) {
-    return "requests show wrong tokens, most of " + most->first +
+    return "requests show wrong tokens, most of " + most +
            ": robots with an old one, or somebody who guesses; right ones are let in";
   }
-  return "too many connections are open without a token, most of " + most->first +
+  return "too many connections are open without a token, most of " + most +
          ": the oldest are ended for new ones";
 }
 

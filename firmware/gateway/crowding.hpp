@@ -6,6 +6,7 @@
 #include <string>
 #include <vector>
 
+#include "alarms/facts.hpp"
 #include "intake/server.hpp"
 #include "loop/loop.hpp"
 
@@ -25,7 +26,8 @@ class Crowding {
 
   void ended(intake::Ended why, const std::string& address, loop::Instant now);
   std::uint64_t count(intake::Ended why) const { return at(why).count; }
-  std::vector<std::string> attention(loop::Instant now) const;
+  /// What goes on now.
+  std::vector<alarms::Crowd> crowds(loop::Instant now) const;
   /// What is to be logged now.
   std::vector<Line> to_log(loop::Instant now);
 
@@ -39,6 +41,7 @@ class Crowding {
 
   const Kind& at(intake::Ended why) const { return kinds_[static_cast<std::size_t>(why)]; }
   std::string sentence(intake::Ended why) const;
+  const std::string& most_of(intake::Ended why) const;
 
   std::array<Kind, intake::kEndedKinds> kinds_;
 };

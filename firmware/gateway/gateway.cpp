@@ -2,6 +2,7 @@
 
 #include <utility>
 
+#include "box/candidate.hpp"
 #include "dispatch/another_post.hpp"
 #include "gateway/report_rows.hpp"
 #include "host/link_changes.hpp"
@@ -47,8 +48,14 @@ Gateway::Gateway(loop::Loop& loop, Parts parts)
       box_(loop, flow_.workers(), parts_.board, settings::file_of(parts_.loaded.settings),
            [this](api::Usage& usage) { add_to(usage); }),
       network_(loop, settings_, network_requests_),
-      self_test_(loop, settings_, {tokens().scoring, tokens().mapping}, network_requests_, network_,
-                 [this] { api_.changed(); }),
+      self_test_(
+          loop, settings_,
+          [this](const api::Candidate& candidate) {
+            return box::tried_of(candidate, parts_.loaded.settings, parts_.loaded.secrets);
+          },
+          {.claim = [this](icd::Uri uri, loop::Instant latest) { return flow_.claim(uri, latest); },
+           .claimed = [this](icd::Uri uri) { flow_.claimed(uri); }},
+          network_requests_, network_, [this] { api_.changed(); }),
       updates_(loop, disk_writer_, admin::UpdateRequests(parts_.state_folder, parts_.update_folder),
                [this] { return report_under_way(); }),
       api_(loop,
@@ -59,7 +66,8 @@ Gateway::Gateway(loop::Loop& loop, Parts parts)
             .network = &network_,
             .test = &self_test_,
             .updates = &updates_,
-            .box = &box_},
+            .box = &box_,
+            .runs = &flow_.archive()},
            tokens().all, redaction()),
       routes_(icd_options(), flow_, flow_.workers(), api_),
       listeners_(loop, parts_.sockets, routes_, guesses_,
@@ -170,6 +178,7 @@ void Gateway::every_second() {
                   std::chrono::seconds(1));  // first: whatever fails below, the next second comes
   flow_.tick(disk_writer_);
   links_.look();
+  look_for_alarms();
   show_lights();
   network_.every_second();
   updates_.every_second();

@@ -12,6 +12,8 @@
 #include "admin/setup.hpp"
 #include "admin/store.hpp"
 #include "admin/updates.hpp"
+#include "alarms/board.hpp"
+#include "alarms/facts.hpp"
 #include "api/api.hpp"
 #include "box/button_watch.hpp"
 #include "box/lights.hpp"
@@ -23,6 +25,7 @@
 #include "gateway/ledger_return.hpp"
 #include "gateway/listen_sockets.hpp"
 #include "gateway/listeners.hpp"
+#include "gateway/lookout.hpp"
 #include "gateway/roster.hpp"
 #include "host/service.hpp"
 #include "intake/icd_routes.hpp"
@@ -88,6 +91,7 @@ class Gateway final : public api::Source, public api::Operator {
   std::expected<void, std::string> aside(std::uint64_t number, api::AsideAction action) override {
     return flow_.aside(number, action);
   }
+  std::expected<void, std::string> acknowledge(const std::string& id) override;
   std::int64_t begin_run() override { return flow_.begin_run(); }
   api::Time identify(double seconds) override;
   const picture::Mosaic& map() const override { return flow_.picture(); }
@@ -123,10 +127,14 @@ class Gateway final : public api::Source, public api::Operator {
   void pressed(panel::Press press);
   void show_address();
   std::string team_address() const;
-  std::vector<std::string> attention() const;
+  alarms::Facts facts(const std::vector<api::ActivityRow>& activities) const;
+  void add_flow(alarms::Facts& facts) const;
+  void add_reports(alarms::Facts& facts) const;
+  void add_box(alarms::Facts& facts) const;
+  std::vector<alarms::Alarm> alarms() const;
+  void judge(api::RunView& view) const;
+  void look_for_alarms();
   std::string report_under_way() const;
-  void say_what_is_set_aside(std::vector<std::string>& sentences) const;
-  void say_what_is_missing(std::vector<std::string>& sentences) const;
   std::vector<api::EndpointRow> endpoints() const;
 
   loop::Loop& loop_;
@@ -150,6 +158,8 @@ class Gateway final : public api::Source, public api::Operator {
   api::Api api_;
   intake::IcdRoutes routes_;
   Crowding crowding_;
+  Lookout lookout_;
+  alarms::Board board_;
   intake::TokenGuesses guesses_;
   Listeners listeners_;
   loop::Source second_, change_;

@@ -23,12 +23,17 @@ void Gateway::assert_states() {
   lights_.set(State::Serving, serving);
   lights_.set(State::NotServing, !serving);
   lights_.set(State::ScoringConnected, scoring.connected());
-  lights_.set(State::ScoringFailing, !scoring.trouble().empty());
+  const auto posts = endpoints();
+  lights_.set(State::ScoringFailing, !posts[0].trouble.empty());
   lights_.set(State::ReportWaiting, !flow_.reports().waiting_here().empty());
   lights_.set(State::MappingConnected, flow_.telemetry().channel().connected());
-  lights_.set(State::MappingFailing,
-              !flow_.telemetry().channel().trouble().empty() || !flow_.maps().channel().trouble().empty());
-  lights_.set(State::NeedsOperator, !attention().empty());
+  lights_.set(State::MappingFailing, !posts[1].trouble.empty());
+  const auto all = alarms();
+  const auto calling = std::ranges::count_if(all, alarms::calls);
+  const auto seen = std::ranges::count_if(
+      all, [](const alarms::Alarm& alarm) { return alarms::calls(alarm) && alarm.acknowledged; });
+  lights_.set(State::NeedsOperator, calling > seen);
+  lights_.set(State::Acknowledged, calling > 0);
   lights_.set(State::UpdateRunning, updates_.running());
   for (const api::LinkRow& link : links_.rows()) {
     lights_.set(link.side == "team" ? State::TeamUnplugged : State::CommandPostUnplugged,

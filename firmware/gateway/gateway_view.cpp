@@ -1,7 +1,11 @@
 // What the gateway shows of itself.
+#include "alarms/conditions.hpp"
+#include "alarms/words.hpp"
+#include "api/judged.hpp"
 #include "box/version.hpp"
 #include "gateway/gateway.hpp"
 #include "gateway/report_rows.hpp"
+#include "icd/sentence.hpp"
 
 namespace adit::gateway {
 namespace {
@@ -16,10 +20,14 @@ std::vector<api::EndpointRow> Gateway::endpoints() const {
   const forward::Channel& telemetry = flow_.telemetry().channel();
   const forward::Channel& latest = maps.heard() > telemetry.heard() ? maps : telemetry;
   const settings::CommandPost& command_post = settings_.command_post;
+  const auto seen = lookout_.endpoints(flow_, command_post, loop_.stamp_now());
+  const auto trouble = [](std::string said, const alarms::Endpoint& endpoint) {
+    return said.empty() && endpoint.trouble == alarms::PostTrouble::Silent ? "no answer" : said;
+  };
   return {{.name = "scoring",
            .address = forward::address_text(command_post.scoring),
            .connected = scoring.connected(),
-           .trouble = scoring.trouble(),
+           .trouble = trouble(scoring.trouble(), seen[0]),
            .last_status = scoring.last_status(),
            .answer_ms = scoring.answer_ms(),
            .throttled = scoring.throttled(),
@@ -27,7 +35,7 @@ std::vector<api::EndpointRow> Gateway::endpoints() const {
           {.name = "mapping",
            .address = forward::address_text(command_post.mapping),
            .connected = maps.connected() || telemetry.connected(),
-           .trouble = maps.trouble().empty() ? telemetry.trouble() : maps.trouble(),
+           .trouble = trouble(maps.trouble().empty() ? telemetry.trouble() : maps.trouble(), seen[1]),
            .last_status = latest.last_status(),
            .answer_ms = latest.answer_ms(),
            .throttled = maps.throttled() + telemetry.throttled(),
@@ -57,7 +65,10 @@ api::RunView Gateway::view() const {
                     .queued_bytes = flow_.maps().queued_bytes(),
                     .map_version = flow_.picture().version(),
                     .marker_version = flow_.as_forwarded().markers().version(),
-                    .attention = attention()};
+                    .verdict = {},
+                    .alarms = {},
+                    .alarms_over = board_.over()};
+  judge(view);
   for (const panel::Light light : panel::kLights) {
     view.lights.push_back({.name = std::string(panel::name_of(light)),
                            .pattern = std::string(panel::name_of(lights_.shown()[panel::index_of(light)]))});
@@ -70,6 +81,23 @@ api::RunView Gateway::view() const {
   return view;
 }
 
+/// Why the box should not be restarted just now, or "".
+std::string Gateway::report_under_way() const {
+  const dispatch::Reports& reports = flow_.reports();
+  if (const auto* report = reports.sending())
+    return icd::sentence("report ", report->number, " is being sent: its answer would have to be found out");
+  const std::size_t waiting = reports.waiting_here().size();
+  if (waiting == 0) return "";
+  return icd::sentence(waiting, waiting == 1 ? " report waits" : " reports wait", " to be sent");
+}
+
+/// What is to be thought of it.
+void Gateway::judge(api::RunView& view) const {
+  const alarms::Facts found = facts(view.activities);
+  api::judge(view, found);
+  view.alarms = board_.shown(alarms::conditions_of(found), found.now);
+}
+
 std::string Gateway::status_line() const {
   std::string line = flow_.scoring().run()
                          ? "score " + std::to_string(flow_.scoring().run()->score) + ", " +
@@ -78,7 +106,8 @@ std::string Gateway::status_line() const {
   if (const std::size_t waiting = flow_.reports().waiting_here().size(); waiting > 0) {
     line += ", " + std::to_string(waiting) + " reports waiting";
   }
-  if (const auto sentences = attention(); !sentences.empty()) line += "; " + sentences.front();
+  const auto all = alarms();
+  if (!all.empty() && alarms::calls(all.front())) line += "; " + alarms::line_of(all.front());
   return line;
 }
 

@@ -27,12 +27,12 @@ bool Roster::posted(const std::string& name, loop::Instant now) {
   return unknown_.insert_or_assign(name, now).second;
 }
 
-std::vector<std::string> Roster::attention(loop::Instant now) const {
-  std::vector<std::string> sentences;
+std::vector<std::string> Roster::unknown(loop::Instant now) const {
+  std::vector<std::string> names;
   for (const auto& [name, last] : unknown_) {
-    if (now - last < kRecent) sentences.push_back(sentence(name));
+    if (now - last < kRecent) names.push_back(name);
   }
-  return sentences;
+  return names;
 }
 
 std::string Roster::sentence(const std::string& name) const {

@@ -22,9 +22,11 @@ class Roster {
   void set_up(const std::vector<settings::Robot>& robots);
   /// A robot's message was taken. True: an unknown one's first.
   bool posted(const std::string& name, loop::Instant now);
+  /// Those that have posted lately.
+  std::vector<std::string> unknown(loop::Instant now) const;
   /// "unknown robot 'x' is posting; set-up has ugv1, ugv2"
-  std::vector<std::string> attention(loop::Instant now) const;
   std::string sentence(const std::string& name) const;
+  const std::vector<std::string>& names() const { return names_; }
 
  private:
   std::vector<std::string> names_;                // none: all are welcome

@@ -3,18 +3,10 @@
 #include <cerrno>
 
 #include "host/files.hpp"
+#include "host/interface_name.hpp"
 #include "host/service.hpp"
 
 namespace adit::host {
-namespace {
-
-/// As the kernel's dev_valid_name(): a name that is no path.
-bool is_interface_name(const std::string& name) {
-  return !name.empty() && name.size() <= 15 && name != "." && name != ".." &&
-         name.find_first_of("/: \t\n\v\f\r") == std::string::npos && name.find('\0') == std::string::npos;
-}
-
-}  // namespace
 
 std::optional<bool> carrier_in(const std::string& sys_class_net, const std::string& interface) {
   if (!is_interface_name(interface)) return std::nullopt;

@@ -4,10 +4,12 @@
 #include <ifaddrs.h>
 #include <net/if.h>
 #include <netinet/in.h>
+#include <sys/utsname.h>
 
 #include <algorithm>
 #include <bit>
 #include <cerrno>
+#include <charconv>
 #include <cstdint>
 #include <cstring>
 #include <memory>
@@ -15,6 +17,7 @@
 #include <system_error>
 
 #include "host/files.hpp"
+#include "host/interface_name.hpp"
 #include "host/service.hpp"
 
 namespace adit::host {
@@ -46,6 +49,12 @@ std::string address_text(const sockaddr* address, const sockaddr* mask) {
   return std::string(text) + "/" + std::to_string(ones);
 }
 
+/// The first line of a small file of the kernel's; "" where it cannot be read.
+std::string line_in(const std::string& path) {
+  const auto file = slurp(path);
+  return file ? file->text.substr(0, file->text.find('\n')) : "";
+}
+
 /// Of an address as /proc/net/route has it: hexadecimal, in the order of its bytes in memory.
 std::string address_text(std::uint32_t address) {
   char text[INET_ADDRSTRLEN];
@@ -73,6 +82,28 @@ std::expected<std::vector<Interface>, std::string> interfaces() {
     }
   }
   return interfaces;
+}
+
+std::optional<Port> port_in(const std::string& sys_class_net, const std::string& interface) {
+  if (!is_interface_name(interface)) return std::nullopt;
+  const std::string folder = sys_class_net + "/" + interface;
+  if (!slurp(folder + "/address")) return std::nullopt;
+  Port port{.mac = line_in(folder + "/address"), .mbit = {}, .duplex = line_in(folder + "/duplex")};
+  if (port.duplex == "unknown") port.duplex.clear();
+  const std::string speed = line_in(folder + "/speed");  // -1, or no reading it: not known
+  unsigned mbit = 0;
+  const auto [end, error] = std::from_chars(speed.data(), speed.data() + speed.size(), mbit);
+  if (error == std::errc() && end == speed.data() + speed.size() && mbit > 0) port.mbit = mbit;
+  return port;
+}
+
+std::optional<Port> port(const std::string& interface) {
+  return port_in("/sys/class/net", interface);
+}
+
+std::string host_name() {
+  utsname names{};
+  return uname(&names) == 0 ? names.nodename : "";
 }
 
 std::vector<settings::Subnet> own_addresses(const std::string& interface) {

@@ -17,6 +17,20 @@ struct Interface {
   std::vector<std::string> addresses;  // "10.0.0.1/24", "fe80::1/64"
 };
 
+/// What the driver tells of a port.
+struct Port {
+  std::string mac;               // "02:00:00:00:00:01"; "": it has none
+  std::optional<unsigned> mbit;  // of the link; nothing: there is none, or the driver does not tell
+  std::string duplex;            // "full", "half"; "": not told
+};
+
+/// By the kernel's list of interfaces in `sys_class_net`; nothing where there is no such interface.
+std::optional<Port> port_in(const std::string& sys_class_net, const std::string& interface);
+std::optional<Port> port(const std::string& interface);
+
+/// What this machine calls itself: "adit".
+std::string host_name();
+
 /// All of them in the kernel's order, or why they cannot be told (getifaddrs(3)).
 std::expected<std::vector<Interface>, std::string> interfaces();
 

@@ -51,8 +51,10 @@ std::uint64_t logged();
 /// A record as one line, as it stands in the log.
 std::string line_of(const Record& record);
 
-/// Bytes that are not visible ASCII or a space as \xNN, and a backslash as two: so that what a client sent
-/// can neither forge a line nor steer a terminal.
+/// What a client sent, so that it can neither forge a line nor steer a terminal: visible characters of UTF-8
+/// and blanks as they are, each byte of all else as \xNN, and a backslash as two.
 std::string escaped(std::string_view text);
+/// The same for a terminal without UTF-8, of what is escaped: each byte of a character that is not ASCII.
+std::string in_ascii(std::string_view text);
 
 }  // namespace adit::host

@@ -2,7 +2,6 @@
 
 #include <sys/stat.h>
 
-#include <cstdint>
 #include <ctime>
 
 namespace adit::host {
@@ -53,25 +52,6 @@ std::string time_text(double at) {
   if (gmtime_r(&seconds, &parts) == nullptr) return "no date";
   char text[32];
   return {text, std::strftime(text, sizeof text, "%Y-%m-%dT%H:%M:%SZ", &parts)};
-}
-
-std::string escaped(std::string_view text) {
-  static constexpr std::string_view kDigits = "0123456789abcdef";
-  std::string safe;
-  safe.reserve(text.size());
-  for (const char c : text) {
-    const auto byte = static_cast<std::uint8_t>(c);
-    if (c == '\\') {
-      safe += "\\\\";
-    } else if (byte >= 0x20 && byte < 0x7f) {
-      safe += c;
-    } else {
-      safe += "\\x";
-      safe += kDigits[byte >> 4];
-      safe += kDigits[byte & 15];
-    }
-  }
-  return safe;
 }
 
 std::string sentence(std::string_view message, std::span<const Field> fields) {

@@ -45,4 +45,24 @@ void Redaction::strike_from_strings(std::string& text) const {
   text = struck.append(text, done);
 }
 
+void Redaction::strike_from_html(std::string& text) const {
+  for (const BearerToken& secret : secrets_) {
+    if (secret.reveal().size() < kShortest) continue;
+    std::string written;
+    for (const char letter : secret.reveal()) {
+      const std::string_view reference = letter == '&'    ? "&amp;"
+                                         : letter == '<'  ? "&lt;"
+                                         : letter == '>'  ? "&gt;"
+                                         : letter == '"'  ? "&quot;"
+                                         : letter == '\'' ? "&#39;"
+                                                          : std::string_view(&letter, 1);
+      written += reference;
+    }
+    secret.strike_from(text);
+    for (std::size_t at = 0;
+         written != secret.reveal() && (at = text.find(written, at)) != std::string::npos;)
+      text.replace(at, written.size(), "[token]");
+  }
+}
+
 }  // namespace adit::icd

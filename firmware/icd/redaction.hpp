@@ -24,6 +24,8 @@ class Redaction {
   void strike_from(std::string& text) const;
   /// JSON, a stream of it, or Prometheus' text format: within the strings that are values.
   void strike_from_strings(std::string& text) const;
+  /// HTML, where what is text has its &, <, >, " and ' as references.
+  void strike_from_html(std::string& text) const;
 
  private:
   bool may_be_in(std::string_view text) const;

@@ -216,6 +216,7 @@ void MapUpload::State::give_to_worker() {
   if (whole_ && pending_.empty()) before.emplace(has_stored_ ? arrival_ : nullptr, left_);
   // What comes after holds the arrival, too, so that the loop is the last to do so.
   workers_.submit(
+      loop::Urgency::OnTheWay,
       [decoding = decoding_, pieces, before = std::move(before)] { decoding->work(*pieces, before); },
       [self = shared_from_this(), arrival = arrival_] { self->worked(); },
       [self = shared_from_this()] { self->failed(); });

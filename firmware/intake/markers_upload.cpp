@@ -146,9 +146,11 @@ void MarkersUpload::State::whole() {
 void MarkersUpload::State::give_to_worker() {
   auto body = std::make_shared<Body>(std::exchange(body_, {}));
   auto parts = std::make_shared<Parts>();
-  workers_.submit([kind = kind_, rules = rules_, body, parts] { *parts = read_small(kind, rules, *body); },
-                  [self = shared_from_this(), body, parts] { self->small_was_read(body, std::move(*parts)); },
-                  [self = shared_from_this()] { self->failed(); });
+  workers_.submit(
+      loop::Urgency::OnTheWay,
+      [kind = kind_, rules = rules_, body, parts] { *parts = read_small(kind, rules, *body); },
+      [self = shared_from_this(), body, parts] { self->small_was_read(body, std::move(*parts)); },
+      [self = shared_from_this()] { self->failed(); });
 }
 
 void MarkersUpload::State::small_was_read(std::shared_ptr<Body> body, Parts parts) {
@@ -174,15 +176,17 @@ void MarkersUpload::State::wait_for_turn() {
 void MarkersUpload::State::read_large_one() {
   auto body = std::make_shared<Body>(std::exchange(body_, {}));
   auto parts = std::make_shared<Parts>();
-  workers_.submit([kind = kind_, rules = rules_, body, parts] { *parts = read_large(kind, rules, *body); },
-                  [self = shared_from_this(), parts] {
-                    self->end_turn();
-                    self->was_read(std::move(*parts));
-                  },
-                  [self = shared_from_this()] {
-                    self->end_turn();
-                    self->failed();
-                  });
+  workers_.submit(
+      loop::Urgency::OnTheWay,
+      [kind = kind_, rules = rules_, body, parts] { *parts = read_large(kind, rules, *body); },
+      [self = shared_from_this(), parts] {
+        self->end_turn();
+        self->was_read(std::move(*parts));
+      },
+      [self = shared_from_this()] {
+        self->end_turn();
+        self->failed();
+      });
 }
 
 MarkersUpload::MarkersUpload(Visit visit, codec::BodyKind kind, const icd::Rules& rules,

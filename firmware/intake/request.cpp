@@ -13,11 +13,13 @@ namespace adit::intake {
 namespace {
 
 /// A body that is answered before it is whole is read away where this is all that is left of it and it comes
-/// soon, so that the connection can be kept. Otherwise the answer goes out at once, and then up to kLinger is
-/// thrown away, because closing a socket with bytes unread resets it, and the client might lose the answer.
+/// soon, so that the connection can be kept. Otherwise the answer goes out at once, and what comes after it
+/// is thrown away, because closing a socket with bytes unread resets it, and the client would lose the
+/// answer: most libraries look for one once all is sent. Of a known client that is all that a map may have,
+/// at the least rate; of a stranger not much.
 constexpr std::size_t kReadAway = 64 * 1024;
 constexpr std::chrono::milliseconds kReadAwayWithin(1000);
-constexpr std::size_t kLinger = 256 * 1024;
+constexpr std::size_t kLinger = 256 << 20, kLingerOfStranger = 256 << 10;
 
 Answer failure() {
   return error_answer(icd::Status::InternalServerError,
@@ -83,12 +85,18 @@ void Request::refuse_for_room(std::string_view sentence) {
 
 Next Request::body(std::span<const std::uint8_t> piece) {
   if (stage_ == Stage::Refusing) {
-    thrown_away_ += piece.size();
-    return thrown_away_ > kLinger ? Next::Close : Next::GoOn;
+    return throw_away(piece.size());
   }
   if (left_) *left_ -= std::min<std::uint64_t>(piece.size(), *left_);
   if (answered()) return Next::GoOn;  // being read away
   return chunks_ ? take_chunks(piece) : take(piece);
+}
+
+Next Request::throw_away(std::size_t bytes) {
+  if (answered()) sink_.reset();  // what it holds is needed no more, however long this takes
+  thrown_away_ += bytes;
+  client_->body_came(bytes);
+  return thrown_away_ > (client_->is_known() ? kLinger : kLingerOfStranger) ? Next::Close : Next::GoOn;
 }
 
 Next Request::take_chunks(std::span<const std::uint8_t> piece) {
@@ -152,7 +160,11 @@ void Request::turn_away() {
 void Request::refuse(const Answer& answer) {
   client_->say_last(last_answer_text(answer, !is_head_));
   stage_ = Stage::Refusing;
-  client_->expect_reading(Client::kLingerWithin);
+  if (client_->is_known() && has_body_) {
+    client_->expect_body();
+  } else {
+    client_->expect_reading(Client::kLingerWithin);
+  }
   client_->resume();
 }
 

@@ -68,6 +68,8 @@ class Request final : public Responder, public Flow, public std::enable_shared_f
 
   bool answered() const { return answer_ || stream_; }
   Next take(std::span<const std::uint8_t> piece);
+  /// Of a body that was answered before it was whole.
+  Next throw_away(std::size_t bytes);
   Next take_chunks(std::span<const std::uint8_t> piece);
   /// The answer is there before the body is.
   void turn_away();

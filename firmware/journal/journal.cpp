@@ -150,18 +150,18 @@ void Journal::compact(std::uint64_t last) {
   compacting_ = true;
   auto outcome =
       std::make_shared<std::expected<std::size_t, std::string>>(std::unexpected("there is no memory for it"));
-  compactor_.submit([this, outcome, last] { *outcome = folder_.compact(last, ending_); },
-                    [this, outcome] {
-                      compacting_ = false;
-                      least_ = kLeastTurn;
-                      if (*outcome) {
-                        snapshot_ = **outcome;
-                        return;
-                      }
-                      host::log(host::Level::Warning, "the journal cannot be made smaller",
-                                {{"why", outcome->error()}});
-                      least_ = size_ + kLeastTurn;  // to be tried again after as much
-                    });
+  compactor_.submit(
+      loop::Urgency::CanWait, [this, outcome, last] { *outcome = folder_.compact(last, ending_); },
+      [this, outcome] {
+        compacting_ = false;
+        least_ = kLeastTurn;
+        if (*outcome) {
+          snapshot_ = **outcome;
+          return;
+        }
+        host::log(host::Level::Warning, "the journal cannot be made smaller", {{"why", outcome->error()}});
+        least_ = size_ + kLeastTurn;  // to be tried again after as much
+      });
 }
 
 }  // namespace adit::journal

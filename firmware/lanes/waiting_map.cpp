@@ -25,6 +25,13 @@ std::size_t bytes_held(const WaitingMap& waiting) {
   return bytes;
 }
 
+std::vector<const icd::MapUpdate*> said_by(const WaitingMap& taken) {
+  if (!taken.has_gaps) return {&taken.map};
+  std::vector<const icd::MapUpdate*> maps;
+  for (const WaitingMap& part : taken.parts) maps.push_back(&part.map);
+  return maps;
+}
+
 bool says_all_of(const WaitingMap& newer, const WaitingMap& older) {
   if (newer.map.name != older.map.name || newer.map.is_grid() != older.map.is_grid()) return false;
   if (!newer.map.is_grid()) return newer.is_whole;

@@ -5,8 +5,8 @@
 #include <algorithm>
 #include <condition_variable>
 #include <csignal>
-#include <deque>
 #include <mutex>
+#include <optional>
 #include <thread>
 #include <utility>
 #include <vector>
@@ -44,7 +44,8 @@ class SignalsBlocked {
 
 class Workers::Impl {
  public:
-  Impl(Loop& loop, unsigned count, AtEnd at_end) : loop_(loop), at_end_(at_end), lives_(threads_for(count)) {
+  Impl(Loop& loop, unsigned count, AtEnd at_end)
+      : loop_(loop), at_end_(at_end), jobs_(threads_for(count)), lives_(threads_for(count)) {
     const SignalsBlocked blocked;
     for (Life& life : lives_) {
       threads_.emplace_back([this, &life] { serve(life); });
@@ -52,27 +53,42 @@ class Workers::Impl {
     }
   }
 
-  ~Impl() {
+  ~Impl() = default;
+  Impl(const Impl&) = delete;
+  Impl& operator=(const Impl&) = delete;
+
+  /// A job may use the Workers until it is at its end.
+  void end() {
     *alive_ = false;
-    std::deque<Job> dropped;  // outlives the lock: what a job holds is freed outside it
+    JobQueue<Job> dropped(lives_.size());  // outlives the lock: what a job holds is freed outside it
     {
       const std::lock_guard lock(mutex_);
       stopping_ = true;
-      if (at_end_ == AtEnd::Drop) dropped.swap(jobs_);
+      if (at_end_ == AtEnd::Drop) jobs_.hand_over_to(dropped);
     }
     came_.notify_all();
     for (auto& thread : threads_) thread.join();
   }
-  Impl(const Impl&) = delete;
-  Impl& operator=(const Impl&) = delete;
 
-  void submit(std::function<void()> work, std::function<void()> done, std::function<void()> failed) {
+  void submit(Urgency urgency, std::function<void()> work, std::function<void()> done,
+              std::function<void()> failed) {
     Job job = job_of(std::move(work), {std::move(done), std::move(failed)});
     {
       const std::lock_guard lock(mutex_);
-      jobs_.push_back(std::move(job));
+      jobs_.add(std::move(job), urgency, loop_.now());
     }
     came_.notify_one();
+  }
+
+  void give_way() {
+    Life& life = *of_this_thread_;
+    const Instant since = loop_.now();
+    bool gave = false;
+    while (auto job = take_amid(life, since)) {
+      run(*job);
+      gave = true;
+    }
+    if (gave) goes_on(life);
   }
 
   void ask() {
@@ -115,30 +131,47 @@ class Workers::Impl {
   struct Life {
     std::uint64_t answered = 0;  // the last ask() that it has heard
     bool at_work = false;
-    Instant began{};  // its job
+    Instant began{};  // its job, or goes on with it
   };
 
   void serve(Life& life) noexcept {
-    while (true) {
-      Job job;
-      {
-        std::unique_lock lock(mutex_);
-        life.at_work = false;
-        life.answered = asked_;
-        while (!stopping_ && jobs_.empty()) {
-          came_.wait(lock);
-          life.answered = asked_;
-        }
-        if (jobs_.empty()) return;  // stopping
-        job = std::move(jobs_.front());
-        jobs_.pop_front();
-        life.at_work = true;
-        life.began = loop_.now();
-      }
-      job.ends->well = guarded("a job of a worker", job.work);
-      job.work = nullptr;  // freed here, so that `done` finds its data its own
-      hand_back(std::move(job.end));
+    of_this_thread_ = &life;
+    while (auto next = wait_for_next(life)) {
+      run(next->job);
+      const std::lock_guard lock(mutex_);
+      jobs_.ended(next->urgency, loop_.now());
     }
+  }
+
+  /// Nothing: there are no more, for it stops.
+  std::optional<JobQueue<Job>::Next> wait_for_next(Life& life) {
+    std::unique_lock lock(mutex_);
+    life.at_work = false;
+    life.answered = asked_;
+    auto next = jobs_.take(loop_.now());
+    while (!next && !stopping_) {
+      came_.wait(lock);
+      life.answered = asked_;
+      next = jobs_.take(loop_.now());
+    }
+    life.at_work = true;
+    life.began = loop_.now();
+    return next;
+  }
+
+  std::optional<Job> take_amid(Life& life, Instant since) {
+    const std::lock_guard lock(mutex_);
+    return jobs_.take_amid(life.began, since, loop_.now());
+  }
+  void goes_on(Life& life) {
+    const std::lock_guard lock(mutex_);
+    life.began = loop_.now();
+  }
+
+  void run(Job& job) noexcept {
+    job.ends->well = guarded("a job of a worker", job.work);
+    job.work = nullptr;  // freed here, so that `done` finds its data its own
+    hand_back(std::move(job.end));
   }
 
   /// Somebody waits for it: where there is no memory for it just now, it is tried until there is.
@@ -153,23 +186,32 @@ class Workers::Impl {
   const std::shared_ptr<bool> alive_ = std::make_shared<bool>(true);  // read and written on the loop alone
   std::mutex mutex_;
   std::condition_variable came_;
-  std::deque<Job> jobs_;
+  JobQueue<Job> jobs_;
   bool stopping_ = false;
   std::uint64_t asked_ = 0;
   std::vector<Life> lives_;  // one for each thread
+  static thread_local Life* of_this_thread_;
   std::vector<std::thread> threads_;
 };
 
+thread_local Workers::Impl::Life* Workers::Impl::of_this_thread_ = nullptr;
+
 Workers::Workers(Loop& loop, unsigned count, AtEnd at_end)
     : impl_(std::make_unique<Impl>(loop, count, at_end)) {}
-Workers::~Workers() = default;
-
-void Workers::submit(std::function<void()> work, std::function<void()> done, std::function<void()> failed) {
-  impl_->submit(std::move(work), std::move(done), std::move(failed));
+Workers::~Workers() {
+  impl_->end();
 }
-void Workers::submit(std::function<void()> work, std::function<void()> done) {
+
+void Workers::submit(Urgency urgency, std::function<void()> work, std::function<void()> done,
+                     std::function<void()> failed) {
+  impl_->submit(urgency, std::move(work), std::move(done), std::move(failed));
+}
+void Workers::submit(Urgency urgency, std::function<void()> work, std::function<void()> done) {
   const auto either = std::make_shared<std::function<void()>>(std::move(done));
-  impl_->submit(std::move(work), [either] { (*either)(); }, [either] { (*either)(); });
+  impl_->submit(urgency, std::move(work), [either] { (*either)(); }, [either] { (*either)(); });
+}
+void Workers::give_way() {
+  impl_->give_way();
 }
 void Workers::ask() {
   impl_->ask();

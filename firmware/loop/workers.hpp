@@ -3,13 +3,15 @@
 #include <cstdint>
 #include <functional>
 #include <memory>
+#include <utility>
 
+#include "loop/job_queue.hpp"
 #include "loop/loop.hpp"
 
 namespace adit::loop {
 
 /// A few threads that do nothing but CPU work on data handed over to them, and hand the result back to the
-/// loop. What touches a file is a Writer's, or that of
+/// loop. JobQueue says which job is next. What touches a file is a Writer's, or that of
 /// a thread for which nobody waits: the journal's.
 class Workers {
  public:
@@ -21,10 +23,15 @@ class Workers {
   Workers& operator=(const Workers&) = delete;
 
   /// Runs `work` on a worker, then `done` on the loop, or `failed` where `work` threw (guard.hpp): whatever
-  /// was left half done is not used then. For the loop's thread. First in, first out.
-  void submit(std::function<void()> work, std::function<void()> done, std::function<void()> failed);
+  /// was left half done is not used then. For the loop's thread. Of one urgency first in, first out.
+  void submit(Urgency urgency, std::function<void()> work, std::function<void()> done,
+              std::function<void()> failed);
   /// For work whose result is a failure until it says otherwise: `done` runs in either case.
-  void submit(std::function<void()> work, std::function<void()> done);
+  void submit(Urgency urgency, std::function<void()> work, std::function<void()> done);
+
+  /// To be called now and then by `work` that can wait and takes long: what is on the way is done meanwhile,
+  /// on the same thread.
+  void give_way();
 
   /// Asks each worker for a sign of life, which it gives between two jobs.
   void ask();
@@ -47,6 +54,13 @@ class Workers {
 class Writer final : public Workers {
  public:
   explicit Writer(Loop& loop) : Workers(loop, 1, AtEnd::Finish) {}
+
+  void submit(std::function<void()> work, std::function<void()> done, std::function<void()> failed) {
+    Workers::submit(Urgency::OnTheWay, std::move(work), std::move(done), std::move(failed));
+  }
+  void submit(std::function<void()> work, std::function<void()> done) {
+    Workers::submit(Urgency::OnTheWay, std::move(work), std::move(done));
+  }
 };
 
 }  // namespace adit::loop

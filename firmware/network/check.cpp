@@ -31,28 +31,20 @@ std::array<Endpoint, 2> endpoints(const Circumstances& around) {
   return {of("scoring", around.command_post.scoring), of("mapping", around.command_post.mapping)};
 }
 
-/// What the team's subnet overlaps of the Command Post's network, in words. What DHCP will give is not known.
-std::vector<std::string> overlaps_of(const Numbers& wanted, const Circumstances& around) {
-  std::vector<std::string> what;
-  if (wanted.mode != Mode::Static) return what;
-  const std::string team = written(wanted.team);
-  for (const Subnet& each : settings::command_post_subnets()) {
-    if (settings::overlaps(wanted.team, each)) {
-      what.push_back(icd::sentence(team, " overlaps ", written(each),
-                                   ", which the Command Post's network uses (ICD 3)"));
-    }
-  }
-  for (const Subnet& each : wanted.command_post) {
-    if (settings::overlaps(wanted.team, each)) {
-      what.push_back(icd::sentence(team, " overlaps ", written(each), " on the Command Post's side"));
-    }
-  }
+/// What of the Command Post's side the team's subnet overlaps: the first that there is, for one is enough to
+/// choose another; "" where nothing does. What DHCP will give is not known.
+std::string overlap_of(const Numbers& wanted, const Circumstances& around) {
+  if (wanted.mode != Mode::Static) return "";
+  const auto is_in_the_way = [&wanted](const Subnet& each) { return settings::overlaps(wanted.team, each); };
+  const auto known = settings::command_post_subnets();  // ICD 3
+  if (const auto found = std::ranges::find_if(known, is_in_the_way); found != known.end())
+    return written(*found);
+  const auto own = std::ranges::find_if(wanted.command_post, is_in_the_way);
+  if (own != wanted.command_post.end()) return written(*own);
   for (const auto& [name, address, number] : endpoints(around)) {
-    if (number && wanted.team.contains(*number)) {
-      what.push_back(icd::sentence("the ", name, " endpoint ", address, " lies in ", team));
-    }
+    if (number && wanted.team.contains(*number)) return icd::sentence("the ", name, " endpoint ", address);
   }
-  return what;
+  return "";
 }
 
 /// An endpoint that the box would find no way to.
@@ -134,12 +126,14 @@ std::string page_at(const Numbers& numbers, const std::vector<Address>& listen) 
 Findings check(const Numbers& wanted, const std::optional<Numbers>& present, const Circumstances& around) {
   Findings findings;
   findings.changes = differences(wanted, present);
-  for (std::string& what : overlaps_of(wanted, around)) {
+  if (const std::string what = overlap_of(wanted, around); !what.empty()) {
+    const std::string overlaps =
+        icd::sentence(written(wanted.team), " overlaps ", what, " on the Command Post's side: ");
     if (around.allow_overlap) {
-      findings.warnings.push_back(what + "; that is allowed by network.allow_overlap");
+      findings.warnings.push_back(overlaps + "allowed, but a robot cannot reach both");
     } else {
       findings.errors.push_back(
-          {"team.address", what + "; choose another subnet, or allow it by network.allow_overlap"});
+          {"team.address", overlaps + "choose another subnet, or allow it by network.allow_overlap"});
     }
   }
   check_listening(wanted, around, findings.errors);

@@ -14,6 +14,9 @@ constexpr double kFarOff = 1.5, kSlightlyOff = 1.25, kFaster = 0.67;
 constexpr double kMargin = 1.05;
 /// Part of the spacing that two requests are further apart, where it counts from when the first one left.
 constexpr int kUneven = 50;
+/// Part of the spacing that is left besides before and after what goes by another connection: it has to be
+/// made first, and the two do not keep in step.
+constexpr int kBeside = 4;
 
 /// Between two requests at `hertz`; a rate too low to matter in any run does not overflow.
 Duration spacing_at(double hertz) {
@@ -114,6 +117,18 @@ void RateLimit::throttled(Instant now, std::optional<std::chrono::seconds> retry
   const auto asked = std::clamp(retry_after.value_or(std::chrono::seconds{0}), {}, kLongestPause);
   const Instant next = now + std::max<Duration>({storm_->pause, rule_.spacing, asked});
   floor_ = {.first = std::max(floor_.first, next), .last = std::max(floor_.last, next)};
+}
+
+std::optional<Instant> RateLimit::claim(Instant now, Instant latest) {
+  const Instant at = std::max(now, next() + rule_.spacing / kBeside);
+  if (at > latest) return std::nullopt;
+  claimed(at);
+  return at;
+}
+
+void RateLimit::claimed(Instant now) {
+  const Instant counted = now + rule_.spacing / kBeside;
+  count({.first = counted, .last = counted});
 }
 
 void RateLimit::begin_storm(Instant now) {

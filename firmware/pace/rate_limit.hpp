@@ -75,6 +75,13 @@ class RateLimit {
   /// hour.
   void throttled(Instant now, std::optional<std::chrono::seconds> retry_after);
 
+  /// When a request may leave by another connection that is none of this limit's, but goes to the same
+  /// server: that turn is then taken, and the next one counts from it. Nothing, and no turn is taken: later
+  /// than `latest`.
+  std::optional<Instant> claim(Instant now, Instant latest);
+  /// It ended, answered or not. It teaches nothing.
+  void claimed(Instant now);
+
   /// So often is allowed, also since the last request. What was learned of the server stays, and a pause that
   /// it asked for.
   void allow(double hertz, Instant now);

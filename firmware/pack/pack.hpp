@@ -3,6 +3,7 @@
 #include <cstddef>
 
 #include "icd/map_update.hpp"
+#include "pack/effort.hpp"
 
 namespace adit::pack {
 
@@ -10,6 +11,7 @@ namespace adit::pack {
 struct CloudForm {
   bool is_arranged = true;  // its padding is dropped, and its points are put in another order
   double unit = 0;          // metres, to which coordinates are rounded where it is arranged; 0: they are not
+  Effort effort = Effort::Full;  // where they are not rounded
 };
 /// Units that there are.
 inline constexpr double kMillimetre = 0x1p-10, kEightMillimetres = 0x1p-7;

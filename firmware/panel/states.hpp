@@ -26,6 +26,7 @@ enum class State : std::uint8_t {
   MappingFailing,
   SetUpOpen,
   NeedsOperator,
+  Acknowledged,
   ReportWaiting,
   Serving,
   ScoringConnected,

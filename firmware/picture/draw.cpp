@@ -12,13 +12,14 @@ namespace {
 
 template <class Drawer>
 icd::Checked<std::size_t> draw_by(const icd::OccupancyGrid& grid, const icd::Placement& placement,
-                                  const icd::MapData& data, Sheet& sheet) {
+                                  const icd::MapData& data, Sheet& sheet, const Between& between) {
   RowCutter cutter{grid.width, grid.height};
   Drawer drawer{grid, placement, sheet};
   auto drawn = codec::for_each_piece(data, [&](std::span<const std::uint8_t> piece) -> icd::Checked<void> {
     cutter.feed(piece, [&](std::size_t row, std::size_t column, std::span<const std::uint8_t> cells) {
       drawer.draw(row, column, cells);
     });
+    between();
     return {};
   });
   if (!drawn) return std::unexpected(std::move(drawn.error()));
@@ -27,17 +28,18 @@ icd::Checked<std::size_t> draw_by(const icd::OccupancyGrid& grid, const icd::Pla
 
 }  // namespace
 
-icd::Checked<std::size_t> draw_grid(const icd::OccupancyGrid& grid, const icd::MapData& data, Sheet& sheet) {
+icd::Checked<std::size_t> draw_grid(const icd::OccupancyGrid& grid, const icd::MapData& data, Sheet& sheet,
+                                    const Between& between) {
   const icd::Placement placement{grid.origin};
-  return AlignedGrid::suits(grid, placement) ? draw_by<AlignedGrid>(grid, placement, data, sheet)
-                                             : draw_by<TurnedGrid>(grid, placement, data, sheet);
+  return AlignedGrid::suits(grid, placement) ? draw_by<AlignedGrid>(grid, placement, data, sheet, between)
+                                             : draw_by<TurnedGrid>(grid, placement, data, sheet, between);
 }
 
-icd::Checked<Drawing> draw(const icd::MapUpdate& map, const Canvas& before) {
+icd::Checked<Drawing> draw(const icd::MapUpdate& map, const Canvas& before, const Between& between) {
   Sheet sheet;
   const auto* grid = std::get_if<icd::OccupancyGrid>(&map.msg);
-  auto left_out = grid != nullptr ? draw_grid(*grid, map.data, sheet)
-                                  : draw_cloud(std::get<icd::PointCloud2>(map.msg), map.data, sheet);
+  auto left_out = grid != nullptr ? draw_grid(*grid, map.data, sheet, between)
+                                  : draw_cloud(std::get<icd::PointCloud2>(map.msg), map.data, sheet, between);
   if (!left_out) return std::unexpected(std::move(left_out.error()));
   Drawing drawing;
   drawing.layer = layer_of(map);

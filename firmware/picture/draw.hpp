@@ -2,6 +2,7 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <functional>
 #include <optional>
 #include <utility>
 #include <vector>
@@ -28,6 +29,9 @@ struct Drawing {
   std::size_t left_out = 0;        // cells, points or pixels outside the world, or over a limit below
 };
 
+/// Called again and again while a map is drawn: after each piece of its data, some 64 KB.
+using Between = std::function<void()>;
+
 /// Draws `map` upon `before`, the canvas of layer_of(map). CPU-bound in the size of the map: for a worker.
 ///
 /// Of all that falls on a pixel the highest counts: the most occupied cell (occupied, free, unknown), the
@@ -35,7 +39,7 @@ struct Drawing {
 /// leaves it; a cloud only rises. A pixel of a coarser level is the highest of the sixteen it stands for.
 ///
 /// Data under gzip is inflated piece by piece; the error says what is wrong with it.
-icd::Checked<Drawing> draw(const icd::MapUpdate& map, const Canvas& before);
+icd::Checked<Drawing> draw(const icd::MapUpdate& map, const Canvas& before, const Between& between = [] {});
 
 /// Limits of one drawing, whatever the map says, beside Sheet::kMostTiles.
 /// Points that are looked at: of more, each second or third and so on is.

@@ -46,7 +46,8 @@ class Dabber {
 };
 
 template <class Float, bool Bigendian>
-icd::Checked<std::size_t> draw_points(const icd::PointCloud2& cloud, const icd::MapData& data, Sheet& sheet) {
+icd::Checked<std::size_t> draw_points(const icd::PointCloud2& cloud, const icd::MapData& data, Sheet& sheet,
+                                      const Between& between) {
   const Offsets at{field_of(cloud, "x").offset, field_of(cloud, "y").offset, field_of(cloud, "z").offset};
   const std::size_t points = data.raw_size / cloud.point_step;
   PointCutter cutter{cloud.point_step, std::max<std::size_t>(1, (points + kMostPoints - 1) / kMostPoints)};
@@ -56,6 +57,7 @@ icd::Checked<std::size_t> draw_points(const icd::PointCloud2& cloud, const icd::
       dabber.dab({coordinate<Float, Bigendian>(point + at[0]), coordinate<Float, Bigendian>(point + at[1]),
                   coordinate<Float, Bigendian>(point + at[2])});
     });
+    between();
     return {};
   });
   if (!drawn) return std::unexpected(std::move(drawn.error()));
@@ -64,14 +66,15 @@ icd::Checked<std::size_t> draw_points(const icd::PointCloud2& cloud, const icd::
 
 }  // namespace
 
-icd::Checked<std::size_t> draw_cloud(const icd::PointCloud2& cloud, const icd::MapData& data, Sheet& sheet) {
+icd::Checked<std::size_t> draw_cloud(const icd::PointCloud2& cloud, const icd::MapData& data, Sheet& sheet,
+                                     const Between& between) {
   const bool is_double = field_of(cloud, "x").datatype == icd::Datatype::Float64;
   if (cloud.is_bigendian) {
-    return is_double ? draw_points<double, true>(cloud, data, sheet)
-                     : draw_points<float, true>(cloud, data, sheet);
+    return is_double ? draw_points<double, true>(cloud, data, sheet, between)
+                     : draw_points<float, true>(cloud, data, sheet, between);
   }
-  return is_double ? draw_points<double, false>(cloud, data, sheet)
-                   : draw_points<float, false>(cloud, data, sheet);
+  return is_double ? draw_points<double, false>(cloud, data, sheet, between)
+                   : draw_points<float, false>(cloud, data, sheet, between);
 }
 
 }  // namespace adit::picture

@@ -3,12 +3,15 @@
 #include <cstddef>
 
 #include "icd/map_update.hpp"
+#include "picture/draw.hpp"
 #include "picture/sheet.hpp"
 
 namespace adit::picture {
 
 /// Draws a map by itself. Gives how much was left out.
-icd::Checked<std::size_t> draw_grid(const icd::OccupancyGrid& grid, const icd::MapData& data, Sheet& sheet);
-icd::Checked<std::size_t> draw_cloud(const icd::PointCloud2& cloud, const icd::MapData& data, Sheet& sheet);
+icd::Checked<std::size_t> draw_grid(const icd::OccupancyGrid& grid, const icd::MapData& data, Sheet& sheet,
+                                    const Between& between);
+icd::Checked<std::size_t> draw_cloud(const icd::PointCloud2& cloud, const icd::MapData& data, Sheet& sheet,
+                                     const Between& between);
 
 }  // namespace adit::picture

@@ -28,6 +28,8 @@ class History {
   /// Requires a stamp that is not before the newest.
   void add(Version version, double spacing);
   void thin(double spacing);
+  /// The newest state is from now on that of this version.
+  void renumber(std::uint64_t number) { versions_.back().number = number; }
 
   /// As of that time; null where there was nothing yet.
   const Version* at(double stamp) const;

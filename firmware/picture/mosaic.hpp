@@ -57,10 +57,21 @@ class Mosaic {
   /// A new run: from now on all is blank. Earlier times stay as they were.
   void wipe(double stamp);
 
+  /// A state of a tile as it was before a restart, which comes in the order of its tile's states. False where
+  /// that order is broken, or there is no room for it.
+  bool take_up(const Layer& layer, const TileAt& at, Tile tile, double stamp);
+  /// What is known of a layer beside its tiles.
+  void take_up(const LayerView& view);
+  void was_wiped(double stamp) { wiped_ = stamp; }
+  /// All that `earlier` has: its layers as they are now, and its earlier times where this has none. What is
+  /// drawn here already stays. At `stamp` all of it counts as changed.
+  void take_up(Mosaic earlier, double stamp);
+
   /// The tile as of `stamp` (absent: now), which is newest or not; null where nothing is drawn there.
   struct Shown {
     Tile tile;
     bool newest = false;
+    double stamp = 0;  // since when it is so
   };
   Shown tile(const Layer& layer, const TileAt& at, std::optional<double> stamp) const;
 
@@ -81,6 +92,7 @@ class Mosaic {
   };
   State* state_of(const Layer& layer, double stamp);
   double begin_change(double stamp);
+  void take_up(State& state, const TileAt& at, const History& earlier, double stamp);
   bool has_room(const State& state, const Drawing& drawing) const;
   void put(State& state, const TileAt& at, Tile tile, double stamp);
   void keep_to_budget();

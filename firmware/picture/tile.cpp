@@ -16,6 +16,11 @@ void require(bool started) {
   if (!started) throw std::bad_alloc();  // zlib fails to start for want of memory alone
 }
 
+std::uint32_t crc_of(const std::vector<std::uint8_t>& deflated) {
+  const auto crc = crc32(crc32(0, kIdat, sizeof kIdat), deflated.data(), static_cast<uInt>(deflated.size()));
+  return static_cast<std::uint32_t>(crc);
+}
+
 }  // namespace
 
 struct Packer::Streams {
@@ -40,6 +45,24 @@ Packer::Packer() : streams_(std::make_unique<Streams>()), rows_(kRow * kSide) {
 }
 Packer::~Packer() = default;
 
+std::optional<std::size_t> Packer::known_in(const Packed& packed) {
+  z_stream& zlib = streams_->in;
+  inflateReset(&zlib);
+  zlib.next_in = const_cast<Bytef*>(packed.deflated.data());
+  zlib.avail_in = static_cast<uInt>(packed.deflated.size());
+  zlib.next_out = rows_.data();
+  zlib.avail_out = static_cast<uInt>(rows_.size());
+  const bool whole = inflate(&zlib, Z_FINISH) == Z_STREAM_END && zlib.avail_out == 0 && zlib.avail_in == 0;
+  if (!whole || crc_of(packed.deflated) != packed.crc) return std::nullopt;
+  std::size_t known = 0;
+  for (std::size_t row = 0; row < kSide; ++row) {
+    const std::uint8_t* const filtered = rows_.data() + row * kRow;
+    if (*filtered != 0) return std::nullopt;
+    known += kSide - static_cast<std::size_t>(std::count(filtered + 1, filtered + kRow, 0));
+  }
+  return known;
+}
+
 Tile Packer::pack(const Pixels& pixels) {
   for (std::size_t row = 0; row < kSide; ++row) {
     rows_[row * kRow] = 0;
@@ -54,9 +77,7 @@ Tile Packer::pack(const Pixels& pixels) {
   deflate(&zlib, Z_FINISH);  // cannot fail: there is room for all that can come out
   auto packed = std::make_shared<Packed>();
   packed->deflated.assign(made_.data(), zlib.next_out);
-  const auto crc = crc32(crc32(0, kIdat, sizeof kIdat), packed->deflated.data(),
-                         static_cast<uInt>(packed->deflated.size()));
-  packed->crc = static_cast<std::uint32_t>(crc);
+  packed->crc = crc_of(packed->deflated);
   return packed;
 }
 

@@ -3,6 +3,7 @@
 #include <array>
 #include <cstdint>
 #include <memory>
+#include <optional>
 #include <vector>
 
 #include "picture/world.hpp"
@@ -36,6 +37,8 @@ class Packer {
 
   Tile pack(const Pixels& pixels);
   void unpack(const Packed& packed, Pixels& pixels);
+  /// Of a tile that was kept on a disk: how many of its pixels are known; nothing where it is none.
+  std::optional<std::size_t> known_in(const Packed& packed);
 
  private:
   struct Streams;

@@ -150,6 +150,21 @@ const Key kKeys[] = {
      "Bytes of markers in one update, at most, unless a single one is larger.",
      whole<MEMBER(queues.marker_bytes_per_message)>(1024, 256 * kMiB)},
 
+    {"runs.run_bytes",
+     "Bytes of one run's map, tracks and plots on the disk, at most: beyond it its earliest pictures go.",
+     whole<MEMBER(runs.run_bytes)>(2 * kMiB, 1024 * kMiB)},
+    {"runs.all_bytes",
+     "The same of all runs, and never more than half of what the disk has for them: beyond it the oldest run "
+     "goes, but not the present one, and no report.",
+     whole<MEMBER(runs.all_bytes)>(4 * kMiB, 65536 * kMiB)},
+
+    {"alarms.silent_for_ms", "How long a robot may say nothing, at least, before it counts as silent.",
+     whole<MEMBER(alarms.silent_for)>(1000, 3600000)},
+    {"alarms.silent_times",
+     "How many times as long as it lets pass between two messages, as a rule, a robot may say nothing before "
+     "it counts as silent.",
+     real<MEMBER(alarms.silent_times)>(1, 1000)},
+
     {"rules.rewrite_frame_id", "Take any frame_id and send \"darpa\"; if not, others are refused with 422.",
      flag<MEMBER(rules.rewrite_frame_id)>()},
     {"rules.forward_unknown_types",

@@ -1,12 +1,10 @@
 #include "settings/reader.hpp"
 
 #include <algorithm>
-#include <numeric>
-#include <optional>
-#include <span>
 #include <vector>
 
 #include "icd/sentence.hpp"
+#include "spelling/nearest.hpp"
 
 namespace adit::settings {
 namespace {
@@ -25,44 +23,6 @@ std::string shown_name(const std::string& name) {
 std::string range_of(const List& list) {
   return list.least == 0 ? icd::sentence("a list of at most ", list.most, " items")
                          : icd::sentence("a list of ", list.least, " to ", list.most, " items");
-}
-
-/// Letters to insert, leave out or replace (Levenshtein).
-std::size_t distance(std::string_view from, std::string_view to) {
-  std::vector<std::size_t> row(to.size() + 1);
-  std::iota(row.begin(), row.end(), std::size_t{0});
-  for (std::size_t i = 1; i <= from.size(); ++i) {
-    std::size_t diagonal = row[0];
-    row[0] = i;
-    for (std::size_t j = 1; j <= to.size(); ++j) {
-      const std::size_t replaced = diagonal + (from[i - 1] == to[j - 1] ? 0 : 1);
-      diagonal = row[j];
-      row[j] = std::min({replaced, row[j] + 1, row[j - 1] + 1});
-    }
-  }
-  return row.back();
-}
-
-bool one_begins_the_other(std::string_view a, std::string_view b) {
-  static constexpr std::size_t kTelling = 3;
-  if (std::min(a.size(), b.size()) < kTelling) return false;
-  return a.starts_with(b) || b.starts_with(a);
-}
-
-/// The one of `known` that `name` was likely meant to be: a few letters differ, or one begins with the other.
-std::optional<std::string_view> nearest(std::string_view name, std::span<const std::string_view> known) {
-  static constexpr std::size_t kLongest = 64;  // no key is that long, and a hostile one costs nothing
-  if (name.size() > kLongest) return std::nullopt;
-  std::optional<std::string_view> best;
-  std::size_t least = std::max<std::size_t>(2, name.size() / 3) + 1;
-  for (const std::string_view candidate : known) {
-    const std::size_t apart = one_begins_the_other(name, candidate) ? 1 : distance(name, candidate);
-    if (apart < least && apart < candidate.size()) {
-      least = apart;
-      best = candidate;
-    }
-  }
-  return best;
 }
 
 }  // namespace
@@ -131,9 +91,9 @@ void Reader::tell_unknown(const std::string& name, const std::vector<Child>& chi
     known.push_back(child.name);
     list.append(list.empty() ? "" : ", ").append(child.name);
   }
-  std::string what = "no such key";
-  if (const auto meant = nearest(name, known)) what.append("; did you mean ").append(*meant).append("?");
-  errors.push_back({joined(path, shown_name(name)), what + " (keys here: " + list + ")"});
+  errors.push_back(
+      {joined(path, shown_name(name)),
+       icd::sentence("no such key", spelling::did_you_mean(name, known), " (keys here: ", list, ")")});
 }
 
 /// Names each required key, so that one look tells all that is to be written.

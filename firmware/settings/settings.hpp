@@ -69,6 +69,18 @@ struct Queues {
   std::size_t marker_bytes_per_message = 1u << 20;
 };
 
+/// What is kept of runs on the disk, beside their reports.
+struct Runs {
+  std::uint64_t run_bytes = std::uint64_t{64} << 20;   // of one run
+  std::uint64_t all_bytes = std::uint64_t{512} << 20;  // of all runs; the oldest go first
+};
+
+/// When a robot counts as silent.
+struct Alarms {
+  std::chrono::milliseconds silent_for{30000};  // at least
+  double silent_times = 5;                      // the time that it lets pass between two messages as a rule
+};
+
 /// GPIO lines of the four lights and the button, by name; no line at all: a simulated panel.
 struct Panel {
   std::string chip;  // its name, label or path; "": whichever chip has a line of that name
@@ -113,6 +125,8 @@ struct Settings {
   Network network;
   Reports reports;
   Queues queues;
+  Runs runs;
+  Alarms alarms;
   icd::Rules rules;
   Panel panel;
 };

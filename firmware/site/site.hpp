@@ -5,11 +5,12 @@
 
 namespace adit::site {
 
-/// A file of the page, embedded in the program.
+/// A file that is served, embedded in the program: `bundle` makes them of what is in files/.
 struct File {
-  std::string_view path;    // "/page.css"
-  std::string_view etag;    // with its quotation marks (RFC 9110 8.8.3)
+  std::string_view path;    // "/index.5c3a1f2e9b70.css"
+  std::string_view etag;    // without quotation marks (RFC 9110 8.8.3)
   std::string_view packed;  // its bytes, under gzip
+  bool is_hashed;           // its name holds a hash of its bytes: under this name they never change
 };
 
 std::span<const File> embedded_files();

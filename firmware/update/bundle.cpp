@@ -1,5 +1,6 @@
 #include "update/bundle.hpp"
 
+#include <algorithm>
 #include <charconv>
 #include <functional>
 
@@ -29,7 +30,9 @@ void take_slot(const Value& slot, const std::string& booted, const std::string& 
   const Field name = field.member("bootname");
   if (name.is_absent() || !name.is<std::string>()) return;  // a part of another slot
   if (name.text() == booted) return;
+  const Field good = field.member("boot_status");  // absent where the boot loader's environment is none
   running.other = name.text();
+  running.other_good = good.is<std::string>() && good.text() == "good";
   running.other_next = named->front().first == next;
 }
 
@@ -72,6 +75,17 @@ std::expected<Running, std::string> read_status(std::string_view json) {
   if (running.other.empty())
     return std::unexpected("RAUC knows no slot beside " + icd::in_quotes(running.slot));
   return running;
+}
+
+std::string not_a_bundle(std::span<const std::uint8_t> head, std::uint64_t size) {
+  constexpr std::string_view kMagic = "hsqs";
+  constexpr std::size_t kBytesUsed = 40;  // little-endian, of the squashfs
+  const bool squashfs = head.size() >= kBundleHead && std::equal(kMagic.begin(), kMagic.end(), head.begin());
+  if (!squashfs) return "it is no update: expected a file adit-BOARD-VERSION.raucb";
+  std::uint64_t used = 0;
+  for (std::size_t at = kBytesUsed + 8; at-- > kBytesUsed;) used = used << 8 | head[at];
+  if (used < size) return "";
+  return icd::sentence("it is cut short: ", size, " bytes of an update of more than ", used);
 }
 
 std::optional<int> percent_in(std::string_view line) {

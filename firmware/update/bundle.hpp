@@ -1,7 +1,9 @@
 #pragma once
 
+#include <cstdint>
 #include <expected>
 #include <optional>
+#include <span>
 #include <string>
 #include <string_view>
 
@@ -22,6 +24,7 @@ struct Running {
   std::string slot = "";    // the boot loader's name: "A"
   std::string other = "";   // the slot that an update goes into: "B"
   bool other_next = false;  // the boot loader starts that one next; known here alone, no file says it
+  bool other_good = false;  // the boot loader has tries left for it; known here alone too
   static const codec::Row kRow;
   friend bool operator==(const Running&, const Running&) = default;
 };
@@ -30,6 +33,13 @@ struct Running {
 /// what is not as it must be. Running::version is not RAUC's to know.
 std::expected<Bundle, std::string> read_info(std::string_view json);
 std::expected<Running, std::string> read_status(std::string_view json);
+
+/// How many bytes not_a_bundle() looks at.
+inline constexpr std::size_t kBundleHead = 48;
+/// Why what begins with these `kBundleHead` bytes (or with all there are) and has `size` bytes cannot be a
+/// bundle, or
+/// "". A bundle is a squashfs (Documentation/filesystems/squashfs.rst) with its signature behind it.
+std::string not_a_bundle(std::span<const std::uint8_t> head, std::uint64_t size);
 
 /// The per cent in a line of `rauc install --progress`, " 40% Verifying signature done."
 std::optional<int> percent_in(std::string_view line);

@@ -5,7 +5,8 @@
 namespace adit::update {
 namespace {
 
-constexpr std::string_view kWhatWords[] = {"install", "stick", "restart"};  // in the order of Request::What
+constexpr std::string_view kWhatWords[] = {"install", "stick", "restart", "back",
+                                           "stay"};  // in the order of Request::What
 
 }  // namespace
 }  // namespace adit::update
@@ -44,12 +45,22 @@ constexpr Member kLastUpdateMembers[] = {
     member<&LastUpdate::slot>("slot"),   member<&LastUpdate::boot>("boot"),
     member<&LastUpdate::why>("why"),
 };
+constexpr Member kProvenMembers[] = {
+    member<&Proven::slot>("slot"),
+    member<&Proven::version>("version"),
+};
 constexpr Member kStatusMembers[] = {
-    member<&Status::trouble>("trouble"), member<&Status::running>("running"),
-    member<&Status::nonce>("nonce"),     member<&Status::refusal>("refusal"),
-    member<&Status::doing>("doing"),     member<&Status::progress>("progress").from(0).to(100),
-    member<&Status::last>("last"),       member<&Status::trial>("trial"),
-    member<&Status::stick>("stick"),     member<&Status::stick_trouble>("stick_trouble"),
+    member<&Status::trouble>("trouble"),
+    member<&Status::running>("running"),
+    member<&Status::nonce>("nonce"),
+    member<&Status::refusal>("refusal"),
+    member<&Status::doing>("doing"),
+    member<&Status::progress>("progress").from(0).to(100),
+    member<&Status::last>("last"),
+    member<&Status::trial>("trial"),
+    member<&Status::stray>("stray"),
+    member<&Status::stick>("stick"),
+    member<&Status::stick_trouble>("stick_trouble"),
 };
 
 }  // namespace
@@ -58,6 +69,7 @@ constexpr Row Request::kRow = {"", kRequestMembers};
 constexpr Row Running::kRow = {"", kRunningMembers};
 constexpr Row Offer::kRow = {"", kOfferMembers};
 constexpr Row LastUpdate::kRow = {"", kLastUpdateMembers};
+constexpr Row Proven::kRow = {"", kProvenMembers};
 constexpr Row Status::kRow = {"", kStatusMembers};
 
 }  // namespace adit::update

@@ -9,6 +9,7 @@
 #include "codec/row_file.hpp"
 #include "update/bundle.hpp"
 #include "update/last_update.hpp"
+#include "update/proven.hpp"
 
 /// The files by which aditd, which has no privilege, and adit-update, which runs as root, speak with each
 /// other: README.md.
@@ -21,12 +22,19 @@ inline constexpr const char* kBundleFile = "update.raucb";
 /// What adit-update tells everybody, in its runtime folder; and what it keeps, in its state folder.
 inline constexpr const char* kStatusFile = "status.json";
 inline constexpr const char* kLastUpdateFile = "last.json";
+inline constexpr const char* kProvenFile = "proven.json";
 
 /// More than both slots hold.
 inline constexpr std::uint64_t kLargestBundle = 256U << 20;
 
 struct Request {
-  enum class What : std::uint8_t { Install, Stick, Restart };
+  enum class What : std::uint8_t {
+    Install,
+    Stick,
+    Restart,
+    Back,  // into the proven slot, which does not run
+    Stay,  // the slot that runs is proven from now on
+  };
   std::string nonce = "";  // network::is_nonce()
   What what = What::Restart;
   bool again = false;  // Install, Stick: though that version runs already
@@ -49,7 +57,8 @@ struct Status {
   std::string doing = "";            // "", "checking", "installing", "restarting"
   std::optional<int> progress = {};  // per cent of "installing"
   LastUpdate last = {};
-  bool trial = false;  // on_trial()
+  bool trial = false;      // on_trial()
+  std::string stray = "";  // stray()
   std::optional<Offer> stick = {};
   std::string stick_trouble = "";  // why what is on the stick cannot be installed; "" where there is none
   static const codec::Row kRow;

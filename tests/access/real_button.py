@@ -202,7 +202,7 @@ class Button(unittest.TestCase):
         box = self.start_box(more=("--board", file))
         about = lambda: box.ask("GET /adit/about", Authorization="Bearer " + real_aditd.TOKENS["team"])[1]
         self.assertIsNone(about()["board"], "the file is not there")
-        self.assertEqual(self.run_view()["attention"], [])
+        self.assertEqual([alarm for alarm in self.run_view()["alarms"] if alarm["side"] == "box"], [])
         file.write_text(json.dumps({"name": "my-board", "title": "My board", "panel": {"chip": "no-chip", "health": "H"}}))
         box.stop()
         box.start()
@@ -213,7 +213,8 @@ class Button(unittest.TestCase):
         box.stop()
         box.start()
         self.assertIsNone(about()["board"])
-        self.assertIn("panel.helth: no such key; did you mean health?", self.run_view()["attention"][0])
+        told = next(alarm for alarm in self.run_view()["alarms"] if alarm["id"] == "board_not_used")
+        self.assertIn("panel.helth: no such key; did you mean health?", told["why"])
 
 
 if __name__ == "__main__":

@@ -176,7 +176,8 @@ class Outputs(unittest.TestCase):
         """Each method, with its path to what is there, and the same with a secret in each parameter of its query."""
         described = self.box.ask("GET /adit/openapi.json")[1]
         layer = self.box.ask("GET /adit/map", **self.script)[1]["layers"][0]
-        values = {"number": 1, "session": 1, "kind": layer["kind"], "robot": TEAM, "level": 0, "x": 0, "y": 0}
+        values = {"number": 1, "session": 1, "kind": layer["kind"], "robot": TEAM, "level": 0, "x": 0, "y": 0,
+                  "key": self.box.ask("GET /adit/runs", **self.script)[1]["runs"][0]["key"]}
         for path, methods in described["paths"].items():
             filled = re.sub(r"{(\w+)}", lambda it: str(values[it.group(1)]), path)
             for method, said in methods.items():

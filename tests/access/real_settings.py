@@ -93,7 +93,10 @@ class SetUp(unittest.TestCase):
         return self.applied("POST /adit/settings", {"settings": now["settings"], "base": now["tag"]})["changes"]
 
     def attention(self):
-        return "\n".join(self.box.ask("GET /adit/run", **self.me)[1]["attention"])
+        """What calls the operator; but nobody is at the Command Post's addresses here."""
+        alarms = self.box.ask("GET /adit/run", **self.me)[1]["alarms"]
+        return "\n".join(f"{alarm['what'][0].lower()}{alarm['what'][1:]}: {alarm['why']}" for alarm in alarms
+                         if alarm["severity"] != "wait" and not alarm["id"].startswith("command_post_"))
 
     def trouble(self):
         return self.box.ask("GET /adit/run", **self.me)[1]["endpoints"][0]["trouble"]
@@ -255,7 +258,7 @@ class SetUp(unittest.TestCase):
         self.assertEqual(self.attention(), "")
         self.assertEqual(self.box.ask("POST /state/update", state("x"), **TEAM)[0], 200)
         self.assertEqual(self.box.ask("POST /state/update", state("x"), **TEAM)[0], 200)
-        self.assertEqual(self.attention(), "unknown robot 'x' is posting; set-up has ugv1, ugv2")
+        self.assertEqual(self.attention(), "robot x is unknown: it posts, and set-up has ugv1, ugv2")
         self.assertEqual(self.box.said().count("unknown robot"), 1)
         self.assertEqual(self.box.ask("POST /state/update", state("husky-number-9"), **TEAM)[0], 422, "the ICD's rule")
 

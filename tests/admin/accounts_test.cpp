@@ -83,7 +83,7 @@ TEST(Accounts, APasswordIsNoneThatWasAnotherBeforeItWasChecked) {
   life.accounts.set(Role::Operator, kNew, [&](const icd::Checked<void>&) { is_set = true; });
   std::promise<void> held;
   auto until = std::make_shared<std::shared_future<void>>(held.get_future());
-  life.workers.submit([until] { until->wait(); }, [] {});
+  life.workers.submit(loop::Urgency::OnTheWay, [until] { until->wait(); }, [] {});
   life.accounts.check(kOld, "10.0.0.5", [&](std::optional<Role> role) { found = role; });
   while (!is_set) life.loop.turn(100ms);
   held.set_value();

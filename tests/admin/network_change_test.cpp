@@ -101,22 +101,24 @@ TEST_F(NetworkChangeTest, SaysNothingOfTheLastOneWhileAnotherWaits) {
 }
 
 TEST_F(NetworkChangeTest, KnowsWhoAnswersForTheCommandPost) {
-  EXPECT_EQ(change.next_hop(), "10.100.1.201");
+  const settings::Address endpoint{"10.100.1.201", 8000};
+  EXPECT_EQ(change.next_hop(endpoint), "10.100.1.201");
   status.kept = numbers("192.168.7.11/24", "10.100.3.10/24", "10.100.3.1");
   tell();
-  EXPECT_EQ(change.next_hop(), "10.100.3.1");
+  EXPECT_EQ(change.next_hop(endpoint), "10.100.3.1");
   status.kept = numbers("192.168.7.11/24", "10.100.3.10/24");
   tell();
-  EXPECT_EQ(change.next_hop(), "") << "there is no way to it";
+  EXPECT_EQ(change.next_hop(endpoint), "") << "there is no way to it";
 }
 
 TEST_F(NetworkChangeTest, TellsTheOperatorThatTheCommandPostsSideHasNoAddressYet) {
-  EXPECT_EQ(change.attention(), "");
+  EXPECT_FALSE(change.fact().no_address);
   status.kept->command_post.clear();
   tell();
-  EXPECT_THAT(change.attention(), HasSubstr("no address on darpa0 yet"));
+  EXPECT_TRUE(change.fact().no_address);
   wait(numbers());
-  EXPECT_THAT(change.attention(), HasSubstr("network change: confirm within"));
+  EXPECT_FALSE(change.fact().no_address) << "the change may set it";
+  EXPECT_GT(change.fact().confirm_within, 0);
 }
 
 }  // namespace

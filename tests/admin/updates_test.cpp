@@ -165,6 +165,26 @@ TEST_F(UpdatesTest, RestartOnlyOnTheOperatorsWordWhileAReportIsUnderWay) {
   EXPECT_EQ(updates_.update().doing, "restarting");
 }
 
+TEST_F(UpdatesTest, GoBackOrStayWhereAnotherSlotRunsThanWasGoodLast) {
+  EXPECT_EQ(updates_.go_back(true).error().sentence, "the slot that runs is the one that was good last");
+  EXPECT_EQ(updates_.stay().error().status, icd::Status::Conflict);
+  EXPECT_FALSE(asked());
+  wait();
+  say({.stray = "slot B runs, with 0.1.0"});
+  EXPECT_EQ(updates_.update().stray, "slot B runs, with 0.1.0");
+  under_way_ = "report 7 is being sent";
+  EXPECT_EQ(updates_.go_back(false).error().sentence, "report 7 is being sent");
+  ASSERT_TRUE(updates_.go_back(true));
+  EXPECT_EQ(asked()->what, update::Request::What::Back);
+  EXPECT_EQ(updates_.update().doing, "restarting");
+}
+
+TEST_F(UpdatesTest, Stay) {
+  say({.stray = "slot B runs, with 0.1.0"});
+  ASSERT_TRUE(updates_.stay());
+  EXPECT_EQ(asked()->what, update::Request::What::Stay);
+}
+
 TEST_F(UpdatesTest, RestartWhereNothingIsUnderWay) {
   EXPECT_TRUE(updates_.restart(false));
 }

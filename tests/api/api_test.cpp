@@ -2,13 +2,15 @@
 
 #include <gmock/gmock.h>
 
-#include <fstream>
 #include <iterator>
 #include <nlohmann/json.hpp>
 #include <regex>
+#include <span>
 
 #include "api/on_page.hpp"
+#include "api/packed.hpp"
 #include "api/scenes.hpp"
+#include "codec/gzip.hpp"
 #include "icd/artifact_report.hpp"
 #include "intake/raw_client.hpp"
 #include "intake/served.hpp"
@@ -17,67 +19,126 @@
 namespace adit::api {
 namespace {
 
-std::string file_on_disk(std::string_view path) {
-  std::ifstream file(std::string(ADIT_SOURCE_DIR "/firmware/site/files") + std::string(path),
-                     std::ios::binary);
-  return {std::istreambuf_iterator<char>(file), {}};
+/// The path of the first file that a page names so: `attribute` is `rel="stylesheet"` or `type="module"`.
+std::string named_in(const std::string& html, const std::string& attribute) {
+  std::smatch found;
+  const std::regex tag("<[^>]*" + attribute + "[^>]*>"), file(R"re((?:href|src)="([^"]+)")re");
+  if (!std::regex_search(html, found, tag)) return "";
+  const std::string text = found.str();
+  return std::regex_search(text, found, file) ? "/" + found[1].str() : "";
 }
 
-/// As a script has them: "Survivor", "Cell Phone" and so on.
-std::string artifact_types() {
-  std::string words;
-  for (const std::string_view type : icd::kArtifactTypes)
-    words.append(words.empty() ? "\"" : ", \"").append(type).append("\"");
-  return words;
-}
-
-/// Scripts are embedded without the lines that are a comment and with the artifact types, style without its
-/// comments, pages without what indents their lines.
-std::string as_embedded(std::string_view path) {
-  std::string text = file_on_disk(path);
-  static const std::regex style_comment(R"( */\*[^*]*\*/)");
-  if (path.ends_with(".css")) return std::regex_replace(text, style_comment, "");
-  static const std::regex indent(R"(\n +)");
-  if (path.ends_with(".html")) return std::regex_replace(text, indent, "\n");
-  if (!path.ends_with(".js")) return text;
-  static const std::regex comment(R"((^|\n) *(//[^\n]*|/\*\*[^\n]*\*/))");
-  static const std::regex types(R"("artifact_types\.inc")");
-  return std::regex_replace(std::regex_replace(text, comment, "$1"), types, artifact_types());
+std::string gunzipped(const std::string& bytes) {
+  const std::span all(reinterpret_cast<const std::uint8_t*>(bytes.data()), bytes.size());
+  std::string text;
+  const auto size =
+      codec::gunzip(icd::ChunkedBytes(all), 1u << 20, "", [&text](std::span<const std::uint8_t> piece) {
+        text.append(piece.begin(), piece.end());
+        return icd::Checked<void>{};
+      });
+  EXPECT_TRUE(size);
+  return text;
 }
 
 using testing::HasSubstr;
 using testing::StartsWith;
 
-class PageTest : public OnPage {};
+class PageTest : public OnPage {
+ protected:
+  std::string style() { return named_in(get_file("/").body, R"(rel="stylesheet")"); }
+  std::string script() { return named_in(get_file("/").body, R"(type="module")"); }
+  intake::Answer get_packed(const std::string& path, std::string if_none_match = "") {
+    return request("GET", path,
+                   {{"Accept-Encoding", "gzip, br"}, {"If-None-Match", std::move(if_none_match)}, kByToken});
+  }
+};
 
 TEST_F(PageTest, ServesItsFilesWithTheirTypes) {
   EXPECT_EQ(get_file("/").content_type, "text/html; charset=utf-8");
   EXPECT_THAT(get_file("/").body, StartsWith("<!doctype html>"));
-  EXPECT_EQ(get_file("/page.css").content_type, "text/css; charset=utf-8");
-  EXPECT_EQ(get_file("/page.js").content_type, "text/javascript; charset=utf-8");
+  EXPECT_EQ(get_file(style()).content_type, "text/css; charset=utf-8");
+  EXPECT_EQ(get_file(script()).content_type, "text/javascript; charset=utf-8");
   EXPECT_EQ(get_file("/icon.svg").content_type, "image/svg+xml");
 }
 
-TEST_F(PageTest, EmbedsItsFilesByteForByte) {
+TEST_F(PageTest, EachPageHasOneStyleAndOneScriptThatAreServed) {
+  static const std::regex style_link("rel=\"stylesheet\""), module("type=\"module\"");
+  for (const char* path : {"/", "/display", "/setup", "/system", "/login.html"}) {
+    const std::string html = get_file(path).body;
+    for (const auto& [form, attribute] :
+         {std::pair{&style_link, R"(rel="stylesheet")"}, {&module, R"(type="module")"}}) {
+      EXPECT_EQ(std::distance(std::sregex_iterator(html.begin(), html.end(), *form), {}), 1) << path;
+      EXPECT_EQ(get_file(named_in(html, attribute)).status, icd::Status::Ok) << path << ' ' << attribute;
+    }
+  }
+}
+
+TEST_F(PageTest, GivesAScriptTheWordsOfTheArtifactTypes) {
+  const std::string text = get_file(script()).body;
+  for (const std::string_view type : icd::kArtifactTypes)
+    EXPECT_THAT(text, HasSubstr('"' + std::string(type) + '"'));
+  EXPECT_EQ(text.find("artifact_types.inc"), std::string::npos);
+}
+
+TEST_F(PageTest, ServesWhatIsEmbeddedUnderGzipOrInflated) {
+  ASSERT_GT(site::embedded_files().size(), 10U);
   for (const site::File& file : site::embedded_files()) {
-    EXPECT_EQ(get_file(std::string(file.path)).body, as_embedded(file.path)) << file.path;
-    EXPECT_NE(content_type_of(file), "application/octet-stream") << file.path;
+    const std::string path(file.path);
+    const auto plain = get_file(path), packed = get_packed(path);
+    EXPECT_EQ(header(plain, "Content-Encoding"), "") << path;
+    EXPECT_EQ(header(packed, "Content-Encoding"), "gzip") << path;
+    EXPECT_EQ(packed.body, file.packed) << path;
+    EXPECT_EQ(gunzipped(packed.body), plain.body) << path;
+    EXPECT_NE(header(plain, "ETag"), header(packed, "ETag")) << "other bytes: " << path;
+    for (const auto* answer : {&plain, &packed}) EXPECT_EQ(header(*answer, "Vary"), "Accept-Encoding");
+    EXPECT_NE(content_type_of(file), "application/octet-stream") << path;
   }
 }
 
 TEST_F(PageTest, SendsAFileAgainOnlyWhereItChanged) {
-  const auto first = get_file("/page.css");
+  const auto first = get_file("/"), packed = get_packed("/");
   EXPECT_EQ(header(first, "Cache-Control"), "no-cache");
-  const auto again = get_file("/page.css", header(first, "ETag"));
+  const auto again = get_file("/", header(first, "ETag"));
   EXPECT_EQ(static_cast<int>(again.status), 304);
   EXPECT_EQ(again.body, "");
   EXPECT_EQ(header(again, "ETag"), header(first, "ETag"));
-  EXPECT_EQ(get_file("/page.css", "W/\"old\", " + header(first, "ETag")).body, "");
-  EXPECT_EQ(get_file("/page.css", "\"old\"").body, first.body);
+  EXPECT_EQ(get_packed("/", header(packed, "ETag")).body, "");
+  EXPECT_EQ(get_packed("/", header(first, "ETag")).body, packed.body) << "it has the other bytes";
+  EXPECT_EQ(get_file("/", "W/\"old\", " + header(first, "ETag")).body, "");
+  EXPECT_EQ(get_file("/", "\"old\"").body, first.body);
+}
+
+TEST_F(PageTest, LetsABrowserKeepForGoodOnlyWhatIsNamedByItsContent) {
+  for (const std::string& path : {style(), script()}) {
+    EXPECT_THAT(path, testing::ContainsRegex("^/index[.][0-9a-f]{12}[.](css|js)$"));
+    EXPECT_EQ(header(get_file(path), "Cache-Control"), "public, max-age=31536000, immutable");
+  }
+  for (const char* path : {"/", "/setup", "/icon.svg", "/login.html"})
+    EXPECT_EQ(header(get_file(path), "Cache-Control"), "no-cache") << path;
+}
+
+TEST_F(PageTest, PacksLongAnswersForWhomTheyAreGzip) {
+  source.now = *scene("reports", 1000, 0);
+  const auto plain = get_file("/adit/run"), packed = get_packed("/adit/run");
+  EXPECT_EQ(header(plain, "Content-Encoding"), "");
+  EXPECT_EQ(header(packed, "Content-Encoding"), "gzip");
+  EXPECT_EQ(header(packed, "Cache-Control"), "no-store");
+  EXPECT_EQ(gunzipped(packed.body), plain.body);
+  EXPECT_EQ(header(get_packed("/adit/session"), "Content-Encoding"), "") << "it is short";
+}
+
+TEST(TakesGzip, GoesByTheCodingAndItsWeight) {
+  for (const char* yes : {"gzip", "GZIP", "deflate, gzip", "br;q=1.0, gzip;q=0.8", "*", "x-gzip",
+                          "gzip ; q=0.001", "*;q=0, gzip"})
+    EXPECT_TRUE(takes_gzip(yes)) << yes;
+  for (const char* no :
+       {"", "identity", "br", "gzip;q=0", "gzip; Q=0.000", "*;q=0", "gzipped", "*, gzip;q=0", ",,;"})
+    EXPECT_FALSE(takes_gzip(no)) << no;
 }
 
 TEST_F(PageTest, EveryAnswerKeepsTheBrowserFromLoadingAnythingElse) {
-  for (const char* path : {"/", "/page.js", "/adit/run", "/nothing"}) {
+  for (const std::string& path :
+       {std::string("/"), script(), std::string("/adit/run"), std::string("/nothing")}) {
     const auto answer = get_file(path);
     EXPECT_THAT(header(answer, "Content-Security-Policy"), StartsWith("default-src 'none'")) << path;
     EXPECT_EQ(header(answer, "Content-Security-Policy").find("unsafe"), std::string::npos);
@@ -96,7 +157,7 @@ TEST_F(PageTest, HasNoScriptAndNoStyleThatItsPolicyWouldForbid) {
 
 TEST_F(PageTest, AnswersAnythingElseWithAJsonString) {
   for (const char* path :
-       {"/nothing", "/page", "/../page.css", "/files/page.css", "/adit/", "/adit/run/", ""}) {
+       {"/nothing", "/page", "/../login.html", "/files/login.html", "/page.js", "/adit/", "/adit/run/", ""}) {
     const auto answer = get_file(path);
     EXPECT_EQ(answer.status, icd::Status::NotFound) << path;
     EXPECT_EQ(answer.content_type, "application/json");
@@ -105,7 +166,7 @@ TEST_F(PageTest, AnswersAnythingElseWithAJsonString) {
 }
 
 TEST_F(PageTest, TakesNothingButGet) {
-  for (const char* path : {"/", "/page.css"}) {
+  for (const char* path : {"/", "/icon.svg"}) {
     for (const char* method : {"POST", "DELETE", "OPTIONS"}) {
       const auto answer = get_file(path, "", method);
       EXPECT_EQ(answer.status, icd::Status::MethodNotAllowed) << method << ' ' << path;
@@ -136,12 +197,12 @@ TEST(PageOnAServer, ServesABrowser) {
   });
 
   intake::RawClient client{served.port()};
-  client.send(intake::request("GET", "/page.css"));
-  const auto style = client.reply();
-  ASSERT_TRUE(style);
-  EXPECT_EQ(style->status, 200);
-  EXPECT_EQ(style->body, as_embedded("/page.css"));
-  client.send(intake::request("GET", "/page.css", "If-None-Match: " + style->header("etag") + "\r\n"));
+  client.send(intake::request("GET", "/icon.svg"));
+  const auto icon = client.reply();
+  ASSERT_TRUE(icon);
+  EXPECT_EQ(icon->status, 200);
+  EXPECT_THAT(icon->body, StartsWith("<svg"));
+  client.send(intake::request("GET", "/icon.svg", "If-None-Match: " + icon->header("etag") + "\r\n"));
   const auto again = client.reply();
   ASSERT_TRUE(again);
   EXPECT_EQ(again->status, 304);

@@ -60,6 +60,7 @@ RunView view() {
   activity.last_accepted = 9, activity.bytes_received = 10, activity.bytes_sent = 11;
   activity.last_status = 12, activity.last_sentence = "said", activity.clouds = "parts",
   activity.precision = "1mm", activity.points_left_out = 16;
+  activity.arrival = alarms::Arrival::Late, activity.level = alarms::Level::Wait;
   view.activities = {activity};
   view.refusals = {{.at = 1, .uri = "/u", .sender = "s", .status = 422, .sentence = "no", .parts = 2}};
   view.aside = {{.number = 1,
@@ -76,7 +77,18 @@ RunView view() {
   view.identify_until = 1001;
   view.budget_mbit = 100, view.sent_mbit = 1.5, view.queued_bytes = 6;
   view.map_version = 1'793'000'123'456, view.marker_version = 4;
-  view.attention = {"do"};
+  view.verdict = {alarms::Level::Bad, "w", "y"};
+  view.alarms = {{.id = "i:s",
+                  .severity = alarms::Severity::Ask,
+                  .side = alarms::Side::CommandPost,
+                  .subject = "s",
+                  .since = 3,
+                  .what = "what",
+                  .why = "why",
+                  .action = {"word", "/link"},
+                  .acknowledged = true,
+                  .hides = 4}};
+  view.alarms_over = {{.id = "o", .side = alarms::Side::Robot, .was = "was", .since = 5, .until = 6}};
   return view;
 }
 
@@ -105,13 +117,19 @@ TEST(Bytes, OfARun) {
       R"("activities":[{"kind":"grid","robot":"r","accepted":1,"forwarded":2,"replaced":3,)"
       R"("merged":4,"throttled":5,"failed":6,"refused_upstream":7,"no_room":13,"waiting":8,)"
       R"("behind_since":14.0,"last_accepted":9.0,"last_forwarded":null,"last_no_room":15.0,"bytes_received":10,"bytes_sent":11,"last_status":12,)"
-      R"("last_sentence":"said","clouds":"parts","precision":"1mm","points_left_out":16}],"refusals":[{"at":1.0,"uri":"/u","sender":"s","status":422,)"
+      R"("last_sentence":"said","clouds":"parts","precision":"1mm","points_left_out":16,)"
+      R"("arrival":"late","level":"wait"}],"refusals":[{"at":1.0,"uri":"/u","sender":"s","status":422,)"
       R"("sentence":"no","parts":2}],"aside":[{"number":1,"kind":"grid","robot":"r","at":2.0,)"
       R"("status":400,"why":"w","bytes":3,"overtaken":true}],"lights":[{"name":"health",)"
       R"("pattern":"on"}],"links":[{"side":"team","interface":"team0","carrier":true},)"
       R"({"side":"command_post","interface":"d","carrier":null}],"identify_until":1001.0,)"
       R"("setup_open_until":null,"budget_mbit":100.0,"sent_mbit":1.5,"queued_bytes":6,)"
-      R"("map_version":1793000123456,"marker_version":4,"attention":["do"]})");
+      R"("map_version":1793000123456,"marker_version":4,)"
+      R"("verdict":{"level":"bad","what":"w","why":"y"},"alarms":[{"id":"i:s","severity":"ask",)"
+      R"("side":"command_post","subject":"s","since":3.0,"what":"what","why":"why",)"
+      R"("action":{"word":"word","link":"/link"},"acknowledged":true,"hides":4}],)"
+      R"("alarms_over":[{"id":"o","severity":"bad","side":"robot","was":"was","since":5.0,)"
+      R"("until":6.0}]})");
 }
 
 TEST(Bytes, OfReports) {

@@ -72,6 +72,11 @@ struct FakeOperator final : Operator {
     if (!aside_trouble.empty()) return std::unexpected(aside_trouble);
     return {};
   }
+  std::expected<void, std::string> acknowledge(const std::string& id) override {
+    if (!alarm_trouble.empty()) return std::unexpected(alarm_trouble);
+    acknowledged.push_back(id);
+    return {};
+  }
   std::int64_t begin_run() override { return ++run; }
   Time identify(double seconds) override {
     identified = seconds;
@@ -84,6 +89,8 @@ struct FakeOperator final : Operator {
       outcome;  // of judge() and report(), where it is not the same number or 41
   std::vector<std::pair<std::uint64_t, AsideAction>> set_aside;
   std::string aside_trouble;  // of aside(), where there is any
+  std::vector<std::string> acknowledged;
+  std::string alarm_trouble;  // of acknowledge(), where there is any
   std::int64_t run = 1;
   double identified = 0;  // seconds
 };

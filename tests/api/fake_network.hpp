@@ -40,8 +40,16 @@ struct FakeNetwork final : Network {
 
 struct FakeTest final : SelfTest {
   TestView test() const override { return view; }
-  bool begin_test() override { return !std::exchange(view.running, true); }
+  icd::Checked<void> begin_test(const Candidate& candidate) override {
+    if (!outcome) return outcome;
+    if (std::exchange(view.running, true))
+      return std::unexpected(icd::Refusal{icd::Status::Conflict, "a test is running"});
+    tried = candidate;
+    return {};
+  }
   TestView view;
+  Candidate tried;
+  icd::Checked<void> outcome;
 };
 
 }  // namespace adit::api

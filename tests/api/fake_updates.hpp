@@ -34,11 +34,21 @@ struct FakeUpdates final : Updates {
     return outcome;
   }
 
+  icd::Checked<void> go_back(bool anyway) override {
+    backs.push_back(anyway);
+    return outcome;
+  }
+  icd::Checked<void> stay() override {
+    ++stays;
+    return outcome;
+  }
+
   UpdateView view;
   icd::Checked<void> outcome;
   Received received;
   bool more = true;  // what a piece is answered
-  std::vector<bool> sticks, restarts;
+  std::vector<bool> sticks, restarts, backs;
+  int stays = 0;
 
  private:
   struct Taking final : Upload {

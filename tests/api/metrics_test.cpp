@@ -55,7 +55,9 @@ TEST(Metrics, CarryWhatTheViewSays) {
   all.view.activities = {clouds};
   all.view.sent_mbit = 8;
   all.view.budget_mbit = 20;
-  all.view.attention = {"look", "here"};
+  all.view.alarms = {
+      {.id = "robot_silent:ugv1", .side = alarms::Side::Robot},
+      {.id = "reports_left", .severity = alarms::Severity::Wait, .side = alarms::Side::CommandPost}};
   all.usage.refused = {{.uri = "/map/update", .status = 422, .count = 5},
                        {.uri = "/state/update", .status = 422, .count = 2, .parts = 15}};
   all.usage.resident_bytes = 12'000'000;
@@ -80,7 +82,10 @@ TEST(Metrics, CarryWhatTheViewSays) {
                              R"(adit_points_left_out_total{robot="ugv1"} 7000)",
                              "adit_link_rate_bytes_per_second 1e+06",
                              "adit_link_budget_bytes_per_second 2500000",
-                             "adit_attention 2",
+                             R"(adit_alarm{id="robot_silent:ugv1",severity="bad",side="robot"} 1)",
+                             R"(adit_alarm{id="reports_left",severity="wait",side="command_post"} 1)",
+                             R"(adit_alarms{severity="bad"} 1)",
+                             R"(adit_alarms{severity="ask"} 0)",
                              R"(adit_refused_total{uri="/map/update",status="422"} 5)",
                              R"(adit_refused_parts_total{uri="/state/update"} 15)",
                              "adit_process_resident_memory_bytes 1.2e+07",

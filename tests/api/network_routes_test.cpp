@@ -25,21 +25,29 @@ const network::Numbers kRead = {
 class NetworkRoutesTest : public OnPage {};
 
 TEST_F(NetworkRoutesTest, TellWhatTheInterfacesHave) {
-  network.view = {.managed = true,
-                  .why = "",
-                  .team_interface = "team0",
-                  .command_post_interface = "darpa0",
-                  .team = settings::Subnet{0xc0a8070b, 24},
-                  .command_post = {},
-                  .mode = network::Mode::Dhcp,
-                  .gateway = {},
-                  .pending = {},
-                  .last = "",
-                  .last_why = ""};
+  network.view = {
+      .managed = true,
+      .why = "",
+      .team_interface = "team0",
+      .command_post_interface = "darpa0",
+      .team = settings::Subnet{0xc0a8070b, 24},
+      .command_post = {},
+      .mode = network::Mode::Dhcp,
+      .gateway = {},
+      .pending = {},
+      .ports = {{"team", "team0", "02:00:00:00:00:01", {"192.168.7.11/24"}, "adit.local", true, 1000, "full"},
+                {"command_post", "darpa0", "", {}, "", std::nullopt, std::nullopt, ""}},
+      .last = "",
+      .last_why = ""};
   EXPECT_EQ(json::parse(get("/adit/network").body), json::parse(R"({
     "managed": true, "why": "", "team": {"interface": "team0", "mode": "dhcp", "address": "192.168.7.11", "prefix": 24},
     "command_post": {"interface": "darpa0", "addresses": [], "gateway": ""},
-    "pending": null, "last": null, "last_why": ""})"));
+    "pending": null,
+    "ports": [{"side": "team", "interface": "team0", "mac": "02:00:00:00:00:01", "addresses": ["192.168.7.11/24"],
+               "name": "adit.local", "carrier": true, "mbit": 1000, "duplex": "full"},
+              {"side": "command_post", "interface": "darpa0", "mac": "", "addresses": [], "name": "", "carrier": null,
+               "mbit": null, "duplex": ""}],
+    "last": null, "last_why": ""})"));
 }
 
 TEST_F(NetworkRoutesTest, TellEachAddressOfTheCommandPostsSide) {
@@ -114,13 +122,52 @@ TEST_F(NetworkRoutesTest, ConfirmByTheAddressThatWasAsked) {
 }
 
 TEST_F(NetworkRoutesTest, RunOneTestAtATime) {
-  EXPECT_EQ(get("/adit/test").body, R"({"running":false,"endpoints":[]})");
+  EXPECT_EQ(get("/adit/test").body, R"({"running":false,"applied":true,"course":"","endpoints":[]})");
   test.view.endpoints = {{"scoring", "10.100.1.200:8000", {{"link", "bad", "no carrier", "plug it in"}}}};
   const json begun = json::parse(post("/adit/test").body);
   EXPECT_EQ(begun["running"], true);
   EXPECT_EQ(begun["endpoints"][0]["steps"][0],
             json::parse(R"({"name":"link","state":"bad","said":"no carrier","advice":"plug it in"})"));
+  EXPECT_TRUE(test.tried.is_applied());
   EXPECT_EQ(post("/adit/test").status, icd::Status::Conflict);
+}
+
+TEST_F(NetworkRoutesTest, TryWhatIsNamedBeforeItIsApplied) {
+  post("/adit/test", R"({"course":"B","scoring":{"address":"10.100.2.200","port":8001,"token":"typed-1"},)"
+                     R"("mapping":{"port":9000,"token":null}})");
+  ASSERT_TRUE(test.tried.scoring && test.tried.mapping);
+  EXPECT_EQ(test.tried.course, "B");
+  EXPECT_EQ(test.tried.scoring->address, "10.100.2.200");
+  EXPECT_EQ(test.tried.scoring->port, 8001);
+  EXPECT_EQ(test.tried.scoring->token->reveal(), "typed-1");
+  EXPECT_EQ(test.tried.mapping->address, std::nullopt);
+  EXPECT_EQ(test.tried.mapping->port, 9000);
+  EXPECT_FALSE(test.tried.mapping->token);
+  test.view.running = false;
+  post("/adit/test", R"({"course":""})");
+  EXPECT_EQ(test.tried.course, "");
+  EXPECT_FALSE(test.tried.scoring || test.tried.mapping);
+  EXPECT_FALSE(test.tried.is_applied());
+}
+
+TEST_F(NetworkRoutesTest, TryNothingElseThanWasMeant) {
+  const auto refusal = [this](const char* body, icd::Status status = icd::Status::UnprocessableEntity) {
+    const auto answer = post("/adit/test", body);
+    EXPECT_EQ(answer.status, status) << body;
+    return answer.body;
+  };
+  EXPECT_THAT(refusal(R"({"scorign":{}})"), HasSubstr("no such member"));
+  EXPECT_THAT(refusal(R"({"scoring":{"host":"10.0.0.1"}})"), HasSubstr("scoring: no such member"));
+  EXPECT_THAT(refusal(R"({"scoring":{"port":0}})"),
+              HasSubstr("scoring.port: expected a whole number from 1 to 65535"));
+  EXPECT_THAT(refusal(R"({"mapping":"10.0.0.1"})"), HasSubstr("mapping: expected an object"));
+  EXPECT_THAT(refusal(R"({"mapping":{"token":"two words, one secret"}})"), testing::Not(HasSubstr("secret")));
+  EXPECT_THAT(refusal(R"([1])"), HasSubstr("expected an object"));
+  refusal("{", icd::Status::BadRequest);
+  EXPECT_FALSE(test.view.running);
+  test.outcome =
+      std::unexpected(icd::Refusal{icd::Status::UnprocessableEntity, "scoring.address: expected one"});
+  EXPECT_EQ(refusal("{}"), "\"scoring.address: expected one\"");
 }
 
 TEST(NetworkRoutesOnAServer, SeeTheAddressThatAConnectionCameTo) {

@@ -12,6 +12,7 @@
 #include "api/api.hpp"
 #include "api/doubles.hpp"
 #include "api/fake_box.hpp"
+#include "api/fake_kept_runs.hpp"
 #include "api/fake_setup.hpp"
 #include "api/fake_updates.hpp"
 
@@ -75,6 +76,7 @@ struct Page {
   FakeTest test;
   FakeUpdates updates;
   FakeBox box;
+  FakeKeptRuns runs;
   Api api{loop,
           {.source = source,
            .judge = judge,
@@ -83,7 +85,8 @@ struct Page {
            .network = &network,
            .test = &test,
            .updates = &updates,
-           .box = &box},
+           .box = &box,
+           .runs = &runs},
           {token("team-1"), token("scoring-1")},
           icd::Redaction({token("team-1"), token("scoring-1")})};
 };

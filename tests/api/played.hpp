@@ -67,7 +67,15 @@ class Played {
     return view.run_number + 1;
   }
 
+  std::expected<void, std::string> acknowledge(const RunView& view, const std::string& id) {
+    if (std::ranges::find(view.alarms, id, &alarms::Alarm::id) == view.alarms.end())
+      return std::unexpected("there is no such alarm any more");
+    acknowledged_.insert(id);
+    return {};
+  }
+
   void apply(RunView& view) const {
+    for (alarms::Alarm& alarm : view.alarms) alarm.acknowledged |= acknowledged_.contains(alarm.id);
     view.run_number += runs_;
     std::erase_if(view.aside, [this](const AsideRow& row) { return judged_aside_.contains(row.number); });
     for (ReportRow& row : view.reports) {
@@ -94,6 +102,7 @@ class Played {
   }
 
   std::set<std::uint64_t> judged_aside_;
+  std::set<std::string> acknowledged_;
   std::map<std::int64_t, std::string> states_;
   std::int64_t runs_ = 0;         // that the operator declared
   std::vector<ReportRow> added_;  // oldest first

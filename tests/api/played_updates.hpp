@@ -6,7 +6,7 @@
 
 namespace adit::api {
 
-/// A box that takes any update whose first byte is not 'x', and has a report that waits.
+/// A box that takes any update whose last byte is not 'x', and has a report that waits.
 struct PlayedUpdates final : Updates {
   PlayedUpdates() {
     view.managed = true;
@@ -29,22 +29,28 @@ struct PlayedUpdates final : Updates {
     return {};
   }
 
+  icd::Checked<void> go_back(bool anyway) override { return restart(anyway); }
+  icd::Checked<void> stay() override {
+    view.stray.clear();
+    return {};
+  }
+
   UpdateView view;
 
  private:
   struct Taking final : Upload {
     explicit Taking(UpdateView& told) : view(told) {}
     bool write(std::span<const std::uint8_t> piece) override {
-      if (first == 0) first = piece.front();
+      last = piece.back();
       return true;
     }
     void finish(std::function<void(icd::Checked<void>)> done) override {
-      view.refusal = first == 'x' ? "Invalid bundle format: Signature size is 0" : "";
-      if (first != 'x') view.last = {update::Stage::Installed, "0.2.0", "B", "", ""};
+      view.refusal = last == 'x' ? "Invalid bundle format: Signature size is 0" : "";
+      if (last != 'x') view.last = {update::Stage::Installed, "0.2.0", "B", "", ""};
       done({});
     }
     UpdateView& view;
-    std::uint8_t first = 0;
+    std::uint8_t last = 0;
   };
 };
 

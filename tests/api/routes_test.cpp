@@ -130,7 +130,8 @@ TEST(Routes, DoNothingForWhomTheyDoNotLetIn) {
       EXPECT_EQ(page.setup.saves + page.setup.resets + page.network.taken_back, 0);
       EXPECT_TRUE(page.network.wanted.empty() && page.network.confirmed.empty());
       EXPECT_FALSE(page.test.view.running);
-      EXPECT_TRUE(page.updates.sticks.empty() && page.updates.restarts.empty());
+      EXPECT_TRUE(page.updates.sticks.empty() && page.updates.restarts.empty() &&
+                  page.updates.backs.empty() && page.updates.stays == 0);
     }
   }
 }

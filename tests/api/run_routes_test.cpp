@@ -61,6 +61,20 @@ TEST_F(RunRoutesTest, NameTheFieldOfABlinkThatIsWrong) {
   EXPECT_EQ(judge.identified, 0);
 }
 
+TEST_F(RunRoutesTest, AcknowledgeAnAlarmByItsId) {
+  const auto acknowledge = [this](const char* body) { return post("/adit/alarms/acknowledge", body); };
+  EXPECT_EQ(acknowledge(R"({"id": "robot_silent:uav5"})").body, R"({"acknowledged":"robot_silent:uav5"})");
+  EXPECT_THAT(judge.acknowledged, testing::ElementsAre("robot_silent:uav5"));
+  for (const char* wrong : {"{}", R"({"id": 5})", R"({"id": null})", "[]"})
+    EXPECT_EQ(acknowledge(wrong).status, icd::Status::UnprocessableEntity) << wrong;
+  EXPECT_EQ(acknowledge("").status, icd::Status::BadRequest);
+  judge.alarm_trouble = "there is no such alarm any more";
+  const auto gone = acknowledge(R"({"id": "robot_silent:uav6"})");
+  EXPECT_EQ(gone.status, icd::Status::Conflict);
+  EXPECT_EQ(gone.body, "\"there is no such alarm any more\"");
+  EXPECT_EQ(judge.acknowledged.size(), 1u);
+}
+
 TEST_F(RunRoutesTest, DeclareANewRun) {
   EXPECT_EQ(post("/adit/runs").body, "{\"run\":2}");
   EXPECT_EQ(judge.run, 2);

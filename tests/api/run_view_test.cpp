@@ -52,7 +52,8 @@ TEST(RunViewJson, NamesEachMemberAsTheViewDoes) {
   EXPECT_EQ(parsed["run_number"], 1);
   EXPECT_EQ(parsed["run_id"], "");
   EXPECT_EQ(parsed["queued_bytes"], 214'000'000);
-  EXPECT_EQ(parsed["attention"].size(), 2);
+  EXPECT_EQ(parsed["alarms"].size(), 3);
+  EXPECT_EQ(parsed["verdict"]["what"], "3 of 4 arrive");
 }
 
 TEST(RunViewJson, TellsTheVersionsOfThePicturesToTheLastDigit) {
@@ -93,7 +94,7 @@ TEST(RunViewJson, WritesWhatIsAbsentAsNull) {
 
 TEST(RunViewJson, IsOneLineOfJsonWhateverTheTextsHold) {
   RunView view = *scene("hostile", 1000, 0);
-  view.attention.emplace_back("two\nlines\r\n\n\xc3(\0\x01\x7f\xed\xa0\x80");
+  view.alarms.front().why = std::string("two\nlines\r\n\n\xc3(\0\x01\x7f\xed\xa0\x80");
   view.sent_mbit = std::numeric_limits<double>::quiet_NaN();
   const std::string text = codec::to_json(view);
   EXPECT_EQ(text.find('\n'), std::string::npos);

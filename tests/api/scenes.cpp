@@ -3,6 +3,8 @@
 #include <cmath>
 #include <string>
 
+#include "api/judged.hpp"
+
 namespace adit::api {
 namespace {
 
@@ -52,6 +54,20 @@ ReportRow report(std::int64_t number, std::string type, Time received, std::stri
           .note = {}};
 }
 
+/// An alarm with its action.
+alarms::Alarm alarm(std::string id, alarms::Severity severity, Time since, std::string what, std::string why,
+                    alarms::Action action) {
+  const std::size_t colon = id.find(':');
+  return {.id = id,
+          .severity = severity,
+          .side = severity == alarms::Severity::Wait ? alarms::Side::Network : alarms::Side::CommandPost,
+          .subject = colon == std::string::npos ? "" : id.substr(colon + 1),
+          .since = since,
+          .what = std::move(what),
+          .why = std::move(why),
+          .action = std::move(action)};
+}
+
 RunView calm(Time now, double elapsed) {
   RunView view = empty(now);
   const double heard = std::floor(elapsed);
@@ -85,6 +101,11 @@ RunView calm(Time now, double elapsed) {
                   report(1, "Cell Phone", began - 610, "answered", 201, 1)};
   view.refusals = {{began - 130, "/map/update", "10.0.0.7", 422,
                     "msg.info.width: expected 80 x 60 = 4800 bytes of data, got 4799"}};
+  view.alarms_over = {{.id = "robot_silent:Scout",
+                       .side = alarms::Side::Robot,
+                       .was = "Scout was silent",
+                       .since = began - 141,
+                       .until = began - 100}};
   return view;
 }
 
@@ -129,7 +150,14 @@ RunView trouble(Time now, double elapsed) {
   view.refusals.push_back(
       {began - 20, "/state/update", "10.0.0.8", 422,
        R"(msg.header.frame_id: expected "darpa", got "map" (the setting rules.rewrite_frame_id takes any))"});
-  view.attention = {"1 report is in doubt: the answer was lost", "the queue of maps is nearly full"};
+  view.alarms = {
+      alarm("command_post_unreachable", alarms::Severity::Bad, began - 130, "Mapping is unreachable",
+            "connecting to 10.100.1.201:8000: Connection refused; all is kept until it answers",
+            {"Open test", "/setup#test"}),
+      alarm("report_in_doubt:8", alarms::Severity::Ask, now - 42, "Report 8 is in doubt",
+            "the connection was lost before an answer came", {"Decide", "/#report=8"}),
+      alarm("reports_left", alarms::Severity::Wait, began - 9, "5 reports are left", "of this run", {})};
+  view.alarms[0].hides = 3;
   return view;
 }
 
@@ -159,8 +187,10 @@ RunView reports(Time now, double elapsed) {
   view.reports[5].reconciled = true;
   view.reports[6].note = "the operator calls it done";
   view.reports[7].same_as = 17;
-  view.attention = {"report 25 is in doubt: no answer came",
-                    "report 24 is held: the same type as report 25, 2 m from it"};
+  view.alarms = {alarm("report_in_doubt:25", alarms::Severity::Ask, now - 60, "Report 25 is in doubt",
+                       "no answer came", {"Decide", "/#report=25"}),
+                 alarm("report_held:24", alarms::Severity::Ask, now - 80, "Report 24 is held",
+                       "the same type as report 25, 2 m from it", {"Decide", "/#report=24"})};
   return view;
 }
 
@@ -185,7 +215,9 @@ RunView hostile(Time now, double elapsed) {
   view.robots.push_back({script + endless, {1e308, -1e308, 0}, 1e300, now});
   view.lights[0].pattern = script;
   view.lights[1].name = endless.substr(0, 300);
-  view.attention = {script + endless};
+  view.alarms = {alarm("robot_silent:" + script, alarms::Severity::Bad, 0, script + endless, script + endless,
+                       {script + endless, "javascript:window.pwned=1"})};
+  view.alarms_over = {{.id = script, .was = script + endless, .since = -1e308, .until = 1e308}};
   view.budget_mbit = 0;
   view.sent_mbit = 1e300;
   return view;
@@ -194,11 +226,22 @@ RunView hostile(Time now, double elapsed) {
 }  // namespace
 
 std::optional<RunView> scene(std::string_view name, Time now, double elapsed) {
-  if (name == "empty") return empty(now);
-  if (name == "calm") return calm(now, elapsed);
-  if (name == "trouble") return trouble(now, elapsed);
-  if (name == "reports") return reports(now, elapsed);
-  if (name == "hostile") return hostile(now, elapsed);
+  constexpr struct {
+    std::string_view name;
+    RunView (*made)(Time now, double elapsed);
+  } kScenes[] = {{"empty", [](Time at, double) { return empty(at); }},
+                 {"calm", calm},
+                 {"trouble", trouble},
+                 {"reports", reports},
+                 {"hostile", hostile}};
+  for (const auto& each : kScenes) {
+    if (each.name != name) continue;
+    RunView view = each.made(now, elapsed);
+    alarms::Facts facts{.now = now};
+    facts.streams = streams_of(view.activities, now);
+    judge(view, facts);
+    return view;
+  }
   return {};
 }
 

@@ -29,7 +29,7 @@ TEST_F(UpdateRoutesTest, TellWhatRuns) {
   updates.view.running = {"adit-qemu-virt", "0.1.0", "A", "B"};
   EXPECT_EQ(json::parse(ask("GET", "/adit/update").body), json::parse(R"({
     "managed": true, "why": "", "board": "adit-qemu-virt", "version": "0.1.0", "slot": "A", "trial": false,
-    "doing": null, "progress": null, "refusal": null, "last": null, "stick": null, "stick_why": null})"));
+    "doing": null, "stray": null, "progress": null, "refusal": null, "last": null, "stick": null, "stick_why": null})"));
 }
 
 TEST_F(UpdateRoutesTest, TellOfAnUpdate) {
@@ -53,13 +53,22 @@ TEST_F(UpdateRoutesTest, TellOfAnUpdate) {
   EXPECT_EQ(shown["stick_why"], "too old");
 }
 
+/// As a squashfs of `used` bytes begins.
+std::vector<std::uint8_t> head(std::uint8_t used = 40) {
+  std::vector<std::uint8_t> bytes(update::kBundleHead);
+  std::ranges::copy(std::string_view("hsqs"), bytes.begin());
+  bytes[40] = used;
+  return bytes;
+}
+
 TEST_F(UpdateRoutesTest, HandABundleOnAsItComes) {
-  const auto exchange = open("POST", "/adit/update?again=1", kBytes, 6);
+  const auto exchange = open("POST", "/adit/update?again=1", kBytes, 51);
   ASSERT_TRUE(exchange);
-  EXPECT_EQ(updates.received.size, 6u);
+  EXPECT_EQ(updates.received.size, 51u);
   EXPECT_TRUE(updates.received.again);
-  const std::uint8_t first[] = {'a', 'b', 'c'}, second[] = {'d', 'e', 'f'};
-  EXPECT_TRUE(exchange->on_body(first));
+  const std::vector<std::uint8_t> first = head(), second = {'d', 'e', 'f'};
+  EXPECT_TRUE(exchange->on_body(std::span(first).first(7)));
+  EXPECT_TRUE(exchange->on_body(std::span(first).subspan(7)));
   updates.more = false;
   EXPECT_FALSE(exchange->on_body(second)) << "a full disk's queue holds up whoever sends";
   updates.received.resume();
@@ -67,14 +76,42 @@ TEST_F(UpdateRoutesTest, HandABundleOnAsItComes) {
   exchange->on_end();
   EXPECT_FALSE(responder->answered) << "it is not on the disk yet";
   updates.received.done({});
-  EXPECT_EQ(updates.received.bytes, "abcdef");
+  EXPECT_EQ(updates.received.bytes, std::string(first.begin(), first.end()) + "def");
   EXPECT_EQ(responder->answered->status, icd::Status::Ok);
   EXPECT_TRUE(json::parse(responder->answered->body).contains("version"));
 }
 
+TEST_F(UpdateRoutesTest, RefuseWhatIsNoBundleByItsFirstBytes) {
+  std::vector<std::uint8_t> image = head(), cut = head(60);
+  image[0] = 0xfd;
+  for (const auto& [bytes, why] :
+       {std::pair(image, "it is no update: expected a file adit-BOARD-VERSION.raucb"),
+        std::pair(cut, "it is cut short: 60 bytes of an update of more than 60")}) {
+    const auto exchange = open("POST", "/adit/update", kBytes, 60);
+    EXPECT_TRUE(exchange->on_body(bytes));
+    ASSERT_TRUE(responder->answered) << "before the rest comes";
+    EXPECT_EQ(responder->answered->status, icd::Status::UnprocessableEntity);
+    EXPECT_EQ(json::parse(responder->answered->body), why);
+    EXPECT_TRUE(updates.received.dropped);
+    EXPECT_TRUE(exchange->on_body(bytes));  // what was under way is passed over
+    exchange->on_end();
+    EXPECT_FALSE(updates.received.whole);
+  }
+}
+
+TEST_F(UpdateRoutesTest, RefuseWhatIsShorterThanABundlesBeginningAtItsEnd) {
+  const auto exchange = open("POST", "/adit/update", kBytes, 4);
+  EXPECT_TRUE(exchange->on_body(std::span<const std::uint8_t>(head()).first(4)));
+  EXPECT_FALSE(responder->answered);
+  exchange->on_end();
+  EXPECT_EQ(responder->answered->status, icd::Status::UnprocessableEntity);
+  EXPECT_TRUE(updates.received.dropped);
+}
+
 TEST_F(UpdateRoutesTest, SayWhyABundleCouldNotBeTaken) {
-  const auto exchange = open("POST", "/adit/update", kBytes, 6);
+  const auto exchange = open("POST", "/adit/update", kBytes, 48);
   EXPECT_FALSE(updates.received.again);
+  exchange->on_body(head());
   exchange->on_end();
   updates.received.done(std::unexpected(icd::Refusal{icd::Status::ServiceUnavailable, "no room"}));
   EXPECT_EQ(responder->answered->status, icd::Status::ServiceUnavailable);
@@ -113,8 +150,17 @@ TEST_F(UpdateRoutesTest, InstallFromTheStickAndRestartOnTheOperatorsWord) {
   EXPECT_THAT(updates.restarts, ElementsAre(false, true));
 }
 
+TEST_F(UpdateRoutesTest, GoBackToTheSlotThatWasGoodLastOrStay) {
+  updates.view.stray = "slot B runs, with 0.1.0";
+  EXPECT_EQ(json::parse(ask("GET", "/adit/update").body)["stray"], "slot B runs, with 0.1.0");
+  EXPECT_EQ(ask("POST", "/adit/update/back", R"({"anyway": true})").status, icd::Status::Ok);
+  EXPECT_THAT(updates.backs, ElementsAre(true));
+  EXPECT_EQ(ask("POST", "/adit/update/stay").status, icd::Status::Ok);
+  EXPECT_EQ(updates.stays, 1);
+}
+
 TEST_F(UpdateRoutesTest, RefuseAActionThatIsNotWellSaid) {
-  for (const char* path : {"/adit/update/stick", "/adit/update/restart"}) {
+  for (const char* path : {"/adit/update/stick", "/adit/update/restart", "/adit/update/back"}) {
     EXPECT_EQ(ask("POST", path, "{").status, icd::Status::BadRequest) << path;
     EXPECT_EQ(ask("POST", path, "[]").status, icd::Status::UnprocessableEntity) << path;
     EXPECT_EQ(ask("POST", path, R"({"again": "x", "anyway": "x"})").status, icd::Status::UnprocessableEntity);

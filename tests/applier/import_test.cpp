@@ -4,6 +4,7 @@
 #include <sys/stat.h>
 #include <unistd.h>
 
+#include "access/password.hpp"
 #include "applier/power_cut.hpp"
 #include "host/folder.hpp"
 #include "network/doubles.hpp"
@@ -184,6 +185,16 @@ TEST_F(ImportTest, RefusesNumbersByThePathOfWhatIsWrong) {
   expect_refused("network.json", "[]", "expected an object");
   expect_refused("network.json", "{\"team\": ", "adit/network.json: ");
   expect_refused("network.json", std::string(70000, ' '), "large");
+}
+
+TEST_F(ImportTest, TakesTheCodeThatTheFirstPasswordAsksFor) {
+  bring("secrets/label.code", "12345678\r\n");
+  import();
+  EXPECT_EQ(state(access::kCodeFile), "12345678\n");
+  EXPECT_FALSE(fs::exists(options.state + "/secrets/label.code"));
+  EXPECT_FALSE(on_card("secrets/label.code"));
+  for (const char* bad : {"", "1234567", "123456789", "1234567a"})
+    expect_refused("secrets/label.code", bad, "expected 8 digits");
 }
 
 TEST_F(ImportTest, RefusesTokensWithoutShowingThem) {

@@ -76,6 +76,7 @@ std::vector<PackingWay> ways_for_grids() {
 std::vector<PackingWay> ways_for_clouds() {
   auto ways = of_others();
   ways.push_back(adit("Adit, as it came", false, {.is_arranged = false}));
+  ways.push_back(adit("Adit, quick", false, {.effort = pack::Effort::Quick}));
   ways.push_back(adit("Adit, exact", false));
   ways.push_back(adit("Adit, 1mm", false, {.unit = pack::kMillimetre}));
   ways.push_back(adit("Adit, 8mm", false, {.unit = pack::kEightMillimetres}));

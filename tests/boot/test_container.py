@@ -131,7 +131,7 @@ class Everyday(Story):
 
     def says(self, why):
         said = self.box.attention()
-        self.assertIn("no report is taken, the ledger cannot be written: ", said)
+        self.assertIn("no report is taken: the ledger cannot be written: ", said)
         self.assertIn(why, said)
 
     def takes_no(self, report):

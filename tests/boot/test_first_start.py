@@ -113,7 +113,11 @@ class FirstStart(Story):
 
         self.box.wait_until(flash, "all lights to flash after a press")
 
+    def test_where_the_kernel_lies_is_shown_to_nobody(self):
+        self.assertEqual(self.box.console.ask("cat /proc/sys/kernel/kptr_restrict").split(), ["2"])
+
     def test_memory_that_is_in_use(self):
+        self.box.wait_until(lambda: self.box.console.run("systemctl is-active rauc.service")[0] != 0, "RAUC's service to be gone")
         used = self.box.console.ask("free -m | grep Mem").split()[2]
         note("RAM in use, after a run", f"{used} MB of {self.box.memory}")
         self.assertLessEqual(int(used), 64)

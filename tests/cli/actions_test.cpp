@@ -16,12 +16,20 @@ using testing::Not;
 
 class Actions : public testing::Test {
  protected:
-  Outcome say(const Server& server, std::vector<std::string_view> words) const {
+  Outcome say(const Server& server, std::vector<std::string_view> words, const Console& console = {}) const {
     const std::string at = server.at();
     words.insert(words.end(), {"--at", at, "--token-file", token_file_});
-    Outcome outcome = run(words, false);
+    Outcome outcome = run(words, console);
     EXPECT_THAT(outcome.out + outcome.err, Not(HasSubstr("sesame")));
     return outcome;
+  }
+
+  /// What Adit says of a report in that state.
+  static std::string report(const std::string& state, bool asking = false) {
+    api::ReportDetail detail{.row = sample_view().reports.front(), .history = {}, .answer = ""};
+    detail.row.state = state;
+    detail.row.asking = asking;
+    return Server::ok(codec::to_json(detail));
   }
 
   TokenFile file_;
@@ -29,7 +37,8 @@ class Actions : public testing::Test {
 };
 
 TEST_F(Actions, AreAskedForByTheirNames) {
-  const Server server({{"POST /adit/reports/7/send", Server::ok("{\"report\":7}")},
+  const Server server({{"GET /adit/reports/7", report("received")},
+                       {"POST /adit/reports/7/send", Server::ok("{\"report\":7}")},
                        {"POST /adit/reports/7/hold", Server::ok("{\"report\":7}")},
                        {"POST /adit/reports/7/withdraw", Server::ok("{\"report\":7}")},
                        {"POST /adit/reports/7/done", Server::ok("{\"report\":7}")},
@@ -102,7 +111,10 @@ TEST_F(Actions, ShowTheTokenToAditAlone) {
 
 TEST_F(Actions, GoOnAfterOneThatCannotBe) {
   const Server server(
-      {{"POST /adit/reports/7/send", Server::ok("{\"report\":7}")},
+      {{"GET /adit/reports/7", report("received")},
+       {"GET /adit/reports/8", report("answered")},
+       {"GET /adit/reports/9", report("received")},
+       {"POST /adit/reports/7/send", Server::ok("{\"report\":7}")},
        {"POST /adit/reports/8/send",
         Server::reply("409 Conflict", "\"report 8 is answered: to send it once more, resubmit it\"")},
        {"POST /adit/reports/9/send", Server::ok("{\"report\":9}")}});
@@ -110,6 +122,52 @@ TEST_F(Actions, GoOnAfterOneThatCannotBe) {
   EXPECT_EQ(outcome.exit, Exit::Attention);
   EXPECT_EQ(outcome.out, "report 7 is sent when its turn comes\nreport 9 is sent when its turn comes\n");
   EXPECT_EQ(outcome.err, "adit: report 8 is answered: to send it once more, resubmit it\n");
+}
+
+/// A console at which somebody gives that answer; `asked` gets the question.
+Console answering(bool answer, std::string& asked) {
+  return {.ask = [answer, &asked](const std::string& question) {
+    asked = question;
+    return std::optional(answer);
+  }};
+}
+
+TEST_F(Actions, OnAReportInDoubtAreAskedAboutFirst) {
+  const Server server({{"GET /adit/reports/3", report("in doubt")},
+                       {"POST /adit/reports/3/send", Server::ok("{\"report\":3}")}});
+  std::string asked;
+  const Outcome refused = say(server, {"reports", "send", "3"}, answering(false, asked));
+  EXPECT_EQ(asked,
+            "report 3 (Survivor) is in doubt: it may have been recorded, and then sending it again uses up a "
+            "second one of the allotment.\nSend it again?");
+  EXPECT_THAT(server.request(), testing::StartsWith("GET ")) << "nothing was sent";
+  EXPECT_EQ(refused.err, "adit: report 3 is not sent\n");
+  EXPECT_EQ(refused.exit, Exit::Attention);
+
+  EXPECT_EQ(say(server, {"reports", "send", "3"}, answering(true, asked)).out,
+            "report 3 is sent when its turn comes\n");
+  EXPECT_THAT(server.request(), testing::StartsWith("POST "));
+}
+
+TEST_F(Actions, OnAReportInDoubtAreRefusedWhereThereIsNobodyToAsk) {
+  const Server server({{"GET /adit/reports/3", report("in doubt", true)},
+                       {"POST /adit/reports/3/send", Server::ok("{\"report\":3}")}});
+  const Outcome refused = say(server, {"reports", "send", "3"});
+  EXPECT_THAT(server.request(), testing::StartsWith("GET ")) << "nothing was sent";
+  EXPECT_THAT(refused.err, HasSubstr("Adit asks the run's status and finds that out by itself"));
+  EXPECT_THAT(refused.err, testing::EndsWith("It is not sent; if that is meant: --yes\n"));
+  EXPECT_EQ(refused.exit, Exit::Attention);
+  EXPECT_EQ(say(server, {"reports", "send", "3", "--yes"}).out, "report 3 is sent when its turn comes\n");
+}
+
+TEST_F(Actions, OnOtherReportsAreNotAskedAbout) {
+  std::string asked;
+  for (const char* const state : {"received", "refused", "withdrawn"}) {
+    const Server server({{"GET /adit/reports/3", report(state)},
+                         {"POST /adit/reports/3/send", Server::ok("{\"report\":3}")}});
+    EXPECT_EQ(say(server, {"reports", "send", "3"}, answering(false, asked)).exit, Exit::Fine) << state;
+  }
+  EXPECT_EQ(asked, "");
 }
 
 TEST_F(Actions, OfAReportThatIsNotThereAreRefused) {
@@ -133,7 +191,7 @@ TEST_F(Actions, WhoseAnswerIsLostMayHaveBeenDone) {
   const Outcome outcome = say(server, {"reports", "resubmit", "7"});
   EXPECT_EQ(outcome.exit, Exit::Unable);
   EXPECT_THAT(outcome.err, HasSubstr("whether it was done is not known, see: adit reports\n"));
-  EXPECT_THAT(say(server, {"reports", "send", "7"}).err, HasSubstr("see: adit reports show 7\n"));
+  EXPECT_THAT(say(server, {"reports", "send", "7", "--yes"}).err, HasSubstr("see: adit reports show 7\n"));
 }
 
 TEST_F(Actions, OfAnAditThatIsNotThereWereNotDone) {
@@ -142,7 +200,7 @@ TEST_F(Actions, OfAnAditThatIsNotThereWereNotDone) {
     at = Server("").at();
   }
   const Outcome outcome =
-      run(std::vector<std::string_view>{"run", "new", "--at", at, "--token-file", token_file_}, false);
+      run(std::vector<std::string_view>{"run", "new", "--at", at, "--token-file", token_file_});
   EXPECT_EQ(outcome.exit, Exit::Unable);
   EXPECT_THAT(outcome.err, Not(HasSubstr("not known")));
 }
@@ -150,7 +208,7 @@ TEST_F(Actions, OfAnAditThatIsNotThereWereNotDone) {
 TEST_F(Actions, AreNotAskedForWithATokenThatCannotBeRead) {
   const Server server({{"POST /adit/runs", Server::ok("{\"run\":2}")}});
   const Outcome outcome =
-      run(std::vector<std::string_view>{"run", "new", "--at", server.at(), "--token-file", "/none"}, false);
+      run(std::vector<std::string_view>{"run", "new", "--at", server.at(), "--token-file", "/none"});
   EXPECT_EQ(outcome.exit, Exit::Unable);
   EXPECT_EQ(outcome.err, "adit: /none: No such file or directory\n");
 }

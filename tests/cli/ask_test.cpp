@@ -23,7 +23,7 @@ Outcome asked(const std::string& json, const std::vector<std::string_view>& word
   std::vector<std::string_view> all = words;
   const TokenFile token;
   all.insert(all.end(), {"--at", at, "--token-file", token.path()});
-  return run(all, false);
+  return run(all);
 }
 
 TEST(Status, ShowsWhatAditAnswers) {
@@ -40,7 +40,10 @@ TEST(Status, ReadsEveryMemberThatThePageWrites) {
                     .sender = "10.0.0.7",
                     .status = 422,
                     .sentence = "msg: expected an object"}};
-  view.attention = {"1 report is in doubt: the answer was lost"};
+  view.alarms = {
+      {.id = "report_in_doubt:1", .severity = alarms::Severity::Ask, .what = "Report 1 is in doubt"}};
+  view.alarms_over = {{.id = "robot_silent:r1", .was = "r1 was silent", .since = 1, .until = 2}};
+  view.verdict = {alarms::Level::Good, "Every map arrives", "1 robot, 2 s"};
   view.activities[0].waiting = 2;
   view.activities[0].last_sentence = "Cloud updates too frequent. Reduce to <1Hz.";
   const Outcome outcome = asked(codec::to_json(view), {"status"});
@@ -48,9 +51,11 @@ TEST(Status, ReadsEveryMemberThatThePageWrites) {
   EXPECT_EQ(outcome.out, status_text(view, false));
 }
 
-TEST(Status, IsNotFineWhereAnEndpointIsInTrouble) {
+TEST(Status, IsFineWhereAllAlarmsMayPass) {
   api::RunView view = sample_view();
-  view.endpoints[0].trouble = "connecting to 10.100.1.200:8000: Connection refused";
+  view.alarms = {{.id = "reports_left", .severity = alarms::Severity::Wait, .what = "5 reports are left"}};
+  EXPECT_EQ(asked(codec::to_json(view), {"status"}).exit, Exit::Fine);
+  view.alarms[0].severity = alarms::Severity::Bad;
   EXPECT_EQ(asked(codec::to_json(view), {"status"}).exit, Exit::Attention);
 }
 
@@ -72,7 +77,7 @@ TEST(Ask, PassesOnWhatAnErrorSays) {
   const TokenFile token;
   const auto status_of = [&token](const Server& server) {
     const std::string at = server.at();
-    return run(std::vector<std::string_view>{"status", "--at", at, "--token-file", token.path()}, false).err;
+    return run(std::vector<std::string_view>{"status", "--at", at, "--token-file", token.path()}).err;
   };
   EXPECT_THAT(status_of(Server(Server::reply("404 Not Found", "{}"))),
               HasSubstr("it answered 404 (is that Adit?)"));
@@ -87,7 +92,7 @@ TEST(Ask, ShowsItsTokenToAditAlone) {
   const Server server(Server::ok(codec::to_json(sample_view())));
   const std::string at = server.at();
   const Outcome outcome =
-      run(std::vector<std::string_view>{"status", "--at", at, "--token-file", token.path()}, false);
+      run(std::vector<std::string_view>{"status", "--at", at, "--token-file", token.path()});
   EXPECT_THAT(server.request(), HasSubstr("\r\nAuthorization: Bearer sesame-1\r\n"));
   EXPECT_THAT(outcome.out + outcome.err, testing::Not(HasSubstr("sesame")));
 }
@@ -126,11 +131,11 @@ TEST(Ask, LooksForAditWhereTheSavedSettingsHaveItBeforeTheGiven) {
 }
 
 TEST(Ask, SaysThatItDoesNotKnowWhereAditIs) {
-  const Outcome outcome = run(std::vector<std::string_view>{"status", "--settings", "/none.json"}, false);
+  const Outcome outcome = run(std::vector<std::string_view>{"status", "--settings", "/none.json"});
   EXPECT_EQ(outcome.exit, Exit::Unable);
   EXPECT_EQ(outcome.err,
             "adit: /none.json: No such file or directory (say where Adit listens by --at ADDR:PORT)\n");
-  EXPECT_EQ(run(std::vector<std::string_view>{"status", "--at", "nowhere"}, false).exit, Exit::Unable);
+  EXPECT_EQ(run(std::vector<std::string_view>{"status", "--at", "nowhere"}).exit, Exit::Unable);
 }
 
 }  // namespace

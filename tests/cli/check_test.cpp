@@ -29,7 +29,7 @@ class Check : public testing::Test {
     std::ofstream(file) << json;
     std::vector<std::string_view> words = {"check", file};
     words.insert(words.end(), more.begin(), more.end());
-    return run(words, false);
+    return run(words);
   }
   std::filesystem::path folder_;
 };
@@ -53,7 +53,7 @@ TEST_F(Check, TellsEveryErrorByItsPath) {
 
 TEST_F(Check, SaysWhatGoodSettingsComeTo) {
   const Outcome outcome =
-      run(std::vector<std::string_view>{"check", ADIT_SOURCE_DIR "/firmware/settings/example.json"}, false);
+      run(std::vector<std::string_view>{"check", ADIT_SOURCE_DIR "/firmware/settings/example.json"});
   EXPECT_EQ(outcome.exit, Exit::Fine);
   EXPECT_EQ(outcome.out, ADIT_SOURCE_DIR
             "/firmware/settings/example.json: good\n"
@@ -70,15 +70,14 @@ TEST_F(Check, SaysTheSameToScripts) {
   EXPECT_EQ(wrong.exit, Exit::Attention);
   EXPECT_EQ(wrong.out,
             "{\"good\":false,\"errors\":[{\"path\":\"version\",\"what\":\"expected 1, got 2\"}]}\n");
-  const Outcome good =
-      run(std::vector<std::string_view>{"check", ADIT_SOURCE_DIR "/firmware/settings/example.json", "--json"},
-          false);
+  const Outcome good = run(
+      std::vector<std::string_view>{"check", ADIT_SOURCE_DIR "/firmware/settings/example.json", "--json"});
   EXPECT_EQ(good.exit, Exit::Fine);
   EXPECT_EQ(good.out, "{\"good\":true,\"errors\":[]}\n");
 }
 
 TEST_F(Check, SaysThatItCannotReadTheFile) {
-  const Outcome outcome = run(std::vector<std::string_view>{"check", "/none.json"}, false);
+  const Outcome outcome = run(std::vector<std::string_view>{"check", "/none.json"});
   EXPECT_EQ(outcome.exit, Exit::Unable);
   EXPECT_EQ(outcome.err, "adit: /none.json: No such file or directory\n");
 }

@@ -19,8 +19,8 @@ const std::string kSides =
 
 std::string view(const std::string& pending, const std::string& last, bool managed = true) {
   return Server::ok(std::string(R"({"managed":)") + (managed ? "true" : "false") +
-                    R"(,"why":"it is set elsewhere",)" + kSides + R"(,"pending":)" + pending + R"(,"last":)" +
-                    last + R"(,"last_why":"nobody confirmed it"})");
+                    R"(,"why":"it is set elsewhere",)" + kSides + R"(,"pending":)" + pending +
+                    R"(,"ports":[],"last":)" + last + R"(,"last_why":"nobody confirmed it"})");
 }
 
 const std::string kPending =
@@ -33,7 +33,7 @@ class NetworkCommand : public testing::Test {
     const std::string at = server.at();
     words.insert(words.end(), {"--at", at, "--token-file", token_file_});
     printed_.clear();
-    return run(words, false, [this](const std::string& text) { printed_ += text; });
+    return run(words, {.print = [this](const std::string& text) { printed_ += text; }});
   }
   TokenFile file_;
   const std::string token_file_ = file_.path();
@@ -51,9 +51,10 @@ TEST_F(NetworkCommand, ShowsBothSides) {
 
 TEST_F(NetworkCommand, ShowsHowTheTeamsSideComesByItsAddress) {
   const auto with = [](const char* team) {
-    return Server::ok(std::string(R"({"managed":true,"why":"","team":)") + team +
-                      R"(,"command_post":{"interface":"darpa0","addresses":[],"gateway":""},"pending":null,)"
-                      R"("last":null,"last_why":""})");
+    return Server::ok(
+        std::string(R"({"managed":true,"why":"","team":)") + team +
+        R"(,"command_post":{"interface":"darpa0","addresses":[],"gateway":""},"pending":null,"ports":[],)"
+        R"("last":null,"last_why":""})");
   };
   const Server given({{"GET /adit/network",
                        with(R"({"interface":"team0","mode":"dhcp","address":"10.0.0.77","prefix":8})")}});
@@ -103,22 +104,22 @@ TEST_F(NetworkCommand, SaysWhyAWordCannotBe) {
 }
 
 TEST_F(NetworkCommand, TakesNoOtherWords) {
-  EXPECT_THAT(run(std::vector<std::string_view>{"network", "apply"}, false).err,
+  EXPECT_THAT(run(std::vector<std::string_view>{"network", "apply"}).err,
               HasSubstr("expected show, confirm or back, got apply"));
-  EXPECT_THAT(run(std::vector<std::string_view>{"network", "show", "all"}, false).err,
+  EXPECT_THAT(run(std::vector<std::string_view>{"network", "show", "all"}).err,
               HasSubstr("one word too many: all"));
-  EXPECT_THAT(run(std::vector<std::string_view>{"test", "all"}, false).err,
-              HasSubstr("one word too many: all"));
-  EXPECT_THAT(run(std::vector<std::string_view>{"help", "network"}, false).out, HasSubstr("adit network - "));
-  EXPECT_THAT(run(std::vector<std::string_view>{"test", "--help"}, false).out, HasSubstr("adit test - "));
+  EXPECT_THAT(run(std::vector<std::string_view>{"test", "all"}).err, HasSubstr("one word too many: all"));
+  EXPECT_THAT(run(std::vector<std::string_view>{"help", "network"}).out, HasSubstr("adit network - "));
+  EXPECT_THAT(run(std::vector<std::string_view>{"test", "--help"}).out, HasSubstr("adit test - "));
 }
 
 std::string tested(const std::string& clock, bool running = false) {
-  return Server::ok(std::string(R"({"running":)") + (running ? "true" : "false") +
-                    R"(,"endpoints":[{"name":"scoring","address":"10.100.1.200:8000","steps":[)"
-                    R"({"name":"link","state":"good","said":"darpa0 has a carrier","advice":""},)"
-                    R"({"name":"clock","state":")" +
-                    clock + R"(","said":"7 s behind","advice":"Set it."}]}]})");
+  return Server::ok(
+      std::string(R"({"running":)") + (running ? "true" : "false") +
+      R"(,"applied":true,"course":"","endpoints":[{"name":"scoring","address":"10.100.1.200:8000","steps":[)"
+      R"({"name":"link","state":"good","said":"darpa0 has a carrier","advice":""},)"
+      R"({"name":"clock","state":")" +
+      clock + R"(","said":"7 s behind","advice":"Set it."}]}]})");
 }
 
 TEST_F(NetworkCommand, PrintsTheStepsOfATestAndFailsWhereOneIsBad) {
@@ -141,6 +142,31 @@ TEST_F(NetworkCommand, JoinsATestThatRuns) {
   EXPECT_EQ(say(Server(Server::reply("401 Unauthorized", "\"no\"")), {"test"}).exit, Exit::Unable);
   EXPECT_EQ(say(Server(Server::reply("404 Not Found", "\"no\"")), {"test"}).exit, Exit::Unable);
   EXPECT_THAT(printed_, Not(HasSubstr("good")));
+}
+
+TEST_F(NetworkCommand, TriesWhatIsNamedBeforeItIsApplied) {
+  const TokenFile typed("typed-token-1");
+  const std::string file = typed.path();
+  // What runs already is something else, and is not joined.
+  const Server busy(Server::reply("409 Conflict", "\"a test is running\""));
+  const Outcome outcome =
+      say(busy, {"test", "--scoring", "10.100.2.200:8000", "--scoring-token", file, "--course", "B"});
+  EXPECT_EQ(outcome.exit, Exit::Attention);
+  EXPECT_EQ(outcome.err, "adit: a test is running\n");
+  EXPECT_THAT(busy.request(),
+              HasSubstr(R"("scoring":{"address":"10.100.2.200","port":8000,"token":"typed-token-1"})"));
+  EXPECT_THAT(busy.request(), HasSubstr(R"("mapping":null,"course":"B")"));
+  EXPECT_THAT(outcome.err + outcome.out + printed_, Not(HasSubstr("typed-token-1")));
+  EXPECT_EQ(say(Server(Server::reply("422 Unprocessable Content", "\"course: none is called B\"")),
+                {"test", "--mapping", "10.100.2.201:8000"})
+                .exit,
+            Exit::Attention);
+  const Outcome none = say(busy, {"test", "--mapping-token", "/no/such/file"});
+  EXPECT_EQ(none.exit, Exit::Unable);
+  EXPECT_THAT(none.err, HasSubstr("/no/such/file"));
+  EXPECT_EQ(say(busy, {"test", "--scoring", "10.100.2.200"}).exit, Exit::Unable);
+  EXPECT_THAT(say(busy, {"status", "--scoring", "10.100.2.200:8000"}).err,
+              HasSubstr("status does not take --scoring"));
 }
 
 }  // namespace

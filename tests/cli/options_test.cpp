@@ -80,19 +80,25 @@ TEST(Options, NameTheWordThatIsWrong) {
     const char* sentence;
   } cases[] = {
       {{},
-       "a command is missing: status, reports, aside, run, settings, course, identify, network, test, update "
-       "or check"},
+       "a command is missing: status, watch, reports, aside, run, settings, course, identify, network, "
+       "test, update, check or complete"},
       {{"--json"},
-       "a command is missing: status, reports, aside, run, settings, course, identify, network, test, update "
-       "or check"},
-      {{"state"}, "no such command: state"},
-      {{"status", "--jsn"}, "unknown word '--jsn'"},
+       "a command is missing: status, watch, reports, aside, run, settings, course, identify, network, "
+       "test, update, check or complete"},
+      {{"stat"}, "no such command: stat; did you mean status?"},
+      {{"xyzzy"}, "no such command: xyzzy"},
+      {{"help", "report"}, "no such command: report; did you mean reports?"},
+      {{"status", "--jsn"}, "unknown word '--jsn'; did you mean --json?"},
       {{"status", "--at"}, "--at wants a value"},
       {{"status", "now"}, "one word too many: now"},
       {{"check", "a", "b"}, "one word too many: b"},
       {{"check", "--at", "10.0.0.1:80"}, "check does not take --at"},
       {{"status", "--csv"}, "status does not take --csv"},
-      {{"reports", "sent"}, "expected show, send, hold, withdraw, done, resubmit or export, got sent"},
+      {{"reports", "snd"},
+       "expected show, send, hold, withdraw, done, resubmit or export, got snd; did you mean send?"},
+      {{"reports", "--yes"}, "reports does not take --yes"},
+      {{"reports", "done", "7", "--yes"}, "reports done does not take --yes"},
+      {{"watch", "7"}, "one word too many: 7"},
       {{"reports", "7"}, "expected show, send, hold, withdraw, done, resubmit or export, got 7"},
       {{"reports", "send"}, "a report's number is missing after send"},
       {{"reports", "send", "0"}, "expected a report's number, got 0"},
@@ -128,22 +134,40 @@ TEST(Options, NameTheWordThatIsWrong) {
   }
 }
 
+TEST(Options, AreOfTheWordsThatTakeThem) {
+  EXPECT_TRUE(parsed({"reports", "send", "7", "--yes"}).yes);
+  EXPECT_EQ(parsed({"settings", "show", "reports.review"}).key, "reports.review");
+  EXPECT_EQ(parsed({"complete", "reports", "done"}).word, "done");
+  EXPECT_EQ(parsed({"watch", "--json"}).command, Command::Watch);
+  EXPECT_THAT(help_about(Command::Reports), testing::HasSubstr("without a word: whose reports to list"));
+  EXPECT_THAT(help_about(Command::Reports), testing::HasSubstr("with export: as CSV"));
+  EXPECT_THAT(help_about(Command::Reports), testing::HasSubstr("with send: sends a report in doubt"));
+}
+
+TEST(Version, IsToldWhateverElseIsSaid) {
+  EXPECT_TRUE(parsed({"--version"}).version);
+  for (const Words& words : {Words{"--version"}, {"status", "--version"}}) {
+    EXPECT_THAT(run(words).out, testing::MatchesRegex("adit [0-9]+\\.[0-9]+\\.[0-9]+\n"));
+    EXPECT_EQ(run(words).exit, Exit::Fine);
+  }
+}
+
 TEST(Help, IsGivenForTheCommandAskedAbout) {
   for (const Words& words : {Words{"--help"}, {"-h"}, {"help"}})
-    EXPECT_EQ(run(words, false).out, help_about(Command::Help));
+    EXPECT_EQ(run(words).out, help_about(Command::Help));
   for (const Words& words : {Words{"check", "--help"}, {"help", "check"}, {"check", "--at", "x", "-h"}}) {
-    EXPECT_EQ(run(words, false).out, help_about(Command::Check));
-    EXPECT_EQ(run(words, false).exit, Exit::Fine);
+    EXPECT_EQ(run(words).out, help_about(Command::Check));
+    EXPECT_EQ(run(words).exit, Exit::Fine);
   }
-  EXPECT_EQ(run(Words{"help", "reports"}, false).out, help_about(Command::Reports));
-  EXPECT_EQ(run(Words{"reports", "send", "--help"}, false).out, help_about(Command::Reports));
-  EXPECT_EQ(run(Words{"help", "run"}, false).out, help_about(Command::Run));
-  EXPECT_EQ(run(Words{"help", "identify"}, false).out, help_about(Command::Identify));
-  EXPECT_EQ(run(Words{"help", "status"}, false).out, help_about(Command::Status));
+  EXPECT_EQ(run(Words{"help", "reports"}).out, help_about(Command::Reports));
+  EXPECT_EQ(run(Words{"reports", "send", "--help"}).out, help_about(Command::Reports));
+  EXPECT_EQ(run(Words{"help", "run"}).out, help_about(Command::Run));
+  EXPECT_EQ(run(Words{"help", "identify"}).out, help_about(Command::Identify));
+  EXPECT_EQ(run(Words{"help", "status"}).out, help_about(Command::Status));
 }
 
 TEST(Command, OfAWrongLineSaysSoAndWhereHelpIs) {
-  const Outcome outcome = run(Words{"st\x1b[2Jatus"}, false);
+  const Outcome outcome = run(Words{"st\x1b[2Jatus"});
   EXPECT_EQ(outcome.exit, Exit::Unable);
   EXPECT_EQ(outcome.out, "");
   EXPECT_EQ(outcome.err, "adit: no such command: st\\x1b[2Jatus\nTry 'adit --help'.\n");

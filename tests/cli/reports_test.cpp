@@ -47,7 +47,7 @@ Outcome asked(const std::vector<api::ReportRow>& rows, std::vector<std::string_v
   const std::string at = server.at();
   const TokenFile token;
   words.insert(words.end(), {"--at", at, "--token-file", token.path()});
-  return run(words, false);
+  return run(words);
 }
 
 TEST(Reports, ListThePresentRunAndWhatIsLeftOfEarlierOnes) {
@@ -109,7 +109,7 @@ TEST(Reports, OfAnotherVersionAreNotGuessedAt) {
   const TokenFile token;
   const std::string at = server.at();
   const Outcome outcome =
-      run(std::vector<std::string_view>{"reports", "--at", at, "--token-file", token.path()}, false);
+      run(std::vector<std::string_view>{"reports", "--at", at, "--token-file", token.path()});
   EXPECT_EQ(outcome.exit, Exit::Unable);
   EXPECT_THAT(outcome.err, HasSubstr("is not of this version of Adit"));
 }

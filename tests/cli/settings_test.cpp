@@ -42,7 +42,7 @@ class SettingsCommand : public testing::Test {
   Outcome say(const Server& server, std::vector<std::string_view> words) const {
     const std::string at = server.at();
     words.insert(words.end(), {"--at", at, "--token-file", file_.path()});
-    return run(words, false);
+    return run(words);
   }
 
   TokenFile file_;

@@ -28,15 +28,26 @@ TEST(StatusText, TellsAGoodRunOnOneScreen) {
             "  r1     grid  up to date        12    11        0           0.5 s ago  64 kB > 4 kB  200\n");
 }
 
-TEST(StatusText, BeginsWithWhatNeedsTheOperator) {
+TEST(StatusText, BeginsWithTheAlarmsInShapeAndWord) {
   api::RunView view = sample_view();
-  view.attention = {"1 report is in doubt: the answer was lost",
-                    "the Command Post refuses the mapping token"};
-  view.reports[0].state = "in doubt";
+  view.alarms = {
+      {.id = "robot_silent:r2", .since = 906, .what = "r2 is silent", .why = "its habit is 2 s", .hides = 3},
+      {.id = "report_in_doubt:7",
+       .severity = alarms::Severity::Ask,
+       .side = alarms::Side::CommandPost,
+       .since = 990,
+       .what = "Report 7 is in doubt",
+       .acknowledged = true},
+      {.id = "reports_left",
+       .severity = alarms::Severity::Wait,
+       .since = 1000,
+       .what = "5 reports are left"}};
+  view.verdict = {alarms::Level::Bad, "1 of 2 arrive", "not r2"};
   const std::string text = status_text(view, false);
-  EXPECT_THAT(text, StartsWith("ATTENTION  1 report is in doubt: the answer was lost\n"
-                               "ATTENTION  the Command Post refuses the mapping token\n\n"));
-  EXPECT_THAT(text, HasSubstr("Reports  in doubt 1\n"));
+  EXPECT_THAT(text, StartsWith("  x bad   r2 is silent          for 94 s  box: its habit is 2 s (hides 3)\n"
+                               "  ? ask   Report 7 is in doubt  for 10 s  Command Post (acknowledged)\n"
+                               "  ! wait  5 reports are left    for 0 s   box\n\nRun "));
+  EXPECT_THAT(text, HasSubstr("\nMaps  1 of 2 arrive: not r2\n"));
 }
 
 TEST(StatusText, SaysWhyAnEndpointIsNotConnected) {
@@ -74,7 +85,8 @@ TEST(StatusText, NeverLetsOthersSteerTheTerminal) {
   view.run->current_team = "\x1b]0;a\x07";
   view.activities[0].robot = "\x1b[2J";
   view.activities[0].last_sentence = "\x1b[2J\nRun   99:99";
-  view.attention = {"\x1b[2J"};
+  view.alarms = {{.what = "\x1b[2J", .why = "\x1b[2J"}};
+  view.verdict = {alarms::Level::Bad, "Nothing arrives", "\x1b[2J"};
   view.endpoints[0].trouble = "\x1b[2J";
   view.reports[0].state = "\x1b[2J";
   view.refusals = {{.at = 0, .uri = "\x1b[2J", .sender = "\x1b[2J", .status = 422, .sentence = "\x1b[2J"}};
@@ -84,6 +96,7 @@ TEST(StatusText, NeverLetsOthersSteerTheTerminal) {
 TEST(StatusText, SaysHowFarTheCommandPostIsBehindAndWhatWasRefused) {
   api::RunView view = sample_view();
   view.activities[0].behind_since = 967;
+  view.activities[0].arrival = alarms::Arrival::Late;
   view.activities[0].waiting = 247;
   view.activities[0].no_room = 1110;
   EXPECT_THAT(status_text(view, false),
@@ -97,26 +110,6 @@ TEST(StatusText, SaysWhatBecomesOfARobotsClouds) {
   EXPECT_THAT(status_text(view, false), HasSubstr("  r1     cloud, parts  "));
   row.precision = "8mm", row.points_left_out = 16;
   EXPECT_THAT(status_text(view, false), HasSubstr("  r1     cloud, parts, to 8mm, 16 points left out  "));
-}
-
-TEST(Arrival, IsWhatTheOperatorAsks) {
-  const auto row = [](void (*change)(api::ActivityRow&)) {
-    api::ActivityRow activity = sample_view().activities[0];
-    change(activity);
-    return arrival_of(activity, 1000);
-  };
-  using Row = api::ActivityRow;
-  EXPECT_EQ(row([](Row&) {}), Arrival::Yes);
-  EXPECT_EQ(row([](Row& r) { r.behind_since = 996; }), Arrival::Yes) << "the next one waits for its turn";
-  EXPECT_EQ(row([](Row& r) { r.waiting = 247, r.behind_since = 967; }), Arrival::Late)
-      << "also where one was just sent";
-  EXPECT_EQ(row([](Row& r) { r.behind_since = 980, r.last_forwarded = {}, r.last_status = 0; }),
-            Arrival::Late);
-  EXPECT_EQ(row([](Row& r) { r.behind_since = 999, r.last_forwarded = {}, r.last_status = 0; }),
-            Arrival::NotYet);
-  EXPECT_EQ(row([](Row& r) { r.last_status = 422; }), Arrival::No);
-  EXPECT_EQ(row([](Row& r) { r.last_status = 0, r.last_sentence = "connecting: refused"; }), Arrival::No);
-  EXPECT_EQ(row([](Row& r) { r.last_accepted = 960, r.last_forwarded = 961; }), Arrival::Silent);
 }
 
 }  // namespace

@@ -40,5 +40,12 @@ TEST(Table, ShowsWhatOthersWroteEscaped) {
   EXPECT_EQ(table.written(true), "  \\x1b[2Jr1\\x0a\n");
 }
 
+TEST(Table, CountsCharactersAndNotBytes) {
+  Table table({{}, {}});
+  table.add({{"Höhle"}, {"a"}});
+  table.add({{"r1"}, {"b"}});
+  EXPECT_EQ(table.written(false), "  Höhle  a\n  r1     b\n");
+}
+
 }  // namespace
 }  // namespace adit::cli

@@ -9,12 +9,13 @@
 
 namespace adit::cli {
 
-/// A file that holds the token "sesame-1", for the length of a test.
+/// A file that holds a token, for the length of a test.
 class TokenFile {
  public:
-  TokenFile() : path_((std::filesystem::temp_directory_path() / "adit-token-XXXXXX").string()) {
+  explicit TokenFile(const std::string& token = "sesame-1")
+      : path_((std::filesystem::temp_directory_path() / "adit-token-XXXXXX").string()) {
     close(mkstemp(path_.data()));
-    std::ofstream(path_) << "sesame-1\n";
+    std::ofstream(path_) << token << '\n';
   }
   ~TokenFile() { std::filesystem::remove(path_); }
   TokenFile(const TokenFile&) = delete;

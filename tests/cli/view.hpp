@@ -48,6 +48,8 @@ inline api::RunView sample_view() {
   grid.bytes_received = 64000;
   grid.bytes_sent = 4000;
   grid.last_status = 200;
+  grid.arrival = alarms::Arrival::UpToDate;
+  grid.level = alarms::Level::Good;
   view.activities = {grid};
   return view;
 }

@@ -84,7 +84,7 @@ TEST_F(OnlyTheClock, MakesANewRunLikelyAndHoldsTheSameReport) {
   EXPECT_THAT(scene_.report(2).note, HasSubstr("the run clock went back"));
   scene_.wait(21);
   EXPECT_THAT(scene_.told(again).sentence, HasSubstr("waits for the operator's word"));
-  EXPECT_THAT(scene_.reports().attention(), testing::Contains(HasSubstr("the same as report 1")));
+  EXPECT_THAT(scene_.undecided(), testing::Contains(HasSubstr("the same as report 1")));
 }
 
 TEST_F(OnlyTheClock, HoldsItOverARestart) {
@@ -304,10 +304,8 @@ TEST_F(AnotherPlace, WhatWaitedForTheFirstIsKeptForIt) {
   EXPECT_EQ(scene_.send_next(), 0);
   EXPECT_THAT(scene_.reports().waiting_here(), IsEmpty());
   EXPECT_EQ(scene_.report(2).note, "kept for the Command Post at 10.100.1.200:8000");
-  EXPECT_THAT(
-      scene_.reports().attention(),
-      testing::ElementsAre("1 report waits for the Command Post at 10.100.1.200:8000, which the settings do "
-                           "not name now"));
+  EXPECT_THAT(scene_.reports().waiting_elsewhere(),
+              testing::ElementsAre(testing::Pair("10.100.1.200:8000", 1)));
   come_back();
   scene_.wait(1);
   scene_.hear(19, 1);

@@ -54,9 +54,9 @@ TEST_F(Lost, HoldsWhatCameBeforeTheRunWasKnown) {
 }
 
 TEST_F(Lost, NothingIsHeldOnceItIsCalledDone) {
-  EXPECT_THAT(scene_.reports().attention(), ElementsAre(HasSubstr(kNote)));
+  EXPECT_THAT(scene_.undecided(), ElementsAre(HasSubstr(kNote)));
   ASSERT_TRUE(scene_.reports().call_done(2, scene_.time()));
-  EXPECT_THAT(scene_.reports().attention(), ElementsAre());
+  EXPECT_THAT(scene_.undecided(), ElementsAre());
   scene_.keep_hearing(1, 19, 0);
   scene_.post(2);
   EXPECT_EQ(scene_.state(3), Sending);
@@ -67,7 +67,7 @@ TEST_F(Lost, NothingIsHeldInAnotherRun) {
   scene_.hear(20, 0);
   scene_.post(2);
   EXPECT_EQ(scene_.state(3), Sending);
-  EXPECT_THAT(scene_.reports().attention(), ElementsAre(HasSubstr(kNote))) << "he still has to know";
+  EXPECT_THAT(scene_.undecided(), ElementsAre(HasSubstr(kNote))) << "he still has to know";
 }
 
 TEST_F(Lost, ItCannotBeSent) {

@@ -108,8 +108,7 @@ TEST_F(AMoveToCome, MeansTheOperatorsWordForTheOther) {
 }
 
 TEST_F(AMoveToCome, IsTold) {
-  EXPECT_THAT(scene_.reports().attention(),
-              ElementsAre(HasSubstr("1 report waits for the Command Post at 10.100.1.200:8000")));
+  EXPECT_THAT(scene_.reports().waiting_elsewhere(), ElementsAre(testing::Pair("10.100.1.200:8000", 1)));
 }
 
 }  // namespace

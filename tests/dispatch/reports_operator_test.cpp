@@ -79,7 +79,7 @@ TEST(Holding, KeepsAReportBackUntilTheOperatorSendsIt) {
   EXPECT_EQ(scene.report(1).note, "held: the operator holds it");
   EXPECT_EQ(scene.told(client).status, 503);
   EXPECT_THAT(scene.told(client).sentence, HasSubstr("waits for the operator's word"));
-  EXPECT_THAT(scene.reports().attention(), ElementsAre("report 1 is held: the operator holds it"));
+  EXPECT_THAT(scene.undecided(), ElementsAre("held: the operator holds it"));
   scene.keep_hearing(60, 20, 0);
   EXPECT_EQ(scene.send_next(), 0);
   ASSERT_TRUE(scene.reports().send(1, scene.time()).has_value());
@@ -247,16 +247,16 @@ TEST(Resubmitting, IsRefusedByAFullDisk) {
   EXPECT_EQ(scene.count(), 1);
 }
 
-TEST(Attention, IsWhatTheOperatorMustKnowOrDecide) {
+TEST(TheOperator, HasToDecideWhatIsInDoubtAndNotWhatIsRefused) {
   Scene scene;
-  EXPECT_THAT(scene.reports().attention(), ElementsAre());
+  EXPECT_THAT(scene.undecided(), ElementsAre());
   scene.post(1);
   scene.answer(answer_of(422));
   scene.post(2);
   scene.lose();
   scene.hear(17, 0);
-  EXPECT_THAT(scene.reports().attention(),
-              ElementsAre(HasSubstr("report 2 is in doubt: "), HasSubstr("does somebody else report")));
+  EXPECT_THAT(scene.undecided(), ElementsAre(scene.report(2).note));
+  EXPECT_THAT(scene.reports().run().unreliable, HasSubstr("does somebody else report"));
 }
 
 TEST(Resubmitting, PressedTwiceIsSentOnce) {

@@ -237,7 +237,7 @@ TEST(ACommandPost, ThatCannotBeReachedIsSentNothing) {
   scene.post(1);
   scene.reports().status_failed(false, scene.time());
   EXPECT_EQ(scene.send_next(), 0);
-  EXPECT_THAT(scene.reports().attention(), IsEmpty());
+  EXPECT_THAT(scene.undecided(), IsEmpty());
 }
 
 }  // namespace

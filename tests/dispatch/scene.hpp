@@ -150,6 +150,15 @@ class Scene {
 
   const Report& report(std::int64_t number) const { return reports_->book().at(number); }
   ReportState state(std::int64_t number) const { return report(number).state; }
+  /// Why each report waits for the operator's word.
+  std::vector<std::string> undecided() const {
+    std::vector<std::string> notes;
+    for (const std::int64_t number : reports().book().open()) {
+      const bool undecided = state(number) == ReportState::Received || state(number) == ReportState::InDoubt;
+      if (undecided) notes.push_back(report(number).note);
+    }
+    return notes;
+  }
   std::size_t count() const { return reports_->book().all().size(); }
   bool is_told(ClientId client) const { return output_.told.contains(client); }
   /// What a client was told, at last; status 0: nothing yet.

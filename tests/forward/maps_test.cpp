@@ -171,7 +171,7 @@ TEST_F(MapsTest, ThatAreSentAgainByHandStayBehindANewerOneThatIsOnItsWay) {
             journal_,
             [](const icd::MapUpdate&) {}};
   std::promise<void> let_go;
-  workers_.submit([until = let_go.get_future().share()] { until.wait(); }, [] {});
+  workers_.submit(loop::Urgency::OnTheWay, [until = let_go.get_future().share()] { until.wait(); }, [] {});
   bool taken = false;
   maps.take(grid("r1", 20, 700), 10, nullptr,
             [&](const icd::Checked<void>& said) { taken = said.has_value(); });

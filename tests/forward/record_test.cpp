@@ -55,23 +55,14 @@ TEST(Record, CountsRobotsBeyondTheLastRowTogether) {
   EXPECT_EQ(accepted, 2 * Record::kMostRows);
 }
 
-TEST(Record, TellsOfRobotsThatAreRefusedForWantOfRoomForAMinute) {
+TEST(Record, KnowsWhenARobotWasRefusedForWantOfRoom) {
   Record record([] {});
-  EXPECT_TRUE(record.attention(1).empty());
   record.no_room(kCloudOfR1, 10);
-  record.no_room({Kind::Cloud, ""}, 10);
   record.no_room({Kind::Markers, ""}, 20);
   record.no_room({Kind::Markers, ""}, 21);
   EXPECT_EQ(record.rows().at({Kind::Markers, ""}).no_room, 2u);
-  EXPECT_EQ(record.attention(70), std::vector<std::string>{"too much waits, so that robots are refused: "
-                                                           "merged cloud, r1 cloud, markers"});
-  EXPECT_EQ(record.attention(80),
-            std::vector<std::string>{"too much waits, so that robots are refused: markers"});
-  EXPECT_TRUE(record.attention(82).empty());
-  for (int robot = 0; robot < 9; ++robot) record.no_room({Kind::Grid, "g" + std::to_string(robot)}, 90);
-  EXPECT_EQ(record.attention(90),
-            std::vector<std::string>{
-                "too much waits, so that robots are refused: g0 grid, g1 grid, g2 grid and 6 more"});
+  EXPECT_EQ(record.rows().at({Kind::Markers, ""}).last_no_room, 21);
+  EXPECT_EQ(record.rows().at(kCloudOfR1).last_no_room, 10);
 }
 
 TEST(Record, KeepsTheLastRefusalsNewestFirst) {

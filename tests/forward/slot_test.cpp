@@ -98,5 +98,33 @@ TEST(Slot, FindsASlowLinkFastAgain) {
   EXPECT_EQ(exact_in(slot, 1), 10 * kMegabyte);
 }
 
+TEST(Slot, IsInNoHurryUntilAMapHasShownTheLink) {
+  Slot slot(10 * kMegabyte);
+  const auto hurry = [&slot] { return slot.hurry(std::chrono::seconds(2)); };
+  EXPECT_FALSE(hurry());
+  slot.left(kMegabyte, sent_in(std::chrono::seconds(1)), kBegin + std::chrono::seconds(1));
+  EXPECT_FALSE(hurry()) << "it was held back";
+  slot.left(2 * kMegabyte, sent_in(std::chrono::seconds(1)), kBegin);
+  ASSERT_TRUE(hurry());
+  EXPECT_EQ(hurry()->bytes_per_second, 2 * kMegabyte);
+  EXPECT_EQ(hurry()->longest, 2);
+  slot.allow(20 * kMegabyte);
+  EXPECT_FALSE(hurry());
+}
+
+TEST(Slot, LearnsHowSlowTheBoxIs) {
+  Slot slot(10 * kMegabyte);
+  slot.left(kMegabyte, sent_in(std::chrono::seconds(1)), kBegin);
+  const auto slowness = [&slot] { return slot.hurry(std::chrono::seconds(1))->slowness; };
+  EXPECT_EQ(slowness(), 1);
+  slot.worker_took(std::chrono::seconds(1), kMegabyte, pack::Effort::None);
+  slot.worker_took(std::chrono::seconds(1), 100, pack::Effort::Full);
+  EXPECT_EQ(slowness(), 1) << "these tell nothing";
+  for (int i = 0; i < 20; ++i) slot.worker_took(milliseconds(60), kMegabyte, pack::Effort::Full);
+  EXPECT_NEAR(slowness(), 4, 0.01);
+  for (int i = 0; i < 20; ++i) slot.worker_took(milliseconds(7), kMegabyte, pack::Effort::Quick);
+  EXPECT_NEAR(slowness(), 1, 0.01);
+}
+
 }  // namespace
 }  // namespace adit::forward

@@ -33,7 +33,7 @@ TEST(Options, MayNameTheBoardAndTheFoldersOfOthers) {
 TEST(Options, NameWhatIsMissingOrUnknown) {
   EXPECT_EQ(parse({"--settings", "a"}).error(), "--secrets DIR is missing");
   EXPECT_EQ(parse({"--settings"}).error(), "--settings wants a value");
-  EXPECT_EQ(parse({"--setings", "a"}).error(), "unknown word '--setings'");
+  EXPECT_EQ(parse({"--setings", "a"}).error(), "unknown word '--setings'; did you mean --settings?");
   EXPECT_EQ(parse({}).error(), "--settings FILE is missing");
 }
 

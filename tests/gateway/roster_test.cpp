@@ -17,7 +17,7 @@ constexpr loop::Instant kStart{100h};
 TEST(Roster, OfNobodyWelcomesEverybody) {
   Roster roster(std::vector<settings::Robot>{});
   EXPECT_FALSE(roster.posted("anybody", kStart));
-  EXPECT_THAT(roster.attention(kStart), IsEmpty());
+  EXPECT_THAT(roster.unknown(kStart), IsEmpty());
 }
 
 TEST(Roster, TellsOfEachUnknownRobotOnceAndForAsLongAsItPosts) {
@@ -25,18 +25,16 @@ TEST(Roster, TellsOfEachUnknownRobotOnceAndForAsLongAsItPosts) {
   EXPECT_FALSE(roster.posted("ugv1", kStart));
   EXPECT_TRUE(roster.posted("uvg1", kStart));
   EXPECT_FALSE(roster.posted("uvg1", kStart + 1min)) << "not news";
-  EXPECT_THAT(roster.attention(kStart + 3min - 1s),
-              ElementsAre("unknown robot 'uvg1' is posting; set-up has ugv1, ugv2"));
-  EXPECT_THAT(roster.attention(kStart + 3min), IsEmpty());
+  EXPECT_THAT(roster.unknown(kStart + 3min - 1s), ElementsAre("uvg1"));
+  EXPECT_THAT(roster.unknown(kStart + 3min), IsEmpty());
 }
 
 TEST(Roster, RemembersOnlySoManyAndForgetsTheSilentFirst) {
   Roster roster(std::vector<settings::Robot>{{"ugv1", ""}});
   for (std::size_t i = 0; i < 2 * Roster::kMostUnknown; ++i) roster.posted(icd::sentence("x", i), kStart);
-  EXPECT_EQ(roster.attention(kStart).size(), Roster::kMostUnknown);
+  EXPECT_EQ(roster.unknown(kStart).size(), Roster::kMostUnknown);
   EXPECT_TRUE(roster.posted("y", kStart + Roster::kRecent));
-  EXPECT_THAT(roster.attention(kStart + Roster::kRecent),
-              ElementsAre("unknown robot 'y' is posting; set-up has ugv1"));
+  EXPECT_THAT(roster.unknown(kStart + Roster::kRecent), ElementsAre("y"));
 }
 
 TEST(Roster, ForgetsThatARobotWasUnknownOnceItIsSetUp) {
@@ -45,9 +43,9 @@ TEST(Roster, ForgetsThatARobotWasUnknownOnceItIsSetUp) {
   roster.posted("x", kStart);
   roster.set_up({{"ugv1", ""}, {"ugv2", ""}});
   EXPECT_FALSE(roster.posted("ugv2", kStart));
-  EXPECT_THAT(roster.attention(kStart), ElementsAre("unknown robot 'x' is posting; set-up has ugv1, ugv2"));
+  EXPECT_THAT(roster.unknown(kStart), ElementsAre("x"));
   roster.set_up({});
-  EXPECT_THAT(roster.attention(kStart), IsEmpty());
+  EXPECT_THAT(roster.unknown(kStart), IsEmpty());
 }
 
 }  // namespace

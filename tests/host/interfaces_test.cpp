@@ -3,6 +3,10 @@
 #include <gmock/gmock.h>
 
 #include <algorithm>
+#include <filesystem>
+#include <fstream>
+
+#include "host/folder.hpp"
 
 namespace adit::host {
 namespace {
@@ -19,6 +23,39 @@ TEST(Interfaces, TellLoopbackWithItsAddress) {
   EXPECT_TRUE(lo->up);
   EXPECT_THAT(lo->addresses, Contains("127.0.0.1/8"));
   EXPECT_EQ(std::ranges::count(*all, "lo", &Interface::name), 1);
+}
+
+class Ports : public testing::Test {
+ protected:
+  std::optional<Port> with(const char* mac, const char* speed, const char* duplex) {
+    std::filesystem::create_directories(folder_.path() + "/eth0");
+    const auto write = [this](const char* name, const char* text) {
+      std::ofstream(folder_.path() + "/eth0/" + name) << text << '\n';
+    };
+    write("address", mac);
+    write("speed", speed);
+    write("duplex", duplex);
+    return port_in(folder_.path(), "eth0");
+  }
+  Folder folder_;
+};
+
+TEST_F(Ports, TellWhatTheDriverTells) {
+  const auto port = with("02:00:00:00:00:01", "1000", "full");
+  ASSERT_TRUE(port);
+  EXPECT_EQ(port->mac, "02:00:00:00:00:01");
+  EXPECT_EQ(port->mbit, 1000u);
+  EXPECT_EQ(port->duplex, "full");
+}
+
+TEST_F(Ports, TellNothingThatIsNotKnown) {
+  for (const char* speed : {"-1", "", "0", "fast", "1000x", "99999999999"})
+    EXPECT_FALSE(with("02", speed, "unknown")->mbit);
+  EXPECT_EQ(with("02", "-1", "unknown")->duplex, "");
+  for (const char* name : {"eth1", "", "..", "eth0/..", "a name"})
+    EXPECT_FALSE(port_in(folder_.path(), name)) << name;
+  EXPECT_TRUE(port("lo"));
+  EXPECT_NE(host_name(), "");
 }
 
 TEST(Routes, AreReadFromTheKernelsTable) {

@@ -5,8 +5,8 @@ import re
 FIRMWARE = pathlib.Path(__file__).resolve().parents[2] / "firmware"
 FLOORS = {
     "the interface": "icd codec",
-    "the rules": "lanes pack picture pace dispatch settings network update access",
-    "the doors": "command_line loop ledger uplink intake panel host spool journal",
+    "the rules": "spelling lanes pack picture pace dispatch settings network update access alarms",
+    "the doors": "command_line loop ledger uplink intake panel host spool journal archive",
     "the flow": "forward",
     "the box": "admin box",
     "the faces": "site api cli",

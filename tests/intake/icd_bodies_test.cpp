@@ -143,6 +143,32 @@ TEST(IcdBodies, AreRefusedAsSoonAsTheyAreWrong) {
   }
 }
 
+TEST(IcdBodies, AreReadToTheirEndOnceRefusedSoThatTheAnswerIsNotLost) {
+  Team team;
+  const std::string rest(20u << 20,
+                         ' ');  // more than sockets hold: who sends it looks for no answer before its end
+  for (const std::string_view framing : {"Content-Length: 20971522\r\n", "Transfer-Encoding: chunked\r\n"}) {
+    const bool chunked = framing.starts_with("Transfer");
+    RawClient client(team.served.port());
+    client.send(authorized("POST", "/map/update", std::string(kJsonType) + std::string(framing)));
+    ASSERT_TRUE(client.send(chunked ? "2\r\n{]\r\n1400000\r\n" : "{]"));
+    ASSERT_TRUE(client.send(rest)) << framing;
+    if (chunked) client.send("\r\n0\r\n\r\n");
+    const auto reply = client.reply();
+    ASSERT_TRUE(reply) << framing;
+    EXPECT_EQ(reply->status, 400) << framing;
+    client.half_close();
+    EXPECT_TRUE(client.closes()) << framing;
+  }
+}
+
+TEST(IcdBodies, OfStrangersAreNotReadToTheirEnd) {
+  Team team;
+  RawClient client(team.served.port());
+  client.send("POST /map/update HTTP/1.1\r\nHost: x\r\nContent-Length: 20971522\r\n\r\n");
+  EXPECT_FALSE(client.send(std::string(20u << 20, ' ')));
+}
+
 TEST(IcdBodies, ThatGrowOverAMegabyteAreRefused) {
   Team team;
   const std::string bomb = gzipped("{\"poses\": [" + std::string(3u << 20, ' ') + "]}");

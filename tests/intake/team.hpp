@@ -133,7 +133,8 @@ class Team {
    public:
     explicit Busy(Team& team) : held_(std::make_shared<std::promise<void>>()) {
       auto until = std::make_shared<std::shared_future<void>>(held_->get_future());
-      team.served.on_loop([&] { team.front.workers->submit([until] { until->wait(); }, [] {}); });
+      team.served.on_loop(
+          [&] { team.front.workers->submit(loop::Urgency::OnTheWay, [until] { until->wait(); }, [] {}); });
     }
     Busy(const Busy&) = delete;
     Busy& operator=(const Busy&) = delete;

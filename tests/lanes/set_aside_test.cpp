@@ -98,6 +98,24 @@ TEST(SetAside, IsNotOvertakenByAnOlderGridThatIsSentAgain) {
   EXPECT_EQ(taken(aside, made_at(30, 30)), (std::vector<std::uint64_t>{1, 2}));
 }
 
+TEST(SetAside, IsNotOvertakenByTheGapOfAStitchedGrid) {
+  WaitingMap stitched{.map = grid_update("ugv1", grid(0, 0, 30, 10)), .accepted = {}, .updates = {1, 2}};
+  for (const double x : {0.0, 2.0})
+    stitched.parts.push_back(
+        {.map = grid_update("ugv1", grid(x, 0, 10, 10)), .accepted = {}, .updates = {1}});
+  SetAside aside;
+  aside.add(item(grid_update("ugv1", grid(1, 0, 10, 10))));  // in the middle
+  aside.add(item(grid_update("ugv1", grid(2, 0, 5, 5))));    // within the second part
+  stitched.has_gaps = true;
+  std::vector<std::uint64_t> overtaken;
+  for (const icd::MapUpdate* const map : said_by(stitched))
+    std::ranges::copy(taken(aside, *map), std::back_inserter(overtaken));
+  EXPECT_EQ(overtaken, std::vector<std::uint64_t>{2});
+  stitched.has_gaps = false;
+  ASSERT_EQ(said_by(stitched).size(), 1u);
+  EXPECT_EQ(taken(aside, *said_by(stitched).front()), std::vector<std::uint64_t>{1});
+}
+
 TEST(SetAside, MarksADeleteAllThatWouldDeleteSomethingNewer) {
   SetAside aside;
   aside.add(item(icd::MarkersUpdate{{marker("", 0, icd::MarkerAction::DeleteAll)}}));

@@ -75,8 +75,9 @@ TEST_F(Guard, EndsTheJobThatThrowsAndTellsWhoeverWaitsForIt) {
   Loop loop;
   Workers workers(loop, 1);
   bool done = false, failed = false, next = false;
-  workers.submit([] { throw std::bad_alloc(); }, [&] { done = true; }, [&] { failed = true; });
-  workers.submit([] {}, [&] { next = true, loop.stop(); }, [] {});
+  workers.submit(
+      Urgency::OnTheWay, [] { throw std::bad_alloc(); }, [&] { done = true; }, [&] { failed = true; });
+  workers.submit(Urgency::OnTheWay, [] {}, [&] { next = true, loop.stop(); }, [] {});
   loop.run();
   EXPECT_FALSE(done);
   EXPECT_TRUE(failed);
@@ -87,7 +88,7 @@ TEST_F(Guard, EndsTheJobThatThrowsAndTellsWhoeverWaitsForIt) {
 TEST_F(Guard, RunsTheOneEndOfAJobThatCopesWithEither) {
   Loop loop;
   Workers workers(loop, 1);
-  workers.submit([] { throw std::bad_alloc(); }, [&] { loop.stop(); });
+  workers.submit(Urgency::OnTheWay, [] { throw std::bad_alloc(); }, [&] { loop.stop(); });
   loop.run();
   EXPECT_EQ(caught(), 1);
 }

@@ -18,10 +18,10 @@ template <class Done>
   return done();
 }
 
-/// The same, until the only thread of `workers` has done all that it was given, and its word has come.
-[[nodiscard]] inline bool turn_until_idle(Loop& loop, Workers& workers) {
+/// The same, until `writer` has done all that it was given, and its word has come.
+[[nodiscard]] inline bool turn_until_idle(Loop& loop, Writer& writer) {
   const auto idle = std::make_shared<bool>(false);
-  workers.submit([] {}, [idle] { *idle = true; });
+  writer.submit([] {}, [idle] { *idle = true; });
   return turn_until(loop, [&idle] { return *idle; });
 }
 

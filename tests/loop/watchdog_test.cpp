@@ -38,8 +38,9 @@ class WatchdogTest : public testing::Test {
   std::shared_ptr<std::promise<void>> hang(Workers& workers) {
     auto let_go = std::make_shared<std::promise<void>>();
     std::promise<void> begun;
-    workers.submit([&begun, waits = let_go->get_future().share()] { begun.set_value(), waits.wait(); },
-                   [] {});
+    workers.submit(
+        Urgency::OnTheWay,
+        [&begun, waits = let_go->get_future().share()] { begun.set_value(), waits.wait(); }, [] {});
     begun.get_future().wait();
     return let_go;
   }
@@ -71,7 +72,8 @@ TEST_F(WatchdogTest, IsFedWhileWorkersNeverRest) {
   Workers workers(loop, 2);
   watchdog.ask_also({&workers});
   std::function<void()> again = [&] {
-    workers.submit([] { std::this_thread::sleep_for(milliseconds(1)); }, [&again] { again(); });
+    workers.submit(
+        Urgency::OnTheWay, [] { std::this_thread::sleep_for(milliseconds(1)); }, [&again] { again(); });
   };
   for (int i = 0; i < 8; ++i) again();
   EXPECT_TRUE(is_fed_often());

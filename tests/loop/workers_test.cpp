@@ -11,6 +11,8 @@
 #include <thread>
 #include <vector>
 
+#include "loop/turn_until.hpp"
+
 namespace adit::loop {
 namespace {
 
@@ -19,8 +21,9 @@ TEST(Workers, WorkOffTheLoopAndFinishOnIt) {
   Workers workers(loop, 2);
   const auto here = std::this_thread::get_id();
   std::thread::id worked, finished;
-  workers.submit([&] { worked = std::this_thread::get_id(); },
-                 [&] { finished = std::this_thread::get_id(), loop.stop(); });
+  workers.submit(
+      Urgency::OnTheWay, [&] { worked = std::this_thread::get_id(); },
+      [&] { finished = std::this_thread::get_id(), loop.stop(); });
   loop.run();
   EXPECT_NE(worked, here);
   EXPECT_EQ(finished, here);
@@ -31,17 +34,81 @@ TEST(Workers, BeginJobsInTheOrderOfSubmission) {
   Workers workers(loop, 1);
   std::vector<int> begun, finished;
   for (int i = 0; i < 100; ++i) {
-    workers.submit([&begun, i] { begun.push_back(i); },
-                   [&, i] {
-                     finished.push_back(i);
-                     if (i == 99) loop.stop();
-                   });
+    workers.submit(
+        Urgency::OnTheWay, [&begun, i] { begun.push_back(i); },
+        [&, i] {
+          finished.push_back(i);
+          if (i == 99) loop.stop();
+        });
   }
   loop.run();
   std::vector<int> expected(100);
   std::iota(expected.begin(), expected.end(), 0);
   EXPECT_EQ(begun, expected);
   EXPECT_EQ(finished, expected);
+}
+
+/// Holds the only worker until it is let go.
+class Held {
+ public:
+  Held(Workers& workers, Urgency urgency) {
+    std::promise<void> begun;
+    workers.submit(
+        urgency, [&begun, until = let_go_.get_future().share()] { begun.set_value(), until.wait(); }, [] {});
+    begun.get_future().wait();
+  }
+  void let_go() { let_go_.set_value(); }
+
+ private:
+  std::promise<void> let_go_;
+};
+
+TEST(Workers, DoWhatIsOnTheWayBeforeWhatCanWait) {
+  Loop loop;
+  Workers workers(loop, 1);
+  Held held(workers, Urgency::OnTheWay);
+  int maps = 3, pictures = 3;
+  const Instant came = loop.now();
+  for (int i = 0; i < 3; ++i) {
+    const auto draw = [&] { EXPECT_TRUE(maps == 0 || loop.now() - came >= JobQueue<int>::kPatience); };
+    workers.submit(Urgency::CanWait, draw, [&] { --pictures; });
+  }
+  for (int i = 0; i < 3; ++i) workers.submit(Urgency::OnTheWay, [&] { --maps; }, [] {});
+  held.let_go();
+  EXPECT_TRUE(turn_until(loop, [&] { return pictures == 0; }));
+}
+
+TEST(Workers, DoWhatCanWaitHoweverMuchIsOnTheWay) {
+  Loop loop;
+  Workers workers(loop, 1);
+  bool drawn = false;
+  std::function<void()> again = [&] {
+    workers.submit(
+        Urgency::OnTheWay, [] { std::this_thread::sleep_for(std::chrono::milliseconds(1)); },
+        [&] { again(); });
+  };
+  for (int i = 0; i < 100; ++i) again();
+  workers.submit(Urgency::CanWait, [] {}, [&] { drawn = true; });
+  EXPECT_TRUE(turn_until(loop, [&] { return drawn; }));
+}
+
+TEST(Workers, DoWhatIsOnTheWayAmidAJobThatGivesWay) {
+  Loop loop;
+  Workers workers(loop, 1);
+  bool map_done = false, drawn = false, amid = false;
+  std::promise<void> begun;
+  workers.submit(
+      Urgency::CanWait,
+      [&] {
+        begun.set_value();
+        while (!map_done) workers.give_way();
+        amid = true;
+      },
+      [&] { drawn = true; });
+  begun.get_future().wait();
+  workers.submit(Urgency::OnTheWay, [&] { map_done = true; }, [&] { EXPECT_FALSE(drawn); });
+  ASSERT_TRUE(turn_until(loop, [&] { return drawn; }));
+  EXPECT_TRUE(amid);
 }
 
 TEST(Workers, HandDataThereAndBackWithoutLocks) {
@@ -51,12 +118,13 @@ TEST(Workers, HandDataThereAndBackWithoutLocks) {
   long sum = 0;
   for (int i = 0; i < 500; ++i) {
     auto data = std::make_shared<std::vector<long>>(100, i);
-    workers.submit([data] { data->assign(1, std::accumulate(data->begin(), data->end(), 0L)); },
-                   [&, data] {
-                     EXPECT_EQ(data.use_count(), 1) << "the worker still holds what it has handed back";
-                     sum += data->at(0);
-                     if (--left == 0) loop.stop();
-                   });
+    workers.submit(
+        Urgency::OnTheWay, [data] { data->assign(1, std::accumulate(data->begin(), data->end(), 0L)); },
+        [&, data] {
+          EXPECT_EQ(data.use_count(), 1) << "the worker still holds what it has handed back";
+          sum += data->at(0);
+          if (--left == 0) loop.stop();
+        });
   }
   loop.run();
   EXPECT_EQ(sum, 100L * 499 * 500 / 2);
@@ -68,7 +136,7 @@ TEST(Workers, LetADoneSubmitTheNextJob) {
   int rounds = 0;
   std::function<void()> next = [&] {
     if (++rounds == 50) return loop.stop();
-    workers.submit([] {}, next);
+    workers.submit(Urgency::OnTheWay, [] {}, next);
   };
   next();
   loop.run();
@@ -86,13 +154,14 @@ TEST(Workers, WaitForARunningJobAndDropTheRestWhenDestroyed) {
     {
       Workers workers(loop, 1);
       workers.submit(
+          Urgency::OnTheWay,
           [&] {
             begun.set_value();
             std::this_thread::sleep_for(std::chrono::milliseconds(20));
             completed = true;
           },
           [&] { finished = true; });
-      workers.submit([&] { second_ran = true; }, [&] { finished = true; });
+      workers.submit(Urgency::OnTheWay, [&] { second_ran = true; }, [&] { finished = true; });
       begun.get_future().wait();
     }
     EXPECT_TRUE(completed);
@@ -127,7 +196,7 @@ TEST(Writer, DoesAllThatWasSubmittedInOrderBeforeItEnds) {
 TEST(Workers, AreAtLeastOne) {
   Loop loop;
   Workers workers(loop, 0);
-  workers.submit([] {}, [&] { loop.stop(); });
+  workers.submit(Urgency::OnTheWay, [] {}, [&] { loop.stop(); });
   loop.run();
 }
 
@@ -136,6 +205,7 @@ TEST(Workers, LeaveSignalsToTheLoop) {
   Workers workers(loop, 1);
   bool blocked = false;
   workers.submit(
+      Urgency::OnTheWay,
       [&] {
         sigset_t set;
         pthread_sigmask(SIG_SETMASK, nullptr, &set);

@@ -53,7 +53,8 @@ TEST(NetworkCheck, TellsWhatBecomesAnother) {
 TEST(NetworkCheck, RefusesATeamInTheCommandPostsSubnets) {
   for (const char* team : {"10.1.1.7/24", "10.2.1.7/25", "10.100.7.7/24", "10.0.0.7/8"}) {
     EXPECT_THAT(errors(numbers(team), usual()),
-                Contains(AllOf(HasSubstr("team.address: "), HasSubstr("(ICD 3); choose another subnet"))))
+                ElementsAre(AllOf(HasSubstr("team.address: "),
+                                  HasSubstr(" on the Command Post's side: choose another subnet"))))
         << team;
   }
   EXPECT_THAT(errors(numbers("172.16.1.7/24", "172.16.1.8/24"), usual()),
@@ -61,7 +62,7 @@ TEST(NetworkCheck, RefusesATeamInTheCommandPostsSubnets) {
   Circumstances around = usual();
   around.command_post.mapping.address = "192.168.7.201";
   EXPECT_THAT(errors(numbers(), around),
-              ElementsAre(HasSubstr("the mapping endpoint 192.168.7.201 lies in 192.168.7.0/24")));
+              ElementsAre(HasSubstr("192.168.7.0/24 overlaps the mapping endpoint 192.168.7.201 on")));
 }
 
 TEST(NetworkCheck, AllowsAnOverlapOnPurposeAndSaysSo) {
@@ -69,7 +70,8 @@ TEST(NetworkCheck, AllowsAnOverlapOnPurposeAndSaysSo) {
   around.allow_overlap = true;
   const Findings findings = check(numbers("10.100.7.7/24"), numbers(), around);
   EXPECT_THAT(findings.errors, IsEmpty());
-  EXPECT_THAT(findings.warnings, Contains(HasSubstr("overlaps 10.100.0.0/16")));
+  EXPECT_THAT(findings.warnings, Contains("10.100.7.0/24 overlaps 10.100.0.0/16 on the Command Post's side: "
+                                          "allowed, but a robot cannot reach both"));
 }
 
 TEST(NetworkCheck, WarnsOneWhoCutsHimselfOff) {

@@ -280,5 +280,32 @@ TEST(RateLimit, NothingGoesAheadWhileItIsLearnedHowOften) {
   EXPECT_FALSE(rate.may_go_ahead()) << "it may count from its answers";
 }
 
+TEST(RateLimit, WhatSomebodyElseAsksTakesATurnOfItsOwn) {
+  RateLimit rate(1);
+  rate.sent(at(0));
+  rate.taken({.first = at(0), .last = at(0)}, at(0.1));
+  EXPECT_EQ(rate.claim(at(0.2), at(1.2)), std::nullopt) << "its turn comes too late";
+  EXPECT_EQ(rate.next(), at(1.02)) << "and so none is taken";
+  EXPECT_EQ(rate.claim(at(0.2), at(5)), at(1.27)) << "not as soon as it might: its connection is another";
+  EXPECT_EQ(rate.next(), at(2.52));
+  rate.claimed(at(1.4));
+  EXPECT_EQ(rate.next(), at(2.65)) << "it may have been heard as late as that";
+  EXPECT_EQ(rate.claim(at(9), at(9)), at(9)) << "at once where nothing was sent of late";
+}
+
+TEST(RateLimit, WhatSomebodyElseAsksTeachesNothing) {
+  RateLimit rate(1);
+  rate.sent(at(0));
+  rate.throttled(at(0.1), {});
+  const Instant next = rate.next();
+  const auto claimed = rate.claim(at(0.2), at(30));
+  ASSERT_TRUE(claimed);
+  EXPECT_GT(*claimed, next) << "a pause is kept by it, too";
+  rate.claimed(*claimed + std::chrono::milliseconds{100});
+  EXPECT_GE(rate.next(), *claimed + std::chrono::milliseconds{1100}) << "this server counts from its answers";
+  EXPECT_FALSE(rate.may_go_ahead()) << "the storm goes on";
+  EXPECT_FALSE(rate.learned().under_way);
+}
+
 }  // namespace
 }  // namespace adit::pace

@@ -44,6 +44,18 @@ TEST(Arrange, MakesASurveySmallerThanItsOrderDoes) {
   EXPECT_LT(arranged.data.bytes.size(), as_it_came.data.bytes.size() * 9 / 10);
 }
 
+TEST(Arrange, LeavesTheOrderAsItCameWhereACloudIsInAHurry) {
+  const icd::MapUpdate map = survey(20'000);
+  const icd::MapUpdate quick = pack(map, {.effort = Effort::Quick}),
+                       none = pack(map, {.effort = Effort::None});
+  EXPECT_EQ(none, map);
+  EXPECT_EQ(std::get<icd::PointCloud2>(quick.msg).point_step, 16);
+  EXPECT_LT(quick.data.bytes.size(), map.data.bytes.size() / 2);
+  EXPECT_GT(quick.data.bytes.size(), pack(map).data.bytes.size());
+  EXPECT_EQ(pack(map, {.unit = kMillimetre, .effort = Effort::None}), pack(map, {.unit = kMillimetre}))
+      << "what is to be rounded is";
+}
+
 TEST(Arrange, IsAlwaysTheSame) {
   const icd::MapUpdate map = survey(3'000);
   EXPECT_EQ(pack(map), pack(map));

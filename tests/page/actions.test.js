@@ -1,6 +1,6 @@
 import assert from "node:assert/strict";
 import { test } from "node:test";
-import { said, watch } from "./watch.js";
+import { said, toTab, watch } from "./watch.js";
 
 const row = (page, number) => page.locator(`#reports li[data-key="${number}"]`);
 const button = (page, name, number) => page.getByRole("button", { name: `${name}: report ${number}` });
@@ -15,7 +15,7 @@ const becomes = (page, number, words) =>
 
 test("offers at each report what its state allows, and nothing else", async (t) => {
   const { page } = await watch(t, "reports");
-  await page.getByRole("button", { name: "Other runs" }).click();
+  await page.getByRole("button", { name: "All runs" }).click();
   const expected = {
     28: ["Hold", "Withdraw"], 27: [], 26: ["Send once more", "Call it done"], 25: ["Send once more", "Call it done"], 24: ["Send", "Withdraw"],
     23: ["Resubmit"], 22: ["Resubmit"], 21: ["Send once more"], 20: ["Send"], 19: ["Send again"], 18: ["Resubmit"],
@@ -45,8 +45,9 @@ test("does at once what costs nothing", async (t) => {
   await button(page, "Call it done", 25).click();
   await becomes(page, 25, "called done");
   await row(page, 20).locator(".open").click();
-  await button(page, "Send", 20).click();
-  await becomes(page, 20, "waiting");
+  await row(page, 28).locator(".open").click();
+  await button(page, "Hold", 28).click();
+  await becomes(page, 28, "held");
   assert.deepEqual(page.complaints, []);
 });
 
@@ -54,7 +55,7 @@ test("asks before what costs a report, and does nothing where the answer is no",
   const { page } = await watch(t, "reports");
   await button(page, "Send once more", 25).click();
   const question = page.getByRole("alertdialog");
-  assert.match(await question.textContent(), /report 25, Gas.*recorded twice.*costs a report.*18 reports are left/s);
+  assert.match(await question.textContent(), /report 25, Gas.*recorded twice.*spends a report.*18 reports are left/s);
   assert.equal(await page.evaluate(() => document.activeElement.textContent), "Leave it");
   await page.keyboard.press("Escape");
   await question.waitFor({ state: "hidden" });
@@ -65,6 +66,20 @@ test("asks before what costs a report, and does nothing where the answer is no",
   await button(page, "Send once more", 25).click();
   await question.getByRole("button", { name: "Send once more" }).click();
   await becomes(page, 25, "waiting");
+});
+
+test("asks before it sends what another of its type is close to, and what was withdrawn", async (t) => {
+  const { page } = await watch(t, "reports");
+  const question = page.getByRole("alertdialog");
+  await button(page, "Send", 24).click();
+  assert.match(await question.textContent(), /report 24, Gas.*close by.*spends a report.*18 reports are left/s);
+  await question.getByRole("button", { name: "Leave it" }).click();
+  assert.match(await row(page, 24).innerText(), /held/);
+  await row(page, 20).locator(".open").click();
+  await button(page, "Send", 20).click();
+  assert.match(await question.textContent(), /report 20.*withdrawn.*spends a report/s);
+  await question.getByRole("button", { name: "Send" }).click();
+  await becomes(page, 20, "waiting");
 });
 
 test("resubmits as a new report, and says its number", async (t) => {
@@ -107,9 +122,10 @@ test("offers nothing while the box is lost, and again once it is back", async (t
 test("has nothing to press that is smaller than a gloved finger", async (t) => {
   for (const viewport of [{ width: 390, height: 844 }, { width: 1280, height: 720 }, { width: 3840, height: 2160 }]) {
     const { page } = await watch(t, "reports", { viewport });
+    await toTab(page, "Reports");
     await row(page, 23).locator(".open").click();
-    const small = await page.$$eval("main button, main .head a, main .layers label, main input[type=range], footer .help", (nodes) =>
-      nodes.map((node) => [node.textContent || node.type, node.getBoundingClientRect()]).filter(([, box]) => box.width && (box.height < 48 || box.width < 48)).map(([name, box]) => `${name}: ${box.width} x ${box.height}`));
+    const small = await page.$$eval("button, .head a, .layers label, main input[type=range], .strip a", (nodes) =>
+      nodes.map((node) => [node.textContent || node.type, node.getBoundingClientRect()]).filter(([, box]) => box.width && (box.height < 44 || box.width < 44)).map(([name, box]) => `${name}: ${box.width} x ${box.height}`));
     assert.deepEqual(small, [], `${viewport.width}`);
   }
 });

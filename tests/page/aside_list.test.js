@@ -1,7 +1,7 @@
 // What is set aside, as a phone shows it and a screen reader reads it.
 import assert from "node:assert/strict";
 import { test } from "node:test";
-import { axeFindsNothing, text, watch } from "./watch.js";
+import { axeFindsNothing, openMore, text, watch } from "./watch.js";
 
 const WHY = "msg.data: expected 4800 cells for a width of 80 and a height of 60, got 4799, and the last row is cut short";
 const ROWS = [7, 8, 9].map((number) =>
@@ -18,6 +18,7 @@ async function withRows(t, options) {
     };
   }, ROWS);
   const { page } = await watch(t, "calm", { prepare, ...options });
+  await openMore(page);
   await page.locator("#aside .why").first().waitFor();
   return page;
 }
@@ -45,7 +46,7 @@ for (const [name, width] of [["a phone", 360], ["a narrow column", 1056]]) {
 }
 
 test("keeps the buttons beside the sentence where there is room", async (t) => {
-  const page = await withRows(t, { viewport: { width: 1000, height: 740 } });
+  const page = await withRows(t, { viewport: { width: 880, height: 740 } });
   const [why] = await boxes(page, ".why");
   for (const button of await boxes(page, "button")) assert.ok(button.left >= why.right);
 });

@@ -1,18 +1,27 @@
+// A report composed by hand: what, where, the check, and away.
 import assert from "node:assert/strict";
 import { test } from "node:test";
-import { axeFindsNothing, text, watch } from "./watch.js";
+import { axeFindsNothing, text, toTab, watch } from "./watch.js";
 
-const fill = async (page, type, x, y, z) => {
-  await page.getByRole("radio", { name: type, exact: true }).check();
-  for (const [axis, value] of Object.entries({ x, y, z })) if (value !== undefined) await page.fill(`#compose input[name=${axis}]`, value);
-};
+const TYPES = ["Survivor", "Cell Phone", "Backpack", "Drill", "Fire Extinguisher", "Gas", "Vent", "Helmet", "Rope", "Cube"];
+const canvas = "#map .frame canvas";
+
 /** By its key, which does nothing until it is known who looks. */
 const compose = async (page) => {
-  await page.waitForSelector("#reports .compose:enabled");
+  await page.waitForSelector("#reports .compose:enabled", { state: "attached" });
   await page.keyboard.press("n");
-  await page.waitForSelector("#compose[open]");
+  await page.waitForSelector("#compose:not([hidden])");
+};
+const choose = (page, type) => page.locator("#compose .types").getByRole("button", { name: type, exact: true }).click();
+const place = async (page, x, y, z) => {
+  for (const [axis, value] of Object.entries({ x, y, z })) await page.fill(`#compose input[name=${axis}]`, value);
 };
 const check = (page) => page.getByRole("button", { name: "Check" }).click();
+const fill = async (page, type, ...where) => {
+  await choose(page, type);
+  await place(page, ...where);
+  await check(page);
+};
 const send = (page) => page.locator("#compose .send").click();
 const becomes = (page, number, words) =>
   page.waitForFunction(([number, words]) => document.querySelector(`#reports li[data-key="${number}"]`)?.innerText.includes(words), [number, words]);
@@ -20,12 +29,12 @@ const becomes = (page, number, words) =>
 test("composes a report: what, where, a look at what is near, and away", async (t) => {
   const { page } = await watch(t, "reports");
   await page.getByRole("button", { name: "New report" }).click();
-  assert.deepEqual(await page.locator("#compose .types label").allTextContents(),
-    ["Survivor", "Cell Phone", "Backpack", "Drill", "Fire Extinguisher", "Gas", "Vent", "Helmet", "Rope", "Cube"]);
+  assert.deepEqual(await page.locator("#compose .types button").allTextContents(), TYPES);
   await fill(page, "Gas", "306", "-3.5", "0.25");
-  await check(page);
-  assert.match(await text(page, "#compose .summary"), /Gas at 306\.0, −3\.5, 0\.3 m/);
-  assert.match(await text(page, "#compose .notes"), /Near: #25 Gas, 1\.0 m away.*Near: #24 Gas, 1\.0 m away.*18 reports are left/);
+  assert.match(await text(page, "#compose .summary"), /Gas.*at 306\.0, −3\.5, 0\.3 m/);
+  assert.equal(await page.locator("#compose .summary svg").count(), 1);
+  assert.match(await text(page, "#compose .notes"), /#25 Gas is 1\.0 m away.*#24 Gas is 1\.0 m away.*Spends 1 of the 18 reports left\./);
+  assert.equal(await text(page, "#compose .send"), "Send Gas");
   assert.ok(await page.locator("#compose .again").isHidden());
   await send(page);
   await becomes(page, 29, "waiting");
@@ -34,13 +43,37 @@ test("composes a report: what, where, a look at what is near, and away", async (
   assert.deepEqual(page.complaints, []);
 });
 
+test("takes the place of the reports, never of the map, and moves neither", async (t) => {
+  for (const viewport of [{ width: 1280, height: 720 }, { width: 1920, height: 1080 }]) {
+    const { page } = await watch(t, "reports", { viewport });
+    const boxes = () => page.evaluate(() => [".strip", ".alarms", "#map .frame", "#maps", "#link-plots"].map((part) => JSON.stringify(document.querySelector(part).getBoundingClientRect())));
+    const before = await boxes(), reports = await page.locator("#reports").boundingBox();
+    await compose(page);
+    assert.deepEqual(await page.locator("#compose").boundingBox(), reports);
+    await choose(page, "Rope");
+    assert.deepEqual(await boxes(), before);
+    await place(page, "1", "2", "3");
+    await check(page);
+    assert.deepEqual(await boxes(), before);
+    await page.getByRole("button", { name: "Cancel" }).click();
+    await page.waitForSelector("#reports:not([hidden])");
+    assert.deepEqual(await boxes(), before);
+  }
+});
+
+test("says how far the next one of that type is where none is near", async (t) => {
+  const { page } = await watch(t, "reports");
+  await compose(page);
+  await fill(page, "Drill", "343", "-104.5", "0.25");
+  assert.match(await text(page, "#compose .notes"), /No other Drill within 5 m: the nearest is #28, 100 m away\./);
+});
+
 test("names the field that is wrong, and goes there", async (t) => {
   const { page } = await watch(t, "reports");
   await compose(page);
-  await check(page);
-  assert.match(await text(page, "#compose .trouble"), /Choose what it is/);
+  await choose(page, "Rope");
   for (const [axis, wrong] of [["x", ""], ["x", "12,5"], ["y", "left"], ["z", "1e3"], ["z", "."]]) {
-    await fill(page, "Rope", "1", "2", "3");
+    await place(page, "1", "2", "3");
     await page.fill(`#compose input[name=${axis}]`, wrong);
     await check(page);
     assert.match(await text(page, "#compose .trouble"), new RegExp(`^${axis}: expected metres`), wrong);
@@ -53,7 +86,6 @@ test("says that the very same was reported, and sends it again only when told to
   const { page } = await watch(t, "reports");
   await compose(page);
   await fill(page, "Helmet", "281.75", "−4.5", ".25");
-  await check(page);
   assert.match(await text(page, "#compose .notes"), /Reported already, at the very same place: #23 Helmet, scored \+1/);
   await send(page);
   await becomes(page, 23, "The same was reported before: this is it.");
@@ -61,7 +93,6 @@ test("says that the very same was reported, and sends it again only when told to
 
   await page.locator("#reports .compose").click();
   await fill(page, "Helmet", "281.75", "-4.5", "0.25");
-  await check(page);
   await page.locator("#compose .again").click();
   await send(page);
   await becomes(page, 29, "waiting");
@@ -71,52 +102,77 @@ test("shows the box's sentence where it was not taken, and keeps what was typed"
   const { page } = await watch(t, "reports");
   await compose(page);
   await fill(page, "Cube", "666", "0", "0");
-  await check(page);
   await send(page);
   await page.waitForFunction(() => document.querySelector("#compose .trouble").textContent.includes("this one was not taken"));
-  await page.getByRole("button", { name: "Change" }).click();
+  await page.getByRole("button", { name: "Place", exact: true }).click();
   assert.equal(await page.inputValue("#compose input[name=x]"), "666");
-  await page.getByRole("button", { name: "Close" }).click();
+  await page.getByRole("button", { name: "Cancel" }).click();
   await page.locator("#compose").waitFor({ state: "hidden" });
+  await compose(page);
+  await choose(page, "Cube");
+  assert.equal(await page.inputValue("#compose input[name=x]"), "", "what was cancelled is gone");
 });
 
 test("takes a place from the map, by finger and by keyboard, and a robot's height with it", async (t) => {
   const { page } = await watch(t, "calm");
   await compose(page);
-  await page.getByRole("button", { name: "Pick on the map" }).click();
-  const canvas = page.locator("#map .frame canvas");
-  await canvas.click({ position: { x: 200, y: 150 } });
-  await page.waitForSelector("#compose[open]");
+  await choose(page, "Vent");
+  await page.locator(canvas).click({ position: { x: 200, y: 150 } });
   const first = Number(await page.inputValue("#compose input[name=x]"));
   assert.ok(Number.isFinite(first) && (await page.inputValue("#compose input[name=y]")) !== "");
-  await page.getByRole("button", { name: "Pick on the map" }).click();
-  for (let i = 0; i < 3; ++i) await page.keyboard.press("ArrowRight");
+  for (let i = 0; i < 3; ++i) await page.locator(canvas).press("ArrowRight");
   await page.keyboard.press("Enter");
-  await page.waitForSelector("#compose[open]");
   assert.notEqual(Number(await page.inputValue("#compose input[name=x]")), first);
-  await page.getByRole("button", { name: "Pick on the map" }).click();
   await page.keyboard.press("Escape");
-  await page.waitForSelector("#compose[open]");
-  await page.getByRole("button", { name: "Pick on the map" }).click();
-  await page.getByRole("button", { name: "Cancel" }).click();
-  await page.waitForSelector("#compose[open]");
+  await page.locator("#compose").waitFor({ state: "hidden" });
+  await compose(page);
+  assert.notEqual(await page.inputValue("#compose input[name=x]"), "", "what was only left is still there");
 });
 
-test("has nothing that axe finds wrong in its dialogs, in the dark and by day", async (t) => {
+test("sends what was checked: a tap on the map moves nothing then", async (t) => {
+  const { page } = await watch(t, "reports");
+  await compose(page);
+  await fill(page, "Gas", "306", "-3.5", "0.25");
+  await page.locator(canvas).click({ position: { x: 200, y: 150 } });
+  assert.match(await text(page, "#compose .summary"), /Gas.*at 306\.0, −3\.5, 0\.3 m/);
+  await page.getByRole("button", { name: "Place", exact: true }).click();
+  await page.locator(canvas).click({ position: { x: 200, y: 150 } });
+  await page.locator("#compose .check").waitFor();
+  assert.doesNotMatch(await text(page, "#compose .summary"), /306\.0/);
+});
+
+test("shows map and fields at once on a phone, in every step", async (t) => {
+  const { page } = await watch(t, "reports", { viewport: { width: 390, height: 844 }, hasTouch: true });
+  await toTab(page, "Reports");
+  await page.locator("#reports .compose").tap();
+  const map = await page.locator(canvas).boundingBox();
+  assert.ok(map.width > 300 && map.height > 150, JSON.stringify(map));
+  await choose(page, "Gas");
+  assert.deepEqual(await page.locator(canvas).boundingBox(), map);
+  await place(page, "306", "-3.5", "0.25");
+  await check(page);
+  assert.deepEqual(await page.locator(canvas).boundingBox(), map);
+  const button = await page.locator("#compose .send").boundingBox();
+  assert.ok(button.y + button.height <= 844 && button.height >= 44, JSON.stringify(button));
+});
+
+test("has nothing that axe finds wrong in its steps and dialogs, in any theme", async (t) => {
   const { page } = await watch(t, "reports", { bypassCSP: true });
-  const isWell = async (dialog) => {
-    for (const colorScheme of ["dark", "light"]) {
-      await page.emulateMedia({ colorScheme });
-      await axeFindsNothing(page, `${dialog}, ${colorScheme}`);
+  const isWell = async (what) => {
+    for (const theme of ["dark", "light", "red"]) {
+      await page.evaluate((theme) => (document.documentElement.dataset.theme = theme), theme);
+      await page.waitForSelector("[data-moving]", { state: "detached" });
+      await axeFindsNothing(page, `${what}, ${theme}`);
     }
   };
   await compose(page);
-  await isWell("fields");
-  await fill(page, "Helmet", "281.75", "-4.5", "0.25");
+  await isWell("what");
+  await choose(page, "Helmet");
+  await place(page, "281.75", "-4.5", "0.25");
+  await isWell("where");
   await check(page);
   await isWell("check");
   await page.keyboard.press("Escape");
-  await page.waitForFunction(() => !document.activeElement.closest("dialog")); // which takes the keys until the next frame
   await page.keyboard.press("?");
   await page.waitForSelector("#help[open]");
   await isWell("help");
@@ -124,4 +180,7 @@ test("has nothing that axe finds wrong in its dialogs, in the dark and by day", 
   await page.getByRole("button", { name: "Send once more: report 25" }).click();
   await page.waitForSelector("#confirm[open]");
   await isWell("confirm");
+  await page.keyboard.press("Escape");
+  await page.locator(".strip .menu").click();
+  await isWell("more");
 });

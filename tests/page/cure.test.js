@@ -1,7 +1,7 @@
 // A refusal that a setting would cure leads there whoever may change it.
 import assert from "node:assert/strict";
 import { test } from "node:test";
-import { axeFindsNothing, said, watch } from "./watch.js";
+import { axeFindsNothing, openMore, said, watch, withModules } from "./watch.js";
 
 const KEYS = ["rules.rewrite_frame_id", "rules.map_bytes", "msg.info", "robots[].name", "robots[].alias", "version"];
 const withKeys = (page) => page.route("**/adit/settings", (route) => route.fulfill({ json: { keys: KEYS.map((path) => ({ path })) } }));
@@ -9,6 +9,7 @@ const cures = (page) => page.locator("#refusals .cure:visible");
 
 test("leads an operator from a refusal to the setting that its sentence names", async (t) => {
   const { page } = await watch(t, "trouble", { prepare: withKeys, bypassCSP: true });
+  await openMore(page);
   await page.getByRole("link", { name: "Set rules.rewrite_frame_id" }).waitFor();
   assert.equal(await cures(page).count(), 1, "the other refusal names no setting, only a field");
   assert.equal(await cures(page).getAttribute("href"), "/setup?setting=rules.rewrite_frame_id#all");
@@ -28,16 +29,17 @@ test("leads from a name that a robot may not have to the robots and their aliase
     });
   };
   const { page } = await watch(t, "trouble", { prepare });
+  await openMore(page);
   const way = page.getByRole("link", { name: "Set robots[].alias" }).first();
   await way.waitFor();
   assert.equal(await way.getAttribute("href"), "/setup#robots");
 });
 
 test("takes only a whole key that the box itself names", async (t) => {
-  const { page } = await watch(t, "trouble", { prepare: withKeys });
-  await cures(page).waitFor();
+  const { page } = await watch(t, "trouble", { prepare: (page) => Promise.all([withKeys(page), withModules(page)]) });
   const found = await page.evaluate(async () => {
-    const { cureOf } = await import("/cure.js");
+    const { cureOf } = await import("/modules/cure.js");
+    while (!cureOf("or set rules.map_bytes")) await new Promise(requestAnimationFrame); // until it has the keys
     return [
       "expected at most 9 cells (the setting rules.map_bytes), got 10", "or set rules.rewrite_frame_id.", "x (the setting robots[].alias gives a name)", // named
       'got "rules.map_bytes"', 'got "a \\" rules.map_bytes', "my.rules.map_bytes", "rules.map_bytesx", "rules", "version", "msg.info.width: expected 1", "robots[3].alias: 1", 'got "robots[].alias"', "rules.map_bytes[3]", // not
@@ -53,6 +55,7 @@ test("offers a viewer nothing", async (t) => {
   };
   const { page } = await watch(t, "trouble", { prepare });
   await said(page, "Only an operator can act");
+  await openMore(page);
   await said(page, "the setting rules.rewrite_frame_id takes any");
   assert.equal(await cures(page).count(), 0);
 });

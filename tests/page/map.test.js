@@ -3,7 +3,7 @@ import { test } from "node:test";
 import { until } from "./box.js";
 import { becomes, box, canvas, changed, picture } from "./pictures.js";
 import { serve } from "./stage.js";
-import { settled, watch } from "./watch.js";
+import { settled, toTab, watch } from "./watch.js";
 
 const asked = (page, part) => page.requests.filter((url) => url.includes(part)).length;
 const tiles = (page) => asked(page, ".png");
@@ -128,7 +128,7 @@ test("shows the map as it was, by the slider, and now again", async (t) => {
   assert.match(await slider.getAttribute("aria-valuetext"), /^as of \d\d:\d\d:\d\d$/);
   await until(() => asked(page, "at=") > 0, "tiles as they were");
   await changed(page, whole, "the map as it was");
-  await page.getByRole("button", { name: "Now" }).click();
+  await page.getByRole("button", { name: "Now", exact: true }).click();
   assert.equal(await slider.getAttribute("aria-valuetext"), "now");
   await becomes(page, whole);
 });
@@ -175,6 +175,7 @@ test("shows the map of a box that was restarted", async (t) => {
 
 test("takes two fingers", async (t) => {
   const { page } = await watch(t, "calm", { hasTouch: true, viewport: { width: 390, height: 844 } });
+  await toTab(page, "Map");
   await settled(page);
   await hide(page, "Robots", "Tracks"); // they move by themselves
   const before = await picture(page);

@@ -113,6 +113,8 @@ export class NetworkedBox {
     const [link] = JSON.parse(ip("-n", BOX, "-4", "-j", "address", "show", "dev", "team0"));
     return (link?.addr_info ?? []).map(({ local, prefixlen }) => `${local}/${prefixlen}`).join(" ");
   }
+  /** Puts the station's end of a cable in, or pulls it. */
+  plug = (link, isIn) => ip("-n", STATION, "link", "set", link, isIn ? "up" : "down");
   visit = (url) => visit(this.browser, url);
 
   async close() {

@@ -114,6 +114,10 @@ test("every path and method does as it is described to an operator", async (t) =
   const withdrawn = await report("Helmet");
   const known = {
     "GET /adit/map/{kind}/{robot}/{level}/{x}/{y}.png": () => ({ kind: map.kind, robot: map.robot || "-", ...tile }),
+    "GET /adit/runs/{key}/map/{kind}/{robot}/{level}/{x}/{y}.png": async () => {
+      const kept = await until(async () => (await (await ask("GET", "/adit/runs/1/map")).json()).layers[0], "the run to be kept");
+      return { key: "1", kind: kept.kind, robot: kept.robot || "-", ...kept.tiles[0] };
+    },
     "POST /adit/sessions/{session}/end": async () => ({ session: await session() }),
     "POST /adit/reports/{number}/withdraw": () => ({ number: withdrawn }),
     "POST /adit/reports/{number}/hold": async () => ({ number: await report("Cube") }),
@@ -122,10 +126,11 @@ test("every path and method does as it is described to an operator", async (t) =
   };
   const current = async () => (await ask("GET", "/adit/settings")).json();
   const bodies = { "POST /adit/settings": async () => (({ settings, tag }) => ({ settings, base: tag }))(await current()) };
-  const never = ["POST /adit/reports/{number}/done", // no report is in doubt: 409
+  const never = ["POST /adit/alarms/acknowledge", // nothing is to be acknowledged
+    "POST /adit/reports/{number}/done", // no report is in doubt: 409
     "POST /adit/aside/{number}/send", "POST /adit/aside/{number}/discard", // and nothing is set aside
     "POST /adit/network", "POST /adit/network/confirm", "POST /adit/network/back", // no change can be made here
-    "POST /adit/update", "POST /adit/update/stick", "POST /adit/update/restart"]; // nor an update
+    "POST /adit/update", "POST /adit/update/stick", "POST /adit/update/restart", "POST /adit/update/back", "POST /adit/update/stay"]; // nor an update
   for (const each of operations) {
     const name = `${each.method} ${each.path}`;
     const answer = await ask(each.method, pathOf(each, await known[name]?.()), { body: (await bodies[name]?.()) ?? bodyOf(each) });

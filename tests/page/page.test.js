@@ -1,7 +1,7 @@
 import assert from "node:assert/strict";
 import { test } from "node:test";
 import { serve } from "./stage.js";
-import { axeFindsNothing, said, settled, shoot, showsTheClock, text, watch } from "./watch.js";
+import { axeFindsNothing, said, settled, shoot, showsTheClock, text, toTab, watch } from "./watch.js";
 
 const SIZES = [[390, 844], [768, 1024], [1280, 720], [1920, 1080], [3840, 2160]];
 
@@ -10,11 +10,12 @@ test("shows how the run stands, and that every map arrives", async (t) => {
   await showsTheClock(page, began);
   assert.equal(await text(page, "#score"), "7");
   assert.equal(await text(page, "#remaining"), "18");
-  assert.match(await text(page, "#arriving"), /Yes, every map arrives/);
-  assert.equal(await page.getByRole("row", { name: /ANYmal2/ }).count(), 1);
-  await page.getByRole("row", { name: /ANYmal2/ }).filter({ hasText: /7 s.*up to date/ }).waitFor(); // its age grows until the next event
-  await page.getByTitle(/96 merged, taken as parts, rounded to 8mm$/).waitFor();
-  assert.match(await text(page, "#reports .rows li:first-child"), /scored \+1.*Survivor.*85\.8, −4\.5/);
+  assert.match(await text(page, "#arriving"), /Every map arrives.*4 robots, oldest 7 s/);
+  assert.equal(await page.locator("#robots li").filter({ hasText: "ANYmal2" }).count(), 1);
+  await page.locator("#robots li[data-level=good]").filter({ hasText: /ANYmal2 grid 7 s · cloud 1 s\s*7 s/ }).waitFor(); // its age grows until the next event
+  await page.getByTitle(/^ANYmal1: up to date\n(.*\n)*cloud: .*96 merged, taken as parts, rounded to 8mm$/m).waitFor();
+  assert.match(await text(page, "#shared"), /Merged\s+3 s.*Markers\s+21 s/);
+  assert.match(await text(page, "#reports .rows li:first-child"), /Survivor.*85\.8, −4\.5.*scored \+1/);
   assert.match(await text(page, "#refusals .rows"), /422.*got 4799/);
   assert.deepEqual(page.complaints, []);
 });
@@ -23,17 +24,17 @@ test("follows what changes, and says so to those who only listen", async (t) => 
   const { stage, page } = await watch(t, "calm");
   const alert = page.locator("#attention");
   assert.equal(await alert.getAttribute("aria-live"), "assertive");
-  assert.equal(await alert.textContent(), "");
+  assert.match(await alert.textContent(), /^No alarm/);
   stage.play("trouble");
-  await said(page, "1 report is in doubt");
-  assert.match(await text(page, "#arriving"), /No: ANYmal1 cloud not arriving, ANYmal1 grid not arriving/); // the one longest behind first
-  await page.getByRole("row", { name: /ANYmal2/ }).filter({ hasText: /\d s behind *247 waiting/ }).waitFor(); // though one was just sent
+  await said(page, "Report 8 is in doubt");
+  assert.match(await text(page, "#arriving"), /3 of 4 arrive.*not ANYmal1; oldest other \d+ s/);
+  await page.locator("#robots li[data-level=wait]").filter({ hasText: /ANYmal2 grid \d+ s behind/ }).and(page.getByTitle(/grid: 247 waiting/)).waitFor(); // though one was just sent
   assert.match(await text(page, "#sayings"), /ANYmal2 cloud: 429 "Cloud updates too frequent/);
   assert.match(await text(page, "#post"), /not connected.*Connection refused/);
-  assert.match(await text(page, "#reports .rows"), /waiting.*Helmet.*sending.*Cube.*in doubt.*Vent/);
+  assert.match(await text(page, "#reports .rows"), /Vent.*in doubt.*Helmet.*waiting.*Cube.*sending/);
   stage.play("calm");
-  await page.waitForFunction(() => document.getElementById("attention").textContent === "");
-  assert.match(await text(page, "#arriving"), /Yes/);
+  await page.waitForFunction(() => document.getElementById("attention").textContent.startsWith("No alarm"));
+  assert.match(await text(page, "#arriving"), /Every map arrives/);
 });
 
 test("tells every state by a shape and a word, not by colour alone", async (t) => {
@@ -48,16 +49,16 @@ test("tells every state by a shape and a word, not by colour alone", async (t) =
   const byLevel = new Map(shapes);
   assert.deepEqual([...byLevel.keys()].sort(), ["ask", "bad", "good", "quiet", "wait"]);
   assert.equal(new Set(byLevel.values()).size, 5, "five levels, five shapes");
-  for (const badge of await page.$$eval("td[data-empty=false]", (cells) => cells.map((cell) => cell.innerText))) {
-    assert.match(badge, /up to date|arriving|behind|throttled|quiet/);
+  for (const row of await page.$$eval("#robots li", (rows) => rows.map((row) => row.title))) {
+    assert.match(row, /: (up to date|arriving|\d+ s behind|behind|throttled|quiet|silent)\n/);
   }
 });
 
 test("has what is done of other runs behind one press, and says how many there are", async (t) => {
   const { page } = await watch(t, "reports");
-  const others = page.getByRole("button", { name: "Other runs" });
+  const others = page.getByRole("button", { name: "All runs" });
   const shown = () => page.locator("#reports .rows li").count();
-  assert.match(await text(page, "#reports .count"), /^10, 5 open, 1 of other runs$/);
+  assert.match(await text(page, "#reports .count"), /^6 sent, 2 in doubt, 1 held, 1 waits$/);
   assert.equal(await shown(), 10);
   assert.equal(await others.getAttribute("aria-pressed"), "false");
   await others.click();
@@ -79,9 +80,10 @@ test("goes to the first report of another run where it shows them, however many 
   });
   for (const viewport of [{ width: 1280, height: 720 }, { width: 360, height: 740 }]) {
     const { page } = await watch(t, "reports", { prepare, viewport });
-    const others = page.getByRole("button", { name: "Other runs" });
+    await toTab(page, "Reports");
+    const others = page.getByRole("button", { name: "All runs" });
     const look = () => others.evaluate((button) => [getComputedStyle(button).borderColor, getComputedStyle(button).boxShadow].join());
-    assert.match(await text(page, "#reports .count"), /^60, 140 of other runs$/);
+    assert.match(await text(page, "#reports .count"), /^60 sent$/);
     const off = await look();
     await others.press("Enter");
     assert.notEqual(await look(), off, "it is seen to be pressed");
@@ -91,7 +93,7 @@ test("goes to the first report of another run where it shows them, however many 
       return top >= list.top - 1 && bottom <= list.bottom + 1;
     }, await first.elementHandle());
     assert.ok(await others.evaluate((button) => button === document.activeElement));
-    assert.match(await text(page, "#reports .count"), /^60, 140 of other runs$/);
+    assert.match(await text(page, "#reports .count"), /^60 sent$/);
     await first.locator(".open").press("Enter");
     await others.press("Enter");
     assert.equal(await page.locator("#reports li").count(), 60);
@@ -100,27 +102,27 @@ test("goes to the first report of another run where it shows them, however many 
 
 test("tells where each report is in its life, and what waits for the operator's word", async (t) => {
   const { page } = await watch(t, "reports");
-  await page.getByRole("button", { name: "Other runs" }).click();
+  await page.getByRole("button", { name: "All runs" }).click();
   const rows = await page.$$eval("#reports .rows li", (items) => items.map((item) => [item.dataset.level, item.innerText.replace(/More of report \d+/, "").replace(/\s+/g, " ").trim()]));
   const expected = [
-    ["wait", /^waiting Drill/],
-    ["wait", /^sending Cube/],
-    ["wait", /^in doubt, asking Vent.*is being asked$/],
-    ["ask", /^in doubt Gas.*another client reports, too · 2\.0 m from #24.* Send once more Call it done$/],
-    ["ask", /^held Gas.*2 m from it/],
-    ["good", /^scored \+1 Helmet.*found out from the run’s status$/],
-    ["quiet", /^called done Helmet.*the operator calls it done$/],
-    ["quiet", /^same as #17 Backpack/],
-    ["quiet", /^withdrawn Backpack/],
-    ["bad", /^refused Survivor.*status 422$/],
-    ["good", /^scored \+1 Survivor.*#18 · 15 min ago · run 1$/],
+    ["ask", /^Gas.*in doubt.*another client reports, too · 2\.0 m from #24.* Send once more Call it done$/],
+    ["ask", /^Gas.*held.*2 m from it.* Send Withdraw$/],
+    ["wait", /^Drill.*waiting/],
+    ["wait", /^Cube.*sending/],
+    ["wait", /^Vent.*in doubt, asking.*is being asked$/],
+    ["good", /^Helmet.*scored \+1$/],
+    ["quiet", /^Helmet.*called done$/],
+    ["quiet", /^Backpack.*same as #17/],
+    ["quiet", /^Backpack.*withdrawn/],
+    ["bad", /^Survivor.*refused.*status 422$/],
+    ["good", /^Survivor #18 · .* · run 1 · 15 min ago scored \+1$/],
   ];
   assert.equal(rows.length, expected.length);
   expected.forEach(([level, words], i) => {
     assert.equal(rows[i][0], level, rows[i][1]);
     assert.match(rows[i][1], words);
   });
-  assert.match(await text(page, "#reports .count"), /^10, 5 open, 1 of other runs$/);
+  assert.match(await text(page, "#reports .count"), /^6 sent, 2 in doubt, 1 held, 1 waits$/);
   assert.deepEqual(page.complaints, []);
 });
 
@@ -132,29 +134,71 @@ test("puts in anybody's text as text", async (t) => {
   assert.deepEqual(page.complaints, []);
 });
 
+const THEMES = ["dark", "light", "red"];
+const wear = (page, theme) => page.evaluate((theme) => (document.documentElement.dataset.theme = theme), theme);
+
 for (const path of ["", "display"]) {
   for (const scene of ["empty", "calm", "trouble", "reports", "hostile"]) {
-    test(`/${path} fits every screen from a phone to 4K, and axe finds nothing wrong with it in the dark and by day: ${scene}`, async (t) => {
+    test(`/${path} is one screen from a phone to 4K, and axe finds nothing wrong with it in any theme: ${scene}`, async (t) => {
       const { page } = await watch(t, scene, { path, bypassCSP: true });
-      for (const colorScheme of ["dark", "light"]) {
-        await page.emulateMedia({ colorScheme });
-        await axeFindsNothing(page, colorScheme);
+      for (const theme of THEMES) {
+        await wear(page, theme);
+        await axeFindsNothing(page, theme);
       }
       for (const [width, height] of SIZES) {
         await page.setViewportSize({ width, height });
-        const wide = await page.evaluate(() => document.documentElement.scrollWidth);
-        assert.ok(wide <= width, `${wide} wide on ${width}`);
+        const [wide, tall] = await page.evaluate(({ documentElement: page } = document) => [page.scrollWidth, page.scrollHeight]);
+        assert.ok(wide <= width && tall <= height, `${wide} x ${tall} on ${width} x ${height}`);
       }
     });
   }
 }
 
-test("shows its large figures large enough for two metres", async (t) => {
+test("has figures that are read from two metres, and one size more where there is room, but no larger ones on 4K", async (t) => {
   const { page } = await watch(t, "calm");
-  for (const [width, height] of SIZES.slice(2)) {
+  for (const [[width, height], wanted] of [[[390, 844], 28], [[1280, 720], 32], [[1920, 1080], 44], [[3840, 2160], 44]]) {
     await page.setViewportSize({ width, height });
-    const size = await page.$eval("#clock", (clock) => parseFloat(getComputedStyle(clock).fontSize));
-    assert.ok(size >= height / 12, `${size}px of ${height}`);
+    assert.equal(await page.$eval("#clock", (clock) => parseFloat(getComputedStyle(clock).fontSize)), wanted, `${width}`);
+  }
+});
+
+test("has strip, alarms, map, tools and heads of lists at the same place in every state", async (t) => {
+  const parts = [".strip", ".alarms", "#map .frame", "#map .zoom", "#map .time", "#link-plots", "#reports .head", "#maps .line", ".tabs"];
+  for (const viewport of [{ width: 390, height: 844 }, { width: 1280, height: 720 }, { width: 1920, height: 1080 }]) {
+    const { stage, page } = await watch(t, "empty", { viewport });
+    const boxes = () => page.evaluate((parts) => parts.map((part) => {
+      const { x, y, width, height } = document.querySelector(part).getBoundingClientRect();
+      return `${part} ${x} ${y} ${width} ${height}`;
+    }), parts);
+    const before = await boxes();
+    for (const [scene, words] of [["trouble", "is in doubt"], ["reports", "is held"], ["hostile", "<img src=x"], ["calm", "No alarm"]]) {
+      stage.play(scene);
+      await page.waitForFunction((words) => document.getElementById("attention").textContent.includes(words), words);
+      assert.deepEqual(await boxes(), before, `${scene} at ${viewport.width}`);
+    }
+    stage.freeze();
+    await page.waitForSelector("body[data-link=lost]");
+    assert.deepEqual(await boxes(), before, "without the box");
+    stage.thaw();
+  }
+});
+
+test("wears the theme that was chosen, here and on the other pages, and the system's until one is", async (t) => {
+  const { page, stage } = await watch(t, "calm", { colorScheme: "light" });
+  const worn = () => page.evaluate(() => [document.documentElement.dataset.theme, getComputedStyle(document.body).backgroundColor]);
+  assert.deepEqual(await worn(), ["light", "rgb(236, 234, 228)"]);
+  await page.emulateMedia({ colorScheme: "dark" });
+  await page.waitForSelector("[data-theme=dark]");
+  assert.deepEqual(await worn(), ["dark", "rgb(11, 14, 16)"]);
+  const button = page.locator(".strip .theme");
+  for (const [theme, colour] of [["light", "rgb(236, 234, 228)"], ["red", "rgb(8, 0, 0)"], ["dark", "rgb(11, 14, 16)"], ["light", "rgb(236, 234, 228)"], ["red", "rgb(8, 0, 0)"]]) {
+    await button.click();
+    assert.deepEqual(await worn(), [theme, colour]);
+  }
+  assert.equal(await button.getAttribute("aria-label"), "Theme: red for the night");
+  for (const path of ["", "system", "setup", "display"]) {
+    await page.goto(stage.url + path);
+    assert.deepEqual(await worn(), ["red", "rgb(8, 0, 0)"], path);
   }
 });
 
@@ -174,14 +218,17 @@ test("is kept as pictures, for people to look at", async (t) => {
 
 test("can be walked through by keyboard", async (t) => {
   const { page } = await watch(t, "calm");
-  await page.waitForSelector("#run .newrun:enabled");
+  await page.waitForSelector("#reports .compose:enabled");
   await page.keyboard.press("Tab");
   await page.waitForFunction(() => document.activeElement.textContent === "Skip to the run");
   await page.keyboard.press("Enter");
   await page.waitForFunction(() => document.activeElement.id === "main");
-  for (const section of ["run", "map"]) {
-    await page.keyboard.press("Tab");
-    await page.waitForFunction((section) => document.activeElement.closest("section")?.id === section, section);
+  for (const section of ["map", "reports"]) {
+    for (const end = Date.now() + 30_000; Date.now() < end; ) {
+      await page.keyboard.press("Tab");
+      if (await page.evaluate((section) => document.activeElement.closest("section")?.id === section, section)) break;
+    }
+    assert.equal(await page.evaluate(() => document.activeElement.closest("section")?.id), section);
   }
 });
 
@@ -206,8 +253,8 @@ test("says that a silent box is lost, and recovers by itself", async (t) => {
   assert.match(await page.title(), /lost/);
   stage.thaw();
   await page.waitForSelector("body[data-link=live]");
-  assert.equal(await text(page, "#attention"), "");
-  assert.match(await text(page, "#arriving"), /Yes/);
+  await page.waitForFunction(() => document.getElementById("attention").textContent.startsWith("No alarm"));
+  assert.match(await text(page, "#arriving"), /Every map arrives/);
 });
 
 test("says at once that a box that stopped is lost, and finds the next one at its address", async (t) => {
@@ -222,5 +269,5 @@ test("says at once that a box that stopped is lost, and finds the next one at it
   t.after(() => next.end());
   await page.clock.resume();
   await page.waitForSelector("body[data-link=live]");
-  await said(page, "1 report is in doubt");
+  await said(page, "Report 8 is in doubt");
 });

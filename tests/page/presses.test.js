@@ -4,10 +4,10 @@ import assert from "node:assert/strict";
 import { test } from "node:test";
 import { until } from "./box.js";
 import { canvas } from "./pictures.js";
-import { settled, watch } from "./watch.js";
+import { settled, toTab, watch } from "./watch.js";
 
 const PHONE = { hasTouch: true, viewport: { width: 390, height: 844 } };
-const DIALOG = "#compose";
+const DIALOG = "#help";
 
 /** What touches the page: fingers, each at its place, or a mouse or pen. */
 async function glass(page) {
@@ -33,153 +33,154 @@ const quiet = async (page) => {
   await settled(page);
 };
 
-/** What a finger has pressed in the dialog that opened under it; "" where nothing was. */
-const pressed = (page) =>
-  page.evaluate((dialog) => {
-    const node = document.querySelector(dialog);
-    if (!node.open) return "it was closed";
-    if (node.querySelector(".fields").hidden) return "it was checked";
-    const { value } = node.querySelector("input[name=type]:checked");
-    if (value !== "Drill") return `it became ${value}`;
-    return document.activeElement.matches("input[type=text]") ? "a field took the keyboard" : "";
-  }, DIALOG);
+/** Where a report is composed, and of what. */
+const composed = (page) => page.evaluate(() => {
+  const panel = document.getElementById("compose");
+  return { open: !panel.hidden, type: panel.querySelector(".count").textContent, pressed: panel.querySelector(".types [aria-pressed=true]")?.textContent ?? "",
+    x: panel.querySelector("input[name=x]").value, typing: document.activeElement.matches("input[type=text]") };
+});
 
 /** A report of a Drill is composed, and its place about to be picked. */
 async function picking(t, options) {
   const { page } = await watch(t, "calm", options);
+  await toTab(page, "Reports");
   await page.locator("#reports .compose:enabled").click();
-  await page.getByRole("radio", { name: "Drill", exact: true }).check();
-  await page.fill(`${DIALOG} input[name=z]`, "0.5");
+  await page.locator("#compose .types").getByRole("button", { name: "Drill", exact: true }).click();
+  await page.fill("#compose input[name=z]", "0.5");
+  await page.locator("#compose h2").focus();
+  await settled(page);
   return page;
 }
-async function reopen(page) {
-  if (await page.locator("#map .hint").isVisible()) await page.keyboard.press("Escape");
-  await page.keyboard.press("Escape");
-  await page.waitForSelector(DIALOG, { state: "hidden" });
-  await page.locator("#reports .compose").click();
-  await page.getByRole("radio", { name: "Drill", exact: true }).check();
-}
-async function pickNow(page) {
-  await page.locator(`${DIALOG} .pick`).click();
-  await page.waitForSelector("#map .hint:not([hidden])");
-  await settled(page);
-  await page.waitForSelector("[data-moving]", { state: "detached" });
-}
 
-/** Places on the map, as it is while one is picked, under which the open dialog has something to press. */
-async function placesUnder(page) {
-  const boxes = await page.$$eval(`${DIALOG} label, ${DIALOG} button`, (nodes) =>
-    nodes.map((node) => node.getBoundingClientRect()).map(({ x, y, width, height }) => [x + width / 2, y + height / 2]));
-  await pickNow(page);
-  const places = await page.evaluate((boxes) => boxes.filter(([x, y]) => document.elementFromPoint(x, y)?.closest("#map .frame canvas")), boxes);
-  await page.getByRole("button", { name: "Cancel" }).click();
-  assert.ok(places.length >= 10, `${places.length} places`);
-  return places.slice(0, 10);
-}
+/** Places all over the map where a finger meets nothing else. */
+const placesOn = (page, count) => page.$eval(canvas, (node, count) => {
+  const { x, y, width, height } = node.getBoundingClientRect(), places = [];
+  for (let i = 0; places.length < count && i < 1000; ++i) {
+    const place = [x + width * ((i * 0.618034) % 1), y + height * ((i * 0.754877) % 1)].map(Math.round);
+    if (document.elementFromPoint(...place) === node) places.push(place);
+  }
+  return places;
+}, count);
 
-/** Picks each of the places by `touch`; what was pressed thereby that should not have been. */
+/** Picks each of the places by `touch`; what came of those after which anything but the place had changed. */
 async function pickEach(page, places, touch) {
   const wrong = [];
   for (const place of places) {
-    await pickNow(page);
     await touch(place);
     await quiet(page);
-    const what = await pressed(page);
-    if (!what) continue;
-    wrong.push(what);
-    await reopen(page);
+    const now = await composed(page);
+    const isUnder = await page.evaluate(([x, y]) => document.elementFromPoint(x, y)?.matches("canvas"), place);
+    if (!now.open || now.pressed !== "Drill" || now.typing || !isUnder || !now.x) wrong.push({ place, ...now, isUnder });
+    const elsewhere = page.locator("#compose .elsewhere");
+    if (await elsewhere.isVisible()) await elsewhere.click();
   }
   return wrong;
 }
 
-test("a tap that picks a place on the map presses nothing of the dialog that opens under it", async (t) => {
-  const page = await picking(t, PHONE);
-  const { tap } = await glass(page);
-  assert.deepEqual(await pickEach(page, await placesUnder(page), tap), []);
-});
+for (const [name, options] of Object.entries({ "a phone": PHONE, "a screen": { hasTouch: true, viewport: { width: 1280, height: 720 } } })) {
+  test(`a tap that picks a place on the map changes the place and nothing else: 20 taps on ${name}`, async (t) => {
+    const page = await picking(t, options);
+    const { tap } = await glass(page);
+    assert.deepEqual(await pickEach(page, await placesOn(page, 20), tap), []);
+  });
+}
 
 test("nor does a slow finger, a double tap, a mouse, a pen or a key that is held", async (t) => {
   const page = await picking(t, PHONE);
   const { down, up, tap, mouse, pen } = await glass(page);
-  const places = await placesUnder(page);
+  const places = await placesOn(page, 4);
   const touches = {
     slow: async (place) => { await down(place); await page.waitForTimeout(300); await up(); },
     double: async (place) => { await tap(place); await tap(place); },
     mouse, pen,
-    key: async () => { for (let i = 0; i < 4; ++i) await page.keyboard.down("Enter"); await page.keyboard.up("Enter"); },
+    key: async () => {
+      await page.locator(canvas).focus();
+      for (let i = 0; i < 4; ++i) await page.keyboard.down("Enter");
+      await page.keyboard.up("Enter");
+    },
   };
-  for (const [name, touch] of Object.entries(touches)) assert.deepEqual(await pickEach(page, places.slice(3, 5), touch), [], name);
+  for (const [name, touch] of Object.entries(touches)) assert.deepEqual(await pickEach(page, places.slice(0, 2), touch), [], name);
 });
 
-test("a finger that is down while a dialog opens by another hand does not press it", async (t) => {
+test("two fingers on the map pick nothing", async (t) => {
   const page = await picking(t, PHONE);
+  const { tap } = await glass(page), [one, other] = await placesOn(page, 2);
+  await tap(one, other);
+  await quiet(page);
+  assert.equal((await composed(page)).x, "");
+});
+
+/** The middle of what closes the help, which is open. */
+async function closer(page) {
+  const { x, y, width, height } = await page.locator("#help .close").boundingBox();
+  return [x + width / 2, y + height / 2].map(Math.round);
+}
+
+test("a finger that is down while a dialog opens by another hand does not press it", async (t) => {
+  const { page } = await watch(t, "calm", PHONE);
   const { down, up } = await glass(page);
-  const [place] = await placesUnder(page);
+  await page.locator("button.help").first().evaluate((button) => button.click());
+  const place = await closer(page);
   await page.keyboard.press("Escape");
   await page.waitForSelector(DIALOG, { state: "hidden" });
   await down(place);
-  await page.locator("#reports .compose").evaluate((button) => button.click());
-  await page.waitForTimeout(400); // the dialog stands still by then, and it is not a long press yet
+  await page.locator("button.help").first().evaluate((button) => button.click());
+  await page.waitForTimeout(700); // the dialog stands still by then, and it is not a long press yet
   await up();
   await quiet(page);
-  assert.equal(await pressed(page), "");
+  assert.ok(await page.locator(DIALOG).isVisible());
 });
 
-test("the second tap on what closes a dialog does not go through to the map, and two fingers pick nothing", async (t) => {
-  const page = await picking(t, PHONE);
+test("the second tap on what closes a dialog does not go through to what lies below", async (t) => {
+  const page = await picking(t, { hasTouch: true, viewport: { width: 1920, height: 1080 } });
   const { tap } = await glass(page);
-  const [one, other] = await placesUnder(page);
-  await pickNow(page);
-  const canPick = async () => {
-    await quiet(page);
-    return page.locator("#map .hint").isVisible();
-  };
-  await tap(one, other);
-  assert.ok(await canPick(), "after two fingers");
-  await page.getByRole("button", { name: "Cancel" }).click();
-  const { x, y, width, height } = await page.locator(`${DIALOG} .pick`).boundingBox();
-  const place = [x + width / 2, y + height / 2];
-  await page.waitForFunction(([x, y]) => document.elementFromPoint(x, y)?.matches(".pick"), place);
+  await page.keyboard.press("?");
+  const place = await closer(page);
+  await page.waitForSelector("[data-moving]", { state: "detached" });
   await tap(place);
   await tap(place);
-  assert.ok(await canPick(), "after a double tap");
+  await quiet(page);
+  assert.ok(await page.locator(DIALOG).isHidden());
+  await page.waitForSelector("[data-moving]", { state: "detached" });
+  assert.ok(await page.evaluate(([x, y]) => document.elementFromPoint(x, y).matches("canvas"), place), "below it is the map");
+  assert.equal((await composed(page)).x, "");
 });
+
+const isComposing = async (page) => {
+  await quiet(page);
+  return (await composed(page)).open;
+};
 
 test("what moves under a finger is not pressed by it, and is once it has stood still", async (t) => {
   const { page } = await watch(t, "calm", PHONE);
+  await toTab(page, "Reports");
   const { down, up, tap } = await glass(page);
   const button = page.locator("#reports .compose:enabled");
-  await button.evaluate((node) => node.scrollIntoView({ block: "center" }));
-  await page.waitForTimeout(400);
-  /** The whole page, which holds still otherwise, goes down by 100 pixels; gives where the button is then. */
-  const shift = () => button.evaluate((node) => {
-    const space = document.createElement("div");
-    space.style.height = "100px";
-    document.body.style.overflowAnchor = "none";
-    document.querySelector("main").prepend(space);
+  await page.waitForTimeout(700);
+  let by = 0;
+  /** The panel, which holds still otherwise, goes down by 100 pixels; gives where the button is then. */
+  const shift = () => button.evaluate((node, by) => {
+    document.getElementById("reports").style.translate = `0 ${by}px`;
     const { x, y, width, height } = node.getBoundingClientRect();
     return [x + width / 2, y + height / 2];
-  });
-  const isOpen = async () => {
-    await quiet(page);
-    return page.locator(DIALOG).isVisible();
-  };
+  }, (by += 100));
   const { x, y, width, height } = await button.boundingBox();
   const next = [x + width / 2, y + height / 2 + 100];
   await down(next);
   await shift();
   await up();
-  assert.ok(!(await isOpen()), "it came under the finger");
+  assert.ok(!(await isComposing(page)), "it came under the finger");
   await tap(await shift());
-  assert.ok(!(await isOpen()), "it had just come there");
+  assert.ok(!(await isComposing(page)), "it had just come there");
   const place = await shift();
   await page.waitForFunction(([x, y]) => document.elementFromPoint(x, y)?.matches(".compose"), place);
   await tap(place);
-  assert.ok(await isOpen(), "it stood still");
+  assert.ok(await isComposing(page), "it stood still");
 });
 
 test("what was under the finger as it came down is pressed, also where the page moves before it is lifted", async (t) => {
   const { page } = await watch(t, "calm", PHONE);
+  await toTab(page, "Reports");
   const { down, up } = await glass(page);
   const button = page.locator("#reports .compose:enabled");
   const touch = { down, up, drag: async () => {} };
@@ -187,18 +188,16 @@ test("what was under the finger as it came down is pressed, also where the page 
   for (const [name, hand] of Object.entries({ touch, mouse })) {
     for (const [moves, isMeant] of [["away", true], ["hidden", false], ["dragged", false]]) {
       if (name === "touch" && moves === "dragged") continue; // that scrolls
-      await button.evaluate((node) => node.scrollIntoView({ block: "center" }));
       await page.waitForFunction(() => !document.querySelector("[data-moving]"));
       const { x, y, width, height } = await button.boundingBox(), place = [x + width / 2, y + height / 2];
       await hand.down(place);
-      if (moves === "dragged") await hand.drag(place[0], place[1] - 100);
+      if (moves === "dragged") await hand.drag(place[0], place[1] + 100);
       else await button.evaluate((node, moves) => {
         if (moves === "hidden") node.hidden = true;
         else node.style.translate = "0 100px";
       }, moves);
       await hand.up();
-      await quiet(page);
-      assert.equal(await page.locator(DIALOG).isVisible(), isMeant, `${name}: ${moves}`);
+      assert.equal(await isComposing(page), isMeant, `${name}: ${moves}`);
       if (isMeant) await page.keyboard.press("Escape");
       await page.locator("#reports .compose").evaluate((node) => Object.assign(node, { hidden: false, style: "" }));
     }

@@ -11,6 +11,7 @@
 
 #include "api/api.hpp"
 #include "api/fake_box.hpp"
+#include "api/fake_kept_runs.hpp"
 #include "api/fake_keys.hpp"
 #include "api/fake_network.hpp"
 #include "api/map_scene.hpp"
@@ -59,6 +60,9 @@ class Stage final : public Source, public Operator {
   }
   std::expected<void, std::string> aside(std::uint64_t number, AsideAction) override {
     return played_.aside(view(), number);
+  }
+  std::expected<void, std::string> acknowledge(const std::string& id) override {
+    return played_.acknowledge(view(), id);
   }
   std::int64_t begin_run() override { return played_.begin_run(view()); }
   Time identify(double seconds) override {
@@ -114,6 +118,7 @@ int serve(std::uint16_t port, const std::string& first, const std::string& more)
   FakeNetwork network;
   FakeTest test;
   PlayedUpdates updates;
+  FakeKeptRuns runs;
   Api page{loop,
            {.source = stage,
             .judge = stage,
@@ -121,7 +126,8 @@ int serve(std::uint16_t port, const std::string& first, const std::string& more)
             .network = &network,
             .test = &test,
             .updates = &updates,
-            .box = &box},
+            .box = &box,
+            .runs = &runs},
            {token()}};
   furnish(box, loop.stamp_now());
   auto server = intake::Server::start(loop, {.address = "127.0.0.1", .port = port, .interface = {}}, page);

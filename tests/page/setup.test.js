@@ -22,7 +22,7 @@ test("leads from an empty box to a first report through it", async (t) => {
   await page.getByRole("heading", { name: "Command Post" }).waitFor();
   await fill(page, { "Scoring port": String(box.scoring), "Mapping port": String(box.mapping) });
   await page.getByRole("button", { name: "Next" }).click();
-  assert.deepEqual((await review(page)).map(([path, , to]) => [path, to]), [["command_post.scoring.port", String(box.scoring)], ["command_post.mapping.port", String(box.mapping)]]);
+  assert.deepEqual((await review(page)).map(([path, , to]) => [path, to]), [["Scoring port", String(box.scoring)], ["Mapping port", String(box.mapping)]]);
   await page.getByRole("button", { name: "Apply", exact: true }).click();
 
   await page.getByRole("heading", { name: "Tokens" }).waitFor();
@@ -46,8 +46,7 @@ test("leads from an empty box to a first report through it", async (t) => {
   const before = JSON.stringify(await record());
   assert.doesNotMatch(before, /"type": ?"Drill"/, "the test spent no report");
   await page.getByRole("button", { name: "New report" }).click();
-  await page.locator("#compose input[value=Drill]:not([data-moving])").waitFor({ state: "attached" });
-  await page.locator("#compose").getByRole("radio", { name: "Drill" }).check({ force: true });
+  await page.locator("#compose .types").getByRole("button", { name: "Drill", exact: true }).click();
   for (const [name, value] of [["x", "12.5"], ["y", "-3"], ["z", "0"]]) await page.fill(`#compose input[name=${name}]`, value);
   await page.locator("#compose .go").click();
   await page.locator("#compose .send").click();
@@ -143,9 +142,9 @@ test("switches to another course by one press, once it was said what that change
   await own.getByText("Set.", { exact: true }).waitFor();
   await page.getByRole("button", { name: "Switch to Course B" }).click();
   assert.deepEqual(await review(page), [
-    ["course", "No course", "Course B"],
-    ["scoring address", "127.0.0.1:1", `127.0.0.1:${box.scoring}`], ["mapping address", "127.0.0.1:2", `127.0.0.1:${box.mapping}`],
-    ["scoring token", "the common one", "its own"], ["mapping token", "the common one", "the common one"],
+    ["Course", "No course", "Course B"],
+    ["Scoring address", "127.0.0.1:1", `127.0.0.1:${box.scoring}`], ["Mapping address", "127.0.0.1:2", `127.0.0.1:${box.mapping}`],
+    ["Scoring token", "the common one", "its own"], ["Mapping token", "the common one", "the common one"],
   ]);
   await page.locator("#review").getByText(`reports go to 127.0.0.1:${box.scoring} from then on; none waits, is in doubt or is held now`).waitFor();
   await page.getByRole("button", { name: "Switch", exact: true }).click();
@@ -181,7 +180,7 @@ test("gives all settings as a file, and takes one that is checked and shown firs
   await page.getByText("settings: expected an object").waitFor();
   await give(JSON.stringify({ ...settings, robots: [{ name: "two words" }], bugdet: 1 }));
   await page.getByText("Nothing was applied: the file has errors.").waitFor();
-  await page.getByText(/robots\[0\]\.name: /).waitFor();
+  await page.getByText(/Robot 1: name: /).waitFor();
   await page.getByText(/bugdet: no such key/).waitFor();
   await give(JSON.stringify(settings));
   await page.getByText("Nothing to apply").waitFor();
@@ -192,7 +191,7 @@ test("gives all settings as a file, and takes one that is checked and shown firs
   await page.getByText("Nothing was applied.").waitFor();
   assert.equal((await ask("/adit/settings")).said.settings.robots.length, 0);
   await give(next);
-  assert.match(JSON.stringify(await review(page)), /robots\[ugv1\]/);
+  assert.match(JSON.stringify(await review(page)), /Robot ugv1/);
   await page.getByRole("button", { name: "Apply", exact: true }).click();
   await page.locator("#step-file").getByText(/Applied\./).waitFor();
   assert.deepEqual((await ask("/adit/settings")).said.settings.robots, [{ name: "ugv1", alias: "", clouds: "auto", precision: "exact", voxel_metres: 0 }]);
@@ -212,7 +211,7 @@ test("finds a setting by its name or its meaning, and changes it", async (t) => 
   await search.fill("require_token");
   await page.getByLabel("team.require_token").uncheck();
   await page.getByRole("button", { name: "Apply changes" }).click();
-  assert.deepEqual(await review(page), [["command_post.rates.map_hz", "1", "0.5"], ["team.require_token", "true", "false"], ["reports.review", "off", "all"]]);
+  assert.deepEqual(await review(page), [["Command Post: rates, map (a second)", "1", "0.5"], ["Team: require token", "true", "false"], ["Reports: review", "off", "all"]]);
   await page.locator("#review .warnings").getByText("without a token").waitFor();
   await page.getByRole("button", { name: "Leave it" }).click();
   await hears(page, "3 changes not yet applied");

@@ -13,7 +13,7 @@ afterEach(() => box?.close());
 
 const team = (page, label) => page.locator("[data-side=team]").getByLabel(label);
 const post = (page, label) => page.locator("[data-side=command_post]").getByLabel(label);
-const sign = (page) => page.getByRole("navigation", { name: "Pages" }).getByRole("link", { name: /Network change/ });
+const sign = (page) => page.locator("header").getByRole("link", { name: /Network change/ });
 
 /** A box for the length of one test, and its set-up's first step. */
 async function begin(t, takesBackWithin) {
@@ -74,13 +74,15 @@ test("says what is wrong with the addresses as they are typed, and what a change
   }
   await team(page, "Address").fill("10.100.1.77/24");
   await page.locator("#addresses .wrong", { hasText: "10.100.1.0/24 overlaps 10.100.0.0/16" }).waitFor();
+  const said = await page.locator("#addresses .wrong").filter({ hasText: "overlaps" }).innerText();
+  assert.equal(said, "10.100.1.0/24 overlaps 10.100.0.0/16 on the Command Post's side: choose another subnet, or allow it by “Allow the team’s subnet to overlap the Command Post’s”");
   await page.getByLabel("Allow the team’s subnet to overlap").check();
   await page.getByRole("button", { name: "Apply changes" }).click();
   await review(page);
   await page.getByRole("button", { name: "Apply", exact: true }).click();
   await hears(page, /Applied\./);
   await team(page, "Address").fill("10.100.1.78/24");
-  await page.locator("#addresses .warnings", { hasText: "that is allowed by network.allow_overlap" }).waitFor();
+  await page.locator("#addresses .warnings", { hasText: "allowed, but a robot cannot reach both" }).waitFor();
   await page.locator("#addresses .warnings", { hasText: "this cuts you off" }).waitFor();
   await team(page, "Mode").selectOption("dhcp");
   assert.ok(await team(page, "Address").isHidden());
@@ -89,7 +91,7 @@ test("says what is wrong with the addresses as they are typed, and what a change
   await team(page, "Address").fill("192.168.7.11/24");
   await post(page, "Addresses").fill("10.100.1.10/24, 10.100.2.10/16");
   await page.getByRole("button", { name: "Change the addresses" }).click();
-  assert.deepEqual(await review(page), [["command_post.addresses", "10.100.1.10/24", "10.100.1.10/24, 10.100.2.10/16"]]);
+  assert.deepEqual(await review(page), [["Command Post’s side: addresses", "10.100.1.10/24", "10.100.1.10/24, 10.100.2.10/16"]]);
   await page.locator("#review").getByRole("button", { name: "Leave it" }).click();
   await post(page, "Addresses").fill("10.100.1.10/24");
   await page.getByRole("button", { name: "Change the addresses" }).click();
@@ -100,7 +102,7 @@ test("takes a change back that nobody confirms, and says so", { skip: why || fal
   const page = await begin(t, SOON);
   await team(page, "Address").fill("192.168.8.11/24");
   await page.getByRole("button", { name: "Change the addresses" }).click();
-  assert.deepEqual(await review(page), [["team.address", "192.168.7.11", "192.168.8.11"]]);
+  assert.deepEqual(await review(page), [["Team’s side: address", "192.168.7.11", "192.168.8.11"]]);
   await page.locator("#review .warnings", { hasText: "this cuts you off: your address 192.168.7.2 is not in 192.168.8.0/24" }).waitFor();
   await page.locator("#review").getByRole("button", { name: "Leave it" }).click();
   assert.equal(box.address(), "192.168.7.11/24");
@@ -135,4 +137,19 @@ test("keeps a change that is confirmed from the new address", { skip: why || fal
   await until(() => box.address() === "192.168.8.11/24", "the address before");
   await hears(there, "Live");
   await there.getByText(/The last change was taken back/).waitFor();
+});
+
+test("shows both ports as the kernel has them, as a cable is pulled and put back", { skip: why || false }, async (t) => {
+  const page = await begin(t, LATE);
+  const port = (side) => page.locator(".ports li", { hasText: side });
+  await port("Command Post’s side: darpa0").getByText("cable in").waitFor();
+  const team = (await port("Team’s side: team0").innerText()).replace(/\s+/g, " ");
+  assert.match(team, /cable in, 10 Gbit\/s, full duplex Addresses 192\.168\.7\.11\/24.* Name \S+\.local MAC ([0-9a-f]{2}:){5}[0-9a-f]{2}/);
+  assert.match((await port("darpa0").innerText()).replace(/\s+/g, " "), /10\.100\.1\.10\/24.* none on this side/);
+  await page.goto(`${OLD}system`);
+  await port("darpa0").getByText("cable in").waitFor();
+  box.plug("wan0", false);
+  await port("darpa0").getByText("no cable").waitFor();
+  box.plug("wan0", true);
+  await port("darpa0").getByText("cable in").waitFor();
 });

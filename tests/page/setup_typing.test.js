@@ -22,7 +22,7 @@ test("checks the names of robots as they are typed", async (t) => {
     await add.click();
     await page.keyboard.type(name);
   }
-  await page.locator("[data-path='robots[1].name'] .wrong", { hasText: "the same as robots[0].name" }).waitFor();
+  await page.locator("[data-path='robots[1].name'] .wrong", { hasText: "the same as “Robot 1: name”" }).waitFor();
   await page.getByRole("button", { name: "Apply changes" }).click();
   await focusIsAt(page, "robots[1].name"); // the error
   await type(page, "robots[1].name", "uav1");
@@ -80,7 +80,7 @@ test("lists the errors of other steps, each with a way to it", async (t) => {
   await hears(page, "1 error to mend");
   await step(page, "Command Post").getByText("1 error").waitFor();
   await step(page, "Robots").click();
-  await page.locator("#typed").getByRole("button", { name: /^command_post\.scoring\.port: expected/ }).click();
+  await page.locator("#typed").getByRole("button", { name: /^Scoring port: expected/ }).click();
   await page.getByRole("heading", { name: "Command Post" }).waitFor();
   await focusIsAt(page, "command_post.scoring.port");
   await page.getByRole("button", { name: "Next" }).click();
@@ -105,10 +105,10 @@ test("shows two operators what each has done, and lets one go on from the newer"
   }
   await page.getByRole("button", { name: "Apply changes" }).click();
   await page.getByRole("heading", { name: "Somebody else has saved settings meanwhile" }).waitFor();
-  assert.deepEqual(await review(page), [["command_post.scoring.port", "1", "8002", "8001"], ["command_post.mapping.port", "2", "8003", "2"]]);
+  assert.deepEqual(await review(page), [["Scoring port", "1", "8002", "8001"], ["Mapping port", "2", "8003", "2"]]);
   await page.getByRole("button", { name: "Go on with mine over theirs" }).click();
-  await page.getByRole("heading", { name: "Apply this?" }).waitFor();
-  assert.deepEqual(await review(page), [["command_post.scoring.port", "8002", "8001"]]);
+  await page.getByRole("heading", { name: "Apply these changes?" }).waitFor();
+  assert.deepEqual(await review(page), [["Scoring port", "8002", "8001"]]);
   await page.getByRole("button", { name: "Apply", exact: true }).click();
   await hears(page, /Applied\./);
   const { command_post: post } = (await ask("/adit/settings")).said.settings;
@@ -131,7 +131,7 @@ test("shows two operators what each has done, and lets one go on from the newer"
   await page.getByRole("heading", { name: "Somebody else has saved settings meanwhile" }).waitFor();
   await page.getByRole("button", { name: "Go on with mine over theirs" }).click();
   await page.getByRole("button", { name: "Apply changes" }).click();
-  assert.deepEqual((await review(page)).map(([path]) => path.replace(/\..*/, "")), Array(5).fill("robots[ugv2]"));
+  assert.deepEqual((await review(page)).map(([path]) => path.replace(/:.*/, "")), Array(5).fill("Robot ugv2"));
   await page.getByRole("button", { name: "Apply", exact: true }).click();
   await hears(page, /Applied\./);
   assert.deepEqual((await ask("/adit/settings")).said.settings.robots.map(({ name }) => name), ["ugv1", "uav1"]);
@@ -174,5 +174,5 @@ test("is opened at the setting that a refusal names", async (t) => {
   await focusIsAt(page, "rules.rewrite_frame_id");
   await page.keyboard.press("Space");
   await page.getByRole("button", { name: "Apply changes" }).click();
-  assert.deepEqual(await review(page), [["rules.rewrite_frame_id", "false", "true"]]);
+  assert.deepEqual(await review(page), [["Rules: rewrite frame id", "false", "true"]]);
 });

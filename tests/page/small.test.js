@@ -1,11 +1,11 @@
 // The smallest phones: nothing is cut, and no text lies on another.
 import assert from "node:assert/strict";
 import { test } from "node:test";
-import { watch } from "./watch.js";
+import { openMore, settled, toTab, watch } from "./watch.js";
 
 const PHONES = [[320, 640], [360, 740]];
 
-/** Texts of one row that lie on each other, leave their section or are cut short. */
+/** Texts of one row that lie on each other, leave their section or are cut short; the layers' row is moved sideways. */
 const faults = (page) => page.evaluate(() => {
   const linesOf = (node) => {
     const range = document.createRange();
@@ -13,7 +13,7 @@ const faults = (page) => page.evaluate(() => {
     return [...range.getClientRects()];
   };
   const isText = (node) => [...node.childNodes].some((child) => child.nodeType === Node.TEXT_NODE && child.data.trim());
-  const textsIn = (node) => [...node.querySelectorAll("*")].filter((each) => isText(each) && each.checkVisibility() && !each.closest(".spoken, .pattern"));
+  const textsIn = (node) => [...node.querySelectorAll("*")].filter((each) => isText(each) && each.checkVisibility() && !each.closest(".spoken, .pattern, .layers"));
   const meet = (a, b) => Math.min(a.right, b.right) - Math.max(a.left, b.left) > 1 && Math.min(a.bottom, b.bottom) - Math.max(a.top, b.top) > 4;
   const found = [];
   for (const row of document.querySelectorAll("main :is(li, tr, dl)")) {
@@ -21,7 +21,7 @@ const faults = (page) => page.evaluate(() => {
     texts.forEach(([text, lines], i) => texts.slice(0, i).forEach(([other, under]) =>
       lines.some((line) => under.some((each) => meet(line, each))) && found.push(`"${text}" on "${other}"`)));
   }
-  for (const section of document.querySelectorAll("main > .board > section")) {
+  for (const section of document.querySelectorAll("main > section")) {
     const { right } = section.getBoundingClientRect();
     for (const node of textsIn(section)) if (linesOf(node).some((line) => line.right > right)) found.push(`"${node.textContent}" leaves ${section.id}`);
   }
@@ -33,8 +33,13 @@ for (const [width, height] of PHONES) {
   test(`nothing is cut or lies on another at ${width} x ${height}`, async (t) => {
     for (const scene of ["trouble", "reports"]) {
       const { page } = await watch(t, scene, { viewport: { width, height }, hasTouch: true });
-      await page.locator("#reports li").first().waitFor();
-      assert.deepEqual(await faults(page), [], scene);
+      for (const tab of ["Run", "Map", "Reports", "Robots"]) {
+        await toTab(page, tab);
+        await settled(page);
+        assert.deepEqual(await faults(page), [], `${scene}, ${tab}`);
+      }
+      await openMore(page);
+      assert.deepEqual(await faults(page), [], `${scene}, More`);
       await page.getByRole("button", { name: "Keyboard" }).tap();
       await page.locator("#help[open]").waitFor();
       assert.deepEqual(await faults(page), [], `${scene}, the help`);
@@ -45,6 +50,7 @@ for (const [width, height] of PHONES) {
 
 test("brings both reports of a pair into sight, and the button that closes them", async (t) => {
   const { page } = await watch(t, "reports", { viewport: { width: 360, height: 740 }, hasTouch: true });
+  await toTab(page, "Reports");
   await page.getByRole("button", { name: /^Show both on the map/ }).first().tap();
   const close = page.locator("#map .pair button");
   await close.waitFor();

@@ -4,10 +4,13 @@ import { once } from "node:events";
 import { mkdirSync } from "node:fs";
 import { join, resolve } from "node:path";
 import { createInterface } from "node:readline";
+import { fileURLToPath } from "node:url";
 import { chromium } from "playwright-core";
 
 /** The folder of the programs that are tested. */
 export const BIN = resolve(process.env.ADIT_BIN);
+/** The pages as they are written. */
+export const FILES = fileURLToPath(new URL("../../firmware/site/files", import.meta.url));
 /** Debian's shell of Chromium: the same engine in half the time that the whole browser takes. */
 export const CHROMIUM = process.env.CHROMIUM ?? "/usr/bin/chromium-headless-shell";
 

@@ -3,7 +3,7 @@ import { readFile } from "node:fs/promises";
 import { test } from "node:test";
 import { gunzipSync } from "node:zlib";
 import { serve } from "./stage.js";
-import { axeFindsNothing, shoot, text, visitor } from "./watch.js";
+import { axeFindsNothing, openMore, shoot, text, visitor } from "./watch.js";
 
 const OPERATOR = "correct horse", VIEWER = "look, do not touch";
 const SIZES = [["phone", 390, 844], ["720p", 1280, 720], ["1080p", 1920, 1080], ["4k", 3840, 2160]];
@@ -230,11 +230,12 @@ test("shows a viewer what he may see, and nothing that he may not do", async (t)
 
 test("leads from each page to the others", async (t) => {
   const { stage, page } = await come(t);
-  const nav = page.getByRole("navigation", { name: "Pages" });
-  assert.deepEqual(await nav.getByRole("link").allInnerTexts(), ["Run", "Set-up", "System", "Display"]);
+  const nav = page.getByRole("navigation", { name: /^(All p|P)ages$/ });
+  assert.deepEqual(await nav.getByRole("link").allInnerTexts(), ["Run", "Runs", "Set-up", "System", "Display"]);
   assert.equal(await nav.getByRole("link", { name: "System" }).getAttribute("aria-current"), "page");
-  await nav.getByRole("link", { name: "Run" }).click();
+  await nav.getByRole("link", { name: "Run", exact: true }).click();
   await page.waitForSelector("body[data-link=live]");
+  await openMore(page);
   assert.equal(await nav.locator("[aria-current]").innerText(), "Run");
   await nav.getByRole("link", { name: "System" }).click();
   await page.waitForURL(`${stage.url}system`);
@@ -280,7 +281,8 @@ test("can be used by keyboard alone", async (t) => {
 });
 
 const updating = (page) => page.locator("#update");
-const aFile = (text) => ({ name: "adit-a-board-0.2.0.raucb", mimeType: "", buffer: Buffer.from(text) });
+/** Begins as a bundle does: as a squashfs of 40 bytes. */
+const aFile = (text) => ({ name: "adit-a-board-0.2.0.raucb", mimeType: "", buffer: Buffer.from(`hsqs${"\0".repeat(36)}(${"\0".repeat(7)}${text}`, "latin1") });
 
 test("tells which version runs and what became of the last update", async (t) => {
   const { page } = await come(t);
@@ -291,6 +293,10 @@ test("tells which version runs and what became of the last update", async (t) =>
 test("installs an update from a file, and says why one was refused", async (t) => {
   const { page } = await come(t);
   const file = updating(page).getByLabel("The update"), install = updating(page).getByRole("button", { name: "Install it" });
+  await file.setInputFiles({ ...aFile(""), buffer: Buffer.alloc(1 << 20, "no update") });
+  await install.click();
+  await updating(page).getByText("it is no update").waitFor();
+  assert.match(page.complaints.splice(0).join(), /^[^,]*status of 422[^,]*$/); // the browser's own word of it
   await file.setInputFiles(aFile("xxx"));
   await install.click();
   await updating(page).getByText("Invalid bundle format: Signature size is 0").waitFor();
@@ -310,15 +316,35 @@ test("installs what is on a stick, and shows how far it is", async (t) => {
 
 test("restarts the box only on the operator's word while a report waits", async (t) => {
   const { page } = await come(t);
-  await updating(page).getByRole("button", { name: "Restart the box" }).click();
-  const dialog = page.locator("#confirm");
-  await dialog.getByText("1 report waits to be sent").waitFor();
-  await dialog.getByRole("button", { name: "Restart" }).click();
-  await updating(page).getByText("The box is restarting.").waitFor();
+  const restart = page.locator("#restart"), dialog = page.locator("#confirm");
+  const press = (name) => dialog.getByRole("button", { name, exact: true }).click();
+  await restart.getByRole("button", { name: "Restart the box" }).click();
+  await dialog.getByText("It takes about a minute.").waitFor();
+  await press("Leave it");
+  assert.ok(!page.requests.some((url) => url.endsWith("/adit/update/restart")), "nothing is asked for on a no");
+  await restart.getByRole("button", { name: "Restart the box" }).click();
+  await press("Restart");
+  await dialog.getByText("1 report waits to be sent.").waitFor();
+  await press("Leave it");
+  await restart.getByText("The box was not restarted.").waitFor();
+  await restart.getByRole("button", { name: "Restart the box" }).click();
+  await press("Restart");
+  await dialog.getByText("1 report waits to be sent.").waitFor();
+  await press("Restart");
+  await restart.getByText("The box is restarting.").waitFor();
+  await page.waitForFunction(() => document.querySelector("#restart button").disabled);
+});
+
+test("says why it cannot restart the box, and what to do then", async (t) => {
+  const { page } = await come(t);
+  await page.route("**/adit/update", (route) => route.fulfill({ json: { managed: false, why: "adit-update does not run here", doing: null, progress: null, refusal: null, last: null, stick: null, stick_why: null } }));
+  await page.locator("#restart").getByText("This page cannot restart the box (adit-update does not run here). Switch it off and on.").waitFor();
+  assert.equal(await page.locator("#restart").getByRole("button").count(), 0);
 });
 
 test("lets a viewer see the update and do nothing", async (t) => {
   const { page } = await come(t, VIEWER);
   await updating(page).getByText("0.1.0, slot A").waitFor();
   assert.equal(await updating(page).getByRole("button").count(), 0);
+  assert.equal(await page.locator("#restart").getByRole("button").count(), 0);
 });

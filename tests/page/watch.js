@@ -1,9 +1,11 @@
 // What every test of the page needs: a browser for the file, and a page that looks at a scene.
 import assert from "node:assert/strict";
+import { basename, join } from "node:path";
 import { after, before } from "node:test";
-import { countAwaited, launch, look, serve, visit } from "./stage.js";
+import { countAwaited, FILES, launch, look, serve, visit } from "./stage.js";
 
 export { axeFindsNothing } from "./axe.js";
+export { openMore, toTab } from "./parts.js";
 export { settled, shoot } from "./stage.js";
 
 let browser;
@@ -29,6 +31,10 @@ export async function visitor(t, url, options = {}, prepare = () => {}) {
   t.after(() => page.context().close());
   return page;
 }
+
+/** Serves a page's modules as they are written, beside what is bundled of them: `import("/modules/words.js")`. */
+export const withModules = (page) =>
+  page.route("**/modules/*.js", (route) => route.fulfill({ path: join(FILES, basename(new URL(route.request().url()).pathname)) }));
 
 export const text = (page, selector) => page.textContent(selector);
 export const said = (page, words) => page.waitForFunction((words) => document.body.innerText.includes(words), words);

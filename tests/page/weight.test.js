@@ -1,30 +1,110 @@
+// What a visit of a page weighs, and that what is kept is kept rightly: by what a browser and a script are really sent.
 import assert from "node:assert/strict";
-import { readdirSync, readFileSync } from "node:fs";
+import { execFileSync } from "node:child_process";
+import { createHash } from "node:crypto";
+import { mkdtempSync, readdirSync, readFileSync, rmSync } from "node:fs";
+import { get } from "node:http";
+import { tmpdir } from "node:os";
+import { join } from "node:path";
 import { test } from "node:test";
 import { fileURLToPath } from "node:url";
-import { gzipSync } from "node:zlib";
+import { gunzipSync } from "node:zlib";
 import { HtmlValidate } from "html-validate";
+import { FILES, serve } from "./stage.js";
+import { visitor } from "./watch.js";
 
-const FOLDER = fileURLToPath(new URL("../../firmware/site/files/", import.meta.url));
-const MOST = 80_000;
-const files = readdirSync(FOLDER);
-const read = (name) => readFileSync(FOLDER + name);
+const PAGES = ["", "display", "runs", "setup", "system", "login.html"];
+const MOST_REQUESTS = 5; // the page, its script, its style, its icon, and what loads it again
+const MOST = 60_000; // bytes of one page as they are sent
+const SITE = fileURLToPath(new URL("../../firmware/site/", import.meta.url));
+const sources = readdirSync(FILES);
 
-const TYPES = `${readFileSync(new URL("../../firmware/artifact_types.inc", import.meta.url))}`.match(/^".*"/gm).join(", ");
-
-/** As toolchain/cmake/embed.cmake puts it into aditd: scripts without the lines that are a comment and with the artifact
- *  types, style without comments, pages without what indents their lines. */
-function embedded(name) {
-  if (name.endsWith(".css")) return `${read(name)}`.replaceAll(/ *\/\*[^*]*\*\//g, "");
-  if (name.endsWith(".html")) return `${read(name)}`.replaceAll(/\n +/g, "\n");
-  if (!name.endsWith(".js")) return read(name);
-  return `\n${read(name)}`.replaceAll(/\n *(\/\/[^\n]*|\/\*\*[^\n]*\*\/)/g, "\n").slice(1).replace('"artifact_types.inc"', TYPES);
+async function stageFor(t) {
+  const stage = await serve("calm");
+  t.after(() => stage.end());
+  return stage;
 }
 
-test("all pages together weigh at most 80 kB gzipped", (t) => {
-  const bytes = files.reduce((sum, name) => sum + gzipSync(embedded(name)).length, 0);
-  t.diagnostic(`${files.length} files, ${bytes} bytes gzipped`);
-  assert.ok(bytes > 10_000 && bytes <= MOST, `${bytes} bytes`);
+/** What a script is answered: {status, headers, body}. */
+const ask = (url, headers = {}) =>
+  new Promise((resolve, reject) => {
+    get(url, { headers }, async (answer) => resolve({ ...answer, status: answer.statusCode, headers: answer.headers, body: Buffer.concat(await answer.toArray()) })).on("error", reject);
+  });
+
+/** The files that a page names. */
+const namedIn = (html) => [...html.matchAll(/(?:href|src)="([^"/]+\.(?:js|css|svg))"/g)].map(([, name]) => name);
+
+/** What a browser asks for to show a page, but for the API's answers: [{url, headers, kept, length}]. */
+async function visitTwice(t, stage, path) {
+  const page = await visitor(t, "about:blank", { extraHTTPHeaders: { Authorization: "Bearer team-1" } });
+  const devtools = await page.context().newCDPSession(page);
+  await devtools.send("Network.enable");
+  const answers = new Map(), add = (id, what) => answers.set(id, { length: 0, ...answers.get(id), ...what });
+  devtools.on("Network.requestServedFromCache", ({ requestId }) => add(requestId, { kept: true }));
+  devtools.on("Network.responseReceived", ({ requestId, response }) => add(requestId, { url: response.url, headers: response.headers, ...(response.fromDiskCache && { kept: true }) }));
+  devtools.on("Network.loadingFinished", ({ requestId, encodedDataLength }) => add(requestId, { length: encodedDataLength }));
+  const files = () => [...answers.values()].filter(({ url }) => url?.startsWith(stage.url) && !url.includes("/adit/"));
+  const visits = [];
+  for (const once of ["first", "again"]) {
+    await page.goto(`${stage.url}${path}`, { waitUntil: "load" });
+    await page.waitForFunction(() => performance.getEntriesByName("first-contentful-paint").length > 0);
+    visits.push(files());
+    answers.clear();
+    assert.ok(visits.at(-1).length > 0, once);
+  }
+  return visits;
+}
+
+test("a page comes in a handful of answers, all compressed", async (t) => {
+  const stage = await stageFor(t);
+  for (const path of ["", "display", "setup", "system"]) {
+    const [first, again] = await visitTwice(t, stage, path);
+    const bytes = first.reduce((sum, { length }) => sum + length, 0);
+    t.diagnostic(`/${path}: ${first.length} answers, ${bytes} bytes; again: ${again.filter(({ kept }) => !kept).length} answers`);
+    const names = new Set(first.map(({ url }) => url));
+    assert.ok(names.size >= 4 && names.size <= MOST_REQUESTS, [...names].join(" "));
+    assert.ok(bytes > 5_000 && bytes <= MOST, `/${path}: ${bytes} bytes`);
+    for (const { url, headers } of first) assert.equal(headers["Content-Encoding"], "gzip", url);
+    for (const { url, kept } of again) assert.ok(kept || !/\.[0-9a-f]{12}\./.test(url), `asked for again: ${url}`);
+  }
+});
+
+test("what is named by its content is that, and may be kept; a page is asked for each time", async (t) => {
+  const stage = await stageFor(t);
+  for (const path of PAGES) {
+    const page = await ask(stage.url + path);
+    assert.equal(page.headers["cache-control"], "no-cache");
+    const names = namedIn(`${page.body}`);
+    assert.deepEqual(names.map((name) => name.split(".").at(-1)).sort(), ["css", "js", "js", ...names.filter((name) => name.endsWith(".svg")).map(() => "svg")], path);
+    for (const name of names) {
+      const plain = await ask(stage.url + name), packed = await ask(stage.url + name, { "Accept-Encoding": "gzip" });
+      assert.deepEqual([plain.status, plain.headers["content-encoding"], packed.headers["content-encoding"]], [200, undefined, "gzip"], name);
+      assert.deepEqual(gunzipSync(packed.body), plain.body, name);
+      const [, hash] = /\.([0-9a-f]{12})\.(?:js|css)$/.exec(name) ?? [];
+      if (hash) assert.equal(createHash("sha256").update(plain.body).digest("hex").slice(0, 12), hash, name);
+      else assert.ok(name.endsWith(".svg"), name);
+      assert.match(packed.headers["cache-control"], hash ? /max-age=31536000, immutable/ : /^no-cache$/, name);
+      const same = await ask(stage.url + name, { "Accept-Encoding": "gzip", "If-None-Match": packed.headers.etag });
+      assert.deepEqual([same.status, same.body.length], [304, 0], name);
+    }
+  }
+});
+
+test("the same bytes come of the same files, wherever they lie", () => {
+  const folder = mkdtempSync(join(tmpdir(), "adit-bundle-"));
+  const made = (name, files) => {
+    execFileSync(join(SITE, "bundle"), [files, join(SITE, "../artifact_types.inc"), join(folder, name)]);
+    return Object.fromEntries(readdirSync(join(folder, name, "served")).map((file) => [file, readFileSync(join(folder, name, "served", file), "latin1")]));
+  };
+  try {
+    execFileSync("cp", ["-r", FILES, join(folder, "elsewhere")]);
+    const first = made("one", FILES), second = made("two", join(folder, "elsewhere"));
+    assert.ok(Object.keys(first).length > PAGES.length * 3);
+    assert.deepEqual(first, second);
+    for (const [name, text] of Object.entries(first)) assert.ok(!text.includes(SITE) && !text.includes(folder) && !/\/\*|^\s*\/\/ /m.test(text), name);
+  } finally {
+    rmSync(folder, { recursive: true });
+  }
 });
 
 test("every page is valid HTML without script or style of its own", async () => {
@@ -32,13 +112,14 @@ test("every page is valid HTML without script or style of its own", async () => 
     extends: ["html-validate:standard"],
     rules: { "no-inline-style": "error", "no-trailing-whitespace": "error", "void-style": "off", "doctype-style": "off", "long-title": "off" },
   });
-  const pages = files.filter((name) => name.endsWith(".html"));
-  assert.ok(pages.includes("index.html") && pages.includes("display.html"));
+  const pages = sources.filter((name) => name.endsWith(".html"));
+  assert.equal(pages.length, PAGES.length);
   for (const page of pages) {
-    const report = await validator.validateString(read(page).toString(), page);
+    const text = `${readFileSync(join(FILES, page))}`;
+    const report = await validator.validateString(text, page);
     const found = report.results.flatMap(({ messages }) => messages.map(({ line, message, ruleId }) => `${page}:${line}: ${message} (${ruleId})`));
     assert.deepEqual(found, []);
-    assert.ok(read(page).includes('<script src="again.js"></script>\n<link rel="stylesheet"'), `${page}: a part that does not come is asked for again`);
-    assert.doesNotMatch(read(page).toString(), /<script>|<style|\sstyle=|\son\w+=|https?:/);
+    assert.ok(text.includes('<script src="again.js"></script>\n<link rel="stylesheet"'), `${page}: a part that does not come is asked for again`);
+    assert.doesNotMatch(text, /<script>|<style|\sstyle=|\son\w+=|https?:/);
   }
 });

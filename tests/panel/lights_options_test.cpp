@@ -29,7 +29,7 @@ TEST(LightsOptions, NameWhatIsMissingOrUnknown) {
   EXPECT_EQ(parse({}).error(), "fault, dark or ended is missing");
   EXPECT_EQ(parse({"bright"}).error(), "unknown word 'bright'");
   EXPECT_EQ(parse({"dark", "fault"}).error(), "fault: fault, dark and ended are three things: which one?");
-  EXPECT_EQ(parse({"dark", "--bord"}).error(), "unknown word '--bord'");
+  EXPECT_EQ(parse({"dark", "--bord"}).error(), "unknown word '--bord'; did you mean --board?");
   EXPECT_EQ(parse({"dark", "--board"}).error(), "--board wants a value");
   for (const char* const seconds : {"0", "-1", "3601", "1.5", "ten", ""}) {
     EXPECT_EQ(parse({"fault", "--seconds", seconds}).error(),

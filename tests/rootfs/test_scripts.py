@@ -12,7 +12,7 @@ from recipe import TOP
 
 SECTOR = 512
 FIRST = b"# GRUB Environment Block\n"
-DEFAULTS = {"ORDER": "A B", "A_OK": "1", "B_OK": "1", "A_TRY": "0", "B_TRY": "0"}
+DEFAULTS = {"ORDER": "A B", "A_OK": "1", "B_OK": "1", "A_TRY": "0", "B_TRY": "0", "A_MOST": "10", "B_MOST": "10"}
 MACHINE_ID = b"0123456789abcdef0123456789abcdef\n"
 
 
@@ -50,7 +50,15 @@ class GrubsEnvironment(Scripts):
     def test_what_is_set_is_listed_and_the_rest_is_kept(self):
         self.set("A_TRY=2")
         self.set("A_TRY=0", "ORDER=B A")
-        self.assertEqual(self.listed(), {**DEFAULTS, "ORDER": "B A"})
+        self.assertEqual(self.listed(), {**DEFAULTS, "ORDER": "B A", "B_MOST": "3"})
+
+    def test_a_slot_has_three_tries_once_it_is_to_be_started_first_and_ten_once_it_is_good(self):
+        self.set("ORDER=B A", "B_OK=1", "B_TRY=0")  # as RAUC has it
+        self.assertEqual((self.listed()["A_MOST"], self.listed()["B_MOST"]), ("10", "3"))
+        self.set("B_TRY=2")
+        self.assertEqual(self.listed()["B_MOST"], "3")
+        self.set("B_OK=1", "B_TRY=0")
+        self.assertEqual((self.listed()["A_MOST"], self.listed()["B_MOST"]), ("10", "10"))
 
     def test_it_writes_a_sector_and_not_a_byte_beside_it(self):
         self.set("B_TRY=3")
@@ -65,7 +73,7 @@ class GrubsEnvironment(Scripts):
         alone = self.folder / "grubenv"
         alone.write_bytes(self.partition.read_bytes()[SECTOR:2 * SECTOR])
         said = self.call("grub-editenv", alone, "list").stdout
-        self.assertEqual(dict(line.split("=", 1) for line in said.splitlines()), {**DEFAULTS, "ORDER": "B A", "B_TRY": "1"})
+        self.assertEqual(dict(line.split("=", 1) for line in said.splitlines()), {**DEFAULTS, "ORDER": "B A", "B_TRY": "1", "B_MOST": "3"})
 
     def test_one_that_cannot_be_read_is_made_again_with_what_grub_goes_by(self):
         for damaged in bytes(SECTOR), b"\xff" * SECTOR, b"#" * SECTOR, FIRST[:9] + bytes(SECTOR - 9):
@@ -114,6 +122,77 @@ class TwoDisks(Scripts):
     def test_rauc_asks_before_it_installs_and_udev_as_disks_come_and_go(self):
         self.assertIn("\npre-install=/usr/lib/adit/disks\n", (TOP / "rootfs/rauc.conf.in").read_text())
         self.assertIn('RUN+="/usr/lib/adit/disks"', (TOP / "rootfs/overlay/usr/lib/udev/rules.d/70-adit-disks.rules").read_text())
+
+
+class Greeting(Scripts):
+    """What the consoles show, with a box of plain files; `sleep` ends it the second time."""
+
+    def shown(self, code="12345678", passwords=False, addresses=("10.0.0.1", "192.168.7.11"), consoles="tty0 ttyS0"):
+        state, devices = self.folder / "state", self.folder / "dev"
+        for path in state, devices, self.folder / "bin":
+            shutil.rmtree(path, ignore_errors=True)
+            path.mkdir()
+        for name in consoles.split():
+            (devices / name).touch()
+        if code:
+            (state / "first-start.code").write_text(code + "\n")
+        if passwords:
+            (state / "access.json").write_text("{}")
+        (self.folder / "active").write_text(consoles + "\n")
+        said = "".join(f"2: team0    inet {address}/24 brd 10.0.0.255 scope global team0\\n" for address in addresses)
+        for name, does in ("ip", f"printf '{said}'"), ("sleep", "[ -e slept ] && kill $PPID; : >slept"):
+            (self.folder / "bin" / name).write_text(f"#!/bin/sh\n{does}\n")
+            (self.folder / "bin" / name).chmod(0o755)
+        (self.folder / "slept").unlink(missing_ok=True)
+        self.call(TOP / "rootfs/overlay/usr/lib/adit/greeting", state, self.folder / "active", devices,
+                  PATH=f"{self.folder}/bin:/usr/bin:/bin")
+        return [(devices / name).read_text() for name in consoles.split()]
+
+    def test_each_console_shows_once_where_the_page_is_and_the_code(self):
+        screen, serial = self.shown()
+        self.assertEqual(screen, serial)
+        for words in "http://10.0.0.1", "http://192.168.7.11", "code that it asks for: 12345678":
+            self.assertEqual(screen.count(words), 1, screen)
+        self.assertNotIn("\n\n", screen.replace("\r", "").strip())
+
+    def test_a_code_that_is_on_the_label_is_not_shown(self):
+        self.assertIn("is on the label", self.shown(code=None)[0])
+
+    def test_nothing_is_shown_once_a_password_is_set(self):
+        self.assertEqual(self.shown(passwords=True), ["", ""])
+
+
+LOCKED = "E: Could not get lock /var/lib/apt/lists/lock. It is held by process 7 (apt)"
+
+
+class SetUp(Scripts):
+    """toolchain/setup, on a machine that lacks all packages, with an apt-get that says what the lines of `says` are, one each time."""
+
+    def setUp(self):
+        super().setUp()
+        for name, does in (("dpkg-query", "exit 1"), ("sleep", ":"), ("sudo", 'exec "$@"'),
+                           ("apt-get", 'echo "$*" >>calls; [ -s says ] || exit 0; head -n 1 says >&2; sed -i 1d says; exit 100')):
+            path = self.folder / "bin" / name
+            path.parent.mkdir(exist_ok=True)
+            path.write_text(f"#!/bin/sh\n{does}\n")
+            path.chmod(0o755)
+        for name in "setup", "packages":
+            shutil.copy(TOP / "toolchain" / name, self.folder / name)
+
+    def set_up(self, *says):
+        (self.folder / "says").write_text("".join(line + "\n" for line in says))
+        done = self.call(self.folder / "setup", "lint", PATH=f"{self.folder}/bin:/usr/sbin:/usr/bin:/sbin:/bin")
+        return done, [line.split()[0] for line in (self.folder / "calls").read_text().splitlines()]
+
+    def test_it_waits_for_another_apt_and_says_so_once(self):
+        done, calls = self.set_up(LOCKED, LOCKED)
+        self.assertEqual((done.returncode, calls), (0, ["update", "update", "update", "-o"]))
+        self.assertEqual(done.stdout.count("waits for another apt"), 1)
+
+    def test_any_other_fault_ends_it_with_what_apt_said(self):
+        done, calls = self.set_up("E: Could not resolve the mirror")
+        self.assertEqual((done.returncode, calls), (1, ["update"]))
+        self.assertIn("Could not resolve", done.stderr)
 
 
 class Options(Scripts):

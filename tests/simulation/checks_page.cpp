@@ -178,19 +178,22 @@ std::optional<double> metric(const std::string& text, const std::string& name) {
   return std::strtod(text.c_str() + at + name.size() + 2, nullptr);
 }
 
-/// The view still tells of too many connections or of refused robots, and the metrics no more: a minute has
-/// passed, which is no event.
-bool has_forgotten_crowd(const Reading& reading) {
-  const Json& attention = reading.view.at("attention");
-  const auto tells_of_crowd = [](const Json& sentence) {
-    const auto& text = sentence.get_ref<const std::string&>();
-    return text.contains("are ended for new ones") || text.starts_with("requests are answered 503") ||
-           text.starts_with("requests show wrong tokens") || text.starts_with("too much waits");
-  };
-  const auto told = metric(reading.metrics, "adit_attention");
-  const auto crowded = static_cast<double>(std::ranges::count_if(attention, tells_of_crowd));
-  const auto shown = static_cast<double>(attention.size());
-  return told && *told < shown && *told >= shown - crowded;
+/// Of alarms that come and go by time alone, which is no event.
+bool goes_by_time(const Json& alarm) {
+  const std::string id = alarm.at("id");
+  constexpr std::string_view kByTime[] = {"robot_silent",  "robots_silent",   "map_behind",   "maps_behind",
+                                          "queue_",        "clients_refused", "wrong_tokens", "strangers",
+                                          "robot_unknown", "command_post_",   "disk_full",    "reports_left"};
+  return std::ranges::any_of(kByTime, [&](std::string_view begins) { return id.starts_with(begins); });
+}
+
+/// The metrics name each alarm that the view has.
+void judge_alarms(const Reading& reading, Broken& broken) {
+  for (const Json& alarm : reading.view.at("alarms")) {
+    if (goes_by_time(alarm) || reading.metrics.contains("adit_alarm{id=" + alarm.at("id").dump() + ","))
+      continue;
+    broken.push_back(icd::sentence("Honest: at ", reading.at, " the metrics lack the alarm ", alarm.dump()));
+  }
 }
 
 /// The metrics say what the view says, where nothing happened between the two.
@@ -212,8 +215,7 @@ void judge_metrics(const Evidence& evidence, const Reading& reading, Broken& bro
     for (const char* const count : {"accepted", "forwarded", "replaced", "merged", "throttled", "failed"})
       compare("adit_updates_" + std::string(count) + "_total" + labels, row.at(count));
   }
-  if (!has_forgotten_crowd(reading))
-    compare("adit_attention", static_cast<double>(reading.view.at("attention").size()));
+  judge_alarms(reading, broken);
   for (const Json& row : reading.view.at("endpoints")) {
     const std::string labels = "{endpoint=" + row.at("name").dump() + "}";
     compare("adit_endpoint_up" + labels, row.at("connected") ? 1 : 0);
@@ -224,14 +226,14 @@ void judge_metrics(const Evidence& evidence, const Reading& reading, Broken& bro
 
 /// That a message was not taken for want of room is said until the next one is: there may be none. And a
 /// write that a death tore in its last byte looks like a damaged byte. Where the settings name robots, others
-/// stay told of.
-bool is_of_the_past(const Json& sentence) {
-  const std::string said = sentence;
-  return said.starts_with("the last map was not taken: ") ||
-         said.starts_with("states and markers are not taken, ") ||
-         said.starts_with("The ledger's log was damaged; its checksums told ") ||
-         said.starts_with("the ledger was damaged: ") || said.starts_with("requests show wrong tokens, ") ||
-         said.starts_with("unknown robot");
+/// stay told of; and robots have stopped, and reports were spent.
+bool is_of_the_past(const Json& alarm) {
+  const std::string id = alarm.at("id");
+  constexpr std::string_view kOfThePast[] = {"map_not_kept",   "state_not_kept", "run_not_kept",
+                                             "ledger_damaged", "wrong_tokens",   "robot_unknown",
+                                             "robot_silent",   "robots_silent",  "reports_left"};
+  return !calls(alarm) ||
+         std::ranges::any_of(kOfThePast, [&](std::string_view begins) { return id.starts_with(begins); });
 }
 
 /// The last reading may be none of the rest, where a death that was due came as late as that.
@@ -253,15 +255,16 @@ void judge_rest(const Evidence& evidence, const Reading& reading, Broken& broken
     return row.at("state") == "received" || row.at("state") == "in doubt";
   });
   const auto called = static_cast<std::size_t>(std::ranges::count_if(
-      reading.view.at("attention"), [](const Json& sentence) { return !is_of_the_past(sentence); }));
+      reading.view.at("alarms"), [](const Json& alarm) { return !is_of_the_past(alarm); }));
   // Of reports that Adit cannot account for he is told.
   const bool beside = std::ranges::any_of(evidence.events, [](const Event& event) {
     return event.kind == Kind::Another || (event.kind == Kind::NewRun && event.who.ends_with(kNameless));
   });
   if (called > 0 && judged == 0 && !beside && reading.view.at("aside").empty())
     broken.push_back(
-        icd::sentence("Honest: at rest the operator is called: ", reading.view.at("attention").dump()));
-  if (called < static_cast<std::size_t>(judged))
+        icd::sentence("Honest: at rest the operator is called: ", reading.view.at("alarms").dump()));
+  constexpr std::int64_t kOneByOne = 10;  // more are told of together
+  if (called < static_cast<std::size_t>(std::min<std::int64_t>(judged, kOneByOne)))
     broken.push_back(icd::sentence("Honest: at rest ", judged,
                                    " reports wait for the operator, and he is called ", called, " times"));
 }

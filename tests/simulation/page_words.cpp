@@ -15,13 +15,15 @@ constexpr const char* kLights[] = {"health", "scoring", "mapping", "attention"};
 /// By the table of firmware/panel/README.md, for a box whose cables are in.
 std::string pattern_of(const std::string& light, const Json& view) {
   if (!view.at("identify_until").is_null()) return "twice";
-  if (light == "attention") return view.at("attention").empty() ? "off" : "fast";
+  const Json& alarms = view.at("alarms");
+  if (light == "attention") {
+    if (std::ranges::none_of(alarms, calls)) return "off";
+    const auto is_new = [](const Json& alarm) { return calls(alarm) && !alarm.at("acknowledged"); };
+    return std::ranges::any_of(alarms, is_new) ? "fast" : "on";
+  }
   if (light == "health") {
-    const auto& called = view.at("attention");
-    const bool no_ledger = std::ranges::any_of(called, [](const Json& sentence) {
-      return sentence.get<std::string>().starts_with("no report is taken");
-    });
-    return no_ledger ? "fast" : "on";
+    const auto is_of_ledger = [](const Json& alarm) { return alarm.at("id") == "ledger_unwritable"; };
+    return std::ranges::any_of(alarms, is_of_ledger) ? "fast" : "on";
   }
   const auto row =
       std::ranges::find_if(view.at("endpoints"), [&](const Json& each) { return each.at("name") == light; });
@@ -38,7 +40,8 @@ std::string status_line(const Json& view) {
                                          run.at("remaining_reports").get<std::int64_t>(), " reports left");
   if (const auto waiting = reports_in(view, "waiting"); waiting > 0)
     line += icd::sentence(", ", waiting, " reports waiting");
-  if (!view.at("attention").empty()) line += "; " + view.at("attention").front().get<std::string>();
+  const Json& alarms = view.at("alarms");
+  if (!alarms.empty() && calls(alarms.front())) line += "; " + said(alarms.front());
   return line;
 }
 
@@ -63,6 +66,15 @@ std::string lit(const Json& view, const std::string& bits) {
 }
 
 }  // namespace
+
+bool calls(const Json& alarm) {
+  return alarm.at("severity") != "wait";
+}
+
+std::string said(const Json& alarm) {
+  const std::string what = alarm.at("what"), why = alarm.at("why");
+  return why.empty() ? what : what + ": " + why;
+}
 
 std::int64_t reports_in(const Json& view, const std::string& state) {
   return std::ranges::count_if(view.at("reports"), [&](const Json& row) {

@@ -14,6 +14,11 @@ namespace adit::simulation {
 /// `count` events had happened; "": in nothing.
 std::string disagreement(const nlohmann::json& view, const std::vector<Event>& events, std::size_t count);
 
+/// Whether an alarm of a view calls the operator.
+bool calls(const nlohmann::json& alarm);
+/// It, in a line.
+std::string said(const nlohmann::json& alarm);
+
 /// How many reports a view shows in that state in the present run.
 std::int64_t reports_in(const nlohmann::json& view, const std::string& state);
 

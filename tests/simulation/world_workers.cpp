@@ -1,7 +1,7 @@
 // loop/workers.hpp over the simulated world: each job runs whole at a drawn time, and its end comes at a
 // later one.
 #include <algorithm>
-#include <deque>
+#include <optional>
 #include <utility>
 
 #include "loop/guard.hpp"
@@ -22,19 +22,22 @@ class Pool : public std::enable_shared_from_this<Pool> {
       : loop_(loop),
         idle_(count == 0 ? 2 : count),
         finishes_(finishes),
+        jobs_(idle_),
         random_(world_.random("workers " + std::to_string(world_.entropy()))) {}
 
-  void submit(std::function<void()> work, std::function<void()> done, std::function<void()> failed) {
-    jobs_.push_back({std::move(work), std::move(done), std::move(failed)});
+  void submit(Urgency urgency, std::function<void()> work, std::function<void()> done,
+              std::function<void()> failed) {
+    jobs_.add({std::move(work), std::move(done), std::move(failed)}, urgency, loop_.now());
     begin_one();
   }
 
   void end() {
     over_ = true;
-    if (finishes_) {
-      for (Job& job : jobs_) guarded("a job of a worker", job.work);
+    while (auto next = finishes_ ? jobs_.take(loop_.now()) : std::nullopt) {
+      guarded("a job of a worker", next->job.work);
     }
-    jobs_.clear();
+    JobQueue<Job> dropped(1);
+    jobs_.hand_over_to(dropped);
   }
 
  private:
@@ -42,7 +45,7 @@ class Pool : public std::enable_shared_from_this<Pool> {
     std::function<void()> work, done, failed;
   };
 
-  /// One of the threads wakes up, and takes the first job that there is then.
+  /// One of the threads wakes up, and takes the job that is next then.
   void begin_one() {
     if (idle_ == 0 || jobs_.size() <= waking_) return;
     --idle_;
@@ -59,24 +62,30 @@ class Pool : public std::enable_shared_from_this<Pool> {
 
   void work() {
     --waking_;
-    Job job = std::move(jobs_.front());
-    jobs_.pop_front();
+    auto next = jobs_.take(loop_.now());
+    if (!next) {  // enough of those that can wait are at work: the next that ends begins it
+      ++idle_;
+      return;
+    }
+    Job& job = next->job;
     world_.crossing();
     bool well = false;
     const Duration waited = world_.in_worker([&] { well = guarded("a job of a worker", job.work); });
     world_.crossing();
     job.work = nullptr;
     const double busy = random_.chance(0.02) ? kBusy : 0;
-    world_.after(
-        waited + simulation::seconds(random_.between(0, kTakes + busy)),
-        [weak = weak_from_this(), end = well ? std::move(job.done) : std::move(job.failed)]() mutable {
-          if (const auto self = weak.lock(); self && !self->over_) self->hand_back(std::move(end));
-        });
+    world_.after(waited + simulation::seconds(random_.between(0, kTakes + busy)),
+                 [weak = weak_from_this(), urgency = next->urgency,
+                  end = well ? std::move(job.done) : std::move(job.failed)]() mutable {
+                   if (const auto self = weak.lock(); self && !self->over_)
+                     self->hand_back(urgency, std::move(end));
+                 });
   }
 
   /// The loop takes it up when it does not stand still.
-  void hand_back(std::function<void()> end) {
+  void hand_back(Urgency urgency, std::function<void()> end) {
     ++idle_;
+    jobs_.ended(urgency, loop_.now());
     loop_.post([weak = weak_from_this(), end = std::move(end)] {
       if (const auto self = weak.lock(); self && !self->over_) end();
     });
@@ -88,8 +97,8 @@ class Pool : public std::enable_shared_from_this<Pool> {
   unsigned idle_;
   std::size_t waking_ = 0;
   const bool finishes_;
+  JobQueue<Job> jobs_;
   simulation::Random random_;
-  std::deque<Job> jobs_;
   bool over_ = false;
 };
 
@@ -112,13 +121,15 @@ Workers::Workers(Loop& loop, unsigned count, AtEnd at_end)
     : impl_(std::make_unique<Impl>(loop, count, at_end)) {}
 Workers::~Workers() = default;
 
-void Workers::submit(std::function<void()> work, std::function<void()> done, std::function<void()> failed) {
-  impl_->pool().submit(std::move(work), std::move(done), std::move(failed));
+void Workers::submit(Urgency urgency, std::function<void()> work, std::function<void()> done,
+                     std::function<void()> failed) {
+  impl_->pool().submit(urgency, std::move(work), std::move(done), std::move(failed));
 }
-void Workers::submit(std::function<void()> work, std::function<void()> done) {
+void Workers::submit(Urgency urgency, std::function<void()> work, std::function<void()> done) {
   const auto either = std::make_shared<std::function<void()>>(std::move(done));
-  impl_->pool().submit(std::move(work), [either] { (*either)(); }, [either] { (*either)(); });
+  impl_->pool().submit(urgency, std::move(work), [either] { (*either)(); }, [either] { (*either)(); });
 }
+void Workers::give_way() {}  // a job takes no time
 void Workers::ask() {}
 bool Workers::are_well(Duration) const {
   return true;

@@ -27,6 +27,19 @@ TEST(Bundle, ThatRaucSaysNothingOfIsNone) {
   }
 }
 
+TEST(Bundle, IsToldFromWhatIsNoneByItsFirstBytes) {
+  std::vector<std::uint8_t> head(kBundleHead);
+  head[0] = 'h', head[1] = 's', head[2] = 'q', head[3] = 's', head[41] = 1;  // of 256 bytes
+  EXPECT_EQ(not_a_bundle(head, 257), "");
+  EXPECT_EQ(not_a_bundle(head, 256), "it is cut short: 256 bytes of an update of more than 256");
+  for (std::size_t at = 40; at < kBundleHead; ++at) head[at] = 0xff;
+  EXPECT_NE(not_a_bundle(head, ~std::uint64_t{0}), "");
+  EXPECT_NE(not_a_bundle(std::span(head).first(kBundleHead - 1), 257), "");
+  EXPECT_NE(not_a_bundle({}, 257), "");
+  head[3] = 'S';
+  EXPECT_EQ(not_a_bundle(head, 257), "it is no update: expected a file adit-BOARD-VERSION.raucb");
+}
+
 TEST(Running, IsReadFromWhatRaucSaysOfTheBox) {
   const auto running = read_status(R"({"compatible":"adit-qemu-virt","variant":"","booted":"B",
     "boot_primary":"rootfs.1","slots":[
@@ -45,6 +58,18 @@ TEST(Running, SaysWhetherTheOtherSlotIsNext) {
                       R"(,"slots":[{"rootfs.1":{"bootname":"B"}},{"rootfs.0":{"bootname":"A"}}]})"));
     ASSERT_TRUE(running) << running.error();
     EXPECT_EQ(running->other_next, next) << primary;
+  }
+}
+
+TEST(Running, SaysWhetherTheOtherSlotHasTriesLeft) {
+  for (const auto& [status, good] :
+       {std::pair(R"(,"boot_status":"good")", true), std::pair(R"(,"boot_status":"bad")", false),
+        std::pair(R"(,"boot_status":null)", false), std::pair("", false)}) {
+    const auto running = read_status(icd::sentence(
+        R"({"compatible":"a","booted":"B","slots":[{"rootfs.1":{"bootname":"B","boot_status":"good"}},)",
+        R"({"rootfs.0":{"bootname":"A")", status, "}}]}"));
+    ASSERT_TRUE(running) << running.error();
+    EXPECT_EQ(running->other_good, good) << status;
   }
 }
 

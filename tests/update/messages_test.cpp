@@ -85,7 +85,7 @@ TEST(Messages, OfAnotherFormatOrWithAnotherWordAreRefused) {
   EXPECT_FALSE(read<Request>(request.dump()));
   request["format"] = 1;
   request["what"] = "erase";
-  EXPECT_THAT(read<Request>(request.dump()).error(), HasSubstr("install, stick or restart"));
+  EXPECT_THAT(read<Request>(request.dump()).error(), HasSubstr("install, stick, restart, back or stay"));
   request["what"] = "stick";
   for (const char* nonce :
        {"", "0123", "0123456789ABCDEF0123456789abcdef", "../../../../etc/passwd0000000000"}) {

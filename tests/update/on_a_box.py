@@ -25,7 +25,7 @@ class OnABox(unittest.TestCase):
 
     def expect_untouched(self):
         self.assertEqual(self.box.contents(), self.before)
-        self.assertEqual(self.box.boot_loader(), {"BOOT_ORDER": "A B", "BOOT_A_LEFT": "3", "BOOT_B_LEFT": "3"})
+        self.assertEqual(self.box.boot_loader(), {"BOOT_ORDER": "A B", "BOOT_A_LEFT": raucs.PROVEN, "BOOT_B_LEFT": raucs.PROVEN})
 
     def expect_refused(self, status, sentence):
         self.assertIn(sentence, status["refusal"])

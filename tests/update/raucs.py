@@ -22,7 +22,8 @@ BUS = """<!DOCTYPE busconfig PUBLIC "-//freedesktop//DTD D-Bus Bus Configuration
 <busconfig><type>session</type><listen>unix:path={path}</listen><policy context="default"><allow own="*"/>
 <allow send_destination="*" eavesdrop="true"/><allow eavesdrop="true"/></policy></busconfig>
 """
-ENVIRONMENT = "BOOT_A_LEFT=3\nBOOT_B_LEFT=3\nBOOT_ORDER=A B\n"
+PROVEN, ON_TRIAL = "a", "3"  # tries, as RAUC writes them: in hexadecimal
+ENVIRONMENT = f"BOOT_A_LEFT={PROVEN}\nBOOT_B_LEFT={PROVEN}\nBOOT_ORDER=A B\n"
 
 
 def needs_rauc():
@@ -113,7 +114,7 @@ class Box:
                         for kind, part, extra in (("rootfs", "root", f"bootname={letter.upper()}\n"),
                                                   ("boot", "boot", "parent=rootfs.{number}\n")))
         (self.folder / "system.conf").write_text(
-            f"[system]\ncompatible={BOARD}\nbootloader=uboot\nbundle-formats={FORMAT}\nmountprefix={self.folder}/mount\n"
+            f"[system]\ncompatible={BOARD}\nbootloader=uboot\nboot-attempts=10\nboot-attempts-primary=3\nbundle-formats={FORMAT}\nmountprefix={self.folder}/mount\n"
             f"statusfile={self.folder}/rauc.status\nactivate-installed=true\n\n"
             f"[keyring]\npath={bundles.keys.cert}\nuse-bundle-signing-time=true\n\n{slots}")
 

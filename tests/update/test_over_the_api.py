@@ -53,6 +53,9 @@ class Aditd:
         return int(re.search(r"VmHWM:\s+(\d+)", pathlib.Path(f"/proc/{self.process.pid}/status").read_text()).group(1)) >> 10
 
 
+HEAD = b"hsqs" + bytes(36) + (4096).to_bytes(8, "little")  # as a bundle begins: a squashfs of one page
+
+
 class OverTheApi(unittest.TestCase):
     def setUp(self):
         raucs.needs_rauc()
@@ -92,7 +95,7 @@ class OverTheApi(unittest.TestCase):
 
     def test_a_large_one_takes_no_memory_and_a_broken_off_one_leaves_nothing(self):
         before = self.aditd.resident()
-        status, _ = self.aditd.ask("POST", "/adit/update", os.urandom(60 << 20))
+        status, _ = self.aditd.ask("POST", "/adit/update", HEAD + os.urandom(60 << 20))
         self.assertEqual(status, 200)
         self.assertLess(self.aditd.resident() - before, 8, "MiB")
         self.box.update()
@@ -102,22 +105,33 @@ class OverTheApi(unittest.TestCase):
         for name, value in (("Authorization", f"Bearer {TOKEN}"), ("Content-Type", "application/octet-stream"),
                             ("Content-Length", "1000000")):
             connection.putheader(name, value)
-        connection.endheaders(b"x" * 1000)
+        connection.endheaders(HEAD + bytes(1000))
         raucs.wait_until(lambda: self.left() == ["update.raucb.part"], "its beginning")
         connection.close()
         raucs.wait_until(lambda: self.left() == [], "nothing of it to be left")
 
-    def test_one_of_a_gigabyte_is_refused_before_it_is_sent(self):
+    def refused_at_once(self, length, begins):
+        """The answer to a bundle of which no more than its beginning was sent."""
         connection = http.client.HTTPConnection("127.0.0.1", self.aditd.port, timeout=60)
         with contextlib.closing(connection):
             connection.putrequest("POST", "/adit/update")
             for name, value in (("Authorization", f"Bearer {TOKEN}"), ("Content-Type", "application/octet-stream"),
-                                ("Content-Length", str(1 << 30))):
+                                ("Content-Length", str(length))):
                 connection.putheader(name, value)
-            connection.endheaders(b"x")
+            connection.endheaders(begins)
             answer = connection.getresponse()
-            self.assertEqual(answer.status, 413)
-        self.assertEqual(self.left(), [])
+            self.assertEqual(self.left(), [])
+            return answer.status, json.loads(answer.read())
+
+    def test_one_of_a_gigabyte_is_refused_before_it_is_sent(self):
+        self.assertEqual(self.refused_at_once(1 << 30, b"x")[0], 413)
+
+    def test_what_is_no_bundle_is_refused_by_its_first_bytes(self):
+        image = b"\xfd7zXZ" + bytes(100)  # somebody took the disk image for the update
+        self.assertEqual(self.refused_at_once(35 << 20, image), (422, "it is no update: expected a file adit-BOARD-VERSION.raucb"))
+        status, said = self.refused_at_once(4096, HEAD)
+        self.assertEqual(status, 422)
+        self.assertIn("cut short", said)
 
 
 if __name__ == "__main__":

@@ -41,7 +41,7 @@ class OnTrial(OnABox):
         self.assertEqual(self.box.boot_loader()["BOOT_B_LEFT"], "2")
         self.ready_for(60)
         self.assertTrue(self.watch(60))
-        self.assertEqual(self.box.boot_loader(), {"BOOT_ORDER": "B A", "BOOT_A_LEFT": "3", "BOOT_B_LEFT": "3"})
+        self.assertEqual(self.box.boot_loader(), {"BOOT_ORDER": "B A", "BOOT_A_LEFT": raucs.PROVEN, "BOOT_B_LEFT": raucs.PROVEN})
         self.assertIn("start --no-block adit-update.service", self.box.calls.read_text())
         status = self.box.update()
         self.assertEqual((status["trial"], status["last"]["stage"], status["last"]["version"]), (False, "good", "0.2.0"))
@@ -68,9 +68,9 @@ class OnTrial(OnABox):
             self.assertEqual((status["last"]["stage"], status["last"]["version"]), ("left", "0.2.0"))
             self.assertIn("0.1.0 runs again", status["last"]["why"])
         # Nor once all tries are used up, when the boot loader gives three again to each slot of its order.
-        self.assertEqual(self.box.boot_loader(), {"BOOT_ORDER": "A", "BOOT_A_LEFT": "3", "BOOT_B_LEFT": "0"})
+        self.assertEqual(self.box.boot_loader(), {"BOOT_ORDER": "A", "BOOT_A_LEFT": raucs.ON_TRIAL, "BOOT_B_LEFT": "0"})
         self.assertEqual(self.box.install(self.newer)["last"]["stage"], "installed")  # the operator may try it again
-        self.assertEqual(self.box.boot_loader(), {"BOOT_ORDER": "B A", "BOOT_A_LEFT": "3", "BOOT_B_LEFT": "3"})
+        self.assertEqual(self.box.boot_loader(), {"BOOT_ORDER": "B A", "BOOT_A_LEFT": raucs.ON_TRIAL, "BOOT_B_LEFT": raucs.ON_TRIAL})
 
     def test_a_slot_that_was_good_once_is_good_as_soon_as_the_service_is_ready(self):
         self.box.start("B")
@@ -82,7 +82,8 @@ class OnTrial(OnABox):
         self.assertEqual(self.box.boot_loader()["BOOT_B_LEFT"], "1")
         self.ready_for(0)
         self.assertTrue(self.watch(60))
-        self.assertEqual(self.box.boot_loader()["BOOT_B_LEFT"], "3")
+        self.assertEqual(self.box.boot_loader()["BOOT_B_LEFT"], raucs.PROVEN)
+        self.assertEqual(self.box.calls.read_text().splitlines()[-1], "start --no-block adit-update.service")  # which ends RAUC
         self.assertNotIn("reboot", self.box.calls.read_text())
 
 
@@ -106,7 +107,7 @@ class ACutOfThePower(OnABox):
         self.assertEqual((self.box.contents()["root-a"], self.box.contents()["boot-a"]),
                          (self.before["root-a"], self.before["boot-a"]))
         loader = self.box.boot_loader()
-        self.assertEqual((loader["BOOT_ORDER"].split()[0], loader["BOOT_A_LEFT"], loader["BOOT_B_LEFT"]), ("A", "3", "0"))
+        self.assertEqual((loader["BOOT_ORDER"].split()[0], loader["BOOT_A_LEFT"], loader["BOOT_B_LEFT"]), ("A", raucs.PROVEN, "0"))
         self.assertEqual(self.box.install(self.newer)["last"]["stage"], "installed")
 
     def test_after_its_end_and_before_the_note_of_it_leaves_the_slot_on_trial(self):

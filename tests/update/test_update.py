@@ -30,7 +30,7 @@ class Installed(OnABox):
             self.assertEqual(now[name][:len(image)], image, name)
         for name in ("root-a", "boot-a"):
             self.assertEqual(now[name], self.before[name], name)
-        self.assertEqual(self.box.boot_loader(), {"BOOT_ORDER": "B A", "BOOT_A_LEFT": "3", "BOOT_B_LEFT": "3"})
+        self.assertEqual(self.box.boot_loader(), {"BOOT_ORDER": "B A", "BOOT_A_LEFT": raucs.PROVEN, "BOOT_B_LEFT": raucs.ON_TRIAL})
         self.assertEqual(list((self.box.folder / "wanted").iterdir()), [])
 
     def test_the_same_version_only_where_that_is_said(self):
@@ -132,7 +132,7 @@ class Refused(OnABox):
         now = self.box.contents()
         self.assertEqual((now["root-a"], now["boot-a"]), (self.before["root-a"], self.before["boot-a"]))
         loader = self.box.boot_loader()
-        self.assertEqual((loader["BOOT_ORDER"].split()[0], loader["BOOT_A_LEFT"]), ("A", "3"))
+        self.assertEqual((loader["BOOT_ORDER"].split()[0], loader["BOOT_A_LEFT"]), ("A", raucs.PROVEN))
 
     def test_what_is_no_plain_file_is_taken_away(self):
         path = self.box.folder / "wanted/update.raucb"

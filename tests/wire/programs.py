@@ -119,6 +119,10 @@ class CommandPost(Program):
         return [(request["uri"], request["violations"]) for request in self.requests() if request["violations"]]
 
 
+def in_a_line(alarm):
+    return f"{alarm['what'][0].lower()}{alarm['what'][1:]}: {alarm['why']}"
+
+
 class Page:
     """What is asked of a box as its page asks it. Who is one has `network` and `port`."""
 
@@ -175,8 +179,9 @@ class Page:
         return self.ask("GET /adit/reports")[1]
 
     def attention(self):
-        """What the operator is to know or to decide, a sentence a line."""
-        return "\n".join(self.ask("GET /adit/run")[1]["attention"])
+        """What the operator is to know or to decide, a line each: the alarms that do not pass by themselves."""
+        alarms = self.ask("GET /adit/run")[1]["alarms"]
+        return "\n".join(in_a_line(alarm) for alarm in alarms if alarm["severity"] != "wait")
 
     def judge(self, number, action):
         """The operator's word on a report: send, done, withdraw or resubmit. Its status, and what its JSON says."""
@@ -208,7 +213,7 @@ class Box(Program, Page):
         self.settings = folder / "settings.json"
         self.settings.write_text(json.dumps(settings(network, overrides)))
         command = [BIN / "aditd", "--settings", self.settings, "--secrets", folder / "secrets", "--state", self.state,
-                   "--network", folder / "network" / "status"]
+                   "--network", folder / "network" / "status", "--update", folder / "update"]
         super().__init__(network, network.box, folder / "aditd.log", command)
         wait_until(self._answers, "aditd to listen")
 

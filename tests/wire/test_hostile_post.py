@@ -67,7 +67,7 @@ class HostilePost(unittest.TestCase):
             self.send_map(stage, "r1", seed)
         self.send(stage, "/state/update", state("r1"))
         self.send(stage, "/markers/update", marker(1))
-        wait_until(lambda: "no Command Post (mapping)" in stage.box.attention(), "the alarm")
+        wait_until(lambda: "answers is no Command Post" in stage.box.attention(), "the alarm")
         mapping = next(row for row in self.view(stage)["endpoints"] if row["name"] == "mapping")
         self.assertIn("no Command Post", mapping["trouble"])
         self.assertGreater(mapping["foreign"], 0)

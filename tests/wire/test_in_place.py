@@ -222,7 +222,7 @@ class InPlace(unittest.TestCase):
         uploads = self.at_work(stage)
         stage.box.apply("POST /adit/tokens", {"name": "mapping", "token": "wrong-token"})
         self.all_are_taken(uploads)
-        wait_until(lambda: "refuses the mapping token" in stage.box.attention(), "it to be refused")
+        wait_until(lambda: "mapping token is refused" in stage.box.attention(), "it to be refused")
         stage.box.apply("POST /adit/tokens", {"name": "mapping", "token": MAPPING_TOKEN})
         wait_until(lambda: len(self.arrived(stage.post)) == 6, "all maps")
 

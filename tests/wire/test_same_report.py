@@ -165,12 +165,12 @@ class Held(unittest.TestCase):
 class Barred(unittest.TestCase):
     def test_a_token_that_is_refused_for_a_while(self):
         with playing(reports__answer_within_ms=600000) as stage:
-            stage.post.will("401", status=["401"] * 4)  # for seconds, so that it is seen on a busy machine, too
+            stage.post.will("401", status=["401,for=4"])  # for seconds, so that it is seen on a busy machine, too
             told = submit(stage)  # which waits for less than ten minutes: it is told at once
             self.assertEqual(told.status_code, 503)
             self.assertIn("is kept and waiting", told.json())
             self.assertNotIn("WWW-Authenticate", told.headers)
-            self.assertIn("refuses the scoring token", stage.box.attention())
+            wait_until(lambda: "scoring token is refused" in stage.box.attention(), "that to be told")
             wait_until(lambda: stage.post.recorded(REPORT), "the token to be accepted again")
             again = submit(stage)
             self.assertEqual((again.status_code, again.json()["score_change"]), (201, 1))

@@ -97,7 +97,7 @@ class Service(unittest.TestCase):
     def test_starts_without_a_token_and_says_which_is_missing(self):
         (self.folder / "secrets" / "scoring.token").unlink()
         self.start()
-        self.assertIn("no scoring token is set", self.heard("READY=1"))
+        self.assertIn("No scoring token is set", self.heard("READY=1"))
 
     def test_says_which_address_it_cannot_listen_on(self):
         taken = socket.create_server(("127.0.0.1", 0))

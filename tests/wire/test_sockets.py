@@ -74,7 +74,7 @@ class Clients(threading.Thread):
         began = time.monotonic()
         for _ in range(2):  # as any client of HTTP, again where a connection ends without an answer
             try:
-                status, _ = ask(self.port, path="/page.css")
+                status, _ = ask(self.port, path="/icon.svg")
             except ConnectionRefusedError:
                 with self.lock:
                     self.refused += 1

@@ -1,19 +1,20 @@
-# Puts files into a program, under gzip: a C++ source that defines `std::span<const File> embedded_files()` in NAMESPACE,
-# where HEADER declares it and `struct File {std::string_view path, etag, packed;}`.
-#   adit_embed(page_files.cpp HEADER page/site.hpp NAMESPACE adit::page FOLDER files FILES index.html page.css LIST words.inc)
-# LIST is optional: a file with a word in quotes and a comma on each line. Where a script says ["words.inc"], it has all of these.
-# This file is also the script that writes that source at build time, whenever one of the files has changed.
+# Puts the files of a folder into a program, under gzip: a C++ source that defines `std::span<const File> embedded_files()` in
+# NAMESPACE, where HEADER declares it and `struct File {std::string_view path, etag, packed; bool is_hashed;}`.
+#   adit_embed(page_files.cpp HEADER page/site.hpp NAMESPACE adit::page FOLDER served MADE served.made)
+# MADE is a file that is newer than all of them: they may have been made during the build, under names that only they know.
+# FILES, instead of all, the named ones alone. A file whose name holds a hash (page.5c3a1f2e9b70.js) never changes under that name.
+# This file is also the script that writes that source at build time.
 if(NOT CMAKE_SCRIPT_MODE_FILE)
   function(adit_embed output)
-    cmake_parse_arguments(EMBED "" "HEADER;NAMESPACE;FOLDER;LIST" "FILES" ${ARGN})
+    cmake_parse_arguments(EMBED "" "HEADER;NAMESPACE;FOLDER;MADE" "FILES" ${ARGN})
     set(script ${PROJECT_SOURCE_DIR}/toolchain/cmake/embed.cmake)
     list(TRANSFORM EMBED_FILES PREPEND ${EMBED_FOLDER}/ OUTPUT_VARIABLE paths)
     string(REPLACE ";" "," names "${EMBED_FILES}")
     add_custom_command(
       OUTPUT ${output}
       COMMAND ${CMAKE_COMMAND} -DOUTPUT=${output} -DHEADER=${EMBED_HEADER} -DNAMESPACE=${EMBED_NAMESPACE}
-              -DFOLDER=${EMBED_FOLDER} -DFILES=${names} -DLIST=${EMBED_LIST} -P ${script}
-      DEPENDS ${script} ${paths} ${EMBED_LIST}
+              -DFOLDER=${EMBED_FOLDER} -DFILES=${names} -P ${script}
+      DEPENDS ${script} ${paths} ${EMBED_MADE}
       COMMENT "Embedding ${EMBED_FOLDER}"
       VERBATIM)
   endfunction()
@@ -21,39 +22,29 @@ if(NOT CMAKE_SCRIPT_MODE_FILE)
 endif()
 
 string(REPLACE "," ";" FILES "${FILES}")
-if(LIST)
-  file(STRINGS ${LIST} words REGEX "^\"")
-  list(JOIN words " " words)
-  string(REGEX REPLACE ",$" "" words "${words}")
-  get_filename_component(list_name ${LIST} NAME)
+if(NOT FILES)
+  file(GLOB FILES RELATIVE ${FOLDER} ${FOLDER}/*)  # sorted
 endif()
 set(bodies "")
 set(table "")
 foreach(name IN LISTS FILES)
   string(MAKE_C_IDENTIFIER "${name}" identifier)
-  file(READ ${FOLDER}/${name} text)
-  if(name MATCHES "\\.js$")  # without the lines that are a comment; the others keep their numbers
-    string(REGEX REPLACE "\n *(//[^\n]*|/\\*\\*[^\n]*\\*/)" "\n" text "\n${text}")
-    string(SUBSTRING "${text}" 1 -1 text)
-    if(LIST)
-      string(REPLACE "[\"${list_name}\"]" "[${words}]" text "${text}")
-    endif()
-  elseif(name MATCHES "\\.css$")  # without its comments
-    string(REGEX REPLACE " */\\*[^*]*\\*/" "" text "${text}")
-  elseif(name MATCHES "\\.html$")  # without what indents its lines
-    string(REGEX REPLACE "\n +" "\n" text "${text}")
-  endif()
-  file(WRITE ${OUTPUT}.packed "${text}")
+  configure_file(${FOLDER}/${name} ${OUTPUT}.packed COPYONLY)
   execute_process(COMMAND gzip -n9f ${OUTPUT}.packed COMMAND_ERROR_IS_FATAL ANY)
   file(READ ${OUTPUT}.packed.gz bytes HEX)
-  string(SHA256 hash "${text}")
+  file(SHA256 ${FOLDER}/${name} hash)
   string(SUBSTRING ${hash} 0 16 etag)
+  if(name MATCHES "\\.[0-9a-f]+\\.(js|css)$")
+    set(is_hashed true)
+  else()
+    set(is_hashed false)
+  endif()
   string(REGEX REPLACE "(..)" "\\\\x\\1" bytes "${bytes}")
   # A literal may be no longer than 65,535 characters (C++ [implimits]): in pieces, which the compiler joins.
   string(REGEX REPLACE "((\\\\x..)(\\\\x..)?(\\\\x..)?(\\\\x..)?(\\\\x..)?(\\\\x..)?(\\\\x..)?(\\\\x..)?)" "\"\\1\"\n" bytes "${bytes}")
   string(APPEND bodies "constexpr char k_${identifier}[] =\n${bytes};\n")
   string(APPEND table
-    "    {\"/${name}\", \"\\\"${etag}\\\"\", {k_${identifier}, sizeof k_${identifier} - 1}},\n")
+    "    {\"/${name}\", \"${etag}\", {k_${identifier}, sizeof k_${identifier} - 1}, ${is_hashed}},\n")
 endforeach()
 file(WRITE ${OUTPUT} "// Written by toolchain/cmake/embed.cmake.
 #include \"${HEADER}\"

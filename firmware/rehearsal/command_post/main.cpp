@@ -135,7 +135,7 @@ int run(const Options& options) {
 int main(int count, char** arguments) {
   using namespace adit::rehearsal;
   auto options = adit::command_line::read(command_line_of, {arguments + 1, arguments + count});
-  if (const auto exit = adit::command_line::answer(command_line_of, "", options)) return *exit;
+  if (const auto exit = adit::command_line::answer(command_line_of, ADIT_VERSION, options)) return *exit;
   options->verbose = options->verbose || ::isatty(STDOUT_FILENO) == 1;
   return run(*options);
 }

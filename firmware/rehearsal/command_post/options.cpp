@@ -78,7 +78,8 @@ command_line::Program command_line_of(Options& options) {
             number<0L, INT64_MAX>(options.run.reports)},
            {"--rate", "HZ", "429 above it, for each URI (1; 0: no limit)", number<0.0, kMost>(options.rate)},
            {"--counts", "WHAT",
-            "of maps, states and markers, for that rate: starts, last-bytes, or answers (to the next start)",
+            "starts, last-bytes or answers (to the next start): what is counted for that rate, of maps, "
+            "states and markers",
             take<take_counted>(options.counted)},
            {"--not-started", "", "the run waits for POST /start on the control port", &options.not_started},
            {"--fault", "AIM:FAULT", "what goes wrong with the next request of an aim; may be given often",
@@ -91,6 +92,7 @@ command_line::Program command_line_of(Options& options) {
             "and DELETE /faults",
             take<take_address<std::optional<Address>>>(options.control)},
            {"--verbose", "", "a line for each request, also where stdout is no terminal", &options.verbose},
+           {"--version", "", "prints the version", &options.version},
            {"--help", "", "prints this", &options.help}},
       .ending =
           "AIM: reports, status, mapping; clock:constant and clock:running: of all answers from then on.\n"

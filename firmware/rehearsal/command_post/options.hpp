@@ -31,7 +31,7 @@ struct Options {
   std::uint64_t seed = 1;                // of what happens at random
   bool not_started = false;
   bool verbose = false;
-  bool help = false;
+  bool help = false, version = false;
 };
 
 [[gnu::cold]] command_line::Program command_line_of(Options& options);

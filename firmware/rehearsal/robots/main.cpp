@@ -124,7 +124,7 @@ int run(const Options& options, const Cave& cave) {
 
 int main_of(std::span<const char* const> arguments) {
   const auto options = parse_options(arguments);
-  if (const auto exit = command_line::answer(command_line_of, "", options)) return *exit;
+  if (const auto exit = command_line::answer(command_line_of, ADIT_VERSION, options)) return *exit;
   const Cave cave = Cave::generate(options->seed);
   if (!options->truth.empty() && !write_truth(cave, options->truth)) {
     return complain("--truth: cannot write " + options->truth);

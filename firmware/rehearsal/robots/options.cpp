@@ -46,7 +46,7 @@ Wrong take_clouds(std::vector<CloudForm>& into, const std::string& text) {
 }
 
 std::expected<Options, std::string> complete(Options options) {
-  if (options.help) return options;
+  if (options.help || options.version) return options;
   if (options.generate_only) {
     if (options.truth.empty()) return std::unexpected("--generate-only: needs --truth CSV");
     return options;
@@ -80,7 +80,7 @@ command_line::Program command_line_of(Options& options) {
                {"--secrets", "DIR", "team.token in it is what the team presents", &options.secrets},
                {"--robots", "N", "how many explore, 0 to 50 (3)", number<0, 50>(options.robots)},
                {"--style", "STYLE",
-                "cbor, cbor-plain, cbor-body-gzip, json-base64, json-array, ros, browser, or mixed: each "
+                "cbor, cbor-plain, cbor-body-gzip, json-base64, json-array, ros, browser or mixed: each "
                 "robot the next one (mixed)",
                 take<take_style>(options.style)},
                {"--grids", "FORMS",
@@ -91,7 +91,7 @@ command_line::Program command_line_of(Options& options) {
                 number<0.01, kMostHz>(options.offers.grid_hz)},
                {"--grid-mb", "MB", "a finer grid, so that one of the whole cave has so many megabytes (0.15)",
                 number<0.0, kMostMegabytes>(options.offers.grid_mb)},
-               {"--clouds", "FORMS", "differential, whole, none, in turn as well (differential)",
+               {"--clouds", "FORMS", "differential, whole, none; in turn as well (differential)",
                 take<take_clouds>(options.offers.clouds)},
                {"--cloud-hz", "HZ", "clouds a second of each robot (1, 2 and 0.5 in turn)",
                 number<0.01, kMostHz>(options.offers.cloud_hz)},
@@ -111,6 +111,7 @@ command_line::Program command_line_of(Options& options) {
                {"--generate-only", "", "write that, and do no more", &options.generate_only},
                {"--speed", "X", "robots walk 2 X metres a second (1)", number<0.1, 20.0>(options.speed)},
                {"--quiet", "", "print the last summary alone", &options.quiet},
+               {"--version", "", "prints the version", &options.version},
                {"--help", "", "prints this", &options.help}},
       .ending =
           "Ends with 0 if one of every kind at least was accepted and nothing was refused but for going too "

@@ -28,7 +28,7 @@ struct Options {
   std::optional<std::chrono::duration<double>> run_for;
   std::uint64_t seed = 1;
   double speed = 1;
-  bool quiet = false, stop_when_posted = false, generate_only = false, help = false;
+  bool quiet = false, stop_when_posted = false, generate_only = false, help = false, version = false;
 };
 
 [[gnu::cold]] command_line::Program command_line_of(Options& options);

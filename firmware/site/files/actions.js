@@ -5,6 +5,8 @@ import { post, session } from "./session.js";
 const SEND = { name: "send", label: "Send" };
 const AGAIN = { name: "send", label: "Send again" };
 const COSTLY_SEND = { name: "send", label: "Send once more", costs: "It may be recorded already: then it is recorded twice" };
+const NEAR_SEND = { name: "send", label: "Send", costs: "Another of its type is close by: it may be the same artifact" };
+const LATE_SEND = { name: "send", label: "Send", costs: "It was withdrawn" };
 const HOLD = { name: "hold", label: "Hold" };
 const WITHDRAW = { name: "withdraw", label: "Withdraw" };
 const DONE = { name: "done", label: "Call it done" };
@@ -17,15 +19,17 @@ const DEEDS = {
   sending: [],
   "in doubt": [COSTLY_SEND, DONE],
   refused: [AGAIN],
-  withdrawn: [SEND],
+  withdrawn: [LATE_SEND],
   answered: [RESUBMIT],
   settled: [RESUBMIT],
 };
 
-export function actionsOf(report) {
+/** `isNear`: another of its type was reported close by. */
+export function actionsOf(report, isNear = false) {
   if (!report.position) return report.state === "in doubt" ? [DONE] : []; // it is lost
   if (report.state === "withdrawn" && report.same_as) return [COSTLY_SEND];
   if (report.state === "received" && report.same_as) return [COSTLY_SEND, WITHDRAW];
+  if (report.state === "received" && isNear) return [NEAR_SEND, WITHDRAW];
   return DEEDS[report.state] ?? [];
 }
 
@@ -57,7 +61,7 @@ const PAST = { send: "It will be sent.", hold: "Held: it goes only when you send
 
 function question(action, report, remaining) {
   const left = remaining === undefined ? "" : ` ${remaining} reports are left.`;
-  return { title: `${action.label}: report ${report.number}, ${report.type}?`, text: `${action.costs}, and costs a report.${left}`, word: action.label };
+  return { title: `${action.label}: report ${report.number}, ${report.type}?`, text: `${action.costs}. It spends a report.${left}`, word: action.label };
 }
 
 /** Does it, asking first where it costs a report. `shown` is called whenever there is something new to show. */

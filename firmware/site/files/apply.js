@@ -3,6 +3,7 @@ import { answered } from "./dialog.js";
 import { beginFrom, check, differs, draft, drop, flat, merged, onDraft, onFindings, refresh, same, findings } from "./draft.js";
 import { make, say } from "./dom.js";
 import { blameAll, fieldOf } from "./field.js";
+import { nameOf, spoken } from "./names.js";
 import { get, post } from "./session.js";
 import { clip } from "./words.js";
 
@@ -37,9 +38,9 @@ export function reviewed({ title, text = "", columns = ["From", "To"], changes =
   dialog.querySelector("h2").textContent = title;
   dialog.querySelector(".text").textContent = text;
   heads.replaceChildren(...["Setting", ...columns].map((name) => head(name, "col")));
-  rows.replaceChildren(...changes.map(([path, ...values]) => make("tr", head(path, "row"), ...values.map((value) => make("td", shown(value))))));
+  rows.replaceChildren(...changes.map(([path, ...values]) => make("tr", head(nameOf(path), "row"), ...values.map((value) => make("td", shown(value))))));
   dialog.querySelector(".scroll").hidden = !changes.length;
-  dialog.querySelector(".warnings").replaceChildren(...warnings.map((warning) => make("li", warning)));
+  dialog.querySelector(".warnings").replaceChildren(...warnings.map((warning) => make("li", spoken(warning))));
   yes.textContent = word;
   no.textContent = other || "Leave it";
   return answered(dialog, [[no, other ? false : null], [yes, true]]);
@@ -137,7 +138,7 @@ export async function apply() {
   if (trouble) return report(`${trouble} What you typed is kept.`), false;
   if (errors.length) return goTo(errors[0]), false;
   const settings = structuredClone(draft.settings);
-  const yes = await reviewed({ title: "Apply this?", changes: fromTo(changes), warnings, word: "Apply" });
+  const yes = await reviewed({ title: "Apply these changes?", changes: fromTo(changes), warnings, word: "Apply" });
   return yes === true && save(settings);
 }
 
@@ -151,7 +152,7 @@ export function goTo({ path }) {
 }
 
 function errorLink(error) {
-  const item = make("button", `${error.path}: ${error.what}`);
+  const item = make("button", `${nameOf(error.path)}: ${spoken(error.what)}`);
   item.type = "button";
   item.addEventListener("click", () => goTo(error));
   return make("li", error.field ? item : item.textContent);
@@ -196,7 +197,7 @@ function reportFile(text, { isBad = true, errors = [] } = {}) {
   const [said, wrong] = fileSection.querySelectorAll(".outcome, .warnings");
   said.dataset.bad = isBad;
   say(said, text);
-  wrong.replaceChildren(...errors.map(({ path, what }) => make("li", `${path}: ${what}`)));
+  wrong.replaceChildren(...errors.map(({ path, what }) => make("li", `${path && `${nameOf(path)}: `}${spoken(what)}`)));
 }
 
 async function readFile(file) {

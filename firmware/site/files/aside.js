@@ -55,7 +55,7 @@ export function showAside(rows, now) {
   const waiting = rows.filter(({ overtaken }) => !overtaken).length; // adit_set_aside counts the same
   if (!rows.length && performance.now() - saidAt > READ) say(said, "");
   block.hidden = !rows.length && !said.textContent;
-  block.querySelector("h3").hidden = !rows.length;
+  block.querySelector("h4").hidden = !rows.length;
   say(block.querySelector(".count"), waiting ? String(waiting) : "");
   list(block.querySelector(".rows"), rows, (row) => row.number, create, (node, row) => update(node, row, now));
 }

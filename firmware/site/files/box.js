@@ -74,11 +74,42 @@ export async function showAbout() {
   }
 }
 
+const restartPlace = document.getElementById("restart");
+const [restartNote, restarted] = restartPlace.querySelectorAll("p"), restart = restartPlace.querySelector("button");
+const MEANING = "It takes about a minute. Robots that post meanwhile have to post again; what the box has taken is kept.";
+
+/** Where the box cannot restart itself it says why, and what to do. */
+function showRestart({ managed, why, doing }, operator) {
+  restartNote.textContent = managed ? MEANING : `This page cannot restart the box (${why.split(":")[0]}). Switch it off and on.`;
+  restart.hidden = !operator || !managed;
+  restart.disabled = Boolean(doing);
+  if (doing === "restarting") restarted.textContent = "The box is restarting.";
+}
+
+/** Asks first, and again where a report is under way: what the box says of it is what is asked. */
+async function restartIt() {
+  const sure = (text) => confirmed({ title: "Restart the box?", text, word: "Restart" });
+  restarted.textContent = "";
+  restarted.dataset.bad = false;
+  if (!(await sure(MEANING))) return;
+  try {
+    await post("/adit/update/restart").catch(async (error) => {
+      if (error.status !== 409) throw error;
+      if (await sure(`${error.message}.`)) return post("/adit/update/restart", { anyway: true });
+      throw new Error("The box was not restarted.");
+    });
+    restarted.textContent = "The box is restarting.";
+  } catch (error) {
+    restarted.textContent = error.message;
+    restarted.dataset.bad = true;
+  }
+}
+
 const STAGES = { installed: "waits for a restart", good: "came up healthy" };
 
 export async function offerUpdate(operator) {
   const section = document.getElementById("update"), bar = section.querySelector("progress");
-  const [file, install, stick, restart] = section.querySelectorAll("input, button");
+  const [file, install, stick] = section.querySelectorAll("input, button");
   const [told, outcome] = section.querySelectorAll("p");
   let timer;
   function show({ managed, why, version, slot, doing, progress, refusal, trial, last, stick: offer, stick_why: unfit }) {
@@ -88,9 +119,10 @@ export async function offerUpdate(operator) {
     outcome.dataset.bad = !doing && Boolean(refusal);
     bar.hidden = !doing;
     if (progress !== null) bar.value = progress;
-    for (const node of [file, install, stick, restart]) node.hidden = !operator || !managed || Boolean(doing);
+    for (const node of [file, install, stick]) node.hidden = !operator || !managed || Boolean(doing);
     stick.hidden ||= !offer;
     if (offer) stick.textContent = `Install ${offer.version} from the stick`;
+    showRestart({ managed, why, doing }, operator);
   }
   async function look() {
     clearTimeout(timer);
@@ -108,13 +140,6 @@ export async function offerUpdate(operator) {
   }
   install.addEventListener("click", () => file.files[0] && act(() => post("/adit/update", file.files[0])));
   stick.addEventListener("click", () => act(() => post("/adit/update/stick")));
-  restart.addEventListener("click", () => act(async () => {
-    try {
-      await post("/adit/update/restart");
-    } catch (error) {
-      if (error.status !== 409 || !(await confirmed({ title: "Restart the box?", text: error.message, word: "Restart" }))) throw error;
-      await post("/adit/update/restart", { anyway: true });
-    }
-  }));
+  restart.addEventListener("click", restartIt);
   look();
 }

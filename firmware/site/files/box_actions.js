@@ -5,7 +5,7 @@ import { say } from "./dom.js";
 import { post } from "./session.js";
 
 const SECONDS = 10;
-const newRun = document.querySelector("#run .newrun"), outcome = document.querySelector("#run .outcome");
+const newRun = document.querySelector("button.newrun"), outcome = document.querySelector("#more .outcome");
 const identify = document.querySelector("button.identify"), identified = document.getElementById("identified");
 let view = null, busy = false;
 

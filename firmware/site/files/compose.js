@@ -1,43 +1,45 @@
-// A report composed by hand: what and where, then a look at what is there already, then send.
+// A report composed by hand, in the place of the reports: what, then where, then a look at what is there already, then send.
+// The map stays where it is: a tap on it sets the place, and nothing opens under the finger.
 import { barred, tell } from "./actions.js";
-import { open } from "./dialog.js";
-import { make, say } from "./dom.js";
-import { map, pick } from "./map_controls.js";
-import { nearTo, sameAs } from "./near.js";
+import { icon } from "./artifact_icons.js";
+import { notesOn } from "./check.js";
+import { list, make, mark, say } from "./dom.js";
+import { map } from "./map_controls.js";
+import { sameAs } from "./near.js";
 import { reveal } from "./reports.js";
 import { post } from "./session.js";
-import { life } from "./arriving.js";
-import { ago, clip, metres } from "./words.js";
+import { closeSide, openSide, side, whenSide } from "./side.js";
+import { clip, metres } from "./words.js";
 
 // ICD 5.2; embed.cmake puts the words of that file here.
 const TYPES = ["artifact_types.inc"];
 const AXES = ["x", "y", "z"];
 const ROBOT_NEAR = 20; // m: so far a robot's height is a fair guess
 
-const dialog = document.getElementById("compose");
-const at = (name) => dialog.querySelector(`.${name}`);
-const field = (axis) => dialog.querySelector(`input[name=${axis}]`);
-let view = null;
+const panel = document.getElementById("compose");
+const at = (name) => panel.querySelector(`.${name}`);
+const field = (axis) => panel.querySelector(`input[name=${axis}]`);
+const again = panel.querySelector(".again input");
+let view = null, type = "", step = "what", busy = false;
 
-for (const type of TYPES) {
-  const radio = make("input");
-  Object.assign(radio, { type: "radio", name: "type", value: type });
-  at("types").append(make("label", radio, make("span", type)));
-}
+const types = TYPES.map((name) => {
+  const button = make("button.type", icon(name), make("span", name));
+  button.type = "button";
+  button.addEventListener("click", () => choose(name));
+  at("types").append(button);
+  return { name, button };
+});
 
-/** The report as it is typed, or throws what is wrong with which field. */
-function typed() {
-  const type = dialog.querySelector("input[name=type]:checked")?.value;
-  if (!type) throw Object.assign(new Error("Choose what it is."), { field: dialog.querySelector("input[name=type]") });
-  const position = {};
-  for (const axis of AXES) {
-    const text = field(axis).value.trim().replace("−", "-");
-    position[axis] = Number(text);
-    if (!/^[-+]?(\d+\.?\d*|\.\d+)$/.test(text) || !Number.isFinite(position[axis])) {
-      throw Object.assign(new Error(`${axis}: expected metres, as in 12.5${text ? `, got ${clip(text, 40)}` : ""}.`), { field: field(axis) });
-    }
-  }
-  return { type, position };
+function go(next) {
+  step = next;
+  at("types").hidden = step !== "what";
+  at("place").hidden = step !== "where";
+  at("check").hidden = step !== "check";
+  say(panel.querySelector(".count"), { what: "what is it?", where: type, check: "check, then send" }[step]);
+  for (const { name, button } of types) button.setAttribute("aria-pressed", String(name === type));
+  complain(null);
+  // What is checked is what is sent: a tap on the map moves nothing then.
+  map.setTap(side() === "compose" && step !== "check" ? put : null);
 }
 
 function complain(error) {
@@ -46,71 +48,29 @@ function complain(error) {
   error?.field?.focus();
 }
 
-function step(name) {
-  at("fields").hidden = name !== "fields";
-  at("check").hidden = name !== "check";
-  complain(null);
-}
-
-const named = (report) => `#${report.number} ${report.type}`;
-const stands = (report) => `${life(report).word}, ${ago(view.now - report.received)}`;
-
-/** What a person should know before it is sent. */
-function notes(report) {
-  const same = sameAs(view, report);
-  const near = nearTo(view, report).filter(({ other }) => other.number !== same?.number);
-  const left = view.run ? `${view.run.remaining_reports} reports are left.` : "How many reports are left is not known.";
-  return [
-    ...(same ? [`Reported already, at the very same place: ${named(same)}, ${stands(same)}. Sending it again changes nothing and costs nothing.`] : []),
-    ...near.map(({ other, metres: apart }) => `Near: ${named(other)}, ${apart.toFixed(1)} m away, ${stands(other)}. It may be the same one.`),
-    ...(same || near.length ? [] : [`No ${report.type} was reported within ${view.near_metres} m.`]),
-    left,
-  ];
-}
-
-function check() {
-  try {
-    const report = typed();
-    const { x, y, z } = report.position;
-    step("check");
-    say(at("summary"), `${report.type} at ${metres(x)}, ${metres(y)}, ${metres(z)} m`);
-    at("notes").replaceChildren(...notes(report).map((note) => make("li", note)));
-    at("again").hidden = !sameAs(view, report);
-    at("again").querySelector("input").checked = false;
-    at("send").focus();
-  } catch (error) {
-    complain(error);
+/** Where, as it is typed; throws what is wrong with which field. */
+function typed() {
+  const position = {};
+  for (const axis of AXES) {
+    const text = field(axis).value.trim().replace("−", "-");
+    position[axis] = Number(text);
+    if (!/^[-+]?(\d+\.?\d*|\.\d+)$/.test(text) || !Number.isFinite(position[axis])) {
+      throw Object.assign(new Error(`${axis}: expected metres, as in 12.5${text ? `, got ${clip(text, 40)}` : ""}.`), { field: field(axis) });
+    }
   }
+  return position;
 }
 
-async function send() {
-  const report = typed();
-  const before = new Set(view.reports.map(({ number }) => number)); // the list may have it before the answer comes
-  at("send").disabled = true;
-  try {
-    const answer = await post("/adit/reports", { type: report.type, ...report.position, resubmit: at("again").querySelector("input").checked });
-    tell(answer.report, before.has(answer.report) ? "The same was reported before: this is it." : "Taken; it is sent in its turn.");
-    dialog.close();
-    clear();
-    revealSoon(answer.report);
-  } catch (error) {
-    complain(error);
-  } finally {
-    at("send").disabled = Boolean(barred());
-  }
+const isPlaced = () => AXES.every((axis) => field(axis).value);
+
+function choose(name) {
+  type = name;
+  if (isPlaced()) return check();
+  go("where");
+  panel.querySelector("h2").focus();
 }
 
-/** The list has it with the next event. */
-function revealSoon(number, tries = 20) {
-  if (!reveal(number) && tries > 0) setTimeout(revealSoon, 100, number, tries - 1);
-}
-
-function clear() {
-  for (const input of dialog.querySelectorAll("input[type=text]")) input.value = "";
-  for (const input of dialog.querySelectorAll("input[type=radio]")) input.checked = false;
-  map.setCross(null);
-}
-
+/** A tap on the map. */
 function put({ x, y }) {
   field("x").value = x.toFixed(2);
   field("y").value = y.toFixed(2);
@@ -120,41 +80,102 @@ function put({ x, y }) {
     .sort((a, b) => a.apart - b.apart);
   const known = nearest && nearest.apart < ROBOT_NEAR;
   if (known) field("z").value = nearest.z.toFixed(2);
-  say(at("height"), known ? `z is ${nearest.name}’s, ${nearest.apart.toFixed(0)} m from there: correct it where it differs.` : "");
+  say(at("height"), known ? `z is ${clip(nearest.name, 40)}’s, ${nearest.apart.toFixed(0)} m from there: correct it where it differs.`
+    : field("z").value ? "" : "No robot is near: type how high it lies.");
+  complain(null);
+  if (step === "where" && isPlaced()) check();
 }
 
-async function pickPlace() {
-  dialog.close();
-  const place = await pick("Tap the place, or move the map and press Enter.");
-  if (place) put(place);
-  step("fields");
-  open(dialog);
+function check() {
+  try {
+    const position = typed();
+    map.setCross(position);
+    again.checked = false;
+    go("check");
+    showCheck();
+    panel.querySelector("h2").focus();
+  } catch (error) {
+    if (step !== "where") go("where");
+    complain(error);
+  }
 }
 
+/** What is known of it changes while one looks at it; what is sent does not. */
+function showCheck() {
+  const position = typed(), { x, y, z } = position;
+  if (at("picture").dataset.of !== type) at("picture").replaceChildren(icon(type));
+  mark(at("picture"), "of", type);
+  say(panel.querySelector(".summary .type"), type);
+  say(panel.querySelector(".summary .where"), `at ${metres(x)}, ${metres(y)}, ${metres(z)} m`);
+  say(at("send"), `Send ${type}`);
+  const create = () => make("li", make("span.glyph"), make("span"));
+  list(at("notes"), notesOn(view, { type, position }), ({ key }) => key, create, (node, { level, text }) => {
+    mark(node.firstChild, "level", level);
+    say(node.lastChild, text);
+  });
+  at("again").hidden = !sameAs(view, { type, position });
+  at("send").disabled = busy || Boolean(barred());
+  say(panel.querySelector(".check .barred"), barred());
+}
+
+async function send() {
+  const { x, y, z } = typed(), resubmit = !at("again").hidden && again.checked;
+  const before = new Set(view.reports.map(({ number }) => number)); // the list may have it before the answer comes
+  busy = at("send").disabled = true;
+  try {
+    const answer = await post("/adit/reports", { type, x, y, z, resubmit });
+    tell(answer.report, before.has(answer.report) ? "The same was reported before: this is it." : "Taken; it is sent in its turn.");
+    drop();
+    revealSoon(answer.report);
+  } catch (error) {
+    complain(error);
+  } finally {
+    busy = false;
+    at("send").disabled = Boolean(barred());
+  }
+}
+
+/** The list has it with the next event. */
+function revealSoon(number, tries = 20) {
+  if (!reveal(number) && tries > 0) setTimeout(revealSoon, 100, number, tries - 1);
+}
+
+/** It is sent, or given up. */
+function drop() {
+  for (const axis of AXES) field(axis).value = "";
+  say(at("height"), "");
+  type = "";
+  step = "what";
+  closeSide();
+}
+
+/** Where it was left: what was chosen is kept until it is sent or cancelled. */
 export function compose() {
   if (!view || barred()) return;
-  step("fields");
-  open(dialog);
+  openSide("compose");
 }
+
+whenSide("compose", (isOpen) => {
+  go(step === "check" ? "where" : step);
+  const place = isOpen && field("x").value && field("y").value;
+  map.setCross(place ? { x: Number(field("x").value), y: Number(field("y").value) } : null);
+});
 
 /** Follows the run: what is near may change, and whether anything can be sent. */
 export function showCompose(next) {
   view = next;
-  const reason = barred();
-  for (const button of document.querySelectorAll("button.compose")) button.disabled = Boolean(reason);
-  if (dialog.open) {
-    at("send").disabled = Boolean(reason);
-    say(at("barred"), reason);
-  }
+  for (const button of document.querySelectorAll("button.compose")) button.disabled = Boolean(barred());
+  if (side() === "compose" && step === "check") showCheck();
 }
 
 for (const button of document.querySelectorAll("button.compose")) button.addEventListener("click", compose);
-at("pick").addEventListener("click", pickPlace);
 at("go").addEventListener("click", check);
-at("change").addEventListener("click", compose);
+at("elsewhere").addEventListener("click", () => go("where"));
+for (const button of panel.querySelectorAll(".change")) button.addEventListener("click", () => go("what"));
+panel.querySelector(".head .close").addEventListener("click", drop);
 at("send").addEventListener("click", send);
-dialog.addEventListener("keydown", (event) => {
-  if (event.key !== "Enter" || event.target.tagName !== "INPUT" || at("fields").hidden) return;
+panel.addEventListener("keydown", (event) => {
+  if (event.key !== "Enter" || event.target.type !== "text") return;
   event.preventDefault();
   check();
 });

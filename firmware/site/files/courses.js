@@ -4,6 +4,7 @@ import { badge, giveFocus, list, make, say } from "./dom.js";
 import { differs, draft, ENDPOINTS, onDraft, refresh } from "./draft.js";
 import { blame, labelled } from "./field.js";
 import { post } from "./session.js";
+import { tryCourse } from "./trial.js";
 
 const COMMON = { scoring: "Scoring endpoint’s token", mapping: "Mapping endpoint’s token", team: "The team’s own token" };
 const HINTS = {
@@ -81,6 +82,9 @@ function update(node, name) {
   remove.hidden = readOnly || !set;
 }
 
+/** What is typed for a token and not set yet; null: nothing. */
+export const typedToken = (name) => document.querySelector(`form.token[data-key="${name}"]`)?.field.control.value.trim() || null;
+
 /** Sets whatever is typed and not set yet; whether all of it was taken. */
 export async function setTyped() {
   for (const node of document.querySelectorAll("form.token")) {
@@ -111,9 +115,9 @@ const tokenOf = (name, endpoint) =>
 async function switchTo(name) {
   const outcome = document.querySelector("#step-courses > .outcome");
   const { base } = draft, now = base.command_post.course;
-  const rows = (what, value) => ENDPOINTS.map((endpoint) => [`${endpoint} ${what}`, value(now, endpoint), value(name, endpoint)]);
+  const rows = (what, value) => ENDPOINTS.map((endpoint) => [`${endpoint[0].toUpperCase()}${endpoint.slice(1)} ${what}`, value(now, endpoint), value(name, endpoint)]);
   const addressOf = (course, endpoint) => at(postOf(base, course)[endpoint]);
-  const changes = [["course", nameOf(now), nameOf(name)], ...rows("address", addressOf), ...rows("token", tokenOf)];
+  const changes = [["Course", nameOf(now), nameOf(name)], ...rows("address", addressOf), ...rows("token", tokenOf)];
   const settings = { ...base, command_post: { ...base.command_post, course: name } };
   const { warnings } = await insist(() => post("/adit/settings/check", { settings })).catch((error) => ({ warnings: [error.message] }));
   if (!(await reviewed({ title: `Switch to ${nameOf(name)}?`, changes, warnings, word: "Switch" }))) return;
@@ -133,12 +137,13 @@ async function switchTo(name) {
 }
 
 function createCourse() {
-  const button = Object.assign(make("button", "Switch"), { type: "button" });
-  return make("li", make("span.name"), make("span.badge"), make("span.note"), button);
+  const [tries, button] = ["Try", "Switch"].map((word) => Object.assign(make("button", word), { type: "button" }));
+  tries.dataset.tries = "";
+  return make("li", make("span.name"), make("span.badge"), make("span.note"), make("div.acts", tries, button));
 }
 
 function updateCourse(node, name) {
-  const [title, state, note, button] = node.children;
+  const [title, state, note, acts] = node.children, [tries, button] = acts.children;
   const inUse = draft.base.command_post.course === name, { scoring, mapping } = postOf(draft.base, name);
   node.dataset.level = inUse ? "good" : "quiet";
   say(title, nameOf(name));
@@ -149,6 +154,9 @@ function updateCourse(node, name) {
   button.hidden = inUse || document.body.dataset.role !== "operator";
   button.disabled = differs();
   button.onclick = () => switchTo(name);
+  tries.setAttribute("aria-label", `Try ${nameOf(name)} before it is switched to`);
+  tries.hidden = button.hidden;
+  tries.onclick = () => tryCourse(name);
 }
 
 export function showCourses() {

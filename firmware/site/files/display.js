@@ -1,11 +1,13 @@
 // The run as others look at it: no controls, everything on one screen.
+import { icon } from "./artifact_icons.js";
 import { badge, list, make, mark, say } from "./dom.js";
 import { follow } from "./live.js";
 import { MapOfRun } from "./map.js";
-import { showVerdict } from "./robots.js";
 import { showAttention, showRun } from "./run.js";
 import { life } from "./arriving.js";
-import { clip, timeOfDay } from "./words.js";
+import { showRobots } from "./robots.js";
+import { showEnds } from "./strip.js";
+import { clip, metres, timeOfDay } from "./words.js";
 
 const MOST_REPORTS = 20; // more than fit any screen
 
@@ -16,23 +18,26 @@ function showReports(view) {
   const mine = view.reports.filter((report) => report.run === view.run_number);
   say(reports.querySelector(".count"), mine.length ? String(mine.length) : "");
   reports.querySelector(".empty").hidden = mine.length > 0;
-  const create = () => make("li", make("span.number"), make("span.what"), make("span.badge"));
+  const create = (report) => make("li", icon(report.type), make("span.what"), make("span.badge"), make("span.number"));
   list(reports.querySelector("ol"), mine.slice(0, MOST_REPORTS), (report) => report.number, create, (node, report) => {
     const { level, word } = life(report);
-    const [number, what, badged] = node.children;
+    const [, what, badged, number] = node.children;
     mark(node, "level", level);
     say(what, clip(report.type, 40));
     badge(badged, level, clip(word, 20));
-    say(number, `#${report.number}`);
+    const { x, y, z } = report.position;
+    say(number, `#${report.number} · ${metres(x)}, ${metres(y)}, ${metres(z)} m`);
   });
 }
 
 function show({ view, time, lost }) {
   mark(document.body, "link", lost ? "lost" : view ? "live" : "opening");
   if (!view) return showAttention([], lost ? "The box does not answer." : "");
-  showAttention(view.attention.slice(0, lost ? 1 : 2), lost ? `The box does not answer: all is as it was at ${timeOfDay(view.now)}.` : "");
+  const calling = view.alarms.filter(({ severity }) => severity !== "wait").map(({ what, why }) => (why ? `${what}: ${why}` : what));
+  showAttention(calling.slice(0, lost ? 1 : 2), lost ? `The box does not answer: all is as it was at ${timeOfDay(view.now)}.` : "");
   showRun(view, time, lost);
-  showVerdict(view.activities, time, lost);
+  showEnds(view.endpoints, lost);
+  showRobots(view, time, lost);
   showReports(view);
   map.show(view);
 }

@@ -64,11 +64,11 @@ function heirOf(node, focused, going) {
   // Where the item is a button of a row:
   const row = node.parentNode.closest("li");
   if (row) heirs.push(...usable(row).filter((button) => button !== node));
-  return heirs.find(({ className }) => className === focused.className) ?? heirs[0] ?? node.closest("section")?.querySelector("h2");
+  return heirs.find(({ className }) => className === focused.className) ?? heirs[0] ?? node.closest("section")?.querySelector("h2, h3");
 }
 
 // ms: as long as presses.js lets no finger press what has just come under it
-const TWICE = 350;
+const TWICE = 500;
 
 /** Gives the focus to what nobody chose. As long as it is marked, presses.js lets no key act on it: it may be one pressed twice. */
 export function giveFocus(node) {

@@ -1,6 +1,7 @@
 // One setting as a field: what it means, what is allowed, what is wrong with it.
 import { draft, keyOf, onDraft, read, same, write } from "./draft.js";
 import { make, say } from "./dom.js";
+import { label as call, nameOf, spoken } from "./names.js";
 
 const known = new Set();
 let readOnly = false;
@@ -21,7 +22,7 @@ export function labelled(label, control, hint) {
 
 /** Says at a field what is wrong; "": nothing is. */
 export function blame(field, what) {
-  say(field.wrong, what);
+  say(field.wrong, spoken(what));
   if (what) field.control.setAttribute("aria-invalid", "true");
   else field.control.removeAttribute("aria-invalid");
 }
@@ -49,10 +50,11 @@ const written = (value) => (value === "" ? "nothing" : String(value));
 const hintOf = ({ meaning, kind, range, required, default: usual }) =>
   `${meaning} ${kind === "flag" ? "" : `Allowed: ${range}. `}${required ? "" : `By default ${written(usual)}.`}`;
 
-/** The field of the setting at `path`, which has a key. */
-function setting(path, label) {
+/** The field of the setting at `path`, which has a key: shown, too, where `written` says so. */
+function setting(path, label, written = "") {
   const key = keyOf(path), control = controlOf(key);
   const field = labelled(label, control, hintOf(key));
+  if (written) field.firstChild.append(" ", make("code", written));
   field.dataset.path = path;
   field.show = () => {
     const value = read(path);
@@ -70,7 +72,11 @@ function setting(path, label) {
 
 /** Puts fields where a page has `data-path` for them. */
 export function fillIn() {
-  for (const place of document.querySelectorAll("[data-fields] [data-path]")) place.replaceWith(setting(place.dataset.path, place.textContent));
+  for (const place of document.querySelectorAll("[data-fields] [data-path]")) {
+    const { path } = place.dataset, name = place.textContent;
+    call(path, name);
+    place.replaceWith(setting(path, name));
+  }
 }
 
 const capital = (text) => text[0].toUpperCase() + text.slice(1);
@@ -123,7 +129,7 @@ export function listOf(place) {
 /** Says at each field what is wrong with it; gives the errors with their fields, where there is one. */
 export function blameAll(errors) {
   const placed = errors.map((error) => ({ ...error, field: fieldOf(error.path) }));
-  for (const field of known) blame(field, placed.filter((each) => each.field === field).map(({ what }) => what).join("; "));
+  for (const field of known) blame(field, placed.filter((each) => each.field === field).map(({ what }) => what).join(". "));
   return placed;
 }
 
@@ -146,7 +152,7 @@ export function showAll() {
   const place = section.querySelector(".all"), search = section.querySelector("input"), empty = section.querySelector(".empty");
   const groups = Map.groupBy([...draft.keys.keys()].filter((path) => !ELSEWHERE.test(path)), (path) => path.split(".")[0]);
   for (const [name, paths] of groups) {
-    place.append(make("fieldset", make("legend", name.replace("_", " ")), make("div.fields", ...paths.map((path) => setting(path, path)))));
+    place.append(make("fieldset", make("legend", name.replace("_", " ")), make("div.fields", ...paths.map((path) => setting(path, nameOf(path), path)))));
   }
   search.addEventListener("input", () => {
     const words = search.value.toLowerCase().split(/\s+/);

@@ -1,7 +1,7 @@
 // The link over the last ten minutes: rate, queue, what was throttled, and each endpoint's delay.
 import { list, make, say } from "./dom.js";
 import { Plot } from "./plot.js";
-import { bytes, clip, mbit } from "./words.js";
+import { bytes, mbit } from "./words.js";
 
 const SVG = "http://www.w3.org/2000/svg";
 const plots = document.getElementById("plots");
@@ -10,20 +10,21 @@ const counted = new Map(); // an endpoint's throttled, when last sampled
 
 const ms = (value) => (value === null ? "–" : `${value.toFixed(value < 10 ? 1 : 0)} ms`);
 
-/** What is plotted: {key, label, value, text, least, most(value)}; a null value is not known. */
+/** What is plotted: {key, label, value, text, least, most(value)}; a null value is not known, and
+ *  undefined is one that the box could not tell. */
 function quantities(view, lost) {
   const sum = view.endpoints.reduce((all, row) => all + row.throttled, 0);
   const before = counted.get("all") ?? sum;
   counted.set("all", sum);
-  const known = (value) => (lost ? null : value);
+  const known = (value) => (lost ? undefined : value);
   return [
-    { key: "rate", label: "Rate", value: known(view.sent_mbit), text: `${mbit(view.sent_mbit)} Mbit/s`, least: 1, unit: (n) => `${mbit(n)} Mbit/s` },
-    { key: "queue", label: "Queue", value: known(view.queued_bytes), text: view.queued_bytes ? bytes(view.queued_bytes) : "empty", least: 1e5, unit: bytes },
-    { key: "throttled", label: "Throttled (429)", value: known(Math.max(0, sum - before)), text: `${sum} in all`, least: 1, unit: (n) => `${n} a second` },
+    { key: "rate", label: "Sent", value: known(view.sent_mbit), text: mbit(view.sent_mbit), of: `of ${mbit(view.budget_mbit)} Mbit/s`, least: 1, unit: (n) => `${mbit(n)} Mbit/s` },
+    { key: "queue", label: "Waiting", value: known(view.queued_bytes), text: view.queued_bytes ? bytes(view.queued_bytes) : "empty", least: 1e5, unit: bytes },
     ...view.endpoints.map((row) => ({
-      key: `delay ${row.name}`, label: `Delay, ${clip(row.name, 20)}`, least: 1, unit: ms,
+      key: `delay ${row.name}`, label: `${row.name === "scoring" ? "Scoring" : "Mapping"} answers in`, least: 1, unit: ms,
       value: known(row.connected ? row.answer_ms : null), text: ms(row.connected ? row.answer_ms : null),
     })),
+    { key: "throttled", label: "Asked to slow down", value: known(Math.max(0, sum - before)), text: `${sum}`, of: "times", least: 1, unit: (n) => `${n} a second` },
   ];
 }
 
@@ -32,13 +33,13 @@ function create(quantity) {
   svg.setAttribute("viewBox", "0 0 149 32");
   svg.setAttribute("preserveAspectRatio", "none");
   svg.setAttribute("aria-hidden", "true");
-  for (const name of ["area", "line"]) {
+  for (const name of ["lost", "area", "line"]) {
     const path = document.createElementNS(SVG, "path");
     path.setAttribute("class", name);
     svg.append(path);
   }
   known.set(quantity.key, new Plot(svg, quantity.least));
-  return make("li", make("span.label", quantity.label), make("strong"), svg, make("span.note"));
+  return make("li", make("span.label", quantity.label), make("p", make("strong"), make("span.unit")), svg, make("span.note"));
 }
 
 let sampled = 0; // the box's time of the last sample
@@ -53,7 +54,9 @@ export function sampleLink(view, time, lost) {
     const plot = known.get(quantity.key);
     plot.push(quantity.value);
     plot.draw();
-    say(node.children[1], quantity.value === null ? "–" : quantity.text);
+    const [now, unit] = node.children[1].children;
+    say(now, quantity.value == null ? "–" : quantity.text);
+    say(unit, quantity.of ? ` ${quantity.of}` : "");
     say(node.children[3], `most ${quantity.unit(plot.most())}`);
   });
 }

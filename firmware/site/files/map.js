@@ -6,6 +6,7 @@ import { Shapes } from "./map_shapes.js";
 import { drawLayer, Tiles } from "./map_tiles.js";
 import { drawTracks, Tracks } from "./map_tracks.js";
 import { MapView } from "./map_view.js";
+import { whenThemeChanges } from "./theme_now.js";
 
 const PAIR_RIM = 4; // metres around two reports that are compared
 
@@ -38,7 +39,7 @@ export class MapOfRun {
       this.#colours = coloursOf(document.documentElement);
       this.redraw();
     };
-    matchMedia("(prefers-color-scheme: light)").addEventListener("change", recolour);
+    whenThemeChanges(recolour);
     new ResizeObserver(() => this.#resize()).observe(canvas);
     recolour();
     this.#resize();
@@ -203,7 +204,7 @@ export class MapOfRun {
     drawReports(paint, this.#colours, labels, view, this.#run, places.reports, size / 2, this.#pair ?? []);
     drawRobots(paint, this.#colours, labels, view, places.robots, size / 1.8, this.#at ?? this.#run?.now);
     writeMarkers(labels, view, places.markers);
-    if (this.#onTap) drawCross(paint, { ...this.#colours, ask: this.#colours.soft }, view.toPixel(view.centre), size / 2);
+    if (this.#onTap && this.#canvas.matches(":focus-visible")) drawCross(paint, { ...this.#colours, ask: this.#colours.soft }, view.toPixel(view.centre), size / 2);
     if (this.#picked) drawCross(paint, this.#colours, view.toPixel(this.#picked), size / 2);
   }
 }

@@ -7,7 +7,6 @@ const section = document.getElementById("map");
 const slider = section.querySelector("input[type=range]");
 const shownTime = section.querySelector("output");
 const robots = section.querySelector(".robots");
-const hint = section.querySelector(".hint");
 
 export const map = new MapOfRun(section.querySelector(".frame canvas"));
 map.takeInput();
@@ -89,30 +88,4 @@ export function showMap(view, time) {
     thinned ? `Of the points of ${thinned === 1 ? "one marker" : `${thinned} markers`} only some are drawn.` : "",
   ];
   say(section.querySelector(".leftout"), words.filter(Boolean).join(" "));
-}
-
-/** Lets a place be picked; gives {x, y}, or null where it was given up. */
-export function pick(words) {
-  say(hint, words);
-  hint.hidden = false;
-  section.querySelector(".giveup").hidden = false;
-  section.scrollIntoView({ block: "center" });
-  const canvas = section.querySelector(".frame canvas");
-  canvas.focus({ preventScroll: true });
-  return new Promise((resolve) => {
-    const end = (place) => {
-      map.setTap(null);
-      hint.hidden = section.querySelector(".giveup").hidden = true;
-      document.removeEventListener("keydown", escape, true);
-      resolve(place);
-    };
-    const escape = (event) => {
-      if (event.key !== "Escape") return;
-      event.preventDefault(); // it would close the dialog that comes next
-      end(null);
-    };
-    document.addEventListener("keydown", escape, true);
-    section.querySelector(".giveup").onclick = () => end(null);
-    map.setTap(end);
-  });
 }

@@ -2,6 +2,7 @@
 import { fromTo, insist, reviewed } from "./apply.js";
 import { make, say } from "./dom.js";
 import { blame, labelled } from "./field.js";
+import { label, nameOf, spoken } from "./names.js";
 import { left, told } from "./pending.js";
 import { post } from "./session.js";
 
@@ -45,8 +46,8 @@ async function check() {
   const findings = await insist(() => post("/adit/network/check", wanted()));
   if (mine !== asked) return null;
   const left = findings.errors.filter(({ path }) => !fieldAt(path));
-  for (const field of fields.values()) blame(field, findings.errors.filter(({ path }) => fieldAt(path) === field).map(({ what }) => what).join("; "));
-  warned.replaceChildren(...left.map(({ path, what }) => make("li", `${path}: ${what}`)), ...findings.warnings.map((warning) => make("li", warning)));
+  for (const field of fields.values()) blame(field, findings.errors.filter(({ path }) => fieldAt(path) === field).map(({ what }) => what).join(". "));
+  warned.replaceChildren(...left.map(({ path, what }) => make("li", `${nameOf(path)}: ${what}`)), ...findings.warnings.map((warning) => make("li", spoken(warning))));
   return findings;
 }
 
@@ -111,7 +112,7 @@ function lastOf({ last, last_why: why }) {
 /** Shows what the box says of its network. */
 export function showNetwork(network) {
   const isOperator = document.body.dataset.role === "operator";
-  say(state, network.managed ? lastOf(network) : `The addresses are not set by this page: ${network.why}`);
+  say(state, network.managed ? lastOf(network) : `The addresses are not set by this page: ${spoken(network.why)}`);
   showPending(network);
   const barred = !network.managed || !isOperator || network.pending !== null;
   change.hidden = !network.managed || !isOperator;
@@ -127,10 +128,11 @@ export function showNetwork(network) {
 const showMode = () => (fields.get("team.address").hidden = fields.get(MODE).control.value !== "static");
 
 export function offerNetwork() {
-  for (const [path, label, hint] of FIELDS) {
+  for (const [path, name, hint] of FIELDS) {
+    label(path, `${path.startsWith("team") ? "Team’s side" : "Command Post’s side"}: ${name.toLowerCase()}`);
     const control = path === MODE ? make("select", ...["static", "dhcp", "link-local"].map((mode) => make("option", mode)))
       : Object.assign(make("input"), { type: "text", autocomplete: "off", spellcheck: false });
-    const field = labelled(label, control, hint);
+    const field = labelled(name, control, hint);
     field.dataset.path = path;
     control.addEventListener("input", typed);
     fields.set(path, field);

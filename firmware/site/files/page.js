@@ -1,7 +1,10 @@
 // The one live page. Each part draws itself from the last view of the run that came from the box.
 import "./presses.js";
+import { followWays } from "./alarm_ways.js";
+import { showAlarms } from "./alarms.js";
+import { allReports } from "./all_reports.js";
 import { showAside } from "./aside.js";
-import { badge, mark, say } from "./dom.js";
+import { say } from "./dom.js";
 import { follow } from "./live.js";
 import { showBoxActions } from "./box_actions.js";
 import { compose, showCompose } from "./compose.js";
@@ -14,27 +17,25 @@ import { showPost } from "./post.js";
 import { showRefusals } from "./refusals.js";
 import { showReports } from "./reports.js";
 import { showRobots } from "./robots.js";
-import { showAttention, showLights, showRun } from "./run.js";
+import { offerRobotsList, showRobotsList } from "./robots_list.js";
+import { showLights, showRun } from "./run.js";
+import { offerSides, closeSide, goTab } from "./side.js";
+import { showEnds, showLink } from "./strip.js";
 import { followNetwork } from "./pending.js";
 import { showWho } from "./session.js";
 import { clip, timeOfDay } from "./words.js";
 
-function showLink(view, lost) {
-  const link = document.getElementById("link");
-  mark(document.body, "link", lost ? "lost" : view ? "live" : "opening");
-  if (lost) badge(link, "bad", view ? "Box lost" : "No box");
-  else badge(link, view ? "good" : "quiet", view ? "Live" : "Looking for the box");
-}
-
-function show({ view, time, lost }) {
+function show({ view: told, time, lost }) {
+  const view = told && { ...told, reports: allReports(told) };
   showLink(view, lost);
   linkIs(lost);
-  if (!view) return showAttention([], lost ? "The box does not answer." : "");
-  showAttention(view.attention, lost ? `The box does not answer: all below is as it was at ${timeOfDay(view.now)}.` : "");
+  showAlarms(view, time, lost);
+  if (!view) return;
   showRun(view, time, lost);
+  showEnds(view.endpoints, lost);
   showBoxActions(view, time);
   showLights(view.lights);
-  showRobots(view.activities, time, lost);
+  showRobotsList(showRobots(view, time, lost), time);
   showReports(view, time);
   showCompose(view);
   showMap(view, time);
@@ -44,22 +45,27 @@ function show({ view, time, lost }) {
   showAside(view.aside, time);
   showRefusals(view.refusals, time);
   say(document.getElementById("about"), `Adit ${clip(view.version, 40)} · the box's clock ${timeOfDay(time)}`);
-  const title = lost ? "Box lost – Adit" : view.attention.length ? `(${view.attention.length}) Adit` : "Adit";
-  if (document.title !== title) document.title = title;
 }
 
+offerSides();
+offerRobotsList();
+followWays();
 followNetwork();
 showWho(document.getElementById("who"));
 learned.then(follow("/adit/events", show));
 
-const focus = (selector) => document.querySelector(selector)?.focus();
+function focus(tab, selector) {
+  closeSide();
+  goTab(tab);
+  document.querySelector(selector)?.focus();
+}
 listenToKeys(
   [
     { key: "n", text: "a new report", act: compose },
-    { key: "r", text: "to the reports", act: () => focus("#reports .open") },
-    { key: "m", text: "to the map", act: () => focus("#map .frame canvas") },
+    { key: "r", text: "to the reports", act: () => focus("reports", "#reports .open") },
+    { key: "m", text: "to the map", act: () => focus("map", "#map .frame canvas") },
     { key: "l", text: "the map as it is now", act: goLive },
     { key: "0", text: "all of the map", act: () => map.fit() },
   ],
-  [["← ↑ ↓ →", "on the map: move it"], ["+ −", "on the map: zoom"], ["F", "on the map: all of it"], ["Esc", "close, or give up picking a place"]],
+  [["← ↑ ↓ →", "on the map: move it"], ["+ −", "on the map: zoom"], ["F", "on the map: all of it"], ["Esc", "close"]],
 );

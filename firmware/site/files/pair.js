@@ -3,10 +3,11 @@ import { badge, list, make, mark, say } from "./dom.js";
 import { map } from "./map_controls.js";
 import { distance } from "./near.js";
 import { life } from "./arriving.js";
+import { goTab } from "./side.js";
 import { ago, clip, metres } from "./words.js";
 
 const panel = document.querySelector("#map .pair");
-let numbers = null, back = null;
+let numbers = null, back = null, tab = "map";
 let last = null; // what was shown: {view, now}
 
 /** Shows both on the map; the focus goes back to `from` in the end. */
@@ -15,8 +16,9 @@ export function comparePair(one, other, from) {
   back = from;
   map.showPair([one, other]);
   panel.hidden = false;
+  tab = document.body.dataset.tab;
+  goTab("map");
   showPair(last.view, last.now);
-  panel.parentNode.scrollIntoView({ block: "nearest" });
   panel.querySelector("button").focus({ preventScroll: true });
 }
 
@@ -25,6 +27,7 @@ function close() {
   panel.hidden = true;
   map.showPair(null);
   map.fit();
+  goTab(tab);
   back?.focus();
 }
 panel.querySelector("button").addEventListener("click", close);

@@ -4,6 +4,7 @@ import { boxNow, get } from "./session.js";
 
 const EVERY = 4000, PENDING = 1000; // ms
 const nav = document.querySelector("header nav");
+const strip = document.querySelector("header.strip");
 let sign = null, last = null, hear = () => {};
 
 /** Until the box takes it back: "73 s left". */
@@ -21,7 +22,8 @@ function show() {
   if (!sign) {
     sign = Object.assign(make("a.sign", make("span", "Network change: "), make("span")), { href: "/setup#network" });
     mark(sign, "level", "wait");
-    nav.append(sign);
+    if (strip) strip.insertBefore(sign, nav);
+    else nav.append(sign);
   }
   say(sign.lastChild, left(last));
 }

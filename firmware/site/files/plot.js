@@ -7,13 +7,13 @@ export class Plot {
   #svg;
   #least;
 
-  /** `svg` has a path.area and a path.line; a plot reaches up to `least` at least. */
+  /** `svg` has paths .lost (where the box did not answer), .area and .line; a plot reaches up to `least` at least. */
   constructor(svg, least) {
     this.#svg = svg;
     this.#least = least;
   }
 
-  /** null: not known. */
+  /** null: there was none. undefined: the box did not answer. */
   push(value) {
     this.#values.push(value);
     if (this.#values.length > SPAN) this.#values.shift();
@@ -21,12 +21,13 @@ export class Plot {
 
   most = () => Math.max(...this.#values.map((value) => value ?? 0), 0);
 
-  /** The highest of each four seconds, so that a short peak is seen, at its place from the right. */
+  /** The highest of each four seconds, so that a short peak is seen, at its place from the right; and whether the box was
+   *  lost in them. */
   #buckets() {
     const buckets = [];
     for (let end = this.#values.length; end > 0; end -= BUCKET) {
-      const known = this.#values.slice(Math.max(0, end - BUCKET), end).filter((value) => value !== null);
-      buckets.unshift(known.length ? Math.max(...known) : null);
+      const all = this.#values.slice(Math.max(0, end - BUCKET), end), known = all.filter((value) => value != null);
+      buckets.unshift({ value: known.length ? Math.max(...known) : null, isLost: all.includes(undefined) });
     }
     return buckets;
   }
@@ -40,7 +41,7 @@ export class Plot {
       if (begun >= 0) area += `L${end} ${HEIGHT}L${begun} ${HEIGHT}Z`;
       begun = -1;
     };
-    buckets.forEach((value, i) => {
+    buckets.forEach(({ value }, i) => {
       const x = from + i;
       if (value === null) return close(x - 1);
       line += `${begun < 0 ? "M" : "L"}${x} ${y(value)}`;
@@ -48,6 +49,8 @@ export class Plot {
       if (begun < 0) begun = x;
     });
     close(from + buckets.length - 1);
+    const gaps = buckets.map(({ isLost }, i) => (isLost ? `M${from + i - 1} 0h1v${HEIGHT}h-1Z` : ""));
+    this.#svg.querySelector(".lost").setAttribute("d", gaps.join(""));
     this.#svg.querySelector(".line").setAttribute("d", line);
     this.#svg.querySelector(".area").setAttribute("d", area);
   }

@@ -3,7 +3,7 @@
 // it has stood still for a while, and a press that began elsewhere is given to what it began on, where the finger kept its
 // place, and else dropped. Every page has this; nothing has to ask for it.
 
-const STILL = 350; // ms: the second tap of a double tap comes sooner
+const STILL = 500; // ms: the second tap of a double tap comes sooner
 // pixels: what moves less is where it was
 const MOVED = 8;
 const FOLLOWS = 150; // ms: a page that scrolls so soon after a press was scrolled by that press

@@ -1,14 +1,18 @@
 // Artifact reports, newest first: where each is in its life, what the Command Post said, and what can be done.
 import { barred, actionsOf, isBusy, outcomeOf, perform } from "./actions.js";
+import { icon } from "./artifact_icons.js";
 import { badge, list, make, mark, say } from "./dom.js";
 import { nearTo } from "./near.js";
 import { comparePair } from "./pair.js";
 import { showHistory } from "./history.js";
 import { life } from "./arriving.js";
+import { Still } from "./still.js";
+import { closeSide, goTab, showOnTab } from "./side.js";
 import { ago, clip, metres } from "./words.js";
 
 const section = document.getElementById("reports");
 const rows = section.querySelector(".rows"), others = section.querySelector(".others");
+const MANY = 100; // rows, until one scrolls to the end of them
 const opened = new Set();
 let last = null; // what was shown: {view, now}
 let showsOthers = false; // what is done of other runs: of earlier ones, and of those at other Command Posts
@@ -18,6 +22,23 @@ const isOfOther = (report, view) => report.run !== view.run_number && !isOpen(re
 
 const rowOf = (number) => rows.querySelector(`[data-key="${number}"]`);
 const again = () => last && showReports(last.view, last.now);
+const own = new Set(); // those that this operator has acted on since the list was left
+const still = new Still(rows, () => {
+  own.clear();
+  again();
+});
+const newer = section.querySelector(".newer");
+newer.addEventListener("click", () => {
+  still.release();
+  rows.scrollTop = rows.parentNode.scrollTop = 0;
+});
+let most = MANY; // rows that are shown
+const MORE = 200; // pixels from the end
+rows.parentNode.addEventListener("scroll", ({ target }) => {
+  if (target.scrollTop + target.clientHeight < target.scrollHeight - MORE || most > (last?.count ?? 0)) return;
+  most += MANY;
+  again();
+}, { passive: true });
 
 function create(report) {
   const open = make("button.open");
@@ -26,28 +47,35 @@ function create(report) {
   open.addEventListener("click", () => toggle(report.number));
   const outcome = make("p.outcome");
   outcome.setAttribute("role", "status");
-  return make("li", make("span.badge"), make("span.what"), make("span.where"), make("span.since"), make("span.more"), open,
+  const title = make("div.title", make("span.what"), make("span.where", make("span"), make("span.since")));
+  return make("li", make("span.picture", icon(report.type)), title, make("span.badge"), open, make("span.more"),
     make("div.acts", make("div.near"), make("div.actions")), outcome, make("div.history"));
 }
 
 function toggle(number) {
   if (!opened.delete(number)) opened.add(number);
+  own.add(number);
+  still.resize(rowOf(number));
   again();
 }
 
 others.addEventListener("click", () => {
   showsOthers = !showsOthers;
-  again();
-  const first = showsOthers && last.view.reports.find((report) => isOfOther(report, last.view));
+  const at = last.view.reports.findIndex((report) => isOfOther(report, last.view)), first = showsOthers && last.view.reports[at];
+  most = Math.max(most, at + MANY);
+  still.release();
   // They may be far down:
   if (first) rowOf(first.number).scrollIntoView({ block: "nearest" });
 });
 
 /** Opens a report, brings it into view and puts the focus there. */
 export function reveal(number) {
+  closeSide();
+  goTab("reports");
   opened.add(number);
   showsOthers ||= Boolean(last?.view.reports.some((report) => report.number === number && isOfOther(report, last.view)));
-  again();
+  if (last?.view.reports.length > most) most = last.view.reports.length;
+  still.release();
   const row = rowOf(number);
   row?.scrollIntoView({ block: "nearest" });
   row?.querySelector(".open").focus({ preventScroll: true });
@@ -69,7 +97,7 @@ function more(report, nearest) {
 
 function showNear(node, report, nearest) {
   const create = () => {
-    const button = make("button", "Show both on the map");
+    const button = make("button", "Show both");
     button.type = "button";
     return button;
   };
@@ -87,26 +115,38 @@ function showActions(node, report, view, isShown) {
     button.setAttribute("aria-label", `${action.label}: report ${report.number}`);
     return button;
   };
-  list(node, isShown ? actionsOf(report) : [], (action) => action.label, createAction, (button, action) => {
+  const actions = isShown ? actionsOf(report, Boolean(nearestOf(report, view))) : [];
+  if (still.isHeld && !own.has(report.number) && node.children.length) {
+    // Somebody else acted: what can no longer be done stays where it is, and no other button comes under the hand.
+    for (const button of node.children) button.disabled = Boolean(reason) || !actions.some(({ label }) => label === button.dataset.key);
+    return;
+  }
+  list(node, actions, (action) => action.label, createAction, (button, action) => {
     button.disabled = Boolean(reason);
-    button.onclick = () => perform(action, report, last.view.run?.remaining_reports, again);
+    button.onclick = () => {
+      own.add(report.number);
+      perform(action, report, last.view.run?.remaining_reports, again);
+    };
   });
 }
 
 function update(node, report, view, now) {
   const { level, word } = life(report);
   const isMore = opened.has(report.number);
-  const [badged, what, where, since, rest, open, acts, outcome, history] = node.children;
+  const [, title, badged, open, rest, acts, outcome, history] = node.children;
+  const [what, where] = title.children;
   const [near, actions] = acts.children;
   mark(node, "level", level);
   badge(badged, level, clip(word, 40));
   say(what, clip(report.type, 40));
-  say(where, placeOf(report));
   const earlier = report.run === view.run_number ? "" : ` · run ${report.run}`;
-  say(since, `#${report.number} · ${ago(now - report.received)}${earlier}`);
-  const nearest = nearestOf(report, view);
-  say(rest, clip(more(report, nearest)));
-  showNear(near, report, isMore || level === "ask" ? nearest : undefined);
+  say(where.firstChild, `#${report.number} · ${placeOf(report)}${earlier}`);
+  say(where.lastChild, ` · ${ago(now - report.received)}`);
+  const isTold = isMore || isOpen(report) || level === "bad" || level === "ask";
+  const nearest = isTold ? nearestOf(report, view) : undefined;
+  if (!still.isHeld || own.has(report.number) || !node.dataset.told) say(rest, isTold ? clip(more(report, nearest)) : "");
+  node.dataset.told = "true";
+  if (!still.isHeld || own.has(report.number) || !near.firstChild) showNear(near, report, isMore || level === "ask" ? nearest : undefined);
   open.setAttribute("aria-expanded", String(isMore));
   say(open.lastChild, `More of report ${report.number}`);
   showActions(actions, report, view, isMore || level === "ask");
@@ -117,20 +157,35 @@ function update(node, report, view, now) {
   if (isMore) showHistory(history, report);
 }
 
-/** "12, 2 open, 7 of other runs" */
-function counted(reports, othersCount) {
-  const open = reports.filter(isOpen).length;
-  return [reports.length || "", open ? `${open} open` : "", othersCount ? `${othersCount} of other runs` : ""].filter(Boolean).join(", ");
+const RANKS = { ask: 0, wait: 1 };
+/** Open ones first, those that wait for the operator's word before all; then the newest. */
+const inOrder = (reports) => {
+  const rank = (report) => (isOpen(report) ? (RANKS[life(report).level] ?? 1) : 2);
+  return reports.map((report) => [rank(report), report]).sort(([a, one], [b, other]) => a - b || other.number - one.number).map(([, report]) => report);
+};
+
+/** "20 sent, 1 in doubt" */
+function counted(reports) {
+  const count = (...states) => reports.filter(({ state }) => states.includes(state)).length;
+  const parts = [[count("sending", "in doubt", "answered", "settled", "refused"), "sent"], [count("in doubt"), "in doubt"], [count("received"), "held"],
+    [count("waiting"), count("waiting") === 1 ? "waits" : "wait"]];
+  return parts.filter(([n]) => n).map(([n, words]) => `${n} ${words}`).join(", ");
 }
 
 export function showReports(view, now) {
-  last = { view, now };
-  const elsewhere = view.reports.filter((report) => isOfOther(report, view)).length;
-  const shown = view.reports.filter((report) => showsOthers || !isOfOther(report, view));
-  say(section.querySelector(".count"), counted(view.reports.filter((report) => !isOfOther(report, view)), elsewhere));
-  others.hidden = elsewhere === 0;
+  const mine = view.reports.filter((report) => !isOfOther(report, view));
+  last = { view, now, count: view.reports.length };
+  const shown = still.order(inOrder(showsOthers ? view.reports : mine).slice(0, most), ({ number }) => number);
+  const count = section.querySelector(".count");
+  say(count, counted(mine));
+  count.parentNode.title = count.textContent;
+  others.hidden = mine.length === view.reports.length;
   others.setAttribute("aria-pressed", String(showsOthers));
-  say(others, "Other runs");
+  say(others, "All runs");
+  newer.hidden = still.waiting === 0;
+  say(newer, `${still.waiting} new`);
+  const asking = mine.filter((report) => life(report).level === "ask").length;
+  showOnTab("reports", asking, "ask", `${asking} wait for your word`);
   rows.hidden = shown.length === 0;
   section.querySelector(".empty").hidden = shown.length > 0;
   say(section.querySelector(".barred"), barred());

@@ -1,95 +1,51 @@
-// Is my map arriving? One row a robot, one cell a kind of data: how long ago it
-// was last forwarded, and what that means.
+// Is each robot's map arriving? Its panel, and what the Command Post said to what was sent.
 import { badge, list, make, mark, say } from "./dom.js";
-import { arrival, kindOf, overall, robotOf } from "./arriving.js";
-import { age, bytes, clip } from "./words.js";
+import { kindOf, robotOf } from "./arriving.js";
+import { sampleAges } from "./robot_ages.js";
+import { RobotRows } from "./robot_rows.js";
+import { mapAge, robotsOf } from "./robot_state.js";
+import { showVerdict } from "./verdict.js";
+import { clip } from "./words.js";
 
-const COLUMNS = ["grid", "cloud", "state"];
+const panel = document.getElementById("maps");
+const rows = new RobotRows(panel, document.getElementById("robots"));
+const shared = document.getElementById("shared");
 
-function byRobot(activities) {
-  const robots = new Map();
-  for (const row of activities) {
-    const name = robotOf(row);
-    if (!robots.has(name)) robots.set(name, { name, rows: {} });
-    robots.get(name).rows[row.kind] = row;
-  }
-  // The map of all robots stands last.
-  const merged = (robot) => Object.values(robot.rows).every((row) => row.robot === "");
-  return [...robots.values()].sort((a, b) => merged(a) - merged(b) || a.name.localeCompare(b.name, "en", { numeric: true }));
-}
-
-function details(row) {
-  if (row.waiting && row.kind !== "state") return `${row.waiting} waiting`;
-  return row.bytes_sent ? bytes(row.bytes_sent) : "";
-}
-
-/** All that was counted, for who wants to know. */
-function counts(row) {
-  const parts = [`${row.accepted} accepted`, `${row.forwarded} forwarded`];
-  for (const what of ["replaced", "merged", "throttled", "failed"]) if (row[what]) parts.push(`${row[what]} ${what}`);
-  if (row.clouds) parts.push(`taken as ${row.clouds}`);
-  if (row.precision && row.precision !== "exact") parts.push(`rounded to ${row.precision}`);
-  if (row.points_left_out) parts.push(`${row.points_left_out} points left out`);
-  if (row.no_room) parts.push(`${row.no_room} refused: too much waits`);
-  if (row.refused_upstream) parts.push(`${row.refused_upstream} refused by the Command Post`);
-  return parts.join(", ");
-}
-
-const createCell = (what) => make(what, make("span.badge.age"), make("span.word"), make("span.details"));
-
-function updateCell(cell, row, now, lost) {
-  const { level, word } = lost ? { level: "quiet", word: "unknown" } : arrival(row, now);
-  mark(cell, "level", level);
-  const [since, badged, more] = cell.children;
-  badge(since, level, row.last_forwarded === null ? "never" : age(now - row.last_forwarded));
-  say(badged, word);
-  say(more, details(row));
-  cell.title = counts(row);
-}
-
-function createRobot() {
-  const name = make("th");
-  name.scope = "row";
-  return make("tr", name, ...COLUMNS.map(() => createCell("td")));
-}
-
-function updateRobot(node, robot, now, lost) {
-  const [name, ...cells] = node.children;
-  say(name, clip(robot.name, 40));
-  COLUMNS.forEach((kind, i) => {
-    const row = robot.rows[kind];
-    mark(cells[i], "empty", String(!row));
-    if (row) updateCell(cells[i], row, now, lost);
+/** What is all robots': how old it is, and a word where it is not as it should be. */
+function showShared(all) {
+  list(shared, all, ({ name }) => name, () => make("span", make("span.name"), " ", make("span.badge")), (node, state) => {
+    mark(node, "level", state.level);
+    say(node.firstChild, state.name);
+    const isWell = state.level === "good" || state.level === "quiet";
+    badge(node.lastChild, state.level, isWell ? mapAge(state.age) : state.word);
+    node.title = state.title;
   });
 }
 
-function showMarkers(row, now, lost) {
-  const line = document.getElementById("markers");
-  line.hidden = !row;
-  if (!row) return;
-  if (line.children.length === 1) line.append(createCell("span"));
-  updateCell(line.children[1], row, now, lost);
-}
-
-/** The answer in one sentence. */
-export function showVerdict(activities, now, lost) {
-  const { level, word } = lost ? { level: "bad", word: "Unknown: the box does not answer" } : overall(activities, now);
-  badge(document.getElementById("arriving"), level, clip(word, 120));
-}
-
-export function showRobots(activities, now, lost) {
-  showVerdict(activities, now, lost);
-  const robots = byRobot(activities.filter((row) => COLUMNS.includes(row.kind)));
-  const table = document.getElementById("robots");
-  table.hidden = robots.length === 0;
-  list(table.tBodies[0], robots, (robot) => robot.name, createRobot, (node, robot) => updateRobot(node, robot, now, lost));
-  showMarkers(activities.find((row) => row.kind === "markers"), now, lost);
-
+/** What the Command Post said to what was sent. */
+function showSayings(activities) {
+  const place = document.getElementById("sayings");
+  if (!place) return; // the display has none
   const said = activities.filter((row) => row.last_sentence);
-  list(document.getElementById("sayings"), said, (row) => `${row.kind} ${row.robot}`,
+  list(place, said, (row) => `${row.kind} ${row.robot}`,
     () => make("li", make("strong"), " ", make("span")),
     (node, row) => {
       say(node.children[0], row.kind === "markers" ? "Markers:" : `${clip(robotOf(row), 40)} ${kindOf(row)}:`);
       say(node.children[1], clip(row.last_status ? `${row.last_status} ${row.last_sentence}` : row.last_sentence));
     });
+}
+
+/** Gives how the robots stand, as robotsOf(). */
+export function showRobots(view, now, lost) {
+  const { activities, endpoints } = view;
+  const isAway = endpoints.some(({ name, connected }) => name === "mapping" && !connected);
+  const state = robotsOf(activities, now, lost ? "lost" : isAway ? "away" : "");
+  showVerdict(view, now, lost);
+  if (!lost) sampleAges(state.robots, now);
+  mark(panel, "away", String(lost || isAway));
+  panel.querySelector(".empty").hidden = state.robots.length > 0;
+  rows.show(state.robots, now);
+  showShared(state.shared);
+  showSayings(activities);
+  return state;
 }

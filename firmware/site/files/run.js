@@ -1,12 +1,16 @@
-// What stands in large figures, what needs the operator, and the lights as they are on the box.
+// How the run stands, in the strip's large figures; what needs the operator, and the lights as they are on the box.
 import { badge, list, make, mark, say } from "./dom.js";
 import { ago, clip, clock } from "./words.js";
 
 const at = (id) => document.getElementById(id);
+const FRESH = 15; // s: what the Command Post said longer ago is told with its time
+const FEW = 5; // reports left
+const LENGTH = 3600; // s: of a run of which nothing else is known
 
 // A run clock that was heard to move goes on between two answers; one that stands still stays where it is.
 let heard = null, ticking = false;
 
+/** What the run's clock says at that time of the box. */
 function runClock(view, now) {
   const { run_clock } = view.run;
   if (!heard || heard.at !== view.run_heard) {
@@ -17,18 +21,37 @@ function runClock(view, now) {
   return ticking ? run_clock + Math.max(0, now - view.run_heard) : run_clock;
 }
 
+/** `stale`: since when, or "". */
+function figure(id, text, label, { stale = "", level = "" } = {}) {
+  const node = at(id);
+  if (!node) return; // the display has not all
+  say(node, text);
+  say(node.parentNode.querySelector("dt"), stale ? `${label} ${stale}` : label);
+  mark(node.parentNode, "stale", String(Boolean(stale)));
+  mark(node.parentNode, "level", level);
+}
+
+/** None left must not look like many: filled, and in words. */
+function left(count) {
+  if (count <= 0) return ["none left", "bad"];
+  return ["reports left", count <= FEW ? "wait" : ""];
+}
+
 export function showRun(view, now, lost) {
   const { run } = view;
   const since = view.run_heard === null ? Infinity : now - view.run_heard;
-  const stale = !run || since > 15 || lost;
-  mark(at("run"), "stale", String(stale));
-  say(at("clock"), run ? clock(stale ? run.run_clock : runClock(view, now)) : "–");
-  say(at("score"), run ? String(run.score) : "–");
-  say(at("remaining"), run ? String(run.remaining_reports) : "–");
+  const isStale = !run || since > FRESH || lost;
+  const stale = run && isStale ? clock(run.run_clock) : "";
+  mark(at("run"), "stale", String(isStale));
+  const seconds = run ? runClock(view, now) : 0, toGo = (view.run_seconds ?? LENGTH) - seconds;
+  figure("clock", run ? clock(seconds) : "–", "run clock");
+  figure("togo", run ? clock(Math.abs(toGo)) : "–", toGo < 0 ? "over time" : "to go");
+  figure("score", run ? String(run.score) : "–", "score", { stale });
+  const [label, level] = run ? left(run.remaining_reports) : ["reports left", ""];
+  figure("remaining", run ? String(run.remaining_reports) : "–", label, { stale, level });
   const team = run?.current_team ? `${clip(run.current_team, 40)} · ` : "";
   if (!run) say(at("run-note"), "No word from the Command Post yet");
-  else if (stale) say(at("run-note"), `${team}as the Command Post said ${ago(since)}`);
-  else say(at("run-note"), `${team}heard ${ago(since)}`);
+  else say(at("run-note"), isStale ? `${team}as the Command Post said ${ago(since)}` : `${team}heard ${ago(since)}`);
 }
 
 /** `lost`: what to say of a box that does not answer, or "". */

@@ -8,6 +8,7 @@ import { checkAsTyped, draft, missingTokens, onDraft, onFindings, refresh, findi
 import { blameAll, fillIn, listOf, onlyShow, showAll } from "./field.js";
 import { offerNetwork, showNetwork } from "./network.js";
 import { followNetwork } from "./pending.js";
+import { showPorts } from "./ports.js";
 import { session, showWho, toLogin } from "./session.js";
 import { offerTest, result } from "./trial.js";
 
@@ -128,6 +129,7 @@ async function begin() {
   const wanted = new URLSearchParams(location.search).get("setting"); // a way from elsewhere: cure.js
   if (wanted) goTo({ path: wanted });
   followNetwork((network, error) => {
+    if (network) showPorts(document.querySelector("#step-network .ports"), network);
     if (network) showNetwork(network);
     if (error !== undefined) linkIs(error !== null && !error.status);
   });

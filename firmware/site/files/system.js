@@ -6,6 +6,7 @@ import { offerBundle, offerReset, offerUpdate, showAbout } from "./box.js";
 import { watchSessions } from "./logins.js";
 import { offerPasswords } from "./passwords.js";
 import { followNetwork } from "./pending.js";
+import { showPorts } from "./ports.js";
 import { session, showWho, toLogin } from "./session.js";
 
 const link = document.getElementById("link");
@@ -23,7 +24,7 @@ async function begin() {
   document.getElementById("looks").hidden = operator;
   showWho(document.getElementById("who"));
   followLog(linkIs);
-  followNetwork();
+  followNetwork((network) => network && showPorts(document.querySelector("#network .ports"), network));
   showAbout();
   offerUpdate(operator);
   if (!operator) return;

@@ -1,5 +1,8 @@
-// The test: each step to each endpoint, as it runs, and what to do where it fails.
+// The Test, and tries of what is not applied yet: each step to each endpoint, as it runs, and what to do where it fails.
+import { typedToken } from "./courses.js";
 import { badge, list, make, say } from "./dom.js";
+import { draft, ENDPOINTS } from "./draft.js";
+import { named, spoken } from "./names.js";
 import { get, post } from "./session.js";
 
 const EVERY = 500; // ms
@@ -12,19 +15,22 @@ const NAMES = {
   clock: "The clocks agree",
 };
 const LEVELS = { waiting: "quiet", running: "ask", good: "good", bad: "bad", skipped: "quiet" };
-const section = document.getElementById("step-test");
-const [button, outcome, rows] = ["button", ".outcome", ".endpoints"].map((part) => section.querySelector(part));
+const places = new Map([...document.querySelectorAll("[data-tried]")].map((place) => [place.dataset.tried, place]));
+const parts = (place) => [".outcome", ".endpoints"].map((part) => place.querySelector(part));
 
-/** "good", "bad", or "" where it was not run to its end. */
+/** Of what is in use: "good", "bad", or "" where it was not run to its end. */
 export let result = "";
+/** Where what runs now was begun; "": it runs since before this page, or elsewhere. */
+let begun = "";
+let isRunning = false;
 
 function updateStep(node, { name, state, said, advice }) {
   const [badged, title, sentence, help] = node.children;
   node.dataset.level = LEVELS[state] ?? "quiet";
   badge(badged, node.dataset.level, state);
   say(title, NAMES[name] ?? name);
-  say(sentence, said ?? "");
-  say(help, advice ?? "");
+  say(sentence, spoken(said ?? ""));
+  say(help, spoken(advice ?? ""));
 }
 
 const createStep = () => make("li", ...["badge", "title", "said", "advice"].map((part) => make(`span.${part}`)));
@@ -37,21 +43,36 @@ function update(node, { name, address, steps }) {
 }
 
 /** What came of it, in a sentence. */
-function verdictOf(states, running) {
-  if (running) return "It is running. No report is spent.";
-  if (!result) return "";
+function verdictOf(states, { running, applied }) {
+  const how = applied ? "No report is spent." : "The run goes on, and no report is spent.";
+  if (running) return `${applied ? "It is running" : "It is being tried"}. ${how}`;
   const bad = states.filter((state) => state === "bad").length;
-  return `${bad ? `${bad} of ${states.length} steps failed` : "All is well"}. No report was spent.`;
+  const verdict = bad ? `${bad} of ${states.length} steps failed.` : states.includes("good") ? "All is well." : "";
+  return verdict && `${verdict} ${applied ? "No report was spent." : "Nothing is applied yet, and no report was spent."}`;
 }
 
-function show({ running, endpoints }) {
-  list(rows, endpoints, ({ name }) => name, () => make("li.trial", make("h3"), make("span.address"), make("ol")), update);
+function report(place, text, isBad) {
+  const [outcome] = parts(place);
+  outcome.dataset.bad = isBad;
+  say(outcome, text);
+}
+
+/** The buttons that begin one, while none runs. */
+export function barTries() {
+  for (const button of document.querySelectorAll("button[data-tries]")) button.disabled = isRunning;
+}
+
+function show(view) {
+  const { running, applied, course, endpoints } = view;
+  const place = places.get(begun || (applied ? "applied" : course ? "course" : "typed"));
+  list(parts(place)[1], endpoints, ({ name }) => name, () => make("li.trial", make("h3"), make("span.address"), make("ol")), update);
   const states = endpoints.flatMap(({ steps }) => steps.map(({ state }) => state));
   const isDone = !running && states.some((state) => state === "good" || state === "bad");
-  result = !isDone ? "" : states.includes("bad") ? "bad" : "good";
-  button.disabled = running;
-  outcome.dataset.bad = result === "bad";
-  say(outcome, verdictOf(states, running));
+  isRunning = running;
+  if (applied) result = !isDone ? "" : states.includes("bad") ? "bad" : "good";
+  report(place, verdictOf(states, view), !running && states.includes("bad"));
+  if (!running) begun = "";
+  barTries();
   document.dispatchEvent(new Event("tested"));
 }
 
@@ -61,27 +82,46 @@ async function follow() {
     show(said);
     if (said.running) setTimeout(follow, EVERY);
   } catch (error) {
-    say(outcome, error.message);
-    outcome.dataset.bad = true;
-    if (!error.status) setTimeout(follow, 4 * EVERY);
-    else button.disabled = document.body.dataset.role !== "operator";
+    report(places.get(begun || "applied"), error.message, true);
+    isRunning = !error.status;
+    barTries();
+    if (isRunning) setTimeout(follow, 4 * EVERY);
   }
 }
 
+async function begin(where, body) {
+  isRunning = true;
+  begun = where;
+  barTries();
+  report(places.get(where), "It begins.", false);
+  places.get(where).scrollIntoView({ block: "start" }); // its steps come into sight above the bar of what was typed
+  try {
+    await post("/adit/test", body);
+  } catch (error) {
+    isRunning = false;
+    report(places.get(where), named(error.message, "command_post."), true);
+    return barTries();
+  }
+  follow();
+}
+
+/** What stands in the form, with whatever tokens are typed: as it would be without a course. */
+function typed() {
+  const { command_post: post } = draft.settings;
+  return { course: "", ...Object.fromEntries(ENDPOINTS.map((name) => [name, { ...post[name], token: typedToken(name) }])) };
+}
+
+/** Tries a course's Command Post before it is switched to. */
+export const tryCourse = (name) =>
+  begin("course", { course: name, ...Object.fromEntries(ENDPOINTS.map((endpoint) => [endpoint, { token: typedToken(`course.${name}.${endpoint}`) }])) });
+
 export function offerTest() {
-  button.hidden = document.body.dataset.role !== "operator";
-  button.addEventListener("click", async () => {
-    button.disabled = true;
-    outcome.dataset.bad = false;
-    say(outcome, "It begins.");
-    try {
-      await post("/adit/test");
-    } catch (error) {
-      outcome.dataset.bad = true;
-      button.disabled = false;
-      return say(outcome, error.message);
-    }
-    follow();
-  });
+  const isOperator = document.body.dataset.role === "operator";
+  for (const [where, place] of places) {
+    const button = place.querySelector("button[data-tries]");
+    if (!button) continue;
+    button.hidden = !isOperator;
+    button.addEventListener("click", () => begin(where, where === "applied" ? {} : typed()));
+  }
   follow();
 }

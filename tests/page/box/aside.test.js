@@ -3,7 +3,7 @@ import assert from "node:assert/strict";
 import { test } from "node:test";
 import { until } from "../box.js";
 import { pickyPost } from "./picky_post.js";
-import { box, canBeDeaf, look } from "./visits.js";
+import { box, canBeDeaf, look, openMore } from "./visits.js";
 
 const HANDS = {
   mouse: { options: {}, press: (button) => button.click() },
@@ -41,6 +41,7 @@ async function withRefused(t, options) {
     await until(async () => (await asideOf(made)).some(({ robot }) => robot === name), `${name} to be set aside`);
   }
   const page = await look(t, made, "", options);
+  await openMore(page);
   await page.locator("#aside li").nth(3).waitFor();
   return { page, made, post };
 }
@@ -113,6 +114,7 @@ test("what alone gets a 500 while others pass is listed, and arrives once it is 
     await send(made, "robot_1", [turn++ % 100, 0, 0, 0]); // others pass all the while
     return (await asideOf(made)).length;
   }, "it to be set aside");
+  await openMore(page);
   await row(page, "robot_2").getByText(/^500: /).waitFor();
   await counted(page, 1);
   await made.behave();

@@ -4,6 +4,7 @@ import { countAwaited, launch, visit } from "../stage.js";
 import { begin, PASSWORD, TOKENS } from "./box.js";
 
 export { settled, shoot } from "../stage.js";
+export { openMore } from "../parts.js";
 
 let browser;
 before(async () => (browser = await launch()));

@@ -1,0 +1,51 @@
+#pragma once
+
+#include <cstdint>
+#include <deque>
+#include <expected>
+#include <map>
+#include <string>
+#include <vector>
+
+#include "alarms/alarm.hpp"
+
+namespace adit::alarms {
+
+/// What is known of the conditions over time: since when each lasts, who has seen it, which ones went. Holds
+/// as many as conditions_of() gives, and kMostOver that went.
+class Board {
+ public:
+  static constexpr std::size_t kMostOver = 8;
+
+  /// Takes note of what came and went; `now` as in Facts. To be called each second, and before
+  /// acknowledge().
+  void take(const std::vector<Condition>& conditions, double now);
+  /// Quiets it until it gets worse or comes again. An error: there is none of that name.
+  std::expected<void, std::string> acknowledge(const std::string& id);
+
+  /// These, as they are to be shown: bad before ask before wait, then oldest first.
+  std::vector<Alarm> shown(const std::vector<Condition>& conditions, double now) const;
+  /// The newest first.
+  std::vector<Over> over() const { return {over_.begin(), over_.end()}; }
+
+ private:
+  struct Known {
+    Condition condition;
+    double since = 0;
+    bool acknowledged = false;
+    Severity seen_as = Severity::Wait;
+    std::uint64_t seen_degree = 0;
+  };
+  static bool is_worse(const Condition& condition, const Known& known);
+  static Over over(const Known& known, double now);
+
+  std::map<std::string, Known> known_;
+  std::deque<Over> over_;
+};
+
+/// Whether it calls the operator: the attention light blinks, `adit status` ends with 1.
+inline bool calls(const Alarm& alarm) {
+  return alarm.severity != Severity::Wait;
+}
+
+}  // namespace adit::alarms

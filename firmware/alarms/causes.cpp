@@ -1,0 +1,62 @@
+#include "alarms/causes.hpp"
+
+#include <algorithm>
+#include <string_view>
+
+namespace adit::alarms {
+namespace {
+
+bool is(const Condition& condition, std::string_view name) {
+  return std::string_view(condition.id).substr(0, condition.id.find(':')) == name;
+}
+
+bool is_post(const Condition& condition) {
+  return condition.id.starts_with("command_post_") && !is(condition, "command_post_throttling");
+}
+
+/// The way to the Command Post is cut at the box.
+bool cuts_off(const Condition& condition) {
+  return condition.id == "cable_out:command_post" || condition.id == "no_address";
+}
+
+/// Nothing of that endpoint's goes.
+bool stops(const Condition& condition, std::string_view endpoint) {
+  if (cuts_off(condition)) return true;
+  const bool down = is_post(condition) || is(condition, "no_token");
+  return down && (condition.subject.empty() || condition.subject == endpoint);
+}
+
+bool is_robots_silence(const Condition& condition) {
+  return is(condition, "robot_silent") || is(condition, "robots_silent");
+}
+
+bool is_of_maps(const Condition& condition) {
+  return is(condition, "map_behind") || is(condition, "maps_behind") || condition.id.starts_with("queue_");
+}
+
+/// Whether `other` follows from `cause`.
+bool explains(const Condition& cause, const Condition& other) {
+  if (cuts_off(cause) && (is_post(other) || is(other, "command_post_throttling"))) return true;
+  if (stops(cause, "mapping") && (is_of_maps(other) || is_robots_silence(other))) return true;
+  if (stops(cause, "scoring") && is(other, "report_in_doubt") && other.severity == Severity::Wait)
+    return true;
+  return cause.id == "cable_out:team" && is_robots_silence(other);
+}
+
+}  // namespace
+
+void hide_consequences(Found& found) {
+  // Larger causes come first in the list, so that each is counted where nothing larger hides it.
+  for (std::size_t i = 0; i < found.size(); ++i) {
+    std::uint64_t hidden = 0;
+    for (std::size_t j = found.size(); j-- > 0;) {
+      if (j == i || !explains(found[i], found[j])) continue;
+      hidden += std::max<std::uint64_t>(found[j].hides, 1);
+      found.erase(found.begin() + static_cast<std::ptrdiff_t>(j));
+      if (j < i) --i;
+    }
+    found[i].hides += hidden;
+  }
+}
+
+}  // namespace adit::alarms

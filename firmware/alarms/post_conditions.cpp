@@ -1,0 +1,123 @@
+// What is wrong with the Command Post, or with its two addresses.
+#include <algorithm>
+
+#include "alarms/found.hpp"
+#include "alarms/words.hpp"
+#include "icd/sentence.hpp"
+
+namespace adit::alarms {
+namespace {
+
+using icd::sentence;
+
+const Action kSetUp{"Open set-up", "/setup"};
+const Action kTest{"Open test", "/setup#test"};
+
+/// Of one endpoint, or of both.
+struct Trouble {
+  PostTrouble is = PostTrouble::None;
+  double since = 0;
+  std::vector<const Endpoint*> endpoints = {};
+
+  bool both() const { return endpoints.size() > 1; }
+  const Endpoint& first() const { return *endpoints.front(); }
+  /// "Command Post" or "Mapping"
+  std::string who() const { return both() ? "Command Post" : capital(first().name); }
+  /// "10.100.1.200:8000"
+  std::string where() const {
+    return both() ? endpoints[0]->address + " and " + endpoints[1]->address : first().address;
+  }
+};
+
+Condition of_trouble(const Trouble& trouble, std::string name) {
+  return {.id = std::move(name),
+          .severity = trouble.is == PostTrouble::Throttling ? Severity::Wait : Severity::Bad,
+          .side = Side::CommandPost,
+          .subject = trouble.both() ? "" : trouble.first().name,
+          .since = trouble.since,
+          .action = kTest,
+          .degree = trouble.endpoints.size()};
+}
+
+void find_missing_tokens(const Facts& facts, Found& found) {
+  for (const Endpoint& endpoint : facts.endpoints) {
+    if (endpoint.trouble != PostTrouble::NoToken) continue;
+    const bool scoring = endpoint.name == "scoring";
+    found.push_back(
+        {.id = "no_token:" + endpoint.name,
+         .side = Side::Box,
+         .subject = endpoint.name,
+         .since = endpoint.since,
+         .what = sentence("No ", endpoint.name, " token is set"),
+         .why = scoring ? "reports wait until one is" : "maps, states and markers wait until one is",
+         .action = kSetUp});
+  }
+}
+
+void say_unreachable(const Trouble& trouble, Condition& condition) {
+  condition.what = trouble.who() + " is unreachable";
+  condition.why = trouble.first().said + "; all is kept until it answers";
+}
+
+void say_foreign(const Trouble& trouble, Condition& condition) {
+  condition.what = "What answers is no Command Post";
+  condition.why = sentence(trouble.where(), trouble.both() ? "" : " (" + trouble.first().name + ")",
+                           ": nothing counts as taken there; is the address right?");
+  condition.action = kSetUp;
+}
+
+void say_refusing(const Trouble& trouble, Condition& condition) {
+  condition.what = trouble.both() ? "Both tokens are refused"
+                                  : sentence(capital(trouble.first().name), " token is refused");
+  condition.why = "the Command Post does not know it: is it the one of this course?";
+  condition.action = kSetUp;
+}
+
+void say_silent(const Trouble& trouble, Condition& condition) {
+  condition.what = trouble.who() + " is silent";
+  condition.why = sentence("no answer from ", trouble.where(), "; all is kept until one comes");
+}
+
+void say_failing(const Trouble& trouble, Condition& condition) {
+  condition.what = trouble.who() + " is failing";
+  condition.why = sentence("to everything that is sent: ", trouble.first().said);
+}
+
+void say_throttling(const Trouble& trouble, Condition& condition) {
+  condition.what = trouble.who() + " is throttling";
+  condition.why = "it answers 429: Adit sends less until it takes more";
+  condition.action = {};
+}
+
+constexpr struct {
+  PostTrouble is;
+  const char* id;
+  void (*say)(const Trouble&, Condition&);
+} kTroubles[] = {
+    {PostTrouble::Unreachable, "command_post_unreachable", say_unreachable},
+    {PostTrouble::Foreign, "command_post_foreign", say_foreign},
+    {PostTrouble::Refusing, "command_post_refusing", say_refusing},
+    {PostTrouble::Silent, "command_post_silent", say_silent},
+    {PostTrouble::Failing, "command_post_failing", say_failing},
+    {PostTrouble::Throttling, "command_post_throttling", say_throttling},
+};
+
+}  // namespace
+
+void find_post_troubles(const Facts& facts, Found& found) {
+  find_missing_tokens(facts, found);
+  for (const auto& row : kTroubles) {
+    Trouble trouble{.is = row.is};
+    for (const Endpoint& endpoint : facts.endpoints) {
+      if (endpoint.trouble != row.is) continue;
+      trouble.since = trouble.endpoints.empty() ? endpoint.since : std::min(trouble.since, endpoint.since);
+      trouble.endpoints.push_back(&endpoint);
+    }
+    if (trouble.endpoints.empty()) continue;
+    Condition condition = of_trouble(trouble, row.id);
+    row.say(trouble, condition);
+    found.push_back(std::move(condition));
+  }
+}
+
+}  // namespace adit::alarms

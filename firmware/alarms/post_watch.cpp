@@ -1,0 +1,100 @@
+#include "alarms/post_watch.hpp"
+
+#include <algorithm>
+
+namespace adit::alarms {
+namespace {
+
+bool is_barred(const Seen& seen) {
+  return seen.foreign || seen.status == 401 || seen.status == 403;
+}
+
+/// Of everything that is sent so: no word on one message alone.
+bool is_error(int status) {
+  return status >= 500 || status == 404 || status == 405 || status == 407;
+}
+
+void begin(std::optional<double>& since, bool so, double now) {
+  if (!so) since.reset();
+  if (so && !since) since = now;
+}
+
+}  // namespace
+
+void PostWatch::look(Way& way, const Seen& seen, double now) {
+  const bool ended = seen.ended != way.seen.ended;
+  const bool answered = ended && seen.status != 0;
+  const bool moved = seen.sent != way.seen.sent;
+  if (answered && !is_barred(seen) && !is_error(seen.status) && seen.status != 429) {
+    way.well = now;
+    way.failing.reset();
+  }
+  if (answered) begin(way.barred, is_barred(seen), now);
+  if (answered && is_error(seen.status) && !seen.foreign && !way.failing) way.failing = now;
+  const bool unanswered = seen.busy || (seen.status == 0 && !seen.said.empty());
+  if (answered || moved) way.waits.reset();
+  begin(way.waits, unanswered, now);
+  begin(way.without, !seen.connected && seen.status == 0 && !seen.said.empty(), now);
+  for (std::uint64_t i = way.seen.throttled; i < seen.throttled && i < way.seen.throttled + kThrottled; ++i)
+    throttled_.push_back(now);
+  while (throttled_.size() > kThrottled) throttled_.pop_front();
+  way.seen = seen;
+}
+
+void PostWatch::look(const std::vector<Seen>& seen, double now) {
+  if (ways_.size() != seen.size()) {
+    ways_.assign(seen.size(), {});
+    for (std::size_t i = 0; i < seen.size(); ++i) {
+      ways_[i].seen.ended = seen[i].ended;
+      ways_[i].seen.throttled = seen[i].throttled;
+    }
+  }
+  for (std::size_t i = 0; i < seen.size(); ++i) look(ways_[i], seen[i], now);
+}
+
+void PostWatch::forget() {
+  ways_.clear();
+  throttled_.clear();
+}
+
+/// Another connection of the endpoint has had a good answer since, or just before.
+bool PostWatch::is_well_elsewhere(const Way& way, double since, double now) const {
+  return std::ranges::any_of(ways_, [&](const Way& other) {
+    return &other != &way && other.well && *other.well > std::min(since, now) - 1 &&
+           now - *other.well < kStillWell;
+  });
+}
+
+Endpoint PostWatch::trouble_of(const Way& way, double now) const {
+  const Seen& seen = way.seen;
+  const auto lasts = [&](const std::optional<double>& since, double seconds) {
+    return since && now - *since >= seconds && !is_well_elsewhere(way, *since, now);
+  };
+  if (lasts(way.without, kUnreachableAfter))
+    return {.trouble = PostTrouble::Unreachable, .since = *way.without, .said = seen.said};
+  if (lasts(way.barred, 0)) {
+    return {.trouble = seen.foreign ? PostTrouble::Foreign : PostTrouble::Refusing,
+            .since = *way.barred,
+            .said = seen.said};
+  }
+  if (lasts(way.waits, kSilentAfter)) return {.trouble = PostTrouble::Silent, .since = *way.waits};
+  if (lasts(way.failing, kFailingAfter))
+    return {.trouble = PostTrouble::Failing, .since = *way.failing, .said = seen.said};
+  return {};
+}
+
+Endpoint PostWatch::throttling(double now) const {
+  if (throttled_.size() < kThrottled || now - throttled_.front() > kThrottledWithin) return {};
+  return {.trouble = PostTrouble::Throttling, .since = throttled_.front()};
+}
+
+Endpoint PostWatch::endpoint(double now) const {
+  Endpoint worst = throttling(now);
+  for (const Way& way : ways_) {
+    const Endpoint trouble = trouble_of(way, now);
+    if (trouble.trouble < worst.trouble) worst = trouble;
+  }
+  return worst;
+}
+
+}  // namespace adit::alarms

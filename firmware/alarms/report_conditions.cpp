@@ -1,0 +1,115 @@
+// What waits for the operator's word: reports, and what the Command Post would not take.
+#include <array>
+
+#include "alarms/conditions.hpp"
+#include "alarms/found.hpp"
+#include "icd/sentence.hpp"
+
+namespace adit::alarms {
+namespace {
+
+using icd::sentence;
+using Is = ReportFact::Is;
+
+constexpr std::string_view kHeld = "held: ";
+constexpr const char* kCallDone = "; call it done";
+constexpr const char* kUntilDone =
+    "; what is posted in this run is held for the operator, as it may be the same, until he calls it done";
+
+constexpr struct {
+  Is is;
+  const char *id, *state, *more;
+} kStates[] = {
+    {Is::Held, "report_held", " is held", " more reports are held"},
+    {Is::InDoubt, "report_in_doubt", " is in doubt", " more reports are in doubt"},
+    {Is::Lost, "report_lost", " is lost", " more are lost"},
+};
+
+std::string why(const ReportFact& report) {
+  if (report.is == Is::Lost) return report.note + (report.of_run ? kUntilDone : kCallDone);
+  return report.note.starts_with(kHeld) ? report.note.substr(kHeld.size()) : report.note;
+}
+
+void find_undecided(const Facts& facts, Found& found) {
+  std::array<std::uint64_t, std::size(kStates)> count{};
+  for (const ReportFact& report : facts.reports) {
+    const auto at = static_cast<std::size_t>(report.is);
+    if (++count.at(at) > kOneByOne) continue;
+    const std::string number = std::to_string(report.number);
+    found.push_back({.id = sentence(kStates[at].id, ":", number),
+                     .severity = report.asking ? Severity::Wait : Severity::Ask,
+                     .side = report.is == Is::InDoubt ? Side::CommandPost : Side::Box,
+                     .subject = number,
+                     .since = report.since,
+                     .what = report.is == Is::Lost ? "The ledger is not whole"
+                                                   : sentence("Report ", number, kStates[at].state),
+                     .why = why(report),
+                     .action = {report.asking ? "Show report" : "Decide", "/#report=" + number}});
+  }
+  for (std::size_t at = 0; at < std::size(kStates); ++at) {
+    if (count.at(at) <= kOneByOne) continue;
+    const std::uint64_t more = count.at(at) - kOneByOne;
+    found.push_back({.id = sentence(kStates[at].id, ":more"),
+                     .severity = Severity::Ask,
+                     .side = Side::Box,
+                     .subject = "more",
+                     .what = sentence(more, kStates[at].more),
+                     .action = {"Show reports", "/#reports"},
+                     .degree = more});
+  }
+}
+
+void find_few_left(const Facts& facts, Found& found) {
+  if (!facts.reports_left || *facts.reports_left > kFewReports) return;
+  const std::int64_t left = std::max<std::int64_t>(*facts.reports_left, 0);
+  found.push_back({.id = "reports_left",
+                   .severity = left == 0 ? Severity::Bad : Severity::Wait,
+                   .side = Side::CommandPost,
+                   .what = left == 0   ? "No reports are left"
+                           : left == 1 ? "1 report is left"
+                                       : sentence(left, " reports are left"),
+                   .why = left == 0 ? "the Command Post scores no more of this run" : "of this run",
+                   .degree = static_cast<std::uint64_t>(kFewReports - left)});
+}
+
+void find_elsewhere(const Facts& facts, Found& found) {
+  for (const auto& [post, count] : facts.reports_elsewhere) {
+    found.push_back(
+        {.id = "reports_elsewhere:" + post,
+         .severity = Severity::Ask,
+         .side = Side::Box,
+         .subject = post,
+         .what =
+             count == 1 ? "1 report is for another post" : sentence(count, " reports are for another post"),
+         .why = sentence("they wait for the Command Post at ", post, ", which the settings do not name now"),
+         .action = {"Open set-up", "/setup"},
+         .degree = count});
+  }
+}
+
+}  // namespace
+
+void find_report_troubles(const Facts& facts, Found& found) {
+  find_undecided(facts, found);
+  find_few_left(facts, found);
+  find_elsewhere(facts, found);
+  if (!facts.run_unreliable.empty()) {
+    found.push_back({.id = "run_unreliable",
+                     .severity = Severity::Ask,
+                     .side = Side::CommandPost,
+                     .what = "The reports' count is not certain",
+                     .why = facts.run_unreliable});
+  }
+  if (facts.set_aside > 0) {
+    const bool one = facts.set_aside == 1;
+    found.push_back({.id = "set_aside",
+                     .severity = Severity::Ask,
+                     .side = Side::CommandPost,
+                     .what = sentence(facts.set_aside, one ? " message is" : " messages are", " set aside"),
+                     .why = sentence("the Command Post would not take ", one ? "it" : "them"),
+                     .action = {"Show", "/#aside"},
+                     .degree = facts.set_aside});
+  }
+}
+
+}  // namespace adit::alarms

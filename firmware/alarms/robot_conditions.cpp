@@ -1,0 +1,187 @@
+// What is wrong with the robots, their maps, and who else speaks to the box.
+#include <algorithm>
+
+#include "alarms/conditions.hpp"
+#include "alarms/found.hpp"
+#include "alarms/words.hpp"
+#include "icd/sentence.hpp"
+
+namespace adit::alarms {
+namespace {
+
+using icd::sentence;
+
+constexpr double kNoRoomRecent = 60;    // seconds that a refusal for want of room is told of
+constexpr std::size_t kNamed = 3;       // robots, in a sentence
+constexpr std::size_t kManyBehind = 4;  // robots: told of together
+
+Action show(const std::string& robot) {
+  return {"Show robot", "/#robot=" + robot};
+}
+
+/// Takes the last `count` conditions out for `larger`, which hides them.
+void put_in_place_of(Found& found, std::size_t count, Condition larger) {
+  const auto those = found.end() - static_cast<std::ptrdiff_t>(count);
+  larger.since = std::ranges::min_element(those, found.end(), {}, &Condition::since)->since;
+  larger.hides = larger.degree = count;
+  found.erase(those, found.end());
+  found.push_back(std::move(larger));
+}
+
+void find_silent(const Facts& facts, Found& found) {
+  std::size_t count = 0;
+  for (const auto& [name, robot] : facts.robots) {
+    if (!robot.silent) continue;
+    ++count;
+    found.push_back({.id = "robot_silent:" + name,
+                     .side = Side::Robot,
+                     .subject = name,
+                     .since = facts.now - robot.quiet,
+                     .what = name + " is silent",
+                     .why = sentence("its habit is a message each ", age_text(std::max(robot.gap, 1.0))),
+                     .action = show(name)});
+  }
+  if (count < 2 || count < facts.robots.size()) return;
+  put_in_place_of(found, count,
+                  {.id = "robots_silent",
+                   .side = Side::Robot,
+                   .what = sentence("All ", count, " robots are silent"),
+                   .why = "is the team's network up, or its base station off?"});
+}
+
+/// Of all maps of one robot the one that is longest behind; nothing: none is behind.
+std::string kind_behind(const Facts& facts, const std::string& robot, double& behind) {
+  std::string kind;
+  for (const Stream& stream : facts.streams) {
+    if (!stream.is_map() || stream.robot != robot || stream.behind.value_or(0) <= behind) continue;
+    behind = *stream.behind;
+    kind = stream.kind;
+  }
+  return kind;
+}
+
+void find_behind(const Facts& facts, Found& found) {
+  const double told = 2 * (kLateAfter + facts.turn), stuck = std::max(kStuckAfter, 1.5 * told);
+  std::vector<std::string> names;
+  for (const Stream& stream : facts.streams) {
+    if (stream.is_map()) names.push_back(stream.robot);
+  }
+  std::ranges::sort(names);
+  names.erase(std::ranges::unique(names).begin(), names.end());
+  std::size_t count = 0;
+  for (const std::string& name : names) {
+    double behind = told;
+    const std::string kind = kind_behind(facts, name, behind);
+    if (kind.empty()) continue;
+    ++count;
+    found.push_back({.id = "map_behind:" + name,
+                     .severity = behind > stuck ? Severity::Bad : Severity::Wait,
+                     .side = Side::CommandPost,
+                     .subject = name,
+                     .since = facts.now - behind,
+                     .what = name.empty() ? "The merged map is behind" : name + "'s map is behind",
+                     .why = sentence("its newest ", kind, " is not at the Command Post"),
+                     .action = name.empty() ? Action{} : show(name)});
+  }
+  if (count < kManyBehind) return;
+  const bool bad = std::ranges::any_of(found.end() - static_cast<std::ptrdiff_t>(count), found.end(),
+                                       [](const Condition& each) { return each.severity == Severity::Bad; });
+  put_in_place_of(found, count,
+                  {.id = "maps_behind",
+                   .severity = bad ? Severity::Bad : Severity::Wait,
+                   .side = Side::Network,
+                   .what = sentence("Maps of ", count, " robots are behind"),
+                   .why = "more comes in than the link and the Command Post take"});
+}
+
+void find_full_queue(const Facts& facts, Found& found) {
+  std::string names;
+  std::size_t count = 0;
+  for (const Stream& stream : facts.streams) {
+    if (!stream.no_room || *stream.no_room > kNoRoomRecent) continue;
+    if (++count > kNamed) continue;
+    names += names.empty() ? "" : ", ";
+    if (stream.kind != "markers") names += (stream.robot.empty() ? "merged" : stream.robot) + " ";
+    names += stream.kind;
+  }
+  if (count > kNamed) names += sentence(" and ", count - kNamed, " more");
+  const std::string full = sentence(facts.queue_room >> 20, " MB wait at most");
+  if (count > 0) {
+    found.push_back({.id = "queue_full",
+                     .side = Side::Network,
+                     .what = "The queue is full",
+                     .why = "robots are refused until less waits: " + names});
+  } else if (static_cast<double>(facts.queued) > kNearlyFull * static_cast<double>(facts.queue_room)) {
+    found.push_back({.id = "queue_nearly_full",
+                     .severity = Severity::Bad,
+                     .side = Side::Network,
+                     .what = "The map queue is nearly full",
+                     .why = full});
+  } else if (facts.queue_grows) {
+    found.push_back({.id = "queue_growing",
+                     .severity = Severity::Wait,
+                     .side = Side::Network,
+                     .what = "The map queue is growing",
+                     .why = sentence(facts.queued >> 20, " MB wait: more comes in than goes out")});
+  }
+}
+
+void find_unknown(const Facts& facts, Found& found) {
+  std::string known;
+  for (const std::string& each : facts.known_robots) known.append(known.empty() ? "" : ", ").append(each);
+  for (const std::string& name : facts.unknown_robots) {
+    found.push_back({.id = "robot_unknown:" + name,
+                     .severity = Severity::Ask,
+                     .side = Side::Robot,
+                     .subject = name,
+                     .what = sentence("Robot ", name, " is unknown"),
+                     .why = "it posts, and set-up has " + known,
+                     .action = {"Open set-up", "/setup#robots"}});
+  }
+}
+
+void find_crowds(const Facts& facts, Found& found) {
+  for (const Crowd& crowd : facts.crowds) {
+    const std::string most = "most of " + crowd.address;
+    if (crowd.is == Crowd::Is::NoRoom) {
+      found.push_back(
+          {.id = "clients_refused",
+           .side = Side::Robot,
+           .what = "Clients are refused",
+           .why = sentence("too many requests are under way at once, ", most, ": some are answered 503"),
+           .action = {"Open set-up", "/setup?setting=team.connections#all"}});
+    } else if (crowd.is == Crowd::Is::WrongToken) {
+      found.push_back({.id = "wrong_tokens",
+                       .severity = Severity::Ask,
+                       .side = Side::Robot,
+                       .what = "Wrong tokens are shown",
+                       .why = sentence(most, ": robots with an old one, or somebody who guesses"),
+                       .action = {"Open set-up", "/setup#tokens"}});
+    } else {
+      found.push_back({.id = "strangers",
+                       .severity = Severity::Wait,
+                       .side = Side::Robot,
+                       .what = "Too many strangers are connected",
+                       .why = sentence("without a token, ", most, ": the oldest are ended for new ones")});
+    }
+  }
+  if (!facts.shut_out) return;
+  found.push_back({.id = "no_token:team",
+                   .side = Side::Box,
+                   .subject = "team",
+                   .what = "No token is set at all",
+                   .why = "every robot is turned away",
+                   .action = {"Open set-up", "/setup#tokens"}});
+}
+
+}  // namespace
+
+void find_robot_troubles(const Facts& facts, Found& found) {
+  find_silent(facts, found);
+  find_behind(facts, found);
+  find_full_queue(facts, found);
+  find_unknown(facts, found);
+  find_crowds(facts, found);
+}
+
+}  // namespace adit::alarms

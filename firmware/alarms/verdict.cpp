@@ -1,0 +1,108 @@
+#include "alarms/verdict.hpp"
+
+#include <algorithm>
+#include <map>
+#include <optional>
+#include <vector>
+
+#include "alarms/words.hpp"
+#include "icd/sentence.hpp"
+
+namespace adit::alarms {
+namespace {
+
+using icd::sentence;
+
+constexpr codec::Member kVerdict[] = {
+    codec::member<&Verdict::level>("level").one_of(kLevelWords),
+    codec::member<&Verdict::what>("what", "whether every map arrives, in few words"),
+    codec::member<&Verdict::why>("why", "which do not, and how old the others are; may be empty"),
+};
+
+/// Of one robot's maps.
+struct Maps {
+  Level level = Level::Quiet;
+  std::optional<double> oldest = {},
+                        newest = {};  // seconds since the Command Post took one that is not quiet; any
+};
+
+std::map<std::string, Maps> maps_of(const Facts& facts) {
+  std::map<std::string, Maps> all;
+  for (const Stream& stream : facts.streams) {
+    if (!stream.is_map()) continue;
+    const auto robot = facts.robots.find(stream.robot);
+    const bool silent = robot != facts.robots.end() && robot->second.silent;
+    Maps& maps = all[stream.robot];
+    const Level level = level_of(arrival_of(stream, facts.turn, silent));
+    maps.level = std::max(maps.level, level);
+    if (!stream.forwarded) continue;
+    maps.newest = std::min(*stream.forwarded, maps.newest.value_or(*stream.forwarded));
+    if (level != Level::Quiet) maps.oldest = std::max(*stream.forwarded, maps.oldest.value_or(0));
+  }
+  return all;
+}
+
+std::string names_of(const std::vector<std::string>& names) {
+  constexpr std::size_t kMostNames = 3;
+  std::string text;
+  for (std::size_t i = 0; i < names.size() && i < kMostNames; ++i) {
+    text += i == 0 ? "" : ", ";
+    text += names[i].empty() ? "the merged map" : names[i];
+  }
+  return names.size() > kMostNames ? sentence(text, " and ", names.size() - kMostNames, " more") : text;
+}
+
+/// Nothing is taken at all: since when, and why.
+const Endpoint* stopped(const Facts& facts) {
+  const auto found = std::ranges::find_if(facts.endpoints, [](const Endpoint& endpoint) {
+    return endpoint.name == "mapping" && endpoint.trouble < PostTrouble::Throttling;
+  });
+  return found == facts.endpoints.end() ? nullptr : &*found;
+}
+
+std::vector<std::string> names_at(const std::map<std::string, Maps>& all, Level level) {
+  std::vector<std::string> names;
+  for (const auto& [name, maps] : all) {
+    if (maps.level == level) names.push_back(name);
+  }
+  return names;
+}
+
+Verdict partly(const std::map<std::string, Maps>& all, std::optional<double> oldest) {
+  const std::vector<std::string> lacking = names_at(all, Level::Bad);
+  const std::size_t arrive = all.size() - lacking.size();
+  std::string why = "not " + names_of(lacking);
+  if (arrive == 0) return {Level::Bad, "Nothing arrives", std::move(why)};
+  if (oldest) why += sentence(arrive == 1 ? "; the other " : "; oldest other ", age_text(*oldest));
+  return {Level::Wait, sentence(arrive, " of ", all.size(), " arrive"), std::move(why)};
+}
+
+}  // namespace
+
+constexpr codec::Row Verdict::kRow = {"Verdict", kVerdict, "Is my map arriving?"};
+
+Verdict verdict_of(const Facts& facts) {
+  const auto all = maps_of(facts);
+  if (const Endpoint* endpoint = stopped(facts); endpoint != nullptr && !all.empty()) {
+    return {Level::Bad, "Nothing arrives",
+            sentence("for ", clock_text(facts.now - endpoint->since), "; the box keeps all")};
+  }
+  if (all.empty()) return {Level::Quiet, "No map yet", "no robot has sent one"};
+  Level worst = Level::Quiet;
+  std::optional<double> oldest, newest;
+  for (const auto& [name, maps] : all) {
+    worst = std::max(worst, maps.level);
+    if (maps.level == Level::Bad || !maps.newest) continue;
+    oldest = std::max(maps.oldest.value_or(0), oldest.value_or(0));
+    newest = std::min(*maps.newest, newest.value_or(*maps.newest));
+  }
+  if (worst == Level::Bad) return partly(all, oldest);
+  if (worst == Level::Wait) return {Level::Wait, "Maps are late", names_of(names_at(all, Level::Wait))};
+  if (worst == Level::Quiet)
+    return {Level::Quiet, "Every map arrived", "nothing new for " + age_text(newest.value_or(0))};
+  return {
+      Level::Good, "Every map arrives",
+      sentence(all.size(), all.size() == 1 ? " robot, " : " robots, oldest ", age_text(oldest.value_or(0)))};
+}
+
+}  // namespace adit::alarms

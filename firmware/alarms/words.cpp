@@ -1,0 +1,51 @@
+#include "alarms/words.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <cstdint>
+
+namespace adit::alarms {
+namespace {
+
+constexpr double kLongest = 1e9;  // seconds: beyond that a clock was set
+
+std::int64_t whole(double seconds) {
+  return static_cast<std::int64_t>(std::floor(std::clamp(seconds, 0.0, kLongest)));
+}
+
+std::string two(std::int64_t number) {
+  return (number < 10 ? "0" : "") + std::to_string(number);
+}
+
+}  // namespace
+
+std::string age_text(double seconds) {
+  const std::int64_t all = whole(seconds);
+  if (all < 60) return std::to_string(all) + " s";
+  if (all < 3600) return std::to_string(all / 60) + " min";
+  return std::to_string(all / 3600) + ":" + two(all / 60 % 60) + " h";
+}
+
+std::string clock_text(double seconds) {
+  const std::int64_t all = whole(seconds);
+  return std::to_string(all / 60) + ":" + two(all % 60);
+}
+
+std::string past(std::string_view what) {
+  constexpr struct {
+    std::string_view now, then;
+  } kForms[] = {{" is ", " was "}, {" are ", " were "}};
+  for (const auto& [now, then] : kForms) {
+    const std::size_t at = what.find(now);
+    if (at == std::string_view::npos) continue;
+    return std::string(what.substr(0, at)).append(then).append(what.substr(at + now.size()));
+  }
+  return std::string(what);
+}
+
+std::string capital(std::string text) {
+  if (!text.empty() && text[0] >= 'a' && text[0] <= 'z') text[0] = static_cast<char>(text[0] - 'a' + 'A');
+  return text;
+}
+
+}  // namespace adit::alarms

@@ -1,0 +1,23 @@
+#pragma once
+
+#include <string>
+#include <string_view>
+
+namespace adit::alarms {
+
+/// "45 s", "12 min", "2:05 h"; as the page's age() says it. `seconds` of any sign.
+std::string age_text(double seconds);
+/// Minutes and seconds: "1:34", "61:15".
+std::string clock_text(double seconds);
+/// "uav5 is silent" -> "uav5 was silent"
+std::string past(std::string_view what);
+/// "the disk is full" -> "The disk is full"
+std::string capital(std::string text);
+
+/// What one line has room for: "No scoring token is set: reports wait"
+template <class Said>
+std::string line_of(const Said& said) {
+  return said.why.empty() ? said.what : said.what + ": " + said.why;
+}
+
+}  // namespace adit::alarms

@@ -1,0 +1,179 @@
+#include "api/kept_runs_routes.hpp"
+
+#include <algorithm>
+#include <span>
+#include <utility>
+
+#include "api/answers.hpp"
+#include "api/asked_number.hpp"
+#include "api/map_json.hpp"
+#include "api/map_tile.hpp"
+#include "api/small_body.hpp"
+
+namespace adit::api {
+namespace {
+
+constexpr std::size_t kDetailsInATurn = 16;  // each is a look into the ledger
+
+intake::Answer no_such_run() {
+  return refusal(icd::Status::NotFound, "there is no such run");
+}
+
+/// The report of a run holds its style and its pictures, and no script: nothing else may be loaded.
+intake::Answer printed(std::string html) {
+  return {.content_type = "text/html; charset=utf-8",
+          .body = std::move(html),
+          .headers = {{"Content-Security-Policy",
+                       "default-src 'none'; style-src 'unsafe-inline'; img-src data:; base-uri 'none'; "
+                       "frame-ancestors 'none'; form-action 'none'"},
+                      {"X-Content-Type-Options", "nosniff"},
+                      {"Referrer-Policy", "no-referrer"},
+                      {"Cache-Control", "no-store"}}};
+}
+
+}  // namespace
+
+KeptRunsRoutes::KeptRunsRoutes(loop::Loop& loop, KeptRuns& runs, const Source& source)
+    : loop_(loop), runs_(runs), source_(source), forget_(loop.timer([this] { held_.reset(); })) {}
+
+template <class Task>
+auto KeptRunsRoutes::while_alive(Task task) const {
+  return [alive = std::weak_ptr(alive_), task = std::move(task)](auto&&... given) mutable {
+    if (!alive.expired()) task(std::forward<decltype(given)>(given)...);
+  };
+}
+
+const RunRow* KeptRunsRoutes::row_of(const RunList& list, const std::string& key) const {
+  const auto found = std::ranges::find(list.runs, key, &RunRow::key);
+  return found == list.runs.end() ? nullptr : &*found;
+}
+
+intake::Answer KeptRunsRoutes::history(const intake::RequestHead& head) const {
+  const AskedNumber since = asked_number(head, "since");
+  if (since.wrong) return refusal(icd::Status::BadRequest, "since: expected seconds since 1970");
+  return fresh("application/json", codec::to_json(runs_.history(since.number.value_or(0))));
+}
+
+intake::Answer KeptRunsRoutes::list() const {
+  return fresh("application/json", codec::to_json(runs_.list()));
+}
+
+intake::Answer KeptRunsRoutes::one(const Call& call) const {
+  const RunList all = runs_.list();
+  const RunRow* row = row_of(all, call.parameters.front());
+  return row != nullptr ? fresh("application/json", codec::to_json(*row)) : no_such_run();
+}
+
+/// What is answered later needs something that takes the body, although there is none.
+std::unique_ptr<intake::BodySink> KeptRunsRoutes::with_run(const Call& call, Answering answer) {
+  return std::make_unique<SmallBody>(
+      call.responder, 0,
+      [this, key = call.parameters.front(),
+       asker = Waiting{call.responder, std::move(answer)}](const std::string&) { look(key, asker); });
+}
+
+void KeptRunsRoutes::look(const std::string& key, Waiting asker) {
+  if (held_ && held_->facts.key == key) {
+    forget_.call_at(loop_.now() + kHeld);
+    return asker.responder->answer(asker.answer(*held_));
+  }
+  auto& waiting = waiting_[key];
+  if (waiting.size() >= kMostWaiting) {
+    return asker.responder->answer(refusal(icd::Status::ServiceUnavailable, "the run is being read"));
+  }
+  waiting.push_back(std::move(asker));
+  if (waiting.size() > 1) return;
+  runs_.read(key, while_alive([this, key](const std::shared_ptr<const KeptRun>& run) { came(key, run); }));
+}
+
+void KeptRunsRoutes::came(const std::string& key, const std::shared_ptr<const KeptRun>& run) {
+  const auto waiting = std::exchange(waiting_[key], {});
+  waiting_.erase(key);
+  for (const Waiting& each : waiting) each.responder->answer(run ? each.answer(*run) : no_such_run());
+  const RunList all = runs_.list();
+  const RunRow* row = row_of(all, key);
+  if (!run || row == nullptr || row->is_present) return;  // the present one goes on
+  held_ = run;
+  forget_.call_at(loop_.now() + kHeld);
+}
+
+std::unique_ptr<intake::BodySink> KeptRunsRoutes::layers(const Call& call) {
+  const auto since = version_asked(call.head);
+  if (!since) {
+    call.responder->answer(since.error());
+    return nullptr;
+  }
+  return with_run(call, [since = *since](const KeptRun& run) {
+    return fresh("application/json", codec::to_json(map_view(run.picture, since)));
+  });
+}
+
+std::unique_ptr<intake::BodySink> KeptRunsRoutes::tile(const Call& call) {
+  const auto asked = tile_asked(call.head, std::span(call.parameters).subspan(1));
+  if (!asked) {
+    call.responder->answer(asked.error());
+    return nullptr;
+  }
+  return with_run(call, [asked = *asked](const KeptRun& run) { return tile_of(run.picture, asked); });
+}
+
+std::unique_ptr<intake::BodySink> KeptRunsRoutes::tracks(const Call& call) {
+  return with_run(
+      call, [](const KeptRun& run) { return fresh("application/json", codec::to_json(Tracks{run.tracks})); });
+}
+
+std::unique_ptr<intake::BodySink> KeptRunsRoutes::plots(const Call& call) {
+  return with_run(call,
+                  [](const KeptRun& run) { return fresh("application/json", codec::to_json(run.history)); });
+}
+
+/// The reports of a run, some in each turn of the loop.
+struct KeptRunsRoutes::Gathering {
+  std::string key;
+  std::int64_t run = 0, last = 0;
+  std::vector<ReportDetail> reports;
+  std::shared_ptr<intake::Responder> responder;
+};
+
+std::unique_ptr<intake::BodySink> KeptRunsRoutes::report(const Call& call) {
+  const RunList all = runs_.list();
+  const RunRow* row = row_of(all, call.parameters.front());
+  if (row == nullptr) {
+    call.responder->answer(no_such_run());
+    return nullptr;
+  }
+  const auto gathering =
+      std::make_shared<Gathering>(row->key, row->run, 0, std::vector<ReportDetail>(), call.responder);
+  return std::make_unique<SmallBody>(call.responder, 0,
+                                     [this, gathering](const std::string&) { gather(gathering); });
+}
+
+void KeptRunsRoutes::gather(const std::shared_ptr<Gathering>& gathering) {
+  const auto rows = source_.reports(gathering->last, kDetailsInATurn);
+  for (const ReportRow& row : rows) {
+    gathering->last = row.number;
+    if (row.run != gathering->run) continue;
+    if (auto detail = source_.report(row.number)) gathering->reports.push_back(std::move(*detail));
+  }
+  if (rows.size() == kDetailsInATurn) {
+    return loop_.post(while_alive([this, gathering] { gather(gathering); }));
+  }
+  runs_.report(gathering->key, std::move(gathering->reports),
+               [responder = gathering->responder](std::string html) {
+                 responder->answer(html.empty() ? no_such_run() : printed(std::move(html)));
+               });
+}
+
+void KeptRunsRoutes::remove(const Call& call) {
+  const RunList all = runs_.list();
+  const RunRow* row = row_of(all, call.parameters.front());
+  if (row == nullptr) return call.responder->answer(no_such_run());
+  if (held_ && held_->facts.key == row->key) held_.reset();
+  runs_.remove(row->key,
+               [key = row->key, responder = call.responder](const std::expected<void, std::string>& done) {
+                 responder->answer(done ? object({{"key", codec::json(key)}})
+                                        : refusal(icd::Status::Conflict, done.error()));
+               });
+}
+
+}  // namespace adit::api

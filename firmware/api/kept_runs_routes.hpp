@@ -1,0 +1,64 @@
+#pragma once
+
+#include <functional>
+#include <map>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "api/kept_runs.hpp"
+#include "api/route.hpp"
+#include "api/source.hpp"
+#include "loop/loop.hpp"
+
+namespace adit::api {
+
+/// What is kept of the present run and of earlier ones: README.md. A run that is looked at again is read
+/// once, and held for kHeld after the last look.
+class KeptRunsRoutes {
+ public:
+  static constexpr std::chrono::seconds kHeld{60};
+  static constexpr std::size_t kMostWaiting = 64;  // requests, while a run is read
+
+  /// All outlive this.
+  KeptRunsRoutes(loop::Loop& loop, KeptRuns& runs, const Source& source);
+
+  /// The plots of the present run.
+  intake::Answer history(const intake::RequestHead& head) const;
+
+  intake::Answer list() const;
+  intake::Answer one(const Call& call) const;
+  std::unique_ptr<intake::BodySink> layers(const Call& call);
+  std::unique_ptr<intake::BodySink> tile(const Call& call);
+  std::unique_ptr<intake::BodySink> tracks(const Call& call);
+  std::unique_ptr<intake::BodySink> plots(const Call& call);
+  /// The report to print, as HTML.
+  std::unique_ptr<intake::BodySink> report(const Call& call);
+  void remove(const Call& call);
+
+ private:
+  using Answering = std::function<intake::Answer(const KeptRun& run)>;
+  struct Waiting {
+    std::shared_ptr<intake::Responder> responder;
+    Answering answer;
+  };
+  struct Gathering;
+  std::unique_ptr<intake::BodySink> with_run(const Call& call, Answering answer);
+  void look(const std::string& key, Waiting asker);
+  void came(const std::string& key, const std::shared_ptr<const KeptRun>& run);
+  void gather(const std::shared_ptr<Gathering>& gathering);
+  const RunRow* row_of(const RunList& list, const std::string& key) const;
+  /// Runs `task` only while this lives.
+  template <class Task>
+  auto while_alive(Task task) const;
+
+  loop::Loop& loop_;
+  KeptRuns& runs_;
+  const Source& source_;
+  loop::Source forget_;
+  std::shared_ptr<const KeptRun> held_;
+  std::map<std::string, std::vector<Waiting>> waiting_;
+  std::shared_ptr<const char> alive_ = std::make_shared<const char>();
+};
+
+}  // namespace adit::api

@@ -1,0 +1,95 @@
+#include "api/packed.hpp"
+
+#include <algorithm>
+#include <cstdint>
+#include <span>
+#include <string>
+#include <utility>
+
+#include "codec/gzip_whole.hpp"
+#include "intake/field_text.hpp"
+
+namespace adit::api {
+namespace {
+
+constexpr std::size_t kFewest = 1400;  // less is one packet anyway
+constexpr std::size_t kMost = 1u << 20;
+
+/// What stands before the next `mark`; `text` is what follows it.
+std::string_view take(std::string_view& text, char mark) {
+  const auto end = std::min(text.find(mark), text.size());
+  const auto taken = intake::without_blanks(text.substr(0, end));
+  text.remove_prefix(std::min(end + 1, text.size()));
+  return taken;
+}
+
+/// "q=0", "q=0.0": not this one.
+bool is_forbidden(std::string_view weight) {
+  if (!weight.starts_with("q=") && !weight.starts_with("Q=")) return false;
+  return weight.substr(2).find_first_not_of("0.") == std::string_view::npos;
+}
+
+bool has_header(const intake::Answer& answer, std::string_view name) {
+  return std::ranges::find(answer.headers, name, &intake::Header::name) != answer.headers.end();
+}
+
+bool pays(const intake::Answer& answer) {
+  const std::string_view type = answer.content_type;
+  const bool is_text = type.starts_with("text/") || type.starts_with("application/json");
+  return is_text && answer.body.size() >= kFewest && answer.body.size() <= kMost && !is_packed(answer) &&
+         !has_header(answer, "ETag");
+}
+
+void pack(intake::Answer& answer) {
+  const std::span bytes(reinterpret_cast<const std::uint8_t*>(answer.body.data()), answer.body.size());
+  const auto member = codec::gzip_whole(bytes, codec::kFastestLevel, bytes.size());
+  if (!member) return;  // it would be longer
+  answer.body = member->to_string();
+  answer.headers.push_back({"Content-Encoding", "gzip"});
+}
+
+class PackingResponder final : public intake::Responder {
+ public:
+  explicit PackingResponder(std::shared_ptr<intake::Responder> responder)
+      : responder_(std::move(responder)) {}
+  void answer(intake::Answer answer) override {
+    if (pays(answer)) {
+      answer.headers.push_back({"Vary", "Accept-Encoding"});
+      pack(answer);
+    }
+    responder_->answer(std::move(answer));
+  }
+  std::shared_ptr<intake::Stream> stream(std::string_view content_type) override {
+    return responder_->stream(content_type);
+  }
+  bool client_gone() const override { return responder_->client_gone(); }
+
+ private:
+  const std::shared_ptr<intake::Responder> responder_;
+};
+
+}  // namespace
+
+bool takes_gzip(std::string_view accept_encoding) {
+  bool any = false;
+  while (!accept_encoding.empty()) {
+    auto coding = take(accept_encoding, ',');
+    const auto name = take(coding, ';');
+    const bool taken = !is_forbidden(intake::without_blanks(coding));
+    if (intake::same_word(name, "gzip") || intake::same_word(name, "x-gzip")) return taken;
+    if (name == "*") any = taken;
+  }
+  return any;
+}
+
+bool is_packed(const intake::Answer& answer) {
+  return has_header(answer, "Content-Encoding");
+}
+
+std::shared_ptr<intake::Responder> packing(std::shared_ptr<intake::Responder> responder,
+                                           const intake::RequestHead& head) {
+  if (!takes_gzip(head.header("Accept-Encoding"))) return responder;
+  return std::make_shared<PackingResponder>(std::move(responder));
+}
+
+}  // namespace adit::api

@@ -1,0 +1,195 @@
+#include "archive/archive.hpp"
+
+#include <algorithm>
+#include <utility>
+
+#include "archive/run_report.hpp"
+#include "codec/row_file.hpp"
+#include "host/log.hpp"
+
+namespace adit::archive {
+
+Archive::Archive(loop::Loop& loop, const std::string& state_folder)
+    : loop_(loop), runs_(state_folder), writer_(loop) {
+  look_at_disk();
+}
+
+Archive::~Archive() {
+  *ending_ = true;
+}
+
+std::function<bool()> Archive::enough() const {
+  return [ending = ending_] { return ending->load(); };
+}
+
+/// What the disk gives of a run.
+struct Archive::Opening {
+  Head head;
+  std::expected<std::string, std::string> key = std::unexpected("there is no memory for it");
+  std::shared_ptr<RunFolder> folder;
+  std::optional<Told> told;
+};
+
+void Archive::begin(const Head& head, GoOn go_on) {
+  ++begun_;
+  opening_ = true;
+  key_.clear();
+  folder_.reset();
+  go_on_ = std::move(go_on);
+  samples_.clear();
+  attention_.clear();
+  lines_.clear();
+  lines_bytes_ = 0;
+  const auto opening = std::make_shared<Opening>();
+  opening->head = head;
+  const auto done = [this, opening, begun = begun_] {
+    if (begun == begun_) opened(*opening);
+  };
+  writer_.submit(
+      [opening, runs = runs_, enough = enough(), most = limits_.all]() mutable {
+        opening->key = runs.begin(opening->head);
+        if (!opening->key) return;
+        runs.tidy(most, *opening->key);
+        opening->folder = std::make_shared<RunFolder>(runs.folder_of(*opening->key), opening->head);
+        opening->told.emplace(picture::Mosaic::kBudget);
+        read_run(runs.folder_of(*opening->key), *opening->told, enough);
+      },
+      done, done);
+}
+
+void Archive::forget_who_goes_on() {
+  go_on_ = nullptr;
+  opening_ = false;
+  ++begun_;
+}
+
+void Archive::opened(Opening& opening) {
+  opening_ = false;
+  if (!opening.told) opening.told.emplace(0);
+  head_ = opening.head;
+  has_folder(opening);
+  Told& told = *opening.told;
+  samples_ = std::move(told.samples());
+  attention_.go_on(samples_.since(0).attention);
+  wiped_ = told.picture().wiped();
+  auto tracks = told.tracks();
+  last_pose_ = 0;
+  for (const api::Track& track : tracks) last_pose_ = std::max(last_pose_, track.poses.back().at);
+  const picture::Mosaic& now = std::exchange(go_on_, nullptr)(std::move(told.picture()), std::move(tracks));
+  due_.begin(now, told.files());
+  layers_seen_ = now.version();
+  next_write_ = loop_.now();
+  look_at_disk();
+}
+
+/// Of a run without one nothing is written.
+void Archive::has_folder(const Opening& opening) {
+  if (opening.key) {
+    key_ = *opening.key;
+    folder_ = opening.folder;
+    trouble_.clear();
+  } else if (std::exchange(trouble_, opening.key.error()) != opening.key.error()) {
+    host::log(host::Level::Warning, "the run's map and tracks are not kept", {{"why", trouble_}});
+  }
+}
+
+void Archive::make_folder() {
+  next_write_ = loop_.now() + kWriteEvery;
+  const auto opening = std::make_shared<Opening>();
+  opening->head = head_;
+  ++writing_;
+  const auto done = [this, opening, begun = begun_] {
+    --writing_;
+    if (begun == begun_) has_folder(*opening);
+  };
+  writer_.submit(
+      [opening, runs = runs_]() mutable {
+        opening->key = runs.begin(opening->head);
+        if (opening->key)
+          opening->folder = std::make_shared<RunFolder>(runs.folder_of(*opening->key), opening->head);
+      },
+      done, done);
+}
+
+void Archive::needs_attention(const std::vector<std::string>& sentences, api::Time now) {
+  if (opening_) return;
+  for (api::AttentionStep& step : attention_.look(sentences, now)) {
+    line(Kind::Attention, said(step));
+    samples_.add(std::move(step));
+  }
+}
+
+void Archive::line(Kind kind, std::string_view said) {
+  lines_bytes_ += lines_.emplace_back(framed(kind, said)).size();
+  while (lines_bytes_ > kMostWaiting) {
+    lines_bytes_ -= lines_.front().size();
+    lines_.pop_front();
+  }
+}
+
+void Archive::look_at_disk() {
+  const auto rows = std::make_shared<std::vector<api::RunRow>>();
+  writer_.submit([rows, runs = runs_] { *rows = runs.list(); }, [this, rows] { list_ = std::move(*rows); },
+                 [] {});
+}
+
+api::RunList Archive::list() const {
+  api::RunList all{.runs = list_, .bytes = 0, .trouble = trouble_};
+  // One that has just begun has nothing on the disk yet.
+  if (!key_.empty() && std::ranges::find(list_, key_, &api::RunRow::key) == list_.end()) {
+    all.runs.insert(all.runs.begin(),
+                    {.key = key_, .run = head_.run, .post = head_.post, .began = head_.began});
+  }
+  for (api::RunRow& row : all.runs) {
+    row.is_present = row.key == key_;
+    all.bytes += row.bytes;
+  }
+  return all;
+}
+
+namespace {
+
+/// For the thread that waits for the disk; null where there is no such run.
+std::shared_ptr<api::KeptRun> kept_run(const RunsFolder& runs, const std::string& key,
+                                       const std::function<bool()>& enough) {
+  const auto facts = runs.facts_of(key);
+  if (!facts) return nullptr;
+  Told told(Archive::kLookedAt);
+  read_run(runs.folder_of(key), told, enough);
+  std::vector<std::pair<api::Time, double>> coverage;
+  for (const auto& [at, pixels] : told.known())
+    coverage.emplace_back(at, static_cast<double>(pixels) * picture::kPixel * picture::kPixel);
+  return std::make_shared<api::KeptRun>(api::KeptRun{*facts, std::move(told.picture()), told.tracks(),
+                                                     told.samples().since(0), std::move(coverage)});
+}
+
+}  // namespace
+
+void Archive::read(const std::string& key, std::function<void(std::shared_ptr<const api::KeptRun>)> done) {
+  const auto run = std::make_shared<std::shared_ptr<api::KeptRun>>();
+  writer_.submit([run, key, runs = runs_, enough = enough()] { *run = kept_run(runs, key, enough); },
+                 [run, done] { done(*run); }, [done] { done(nullptr); });
+}
+
+void Archive::report(const std::string& key, std::vector<api::ReportDetail> reports,
+                     std::function<void(std::string html)> done) {
+  const auto html = std::make_shared<std::string>();
+  writer_.submit(
+      [html, key, runs = runs_, enough = enough(), reports = std::move(reports)] {
+        if (const auto run = kept_run(runs, key, enough)) *html = run_report(*run, reports);
+      },
+      [html, done] { done(std::move(*html)); }, [done] { done(""); });
+}
+
+void Archive::remove(const std::string& key, std::function<void(std::expected<void, std::string>)> done) {
+  if (key == key_) return done(std::unexpected("it is the present run"));
+  const auto outcome =
+      std::make_shared<std::expected<void, std::string>>(std::unexpected("there is no memory for it"));
+  writer_.submit([outcome, key, runs = runs_]() mutable { *outcome = runs.remove(key); },
+                 [this, key, outcome, done = std::move(done)] {
+                   if (*outcome) std::erase_if(list_, [&](const api::RunRow& row) { return row.key == key; });
+                   done(*outcome);
+                 });
+}
+
+}  // namespace adit::archive

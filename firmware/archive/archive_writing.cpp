@@ -1,0 +1,158 @@
+// What of the present run is written, and when.
+#include <algorithm>
+#include <utility>
+
+#include "archive/archive.hpp"
+#include "codec/row_file.hpp"
+#include "host/log.hpp"
+
+namespace adit::archive {
+
+/// One write: the thread reads `batch`, and says what became of it.
+struct Archive::Writing {
+  std::uint64_t number = 0, begun = 0;
+  Batch batch;
+  std::shared_ptr<RunFolder> folder;
+  std::uint64_t most = 0;
+  std::optional<std::uint64_t> goes;  // this file
+  std::expected<RunFolder::Written, std::string> outcome = std::unexpected("there is no memory for it");
+};
+
+void Archive::tick(const Seen& seen) {
+  if (opening_) return;
+  sample(seen);
+  if (writing_ > 0 || loop_.now() < next_write_) return;
+  if (folder_) {
+    write(seen);
+  } else if (!trouble_.empty()) {
+    make_folder();
+  }
+}
+
+void Archive::write_now(const Seen& seen) {
+  if (!opening_ && folder_) write(seen);
+}
+
+void Archive::end_run(const Seen& seen) {
+  if (!opening_ && folder_) write(seen, false);
+}
+
+void Archive::sample(const Seen& seen) {
+  if (!samples_.wants(seen.now)) return;
+  Sample now = seen.sample();
+  const std::uint64_t throttled = std::exchange(throttled_, now.throttled);
+  now.throttled -= std::min(throttled, now.throttled);
+  line(Kind::Sample, said(now));
+  samples_.add(std::move(now));
+}
+
+/// Lines first: they are small, and there is no newer state of them that could be written instead.
+void Archive::write(const Seen& seen, bool with_facts) {
+  next_write_ = loop_.now() + kWriteEvery;
+  const std::size_t may = allowance_.at(loop_.now());
+  const auto writing = std::make_shared<Writing>();
+  Batch& batch = writing->batch;
+  writing->number = ++writes_;
+  writing->begun = begun_;
+  if (with_facts) put_facts(seen, batch);
+  put_lines(seen, batch);
+  put_layers(seen, batch);
+  const std::size_t taken = batch.facts.size() + batch.lines.size() + batch.beside.size();
+  put_tiles(seen, batch, may - std::min(may, taken));
+  if (is_left_) writing->goes = std::exchange(leaves_, std::nullopt);
+  is_left_ = false;
+  if (batch.is_empty() && !writing->goes) return;
+  writing->folder = folder_;
+  writing->most = limits_.run;
+  ++writing_;
+  const auto done = [this, writing] { written(*writing); };
+  writer_.submit(
+      [writing] {
+        if (writing->goes) writing->folder->remove_first(*writing->goes);
+        writing->outcome = writing->folder->write(writing->batch, writing->most);
+      },
+      done, done);
+}
+
+void Archive::put_facts(const Seen& seen, Batch& batch) {
+  if (loop_.now() < next_facts_ && !facts_.empty()) return;
+  next_facts_ = loop_.now() + kFactsEvery;
+  api::RunRow facts = seen.facts();
+  facts.key = key_;
+  facts.last = seen.now;
+  batch.facts = codec::write_file(facts, kFactsFormat);
+  facts_ = batch.facts;
+  allowance_.spend(batch.facts.size());
+}
+
+void Archive::put_lines(const Seen& seen, Batch& batch) {
+  for (const api::Track& track : seen.tracks(last_pose_)) {
+    std::span<const api::TrackPose> poses = track.poses;
+    for (; !poses.empty(); poses = poses.subspan(std::min(poses.size(), kLargestPoses)))
+      line(Kind::Poses, said(track.robot, poses.first(std::min(poses.size(), kLargestPoses))));
+  }
+  last_pose_ = seen.now;
+  while (!lines_.empty() && batch.lines.size() + lines_.front().size() <= kLargestRecord) {
+    batch.lines += lines_.front();
+    lines_bytes_ -= lines_.front().size();
+    lines_.pop_front();
+  }
+  allowance_.spend(batch.lines.size());
+}
+
+void Archive::put_layers(const Seen& seen, Batch& batch) {
+  const picture::Mosaic& picture = seen.picture;
+  if (picture.wiped() && picture.wiped() != wiped_) {
+    wiped_ = picture.wiped();
+    batch.beside += framed(Kind::Wiped, said_time(*wiped_));
+  }
+  if (picture.version() == layers_seen_) return;
+  for (const picture::LayerView& view : picture.layers(layers_seen_)) {
+    if (view.version > layers_seen_ && view.bounds) batch.beside += framed(Kind::Layer, said(view));
+  }
+  layers_seen_ = picture.version();
+  allowance_.spend(batch.beside.size());
+}
+
+void Archive::put_tiles(const Seen& seen, Batch& batch, std::size_t left) {
+  constexpr std::size_t kFraming = 200;  // what a record has beside the tile, at most, with a robot's name
+  due_.look(seen.picture);
+  for (const TileKey& key : due_.at(seen.now)) {
+    TileState state{.layer = key.first, .at = key.second, .stamp = 0, .tile = {}};
+    const auto shown = seen.picture.tile(state.layer, state.at, std::nullopt);
+    state.tile = shown.tile;
+    state.stamp = shown.stamp;
+    const std::size_t bytes = kFraming + (state.tile ? state.tile->deflated.size() : 0);
+    if (bytes > left) return;
+    due_.being_written(key, writes_, seen.now);
+    left -= bytes;
+    allowance_.spend(bytes);
+    batch.tiles.push_back(std::move(state));
+  }
+}
+
+void Archive::written(const Writing& writing) {
+  --writing_;
+  if (writing.begun != begun_) return;  // of a run before
+  const auto& outcome = writing.outcome;
+  due_.done(writing.number, outcome ? std::optional(outcome->file) : std::nullopt);
+  const std::string why = outcome ? "" : outcome.error();
+  if (std::exchange(trouble_, why) != why && !why.empty())
+    host::log(host::Level::Warning, "the run's map and tracks are not kept", {{"why", why}});
+  if (!outcome) {
+    facts_.clear();
+    if (!writing.batch.lines.empty()) lines_bytes_ += lines_.emplace_front(writing.batch.lines).size();
+    return;
+  }
+  const auto row = std::ranges::find(list_, key_, &api::RunRow::key);
+  if (row != list_.end()) {
+    row->bytes = outcome->bytes;
+  } else {
+    look_at_disk();
+  }
+  // A little before there is no room: what is newest in the first file is written again, and then it goes.
+  if (outcome->bytes > limits_.run / 8 * 7 && outcome->first_file != 0) leaves_ = outcome->first_file;
+  if (leaves_) is_left_ = due_.leave(*leaves_);
+}
+
+}  // namespace adit::archive

@@ -1,0 +1,24 @@
+#pragma once
+
+#include <cstdint>
+#include <span>
+#include <string>
+#include <string_view>
+
+namespace adit::archive {
+
+/// As HTML's text and as an attribute's value in double quotes: none of it is markup, and control characters
+/// are U+FFFD.
+std::string escaped(std::string_view text);
+
+/// With so many digits behind the point.
+std::string fixed(double number, int digits);
+
+/// "2026-11-23 04:05:06", of seconds since 1970, in UTC; "" for 0.
+std::string utc(double seconds);
+/// "1:02:03", of seconds; "-" where there are none.
+std::string lasted(double seconds);
+
+std::string base64_of(std::span<const std::uint8_t> bytes);
+
+}  // namespace adit::archive

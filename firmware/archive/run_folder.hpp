@@ -1,0 +1,82 @@
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <expected>
+#include <functional>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "api/kept_runs.hpp"
+#include "archive/said.hpp"
+#include "archive/told.hpp"
+#include "loop/file_descriptor.hpp"
+
+namespace adit::archive {
+
+/// What one write is to put on the disk.
+struct Batch {
+  std::vector<TileState> tiles = {};
+  std::string beside = "";  // records that go with the tiles
+  std::string lines = "";   // records of tracks, plots and what needed the operator
+  std::string facts = "";   // the file of facts; "": as it is
+  bool is_empty() const { return tiles.empty() && beside.empty() && lines.empty() && facts.empty(); }
+};
+
+/// A file that grows, one after the other: records are appended to the last one until it is full. What a
+/// death left torn at its end is passed over by who reads it.
+class GrowingFile {
+ public:
+  /// `head`: the record that begins each.
+  GrowingFile(std::string folder, std::string prefix, std::string head);
+
+  /// All of it or nothing, and on the disk when this returns. Gives the number of the file.
+  std::expected<std::uint64_t, std::string> append(std::string_view bytes, std::size_t largest);
+  std::uint64_t bytes() const;
+  /// In order.
+  const std::vector<std::uint64_t>& numbers() const { return numbers_; }
+  std::string path(std::uint64_t number) const;
+  /// Never the last one.
+  void remove_first();
+
+ private:
+  std::expected<void, std::string> open_next();
+  std::expected<void, std::string> write(std::string_view bytes);
+
+  std::string folder_, prefix_, head_;
+  std::vector<std::uint64_t> numbers_;
+  std::vector<std::uint64_t> sizes_;
+  loop::FileDescriptor file_;
+};
+
+/// The files of one run. For one thread, which waits for the disk.
+class RunFolder {
+ public:
+  static constexpr const char* kFacts = "facts.json";
+  /// What is left to the ledger and all else, in bytes, or a quarter of a small disk: below it nothing is
+  /// written.
+  static constexpr std::uint64_t kLeave = std::uint64_t{16} << 20;
+
+  RunFolder(std::string path, const Head& head);
+
+  struct Written {
+    std::uint64_t file = 0;        // that has the tiles
+    std::uint64_t first_file = 0;  // of those with tiles
+    std::uint64_t bytes = 0;       // of the run
+  };
+  /// `most`: bytes that the run may take, and half of what the disk has for it. Beyond it the first files go.
+  std::expected<Written, std::string> write(const Batch& batch, std::uint64_t most);
+  /// The first of several files with tiles goes.
+  void remove_first(std::uint64_t file);
+  std::uint64_t bytes() const { return tiles_.bytes() + lines_.bytes(); }
+
+ private:
+  std::string path_;
+  GrowingFile tiles_, lines_;
+};
+
+/// Tells all that a folder has, until `enough`.
+void read_run(const std::string& folder, Told& told, const std::function<bool()>& enough);
+
+}  // namespace adit::archive

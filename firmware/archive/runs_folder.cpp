@@ -1,0 +1,136 @@
+#include "archive/runs_folder.hpp"
+
+#include <sys/statvfs.h>
+
+#include <algorithm>
+#include <cmath>
+#include <filesystem>
+#include <system_error>
+
+#include "codec/row_file.hpp"
+#include "host/log.hpp"
+#include "host/service.hpp"
+
+namespace adit::archive {
+namespace {
+
+namespace fs = std::filesystem;
+
+constexpr std::string_view kGone = "gone-";
+
+/// Of the files in it.
+std::uint64_t bytes_in(const std::string& folder) {
+  std::uint64_t bytes = 0;
+  std::error_code error;
+  for (fs::directory_iterator entry(folder, error), end; !error && entry != end; entry.increment(error)) {
+    std::error_code unknown;
+    const auto size = entry->file_size(unknown);
+    if (!unknown) bytes += size;
+  }
+  return bytes;
+}
+
+/// As far as the box can tell: a run that it knew of from its first start has no begin.
+bool is_same(const Head& a, const Head& b) {
+  if (a.run != b.run || std::abs(a.began - b.began) > 1) return false;
+  return a.began > 0 || a.post.empty() || b.post.empty() || a.post == b.post;
+}
+
+}  // namespace
+
+bool RunsFolder::is_key(std::string_view name) {
+  constexpr std::size_t kLongest = 30;
+  const auto is_digit = [](char c) { return c >= '0' && c <= '9'; };
+  const auto dash = name.find('-');
+  const auto number = name.substr(0, dash);
+  const auto more = dash == std::string_view::npos ? "2" : name.substr(dash + 1);
+  return name.size() <= kLongest && !number.empty() && !more.empty() &&
+         std::ranges::all_of(number, is_digit) && std::ranges::all_of(more, is_digit);
+}
+
+bool RunsFolder::has(const std::string& key) const {
+  std::error_code unknown;
+  return is_key(key) && fs::is_directory(folder_of(key), unknown);
+}
+
+std::optional<api::RunRow> RunsFolder::facts_of(const std::string& key) const {
+  if (!has(key)) return std::nullopt;
+  const std::string folder = folder_of(key);
+  std::optional<api::RunRow> row;
+  if (const auto text = host::read_file(folder + '/' + RunFolder::kFacts)) {
+    if (auto read = codec::read_file<api::RunRow>(*text, kFactsFormat)) row = std::move(*read);
+  }
+  if (!row) {
+    Told told(0);
+    read_run(folder, told, [&told] { return told.head().has_value(); });
+    if (!told.head()) return std::nullopt;
+    row = api::RunRow{
+        .run = told.head()->run, .post = told.head()->post, .began = told.head()->began, .last = told.last()};
+  }
+  row->key = key;
+  row->bytes = bytes_in(folder);
+  row->is_present = false;
+  return row;
+}
+
+std::vector<api::RunRow> RunsFolder::list() const {
+  std::vector<api::RunRow> rows;
+  const auto names = host::names_in(path_, kMostRuns);
+  for (const std::string& name : names.value_or(std::vector<std::string>())) {
+    if (!has(name)) continue;
+    if (auto row = facts_of(name)) rows.push_back(std::move(*row));
+  }
+  std::ranges::sort(rows, std::ranges::greater(),
+                    [](const api::RunRow& row) { return std::pair(row.last, row.run); });
+  return rows;
+}
+
+std::expected<std::string, std::string> RunsFolder::begin(const Head& head) {
+  std::error_code error;
+  fs::create_directory(path_, error);
+  fs::permissions(path_, fs::perms::owner_all, error);
+  for (int more = 1; more < 1000; ++more) {
+    const std::string key = std::to_string(head.run) + (more == 1 ? "" : '-' + std::to_string(more));
+    if (!has(key)) {
+      if (!fs::create_directory(folder_of(key), error)) break;
+      fs::permissions(folder_of(key), fs::perms::owner_all, error);
+      return key;
+    }
+    const auto facts = facts_of(key);
+    const bool is_new = !facts;  // made, and nothing was written into it
+    if (is_new || is_same(head, {.run = facts->run, .began = facts->began, .post = facts->post})) return key;
+  }
+  return std::unexpected(path_ + ": " + (error ? error.message() : "no folder can be made in it"));
+}
+
+std::expected<void, std::string> RunsFolder::remove(const std::string& key) {
+  if (!has(key)) return std::unexpected("there is no such run");
+  const std::string gone = path_ + '/' + std::string(kGone) + key;
+  std::error_code error;
+  fs::rename(folder_of(key), gone, error);  // first: a death leaves no half of a run
+  if (!error) fs::remove_all(gone, error);
+  if (error) return std::unexpected(folder_of(key) + ": " + error.message());
+  return {};
+}
+
+void RunsFolder::tidy(std::uint64_t most, const std::string& present) {
+  const auto names = host::names_in(path_, kMostRuns);
+  for (const std::string& name : names.value_or(std::vector<std::string>())) {
+    std::error_code error;
+    if (name.starts_with(kGone)) fs::remove_all(path_ + '/' + name, error);
+  }
+  auto rows = list();
+  std::uint64_t all = 0;
+  for (const api::RunRow& row : rows) all += row.bytes;
+  struct statvfs disk{};
+  if (statvfs(path_.c_str(), &disk) == 0)
+    most = std::min(most, (std::uint64_t{disk.f_bavail} * disk.f_frsize + all) / 2);
+  for (auto row = rows.rbegin(); row != rows.rend() && all > most; ++row) {
+    if (row->key == present) continue;
+    if (const auto removed = remove(row->key); !removed) continue;
+    all -= row->bytes;
+    host::log(host::Level::Notice, "the oldest run makes room for others", {{"run", row->key}});
+  }
+}
+
+}  // namespace adit::archive

@@ -1,0 +1,64 @@
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <functional>
+#include <map>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "api/scene.hpp"
+#include "archive/due_tiles.hpp"
+#include "archive/record.hpp"
+#include "archive/said.hpp"
+#include "archive/samples.hpp"
+#include "picture/mosaic.hpp"
+
+namespace adit::archive {
+
+/// What the records of a run come to. Any bytes may be told: what is no record of this run is passed over.
+class Told {
+ public:
+  static constexpr std::size_t kMostPoses = 100'000;
+
+  /// `budget`: of the picture, in bytes.
+  explicit Told(std::size_t budget) : picture_(budget) {}
+
+  /// The content of one file, which has that number.
+  void tell(std::string_view bytes, std::uint64_t file);
+
+  const std::optional<Head>& head() const { return head_; }
+  picture::Mosaic& picture() { return picture_; }
+  std::vector<api::Track> tracks() const;
+  Samples& samples() { return samples_; }
+  /// Where the newest state of each tile is.
+  std::map<TileKey, std::uint64_t>& files() { return files_; }
+  /// How much of the finest tiles was known over time: pixels of all layers.
+  const std::vector<std::pair<double, std::uint64_t>>& known() const { return known_; }
+  double last() const { return last_; }  // of what is told of
+
+ private:
+  void tell(Kind kind, std::string_view said, std::uint64_t file);
+  void tell(TileState state, std::uint64_t file);
+  void tell(const api::Track& track);
+  void tell_head(std::string_view said);
+  void heard(double at) { last_ = at > last_ ? at : last_; }
+
+  picture::Mosaic picture_;
+  picture::Packer packer_;
+  Samples samples_;
+  std::optional<Head> head_;
+  bool tiles_fit_ = false;
+  bool is_ours_ = false;
+  std::map<std::string, std::vector<api::TrackPose>> tracks_;
+  std::size_t poses_ = 0;
+  std::map<TileKey, std::uint64_t> files_;
+  std::map<TileKey, std::size_t> known_of_;
+  std::uint64_t known_now_ = 0;
+  std::vector<std::pair<double, std::uint64_t>> known_;
+  double last_ = 0;
+};
+
+}  // namespace adit::archive

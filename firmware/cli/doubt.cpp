@@ -1,0 +1,37 @@
+#include "cli/doubt.hpp"
+
+#include "api/run_view.hpp"
+#include "cli/reading.hpp"
+#include "dispatch/report_life.hpp"
+#include "host/log.hpp"
+#include "icd/sentence.hpp"
+
+namespace adit::cli {
+namespace {
+
+std::string warning(const api::ReportRow& report) {
+  const char* const asking =
+      report.asking ? " Adit asks the run's status and finds that out by itself, unless you do." : "";
+  return icd::sentence("report ", report.number, " (", report.type,
+                       ") is in doubt: it may have been recorded, and then sending it again uses up a second "
+                       "one of the allotment.",
+                       asking);
+}
+
+}  // namespace
+
+std::optional<Failure> doubt(const Adit& adit, std::int64_t number, const Console& console) {
+  const auto json = find(adit, "/adit/reports/" + std::to_string(number));
+  if (!json) return json.error();
+  const auto detail = read<api::ReportDetail>(adit, *json);
+  if (!detail) return Failure{Exit::Unable, detail.error()};
+  const api::ReportRow& report = detail->row;
+  if (dispatch::state_named(report.state) != dispatch::ReportState::InDoubt) return std::nullopt;
+  const std::string why = warning(report);
+  const auto meant = console.ask(host::escaped(why) + "\nSend it again?");
+  if (!meant) return Failure{Exit::Attention, why + " It is not sent; if that is meant: --yes"};
+  if (!*meant) return Failure{Exit::Attention, "report " + std::to_string(number) + " is not sent"};
+  return std::nullopt;
+}
+
+}  // namespace adit::cli

@@ -1,0 +1,14 @@
+#pragma once
+
+#include <optional>
+
+#include "cli/ask.hpp"
+#include "cli/console.hpp"
+
+namespace adit::cli {
+
+/// Why report `number` is not to be sent: it is in doubt, and whoever is at the console does not want it, or
+/// nobody is there; or it cannot be looked at. Nothing: it may be sent.
+std::optional<Failure> doubt(const Adit& adit, std::int64_t number, const Console& console);
+
+}  // namespace adit::cli

@@ -1,0 +1,25 @@
+#pragma once
+
+#include <expected>
+#include <string>
+
+#include "codec/value.hpp"
+
+namespace adit::cli {
+
+/// One key of the settings, as GET /adit/settings describes it, with its value for each place that it has: of
+/// an item of a list "robots[0].alias".
+struct ShownKey {
+  codec::Value described;
+  codec::Value::Object values;  // by path
+};
+
+/// The keys that `name` is, or that begin with it ("reports" of "reports.review"), of Adit's answer; or that
+/// there is none, and which was likely meant.
+std::expected<std::vector<ShownKey>, std::string> keys_named(const codec::Value& answer,
+                                                             const std::string& name);
+
+std::string text_of(const std::vector<ShownKey>& keys, bool colour);
+codec::Value json_of(const std::vector<ShownKey>& keys);
+
+}  // namespace adit::cli

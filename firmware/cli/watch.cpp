@@ -1,0 +1,134 @@
+#include "cli/watch.hpp"
+
+#include <unistd.h>
+
+#include <algorithm>
+#include <chrono>
+#include <memory>
+#include <optional>
+
+#include "api/reports_csv.hpp"
+#include "api/run_view.hpp"
+#include "cli/ask.hpp"
+#include "cli/reading.hpp"
+#include "cli/screen.hpp"
+#include "cli/status_text.hpp"
+#include "cli/watch_text.hpp"
+#include "cli/where.hpp"
+#include "cli/words.hpp"
+#include "host/log.hpp"
+
+namespace adit::cli {
+namespace {
+
+using Clock = std::chrono::steady_clock;
+
+constexpr std::chrono::seconds kLookEvery{1};
+
+struct Seen {
+  std::string json;
+  api::RunView view;
+};
+using Look = std::expected<Seen, std::string>;
+
+Look look(const Adit& adit) {
+  auto json = get(adit, "/adit/run");
+  if (!json) return std::unexpected(json.error());
+  auto view = read<api::RunView>(adit, *json);
+  if (!view) return std::unexpected(view.error());
+  return Seen{std::move(*json), std::move(*view)};
+}
+
+/// How what was seen is shown.
+class Shown {
+ public:
+  virtual ~Shown() = default;
+  virtual void show(const Look& seen) = 0;
+};
+
+class AsJson : public Shown {
+ public:
+  explicit AsJson(const Console& console) : console_(console) {}
+  void show(const Look& seen) override {
+    if (seen) console_.print(seen->json + '\n');
+  }
+
+ private:
+  const Console& console_;
+};
+
+class AsLines : public Shown {
+ public:
+  explicit AsLines(const Console& console) : console_(console) {}
+  void show(const Look& seen) override {
+    const std::string trouble = seen ? "" : seen.error();
+    if (trouble != trouble_)
+      console_.print(trouble.empty() ? "Adit answers again\n" : host::escaped(trouble) + '\n');
+    trouble_ = trouble;
+    if (!seen) return;
+    console_.print(before_ ? changes_text(*before_, seen->view, console_.colour)
+                           : status_text(seen->view, console_.colour) + '\n');
+    before_ = seen->view;
+  }
+
+ private:
+  const Console& console_;
+  std::optional<api::RunView> before_;
+  std::string trouble_;
+};
+
+class OnScreen : public Shown {
+ public:
+  OnScreen(const Console& console, std::string where)
+      : console_(console), where_(std::move(where)), screen_(console.print) {}
+  void show(const Look& seen) override {
+    if (seen) last_ = seen->view;
+    const std::string at = last_ ? "  " + api::iso_time(last_->now) : "";
+    const std::string head = "adit watch  " + where_ + at + "  q ends\n";
+    const std::string trouble =
+        seen ? ""
+             : painted("NO ANSWER  what follows is old: " + host::escaped(seen.error()), Tone::Bad,
+                       console_.colour) +
+                   '\n';
+    screen_.show(painted(head, Tone::Faint, console_.colour) + trouble +
+                 (last_ ? status_text(*last_, console_.colour) : ""));
+  }
+
+ private:
+  const Console& console_;
+  std::string where_;
+  Screen screen_;
+  std::optional<api::RunView> last_;
+};
+
+std::unique_ptr<Shown> shown_for(const Options& options, const Console& console, const Adit& adit) {
+  if (options.json) return std::make_unique<AsJson>(console);
+  if (console.screen) return std::make_unique<OnScreen>(console, written(adit.address));
+  return std::make_unique<AsLines>(console);
+}
+
+}  // namespace
+
+Outcome watch(const Options& options, const Console& console) {
+  const auto adit = adit_of(options);
+  if (!adit) return unable(adit.error());
+  Look seen = look(*adit);
+  if (!seen) return unable(seen.error());
+  const bool drawn = console.screen && !options.json;
+  Patience patience(drawn && isatty(STDIN_FILENO) == 1);
+  const auto shown = shown_for(options, console, *adit);
+  while (true) {
+    shown->show(seen);
+    const auto next = Clock::now() + kLookEvery;
+    auto woken = Patience::Woken::ByChange;
+    while (woken == Patience::Woken::ByChange) {
+      const auto left = std::chrono::ceil<std::chrono::milliseconds>(next - Clock::now());
+      woken = patience.wait(std::max(left, std::chrono::milliseconds(0)));
+      if (woken == Patience::Woken::ToEnd) return {};
+      if (woken == Patience::Woken::ByChange && drawn) shown->show(seen);
+    }
+    seen = look(*adit);
+  }
+}
+
+}  // namespace adit::cli

@@ -1,0 +1,186 @@
+#include "cli/watch_text.hpp"
+
+#include <algorithm>
+#include <vector>
+
+#include "alarms/board.hpp"
+#include "alarms/words.hpp"
+#include "api/reports_csv.hpp"
+#include "cli/reports_text.hpp"
+#include "cli/status_text.hpp"
+#include "cli/words.hpp"
+#include "host/log.hpp"
+#include "icd/sentence.hpp"
+
+namespace adit::cli {
+namespace {
+
+/// Lines that begin with the time.
+class Lines {
+ public:
+  Lines(api::Time at, bool colour) : at_(at), colour_(colour) {}
+  void add(const std::string& what, Tone tone = Tone::Plain) {
+    text_ += painted(api::iso_time(at_), Tone::Faint, colour_) + "  " +
+             painted(host::escaped(what), tone, colour_) + '\n';
+  }
+  const std::string& text() const { return text_; }
+
+ private:
+  api::Time at_;
+  bool colour_;
+  std::string text_;
+};
+
+void alarms_told(const api::RunView& before, const api::RunView& now, Lines& lines) {
+  const auto is_in = [](const api::RunView& view, const alarms::Alarm& alarm) {
+    return std::ranges::count(view.alarms, alarm.id, &alarms::Alarm::id) > 0;
+  };
+  for (const alarms::Alarm& alarm : now.alarms) {
+    if (!is_in(before, alarm))
+      lines.add("ALARM  " + alarms::line_of(alarm), alarms::calls(alarm) ? Tone::Bad : Tone::Warning);
+  }
+  for (const alarms::Alarm& alarm : before.alarms) {
+    if (!is_in(now, alarm)) lines.add("no longer: " + alarms::line_of(alarm), Tone::Good);
+  }
+}
+
+/// What is told of the run; not its clock, which always changes.
+std::string told_of_run(const api::RunView& view) {
+  if (!view.run) return "no word from the Command Post yet";
+  const icd::RunStatus& run = *view.run;
+  return icd::sentence("score ", run.score, ", ", run.remaining_reports, " reports left",
+                       run.current_team.empty() ? "" : ", team ", run.current_team);
+}
+
+void run(const api::RunView& before, const api::RunView& now, Lines& lines) {
+  if (now.run_number != before.run_number) lines.add(icd::sentence("run ", now.run_number, " begins"));
+  const std::string told = told_of_run(now);
+  if (told != told_of_run(before))
+    lines.add(now.run ? icd::sentence("run ", clock(now.run->run_clock), ": ", told) : "run: " + told);
+}
+
+void reports(const api::RunView& before, const api::RunView& now, Lines& lines) {
+  for (const api::ReportRow& report : now.reports) {
+    const auto was = std::ranges::find(before.reports, report.number, &api::ReportRow::number);
+    const std::string life = life_of(report);
+    if (was != before.reports.end() && life_of(*was) == life) continue;
+    const std::string why = report.note.empty() ? "" : " (" + report.note + ")";
+    const std::string score = gained_by(report).empty() ? "" : ", score " + gained_by(report);
+    lines.add(icd::sentence("report ", report.number, " ", report.type, ": ", life, score, why),
+              tone_of(report));
+  }
+}
+
+std::string state_of(const api::EndpointRow& endpoint) {
+  const std::string state = endpoint.connected ? "connected" : "not connected";
+  return endpoint.trouble.empty() ? state : state + ", " + endpoint.trouble;
+}
+
+void endpoints(const api::RunView& before, const api::RunView& now, Lines& lines) {
+  for (const api::EndpointRow& endpoint : now.endpoints) {
+    const auto was = std::ranges::find(before.endpoints, endpoint.name, &api::EndpointRow::name);
+    if (was != before.endpoints.end() && state_of(*was) == state_of(endpoint)) continue;
+    const bool well = endpoint.connected && endpoint.trouble.empty();
+    lines.add(endpoint.name + " endpoint: " + state_of(endpoint), well ? Tone::Good : Tone::Bad);
+  }
+}
+
+struct Told {
+  const char* word;
+  Tone tone;
+  bool operator==(const Told& other) const { return std::string_view(word) == other.word; }
+};
+
+/// Late is none of its own: where many robots share the link, each is late in its turn.
+Told said_of(alarms::Arrival arrival) {
+  using enum alarms::Arrival;
+  switch (arrival) {
+    case UpToDate:
+    case Arriving:
+    case Late:
+    case Quiet:
+      return {"arrives", Tone::Good};
+    case Throttled:
+    case Failing:
+    case NotArriving:
+    case Refused:
+      return {"NO", Tone::Bad};
+    case Silent:
+      return {"silent", Tone::Warning};
+    case NotYet:
+      break;
+  }
+  return {"not yet", Tone::Faint};
+}
+
+void arrivals(const api::RunView& before, const api::RunView& now, Lines& lines) {
+  for (const api::ActivityRow& row : now.activities) {
+    const auto was = std::ranges::find_if(before.activities, [&row](const api::ActivityRow& each) {
+      return each.robot == row.robot && each.kind == row.kind;
+    });
+    const Told said = said_of(row.arrival);
+    if (was != before.activities.end() && said_of(was->arrival) == said) continue;
+    const std::string why = said.tone == Tone::Bad ? ": " + row.last_sentence : "";
+    lines.add(
+        icd::sentence(row.robot.empty() ? "all robots" : row.robot, ", ", row.kind, ": ", said.word, why),
+        said.tone);
+  }
+}
+
+/// Where the colour that begins there ends (ECMA-48's CSI ... m); `at` itself where none does.
+std::size_t behind_colour(std::string_view line, std::size_t at) {
+  if (!line.substr(at).starts_with("\033[")) return at;
+  const std::size_t end = line.find('m', at);
+  return end == std::string_view::npos ? line.size() : end + 1;
+}
+
+bool continues(char byte) {  // a character of UTF-8
+  return (static_cast<unsigned char>(byte) & 0xc0u) == 0x80u;
+}
+
+std::string cut(std::string_view line, std::size_t columns) {
+  std::string text;
+  std::size_t shown = 0;
+  for (std::size_t at = 0; at < line.size();) {
+    std::size_t end = behind_colour(line, at);
+    if (end == at) {
+      if (++shown > columns) return text + "\033[0m";
+      do ++end;
+      while (end < line.size() && continues(line[end]));
+    }
+    text += line.substr(at, end - at);
+    at = end;
+  }
+  return text;
+}
+
+}  // namespace
+
+std::string changes_text(const api::RunView& before, const api::RunView& now, bool colour) {
+  Lines lines(now.now, colour);
+  alarms_told(before, now, lines);
+  run(before, now, lines);
+  endpoints(before, now, lines);
+  reports(before, now, lines);
+  arrivals(before, now, lines);
+  return lines.text();
+}
+
+std::string fitted(std::string_view text, std::size_t rows, std::size_t columns) {
+  std::vector<std::string_view> lines;
+  for (std::size_t at = 0; at < text.size();) {
+    const std::size_t end = std::min(text.find('\n', at), text.size());
+    lines.push_back(text.substr(at, end - at));
+    at = end + 1;
+  }
+  const bool all = lines.size() <= rows;
+  const std::size_t whole = all ? lines.size() : rows - std::min<std::size_t>(rows, 1);
+  std::string shown;
+  for (std::size_t i = 0; i < whole; ++i) shown.append(i == 0 ? "" : "\n").append(cut(lines[i], columns));
+  if (!all && rows > 0)
+    shown.append(whole == 0 ? "" : "\n")
+        .append(cut(icd::sentence("... ", lines.size() - whole, " more lines"), columns));
+  return shown;
+}
+
+}  // namespace adit::cli

@@ -1,0 +1,72 @@
+// What is kept of the run on the disk.
+#include <algorithm>
+#include <map>
+#include <set>
+#include <utility>
+
+#include "forward/flow.hpp"
+
+namespace adit::forward {
+
+/// Takes up what is kept of the present run, and keeps it from now on.
+void Flow::keep_the_run() {
+  const dispatch::Run& run = reports().run();
+  picture_.hold();
+  archive_->begin({.run = run.number, .began = run.began, .post = run.post},
+                  [this](picture::Mosaic picture, std::vector<api::Track> tracks) -> const picture::Mosaic& {
+                    as_forwarded_.go_on_from(std::move(tracks));
+                    picture_.go_on_from(std::move(picture));
+                    return picture_.mosaic();
+                  });
+}
+
+archive::Seen Flow::seen() const {
+  return {.now = loop_.stamp_now(),
+          .picture = picture_.mosaic(),
+          .tracks = [this](api::Time since) { return as_forwarded_.tracks().since(since); },
+          .sample = [this] { return sample(); },
+          .facts = [this] { return facts(); }};
+}
+
+archive::Sample Flow::sample() const {
+  const double now = loop_.stamp_now();
+  std::map<std::string, double> ages;
+  for (const auto& [traffic, row] : record_.rows()) {
+    if (!is_map(traffic.kind) || !row.last_forwarded) continue;
+    const double age = std::max(0.0, now - *row.last_forwarded);
+    const auto [its, is_new] = ages.emplace(traffic.robot, age);
+    its->second = std::min(its->second, age);
+  }
+  const Channel& mapping =
+      maps_.channel().heard() > telemetry_.channel().heard() ? maps_.channel() : telemetry_.channel();
+  return {.at = now,
+          .sent_mbit = meter_.mbit(),
+          .queued_bytes = maps_.queued_bytes(),
+          .scoring_ms = scoring_.channel().answer_ms(),
+          .mapping_ms = mapping.answer_ms(),
+          .throttled =
+              scoring_.channel().throttled() + maps_.channel().throttled() + telemetry_.channel().throttled(),
+          .map_ages = {ages.begin(), ages.end()}};
+}
+
+api::RunRow Flow::facts() const {
+  const dispatch::Run& run = reports().run();
+  std::set<std::string> robots;
+  for (const api::RobotRow& robot : as_forwarded_.robots()) robots.insert(robot.name);
+  for (const auto& [traffic, row] : record_.rows()) robots.insert(traffic.robot);
+  robots.erase("");
+  api::RunRow facts{.run = run.number,
+                    .id = run.id,
+                    .course = settings_.command_post.course,
+                    .post = run.post,
+                    .began = run.began,
+                    .robots = {robots.begin(), robots.end()}};
+  if (run.last) {
+    facts.score = run.last->score;
+    facts.remaining_reports = run.last->remaining_reports;
+    facts.team = run.last->current_team;
+  }
+  return facts;
+}
+
+}  // namespace adit::forward

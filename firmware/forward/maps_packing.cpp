@@ -1,0 +1,111 @@
+// How the next map is packed on a worker, and with what effort.
+#include "forward/maps.hpp"
+#include "host/log.hpp"
+#include "loop/guard.hpp"
+
+namespace adit::forward {
+
+void Maps::prepare(Place& place) {
+  auto prepared = std::make_shared<Prepared>();
+  slot_.link_delivers(channel_.delivers());
+  lane_.a_message_holds(slot_.points_within(pace_.spacing()));
+  auto waiting = lane_.take(loop_.now());
+  if (!waiting) return;
+  prepared->waiting = std::move(*waiting);
+  place = std::move(prepared);
+  pack(place);
+}
+
+/// Whether its slot was free already when it came. One that has to wait is made smaller meanwhile.
+bool Maps::is_awaited(const lanes::WaitingMap& waiting) const {
+  return !channel_.busy() && starts() <= waiting.accepted;
+}
+
+/// Of a large grid that leaves soon as it is kept, making it smaller saves less time than it takes. What a
+/// cloud takes to be packed hangs on more (pack::effort_for); where others wait the link is theirs, too.
+Packing Maps::packing_for(const lanes::WaitingMap& waiting) const {
+  constexpr std::size_t kLargeGrid = 1u << 20;     // cells; smaller ones are packed in a few milliseconds
+  constexpr std::size_t kLargeCloud = 256u << 10;  // bytes, as these
+  constexpr int kSoon = 8;                         // in that part of the time between two maps
+  Packing packing{.arranges_clouds = settings_.command_post.arrange_clouds};
+  if (!is_awaited(waiting)) return packing;
+  const icd::MapData& data = waiting.map.data;
+  packing.leaves_grids =
+      data.raw_size >= kLargeGrid && slot_.transfer(data.bytes.size()) <= pace_.spacing() / kSoon;
+  if (data.raw_size >= kLargeCloud && lane_.count() == 0) packing.hurry = slot_.hurry(pace_.spacing());
+  return packing;
+}
+
+/// Where it throws, `prepared` waits to be packed.
+void Maps::pack(const Place& prepared) {
+  icd::Header& header = prepared->waiting.map.header();
+  header.stamp = stamps_.next(header.stamp.value_or(loop_.stamp_now()));
+  journal_.stamped(icd::Uri::MapUpdate, *header.stamp);
+  const loop::Instant began = loop_.now();
+  const auto leaving_out = std::make_shared<LeavingOut>(points_.leaving_out(prepared->waiting.map));
+  const Packing packing = packing_for(prepared->waiting);
+  workers_.submit(
+      loop::Urgency::OnTheWay,
+      [prepared, leaving_out, packing, &loop = loop_] {
+        const loop::Instant begins = loop.now();
+        prepared->packed = packed(prepared->waiting, std::move(*leaving_out), packing);
+        prepared->packing_took = loop.now() - begins;
+      },
+      [this, began, prepared] {
+        preparing_ = false;
+        if (prepared->packed.effort == pack::Effort::Full) slot_.packing_took(loop_.now() - began);
+        loop::guarded("a map that was packed", [&] { is_packed(prepared); });
+        pump();
+      },
+      [this, prepared] { not_packed(prepared); });
+  preparing_ = true;  // only now: where it could not be submitted, it is not
+}
+
+/// Null where it went back into the lane meanwhile.
+Maps::Place* Maps::place_of(const Place& prepared) {
+  if (prepared == prepared_) return &prepared_;
+  return prepared == following_ ? &following_ : nullptr;
+}
+
+/// One that was packed in a hurry does not say how small clouds become.
+void Maps::learn_from(const Prepared& cloud) {
+  const Packed& packed = cloud.packed;
+  slot_.worker_took(cloud.packing_took, packed.points_size, packed.effort);
+  if (packed.effort == pack::Effort::Full)
+    slot_.packed(packed.points_size, packed.body.size(), packed.precision);
+}
+
+/// What cannot be stitched goes as it came, each part by itself.
+void Maps::is_packed(const Place& prepared) {
+  const icd::MapUpdate& map = prepared->waiting.map;
+  const LeftOut& left_out = prepared->packed.left_out;
+  if (!map.is_grid()) learn_from(*prepared);
+  Place* const place = place_of(prepared);
+  if (place == nullptr) return;
+  if (left_out.is_all) return is_there(*place);
+  if (prepared->packed.drawn) lane_.canvases().lay(prepared->waiting.map.name, *prepared->packed.drawn);
+  prepared->packed.drawn.reset();
+  if (!prepared->packed.body.empty()) {
+    if (prepared->packed.stitched.raw_size > 0)
+      prepared->waiting.map.data = std::move(prepared->packed.stitched);
+    return;
+  }
+  host::log(host::Level::Warning, "grids cannot be stitched: what they hold is damaged");
+  lane_.put_back_apart(prepared->waiting);
+  place->reset();
+}
+
+void Maps::not_packed(const Place& prepared) {
+  preparing_ = false;
+  pace_.failed(loop_.now());
+  prepared->packed = {};
+  if (Place* const place = place_of(prepared)) {
+    loop::guarded("putting a map back", [&] {
+      record_.not_taken(traffic_of(prepared->waiting.map), NotTaken::Failed, 0, "it could not be packed");
+      put_back(*place);
+    });
+  }
+  wake_.call_at(pace_.ready());
+}
+
+}  // namespace adit::forward

@@ -1,0 +1,88 @@
+// What the rules of alarms go by, gathered from all that the gateway is made of.
+#include <algorithm>
+
+#include "api/judged.hpp"
+#include "gateway/gateway.hpp"
+#include "host/disk.hpp"
+
+namespace adit::gateway {
+namespace {
+
+constexpr double kEarliest = 1.6e9;  // seconds since 1970, in 2020: no box is older than that
+
+/// Nothing: the operator need not know of it.
+std::optional<alarms::ReportFact> fact_of(const dispatch::Report& report) {
+  using enum dispatch::ReportState;
+  if (report.state != Received && report.state != InDoubt) return std::nullopt;
+  using Is = alarms::ReportFact::Is;
+  const bool in_doubt = report.state == InDoubt;
+  return alarms::ReportFact{.number = report.number,
+                            .is = !in_doubt          ? Is::Held
+                                  : report.is_lost() ? Is::Lost
+                                                     : Is::InDoubt,
+                            .note = report.note,
+                            .since = report.changed};
+}
+
+}  // namespace
+
+alarms::Facts Gateway::facts(const std::vector<api::ActivityRow>& activities) const {
+  alarms::Facts facts{.now = loop_.stamp_now()};
+  facts.streams = api::streams_of(activities, facts.now);
+  add_flow(facts);
+  add_reports(facts);
+  add_box(facts);
+  return facts;
+}
+
+void Gateway::add_flow(alarms::Facts& facts) const {
+  facts.endpoints = lookout_.endpoints(flow_, settings_.command_post, facts.now);
+  facts.robots = lookout_.robots(settings_.alarms, facts.now);
+  facts.turn = static_cast<double>(std::ranges::count_if(facts.streams, &alarms::Stream::is_map)) /
+               settings_.command_post.rates.map_hz;
+  facts.unknown_robots = roster_.unknown(loop_.now());
+  facts.known_robots = roster_.names();
+  facts.crowds = crowding_.crowds(loop_.now());
+  facts.shut_out = settings_.team.require_token && parts_.loaded.secrets.tokens.empty();
+  facts.queued = flow_.maps().queued_bytes();
+  facts.queue_room = settings_.queues.map_bytes;
+  facts.queue_grows = lookout_.queue_grows(facts.now);
+}
+
+void Gateway::add_reports(alarms::Facts& facts) const {
+  const dispatch::Reports& reports = flow_.reports();
+  for (const std::int64_t number : reports.book().open()) {
+    const dispatch::Report& report = reports.book().at(number);
+    auto fact = fact_of(report);
+    if (!fact) continue;
+    fact->asking = reports.is_asking(report);
+    fact->of_run = report.run == reports.run().number;
+    facts.reports.push_back(std::move(*fact));
+  }
+  facts.reports_elsewhere = reports.waiting_elsewhere();
+  if (flow_.scoring().run()) facts.reports_left = flow_.scoring().run()->remaining_reports;
+  facts.run_unreliable = reports.run().unreliable;
+  facts.set_aside =
+      static_cast<std::size_t>(std::ranges::count(flow_.aside().rows(), false, &api::AsideRow::overtaken));
+}
+
+void Gateway::add_box(alarms::Facts& facts) const {
+  for (const api::LinkRow& link : links_.rows())
+    facts.cables.push_back({link.side == "team", link.interface, link.carrier});
+  facts.network = network_.fact();
+  facts.ledger_refusal = flow_.scoring().trouble();
+  facts.ledger_damage = parts_.ledger.damage();
+  facts.disk = {flow_.archive().trouble(), flow_.maps().trouble(), flow_.journal_trouble(),
+                host::free_bytes(parts_.state_folder)};
+  if (facts.now < kEarliest) facts.time_set = false;
+  facts.change_trouble = parts_.trouble;
+  facts.settings_trouble = parts_.loaded.trouble;
+  facts.board_trouble = parts_.board_trouble;
+  facts.notices = parts_.notices;
+  const api::UpdateView update = updates_.update();
+  facts.update.on_trial = update.trial;
+  facts.update.version = update.last.version;
+  facts.update.stray = update.stray;
+}
+
+}  // namespace adit::gateway

@@ -1,0 +1,81 @@
+#include <algorithm>
+#include <cstdint>
+
+#include "codec/utf8.hpp"
+#include "host/log.hpp"
+
+namespace adit::host {
+namespace {
+
+/// Characters that steer or deceive a terminal: C1 controls, those without width, those that turn the
+/// direction of writing, line ends of Unicode's own, tags (Unicode 15, 23.2 to 23.9).
+struct Span {
+  char32_t first, last;
+};
+constexpr Span kUnseen[] = {{0x80, 0x9f},     {0xad, 0xad},      {0x61c, 0x61c},   {0x180e, 0x180e},
+                            {0x200b, 0x200f}, {0x2028, 0x202e},  {0x2060, 0x206f}, {0xfeff, 0xfeff},
+                            {0xfff9, 0xffff}, {0xe0000, 0xeffff}};
+
+std::size_t length_by(std::uint8_t first) {
+  return first < 0x80 ? 1 : first < 0xe0 ? 2 : first < 0xf0 ? 3 : 4;
+}
+
+/// Of a character of UTF-8 that has several bytes.
+char32_t decoded(std::string_view character) {
+  const auto first = static_cast<std::uint8_t>(character[0]);
+  char32_t code = first & (0xffu >> (character.size() + 1));
+  for (const char c : character.substr(1)) code = code << 6 | (static_cast<std::uint8_t>(c) & 0x3fu);
+  return code;
+}
+
+/// How many bytes the character has that `text` begins with; 0: it cannot be shown, or is none of UTF-8.
+std::size_t visible(std::string_view text) {
+  const auto first = static_cast<std::uint8_t>(text[0]);
+  const std::string_view character = text.substr(0, length_by(first));
+  if (first < 0x80) return first >= 0x20 && first != 0x7f ? 1 : 0;
+  if (character.size() < length_by(first) || !codec::is_utf8(character)) return 0;
+  const bool unseen = std::ranges::any_of(kUnseen, [code = decoded(character)](const Span& span) {
+    return code >= span.first && code <= span.last;
+  });
+  return unseen ? 0 : character.size();
+}
+
+void append_escape(std::string& text, char c) {
+  static constexpr std::string_view kDigits = "0123456789abcdef";
+  const auto byte = static_cast<std::uint8_t>(c);
+  text.append("\\x").append(1, kDigits[byte >> 4]).append(1, kDigits[byte & 15]);
+}
+
+}  // namespace
+
+std::string escaped(std::string_view text) {
+  std::string safe;
+  safe.reserve(text.size());
+  while (!text.empty()) {
+    const std::size_t length = visible(text);
+    if (text[0] == '\\') {
+      safe += "\\\\";
+    } else if (length > 0) {
+      safe += text.substr(0, length);
+    } else {
+      append_escape(safe, text[0]);
+    }
+    text.remove_prefix(std::max<std::size_t>(length, 1));
+  }
+  return safe;
+}
+
+std::string in_ascii(std::string_view text) {
+  std::string safe;
+  safe.reserve(text.size());
+  for (const char c : text) {
+    if (static_cast<std::uint8_t>(c) < 0x80) {
+      safe += c;
+    } else {
+      append_escape(safe, c);
+    }
+  }
+  return safe;
+}
+
+}  // namespace adit::host

@@ -1,0 +1,37 @@
+// Where an alarm's action leads on this page: /#report=7, /#reports, /#robot=uav5, /#aside.
+import { closeSide, goTab, openSide } from "./side.js";
+
+const find = (selector, key) => [...document.querySelectorAll(selector)].find(({ dataset }) => dataset.key === key);
+
+function show(node) {
+  node?.scrollIntoView({ block: "nearest" });
+  (node?.querySelector("button:enabled") ?? node)?.focus({ preventScroll: true });
+}
+
+const WAYS = {
+  report: (number) => {
+    closeSide();
+    goTab("reports");
+    show(find("#reports .rows > li", number));
+  },
+  reports: () => WAYS.report(""),
+  robot: (name) => {
+    closeSide();
+    goTab("robots");
+    show(find("#robots > li", name));
+  },
+  aside: () => openSide("more", document.querySelector("#aside button") ?? undefined),
+};
+
+function go() {
+  const [what, ...rest] = location.hash.slice(1).split("=");
+  if (!Object.hasOwn(WAYS, what)) return;
+  history.replaceState(null, "", location.pathname + location.search); // so that the next press leads there again
+  WAYS[what](decodeURIComponent(rest.join("=")));
+}
+
+/** From now on; and to where the page was opened. */
+export function followWays() {
+  addEventListener("hashchange", go);
+  go();
+}

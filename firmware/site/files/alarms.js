@@ -1,0 +1,51 @@
+// The alarms, as the box finds them: a strip of one height in every state with the two worst, each with its action; the list of all;
+// the tab's title and icon; and a sound, where it is wanted.
+import { fillAlarmList } from "./alarm_list.js";
+import { sounds } from "./alarm_sound.js";
+import { alarmCard, BOX_LOST, fillCard, formerly } from "./alarm_card.js";
+import { open } from "./dialog.js";
+import { list, make, mark, say } from "./dom.js";
+import { clip, timeOfDay } from "./words.js";
+
+const SHOWN = 2;
+const LOST = { id: BOX_LOST, severity: "bad", side: "box", what: "The box does not answer", action: { word: "", link: "" }, acknowledged: false, hides: 0 };
+
+const cards = document.getElementById("attention");
+const dialog = document.getElementById("all-alarms");
+const all = document.querySelector(".alarms .all");
+all.addEventListener("click", () => open(dialog));
+
+/** What is not acknowledged comes first, so that nothing that is new is behind what is known. */
+const inOrder = (alarms) => [...alarms.filter((alarm) => !alarm.acknowledged), ...alarms.filter((alarm) => alarm.acknowledged)];
+
+function calm(over) {
+  if (!cards.querySelector(".calm")) cards.replaceChildren();
+  const node = cards.querySelector(".calm") ?? cards.appendChild(make("div.calm", make("span.glyph"), make("p.tx", make("strong", "No alarm"), make("span.why"))));
+  node.dataset.key = "calm";
+  mark(node.firstChild, "level", "good");
+  say(node.querySelector(".why"), over.length ? `the last one: ${formerly(over[0])}` : "none so far");
+}
+
+const ICONS = { bad: "icon_bad.svg", ask: "icon_ask.svg", wait: "icon_wait.svg" };
+
+function showTab(alarms, lost) {
+  const worst = alarms.find((alarm) => !alarm.acknowledged) ?? alarms[0];
+  const icon = ICONS[worst?.severity] ?? "icon.svg", link = document.querySelector("link[rel=icon]");
+  if (link.getAttribute("href") !== icon) link.setAttribute("href", icon);
+  const title = lost ? "Box lost – Adit" : worst ? `(${alarms.length}) ${clip(worst.what, 60)} – Adit` : "Adit";
+  if (document.title !== title) document.title = title;
+}
+
+/** `view`: null where none came yet. */
+export function showAlarms(view, time, lost) {
+  const now = time ?? 0;
+  const told = inOrder(view?.alarms ?? []), over = view?.alarms_over ?? [];
+  const since = view ? view.now : now;
+  const shown = lost ? [{ ...LOST, since, why: view ? `all here is as it was at ${timeOfDay(view.now)}` : "looking for it" }, ...told] : told;
+  if (!shown.length && view) calm(over);
+  else list(cards, shown.slice(0, SHOWN), (alarm) => alarm.id, alarmCard, (node, alarm) => fillCard(node, alarm, now));
+  say(all, shown.length ? `All ${shown.length}` : "History");
+  fillAlarmList(dialog, shown, over, now);
+  showTab(shown, lost);
+  sounds(shown, now);
+}

@@ -1,0 +1,33 @@
+// What a person should know before a report is sent: whether it may be there already, and what it costs.
+import { life } from "./arriving.js";
+import { nearestOf, nearTo, sameAs } from "./near.js";
+import { ago, clip } from "./words.js";
+
+const named = (report) => `#${report.number} ${clip(report.type, 40)}`;
+const stands = (report, now) => `${life(report).word}, ${ago(now - report.received)}`;
+
+function cost({ run }, isSame) {
+  if (isSame) return { key: "cost", level: "good", text: "Sending it again changes nothing and costs nothing." };
+  if (!run) return { key: "cost", level: "wait", text: "Spends a report; how many are left is not known." };
+  if (run.remaining_reports <= 0) return { key: "cost", level: "bad", text: "No report is left: it will score nothing." };
+  return { key: "cost", level: run.remaining_reports > 5 ? "good" : "wait", text: `Spends 1 of the ${run.remaining_reports} reports left.` };
+}
+
+function none(view, report) {
+  const next = nearestOf(view, report);
+  const words = `No other ${report.type} within ${view.near_metres} m`;
+  return { key: "none", level: "good", text: next ? `${words}: the nearest is #${next.other.number}, ${next.metres.toFixed(0)} m away.` : `${words}.` };
+}
+
+/** [{key, level, text}] of a report {type, position} that is about to be sent. */
+export function notesOn(view, report) {
+  const same = sameAs(view, report);
+  const near = nearTo(view, report).filter(({ other }) => other.number !== same?.number);
+  return [
+    ...(same ? [{ key: "same", level: "wait", text: `Reported already, at the very same place: ${named(same)}, ${stands(same, view.now)}.` }] : []),
+    ...near.map(({ other, metres }) => ({ key: other.number, level: "wait",
+      text: `${named(other)} is ${metres.toFixed(1)} m away (${stands(other, view.now)}): it may be the same one.` })),
+    ...(same || near.length ? [] : [none(view, report)]),
+    cost(view, Boolean(same)),
+  ];
+}

@@ -1,0 +1,38 @@
+// How old each robot's map at the Command Post was over the last three minutes, sampled by this page.
+
+const EVERY = 2, SPAN = 90; // seconds; samples
+
+const values = new Map(); // by robot: the newest last; null: not known
+let last = null; // when, in steps of EVERY
+
+/** Once each EVERY seconds of the box's time, however often it is called. What this page slept through is not known. */
+export function sampleAges(robots, time) {
+  const step = Math.floor(time / EVERY);
+  if (step === last) return;
+  const missed = last === null ? 0 : step - last - 1;
+  if (missed < 0 || missed >= SPAN) values.clear(); // the box's clock was set
+  last = step;
+  for (const name of values.keys()) if (!robots.some((robot) => robot.name === name)) values.delete(name);
+  for (const { name, age } of robots) {
+    const its = values.get(name) ?? [];
+    if (its.length) for (let i = 0; i < missed; ++i) its.push(null);
+    its.push(age);
+    values.set(name, its.slice(-SPAN));
+  }
+}
+
+/** The highest of the last minute. */
+export const worstAge = (name) => Math.max(0, ...(values.get(name) ?? []).slice(-60 / EVERY));
+
+/** A path of 0 to SPAN by 0 to 20, now at the right; as high as `least` seconds, or more where it was more. */
+export function pathOf(name, least = 10) {
+  const its = values.get(name) ?? [], top = Math.max(least, ...its), from = SPAN - its.length;
+  let isGap = true;
+  return its.map((age, i) => {
+    if (age === null) return (isGap = true) && "";
+    const point = `${isGap ? "M" : "L"}${from + i} ${(19 - (age / top) * 18).toFixed(1)}`;
+    isGap = false;
+    return point;
+  }).join("");
+}
+export const BOX = `0 0 ${SPAN} 20`;

@@ -1,0 +1,79 @@
+// Robots as rows, worst first. Nothing moves under a pointer or the focus: what changes in the order waits until it is left.
+import { badge, list, make, mark, say } from "./dom.js";
+import { BOX, pathOf, worstAge } from "./robot_ages.js";
+import { tint } from "./robot_colour.js";
+import { mapAge } from "./robot_state.js";
+import { clip } from "./words.js";
+
+const SVG = "http://www.w3.org/2000/svg";
+const RANK = { bad: 0, wait: 1 };
+const PATIENCE = 5; // s: ages alone change the order no more often
+
+const rank = ({ level }) => RANK[level] ?? 2;
+const worse = (robot) => (rank(robot) < 2 ? robot.age ?? Infinity : worstAge(robot.name));
+
+function createRow({ name }) {
+  const spark = document.createElementNS(SVG, "svg");
+  for (const [key, value] of Object.entries({ viewBox: BOX, preserveAspectRatio: "none", "aria-hidden": "true" })) spark.setAttribute(key, value);
+  spark.append(document.createElementNS(SVG, "path"));
+  const row = make("li", make("span.bar"), make("strong.name", clip(name, 40)), " ", make("span.kinds"), " ", spark, make("span.badge.age"));
+  tint(row, name);
+  return row;
+}
+
+/** "grid 6 s", or what is wrong with it. */
+const kindWords = ({ kind, level, word, age }) => `${kind} ${level === "good" || level === "quiet" ? mapAge(age) : word}`;
+
+function words({ isSilent, kinds }, isFull) {
+  const shown = isFull ? kinds : kinds.filter(({ kind, level }) => kind !== "pose" || level === "bad" || level === "wait");
+  const texts = shown.map((kind) => (isFull && kind.details ? `${kindWords(kind)}, ${kind.details}` : kindWords(kind)));
+  return [...(isSilent ? ["silent"] : []), ...texts].join(" · ");
+}
+
+function updateRow(row, robot, isFull) {
+  const [, , kinds, spark, age] = row.children;
+  mark(row, "level", robot.level);
+  badge(age, robot.level, mapAge(robot.age));
+  say(kinds, words(robot, isFull));
+  row.title = [`${robot.name}: ${robot.word}`, ...robot.kinds.map(({ title }) => title)].join("\n");
+  const path = pathOf(robot.name);
+  if (spark.firstChild.getAttribute("d") !== path) spark.firstChild.setAttribute("d", path);
+}
+
+/** The rows within `panel`, a list `ul`. `isFull`: with all that is known of each kind. */
+export class RobotRows {
+  #panel;
+  #rows;
+  #isFull;
+  #isOver = false;
+  #order = [];
+  #ranks = "";
+  #ordered = -Infinity;
+
+  constructor(panel, rows, isFull = false) {
+    [this.#panel, this.#rows, this.#isFull] = [panel, rows, isFull];
+    panel.addEventListener("pointerenter", () => (this.#isOver = true));
+    panel.addEventListener("pointerleave", () => (this.#isOver = false)); // a finger leaves as it is lifted
+  }
+
+  #isHeld = () => this.#isOver || Boolean(this.#panel.querySelector(":focus-visible")) || this.#panel.matches(":focus-visible");
+
+  #inOrder(robots, now) {
+    const place = new Map(this.#order.map((name, i) => [name, i]));
+    const asBefore = (a, b) => (place.get(a.name) ?? Infinity) - (place.get(b.name) ?? Infinity) || 0;
+    const byName = (a, b) => a.name.localeCompare(b.name, "en", { numeric: true });
+    const byWorst = (a, b) => rank(a) - rank(b) || Math.round(worse(b)) - Math.round(worse(a)) || byName(a, b);
+    const ranks = robots.map((robot) => robot.name + rank(robot)).sort().join();
+    const isDue = ranks !== this.#ranks || Math.abs(now - this.#ordered) >= PATIENCE;
+    if (this.#isHeld() || !isDue) return robots.toSorted((a, b) => asBefore(a, b) || byName(a, b));
+    [this.#ranks, this.#ordered] = [ranks, now];
+    return robots.toSorted(byWorst);
+  }
+
+  show(robots, now) {
+    const ordered = this.#inOrder(robots, now);
+    this.#order = ordered.map(({ name }) => name);
+    this.#rows.style.setProperty("--half", Math.max(1, Math.ceil(ordered.length / 2)));
+    list(this.#rows, ordered, ({ name }) => name, createRow, (row, robot) => updateRow(row, robot, this.#isFull));
+  }
+}

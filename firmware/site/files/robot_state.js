@@ -1,0 +1,60 @@
+// How each robot stands: from what the box tells of each kind of data that it sends.
+import { arrival, kindOf, robotOf } from "./arriving.js";
+import { age, bytes, clock } from "./words.js";
+
+const KINDS = ["grid", "cloud", "state"];
+const WORST = ["bad", "wait", "good", "quiet"];
+
+/** How old a map is: "9 s", "1:34", "1:05 h". */
+export const mapAge = (seconds) => (seconds === null ? "never" : seconds >= 60 && seconds < 3600 ? clock(seconds) : age(seconds));
+
+/** All that was counted, for who wants to know. */
+function counts(row) {
+  const parts = [`${row.accepted} accepted`, `${row.forwarded} forwarded`];
+  if (row.waiting && row.kind !== "state") parts.unshift(`${row.waiting} waiting`);
+  for (const what of ["replaced", "merged", "throttled", "failed"]) if (row[what]) parts.push(`${row[what]} ${what}`);
+  if (row.clouds) parts.push(`taken as ${row.clouds}`);
+  if (row.precision && row.precision !== "exact") parts.push(`rounded to ${row.precision}`);
+  if (row.points_left_out) parts.push(`${row.points_left_out} points left out`);
+  if (row.no_room) parts.push(`${row.no_room} refused: too much waits`);
+  if (row.refused_upstream) parts.push(`${row.refused_upstream} refused by the Command Post`);
+  return parts.join(", ");
+}
+
+function details(row) {
+  if (row.waiting && row.kind !== "state") return `${row.waiting} waiting`;
+  return row.bytes_sent ? bytes(row.bytes_sent) : "";
+}
+
+/** One kind of data: {kind, level, word, age (seconds; null: never), details, title}. `blame`: "lost", the box does not answer,
+ *  so nothing is known; "away", the Command Post does not, which no robot is blamed for; or "". */
+export function stateOf(row, now, blame) {
+  const known = blame === "lost" ? { level: "quiet", word: "unknown" } : arrival(row, now);
+  if (blame === "away" && (row.last_sentence || known.level === "bad")) Object.assign(known, { level: "quiet", word: "behind" });
+  const since = row.last_forwarded === null ? null : Math.max(0, now - row.last_forwarded);
+  return { kind: kindOf(row), ...known, age: since, details: details(row), title: `${kindOf(row)}: ${counts(row)}` };
+}
+
+/** A robot's map at the Command Post: as old as the older of its kinds; one that it stopped to send does not count beside another. */
+function oldest(kinds) {
+  const maps = kinds.filter(({ kind }) => kind !== "pose"), live = maps.filter(({ level }) => level !== "quiet");
+  const ages = (live.length ? live : maps).map(({ age }) => age);
+  if (ages.length === 0 || ages.includes(null)) return null;
+  return live.length ? Math.max(...ages) : Math.min(...ages);
+}
+
+function robotState(name, rows, now, blame) {
+  const kinds = KINDS.flatMap((kind) => rows.filter((row) => row.kind === kind)).map((row) => stateOf(row, now, blame));
+  const worst = WORST.map((level) => kinds.find((kind) => kind.level === level)).find(Boolean);
+  const isSilent = !blame && rows.some((row) => row.arrival === "silent");
+  return { name, level: worst.level, word: worst.word, isSilent, age: oldest(kinds), kinds };
+}
+
+/** {robots: each with {name, level, word, isSilent, age, kinds}, shared: the merged map and the markers, as stateOf(), with a name}. */
+export function robotsOf(activities, now, blame) {
+  const rows = activities.filter(({ kind }) => KINDS.includes(kind));
+  const byName = Map.groupBy(rows.filter(({ robot }) => robot), robotOf);
+  const shared = rows.filter(({ robot }) => !robot).map((row) => ({ name: row.kind === "grid" ? "Merged" : `Merged ${kindOf(row)}`, ...stateOf(row, now, blame) }));
+  for (const row of activities) if (row.kind === "markers") shared.push({ name: "Markers", ...stateOf(row, now, blame) });
+  return { robots: [...byName].map(([name, its]) => robotState(name, its, now, blame)), shared };
+}

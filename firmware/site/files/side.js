@@ -1,0 +1,73 @@
+// What stands beside the map: the reports, or one of the panels that take their place (`section.side`); and on a phone, which
+// tab is shown. The map stays where it is.
+
+import { drawn } from "./icons.js";
+import { mark, say } from "./dom.js";
+
+const sides = [...document.querySelectorAll("main > .side")];
+const tabs = [...document.querySelectorAll(".tabs button")];
+const changes = new Map(); // a panel's id to whom to tell
+let back = null; // what had the focus before
+
+export const side = () => document.body.dataset.side;
+
+/** Calls `changed(isOpen)` whenever that panel opens or closes. */
+export const whenSide = (id, changed) => changes.set(id, changed);
+
+/** Opens a panel in the place of the reports; `focused`: what of it has the focus then, if not its title. */
+export function openSide(id, focused) {
+  const before = side();
+  if (before === id) return;
+  if (before === "reports") back = document.activeElement;
+  document.body.dataset.side = id;
+  for (const panel of sides) panel.hidden = panel.id !== id;
+  for (const button of document.querySelectorAll("[aria-controls]")) {
+    if (button.hasAttribute("aria-expanded")) button.setAttribute("aria-expanded", String(button.getAttribute("aria-controls") === id));
+  }
+  changes.get(before)?.(false);
+  changes.get(id)?.(true);
+  if (id !== "reports") (focused ?? document.querySelector(`#${id} h2`)).focus({ preventScroll: true });
+}
+
+/** The reports again. */
+export function closeSide() {
+  const hadFocus = document.activeElement.closest?.(".side") || document.activeElement === document.body;
+  openSide("reports");
+  if (hadFocus && back?.checkVisibility()) back.focus({ preventScroll: true });
+}
+
+/** On a phone; elsewhere all is there. */
+export function goTab(name) {
+  document.body.dataset.tab = name;
+  for (const tab of tabs) {
+    if (tab.dataset.tab === name) tab.setAttribute("aria-current", "true");
+    else tab.removeAttribute("aria-current");
+  }
+}
+
+/** Offers tabs, the menu, and what closes a panel. */
+export function offerSides() {
+  for (const tab of tabs) {
+    tab.prepend(drawn(tab.dataset.tab));
+    tab.addEventListener("click", () => {
+      closeSide();
+      goTab(tab.dataset.tab);
+    });
+  }
+  for (const panel of sides) panel.querySelector(".head > .close")?.addEventListener("click", closeSide);
+  document.querySelector(".strip .menu").addEventListener("click", () => (side() === "more" ? closeSide() : openSide("more")));
+  document.addEventListener("keydown", (event) => {
+    if (event.key !== "Escape" || event.defaultPrevented || side() === "reports" || event.target.closest("dialog, .pair")) return;
+    event.preventDefault();
+    closeSide();
+  });
+}
+
+/** How much waits behind a tab: a number and its level, "ask" or "bad"; 0: nothing. */
+export function showOnTab(name, count, level, words) {
+  const tab = tabs.find(({ dataset }) => dataset.tab === name), sign = tab.querySelector(".waits");
+  sign.hidden = count === 0;
+  mark(sign, "level", level);
+  say(sign, String(count));
+  tab.title = count ? words : "";
+}

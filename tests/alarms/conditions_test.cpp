@@ -1,0 +1,324 @@
+#include "alarms/conditions.hpp"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include "alarms/alike.hpp"
+#include "icd/sentence.hpp"
+
+namespace adit::alarms {
+namespace {
+
+using testing::Contains;
+using testing::ElementsAre;
+using testing::HasSubstr;
+using testing::IsEmpty;
+using testing::Not;
+using enum Severity;
+
+/// What makes a condition true, where all else is well.
+struct ConditionCase {
+  const char* id;
+  Severity severity;
+  Side side;
+  const char* what;
+  const char* why;  // part of it
+  void (*make)(Facts&);
+};
+
+void down(Facts& facts, PostTrouble trouble, std::size_t endpoint) {
+  facts.endpoints[endpoint].trouble = trouble;
+  facts.endpoints[endpoint].since = kNow - 20;
+  facts.endpoints[endpoint].said = "Connection refused";
+}
+
+template <PostTrouble trouble>
+void both_down(Facts& facts) {
+  down(facts, trouble, 0);
+  down(facts, trouble, 1);
+}
+
+template <ReportFact::Is is>
+void report(Facts& facts) {
+  facts.reports.push_back({.number = 7, .is = is, .note = "held: it may be the same", .since = kNow - 5});
+}
+
+const ConditionCase kConditionCases[] = {
+    {"command_post_unreachable", Bad, Side::CommandPost, "Command Post is unreachable", "Connection refused",
+     both_down<PostTrouble::Unreachable>},
+    {"command_post_silent", Bad, Side::CommandPost, "Command Post is silent", "10.100.1.200:8000 and",
+     both_down<PostTrouble::Silent>},
+    {"command_post_refusing", Bad, Side::CommandPost, "Both tokens are refused", "this course",
+     both_down<PostTrouble::Refusing>},
+    {"command_post_refusing", Bad, Side::CommandPost, "Scoring token is refused", "this course",
+     [](Facts& facts) { down(facts, PostTrouble::Refusing, 0); }},
+    {"command_post_foreign", Bad, Side::CommandPost, "What answers is no Command Post", "(mapping)",
+     [](Facts& facts) { down(facts, PostTrouble::Foreign, 1); }},
+    {"command_post_failing", Bad, Side::CommandPost, "Mapping is failing", "everything",
+     [](Facts& facts) { down(facts, PostTrouble::Failing, 1); }},
+    {"command_post_throttling", Wait, Side::CommandPost, "Mapping is throttling", "429",
+     [](Facts& facts) { down(facts, PostTrouble::Throttling, 1); }},
+    {"no_token:scoring", Bad, Side::Box, "No scoring token is set", "reports wait",
+     [](Facts& facts) { down(facts, PostTrouble::NoToken, 0); }},
+    {"no_token:mapping", Bad, Side::Box, "No mapping token is set", "maps, states and markers wait",
+     [](Facts& facts) { down(facts, PostTrouble::NoToken, 1); }},
+    {"no_token:team", Bad, Side::Box, "No token is set at all", "turned away",
+     [](Facts& facts) { facts.shut_out = true; }},
+    {"robot_silent:uav2", Bad, Side::Robot, "uav2 is silent", "a message each 2 s",
+     [](Facts& facts) { facts.robots["uav2"] = {.gap = 2, .quiet = 94, .silent = true}; }},
+    {"map_behind:uav1", Wait, Side::CommandPost, "uav1's map is behind", "grid",
+     [](Facts& facts) { facts.streams[0].behind = 21; }},
+    {"map_behind:uav1", Bad, Side::CommandPost, "uav1's map is behind", "grid",
+     [](Facts& facts) { facts.streams[0].behind = 91; }},
+    {"queue_growing", Wait, Side::Network, "The map queue is growing", "more comes in",
+     [](Facts& facts) { facts.queue_grows = true; }},
+    {"queue_nearly_full", Bad, Side::Network, "The map queue is nearly full", "100 MB",
+     [](Facts& facts) { facts.queued = 81u << 20; }},
+    {"queue_full", Bad, Side::Network, "The queue is full", "uav1 grid",
+     [](Facts& facts) { facts.streams[0].no_room = 59; }},
+    {"robot_unknown:uav9", Ask, Side::Robot, "Robot uav9 is unknown", "set-up has uav1, uav2",
+     [](Facts& facts) {
+       facts.unknown_robots = {"uav9"};
+       facts.known_robots = {"uav1", "uav2"};
+     }},
+    {"clients_refused", Bad, Side::Robot, "Clients are refused", "10.0.0.9",
+     [](Facts& facts) { facts.crowds = {{Crowd::Is::NoRoom, "10.0.0.9"}}; }},
+    {"wrong_tokens", Ask, Side::Robot, "Wrong tokens are shown", "10.0.0.9",
+     [](Facts& facts) { facts.crowds = {{Crowd::Is::WrongToken, "10.0.0.9"}}; }},
+    {"strangers", Wait, Side::Robot, "Too many strangers are connected", "10.0.0.9",
+     [](Facts& facts) { facts.crowds = {{Crowd::Is::Strangers, "10.0.0.9"}}; }},
+    {"report_held:7", Ask, Side::Box, "Report 7 is held", "it may be the same", report<ReportFact::Is::Held>},
+    {"report_in_doubt:7", Ask, Side::CommandPost, "Report 7 is in doubt", "",
+     report<ReportFact::Is::InDoubt>},
+    {"report_lost:7", Ask, Side::Box, "The ledger is not whole", "calls it done",
+     report<ReportFact::Is::Lost>},
+    {"reports_left", Wait, Side::CommandPost, "5 reports are left", "",
+     [](Facts& facts) { facts.reports_left = 5; }},
+    {"reports_left", Wait, Side::CommandPost, "1 report is left", "",
+     [](Facts& facts) { facts.reports_left = 1; }},
+    {"reports_left", Bad, Side::CommandPost, "No reports are left", "",
+     [](Facts& facts) { facts.reports_left = 0; }},
+    {"reports_elsewhere:10.9.9.9:1", Ask, Side::Box, "2 reports are for another post", "10.9.9.9:1",
+     [](Facts& facts) { facts.reports_elsewhere["10.9.9.9:1"] = 2; }},
+    {"run_unreliable", Ask, Side::CommandPost, "The reports' count is not certain", "somebody else",
+     [](Facts& facts) { facts.run_unreliable = "somebody else reports"; }},
+    {"set_aside", Ask, Side::CommandPost, "3 messages are set aside", "would not take them",
+     [](Facts& facts) { facts.set_aside = 3; }},
+    {"ledger_unwritable", Bad, Side::Box, "No report is taken", "the ledger cannot be written: no space",
+     [](Facts& facts) { facts.ledger_refusal = "no space"; }},
+    {"ledger_damaged", Ask, Side::Box, "The ledger was damaged", "a page",
+     [](Facts& facts) { facts.ledger_damage = "a page was put aside"; }},
+    {"map_not_kept", Bad, Side::Box, "The last map was not taken", "no space",
+     [](Facts& facts) { facts.disk.map = "no space"; }},
+    {"state_not_kept", Bad, Side::Box, "States and markers are not taken", "cannot be kept: no space",
+     [](Facts& facts) { facts.disk.state = "no space"; }},
+    {"run_not_kept", Bad, Side::Box, "The run's map is not kept", "outlive a restart: no space",
+     [](Facts& facts) { facts.disk.run = "no space"; }},
+    {"disk_full", Bad, Side::Box, "The disk is nearly full", "500 kB",
+     [](Facts& facts) { facts.disk.free = 500u << 10; }},
+    {"time_not_set", Wait, Side::Box, "The box's time is not set", "wrong day",
+     [](Facts& facts) { facts.time_set = false; }},
+    {"settings_not_changed", Bad, Side::Box, "The last change was taken back", "binding: in use",
+     [](Facts& facts) { facts.change_trouble = "the last change was taken back: binding: in use"; }},
+    {"settings_not_used", Bad, Side::Box, "The saved settings are not used", "version",
+     [](Facts& facts) { facts.settings_trouble = "version: expected 1"; }},
+    {"board_not_used", Bad, Side::Box, "The board's file is not used", "panel",
+     [](Facts& facts) { facts.board_trouble = "panel.helth: no such key"; }},
+    {"notice:1", Bad, Side::Box, "The start was not clean", "two disks",
+     [](Facts& facts) { facts.notices = {"there are two disks of Adit's"}; }},
+    {"update_on_trial", Wait, Side::Box, "Version 1.2.0 is on trial", "leave the power on",
+     [](Facts& facts) { facts.update = {.on_trial = true, .version = "1.2.0"}; }},
+    {"other_slot", Ask, Side::Box, "Another slot is running", "it did not come up",
+     [](Facts& facts) { facts.update.stray = "B runs, and A was good last: it did not come up"; }},
+    {"network_change", Ask, Side::Network, "A network change is waiting", "within 88 s at http://1.2.3.4",
+     [](Facts& facts) {
+       facts.network.confirm_within = 87.5;
+       facts.network.page = "http://1.2.3.4";
+     }},
+    {"no_address", Bad, Side::Box, "The box has no address upstream", "set one",
+     [](Facts& facts) { facts.network.no_address = true; }},
+    {"address_taken", Bad, Side::Network, "Our address is taken", "10.100.1.1 is also that of aa:bb",
+     [](Facts& facts) {
+       facts.network.taken_by = "aa:bb";
+       facts.network.address = "10.100.1.1";
+     }},
+    {"address_conflict:10.0.0.5", Bad, Side::Robot, "10.0.0.5 is used twice", "two of the team",
+     [](Facts& facts) { facts.network.conflicts = {"10.0.0.5"}; }},
+    {"cable_out:command_post", Bad, Side::Network, "The Command Post's cable is out", "darpa0 has no carrier",
+     [](Facts& facts) { facts.cables[1].carrier = false; }},
+    {"cable_out:team", Bad, Side::Network, "There is no interface team0", "set-up names it",
+     [](Facts& facts) { facts.cables[0].carrier = {}; }},
+};
+
+TEST(Conditions, AreNoneWhereAllIsWell) {
+  EXPECT_THAT(conditions_of(well()), IsEmpty());
+  EXPECT_THAT(conditions_of({}), IsEmpty()) << "nothing is known yet";
+}
+
+TEST(Conditions, AreEachFoundAloneAndSayWhatToDo) {
+  for (const ConditionCase& each : kConditionCases) {
+    Facts facts = well();
+    each.make(facts);
+    const auto found = conditions_of(facts);
+    ASSERT_THAT(ids_of(found), ElementsAre(each.id)) << each.what;
+    EXPECT_EQ(found[0].severity, each.severity) << each.id;
+    EXPECT_EQ(found[0].side, each.side) << each.id;
+    EXPECT_EQ(found[0].what, each.what);
+    EXPECT_THAT(found[0].why, HasSubstr(each.why));
+    const auto colon = found[0].id.find(':');
+    EXPECT_TRUE(colon == std::string::npos || found[0].subject == found[0].id.substr(colon + 1)) << each.id;
+    EXPECT_EQ(found[0].action.word.empty(), found[0].action.link.empty()) << each.id;
+  }
+}
+
+TEST(Conditions, AreHeadlinesOfSixWords) {
+  for (const ConditionCase& each : kConditionCases) {
+    const std::string what = each.what;
+    EXPECT_LE(std::ranges::count(what, ' '), 6) << what;
+    EXPECT_THAT(what, Not(HasSubstr("_"))) << "no field names";
+  }
+}
+
+/// Twenty robots, of which all maps are behind, and two reports that Adit asks for.
+Facts busy() {
+  Facts facts = well(20);
+  for (Stream& stream : facts.streams) {
+    if (stream.is_map()) stream.behind = 100;
+  }
+  for (std::int64_t number : {1, 2})
+    facts.reports.push_back({.number = number, .is = ReportFact::Is::InDoubt, .asking = true});
+  return facts;
+}
+
+TEST(Causes, HideWhatFollowsFromThem) {
+  Facts facts = busy();
+  both_down<PostTrouble::Silent>(facts);
+  const auto found = conditions_of(facts);
+  ASSERT_THAT(ids_of(found), ElementsAre("command_post_silent"));
+  EXPECT_EQ(found[0].hides, 22u) << "20 maps and 2 reports";
+}
+
+TEST(Causes, AreTheCableBeforeTheEndpoint) {
+  Facts facts = busy();
+  both_down<PostTrouble::Unreachable>(facts);
+  facts.cables[1].carrier = false;
+  const auto found = conditions_of(facts);
+  ASSERT_THAT(ids_of(found), ElementsAre("cable_out:command_post"));
+  EXPECT_EQ(found[0].hides, 23u);
+}
+
+TEST(Causes, OfOneEndpointHideNothingOfTheOther) {
+  Facts facts = busy();
+  down(facts, PostTrouble::Unreachable, 0);
+  EXPECT_THAT(ids_of(conditions_of(facts)), ElementsAre("command_post_unreachable", "maps_behind"));
+  facts = busy();
+  down(facts, PostTrouble::Failing, 1);
+  EXPECT_THAT(ids_of(conditions_of(facts)),
+              ElementsAre("command_post_failing", "report_in_doubt:1", "report_in_doubt:2"));
+}
+
+TEST(Causes, NeverHideWhatOnlyTheOperatorDecides) {
+  Facts facts = well();
+  both_down<PostTrouble::Silent>(facts);
+  facts.cables[1].carrier = false;
+  report<ReportFact::Is::InDoubt>(facts);
+  facts.set_aside = 1;
+  facts.reports_left = 0;
+  EXPECT_THAT(ids_of(conditions_of(facts)),
+              ElementsAre("cable_out:command_post", "report_in_doubt:7", "reports_left", "set_aside"));
+}
+
+TEST(Causes, OfThrottlingHideNothing) {
+  Facts facts = well();
+  down(facts, PostTrouble::Throttling, 1);
+  facts.streams[0].behind = 30;
+  EXPECT_THAT(ids_of(conditions_of(facts)), ElementsAre("command_post_throttling", "map_behind:uav1"));
+}
+
+TEST(Robots, AreNotBlamedWhileTheEndpointIsDown) {
+  Facts facts = well(20);
+  for (auto& [name, robot] : facts.robots) robot = {.gap = 1, .quiet = 60, .silent = true};
+  both_down<PostTrouble::Unreachable>(facts);
+  const auto found = conditions_of(facts);
+  ASSERT_THAT(ids_of(found), ElementsAre("command_post_unreachable"));
+  EXPECT_EQ(found[0].hides, 20u);
+}
+
+TEST(Robots, ThatAreAllSilentAreOneCondition) {
+  Facts facts = well(20);
+  for (auto& [name, robot] : facts.robots) robot = {.gap = 1, .quiet = 60, .silent = true};
+  const auto found = conditions_of(facts);
+  ASSERT_THAT(ids_of(found), ElementsAre("robots_silent"));
+  EXPECT_EQ(found[0].what, "All 20 robots are silent");
+  EXPECT_EQ(found[0].hides, 20u);
+  EXPECT_EQ(found[0].since, kNow - 60);
+  facts.robots["uav5"].silent = false;
+  EXPECT_EQ(conditions_of(facts).size(), 19u);
+}
+
+TEST(Robots, AreSilentBecauseTheTeamsCableIsOut) {
+  Facts facts = well(2);
+  facts.robots["uav1"].silent = true;
+  facts.cables[0].carrier = false;
+  EXPECT_THAT(ids_of(conditions_of(facts)), ElementsAre("cable_out:team"));
+}
+
+TEST(Maps, OfManyThatAreBehindAreOneCondition) {
+  Facts facts = well(6);
+  for (Stream& stream : facts.streams) {
+    if (stream.is_map()) stream.behind = 30;
+  }
+  const auto found = conditions_of(facts);
+  ASSERT_THAT(ids_of(found), ElementsAre("maps_behind"));
+  EXPECT_EQ(found[0].what, "Maps of 6 robots are behind");
+}
+
+TEST(Maps, AreNotBehindForTakingTurns) {
+  Facts facts = well(6);
+  facts.turn = 20;
+  for (Stream& stream : facts.streams) {
+    if (stream.is_map()) stream.behind = 30;
+  }
+  EXPECT_THAT(conditions_of(facts), IsEmpty());
+}
+
+TEST(Queue, NamesThreeWhoAreRefusedForAMinute) {
+  Facts facts = well();
+  facts.streams = {{.kind = "cloud", .no_room = 61},
+                   {.kind = "cloud", .robot = "r1", .no_room = 60},
+                   {.kind = "markers", .no_room = 1}};
+  EXPECT_THAT(conditions_of(facts)[0].why, HasSubstr("less waits: r1 cloud, markers"));
+  for (int robot = 0; robot < 9; ++robot)
+    facts.streams.push_back({.kind = "grid", .robot = icd::sentence("g", robot), .no_room = 1});
+  EXPECT_THAT(conditions_of(facts)[0].why, HasSubstr("r1 cloud, markers, g0 grid and 8 more"));
+}
+
+TEST(ReportsToDecide, AreToldOneByOneUpToSoMany) {
+  Facts facts = well();
+  for (std::int64_t number = 1; number <= 12; ++number)
+    facts.reports.push_back({.number = number, .is = ReportFact::Is::Held, .note = "held: all are"});
+  const auto found = conditions_of(facts);
+  EXPECT_EQ(found.size(), kOneByOne + 1);
+  EXPECT_EQ(find(found, "report_held:more").what, "2 more reports are held");
+  EXPECT_EQ(find(found, "report_held:more").degree, 2u);
+}
+
+TEST(ReportsToDecide, WaitForAditWhileItAsks) {
+  Facts facts = well();
+  facts.reports.push_back(
+      {.number = 3, .is = ReportFact::Is::InDoubt, .asking = true, .note = "no answer came"});
+  EXPECT_EQ(conditions_of(facts)[0].severity, Severity::Wait);
+}
+
+TEST(FewReports, GetWorseAsTheyGetFewer) {
+  Facts facts = well();
+  facts.reports_left = 3;
+  const auto before = conditions_of(facts);
+  facts.reports_left = 2;
+  EXPECT_GT(conditions_of(facts)[0].degree, before[0].degree);
+  facts.reports_left = 6;
+  EXPECT_THAT(conditions_of(facts), IsEmpty());
+}
+
+}  // namespace
+}  // namespace adit::alarms

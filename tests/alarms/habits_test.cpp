@@ -1,0 +1,108 @@
+#include "alarms/habits.hpp"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include "alarms/growth.hpp"
+
+namespace adit::alarms {
+namespace {
+
+using testing::IsEmpty;
+
+class HabitsTest : public testing::Test {
+ protected:
+  /// It speaks each `gap` seconds, `times` times, and is looked at each second.
+  void speaks(const std::string& robot, double gap, int times) {
+    for (int i = 0; i < times; ++i) {
+      for (double later = now_ + gap; now_ < later; now_ += 1) habits_.heard(robot, count_, now_);
+      habits_.heard(robot, ++count_, now_);
+    }
+  }
+  bool is_silent_after(const std::string& robot, double seconds) {
+    const auto robots = habits_.robots(rules_, now_ + seconds);
+    return robots.contains(robot) && robots.at(robot).silent;
+  }
+
+  Habits habits_;
+  Habits::Rules rules_;
+  double now_ = 1000;
+  std::uint64_t count_ = 1;
+};
+
+TEST_F(HabitsTest, BlameARobotThatSaysNothingForLongerThanTheLeast) {
+  speaks("uav5", 1, 20);
+  EXPECT_FALSE(is_silent_after("uav5", 30));
+  EXPECT_TRUE(is_silent_after("uav5", 31));
+}
+
+TEST_F(HabitsTest, LetASlowRobotBeSlow) {
+  speaks("ugv1", 40, 10);
+  EXPECT_FALSE(is_silent_after("ugv1", 190));
+  EXPECT_TRUE(is_silent_after("ugv1", 210));
+}
+
+TEST_F(HabitsTest, GoByTheLongestGapsOfAnUnevenRobot) {
+  for (int i = 0; i < 5; ++i) {
+    speaks("ugv1", 1, 10);
+    speaks("ugv1", 40, 1);
+  }
+  EXPECT_FALSE(is_silent_after("ugv1", 60)) << "it pauses for 40 s now and then";
+}
+
+TEST_F(HabitsTest, SayNothingOfWhoHasNone) {
+  speaks("uav5", 1, Habits::kMessages - 2);
+  EXPECT_THAT(habits_.robots(rules_, now_ + 100), IsEmpty());
+}
+
+TEST_F(HabitsTest, AreNotMadeOfASilence) {
+  speaks("uav5", 1, 20);
+  speaks("uav5", 300, 1);
+  speaks("uav5", 1, 20);
+  EXPECT_TRUE(is_silent_after("uav5", 31));
+}
+
+TEST_F(HabitsTest, ForgetWhoWasSwitchedOff) {
+  speaks("uav5", 1, 20);
+  EXPECT_TRUE(is_silent_after("uav5", rules_.away - 1));
+  EXPECT_FALSE(is_silent_after("uav5", rules_.away + 1));
+}
+
+TEST_F(HabitsTest, AreOfNoRobotWhereTheMapIsMerged) {
+  speaks("", 1, 20);
+  EXPECT_THAT(habits_.robots(rules_, now_), IsEmpty());
+}
+
+TEST_F(HabitsTest, AreOfSoManyRobotsAtMost) {
+  for (int robot = 0; robot < 1000; ++robot) speaks("r" + std::to_string(robot), 1, 1);
+  for (int robot = 0; robot < 1000; ++robot) speaks("r" + std::to_string(robot), 1, 5);
+  EXPECT_LE(habits_.robots({.least = 1e9, .times = 5, .away = 1e9}, now_).size(), Habits::kMost);
+}
+
+constexpr std::size_t kRoom = 100u << 20;
+
+TEST(Growth, IsToldOfOnceItHasGoneOnForAWhile) {
+  Growth growth;
+  double now = 1000;
+  for (int second = 0; second < 120; ++second)
+    growth.look(static_cast<std::size_t>(second) << 18, kRoom, now++);
+  EXPECT_TRUE(growth.grows(now));
+  EXPECT_FALSE(growth.grows(now + Growth::kTold + Growth::kStep)) << "it is over";
+}
+
+TEST(Growth, IsNotWhatOneLargeMapDoes) {
+  Growth growth;
+  double now = 1000;
+  for (int second = 0; second < 120; ++second) growth.look(second % 20 < 10 ? kRoom / 2 : 0, kRoom, now++);
+  EXPECT_FALSE(growth.grows(now));
+}
+
+TEST(Growth, OfLittleIsNone) {
+  Growth growth;
+  double now = 1000;
+  for (std::size_t second = 0; second < 120; ++second) growth.look(second << 10, kRoom, now++);
+  EXPECT_FALSE(growth.grows(now));
+}
+
+}  // namespace
+}  // namespace adit::alarms

@@ -1,0 +1,175 @@
+#include "alarms/post_watch.hpp"
+
+#include <gtest/gtest.h>
+
+namespace adit::alarms {
+namespace {
+
+using enum PostTrouble;
+
+/// One or two connections of an endpoint, looked at each second.
+class PostWatchTest : public testing::Test {
+ protected:
+  explicit PostWatchTest(std::size_t ways = 1) : seen_(ways) {
+    for (Seen& each : seen_) each.connected = true;
+    lasts(1);
+  }
+  void lasts(int seconds) {
+    for (int i = 0; i < seconds; ++i) watch_.look(seen_, now_++);
+  }
+  /// Each second a request is answered so.
+  void answers(int status, int seconds, std::size_t way = 0) {
+    Seen& seen = seen_.at(way);
+    for (int i = 0; i < seconds; ++i) {
+      ++seen.ended;
+      if (status == 429) ++seen.throttled;
+      seen.status = status;
+      seen.said = status < 400 ? "" : "it answered " + std::to_string(status);
+      seen.busy = false;
+      lasts(1);
+    }
+  }
+  PostTrouble trouble() const { return watch_.endpoint(now_).trouble; }
+
+  PostWatch watch_;
+  std::vector<Seen> seen_;
+  double now_ = 1000;
+};
+
+TEST_F(PostWatchTest, OfAPostThatAnswersSaysNothing) {
+  answers(200, 20);
+  EXPECT_EQ(trouble(), None);
+}
+
+TEST_F(PostWatchTest, CallsAPostSilentThatTakesAndDoesNotAnswer) {
+  answers(200, 3);
+  seen_[0].busy = true;
+  lasts(14);
+  EXPECT_EQ(trouble(), None);
+  lasts(2);
+  EXPECT_EQ(trouble(), Silent);
+  EXPECT_EQ(watch_.endpoint(now_).since, 1004);
+  answers(200, 1);
+  EXPECT_EQ(trouble(), None);
+}
+
+TEST_F(PostWatchTest, GoesOnCallingItSilentWhereEachRequestRunsOutOfTime) {
+  for (int i = 0; i < 4; ++i) {
+    seen_[0].busy = true;
+    lasts(9);
+    seen_[0].busy = false;
+    ++seen_[0].ended;
+    seen_[0].status = 0;
+    seen_[0].said = "no answer within 10000 ms";
+    lasts(1);
+  }
+  EXPECT_EQ(trouble(), Silent);
+}
+
+TEST_F(PostWatchTest, DoesNotCallItSilentWhileBytesLeave) {
+  seen_[0].busy = true;
+  for (int i = 0; i < 60; ++i) {
+    seen_[0].sent += 10'000;
+    lasts(1);
+  }
+  EXPECT_EQ(trouble(), None) << "a large map on a slow link";
+  lasts(17);
+  EXPECT_EQ(trouble(), Silent);
+}
+
+TEST_F(PostWatchTest, CallsAPostUnreachableOnceItIsForSure) {
+  seen_[0].connected = false;
+  seen_[0].said = "connecting to 10.100.1.200:8000: Connection refused";
+  lasts(2);
+  EXPECT_EQ(trouble(), None);
+  lasts(2);
+  EXPECT_EQ(trouble(), Unreachable);
+  EXPECT_EQ(watch_.endpoint(now_).said, seen_[0].said);
+  seen_[0].connected = true;
+  seen_[0].said = "";
+  lasts(1);
+  EXPECT_EQ(trouble(), None);
+}
+
+TEST_F(PostWatchTest, CallsAPostThatClosesAfterEachErrorFailing) {
+  for (int i = 0; i < 4; ++i) {
+    answers(500, 1);
+    seen_[0].connected = false;
+    lasts(3);
+  }
+  EXPECT_EQ(trouble(), Failing) << "it is reached each time";
+}
+
+TEST_F(PostWatchTest, CallsAnIdleConnectionNothing) {
+  seen_[0].connected = false;
+  lasts(60);
+  EXPECT_EQ(trouble(), None) << "nothing was to be sent";
+}
+
+TEST_F(PostWatchTest, KnowsWhoRefusesAndWhoIsAnother) {
+  answers(401, 1);
+  EXPECT_EQ(trouble(), Refusing);
+  answers(403, 1);
+  EXPECT_EQ(trouble(), Refusing);
+  seen_[0].foreign = true;
+  answers(200, 1);
+  EXPECT_EQ(trouble(), Foreign);
+  seen_[0].foreign = false;
+  answers(200, 1);
+  EXPECT_EQ(trouble(), None);
+}
+
+TEST_F(PostWatchTest, CallsAPostFailingThatAnswersWithErrorsAlone) {
+  answers(500, 7);
+  EXPECT_EQ(trouble(), Failing);
+  EXPECT_EQ(watch_.endpoint(now_).said, "it answered 500");
+  answers(200, 1);
+  EXPECT_EQ(trouble(), None);
+}
+
+TEST_F(PostWatchTest, DoesNotCallItFailingForWhatItRefuses) {
+  answers(422, 20);
+  EXPECT_EQ(trouble(), None) << "that is the message's fault";
+}
+
+TEST_F(PostWatchTest, TellsOfThrottlingAgainAndAgain) {
+  answers(429, 2);
+  EXPECT_EQ(trouble(), None) << "now and then it is how Adit finds the rate";
+  answers(429, 1);
+  EXPECT_EQ(trouble(), Throttling);
+  answers(200, 31);
+  EXPECT_EQ(trouble(), None);
+}
+
+TEST_F(PostWatchTest, ForgetsTheOtherPlace) {
+  answers(500, 20);
+  watch_.forget();
+  lasts(1);
+  EXPECT_EQ(trouble(), None);
+}
+
+class TwoWays : public PostWatchTest {
+ protected:
+  TwoWays() : PostWatchTest(2) {}
+};
+
+TEST_F(TwoWays, DoNotBlameThePostForTheMapsOfOne) {
+  for (int i = 0; i < 30; ++i) {
+    answers(500, 1, 0);
+    answers(200, 1, 1);
+  }
+  EXPECT_EQ(trouble(), None) << "the states are taken";
+  answers(500, 20, 0);
+  EXPECT_EQ(trouble(), Failing) << "nothing else has been taken for long";
+}
+
+TEST_F(TwoWays, BlameItWhereBothFail) {
+  for (int i = 0; i < 5; ++i) {
+    answers(500, 1, 0);
+    answers(500, 1, 1);
+  }
+  EXPECT_EQ(trouble(), Failing);
+}
+
+}  // namespace
+}  // namespace adit::alarms

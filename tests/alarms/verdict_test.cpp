@@ -1,0 +1,69 @@
+#include "alarms/verdict.hpp"
+
+#include <gtest/gtest.h>
+
+#include "alarms/alike.hpp"
+
+namespace adit::alarms {
+namespace {
+
+TEST(Verdict, OfMapsThatAllArriveSaysHowOldTheyAre) {
+  const Verdict verdict = verdict_of(well(20));
+  EXPECT_EQ(verdict, (Verdict{Level::Good, "Every map arrives", "20 robots, oldest 22 s"}));
+}
+
+TEST(Verdict, CountsNoMapThatIsNotSentAnyMore) {
+  Facts facts = well(2);
+  facts.streams.push_back({.kind = "cloud", .robot = "uav1", .forwarded = 600.0, .last_status = 200});
+  EXPECT_EQ(verdict_of(facts).why, "2 robots, oldest 4 s");
+  facts.streams.push_back({.kind = "cloud", .robot = "uav2", .forwarded = 9.0, .last_status = 200});
+  EXPECT_EQ(verdict_of(facts).why, "2 robots, oldest 9 s") << "of one robot's maps the oldest";
+}
+
+TEST(Verdict, NamesTheRobotThatIsSilent) {
+  Facts facts = well(20);
+  facts.robots["uav5"].silent = true;
+  EXPECT_EQ(verdict_of(facts), (Verdict{Level::Wait, "19 of 20 arrive", "not uav5; oldest other 22 s"}));
+}
+
+TEST(Verdict, NamesThreeAtMost) {
+  Facts facts = well(6);
+  for (auto& [name, robot] : facts.robots) robot.silent = name != "uav6";
+  EXPECT_EQ(verdict_of(facts),
+            (Verdict{Level::Wait, "1 of 6 arrive", "not uav1, uav2, uav3 and 2 more; the other 8 s"}));
+  facts.robots["uav6"].silent = true;
+  EXPECT_EQ(verdict_of(facts).what, "Nothing arrives");
+  EXPECT_EQ(verdict_of(facts).level, Level::Bad);
+}
+
+TEST(Verdict, IsThatMapsAreLateWhereNoneIsGivenUp) {
+  Facts facts = well(3);
+  facts.streams[0].behind = 11;
+  EXPECT_EQ(verdict_of(facts), (Verdict{Level::Wait, "Maps are late", "uav1"}));
+}
+
+TEST(Verdict, IsThatNothingArrivesWhileTheEndpointIsDown) {
+  Facts facts = well(20);
+  facts.endpoints[1].trouble = PostTrouble::Silent;
+  facts.endpoints[1].since = kNow - 72;
+  EXPECT_EQ(verdict_of(facts), (Verdict{Level::Bad, "Nothing arrives", "for 1:12; the box keeps all"}));
+  facts.endpoints[1].trouble = PostTrouble::Throttling;
+  EXPECT_EQ(verdict_of(facts).level, Level::Good) << "it takes them all the same";
+}
+
+TEST(Verdict, OfNoMapsIsNone) {
+  EXPECT_EQ(verdict_of(well(0)), (Verdict{Level::Quiet, "No map yet", "no robot has sent one"}));
+}
+
+TEST(Verdict, SaysSinceWhenNothingNewCame) {
+  Facts facts = well(2);
+  for (Stream& stream : facts.streams) stream.forwarded = *stream.forwarded + 600;
+  EXPECT_EQ(verdict_of(facts), (Verdict{Level::Quiet, "Every map arrived", "nothing new for 10 min"}));
+}
+
+TEST(Verdict, OfOneRobotNeedsNoCount) {
+  EXPECT_EQ(verdict_of(well(1)), (Verdict{Level::Good, "Every map arrives", "1 robot, 3 s"}));
+}
+
+}  // namespace
+}  // namespace adit::alarms

@@ -1,0 +1,42 @@
+#pragma once
+
+#include <algorithm>
+#include <functional>
+#include <memory>
+#include <string>
+#include <utility>
+
+#include "api/kept_runs.hpp"
+
+namespace adit::api {
+
+/// Runs that are kept nowhere but here. Answers at once.
+struct FakeKeptRuns final : KeptRuns {
+  RunList list() const override { return all; }
+  History history(Time since) const override {
+    asked_since = since;
+    return plots;
+  }
+  void read(const std::string& key, std::function<void(std::shared_ptr<const KeptRun>)> done) override {
+    done(kept != nullptr && kept->facts.key == key ? kept : nullptr);
+  }
+  void report(const std::string& key, std::vector<ReportDetail> reports,
+              std::function<void(std::string)> done) override {
+    reported = std::move(reports);
+    done(kept != nullptr && kept->facts.key == key ? "<!doctype html>" : "");
+  }
+  void remove(const std::string& key, std::function<void(std::expected<void, std::string>)> done) override {
+    const auto run = std::ranges::find(all.runs, key, &RunRow::key);
+    if (run == all.runs.end()) return done(std::unexpected("there is no such run"));
+    all.runs.erase(run);
+    done({});
+  }
+
+  RunList all;
+  History plots;
+  std::shared_ptr<KeptRun> kept;
+  std::vector<ReportDetail> reported;
+  mutable Time asked_since = 0;
+};
+
+}  // namespace adit::api

@@ -1,0 +1,201 @@
+#include "archive/archive.hpp"
+
+#include <gmock/gmock.h>
+
+#include <filesystem>
+#include <optional>
+
+#include "archive/a_run.hpp"
+#include "host/folder.hpp"
+#include "loop/turn_until.hpp"
+
+namespace adit::archive {
+namespace {
+
+namespace fs = std::filesystem;
+
+class ArchiveTest : public testing::Test {
+ protected:
+  /// A life that begins with nothing but what is on the disk.
+  void live(const Head& head) {
+    archive.reset();
+    archive.emplace(loop, folder.path());
+    picture = picture::Mosaic();
+    tracks.clear();
+    bool came = false;
+    archive->begin(head, [&](picture::Mosaic kept, std::vector<api::Track> its) -> const picture::Mosaic& {
+      picture = std::move(kept);
+      tracks = std::move(its);
+      came = true;
+      return run.easel.mosaic;
+    });
+    ASSERT_TRUE(loop::turn_until(loop, [&] { return came; }));
+  }
+  void write() {
+    archive->tick(run.seen());
+    archive->write_now(run.seen());
+    ASSERT_TRUE(loop::turn_until_idle(loop, archive->thread()));
+  }
+  std::uint64_t stored() const {
+    std::uint64_t bytes = 0;
+    for (const auto& entry : fs::recursive_directory_iterator(folder / "runs"))
+      bytes += entry.is_regular_file() ? entry.file_size() : 0;
+    return bytes;
+  }
+
+  host::Folder folder;
+  loop::Loop loop;
+  ARun run;
+  std::optional<Archive> archive;
+  picture::Mosaic picture;
+  std::vector<api::Track> tracks;
+};
+
+TEST_F(ArchiveTest, GivesTheNextLifeThePictureTheTracksAndThePlots) {
+  live(run.head);
+  EXPECT_TRUE(picture.layers().empty());
+  run.draw(3);
+  archive->needs_attention({"no token"}, run.now());
+  write();
+  live(run.head);
+  EXPECT_EQ(shown(picture), shown(run.easel.mosaic));
+  ASSERT_EQ(tracks.size(), 1U);
+  EXPECT_EQ(tracks[0].poses[0].position.y, 2);
+  const api::History plots = archive->history(0);
+  EXPECT_THAT(plots.sent_mbit, testing::ElementsAre(1.5));
+  ASSERT_EQ(plots.attention.size(), 1U);
+  EXPECT_EQ(plots.attention[0].sentence, "no token");
+}
+
+TEST_F(ArchiveTest, GivesTheNextLifeEarlierTimes) {
+  live(run.head);
+  run.draw(1);
+  write();
+  const double then = run.easel.now;
+  const std::string before = shown(run.easel.mosaic, then);
+  run.easel.now += 100;
+  run.easel.draw(picture::grid_at(0, 0, 1, 0.25, {100}));
+  run.easel.draw(picture::grid_at(0, 0, 1, 0.25, {0}));
+  write();
+  live(run.head);
+  EXPECT_EQ(shown(picture, then), before);
+  EXPECT_EQ(shown(picture), shown(run.easel.mosaic));
+  EXPECT_NE(shown(picture), before);
+}
+
+TEST_F(ArchiveTest, KeepsEachRunByItself) {
+  live(run.head);
+  run.draw(2);
+  write();
+  const Head other{.run = 4, .began = 2000, .post = run.head.post};
+  live(other);
+  EXPECT_TRUE(picture.layers().empty());
+  EXPECT_TRUE(tracks.empty());
+  live(run.head);
+  EXPECT_EQ(picture.layers().size(), 1U);
+  const Head same_number{.run = 3, .began = 5000, .post = run.head.post};
+  live(same_number);
+  EXPECT_TRUE(picture.layers().empty()) << "another ledger's run 3";
+}
+
+TEST_F(ArchiveTest, ListsThePresentRunFromItsBegin) {
+  live(run.head);
+  ASSERT_TRUE(loop::turn_until_idle(loop, archive->thread()));
+  const api::RunList all = archive->list();
+  ASSERT_EQ(all.runs.size(), 1U);
+  EXPECT_EQ(all.runs[0].key, "3");
+  EXPECT_TRUE(all.runs[0].is_present);
+}
+
+TEST_F(ArchiveTest, ListsRunsTheLatestFirstAndForgetsOneThatIsNotThePresentOne) {
+  live(run.head);
+  write();
+  live({.run = 4, .began = 2000, .post = run.head.post});
+  run.facts.run = 4;
+  run.easel.now += 1000;
+  write();
+  ASSERT_TRUE(loop::turn_until(loop, [&] { return archive->list().runs.size() == 2; }));
+  const api::RunList all = archive->list();
+  EXPECT_EQ(all.runs[0].key, "4");
+  EXPECT_TRUE(all.runs[0].is_present);
+  EXPECT_EQ(all.runs[1].course, "alpha");
+  EXPECT_EQ(all.runs[1].score, 5);
+  std::optional<std::expected<void, std::string>> outcome;
+  const auto done = [&](std::expected<void, std::string> its) { outcome = std::move(its); };
+  archive->remove("4", done);
+  EXPECT_FALSE(*outcome) << "it is the present one";
+  archive->remove("../3", done);
+  ASSERT_TRUE(loop::turn_until_idle(loop, archive->thread()));
+  EXPECT_FALSE(*outcome);
+  archive->remove("3", done);
+  ASSERT_TRUE(loop::turn_until_idle(loop, archive->thread()));
+  EXPECT_TRUE(*outcome);
+  EXPECT_EQ(archive->list().runs.size(), 1U);
+  EXPECT_FALSE(fs::exists(folder / "runs/3"));
+}
+
+TEST_F(ArchiveTest, ReadsARunToBeLookedAtAgain) {
+  live(run.head);
+  run.draw(2);
+  write();
+  std::optional<std::shared_ptr<const api::KeptRun>> read;
+  archive->read("3", [&](auto its) { read = its; });
+  ASSERT_TRUE(loop::turn_until(loop, [&] { return read.has_value(); }));
+  ASSERT_NE(*read, nullptr);
+  EXPECT_EQ(shown((*read)->picture), shown(run.easel.mosaic));
+  EXPECT_EQ((*read)->facts.course, "alpha");
+  EXPECT_EQ((*read)->history.at.size(), 1U);
+  read.reset();
+  archive->read("7", [&](auto its) { read = its; });
+  ASSERT_TRUE(loop::turn_until(loop, [&] { return read.has_value(); }));
+  EXPECT_EQ(*read, nullptr);
+}
+
+TEST_F(ArchiveTest, WritesNoMoreAtOnceThanIsAllowed) {
+  live(run.head);
+  run.draw(100);  // some 4 kB each, and their coarser levels
+  write();
+  EXPECT_LT(stored(), Allowance::kMost + 4096);
+  const auto before = stored();
+  archive->write_now(run.seen());
+  archive->write_now(run.seen());
+  ASSERT_TRUE(loop::turn_until_idle(loop, archive->thread()));
+  EXPECT_LT(stored() - before, 8192U) << "there was no time for more";
+}
+
+TEST_F(ArchiveTest, SaysWhyNothingIsKeptAndGoesOn) {
+  std::ofstream(folder / "runs") << "a file where the folder should be";
+  archive.emplace(loop, folder.path());
+  bool came = false;
+  archive->begin(run.head, [&](picture::Mosaic, std::vector<api::Track>) -> const picture::Mosaic& {
+    came = true;
+    return run.easel.mosaic;
+  });
+  ASSERT_TRUE(loop::turn_until(loop, [&] { return came; }));
+  EXPECT_NE(archive->trouble(), "");
+  write();
+  EXPECT_EQ(archive->history(0).at.size(), 1U) << "plots go on";
+  EXPECT_NE(archive->trouble(), "");
+}
+
+TEST_F(ArchiveTest, KeepsTheRunOnceTheDiskHasRoomForIt) {
+  std::ofstream(folder / "runs") << "a file where the folder should be";
+  archive.emplace(loop, folder.path());
+  bool came = false;
+  archive->begin(run.head, [&](picture::Mosaic, std::vector<api::Track>) -> const picture::Mosaic& {
+    came = true;
+    return run.easel.mosaic;
+  });
+  ASSERT_TRUE(loop::turn_until(loop, [&] { return came; }));
+  fs::remove(folder / "runs");
+  archive->tick(run.seen());
+  ASSERT_TRUE(loop::turn_until_idle(loop, archive->thread()));
+  EXPECT_EQ(archive->trouble(), "");
+  run.draw(3);
+  write();
+  live(run.head);
+  EXPECT_EQ(shown(picture), shown(run.easel.mosaic));
+}
+
+}  // namespace
+}  // namespace adit::archive

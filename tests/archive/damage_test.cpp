@@ -1,0 +1,109 @@
+// Files of a run as a power cut, a bad card or somebody's hands leave them: what is sound is used.
+#include <gtest/gtest.h>
+
+#include <random>
+
+#include "archive/a_run.hpp"
+#include "archive/told.hpp"
+
+namespace adit::archive {
+namespace {
+
+class Damage : public testing::Test {
+ protected:
+  void SetUp() override {
+    run.draw(4);
+    file = framed(Kind::Head, said(run.head));
+    for (const picture::LayerView& layer : run.easel.mosaic.layers()) {
+      file += framed(Kind::Layer, said(layer));
+      for (const picture::TileView& tile : layer.tiles) {
+        const auto shown = run.easel.mosaic.tile(layer.layer, tile.at, {});
+        file += framed(Kind::Tile, said(TileState{layer.layer, tile.at, shown.stamp, shown.tile}));
+        ++tiles;
+      }
+    }
+    for (int i = 0; i < 5; ++i) {
+      file += framed(Kind::Sample, said(Sample{.at = 1000.0 + i, .map_ages = {{"ugv1", 1}}}));
+      file += framed(Kind::Attention, said(api::AttentionStep{1000.0 + i, true, "it came"}));
+    }
+    file += framed(Kind::Poses, said("ugv1", run.tracks[0].poses));
+  }
+  /// Tells the file, and counts the tiles that came back; each is as it was, or absent.
+  std::size_t sound(const std::string& bytes) {
+    Told told(picture::Mosaic::kBudget);
+    told.tell(bytes, 1);
+    std::size_t count = 0;
+    for (const auto& [key, of] : told.files()) {
+      const auto is = told.picture().tile(key.first, key.second, {}).tile;
+      const auto was = run.easel.mosaic.tile(key.first, key.second, {}).tile;
+      EXPECT_TRUE(is && was && is->crc == was->crc && is->deflated == was->deflated);
+      ++count;
+    }
+    (void)told.tracks();
+    (void)told.samples().since(0);
+    return count;
+  }
+  ARun run;
+  std::string file;
+  std::size_t tiles = 0;
+};
+
+TEST_F(Damage, OfOneBitTakesOneRecordAtMost) {
+  ASSERT_EQ(sound(file), tiles);
+  const std::size_t head = framed(Kind::Head, said(run.head)).size();
+  for (std::size_t at = head; at < file.size(); at += 37) {
+    std::string damaged = file;
+    damaged[at] = static_cast<char>(damaged[at] ^ (1 << (at % 8)));
+    ASSERT_GE(sound(damaged), tiles - 1) << "byte " << at;
+  }
+}
+
+TEST_F(Damage, OfTheHeadTakesWhatCannotBeKnownToFit) {
+  std::string damaged = file;
+  damaged[20] ^= 1;
+  EXPECT_EQ(sound(damaged), 0U);
+  Told told(picture::Mosaic::kBudget);
+  told.tell(file, 1);
+  told.tell(damaged, 2);  // a later file of the same run
+  EXPECT_EQ(told.files().size(), tiles);
+}
+
+TEST_F(Damage, ByACutLeavesWhatWasBefore) {
+  std::size_t before = 0;
+  for (std::size_t cut = 0; cut <= file.size(); cut += 101) {
+    const std::size_t now = sound(file.substr(0, cut));
+    ASSERT_GE(now, before) << "cut at " << cut;
+    before = now;
+  }
+}
+
+TEST_F(Damage, AllOverIsNoCrash) {
+  std::mt19937 random{5};
+  for (int i = 0; i < 300; ++i) {
+    std::string damaged = file;
+    for (int n = 0; n < 200; ++n) damaged[random() % damaged.size()] = static_cast<char>(random());
+    (void)sound(damaged);
+    std::string noise(5000, '\0');
+    for (char& c : noise) c = static_cast<char>(random());
+    (void)sound(noise);
+  }
+}
+
+TEST_F(Damage, WithARightChecksumIsStillNoTile) {
+  for (const std::string_view bytes : {std::string_view("no zlib at all"), std::string_view("x")}) {
+    auto lie = std::make_shared<picture::Packed>();
+    lie->deflated.assign(bytes.begin(), bytes.end());
+    const std::string record = framed(Kind::Tile, said(TileState{{"ugv1"}, {0, 9, 9}, 1, lie}));
+    EXPECT_EQ(sound(file + record), tiles);
+  }
+}
+
+TEST_F(Damage, RecordsOfAnotherRunAreNotMixedIn) {
+  Told told(picture::Mosaic::kBudget);
+  told.tell(framed(Kind::Head, said(Head{.run = 9, .began = 1})), 1);
+  told.tell(file, 2);
+  EXPECT_TRUE(told.files().empty());
+}
+
+}  // namespace
+}  // namespace adit::archive

@@ -1,0 +1,114 @@
+#include "archive/due_tiles.hpp"
+
+#include <gmock/gmock.h>
+
+#include "archive/a_run.hpp"
+
+namespace adit::archive {
+namespace {
+
+using picture::TileAt;
+
+std::vector<TileAt> places(const std::vector<TileKey>& keys) {
+  std::vector<TileAt> places;
+  for (const auto& [layer, at] : keys) places.push_back(at);
+  return places;
+}
+
+class DueTilesTest : public testing::Test {
+ protected:
+  void write_all(double now, std::uint64_t write = 1, std::optional<std::uint64_t> file = 1) {
+    for (const TileKey& key : due.at(now)) due.being_written(key, write, now);
+    due.done(write, file);
+  }
+  ARun run;
+  DueTiles due;
+};
+
+TEST_F(DueTilesTest, AreThoseThatChangedAndEachOnce) {
+  run.draw(1);
+  due.look(run.easel.mosaic);
+  EXPECT_EQ(due.at(1000).size(), 3U) << "one of each level";
+  write_all(1000);
+  EXPECT_TRUE(due.at(2000).empty());
+  run.draw(1, 1);
+  due.look(run.easel.mosaic);
+  EXPECT_THAT(places(due.at(2000)), testing::Contains(TileAt{0, 1, 0}));
+  EXPECT_THAT(places(due.at(2000)), testing::Not(testing::Contains(TileAt{0, 0, 0})));
+}
+
+TEST_F(DueTilesTest, OfACoarserLevelRestLonger) {
+  run.draw(1);
+  due.look(run.easel.mosaic);
+  write_all(1000);
+  run.easel.draw(picture::grid_at(0, 0, 1, 0.25, {100}));
+  run.easel.draw(picture::grid_at(0, 0, 1, 0.25, {0}));
+  due.look(run.easel.mosaic);
+  EXPECT_TRUE(due.at(1003).empty());
+  EXPECT_THAT(places(due.at(1005)), testing::ElementsAre(TileAt{0, 0, 0}));
+  EXPECT_THAT(places(due.at(1100)), testing::Contains(TileAt{1, 0, 0}));
+}
+
+TEST_F(DueTilesTest, ThatWereNeverWrittenComeFirstThenThoseOfLongestAgo) {
+  run.draw(3);
+  due.look(run.easel.mosaic);
+  for (const auto& [at, when] : {std::pair(1, 1000.0), std::pair(0, 1010.0)})
+    due.being_written({run.easel.layer, {0, at, 0}}, 1, when);
+  due.done(1, 1);
+  for (int i = 0; i < 3; ++i) run.easel.draw(picture::grid_at(64.0 * i, 0, 1, 0.25, {100}));
+  due.look(run.easel.mosaic);
+  std::vector<TileAt> finest;
+  for (const TileAt& at : places(due.at(1500))) {
+    if (at.level == 0) finest.push_back(at);
+  }
+  EXPECT_THAT(finest, testing::ElementsAre(TileAt{0, 2, 0}, TileAt{0, 1, 0}, TileAt{0, 0, 0}));
+}
+
+TEST_F(DueTilesTest, AreDueAgainWhereTheWriteFailed) {
+  run.draw(1);
+  due.look(run.easel.mosaic);
+  write_all(1000, 1, std::nullopt);
+  EXPECT_EQ(due.at(2000).size(), 3U);
+}
+
+TEST_F(DueTilesTest, ThatChangedWhileTheyWereWrittenAreDueOnceMore) {
+  run.draw(1);
+  due.look(run.easel.mosaic);
+  for (const TileKey& key : due.at(1000)) due.being_written(key, 1, 1000);
+  run.easel.draw(picture::grid_at(0, 0, 1, 0.25, {100}));
+  run.easel.draw(picture::grid_at(0, 0, 1, 0.25, {0}));
+  due.look(run.easel.mosaic);
+  due.done(1, 1);
+  EXPECT_THAT(places(due.at(2000)), testing::Contains(TileAt{0, 0, 0}));
+}
+
+TEST_F(DueTilesTest, OfAFileThatIsToGoAreWrittenAgainFirst) {
+  run.draw(1);
+  due.look(run.easel.mosaic);
+  write_all(1000, 1, 1);
+  EXPECT_TRUE(due.leave(2));
+  EXPECT_FALSE(due.leave(1));
+  EXPECT_EQ(due.at(2000).size(), 3U);
+  write_all(2000, 2, 2);
+  EXPECT_TRUE(due.leave(1)) << "nothing newest is in it";
+}
+
+TEST_F(DueTilesTest, ThatAreWrittenAlreadyAreNotDueInTheNextLife) {
+  run.draw(2);
+  std::map<TileKey, std::uint64_t> files;
+  files[{run.easel.layer, {0, 0, 0}}] = 4;
+  due.begin(run.easel.mosaic, files);
+  EXPECT_THAT(places(due.at(5000)), testing::Not(testing::Contains(TileAt{0, 0, 0})));
+  EXPECT_THAT(places(due.at(5000)), testing::Contains(TileAt{0, 1, 0}));
+  EXPECT_FALSE(due.leave(4));
+}
+
+TEST_F(DueTilesTest, OfTheRunBeforeAreNone) {
+  run.draw(1);
+  run.easel.mosaic.wipe(++run.easel.now);
+  due.begin(run.easel.mosaic, {});
+  EXPECT_TRUE(due.at(5000).empty());
+}
+
+}  // namespace
+}  // namespace adit::archive

@@ -1,0 +1,89 @@
+#include "archive/run_report.hpp"
+
+#include <gmock/gmock.h>
+
+#include "archive/a_run.hpp"
+#include "archive/html.hpp"
+
+namespace adit::archive {
+namespace {
+
+using testing::HasSubstr;
+using testing::Not;
+
+constexpr const char* kHostile = "<script>alert('1')</script>\"&\x01";
+
+api::KeptRun hostile_run() {
+  ARun run;
+  run.draw(2);
+  api::KeptRun kept{run.facts, std::move(run.easel.mosaic), run.tracks, {}, {{1000, 5}, {1010, 64}}};
+  kept.facts.course = kept.facts.team = kept.facts.id = kept.facts.post = kHostile;
+  kept.facts.robots = {kHostile};
+  kept.tracks[0].robot = kHostile;
+  kept.history.attention = {{1000, true, kHostile}};
+  return kept;
+}
+
+std::vector<api::ReportDetail> hostile_reports() {
+  api::ReportDetail report;
+  report.row.number = 7;
+  report.row.type = report.row.note = kHostile;
+  report.row.state = "answered";
+  report.row.score_change = 1;
+  report.history = {{1000, "answered", kHostile}};
+  return {report};
+}
+
+TEST(RunReport, SaysScoreReportsMapCoverageRobotsAndWhatNeededTheOperator) {
+  const std::string html = run_report(hostile_run(), hostile_reports());
+  for (const char* part :
+       {"<dt>Score</dt><dd>5</dd>", "Reports", "answered", "+1", "data:image/png;base64,iVBOR",
+        "Coverage over time", "64 m", "Robots", "What needed the operator", "1970-01-01 00:16:40"})
+    EXPECT_THAT(html, HasSubstr(part));
+}
+
+TEST(RunReport, IsNothingButWhatItSaysWhateverNamesAndNotesHold) {
+  const std::string html = run_report(hostile_run(), hostile_reports());
+  EXPECT_THAT(html, Not(HasSubstr("<script")));
+  EXPECT_THAT(html, Not(HasSubstr("alert('")));
+  EXPECT_THAT(html, HasSubstr("&lt;script&gt;alert(&#39;1&#39;)&lt;/script&gt;&quot;&amp;\uFFFD"));
+  EXPECT_THAT(html, Not(HasSubstr("href=\"http")));
+  EXPECT_THAT(html, Not(HasSubstr("src=")));
+}
+
+TEST(RunReport, OfARunOfWhichNothingIsKnownIsWhole) {
+  const std::string html = run_report({{}, picture::Mosaic(), {}, {}, {}}, {});
+  EXPECT_THAT(html, HasSubstr("No report was made."));
+  EXPECT_THAT(html, HasSubstr("No map was kept."));
+  EXPECT_THAT(html, testing::EndsWith("</html>\n"));
+}
+
+TEST(RunReport, StaysSmallHoweverMuchWasMapped) {
+  ARun run;
+  run.draw(100);
+  const api::KeptRun kept{run.facts, std::move(run.easel.mosaic), {}, {}, {}};
+  EXPECT_LT(run_report(kept, {}).size(), std::size_t{5} << 20);
+}
+
+TEST(Html, Base64IsThatOfRfc4648) {
+  const auto of = [](std::string_view text) {
+    return base64_of({reinterpret_cast<const std::uint8_t*>(text.data()), text.size()});
+  };
+  EXPECT_EQ(of(""), "");
+  EXPECT_EQ(of("f"), "Zg==");
+  EXPECT_EQ(of("fo"), "Zm8=");
+  EXPECT_EQ(of("foo"), "Zm9v");
+  EXPECT_EQ(of("foobar"), "Zm9vYmFy");
+}
+
+TEST(Html, TimesAndNumbersAreFiniteOrNotThere) {
+  EXPECT_EQ(utc(0), "");
+  EXPECT_EQ(utc(1e300), "");
+  EXPECT_EQ(utc(86399), "1970-01-01 23:59:59");
+  EXPECT_EQ(lasted(3723), "1:02:03");
+  EXPECT_EQ(lasted(-1), "-");
+  EXPECT_EQ(fixed(1.0 / 0.0, 1), "-");
+}
+
+}  // namespace
+}  // namespace adit::archive

@@ -1,0 +1,76 @@
+#include "archive/runs_folder.hpp"
+
+#include <gmock/gmock.h>
+
+#include <filesystem>
+
+#include "archive/a_run.hpp"
+#include "host/folder.hpp"
+
+namespace adit::archive {
+namespace {
+
+namespace fs = std::filesystem;
+using testing::ElementsAre;
+
+class RunsFolderTest : public testing::Test {
+ protected:
+  std::string run(std::int64_t number, double began, std::size_t bytes) {
+    const Head head{.run = number, .began = began, .post = "here:1"};
+    const std::string key = *runs.begin(head);
+    RunFolder files(runs.folder_of(key), head);
+    const api::RunRow facts{.run = number, .post = "here:1", .began = began, .last = began + 10};
+    EXPECT_TRUE(files.write(
+        {.lines = std::string(bytes, 'x'), .facts = codec::write_file(facts, kFactsFormat)}, 1 << 20));
+    return key;
+  }
+  std::vector<std::string> keys() const {
+    std::vector<std::string> keys;
+    for (const api::RunRow& row : runs.list()) keys.push_back(row.key);
+    return keys;
+  }
+  host::Folder folder;
+  RunsFolder runs{folder.path()};
+};
+
+TEST_F(RunsFolderTest, TheOldestRunsGoFirstAndNeverThePresentOne) {
+  run(1, 1000, 1000);
+  run(2, 2000, 1000);
+  run(3, 3000, 1000);
+  EXPECT_THAT(keys(), ElementsAre("3", "2", "1"));
+  runs.tidy(1'000'000, "1");
+  EXPECT_EQ(keys().size(), 3U);
+  runs.tidy(3000, "1");
+  EXPECT_THAT(keys(), ElementsAre("3", "1"));
+  runs.tidy(0, "1");
+  EXPECT_THAT(keys(), ElementsAre("1"));
+}
+
+TEST_F(RunsFolderTest, ARunWhoseFactsAreDamagedIsKnownByItsFiles) {
+  const std::string key = run(5, 1000, 10);
+  std::ofstream(runs.folder_of(key) + "/facts.json") << "{\"version\": 1";
+  const auto rows = runs.list();
+  ASSERT_EQ(rows.size(), 1U);
+  EXPECT_EQ(rows[0].run, 5);
+  EXPECT_EQ(rows[0].began, 1000);
+  EXPECT_EQ(*runs.begin({.run = 5, .began = 1000, .post = "here:1"}), key);
+}
+
+TEST_F(RunsFolderTest, WhatADeathLeftOfARemovalGoes) {
+  fs::create_directories(folder / "runs/gone-7");
+  std::ofstream(folder / "runs/gone-7/map-00000001") << "x";
+  run(1, 1000, 10);
+  runs.tidy(1'000'000, "1");
+  EXPECT_FALSE(fs::exists(folder / "runs/gone-7"));
+  EXPECT_THAT(keys(), ElementsAre("1"));
+}
+
+TEST_F(RunsFolderTest, AKeyIsANumberAndNoPath) {
+  for (const char* key : {"1", "12-2", "123456789"}) EXPECT_TRUE(RunsFolder::is_key(key)) << key;
+  for (const char* key :
+       {"", "..", "1/2", "a", "1-", "-1", "1-2-3", "gone-1", "1111111111111111111111111111111"})
+    EXPECT_FALSE(RunsFolder::is_key(key)) << key;
+}
+
+}  // namespace
+}  // namespace adit::archive

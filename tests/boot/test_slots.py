@@ -1,0 +1,202 @@
+"""Which slot the boot loaders start, and what they count: U-Boot and GRUB themselves, with the scripts of the image, over a small disk
+whose slots hold no kernel but a line that says which one it is. RAUC's part is played by its own programs for both environments."""
+
+import pathlib
+import re
+import shutil
+import subprocess
+import tempfile
+import unittest
+
+import boards
+
+TOP = boards.SOURCE
+MIB = 1 << 20
+# As rootfs/disk has them: the first four partitions, each as large as FAT needs.
+PARTITIONS = {"adit-env": (16, 1), "adit-boot": (17, 40), "adit-boot-a": (57, 40), "adit-boot-b": (97, 40)}
+STARTED = re.compile(rb"this is slot ([ab])|(no slot has come up)")
+AGAIN = "again"
+
+
+class Machine:
+    """A board and a disk with both slots."""
+
+    def __init__(self, folder, board):
+        self.folder, self.board, self.disk = folder, board, folder / "disk.img"
+        self.soldered = board.soldered(folder, board.memory)
+        table = "label: gpt\nfirst-lba: 2048\n" + "".join(
+            f'start={start}MiB, size={size}MiB, name={name}{", attrs=LegacyBIOSBootable, type=U" if name == "adit-boot" else ""}\n'
+            for name, (start, size) in PARTITIONS.items())
+        with open(self.disk, "wb") as disk:
+            disk.truncate(160 * MIB)
+        subprocess.run(["sfdisk", "--quiet", "--no-reread", "--no-tell-kernel", self.disk], input=table.encode(), check=True)
+        self.make_loader()
+        for slot in "ab":
+            self.fill(slot)
+
+    def place(self, file, partition):
+        subprocess.run(["dd", f"if={file}", f"of={self.disk}", "bs=1M", f"seek={PARTITIONS[partition][0]}", "conv=notrunc", "status=none"],
+                       check=True)
+
+    def make_partition(self, partition, files):
+        subprocess.run([TOP / "rootfs/vfat", "ADIT" if partition == "adit-boot" else "SLOT", "40", files, self.folder / "fat.img"],
+                       check=True, env={"SOURCE_DATE_EPOCH": "1", "PATH": "/usr/sbin:/usr/bin:/sbin:/bin"})
+        self.place(self.folder / "fat.img", partition)
+
+    def make_loader(self):
+        files, debian = self.folder / "loader", next((TOP / "build/image").glob(f"debian-{self.architecture}"))
+        files.mkdir()
+        subprocess.run([TOP / "rootfs/boot/loader", self.board.name, debian, files], check=True,
+                       env={"SOURCE_DATE_EPOCH": "1", "PATH": "/usr/sbin:/usr/bin:/sbin:/bin"})
+        self.make_partition("adit-boot", files)
+
+    def fill(self, slot):
+        files = pathlib.Path(tempfile.mkdtemp(dir=self.folder))
+        self.make_slot(files, slot)
+        self.make_partition(f"adit-boot-{slot}", files)
+
+    def empty(self, slot):
+        with open(self.disk, "r+b") as disk:
+            disk.seek(PARTITIONS[f"adit-boot-{slot}"][0] * MIB)
+            disk.write(bytes(MIB))
+
+    def start(self):
+        """Power, until the boot loader has decided: "a", "b", or AGAIN."""
+        disk = ["-drive", f"if=none,id=card,format=raw,file={self.disk}", "-device", f"{self.board.card},drive=card"]
+        emulator = [self.board.emulator, *self.soldered, "-m", str(self.board.memory), "-no-reboot", *disk, "-serial", "stdio"]
+        with subprocess.Popen(emulator, stdin=subprocess.DEVNULL, stdout=subprocess.PIPE, stderr=subprocess.STDOUT) as machine:
+            said = b""
+            try:
+                while piece := machine.stdout.read1(4096):
+                    said += piece
+                    if found := STARTED.search(said):
+                        if found[1] is None:  # it writes that down before it restarts, which ends the emulator
+                            machine.wait(120)
+                        return found[1].decode() if found[1] else AGAIN
+            finally:
+                machine.kill()
+        raise AssertionError(said.decode(errors="replace"))
+
+
+class Arm(Machine):
+    architecture = "arm64"
+
+    def make_slot(self, files, slot):
+        script = files / "slot.cmd"
+        script.write_text(f'echo "this is slot {slot}"\npoweroff\n')
+        subprocess.run(["mkimage", "-A", "arm64", "-T", "script", "-C", "none", "-d", script, files / "slot.scr"], check=True, capture_output=True)
+
+    def make_loader(self):
+        super().make_loader()
+        self.write({"BOOT_ORDER": "A B", "BOOT_A_LEFT": "a", "BOOT_B_LEFT": "a"})
+
+    def rauc(self, slot, *, primary):
+        """What RAUC 1.8 sets: a slot was written and is to be started, or was found good."""
+        left = {f"BOOT_{slot.upper()}_LEFT": "3" if primary else "a"}
+        self.set(left | ({"BOOT_ORDER": "B A" if slot == "b" else "A B"} if primary else {}))
+
+    def spend(self, slot, tries):
+        self.set({f"BOOT_{slot.upper()}_LEFT": f"{10 - tries:x}"})
+
+    def set(self, variables):
+        self.write(self.known | variables)
+
+    def write(self, variables):
+        self.known = variables
+        text, env = self.folder / "env.txt", self.folder / "env"
+        text.write_text("".join(f"{name}={value}\n" for name, value in variables.items()))
+        subprocess.run(["mkenvimage", "-s", "512", "-o", env, text], check=True)
+        self.place(env, "adit-env")
+
+
+class Pc(Machine):
+    architecture = "amd64"
+
+    def make_loader(self):
+        with open(self.disk, "r+b") as disk:
+            header = subprocess.run(["tar", "--format=ustar", "-b", "1", "-cf", "-", "-C", self.folder, self.one_sector()], check=True,
+                                    capture_output=True).stdout
+            disk.seek(PARTITIONS["adit-env"][0] * MIB)
+            disk.write(header)
+        self.edit("A_TRY=0")
+        super().make_loader()
+
+    def one_sector(self):
+        (self.folder / "grubenv").write_bytes(bytes(512))
+        return "grubenv"
+
+    def make_slot(self, files, slot):
+        (files / "slot.cfg").write_text(f'echo "this is slot {slot}"\nsleep 30\n')
+
+    def edit(self, *variables):
+        """By the image's grub-editenv, on a copy of the partition."""
+        part, at = self.folder / "adit-env", PARTITIONS["adit-env"][0] * MIB
+        with open(self.disk, "r+b") as disk:
+            disk.seek(at)
+            part.write_bytes(disk.read(MIB))
+            subprocess.run([TOP / "rootfs/boot/grub-editenv", part, "set", *variables], check=True)
+            disk.seek(at)
+            disk.write(part.read_bytes())
+
+    def spend(self, slot, tries):
+        self.edit(f"{slot.upper()}_TRY={tries}")
+
+    def rauc(self, slot, *, primary):
+        name = slot.upper()
+        self.edit(*[f"ORDER={'B A' if slot == 'b' else 'A B'}"] * primary, f"{name}_OK=1", f"{name}_TRY=0")
+
+
+class Slots:
+    """For each boot loader."""
+
+    def setUp(self):
+        missing = self.board.missing()
+        if missing:
+            self.skipTest(missing)
+        self.folder = pathlib.Path(tempfile.mkdtemp(prefix="adit-slots."))
+        self.addCleanup(shutil.rmtree, self.folder)
+        self.machine = self.kind(self.folder, self.board)
+
+    def starts(self, times):
+        return "".join(self.machine.start() for _ in range(times))
+
+    def test_a_proven_slot_has_ten_tries_and_then_the_other_is_started(self):
+        self.machine.rauc("a", primary=True)
+        self.machine.rauc("a", primary=False)
+        self.assertEqual(self.starts(1), "a")
+        self.machine.spend("a", 8)
+        self.assertEqual(self.starts(3), "aab")
+
+    def test_a_slot_on_trial_has_three_until_it_is_good(self):
+        self.machine.rauc("b", primary=True)
+        self.assertEqual(self.starts(2), "bb")
+        self.machine.rauc("b", primary=False)
+        self.assertEqual(self.starts(4), "bbbb")
+        self.machine.rauc("b", primary=True)
+        self.assertEqual(self.starts(4), "bbba")
+
+    def test_an_empty_slot_is_never_tried(self):
+        self.machine.empty("b")
+        self.machine.rauc("b", primary=True)
+        self.assertEqual(self.machine.start(), "a")
+        self.machine.rauc("a", primary=True)
+        # Where the only slot has no try left it is tried again at once, by one more start of the boot loader.
+        self.assertEqual([self.machine.start() for _ in range(5)], ["a", "a", "a", AGAIN, "a"])
+
+    def test_an_environment_that_is_none_starts_the_first(self):
+        with open(self.machine.disk, "r+b") as disk:
+            disk.seek(PARTITIONS["adit-env"][0] * MIB + (512 if self.kind is Pc else 0))
+            disk.write(b"\xff" * 512)
+        self.assertEqual(self.machine.start(), "a")
+
+
+class UBoot(Slots, unittest.TestCase):
+    board, kind = boards.QEMU_VIRT, Arm
+
+
+class Grub(Slots, unittest.TestCase):
+    board, kind = boards.PC, Pc
+
+
+if __name__ == "__main__":
+    unittest.main()

@@ -1,0 +1,90 @@
+#include "cli/complete.hpp"
+
+#include <gmock/gmock.h>
+
+#include "cli/command.hpp"
+#include "cli/server.hpp"
+#include "cli/token_file.hpp"
+#include "cli/view.hpp"
+
+namespace adit::cli {
+namespace {
+
+using testing::HasSubstr;
+
+class Completion : public testing::Test {
+ protected:
+  static Server::Answers answers() {
+    api::RunView view = sample_view();
+    std::vector<api::ReportRow> reports(3, view.reports.front());
+    for (std::size_t i = 0; i < reports.size(); ++i) reports[i].number = static_cast<std::int64_t>(i) + 3;
+    reports[1].state = "in doubt";
+    reports[2].state = "received";
+    reports[2].type = "Cell\nPhone";
+    api::AsideRow cloud, state;
+    cloud.number = 8;
+    cloud.kind = "cloud";
+    cloud.robot = "r2";
+    state.number = 9;
+    state.kind = "state";
+    view.aside = {cloud, state};
+    return {{"GET /adit/reports", Server::ok(codec::to_json(reports))},
+            {"GET /adit/run", Server::ok(codec::to_json(view))},
+            {"GET /adit/settings",
+             Server::ok(R"({"settings":{"courses":[{"name":"B","scoring":{"address":"10.100.2.200"}},)"
+                        R"({"name":"$HOME","scoring":{"address":"10.100.3.200"}}]
+}
+})")}};
+  }
+
+  Outcome listed(std::vector<std::string_view> words) const {
+    const std::string at = server_.at();
+    words.insert(words.begin(), "complete");
+    words.insert(words.end(), {"--at", at, "--token-file", token_file_});
+    return run(words);
+  }
+
+  Server server_{answers()};
+  TokenFile file_;
+  const std::string token_file_ = file_.path();
+};
+
+TEST_F(Completion, ListsReportsThatAWordCanBeSaidOf) {
+  EXPECT_EQ(listed({"reports"}).out,
+            "3\tSurvivor, answered\n4\tSurvivor, in doubt\n5\tCell\\x0aPhone, held\n");
+  EXPECT_EQ(listed({"reports", "show"}).out, listed({"reports"}).out);
+  EXPECT_EQ(listed({"reports", "done"}).out, "4\tSurvivor, in doubt\n");
+  EXPECT_EQ(listed({"reports", "resubmit"}).out, "3\tSurvivor, answered\n");
+  EXPECT_EQ(listed({"reports", "send"}).out, "4\tSurvivor, in doubt\n5\tCell\\x0aPhone, held\n");
+  EXPECT_EQ(listed({"reports", "done", "--json"}).out,
+            "[{\"word\":\"4\",\"what\":\"Survivor, in doubt\"}]\n");
+}
+
+TEST_F(Completion, ListsWhatIsSetAsideAndCourses) {
+  EXPECT_EQ(listed({"aside"}).out, "8\tcloud of r2\n9\tstate\n");
+  EXPECT_EQ(listed({"courses"}).out, "B\t10.100.2.200\n") << "and none that a shell would run";
+}
+
+TEST(CompletionOfKeys, AsksNobody) {
+  const Outcome lines = run(std::vector<std::string_view>{"complete", "keys"});
+  EXPECT_THAT(lines.out, HasSubstr("reports.review\tWhat is held until the operator lets it go\n"));
+  EXPECT_THAT(lines.out, HasSubstr("robots[].alias\t"));
+  const Outcome json = run(std::vector<std::string_view>{"complete", "keys", "--json"});
+  EXPECT_THAT(json.out, HasSubstr(R"("path":"reports.review")"));
+  EXPECT_THAT(json.out, HasSubstr(R"("range":"\"off\", \"duplicates\" or \"all\"")"));
+}
+
+TEST(CompletionOfReports, WithoutAnAditIsNone) {
+  TokenFile token;
+  std::string at;
+  {
+    at = Server("").at();
+  }
+  const Outcome outcome =
+      run(std::vector<std::string_view>{"complete", "reports", "--at", at, "--token-file", token.path()});
+  EXPECT_EQ(outcome.out, "");
+  EXPECT_EQ(outcome.exit, Exit::Unable);
+}
+
+}  // namespace
+}  // namespace adit::cli

@@ -1,0 +1,110 @@
+#include "cli/watch_text.hpp"
+
+#include <gmock/gmock.h>
+
+#include "cli/status_text.hpp"
+#include "cli/view.hpp"
+
+namespace adit::cli {
+namespace {
+
+using testing::IsEmpty;
+
+/// The lines without the time that each begins with.
+std::string changed(const api::RunView& before, const api::RunView& now) {
+  std::string rest = changes_text(before, now, false), lines;
+  while (!rest.empty()) {
+    const std::size_t end = rest.find('\n') + 1;
+    EXPECT_TRUE(rest.starts_with("1970-01-01T00:16:4")) << rest;
+    lines += rest.substr(rest.find("  ") + 2, end - rest.find("  ") - 2);
+    rest.erase(0, end);
+  }
+  return lines;
+}
+
+/// The sample a second later.
+api::RunView later() {
+  api::RunView view = sample_view();
+  view.now += 1;
+  view.run->run_clock += 1;
+  return view;
+}
+
+TEST(Watching, SaysNothingWhereOnlyTheClockGoesOn) {
+  EXPECT_THAT(changed(sample_view(), later()), IsEmpty());
+}
+
+TEST(Watching, TellsWhatNeedsTheOperatorAndWhatNoLonger) {
+  api::RunView now = later();
+  now.alarms = {{.id = "report_in_doubt:7", .what = "Report 7 is in doubt", .why = "no answer came"}};
+  EXPECT_EQ(changed(sample_view(), now), "ALARM  Report 7 is in doubt: no answer came\n");
+  EXPECT_EQ(changed(now, later()), "no longer: Report 7 is in doubt: no answer came\n");
+  EXPECT_THAT(changed(now, now), IsEmpty());
+}
+
+TEST(Watching, TellsOfTheRun) {
+  api::RunView now = later();
+  now.run->score = 8;
+  now.run->remaining_reports = 17;
+  EXPECT_EQ(changed(sample_view(), now), "run 12:35: score 8, 17 reports left, team cave_club\n");
+  now.run.reset();
+  now.run_number = 2;
+  EXPECT_EQ(changed(sample_view(), now), "run 2 begins\nrun: no word from the Command Post yet\n");
+}
+
+TEST(Watching, TellsOfReports) {
+  api::RunView now = later();
+  now.reports.front().state = "settled";
+  now.reports.front().reconciled = true;
+  now.reports.push_back(now.reports.front());
+  now.reports.back().number = 4;
+  now.reports.back().state = "received";
+  now.reports.back().note = "a near duplicate of report 3";
+  now.reports.back().score_change.reset();
+  EXPECT_EQ(changed(sample_view(), now),
+            "report 3 Survivor: settled, score +1\n"
+            "report 4 Survivor: held (a near duplicate of report 3)\n");
+}
+
+TEST(Watching, TellsOfEndpointsAndRobots) {
+  api::RunView now = later();
+  now.endpoints[1].connected = false;
+  now.endpoints[1].trouble = "no route to host";
+  now.activities[0].last_status = 500;
+  now.activities[0].last_sentence = "it failed";
+  now.activities[0].arrival = alarms::Arrival::Failing;
+  EXPECT_EQ(changed(sample_view(), now),
+            "mapping endpoint: not connected, no route to host\nr1, grid: NO: it failed\n");
+  EXPECT_EQ(changed(now, later()), "mapping endpoint: connected\nr1, grid: arrives\n");
+}
+
+TEST(Watching, SaysNothingOfARobotThatIsLateInItsTurn) {
+  api::RunView now = later();
+  now.activities[0].arrival = alarms::Arrival::Late;
+  EXPECT_THAT(changed(sample_view(), now), IsEmpty());
+}
+
+TEST(Watching, CannotBeForgedByWhatOthersWrote) {
+  api::RunView now = later();
+  now.alarms = {{.id = "x", .what = "from\x1b[2J\na robot"}};
+  EXPECT_EQ(changed(sample_view(), now), "ALARM  from\\x1b[2J\\x0aa robot\n");
+}
+
+TEST(AScreen, ShowsWhatFits) {
+  EXPECT_EQ(fitted("one\ntwo\n", 5, 10), "one\ntwo");
+  EXPECT_EQ(fitted("one\ntwo\nthree\n", 2, 20), "one\n... 2 more lines");
+  EXPECT_EQ(fitted("one\ntwo\nthree\n", 1, 20), "... 3 more lines");
+  EXPECT_EQ(fitted("one\n", 0, 20), "");
+  EXPECT_EQ(fitted("", 3, 20), "");
+}
+
+TEST(AScreen, CutsLinesByWhatIsSeenOfThem) {
+  EXPECT_EQ(fitted("abcdef\n", 3, 4), "abcd\033[0m");
+  EXPECT_EQ(fitted("Höhle\n", 3, 5), "Höhle");
+  EXPECT_EQ(fitted("Höhlen\n", 3, 2), "Hö\033[0m");
+  EXPECT_EQ(fitted("\033[31mab\033[0mcd\n", 3, 4), "\033[31mab\033[0mcd");
+  EXPECT_EQ(fitted("\033[31mabc\033[0m\n", 3, 2), "\033[31mab\033[0m");
+}
+
+}  // namespace
+}  // namespace adit::cli

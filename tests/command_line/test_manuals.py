@@ -1,0 +1,84 @@
+"""Man pages say all that --help says, and are such as man(1) and mandoc(1) read without a complaint."""
+
+import json
+import re
+import shutil
+import subprocess
+import unittest
+
+from manuals import BIN, PROGRAMS, help_of, made, options_in, program
+
+
+def pages():
+    return sorted(made().glob("man/man*/*"))
+
+
+def shown(page):
+    """As somebody reads it, in one line: on paper so wide that no word is cut."""
+    text = subprocess.run(["groff", "-man", "-Tascii", "-P-bcu", "-rLL=2000n", page], check=True, capture_output=True, text=True).stdout
+    return re.sub(r"\s+", " ", text)
+
+
+@unittest.skipUnless(shutil.which("groff"), "there is no groff here")
+class ManPages(unittest.TestCase):
+    def page_of(self, name):
+        found = [page for page in pages() if page.stem == name]
+        self.assertEqual(len(found), 1, name)
+        return found[0]
+
+    def test_there_is_one_of_each_program_and_one_of_the_settings(self):
+        names = [page.name for page in pages()]
+        for name in ("adit.1", "aditd.8", "adit-settings.5", *(f"{each}.1" for each in PROGRAMS if each in ("adit-rehearsal", "adit-robots"))):
+            self.assertIn(name, names)
+        self.assertEqual(len(names), len(PROGRAMS) + 1)
+
+    def test_each_word_and_option_of_the_help_is_in_the_page(self):
+        for name in PROGRAMS:
+            text = shown(self.page_of(name))
+            self.assertIn(f"{name} - ", text)
+            self.has_each(options_in(help_of(name)), text, name)
+            for command in program(name).commands:
+                begin = text.index(f" {name} {command} ", text.index(" COMMANDS "))
+                own = text[begin:text.index(" Exit status: ", begin)] + text[:begin]  # and what stands above all commands
+                self.has_each(options_in(help_of(name, command)), own, f"{name} {command}")
+
+    def has_each(self, words, text, where):
+        missing = [word for word in words if not re.search(rf"(?<![\w-]){word}(?![\w-])", text)]
+        self.assertEqual(missing, [], where)
+
+    def test_sentences_are_those_of_the_help(self):
+        self.assertIn("--settings FILE the settings (JSON, version 1) unless others were saved; adit check FILE explains",
+                      shown(self.page_of("aditd")))
+        adit = shown(self.page_of("adit"))
+        self.assertIn("--run N|all Without a word: whose reports to list; if not given, the present run's", adit)
+        self.assertIn("adit reports --run all --json | jq -r '.[] | [.number, .type, .state] | @tsv'", adit)
+        self.assertIn("SEE ALSO aditd(8), adit-settings(5)", adit)
+
+    def test_each_key_of_the_settings_is_in_their_page(self):
+        text = shown(self.page_of("adit-settings"))
+        keys = json.loads(subprocess.run([BIN / "adit", "complete", "keys", "--json"], check=True, capture_output=True, text=True).stdout)
+        self.assertGreater(len(keys), 50)
+        missing = [key["path"] for key in keys if f" {key['path']} {key['meaning']} It may be {key['range']}" not in text]
+        self.assertEqual(missing, [])
+        self.assertIn('reports.review What is held until the operator lets it go: nothing, near duplicates (see '
+                      'reports.near_metres), or every report. It may be "off", "duplicates" or "all". If not given: "off".', text)
+
+    def test_nothing_in_them_is_complained_of(self):
+        for page in pages():
+            told = subprocess.run(["groff", "-man", "-ww", "-Tutf8", "-z", page], capture_output=True, text=True).stderr
+            self.assertEqual(told, "", page.name)
+            if shutil.which("mandoc"):
+                told = subprocess.run(["mandoc", "-T", "lint", "-W", "warning", page], capture_output=True, text=True).stdout
+                self.assertEqual(told, "", page.name)
+
+
+class Versions(unittest.TestCase):
+    def test_each_program_tells_its_own(self):
+        told = {name: subprocess.run([BIN / name, "--version"], check=True, capture_output=True, text=True).stdout for name in PROGRAMS}
+        version = told["aditd"].split()[1]
+        self.assertRegex(version, r"^\d+\.\d+\.\d+$")
+        self.assertEqual(told, {name: f"{name} {version}\n" for name in PROGRAMS})
+
+
+if __name__ == "__main__":
+    unittest.main()

@@ -1,0 +1,129 @@
+// With how much effort a cloud is packed, by what its link carries.
+#include "pack/effort.hpp"
+
+#include <gtest/gtest.h>
+
+#include "icd/xyz.hpp"
+#include "pack/generated.hpp"
+
+namespace adit::pack {
+namespace {
+
+constexpr double kMegabyte = 1e6, kSlot = 1;
+/// What Quick makes of a byte, as measured.
+constexpr double kNoise = 0.92, kScan = 0.7, kSurvey = 0.48, kPadded = 0.39;
+
+struct Row {
+  const char* what;
+  double megabytes_a_second, megabytes, quick_to, slowness;
+  Effort expected;
+};
+
+void PrintTo(const Row& row, std::ostream* out) {
+  *out << row.what << ", " << row.megabytes << " MB at " << row.megabytes_a_second << " MB/s";
+}
+
+class EffortFor : public testing::TestWithParam<Row> {};
+
+TEST_P(EffortFor, ACloudIsThatWithWhichItIsThereFirst) {
+  const Row& row = GetParam();
+  const Hurry hurry{row.megabytes_a_second * kMegabyte, row.slowness, kSlot};
+  EXPECT_EQ(effort_for(static_cast<std::size_t>(row.megabytes * kMegabyte), row.quick_to, hurry),
+            row.expected);
+}
+
+// 1 Gbit/s are 115 MB/s, 100 are 11.5, 10 are 1.15 (pace::map_bytes_per_second).
+INSTANTIATE_TEST_SUITE_P(Rates, EffortFor,
+                         testing::Values(Row{"loopback", 5000, 10, kScan, 1, Effort::None},
+                                         Row{"loopback, all alike", 5000, 10, 0.01, 1, Effort::None},
+                                         Row{"1 Gbit/s, noise", 115, 10, kNoise, 1, Effort::None},
+                                         Row{"1 Gbit/s, a scan", 115, 10, kScan, 1, Effort::None},
+                                         Row{"1 Gbit/s, a survey", 115, 10, kSurvey, 1, Effort::None},
+                                         Row{"1 Gbit/s, padded", 115, 10, 0.1, 1, Effort::Quick},
+                                         Row{"1 Gbit/s, more than a slot", 115, 200, kNoise, 1, Effort::Full},
+                                         Row{"100 Mbit/s, noise", 11.5, 10, kNoise, 1, Effort::Full},
+                                         Row{"100 Mbit/s, a scan", 11.5, 10, kScan, 1, Effort::Full},
+                                         Row{"100 Mbit/s, a survey", 11.5, 10, kSurvey, 1, Effort::Full},
+                                         Row{"100 Mbit/s, padded", 11.5, 10, kPadded, 1, Effort::Full},
+                                         Row{"10 Mbit/s, noise", 1.15, 10, kNoise, 1, Effort::Full},
+                                         Row{"10 Mbit/s, small noise", 1.15, 0.5, kNoise, 1, Effort::Full},
+                                         Row{"10 Mbit/s, a small survey", 1.15, 0.5, kSurvey, 1,
+                                             Effort::Full},
+                                         Row{"1 Mbit/s, small noise", 0.115, 0.3, kNoise, 1, Effort::Full}));
+
+INSTANTIATE_TEST_SUITE_P(
+    SlowBoxes, EffortFor,
+    testing::Values(Row{"1 Gbit/s, padded", 115, 10, 0.1, 4, Effort::None},
+                    Row{"100 Mbit/s, noise", 11.5, 10, kNoise, 4, Effort::None},
+                    Row{"100 Mbit/s, a survey", 11.5, 10, kSurvey, 4, Effort::Quick},
+                    Row{"100 Mbit/s, more than a slot", 11.5, 15, kNoise, 4, Effort::Full},
+                    Row{"10 Mbit/s, noise", 1.15, 10, kNoise, 4, Effort::Full},
+                    Row{"10 Mbit/s, a small survey", 1.15, 0.5, kSurvey, 4, Effort::Full},
+                    Row{"1 Mbit/s, small noise", 0.115, 0.3, kNoise, 10, Effort::Full}));
+
+/// From the slowest to the fastest.
+std::vector<double> rates() {
+  std::vector<double> all;
+  for (int tenths = 40; tenths <= 100; ++tenths) all.push_back(std::pow(10, tenths / 10.0));
+  return all;
+}
+
+/// What is chosen is there no later than the others, but for the tenth that another one has to save.
+TEST(Effort, IsNeverWorseThanFull) {
+  for (const double slowness : {0.2, 1.0, 5.0, 20.0}) {
+    for (const double rate : rates()) {
+      for (const double quick_to : {0.01, 0.3, 0.6, 0.9, 1.0}) {
+        const Hurry hurry{rate, slowness, kSlot};
+        const double bytes = 3e6;
+        const auto takes = [&](Effort effort, double to) {
+          return slowness * kSecondsPerByte[static_cast<std::size_t>(effort)] * bytes + bytes * to / rate;
+        };
+        const Effort chosen = effort_for(3'000'000, quick_to, hurry);
+        const double to = chosen == Effort::None ? 1 : quick_to;
+        if (chosen == Effort::Full) continue;
+        EXPECT_LE(takes(chosen, to), takes(Effort::Full, quick_to * kFullOfQuick));
+        EXPECT_LE(bytes * to / rate, kSlot);
+      }
+    }
+  }
+}
+
+/// Once a slower link is Full, an even slower one is.
+TEST(Effort, IsFullOnEverySlowLink) {
+  for (const double quick_to : {0.05, 0.5, 0.95}) {
+    bool was_full = true;
+    for (const double rate : rates()) {
+      const bool is_full = effort_for(1'000'000, quick_to, {rate, 1, kSlot}) == Effort::Full;
+      EXPECT_TRUE(was_full || !is_full) << rate;
+      was_full = is_full;
+    }
+    EXPECT_FALSE(was_full);
+  }
+}
+
+TEST(Effort, IsFoundOutOfTheCloudItself) {
+  Generator make{3};
+  icd::PointCloud2 padded = icd::xyz();
+  padded.point_step = 64;
+  const auto noise = [&](std::size_t) {
+    return std::array{make.real(0, 1), make.real(0, 1), make.real(0, 1)};
+  };
+  icd::MapUpdate alike = update_of(padded, Bytes(64 * 50'000)),
+                 plain = make.cloud(icd::xyz(), 250'000, noise);
+  const Hurry hurry{60 * kMegabyte, 1, kSlot};
+  EXPECT_EQ(effort_for(alike.data, hurry), Effort::Quick);
+  EXPECT_EQ(effort_for(plain.data, hurry), Effort::None);
+}
+
+TEST(Effort, IsNoneForNoPoints) {
+  EXPECT_NO_FATAL_FAILURE((void)effort_for(icd::MapData{}, {1, 1, 1}));
+  EXPECT_NO_FATAL_FAILURE((void)effort_for(update_of(icd::xyz(), Bytes(12)).data, {1, 1, 100}));
+}
+
+TEST(Effort, TellsHowSlowABoxIs) {
+  EXPECT_DOUBLE_EQ(slowness(Effort::Full, 2'000'000, 0.12), 4);
+  EXPECT_DOUBLE_EQ(slowness(Effort::None, 2'000'000, 0.12), 1);
+}
+
+}  // namespace
+}  // namespace adit::pack

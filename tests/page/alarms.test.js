@@ -1,0 +1,92 @@
+import assert from "node:assert/strict";
+import { test } from "node:test";
+import { axeFindsNothing, settled, shoot, text, watch } from "./watch.js";
+
+const SIZES = [[390, 844], [1280, 720], [1920, 1080], [3840, 2160]];
+const shown = (page) => page.locator(".alarms .worst");
+const icon = (page) => page.$eval("link[rel=icon]", (link) => link.getAttribute("href"));
+
+test("says that there is no alarm, and which was the last", async (t) => {
+  const { page } = await watch(t, "calm");
+  await shown(page).getByText("No alarm").waitFor();
+  assert.match(await shown(page).innerText(), /the last one: Scout was silent for 0:41, over since \d\d:\d\d/);
+  assert.equal(await page.title(), "Adit");
+  assert.equal(await icon(page), "icon.svg");
+});
+
+test("shows the two worst with what to do, in the strip, the title and the icon", async (t) => {
+  const { page } = await watch(t, "trouble", { bypassCSP: true }); // axe is a script of its own
+  const cards = page.locator(".alarms .worst .alarm");
+  assert.equal(await cards.count(), 2);
+  assert.match(await cards.nth(0).innerText(), /Mapping is unreachable\s+2:1\d.*Command Post: connecting to.*hides 3/s);
+  assert.match(await cards.nth(1).innerText(), /Report 8 is in doubt\s+0:4\d/);
+  assert.equal(await cards.nth(0).getByRole("link", { name: "Open test" }).getAttribute("href"), "/setup#test");
+  assert.equal(await page.title(), "(3) Mapping is unreachable – Adit");
+  assert.equal(await icon(page), "icon_bad.svg");
+  await page.getByRole("button", { name: "All 3" }).click();
+  assert.match(await page.locator("#all-alarms").innerText(), /5 reports are left/);
+  await axeFindsNothing(page);
+});
+
+test("keeps its place and height in every state", async (t) => {
+  const { stage, page } = await watch(t, "calm");
+  for (const [width, height] of SIZES) {
+    await page.setViewportSize({ width, height });
+    const boxes = [];
+    for (const scene of ["calm", "trouble", "hostile", "reports"]) {
+      stage.play(scene);
+      await page.waitForFunction((name) => (document.querySelector(".alarms .alarm") === null) === (name === "calm"), scene);
+      await settled(page);
+      boxes.push(JSON.stringify(await page.locator(".alarms").boundingBox()));
+      if (scene === "trouble") await shoot(page, `alarms_${width}`);
+    }
+    assert.equal(new Set(boxes).size, 1, boxes.join(" "));
+  }
+});
+
+test("quiets what is acknowledged, and puts what is new before it", async (t) => {
+  const { page } = await watch(t, "trouble");
+  const first = page.locator(".alarms .worst .alarm").first();
+  await first.getByRole("button", { name: "Acknowledge" }).click();
+  await page.waitForFunction(() => /Report 8/.test(document.querySelector(".alarms .alarm").innerText));
+  assert.equal(await page.title(), "(3) Report 8 is in doubt – Adit");
+  assert.equal(await icon(page), "icon_ask.svg");
+  await page.getByRole("button", { name: "All 3" }).click();
+  const known = page.locator("#all-alarms .alarm", { hasText: "Mapping is unreachable" });
+  assert.equal(await known.getAttribute("data-acknowledged"), "true");
+  assert.equal(await known.getByRole("button", { name: "Acknowledge" }).isVisible(), false);
+});
+
+test("leads nowhere but to the box, whatever an alarm says", async (t) => {
+  const { page } = await watch(t, "hostile");
+  await page.waitForSelector(".alarms .alarm");
+  assert.equal(await page.locator(".alarms a[href^=javascript]").count(), 0);
+  assert.equal(await page.locator(".alarms .act").isVisible(), false);
+  assert.equal(await page.evaluate(() => globalThis.pwned), undefined);
+});
+
+test("sounds only where somebody wants it, and remembers that", async (t) => {
+  const { page } = await watch(t, "trouble", { prepare: (fresh) => fresh.addInitScript(() => {
+    globalThis.tones = 0;
+    const real = AudioContext.prototype.createOscillator;
+    AudioContext.prototype.createOscillator = function () {
+      ++globalThis.tones;
+      return real.call(this);
+    };
+  }) });
+  await page.waitForSelector(".alarms .alarm");
+  assert.equal(await page.evaluate(() => globalThis.tones), 0);
+  await page.getByRole("button", { name: "Sound is off" }).click();
+  await page.waitForFunction(() => globalThis.tones >= 4); // that it is on, and the alarm
+  await page.reload();
+  await page.getByRole("button", { name: "Sound is on" }).waitFor();
+  await page.waitForFunction(() => globalThis.tones >= 2);
+  await page.getByRole("button", { name: "Sound is on" }).click();
+  await page.getByRole("button", { name: "Sound is off" }).waitFor();
+});
+
+test("is one line to those who only listen", async (t) => {
+  const { page } = await watch(t, "calm");
+  assert.equal(await page.locator(".alarms .worst").getAttribute("aria-live"), "assertive");
+  assert.equal(await text(page, ".alarms .all"), "History");
+});

@@ -1,0 +1,123 @@
+// The robots' panel: who is worst off is seen at once, and nothing of it moves under a hand.
+import assert from "node:assert/strict";
+import { test } from "node:test";
+import { twenty } from "./twenty.js";
+import { axeFindsNothing, openMore, toTab, watch } from "./watch.js";
+
+const SMALL = { width: 1280, height: 720 }, LARGE = { width: 1920, height: 1080 };
+const names = (page, list = "#robots") => page.$$eval(`${list} li`, (rows) => rows.map((row) => row.dataset.key));
+const watchTwenty = (t, options = {}) => watch(t, "calm", { prepare: twenty, ...options });
+
+test("has twenty robots in sight, whole, where the screen is one of 720 or 1080 lines", async (t) => {
+  const { page } = await watchTwenty(t);
+  for (const [viewport, tall] of [[SMALL, 24], [LARGE, 44]]) {
+    await page.setViewportSize(viewport);
+    const rows = await page.evaluate(() => {
+      const { top, bottom, left, right } = document.querySelector("#maps .scroll").getBoundingClientRect();
+      return [...document.querySelectorAll("#robots li")].map((row) => {
+        const box = row.getBoundingClientRect(), parts = [...row.querySelectorAll(".name, .age .text")];
+        const isWhole = box.top >= top - 0.5 && box.bottom <= bottom + 0.5 && box.left >= left && box.right <= right;
+        return { tall: box.height, isWhole: isWhole && parts.every((part) => part.scrollWidth <= part.clientWidth + 1 && part.getBoundingClientRect().right <= box.right) };
+      });
+    });
+    assert.deepEqual(rows, Array(20).fill({ tall, isWhole: true }), `${viewport.width}`);
+  }
+  assert.match(await page.innerText('#robots li[data-key="ugv4"]'), /^ugv4\s+grid (now|\d s) · cloud (now|\d s)\s+(now|\d s)$/);
+});
+
+test("has the worst first: who is silent is filled and says so, who is late has a shape", async (t) => {
+  const { page } = await watchTwenty(t, { viewport: LARGE, colorScheme: "dark" });
+  await page.locator("#robots li").nth(19).waitFor();
+  assert.deepEqual((await names(page)).slice(0, 2), ["uav5", "uav6"]);
+  const look = (name) => page.locator(`#robots li[data-key="${name}"]`);
+  assert.match(await look("uav5").innerText(), /^uav5\s+silent · .*\s+1:\d\d$/);
+  assert.match(await look("uav6").innerText(), /^uav6\s+grid \d\d s behind · cloud/);
+  const styles = await page.$$eval("#robots li", (rows) => rows.slice(0, 3).map((row) => [getComputedStyle(row).backgroundColor, getComputedStyle(row.querySelector(".glyph")).display, row.dataset.level]));
+  assert.equal(styles[0][0], "rgb(196, 40, 30)");
+  assert.deepEqual(styles.map(([, glyph]) => glyph === "none"), [false, false, true]);
+  assert.deepEqual(styles.map(([, , level]) => level), ["bad", "wait", "good"]);
+});
+
+test("blames no robot while the Command Post is away", async (t) => {
+  const { page, stage } = await watchTwenty(t);
+  await page.locator("#robots li[data-level=bad]").waitFor();
+  stage.play("trouble");
+  await page.waitForSelector("#maps[data-away=true]");
+  assert.equal(await page.locator("#robots li[data-level=bad]").count(), 0);
+  stage.play("calm");
+  await page.locator("#maps[data-away=false] li[data-level=bad]").waitFor();
+});
+
+test("moves no row under a pointer; the order changes once it has left", async (t) => {
+  const { page } = await watchTwenty(t);
+  await page.locator("#robots li[data-level=bad]").waitFor();
+  await page.locator("#robots li").nth(12).hover();
+  const before = await names(page);
+  await page.evaluate(() => (globalThis.told.silent = ["uav5", "ugv2"]));
+  await page.locator('#robots li[data-key="ugv2"][data-level=bad]').waitFor();
+  assert.deepEqual(await names(page), before);
+  await page.mouse.move(300, 300);
+  await page.waitForFunction(() => document.querySelectorAll("#robots li")[1].dataset.key === "ugv2");
+});
+
+test("moves no row while the panel has the focus of the keyboard", async (t) => {
+  const { page } = await watchTwenty(t);
+  await page.locator("#robots li[data-level=bad]").waitFor();
+  await page.keyboard.press("Tab");
+  await page.locator("#maps .whole").focus();
+  const before = await names(page);
+  await page.evaluate(() => (globalThis.told.silent = ["uav5", "ugv2"]));
+  await page.locator('#robots li[data-key="ugv2"][data-level=bad]').waitFor();
+  assert.deepEqual(await names(page), before);
+});
+
+test("opens the list in the place of the reports by a touch anywhere on it, and by a key", async (t) => {
+  for (const viewport of [SMALL, LARGE]) {
+    const { page } = await watchTwenty(t, { viewport, hasTouch: true, bypassCSP: true });
+    await page.locator("#robots li").nth(13).tap();
+    const list = page.locator("#all-robots");
+    await list.waitFor();
+    assert.equal(await list.locator("li").count(), 20);
+    assert.equal(await list.locator("li").first().evaluate((row) => row.getBoundingClientRect().height), 44);
+    assert.match(await list.locator('li[data-key="uav6"]').innerText(), /grid \d\d s behind, 3 waiting · cloud .* · pose now/);
+    const [its, reports] = [await list.boundingBox(), await page.locator("#map").boundingBox()];
+    assert.ok(its.x >= reports.x + reports.width, "the map stays where it is");
+    for (const theme of ["dark", "light", "red"]) {
+      await page.evaluate((theme) => (document.documentElement.dataset.theme = theme), theme);
+      await axeFindsNothing(page, theme);
+    }
+    await list.getByRole("button", { name: "Close" }).tap();
+    await page.locator("#reports").waitFor();
+    await page.locator("#maps-title").tap();
+    await list.waitFor();
+    await openMore(page);
+    await list.waitFor({ state: "hidden" });
+    await page.getByRole("button", { name: /^All robots/ }).press("Enter");
+    await list.waitFor();
+    assert.deepEqual(page.complaints, []);
+  }
+});
+
+test("has on a phone the worst below the map, and all in their tab", async (t) => {
+  const { page } = await watchTwenty(t, { viewport: { width: 390, height: 844 }, hasTouch: true });
+  const inSight = () => page.evaluate(() => {
+    const { top, bottom } = document.querySelector("#maps .scroll").getBoundingClientRect();
+    return [...document.querySelectorAll("#robots li")].filter((row) => row.getBoundingClientRect().top >= top && row.getBoundingClientRect().bottom <= bottom).map((row) => row.dataset.key);
+  });
+  const few = await inSight();
+  assert.ok(few.length >= 4, `${few}`);
+  assert.equal(few[0], "uav5");
+  await page.locator("#robots li").first().tap();
+  await page.waitForSelector("body[data-tab=robots]");
+  assert.ok((await inSight()).length >= 9);
+  await toTab(page, "Run");
+});
+
+test("draws each map's age as it was, now at the right", async (t) => {
+  const { page } = await watchTwenty(t);
+  await page.clock.install();
+  await page.clock.runFor(20_000);
+  await page.waitForFunction(() => (document.querySelector('#robots li[data-key="uav5"] path').getAttribute("d").match(/L/g) ?? []).length >= 3);
+  const [x] = (await page.getAttribute('#robots li[data-key="uav5"] path', "d")).match(/[\d.]+(?= [\d.]+$)/);
+  assert.equal(Number(x), 89, "now is at the right");
+});

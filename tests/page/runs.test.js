@@ -1,0 +1,72 @@
+// The runs that are kept, by the real box: listed by course, looked at again, printed, deleted.
+import assert from "node:assert/strict";
+import { test } from "node:test";
+import { OPERATOR, VIEWER, box, play, until } from "./box.js";
+import { axeFindsNothing, shoot, visitor } from "./watch.js";
+
+const SIZES = [["phone", 390, 844], ["720p", 1280, 720], ["1080p", 1920, 1080], ["4k", 3840, 2160]];
+
+/** A box with two runs, of which the first has a map. */
+async function withRuns(t) {
+  const at = await box(t);
+  await play(at.ask);
+  await until(async () => (await (await at.ask("GET", "/adit/map")).json()).layers.length > 0, "a picture of a map");
+  await at.ask("POST", "/adit/runs");
+  await until(async () => (await (await at.ask("GET", "/adit/runs")).json()).runs.length === 2, "two runs");
+  return at;
+}
+
+async function come(t, { url }, password = OPERATOR) {
+  const page = await visitor(t, `${url}/runs`, { bypassCSP: true });
+  await page.waitForURL(/login\.html\?next=%2Fruns/);
+  await page.locator("#login").getByLabel("Password").fill(password);
+  await page.keyboard.press("Enter");
+  await page.waitForURL(/\/runs$/);
+  await page.locator("#runs .rows li").nth(1).waitFor();
+  return page;
+}
+
+test("lists runs, shows an earlier one's map at its times, and deletes it once that is confirmed", async (t) => {
+  const at = await withRuns(t);
+  const page = await come(t, at);
+  const earlier = page.locator("#runs .rows li", { hasText: "Run 1" });
+  assert.equal(await page.locator("#runs .rows li", { hasText: "(now)" }).getByRole("button", { name: /^Delete/ }).isVisible(), false);
+  await earlier.getByRole("button", { name: /^Look again/ }).click();
+  await page.locator("#look svg image").first().waitFor();
+  assert.ok(await page.locator("#look svg image").count() > 0);
+  assert.equal(await page.locator("#look svg text").textContent(), "ugv1");
+  for (const [name, width, height] of SIZES) {
+    await page.setViewportSize({ width, height });
+    await shoot(page, `runs-${name}`);
+    assert.equal(await page.evaluate(() => document.documentElement.scrollWidth > innerWidth), false, name);
+  }
+  await axeFindsNothing(page);
+  await page.locator("#look input").press("Home");
+  await page.waitForFunction(() => document.querySelectorAll("#look svg text").length === 0);
+  await earlier.getByRole("button", { name: /^Delete/ }).click();
+  await page.locator("#confirm button", { hasText: "Leave it" }).click();
+  assert.equal(await page.locator("#runs .rows li").count(), 2);
+  await page.waitForTimeout(400); // presses.js: what has just moved takes no press
+  await earlier.getByRole("button", { name: /^Delete/ }).click();
+  await page.locator("#confirm .main").click();
+  await earlier.waitFor({ state: "detached" });
+  assert.equal((await (await at.ask("GET", "/adit/runs")).json()).runs.length, 1);
+});
+
+test("prints a run without script, black on white, on pages of A4", async (t) => {
+  const at = await withRuns(t);
+  const page = await come(t, at);
+  await page.goto(`${at.url}/adit/runs/1/report.html`);
+  assert.equal(await page.locator("h1").textContent(), "Run 1");
+  assert.ok(await page.locator("svg image").count() > 0);
+  assert.equal(await page.evaluate(() => getComputedStyle(document.body).color), "rgb(0, 0, 0)");
+  await shoot(page, "run-report");
+  await axeFindsNothing(page);
+});
+
+test("a viewer looks again and deletes nothing", async (t) => {
+  const at = await withRuns(t);
+  const page = await come(t, at, VIEWER);
+  assert.equal(await page.getByRole("button", { name: /^Look again/ }).count(), 2);
+  assert.equal(await page.getByRole("button", { name: /^Delete/ }).count(), 0);
+});

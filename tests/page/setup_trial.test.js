@@ -1,0 +1,83 @@
+import assert from "node:assert/strict";
+import { test } from "node:test";
+import { come, LOOKING, TOKENS } from "./fresh_box.js";
+import { complaints, COURSES, ready, step } from "./setup_page.js";
+
+const tries = (page) => page.getByRole("button", { name: "Try before applying" });
+const outcome = (page, where) => page.locator(`[data-tried=${where}] > .outcome`);
+/** Of each endpoint each step's state. */
+const states = (page, where) =>
+  page.$$eval(`[data-tried=${where}] .trial`, (all) => all.map((each) => [...each.querySelectorAll("ol .badge")].map((badge) => badge.textContent.trim())));
+
+async function tried(page, where, verdict) {
+  await outcome(page, where).filter({ hasText: verdict }).waitFor();
+  return states(page, where);
+}
+
+test("tries addresses as they are typed, before they are applied, and says what to do", async (t) => {
+  const { box, ask, page } = await ready(t, "setup#post");
+  await page.getByLabel("Scoring port", { exact: true }).fill(String(box.scoring));
+  await tries(page).click();
+  const [scoring, mapping] = await tried(page, "typed", "1 of 12 steps failed. Nothing is applied yet, and no report was spent.");
+  assert.deepEqual([scoring[3], scoring[4], mapping[3]], ["good", "good", "bad"]);
+  assert.match(await page.locator("[data-tried=typed] .trial").last().innerText(), /127\.0\.0\.1:2[\s\S]*no server at that port[\s\S]*Compare the port/);
+  await page.getByLabel("Mapping port", { exact: true }).fill(String(box.mapping));
+  await tries(page).click();
+  const all = await tried(page, "typed", "All is well. Nothing is applied yet");
+  assert.deepEqual(all.map((each) => each.slice(3, 5)), [["good", "good"], ["good", "good"]]);
+  const { settings } = (await ask("/adit/settings")).said;
+  assert.deepEqual([settings.command_post.scoring.port, settings.command_post.mapping.port], [1, 2]);
+  await step(page, "Test").getByText("not run").waitFor();
+  assert.deepEqual(complaints(page), []);
+});
+
+test("tries a token as it is typed, and neither keeps nor shows it", async (t) => {
+  const { box, ask, page } = await ready(t, "setup#post");
+  for (const [label, port] of [["Scoring port", box.scoring], ["Mapping port", box.mapping]]) await page.getByLabel(label, { exact: true }).fill(String(port));
+  await step(page, "Tokens").click();
+  await page.getByLabel("Scoring endpoint’s token", { exact: true }).fill("typed-and-wrong");
+  await page.getByRole("link", { name: "Try these before setting them" }).click();
+  await tries(page).click();
+  await tried(page, "typed", "1 of 12 steps failed");
+  assert.match(await page.locator("[data-tried=typed] .trial").first().innerText(), /scoring token is refused/);
+  assert.ok(!(await page.locator("#step-post").innerText()).includes("typed-and-wrong"));
+  assert.ok(!JSON.stringify([(await ask("/adit/test")).said, (await ask("/adit/log")).said]).includes("typed-and-wrong"));
+  assert.deepEqual((await ask("/adit/settings")).said.saved, false);
+  assert.deepEqual(complaints(page), []);
+});
+
+test("says what is wrong by the name of its field", async (t) => {
+  const { page } = await ready(t, "setup#post");
+  await page.getByLabel("Mapping address", { exact: true }).fill("10.100.1");
+  await tries(page).click();
+  await tried(page, "typed", "Mapping address: expected an IPv4 or IPv6 address");
+  assert.equal(await outcome(page, "typed").getAttribute("data-bad"), "true");
+  assert.ok(await tries(page).isEnabled());
+});
+
+test("tries a course before it is switched to, and tells it from the Test of what is in use", async (t) => {
+  const { box, ask, page } = await ready(t, "setup#courses", { courses: COURSES });
+  const { settings, tag } = (await ask("/adit/settings")).said;
+  settings.courses[1] = { name: "B", scoring: { address: "127.0.0.1", port: box.scoring }, mapping: { address: "127.0.0.1", port: box.mapping } };
+  await ask("/adit/settings", { settings, base: tag });
+  await page.reload();
+  const course = page.locator("#switch li", { hasText: "Course B" });
+  await course.getByText(`127.0.0.1:${box.scoring}`).waitFor();
+  await course.getByRole("button", { name: "Try Course B" }).click();
+  await tried(page, "course", "All is well. Nothing is applied yet");
+  assert.equal((await ask("/adit/settings")).said.settings.command_post.course, "");
+  await step(page, "Test").click();
+  await page.getByRole("button", { name: "Test it" }).click();
+  await tried(page, "applied", "2 of 12 steps failed. No report was spent.");
+  await step(page, "Test").getByText("failed").waitFor();
+});
+
+test("shows a viewer no way to try anything", async (t) => {
+  const { box, page } = await ready(t, "setup#post");
+  await page.close();
+  const viewer = await come(t, box, "setup#post", LOOKING);
+  await viewer.locator("#link", { hasText: "Live" }).waitFor();
+  await viewer.getByRole("heading", { name: "Command Post" }).waitFor();
+  assert.equal(await tries(viewer).isVisible(), false);
+  assert.ok(TOKENS.scoring && !(await viewer.content()).includes(TOKENS.scoring));
+});

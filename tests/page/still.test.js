@@ -1,0 +1,74 @@
+// The list of reports while a hand is on it, another operator at work meanwhile; and reports past those that an event has.
+import assert from "node:assert/strict";
+import { test } from "node:test";
+import { watch } from "./watch.js";
+
+const row = (page, number) => page.locator(`#reports li[data-key="${number}"]`);
+const boxes = (page) => page.$$eval("#reports .rows > li, #reports .actions button", (nodes) => nodes.map((node) => [node.closest("li").dataset.key, node.textContent.slice(0, 9), node.getBoundingClientRect().top]));
+
+/** Another operator does it. */
+const elsewhere = (stage, path, body = {}) =>
+  fetch(`${stage.url}adit/reports${path}`, { method: "POST", headers: { Authorization: "Bearer team-1", "Content-Type": "application/json" }, body: JSON.stringify(body) });
+
+test("nothing moves under a mouse while another operator acts: what is new waits above, and comes once the mouse has gone", async (t) => {
+  const { stage, page } = await watch(t, "reports");
+  await row(page, 25).locator(".title").hover();
+  const before = (await boxes(page)).map(([key, , top]) => [key, top]);
+  assert.equal((await elsewhere(stage, "/25/done")).status, 200);
+  assert.equal((await elsewhere(stage, "", { type: "Rope", x: 1, y: 2, z: 3 })).status, 202);
+  await page.getByRole("button", { name: "1 new" }).waitFor();
+  await row(page, 25).getByText("called done").waitFor();
+  assert.deepEqual((await boxes(page)).map(([key, , top]) => [key, top]), before);
+  for (const button of await row(page, 25).locator(".actions button").all()) assert.ok(await button.isDisabled());
+  await page.mouse.move(100, 300);
+  await row(page, 29).waitFor();
+  assert.equal(await page.locator("#reports .newer").isVisible(), false);
+  assert.equal(await row(page, 25).locator(".actions button").count(), 0);
+  assert.equal(await page.locator("#reports li").first().getAttribute("data-key"), "24", "those that wait for a word are first");
+});
+
+test("shows what is new at once where that is asked for", async (t) => {
+  const { stage, page } = await watch(t, "reports", { hasTouch: true });
+  await row(page, 25).locator(".title").tap();
+  await elsewhere(stage, "", { type: "Rope", x: 1, y: 2, z: 3 });
+  const end = Date.now() + 30_000;
+  while (Date.now() < end && !(await row(page, 29).count())) { // it may have come by itself, where this test is slow
+    await page.getByRole("button", { name: "1 new" }).tap({ timeout: 1000 }).catch(() => {});
+  }
+  await row(page, 29).waitFor();
+});
+
+const COUNT = 450;
+/** A box that has so many reports, of which an event tells the newest 200. */
+async function withMany(page) {
+  const one = { type: "Rope", sender: "ugv1", received: 1e9, changed: 1e9, state: "answered", status: 201, report_status: "scored", score_change: 1, note: "", asking: false, reconciled: false, same_as: 0 };
+  await page.addInitScript(([one, count]) => {
+    const { parse } = JSON;
+    JSON.parse = (...words) => {
+      const view = parse(...words);
+      if (!view?.endpoints) return view;
+      const reports = Array.from({ length: 200 }, (_, i) => ({ ...one, number: count - i, run: view.run_number, position: { x: 10 * (count - i), y: 0, z: 0 } }));
+      return { ...view, reports };
+    };
+  }, [one, COUNT]);
+  await page.route("**/adit/reports", async (route) => {
+    const { run_number: run } = await (await fetch(new URL("run", route.request().url()), { headers: { Authorization: "Bearer team-1" } })).json();
+    await route.fulfill({ json: Array.from({ length: COUNT }, (_, i) => ({ ...one, number: i + 1, run, position: { x: 10 * (i + 1), y: 0, z: 0 } })) });
+  });
+}
+
+test("reaches every report, also those past the newest 200, and looks for duplicates among all", async (t) => {
+  const { page } = await watch(t, "reports", { prepare: withMany });
+  await page.locator("#reports .count", { hasText: `${COUNT} sent` }).waitFor();
+  const list = page.locator("#reports .scroll");
+  for (const end = Date.now() + 60_000; Date.now() < end && !(await row(page, 1).count()); ) {
+    await list.evaluate((node) => (node.scrollTop = node.scrollHeight));
+    await page.waitForTimeout(100);
+  }
+  assert.equal(await page.locator("#reports li").count(), COUNT);
+  await page.keyboard.press("n");
+  await page.locator("#compose .types").getByRole("button", { name: "Rope" }).click();
+  for (const [axis, value] of [["x", "41"], ["y", "0"], ["z", "0"]]) await page.fill(`#compose input[name=${axis}]`, value);
+  await page.getByRole("button", { name: "Check" }).click();
+  assert.match(await page.textContent("#compose .notes"), /#4 Rope is 1\.0 m away/);
+});

@@ -1,0 +1,32 @@
+#include "spelling/nearest.hpp"
+
+#include <gtest/gtest.h>
+
+namespace adit::spelling {
+namespace {
+
+constexpr std::string_view kKnown[] = {"status", "reports", "run", "settings", "at"};
+
+TEST(AMisspeltWord, IsKnownByWhatIsNearest) {
+  const struct {
+    std::string_view word, meant;
+  } cases[] = {{"stat", "status"},      // the beginning of it
+               {"statuses", "status"},  // and more than it
+               {"satus", "status"},    {"reprots", "reports"}, {"seting", "settings"}, {"rum", "run"}};
+  for (const auto& [word, meant] : cases) EXPECT_EQ(nearest(word, kKnown), meant) << word;
+}
+
+TEST(AMisspeltWord, IsLeftAloneWhereNothingIsNear) {
+  for (const std::string_view word : {"", "x", "xy", "help", "7", "aaaaaaaaaa"})
+    EXPECT_EQ(nearest(word, kKnown), std::nullopt) << word;
+  EXPECT_EQ(nearest(std::string("status").append(59, 's'), kKnown), std::nullopt) << "too long to compare";
+  EXPECT_EQ(nearest("status", {}), std::nullopt);
+}
+
+TEST(AMisspeltWord, IsAskedFor) {
+  EXPECT_EQ(did_you_mean("stat", kKnown), "; did you mean status?");
+  EXPECT_EQ(did_you_mean("xyzzy", kKnown), "");
+}
+
+}  // namespace
+}  // namespace adit::spelling

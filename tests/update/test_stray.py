@@ -1,0 +1,79 @@
+#!/usr/bin/python3
+"""Another slot runs than the one that was good last: the boot loader went to it without a word."""
+
+import subprocess
+import time
+import unittest
+
+import raucs
+from on_a_box import OnABox
+
+
+class Stray(OnABox):
+    def good(self):
+        """`adit-update good`, of a box that has been healthy for long."""
+        since = int((time.clock_gettime(time.CLOCK_MONOTONIC) - 100) * 1e6)
+        self.box.properties.write_text(f"ActiveState=active\nActiveEnterTimestampMonotonic={since}\n")
+        subprocess.run(self.box.command("good"), env=self.box.environment, stderr=subprocess.DEVNULL, timeout=60, check=True)
+
+    def runs(self, slot, version):
+        self.box.start(slot)
+        (self.box.folder / "os-release").write_text(f"VERSION_ID={version}\n")
+
+    def set(self, name, value):
+        subprocess.run([self.box.folder / "bin/fw_setenv", name, value], check=True)
+
+    def setUp(self):
+        """0.1.0 was good in A, 0.2.0 came and was good in B, and then B's starts were used up."""
+        super().setUp()
+        self.good()
+        self.box.install(self.newer)
+        self.box.began_before()
+        self.runs("B", "0.2.0")
+        self.good()
+        self.assertEqual(self.box.update()["stray"], "")
+        self.set("BOOT_B_LEFT", "0")
+        self.runs("A", "0.1.0")
+
+    def test_it_is_told_from_start_to_start_until_the_operator_decides(self):
+        for _ in range(2):
+            status = self.box.update()
+            self.assertRegex(status["stray"], r"^slot A runs, with 0\.1\.0, not slot B with 0\.2\.0, whose starts were used up")
+            self.assertEqual((status["trial"], status["last"]["stage"]), (False, "good"))
+            self.good()  # this slot is healthy too, and its tries are counted from none again
+
+    def test_the_operator_goes_back_and_the_slot_has_all_its_tries(self):
+        self.box.ask("back")
+        self.assertEqual(self.box.update()["refusal"], "")
+        self.assertEqual(self.box.calls.read_text().splitlines()[-1], "reboot")
+        loader = self.box.boot_loader()
+        self.assertEqual((loader["BOOT_ORDER"], loader["BOOT_B_LEFT"]), ("B A", raucs.PROVEN))
+        self.runs("B", "0.2.0")
+        self.assertEqual(self.box.update()["stray"], "")
+
+    def test_or_stays_and_nothing_more_is_told_of_it(self):
+        self.box.ask("stay")
+        status = self.box.update()
+        self.assertEqual((status["stray"], status["refusal"]), ("", ""))
+        self.assertEqual(self.box.update()["stray"], "")
+        self.assertNotIn("reboot", self.box.calls.read_text())
+        self.set("BOOT_B_LEFT", raucs.PROVEN)
+        self.runs("B", "0.2.0")  # and now that one is the stray
+        self.assertRegex(self.box.update()["stray"], "^slot B runs, with 0.2.0, not slot A with 0.1.0, though")
+
+    def test_where_the_proven_slot_runs_there_is_nowhere_to_go_back_to(self):
+        self.runs("B", "0.2.0")
+        for what in "back", "stay":
+            self.box.ask(what)
+            self.assertIn("good last", self.box.update()["refusal"])
+        self.assertNotIn("reboot", self.box.calls.read_text())
+
+    def test_a_record_that_is_damaged_is_none(self):
+        (self.box.folder / "state/proven.json").write_text('{"format": 1, "slot": 7')
+        self.assertEqual(self.box.update()["stray"], "")
+        self.good()
+        self.assertIn('"A"', (self.box.folder / "state/proven.json").read_text())
+
+
+if __name__ == "__main__":
+    unittest.main()

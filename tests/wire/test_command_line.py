@@ -1,0 +1,240 @@
+"""`adit`, beside a real aditd and a real Command Post: at a terminal, in a pipe, and for scripts."""
+
+import contextlib
+import fcntl
+import json
+import os
+import pty
+import select
+import signal
+import subprocess
+import sys
+import termios
+import time
+import unittest
+
+import hosts
+import programs
+from programs import BIN, Stage, wait_until
+from reporting import QUICK, REPORT, another, began, is_taken, sendings, submit
+
+UTF8 = {**os.environ, "LC_ALL": "C.UTF-8", "TERM": "xterm"}
+UTF8.pop("NO_COLOR", None)
+
+
+def setUpModule():
+    hosts.needs_namespaces()
+
+
+def words(stage, *said):
+    return [BIN / "adit", *said, "--at", f"{stage.network.box_address}:{programs.PORT}",
+            "--token-file", stage.folder / "secrets" / "team.token"]
+
+
+def adit(stage, *said):
+    """Without a terminal, and with nobody to ask."""
+    return subprocess.run(words(stage, *said), stdin=subprocess.DEVNULL, capture_output=True, text=True, timeout=60, env=UTF8)
+
+
+class Terminal:
+    """`adit` at a terminal of its own, and what it drew there."""
+
+    def __init__(self, stage, *said, env=UTF8):
+        self.ours, theirs = pty.openpty()
+        self.before = termios.tcgetattr(theirs)
+        self.process = subprocess.Popen(words(stage, *said), stdin=theirs, stdout=theirs, stderr=theirs, env=env,
+                                        start_new_session=True, preexec_fn=lambda: fcntl.ioctl(0, termios.TIOCSCTTY, 0))
+        self.theirs, self.seen = theirs, ""
+
+    def look(self):
+        while select.select([self.ours], [], [], 0.01)[0]:
+            self.seen += os.read(self.ours, 65536).decode()
+        return self.seen
+
+    def shows(self, text):
+        wait_until(lambda: text in self.look(), f"{text!r} on the terminal")
+
+    def type(self, keys):
+        os.write(self.ours, keys.encode())
+
+    def end(self):
+        """Its exit status, once it has ended."""
+        wait_until(lambda: self.look() is not None and self.process.poll() is not None, "it to end")
+        self.look()
+        return self.process.returncode
+
+    def close(self):
+        self.process.kill()
+        self.process.wait()
+        os.close(self.ours)
+        os.close(self.theirs)
+
+
+class Case(unittest.TestCase):
+    @contextlib.contextmanager
+    def stage(self, **overrides):
+        with Stage(**{**QUICK, **overrides}) as stage:
+            yield began(stage)
+
+    def at_a_terminal(self, *said, **more):
+        terminal = Terminal(*said, **more)
+        self.addCleanup(terminal.close)
+        return terminal
+
+
+class InDoubt(Case):
+    def in_doubt(self, stage, report=REPORT):
+        """One of which nobody can tell. Its number."""
+        stage.post.will("other-sender,record-then-drop")
+        number = int(submit(stage, report).headers["Adit-Report"])
+        wait_until(lambda: f"report {number} is in doubt" in stage.box.attention(), "the report to be in doubt")
+        return number
+
+    def test_is_sent_again_only_where_it_is_meant(self):
+        with self.stage(reports__answer_within_ms=2000) as stage:
+            number = self.in_doubt(stage)
+            refused = adit(stage, "reports", "send", str(number))
+            self.assertEqual((refused.returncode, refused.stdout), (1, ""))
+            self.assertIn("is in doubt: it may have been recorded", refused.stderr)
+            self.assertTrue(refused.stderr.endswith("It is not sent; if that is meant: --yes\n"), refused.stderr)
+
+            for answer in ("n\n", "\n", "maybe\n", "\x04"):
+                terminal = self.at_a_terminal(stage, "reports", "send", str(number))
+                terminal.shows("Send it again? [y/N] ")
+                terminal.type(answer)
+                self.assertEqual(terminal.end(), 1, answer)
+                self.assertIn(f"report {number} is not sent", terminal.seen)
+            self.assertEqual(sendings(stage), 1, "all that was asked and refused sent nothing")
+
+            terminal = self.at_a_terminal(stage, "reports", "send", str(number))
+            terminal.shows("Send it again? [y/N] ")
+            terminal.type("y\n")
+            self.assertEqual(terminal.end(), 0)
+            wait_until(lambda: sendings(stage) == 2, "it to be sent again")
+
+    def test_is_sent_by_a_script_that_says_so(self):
+        with self.stage(reports__answer_within_ms=2000) as stage:
+            number = self.in_doubt(stage)
+            sent = adit(stage, "reports", "send", str(number), "--yes", "--json")
+            self.assertEqual((sent.returncode, json.loads(sent.stdout)), (0, {"report": number}))
+            wait_until(lambda: sendings(stage) == 2, "it to be sent again")
+
+
+class Watching(Case):
+    def test_at_a_terminal(self):
+        with self.stage() as stage:
+            for end in ("q", "\x03"):
+                terminal = self.at_a_terminal(stage, "watch")
+                terminal.shows("\x1b[?1049h")
+                terminal.shows("reports left")
+                is_taken(stage, another(ord(end)))
+                terminal.shows("answered")
+                self.assertNotEqual(termios.tcgetattr(terminal.theirs)[3], terminal.before[3], "keys are not shown")
+                terminal.type(end)
+                self.assertEqual(terminal.end(), 0, terminal.seen[-300:])
+                self.assertTrue(terminal.seen.endswith("\x1b[?25h\x1b[?1049l"), "what was there before is there again")
+                self.assertEqual(termios.tcgetattr(terminal.theirs), terminal.before)
+
+    def test_at_a_terminal_of_another_size(self):
+        with self.stage() as stage:
+            terminal = self.at_a_terminal(stage, "watch")
+            terminal.shows("Command Post")
+            before = len(terminal.look())
+            termios.tcsetwinsize(terminal.theirs, (3, 20))
+            os.killpg(terminal.process.pid, signal.SIGWINCH)
+            wait_until(lambda: "more lines" in terminal.look()[before:], "it to be drawn again")
+            terminal.process.terminate()
+            self.assertEqual(terminal.end(), 0)
+
+    def test_in_a_pipe(self):
+        with self.stage() as stage:
+            said = stage.folder / "watched"
+            with open(said, "wb") as output:
+                watch = subprocess.Popen(words(stage, "watch"), stdin=subprocess.DEVNULL, stdout=output, stderr=output, env=UTF8)
+            self.addCleanup(watch.wait)
+            self.addCleanup(watch.kill)
+            wait_until(lambda: "reports left" in said.read_text(), "all of it once")
+            is_taken(stage, REPORT)
+            wait_until(lambda: "  report 1 Backpack: answered" in said.read_text(), "a line of the report")
+            stage.box.stop()
+            wait_until(lambda: "cannot be asked" in said.read_text(), "the end of aditd to be told")
+            stage.restart_box()
+            wait_until(lambda: "Adit answers again\n" in said.read_text(), "its return to be told")
+            self.assertNotIn("\x1b", said.read_text())
+            watch.send_signal(signal.SIGTERM)
+            self.assertEqual(watch.wait(30), 0)
+
+    def test_for_scripts(self):
+        with self.stage() as stage:
+            watch = subprocess.Popen(words(stage, "watch", "--json"), stdout=subprocess.PIPE, env=UTF8)
+            views = [json.loads(watch.stdout.readline()) for _ in range(3)]
+            watch.send_signal(signal.SIGINT)
+            watch.stdout.close()
+            self.assertEqual(watch.wait(30), 0)
+            self.assertLess(views[0]["now"], views[2]["now"])
+            self.assertEqual(views[0]["run"]["remaining_reports"], 45)
+
+    def test_of_an_adit_that_is_not_there(self):
+        with self.stage() as stage:
+            stage.box.stop()
+            watch = adit(stage, "watch")
+            self.assertEqual((watch.returncode, watch.stdout), (2, ""))
+            self.assertIn("cannot be asked", watch.stderr)
+
+
+class ForScripts(Case):
+    def test_all_that_is_shown_is_json_too(self):
+        with self.stage() as stage:
+            is_taken(stage, REPORT)
+            file = str(stage.box.settings)
+            for said in (["status"], ["reports"], ["reports", "show", "1"], ["reports", "export"], ["aside"], ["settings"],
+                         ["settings", "show", "reports"], ["settings", "check", file], ["settings", "export"], ["network"],
+                         ["test"], ["update"], ["identify", "1"], ["complete", "reports"], ["complete", "keys"],
+                         ["complete", "aside"], ["complete", "courses"], ["run", "new"]):
+                with self.subTest(said):
+                    json.loads(adit(stage, *said, "--json").stdout)
+            checked = subprocess.run([BIN / "adit", "check", file, "--json"], capture_output=True, text=True)
+            self.assertTrue(json.loads(checked.stdout)["good"])
+            status = json.loads(adit(stage, "status", "--json").stdout)
+            self.assertEqual(set(status), set(stage.box.ask("GET /adit/run")[1]), "what GET /adit/run says")
+
+    def test_a_key_of_the_settings(self):
+        with self.stage() as stage:
+            shown = adit(stage, "settings", "show", "reports.review")
+            self.assertEqual(shown.stdout.splitlines()[0], '  reports.review  "off"')
+            self.assertIn("near duplicates", shown.stdout)
+            wrong = adit(stage, "settings", "show", "reports.reviw")
+            self.assertEqual((wrong.returncode, wrong.stderr),
+                             (2, "adit: no such key of the settings: reports.reviw; did you mean reports.review?\n"))
+
+    def test_numbers_of_reports_are_completed(self):
+        os.environ["ADIT_SOURCE"] = os.environ.get("ADIT_SOURCE", str(programs.ARTIFACTS.parents[2]))
+        sys.path.insert(0, str(programs.ARTIFACTS.parents[1] / "command_line"))
+        import shells
+        with self.stage(reports__review="all") as stage:
+            submit(stage, timeout=60)  # 503: held
+            line = " ".join(map(str, words(stage, "reports", "send")[1:3] + words(stage)[1:]))
+            self.assertEqual(shells.by_bash(f"adit {line} "), ["1"])
+            self.assertEqual(shells.by_bash(f"adit {line.replace('send', 'done')} "), [])
+
+
+class Letters(Case):
+    """A name that is not of ASCII, from a robot's message to the log and to `adit`."""
+
+    def test_are_read_as_they_were_written(self):
+        with self.stage() as stage:
+            name = "Höhle-洞"
+            status, _ = stage.box.ask("POST /state/update", {"Content-Type": "application/json"}, body={
+                "header": {"stamp": time.time(), "frame_id": "darpa"},
+                "poses": [{"name": name, "position": {"x": 1, "y": 0, "z": 0},
+                           "orientation": {"x": 0, "y": 0, "z": 0, "w": 1}}]})
+            self.assertEqual(status, 422)
+            self.assertIn(name, adit(stage, "status").stdout)
+            wait_until(lambda: name in stage.box.said(), "the log to have it")
+            terminal = self.at_a_terminal(stage, "status", env={**UTF8, "LC_ALL": "C"})
+            terminal.end()
+            self.assertIn("H\\xc3\\xb6hle", terminal.seen, "a terminal without UTF-8 gets ASCII")
+
+
+if __name__ == "__main__":
+    unittest.main()

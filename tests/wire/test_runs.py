@@ -1,0 +1,167 @@
+"""What a run has to show outlives the service: picture, tracks and plots after a kill, each run by itself."""
+
+import shutil
+import signal
+import time
+import unittest
+
+import requests
+
+import hosts
+import maps
+import messages
+import programs
+from messages import Style
+from programs import Stage, wait_until
+from reporting import submit
+
+CBOR = Style("cbor")
+UPRIGHT = {"x": 0.0, "y": 0.0, "z": 0.0, "w": 1.0}
+
+
+def setUpModule():
+    hosts.needs_namespaces()
+
+
+class Runs(unittest.TestCase):
+    def stage(self, **overrides):
+        stage = self.enterContext(Stage(**overrides))
+        self.session = requests.Session()
+        wait_until(stage.box.knows_the_run, "the run to be known")
+        return stage
+
+    def post(self, stage, uri, message):
+        answer = messages.post(self.session, stage.box.url, uri, message, CBOR)
+        self.assertEqual((answer.status_code, answer.text), (200, "null"))
+
+    def drive(self, stage, seed=1, robots=("ugv1", "ugv2")):
+        """Each robot maps and moves; until the page shows all of it."""
+        for name in robots:
+            self.post(stage, "/map/update", messages.map_update(maps.made_grid(120, 90, seed), name, time.time(), CBOR))
+            self.post(stage, "/map/update", messages.map_update(maps.made_cloud(3000, seed), name, time.time(), CBOR))
+            place = {"x": 3.0 * seed, "y": 1.0, "z": 0.0}
+            self.post(stage, "/state/update", {"header": messages.header(time.time(), CBOR),
+                                               "poses": [{"name": name, "position": place, "orientation": UPRIGHT}]})
+        layers = 2 * len(robots)
+        wait_until(lambda: len(self.drawn(stage)) == layers and len(self.tracks(stage)) == len(robots),
+                   "all to be taken and drawn")
+
+    def ask(self, stage, path):
+        status, said = stage.box.ask(f"GET {path}")
+        self.assertEqual(status, 200, said)
+        return said
+
+    def drawn(self, stage, base="/adit", at=""):
+        """Each layer with the bytes of its tiles that are there."""
+        found = {}
+        for layer in self.ask(stage, f"{base}/map")["layers"]:
+            tiles = {}
+            for tile in layer["tiles"]:
+                path = (f"{base}/map/{layer['kind']}/{layer['robot'] or '-'}/"
+                        f"{tile['level']}/{tile['x']}/{tile['y']}.png{at}")
+                answer = requests.get(f"http://{stage.box.network.box_address}:{programs.PORT}{path}", timeout=30,
+                                      headers={"Authorization": f"Bearer {programs.TEAM_TOKEN}"})
+                if answer.status_code == 200:
+                    tiles[(tile["level"], tile["x"], tile["y"])] = answer.content
+            if tiles:
+                found[(layer["robot"], layer["kind"])] = tiles
+        return found
+
+    def tracks(self, stage):
+        return self.ask(stage, "/adit/tracks")["tracks"]
+
+    def wait_until_kept(self, stage):
+        """Nothing more is written of the map, and the tracks are there."""
+        def sizes():
+            return [file.stat().st_size for file in (stage.box.state / "runs").glob("*/map-*")]
+
+        def rests():
+            before = sizes()
+            time.sleep(6)
+            return before and before == sizes()
+        wait_until(rests, "the map to be kept", within=120)
+
+    def test_a_kill_takes_nothing_of_what_the_page_shows(self):
+        stage = self.stage()
+        self.drive(stage)
+        self.wait_until_kept(stage)
+        picture, tracks = self.drawn(stage), self.tracks(stage)
+        plots = self.ask(stage, "/adit/history")
+        self.assertGreater(len(plots["at"]), 1)
+        stage.box.stop(signal.SIGKILL)
+        stage.restart_box()
+        wait_until(lambda: self.drawn(stage) == picture, "the picture of the life before")
+        self.assertEqual(self.tracks(stage), tracks)
+        again = self.ask(stage, "/adit/history")
+        kept = [moment for moment in plots["at"] if moment in again["at"]]
+        self.assertGreaterEqual(len(kept), len(plots["at"]) - 4)  # those of the last seconds are not on the disk yet
+        self.assertEqual({robot["robot"] for robot in again["robots"]} & {"ugv1", "ugv2"}, {"ugv1", "ugv2"})
+
+    def test_the_slider_reaches_back_over_a_restart(self):
+        stage = self.stage()
+        self.drive(stage, robots=("ugv1",))
+        self.wait_until_kept(stage)
+        then, before = time.time(), self.drawn(stage)
+        self.drive(stage, seed=2, robots=("ugv1",))
+        wait_until(lambda: self.drawn(stage) != before, "the second map to be drawn")
+        stage.box.stop(signal.SIGTERM)
+        stage.restart_box()
+        wait_until(lambda: self.drawn(stage), "the picture of the life before")
+        now = self.ask(stage, "/adit/run")["now"]
+        self.assertEqual(self.drawn(stage, at=f"?at={then + now - time.time()}"), before)
+
+    def test_a_run_begins_blank_and_an_earlier_one_stays_on_the_disk(self):
+        stage = self.stage()
+        self.drive(stage)
+        self.wait_until_kept(stage)
+        self.assertEqual(stage.box.ask("POST /adit/runs", {"Content-Type": "application/json"})[0], 200)
+        wait_until(lambda: not self.drawn(stage), "the picture to be blank")
+        stage.box.stop(signal.SIGTERM)
+        self.assertEqual(len(list((stage.box.state / "runs").iterdir())), 2)
+        stage.restart_box()
+        wait_until(stage.box.knows_the_run, "the run to be known")
+        self.assertEqual(self.drawn(stage), {})
+
+    def test_an_earlier_run_is_listed_looked_at_again_printed_and_deleted(self):
+        stage = self.stage(courses=[{"name": "alpha", "scoring": {"address": hosts.SCORING, "port": programs.PORT},
+                                     "mapping": {"address": hosts.MAPPING, "port": programs.PORT}}],
+                           command_post__course="alpha")
+        self.drive(stage)
+        self.assertEqual(submit(stage, {"x": 1.0, "y": 2.0, "z": 3.0, "type": "Drill"}).status_code, 201)
+        self.wait_until_kept(stage)
+        first = self.ask(stage, "/adit/run")["run_number"]
+        picture, tracks = self.drawn(stage), self.tracks(stage)
+        self.assertEqual(stage.box.ask("POST /adit/runs", {"Content-Type": "application/json"})[0], 200)
+        runs = wait_until(lambda: (all := self.ask(stage, "/adit/runs")["runs"]) and len(all) == 2 and all, "two runs")
+        self.assertEqual({run["course"] for run in runs if run["run"] == first}, {"alpha"})
+        base = f"/adit/runs/{first}"
+        self.assertEqual(self.drawn(stage, base), picture)
+        self.assertEqual(self.ask(stage, f"{base}/tracks")["tracks"], tracks)
+        self.assertGreater(len(self.ask(stage, f"{base}/history")["at"]), 1)
+        page = requests.get(f"{stage.box.url}{base}/report.html", timeout=30,
+                            headers={"Authorization": f"Bearer {programs.TEAM_TOKEN}"})
+        self.assertEqual(page.status_code, 200)
+        for part in ("course alpha", "Drill", "answered", "data:image/png;base64,", "ugv1"):
+            self.assertIn(part, page.text)
+        self.assertNotIn("<script", page.text)
+        present = next(run["key"] for run in runs if run["is_present"])
+        no_body = {"Content-Type": "application/json"}
+        self.assertEqual(stage.box.ask(f"POST /adit/runs/{present}/delete", no_body)[0], 409)
+        self.assertEqual(stage.box.ask(f"POST {base}/delete", no_body)[0], 200)
+        self.assertEqual(stage.box.ask(f"GET {base}/map")[0], 404)
+        self.assertFalse((stage.box.state / "runs" / str(first)).exists())
+        self.assertEqual([report["type"] for report in stage.box.reports()], ["Drill"])
+
+    def test_a_disk_without_room_is_told_and_stops_nothing(self):
+        stage = self.stage(disk="24m")
+        self.drive(stage)
+        full = stage.box.state / "full"
+        full.write_bytes(b"x" * (shutil.disk_usage(stage.box.state).free - (2 << 20)))
+        wait_until(lambda: "will not outlive a restart" in stage.box.attention(), "the notice")
+        full.unlink()
+        wait_until(lambda: "will not outlive a restart" not in stage.box.attention(), "the notice to go")
+        self.wait_until_kept(stage)
+
+
+if __name__ == "__main__":
+    unittest.main()

@@ -90,7 +90,7 @@ std::expected<std::string, std::string> RunsFolder::begin(const Head& head) {
   fs::create_directory(path_, error);
   fs::permissions(path_, fs::perms::owner_all, error);
   for (int more = 1; more < 1000; ++more) {
-    const std::string key = std::to_string(head.run) + (more == 1 ? "" : '-' + std::to_string(more));
+    std::string key = std::to_string(head.run) + (more == 1 ? "" : '-' + std::to_string(more));
     if (!has(key)) {
       if (!fs::create_directory(folder_of(key), error)) break;
       fs::permissions(folder_of(key), fs::perms::owner_all, error);

@@ -28,6 +28,7 @@ std::size_t bytes_held(const WaitingMap& waiting) {
 std::vector<const icd::MapUpdate*> said_by(const WaitingMap& taken) {
   if (!taken.has_gaps) return {&taken.map};
   std::vector<const icd::MapUpdate*> maps;
+  maps.reserve(taken.parts.size());
   for (const WaitingMap& part : taken.parts) maps.push_back(&part.map);
   return maps;
 }

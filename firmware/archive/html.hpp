@@ -3,13 +3,8 @@
 #include <cstdint>
 #include <span>
 #include <string>
-#include <string_view>
 
 namespace adit::archive {
-
-/// As HTML's text and as an attribute's value in double quotes: none of it is markup, and control characters
-/// are U+FFFD.
-std::string escaped(std::string_view text);
 
 /// With so many digits behind the point.
 std::string fixed(double number, int digits);

@@ -6,6 +6,7 @@
 #include <utility>
 
 #include "archive/html.hpp"
+#include "icd/in_html.hpp"
 #include "icd/sentence.hpp"
 
 namespace adit::archive {
@@ -23,11 +24,11 @@ svg { width: 100%; max-height: 200mm; border: .3pt solid #777; break-inside: avo
 )";
 
 std::string cell(const std::string& text, bool is_number = false) {
-  return (is_number ? "<td class=\"n\">" : "<td>") + escaped(text) + "</td>";
+  return (is_number ? "<td class=\"n\">" : "<td>") + icd::in_html(text) + "</td>";
 }
 
 std::string fact(const char* name, const std::string& value) {
-  return value.empty() ? "" : icd::sentence("<dt>", name, "</dt><dd>", escaped(value), "</dd>\n");
+  return value.empty() ? "" : icd::sentence("<dt>", name, "</dt><dd>", icd::in_html(value), "</dd>\n");
 }
 
 std::string number(const std::optional<std::int64_t>& value) {
@@ -63,8 +64,8 @@ std::string facts(const api::KeptRun& kept) {
 std::string life_of(const api::ReportDetail& report) {
   std::string steps;
   for (const api::ReportStep& step : report.history) {
-    steps += icd::sentence("<li>", escaped(utc(step.at)), " ", escaped(step.state),
-                           step.note.empty() ? "" : ": ", escaped(step.note), "</li>");
+    steps += icd::sentence("<li>", icd::in_html(utc(step.at)), " ", icd::in_html(step.state),
+                           step.note.empty() ? "" : ": ", icd::in_html(step.note), "</li>");
   }
   return "<td><ol>" + steps + "</ol></td>";
 }
@@ -132,7 +133,7 @@ std::string attention_table(const api::KeptRun& run) {
 }  // namespace
 
 std::string run_report(const api::KeptRun& run, const std::vector<api::ReportDetail>& reports) {
-  const std::string title = escaped(title_of(run.facts));
+  const std::string title = icd::in_html(title_of(run.facts));
   const std::string coverage = drawn_coverage(run);
   return icd::sentence(
       "<!doctype html>\n<html lang=\"en\"><head><meta charset=\"utf-8\"><title>", title, "</title><style>",

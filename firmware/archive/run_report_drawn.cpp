@@ -5,6 +5,7 @@
 
 #include "archive/html.hpp"
 #include "archive/run_report.hpp"
+#include "icd/in_html.hpp"
 #include "icd/sentence.hpp"
 #include "picture/palette.hpp"
 #include "picture/png.hpp"
@@ -90,7 +91,8 @@ std::string polyline(const api::Track& track, const char* colour, double width) 
   for (const api::TrackPose& pose : track.poses)
     points += fixed(pose.position.x, 2) + ',' + fixed(-pose.position.y, 2) + ' ';
   return icd::sentence("<polyline fill=\"none\" stroke=\"", colour, "\" stroke-width=\"", fixed(width, 3),
-                       "\" points=\"", points, "\"><title>", escaped(track.robot), "</title></polyline>\n");
+                       "\" points=\"", points, "\"><title>", icd::in_html(track.robot),
+                       "</title></polyline>\n");
 }
 
 /// With a label, so that a robot is told by more than its colour.
@@ -98,7 +100,7 @@ std::string marked(double x, double y, const std::string& label, const char* col
   return icd::sentence("<circle cx=\"", fixed(x, 2), "\" cy=\"", fixed(-y, 2), "\" r=\"", fixed(size / 3, 3),
                        "\" fill=\"", colour, "\" stroke=\"#fff\" stroke-width=\"", fixed(size / 15, 3),
                        "\"/><text x=\"", fixed(x + size / 2, 2), "\" y=\"", fixed(-y - size / 2, 2),
-                       "\" font-size=\"", fixed(size, 3), "\">", escaped(label), "</text>\n");
+                       "\" font-size=\"", fixed(size, 3), "\">", icd::in_html(label), "</text>\n");
 }
 
 }  // namespace

@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cstring>
 
+#include "icd/in_html.hpp"
+
 namespace adit::icd {
 namespace {
 
@@ -38,7 +40,7 @@ void strike_cut(std::string& text, std::string_view token) {
 
 /// How many of the first `most` characters are written everywhere as they are.
 std::size_t until_escaped(std::string_view token, std::size_t most) {
-  return std::min(token.find_first_of("\"\\"), most);
+  return std::min(token.find_first_of("\"\\&<>'"), most);
 }
 
 }  // namespace
@@ -72,6 +74,7 @@ void BearerToken::strike_from(std::string& text) const {
     strike_whole(text, in_json);
     strike_whole(text, doubled(text_, "\"", '"'));  // CSV
   }
+  if (text_.find_first_of("\"&<>'") != std::string::npos) strike_whole(text, in_html(text_));
   strike_cut(text, text_);
 }
 

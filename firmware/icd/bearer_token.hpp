@@ -24,7 +24,7 @@ class BearerToken {
   bool matches(std::string_view presented) const;
 
   /// Replaces it by "[token]" wherever it stands in a text that somebody else wrote and others will read:
-  /// what a client put into a wrong field, or a server echoed. So too as JSON and CSV write it, and its
+  /// what a client put into a wrong field, or a server echoed. So too as JSON, CSV and HTML write it, and its
   /// beginning where in_quotes() has cut it. A token of less than 4 characters is no secret, and stays.
   void strike_from(std::string& text) const;
   /// Whether anything of it could stand there to be struck: costs less.

@@ -34,9 +34,7 @@ void Redaction::strike_from_strings(std::string& text) const {
     const bool is_name = end < text.size() && text[end] == ':';
     if (!is_name) {
       std::string value = text.substr(at, end - at);
-      for (const BearerToken& secret : secrets_) {
-        if (secret.reveal().size() >= kShortest) secret.strike_from(value);
-      }
+      strike_long_from(value);
       struck.append(text, done, at - done).append(value);
       done = end;
     }
@@ -46,22 +44,12 @@ void Redaction::strike_from_strings(std::string& text) const {
 }
 
 void Redaction::strike_from_html(std::string& text) const {
+  strike_long_from(text);
+}
+
+void Redaction::strike_long_from(std::string& text) const {
   for (const BearerToken& secret : secrets_) {
-    if (secret.reveal().size() < kShortest) continue;
-    std::string written;
-    for (const char letter : secret.reveal()) {
-      const std::string_view reference = letter == '&'    ? "&amp;"
-                                         : letter == '<'  ? "&lt;"
-                                         : letter == '>'  ? "&gt;"
-                                         : letter == '"'  ? "&quot;"
-                                         : letter == '\'' ? "&#39;"
-                                                          : std::string_view(&letter, 1);
-      written += reference;
-    }
-    secret.strike_from(text);
-    for (std::size_t at = 0;
-         written != secret.reveal() && (at = text.find(written, at)) != std::string::npos;)
-      text.replace(at, written.size(), "[token]");
+    if (secret.reveal().size() >= kShortest) secret.strike_from(text);
   }
 }
 

@@ -13,7 +13,7 @@ namespace adit::icd {
 /// text, a robot's name, a sentence of the Command Post.
 class Redaction {
  public:
-  /// One of less than so many characters stays in strike_from_strings(): it may be a word that a page needs.
+  /// One of less than so many characters stays in strings and in HTML: it may be a word that a page needs.
   static constexpr std::size_t kShortest = 8;
 
   explicit Redaction(std::vector<BearerToken> secrets = {}) : secrets_(std::move(secrets)) {}
@@ -24,11 +24,12 @@ class Redaction {
   void strike_from(std::string& text) const;
   /// JSON, a stream of it, or Prometheus' text format: within the strings that are values.
   void strike_from_strings(std::string& text) const;
-  /// HTML, where what is text has its &, <, >, " and ' as references.
+  /// HTML, where in_html() wrote what is text.
   void strike_from_html(std::string& text) const;
 
  private:
   bool may_be_in(std::string_view text) const;
+  void strike_long_from(std::string& text) const;
 
   std::vector<BearerToken> secrets_;
 };

@@ -165,13 +165,7 @@ TEST_F(ArchiveTest, WritesNoMoreAtOnceThanIsAllowed) {
 
 TEST_F(ArchiveTest, SaysWhyNothingIsKeptAndGoesOn) {
   std::ofstream(folder / "runs") << "a file where the folder should be";
-  archive.emplace(loop, folder.path());
-  bool came = false;
-  archive->begin(run.head, [&](picture::Mosaic, std::vector<api::Track>) -> const picture::Mosaic& {
-    came = true;
-    return run.easel.mosaic;
-  });
-  ASSERT_TRUE(loop::turn_until(loop, [&] { return came; }));
+  live(run.head);
   EXPECT_NE(archive->trouble(), "");
   write();
   EXPECT_EQ(archive->history(0).at.size(), 1U) << "plots go on";
@@ -180,13 +174,7 @@ TEST_F(ArchiveTest, SaysWhyNothingIsKeptAndGoesOn) {
 
 TEST_F(ArchiveTest, KeepsTheRunOnceTheDiskHasRoomForIt) {
   std::ofstream(folder / "runs") << "a file where the folder should be";
-  archive.emplace(loop, folder.path());
-  bool came = false;
-  archive->begin(run.head, [&](picture::Mosaic, std::vector<api::Track>) -> const picture::Mosaic& {
-    came = true;
-    return run.easel.mosaic;
-  });
-  ASSERT_TRUE(loop::turn_until(loop, [&] { return came; }));
+  live(run.head);
   fs::remove(folder / "runs");
   archive->tick(run.seen());
   ASSERT_TRUE(loop::turn_until_idle(loop, archive->thread()));

@@ -6,6 +6,7 @@
 
 #include "icd/artifact_report.hpp"
 #include "icd/bearer_token.hpp"
+#include "icd/in_html.hpp"
 #include "icd/map_update.hpp"
 #include "icd/redaction.hpp"
 #include "icd/robot_name.hpp"
@@ -49,9 +50,18 @@ TEST(BearerToken, IsStruckFromWhatOthersWrote) {
 TEST(BearerToken, IsStruckHoweverItIsWritten) {
   const auto token = *BearerToken::parse(R"(flux230{"show\room<&)");
   std::string text =
-      R"(flux230{"show\room<& flux230{\"show\\room<& flux230{""show\room<& flux230{\\\"show\\\\room<&)";
+      R"(flux230{"show\room<& flux230{\"show\\room<& flux230{""show\room<& flux230{\\\"show\\\\room<& )" +
+      in_html(token.reveal());
   token.strike_from(text);
-  EXPECT_EQ(text, "[token] [token] [token] [token]");
+  EXPECT_EQ(text, "[token] [token] [token] [token] [token]");
+}
+
+TEST(Redaction, StrikesSecretsOutOfHtmlAndLeavesItsMarkup) {
+  const auto token = *BearerToken::parse("a<b>&'c\"d");
+  const Redaction redaction({token, *BearerToken::parse("table")});
+  std::string text = "<table><td>" + in_html("sent " + token.reveal()) + "</td></table>";
+  redaction.strike_from_html(text);
+  EXPECT_EQ(text, "<table><td>sent [token]</td></table>");
 }
 
 TEST(BearerToken, IsStruckWhereASentenceCutsIt) {

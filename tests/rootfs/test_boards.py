@@ -51,6 +51,48 @@ class Folders(unittest.TestCase):
                 self.assertFalse(any(re.match(r"eth\d|\*", match[2]) for match in matches))
 
 
+class Wiring(unittest.TestCase):
+    """What a board's README says of its panel is what its `lines`, its picture and its panel have; each line has its source."""
+
+    def wired(self):
+        for board in BOARDS:
+            if (TOP / "board" / board / "lines").exists():
+                text = (TOP / "board" / board / "README.md").read_text()
+                yield board, text, dict(re.findall(r"^\| (health|scoring|mapping|attention|button) \| (.*) \|$", text, re.M))
+
+    @staticmethod
+    def lines(board):
+        """By what they are: (node, line, comment)."""
+        found = re.findall(r"^(\S+) +(\d+) +ADIT_(\w+) *(?:# (.*))?$", (TOP / "board" / board / "lines").read_text(), re.M)
+        return {name.lower(): (node, int(line), comment) for node, line, name, comment in found}
+
+    def test_each_row_of_a_table_names_a_source_that_is_listed(self):
+        for board, text, panel in self.wired():
+            with self.subTest(board):
+                self.assertEqual(set(panel), set(GROUP))
+                listed = set(re.findall(r"^- (\[[A-Z]\]) ", text, re.M))
+                rows = [row for row in re.findall(r"^\| .* \|$", text, re.M) if "---" not in row]
+                for row in (row for row in rows if not row.endswith("| source |")):
+                    sources = set(re.findall(r"\[[A-Z]\]", row.split(" | ")[-1]))
+                    self.assertTrue(sources and sources <= listed, row)
+
+    def test_a_line_is_the_same_in_the_table_the_picture_and_the_device_tree(self):
+        for board, _, panel in self.wired():
+            picture = (TOP / "board" / board / "board.svg").read_text()
+            for name, (node, line, comment) in self.lines(board).items():
+                with self.subTest(board, line=name):
+                    drawn = re.search(rf">{name}</text><text [^>]*>([^<]*)<", picture)[1]
+                    if chip := re.match(r"GPIO(\d)_([A-D])(\d), pin (\d+)$", comment):
+                        bank, group, bit, pin = chip.groups()
+                        self.assertEqual(line, "ABCD".index(group) * 8 + int(bit))
+                        self.assertEqual(node, f"/pinctrl/gpio@ff2{int(bank) + 1}0000")
+                        self.assertEqual(panel[name].split(" | ")[:2], [f"GPIO{bank}_{group}{bit}", pin])
+                        self.assertEqual(drawn, comment)
+                    else:
+                        self.assertRegex(panel[name], rf"\bline {line}\b")
+                        self.assertRegex(drawn, rf"\bline {line}\b")
+
+
 class Drivers(unittest.TestCase):
     """Of the images that were built here."""
 

@@ -1,12 +1,15 @@
 # U-Boot's part of two slots: counts down the tries of the slot that is next in BOOT_ORDER, and starts it. The counts lie in the
 # first sector of adit-env with a checksum, and a sector is written as a whole or not at all. RAUC sets them: 3 for a slot that it
-# has written, ten once it came up healthy. Counts are hexadecimal, to RAUC and to setexpr: ten is a, and test would take it for none.
+# has written, ten once it came up healthy. Counts are hexadecimal to RAUC: ten is a.
+#
+# Factory boot loaders of 2017 start it too (board/espressobin/README.md): it needs no setexpr, which they do not have, and names no
+# variables to env import, which they would take for no size.
 setenv BOOT_ORDER "A B"
 setenv BOOT_A_LEFT a
 setenv BOOT_B_LEFT a
 part start ${devtype} ${devnum} 1 adit_env
 if ${devtype} read ${kernel_addr_r} ${adit_env} 1; then
-  env import -c ${kernel_addr_r} 0x200 BOOT_ORDER BOOT_A_LEFT BOOT_B_LEFT || echo "Adit: no boot environment yet"
+  env import -c ${kernel_addr_r} 0x200 || echo "Adit: no boot environment yet"
 fi
 
 # A slot that holds nothing is passed over, and uses up no try.
@@ -16,21 +19,35 @@ for slot in ${BOOT_ORDER}; do
     true
   elif test "${slot}" = "A" -a "${BOOT_A_LEFT}" != "0"; then
     if size ${devtype} ${devnum}:3 slot.scr; then
-      setexpr BOOT_A_LEFT ${BOOT_A_LEFT} - 1
       setenv adit_slot a
       setenv adit_name A
       setenv adit_part 3
+      setenv adit_left ${BOOT_A_LEFT}
     fi
   elif test "${slot}" = "B" -a "${BOOT_B_LEFT}" != "0"; then
     if size ${devtype} ${devnum}:4 slot.scr; then
-      setexpr BOOT_B_LEFT ${BOOT_B_LEFT} - 1
       setenv adit_slot b
       setenv adit_name B
       setenv adit_part 4
+      setenv adit_left ${BOOT_B_LEFT}
     fi
   fi
 done
-if test -z "${adit_slot}"; then
+
+# One try less: the count before this one. One that is none of these was not set by RAUC, and counts as ten.
+setenv adit_less 9
+setenv adit_below 0
+for count in 1 2 3 4 5 6 7 8 9 a; do
+  if test "${adit_left}" = "${count}"; then
+    setenv adit_less ${adit_below}
+  fi
+  setenv adit_below ${count}
+done
+if test "${adit_slot}" = "a"; then
+  setenv BOOT_A_LEFT ${adit_less}
+elif test "${adit_slot}" = "b"; then
+  setenv BOOT_B_LEFT ${adit_less}
+else
   echo "Adit: no slot has come up; all are tried again"
   setenv BOOT_A_LEFT 3
   setenv BOOT_B_LEFT 3
@@ -45,7 +62,7 @@ fi
 # Whoever has the card may add words to the kernel's: see rootfs/README.md.
 setenv adit_cmdline
 if load ${devtype} ${devnum}:2 ${kernel_addr_r} adit/boot.env; then
-  env import -t ${kernel_addr_r} ${filesize} adit_cmdline
+  env import -t ${kernel_addr_r} ${filesize}
 fi
 
 echo "Adit: slot ${adit_slot}"

@@ -51,16 +51,21 @@ VIRT = ["-M", "virt,acpi=off", "-cpu", "cortex-a53", "-smp", "2", "-nodefaults",
 LINES = ["ADIT_HEALTH", "ADIT_SCORING", "ADIT_MAPPING", "POWER_KEY", "ADIT_ATTENTION", "ADIT_BUTTON", "", ""]
 
 
-def virt(folder, memory):
-    """Boot loader, the boot loader's environment, device tree."""
+def environment_of(board):
+    """What board/BOARD/u-boot.env has, a line for each variable."""
+    lines = (SOURCE / "board" / board / "u-boot.env").read_text().splitlines()
+    return [line for line in lines if line and not line.startswith("#")]
+
+
+def virt(folder, memory, told=None):
+    """Boot loader, the boot loader's environment (`told`, or the board's own), device tree."""
     loader, environment, tree = folder / "loader.bin", folder / "environment.bin", folder / "machine.dtb"
     package = next((SOURCE / "build" / "image" / "debian-arm64").glob("*/u-boot-qemu_*.deb"))
     opened = subprocess.run(["dpkg-deb", "--fsys-tarfile", package], stdout=subprocess.PIPE, check=True).stdout
     with open(loader, "wb") as made:
         subprocess.run(["tar", "-xO", "./usr/lib/u-boot/qemu_arm64/u-boot.bin"], input=opened, stdout=made, check=True)
-    told = (SOURCE / "board" / "qemu-virt" / "u-boot.env").read_text().splitlines()
     text = folder / "environment.txt"
-    text.write_text("".join(line + "\n" for line in told if line and not line.startswith("#")))
+    text.write_text("".join(line + "\n" for line in told or environment_of("qemu-virt")))
     subprocess.run(["mkenvimage", "-s", "0x40000", "-o", environment, text], check=True)
     for flash in (loader, environment):
         os.truncate(flash, FLASH_SIZE)

@@ -1,6 +1,8 @@
 """Which slot the boot loaders start, and what they count: U-Boot and GRUB themselves, with the scripts of the image, over a small disk
 whose slots hold no kernel but a line that says which one it is. RAUC's part is played by its own programs for both environments."""
 
+import dataclasses
+import functools
 import pathlib
 import re
 import shutil
@@ -192,6 +194,39 @@ class Slots:
 
 class UBoot(Slots, unittest.TestCase):
     board, kind = boards.QEMU_VIRT, Arm
+
+
+class BoardsLoaders(unittest.TestCase):
+    """boot.scr is found and does its part with what the boot loaders of the real boards are set to. The boot loader itself is virt's: where
+    a board has memory from 0 on and its card at mmc, virt has memory from RAM on and its card at virtio. What the boards' own loaders know
+    is told by tests/rootfs/test_boards.py."""
+
+    RAM = 0x40000000
+    ADDRESS = re.compile(r"\b0x[0-9a-f]{6,8}\b")
+
+    def start_with(self, environment, starts):
+        here = [self.ADDRESS.sub(lambda found: hex(int(found[0], 16) + self.RAM), line).replace("mmc", "virtio") for line in environment]
+        here = [line.replace("bootcmd=", "bootcmd=pci enum; virtio scan; ", 1) if line.startswith("bootcmd=") else line for line in here]
+        consoles = [f"{name}=pl011@9000000" for name in ("stdin", "stdout", "stderr")]
+        board = dataclasses.replace(boards.QEMU_VIRT, soldered=functools.partial(boards.virt, told=[*here, *consoles, "bootdelay=-2"]))
+        if missing := board.missing():
+            self.skipTest(missing)
+        folder = pathlib.Path(tempfile.mkdtemp(prefix="adit-slots."))
+        self.addCleanup(shutil.rmtree, folder)
+        machine = Arm(folder, board)
+        machine.spend("a", 8)
+        self.assertEqual("".join(machine.start() for _ in starts), starts)
+
+    def test_what_mainline_sets_starts_the_slots_and_counts(self):
+        for board in "rock-pi-e", "espressobin":
+            with self.subTest(board):
+                self.start_with(boards.environment_of(board), "aab")
+
+    def test_what_the_readme_has_an_espressobin_of_the_factory_told_starts_the_slots_and_counts(self):
+        text = (TOP / "board/espressobin/README.md").read_text()
+        told = re.findall(r"^setenv (\w+) (?:'(.*)'|(\S+))$", text, re.M)
+        self.assertEqual({name for name, *_ in told}, {"bootcmd", "scriptaddr", "kernel_addr_r", "ramdisk_addr_r", "fdt_addr_r"})
+        self.start_with([f"{name}={quoted or plain}" for name, quoted, plain in told], "aab")
 
 
 class Grub(Slots, unittest.TestCase):

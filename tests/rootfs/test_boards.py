@@ -2,6 +2,7 @@
 """Every board is whole, and the image that was built for it has a driver for each device that it cannot do without."""
 import json
 import re
+import subprocess
 import sys
 import unittest
 
@@ -71,9 +72,8 @@ class Wiring(unittest.TestCase):
             with self.subTest(board):
                 self.assertEqual(set(panel), set(GROUP))
                 listed = set(re.findall(r"^- (\[[A-Z]\]) ", text, re.M))
-                rows = [row for row in re.findall(r"^\| .* \|$", text, re.M) if "---" not in row]
-                for row in (row for row in rows if not row.endswith("| source |")):
-                    sources = set(re.findall(r"\[[A-Z]\]", row.split(" | ")[-1]))
+                for row in re.findall(r"^\| (?!--).* \|$(?!\n\| --)", text, re.M):
+                    sources = set(re.findall(r"\[[A-Z]\]", row))
                     self.assertTrue(sources and sources <= listed, row)
 
     def test_a_line_is_the_same_in_the_table_the_picture_and_the_device_tree(self):
@@ -91,6 +91,65 @@ class Wiring(unittest.TestCase):
                     else:
                         self.assertRegex(panel[name], rf"\bline {line}\b")
                         self.assertRegex(drawn, rf"\bline {line}\b")
+
+
+class Loaders(unittest.TestCase):
+    """Of the boards' own boot loaders, what can be known without the boards."""
+
+    SCRIPTS = ["rootfs/boot/boot.cmd", "rootfs/boot/slot.cmd.in"]
+    # KNOWN: to every boot loader that a board may have (board/espressobin/README.md).
+    SHELL = {"if", "elif", "else", "fi", "for", "do", "done", "then"}
+    KNOWN = {"booti", "echo", "env", "load", "part", "reset", "setenv", "size", "sleep", "source", "test", "true"}
+
+    def commands(self):
+        text = "".join((TOP / script).read_text() for script in self.SCRIPTS)
+        pieces = re.split(r"\n|; |&&|\|\|", re.sub(r'^ *#.*|@load_dtb@|"[^"]*"', "", text, flags=re.M))
+        words = [re.sub(r"^(?:(?:if|elif|then|do|else) )+", "", piece.strip()).split(" ")[0] for piece in pieces]
+        return {word for word in words if word} - self.SHELL
+
+    def test_the_scripts_use_only_what_the_boot_loaders_of_2017_know(self):
+        self.assertEqual(self.commands() - {"${devtype}"}, self.KNOWN)
+        text = (TOP / self.SCRIPTS[0]).read_text()
+        for imported in re.findall(r"env import -[ct] (.*)", text):  # address and size: a name after them would be taken for no size
+            self.assertEqual(len(re.match(r"[^|;]*", imported)[0].split()), 2, imported)
+
+    @staticmethod
+    def package(name):
+        packages = list((IMAGES / "debian-arm64").glob(f"*/{name}_*.deb"))
+        return packages[0] if packages else None
+
+    def test_the_loader_in_the_image_knows_each_command_and_has_the_environment(self):
+        name, file = "u-boot-rockchip", "./usr/lib/u-boot/rock-pi-e-rk3328/u-boot-nodtb.bin"
+        if not (package := self.package(name)):
+            self.skipTest(f"{name} was not fetched here: toolchain/image rock-pi-e does")
+        opened = subprocess.run(["dpkg-deb", "--fsys-tarfile", package], stdout=subprocess.PIPE, check=True).stdout
+        loader = subprocess.run(["tar", "-xO", file], input=opened, stdout=subprocess.PIPE, check=True).stdout
+        for command in self.KNOWN | {"mmc"}:
+            self.assertIn(command.encode() + b"\0", loader, command)
+        for line in (TOP / "board/rock-pi-e/u-boot.env").read_text().splitlines():
+            if not line.startswith("#"):
+                self.assertRegex(loader, re.escape(line.encode()) + b" ?\0")
+
+    def test_what_is_loaded_does_not_overlap(self):
+        boards = [board for board in built() if (TOP / "board" / board / "u-boot.env").exists()]
+        if not boards:
+            self.skipTest("no image of a board with U-Boot was built here")
+        for board in boards:
+            slot = IMAGES / board / "work/slot"
+            kernel = slot.joinpath("Image").read_bytes()[16:24]  # Linux, Documentation/arm64/booting.rst: image_size
+            sizes = {"scriptaddr": 1 << 16, "kernel_addr_r": int.from_bytes(kernel, "little") + (2 << 20),  # it is moved to whole 2 MiB
+                     "ramdisk_addr_r": (slot / "initrd").stat().st_size}
+            if (slot / "board.dtb").exists():
+                sizes["fdt_addr_r"] = (slot / "board.dtb").stat().st_size + (64 << 10)  # U-Boot adds to it
+            with self.subTest(board):
+                self.check_apart(board, sizes)
+
+    def check_apart(self, board, sizes):
+        text = (TOP / "board" / board / "u-boot.env").read_text()
+        places = sorted((int(re.search(rf"^{name}=(0x[0-9a-f]+)$", text, re.M)[1], 16), size, name) for name, size in sizes.items())
+        for (start, size, name), (after, _, other) in zip(places, places[1:]):
+            self.assertLessEqual(start + size, after, f"{name} runs into {other}")
+        self.assertLess(sum(places[-1][:2]) - places[0][0], 192 << 20, "the smallest board has 256 MB, and U-Boot is at its end")
 
 
 class Drivers(unittest.TestCase):

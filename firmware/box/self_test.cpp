@@ -202,6 +202,7 @@ void SelfTest::ask(std::function<void(uplink::Outcome)> done) {
   const auto at = turns_.claim(uri(), loop_.now() + kLongestTurn);
   if (!at) return finish(steps::no_turn(kSteps[static_cast<std::size_t>(at_)]));
   when_due_ = [this, done = std::move(done)] {
+    turns_.claimed(uri());  // now, which may be later than it was to be
     send([this, uri = uri(), done](uplink::Outcome outcome) {
       turns_.claimed(uri);
       done(std::move(outcome));

@@ -36,7 +36,7 @@ class SelfTest final : public api::SelfTest {
   /// How it asks an endpoint that the run uses, too: forward::Flow.
   struct Turns {
     std::function<std::optional<loop::Instant>(icd::Uri uri, loop::Instant latest)> claim;
-    std::function<void(icd::Uri uri)> claimed;  // it was answered, or not
+    std::function<void(icd::Uri uri)> claimed;  // it leaves; it was answered, or not
   };
 
   /// `settings`: as they are in use. `tried`: tried_of() beside those that are written. `changed` is called

@@ -79,7 +79,7 @@ class RateLimit {
   /// server: that turn is then taken, and the next one counts from it. Nothing, and no turn is taken: later
   /// than `latest`.
   std::optional<Instant> claim(Instant now, Instant latest);
-  /// It ended, answered or not. It teaches nothing.
+  /// It leaves, which may be later than claimed; it ended, answered or not. It teaches nothing.
   void claimed(Instant now);
 
   /// So often is allowed, also since the last request. What was learned of the server stays, and a pause that

@@ -27,7 +27,9 @@ def setUpModule():
 class Trial(unittest.TestCase):
     def setUp(self):
         rates = {f"{kind}_hz": 1 for kind in ("reports", "status", "map", "state", "markers")}
-        self.stage = self.enterContext(Stage(post_options=("--rate", "1"), command_post__rates=rates))
+        # Half as often again as Adit asks: what went without a turn of its own would still come too soon after what was before it
+        # or too soon before what comes next, whenever it went; and a busy machine has a third of a second.
+        self.stage = self.enterContext(Stage(post_options=("--rate", "1.5"), command_post__rates=rates))
         self.box, self.post = self.stage.box, self.stage.post
         wait_until(self.box.knows_the_run, "the run to be known")
         self.addCleanup(lambda: self.assertEqual(self.violations(), []))
@@ -103,7 +105,6 @@ class Trial(unittest.TestCase):
         return [[one for one in all_of_it[:number + 1] if one[0] == each[0]][-3:]
                 for number, each in enumerate(all_of_it) if each[3] == 429]
 
-    @unittest.skip("one time of several the run itself is told 429: not understood yet")
     def test_the_endpoints_of_the_run_are_tried_without_throttling_it(self):
         with self.a_run():
             for _ in range(4):

@@ -23,9 +23,11 @@ std::string read_file(const fs::path& path) {
   return bytes;
 }
 
-/// A file that was gone has the mode of all of the box's.
+/// A file that was gone has the mode of all of the box's, and so has its folder: that one was removed is no
+/// more synced than that its last file was.
 void write_file(const fs::path& path, const std::string& bytes) {
   const bool is_new = !fs::exists(path);
+  if (fs::create_directory(path.parent_path())) fs::permissions(path.parent_path(), fs::perms::owner_all);
   std::ofstream(path, std::ios::binary | std::ios::trunc)
       .write(bytes.data(), static_cast<std::streamsize>(bytes.size()));
   if (is_new) fs::permissions(path, fs::perms::owner_read | fs::perms::owner_write);

@@ -1,0 +1,66 @@
+"""A client that asks until it knows: right with Adit, and with a Command Post that no Adit stands before (`bare`)."""
+import time
+
+import requests
+from urllib3.exceptions import NewConnectionError
+
+REPORTS = "/api/artifact_reports"
+NEVER_LEFT, LOST = -1, 0  # in a status's place
+
+
+class Refused(Exception):
+    """It was not taken, and the same again will not be either."""
+
+
+class Unknown(Exception):
+    """It may have been recorded: a person decides what to do."""
+
+
+class Client:
+    def __init__(self, url, token, bare=False):
+        self.url, self.bare, self.turn = url, bare, 0.0
+        self.headers = {"Authorization": f"Bearer {token}"}
+
+    def status(self):
+        return self.until_answered("GET", "/api/status")
+
+    def report(self, x, y, z, kind):
+        """The Command Post's answer."""
+        return self.until_answered("POST", REPORTS, {"x": x, "y": y, "z": z, "type": kind})
+
+    def update(self, what, message):
+        """Sends a map, a state or markers: update("map", ...)."""
+        return self.until_answered("POST", f"/{what}/update", message)
+
+    def until_answered(self, method, uri, message=None, patience=600):
+        """What a 2xx says. Sends the same again for `patience` seconds, as long as that can do no harm."""
+        end = time.monotonic() + patience
+        while time.monotonic() < end:
+            status, body, again_after = self._ask(method, uri, message)
+            if 200 <= status < 300:
+                return body
+            if status in (LOST, 408) or status >= 500:  # Adit knows a report that is posted again
+                if self.bare and uri == REPORTS:
+                    raise Unknown("no answer: see whether remaining_reports went down before you post it again")
+            elif status == 409:
+                raise Unknown(body)
+            elif status not in (NEVER_LEFT, 429):
+                raise Refused(f"{status} {body}")
+            time.sleep(int(again_after) if again_after.isdigit() else 1)
+        raise Unknown(f"no answer for {patience} s")
+
+    def _ask(self, method, uri, message):
+        """Status, body and Retry-After of one request: 3 s to connect, 30 s for the answer, which Adit gives within 20."""
+        if self.bare:  # which takes one request a second
+            time.sleep(max(0.0, self.turn - time.monotonic()))
+        try:  # each on a new connection: a bare Command Post closes old ones without a word
+            answer = requests.request(method, self.url + uri, json=message, headers=self.headers, timeout=(3, 30))
+            body = answer.json() if answer.ok else answer.text  # a 2xx without JSON, or with half of it, is no answer
+            return answer.status_code, body, answer.headers.get("Retry-After", "1")
+        except requests.ConnectTimeout:
+            return NEVER_LEFT, "", "1"
+        except requests.RequestException as why:
+            not_connected = why.args and isinstance(getattr(why.args[0], "reason", None), NewConnectionError)
+            return NEVER_LEFT if not_connected else LOST, "", "1"
+        finally:
+            self.turn = time.monotonic() + 1.1

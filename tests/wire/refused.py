@@ -1,0 +1,110 @@
+"""The table of refusals in firmware/intake/clients/README.md: what is sent, and what Adit says to it."""
+
+import json
+import re
+
+import requests
+
+import programs
+from programs import Stage
+from reporting import QUICK, REPORT, began, submit
+from test_refusals import FIELDS, MISSING, STATE, changed
+
+SHORT = {**QUICK, "reports__answer_within_ms": 300}
+STATE_BODY = json.dumps(STATE)
+
+# (what is sent, method, URI, body, headers in addition)
+REQUESTS = [
+    ("another token, or none", "POST", "/state/update", STATE_BODY, {"Authorization": "Bearer wrong"}),
+    ("a URI that the ICD does not have", "POST", "/map/updates", "{}", {}),
+    ("`GET /map/update`", "GET", "/map/update", None, {}),
+    ("`Content-Type: text/plain`", "POST", "/state/update", STATE_BODY, {"Content-Type": "text/plain"}),
+    ("a report as CBOR", "POST", "/api/artifact_reports", b"\xa0", {"Content-Type": "application/cbor"}),
+    ("`Content-Encoding: br`", "POST", "/state/update", STATE_BODY, {"Content-Encoding": "br"}),
+    ("`Content-Encoding: gzip`, and it is not", "POST", "/state/update", STATE_BODY, {"Content-Encoding": "gzip"}),
+    ("half a JSON document", "POST", "/state/update", '{"poses": [', {}),
+    ("half a CBOR document", "POST", "/state/update", b"\xa1", {"Content-Type": "application/cbor"}),
+    ("`NaN`, which JSON does not have", "POST", "/api/artifact_reports", '{"x": NaN}', {}),
+    ("a list around the message", "POST", "/state/update", "[]", {}),
+    ("a state of 2 MB", "POST", "/state/update", b" " * 2_000_000, {}),
+    ("a member twice", "POST", "/api/artifact_reports", '{"x": 1, "y": 2, "z": 3, "type": "Rope", "x": 4}', {}),
+    ("`Adit-Resubmit: maybe`", "POST", "/api/artifact_reports", json.dumps(REPORT), {"Adit-Resubmit": "maybe"}),
+]
+
+# What takes a crowd, a full disk or a stop to make, and has tests of its own: (what happened, status, the code's sentence).
+ELSEWHERE = [
+    ("a map, where the queue is full", 429, "N maps of N MiB wait already; this one was not taken, send it again later"),
+    ("a report, where 1,000 wait", 429, "N reports wait already; this one was not taken"),
+    ("a report, where the disk is full", 503, "the report could not be written down and was not taken; post it again"),
+    ("a map, where there is no room to keep it", 503, "this map cannot be kept; send it again later"),
+    ("too many requests at once", 503, "too many requests are under way at once, from this address or in all; try again"),
+    ("too many bytes at once", 503, "too much is being sent at once, by this address or by all; send this again later"),
+    ("whatever comes while Adit stops", 503, "the gateway is stopping; this was not taken, send it again"),
+    ("a body that comes too slowly", 408, "the body of the request took too long"),
+    ("one of many wrong tokens", 429,
+     "too many wrong tokens came from this address, and this one was not looked at: try again in a second"),
+    ("a fault of Adit's own", 500, "the gateway could not finish this request, which may have been taken: send it again"),
+]
+
+
+def shown(value):
+    if value is MISSING:
+        return "left out"
+    return f"`{json.dumps(value[:2])[:-1]}, ...]`" if isinstance(value, list) and value else f"`{json.dumps(value)}`"
+
+
+def ask(stage, method, uri, body=None, headers=()):
+    given = {"Authorization": f"Bearer {programs.TEAM_TOKEN}", "Content-Type": "application/json", **dict(headers)}
+    return requests.request(method, stage.box.url + uri, data=body, headers=given, timeout=30)
+
+
+def of_requests():
+    """Groups of what is sent and what was answered, by the URI."""
+    with Stage() as stage:
+        began(stage)
+        yield "any", [(what, ask(stage, method, uri, body, headers)) for what, method, uri, body, headers in REQUESTS]
+        for uri in ("/api/artifact_reports", "/map/update", "/state/update", "/markers/update"):
+            fields = [each[1:] for each in FIELDS if each[0] == uri]
+            yield uri, [(f"`{path}` {shown(value)}", ask(stage, "POST", uri, json.dumps(changed(message, path, value))))
+                        for message, path, value, _ in fields]
+
+
+def of_reports():
+    """What is told of a report that is not done yet, or is not to be."""
+    with Stage(post_options=None, **SHORT) as stage:
+        yield "the Command Post cannot be reached", submit(stage)
+        yield "and the run's status is asked for", ask(stage, "GET", "/api/status")
+    with Stage(**{**SHORT, "reports__doubt_for_ms": 20000}) as stage:
+        began(stage).post.will("drop")
+        yield "its answer is lost, and Adit still asks", submit(stage)
+    with Stage(**SHORT, reports__review="all") as stage:
+        began(stage)
+        yield "it is held for the operator", submit(stage)
+        stage.box.judge(1, "withdraw")
+        yield "the operator withdrew it", submit(stage)
+
+
+def sentence(answer):
+    """Where it says why in brackets, that is left out: it depends on the day."""
+    return re.sub(r"\((?!the setting)[^)]*\)", "(why)", answer.json()).partition(": no route")[0]
+
+
+def table():
+    lines = []
+
+    def row(*cells):
+        lines.append("| " + " | ".join(str(cell) for cell in cells) + " |")
+
+    def group(title, rows):
+        row(title, "status", "sentence")
+        row("---", "---", "---")
+        for what, status, said in rows:
+            row(what, status, said)
+        lines.append("")
+
+    for uri, answers in of_requests():
+        title = "any of the URIs" if uri == "any" else f"`{uri}`"
+        group(title, [(what, answer.status_code, answer.json()) for what, answer in answers])
+    group("a report that waits", [(what, answer.status_code, sentence(answer)) for what, answer in of_reports()])
+    group("what is nobody's mistake", ELSEWHERE)
+    return "\n".join(lines)

@@ -1,0 +1,163 @@
+"""The clients that are shown to teams (firmware/intake/clients), in Python and in C++, against the real programs: whatever
+becomes of an answer, of the service or of the Command Post, each ends with what is true, and nothing is recorded twice."""
+
+import json
+import os
+import pathlib
+import signal
+import subprocess
+import time
+import unittest
+
+import hosts
+import programs
+from programs import CommandPost, Stage, wait_until
+from reporting import QUICK, began
+
+SHOWN = pathlib.Path(os.environ["ADIT_SOURCE"]) / "firmware/intake/clients"
+CLIENTS = {"Python": ["/usr/bin/python3", "-B", SHOWN / "example.py"], "C++": [programs.BIN / "adit_client_example"]}
+UPDATES = ("map", "state", "markers")
+ANSWERED, REFUSED, NOT_KNOWN = 0, 1, 3  # exit status
+NOT_RECORDED = ("drop", "html-200")
+BAD_DAY = ("--rate", "0", "--seed", "5", "--fault-rate", "reports:record-then-drop=0.3", "--fault-rate", "reports:drop=0.2",
+           "--fault-rate", "reports:429=0.1", "--fault-rate", "mapping:drop=0.2")
+
+
+def setUpModule():
+    hosts.needs_namespaces()
+
+
+def report(number):
+    return {"x": 7.5 * number, "y": -1.25, "z": 0.5, "type": "Drill"}
+
+
+def words(made):
+    return ["report", made["x"], made["y"], made["z"], made["type"]]
+
+
+def refused_connections(stage):
+    """How many of the Command Post's host found nobody who listens."""
+    lines = subprocess.run(["ip", "netns", "exec", stage.network.post, "cat", "/proc/net/snmp"], check=True, capture_output=True,
+                           text=True).stdout.splitlines()
+    names, counts = (line.split() for line in lines if line.startswith("Tcp:"))
+    return int(counts[names.index("AttemptFails")])
+
+
+class Run(programs.Program):
+    """A client that runs on the host `at`."""
+
+    def __init__(self, stage, name, given, at=None, url=None, token=programs.TEAM_TOKEN):
+        command = ["env", f"ADIT_TOKEN={token}", *CLIENTS[name], url or stage.box.url, *given]
+        log = stage.folder / f"{name}-{time.monotonic_ns()}.log"
+        super().__init__(stage.network, at or stage.network.team, log, command)
+
+    def ended(self):
+        """Its exit status, and what it said."""
+        return self.process.wait(120), self.said()
+
+
+class Clients(unittest.TestCase):
+    def each(self):
+        for name in CLIENTS:
+            with self.subTest(name):
+                yield name
+
+    def test_reports_on_a_bad_day_with_a_kill_in_the_middle(self):
+        for name in self.each():
+            with Stage(post_options=BAD_DAY, **QUICK) as stage:
+                began(stage)
+                runs = [Run(stage, name, words(report(number))) for number in range(1, 9)]
+                wait_until(lambda stage=stage: len(stage.post.recorded()) >= 2, "some of them")
+                stage.box.stop(signal.SIGKILL)
+                stage.restart_box()
+                answers = [run.ended() for run in runs]
+                self.assertEqual([status for status, _ in answers], [ANSWERED] * 8, answers)
+                recorded = {made["x"]: made for made in stage.post.recorded()}
+                self.assertEqual((len(recorded), len(stage.post.recorded())), (8, 8), "each once")
+                for _, said in answers:
+                    told = json.loads(said)
+                    made = recorded[told["x"]]
+                    for member in ("y", "z", "type", "run", "team", "report_status", "score_change"):
+                        self.assertEqual(told[member], made[member])
+                self.assertEqual(stage.post.violations(), [])
+
+    def test_updates_and_the_status(self):
+        for name in self.each():
+            with Stage(post_options=BAD_DAY, **QUICK) as stage:
+                began(stage)
+                for what in UPDATES:
+                    self.assertEqual(Run(stage, name, [what]).ended(), (ANSWERED, "null\n"))
+                for what in UPDATES:
+                    wait_until(lambda stage=stage, what=what: any(request["status"] == 200 for request
+                               in stage.post.requests(f"/{what}/update")), f"the {what} to arrive")
+                status, said = Run(stage, name, ["status"]).ended()
+                self.assertEqual((status, json.loads(said)["current_team"]), (ANSWERED, "adit"))
+                self.assertEqual(stage.post.violations(), [])
+
+    def test_what_is_refused_is_not_tried_again(self):
+        with Stage(**QUICK) as stage:
+            for name in self.each():
+                status, said = Run(stage, name, ["report", 1, 2, 3, "Dril"]).ended()
+                self.assertEqual(status, REFUSED)
+                self.assertIn("type: expected one of Survivor", said)
+            self.assertEqual(stage.post.recorded(), [])
+
+    def test_what_the_operator_decides(self):
+        for name in self.each():
+            with Stage(**{**QUICK, "reports__review": "all"}) as stage:
+                began(stage)
+                run = Run(stage, name, words(report(1)))
+                wait_until(lambda stage=stage: [made["state"] for made in stage.box.reports()] == ["received"], "it to be held")
+                self.assertEqual(stage.box.judge(1, "withdraw")[0], 200)
+                status, said = run.ended()
+                self.assertEqual(status, NOT_KNOWN)
+                self.assertIn("report 1 was withdrawn by the operator", said)
+                self.assertEqual(stage.post.recorded(), [])
+
+
+class Bare(unittest.TestCase):
+    """The same clients at the Command Post itself, from its own host."""
+
+    def run_there(self, stage, name, given, at="scoring", port=programs.PORT):
+        address, token = {"scoring": (hosts.SCORING, programs.SCORING_TOKEN),
+                          "mapping": (hosts.MAPPING, programs.MAPPING_TOKEN)}[at]
+        return Run(stage, name, [*given, "--bare"], stage.network.post, f"http://{address}:{port}", token)
+
+    def test_a_report_whose_answer_is_lost_is_never_sent_again(self):
+        with Stage(post_options=("--rate", "0")) as stage:
+            for number, fault in enumerate(("record-then-drop", "drop", "500-recorded", "half-answer", "garbage", "html-200"), 1):
+                for offset, name in enumerate(CLIENTS):
+                    with self.subTest(fault, client=name):
+                        made = report(2 * number + offset)
+                        stage.post.will(fault)
+                        status, said = self.run_there(stage, name, words(made)).ended()
+                        self.assertEqual(status, NOT_KNOWN)
+                        self.assertIn("remaining_reports", said)
+                        self.assertEqual(len(stage.post.recorded(made)), 0 if fault in NOT_RECORDED else 1)
+            self.assertEqual(len([1 for each in stage.post.requests("/api/artifact_reports") if each["message"]]), 12)
+
+    def test_a_report_that_never_left_or_came_too_soon_is_sent_again(self):
+        for at, name in enumerate(CLIENTS):
+            with self.subTest(name), Stage() as stage:
+                run = self.run_there(stage, name, words(report(1)), port=9000 + at)
+                wait_until(lambda stage=stage: refused_connections(stage) > 0, "it to try")
+                post = CommandPost(stage.network, stage.folder, "--fault", "reports:429=2", name="late", port=9000 + at,
+                                   control_port=9100 + at)
+                try:
+                    self.assertEqual(run.ended()[0], ANSWERED)
+                    self.assertEqual(len(post.recorded(report(1))), 1)
+                finally:
+                    post.stop()
+
+    def test_updates_at_the_rate_that_it_takes(self):
+        with Stage(post_options=("--rate", "1")) as stage:
+            for name in self.each():
+                for what in UPDATES:
+                    self.assertEqual(self.run_there(stage, name, [what], "mapping").ended(), (ANSWERED, "null\n"))
+            self.assertEqual(stage.post.violations(), [])
+
+    each = Clients.each
+
+
+if __name__ == "__main__":
+    unittest.main()

@@ -1,0 +1,43 @@
+"""The project's documents, *.md, and what stands in them: links, headings, code."""
+import pathlib
+import re
+
+ROOT = pathlib.Path(__file__).resolve().parents[2]
+MADE = {".git", "build", "node_modules"}  # nobody wrote what is in these
+FENCE = re.compile(r"^```(\w*)[^\n]*\n(.*?)^```", re.S | re.M)
+CODE = re.compile(r"(`+)([^\n]+?)\1")
+LINK = re.compile(r"\[(?:[^][]|\[[^][]*\])*\]\(([^()\s]*(?:\([^()\s]*\))?)\)")
+HEADING = re.compile(r"^#{1,6} +(.*?) *#*$", re.M)
+
+
+def documents():
+    return sorted(path for path in ROOT.rglob("*.md") if not MADE & set(path.relative_to(ROOT).parts))
+
+
+def without_blocks(text):
+    return FENCE.sub("", text)
+
+
+def blocks(text, language=None):
+    """What stands between fences; of one language or of all."""
+    return [body for named, body in FENCE.findall(text) if language is None or named == language]
+
+
+def spans(text):
+    """What stands in backticks within lines."""
+    return [span.strip() for _, span in CODE.findall(without_blocks(text))]
+
+
+def links(text):
+    return LINK.findall(CODE.sub("", without_blocks(text)))
+
+
+def anchors(text):
+    """The names of a document's headings, as GitHub and Gitea make them."""
+    names = []
+    for heading in HEADING.findall(without_blocks(text)):
+        shown = re.sub(r"\[([^]]*)\]\([^)]*\)", r"\1", heading).replace("`", "")
+        name = re.sub(r"[^\w\- ]", "", shown.lower()).replace(" ", "-")
+        before = sum(each == name or re.fullmatch(re.escape(name) + r"-\d+", each) is not None for each in names)
+        names.append(f"{name}-{before}" if before else name)
+    return set(names)

@@ -1,0 +1,174 @@
+// The alarms on the card to print (board/card.html), in the words that the rules have today.
+#include <gtest/gtest.h>
+
+#include <array>
+#include <fstream>
+#include <iterator>
+#include <set>
+
+#include "alarms/alike.hpp"
+
+namespace adit::alarms {
+namespace {
+
+std::string text_of(const std::string& path) {
+  std::ifstream stream(ADIT_SOURCE_DIR "/" + path);
+  return {std::istreambuf_iterator<char>(stream), {}};
+}
+
+/// Two robots, of which one is shown by the word that stands for its name.
+Facts named() {
+  Facts facts = well(1);
+  for (Endpoint& endpoint : facts.endpoints) endpoint.address = "ADDRESS";
+  facts.robots["NAME"] = {.gap = 1, .quiet = 1};
+  facts.streams.push_back({.kind = "grid", .robot = "NAME", .forwarded = 1.0, .last_status = 200});
+  return facts;
+}
+
+void both_have(Facts& facts, PostTrouble trouble) {
+  for (Endpoint& endpoint : facts.endpoints) {
+    endpoint.trouble = trouble;
+    endpoint.said = trouble == PostTrouble::Failing ? "500" : "no route to host";
+  }
+}
+
+void robots_and_queue(std::vector<Facts>& days) {
+  days.push_back(named());
+  days.back().robots["NAME"].silent = true;
+  days.back().streams.back().behind = 100;
+  days.back().streams.back().no_room = 1;
+  days.back().unknown_robots = {"NAME"};
+  days.back().known_robots = {"uav1"};
+  days.back().crowds = {
+      {Crowd::Is::NoRoom, "ADDRESS"}, {Crowd::Is::WrongToken, "ADDRESS"}, {Crowd::Is::Strangers, "ADDRESS"}};
+  days.back().shut_out = true;
+  days.push_back(well(6));
+  for (auto& [name, robot] : days.back().robots) robot.silent = true;
+  for (Stream& stream : days.back().streams) stream.behind = 100;
+  days.push_back(named());
+  days.back().queued = days.back().queue_room;
+  days.push_back(named());
+  days.back().queue_grows = true;
+  days.back().queued = 60u << 20;
+}
+
+void reports(std::vector<Facts>& days) {
+  days.push_back(named());
+  days.back().reports = {
+      {.number = 7, .is = ReportFact::Is::Held, .note = "held: close to report 5"},
+      {.number = 7, .is = ReportFact::Is::InDoubt, .note = "the status cannot tell"},
+      {.number = 7, .is = ReportFact::Is::Lost, .of_run = false, .note = "a row is damaged"}};
+  days.back().reports_left = 5;
+  days.back().reports_elsewhere["ADDRESS"] = 2;
+  days.back().run_unreliable = "somebody else reports with this token";
+  days.back().set_aside = 3;
+  days.push_back(named());
+  days.back().reports_left = 0;
+}
+
+void the_box(std::vector<Facts>& days) {
+  days.push_back(named());
+  Facts& facts = days.back();
+  facts.ledger_refusal = facts.disk.map = facts.disk.state = facts.disk.run = "no space";
+  facts.ledger_damage = "a page was put aside";
+  facts.disk.free = 500u << 10;
+  facts.time_set = false;
+  facts.change_trouble = "the last change was taken back: port 8000 is in use";
+  facts.settings_trouble = facts.board_trouble = "an error in it";
+  facts.notices = {"what happened"};
+  facts.update = {.on_trial = true, .version = "1.2.0", .stray = "the last one did not come up"};
+}
+
+void the_network(std::vector<Facts>& days) {
+  days.push_back(named());
+  NetworkFact& network = days.back().network;
+  network.confirm_within = 88;
+  network.page = "http://ADDRESS";
+  network.no_address = true;
+  network.taken_by = "another machine";
+  network.address = "ADDRESS";
+  for (const std::optional<bool> carrier : {std::optional(false), std::optional<bool>()}) {
+    days.push_back(named());
+    for (Cable& cable : days.back().cables) cable.carrier = carrier;
+  }
+}
+
+/// Each of the headlines once, with what is said by its side.
+std::vector<Condition> all() {
+  std::vector<Facts> days;
+  for (const auto trouble :
+       {PostTrouble::NoToken, PostTrouble::Unreachable, PostTrouble::Foreign, PostTrouble::Refusing,
+        PostTrouble::Silent, PostTrouble::Failing, PostTrouble::Throttling}) {
+    days.push_back(named());
+    both_have(days.back(), trouble);
+  }
+  the_network(days);
+  the_box(days);
+  reports(days);
+  robots_and_queue(days);
+  std::vector<Condition> found;
+  for (const Facts& day : days) {
+    for (Condition& each : conditions_of(day)) {
+      if (std::ranges::find(found, each.what, &Condition::what) == found.end())
+        found.push_back(std::move(each));
+    }
+  }
+  return found;
+}
+
+std::string rows(Side side) {
+  std::string html;
+  for (const Condition& each : all()) {
+    if (each.side != side) continue;
+    html.append("<li class=\"").append(kSeverityWords[static_cast<std::size_t>(each.severity)]);
+    html.append("\"><b>").append(each.what).append("</b>");
+    if (!each.why.empty()) html.append(": ").append(each.why);
+    if (!each.action.word.empty()) html.append(" <i>").append(each.action.word).append("</i>");
+    html.append("</li>\n");
+  }
+  return html;
+}
+
+/// "no_token" of "no_token:scoring"
+std::string kind_of(const std::string& id) {
+  return id.substr(0, id.find(':'));
+}
+
+/// Those that the README has a row of: the first of each row, and what follows it in that cell.
+std::set<std::string> kinds_in_readme() {
+  const std::string text = text_of("firmware/alarms/README.md");
+  std::set<std::string> kinds;
+  for (std::size_t at = text.find("\n| `"); at != std::string::npos; at = text.find("\n| `", at + 1)) {
+    const std::string cell = text.substr(at + 3, text.find(" | ", at + 3) - at - 3);
+    for (std::size_t name = cell.find('`'); name != std::string::npos; name = cell.find('`', name + 1)) {
+      const std::string id = cell.substr(name + 1, cell.find('`', name + 1) - name - 1);
+      if (!id.empty() && id[0] >= 'a' && id[0] <= 'z') kinds.insert(kind_of(id));
+      name = cell.find('`', name + 1);
+    }
+  }
+  return kinds;
+}
+
+TEST(AlarmsCard, HasEachConditionInItsWords) {
+  const std::string card = text_of("board/card.html");
+  for (std::size_t side = 0; side < std::size(kSideWords); ++side) {
+    const std::string part = rows(static_cast<Side>(side));
+    EXPECT_NE(card.find("<ul class=\"" + std::string(kSideWords[side]) + "\">\n" + part + "</ul>"),
+              std::string::npos)
+        << "put this into board/card.html:\n<ul class=\"" << kSideWords[side] << "\">\n"
+        << part << "</ul>";
+  }
+}
+
+TEST(AlarmsCard, LeavesNoneOut) {
+  std::set<std::string> made;
+  for (const Condition& each : all()) made.insert(kind_of(each.id));
+  std::set<std::string> told = kinds_in_readme();
+  EXPECT_GT(told.size(), 35u);
+  for (const char* word : {"bad", "ask", "wait"}) told.erase(word);
+  told.erase("address_conflict");  // which nobody tells the rules yet
+  EXPECT_EQ(made, told);
+}
+
+}  // namespace
+}  // namespace adit::alarms

@@ -1,0 +1,103 @@
+// The lights on the card to print (board/card.html), as the table of the states has them.
+#include <gtest/gtest.h>
+
+#include <fstream>
+#include <iterator>
+
+#include "panel/states.hpp"
+
+namespace adit::panel {
+namespace {
+
+std::string text_of(const std::string& path) {
+  std::ifstream stream(ADIT_SOURCE_DIR "/" + path);
+  return {std::istreambuf_iterator<char>(stream), {}};
+}
+
+/// "`adit status`" as HTML has it.
+std::string html(std::string_view text) {
+  std::string said;
+  bool code = false;
+  for (const char each : text) {
+    if (each != '`') {
+      said += each;
+      continue;
+    }
+    code = !code;
+    said += code ? "<code>" : "</code>";
+  }
+  return said;
+}
+
+std::string states() {
+  std::string table;
+  for (const StateRow& row : state_table()) {
+    table += "<tr>";
+    for (const auto& pattern : row.patterns) {
+      const std::string name(pattern ? name_of(*pattern) : "");
+      table.append("<td class=\"")
+          .append(name.empty() ? "any" : name)
+          .append("\">")
+          .append(name)
+          .append("</td>");
+    }
+    table.append("<td>").append(html(row.meaning)).append("</td></tr>\n");
+  }
+  return table;
+}
+
+/// When it is lit within two seconds, a pixel for each 20 ms.
+std::string strip(Pattern pattern) {
+  std::string svg = "<svg viewBox=\"0 0 100 8\" preserveAspectRatio=\"none\"><path d=\"";
+  const Milliseconds end = std::chrono::seconds(2);
+  for (Milliseconds at{}; at < end;) {
+    const Moment now = repeated(steps_of(pattern), at);
+    const Milliseconds next = std::min(end, at + now.lasts.value_or(end));
+    if (now.lit) {
+      svg.append("M").append(std::to_string(at.count() / 20)).append(" 0h");
+      svg.append(std::to_string((next - at).count() / 20)).append("v8h-");
+      svg.append(std::to_string((next - at).count() / 20)).append("z");
+    }
+    at = next;
+  }
+  return svg + "\"/></svg>";
+}
+
+/// What one sees, in the README's words.
+std::string seen(Pattern pattern) {
+  const std::string text = text_of("firmware/panel/README.md"),
+                    head = "\n| " + std::string(name_of(pattern)) + " | ";
+  const std::size_t at = text.find(head) + head.size();
+  return text.substr(at, text.find(" |", at) - at);
+}
+
+std::string patterns() {
+  std::string table;
+  for (const Pattern pattern : kPatterns) {
+    if (pattern == Pattern::Off || pattern == Pattern::On) continue;
+    const std::string drawn = pattern == Pattern::Digits ? "" : strip(pattern);
+    const std::string words = pattern == Pattern::Digits
+                                  ? "flashes to be counted, ten for 0, a long one for each dot"
+                                  : seen(pattern);
+    table.append("<tr><th>").append(name_of(pattern)).append("</th><td>").append(drawn).append("</td><td>");
+    table.append(words).append("</td></tr>\n");
+  }
+  return table;
+}
+
+TEST(PanelCard, HasTheTableOfTheStates) {
+  EXPECT_NE(text_of("board/card.html").find("<tbody class=\"states\">\n" + states() + "</tbody>"),
+            std::string::npos)
+      << "put this into board/card.html:\n<tbody class=\"states\">\n"
+      << states() << "</tbody>";
+}
+
+TEST(PanelCard, DrawsThePatternsAsTheyAre) {
+  EXPECT_NE(text_of("board/card.html").find("<tbody class=\"patterns\">\n" + patterns() + "</tbody>"),
+            std::string::npos)
+      << "put this into board/card.html:\n<tbody class=\"patterns\">\n"
+      << patterns() << "</tbody>";
+}
+
+}  // namespace
+}  // namespace adit::panel

@@ -1,5 +1,7 @@
 #include "api/map_tile.hpp"
 
+#include <charconv>
+#include <string_view>
 #include <utility>
 
 #include "api/answers.hpp"
@@ -15,6 +17,34 @@ constexpr std::string_view kMerged = "-";  // for the robot "", which no path co
 
 intake::Answer bad_tile(std::string_view sentence) {
   return refusal(icd::Status::BadRequest, sentence);
+}
+
+/// A colour of the query, six digits as CSS has it without its "#": absent, or none at all.
+struct AskedColour {
+  std::optional<picture::Colour> colour;
+  bool wrong = false;
+};
+
+AskedColour asked_colour(const intake::RequestHead& head, std::string_view name) {
+  const std::string_view text = head.query(name);
+  if (text.empty()) return {};
+  std::uint32_t value = 0;
+  const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value, 16);
+  if (error != std::errc() || end != text.data() + text.size() || text.size() != 6)
+    return {.colour = {}, .wrong = true};
+  const auto part = [value](int shift) { return static_cast<std::uint8_t>(value >> shift); };
+  return {.colour = picture::Colour{part(16), part(8), part(0)}};
+}
+
+std::string coloured(const picture::Packed& tile, const TileAsked& asked) {
+  const bool is_coloured = asked.from && asked.to;
+  if (asked.layer.kind == picture::Kind::Grid) {
+    return is_coloured ? picture::write_png(tile, picture::grid_palette(*asked.from, *asked.to))
+                       : picture::write_png(tile, picture::grid_palette());
+  }
+  const double low = asked.low.value_or(picture::kLowest), high = asked.high.value_or(picture::kHighest);
+  return picture::write_png(tile, is_coloured ? picture::cloud_palette(low, high, *asked.from, *asked.to)
+                                              : picture::cloud_palette(low, high));
 }
 
 /// Says which state of a tile it is, whatever the box was restarted for since.
@@ -40,12 +70,18 @@ std::expected<TileAsked, intake::Answer> tile_asked(const intake::RequestHead& h
                     high = asked_number(head, "high");
   if (at.wrong) return std::unexpected(bad_tile("at: expected seconds since 1970"));
   if (low.wrong || high.wrong) return std::unexpected(bad_tile("low and high: expected metres"));
+  const AskedColour from = asked_colour(head, "from"), to = asked_colour(head, "to");
+  if (from.wrong || to.wrong || from.colour.has_value() != to.colour.has_value()) {
+    return std::unexpected(bad_tile("from and to: expected both or none, each as six digits: 2266ee"));
+  }
   return TileAsked{.layer = {.robot = parts[1] == kMerged ? "" : parts[1],
                              .kind = parts[0] == "grid" ? picture::Kind::Grid : picture::Kind::Cloud},
                    .at = {*level, *x, *y},
                    .stamp = at.number,
                    .low = low.number,
                    .high = high.number,
+                   .from = from.colour,
+                   .to = to.colour,
                    .has = std::string(head.header("If-None-Match"))};
 }
 
@@ -60,12 +96,8 @@ intake::Answer tile_of(const picture::Mosaic& map, const TileAsked& asked) {
   answer.headers.push_back({"Cache-Control", shown.newest ? "no-cache" : "max-age=3600"});
   if (asked.has.contains(etag)) {
     answer.status = kNotModified;
-  } else if (asked.layer.kind == picture::Kind::Grid) {
-    answer.body = picture::write_png(*shown.tile, picture::grid_palette());
   } else {
-    answer.body = picture::write_png(
-        *shown.tile,
-        picture::cloud_palette(asked.low.value_or(picture::kLowest), asked.high.value_or(picture::kHighest)));
+    answer.body = coloured(*shown.tile, asked);
   }
   return guarded(std::move(answer));
 }

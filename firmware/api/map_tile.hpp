@@ -7,6 +7,7 @@
 
 #include "intake/server.hpp"
 #include "picture/mosaic.hpp"
+#include "picture/palette.hpp"
 
 namespace adit::api {
 
@@ -15,7 +16,8 @@ struct TileAsked {
   picture::Layer layer;
   picture::TileAt at;
   std::optional<double> stamp, low, high;
-  std::string has;  // If-None-Match
+  std::optional<picture::Colour> from, to;  // of what is free or lowest, and of what is occupied or highest
+  std::string has;                          // If-None-Match
 };
 
 /// `parts`: kind, robot, level, x and y, of the path. An error is the answer.

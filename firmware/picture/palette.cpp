@@ -27,18 +27,30 @@ Colour ramp_at(double part) {
   return between(kRamp[before], kRamp[before + 1], at - static_cast<double>(before));
 }
 
-std::array<Colour, kMostOccupiedIndex + 1> made_grid_palette() {
-  std::array<Colour, kMostOccupiedIndex + 1> colours;
-  for (std::size_t value = 0; value < kMostOccupiedIndex; ++value) {
-    colours[value + 1] = between(kFree, kOccupied, static_cast<double>(value) / (kMostOccupiedIndex - 1));
+/// `ramp(part)`: the colour of a height that is so far from `low` to `high`, 0 to 1.
+template <class Ramp>
+std::array<Colour, 256> palette_of(double low, double high, Ramp ramp) {
+  std::array<Colour, 256> colours;
+  const double span = std::max(high - low, kHeightStep);
+  for (std::size_t index = 1; index < colours.size(); ++index) {
+    const double part = (height_of(static_cast<std::uint8_t>(index)) - low) / span;
+    colours[index] = ramp(std::clamp(part, 0.0, 1.0));
   }
   return colours;
 }
 
 }  // namespace
 
+std::array<Colour, kMostOccupiedIndex + 1> grid_palette(const Colour& free, const Colour& occupied) {
+  std::array<Colour, kMostOccupiedIndex + 1> colours;
+  for (std::size_t value = 0; value < kMostOccupiedIndex; ++value) {
+    colours[value + 1] = between(free, occupied, static_cast<double>(value) / (kMostOccupiedIndex - 1));
+  }
+  return colours;
+}
+
 std::span<const Colour> grid_palette() {
-  static const auto palette = made_grid_palette();
+  static const auto palette = grid_palette(kFree, kOccupied);
   return palette;
 }
 
@@ -56,13 +68,11 @@ double height_of(std::uint8_t index) {
 }
 
 std::array<Colour, 256> cloud_palette(double low, double high) {
-  std::array<Colour, 256> colours;
-  const double span = std::max(high - low, kHeightStep);
-  for (std::size_t index = 1; index < colours.size(); ++index) {
-    const double part = (height_of(static_cast<std::uint8_t>(index)) - low) / span;
-    colours[index] = ramp_at(std::clamp(part, 0.0, 1.0));
-  }
-  return colours;
+  return palette_of(low, high, ramp_at);
+}
+
+std::array<Colour, 256> cloud_palette(double low, double high, const Colour& lowest, const Colour& highest) {
+  return palette_of(low, high, [&](double part) { return between(lowest, highest, part); });
 }
 
 }  // namespace adit::picture

@@ -18,6 +18,8 @@ struct Colour {
 /// too, that stand out from a dark ground and from a light one.
 inline constexpr std::uint8_t kMostOccupiedIndex = 101;
 std::span<const Colour> grid_palette();
+/// The same in other colours: a page has its own in each theme.
+std::array<Colour, kMostOccupiedIndex + 1> grid_palette(const Colour& free, const Colour& occupied);
 
 /// A cloud's height above z = 0 of the frame "darpa": index 1 is kLowest, each further one kHeightStep more;
 /// what lies beyond has the first or the last index (255).
@@ -32,5 +34,7 @@ double height_of(std::uint8_t index);
 /// are left out.
 std::span<const Colour> height_ramp();  // evenly spaced, the lowest first; those between are mixed
 std::array<Colour, 256> cloud_palette(double low = kLowest, double high = kHighest);
+/// The same from one colour to another: a robot's own, or those of a theme.
+std::array<Colour, 256> cloud_palette(double low, double high, const Colour& lowest, const Colour& highest);
 
 }  // namespace adit::picture

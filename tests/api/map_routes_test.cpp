@@ -108,6 +108,16 @@ TEST_F(MapRoutesTest, SpreadsAnyHeightsAskedForOverTheColours) {
   EXPECT_EQ(spread.body.substr(900), usual.body.substr(900)) << "only the palette differs";
 }
 
+TEST_F(MapRoutesTest, ColoursATileAsItIsAskedTo) {
+  for (const std::string tile : {"/adit/map/grid/-/0/0/0.png", "/adit/map/cloud/ugv1/0/0/0.png"}) {
+    const auto usual = get_file(tile), own = get_file(tile + "?from=0a0b0c&to=F0E0D0");
+    ASSERT_EQ(own.status, icd::Status::Ok) << tile;
+    EXPECT_THAT(own.body, testing::HasSubstr(std::string("\xf0\xe0\xd0", 3)));
+    EXPECT_THAT(usual.body, testing::Not(testing::HasSubstr(std::string("\xf0\xe0\xd0", 3))));
+    EXPECT_EQ(own.body.substr(own.body.find("IDAT")), usual.body.substr(usual.body.find("IDAT")));
+  }
+}
+
 TEST_F(MapRoutesTest, HasNothingElsewhere) {
   for (const char* path :
        {"/adit/map/", "/adit/map/grid", "/adit/map/grid/-/0/0/0", "/adit/map/grid/-/0/0/0.jpg",
@@ -125,7 +135,9 @@ TEST_F(MapRoutesTest, RefusesNumbersThatAreNone) {
   for (const char* target :
        {"/adit/map?since=x", "/adit/map?since=-1", "/adit/map?since=1.5", "/adit/map/grid/-/0/0/0.png?at=now",
         "/adit/map/grid/-/0/0/0.png?at=nan", "/adit/map/cloud/ugv1/0/0/0.png?low=inf",
-        "/adit/map/cloud/ugv1/0/0/0.png?high=1e999"}) {
+        "/adit/map/cloud/ugv1/0/0/0.png?high=1e999", "/adit/map/grid/-/0/0/0.png?from=12345&to=123456",
+        "/adit/map/grid/-/0/0/0.png?from=12345g&to=123456", "/adit/map/grid/-/0/0/0.png?from=123456",
+        "/adit/map/grid/-/0/0/0.png?to=-12345&from=123456"}) {
     EXPECT_EQ(get_file(target).status, icd::Status::BadRequest) << target;
   }
 }

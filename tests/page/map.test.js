@@ -1,5 +1,6 @@
 import assert from "node:assert/strict";
 import { test } from "node:test";
+import { robotRgb } from "../../firmware/site/files/robot_colour.js";
 import { until } from "./box.js";
 import { becomes, box, canvas, changed, picture } from "./pictures.js";
 import { serve } from "./stage.js";
@@ -18,7 +19,7 @@ const shows = (page, [red, green, blue, most]) =>
     return count > most;
   }, [red, green, blue, most]);
 
-const FREE = [0xc8, 0xd2, 0xda, 400], ROBOT = [0xff, 0xb2, 0x24, 10], SCORED = [0x43, 0xd8, 0x93, 10], MARKER = [0xff, 0x33, 0xff, 10];
+const WALL = [0x6b, 0x78, 0x80, 200], ROBOT = [...robotRgb("Scout", "dark"), 10], SCORED = [0x43, 0xd8, 0x93, 10], MARKER = [0xff, 0x33, 0xff, 10];
 async function hide(page, ...names) {
   for (const name of names) await box(page, name).uncheck();
   await settled(page);
@@ -36,7 +37,7 @@ async function sliderOf(page) {
 test("shows the maps, the robots on them and the reports, each by its box", async (t) => {
   const { page } = await watch(t, "calm", { colorScheme: "dark" });
   await settled(page);
-  for (const [name, colour] of [["Grids", FREE], ["Robots", ROBOT], ["Reports", SCORED], ["Markers", MARKER], ["merged", FREE]]) {
+  for (const [name, colour] of [["Grids", WALL], ["Robots", ROBOT], ["Reports", SCORED], ["Markers", MARKER], ["merged", WALL]]) {
     await appears(page, colour, name);
     await box(page, name).uncheck();
     await goes(page, colour, name);
@@ -170,7 +171,7 @@ test("shows the map of a box that was restarted", async (t) => {
   await page.waitForSelector("body[data-link=live]");
   await until(() => tiles(page) > once, "the tiles of the new map");
   await settled(page);
-  assert.ok(await shows(page, FREE));
+  assert.ok(await shows(page, WALL));
 });
 
 test("takes two fingers", async (t) => {

@@ -91,7 +91,12 @@ test("draws the markers once for a view, however often a robot moves on it", asy
   await until(async () => (await drawn()).lines, "the markers");
   await page.locator(canvas).press("+"); // from here on no robot's move changes what is seen
   await settled(page);
-  const before = await drawn();
+  const before = await until(async () => { // once it has come to rest, it is drawn as large as it is seen
+    const { lines } = await drawn();
+    await page.waitForTimeout(400);
+    const now = await drawn();
+    return now.lines === lines && now;
+  }, "the map to be at rest");
   await until(async () => (await drawn()).maps > before.maps + 2, "the robots to move");
   assert.equal((await drawn()).lines, before.lines);
   await page.locator(canvas).press("+");

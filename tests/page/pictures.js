@@ -12,4 +12,17 @@ export const changed = (page, before, what) =>
     const now = await picture(page);
     return now !== before && now;
   }, what);
-export const becomes = (page, whole, what = "the picture before") => until(async () => (await picture(page)) === whole, what);
+const FEW = 12; // pixels: what is drawn in pieces may round another way where an image's edge is
+
+/** How many pixels differ from those of that picture. */
+const differences = (page, whole) =>
+  page.$eval(canvas, async (node, whole) => {
+    const bytes = Uint8Array.from(atob(whole.split(",")[1]), (letter) => letter.charCodeAt(0));
+    const image = await createImageBitmap(new Blob([bytes], { type: "image/png" }));
+    if (image.width !== node.width || image.height !== node.height) return Infinity;
+    const other = new OffscreenCanvas(image.width, image.height).getContext("2d");
+    other.drawImage(image, 0, 0);
+    const [one, two] = [node.getContext("2d"), other].map((paint) => new Uint32Array(paint.getImageData(0, 0, image.width, image.height).data.buffer));
+    return one.reduce((count, pixel, i) => count + (pixel !== two[i]), 0);
+  }, whole);
+export const becomes = (page, whole, what = "the picture before") => until(async () => (await differences(page, whole)) <= FEW, what);

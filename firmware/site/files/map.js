@@ -1,57 +1,92 @@
 // The map: the picture of what was forwarded, and on it robots, their tracks, markers and reports. Drawn again only when something changed.
 import { listenTo } from "./map_input.js";
-import { coloursOf, drawCross, drawPairRings, drawReports, drawRobots, drawScale, isStale, keepOffRobots, labelsOn } from "./map_marks.js";
+import { Labels } from "./map_labels.js";
 import { Markers, writeMarkers } from "./map_markers.js";
-import { Shapes } from "./map_shapes.js";
-import { drawLayer, Tiles } from "./map_tiles.js";
+import { drawFigures, drawLines, drawOrigin, drawScale } from "./map_metres.js";
+import { Picture } from "./map_picture.js";
+import { drawCross, drawPairRings, drawReports, nameReports } from "./map_reports.js";
+import { drawRobots, isStale, keepOffRobots, nameRobots, robotAt } from "./map_robots.js";
+import { Ruler } from "./map_ruler.js";
+import { drawShapes } from "./map_shapes.js";
+import { coloursOf, looksOf } from "./map_theme.js";
+import { drawLayer, fetchLayer, Tiles } from "./map_tiles.js";
 import { drawTracks, Tracks } from "./map_tracks.js";
 import { MapView } from "./map_view.js";
 import { whenThemeChanges } from "./theme_now.js";
 
 const PAIR_RIM = 4; // metres around two reports that are compared
+const FADES_EVERY = 2; // s: so often are tracks drawn again
 
 export class MapOfRun {
   #canvas;
-  #paint;
+  #picture;
   #view = new MapView();
   #tiles = new Tiles(() => this.redraw());
   #markers = new Markers(() => this.redraw());
-  #shapes = new Shapes();
   #tracks = new Tracks(() => this.redraw());
+  #ruler = new Ruler();
   #run = null;
+  #ill = new Set(); // robots whose map does not come
   #at = null; // the time that is shown; null: now
   #asked = false;
   #isFit = true; // until somebody moves it, all is shown
+  #isExact = true; // and at the next look so that it just fits; else only what leaves the view moves that
   #version = -1;
   #colours = {};
   #picked = null;
+  #followed = null;
   #onTap = null;
   #pair = null; // [report, report] that are compared
+  #byRobot = false; // how clouds are coloured
   #shown = { grid: true, cloud: true, robots: true, tracks: true, markers: true, reports: true };
   #hidden = new Set(); // robots whose maps are not shown
+  #drawn = "";
+  #places = { reports: [], robots: [], markers: [] };
   onLayers = () => {};
+  onTool = () => {};
 
   /** `canvas` is in the page and has its size by CSS. */
   constructor(canvas) {
     this.#canvas = canvas;
-    this.#paint = canvas.getContext("2d");
+    this.#picture = new Picture(canvas, this.#view, {
+      ground: () => this.#colours.ground,
+      over: (paint, view) => this.#drawOver(paint, view),
+      layers: [
+        { key: this.#mapKey, draw: this.#drawMaps, pieces: () => this.#tiles.pieces() },
+        { key: this.#tracksKey, draw: this.#drawTracks },
+        { key: this.#markersKey, draw: this.#drawMarkers },
+        { key: this.#signsKey, draw: this.#drawSigns },
+      ],
+    });
+    this.#picture.before = () => this.#prepare();
     const recolour = () => {
       this.#colours = coloursOf(document.documentElement);
-      this.redraw();
+      this.#recolourMaps();
     };
     whenThemeChanges(recolour);
-    new ResizeObserver(() => this.#resize()).observe(canvas);
     recolour();
-    this.#resize();
+    this.#picture.resize();
   }
 
   /** Lets it be moved by hand. */
   takeInput() {
-    listenTo(this.#canvas, this.#view, { moved: () => this.#movedByHand(), tapped: (place) => this.#onTap?.(place), fit: () => this.fit() });
+    const moved = () => {
+      this.follow(null);
+      this.#movedByHand();
+    };
+    listenTo(this.#canvas, this.#view, { moved, held: (isHeld) => this.#picture.hold(isHeld), tapped: (place) => this.#tapped(place), fit: () => this.fit() });
   }
 
   #movedByHand() {
     this.#isFit = false;
+    this.#picture.moved();
+  }
+
+  #tapped(place) {
+    if (this.#onTap) return this.#onTap(place);
+    if (!this.#ruler.isOn) return this.follow(robotAt(this.#view, this.#places.robots, place)?.name ?? null);
+    this.#ruler.put(place);
+    this.onTool();
     this.redraw();
   }
 
@@ -61,7 +96,8 @@ export class MapOfRun {
   }
 
   fit() {
-    this.#isFit = true;
+    this.follow(null);
+    this.#isFit = this.#isExact = true;
     this.redraw();
   }
 
@@ -70,18 +106,20 @@ export class MapOfRun {
     if (run.map_version !== this.#version && !this.#asked) this.#refresh(run.map_version);
     this.#markers.follow(run.marker_version);
     this.#tracks.follow(run);
+    this.#ill = new Set(run.activities.filter(({ robot, level }) => robot && level === "bad").map(({ robot }) => robot));
     const places = JSON.stringify([run.reports.map(({ number, state, asking }) => [number, state, asking]), run.near_metres,
-      run.robots.map((robot) => [robot.name, robot.position, robot.heading, isStale(robot, run.now)]), this.#markers.at(run.now).length]);
+      run.robots.map((robot) => [robot.name, robot.position, robot.heading, isStale(robot, run.now)]), this.#markers.at(run.now).length, [...this.#ill]]);
     if (places === this.#drawn) return;
     this.#drawn = places;
-    this.redraw();
+    if (this.#followed) this.#picture.moved();
+    else this.redraw();
   }
-  #drawn = "";
 
   async #refresh(version) {
     this.#asked = true;
     try {
       await this.#tiles.refresh();
+      for (const layer of this.#layers()) fetchLayer(this.#view, this.#tiles, layer, this.#at, this.#picture.density());
       this.#version = version;
       this.onLayers();
     } catch {
@@ -93,34 +131,60 @@ export class MapOfRun {
 
   /** Of the maps: null where there is none yet. */
   first = () => this.#tiles.first();
-  colours = () => ({ ...this.#tiles.colours, spread: this.#tiles.heights });
+  /** What a legend needs: {heights: colours, the lowest first, spread: {low, high} in metres}; null while clouds are coloured by robot. */
+  legend = () => (this.#byRobot ? null : { heights: looksOf(this.#colours).heights ?? this.#tiles.colours?.heights, spread: this.#tiles.heights });
   robots = () => [...new Set([...this.#tiles.layers.values()].map((layer) => layer.robot))].sort();
   kinds = () => new Set([...this.#tiles.layers.values()].map((layer) => layer.kind));
   isLive = () => this.#at === null;
+  markers = () => this.#markers;
+  centre = () => this.#view.centre;
+  redraw = () => this.#picture.redraw();
 
-  setTime(at) {
-    this.#at = at;
+  #set(change) {
+    change();
+    this.#isExact = true;
     this.redraw();
   }
-  setShown(what, isShown) {
-    this.#shown[what] = isShown;
-    this.redraw();
-  }
-  setRobot(robot, isShown) {
-    if (isShown) this.#hidden.delete(robot);
-    else this.#hidden.add(robot);
-    this.redraw();
-  }
+  setTime = (at) => this.#set(() => (this.#at = at));
+  setShown = (what, isShown) => this.#set(() => (this.#shown[what] = isShown));
+  setRobot = (robot, isShown) => this.#set(() => this.#hidden[isShown ? "delete" : "add"](robot));
   /** A cross at {x, y}; null: none. */
-  setCross(place) {
-    this.#picked = place;
-    this.redraw();
-  }
+  setCross = (place) => this.#set(() => (this.#picked = place));
+  /** Who is told of taps; null: nobody, then a tap follows a robot or measures. */
   setTap(tapped) {
-    this.#onTap = tapped;
+    if (tapped) this.measure(false);
+    this.#set(() => (this.#onTap = tapped));
+  }
+  colourBy(what) {
+    this.#byRobot = what === "robot";
+    this.#recolourMaps();
+    this.onLayers();
+  }
+  #recolourMaps() {
+    this.#tiles.setLooks(looksOf(this.#colours), this.#byRobot);
     this.redraw();
   }
+
+  /** Keeps that robot in the middle; null: none. */
+  follow(name) {
+    if (name === this.#followed) return;
+    this.#followed = name;
+    if (name) this.#isFit = false;
+    this.onTool();
+    this.redraw();
+  }
+  followed = () => this.#followed;
+
+  measure(isOn) {
+    if (isOn === this.#ruler.isOn) return;
+    this.#ruler.set(isOn);
+    this.onTool();
+    this.redraw();
+  }
+  ruler = () => this.#ruler;
+
   lookAt({ x, y }) {
+    this.follow(null);
     this.#isFit = false;
     this.#view.lookAt(x, y);
     if (this.#view.scale < 6) this.#view.scale = 6;
@@ -128,6 +192,7 @@ export class MapOfRun {
   }
   /** Looks at two reports and rings them; null: at none. */
   showPair(pair) {
+    this.follow(null);
     this.#pair = pair;
     if (pair) {
       this.#isFit = false;
@@ -138,39 +203,22 @@ export class MapOfRun {
     }
     this.redraw();
   }
-  markers = () => this.#markers;
-  centre = () => this.#view.centre;
-
-  #resize() {
-    const density = devicePixelRatio || 1;
-    const { clientWidth: width, clientHeight: height } = this.#canvas;
-    if (!width || !height) return;
-    Object.assign(this.#view, { width, height });
-    Object.assign(this.#canvas, { width: Math.round(width * density), height: Math.round(height * density) });
-    this.#draw(); // at once: a canvas of a new size is blank
-  }
-
-  #waiting = false;
-  redraw() {
-    if (this.#waiting) return;
-    this.#waiting = true;
-    requestAnimationFrame(() => {
-      this.#waiting = false;
-      this.#draw();
-    });
-  }
 
   #isSeen = (layer) => this.#shown[layer.kind] && !this.#hidden.has(layer.robot);
+  #now = () => this.#at ?? this.#run?.now ?? 0;
 
-  #places() {
+  /** Before each frame: what is where, and where one looks. */
+  #prepare() {
     const { reports = [], robots = [], run_number } = this.#run ?? {};
     const until = this.#at ?? Infinity;
-    return {
+    this.#places = {
       reports: this.#shown.reports ? reports.filter((report) => report.position && report.run === run_number && report.received <= until) : [],
       robots: !this.#shown.robots ? [] : this.isLive() ? robots : this.#tracks.robotsAt(until),
-      tracks: this.#shown.tracks ? this.#tracks.until(until) : [],
-      markers: this.#shown.markers ? this.#markers.at(this.#at ?? this.#run?.now ?? 0) : [],
+      markers: this.#shown.markers ? this.#markers.at(this.#now()) : [],
     };
+    const followed = this.#places.robots.find(({ name }) => name === this.#followed);
+    if (followed) this.#view.lookAt(followed.position.x, followed.position.y);
+    if (this.#isFit) this.#fitAll(this.#places);
   }
 
   #fitAll({ reports, robots }) {
@@ -180,31 +228,59 @@ export class MapOfRun {
       if (Math.abs(x) > 8192 || Math.abs(y) > 8192) continue;
       Object.assign(all, { left: Math.min(all.left, x), right: Math.max(all.right, x), bottom: Math.min(all.bottom, y), top: Math.max(all.top, y) });
     }
-    if (all.left <= all.right) this.#view.fit(all);
+    const size = `${this.#view.width} ${this.#view.height}`;
+    if (all.left > all.right || (!this.#isExact && size === this.#fitted && this.#view.holds(all))) return;
+    this.#view.fit(all);
+    this.#fitted = size;
+    this.#isExact = false;
   }
+  #fitted = "";
 
-  #draw() {
-    const paint = this.#paint, view = this.#view, density = devicePixelRatio || 1;
-    const places = this.#places();
-    if (this.#isFit) this.#fitAll(places);
-    paint.setTransform(density, 0, 0, density, 0, 0);
-    paint.clearRect(0, 0, view.width, view.height);
+  #look = () => `${this.#picture.fontSize} ${this.#colours.ground} ${this.#colours.ink}`;
+
+  #mapKey = () => [this.#tiles.changes, this.#at, this.#shown.grid, this.#shown.cloud, [...this.#hidden], this.#look()].join();
+  #layers() {
     const layers = [...this.#tiles.layers.values()].filter(this.#isSeen);
     // The merged map lies below those of robots, and clouds lie upon grids.
-    layers.sort((a, b) => (a.kind === "cloud") - (b.kind === "cloud") || (a.robot !== "") - (b.robot !== "") || a.robot.localeCompare(b.robot));
-    for (const layer of layers) drawLayer(paint, view, this.#tiles, layer, this.#at);
-    const size = parseFloat(getComputedStyle(this.#canvas).fontSize);
-    const labels = labelsOn(paint, this.#colours, size, view.width);
-    const unit = size / 14;
-    drawTracks(paint, this.#colours, view, places.tracks, unit);
-    this.#shapes.draw(paint, this.#colours, view, places.markers, unit);
-    drawScale(paint, this.#colours, labels, view, size);
-    keepOffRobots(labels, view, places.robots, size / 1.8);
-    if (this.#pair) drawPairRings(paint, this.#colours, labels, view, this.#pair, size);
-    drawReports(paint, this.#colours, labels, view, this.#run, places.reports, size / 2, this.#pair ?? []);
-    drawRobots(paint, this.#colours, labels, view, places.robots, size / 1.8, this.#at ?? this.#run?.now);
-    writeMarkers(labels, view, places.markers);
-    if (this.#onTap && this.#canvas.matches(":focus-visible")) drawCross(paint, { ...this.#colours, ask: this.#colours.soft }, view.toPixel(view.centre), size / 2);
+    return layers.sort((a, b) => (a.kind === "cloud") - (b.kind === "cloud") || (a.robot !== "") - (b.robot !== "") || a.robot.localeCompare(b.robot));
+  }
+  #drawMaps = (paint, view, piece) => {
+    for (const layer of this.#layers()) drawLayer(paint, view, this.#tiles, layer, this.#at, this.#picture.density(), piece);
+    drawLines(paint, this.#colours, view);
+    drawOrigin(paint, this.#colours, view, this.#picture.fontSize / 14);
+  };
+
+  #tracksKey = () => [this.#shown.tracks, this.#tracks.changes, this.#at ?? Math.floor(this.#now() / FADES_EVERY), this.#look()].join();
+  #drawTracks = (paint, view) => {
+    if (this.#shown.tracks) drawTracks(paint, this.#colours, view, this.#tracks.until(this.#at ?? Infinity), this.#now(), this.#picture.fontSize / 14);
+  };
+
+  #markersKey = () => [this.#places.markers.reduce((sum, { mark }) => (Math.imul(sum, 31) + mark) | 0, this.#places.markers.length), this.#look()].join();
+  #drawMarkers = (paint, view) => drawShapes(paint, this.#colours, view, this.#places.markers, this.#picture.fontSize / 14);
+
+  #signsKey = () => [this.#drawn, this.#at, this.#tracks.changes * !this.isLive(), this.#shown.robots, this.#shown.reports, this.#markersKey(), this.#followed,
+    this.#pair?.map(({ number }) => number), this.#onTap !== null].join();
+  #drawSigns = (paint, view) => {
+    const { reports, robots, markers } = this.#places, size = this.#picture.fontSize, colours = this.#colours;
+    const rim = [(view.width - this.#view.width) / 2, (view.height - this.#view.height) / 2];
+    const labels = new Labels(paint, colours, size, { width: view.width, height: view.height, rim });
+    const robotSize = size / 1.8, now = this.#now();
+    keepOffRobots(labels, view, robots, robotSize);
+    if (this.#pair) drawPairRings(paint, colours, labels, view, this.#pair, size);
+    drawReports(paint, colours, labels, view, this.#run, reports, size / 2);
+    drawRobots(paint, colours, view, robots, robotSize, { now, followed: this.#followed });
+    nameRobots(labels, view, robots, robotSize, { now, ill: this.isLive() ? this.#ill : new Set() });
+    nameReports(labels, view, reports, size / 2, this.#pair ?? []);
+    writeMarkers(labels, view, markers);
+  };
+
+  #drawOver(paint, view) {
+    const size = this.#picture.fontSize;
+    drawFigures(paint, this.#colours, view, size);
+    drawScale(paint, this.#colours, view, size);
+    this.#ruler.draw(paint, this.#colours, view, size);
+    const isAimed = (this.#onTap || this.#ruler.isOn) && this.#canvas.matches(":focus-visible");
+    if (isAimed) drawCross(paint, { ...this.#colours, ask: this.#colours.soft }, view.toPixel(view.centre), size / 2);
     if (this.#picked) drawCross(paint, this.#colours, view.toPixel(this.#picked), size / 2);
   }
 }

@@ -1,6 +1,9 @@
-// What stands around the map: layers, time, zoom, and picking a place on it.
+// What stands around the map: layers and time. map_tools.js has what stands on it.
 import { list, make, mark, say } from "./dom.js";
 import { MapOfRun } from "./map.js";
+import { offerTools, showTools } from "./map_tools.js";
+import { tint } from "./robot_colour.js";
+import { whenThemeChanges } from "./theme_now.js";
 import { clip, metres, timeOfDay } from "./words.js";
 
 const section = document.getElementById("map");
@@ -10,12 +13,11 @@ const robots = section.querySelector(".robots");
 
 export const map = new MapOfRun(section.querySelector(".frame canvas"));
 map.takeInput();
-section.querySelector(".nearer").addEventListener("click", () => map.zoom(1.5));
-section.querySelector(".farther").addEventListener("click", () => map.zoom(1 / 1.5));
-section.querySelector(".fit").addEventListener("click", () => map.fit());
+offerTools(section, map);
 for (const box of section.querySelectorAll("[data-shows]")) {
   box.addEventListener("change", () => map.setShown(box.dataset.shows, box.checked));
 }
+section.querySelector(".by-robot").addEventListener("change", ({ target }) => map.colourBy(target.checked ? "robot" : "height"));
 
 // The slider's value is whole seconds since the first map; its right end is now.
 let settle = null, now = 0;
@@ -54,13 +56,11 @@ function showRobots() {
     box.type = "checkbox";
     box.checked = true;
     box.addEventListener("change", () => map.setRobot(robot, box.checked));
-    return make("label", box, make("span", robot === "" ? "merged" : clip(robot, 20)));
+    const name = make("span.owner", robot === "" ? "merged" : clip(robot, 20));
+    if (robot) tint(name, robot);
+    return make("label", box, name);
   };
   list(robots, map.robots(), (robot) => `robot ${robot}`, create, () => {});
-  section.querySelector(".legend").hidden = !map.kinds().has("cloud");
-  const { spread } = map.colours();
-  if (spread) say(section.querySelector(".low"), `${metres(spread.low)} m`);
-  if (spread) say(section.querySelector(".high"), `${metres(spread.high)} m`);
 }
 map.onLayers = () => {
   showRobots();
@@ -68,20 +68,25 @@ map.onLayers = () => {
 };
 
 function drawLegend() {
-  const { heights } = map.colours();
-  if (!heights) return;
+  const legend = map.legend();
+  section.querySelector(".legend").hidden = !map.kinds().has("cloud") || !legend?.heights;
+  if (!legend?.heights || !legend.spread) return;
+  say(section.querySelector(".low"), `${metres(legend.spread.low)} m`);
+  say(section.querySelector(".high"), `${metres(legend.spread.high)} m`);
   const canvas = section.querySelector(".legend canvas");
   const paint = canvas.getContext("2d");
   const ramp = paint.createLinearGradient(0, 0, canvas.width, 0);
-  heights.forEach((colour, i) => ramp.addColorStop(i / (heights.length - 1), colour));
+  legend.heights.forEach((colour, i) => ramp.addColorStop(i / (legend.heights.length - 1), colour));
   paint.fillStyle = ramp;
   paint.fillRect(0, 0, canvas.width, canvas.height);
 }
+whenThemeChanges(drawLegend);
 
 export function showMap(view, time) {
   now = time;
   stretchSlider();
   map.show(view);
+  showTools(view);
   const { count, leftOut, thinned } = map.markers();
   const words = [
     leftOut ? `Of the markers the newest ${count} are shown; ${leftOut} older ones are not.` : "",

@@ -3,8 +3,8 @@
 const TAP = 8; // pixels: one finger that moves less is a tap
 const STEP = 60; // pixels a key press moves
 
-/** Moves `view` as it is told; `moved` after each change, `tapped({x, y})` for a tap. */
-export function listenTo(canvas, view, { moved, tapped, fit }) {
+/** Moves `view` as it is told; `moved` after each change, `held(true or false)` as fingers come down and are lifted, `tapped({x, y})` for a tap. */
+export function listenTo(canvas, view, { moved, held, tapped, fit }) {
   const fingers = new Map(); // pointerId to [left, top]
   let travelled = 0, alone = true;
 
@@ -20,6 +20,7 @@ export function listenTo(canvas, view, { moved, tapped, fit }) {
     alone = !fingers.size;
     if (alone) travelled = 0;
     fingers.set(event.pointerId, at(event));
+    held(true);
     canvas.setPointerCapture(event.pointerId);
   });
   canvas.addEventListener("pointermove", (event) => {
@@ -36,6 +37,7 @@ export function listenTo(canvas, view, { moved, tapped, fit }) {
   });
   const up = (event) => {
     const was = fingers.delete(event.pointerId);
+    if (was && !fingers.size) held(false);
     if (was && alone && travelled < TAP && event.type === "pointerup") tapped(view.toMetres(...at(event)));
   };
   canvas.addEventListener("pointerup", up);

@@ -1,12 +1,24 @@
 // How markers look from above: each in its size in metres and its colours, but never too small to be seen. What is
-// invisible (alpha 0) shows as an outline. They are drawn once for a view and kept until it or they change.
+// invisible (alpha 0) shows as an outline. Of those that are but dots from here, one stands for all at its place.
+
+import { themeNow } from "./theme_now.js";
 
 const LEAST = 3; // units from the middle
 const [ARROW, CUBE, SPHERE, CYLINDER, LINE_STRIP, LINE_LIST, CUBE_LIST, SPHERE_LIST, POINTS, , MESH, TRIANGLES] = Array(12).keys();
 const FINEST = 2; // pixels: a line's next point is not drawn where it is nearer
 
 const two = (value) => Math.round(255 * Math.min(1, Math.max(0, value)));
-export const css = ({ r, g, b, a }) => `rgb(${two(r)} ${two(g)} ${two(b)} / ${a})`;
+/** A team's colour, as the theme has it: at night as light as it is, but red. */
+export function css({ r, g, b, a }) {
+  if (themeNow() !== "red") return `rgb(${two(r)} ${two(g)} ${two(b)} / ${a})`;
+  const light = 0.3 * r + 0.6 * g + 0.1 * b;
+  return `rgb(${two(0.35 + 0.65 * light)} ${two(0.08 + 0.34 * light)} ${two(0.06 + 0.28 * light)} / ${a})`;
+}
+const parts = /^#(..)(..)(..)(..)$/;
+const ofHex = (colour) => {
+  const [r, g, b, a] = parts.exec(colour).slice(1).map((part) => parseInt(part, 16) / 255);
+  return css({ r, g, b, a });
+};
 const isSeen = (colour) => !/( 0\)|^#.{6}00)$/.test(colour);
 
 /** A view to draw on; `unit` is in pixels, by the size of the page's letters. */
@@ -20,12 +32,13 @@ class Sheet {
 
   /** Draws the parts of a marker, those of one colour at a time: `trace(i)` adds a part to the path. */
   parts({ color, colors }, count, trace, finish) {
-    const own = css(color);
+    const own = css(color), isNight = themeNow() === "red";
+    const colourOf = (i) => (colors[i] === undefined ? own : isNight ? ofHex(colors[i]) : colors[i]);
     for (let i = 0; i < count; ) {
-      const colour = colors[i] ?? own;
+      const colour = colourOf(i);
       this.paint.beginPath();
       do trace(i++);
-      while (i < count && (colors[i] ?? own) === colour);
+      while (i < count && colourOf(i) === colour);
       finish(colour);
     }
   }
@@ -70,7 +83,7 @@ function dot(sheet, place, colour) {
 
 function strip(sheet, marker) {
   const { paint } = sheet, count = marker.points.length / 2 - 1;
-  if (!count) return dot(sheet, sheet.place(marker, 0), marker.colors[0] ?? css(marker.color)); // it has but begun
+  if (!count) return dot(sheet, sheet.place(marker, 0), marker.colors[0] ? ofHex(marker.colors[0]) : css(marker.color)); // it has but begun
   const finish = sheet.line(Math.max(1.75 * sheet.unit, sheet.metres(marker.scale.x)));
   let last = sheet.place(marker, 0), begun = true;
   sheet.parts(marker, count, (i) => {
@@ -93,7 +106,7 @@ const lines = (sheet, marker) =>
 
 const triangles = (sheet, marker) =>
   sheet.parts(marker, marker.points.length / 6, (i) => sheet.polygon([0, 1, 2].map((corner) => sheet.place(marker, 3 * i + corner))),
-    sheet.line(1.25 * sheet.unit));
+    sheet.line(1.75 * sheet.unit));
 
 /** Many of one shape: `turned` where the pose turns it. */
 const many = (shape, turned) => (sheet, marker) => {
@@ -155,33 +168,22 @@ const bare = (sheet, { position, color }) => dot(sheet, sheet.view.toPixel(posit
 const isNear = (seen, { left, right, bottom, top }, rim) =>
   left < seen.right + rim && right > seen.left - rim && bottom < seen.top + rim && top > seen.bottom - rim;
 
-export class Shapes {
-  #canvas = document.createElement("canvas");
-  #drawn = "";
+/** Of markers that are but dots from here, the newest of those that fall on one place: {markers that are drawn}, in their order. */
+function thinned(markers, view, side) {
+  const taken = new Set();
+  const isKept = ({ bounds: { left, right, bottom, top } }) => {
+    if (Math.max(right - left, top - bottom) * view.scale > side) return true;
+    const [x, y] = view.toPixel({ x: (left + right) / 2, y: (bottom + top) / 2 }), place = `${Math.floor(x / side)} ${Math.floor(y / side)}`;
+    return !taken.has(place) && taken.add(place);
+  };
+  return markers.toReversed().filter(isKept).reverse();
+}
 
-  /** `unit`: pixels, by the size of the page's letters. */
-  draw(paint, colours, view, markers, unit) {
-    if (!markers.length) return;
-    const density = devicePixelRatio || 1, { width, height, centre, scale } = view;
-    const all = markers.reduce((sum, { mark }) => (Math.imul(sum, 31) + mark) | 0, markers.length);
-    const key = [width, height, centre.x, centre.y, scale, unit, density, colours.ground, colours.soft, all].join();
-    if (key !== this.#drawn) this.#draw(colours, view, markers, unit, density);
-    this.#drawn = key;
-    paint.save();
-    paint.resetTransform();
-    paint.drawImage(this.#canvas, 0, 0);
-    paint.restore();
-  }
-
-  #draw(colours, view, markers, unit, density) {
-    const canvas = this.#canvas, seen = view.bounds(), rim = (24 * unit) / view.scale;
-    Object.assign(canvas, { width: Math.round(view.width * density), height: Math.round(view.height * density) }); // and blank
-    const paint = canvas.getContext("2d");
-    paint.scale(density, density);
-    paint.lineJoin = "round";
-    const sheet = new Sheet(paint, colours, view, unit);
-    for (const marker of markers) {
-      if (isNear(seen, marker.bounds, rim)) (marker.needsPoints ? bare : SHAPES[marker.type])?.(sheet, marker);
-    }
-  }
+/** `unit`: pixels, by the size of the page's letters. */
+export function drawShapes(paint, colours, view, markers, unit) {
+  const seen = view.bounds(), rim = (24 * unit) / view.scale;
+  paint.lineJoin = "round";
+  const sheet = new Sheet(paint, colours, view, unit);
+  const near = markers.filter(({ bounds }) => isNear(seen, bounds, rim));
+  for (const marker of thinned(near, view, 2 * LEAST * unit)) (marker.needsPoints ? bare : SHAPES[marker.type])?.(sheet, marker);
 }

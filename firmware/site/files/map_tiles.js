@@ -9,6 +9,10 @@ export class Tiles {
   side = 256;
   colours = null; // {free, occupied, heights}: of the images
   heights = null; // {low, high}, in metres, over which the colours of all clouds are spread
+  changes = 0; // counts what changes all of it
+  #pieces = new Map(); // by their names, where an image came
+  #looks = null; // map_theme.js
+  #byRobot = false;
   #version = 0;
   #images = new Map(); // "grid/r1/0/1/2" to {name, image}: what was asked for, and what was last fetched
   #queue = [];
@@ -18,6 +22,26 @@ export class Tiles {
   /** `changed` is called when there is something new to draw. */
   constructor(changed) {
     this.#changed = changed;
+  }
+
+  /** Where images came since it was last asked: [{left, right, bottom, top}], in metres. */
+  pieces() {
+    const all = [...this.#pieces.values()];
+    this.#pieces.clear();
+    return all;
+  }
+
+  /** How they are coloured: looksOf() of map_theme.js, and clouds by robot or by height. */
+  setLooks(looks, byRobot) {
+    this.#looks = looks;
+    this.#byRobot = byRobot;
+    ++this.changes;
+  }
+
+  #coloursOf({ kind, robot }) {
+    const [from, to] = kind === "grid" ? this.#looks.grid : this.#byRobot ? this.#looks.robot(robot) : this.#looks.cloud ?? [];
+    const spread = kind === "cloud" && this.heights ? `&low=${this.heights.low}&high=${this.heights.high}` : "";
+    return from ? `${spread}&from=${from}&to=${to}` : spread;
   }
 
   /** Asks what changed since the last time. */
@@ -46,7 +70,11 @@ export class Tiles {
       const key = `${layer.kind} ${layer.robot}`;
       const known = this.layers.get(key) ?? { tiles: new Map() };
       this.layers.set(key, Object.assign(known, layer));
-      for (const tile of tiles) known.tiles.set(`${tile.level}/${tile.x}/${tile.y}`, tile);
+      for (const tile of tiles) {
+        const place = `${tile.level}/${tile.x}/${tile.y}`;
+        known.tiles.set(place, tile);
+        if (tile.blank) this.#pieces.set(place, this.#areaOf(place)); // no image will come
+      }
     }
     this.#spreadColours();
     this.#changed();
@@ -65,6 +93,7 @@ export class Tiles {
     this.layers.clear();
     this.#images.clear();
     this.#version = 0;
+    ++this.changes;
   }
 
   /** When the first map came, or null. */
@@ -92,10 +121,9 @@ export class Tiles {
     if (!tile || (at === null ? tile.blank : at < tile.first)) return null;
     const isNewest = at === null || (at >= tile.stamp && !tile.blank);
     const path = `/adit/map/${layer.kind}/${layer.robot || "-"}/${place}.png`;
-    const colours = layer.kind === "cloud" && this.heights ? `&low=${this.heights.low}&high=${this.heights.high}` : "";
-    const name = `${path}?${isNewest ? `v=${tile.version}` : `at=${at}`}${colours}`;
+    const name = `${path}?${isNewest ? `v=${tile.version}` : `at=${at}`}${this.#coloursOf(layer)}`;
     let known = this.#images.get(path);
-    if (!known) this.#images.set(path, (known = { name: "", image: null }));
+    if (!known) this.#images.set(path, (known = { name: "", image: null, place }));
     known.used = performance.now();
     if (known.name !== name) {
       known.name = name;
@@ -113,7 +141,9 @@ export class Tiles {
     try {
       const answer = await fetch(name);
       const image = answer.ok ? await createImageBitmap(await answer.blob()) : null;
-      if (known.name === name && (image || answer.status === 404)) known.image = image;
+      if (known.name !== name || !(image || answer.status === 404)) return;
+      known.image = image;
+      this.#pieces.set(known.place, this.#areaOf(known.place));
       this.#changed();
     } catch {
       if (known.name === name) known.name = ""; // asked for again when it is next drawn
@@ -124,6 +154,11 @@ export class Tiles {
     }
   }
 
+  #areaOf(place) {
+    const [level, x, y] = place.split("/").map(Number), metres = this.metresPerPixel[level] * this.side;
+    return { left: x * metres, right: (x + 1) * metres, bottom: y * metres, top: (y + 1) * metres };
+  }
+
   #drop() {
     if (this.#images.size <= MOST_IMAGES) return;
     const oldest = [...this.#images].sort(([, a], [, b]) => a.used - b.used).slice(0, MOST_IMAGES / 4);
@@ -131,14 +166,31 @@ export class Tiles {
   }
 }
 
-/** Draws those of a layer's tiles that are seen. */
-export function drawLayer(paint, view, tiles, layer, at) {
-  const density = devicePixelRatio || 1;
+/** The level whose pixels are about as large as those of the page. */
+function levelOf(tiles, view, density) {
   const sizes = tiles.metresPerPixel.map((metres) => metres * view.scale * density);
-  let level = sizes.findLastIndex((size) => size <= 2);
-  if (level < 0) level = 0;
-  const metres = tiles.metresPerPixel[level] * tiles.side;
-  const seen = view.bounds();
+  return { level: Math.max(0, sizes.findLastIndex((size) => size <= 2)), sizes };
+}
+
+/** Those tiles of a layer that are seen, of which it has one: [{name, x, y}]. */
+function placesIn(layer, level, seen, metres) {
+  const places = [];
+  for (const [name, { level: of, x, y }] of layer.tiles) {
+    const isSeen = x * metres < seen.right && (x + 1) * metres > seen.left && y * metres < seen.top && (y + 1) * metres > seen.bottom;
+    if (of === level && isSeen) places.push({ name, x, y });
+  }
+  return places;
+}
+
+/** Asks for the images of what is seen that changed. */
+export function fetchLayer(view, tiles, layer, at, density) {
+  const { level } = levelOf(tiles, view, density);
+  for (const { name } of placesIn(layer, level, view.bounds(), tiles.metresPerPixel[level] * tiles.side)) tiles.image(layer, name, at);
+}
+
+/** Draws those of a layer's tiles that lie in `seen`, metres. */
+export function drawLayer(paint, view, tiles, layer, at, density, seen = view.bounds()) {
+  const { level, sizes } = levelOf(tiles, view, density), metres = tiles.metresPerPixel[level] * tiles.side;
   paint.imageSmoothingEnabled = sizes[level] < 1;
   for (const place of placesIn(layer, level, seen, metres)) {
     const image = tiles.image(layer, place.name, at);
@@ -148,13 +200,4 @@ export function drawLayer(paint, view, tiles, layer, at) {
     const [right, bottom] = view.toPixel({ x: (place.x + 1) * metres, y: place.y * metres }).map(Math.round);
     paint.drawImage(image, left, top, right - left, bottom - top);
   }
-}
-
-function placesIn(layer, level, seen, metres) {
-  const places = [];
-  for (const [name, { level: of, x, y }] of layer.tiles) {
-    const isSeen = x * metres < seen.right && (x + 1) * metres > seen.left && y * metres < seen.top && (y + 1) * metres > seen.bottom;
-    if (of === level && isSeen) places.push({ name, x, y });
-  }
-  return places;
 }

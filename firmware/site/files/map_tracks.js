@@ -1,12 +1,16 @@
 // Where each robot was. The box keeps about a pose a second (README.md: GET /adit/tracks); they are fetched once,
 // and what comes after is taken from the run's own events.
+import { robotColour } from "./robot_colour.js";
 
 const SPACING = 1; // s
 const SILENCE = 5; // s without an event: some were missed
 const GAP = 60; // s without a pose: where it went in between is not known
 const LEAST_STEP = 2; // pixels: a line need not be finer
+// From the newest: up to how many seconds ago, how wide, how strong.
+const AGES = [[60, 2.25, 0.95], [300, 1.75, 0.6], [Infinity, 1.5, 0.35]];
 
 export class Tracks {
+  changes = 0; // counts what there is new to draw
   #all = new Map(); // robot to [[at, x, y, z, heading]], oldest first
   #run = null;
   #heard = 0; // the box's time of the last event
@@ -26,6 +30,7 @@ export class Tracks {
       this.#all.clear();
       this.#fetched = false;
       this.#run = run_number;
+      ++this.changes;
     }
     if (!this.#fetched) this.#fetch();
     for (const { name, at, position: { x, y, z }, heading } of robots) {
@@ -53,6 +58,7 @@ export class Tracks {
         this.#all.set(robot, [...poses, ...this.#of(robot).filter(([at]) => at > last + 0.01)]);
       }
       this.#fetched = true;
+      ++this.changes;
       this.#changed();
     } catch {
       // asked for again with the next event
@@ -71,33 +77,56 @@ export class Tracks {
     return robots;
   }
 
-  /** Each robot's poses up to that time. */
-  until = (time) => [...this.#all.values()].map((track) => track.filter(([at]) => at <= time));
-}
-
-/** `unit`: pixels, by the size of the page's letters. */
-export function drawTracks(paint, colours, view, tracks, unit) {
-  paint.save();
-  paint.lineJoin = "round";
-  for (const [width, colour, alpha] of [[4, colours.ground, 0.5], [1.75, colours.lamp, 0.8]]) {
-    Object.assign(paint, { lineWidth: width * unit, strokeStyle: colour, globalAlpha: alpha });
-    for (const track of tracks) drawTrack(paint, view, track);
+  /** Each robot's poses up to that time: [{name, poses}]. */
+  until(time) {
+    const cut = (poses) => (poses.at(-1)?.[0] <= time ? poses : poses.slice(0, poses.findLastIndex(([at]) => at <= time) + 1));
+    return [...this.#all].map(([name, poses]) => ({ name, poses: cut(poses) }));
   }
-  paint.restore();
 }
 
-function drawTrack(paint, view, track) {
+/** In each robot's colour; what is longer ago is fainter. `unit`: pixels, by the size of the page's letters. */
+export function drawTracks(paint, colours, view, tracks, now, unit) {
+  paint.lineJoin = "round";
+  for (let age = AGES.length - 1; age >= 0; --age) {
+    const [oldest, width, alpha] = AGES[age], newest = AGES[age - 1]?.[0] ?? -Infinity;
+    for (const { name, poses } of tracks) {
+      if (!trace(paint, view, poses, now - oldest, now - newest)) continue;
+      if (age === 0) {
+        Object.assign(paint, { lineWidth: (width + 2) * unit, strokeStyle: colours.ground, globalAlpha: 0.5 });
+        paint.stroke();
+      }
+      Object.assign(paint, { lineWidth: width * unit, strokeStyle: robotColour(name), globalAlpha: alpha });
+      paint.stroke();
+    }
+  }
+  paint.globalAlpha = 1;
+}
+
+/** The index of the first pose after `time`. */
+function firstAfter(poses, time) {
+  let low = 0, high = poses.length;
+  while (low < high) {
+    const middle = (low + high) >> 1;
+    if (poses[middle][0] > time) high = middle;
+    else low = middle + 1;
+  }
+  return low;
+}
+
+/** The way after `from` up to `to`, from the pose before it on. Gives whether there is one. */
+function trace(paint, view, poses, from, to) {
+  const begin = Math.max(0, firstAfter(poses, from) - 1), end = firstAfter(poses, to);
+  if (end - begin < 2) return false;
   let last = null, lastAt = -Infinity;
   paint.beginPath();
-  track.forEach(([at, x, y], i) => {
-    const [left, top] = view.toPixel({ x, y });
-    const step = last ? Math.hypot(left - last[0], top - last[1]) : Infinity;
+  for (let i = begin; i < end; ++i) {
+    const [at, x, y] = poses[i], [left, top] = view.toPixel({ x, y });
     const isGap = at - lastAt > GAP;
     lastAt = at;
-    if (step < LEAST_STEP && !isGap && i < track.length - 1) return;
+    if (last && !isGap && i < end - 1 && Math.hypot(left - last[0], top - last[1]) < LEAST_STEP) continue;
     if (isGap) paint.moveTo(left, top);
     else paint.lineTo(left, top);
     last = [left, top];
-  });
-  paint.stroke();
+  }
+  return true;
 }

@@ -1,6 +1,7 @@
 // Where the map's canvas looks: metres of the frame "darpa" (x to the right, y up) to pixels of the page.
 
 const MOST_METRES = 8192, LEAST_SCALE = 0.02, MOST_SCALE = 400;
+const SAME = 1e-6; // pixels
 
 const within = (value, least, most) => Math.min(most, Math.max(least, value));
 
@@ -21,6 +22,29 @@ export class MapView {
   bounds() {
     const { x: left, y: top } = this.toMetres(0, 0), { x: right, y: bottom } = this.toMetres(this.width, this.height);
     return { left, top, right, bottom };
+  }
+
+  /** The same with so many pixels more on each side. */
+  widened(along, down) {
+    return Object.assign(new MapView(), { width: this.width + 2 * along, height: this.height + 2 * down, centre: this.centre, scale: this.scale });
+  }
+
+  /** Whether all that `view` shows is in it. */
+  covers(view) {
+    const own = this.bounds(), its = view.bounds(), slack = 1 / this.scale;
+    return own.left <= its.left + slack && own.right >= its.right - slack && own.bottom <= its.bottom + slack && own.top >= its.top - slack;
+  }
+
+  /** Whether an area is seen whole, and not at the very edge. */
+  holds({ left, right, bottom, top }) {
+    const own = this.bounds(), rim = Math.min(this.width, this.height) * 0.02 / this.scale;
+    return left - rim >= own.left && right + rim <= own.right && bottom - rim >= own.bottom && top + rim <= own.top;
+  }
+
+  /** Whether it has the same middle, and the room of a rim around `view`. */
+  isAround({ centre: { x, y }, width, height }) {
+    const isNear = (metres) => Math.abs(metres) * this.scale < SAME;
+    return isNear(this.centre.x - x) && isNear(this.centre.y - y) && this.width > width && this.height > height;
   }
 
   pan(right, down) {

@@ -1,0 +1,126 @@
+// Reports on the map: a picture of what was found, in the colour of its state, with the state's shape beside it; near duplicates
+// are joined by a line.
+import { life } from "./arriving.js";
+import { iconPath } from "./artifact_icons.js";
+import { nearPairs } from "./near.js";
+import { clip } from "./words.js";
+
+const LABELS_FROM = 2; // pixels per metre
+const PICTURES_FROM = 0.7; // pixels per metre: below it only shapes are told apart
+const NEWEST = 6; // are named before the others
+
+function path(paint, points, left, top, size) {
+  paint.beginPath();
+  for (const [x, y] of points) paint.lineTo(left + x * size, top + y * size);
+  paint.closePath();
+}
+
+const SHAPES = {
+  wait: [[0, -1], [1, 0.8], [-1, 0.8]],
+  bad: [[-0.6, -1], [0, -0.4], [0.6, -1], [1, -0.6], [0.4, 0], [1, 0.6], [0.6, 1], [0, 0.4], [-0.6, 1], [-1, 0.6], [-0.4, 0], [-1, -0.6]],
+  ask: [[0, -1.1], [1.1, 0], [0, 1.1], [-1.1, 0]],
+};
+
+/** The shapes of page.css, with a rim in the ground's colour that sets them off from any map. */
+function drawShape(paint, colours, level, left, top, size) {
+  if (SHAPES[level]) {
+    path(paint, SHAPES[level], left, top, size);
+  } else {
+    paint.beginPath();
+    paint.arc(left, top, size * 0.9, 0, 2 * Math.PI);
+  }
+  paint.lineJoin = "round";
+  paint.strokeStyle = colours.ground;
+  paint.lineWidth = size * 0.7;
+  paint.stroke();
+  paint.strokeStyle = paint.fillStyle = colours[level];
+  paint.lineWidth = size * 0.35;
+  if (level === "quiet") paint.stroke();
+  else paint.fill();
+}
+
+/** A plate with the picture of what was found; its state's shape stands at its corner. */
+function drawPicture(paint, colours, report, [left, top], size) {
+  const { level } = life(report), side = size * 1.25;
+  paint.beginPath();
+  paint.roundRect(left - side, top - side, 2 * side, 2 * side, side * 0.45);
+  Object.assign(paint, { fillStyle: colours.panel, strokeStyle: colours.ground, lineWidth: size * 0.6 });
+  paint.stroke();
+  paint.fill();
+  Object.assign(paint, { strokeStyle: colours[level], lineWidth: Math.max(1.5, size * 0.2) });
+  paint.stroke();
+  paint.save();
+  paint.translate(left - side * 0.75, top - side * 0.75);
+  paint.scale((side * 1.5) / 24, (side * 1.5) / 24);
+  Object.assign(paint, { lineWidth: 2.2, lineCap: "round", lineJoin: "round" });
+  paint.stroke(iconPath(report.type));
+  paint.restore();
+  drawShape(paint, colours, level, left + side, top - side, size * 0.45);
+}
+
+/** Two reports that may be of one artifact, joined by a line. */
+function drawPair(paint, colours, labels, view, { one, other, metres: apart }) {
+  const [left, top] = view.toPixel(one.position), [right, bottom] = view.toPixel(other.position);
+  for (const [width, colour] of [[6, colours.ground], [3, colours.wait]]) {
+    paint.lineWidth = width;
+    paint.strokeStyle = colour;
+    paint.beginPath();
+    paint.moveTo(left, top);
+    paint.lineTo(right, bottom);
+    paint.stroke();
+  }
+  if (Math.hypot(left - right, top - bottom) > 8 * labels.size) labels.write(`${apart.toFixed(1)} m`, (left + right) / 2, (top + bottom) / 2);
+}
+
+const nameOf = (report) => `#${report.number} ${clip(report.type, 20)}`;
+
+export function drawReports(paint, colours, labels, view, run, reports, size) {
+  const isPicture = view.scale >= PICTURES_FROM;
+  for (const report of reports) labels.keepOff(view.toPixel(report.position), isPicture ? size * 1.3 : size * 0.8);
+  for (const pair of nearPairs({ ...run, reports })) drawPair(paint, colours, labels, view, pair);
+  for (const report of [...reports].reverse()) {
+    const place = view.toPixel(report.position);
+    if (isPicture) drawPicture(paint, colours, report, place, size);
+    else drawShape(paint, colours, life(report).level, ...place, size * 0.9);
+  }
+}
+
+/** Those that wait for a word and the newest first; `named`: those whose names stand there already. */
+export function nameReports(labels, view, reports, size, named) {
+  const numbers = named.map(({ number }) => number);
+  const rank = (report, i) => (life(report).level === "ask" ? 0 : i < NEWEST ? 1 : 2);
+  const ranked = reports.map((report, i) => ({ report, rank: rank(report, i) })).toSorted((a, b) => a.rank - b.rank);
+  for (const { report, rank: its } of ranked) {
+    if (numbers.includes(report.number) || (its > 0 && view.scale < LABELS_FROM)) continue;
+    labels.write(nameOf(report), ...view.toPixel(report.position), { away: size * 1.7 });
+  }
+}
+
+/** Sets two reports off from all others; their names come first. */
+export function drawPairRings(paint, colours, labels, view, pair, size) {
+  for (const report of pair) {
+    const [left, top] = view.toPixel(report.position);
+    for (const [width, colour] of [[7, colours.ground], [3, colours.ask]]) {
+      paint.lineWidth = width;
+      paint.strokeStyle = colour;
+      paint.beginPath();
+      paint.arc(left, top, size * 1.3, 0, 2 * Math.PI);
+      paint.stroke();
+    }
+    labels.write(nameOf(report), left - size * 2, top - size * 2);
+  }
+}
+
+/** Where a report is being composed, or would be. */
+export function drawCross(paint, colours, [left, top], size) {
+  for (const [line, colour] of [[7, colours.ground], [3, colours.ask]]) {
+    paint.lineWidth = line;
+    paint.strokeStyle = colour;
+    paint.beginPath();
+    for (const [x, y] of [[1, 0], [-1, 0], [0, 1], [0, -1]]) {
+      paint.moveTo(left + x * size * 0.5, top + y * size * 0.5);
+      paint.lineTo(left + x * size * 2, top + y * size * 2);
+    }
+    paint.stroke();
+  }
+}

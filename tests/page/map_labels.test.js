@@ -1,0 +1,69 @@
+// What is reckoned for the map without a browser: names that do not collide, steps of the grid in metres, plates that are copied.
+import assert from "node:assert/strict";
+import { test } from "node:test";
+import { Labels } from "../../firmware/site/files/map_labels.js";
+import { stepOf } from "../../firmware/site/files/map_metres.js";
+import { MapView } from "../../firmware/site/files/map_view.js";
+
+const SIZE = 12;
+
+/** A canvas that only notes where something was written: [left, top, right, bottom, text]. */
+const paper = () => ({
+  written: [],
+  measureText: (text) => ({ width: text.length * SIZE * 0.6 }),
+  strokeText() {},
+  fillText(text, left, middle) {
+    this.written.push([left, middle - SIZE * 0.5, left + text.length * SIZE * 0.6, middle + SIZE * 0.5, text]);
+  },
+});
+
+/** Numbers from 0 to 1 that are the same each time. */
+function dice(seed) {
+  return () => (seed = (seed * 1103515245 + 12345) % 2147483648) / 2147483648;
+}
+
+const overlap = (a, b) => a[0] < b[2] && a[2] > b[0] && a[1] < b[3] && a[3] > b[1];
+
+test("writes no name upon another, nor cut at the edge, nor upon what is drawn", () => {
+  const paint = paper(), roll = dice(7), drawn = [];
+  const labels = new Labels(paint, {}, SIZE, { width: 800, height: 500, rim: [100, 100] });
+  for (let i = 0; i < 12; ++i) {
+    const place = [100 + roll() * 600, 100 + roll() * 300];
+    labels.keepOff(place, 8);
+    drawn.push([place[0] - 8, place[1] - 8, place[0] + 8, place[1] + 8]);
+  }
+  for (let i = 0; i < 300; ++i) labels.write(`name ${i}`, 100 + roll() * 600, 100 + roll() * 300);
+  const { written } = paint;
+  assert.ok(written.length > 30, `${written.length} of 300 found room`);
+  written.forEach((one, i) => {
+    for (const other of [...written.slice(i + 1), ...drawn]) assert.ok(!overlap(one, other), `${one} upon ${other}`);
+    const isSeen = one[2] >= 100 && one[0] <= 700 && one[3] >= 100 && one[1] <= 400;
+    assert.ok(!isSeen || (one[0] >= 100 && one[2] <= 700 && one[1] >= 99 && one[3] <= 401), `${one} is cut`);
+  });
+});
+
+test("gives who comes first the place at the right, the next one another, and the fifth none", () => {
+  const paint = paper(), labels = new Labels(paint, {}, SIZE, { width: 800, height: 500 });
+  const found = [..."abcde"].map((letter) => labels.write(letter.repeat(6), 400, 250));
+  assert.deepEqual(found, [true, true, true, true, false]);
+  assert.ok(paint.written[0][0] > 400 && paint.written[1][2] < 400);
+});
+
+test("draws a line each 1, 2 or 5 metres, times a power of ten, far enough apart to be read", () => {
+  for (let scale = 0.02; scale < 400; scale *= 1.3) {
+    const step = stepOf(scale), apart = step * scale;
+    assert.ok(apart >= 84 && apart <= 84 * 2.5 + 1e-9, `${step} m at ${scale}`);
+    assert.match(step.toExponential(3), /^[125]\.000e/);
+  }
+});
+
+test("knows what a plate with a rim covers", () => {
+  const view = Object.assign(new MapView(), { width: 800, height: 500, scale: 4 }), plate = view.widened(200, 125);
+  assert.ok(plate.covers(view) && plate.isAround(view));
+  view.pan(199, -124);
+  assert.ok(plate.covers(view) && !plate.isAround(view));
+  view.pan(10, 0);
+  assert.ok(!plate.covers(view));
+  const [left, top] = plate.toPixel(view.toMetres(0, 0));
+  assert.ok(Math.abs(left - (200 - 209)) < 1e-6 && Math.abs(top - (125 + 124)) < 1e-6);
+});

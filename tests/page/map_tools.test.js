@@ -1,0 +1,180 @@
+// What stands on the map: whom it follows, what is measured on it, and its colours.
+import assert from "node:assert/strict";
+import { test } from "node:test";
+import { robotRgb } from "../../firmware/site/files/robot_colour.js";
+import { until } from "./box.js";
+import { box, canvas } from "./pictures.js";
+import { settled, toTab, watch } from "./watch.js";
+
+const SCOUT = robotRgb("Scout", "dark");
+const measure = (page) => page.getByRole("button", { name: "Measure" });
+const told = (page) => page.textContent("#map .measured");
+
+/** The middle of what has this colour, in the page's pixels from the canvas's corner; null: nothing has. */
+const middleOf = (page, colour) => page.$eval(canvas, (node, colour) => {
+  const { data, width } = node.getContext("2d").getImageData(0, 0, node.width, node.height);
+  let count = 0, x = 0, y = 0;
+  for (let i = 0; i < data.length; i += 4) {
+    if (colour.some((part, at) => Math.abs(part - data[i + at]) > 6)) continue;
+    ++count;
+    x += (i / 4) % width;
+    y += Math.floor(i / 4 / width);
+  }
+  return count > 10 ? [x / count, y / count] : null;
+}, colour);
+
+const only = async (page, ...names) => {
+  for (const name of ["Grids", "Clouds", "Robots", "Reports", "Tracks", "Markers"]) await box(page, name).setChecked(names.includes(name));
+};
+
+async function isInTheMiddle(page) {
+  const { width, height } = await page.locator(canvas).boundingBox();
+  await until(async () => {
+    const at = await middleOf(page, SCOUT);
+    return at && Math.hypot(at[0] - width / 2, at[1] - height / 2) < 8;
+  }, "Scout in the middle");
+}
+
+test("follows a robot that is chosen, until the map is moved by hand", async (t) => {
+  const { page } = await watch(t, "calm", { colorScheme: "dark" });
+  await only(page, "Robots");
+  const choice = page.getByLabel("Follow");
+  await page.waitForFunction(() => !document.querySelector("#map .follow select").disabled);
+  assert.deepEqual(await choice.locator("option").allTextContents(), ["Follow …", "ANYmal1", "ANYmal2", "Scout"]);
+  await choice.selectOption("Scout");
+  await page.locator(canvas).press("+");
+  await isInTheMiddle(page);
+  const at = await page.locator(canvas).boundingBox();
+  await page.mouse.move(at.x + 300, at.y + 200);
+  await page.mouse.down();
+  await page.mouse.move(at.x + 200, at.y + 150, { steps: 3 });
+  await page.mouse.up();
+  assert.equal(await choice.inputValue(), "");
+});
+
+test("follows a robot that is tapped, and nobody after a tap beside it", async (t) => {
+  const { page } = await watch(t, "calm", { colorScheme: "dark", hasTouch: true });
+  await only(page, "Robots");
+  const at = await until(() => middleOf(page, SCOUT), "Scout");
+  await page.locator(canvas).tap({ position: { x: at[0], y: at[1] } });
+  assert.equal(await page.getByLabel("Follow").inputValue(), "Scout");
+  await isInTheMiddle(page);
+  const { width, height } = await page.locator(canvas).boundingBox();
+  await page.locator(canvas).tap({ position: { x: width / 2 - 150, y: height / 2 + 90 } });
+  assert.equal(await page.getByLabel("Follow").inputValue(), "");
+});
+
+test("measures between two points, by finger and by key, and says how far", async (t) => {
+  const { page } = await watch(t, "empty", { hasTouch: true });
+  await settled(page);
+  const tap = (x, y) => page.locator(canvas).tap({ position: { x, y } });
+  const metres = async () => Number(/^([\d.]+) m \(x −?[\d.]+, y −?[\d.]+\)$/.exec(await told(page))[1]);
+  await tap(300, 200);
+  assert.equal(await told(page), "", "only once it is wanted");
+  await measure(page).tap();
+  assert.equal(await measure(page).getAttribute("aria-pressed"), "true");
+  assert.equal(await told(page), "Tap where to measure from.");
+  await tap(300, 200);
+  assert.match(await told(page), /^From −?[\d.]+, −?[\d.]+ m\. Tap where to\.$/);
+  await tap(400, 200);
+  const one = await metres();
+  await tap(300, 200);
+  await tap(300, 400);
+  const two = await metres();
+  assert.ok(one > 0 && Math.abs(two / one - 2) < 0.03, `${one} and ${two} m`);
+  await page.locator(canvas).focus();
+  await page.keyboard.press("Enter");
+  for (let i = 0; i < 5; ++i) await page.keyboard.press("ArrowRight");
+  await page.keyboard.press("Enter");
+  assert.ok(Math.abs((await metres()) / one - 3) < 0.03, "five presses are 300 pixels");
+  await page.keyboard.press("Escape");
+  assert.equal(await told(page), "");
+  assert.equal(await measure(page).getAttribute("aria-pressed"), "false");
+});
+
+test("sets a place while a report is composed, whatever was measured before", async (t) => {
+  const { page } = await watch(t, "reports");
+  await measure(page).click();
+  await page.getByRole("button", { name: "New report" }).click();
+  await page.locator("#compose .types").getByRole("button", { name: "Rope", exact: true }).click();
+  assert.equal(await measure(page).getAttribute("aria-pressed"), "false");
+  await page.locator(canvas).click({ position: { x: 260, y: 250 } });
+  await until(() => page.inputValue("#compose input[name=x]"), "the place");
+  assert.equal(await told(page), "");
+  assert.equal(await page.getByLabel("Follow").inputValue(), "");
+});
+
+test("has tools that a gloved finger hits", async (t) => {
+  for (const viewport of [{ width: 390, height: 844 }, { width: 1280, height: 720 }]) {
+    const { page } = await watch(t, "calm", { viewport });
+    await toTab(page, "Map");
+    const small = await page.$$eval("#map :is(button, select, input, label:not([for]))", (nodes) => nodes.filter((node) => node.checkVisibility()).flatMap((node) => {
+      const { width, height } = (node.closest("label") ?? node).getBoundingClientRect();
+      return width < 44 || height < 44 ? [`${node.className || node.type}: ${width} x ${height}`] : [];
+    }));
+    assert.deepEqual(small, [], `${viewport.width}`);
+  }
+});
+
+test("colours clouds by height or by robot, and at night all in red", async (t) => {
+  const { page } = await watch(t, "calm", { colorScheme: "dark" });
+  await settled(page);
+  const clouds = () => page.requests.filter((url) => url.includes("/cloud/ugv1/"));
+  assert.ok(clouds().length && clouds().every((url) => !url.includes("from=")));
+  assert.ok(await page.locator("#map .legend").isVisible());
+  await box(page, "Clouds by robot").check();
+  const own = robotRgb("ugv1", "dark").map((part) => part.toString(16).padStart(2, "0")).join("");
+  await until(() => clouds().some((url) => url.endsWith(`to=${own}`)), "clouds in the robot's colour");
+  assert.ok(await page.locator("#map .legend").isHidden());
+  await page.locator(".strip .theme").click(); // light
+  await page.locator(".strip .theme").click(); // red
+  await page.waitForSelector("[data-theme=red]");
+  await settled(page);
+  const others = () => page.$eval(canvas, (node) => {
+    const { data } = node.getContext("2d").getImageData(0, 0, node.width, node.height);
+    let lit = 0;
+    for (let i = 0; i < data.length; i += 4) {
+      if (Math.max(data[i + 1], data[i + 2]) > Math.max(24, data[i] * 0.8)) return "another";
+      if (data[i] > 40) ++lit;
+    }
+    return lit > 1000 ? "none" : "dark";
+  });
+  await until(async () => (await others()) === "none", "a map without any light but red");
+});
+
+test("is copied while it is dragged: what is on it is drawn when it has come to rest", async (t) => {
+  const prepare = (page) => page.addInitScript(() => {
+    globalThis.drawn = 0; // reports' pictures
+    const real = CanvasRenderingContext2D.prototype.roundRect;
+    CanvasRenderingContext2D.prototype.roundRect = function (...words) {
+      ++globalThis.drawn;
+      return real.apply(this, words);
+    };
+  });
+  const { page } = await watch(t, "calm", { prepare });
+  await settled(page);
+  await only(page, "Reports");
+  await page.locator(canvas).press("f");
+  await page.waitForTimeout(400);
+  const drawn = () => page.evaluate(() => globalThis.drawn);
+  const { before, during, frames } = await page.$eval(canvas, async (node) => {
+    const { x, y } = node.getBoundingClientRect(), frame = () => new Promise(requestAnimationFrame);
+    node.setPointerCapture = () => {};
+    const send = (type, left) => node.dispatchEvent(new PointerEvent(type, { pointerId: 1, clientX: x + left, clientY: y + 100, bubbles: true }));
+    const look = () => node.toDataURL(), looks = new Set();
+    const before = globalThis.drawn;
+    send("pointerdown", 300);
+    for (let i = 1; i <= 10; ++i) {
+      send("pointermove", 300 + 12 * i);
+      await frame();
+      await frame();
+      looks.add(look());
+    }
+    const during = globalThis.drawn;
+    send("pointerup", 420);
+    return { before, during, frames: looks.size };
+  });
+  assert.ok(frames >= 9, `${frames} different pictures`);
+  assert.equal(during, before);
+  await until(async () => (await drawn()) > during, "the reports to be drawn where they are now");
+});

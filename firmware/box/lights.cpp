@@ -4,6 +4,7 @@
 #include <utility>
 
 #include "host/log.hpp"
+#include "panel/watched.hpp"
 
 namespace adit::box {
 
@@ -12,10 +13,29 @@ Lights::Lights(loop::Loop& loop, std::unique_ptr<panel::Lines> lines)
       lines_(std::move(lines)),
       began_(loop.now()),
       digits_began_(began_),
-      tick_(loop.timer([this] { paint(); })) {}
+      tick_(loop.timer([this] { paint(); })),
+      beat_(loop.timer([this] { beat(); })) {
+  if (is_watched()) beat_.call_at(began_);
+}
+
+bool Lights::is_watched() const {
+  return lines_ && lines_->is_watched();
+}
+
+void Lights::let_go() {
+  beat_.cancel();
+  lines_.reset();
+}
+
+/// It says by itself that the loop turns; also lines that could not be set are set again so.
+void Lights::beat() {
+  beat_.call_at(loop_.now() + panel::Watched::kBeat);
+  light_up(frame().lit);
+}
 
 void Lights::take(std::unique_ptr<panel::Lines> lines) {
   lines_ = std::move(lines);
+  if (is_watched()) beat_.call_at(loop_.now());
   lit_.reset();
   broken_ = false;
   paint();

@@ -11,13 +11,14 @@
 
 namespace adit::box {
 
-/// Shows states on the panel: patterns are timed by the loop, which is woken only while something blinks.
+/// Shows states on the panel: patterns are timed by the loop, which is woken only while something blinks, or
+/// while somebody watches the lines for whether it turns.
 class Lights {
  public:
   Lights(loop::Loop& loop, std::unique_ptr<panel::Lines> lines);
 
   /// Lets go of the lines: others, which may be the same, are taken next.
-  void let_go() { lines_.reset(); }
+  void let_go();
   void take(std::unique_ptr<panel::Lines> lines);
 
   /// Asserts or clears a state.
@@ -39,12 +40,14 @@ class Lights {
   panel::Frame frame() const;
   void paint();
   void light_up(const panel::Lit& lit);
+  bool is_watched() const;
+  void beat();
   void wake_for_what_is_next(const panel::Frame& frame);
 
   loop::Loop& loop_;
   std::unique_ptr<panel::Lines> lines_;
   loop::Instant began_, digits_began_;
-  loop::Source tick_;
+  loop::Source tick_, beat_;
   panel::States states_;
   std::array<std::optional<loop::Instant>, panel::kStates> until_;  // of those that end by themselves
   std::vector<panel::Step> digits_;

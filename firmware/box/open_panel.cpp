@@ -4,6 +4,7 @@
 
 #include "host/log.hpp"
 #include "host/service.hpp"
+#include "panel/remote.hpp"
 
 namespace adit::box {
 namespace {
@@ -45,8 +46,14 @@ KnownBoard read_board(const std::string& file) {
   return {{}, std::move(trouble)};
 }
 
-OpenPanel open_panel(const settings::Panel& settings, const std::string& folder) {
-  return {open_lines(settings, folder), open_button(settings, folder)};
+OpenPanel open_panel(const settings::Panel& settings, const PanelPlace& place) {
+  if (!place.socket.empty()) {
+    auto held = panel::remote(place.socket, settings);
+    if (held) return {std::move(held->lines), std::move(held->button)};
+    host::log(host::Level::Error, "the panel is simulated: adit-panel cannot be had",
+              {{"why", held.error()}});
+  }
+  return {open_lines(settings, place.folder), open_button(settings, place.folder)};
 }
 
 }  // namespace adit::box

@@ -20,8 +20,13 @@ struct OpenPanel {
   std::unique_ptr<panel::Lines> lines;
   std::unique_ptr<panel::ButtonLine> button;  // null: there is none
 };
-/// The panel's lines, or a simulated panel in `folder`: the file `panel`, and where no line is named at all
-/// the FIFO `panel.button`. What cannot be had is logged.
-OpenPanel open_panel(const settings::Panel& settings, const std::string& folder);
+/// Where the panel is, other than at the lines of the settings.
+struct PanelPlace {
+  std::string socket;  // of adit-panel, which holds the lines; "": nobody does
+  std::string folder;  // of a simulated panel
+};
+/// The panel that adit-panel holds. Where nobody does, its lines, or a simulated panel in the folder: the
+/// file `panel`, and where no line is named at all the FIFO `panel.button`. What cannot be had is logged.
+OpenPanel open_panel(const settings::Panel& settings, const PanelPlace& place);
 
 }  // namespace adit::box

@@ -52,6 +52,7 @@ struct Parts {
   std::vector<std::string> notices;  // of those who started the box
   std::unique_ptr<panel::Lines> lines;
   std::unique_ptr<panel::ButtonLine> button;  // null: there is none
+  std::string panel_socket = {};              // of adit-panel, which has both; or ""
   std::string runtime_folder;
   std::string state_folder;
   std::string update_folder;              // where adit-update tells its status

@@ -63,7 +63,8 @@ void Gateway::tell_of_settings(const settings::Restarts& restarts, const forward
 void Gateway::reopen_panel() {
   lights_.let_go();
   button_.let_go();
-  auto panel = box::open_panel(settings_.panel, parts_.runtime_folder);
+  auto panel =
+      box::open_panel(settings_.panel, {.socket = parts_.panel_socket, .folder = parts_.runtime_folder});
   lights_.take(std::move(panel.lines));
   button_.take(std::move(panel.button));
 }

@@ -8,27 +8,32 @@ command_line::Program command_line_of(Options& options) {
       .name = "aditd",
       .usage = "",
       .about = "Adit's gateway between a robot team and the Command Post.",
-      .rows = {{"--settings", "FILE",
-                "the settings (JSON, version 1) unless others were saved; `adit check FILE` explains what is "
-                "wrong with them",
-                &options.settings, Wanted::Always},
-               {"--secrets", "DIR",
-                "may hold scoring.token, mapping.token, team.token and label.code, readable by nobody else",
-                &options.secrets, Wanted::Always},
-               {"--state", "DIR",
-                "where the ledger of reports is kept, and what is set up by the page: settings.json and "
-                "secrets/, which count before the other two; made where it is absent",
-                &options.state, Wanted::Always},
-               {"--network", "DIR", "where adit-network tells how it stands", &options.network},
-               {"--update", "DIR", "where adit-update tells how it stands", &options.update},
-               {"--board", "FILE",
-                "what the board is, and where its lights and its button are: counts before the settings' "
-                "panel; may be absent",
-                &options.board},
-               {"--notices", "DIR", "sentences for the operator, a file each, of whatever started the box",
-                &options.notices},
-               {"--version", "", "prints the version", &options.version},
-               {"--help", "", "prints this", &options.help}},
+      .rows =
+          {{"--settings", "FILE",
+            "the settings (JSON, version 1) unless others were saved; `adit check FILE` explains what is "
+            "wrong with them",
+            &options.settings, Wanted::Always},
+           {"--secrets", "DIR",
+            "may hold scoring.token, mapping.token, team.token and label.code, readable by nobody else",
+            &options.secrets, Wanted::Always},
+           {"--state", "DIR",
+            "where the ledger of reports is kept, and what is set up by the page: settings.json and "
+            "secrets/, which count before the other two; made where it is absent",
+            &options.state, Wanted::Always},
+           {"--network", "DIR", "where adit-network tells how it stands", &options.network},
+           {"--update", "DIR", "where adit-update tells how it stands", &options.update},
+           {"--board", "FILE",
+            "what the board is, and where its lights and its button are: counts before the settings' "
+            "panel; may be absent",
+            &options.board},
+           {"--panel", "SOCKET",
+            "of adit-panel, which holds lights and button; without it aditd holds them itself, and nobody "
+            "shows that it hangs",
+            &options.panel},
+           {"--notices", "DIR", "sentences for the operator, a file each, of whatever started the box",
+            &options.notices},
+           {"--version", "", "prints the version", &options.version},
+           {"--help", "", "prints this", &options.help}},
       .ending =
           "What waits and who is logged in is kept across a restart in $RUNTIME_DIRECTORY, or else in the "
           "state folder.\n"

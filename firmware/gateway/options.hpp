@@ -9,6 +9,7 @@ struct Options {
   std::string settings, secrets, state;
   std::string network = "/run/adit-network", update = "/run/adit-update";
   std::string board;  // "": none
+  std::string panel;  // the socket of adit-panel; "": none
   std::string notices = "/run/adit-notices";
   bool help = false, version = false;
 };

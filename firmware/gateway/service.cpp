@@ -62,7 +62,8 @@ std::expected<Parts, std::string> gather(const Options& options, admin::Store& s
   auto ledger = open_ledger(options);
   if (!ledger) return std::unexpected(ledger.error().what);
   auto known = box::read_board(options.board);
-  auto panel = box::open_panel(known.board.panel.value_or(loaded->settings.panel), runtime_folder(options));
+  auto panel = box::open_panel(known.board.panel.value_or(loaded->settings.panel),
+                               {.socket = options.panel, .folder = runtime_folder(options)});
   return Parts{.store = store,
                .reset = reset,
                .sockets = sockets,
@@ -75,6 +76,7 @@ std::expected<Parts, std::string> gather(const Options& options, admin::Store& s
                .notices = box::read_notices(options.notices),
                .lines = std::move(panel.lines),
                .button = std::move(panel.button),
+               .panel_socket = options.panel,
                .runtime_folder = runtime_folder(options),
                .state_folder = options.state,
                .update_folder = options.update,

@@ -15,6 +15,9 @@ class Lines {
   virtual ~Lines() = default;
   /// Sets all lights. An error is told once by its sentence; the rest of Adit goes on.
   virtual std::expected<void, std::string> set(const Lit& lit) = 0;
+  /// Whether they are set over and over (Watched::kBeat) while the program is well, so that whoever holds the
+  /// lines knows.
+  virtual bool is_watched() const { return false; }
 };
 
 /// The line of the button.

@@ -16,7 +16,7 @@ constexpr StateRow kTable[] = {
      "fault",
      170,
      {kSlow, kOff, kOff, kOff},
-     "Adit has died, and is started again or has to be: `journalctl -u adit`"},
+     "Adit has died or hangs, and is started again or has to be: `journalctl -u adit`"},
     {State::ResetWarning,
      "reset warning",
      160,

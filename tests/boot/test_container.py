@@ -170,6 +170,32 @@ class Everyday(Story):
             lambda: self.box.pid() not in (0, before) and self.box.answers(), "another aditd to answer", 60
         )
 
+    def lit(self):
+        """The lights that are lit; the panel is a simulated one."""
+        said = self.box.run("cat", "/run/adit-panel/lights").stdout
+        return {line.split()[0] for line in said.splitlines() if line.endswith(" on")}
+
+    def wait_for_lights(self):
+        programs.wait_until(lambda: {"health", "scoring", "mapping"} <= self.lit(), "the lights to say that all is well", 60)
+
+    def test_the_lights_show_a_hang_before_systemd_ends_it(self):
+        before = programs.wait_until(self.box.pid, "it to run", 60)
+        self.wait_for_lights()
+        self.box.run("kill", "-STOP", str(before))
+        began = time.monotonic()
+        programs.wait_until(lambda: self.lit() <= {"health"}, "the lights not to pretend any more", 60)
+        note("container, from SIGSTOP of aditd to the fault on the lights", f"{time.monotonic() - began:.1f} s")
+        self.assertEqual(self.box.pid(), before, "nobody has ended it yet")
+        programs.wait_until(lambda: self.box.pid() not in (0, before) and self.box.answers(), "another aditd to answer", 60)
+        self.wait_for_lights()
+
+    def test_a_panel_that_is_killed_or_hangs_comes_back(self):
+        for how in "KILL", "STOP":
+            before = self.shell("systemctl show -p MainPID --value adit-panel.service").strip()
+            self.shell(f"kill -{how} {before}; rm -f /run/adit-panel/lights")
+            programs.wait_until(lambda: self.lit() >= {"health", "scoring", "mapping"}, "another adit-panel to show the lights", 60)
+            self.assertTrue(self.box.answers())
+
     def test_settings_reports_and_journal_are_kept_over_a_start(self):
         self.box.stop()
         self.stage.network.cable_the_box()

@@ -59,6 +59,9 @@ class Recovery(Story):
 
     def test_what_is_hung_is_killed_by_systemds_watchdog_and_started_again(self):
         self.hit("STOP")
+        self.box.wait_until(self.are_dark, "the lights to show the hang")
+        note("fault on the lights after a SIGSTOP", f"{time.monotonic() - self.when:.2f} s")
+        self.assertEqual(self.pid(), self.before, "systemd has not ended it yet")
         note("serves again after a SIGSTOP", f"{self.comes_back():.1f} s")
         self.assertIn("watchdog", self.box.console.ask("journalctl -b -u adit -n 30 --no-pager").lower())
 

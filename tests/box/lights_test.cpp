@@ -7,6 +7,7 @@
 
 #include "box/watched_lines.hpp"
 #include "loop/turn_until.hpp"
+#include "panel/watched.hpp"
 
 namespace adit::box {
 namespace {
@@ -133,6 +134,32 @@ TEST_F(LightsTest, AreTriedAgainAfterThePanelFailed) {
   lights.set(State::Serving, true);
   lights.set(State::Serving, true);
   EXPECT_EQ(seen.shown, (std::vector{Lit{true, false, false, false}}));
+}
+
+TEST_F(LightsTest, AreToldOverAndOverWhereSomebodyWatchesWhetherTheLoopTurns) {
+  WatchedLines::Seen watched{.shown = {}, .is_watched = true};
+  be_well();
+  lights.let_go();
+  lights.take(std::make_unique<WatchedLines>(watched));
+  EXPECT_TRUE(loop::turn_until(loop, [&] { return watched.shown.size() >= 4; }));
+  for (const Lit& lit : watched.shown) EXPECT_EQ(lit, (Lit{true, true, true, false}));
+  watched.fail = true;
+  const std::size_t before = watched.shown.size();
+  EXPECT_TRUE(loop::turn_until(loop, [&] { return watched.shown.size() > before + 1; })) << "and tried again";
+  lights.let_go();
+  watched.shown.clear();
+  lights.set(State::NeedsOperator, true);
+  loop.turn(10ms);
+  EXPECT_TRUE(watched.shown.empty());
+}
+
+TEST_F(LightsTest, AreNotToldTheSameAgainWhereNobodyWatches) {
+  be_well();
+  EXPECT_TRUE(loop::turn_until(loop, [&] { return !seen.shown.empty(); }));
+  const std::size_t told = seen.shown.size();
+  const auto began = loop.now();
+  EXPECT_TRUE(loop::turn_until(loop, [&] { return loop.now() - began > 2 * panel::Watched::kBeat; }));
+  EXPECT_EQ(seen.shown.size(), told);
 }
 
 TEST_F(LightsTest, ShowTheSameOnOtherLines) {

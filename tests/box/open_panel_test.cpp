@@ -27,7 +27,7 @@ class OpenPanelTest : public testing::Test {
 };
 
 TEST_F(OpenPanelTest, SimulatesLightsAndButtonWhereNoLineIsNamed) {
-  const OpenPanel opened = open_panel({}, folder_.string());
+  const OpenPanel opened = open_panel({}, {.socket = "", .folder = folder_.string()});
   ASSERT_TRUE(opened.lines->set({true, false, false, false}).has_value());
   EXPECT_TRUE(std::filesystem::exists(folder_ / "panel"));
   ASSERT_NE(opened.button, nullptr);
@@ -40,7 +40,7 @@ TEST_F(OpenPanelTest, SimulatesNoButtonInPlaceOfARealOneThatCannotBeHad) {
   settings.health = "H";
   for (const std::string button : {"", "B"}) {
     settings.button = button;
-    const OpenPanel opened = open_panel(settings, folder_.string());
+    const OpenPanel opened = open_panel(settings, {.socket = "", .folder = folder_.string()});
     ASSERT_TRUE(opened.lines->set({true, false, false, false}).has_value())
         << "the page still sees its lights";
     EXPECT_EQ(opened.button, nullptr) << "it would be no proof of anybody's presence";

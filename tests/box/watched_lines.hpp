@@ -14,6 +14,7 @@ class WatchedLines final : public panel::Lines {
   struct Seen {
     std::vector<panel::Lit> shown;
     bool fail = false;
+    bool is_watched = false;
   };
   explicit WatchedLines(Seen& seen) : seen_(seen) {}
   std::expected<void, std::string> set(const panel::Lit& lit) override {
@@ -21,6 +22,7 @@ class WatchedLines final : public panel::Lines {
     if (seen_.fail) return std::unexpected("gpiochip0: gone");
     return {};
   }
+  bool is_watched() const override { return seen_.is_watched; }
 
  private:
   Seen& seen_;

@@ -42,7 +42,6 @@ class Offers(unittest.TestCase):
         self.offers("adit reports s", "show", "send")
         self.offers("adit reports --json s", "show", "send")
         self.offers("adit run n", "new")
-        self.offers("adit-lights d", "dark")
 
     def test_options(self):
         self.offers("adit --ver", "--version")
@@ -50,6 +49,7 @@ class Offers(unittest.TestCase):
         self.offers("adit reports send --y", "--yes")
         self.offers("adit update --st", "--stick")
         self.offers("aditd --setti", "--settings")
+        self.offers("adit-panel --si", "--simulated")
         self.offers("adit run new --cs")
         self.offers("adit reports show --ru")
 
@@ -121,7 +121,7 @@ class AtATerminal(unittest.TestCase):
                                 ("adit --at 10.0.0.1:8000 id", "adit --at 10.0.0.1:8000 identify"),
                                 (f"adit check {SOURCE}/firmware/settings/exam", f"adit check {SOURCE}/firmware/settings/example.json"),
                                 ("aditd --setti", "aditd --settings"), ("adit-robots --style ro", "adit-robots --style ros"),
-                                ("adit-lights fa", "adit-lights fault")):
+                                ("adit-panel --so", "adit-panel --socket")):
                 with self.subTest(shell=shell, line=line):
                     self.assertEqual([each for each in terminal.completed(line) if each], words.split())
 

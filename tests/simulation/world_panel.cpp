@@ -2,6 +2,7 @@
 #include <optional>
 
 #include "panel/lines.hpp"
+#include "panel/remote.hpp"
 #include "simulation/world.hpp"
 
 namespace adit::panel {
@@ -38,6 +39,10 @@ class Shown final : public Lines {
 
 std::unique_ptr<Lines> simulated(std::string) {
   return std::make_unique<Shown>();
+}
+
+std::expected<Remote, std::string> remote(const std::string&, const settings::Panel&) {
+  return Remote{std::make_unique<Shown>(), nullptr};
 }
 
 }  // namespace adit::panel

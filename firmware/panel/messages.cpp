@@ -1,0 +1,78 @@
+#include "panel/messages.hpp"
+
+#include "codec/write.hpp"
+#include "settings/board.hpp"
+
+namespace adit::panel {
+namespace {
+
+constexpr std::string_view kLit = "lit ", kEnd = "end", kPanel = "panel ", kPressed = "button 1",
+                           kLetGo = "button 0";
+
+std::string member(std::string_view name, const std::string& text) {
+  return codec::json_string(name) + ':' + codec::json_string(text);
+}
+
+std::string member(std::string_view name, bool is) {
+  return codec::json_string(name) + (is ? ":true" : ":false");
+}
+
+std::expected<Message, std::string> parse_lit(std::string_view bits) {
+  ToLight message;
+  if (bits.size() != kLights.size()) return std::unexpected("lit: expected a digit for each light");
+  for (const Light light : kLights) {
+    const char bit = bits[index_of(light)];
+    if (bit != '0' && bit != '1') return std::unexpected("lit: expected 0 or 1 for each light");
+    message.lit[index_of(light)] = bit == '1';
+  }
+  return message;
+}
+
+std::expected<Message, std::string> parse_panel(std::string_view json) {
+  auto board = settings::parse_board(json);
+  if (!board) return std::unexpected("panel: " + settings::sentence_of(board.error()));
+  if (!board->panel) return std::unexpected("panel: none is named");
+  return ToUse{std::move(*board->panel)};
+}
+
+}  // namespace
+
+std::string message_of(const ToLight& message) {
+  std::string text(kLit);
+  for (const bool lit : message.lit) text.push_back(lit ? '1' : '0');
+  return text;
+}
+
+std::string message_of(const ToEnd&) {
+  return std::string(kEnd);
+}
+
+std::string message_of(const ToUse& message) {
+  const settings::Panel& panel = message.panel;
+  std::string json = R"({"name":"settings","title":"settings","panel":{)";
+  json += member("chip", panel.chip) + ',' + member("health", panel.health) + ',';
+  json += member("scoring", panel.scoring) + ',' + member("mapping", panel.mapping) + ',';
+  json += member("attention", panel.attention) + ',' + member("button", panel.button) + ',';
+  json += member("active_low", panel.active_low) + ',' + member("button_active_low", panel.button_active_low);
+  return std::string(kPanel) + json + "}}";
+}
+
+std::expected<Message, std::string> parse_message(std::string_view text) {
+  if (text == kEnd) return ToEnd{};
+  if (text.starts_with(kLit)) return parse_lit(text.substr(kLit.size()));
+  if (text.size() > kLongestMessage) return std::unexpected("longer than any message");
+  if (text.starts_with(kPanel)) return parse_panel(text.substr(kPanel.size()));
+  return std::unexpected("no message that is known");
+}
+
+std::string_view message_of_button(bool pressed) {
+  return pressed ? kPressed : kLetGo;
+}
+
+std::optional<bool> parse_button(std::string_view text) {
+  if (text == kPressed) return true;
+  if (text == kLetGo) return false;
+  return std::nullopt;
+}
+
+}  // namespace adit::panel

@@ -1,0 +1,108 @@
+/// adit-panel: holds the lights and the button. An output keeps its last value while the process that set it
+/// hangs, and after it died, so that aditd itself could not tell that it does.
+
+#include <systemd/sd-daemon.h>
+
+#include <csignal>
+#include <cstdio>
+#include <fstream>
+#include <iterator>
+
+#include "command_line/answer.hpp"
+#include "loop/watchdog.hpp"
+#include "panel/keeper.hpp"
+#include "panel/panel_options.hpp"
+#include "panel/unix_socket.hpp"
+#include "settings/board.hpp"
+
+namespace {
+
+using namespace adit;
+
+constexpr const char* kConsumer = "adit-panel";
+
+void complain(const std::string& sentence) {
+  std::fprintf(stderr, "adit-panel: %s\n", sentence.c_str());
+}
+
+/// Nothing: there is no such file, or it names no panel; one that is wrong is told and passed over.
+std::optional<settings::Panel> panel_of_board(const std::string& file) {
+  std::ifstream stream(file);
+  if (file.empty() || !stream) return std::nullopt;
+  auto board = settings::parse_board(std::string(std::istreambuf_iterator<char>(stream), {}));
+  if (board) return std::move(board->panel);
+  complain(file + ": " + settings::sentence_of(board.error()));
+  return std::nullopt;
+}
+
+std::unique_ptr<panel::ButtonLine> told(
+    std::expected<std::unique_ptr<panel::ButtonLine>, std::string> button) {
+  if (button) return std::move(*button);
+  complain("the button cannot be had: " + button.error());
+  return nullptr;
+}
+
+/// A real button that cannot be had is none: what anybody could press in its place is no proof that he is at
+/// the box.
+panel::Keeper::Held open_lines(const settings::Panel& panel, const std::string& simulated) {
+  if (panel.is_simulated()) {
+    if (simulated.empty()) return {};
+    return {panel::simulated(simulated), told(panel::simulated_button(simulated + ".button"))};
+  }
+  panel::Keeper::Held held;
+  if (auto lines = panel::open_gpio(panel, kConsumer)) {
+    held.lines = std::move(*lines);
+  } else {
+    complain("the lights cannot be had: " + lines.error());
+    if (!simulated.empty()) held.lines = panel::simulated(simulated);
+  }
+  if (!panel.button.empty()) held.button = told(panel::open_gpio_button(panel, kConsumer));
+  return held;
+}
+
+/// systemd's, or one of its own.
+std::expected<loop::FileDescriptor, std::string> listening(const std::string& socket) {
+  const int given = sd_listen_fds(1);
+  if (given > 1) return std::unexpected("systemd gave more than one socket");
+  if (given == 1) {
+    loop::FileDescriptor fd(SD_LISTEN_FDS_START);
+    if (sd_is_socket_unix(fd.get(), SOCK_SEQPACKET, 1, nullptr, 0) > 0) return fd;
+    return std::unexpected("what systemd gave is no listening socket of packets");
+  }
+  if (socket.empty()) return std::unexpected("--socket is missing, and systemd gave none");
+  auto made = panel::listening_at(socket);
+  if (made) return std::move(*made);
+  return std::unexpected(socket + ": " + std::system_category().message(made.error()));
+}
+
+int run(const panel::PanelOptions& options) {
+  auto socket = listening(options.socket);
+  if (!socket) {
+    complain(socket.error());
+    return 1;
+  }
+  loop::Loop loop;
+  panel::Keeper keeper(
+      loop, std::move(*socket), panel_of_board(options.board),
+      {.open = [&](const settings::Panel& panel) { return open_lines(panel, options.simulated); },
+       .complain = &complain});
+  const auto terminated = loop.signal(SIGTERM, [&] { loop.stop(); });
+  const auto interrupted = loop.signal(SIGINT, [&] { loop.stop(); });
+  std::optional<loop::Watchdog> watchdog;
+  std::uint64_t usec = 0;
+  if (sd_watchdog_enabled(0, &usec) > 0) {
+    watchdog.emplace(loop, std::chrono::microseconds(usec), [] { sd_notify(0, "WATCHDOG=1"); });
+  }
+  sd_notify(0, "READY=1");
+  loop.run();
+  return 0;
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  const auto options = command_line::read(panel::panel_command_line_of, {argv + 1, argv + argc});
+  if (const auto exit = command_line::answer(panel::panel_command_line_of, ADIT_VERSION, options))
+    return *exit;
+  return run(*options);
+}

@@ -1,0 +1,123 @@
+#include "panel/remote.hpp"
+
+#include <sys/epoll.h>
+#include <sys/socket.h>
+
+#include <array>
+#include <cerrno>
+#include <system_error>
+
+#include "loop/file_descriptor.hpp"
+#include "panel/messages.hpp"
+#include "panel/unix_socket.hpp"
+
+namespace adit::panel {
+namespace {
+
+constexpr int kMissedBeats = 8;  // before it is told that nobody answers: adit-panel is restarted meanwhile
+constexpr int kMessagesAtOnce = 64;
+
+std::string unreachable(const std::string& socket, int error) {
+  return "adit-panel does not answer at " + socket + ": " + std::system_category().message(error);
+}
+
+/// What lights and button have in common.
+class Connection {
+ public:
+  Connection(std::string socket, std::string greeting, loop::FileDescriptor epoll)
+      : socket_(std::move(socket)), greeting_(std::move(greeting)), epoll_(std::move(epoll)) {}
+
+  std::expected<void, std::string> tell(const std::string& message) {
+    if ((fd_ || connect()) && put(message)) {
+      missed_ = 0;
+      return {};
+    }
+    const int error = errno;
+    if (error != EAGAIN) lose();
+    if (++missed_ < kMissedBeats) return {};
+    return std::unexpected(unreachable(socket_, error));
+  }
+
+  /// A button that nobody answers for any more was let go.
+  bool pressed() {
+    std::array<char, kLongestMessage> bytes{};
+    for (int i = 0; fd_ && i < kMessagesAtOnce; ++i) {
+      const ssize_t size = recv(fd_.get(), bytes.data(), bytes.size(), MSG_DONTWAIT);
+      if (size < 0 && (errno == EAGAIN || errno == EINTR)) break;
+      if (size <= 0) {
+        lose();
+        break;
+      }
+      const auto level = parse_button({bytes.data(), static_cast<std::size_t>(size)});
+      if (level) pressed_ = *level;
+    }
+    return pressed_;
+  }
+
+  /// Readable where the connection of the moment is: it stays the same one.
+  int descriptor() const { return epoll_.get(); }
+
+ private:
+  bool connect() {
+    auto fd = connected_to(socket_);
+    if (!fd) {
+      errno = fd.error();
+      return false;
+    }
+    epoll_event wanted{.events = EPOLLIN, .data = {}};
+    if (epoll_ctl(epoll_.get(), EPOLL_CTL_ADD, fd->get(), &wanted) != 0) return false;
+    fd_ = std::move(*fd);
+    return put(greeting_);
+  }
+
+  bool put(const std::string& message) {
+    return send(fd_.get(), message.data(), message.size(), MSG_DONTWAIT | MSG_NOSIGNAL) >= 0;
+  }
+
+  void lose() {
+    fd_ = loop::FileDescriptor();  // which ends its place in the epoll, too
+    pressed_ = false;
+  }
+
+  std::string socket_, greeting_;
+  loop::FileDescriptor epoll_, fd_;
+  int missed_ = 0;
+  bool pressed_ = false;
+};
+
+class RemoteLines final : public Lines {
+ public:
+  explicit RemoteLines(std::shared_ptr<Connection> connection) : connection_(std::move(connection)) {}
+  RemoteLines(const RemoteLines&) = delete;
+  RemoteLines& operator=(const RemoteLines&) = delete;
+  ~RemoteLines() override { [[maybe_unused]] const auto told = connection_->tell(message_of(ToEnd{})); }
+
+  std::expected<void, std::string> set(const Lit& lit) override {
+    return connection_->tell(message_of(ToLight{lit}));
+  }
+  bool is_watched() const override { return true; }
+
+ private:
+  std::shared_ptr<Connection> connection_;
+};
+
+class RemoteButton final : public ButtonLine {
+ public:
+  explicit RemoteButton(std::shared_ptr<Connection> connection) : connection_(std::move(connection)) {}
+  int descriptor() const override { return connection_->descriptor(); }
+  std::expected<bool, std::string> pressed() override { return connection_->pressed(); }
+
+ private:
+  std::shared_ptr<Connection> connection_;
+};
+
+}  // namespace
+
+std::expected<Remote, std::string> remote(const std::string& socket, const settings::Panel& settings) {
+  loop::FileDescriptor epoll(epoll_create1(EPOLL_CLOEXEC));
+  if (!epoll) return std::unexpected(unreachable(socket, errno));
+  auto connection = std::make_shared<Connection>(socket, message_of(ToUse{settings}), std::move(epoll));
+  return Remote{std::make_unique<RemoteLines>(connection), std::make_unique<RemoteButton>(connection)};
+}
+
+}  // namespace adit::panel

@@ -1,0 +1,81 @@
+#include "panel/messages.hpp"
+
+#include <gtest/gtest.h>
+
+namespace adit::panel {
+namespace {
+
+std::string error_of(std::string_view text) {
+  const auto parsed = parse_message(text);
+  return parsed ? "" : parsed.error();
+}
+
+TEST(Messages, AreReadAsTheyAreWritten) {
+  const Lit lit{true, false, false, true};
+  EXPECT_EQ(message_of(ToLight{lit}), "lit 1001");
+  const auto light = parse_message("lit 1001");
+  ASSERT_TRUE(light && std::holds_alternative<ToLight>(*light));
+  EXPECT_EQ(std::get<ToLight>(*light).lit, lit);
+  const auto end = parse_message(message_of(ToEnd{}));
+  EXPECT_TRUE(end && std::holds_alternative<ToEnd>(*end));
+}
+
+TEST(Messages, CarryEachMemberOfAPanel) {
+  settings::Panel panel;
+  panel.chip = std::string("/dev/gpiochip1");
+  panel.health = std::string("H");
+  panel.scoring = std::string("S");
+  panel.mapping = std::string("M");
+  panel.attention = std::string("A");
+  panel.button = std::string("B");
+  panel.active_low = true;
+  panel.button_active_low = false;
+  const auto parsed = parse_message(message_of(ToUse{panel}));
+  ASSERT_TRUE(parsed) << parsed.error();
+  const settings::Panel& read = std::get<ToUse>(*parsed).panel;
+  EXPECT_EQ(message_of(ToUse{read}), message_of(ToUse{panel}));
+  EXPECT_EQ(read.chip, panel.chip);
+  EXPECT_EQ(read.attention, panel.attention);
+  EXPECT_EQ(read.button, panel.button);
+  EXPECT_TRUE(read.active_low);
+  EXPECT_FALSE(read.button_active_low);
+}
+
+TEST(Messages, CarryASimulatedPanel) {
+  const auto parsed = parse_message(message_of(ToUse{}));
+  ASSERT_TRUE(parsed) << parsed.error();
+  EXPECT_TRUE(std::get<ToUse>(*parsed).panel.is_simulated());
+}
+
+/// The longest that the settings allow: a chip of 255 characters would be cut.
+TEST(Messages, AreNoLongerThanTheySay) {
+  settings::Panel panel;
+  panel.chip = std::string(255, 'c');
+  panel.health = panel.scoring = panel.mapping = panel.attention = panel.button = std::string(31, 'h');
+  EXPECT_LE(message_of(ToUse{panel}).size(), kLongestMessage);
+}
+
+TEST(Messages, ThatAreNoneAreRefusedWithAReason) {
+  for (const std::string_view text : {"", "lit", "lit1001", "END", "end ", "fault", "\xff\xfe", "button 1"}) {
+    EXPECT_EQ(error_of(text), "no message that is known") << text;
+  }
+  EXPECT_EQ(error_of("lit 100"), "lit: expected a digit for each light");
+  EXPECT_EQ(error_of("lit 10011"), "lit: expected a digit for each light");
+  EXPECT_EQ(error_of("lit 10x1"), "lit: expected 0 or 1 for each light");
+  EXPECT_EQ(error_of("panel {"), "panel: not JSON: " + error_of("panel {").substr(17));
+  EXPECT_EQ(error_of(R"(panel {"name":"b","title":"B"})"), "panel: none is named");
+  EXPECT_NE(error_of(R"(panel {"name":"b","title":"B","panel":{"health":"a line"}})").find("panel.health"),
+            std::string::npos);
+  EXPECT_EQ(error_of("panel " + std::string(kLongestMessage, ' ')), "longer than any message");
+}
+
+TEST(Messages, OfTheButtonAreTwo) {
+  EXPECT_EQ(parse_button(message_of_button(true)), true);
+  EXPECT_EQ(parse_button(message_of_button(false)), false);
+  for (const std::string_view text : {"", "button", "button 2", "button 1 ", "press"}) {
+    EXPECT_EQ(parse_button(text), std::nullopt) << text;
+  }
+}
+
+}  // namespace
+}  // namespace adit::panel

@@ -1,0 +1,331 @@
+#!/usr/bin/python3
+"""adit-panel, which holds lights and button and watches aditd: real_panel.py ADIT_PANEL ADITD. The panel is a simulated one."""
+
+import json
+import os
+import pathlib
+import select
+import signal
+import socket
+import subprocess
+import sys
+import tempfile
+import time
+import unittest
+
+NOWHERE = {"address": "127.0.0.1", "port": 9}
+DARK = "0000"
+PATIENCE = 30.0  # seconds for what takes much less on a machine that does nothing else
+adit_panel = aditd = None
+
+
+class Running(unittest.TestCase):
+    def setUp(self):
+        self.folder = pathlib.Path(self.enterContext(tempfile.TemporaryDirectory(prefix="adit-panel-")))
+        self.socket, self.shown, self.log = (self.folder / name for name in ("socket", "lights", "log"))
+        self.button = self.folder / "lights.button"
+
+    def begin(self, *command):
+        with self.log.open("ab") as log:
+            process = subprocess.Popen(command, stdin=subprocess.DEVNULL, stdout=log, stderr=log)
+        self.addCleanup(process.wait)
+        self.addCleanup(process.kill)
+        return process
+
+    def begin_panel(self, *more):
+        panel = self.begin(adit_panel, "--socket", self.socket, "--simulated", self.shown, *more)
+        self.wait_until(lambda: panel.poll() is not None or self.connects(), "adit-panel to listen")
+        return panel
+
+    def connects(self):
+        """Without telling anything: it listens once it has made its socket."""
+        listening = pathlib.Path("/proc/net/unix").read_text()
+        return f" 00010000 0005 01 " in "".join(line for line in listening.splitlines() if line.endswith(str(self.socket)))
+
+    def wait_until(self, condition, what, within=PATIENCE):
+        """Returns how long it took."""
+        began = time.monotonic()
+        while not condition():
+            self.assertLess(time.monotonic() - began, within, f"{what}:\n{self.said()}")
+            time.sleep(0.005)
+        return time.monotonic() - began
+
+    def said(self):
+        return self.log.read_text(errors="replace")
+
+    def lit(self):
+        try:
+            return "".join("1" if line.endswith(" on") else "0" for line in self.shown.read_text().splitlines())
+        except FileNotFoundError:
+            return ""
+
+    def shows(self, lit):
+        return self.wait_until(lambda: self.lit() == lit, f"the lights to be {lit}")
+
+    def shows_fault(self):
+        """Health lit and then dark, with all others dark, twice; how long until the first of it."""
+        took = self.wait_until(lambda: self.lit() in (DARK, "1000"), "the fault to begin")
+        for lit in ("1000", DARK, "1000"):
+            self.shows(lit)
+        return took
+
+
+class Watching(Running):
+    """With a client of the test's own."""
+
+    def setUp(self):
+        super().setUp()
+        self.panel = self.begin_panel()
+
+    def connect(self, *told):
+        client = self.enterContext(socket.socket(socket.AF_UNIX, socket.SOCK_SEQPACKET))
+        client.settimeout(PATIENCE)
+        self.wait_until(lambda: self.has_room_for(client), "adit-panel to take one more")
+        for message in ("panel " + json.dumps({"name": "s", "title": "S", "panel": {}}), *told):
+            client.send(message.encode())
+        return client
+
+    def has_room_for(self, client):
+        try:
+            client.connect(str(self.socket))
+        except BlockingIOError:  # so many wait to be taken
+            return False
+        return True
+
+    def press(self, word):
+        self.wait_until(self.button.exists, "the button")
+        file = os.open(self.button, os.O_WRONLY | os.O_NONBLOCK)
+        os.write(file, f"{word}\n".encode())
+        os.close(file)
+
+    def test_what_is_told_is_lit(self):
+        client = self.connect("lit 1110")
+        self.shows("1110")
+        client.send(b"lit 0001")
+        self.shows("0001")
+
+    def test_a_death_is_shown_at_once_and_until_the_next_one_tells(self):
+        client = self.connect("lit 1110")
+        self.shows("1110")
+        client.close()
+        self.shows_fault()
+        self.connect("lit 0111")
+        self.shows("0111")
+
+    def test_an_end_that_is_told_leaves_the_lights_dark(self):
+        client = self.connect("lit 1110")
+        self.shows("1110")
+        client.send(b"end")
+        client.close()
+        self.shows(DARK)
+        end = time.monotonic() + 2.5  # a fault would be seen in this time
+        while time.monotonic() < end:
+            self.assertEqual(self.lit(), DARK)
+            time.sleep(0.01)
+
+    def test_silence_is_a_fault_and_its_end_is_not(self):
+        client = self.connect("lit 1110")
+        self.shows("1110")
+        took = self.shows_fault()
+        print(f"\nadit-panel: from the last word to the fault: {took:.2f} s", file=sys.stderr)
+        client.send(b"lit 1110")
+        self.shows("1110")
+
+    def test_whoever_connected_last_is_heard(self):
+        first = self.connect("lit 1000")
+        self.shows("1000")
+        self.connect("lit 0100")
+        self.shows("0100")
+        self.assertEqual(first.recv(64), b"", "the first is let go of")
+
+    def test_hostile_bytes_end_their_connection_and_nothing_else(self):
+        for message in (b"\xff\x00\xfe", b"lit 9999", b"lit", b"panel {", b"panel " + b"[" * 1000, b"x" * 100000, b"end\n", b"lit 1111\0",
+                        b'panel {"name":"s","title":"S","panel":{"chip":"../../etc","health":"\\u0000"}}'):
+            client = self.connect("lit 1110")
+            self.shows("1110")
+            client.send(message)
+            self.assertEqual(client.recv(64), b"", message)
+            self.shows_fault()
+        for _ in range(200):
+            self.connect()
+        self.connect("lit 0110")
+        self.shows("0110")
+        self.assertIsNone(self.panel.poll())
+        self.assertLessEqual(self.said().count("is not understood"), 9, "once for each that had told something before")
+
+    def test_a_flood_keeps_neither_the_lights_nor_the_next_one(self):
+        """Frames faster than they can be lit, and then silence."""
+        client = self.connect()
+        for each in range(20000):
+            client.send(b"lit 1010" if each % 2 else b"lit 0101")
+        self.shows_fault()
+        self.connect("lit 1100")
+        self.shows("1100")
+
+    def test_the_button_is_told_of(self):
+        client = self.connect("lit 1110")
+        self.shows("1110")
+        for word, told in (("press", b"button 1"), ("release", b"button 0")) * 2:
+            self.press(word)
+            self.assertEqual(client.recv(64), told)
+
+    def test_a_button_that_was_held_before_is_none_until_it_is_let_go(self):
+        first = self.connect("lit 1110")
+        self.shows("1110")
+        self.press("press")
+        self.assertEqual(first.recv(64), b"button 1")
+        second = self.connect("lit 0111")
+        self.shows("0111")
+
+        def presses_again():
+            self.press("release")
+            self.press("press")
+            return select.select([second], [], [], 0.02)[0]  # as one they would be a bounce
+
+        self.wait_until(presses_again, "the second to be told")
+        self.assertEqual(second.recv(64), b"button 1", "and neither the press before nor its release")
+
+    def test_a_stop_leaves_the_lights_dark(self):
+        self.connect("lit 1110")
+        self.shows("1110")
+        self.panel.send_signal(signal.SIGTERM)
+        self.assertEqual(self.panel.wait(PATIENCE), 0)
+        self.assertEqual(self.lit(), DARK)
+
+    def test_lines_that_cannot_be_had_are_told_and_simulated(self):
+        client = self.connect("lit 1110")
+        self.shows("1110")
+        client.send(b'panel {"name":"s","title":"S","panel":{"chip":"no-such-chip","health":"H","button":"B"}}')
+        self.wait_until(lambda: "the lights cannot be had: panel: chip no-such-chip: No such file" in self.said(), "to be told")
+        self.wait_until(lambda: "the button cannot be had: panel: chip no-such-chip" in self.said(), "to be told of the button")
+        client.send(b"lit 0110")
+        self.shows("0110")
+        self.assertFalse(self.button.exists(), "no other takes a real one's place")
+
+
+class Starting(Running):
+    def test_a_board_counts_before_what_is_told(self):
+        board = self.folder / "board.json"
+        board.write_text('{"name": "b", "title": "B", "panel": {"chip": "no-such-chip", "health": "H"}}')
+        self.begin_panel("--board", board)
+        self.wait_until(lambda: "no-such-chip" in self.said(), "the board's chip to be looked for")
+        client = self.enterContext(socket.socket(socket.AF_UNIX, socket.SOCK_SEQPACKET))
+        client.connect(str(self.socket))
+        client.send(b'panel {"name":"s","title":"S","panel":{"chip":"another-chip","health":"H"}}')
+        client.send(b"lit 1000")
+        self.shows("1000")
+        self.assertNotIn("another-chip", self.said())
+
+    def test_a_board_that_is_wrong_is_told(self):
+        board = self.folder / "board.json"
+        board.write_text('{"name": "b", "title": "B", "panle": {}}')
+        self.begin_panel("--board", board)
+        self.assertIn("board.json: panle: no such key; did you mean panel?", self.said())
+
+    def test_what_keeps_it_from_starting_is_told(self):
+        for words, code, why in (((), 1, "--socket is missing"), (("--socket", "/nowhere/socket"), 1, "/nowhere/socket: No such file"),
+                                 (("--socket", "/" + "x" * 200), 1, "File name too long"), (("fault",), 2, "unknown word 'fault'")):
+            done = subprocess.run([adit_panel, *words], capture_output=True, text=True, timeout=PATIENCE)
+            self.assertEqual(done.returncode, code)
+            self.assertIn(why, done.stderr)
+
+
+class WithAditd(Running):
+    """What is killed, stopped, hangs, or is started in another order."""
+
+    def begin_aditd(self):
+        (self.folder / "secrets").mkdir(mode=0o700, exist_ok=True)
+        settings = self.folder / "settings.json"
+        settings.write_text(json.dumps({"version": 1, "command_post": {"scoring": NOWHERE, "mapping": NOWHERE},
+                                        "team": {"listen": [{"address": "127.0.0.1", "port": 0}]}}))
+        return self.begin(aditd, "--settings", settings, "--secrets", self.folder / "secrets", "--state", self.folder / "state",
+                          "--panel", self.socket)
+
+    def is_at_work(self):
+        """Health steady, while scoring blinks: nobody answers at its Command Post. In a fault it is dark."""
+        return self.wait_until(lambda: self.lit()[1:2] == "1", "the lights to be those of an aditd that is well")
+
+    def test_the_panel_first(self):
+        self.begin_panel()
+        self.begin_aditd()
+        self.is_at_work()
+
+    def test_aditd_first(self):
+        self.begin_aditd()
+        self.wait_until(lambda: "listening address" in self.said(), "aditd to start")
+        self.begin_panel()
+        self.is_at_work()
+
+    def test_a_hang_is_shown_within_two_seconds(self):
+        self.begin_panel()
+        hung = self.begin_aditd()
+        figures = []
+        for _ in range(3):
+            self.is_at_work()
+            hung.send_signal(signal.SIGSTOP)
+            began = time.monotonic()
+            self.wait_until(lambda: self.lit() in (DARK, "1000"), "the fault to begin")
+            figures.append(time.monotonic() - began)
+            self.shows_fault()
+            hung.send_signal(signal.SIGCONT)
+        self.is_at_work()
+        print(f"\nadit-panel: from SIGSTOP of aditd to the fault: {', '.join(f'{each:.2f}' for each in figures)} s", file=sys.stderr)
+
+    def test_a_kill_is_shown_until_the_next_start(self):
+        self.begin_panel()
+        self.begin_aditd().kill()
+        killed = self.begin_aditd()
+        self.is_at_work()
+        killed.kill()
+        self.shows_fault()
+        self.begin_aditd()
+        self.is_at_work()
+
+    def test_a_stop_is_none(self):
+        self.begin_panel()
+        stopped = self.begin_aditd()
+        self.is_at_work()
+        stopped.send_signal(signal.SIGTERM)
+        self.assertEqual(stopped.wait(PATIENCE), 0)
+        self.shows(DARK)
+        end = time.monotonic() + 2.5  # a fault would be seen in this time
+        while time.monotonic() < end:
+            self.assertEqual(self.lit(), DARK)
+            time.sleep(0.01)
+
+    def test_a_panel_that_dies_or_hangs_takes_nothing_with_it(self):
+        panel = self.begin_panel()
+        served = self.begin_aditd()
+        for how in (signal.SIGKILL, signal.SIGTERM, signal.SIGSTOP):
+            self.is_at_work()
+            panel.send_signal(how)
+            if how != signal.SIGSTOP:
+                panel.wait(PATIENCE)
+                self.shown.unlink(missing_ok=True)
+                panel = self.begin_panel()
+            else:
+                time.sleep(1.0)  # beats that nobody hears
+                panel.send_signal(signal.SIGCONT)
+        self.is_at_work()
+        self.assertIsNone(served.poll())
+
+    def test_a_press_reaches_aditd_through_any_panel(self):
+        self.begin_aditd()
+        for _ in range(2):
+            panel = self.begin_panel()
+            self.is_at_work()
+            before = self.said().count("the button was pressed")
+            for word in ("press", "release"):
+                file = os.open(self.button, os.O_WRONLY | os.O_NONBLOCK)
+                os.write(file, f"{word}\n".encode())
+                os.close(file)
+                time.sleep(0.2)  # somebody's finger
+            self.wait_until(lambda: self.said().count("the button was pressed") > before, "aditd to be told")
+            panel.kill()
+            panel.wait(PATIENCE)
+
+
+if __name__ == "__main__":
+    aditd = sys.argv.pop()
+    adit_panel = sys.argv.pop()
+    unittest.main()

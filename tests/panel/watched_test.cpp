@@ -1,0 +1,97 @@
+#include "panel/watched.hpp"
+
+#include <gtest/gtest.h>
+
+namespace adit::panel {
+namespace {
+
+using namespace std::chrono_literals;
+
+constexpr Lit kAllWell{true, true, true, false}, kNoneLit{};
+const Instant kItBegan = Instant() + 1h;
+
+class WatchedTest : public testing::Test {
+ protected:
+  /// What is seen in the two seconds from then on: the fault is health that blinks, and nothing else.
+  bool blinks_fault(Instant from) const {
+    int lit = 0;
+    for (auto at = from; at < from + 2s; at += 100ms) {
+      const Lit seen = watched.frame(at).lit;
+      if (seen != kNoneLit && seen != Lit{true, false, false, false}) return false;
+      lit += seen[index_of(Light::Health)] ? 1 : 0;
+    }
+    return lit == 10;
+  }
+
+  Watched watched{kItBegan};
+};
+
+TEST_F(WatchedTest, IsDarkUntilTheFirstTells) {
+  EXPECT_EQ(watched.frame(kItBegan + 40s).lit, kNoneLit);
+  watched.came(kItBegan + 40s);
+  EXPECT_EQ(watched.frame(kItBegan + 80s).lit, kNoneLit) << "counted from when it came";
+  watched.lights(kAllWell, kItBegan + 81s);
+  EXPECT_EQ(watched.frame(kItBegan + 81s).lit, kAllWell);
+}
+
+TEST_F(WatchedTest, ShowsTheFaultWhereNobodyComes) {
+  EXPECT_FALSE(watched.is_faulty(kItBegan + Watched::kStart - 1ms));
+  EXPECT_TRUE(blinks_fault(kItBegan + Watched::kStart));
+}
+
+TEST_F(WatchedTest, AsksAgainWhenSilenceWouldBeAFault) {
+  watched.lights(kAllWell, kItBegan);
+  const Frame frame = watched.frame(kItBegan + 1s);
+  EXPECT_EQ(frame.lit, kAllWell);
+  EXPECT_EQ(frame.lasts, Watched::kSilence - 1s);
+  EXPECT_FALSE(watched.is_faulty(kItBegan + Watched::kSilence - 1ms));
+  EXPECT_TRUE(blinks_fault(kItBegan + Watched::kSilence));
+}
+
+TEST_F(WatchedTest, GoesOnAfterAHangThatEnds) {
+  watched.lights(kAllWell, kItBegan);
+  EXPECT_TRUE(watched.is_faulty(kItBegan + 10s));
+  watched.lights(kAllWell, kItBegan + 10s);
+  EXPECT_EQ(watched.frame(kItBegan + 10s).lit, kAllWell);
+}
+
+TEST_F(WatchedTest, ShowsADeathAtOnceAndUntilTheNextOneTells) {
+  watched.lights(kAllWell, kItBegan);
+  watched.gone(kItBegan + 100ms);
+  EXPECT_TRUE(blinks_fault(kItBegan + 100ms));
+  watched.came(kItBegan + 2s);
+  EXPECT_TRUE(watched.is_faulty(kItBegan + 2s)) << "it may die before it tells";
+  watched.gone(kItBegan + 3s);
+  EXPECT_TRUE(watched.is_faulty(kItBegan + 10min));
+  watched.lights(kAllWell, kItBegan + 11min);
+  EXPECT_EQ(watched.frame(kItBegan + 11min).lit, kAllWell);
+}
+
+TEST_F(WatchedTest, IsDarkAfterAnEndThatWasTold) {
+  watched.lights(kAllWell, kItBegan);
+  watched.ends(kItBegan + 1s);
+  watched.gone(kItBegan + 1s);
+  EXPECT_EQ(watched.frame(kItBegan + 1s).lit, kNoneLit);
+  EXPECT_FALSE(watched.is_faulty(kItBegan + 24h)) << "it was stopped";
+  watched.came(kItBegan + 24h);
+  EXPECT_EQ(watched.frame(kItBegan + 24h).lit, kNoneLit);
+  EXPECT_TRUE(watched.is_faulty(kItBegan + 24h + Watched::kStart)) << "it came, and never told anything";
+}
+
+TEST_F(WatchedTest, ShowsTheDeathOfOneThatNeverTold) {
+  watched.came(kItBegan);
+  watched.gone(kItBegan + 1s);
+  EXPECT_TRUE(blinks_fault(kItBegan + 1s));
+}
+
+TEST_F(WatchedTest, BlinksOnWhereAHungOneIsKilled) {
+  watched.lights(kAllWell, kItBegan);
+  const Instant hung = kItBegan + Watched::kSilence;
+  const Frame before = watched.frame(hung + 600ms);
+  watched.gone(hung + 600ms);
+  EXPECT_EQ(watched.frame(hung + 600ms).lit, before.lit);
+  EXPECT_TRUE(blinks_fault(hung + 1s));
+}
+
+}  // namespace
+}  // namespace adit::panel

@@ -3,6 +3,7 @@
 import json
 import re
 
+import cbor2
 import requests
 
 import programs
@@ -12,6 +13,9 @@ from test_refusals import FIELDS, MISSING, STATE, changed
 
 SHORT = {**QUICK, "reports__answer_within_ms": 300}
 STATE_BODY = json.dumps(STATE)
+TAGGED = cbor2.dumps(cbor2.CBORTag(2, STATE))
+POSE = STATE["poses"][0]
+TWO_BAD = json.dumps({"poses": [{**POSE, "name": 1}, POSE, {**POSE, "position": {}}]})
 
 # (what is sent, method, URI, body, headers in addition)
 REQUESTS = [
@@ -27,6 +31,8 @@ REQUESTS = [
     ("`NaN`, which JSON does not have", "POST", "/api/artifact_reports", '{"x": NaN}', {}),
     ("a list around the message", "POST", "/state/update", "[]", {}),
     ("a state of 2 MB", "POST", "/state/update", b" " * 2_000_000, {}),
+    ("a CBOR tag that changes a meaning", "POST", "/state/update", TAGGED, {"Content-Type": "application/cbor"}),
+    ("three poses, two of them wrong", "POST", "/state/update", TWO_BAD, {}),
     ("a member twice", "POST", "/api/artifact_reports", '{"x": 1, "y": 2, "z": 3, "type": "Rope", "x": 4}', {}),
     ("`Adit-Resubmit: maybe`", "POST", "/api/artifact_reports", json.dumps(REPORT), {"Adit-Resubmit": "maybe"}),
 ]
@@ -34,6 +40,12 @@ REQUESTS = [
 # What takes a crowd, a full disk or a stop to make, and has tests of its own: (what happened, status, the code's sentence).
 ELSEWHERE = [
     ("a map, where the queue is full", 429, "N maps of N MiB wait already; this one was not taken, send it again later"),
+    ("markers, where as many wait as can", 429,
+     "not taken: more markers than can wait (queues.marker_bytes); send it again later"),
+    ("markers, of which some change others that wait, and there is no room for new ones", 429,
+     "N of N markers were taken, for others of theirs wait already; for new ones there is no room (queues.marker_bytes);"
+     " send them again later"),
+    ("a state of more robots than any team has", 429, "not taken: more robots than can be kept apart; send it again later"),
     ("a report, where 1,000 wait", 429, "N reports wait already; this one was not taken"),
     ("a report, where the disk is full", 503, "the report could not be written down and was not taken; post it again"),
     ("a map, where there is no room to keep it", 503, "this map cannot be kept; send it again later"),
@@ -50,7 +62,8 @@ ELSEWHERE = [
 def shown(value):
     if value is MISSING:
         return "left out"
-    return f"`{json.dumps(value[:2])[:-1]}, ...]`" if isinstance(value, list) and value else f"`{json.dumps(value)}`"
+    long = isinstance(value, list) and len(value) > 2
+    return f"`{json.dumps(value[:2])[:-1]}, ...]`" if long else f"`{json.dumps(value)}`"
 
 
 def ask(stage, method, uri, body=None, headers=()):

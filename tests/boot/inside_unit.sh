@@ -30,7 +30,7 @@ for folder in / /boot /dev /dev/mqueue /dev/shm /etc /etc/adit /home /mnt /opt /
 done
 attempt "write /proc/sys" sh -c 'echo 1 >/proc/sys/net/ipv4/ip_forward'
 attempt "write /sys" sh -c 'echo mem >/sys/power/state'
-for file in /etc/adit/secrets/team.token /var/lib/private/adit/settings.json /dev/mem /dev/kmsg /dev/sda /dev/vda /dev/tty0 /dev/watchdog0; do
+for file in /etc/adit/secrets/team.token /var/lib/private/adit/settings.json /dev/mem /dev/kmsg /dev/sda /dev/vda /dev/tty0 /dev/watchdog0 /dev/gpiochip0; do
   read_from "$file"
 done
 attempt "make a device" mknod /tmp/memory c 1 1

@@ -44,12 +44,13 @@ def refused_connections(stage):
 
 
 class Run(programs.Program):
-    """A client that runs on the host `at`."""
+    """A client that runs on the host `at`, and is ended with the test."""
 
-    def __init__(self, stage, name, given, at=None, url=None, token=programs.TEAM_TOKEN):
+    def __init__(self, test, stage, name, given, at=None, url=None, token=programs.TEAM_TOKEN):
         command = ["env", f"ADIT_TOKEN={token}", *CLIENTS[name], url or stage.box.url, *given]
         log = stage.folder / f"{name}-{time.monotonic_ns()}.log"
         super().__init__(stage.network, at or stage.network.team, log, command)
+        test.addCleanup(self.stop, signal.SIGKILL)
 
     def ended(self):
         """Its exit status, and what it said."""
@@ -57,16 +58,11 @@ class Run(programs.Program):
 
 
 class Clients(unittest.TestCase):
-    def each(self):
-        for name in CLIENTS:
-            with self.subTest(name):
-                yield name
-
     def test_reports_on_a_bad_day_with_a_kill_in_the_middle(self):
-        for name in self.each():
-            with Stage(post_options=BAD_DAY, **QUICK) as stage:
+        for name in CLIENTS:
+            with self.subTest(name), Stage(post_options=BAD_DAY, **QUICK) as stage:
                 began(stage)
-                runs = [Run(stage, name, words(report(number))) for number in range(1, 9)]
+                runs = [Run(self, stage, name, words(report(number))) for number in range(1, 9)]
                 wait_until(lambda stage=stage: len(stage.post.recorded()) >= 2, "some of them")
                 stage.box.stop(signal.SIGKILL)
                 stage.restart_box()
@@ -82,31 +78,32 @@ class Clients(unittest.TestCase):
                 self.assertEqual(stage.post.violations(), [])
 
     def test_updates_and_the_status(self):
-        for name in self.each():
-            with Stage(post_options=BAD_DAY, **QUICK) as stage:
+        for name in CLIENTS:
+            with self.subTest(name), Stage(post_options=BAD_DAY, **QUICK) as stage:
                 began(stage)
                 for what in UPDATES:
-                    self.assertEqual(Run(stage, name, [what]).ended(), (ANSWERED, "null\n"))
+                    self.assertEqual(Run(self, stage, name, [what]).ended(), (ANSWERED, "null\n"))
                 for what in UPDATES:
                     wait_until(lambda stage=stage, what=what: any(request["status"] == 200 for request
                                in stage.post.requests(f"/{what}/update")), f"the {what} to arrive")
-                status, said = Run(stage, name, ["status"]).ended()
+                status, said = Run(self, stage, name, ["status"]).ended()
                 self.assertEqual((status, json.loads(said)["current_team"]), (ANSWERED, "adit"))
                 self.assertEqual(stage.post.violations(), [])
 
     def test_what_is_refused_is_not_tried_again(self):
         with Stage(**QUICK) as stage:
-            for name in self.each():
-                status, said = Run(stage, name, ["report", 1, 2, 3, "Dril"]).ended()
-                self.assertEqual(status, REFUSED)
-                self.assertIn("type: expected one of Survivor", said)
+            for name in CLIENTS:
+                with self.subTest(name):
+                    status, said = Run(self, stage, name, ["report", 1, 2, 3, "Dril"]).ended()
+                    self.assertEqual(status, REFUSED)
+                    self.assertIn("type: expected one of Survivor", said)
             self.assertEqual(stage.post.recorded(), [])
 
     def test_what_the_operator_decides(self):
-        for name in self.each():
-            with Stage(**{**QUICK, "reports__review": "all"}) as stage:
+        for name in CLIENTS:
+            with self.subTest(name), Stage(**QUICK, reports__review="all") as stage:
                 began(stage)
-                run = Run(stage, name, words(report(1)))
+                run = Run(self, stage, name, words(report(1)))
                 wait_until(lambda stage=stage: [made["state"] for made in stage.box.reports()] == ["received"], "it to be held")
                 self.assertEqual(stage.box.judge(1, "withdraw")[0], 200)
                 status, said = run.ended()
@@ -121,7 +118,7 @@ class Bare(unittest.TestCase):
     def run_there(self, stage, name, given, at="scoring", port=programs.PORT):
         address, token = {"scoring": (hosts.SCORING, programs.SCORING_TOKEN),
                           "mapping": (hosts.MAPPING, programs.MAPPING_TOKEN)}[at]
-        return Run(stage, name, [*given, "--bare"], stage.network.post, f"http://{address}:{port}", token)
+        return Run(self, stage, name, [*given, "--bare"], stage.network.post, f"http://{address}:{port}", token)
 
     def test_a_report_whose_answer_is_lost_is_never_sent_again(self):
         with Stage(post_options=("--rate", "0")) as stage:
@@ -151,12 +148,11 @@ class Bare(unittest.TestCase):
 
     def test_updates_at_the_rate_that_it_takes(self):
         with Stage(post_options=("--rate", "1")) as stage:
-            for name in self.each():
+            for name in CLIENTS:
                 for what in UPDATES:
-                    self.assertEqual(self.run_there(stage, name, [what], "mapping").ended(), (ANSWERED, "null\n"))
+                    with self.subTest(name, what=what):
+                        self.assertEqual(self.run_there(stage, name, [what], "mapping").ended(), (ANSWERED, "null\n"))
             self.assertEqual(stage.post.violations(), [])
-
-    each = Clients.each
 
 
 if __name__ == "__main__":

@@ -4,6 +4,7 @@
 #include <utility>
 
 #include "admin/accounts.hpp"
+#include "admin/acknowledged_file.hpp"
 #include "admin/network_requests.hpp"
 #include "host/log.hpp"
 #include "host/service.hpp"
@@ -36,8 +37,9 @@ std::expected<bool, std::string> FactoryReset::finish() {
   if (error) return std::unexpected(state_ + "/runs: cannot be removed: " + error.message());
   // Last: until then the box does not look as if it were reset.
   for (const std::string& file :
-       {runtime_ + '/' + SessionKeeper::kFile, state_ + '/' + Accounts::kDevicesFile,
-        state_ + '/' + Accounts::kCodeFile, state_ + '/' + Accounts::kFile, begun()}) {
+       {runtime_ + '/' + SessionKeeper::kFile, state_ + '/' + AcknowledgedFile::kFile,
+        state_ + '/' + Accounts::kDevicesFile, state_ + '/' + Accounts::kCodeFile,
+        state_ + '/' + Accounts::kFile, begun()}) {
     if (const auto done = host::remove_file(file); !done) return std::unexpected(done.error());
   }
   host::log(host::Level::Notice, "all that was set up is forgotten");

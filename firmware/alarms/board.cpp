@@ -9,7 +9,7 @@
 namespace adit::alarms {
 
 bool Board::is_worse(const Condition& condition, const Known& known) {
-  return condition.severity < known.seen_as || condition.degree > known.seen_degree;
+  return condition.severity < known.seen.severity || condition.degree > known.seen.degree;
 }
 
 Over Board::over(const Known& known, double now) {
@@ -20,6 +20,17 @@ Over Board::over(const Known& known, double now) {
           .was = past(condition.what),
           .since = known.since,
           .until = now};
+}
+
+void Board::see(Known& known, double now) {
+  const Condition& condition = known.condition;
+  known.acknowledged = true;
+  known.seen = {.id = condition.id,
+                .severity = condition.severity,
+                .degree = condition.degree,
+                .what = condition.what,
+                .why = condition.why,
+                .at = now};
 }
 
 void Board::take(const std::vector<Condition>& conditions, double now) {
@@ -39,16 +50,47 @@ void Board::take(const std::vector<Condition>& conditions, double now) {
     }
     over_.push_front(over(each->second, now));
     if (over_.size() > kMostOver) over_.pop_back();
+    std::erase_if(before_, [&](const Acknowledged& before) { return before.id == each->first; });
     each = known_.erase(each);
+  }
+  take_up_before(conditions, now);
+}
+
+void Board::remember(std::vector<Acknowledged> before, double now) {
+  before_ = std::move(before);
+  std::erase_if(before_, [now](const Acknowledged& each) {
+    return each.at > now || now - each.at > Acknowledged::kHolds;
+  });
+  waits_until_ = now + Acknowledged::kWaitsFor;
+}
+
+void Board::take_up_before(const std::vector<Condition>& conditions, double now) {
+  if (now > waits_until_) before_.clear();
+  for (const Condition& condition : conditions) {
+    const auto before = std::ranges::find(before_, condition.id, &Acknowledged::id);
+    if (before == before_.end()) continue;
+    Known& known = known_.at(condition.id);
+    const bool worse = condition.severity < before->severity || condition.degree > before->degree;
+    const bool same = condition.severity == before->severity && condition.degree == before->degree &&
+                      condition.what == before->what && condition.why == before->why;
+    if (same) see(known, before->at);
+    if (same || worse || known.acknowledged) before_.erase(before);
   }
 }
 
-std::expected<void, std::string> Board::acknowledge(const std::string& id) {
+std::vector<Acknowledged> Board::acknowledged() const {
+  std::vector<Acknowledged> all = before_;
+  for (const auto& [id, known] : known_) {
+    const bool fits = known.seen.what.size() + known.seen.why.size() <= Acknowledged::kLongest;
+    if (known.acknowledged && fits && all.size() < Acknowledged::kMost) all.push_back(known.seen);
+  }
+  return all;
+}
+
+std::expected<void, std::string> Board::acknowledge(const std::string& id, double now) {
   const auto found = known_.find(id);
   if (found == known_.end()) return std::unexpected("there is no such alarm any more");
-  found->second.acknowledged = true;
-  found->second.seen_as = found->second.condition.severity;
-  found->second.seen_degree = found->second.condition.degree;
+  see(found->second, now);
   return {};
 }
 

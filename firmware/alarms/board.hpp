@@ -7,6 +7,7 @@
 #include <string>
 #include <vector>
 
+#include "alarms/acknowledged.hpp"
 #include "alarms/alarm.hpp"
 
 namespace adit::alarms {
@@ -21,7 +22,13 @@ class Board {
   /// acknowledge().
   void take(const std::vector<Condition>& conditions, double now);
   /// Quiets it until it gets worse or comes again. An error: there is none of that name.
-  std::expected<void, std::string> acknowledge(const std::string& id);
+  std::expected<void, std::string> acknowledge(const std::string& id, double now);
+
+  /// What was acknowledged before this start, at `now`. Each holds once its alarm is back as it was, in every
+  /// word, within Acknowledged::kWaitsFor: what got worse, went, or reads otherwise is as loud as a new one.
+  void remember(std::vector<Acknowledged> before, double now);
+  /// What is to be remembered after the next start.
+  std::vector<Acknowledged> acknowledged() const;
 
   /// These, as they are to be shown: bad before ask before wait, then oldest first.
   std::vector<Alarm> shown(const std::vector<Condition>& conditions, double now) const;
@@ -33,14 +40,17 @@ class Board {
     Condition condition;
     double since = 0;
     bool acknowledged = false;
-    Severity seen_as = Severity::Wait;
-    std::uint64_t seen_degree = 0;
+    Acknowledged seen = {};  // as it was then
   };
   static bool is_worse(const Condition& condition, const Known& known);
+  static void see(Known& known, double now);
+  void take_up_before(const std::vector<Condition>& conditions, double now);
   static Over over(const Known& known, double now);
 
   std::map<std::string, Known> known_;
   std::deque<Over> over_;
+  std::vector<Acknowledged> before_;  // whose alarms are not back yet
+  double waits_until_ = 0;
 };
 
 /// Whether it calls the operator: the attention light blinks, `adit status` ends with 1.

@@ -62,13 +62,6 @@ void find_addresses(const Facts& facts, Found& found) {
                      .why = sentence(network.address, " is also that of ", network.taken_by),
                      .action = kOpenNetwork});
   }
-  for (const std::string& address : network.conflicts) {
-    found.push_back({.id = "address_conflict:" + address,
-                     .side = Side::Robot,
-                     .subject = address,
-                     .what = address + " is used twice",
-                     .why = "two of the team have this address"});
-  }
 }
 
 void add(Found& found, const std::string& trouble, Condition condition) {

@@ -67,7 +67,6 @@ struct NetworkFact {
   bool no_address = false;                    // on the Command Post's side
   std::string taken_by = {};                  // the hardware address of who has our address, too; "": nobody
   std::string address = {};                   // ours, that it is
-  std::vector<std::string> conflicts = {};    // robots' addresses that two have
 };
 
 struct Disk {

@@ -70,6 +70,7 @@ Gateway::Gateway(loop::Loop& loop, Parts parts)
             .runs = &flow_.archive()},
            tokens().all, redaction()),
       routes_(icd_options(), flow_, flow_.workers(), api_),
+      acknowledged_(parts_.state_folder, disk_writer_),
       listeners_(loop, parts_.sockets, routes_, guesses_,
                  [this](intake::Ended why, const std::string& address) {
                    crowding_.ended(why, address, loop_.now());
@@ -122,6 +123,7 @@ std::expected<void, std::string> Gateway::start() {
   host::keep_out_of_log(redaction());
   if (auto started = flow_.start(); !started) return started;
   if (auto listening = listen(settings_.team); !listening) return listening;
+  board_.remember(acknowledged_.read(), loop_.stamp_now());
   every_second();
   return {};
 }

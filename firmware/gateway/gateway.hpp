@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "admin/accounts.hpp"
+#include "admin/acknowledged_file.hpp"
 #include "admin/network_change.hpp"
 #include "admin/network_requests.hpp"
 #include "admin/session_keeper.hpp"
@@ -134,7 +135,7 @@ class Gateway final : public api::Source, public api::Operator {
   void add_box(alarms::Facts& facts) const;
   std::vector<alarms::Alarm> alarms() const;
   void judge(api::RunView& view) const;
-  void look_for_alarms();
+  double look_for_alarms();  // when it looked, as alarms::Facts::now
   std::string report_under_way() const;
   std::vector<api::EndpointRow> endpoints() const;
 
@@ -161,6 +162,7 @@ class Gateway final : public api::Source, public api::Operator {
   Crowding crowding_;
   Lookout lookout_;
   alarms::Board board_;
+  admin::AcknowledgedFile acknowledged_;
   intake::TokenGuesses guesses_;
   Listeners listeners_;
   loop::Source second_, change_;

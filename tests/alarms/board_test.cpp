@@ -3,6 +3,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include "alarms/acknowledged.hpp"
 #include "alarms/alike.hpp"
 #include "alarms/words.hpp"
 
@@ -61,7 +62,7 @@ TEST(Board, RemembersTheLastThatWent) {
 TEST(Board, KeepsWhatIsAcknowledgedQuietWhileItStaysAsItIs) {
   Board board;
   board.take({kSilent, kHeld}, 100);
-  ASSERT_TRUE(board.acknowledge(kSilent.id));
+  ASSERT_TRUE(board.acknowledge(kSilent.id, 100));
   board.take({kSilent, kHeld}, 101);
   const auto shown = board.shown({kSilent, kHeld}, 102);
   EXPECT_TRUE(shown[0].acknowledged);
@@ -73,25 +74,114 @@ TEST(Board, TellsOfWhatGotWorseOrCameAgain) {
   Condition few = kFew;
   few.degree = 2;
   board.take({few}, 100);
-  ASSERT_TRUE(board.acknowledge(few.id));
+  ASSERT_TRUE(board.acknowledge(few.id, 100));
   few.degree = 3;
   EXPECT_FALSE(board.shown({few}, 101)[0].acknowledged);
   board.take({few}, 101);
   few.degree = 2;
   EXPECT_FALSE(board.shown({few}, 102)[0].acknowledged) << "it was worse meanwhile";
-  ASSERT_TRUE(board.acknowledge(few.id));
+  ASSERT_TRUE(board.acknowledge(few.id, 100));
   few.severity = Severity::Bad;
   EXPECT_FALSE(board.shown({few}, 103)[0].acknowledged);
 
   board.take({kSilent}, 104);
-  ASSERT_TRUE(board.acknowledge(kSilent.id));
+  ASSERT_TRUE(board.acknowledge(kSilent.id, 100));
   board.take({}, 105);
   EXPECT_FALSE(board.shown({kSilent}, 106)[0].acknowledged) << "it came again";
 }
 
 TEST(Board, AcknowledgesNothingThatIsNotThere) {
   Board board;
-  EXPECT_FALSE(board.acknowledge("robot_silent:uav5"));
+  EXPECT_FALSE(board.acknowledge("robot_silent:uav5", 100));
+}
+
+/// A board that starts at `now` after one on which that was acknowledged at 100.
+Board after_a_restart(const Condition& seen, double now) {
+  Board before;
+  before.take({seen}, 90);
+  EXPECT_TRUE(before.acknowledge(seen.id, 100));
+  Board after;
+  const auto kept = read_acknowledged(write_acknowledged(before.acknowledged()));
+  EXPECT_TRUE(kept) << kept.error();
+  after.remember(*kept, now);
+  return after;
+}
+
+/// Whether somebody has seen it, as the board shows it once it is told.
+bool is_quiet(Board& board, const Condition& condition, double now) {
+  board.take({condition}, now);
+  return board.shown({condition}, now).front().acknowledged;
+}
+
+TEST(Board, KnowsAfterARestartWhatWasAcknowledgedAndStillIsSo) {
+  Board board = after_a_restart(kHeld, 130);
+  board.take({}, 131);
+  EXPECT_EQ(board.acknowledged().size(), 1u) << "it may need some seconds to be found again";
+  EXPECT_TRUE(is_quiet(board, kHeld, 140));
+  EXPECT_TRUE(is_quiet(board, kHeld, 5000)) << "it goes on";
+  ASSERT_EQ(board.acknowledged().size(), 1u);
+  EXPECT_EQ(board.acknowledged().front().at, 100) << "no restart makes it younger";
+  board.take({}, 5001);
+  EXPECT_THAT(board.acknowledged(), IsEmpty());
+  EXPECT_FALSE(is_quiet(board, kHeld, 5002)) << "it came again";
+}
+
+TEST(Board, HidesNothingNewByWhatWasAcknowledgedBeforeARestart) {
+  Condition few = kFew;
+  few.degree = 2;
+  Condition worse = few, bad = few, otherwise = few, another = few;
+  worse.degree = 3;
+  bad.severity = Severity::Bad;
+  otherwise.why = "of another run";
+  another.id = "report_held:8";
+  for (const Condition& each : {worse, bad, otherwise, another}) {
+    Board board = after_a_restart(few, 130);
+    EXPECT_FALSE(is_quiet(board, each, 131)) << each.id << each.what << each.why;
+  }
+  Board late = after_a_restart(few, 130);
+  EXPECT_FALSE(is_quiet(late, few, 131 + Acknowledged::kWaitsFor)) << "it comes a minute after the start";
+  Board old = after_a_restart(few, 101 + Acknowledged::kHolds);
+  EXPECT_FALSE(is_quiet(old, few, 102 + Acknowledged::kHolds)) << "the box was off for long";
+  Board early = after_a_restart(few, 99);
+  EXPECT_FALSE(is_quiet(early, few, 99)) << "whose clock went back";
+  Board was_worse = after_a_restart(few, 130);
+  was_worse.take({worse}, 131);
+  EXPECT_FALSE(is_quiet(was_worse, few, 132)) << "it was worse meanwhile";
+  Board went = after_a_restart(few, 130);
+  went.take({otherwise}, 131);
+  went.take({}, 132);
+  EXPECT_FALSE(is_quiet(went, few, 133)) << "it came again";
+}
+
+TEST(Board, WaitsUntilAnAlarmThatGrowsIsWhatItWas) {
+  Condition both{.id = "command_post_unreachable", .what = "Command Post is unreachable", .degree = 2};
+  Condition one = both;
+  one.what = "Scoring is unreachable";
+  one.degree = 1;
+  Board board = after_a_restart(both, 130);
+  EXPECT_FALSE(is_quiet(board, one, 133));
+  EXPECT_TRUE(is_quiet(board, both, 134));
+}
+
+TEST(Acknowledged, AreBoundedHoweverManyThereAre) {
+  Board board;
+  std::vector<Condition> many;
+  for (int i = 0; i < 100; ++i)
+    many.push_back({.id = "report_held:" + std::to_string(i), .what = "It is held"});
+  many[7].why = std::string(5000, 'x');
+  board.take(many, 90);
+  for (const Condition& each : many) ASSERT_TRUE(board.acknowledge(each.id, 100));
+  EXPECT_EQ(board.acknowledged().size(), Acknowledged::kMost);
+  EXPECT_LT(write_acknowledged(board.acknowledged()).size(), 100'000u);
+}
+
+TEST(Acknowledged, AreNoneWhereTheFileIsNotWhole) {
+  const std::string good = write_acknowledged(
+      {{.id = "set_aside", .severity = Severity::Ask, .degree = 2, .what = "2 are", .at = 7}});
+  ASSERT_EQ(read_acknowledged(good).value().front().degree, 2u);
+  for (std::size_t at = 0; at + 2 < good.size(); ++at) EXPECT_FALSE(read_acknowledged(good.substr(0, at)));
+  EXPECT_EQ(read_acknowledged(R"({"version":2,"acknowledged":[]})").error(), "version: expected 1");
+  EXPECT_FALSE(read_acknowledged(R"({"version":1,"acknowledged":[{"id":7}]})"));
 }
 
 TEST(Words, SayAgesAndThePast) {

@@ -142,8 +142,6 @@ const ConditionCase kConditionCases[] = {
        facts.network.taken_by = "aa:bb";
        facts.network.address = "10.100.1.1";
      }},
-    {"address_conflict:10.0.0.5", Bad, Side::Robot, "10.0.0.5 is used twice", "two of the team",
-     [](Facts& facts) { facts.network.conflicts = {"10.0.0.5"}; }},
     {"cable_out:command_post", Bad, Side::Network, "The Command Post's cable is out", "darpa0 has no carrier",
      [](Facts& facts) { facts.cables[1].carrier = false; }},
     {"cable_out:team", Bad, Side::Network, "There is no interface team0", "set-up names it",

@@ -1,8 +1,9 @@
-// access.json, sessions.json and devices.json: what lets people in.
+// access.json, sessions.json and devices.json: what lets people in; and acknowledged.json.
 #include "access/accounts.hpp"
 
 #include "access/devices.hpp"
 #include "access/session_file.hpp"
+#include "alarms/acknowledged.hpp"
 #include "target.hpp"
 
 namespace adit::fuzz {
@@ -14,6 +15,7 @@ void try_accounts(Input text) {
   settles(
       text, [](Input json) { return access::read_devices(json, kAccounts); },
       [](const std::vector<access::Device>& devices) { return access::write_devices(devices, kAccounts); });
+  settles(text, alarms::read_acknowledged, alarms::write_acknowledged);
 }
 
 }  // namespace adit::fuzz

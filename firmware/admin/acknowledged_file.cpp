@@ -1,0 +1,38 @@
+#include "admin/acknowledged_file.hpp"
+
+#include <utility>
+
+#include "admin/kept_file.hpp"
+#include "host/log.hpp"
+#include "host/service.hpp"
+
+namespace adit::admin {
+
+AcknowledgedFile::AcknowledgedFile(const std::string& state_folder, loop::Writer& writer)
+    : file_(state_folder + '/' + kFile), writer_(writer) {}
+
+std::vector<alarms::Acknowledged> AcknowledgedFile::read() {
+  auto read = read_kept_file(file_, &alarms::read_acknowledged);
+  if (!read) {
+    host::log(host::Level::Warning, "which alarms were acknowledged cannot be read: none is",
+              {{"why", read.error()}});
+    return {};
+  }
+  kept_ = *read;
+  return *std::move(read);
+}
+
+void AcknowledgedFile::keep(std::vector<alarms::Acknowledged> all) {
+  if (all == kept_) return;
+  kept_ = std::move(all);
+  const auto write = [file = file_, text = alarms::write_acknowledged(kept_), failed = failed_] {
+    const auto written = host::write_file(file, text, host::kOursAlone);
+    const bool failed_before = std::exchange(*failed, !written.has_value());
+    if (written || failed_before) return;
+    host::log(host::Level::Warning, "which alarms are acknowledged is kept in memory alone",
+              {{"why", written.error()}});
+  };
+  writer_.submit(write, [] {});
+}
+
+}  // namespace adit::admin

@@ -1,0 +1,32 @@
+#pragma once
+
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "alarms/acknowledged.hpp"
+#include "loop/workers.hpp"
+
+namespace adit::admin {
+
+/// Which alarms are acknowledged, kept in a file for aditd alone, so that they stay so when the service ends.
+/// Losing it costs no more than a blinking light: what is wrong with it is logged, and none counts then.
+class AcknowledgedFile {
+ public:
+  static constexpr const char* kFile = "acknowledged.json";  // in the state folder
+
+  /// `writer` outlives it.
+  AcknowledgedFile(const std::string& state_folder, loop::Writer& writer);
+
+  std::vector<alarms::Acknowledged> read();
+  /// Has them written where they are others than those of before; nobody waits for it.
+  void keep(std::vector<alarms::Acknowledged> all);
+
+ private:
+  std::string file_;
+  loop::Writer& writer_;
+  std::vector<alarms::Acknowledged> kept_;
+  std::shared_ptr<bool> failed_ = std::make_shared<bool>(false);  // the writer's
+};
+
+}  // namespace adit::admin

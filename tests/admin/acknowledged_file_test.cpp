@@ -1,0 +1,85 @@
+#include "admin/acknowledged_file.hpp"
+
+#include <gtest/gtest.h>
+
+#include <atomic>
+#include <filesystem>
+#include <thread>
+
+#include "host/folder.hpp"
+#include "host/log.hpp"
+#include "host/service.hpp"
+
+namespace adit::admin {
+namespace {
+
+using alarms::Acknowledged;
+
+const Acknowledged kHeld{
+    .id = "report_held:7", .severity = alarms::Severity::Ask, .what = "Report 7 is held", .at = 100};
+
+class AcknowledgedFileTest : public testing::Test {
+ protected:
+  /// By a service that ends after it; how many lines were logged.
+  std::uint64_t keep(const std::vector<std::vector<Acknowledged>>& each) {
+    const std::uint64_t before = host::logged();
+    loop::Loop loop;
+    loop::Writer writer(loop);
+    AcknowledgedFile file(folder_.path(), writer);
+    for (const auto& all : each) file.keep(all);
+    return wait_for(writer, before);
+  }
+  std::vector<Acknowledged> read() {
+    loop::Loop loop;
+    loop::Writer writer(loop);
+    return AcknowledgedFile(folder_.path(), writer).read();
+  }
+  static std::uint64_t wait_for(loop::Writer& writer, std::uint64_t before) {
+    std::atomic<bool> done = false;
+    writer.submit([&done] { done = true; }, [] {});
+    while (!done) std::this_thread::yield();
+    return host::logged() - before;
+  }
+
+  host::Folder folder_;
+};
+
+TEST_F(AcknowledgedFileTest, KeepsThemForTheNextStart) {
+  EXPECT_TRUE(read().empty()) << "of a first start";
+  EXPECT_EQ(keep({{kHeld}}), 0u);
+  EXPECT_EQ(read(), std::vector{kHeld});
+  struct stat status{};
+  ASSERT_EQ(stat((folder_ / "acknowledged.json").c_str(), &status), 0);
+  EXPECT_EQ(status.st_mode & 07777, 0600u);
+  EXPECT_EQ(keep({{kHeld}, {}}), 0u);
+  EXPECT_TRUE(read().empty());
+}
+
+TEST_F(AcknowledgedFileTest, KnowsNoneWhereItIsDamagedAndSaysSoOnce) {
+  for (const char* text : {"{\"version\":1,", "", "[]", "{\"version\":9,\"acknowledged\":[]}"}) {
+    folder_.put("acknowledged.json", text);
+    const std::uint64_t before = host::logged();
+    EXPECT_TRUE(read().empty());
+    EXPECT_EQ(host::logged() - before, 1u) << text;
+  }
+}
+
+TEST_F(AcknowledgedFileTest, IsWrittenOnlyWhereTheyChange) {
+  keep({{kHeld}});
+  loop::Loop loop;
+  loop::Writer writer(loop);
+  AcknowledgedFile file(folder_.path(), writer);
+  ASSERT_EQ(file.read(), std::vector{kHeld});
+  folder_.put("acknowledged.json", "untouched");
+  file.keep({kHeld});
+  wait_for(writer, 0);
+  EXPECT_EQ(host::read_file(folder_ / "acknowledged.json").value(), "untouched");
+}
+
+TEST_F(AcknowledgedFileTest, IsComplainedOfOnceWhereItCannotBeWritten) {
+  std::filesystem::create_directory(folder_ / "acknowledged.json");
+  EXPECT_EQ(keep({{kHeld}, {}, {kHeld}}), 1u);
+}
+
+}  // namespace
+}  // namespace adit::admin

@@ -149,6 +149,7 @@ constexpr Member kView[] = {
     member<&RunView::run_heard>("run_heard", kWhen),
     member<&RunView::run_number>("run_number"),
     member<&RunView::run_id>("run_id", "the Command Post's; empty: it names none"),
+    member<&RunView::run_seconds>("run_seconds", "that a run lasts, as the settings say"),
     member<&RunView::endpoints>("endpoints"),
     member<&RunView::robots>("robots", "by name"),
     member<&RunView::reports>("reports",

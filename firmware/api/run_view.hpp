@@ -149,6 +149,7 @@ struct RunView {
   std::optional<Time> run_heard;
   std::int64_t run_number = 1;
   std::string run_id;
+  std::int64_t run_seconds = 3600;
   std::vector<EndpointRow> endpoints;
   std::vector<RobotRow> robots;
   std::vector<ReportRow> reports;

@@ -55,10 +55,17 @@ std::string verdict_line(const RunView& view, bool colour) {
          host::escaped(view.verdict.why) + '\n';
 }
 
+/// What is left of the run, by the settings.
+std::string to_go(const RunView& view, double run_clock) {
+  const double left = static_cast<double>(view.run_seconds) - run_clock;
+  return left < 0 ? clock(-left) + " over time" : clock(left) + " to go";
+}
+
 std::string run_line(const RunView& view, bool colour) {
   if (!view.run) return painted("Run   no word from the Command Post yet", Tone::Warning, colour) + '\n';
   const icd::RunStatus& run = *view.run;
-  std::string text = "Run   " + painted(clock(run.run_clock), Tone::Strong, colour) + "   score " +
+  std::string text = "Run   " + painted(clock(run.run_clock), Tone::Strong, colour) + "   " +
+                     to_go(view, run.run_clock) + "   score " +
                      painted(std::to_string(run.score), Tone::Strong, colour) + "   " +
                      painted(std::to_string(run.remaining_reports), Tone::Strong, colour) + " reports left";
   if (!run.current_team.empty()) text += "   team " + host::escaped(run.current_team);

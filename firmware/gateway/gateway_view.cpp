@@ -49,6 +49,7 @@ api::RunView Gateway::view() const {
                     .run_heard = flow_.scoring().run_heard(),
                     .run_number = flow_.reports().run().number,
                     .run_id = flow_.reports().run().id,
+                    .run_seconds = settings_.runs.length_seconds,
                     .endpoints = endpoints(),
                     .robots = flow_.as_forwarded().robots(),
                     .reports = latest_rows(flow_.reports(), kMostReportRows),

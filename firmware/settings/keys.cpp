@@ -150,6 +150,10 @@ const Key kKeys[] = {
      "Bytes of markers in one update, at most, unless a single one is larger.",
      whole<MEMBER(queues.marker_bytes_per_message)>(1024, 256 * kMiB)},
 
+    {"runs.length_seconds",
+     "How long a run lasts: page, display and `adit status` count down from it. The Command Post does not "
+     "say.",
+     whole<MEMBER(runs.length_seconds)>(60, 86400)},
     {"runs.run_bytes",
      "Bytes of one run's map, tracks and plots on the disk, at most: beyond it its earliest pictures go.",
      whole<MEMBER(runs.run_bytes)>(2 * kMiB, 1024 * kMiB)},

@@ -69,8 +69,9 @@ struct Queues {
   std::size_t marker_bytes_per_message = 1u << 20;
 };
 
-/// What is kept of runs on the disk, beside their reports.
+/// How long a run lasts; and what is kept of runs on the disk, beside their reports.
 struct Runs {
+  std::int64_t length_seconds = 3600;
   std::uint64_t run_bytes = std::uint64_t{64} << 20;   // of one run
   std::uint64_t all_bytes = std::uint64_t{512} << 20;  // of all runs; the oldest go first
 };

@@ -102,7 +102,7 @@ TEST(Bytes, OfARun) {
   EXPECT_EQ(
       codec::to_json(view()),
       R"({"now":1000.5,"version":"0.1","run":{"score":7,"run_clock":754.5,"remaining_reports":18,)"
-      R"("current_team":"cave"},"run_heard":999.0,"run_number":2,"run_id":"beta",)"
+      R"("current_team":"cave"},"run_heard":999.0,"run_number":2,"run_id":"beta","run_seconds":3600,)"
       R"("endpoints":[{"name":"scoring","address":"a:1","connected":true,"trouble":"t",)"
       R"("last_status":201,"answer_ms":3.5,"throttled":1,"foreign":2},{"name":"mapping",)"
       R"("address":"b:1","connected":false,"trouble":"","last_status":0,"answer_ms":null,)"

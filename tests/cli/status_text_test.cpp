@@ -14,7 +14,7 @@ using testing::StartsWith;
 
 TEST(StatusText, TellsAGoodRunOnOneScreen) {
   EXPECT_EQ(status_text(sample_view(), false),
-            "Run   12:34   score 7   18 reports left   team cave_club   (heard 0.4 s ago)\n"
+            "Run   12:34   47:25 to go   score 7   18 reports left   team cave_club   (heard 0.4 s ago)\n"
             "Link  12.3 of 100 Mbit/s   3.4 MB of maps wait\n"
             "Reports  answered 1\n"
             "\n"

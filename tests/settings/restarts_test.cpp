@@ -72,6 +72,7 @@ const RestartsCase kRestartsCases[] = {
     {"queues.marker_bytes", [](Settings& s) { s.queues.marker_bytes = 9; }, kNothing},
     {"queues.markers_per_message", [](Settings& s) { s.queues.markers_per_message = 9; }, kNothing},
     {"queues.marker_bytes_per_message", [](Settings& s) { s.queues.marker_bytes_per_message = 9; }, kNothing},
+    {"runs.length_seconds", [](Settings& s) { s.runs.length_seconds = 99; }, kNothing},
     {"runs.run_bytes", [](Settings& s) { s.runs.run_bytes = 9; }, kNothing},
     {"runs.all_bytes", [](Settings& s) { s.runs.all_bytes = 9; }, kNothing},
     {"alarms.silent_for_ms", [](Settings& s) { s.alarms.silent_for = 9s; }, kNothing},

@@ -5,7 +5,6 @@ import { ago, clip, clock } from "./words.js";
 const at = (id) => document.getElementById(id);
 const FRESH = 15; // s: what the Command Post said longer ago is told with its time
 const FEW = 5; // reports left
-const LENGTH = 3600; // s: of a run of which nothing else is known
 
 // A run clock that was heard to move goes on between two answers; one that stands still stays where it is.
 let heard = null, ticking = false;
@@ -43,7 +42,7 @@ export function showRun(view, now, lost) {
   const isStale = !run || since > FRESH || lost;
   const stale = run && isStale ? clock(run.run_clock) : "";
   mark(at("run"), "stale", String(isStale));
-  const seconds = run ? runClock(view, now) : 0, toGo = (view.run_seconds ?? LENGTH) - seconds;
+  const seconds = run ? runClock(view, now) : 0, toGo = view.run_seconds - seconds;
   figure("clock", run ? clock(seconds) : "–", "run clock");
   figure("togo", run ? clock(Math.abs(toGo)) : "–", toGo < 0 ? "over time" : "to go");
   figure("score", run ? String(run.score) : "–", "score", { stale });

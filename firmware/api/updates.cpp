@@ -35,7 +35,8 @@ constexpr Member kUpdate[] = {
     member<&UpdateView::why>("why", "why it cannot be updated here"),
     member<&UpdateView::running, &update::Running::compatible>("board"),
     member<&UpdateView::running, &update::Running::version>("version"),
-    member<&UpdateView::running, &update::Running::slot>("slot"),
+    member<&UpdateView::running, &update::Running::slot>("slot", "which runs"),
+    member<&UpdateView::running, &update::Running::other>("other_slot", "into which an update goes"),
     member<&UpdateView::trial>("trial",
                                "what runs was installed last, and has not been healthy for a minute"),
     member<&UpdateView::stray>("stray", "which other slot runs than the one that was good last, and why")

@@ -15,7 +15,6 @@
 namespace adit::cli {
 namespace {
 
-constexpr std::chrono::seconds kReadPatience{3};
 constexpr std::chrono::seconds kActionPatience{10};  // an action is on the disk before it is answered
 
 bool all_is_well(const api::RunView& view) {
@@ -83,8 +82,9 @@ Failure failure(const Adit& adit, const HttpReply& reply) {
 
 }  // namespace
 
-std::expected<std::string, Failure> find(const Adit& adit, const std::string& target) {
-  auto reply = http_ask(adit.address, {.target = target, .token = adit.token.token}, kReadPatience);
+std::expected<std::string, Failure> find(const Adit& adit, const std::string& target,
+                                         std::chrono::milliseconds within) {
+  auto reply = http_ask(adit.address, {.target = target, .token = adit.token.token}, within);
   if (!reply) return std::unexpected(Failure{Exit::Unable, reply.error().sentence});
   if (reply->status != 200) return std::unexpected(failure(adit, *reply));
   return std::move(reply->body);
@@ -112,6 +112,10 @@ std::string sentence_in(const std::string& body) {
 
 Outcome unable(const std::string& why) {
   return {Exit::Unable, "", "adit: " + host::escaped(why) + '\n'};
+}
+
+Outcome unable(const Failure& failure) {
+  return {failure.exit, "", unable(failure.sentence).err};
 }
 
 Outcome status(const Options& options, bool colour) {

@@ -10,6 +10,8 @@
 
 namespace adit::cli {
 
+inline constexpr std::chrono::milliseconds kReadPatience{3000};
+
 /// The Adit that the options mean: where it is, and what it is asked with.
 struct Adit {
   settings::Address address;
@@ -34,7 +36,8 @@ std::expected<std::string, Failure> post(const Adit& adit, const std::string& ta
                                          const std::string& check);
 
 /// The body of a 200, where the answer may be that there is no such thing.
-std::expected<std::string, Failure> find(const Adit& adit, const std::string& target);
+std::expected<std::string, Failure> find(const Adit& adit, const std::string& target,
+                                         std::chrono::milliseconds within = kReadPatience);
 
 /// For an answer of 401.
 std::string unknown_token(const Adit& adit);
@@ -44,6 +47,7 @@ std::string sentence_in(const std::string& body);
 
 /// `why` on standard error.
 Outcome unable(const std::string& why);
+Outcome unable(const Failure& failure);
 
 /// `adit status`: asks the running Adit and shows its answer.
 Outcome status(const Options& options, bool colour);

@@ -9,6 +9,7 @@
 #include "cli/network.hpp"
 #include "cli/options.hpp"
 #include "cli/reports.hpp"
+#include "cli/runs.hpp"
 #include "cli/settings.hpp"
 #include "cli/test.hpp"
 #include "cli/update.hpp"
@@ -33,6 +34,8 @@ Outcome run(std::span<const std::string_view> words, const Console& console) {
       return aside(*options, colour);
     case Command::Run:
       return begin_run(*options);
+    case Command::Runs:
+      return runs(*options, console);
     case Command::Settings:
       return settings(*options, colour);
     case Command::Course:

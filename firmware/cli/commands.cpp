@@ -11,6 +11,7 @@ constexpr Argument kSetAside{"NUMBER...", "the number of what is set aside", 1, 
                              Among::Aside};
 constexpr Argument kSeconds{"[SECONDS]", "seconds, a whole number from 1 to 60", 0, 1, 60};
 constexpr Argument kName{"NAME", "a course's name", 1, 1, 0, Among::Courses};
+constexpr Argument kRunKey{"KEY", "a run's key", 1, 1, 0, Among::Runs};
 constexpr Argument kKey{"[KEY]", "a key of the settings", 0, 1, 0, Among::Keys};
 constexpr Argument kFile{"FILE", "a file", 1, 1, 0, Among::Files};
 constexpr Argument kBundle{"[FILE]", "a file", 0, 1, 0, Among::Files};
@@ -44,6 +45,15 @@ constexpr Form kAsideForms[] = {
      "sent since: that would put the older in its place"},
     {"discard", Verb::Discard, kSetAside, "forgets it"}};
 constexpr Form kRunForms[] = {{"new", Verb::New, kNothing, "declares that a new run begins"}};
+constexpr Form kRunsForms[] = {
+    {"", Verb::List, kNothing, "", "", true},
+    {"show", Verb::Show, kRunKey, "all that is known of one run"},
+    {"report", Verb::Report, kRunKey,
+     "its report to print, one HTML file: score, each report with its life, the map, coverage, robots, what "
+     "needed the operator",
+     "--to"},
+    {"delete", Verb::Delete, kRunKey,
+     "forgets its map, tracks and plots, for good. Its reports stay in the ledger", "--yes"}};
 constexpr Form kSettingsForms[] = {
     {"show", Verb::Show, kKey,
      "the settings that differ from what is by default, and which tokens are set; with --json all, and what "
@@ -68,12 +78,14 @@ constexpr Form kNetworkForms[] = {
     {"back", Verb::Back, kNothing, "the change is taken back now"}};
 constexpr Form kTestForms[] = {
     {"", Verb::List, kNothing, "", "--course --scoring --mapping --scoring-token --mapping-token", true}};
-constexpr Form kUpdateForms[] = {{"", Verb::List, kBundle, "", "--stick --restart --again --anyway", true}};
+constexpr Form kUpdateForms[] = {
+    {"", Verb::List, kBundle, "", "--stick --restart --back --stay --again --anyway", true}};
 constexpr Form kHelpForms[] = {{"", Verb::List, kCommand, "", "", true}};
 constexpr Form kCompleteForms[] = {
     {"reports", Verb::Reports, kWord, "reports by their numbers: all, or those that WORD can be said of"},
     {"aside", Verb::Aside, kNothing, "what is set aside, by its numbers"},
     {"courses", Verb::Courses, kNothing, "the names of courses"},
+    {"runs", Verb::Runs, kNothing, "the runs that are kept, by their keys"},
     {"keys", Verb::Keys, kNothing,
      "the keys of the settings, with --json all that is to be known of each; no Adit is asked"}};
 constexpr Form kCheckForms[] = {{"", Verb::List, kSettingsFile, "", "", true}};
@@ -157,6 +169,16 @@ constexpr CommandRow kCommands[] = {
      "before are held, so that none of the old run is sent into the new one unless you say so: adit reports "
      "send. The same report as one of an earlier run is then a new report.",
      "a new run has begun", "", "  sudo adit run new"},
+    {Command::Runs, "runs", "the runs that are kept: their scores, their reports to print, their end",
+     kRunsForms,
+     "Without a word: a row for each run whose map, tracks and plots are kept, the latest first. KEY is what "
+     "stands first in its row: the run's number, and more where two have the same. On the page they can be "
+     "looked at again (/runs).",
+     "they are shown, or it is done", "there is no such run, or it cannot be done",
+     "  sudo adit runs\n"
+     "  sudo adit runs report 3 --to run-3.html\n"
+     "  sudo adit runs delete 1\n"
+     "  sudo adit runs --json | jq -r '.runs[] | [.key, .course, .score] | @tsv'"},
     {Command::Settings, "settings", "what the running Adit is set to, and changes to it", kSettingsForms, "",
      "all is well", "something is wrong with FILE, or somebody else changed the settings at the same time",
      "  sudo adit settings export > box.json\n"
@@ -201,14 +223,16 @@ constexpr CommandRow kCommands[] = {
      "  sudo adit test --json | jq '.endpoints[].steps[] | select(.state == \"bad\")'"},
     {Command::Update, "update", "the box's version, and the installation of another", kUpdateForms,
      "Without a word it tells which version runs, in which of the two slots, and what became of the last "
-     "update. FILE is an update, adit-BOARD-VERSION.raucb: it is sent to the box, checked there, and "
+     "update; and where another slot runs than the one that was good last, why, and the two ways on: --back "
+     "and --stay. FILE is an update, adit-BOARD-VERSION.raucb: it is sent to the box, checked there, and "
      "installed into the slot that does not run. That takes some minutes, and all goes on meanwhile.\n"
      "\n"
      "What is installed is on trial: it stays once it has been healthy for a minute; where it does not come "
      "up in three starts, the box goes back to the version before by itself. Another board's update, one "
      "that is not signed with a key that the box knows, and an older version are refused.",
      "all is well",
-     "the update was refused, failed or was left; a report is under way; nothing can be updated here",
+     "the update was refused, failed or was left; another slot runs than the one that was good last; a\n"
+     "     report is under way; nothing can be updated here",
      "  sudo adit update adit-qemu-virt-0.2.0.raucb && sudo adit update --restart"},
     {Command::Check, "check", "all that is wrong with a settings file, at once", kCheckForms,
      "Reads SETTINGS (/etc/adit/settings.json if not given) exactly as aditd would, and names each error by "

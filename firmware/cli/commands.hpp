@@ -13,6 +13,7 @@ enum class Command : std::uint8_t {
   Reports,
   Aside,
   Run,
+  Runs,
   Settings,
   Course,
   Identify,
@@ -43,11 +44,14 @@ enum class Verb : std::uint8_t {
   Reports,
   Aside,
   Courses,
-  Keys
+  Runs,
+  Keys,
+  Report,
+  Delete
 };
 
 /// What an argument may be, for the completion of shells: `adit complete` lists all but files.
-enum class Among : std::uint8_t { Anything, Files, Reports, Aside, Courses, Keys, Commands };
+enum class Among : std::uint8_t { Anything, Files, Reports, Aside, Courses, Runs, Keys, Commands };
 
 /// What stands behind a command, or behind its word.
 struct Argument {

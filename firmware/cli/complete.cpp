@@ -2,6 +2,8 @@
 
 #include <algorithm>
 
+#include "api/kept_runs.hpp"
+#include "api/reports_csv.hpp"
 #include "api/run_view.hpp"
 #include "api/settings_rows.hpp"
 #include "cli/ask.hpp"
@@ -62,11 +64,23 @@ Candidates courses_by_name(const Adit& adit) {
   });
 }
 
+Candidates runs_by_key(const Adit& adit) {
+  const auto json = get(adit, "/adit/runs");
+  if (!json) return std::unexpected(json.error());
+  const auto list = read<api::RunList>(adit, *json);
+  if (!list) return std::unexpected(list.error());
+  std::vector<Candidate> all;
+  for (const api::RunRow& run : list->runs)
+    all.push_back({run.key, run.is_present ? "the present run" : api::iso_time(run.began)});
+  return all;
+}
+
 Candidates asked_for(const Options& options) {
   const auto adit = adit_of(options);
   if (!adit) return std::unexpected(adit.error());
   if (options.verb == Verb::Aside) return aside_by_number(*adit);
   if (options.verb == Verb::Courses) return courses_by_name(*adit);
+  if (options.verb == Verb::Runs) return runs_by_key(*adit);
   return reports_by_number(*adit, options.word);
 }
 

@@ -109,6 +109,7 @@ class Words {
   std::string& text() {
     if (command_->command == Command::Course) return options_.course;
     if (command_->command == Command::Complete) return options_.word;
+    if (command_->command == Command::Runs) return options_.run_key;
     if (form_->argument.among == Among::Keys) return options_.key;
     return command_->command == Command::Check ? options_.settings : options_.file;
   }
@@ -122,10 +123,11 @@ class Words {
   Wrong disagreement() const {
     if (options_.csv && options_.json) return "--csv and --json are two formats: which one?";
     if (command_->command != Command::Update) return std::nullopt;
-    if (int{options_.stick} + int{options_.restart} + int{!options_.file.empty()} > 1)
-      return "a file, --stick and --restart are three things: which one?";
+    const int asked = int{options_.stick} + int{options_.restart} + int{options_.back} + int{options_.stay} +
+                      int{!options_.file.empty()};
+    if (asked > 1) return "a file, --stick, --restart, --back and --stay are five things: which one?";
     if (options_.again && !options_.stick && options_.file.empty()) return "update does not take --again";
-    if (options_.anyway && !options_.restart) return "update does not take --anyway";
+    if (options_.anyway && !options_.restart && !options_.back) return "update does not take --anyway";
     return std::nullopt;
   }
 
@@ -173,47 +175,55 @@ command_line::Program command_line_of(Options& options) {
       .name = "adit",
       .usage = "COMMAND",
       .about = "adit - what the gateway is doing, for a shell and for scripts",
-      .rows = {{"--run", "N|all", "whose reports to list; if not given, the present run's",
-                command_line::take<take_run>(options)},
-               {"--csv", "", "as CSV, for a spreadsheet", &options.csv},
-               {"--yes", "",
-                "sends a report in doubt without asking. Without it, you are asked on a terminal, and it is "
-                "not sent where there is none",
-                &options.yes},
-               {"--stick", "", "installs the update that is on the USB stick in the box", &options.stick},
-               {"--restart", "",
-                "restarts the box, to use what was installed. Not while a report waits or is being sent",
-                &options.restart},
-               {"--anyway", "",
-                "with --restart: also then. The report is not lost, but its answer has to be found out "
-                "afterwards",
-                &options.anyway},
-               {"--again", "", "installs the version that runs already", &options.again},
-               {"--course", "NAME", "of test: tries the Command Post of this course instead of that in use",
-                &options.trial.course},
-               {"--scoring", "ADDR:PORT", "of test: tries this address as the scoring endpoint",
-                command_line::take<take_endpoint<&Trial::scoring>>(options.trial)},
-               {"--mapping", "ADDR:PORT", "of test: tries this address as the mapping endpoint",
-                command_line::take<take_endpoint<&Trial::mapping>>(options.trial)},
-               {"--scoring-token", "FILE",
-                "of test: tries the token in this file at the scoring endpoint. It is not kept",
-                &options.trial.scoring_token},
-               {"--mapping-token", "FILE", "of test: the same at the mapping endpoint",
-                &options.trial.mapping_token},
-               {"--at", "ADDR:PORT", "where Adit listens for the team: 10.0.0.1:8000 or [fd00::1]:8000",
-                &options.at},
-               {"--settings", "FILE",
-                "the settings to find that in. If not given, those saved in /var/lib/adit/settings.json, or "
-                "else those that came with the box",
-                &options.settings},
-               {"--token-file", "FILE",
-                "what lets you in: a file that holds the team's token or the scoring token. If not given, "
-                "the first of team.token and scoring.token in /var/lib/adit/secrets and /etc/adit/secrets "
-                "that can be read (by root)",
-                &options.token_file},
-               {"--json", "", "for scripts: what Adit itself says, as JSON", &options.json},
-               {"--version", "", "prints the version", &options.version},
-               {"--help", "", "this, or more about a command", &options.help}},
+      .rows =
+          {{"--run", "N|all", "whose reports to list; if not given, the present run's",
+            command_line::take<take_run>(options)},
+           {"--csv", "", "as CSV, for a spreadsheet", &options.csv},
+           {"--yes", "",
+            "sends a report in doubt, or deletes a run, without asking. Without it, you are asked on a "
+            "terminal, and it is not done where there is none",
+            &options.yes},
+           {"--to", "FILE", "where the report of a run is written; if not given, to standard output",
+            &options.to},
+           {"--stick", "", "installs the update that is on the USB stick in the box", &options.stick},
+           {"--restart", "",
+            "restarts the box, to use what was installed. Not while a report waits or is being sent",
+            &options.restart},
+           {"--back", "",
+            "where another slot runs than the one that was good last: restarts the box into that one. Not "
+            "while a report waits or is being sent",
+            &options.back},
+           {"--stay", "", "there: the slot that runs is the one to keep", &options.stay},
+           {"--anyway", "",
+            "with --restart or --back: also then. The report is not lost, but its answer has to be found out "
+            "afterwards",
+            &options.anyway},
+           {"--again", "", "installs the version that runs already", &options.again},
+           {"--course", "NAME", "of test: tries the Command Post of this course instead of that in use",
+            &options.trial.course},
+           {"--scoring", "ADDR:PORT", "of test: tries this address as the scoring endpoint",
+            command_line::take<take_endpoint<&Trial::scoring>>(options.trial)},
+           {"--mapping", "ADDR:PORT", "of test: tries this address as the mapping endpoint",
+            command_line::take<take_endpoint<&Trial::mapping>>(options.trial)},
+           {"--scoring-token", "FILE",
+            "of test: tries the token in this file at the scoring endpoint. It is not kept",
+            &options.trial.scoring_token},
+           {"--mapping-token", "FILE", "of test: the same at the mapping endpoint",
+            &options.trial.mapping_token},
+           {"--at", "ADDR:PORT", "where Adit listens for the team: 10.0.0.1:8000 or [fd00::1]:8000",
+            &options.at},
+           {"--settings", "FILE",
+            "the settings to find that in. If not given, those saved in /var/lib/adit/settings.json, or "
+            "else those that came with the box",
+            &options.settings},
+           {"--token-file", "FILE",
+            "what lets you in: a file that holds the team's token or the scoring token. If not given, "
+            "the first of team.token and scoring.token in /var/lib/adit/secrets and /etc/adit/secrets "
+            "that can be read (by root)",
+            &options.token_file},
+           {"--json", "", "for scripts: what Adit itself says, as JSON", &options.json},
+           {"--version", "", "prints the version", &options.version},
+           {"--help", "", "this, or more about a command", &options.help}},
       .ending = "",
   };
 }

@@ -40,14 +40,17 @@ struct Options {
   bool all_runs = false;
   std::int64_t seconds = 10;  // how long the lights are to blink
   bool json = false, csv = false;
-  bool yes = false;  // what is asked on a terminal is meant
-  std::string at;    // "ADDR:PORT"; empty: as the settings say
-  std::string file;  // of settings: to check or apply; of Update: the bundle
-  std::string key;   // of settings show; or where several begin
-  std::string word;  // of Complete: of `adit reports`
-  bool restart = false, stick = false, again = false, anyway = false;  // of Update
-  std::string course;                                                  // to switch to; "": none
-  Trial trial;                                                         // of Test
+  bool yes = false;     // what is asked on a terminal is meant
+  std::string at;       // "ADDR:PORT"; empty: as the settings say
+  std::string file;     // of settings: to check or apply; of Update: the bundle
+  std::string key;      // of settings show; or where several begin
+  std::string word;     // of Complete: of `adit reports`
+  std::string run_key;  // of Runs
+  std::string to;       // of Runs: the file for its report; "": standard output
+  bool restart = false, stick = false, again = false, anyway = false, back = false,
+       stay = false;   // of Update
+  std::string course;  // to switch to; "": none
+  Trial trial;         // of Test
   std::string settings = kGivenSettings;
   std::string saved_settings = kSavedSettings;
   std::string token_file;  // empty: in `secrets`

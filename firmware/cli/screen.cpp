@@ -55,7 +55,7 @@ Patience::Woken Patience::wait(std::chrono::milliseconds longest) {
 
 bool Patience::ends_by_key() const {
   std::array<char, 64> keys{};
-  const ssize_t size = read(STDIN_FILENO, keys.data(), keys.size());
+  const ssize_t size = ::read(STDIN_FILENO, keys.data(), keys.size());
   return size <= 0 || std::string_view(keys.data(), static_cast<std::size_t>(size)).contains('q');
 }
 

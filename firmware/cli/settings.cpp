@@ -42,10 +42,6 @@ bool truth_of(const Value& value) {
   return truth != nullptr && *truth;
 }
 
-Outcome failed(const Failure& failure) {
-  return {failure.exit, "", unable(failure.sentence).err};
-}
-
 Outcome not_understood(const std::string& why) {
   return unable("Adit's answer cannot be understood: " + why);
 }
@@ -138,7 +134,7 @@ std::expected<Checked, Failure> ask_check(const Adit& adit, const std::string& f
 
 Outcome check(const Adit& adit, const Options& options, bool colour) {
   const auto checked = ask_check(adit, options.file);
-  if (!checked) return failed(checked.error());
+  if (!checked) return unable(checked.error());
   const Exit exit = checked->good() ? Exit::Fine : Exit::Attention;
   if (options.json) return {exit, checked->body + '\n', ""};
   if (!checked->good()) return {exit, "", errors_text(checked->answer)};
@@ -151,12 +147,12 @@ Outcome apply(const Adit& adit, const Options& options, bool colour) {
   const auto tag = read<std::string>(*before, [](const Field& object) { return text(object, "tag"); });
   if (!tag) return not_understood(tag.error());
   const auto checked = ask_check(adit, options.file);
-  if (!checked) return failed(checked.error());
+  if (!checked) return unable(checked.error());
   if (!checked->good()) return {Exit::Attention, "", errors_text(checked->answer)};
   const auto done =
       post(adit, "/adit/settings",
            codec::write_json({Value::Object{{"settings", checked->settings}, {"base", {*tag}}}}), kSee);
-  if (!done) return failed(done.error());
+  if (!done) return unable(done.error());
   if (options.json) return {Exit::Fine, *done + '\n', ""};
   return {Exit::Fine, changes_text(checked->answer, colour) + warnings_text(checked->answer, colour), ""};
 }
@@ -180,7 +176,7 @@ Outcome switch_course(const Options& options, bool colour) {
   if (!adit) return unable(adit.error());
   const auto body =
       post(*adit, "/adit/course", codec::write_json({Value::Object{{"name", {options.course}}}}), kSee);
-  if (!body) return failed(body.error());
+  if (!body) return unable(body.error());
   if (options.json) return {Exit::Fine, *body + '\n', ""};
   const auto answer = codec::parse_json(*body);
   if (!answer) return not_understood(answer.error());

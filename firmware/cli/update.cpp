@@ -36,12 +36,21 @@ std::string last_line(const UpdateView& view) {
   return host::escaped(icd::sentence(name, " was ", name_of(view.last.stage), ": ", view.last.why)) + '\n';
 }
 
+/// Why another slot runs than the one that was good last, and the ways on.
+std::string stray_lines(const UpdateView& view) {
+  return icd::sentence("Another slot runs than the one that was good last: ", host::escaped(view.stray),
+                       "\n  adit update --back   restarts the box into the slot that was good last\n"
+                       "  adit update --stay   keeps the slot that runs\n");
+}
+
 std::string text_of(const UpdateView& view) {
   if (!view.managed) return icd::sentence("Nothing can be updated here: ", host::escaped(view.why), "\n");
   const update::Running& running = view.running;
-  std::string out = host::escaped(icd::sentence(running.version, " runs, in slot ", running.slot, " of ",
+  std::string out = host::escaped(icd::sentence(running.version, " runs, in slot ", running.slot,
+                                                " (an update goes into slot ", running.other, ") of ",
                                                 running.compatible)) +
                     '\n';
+  if (!view.stray.empty()) out += stray_lines(view);
   if (!view.doing.empty()) out += icd::sentence("The box is ", host::escaped(view.doing), "\n");
   if (!view.refusal.empty())
     out += icd::sentence("The last one was refused: ", host::escaped(view.refusal), "\n");
@@ -57,7 +66,8 @@ std::string text_of(const UpdateView& view) {
 Exit exit_of(const UpdateView& view) {
   const Stage stage = view.last.stage;
   const bool failed = stage == Stage::Failed || stage == Stage::Left || stage == Stage::Interrupted;
-  return failed || !view.managed || !view.refusal.empty() ? Exit::Attention : Exit::Fine;
+  return failed || !view.managed || !view.refusal.empty() || !view.stray.empty() ? Exit::Attention
+                                                                                 : Exit::Fine;
 }
 
 Outcome show_update(const Adit& adit, const Options& options) {
@@ -132,24 +142,37 @@ Outcome upload(const Adit& adit, const Options& options,
   return follow(adit, options, print);
 }
 
+/// What the options ask for: "" nothing.
+struct Asked {
+  std::string target, body = "{}", done;
+};
+
+Asked asked_of(const Options& options) {
+  const std::string anyway = options.anyway ? R"({"anyway": true})" : "{}";
+  if (options.stick) return {"/adit/update/stick", options.again ? R"({"again": true})" : "{}", ""};
+  if (options.restart) return {"/adit/update/restart", anyway, "the box restarts\n"};
+  if (options.back)
+    return {"/adit/update/back", anyway, "the box restarts, into the slot that was good last\n"};
+  if (options.stay) return {"/adit/update/stay", "{}", "the slot that runs is the one to keep\n"};
+  return {};
+}
+
 }  // namespace
 
 Outcome update(const Options& options, const std::function<void(const std::string&)>& print) {
   const auto adit = adit_of(options);
   if (!adit) return unable(adit.error());
   if (!options.file.empty()) return upload(*adit, options, print);
-  if (!options.stick && !options.restart) return show_update(*adit, options);
-  const std::string flag = options.stick ? (options.again ? R"({"again": true})" : "{}")
-                                         : (options.anyway ? R"({"anyway": true})" : "{}");
-  const auto body =
-      post(*adit, options.stick ? "/adit/update/stick" : "/adit/update/restart", flag, "adit update");
+  const Asked asked = asked_of(options);
+  if (asked.target.empty()) return show_update(*adit, options);
+  const auto body = post(*adit, asked.target, asked.body, "adit update");
   if (!body) {
     Outcome outcome = unable(body.error().sentence);
     outcome.exit = body.error().exit;
     return outcome;
   }
   if (options.stick) return follow(*adit, options, print);
-  return {Exit::Fine, options.json ? *body + '\n' : "the box restarts\n", ""};
+  return {Exit::Fine, options.json ? *body + '\n' : asked.done, ""};
 }
 
 }  // namespace adit::cli

@@ -47,7 +47,7 @@ class Offers(unittest.TestCase):
         self.offers("adit --ver", "--version")
         self.offers("adit reports --ru", "--run")
         self.offers("adit reports send --y", "--yes")
-        self.offers("adit update --st", "--stick")
+        self.offers("adit update --st", "--stay", "--stick")
         self.offers("aditd --setti", "--settings")
         self.offers("adit-panel --si", "--simulated")
         self.offers("adit run new --cs")

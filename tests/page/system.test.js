@@ -335,6 +335,50 @@ test("restarts the box only on the operator's word while a report waits", async 
   await page.waitForFunction(() => document.querySelector("#restart button").disabled);
 });
 
+const STRAY = "slot A with 0.1.0 runs, and slot B with 0.2.0 was good last";
+
+/** The page of a box that runs from another slot than the one that was good last, until it is told to stay. */
+async function strayed(t, password) {
+  const { page } = await come(t, password);
+  let stray = STRAY;
+  await page.route("**/adit/update", async (route) => {
+    const answer = await route.fetch();
+    await route.fulfill({ response: answer, json: { ...(await answer.json()), stray } });
+  });
+  await page.route("**/adit/update/stay", (route) => {
+    stray = null;
+    return route.continue();
+  });
+  await updating(page).getByText(`Another slot is running: ${STRAY}.`).waitFor();
+  return page;
+}
+
+test("goes back from a slot that nobody meant, once it is confirmed", async (t) => {
+  const page = await strayed(t), dialog = page.locator("#confirm");
+  const press = (name) => dialog.getByRole("button", { name, exact: true }).click();
+  await updating(page).getByRole("button", { name: "Go back" }).click();
+  await press("Leave it");
+  assert.ok(!page.requests.some((url) => url.endsWith("/adit/update/back")), "nothing is asked for on a no");
+  await updating(page).getByRole("button", { name: "Go back" }).click();
+  await press("Go back");
+  await dialog.getByText("1 report waits to be sent.").waitFor();
+  await press("Go back");
+  await updating(page).locator(".stray").getByText("The box is restarting.").waitFor();
+});
+
+test("stays with the slot that runs, once it is confirmed", async (t) => {
+  const page = await strayed(t), dialog = page.locator("#confirm");
+  await updating(page).getByRole("button", { name: "Stay with slot A" }).click();
+  await dialog.getByRole("button", { name: "Stay", exact: true }).click();
+  await updating(page).getByText("Another slot is running").waitFor({ state: "hidden" });
+  assert.ok(page.requests.some((url) => url.endsWith("/adit/update/stay")));
+});
+
+test("says to a viewer that another slot is running, and offers him nothing", async (t) => {
+  const page = await strayed(t, VIEWER);
+  assert.equal(await updating(page).getByRole("button").count(), 0);
+});
+
 test("says why it cannot restart the box, and what to do then", async (t) => {
   const { page } = await come(t);
   await page.route("**/adit/update", (route) => route.fulfill({ json: { managed: false, why: "adit-update does not run here", doing: null, progress: null, refusal: null, last: null, stick: null, stick_why: null } }));

@@ -104,7 +104,7 @@ class Program:
         behind = {row.word: row.value for row in self.commands[command].words}.get(word, self.commands[command].argument)
         return {
             ("reports", "NUMBER"): f"reports {word}", ("reports", "NUMBER..."): f"reports {word}", ("aside", "NUMBER..."): "aside",
-            ("course", "NAME"): "courses", ("settings", "[KEY]"): "keys",
+            ("course", "NAME"): "courses", ("runs", "KEY"): "runs", ("settings", "[KEY]"): "keys",
         }.get((command, behind), "")
 
     def wants_file(self, command, word):

@@ -1,5 +1,5 @@
 // The support bundle, the factory reset, and what the box is made of.
-import { confirmed, open } from "./dialog.js";
+import { open } from "./dialog.js";
 import { make } from "./dom.js";
 import { get, getFile, post, sitOutReset } from "./session.js";
 import { age, bytes, clip } from "./words.js";
@@ -72,74 +72,4 @@ export async function showAbout() {
   } catch (error) {
     section.querySelector(".trouble").textContent = error.message;
   }
-}
-
-const restartPlace = document.getElementById("restart");
-const [restartNote, restarted] = restartPlace.querySelectorAll("p"), restart = restartPlace.querySelector("button");
-const MEANING = "It takes about a minute. Robots that post meanwhile have to post again; what the box has taken is kept.";
-
-/** Where the box cannot restart itself it says why, and what to do. */
-function showRestart({ managed, why, doing }, operator) {
-  restartNote.textContent = managed ? MEANING : `This page cannot restart the box (${why.split(":")[0]}). Switch it off and on.`;
-  restart.hidden = !operator || !managed;
-  restart.disabled = Boolean(doing);
-  if (doing === "restarting") restarted.textContent = "The box is restarting.";
-}
-
-/** Asks first, and again where a report is under way: what the box says of it is what is asked. */
-async function restartIt() {
-  const sure = (text) => confirmed({ title: "Restart the box?", text, word: "Restart" });
-  restarted.textContent = "";
-  restarted.dataset.bad = false;
-  if (!(await sure(MEANING))) return;
-  try {
-    await post("/adit/update/restart").catch(async (error) => {
-      if (error.status !== 409) throw error;
-      if (await sure(`${error.message}.`)) return post("/adit/update/restart", { anyway: true });
-      throw new Error("The box was not restarted.");
-    });
-    restarted.textContent = "The box is restarting.";
-  } catch (error) {
-    restarted.textContent = error.message;
-    restarted.dataset.bad = true;
-  }
-}
-
-const STAGES = { installed: "waits for a restart", good: "came up healthy" };
-
-export async function offerUpdate(operator) {
-  const section = document.getElementById("update"), bar = section.querySelector("progress");
-  const [file, install, stick] = section.querySelectorAll("input, button");
-  const [told, outcome] = section.querySelectorAll("p");
-  let timer;
-  function show({ managed, why, version, slot, doing, progress, refusal, trial, last, stick: offer, stick_why: unfit }) {
-    const end = last && `${last.version} ${trial ? "is on trial" : STAGES[last.stage] ?? last.stage}${last.why && `: ${last.why}`}`;
-    told.textContent = managed ? [`${version}, slot ${slot}`, end, unfit].filter(Boolean).join(". ") : why;
-    outcome.textContent = doing ? `The box is ${doing}.` : refusal ?? "";
-    outcome.dataset.bad = !doing && Boolean(refusal);
-    bar.hidden = !doing;
-    if (progress !== null) bar.value = progress;
-    for (const node of [file, install, stick]) node.hidden = !operator || !managed || Boolean(doing);
-    stick.hidden ||= !offer;
-    if (offer) stick.textContent = `Install ${offer.version} from the stick`;
-    showRestart({ managed, why, doing }, operator);
-  }
-  async function look() {
-    clearTimeout(timer);
-    await get("/adit/update").then(show, () => {});
-    timer = setTimeout(look, 2000);
-  }
-  function act(action) {
-    look();
-    action().then(look, (error) => {
-      clearTimeout(timer);
-      timer = setTimeout(look, 9000);
-      outcome.textContent = error.message;
-      outcome.dataset.bad = true;
-    });
-  }
-  install.addEventListener("click", () => file.files[0] && act(() => post("/adit/update", file.files[0])));
-  stick.addEventListener("click", () => act(() => post("/adit/update/stick")));
-  restart.addEventListener("click", restartIt);
-  look();
 }

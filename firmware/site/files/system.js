@@ -2,12 +2,13 @@
 import "./presses.js";
 import { badge } from "./dom.js";
 import { followLog } from "./log.js";
-import { offerBundle, offerReset, offerUpdate, showAbout } from "./box.js";
+import { offerBundle, offerReset, showAbout } from "./box.js";
 import { watchSessions } from "./logins.js";
 import { offerPasswords } from "./passwords.js";
 import { followNetwork } from "./pending.js";
 import { showPorts } from "./ports.js";
 import { session, showWho, toLogin } from "./session.js";
+import { offerUpdate } from "./update.js";
 
 const link = document.getElementById("link");
 const RETRY = 2000;

@@ -1,0 +1,158 @@
+#include "cli/runs.hpp"
+
+#include <algorithm>
+#include <fstream>
+
+#include "api/kept_runs.hpp"
+#include "api/reports_csv.hpp"
+#include "cli/ask.hpp"
+#include "cli/reading.hpp"
+#include "cli/table.hpp"
+#include "cli/words.hpp"
+#include "host/log.hpp"
+#include "icd/sentence.hpp"
+
+namespace adit::cli {
+namespace {
+
+using Align = Table::Align;
+using api::RunRow;
+
+constexpr std::chrono::seconds kPrinted{60};  // a run is read from the disk for it, and drawn
+
+std::string number_or_none(const std::optional<std::int64_t>& number) {
+  return number ? std::to_string(*number) : "";
+}
+
+/// What follows its key in a row.
+std::string course_of(const RunRow& run) {
+  return run.course.empty() ? run.post : run.course;
+}
+
+std::string table_of(const api::RunList& list, bool colour) {
+  std::string text;
+  if (!list.trouble.empty())
+    text = painted("Nothing is kept now: " + host::escaped(list.trouble), Tone::Bad, colour) + '\n';
+  if (list.runs.empty()) return text + "no run is kept\n";
+  Table table({{"key", Align::Right},
+               {"began"},
+               {"course"},
+               {"score", Align::Right},
+               {"reports left", Align::Right},
+               {"robots", Align::Right},
+               {"size", Align::Right},
+               {""}});
+  for (const RunRow& run : list.runs) {
+    table.add({{run.key, Tone::Strong},
+               {api::iso_time(run.began)},
+               {course_of(run)},
+               {number_or_none(run.score), Tone::Strong},
+               {number_or_none(run.remaining_reports)},
+               {std::to_string(run.robots.size())},
+               {size(run.bytes)},
+               {run.is_present ? "now" : "", Tone::Good}});
+  }
+  return text + table.written(colour);
+}
+
+Outcome list_runs(const Adit& adit, const Options& options, bool colour) {
+  const auto json = get(adit, "/adit/runs");
+  if (!json) return unable(json.error());
+  const auto list = read<api::RunList>(adit, *json);
+  if (!list) return unable(list.error());
+  return {Exit::Fine, options.json ? *json + '\n' : table_of(*list, colour), ""};
+}
+
+std::string text_of(const RunRow& run, bool colour) {
+  std::string robots;
+  for (const std::string& name : run.robots) robots.append(robots.empty() ? "" : ", ").append(name);
+  Table table({{}, {}});
+  const auto add = [&table](const char* name, const std::string& text, Tone tone = Tone::Plain) {
+    if (!text.empty()) table.add({{name, Tone::Faint}, {text, tone}});
+  };
+  add("run", run.key + (run.is_present ? " (now)" : ""), Tone::Strong);
+  add("name", run.id);
+  add("course", run.course);
+  add("Command Post", run.post);
+  add("team", run.team);
+  add("began", api::iso_time(run.began));
+  add("last", api::iso_time(run.last));
+  add("score", number_or_none(run.score), Tone::Strong);
+  add("reports left", number_or_none(run.remaining_reports));
+  add("robots", robots);
+  add("size", size(run.bytes));
+  return table.written(colour);
+}
+
+/// A run's key is part of a path: digits, and a hyphen where two runs have the same number.
+bool is_key(const std::string& key) {
+  return !key.empty() && key.find_first_not_of("0123456789-") == std::string::npos;
+}
+
+std::string path_of(const Options& options) {
+  return "/adit/runs/" + options.run_key;
+}
+
+Outcome show(const Adit& adit, const Options& options, bool colour) {
+  const auto json = find(adit, path_of(options));
+  if (!json) return unable(json.error());
+  const auto run = read<RunRow>(adit, *json);
+  if (!run) return unable(run.error());
+  return {Exit::Fine, options.json ? *json + '\n' : text_of(*run, colour), ""};
+}
+
+Outcome report(const Adit& adit, const Options& options) {
+  const auto html = find(adit, path_of(options) + "/report.html", kPrinted);
+  if (!html) return unable(html.error());
+  if (options.to.empty()) return {Exit::Fine, *html, ""};
+  std::ofstream file(options.to, std::ios::binary);
+  if (!file || !(file << *html).flush()) return unable(options.to + ": it cannot be written");
+  if (!options.json)
+    return {Exit::Fine,
+            icd::sentence("run ", options.run_key, ": ", size(html->size()), " in ") +
+                host::escaped(options.to) + '\n',
+            ""};
+  const codec::Value said{codec::Value::Object{
+      {"key", {options.run_key}}, {"file", {options.to}}, {"bytes", {std::uint64_t{html->size()}}}}};
+  return {Exit::Fine, codec::write_json(said) + '\n', ""};
+}
+
+/// Why it is not to be deleted; nothing: it is meant.
+std::optional<Failure> doubt(const Adit& adit, const Options& options, const Console& console) {
+  const auto json = find(adit, path_of(options));
+  if (!json) return json.error();
+  const auto run = read<RunRow>(adit, *json);
+  if (!run) return Failure{Exit::Unable, run.error()};
+  const std::string score = run->score ? icd::sentence(", score ", *run->score) : "";
+  const std::string why =
+      icd::sentence("run ", run->key, " (began ", api::iso_time(run->began), score, ", ", size(run->bytes),
+                    "): its map, tracks and plots are gone for good then; its reports stay in the ledger.");
+  const auto meant = console.ask(host::escaped(why) + "\nDelete it?");
+  if (!meant) return Failure{Exit::Attention, why + " It is not deleted; if that is meant: --yes"};
+  if (!*meant) return Failure{Exit::Attention, "run " + run->key + " is not deleted"};
+  return std::nullopt;
+}
+
+Outcome remove(const Adit& adit, const Options& options, const Console& console) {
+  if (!options.yes) {
+    if (const auto why = doubt(adit, options, console)) return unable(*why);
+  }
+  const auto done = post(adit, path_of(options) + "/delete", "", "adit runs");
+  if (!done) return unable(done.error());
+  return {Exit::Fine, options.json ? *done + '\n' : "run " + options.run_key + " is deleted\n", ""};
+}
+
+}  // namespace
+
+Outcome runs(const Options& options, const Console& console) {
+  const auto adit = adit_of(options);
+  if (!adit) return unable(adit.error());
+  if (options.verb == Verb::List) return list_runs(*adit, options, console.colour);
+  if (!is_key(options.run_key))
+    return unable(Failure{Exit::Attention, "there is no run " + options.run_key + ": see adit runs"});
+  if (options.verb == Verb::Show) return show(*adit, options, console.colour);
+  if (options.verb == Verb::Report) return report(*adit, options);
+  return remove(*adit, options, console);
+}
+
+}  // namespace adit::cli

@@ -1,0 +1,100 @@
+// The box's versions: which runs, an update of it, the way out of a slot that nobody meant, the restart.
+import { confirmed } from "./dialog.js";
+import { get, post } from "./session.js";
+
+const restartPlace = document.getElementById("restart");
+const [restartNote, restarted] = restartPlace.querySelectorAll("p"), restart = restartPlace.querySelector("button");
+const MEANING = "It takes about a minute. Robots that post meanwhile have to post again; what the box has taken is kept.";
+
+/** Where the box cannot restart itself it says why, and what to do. */
+function showRestart({ managed, why, doing }, operator) {
+  restartNote.textContent = managed ? MEANING : `This page cannot restart the box (${why.split(":")[0]}). Switch it off and on.`;
+  restart.hidden = !operator || !managed;
+  restart.disabled = Boolean(doing);
+  if (doing === "restarting") restarted.textContent = "The box is restarting.";
+}
+
+/** Asks first, and again where a report is under way: what the box says of it is what is asked. `done`: what is shown then. */
+async function restartBy(path, question, place, done) {
+  const sure = (text) => confirmed({ ...question, text });
+  place.textContent = "";
+  place.dataset.bad = false;
+  if (!(await sure(question.text))) return;
+  try {
+    await post(path).catch(async (error) => {
+      if (error.status !== 409) throw error;
+      if (await sure(`${error.message}.`)) return post(path, { anyway: true });
+      throw new Error("The box was not restarted.");
+    });
+    place.textContent = done;
+  } catch (error) {
+    place.textContent = error.message;
+    place.dataset.bad = true;
+  }
+}
+const restartIt = () => restartBy("/adit/update/restart", { title: "Restart the box?", text: MEANING, word: "Restart" }, restarted, "The box is restarting.");
+
+const strayed = document.querySelector("#update .stray"), [whyStrayed, leaving] = strayed.querySelectorAll("p");
+const [goBack, stay] = strayed.querySelectorAll("button");
+
+/** Another slot runs than the one that was good last: why, and both ways on. */
+function showStray({ stray, slot, doing }, operator) {
+  strayed.hidden = !stray;
+  whyStrayed.textContent = stray ? `Another slot is running: ${stray}.` : "";
+  for (const button of [goBack, stay]) button.hidden = !operator || Boolean(doing);
+  stay.textContent = `Stay with slot ${slot}`;
+}
+
+const goBackIt = () => restartBy("/adit/update/back", { title: "Go back to the slot that was good last?", text: MEANING, word: "Go back" }, leaving, "The box is restarting.");
+
+async function stayIt() {
+  const text = "The version that runs is then the one that the box starts, and goes back to after an update that fails.";
+  if (!(await confirmed({ title: `${stay.textContent}?`, text, word: "Stay" }))) return;
+  await post("/adit/update/stay").then(() => (leaving.textContent = ""), (error) => {
+    leaving.textContent = error.message;
+    leaving.dataset.bad = true;
+  });
+}
+
+const STAGES = { installed: "waits for a restart", good: "came up healthy" };
+
+export async function offerUpdate(operator) {
+  const section = document.getElementById("update"), bar = section.querySelector("progress");
+  const [file, install, stick] = section.querySelectorAll(".install > *, input");
+  const [told, outcome] = section.querySelectorAll(":scope > p");
+  let timer;
+  function show(view) {
+    const { managed, why, version, slot, doing, progress, refusal, trial, last, stick: offer, stick_why: unfit } = view;
+    const end = last && `${last.version} ${trial ? "is on trial" : STAGES[last.stage] ?? last.stage}${last.why && `: ${last.why}`}`;
+    told.textContent = managed ? [`${version}, slot ${slot}`, end, unfit].filter(Boolean).join(". ") : why;
+    outcome.textContent = doing ? `The box is ${doing}.` : refusal ?? "";
+    outcome.dataset.bad = !doing && Boolean(refusal);
+    bar.hidden = !doing;
+    if (progress !== null) bar.value = progress;
+    for (const node of [file, install, stick]) node.hidden = !operator || !managed || Boolean(doing);
+    stick.hidden ||= !offer;
+    if (offer) stick.textContent = `Install ${offer.version} from the stick`;
+    showStray(view, operator);
+    showRestart(view, operator);
+  }
+  async function look() {
+    clearTimeout(timer);
+    await get("/adit/update").then(show, () => {});
+    timer = setTimeout(look, 2000);
+  }
+  function act(action) {
+    look();
+    action().then(look, (error) => {
+      clearTimeout(timer);
+      timer = setTimeout(look, 9000);
+      outcome.textContent = error.message;
+      outcome.dataset.bad = true;
+    });
+  }
+  install.addEventListener("click", () => file.files[0] && act(() => post("/adit/update", file.files[0])));
+  stick.addEventListener("click", () => act(() => post("/adit/update/stick")));
+  restart.addEventListener("click", restartIt);
+  goBack.addEventListener("click", goBackIt);
+  stay.addEventListener("click", () => stayIt().then(look));
+  look();
+}

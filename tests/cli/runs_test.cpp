@@ -1,0 +1,128 @@
+#include "cli/runs.hpp"
+
+#include <gmock/gmock.h>
+
+#include <filesystem>
+
+#include "api/kept_runs.hpp"
+#include "cli/command.hpp"
+#include "cli/server.hpp"
+#include "cli/token_file.hpp"
+#include "host/folder.hpp"
+#include "host/service.hpp"
+
+namespace adit::cli {
+namespace {
+
+using testing::HasSubstr;
+using testing::Not;
+using testing::StartsWith;
+
+api::RunRow course_b() {
+  return {.key = "1-2",
+          .run = 1,
+          .id = "beta",
+          .course = "B",
+          .post = "10.100.2.200:8000",
+          .team = "cave",
+          .began = 1566309785.5,
+          .last = 1566313385,
+          .score = 7,
+          .remaining_reports = 18,
+          .robots = {"r1", "r2"},
+          .bytes = 3400000};
+}
+
+api::RunList two_runs() {
+  return {.runs = {{.key = "2", .run = 2, .post = "10.100.1.200:8000", .is_present = true}, course_b()},
+          .bytes = 3400000,
+          .trouble = ""};
+}
+
+class Runs : public testing::Test {
+ protected:
+  Outcome say(std::vector<std::string_view> words, const Console& console = {}) const {
+    const std::string at = server_.at();
+    words.insert(words.begin(), "runs");
+    words.insert(words.end(), {"--at", at, "--token-file", token_file_});
+    return run(words, console);
+  }
+
+  const Server server_{
+      {{"GET /adit/runs", Server::ok(codec::to_json(two_runs()))},
+       {"GET /adit/runs/1-2", Server::ok(codec::to_json(course_b()))},
+       {"GET /adit/runs/7", Server::reply("404 Not Found", "\"there is no such run\"")},
+       {"GET /adit/runs/1-2/report.html", Server::ok("<!doctype html><title>Run 1</title>")},
+       {"POST /adit/runs/1-2/delete", Server::ok(R"({"key":"1-2"})")},
+       {"POST /adit/runs/2/delete", Server::reply("409 Conflict", "\"run 2 is the present one\"")}}};
+  TokenFile file_;
+  const std::string token_file_ = file_.path();
+  host::Folder folder_;
+};
+
+TEST_F(Runs, AreListedTheLatestFirst) {
+  const Outcome listed = say({});
+  EXPECT_EQ(listed.exit, Exit::Fine);
+  EXPECT_THAT(
+      listed.out,
+      HasSubstr("  1-2  2019-08-20T14:03:05.500Z  B                      7            18       2  3.4 MB\n"));
+  EXPECT_THAT(listed.out, testing::ContainsRegex("\n +2 .*10.100.1.200:8000 .* now\n"));
+  EXPECT_EQ(say({"--json"}).out, codec::to_json(two_runs()) + '\n');
+}
+
+TEST_F(Runs, AreShownOneByOne) {
+  const Outcome shown = say({"show", "1-2"});
+  EXPECT_THAT(shown.out, HasSubstr("robots        r1, r2\n"));
+  EXPECT_THAT(shown.out, HasSubstr("reports left  18\n"));
+  EXPECT_EQ(say({"show", "1-2", "--json"}).out, codec::to_json(course_b()) + '\n');
+  const Outcome none = say({"show", "7"});
+  EXPECT_EQ(none.err, "adit: there is no such run\n");
+  EXPECT_EQ(none.exit, Exit::Attention);
+  EXPECT_EQ(say({"show", "../settings"}).err, "adit: there is no run ../settings: see adit runs\n");
+  EXPECT_THAT(say({"show"}).err, StartsWith("adit: a run's key is missing after show\n"));
+}
+
+TEST_F(Runs, HaveAReportThatIsPrintedOrWrittenToAFile) {
+  EXPECT_EQ(say({"report", "1-2"}).out, "<!doctype html><title>Run 1</title>");
+  const std::string to = folder_ / "run.html";
+  EXPECT_EQ(say({"report", "1-2", "--to", to}).out, "run 1-2: 35 B in " + to + "\n");
+  EXPECT_EQ(host::read_file(to).value(), "<!doctype html><title>Run 1</title>");
+  EXPECT_EQ(say({"report", "1-2", "--to", to, "--json"}).out,
+            R"({"key":"1-2","file":")" + to + R"(","bytes":35})" + "\n");
+  const Outcome nowhere = say({"report", "1-2", "--to", folder_ / "none/run.html"});
+  EXPECT_THAT(nowhere.err, HasSubstr("none/run.html: it cannot be written"));
+  EXPECT_EQ(nowhere.exit, Exit::Unable);
+  EXPECT_FALSE(std::filesystem::exists(folder_ / "none"));
+}
+
+TEST_F(Runs, AreDeletedOnlyWhereThatIsMeant) {
+  std::string asked;
+  const auto answering = [&asked](bool answer) {
+    return Console{.ask = [&asked, answer](const std::string& question) {
+      asked = question;
+      return std::optional(answer);
+    }};
+  };
+  const Outcome kept = say({"delete", "1-2"}, answering(false));
+  EXPECT_EQ(
+      asked,
+      "run 1-2 (began 2019-08-20T14:03:05.500Z, score 7, 3.4 MB): its map, tracks and plots are gone for "
+      "good then; its reports stay in the ledger.\nDelete it?");
+  EXPECT_EQ(kept.err, "adit: run 1-2 is not deleted\n");
+  EXPECT_EQ(kept.exit, Exit::Attention);
+  EXPECT_THAT(server_.request(), StartsWith("GET ")) << "nothing was deleted";
+
+  const Outcome nobody = say({"delete", "1-2"});
+  EXPECT_THAT(nobody.err, HasSubstr("It is not deleted; if that is meant: --yes"));
+  EXPECT_THAT(server_.request(), StartsWith("GET "));
+
+  EXPECT_EQ(say({"delete", "1-2"}, answering(true)).out, "run 1-2 is deleted\n");
+  EXPECT_EQ(say({"delete", "1-2", "--yes", "--json"}).out, "{\"key\":\"1-2\"}\n");
+  const Outcome present = say({"delete", "2", "--yes"});
+  EXPECT_EQ(present.err, "adit: run 2 is the present one\n");
+  EXPECT_EQ(present.exit, Exit::Attention);
+  EXPECT_THAT(say({"show", "1-2", "--yes"}).err, HasSubstr("runs show does not take --yes"));
+}
+
+}  // namespace
+}  // namespace adit::cli

@@ -1,0 +1,78 @@
+#include "cli/update.hpp"
+
+#include <gmock/gmock.h>
+
+#include "api/updates.hpp"
+#include "cli/command.hpp"
+#include "cli/server.hpp"
+#include "cli/token_file.hpp"
+
+namespace adit::cli {
+namespace {
+
+using testing::EndsWith;
+using testing::HasSubstr;
+
+constexpr const char* kWhy = "slot A with 0.1.0 runs, and slot B with 0.2.0 was good last";
+
+api::UpdateView a_box(const std::string& stray) {
+  api::UpdateView view;
+  view.managed = true;
+  view.running = {"adit-a-board", "0.1.0", "A", "B"};
+  view.stray = stray;
+  return view;
+}
+
+class Update : public testing::Test {
+ protected:
+  Outcome say(const Server& server, std::vector<std::string_view> words) const {
+    const std::string at = server.at();
+    words.insert(words.begin(), "update");
+    words.insert(words.end(), {"--at", at, "--token-file", token_file_});
+    return run(words);
+  }
+
+  TokenFile file_;
+  const std::string token_file_ = file_.path();
+};
+
+TEST_F(Update, SaysWhichSlotRuns) {
+  const Server server({{"GET /adit/update", Server::ok(codec::to_json(a_box("")))}});
+  const Outcome told = say(server, {});
+  EXPECT_EQ(told.out, "0.1.0 runs, in slot A (an update goes into slot B) of adit-a-board\n");
+  EXPECT_EQ(told.exit, Exit::Fine);
+}
+
+TEST_F(Update, SaysThatAnotherSlotRunsAndBothWaysOn) {
+  const Server server({{"GET /adit/update", Server::ok(codec::to_json(a_box(kWhy)))}});
+  const Outcome told = say(server, {});
+  EXPECT_THAT(told.out, HasSubstr("Another slot runs than the one that was good last: " + std::string(kWhy)));
+  EXPECT_THAT(told.out, HasSubstr("adit update --back "));
+  EXPECT_THAT(told.out, HasSubstr("adit update --stay "));
+  EXPECT_EQ(told.exit, Exit::Attention);
+}
+
+TEST_F(Update, GoesBackOrStaysWhereItIsAskedTo) {
+  const std::string after = Server::ok(codec::to_json(a_box("")));
+  const Server server({{"POST /adit/update/back", after}, {"POST /adit/update/stay", after}});
+  EXPECT_EQ(say(server, {"--back"}).out, "the box restarts, into the slot that was good last\n");
+  EXPECT_THAT(server.request(), EndsWith("\r\n\r\n{}"));
+  say(server, {"--back", "--anyway"});
+  EXPECT_THAT(server.request(), EndsWith("\r\n\r\n{\"anyway\": true}"));
+  EXPECT_EQ(say(server, {"--stay"}).out, "the slot that runs is the one to keep\n");
+  const Server none(
+      {{"POST /adit/update/stay", Server::reply("409 Conflict", "\"no other slot was good last\"")}});
+  const Outcome refused = say(none, {"--stay"});
+  EXPECT_EQ(refused.err, "adit: no other slot was good last\n");
+  EXPECT_EQ(refused.exit, Exit::Attention);
+}
+
+TEST_F(Update, DoesOneThingAtATime) {
+  const Server server(Server::Answers{});
+  for (const char* other : {"--restart", "--stick", "--stay", "a.raucb"})
+    EXPECT_THAT(say(server, {"--back", other}).err, HasSubstr("are five things: which one?")) << other;
+  EXPECT_THAT(say(server, {"--stay", "--anyway"}).err, HasSubstr("update does not take --anyway"));
+}
+
+}  // namespace
+}  // namespace adit::cli

@@ -151,7 +151,7 @@ const Key kKeys[] = {
      whole<MEMBER(queues.marker_bytes_per_message)>(1024, 256 * kMiB)},
 
     {"runs.length_seconds",
-     "How long a run lasts: page, display and `adit status` count down from it. The Command Post does not "
+     "How long a run lasts: page, display and adit status count down from it. The Command Post does not "
      "say.",
      whole<MEMBER(runs.length_seconds)>(60, 86400)},
     {"runs.run_bytes",

@@ -107,7 +107,7 @@ constexpr CommandRow kCommands[] = {
      "  quiet                    all has arrived, and nothing new came for a minute\n"
      "  silent                   the robot says nothing any more, against its habit\n"
      "  waiting                  accepted, and nothing has been sent so far\n"
-     "Times are as of now; bytes are of the last update.",
+     "Times are as of now; the size is that of the last update that was sent, as it was sent.",
      "there is no alarm, or only ones that may pass (wait)", "there is an alarm that is bad, or asks",
      "  sudo adit status\n"
      "  adit status --at 10.0.0.1:8000 --token-file team.token\n"

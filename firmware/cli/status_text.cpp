@@ -129,9 +129,9 @@ std::string ago(const std::optional<api::Time>& time, api::Time now) {
   return time ? duration(now - *time) + " ago" : "never";
 }
 
+/// Of the last that was sent. What came last is another map.
 std::string sent_size(const api::ActivityRow& row) {
-  if (!row.last_forwarded) return "";
-  return size(row.bytes_received) + " > " + size(row.bytes_sent);
+  return row.last_forwarded ? size(row.bytes_sent) : "";
 }
 
 std::string said(const api::ActivityRow& row) {

@@ -23,9 +23,9 @@ TEST(StatusText, TellsAGoodRunOnOneScreen) {
             "  mapping  10.100.1.201:8000  connected  last answer 200 in 42 ms\n"
             "\n"
             "Is my map arriving?\n"
-            "  robot  kind  arriving    accepted  sent  waiting  refused  last sent          size  the "
-            "Command Post said\n"
-            "  r1     grid  up to date        12    11        0           0.5 s ago  64 kB > 4 kB  200\n");
+            "  robot  kind  arriving    accepted  sent  waiting  refused  last sent  size  the Command Post "
+            "said\n"
+            "  r1     grid  up to date        12    11        0           0.5 s ago  4 kB  200\n");
 }
 
 TEST(StatusText, BeginsWithTheAlarmsInShapeAndWord) {

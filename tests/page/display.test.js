@@ -61,6 +61,18 @@ test("cuts no figure short, not even on a phone", async (t) => {
   }
 });
 
+test("names each robot in full, and tells what asks from what is bad", async (t) => {
+  const { page } = await watch(t, "reports", { path: "display" });
+  await page.$$eval("#robots .name", ([first]) => (first.textContent = "explorer10"));
+  for (const [width, height] of SCREENS) {
+    await page.setViewportSize({ width, height });
+    const cut = await page.$$eval("#robots .name", (names) => names.filter((name) => name.scrollWidth > name.clientWidth).map((name) => name.textContent));
+    assert.deepEqual(cut, [], `${width} x ${height}`);
+  }
+  const levels = await page.$$eval("#attention .alarm", (nodes) => nodes.map((node) => node.dataset.level));
+  assert.deepEqual(levels, ["ask", "ask"]);
+});
+
 test("says that the box is lost, and comes back by itself", async (t) => {
   const { stage, page } = await watch(t, "calm", { path: "display" });
   stage.freeze();

@@ -33,7 +33,7 @@ function showReports(view) {
 function show({ view, time, lost }) {
   mark(document.body, "link", lost ? "lost" : view ? "live" : "opening");
   if (!view) return showAttention([], lost ? "The box does not answer." : "");
-  const calling = view.alarms.filter(({ severity }) => severity !== "wait").map(({ what, why }) => (why ? `${what}: ${why}` : what));
+  const calling = view.alarms.filter(({ severity }) => severity !== "wait").sort((a, b) => a.acknowledged - b.acknowledged); // what is new first
   showAttention(calling.slice(0, lost ? 1 : 2), lost ? `The box does not answer: all is as it was at ${timeOfDay(view.now)}.` : "");
   showRun(view, time, lost);
   showEnds(view.endpoints, lost);

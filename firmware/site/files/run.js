@@ -54,11 +54,14 @@ export function showRun(view, now, lost) {
 }
 
 /** `lost`: what to say of a box that does not answer, or "". */
-export function showAttention(sentences, lost) {
-  const all = lost ? [{ key: "lost", text: lost }] : [];
-  for (const text of sentences) all.push({ key: `said ${text}`, text });
+export function showAttention(alarms, lost) {
+  const all = lost ? [{ id: "lost", severity: "bad", what: lost }] : [];
   const create = () => make("p.alarm");
-  list(at("attention"), all, (one) => one.key, create, (node, one) => badge(node, "bad", clip(one.text)));
+  list(at("attention"), [...all, ...alarms], ({ id }) => id, create, (node, { severity, what, why, acknowledged }) => {
+    mark(node, "level", severity);
+    mark(node, "acknowledged", String(Boolean(acknowledged)));
+    badge(node, severity, clip(why ? `${what}: ${why}` : what));
+  });
 }
 
 // On and off show by themselves, as filled and hollow: their words are for those who do not see them.

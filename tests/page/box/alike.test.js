@@ -1,0 +1,49 @@
+// What page, display and `adit status` say of one run: in the same words, at the same time.
+import assert from "node:assert/strict";
+import { execFile } from "node:child_process";
+import { writeFileSync } from "node:fs";
+import { join } from "node:path";
+import { test } from "node:test";
+import { until } from "../box.js";
+import { BIN } from "../stage.js";
+import { TOKENS } from "./box.js";
+import { box, look } from "./visits.js";
+
+const seconds = (clock) => clock.split(":").reduce((sum, part) => 60 * sum + Number(part), 0);
+
+/** What `adit status` prints; how it ends does not matter here. */
+function status(made) {
+  const file = join(made.folder, "team.token");
+  writeFileSync(file, TOKENS.team, { mode: 0o600 });
+  const words = ["status", "--at", `127.0.0.1:${made.port}`, "--token-file", file];
+  return new Promise((done) => execFile(join(BIN, "adit"), words, (error, out) => done(out)));
+}
+
+test("counts down from the length of a run that the settings say", async (t) => {
+  const made = await box(t, { settings: { runs: { length_seconds: 1800 } } });
+  const pages = [await look(t, made), await look(t, made, "display")];
+  for (const page of pages) {
+    await page.waitForFunction(() => /^\d\d:\d\d$/.test(document.getElementById("togo").textContent));
+    const [gone, left] = await page.evaluate(() => ["clock", "togo"].map((id) => document.getElementById(id).textContent));
+    assert.ok(Math.abs(seconds(gone) + seconds(left) - 1800) <= 1, `${gone} and ${left}`);
+  }
+  const [, gone, left] = /Run +(\S+) +(\S+) to go/.exec(await until(async () => /to go/.test(await status(made)) && status(made), "the run"));
+  assert.ok(Math.abs(seconds(gone) + seconds(left) - 1800) <= 1, `${gone} and ${left}`);
+});
+
+test("says that a robot is silent, everywhere as the box judges it", async (t) => {
+  const made = await box(t, { robots: 3, settings: { alarms: { silent_for_ms: 2000, silent_times: 2 } } });
+  await until(async () => {
+    const { activities } = await made.run();
+    return activities.filter(({ kind, accepted }) => kind === "state" && accepted > 20).length === 3;
+  }, "the robots' habits");
+  made.freezeRobots();
+  const pages = [await look(t, made), await look(t, made, "display")];
+  await until(async () => (await made.run()).alarms.some(({ id }) => id === "robots_silent"), "their silence");
+  const silent = (page) => page.$$eval("#robots > li", (rows) => rows.filter((row) => row.innerText.includes("silent") && row.dataset.level === "bad").length);
+  for (const page of pages) await until(async () => (await silent(page)) === 3, "three that are silent");
+  const told = (await status(made)).split("\n").filter((line) => / state .* silent /.test(line));
+  assert.equal(told.length, 3, told.join("\n"));
+  made.thawRobots();
+  for (const page of pages) await until(async () => (await silent(page)) === 0, "none that is silent");
+});

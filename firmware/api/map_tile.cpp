@@ -94,6 +94,9 @@ intake::Answer tile_of(const picture::Mosaic& map, const TileAsked& asked) {
   answer.headers.push_back({"ETag", etag});
   // What was followed by another state does not change any more; the newest is asked for each time.
   answer.headers.push_back({"Cache-Control", shown.newest ? "no-cache" : "max-age=3600"});
+  // So that who plays a run asks for a tile only where it changed.
+  answer.headers.push_back({"Adit-Since", icd::number_text(shown.stamp)});
+  if (shown.until) answer.headers.push_back({"Adit-Until", icd::number_text(*shown.until)});
   if (asked.has.contains(etag)) {
     answer.status = kNotModified;
   } else {

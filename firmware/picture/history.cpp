@@ -44,4 +44,9 @@ const Version* History::at(double stamp) const {
   return after == versions_.begin() ? nullptr : &*(after - 1);
 }
 
+std::optional<double> History::end_of(const Version& version) const {
+  const auto after = std::ranges::upper_bound(versions_, version.stamp, {}, &Version::stamp);
+  return after == versions_.end() ? std::nullopt : std::optional(after->stamp);
+}
+
 }  // namespace adit::picture

@@ -2,6 +2,7 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <optional>
 #include <vector>
 
 #include "picture/tile.hpp"
@@ -33,6 +34,8 @@ class History {
 
   /// As of that time; null where there was nothing yet.
   const Version* at(double stamp) const;
+  /// When that state of it was followed by another; nothing: it is the newest.
+  std::optional<double> end_of(const Version& version) const;
   const Version& first() const { return versions_.front(); }
   const Version& newest() const { return versions_.back(); }
   bool empty() const { return versions_.empty(); }

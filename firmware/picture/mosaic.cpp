@@ -126,7 +126,7 @@ Mosaic::Shown Mosaic::tile(const Layer& layer, const TileAt& at, std::optional<d
   const History& history = found->second;
   const Version* version = stamp ? history.at(*stamp) : &history.newest();
   if (version == nullptr) return {};
-  return {version->tile, version == &history.newest(), version->stamp};
+  return {version->tile, version == &history.newest(), version->stamp, history.end_of(*version)};
 }
 
 std::vector<LayerView> Mosaic::layers(std::uint64_t since) const {

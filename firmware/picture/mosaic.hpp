@@ -71,7 +71,8 @@ class Mosaic {
   struct Shown {
     Tile tile;
     bool newest = false;
-    double stamp = 0;  // since when it is so
+    double stamp = 0;             // since when it is so
+    std::optional<double> until;  // when another followed; nothing: it is the newest
   };
   Shown tile(const Layer& layer, const TileAt& at, std::optional<double> stamp) const;
 

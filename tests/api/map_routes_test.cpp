@@ -98,6 +98,11 @@ TEST_F(MapRoutesTest, SendsATileAgainOnlyWhereItChanged) {
   EXPECT_EQ(earlier.status, icd::Status::Ok);
   EXPECT_NE(earlier.body, first.body);
   EXPECT_EQ(header(earlier, "Cache-Control"), "max-age=3600") << "it has been followed by others";
+  EXPECT_LE(std::stod(header(earlier, "Adit-Since")), 1700);
+  EXPECT_GT(std::stod(header(earlier, "Adit-Until")), 1700);
+  EXPECT_EQ(header(first, "Adit-Until"), "") << "none has followed";
+  const auto until = header(earlier, "Adit-Until");
+  EXPECT_EQ(header(get_file("/adit/map/grid/-/1/0/0.png?at=" + until), "Adit-Since"), until);
 }
 
 TEST_F(MapRoutesTest, SpreadsAnyHeightsAskedForOverTheColours) {

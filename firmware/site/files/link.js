@@ -42,6 +42,27 @@ function create(quantity) {
   return make("li", make("span.label", quantity.label), make("p", make("strong"), make("span.unit")), svg, make("span.note"));
 }
 
+const KEPT = { rate: "sent_mbit", queue: "queued_bytes", "delay scoring": "scoring_ms", "delay mapping": "mapping_ms", throttled: "throttled" };
+
+/** From before this page was opened, as the box has it: its History. */
+export function fillLink(history, time) {
+  const whens = history.at.map((at) => Math.round(time - at)); // seconds ago, the oldest first
+  const spacing = Math.ceil(history.spacing);
+  const sampleOf = new Map(); // by seconds ago: a sample stands for the time until the next
+  whens.forEach((ago, i) => {
+    for (let later = 0; later < spacing && ago - later >= 0; ++later) sampleOf.set(ago - later, { i, isFirst: later === 0 });
+  });
+  for (const [key, plot] of known) {
+    const values = history[KEPT[key]];
+    if (!values) continue;
+    plot.fill((ago) => {
+      const sample = sampleOf.get(ago);
+      if (!sample) return null;
+      return key === "throttled" && !sample.isFirst ? 0 : values[sample.i];
+    });
+  }
+}
+
 let sampled = 0; // the box's time of the last sample
 
 /** Once a second, however often it is called: what is now goes into the history. */

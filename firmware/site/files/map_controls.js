@@ -1,14 +1,15 @@
 // What stands around the map: layers and time. map_tools.js has what stands on it.
-import { list, make, mark, say } from "./dom.js";
+import { life } from "./arriving.js";
+import { list, make, say } from "./dom.js";
 import { MapOfRun } from "./map.js";
 import { offerTools, showTools } from "./map_tools.js";
 import { tint } from "./robot_colour.js";
+import { alarmTicks } from "./run_history.js";
+import { TimeBar } from "./time_bar.js";
 import { whenThemeChanges } from "./theme_now.js";
-import { clip, metres, timeOfDay } from "./words.js";
+import { clip, metres } from "./words.js";
 
 const section = document.getElementById("map");
-const slider = section.querySelector("input[type=range]");
-const shownTime = section.querySelector("output");
 const robots = section.querySelector(".robots");
 
 export const map = new MapOfRun(section.querySelector(".frame canvas"));
@@ -19,35 +20,13 @@ for (const box of section.querySelectorAll("[data-shows]")) {
 }
 section.querySelector(".by-robot").addEventListener("change", ({ target }) => map.colourBy(target.checked ? "robot" : "height"));
 
-// The slider's value is whole seconds since the first map; its right end is now.
-let settle = null, now = 0;
-slider.addEventListener("input", () => {
-  showTime();
-  clearTimeout(settle);
-  settle = setTimeout(() => map.setTime(timeOf()), 120);
-});
-const isLive = () => Number(slider.value) >= Number(slider.max);
-const timeOf = () => (isLive() ? null : Math.floor(map.first()) + Number(slider.value));
+/** The time that is shown. */
+export const time = new TimeBar(section.querySelector(".time"), (at) => map.setTime(at));
 
-export function goLive() {
-  slider.value = slider.max;
-  slider.dispatchEvent(new Event("input"));
-}
-section.querySelector(".live").addEventListener("click", goLive);
-
-function showTime() {
-  const words = isLive() ? "now" : `as of ${timeOfDay(timeOf())}`;
-  say(shownTime, words);
-  slider.setAttribute("aria-valuetext", words);
-  mark(section, "time", isLive() ? "now" : "past");
-}
-
-function stretchSlider() {
-  const first = map.first(), wasLive = isLive();
-  slider.disabled = first === null;
-  slider.max = first === null ? 1 : Math.max(1, Math.ceil(now - Math.floor(first)));
-  if (wasLive) slider.value = slider.max;
-  showTime();
+function showTimes({ reports, run_number }, now) {
+  time.stretch(map.first(), now);
+  const mine = reports.filter(({ run }) => run === run_number);
+  time.setTicks({ reports: mine.map((report) => ({ at: report.received, level: life(report).level })), alarms: alarmTicks() });
 }
 
 function showRobots() {
@@ -82,9 +61,8 @@ function drawLegend() {
 }
 whenThemeChanges(drawLegend);
 
-export function showMap(view, time) {
-  now = time;
-  stretchSlider();
+export function showMap(view, now) {
+  showTimes(view, now);
   map.show(view);
   showTools(view);
   const { count, leftOut, thinned } = map.markers();

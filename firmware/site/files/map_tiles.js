@@ -3,6 +3,12 @@
 
 const AT_ONCE = 4, MOST_IMAGES = 400;
 
+/** Tells of a time and colours whether a tile's answer is what it was then, too: it says from when to when it was so. */
+function spanOf({ headers }, name) {
+  const from = Number(headers.get("Adit-Since") ?? Infinity), until = Number(headers.get("Adit-Until") ?? NaN);
+  return (at, colours) => at >= from && at < until && name.endsWith(colours);
+}
+
 export class Tiles {
   layers = new Map(); // "grid r1" to {kind, robot, bounds, tiles: Map("level/x/y" to {version, first, stamp, blank})}
   metresPerPixel = [0.25, 1, 4];
@@ -125,7 +131,7 @@ export class Tiles {
     let known = this.#images.get(path);
     if (!known) this.#images.set(path, (known = { name: "", image: null, place }));
     known.used = performance.now();
-    if (known.name !== name) {
+    if (known.name !== name && !(at !== null && known.isAsOf?.(at, this.#coloursOf(layer)))) {
       known.name = name;
       this.#queue = this.#queue.filter((other) => other.known !== known);
       this.#queue.push({ known, name });
@@ -143,6 +149,7 @@ export class Tiles {
       const image = answer.ok ? await createImageBitmap(await answer.blob()) : null;
       if (known.name !== name || !(image || answer.status === 404)) return;
       known.image = image;
+      known.isAsOf = spanOf(answer, name);
       this.#pieces.set(known.place, this.#areaOf(known.place));
       this.#changed();
     } catch {

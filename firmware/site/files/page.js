@@ -11,9 +11,10 @@ import { compose, showCompose } from "./compose.js";
 import { learned, linkIs } from "./actions.js";
 import { listenToKeys } from "./keys.js";
 import { sampleLink } from "./link.js";
-import { goLive, map, showMap } from "./map_controls.js";
+import { map, showMap, time as shownTime } from "./map_controls.js";
 import { showPair } from "./pair.js";
 import { showPost } from "./post.js";
+import { followHistory } from "./run_history.js";
 import { showRefusals } from "./refusals.js";
 import { showReports } from "./reports.js";
 import { showRobots } from "./robots.js";
@@ -41,6 +42,7 @@ function show({ view: told, time, lost }) {
   showMap(view, time);
   showPair(view, time);
   sampleLink(view, time, lost);
+  if (!lost) followHistory(view, time);
   showPost(view, lost);
   showAside(view.aside, time);
   showRefusals(view.refusals, time);
@@ -64,7 +66,12 @@ listenToKeys(
     { key: "n", text: "a new report", act: compose },
     { key: "r", text: "to the reports", act: () => focus("reports", "#reports .open") },
     { key: "m", text: "to the map", act: () => focus("map", "#map .frame canvas") },
-    { key: "l", text: "the map as it is now", act: goLive },
+    { key: "l", text: "the map as it is now", act: () => shownTime.goLive() },
+    { key: ",", text: "the map 10 s earlier", act: () => shownTime.step(-10) },
+    { key: ".", text: "10 s later", act: () => shownTime.step(10) },
+    { key: "<", text: "1 min earlier", act: () => shownTime.step(-60) },
+    { key: ">", text: "1 min later", act: () => shownTime.step(60) },
+    { key: "p", text: "play the run from there, or pause", act: () => shownTime.play(!shownTime.isPlaying()) },
     { key: "0", text: "all of the map", act: () => map.fit() },
   ],
   [["← ↑ ↓ →", "on the map: move it"], ["+ −", "on the map: zoom"], ["F", "on the map: all of it"], ["Esc", "close"]],

@@ -1,4 +1,4 @@
-// Small plots of the last ten minutes, a value a second, kept by the page itself.
+// Small plots of the last ten minutes, a value a second: kept by the page itself, and before it was opened by the box.
 
 const SPAN = 600, BUCKET = 4, HEIGHT = 32;
 
@@ -17,6 +17,12 @@ export class Plot {
   push(value) {
     this.#values.push(value);
     if (this.#values.length > SPAN) this.#values.shift();
+  }
+
+  /** What was before all that was pushed: `valueAt(n)` is that of n seconds before now, null where it is not known. */
+  fill(valueAt) {
+    const earlier = Array.from({ length: SPAN - this.#values.length }, (_, i) => valueAt(SPAN - 1 - i));
+    this.#values = [...earlier, ...this.#values];
   }
 
   most = () => Math.max(...this.#values.map((value) => value ?? 0), 0);

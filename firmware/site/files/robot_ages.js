@@ -1,4 +1,5 @@
-// How old each robot's map at the Command Post was over the last three minutes, sampled by this page.
+// How old each robot's map at the Command Post was over the last three minutes: sampled by this page, and before it was opened by
+// the box.
 
 const EVERY = 2, SPAN = 90; // seconds; samples
 
@@ -20,6 +21,23 @@ export function sampleAges(robots, time) {
     values.set(name, its.slice(-SPAN));
   }
 }
+
+/** From before this page was opened, as the box has it: its History. */
+export function fillAges({ at, robots }, time) {
+  const step = Math.floor(time / EVERY);
+  for (const { robot, ages } of robots) {
+    const own = values.get(robot) ?? [], earlier = Array(SPAN - own.length).fill(null);
+    at.forEach((when, i) => {
+      const place = SPAN - 1 - (step - Math.floor(when / EVERY));
+      if (place >= 0 && place < earlier.length) earlier[place] = ages[i];
+    });
+    const first = earlier.findIndex((age) => age !== null);
+    if (first >= 0) values.set(robot, [...gapless(earlier.slice(first)), ...own]);
+  }
+}
+
+/** A step without a sample of its own, between two that have one, is as the one before. */
+const gapless = (ages) => ages.map((age, i) => age ?? (i > 0 && i + 1 < ages.length ? ages[i - 1] : null));
 
 /** The highest of the last minute. */
 export const worstAge = (name) => Math.max(0, ...(values.get(name) ?? []).slice(-60 / EVERY));

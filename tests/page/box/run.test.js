@@ -109,7 +109,7 @@ test("does by every shortcut what the list of them says", async (t) => {
   await page.keyboard.press("?");
   assert.ok(await isOpen("help"));
   const listed = await page.locator("#help dt").allTextContents();
-  assert.deepEqual(listed, ["n", "r", "m", "l", "0", "?", "← ↑ ↓ →", "+ −", "F", "Esc"]);
+  assert.deepEqual(listed, ["n", "r", "m", "l", ",", ".", "<", ">", "p", "0", "?", "← ↑ ↓ →", "+ −", "F", "Esc"]);
   await page.keyboard.press("Escape");
   assert.ok(!(await isOpen("help")));
   await blur();

@@ -24,7 +24,11 @@ std::string number_or_none(const std::optional<std::int64_t>& number) {
   return number ? std::to_string(*number) : "";
 }
 
-/// What follows its key in a row.
+/// Of the first run of a box nobody knows it.
+std::string begin_of(const RunRow& run) {
+  return run.began > 0 ? api::iso_time(run.began) : "";
+}
+
 std::string course_of(const RunRow& run) {
   return run.course.empty() ? run.post : run.course;
 }
@@ -44,7 +48,7 @@ std::string table_of(const api::RunList& list, bool colour) {
                {""}});
   for (const RunRow& run : list.runs) {
     table.add({{run.key, Tone::Strong},
-               {api::iso_time(run.began)},
+               {begin_of(run)},
                {course_of(run)},
                {number_or_none(run.score), Tone::Strong},
                {number_or_none(run.remaining_reports)},
@@ -75,7 +79,7 @@ std::string text_of(const RunRow& run, bool colour) {
   add("course", run.course);
   add("Command Post", run.post);
   add("team", run.team);
-  add("began", api::iso_time(run.began));
+  add("began", begin_of(run));
   add("last", api::iso_time(run.last));
   add("score", number_or_none(run.score), Tone::Strong);
   add("reports left", number_or_none(run.remaining_reports));
@@ -123,9 +127,10 @@ std::optional<Failure> doubt(const Adit& adit, const Options& options, const Con
   if (!json) return json.error();
   const auto run = read<RunRow>(adit, *json);
   if (!run) return Failure{Exit::Unable, run.error()};
-  const std::string score = run->score ? icd::sentence(", score ", *run->score) : "";
+  const std::string began = run->began > 0 ? icd::sentence("began ", begin_of(*run), ", ") : "";
+  const std::string score = run->score ? icd::sentence("score ", *run->score, ", ") : "";
   const std::string why =
-      icd::sentence("run ", run->key, " (began ", api::iso_time(run->began), score, ", ", size(run->bytes),
+      icd::sentence("run ", run->key, " (", began, score, size(run->bytes),
                     "): its map, tracks and plots are gone for good then; its reports stay in the ledger.");
   const auto meant = console.ask(host::escaped(why) + "\nDelete it?");
   if (!meant) return Failure{Exit::Attention, why + " It is not deleted; if that is meant: --yes"};

@@ -120,6 +120,39 @@ class InDoubt(Case):
             wait_until(lambda: sendings(stage) == 2, "it to be sent again")
 
 
+class Runs(Case):
+    def listed(self, stage):
+        return json.loads(adit(stage, "runs", "--json").stdout)["runs"]
+
+    def test_are_listed_printed_and_deleted_only_where_it_is_meant(self):
+        with self.stage() as stage:
+            is_taken(stage, REPORT)
+            first = wait_until(lambda: (all := self.listed(stage)) and all[0]["bytes"] > 0 and all, "a run to be kept")[0]["key"]
+            self.assertEqual(adit(stage, "run", "new").returncode, 0)
+            wait_until(lambda: len(self.listed(stage)) == 2, "two runs")
+            self.assertRegex(adit(stage, "runs").stdout, rf"\n +{first} .* {hosts.SCORING}:{programs.PORT} ")
+            self.assertIn("Command Post", adit(stage, "runs", "show", first).stdout)
+            to = stage.folder / "run.html"
+            self.assertEqual(adit(stage, "runs", "report", first, "--to", str(to)).returncode, 0)
+            self.assertIn(REPORT["type"], to.read_text())
+
+            nobody = adit(stage, "runs", "delete", first)
+            self.assertEqual((nobody.returncode, nobody.stdout), (1, ""))
+            self.assertTrue(nobody.stderr.endswith("It is not deleted; if that is meant: --yes\n"), nobody.stderr)
+            terminal = self.at_a_terminal(stage, "runs", "delete", first)
+            terminal.shows("Delete it? [y/N] ")
+            terminal.type("n\n")
+            self.assertEqual(terminal.end(), 1)
+            self.assertEqual(len(self.listed(stage)), 2)
+            terminal = self.at_a_terminal(stage, "runs", "delete", first)
+            terminal.shows("Delete it? [y/N] ")
+            terminal.type("y\n")
+            self.assertEqual(terminal.end(), 0)
+            self.assertEqual([run["is_present"] for run in self.listed(stage)], [True])
+            present = adit(stage, "runs", "delete", self.listed(stage)[0]["key"], "--yes")
+            self.assertEqual(present.returncode, 1, present.stderr)
+
+
 class Watching(Case):
     def test_at_a_terminal(self):
         with self.stage() as stage:
@@ -190,7 +223,8 @@ class ForScripts(Case):
             for said in (["status"], ["reports"], ["reports", "show", "1"], ["reports", "export"], ["aside"], ["settings"],
                          ["settings", "show", "reports"], ["settings", "check", file], ["settings", "export"], ["network"],
                          ["test"], ["update"], ["identify", "1"], ["complete", "reports"], ["complete", "keys"],
-                         ["complete", "aside"], ["complete", "courses"], ["run", "new"]):
+                         ["complete", "aside"], ["complete", "courses"], ["runs"], ["complete", "runs"],
+                         ["run", "new"]):
                 with self.subTest(said):
                     json.loads(adit(stage, *said, "--json").stdout)
             checked = subprocess.run([BIN / "adit", "check", file, "--json"], capture_output=True, text=True)

@@ -1,4 +1,4 @@
-"""The same root in a container (systemd-nspawn), for every day: this machine's own processor, the real units, seconds
+"""A root in a container (systemd-nspawn), for every day: this machine's own processor, the real units, seconds
 to start. What only a machine has is not in it: boot loader, kernel, disk, GPIO, hardware watchdog, and what asks for
 these (the import from the boot partition, updates)."""
 
@@ -61,49 +61,29 @@ class Cables(hosts.Network):
                 self._cable(host, "eth0", addresses, self.box, port, [])
 
 
-class Container(programs.Page):
-    def __init__(self, network, folder):
+class Nspawn(programs.Page):
+    """A root of its own, over `tree`, which stays as it is."""
+
+    ports = ("team0", "darpa0")  # of the network's box, which it takes
+    options = ()  # systemd-nspawn's
+
+    def __init__(self, network, folder, tree):
         self.network, self.folder = network, folder
-        self.log, self.root, self.state = folder / "container.log", folder / "root", folder / "var"
+        self.log, self.root = folder / "container.log", folder / "root"
         upper, work = folder / "upper", folder / "work"
-        for path in (self.root, self.state, upper, work):
+        for path in (self.root, upper, work):
             path.mkdir()
-        # The tree as the image has it, and over it the programs and units of this build and the overlay as it is now.
-        subprocess.run(
-            [
-                "mount",
-                "-t",
-                "overlay",
-                "adit-container",
-                "-o",
-                f"lowerdir={TREE},upperdir={upper},workdir={work}",
-                self.root,
-            ],
-            check=True,
-        )
-        with open(folder / "install.log", "wb") as said:
-            subprocess.run(
-                ["cmake", "--install", programs.BIN.parent, "--prefix", "/usr", "--strip"],
-                check=True,
-                stdout=said,
-                stderr=said,
-                env={**os.environ, "DESTDIR": str(self.root)},
-            )
-        subprocess.run(["cp", "-a", f"{SOURCE}/rootfs/overlay/.", self.root], check=True)
-        subprocess.run(
-            ["systemctl", f"--root={self.root}", "preset-all", "--preset-mode=full"],
-            check=True,
-            stderr=subprocess.DEVNULL,
-        )
+        layers = f"lowerdir={tree},upperdir={upper},workdir={work}"
+        subprocess.run(["mount", "-t", "overlay", "adit-container", "-o", layers, self.root], check=True)
         self.process = None
 
     def start(self):
-        """With the mounts that nspawn wants where this machine's own first process is not systemd."""
+        """Until it is started; with the mounts that nspawn wants where this machine's own first process is not systemd."""
         self.began = time.monotonic()
+        taken = " ".join([*self.options, *(f"--network-interface={port}" for port in self.ports)])
         inside = (
             "mount -t tmpfs tmpfs /run; mount -t sysfs -o ro sysfs /sys; mount -t cgroup2 cgroup2 /sys/fs/cgroup; "
-            f"exec systemd-nspawn -q -D {self.root} -b --read-only --bind={self.state}:/var --register=no --keep-unit "
-            "--uuid=0123456789abcdef0123456789abcdef --network-interface=team0 --network-interface=darpa0"
+            f"exec systemd-nspawn -q -D {self.root} -b --register=no --keep-unit --uuid=0123456789abcdef0123456789abcdef {taken}"
         )
         with open(self.log, "ab") as said:
             self.process = subprocess.Popen(
@@ -125,12 +105,10 @@ class Container(programs.Page):
                 stdout=said,
                 stderr=said,
             )
-        programs.wait_until(self.answers, "the container to answer", 90)
-        self.answered_after = time.monotonic() - self.began
+        programs.wait_until(self.is_started, "the container to start", 90)
 
     def answers(self):
-        if self.process.poll() is not None:
-            raise AssertionError(f"systemd-nspawn has ended:\n{self.said_last()}")
+        self.leader()
         try:
             return self.ask("GET /adit/session", token=None, timeout=5)[0] == 200
         except (OSError, ValueError):
@@ -140,12 +118,11 @@ class Container(programs.Page):
         return self.log.read_text(errors="replace")[-4000:] if self.log.exists() else ""
 
     def leader(self):
-        """Its first process, as this machine numbers it."""
-        return int(
-            subprocess.run(
-                ["pgrep", "-P", str(self.process.pid)], capture_output=True, text=True, check=True
-            ).stdout.split()[0]
-        )
+        """Its first process, as this machine numbers it; None while there is none yet, or no more."""
+        if self.process.poll() is not None:
+            raise AssertionError(f"systemd-nspawn has ended:\n{self.said_last()}")
+        found = subprocess.run(["pgrep", "-P", str(self.process.pid)], capture_output=True, text=True, check=False).stdout
+        return int(found.split()[0]) if found else None
 
     def run(self, *command):
         """A command in it, as root."""
@@ -159,7 +136,8 @@ class Container(programs.Page):
     def stop(self):
         if self.process is None or self.process.poll() is not None:
             return
-        os.kill(self.leader(), signal.SIGRTMIN + 3)
+        leader = self.leader()
+        os.kill(leader or self.process.pid, signal.SIGRTMIN + 3 if leader else signal.SIGKILL)
         try:
             self.process.wait(60)
         except subprocess.TimeoutExpired:
@@ -176,3 +154,31 @@ class Container(programs.Page):
             "journalctl", "-u", "adit", "-o", "cat", "--no-pager", "--output-fields=MESSAGE,CODE,ADIT_CODE"
         ).stdout
         return re.search(r"code=(\d{8})", said).group(1)
+
+
+class Container(Nspawn):
+    """The tree as the image has it, and over it the programs and units of this build and the overlay as it is now."""
+
+    def __init__(self, network, folder):
+        super().__init__(network, folder, TREE)
+        self.state = folder / "var"
+        self.state.mkdir()
+        self.options = ("--read-only", f"--bind={self.state}:/var")
+        with open(folder / "install.log", "wb") as said:
+            for component in ("service", "appliance"):
+                subprocess.run(
+                    ["cmake", "--install", programs.BIN.parent, "--prefix", "/usr", "--strip", "--component", component],
+                    check=True,
+                    stdout=said,
+                    stderr=said,
+                    env={**os.environ, "DESTDIR": str(self.root)},
+                )
+        subprocess.run(["cp", "-a", f"{SOURCE}/rootfs/overlay/.", self.root], check=True)
+        subprocess.run(
+            ["systemctl", f"--root={self.root}", "preset-all", "--preset-mode=full"],
+            check=True,
+            stderr=subprocess.DEVNULL,
+        )
+
+    def is_started(self):
+        return self.answers()

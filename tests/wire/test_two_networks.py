@@ -49,8 +49,8 @@ class Appliance(unittest.TestCase):
 
     def start_the_box(self):
         """In the order of the units: settings of the kernel, firewall, networkd's files, networkd, aditd."""
-        self.in_box("sysctl", "-q", "-p", SERVICES / "adit.sysctl")
-        self.in_box("nft", "-f", SERVICES / "adit-nftables.conf")
+        self.in_box("sysctl", "-q", "-p", SERVICES / "adit.sysctl", SERVICES / "adit-appliance.sysctl")
+        self.in_box("nft", "-D", 'others="drop"', "-f", SERVICES / "adit-nftables.conf")
         files = self.folder / "network"
         files.mkdir()
         self.box = networkd.AditNetwork(self.network, files)

@@ -3,10 +3,14 @@
 #include <unistd.h>
 
 #include <array>
+#include <cerrno>
 #include <csignal>
 #include <cstdio>
 #include <cstdlib>
+#include <cstring>
+#include <filesystem>
 #include <memory>
+#include <string_view>
 
 #include "command_line/answer.hpp"
 #include "rehearsal/command_post/command_post.hpp"
@@ -129,11 +133,21 @@ int run(const Options& options) {
   return code;
 }
 
+/// The script that is installed beside this program, in its place: arguments[0] is "demo".
+int demo(char** arguments) {
+  std::error_code error;
+  const auto program = std::filesystem::read_symlink("/proc/self/exe", error);
+  const std::string script = program.parent_path().parent_path() / "lib/adit-rehearsal/demo";
+  ::execv(script.c_str(), arguments);
+  return complain(script + ": " + std::strerror(errno) + "; in a checkout, toolchain/run does the same");
+}
+
 }  // namespace
 }  // namespace adit::rehearsal
 
 int main(int count, char** arguments) {
   using namespace adit::rehearsal;
+  if (count > 1 && std::string_view(arguments[1]) == "demo") return demo(arguments + 1);
   auto options = adit::command_line::read(command_line_of, {arguments + 1, arguments + count});
   if (const auto exit = adit::command_line::answer(command_line_of, ADIT_VERSION, options)) return *exit;
   options->verbose = options->verbose || ::isatty(STDOUT_FILENO) == 1;

@@ -95,6 +95,9 @@ command_line::Program command_line_of(Options& options) {
            {"--version", "", "prints the version", &options.version},
            {"--help", "", "prints this", &options.help}},
       .ending =
+          "adit-rehearsal demo, where it is installed, runs it with Adit and robots and says where the page "
+          "is; "
+          "adit-rehearsal demo --help says more.\n"
           "AIM: reports, status, mapping; clock:constant and clock:running: of all answers from then on.\n"
           "FAULT: ok, or words with a comma between them:\n"
           "  drop, reset-unrecorded, 401, 429[=COUNT], 500     not recorded\n"

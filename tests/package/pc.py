@@ -1,0 +1,67 @@
+"""A PC with Debian 12 in a container (systemd-nspawn): two Ethernet ports for Adit, and a third that is none of its business."""
+
+import os
+import pathlib
+import re
+
+import container
+import hosts
+
+SOURCE = pathlib.Path(os.environ["ADIT_SOURCE"])
+BUILT = SOURCE / "build" / "package"
+PORTS = {"team": "enp1s0", "command_post": "enp2s0"}
+OFFICE, OFFICE_ADDRESS = "enp3s0", "172.20.0.5"
+
+
+class Cables(hosts.Network):
+    """As the three hosts of the wire tests, but that the ports have a PC's names, and the third leads to the team's host, too."""
+
+    def __init__(self):
+        super().__init__("10.0.0")
+        self.box_address = "10.0.0.1"
+
+    def _make(self):
+        super()._make()
+        for old, new in (("team0", PORTS["team"]), ("darpa0", PORTS["command_post"])):
+            hosts.ip("-n", self.box, "address", "flush", "dev", old)
+            hosts.ip("-n", self.box, "link", "set", old, "down")
+            hosts.ip("-n", self.box, "link", "set", old, "name", new)
+        self._cable(self.team, "eth1", ["172.20.0.1"], self.box, OFFICE, [])
+
+
+class Pc(container.Nspawn):
+    ports = (*PORTS.values(), OFFICE)
+
+    def __init__(self, network, folder):
+        super().__init__(network, folder, BUILT / "root")
+        self.options = (f"--bind-ro={BUILT}:/packages",)
+
+    def is_started(self):
+        if self.leader() is None:
+            return False
+        return self.run("systemctl", "is-system-running").stdout.strip() in ("running", "degraded")
+
+    def shell(self, script, good=True):
+        """What it says, on both ways out."""
+        done = self.run("bash", "-euo", "pipefail", "-c", f"exec 2>&1\n{script}")
+        if good and done.returncode != 0:
+            raise AssertionError(f"{script}: {done.returncode}\n{done.stdout}{self.said_last()}")
+        return done.stdout
+
+    def apt(self, words, good=True, **answers):
+        """As an operator who answers the questions of the packages beforehand: apt("install /x.deb", team="eth0")."""
+        for name, answer in answers.items():
+            kind = "boolean" if answer in ("true", "false") else "string"
+            self.shell(f"echo 'adit adit/{name.replace('_', '-')} {kind} {answer}' | debconf-set-selections")
+        return self.shell(f"DEBIAN_FRONTEND=noninteractive apt-get -y {words}", good)
+
+    def is_active(self, unit):
+        return self.run("systemctl", "is-active", unit).stdout.strip() == "active"
+
+    def version(self):
+        return self.shell("dpkg-query -W -f '${Version}' adit")
+
+    def listens(self):
+        """(address, interface, port) of each TCP socket that listens."""
+        lines = self.shell("ss -Hltn").splitlines()
+        return sorted(re.fullmatch(r"(.*?)(?:%(.*))?:(\d+)", line.split()[3]).groups(default="") for line in lines)

@@ -1,0 +1,176 @@
+"""The Debian packages on a PC that has other things to do, too: installed, named its two ports, set up, upgraded under way, not
+downgraded, removed and purged, as their user does it; and the rehearsal from its package."""
+
+import concurrent.futures
+import pathlib
+import tempfile
+import unittest
+
+import hosts
+import pc
+import programs
+import stage
+from reporting import REPORT, another, insist, submit
+from stage import Story, load_tests  # unittest looks for them here
+
+PASSWORD = "correct horse battery"
+STATE = "/var/lib/private/adit"
+NOW, BEFORE = "/packages/now/adit_*.deb", "/packages/before/adit_*.deb"
+
+
+def setUpModule():
+    hosts.needs_namespaces()
+    for folder in ("root", "now", "before"):
+        if not (pc.BUILT / folder).is_dir():
+            raise unittest.SkipTest("tests/package/debian_root has made nothing here")
+
+
+class OnAPc:
+    """The stage: a PC and a Command Post."""
+
+    def __enter__(self):
+        self.temporary = tempfile.TemporaryDirectory(prefix="adit-package-")
+        self.folder = pathlib.Path(self.temporary.name)
+        self.network = pc.Cables()
+        self.post = self.box = None
+        self.network.__enter__()
+        try:
+            programs.secrets_folder(self.folder / "secrets")
+            self.post = programs.CommandPost(self.network, self.folder, "--rate", "0")
+            self.box = pc.Pc(self.network, self.folder)
+            self.box.start()
+            self.box.shell(f"ip link set {pc.OFFICE} up; ip address add {pc.OFFICE_ADDRESS}/24 dev {pc.OFFICE}")
+            programs.wait_until(lambda: "tentative" not in self.office(), "the third port's addresses")
+            self.office_before = self.office()
+        except BaseException:
+            self.__exit__()
+            raise
+        return self
+
+    def office(self):
+        return self.box.shell(f"ip -o address show dev {pc.OFFICE}; ip -o link show dev {pc.OFFICE}; sysctl -a -r 'conf.{pc.OFFICE}'")
+
+    def __exit__(self, *_):
+        if self.box is not None:
+            self.box.close()
+        if self.post is not None:
+            self.post.stop()
+        self.network.__exit__()
+        self.temporary.cleanup()
+
+
+class Packages(Story):
+    session = {}
+
+    @classmethod
+    def setUpClass(cls):
+        cls.tell(OnAPc())
+
+    def asked(self, request, body=None):
+        headers = {**self.session, "Content-Type": "application/json"}
+        status, said = self.box.insist(request, headers, body, token=None)
+        self.assertEqual(status, 200, said)
+        return said
+
+    def test_without_interfaces_it_is_installed_and_does_nothing(self):
+        said = self.box.apt(f"install {BEFORE}")
+        self.assertIn("Adit does not start before /etc/adit/interfaces names its two interfaces", said)
+        for unit in ("adit.service", "adit.socket", "adit-network-start", "adit-nftables", "systemd-networkd"):
+            self.assertFalse(self.box.is_active(unit), unit)
+        self.assertEqual(self.box.listens(), [])
+        self.assertEqual(self.box.shell("nft list ruleset"), "")
+        for port in pc.PORTS.values():
+            self.assertIn(port, self.box.shell("ip -o link"))
+
+    def test_what_cannot_be_its_interfaces_is_told(self):
+        for team, command_post, why in ((pc.PORTS["team"], pc.PORTS["team"], "command_post: is the same interface as team"),
+                                        (pc.PORTS["team"], "enp9s0", "command_post: there is no interface enp9s0 yet"),
+                                        ("a/b", "enp2s0", "team: expected the name of an interface or its MAC address, got 'a/b'")):
+            self.box.shell(f"printf 'team={team}\\ncommand_post={command_post}\\n' >/etc/adit/interfaces")
+            self.assertIn(why, self.box.shell("/usr/lib/adit/interfaces check", good=False))
+        self.box.shell("rm /etc/adit/interfaces")
+
+    def test_named_its_two_ports_it_serves_the_page_on_the_teams_alone(self):
+        self.box.shell(f"""echo 'adit adit/team string {pc.PORTS["team"]}' | debconf-set-selections
+            echo 'adit adit/command-post string {pc.PORTS["command_post"]}' | debconf-set-selections
+            DEBIAN_FRONTEND=noninteractive dpkg-reconfigure adit""")
+        programs.wait_until(self.box.answers, "the page to answer", 60)
+        self.assertEqual({(interface, port) for _, interface, port in self.box.listens()}, {("team0", "80"), ("team0", "8000")})
+        self.assertIn("team0", self.box.shell(f"ip -o link show dev {pc.PORTS['team']}"), "its name from before is good, too")
+        self.assertEqual(self.box.shell("systemctl --failed --plain --no-legend --no-pager"), "")
+
+    def test_the_third_port_is_as_it_was(self):
+        self.assertEqual(self.stage.office(), self.stage.office_before)
+        self.assertIn("refused", self.box.shell("(exec 3<>/dev/tcp/172.20.0.1/9) || true"))  # so it was heard there
+
+    def test_it_is_set_up_over_the_api(self):
+        self.asked("POST /adit/password", {"role": "operator", "code": self.box.code(), "password": PASSWORD})
+        type(self).session = programs.log_in(self.box, PASSWORD)
+        for name, token in (("scoring", programs.SCORING_TOKEN), ("mapping", programs.MAPPING_TOKEN), ("team", programs.TEAM_TOKEN)):
+            self.asked("POST /adit/tokens", {"name": name, "token": token})
+        self.asked("POST /adit/network", stage.NUMBERS)
+        session = {**self.session, "Content-Type": "application/json"}
+        programs.wait_until(lambda: self.box.ask("POST /adit/network/confirm", session, None, token=None)[0] == 200,
+                            "the addresses to be confirmed", 60)
+        programs.wait_until(self.box.knows_the_run, "the box to know the run", 60)
+        self.assertEqual(submit(self.stage).status_code, 201)
+
+    def test_an_upgrade_turns_nobody_away_and_keeps_all(self):
+        """Reports are posted all the while, again where a connection was open as the older aditd ended: each is recorded once."""
+        with concurrent.futures.ThreadPoolExecutor(2) as pool:
+            upgrade = pool.submit(self.box.apt, f"install {NOW}")
+            posted = []
+            while not upgrade.done():
+                posted.append(another(len(posted) + 1))
+                self.assertIn(insist(self.stage, posted[-1], 30).status_code, (201, 503, 504))
+            upgrade.result()
+        self.assertNotEqual(self.box.version(), "0.0.9")
+        programs.wait_until(self.box.knows_the_run, "the box to know the run", 60)
+        for report in posted:
+            programs.wait_until(lambda report=report: submit(self.stage, report).status_code == 201, "its answer", 60)
+            self.assertEqual(len(self.stage.post.recorded(report)), 1)
+        self.assertEqual(len(self.stage.post.recorded(REPORT)), 1)
+
+    def test_what_is_older_is_refused(self):
+        version = self.box.version()
+        said = self.box.apt(f"--allow-downgrades install {BEFORE}", good=False)
+        self.assertIn(f"adit 0.0.9 is older than {version}, which is installed", said)
+        self.assertEqual(self.box.version(), version)
+        programs.wait_until(self.box.knows_the_run, "the box to know the run", 60)
+
+    def test_the_rehearsal_is_shown_by_its_package(self):
+        self.box.apt("install /packages/now/adit-rehearsal_*.deb")
+        said = self.box.shell("cd /tmp && setpriv --reuid 1000 --clear-groups adit-rehearsal demo --for 8 --folder /tmp/demo")
+        self.assertIn("The page:     http://127.0.0.1:", said)
+        self.assertIn("What the Command Post took:", said)
+        said = self.box.shell("mkdir /tmp/mine && adit-rehearsal demo --folder /tmp/mine", good=False)
+        self.assertIn("/tmp/mine is there, and not a demo's", said)
+        self.box.apt("purge adit-rehearsal")
+
+    def test_removed_it_leaves_its_state_and_nothing_that_runs(self):
+        self.box.apt("remove adit")
+        for unit in ("adit.service", "adit.socket", "adit-network-start", "adit-nftables"):
+            self.assertFalse(self.box.is_active(unit), unit)
+        self.assertEqual(self.box.listens(), [])
+        self.assertEqual(self.box.shell("nft list ruleset"), "")
+        self.box.shell(f"test -s {STATE}/ledger.sqlite -a -s /etc/adit/interfaces")
+
+    def test_installed_again_it_goes_on(self):
+        self.box.apt(f"install {NOW}")
+        programs.wait_until(self.box.knows_the_run, "the box to know the run", 60)
+        self.assertEqual(self.box.reports()[0]["state"], "answered")
+
+    def test_purged_it_keeps_the_ledger_unless_told(self):
+        said = self.box.apt("purge adit")
+        self.assertIn(f"the ledger of reports is kept: {STATE}", said)
+        self.assertEqual({name.split("-")[0] for name in self.box.shell(f"ls {STATE}").split()}, {"ledger.sqlite"})
+        self.assertEqual(self.box.shell("ls /etc/adit /var/lib/adit-network 2>/dev/null || true"), "")
+        self.box.apt(f"install {NOW}", team=pc.PORTS["team"], command_post=pc.PORTS["command_post"])
+        programs.wait_until(self.box.answers, "the page to answer", 60)
+        self.box.apt("purge adit", remove_ledger="true")
+        self.assertEqual(self.box.shell(f"ls -d {STATE} /var/lib/adit /etc/adit 2>/dev/null || true"), "")
+        self.assertEqual(self.stage.office(), self.stage.office_before)
+
+
+if __name__ == "__main__":
+    unittest.main()

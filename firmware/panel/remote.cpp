@@ -5,6 +5,8 @@
 
 #include <array>
 #include <cerrno>
+#include <chrono>
+#include <optional>
 #include <system_error>
 
 #include "loop/file_descriptor.hpp"
@@ -14,7 +16,9 @@
 namespace adit::panel {
 namespace {
 
-constexpr int kMissedBeats = 8;  // before it is told that nobody answers: adit-panel is restarted meanwhile
+using Clock = std::chrono::steady_clock;
+// Before it is told that nobody answers: at a start adit-panel comes later, and it may be started again.
+constexpr std::chrono::seconds kPatience{30};
 constexpr int kMessagesAtOnce = 64;
 
 std::string unreachable(const std::string& socket, int error) {
@@ -29,12 +33,16 @@ class Connection {
 
   std::expected<void, std::string> tell(const std::string& message) {
     if ((fd_ || connect()) && put(message)) {
-      missed_ = 0;
+      unheard_since_.reset();
       return {};
     }
     const int error = errno;
     if (error != EAGAIN) lose();
-    if (++missed_ < kMissedBeats) return {};
+    const auto now = Clock::now();
+    if (now - unheard_since_.value_or(now) < kPatience) {
+      unheard_since_ = unheard_since_.value_or(now);
+      return {};
+    }
     return std::unexpected(unreachable(socket_, error));
   }
 
@@ -81,7 +89,7 @@ class Connection {
 
   std::string socket_, greeting_;
   loop::FileDescriptor epoll_, fd_;
-  int missed_ = 0;
+  std::optional<Clock::time_point> unheard_since_;
   bool pressed_ = false;
 };
 

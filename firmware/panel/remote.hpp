@@ -9,7 +9,7 @@ namespace adit::panel {
 
 /// Lights and button that adit-panel holds, at its `socket`. It is told where the lines are (`settings`),
 /// unless its board has told it. Where it is not there, or goes, it is connected to again by what is set;
-/// that cannot be told before a few seconds are over. A button that is held when it is connected to is none
+/// that it does not answer is told after half a minute. A button that is held when it is connected to is none
 /// until it was let go.
 struct Remote {
   std::unique_ptr<Lines> lines;

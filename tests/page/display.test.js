@@ -69,6 +69,10 @@ test("names each robot in full, and tells what asks from what is bad", async (t)
     const cut = await page.$$eval("#robots .name", (names) => names.filter((name) => name.scrollWidth > name.clientWidth).map((name) => name.textContent));
     assert.deepEqual(cut, [], `${width} x ${height}`);
   }
+  await page.setViewportSize({ width: 1280, height: 720 });
+  await page.$$eval("#shared .name", (names) => names.forEach((name) => (name.textContent = "Merged cloud"))); // as long as they get
+  const [end, edge] = await page.evaluate(() => ["#shared", "#maps"].map((part) => document.querySelector(part).getBoundingClientRect().right));
+  assert.ok(end <= edge, `${end} of ${edge}`);
   const levels = await page.$$eval("#attention .alarm", (nodes) => nodes.map((node) => node.dataset.level));
   assert.deepEqual(levels, ["ask", "ask"]);
 });

@@ -335,6 +335,15 @@ test("restarts the box only on the operator's word while a report waits", async 
   await page.waitForFunction(() => document.querySelector("#restart button").disabled);
 });
 
+test("has a moon on the button for the next theme, as each page has", async (t) => {
+  const { page } = await come(t);
+  for (const path of ["system", "setup", "runs"]) {
+    await page.goto(new URL(`/${path}`, page.url()).href);
+    const moon = await page.$eval("button.theme", (button) => getComputedStyle(button, "::before").boxShadow);
+    assert.notEqual(moon, "none", path);
+  }
+});
+
 const STRAY = "slot A with 0.1.0 runs, and slot B with 0.2.0 was good last";
 
 /** The page of a box that runs from another slot than the one that was good last, until it is told to stay. */

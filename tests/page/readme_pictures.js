@@ -1,4 +1,4 @@
-// Makes the READMEs' pictures anew, of a rehearsal with six robots: ADIT_BIN=... node readme_pictures.js FOLDER
+// Makes the READMEs' pictures of a rehearsal with six robots: ADIT_BIN=... node readme_pictures.js FOLDER
 import { join } from "node:path";
 import { setTimeout as sleep } from "node:timers/promises";
 import { until } from "./box.js";

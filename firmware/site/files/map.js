@@ -41,6 +41,7 @@ export class MapOfRun {
   #shown = { grid: true, cloud: true, robots: true, tracks: true, markers: true, reports: true };
   #hidden = new Set(); // robots whose maps are not shown
   #drawn = "";
+  #base = ""; // of a run that is kept
   #places = { reports: [], robots: [], markers: [] };
   onLayers = () => {};
   onTool = () => {};
@@ -113,6 +114,21 @@ export class MapOfRun {
     this.#drawn = places;
     if (this.#followed) this.#picture.moved();
     else this.redraw();
+  }
+
+  /** A run that is kept: what the box has below `base`; it has no markers. `run`: {reports, the newest first, run_number, now: its end}. */
+  lookAgain(base, run) {
+    this.follow(null);
+    this.measure(false);
+    this.#tiles = new Tiles(() => this.redraw(), base);
+    this.#tracks = new Tracks(() => this.redraw(), base);
+    this.#run = { ...run, robots: [] };
+    this.#drawn = this.#base = base;
+    this.#hidden.clear();
+    this.#isFit = this.#isExact = true;
+    this.#recolourMaps();
+    this.#tracks.follow(this.#run);
+    this.#refresh(-1);
   }
 
   async #refresh(version) {
@@ -238,7 +254,7 @@ export class MapOfRun {
 
   #look = () => `${this.#picture.fontSize} ${this.#colours.ground} ${this.#colours.ink}`;
 
-  #mapKey = () => [this.#tiles.changes, this.#at, this.#shown.grid, this.#shown.cloud, [...this.#hidden], this.#look()].join();
+  #mapKey = () => [this.#base, this.#tiles.changes, this.#at, this.#shown.grid, this.#shown.cloud, [...this.#hidden], this.#look()].join();
   #layers() {
     const layers = [...this.#tiles.layers.values()].filter(this.#isSeen);
     // The merged map lies below those of robots, and clouds lie upon grids.
@@ -250,7 +266,7 @@ export class MapOfRun {
     drawOrigin(paint, this.#colours, view, this.#picture.fontSize / 14);
   };
 
-  #tracksKey = () => [this.#shown.tracks, this.#tracks.changes, this.#at ?? Math.floor(this.#now() / FADES_EVERY), this.#look()].join();
+  #tracksKey = () => [this.#base, this.#shown.tracks, this.#tracks.changes, this.#at ?? Math.floor(this.#now() / FADES_EVERY), this.#look()].join();
   #drawTracks = (paint, view) => {
     if (this.#shown.tracks) drawTracks(paint, this.#colours, view, this.#tracks.until(this.#at ?? Infinity), this.#now(), this.#picture.fontSize / 14);
   };

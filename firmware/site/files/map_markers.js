@@ -1,6 +1,7 @@
 // The team's markers as the Command Post was last told of them, seen from above. Only what changed is fetched
 // (README.md: GET /adit/markers).
 import { css } from "./map_shapes.js";
+import { themeNow } from "./theme_now.js";
 import { clip } from "./words.js";
 
 const TEXT = 9, MESH = 10; // of visualization_msgs/Marker
@@ -76,8 +77,8 @@ export class Markers {
   }
 }
 
-/** The colour that sets a text off from what is around it. */
-const rimOf = ({ r, g, b }) => (0.3 * r + 0.6 * g + 0.1 * b > 0.5 ? "#000" : "#fff");
+/** The colour that sets a text off from what is around it; at night nothing is white. */
+const rimOf = ({ r, g, b }) => (0.3 * r + 0.6 * g + 0.1 * b > 0.5 || themeNow() === "red" ? "#000" : "#fff");
 
 /** Their texts, and what meshes are, where reports and robots have left room for them. */
 export function writeMarkers(labels, view, markers) {

@@ -24,10 +24,12 @@ export class Tiles {
   #queue = [];
   #loading = 0;
   #changed;
+  #base;
 
-  /** `changed` is called when there is something new to draw. */
-  constructor(changed) {
+  /** `changed` is called when there is something new to draw. `base`: what the box's paths begin with. */
+  constructor(changed, base = "/adit") {
     this.#changed = changed;
+    this.#base = base;
   }
 
   /** Where images came since it was last asked: [{left, right, bottom, top}], in metres. */
@@ -61,7 +63,7 @@ export class Tiles {
   }
 
   async #ask() {
-    const answer = await fetch(`/adit/map?since=${this.#version}`);
+    const answer = await fetch(`${this.#base}/map?since=${this.#version}`);
     if (!answer.ok) throw new Error(`the box answered ${answer.status}`);
     return answer.json();
   }
@@ -126,7 +128,7 @@ export class Tiles {
     const tile = layer.tiles.get(place);
     if (!tile || (at === null ? tile.blank : at < tile.first)) return null;
     const isNewest = at === null || (at >= tile.stamp && !tile.blank);
-    const path = `/adit/map/${layer.kind}/${layer.robot || "-"}/${place}.png`;
+    const path = `${this.#base}/map/${layer.kind}/${layer.robot || "-"}/${place}.png`;
     const name = `${path}?${isNewest ? `v=${tile.version}` : `at=${at}`}${this.#coloursOf(layer)}`;
     let known = this.#images.get(path);
     if (!known) this.#images.set(path, (known = { name: "", image: null, place }));

@@ -17,10 +17,12 @@ export class Tracks {
   #fetched = false;
   #asked = false;
   #changed;
+  #base;
 
-  /** `changed` is called when there is something new to draw. */
-  constructor(changed) {
+  /** `changed` is called when there is something new to draw. `base`: what the box's paths begin with. */
+  constructor(changed, base = "/adit") {
     this.#changed = changed;
+    this.#base = base;
   }
 
   follow({ now, run_number, robots }) {
@@ -51,7 +53,7 @@ export class Tracks {
     this.#asked = true;
     const run = this.#run;
     try {
-      const answer = await fetch("/adit/tracks");
+      const answer = await fetch(`${this.#base}/tracks`);
       if (!answer.ok || run !== this.#run) return;
       for (const { robot, poses } of (await answer.json()).tracks) {
         const last = poses.at(-1)[0];

@@ -72,7 +72,7 @@ function grouped(runs) {
 
 async function lookAt(run) {
   say(trouble, "");
-  await lookAgain(pathOf(run), run.course ? `${nameOf(run)}, course ${run.course}` : nameOf(run)).catch((error) => say(trouble, error.message));
+  await lookAgain(pathOf(run), run.course ? `${nameOf(run)}, course ${run.course}` : nameOf(run), run.run).catch((error) => say(trouble, error.message));
 }
 
 async function forget(run) {

@@ -78,7 +78,7 @@ class WithAlarms(unittest.TestCase):
         """The light itself, in the simulated panel, was dark and was lit."""
         panel = pathlib.Path(os.environ.get("RUNTIME_DIRECTORY", stage.box.state), "panel")
         for word in ("off", "on"):
-            wait_until(lambda word=word: f"{name} {word}\n" in panel.read_text(), f"the {name} light to be {word}")
+            wait_until(lambda word=word: panel.exists() and f"{name} {word}\n" in panel.read_text(), f"the {name} light to be {word}")
 
     def sees(self, stage, name, severity, side, what, why="", light=None, within=60, panel=True):
         """The alarm, everywhere alike. `light`: one that blinks beside attention. `panel`: its file can be written."""

@@ -208,6 +208,7 @@ class AlarmsOfTheBox(WithAlarms):
         self.blinks(stage, "health")
         self.blinks(stage, "attention")
         hosts.ip("link", "set", "eth0", "up")
+        wait_until(lambda: self.is_reached(stage), "the box to be reached again")
         self.goes(stage, "cable_out:team")
         over = next(each for each in self.view(stage)["alarms_over"] if each["id"] == "cable_out:team")
         self.assertEqual((over["severity"], over["side"], over["was"]), ("bad", "network", "The team's cable was out"))
@@ -221,6 +222,12 @@ class AlarmsOfTheBox(WithAlarms):
             stage = self.stage()
         self.sees(stage, "time_not_set", "wait", "box", "The box's time is not set", "of a wrong day")
         self.gone_after_a_restart(stage, "time_not_set")
+
+    @staticmethod
+    def is_reached(stage):
+        with contextlib.suppress(OSError):
+            return stage.box.ask("GET /adit/run", timeout=2)[0] == 200
+        return False
 
     def test_saved_settings_are_not_used(self):
         stage = self.stage()
